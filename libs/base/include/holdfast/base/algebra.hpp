@@ -1,0 +1,64 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstddef>
+
+/// Vectors of six and 6x6 matrices: displacement and force of one module, and one stiffness block.
+namespace holdfast::base {
+
+/// A displacement [ux uy uz tx ty tz] (mm, rad) or a force [fx fy fz mx my mz] (N, N mm).
+template <class Real>
+using Vec6 = std::array<Real, 6>;
+
+/// A dense 6x6 matrix, stored by columns.
+template <class Real>
+struct Mat6 {
+  std::array<Real, 36> values{};
+
+  constexpr Real& at(int row, int column) {
+    return values[static_cast<std::size_t>(row + 6 * column)];
+  }
+
+  constexpr Real at(int row, int column) const {
+    return values[static_cast<std::size_t>(row + 6 * column)];
+  }
+};
+
+template <class Real>
+constexpr void add_to(Vec6<Real>& sum, const Vec6<Real>& term) {
+  for (std::size_t i = 0; i < 6; ++i) {
+    sum[i] += term[i];
+  }
+}
+
+template <class Real>
+constexpr void add_to(Mat6<Real>& sum, const Mat6<Real>& term) {
+  for (std::size_t i = 0; i < 36; ++i) {
+    sum.values[i] += term.values[i];
+  }
+}
+
+template <class Real>
+constexpr Real dot(const Vec6<Real>& a, const Vec6<Real>& b) {
+  Real sum = 0;
+  for (std::size_t i = 0; i < 6; ++i) {
+    sum += a[i] * b[i];
+  }
+  return sum;
+}
+
+template <class Real>
+constexpr Vec6<Real> multiply(const Mat6<Real>& matrix, const Vec6<Real>& vector) {
+  Vec6<Real> product{};
+  for (int column = 0; column < 6; ++column) {
+    for (int row = 0; row < 6; ++row) {
+      product[static_cast<std::size_t>(row)] +=
+          matrix.at(row, column) * vector[static_cast<std::size_t>(column)];
+    }
+  }
+  return product;
+}
+
+}  // namespace holdfast::base

@@ -1,0 +1,117 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "holdfast/base/cell.hpp"
+#include "holdfast/base/result.hpp"
+#include "holdfast/model/robot.hpp"
+
+/// A structure as it stands in a file: what mechanics need, and what a conversion must not lose.
+namespace holdfast::io {
+
+/// Name and value, in the order of the file.
+using Attributes = std::vector<std::pair<std::string, std::string>>;
+
+/// An XML element that mechanics have no use for, kept whole (camera, spotlight, obstacles, csg).
+struct Element {
+  std::string name;
+  Attributes attributes;
+  std::string text;
+  std::vector<Element> children;
+
+  friend bool operator==(const Element&, const Element&) = default;
+};
+
+struct Color {
+  int red = 0;  ///< 0 to 255, as the others.
+  int green = 0;
+  int blue = 0;
+
+  friend bool operator==(const Color&, const Color&) = default;
+};
+
+/// One existing module.
+struct ModuleEntry {
+  base::Cell cell;
+  bool is_fixed = false;
+  std::optional<Color> color;
+  Attributes attributes;  ///< Everything else: id, centroid, solver, stabilityCheck, master...
+
+  friend bool operator==(const ModuleEntry&, const ModuleEntry&) = default;
+};
+
+/// One cell of a planned step.
+struct PlannedEntry {
+  base::Cell cell;
+  std::optional<Color> color;
+  Attributes attributes;
+
+  friend bool operator==(const PlannedEntry&, const PlannedEntry&) = default;
+};
+
+/// Modules that are to be attached together.
+using Step = std::vector<PlannedEntry>;
+
+/// The answer that a shipped scenario is known to have; tests compare it with what we compute.
+struct KnownAnswer {
+  std::string verdict;  ///< "safe", "overload", "unstable"
+  std::optional<double> margin_mm;
+  std::optional<double> load_ratio_max;
+  std::string source;  ///< Where the answer comes from.
+
+  friend bool operator==(const KnownAnswer&, const KnownAnswer&) = default;
+};
+
+struct Document {
+  std::string name;         ///< May be empty.
+  std::string description;  ///< May be empty.
+  std::int32_t support_z = 0;
+  model::Material material;
+  std::vector<ModuleEntry> modules;
+  std::vector<Step> steps;  ///< The first one is the planned step that is checked.
+  std::optional<KnownAnswer> known_answer;
+
+  // VisibleSim's own, without meaning for mechanics.
+  Attributes parameters;         ///< Of <parameters>: nofIterations, preconditioner, globalBeta...
+  Attributes world;              ///< Of <world>: gridSize, windowSize...
+  Attributes block_list;         ///< Of <blockList>: blockSize, size, ids...
+  std::vector<Element> scenery;  ///< Other children of <world>, and targets that are not grids.
+
+  friend bool operator==(const Document&, const Document&) = default;
+};
+
+/// A document and what its reader wants its user to know (unknown attributes, later steps...).
+struct ReadDocument {
+  Document document;
+  std::vector<std::string> warnings;
+};
+
+enum class Format : std::uint8_t { kVisibleSimXml, kJson };
+
+/// The limits of what is read, against files that are not what they seem.
+inline constexpr std::size_t kFileBytesMax = std::size_t{1} << 30U;
+inline constexpr int kNestingMax = 64;
+
+/// By the first character that is not white space: '<' or '{'; an error for anything else.
+base::Result<Format> detect_format(std::string_view text);
+
+/// Reads either format. Error::where is "line 12" or a JSON pointer such as "/modules/3".
+base::Result<ReadDocument> read_document(std::string_view text);
+
+base::Result<ReadDocument> read_visiblesim(std::string_view text);
+base::Result<ReadDocument> read_json(std::string_view text);
+
+/// Reading back gives an equal document. Comments and the layout of the text are not kept, and
+/// blocksLine and blockBox are written as single blocks.
+std::string write_visiblesim(const Document& document);
+std::string write_json(const Document& document);
+
+/// The robot with the first step; errors as of model::Robot::create.
+base::Result<model::Robot> make_robot(const Document& document);
+
+}  // namespace holdfast::io

@@ -1,0 +1,28 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "holdfast/verdict/assessment.hpp"
+
+namespace holdfast::io {
+
+/// One checked structure, for a report. Views must outlive the call.
+struct ReportEntry {
+  std::string_view name;
+  const model::Robot* robot = nullptr;
+  const verdict::Assessment* assessment = nullptr;
+  std::span<const std::string> warnings;
+  double seconds = 0;  ///< From the robot in memory to the verdict.
+};
+
+/// The JSON report, one object; keys are in docs/formats.md.
+std::string write_report_json(const ReportEntry& entry);
+
+/// The report for people: several lines, no colour, a line feed at the end.
+std::string write_report_text(const ReportEntry& entry);
+
+}  // namespace holdfast::io

@@ -1,0 +1,27 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "holdfast/base/algebra.hpp"
+
+/// Does a connection hold? Eq. (17) of [Piranda 2021].
+namespace holdfast::mechanics {
+
+/// What a connection carries, in its middle.
+template <class Real>
+struct ConnectionLoad {
+  Real axial = 0;    ///< N; tension is positive.
+  Real bending = 0;  ///< N mm; the larger of |mx| and |my|.
+};
+
+/// From the force in the middle of a connection, Eq. (16), local frame.
+template <class Real>
+ConnectionLoad<Real> connection_load(const base::Vec6<Real>& middle_force);
+
+/// (2 bending / width + axial) / strength. The connection breaks at 1 or more; a compressed
+/// connection can have a negative ratio. `width` (mm) is that of the face, the lever of Eq. (17);
+/// `strength` (N) is the tension that the connector holds.
+template <class Real>
+Real load_ratio(const ConnectionLoad<Real>& load, Real width, Real strength);
+
+}  // namespace holdfast::mechanics

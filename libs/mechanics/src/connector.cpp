@@ -1,0 +1,32 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#include "holdfast/mechanics/connector.hpp"
+
+namespace holdfast::mechanics {
+namespace {
+
+template <class Real>
+Real absolute(Real value) {
+  return value < 0 ? -value : value;
+}
+
+}  // namespace
+
+template <class Real>
+ConnectionLoad<Real> connection_load(const base::Vec6<Real>& middle_force) {
+  const Real mx = absolute(middle_force[3]);
+  const Real my = absolute(middle_force[4]);
+  return {.axial = middle_force[2], .bending = mx < my ? my : mx};
+}
+
+template <class Real>
+Real load_ratio(const ConnectionLoad<Real>& load, Real width, Real strength) {
+  return (2 * load.bending / width + load.axial) / strength;
+}
+
+template ConnectionLoad<float> connection_load(const base::Vec6<float>&);
+template ConnectionLoad<double> connection_load(const base::Vec6<double>&);
+template float load_ratio(const ConnectionLoad<float>&, float, float);
+template double load_ratio(const ConnectionLoad<double>&, double, double);
+
+}  // namespace holdfast::mechanics

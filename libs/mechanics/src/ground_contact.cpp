@@ -1,0 +1,235 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#include "holdfast/mechanics/ground_contact.hpp"
+
+namespace holdfast::mechanics {
+namespace {
+
+using base::Mat6;
+using base::Vec6;
+
+// Components of a facet force or displacement.
+constexpr int kFx = 0;
+constexpr int kFy = 1;
+constexpr int kFz = 2;
+constexpr int kMx = 3;
+constexpr int kMy = 4;
+constexpr int kMz = 5;
+
+template <class Real>
+Real absolute(Real value) {
+  return value < 0 ? -value : value;
+}
+
+template <class Real>
+std::int8_t sign(Real value) {
+  return value < 0 ? std::int8_t{-1} : std::int8_t{1};
+}
+
+/// Force at the facet centre to force at the node: the torques gain the lever of the force.
+template <class Real>
+Vec6<Real> at_node(const GroundFacet<Real>& facet, Vec6<Real> force) {
+  force[kMx] += force[kFy] * facet.lever;
+  force[kMy] -= force[kFx] * facet.lever;
+  return force;
+}
+
+template <class Real>
+ContactState regularised_state(const GroundFacet<Real>& facet, const Vec6<Real>& trial) {
+  const Real limit = -trial[kFz] * facet.half_width;
+  if (limit <= 0) {
+    return {.pressed = false};
+  }
+  ContactState state;
+  state.tilt_x = absolute(trial[kMx]) >= limit ? sign(trial[kMx]) : std::int8_t{0};
+  state.tilt_y = absolute(trial[kMy]) >= limit ? sign(trial[kMy]) : std::int8_t{0};
+  return state;
+}
+
+/// The cone problem in forces: trial = [f0 f1 f2] = k s with f1 = mx^/l, f2 = my^/l.
+template <class Real>
+struct ConeProblem {
+  Real k0, k1, k2;  // N/mm
+  Real f0, a1, a2;  // f0 = k0 s0, a = |k s|
+
+  ConeProblem(const GroundFacet<Real>& facet, const Vec6<Real>& trial)
+      : k0(facet.stiffness[kFz]),
+        k1(facet.stiffness[kMx] / (facet.half_width * facet.half_width)),
+        k2(facet.stiffness[kMy] / (facet.half_width * facet.half_width)),
+        f0(trial[kFz]),
+        a1(absolute(trial[kMx]) / facet.half_width),
+        a2(absolute(trial[kMy]) / facet.half_width) {}
+
+  /// Pressure p while standing on one corner.
+  Real corner_pressure() const {
+    return (k0 * (a1 / k1 + a2 / k2) - f0) / (1 + k0 / k1 + k0 / k2);
+  }
+};
+
+template <class Real>
+ContactState unilateral_state(const GroundFacet<Real>& facet, const Vec6<Real>& trial) {
+  const ConeProblem<Real> cone(facet, trial);
+  if (cone.a1 <= -cone.f0 && cone.a2 <= -cone.f0) {
+    return {.pressed = cone.f0 < 0};
+  }
+  const Real p = cone.corner_pressure();
+  if (p <= 0) {
+    return {.pressed = false};
+  }
+  // p of the corner is a weighted mean of an edge's pressure and the other torque's force, so a
+  // torque that does not exceed it does not tilt; if neither exceeded it the facet were closed.
+  ContactState state;
+  if (cone.a1 > p || cone.a1 >= cone.a2) {
+    state.tilt_x = sign(trial[kMx]);
+  }
+  if (cone.a2 > p || cone.a2 > cone.a1) {
+    state.tilt_y = sign(trial[kMy]);
+  }
+  return state;
+}
+
+/// Eqs. (10)-(12) as a matrix.
+template <class Real>
+Mat6<Real> regularised_corrector(const GroundFacet<Real>& facet, ContactState state) {
+  const Real gamma = facet.gamma;
+  Mat6<Real> matrix;
+  for (int i = 0; i < 6; ++i) {
+    matrix.at(i, i) = state.pressed ? Real{1} : gamma;
+  }
+  if (state.tilt_x != 0) {
+    matrix.at(kMx, kMx) = gamma;
+    matrix.at(kMx, kFz) = -(1 - gamma) * static_cast<Real>(state.tilt_x) * facet.half_width;
+  }
+  if (state.tilt_y != 0) {
+    matrix.at(kMy, kMy) = gamma;
+    matrix.at(kMy, kFz) = -(1 - gamma) * static_cast<Real>(state.tilt_y) * facet.half_width;
+  }
+  return matrix;
+}
+
+/// The pressed part of the cone law: p is linear in the trial force, fz = -p, m^ = sign p l.
+/// Components that do not tilt keep their trial value.
+template <class Real>
+Mat6<Real> pressed_corrector(const GroundFacet<Real>& facet, ContactState state) {
+  Mat6<Real> matrix;
+  for (int i = 0; i < 6; ++i) {
+    matrix.at(i, i) = 1;
+  }
+  const Real l = facet.half_width;
+  const Real k0 = facet.stiffness[kFz];
+  const int rows[2] = {kMx, kMy};
+  const std::int8_t tilts[2] = {state.tilt_x, state.tilt_y};
+  Real share = 1;
+  for (int i = 0; i < 2; ++i) {
+    share += tilts[i] != 0 ? k0 * l * l / facet.stiffness[static_cast<std::size_t>(rows[i])] : 0;
+  }
+  // p = (sum over tilts of k0/k |m^|/l - fz) / share, with k = stiffness / l^2.
+  Vec6<Real> pressure{};
+  pressure[kFz] = -1 / share;
+  for (int i = 0; i < 2; ++i) {
+    if (tilts[i] != 0) {
+      const auto row = static_cast<std::size_t>(rows[i]);
+      pressure[row] = static_cast<Real>(tilts[i]) * k0 * l / facet.stiffness[row] / share;
+    }
+  }
+  for (int column = 0; column < 6; ++column) {
+    const Real p = pressure[static_cast<std::size_t>(column)];
+    matrix.at(kFz, column) = -p;
+    for (int i = 0; i < 2; ++i) {
+      if (tilts[i] != 0) {
+        matrix.at(rows[i], column) = static_cast<Real>(tilts[i]) * l * p;
+      }
+    }
+  }
+  return matrix;
+}
+
+template <class Real>
+Mat6<Real> unilateral_corrector(const GroundFacet<Real>& facet, ContactState state, bool is_held) {
+  Mat6<Real> matrix;
+  if (state.pressed) {
+    matrix = pressed_corrector(facet, state);
+  }
+  for (const int sideways : {kFx, kFy, kMz}) {
+    matrix.at(sideways, sideways) = is_held ? Real{1} : Real{0};
+  }
+  for (Real& value : matrix.values) {
+    value *= 1 - facet.gamma;
+  }
+  for (int i = 0; i < 6; ++i) {
+    matrix.at(i, i) += facet.gamma;
+  }
+  return matrix;
+}
+
+}  // namespace
+
+template <class Real>
+GroundFacet<Real> ground_facet(const BeamSection<Real>& section, Real facet_width, Real gamma,
+                               ContactLaw law) {
+  const BeamStiffness<Real> beam = beam_stiffness(section);
+  return {.stiffness = {beam.shear_x, beam.shear_y, beam.axial, beam.bend_y / 4, beam.bend_x / 4,
+                        beam.twist},
+          .lever = section.length / 2,
+          .half_width = facet_width / 2,
+          .gamma = gamma,
+          .law = law};
+}
+
+template <class Real>
+Vec6<Real> trial_force(const GroundFacet<Real>& facet, const Vec6<Real>& u) {
+  const Vec6<Real>& h = facet.stiffness;
+  return {h[0] * (u[0] - u[4] * facet.lever),
+          h[1] * (u[1] + u[3] * facet.lever),
+          h[2] * u[2],
+          h[3] * u[3],
+          h[4] * u[4],
+          h[5] * u[5]};
+}
+
+template <class Real>
+ContactState contact_state(const GroundFacet<Real>& facet, const Vec6<Real>& trial) {
+  return facet.law == ContactLaw::kRegularised ? regularised_state(facet, trial)
+                                               : unilateral_state(facet, trial);
+}
+
+template <class Real>
+Mat6<Real> corrector(const GroundFacet<Real>& facet, ContactState state, bool is_held) {
+  return facet.law == ContactLaw::kRegularised ? regularised_corrector(facet, state)
+                                               : unilateral_corrector(facet, state, is_held);
+}
+
+template <class Real>
+Vec6<Real> contact_force(const GroundFacet<Real>& facet, ContactState state, bool is_held,
+                         const Vec6<Real>& u) {
+  return at_node(facet, multiply(corrector(facet, state, is_held), trial_force(facet, u)));
+}
+
+template <class Real>
+Mat6<Real> contact_tangent(const GroundFacet<Real>& facet, ContactState state, bool is_held) {
+  const Mat6<Real> correct = corrector(facet, state, is_held);
+  Mat6<Real> tangent;
+  for (int column = 0; column < 6; ++column) {
+    Vec6<Real> unit{};
+    unit[static_cast<std::size_t>(column)] = 1;
+    const Vec6<Real> image = at_node(facet, multiply(correct, trial_force(facet, unit)));
+    for (int row = 0; row < 6; ++row) {
+      tangent.at(row, column) = image[static_cast<std::size_t>(row)];
+    }
+  }
+  return tangent;
+}
+
+#define HOLDFAST_INSTANTIATE(Real)                                                            \
+  template GroundFacet<Real> ground_facet(const BeamSection<Real>&, Real, Real, ContactLaw);  \
+  template Vec6<Real> trial_force(const GroundFacet<Real>&, const Vec6<Real>&);               \
+  template ContactState contact_state(const GroundFacet<Real>&, const Vec6<Real>&);           \
+  template Mat6<Real> corrector(const GroundFacet<Real>&, ContactState, bool);                \
+  template Vec6<Real> contact_force(const GroundFacet<Real>&, ContactState, bool,             \
+                                    const Vec6<Real>&);                                       \
+  template Mat6<Real> contact_tangent(const GroundFacet<Real>&, ContactState, bool);
+
+HOLDFAST_INSTANTIATE(float)
+HOLDFAST_INSTANTIATE(double)
+
+}  // namespace holdfast::mechanics

@@ -1,0 +1,38 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "holdfast/base/cell.hpp"
+
+namespace holdfast::model {
+
+/// Finds a cell's position in a list in constant time. Open addressing with linear probing; it is
+/// only ever asked, never walked through, so results do not depend on the hash.
+class CellIndex {
+ public:
+  static constexpr std::int32_t kNone = -1;
+
+  explicit CellIndex(std::size_t cell_count_max);
+
+  /// Adds a cell; returns kNone, or the index under which the cell was added before.
+  std::int32_t insert(const base::Cell& cell, std::int32_t index);
+
+  /// The index of a cell, or kNone.
+  std::int32_t find(const base::Cell& cell) const;
+
+ private:
+  struct Slot {
+    base::Cell cell;
+    std::int32_t index = kNone;
+  };
+
+  std::size_t slot_of(const base::Cell& cell) const;
+
+  std::vector<Slot> slots_;
+};
+
+}  // namespace holdfast::model

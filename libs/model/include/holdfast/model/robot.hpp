@@ -1,0 +1,94 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "holdfast/base/cell.hpp"
+#include "holdfast/base/result.hpp"
+#include "holdfast/model/cell_index.hpp"
+#include "holdfast/model/material.hpp"
+
+/// A whole robot with the step that is planned for it: modules, connections, supports.
+namespace holdfast::model {
+
+/// More modules than this are refused; indices and exact sums stay far from overflow.
+inline constexpr std::size_t kModuleCountMax = 20'000'000;
+
+/// How a module is held from outside the robot.
+enum class Support : std::uint8_t {
+  kNone,
+  kGround,  ///< Rests on the support level through its bottom face, unilaterally.
+  kFixed,   ///< Does not move at all.
+};
+
+struct Module {
+  base::Cell cell;
+  Support support = Support::kNone;
+  bool is_planned = false;
+};
+
+/// A beam between face neighbours; `b` is the neighbour of `a` in a positive direction.
+struct Connection {
+  std::int32_t a = 0;  ///< Index of a module.
+  std::int32_t b = 0;
+  base::Direction direction = base::Direction::kPlusX;
+};
+
+/// What a robot is made from, in any order.
+struct RobotSpec {
+  std::vector<base::Cell> existing;
+  std::vector<base::Cell> planned;  ///< Attached in the planned step, all at once.
+  std::vector<base::Cell> fixed;    ///< Those of `existing` that are fixed.
+  std::int32_t support_z = 0;       ///< Modules in this layer rest on the ground.
+  Material material;
+};
+
+/// A robot that can be computed: connected, supported, no two modules in one cell. Immutable.
+class Robot {
+ public:
+  static constexpr std::int32_t kNoNeighbour = -1;
+  using Neighbours = std::array<std::int32_t, base::kDirectionCount>;
+
+  /// Checks every rule; the error names the cell, what was found and what is allowed.
+  static base::Result<Robot> create(const RobotSpec& spec);
+
+  /// Existing modules first, then the planned ones, each in the order of the spec.
+  std::span<const Module> modules() const { return modules_; }
+
+  /// Module indices by direction, kNoNeighbour where there is none.
+  std::span<const Neighbours> neighbours() const { return neighbours_; }
+
+  /// Every pair of face neighbours once, planned modules included.
+  std::span<const Connection> connections() const { return connections_; }
+
+  const Material& material() const { return material_; }
+
+  std::int32_t support_z() const { return support_z_; }
+
+  std::size_t planned_count() const { return planned_count_; }
+
+  std::size_t ground_count() const { return ground_count_; }
+
+  std::size_t fixed_count() const { return fixed_count_; }
+
+ private:
+  Robot() = default;
+
+  /// Finds neighbours and connections, counts supports.
+  void connect(const CellIndex& index);
+
+  std::vector<Module> modules_;
+  std::vector<Neighbours> neighbours_;
+  std::vector<Connection> connections_;
+  Material material_;
+  std::int32_t support_z_ = 0;
+  std::size_t planned_count_ = 0;
+  std::size_t ground_count_ = 0;
+  std::size_t fixed_count_ = 0;
+};
+
+}  // namespace holdfast::model

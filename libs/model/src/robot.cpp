@@ -1,0 +1,201 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#include "holdfast/model/robot.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <optional>
+#include <string>
+
+#include "holdfast/model/cell_index.hpp"
+
+namespace holdfast::model {
+namespace {
+
+using base::Cell;
+
+std::string text(const Cell& cell) { return fmt::format("({},{},{})", cell.x, cell.y, cell.z); }
+
+std::optional<std::string> find_size_fault(const RobotSpec& spec) {
+  if (spec.existing.empty()) {
+    return "the robot has no existing module, at least one is needed";
+  }
+  if (spec.existing.size() + spec.planned.size() > kModuleCountMax) {
+    return fmt::format("{} modules, allowed are at most {}",
+                       spec.existing.size() + spec.planned.size(), kModuleCountMax);
+  }
+  if (std::abs(static_cast<std::int64_t>(spec.support_z)) > base::kCoordinateMax) {
+    return fmt::format("the support level is {}, allowed is -{} to {}", spec.support_z,
+                       base::kCoordinateMax, base::kCoordinateMax);
+  }
+  return find_material_fault(spec.material);
+}
+
+std::optional<std::string> find_coordinate_fault(std::span<const Cell> cells) {
+  for (const Cell& cell : cells) {
+    for (const std::int64_t coordinate : {cell.x, cell.y, cell.z}) {
+      if (std::abs(coordinate) > base::kCoordinateMax) {
+        return fmt::format("the cell {} lies outside the lattice, allowed are coordinates from "
+                           "-{} to {}",
+                           text(cell), base::kCoordinateMax, base::kCoordinateMax);
+      }
+    }
+  }
+  return std::nullopt;
+}
+
+/// Puts all cells into the index; existing cells first.
+std::optional<std::string> find_double_cell(const RobotSpec& spec, CellIndex& index) {
+  std::int32_t next = 0;
+  for (const Cell& cell : spec.existing) {
+    if (index.insert(cell, next++) != CellIndex::kNone) {
+      return fmt::format("two modules in the cell {}, allowed is one", text(cell));
+    }
+  }
+  const auto existing_count = static_cast<std::int32_t>(spec.existing.size());
+  for (const Cell& cell : spec.planned) {
+    const std::int32_t earlier = index.insert(cell, next++);
+    if (earlier != CellIndex::kNone) {
+      return fmt::format("the planned cell {} is {}, allowed are free cells, each once", text(cell),
+                         earlier < existing_count ? "occupied by an existing module"
+                                                  : "planned twice");
+    }
+  }
+  return std::nullopt;
+}
+
+/// Modules that `first` reaches through connections among the first `count` modules.
+std::vector<bool> reach(std::span<const Robot::Neighbours> neighbours, std::size_t count) {
+  std::vector<bool> is_reached(neighbours.size(), false);
+  std::vector<std::int32_t> open = {0};
+  is_reached[0] = true;
+  while (!open.empty()) {
+    const auto module = static_cast<std::size_t>(open.back());
+    open.pop_back();
+    for (const std::int32_t next : neighbours[module]) {
+      if (next != Robot::kNoNeighbour && static_cast<std::size_t>(next) < count &&
+          !is_reached[static_cast<std::size_t>(next)]) {
+        is_reached[static_cast<std::size_t>(next)] = true;
+        open.push_back(next);
+      }
+    }
+  }
+  return is_reached;
+}
+
+std::optional<std::string> find_connection_fault(std::span<const Robot::Neighbours> neighbours,
+                                                 std::span<const Module> modules,
+                                                 std::size_t existing_count) {
+  const std::vector<bool> robot = reach(neighbours, existing_count);
+  const auto reached = static_cast<std::size_t>(std::ranges::count(robot, true));
+  if (reached < existing_count) {
+    const auto loose = static_cast<std::size_t>(std::ranges::find(robot, false) - robot.begin());
+    return fmt::format("the robot is not connected: {} of {} modules, {} among them, share no "
+                       "chain of faces with {}",
+                       existing_count - reached, existing_count, text(modules[loose].cell),
+                       text(modules[0].cell));
+  }
+  const std::vector<bool> whole = reach(neighbours, modules.size());
+  const auto loose = std::ranges::find(whole, false);
+  if (loose != whole.end()) {
+    return fmt::format("the planned cell {} touches neither the robot nor a planned cell that does",
+                       text(modules[static_cast<std::size_t>(loose - whole.begin())].cell));
+  }
+  return std::nullopt;
+}
+
+std::optional<std::string> find_support_fault(const Robot& robot) {
+  const auto existing = robot.modules().first(robot.modules().size() - robot.planned_count());
+  const bool is_held = std::ranges::any_of(
+      existing, [](const Module& module) { return module.support != Support::kNone; });
+  if (!is_held) {
+    const auto lowest = std::ranges::min_element(
+        existing, {}, [](const Module& module) { return module.cell.z; });
+    return fmt::format("nothing holds the robot: no existing module lies on the support level "
+                       "z = {} and none is fixed; the lowest module is {}",
+                       robot.support_z(), text(lowest->cell));
+  }
+  for (std::size_t i = 0; i < robot.modules().size(); ++i) {
+    const std::int32_t below = robot.neighbours()[i][base::index(base::Direction::kMinusZ)];
+    if (robot.modules()[i].support == Support::kGround && below != Robot::kNoNeighbour) {
+      return fmt::format("the module {} lies under {}, which rests on the support level z = {}; "
+                         "allowed below that level is only what hangs beside it",
+                         text(robot.modules()[static_cast<std::size_t>(below)].cell),
+                         text(robot.modules()[i].cell), robot.support_z());
+    }
+  }
+  return std::nullopt;
+}
+
+base::Error bad_input(std::string message) {
+  return {.code = base::ErrorCode::kBadInput, .message = std::move(message), .where = {}};
+}
+
+}  // namespace
+
+base::Result<Robot> Robot::create(const RobotSpec& spec) {
+  auto fault = find_size_fault(spec);
+  for (const auto* cells : {&spec.existing, &spec.planned, &spec.fixed}) {
+    if (!fault) {
+      fault = find_coordinate_fault(*cells);
+    }
+  }
+  if (fault) {
+    return bad_input(*fault);
+  }
+  const std::size_t count = spec.existing.size() + spec.planned.size();
+  CellIndex index(count);
+  if (fault = find_double_cell(spec, index); fault) {
+    return bad_input(*fault);
+  }
+
+  Robot robot;
+  robot.material_ = spec.material;
+  robot.support_z_ = spec.support_z;
+  robot.planned_count_ = spec.planned.size();
+  robot.modules_.reserve(count);
+  for (const auto* cells : {&spec.existing, &spec.planned}) {
+    for (const Cell& cell : *cells) {
+      robot.modules_.push_back(
+          {.cell = cell,
+           .support = cell.z == spec.support_z ? Support::kGround : Support::kNone,
+           .is_planned = cells == &spec.planned});
+    }
+  }
+  for (const Cell& cell : spec.fixed) {
+    const std::int32_t fixed = index.find(cell);
+    if (fixed == CellIndex::kNone || robot.modules_[static_cast<std::size_t>(fixed)].is_planned) {
+      return bad_input(fmt::format("the fixed cell {} holds no existing module", text(cell)));
+    }
+    robot.modules_[static_cast<std::size_t>(fixed)].support = Support::kFixed;
+  }
+  robot.connect(index);
+  if (fault = find_connection_fault(robot.neighbours_, robot.modules_, spec.existing.size());
+      !fault) {
+    fault = find_support_fault(robot);
+  }
+  if (fault) {
+    return bad_input(*fault);
+  }
+  return robot;
+}
+
+void Robot::connect(const CellIndex& index) {
+  neighbours_.resize(modules_.size());
+  for (std::size_t i = 0; i < modules_.size(); ++i) {
+    ground_count_ += modules_[i].support == Support::kGround ? 1 : 0;
+    fixed_count_ += modules_[i].support == Support::kFixed ? 1 : 0;
+    for (const base::Direction direction : base::kDirections) {
+      const std::int32_t other = index.find(base::neighbour(modules_[i].cell, direction));
+      neighbours_[i][static_cast<std::size_t>(base::index(direction))] = other;
+      if (other != CellIndex::kNone && base::index(direction) % 2 == 0) {
+        connections_.push_back(
+            {.a = static_cast<std::int32_t>(i), .b = other, .direction = direction});
+      }
+    }
+  }
+}
+
+}  // namespace holdfast::model

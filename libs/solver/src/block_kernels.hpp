@@ -1,0 +1,66 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "holdfast/base/algebra.hpp"
+
+/// The 6x6 arithmetic of BlockLu; plain loops that compilers turn into vector code.
+namespace holdfast::solver {
+
+/// C -= A B
+inline void subtract_product(base::Mat6<double>& c, const base::Mat6<double>& a,
+                             const base::Mat6<double>& b) {
+  for (std::size_t column = 0; column < 6; ++column) {
+    double sum[6];
+    for (std::size_t i = 0; i < 6; ++i) {
+      sum[i] = c.values[6 * column + i];
+    }
+    for (std::size_t k = 0; k < 6; ++k) {
+      const double factor = b.values[6 * column + k];
+      for (std::size_t i = 0; i < 6; ++i) {
+        sum[i] -= a.values[6 * k + i] * factor;
+      }
+    }
+    for (std::size_t i = 0; i < 6; ++i) {
+      c.values[6 * column + i] = sum[i];
+    }
+  }
+}
+
+/// y -= A x
+inline void subtract_product(base::Vec6<double>& y, const base::Mat6<double>& a,
+                             const base::Vec6<double>& x) {
+  for (std::size_t k = 0; k < 6; ++k) {
+    for (std::size_t i = 0; i < 6; ++i) {
+      y[i] -= a.values[6 * k + i] * x[k];
+    }
+  }
+}
+
+inline base::Mat6<double> product(const base::Mat6<double>& a, const base::Mat6<double>& b) {
+  base::Mat6<double> c;
+  for (std::size_t column = 0; column < 6; ++column) {
+    for (std::size_t k = 0; k < 6; ++k) {
+      const double factor = b.values[6 * column + k];
+      for (std::size_t i = 0; i < 6; ++i) {
+        c.values[6 * column + i] += a.values[6 * k + i] * factor;
+      }
+    }
+  }
+  return c;
+}
+
+inline base::Mat6<double> transpose(const base::Mat6<double>& a) {
+  base::Mat6<double> t;
+  for (int row = 0; row < 6; ++row) {
+    for (int column = 0; column < 6; ++column) {
+      t.at(column, row) = a.at(row, column);
+    }
+  }
+  return t;
+}
+
+/// Gauss-Jordan with row pivoting. Returns false for a singular or non-finite block.
+bool invert(const base::Mat6<double>& block, base::Mat6<double>& inverse);
+
+}  // namespace holdfast::solver

@@ -1,0 +1,216 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#include "holdfast/solver/block_lu.hpp"
+
+#include <Eigen/OrderingMethods>
+#include <Eigen/SparseCore>
+#include <algorithm>
+
+#include "block_kernels.hpp"
+#include "holdfast/base/check.hpp"
+
+namespace holdfast::solver {
+namespace {
+
+/// Approximate minimum degree on the graph of nodes. Returns node -> place.
+std::vector<std::int32_t> elimination_order(std::size_t node_count, std::span<const Edge> edges) {
+  const auto n = static_cast<Eigen::Index>(node_count);
+  std::vector<Eigen::Triplet<double, int>> entries;
+  entries.reserve(2 * edges.size() + node_count);
+  for (const Edge& edge : edges) {
+    entries.emplace_back(edge.a, edge.b, 1.0);
+    entries.emplace_back(edge.b, edge.a, 1.0);
+  }
+  for (int i = 0; i < static_cast<int>(node_count); ++i) {
+    entries.emplace_back(i, i, 1.0);
+  }
+  Eigen::SparseMatrix<double, Eigen::ColMajor, int> pattern(n, n);
+  pattern.setFromTriplets(entries.begin(), entries.end());
+  Eigen::PermutationMatrix<Eigen::Dynamic, Eigen::Dynamic, int> order;
+  Eigen::AMDOrdering<int> amd;
+  amd(pattern, order);
+  std::vector<std::int32_t> place(node_count);
+  for (std::size_t i = 0; i < node_count; ++i) {
+    place[static_cast<std::size_t>(order.indices()[static_cast<Eigen::Index>(i)])] =
+        static_cast<std::int32_t>(i);
+  }
+  return place;
+}
+
+}  // namespace
+
+BlockLu::BlockLu(std::size_t node_count, std::span<const Edge> edges, std::size_t block_count_max)
+    : edges_(edges.begin(), edges.end()), position_(elimination_order(node_count, edges)) {
+  for (Edge& edge : edges_) {
+    edge = {position_[static_cast<std::size_t>(edge.a)],
+            position_[static_cast<std::size_t>(edge.b)]};
+  }
+  analyse(block_count_max);
+}
+
+/// The rows of a column of L: those of A, and those of its children in the elimination tree.
+void BlockLu::analyse(std::size_t block_count_max) {
+  const std::size_t n = position_.size();
+  std::vector<std::vector<std::int32_t>> below(n);
+  column_edges_.resize(n);
+  for (std::size_t e = 0; e < edges_.size(); ++e) {
+    const auto [low, high] = std::minmax(edges_[e].a, edges_[e].b);
+    below[static_cast<std::size_t>(low)].push_back(high);
+    column_edges_[static_cast<std::size_t>(low)].push_back(e);
+  }
+  parent_.assign(n, -1);
+  column_start_.assign(n + 1, 0);
+  for (std::size_t k = 0; k < n; ++k) {
+    std::vector<std::int32_t>& rows = below[k];
+    std::ranges::sort(rows);
+    rows.erase(std::unique(rows.begin(), rows.end()), rows.end());
+    column_start_[k + 1] = column_start_[k] + rows.size();
+    if (column_start_[k + 1] > block_count_max) {
+      is_too_large_ = true;
+      return;
+    }
+    rows_.insert(rows_.end(), rows.begin(), rows.end());
+    if (!rows.empty()) {
+      parent_[k] = rows.front();
+      std::vector<std::int32_t>& up = below[static_cast<std::size_t>(rows.front())];
+      up.insert(up.end(), rows.begin() + 1, rows.end());
+    }
+    rows = {};
+  }
+  make_row_lists();
+}
+
+void BlockLu::make_row_lists() {
+  const std::size_t n = position_.size();
+  row_start_.assign(n + 1, 0);
+  for (const std::int32_t row : rows_) {
+    ++row_start_[static_cast<std::size_t>(row) + 1];
+  }
+  for (std::size_t k = 0; k < n; ++k) {
+    row_start_[k + 1] += row_start_[k];
+  }
+  row_entries_.resize(rows_.size());
+  std::vector<std::size_t> next(row_start_.begin(), row_start_.end() - 1);
+  for (std::size_t k = 0; k < n; ++k) {
+    for (std::size_t slot = column_start_[k]; slot < column_start_[k + 1]; ++slot) {
+      row_entries_[next[static_cast<std::size_t>(rows_[slot])]++] = {static_cast<std::int32_t>(k),
+                                                                     slot};
+    }
+  }
+}
+
+void BlockLu::allocate() {
+  if (inverse_.size() == position_.size()) {
+    return;
+  }
+  const std::size_t n = position_.size();
+  diagonal_.resize(n);
+  inverse_.resize(n);
+  lower_.resize(rows_.size());
+  upper_.resize(rows_.size());
+  edge_lower_.resize(edges_.size());
+  is_stale_.assign(n, true);
+  slot_of_row_.resize(n);
+  edge_slot_.resize(edges_.size());
+  for (std::size_t e = 0; e < edges_.size(); ++e) {
+    const auto [low, high] = std::minmax(edges_[e].a, edges_[e].b);
+    edge_slot_[e] = find_slot(low, high);
+  }
+}
+
+std::size_t BlockLu::find_slot(std::int32_t column, std::int32_t row) const {
+  const auto k = static_cast<std::size_t>(column);
+  const auto first = rows_.begin() + static_cast<std::ptrdiff_t>(column_start_[k]);
+  const auto last = rows_.begin() + static_cast<std::ptrdiff_t>(column_start_[k + 1]);
+  const auto found = std::lower_bound(first, last, row);
+  HOLDFAST_ASSERT(found != last && *found == row);
+  return static_cast<std::size_t>(found - rows_.begin());
+}
+
+void BlockLu::set_edge(std::size_t edge, const base::Mat6<double>& ab) {
+  allocate();
+  edge_lower_[edge] = edges_[edge].a > edges_[edge].b ? ab : transpose(ab);
+}
+
+void BlockLu::set_diagonal(std::size_t node, const base::Mat6<double>& block) {
+  allocate();
+  const auto place = static_cast<std::size_t>(position_[node]);
+  diagonal_[place] = block;
+  is_stale_[place] = true;
+}
+
+bool BlockLu::factor() {
+  is_singular_ = false;
+  for (std::size_t k = 0; k < position_.size() && !is_singular_; ++k) {
+    if (is_stale_[k]) {
+      make_column(k);
+      if (parent_[k] >= 0) {
+        is_stale_[static_cast<std::size_t>(parent_[k])] = true;
+      }
+    }
+  }
+  if (!is_singular_) {
+    is_stale_.assign(is_stale_.size(), false);
+  }
+  return !is_singular_;
+}
+
+/// Column k of L and row k of U: A minus what the columns to the left contribute.
+void BlockLu::make_column(std::size_t k) {
+  const std::size_t begin = column_start_[k];
+  const std::size_t end = column_start_[k + 1];
+  for (std::size_t slot = begin; slot < end; ++slot) {
+    lower_[slot] = {};
+    upper_[slot] = {};
+    slot_of_row_[static_cast<std::size_t>(rows_[slot])] = slot;
+  }
+  for (const std::size_t edge : column_edges_[k]) {
+    lower_[edge_slot_[edge]] = edge_lower_[edge];
+    upper_[edge_slot_[edge]] = transpose(edge_lower_[edge]);
+  }
+  base::Mat6<double> pivot = diagonal_[k];
+  for (std::size_t entry = row_start_[k]; entry < row_start_[k + 1]; ++entry) {
+    const auto [left, slot_k] = row_entries_[entry];
+    const base::Mat6<double>& l_kj = lower_[slot_k];
+    const base::Mat6<double>& u_jk = upper_[slot_k];
+    subtract_product(pivot, l_kj, u_jk);
+    const std::size_t left_end = column_start_[static_cast<std::size_t>(left) + 1];
+    for (std::size_t slot = slot_k + 1; slot < left_end; ++slot) {
+      const std::size_t target = slot_of_row_[static_cast<std::size_t>(rows_[slot])];
+      subtract_product(lower_[target], lower_[slot], u_jk);
+      subtract_product(upper_[target], l_kj, upper_[slot]);
+    }
+  }
+  if (!invert(pivot, inverse_[k])) {
+    is_singular_ = true;
+    return;
+  }
+  for (std::size_t slot = begin; slot < end; ++slot) {
+    lower_[slot] = product(lower_[slot], inverse_[k]);
+  }
+}
+
+void BlockLu::solve(std::span<base::Vec6<double>> x) const {
+  HOLDFAST_CHECK(x.size() == position_.size() && !is_singular_);
+  const std::size_t n = position_.size();
+  std::vector<base::Vec6<double>> y(n);
+  for (std::size_t node = 0; node < n; ++node) {
+    y[static_cast<std::size_t>(position_[node])] = x[node];
+  }
+  for (std::size_t k = 0; k < n; ++k) {
+    for (std::size_t slot = column_start_[k]; slot < column_start_[k + 1]; ++slot) {
+      subtract_product(y[static_cast<std::size_t>(rows_[slot])], lower_[slot], y[k]);
+    }
+  }
+  for (std::size_t k = n; k-- > 0;) {
+    for (std::size_t slot = column_start_[k]; slot < column_start_[k + 1]; ++slot) {
+      subtract_product(y[k], upper_[slot], y[static_cast<std::size_t>(rows_[slot])]);
+    }
+    y[k] = multiply(inverse_[k], y[k]);
+  }
+  for (std::size_t node = 0; node < n; ++node) {
+    x[node] = y[static_cast<std::size_t>(position_[node])];
+  }
+}
+
+}  // namespace holdfast::solver

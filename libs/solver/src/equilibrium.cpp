@@ -1,0 +1,367 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#include "holdfast/solver/equilibrium.hpp"
+
+#include <algorithm>
+#include <array>
+#include <set>
+
+namespace holdfast::solver {
+namespace {
+
+using base::Mat6;
+using base::Vec6;
+using mechanics::ContactLaw;
+using mechanics::ContactState;
+
+/// The first step removes most of the rounding error, the second measures what is left.
+constexpr int kRefinementCount = 2;
+
+/// Halvings of the bracket in the line search, to the resolution of double.
+constexpr int kLineStepMax = 60;
+
+std::size_t node_index(std::int32_t node) { return static_cast<std::size_t>(node); }
+
+double dot_all(const std::vector<Vec6<double>>& a, const std::vector<Vec6<double>>& b) {
+  double sum = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    sum += base::dot(a[i], b[i]);
+  }
+  return sum;
+}
+
+/// States in a form that can be compared and remembered.
+std::vector<std::int8_t> code_of(const std::vector<ContactState>& states) {
+  std::vector<std::int8_t> code;
+  code.reserve(states.size());
+  for (const ContactState& state : states) {
+    const int tilt = 3 * (state.tilt_x + 1) + (state.tilt_y + 1);
+    code.push_back(static_cast<std::int8_t>(state.pressed ? tilt : -1));
+  }
+  return code;
+}
+
+}  // namespace
+
+EquilibriumSolver::EquilibriumSolver(const model::Robot& robot, const EquilibriumOptions& options)
+    : robot_(robot),
+      options_(options),
+      beam_(mechanics::beam_stiffness(model::beam_section(robot.material()))) {
+  const auto modules = robot.modules();
+  node_of_module_.assign(modules.size(), -1);
+  std::int32_t node_count = 0;
+  for (std::size_t i = 0; i < modules.size(); ++i) {
+    if (modules[i].support != model::Support::kFixed) {
+      node_of_module_[i] = node_count++;
+    }
+    if (modules[i].support == model::Support::kGround) {
+      facets_.push_back({.module = i, .state = {}});
+    }
+  }
+  std::vector<Edge> edges;
+  edges.reserve(robot.connections().size());
+  for (const model::Connection& connection : robot.connections()) {
+    const Edge edge{node_of_module_[node_index(connection.a)],
+                    node_of_module_[node_index(connection.b)]};
+    if (edge.a >= 0 && edge.b >= 0) {
+      edges.push_back(edge);
+    }
+  }
+  lu_.emplace(static_cast<std::size_t>(node_count), edges,
+              options.memory_bytes_max / (2 * sizeof(Mat6<double>) + 24));
+  if (!lu_->is_too_large()) {
+    assemble();
+  }
+}
+
+/// Everything but the contact: K11 of every beam end on the diagonal, K12 off it (Eqs. 3, 5).
+void EquilibriumSolver::assemble() {
+  std::array<Mat6<double>, base::kDirectionCount> k11;
+  std::array<Mat6<double>, base::kDirectionCount> k12;
+  for (const base::Direction direction : base::kDirections) {
+    const auto i = static_cast<std::size_t>(base::index(direction));
+    k11[i] = mechanics::block_11(beam_, direction);
+    k12[i] = mechanics::block_12(beam_, direction);
+  }
+  diagonal_.resize(robot_.modules().size() - robot_.fixed_count());
+  std::size_t edge = 0;
+  for (const model::Connection& connection : robot_.connections()) {
+    const std::int32_t a = node_of_module_[node_index(connection.a)];
+    const std::int32_t b = node_of_module_[node_index(connection.b)];
+    const auto direction = static_cast<std::size_t>(base::index(connection.direction));
+    if (a >= 0) {
+      base::add_to(diagonal_[node_index(a)], k11[direction]);
+    }
+    if (b >= 0) {
+      base::add_to(diagonal_[node_index(b)], k11[direction ^ 1U]);
+    }
+    if (a >= 0 && b >= 0) {
+      lu_->set_edge(edge++, k12[direction]);
+    }
+  }
+  for (std::size_t node = 0; node < diagonal_.size(); ++node) {
+    lu_->set_diagonal(node, diagonal_[node]);
+  }
+}
+
+Equilibrium EquilibriumSolver::solve(const ContactOptions& contact) {
+  Equilibrium result;
+  result.law = contact.law;
+  if (lu_->is_too_large()) {
+    result.outcome = Outcome::kTooLarge;
+    return result;
+  }
+  const model::Material& material = robot_.material();
+  ground_ = mechanics::ground_facet(model::beam_section(material), material.facet_mm,
+                                    contact.gamma, contact.law);
+  for (Facet& facet : facets_) {
+    facet.is_held = true;
+    facet.was_released = false;
+  }
+  set_states(std::vector<ContactState>(facets_.size()));
+  result.outcome = contact.law == ContactLaw::kRegularised ? iterate_regularised(result)
+                                                   : iterate_unilateral(result);
+  if (result.outcome == Outcome::kSettled) {
+    finish(result);
+  }
+  return result;
+}
+
+/// Takes over new states; returns whether any of them differs.
+bool EquilibriumSolver::set_states(const std::vector<ContactState>& states) {
+  bool is_changed = false;
+  for (std::size_t i = 0; i < facets_.size(); ++i) {
+    is_changed = is_changed || facets_[i].state != states[i];
+    facets_[i].state = states[i];
+    const std::size_t node = node_index(node_of_module_[facets_[i].module]);
+    Mat6<double> block = diagonal_[node];
+    base::add_to(block,
+                 mechanics::contact_tangent(ground_, facets_[i].state, facets_[i].is_held));
+    lu_->set_diagonal(node, block);
+  }
+  return is_changed;
+}
+
+std::vector<ContactState> EquilibriumSolver::states_at(
+    const std::vector<Vec>& displacement) const {
+  std::vector<ContactState> states;
+  states.reserve(facets_.size());
+  for (const Facet& facet : facets_) {
+    states.push_back(mechanics::contact_state(
+        ground_, mechanics::trial_force(ground_, displacement[facet.module])));
+  }
+  return states;
+}
+
+/// Displacements for the present states, under the weight.
+bool EquilibriumSolver::solve_linear(Equilibrium& result) {
+  ++result.steps;
+  if (!lu_->factor()) {
+    return false;
+  }
+  const double weight = model::module_weight_n(robot_.material());
+  std::vector<Vec> x(diagonal_.size(), Vec{0, 0, -weight, 0, 0, 0});
+  lu_->solve(x);
+  result.displacement.assign(robot_.modules().size(), Vec{});
+  for (std::size_t i = 0; i < node_of_module_.size(); ++i) {
+    if (node_of_module_[i] >= 0) {
+      result.displacement[i] = x[node_index(node_of_module_[i])];
+    }
+  }
+  return true;
+}
+
+Outcome EquilibriumSolver::iterate_regularised(Equilibrium& result) {
+  std::set<std::vector<std::int8_t>> seen;
+  for (int step = 0; step < options_.step_count_max; ++step) {
+    if (!solve_linear(result)) {
+      return Outcome::kSingular;
+    }
+    const std::vector<ContactState> states = states_at(result.displacement);
+    if (!set_states(states)) {
+      return Outcome::kSettled;
+    }
+    if (!seen.insert(code_of(states)).second) {
+      return Outcome::kNotSettled;
+    }
+  }
+  return Outcome::kNotSettled;
+}
+
+Outcome EquilibriumSolver::iterate_unilateral(Equilibrium& result) {
+  Outcome outcome = minimise(result);
+  while (outcome == Outcome::kSettled && update_held()) {
+    outcome = minimise(result);
+  }
+  return outcome;
+}
+
+/// Newton's method with an exact line search on the convex energy, for the present held facets.
+Outcome EquilibriumSolver::minimise(Equilibrium& result) {
+  std::vector<Vec> current;
+  for (int step = 0; step < options_.step_count_max; ++step) {
+    if (!solve_linear(result)) {
+      return Outcome::kSingular;
+    }
+    if (!set_states(states_at(result.displacement))) {
+      return Outcome::kSettled;
+    }
+    if (!current.empty()) {
+      std::vector<Vec> direction = result.displacement;
+      for (std::size_t i = 0; i < direction.size(); ++i) {
+        for (std::size_t k = 0; k < 6; ++k) {
+          direction[i][k] -= current[i][k];
+        }
+      }
+      const double length = search_line(current, direction);
+      for (std::size_t i = 0; i < direction.size(); ++i) {
+        for (std::size_t k = 0; k < 6; ++k) {
+          result.displacement[i][k] = current[i][k] + length * direction[i][k];
+        }
+      }
+      set_states(states_at(result.displacement));
+    }
+    current = result.displacement;
+  }
+  return Outcome::kNotSettled;
+}
+
+/// Where the energy along a line is least: the root of its slope, which never decreases.
+double EquilibriumSolver::search_line(const std::vector<Vec>& from,
+                                      const std::vector<Vec>& direction) const {
+  const double weight = model::module_weight_n(robot_.material());
+  double slope = dot_all(internal_force(from), direction);
+  for (std::size_t i = 0; i < direction.size(); ++i) {
+    slope += node_of_module_[i] >= 0 ? weight * direction[i][2] : 0;
+  }
+  const double curvature = dot_all(internal_force(direction), direction);
+  const auto slope_at = [&](double length) {
+    double sum = slope + length * curvature;
+    for (const Facet& facet : facets_) {
+      Vec u = from[facet.module];
+      for (std::size_t k = 0; k < 6; ++k) {
+        u[k] += length * direction[facet.module][k];
+      }
+      const ContactState state =
+          mechanics::contact_state(ground_, mechanics::trial_force(ground_, u));
+      sum += base::dot(mechanics::contact_force(ground_, state, facet.is_held, u),
+                       direction[facet.module]);
+    }
+    return sum;
+  };
+  if (slope_at(1) <= 0) {
+    return 1;
+  }
+  double low = 0;
+  double high = 1;
+  for (int i = 0; i < kLineStepMax && low < high; ++i) {
+    const double middle = (low + high) / 2;
+    (slope_at(middle) <= 0 ? low : high) = middle;
+  }
+  return high;
+}
+
+/// Releases open facets, holds pressed ones. Returns whether anything changed; a facet changes at
+/// most twice, so this says no in the end.
+bool EquilibriumSolver::update_held() {
+  bool is_changed = false;
+  std::vector<ContactState> states;
+  for (Facet& facet : facets_) {
+    if (!facet.state.pressed && facet.is_held && !facet.was_released) {
+      facet.is_held = false;
+      facet.was_released = true;
+      is_changed = true;
+    } else if (facet.state.pressed && !facet.is_held) {
+      facet.is_held = true;
+      is_changed = true;
+    }
+    states.push_back(facet.state);
+  }
+  set_states(states);
+  return is_changed;
+}
+
+/// Force that the beams take from every module.
+std::vector<Vec6<double>> EquilibriumSolver::internal_force(
+    const std::vector<Vec>& displacement) const {
+  std::vector<Vec> force(displacement.size(), Vec{});
+  for (const model::Connection& connection : robot_.connections()) {
+    const auto a = node_index(connection.a);
+    const auto b = node_index(connection.b);
+    base::add_to(force[a], mechanics::end_force(beam_, connection.direction, displacement[a],
+                                                displacement[b]));
+    base::add_to(force[b], mechanics::end_force(beam_, base::opposite(connection.direction),
+                                                displacement[b], displacement[a]));
+  }
+  return force;
+}
+
+/// Iterative refinement, then everything that follows from the displacements.
+void EquilibriumSolver::finish(Equilibrium& result) {
+  for (int step = 0; step < kRefinementCount; ++step) {
+    refine(result);
+  }
+  const std::size_t count = robot_.modules().size();
+  result.contact.assign(count, ContactState{.pressed = false});
+  result.ground_force.assign(count, Vec{});
+  const bool law_has_holds = ground_.law == ContactLaw::kUnilateral;
+  for (const Facet& facet : facets_) {
+    result.contact[facet.module] = facet.state;
+    result.open_but_held_count += law_has_holds && !facet.state.pressed && facet.is_held ? 1 : 0;
+    const Vec force = mechanics::contact_force(ground_, facet.state, facet.is_held,
+                                               result.displacement[facet.module]);
+    for (std::size_t k = 0; k < 6; ++k) {
+      result.ground_force[facet.module][k] = -force[k];
+    }
+  }
+  if (result.open_but_held_count > 0) {
+    compare_with_free_facets(result);
+  }
+}
+
+/// The alternative where some facets can neither be held nor free: half open, half closed.
+void EquilibriumSolver::compare_with_free_facets(Equilibrium& result) {
+  for (Facet& facet : facets_) {
+    facet.is_held = facet.is_held && facet.state.pressed;
+  }
+  set_states(states_at(result.displacement));
+  Equilibrium free;
+  const bool is_settled = minimise(free) == Outcome::kSettled;
+  result.steps += free.steps;
+  for (std::size_t i = 0; is_settled && i < result.alternative.size(); ++i) {
+    for (std::size_t k = 0; k < 6; ++k) {
+      result.alternative[i][k] = free.displacement[i][k];
+    }
+  }
+}
+
+/// Solves for the residual and adds the correction.
+void EquilibriumSolver::refine(Equilibrium& result) const {
+  std::vector<Vec> residual = internal_force(result.displacement);
+  for (const Facet& facet : facets_) {
+    base::add_to(residual[facet.module],
+                 mechanics::contact_force(ground_, facet.state, facet.is_held,
+                                          result.displacement[facet.module]));
+  }
+  const double weight = model::module_weight_n(robot_.material());
+  std::vector<Vec> x(diagonal_.size());
+  for (std::size_t i = 0; i < residual.size(); ++i) {
+    if (node_of_module_[i] >= 0) {
+      Vec& rest = x[node_index(node_of_module_[i])];
+      for (std::size_t k = 0; k < 6; ++k) {
+        rest[k] = -residual[i][k];
+      }
+      rest[2] -= weight;
+    }
+  }
+  lu_->solve(x);
+  result.alternative.assign(residual.size(), Vec{});
+  for (std::size_t i = 0; i < residual.size(); ++i) {
+    if (node_of_module_[i] >= 0) {
+      result.alternative[i] = result.displacement[i];
+      base::add_to(result.displacement[i], x[node_index(node_of_module_[i])]);
+    }
+  }
+}
+
+}  // namespace holdfast::solver

@@ -1,0 +1,85 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "holdfast/model/robot.hpp"
+#include "holdfast/solver/equilibrium.hpp"
+#include "holdfast/verdict/rigid_body.hpp"
+
+/// Will it hold? The verdict on a robot with its planned step, and everything it rests on.
+namespace holdfast::verdict {
+
+enum class Verdict : std::uint8_t {
+  kSafe,       ///< Stable, and every connection carries less than its strength.
+  kOverload,   ///< Stable, but at least one connection carries its strength or more.
+  kUnstable,   ///< Topples, or has nothing to spare against toppling.
+  kUndecided,  ///< Not certain; the reasons say why.
+};
+
+/// Which contact model the forces come from.
+enum class ContactModel : std::uint8_t {
+  kNone,         ///< Every support is fixed.
+  kRegularised,  ///< Eqs. (9)-(12), the paper's.
+  kUnilateral,   ///< Eqs. (6)-(8), exact; used where (9)-(12) have no usable answer.
+};
+
+/// What one connection carries, in its middle (Eqs. 16-17).
+struct ConnectionResult {
+  double load_ratio = 0;  ///< (2 bending / a + axial) / Fmax; breaks at 1 or more.
+  double axial_n = 0;     ///< Tension is positive.
+  double bending_nmm = 0;
+  double shear_n = 0;    ///< Not part of the criterion.
+  double torsion_nmm = 0;  ///< Not part of the criterion.
+};
+
+/// What the largest load ratio lies between: apart by rounding, or by feet whose hold on the ground
+/// is ambiguous. A verdict needs both on the same side of 1.
+struct LoadRange {
+  double low = 0;
+  double high = 0;
+};
+
+struct ModelStability {
+  bool is_stable = false;
+  bool is_settled = false;  ///< False: no consistent contact state was found, is_stable is void.
+};
+
+struct Assessment {
+  Verdict verdict = Verdict::kUndecided;
+  std::vector<std::string> reasons;  ///< One or more sentences.
+
+  RigidBody simplified;   ///< Sec. III-B.
+  ModelStability model;   ///< Sec. III-C.
+  bool is_stable = false;  ///< Decided by the rigid body: the ground is flat.
+
+  /// Per connection of the robot; empty if no equilibrium was found. Not meaningful if unstable.
+  std::vector<ConnectionResult> connections;
+  std::optional<double> load_ratio_max;
+  std::optional<std::size_t> worst;  ///< Index of the connection with load_ratio_max.
+  std::vector<std::size_t> broken;   ///< Indices of connections at 1 or more, worst first.
+  /// The weight could grow by this factor before the first connection breaks; none if no
+  /// connection is ever pulled apart.
+  std::optional<double> weight_factor;
+  LoadRange load_ratio_range;  ///< Void where load_ratio_max is.
+
+  ContactModel contact_model = ContactModel::kNone;
+  solver::Equilibrium equilibrium;  ///< Displacements, contact states, ground forces.
+};
+
+/// A load ratio this close below 1 counts as 1: the margin is rounding, not strength.
+inline constexpr double kLoadRatioTie = 1e-9;
+
+Assessment assess(const model::Robot& robot, const solver::EquilibriumOptions& options = {});
+
+/// "safe", "overload", "unstable", "undecided".
+const char* name(Verdict verdict);
+
+/// "none", "regularised", "unilateral".
+const char* name(ContactModel model);
+
+}  // namespace holdfast::verdict

@@ -1,0 +1,267 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#include "holdfast/verdict/assessment.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "holdfast/mechanics/connector.hpp"
+#include "holdfast/mechanics/support_corners.hpp"
+
+namespace holdfast::verdict {
+namespace {
+
+using mechanics::ContactLaw;
+using solver::Equilibrium;
+using solver::Outcome;
+
+std::string text(const base::Cell& cell) {
+  return fmt::format("({},{},{})", cell.x, cell.y, cell.z);
+}
+
+std::string text(const model::Robot& robot, std::size_t connection) {
+  const model::Connection& pair = robot.connections()[connection];
+  return text(robot.modules()[static_cast<std::size_t>(pair.a)].cell) + "-" +
+         text(robot.modules()[static_cast<std::size_t>(pair.b)].cell);
+}
+
+/// Sec. III-C: merges what every module contributes; the order does not matter.
+ModelStability model_stability(const model::Robot& robot, const Equilibrium& equilibrium) {
+  if (equilibrium.outcome != Outcome::kSettled) {
+    return {};
+  }
+  mechanics::SupportCorners corners;
+  for (std::size_t i = 0; i < robot.modules().size() && !corners.stable; ++i) {
+    const model::Module& module = robot.modules()[i];
+    if (module.support == model::Support::kFixed) {
+      corners = mechanics::fixed_support();
+    } else if (module.support == model::Support::kGround) {
+      corners = mechanics::merge(
+          corners, mechanics::support_corners(module.cell, equilibrium.contact[i]));
+    }
+  }
+  return {.is_stable = corners.stable, .is_settled = true};
+}
+
+bool breaks(double load_ratio) { return load_ratio >= 1 - kLoadRatioTie; }
+
+double strength_n(const model::Material& material, base::Direction direction) {
+  return base::is_vertical(direction) ? material.strength_vertical_n : material.strength_lateral_n;
+}
+
+/// Eqs. (16)-(17).
+ConnectionResult connection_result(const model::Material& material, base::Direction direction,
+                                   const base::Vec6<double>& middle) {
+  const auto load = mechanics::connection_load(middle);
+  return {.load_ratio =
+              mechanics::load_ratio(load, material.facet_mm, strength_n(material, direction)),
+          .axial_n = load.axial,
+          .bending_nmm = load.bending,
+          .shear_n = std::hypot(middle[0], middle[1]),
+          .torsion_nmm = middle[5]};
+}
+
+/// Sec. III-D for every connection.
+void assess_connections(const model::Robot& robot, Assessment& assessment) {
+  const model::Material& material = robot.material();
+  const auto beam = mechanics::beam_stiffness(model::beam_section(material));
+  const auto connections = robot.connections();
+  const Equilibrium& equilibrium = assessment.equilibrium;
+  assessment.connections.reserve(connections.size());
+  for (std::size_t i = 0; i < connections.size(); ++i) {
+    const auto& [a, b, direction] = connections[i];
+    const auto result_at = [&](const std::vector<base::Vec6<double>>& u) {
+      return connection_result(
+          material, direction,
+          mechanics::middle_force(beam, direction, u[static_cast<std::size_t>(a)],
+                                  u[static_cast<std::size_t>(b)]));
+    };
+    const ConnectionResult result = result_at(equilibrium.displacement);
+    const double other_ratio = result_at(equilibrium.alternative).load_ratio;
+    assessment.connections.push_back(result);
+    const auto [low, high] = std::minmax(result.load_ratio, other_ratio);
+    LoadRange& range = assessment.load_ratio_range;
+    range.low = i == 0 ? low : std::max(range.low, low);
+    range.high = i == 0 ? high : std::max(range.high, high);
+    if (!assessment.worst || result.load_ratio > *assessment.load_ratio_max) {
+      assessment.worst = i;
+      assessment.load_ratio_max = result.load_ratio;
+    }
+    if (breaks(result.load_ratio)) {
+      assessment.broken.push_back(i);
+    }
+  }
+  std::ranges::stable_sort(assessment.broken, std::greater<>(), [&](std::size_t i) {
+    return assessment.connections[i].load_ratio;
+  });
+  if (assessment.worst && *assessment.load_ratio_max > 0) {
+    assessment.weight_factor = 1 / *assessment.load_ratio_max;
+  }
+}
+
+/// Weak springs beside the unilateral contact of a stable robot: they change no load ratio by more
+/// than about 1e-8, and keep the matrix regular on the way to the answer.
+constexpr double kStableGammas[] = {1e-9};
+
+/// A toppling robot hangs on its weak springs, and bends elastically while it does: if they are
+/// stiff, three corners may still touch and look like a hold. The weaker they are, the more the
+/// tilt outweighs the bending; the second value serves one robot in ten thousand. Much weaker ones
+/// drown the contact states in rounding.
+constexpr double kTopplingGammas[] = {1e-6, 1e-7};
+
+bool agrees(const Assessment& assessment) {
+  return assessment.model.is_settled && assessment.model.is_stable == assessment.is_stable;
+}
+
+/// The paper's contact law first; the exact one where it has no answer or one that contradicts the
+/// rigid body, which is certain on flat ground.
+void find_equilibrium(const model::Robot& robot, const solver::EquilibriumOptions& options,
+                      Assessment& assessment) {
+  solver::EquilibriumSolver solver(robot, options);
+  assessment.equilibrium = solver.solve(
+      {.law = ContactLaw::kRegularised, .gamma = robot.material().contact_gamma});
+  assessment.model = model_stability(robot, assessment.equilibrium);
+  assessment.contact_model =
+      robot.ground_count() > 0 ? ContactModel::kRegularised : ContactModel::kNone;
+  if (assessment.equilibrium.outcome == Outcome::kTooLarge || robot.ground_count() == 0) {
+    return;
+  }
+  const std::span<const double> gammas =
+      assessment.is_stable ? std::span<const double>(kStableGammas) : kTopplingGammas;
+  for (const double gamma : gammas) {
+    // A margin of zero is unstable by decision, not by mechanics: no model need agree with it.
+    if (agrees(assessment) || (assessment.model.is_settled && assessment.simplified.margin_mm == 0)) {
+      return;
+    }
+    const int steps = assessment.equilibrium.steps;
+    Equilibrium exact = solver.solve({.law = ContactLaw::kUnilateral, .gamma = gamma});
+    exact.steps += steps;
+    assessment.equilibrium = std::move(exact);
+    assessment.model = model_stability(robot, assessment.equilibrium);
+    assessment.contact_model = ContactModel::kUnilateral;
+  }
+}
+
+std::string toppling_reason(const RigidBody& body) {
+  const auto& [a, b] = *body.edge;
+  const std::string where =
+      fmt::format("the edge ({:g}, {:g})-({:g}, {:g}) mm", a.x, a.y, b.x, b.y);
+  if (*body.margin_mm == 0) {
+    return fmt::format("the centre of mass lies exactly over {} of the support polygon: nothing "
+                       "to spare",
+                       where);
+  }
+  return fmt::format("it topples over {}: the centre of mass lies {:.2f} mm beyond it",
+                     where, -*body.margin_mm);
+}
+
+void decide_stable(const model::Robot& robot, Assessment& assessment) {
+  const Equilibrium& equilibrium = assessment.equilibrium;
+  if (equilibrium.outcome == Outcome::kTooLarge) {
+    assessment.reasons.push_back(
+        fmt::format("stable, but the {} modules are too many for the direct solver's memory, so "
+                    "the loads are not known",
+                    robot.modules().size()));
+    return;
+  }
+  if (equilibrium.outcome != Outcome::kSettled) {
+    assessment.reasons.push_back(fmt::format(
+        "stable, but no equilibrium was found in {} steps of the contact iteration{}",
+        equilibrium.steps,
+        equilibrium.outcome == Outcome::kSingular ? ": the stiffness matrix became singular" : ""));
+    return;
+  }
+  const double ratio = assessment.load_ratio_max.value_or(0);
+  const LoadRange& range = assessment.load_ratio_range;
+  const bool is_broken = breaks(range.low);
+  if (!std::isfinite(range.low) || !std::isfinite(range.high) || breaks(range.high) != is_broken) {
+    assessment.reasons.push_back(
+        fmt::format("stable, but the largest load ratio is only known to lie between {:.9g} and "
+                    "{:.9g}",
+                    range.low, range.high));
+  } else if (is_broken) {
+    assessment.verdict = Verdict::kOverload;
+    assessment.reasons.push_back(fmt::format(
+        "{} of {} connections would break; the worst, {}, carries {:.4f} of its strength",
+        assessment.broken.size(), assessment.connections.size(),
+        text(robot, *assessment.worst), ratio));
+  } else if (!assessment.worst) {
+    assessment.verdict = Verdict::kSafe;
+    assessment.reasons.emplace_back("stable, and a single module has no connection to break");
+  } else {
+    assessment.verdict = Verdict::kSafe;
+    assessment.reasons.push_back(
+        fmt::format("stable, and no connection carries more than {:.4f} of its strength ({})",
+                    ratio, text(robot, *assessment.worst)));
+  }
+}
+
+void add_contact_remarks(Assessment& assessment) {
+  if (assessment.contact_model == ContactModel::kUnilateral) {
+    assessment.reasons.emplace_back(
+        "the loads come from exact unilateral contact (Eqs. 6-8): the paper's regularised contact "
+        "(Eqs. 9-12) finds no consistent contact state here");
+  }
+  if (assessment.equilibrium.open_but_held_count > 0) {
+    assessment.reasons.push_back(
+        fmt::format("{} lifted feet would touch down again if they slid freely, and lift again if "
+                    "held; between the two the largest load ratio lies from {:.4f} to {:.4f}",
+                    assessment.equilibrium.open_but_held_count, assessment.load_ratio_range.low,
+                    assessment.load_ratio_range.high));
+  }
+  if (assessment.model.is_settled && assessment.model.is_stable != assessment.is_stable) {
+    assessment.reasons.push_back(fmt::format(
+        "the model-based check says {}; on flat ground the rigid body decides",
+        assessment.model.is_stable ? "stable" : "unstable"));
+  }
+}
+
+}  // namespace
+
+Assessment assess(const model::Robot& robot, const solver::EquilibriumOptions& options) {
+  Assessment assessment;
+  assessment.simplified = assess_rigid_body(robot);
+  assessment.is_stable = assessment.simplified.is_stable;
+  find_equilibrium(robot, options, assessment);
+  if (assessment.equilibrium.outcome == Outcome::kSettled) {
+    assess_connections(robot, assessment);
+  }
+  if (assessment.is_stable) {
+    decide_stable(robot, assessment);
+  } else {
+    assessment.verdict = Verdict::kUnstable;
+    assessment.reasons.push_back(toppling_reason(assessment.simplified));
+  }
+  add_contact_remarks(assessment);
+  return assessment;
+}
+
+const char* name(Verdict verdict) {
+  switch (verdict) {
+    case Verdict::kSafe:
+      return "safe";
+    case Verdict::kOverload:
+      return "overload";
+    case Verdict::kUnstable:
+      return "unstable";
+    case Verdict::kUndecided:
+      break;
+  }
+  return "undecided";
+}
+
+const char* name(ContactModel model) {
+  switch (model) {
+    case ContactModel::kRegularised:
+      return "regularised";
+    case ContactModel::kUnilateral:
+      return "unilateral";
+    case ContactModel::kNone:
+      break;
+  }
+  return "none";
+}
+
+}  // namespace holdfast::verdict
