@@ -1,41 +1,27 @@
 # How every room is built, so that a room's own CMakeLists.txt only lists what is in it.
 
-# holdfast_room(NAME SOURCES ... [LINKS ...] [PRIVATE_LINKS ...])
-# A static library holdfast_NAME, alias holdfast::NAME, headers in include/.
+# holdfast_room(NAME HEADERS ... SOURCES ... [LINKS ...] [PRIVATE_LINKS ...])
+# A static library holdfast_NAME, alias holdfast::NAME. HEADERS are below include/holdfast/NAME/;
+# that each of them compiles alone is checked by the target all_verify_interface_header_sets.
 function(holdfast_room name)
-  cmake_parse_arguments(ROOM "" "" "SOURCES;LINKS;PRIVATE_LINKS" ${ARGN})
+  cmake_parse_arguments(ROOM "" "" "HEADERS;SOURCES;LINKS;PRIVATE_LINKS" ${ARGN})
   set(target holdfast_${name})
+  list(TRANSFORM ROOM_HEADERS PREPEND include/holdfast/${name}/)
   add_library(${target} STATIC ${ROOM_SOURCES})
   add_library(holdfast::${name} ALIAS ${target})
-  target_include_directories(${target} PUBLIC ${CMAKE_CURRENT_SOURCE_DIR}/include
-                             PRIVATE ${CMAKE_CURRENT_SOURCE_DIR}/src)
+  target_sources(${target} PUBLIC FILE_SET HEADERS BASE_DIRS include FILES ${ROOM_HEADERS})
+  target_include_directories(${target} PRIVATE src)
   target_compile_features(${target} PUBLIC cxx_std_20)
   # The same bits with every compiler and level: no fused multiply-add.
   target_compile_options(${target} PRIVATE -ffp-contract=off)
   target_link_libraries(${target} PUBLIC ${ROOM_LINKS} PRIVATE ${ROOM_PRIVATE_LINKS})
-  if(HOLDFAST_BUILD_TESTS)
-    holdfast_check_headers(${name})
-  endif()
+  set_target_properties(${target} PROPERTIES
+    VERIFY_INTERFACE_HEADER_SETS ${HOLDFAST_BUILD_TESTS})
 endfunction()
 
 # Freestanding rooms run on a microcontroller.
 function(holdfast_freestanding name)
   target_compile_options(holdfast_${name} PRIVATE -fno-exceptions -fno-rtti)
-endfunction()
-
-# Every public header compiles alone: one generated source per header.
-function(holdfast_check_headers name)
-  file(GLOB_RECURSE headers RELATIVE ${CMAKE_CURRENT_SOURCE_DIR}/include CONFIGURE_DEPENDS
-       ${CMAKE_CURRENT_SOURCE_DIR}/include/*.hpp)
-  set(sources)
-  foreach(header IN LISTS headers)
-    string(MAKE_C_IDENTIFIER ${header} stem)
-    set(source ${CMAKE_CURRENT_BINARY_DIR}/headers/${stem}.cpp)
-    file(CONFIGURE OUTPUT ${source} CONTENT "#include \"${header}\"\n")
-    list(APPEND sources ${source})
-  endforeach()
-  add_library(holdfast_${name}_headers OBJECT ${sources})
-  target_link_libraries(holdfast_${name}_headers PRIVATE holdfast::${name})
 endfunction()
 
 # holdfast_test(NAME SOURCES ... LINKS ...): one test program, its tests found by ctest.

@@ -130,7 +130,7 @@ std::optional<std::string> find_support_fault(const Robot& robot) {
 }
 
 base::Error bad_input(std::string message) {
-  return {.code = base::ErrorCode::kBadInput, .message = std::move(message), .where = {}};
+  return {.code = base::ErrorCode::kBadInput, .message = std::move(message)};
 }
 
 }  // namespace

@@ -71,12 +71,12 @@ void assess_connections(const model::Robot& robot, Assessment& assessment) {
   const Equilibrium& equilibrium = assessment.equilibrium;
   assessment.connections.reserve(connections.size());
   for (std::size_t i = 0; i < connections.size(); ++i) {
-    const auto& [a, b, direction] = connections[i];
+    const model::Connection& pair = connections[i];
     const auto result_at = [&](const std::vector<base::Vec6<double>>& u) {
       return connection_result(
-          material, direction,
-          mechanics::middle_force(beam, direction, u[static_cast<std::size_t>(a)],
-                                  u[static_cast<std::size_t>(b)]));
+          material, pair.direction,
+          mechanics::middle_force(beam, pair.direction, u[static_cast<std::size_t>(pair.a)],
+                                  u[static_cast<std::size_t>(pair.b)]));
     };
     const ConnectionResult result = result_at(equilibrium.displacement);
     const double other_ratio = result_at(equilibrium.alternative).load_ratio;

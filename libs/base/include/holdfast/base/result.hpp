@@ -22,8 +22,8 @@ enum class ErrorCode : std::uint8_t {
 /// What went wrong and where. `message` names the value found and the value allowed.
 struct Error {
   ErrorCode code = ErrorCode::kBadInput;
-  std::string message;
-  std::string where;  ///< File, line, or path inside a document; may be empty.
+  std::string message = {};
+  std::string where = {};  ///< File, line, or path inside a document; may be empty.
 };
 
 /// A value or an Error. Reading the one that is not there is a bug and aborts.

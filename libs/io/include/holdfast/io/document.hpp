@@ -2,8 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -21,7 +23,7 @@ using Attributes = std::vector<std::pair<std::string, std::string>>;
 struct Element {
   std::string name;
   Attributes attributes;
-  std::string text;
+  std::string text;  ///< All of it in one piece, without white space at its ends.
   std::vector<Element> children;
 
   friend bool operator==(const Element&, const Element&) = default;
@@ -80,7 +82,8 @@ struct Document {
   Attributes parameters;         ///< Of <parameters>: nofIterations, preconditioner, globalBeta...
   Attributes world;              ///< Of <world>: gridSize, windowSize...
   Attributes block_list;         ///< Of <blockList>: blockSize, size, ids...
-  std::vector<Element> scenery;  ///< Other children of <world>, and targets that are not grids.
+  std::vector<Element> scenery;  ///< Other children of <world>: camera, spotlight...
+  std::vector<Element> targets;  ///< Those of <targetList> that are no grids: csg, surface...
 
   friend bool operator==(const Document&, const Document&) = default;
 };
@@ -93,11 +96,13 @@ struct ReadDocument {
 
 enum class Format : std::uint8_t { kVisibleSimXml, kJson };
 
-/// The limits of what is read, against files that are not what they seem.
+/// The limits of what is read, against files that are not what they seem. Nesting is that of XML
+/// elements, and of JSON objects and arrays.
 inline constexpr std::size_t kFileBytesMax = std::size_t{1} << 30U;
 inline constexpr int kNestingMax = 64;
 
-/// By the first character that is not white space: '<' or '{'; an error for anything else.
+/// By the first character that is not white space: '<' for XML, '{' or '[' for JSON; an error for
+/// anything else.
 base::Result<Format> detect_format(std::string_view text);
 
 /// Reads either format. Error::where is "line 12" or a JSON pointer such as "/modules/3".

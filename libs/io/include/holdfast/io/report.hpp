@@ -22,6 +22,9 @@ struct ReportEntry {
 /// The JSON report, one object; keys are in docs/formats.md.
 std::string write_report_json(const ReportEntry& entry);
 
+/// The entry of a report for a structure that could not be checked.
+std::string write_error_json(const base::Error& error, std::string_view name);
+
 /// The report for people: several lines, no colour, a line feed at the end.
 std::string write_report_text(const ReportEntry& entry);
 

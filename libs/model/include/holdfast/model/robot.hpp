@@ -40,11 +40,11 @@ struct Connection {
 
 /// What a robot is made from, in any order.
 struct RobotSpec {
-  std::vector<base::Cell> existing;
-  std::vector<base::Cell> planned;  ///< Attached in the planned step, all at once.
-  std::vector<base::Cell> fixed;    ///< Those of `existing` that are fixed.
+  std::vector<base::Cell> existing = {};
+  std::vector<base::Cell> planned = {};  ///< Attached in the planned step, all at once.
+  std::vector<base::Cell> fixed = {};    ///< Those of `existing` that are fixed.
   std::int32_t support_z = 0;       ///< Modules in this layer rest on the ground.
-  Material material;
+  Material material = {};
 };
 
 /// A robot that can be computed: connected, supported, no two modules in one cell. Immutable.

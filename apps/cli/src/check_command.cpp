@@ -1,0 +1,210 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <array>
+#include <chrono>
+#include <cstdlib>
+#include <memory>
+
+#include "commands.hpp"
+#include "holdfast/holdfast.hpp"
+
+namespace holdfast::cli {
+namespace {
+
+using verdict::Verdict;
+using Clock = std::chrono::steady_clock;
+
+struct Options {
+  std::vector<std::string> files;
+  std::string json;
+  std::string svg;
+  std::string vtk;
+  bool is_quiet = false;
+};
+
+/// Progress is shown when a run takes longer than this, and then as often.
+constexpr std::chrono::seconds kProgressInterval(1);
+
+/// From here on the direct solver can take more than a second.
+constexpr std::size_t kLargeModuleCount = 2000;
+
+bool has_colour() { return isatty(STDOUT_FILENO) != 0 && std::getenv("NO_COLOR") == nullptr; }
+
+/// The verdict in capitals, coloured on a terminal, padded to the longest.
+std::string banner(Verdict verdict) {
+  std::string word = verdict::name(verdict);
+  for (char& letter : word) {
+    letter = static_cast<char>(letter - 'a' + 'A');
+  }
+  word = fmt::format("{:<9}", word);
+  if (!has_colour()) {
+    return word;
+  }
+  constexpr std::array<int, 4> kColours = {32, 31, 35, 33};  // green, red, purple, yellow
+  return fmt::format("\033[1;{}m{}\033[0m", kColours[static_cast<std::size_t>(verdict)], word);
+}
+
+/// Goes through the files of one run and keeps count.
+class CheckRun {
+ public:
+  explicit CheckRun(const Options& options) : options_(options) {}
+
+  int run() {
+    for (std::size_t i = 0; i < options_.files.size(); ++i) {
+      show_progress(i);
+      check_file(options_.files[i]);
+    }
+    if (shows_text() && is_many()) {
+      fmt::print("{} files: {} safe, {} overload, {} unstable, {} undecided, {} not readable\n",
+                 options_.files.size(), counts_[0], counts_[1], counts_[2], counts_[3],
+                 bad_count_);
+    }
+    if (!options_.json.empty()) {
+      write_json();
+    }
+    return exit_code();
+  }
+
+ private:
+  bool is_many() const { return options_.files.size() > 1; }
+
+  bool shows_text() const { return !options_.is_quiet && options_.json != "-"; }
+
+  void check_file(const std::string& file) {
+    const auto structure = load_file(file);
+    if (!structure) {
+      report_error(structure.error(), file);
+      return;
+    }
+    announce_long_work(structure.value(), file);
+    const CheckResult result = check(structure.value());
+    ++counts_[static_cast<std::size_t>(result.assessment.verdict)];
+    if (shows_text()) {
+      show(structure.value(), result, file);
+    }
+    if (!options_.json.empty()) {
+      reports_.push_back(report_json(structure.value(), result));
+    }
+    if (!options_.svg.empty()) {
+      write(options_.svg, picture_svg(structure.value(), result));
+    }
+    if (!options_.vtk.empty()) {
+      write(options_.vtk, picture_vtu(structure.value(), result));
+    }
+  }
+
+  void show(const Structure& structure, const CheckResult& result, const std::string& file) const {
+    const verdict::Assessment& assessment = result.assessment;
+    if (!is_many()) {
+      fmt::print("{} {}\n{}", banner(assessment.verdict), structure.name,
+                 report_text(structure, result));
+      return;
+    }
+    const std::string ratio =
+        !assessment.load_ratio_max ? "-"
+        : assessment.is_stable     ? fmt::format("{:.4f} ", *assessment.load_ratio_max)
+                                   : fmt::format("({:.4f})", *assessment.load_ratio_max);
+    const std::string margin =
+        assessment.simplified.margin_mm
+            ? fmt::format("{:9.2f} mm", *assessment.simplified.margin_mm)
+            : "       fixed";
+    fmt::print("{}  load ratio {:>9}  margin {}  {}\n", banner(assessment.verdict), ratio, margin,
+               file);
+  }
+
+  void report_error(const base::Error& error, const std::string& file) {
+    ++bad_count_;
+    fmt::print(stderr, "holdfast: {}\n", describe(error, file));
+    if (!options_.json.empty()) {
+      reports_.push_back(error_json(error, file));
+    }
+  }
+
+  void write(const std::string& path, const std::string& text) {
+    if (const auto error = write_file(path, text)) {
+      ++bad_count_;
+      fmt::print(stderr, "holdfast: {}\n", describe(*error, path));
+    }
+  }
+
+  void write_json() {
+    std::string text = is_many() ? "[\n" : "";
+    for (std::size_t i = 0; i < reports_.size(); ++i) {
+      text += (i > 0 ? ",\n" : "") + reports_[i];
+    }
+    text += is_many() ? "\n]\n" : "\n";
+    if (options_.json == "-") {
+      fmt::print("{}", text);
+    } else {
+      write(options_.json, text);
+    }
+  }
+
+  void show_progress(std::size_t done) {
+    const auto now = Clock::now();
+    if (options_.is_quiet || !is_many() || now - shown_ < kProgressInterval) {
+      return;
+    }
+    shown_ = now;
+    fmt::print(stderr, "holdfast: checked {} of {} files\n", done, options_.files.size());
+  }
+
+  void announce_long_work(const Structure& structure, const std::string& file) const {
+    const std::size_t count = structure.robot.modules().size();
+    if (!options_.is_quiet && count >= kLargeModuleCount) {
+      fmt::print(stderr, "holdfast: {}: {} modules, this can take minutes\n", file, count);
+    }
+  }
+
+  int exit_code() const {
+    if (bad_count_ > 0) {
+      return kExitBadInput;
+    }
+    if (counts_[static_cast<std::size_t>(Verdict::kOverload)] > 0 ||
+        counts_[static_cast<std::size_t>(Verdict::kUnstable)] > 0) {
+      return kExitUnsafe;
+    }
+    return counts_[static_cast<std::size_t>(Verdict::kUndecided)] > 0 ? kExitUndecided : kExitSafe;
+  }
+
+  const Options& options_;
+  std::array<std::size_t, 4> counts_{};
+  std::size_t bad_count_ = 0;
+  std::vector<std::string> reports_;
+  Clock::time_point shown_ = Clock::now();
+};
+
+int run(const Options& options) {
+  if (options.files.size() > 1 && !(options.svg.empty() && options.vtk.empty())) {
+    fmt::print(stderr, "holdfast: --svg and --vtk show one structure, {} files are given\n",
+               options.files.size());
+    return kExitUsage;
+  }
+  return CheckRun(options).run();
+}
+
+}  // namespace
+
+Command add_check(CLI::App& app) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command = app.add_subcommand(
+      "check", "Say whether a structure holds with its planned modules attached");
+  command
+      ->add_option("FILE", options->files,
+                   "Structures, VisibleSim XML or holdfast JSON; - is standard input")
+      ->type_name("")
+      ->required();
+  command->add_option("--json", options->json, "Write the whole report as JSON; - is standard output")
+      ->type_name("FILE");
+  command->add_option("--svg", options->svg, "Draw the structure and its loads")->type_name("FILE");
+  command->add_option("--vtk", options->vtk, "Write a .vtu file for ParaView")->type_name("FILE");
+  command->add_flag("--quiet", options->is_quiet, "Print errors only; the exit code is the answer");
+  command->footer("Verdicts: safe, overload (a connection breaks), unstable (topples), undecided.\n"
+                  "Exit: 0 all safe, 1 any unsafe, 2 any undecided, 64 wrong usage, 65 bad input.");
+  return {command, [options] { return run(*options); }};
+}
+
+}  // namespace holdfast::cli

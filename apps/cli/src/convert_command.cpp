@@ -1,0 +1,67 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <memory>
+
+#include "commands.hpp"
+#include "holdfast/holdfast.hpp"
+
+namespace holdfast::cli {
+namespace {
+
+struct Options {
+  std::string from;
+  std::string to;
+};
+
+int fail(const base::Error& error, const std::string& file) {
+  fmt::print(stderr, "holdfast: {}\n", describe(error, file));
+  return kExitBadInput;
+}
+
+int run(const Options& options) {
+  const bool to_json = options.to.ends_with(".json");
+  if (!to_json && !options.to.ends_with(".xml")) {
+    fmt::print(stderr,
+               "holdfast: {}: the ending says the format: expected is .json (holdfast JSON) or "
+               ".xml (VisibleSim XML)\n",
+               options.to);
+    return kExitUsage;
+  }
+  const auto text = read_file(options.from);
+  if (!text) {
+    return fail(text.error(), options.from);
+  }
+  const auto read = io::read_document(text.value());
+  if (!read) {
+    return fail(read.error(), options.from);
+  }
+  for (const std::string& warning : read.value().warnings) {
+    fmt::print(stderr, "holdfast: {}: note: {}\n", options.from, warning);
+  }
+  const io::Document& document = read.value().document;
+  const auto error =
+      write_file(options.to, to_json ? io::write_json(document) : io::write_visiblesim(document));
+  return error ? fail(*error, options.to) : 0;
+}
+
+}  // namespace
+
+Command add_convert(CLI::App& app) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command = app.add_subcommand(
+      "convert", "Convert a structure between VisibleSim XML and holdfast JSON, without loss");
+  command->add_option("FROM", options->from, "Structure to read, either format; - is standard input")
+      ->type_name("")
+      ->required();
+  command->add_option("TO", options->to, "File to write; .xml or .json says the format")
+      ->type_name("")
+      ->required();
+  command->footer("Kept are modules, planned steps, parameters, colours and all of VisibleSim's own "
+                  "attributes;\nnot kept are comments and the layout of the text.\n"
+                  "Exit: 0 written, 64 wrong usage, 65 bad input or not writable.");
+  return {command, [options] { return run(*options); }};
+}
+
+}  // namespace holdfast::cli

@@ -1,0 +1,30 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <string>
+
+#include "commands.hpp"
+#include "holdfast/holdfast.hpp"
+
+int main(int argc, char** argv) {
+  namespace cli = holdfast::cli;
+  CLI::App app("Will it hold? Predicts whether a modular robot breaks or topples when modules are "
+               "attached.",
+               "holdfast");
+  app.set_version_flag("--version", "holdfast " + std::string(holdfast::version()));
+  app.require_subcommand(1);
+  app.footer("holdfast COMMAND --help says more about a command.");
+  const cli::Command commands[] = {cli::add_check(app), cli::add_convert(app)};
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : cli::kExitUsage;
+  }
+  for (const cli::Command& command : commands) {
+    if (command.app->parsed()) {
+      return command.run();
+    }
+  }
+  return cli::kExitUsage;
+}

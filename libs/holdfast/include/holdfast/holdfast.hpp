@@ -1,0 +1,66 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "holdfast/io/document.hpp"
+#include "holdfast/io/picture.hpp"
+#include "holdfast/io/report.hpp"
+#include "holdfast/verdict/assessment.hpp"
+
+/// The facade: load a structure, check it, show the answer. Everything an application needs.
+///
+///     auto structure = holdfast::load_file("robot.xml");
+///     if (!structure) { ... structure.error().message ... }
+///     const holdfast::CheckResult result = holdfast::check(structure.value());
+///     if (result.assessment.verdict == holdfast::verdict::Verdict::kSafe) { ... }
+///
+/// No function throws or prints. Units: N, mm, kg, s. Frame: global, z up, one cell = one pitch.
+namespace holdfast {
+
+/// A structure that can be checked: what the file says and the robot that it means.
+struct Structure {
+  std::string name;  ///< The document's, or the file's without folder and ending.
+  io::Document document;
+  model::Robot robot;
+  std::vector<std::string> warnings;
+};
+
+struct CheckResult {
+  verdict::Assessment assessment;
+  double seconds = 0;  ///< From the robot in memory to the verdict.
+};
+
+/// The library's version, "major.minor.patch".
+std::string_view version();
+
+/// Reads a whole file; "-" is standard input. Errors: a folder, too large, not readable.
+base::Result<std::string> read_file(const std::filesystem::path& path);
+
+/// Writes a whole file or nothing: into a temporary file beside it, which is then renamed.
+std::optional<base::Error> write_file(const std::filesystem::path& path, std::string_view text);
+
+/// Reads VisibleSim XML or holdfast JSON and builds the robot with the first planned step.
+base::Result<Structure> load_text(std::string_view text, std::string_view name = {});
+base::Result<Structure> load_file(const std::filesystem::path& path);
+
+CheckResult check(const Structure& structure);
+
+/// Reports and pictures of a checked structure; see io/report.hpp and io/picture.hpp.
+std::string report_json(const Structure& structure, const CheckResult& result);
+std::string report_text(const Structure& structure, const CheckResult& result);
+std::string picture_svg(const Structure& structure, const CheckResult& result);
+std::string picture_vtu(const Structure& structure, const CheckResult& result);
+
+/// The entry of a JSON report for a file that could not be checked: {"name", "error", "where"}.
+std::string error_json(const base::Error& error, std::string_view name);
+
+/// One line for people: "FILE: line 12: message".
+std::string describe(const base::Error& error, std::string_view file);
+
+}  // namespace holdfast

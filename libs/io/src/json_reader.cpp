@@ -1,0 +1,239 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <iterator>
+#include <type_traits>
+#include <utility>
+
+#include "holdfast/io/document.hpp"
+#include "json_values.hpp"
+#include "text_input.hpp"
+#include "vocabulary.hpp"
+
+namespace holdfast::io {
+namespace {
+
+class JsonReader {
+ public:
+  base::Result<ReadDocument> read(const Json& root) &&;
+
+ private:
+  bool read_heading(const Json::object_t& root, const Place& place);
+  void read_member(const std::string& key, const Json& value, const Place& place);
+  void read_material(const Json& value, const Place& place);
+  void read_known_answer(const Json& value, const Place& place);
+  void read_visiblesim(const Json& value, const Place& place);
+  std::vector<Element> scenery(const Json& value, const Place& place);
+  std::vector<Element> targets(const Json& value, const Place& place);
+
+  template <class Entry>
+  std::vector<Entry> entries(const Json& value, const Place& place);
+  template <class Entry>
+  Entry entry(const Json& value, const Place& place);
+
+  JsonReading reading_;
+  Step planned_;
+  std::vector<Step> later_steps_;
+};
+
+base::Result<ReadDocument> JsonReader::read(const Json& root) && {
+  const Place top;
+  const Json::object_t& members = reading_.members(root, top);
+  if (!reading_.has_failed() && read_heading(members, top)) {
+    for (const auto& [key, value] : members) {
+      read_member(key, value, top.at(key));
+    }
+  }
+  std::vector<Step>& steps = reading_.document.steps;
+  steps.push_back(std::move(planned_));
+  std::ranges::move(later_steps_, std::back_inserter(steps));
+  return std::move(reading_).finish();
+}
+
+/// What must be there, and in a version that can be read.
+bool JsonReader::read_heading(const Json::object_t& root, const Place& place) {
+  static const Json kNone;
+  const auto value_of = [&](const char* key) -> const Json& {
+    const auto member = root.find(key);
+    return member == root.end() ? kNone : member->second;
+  };
+  const Json& format = value_of("format");
+  const Json& version = value_of("version");
+  if (format != kJsonFormatName) {
+    reading_.refuse(format, place.at("format"), fmt::format("\"{}\"", kJsonFormatName));
+  } else if (version.is_number() && version.get<double>() > kJsonVersion) {
+    reading_.fail({base::ErrorCode::kUnsupported,
+                   fmt::format("found version {}, this program reads version {} only",
+                               version.dump(), kJsonVersion),
+                   place.at("version").pointer()});
+  } else if (version != kJsonVersion) {
+    reading_.refuse(version, place.at("version"), fmt::format("{}", kJsonVersion));
+  } else if (root.find("modules") == root.end()) {
+    reading_.fail(place.at("modules"), "\"modules\" is missing, expected is an array of cells");
+  }
+  return !reading_.has_failed();
+}
+
+void JsonReader::read_member(const std::string& key, const Json& value, const Place& place) {
+  Document& document = reading_.document;
+  if (key == "name") {
+    document.name = reading_.string(value, place);
+  } else if (key == "description") {
+    document.description = reading_.string(value, place);
+  } else if (key == "support_z") {
+    document.support_z = reading_.integer(value, place, kCoordinateRange);
+  } else if (key == "material") {
+    read_material(value, place);
+  } else if (key == "modules") {
+    document.modules = entries<ModuleEntry>(value, place);
+  } else if (key == "planned") {
+    planned_ = entries<PlannedEntry>(value, place);
+  } else if (key == "later_steps") {
+    const Json::array_t& steps = reading_.elements(value, place);
+    for (std::size_t i = 0; i < steps.size() && !reading_.has_failed(); ++i) {
+      later_steps_.push_back(entries<PlannedEntry>(steps[i], place.at(i)));
+    }
+  } else if (key == "known_answer") {
+    read_known_answer(value, place);
+  } else if (key == "visiblesim") {
+    read_visiblesim(value, place);
+  } else if (key != "format" && key != "version" && key != "$schema") {
+    reading_.warn_unknown(place);
+  }
+}
+
+void JsonReader::read_material(const Json& value, const Place& place) {
+  for (const auto& [key, member] : reading_.members(value, place)) {
+    const Place here = place.at(key);
+    const auto* parameter = std::ranges::find(kMaterialParameters, key, &MaterialParameter::key);
+    if (parameter != kMaterialParameters.end()) {
+      reading_.document.material.*parameter->value = reading_.number(member, here);
+    } else {
+      reading_.warn_unknown(here);
+    }
+  }
+}
+
+void JsonReader::read_known_answer(const Json& value, const Place& place) {
+  KnownAnswer answer;
+  for (const auto& [key, member] : reading_.members(value, place)) {
+    const Place here = place.at(key);
+    if (key == "verdict") {
+      answer.verdict = reading_.string(member, here);
+    } else if (key == "margin_mm") {
+      answer.margin_mm = reading_.number(member, here);
+    } else if (key == "load_ratio_max") {
+      answer.load_ratio_max = reading_.number(member, here);
+    } else if (key == "source") {
+      answer.source = reading_.string(member, here);
+    } else {
+      reading_.warn_unknown(here);
+    }
+  }
+  reading_.take_known_answer(std::move(answer), [&] { return place.at("verdict").pointer(); });
+}
+
+void JsonReader::read_visiblesim(const Json& value, const Place& place) {
+  const auto is_free = [](std::string_view) { return false; };
+  Document& document = reading_.document;
+  for (const auto& [key, member] : reading_.members(value, place)) {
+    const Place here = place.at(key);
+    if (key == "parameters") {
+      document.parameters = reading_.attributes(member, here, is_mechanical_parameter);
+    } else if (key == "world") {
+      document.world = reading_.attributes(member, here, is_free);
+      reading_.read_grid([&] { return here.at("gridSize").pointer(); });
+    } else if (key == "block_list") {
+      document.block_list = reading_.attributes(member, here, is_free);
+    } else if (key == "scenery") {
+      document.scenery = scenery(member, here);
+    } else if (key == "targets") {
+      document.targets = targets(member, here);
+    } else {
+      reading_.warn_unknown(here);
+    }
+  }
+}
+
+std::vector<Element> JsonReader::scenery(const Json& value, const Place& place) {
+  std::vector<Element> list = reading_.element_list(value, place, 1);
+  for (const Element& element : list) {
+    if (is_structural_element(element.name)) {
+      reading_.fail(place, fmt::format("<{}> has keys of its own in this format", element.name));
+    }
+  }
+  return list;
+}
+
+std::vector<Element> JsonReader::targets(const Json& value, const Place& place) {
+  std::vector<Element> list = reading_.element_list(value, place, 1);
+  for (const Element& element : list) {
+    const std::string* const format = find_attribute(element.attributes, "format");
+    if (element.name != "target" || (format != nullptr && *format == "grid")) {
+      reading_.fail(place,
+                    "expected are elements \"target\"; steps of format \"grid\" belong in "
+                    "\"planned\" and \"later_steps\"");
+    }
+  }
+  return list;
+}
+
+template <class Entry>
+std::vector<Entry> JsonReader::entries(const Json& value, const Place& place) {
+  std::vector<Entry> list;
+  const Json::array_t& array = reading_.elements(value, place);
+  if (reading_.take_room(array.size(), [&] { return place.pointer(); })) {
+    list.reserve(array.size());
+    for (std::size_t i = 0; i < array.size() && !reading_.has_failed(); ++i) {
+      list.push_back(entry<Entry>(array[i], place.at(i)));
+    }
+  }
+  return list;
+}
+
+template <class Entry>
+Entry JsonReader::entry(const Json& value, const Place& place) {
+  constexpr bool kIsModule = std::is_same_v<Entry, ModuleEntry>;
+  Entry entry;
+  if (value.is_array()) {
+    entry.cell = reading_.cell(value, place);
+    return entry;
+  }
+  if (!value.contains("cell")) {
+    reading_.refuse(value, place, "a cell [x, y, z] or an object with the key \"cell\"");
+    return entry;
+  }
+  for (const auto& [key, member] : reading_.members(value, place)) {
+    const Place here = place.at(key);
+    if (key == "cell") {
+      entry.cell = reading_.cell(member, here);
+    } else if (key == "color") {
+      entry.color = reading_.color(member, here);
+    } else if (key == "attributes") {
+      entry.attributes =
+          reading_.attributes(member, here, kIsModule ? is_module_attribute : is_planned_attribute);
+    } else if (kIsModule && key == "fixed") {
+      if constexpr (kIsModule) {
+        entry.is_fixed = reading_.boolean(member, here);
+      }
+    } else {
+      reading_.warn_unknown(here);
+    }
+  }
+  return entry;
+}
+
+}  // namespace
+
+base::Result<ReadDocument> read_json(std::string_view text) {
+  text = without_bom(text);
+  if (auto fault = find_input_fault(text)) {
+    return *std::move(fault);
+  }
+  const auto root = parse_json(text);
+  return root ? JsonReader().read(root.value()) : root.error();
+}
+
+}  // namespace holdfast::io

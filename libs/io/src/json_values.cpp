@@ -1,0 +1,182 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#include "json_values.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "text_input.hpp"
+
+namespace holdfast::io {
+namespace {
+
+/// A value for a message.
+std::string describe(const Json& value) {
+  if (value.is_string()) {
+    return excerpt(value.get_ref<const std::string&>());
+  }
+  return value.is_structured() ? fmt::format("an {}", value.type_name()) : value.dump();
+}
+
+}  // namespace
+
+std::string Place::pointer() const {
+  if (parent == nullptr) {
+    return {};
+  }
+  return parent->pointer() + "/" + (index ? std::to_string(*index) : pointer_token(key));
+}
+
+void JsonReading::fail(const Place& place, std::string message) {
+  fail({base::ErrorCode::kBadInput, std::move(message), place.pointer()});
+}
+
+void JsonReading::refuse(const Json& value, const Place& place, std::string_view expected) {
+  fail(place, fmt::format("found {}, expected is {}", describe(value), expected));
+}
+
+void JsonReading::warn_unknown(const Place& place) {
+  warn(fmt::format("the key {} is unknown and ignored", excerpt(place.key)),
+       [&] { return place.pointer(); });
+}
+
+const Json::object_t& JsonReading::members(const Json& value, const Place& place) {
+  static const Json::object_t kNone;
+  const auto* object = value.get_ptr<const Json::object_t*>();
+  if (object == nullptr) {
+    refuse(value, place, "an object");
+    return kNone;
+  }
+  return *object;
+}
+
+const Json::array_t& JsonReading::elements(const Json& value, const Place& place) {
+  static const Json::array_t kNone;
+  const auto* array = value.get_ptr<const Json::array_t*>();
+  if (array == nullptr) {
+    refuse(value, place, "an array");
+    return kNone;
+  }
+  return *array;
+}
+
+std::string JsonReading::string(const Json& value, const Place& place) {
+  const auto* text = value.get_ptr<const std::string*>();
+  if (text == nullptr) {
+    refuse(value, place, "a string");
+    return {};
+  }
+  if (const auto fault = find_string_fault(*text)) {
+    fail(place, fmt::format("the string {}", *fault));
+  }
+  return *text;
+}
+
+bool JsonReading::boolean(const Json& value, const Place& place) {
+  if (!value.is_boolean()) {
+    refuse(value, place, "true or false");
+    return false;
+  }
+  return value.get<bool>();
+}
+
+double JsonReading::number(const Json& value, const Place& place) {
+  if (!value.is_number()) {
+    refuse(value, place, "a number");
+    return 0;
+  }
+  return value.get<double>();
+}
+
+std::int32_t JsonReading::integer(const Json& value, const Place& place, IntegerRange range) {
+  const double number =
+      value.is_number() ? value.get<double>() : std::numeric_limits<double>::quiet_NaN();
+  if (!range.contains(number) || number != std::trunc(number)) {
+    refuse(value, place, fmt::format("an integer from {} to {}", range.lowest, range.highest));
+    return 0;
+  }
+  return static_cast<std::int32_t>(number);
+}
+
+std::array<std::int32_t, 3> JsonReading::triple(const Json& value, const Place& place,
+                                                IntegerRange range) {
+  const Json::array_t& array = elements(value, place);
+  std::array<std::int32_t, 3> triple{};
+  if (array.size() != triple.size()) {
+    fail(place, fmt::format("found an array of {}, expected are three integers", array.size()));
+    return triple;
+  }
+  for (std::size_t i = 0; i < triple.size(); ++i) {
+    triple[i] = integer(array[i], place.at(i), range);
+  }
+  return triple;
+}
+
+base::Cell JsonReading::cell(const Json& value, const Place& place) {
+  const auto [x, y, z] = triple(value, place, kCoordinateRange);
+  return {x, y, z};
+}
+
+Color JsonReading::color(const Json& value, const Place& place) {
+  const auto [red, green, blue] = triple(value, place, kColorRange);
+  return {red, green, blue};
+}
+
+Attributes JsonReading::attributes(const Json& value, const Place& place,
+                                   bool (*is_reserved)(std::string_view name)) {
+  Attributes attributes;
+  for (const auto& [key, member] : members(value, place)) {
+    const Place here = place.at(key);
+    if (!is_xml_name(key)) {
+      fail(here, fmt::format("{} cannot be the name of an attribute, expected are letters, digits, "
+                             "'_', ':', '-', '.', a letter first",
+                             excerpt(key)));
+    } else if (is_reserved(key)) {
+      fail(here, fmt::format("{} has a key of its own in this format", excerpt(key)));
+    }
+    attributes.emplace_back(key, string(member, here));
+  }
+  return attributes;
+}
+
+Element JsonReading::element(const Json& value, const Place& place, int depth) {
+  Element element;
+  if (depth > kSceneryNestingMax) {
+    fail(place, fmt::format("elements nested deeper than the {} allowed", kSceneryNestingMax));
+    return element;
+  }
+  for (const auto& [key, member] : members(value, place)) {
+    const Place here = place.at(key);
+    if (key == "element") {
+      element.name = string(member, here);
+    } else if (key == "attributes") {
+      element.attributes = attributes(member, here, [](std::string_view) { return false; });
+    } else if (key == "text") {
+      element.text = trimmed(string(member, here));
+    } else if (key == "children") {
+      element.children = element_list(member, here, depth + 1);
+    } else {
+      warn_unknown(here);
+    }
+  }
+  if (!is_xml_name(element.name)) {
+    fail(place.at("element"), fmt::format("{} cannot be the name of an element, expected are "
+                                          "letters, digits, '_', ':', '-', '.', a letter first",
+                                          excerpt(element.name)));
+  }
+  return element;
+}
+
+std::vector<Element> JsonReading::element_list(const Json& value, const Place& place, int depth) {
+  std::vector<Element> list;
+  const Json::array_t& array = elements(value, place);
+  for (std::size_t i = 0; i < array.size() && !has_failed(); ++i) {
+    list.push_back(element(array[i], place.at(i), depth));
+  }
+  return list;
+}
+
+}  // namespace holdfast::io

@@ -1,0 +1,81 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "holdfast/io/document.hpp"
+#include "numbers.hpp"
+
+namespace holdfast::io {
+
+/// More attributes of one element, or members of one object, are refused; looking for double ones
+/// takes quadratic time.
+inline constexpr std::size_t kAttributeCountMax = 256;
+
+/// Elements of the scenery stand in one another at most so deep: both formats can hold them.
+inline constexpr int kSceneryNestingMax = 16;
+
+/// More different warnings are counted only.
+inline constexpr std::size_t kWarningCountMax = 100;
+
+inline constexpr IntegerRange kCoordinateRange = {-base::kCoordinateMax, base::kCoordinateMax};
+inline constexpr IntegerRange kColorRange = {0, 255};
+inline constexpr IntegerRange kGridRange = {1, base::kCoordinateMax + 1};
+
+/// The value of an attribute; nullptr if there is none of this name.
+const std::string* find_attribute(const Attributes& attributes, std::string_view name);
+
+/// What a reader has found so far. The first failure is the one that counts: a reader may go on
+/// with any value and has to look at has_failed() only before it does much more.
+class Reading {
+ public:
+  /// Gives the place of a warning; called only for the first of equal warnings.
+  using Where = std::function<std::string()>;
+
+  Document document;
+
+  void fail(base::Error error);
+
+  bool has_failed() const { return error_.has_value(); }
+
+  void warn(std::string message, const Where& where);
+
+  /// Counts cells that are about to be read; false, and a failure, if they become too many.
+  bool take_room(std::size_t cell_count, const Where& where);
+
+  /// Keeps it if its verdict is one.
+  void take_known_answer(KnownAnswer answer, const Where& where);
+
+  /// Looks for gridSize in document.world.
+  void read_grid(const Where& where);
+
+  /// Cells per axis, after read_grid.
+  const std::optional<base::Cell>& grid() const { return grid_; }
+
+  /// The document with its warnings, or the failure. Warns of what mechanics do not know.
+  base::Result<ReadDocument> finish() &&;
+
+ private:
+  struct Warning {
+    std::string message;
+    std::string where;
+    std::size_t count = 1;
+  };
+
+  void warn_of_content();
+  std::vector<std::string> warning_texts() const;
+
+  std::optional<base::Error> error_;
+  std::vector<Warning> warnings_;
+  std::size_t warnings_left_out_ = 0;
+  std::size_t cell_count_ = 0;
+  std::optional<base::Cell> grid_;
+};
+
+}  // namespace holdfast::io

@@ -1,0 +1,109 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#include <nlohmann/json.hpp>
+
+#include "holdfast/io/report.hpp"
+
+namespace holdfast::io {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json to_json(const base::Cell& cell) { return Json::array({cell.x, cell.y, cell.z}); }
+
+Json to_json(const verdict::PlanPoint& point) { return Json::array({point.x, point.y}); }
+
+template <class T>
+Json or_null(const std::optional<T>& value) {
+  return value ? Json(*value) : Json();
+}
+
+/// The two cells of a connection.
+Json ends(const model::Robot& robot, std::size_t connection) {
+  const model::Connection& pair = robot.connections()[connection];
+  return Json::array({to_json(robot.modules()[static_cast<std::size_t>(pair.a)].cell),
+                      to_json(robot.modules()[static_cast<std::size_t>(pair.b)].cell)});
+}
+
+Json stability_json(const verdict::Assessment& assessment) {
+  const verdict::RigidBody& body = assessment.simplified;
+  Json edge;
+  if (body.edge) {
+    edge = Json::array({to_json((*body.edge)[0]), to_json((*body.edge)[1])});
+  }
+  return {{"simplified",
+           {{"stable", body.is_stable},
+            {"margin_mm", or_null(body.margin_mm)},
+            {"edge_mm", edge},
+            {"centre_of_mass_mm", to_json(body.centre_of_mass)}}},
+          {"model",
+           {{"stable", assessment.model.is_settled ? Json(assessment.model.is_stable) : Json()},
+            {"settled", assessment.model.is_settled}}},
+          {"stable", assessment.is_stable}};
+}
+
+Json overload_json(const model::Robot& robot, const verdict::Assessment& assessment) {
+  Json broken = Json::array();
+  for (const std::size_t connection : assessment.broken) {
+    broken.push_back(ends(robot, connection));
+  }
+  Json range;
+  if (assessment.load_ratio_max) {
+    range = Json::array({assessment.load_ratio_range.low, assessment.load_ratio_range.high});
+  }
+  return {{"meaningful", assessment.is_stable && assessment.load_ratio_max.has_value()},
+          {"load_ratio_max", or_null(assessment.load_ratio_max)},
+          {"load_ratio_range", range},
+          {"at", assessment.worst ? ends(robot, *assessment.worst) : Json()},
+          {"broken", broken},
+          {"weight_factor", or_null(assessment.weight_factor)}};
+}
+
+Json connections_json(const model::Robot& robot, const verdict::Assessment& assessment) {
+  Json list = Json::array();
+  for (std::size_t i = 0; i < assessment.connections.size(); ++i) {
+    const verdict::ConnectionResult& result = assessment.connections[i];
+    const Json cells = ends(robot, i);
+    list.push_back({{"a", cells[0]},
+                    {"b", cells[1]},
+                    {"load_ratio", result.load_ratio},
+                    {"axial_n", result.axial_n},
+                    {"bending_nmm", result.bending_nmm},
+                    {"shear_n", result.shear_n},
+                    {"torsion_nmm", result.torsion_nmm}});
+  }
+  return list;
+}
+
+}  // namespace
+
+std::string write_report_json(const ReportEntry& entry) {
+  const model::Robot& robot = *entry.robot;
+  const verdict::Assessment& assessment = *entry.assessment;
+  const Json report = {
+      {"name", entry.name},
+      {"verdict", verdict::name(assessment.verdict)},
+      {"reasons", assessment.reasons},
+      {"modules",
+       {{"existing", robot.modules().size() - robot.planned_count()},
+        {"planned", robot.planned_count()},
+        {"on_ground", robot.ground_count()},
+        {"fixed", robot.fixed_count()}}},
+      {"stability", stability_json(assessment)},
+      {"overload", overload_json(robot, assessment)},
+      {"connections", connections_json(robot, assessment)},
+      {"contact_model", verdict::name(assessment.contact_model)},
+      {"solver",
+       {{"name", "sparse direct, 6x6 block LU"},
+        {"iterations", assessment.equilibrium.steps},
+        {"seconds", entry.seconds}}},
+      {"warnings", std::vector<std::string>(entry.warnings.begin(), entry.warnings.end())}};
+  return report.dump(2, ' ', false, Json::error_handler_t::replace);
+}
+
+std::string write_error_json(const base::Error& error, std::string_view name) {
+  const Json report = {{"name", name}, {"error", error.message}, {"where", error.where}};
+  return report.dump(2, ' ', false, Json::error_handler_t::replace);
+}
+
+}  // namespace holdfast::io

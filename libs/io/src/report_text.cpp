@@ -1,0 +1,98 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <iterator>
+#include <numeric>
+
+#include "holdfast/io/report.hpp"
+
+namespace holdfast::io {
+namespace {
+
+/// As many of the most loaded connections are listed.
+constexpr std::size_t kListedCount = 5;
+
+using Out = std::back_insert_iterator<std::string>;
+
+std::string ends(const model::Robot& robot, std::size_t connection) {
+  const model::Connection& pair = robot.connections()[connection];
+  const base::Cell& a = robot.modules()[static_cast<std::size_t>(pair.a)].cell;
+  const base::Cell& b = robot.modules()[static_cast<std::size_t>(pair.b)].cell;
+  return fmt::format("({},{},{})-({},{},{})", a.x, a.y, a.z, b.x, b.y, b.z);
+}
+
+void write_modules(Out out, const model::Robot& robot) {
+  fmt::format_to(out, "  modules     {} existing, {} planned; {} on the ground, {} fixed\n",
+                 robot.modules().size() - robot.planned_count(), robot.planned_count(),
+                 robot.ground_count(), robot.fixed_count());
+}
+
+void write_stability(Out out, const verdict::Assessment& assessment) {
+  const verdict::RigidBody& body = assessment.simplified;
+  const char* word = assessment.is_stable ? "stable" : "unstable";
+  if (body.margin_mm) {
+    const auto& [a, b] = *body.edge;
+    fmt::format_to(out, "  stability   {}, margin {:.2f} mm at the edge ({:g}, {:g})-({:g}, {:g}) mm",
+                   word, *body.margin_mm, a.x, a.y, b.x, b.y);
+  } else {
+    fmt::format_to(out, "  stability   {}, held by a fixed module", word);
+  }
+  if (!assessment.model.is_settled) {
+    fmt::format_to(out, "; the model-based check has no answer\n");
+  } else if (assessment.model.is_stable == assessment.is_stable) {
+    fmt::format_to(out, "; the model-based check agrees\n");
+  } else {
+    fmt::format_to(out, "; the model-based check says {}\n",
+                   assessment.model.is_stable ? "stable" : "unstable");
+  }
+}
+
+void write_loads(Out out, const model::Robot& robot, const verdict::Assessment& assessment) {
+  std::vector<std::size_t> order(assessment.connections.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  const std::size_t count = std::min(kListedCount, order.size());
+  std::partial_sort(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(count), order.end(),
+                    [&](std::size_t a, std::size_t b) {
+                      const double ratio_a = assessment.connections[a].load_ratio;
+                      const double ratio_b = assessment.connections[b].load_ratio;
+                      return ratio_a != ratio_b ? ratio_a > ratio_b : a < b;
+                    });
+  for (std::size_t i = 0; i < count; ++i) {
+    const verdict::ConnectionResult& result = assessment.connections[order[i]];
+    fmt::format_to(out, "  {}  {:7.4f}  {:<24} {:9.3f} N axial {:9.1f} N mm bending\n",
+                   i == 0 ? "load ratio" : "          ", result.load_ratio, ends(robot, order[i]),
+                   result.axial_n, result.bending_nmm);
+  }
+  if (count > 0 && !assessment.is_stable) {
+    fmt::format_to(out, "              (not meaningful: the robot topples)\n");
+  } else if (assessment.weight_factor) {
+    fmt::format_to(out, "  weight      the first connection breaks at {:.3f} times this weight\n",
+                   *assessment.weight_factor);
+  }
+}
+
+}  // namespace
+
+std::string write_report_text(const ReportEntry& entry) {
+  const verdict::Assessment& assessment = *entry.assessment;
+  std::string text;
+  const Out out(text);
+  for (const std::string& reason : assessment.reasons) {
+    fmt::format_to(out, "  {}\n", reason);
+  }
+  fmt::format_to(out, "\n");
+  write_modules(out, *entry.robot);
+  write_stability(out, assessment);
+  write_loads(out, *entry.robot, assessment);
+  fmt::format_to(out, "  contact     {}; {} linear solves in {:.0f} us\n",
+                 verdict::name(assessment.contact_model), assessment.equilibrium.steps,
+                 entry.seconds * 1e6);
+  for (const std::string& warning : entry.warnings) {
+    fmt::format_to(out, "  note        {}\n", warning);
+  }
+  return text;
+}
+
+}  // namespace holdfast::io

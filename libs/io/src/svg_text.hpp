@@ -1,0 +1,70 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+/// Numbers, paths and words as an SVG wants them. All coordinates are rounded once, to hundredths
+/// of a pixel, and from there on are integers: the same text with every compiler.
+namespace holdfast::io {
+
+/// On the picture, in pixels; y points down.
+struct ScreenPoint {
+  double x = 0;
+  double y = 0;
+
+  friend constexpr ScreenPoint operator+(ScreenPoint a, ScreenPoint b) {
+    return {a.x + b.x, a.y + b.y};
+  }
+
+  friend constexpr ScreenPoint operator-(ScreenPoint a, ScreenPoint b) {
+    return {a.x - b.x, a.y - b.y};
+  }
+
+  friend constexpr ScreenPoint operator*(double factor, ScreenPoint a) {
+    return {factor * a.x, factor * a.y};
+  }
+};
+
+double length(ScreenPoint vector);
+
+/// At most two decimals, no trailing zeros, no minus before a zero.
+std::string number(double value);
+
+/// A load ratio for people: two decimals, more where rounding would call a safe ratio 1.00.
+std::string ratio_text(double ratio, bool is_broken);
+
+/// The size of a length, with a unit and one decimal; small ones with two, so that none reads 0.0.
+std::string millimetres(double value);
+
+/// The data of a path element: absolute where a line begins, relative after that.
+class Path {
+ public:
+  void move_to(ScreenPoint point);
+  void line_to(ScreenPoint point);
+  void close();
+
+  bool empty() const { return text_.empty(); }
+
+  const std::string& text() const { return text_; }
+
+ private:
+  void append(std::int64_t x, std::int64_t y);
+
+  std::string text_;
+  std::int64_t x_ = 0;  ///< Hundredths of a pixel.
+  std::int64_t y_ = 0;
+};
+
+/// For use in text and attributes; what is no UTF-8 or not allowed in XML becomes U+FFFD.
+std::string escape(std::string_view text);
+
+/// A guess for a common sans-serif face, rather too wide than too narrow.
+double text_width(std::string_view text, double font_size, bool is_bold = false);
+
+/// The longest beginning that fits, with an ellipsis where something is missing.
+std::string fit_text(std::string_view text, double font_size, double width, bool is_bold = false);
+
+}  // namespace holdfast::io

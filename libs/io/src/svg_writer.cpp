@@ -1,0 +1,99 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "holdfast/io/picture.hpp"
+#include "svg_parts.hpp"
+
+namespace holdfast::io {
+namespace {
+
+std::string description(const Scene& scene) {
+  const Headline line = headline(scene);
+  const std::size_t count = scene.robot.modules().size();
+  std::string text = fmt::format(
+      "Isometric view of a modular robot of {} module{}, {} of them "
+      "planned. {}: {}.",
+      count, count == 1 ? "" : "s", scene.robot.planned_count(), line.verdict, line.essence);
+  for (const std::string& reason : scene.assessment.reasons) {
+    if (reason != line.essence) {
+      text += fmt::format(" {}.", reason);
+    }
+  }
+  return text;
+}
+
+}  // namespace
+
+std::string draw_axes(const Scene& scene) {
+  constexpr double kLength = 22;
+  constexpr double kHalfWidth = 40;
+  constexpr double kHalfHeight = 34;
+
+  struct Axis {
+    const char* name;
+    ScreenPoint way;
+  };
+
+  constexpr Axis kAxes[] = {{"x", {0.866, 0.5}}, {"y", {0.866, -0.5}}, {"z", {0, -1}}};
+  // The first corner of the drawing that is free, or else the freest.
+  const Box& area = scene.drawing;
+  const double right = area.right - kHalfWidth - 10;
+  const double left = area.left + kHalfWidth + 4;
+  const double bottom = area.bottom - kHalfHeight - 4;
+  const double top = area.top + kHalfHeight + 6;
+  const ScreenPoint corners[] = {{left, bottom}, {right, bottom}, {left, top}, {right, top}};
+  const ScreenPoint centre = *std::ranges::min_element(corners, {}, [&](ScreenPoint corner) {
+    return scene.covered_share({corner.x - kHalfWidth, corner.y - kHalfHeight,
+                                corner.x + kHalfWidth, corner.y + kHalfHeight});
+  });
+  const ScreenPoint origin = centre + ScreenPoint{-10, 8};
+  std::string out = fmt::format(
+      "<g class=\"axes\" stroke=\"{0}\" stroke-width=\"1.2\" "
+      "fill=\"{0}\" font-size=\"12\" font-style=\"italic\">\n",
+      kInkSoft);
+  for (const auto& [name, way] : kAxes) {
+    const ScreenPoint tip = origin + kLength * way;
+    const ScreenPoint across = {-way.y, way.x};
+    const ScreenPoint text = origin + (kLength + 9) * way;
+    Path path;
+    path.move_to(origin);
+    path.line_to(tip);
+    path.line_to(tip - 5 * way + 2.2 * across);
+    path.line_to(tip - 5 * way - 2.2 * across);
+    path.line_to(tip);
+    out += fmt::format(
+        "<path d=\"{}\"/><text stroke=\"none\" text-anchor=\"middle\" x=\"{}\" "
+        "y=\"{}\">{}</text>\n",
+        path.text(), number(text.x), number(text.y + 4), name);
+  }
+  return out + "</g>\n";
+}
+
+std::string write_svg(const model::Robot& robot, const verdict::Assessment& assessment,
+                      std::string_view title) {
+  const Scene scene(robot, assessment);
+  const Legend legend = draw_legend(scene);
+  const double height = scene.drawing.bottom + legend.height;
+  std::string out = fmt::format(
+      "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0}\" height=\"{1}\" "
+      "viewBox=\"0 0 {0} {1}\" role=\"img\" font-family=\"sans-serif\">\n"
+      "<title>{2}</title>\n<desc>{3}</desc>\n"
+      "<rect class=\"card\" x=\"0.5\" y=\"0.5\" width=\"{4}\" height=\"{5}\" rx=\"14\" "
+      "fill=\"{6}\" stroke=\"#d5d8d6\"/>\n",
+      number(scene.card_width), number(height), escape(title), escape(description(scene)),
+      number(scene.card_width - 1), number(height - 1), kCardFill);
+  out += draw_header(scene, title);
+  out += draw_ground(scene);
+  out += draw_modules(scene);
+  out += draw_marks(scene);
+  out += draw_balance(scene);
+  out += draw_labels(scene);
+  out += draw_axes(scene);
+  out += legend.text;
+  return out + "</svg>\n";
+}
+
+}  // namespace holdfast::io

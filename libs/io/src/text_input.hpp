@@ -1,0 +1,43 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "holdfast/base/result.hpp"
+
+/// Text from outside, before and while it is parsed. Nothing here trusts its input.
+namespace holdfast::io {
+
+/// In quotes for a message: printable ASCII ('?' for the rest), cut after 60 characters.
+std::string excerpt(std::string_view text);
+
+/// Without white space at both ends.
+std::string_view trimmed(std::string_view text);
+
+/// Without a byte order mark.
+std::string_view without_bom(std::string_view text);
+
+/// "line 12", for Error::where. Takes time proportional to the offset.
+std::string line_at(std::string_view text, std::size_t offset);
+
+/// An input that is blank, too large, not UTF-8 or holds a zero byte, whatever its format.
+std::optional<base::Error> find_input_fault(std::string_view text);
+
+/// Why a string cannot be kept: "is not UTF-8", "holds the control character 0x07". Tabs and line
+/// feeds can; what passes here comes back unchanged from both formats.
+std::optional<std::string> find_string_fault(std::string_view text);
+
+/// Whether an element or attribute of XML can have this name.
+bool is_xml_name(std::string_view text);
+
+/// Whether a line begins as those do that a version control system leaves behind.
+bool is_conflict_marker(std::string_view line);
+
+/// A syntax error with its line and the text around it; `problem` is the parser's word for it.
+base::Error syntax_error(std::string_view text, std::size_t offset, std::string_view problem);
+
+}  // namespace holdfast::io

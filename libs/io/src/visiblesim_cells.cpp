@@ -1,0 +1,217 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#include "visiblesim_cells.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "text_input.hpp"
+#include "vocabulary.hpp"
+
+namespace holdfast::io {
+namespace {
+
+using Lengths = std::array<double, 3>;
+
+/// VisibleSim's lattice of Blinky Blocks.
+constexpr Lengths kBlockSize = {40, 40, 41};
+
+/// VisibleSim's words for no, in any case.
+bool is_no(std::string_view text) {
+  std::string lower(trimmed(text));
+  std::ranges::transform(lower, lower.begin(), [](char c) {
+    return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  });
+  return is_one_of(lower, {"0", "false", "no"});
+}
+
+ModuleEntry read_block(XmlReading& reading, const pugi::xml_node& block) {
+  reading.expect_no_content(block);
+  const pugi::xml_attribute fixed = block.attribute("fixed");
+  return {.cell = reading.cell(block),
+          .is_fixed = fixed && !is_no(fixed.value()),
+          .color = reading.color(block),
+          .attributes = reading.attributes(block, is_module_attribute)};
+}
+
+PlannedEntry read_cell(XmlReading& reading, const pugi::xml_node& cell) {
+  reading.expect_no_content(cell);
+  return {.cell = reading.cell(cell),
+          .color = reading.color(cell),
+          .attributes = reading.attributes(cell, is_planned_attribute)};
+}
+
+/// <blocksLine> or <targetLine>: a row along x, one character per cell. A row without a plane lies
+/// in that of the row before.
+template <class Entry>
+void read_row(XmlReading& reading, const pugi::xml_node& row, std::int32_t& plane,
+              std::vector<Entry>& entries) {
+  reading.expect_no_content(row);
+  reading.expect_attributes(row, [](std::string_view name) {
+    return is_one_of(name, {"line", "plane", "values", "color"});
+  });
+  const auto coordinate = [&](const char* name, std::int32_t fallback) {
+    const pugi::xml_attribute attribute = row.attribute(name);
+    return attribute ? reading.integer(row, attribute, kCoordinateRange) : fallback;
+  };
+  const std::int32_t line = coordinate("line", 0);
+  plane = coordinate("plane", plane);
+  const std::optional<Color> color = reading.color(row);
+  const char* const text = reading.required(row, "values");
+  const std::string_view values = text == nullptr ? "" : text;
+  if (values.size() > base::kCoordinateMax + 1U) {
+    reading.fail(row, fmt::format("values of <{}> has {} characters, allowed are {}", row.name(),
+                                  values.size(), base::kCoordinateMax + 1));
+  }
+  const auto count = static_cast<std::size_t>(std::ranges::count(values, '1'));
+  if (!reading.take_room(count, [&] { return reading.line(row); })) {
+    return;
+  }
+  for (std::int32_t x = 0; const char value : values) {
+    if (value == '1') {
+      Entry& entry = entries.emplace_back();
+      entry.cell = {x, line, plane};
+      entry.color = color;
+    } else if (value != '0') {
+      reading.warn_at(
+          row, fmt::format("in values of <{}>, {} counts as 0", row.name(), excerpt({&value, 1})));
+    }
+    ++x;
+  }
+}
+
+/// An attribute of three lengths, or what stands for it where it is missing.
+Lengths read_lengths(XmlReading& reading, const pugi::xml_node& node, const char* name,
+                     const Lengths& fallback) {
+  const pugi::xml_attribute attribute = node.attribute(name);
+  if (!attribute) {
+    return fallback;
+  }
+  const auto lengths = parse_triple<double>(attribute.value());
+  if (!lengths) {
+    reading.fail(node, fmt::format("{} of <{}> is {}, allowed are three numbers, such as 40,40,41",
+                                   name, node.name(), excerpt(attribute.value())));
+  }
+  return lengths.value_or(fallback);
+}
+
+/// Indices of cells along one axis; none if `last` is less than `first`.
+struct IndexRange {
+  std::int32_t first = 0;
+  std::int32_t last = -1;
+
+  std::size_t count() const { return static_cast<std::size_t>(std::max(0, last - first + 1)); }
+};
+
+/// The cells i with origin <= i * pitch <= end in a grid of `count` cells.
+struct Box {
+  double origin = 0;
+  double end = 0;
+  double pitch = 1;
+
+  IndexRange cells(std::int32_t count) const {
+    const double first = std::clamp(std::ceil(origin / pitch), 0.0, static_cast<double>(count));
+    const double last = std::clamp(std::floor(end / pitch), -1.0, static_cast<double>(count - 1));
+    return {static_cast<std::int32_t>(first), static_cast<std::int32_t>(last)};
+  }
+};
+
+std::array<IndexRange, 3> read_box_ranges(XmlReading& reading, const pugi::xml_node& box) {
+  constexpr double kFar = std::numeric_limits<double>::infinity();
+  const Lengths pitch = read_lengths(reading, box.parent(), "blockSize", kBlockSize);
+  const Lengths origin = read_lengths(reading, box, "boxOrigin", {0, 0, 0});
+  const Lengths size = read_lengths(reading, box, "boxSize", {kFar, kFar, kFar});
+  if (!reading.grid()) {
+    reading.fail(box, "<blockBox> needs the attribute 'gridSize' of <world>, which is missing");
+    return {};
+  }
+  if (std::ranges::min(pitch) <= 0) {
+    reading.fail(box.parent(), fmt::format("blockSize of <blockList> is '{},{},{}', allowed are "
+                                           "lengths above 0",
+                                           pitch[0], pitch[1], pitch[2]));
+    return {};
+  }
+  const std::array<std::int32_t, 3> grid = {reading.grid()->x, reading.grid()->y,
+                                            reading.grid()->z};
+  std::array<IndexRange, 3> ranges;
+  for (std::size_t i = 0; i < 3; ++i) {
+    ranges[i] = Box{origin[i], origin[i] + size[i], pitch[i]}.cells(grid[i]);
+  }
+  return ranges;
+}
+
+void read_box(XmlReading& reading, const pugi::xml_node& box) {
+  reading.expect_no_content(box);
+  reading.expect_attributes(box, [](std::string_view name) {
+    return is_one_of(name, {"boxOrigin", "boxSize", "color"});
+  });
+  const std::optional<Color> color = reading.color(box);
+  const auto [xs, ys, zs] = read_box_ranges(reading, box);
+  const std::size_t count = xs.count() * ys.count() * zs.count();
+  if (count == 0) {
+    reading.warn_at(box, "a <blockBox> holds no cell");
+  }
+  if (!reading.take_room(count, [&] { return reading.line(box); })) {
+    return;
+  }
+  for (std::int32_t z = zs.first; z <= zs.last; ++z) {
+    for (std::int32_t y = ys.first; y <= ys.last; ++y) {
+      for (std::int32_t x = xs.first; x <= xs.last; ++x) {
+        ModuleEntry& entry = reading.document.modules.emplace_back();
+        entry.cell = {x, y, z};
+        entry.color = color;
+      }
+    }
+  }
+}
+
+}  // namespace
+
+void read_block_list(XmlReading& reading, const pugi::xml_node& list) {
+  std::vector<ModuleEntry>& modules = reading.document.modules;
+  std::int32_t plane = 0;
+  for (const pugi::xml_node& child : list.children()) {
+    const std::string_view name = child.name();
+    if (name == "block" && reading.take_room(1, [&] { return reading.line(child); })) {
+      modules.push_back(read_block(reading, child));
+    } else if (name == "blocksLine") {
+      read_row(reading, child, plane, modules);
+    } else if (name == "blockBox") {
+      read_box(reading, child);
+    } else if (name == "csg") {
+      reading.fail(child, "<csg> in <blockList> is not supported: write its modules as <block>",
+                   base::ErrorCode::kUnsupported);
+    } else {
+      reading.warn_of_unknown_child(child);
+    }
+    if (reading.has_failed()) {
+      return;
+    }
+  }
+}
+
+Step read_grid_target(XmlReading& reading, const pugi::xml_node& target) {
+  reading.expect_attributes(target, [](std::string_view name) { return name == "format"; });
+  Step step;
+  std::int32_t plane = 0;
+  for (const pugi::xml_node& child : target.children()) {
+    const std::string_view name = child.name();
+    if (name == "cell" && reading.take_room(1, [&] { return reading.line(child); })) {
+      step.push_back(read_cell(reading, child));
+    } else if (name == "targetLine") {
+      read_row(reading, child, plane, step);
+    } else {
+      reading.warn_of_unknown_child(child);
+    }
+    if (reading.has_failed()) {
+      return step;
+    }
+  }
+  return step;
+}
+
+}  // namespace holdfast::io

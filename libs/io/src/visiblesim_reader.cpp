@@ -1,0 +1,170 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <pugixml.hpp>
+#include <utility>
+
+#include "holdfast/io/document.hpp"
+#include "text_input.hpp"
+#include "visiblesim_cells.hpp"
+#include "vocabulary.hpp"
+#include "xml_reading.hpp"
+
+namespace holdfast::io {
+namespace {
+
+bool is_free(std::string_view /*name*/) { return false; }
+
+/// The child of that name, if there is one; a failure if there are more.
+pugi::xml_node only_child(XmlReading& reading, const pugi::xml_node& parent, const char* name) {
+  const pugi::xml_node child = parent.child(name);
+  if (const pugi::xml_node second = child.next_sibling(name)) {
+    reading.fail(second, fmt::format("a second <{}>, allowed is one", name));
+  }
+  return child;
+}
+
+void read_parameters(XmlReading& reading, const pugi::xml_node& node) {
+  Document& document = reading.document;
+  reading.expect_no_content(node);
+  document.parameters = reading.attributes(node, is_mechanical_parameter);
+  for (const MaterialParameter& parameter : kMaterialParameters) {
+    const char* const name = parameter.visiblesim;
+    if (const auto attribute = name == nullptr ? pugi::xml_attribute() : node.attribute(name)) {
+      document.material.*parameter.value = reading.number(node, attribute);
+    }
+  }
+  if (const auto attribute = node.attribute(kSupportParameter)) {
+    document.support_z = reading.integer(node, attribute, kCoordinateRange);
+  }
+}
+
+void read_known_answer(XmlReading& reading, const pugi::xml_node& node) {
+  reading.expect_attributes(node, [](std::string_view name) {
+    return is_one_of(name, {"verdict", "margin_mm", "load_ratio_max", "source"});
+  });
+  const auto number = [&](const char* name) -> std::optional<double> {
+    const pugi::xml_attribute attribute = node.attribute(name);
+    return attribute ? std::optional(reading.number(node, attribute)) : std::nullopt;
+  };
+  KnownAnswer answer{.verdict = node.attribute("verdict").value(),
+                     .margin_mm = number("margin_mm"),
+                     .load_ratio_max = number("load_ratio_max"),
+                     .source = node.attribute("source").value()};
+  reading.take_known_answer(std::move(answer), [&] { return reading.line(node); });
+}
+
+/// <holdfast>: what our writer adds to the file.
+void read_own_element(XmlReading& reading, const pugi::xml_node& node) {
+  Document& document = reading.document;
+  reading.expect_attributes(node, [](std::string_view name) {
+    return is_one_of(name, {"name", "description", "computed"}) ||
+           std::ranges::any_of(kMaterialParameters, [&](const MaterialParameter& parameter) {
+             return parameter.visiblesim == nullptr && parameter.key == name;
+           });
+  });
+  document.name = node.attribute("name").value();
+  document.description = node.attribute("description").value();
+  for (const MaterialParameter& parameter : kMaterialParameters) {
+    const auto attribute = node.attribute(parameter.key);
+    if (attribute && parameter.visiblesim == nullptr) {
+      document.material.*parameter.value = reading.number(node, attribute);
+    }
+  }
+  if (const auto known = only_child(reading, node, "knownAnswer")) {
+    read_known_answer(reading, known);
+  }
+}
+
+void read_targets(XmlReading& reading, const pugi::xml_node& list) {
+  reading.expect_attributes(list, is_free);
+  for (const pugi::xml_node& child : list.children()) {
+    if (child.name() != std::string_view("target")) {
+      reading.warn_of_unknown_child(child);
+    } else if (child.attribute("format").value() == std::string_view("grid")) {
+      reading.document.steps.push_back(read_grid_target(reading, child));
+    } else {
+      reading.document.targets.push_back(reading.element(child));
+    }
+    if (reading.has_failed()) {
+      return;
+    }
+  }
+}
+
+void read_scenery(XmlReading& reading, const pugi::xml_node& world) {
+  for (const pugi::xml_node& child : world.children()) {
+    if (child.type() != pugi::node_element) {
+      reading.warn_of_unknown_child(child);
+    } else if (!is_structural_element(child.name())) {
+      reading.document.scenery.push_back(reading.element(child));
+    }
+    if (reading.has_failed()) {
+      return;
+    }
+  }
+}
+
+void read_world(XmlReading& reading, const pugi::xml_node& world) {
+  Document& document = reading.document;
+  document.world = reading.attributes(world, is_free);
+  reading.read_grid([&] { return reading.line(world); });
+  const pugi::xml_node blocks = only_child(reading, world, "blockList");
+  const pugi::xml_node targets = only_child(reading, world, "targetList");
+  const pugi::xml_node own = only_child(reading, world, kOwnElement);
+  if (!blocks) {
+    reading.fail(world, "<world> has no <blockList>, which lists the modules");
+  }
+  if (reading.has_failed()) {
+    return;
+  }
+  document.block_list = reading.attributes(blocks, is_free);
+  read_block_list(reading, blocks);
+  read_targets(reading, targets);
+  read_scenery(reading, world);
+  read_own_element(reading, own);
+  if (own.attribute("computed").value() == std::string_view(kGridSize)) {
+    std::erase_if(document.world, [](const auto& entry) { return entry.first == kGridSize; });
+  }
+}
+
+void read_roots(XmlReading& reading, const pugi::xml_document& tree) {
+  for (const pugi::xml_node& child : tree.children()) {
+    if (!is_one_of(child.name(), {"parameters", "world"})) {
+      reading.warn_of_unknown_child(child);
+    }
+  }
+  const pugi::xml_node parameters = only_child(reading, tree, "parameters");
+  const pugi::xml_node world = only_child(reading, tree, "world");
+  if (!world) {
+    reading.fail({base::ErrorCode::kBadInput,
+                  "no element <world>, expected is a VisibleSim configuration", ""});
+    return;
+  }
+  if (!parameters) {
+    reading.warn("there is no element <parameters>: mass and material are those of Blinky Blocks",
+                 [] { return std::string(); });
+  }
+  read_parameters(reading, parameters);
+  read_world(reading, world);
+}
+
+}  // namespace
+
+base::Result<ReadDocument> read_visiblesim(std::string_view text) {
+  text = without_bom(text);
+  if (auto fault = find_input_fault(text)) {
+    return *std::move(fault);
+  }
+  XmlReading reading(text);
+  pugi::xml_document tree;
+  reading.parse(tree);
+  if (!reading.has_failed()) {
+    read_roots(reading, tree);
+  }
+  return std::move(reading).finish();
+}
+
+}  // namespace holdfast::io

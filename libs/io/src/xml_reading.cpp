@@ -1,0 +1,251 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#include "xml_reading.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include "text_input.hpp"
+#include "vocabulary.hpp"
+
+namespace holdfast::io {
+namespace {
+
+/// More elements cannot be a structure of kModuleCountMax modules.
+constexpr std::size_t kElementCountMax = model::kModuleCountMax + 10'000;
+
+/// Depth and number of elements, in one pass before the parser takes memory for them. Goes from '<'
+/// to '<'; whether the text is well-formed is left to the parser.
+class ShapeCheck {
+ public:
+  explicit ShapeCheck(std::string_view text) : text_(text) {}
+
+  std::optional<base::Error> run() {
+    for (std::size_t i = text_.find('<'); i < text_.size(); i = text_.find('<', i)) {
+      const std::size_t begin = i;
+      step(i);
+      if (depth_ > kNestingMax) {
+        return syntax_error(text_, begin,
+                            fmt::format("elements nested deeper than the {} allowed", kNestingMax));
+      }
+      if (count_ > kElementCountMax) {
+        return syntax_error(text_, begin,
+                            fmt::format("more than the {} elements allowed", kElementCountMax));
+      }
+    }
+    return std::nullopt;
+  }
+
+ private:
+  /// From a '<' to the end of what it begins.
+  void step(std::size_t& i) {
+    const std::string_view rest = text_.substr(i);
+    if (rest.starts_with("<!--")) {
+      skip(i, 4, "-->");
+    } else if (rest.starts_with("<![CDATA[")) {
+      skip(i, 9, "]]>");
+    } else if (rest.starts_with("<?")) {
+      skip(i, 2, "?>");
+    } else if (rest.starts_with("</")) {
+      --depth_;
+      i += 2;
+    } else if (rest.starts_with("<!")) {
+      i += 2;
+    } else {
+      ++count_;
+      ++depth_;
+      skip_tag(i);
+    }
+  }
+
+  void skip(std::size_t& i, std::size_t length, std::string_view end) {
+    i = std::min(text_.find(end, i + length), text_.size());
+  }
+
+  /// To the '>' that ends a tag; those in attribute values do not.
+  void skip_tag(std::size_t& i) {
+    char quote = '\0';
+    for (++i; i < text_.size(); ++i) {
+      const char c = text_[i];
+      if (quote != '\0') {
+        quote = c == quote ? '\0' : quote;
+      } else if (c == '"' || c == '\'') {
+        quote = c;
+      } else if (c == '>' || c == '<') {
+        depth_ -= c == '>' && text_[i - 1] == '/' ? 1 : 0;
+        return;
+      }
+    }
+  }
+
+  std::string_view text_;
+  int depth_ = 0;
+  std::size_t count_ = 0;
+};
+
+bool is_text(const pugi::xml_node& node) {
+  return node.type() == pugi::node_pcdata || node.type() == pugi::node_cdata;
+}
+
+}  // namespace
+
+void XmlReading::parse(pugi::xml_document& tree) {
+  if (const auto fault = ShapeCheck(text_).run()) {
+    fail(*fault);
+    return;
+  }
+  // A fragment, because VisibleSim's files have two root elements.
+  const auto result = tree.load_buffer(
+      text_.data(), text_.size(), pugi::parse_default | pugi::parse_fragment, pugi::encoding_utf8);
+  if (!result) {
+    fail(syntax_error(text_, static_cast<std::size_t>(result.offset),
+                      fmt::format("no well-formed XML ({})", result.description())));
+  }
+}
+
+std::string XmlReading::line(const pugi::xml_node& node) const {
+  return line_at(text_, static_cast<std::size_t>(node.offset_debug()));
+}
+
+void XmlReading::fail(const pugi::xml_node& node, std::string message, base::ErrorCode code) {
+  if (!has_failed()) {
+    fail({code, std::move(message), line(node)});
+  }
+}
+
+void XmlReading::warn_at(const pugi::xml_node& node, std::string message) {
+  warn(std::move(message), [&] { return line(node); });
+}
+
+void XmlReading::expect_attributes(const pugi::xml_node& node,
+                                   bool (*is_known)(std::string_view name)) {
+  for (const auto& unknown : attributes(node, is_known)) {
+    warn_at(node, fmt::format("the attribute {} of <{}> is unknown and ignored",
+                              excerpt(unknown.first), node.name()));
+  }
+}
+
+void XmlReading::expect_no_content(const pugi::xml_node& node) {
+  if (node.first_child()) {
+    warn_at(node, fmt::format("the content of <{}> is ignored", node.name()));
+  }
+}
+
+void XmlReading::warn_of_unknown_child(const pugi::xml_node& child) {
+  if (!is_text(child)) {
+    warn_at(child, fmt::format("the element {} is unknown here and ignored", excerpt(child.name())));
+  } else if (is_conflict_marker(trimmed(child.value()))) {
+    fail(child, "unresolved merge-conflict marker at " + excerpt(trimmed(child.value())));
+  } else {
+    warn_at(child, "text outside of elements is ignored");
+  }
+}
+
+Attributes XmlReading::attributes(const pugi::xml_node& node,
+                                  bool (*is_read)(std::string_view name)) {
+  Attributes all;
+  for (const pugi::xml_attribute& attribute : node.attributes()) {
+    const std::string_view name = attribute.name();
+    if (find_attribute(all, name) != nullptr) {
+      fail(node, fmt::format("the attribute {} of {} is there twice, allowed is once", excerpt(name),
+                             excerpt(node.name())));
+    }
+    if (all.size() == kAttributeCountMax) {
+      fail(node,
+           fmt::format("{} has more than {} attributes", excerpt(node.name()), kAttributeCountMax));
+      break;
+    }
+    if (const auto fault = find_string_fault(attribute.value())) {
+      fail(node, fmt::format("the attribute {} {}", excerpt(name), *fault));
+    }
+    all.emplace_back(name, attribute.value());
+  }
+  std::erase_if(all, [&](const auto& attribute) { return is_read(attribute.first); });
+  return all;
+}
+
+const char* XmlReading::required(const pugi::xml_node& node, const char* name) {
+  const pugi::xml_attribute attribute = node.attribute(name);
+  if (!attribute) {
+    fail(node, fmt::format("<{}> has no attribute '{}'", node.name(), name));
+    return nullptr;
+  }
+  return attribute.value();
+}
+
+double XmlReading::number(const pugi::xml_node& node, const pugi::xml_attribute& attribute) {
+  const auto number = parse_number<double>(attribute.value());
+  if (!number) {
+    fail(node, fmt::format("{} of <{}> is {}, allowed is a finite number", attribute.name(),
+                           node.name(), excerpt(attribute.value())));
+  }
+  return number.value_or(0);
+}
+
+std::int32_t XmlReading::integer(const pugi::xml_node& node, const pugi::xml_attribute& attribute,
+                                 IntegerRange range) {
+  const auto number = parse_number<double>(attribute.value());
+  if (!number || !range.contains(*number) || *number != std::trunc(*number)) {
+    fail(node,
+         fmt::format("{} of <{}> is {}, allowed is an integer from {} to {}", attribute.name(),
+                     node.name(), excerpt(attribute.value()), range.lowest, range.highest));
+    return 0;
+  }
+  return static_cast<std::int32_t>(*number);
+}
+
+std::array<std::int32_t, 3> XmlReading::triple(const pugi::xml_node& node, const char* name,
+                                               IntegerRange range) {
+  const char* const text = required(node, name);
+  const auto triple = text == nullptr ? std::nullopt : parse_triple<std::int32_t>(text);
+  if (text != nullptr &&
+      (!triple || !std::ranges::all_of(*triple, [&](auto n) { return range.contains(n); }))) {
+    fail(node, fmt::format("{} of <{}> is {}, allowed are three integers from {} to {}, such as "
+                           "1,2,3",
+                           name, node.name(), excerpt(text), range.lowest, range.highest));
+  }
+  return triple.value_or(std::array<std::int32_t, 3>{});
+}
+
+base::Cell XmlReading::cell(const pugi::xml_node& node) {
+  const auto [x, y, z] = triple(node, "position", kCoordinateRange);
+  return {x, y, z};
+}
+
+std::optional<Color> XmlReading::color(const pugi::xml_node& node) {
+  if (!node.attribute("color")) {
+    return std::nullopt;
+  }
+  const auto [red, green, blue] = triple(node, "color", kColorRange);
+  return Color{red, green, blue};
+}
+
+Element XmlReading::element(const pugi::xml_node& node, int depth) {
+  Element element;
+  element.name = node.name();
+  element.attributes = attributes(node, [](std::string_view) { return false; });
+  if (depth > kSceneryNestingMax) {
+    fail(node, fmt::format("elements nested deeper than the {} allowed", kSceneryNestingMax));
+    return element;
+  }
+  for (const pugi::xml_node& child : node.children()) {
+    if (is_text(child)) {
+      element.text += child.value();
+    } else {
+      element.children.push_back(this->element(child, depth + 1));
+    }
+    if (has_failed()) {
+      return element;
+    }
+  }
+  element.text = trimmed(element.text);
+  if (const auto fault = find_string_fault(element.text)) {
+    fail(node, fmt::format("the text of {} {}", excerpt(element.name), *fault));
+  }
+  return element;
+}
+
+}  // namespace holdfast::io

@@ -1,0 +1,102 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+// Reports say what the assessment says; numbers are compared with the assessment and with statics.
+#include "holdfast/io/report.hpp"
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+namespace holdfast::io {
+namespace {
+
+using Json = nlohmann::json;
+
+struct Checked {
+  model::Robot robot;
+  verdict::Assessment assessment;
+
+  explicit Checked(const model::RobotSpec& spec)
+      : robot(model::Robot::create(spec).value()), assessment(verdict::assess(robot)) {}
+
+  ReportEntry entry(std::span<const std::string> warnings = {}) const {
+    return {.name = "test \"robot\"",
+            .robot = &robot,
+            .assessment = &assessment,
+            .warnings = warnings,
+            .seconds = 1.5e-4};
+  }
+};
+
+/// Twenty-five modules hanging from a fixed one: five connections carry more than Fmax.
+model::RobotSpec long_chain() {
+  model::RobotSpec spec{.existing = {{0, 0, 50}}, .fixed = {{0, 0, 50}}};
+  for (int i = 1; i <= 25; ++i) {
+    spec.existing.push_back({0, 0, 50 - i});
+  }
+  return spec;
+}
+
+TEST(Report, as_json_has_the_keys_that_other_tools_rely_on) {
+  const std::vector<std::string> warnings = {"something odd"};
+  const Checked chain(long_chain());
+  const Json report = Json::parse(write_report_json(chain.entry(warnings)));
+  EXPECT_EQ(report["name"], "test \"robot\"");
+  EXPECT_EQ(report["verdict"], "overload");
+  EXPECT_EQ(report["reasons"].size(), 1U);
+  EXPECT_EQ(report["modules"], Json::parse(R"({"existing":26,"planned":0,"on_ground":0,"fixed":1})"));
+  EXPECT_TRUE(report["stability"]["simplified"]["margin_mm"].is_null());
+  EXPECT_EQ(report["stability"]["stable"], true);
+  EXPECT_EQ(report["stability"]["model"]["settled"], true);
+  EXPECT_EQ(report["overload"]["meaningful"], true);
+  EXPECT_EQ(report["overload"]["broken"].size(), 5U);
+  EXPECT_EQ(report["overload"]["at"], Json::parse("[[0,0,49],[0,0,50]]"));
+  EXPECT_EQ(report["connections"].size(), 25U);
+  EXPECT_EQ(report["contact_model"], "none");
+  EXPECT_EQ(report["solver"]["iterations"], 1);
+  EXPECT_EQ(report["solver"]["seconds"], 1.5e-4);
+  EXPECT_EQ(report["warnings"], Json(warnings));
+}
+
+TEST(Report, as_json_keeps_every_digit) {
+  const Checked chain(long_chain());
+  const Json report = Json::parse(write_report_json(chain.entry()));
+  EXPECT_EQ(report["overload"]["load_ratio_max"].get<double>(), *chain.assessment.load_ratio_max);
+  for (std::size_t i = 0; i < chain.assessment.connections.size(); ++i) {
+    EXPECT_EQ(report["connections"][i]["axial_n"].get<double>(),
+              chain.assessment.connections[i].axial_n);
+  }
+}
+
+TEST(Report, marks_the_loads_of_a_toppling_robot_as_not_meaningful) {
+  const Checked toppling({.existing = {{0, 0, 0}, {0, 0, 1}, {1, 0, 1}, {2, 0, 1}, {3, 0, 1}}});
+  const Json report = Json::parse(write_report_json(toppling.entry()));
+  EXPECT_EQ(report["verdict"], "unstable");
+  EXPECT_EQ(report["overload"]["meaningful"], false);
+  EXPECT_EQ(report["connections"].size(), 4U);
+  EXPECT_LT(report["stability"]["simplified"]["margin_mm"].get<double>(), 0);
+  EXPECT_EQ(report["stability"]["simplified"]["edge_mm"][0][0], 20.0);
+  EXPECT_NE(write_report_text(toppling.entry()).find("not meaningful"), std::string::npos);
+}
+
+TEST(Report, for_people_lists_the_five_most_loaded_connections) {
+  const std::string text = write_report_text(Checked(long_chain()).entry());
+  std::size_t lines = 0;
+  for (std::size_t at = text.find(" N axial"); at != std::string::npos;
+       at = text.find(" N axial", at + 1)) {
+    ++lines;
+  }
+  EXPECT_EQ(lines, 5U);
+  EXPECT_NE(text.find("25 connections"), std::string::npos) << text;
+  EXPECT_NE(text.find("0.800 times this weight"), std::string::npos) << text;  // 20 / 25
+}
+
+TEST(Report, of_a_failure_is_an_object_with_its_place) {
+  const Json report = Json::parse(write_error_json({.message = "bad\n", .where = "line 3"}, "a.xml"));
+  EXPECT_EQ(report["name"], "a.xml");
+  EXPECT_EQ(report["error"], "bad\n");
+  EXPECT_EQ(report["where"], "line 3");
+}
+
+}  // namespace
+}  // namespace holdfast::io

@@ -1,0 +1,285 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// Equilibrium with the ground, for random robots that stand, tilt and topple, under both laws.
+// Expected values: the balance of forces and torques, homogeneity, the conditions that define
+// unilateral contact, and a second method, dense and without any code of the solver. Tolerances:
+// rounding times the condition number, which for a robot that topples is 1 / gamma times that of a
+// standing one; measured, 3e-8 is the largest for gamma = 1e-4 and 1e-11 for standing robots.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "dense_reference.hpp"
+#include "holdfast/solver/equilibrium.hpp"
+#include "random_robot.hpp"
+
+namespace holdfast::solver {
+namespace {
+
+using namespace holdfast::test;
+using base::Vec6;
+using mechanics::ContactLaw;
+using mechanics::ContactState;
+using model::Robot;
+using model::RobotSpec;
+
+constexpr double kGamma = 1e-4;
+constexpr ContactOptions kLaws[] = {{.law = ContactLaw::kRegularised, .gamma = kGamma},
+                                    {.law = ContactLaw::kUnilateral, .gamma = kGamma}};
+constexpr double kTolerance = 1e-6;
+constexpr std::uint64_t kRobotCount = 200;
+
+Robot make(const RobotSpec& spec) {
+  auto robot = Robot::create(spec);
+  EXPECT_TRUE(robot.has_value()) << robot.error().message;
+  return std::move(robot).value();
+}
+
+/// Ix != Iy and a facet narrower than the pitch; one robot in three has a fixed module.
+Robot lopsided_robot(std::uint64_t seed) {
+  RobotSpec spec = random_robot(seed);
+  spec.material.moment_x_mm4 = 150'000;
+  spec.material.moment_y_mm4 = 400'000;
+  spec.material.facet_mm = 30;
+  if (seed % 3 == 0) {
+    spec.fixed = {spec.existing.back()};
+  }
+  return make(spec);
+}
+
+mechanics::GroundFacet<double> facet_of(const Robot& robot, const ContactOptions& contact) {
+  return mechanics::ground_facet(model::beam_section(robot.material()), robot.material().facet_mm,
+                                 contact.gamma, contact.law);
+}
+
+bool rests(const Robot& robot, std::size_t i) {
+  return robot.modules()[i].support == model::Support::kGround;
+}
+
+/// What the contact does, seen from the facet centre: the force that the ground takes and the
+/// motion `v` that the beam is spared, without the weak spring.
+struct Facet {
+  Vec6<double> trial{};
+  Vec6<double> force{};
+  Vec6<double> v{};
+
+  Facet(const mechanics::GroundFacet<double>& facet, const Equilibrium& result, std::size_t i)
+      : trial(mechanics::trial_force(facet, result.displacement[i])) {
+    const Vec6<double>& f = result.ground_force[i];
+    force = {-f[0], -f[1], -f[2], -f[3] + f[1] * facet.lever, -f[4] - f[0] * facet.lever, -f[5]};
+    for (std::size_t k = 0; k < 6; ++k) {
+      force[k] = (force[k] - facet.gamma * trial[k]) / (1 - facet.gamma);
+      v[k] = (trial[k] - force[k]) / facet.stiffness[k];
+    }
+  }
+
+  /// Held sideways, a facet takes the whole trial force; free, none of it.
+  bool is_held() const {
+    const auto size = [](const Vec6<double>& f) { return std::hypot(f[0], f[1]); };
+    return size(force) >= size(trial) / 2;
+  }
+};
+
+/// Forces and torques about the origin that are left of the ground's and the weights', in units of
+/// the robot's weight times 1 mm.
+double imbalance(const Robot& robot, const Equilibrium& result) {
+  const double weight = model::module_weight_n(robot.material());
+  const double pitch = robot.material().pitch_mm;
+  Vec6<double> sum{};
+  for (std::size_t i = 0; i < robot.modules().size(); ++i) {
+    const base::Cell& cell = robot.modules()[i].cell;
+    const double x = cell.x * pitch;
+    const double y = cell.y * pitch;
+    const double z = cell.z * pitch;
+    Vec6<double> f = result.ground_force[i];
+    f[2] -= weight;
+    base::add_to(sum, {f[0], f[1], f[2], f[3] + y * f[2] - z * f[1], f[4] + z * f[0] - x * f[2],
+                       f[5] + x * f[1] - y * f[0]});
+  }
+  return largest({sum}) / (weight * static_cast<double>(robot.modules().size()));
+}
+
+TEST(EquilibriumOfARandomRobot, is_found_by_either_law) {
+  int settled_count[2] = {};
+  for (std::uint64_t seed = 0; seed < kRobotCount; ++seed) {
+    const Robot robot = make(random_robot(seed));
+    EquilibriumSolver solver(robot);
+    for (std::size_t law = 0; law < 2; ++law) {
+      const Equilibrium result = solver.solve(kLaws[law]);
+      settled_count[law] += result.outcome == Outcome::kSettled ? 1 : 0;
+      EXPECT_LE(result.steps, 40);
+    }
+  }
+  // Newton's method on Eqs. (9)-(12) cycles on 3.5 % of random robots (MODEL.md, section 5).
+  EXPECT_GE(settled_count[0], 190);
+  EXPECT_EQ(settled_count[1], 200);
+}
+
+TEST(EquilibriumOfARandomRobot, balances_the_weight_and_its_torque) {
+  for (std::uint64_t seed = 0; seed < kRobotCount; ++seed) {
+    const Robot robot = make(random_robot(seed));
+    EquilibriumSolver solver(robot);
+    for (const ContactOptions& law : kLaws) {
+      const Equilibrium result = solver.solve(law);
+      if (result.outcome == Outcome::kSettled) {
+        EXPECT_LT(imbalance(robot, result), kTolerance) << "seed " << seed;
+      }
+    }
+  }
+}
+
+TEST(EquilibriumOfARandomRobot, has_the_states_that_its_displacements_prescribe) {
+  for (std::uint64_t seed = 0; seed < kRobotCount; ++seed) {
+    const Robot robot = lopsided_robot(seed);
+    EquilibriumSolver solver(robot);
+    for (const ContactOptions& law : kLaws) {
+      const Equilibrium result = solver.solve(law);
+      const auto facet = facet_of(robot, law);
+      for (std::size_t i = 0; i < result.contact.size(); ++i) {
+        const auto trial = mechanics::trial_force(facet, result.displacement[i]);
+        const ContactState open = {.pressed = false};
+        EXPECT_EQ(result.contact[i],
+                  rests(robot, i) ? mechanics::contact_state(facet, trial) : open)
+            << "seed " << seed << ", module " << i;
+      }
+    }
+  }
+}
+
+TEST(EquilibriumOfARandomRobot, is_that_of_a_dense_solution_with_the_same_states) {
+  for (std::uint64_t seed = 0; seed < 60; ++seed) {
+    const Robot robot = lopsided_robot(seed);
+    EquilibriumSolver solver(robot);
+    for (const ContactOptions& law : kLaws) {
+      const Equilibrium result = solver.solve(law);
+      if (result.outcome != Outcome::kSettled) {
+        continue;
+      }
+      const auto facet = facet_of(robot, law);
+      const auto dense = dense_displacement(robot, [&](std::size_t i) {
+        return law.law == ContactLaw::kRegularised
+                   ? regularised_tangent(robot.material(), kGamma, result.contact[i])
+                   : unilateral_tangent(robot.material(), kGamma, result.contact[i],
+                                        Facet(facet, result, i).is_held());
+      });
+      EXPECT_LT(largest_difference(result.displacement, dense),
+                kTolerance * largest(result.displacement))
+          << "seed " << seed;
+    }
+  }
+}
+
+/// Doubling is exact in binary, so nothing but the size may change, to the last bit.
+TEST(EquilibriumOfARandomRobot, doubles_when_gravity_doubles) {
+  for (std::uint64_t seed = 0; seed < kRobotCount; ++seed) {
+    RobotSpec spec = random_robot(seed);
+    const Robot once = make(spec);
+    spec.material.gravity_m_s2 *= 2;
+    const Robot twice = make(spec);
+    for (const ContactOptions& law : kLaws) {
+      Equilibrium result = EquilibriumSolver(once).solve(law);
+      const Equilibrium doubled = EquilibriumSolver(twice).solve(law);
+      for (Vec6<double>& u : result.displacement) {
+        base::add_to(u, Vec6<double>(u));
+      }
+      EXPECT_EQ(result.outcome, doubled.outcome) << "seed " << seed;
+      EXPECT_EQ(result.contact, doubled.contact) << "seed " << seed;
+      EXPECT_EQ(result.displacement, doubled.displacement) << "seed " << seed;
+    }
+  }
+}
+
+/// One solver serves several laws in any order: nothing of an earlier solution is left behind.
+TEST(EquilibriumOfARandomRobot, does_not_depend_on_what_was_solved_before) {
+  for (std::uint64_t seed = 0; seed < 40; ++seed) {
+    const Robot robot = make(random_robot(seed));
+    EquilibriumSolver used(robot);
+    for (const std::size_t law : {0U, 1U, 0U, 1U}) {
+      const Equilibrium again = used.solve(kLaws[law]);
+      const Equilibrium fresh = EquilibriumSolver(robot).solve(kLaws[law]);
+      EXPECT_EQ(again.displacement, fresh.displacement) << "seed " << seed;
+      EXPECT_EQ(again.alternative, fresh.alternative) << "seed " << seed;
+      EXPECT_EQ(again.steps, fresh.steps) << "seed " << seed;
+    }
+  }
+}
+
+/// Eqs. (6)-(8) for every facet: no corner below the ground, no pull, no pressure beyond the edges,
+/// no work of pressure on motion; and held sideways exactly where pressed, but for those counted.
+TEST(EquilibriumOfARandomRobot, obeys_unilateral_contact_at_every_facet) {
+  for (std::uint64_t seed = 0; seed < kRobotCount; ++seed) {
+    const Robot robot = lopsided_robot(seed);
+    const Equilibrium result = EquilibriumSolver(robot).solve(kLaws[1]);
+    ASSERT_EQ(result.outcome, Outcome::kSettled) << "seed " << seed;
+    const auto facet = facet_of(robot, kLaws[1]);
+    const double l = facet.half_width;
+    const double height = kTolerance * largest(result.displacement);  // mm
+    const double force = kTolerance * largest(result.ground_force);   // N, or N mm / l
+    int open_but_held_count = 0;
+    for (std::size_t i = 0; i < robot.modules().size(); ++i) {
+      if (!rests(robot, i)) {
+        EXPECT_EQ(result.ground_force[i], Vec6<double>{});
+        continue;
+      }
+      const Facet at(facet, result, i);
+      EXPECT_GE(at.v[2] - std::abs(at.v[3]) * l - std::abs(at.v[4]) * l, -height);
+      EXPECT_LE(std::max(std::abs(at.force[3]), std::abs(at.force[4])) / l, -at.force[2] + force);
+      const double work = at.force[2] * at.v[2] + at.force[3] * at.v[3] + at.force[4] * at.v[4];
+      EXPECT_NEAR(work, 0, force * largest(result.displacement) + height * largest({at.force}));
+      open_but_held_count += !result.contact[i].pressed && at.is_held() ? 1 : 0;
+      EXPECT_TRUE(at.is_held() || !result.contact[i].pressed) << "seed " << seed;
+    }
+    EXPECT_EQ(result.open_but_held_count, open_but_held_count) << "seed " << seed;
+  }
+}
+
+/// Closed facets are plain beams in both laws. The weak spring is weaker than elsewhere here.
+TEST(EquilibriumOfARandomRobot, is_the_same_in_both_laws_while_all_facets_are_closed) {
+  int closed_count = 0;
+  for (std::uint64_t seed = 0; seed < kRobotCount; ++seed) {
+    const Robot robot = make(random_robot(seed));
+    EquilibriumSolver solver(robot);
+    const Equilibrium regularised = solver.solve(kLaws[0]);
+    const Equilibrium exact = solver.solve({.law = ContactLaw::kUnilateral, .gamma = 1e-9});
+    bool is_closed = true;
+    for (std::size_t i = 0; i < regularised.contact.size(); ++i) {
+      is_closed = is_closed && (!rests(robot, i) || regularised.contact[i] == ContactState{});
+    }
+    if (regularised.outcome == Outcome::kSettled && is_closed) {
+      EXPECT_EQ(regularised.contact, exact.contact) << "seed " << seed;
+      EXPECT_LT(largest_difference(regularised.displacement, exact.displacement),
+                1e-9 * largest(exact.displacement))
+          << "seed " << seed;
+      ++closed_count;
+    }
+  }
+  EXPECT_GT(closed_count, 20);
+}
+
+/// Where an open facet is held for lack of a consistent choice, the alternative lets it slide:
+/// again an equilibrium, with the states that its own displacements prescribe. Elsewhere the two
+/// answers differ by rounding.
+TEST(EquilibriumOfARandomRobot, has_an_alternative_with_ambiguous_facets_free) {
+  int ambiguous_count = 0;
+  for (std::uint64_t seed = 0; seed < kRobotCount; ++seed) {
+    const Robot robot = make(random_robot(seed));
+    const Equilibrium result = EquilibriumSolver(robot).solve(kLaws[1]);
+    ASSERT_EQ(result.outcome, Outcome::kSettled) << "seed " << seed;
+    const auto facet = facet_of(robot, kLaws[1]);
+    const auto dense = dense_displacement(robot, [&](std::size_t i) {
+      const auto trial = mechanics::trial_force(facet, result.alternative[i]);
+      return unilateral_tangent(robot.material(), kGamma, mechanics::contact_state(facet, trial),
+                                result.contact[i].pressed);
+    });
+    EXPECT_LT(largest_difference(result.alternative, dense),
+              kTolerance * largest(result.displacement))
+        << "seed " << seed;
+    ambiguous_count += result.open_but_held_count > 0 ? 1 : 0;
+  }
+  EXPECT_GT(ambiguous_count, 3);
+}
+
+}  // namespace
+}  // namespace holdfast::solver

@@ -1,0 +1,161 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+// Verdicts on robots whose loads follow from statics alone: hanging chains and short arms.
+#include "holdfast/verdict/assessment.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+namespace holdfast::verdict {
+namespace {
+
+using base::Cell;
+
+constexpr double kWeight = 0.06106 * 9.81;
+// Closed forms below hold to rounding: forces are sums of a few dozen terms of size 1.
+constexpr double kRounding = 1e-9;
+
+Assessment assess_spec(const model::RobotSpec& spec, const solver::EquilibriumOptions& options = {}) {
+  const auto robot = model::Robot::create(spec);
+  EXPECT_TRUE(robot) << (robot ? "" : robot.error().message);
+  return assess(robot.value(), options);
+}
+
+/// One fixed module with `count` modules hanging below it.
+model::RobotSpec hanging_chain(int count) {
+  model::RobotSpec spec{.existing = {{0, 0, 100}}, .fixed = {{0, 0, 100}}};
+  for (int i = 1; i <= count; ++i) {
+    spec.existing.push_back({0, 0, 100 - i});
+  }
+  return spec;
+}
+
+/// A foot of two modules, a post of two, and an arm of `length` planned modules to +x.
+model::RobotSpec arm(int length) {
+  model::RobotSpec spec{.existing = {{0, 0, 0}, {1, 0, 0}, {0, 0, 1}}};
+  for (int i = 0; i < length; ++i) {
+    spec.planned.push_back({1 + i, 0, 1});
+  }
+  return spec;
+}
+
+TEST(Assessment, counts_the_modules_that_a_vertical_connection_can_hold) {
+  // The paper: Fmax = 11.98 N is what twenty modules weigh, so 20 hold and 21 do not.
+  const Assessment holds = assess_spec(hanging_chain(20));
+  EXPECT_EQ(holds.verdict, Verdict::kSafe);
+  EXPECT_NEAR(*holds.load_ratio_max, 20 * kWeight / 11.98, kRounding);
+  const Assessment breaks = assess_spec(hanging_chain(21));
+  EXPECT_EQ(breaks.verdict, Verdict::kOverload);
+  EXPECT_NEAR(*breaks.load_ratio_max, 21 * kWeight / 11.98, kRounding);
+  ASSERT_EQ(breaks.broken.size(), 1U);
+  EXPECT_EQ(breaks.broken[0], *breaks.worst);
+  EXPECT_NEAR(*breaks.weight_factor, 11.98 / (21 * kWeight), kRounding);
+  EXPECT_EQ(breaks.contact_model, ContactModel::kNone);
+}
+
+TEST(Assessment, calls_a_load_ratio_of_exactly_one_an_overload) {
+  model::RobotSpec spec = hanging_chain(7);
+  spec.material.strength_vertical_n = 7 * model::module_weight_n(spec.material);
+  EXPECT_EQ(assess_spec(spec).verdict, Verdict::kOverload);
+  spec.material.strength_vertical_n *= 1 + 1e-6;
+  EXPECT_EQ(assess_spec(spec).verdict, Verdict::kSafe);
+}
+
+TEST(Assessment, lists_broken_connections_worst_first) {
+  model::RobotSpec spec = hanging_chain(10);
+  spec.material.strength_vertical_n = 7.5 * model::module_weight_n(spec.material);
+  const Assessment assessment = assess_spec(spec);
+  ASSERT_EQ(assessment.broken.size(), 3U);  // They carry 10, 9 and 8 modules.
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_NEAR(assessment.connections[assessment.broken[i]].axial_n,
+                (10 - static_cast<double>(i)) * kWeight, kRounding);
+  }
+}
+
+TEST(Assessment, knows_the_bending_in_a_lateral_connection) {
+  // A fixed module with one neighbour: its weight W acts 20 mm beyond the middle of the connection.
+  const Assessment assessment =
+      assess_spec({.existing = {{0, 0, 5}, {1, 0, 5}}, .fixed = {{0, 0, 5}}});
+  ASSERT_EQ(assessment.connections.size(), 1U);
+  EXPECT_NEAR(assessment.connections[0].bending_nmm, 20 * kWeight, kRounding);
+  EXPECT_NEAR(assessment.connections[0].axial_n, 0, kRounding);
+  EXPECT_NEAR(assessment.connections[0].shear_n, kWeight, kRounding);
+  EXPECT_NEAR(*assessment.load_ratio_max, kWeight / 14.97, kRounding);
+}
+
+TEST(Assessment, topples_when_the_mass_leaves_the_foot) {
+  // Feet at x = 0 and 1: the support ends at 60 mm. With n arm modules at x = 1..n the centre of
+  // mass is at 40 (0 + 1 + 0 + n (n + 1) / 2) / (3 + n): n = 3 gives 46.7, n = 4 gives 62.9 mm.
+  EXPECT_EQ(assess_spec(arm(3)).verdict, Verdict::kSafe);
+  const Assessment toppling = assess_spec(arm(4));
+  EXPECT_EQ(toppling.verdict, Verdict::kUnstable);
+  EXPECT_NEAR(*toppling.simplified.margin_mm, 60 - 440.0 / 7, kRounding);
+  EXPECT_DOUBLE_EQ((*toppling.simplified.edge)[0].x, 60);
+  EXPECT_DOUBLE_EQ((*toppling.simplified.edge)[1].x, 60);
+  EXPECT_FALSE(toppling.model.is_stable);
+  EXPECT_FALSE(toppling.connections.empty());
+}
+
+TEST(Assessment, gives_nothing_to_spare_to_a_mass_over_the_edge) {
+  // One foot at x = 0, mass at x = 0 and 1: the centre is at 20 mm, exactly over the edge.
+  const Assessment assessment = assess_spec({.existing = {{0, 0, 0}, {0, 0, 1}, {1, 0, 1}, {1, 0, 2}}});
+  EXPECT_EQ(*assessment.simplified.margin_mm, 0);
+  EXPECT_EQ(assessment.verdict, Verdict::kUnstable);
+  EXPECT_NE(assessment.reasons.front().find("nothing to spare"), std::string::npos);
+}
+
+TEST(Assessment, never_topples_a_robot_with_a_fixed_module) {
+  model::RobotSpec spec = arm(8);
+  spec.fixed = {{0, 0, 0}};
+  const Assessment assessment = assess_spec(spec);
+  EXPECT_TRUE(assessment.is_stable);
+  EXPECT_TRUE(assessment.model.is_stable);
+  EXPECT_FALSE(assessment.simplified.margin_mm.has_value());
+}
+
+TEST(Assessment, is_safe_for_a_single_module) {
+  const Assessment assessment = assess_spec({.existing = {{5, -3, 0}}});
+  EXPECT_EQ(assessment.verdict, Verdict::kSafe);
+  EXPECT_FALSE(assessment.load_ratio_max.has_value());
+  EXPECT_TRUE(assessment.connections.empty());
+}
+
+TEST(Assessment, scales_loads_with_the_weight_but_not_the_stability) {
+  model::RobotSpec spec = arm(3);
+  const Assessment light = assess_spec(spec);
+  spec.material.mass_kg *= *light.weight_factor * 1.001;
+  EXPECT_EQ(assess_spec(spec).verdict, Verdict::kOverload);
+  spec.material.mass_kg *= 0.998;
+  EXPECT_EQ(assess_spec(spec).verdict, Verdict::kSafe);
+}
+
+TEST(Assessment, is_undecided_when_the_memory_does_not_suffice) {
+  // 1 kB holds no factor; that the longer arm topples is certain all the same.
+  const solver::EquilibriumOptions tiny{.memory_bytes_max = 1024};
+  const Assessment stable = assess_spec(arm(3), tiny);
+  EXPECT_EQ(stable.verdict, Verdict::kUndecided);
+  EXPECT_NE(stable.reasons.front().find("memory"), std::string::npos);
+  EXPECT_FALSE(stable.load_ratio_max.has_value());
+  EXPECT_EQ(assess_spec(arm(4), tiny).verdict, Verdict::kUnstable);
+}
+
+TEST(Assessment, does_not_depend_on_the_order_of_modules) {
+  model::RobotSpec spec = arm(3);
+  const Assessment forward = assess_spec(spec);
+  std::ranges::reverse(spec.existing);
+  std::ranges::reverse(spec.planned);
+  const Assessment backward = assess_spec(spec);
+  EXPECT_EQ(forward.verdict, backward.verdict);
+  EXPECT_NEAR(*forward.load_ratio_max, *backward.load_ratio_max, kRounding);
+}
+
+TEST(Assessment, counts_a_planned_module_on_the_ground_as_a_support) {
+  // An arm that topples alone stands once its far end gets a leg: one planned module at z = 0.
+  model::RobotSpec spec = arm(4);
+  spec.planned.push_back({4, 0, 0});
+  EXPECT_EQ(assess_spec(spec).verdict, Verdict::kSafe);
+}
+
+}  // namespace
+}  // namespace holdfast::verdict

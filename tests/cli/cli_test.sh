@@ -1,0 +1,146 @@
+#!/usr/bin/env bash
+# cli_test.sh PROGRAM REPOSITORY   runs the program as its users do: exit codes, outputs, bad input.
+set -euo pipefail
+program=$1
+repository=$2
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+cd "$work"
+faults=0
+
+fault() {
+  printf 'FAULT: %s\n' "$*"
+  faults=$((faults + 1))
+}
+
+# expect_exit CODE ARGUMENTS...   output in out, errors in err
+expect_exit() {
+  local expected=$1 code=0
+  shift
+  "$program" "$@" >out 2>err </dev/null || code=$?
+  [ "$code" -eq "$expected" ] || fault "exit $code, expected $expected: $*: $(head -c 300 err)"
+}
+
+# expect_line FILE PATTERN   one of its lines matches
+expect_line() { grep -Eq -- "$2" "$1" || fault "no line '$2' in $1: $(head -c 400 "$1")"; }
+
+# expect_refusal TEXT FILE   exit 65 and one clear line that names the file and says TEXT
+expect_refusal() {
+  expect_exit 65 check "$2"
+  [ "$(wc -l <err)" -eq 1 ] || fault "$2: not one line: $(head -c 600 err)"
+  [ "$(wc -c <err)" -lt 500 ] || fault "$2: a line of $(wc -c <err) bytes"
+  grep -Fq "holdfast: $2: " err || fault "the file is not named: $(cat err)"
+  grep -Eq -- "$1" err || fault "$2: '$1' is not said: $(cat err)"
+}
+
+scenarios=$repository/scenarios
+safe=$scenarios/arm_breaks_a.json
+overload=$scenarios/arm_breaks_b.json
+unstable=$scenarios/arm_tips_c.json
+
+# Verdicts and exit codes.
+expect_exit 0 check "$safe"
+expect_line out "^SAFE +arm_breaks_a$"
+expect_line out 'load ratio +0\.6402 +\(2,1,2\)-\(3,1,2\)'
+expect_exit 1 check "$overload"
+expect_line out '^OVERLOAD'
+expect_line out '\(2,1,2\)-\(3,1,2\), carries 1\.2004 of its strength'
+expect_exit 1 check "$unstable"
+expect_line out '^UNSTABLE'
+expect_line out '8\.00 mm beyond it'
+expect_exit 0 check --quiet "$safe"
+[ -s out ] && fault "--quiet prints: $(cat out)"
+expect_exit 1 check "$safe" "$overload" "$unstable"
+expect_line out '^3 files: 1 safe, 1 overload, 1 unstable, 0 undecided, 0 not readable$'
+"$program" check - <"$safe" >out || fault "standard input is not read"
+
+# Outputs.
+expect_exit 1 check "$overload" --json report.json --svg picture.svg --vtk loads.vtu
+expect_line report.json '"verdict": "overload"'
+expect_line picture.svg '</svg>'
+expect_line loads.vtu '</VTKFile>'
+expect_exit 1 check "$safe" "$overload" --json -
+python3 - <<'PYTHON' || fault "the list of reports is wrong"
+import json
+reports = json.load(open('out'))
+assert [r['verdict'] for r in reports] == ['safe', 'overload']
+report = reports[1]
+assert report['modules']['existing'] == 11 and report['modules']['planned'] == 2
+assert report['stability']['simplified']['stable'] and report['stability']['model']['settled']
+assert abs(report['stability']['simplified']['margin_mm'] - 10.769231) < 1e-5
+assert report['overload']['at'] == [[2, 1, 2], [3, 1, 2]]
+assert abs(report['overload']['load_ratio_max'] - 1.2004) < 1e-4
+assert report['overload']['broken'] == [[[2, 1, 2], [3, 1, 2]]]
+assert {'a', 'b', 'load_ratio', 'axial_n', 'bending_nmm'} <= set(report['connections'][0])
+assert report['contact_model'] == 'regularised' and report['solver']['iterations'] >= 1
+assert report['solver']['seconds'] > 0 and report['reasons']
+PYTHON
+
+# The README's picture is what the README's command makes.
+cmp -s picture.svg "$repository/docs/arm_breaks_b.svg" ||
+  fault "docs/arm_breaks_b.svg is out of date"
+
+# Conversion there and back keeps everything.
+expect_exit 0 convert "$overload" there.xml
+expect_exit 0 convert there.xml back.json
+expect_exit 0 convert "$overload" direct.json
+cmp -s back.json direct.json || fault "conversion to XML and back changes the structure"
+expect_exit 1 check there.xml
+expect_exit 64 convert "$overload" there.txt
+
+# Wrong usage.
+expect_exit 64
+expect_exit 64 chek
+expect_exit 64 check
+expect_exit 64 check "$safe" "$overload" --svg picture.svg
+expect_exit 0 --help
+expect_line out 'check'
+expect_exit 0 check --help
+expect_line out '64 wrong usage'
+expect_exit 0 --version
+expect_line out "^holdfast [0-9]+\.[0-9]+\.[0-9]+$"
+
+# Bad input: one line each, exit 65, and the good files beside it are still checked.
+json() { printf '{"format": "holdfast-structure", "version": 1, %s}' "$1"; }
+expect_refusal 'no such file' missing.json
+mkdir folder
+expect_refusal 'folder' folder
+: >empty.json
+expect_refusal 'empty' empty.json
+printf '   \n' >blank.xml
+expect_refusal 'empty' blank.xml
+head -c 1000000 /dev/urandom >noise
+expect_refusal '.' noise
+json '"modules": [[0,0,0],[0,0,0]]' >double.json
+expect_refusal 'two modules in the cell \(0,0,0\)' double.json
+json '"modules": [[0,0,0]], "planned": [[0,0,0]]' >occupied.json
+expect_refusal 'planned cell \(0,0,0\) is occupied' occupied.json
+json '"modules": [[0,0,0]], "planned": [[5,0,0]]' >loose.json
+expect_refusal '\(5,0,0\) touches neither' loose.json
+json '"modules": [[0,0,0],[2,0,0]]' >apart.json
+expect_refusal 'not connected' apart.json
+json '"modules": [[0,0,3],[0,0,4]]' >floating.json
+expect_refusal 'lowest module is \(0,0,3\)' floating.json
+json '"modules": [[0,0,99999999999999]]' >far.json
+expect_refusal '99999999999999' far.json
+json '"modules": [[0,0,0]], "material": {"mass_kg": -1}' >negative.json
+expect_refusal 'mass_kg' negative.json
+json '"modules": []' >none.json
+expect_refusal 'module' none.json
+printf '{"format": "holdfast-structure", "version": 1}' >sections.json
+expect_refusal 'modules' sections.json
+head -c 1000000 /dev/zero | tr '\0' '[' >deep.json
+expect_refusal 'brackets|nest|deep|array' deep.json
+{ printf '<world>'; for _ in $(seq 1000); do printf '<a>%.0s' $(seq 100); done; } >deep.xml
+expect_refusal '.' deep.xml
+printf '<parameters/>\n<<<<<<< HEAD\n<world/>\n' >conflict.xml
+expect_refusal 'line 2.*merge-conflict' conflict.xml
+printf '<world gridSize="2,2,2"><blockList><block position="0,0"/></blockList></world>' >short.xml
+expect_refusal 'position' short.xml
+expect_exit 65 check "$safe" missing.json "$overload"
+expect_line out '1 safe, 1 overload, 0 unstable, 0 undecided, 1 not readable'
+expect_exit 65 check "$safe" --json /nowhere/report.json
+expect_line err 'cannot be written'
+
+[ "$faults" -eq 0 ] || exit 1
+echo "cli: all as expected"

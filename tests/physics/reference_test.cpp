@@ -1,0 +1,152 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+// Every connection of 220 structures against numbers that were computed independently of this
+// project (tests/reference/README.md).
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <map>
+#include <sstream>
+
+#include "holdfast/verdict/assessment.hpp"
+
+namespace holdfast {
+namespace {
+
+struct ReferenceLoad {
+  base::Cell a;
+  base::Cell b;
+  verdict::ConnectionResult result;
+};
+
+struct Reference {
+  std::string name;
+  model::RobotSpec spec;
+  bool is_settled = false;
+  bool is_stable = false;
+  bool is_tie = false;
+  double margin_mm = 0;
+  std::vector<ReferenceLoad> loads;
+};
+
+std::vector<base::Cell> read_cells(std::istream& line, std::size_t count) {
+  std::vector<base::Cell> cells(count);
+  char comma = 0;
+  for (base::Cell& cell : cells) {
+    line >> cell.x >> comma >> cell.y >> comma >> cell.z;
+  }
+  return cells;
+}
+
+std::vector<Reference> read_references() {
+  std::ifstream file(HOLDFAST_REFERENCE_FILE);
+  std::vector<Reference> references;
+  std::string keyword;
+  while (file >> keyword) {
+    Reference reference;
+    std::size_t existing = 0;
+    std::size_t planned = 0;
+    std::size_t connections = 0;
+    file >> reference.name >> existing >> planned >> connections >> reference.is_settled >>
+        reference.is_stable >> reference.is_tie >> reference.margin_mm;
+    const std::vector<base::Cell> cells = read_cells(file, existing + planned);
+    reference.spec.existing.assign(cells.begin(), cells.begin() + static_cast<std::ptrdiff_t>(existing));
+    reference.spec.planned.assign(cells.begin() + static_cast<std::ptrdiff_t>(existing), cells.end());
+    for (std::size_t i = 0; i < connections; ++i) {
+      std::size_t a = 0;
+      std::size_t b = 0;
+      ReferenceLoad load;
+      file >> a >> b >> load.result.load_ratio >> load.result.axial_n >> load.result.bending_nmm;
+      load.a = std::min(cells.at(a), cells.at(b));
+      load.b = std::max(cells.at(a), cells.at(b));
+      reference.loads.push_back(load);
+    }
+    references.push_back(std::move(reference));
+  }
+  return references;
+}
+
+/// The largest difference of a quantity, relative to the largest value in the structure. Below
+/// `floor` a structure has none of it, and what either side shows is rounding.
+class Comparison {
+ public:
+  explicit Comparison(double floor) : largest_(floor) {}
+
+  void add(double expected, double actual) {
+    largest_ = std::max(largest_, std::abs(expected));
+    difference_ = std::max(difference_, std::abs(expected - actual));
+  }
+
+  double relative() const { return difference_ / largest_; }
+
+ private:
+  double largest_;
+  double difference_ = 0;
+};
+
+void expect_same_loads(const Reference& reference, const model::Robot& robot,
+                       const verdict::Assessment& assessment) {
+  std::map<std::pair<base::Cell, base::Cell>, std::size_t> found;
+  for (std::size_t i = 0; i < robot.connections().size(); ++i) {
+    const model::Connection& pair = robot.connections()[i];
+    found[{robot.modules()[static_cast<std::size_t>(pair.a)].cell,
+           robot.modules()[static_cast<std::size_t>(pair.b)].cell}] = i;
+  }
+  ASSERT_EQ(found.size(), reference.loads.size());
+  Comparison ratio(1e-6);
+  Comparison axial(1e-6);
+  Comparison bending(1e-6);
+  for (const ReferenceLoad& load : reference.loads) {
+    const auto place = found.find({load.a, load.b});
+    ASSERT_NE(place, found.end());
+    const verdict::ConnectionResult& result = assessment.connections[place->second];
+    ratio.add(load.result.load_ratio, result.load_ratio);
+    axial.add(load.result.axial_n, result.axial_n);
+    bending.add(load.result.bending_nmm, result.bending_nmm);
+  }
+  EXPECT_LT(ratio.relative(), 1e-6);
+  EXPECT_LT(axial.relative(), 1e-6);
+  EXPECT_LT(bending.relative(), 1e-6);
+}
+
+TEST(Reference, has_all_structures) { EXPECT_EQ(read_references().size(), 220U); }
+
+TEST(Reference, loads_margins_and_verdicts_agree) {
+  for (const Reference& reference : read_references()) {
+    SCOPED_TRACE(reference.name);
+    const auto robot = model::Robot::create(reference.spec);
+    ASSERT_TRUE(robot) << robot.error().message;
+    const verdict::Assessment assessment = verdict::assess(robot.value());
+
+    // The reference rounds margins to 1e-6 mm.
+    EXPECT_NEAR(*assessment.simplified.margin_mm, reference.margin_mm, 1e-6);
+    EXPECT_EQ(*assessment.simplified.margin_mm == 0, reference.is_tie);
+    EXPECT_EQ(assessment.is_stable, reference.is_stable && !reference.is_tie);
+    ASSERT_TRUE(assessment.model.is_settled);
+    if (!reference.is_tie) {
+      EXPECT_EQ(assessment.model.is_stable, reference.is_stable);
+    }
+    if (reference.is_settled) {
+      EXPECT_EQ(assessment.contact_model, verdict::ContactModel::kRegularised);
+      expect_same_loads(reference, robot.value(), assessment);
+    }
+
+    double largest = 0;
+    for (const ReferenceLoad& load : reference.loads) {
+      largest = std::max(largest, load.result.load_ratio);
+    }
+    if (!assessment.is_stable) {
+      EXPECT_EQ(assessment.verdict, verdict::Verdict::kUnstable);
+    } else if (reference.is_settled) {
+      EXPECT_EQ(assessment.verdict,
+                largest >= 1 ? verdict::Verdict::kOverload : verdict::Verdict::kSafe);
+    } else {
+      EXPECT_NE(assessment.verdict, verdict::Verdict::kUndecided);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace holdfast

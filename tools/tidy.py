@@ -1,0 +1,133 @@
+#!/usr/bin/env python3
+# SPDX-FileCopyrightText: The holdfast authors
+# SPDX-License-Identifier: Apache-2.0
+"""tidy.py ROOT   checks what STYLE.md says and a script can check; prints every breach, exits 1.
+
+- a room includes only itself and the rooms that its CMakeLists.txt links (include direction)
+- files stop at 800 lines, lines at 100 characters; functions stop at 70 lines
+- every source begins with the two SPDX lines; every header has #pragma once
+- every room has a README.md of 10 to 40 lines
+- no tab, no trailing blank, no path of a machine, no TODO without an issue number
+"""
+import pathlib
+import re
+import subprocess
+import sys
+
+SOURCE_SUFFIXES = {'.cpp', '.hpp'}
+SPDX = ['SPDX-FileCopyrightText: The holdfast authors', 'SPDX-License-Identifier: Apache-2.0']
+FILE_LINES_MAX = 800
+FUNCTION_LINES_MAX = 70
+COLUMNS_MAX = 100
+FREESTANDING = {'base', 'mechanics'}
+HOSTED_HEADERS = {'string', 'vector', 'map', 'set', 'memory', 'iostream', 'fstream', 'variant',
+                  'cstdio', 'cstdlib', 'functional', 'stdexcept'}
+# base is freestanding but for what says in its first lines that it is for hosts.
+HOSTED_FILES = {'libs/base/include/holdfast/base/result.hpp', 'libs/base/src/check.cpp'}
+
+faults = []
+
+
+def fault(path, line, message):
+    faults.append(f'{path}:{line}: {message}')
+
+
+def tracked_files(root):
+    command = ['git', '-C', root, 'ls-files', '--cached', '--others', '--exclude-standard']
+    names = subprocess.run(command, capture_output=True, text=True, check=True).stdout.splitlines()
+    return sorted(name for name in set(names) if (pathlib.Path(root) / name).is_file())
+
+
+def room_links(root):
+    """Room -> rooms that it may include: itself and, transitively, what it links."""
+    direct = {}
+    for file in (root / 'libs').glob('*/CMakeLists.txt'):
+        text = file.read_text()
+        room_call = text[text.index('holdfast_room('):]
+        room_call = room_call[:room_call.index(')')]
+        direct[file.parent.name] = set(re.findall(r'holdfast::(\w+)', room_call))
+
+    def closure(room):
+        return {room}.union(*(closure(other) for other in direct[room]))
+    return {room: closure(room) for room in direct}
+
+
+def check_includes(name, lines, links):
+    match = re.match(r'libs/(\w+)/(include|src)/', name)
+    allowed = links[match[1]] if match else None
+    if name.startswith('apps/') or name.startswith('examples/'):
+        allowed = None
+    for number, line in enumerate(lines, 1):
+        include = re.match(r'#include ["<]holdfast/(\w+)[/.]', line)
+        if include and allowed is not None and include[1] not in allowed:
+            fault(name, number, f'{match[1]} may not include {include[1]}, it links '
+                                f'{sorted(allowed - {match[1]})}')
+        if include and name.startswith(('apps/', 'examples/')) and include[1] != 'holdfast':
+            fault(name, number, 'applications include only the facade, holdfast/holdfast.hpp')
+        system = re.match(r'#include <(\w+)>', line)
+        if (match and match[1] in FREESTANDING and name not in HOSTED_FILES and system
+                and system[1] in HOSTED_HEADERS):
+            fault(name, number, f'{match[1]} is freestanding and may not include <{system[1]}>')
+
+
+def check_functions(name, lines):
+    """A function body ends with a brace in the column where its first line began."""
+    start, indent = None, ''
+    for number, line in enumerate(lines, 1):
+        opened = re.match(r'( {0,2})(?!namespace|class|struct|enum|extern)\S.*\{$', line)
+        if start is None and opened and not line.strip().startswith(('}', '#', '//')):
+            start, indent = number, opened[1]
+        elif start is not None and line.startswith(indent + '}'):
+            if number - start + 1 > FUNCTION_LINES_MAX:
+                fault(name, start, f'{number - start + 1} lines in one function, allowed are '
+                                   f'{FUNCTION_LINES_MAX}')
+            start = None
+
+
+def check_text(name, lines):
+    for number, line in enumerate(lines, 1):
+        if '\t' in line or line != line.rstrip():
+            fault(name, number, 'tab or trailing blank')
+        if len(line) > COLUMNS_MAX and 'http' not in line:
+            fault(name, number, f'{len(line)} columns, allowed are {COLUMNS_MAX}')
+        if re.search(r'TODO(?!\(#\d+\))', line) and not name.endswith(('tidy.py', 'STYLE.md')):
+            fault(name, number, 'TODO without an issue number')
+
+
+def check_source(name, lines, links):
+    if [line[3:] for line in lines[:2]] != SPDX:
+        fault(name, 1, 'the first two lines are not the SPDX notice')
+    if name.endswith('.hpp') and '#pragma once' not in lines:
+        fault(name, 1, 'no #pragma once')
+    if len(lines) > FILE_LINES_MAX:
+        fault(name, len(lines), f'{len(lines)} lines, allowed are {FILE_LINES_MAX}')
+    check_includes(name, lines, links)
+    check_functions(name, lines)
+
+
+def check_room_readmes(root):
+    for room in (root / 'libs').iterdir():
+        readme = room / 'README.md'
+        count = len(readme.read_text().splitlines()) if readme.is_file() else 0
+        if not 10 <= count <= 40:
+            fault(readme.relative_to(root), 1, f'{count} lines, a room has a README of 10 to 40')
+
+
+def main():
+    root = pathlib.Path(sys.argv[1]).resolve()
+    links = room_links(root)
+    for name in tracked_files(root):
+        path = root / name
+        if path.suffix in SOURCE_SUFFIXES:
+            lines = path.read_text().splitlines()
+            check_source(name, lines, links)
+            check_text(name, lines)
+        elif path.suffix in {'.py', '.sh', '.cmake'} or path.name == 'CMakeLists.txt':
+            check_text(name, path.read_text().splitlines())
+    check_room_readmes(root)
+    print('\n'.join(faults) if faults else 'tidy: no breach')
+    sys.exit(1 if faults else 0)
+
+
+if __name__ == '__main__':
+    main()
