@@ -1,17 +1,19 @@
 // SPDX-FileCopyrightText: The holdfast authors
 // SPDX-License-Identifier: Apache-2.0
-#include <fmt/format.h>
-
+#include <cstdio>
+#include <exception>
 #include <string>
 
 #include "commands.hpp"
 #include "holdfast/holdfast.hpp"
 
-int main(int argc, char** argv) {
+namespace {
+
+int run(int argc, char** argv) {
   namespace cli = holdfast::cli;
-  CLI::App app("Will it hold? Predicts whether a modular robot breaks or topples when modules are "
-               "attached.",
-               "holdfast");
+  CLI::App app(
+      "Will it hold? Predicts whether a modular robot breaks or topples when modules are attached.",
+      "holdfast");
   app.set_version_flag("--version", "holdfast " + std::string(holdfast::version()));
   app.require_subcommand(1);
   app.footer("holdfast COMMAND --help says more about a command.");
@@ -27,4 +29,18 @@ int main(int argc, char** argv) {
     }
   }
   return cli::kExitUsage;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    return run(argc, argv);
+  } catch (const std::exception& error) {
+    // What can still happen is that memory runs out for a huge input.
+    std::fputs("holdfast: ", stderr);
+    std::fputs(error.what(), stderr);
+    std::fputs("\n", stderr);
+    return holdfast::cli::kExitBadInput;
+  }
 }

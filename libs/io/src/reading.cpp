@@ -117,8 +117,7 @@ void Reading::warn_of_content() {
     std::ranges::for_each(step, [&](const auto& entry) { warn_of_entry(*this, entry); });
   }
   if (document.steps.size() > 1) {
-    warn(fmt::format("{} later steps are read, only the first step is checked",
-                     document.steps.size() - 1),
+    warn(fmt::format("{} steps are read, only the first one is checked", document.steps.size()),
          nowhere);
   }
   for (const Element& element : document.scenery) {

@@ -34,7 +34,8 @@ void write_stability(Out out, const verdict::Assessment& assessment) {
   const char* word = assessment.is_stable ? "stable" : "unstable";
   if (body.margin_mm) {
     const auto& [a, b] = *body.edge;
-    fmt::format_to(out, "  stability   {}, margin {:.2f} mm at the edge ({:g}, {:g})-({:g}, {:g}) mm",
+    fmt::format_to(out,
+                   "  stability   {}, margin {:.2f} mm at the edge ({:g}, {:g})-({:g}, {:g}) mm",
                    word, *body.margin_mm, a.x, a.y, b.x, b.y);
   } else {
     fmt::format_to(out, "  stability   {}, held by a fixed module", word);

@@ -136,7 +136,8 @@ void XmlReading::expect_no_content(const pugi::xml_node& node) {
 
 void XmlReading::warn_of_unknown_child(const pugi::xml_node& child) {
   if (!is_text(child)) {
-    warn_at(child, fmt::format("the element {} is unknown here and ignored", excerpt(child.name())));
+    warn_at(child,
+            fmt::format("the element {} is unknown here and ignored", excerpt(child.name())));
   } else if (is_conflict_marker(trimmed(child.value()))) {
     fail(child, "unresolved merge-conflict marker at " + excerpt(trimmed(child.value())));
   } else {
@@ -150,8 +151,8 @@ Attributes XmlReading::attributes(const pugi::xml_node& node,
   for (const pugi::xml_attribute& attribute : node.attributes()) {
     const std::string_view name = attribute.name();
     if (find_attribute(all, name) != nullptr) {
-      fail(node, fmt::format("the attribute {} of {} is there twice, allowed is once", excerpt(name),
-                             excerpt(node.name())));
+      fail(node, fmt::format("the attribute {} of {} is there twice, allowed is once",
+                             excerpt(name), excerpt(node.name())));
     }
     if (all.size() == kAttributeCountMax) {
       fail(node,

@@ -1,0 +1,288 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// What cannot be read is refused with one line that says where, what was found and what is allowed;
+// quickly, and without much memory or stack, whatever the input.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <memory>
+#include <string>
+
+#include "holdfast/base/rng.hpp"
+#include "holdfast/io/document.hpp"
+
+namespace holdfast::io {
+namespace {
+
+struct BadInput {
+  std::string text;
+  std::string where;
+  std::string message;  ///< A part of it.
+  base::ErrorCode code = base::ErrorCode::kBadInput;
+};
+
+bool is_printable_line(std::string_view text) {
+  return text.size() < 400 &&
+         std::ranges::all_of(text, [](char c) { return c >= ' ' && c <= '~'; });
+}
+
+void expect_refusal(const BadInput& input) {
+  SCOPED_TRACE(input.text.substr(0, 300));
+  const auto read = read_document(input.text);
+  ASSERT_FALSE(read);
+  EXPECT_EQ(read.error().where, input.where);
+  EXPECT_NE(read.error().message.find(input.message), std::string::npos) << read.error().message;
+  EXPECT_EQ(read.error().code, input.code);
+  EXPECT_TRUE(is_printable_line(read.error().message)) << read.error().message;
+}
+
+std::string repeated(std::string_view unit, std::size_t count) {
+  std::string text;
+  for (std::size_t i = 0; i < count; ++i) {
+    text += unit;
+  }
+  return text;
+}
+
+/// In line 3 of a world.
+std::string xml(std::string_view blocks) {
+  return "<parameters/>\n<world gridSize=\"1000,1000,1000\"><blockList>\n" + std::string(blocks) +
+         "</blockList></world>";
+}
+
+std::string json(std::string_view members) {
+  return "{\"format\": \"holdfast-structure\", \"version\": 1, " + std::string(members) + "}";
+}
+
+TEST(BadInput, without_a_structure_is_refused) {
+  expect_refusal({"", "", "empty"});
+  expect_refusal({" \n\t\r\n ", "", "empty"});
+  expect_refusal({"\xEF\xBB\xBF", "", "empty"});
+  expect_refusal({"modules: 3", "", "begins with 'modules:'"});
+  expect_refusal(
+      {"\x7F"
+       "ELF\x02",
+       "", "begins with '?ELF?'"});
+  for (const char* text : {"", "  "}) {
+    EXPECT_FALSE(read_json(text));
+    EXPECT_FALSE(read_visiblesim(text));
+    EXPECT_FALSE(detect_format(text));
+  }
+}
+
+TEST(BadInput, that_is_no_text_is_refused) {
+  expect_refusal({std::string("{\n\0}", 4), "line 2", "0x00"});
+  expect_refusal({"<world>\n\n\xFF</world>", "line 3", "0xFF"});
+  expect_refusal({json("\"name\": \"\xC0\x80\""), "line 1", "0xC0"});          // Overlong form.
+  expect_refusal({json("\"name\": \"\xED\xA0\x80\""), "line 1", "0xED"});      // Half of a pair.
+  expect_refusal({json("\"name\": \"\xF5\x80\x80\x80\""), "line 1", "0xF5"});  // Beyond Unicode.
+  expect_refusal({"<world a=\"\xE2\x82", "line 1", "0xE2"});                   // Cut short.
+  expect_refusal({xml("<block position=\"0,0,0\" id=\"&#7;\"/>"), "line 3", "0x07"});
+  expect_refusal({xml("<block position=\"0,0,0\" id=\"&#xD800;\"/>"), "line 3", "not UTF-8"});
+  expect_refusal({json("\"name\": \"\\u001b[2J\", \"modules\": []"), "/name", "0x1B"});
+}
+
+TEST(BadInput, beyond_the_size_limit_is_refused) {
+  // Zero pages that nobody touches.
+  const std::unique_ptr<char, void (*)(void*)> bytes(
+      static_cast<char*>(std::calloc(kFileBytesMax + 1, 1)), std::free);
+  ASSERT_TRUE(bytes);
+  for (const auto& read : {read_json, read_visiblesim}) {
+    const auto result = read({bytes.get(), kFileBytesMax + 1});
+    ASSERT_FALSE(result);
+    EXPECT_EQ(result.error().code, base::ErrorCode::kUnreadable);
+    EXPECT_NE(result.error().message.find("1073741825 bytes"), std::string::npos);
+  }
+}
+
+TEST(BadInput, nested_a_million_deep_is_refused) {
+  expect_refusal({repeated("[", 1'000'000), "line 1", "nested deeper than the 64"});
+  expect_refusal({repeated("{\"a\":", 1'000'000), "line 1", "nested deeper than the 64"});
+  expect_refusal({repeated("<a>", 1'000'000), "line 1", "nested deeper than the 64"});
+  expect_refusal({repeated("<a b='>'>\n", 1'000'000), "line 65", "nested deeper than the 64"});
+  // Brackets in strings are no brackets.
+  EXPECT_TRUE(
+      read_document(json("\"modules\": [], \"name\": \"\\\"" + repeated("[{", 999) + "\"")));
+  EXPECT_TRUE(read_document("<!--" + repeated("<a>", 999) + "-->" + xml("")));
+}
+
+TEST(BadInput, with_scenery_nested_beyond_what_both_formats_hold_is_refused) {
+  const auto nested = [](std::size_t depth) {
+    return "<world><blockList/>" + repeated("<a>", depth) + repeated("</a>", depth) + "</world>";
+  };
+  EXPECT_TRUE(read_document(nested(16)));
+  expect_refusal({nested(17), "line 1", "nested deeper than the 16"});
+}
+
+TEST(BadInput, of_more_modules_than_allowed_is_refused_before_they_are_made) {
+  expect_refusal({xml("<blockBox/>"), "line 3", "20000000"});
+  expect_refusal({xml(repeated("<blockBox boxSize=\"40000,40000,410\"/>\n", 3)), "line 4",
+                  "11022011 cells here make more than the 20000000"});
+}
+
+TEST(BadInput, of_endless_tokens_is_refused) {
+  expect_refusal({"{\"" + repeated("a", 2'000'000), "line 1", "longer than the 1048576 bytes"});
+  expect_refusal({"{\"a\":" + repeated("1", 2'000'000), "line 1", "longer than the 1048576 bytes"});
+  std::string members;
+  for (int i = 0; i < 300; ++i) {
+    members += "\"k" + std::to_string(i) + "\": 0, ";
+  }
+  expect_refusal({json(members + "\"modules\": []"), "/k254", "more than 256 keys"});
+}
+
+TEST(BadInput, with_a_merge_conflict_says_so) {
+  expect_refusal(
+      {"<?xml version=\"1.0\"?>\n<<<<<<< HEAD\n<parameters/>\n=======\n<parameters/>\n"
+       ">>>>>>> c058104\n<world/>",
+       "line 2", "unresolved merge-conflict marker at '<<<<<<< HEAD'"});
+  expect_refusal({xml("<block position=\"0,0,0\"/>\n=======\n<block position=\"1,0,0\"/>\n"),
+                  "line 3", "unresolved merge-conflict marker at '======='"});
+  expect_refusal({"{\n\"format\": 1,\n>>>>>>> theirs\n}", "line 3", "merge-conflict marker"});
+}
+
+TEST(BadInput, that_breaks_the_rules_of_xml_is_refused_with_its_line) {
+  expect_refusal({"<world>\n<blockList>\n</world>", "line 3", "no well-formed XML"});
+  expect_refusal({"<world\x01>", "line 1", "no well-formed XML"});
+  expect_refusal({"<world><blockList/>", "line 1", "no well-formed XML"});
+  expect_refusal({"<!DOCTYPE html><html><body/></html>", "", "no element <world>"});
+  expect_refusal({"<parameters/>\n<world/>", "line 2", "<blockList>"});
+  expect_refusal({xml("") + "\n<world/>", "line 4", "a second <world>"});
+  expect_refusal({"<parameters/>\n<parameters/><world/>", "line 2", "a second <parameters>"});
+}
+
+TEST(BadInput, of_visiblesim_names_what_was_found_and_what_is_allowed) {
+  const auto bad_block = [](std::string_view attributes, std::string_view message) {
+    expect_refusal(
+        {xml("<block " + std::string(attributes) + "/>"), "line 3", std::string(message)});
+  };
+  bad_block("", "<block> has no attribute 'position'");
+  for (const char* position : {"1,2", "1,2,3,4", "1,2,x", "1,2,3x", "1.5,2,3", "1,2,", "", "1;2;3",
+                               "1 2 3", "1,2,99999999999", "1,2,1000001", "1,2,0x10", "nan,0,0"}) {
+    bad_block("position=\"" + std::string(position) + "\"",
+              "position of <block> is '" + std::string(position) +
+                  "', allowed are three integers from -1000000 to 1000000, such as 1,2,3");
+  }
+  bad_block("position=\"0,0,0\" position=\"1,1,1\"", "'position' of 'block' is there twice");
+  bad_block("position=\"0,0,0\" color=\"0,256,0\"", "three integers from 0 to 255");
+  bad_block("position=\"0,0,0\" id=\"" + repeated("\x7F", 3) + "\"\n id=\"1\"", "'id'");
+}
+
+TEST(BadInput, of_lines_and_boxes_is_refused) {
+  expect_refusal({xml("<blocksLine line=\"1\"/>"), "line 3", "no attribute 'values'"});
+  expect_refusal(
+      {xml("<blocksLine line=\"1.5\" values=\"1\"/>"), "line 3", "line of <blocksLine>"});
+  expect_refusal({xml("<blockBox boxSize=\"1,2\"/>"), "line 3", "boxSize of <blockBox> is '1,2'"});
+  expect_refusal({xml("<blockBox boxOrigin=\"0,0,inf\"/>"), "line 3", "three numbers"});
+  expect_refusal({"<world><blockList><blockBox/></blockList></world>", "line 1", "gridSize"});
+  expect_refusal(
+      {"<world gridSize=\"9,9,9\"><blockList blockSize=\"0,1,1\"><blockBox/></blockList>"
+       "</world>",
+       "line 1", "blockSize of <blockList> is '0,1,1'"});
+  expect_refusal(
+      {"<world gridSize=\"9,0,9\"><blockList/></world>", "line 1", "gridSize is '9,0,9'"});
+  expect_refusal(
+      {xml("<csg content=\"cube([1,1,1])\"/>"), "line 3", "<csg>", base::ErrorCode::kUnsupported});
+}
+
+TEST(BadInput, of_parameters_is_refused) {
+  for (const char* value : {"nan", "inf", "-inf", "1e999", "heavy", "", "0.06 kg", "0,06"}) {
+    expect_refusal(
+        {"<parameters globalMass=\"" + std::string(value) + "\"/><world/>", "line 1",
+         "globalMass of <parameters> is '" + std::string(value) + "', allowed is a finite number"});
+  }
+  expect_refusal({"<parameters globalSupportZ=\"0.5\"/><world/>", "line 1",
+                  "globalSupportZ of <parameters> is '0.5', allowed is an integer"});
+  expect_refusal({"<world><blockList/><holdfast><knownAnswer verdict=\"fine\"/></holdfast></world>",
+                  "line 1", "the known verdict is 'fine', allowed are safe, overload, unstable"});
+}
+
+TEST(BadInput, that_breaks_the_rules_of_json_is_refused_with_its_line) {
+  expect_refusal({"{\n\"format\": holdfast}", "line 2", "no valid JSON at '\"format\": h"});
+  expect_refusal({"{\"a\": 1,\n}", "line 2", "no valid JSON"});
+  expect_refusal({"{\"a\": NaN}", "line 1", "no valid JSON"});
+  expect_refusal({"{}\n{}", "line 2", "no valid JSON"});
+  expect_refusal({"{\"a\": 1\n", "line 2", "no valid JSON"});
+  expect_refusal({"{\"a\":\n1e999}", "line 2", "a number beyond the range of double"});
+  expect_refusal({json("\"modules\": [[0,0,0]], \"modules\": []"), "/modules", "same key twice"});
+  expect_refusal({json("\"modules\": [[0,0,0], {\"cell\": 1, \"cell\": 2}]"), "/modules/1/cell",
+                  "same key twice"});
+}
+
+TEST(BadInput, of_another_json_format_is_refused) {
+  expect_refusal({"{\"format\": \"gltf\", \"version\": 1}", "/format",
+                  "found 'gltf', expected is \"holdfast-structure\""});
+  expect_refusal({"{}", "/format", "found null"});
+  expect_refusal({"[]", "", "found an array, expected is an object"});
+  expect_refusal({"{\"format\": \"holdfast-structure\"}", "/version", "found null, expected is 1"});
+  expect_refusal({"{\"format\": \"holdfast-structure\", \"version\": 2}", "/version",
+                  "found version 2, this program reads version 1", base::ErrorCode::kUnsupported});
+  expect_refusal({"{\"format\": \"holdfast-structure\", \"version\": 1}", "/modules",
+                  "\"modules\" is missing"});
+}
+
+TEST(BadInput, of_json_names_what_was_found_and_what_is_allowed) {
+  const auto bad = [](std::string_view members, std::string_view where, std::string_view message) {
+    expect_refusal({json(members), std::string(where), std::string(message)});
+  };
+  bad(R"("modules": {})", "/modules", "found an object, expected is an array");
+  bad(R"("modules": [7])", "/modules/0", "found 7, expected is a cell");
+  bad(R"("modules": [[1,2]])", "/modules/0", "found an array of 2, expected are three integers");
+  bad(R"("modules": [[0,0,0], [1,2,3.5]])", "/modules/1/2",
+      "found 3.5, expected is an integer from -1000000 to 1000000");
+  bad(R"("modules": [[0,0,99999999999999]])", "/modules/0/2", "found 99999999999999");
+  bad(R"("modules": [[0,0,"1"]])", "/modules/0/2", "found '1', expected is an integer");
+  bad(R"("modules": [{"fixed": true}])", "/modules/0", "the key \"cell\"");
+  bad(R"("modules": [{"cell": [0,0,0], "fixed": 1}])", "/modules/0/fixed", "true or false");
+  bad(R"("modules": [{"cell": [0,0,0], "color": [0,0,300]}])", "/modules/0/color/2", "0 to 255");
+  bad(R"("modules": [], "support_z": 1e9)", "/support_z", "expected is an integer");
+  bad(R"("modules": [], "name": 5)", "/name", "found 5, expected is a string");
+  bad(R"("modules": [], "material": {"mass_kg": "1"})", "/material/mass_kg", "a number");
+  bad(R"("modules": [], "later_steps": [[[0,0]]])", "/later_steps/0/0", "an array of 2");
+  bad(R"("modules": [], "known_answer": {"margin_mm": 1})", "/known_answer/verdict", "''");
+}
+
+TEST(BadInput, that_visiblesim_could_not_hold_is_refused) {
+  const auto bad = [](std::string_view visiblesim, std::string_view where) {
+    expect_refusal({json("\"modules\": [], \"visiblesim\": {" + std::string(visiblesim) + "}"),
+                    "/visiblesim/" + std::string(where), ""});
+  };
+  bad(R"("world": {"grid size": "1"})", "world/grid size");
+  bad(R"("world": {"gridSize": "1,1"})", "world/gridSize");
+  bad(R"("world": {"": "1"})", "world/");
+  bad(R"("world": {"a": 1})", "world/a");
+  bad(R"("parameters": {"globalMass": "1"})", "parameters/globalMass");
+  bad(R"("scenery": [{"element": "blockList"}])", "scenery");
+  bad(R"("scenery": [{"element": "<camera>"}])", "scenery/0/element");
+  bad(R"("scenery": [{}])", "scenery/0/element");
+  bad(R"("targets": [{"element": "target", "attributes": {"format": "grid"}}])", "targets");
+  expect_refusal({json(R"("modules": [{"cell": [0,0,0], "attributes": {"position": "1,1,1"}}])"),
+                  "/modules/0/attributes/position", "key of its own"});
+}
+
+TEST(BadInput, cut_off_or_damaged_anywhere_never_ends_in_more_than_a_message) {
+  const std::string texts[] = {
+      json(R"("modules": [[0,0,0], {"cell": [1,0,0], "color": [1,2,3]}], "planned": [[2,0,0]],
+              "visiblesim": {"scenery": [{"element": "a", "text": "b"}]})"),
+      xml("<block position=\"0,0,0\" id='&lt;'/><blocksLine values=\"01\"/><!-- c -->")};
+  base::Rng rng(7);
+  for (const std::string& text : texts) {
+    ASSERT_TRUE(read_document(text));
+    for (std::size_t i = 0; i < text.size(); ++i) {
+      std::string damaged = text;
+      damaged[i] = static_cast<char>(rng.below(256));
+      for (const std::string& input : {text.substr(0, i), damaged}) {
+        const auto read = read_document(input);
+        if (!read) {
+          EXPECT_FALSE(read.error().message.empty());
+          EXPECT_TRUE(is_printable_line(read.error().message)) << read.error().message;
+          EXPECT_TRUE(is_printable_line(read.error().where)) << read.error().where;
+        }
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace holdfast::io

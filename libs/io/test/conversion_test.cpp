@@ -1,0 +1,198 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// Conversion loses nothing: what one format says comes back from the other as an equal document.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include "holdfast/base/rng.hpp"
+#include "holdfast/io/document.hpp"
+
+namespace holdfast::io {
+namespace {
+
+Document through_json(const Document& document) {
+  const auto read = read_json(write_json(document));
+  EXPECT_TRUE(read) << read.error().where << ": " << read.error().message;
+  return read ? read.value().document : Document{};
+}
+
+Document through_xml(const Document& document) {
+  const auto read = read_visiblesim(write_visiblesim(document));
+  EXPECT_TRUE(read) << read.error().where << ": " << read.error().message;
+  return read ? read.value().document : Document{};
+}
+
+void expect_equal_after_conversion(const Document& document) {
+  EXPECT_EQ(through_json(document), document) << write_json(document);
+  EXPECT_EQ(through_xml(document), document) << write_visiblesim(document);
+}
+
+/// Documents of any content, the same for a seed everywhere.
+class RandomDocument {
+ public:
+  explicit RandomDocument(std::uint64_t seed) : rng_(seed) {}
+
+  Document make() {
+    Document document;
+    document.name = text();
+    document.description = text();
+    document.support_z = coordinate();
+    document.material.mass_kg = number();
+    document.material.moment_x_mm4 = number();
+    document.material.gravity_m_s2 = number();
+    for (std::uint64_t i = below(6); i > 0; --i) {
+      document.modules.push_back({cell(), below(2) == 0, color(), attributes()});
+    }
+    for (std::uint64_t i = below(4); i > 0; --i) {
+      Step& step = document.steps.emplace_back();
+      for (std::uint64_t j = below(3) + (i == 1 ? 1 : 0); j > 0; --j) {
+        step.push_back({cell(), color(), attributes()});
+      }
+    }
+    if (below(2) == 0) {
+      document.known_answer = KnownAnswer{"safe", number(), std::nullopt, text()};
+    }
+    document.parameters = attributes();
+    document.world = attributes();
+    document.block_list = attributes();
+    document.scenery = elements(0);
+    for (Element target : elements(1)) {
+      target.name = "target";
+      document.targets.push_back(target);
+    }
+    return document;
+  }
+
+ private:
+  std::uint64_t below(std::uint64_t bound) { return rng_.below(bound); }
+
+  std::int32_t coordinate() { return static_cast<std::int32_t>(below(2'000'001)) - 1'000'000; }
+
+  base::Cell cell() { return {coordinate(), coordinate(), coordinate()}; }
+
+  /// Any finite number: sign, exponent and digits at random.
+  double number() {
+    const double digits = static_cast<double>(below(std::uint64_t{1} << 53U));
+    const int exponent = static_cast<int>(below(600)) - 300;
+    return std::ldexp(below(2) == 0 ? digits : -digits, exponent);
+  }
+
+  std::optional<Color> color() {
+    const auto part = [&] { return static_cast<int>(below(256)); };
+    return below(2) == 0 ? std::nullopt : std::optional(Color{part(), part(), part()});
+  }
+
+  /// Everything that markup, quotes, escapes and lines could break.
+  std::string text() {
+    constexpr std::array<const char*, 14> kPieces = {
+        "a",   "Z9", "<",  ">", "&amp;", "\"", "'", "\\", "\\u0041", "\xC3\xA9", "\xF0\x9F\xA4\x96",
+        "]]>", "--", "{,}"};
+    constexpr std::array<const char*, 4> kBlanks = {" ", "\t", "\n", "  "};
+    std::string text;
+    for (std::uint64_t i = below(6); i > 0; --i) {
+      text += (text.empty() ? "" : kBlanks[below(kBlanks.size())]);
+      text += kPieces[below(kPieces.size())];
+    }
+    return text;
+  }
+
+  Attributes attributes() {
+    Attributes attributes;
+    for (const char* name : {"zeta", "x:y", "_a-1.b", "\xC3\xA9t\xC3\xA9", "alpha"}) {
+      if (below(3) == 0) {
+        attributes.emplace_back(name, text());
+      }
+    }
+    return attributes;
+  }
+
+  std::vector<Element> elements(int depth) {
+    std::vector<Element> list;
+    for (std::uint64_t i = depth < 4 ? below(3) : 0; i > 0; --i) {
+      list.push_back(
+          {below(2) == 0 ? "camera" : "other", attributes(), text(), elements(depth + 1)});
+    }
+    return list;
+  }
+
+  base::Rng rng_;
+};
+
+TEST(Conversion, keeps_any_document) {
+  for (std::uint64_t seed = 0; seed < 300; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    expect_equal_after_conversion(RandomDocument(seed).make());
+  }
+}
+
+TEST(Conversion, keeps_an_empty_document) { expect_equal_after_conversion({}); }
+
+TEST(Conversion, keeps_every_digit_of_a_number) {
+  for (const double value :
+       {0.1, 1.0 / 3, 1e-5, 1e21, 123456789.123456789, -0.0,
+        std::numeric_limits<double>::denorm_min(), std::numeric_limits<double>::max()}) {
+    Document document;
+    document.material.contact_gamma = value;
+    document.material.strength_lateral_n = value;
+    expect_equal_after_conversion(document);
+  }
+}
+
+TEST(Conversion, keeps_a_first_step_without_cells_before_another) {
+  Document document;
+  document.steps = {{}, {{{1, 2, 3}, std::nullopt, {}}}};
+  expect_equal_after_conversion(document);
+}
+
+TEST(Conversion, from_xml_and_back_gives_the_same_text_again) {
+  const char* const text =
+      "<parameters globalMass=\"0.0700\" nofIterations=\"8\" globalSupportZ=\"1.0\"/>"
+      "<world windowSize=\"8,6\" gridSize=\"6,6,6\"><spotlight/>"
+      "<blockList color=\"1,1,1\"><blocksLine plane=\"1\" values=\"0110\"/>"
+      "<block position=\"1,0,2\" fixed=\"yes\"/></blockList><targetList><target format=\"csg\"/>"
+      "<target format=\"grid\"><cell position=\"2,0,2\"/></target></targetList></world>";
+  const auto first = read_visiblesim(text);
+  ASSERT_TRUE(first);
+  const Document second = through_xml(through_json(first.value().document));
+  EXPECT_EQ(second, first.value().document);
+  EXPECT_EQ(write_json(second), write_json(first.value().document));
+  EXPECT_EQ(write_visiblesim(second), write_visiblesim(first.value().document));
+}
+
+TEST(Conversion, gives_visiblesim_a_grid_that_holds_every_cell) {
+  Document document;
+  document.modules = {{{0, 4, 0}, false, std::nullopt, {}}, {{-3, 0, 0}, false, std::nullopt, {}}};
+  document.steps = {{{{2, 0, 6}, std::nullopt, {}}}};
+  EXPECT_NE(write_visiblesim(document).find("<world gridSize=\"3,5,7\">"), std::string::npos);
+  // It is no part of the document: it would not be there if the file had not been needed.
+  EXPECT_TRUE(through_xml(document).world.empty());
+
+  document.world = {{"gridSize", "9,9,9"}};
+  EXPECT_NE(write_visiblesim(document).find("<world gridSize=\"9,9,9\">"), std::string::npos);
+  expect_equal_after_conversion(document);
+}
+
+TEST(Conversion, writes_for_visiblesim_only_what_visiblesim_knows) {
+  Document document;
+  document.modules = {{{0, 0, 0}, true, Color{1, 2, 3}, {{"centroid", "1"}}}};
+  document.world = {{"gridSize", "1,1,1"}};
+  EXPECT_EQ(write_visiblesim(document), R"(<?xml version="1.0"?>
+<parameters globalMass="0.06106" globalSupportZ="0" />
+<world gridSize="1,1,1">
+  <blockList>
+    <block position="0,0,0" color="1,2,3" fixed="true" centroid="1" />
+  </blockList>
+  <targetList>
+    <target format="grid" />
+  </targetList>
+</world>
+)");
+}
+
+}  // namespace
+}  // namespace holdfast::io

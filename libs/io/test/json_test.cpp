@@ -1,0 +1,178 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// holdfast JSON is read as docs/formats.md describes it, and written for people to read.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
+
+#include "holdfast/io/document.hpp"
+
+namespace holdfast::io {
+namespace {
+
+using base::Cell;
+
+ReadDocument read(std::string_view text) {
+  auto read = read_json(text);
+  EXPECT_TRUE(read) << read.error().where << ": " << read.error().message;
+  return read ? std::move(read).value() : ReadDocument{};
+}
+
+/// With the keys that must be there.
+std::string with_heading(std::string_view members) {
+  return R"({"format": "holdfast-structure", "version": 1, )" + std::string(members) + "}";
+}
+
+TEST(Json, defaults_stand_for_what_is_missing) {
+  const ReadDocument result = read(with_heading(R"("modules": [])"));
+  EXPECT_EQ(result.document, Document{});
+  EXPECT_TRUE(result.warnings.empty());
+}
+
+TEST(Json, is_read_whole) {
+  const ReadDocument result = read(with_heading(R"(
+    "$schema": "../docs/structure.schema.json",
+    "name": "tower", "description": "Two modules, one fixed.", "support_z": -1,
+    "modules": [[0,0,-1], {"cell": [0,0,0], "fixed": true, "color": [1,2,3],
+                           "attributes": {"id": "7", "centroid": "1"}}],
+    "planned": [[1,0,0], {"cell": [0,1,0], "color": [4,5,6], "attributes": {"id": "8"}}],
+    "later_steps": [[[2,0,0]], []],
+    "known_answer": {"verdict": "overload", "margin_mm": 1.5, "load_ratio_max": 2, "source": "me"},
+    "visiblesim": {
+      "parameters": {"nofIterations": "9"}, "world": {"windowSize": "1,1"},
+      "block_list": {"ids": "MANUAL"},
+      "scenery": [{"element": "camera", "attributes": {"angle": "45"}, "text": " t ",
+                   "children": [{"element": "lens"}]}],
+      "targets": [{"element": "target", "attributes": {"format": "surface"}}]})"));
+  Document expected;
+  expected.name = "tower";
+  expected.description = "Two modules, one fixed.";
+  expected.support_z = -1;
+  expected.modules = {{{0, 0, -1}, false, std::nullopt, {}},
+                      {{0, 0, 0}, true, Color{1, 2, 3}, {{"id", "7"}, {"centroid", "1"}}}};
+  expected.steps = {{{{1, 0, 0}, std::nullopt, {}}, {{0, 1, 0}, Color{4, 5, 6}, {{"id", "8"}}}},
+                    {{{2, 0, 0}, std::nullopt, {}}}};
+  expected.known_answer = KnownAnswer{"overload", 1.5, 2.0, "me"};
+  expected.parameters = {{"nofIterations", "9"}};
+  expected.world = {{"windowSize", "1,1"}};
+  expected.block_list = {{"ids", "MANUAL"}};
+  expected.scenery = {{"camera", {{"angle", "45"}}, "t", {{"lens", {}, "", {}}}}};
+  expected.targets = {{"target", {{"format", "surface"}}, "", {}}};
+  EXPECT_EQ(result.document, expected);
+  // That there are two steps, and the target.
+  EXPECT_EQ(result.warnings.size(), 2U);
+}
+
+TEST(Json, material_values_are_independent_of_each_other) {
+  const std::pair<const char*, double model::Material::*> parameters[] = {
+      {"elastic_modulus_mpa", &model::Material::elastic_modulus_mpa},
+      {"pitch_mm", &model::Material::pitch_mm},
+      {"facet_mm", &model::Material::facet_mm},
+      {"section_area_mm2", &model::Material::section_area_mm2},
+      {"moment_x_mm4", &model::Material::moment_x_mm4},
+      {"moment_y_mm4", &model::Material::moment_y_mm4},
+      {"torsion_mm4", &model::Material::torsion_mm4},
+      {"poisson_ratio", &model::Material::poisson_ratio},
+      {"mass_kg", &model::Material::mass_kg},
+      {"gravity_m_s2", &model::Material::gravity_m_s2},
+      {"strength_vertical_n", &model::Material::strength_vertical_n},
+      {"strength_lateral_n", &model::Material::strength_lateral_n},
+      {"contact_gamma", &model::Material::contact_gamma}};
+  for (const auto& [key, value] : parameters) {
+    Document expected;
+    expected.material.*value = 0.125;
+    const std::string material = R"("material": {")" + std::string(key) + R"(": 0.125})";
+    EXPECT_EQ(read(with_heading(material + R"(, "modules": [])")).document, expected) << key;
+    // What is written names it, and no other.
+    const std::string written = write_json(expected);
+    EXPECT_NE(written.find(material), std::string::npos) << written;
+  }
+}
+
+TEST(Json, whole_numbers_may_be_written_with_a_point) {
+  EXPECT_EQ(read(with_heading(R"("modules": [[1.0, 2, -3e0]])")).document.modules[0].cell,
+            (Cell{1, 2, -3}));
+}
+
+TEST(Json, unknown_keys_are_named_by_their_pointer) {
+  const ReadDocument result = read(with_heading(
+      R"("modules": [[0,0,0], {"cell": [1,0,0], "colour": 1}, {"cell": [2,0,0], "colour": 2}],
+         "material": {"m/a~s": 1}, "author": {"deep": []},
+         "visiblesim": {"scenery": [{"element": "camera", "zoom": 1}]})"));
+  EXPECT_EQ(result.warnings,
+            (std::vector<std::string>{
+                "/modules/1/colour: the key 'colour' is unknown and ignored (2 times, first here)",
+                "/material/m~1a~0s: the key 'm/a~s' is unknown and ignored",
+                "/author: the key 'author' is unknown and ignored",
+                "/visiblesim/scenery/0/zoom: the key 'zoom' is unknown and ignored"}));
+}
+
+TEST(Json, many_different_warnings_end_in_a_count) {
+  std::string members = R"("modules": [)";
+  for (int i = 0; i < 150; ++i) {
+    members +=
+        R"({"cell": [0,0,)" + std::to_string(i) + R"(], "k)" + std::to_string(i) + R"(": 0},)";
+  }
+  members.back() = ']';
+  const ReadDocument result = read(with_heading(members));
+  ASSERT_EQ(result.warnings.size(), 101U);
+  EXPECT_EQ(result.warnings.back(), "50 further warnings are left out");
+}
+
+TEST(Json, is_written_for_people) {
+  Document document;
+  document.name = "gate \"north\"";
+  document.material.mass_kg = 0.1;
+  for (std::int32_t x = 0; x < 14; ++x) {
+    document.modules.push_back({{x, 0, 0}, false, std::nullopt, {}});
+  }
+  document.modules.push_back({{0, 0, 1}, false, std::nullopt, {}});
+  document.modules.push_back({{1, 0, 1}, true, Color{255, 0, 0}, {{"id", "4"}}});
+  document.modules.push_back({{2, 0, 1}, false, std::nullopt, {}});
+  document.steps = {{{{3, 0, 1}, std::nullopt, {}}, {{4, 0, 1}, std::nullopt, {}}}};
+  document.world = {{"gridSize", "9,9,9"}};
+  EXPECT_EQ(write_json(document), R"({
+  "format": "holdfast-structure",
+  "version": 1,
+  "name": "gate \"north\"",
+  "support_z": 0,
+  "material": {"mass_kg": 0.1},
+  "modules": [
+    [0,0,0], [1,0,0], [2,0,0], [3,0,0], [4,0,0], [5,0,0], [6,0,0], [7,0,0], [8,0,0], [9,0,0],
+    [10,0,0], [11,0,0], [12,0,0], [13,0,0],
+    [0,0,1],
+    {"cell": [1,0,1], "fixed": true, "color": [255,0,0], "attributes": {"id": "4"}},
+    [2,0,1]
+  ],
+  "planned": [[3,0,1], [4,0,1]],
+  "visiblesim": {
+    "world": {"gridSize": "9,9,9"}
+  }
+}
+)");
+}
+
+TEST(Json, scenarios_are_laid_out_as_the_writer_does) {
+  std::size_t count = 0;
+  for (const auto& file : std::filesystem::directory_iterator(HOLDFAST_SCENARIO_DIR)) {
+    if (file.path().extension() != ".json") {
+      continue;
+    }
+    SCOPED_TRACE(file.path().filename().string());
+    std::ifstream stream(file.path(), std::ios::binary);
+    const std::string text{std::istreambuf_iterator<char>(stream), {}};
+    const ReadDocument result = read(text);
+    EXPECT_TRUE(result.warnings.empty());
+    EXPECT_TRUE(make_robot(result.document));
+    EXPECT_EQ(write_json(result.document), text);
+    ++count;
+  }
+  EXPECT_GE(count, 21U);
+}
+
+}  // namespace
+}  // namespace holdfast::io

@@ -1,0 +1,301 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// What VisibleSim's users write is read as VisibleSim means it. Expected cells are written out by
+// hand from the rules in docs/formats.md.
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "holdfast/io/document.hpp"
+
+namespace holdfast::io {
+namespace {
+
+using base::Cell;
+
+ReadDocument read(std::string_view text) {
+  auto read = read_visiblesim(text);
+  EXPECT_TRUE(read) << read.error().where << ": " << read.error().message;
+  return read ? std::move(read).value() : ReadDocument{};
+}
+
+/// A world with these children of <blockList> and these further children.
+std::string world(std::string_view blocks, std::string_view rest = "") {
+  return "<parameters/><world gridSize=\"5,4,3\"><blockList>" + std::string(blocks) +
+         "</blockList>" + std::string(rest) + "</world>";
+}
+
+std::vector<Cell> cells_of(const std::vector<ModuleEntry>& modules) {
+  std::vector<Cell> cells;
+  for (const ModuleEntry& module : modules) {
+    cells.push_back(module.cell);
+  }
+  return cells;
+}
+
+std::vector<Cell> cells_read(std::string_view blocks) {
+  return cells_of(read(world(blocks)).document.modules);
+}
+
+/// The only warning, or all of them in one line.
+std::string warning_of(std::string_view text) {
+  std::string all;
+  for (const std::string& warning : read(text).warnings) {
+    all += (all.empty() ? "" : " | ") + warning;
+  }
+  return all;
+}
+
+bool contains(const std::string& text, std::string_view part) {
+  return text.find(part) != std::string::npos;
+}
+
+TEST(VisibleSim, is_read_with_two_roots_comments_and_a_byte_order_mark) {
+  const ReadDocument result = read(
+      "\xEF\xBB\xBF<?xml version=\"1.0\" standalone=\"no\" ?>\n"
+      "<!-- before --><parameters globalMass=\"0.08\" nofIterations=\"500\" "
+      "globalSupportZ=\"1\"/>\n"
+      "<!-- <world/> -->\n"
+      "<world gridSize=\"4,4,4\" windowSize=\"800,600\">\n"
+      "  <camera target=\"1,2,3\" angle=\"45\"/>\n"
+      "  <blockList color=\"1,2,3\" blockSize=\"40,40,41\">\n"
+      "    <block position=\"1,1,1\" color=\"0,255,0\" centroid=\"1\"/>\n"
+      "    <!-- <block position=\"3,3,3\"/> -->\n"
+      "    <block position=\"1,1,2\"/>\n"
+      "  </blockList>\n"
+      "  <targetList><target format=\"grid\"><cell position=\"2,1,2\"/></target></targetList>\n"
+      "</world>\n");
+  EXPECT_TRUE(result.warnings.empty());
+
+  Document expected;
+  expected.support_z = 1;
+  expected.material.mass_kg = 0.08;
+  expected.modules = {{{1, 1, 1}, false, Color{0, 255, 0}, {{"centroid", "1"}}},
+                      {{1, 1, 2}, false, std::nullopt, {}}};
+  expected.steps = {{{{2, 1, 2}, std::nullopt, {}}}};
+  expected.parameters = {{"nofIterations", "500"}};
+  expected.world = {{"gridSize", "4,4,4"}, {"windowSize", "800,600"}};
+  expected.block_list = {{"color", "1,2,3"}, {"blockSize", "40,40,41"}};
+  expected.scenery = {{"camera", {{"target", "1,2,3"}, {"angle", "45"}}, "", {}}};
+  EXPECT_EQ(result.document, expected);
+}
+
+TEST(VisibleSim, parameters_are_independent_of_each_other) {
+  // VisibleSim's Iy bends lateral beams in the vertical plane: our Ix.
+  const std::pair<const char*, double model::Material::*> parameters[] = {
+      {"E", &model::Material::elastic_modulus_mpa},
+      {"globalL", &model::Material::pitch_mm},
+      {"a", &model::Material::facet_mm},
+      {"A", &model::Material::section_area_mm2},
+      {"globalIy", &model::Material::moment_x_mm4},
+      {"globalIz", &model::Material::moment_y_mm4},
+      {"globalJ", &model::Material::torsion_mm4},
+      {"globalNu", &model::Material::poisson_ratio},
+      {"globalMass", &model::Material::mass_kg},
+      {"globalGamma", &model::Material::contact_gamma}};
+  for (const auto& [name, value] : parameters) {
+    model::Material expected;
+    expected.*value = 0.125;
+    const ReadDocument result =
+        read("<parameters " + std::string(name) + "=\" 0.125 \"/><world><blockList/></world>");
+    EXPECT_EQ(result.document.material, expected) << name;
+    EXPECT_TRUE(result.document.parameters.empty()) << name;
+    EXPECT_TRUE(result.warnings.empty()) << name;
+  }
+}
+
+TEST(VisibleSim, support_level_may_be_written_with_a_point) {
+  EXPECT_EQ(
+      read("<parameters globalSupportZ=\"-2.0\"/><world><blockList/></world>").document.support_z,
+      -2);
+}
+
+TEST(VisibleSim, parameters_without_meaning_for_mechanics_are_kept) {
+  const ReadDocument result = read(
+      "<parameters preconditioner=\"1\" globalBeta=\"0.6\" globalEps=\"1\" globalMu=\"1\" "
+      "globalOmega=\"1\" globalI=\"1\" speed=\"9\"/><world><blockList/></world>");
+  ASSERT_EQ(result.document.parameters.size(), 7U);
+  EXPECT_EQ(result.document.parameters[1],
+            std::make_pair(std::string("globalBeta"), std::string("0.6")));
+  ASSERT_EQ(result.warnings.size(), 1U);
+  EXPECT_TRUE(contains(result.warnings[0], "'speed'"));
+}
+
+TEST(VisibleSim, missing_parameters_mean_the_defaults_and_a_warning) {
+  const ReadDocument result = read("<world><blockList/></world>");
+  EXPECT_EQ(result.document.material, model::Material{});
+  EXPECT_EQ(result.document.support_z, 0);
+  ASSERT_EQ(result.warnings.size(), 1U);
+  EXPECT_TRUE(contains(result.warnings[0], "<parameters>"));
+}
+
+TEST(VisibleSim, numbers_may_have_blanks_around_them) {
+  EXPECT_EQ(cells_read("<block position=\" 1,\t2 , 0 \"/>"), (std::vector<Cell>{{1, 2, 0}}));
+}
+
+TEST(VisibleSim, negative_coordinates_are_read_with_a_warning) {
+  const ReadDocument result = read(world("<block position=\"-1,0,0\"/>"));
+  EXPECT_EQ(result.document.modules[0].cell, (Cell{-1, 0, 0}));
+  ASSERT_EQ(result.warnings.size(), 1U);
+  EXPECT_TRUE(contains(result.warnings[0], "(-1,0,0)"));
+  EXPECT_TRUE(contains(result.warnings[0], "outside gridSize"));
+}
+
+TEST(VisibleSim, fixed_is_what_is_not_denied) {
+  for (const char* no : {"0", "false", "False", "FALSE", "no", " No "}) {
+    EXPECT_FALSE(read(world("<block position=\"0,0,0\" fixed=\"" + std::string(no) + "\"/>"))
+                     .document.modules[0]
+                     .is_fixed)
+        << no;
+  }
+  for (const char* yes : {"1", "true", "yes", "TRUE", "anything", ""}) {
+    EXPECT_TRUE(read(world("<block position=\"0,0,0\" fixed=\"" + std::string(yes) + "\"/>"))
+                    .document.modules[0]
+                    .is_fixed)
+        << yes;
+  }
+}
+
+TEST(VisibleSim, lines_of_blocks_run_along_x) {
+  const Document document =
+      read(world("<blocksLine line=\"2\" plane=\"1\" values=\"01101\" color=\"7,8,9\"/>")).document;
+  EXPECT_EQ(cells_of(document.modules), (std::vector<Cell>{{1, 2, 1}, {2, 2, 1}, {4, 2, 1}}));
+  EXPECT_EQ(document.modules[2].color, (Color{7, 8, 9}));
+}
+
+TEST(VisibleSim, a_line_without_a_plane_lies_in_that_of_the_line_before) {
+  EXPECT_EQ(cells_read("<blocksLine line=\"1\" values=\"1\"/>"
+                       "<blocksLine plane=\"2\" values=\"1\"/>"
+                       "<block position=\"0,0,0\"/>"
+                       "<blocksLine line=\"3\" values=\"1\"/>"),
+            (std::vector<Cell>{{0, 1, 0}, {0, 0, 2}, {0, 0, 0}, {0, 3, 2}}));
+}
+
+TEST(VisibleSim, values_other_than_0_and_1_are_warned_of) {
+  const std::string text = world("<blocksLine values=\"1xx1\"/>");
+  EXPECT_EQ(cells_of(read(text).document.modules), (std::vector<Cell>{{0, 0, 0}, {3, 0, 0}}));
+  EXPECT_TRUE(contains(warning_of(text), "'x' counts as 0 (2 times"));
+}
+
+TEST(VisibleSim, a_box_holds_the_cells_whose_position_lies_in_it) {
+  // Positions are 0, 40, 80... along x and y, and 0, 41, 82 along z; the ends belong to the box.
+  EXPECT_EQ(cells_read("<blockBox boxOrigin=\"40,1,41\" boxSize=\"40,79.5,40.9\"/>"),
+            (std::vector<Cell>{{1, 1, 1}, {2, 1, 1}, {1, 2, 1}, {2, 2, 1}}));
+  EXPECT_EQ(cells_read("<blockBox boxOrigin=\"-500,0,0\" boxSize=\"500,0,82\" color=\"1,1,1\"/>"),
+            (std::vector<Cell>{{0, 0, 0}, {0, 0, 1}, {0, 0, 2}}));
+}
+
+TEST(VisibleSim, a_box_without_bounds_fills_the_grid) {
+  EXPECT_EQ(cells_read("<blockBox/>").size(), 5U * 4U * 3U);
+  EXPECT_EQ(cells_read("<blockBox boxOrigin=\"160,120,82\"/>"), (std::vector<Cell>{{4, 3, 2}}));
+}
+
+TEST(VisibleSim, a_box_is_measured_in_blocks_of_the_given_size) {
+  EXPECT_EQ(cells_of(read("<parameters/><world gridSize=\"9,9,9\"><blockList blockSize=\"10,20,5\">"
+                          "<blockBox boxOrigin=\"30,20,5\" boxSize=\"0,0,5\"/></blockList></world>")
+                         .document.modules),
+            (std::vector<Cell>{{3, 1, 1}, {3, 1, 2}}));
+}
+
+TEST(VisibleSim, a_box_without_cells_is_warned_of) {
+  EXPECT_TRUE(contains(warning_of(world("<blockBox boxOrigin=\"1,1,1\" boxSize=\"9,9,9\"/>")),
+                       "holds no cell"));
+}
+
+TEST(VisibleSim, only_the_first_of_several_steps_is_checked) {
+  const ReadDocument result = read(world(
+      "<block position=\"0,0,0\"/>",
+      "<targetList><target format=\"grid\"><cell position=\"1,0,0\" color=\"9,9,9\"/></target>"
+      "<target format=\"grid\"><targetLine line=\"1\" plane=\"0\" values=\"11\"/></target>"
+      "</targetList>"));
+  ASSERT_EQ(result.document.steps.size(), 2U);
+  EXPECT_EQ(result.document.steps[0], (Step{{{1, 0, 0}, Color{9, 9, 9}, {}}}));
+  EXPECT_EQ(result.document.steps[1],
+            (Step{{{0, 1, 0}, std::nullopt, {}}, {{1, 1, 0}, std::nullopt, {}}}));
+  ASSERT_EQ(result.warnings.size(), 1U);
+  EXPECT_TRUE(contains(result.warnings[0], "2 steps"));
+
+  const auto robot = make_robot(result.document);
+  ASSERT_TRUE(robot);
+  EXPECT_EQ(robot.value().planned_count(), 1U);
+}
+
+TEST(VisibleSim, an_empty_target_plans_nothing) {
+  const ReadDocument result = read(
+      world("<block position=\"0,0,0\"/>", "<targetList><target format=\"grid\"/></targetList>"));
+  EXPECT_TRUE(result.document.steps.empty());
+  EXPECT_TRUE(result.warnings.empty());
+}
+
+TEST(VisibleSim, targets_that_are_no_grids_are_kept_and_warned_of) {
+  const ReadDocument result =
+      read(world("<block position=\"0,0,0\"/>",
+                 "<targetList><target format=\"csg\"><csg content=\"cube([1,1,1])\"/></target>"
+                 "<target format=\"grid\"><cell position=\"1,0,0\"/></target></targetList>"));
+  EXPECT_EQ(result.document.steps.size(), 1U);
+  const std::vector<Element> expected = {
+      {"target", {{"format", "csg"}}, "", {{"csg", {{"content", "cube([1,1,1])"}}, "", {}}}}};
+  EXPECT_EQ(result.document.targets, expected);
+  ASSERT_EQ(result.warnings.size(), 1U);
+  EXPECT_TRUE(contains(result.warnings[0], "'csg' is not supported"));
+}
+
+TEST(VisibleSim, scenery_is_kept_with_everything_in_it) {
+  const ReadDocument result =
+      read(world("",
+                 "<camera angle=\"45\"/><customization><rotationDelay multiplier=\"2\">\n"
+                 "  slow &amp; steady <![CDATA[<really>]]>\n</rotationDelay></customization>"));
+  const std::vector<Element> expected = {
+      {"camera", {{"angle", "45"}}, "", {}},
+      {"customization",
+       {},
+       "",
+       {{"rotationDelay", {{"multiplier", "2"}}, "slow & steady <really>", {}}}}};
+  EXPECT_EQ(result.document.scenery, expected);
+  EXPECT_TRUE(result.warnings.empty());
+}
+
+TEST(VisibleSim, obstacles_and_unknown_elements_are_kept_and_warned_of) {
+  const std::string text = world("", "<obstacleList/><weather/>");
+  EXPECT_EQ(read(text).document.scenery.size(), 2U);
+  const std::string warnings = warning_of(text);
+  EXPECT_TRUE(contains(warnings, "obstacles are not supported"));
+  EXPECT_TRUE(contains(warnings, "'weather' is unknown"));
+}
+
+TEST(VisibleSim, unknown_attributes_are_kept_and_warned_of_once_per_name) {
+  const std::string text = world(
+      "<block position=\"0,0,0\" master=\"1\" mood=\"good\"/>"
+      "<block position=\"1,0,0\" mood=\"bad\" id=\"3\" solver=\"1\" stabilityCheck=\"x\"/>");
+  EXPECT_EQ(read(text).document.modules[1].attributes,
+            (Attributes{{"mood", "bad"}, {"id", "3"}, {"solver", "1"}, {"stabilityCheck", "x"}}));
+  EXPECT_EQ(warning_of(text),
+            "module (0,0,0): the attribute 'mood' is unknown and kept (2 times, first here)");
+}
+
+TEST(VisibleSim, text_between_elements_is_warned_of_with_its_line) {
+  EXPECT_TRUE(
+      contains(warning_of("<parameters/>\n<world>\nhello<blockList/></world>"), "line 2: "));
+}
+
+TEST(VisibleSim, our_own_element_holds_what_visiblesim_has_no_word_for) {
+  const ReadDocument result =
+      read(world("",
+                 "<holdfast name=\"n\" description=\"a&#10;b\" gravity_m_s2=\"1.62\" "
+                 "strength_vertical_n=\"11\" strength_lateral_n=\"12\" computed=\"gridSize\">"
+                 "<knownAnswer verdict=\"unstable\" margin_mm=\"-8\" source=\"s\"/>"
+                 "</holdfast>"));
+  EXPECT_TRUE(result.warnings.empty());
+  Document expected;
+  expected.name = "n";
+  expected.description = "a\nb";
+  expected.material.gravity_m_s2 = 1.62;
+  expected.material.strength_vertical_n = 11;
+  expected.material.strength_lateral_n = 12;
+  expected.known_answer = KnownAnswer{"unstable", -8.0, std::nullopt, "s"};
+  EXPECT_EQ(result.document, expected);
+}
+
+}  // namespace
+}  // namespace holdfast::io

@@ -1,0 +1,258 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <limits>
+#include <pugixml.hpp>
+#include <sstream>
+
+#include "picture_support.hpp"
+#include "random_robot.hpp"
+
+namespace holdfast::io::picture_test {
+namespace {
+
+constexpr double kWeight = 0.06106 * 9.81;                                          // N
+constexpr double kPitch = 40;                                                       // mm
+constexpr double kBendingStiffness = 100 * kPitch * kPitch * kPitch * kPitch / 12;  // E I, N mm^2
+
+class Grid {
+ public:
+  Grid(const model::Robot& robot, const verdict::Assessment& assessment)
+      : text_(write_vtu(robot, assessment)) {
+    const auto result = document_.load_string(text_.c_str());
+    EXPECT_TRUE(result) << result.description();
+    grid_ = document_.child("VTKFile").child("UnstructuredGrid");
+  }
+
+  std::size_t point_count() const {
+    return grid_.child("Piece").attribute("NumberOfPoints").as_ullong();
+  }
+
+  std::size_t cell_count() const {
+    return grid_.child("Piece").attribute("NumberOfCells").as_ullong();
+  }
+
+  /// All numbers of an array anywhere in the file.
+  std::vector<double> numbers(const std::string& name) const {
+    const pugi::xml_node array =
+        document_.select_node(fmt::format("//*[@Name='{}']", name).c_str()).node();
+    EXPECT_TRUE(array) << name;
+    std::istringstream stream(array.child_value());
+    std::vector<double> values;
+    for (double value = 0; stream >> value;) {
+      values.push_back(value);
+    }
+    EXPECT_TRUE(stream.eof()) << name << " holds something that is not a number";
+    return values;
+  }
+
+  std::array<double, 3> triple(const std::string& name, std::size_t index) const {
+    const auto all = numbers(name);
+    return {all.at(3 * index), all.at(3 * index + 1), all.at(3 * index + 2)};
+  }
+
+  std::string verdict() const {
+    std::string word;
+    for (const double code : numbers("verdict")) {
+      word += code == 0 ? '\0' : static_cast<char>(code);
+    }
+    return word;
+  }
+
+  const pugi::xml_node& grid() const { return grid_; }
+
+ private:
+  std::string text_;
+  pugi::xml_document document_;
+  pugi::xml_node grid_;
+};
+
+Grid write(const model::RobotSpec& spec) {
+  const model::Robot robot = make(spec);
+  return {robot, verdict::assess(robot)};
+}
+
+TEST(Vtu, a_module_is_a_cube_and_a_connection_a_line) {
+  model::RobotSpec spec;
+  spec.existing = {{0, 0, 0}, {1, 0, 0}, {1, 0, 1}};
+  const Grid grid = write(spec);
+  EXPECT_EQ(grid.cell_count(), 3U + 2U);
+  EXPECT_EQ(grid.point_count(), 3U * 8U + 2U * 2U);
+  EXPECT_EQ(grid.numbers("types"), (std::vector<double>{12, 12, 12, 3, 3}));
+  EXPECT_EQ(grid.numbers("offsets"), (std::vector<double>{8, 16, 24, 26, 28}));
+  EXPECT_EQ(grid.numbers("kind"), (std::vector<double>{0, 0, 0, 1, 1}));
+  EXPECT_EQ(grid.numbers("index"), (std::vector<double>{0, 1, 2, 0, 1}));
+  // The line of the second connection runs from (1,0,0) up to (1,0,1).
+  EXPECT_EQ(grid.triple("Points", 26), (std::array<double, 3>{40, 0, 0}));
+  EXPECT_EQ(grid.triple("Points", 27), (std::array<double, 3>{40, 0, 40}));
+}
+
+TEST(Vtu, every_array_has_one_value_per_point_or_cell) {
+  const Grid grid = write(test::random_robot(5));
+  const pugi::xml_node piece = grid.grid().child("Piece");
+  const auto expect_count = [&](const char* section, std::size_t count, std::size_t arrays) {
+    std::size_t found = 0;
+    for (const pugi::xml_node& array : piece.child(section).children("DataArray")) {
+      const std::string name = array.attribute("Name").value();
+      const std::size_t components = array.attribute("NumberOfComponents").as_ullong();
+      EXPECT_EQ(grid.numbers(name).size(), count * components) << name;
+      ++found;
+    }
+    EXPECT_EQ(found, arrays) << section;
+  };
+  expect_count("Points", grid.point_count(), 1);
+  expect_count("PointData", grid.point_count(), 1);
+  expect_count("CellData", grid.cell_count(), 16);
+  const auto connectivity = grid.numbers("connectivity");
+  ASSERT_EQ(connectivity.size(), grid.point_count());
+  for (std::size_t i = 0; i < connectivity.size(); ++i) {
+    EXPECT_EQ(connectivity[i], static_cast<double>(i));  // Every cell has its own points.
+  }
+}
+
+TEST(Vtu, corners_are_in_the_order_of_a_hexahedron) {
+  // 0-1, 0-3 and 0-4 are edges, and a right-handed frame: their determinant is the volume.
+  const Grid grid = write({.existing = {{-3, 7, 0}}});
+  const auto edge = [&](std::size_t corner) {
+    const auto a = grid.triple("Points", 0);
+    const auto b = grid.triple("Points", corner);
+    return std::array<double, 3>{b[0] - a[0], b[1] - a[1], b[2] - a[2]};
+  };
+  const auto [ax, ay, az] = edge(1);
+  const auto [bx, by, bz] = edge(3);
+  const auto [cx, cy, cz] = edge(4);
+  EXPECT_EQ(ax * (by * cz - bz * cy) - ay * (bx * cz - bz * cx) + az * (bx * cy - by * cx),
+            kPitch * kPitch * kPitch);
+  // 6 is opposite of 0; 2 and 5, 7 complete the bottom and the top.
+  EXPECT_EQ(edge(6), (std::array<double, 3>{40, 40, 40}));
+  EXPECT_EQ(edge(2), (std::array<double, 3>{40, 40, 0}));
+  EXPECT_EQ(edge(5), (std::array<double, 3>{40, 0, 40}));
+  EXPECT_EQ(edge(7), (std::array<double, 3>{0, 40, 40}));
+  EXPECT_EQ(grid.triple("Points", 0), (std::array<double, 3>{-140, 260, -20}));
+}
+
+TEST(Vtu, an_arm_carries_what_statics_say) {
+  // Three modules: in the middle of the first connection a moment w L 9/2, a shear force 3 w.
+  const Grid grid = write(arm(3));
+  const std::size_t modules = 5;
+  const std::size_t first = modules + 1;  // After (0,0,0)-(0,0,1).
+  ASSERT_EQ(grid.triple("cell", first), (std::array<double, 3>{0, 0, 1}));
+  // Written with nine digits; solved to about 1e-12.
+  EXPECT_NEAR(grid.numbers("bending_nmm")[first], kWeight * kPitch * 4.5, 1e-6);
+  EXPECT_NEAR(grid.numbers("shear_n")[first], 3 * kWeight, 1e-8);
+  EXPECT_NEAR(grid.numbers("axial_n")[first], 0, 1e-8);
+  EXPECT_NEAR(grid.numbers("torsion_nmm")[first], 0, 1e-8);
+  const double ratio = 9 * kWeight / 14.97;
+  const auto ratios = grid.numbers("load_ratio");
+  EXPECT_NEAR(ratios[first], ratio, 1e-8);
+  EXPECT_NEAR(ratios[1], ratio, 1e-8);            // The fixed module and the first of the arm
+  EXPECT_NEAR(ratios[2], ratio, 1e-8);            // have it as their worst connection,
+  EXPECT_NEAR(ratios[4], kWeight / 14.97, 1e-8);  // the tip has its only one.
+  EXPECT_NEAR(grid.numbers("load_ratio_max").at(0), ratio, 1e-8);
+}
+
+TEST(Vtu, modules_move_as_rigid_bodies) {
+  // One module on a beam of length L under its weight at the end: it sinks by w L^3 / 3EI and
+  // turns about +y by w L^2 / 2EI; its outer faces sink further, its inner ones less.
+  const Grid grid = write(arm(1));
+  const double sink = kWeight * std::pow(kPitch, 3) / (3 * kBendingStiffness);
+  const double turn = kWeight * kPitch * kPitch / (2 * kBendingStiffness);
+  EXPECT_NEAR(grid.triple("rotation_rad", 2)[1], turn, 1e-9 * turn);
+  for (std::size_t corner = 0; corner < 8; ++corner) {
+    const auto place = grid.triple("Points", 16 + corner);
+    const auto move = grid.triple("displacement_mm", 16 + corner);
+    EXPECT_NEAR(move[0], turn * (place[2] - kPitch), 1e-8 * turn * kPitch);
+    EXPECT_NEAR(move[1], 0, 1e-12);
+    EXPECT_NEAR(move[2], -sink - turn * (place[0] - kPitch), 1e-8 * sink);
+  }
+  // The fixed module stays, and the line between them follows the nodes.
+  EXPECT_EQ(grid.triple("displacement_mm", 8), (std::array<double, 3>{0, 0, 0}));
+  const auto end = grid.triple("displacement_mm", 24 + 2 + 1);
+  EXPECT_NEAR(end[2], -sink, 1e-8 * sink);
+}
+
+TEST(Vtu, the_ground_carries_the_weight) {
+  for (const std::uint64_t seed : {1U, 2U, 7U}) {
+    const model::Robot robot = make(test::random_robot(seed));
+    const verdict::Assessment assessment = verdict::assess(robot);
+    ASSERT_EQ(assessment.connections.size(), robot.connections().size());
+    const Grid grid(robot, assessment);
+    const auto forces = grid.numbers("ground_force_n");
+    double sum = 0;
+    for (std::size_t i = 2; i < forces.size(); i += 3) {
+      sum += forces[i];
+    }
+    const double weight = kWeight * static_cast<double>(robot.modules().size());
+    EXPECT_NEAR(sum, weight, 1e-6 * weight) << seed;  // Nine digits each.
+  }
+}
+
+TEST(Vtu, supports_and_plans_are_marked) {
+  model::RobotSpec spec = arm(1);
+  spec.planned = {{2, 0, 1}};
+  const Grid grid = write(spec);  // (0,0,0), (0,0,1), (1,0,1), (2,0,1); three connections.
+  EXPECT_EQ(grid.numbers("on_ground"), (std::vector<double>{1, 0, 0, 0, 0, 0, 0}));
+  EXPECT_EQ(grid.numbers("fixed"), (std::vector<double>{0, 1, 0, 0, 1, 1, 0}));
+  EXPECT_EQ(grid.numbers("planned"), (std::vector<double>{0, 0, 0, 1, 0, 0, 1}));
+  EXPECT_EQ(grid.triple("cell", 3), (std::array<double, 3>{2, 0, 1}));
+}
+
+TEST(Vtu, broken_connections_are_marked_and_the_verdict_is_a_word) {
+  const Grid broken = write(arm(5));  // 25 w / 14.97 N = 1.0003 at the root.
+  const auto flags = broken.numbers("broken");
+  for (std::size_t i = 0; i < flags.size(); ++i) {
+    EXPECT_EQ(flags[i], i == 7 + 1 ? 1 : 0) << i;
+  }
+  EXPECT_EQ(broken.verdict(), std::string("overload") + '\0');
+  EXPECT_EQ(write(arm(4)).verdict(), std::string("safe") + '\0');
+}
+
+TEST(Vtu, the_contact_is_the_number_of_pressing_corners) {
+  model::RobotSpec spec;
+  spec.existing = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {3, 0, 0}, {0, 0, 1}};
+  const model::Robot robot = make(spec);
+  verdict::Assessment assessment = verdict::assess(robot);
+  ASSERT_EQ(assessment.equilibrium.contact.size(), 5U);
+  assessment.equilibrium.contact = {{.pressed = true},
+                                    {.pressed = true, .tilt_x = -1},
+                                    {.pressed = true, .tilt_x = 1, .tilt_y = 1},
+                                    {.pressed = false, .tilt_x = 1},
+                                    {.pressed = true}};
+  const auto contact = Grid(robot, assessment).numbers("contact");
+  EXPECT_EQ(contact, (std::vector<double>{4, 2, 1, 0, -1, -1, -1, -1, -1}));
+}
+
+TEST(Vtu, what_is_not_known_is_zero_and_marked) {
+  // VTK loses an array that holds a "nan".
+  const model::Robot robot = make({.existing = {{0, 0, 0}, {1, 0, 0}}});
+  const verdict::Assessment nothing;
+  const Grid grid(robot, nothing);
+  EXPECT_EQ(grid.numbers("has_loads"), std::vector<double>{0});
+  EXPECT_EQ(grid.numbers("load_ratio"), (std::vector<double>{0, 0, 0}));
+  EXPECT_EQ(grid.numbers("contact"), (std::vector<double>{-1, -1, -1}));
+  EXPECT_EQ(grid.verdict(), std::string("undecided") + '\0');
+
+  verdict::Assessment spoiled = verdict::assess(robot);
+  spoiled.connections[0].load_ratio = std::numeric_limits<double>::quiet_NaN();
+  spoiled.connections[0].axial_n = -std::numeric_limits<double>::infinity();
+  spoiled.connections[0].shear_n = -0.0;
+  const Grid finite(robot, spoiled);
+  EXPECT_EQ(finite.numbers("load_ratio"), (std::vector<double>{0, 0, 0}));
+  EXPECT_EQ(finite.numbers("axial_n"), (std::vector<double>{0, 0, 0}));
+  EXPECT_FALSE(std::signbit(finite.numbers("shear_n")[2]));
+}
+
+TEST(Vtu, a_single_module_has_no_lines) {
+  const Grid grid = write({.existing = {{0, 0, 0}}});
+  EXPECT_EQ(grid.cell_count(), 1U);
+  EXPECT_EQ(grid.point_count(), 8U);
+  EXPECT_EQ(grid.numbers("has_loads"), std::vector<double>{1});
+  EXPECT_NEAR(grid.triple("ground_force_n", 0)[2], kWeight, 1e-8);
+}
+
+}  // namespace
+}  // namespace holdfast::io::picture_test

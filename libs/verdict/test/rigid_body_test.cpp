@@ -1,0 +1,300 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// The rigid body on flat ground. Expected values: closed forms, the margins of the paper's own
+// structures as computed independently of this project (MODEL.md, section 4; six decimals in
+// mm), a brute-force search for the lines that support all corners, and the other method of
+// Sec. III-B, safe angles. Lengths in mm; a cell is 40 wide and cell (0,0) is centred on the
+// origin.
+#include "holdfast/verdict/rigid_body.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <set>
+#include <utility>
+
+#include "holdfast/mechanics/safe_angles.hpp"
+#include "random_robot.hpp"
+
+namespace holdfast::verdict {
+namespace {
+
+using base::Cell;
+using model::Robot;
+using model::RobotSpec;
+
+constexpr double kRounding = 1e-9;  // mm, for lengths up to some thousand
+
+Robot make(const RobotSpec& spec) {
+  auto robot = Robot::create(spec);
+  EXPECT_TRUE(robot.has_value()) << robot.error().message;
+  return std::move(robot).value();
+}
+
+RigidBody assess(const RobotSpec& spec) { return assess_rigid_body(make(spec)); }
+
+void expect_edge(const RigidBody& body, const PlanPoint& a, const PlanPoint& b) {
+  ASSERT_TRUE(body.edge);
+  EXPECT_NEAR((*body.edge)[0].x, a.x, kRounding);
+  EXPECT_NEAR((*body.edge)[0].y, a.y, kRounding);
+  EXPECT_NEAR((*body.edge)[1].x, b.x, kRounding);
+  EXPECT_NEAR((*body.edge)[1].y, b.y, kRounding);
+}
+
+/// Three feet in an L, whose polygon has a diagonal edge from (60, 20) to (20, 60), and a tower of
+/// eight modules in all whose centre of mass, (9/8, 7/8) cells, lies exactly over it: the sum of
+/// x + y is 16 and the edge's line is x + y = 2.
+const std::vector<Cell> kDiagonalTie = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 0, 1},
+                                        {1, 1, 1}, {2, 1, 1}, {2, 2, 1}, {2, 2, 2}};
+
+std::vector<Cell> with(std::vector<Cell> cells, std::initializer_list<Cell> more) {
+  cells.insert(cells.end(), more);
+  return cells;
+}
+
+TEST(RigidBody, that_is_a_single_module_has_half_a_cell_to_spare) {
+  const RigidBody body = assess({.existing = {{3, -2, 0}}});
+  EXPECT_TRUE(body.is_stable);
+  EXPECT_NEAR(*body.margin_mm, 20, kRounding);
+  EXPECT_NEAR(body.centre_of_mass.x, 120, kRounding);
+  EXPECT_NEAR(body.centre_of_mass.y, -80, kRounding);
+  EXPECT_EQ(body.polygon.size(), 4U);
+}
+
+/// The structures of Fig. 6, planned modules included.
+TEST(RigidBody, of_the_published_structures_has_the_reference_margins) {
+  const RobotSpec arm_a = {
+      .existing =
+          {{1, 1, 0}, {2, 1, 0}, {1, 1, 1}, {2, 1, 1}, {1, 1, 2}, {2, 1, 2}, {3, 1, 2}, {4, 1, 2}},
+      .planned = {{5, 1, 2}}};
+  const RobotSpec arm_c = {.existing = with(arm_a.existing, {{5, 1, 2}, {6, 1, 2}})};
+  const RobotSpec bush_a = {.existing = {{1, 1, 0},
+                                         {2, 1, 0},
+                                         {2, 2, 0},
+                                         {2, 1, 1},
+                                         {2, 1, 2},
+                                         {2, 1, 3},
+                                         {3, 1, 3},
+                                         {3, 2, 3},
+                                         {3, 3, 3}},
+                            .planned = {{4, 3, 3}}};
+  const RobotSpec crane_a = {.existing = {{1, 1, 0},
+                                          {1, 2, 0},
+                                          {2, 1, 0},
+                                          {1, 1, 1},
+                                          {1, 1, 2},
+                                          {2, 1, 2},
+                                          {2, 2, 2},
+                                          {3, 2, 2},
+                                          {3, 3, 2}},
+                             .planned = {{4, 3, 2}}};
+  const RobotSpec crane_b = {.existing = with(crane_a.existing, {{4, 3, 2}}),
+                             .planned = {{4, 4, 2}}};
+  const std::pair<RobotSpec, double> cases[] = {
+      {arm_a, 6.666667}, {arm_c, -8}, {bush_a, 4}, {crane_a, 8.485281}, {crane_b, -2.571297}};
+  for (const auto& [spec, margin] : cases) {
+    const RigidBody body = assess(spec);
+    EXPECT_NEAR(*body.margin_mm, margin, 6e-7);
+    EXPECT_EQ(body.is_stable, margin > 0);
+  }
+}
+
+/// One foot with an arm to each side: the centre of mass lies 3/4 cell out, 10 mm beyond the edge.
+TEST(RigidBody, names_the_edge_that_it_topples_over_with_the_polygon_on_its_left) {
+  const auto arm = [](int x, int y) {
+    return assess({.existing = {{0, 0, 0}, {0, 0, 1}, {x, y, 1}, {2 * x, 2 * y, 1}}});
+  };
+  expect_edge(arm(1, 0), {20, -20}, {20, 20});
+  expect_edge(arm(0, 1), {20, 20}, {-20, 20});
+  expect_edge(arm(-1, 0), {-20, 20}, {-20, -20});
+  expect_edge(arm(0, -1), {-20, -20}, {20, -20});
+  for (const auto& [x, y] : {std::pair{1, 0}, {0, 1}, {-1, 0}, {0, -1}}) {
+    EXPECT_FALSE(arm(x, y).is_stable);
+    EXPECT_NEAR(*arm(x, y).margin_mm, -10, kRounding);
+  }
+}
+
+/// Mean x is 2/4 = 1/2 cell: exactly over the edge x = 20 mm.
+TEST(RigidBody, with_its_mass_exactly_over_an_edge_is_not_stable) {
+  const RigidBody body = assess({.existing = {{0, 0, 0}, {0, 0, 1}, {1, 0, 1}, {1, 0, 2}}});
+  EXPECT_FALSE(body.is_stable);
+  EXPECT_EQ(*body.margin_mm, 0);
+  expect_edge(body, {20, -20}, {20, 20});
+}
+
+/// The second tower has nine modules at (10/9, 8/9) cells, which double cannot hold. Both also at
+/// the far end of the lattice.
+TEST(RigidBody, recognises_a_tie_exactly_on_a_diagonal_and_far_away) {
+  std::vector<Cell> ninths = with(kDiagonalTie, {{2, 1, 2}, {1, 2, 1}});
+  std::erase(ninths, Cell{2, 2, 2});
+  for (std::vector<Cell> cells : {kDiagonalTie, ninths}) {
+    for (const std::int32_t shift : {0, 999'990}) {
+      for (Cell& cell : cells) {
+        cell.x += shift;
+        cell.y -= shift;
+      }
+      const RigidBody body = assess({.existing = cells});
+      EXPECT_FALSE(body.is_stable);
+      EXPECT_EQ(*body.margin_mm, 0);
+      const double mm = 40.0 * shift;
+      // Doubles near 4e7 mm are 7e-9 apart.
+      EXPECT_NEAR((*body.edge)[0].x, 60 + mm, 1e-7);
+      EXPECT_NEAR((*body.edge)[1].y, 60 - mm, 1e-7);
+    }
+  }
+}
+
+/// One module more or less shifts the mean of x + y off 2 cells; a diagonal is 1 / sqrt(2) closer.
+TEST(RigidBody, measures_its_margin_at_right_angles_to_a_diagonal_edge) {
+  const RigidBody beyond = assess({.existing = with(kDiagonalTie, {{3, 2, 1}})});
+  EXPECT_FALSE(beyond.is_stable);
+  EXPECT_NEAR(*beyond.margin_mm, 40 * (2 - 21.0 / 9) / std::sqrt(2), kRounding);
+  expect_edge(beyond, {60, 20}, {20, 60});
+  const RigidBody within = assess({.existing = with(kDiagonalTie, {{1, 0, 2}})});
+  EXPECT_TRUE(within.is_stable);
+  EXPECT_NEAR(*within.margin_mm, 40 * (2 - 17.0 / 9) / std::sqrt(2), kRounding);
+  expect_edge(within, {60, 20}, {20, 60});
+}
+
+/// Mass at (1, 2/3) cells over a foot of half a cell: 20 mm beyond one edge, 6.7 mm beyond the
+/// other, and farther than either from the corner. The weight tips over the first.
+TEST(RigidBody, measures_beyond_a_corner_to_the_line_of_the_worse_edge) {
+  const RigidBody body =
+      assess({.existing = {{0, 0, 0}, {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {2, 1, 1}, {2, 2, 1}}});
+  EXPECT_NEAR(*body.margin_mm, -20, kRounding);
+  expect_edge(body, {20, -20}, {20, 20});
+}
+
+TEST(RigidBody, that_is_fixed_is_stable_without_a_margin) {
+  const RigidBody body =
+      assess({.existing = {{0, 0, 0}, {0, 0, 1}, {1, 0, 1}, {2, 0, 1}}, .fixed = {{1, 0, 1}}});
+  EXPECT_TRUE(body.is_stable);
+  EXPECT_FALSE(body.margin_mm);
+  EXPECT_FALSE(body.edge);
+  EXPECT_EQ(body.polygon.size(), 4U);
+}
+
+TEST(RigidBody, that_is_fixed_needs_no_ground) {
+  const RigidBody body =
+      assess({.existing = {{0, 0, 5}, {2, 0, 5}, {1, 0, 5}}, .fixed = {{0, 0, 5}}});
+  EXPECT_TRUE(body.is_stable);
+  EXPECT_FALSE(body.margin_mm);
+  EXPECT_TRUE(body.polygon.empty());
+  EXPECT_NEAR(body.centre_of_mass.x, 40, kRounding);
+}
+
+TEST(RigidBody, weighs_planned_modules_and_stands_on_them) {
+  const std::vector<Cell> tower = {{0, 0, 0}, {0, 0, 1}, {1, 0, 1}, {2, 0, 1}};
+  EXPECT_FALSE(assess({.existing = tower}).is_stable);
+  // Mean x is 5/5: the foot at x = 2 widens the polygon to 100 mm.
+  const RigidBody body = assess({.existing = tower, .planned = {{2, 0, 0}}});
+  EXPECT_TRUE(body.is_stable);
+  EXPECT_NEAR(*body.margin_mm, 20, kRounding);
+}
+
+double turn(const PlanPoint& a, const PlanPoint& b, const PlanPoint& c) {
+  return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
+}
+
+std::vector<PlanPoint> corners_of(const Robot& robot) {
+  std::set<std::pair<double, double>> corners;
+  for (const model::Module& module : robot.modules()) {
+    for (const double dx : {-20.0, 20.0}) {
+      for (const double dy : {-20.0, 20.0}) {
+        if (module.support == model::Support::kGround) {
+          corners.emplace(40.0 * module.cell.x + dx, 40.0 * module.cell.y + dy);
+        }
+      }
+    }
+  }
+  std::vector<PlanPoint> points;
+  for (const auto& [x, y] : corners) {
+    points.push_back({x, y});
+  }
+  return points;
+}
+
+/// Second method: every line through two corners that has all corners on its left or on it.
+double margin_by_brute_force(const std::vector<PlanPoint>& corners, const PlanPoint& mass) {
+  double margin = std::numeric_limits<double>::infinity();
+  for (const PlanPoint& a : corners) {
+    for (const PlanPoint& b : corners) {
+      const double length = std::hypot(b.x - a.x, b.y - a.y);
+      if (length > 0 &&
+          std::ranges::all_of(corners, [&](const PlanPoint& c) { return turn(a, b, c) >= 0; })) {
+        margin = std::min(margin, turn(a, b, mass) / length);
+      }
+    }
+  }
+  return margin;
+}
+
+TEST(RigidBody, has_the_margin_of_the_nearest_line_that_supports_all_corners) {
+  for (std::uint64_t seed = 0; seed < 300; ++seed) {
+    const Robot robot = make(test::random_robot(seed));
+    const RigidBody body = assess_rigid_body(robot);
+    PlanPoint mass;
+    for (const model::Module& module : robot.modules()) {
+      mass.x += 40.0 * module.cell.x / static_cast<double>(robot.modules().size());
+      mass.y += 40.0 * module.cell.y / static_cast<double>(robot.modules().size());
+    }
+    EXPECT_NEAR(body.centre_of_mass.x, mass.x, kRounding);
+    EXPECT_NEAR(body.centre_of_mass.y, mass.y, kRounding);
+    EXPECT_NEAR(*body.margin_mm, margin_by_brute_force(corners_of(robot), mass), kRounding)
+        << "seed " << seed;
+    const auto& [a, b] = *body.edge;
+    EXPECT_NEAR(turn(a, b, mass) / std::hypot(b.x - a.x, b.y - a.y), *body.margin_mm, kRounding);
+  }
+}
+
+/// Counter-clockwise, strictly convex, with every corner of every foot inside or on it.
+TEST(RigidBody, stands_on_the_convex_hull_of_its_feet) {
+  for (std::uint64_t seed = 0; seed < 300; ++seed) {
+    const Robot robot = make(test::random_robot(seed));
+    const auto polygon = assess_rigid_body(robot).polygon;
+    const std::size_t n = polygon.size();
+    ASSERT_GE(n, 4U);
+    for (std::size_t i = 0; i < n; ++i) {
+      const PlanPoint& a = polygon[i];
+      const PlanPoint& b = polygon[(i + 1) % n];
+      EXPECT_GT(turn(a, b, polygon[(i + 2) % n]), 1) << "seed " << seed;
+      for (const PlanPoint& corner : corners_of(robot)) {
+        EXPECT_GT(turn(a, b, corner), -1) << "seed " << seed;  // mm^2, of at least 1600
+      }
+    }
+  }
+}
+
+/// Scaled by twice the number of modules all coordinates are integers, so ties agree as well.
+TEST(RigidBody, agrees_with_the_safe_angles_of_its_feet) {
+  int stable_count = 0;
+  for (std::uint64_t seed = 0; seed < 2000; ++seed) {
+    const Robot robot = make(test::random_robot(seed));
+    const auto n = static_cast<double>(robot.modules().size());
+    double mass_x = 0;
+    double mass_y = 0;
+    for (const model::Module& module : robot.modules()) {
+      mass_x += 2 * module.cell.x;
+      mass_y += 2 * module.cell.y;
+    }
+    mechanics::SafeAngles<double> angles;
+    for (const model::Module& module : robot.modules()) {
+      if (module.support == model::Support::kGround) {
+        const mechanics::PlanVector<double> foot = {2 * module.cell.x * n - mass_x,
+                                                    2 * module.cell.y * n - mass_y};
+        angles = mechanics::merge(angles, mechanics::safe_angles(foot, n));
+      }
+    }
+    const bool is_stable = assess_rigid_body(robot).is_stable;
+    EXPECT_EQ(is_stable, angles.range == mechanics::SafeRange::kFull) << "seed " << seed;
+    stable_count += is_stable ? 1 : 0;
+  }
+  EXPECT_GT(stable_count, 500);
+  EXPECT_LT(stable_count, 1900);
+}
+
+}  // namespace
+}  // namespace holdfast::verdict
