@@ -16,8 +16,9 @@
 namespace holdfast::io {
 namespace {
 
-/// A string or number of more bytes is noise; the parser would copy it several times.
-constexpr std::size_t kTokenBytesMax = std::size_t{1} << 20U;
+/// A string, every character of it an escape, fits in. What is longer is noise, and the parser
+/// would copy it several times.
+constexpr std::size_t kTokenBytesMax = 8 * kStringBytesMax;
 
 /// A pointer shows so much of a key.
 constexpr std::size_t kTokenShownMax = 60;
@@ -169,13 +170,17 @@ class TreeBuilder {
 
   /// At a key of the innermost open object.
   bool fail(const std::string& key, std::string message) {
-    std::string pointer;
-    for (std::size_t i = 0; i + 1 < open_.size(); ++i) {
-      const auto* object = open_[i]->get_ptr<const Json::object_t*>();
-      pointer += "/" + (object == nullptr ? std::to_string(open_[i]->size() - 1)
-                                          : pointer_token(object->back().first));
+    std::string pointer = "/" + pointer_token(key);
+    for (std::size_t i = open_.size() - 1; i > 0; --i) {
+      if (pointer.size() > kPointerShownMax) {
+        pointer.insert(0, "...");
+        break;
+      }
+      const auto* object = open_[i - 1]->get_ptr<const Json::object_t*>();
+      pointer.insert(0, "/" + (object == nullptr ? std::to_string(open_[i - 1]->size() - 1)
+                                                 : pointer_token(object->back().first)));
     }
-    error_ = {base::ErrorCode::kBadInput, std::move(message), pointer + "/" + pointer_token(key)};
+    error_ = {base::ErrorCode::kBadInput, std::move(message), std::move(pointer)};
     return false;
   }
 

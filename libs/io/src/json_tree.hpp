@@ -13,6 +13,9 @@ namespace holdfast::io {
 /// Keeps the order of members.
 using Json = nlohmann::ordered_json;
 
+/// Of a longer pointer, messages show the end.
+inline constexpr std::size_t kPointerShownMax = 200;
+
 /// Parses JSON into a tree. Refuses what a parser alone would let pass or choke on: nesting beyond
 /// kNestingMax, tokens of megabytes, a key that appears twice in one object.
 base::Result<Json> parse_json(std::string_view text);

@@ -24,10 +24,15 @@ std::string describe(const Json& value) {
 }  // namespace
 
 std::string Place::pointer() const {
-  if (parent == nullptr) {
-    return {};
+  std::string text;
+  for (const Place* place = this; place->parent != nullptr; place = place->parent) {
+    if (text.size() > kPointerShownMax) {
+      return "..." + text;
+    }
+    text.insert(0,
+                "/" + (place->index ? std::to_string(*place->index) : pointer_token(place->key)));
   }
-  return parent->pointer() + "/" + (index ? std::to_string(*index) : pointer_token(key));
+  return text;
 }
 
 void JsonReading::fail(const Place& place, std::string message) {

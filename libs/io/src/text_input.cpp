@@ -111,6 +111,9 @@ std::optional<base::Error> find_input_fault(std::string_view text) {
 }
 
 std::optional<std::string> find_string_fault(std::string_view text) {
+  if (text.size() > kStringBytesMax) {
+    return fmt::format("has {} bytes, allowed are {}", text.size(), kStringBytesMax);
+  }
   if (find_bad_byte(text)) {
     return "is not UTF-8";
   }

@@ -12,6 +12,9 @@
 /// Text from outside, before and while it is parsed. Nothing here trusts its input.
 namespace holdfast::io {
 
+/// No string of a document is longer, whichever format it comes from.
+inline constexpr std::size_t kStringBytesMax = std::size_t{1} << 20U;
+
 /// In quotes for a message: printable ASCII ('?' for the rest), cut after 60 characters.
 std::string excerpt(std::string_view text);
 
@@ -27,8 +30,8 @@ std::string line_at(std::string_view text, std::size_t offset);
 /// An input that is blank, too large, not UTF-8 or holds a zero byte, whatever its format.
 std::optional<base::Error> find_input_fault(std::string_view text);
 
-/// Why a string cannot be kept: "is not UTF-8", "holds the control character 0x07". Tabs and line
-/// feeds can; what passes here comes back unchanged from both formats.
+/// Why a string cannot be kept, such as "is not UTF-8" or "holds the control character 0x07". Tabs
+/// and line feeds can; what passes here comes back unchanged from both formats.
 std::optional<std::string> find_string_fault(std::string_view text);
 
 /// Whether an element or attribute of XML can have this name.

@@ -118,13 +118,36 @@ TEST(BadInput, with_scenery_nested_beyond_what_both_formats_hold_is_refused) {
 
 TEST(BadInput, of_more_modules_than_allowed_is_refused_before_they_are_made) {
   expect_refusal({xml("<blockBox/>"), "line 3", "20000000"});
-  expect_refusal({xml(repeated("<blockBox boxSize=\"40000,40000,410\"/>\n", 3)), "line 4",
-                  "11022011 cells here make more than the 20000000"});
+  // 1000 x 1000 x 11 cells each.
+  expect_refusal({xml(repeated("<blockBox boxSize=\"40000,40000,410\"/>\n", 2)), "line 4",
+                  "11000000 cells here make more than the 20000000"});
 }
 
-TEST(BadInput, of_endless_tokens_is_refused) {
-  expect_refusal({"{\"" + repeated("a", 2'000'000), "line 1", "longer than the 1048576 bytes"});
-  expect_refusal({"{\"a\":" + repeated("1", 2'000'000), "line 1", "longer than the 1048576 bytes"});
+TEST(BadInput, in_a_place_with_a_long_name_is_refused_with_the_end_of_it) {
+  std::string place = "\"k\": 0, \"k\": 1";
+  for (int i = 0; i < 40; ++i) {
+    place = "\"" + repeated("long", 30) + "\": {" + place + "}";
+  }
+  const auto read = read_document(json(place));
+  ASSERT_FALSE(read);
+  EXPECT_LT(read.error().where.size(), 300U);
+  EXPECT_TRUE(read.error().where.starts_with(".../long"));
+  EXPECT_TRUE(read.error().where.ends_with("long/k"));
+}
+
+TEST(BadInput, of_endless_strings_is_refused) {
+  const std::string a_million(1'000'000, 'a');
+  const std::string nine_million = repeated(a_million, 9);
+  for (const char* begin : {"{\"", "{\"a\": \"", "{\"a\": 1", "{\"a\": x"}) {
+    expect_refusal({begin + nine_million, "line 1", "longer than the 8388608 bytes"});
+  }
+  expect_refusal({json("\"modules\": [], \"name\": \"" + a_million + a_million + "\""), "/name",
+                  "has 2000000 bytes, allowed are 1048576"});
+  expect_refusal({"<world a='" + a_million + a_million + "'><blockList/></world>", "line 1",
+                  "has 2000000 bytes, allowed are 1048576"});
+}
+
+TEST(BadInput, of_endless_objects_is_refused) {
   std::string members;
   for (int i = 0; i < 300; ++i) {
     members += "\"k" + std::to_string(i) + "\": 0, ";
