@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The holdfast authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// The generator is SplitMix64: its first outputs for the seed 1234567 are those of the authors'
+// The generator is SplitMix64: its first outputs for the seed 1234567 are the published ones of the
 // reference program in C (Vigna, splitmix64.c), so every platform draws the same random robots.
 #include "holdfast/base/rng.hpp"
 
@@ -13,9 +13,9 @@ namespace holdfast::base {
 namespace {
 
 TEST(Rng, gives_the_published_outputs_of_splitmix64) {
-  constexpr std::array<std::uint64_t, 5> kPublished = {
-      6457827717110365317U, 3203168211198807973U, 9817491932198370423U, 4593380528125082431U,
-      16408922859458223821U};
+  constexpr std::array<std::uint64_t, 5> kPublished = {6457827717110365317U, 3203168211198807973U,
+                                                       9817491932198370423U, 4593380528125082431U,
+                                                       16408922859458223821U};
   Rng rng(1234567);
   for (const std::uint64_t expected : kPublished) {
     EXPECT_EQ(rng.next(), expected);

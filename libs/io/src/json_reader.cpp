@@ -207,6 +207,12 @@ Entry JsonReader::entry(const Json& value, const Place& place) {
   }
   for (const auto& [key, member] : reading_.members(value, place)) {
     const Place here = place.at(key);
+    if constexpr (kIsModule) {
+      if (key == "fixed") {
+        entry.is_fixed = reading_.boolean(member, here);
+        continue;
+      }
+    }
     if (key == "cell") {
       entry.cell = reading_.cell(member, here);
     } else if (key == "color") {
@@ -214,10 +220,6 @@ Entry JsonReader::entry(const Json& value, const Place& place) {
     } else if (key == "attributes") {
       entry.attributes =
           reading_.attributes(member, here, kIsModule ? is_module_attribute : is_planned_attribute);
-    } else if (kIsModule && key == "fixed") {
-      if constexpr (kIsModule) {
-        entry.is_fixed = reading_.boolean(member, here);
-      }
     } else {
       reading_.warn_unknown(here);
     }

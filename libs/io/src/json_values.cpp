@@ -135,10 +135,8 @@ Attributes JsonReading::attributes(const Json& value, const Place& place,
   Attributes attributes;
   for (const auto& [key, member] : members(value, place)) {
     const Place here = place.at(key);
-    if (!is_xml_name(key)) {
-      fail(here, fmt::format("{} cannot be the name of an attribute, expected are letters, digits, "
-                             "'_', ':', '-', '.', a letter first",
-                             excerpt(key)));
+    if (const auto fault = find_name_fault(key)) {
+      fail(here, *fault);
     } else if (is_reserved(key)) {
       fail(here, fmt::format("{} has a key of its own in this format", excerpt(key)));
     }
@@ -167,10 +165,8 @@ Element JsonReading::element(const Json& value, const Place& place, int depth) {
       warn_unknown(here);
     }
   }
-  if (!is_xml_name(element.name)) {
-    fail(place.at("element"), fmt::format("{} cannot be the name of an element, expected are "
-                                          "letters, digits, '_', ':', '-', '.', a letter first",
-                                          excerpt(element.name)));
+  if (const auto fault = find_name_fault(element.name)) {
+    fail(place.at("element"), *fault);
   }
   return element;
 }

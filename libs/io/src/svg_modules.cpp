@@ -60,7 +60,7 @@ void append_polygon(const Scene& scene, const VisibleFace& face, Path& path) {
   path.close();
 }
 
-/// The faces from `first` to `last` have one colour. Stroked in it, lest the card shine through.
+/// Of faces in one colour. Stroked in it too, lest the card shine through between them.
 std::string face_path(const Scene& scene, std::span<const PaintedFace> faces) {
   Path path;
   for (const PaintedFace& face : faces) {

@@ -125,8 +125,15 @@ std::optional<std::string> find_string_fault(std::string_view text) {
   return std::nullopt;
 }
 
-bool is_xml_name(std::string_view text) {
-  return !text.empty() && is_name_start(text.front()) && std::ranges::all_of(text, is_name_part);
+std::optional<std::string> find_name_fault(std::string_view name) {
+  if (!name.empty() && name.size() <= kNameBytesMax && is_name_start(name.front()) &&
+      std::ranges::all_of(name, is_name_part)) {
+    return std::nullopt;
+  }
+  return fmt::format(
+      "{} cannot be a name, allowed are up to {} letters, digits, '_', ':', '-', '.', of which the "
+      "first is a letter or '_'",
+      excerpt(name), kNameBytesMax);
 }
 
 bool is_conflict_marker(std::string_view line) {

@@ -14,6 +14,7 @@ namespace holdfast::io {
 
 /// No string of a document is longer, whichever format it comes from.
 inline constexpr std::size_t kStringBytesMax = std::size_t{1} << 20U;
+inline constexpr std::size_t kNameBytesMax = 256;
 
 /// In quotes for a message: printable ASCII ('?' for the rest), cut after 60 characters.
 std::string excerpt(std::string_view text);
@@ -34,8 +35,8 @@ std::optional<base::Error> find_input_fault(std::string_view text);
 /// and line feeds can; what passes here comes back unchanged from both formats.
 std::optional<std::string> find_string_fault(std::string_view text);
 
-/// Whether an element or attribute of XML can have this name.
-bool is_xml_name(std::string_view text);
+/// Why an element or attribute of XML cannot have this name.
+std::optional<std::string> find_name_fault(std::string_view name);
 
 /// Whether a line begins as those do that a version control system leaves behind.
 bool is_conflict_marker(std::string_view line);

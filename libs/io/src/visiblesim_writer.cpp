@@ -158,7 +158,7 @@ class StringWriter : public pugi::xml_writer {
 
 std::string write_visiblesim(const Document& document) {
   pugi::xml_document tree;
-  add_parameters(tree, document);
+  add_parameters(tree.root(), document);
   pugi::xml_node world = tree.append_child("world");
   add_all(world, document.world);
   const bool is_grid_computed = find_attribute(document.world, kGridSize) == nullptr;

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 #include <vector>
@@ -159,6 +160,9 @@ Attributes XmlReading::attributes(const pugi::xml_node& node,
            fmt::format("{} has more than {} attributes", excerpt(node.name()), kAttributeCountMax));
       break;
     }
+    if (const auto fault = find_name_fault(name)) {
+      fail(node, *fault);
+    }
     if (const auto fault = find_string_fault(attribute.value())) {
       fail(node, fmt::format("the attribute {} {}", excerpt(name), *fault));
     }
@@ -243,6 +247,9 @@ Element XmlReading::element(const pugi::xml_node& node, int depth) {
     }
   }
   element.text = trimmed(element.text);
+  if (const auto fault = find_name_fault(element.name)) {
+    fail(node, *fault);
+  }
   if (const auto fault = find_string_fault(element.text)) {
     fail(node, fmt::format("the text of {} {}", excerpt(element.name), *fault));
   }

@@ -118,9 +118,9 @@ TEST(BadInput, with_scenery_nested_beyond_what_both_formats_hold_is_refused) {
 
 TEST(BadInput, of_more_modules_than_allowed_is_refused_before_they_are_made) {
   expect_refusal({xml("<blockBox/>"), "line 3", "20000000"});
-  // 1000 x 1000 x 11 cells each.
-  expect_refusal({xml(repeated("<blockBox boxSize=\"40000,40000,410\"/>\n", 2)), "line 4",
-                  "11000000 cells here make more than the 20000000"});
+  // One cell, then 1000 x 1000 x 20.
+  expect_refusal({xml("<blockBox boxSize=\"0,0,0\"/>\n<blockBox boxSize=\"40000,40000,779\"/>"),
+                  "line 4", "20000000 cells here make more than the 20000000"});
 }
 
 TEST(BadInput, in_a_place_with_a_long_name_is_refused_with_the_end_of_it) {
@@ -143,6 +143,8 @@ TEST(BadInput, of_endless_strings_is_refused) {
   }
   expect_refusal({json("\"modules\": [], \"name\": \"" + a_million + a_million + "\""), "/name",
                   "has 2000000 bytes, allowed are 1048576"});
+  expect_refusal(
+      {"<world " + a_million + "=''><blockList/></world>", "line 1", "up to 256 letters"});
   expect_refusal({"<world a='" + a_million + a_million + "'><blockList/></world>", "line 1",
                   "has 2000000 bytes, allowed are 1048576"});
 }

@@ -69,13 +69,17 @@ TEST(SvgGeometry, hidden_faces_are_not_drawn) {
   }
 }
 
+struct Hit {
+  Cell cell;
+  double nearness = 0;
+};
+
 /// The cell that a ray of sight meets first: points seen at (u, v) = (x + y, x - y - 2 z) are
 /// p + t (1, -1, 1), and larger t is nearer. By intersection with every cube.
-std::optional<Cell> first_hit(const std::vector<Cell>& cells, double u, double v) {
+std::optional<Hit> first_hit(const std::vector<Cell>& cells, double u, double v) {
   const std::array<double, 3> start = {u / 2 + v / 2, u / 2 - v / 2, 0};
   constexpr std::array<double, 3> kWay = {1, -1, 1};
-  double nearest = -std::numeric_limits<double>::infinity();
-  std::optional<Cell> hit;
+  std::optional<Hit> hit;
   for (const Cell& cell : cells) {
     const std::array<double, 3> centre = {static_cast<double>(cell.x), static_cast<double>(cell.y),
                                           static_cast<double>(cell.z)};
@@ -87,9 +91,8 @@ std::optional<Cell> first_hit(const std::vector<Cell>& cells, double u, double v
       enter = std::min(enter, std::max(a, b));
       leave = std::max(leave, std::min(a, b));
     }
-    if (enter > leave && enter > nearest) {
-      nearest = enter;
-      hit = cell;
+    if (enter > leave && (!hit || enter > hit->nearness)) {
+      hit = {.cell = cell, .nearness = enter};
     }
   }
   return hit;
@@ -109,6 +112,31 @@ Frame lattice_frame(const std::vector<Cell>& cells) {
   }
   return frame;
 }
+
+/// Where a point (u, v) of the lattice is on a picture of these cells.
+class View {
+ public:
+  View(const Picture& picture, const std::vector<Cell>& cells) : lattice_(lattice_frame(cells)) {
+    for (const char* group : {"modules", "planned"}) {
+      for (const Face& face : picture.faces(group)) {
+        std::ranges::for_each(face.corners, [&](Point corner) { drawn_.add(corner); });
+      }
+    }
+  }
+
+  const Frame& lattice() const { return lattice_; }
+
+  Point pixel(Point point) const {
+    const double across = (point.x - lattice_.left) / (lattice_.right - lattice_.left);
+    const double down = (point.y - lattice_.top) / (lattice_.bottom - lattice_.top);
+    return {drawn_.left + across * (drawn_.right - drawn_.left),
+            drawn_.top + down * (drawn_.bottom - drawn_.top)};
+  }
+
+ private:
+  Frame lattice_;
+  Frame drawn_;
+};
 
 /// Tooltips of the faces over a pixel.
 std::vector<std::string> titles_at(const std::vector<Face>& faces, Point pixel) {
@@ -133,34 +161,28 @@ TEST(SvgGeometry, what_is_drawn_is_what_a_ray_of_sight_meets_first) {
     const Picture picture(write_svg(robot, without_loads(robot), "random"));
     const auto existing = picture.faces("modules");
     const auto planned = picture.faces("planned");
-    Frame drawn;
-    for (const auto* faces : {&existing, &planned}) {
-      for (const Face& face : *faces) {
-        std::ranges::for_each(face.corners, [&](Point corner) { drawn.add(corner); });
-      }
-    }
-    const Frame lattice = lattice_frame(all);
-    const auto columns = static_cast<int>(lattice.right - lattice.left);
-    const auto rows = static_cast<int>(lattice.bottom - lattice.top);
+    const View view(picture, all);
+    const auto columns = static_cast<int>(view.lattice().right - view.lattice().left);
+    const auto rows = static_cast<int>(view.lattice().bottom - view.lattice().top);
     for (int i = 0; i < columns * rows; ++i) {
-      const double left = lattice.left + i % columns;
-      const double v = lattice.top + i / columns;
+      const double left = view.lattice().left + i % columns;
+      const double v = view.lattice().top + i / columns;
       const bool points_right = std::fmod(std::abs(v - left), 2) == 1;
       const double u = left + (points_right ? 1.0 / 3 : 2.0 / 3);
-      const Point pixel = {drawn.left + (u - lattice.left) / columns * (drawn.right - drawn.left),
-                           drawn.top + (v - lattice.top) / rows * (drawn.bottom - drawn.top)};
-      const auto expect_title = [&](const std::vector<Face>& faces, std::optional<Cell> hit) {
+      const Point pixel = view.pixel({u, v});
+      const auto expect_title = [&](const std::vector<Face>& faces, std::optional<Hit> hit) {
         const auto titles = titles_at(faces, pixel);
         ASSERT_EQ(titles.size(), hit ? 1U : 0U) << "seed " << seed << " at " << u << ", " << v;
         if (hit) {
-          const std::string cell = fmt::format("({},{},{})", hit->x, hit->y, hit->z);
+          const std::string cell = fmt::format("({},{},{})", hit->cell.x, hit->cell.y, hit->cell.z);
           EXPECT_TRUE(titles.front().starts_with(cell)) << titles.front() << " hides " << cell;
         }
       };
       expect_title(existing, first_hit(spec.existing, u, v));
       // Of planned modules, what nothing hides.
       const auto hit = first_hit(all, u, v);
-      const bool is_planned = hit && std::ranges::find(spec.planned, *hit) != spec.planned.end();
+      const bool is_planned =
+          hit && std::ranges::find(spec.planned, hit->cell) != spec.planned.end();
       expect_title(planned, is_planned ? hit : std::nullopt);
     }
   }
@@ -175,6 +197,67 @@ std::vector<std::size_t> line_counts(const Picture& picture, const std::string& 
     }
   }
   return counts;
+}
+
+bool lies_on(Point point, const Polygon& segment) {
+  const Point way = {segment[1].x - segment[0].x, segment[1].y - segment[0].y};
+  const Point offset = {point.x - segment[0].x, point.y - segment[0].y};
+  const double square = way.x * way.x + way.y * way.y;
+  const double share = (offset.x * way.x + offset.y * way.y) / square;
+  const double distance = std::abs(offset.x * way.y - offset.y * way.x) / std::sqrt(square);
+  return share > 0 && share < 1 && distance < 0.05;  // Rounded to hundredths of a pixel.
+}
+
+TEST(SvgGeometry, outlines_are_where_depth_jumps_and_gaps_are_behind_them) {
+  // Rays on both sides of the middle of every edge of the lattice: where one of them misses, or
+  // they meet cubes at different depths, there is an outline, and nowhere else. A gap is on the
+  // side that is further away.
+  constexpr double kAside = 0.02;
+  constexpr double kJump = 0.2;  // Faces alone change depth by 0.03 between the rays, jumps by 1/2.
+  for (std::uint64_t seed = 0; seed < 12; ++seed) {
+    model::RobotSpec spec = test::random_robot(seed);
+    spec.planned.clear();
+    const model::Robot robot = make(spec);
+    const Picture picture(write_svg(robot, without_loads(robot), "random"));
+    const View view(picture, spec.existing);
+    const auto outlines = polygons(picture.one("outlines").last_child().attribute("d").value());
+    std::vector<Polygon> gaps;
+    if (const pugi::xml_node path = picture.one("gaps")) {
+      gaps = polygons(path.attribute("d").value());
+    }
+    const auto expect_edge = [&](Point middle, Point aside) {
+      const Point before = {middle.x - aside.x, middle.y - aside.y};
+      const Point after = {middle.x + aside.x, middle.y + aside.y};
+      const auto hit_before = first_hit(spec.existing, before.x, before.y);
+      const auto hit_after = first_hit(spec.existing, after.x, after.y);
+      const double jump = hit_before && hit_after ? hit_after->nearness - hit_before->nearness : 0;
+      const bool is_outline =
+          hit_before.has_value() != hit_after.has_value() || std::abs(jump) > kJump;
+      EXPECT_EQ(is_outline, std::ranges::any_of(outlines,
+                                                [&](const Polygon& line) {
+                                                  return lies_on(view.pixel(middle), line);
+                                                }))
+          << "seed " << seed << " at " << middle.x << ", " << middle.y;
+      const auto is_in_gap = [&](Point point) {
+        return std::ranges::any_of(
+            gaps, [&](const Polygon& gap) { return contains(gap, view.pixel(point)); });
+      };
+      if (std::abs(jump) > kJump) {
+        EXPECT_TRUE(is_in_gap(jump > 0 ? before : after)) << "seed " << seed;
+      } else {
+        EXPECT_FALSE(is_in_gap(before) || is_in_gap(after)) << "seed " << seed;
+      }
+    };
+    const Frame& frame = view.lattice();
+    for (double u = frame.left; u < frame.right; ++u) {
+      for (double v = frame.top; v <= frame.bottom; ++v) {
+        expect_edge({u + 0.5, v - 0.5}, {0, kAside});
+        if (std::fmod(std::abs(v - u), 2) == 1) {
+          expect_edge({u, v}, {kAside, 0});
+        }
+      }
+    }
+  }
 }
 
 TEST(SvgGeometry, outlines_are_drawn_once_and_in_one_piece) {
@@ -336,13 +419,34 @@ TEST(SvgGeometry, the_label_leaves_the_robot_free) {
   }
 }
 
+double area(const Polygon& polygon) {
+  double twice = 0;
+  for (std::size_t i = 0; i < polygon.size(); ++i) {
+    const Point& a = polygon[i];
+    const Point& b = polygon[(i + 1) % polygon.size()];
+    twice += a.x * b.y - b.x * a.y;
+  }
+  return std::abs(twice) / 2;
+}
+
 TEST(SvgGeometry, a_large_plate_is_a_small_file) {
-  // 90 000 modules of one colour: 300 rows of top faces, one row of left and one of right ones.
+  // 90 000 modules of one colour: 300 rows of top faces, one row of left and one of right ones,
+  // each of 300 rhombi of the area edge^2 sin 60.
   const model::Robot robot = make({.existing = box(300, 300, 1)});
   const std::string svg = write_svg(robot, without_loads(robot), "plate");
   EXPECT_LT(svg.size(), 100'000U);
-  const Picture picture(svg);
-  EXPECT_EQ(picture.faces("modules").size(), 302U);
+  const auto faces = Picture(svg).faces("modules");
+  EXPECT_EQ(faces.size(), 302U);
+  Frame frame;
+  for (const Face& face : faces) {
+    std::ranges::for_each(face.corners, [&](Point corner) { frame.add(corner); });
+  }
+  const double edge = (frame.right - frame.left) / (600 * std::sqrt(0.75));
+  const double expected = 300 * edge * edge * std::sqrt(0.75);
+  for (const Face& face : faces) {
+    // Rounded to hundredths of a pixel, edges of 1.7 pixels.
+    EXPECT_NEAR(area(face.corners), expected, 0.02 * expected);
+  }
 }
 
 TEST(SvgGeometry, a_gradient_on_a_large_plate_is_drawn_completely) {
@@ -354,22 +458,16 @@ TEST(SvgGeometry, a_gradient_on_a_large_plate_is_drawn_completely) {
     ratios[i] = static_cast<double>(i % 97) / 100;
   }
   const Picture picture(write_svg(robot, with_ratios(robot, ratios), "plate"));
-  double area = 0;
+  double sum = 0;
   Frame frame;
   for (const Face& face : picture.faces("modules")) {
-    double twice = 0;
-    for (std::size_t i = 0; i < face.corners.size(); ++i) {
-      const Point& a = face.corners[i];
-      const Point& b = face.corners[(i + 1) % face.corners.size()];
-      twice += a.x * b.y - b.x * a.y;
-      frame.add(a);
-    }
-    area += std::abs(twice) / 2;
+    sum += area(face.corners);
+    std::ranges::for_each(face.corners, [&](Point corner) { frame.add(corner); });
   }
   const double edge = (frame.right - frame.left) / (120 * std::sqrt(0.75));
   const double expected = (3600 + 120) * edge * edge * std::sqrt(0.75);
   // Rounded to hundredths of a pixel, edges of 9 pixels: 1e-3 each, less in the mean.
-  EXPECT_NEAR(area, expected, 1e-3 * expected);
+  EXPECT_NEAR(sum, expected, 1e-3 * expected);
 }
 
 }  // namespace

@@ -207,24 +207,21 @@ TEST(Svg, titles_are_escaped_and_shortened) {
 
 TEST(Svg, titles_that_are_no_text_become_text) {
   const model::Robot robot = make({.existing = {{0, 0, 0}}});
-  // A control character, a lone continuation byte, a cut sequence, an overlong one, a surrogate.
+  // A control character, a lone continuation byte, a cut sequence, a byte that begins none, an
+  // overlong slash, a surrogate, a good letter, and a sequence that the end cuts off.
   const std::string title =
-      "a\x01"
-      "b\x80"
-      "c\xe2\x82"
-      "d\xc0\xaf"
-      "e\xed\xa0\x80"
-      "f\u00e4";
+      "a\x01|b\x80|c\xe2\x82|d\xc0|e\xe0\x80\xaf|f\xed\xa0\x80|g\xc3\xa4|h\xf0\x9f\x98";
   const Picture picture(write_svg(robot, without_loads(robot), title));
-  const std::string shown = picture.root().child_value("title");
-  for (const char letter : std::string("abcdef")) {
-    EXPECT_NE(shown.find(letter), std::string::npos) << letter;
-  }
-  EXPECT_TRUE(shown.ends_with("f\u00e4"));
-  EXPECT_NE(shown.find("a\ufffd"
-                       "b\ufffd"
-                       "c\ufffd"),
-            std::string::npos);
+  std::string shown = picture.root().child_value("title");
+  EXPECT_NE(shown.find("|g\u00e4|"), std::string::npos);
+  // One sign of replacement or several for what is wrong; no two programs agree on the number.
+  shown = std::regex_replace(shown, std::regex("(\ufffd)+"), "?");
+  EXPECT_EQ(shown, "a?|b?|c?|d?|e?|f?|g\u00e4|h?");
+  // What comes after the end of the title is none of its business.
+  const std::string longer = "h\u00e4";
+  const std::string cut =
+      write_svg(robot, without_loads(robot), std::string_view(longer).substr(0, 2));
+  EXPECT_STREQ(Picture(cut).root().child_value("title"), "h\ufffd");
 }
 
 TEST(Svg, it_tells_a_screen_reader_what_it_shows) {

@@ -175,6 +175,37 @@ TEST(Vtu, modules_move_as_rigid_bodies) {
   EXPECT_NEAR(end[2], -sink, 1e-8 * sink);
 }
 
+TEST(Vtu, corners_follow_the_rotation_of_their_module) {
+  // u + theta x r in every direction: the corners' mean is u, and what is left is theta x r.
+  const model::Robot robot = make(test::random_robot(3));
+  const Grid grid(robot, verdict::assess(robot));
+  const auto move = grid.numbers("displacement_mm");
+  const auto place = grid.numbers("Points");
+  const auto rotation = grid.numbers("rotation_rad");
+  for (std::size_t module = 0; module < robot.modules().size(); ++module) {
+    const auto mean = [&](const std::vector<double>& all, std::size_t axis) {
+      double sum = 0;
+      for (std::size_t corner = 0; corner < 8; ++corner) {
+        sum += all[3 * (8 * module + corner) + axis];
+      }
+      return sum / 8;
+    };
+    for (std::size_t corner = 0; corner < 8; ++corner) {
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        const std::size_t next = (axis + 1) % 3;
+        const std::size_t last = (axis + 2) % 3;
+        const auto lever = [&](std::size_t i) {
+          return place[3 * (8 * module + corner) + i] - mean(place, i);
+        };
+        const double turn =
+            rotation[3 * module + next] * lever(last) - rotation[3 * module + last] * lever(next);
+        // Nine digits each.
+        EXPECT_NEAR(move[3 * (8 * module + corner) + axis] - mean(move, axis), turn, 1e-7);
+      }
+    }
+  }
+}
+
 TEST(Vtu, the_ground_carries_the_weight) {
   for (const std::uint64_t seed : {1U, 2U, 7U}) {
     const model::Robot robot = make(test::random_robot(seed));

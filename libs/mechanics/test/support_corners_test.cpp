@@ -118,14 +118,15 @@ TEST(SupportCorners, stay_two_on_a_line_and_become_stable_off_it) {
   EXPECT_TRUE(merge(slope, single({5, 9, 9})).stable);
 }
 
-/// The far ends of the lattice: one half cell off a line four million long must be seen, and the
-/// products (1.6e13) do not fit in 32 bits.
+/// The far ends of the lattice: one half cell off a line four million long must be seen. Products
+/// reach 1.6e13; in 32 bits that of the last triple, 2^16 by 2^16, would be zero.
 TEST(SupportCorners, are_compared_exactly_over_the_whole_lattice) {
   const std::int32_t far = 2 * base::kCoordinateMax;
   const SupportCorners ends = pair_of({-far, -far, -1}, {far, far, -1});
   EXPECT_FALSE(merge(ends, single({1, 1, -1})).stable);
   EXPECT_TRUE(merge(ends, single({1, 0, -1})).stable);
   EXPECT_TRUE(merge(pair_of({-far, far, -far}, {far, -far, far}), single({0, 0, 1})).stable);
+  EXPECT_TRUE(merge(pair_of({1, 1, -1}, {65'537, 1, -1}), single({1, 65'537, -1})).stable);
 }
 
 SupportCorners random_set(base::Rng& rng, std::vector<Corner>& all) {

@@ -16,7 +16,8 @@ constexpr double kWeight = 0.06106 * 9.81;
 // Closed forms below hold to rounding: forces are sums of a few dozen terms of size 1.
 constexpr double kRounding = 1e-9;
 
-Assessment assess_spec(const model::RobotSpec& spec, const solver::EquilibriumOptions& options = {}) {
+Assessment assess_spec(const model::RobotSpec& spec,
+                       const solver::EquilibriumOptions& options = {}) {
   const auto robot = model::Robot::create(spec);
   EXPECT_TRUE(robot) << (robot ? "" : robot.error().message);
   return assess(robot.value(), options);
@@ -99,7 +100,8 @@ TEST(Assessment, topples_when_the_mass_leaves_the_foot) {
 
 TEST(Assessment, gives_nothing_to_spare_to_a_mass_over_the_edge) {
   // One foot at x = 0, mass at x = 0 and 1: the centre is at 20 mm, exactly over the edge.
-  const Assessment assessment = assess_spec({.existing = {{0, 0, 0}, {0, 0, 1}, {1, 0, 1}, {1, 0, 2}}});
+  const Assessment assessment =
+      assess_spec({.existing = {{0, 0, 0}, {0, 0, 1}, {1, 0, 1}, {1, 0, 2}}});
   EXPECT_EQ(*assessment.simplified.margin_mm, 0);
   EXPECT_EQ(assessment.verdict, Verdict::kUnstable);
   EXPECT_NE(assessment.reasons.front().find("nothing to spare"), std::string::npos);

@@ -10,18 +10,17 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cmath>
-#include <limits>
-#include <set>
 #include <utility>
 
+#include "brute_force.hpp"
 #include "holdfast/mechanics/safe_angles.hpp"
 #include "random_robot.hpp"
 
 namespace holdfast::verdict {
 namespace {
 
+using namespace holdfast::test;
 using base::Cell;
 using model::Robot;
 using model::RobotSpec;
@@ -168,6 +167,23 @@ TEST(RigidBody, measures_beyond_a_corner_to_the_line_of_the_worse_edge) {
   expect_edge(body, {20, -20}, {20, 20});
 }
 
+/// Two arms of a = 60 000 modules in an L. The mean of x is m = a (a - 1) / 2 / (2 a - 1) cells, so
+/// the inner edges are m + 1/2 cells away, and nearer than the diagonal. Coordinates times count
+/// reach 1.4e10, their products 2e20, beyond 64 bits.
+TEST(RigidBody, is_decided_exactly_for_large_robots) {
+  const std::int32_t a = 60'000;
+  RobotSpec spec = {.existing = {{0, 0, 0}}};
+  for (std::int32_t i = 1; i < a; ++i) {
+    spec.existing.push_back({i, 0, 0});
+    spec.existing.push_back({0, i, 0});
+  }
+  const RigidBody body = assess(spec);
+  EXPECT_TRUE(body.is_stable);
+  EXPECT_EQ(body.polygon.size(), 5U);
+  const double mean = static_cast<double>(a) * (a - 1) / 2 / (2 * a - 1);
+  EXPECT_NEAR(*body.margin_mm, 40 * (mean + 0.5), 1e-9 * 40 * mean);
+}
+
 TEST(RigidBody, that_is_fixed_is_stable_without_a_margin) {
   const RigidBody body =
       assess({.existing = {{0, 0, 0}, {0, 0, 1}, {1, 0, 1}, {2, 0, 1}}, .fixed = {{1, 0, 1}}});
@@ -195,46 +211,9 @@ TEST(RigidBody, weighs_planned_modules_and_stands_on_them) {
   EXPECT_NEAR(*body.margin_mm, 20, kRounding);
 }
 
-double turn(const PlanPoint& a, const PlanPoint& b, const PlanPoint& c) {
-  return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
-}
-
-std::vector<PlanPoint> corners_of(const Robot& robot) {
-  std::set<std::pair<double, double>> corners;
-  for (const model::Module& module : robot.modules()) {
-    for (const double dx : {-20.0, 20.0}) {
-      for (const double dy : {-20.0, 20.0}) {
-        if (module.support == model::Support::kGround) {
-          corners.emplace(40.0 * module.cell.x + dx, 40.0 * module.cell.y + dy);
-        }
-      }
-    }
-  }
-  std::vector<PlanPoint> points;
-  for (const auto& [x, y] : corners) {
-    points.push_back({x, y});
-  }
-  return points;
-}
-
-/// Second method: every line through two corners that has all corners on its left or on it.
-double margin_by_brute_force(const std::vector<PlanPoint>& corners, const PlanPoint& mass) {
-  double margin = std::numeric_limits<double>::infinity();
-  for (const PlanPoint& a : corners) {
-    for (const PlanPoint& b : corners) {
-      const double length = std::hypot(b.x - a.x, b.y - a.y);
-      if (length > 0 &&
-          std::ranges::all_of(corners, [&](const PlanPoint& c) { return turn(a, b, c) >= 0; })) {
-        margin = std::min(margin, turn(a, b, mass) / length);
-      }
-    }
-  }
-  return margin;
-}
-
 TEST(RigidBody, has_the_margin_of_the_nearest_line_that_supports_all_corners) {
   for (std::uint64_t seed = 0; seed < 300; ++seed) {
-    const Robot robot = make(test::random_robot(seed));
+    const Robot robot = make(random_robot(seed));
     const RigidBody body = assess_rigid_body(robot);
     PlanPoint mass;
     for (const model::Module& module : robot.modules()) {
@@ -253,7 +232,7 @@ TEST(RigidBody, has_the_margin_of_the_nearest_line_that_supports_all_corners) {
 /// Counter-clockwise, strictly convex, with every corner of every foot inside or on it.
 TEST(RigidBody, stands_on_the_convex_hull_of_its_feet) {
   for (std::uint64_t seed = 0; seed < 300; ++seed) {
-    const Robot robot = make(test::random_robot(seed));
+    const Robot robot = make(random_robot(seed));
     const auto polygon = assess_rigid_body(robot).polygon;
     const std::size_t n = polygon.size();
     ASSERT_GE(n, 4U);
@@ -272,7 +251,7 @@ TEST(RigidBody, stands_on_the_convex_hull_of_its_feet) {
 TEST(RigidBody, agrees_with_the_safe_angles_of_its_feet) {
   int stable_count = 0;
   for (std::uint64_t seed = 0; seed < 2000; ++seed) {
-    const Robot robot = make(test::random_robot(seed));
+    const Robot robot = make(random_robot(seed));
     const auto n = static_cast<double>(robot.modules().size());
     double mass_x = 0;
     double mass_y = 0;
