@@ -76,7 +76,8 @@ Matrix lower_triangle(const Blocks& blocks) {
   for (int row = 0; row < 6; ++row) {
     for (int column = 0; column < 6; ++column) {
       for (int i = 0; i < static_cast<int>(blocks.diagonal.size()); ++i) {
-        add(6 * i + row, 6 * i + column, blocks.diagonal[static_cast<std::size_t>(i)].at(row, column));
+        add(6 * i + row, 6 * i + column,
+            blocks.diagonal[static_cast<std::size_t>(i)].at(row, column));
       }
       for (std::size_t e = 0; e < blocks.edges.size(); ++e) {
         const auto [a, b] = blocks.edges[e];
@@ -92,9 +93,10 @@ Matrix lower_triangle(const Blocks& blocks) {
 }
 
 hf::model::Robot robot_of(const benchmark::State& state) {
-  return state.range(0) == 0 ? load("angle_breaks_c").robot
-                             : box(static_cast<int>(state.range(0)), static_cast<int>(state.range(1)),
-                                   static_cast<int>(state.range(2)));
+  return state.range(0) == 0
+             ? load("angle_breaks_c").robot
+             : box(static_cast<int>(state.range(0)), static_cast<int>(state.range(1)),
+                   static_cast<int>(state.range(2)));
 }
 
 void verdict(benchmark::State& state) {

@@ -4,7 +4,8 @@
 // Load a structure, ask whether it holds, say why.
 //
 // $ build/dev/examples/check_structure scenarios/crane_breaks_b.json
-// > overload: 1 of 14 connections would break; the worst, (1,1,1)-(1,1,2), carries 1.2000 of its strength
+// > overload: 1 of 14 connections would break; the worst, (1,1,1)-(1,1,2), carries 1.2000 of its
+// strength
 
 #include <iostream>
 

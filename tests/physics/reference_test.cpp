@@ -52,8 +52,10 @@ std::vector<Reference> read_references() {
     file >> reference.name >> existing >> planned >> connections >> reference.is_settled >>
         reference.is_stable >> reference.is_tie >> reference.margin_mm;
     const std::vector<base::Cell> cells = read_cells(file, existing + planned);
-    reference.spec.existing.assign(cells.begin(), cells.begin() + static_cast<std::ptrdiff_t>(existing));
-    reference.spec.planned.assign(cells.begin() + static_cast<std::ptrdiff_t>(existing), cells.end());
+    reference.spec.existing.assign(cells.begin(),
+                                   cells.begin() + static_cast<std::ptrdiff_t>(existing));
+    reference.spec.planned.assign(cells.begin() + static_cast<std::ptrdiff_t>(existing),
+                                  cells.end());
     for (std::size_t i = 0; i < connections; ++i) {
       std::size_t a = 0;
       std::size_t b = 0;

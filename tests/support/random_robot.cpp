@@ -49,8 +49,8 @@ class Builder {
 
   bool has_neighbour(const Cell& cell) const {
     return cells_.empty() || std::ranges::any_of(base::kDirections, [&](base::Direction direction) {
-      return taken_.contains(base::neighbour(cell, direction));
-    });
+             return taken_.contains(base::neighbour(cell, direction));
+           });
   }
 
   /// Adds a free cell above the ground that touches the robot, while there is room.
@@ -102,8 +102,8 @@ class Builder {
     }
     const bool along_x = rng_.below(2) == 0;
     for (std::int32_t i = 1; i < 2 + number(8); ++i) {
-      const Cell deck = along_x ? Cell{start.x + i, start.y, height}
-                                : Cell{start.x, start.y + i, height};
+      const Cell deck =
+          along_x ? Cell{start.x + i, start.y, height} : Cell{start.x, start.y + i, height};
       put(deck);
       const std::int32_t leg = rng_.below(3) == 0 ? height : 0;
       for (std::int32_t down = 1; down <= leg; ++down) {

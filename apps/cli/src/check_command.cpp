@@ -59,8 +59,7 @@ class CheckRun {
     }
     if (shows_text() && is_many()) {
       fmt::print("{} files: {} safe, {} overload, {} unstable, {} undecided, {} not readable\n",
-                 options_.files.size(), counts_[0], counts_[1], counts_[2], counts_[3],
-                 bad_count_);
+                 options_.files.size(), counts_[0], counts_[1], counts_[2], counts_[3], bad_count_);
     }
     if (!options_.json.empty()) {
       write_json();
@@ -103,14 +102,13 @@ class CheckRun {
                  report_text(structure, result));
       return;
     }
-    const std::string ratio =
-        !assessment.load_ratio_max ? "-"
-        : assessment.is_stable     ? fmt::format("{:.4f} ", *assessment.load_ratio_max)
-                                   : fmt::format("({:.4f})", *assessment.load_ratio_max);
-    const std::string margin =
-        assessment.simplified.margin_mm
-            ? fmt::format("{:9.2f} mm", *assessment.simplified.margin_mm)
-            : "       fixed";
+    const std::string ratio = !assessment.load_ratio_max ? "-"
+                              : assessment.is_stable
+                                  ? fmt::format("{:.4f} ", *assessment.load_ratio_max)
+                                  : fmt::format("({:.4f})", *assessment.load_ratio_max);
+    const std::string margin = assessment.simplified.margin_mm
+                                   ? fmt::format("{:9.2f} mm", *assessment.simplified.margin_mm)
+                                   : "       fixed";
     fmt::print("{}  load ratio {:>9}  margin {}  {}\n", banner(assessment.verdict), ratio, margin,
                file);
   }
@@ -197,13 +195,15 @@ Command add_check(CLI::App& app) {
                    "Structures, VisibleSim XML or holdfast JSON; - is standard input")
       ->type_name("")
       ->required();
-  command->add_option("--json", options->json, "Write the whole report as JSON; - is standard output")
+  command
+      ->add_option("--json", options->json, "Write the whole report as JSON; - is standard output")
       ->type_name("FILE");
   command->add_option("--svg", options->svg, "Draw the structure and its loads")->type_name("FILE");
   command->add_option("--vtk", options->vtk, "Write a .vtu file for ParaView")->type_name("FILE");
   command->add_flag("--quiet", options->is_quiet, "Print errors only; the exit code is the answer");
-  command->footer("Verdicts: safe, overload (a connection breaks), unstable (topples), undecided.\n"
-                  "Exit: 0 all safe, 1 any unsafe, 2 any undecided, 64 wrong usage, 65 bad input.");
+  command->footer(
+      "Verdicts: safe, overload (a connection breaks), unstable (topples), undecided.\n"
+      "Exit: 0 all safe, 1 any unsafe, 2 any undecided, 64 wrong usage, 65 bad input.");
   return {command, [options] { return run(*options); }};
 }
 

@@ -52,15 +52,17 @@ Command add_convert(CLI::App& app) {
   auto options = std::make_shared<Options>();
   CLI::App* command = app.add_subcommand(
       "convert", "Convert a structure between VisibleSim XML and holdfast JSON, without loss");
-  command->add_option("FROM", options->from, "Structure to read, either format; - is standard input")
+  command
+      ->add_option("FROM", options->from, "Structure to read, either format; - is standard input")
       ->type_name("")
       ->required();
   command->add_option("TO", options->to, "File to write; .xml or .json says the format")
       ->type_name("")
       ->required();
-  command->footer("Kept are modules, planned steps, parameters, colours and all of VisibleSim's own "
-                  "attributes;\nnot kept are comments and the layout of the text.\n"
-                  "Exit: 0 written, 64 wrong usage, 65 bad input or not writable.");
+  command->footer(
+      "Kept are modules, planned steps, parameters, colours and all of VisibleSim's own "
+      "attributes;\nnot kept are comments and the layout of the text.\n"
+      "Exit: 0 written, 64 wrong usage, 65 bad input or not writable.");
   return {command, [options] { return run(*options); }};
 }
 

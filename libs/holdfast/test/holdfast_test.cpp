@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: The holdfast authors
 // SPDX-License-Identifier: Apache-2.0
-// The facade as an application uses it: text in, verdict and reports out, files whole or not at all.
+// The facade as an application uses it: text in, verdict and reports out, files whole or not at
+// all.
 #include "holdfast/holdfast.hpp"
 
 #include <gtest/gtest.h>
@@ -22,9 +23,10 @@ class Files : public ::testing::Test {
 
   void TearDown() override { fs::remove_all(folder_); }
 
-  fs::path folder_ = fs::temp_directory_path() /
-                     ("holdfast_test_" + std::to_string(::testing::UnitTest::GetInstance()->random_seed()) +
-                      ::testing::UnitTest::GetInstance()->current_test_info()->name());
+  fs::path folder_ =
+      fs::temp_directory_path() /
+      ("holdfast_test_" + std::to_string(::testing::UnitTest::GetInstance()->random_seed()) +
+       ::testing::UnitTest::GetInstance()->current_test_info()->name());
 };
 
 TEST(Facade, goes_from_text_to_a_verdict_and_its_reports) {
@@ -34,8 +36,10 @@ TEST(Facade, goes_from_text_to_a_verdict_and_its_reports) {
   const CheckResult result = check(structure.value());
   EXPECT_EQ(result.assessment.verdict, verdict::Verdict::kSafe);
   EXPECT_GT(result.seconds, 0);
-  EXPECT_NE(report_json(structure.value(), result).find("\"verdict\": \"safe\""), std::string::npos);
-  EXPECT_NE(report_text(structure.value(), result).find("2 existing, 0 planned"), std::string::npos);
+  EXPECT_NE(report_json(structure.value(), result).find("\"verdict\": \"safe\""),
+            std::string::npos);
+  EXPECT_NE(report_text(structure.value(), result).find("2 existing, 0 planned"),
+            std::string::npos);
   EXPECT_NE(picture_svg(structure.value(), result).find("</svg>"), std::string::npos);
   EXPECT_NE(picture_vtu(structure.value(), result).find("</VTKFile>"), std::string::npos);
 }

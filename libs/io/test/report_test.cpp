@@ -44,7 +44,8 @@ TEST(Report, as_json_has_the_keys_that_other_tools_rely_on) {
   EXPECT_EQ(report["name"], "test \"robot\"");
   EXPECT_EQ(report["verdict"], "overload");
   EXPECT_EQ(report["reasons"].size(), 1U);
-  EXPECT_EQ(report["modules"], Json::parse(R"({"existing":26,"planned":0,"on_ground":0,"fixed":1})"));
+  EXPECT_EQ(report["modules"],
+            Json::parse(R"({"existing":26,"planned":0,"on_ground":0,"fixed":1})"));
   EXPECT_TRUE(report["stability"]["simplified"]["margin_mm"].is_null());
   EXPECT_EQ(report["stability"]["stable"], true);
   EXPECT_EQ(report["stability"]["model"]["settled"], true);
@@ -92,7 +93,8 @@ TEST(Report, for_people_lists_the_five_most_loaded_connections) {
 }
 
 TEST(Report, of_a_failure_is_an_object_with_its_place) {
-  const Json report = Json::parse(write_error_json({.message = "bad\n", .where = "line 3"}, "a.xml"));
+  const Json report =
+      Json::parse(write_error_json({.message = "bad\n", .where = "line 3"}, "a.xml"));
   EXPECT_EQ(report["name"], "a.xml");
   EXPECT_EQ(report["error"], "bad\n");
   EXPECT_EQ(report["where"], "line 3");

@@ -93,13 +93,13 @@ Vec6<Real> to_global(Direction direction, const Vec6<Real>& local) {
 template <class Real>
 Vec6<Real> end_force(const BeamStiffness<Real>& beam, Direction direction, const Vec6<Real>& u_p,
                      const Vec6<Real>& u_q) {
-  return to_global(
-      direction, local_end_force(beam, to_local(direction, u_p), to_local(direction, u_q)));
+  return to_global(direction,
+                   local_end_force(beam, to_local(direction, u_p), to_local(direction, u_q)));
 }
 
 template <class Real>
-Vec6<Real> middle_force(const BeamStiffness<Real>& beam, Direction direction,
-                        const Vec6<Real>& u_p, const Vec6<Real>& u_q) {
+Vec6<Real> middle_force(const BeamStiffness<Real>& beam, Direction direction, const Vec6<Real>& u_p,
+                        const Vec6<Real>& u_q) {
   const Vec6<Real> p = to_local(direction, u_p);
   const Vec6<Real> q = to_local(direction, u_q);
   Vec6<Real> force = local_end_force(beam, p, q);
@@ -120,15 +120,15 @@ Mat6<Real> block_12(const BeamStiffness<Real>& beam, Direction direction) {
       [&](const Vec6<Real>& unit) { return end_force(beam, direction, Vec6<Real>{}, unit); });
 }
 
-#define HOLDFAST_INSTANTIATE(Real)                                                              \
-  template BeamStiffness<Real> beam_stiffness(const BeamSection<Real>&);                        \
-  template Vec6<Real> to_local(Direction, const Vec6<Real>&);                                   \
-  template Vec6<Real> to_global(Direction, const Vec6<Real>&);                                  \
-  template Vec6<Real> end_force(const BeamStiffness<Real>&, Direction, const Vec6<Real>&,       \
-                                const Vec6<Real>&);                                             \
-  template Vec6<Real> middle_force(const BeamStiffness<Real>&, Direction, const Vec6<Real>&,    \
-                                   const Vec6<Real>&);                                          \
-  template Mat6<Real> block_11(const BeamStiffness<Real>&, Direction);                          \
+#define HOLDFAST_INSTANTIATE(Real)                                                           \
+  template BeamStiffness<Real> beam_stiffness(const BeamSection<Real>&);                     \
+  template Vec6<Real> to_local(Direction, const Vec6<Real>&);                                \
+  template Vec6<Real> to_global(Direction, const Vec6<Real>&);                               \
+  template Vec6<Real> end_force(const BeamStiffness<Real>&, Direction, const Vec6<Real>&,    \
+                                const Vec6<Real>&);                                          \
+  template Vec6<Real> middle_force(const BeamStiffness<Real>&, Direction, const Vec6<Real>&, \
+                                   const Vec6<Real>&);                                       \
+  template Mat6<Real> block_11(const BeamStiffness<Real>&, Direction);                       \
   template Mat6<Real> block_12(const BeamStiffness<Real>&, Direction);
 
 HOLDFAST_INSTANTIATE(float)

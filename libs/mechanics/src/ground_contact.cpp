@@ -61,9 +61,7 @@ struct ConeProblem {
         a2(absolute(trial[kMy]) / facet.half_width) {}
 
   /// Pressure p while standing on one corner.
-  Real corner_pressure() const {
-    return (k0 * (a1 / k1 + a2 / k2) - f0) / (1 + k0 / k1 + k0 / k2);
-  }
+  Real corner_pressure() const { return (k0 * (a1 / k1 + a2 / k2) - f0) / (1 + k0 / k1 + k0 / k2); }
 };
 
 template <class Real>
@@ -220,13 +218,13 @@ Mat6<Real> contact_tangent(const GroundFacet<Real>& facet, ContactState state, b
   return tangent;
 }
 
-#define HOLDFAST_INSTANTIATE(Real)                                                            \
-  template GroundFacet<Real> ground_facet(const BeamSection<Real>&, Real, Real, ContactLaw);  \
-  template Vec6<Real> trial_force(const GroundFacet<Real>&, const Vec6<Real>&);               \
-  template ContactState contact_state(const GroundFacet<Real>&, const Vec6<Real>&);           \
-  template Mat6<Real> corrector(const GroundFacet<Real>&, ContactState, bool);                \
-  template Vec6<Real> contact_force(const GroundFacet<Real>&, ContactState, bool,             \
-                                    const Vec6<Real>&);                                       \
+#define HOLDFAST_INSTANTIATE(Real)                                                           \
+  template GroundFacet<Real> ground_facet(const BeamSection<Real>&, Real, Real, ContactLaw); \
+  template Vec6<Real> trial_force(const GroundFacet<Real>&, const Vec6<Real>&);              \
+  template ContactState contact_state(const GroundFacet<Real>&, const Vec6<Real>&);          \
+  template Mat6<Real> corrector(const GroundFacet<Real>&, ContactState, bool);               \
+  template Vec6<Real> contact_force(const GroundFacet<Real>&, ContactState, bool,            \
+                                    const Vec6<Real>&);                                      \
   template Mat6<Real> contact_tangent(const GroundFacet<Real>&, ContactState, bool);
 
 HOLDFAST_INSTANTIATE(float)

@@ -37,9 +37,10 @@ std::optional<std::string> find_coordinate_fault(std::span<const Cell> cells) {
   for (const Cell& cell : cells) {
     for (const std::int64_t coordinate : {cell.x, cell.y, cell.z}) {
       if (std::abs(coordinate) > base::kCoordinateMax) {
-        return fmt::format("the cell {} lies outside the lattice, allowed are coordinates from "
-                           "-{} to {}",
-                           text(cell), base::kCoordinateMax, base::kCoordinateMax);
+        return fmt::format(
+            "the cell {} lies outside the lattice, allowed are coordinates from "
+            "-{} to {}",
+            text(cell), base::kCoordinateMax, base::kCoordinateMax);
       }
     }
   }
@@ -58,9 +59,9 @@ std::optional<std::string> find_double_cell(const RobotSpec& spec, CellIndex& in
   for (const Cell& cell : spec.planned) {
     const std::int32_t earlier = index.insert(cell, next++);
     if (earlier != CellIndex::kNone) {
-      return fmt::format("the planned cell {} is {}, allowed are free cells, each once", text(cell),
-                         earlier < existing_count ? "occupied by an existing module"
-                                                  : "planned twice");
+      return fmt::format(
+          "the planned cell {} is {}, allowed are free cells, each once", text(cell),
+          earlier < existing_count ? "occupied by an existing module" : "planned twice");
     }
   }
   return std::nullopt;
@@ -92,10 +93,10 @@ std::optional<std::string> find_connection_fault(std::span<const Robot::Neighbou
   const auto reached = static_cast<std::size_t>(std::ranges::count(robot, true));
   if (reached < existing_count) {
     const auto loose = static_cast<std::size_t>(std::ranges::find(robot, false) - robot.begin());
-    return fmt::format("the robot is not connected: {} of {} modules, {} among them, share no "
-                       "chain of faces with {}",
-                       existing_count - reached, existing_count, text(modules[loose].cell),
-                       text(modules[0].cell));
+    return fmt::format(
+        "the robot is not connected: {} of {} modules, {} among them, share no "
+        "chain of faces with {}",
+        existing_count - reached, existing_count, text(modules[loose].cell), text(modules[0].cell));
   }
   const std::vector<bool> whole = reach(neighbours, modules.size());
   const auto loose = std::ranges::find(whole, false);
@@ -111,19 +112,21 @@ std::optional<std::string> find_support_fault(const Robot& robot) {
   const bool is_held = std::ranges::any_of(
       existing, [](const Module& module) { return module.support != Support::kNone; });
   if (!is_held) {
-    const auto lowest = std::ranges::min_element(
-        existing, {}, [](const Module& module) { return module.cell.z; });
-    return fmt::format("nothing holds the robot: no existing module lies on the support level "
-                       "z = {} and none is fixed; the lowest module is {}",
-                       robot.support_z(), text(lowest->cell));
+    const auto lowest =
+        std::ranges::min_element(existing, {}, [](const Module& module) { return module.cell.z; });
+    return fmt::format(
+        "nothing holds the robot: no existing module lies on the support level "
+        "z = {} and none is fixed; the lowest module is {}",
+        robot.support_z(), text(lowest->cell));
   }
   for (std::size_t i = 0; i < robot.modules().size(); ++i) {
     const std::int32_t below = robot.neighbours()[i][base::index(base::Direction::kMinusZ)];
     if (robot.modules()[i].support == Support::kGround && below != Robot::kNoNeighbour) {
-      return fmt::format("the module {} lies under {}, which rests on the support level z = {}; "
-                         "allowed below that level is only what hangs beside it",
-                         text(robot.modules()[static_cast<std::size_t>(below)].cell),
-                         text(robot.modules()[i].cell), robot.support_z());
+      return fmt::format(
+          "the module {} lies under {}, which rests on the support level z = {}; "
+          "allowed below that level is only what hangs beside it",
+          text(robot.modules()[static_cast<std::size_t>(below)].cell),
+          text(robot.modules()[i].cell), robot.support_z());
     }
   }
   return std::nullopt;

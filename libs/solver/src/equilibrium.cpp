@@ -112,15 +112,15 @@ Equilibrium EquilibriumSolver::solve(const ContactOptions& contact) {
     return result;
   }
   const model::Material& material = robot_.material();
-  ground_ = mechanics::ground_facet(model::beam_section(material), material.facet_mm,
-                                    contact.gamma, contact.law);
+  ground_ = mechanics::ground_facet(model::beam_section(material), material.facet_mm, contact.gamma,
+                                    contact.law);
   for (Facet& facet : facets_) {
     facet.is_held = true;
     facet.was_released = false;
   }
   set_states(std::vector<ContactState>(facets_.size()));
   result.outcome = contact.law == ContactLaw::kRegularised ? iterate_regularised(result)
-                                                   : iterate_unilateral(result);
+                                                           : iterate_unilateral(result);
   if (result.outcome == Outcome::kSettled) {
     finish(result);
   }
@@ -135,15 +135,13 @@ bool EquilibriumSolver::set_states(const std::vector<ContactState>& states) {
     facets_[i].state = states[i];
     const std::size_t node = node_index(node_of_module_[facets_[i].module]);
     Mat6<double> block = diagonal_[node];
-    base::add_to(block,
-                 mechanics::contact_tangent(ground_, facets_[i].state, facets_[i].is_held));
+    base::add_to(block, mechanics::contact_tangent(ground_, facets_[i].state, facets_[i].is_held));
     lu_->set_diagonal(node, block);
   }
   return is_changed;
 }
 
-std::vector<ContactState> EquilibriumSolver::states_at(
-    const std::vector<Vec>& displacement) const {
+std::vector<ContactState> EquilibriumSolver::states_at(const std::vector<Vec>& displacement) const {
   std::vector<ContactState> states;
   states.reserve(facets_.size());
   for (const Facet& facet : facets_) {

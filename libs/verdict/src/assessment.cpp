@@ -38,8 +38,8 @@ ModelStability model_stability(const model::Robot& robot, const Equilibrium& equ
     if (module.support == model::Support::kFixed) {
       corners = mechanics::fixed_support();
     } else if (module.support == model::Support::kGround) {
-      corners = mechanics::merge(
-          corners, mechanics::support_corners(module.cell, equilibrium.contact[i]));
+      corners = mechanics::merge(corners,
+                                 mechanics::support_corners(module.cell, equilibrium.contact[i]));
     }
   }
   return {.is_stable = corners.stable, .is_settled = true};
@@ -55,12 +55,12 @@ double strength_n(const model::Material& material, base::Direction direction) {
 ConnectionResult connection_result(const model::Material& material, base::Direction direction,
                                    const base::Vec6<double>& middle) {
   const auto load = mechanics::connection_load(middle);
-  return {.load_ratio =
-              mechanics::load_ratio(load, material.facet_mm, strength_n(material, direction)),
-          .axial_n = load.axial,
-          .bending_nmm = load.bending,
-          .shear_n = std::hypot(middle[0], middle[1]),
-          .torsion_nmm = middle[5]};
+  return {
+      .load_ratio = mechanics::load_ratio(load, material.facet_mm, strength_n(material, direction)),
+      .axial_n = load.axial,
+      .bending_nmm = load.bending,
+      .shear_n = std::hypot(middle[0], middle[1]),
+      .torsion_nmm = middle[5]};
 }
 
 /// Sec. III-D for every connection.
@@ -93,9 +93,8 @@ void assess_connections(const model::Robot& robot, Assessment& assessment) {
       assessment.broken.push_back(i);
     }
   }
-  std::ranges::stable_sort(assessment.broken, std::greater<>(), [&](std::size_t i) {
-    return assessment.connections[i].load_ratio;
-  });
+  std::ranges::stable_sort(assessment.broken, std::greater<>(),
+                           [&](std::size_t i) { return assessment.connections[i].load_ratio; });
   if (assessment.worst && *assessment.load_ratio_max > 0) {
     assessment.weight_factor = 1 / *assessment.load_ratio_max;
   }
@@ -120,8 +119,8 @@ bool agrees(const Assessment& assessment) {
 void find_equilibrium(const model::Robot& robot, const solver::EquilibriumOptions& options,
                       Assessment& assessment) {
   solver::EquilibriumSolver solver(robot, options);
-  assessment.equilibrium = solver.solve(
-      {.law = ContactLaw::kRegularised, .gamma = robot.material().contact_gamma});
+  assessment.equilibrium =
+      solver.solve({.law = ContactLaw::kRegularised, .gamma = robot.material().contact_gamma});
   assessment.model = model_stability(robot, assessment.equilibrium);
   assessment.contact_model =
       robot.ground_count() > 0 ? ContactModel::kRegularised : ContactModel::kNone;
@@ -132,7 +131,8 @@ void find_equilibrium(const model::Robot& robot, const solver::EquilibriumOption
       assessment.is_stable ? std::span<const double>(kStableGammas) : kTopplingGammas;
   for (const double gamma : gammas) {
     // A margin of zero is unstable by decision, not by mechanics: no model need agree with it.
-    if (agrees(assessment) || (assessment.model.is_settled && assessment.simplified.margin_mm == 0)) {
+    if (agrees(assessment) ||
+        (assessment.model.is_settled && assessment.simplified.margin_mm == 0)) {
       return;
     }
     const int steps = assessment.equilibrium.steps;
@@ -149,12 +149,13 @@ std::string toppling_reason(const RigidBody& body) {
   const std::string where =
       fmt::format("the edge ({:g}, {:g})-({:g}, {:g}) mm", a.x, a.y, b.x, b.y);
   if (*body.margin_mm == 0) {
-    return fmt::format("the centre of mass lies exactly over {} of the support polygon: nothing "
-                       "to spare",
-                       where);
+    return fmt::format(
+        "the centre of mass lies exactly over {} of the support polygon: nothing "
+        "to spare",
+        where);
   }
-  return fmt::format("it topples over {}: the centre of mass lies {:.2f} mm beyond it",
-                     where, -*body.margin_mm);
+  return fmt::format("it topples over {}: the centre of mass lies {:.2f} mm beyond it", where,
+                     -*body.margin_mm);
 }
 
 void decide_stable(const model::Robot& robot, Assessment& assessment) {
@@ -185,8 +186,8 @@ void decide_stable(const model::Robot& robot, Assessment& assessment) {
     assessment.verdict = Verdict::kOverload;
     assessment.reasons.push_back(fmt::format(
         "{} of {} connections would break; the worst, {}, carries {:.4f} of its strength",
-        assessment.broken.size(), assessment.connections.size(),
-        text(robot, *assessment.worst), ratio));
+        assessment.broken.size(), assessment.connections.size(), text(robot, *assessment.worst),
+        ratio));
   } else if (!assessment.worst) {
     assessment.verdict = Verdict::kSafe;
     assessment.reasons.emplace_back("stable, and a single module has no connection to break");
@@ -212,9 +213,9 @@ void add_contact_remarks(Assessment& assessment) {
                     assessment.load_ratio_range.high));
   }
   if (assessment.model.is_settled && assessment.model.is_stable != assessment.is_stable) {
-    assessment.reasons.push_back(fmt::format(
-        "the model-based check says {}; on flat ground the rigid body decides",
-        assessment.model.is_stable ? "stable" : "unstable"));
+    assessment.reasons.push_back(
+        fmt::format("the model-based check says {}; on flat ground the rigid body decides",
+                    assessment.model.is_stable ? "stable" : "unstable"));
   }
 }
 

@@ -27,6 +27,9 @@ Wide turn(const Point& a, const Point& b, const Point& c) {
 
 /// Andrew's monotone chain; counter-clockwise, no three points on one line.
 std::vector<Point> convex_hull(std::vector<Point> points) {
+  if (points.empty()) {
+    return points;
+  }
   std::ranges::sort(points);
   points.erase(std::unique(points.begin(), points.end()), points.end());
   std::vector<Point> hull;
@@ -50,7 +53,8 @@ std::vector<Point> support_corners(const model::Robot& robot) {
     if (module.support == model::Support::kGround) {
       const std::int64_t x = 2 * static_cast<std::int64_t>(module.cell.x);
       const std::int64_t y = 2 * static_cast<std::int64_t>(module.cell.y);
-      corners.insert(corners.end(), {{x - 1, y - 1}, {x + 1, y - 1}, {x - 1, y + 1}, {x + 1, y + 1}});
+      corners.insert(corners.end(),
+                     {{x - 1, y - 1}, {x + 1, y - 1}, {x - 1, y + 1}, {x + 1, y + 1}});
     }
   }
   return corners;
@@ -77,7 +81,8 @@ EdgeDistance nearest_edge(const std::vector<Point>& hull, const Point& mass) {
   for (std::size_t i = 0; i < hull.size(); ++i) {
     const Point& a = hull[i];
     const Point& b = hull[(i + 1) % hull.size()];
-    const double length = std::hypot(static_cast<double>(b.x - a.x), static_cast<double>(b.y - a.y));
+    const double length =
+        std::hypot(static_cast<double>(b.x - a.x), static_cast<double>(b.y - a.y));
     const double distance = static_cast<double>(turn(a, b, mass)) / length;
     if (distance < nearest.distance) {
       nearest = {.distance = distance, .a = a, .b = b};
@@ -93,7 +98,8 @@ RigidBody assess_rigid_body(const model::Robot& robot) {
   const auto count = static_cast<std::int64_t>(robot.modules().size());
   const double unit_mm = robot.material().pitch_mm / 2 / static_cast<double>(count);
   const auto plan_point = [&](const Point& point) {
-    return PlanPoint{static_cast<double>(point.x) * unit_mm, static_cast<double>(point.y) * unit_mm};
+    return PlanPoint{static_cast<double>(point.x) * unit_mm,
+                     static_cast<double>(point.y) * unit_mm};
   };
   Point mass;
   for (const model::Module& module : robot.modules()) {

@@ -43,7 +43,7 @@ struct RobotSpec {
   std::vector<base::Cell> existing = {};
   std::vector<base::Cell> planned = {};  ///< Attached in the planned step, all at once.
   std::vector<base::Cell> fixed = {};    ///< Those of `existing` that are fixed.
-  std::int32_t support_z = 0;       ///< Modules in this layer rest on the ground.
+  std::int32_t support_z = 0;            ///< Modules in this layer rest on the ground.
   Material material = {};
 };
 

@@ -62,22 +62,22 @@ class BlockLu {
   std::size_t find_slot(std::int32_t column, std::int32_t row) const;
 
   std::vector<Edge> edges_;
-  std::vector<std::int32_t> position_;        ///< node -> place in the elimination order
-  std::vector<std::int32_t> parent_;          ///< elimination tree, by place
-  std::vector<std::size_t> column_start_;     ///< into rows_, lower_, upper_
-  std::vector<std::int32_t> rows_;            ///< rows below the diagonal, ascending
-  std::vector<std::size_t> row_start_;        ///< into row_entries_
-  std::vector<Entry> row_entries_;            ///< columns left of the diagonal that meet a row
-  std::vector<std::size_t> edge_slot_;        ///< edge -> slot of its lower block
+  std::vector<std::int32_t> position_;     ///< node -> place in the elimination order
+  std::vector<std::int32_t> parent_;       ///< elimination tree, by place
+  std::vector<std::size_t> column_start_;  ///< into rows_, lower_, upper_
+  std::vector<std::int32_t> rows_;         ///< rows below the diagonal, ascending
+  std::vector<std::size_t> row_start_;     ///< into row_entries_
+  std::vector<Entry> row_entries_;         ///< columns left of the diagonal that meet a row
+  std::vector<std::size_t> edge_slot_;     ///< edge -> slot of its lower block
   std::vector<std::vector<std::size_t>> column_edges_;  ///< column -> edges stored in it
 
-  std::vector<base::Mat6<double>> diagonal_;  ///< A(k, k)
-  std::vector<base::Mat6<double>> inverse_;   ///< D(k)^-1
-  std::vector<base::Mat6<double>> lower_;     ///< L(i, k)
-  std::vector<base::Mat6<double>> upper_;     ///< U(k, i), not yet divided by D
+  std::vector<base::Mat6<double>> diagonal_;    ///< A(k, k)
+  std::vector<base::Mat6<double>> inverse_;     ///< D(k)^-1
+  std::vector<base::Mat6<double>> lower_;       ///< L(i, k)
+  std::vector<base::Mat6<double>> upper_;       ///< U(k, i), not yet divided by D
   std::vector<base::Mat6<double>> edge_lower_;  ///< A(i, k) of each edge, i below k
-  std::vector<bool> is_stale_;                ///< columns whose factor is out of date
-  std::vector<std::size_t> slot_of_row_;      ///< scratch: row -> slot in the current column
+  std::vector<bool> is_stale_;                  ///< columns whose factor is out of date
+  std::vector<std::size_t> slot_of_row_;        ///< scratch: row -> slot in the current column
   bool is_singular_ = false;
   bool is_too_large_ = false;
 };

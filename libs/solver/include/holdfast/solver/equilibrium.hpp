@@ -99,8 +99,8 @@ class EquilibriumSolver {
   EquilibriumOptions options_;
   mechanics::BeamStiffness<double> beam_;
   mechanics::GroundFacet<double> ground_;
-  std::vector<std::int32_t> node_of_module_;     ///< -1 for fixed modules
-  std::vector<base::Mat6<double>> diagonal_;     ///< by node, contact excluded
+  std::vector<std::int32_t> node_of_module_;  ///< -1 for fixed modules
+  std::vector<base::Mat6<double>> diagonal_;  ///< by node, contact excluded
   std::vector<Facet> facets_;
   std::optional<BlockLu> lu_;
 };

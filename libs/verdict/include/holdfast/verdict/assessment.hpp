@@ -33,7 +33,7 @@ struct ConnectionResult {
   double load_ratio = 0;  ///< (2 bending / a + axial) / Fmax; breaks at 1 or more.
   double axial_n = 0;     ///< Tension is positive.
   double bending_nmm = 0;
-  double shear_n = 0;    ///< Not part of the criterion.
+  double shear_n = 0;      ///< Not part of the criterion.
   double torsion_nmm = 0;  ///< Not part of the criterion.
 };
 
@@ -53,8 +53,8 @@ struct Assessment {
   Verdict verdict = Verdict::kUndecided;
   std::vector<std::string> reasons;  ///< One or more sentences.
 
-  RigidBody simplified;   ///< Sec. III-B.
-  ModelStability model;   ///< Sec. III-C.
+  RigidBody simplified;    ///< Sec. III-B.
+  ModelStability model;    ///< Sec. III-C.
   bool is_stable = false;  ///< Decided by the rigid body: the ground is flat.
 
   /// Per connection of the robot; empty if no equilibrium was found. Not meaningful if unstable.
