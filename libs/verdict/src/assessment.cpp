@@ -203,7 +203,7 @@ void add_contact_remarks(Assessment& assessment) {
   if (assessment.contact_model == ContactModel::kUnilateral) {
     assessment.reasons.emplace_back(
         "the loads come from exact unilateral contact (Eqs. 6-8): the paper's regularised contact "
-        "(Eqs. 9-12) finds no consistent contact state here");
+        "(Eqs. 9-12) has no usable answer here");
   }
   if (assessment.equilibrium.open_but_held_count > 0) {
     assessment.reasons.push_back(

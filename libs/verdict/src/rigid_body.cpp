@@ -9,7 +9,8 @@
 namespace holdfast::verdict {
 namespace {
 
-/// In half pitches. Scaled by the number of modules where the centre of mass takes part.
+/// In units of a half pitch or a fraction of it. Scaled by the number of modules where the centre
+/// of mass takes part.
 struct Point {
   std::int64_t x = 0;
   std::int64_t y = 0;
@@ -17,7 +18,7 @@ struct Point {
   friend constexpr auto operator<=>(const Point&, const Point&) = default;
 };
 
-// Coordinates reach 2^21, times 2^25 modules: products need up to 95 bits.
+// Coordinates reach 2^21 times 2^12 units times 2^25 modules: products need up to 119 bits.
 __extension__ using Wide = __int128;
 
 /// Twice the signed area of the triangle a, b, c; positive if c lies left of a -> b.
@@ -47,14 +48,25 @@ std::vector<Point> convex_hull(std::vector<Point> points) {
   return hull;
 }
 
-std::vector<Point> support_corners(const model::Robot& robot) {
+/// Units per half pitch. A facet as wide as the pitch has its corners at odd half pitches; any
+/// other width is rounded down to 1/4096 of a half pitch, towards the safe side.
+std::int64_t units_per_half_pitch(const model::Material& material) {
+  return material.facet_mm == material.pitch_mm ? 1 : 4096;
+}
+
+std::vector<Point> support_corners(const model::Robot& robot, std::int64_t units) {
+  const model::Material& material = robot.material();
+  const auto reach =
+      static_cast<std::int64_t>(static_cast<double>(units) * material.facet_mm / material.pitch_mm);
   std::vector<Point> corners;
   for (const model::Module& module : robot.modules()) {
     if (module.support == model::Support::kGround) {
-      const std::int64_t x = 2 * static_cast<std::int64_t>(module.cell.x);
-      const std::int64_t y = 2 * static_cast<std::int64_t>(module.cell.y);
-      corners.insert(corners.end(),
-                     {{x - 1, y - 1}, {x + 1, y - 1}, {x - 1, y + 1}, {x + 1, y + 1}});
+      const std::int64_t x = 2 * units * module.cell.x;
+      const std::int64_t y = 2 * units * module.cell.y;
+      corners.insert(corners.end(), {{x - reach, y - reach},
+                                     {x + reach, y - reach},
+                                     {x - reach, y + reach},
+                                     {x + reach, y + reach}});
     }
   }
   return corners;
@@ -96,17 +108,19 @@ EdgeDistance nearest_edge(const std::vector<Point>& hull, const Point& mass) {
 RigidBody assess_rigid_body(const model::Robot& robot) {
   // Everything in half pitches times count: the centre of mass becomes an integer.
   const auto count = static_cast<std::int64_t>(robot.modules().size());
-  const double unit_mm = robot.material().pitch_mm / 2 / static_cast<double>(count);
+  const std::int64_t units = units_per_half_pitch(robot.material());
+  const double unit_mm =
+      robot.material().pitch_mm / 2 / static_cast<double>(units) / static_cast<double>(count);
   const auto plan_point = [&](const Point& point) {
     return PlanPoint{static_cast<double>(point.x) * unit_mm,
                      static_cast<double>(point.y) * unit_mm};
   };
   Point mass;
   for (const model::Module& module : robot.modules()) {
-    mass.x += 2 * static_cast<std::int64_t>(module.cell.x);
-    mass.y += 2 * static_cast<std::int64_t>(module.cell.y);
+    mass.x += 2 * units * module.cell.x;
+    mass.y += 2 * units * module.cell.y;
   }
-  std::vector<Point> hull = convex_hull(support_corners(robot));
+  std::vector<Point> hull = convex_hull(support_corners(robot, units));
   for (Point& point : hull) {
     point = {point.x * count, point.y * count};
   }

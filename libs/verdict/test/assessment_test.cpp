@@ -159,5 +159,16 @@ TEST(Assessment, counts_a_planned_module_on_the_ground_as_a_support) {
   EXPECT_EQ(assess_spec(spec).verdict, Verdict::kSafe);
 }
 
+TEST(Assessment, uses_the_width_of_the_facet_for_both_stability_checks) {
+  // The centre of mass is 40 / 3 mm out: within a facet of 40 mm, beyond one of 20 mm.
+  model::RobotSpec spec{.existing = {{0, 0, 0}, {0, 0, 1}, {1, 0, 1}}};
+  EXPECT_NEAR(*assess_spec(spec).simplified.margin_mm, 20 - 40.0 / 3, kRounding);
+  spec.material.facet_mm = 20;
+  const Assessment narrow = assess_spec(spec);
+  EXPECT_EQ(narrow.verdict, Verdict::kUnstable);
+  EXPECT_NEAR(*narrow.simplified.margin_mm, 10 - 40.0 / 3, kRounding);
+  EXPECT_FALSE(narrow.model.is_stable);
+}
+
 }  // namespace
 }  // namespace holdfast::verdict
