@@ -3,9 +3,9 @@
 //
 // Load a structure, ask whether it holds, say why.
 //
-// $ build/dev/examples/check_structure scenarios/crane_breaks_b.json
-// > overload: 1 of 14 connections would break; the worst, (1,1,1)-(1,1,2), carries 1.2000 of its
-// strength
+// $ build/dev/examples/check_structure scenarios/crane_tips_b.json
+// > unstable
+// >   it topples over the edge (100, 60)-(60, 100) mm: the centre of mass lies 2.57 mm beyond it
 
 #include <iostream>
 
@@ -22,7 +22,9 @@ int main(int argc, char** argv) {
     return 65;
   }
   const auto [assessment, seconds] = holdfast::check(structure.value());
-  std::cout << holdfast::verdict::name(assessment.verdict) << ": " << assessment.reasons.front()
-            << '\n';
+  std::cout << holdfast::verdict::name(assessment.verdict) << '\n';
+  for (const std::string& reason : assessment.reasons) {
+    std::cout << "  " << reason << '\n';
+  }
   return assessment.verdict == holdfast::verdict::Verdict::kSafe ? 0 : 1;
 }

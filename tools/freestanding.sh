@@ -3,7 +3,8 @@
 # the four memory functions that every compiler may call.
 set -euo pipefail
 allowed='^(memcpy|memmove|memset|memcmp|_GLOBAL_OFFSET_TABLE_|_ZN8holdfast.*)$'
-symbols=$(nm --undefined-only --format=just-symbols "$@" | grep -v -e ':$' -e '^$' | sort -u || true)
+symbols=$(nm --undefined-only --format=just-symbols "$@" |
+          grep -v -e ':$' -e '^$' | sort -u || true)
 bad=$(grep -Ev "$allowed" <<<"$symbols" || true)
 if [ -n "$bad" ]; then
   printf 'freestanding: calls outside the allow-list:\n%s\n' "$bad"
