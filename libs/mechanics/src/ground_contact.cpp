@@ -160,6 +160,21 @@ Mat6<Real> unilateral_corrector(const GroundFacet<Real>& facet, ContactState sta
   return matrix;
 }
 
+/// The matrix of a linear map.
+template <class Real, class Map>
+Mat6<Real> matrix_of(Map&& map) {
+  Mat6<Real> matrix;
+  for (int column = 0; column < 6; ++column) {
+    Vec6<Real> unit{};
+    unit[static_cast<std::size_t>(column)] = 1;
+    const Vec6<Real> image = map(unit);
+    for (int row = 0; row < 6; ++row) {
+      matrix.at(row, column) = image[static_cast<std::size_t>(row)];
+    }
+  }
+  return matrix;
+}
+
 }  // namespace
 
 template <class Real>
@@ -206,16 +221,48 @@ Vec6<Real> contact_force(const GroundFacet<Real>& facet, ContactState state, boo
 template <class Real>
 Mat6<Real> contact_tangent(const GroundFacet<Real>& facet, ContactState state, bool is_held) {
   const Mat6<Real> correct = corrector(facet, state, is_held);
-  Mat6<Real> tangent;
-  for (int column = 0; column < 6; ++column) {
-    Vec6<Real> unit{};
-    unit[static_cast<std::size_t>(column)] = 1;
-    const Vec6<Real> image = at_node(facet, multiply(correct, trial_force(facet, unit)));
-    for (int row = 0; row < 6; ++row) {
-      tangent.at(row, column) = image[static_cast<std::size_t>(row)];
-    }
+  return matrix_of<Real>([&](const Vec6<Real>& unit) {
+    return at_node(facet, multiply(correct, trial_force(facet, unit)));
+  });
+}
+
+/// Facet coordinates: a diagonal, and kappa e e^T where the facet tilts, e = [uz, tx, ty] -> lift
+/// of the pressed edge or corner.
+template <class Real>
+Vec6<Real> symmetric_product(const GroundFacet<Real>& facet, ContactState state, bool is_held,
+                             const Vec6<Real>& u) {
+  const bool is_unilateral = facet.law == ContactLaw::kUnilateral;
+  const Real gamma = facet.gamma;
+  const Vec6<Real> trial = trial_force(facet, u);
+  const bool holds_sideways = is_unilateral ? is_held : state.pressed;
+  Vec6<Real> force = trial;
+  for (const int i : {kFx, kFy, kMz}) {
+    force[static_cast<std::size_t>(i)] *= holds_sideways ? Real{1} : gamma;
   }
-  return tangent;
+  for (const int i : {kFz, kMx, kMy}) {
+    force[static_cast<std::size_t>(i)] *= state.pressed ? Real{1} : gamma;
+  }
+  if (state.pressed && (state.tilt_x != 0 || state.tilt_y != 0)) {
+    const Real ex = -static_cast<Real>(state.tilt_x) * facet.half_width;
+    const Real ey = -static_cast<Real>(state.tilt_y) * facet.half_width;
+    const Real k0 = facet.stiffness[kFz];
+    Real kappa = k0;
+    if (is_unilateral) {
+      kappa = (1 - gamma) * k0 /
+              (1 + k0 * ex * ex / facet.stiffness[kMx] + k0 * ey * ey / facet.stiffness[kMy]);
+    }
+    const Real pressed = kappa * (u[2] + ex * u[3] + ey * u[4]);
+    force[kFz] = pressed + (is_unilateral ? gamma * trial[kFz] : Real{0});
+    force[kMx] = (state.tilt_x != 0 ? gamma : Real{1}) * trial[kMx] + ex * pressed;
+    force[kMy] = (state.tilt_y != 0 ? gamma : Real{1}) * trial[kMy] + ey * pressed;
+  }
+  return at_node(facet, force);
+}
+
+template <class Real>
+Mat6<Real> symmetric_tangent(const GroundFacet<Real>& facet, ContactState state, bool is_held) {
+  return matrix_of<Real>(
+      [&](const Vec6<Real>& unit) { return symmetric_product(facet, state, is_held, unit); });
 }
 
 #define HOLDFAST_INSTANTIATE(Real)                                                           \
@@ -225,7 +272,10 @@ Mat6<Real> contact_tangent(const GroundFacet<Real>& facet, ContactState state, b
   template Mat6<Real> corrector(const GroundFacet<Real>&, ContactState, bool);               \
   template Vec6<Real> contact_force(const GroundFacet<Real>&, ContactState, bool,            \
                                     const Vec6<Real>&);                                      \
-  template Mat6<Real> contact_tangent(const GroundFacet<Real>&, ContactState, bool);
+  template Mat6<Real> contact_tangent(const GroundFacet<Real>&, ContactState, bool);         \
+  template Vec6<Real> symmetric_product(const GroundFacet<Real>&, ContactState, bool,        \
+                                        const Vec6<Real>&);                                  \
+  template Mat6<Real> symmetric_tangent(const GroundFacet<Real>&, ContactState, bool);
 
 HOLDFAST_INSTANTIATE(float)
 HOLDFAST_INSTANTIATE(double)

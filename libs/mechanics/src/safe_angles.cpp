@@ -77,7 +77,10 @@ SafeAngles<Real> merge(const SafeAngles<Real>& a, const SafeAngles<Real>& b) {
 
 template SafeAngles<float> safe_angles(PlanVector<float>, float);
 template SafeAngles<double> safe_angles(PlanVector<double>, double);
+template SafeAngles<std::int64_t> safe_angles(PlanVector<std::int64_t>, std::int64_t);
 template SafeAngles<float> merge(const SafeAngles<float>&, const SafeAngles<float>&);
 template SafeAngles<double> merge(const SafeAngles<double>&, const SafeAngles<double>&);
+template SafeAngles<std::int64_t> merge(const SafeAngles<std::int64_t>&,
+                                        const SafeAngles<std::int64_t>&);
 
 }  // namespace holdfast::mechanics

@@ -92,4 +92,18 @@ base::Vec6<Real> contact_force(const GroundFacet<Real>& facet, ContactState stat
 template <class Real>
 base::Mat6<Real> contact_tangent(const GroundFacet<Real>& facet, ContactState state, bool is_held);
 
+/// A symmetric, positive definite stand-in for the tangent, for solvers that need one, times u.
+/// For kUnilateral, and for a facet that does not tilt, it is the tangent itself. A facet that
+/// tilts under kRegularised has fz = k uz while its torque follows fz; the stand-in puts the spring
+/// k at the pressed edge or corner instead, fz = k (uz - sign_x l tx - sign_y l ty), where the
+/// force of the regularised law acts as well. Correcting the difference in an outer loop converges.
+template <class Real>
+base::Vec6<Real> symmetric_product(const GroundFacet<Real>& facet, ContactState state, bool is_held,
+                                   const base::Vec6<Real>& u);
+
+/// The same as a matrix, global frame at the node.
+template <class Real>
+base::Mat6<Real> symmetric_tangent(const GroundFacet<Real>& facet, ContactState state,
+                                   bool is_held);
+
 }  // namespace holdfast::mechanics

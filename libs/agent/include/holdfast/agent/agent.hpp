@@ -1,0 +1,277 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+
+#include "holdfast/agent/conductor.hpp"
+#include "holdfast/agent/link.hpp"
+#include "holdfast/agent/node.hpp"
+#include "holdfast/agent/planned.hpp"
+#include "holdfast/agent/setup.hpp"
+
+/// The program that every module of the robot runs. One object per module, one function: step().
+///
+/// PURPOSE. The robot finds out by itself whether it will hold when the planned modules are
+/// attached [Piranda 2021]. In the end every module knows the verdict, the worst connection and
+/// its load ratio.
+///
+/// USE. Make a Setup that all modules share and an Agent for each module, then hand it events in
+/// the order of their times:
+///   kStart        once, when the module starts
+///   kLinkUp       a neighbour is attached to `face` (sensed, or heard for the first time)
+///   kLinkDown     it has been taken off: it is no longer part of the robot
+///   kPlan         a module is planned at `cell`, to be attached in the next step; to any one
+///   module kReceive      `bytes` came in on `face`: one packet kLineFree     the line of `face`
+///   can take a packet: actions.packet kTime         actions.wake_at has come
+/// After each step, actions.send_faces says on which faces a packet waits (bit = face index): hand
+/// in kLineFree for them when their lines are free. actions.wake_at replaces the earlier one.
+/// `random` in kLinkUp must differ from one link-up to the next.
+///
+/// WHAT HAPPENS. One module, the anchor, knows its cell. From it a wave gives every module its cell
+/// and counts them; two more waves find a module near the middle and a spanning tree from there.
+/// Its root then conducts the computation by orders down and reports up the tree. Every link is
+/// made reliable (link.hpp). When a module is attached or removed, or a neighbour falls silent, the
+/// work so far is void: the module that notices starts a new round with a higher epoch, and what
+/// belongs to an older one is ignored. A silent neighbour is still part of the structure, so the
+/// verdict is then `undecided`, never `safe`.
+///
+/// LIMITS. At most kPlannedMax planned modules in the whole robot; more end as `undecided`, as does
+/// everything else that the program cannot be certain of; answer().reason says which.
+/// All modules have the same orientation: face indices are base::Direction.
+///
+/// No heap, no exceptions, no recursion, no I/O. Storage is the object itself, kAgentBytesMax at
+/// most. Not re-entrant: one step at a time.
+namespace holdfast::agent {
+
+inline constexpr std::size_t kAgentBytesMax = 8192;
+
+enum class EventKind : std::uint8_t {
+  kStart,
+  kLinkUp,
+  kLinkDown,
+  kPlan,
+  kReceive,
+  kLineFree,
+  kTime,
+};
+
+struct Event {
+  EventKind kind = EventKind::kTime;
+  Time now = 0;
+  base::Direction face = base::Direction::kPlusX;
+  std::uint16_t random = 0;             ///< kLinkUp
+  base::Cell cell = {};                 ///< kPlan
+  std::span<const std::uint8_t> bytes;  ///< kReceive
+};
+
+struct Actions {
+  std::uint8_t send_faces = 0;
+  Time wake_at = kNever;
+  int packet_bytes = 0;  ///< After kLineFree; 0: nothing to send after all.
+  std::array<std::uint8_t, wire::kPacketBytesMax> packet;
+};
+
+/// What one module is, apart from what all share.
+struct Identity {
+  std::uint32_t id = 0;    ///< Different for every module.
+  bool is_fixed = false;   ///< Held from outside, does not move.
+  bool is_anchor = false;  ///< Knows `cell` from the start; exactly one module.
+  base::Cell cell = {};    ///< Of the anchor.
+};
+
+/// What a module is busy with; its messages are counted under this.
+enum class Phase : std::uint8_t {
+  kDiscovery,
+  kCoordinates,
+  kElection,
+  kTree,
+  kMass,
+  kSimplified,
+  kEquilibrium,
+  kModel,
+  kOverload,
+  kDone,
+};
+
+template <class Real>
+class BasicAgent {
+ public:
+  /// Keeps a reference to the setup.
+  BasicAgent(const Setup& setup, const Identity& identity);
+
+  void step(const Event& event, Actions& actions);
+
+  /// The verdict as far as this module knows it; kNone while it is being worked out.
+  const Answer& answer() const { return answer_; }
+
+  /// The largest load ratio of this module's own connections: its colour. Valid with a verdict.
+  float own_load_ratio() const { return own_ratio_; }
+
+  Phase phase() const { return phase_; }
+
+  std::uint16_t epoch() const { return round_.epoch; }
+
+  bool has_cell() const { return has_cell_; }
+
+  const base::Cell& cell() const { return nodes_[0].cell; }
+
+  /// The spanning tree: the parent's face, or -1 at the root or without a tree.
+  int parent() const { return parent_; }
+
+  bool is_root() const { return stage_ == kTreeStage && parent_ < 0; }
+
+  std::uint16_t depth() const { return hops_; }
+
+  /// Of the root: what was done to find the equilibrium.
+  const Effort& effort() const { return conductor_.effort(); }
+
+ private:
+  /// One attempt at a verdict. The higher one wins: epoch first, then the starter's id.
+  struct Round {
+    std::uint16_t epoch = 0;
+    std::uint32_t starter = 0;
+  };
+
+  static constexpr std::uint8_t kNoStage = 0;
+  static constexpr std::uint8_t kFirstStage = 1;  ///< From the starter: coordinates, census.
+  static constexpr std::uint8_t kFarStage = 2;    ///< From the module furthest from the starter.
+  static constexpr std::uint8_t kTreeStage = 3;   ///< From the middle: the tree that is used.
+
+  // agent.cpp: events, links, rounds.
+  void handle(const Event& event);
+  void receive(int face, std::span<const std::uint8_t> packet);
+  void check_link(int face);
+  void dispatch(int face, std::span<const std::uint8_t> message);
+  void send(int face, const wire::Writer& message);
+  void send_to_children(const wire::Writer& message);
+  void leave_round();
+  void start_round();
+  void enter_round(const Round& round);
+  void plan(const base::Cell& cell);
+  void finish_step(Actions& actions);
+
+  bool is_working() const { return stage_ != kNoStage && phase_ != Phase::kDone; }
+
+  std::uint8_t used_faces() const;
+
+  // waves.cpp: coordinates, election, tree.
+  void start_wave(std::uint8_t stage);
+  void begin_stage(std::uint8_t stage, int parent, std::uint16_t hops);
+  void take_join(int face, std::span<const std::uint8_t> message);
+  void take_echo(int face, std::span<const std::uint8_t> message);
+  void take_appointment(std::span<const std::uint8_t> message);
+  void await_less(int face);
+  void end_stage();
+  void mark(std::uint16_t hops);
+
+  // sweep.cpp: orders and reports.
+  void take_order(const Order& order);
+  void start_exchange();
+  void take_vector(int face, std::span<const std::uint8_t> message);
+  void take_planned_down(std::span<const std::uint8_t> message);
+  void take_planned_up(std::span<const std::uint8_t> message);
+  void take_report(int face, std::span<const std::uint8_t> message);
+  void continue_sweep();
+  void finish_sweep();
+  void send_planned_down();
+  void send_planned_up();
+
+  // work.cpp: what the operations do here.
+  void prepare(const Order& order);
+  Report conclude(const Order& order);
+  Report plan_report() const;
+  Report mass_report() const;
+  Report angles_report() const;
+  Report corners_report() const;
+  Report loads_report();
+  void prepare_hosted();
+
+  // equilibrium.cpp: the same for the equilibrium's operations.
+  void begin_equilibrium(const Order& order);
+  void move(double step);
+  void start_solve(const Order& order);
+  void gradient_step(const Order& order);
+  void jacobi_step();
+  void exchange_forces();
+  void add_beam(int face, const base::Vec6<float>& other);
+  void add_planned_beams();
+  Report residual_report();
+  Report product_report();
+  Report slope_report() const;
+  Report hold_report();
+  double ratio_of(const MiddleLoad& load, base::Direction direction) const;
+  template <class Visit>
+  void visit_loads(Visit&& visit) const;
+  std::uint8_t node_faces(int node) const;
+
+  int node_count() const { return 1 + planned_.hosted_count(); }
+
+  const Setup& setup_;
+  Identity identity_;
+  std::array<Link, base::kDirectionCount> links_;
+  Time now_ = 0;
+
+  // Rounds.
+  Round round_;
+  std::array<Round, base::kDirectionCount> peer_round_;  ///< Of what comes in on each link.
+  std::uint8_t silent_faces_ = 0;  ///< Neighbours that ought to answer and do not.
+  bool has_cell_ = false;
+  Time restart_at_ = kNever;
+  std::uint8_t touched_ = 0;  ///< Faces whose link has changed in this step.
+  std::uint8_t send_faces_ = 0;
+  std::array<Time, base::kDirectionCount> deadline_{};
+  std::array<base::Cell, kPlannedMax> announced_{};
+  std::uint8_t announced_count_ = 0;
+  bool is_announced_overfull_ = false;
+
+  // Waves and tree.
+  std::uint8_t stage_ = kNoStage;
+  std::int8_t parent_ = -1;
+  std::uint8_t children_ = 0;
+  std::uint8_t awaited_ = 0;
+  std::uint16_t hops_ = 0;
+  std::uint32_t census_count_ = 0;
+  std::uint16_t census_hops_ = 0;
+  std::uint32_t census_id_ = 0;
+  bool is_anyone_silent_ = false;
+  bool has_next_order_ = false;
+  Order next_order_;  ///< Of the root.
+
+  // Sweeps.
+  Order order_;
+  bool is_sweeping_ = false;
+  bool is_exchanging_ = false;
+  bool is_first_step_ = false;  ///< Of a Jacobi method.
+  bool is_scalar_ = false;      ///< Scalar diagonal instead of blocks.
+  std::uint8_t reports_awaited_ = 0;
+  std::uint8_t planned_awaited_ = 0;  ///< By planned index: reals still to come from the parent.
+  std::uint8_t tag_ = 0;              ///< Of the exchange under way.
+  std::array<std::uint8_t, 2> vectors_here_{};  ///< Faces, by the tag's lowest bit.
+  std::uint16_t jacobi_left_ = 0;
+  float jacobi_error_ = 0;
+  std::array<std::array<base::Vec6<float>, base::kDirectionCount>, 2> vectors_{};
+  std::array<std::array<std::uint8_t, wire::kMessageBytesMax>, base::kDirectionCount> reports_{};
+  Planned planned_;
+
+  // Mechanics.
+  std::array<Node<Real>, 1 + kPlannedMax> nodes_{};  ///< This module, then those it emulates.
+  std::array<base::Vec6<float>, kPlannedMax> planned_vector_{};
+  std::array<base::Vec6<double>, kPlannedMax> planned_force_{};
+  std::array<MiddleLoad, base::kDirectionCount> middle_{};
+  ContactSetting contact_;
+  base::Cell root_cell_;
+
+  Conductor conductor_;
+  Answer answer_;
+  float own_ratio_ = 0;
+  Phase phase_ = Phase::kDiscovery;
+};
+
+using Agent = BasicAgent<float>;
+
+static_assert(sizeof(BasicAgent<float>) <= kAgentBytesMax);
+
+}  // namespace holdfast::agent

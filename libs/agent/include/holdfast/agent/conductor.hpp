@@ -1,0 +1,149 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "holdfast/agent/order.hpp"
+#include "holdfast/agent/planned.hpp"
+#include "holdfast/agent/setup.hpp"
+
+/// What the root of the tree does: from each report to the next order, until the verdict.
+///
+///   planned modules -> mass -> safe angles -> [topples: verdict]
+///   -> equilibrium -> support corners -> [unilateral contact if they disagree] -> loads -> verdict
+///
+/// Equilibrium. All methods share one outer loop: move, compute the residual precisely, judge,
+/// solve for a correction. It serves four purposes at once: the correction may be found roughly and
+/// in single precision (iterative refinement); contact states change between solves (Newton); the
+/// unsymmetric tangent of a tilting facet is replaced by a symmetric one in the solve (defect
+/// correction, with the last two iterates mixed so that the residual is least); and the loop ends
+/// by a bound on the error of every load ratio, not by a count.
+///
+/// Contact. As in the exact solver: first the paper's law (9)-(12) by Newton's method from "all
+/// stuck"; if its states cycle, or the corners contradict the rigid body, the unilateral law by
+/// Newton's method with a line search, then with open feet released.
+namespace holdfast::agent {
+
+/// What was done, for reports.
+struct Effort {
+  std::uint32_t iterations = 0;                 ///< Of the linear method.
+  std::uint32_t solves = 0;                     ///< Corrections started.
+  std::uint32_t contact_steps = 0;              ///< Changes of contact states.
+  std::uint32_t module_count = 0;               ///< Planned ones included.
+  Method method = Method::kConjugateGradients;  ///< The last one used.
+  bool is_unilateral = false;
+  float ratio_error = 0;  ///< Bound at the end.
+};
+
+class Conductor {
+ public:
+  /// The first order. `root` is the root's own cell, `module_count` how many the wave has counted.
+  Order begin(const Setup& setup, const base::Cell& root, std::uint32_t module_count);
+
+  /// The next order, given what the last one has brought.
+  Order next(const Setup& setup, const Report& report);
+
+  /// After the report to the kVerdict order.
+  bool is_finished() const { return step_ == Step::kVerdict; }
+
+  const Effort& effort() const { return effort_; }
+
+ private:
+  enum class Step : std::uint8_t {
+    kPlan,
+    kHosts,
+    kMass,
+    kAngles,
+    kBegin,
+    kHigh,
+    kLow,
+    kStart,
+    kGradient,
+    kJacobi,
+    kSlope,
+    kCorners,
+    kRelease,
+    kFree,
+    kLoads,
+    kVerdict,
+  };
+
+  static constexpr int kSeenMax = 24;
+
+  Order order(Step step, wire::Operation operation);
+  Order after_plan(const Report& report);
+  Order after_hosts(const Setup& setup, const Report& report);
+  Order after_mass(const Setup& setup, const Report& report);
+  Order after_angles(const Setup& setup, const Report& report);
+  Order begin_law(const Setup& setup, bool is_unilateral);
+  Order start_solve(bool adopts_states, double mix);
+  Order after_start(const Report& report);
+  Order after_gradient(const Setup& setup, const Report& report);
+  Order next_gradient(double gamma, double delta);
+  Order start_jacobi();
+  Order after_jacobi(const Setup& setup, const Report& report);
+  Order after_slope(const Report& report);
+  Order end_solve();
+  Order move(double step);
+  Order judge(const Setup& setup, const Report& report);
+  Order judge_regularised(const Setup& setup, const Report& report);
+  Order give_up(const Setup& setup);
+  Order settled();
+  Order after_corners(const Setup& setup, const Report& report);
+  Order after_hold(const Report& report);
+  Order after_loads(const Report& report);
+  Order decide();
+  Order finish(Verdict verdict, Reason reason);
+
+  bool is_jacobi() const { return effort_.method != Method::kConjugateGradients; }
+
+  bool was_seen(std::uint32_t hash);
+
+  Step step_ = Step::kPlan;
+  Effort effort_;
+  base::Cell root_;
+  std::uint32_t census_ = 0;
+  std::uint8_t plan_index_ = 0xff;
+  base::Cell plan_cell_;
+  std::array<std::uint8_t, 8> totals_{};
+  bool is_any_remote_ = false;
+  bool is_fixed_ = false;
+  std::uint16_t extent_ = 0;
+
+  // Equilibrium.
+  bool is_unilateral_ = false;
+  bool is_tilting_ = false;
+  bool is_comparing_ = false;  ///< Open feet freed, to see whether the verdict stays.
+  double gamma_ = 0;           ///< (r, z) of conjugate gradients.
+  double gamma_first_ = 0;
+  double alpha_ = 0;
+  double reduction_ = 0;  ///< Wanted of a solve: gamma / gamma_first.
+  std::uint32_t solve_iterations_ = 0;
+  std::uint32_t solve_iterations_max_ = 0;
+  double error_ = 0;  ///< Bound on the error of load ratios at the last judgement.
+  double error_best_ = 0;
+  double ratio_ = 0;
+  double target_ = 0;
+  std::uint8_t stagnation_count_ = 0;
+  std::array<std::uint32_t, kSeenMax> seen_{};
+  std::uint8_t seen_count_ = 0;
+  // Jacobi.
+  std::uint16_t batch_ = 0;
+  std::uint32_t check_at_ = 0;
+  double check_error_ = 0;
+  double least_error_ = 0;
+  // Line search.
+  double low_ = 0;
+  double high_ = 0;
+  double slope_first_ = 0;
+  double slope_linear_ = 0;
+  double slope_curvature_ = 0;
+  std::uint8_t slope_count_ = 0;
+  // The end.
+  std::uint32_t open_held_count_ = 0;
+  Answer answer_;
+};
+
+}  // namespace holdfast::agent

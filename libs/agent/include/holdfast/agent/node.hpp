@@ -1,0 +1,99 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "holdfast/agent/setup.hpp"
+#include "holdfast/base/algebra.hpp"
+#include "holdfast/base/cell.hpp"
+#include "holdfast/mechanics/ground_contact.hpp"
+
+/// The mechanical state of one module, existing or planned, and what is computed on it alone.
+namespace holdfast::agent {
+
+/// How the equilibrium treats the ground, the same everywhere in the robot.
+struct ContactSetting {
+  mechanics::GroundFacet<double> facet;
+  double lever_mm = 0;  ///< The robot's extent: how far a force that is not balanced may reach.
+};
+
+/// Lower triangle of a Cholesky factor, by rows.
+template <class Real>
+using Triangle = std::array<Real, 21>;
+
+/// In the middle of one connection, local frame: what Eq. (17) needs.
+struct MiddleLoad {
+  double axial_n = 0;
+  double bending_x_nmm = 0;
+  double bending_y_nmm = 0;
+};
+
+/// Vectors are named as in the method: u displacements, r residual, g correction being found,
+/// z preconditioned residual, w its image, p and s directions of conjugate gradients.
+template <class Real>
+struct Node {
+  using Vec = base::Vec6<Real>;
+
+  base::Cell cell;
+  bool is_fixed = false;
+  bool is_ground = false;
+  bool is_held = true;  ///< Against slip and twist (unilateral law).
+  bool was_released = false;
+  mechanics::ContactState state;   ///< In use.
+  mechanics::ContactState wanted;  ///< That the law prescribes for u.
+
+  base::Vec6<double> u{};
+  base::Vec6<double> u_last{};
+  base::Vec6<double> force{};  ///< Of all beams on their module ends, at u.
+  Vec r{};
+  Vec r_last{};
+  Vec g{};
+  Vec z{};
+  Vec w{};
+  Vec p{};
+  Vec s{};
+  Triangle<Real> factor{};  ///< Of the 6x6 diagonal block.
+};
+
+/// Back to rest: no displacement, the facet stuck, the residual is the weight.
+template <class Real>
+void reset(Node<Real>& node, const Setup& setup);
+
+/// Factor of the diagonal block: K11 of the beams on `faces` and the facet's symmetric tangent.
+template <class Real>
+void factor_diagonal(Node<Real>& node, const Setup& setup, const ContactSetting& contact,
+                     std::uint8_t faces);
+
+/// The scalar diagonal of the same block with the facet's true tangent (Eq. 14).
+template <class Real>
+base::Vec6<Real> scalar_diagonal(const Node<Real>& node, const Setup& setup,
+                                 const ContactSetting& contact, std::uint8_t faces);
+
+/// Solves with the factor.
+template <class Real>
+base::Vec6<Real> solve_diagonal(const Node<Real>& node, base::Vec6<Real> vector);
+
+/// Residual at u: weight less beams less facet, in the state in use. Zero on a fixed module.
+template <class Real>
+base::Vec6<double> residual(const Node<Real>& node, const Setup& setup,
+                            const ContactSetting& contact);
+
+/// The force of the facet at u + t g, in the state that the law prescribes there.
+template <class Real>
+base::Vec6<double> facet_force_along(const Node<Real>& node, const ContactSetting& contact,
+                                     double t);
+
+/// The state that the law prescribes at u + t g.
+template <class Real>
+mechanics::ContactState state_along(const Node<Real>& node, const ContactSetting& contact,
+                                    double t);
+
+/// How much a residual can change any load ratio: the force at the robot's full extent, and the
+/// torque, carried by one connection. Rigorous where the robot is statically determinate.
+template <class Real>
+double ratio_error(const base::Vec6<Real>& residual, const Setup& setup,
+                   const ContactSetting& contact);
+
+}  // namespace holdfast::agent

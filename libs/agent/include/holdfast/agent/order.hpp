@@ -1,0 +1,102 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+
+#include "holdfast/agent/wire.hpp"
+#include "holdfast/base/cell.hpp"
+#include "holdfast/mechanics/safe_angles.hpp"
+#include "holdfast/mechanics/support_corners.hpp"
+
+/// What the root asks for and what comes back, as values; encode() and decode() turn them into
+/// messages, merge() adds up what several modules report.
+namespace holdfast::agent {
+
+enum class Verdict : std::uint8_t { kNone, kSafe, kOverload, kUnstable, kUndecided };
+
+/// Why; for kUndecided, what stood in the way.
+enum class Reason : std::uint8_t {
+  kNone,
+  kHolds,
+  kBreaks,
+  kTopples,
+  kNeighbourSilent,  ///< A module that is there did not take part.
+  kPlannedTooMany,   ///< More than kPlannedMax planned modules.
+  kPlannedOccupied,  ///< A planned cell holds a module already.
+  kPlannedDetached,  ///< A planned module touches nothing.
+  kTooLarge,         ///< The exact stability check would overflow.
+  kNotConverged,     ///< No method settled within the limit of iterations.
+  kTooClose,         ///< The largest load ratio cannot be told from 1.
+  kAmbiguousFeet,    ///< The verdict depends on feet that are neither held nor free.
+};
+
+const char* name(Verdict verdict);
+const char* name(Reason reason);
+
+/// What every module knows in the end.
+struct Answer {
+  Verdict verdict = Verdict::kNone;
+  Reason reason = Reason::kNone;
+  float load_ratio_max = 0;  ///< Not meaningful if unstable or undecided.
+  base::Cell worst_cell = {};     ///< The worst connection: this cell and its neighbour ...
+  base::Direction worst_direction = base::Direction::kPlusX;  ///< ... in this direction.
+};
+
+/// Fields are used as the operation needs them; see wire.hpp and docs/wire.md.
+struct Order {
+  wire::Operation operation{};
+  std::uint8_t index = 0;  ///< kPlan: planned index learned, or 0xff.
+  std::uint8_t flags = 0;
+  std::uint16_t count = 0;                 ///< kJacobi: steps.
+  base::Cell cell = {};                         ///< kPlan: of that module; kMass: of the root.
+  std::array<std::uint8_t, 8> masks{};     ///< kHosts
+  std::int32_t module_count = 0;           ///< kAngles
+  std::array<std::int32_t, 2> cell_sum{};  ///< kAngles
+  std::array<float, 2> reals{};
+  Answer answer = {};  ///< kVerdict
+};
+
+/// Flags of orders.
+inline constexpr std::uint8_t kUnilateralLaw = 1;  ///< kBegin
+inline constexpr std::uint8_t kFollowStates = 1;   ///< kLow: take over the wanted states first.
+inline constexpr std::uint8_t kAdoptStates = 1;    ///< kStart
+inline constexpr std::uint8_t kWithScalars = 2;   ///< kStart
+inline constexpr std::uint8_t kWithBlocks = 4;    ///< kStart
+inline constexpr std::uint8_t kExchangeFirst = 1;  ///< kSlope
+inline constexpr std::uint8_t kReleaseOpen = 1;    ///< kHold
+inline constexpr std::uint8_t kFreeOpen = 2;       ///< kHold: of all open facets, for comparison.
+
+struct Report {
+  std::uint8_t flags = 0;
+  std::uint8_t mask = 0;
+  std::uint16_t extent = 0;
+  std::uint32_t count = 0;
+  std::uint32_t number = 0;
+  std::array<std::int32_t, 2> cell_sum{};
+  std::array<float, 6> reals{};
+  base::Cell cell = {};
+  base::Direction direction = base::Direction::kPlusX;
+  mechanics::SafeAngles<std::int64_t> angles = {};
+  mechanics::SupportCorners corners = {};
+};
+
+/// Flags of reports.
+inline constexpr std::uint8_t kFound = 1;             ///< kPlan: cell is set.
+inline constexpr std::uint8_t kAnyRemote = 0x80;      ///< kHosts
+inline constexpr std::uint8_t kAnyFixed = 1;          ///< kMass
+inline constexpr std::uint8_t kSumOverflow = 2;       ///< kMass
+inline constexpr std::uint8_t kTooManyAnnounced = 2;  ///< kPlan
+inline constexpr std::uint8_t kAnyTilting = 1;        ///< kLow
+
+wire::Writer encode(const Order& order);
+wire::Writer encode(wire::Operation operation, const Report& report);
+Order decode_order(std::span<const std::uint8_t> message);
+Report decode_report(std::span<const std::uint8_t> message);
+
+/// Adds `from` to `into`, as the operation demands.
+void merge(wire::Operation operation, Report& into, const Report& from);
+
+}  // namespace holdfast::agent

@@ -1,0 +1,43 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+
+#include "holdfast/agent/link.hpp"
+#include "holdfast/mechanics/beam.hpp"
+
+namespace holdfast::agent {
+
+/// How the root finds the equilibrium. A method that diverges or stagnates gives way to the next.
+enum class Method : std::uint8_t {
+  kJacobi,              ///< Weighted Jacobi with the scalar diagonal, Eq. (14).
+  kBlockJacobi,         ///< The same with 6x6 diagonal blocks.
+  kConjugateGradients,  ///< Preconditioned with the 6x6 diagonal blocks.
+};
+
+/// What is known before the robot is built, the same for all its modules. N, mm, MPa.
+struct Setup {
+  mechanics::BeamSection<double> section;
+  double facet_mm = 40;
+  double weight_n = 0;  ///< Of one module.
+  double strength_vertical_n = 0;
+  double strength_lateral_n = 0;
+  double contact_gamma = 1e-4;  ///< Eqs. (10)-(12)
+  /// facet_mm / pitch as a fraction, for the exact stability check.
+  std::int32_t facet_numerator = 1;
+  std::int32_t facet_denominator = 1;
+  std::int32_t support_z = 0;  ///< Modules in this layer rest on the ground.
+  Method method = Method::kConjugateGradients;
+  std::uint32_t iteration_count_max = 4'000'000;
+  LinkTiming timing;
+
+  // Derived by prepare().
+  mechanics::BeamStiffness<double> beam;
+  mechanics::BeamStiffness<float> beam_float;
+};
+
+/// Fills in what follows from the rest. Call once, before the first agent is made.
+void prepare(Setup& setup);
+
+}  // namespace holdfast::agent

@@ -1,0 +1,116 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "holdfast/base/cell.hpp"
+
+/// The bytes that modules exchange. docs/wire.md specifies them; this is the only code that knows.
+///
+/// A packet is 2 bytes of header, up to `payload` bytes, 2 bytes of checksum. The payloads of the
+/// packets of one link, in order, are one stream of messages: a message is one type byte (orders
+/// and reports: a second one for the operation), then a body whose size the type gives. Numbers are
+/// little-endian; reals are IEEE 754 binary32 whatever the modules compute with.
+namespace holdfast::agent::wire {
+
+inline constexpr std::uint8_t kVersion = 1;
+
+inline constexpr int kHeaderBytes = 2;
+inline constexpr int kChecksumBytes = 2;
+inline constexpr int kPacketBytesMin = 17;   ///< Blinky Blocks version 1
+inline constexpr int kPacketBytesMax = 228;  ///< Blinky Blocks version 2
+inline constexpr int kMessageBytesMax = 26;
+inline constexpr int kCellBytes = 9;
+
+enum class PacketKind : std::uint8_t { kData, kAcknowledge, kHello, kPing };
+
+enum class MessageType : std::uint8_t {
+  kJoin = 1,     ///< A wave: take part in a round, and where you are.
+  kEcho,         ///< The wave's answer: who is behind me.
+  kAppoint,      ///< Down the tree: this module starts the next wave.
+  kMark,         ///< Along a path: after so many hops, start the next wave.
+  kOrder,        ///< Down the tree: do this.
+  kReport,       ///< Up the tree: done, with these sums.
+  kVector,       ///< To every neighbour: six reals.
+  kPlannedDown,  ///< From the host of a planned module: its six reals.
+  kPlannedUp,    ///< To the host of a planned module: the force on it.
+};
+
+/// What an order asks for. Each has a body for the way down and one for the way up.
+enum class Operation : std::uint8_t {
+  kPlan = 1,  ///< Learn one planned cell, find the next.
+  kHosts,     ///< Which faces of planned modules touch; who emulates them.
+  kMass,      ///< Count, centre of mass, supports, extent.
+  kAngles,    ///< Safe angles of the simplified stability check.
+  kBegin,     ///< Start an equilibrium: law, weak spring.
+  kHigh,      ///< Move by a step, exchange the leading part of the displacements.
+  kLow,       ///< Exchange the rest; residual, contact states, loads.
+  kStart,     ///< Start a linear solve for a correction.
+  kGradient,  ///< One step of conjugate gradients.
+  kJacobi,    ///< Some steps of a Jacobi method, in lockstep.
+  kSlope,     ///< Slope of the energy along the correction.
+  kHold,      ///< Release open facets, hold pressed ones.
+  kCorners,   ///< Support corners of the model-based stability check.
+  kLoads,     ///< The worst connection.
+  kVerdict,   ///< The answer, for every module.
+};
+inline constexpr int kOperationCount = 15;
+
+/// Sizes of whole messages, type byte included; 0 for what is not a message. `second` is the byte
+/// after the type and matters for orders and reports only.
+int message_bytes(std::uint8_t type, std::uint8_t second);
+
+/// CRC-16/CCITT (polynomial 0x1021, most significant bit first) from a start value.
+std::uint16_t checksum(std::span<const std::uint8_t> bytes, std::uint16_t start);
+
+/// Fills a message from the front. Writing past kMessageBytesMax is a bug.
+class Writer {
+ public:
+  explicit Writer(MessageType type) { u8(static_cast<std::uint8_t>(type)); }
+
+  Writer(MessageType type, Operation operation) : Writer(type) {
+    u8(static_cast<std::uint8_t>(operation));
+  }
+
+  void u8(std::uint8_t value);
+  void u16(std::uint16_t value);
+  void u32(std::uint32_t value);
+
+  void i32(std::int32_t value) { u32(static_cast<std::uint32_t>(value)); }
+
+  void real(double value);            ///< Rounded to binary32.
+  void cell(const base::Cell& cell);  ///< Three times 24 bits, two's complement.
+  void pad();                         ///< Zeros up to the size of the message.
+
+  std::span<const std::uint8_t> bytes() const { return {bytes_.data(), size_}; }
+
+ private:
+  std::array<std::uint8_t, kMessageBytesMax> bytes_{};
+  std::size_t size_ = 0;
+};
+
+/// Reads a message from behind the type byte. Reading past the end gives zeros.
+class Reader {
+ public:
+  explicit Reader(std::span<const std::uint8_t> message, std::size_t at = 1)
+      : bytes_(message), at_(at) {}
+
+  std::uint8_t u8();
+  std::uint16_t u16();
+  std::uint32_t u32();
+
+  std::int32_t i32() { return static_cast<std::int32_t>(u32()); }
+
+  float real();
+  base::Cell cell();
+
+ private:
+  std::span<const std::uint8_t> bytes_;
+  std::size_t at_;
+};
+
+}  // namespace holdfast::agent::wire

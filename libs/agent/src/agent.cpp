@@ -1,0 +1,16 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#include "holdfast/agent/agent.hpp"
+
+#include "equilibrium.hpp"
+#include "rounds.hpp"
+#include "sweep.hpp"
+#include "waves.hpp"
+#include "work.hpp"
+
+namespace holdfast::agent {
+
+template class BasicAgent<float>;
+template class BasicAgent<double>;
+
+}  // namespace holdfast::agent

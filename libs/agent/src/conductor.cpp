@@ -1,0 +1,513 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#include "holdfast/agent/conductor.hpp"
+
+namespace holdfast::agent {
+namespace {
+
+using wire::Operation;
+
+constexpr std::uint8_t kNoIndex = 0xff;
+
+/// Load ratios are to be this good: absolute, and relative to the largest. A third of what is
+/// promised (0.01 + 1 %), as the bound is not rigorous for statically indeterminate robots.
+constexpr double kRatioTolerance = 3e-3;
+
+/// Contact states are judged at this accuracy.
+constexpr double kStateTolerance = 1e-3;
+
+/// A verdict needs the largest ratio this many times its error bound away from 1.
+constexpr double kDoubt = 3;
+
+/// The best bound that is tried for: below, the arithmetic itself is in doubt.
+constexpr double kErrorLeast = 2e-8;
+
+/// Bounds of the wanted reduction of the residual in one linear solve. Single precision rarely
+/// gives more than four digits in one go; a tilting facet's stand-in tangent deserves only one.
+constexpr double kReductionLeast = 1e-4;
+constexpr double kReductionTilting = 0.05;
+
+/// Judgements without progress before a way is given up.
+constexpr int kStagnationMax = 8;
+
+constexpr int kContactStepsMax = 100;
+
+/// The weak springs of the unilateral law, as in the exact solver (verdict/assessment.cpp).
+constexpr double kUnilateralGamma = 1e-9;
+
+constexpr std::int64_t kAngleMax = std::int64_t{1} << 29;
+
+double absolute(double value) { return value < 0 ? -value : value; }
+
+bool is_number(double value) { return absolute(value) < 1e30; }
+
+}  // namespace
+
+Order Conductor::order(Step step, Operation operation) {
+  step_ = step;
+  return {.operation = operation};
+}
+
+Order Conductor::begin(const Setup& setup, const base::Cell& root, std::uint32_t module_count) {
+  *this = Conductor();
+  root_ = root;
+  census_ = module_count;
+  effort_.method = setup.method;
+  Order first = order(Step::kPlan, Operation::kPlan);
+  first.index = kNoIndex;
+  return first;
+}
+
+Order Conductor::next(const Setup& setup, const Report& report) {
+  switch (step_) {
+    case Step::kPlan:
+      return after_plan(report);
+    case Step::kHosts:
+      return after_hosts(setup, report);
+    case Step::kMass:
+      return after_mass(setup, report);
+    case Step::kAngles:
+      return after_angles(setup, report);
+    case Step::kBegin:
+      return is_jacobi() ? start_jacobi() : start_solve(false, 0);
+    case Step::kHigh: {
+      Order low = order(Step::kLow, Operation::kLow);
+      low.flags = is_unilateral_ || is_jacobi() ? kFollowStates : std::uint8_t{0};
+      return low;
+    }
+    case Step::kLow:
+      return judge(setup, report);
+    case Step::kStart:
+      return after_start(report);
+    case Step::kGradient:
+      return after_gradient(setup, report);
+    case Step::kJacobi:
+      return after_jacobi(setup, report);
+    case Step::kSlope:
+      return after_slope(report);
+    case Step::kCorners:
+      return after_corners(setup, report);
+    case Step::kRelease:
+    case Step::kFree:
+      return after_hold(report);
+    case Step::kLoads:
+      return after_loads(report);
+    case Step::kVerdict:
+      break;
+  }
+  return finish(Verdict::kUndecided, Reason::kNotConverged);
+}
+
+// ---- Planned modules, mass, rigid body.
+
+Order Conductor::after_plan(const Report& report) {
+  if (plan_index_ != kNoIndex) {
+    totals_[plan_index_] = report.mask;
+    if ((report.mask & Planned::kOccupied) != 0) {
+      return finish(Verdict::kUndecided, Reason::kPlannedOccupied);
+    }
+  }
+  if ((report.flags & kTooManyAnnounced) != 0) {
+    return finish(Verdict::kUndecided, Reason::kPlannedTooMany);
+  }
+  if ((report.flags & kFound) != 0) {
+    plan_index_ = plan_index_ == kNoIndex ? std::uint8_t{0} : std::uint8_t(plan_index_ + 1);
+    if (plan_index_ >= kPlannedMax) {
+      return finish(Verdict::kUndecided, Reason::kPlannedTooMany);
+    }
+    Order plan = order(Step::kPlan, Operation::kPlan);
+    plan.index = plan_index_;
+    plan.cell = report.cell;
+    return plan;
+  }
+  Order hosts = order(Step::kHosts, Operation::kHosts);
+  hosts.masks = totals_;
+  return hosts;
+}
+
+Order Conductor::after_hosts(const Setup&, const Report& report) {
+  is_any_remote_ = (report.mask & kAnyRemote) != 0;
+  const unsigned planned = plan_index_ == kNoIndex ? 0U : (2U << plan_index_) - 1;
+  if ((report.mask & 0x7fU) != planned) {
+    return finish(Verdict::kUndecided, Reason::kPlannedDetached);
+  }
+  Order mass = order(Step::kMass, Operation::kMass);
+  mass.cell = root_;
+  return mass;
+}
+
+Order Conductor::after_mass(const Setup& setup, const Report& report) {
+  const std::uint32_t planned = plan_index_ == kNoIndex ? 0U : plan_index_ + 1U;
+  if (report.count != census_ + planned) {
+    return finish(Verdict::kUndecided, Reason::kNeighbourSilent);
+  }
+  effort_.module_count = report.count;
+  is_fixed_ = (report.flags & kAnyFixed) != 0;
+  extent_ = report.extent;
+  if (is_fixed_) {
+    return begin_law(setup, false);
+  }
+  const std::int64_t reach = (4 * std::int64_t{extent_} + 2 * std::int64_t{setup.facet_numerator}) *
+                             setup.facet_denominator * report.count;
+  if ((report.flags & kSumOverflow) != 0 || reach > kAngleMax) {
+    return finish(Verdict::kUndecided, Reason::kTooLarge);
+  }
+  Order angles = order(Step::kAngles, Operation::kAngles);
+  angles.cell = root_;
+  angles.module_count = static_cast<std::int32_t>(report.count);
+  angles.cell_sum = report.cell_sum;
+  return angles;
+}
+
+Order Conductor::after_angles(const Setup& setup, const Report& report) {
+  if (report.angles.range != mechanics::SafeRange::kFull) {
+    return finish(Verdict::kUnstable, Reason::kTopples);
+  }
+  return begin_law(setup, false);
+}
+
+// ---- Equilibrium: the outer loop.
+
+Order Conductor::begin_law(const Setup& setup, bool is_unilateral) {
+  is_unilateral_ = is_unilateral;
+  effort_.is_unilateral = is_unilateral;
+  is_tilting_ = false;
+  seen_count_ = 0;
+  stagnation_count_ = 0;
+  error_ = 1e30;
+  error_best_ = 1e30;
+  target_ = kStateTolerance;
+  reduction_ = kReductionLeast;
+  solve_iterations_max_ = 200 + 20 * effort_.module_count;
+  Order begin = order(Step::kBegin, Operation::kBegin);
+  begin.flags = is_unilateral ? kUnilateralLaw : std::uint8_t{0};
+  begin.reals[0] = static_cast<float>(is_unilateral ? kUnilateralGamma : setup.contact_gamma);
+  begin.reals[1] = static_cast<float>(static_cast<double>(extent_ + 1) * setup.section.length);
+  return begin;
+}
+
+Order Conductor::move(double step) {
+  Order high = order(Step::kHigh, Operation::kHigh);
+  high.reals[0] = static_cast<float>(step);
+  return high;
+}
+
+/// Reports of kLow: error bound, largest ratio, mixing products, changed facets, their hash.
+Order Conductor::judge(const Setup& setup, const Report& report) {
+  const double error = static_cast<double>(report.reals[0]);
+  ratio_ = static_cast<double>(report.reals[1]);
+  is_tilting_ = (report.flags & kAnyTilting) != 0;
+  if (!is_number(error) || effort_.iterations > setup.iteration_count_max) {
+    return give_up(setup);
+  }
+  error_ = error;
+  const bool is_better = error < 0.7 * error_best_;
+  error_best_ = is_better ? error : error_best_;
+  stagnation_count_ = is_better ? std::uint8_t{0} : std::uint8_t(stagnation_count_ + 1);
+  const bool follows = is_unilateral_ || is_jacobi();
+  if (!follows && report.extent > 0 && (error <= target_ || stagnation_count_ > kStagnationMax)) {
+    return judge_regularised(setup, report);
+  }
+  if (error <= target_ && (follows || report.extent == 0)) {
+    const double wanted = kRatioTolerance * (1 + absolute(ratio_));
+    const double distance = absolute(ratio_ - 1) / kDoubt;
+    if (error <= wanted && (error <= distance || error <= kErrorLeast)) {
+      return settled();
+    }
+    const double closer = wanted < distance ? wanted : distance;
+    target_ = closer > kErrorLeast ? closer : kErrorLeast;
+    stagnation_count_ = 0;
+  }
+  if (stagnation_count_ > kStagnationMax) {
+    return give_up(setup);
+  }
+  // The residual along the line between the last two iterates is least at this fraction back.
+  const double square = static_cast<double>(report.reals[3]);
+  const double mix =
+      !follows && is_tilting_ && square > 0 ? static_cast<double>(report.reals[2]) / square : 0;
+  return is_jacobi() ? start_jacobi() : start_solve(false, is_number(mix) ? mix : 0);
+}
+
+/// The linear problem is solved and some facets want another state.
+Order Conductor::judge_regularised(const Setup& setup, const Report& report) {
+  if (was_seen(report.number) || effort_.contact_steps > kContactStepsMax) {
+    return begin_law(setup, true);
+  }
+  ++effort_.contact_steps;
+  error_best_ = 1e30;
+  stagnation_count_ = 0;
+  return start_solve(true, 0);
+}
+
+/// The present way leads nowhere: the next safer method, the next law, or no answer.
+Order Conductor::give_up(const Setup& setup) {
+  if (effort_.iterations > setup.iteration_count_max) {
+    return finish(Verdict::kUndecided, Reason::kNotConverged);
+  }
+  if (effort_.method == Method::kJacobi) {
+    effort_.method = Method::kBlockJacobi;
+    return begin_law(setup, false);
+  }
+  if (effort_.method == Method::kBlockJacobi) {
+    effort_.method = Method::kConjugateGradients;
+    return begin_law(setup, false);
+  }
+  if (!is_unilateral_) {
+    return begin_law(setup, true);
+  }
+  const bool is_settled_but_close = error_ <= kRatioTolerance;
+  return finish(Verdict::kUndecided,
+                is_settled_but_close ? Reason::kTooClose : Reason::kNotConverged);
+}
+
+bool Conductor::was_seen(std::uint32_t hash) {
+  for (int i = 0; i < seen_count_; ++i) {
+    if (seen_[static_cast<std::size_t>(i)] == hash) {
+      return true;
+    }
+  }
+  if (seen_count_ == kSeenMax) {
+    return true;
+  }
+  seen_[seen_count_++] = hash;
+  return false;
+}
+
+// ---- Conjugate gradients with one reduction a step [Chronopoulos, Gear 1989].
+
+Order Conductor::start_solve(bool adopts_states, double mix) {
+  ++effort_.solves;
+  solve_iterations_ = 0;
+  const double wanted = 0.3 * target_ / error_;
+  reduction_ = wanted < kReductionLeast ? kReductionLeast : (wanted < 0.1 ? wanted : 0.1);
+  if (adopts_states || !is_number(error_) || error_ > 1e29) {
+    reduction_ = kReductionLeast;
+  }
+  if (is_tilting_ && !is_unilateral_) {
+    reduction_ = kReductionTilting;
+  }
+  Order start = order(Step::kStart, Operation::kStart);
+  start.flags = adopts_states ? kAdoptStates : std::uint8_t{0};
+  start.reals[0] = static_cast<float>(mix);
+  return start;
+}
+
+Order Conductor::after_start(const Report& report) {
+  if (is_jacobi()) {
+    Order jacobi = order(Step::kJacobi, Operation::kJacobi);
+    jacobi.count = batch_;
+    return jacobi;
+  }
+  gamma_first_ = static_cast<double>(report.reals[0]);
+  gamma_ = 0;
+  alpha_ = 0;
+  if (!(gamma_first_ > 0) || !is_number(gamma_first_)) {
+    return move(0);
+  }
+  return next_gradient(gamma_first_, static_cast<double>(report.reals[1]));
+}
+
+Order Conductor::after_gradient(const Setup& setup, const Report& report) {
+  ++effort_.iterations;
+  ++solve_iterations_;
+  const double gamma = static_cast<double>(report.reals[0]);
+  if (!(gamma > reduction_ * reduction_ * gamma_first_) || !is_number(gamma) ||
+      solve_iterations_ >= solve_iterations_max_ ||
+      effort_.iterations > setup.iteration_count_max) {
+    return end_solve();
+  }
+  return next_gradient(gamma, static_cast<double>(report.reals[1]));
+}
+
+/// gamma = (r, z), delta = (z, w): beta = gamma / gamma_old, alpha = gamma / (delta - beta gamma /
+/// alpha_old).
+Order Conductor::next_gradient(double gamma, double delta) {
+  const double beta = gamma_ > 0 ? gamma / gamma_ : 0;
+  const double curvature = gamma_ > 0 ? delta - beta * gamma / alpha_ : delta;
+  const double alpha = gamma / curvature;
+  if (!(curvature > 0) || !is_number(alpha)) {
+    return end_solve();
+  }
+  Order gradient = order(Step::kGradient, Operation::kGradient);
+  gradient.reals = {static_cast<float>(alpha), static_cast<float>(beta)};
+  gamma_ = gamma;
+  alpha_ = static_cast<double>(gradient.reals[0]);
+  return gradient;
+}
+
+Order Conductor::end_solve() {
+  if (!is_unilateral_) {
+    return move(1);
+  }
+  Order slope = order(Step::kSlope, Operation::kSlope);
+  slope.flags = kExchangeFirst;
+  low_ = 0;
+  high_ = 1;
+  slope_count_ = 0;
+  slope.reals = {0.0F, 1.0F};
+  return slope;
+}
+
+// ---- Line search: the slope of a convex, piecewise quadratic energy never decreases.
+
+/// A report brings the slope's linear part and the facets' part at four fractions of [low, high].
+Order Conductor::after_slope(const Report& report) {
+  if (slope_count_ == 0) {
+    slope_linear_ = static_cast<double>(report.reals[0]);
+    slope_curvature_ = static_cast<double>(report.reals[1]);
+  }
+  double position = low_;
+  double slope_before = 0;
+  for (int i = 1; i <= 4; ++i) {
+    const double t = low_ + (high_ - low_) * i / 4;
+    const double slope = slope_linear_ + t * slope_curvature_ +
+                         static_cast<double>(report.reals[static_cast<std::size_t>(i) + 1]);
+    if (slope_count_ == 0 && i == 1) {
+      slope_first_ = absolute(slope_linear_);
+    }
+    if (slope > 0) {
+      const bool is_last = slope_count_ >= 3;
+      if (is_last) {
+        // Between two points the slope is nearly straight by now.
+        const double share = slope_before < 0 ? -slope_before / (slope - slope_before) : 1;
+        return move(position + (t - position) * share);
+      }
+      // At the full step a slope that is small against the first one is a good enough minimum.
+      if (slope_count_ == 0 && i == 4 && slope < 0.1 * slope_first_) {
+        return move(1);
+      }
+      low_ = position;
+      high_ = t;
+      ++slope_count_;
+      Order again = order(Step::kSlope, Operation::kSlope);
+      again.reals = {static_cast<float>(low_), static_cast<float>(high_)};
+      return again;
+    }
+    position = t;
+    slope_before = slope;
+  }
+  return move(high_);
+}
+
+// ---- Jacobi methods.
+
+constexpr std::uint16_t kBatchMax = 4096;
+
+Order Conductor::start_jacobi() {
+  ++effort_.solves;
+  solve_iterations_ = 0;
+  batch_ = is_any_remote_ ? 1 : 8;
+  check_at_ = 64;
+  check_error_ = 1e30;
+  least_error_ = 1e30;
+  Order start = order(Step::kStart, Operation::kStart);
+  start.flags = effort_.method == Method::kJacobi ? kWithScalars : kWithBlocks;
+  return start;
+}
+
+Order Conductor::after_jacobi(const Setup& setup, const Report& report) {
+  effort_.iterations += batch_;
+  solve_iterations_ += batch_;
+  const double error = static_cast<double>(report.reals[0]);
+  const bool is_diverging = !is_number(error) || error > 1e6 * (1 + least_error_);
+  if (is_diverging || effort_.iterations > setup.iteration_count_max) {
+    return give_up(setup);
+  }
+  least_error_ = error < least_error_ ? error : least_error_;
+  if (error < 0.5 * target_) {
+    return move(1);
+  }
+  if (solve_iterations_ >= check_at_) {
+    // Rounding has the last word, or contact states go round: look at the exact residual.
+    if (least_error_ > 0.95 * check_error_) {
+      return move(1);
+    }
+    check_error_ = least_error_;
+    check_at_ = 2 * solve_iterations_;
+  }
+  const std::uint32_t grown = is_any_remote_ ? 1U : 1U + solve_iterations_ / 8;
+  batch_ = static_cast<std::uint16_t>(grown < kBatchMax ? grown : kBatchMax);
+  Order jacobi = order(Step::kJacobi, Operation::kJacobi);
+  jacobi.count = batch_;
+  return jacobi;
+}
+
+// ---- The end.
+
+Order Conductor::settled() {
+  effort_.ratio_error = static_cast<float>(error_);
+  if (is_comparing_) {
+    return decide();
+  }
+  if (is_fixed_) {
+    return order(Step::kLoads, Operation::kLoads);
+  }
+  return order(Step::kCorners, Operation::kCorners);
+}
+
+Order Conductor::after_corners(const Setup& setup, const Report& report) {
+  if (!is_unilateral_) {
+    if (!report.corners.stable) {
+      effort_.method = Method::kConjugateGradients;
+      return begin_law(setup, true);
+    }
+    return order(Step::kLoads, Operation::kLoads);
+  }
+  Order hold = order(Step::kRelease, Operation::kHold);
+  hold.flags = kReleaseOpen;
+  return hold;
+}
+
+Order Conductor::after_hold(const Report& report) {
+  if (step_ == Step::kFree || report.count > 0) {
+    error_best_ = 1e30;
+    stagnation_count_ = 0;
+    target_ = kStateTolerance;
+    return move(0);
+  }
+  open_held_count_ = report.number;
+  return order(Step::kLoads, Operation::kLoads);
+}
+
+Order Conductor::after_loads(const Report& report) {
+  if (report.number != effort_.module_count) {
+    return finish(Verdict::kUndecided, Reason::kNeighbourSilent);
+  }
+  answer_.load_ratio_max = report.reals[0];
+  answer_.worst_cell = report.cell;
+  answer_.worst_direction = report.direction;
+  if (open_held_count_ == 0) {
+    return decide();
+  }
+  is_comparing_ = true;
+  Order hold = order(Step::kFree, Operation::kHold);
+  hold.flags = kFreeOpen;
+  return hold;
+}
+
+Order Conductor::decide() {
+  const double first = static_cast<double>(answer_.load_ratio_max);
+  const bool breaks = first >= 1;
+  const double doubt = error_ > kErrorLeast ? error_ : kErrorLeast;
+  if (!is_number(first) || !is_number(ratio_)) {
+    return finish(Verdict::kUndecided, Reason::kNotConverged);
+  }
+  if (absolute(ratio_ - 1) <= doubt) {
+    return finish(Verdict::kUndecided, Reason::kTooClose);
+  }
+  if ((ratio_ >= 1) != breaks) {
+    return finish(Verdict::kUndecided, Reason::kAmbiguousFeet);
+  }
+  return finish(breaks ? Verdict::kOverload : Verdict::kSafe,
+                breaks ? Reason::kBreaks : Reason::kHolds);
+}
+
+Order Conductor::finish(Verdict verdict, Reason reason) {
+  Order last = order(Step::kVerdict, Operation::kVerdict);
+  answer_.verdict = verdict;
+  answer_.reason = reason;
+  last.answer = answer_;
+  return last;
+}
+
+}  // namespace holdfast::agent

@@ -1,0 +1,430 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "bits.hpp"
+#include "holdfast/agent/agent.hpp"
+#include "holdfast/mechanics/connector.hpp"
+#include "sweep.hpp"
+
+/// The equilibrium's operations on one module and on those it emulates. The loop that they belong
+/// to is described in conductor.hpp, the vectors in node.hpp.
+namespace holdfast::agent {
+
+/// beta of Eq. (14).
+inline constexpr double kJacobiWeight = 2.0 / 3.0;
+
+namespace equilibrium {
+
+template <class To, class From>
+base::Vec6<To> converted(const base::Vec6<From>& vector) {
+  base::Vec6<To> result{};
+  for (std::size_t i = 0; i < 6; ++i) {
+    result[i] = static_cast<To>(vector[i]);
+  }
+  return result;
+}
+
+inline const mechanics::BeamStiffness<float>& beam_of(const Setup& setup, float) {
+  return setup.beam_float;
+}
+
+inline const mechanics::BeamStiffness<double>& beam_of(const Setup& setup, double) {
+  return setup.beam;
+}
+
+/// Spreads cells and states over 32 bits, so that sums over the robot tell sets of states apart.
+inline std::uint32_t hash_of(const base::Cell& cell, int code) {
+  std::uint32_t hash = 0x9e3779b9U;
+  for (const std::int32_t value : {cell.x, cell.y, cell.z, std::int32_t{code}}) {
+    hash = (hash ^ static_cast<std::uint32_t>(value)) * 0x85ebca6bU;
+    hash ^= hash >> 15U;
+  }
+  return hash;
+}
+
+}  // namespace equilibrium
+
+/// Faces on which a node has a beam.
+template <class Real>
+std::uint8_t BasicAgent<Real>::node_faces(int node) const {
+  if (node > 0) {
+    const int k = planned_.hosted(node - 1);
+    std::uint8_t faces = planned_.total(k);
+    for (const base::Direction direction : base::kDirections) {
+      if (planned_.neighbour_of(k, direction) >= 0) {
+        faces = static_cast<std::uint8_t>(faces | bit(base::index(direction)));
+      }
+    }
+    return faces;
+  }
+  std::uint8_t faces = used_faces();
+  for (int face = 0; face < base::kDirectionCount; ++face) {
+    if (planned_.at_face(face) >= 0) {
+      faces = static_cast<std::uint8_t>(faces | bit(face));
+    }
+  }
+  return faces;
+}
+
+template <class Real>
+void BasicAgent<Real>::begin_equilibrium(const Order& order) {
+  const auto law = (order.flags & kUnilateralLaw) != 0 ? mechanics::ContactLaw::kUnilateral
+                                                       : mechanics::ContactLaw::kRegularised;
+  contact_.facet = mechanics::ground_facet(setup_.section, setup_.facet_mm,
+                                           static_cast<double>(order.reals[0]), law);
+  contact_.lever_mm = static_cast<double>(order.reals[1]);
+  for (int i = 0; i < node_count(); ++i) {
+    reset(nodes_[static_cast<std::size_t>(i)], setup_);
+  }
+}
+
+/// u := u + t g, and its leading part goes out.
+template <class Real>
+void BasicAgent<Real>::move(double step) {
+  for (int i = 0; i < node_count(); ++i) {
+    Node<Real>& node = nodes_[static_cast<std::size_t>(i)];
+    node.u_last = node.u;
+    node.force = {};
+    for (std::size_t k = 0; k < 6; ++k) {
+      node.u[k] += step * static_cast<double>(node.g[k]);
+      node.z[k] = static_cast<Real>(static_cast<float>(node.u[k]));
+    }
+  }
+  middle_ = {};
+}
+
+template <class Real>
+void BasicAgent<Real>::start_solve(const Order& order) {
+  const auto mix = static_cast<double>(order.reals[0]);
+  for (int i = 0; i < node_count(); ++i) {
+    Node<Real>& node = nodes_[static_cast<std::size_t>(i)];
+    if ((order.flags & kAdoptStates) != 0) {
+      node.state = node.wanted;
+      const base::Vec6<double> rest = residual(node, setup_, contact_);
+      for (std::size_t k = 0; k < 6; ++k) {
+        node.r[k] = static_cast<Real>(rest[k]);
+      }
+    }
+    for (std::size_t k = 0; k < 6; ++k) {
+      node.u[k] -= mix * (node.u[k] - node.u_last[k]);
+      node.r[k] -= static_cast<Real>(mix) * (node.r[k] - node.r_last[k]);
+    }
+    node.u_last = node.u;
+    node.r_last = node.r;
+    node.g = {};
+    node.p = {};
+    node.s = {};
+    factor_diagonal(node, setup_, contact_, node_faces(i));
+    node.z = equilibrium::converted<Real>(sweep::rounded(solve_diagonal(node, node.r)));
+    if ((order.flags & kWithScalars) != 0) {
+      node.p = scalar_diagonal(node, setup_, contact_, node_faces(i));
+    }
+  }
+  is_first_step_ = true;
+  is_scalar_ = (order.flags & kWithScalars) != 0;
+}
+
+/// p := z + beta p, s := w + beta s, g := g + alpha p, r := r - alpha s, z := M^-1 r.
+template <class Real>
+void BasicAgent<Real>::gradient_step(const Order& order) {
+  const auto alpha = static_cast<Real>(order.reals[0]);
+  const auto beta = static_cast<Real>(order.reals[1]);
+  for (int i = 0; i < node_count(); ++i) {
+    Node<Real>& node = nodes_[static_cast<std::size_t>(i)];
+    for (std::size_t k = 0; k < 6; ++k) {
+      node.p[k] = node.z[k] + beta * node.p[k];
+      node.s[k] = node.w[k] + beta * node.s[k];
+      node.g[k] += alpha * node.p[k];
+      node.r[k] -= alpha * node.s[k];
+    }
+    node.z = equilibrium::converted<Real>(sweep::rounded(solve_diagonal(node, node.r)));
+  }
+}
+
+/// One step of Eq. (14), written for the correction g: g := g + beta D^-1 r(u + g), with the facet
+/// in the state that the law prescribes at u + g. With u = 0 it is Eq. (14) as printed.
+template <class Real>
+void BasicAgent<Real>::jacobi_step() {
+  double error = 0;
+  for (int i = 0; i < node_count(); ++i) {
+    Node<Real>& node = nodes_[static_cast<std::size_t>(i)];
+    if (node.is_fixed) {
+      continue;
+    }
+    typename Node<Real>::Vec rest{};
+    const base::Vec6<double> here = facet_force_along(node, contact_, 1);
+    const base::Vec6<double> start = facet_force_along(node, contact_, 0);
+    for (std::size_t k = 0; k < 6; ++k) {
+      rest[k] = node.r_last[k] - node.w[k] - static_cast<Real>(here[k] - start[k]);
+    }
+    const mechanics::ContactState state = state_along(node, contact_, 1);
+    if (node.is_ground && !is_first_step_ && !(state == node.state)) {
+      node.state = state;
+      if (is_scalar_) {
+        node.p = scalar_diagonal(node, setup_, contact_, node_faces(i));
+      } else {
+        factor_diagonal(node, setup_, contact_, node_faces(i));
+      }
+    }
+    error += ratio_error(rest, setup_, contact_);
+    const typename Node<Real>::Vec step = is_scalar_ ? rest : solve_diagonal(node, rest);
+    for (std::size_t k = 0; k < 6; ++k) {
+      node.g[k] += static_cast<Real>(kJacobiWeight) * (is_scalar_ ? step[k] / node.p[k] : step[k]);
+      node.z[k] = node.g[k];
+    }
+  }
+  is_first_step_ = false;
+  jacobi_error_ = static_cast<float>(error);
+}
+
+/// All beams of this module and of those it emulates, for what has been exchanged: into w, or with
+/// all digits into the force of each node.
+template <class Real>
+void BasicAgent<Real>::exchange_forces() {
+  for (int i = 0; i < node_count(); ++i) {
+    nodes_[static_cast<std::size_t>(i)].w = {};
+  }
+  const std::uint8_t faces = used_faces();
+  const auto& vectors = vectors_[tag_ & 1U];
+  for (int face = 0; face < base::kDirectionCount; ++face) {
+    const int k = planned_.at_face(face);
+    if ((faces & bit(face)) != 0) {
+      add_beam(face, vectors[static_cast<std::size_t>(face)]);
+    } else if (k >= 0) {
+      add_beam(face, planned_vector_[static_cast<std::size_t>(k)]);
+    }
+  }
+  add_planned_beams();
+  for (int i = 0; i < planned_.hosted_count(); ++i) {
+    const auto& force = planned_force_[static_cast<std::size_t>(planned_.hosted(i))];
+    Node<Real>& node = nodes_[static_cast<std::size_t>(1 + i)];
+    for (std::size_t k = 0; k < 6; ++k) {
+      node.w[k] = static_cast<Real>(force[k]);
+      node.force[k] += sweep::is_precise(order_.operation) ? force[k] : 0;
+    }
+  }
+}
+
+/// The beam at `face` of this module: force on it, on a planned module there, load in the middle.
+template <class Real>
+void BasicAgent<Real>::add_beam(int face, const base::Vec6<float>& other) {
+  using equilibrium::converted;
+  const auto direction = static_cast<base::Direction>(face);
+  Node<Real>& node = nodes_[0];
+  const int k = planned_.at_face(face);
+  if (!sweep::is_precise(order_.operation)) {
+    const auto& beam = equilibrium::beam_of(setup_, Real{});
+    const auto mine = converted<Real>(sweep::rounded(node.z));
+    const auto theirs = converted<Real>(other);
+    base::add_to(node.w, mechanics::end_force(beam, direction, mine, theirs));
+    if (k >= 0) {
+      base::add_to(
+          planned_force_[static_cast<std::size_t>(k)],
+          converted<double>(mechanics::end_force(beam, base::opposite(direction), theirs, mine)));
+    }
+    return;
+  }
+  const auto mine = converted<double>(node.z);
+  const auto theirs = converted<double>(other);
+  base::add_to(node.force, mechanics::end_force(setup_.beam, direction, mine, theirs));
+  if (k >= 0) {
+    base::add_to(planned_force_[static_cast<std::size_t>(k)],
+                 mechanics::end_force(setup_.beam, base::opposite(direction), theirs, mine));
+  }
+  const base::Vec6<double> middle = mechanics::middle_force(setup_.beam, direction, mine, theirs);
+  MiddleLoad& load = middle_[static_cast<std::size_t>(face)];
+  load.axial_n += middle[2];
+  load.bending_x_nmm += middle[3];
+  load.bending_y_nmm += middle[4];
+}
+
+/// Beams between planned modules, both emulated here.
+template <class Real>
+void BasicAgent<Real>::add_planned_beams() {
+  for (int i = 0; i < planned_.hosted_count(); ++i) {
+    const int k = planned_.hosted(i);
+    for (const base::Direction direction : base::kDirections) {
+      const int other = planned_.neighbour_of(k, direction);
+      if (other < 0) {
+        continue;
+      }
+      const auto mine =
+          equilibrium::converted<double>(planned_vector_[static_cast<std::size_t>(k)]);
+      const auto theirs =
+          equilibrium::converted<double>(planned_vector_[static_cast<std::size_t>(other)]);
+      base::add_to(planned_force_[static_cast<std::size_t>(k)],
+                   mechanics::end_force(setup_.beam, direction, mine, theirs));
+    }
+  }
+}
+
+template <class Real>
+double BasicAgent<Real>::ratio_of(const MiddleLoad& load, base::Direction direction) const {
+  const base::Vec6<double> middle = {0, 0, load.axial_n, load.bending_x_nmm, load.bending_y_nmm, 0};
+  return mechanics::load_ratio(
+      mechanics::connection_load(middle), setup_.facet_mm,
+      base::is_vertical(direction) ? setup_.strength_vertical_n : setup_.strength_lateral_n);
+}
+
+/// visit(cell, direction, load ratio) for every connection of this module, and once for every one
+/// between planned modules emulated here.
+template <class Real>
+template <class Visit>
+void BasicAgent<Real>::visit_loads(Visit&& visit) const {
+  const std::uint8_t faces = node_faces(0);
+  for (const base::Direction direction : base::kDirections) {
+    if ((faces & bit(base::index(direction))) != 0) {
+      visit(nodes_[0].cell, direction,
+            ratio_of(middle_[static_cast<std::size_t>(base::index(direction))], direction));
+    }
+  }
+  for (int i = 0; i < planned_.hosted_count(); ++i) {
+    for (const base::Direction direction : base::kDirections) {
+      const int other = planned_.neighbour_of(planned_.hosted(i), direction);
+      if (other < 0 || base::index(direction) % 2 != 0) {
+        continue;
+      }
+      const Node<Real>& node = nodes_[static_cast<std::size_t>(1 + i)];
+      const base::Vec6<double> middle =
+          mechanics::middle_force(setup_.beam, direction, node.u,
+                                  nodes_[static_cast<std::size_t>(planned_.node_of(other))].u);
+      visit(node.cell, direction, ratio_of({middle[2], middle[3], middle[4]}, direction));
+    }
+  }
+}
+
+/// Error bound, largest load ratio, mixing products, facets that want another state, their hash.
+template <class Real>
+Report BasicAgent<Real>::residual_report() {
+  Report report;
+  report.reals[1] = -1e30F;
+  for (int i = 0; i < node_count(); ++i) {
+    Node<Real>& node = nodes_[static_cast<std::size_t>(i)];
+    node.wanted = state_along(node, contact_, 0);
+    if (node.is_ground && !(node.wanted == node.state)) {
+      ++report.extent;
+      if ((order_.flags & kFollowStates) != 0) {
+        node.state = node.wanted;
+      }
+    }
+    if (node.is_ground) {
+      const int code = !node.wanted.pressed ? 0 : 5 + 3 * node.wanted.tilt_x + node.wanted.tilt_y;
+      report.number += equilibrium::hash_of(node.cell, code);
+      const bool tilts = node.state.tilt_x != 0 || node.state.tilt_y != 0;
+      report.flags = static_cast<std::uint8_t>(report.flags | (tilts ? kAnyTilting : 0U));
+    }
+    const base::Vec6<double> rest = residual(node, setup_, contact_);
+    report.reals[0] += static_cast<float>(ratio_error(rest, setup_, contact_));
+    for (std::size_t k = 0; k < 6; ++k) {
+      // Torques count by the force at half a module's width.
+      const float weight =
+          k < 3 ? 1.0F : 4.0F / static_cast<float>(setup_.facet_mm * setup_.facet_mm);
+      node.r[k] = static_cast<Real>(rest[k]);
+      const auto change = static_cast<float>(node.r[k] - node.r_last[k]);
+      report.reals[2] += weight * static_cast<float>(node.r[k]) * change;
+      report.reals[3] += weight * change * change;
+    }
+  }
+  visit_loads([&](const base::Cell&, base::Direction, double ratio) {
+    const auto value = static_cast<float>(ratio);
+    report.reals[1] = value <= report.reals[1] ? report.reals[1] : value;
+  });
+  return report;
+}
+
+/// (r, z) and (z, w), with the facet's part added to w.
+template <class Real>
+Report BasicAgent<Real>::product_report() {
+  Real residual_product = 0;
+  Real image_product = 0;
+  for (int i = 0; i < node_count(); ++i) {
+    Node<Real>& node = nodes_[static_cast<std::size_t>(i)];
+    if (node.is_fixed) {
+      node.w = {};
+    } else if (node.is_ground) {
+      base::add_to(node.w, equilibrium::converted<Real>(mechanics::symmetric_product(
+                               contact_.facet, node.state, node.is_held,
+                               equilibrium::converted<double>(node.z))));
+    }
+    residual_product += base::dot(node.r, node.z);
+    image_product += base::dot(node.z, node.w);
+  }
+  Report report;
+  report.reals[0] = static_cast<float>(residual_product);
+  report.reals[1] = static_cast<float>(image_product);
+  return report;
+}
+
+/// The slope of the energy at u + t g: beams and weight as a line in t, facets at four places.
+template <class Real>
+Report BasicAgent<Real>::slope_report() const {
+  Report report;
+  const auto low = static_cast<double>(order_.reals[0]);
+  const auto high = static_cast<double>(order_.reals[1]);
+  std::array<double, 6> sums{};
+  for (int i = 0; i < node_count(); ++i) {
+    const Node<Real>& node = nodes_[static_cast<std::size_t>(i)];
+    if (node.is_fixed) {
+      continue;
+    }
+    const auto g = equilibrium::converted<double>(node.g);
+    sums[0] += base::dot(node.force, g) + setup_.weight_n * g[2];
+    sums[1] += base::dot(equilibrium::converted<double>(node.w), g);
+    for (int place = 1; place <= 4; ++place) {
+      const double t = low + (high - low) * place / 4;
+      sums[static_cast<std::size_t>(place) + 1] +=
+          base::dot(facet_force_along(node, contact_, t), g);
+    }
+  }
+  for (std::size_t i = 0; i < 6; ++i) {
+    report.reals[i] = static_cast<float>(sums[i]);
+  }
+  return report;
+}
+
+/// Releases open facets and holds pressed ones (count: how many changed); number: open but held.
+template <class Real>
+Report BasicAgent<Real>::hold_report() {
+  Report report;
+  for (int i = 0; i < node_count(); ++i) {
+    Node<Real>& node = nodes_[static_cast<std::size_t>(i)];
+    if (!node.is_ground) {
+      continue;
+    }
+    const bool frees = (order_.flags & kFreeOpen) != 0;
+    if (!node.state.pressed && node.is_held && (frees || !node.was_released)) {
+      node.is_held = false;
+      node.was_released = true;
+      ++report.count;
+    } else if (node.state.pressed && !node.is_held && !frees) {
+      node.is_held = true;
+      ++report.count;
+    }
+    report.number += !node.state.pressed && node.is_held ? 1U : 0U;
+  }
+  return report;
+}
+
+template <class Real>
+Report BasicAgent<Real>::loads_report() {
+  Report report;
+  report.reals[0] = -1e30F;
+  report.number = static_cast<std::uint32_t>(node_count());
+  own_ratio_ = 0;
+  bool is_own = true;
+  visit_loads([&](const base::Cell& cell, base::Direction direction, double ratio) {
+    const auto value = static_cast<float>(ratio);
+    Report own;
+    own.reals[0] = value;
+    own.cell = cell;
+    own.direction = direction;
+    own.count = ratio >= 1 ? 1 : 0;
+    merge(wire::Operation::kLoads, report, own);
+    is_own = cell == nodes_[0].cell;
+    own_ratio_ = is_own && !(value <= own_ratio_) ? value : own_ratio_;
+  });
+  return report;
+}
+
+}  // namespace holdfast::agent

@@ -1,0 +1,202 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#include "holdfast/agent/node.hpp"
+
+namespace holdfast::agent {
+namespace {
+
+using base::Mat6;
+using base::Vec6;
+
+double absolute(double value) { return value < 0 ? -value : value; }
+
+std::size_t at(int row, int column) {
+  return static_cast<std::size_t>(row * (row + 1) / 2 + column);
+}
+
+/// Newton's method, from above; the standard library's is not freestanding.
+template <class Real>
+Real square_root(Real value) {
+  Real root = value > 1 ? value : Real{1};
+  for (int i = 0; i < 60; ++i) {
+    const Real next = (root + value / root) / 2;
+    if (!(next < root)) {
+      break;
+    }
+    root = next;
+  }
+  return root;
+}
+
+/// Sum of K11 over the beams on `faces`.
+Mat6<double> beam_block(const Setup& setup, std::uint8_t faces) {
+  Mat6<double> block;
+  for (const base::Direction direction : base::kDirections) {
+    if ((faces >> static_cast<unsigned>(base::index(direction))) & 1U) {
+      base::add_to(block, mechanics::block_11(setup.beam, direction));
+    }
+  }
+  return block;
+}
+
+template <class Real>
+Vec6<double> position_along(const Node<Real>& node, double t) {
+  Vec6<double> u = node.u;
+  for (std::size_t i = 0; i < 6; ++i) {
+    u[i] += t * static_cast<double>(node.g[i]);
+  }
+  return u;
+}
+
+}  // namespace
+
+void prepare(Setup& setup) {
+  setup.beam = mechanics::beam_stiffness(setup.section);
+  const mechanics::BeamSection<double>& section = setup.section;
+  setup.beam_float = mechanics::beam_stiffness(
+      mechanics::BeamSection<float>{.elastic_modulus = static_cast<float>(section.elastic_modulus),
+                                    .length = static_cast<float>(section.length),
+                                    .area = static_cast<float>(section.area),
+                                    .moment_x = static_cast<float>(section.moment_x),
+                                    .moment_y = static_cast<float>(section.moment_y),
+                                    .torsion = static_cast<float>(section.torsion)});
+}
+
+template <class Real>
+void reset(Node<Real>& node, const Setup& setup) {
+  node.is_held = true;
+  node.was_released = false;
+  node.state = {.pressed = node.is_ground};
+  node.wanted = node.state;
+  node.u = {};
+  node.u_last = {};
+  node.force = {};
+  node.g = {};
+  node.r = {};
+  if (!node.is_fixed) {
+    node.r[2] = static_cast<Real>(-setup.weight_n);
+  }
+  node.r_last = node.r;
+}
+
+template <class Real>
+void factor_diagonal(Node<Real>& node, const Setup& setup, const ContactSetting& contact,
+                     std::uint8_t faces) {
+  Mat6<double> block = beam_block(setup, faces);
+  if (node.is_ground) {
+    base::add_to(block, mechanics::symmetric_tangent(contact.facet, node.state, node.is_held));
+  }
+  Triangle<Real>& factor = node.factor;
+  for (int row = 0; row < 6; ++row) {
+    for (int column = 0; column <= row; ++column) {
+      auto sum = static_cast<Real>(block.at(row, column));
+      for (int k = 0; k < column; ++k) {
+        sum -= factor[at(row, k)] * factor[at(column, k)];
+      }
+      factor[at(row, column)] = row == column ? square_root(sum) : sum / factor[at(column, column)];
+    }
+  }
+}
+
+template <class Real>
+Vec6<Real> scalar_diagonal(const Node<Real>& node, const Setup& setup,
+                           const ContactSetting& contact, std::uint8_t faces) {
+  Mat6<double> block = beam_block(setup, faces);
+  if (node.is_ground) {
+    base::add_to(block, mechanics::contact_tangent(contact.facet, node.state, node.is_held));
+  }
+  Vec6<Real> diagonal{};
+  for (int i = 0; i < 6; ++i) {
+    diagonal[static_cast<std::size_t>(i)] = static_cast<Real>(block.at(i, i));
+  }
+  return diagonal;
+}
+
+template <class Real>
+Vec6<Real> solve_diagonal(const Node<Real>& node, Vec6<Real> vector) {
+  if (node.is_fixed) {
+    return {};
+  }
+  const Triangle<Real>& factor = node.factor;
+  for (int row = 0; row < 6; ++row) {
+    Real& value = vector[static_cast<std::size_t>(row)];
+    for (int k = 0; k < row; ++k) {
+      value -= factor[at(row, k)] * vector[static_cast<std::size_t>(k)];
+    }
+    value /= factor[at(row, row)];
+  }
+  for (int row = 5; row >= 0; --row) {
+    Real& value = vector[static_cast<std::size_t>(row)];
+    for (int k = row + 1; k < 6; ++k) {
+      value -= factor[at(k, row)] * vector[static_cast<std::size_t>(k)];
+    }
+    value /= factor[at(row, row)];
+  }
+  return vector;
+}
+
+template <class Real>
+Vec6<double> residual(const Node<Real>& node, const Setup& setup, const ContactSetting& contact) {
+  Vec6<double> rest{};
+  if (node.is_fixed) {
+    return rest;
+  }
+  rest[2] = -setup.weight_n;
+  Vec6<double> facet{};
+  if (node.is_ground) {
+    facet = mechanics::contact_force(contact.facet, node.state, node.is_held, node.u);
+  }
+  for (std::size_t i = 0; i < 6; ++i) {
+    rest[i] -= node.force[i] + facet[i];
+  }
+  return rest;
+}
+
+template <class Real>
+mechanics::ContactState state_along(const Node<Real>& node, const ContactSetting& contact,
+                                    double t) {
+  if (!node.is_ground) {
+    return {.pressed = false};
+  }
+  return mechanics::contact_state(contact.facet,
+                                  mechanics::trial_force(contact.facet, position_along(node, t)));
+}
+
+template <class Real>
+Vec6<double> facet_force_along(const Node<Real>& node, const ContactSetting& contact, double t) {
+  if (!node.is_ground) {
+    return {};
+  }
+  return mechanics::contact_force(contact.facet, state_along(node, contact, t), node.is_held,
+                                  position_along(node, t));
+}
+
+template <class Real>
+double ratio_error(const Vec6<Real>& residual, const Setup& setup, const ContactSetting& contact) {
+  double force = 0;
+  double torque = 0;
+  for (std::size_t i = 0; i < 3; ++i) {
+    force += absolute(static_cast<double>(residual[i]));
+    torque += absolute(static_cast<double>(residual[i + 3]));
+  }
+  const double strength = setup.strength_vertical_n < setup.strength_lateral_n
+                              ? setup.strength_vertical_n
+                              : setup.strength_lateral_n;
+  return (2 * (torque + force * contact.lever_mm) / setup.facet_mm + force) / strength;
+}
+
+#define HOLDFAST_INSTANTIATE(Real)                                                                \
+  template void reset(Node<Real>&, const Setup&);                                                 \
+  template void factor_diagonal(Node<Real>&, const Setup&, const ContactSetting&, std::uint8_t);  \
+  template Vec6<Real> scalar_diagonal(const Node<Real>&, const Setup&, const ContactSetting&,     \
+                                      std::uint8_t);                                              \
+  template Vec6<Real> solve_diagonal(const Node<Real>&, Vec6<Real>);                              \
+  template Vec6<double> residual(const Node<Real>&, const Setup&, const ContactSetting&);         \
+  template Vec6<double> facet_force_along(const Node<Real>&, const ContactSetting&, double);      \
+  template mechanics::ContactState state_along(const Node<Real>&, const ContactSetting&, double); \
+  template double ratio_error(const Vec6<Real>&, const Setup&, const ContactSetting&);
+
+HOLDFAST_INSTANTIATE(float)
+HOLDFAST_INSTANTIATE(double)
+
+}  // namespace holdfast::agent

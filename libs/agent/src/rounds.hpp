@@ -1,0 +1,247 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "bits.hpp"
+#include "holdfast/agent/agent.hpp"
+
+namespace holdfast::agent {
+
+using wire::MessageType;
+
+template <class Real>
+BasicAgent<Real>::BasicAgent(const Setup& setup, const Identity& identity)
+    : setup_(setup), identity_(identity) {
+  deadline_.fill(kNever);
+  has_cell_ = identity.is_anchor;
+  nodes_[0].cell = identity.cell;
+}
+
+template <class Real>
+void BasicAgent<Real>::step(const Event& event, Actions& actions) {
+  now_ = event.now;
+  actions.packet_bytes = 0;
+  if (event.kind == EventKind::kLineFree) {
+    const int face = base::index(event.face);
+    actions.packet_bytes =
+        links_[static_cast<std::size_t>(face)].write_packet(actions.packet, setup_.timing, now_);
+    touched_ = bit(face);
+  } else {
+    handle(event);
+    if (restart_at_ <= now_) {
+      start_round();
+    }
+    // The root's orders follow each other here, so that no function calls itself.
+    while (has_next_order_) {
+      has_next_order_ = false;
+      take_order(next_order_);
+    }
+  }
+  finish_step(actions);
+}
+
+template <class Real>
+void BasicAgent<Real>::handle(const Event& event) {
+  const int face = base::index(event.face);
+  Link& link = links_[static_cast<std::size_t>(face)];
+  switch (event.kind) {
+    case EventKind::kStart:
+      if (identity_.is_anchor) {
+        restart_at_ = now_ + setup_.timing.acknowledge_after;
+      }
+      break;
+    case EventKind::kLinkUp:
+    case EventKind::kLinkDown:
+      event.kind == EventKind::kLinkUp ? link.bring_up(event.random, now_) : link.bring_down();
+      silent_faces_ = static_cast<std::uint8_t>(silent_faces_ & ~bit(face));
+      touched_ = static_cast<std::uint8_t>(touched_ | bit(face));
+      leave_round();
+      break;
+    case EventKind::kPlan:
+      plan(event.cell);
+      break;
+    case EventKind::kReceive:
+      receive(face, event.bytes);
+      break;
+    case EventKind::kTime:
+      for (int f = 0; f < base::kDirectionCount; ++f) {
+        if (deadline_[static_cast<std::size_t>(f)] <= now_) {
+          links_[static_cast<std::size_t>(f)].on_time(setup_.timing, is_working(), now_);
+          touched_ = static_cast<std::uint8_t>(touched_ | bit(f));
+          check_link(f);
+        }
+      }
+      break;
+    case EventKind::kLineFree:
+      break;
+  }
+}
+
+template <class Real>
+void BasicAgent<Real>::finish_step(Actions& actions) {
+  for (int face = 0; face < base::kDirectionCount; ++face) {
+    if ((touched_ & bit(face)) != 0) {
+      const Link& link = links_[static_cast<std::size_t>(face)];
+      send_faces_ = static_cast<std::uint8_t>(send_faces_ & ~bit(face));
+      if (link.has_packet(now_)) {
+        send_faces_ = static_cast<std::uint8_t>(send_faces_ | bit(face));
+      }
+      deadline_[static_cast<std::size_t>(face)] = link.deadline(setup_.timing, is_working());
+    }
+  }
+  touched_ = 0;
+  actions.send_faces = send_faces_;
+  actions.wake_at = restart_at_;
+  for (const Time at : deadline_) {
+    actions.wake_at = at < actions.wake_at ? at : actions.wake_at;
+  }
+}
+
+template <class Real>
+void BasicAgent<Real>::receive(int face, std::span<const std::uint8_t> packet) {
+  Link& link = links_[static_cast<std::size_t>(face)];
+  touched_ = static_cast<std::uint8_t>(touched_ | bit(face));
+  std::span<const std::uint8_t> stream = link.receive(packet, setup_.timing, now_);
+  for (auto message = link.next_message(stream); !message.empty();
+       message = link.next_message(stream)) {
+    dispatch(face, message);
+  }
+  check_link(face);
+}
+
+/// A neighbour that is there and does not answer makes every verdict uncertain.
+template <class Real>
+void BasicAgent<Real>::check_link(int face) {
+  Link& link = links_[static_cast<std::size_t>(face)];
+  if (link.take_restarted()) {
+    link.bring_up(static_cast<std::uint16_t>(now_ ^ identity_.id ^ 0x5a5aU), now_);
+    leave_round();
+  }
+  if (link.state() == Link::State::kLost && (silent_faces_ & bit(face)) == 0) {
+    silent_faces_ = static_cast<std::uint8_t>(silent_faces_ | bit(face));
+    leave_round();
+  }
+}
+
+template <class Real>
+void BasicAgent<Real>::dispatch(int face, std::span<const std::uint8_t> message) {
+  const auto type = static_cast<MessageType>(message[0]);
+  if (type == MessageType::kJoin || type == MessageType::kEcho) {
+    wire::Reader in(message);
+    peer_round_[static_cast<std::size_t>(face)] = {.epoch = in.u16(), .starter = in.u32()};
+  }
+  if (type == MessageType::kJoin) {
+    take_join(face, message);
+    return;
+  }
+  // A link delivers in order, so its last join or echo tells to which round this belongs.
+  const Round& theirs = peer_round_[static_cast<std::size_t>(face)];
+  const bool is_ours = theirs.epoch == round_.epoch && theirs.starter == round_.starter;
+  if (!is_ours || restart_at_ != kNever || stage_ == kNoStage) {
+    return;
+  }
+  switch (type) {
+    case MessageType::kEcho:
+      return take_echo(face, message);
+    case MessageType::kAppoint:
+      return take_appointment(message);
+    case MessageType::kMark:
+      return mark(wire::Reader(message).u16());
+    case MessageType::kOrder:
+      return take_order(decode_order(message));
+    case MessageType::kReport:
+      return take_report(face, message);
+    case MessageType::kVector:
+      return take_vector(face, message);
+    case MessageType::kPlannedDown:
+      return take_planned_down(message);
+    case MessageType::kPlannedUp:
+      return take_planned_up(message);
+    case MessageType::kJoin:
+      break;
+  }
+}
+
+/// A neighbour that does not take what it is sent is as good as silent.
+template <class Real>
+void BasicAgent<Real>::send(int face, const wire::Writer& message) {
+  touched_ = static_cast<std::uint8_t>(touched_ | bit(face));
+  if (!links_[static_cast<std::size_t>(face)].send(message.bytes())) {
+    silent_faces_ = static_cast<std::uint8_t>(silent_faces_ | bit(face));
+    leave_round();
+  }
+}
+
+template <class Real>
+void BasicAgent<Real>::send_to_children(const wire::Writer& message) {
+  for (int face = 0; face < base::kDirectionCount; ++face) {
+    if ((children_ & bit(face)) != 0) {
+      send(face, message);
+    }
+  }
+}
+
+template <class Real>
+std::uint8_t BasicAgent<Real>::used_faces() const {
+  std::uint8_t faces = 0;
+  for (int face = 0; face < base::kDirectionCount; ++face) {
+    if (links_[static_cast<std::size_t>(face)].is_used()) {
+      faces = static_cast<std::uint8_t>(faces | bit(face));
+    }
+  }
+  return faces;
+}
+
+/// The robot is not what it was when the round began. Until the next one this module takes no part
+/// in anything; it waits a little, as changes come together.
+template <class Real>
+void BasicAgent<Real>::leave_round() {
+  if (round_.epoch > 0) {
+    answer_ = {};
+    is_sweeping_ = false;
+    restart_at_ = now_ + setup_.timing.acknowledge_after;
+  }
+}
+
+template <class Real>
+void BasicAgent<Real>::start_round() {
+  if (!has_cell_) {
+    restart_at_ = kNever;
+    return;
+  }
+  enter_round({.epoch = static_cast<std::uint16_t>(round_.epoch + 1), .starter = identity_.id});
+  start_wave(kFirstStage);
+}
+
+template <class Real>
+void BasicAgent<Real>::enter_round(const Round& round) {
+  round_ = round;
+  restart_at_ = kNever;
+  stage_ = kNoStage;
+  parent_ = -1;
+  children_ = 0;
+  is_sweeping_ = false;
+  is_exchanging_ = false;
+  has_next_order_ = false;
+  tag_ = 0;
+  vectors_here_ = {};
+  planned_.clear();
+  answer_ = {};
+  phase_ = Phase::kCoordinates;
+  touched_ = 0x3f;
+  for (Link& link : links_) {
+    link.drop_unsent();
+  }
+}
+
+template <class Real>
+void BasicAgent<Real>::plan(const base::Cell& cell) {
+  if (announced_count_ == kPlannedMax) {
+    is_announced_overfull_ = true;
+  } else {
+    announced_[announced_count_++] = cell;
+  }
+  leave_round();
+}
+
+}  // namespace holdfast::agent

@@ -1,0 +1,275 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "bits.hpp"
+#include "holdfast/agent/agent.hpp"
+
+/// Sweeps: an order goes down the tree, its report comes up, and most of them exchange six reals
+/// between all neighbours on the way.
+///
+/// A module works on an order as soon as it comes, sends its vector to its neighbours, waits for
+/// theirs and for its children's reports, and reports. A neighbour nearer to the root may be one
+/// exchange ahead, never two: its next vector depends on ours. So two buffers do, told apart by the
+/// lowest bit of the exchange's tag. Reports are added up in the order of the faces, not of their
+/// arrival, so that rounding does not depend on the timing.
+namespace holdfast::agent {
+
+namespace sweep {
+
+constexpr bool exchanges(const Order& order) {
+  switch (order.operation) {
+    case wire::Operation::kHigh:
+    case wire::Operation::kLow:
+    case wire::Operation::kGradient:
+    case wire::Operation::kJacobi:
+      return true;
+    case wire::Operation::kStart:
+      return (order.flags & (kWithScalars | kWithBlocks)) == 0;
+    case wire::Operation::kSlope:
+      return (order.flags & kExchangeFirst) != 0;
+    default:
+      return false;
+  }
+}
+
+/// Forces whose digits beyond single precision count.
+constexpr bool is_precise(wire::Operation operation) {
+  return operation == wire::Operation::kHigh || operation == wire::Operation::kLow;
+}
+
+constexpr Phase phase_of(wire::Operation operation) {
+  switch (operation) {
+    case wire::Operation::kPlan:
+    case wire::Operation::kHosts:
+    case wire::Operation::kMass:
+      return Phase::kMass;
+    case wire::Operation::kAngles:
+      return Phase::kSimplified;
+    case wire::Operation::kCorners:
+      return Phase::kModel;
+    case wire::Operation::kLoads:
+    case wire::Operation::kVerdict:
+      return Phase::kOverload;
+    default:
+      return Phase::kEquilibrium;
+  }
+}
+
+inline wire::Writer vector_message(wire::MessageType type, std::uint8_t label,
+                                   const base::Vec6<float>& vector) {
+  wire::Writer message(type);
+  message.u8(label);
+  for (const float value : vector) {
+    message.real(static_cast<double>(value));
+  }
+  return message;
+}
+
+inline base::Vec6<float> read_vector(wire::Reader& in) {
+  base::Vec6<float> vector{};
+  for (float& value : vector) {
+    value = in.real();
+  }
+  return vector;
+}
+
+template <class Real>
+base::Vec6<float> rounded(const base::Vec6<Real>& vector) {
+  base::Vec6<float> result{};
+  for (std::size_t i = 0; i < 6; ++i) {
+    result[i] = static_cast<float>(vector[i]);
+  }
+  return result;
+}
+
+}  // namespace sweep
+
+template <class Real>
+void BasicAgent<Real>::take_order(const Order& order) {
+  order_ = order;
+  is_sweeping_ = true;
+  phase_ = sweep::phase_of(order.operation);
+  reports_awaited_ = children_;
+  jacobi_left_ = order.count;
+  send_to_children(encode(order));
+  prepare(order);
+  if (sweep::exchanges(order)) {
+    start_exchange();
+  }
+  continue_sweep();
+}
+
+template <class Real>
+void BasicAgent<Real>::start_exchange() {
+  is_exchanging_ = true;
+  ++tag_;
+  planned_awaited_ = planned_.from_above();
+  planned_force_ = {};
+  const base::Vec6<float> own = sweep::rounded(nodes_[0].z);
+  const std::uint8_t faces = used_faces();
+  for (int face = 0; face < base::kDirectionCount; ++face) {
+    if ((faces & bit(face)) != 0) {
+      send(face, sweep::vector_message(wire::MessageType::kVector, tag_, own));
+    }
+  }
+  for (int i = 0; i < planned_.hosted_count(); ++i) {
+    planned_vector_[static_cast<std::size_t>(planned_.hosted(i))] =
+        sweep::rounded(nodes_[static_cast<std::size_t>(1 + i)].z);
+  }
+  send_planned_down();
+}
+
+/// Hands down the reals of planned modules that are emulated here, or that have come from above.
+template <class Real>
+void BasicAgent<Real>::send_planned_down() {
+  for (int k = 0; k < planned_.count(); ++k) {
+    if (planned_.node_of(k) < 0) {
+      continue;
+    }
+    for (int face = 0; face < base::kDirectionCount; ++face) {
+      if ((children_ & bit(face)) != 0 && planned_.is_needed_below(face, k)) {
+        send(face,
+             sweep::vector_message(wire::MessageType::kPlannedDown, static_cast<std::uint8_t>(k),
+                                   planned_vector_[static_cast<std::size_t>(k)]));
+      }
+    }
+  }
+}
+
+template <class Real>
+void BasicAgent<Real>::take_planned_down(std::span<const std::uint8_t> message) {
+  wire::Reader in(message);
+  const int k = in.u8();
+  if (k >= planned_.count()) {
+    return;
+  }
+  planned_vector_[static_cast<std::size_t>(k)] = sweep::read_vector(in);
+  planned_awaited_ = static_cast<std::uint8_t>(planned_awaited_ & ~bit(k));
+  for (int face = 0; face < base::kDirectionCount; ++face) {
+    if ((children_ & bit(face)) != 0 && planned_.is_needed_below(face, k)) {
+      send(face,
+           sweep::vector_message(wire::MessageType::kPlannedDown, static_cast<std::uint8_t>(k),
+                                 planned_vector_[static_cast<std::size_t>(k)]));
+    }
+  }
+  continue_sweep();
+}
+
+/// The beams' forces on planned modules from here down, to their hosts above; where digits count,
+/// what single precision leaves over follows in a second message.
+template <class Real>
+void BasicAgent<Real>::send_planned_up() {
+  for (int k = 0; k < planned_.count(); ++k) {
+    if (!planned_.is_from_above(k)) {
+      continue;
+    }
+    base::Vec6<double>& force = planned_force_[static_cast<std::size_t>(k)];
+    const int parts = sweep::is_precise(order_.operation) ? 2 : 1;
+    for (int part = 0; part < parts; ++part) {
+      const base::Vec6<float> leading = sweep::rounded(force);
+      send(parent_, sweep::vector_message(wire::MessageType::kPlannedUp,
+                                          static_cast<std::uint8_t>(k), leading));
+      for (std::size_t i = 0; i < 6; ++i) {
+        force[i] -= static_cast<double>(leading[i]);
+      }
+    }
+  }
+}
+
+template <class Real>
+void BasicAgent<Real>::take_planned_up(std::span<const std::uint8_t> message) {
+  wire::Reader in(message);
+  const int k = in.u8();
+  if (k >= planned_.count()) {
+    return;
+  }
+  const base::Vec6<float> force = sweep::read_vector(in);
+  for (std::size_t i = 0; i < 6; ++i) {
+    planned_force_[static_cast<std::size_t>(k)][i] += static_cast<double>(force[i]);
+  }
+}
+
+template <class Real>
+void BasicAgent<Real>::take_vector(int face, std::span<const std::uint8_t> message) {
+  wire::Reader in(message);
+  const std::uint8_t tag = in.u8();
+  const std::size_t slot = tag & 1U;
+  vectors_[slot][static_cast<std::size_t>(face)] = sweep::read_vector(in);
+  vectors_here_[slot] = static_cast<std::uint8_t>(vectors_here_[slot] | bit(face));
+  continue_sweep();
+}
+
+template <class Real>
+void BasicAgent<Real>::take_report(int face, std::span<const std::uint8_t> message) {
+  if (!is_sweeping_ || (reports_awaited_ & bit(face)) == 0 ||
+      message[1] != static_cast<std::uint8_t>(order_.operation)) {
+    return;
+  }
+  auto& stored = reports_[static_cast<std::size_t>(face)];
+  for (std::size_t i = 0; i < message.size(); ++i) {
+    stored[i] = message[i];
+  }
+  reports_awaited_ = static_cast<std::uint8_t>(reports_awaited_ & ~bit(face));
+  continue_sweep();
+}
+
+template <class Real>
+void BasicAgent<Real>::continue_sweep() {
+  while (is_sweeping_ && is_exchanging_) {
+    const std::size_t slot = tag_ & 1U;
+    const std::uint8_t faces = used_faces();
+    const bool is_jacobi = order_.operation == wire::Operation::kJacobi;
+    // What children add to planned modules emulated here comes before their reports.
+    const bool waits_for_children = !is_jacobi || planned_.is_any_remote();
+    if ((vectors_here_[slot] & faces) != faces || planned_awaited_ != 0 ||
+        (waits_for_children && reports_awaited_ != 0)) {
+      return;
+    }
+    exchange_forces();
+    vectors_here_[slot] = 0;
+    is_exchanging_ = false;
+    send_planned_up();
+    if (is_jacobi) {
+      jacobi_step();
+      if (--jacobi_left_ > 0) {
+        start_exchange();
+      }
+    }
+  }
+  if (is_sweeping_ && reports_awaited_ == 0) {
+    finish_sweep();
+  }
+}
+
+template <class Real>
+void BasicAgent<Real>::finish_sweep() {
+  is_sweeping_ = false;
+  Report report = conclude(order_);
+  for (int face = 0; face < base::kDirectionCount; ++face) {
+    if ((children_ & bit(face)) != 0) {
+      merge(order_.operation, report, decode_report(reports_[static_cast<std::size_t>(face)]));
+    }
+  }
+  if (parent_ >= 0) {
+    send(parent_, encode(order_.operation, report));
+  } else if (order_.operation != wire::Operation::kVerdict) {
+    next_order_ = conductor_.next(setup_, report);
+    has_next_order_ = true;
+  }
+  if (order_.operation == wire::Operation::kPlan && order_.index != 0xff) {
+    // The masks of what lies below each child are needed to find hosts.
+    for (int face = 0; face < base::kDirectionCount; ++face) {
+      if ((children_ & bit(face)) != 0) {
+        planned_.add_below(face, order_.index,
+                           decode_report(reports_[static_cast<std::size_t>(face)]).mask);
+      }
+    }
+  }
+  if (order_.operation == wire::Operation::kVerdict) {
+    phase_ = Phase::kDone;
+    touched_ = 0x3f;
+  }
+}
+
+}  // namespace holdfast::agent

@@ -1,0 +1,192 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "bits.hpp"
+#include "holdfast/agent/agent.hpp"
+
+/// Three waves with echo [Segall 1983], one after the other.
+///
+/// A wave starts at one module. Who hears of it first from a neighbour makes that its parent and
+/// passes it on to all others; who has heard from all neighbours answers its parent (echo), adding
+/// up what its children say. Two messages cross every connection.
+///   1  from the starter: every module learns its cell; the echo counts modules, and names one that
+///      is furthest away, A.
+///   2  from A: names one that is furthest from A, B. (A path from A to B is nearly a longest one.)
+///   3  from the module half way from B to A: near the topological centre. Its tree is used.
+/// The double sweep finds the centre of any tree exactly [Handler 1973]; in lattices it is near it
+/// (test/waves_test.cpp measures how near).
+namespace holdfast::agent {
+
+using wire::MessageType;
+using wire::Reader;
+using wire::Writer;
+
+/// Joins and echoes begin with the type and the round.
+inline constexpr std::size_t kRoundBytes = 7;
+
+template <class Real>
+void BasicAgent<Real>::start_wave(std::uint8_t stage) {
+  begin_stage(stage, -1, 0);
+}
+
+template <class Real>
+void BasicAgent<Real>::begin_stage(std::uint8_t stage, int parent, std::uint16_t hops) {
+  stage_ = stage;
+  phase_ = stage == kFirstStage ? Phase::kCoordinates
+           : stage == kFarStage ? Phase::kElection
+                                : Phase::kTree;
+  parent_ = static_cast<std::int8_t>(parent);
+  hops_ = hops;
+  children_ = 0;
+  census_count_ = 1;
+  census_hops_ = hops;
+  census_id_ = identity_.id;
+  is_anyone_silent_ = silent_faces_ != 0;
+  awaited_ = used_faces();
+  if (parent >= 0) {
+    awaited_ = static_cast<std::uint8_t>(awaited_ & ~bit(parent));
+  }
+  for (int face = 0; face < base::kDirectionCount; ++face) {
+    if ((awaited_ & bit(face)) == 0) {
+      continue;
+    }
+    Writer join(MessageType::kJoin);
+    join.u16(round_.epoch);
+    join.u32(round_.starter);
+    join.u8(stage);
+    join.cell(nodes_[0].cell);
+    join.u16(hops);
+    send(face, join);
+  }
+  await_less(-1);
+}
+
+template <class Real>
+void BasicAgent<Real>::take_join(int face, std::span<const std::uint8_t> message) {
+  Reader in(message, kRoundBytes);
+  const Round round = peer_round_[static_cast<std::size_t>(face)];
+  const std::uint8_t stage = in.u8();
+  const base::Cell theirs = in.cell();
+  const auto hops = static_cast<std::uint16_t>(in.u16() + 1);
+  const bool is_higher =
+      round.epoch != round_.epoch ? round.epoch > round_.epoch : round.starter > round_.starter;
+  const bool is_same = round.epoch == round_.epoch && round.starter == round_.starter;
+  if (is_higher) {
+    enter_round(round);
+  } else if (!is_same || restart_at_ != kNever) {
+    return;
+  }
+  if (stage > stage_) {
+    const auto direction = static_cast<base::Direction>(face);
+    nodes_[0].cell = base::neighbour(theirs, base::opposite(direction));
+    has_cell_ = true;
+    begin_stage(stage, face, hops);
+  } else if (stage == stage_) {
+    await_less(face);
+  }
+}
+
+template <class Real>
+void BasicAgent<Real>::take_echo(int face, std::span<const std::uint8_t> message) {
+  Reader in(message, kRoundBytes);
+  if (in.u8() != stage_) {
+    return;
+  }
+  census_count_ += in.u32();
+  const std::uint16_t hops = in.u16();
+  const std::uint32_t id = in.u32();
+  if (hops > census_hops_ || (hops == census_hops_ && id < census_id_)) {
+    census_hops_ = hops;
+    census_id_ = id;
+  }
+  is_anyone_silent_ = in.u8() != 0 || is_anyone_silent_;
+  children_ = static_cast<std::uint8_t>(children_ | bit(face));
+  await_less(face);
+}
+
+/// One neighbour less to wait for; -1 only looks.
+template <class Real>
+void BasicAgent<Real>::await_less(int face) {
+  if (face >= 0) {
+    if ((awaited_ & bit(face)) == 0) {
+      return;
+    }
+    awaited_ = static_cast<std::uint8_t>(awaited_ & ~bit(face));
+  }
+  if (awaited_ != 0) {
+    return;
+  }
+  if (parent_ < 0) {
+    end_stage();
+    return;
+  }
+  Writer echo(MessageType::kEcho);
+  echo.u16(round_.epoch);
+  echo.u32(round_.starter);
+  echo.u8(stage_);
+  echo.u32(census_count_);
+  echo.u16(census_hops_);
+  echo.u32(census_id_);
+  echo.u8(is_anyone_silent_ ? 1 : 0);
+  send(parent_, echo);
+}
+
+/// The wave has come back to where it started.
+template <class Real>
+void BasicAgent<Real>::end_stage() {
+  if (is_anyone_silent_) {
+    next_order_ = {.operation = wire::Operation::kVerdict};
+    next_order_.answer = {.verdict = Verdict::kUndecided, .reason = Reason::kNeighbourSilent};
+    has_next_order_ = true;
+    return;
+  }
+  if (stage_ == kTreeStage) {
+    next_order_ = conductor_.begin(setup_, nodes_[0].cell, census_count_);
+    has_next_order_ = true;
+    return;
+  }
+  Writer appoint(MessageType::kAppoint);
+  appoint.u8(stage_);
+  appoint.u32(census_id_);
+  appoint.u16(static_cast<std::uint16_t>(census_hops_ / 2));
+  take_appointment(appoint.bytes());
+}
+
+template <class Real>
+void BasicAgent<Real>::take_appointment(std::span<const std::uint8_t> message) {
+  Reader in(message);
+  const std::uint8_t stage = in.u8();
+  const std::uint32_t id = in.u32();
+  const std::uint16_t hops = in.u16();
+  if (stage != stage_) {
+    return;  // Too late: the next wave was here already.
+  }
+  phase_ = Phase::kElection;
+  if (id == identity_.id) {
+    if (stage == kFirstStage) {
+      start_wave(kFarStage);
+    } else {
+      mark(hops);
+    }
+    return;
+  }
+  Writer onward(MessageType::kAppoint);
+  onward.u8(stage);
+  onward.u32(id);
+  onward.u16(hops);
+  send_to_children(onward);
+}
+
+template <class Real>
+void BasicAgent<Real>::mark(std::uint16_t hops) {
+  if (hops == 0 || parent_ < 0) {
+    start_wave(kTreeStage);
+    return;
+  }
+  Writer onward(MessageType::kMark);
+  onward.u16(static_cast<std::uint16_t>(hops - 1));
+  send(parent_, onward);
+}
+
+}  // namespace holdfast::agent

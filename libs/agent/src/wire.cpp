@@ -1,0 +1,112 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#include "holdfast/agent/wire.hpp"
+
+#include <bit>
+
+#include "holdfast/base/check.hpp"
+
+namespace holdfast::agent::wire {
+namespace {
+
+constexpr std::array<std::uint16_t, 256> checksum_table() {
+  std::array<std::uint16_t, 256> table{};
+  for (std::uint32_t byte = 0; byte < 256; ++byte) {
+    std::uint32_t value = byte << 8U;
+    for (int bit = 0; bit < 8; ++bit) {
+      value = (value & 0x8000U) != 0 ? (value << 1U) ^ 0x1021U : value << 1U;
+    }
+    table[byte] = static_cast<std::uint16_t>(value);
+  }
+  return table;
+}
+
+constexpr std::array<std::uint16_t, 256> kChecksumTable = checksum_table();
+
+/// Sizes by type, without orders and reports.
+constexpr std::array<std::uint8_t, 10> kMessageBytes = {0, 19, 19, 8, 3, 0, 0, 26, 26, 26};
+
+/// Sizes of orders and reports by operation.
+constexpr std::array<std::uint8_t, kOperationCount + 1> kOrderBytes = {
+    0, 12, 10, 11, 14, 11, 6, 3, 7, 10, 4, 11, 3, 2, 2, 18};
+constexpr std::array<std::uint8_t, kOperationCount + 1> kReportBytes = {
+    0, 13, 3, 17, 19, 2, 2, 25, 10, 10, 10, 26, 10, 21, 24, 6};
+
+}  // namespace
+
+int message_bytes(std::uint8_t type, std::uint8_t second) {
+  if (type >= kMessageBytes.size()) {
+    return 0;
+  }
+  const bool is_order = type == static_cast<std::uint8_t>(MessageType::kOrder);
+  const bool is_report = type == static_cast<std::uint8_t>(MessageType::kReport);
+  if (!is_order && !is_report) {
+    return kMessageBytes[type];
+  }
+  return second > kOperationCount ? 0 : (is_order ? kOrderBytes : kReportBytes)[second];
+}
+
+std::uint16_t checksum(std::span<const std::uint8_t> bytes, std::uint16_t start) {
+  std::uint32_t value = start;
+  for (const std::uint8_t byte : bytes) {
+    value = ((value << 8U) & 0xffffU) ^ kChecksumTable[((value >> 8U) ^ byte) & 0xffU];
+  }
+  return static_cast<std::uint16_t>(value);
+}
+
+void Writer::u8(std::uint8_t value) {
+  HOLDFAST_CHECK(size_ < bytes_.size());
+  bytes_[size_++] = value;
+}
+
+void Writer::u16(std::uint16_t value) {
+  u8(static_cast<std::uint8_t>(value & 0xffU));
+  u8(static_cast<std::uint8_t>(value >> 8U));
+}
+
+void Writer::u32(std::uint32_t value) {
+  u16(static_cast<std::uint16_t>(value & 0xffffU));
+  u16(static_cast<std::uint16_t>(value >> 16U));
+}
+
+void Writer::real(double value) { u32(std::bit_cast<std::uint32_t>(static_cast<float>(value))); }
+
+void Writer::cell(const base::Cell& cell) {
+  for (const std::int32_t coordinate : {cell.x, cell.y, cell.z}) {
+    const auto bits = static_cast<std::uint32_t>(coordinate);
+    u16(static_cast<std::uint16_t>(bits & 0xffffU));
+    u8(static_cast<std::uint8_t>((bits >> 16U) & 0xffU));
+  }
+}
+
+void Writer::pad() {
+  const auto size = static_cast<std::size_t>(message_bytes(bytes_[0], bytes_[1]));
+  HOLDFAST_CHECK(size_ <= size);
+  size_ = size;
+}
+
+std::uint8_t Reader::u8() { return at_ < bytes_.size() ? bytes_[at_++] : std::uint8_t{0}; }
+
+std::uint16_t Reader::u16() {
+  const std::uint16_t low = u8();
+  return static_cast<std::uint16_t>(low | (u8() << 8U));
+}
+
+std::uint32_t Reader::u32() {
+  const std::uint32_t low = u16();
+  return low | (static_cast<std::uint32_t>(u16()) << 16U);
+}
+
+float Reader::real() { return std::bit_cast<float>(u32()); }
+
+base::Cell Reader::cell() {
+  std::array<std::int32_t, 3> values{};
+  for (std::int32_t& value : values) {
+    const std::uint32_t low = u16();
+    const std::uint32_t bits = low | (static_cast<std::uint32_t>(u8()) << 16U);
+    value = static_cast<std::int32_t>(bits << 8U) >> 8;
+  }
+  return {values[0], values[1], values[2]};
+}
+
+}  // namespace holdfast::agent::wire

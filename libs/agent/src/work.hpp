@@ -1,0 +1,204 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "bits.hpp"
+#include "holdfast/agent/agent.hpp"
+
+/// What the operations do on one module: before the exchange (prepare) and after it (conclude).
+namespace holdfast::agent {
+
+using wire::Operation;
+
+template <class Real>
+void BasicAgent<Real>::prepare(const Order& order) {
+  switch (order.operation) {
+    case Operation::kPlan:
+      if (order.index == 0xff) {
+        planned_.clear();
+      } else {
+        planned_.add(order.cell, nodes_[0].cell);
+      }
+      break;
+    case Operation::kHosts:
+      planned_.decide_hosts(order.masks);
+      prepare_hosted();
+      break;
+    case Operation::kMass:
+      root_cell_ = order.cell;
+      break;
+    case Operation::kBegin:
+      begin_equilibrium(order);
+      break;
+    case Operation::kHigh:
+      move(static_cast<double>(order.reals[0]));
+      break;
+    case Operation::kLow:
+      for (int i = 0; i < node_count(); ++i) {
+        Node<Real>& node = nodes_[static_cast<std::size_t>(i)];
+        for (std::size_t k = 0; k < 6; ++k) {
+          const auto high = static_cast<double>(static_cast<float>(node.u[k]));
+          node.z[k] = static_cast<Real>(static_cast<float>(node.u[k] - high));
+        }
+      }
+      break;
+    case Operation::kStart:
+      start_solve(order);
+      break;
+    case Operation::kGradient:
+      gradient_step(order);
+      break;
+    case Operation::kJacobi:
+    case Operation::kSlope:
+      for (int i = 0; i < node_count(); ++i) {
+        Node<Real>& node = nodes_[static_cast<std::size_t>(i)];
+        node.z = node.g;
+      }
+      break;
+    case Operation::kVerdict:
+      answer_ = order.answer;
+      break;
+    case Operation::kAngles:
+    case Operation::kHold:
+    case Operation::kCorners:
+    case Operation::kLoads:
+      break;
+  }
+}
+
+template <class Real>
+Report BasicAgent<Real>::conclude(const Order& order) {
+  switch (order.operation) {
+    case Operation::kPlan:
+      return plan_report();
+    case Operation::kHosts: {
+      Report report;
+      for (int i = 0; i < planned_.hosted_count(); ++i) {
+        report.mask = static_cast<std::uint8_t>(report.mask | bit(planned_.hosted(i)));
+      }
+      report.mask =
+          static_cast<std::uint8_t>(report.mask | (planned_.is_any_remote() ? kAnyRemote : 0U));
+      return report;
+    }
+    case Operation::kMass:
+      return mass_report();
+    case Operation::kAngles:
+      return angles_report();
+    case Operation::kLow:
+      return residual_report();
+    case Operation::kStart:
+    case Operation::kGradient:
+      return product_report();
+    case Operation::kJacobi: {
+      Report report;
+      report.reals[0] = jacobi_error_;
+      return report;
+    }
+    case Operation::kSlope:
+      return slope_report();
+    case Operation::kHold:
+      return hold_report();
+    case Operation::kCorners:
+      return corners_report();
+    case Operation::kLoads:
+      return loads_report();
+    case Operation::kVerdict:
+      return {.count = 1};
+    case Operation::kBegin:
+    case Operation::kHigh:
+      break;
+  }
+  return {};
+}
+
+/// What touches the planned module just learned, and the next announced cell after it.
+template <class Real>
+Report BasicAgent<Real>::plan_report() const {
+  Report report;
+  report.flags = is_announced_overfull_ ? kTooManyAnnounced : std::uint8_t{0};
+  const bool has_last = order_.index != 0xff;
+  if (has_last) {
+    report.mask = planned_.own_mask(order_.index);
+  }
+  for (int i = 0; i < announced_count_; ++i) {
+    const base::Cell& cell = announced_[static_cast<std::size_t>(i)];
+    if (has_last && cell <= order_.cell) {
+      continue;
+    }
+    if ((report.flags & kFound) == 0 || cell < report.cell) {
+      report.flags = static_cast<std::uint8_t>(report.flags | kFound);
+      report.cell = cell;
+    }
+  }
+  return report;
+}
+
+template <class Real>
+void BasicAgent<Real>::prepare_hosted() {
+  nodes_[0].is_fixed = identity_.is_fixed;
+  nodes_[0].is_ground = !identity_.is_fixed && nodes_[0].cell.z == setup_.support_z;
+  for (int i = 0; i < planned_.hosted_count(); ++i) {
+    Node<Real>& node = nodes_[static_cast<std::size_t>(1 + i)];
+    node = {};
+    node.cell = planned_.cell(planned_.hosted(i));
+    node.is_ground = node.cell.z == setup_.support_z;
+  }
+}
+
+template <class Real>
+Report BasicAgent<Real>::mass_report() const {
+  Report report;
+  for (int i = 0; i < node_count(); ++i) {
+    const Node<Real>& node = nodes_[static_cast<std::size_t>(i)];
+    const base::Cell away = {node.cell.x - root_cell_.x, node.cell.y - root_cell_.y,
+                             node.cell.z - root_cell_.z};
+    const auto size = [](std::int32_t value) { return value < 0 ? -value : value; };
+    const std::int32_t extent = size(away.x) + size(away.y) + size(away.z);
+    Report own{.flags = node.is_fixed ? kAnyFixed : std::uint8_t{0},
+               .extent = static_cast<std::uint16_t>(extent < 0xffff ? extent : 0xffff),
+               .count = 1,
+               .cell_sum = {away.x, away.y}};
+    merge(Operation::kMass, report, own);
+  }
+  return report;
+}
+
+/// In units of half a cell divided by the number of modules, all numbers are integers.
+template <class Real>
+Report BasicAgent<Real>::angles_report() const {
+  Report report;
+  const std::int64_t count = order_.module_count;
+  for (int i = 0; i < node_count(); ++i) {
+    const Node<Real>& node = nodes_[static_cast<std::size_t>(i)];
+    if (!node.is_ground) {
+      continue;
+    }
+    const std::int64_t x = std::int64_t{node.cell.x} - root_cell_.x;
+    const std::int64_t y = std::int64_t{node.cell.y} - root_cell_.y;
+    const mechanics::PlanVector<std::int64_t> away = {
+        2 * (x * count - order_.cell_sum[0]) * setup_.facet_denominator,
+        2 * (y * count - order_.cell_sum[1]) * setup_.facet_denominator};
+    Report own;
+    own.angles = mechanics::safe_angles(away, count * setup_.facet_numerator);
+    merge(Operation::kAngles, report, own);
+  }
+  return report;
+}
+
+template <class Real>
+Report BasicAgent<Real>::corners_report() const {
+  Report report;
+  for (int i = 0; i < node_count(); ++i) {
+    const Node<Real>& node = nodes_[static_cast<std::size_t>(i)];
+    Report own;
+    if (node.is_fixed) {
+      own.corners = mechanics::fixed_support();
+    } else if (node.is_ground) {
+      own.corners = mechanics::support_corners(node.cell, node.state);
+    }
+    merge(Operation::kCorners, report, own);
+  }
+  return report;
+}
+
+}  // namespace holdfast::agent
