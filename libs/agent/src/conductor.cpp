@@ -1,6 +1,9 @@
 // SPDX-FileCopyrightText: The holdfast authors
 // SPDX-License-Identifier: Apache-2.0
 #include "holdfast/agent/conductor.hpp"
+#include <cstdlib>
+#include <cstdio>
+#define __builtin_getenv getenv
 
 namespace holdfast::agent {
 namespace {
@@ -9,12 +12,9 @@ using wire::Operation;
 
 constexpr std::uint8_t kNoIndex = 0xff;
 
-/// Load ratios are to be this good: absolute, and relative to the largest. A third of what is
-/// promised (0.01 + 1 %), as the bound is not rigorous for statically indeterminate robots.
-constexpr double kRatioTolerance = 3e-3;
-
-/// Contact states are judged at this accuracy.
-constexpr double kStateTolerance = 1e-3;
+/// Load ratios are to be this good: absolute, and relative to the largest. A tenth of what
+/// is promised (0.01 + 1 %), as the bound is not rigorous for statically indeterminate robots.
+constexpr double kRatioTolerance = 1e-3;
 
 /// A verdict needs the largest ratio this many times its error bound away from 1.
 constexpr double kDoubt = 3;
@@ -22,13 +22,14 @@ constexpr double kDoubt = 3;
 /// The best bound that is tried for: below, the arithmetic itself is in doubt.
 constexpr double kErrorLeast = 2e-8;
 
-/// Bounds of the wanted reduction of the residual in one linear solve. Single precision rarely
-/// gives more than four digits in one go; a tilting facet's stand-in tangent deserves only one.
-constexpr double kReductionLeast = 1e-4;
-constexpr double kReductionTilting = 0.05;
+/// How much smaller the error bound becomes in one linear solve, at most. Single precision rarely
+/// gives more than five digits in one go; a tilting facet's stand-in tangent deserves fewer.
+constexpr double kReductionLeast = 1e-5;
+constexpr double kReductionTilting = 1e-3;
 
 /// Judgements without progress before a way is given up.
 constexpr int kStagnationMax = 8;
+constexpr int kJacobiStagnationMax = 2;
 
 constexpr int kContactStepsMax = 100;
 
@@ -69,7 +70,7 @@ Order Conductor::next(const Setup& setup, const Report& report) {
     case Step::kAngles:
       return after_angles(setup, report);
     case Step::kBegin:
-      return is_jacobi() ? start_jacobi() : start_solve(false, 0);
+      return is_jacobi() ? start_jacobi() : start_solve(false);
     case Step::kHigh: {
       Order low = order(Step::kLow, Operation::kLow);
       low.flags = is_unilateral_ || is_jacobi() ? kFollowStates : std::uint8_t{0};
@@ -85,6 +86,8 @@ Order Conductor::next(const Setup& setup, const Report& report) {
       return after_jacobi(setup, report);
     case Step::kSlope:
       return after_slope(report);
+    case Step::kMix:
+      return after_mix(report);
     case Step::kCorners:
       return after_corners(setup, report);
     case Step::kRelease:
@@ -172,12 +175,12 @@ Order Conductor::begin_law(const Setup& setup, bool is_unilateral) {
   is_unilateral_ = is_unilateral;
   effort_.is_unilateral = is_unilateral;
   is_tilting_ = false;
+  has_history_ = false;
   seen_count_ = 0;
   stagnation_count_ = 0;
   error_ = 1e30;
   error_best_ = 1e30;
-  target_ = kStateTolerance;
-  reduction_ = kReductionLeast;
+  target_ = kRatioTolerance;
   solve_iterations_max_ = 200 + 20 * effort_.module_count;
   Order begin = order(Step::kBegin, Operation::kBegin);
   begin.flags = is_unilateral ? kUnilateralLaw : std::uint8_t{0};
@@ -186,9 +189,9 @@ Order Conductor::begin_law(const Setup& setup, bool is_unilateral) {
   return begin;
 }
 
-Order Conductor::move(double step) {
+Order Conductor::move(double step, double mix) {
   Order high = order(Step::kHigh, Operation::kHigh);
-  high.reals[0] = static_cast<float>(step);
+  high.reals = {static_cast<float>(step), static_cast<float>(mix)};
   return high;
 }
 
@@ -196,6 +199,7 @@ Order Conductor::move(double step) {
 Order Conductor::judge(const Setup& setup, const Report& report) {
   const double error = static_cast<double>(report.reals[0]);
   ratio_ = static_cast<double>(report.reals[1]);
+  if (__builtin_getenv("TRJ")) __builtin_printf("it %u solve %u E %.3e ratio %.5f changed %u tilt %d uni %d target %.1e stag %d mix %.3f red %.1e gf %.2e\n", effort_.iterations, effort_.solves, error, ratio_, report.extent, report.flags, is_unilateral_, target_, stagnation_count_, 0.0, 0.0,0.0);
   is_tilting_ = (report.flags & kAnyTilting) != 0;
   if (!is_number(error) || effort_.iterations > setup.iteration_count_max) {
     return give_up(setup);
@@ -204,28 +208,24 @@ Order Conductor::judge(const Setup& setup, const Report& report) {
   const bool is_better = error < 0.7 * error_best_;
   error_best_ = is_better ? error : error_best_;
   stagnation_count_ = is_better ? std::uint8_t{0} : std::uint8_t(stagnation_count_ + 1);
+  // Contact states first, at the usual tolerance; then the verdict, which may need a better one.
   const bool follows = is_unilateral_ || is_jacobi();
-  if (!follows && report.extent > 0 && (error <= target_ || stagnation_count_ > kStagnationMax)) {
+  const bool is_consistent = follows || report.extent == 0;
+  target_ = kRatioTolerance * (1 + absolute(ratio_));
+  if (!is_consistent && (error <= target_ || stagnation_count_ > kStagnationMax)) {
     return judge_regularised(setup, report);
   }
-  if (error <= target_ && (follows || report.extent == 0)) {
-    const double wanted = kRatioTolerance * (1 + absolute(ratio_));
+  if (is_consistent && error <= target_) {
     const double distance = absolute(ratio_ - 1) / kDoubt;
-    if (error <= wanted && (error <= distance || error <= kErrorLeast)) {
+    if (error <= distance || error <= kErrorLeast) {
       return settled();
     }
-    const double closer = wanted < distance ? wanted : distance;
-    target_ = closer > kErrorLeast ? closer : kErrorLeast;
-    stagnation_count_ = 0;
+    target_ = distance > kErrorLeast ? distance : kErrorLeast;
   }
-  if (stagnation_count_ > kStagnationMax) {
+  if (stagnation_count_ > (is_jacobi() ? kJacobiStagnationMax : kStagnationMax)) {
     return give_up(setup);
   }
-  // The residual along the line between the last two iterates is least at this fraction back.
-  const double square = static_cast<double>(report.reals[3]);
-  const double mix =
-      !follows && is_tilting_ && square > 0 ? static_cast<double>(report.reals[2]) / square : 0;
-  return is_jacobi() ? start_jacobi() : start_solve(false, is_number(mix) ? mix : 0);
+  return is_jacobi() ? start_jacobi() : start_solve(false);
 }
 
 /// The linear problem is solved and some facets want another state.
@@ -236,7 +236,7 @@ Order Conductor::judge_regularised(const Setup& setup, const Report& report) {
   ++effort_.contact_steps;
   error_best_ = 1e30;
   stagnation_count_ = 0;
-  return start_solve(true, 0);
+  return start_solve(true);
 }
 
 /// The present way leads nowhere: the next safer method, the next law, or no answer.
@@ -275,20 +275,12 @@ bool Conductor::was_seen(std::uint32_t hash) {
 
 // ---- Conjugate gradients with one reduction a step [Chronopoulos, Gear 1989].
 
-Order Conductor::start_solve(bool adopts_states, double mix) {
+Order Conductor::start_solve(bool adopts_states) {
   ++effort_.solves;
+  has_history_ = has_history_ && !adopts_states;
   solve_iterations_ = 0;
-  const double wanted = 0.3 * target_ / error_;
-  reduction_ = wanted < kReductionLeast ? kReductionLeast : (wanted < 0.1 ? wanted : 0.1);
-  if (adopts_states || !is_number(error_) || error_ > 1e29) {
-    reduction_ = kReductionLeast;
-  }
-  if (is_tilting_ && !is_unilateral_) {
-    reduction_ = kReductionTilting;
-  }
   Order start = order(Step::kStart, Operation::kStart);
   start.flags = adopts_states ? kAdoptStates : std::uint8_t{0};
-  start.reals[0] = static_cast<float>(mix);
   return start;
 }
 
@@ -298,20 +290,23 @@ Order Conductor::after_start(const Report& report) {
     jacobi.count = batch_;
     return jacobi;
   }
-  gamma_first_ = static_cast<double>(report.reals[0]);
+  const double reduction = is_tilting_ && !is_unilateral_ ? kReductionTilting : kReductionLeast;
+  const double least = reduction * static_cast<double>(report.reals[2]);
+  solve_error_ = least > 0.3 * target_ ? least : 0.3 * target_;
   gamma_ = 0;
   alpha_ = 0;
-  if (!(gamma_first_ > 0) || !is_number(gamma_first_)) {
+  const auto gamma = static_cast<double>(report.reals[0]);
+  if (!(gamma > 0) || !is_number(gamma)) {
     return move(0);
   }
-  return next_gradient(gamma_first_, static_cast<double>(report.reals[1]));
+  return next_gradient(gamma, static_cast<double>(report.reals[1]));
 }
 
 Order Conductor::after_gradient(const Setup& setup, const Report& report) {
   ++effort_.iterations;
   ++solve_iterations_;
   const double gamma = static_cast<double>(report.reals[0]);
-  if (!(gamma > reduction_ * reduction_ * gamma_first_) || !is_number(gamma) ||
+  if (!(static_cast<double>(report.reals[2]) > solve_error_) || !is_number(gamma) ||
       solve_iterations_ >= solve_iterations_max_ ||
       effort_.iterations > setup.iteration_count_max) {
     return end_solve();
@@ -337,7 +332,14 @@ Order Conductor::next_gradient(double gamma, double delta) {
 
 Order Conductor::end_solve() {
   if (!is_unilateral_) {
-    return move(1);
+    const bool mixes = has_history_ && is_tilting_;
+    has_history_ = true;
+    if (!mixes) {
+      return move(1);
+    }
+    Order products = order(Step::kMix, Operation::kSlope);
+    products.flags = kMixProducts;
+    return products;
   }
   Order slope = order(Step::kSlope, Operation::kSlope);
   slope.flags = kExchangeFirst;
@@ -346,6 +348,14 @@ Order Conductor::end_solve() {
   slope_count_ = 0;
   slope.reals = {0.0F, 1.0F};
   return slope;
+}
+
+/// Anderson's method of depth one, in the norm of the solve's matrix: the combination of the last
+/// two iterates whose correction is least, moved by its correction.
+Order Conductor::after_mix(const Report& report) {
+  const double mix =
+      static_cast<double>(report.reals[0]) / static_cast<double>(report.reals[1]);
+  return move(1, is_number(mix) ? mix : 0);
 }
 
 // ---- Line search: the slope of a convex, piecewise quadratic energy never decreases.
@@ -397,7 +407,7 @@ Order Conductor::start_jacobi() {
   ++effort_.solves;
   solve_iterations_ = 0;
   batch_ = is_any_remote_ ? 1 : 8;
-  check_at_ = 64;
+  check_at_ = 1000 + 10 * effort_.module_count * effort_.module_count;
   check_error_ = 1e30;
   least_error_ = 1e30;
   Order start = order(Step::kStart, Operation::kStart);
@@ -419,7 +429,7 @@ Order Conductor::after_jacobi(const Setup& setup, const Report& report) {
   }
   if (solve_iterations_ >= check_at_) {
     // Rounding has the last word, or contact states go round: look at the exact residual.
-    if (least_error_ > 0.95 * check_error_) {
+    if (least_error_ > 0.999 * check_error_) {
       return move(1);
     }
     check_error_ = least_error_;
@@ -462,7 +472,7 @@ Order Conductor::after_hold(const Report& report) {
   if (step_ == Step::kFree || report.count > 0) {
     error_best_ = 1e30;
     stagnation_count_ = 0;
-    target_ = kStateTolerance;
+    target_ = kRatioTolerance;
     return move(0);
   }
   open_held_count_ = report.number;

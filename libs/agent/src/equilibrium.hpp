@@ -79,15 +79,17 @@ void BasicAgent<Real>::begin_equilibrium(const Order& order) {
   }
 }
 
-/// u := u + t g, and its leading part goes out.
+/// u := u + t g - theta (last move + change of g), and its leading part goes out.
 template <class Real>
-void BasicAgent<Real>::move(double step) {
+void BasicAgent<Real>::move(const Order& order) {
+  const auto length = static_cast<Real>(order.reals[0]);
+  const auto mix = static_cast<Real>(order.reals[1]);
   for (int i = 0; i < node_count(); ++i) {
     Node<Real>& node = nodes_[static_cast<std::size_t>(i)];
-    node.u_last = node.u;
     node.force = {};
     for (std::size_t k = 0; k < 6; ++k) {
-      node.u[k] += step * static_cast<double>(node.g[k]);
+      node.move[k] = length * node.g[k] - mix * (node.move[k] + node.g[k] - node.g_before[k]);
+      node.u[k] += static_cast<double>(node.move[k]);
       node.z[k] = static_cast<Real>(static_cast<float>(node.u[k]));
     }
   }
@@ -96,7 +98,6 @@ void BasicAgent<Real>::move(double step) {
 
 template <class Real>
 void BasicAgent<Real>::start_solve(const Order& order) {
-  const auto mix = static_cast<double>(order.reals[0]);
   for (int i = 0; i < node_count(); ++i) {
     Node<Real>& node = nodes_[static_cast<std::size_t>(i)];
     if ((order.flags & kAdoptStates) != 0) {
@@ -106,12 +107,9 @@ void BasicAgent<Real>::start_solve(const Order& order) {
         node.r[k] = static_cast<Real>(rest[k]);
       }
     }
-    for (std::size_t k = 0; k < 6; ++k) {
-      node.u[k] -= mix * (node.u[k] - node.u_last[k]);
-      node.r[k] -= static_cast<Real>(mix) * (node.r[k] - node.r_last[k]);
-    }
-    node.u_last = node.u;
-    node.r_last = node.r;
+    node.r_before = node.r_start;
+    node.r_start = node.r;
+    node.g_before = node.g;
     node.g = {};
     node.p = {};
     node.s = {};
@@ -156,7 +154,7 @@ void BasicAgent<Real>::jacobi_step() {
     const base::Vec6<double> here = facet_force_along(node, contact_, 1);
     const base::Vec6<double> start = facet_force_along(node, contact_, 0);
     for (std::size_t k = 0; k < 6; ++k) {
-      rest[k] = node.r_last[k] - node.w[k] - static_cast<Real>(here[k] - start[k]);
+      rest[k] = node.r_start[k] - node.w[k] - static_cast<Real>(here[k] - start[k]);
     }
     const mechanics::ContactState state = state_along(node, contact_, 1);
     if (node.is_ground && !is_first_step_ && !(state == node.state)) {
@@ -294,7 +292,7 @@ void BasicAgent<Real>::visit_loads(Visit&& visit) const {
   }
 }
 
-/// Error bound, largest load ratio, mixing products, facets that want another state, their hash.
+/// Error bound, largest load ratio, facets that want another state, their hash.
 template <class Real>
 Report BasicAgent<Real>::residual_report() {
   Report report;
@@ -317,13 +315,7 @@ Report BasicAgent<Real>::residual_report() {
     const base::Vec6<double> rest = residual(node, setup_, contact_);
     report.reals[0] += static_cast<float>(ratio_error(rest, setup_, contact_));
     for (std::size_t k = 0; k < 6; ++k) {
-      // Torques count by the force at half a module's width.
-      const float weight =
-          k < 3 ? 1.0F : 4.0F / static_cast<float>(setup_.facet_mm * setup_.facet_mm);
       node.r[k] = static_cast<Real>(rest[k]);
-      const auto change = static_cast<float>(node.r[k] - node.r_last[k]);
-      report.reals[2] += weight * static_cast<float>(node.r[k]) * change;
-      report.reals[3] += weight * change * change;
     }
   }
   visit_loads([&](const base::Cell&, base::Direction, double ratio) {
@@ -333,11 +325,12 @@ Report BasicAgent<Real>::residual_report() {
   return report;
 }
 
-/// (r, z) and (z, w), with the facet's part added to w.
+/// (r, z), (z, w) with the facet's part added to w, and the bound on the error.
 template <class Real>
 Report BasicAgent<Real>::product_report() {
   Real residual_product = 0;
   Real image_product = 0;
+  double error = 0;
   for (int i = 0; i < node_count(); ++i) {
     Node<Real>& node = nodes_[static_cast<std::size_t>(i)];
     if (node.is_fixed) {
@@ -349,16 +342,21 @@ Report BasicAgent<Real>::product_report() {
     }
     residual_product += base::dot(node.r, node.z);
     image_product += base::dot(node.z, node.w);
+    error += node.is_fixed ? 0 : ratio_error(node.r, setup_, contact_);
   }
   Report report;
   report.reals[0] = static_cast<float>(residual_product);
   report.reals[1] = static_cast<float>(image_product);
+  report.reals[2] = static_cast<float>(error);
   return report;
 }
 
 /// The slope of the energy at u + t g: beams and weight as a line in t, facets at four places.
 template <class Real>
 Report BasicAgent<Real>::slope_report() const {
+  if ((order_.flags & kMixProducts) != 0) {
+    return mix_report();
+  }
   Report report;
   const auto low = static_cast<double>(order_.reals[0]);
   const auto high = static_cast<double>(order_.reals[1]);
@@ -379,6 +377,21 @@ Report BasicAgent<Real>::slope_report() const {
   }
   for (std::size_t i = 0; i < 6; ++i) {
     report.reals[i] = static_cast<float>(sums[i]);
+  }
+  return report;
+}
+
+/// (dg, r) and (dg, dr), d: the change since the solve before.
+template <class Real>
+Report BasicAgent<Real>::mix_report() const {
+  Report report;
+  for (int i = 0; i < node_count(); ++i) {
+    const Node<Real>& node = nodes_[static_cast<std::size_t>(i)];
+    for (std::size_t k = 0; k < 6; ++k) {
+      const Real change = node.g[k] - node.g_before[k];
+      report.reals[0] += static_cast<float>(change * node.r_start[k]);
+      report.reals[1] += static_cast<float>(change * (node.r_start[k] - node.r_before[k]));
+    }
   }
   return report;
 }

@@ -69,14 +69,14 @@ void reset(Node<Real>& node, const Setup& setup) {
   node.state = {.pressed = node.is_ground};
   node.wanted = node.state;
   node.u = {};
-  node.u_last = {};
   node.force = {};
   node.g = {};
   node.r = {};
   if (!node.is_fixed) {
     node.r[2] = static_cast<Real>(-setup.weight_n);
   }
-  node.r_last = node.r;
+  node.r_start = node.r;
+  node.move = {};
 }
 
 template <class Real>

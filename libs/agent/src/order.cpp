@@ -48,8 +48,6 @@ void merge_mass(Report& into, const Report& from) {
 void merge_residual(Report& into, const Report& from) {
   into.reals[0] += from.reals[0];
   into.reals[1] = larger(into.reals[1], from.reals[1]);
-  into.reals[2] += from.reals[2];
-  into.reals[3] += from.reals[3];
   const std::uint32_t changed = std::uint32_t{into.extent} + from.extent;
   into.extent = static_cast<std::uint16_t>(changed < 0xffffU ? changed : 0xffffU);
   into.number += from.number;
@@ -108,7 +106,7 @@ mechanics::SupportCorners read_corners(Reader& in) {
 int real_count(Operation operation) {
   switch (operation) {
     case Operation::kLow:
-      return 4;
+      return 2;
     case Operation::kStart:
     case Operation::kGradient:
     case Operation::kJacobi:
@@ -153,22 +151,19 @@ Writer encode(const Order& order) {
     case Operation::kJacobi:
       out.u16(order.count);
       break;
-    case Operation::kHigh:
-      out.real(static_cast<double>(order.reals[0]));
-      break;
     case Operation::kLow:
     case Operation::kHold:
       out.u8(order.flags);
       break;
     case Operation::kStart:
       out.u8(order.flags);
-      out.real(static_cast<double>(order.reals[0]));
       break;
     case Operation::kBegin:
     case Operation::kSlope:
       out.u8(order.flags);
       [[fallthrough]];
     case Operation::kGradient:
+    case Operation::kHigh:
       out.real(static_cast<double>(order.reals[0]));
       out.real(static_cast<double>(order.reals[1]));
       break;
@@ -209,22 +204,19 @@ Order decode_order(std::span<const std::uint8_t> message) {
     case Operation::kJacobi:
       order.count = in.u16();
       break;
-    case Operation::kHigh:
-      order.reals[0] = in.real();
-      break;
     case Operation::kLow:
     case Operation::kHold:
       order.flags = in.u8();
       break;
     case Operation::kStart:
       order.flags = in.u8();
-      order.reals[0] = in.real();
       break;
     case Operation::kBegin:
     case Operation::kSlope:
       order.flags = in.u8();
       [[fallthrough]];
     case Operation::kGradient:
+    case Operation::kHigh:
       order.reals = {in.real(), in.real()};
       break;
     case Operation::kVerdict:
@@ -262,6 +254,10 @@ Writer encode(Operation operation, const Report& report) {
       break;
     case Operation::kAngles:
       write_angles(out, report.angles);
+      break;
+    case Operation::kStart:
+    case Operation::kGradient:
+      out.short_real(static_cast<double>(report.reals[2]));
       break;
     case Operation::kLow:
       out.u16(report.extent);
@@ -314,6 +310,10 @@ Report decode_report(std::span<const std::uint8_t> message) {
       break;
     case Operation::kAngles:
       report.angles = read_angles(in);
+      break;
+    case Operation::kStart:
+    case Operation::kGradient:
+      report.reals[2] = in.short_real();
       break;
     case Operation::kLow:
       report.extent = in.u16();

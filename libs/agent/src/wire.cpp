@@ -28,9 +28,9 @@ constexpr std::array<std::uint8_t, 10> kMessageBytes = {0, 19, 19, 8, 3, 0, 0, 2
 
 /// Sizes of orders and reports by operation.
 constexpr std::array<std::uint8_t, kOperationCount + 1> kOrderBytes = {
-    0, 12, 10, 11, 14, 11, 6, 3, 7, 10, 4, 11, 3, 2, 2, 18};
+    0, 12, 10, 11, 14, 11, 10, 3, 3, 10, 4, 11, 3, 2, 2, 18};
 constexpr std::array<std::uint8_t, kOperationCount + 1> kReportBytes = {
-    0, 13, 3, 17, 19, 2, 2, 25, 10, 10, 10, 26, 10, 21, 24, 6};
+    0, 13, 3, 17, 19, 2, 2, 17, 12, 12, 10, 26, 10, 21, 24, 6};
 
 }  // namespace
 
@@ -69,6 +69,11 @@ void Writer::u32(std::uint32_t value) {
   u16(static_cast<std::uint16_t>(value >> 16U));
 }
 
+void Writer::short_real(double value) {
+  const std::uint32_t bits = std::bit_cast<std::uint32_t>(static_cast<float>(value));
+  u16(static_cast<std::uint16_t>((bits >> 16U) + ((bits & 0xffffU) != 0 ? 1U : 0U)));
+}
+
 void Writer::real(double value) { u32(std::bit_cast<std::uint32_t>(static_cast<float>(value))); }
 
 void Writer::cell(const base::Cell& cell) {
@@ -95,6 +100,10 @@ std::uint16_t Reader::u16() {
 std::uint32_t Reader::u32() {
   const std::uint32_t low = u16();
   return low | (static_cast<std::uint32_t>(u16()) << 16U);
+}
+
+float Reader::short_real() {
+  return std::bit_cast<float>(static_cast<std::uint32_t>(u16()) << 16U);
 }
 
 float Reader::real() { return std::bit_cast<float>(u32()); }

@@ -31,7 +31,7 @@ void BasicAgent<Real>::prepare(const Order& order) {
       begin_equilibrium(order);
       break;
     case Operation::kHigh:
-      move(static_cast<double>(order.reals[0]));
+      move(order);
       break;
     case Operation::kLow:
       for (int i = 0; i < node_count(); ++i) {

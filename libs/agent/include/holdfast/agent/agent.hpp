@@ -191,7 +191,7 @@ class BasicAgent {
 
   // equilibrium.cpp: the same for the equilibrium's operations.
   void begin_equilibrium(const Order& order);
-  void move(double step);
+  void move(const Order& order);
   void start_solve(const Order& order);
   void gradient_step(const Order& order);
   void jacobi_step();
@@ -201,6 +201,7 @@ class BasicAgent {
   Report residual_report();
   Report product_report();
   Report slope_report() const;
+  Report mix_report() const;
   Report hold_report();
   double ratio_of(const MiddleLoad& load, base::Direction direction) const;
   template <class Visit>

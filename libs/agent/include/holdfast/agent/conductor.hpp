@@ -18,7 +18,7 @@
 /// solve for a correction. It serves four purposes at once: the correction may be found roughly and
 /// in single precision (iterative refinement); contact states change between solves (Newton); the
 /// unsymmetric tangent of a tilting facet is replaced by a symmetric one in the solve (defect
-/// correction, with the last two iterates mixed so that the residual is least); and the loop ends
+/// correction, the last two steps mixed [Anderson 1965]); and the loop ends
 /// by a bound on the error of every load ratio, not by a count.
 ///
 /// Contact. As in the exact solver: first the paper's law (9)-(12) by Newton's method from "all
@@ -63,6 +63,7 @@ class Conductor {
     kGradient,
     kJacobi,
     kSlope,
+    kMix,
     kCorners,
     kRelease,
     kFree,
@@ -78,7 +79,7 @@ class Conductor {
   Order after_mass(const Setup& setup, const Report& report);
   Order after_angles(const Setup& setup, const Report& report);
   Order begin_law(const Setup& setup, bool is_unilateral);
-  Order start_solve(bool adopts_states, double mix);
+  Order start_solve(bool adopts_states);
   Order after_start(const Report& report);
   Order after_gradient(const Setup& setup, const Report& report);
   Order next_gradient(double gamma, double delta);
@@ -86,7 +87,8 @@ class Conductor {
   Order after_jacobi(const Setup& setup, const Report& report);
   Order after_slope(const Report& report);
   Order end_solve();
-  Order move(double step);
+  Order move(double step, double mix = 0);
+  Order after_mix(const Report& report);
   Order judge(const Setup& setup, const Report& report);
   Order judge_regularised(const Setup& setup, const Report& report);
   Order give_up(const Setup& setup);
@@ -115,11 +117,11 @@ class Conductor {
   // Equilibrium.
   bool is_unilateral_ = false;
   bool is_tilting_ = false;
+  bool has_history_ = false;   ///< The last solve was for the same contact states.
   bool is_comparing_ = false;  ///< Open feet freed, to see whether the verdict stays.
   double gamma_ = 0;           ///< (r, z) of conjugate gradients.
-  double gamma_first_ = 0;
   double alpha_ = 0;
-  double reduction_ = 0;  ///< Wanted of a solve: gamma / gamma_first.
+  double solve_error_ = 0;  ///< A solve ends when its residual's bound is below.
   std::uint32_t solve_iterations_ = 0;
   std::uint32_t solve_iterations_max_ = 0;
   double error_ = 0;  ///< Bound on the error of load ratios at the last judgement.

@@ -45,11 +45,13 @@ struct Node {
   mechanics::ContactState wanted;  ///< That the law prescribes for u.
 
   base::Vec6<double> u{};
-  base::Vec6<double> u_last{};
   base::Vec6<double> force{};  ///< Of all beams on their module ends, at u.
   Vec r{};
-  Vec r_last{};
+  Vec r_start{};   ///< At the start of the present solve, ...
+  Vec r_before{};  ///< ... and of the one before.
   Vec g{};
+  Vec g_before{};  ///< What the solve before found.
+  Vec move{};      ///< The last change of u.
   Vec z{};
   Vec w{};
   Vec p{};

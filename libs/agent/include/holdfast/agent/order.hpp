@@ -66,6 +66,7 @@ inline constexpr std::uint8_t kAdoptStates = 1;    ///< kStart
 inline constexpr std::uint8_t kWithScalars = 2;   ///< kStart
 inline constexpr std::uint8_t kWithBlocks = 4;    ///< kStart
 inline constexpr std::uint8_t kExchangeFirst = 1;  ///< kSlope
+inline constexpr std::uint8_t kMixProducts = 2;    ///< kSlope: how to mix the last two iterates.
 inline constexpr std::uint8_t kReleaseOpen = 1;    ///< kHold
 inline constexpr std::uint8_t kFreeOpen = 2;       ///< kHold: of all open facets, for comparison.
 
