@@ -16,13 +16,6 @@ constexpr std::size_t kListedCount = 5;
 
 using Out = std::back_insert_iterator<std::string>;
 
-std::string ends(const model::Robot& robot, std::size_t connection) {
-  const model::Connection& pair = robot.connections()[connection];
-  const base::Cell& a = robot.modules()[static_cast<std::size_t>(pair.a)].cell;
-  const base::Cell& b = robot.modules()[static_cast<std::size_t>(pair.b)].cell;
-  return fmt::format("({},{},{})-({},{},{})", a.x, a.y, a.z, b.x, b.y, b.z);
-}
-
 void write_modules(Out out, const model::Robot& robot) {
   fmt::format_to(out, "  modules     {} existing, {} planned; {} on the ground, {} fixed\n",
                  robot.modules().size() - robot.planned_count(), robot.planned_count(),
@@ -63,8 +56,8 @@ void write_loads(Out out, const model::Robot& robot, const verdict::Assessment& 
   for (std::size_t i = 0; i < count; ++i) {
     const verdict::ConnectionResult& result = assessment.connections[order[i]];
     fmt::format_to(out, "  {}  {:7.4f}  {:<24} {:9.3f} N axial {:9.1f} N mm bending\n",
-                   i == 0 ? "load ratio" : "          ", result.load_ratio, ends(robot, order[i]),
-                   result.axial_n, result.bending_nmm);
+                   i == 0 ? "load ratio" : "          ", result.load_ratio,
+                   model::ends_text(robot, order[i]), result.axial_n, result.bending_nmm);
   }
   if (count > 0 && !assessment.is_stable) {
     fmt::format_to(out, "              (not meaningful: the robot topples)\n");

@@ -35,7 +35,7 @@ std::string load_text(const Scene& scene) {
     return "no connection carries 0.01 of its strength";
   }
   return fmt::format("worst connection {} at {} of its strength",
-                     ends_text(scene.robot, *assessment.worst),
+                     model::ends_text(scene.robot, *assessment.worst),
                      ratio_text(*assessment.load_ratio_max, !assessment.broken.empty()));
 }
 

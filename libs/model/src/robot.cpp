@@ -16,8 +16,6 @@ namespace {
 
 using base::Cell;
 
-std::string text(const Cell& cell) { return fmt::format("({},{},{})", cell.x, cell.y, cell.z); }
-
 std::optional<std::string> find_size_fault(const RobotSpec& spec) {
   if (spec.existing.empty()) {
     return "the robot has no existing module, at least one is needed";
@@ -199,6 +197,19 @@ void Robot::connect(const CellIndex& index) {
       }
     }
   }
+}
+
+std::array<base::Cell, 2> ends(const Robot& robot, std::size_t connection) {
+  const Connection& pair = robot.connections()[connection];
+  return {robot.modules()[static_cast<std::size_t>(pair.a)].cell,
+          robot.modules()[static_cast<std::size_t>(pair.b)].cell};
+}
+
+std::string text(const Cell& cell) { return fmt::format("({},{},{})", cell.x, cell.y, cell.z); }
+
+std::string ends_text(const Robot& robot, std::size_t connection) {
+  const auto [a, b] = ends(robot, connection);
+  return text(a) + "-" + text(b);
 }
 
 }  // namespace holdfast::model

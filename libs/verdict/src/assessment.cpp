@@ -17,16 +17,6 @@ using mechanics::ContactLaw;
 using solver::Equilibrium;
 using solver::Outcome;
 
-std::string text(const base::Cell& cell) {
-  return fmt::format("({},{},{})", cell.x, cell.y, cell.z);
-}
-
-std::string text(const model::Robot& robot, std::size_t connection) {
-  const model::Connection& pair = robot.connections()[connection];
-  return text(robot.modules()[static_cast<std::size_t>(pair.a)].cell) + "-" +
-         text(robot.modules()[static_cast<std::size_t>(pair.b)].cell);
-}
-
 /// Sec. III-C: merges what every module contributes; the order does not matter.
 ModelStability model_stability(const model::Robot& robot, const Equilibrium& equilibrium) {
   if (equilibrium.outcome != Outcome::kSettled) {
@@ -186,8 +176,8 @@ void decide_stable(const model::Robot& robot, Assessment& assessment) {
     assessment.verdict = Verdict::kOverload;
     assessment.reasons.push_back(fmt::format(
         "{} of {} connections would break; the worst, {}, carries {:.4f} of its strength",
-        assessment.broken.size(), assessment.connections.size(), text(robot, *assessment.worst),
-        ratio));
+        assessment.broken.size(), assessment.connections.size(),
+        model::ends_text(robot, *assessment.worst), ratio));
   } else if (!assessment.worst) {
     assessment.verdict = Verdict::kSafe;
     assessment.reasons.emplace_back("stable, and a single module has no connection to break");
@@ -195,7 +185,7 @@ void decide_stable(const model::Robot& robot, Assessment& assessment) {
     assessment.verdict = Verdict::kSafe;
     assessment.reasons.push_back(
         fmt::format("stable, and no connection carries more than {:.4f} of its strength ({})",
-                    ratio, text(robot, *assessment.worst)));
+                    ratio, model::ends_text(robot, *assessment.worst)));
   }
 }
 
