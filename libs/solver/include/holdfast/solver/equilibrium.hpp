@@ -88,6 +88,7 @@ class EquilibriumSolver {
   Outcome minimise(Equilibrium& result);
   bool update_held();
   double search_line(const std::vector<Vec>& from, const std::vector<Vec>& direction) const;
+  std::vector<Vec> by_module(const std::vector<Vec>& by_node) const;
   std::vector<Vec> internal_force(const std::vector<Vec>& displacement) const;
   std::vector<mechanics::ContactState> states_at(const std::vector<Vec>& displacement) const;
   bool set_states(const std::vector<mechanics::ContactState>& states);
@@ -97,6 +98,7 @@ class EquilibriumSolver {
 
   const model::Robot& robot_;
   EquilibriumOptions options_;
+  double weight_n_ = 0;  ///< Of one module.
   mechanics::BeamStiffness<double> beam_;
   mechanics::GroundFacet<double> ground_;
   std::vector<std::int32_t> node_of_module_;  ///< -1 for fixed modules
