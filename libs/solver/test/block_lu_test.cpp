@@ -94,14 +94,17 @@ class System {
         lu_(node_count_, edges_, kUnlimited),
         dense_(Eigen::MatrixXd::Zero(6 * node_count, 6 * node_count)) {
     for (std::size_t e = 0; e < edges_.size(); ++e) {
-      const Mat6<double> block = random_block(rng, 0);
-      lu_.set_edge(e, block);
-      put(edges_[e].a, edges_[e].b, block, false);
-      put(edges_[e].b, edges_[e].a, block, true);
+      set_edge(e, random_block(rng, 0));
     }
     for (std::int32_t node = 0; node < node_count; ++node) {
       set_diagonal(node, random_block(rng, 6.0 * node_count));
     }
+  }
+
+  void set_edge(std::size_t edge, const Mat6<double>& block) {
+    lu_.set_edge(edge, block);
+    put(edges_[edge].a, edges_[edge].b, block, false);
+    put(edges_[edge].b, edges_[edge].a, block, true);
   }
 
   void set_diagonal(std::int32_t node, const Mat6<double>& block) {
@@ -188,6 +191,17 @@ TEST(BlockLu, makes_again_only_what_a_changed_diagonal_touches_but_all_of_it) {
       const auto node = static_cast<std::int32_t>(rng.below(36));
       system.set_diagonal(node, random_block(rng, 100));
     }
+  }
+}
+
+TEST(BlockLu, makes_again_what_a_changed_edge_touches) {
+  base::Rng rng(10);
+  const auto edges = lattice(4, 3, 2);
+  System system(24, edges, rng);
+  for (int round = 0; round < 12; ++round) {
+    ASSERT_TRUE(system.lu().factor());
+    system.expect_solved(rng);
+    system.set_edge(rng.below(edges.size()), random_block(rng, 0));
   }
 }
 
