@@ -146,6 +146,7 @@ bool BlockLu::factor() {
   for (std::size_t k = 0; k < position_.size() && !is_singular_; ++k) {
     if (is_stale_[k]) {
       make_column(k);
+      ++made_column_count_;
       if (parent_[k] >= 0) {
         is_stale_[static_cast<std::size_t>(parent_[k])] = true;
       }

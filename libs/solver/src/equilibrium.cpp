@@ -133,28 +133,42 @@ Equilibrium EquilibriumSolver::solve(const ContactOptions& contact) {
   ground_ = mechanics::ground_facet(model::beam_section(material), material.facet_mm, contact.gamma,
                                     contact.law);
   for (Facet& facet : facets_) {
-    facet.is_held = true;
-    facet.was_released = false;
+    facet = {.module = facet.module, .state = {}};
+    set_tangent(facet);  // Always: the law may be another one than before.
   }
-  set_states(std::vector<ContactState>(facets_.size()));
+  const std::size_t made_before = lu_->made_column_count();
   result.outcome = contact.law == ContactLaw::kRegularised ? iterate_regularised(result)
                                                            : iterate_unilateral(result);
   if (result.outcome == Outcome::kSettled) {
     finish(result);
   }
+  result.made_column_count = lu_->made_column_count() - made_before;
   return result;
+}
+
+void EquilibriumSolver::set_tangent(const Facet& facet) {
+  const std::size_t node = node_index(node_of_module_[facet.module]);
+  Mat6<double> block = diagonal_[node];
+  base::add_to(block, mechanics::contact_tangent(ground_, facet.state, facet.is_held));
+  lu_->set_diagonal(node, block);
+}
+
+/// Returns whether anything differs; only then the factorization has to be made again.
+bool EquilibriumSolver::set_facet(Facet& facet, const ContactState& state, bool is_held) {
+  if (facet.state == state && facet.is_held == is_held) {
+    return false;
+  }
+  facet.state = state;
+  facet.is_held = is_held;
+  set_tangent(facet);
+  return true;
 }
 
 /// Takes over new states; returns whether any of them differs.
 bool EquilibriumSolver::set_states(const std::vector<ContactState>& states) {
   bool is_changed = false;
   for (std::size_t i = 0; i < facets_.size(); ++i) {
-    is_changed = is_changed || facets_[i].state != states[i];
-    facets_[i].state = states[i];
-    const std::size_t node = node_index(node_of_module_[facets_[i].module]);
-    Mat6<double> block = diagonal_[node];
-    base::add_to(block, mechanics::contact_tangent(ground_, facets_[i].state, facets_[i].is_held));
-    lu_->set_diagonal(node, block);
+    is_changed = set_facet(facets_[i], states[i], facets_[i].is_held) || is_changed;
   }
   return is_changed;
 }
@@ -272,19 +286,11 @@ double EquilibriumSolver::search_line(const std::vector<Vec>& from,
 /// most twice, so this says no in the end.
 bool EquilibriumSolver::update_held() {
   bool is_changed = false;
-  std::vector<ContactState> states;
   for (Facet& facet : facets_) {
-    if (!facet.state.pressed && facet.is_held && !facet.was_released) {
-      facet.is_held = false;
-      facet.was_released = true;
-      is_changed = true;
-    } else if (facet.state.pressed && !facet.is_held) {
-      facet.is_held = true;
-      is_changed = true;
-    }
-    states.push_back(facet.state);
+    const bool is_held = facet.state.pressed || (facet.is_held && facet.was_released);
+    facet.was_released = facet.was_released || !is_held;
+    is_changed = set_facet(facet, facet.state, is_held) || is_changed;
   }
-  set_states(states);
   return is_changed;
 }
 
@@ -329,7 +335,7 @@ void EquilibriumSolver::finish(Equilibrium& result) {
 /// The alternative where some facets can neither be held nor free: half open, half closed.
 void EquilibriumSolver::compare_with_free_facets(Equilibrium& result) {
   for (Facet& facet : facets_) {
-    facet.is_held = facet.is_held && facet.state.pressed;
+    set_facet(facet, facet.state, facet.is_held && facet.state.pressed);
   }
   set_states(states_at(result.displacement));
   Equilibrium free;

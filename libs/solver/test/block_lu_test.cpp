@@ -205,6 +205,20 @@ TEST(BlockLu, makes_again_what_a_changed_edge_touches) {
   }
 }
 
+/// Of two pairs, a change in one leaves the other as it is.
+TEST(BlockLu, counts_the_columns_that_it_makes) {
+  base::Rng rng(11);
+  System system(4, {{0, 1}, {2, 3}}, rng);
+  ASSERT_TRUE(system.lu().factor());
+  EXPECT_EQ(system.lu().made_column_count(), 4U);
+  ASSERT_TRUE(system.lu().factor());
+  EXPECT_EQ(system.lu().made_column_count(), 4U);
+  system.set_diagonal(0, random_block(rng, 50));
+  ASSERT_TRUE(system.lu().factor());
+  EXPECT_GE(system.lu().made_column_count(), 5U);
+  EXPECT_LE(system.lu().made_column_count(), 6U);
+}
+
 /// The same operations in the same order, so the same bits as a factorization from scratch.
 TEST(BlockLu, refactors_to_the_bits_of_a_fresh_factorization) {
   const auto edges = lattice(4, 3, 2);

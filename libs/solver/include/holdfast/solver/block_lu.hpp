@@ -47,6 +47,9 @@ class BlockLu {
   /// Returns false if a diagonal block became singular.
   [[nodiscard]] bool factor();
 
+  /// Columns that all calls of factor() have made so far.
+  std::size_t made_column_count() const { return made_column_count_; }
+
   /// Solves A x = b in place; x holds one vector per node. Needs a successful factor().
   void solve(std::span<base::Vec6<double>> x) const;
 
@@ -79,6 +82,7 @@ class BlockLu {
   std::vector<base::Mat6<double>> edge_lower_;  ///< A(i, k) of each edge, i below k
   std::vector<bool> is_stale_;                  ///< columns whose factor is out of date
   std::vector<std::size_t> slot_of_row_;        ///< scratch: row -> slot in the current column
+  std::size_t made_column_count_ = 0;
   bool is_singular_ = false;
   bool is_too_large_ = false;
 };

@@ -60,6 +60,9 @@ struct Equilibrium {
   /// and no force at once is then impossible, and the truth lies between held and free.
   int open_but_held_count = 0;
   int steps = 0;  ///< Linear systems solved.
+  /// Columns of the factorization made for them: less than steps times the modules, as a change of
+  /// some contact states leaves most of the factorization as it is.
+  std::size_t made_column_count = 0;
 };
 
 /// Solves one robot, with one law after the other if need be. The factorization's ordering and
@@ -87,6 +90,8 @@ class EquilibriumSolver {
   Outcome iterate_unilateral(Equilibrium& result);
   Outcome minimise(Equilibrium& result);
   bool update_held();
+  void set_tangent(const Facet& facet);
+  bool set_facet(Facet& facet, const mechanics::ContactState& state, bool is_held);
   double search_line(const std::vector<Vec>& from, const std::vector<Vec>& direction) const;
   std::vector<Vec> by_module(const std::vector<Vec>& by_node) const;
   std::vector<Vec> internal_force(const std::vector<Vec>& displacement) const;
