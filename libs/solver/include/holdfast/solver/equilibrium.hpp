@@ -19,10 +19,13 @@
 /// - kRegularised: Newton's method from "all stuck", that is, repeat until nothing changes. Settles
 ///   in 1 to 5 steps on most robots, cycles on some, and some have no consistent states at all.
 /// - kUnilateral: the equilibrium minimises a convex function, once differentiable and piecewise
-///   quadratic, so Newton's method with an exact line search always arrives, in finitely many
-///   steps. Its own non-convex part, that an open facet loses its hold sideways, is an outer loop:
-///   solve with all facets held, release the open ones, solve again. A facet that would be pressed
-///   again is held again for good, so the loop ends.
+///   quadratic. For a robot that stands, and in exact arithmetic, Newton's method with an exact
+///   line search arrives in finitely many steps. A robot that topples has a minimum only by the
+///   weak springs, and the weaker these are the more rounding blurs its contact states; what has
+///   not settled after `step_count_max` steps is kNotSettled. The problem's own non-convex part,
+///   that an open facet loses its hold sideways, is an outer loop: solve with all facets held,
+///   release the open ones, solve again. A facet that would be pressed again is held again for
+///   good, so that loop ends.
 namespace holdfast::solver {
 
 struct EquilibriumOptions {
