@@ -121,10 +121,11 @@ std::optional<std::string> find_support_fault(const Robot& robot) {
     const std::int32_t below = robot.neighbours()[i][base::index(base::Direction::kMinusZ)];
     if (robot.modules()[i].support == Support::kGround && below != Robot::kNoNeighbour) {
       return fmt::format(
-          "the module {} lies under {}, which rests on the support level z = {}; "
-          "allowed below that level is only what hangs beside it",
+          "the module {} is directly below {}, which rests on the ground at the support level "
+          "z = {}; allowed below that level is only what hangs from a fixed module: lower the "
+          "support level or fix {}",
           text(robot.modules()[static_cast<std::size_t>(below)].cell),
-          text(robot.modules()[i].cell), robot.support_z());
+          text(robot.modules()[i].cell), robot.support_z(), text(robot.modules()[i].cell));
     }
   }
   return std::nullopt;

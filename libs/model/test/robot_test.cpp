@@ -212,8 +212,10 @@ TEST(Robot, is_held_by_the_ground_or_a_fixed_module) {
 
 TEST(Robot, has_nothing_beneath_its_feet) {
   expect_error({.existing = {{0, 0, 0}, {0, 0, -1}}},
-               {"(0,0,-1)", "under (0,0,0)", "support level z = 0"});
-  expect_error({.existing = {{0, 0, 0}}, .planned = {{0, 0, -1}}}, {"(0,0,-1)", "under (0,0,0)"});
+               {"module (0,0,-1) is directly below (0,0,0)", "rests on the ground",
+                "support level z = 0", "allowed", "hangs from a fixed module"});
+  expect_error({.existing = {{0, 0, 0}}, .planned = {{0, 0, -1}}},
+               {"module (0,0,-1) is directly below (0,0,0)"});
 }
 
 TEST(Robot, names_the_ends_of_a_connection) {
