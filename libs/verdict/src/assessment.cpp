@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "holdfast/mechanics/connector.hpp"
 #include "holdfast/mechanics/support_corners.hpp"
@@ -53,6 +54,11 @@ ConnectionResult connection_result(const model::Material& material, base::Direct
       .torsion_nmm = middle[5]};
 }
 
+/// Unlike with std::max, a NaN on either side wins: what is not known must not hide.
+double max_or_nan(double a, double b) { return std::isnan(a) || a > b ? a : b; }
+
+bool is_nan(const LoadRange& range) { return std::isnan(range.low) || std::isnan(range.high); }
+
 /// Sec. III-D for every connection.
 void assess_connections(const model::Robot& robot, Assessment& assessment) {
   const model::Material& material = robot.material();
@@ -73,8 +79,8 @@ void assess_connections(const model::Robot& robot, Assessment& assessment) {
     assessment.connections.push_back(result);
     const auto [low, high] = std::minmax(result.load_ratio, other_ratio);
     LoadRange& range = assessment.load_ratio_range;
-    range.low = i == 0 ? low : std::max(range.low, low);
-    range.high = i == 0 ? high : std::max(range.high, high);
+    range.low = i == 0 ? low : max_or_nan(range.low, low);
+    range.high = i == 0 ? high : max_or_nan(range.high, high);
     if (!assessment.worst || result.load_ratio > *assessment.load_ratio_max) {
       assessment.worst = i;
       assessment.load_ratio_max = result.load_ratio;
@@ -85,6 +91,10 @@ void assess_connections(const model::Robot& robot, Assessment& assessment) {
   }
   std::ranges::stable_sort(assessment.broken, std::greater<>(),
                            [&](std::size_t i) { return assessment.connections[i].load_ratio; });
+  if (is_nan(assessment.load_ratio_range)) {
+    assessment.worst.reset();
+    assessment.load_ratio_max.reset();
+  }
   if (assessment.worst && *assessment.load_ratio_max > 0) {
     assessment.weight_factor = 1 / *assessment.load_ratio_max;
   }
@@ -104,6 +114,13 @@ bool agrees(const Assessment& assessment) {
   return assessment.model.is_settled && assessment.model.is_stable == assessment.is_stable;
 }
 
+ContactModel contact_model(const model::Robot& robot, ContactLaw law) {
+  if (robot.ground_count() == 0) {
+    return ContactModel::kNone;
+  }
+  return law == ContactLaw::kUnilateral ? ContactModel::kUnilateral : ContactModel::kRegularised;
+}
+
 /// The paper's contact law first; the exact one where it has no answer or one that contradicts the
 /// rigid body, which is certain on flat ground.
 void find_equilibrium(const model::Robot& robot, const solver::EquilibriumOptions& options,
@@ -112,8 +129,7 @@ void find_equilibrium(const model::Robot& robot, const solver::EquilibriumOption
   assessment.equilibrium =
       solver.solve({.law = ContactLaw::kRegularised, .gamma = robot.material().contact_gamma});
   assessment.model = model_stability(robot, assessment.equilibrium);
-  assessment.contact_model =
-      robot.ground_count() > 0 ? ContactModel::kRegularised : ContactModel::kNone;
+  assessment.contact_model = contact_model(robot, ContactLaw::kRegularised);
   if (assessment.equilibrium.outcome == Outcome::kTooLarge || robot.ground_count() == 0) {
     return;
   }
@@ -167,7 +183,11 @@ void decide_stable(const model::Robot& robot, Assessment& assessment) {
   const double ratio = assessment.load_ratio_max.value_or(0);
   const LoadRange& range = assessment.load_ratio_range;
   const bool is_broken = breaks(range.low);
-  if (!std::isfinite(range.low) || !std::isfinite(range.high) || breaks(range.high) != is_broken) {
+  if (is_nan(range)) {
+    assessment.reasons.emplace_back(
+        "stable, but the load of a connection is not a number, so the largest is not known");
+  } else if (!std::isfinite(range.low) || !std::isfinite(range.high) ||
+             breaks(range.high) != is_broken) {
     assessment.reasons.push_back(
         fmt::format("stable, but the largest load ratio is only known to lie between {:.9g} and "
                     "{:.9g}",
@@ -209,13 +229,15 @@ void add_contact_remarks(Assessment& assessment) {
   }
 }
 
-}  // namespace
-
-Assessment assess(const model::Robot& robot, const solver::EquilibriumOptions& options) {
+Assessment begin(const model::Robot& robot) {
   Assessment assessment;
   assessment.simplified = assess_rigid_body(robot);
   assessment.is_stable = assessment.simplified.is_stable;
-  find_equilibrium(robot, options, assessment);
+  return assessment;
+}
+
+/// Loads, verdict and reasons, once there is an equilibrium.
+Assessment conclude(const model::Robot& robot, Assessment assessment) {
   if (assessment.equilibrium.outcome == Outcome::kSettled) {
     assess_connections(robot, assessment);
   }
@@ -227,6 +249,22 @@ Assessment assess(const model::Robot& robot, const solver::EquilibriumOptions& o
   }
   add_contact_remarks(assessment);
   return assessment;
+}
+
+}  // namespace
+
+Assessment assess(const model::Robot& robot, const solver::EquilibriumOptions& options) {
+  Assessment assessment = begin(robot);
+  find_equilibrium(robot, options, assessment);
+  return conclude(robot, std::move(assessment));
+}
+
+Assessment assess_equilibrium(const model::Robot& robot, Equilibrium equilibrium) {
+  Assessment assessment = begin(robot);
+  assessment.equilibrium = std::move(equilibrium);
+  assessment.model = model_stability(robot, assessment.equilibrium);
+  assessment.contact_model = contact_model(robot, assessment.equilibrium.law);
+  return conclude(robot, std::move(assessment));
 }
 
 const char* name(Verdict verdict) {

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <limits>
 
 namespace holdfast::verdict {
 namespace {
@@ -140,6 +141,39 @@ TEST(Assessment, is_undecided_when_the_memory_does_not_suffice) {
   EXPECT_NE(stable.reasons.front().find("memory"), std::string::npos);
   EXPECT_FALSE(stable.load_ratio_max.has_value());
   EXPECT_EQ(assess_spec(arm(4), tiny).verdict, Verdict::kUnstable);
+}
+
+/// A load that is not a number must not hide behind those that are, wherever it stands.
+TEST(Assessment, is_undecided_when_a_load_is_not_a_number) {
+  const auto robot = model::Robot::create(hanging_chain(4)).value();
+  const solver::Equilibrium sound = solver::EquilibriumSolver(robot).solve({});
+  EXPECT_EQ(assess_equilibrium(robot, sound).verdict, Verdict::kSafe);
+  for (const auto displacement :
+       {&solver::Equilibrium::displacement, &solver::Equilibrium::alternative}) {
+    for (std::size_t module = 0; module < robot.modules().size(); ++module) {
+      for (const std::size_t component : {2U, 3U, 4U}) {  // uz pulls, tx and ty bend.
+        solver::Equilibrium spoilt = sound;
+        (spoilt.*displacement)[module][component] = std::numeric_limits<double>::quiet_NaN();
+        const Assessment assessment = assess_equilibrium(robot, spoilt);
+        EXPECT_EQ(assessment.verdict, Verdict::kUndecided) << module << ", " << component;
+        EXPECT_NE(assessment.reasons.front().find("not a number"), std::string::npos);
+        EXPECT_FALSE(assessment.load_ratio_max.has_value());
+        EXPECT_FALSE(assessment.worst.has_value());
+        EXPECT_FALSE(assessment.weight_factor.has_value());
+      }
+    }
+  }
+}
+
+TEST(Assessment, of_an_equilibrium_is_that_of_the_robot) {
+  const auto robot = model::Robot::create(arm(3)).value();
+  const Assessment whole = assess(robot);
+  const Assessment assessment = assess_equilibrium(robot, whole.equilibrium);
+  EXPECT_EQ(assessment.verdict, whole.verdict);
+  EXPECT_EQ(assessment.reasons, whole.reasons);
+  EXPECT_EQ(assessment.load_ratio_max, whole.load_ratio_max);
+  EXPECT_EQ(assessment.contact_model, whole.contact_model);
+  EXPECT_EQ(assessment.model.is_stable, whole.model.is_stable);
 }
 
 TEST(Assessment, does_not_depend_on_the_order_of_modules) {

@@ -59,9 +59,9 @@ struct Assessment {
 
   /// Per connection of the robot; empty if no equilibrium was found. Not meaningful if unstable.
   std::vector<ConnectionResult> connections;
-  std::optional<double> load_ratio_max;
-  std::optional<std::size_t> worst;  ///< Index of the connection with load_ratio_max.
-  std::vector<std::size_t> broken;   ///< Indices of connections at 1 or more, worst first.
+  std::optional<double> load_ratio_max;  ///< None without connections or if one is not a number.
+  std::optional<std::size_t> worst;      ///< Index of the connection with load_ratio_max.
+  std::vector<std::size_t> broken;       ///< Indices of connections at 1 or more, worst first.
   /// The weight could grow by this factor before the first connection breaks; none if no
   /// connection is ever pulled apart.
   std::optional<double> weight_factor;
@@ -75,6 +75,9 @@ struct Assessment {
 inline constexpr double kLoadRatioTie = 1e-9;
 
 Assessment assess(const model::Robot& robot, const solver::EquilibriumOptions& options = {});
+
+/// The same for an equilibrium that is already there, whoever found it.
+Assessment assess_equilibrium(const model::Robot& robot, solver::Equilibrium equilibrium);
 
 /// "safe", "overload", "unstable", "undecided".
 const char* name(Verdict verdict);
