@@ -52,6 +52,10 @@ double rank(const verdict::ConnectionResult& result) {
 }
 
 void write_loads(Out out, const model::Robot& robot, const verdict::Assessment& assessment) {
+  if (assessment.load_ratio_max && !assessment.worst) {
+    fmt::format_to(out, "  load ratio  no connection is pulled apart\n");
+    return;
+  }
   std::vector<std::size_t> order(assessment.connections.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   const std::size_t count = std::min(kListedCount, order.size());

@@ -28,8 +28,11 @@ std::string stability_text(const verdict::RigidBody& body) {
 
 std::string load_text(const Scene& scene) {
   const verdict::Assessment& assessment = scene.assessment;
-  if (!assessment.worst || !assessment.load_ratio_max) {
+  if (!assessment.load_ratio_max) {
     return "no connection that could break";
+  }
+  if (!assessment.worst) {
+    return "no connection is pulled apart";
   }
   if (*assessment.load_ratio_max < kNoLoad) {
     return "no connection carries 0.01 of its strength";

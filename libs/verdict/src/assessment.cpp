@@ -95,7 +95,10 @@ void assess_connections(const model::Robot& robot, Assessment& assessment) {
     assessment.worst.reset();
     assessment.load_ratio_max.reset();
   }
-  if (assessment.worst && *assessment.load_ratio_max > 0) {
+  if (assessment.worst && *assessment.load_ratio_max < kLoadRatioTie) {
+    assessment.worst.reset();
+  }
+  if (assessment.worst) {
     assessment.weight_factor = 1 / *assessment.load_ratio_max;
   }
 }
@@ -198,9 +201,12 @@ void decide_stable(const model::Robot& robot, Assessment& assessment) {
         "{} of {} connections would break; the worst, {}, carries {:.4f} of its strength",
         assessment.broken.size(), assessment.connections.size(),
         model::ends_text(robot, *assessment.worst), ratio));
-  } else if (!assessment.worst) {
+  } else if (assessment.connections.empty()) {
     assessment.verdict = Verdict::kSafe;
     assessment.reasons.emplace_back("stable, and a single module has no connection to break");
+  } else if (!assessment.worst) {
+    assessment.verdict = Verdict::kSafe;
+    assessment.reasons.emplace_back("stable, and no connection is pulled apart");
   } else {
     assessment.verdict = Verdict::kSafe;
     assessment.reasons.push_back(

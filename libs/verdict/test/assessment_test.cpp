@@ -124,6 +124,30 @@ TEST(Assessment, is_safe_for_a_single_module) {
   EXPECT_TRUE(assessment.connections.empty());
 }
 
+/// A free column presses on every connection; a plate on the ground leaves them nothing but
+/// rounding. Neither has a worst connection, nor a weight at which it breaks.
+TEST(Assessment, has_no_worst_connection_where_none_is_pulled_apart) {
+  const model::RobotSpec column{.existing = {{0, 0, 0}, {0, 0, 1}, {0, 0, 2}}};
+  const model::RobotSpec plate{.existing = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}}};
+  for (const model::RobotSpec& spec : {column, plate}) {
+    const Assessment assessment = assess_spec(spec);
+    EXPECT_EQ(assessment.verdict, Verdict::kSafe);
+    EXPECT_LT(*assessment.load_ratio_max, kLoadRatioTie);
+    EXPECT_FALSE(assessment.worst.has_value());
+    EXPECT_FALSE(assessment.weight_factor.has_value());
+    EXPECT_EQ(assessment.reasons.front(), "stable, and no connection is pulled apart");
+  }
+}
+
+/// Down to a billionth of the strength a load counts: a chain of one that holds a billion.
+TEST(Assessment, knows_the_worst_connection_of_small_loads) {
+  model::RobotSpec spec = hanging_chain(1);
+  spec.material.strength_vertical_n = kWeight * 0.99e9;
+  EXPECT_NEAR(*assess_spec(spec).weight_factor, 0.99e9, 1);
+  spec.material.strength_vertical_n = kWeight * 1.01e9;
+  EXPECT_FALSE(assess_spec(spec).weight_factor.has_value());
+}
+
 TEST(Assessment, scales_loads_with_the_weight_but_not_the_stability) {
   model::RobotSpec spec = arm(3);
   const Assessment light = assess_spec(spec);
