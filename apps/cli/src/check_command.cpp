@@ -9,7 +9,6 @@
 #include <memory>
 
 #include "commands.hpp"
-#include "holdfast/holdfast.hpp"
 
 namespace holdfast::cli {
 namespace {
@@ -115,7 +114,7 @@ class CheckRun {
 
   void report_error(const base::Error& error, const std::string& file) {
     ++bad_count_;
-    fmt::print(stderr, "holdfast: {}\n", describe(error, file));
+    print_error(error, file);
     if (!options_.json.empty()) {
       reports_.push_back(error_json(error, file));
     }
@@ -124,7 +123,7 @@ class CheckRun {
   void write(const std::string& path, const std::string& text) {
     if (const auto error = write_file(path, text)) {
       ++bad_count_;
-      fmt::print(stderr, "holdfast: {}\n", describe(*error, path));
+      print_error(*error, path);
     }
   }
 
@@ -190,16 +189,14 @@ Command add_check(CLI::App& app) {
   auto options = std::make_shared<Options>();
   CLI::App* command = app.add_subcommand(
       "check", "Say whether a structure holds with its planned modules attached");
-  command
-      ->add_option("FILE", options->files,
-                   "Structures, VisibleSim XML or holdfast JSON; - is standard input")
-      ->type_name("")
-      ->required();
-  command
-      ->add_option("--json", options->json, "Write the whole report as JSON; - is standard output")
-      ->type_name("FILE");
-  command->add_option("--svg", options->svg, "Draw the structure and its loads")->type_name("FILE");
-  command->add_option("--vtk", options->vtk, "Write a .vtu file for ParaView")->type_name("FILE");
+  add_required(*command, "FILE", options->files,
+               "Structures, VisibleSim XML or holdfast JSON; - is standard input");
+  const auto add_output = [&](const char* name, std::string& path, const char* help) {
+    command->add_option(name, path, help)->type_name("FILE");
+  };
+  add_output("--json", options->json, "Write the whole report as JSON; - is standard output");
+  add_output("--svg", options->svg, "Draw the structure and its loads");
+  add_output("--vtk", options->vtk, "Write a .vtu file for ParaView");
   command->add_flag("--quiet", options->is_quiet, "Print errors only; the exit code is the answer");
   command->footer(
       "Verdicts: safe, overload (a connection breaks), unstable (topples), undecided.\n"

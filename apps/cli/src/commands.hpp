@@ -2,8 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
 #include <functional>
+#include <string>
+
+#include "holdfast/holdfast.hpp"
 
 /// The commands of the program. Each adds itself to the app and returns what to run if it is used;
 /// that returns the exit code.
@@ -23,5 +28,17 @@ struct Command {
 
 Command add_check(CLI::App& app);
 Command add_convert(CLI::App& app);
+
+/// A file, or files, that must be given. The help shows no type beside the name.
+template <class Value>
+void add_required(CLI::App& command, const std::string& name, Value& value,
+                  const std::string& help) {
+  command.add_option(name, value, help)->type_name("")->required();
+}
+
+/// The one form of an error on the terminal.
+inline void print_error(const base::Error& error, const std::string& file) {
+  fmt::print(stderr, "holdfast: {}\n", describe(error, file));
+}
 
 }  // namespace holdfast::cli

@@ -5,7 +5,6 @@
 #include <memory>
 
 #include "commands.hpp"
-#include "holdfast/holdfast.hpp"
 
 namespace holdfast::cli {
 namespace {
@@ -16,7 +15,7 @@ struct Options {
 };
 
 int fail(const base::Error& error, const std::string& file) {
-  fmt::print(stderr, "holdfast: {}\n", describe(error, file));
+  print_error(error, file);
   return kExitBadInput;
 }
 
@@ -52,13 +51,9 @@ Command add_convert(CLI::App& app) {
   auto options = std::make_shared<Options>();
   CLI::App* command = app.add_subcommand(
       "convert", "Convert a structure between VisibleSim XML and holdfast JSON, without loss");
-  command
-      ->add_option("FROM", options->from, "Structure to read, either format; - is standard input")
-      ->type_name("")
-      ->required();
-  command->add_option("TO", options->to, "File to write; .xml or .json says the format")
-      ->type_name("")
-      ->required();
+  add_required(*command, "FROM", options->from,
+               "Structure to read, either format; - is standard input");
+  add_required(*command, "TO", options->to, "File to write; .xml or .json says the format");
   command->footer(
       "Kept are modules, planned steps, parameters, colours and all of VisibleSim's own "
       "attributes;\nnot kept are comments and the layout of the text.\n"

@@ -21,6 +21,19 @@ std::string describe(const Json& value) {
   return value.is_structured() ? fmt::format("an {}", value.type_name()) : value.dump();
 }
 
+/// The value as a T of the tree, or a failure and an empty T.
+template <class T>
+const T& take(JsonReading& reading, const Json& value, const Place& place,
+              std::string_view expected) {
+  static const T kNone{};
+  const auto* found = value.get_ptr<const T*>();
+  if (found == nullptr) {
+    reading.refuse(value, place, expected);
+    return kNone;
+  }
+  return *found;
+}
+
 }  // namespace
 
 std::string Place::pointer() const {
@@ -49,43 +62,23 @@ void JsonReading::warn_unknown(const Place& place) {
 }
 
 const Json::object_t& JsonReading::members(const Json& value, const Place& place) {
-  static const Json::object_t kNone;
-  const auto* object = value.get_ptr<const Json::object_t*>();
-  if (object == nullptr) {
-    refuse(value, place, "an object");
-    return kNone;
-  }
-  return *object;
+  return take<Json::object_t>(*this, value, place, "an object");
 }
 
 const Json::array_t& JsonReading::elements(const Json& value, const Place& place) {
-  static const Json::array_t kNone;
-  const auto* array = value.get_ptr<const Json::array_t*>();
-  if (array == nullptr) {
-    refuse(value, place, "an array");
-    return kNone;
-  }
-  return *array;
+  return take<Json::array_t>(*this, value, place, "an array");
 }
 
 std::string JsonReading::string(const Json& value, const Place& place) {
-  const auto* text = value.get_ptr<const std::string*>();
-  if (text == nullptr) {
-    refuse(value, place, "a string");
-    return {};
-  }
-  if (const auto fault = find_string_fault(*text)) {
+  const auto& text = take<Json::string_t>(*this, value, place, "a string");
+  if (const auto fault = find_string_fault(text)) {
     fail(place, fmt::format("the string {}", *fault));
   }
-  return *text;
+  return text;
 }
 
 bool JsonReading::boolean(const Json& value, const Place& place) {
-  if (!value.is_boolean()) {
-    refuse(value, place, "true or false");
-    return false;
-  }
-  return value.get<bool>();
+  return take<Json::boolean_t>(*this, value, place, "true or false");
 }
 
 double JsonReading::number(const Json& value, const Place& place) {

@@ -18,11 +18,9 @@ Json or_null(const std::optional<T>& value) {
   return value ? Json(*value) : Json();
 }
 
-/// The two cells of a connection.
-Json ends(const model::Robot& robot, std::size_t connection) {
-  const model::Connection& pair = robot.connections()[connection];
-  return Json::array({to_json(robot.modules()[static_cast<std::size_t>(pair.a)].cell),
-                      to_json(robot.modules()[static_cast<std::size_t>(pair.b)].cell)});
+Json ends_json(const model::Robot& robot, std::size_t connection) {
+  const auto [a, b] = model::ends(robot, connection);
+  return Json::array({to_json(a), to_json(b)});
 }
 
 Json stability_json(const verdict::Assessment& assessment) {
@@ -45,7 +43,7 @@ Json stability_json(const verdict::Assessment& assessment) {
 Json overload_json(const model::Robot& robot, const verdict::Assessment& assessment) {
   Json broken = Json::array();
   for (const std::size_t connection : assessment.broken) {
-    broken.push_back(ends(robot, connection));
+    broken.push_back(ends_json(robot, connection));
   }
   Json range;
   if (assessment.load_ratio_max) {
@@ -54,7 +52,7 @@ Json overload_json(const model::Robot& robot, const verdict::Assessment& assessm
   return {{"meaningful", assessment.is_stable && assessment.load_ratio_max.has_value()},
           {"load_ratio_max", or_null(assessment.load_ratio_max)},
           {"load_ratio_range", range},
-          {"at", assessment.worst ? ends(robot, *assessment.worst) : Json()},
+          {"at", assessment.worst ? ends_json(robot, *assessment.worst) : Json()},
           {"broken", broken},
           {"weight_factor", or_null(assessment.weight_factor)}};
 }
@@ -63,9 +61,9 @@ Json connections_json(const model::Robot& robot, const verdict::Assessment& asse
   Json list = Json::array();
   for (std::size_t i = 0; i < assessment.connections.size(); ++i) {
     const verdict::ConnectionResult& result = assessment.connections[i];
-    const Json cells = ends(robot, i);
-    list.push_back({{"a", cells[0]},
-                    {"b", cells[1]},
+    const auto [a, b] = model::ends(robot, i);
+    list.push_back({{"a", to_json(a)},
+                    {"b", to_json(b)},
                     {"load_ratio", result.load_ratio},
                     {"axial_n", result.axial_n},
                     {"bending_nmm", result.bending_nmm},

@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
+#include <limits>
 #include <numeric>
 
 #include "holdfast/io/report.hpp"
@@ -15,13 +17,6 @@ namespace {
 constexpr std::size_t kListedCount = 5;
 
 using Out = std::back_insert_iterator<std::string>;
-
-std::string ends(const model::Robot& robot, std::size_t connection) {
-  const model::Connection& pair = robot.connections()[connection];
-  const base::Cell& a = robot.modules()[static_cast<std::size_t>(pair.a)].cell;
-  const base::Cell& b = robot.modules()[static_cast<std::size_t>(pair.b)].cell;
-  return fmt::format("({},{},{})-({},{},{})", a.x, a.y, a.z, b.x, b.y, b.z);
-}
 
 void write_modules(Out out, const model::Robot& robot) {
   fmt::format_to(out, "  modules     {} existing, {} planned; {} on the ground, {} fixed\n",
@@ -50,21 +45,31 @@ void write_stability(Out out, const verdict::Assessment& assessment) {
   }
 }
 
+/// For sorting: what is not a number comes first.
+double rank(const verdict::ConnectionResult& result) {
+  return std::isnan(result.load_ratio) ? std::numeric_limits<double>::infinity()
+                                       : result.load_ratio;
+}
+
 void write_loads(Out out, const model::Robot& robot, const verdict::Assessment& assessment) {
+  if (assessment.load_ratio_max && !assessment.worst) {
+    fmt::format_to(out, "  load ratio  no connection is pulled apart\n");
+    return;
+  }
   std::vector<std::size_t> order(assessment.connections.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   const std::size_t count = std::min(kListedCount, order.size());
   std::partial_sort(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(count), order.end(),
                     [&](std::size_t a, std::size_t b) {
-                      const double ratio_a = assessment.connections[a].load_ratio;
-                      const double ratio_b = assessment.connections[b].load_ratio;
+                      const double ratio_a = rank(assessment.connections[a]);
+                      const double ratio_b = rank(assessment.connections[b]);
                       return ratio_a != ratio_b ? ratio_a > ratio_b : a < b;
                     });
   for (std::size_t i = 0; i < count; ++i) {
     const verdict::ConnectionResult& result = assessment.connections[order[i]];
-    fmt::format_to(out, "  {}  {:7.4f}  {:<24} {:9.3f} N axial {:9.1f} N mm bending\n",
-                   i == 0 ? "load ratio" : "          ", result.load_ratio, ends(robot, order[i]),
-                   result.axial_n, result.bending_nmm);
+    fmt::format_to(out, "  {}  {:>7.4f}  {:<24} {:9.3f} N axial {:9.1f} N mm bending\n",
+                   i == 0 ? "load ratio" : "          ", result.load_ratio,
+                   model::ends_text(robot, order[i]), result.axial_n, result.bending_nmm);
   }
   if (count > 0 && !assessment.is_stable) {
     fmt::format_to(out, "              (not meaningful: the robot topples)\n");

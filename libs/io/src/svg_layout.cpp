@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "svg_layout.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <limits>
 
@@ -170,13 +168,6 @@ double Scene::covered_share(const Box& box) const {
     }
   }
   return static_cast<double>(covered) / ((kColumns + 1) * (kRows + 1));
-}
-
-std::string ends_text(const model::Robot& robot, std::size_t connection) {
-  const model::Connection& pair = robot.connections()[connection];
-  const base::Cell& a = robot.modules()[static_cast<std::size_t>(pair.a)].cell;
-  const base::Cell& b = robot.modules()[static_cast<std::size_t>(pair.b)].cell;
-  return fmt::format("({},{},{})-({},{},{})", a.x, a.y, a.z, b.x, b.y, b.z);
 }
 
 }  // namespace holdfast::io

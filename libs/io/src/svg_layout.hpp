@@ -3,7 +3,6 @@
 #pragma once
 
 #include <optional>
-#include <string>
 #include <utility>
 #include <vector>
 
@@ -95,8 +94,5 @@ struct Scene {
 
   bool is_detailed() const { return robot.modules().size() <= kDetailedCountMax; }
 };
-
-/// The ends of the connection, "(2,1,2)-(3,1,2)".
-std::string ends_text(const model::Robot& robot, std::size_t connection);
 
 }  // namespace holdfast::io

@@ -28,14 +28,17 @@ std::string stability_text(const verdict::RigidBody& body) {
 
 std::string load_text(const Scene& scene) {
   const verdict::Assessment& assessment = scene.assessment;
-  if (!assessment.worst || !assessment.load_ratio_max) {
+  if (!assessment.load_ratio_max) {
     return "no connection that could break";
+  }
+  if (!assessment.worst) {
+    return "no connection is pulled apart";
   }
   if (*assessment.load_ratio_max < kNoLoad) {
     return "no connection carries 0.01 of its strength";
   }
   return fmt::format("worst connection {} at {} of its strength",
-                     ends_text(scene.robot, *assessment.worst),
+                     model::ends_text(scene.robot, *assessment.worst),
                      ratio_text(*assessment.load_ratio_max, !assessment.broken.empty()));
 }
 
@@ -53,6 +56,10 @@ std::string text_element(ScreenPoint at, double font, std::string_view attribute
                      number(at.y), number(font), attributes, escape(text));
 }
 
+std::string legend_text(ScreenPoint at, std::string_view text) {
+  return text_element(at, kLegendFont, fmt::format("fill=\"{}\"", kInk), text);
+}
+
 std::string swatch(ScreenPoint at, std::string_view attributes) {
   return fmt::format("<rect x=\"{}\" y=\"{}\" width=\"14\" height=\"14\" rx=\"2\" {}/>\n",
                      number(at.x), number(at.y), attributes);
@@ -64,11 +71,16 @@ struct Entry {
   std::function<std::string(ScreenPoint)> draw;  ///< Given the sign's upper left corner.
 };
 
-Entry color_entry(std::string label, Color color) {
-  return {.label = std::move(label), .draw = [color](ScreenPoint at) {
-            return swatch(at, fmt::format("fill=\"{}\" stroke=\"{}\" stroke-width=\"0.8\"",
-                                          hex(color), kInk));
+Entry swatch_entry(std::string label, std::string attributes) {
+  return {.label = std::move(label), .draw = [attributes = std::move(attributes)](ScreenPoint at) {
+            return swatch(at, attributes);
           }};
+}
+
+Entry color_entry(std::string label, Color color) {
+  return swatch_entry(
+      std::move(label),
+      fmt::format("fill=\"{}\" stroke=\"{}\" stroke-width=\"0.8\"", hex(color), kInk));
 }
 
 bool has_meaning(const Scene& scene, Meaning meaning) {
@@ -77,11 +89,10 @@ bool has_meaning(const Scene& scene, Meaning meaning) {
 }
 
 Entry planned_entry() {
-  return {.label = "planned module", .draw = [](ScreenPoint at) {
-            return swatch(at, fmt::format("fill=\"#b9bfc4\" fill-opacity=\"0.35\" stroke=\"{}\" "
-                                          "stroke-width=\"1.3\" stroke-dasharray=\"2.8 2.2\"",
-                                          kInk));
-          }};
+  return swatch_entry("planned module",
+                      fmt::format("fill=\"#b9bfc4\" fill-opacity=\"0.35\" stroke=\"{}\" "
+                                  "stroke-width=\"1.3\" stroke-dasharray=\"2.8 2.2\"",
+                                  kInk));
 }
 
 Entry polygon_entry() {
@@ -157,8 +168,7 @@ double draw_entries(const std::vector<Entry>& list, ScreenPoint start, double ri
       at = {start.x, at.y + kRowHeight};
     }
     out += entry.draw(at);
-    out += text_element({at.x + 22, at.y + 11.5}, kLegendFont, fmt::format("fill=\"{}\"", kInk),
-                        entry.label);
+    out += legend_text({at.x + 22, at.y + 11.5}, entry.label);
     at.x += width + 24;
   }
   return at.y + kRowHeight;
@@ -213,8 +223,7 @@ Legend draw_legend(const Scene& scene) {
   double left = kCardMargin;
   double bottom = top;
   if (has_meaning(scene, Meaning::kLoad)) {
-    out += text_element({left, top + 16}, kLegendFont, fmt::format("fill=\"{}\"", kInk),
-                        "share of the connection's strength");
+    out += legend_text({left, top + 16}, "share of the connection's strength");
     out += draw_bar({left, top + 24});
     left += kBarWidth + 42;
     bottom = top + 64;

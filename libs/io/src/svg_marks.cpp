@@ -22,9 +22,8 @@ struct SharedFace {
 };
 
 SharedFace shared_face(const Scene& scene, std::size_t connection) {
-  const model::Connection& pair = scene.robot.connections()[connection];
-  const base::Cell& cell = scene.robot.modules()[static_cast<std::size_t>(pair.a)].cell;
-  const int axis = base::index(pair.direction) / 2;
+  const base::Cell cell = model::ends(scene.robot, connection)[0];
+  const int axis = base::index(scene.robot.connections()[connection].direction) / 2;
   const auto at = [&](double along, double first, double second) {
     std::array<double, 3> offset{};
     offset[static_cast<std::size_t>(axis)] = along;
@@ -33,7 +32,6 @@ SharedFace shared_face(const Scene& scene, std::size_t connection) {
     return scene.projection.at(
         LatticePoint{cell.x + offset[0], cell.y + offset[1], cell.z + offset[2]});
   };
-  // `a` has the smaller coordinate.
   return {
       .centre = at(0.5, 0, 0),
       .corners = {at(0.5, -0.5, -0.5), at(0.5, 0.5, -0.5), at(0.5, 0.5, 0.5), at(0.5, -0.5, 0.5)}};

@@ -33,7 +33,7 @@ Widths widths(const Scene& scene) {
 std::string tooltip(const Scene& scene, std::size_t module) {
   const auto& [cell, support, is_planned] = scene.robot.modules()[module];
   const ModulePaint& paint = scene.paints[module];
-  std::string text = fmt::format("({},{},{})", cell.x, cell.y, cell.z);
+  std::string text = model::text(cell);
   if (is_planned) {
     text += ", planned";
   }

@@ -10,11 +10,13 @@
 #include <memory>
 #include <string>
 
+#include "document_support.hpp"
 #include "holdfast/base/rng.hpp"
-#include "holdfast/io/document.hpp"
 
 namespace holdfast::io {
 namespace {
+
+using document_test::json;
 
 struct BadInput {
   std::string text;
@@ -50,10 +52,6 @@ std::string repeated(std::string_view unit, std::size_t count) {
 std::string xml(std::string_view blocks) {
   return "<parameters/>\n<world gridSize=\"1000,1000,1000\"><blockList>\n" + std::string(blocks) +
          "</blockList></world>";
-}
-
-std::string json(std::string_view members) {
-  return "{\"format\": \"holdfast-structure\", \"version\": 1, " + std::string(members) + "}";
 }
 
 TEST(BadInput, without_a_structure_is_refused) {

@@ -9,32 +9,24 @@
 #include <iterator>
 #include <string>
 
-#include "holdfast/io/document.hpp"
+#include "document_support.hpp"
 
 namespace holdfast::io {
 namespace {
 
 using base::Cell;
+using document_test::json;
 
-ReadDocument read(std::string_view text) {
-  auto read = read_json(text);
-  EXPECT_TRUE(read) << read.error().where << ": " << read.error().message;
-  return read ? std::move(read).value() : ReadDocument{};
-}
-
-/// With the keys that must be there.
-std::string with_heading(std::string_view members) {
-  return R"({"format": "holdfast-structure", "version": 1, )" + std::string(members) + "}";
-}
+ReadDocument read(std::string_view text) { return document_test::accepted(read_json(text)); }
 
 TEST(Json, defaults_stand_for_what_is_missing) {
-  const ReadDocument result = read(with_heading(R"("modules": [])"));
+  const ReadDocument result = read(json(R"("modules": [])"));
   EXPECT_EQ(result.document, Document{});
   EXPECT_TRUE(result.warnings.empty());
 }
 
 TEST(Json, is_read_whole) {
-  const ReadDocument result = read(with_heading(R"(
+  const ReadDocument result = read(json(R"(
     "$schema": "../docs/structure.schema.json",
     "name": "tower", "description": "Two modules, one fixed.", "support_z": -1,
     "modules": [[0,0,-1], {"cell": [0,0,0], "fixed": true, "color": [1,2,3],
@@ -86,7 +78,7 @@ TEST(Json, material_values_are_independent_of_each_other) {
     Document expected;
     expected.material.*value = 0.125;
     const std::string material = R"("material": {")" + std::string(key) + R"(": 0.125})";
-    EXPECT_EQ(read(with_heading(material + R"(, "modules": [])")).document, expected) << key;
+    EXPECT_EQ(read(json(material + R"(, "modules": [])")).document, expected) << key;
     // What is written names it, and no other.
     const std::string written = write_json(expected);
     EXPECT_NE(written.find(material), std::string::npos) << written;
@@ -94,12 +86,12 @@ TEST(Json, material_values_are_independent_of_each_other) {
 }
 
 TEST(Json, whole_numbers_may_be_written_with_a_point) {
-  EXPECT_EQ(read(with_heading(R"("modules": [[1.0, 2, -3e0]])")).document.modules[0].cell,
+  EXPECT_EQ(read(json(R"("modules": [[1.0, 2, -3e0]])")).document.modules[0].cell,
             (Cell{1, 2, -3}));
 }
 
 TEST(Json, unknown_keys_are_named_by_their_pointer) {
-  const ReadDocument result = read(with_heading(
+  const ReadDocument result = read(json(
       R"("modules": [[0,0,0], {"cell": [1,0,0], "colour": 1}, {"cell": [2,0,0], "colour": 2}],
          "material": {"m/a~s": 1}, "author": {"deep": []},
          "visiblesim": {"scenery": [{"element": "camera", "zoom": 1}]})"));
@@ -118,7 +110,7 @@ TEST(Json, many_different_warnings_end_in_a_count) {
         R"({"cell": [0,0,)" + std::to_string(i) + R"(], "k)" + std::to_string(i) + R"(": 0},)";
   }
   members.back() = ']';
-  const ReadDocument result = read(with_heading(members));
+  const ReadDocument result = read(json(members));
   ASSERT_EQ(result.warnings.size(), 101U);
   EXPECT_EQ(result.warnings.back(), "50 further warnings are left out");
 }

@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
 #include <nlohmann/json.hpp>
 
 namespace holdfast::io {
@@ -90,6 +91,32 @@ TEST(Report, for_people_lists_the_five_most_loaded_connections) {
   EXPECT_EQ(lines, 5U);
   EXPECT_NE(text.find("25 connections"), std::string::npos) << text;
   EXPECT_NE(text.find("0.800 times this weight"), std::string::npos) << text;  // 20 / 25
+}
+
+TEST(Report, names_no_worst_connection_where_none_is_pulled_apart) {
+  const Checked plate({.existing = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}}});
+  const std::string text = write_report_text(plate.entry());
+  EXPECT_NE(text.find("load ratio  no connection is pulled apart\n"), std::string::npos) << text;
+  EXPECT_EQ(text.find("N axial"), std::string::npos) << text;
+  EXPECT_EQ(text.find("times this weight"), std::string::npos) << text;
+  const Json report = Json::parse(write_report_json(plate.entry()));
+  EXPECT_TRUE(report["overload"]["at"].is_null());
+  EXPECT_TRUE(report["overload"]["weight_factor"].is_null());
+  EXPECT_LT(report["overload"]["load_ratio_max"].get<double>(), 1e-9);
+  EXPECT_EQ(report["connections"].size(), 4U);
+}
+
+TEST(Report, shows_loads_that_are_not_numbers_first) {
+  Checked chain(long_chain());
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  for (std::size_t i = 20; i < 25; ++i) {
+    chain.assessment.connections[i].load_ratio = nan;
+  }
+  const std::string text = write_report_text(chain.entry());
+  EXPECT_NE(text.find("load ratio      nan  (0,0,29)-(0,0,30)"), std::string::npos) << text;
+  EXPECT_EQ(text.find("1.2500  ("), std::string::npos) << text;
+  const Json report = Json::parse(write_report_json(chain.entry()));
+  EXPECT_TRUE(report["connections"][20]["load_ratio"].is_null());
 }
 
 TEST(Report, of_a_failure_is_an_object_with_its_place) {

@@ -7,18 +7,14 @@
 
 #include <string>
 
-#include "holdfast/io/document.hpp"
+#include "document_support.hpp"
 
 namespace holdfast::io {
 namespace {
 
 using base::Cell;
 
-ReadDocument read(std::string_view text) {
-  auto read = read_visiblesim(text);
-  EXPECT_TRUE(read) << read.error().where << ": " << read.error().message;
-  return read ? std::move(read).value() : ReadDocument{};
-}
+ReadDocument read(std::string_view text) { return document_test::accepted(read_visiblesim(text)); }
 
 /// A world with these children of <blockList> and these further children.
 std::string world(std::string_view blocks, std::string_view rest = "") {

@@ -10,13 +10,21 @@ Real absolute(Real value) {
   return value < 0 ? -value : value;
 }
 
+template <class Real>
+Real larger(Real a, Real b) {
+  if (a < b) {
+    return b;
+  }
+  return b <= a ? a : a + b;  // One is a NaN, so the sum is: it must not hide.
+}
+
 }  // namespace
 
 template <class Real>
 ConnectionLoad<Real> connection_load(const base::Vec6<Real>& middle_force) {
   const Real mx = absolute(middle_force[3]);
   const Real my = absolute(middle_force[4]);
-  return {.axial = middle_force[2], .bending = mx < my ? my : mx};
+  return {.axial = middle_force[2], .bending = larger(mx, my)};
 }
 
 template <class Real>

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "holdfast/mechanics/safe_angles.hpp"
 
+#include <limits>
+
 namespace holdfast::mechanics {
 namespace {
 
@@ -21,6 +23,21 @@ bool is_in_gap(const SafeAngles<Real>& angles, PlanVector<Real> v) {
   const PlanVector<Real>& first = angles.gap_first;
   const PlanVector<Real>& last = angles.gap_last;
   return cross(first, v) >= 0 && cross(v, last) >= 0 && (dot(first, v) > 0 || dot(last, v) > 0);
+}
+
+/// Neither zero nor a NaN nor so large that products of two such vectors overflow.
+template <class Real>
+bool has_direction(PlanVector<Real> v) {
+  const Real square = dot(v, v);
+  return square > 0 && square < std::numeric_limits<Real>::infinity();
+}
+
+/// Says nothing about any direction: empty, or an arc whose gap is not known.
+template <class Real>
+bool is_void(const SafeAngles<Real>& angles) {
+  return angles.range == SafeRange::kEmpty ||
+         (angles.range == SafeRange::kArc &&
+          !(has_direction(angles.gap_first) && has_direction(angles.gap_last)));
 }
 
 }  // namespace
@@ -52,16 +69,19 @@ SafeAngles<Real> safe_angles(PlanVector<Real> facet, Real half_width) {
       angles.gap_first = {-candidate.y, candidate.x};
     }
   }
-  return angles;
+  return is_void(angles) ? SafeAngles<Real>{} : angles;
 }
 
 template <class Real>
 SafeAngles<Real> merge(const SafeAngles<Real>& a, const SafeAngles<Real>& b) {
-  if (a.range == SafeRange::kEmpty || b.range == SafeRange::kFull) {
-    return b;
+  if (is_void(a)) {
+    return is_void(b) ? SafeAngles<Real>{} : b;
   }
-  if (b.range == SafeRange::kEmpty || a.range == SafeRange::kFull) {
+  if (is_void(b) || a.range == SafeRange::kFull) {
     return a;
+  }
+  if (b.range == SafeRange::kFull) {
+    return b;
   }
   SafeAngles<Real> joined{.range = SafeRange::kArc};
   if (is_in_gap(a, b.gap_first)) {

@@ -7,6 +7,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <limits>
+
 namespace holdfast::mechanics {
 namespace {
 
@@ -28,6 +31,12 @@ TYPED_TEST(Connector, bends_by_the_larger_torque_whatever_its_sign) {
   EXPECT_EQ(load(4, -7).bending, 7);
   EXPECT_EQ(load(0, 0).bending, 0);
   EXPECT_EQ(load(7, 4).axial, -3);
+}
+
+TYPED_TEST(Connector, hides_no_torque_that_is_not_a_number) {
+  constexpr TypeParam kNan = std::numeric_limits<TypeParam>::quiet_NaN();
+  EXPECT_TRUE(std::isnan(connection_load(Vec6<TypeParam>{0, 0, 0, kNan, 4, 0}).bending));
+  EXPECT_TRUE(std::isnan(connection_load(Vec6<TypeParam>{0, 0, 0, 4, kNan, 0}).bending));
 }
 
 TYPED_TEST(Connector, ignores_shear_and_torsion) {

@@ -12,6 +12,7 @@
 #include <array>
 #include <cstdint>
 #include <cstdlib>
+#include <limits>
 #include <vector>
 
 #include "holdfast/base/rng.hpp"
@@ -185,6 +186,33 @@ TYPED_TEST(SafeAnglesOf, a_tree_do_not_depend_on_its_order) {
       EXPECT_TRUE(is_same_ray(angles.gap_last, expected.gap_last)) << "sample " << i;
     }
   }
+}
+
+/// An operand that is not a number counts as nothing, so it can only make the answer less safe.
+TYPED_TEST(SafeAnglesOf, what_is_not_a_number_are_never_full) {
+  using Real = TypeParam;
+  constexpr Real kNan = std::numeric_limits<Real>::quiet_NaN();
+  constexpr Real kInfinity = std::numeric_limits<Real>::infinity();
+  constexpr Real kLargest = std::numeric_limits<Real>::max();
+  const SafeAngles<Real> good = angles_of<Real>({4, 0, 1});
+  const auto expect_nothing = [&](const SafeAngles<Real>& bad) {
+    EXPECT_EQ(merge(good, bad).range, SafeRange::kArc);
+    EXPECT_EQ(merge(bad, good).range, SafeRange::kArc);
+    EXPECT_EQ(merge(bad, bad).range, SafeRange::kEmpty);
+  };
+  for (const Real x : {kNan, kInfinity, -kInfinity, kLargest}) {
+    EXPECT_EQ(safe_angles<Real>({x, 0}, 1).range, SafeRange::kEmpty);
+    EXPECT_EQ(safe_angles<Real>({0, x}, 1).range, SafeRange::kEmpty);
+    for (int component = 0; component < 4; ++component) {
+      SafeAngles<Real> bad = good;
+      Real* components[] = {&bad.gap_first.x, &bad.gap_first.y, &bad.gap_last.x, &bad.gap_last.y};
+      *components[component] = x;
+      expect_nothing(bad);
+    }
+  }
+  EXPECT_EQ(safe_angles<Real>({4, 0}, kNan).range, SafeRange::kEmpty);
+  EXPECT_EQ(safe_angles<Real>({0, 0}, kNan).range, SafeRange::kEmpty);
+  expect_nothing({.range = SafeRange::kArc});  // Gap vectors of length zero.
 }
 
 }  // namespace

@@ -16,8 +16,6 @@ namespace {
 
 using base::Cell;
 
-std::string text(const Cell& cell) { return fmt::format("({},{},{})", cell.x, cell.y, cell.z); }
-
 std::optional<std::string> find_size_fault(const RobotSpec& spec) {
   if (spec.existing.empty()) {
     return "the robot has no existing module, at least one is needed";
@@ -123,10 +121,11 @@ std::optional<std::string> find_support_fault(const Robot& robot) {
     const std::int32_t below = robot.neighbours()[i][base::index(base::Direction::kMinusZ)];
     if (robot.modules()[i].support == Support::kGround && below != Robot::kNoNeighbour) {
       return fmt::format(
-          "the module {} lies under {}, which rests on the support level z = {}; "
-          "allowed below that level is only what hangs beside it",
+          "the module {} is directly below {}, which rests on the ground at the support level "
+          "z = {}; allowed below that level is only what hangs from a fixed module: lower the "
+          "support level or fix {}",
           text(robot.modules()[static_cast<std::size_t>(below)].cell),
-          text(robot.modules()[i].cell), robot.support_z());
+          text(robot.modules()[i].cell), robot.support_z(), text(robot.modules()[i].cell));
     }
   }
   return std::nullopt;
@@ -199,6 +198,19 @@ void Robot::connect(const CellIndex& index) {
       }
     }
   }
+}
+
+std::array<base::Cell, 2> ends(const Robot& robot, std::size_t connection) {
+  const Connection& pair = robot.connections()[connection];
+  return {robot.modules()[static_cast<std::size_t>(pair.a)].cell,
+          robot.modules()[static_cast<std::size_t>(pair.b)].cell};
+}
+
+std::string text(const Cell& cell) { return fmt::format("({},{},{})", cell.x, cell.y, cell.z); }
+
+std::string ends_text(const Robot& robot, std::size_t connection) {
+  const auto [a, b] = ends(robot, connection);
+  return text(a) + "-" + text(b);
 }
 
 }  // namespace holdfast::model

@@ -212,8 +212,18 @@ TEST(Robot, is_held_by_the_ground_or_a_fixed_module) {
 
 TEST(Robot, has_nothing_beneath_its_feet) {
   expect_error({.existing = {{0, 0, 0}, {0, 0, -1}}},
-               {"(0,0,-1)", "under (0,0,0)", "support level z = 0"});
-  expect_error({.existing = {{0, 0, 0}}, .planned = {{0, 0, -1}}}, {"(0,0,-1)", "under (0,0,0)"});
+               {"module (0,0,-1) is directly below (0,0,0)", "rests on the ground",
+                "support level z = 0", "allowed", "hangs from a fixed module"});
+  expect_error({.existing = {{0, 0, 0}}, .planned = {{0, 0, -1}}},
+               {"module (0,0,-1) is directly below (0,0,0)"});
+}
+
+TEST(Robot, names_the_ends_of_a_connection) {
+  // Listed from the far end, so that `a` of the connection is the second module.
+  const auto robot = Robot::create({.existing = {{3, 1, -2}, {2, 1, -2}}, .fixed = {{3, 1, -2}}});
+  ASSERT_TRUE(robot.has_value());
+  EXPECT_EQ(ends(robot.value(), 0), (std::array{Cell{2, 1, -2}, Cell{3, 1, -2}}));
+  EXPECT_EQ(ends_text(robot.value(), 0), "(2,1,-2)-(3,1,-2)");
 }
 
 TEST(Robot, fixes_only_existing_modules) {

@@ -129,7 +129,9 @@ std::size_t BlockLu::find_slot(std::int32_t column, std::int32_t row) const {
 
 void BlockLu::set_edge(std::size_t edge, const base::Mat6<double>& ab) {
   allocate();
-  edge_lower_[edge] = edges_[edge].a > edges_[edge].b ? ab : transpose(ab);
+  const auto [a, b] = edges_[edge];
+  edge_lower_[edge] = a > b ? ab : transpose(ab);
+  is_stale_[static_cast<std::size_t>(std::min(a, b))] = true;
 }
 
 void BlockLu::set_diagonal(std::size_t node, const base::Mat6<double>& block) {
@@ -144,6 +146,7 @@ bool BlockLu::factor() {
   for (std::size_t k = 0; k < position_.size() && !is_singular_; ++k) {
     if (is_stale_[k]) {
       make_column(k);
+      ++made_column_count_;
       if (parent_[k] >= 0) {
         is_stale_[static_cast<std::size_t>(parent_[k])] = true;
       }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <set>
+#include <utility>
 
 namespace holdfast::solver {
 namespace {
@@ -30,6 +31,22 @@ double dot_all(const std::vector<Vec6<double>>& a, const std::vector<Vec6<double
   return sum;
 }
 
+/// a + factor b
+Vec6<double> sum(Vec6<double> a, double factor, const Vec6<double>& b) {
+  for (std::size_t k = 0; k < 6; ++k) {
+    a[k] += factor * b[k];
+  }
+  return a;
+}
+
+std::vector<Vec6<double>> sum(std::vector<Vec6<double>> a, double factor,
+                              const std::vector<Vec6<double>>& b) {
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    a[i] = sum(a[i], factor, b[i]);
+  }
+  return a;
+}
+
 /// States in a form that can be compared and remembered.
 std::vector<std::int8_t> code_of(const std::vector<ContactState>& states) {
   std::vector<std::int8_t> code;
@@ -46,6 +63,7 @@ std::vector<std::int8_t> code_of(const std::vector<ContactState>& states) {
 EquilibriumSolver::EquilibriumSolver(const model::Robot& robot, const EquilibriumOptions& options)
     : robot_(robot),
       options_(options),
+      weight_n_(model::module_weight_n(robot.material())),
       beam_(mechanics::beam_stiffness(model::beam_section(robot.material()))) {
   const auto modules = robot.modules();
   node_of_module_.assign(modules.size(), -1);
@@ -115,28 +133,42 @@ Equilibrium EquilibriumSolver::solve(const ContactOptions& contact) {
   ground_ = mechanics::ground_facet(model::beam_section(material), material.facet_mm, contact.gamma,
                                     contact.law);
   for (Facet& facet : facets_) {
-    facet.is_held = true;
-    facet.was_released = false;
+    facet = {.module = facet.module, .state = {}};
+    set_tangent(facet);  // Always: the law may be another one than before.
   }
-  set_states(std::vector<ContactState>(facets_.size()));
+  const std::size_t made_before = lu_->made_column_count();
   result.outcome = contact.law == ContactLaw::kRegularised ? iterate_regularised(result)
                                                            : iterate_unilateral(result);
   if (result.outcome == Outcome::kSettled) {
     finish(result);
   }
+  result.made_column_count = lu_->made_column_count() - made_before;
   return result;
+}
+
+void EquilibriumSolver::set_tangent(const Facet& facet) {
+  const std::size_t node = node_index(node_of_module_[facet.module]);
+  Mat6<double> block = diagonal_[node];
+  base::add_to(block, mechanics::contact_tangent(ground_, facet.state, facet.is_held));
+  lu_->set_diagonal(node, block);
+}
+
+/// Returns whether anything differs; only then the factorization has to be made again.
+bool EquilibriumSolver::set_facet(Facet& facet, const ContactState& state, bool is_held) {
+  if (facet.state == state && facet.is_held == is_held) {
+    return false;
+  }
+  facet.state = state;
+  facet.is_held = is_held;
+  set_tangent(facet);
+  return true;
 }
 
 /// Takes over new states; returns whether any of them differs.
 bool EquilibriumSolver::set_states(const std::vector<ContactState>& states) {
   bool is_changed = false;
   for (std::size_t i = 0; i < facets_.size(); ++i) {
-    is_changed = is_changed || facets_[i].state != states[i];
-    facets_[i].state = states[i];
-    const std::size_t node = node_index(node_of_module_[facets_[i].module]);
-    Mat6<double> block = diagonal_[node];
-    base::add_to(block, mechanics::contact_tangent(ground_, facets_[i].state, facets_[i].is_held));
-    lu_->set_diagonal(node, block);
+    is_changed = set_facet(facets_[i], states[i], facets_[i].is_held) || is_changed;
   }
   return is_changed;
 }
@@ -151,21 +183,26 @@ std::vector<ContactState> EquilibriumSolver::states_at(const std::vector<Vec>& d
   return states;
 }
 
+/// From one vector per node to one per module; fixed modules get zero.
+std::vector<Vec6<double>> EquilibriumSolver::by_module(const std::vector<Vec>& by_node) const {
+  std::vector<Vec> vectors(node_of_module_.size(), Vec{});
+  for (std::size_t i = 0; i < vectors.size(); ++i) {
+    if (node_of_module_[i] >= 0) {
+      vectors[i] = by_node[node_index(node_of_module_[i])];
+    }
+  }
+  return vectors;
+}
+
 /// Displacements for the present states, under the weight.
 bool EquilibriumSolver::solve_linear(Equilibrium& result) {
   ++result.steps;
   if (!lu_->factor()) {
     return false;
   }
-  const double weight = model::module_weight_n(robot_.material());
-  std::vector<Vec> x(diagonal_.size(), Vec{0, 0, -weight, 0, 0, 0});
+  std::vector<Vec> x(diagonal_.size(), Vec{0, 0, -weight_n_, 0, 0, 0});
   lu_->solve(x);
-  result.displacement.assign(robot_.modules().size(), Vec{});
-  for (std::size_t i = 0; i < node_of_module_.size(); ++i) {
-    if (node_of_module_[i] >= 0) {
-      result.displacement[i] = x[node_index(node_of_module_[i])];
-    }
-  }
+  result.displacement = by_module(x);
   return true;
 }
 
@@ -205,18 +242,8 @@ Outcome EquilibriumSolver::minimise(Equilibrium& result) {
       return Outcome::kSettled;
     }
     if (!current.empty()) {
-      std::vector<Vec> direction = result.displacement;
-      for (std::size_t i = 0; i < direction.size(); ++i) {
-        for (std::size_t k = 0; k < 6; ++k) {
-          direction[i][k] -= current[i][k];
-        }
-      }
-      const double length = search_line(current, direction);
-      for (std::size_t i = 0; i < direction.size(); ++i) {
-        for (std::size_t k = 0; k < 6; ++k) {
-          result.displacement[i][k] = current[i][k] + length * direction[i][k];
-        }
-      }
+      const std::vector<Vec> direction = sum(result.displacement, -1, current);
+      result.displacement = sum(current, search_line(current, direction), direction);
       set_states(states_at(result.displacement));
     }
     current = result.displacement;
@@ -227,25 +254,21 @@ Outcome EquilibriumSolver::minimise(Equilibrium& result) {
 /// Where the energy along a line is least: the root of its slope, which never decreases.
 double EquilibriumSolver::search_line(const std::vector<Vec>& from,
                                       const std::vector<Vec>& direction) const {
-  const double weight = model::module_weight_n(robot_.material());
   double slope = dot_all(internal_force(from), direction);
-  for (std::size_t i = 0; i < direction.size(); ++i) {
-    slope += node_of_module_[i] >= 0 ? weight * direction[i][2] : 0;
+  for (const Vec& step : direction) {  // A fixed module's is zero.
+    slope += weight_n_ * step[2];
   }
   const double curvature = dot_all(internal_force(direction), direction);
   const auto slope_at = [&](double length) {
-    double sum = slope + length * curvature;
+    double slope_here = slope + length * curvature;
     for (const Facet& facet : facets_) {
-      Vec u = from[facet.module];
-      for (std::size_t k = 0; k < 6; ++k) {
-        u[k] += length * direction[facet.module][k];
-      }
+      const Vec u = sum(from[facet.module], length, direction[facet.module]);
       const ContactState state =
           mechanics::contact_state(ground_, mechanics::trial_force(ground_, u));
-      sum += base::dot(mechanics::contact_force(ground_, state, facet.is_held, u),
-                       direction[facet.module]);
+      slope_here += base::dot(mechanics::contact_force(ground_, state, facet.is_held, u),
+                              direction[facet.module]);
     }
-    return sum;
+    return slope_here;
   };
   if (slope_at(1) <= 0) {
     return 1;
@@ -263,19 +286,11 @@ double EquilibriumSolver::search_line(const std::vector<Vec>& from,
 /// most twice, so this says no in the end.
 bool EquilibriumSolver::update_held() {
   bool is_changed = false;
-  std::vector<ContactState> states;
   for (Facet& facet : facets_) {
-    if (!facet.state.pressed && facet.is_held && !facet.was_released) {
-      facet.is_held = false;
-      facet.was_released = true;
-      is_changed = true;
-    } else if (facet.state.pressed && !facet.is_held) {
-      facet.is_held = true;
-      is_changed = true;
-    }
-    states.push_back(facet.state);
+    const bool is_held = facet.state.pressed || (facet.is_held && facet.was_released);
+    facet.was_released = facet.was_released || !is_held;
+    is_changed = set_facet(facet, facet.state, is_held) || is_changed;
   }
-  set_states(states);
   return is_changed;
 }
 
@@ -320,16 +335,14 @@ void EquilibriumSolver::finish(Equilibrium& result) {
 /// The alternative where some facets can neither be held nor free: half open, half closed.
 void EquilibriumSolver::compare_with_free_facets(Equilibrium& result) {
   for (Facet& facet : facets_) {
-    facet.is_held = facet.is_held && facet.state.pressed;
+    set_facet(facet, facet.state, facet.is_held && facet.state.pressed);
   }
   set_states(states_at(result.displacement));
   Equilibrium free;
   const bool is_settled = minimise(free) == Outcome::kSettled;
   result.steps += free.steps;
-  for (std::size_t i = 0; is_settled && i < result.alternative.size(); ++i) {
-    for (std::size_t k = 0; k < 6; ++k) {
-      result.alternative[i][k] = free.displacement[i][k];
-    }
+  if (is_settled) {
+    result.alternative = std::move(free.displacement);
   }
 }
 
@@ -341,25 +354,15 @@ void EquilibriumSolver::refine(Equilibrium& result) const {
                  mechanics::contact_force(ground_, facet.state, facet.is_held,
                                           result.displacement[facet.module]));
   }
-  const double weight = model::module_weight_n(robot_.material());
   std::vector<Vec> x(diagonal_.size());
   for (std::size_t i = 0; i < residual.size(); ++i) {
     if (node_of_module_[i] >= 0) {
-      Vec& rest = x[node_index(node_of_module_[i])];
-      for (std::size_t k = 0; k < 6; ++k) {
-        rest[k] = -residual[i][k];
-      }
-      rest[2] -= weight;
+      x[node_index(node_of_module_[i])] = sum({0, 0, -weight_n_, 0, 0, 0}, -1, residual[i]);
     }
   }
   lu_->solve(x);
-  result.alternative.assign(residual.size(), Vec{});
-  for (std::size_t i = 0; i < residual.size(); ++i) {
-    if (node_of_module_[i] >= 0) {
-      result.alternative[i] = result.displacement[i];
-      base::add_to(result.displacement[i], x[node_index(node_of_module_[i])]);
-    }
-  }
+  result.alternative = result.displacement;
+  result.displacement = sum(result.displacement, 1, by_module(x));
 }
 
 }  // namespace holdfast::solver

@@ -94,14 +94,17 @@ class System {
         lu_(node_count_, edges_, kUnlimited),
         dense_(Eigen::MatrixXd::Zero(6 * node_count, 6 * node_count)) {
     for (std::size_t e = 0; e < edges_.size(); ++e) {
-      const Mat6<double> block = random_block(rng, 0);
-      lu_.set_edge(e, block);
-      put(edges_[e].a, edges_[e].b, block, false);
-      put(edges_[e].b, edges_[e].a, block, true);
+      set_edge(e, random_block(rng, 0));
     }
     for (std::int32_t node = 0; node < node_count; ++node) {
       set_diagonal(node, random_block(rng, 6.0 * node_count));
     }
+  }
+
+  void set_edge(std::size_t edge, const Mat6<double>& block) {
+    lu_.set_edge(edge, block);
+    put(edges_[edge].a, edges_[edge].b, block, false);
+    put(edges_[edge].b, edges_[edge].a, block, true);
   }
 
   void set_diagonal(std::int32_t node, const Mat6<double>& block) {
@@ -189,6 +192,31 @@ TEST(BlockLu, makes_again_only_what_a_changed_diagonal_touches_but_all_of_it) {
       system.set_diagonal(node, random_block(rng, 100));
     }
   }
+}
+
+TEST(BlockLu, makes_again_what_a_changed_edge_touches) {
+  base::Rng rng(10);
+  const auto edges = lattice(4, 3, 2);
+  System system(24, edges, rng);
+  for (int round = 0; round < 12; ++round) {
+    ASSERT_TRUE(system.lu().factor());
+    system.expect_solved(rng);
+    system.set_edge(rng.below(edges.size()), random_block(rng, 0));
+  }
+}
+
+/// Of two pairs, a change in one leaves the other as it is.
+TEST(BlockLu, counts_the_columns_that_it_makes) {
+  base::Rng rng(11);
+  System system(4, {{0, 1}, {2, 3}}, rng);
+  ASSERT_TRUE(system.lu().factor());
+  EXPECT_EQ(system.lu().made_column_count(), 4U);
+  ASSERT_TRUE(system.lu().factor());
+  EXPECT_EQ(system.lu().made_column_count(), 4U);
+  system.set_diagonal(0, random_block(rng, 50));
+  ASSERT_TRUE(system.lu().factor());
+  EXPECT_GE(system.lu().made_column_count(), 5U);
+  EXPECT_LE(system.lu().made_column_count(), 6U);
 }
 
 /// The same operations in the same order, so the same bits as a factorization from scratch.

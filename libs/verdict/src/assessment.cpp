@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "holdfast/mechanics/connector.hpp"
 #include "holdfast/mechanics/support_corners.hpp"
@@ -16,16 +17,6 @@ namespace {
 using mechanics::ContactLaw;
 using solver::Equilibrium;
 using solver::Outcome;
-
-std::string text(const base::Cell& cell) {
-  return fmt::format("({},{},{})", cell.x, cell.y, cell.z);
-}
-
-std::string text(const model::Robot& robot, std::size_t connection) {
-  const model::Connection& pair = robot.connections()[connection];
-  return text(robot.modules()[static_cast<std::size_t>(pair.a)].cell) + "-" +
-         text(robot.modules()[static_cast<std::size_t>(pair.b)].cell);
-}
 
 /// Sec. III-C: merges what every module contributes; the order does not matter.
 ModelStability model_stability(const model::Robot& robot, const Equilibrium& equilibrium) {
@@ -63,6 +54,11 @@ ConnectionResult connection_result(const model::Material& material, base::Direct
       .torsion_nmm = middle[5]};
 }
 
+/// Unlike with std::max, a NaN on either side wins: what is not known must not hide.
+double max_or_nan(double a, double b) { return std::isnan(a) || a > b ? a : b; }
+
+bool is_nan(const LoadRange& range) { return std::isnan(range.low) || std::isnan(range.high); }
+
 /// Sec. III-D for every connection.
 void assess_connections(const model::Robot& robot, Assessment& assessment) {
   const model::Material& material = robot.material();
@@ -83,8 +79,8 @@ void assess_connections(const model::Robot& robot, Assessment& assessment) {
     assessment.connections.push_back(result);
     const auto [low, high] = std::minmax(result.load_ratio, other_ratio);
     LoadRange& range = assessment.load_ratio_range;
-    range.low = i == 0 ? low : std::max(range.low, low);
-    range.high = i == 0 ? high : std::max(range.high, high);
+    range.low = i == 0 ? low : max_or_nan(range.low, low);
+    range.high = i == 0 ? high : max_or_nan(range.high, high);
     if (!assessment.worst || result.load_ratio > *assessment.load_ratio_max) {
       assessment.worst = i;
       assessment.load_ratio_max = result.load_ratio;
@@ -95,7 +91,14 @@ void assess_connections(const model::Robot& robot, Assessment& assessment) {
   }
   std::ranges::stable_sort(assessment.broken, std::greater<>(),
                            [&](std::size_t i) { return assessment.connections[i].load_ratio; });
-  if (assessment.worst && *assessment.load_ratio_max > 0) {
+  if (is_nan(assessment.load_ratio_range)) {
+    assessment.worst.reset();
+    assessment.load_ratio_max.reset();
+  }
+  if (assessment.worst && *assessment.load_ratio_max < kLoadRatioTie) {
+    assessment.worst.reset();
+  }
+  if (assessment.worst) {
     assessment.weight_factor = 1 / *assessment.load_ratio_max;
   }
 }
@@ -114,6 +117,13 @@ bool agrees(const Assessment& assessment) {
   return assessment.model.is_settled && assessment.model.is_stable == assessment.is_stable;
 }
 
+ContactModel contact_model(const model::Robot& robot, ContactLaw law) {
+  if (robot.ground_count() == 0) {
+    return ContactModel::kNone;
+  }
+  return law == ContactLaw::kUnilateral ? ContactModel::kUnilateral : ContactModel::kRegularised;
+}
+
 /// The paper's contact law first; the exact one where it has no answer or one that contradicts the
 /// rigid body, which is certain on flat ground.
 void find_equilibrium(const model::Robot& robot, const solver::EquilibriumOptions& options,
@@ -122,8 +132,7 @@ void find_equilibrium(const model::Robot& robot, const solver::EquilibriumOption
   assessment.equilibrium =
       solver.solve({.law = ContactLaw::kRegularised, .gamma = robot.material().contact_gamma});
   assessment.model = model_stability(robot, assessment.equilibrium);
-  assessment.contact_model =
-      robot.ground_count() > 0 ? ContactModel::kRegularised : ContactModel::kNone;
+  assessment.contact_model = contact_model(robot, ContactLaw::kRegularised);
   if (assessment.equilibrium.outcome == Outcome::kTooLarge || robot.ground_count() == 0) {
     return;
   }
@@ -177,7 +186,11 @@ void decide_stable(const model::Robot& robot, Assessment& assessment) {
   const double ratio = assessment.load_ratio_max.value_or(0);
   const LoadRange& range = assessment.load_ratio_range;
   const bool is_broken = breaks(range.low);
-  if (!std::isfinite(range.low) || !std::isfinite(range.high) || breaks(range.high) != is_broken) {
+  if (is_nan(range)) {
+    assessment.reasons.emplace_back(
+        "stable, but the load of a connection is not a number, so the largest is not known");
+  } else if (!std::isfinite(range.low) || !std::isfinite(range.high) ||
+             breaks(range.high) != is_broken) {
     assessment.reasons.push_back(
         fmt::format("stable, but the largest load ratio is only known to lie between {:.9g} and "
                     "{:.9g}",
@@ -186,16 +199,19 @@ void decide_stable(const model::Robot& robot, Assessment& assessment) {
     assessment.verdict = Verdict::kOverload;
     assessment.reasons.push_back(fmt::format(
         "{} of {} connections would break; the worst, {}, carries {:.4f} of its strength",
-        assessment.broken.size(), assessment.connections.size(), text(robot, *assessment.worst),
-        ratio));
-  } else if (!assessment.worst) {
+        assessment.broken.size(), assessment.connections.size(),
+        model::ends_text(robot, *assessment.worst), ratio));
+  } else if (assessment.connections.empty()) {
     assessment.verdict = Verdict::kSafe;
     assessment.reasons.emplace_back("stable, and a single module has no connection to break");
+  } else if (!assessment.worst) {
+    assessment.verdict = Verdict::kSafe;
+    assessment.reasons.emplace_back("stable, and no connection is pulled apart");
   } else {
     assessment.verdict = Verdict::kSafe;
     assessment.reasons.push_back(
         fmt::format("stable, and no connection carries more than {:.4f} of its strength ({})",
-                    ratio, text(robot, *assessment.worst)));
+                    ratio, model::ends_text(robot, *assessment.worst)));
   }
 }
 
@@ -219,13 +235,15 @@ void add_contact_remarks(Assessment& assessment) {
   }
 }
 
-}  // namespace
-
-Assessment assess(const model::Robot& robot, const solver::EquilibriumOptions& options) {
+Assessment begin(const model::Robot& robot) {
   Assessment assessment;
   assessment.simplified = assess_rigid_body(robot);
   assessment.is_stable = assessment.simplified.is_stable;
-  find_equilibrium(robot, options, assessment);
+  return assessment;
+}
+
+/// Loads, verdict and reasons, once there is an equilibrium.
+Assessment conclude(const model::Robot& robot, Assessment assessment) {
   if (assessment.equilibrium.outcome == Outcome::kSettled) {
     assess_connections(robot, assessment);
   }
@@ -237,6 +255,22 @@ Assessment assess(const model::Robot& robot, const solver::EquilibriumOptions& o
   }
   add_contact_remarks(assessment);
   return assessment;
+}
+
+}  // namespace
+
+Assessment assess(const model::Robot& robot, const solver::EquilibriumOptions& options) {
+  Assessment assessment = begin(robot);
+  find_equilibrium(robot, options, assessment);
+  return conclude(robot, std::move(assessment));
+}
+
+Assessment assess_equilibrium(const model::Robot& robot, Equilibrium equilibrium) {
+  Assessment assessment = begin(robot);
+  assessment.equilibrium = std::move(equilibrium);
+  assessment.model = model_stability(robot, assessment.equilibrium);
+  assessment.contact_model = contact_model(robot, assessment.equilibrium.law);
+  return conclude(robot, std::move(assessment));
 }
 
 const char* name(Verdict verdict) {

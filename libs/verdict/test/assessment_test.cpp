@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <limits>
 
 namespace holdfast::verdict {
 namespace {
@@ -123,6 +124,30 @@ TEST(Assessment, is_safe_for_a_single_module) {
   EXPECT_TRUE(assessment.connections.empty());
 }
 
+/// A free column presses on every connection; a plate on the ground leaves them nothing but
+/// rounding. Neither has a worst connection, nor a weight at which it breaks.
+TEST(Assessment, has_no_worst_connection_where_none_is_pulled_apart) {
+  const model::RobotSpec column{.existing = {{0, 0, 0}, {0, 0, 1}, {0, 0, 2}}};
+  const model::RobotSpec plate{.existing = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}}};
+  for (const model::RobotSpec& spec : {column, plate}) {
+    const Assessment assessment = assess_spec(spec);
+    EXPECT_EQ(assessment.verdict, Verdict::kSafe);
+    EXPECT_LT(*assessment.load_ratio_max, kLoadRatioTie);
+    EXPECT_FALSE(assessment.worst.has_value());
+    EXPECT_FALSE(assessment.weight_factor.has_value());
+    EXPECT_EQ(assessment.reasons.front(), "stable, and no connection is pulled apart");
+  }
+}
+
+/// Down to a billionth of the strength a load counts: a chain of one that holds a billion.
+TEST(Assessment, knows_the_worst_connection_of_small_loads) {
+  model::RobotSpec spec = hanging_chain(1);
+  spec.material.strength_vertical_n = kWeight * 0.99e9;
+  EXPECT_NEAR(*assess_spec(spec).weight_factor, 0.99e9, 1);
+  spec.material.strength_vertical_n = kWeight * 1.01e9;
+  EXPECT_FALSE(assess_spec(spec).weight_factor.has_value());
+}
+
 TEST(Assessment, scales_loads_with_the_weight_but_not_the_stability) {
   model::RobotSpec spec = arm(3);
   const Assessment light = assess_spec(spec);
@@ -140,6 +165,39 @@ TEST(Assessment, is_undecided_when_the_memory_does_not_suffice) {
   EXPECT_NE(stable.reasons.front().find("memory"), std::string::npos);
   EXPECT_FALSE(stable.load_ratio_max.has_value());
   EXPECT_EQ(assess_spec(arm(4), tiny).verdict, Verdict::kUnstable);
+}
+
+/// A load that is not a number must not hide behind those that are, wherever it stands.
+TEST(Assessment, is_undecided_when_a_load_is_not_a_number) {
+  const auto robot = model::Robot::create(hanging_chain(4)).value();
+  const solver::Equilibrium sound = solver::EquilibriumSolver(robot).solve({});
+  EXPECT_EQ(assess_equilibrium(robot, sound).verdict, Verdict::kSafe);
+  for (const auto displacement :
+       {&solver::Equilibrium::displacement, &solver::Equilibrium::alternative}) {
+    for (std::size_t module = 0; module < robot.modules().size(); ++module) {
+      for (const std::size_t component : {2U, 3U, 4U}) {  // uz pulls, tx and ty bend.
+        solver::Equilibrium spoilt = sound;
+        (spoilt.*displacement)[module][component] = std::numeric_limits<double>::quiet_NaN();
+        const Assessment assessment = assess_equilibrium(robot, spoilt);
+        EXPECT_EQ(assessment.verdict, Verdict::kUndecided) << module << ", " << component;
+        EXPECT_NE(assessment.reasons.front().find("not a number"), std::string::npos);
+        EXPECT_FALSE(assessment.load_ratio_max.has_value());
+        EXPECT_FALSE(assessment.worst.has_value());
+        EXPECT_FALSE(assessment.weight_factor.has_value());
+      }
+    }
+  }
+}
+
+TEST(Assessment, of_an_equilibrium_is_that_of_the_robot) {
+  const auto robot = model::Robot::create(arm(3)).value();
+  const Assessment whole = assess(robot);
+  const Assessment assessment = assess_equilibrium(robot, whole.equilibrium);
+  EXPECT_EQ(assessment.verdict, whole.verdict);
+  EXPECT_EQ(assessment.reasons, whole.reasons);
+  EXPECT_EQ(assessment.load_ratio_max, whole.load_ratio_max);
+  EXPECT_EQ(assessment.contact_model, whole.contact_model);
+  EXPECT_EQ(assessment.model.is_stable, whole.model.is_stable);
 }
 
 TEST(Assessment, does_not_depend_on_the_order_of_modules) {

@@ -70,7 +70,7 @@ template <class Real>
 base::Vec6<Real> middle_force(const BeamStiffness<Real>& beam, base::Direction direction,
                               const base::Vec6<Real>& u_p, const base::Vec6<Real>& u_q);
 
-/// K11_pq and K12_pq as matrices, global frame, for solvers that assemble. 10 to 12 nonzeros.
+/// K11_pq and K12_pq as matrices, global frame, for solvers that assemble. 10 nonzeros each.
 template <class Real>
 base::Mat6<Real> block_11(const BeamStiffness<Real>& beam, base::Direction direction);
 

@@ -34,11 +34,13 @@ struct SafeAngles {
 };
 
 /// The joined range of the four corners of a square facet, given its centre minus the centre of
-/// mass. Full if the centre of mass lies strictly over the facet.
+/// mass. Full if the centre of mass lies strictly over the facet; empty if an argument is a NaN or
+/// squares overflow.
 template <class Real>
 SafeAngles<Real> safe_angles(PlanVector<Real> facet_minus_mass, Real half_width);
 
-/// The union of two ranges.
+/// The union of two ranges. An arc whose gap is zero, a NaN or as large as to overflow when squared
+/// counts as empty: what is not known keeps no robot from tipping.
 template <class Real>
 SafeAngles<Real> merge(const SafeAngles<Real>& a, const SafeAngles<Real>& b);
 

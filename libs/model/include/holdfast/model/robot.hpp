@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "holdfast/base/cell.hpp"
@@ -90,5 +91,12 @@ class Robot {
   std::size_t ground_count_ = 0;
   std::size_t fixed_count_ = 0;
 };
+
+/// The two cells of a connection, given by its index; the first has the smaller coordinate.
+std::array<base::Cell, 2> ends(const Robot& robot, std::size_t connection);
+
+/// How messages and reports name a cell, "(2,1,2)", and a connection, "(2,1,2)-(3,1,2)".
+std::string text(const base::Cell& cell);
+std::string ends_text(const Robot& robot, std::size_t connection);
 
 }  // namespace holdfast::model

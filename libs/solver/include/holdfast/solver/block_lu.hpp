@@ -21,10 +21,10 @@ struct Edge {
 /// The pattern is symmetric, the values need not be: contact makes some diagonal blocks
 /// unsymmetric. Columns are eliminated in approximate-minimum-degree order [Amestoy 1996]; pivots
 /// are chosen within a diagonal block only, so callers check the residual. Left-looking: a column
-/// is made from finished columns, so after some diagonal blocks have changed only those columns
-/// and their ancestors in the elimination tree are made again.
+/// is made from finished columns, so after some blocks have changed only their columns and the
+/// ancestors of these in the elimination tree are made again.
 ///
-/// Use: construct, set every block, factor(), solve(); then change diagonals, factor(), solve()...
+/// Use: construct, set every block, factor(), solve(); then change blocks, factor(), solve()...
 class BlockLu {
  public:
   /// Orders and counts, allocates no blocks yet. Gives up (see is_too_large()) once L would need
@@ -37,7 +37,8 @@ class BlockLu {
   /// Blocks below the diagonal of L, fill included.
   std::size_t lower_block_count() const { return rows_.size(); }
 
-  /// Sets A(a, b) to `ab` and A(b, a) to its transpose, for edge number `edge`.
+  /// Sets A(a, b) to `ab` and A(b, a) to its transpose, for edge number `edge`; the next factor()
+  /// makes again what depends on it.
   void set_edge(std::size_t edge, const base::Mat6<double>& ab);
 
   /// Sets A(node, node); the next factor() makes again what depends on it.
@@ -45,6 +46,9 @@ class BlockLu {
 
   /// Returns false if a diagonal block became singular.
   [[nodiscard]] bool factor();
+
+  /// Columns that all calls of factor() have made so far.
+  std::size_t made_column_count() const { return made_column_count_; }
 
   /// Solves A x = b in place; x holds one vector per node. Needs a successful factor().
   void solve(std::span<base::Vec6<double>> x) const;
@@ -78,6 +82,7 @@ class BlockLu {
   std::vector<base::Mat6<double>> edge_lower_;  ///< A(i, k) of each edge, i below k
   std::vector<bool> is_stale_;                  ///< columns whose factor is out of date
   std::vector<std::size_t> slot_of_row_;        ///< scratch: row -> slot in the current column
+  std::size_t made_column_count_ = 0;
   bool is_singular_ = false;
   bool is_too_large_ = false;
 };

@@ -19,10 +19,13 @@
 /// - kRegularised: Newton's method from "all stuck", that is, repeat until nothing changes. Settles
 ///   in 1 to 5 steps on most robots, cycles on some, and some have no consistent states at all.
 /// - kUnilateral: the equilibrium minimises a convex function, once differentiable and piecewise
-///   quadratic, so Newton's method with an exact line search always arrives, in finitely many
-///   steps. Its own non-convex part, that an open facet loses its hold sideways, is an outer loop:
-///   solve with all facets held, release the open ones, solve again. A facet that would be pressed
-///   again is held again for good, so the loop ends.
+///   quadratic. For a robot that stands, and in exact arithmetic, Newton's method with an exact
+///   line search arrives in finitely many steps. A robot that topples has a minimum only by the
+///   weak springs, and the weaker these are the more rounding blurs its contact states; what has
+///   not settled after `step_count_max` steps is kNotSettled. The problem's own non-convex part,
+///   that an open facet loses its hold sideways, is an outer loop: solve with all facets held,
+///   release the open ones, solve again. A facet that would be pressed again is held again for
+///   good, so that loop ends.
 namespace holdfast::solver {
 
 struct EquilibriumOptions {
@@ -60,6 +63,9 @@ struct Equilibrium {
   /// and no force at once is then impossible, and the truth lies between held and free.
   int open_but_held_count = 0;
   int steps = 0;  ///< Linear systems solved.
+  /// Columns of the factorization made for them: less than steps times the modules, as a change of
+  /// some contact states leaves most of the factorization as it is.
+  std::size_t made_column_count = 0;
 };
 
 /// Solves one robot, with one law after the other if need be. The factorization's ordering and
@@ -87,7 +93,10 @@ class EquilibriumSolver {
   Outcome iterate_unilateral(Equilibrium& result);
   Outcome minimise(Equilibrium& result);
   bool update_held();
+  void set_tangent(const Facet& facet);
+  bool set_facet(Facet& facet, const mechanics::ContactState& state, bool is_held);
   double search_line(const std::vector<Vec>& from, const std::vector<Vec>& direction) const;
+  std::vector<Vec> by_module(const std::vector<Vec>& by_node) const;
   std::vector<Vec> internal_force(const std::vector<Vec>& displacement) const;
   std::vector<mechanics::ContactState> states_at(const std::vector<Vec>& displacement) const;
   bool set_states(const std::vector<mechanics::ContactState>& states);
@@ -97,6 +106,7 @@ class EquilibriumSolver {
 
   const model::Robot& robot_;
   EquilibriumOptions options_;
+  double weight_n_ = 0;  ///< Of one module.
   mechanics::BeamStiffness<double> beam_;
   mechanics::GroundFacet<double> ground_;
   std::vector<std::int32_t> node_of_module_;  ///< -1 for fixed modules

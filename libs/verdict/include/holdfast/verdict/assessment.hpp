@@ -59,11 +59,12 @@ struct Assessment {
 
   /// Per connection of the robot; empty if no equilibrium was found. Not meaningful if unstable.
   std::vector<ConnectionResult> connections;
-  std::optional<double> load_ratio_max;
-  std::optional<std::size_t> worst;  ///< Index of the connection with load_ratio_max.
-  std::vector<std::size_t> broken;   ///< Indices of connections at 1 or more, worst first.
-  /// The weight could grow by this factor before the first connection breaks; none if no
-  /// connection is ever pulled apart.
+  std::optional<double> load_ratio_max;  ///< None without connections or if one is not a number.
+  /// Index of the connection with load_ratio_max; none if that is below kLoadRatioTie, which is
+  /// rounding or compression: no connection is pulled apart.
+  std::optional<std::size_t> worst;
+  std::vector<std::size_t> broken;  ///< Indices of connections at 1 or more, worst first.
+  /// The weight could grow by this factor before the first connection breaks; none without `worst`.
   std::optional<double> weight_factor;
   LoadRange load_ratio_range;  ///< Void where load_ratio_max is.
 
@@ -71,10 +72,14 @@ struct Assessment {
   solver::Equilibrium equilibrium;  ///< Displacements, contact states, ground forces.
 };
 
-/// A load ratio this close below 1 counts as 1: the margin is rounding, not strength.
+/// A load ratio this close below 1 counts as 1: the margin is rounding, not strength. One below
+/// this counts as no load. Rounding moves ratios by about 1e-13.
 inline constexpr double kLoadRatioTie = 1e-9;
 
 Assessment assess(const model::Robot& robot, const solver::EquilibriumOptions& options = {});
+
+/// The same for an equilibrium that is already there, whoever found it.
+Assessment assess_equilibrium(const model::Robot& robot, solver::Equilibrium equilibrium);
 
 /// "safe", "overload", "unstable", "undecided".
 const char* name(Verdict verdict);

@@ -1,0 +1,27 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include "holdfast/io/document.hpp"
+
+/// What the tests of readers and writers share.
+namespace holdfast::io::document_test {
+
+/// What was read; a failed expectation that says why, and nothing, if it was refused.
+inline ReadDocument accepted(base::Result<ReadDocument> read) {
+  EXPECT_TRUE(read) << read.error().where << ": " << read.error().message;
+  return read ? std::move(read).value() : ReadDocument{};
+}
+
+/// holdfast JSON: these members, after the keys that must be there.
+inline std::string json(std::string_view members) {
+  return R"({"format": "holdfast-structure", "version": 1, )" + std::string(members) + "}";
+}
+
+}  // namespace holdfast::io::document_test
