@@ -1,9 +1,6 @@
 // SPDX-FileCopyrightText: The holdfast authors
 // SPDX-License-Identifier: Apache-2.0
 #include "holdfast/agent/conductor.hpp"
-#include <cstdlib>
-#include <cstdio>
-#define __builtin_getenv getenv
 
 namespace holdfast::agent {
 namespace {
@@ -32,6 +29,11 @@ constexpr int kStagnationMax = 8;
 constexpr int kJacobiStagnationMax = 2;
 
 constexpr int kContactStepsMax = 100;
+
+/// A full step will do if it brings the slope of the energy down this far; else the line is
+/// searched so many times, each to a quarter of the interval.
+constexpr double kSlopeReduction = 0.1;
+constexpr int kSlopeCountMax = 3;
 
 /// The weak springs of the unilateral law, as in the exact solver (verdict/assessment.cpp).
 constexpr double kUnilateralGamma = 1e-9;
@@ -199,7 +201,6 @@ Order Conductor::move(double step, double mix) {
 Order Conductor::judge(const Setup& setup, const Report& report) {
   const double error = static_cast<double>(report.reals[0]);
   ratio_ = static_cast<double>(report.reals[1]);
-  if (__builtin_getenv("TRJ")) __builtin_printf("it %u solve %u E %.3e ratio %.5f changed %u tilt %d uni %d target %.1e stag %d mix %.3f red %.1e gf %.2e\n", effort_.iterations, effort_.solves, error, ratio_, report.extent, report.flags, is_unilateral_, target_, stagnation_count_, 0.0, 0.0,0.0);
   is_tilting_ = (report.flags & kAnyTilting) != 0;
   if (!is_number(error) || effort_.iterations > setup.iteration_count_max) {
     return give_up(setup);
@@ -292,7 +293,8 @@ Order Conductor::after_start(const Report& report) {
   }
   const double reduction = is_tilting_ && !is_unilateral_ ? kReductionTilting : kReductionLeast;
   const double least = reduction * static_cast<double>(report.reals[2]);
-  solve_error_ = least > 0.3 * target_ ? least : 0.3 * target_;
+  const double enough = is_tilting_ && !is_unilateral_ ? 0 : 0.3 * target_;
+  solve_error_ = least > enough ? least : enough;
   gamma_ = 0;
   alpha_ = 0;
   const auto gamma = static_cast<double>(report.reals[0]);
@@ -353,50 +355,39 @@ Order Conductor::end_solve() {
 /// Anderson's method of depth one, in the norm of the solve's matrix: the combination of the last
 /// two iterates whose correction is least, moved by its correction.
 Order Conductor::after_mix(const Report& report) {
-  const double mix =
-      static_cast<double>(report.reals[0]) / static_cast<double>(report.reals[1]);
+  const double mix = static_cast<double>(report.reals[0]) / static_cast<double>(report.reals[1]);
   return move(1, is_number(mix) ? mix : 0);
 }
 
 // ---- Line search: the slope of a convex, piecewise quadratic energy never decreases.
 
-/// A report brings the slope's linear part and the facets' part at four fractions of [low, high].
+/// A report brings the slope at 0 and at four places in (low, high].
 Order Conductor::after_slope(const Report& report) {
-  if (slope_count_ == 0) {
-    slope_linear_ = static_cast<double>(report.reals[0]);
-    slope_curvature_ = static_cast<double>(report.reals[1]);
+  const auto slope_at = [&](std::size_t place) { return static_cast<double>(report.reals[place]); };
+  const double enough = kSlopeReduction * absolute(slope_at(0));
+  if (slope_count_ == 0 && slope_at(4) <= enough) {
+    return move(1);
   }
-  double position = low_;
-  double slope_before = 0;
-  for (int i = 1; i <= 4; ++i) {
-    const double t = low_ + (high_ - low_) * i / 4;
-    const double slope = slope_linear_ + t * slope_curvature_ +
-                         static_cast<double>(report.reals[static_cast<std::size_t>(i) + 1]);
-    if (slope_count_ == 0 && i == 1) {
-      slope_first_ = absolute(slope_linear_);
-    }
+  const double step = (high_ - low_) / 4;
+  double before = 0;
+  for (std::size_t place = 1; place <= 4; ++place) {
+    const double slope = slope_at(place);
+    const double t = low_ + step * static_cast<double>(place);
     if (slope > 0) {
-      const bool is_last = slope_count_ >= 3;
-      if (is_last) {
-        // Between two points the slope is nearly straight by now.
-        const double share = slope_before < 0 ? -slope_before / (slope - slope_before) : 1;
-        return move(position + (t - position) * share);
+      if (slope_count_ == kSlopeCountMax) {
+        // Between two places the slope is nearly straight by now.
+        return move(t - step + (before < 0 ? step * before / (before - slope) : 0));
       }
-      // At the full step a slope that is small against the first one is a good enough minimum.
-      if (slope_count_ == 0 && i == 4 && slope < 0.1 * slope_first_) {
-        return move(1);
-      }
-      low_ = position;
+      low_ = t - step;
       high_ = t;
-      ++slope_count_;
-      Order again = order(Step::kSlope, Operation::kSlope);
-      again.reals = {static_cast<float>(low_), static_cast<float>(high_)};
-      return again;
+      break;
     }
-    position = t;
-    slope_before = slope;
+    before = slope;
   }
-  return move(high_);
+  ++slope_count_;
+  Order again = order(Step::kSlope, Operation::kSlope);
+  again.reals = {static_cast<float>(low_), static_cast<float>(high_)};
+  return slope_count_ > kSlopeCountMax ? move(high_) : again;
 }
 
 // ---- Jacobi methods.

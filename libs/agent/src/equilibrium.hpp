@@ -90,7 +90,7 @@ void BasicAgent<Real>::move(const Order& order) {
     for (std::size_t k = 0; k < 6; ++k) {
       node.move[k] = length * node.g[k] - mix * (node.move[k] + node.g[k] - node.g_before[k]);
       node.u[k] += static_cast<double>(node.move[k]);
-      node.z[k] = static_cast<Real>(static_cast<float>(node.u[k]));
+      node.z[k] = static_cast<Real>(leading_part(node.u[k]));
     }
   }
   middle_ = {};
@@ -351,7 +351,7 @@ Report BasicAgent<Real>::product_report() {
   return report;
 }
 
-/// The slope of the energy at u + t g: beams and weight as a line in t, facets at four places.
+/// The slope of the energy along g, at t = 0 and at four places in (low, high].
 template <class Real>
 Report BasicAgent<Real>::slope_report() const {
   if ((order_.flags & kMixProducts) != 0) {
@@ -360,22 +360,26 @@ Report BasicAgent<Real>::slope_report() const {
   Report report;
   const auto low = static_cast<double>(order_.reals[0]);
   const auto high = static_cast<double>(order_.reals[1]);
-  std::array<double, 6> sums{};
+  std::array<double, 5> sums{};
   for (int i = 0; i < node_count(); ++i) {
     const Node<Real>& node = nodes_[static_cast<std::size_t>(i)];
     if (node.is_fixed) {
       continue;
     }
-    const auto g = equilibrium::converted<double>(node.g);
-    sums[0] += base::dot(node.force, g) + setup_.weight_n * g[2];
-    sums[1] += base::dot(equilibrium::converted<double>(node.w), g);
-    for (int place = 1; place <= 4; ++place) {
-      const double t = low + (high - low) * place / 4;
-      sums[static_cast<std::size_t>(place) + 1] +=
-          base::dot(facet_force_along(node, contact_, t), g);
+    // Node by node the sum is small near the equilibrium, so its digits are good.
+    for (int place = 0; place <= 4; ++place) {
+      const double t = place == 0 ? 0 : low + (high - low) * place / 4;
+      base::Vec6<double> rest = facet_force_along(node, contact_, t);
+      rest[2] += setup_.weight_n;
+      double slope = 0;
+      for (std::size_t k = 0; k < 6; ++k) {
+        rest[k] += node.force[k] + t * static_cast<double>(node.w[k]);
+        slope += rest[k] * static_cast<double>(node.g[k]);
+      }
+      sums[static_cast<std::size_t>(place)] += slope;
     }
   }
-  for (std::size_t i = 0; i < 6; ++i) {
+  for (std::size_t i = 0; i < sums.size(); ++i) {
     report.reals[i] = static_cast<float>(sums[i]);
   }
   return report;

@@ -112,7 +112,7 @@ int real_count(Operation operation) {
     case Operation::kJacobi:
       return 2;
     case Operation::kSlope:
-      return 6;
+      return 5;
     case Operation::kLoads:
       return 1;
     default:

@@ -167,12 +167,13 @@ void BasicAgent<Real>::send_planned_up() {
     base::Vec6<double>& force = planned_force_[static_cast<std::size_t>(k)];
     const int parts = sweep::is_precise(order_.operation) ? 2 : 1;
     for (int part = 0; part < parts; ++part) {
-      const base::Vec6<float> leading = sweep::rounded(force);
-      send(parent_, sweep::vector_message(wire::MessageType::kPlannedUp,
-                                          static_cast<std::uint8_t>(k), leading));
+      base::Vec6<double> leading = force;
       for (std::size_t i = 0; i < 6; ++i) {
-        force[i] -= static_cast<double>(leading[i]);
+        leading[i] = part + 1 < parts ? leading_part(force[i]) : force[i];
+        force[i] -= leading[i];
       }
+      send(parent_, sweep::vector_message(wire::MessageType::kPlannedUp,
+                                          static_cast<std::uint8_t>(k), sweep::rounded(leading)));
     }
   }
 }

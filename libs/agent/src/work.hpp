@@ -37,8 +37,7 @@ void BasicAgent<Real>::prepare(const Order& order) {
       for (int i = 0; i < node_count(); ++i) {
         Node<Real>& node = nodes_[static_cast<std::size_t>(i)];
         for (std::size_t k = 0; k < 6; ++k) {
-          const auto high = static_cast<double>(static_cast<float>(node.u[k]));
-          node.z[k] = static_cast<Real>(static_cast<float>(node.u[k] - high));
+          node.z[k] = static_cast<Real>(node.u[k] - leading_part(node.u[k]));
         }
       }
       break;

@@ -29,7 +29,7 @@ bool is_in_gap(const SafeAngles<Real>& angles, PlanVector<Real> v) {
 template <class Real>
 bool has_direction(PlanVector<Real> v) {
   const Real square = dot(v, v);
-  return square > 0 && square < std::numeric_limits<Real>::infinity();
+  return square > 0 && square <= std::numeric_limits<Real>::max();
 }
 
 /// Says nothing about any direction: empty, or an arc whose gap is not known.

@@ -139,9 +139,6 @@ class Conductor {
   // Line search.
   double low_ = 0;
   double high_ = 0;
-  double slope_first_ = 0;
-  double slope_linear_ = 0;
-  double slope_curvature_ = 0;
   std::uint8_t slope_count_ = 0;
   // The end.
   std::uint32_t open_held_count_ = 0;

@@ -40,8 +40,8 @@ const char* name(Reason reason);
 struct Answer {
   Verdict verdict = Verdict::kNone;
   Reason reason = Reason::kNone;
-  float load_ratio_max = 0;  ///< Not meaningful if unstable or undecided.
-  base::Cell worst_cell = {};     ///< The worst connection: this cell and its neighbour ...
+  float load_ratio_max = 0;    ///< Not meaningful if unstable or undecided.
+  base::Cell worst_cell = {};  ///< The worst connection: this cell and its neighbour ...
   base::Direction worst_direction = base::Direction::kPlusX;  ///< ... in this direction.
 };
 
@@ -51,7 +51,7 @@ struct Order {
   std::uint8_t index = 0;  ///< kPlan: planned index learned, or 0xff.
   std::uint8_t flags = 0;
   std::uint16_t count = 0;                 ///< kJacobi: steps.
-  base::Cell cell = {};                         ///< kPlan: of that module; kMass: of the root.
+  base::Cell cell = {};                    ///< kPlan: of that module; kMass: of the root.
   std::array<std::uint8_t, 8> masks{};     ///< kHosts
   std::int32_t module_count = 0;           ///< kAngles
   std::array<std::int32_t, 2> cell_sum{};  ///< kAngles
@@ -63,8 +63,8 @@ struct Order {
 inline constexpr std::uint8_t kUnilateralLaw = 1;  ///< kBegin
 inline constexpr std::uint8_t kFollowStates = 1;   ///< kLow: take over the wanted states first.
 inline constexpr std::uint8_t kAdoptStates = 1;    ///< kStart
-inline constexpr std::uint8_t kWithScalars = 2;   ///< kStart
-inline constexpr std::uint8_t kWithBlocks = 4;    ///< kStart
+inline constexpr std::uint8_t kWithScalars = 2;    ///< kStart
+inline constexpr std::uint8_t kWithBlocks = 4;     ///< kStart
 inline constexpr std::uint8_t kExchangeFirst = 1;  ///< kSlope
 inline constexpr std::uint8_t kMixProducts = 2;    ///< kSlope: how to mix the last two iterates.
 inline constexpr std::uint8_t kReleaseOpen = 1;    ///< kHold
@@ -77,7 +77,7 @@ struct Report {
   std::uint32_t count = 0;
   std::uint32_t number = 0;
   std::array<std::int32_t, 2> cell_sum{};
-  std::array<float, 6> reals{};
+  std::array<float, 5> reals{};
   base::Cell cell = {};
   base::Direction direction = base::Direction::kPlusX;
   mechanics::SafeAngles<std::int64_t> angles = {};

@@ -82,7 +82,7 @@ class Writer {
 
   void i32(std::int32_t value) { u32(static_cast<std::uint32_t>(value)); }
 
-  void short_real(double value);  ///< Its upper 16 bits, rounded away from zero.
+  void short_real(double value);      ///< Its upper 16 bits, rounded away from zero.
   void real(double value);            ///< Rounded to binary32.
   void cell(const base::Cell& cell);  ///< Three times 24 bits, two's complement.
   void pad();                         ///< Zeros up to the size of the message.
