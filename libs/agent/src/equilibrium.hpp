@@ -25,6 +25,29 @@ base::Vec6<To> converted(const base::Vec6<From>& vector) {
   return result;
 }
 
+/// What the neighbours get to see of a vector: its leading digits.
+template <class Real>
+base::Vec6<Real> as_sent(const base::Vec6<Real>& vector) {
+  return converted<Real>(sweep::rounded(vector));
+}
+
+/// The preconditioner of degree m is Chebyshev's iteration [Saad 2003, Alg. 12.1] with the diagonal
+/// blocks, from zero, on the interval [a, 2]. 2 bounds the spectrum of M^-1 A for certain: the
+/// lattice is bipartite, so the spectrum is symmetric about 1. What lies below a is left to the
+/// gradients. With a = c / (m + 1)^2 all above it comes within 1 +- 1 / cosh(sqrt(2 c)) of 1.
+struct Interval {
+  static constexpr double kSpread = 1.75;
+
+  explicit Interval(int degree)
+      : least(degree == 0 ? 2 : kSpread / ((degree + 1.0) * (degree + 1.0))),
+        centre((2 + least) / 2),
+        half((2 - least) / 2) {}
+
+  double least;
+  double centre;
+  double half;
+};
+
 inline const mechanics::BeamStiffness<float>& beam_of(const Setup& setup, float) {
   return setup.beam_float;
 }
@@ -90,7 +113,7 @@ void BasicAgent<Real>::move(const Order& order) {
     for (std::size_t k = 0; k < 6; ++k) {
       node.move[k] = length * node.g[k] - mix * (node.move[k] + node.g[k] - node.g_before[k]);
       node.u[k] += static_cast<double>(node.move[k]);
-      node.z[k] = static_cast<Real>(leading_part(node.u[k]));
+      node.shared[k] = static_cast<Real>(leading_part(node.u[k]));
     }
   }
   middle_ = {};
@@ -114,7 +137,7 @@ void BasicAgent<Real>::start_solve(const Order& order) {
     node.p = {};
     node.s = {};
     factor_diagonal(node, setup_, contact_, node_faces(i));
-    node.z = equilibrium::converted<Real>(sweep::rounded(solve_diagonal(node, node.r)));
+    precondition(i, order.count);
     if ((order.flags & kWithScalars) != 0) {
       node.p = scalar_diagonal(node, setup_, contact_, node_faces(i));
     }
@@ -136,8 +159,78 @@ void BasicAgent<Real>::gradient_step(const Order& order) {
       node.g[k] += alpha * node.p[k];
       node.r[k] -= alpha * node.s[k];
     }
-    node.z = equilibrium::converted<Real>(sweep::rounded(solve_diagonal(node, node.r)));
+    precondition(i, order.count);
   }
+}
+
+/// The first term of the preconditioner: z = M^-1 r, scaled; w holds what is left of r.
+template <class Real>
+void BasicAgent<Real>::precondition(int node_index, int degree) {
+  Node<Real>& node = nodes_[static_cast<std::size_t>(node_index)];
+  const equilibrium::Interval interval(degree);
+  const auto scale = static_cast<Real>(degree == 0 ? 1 : 1 / interval.centre);
+  typename Node<Real>::Vec first = solve_diagonal(node, node.r);
+  for (Real& value : first) {
+    value *= scale;
+  }
+  node.shared = equilibrium::as_sent(first);
+  node.z = node.shared;
+  node.w = node.r;
+  rho_ = static_cast<float>(degree == 0 ? 0 : interval.half / interval.centre);
+}
+
+template <class Real>
+void BasicAgent<Real>::after_exchange() {
+  switch (order_.operation) {
+    case wire::Operation::kJacobi:
+      jacobi_step();
+      break;
+    case wire::Operation::kStart:
+    case wire::Operation::kGradient:
+      polynomial_step();
+      break;
+    default:
+      break;
+  }
+}
+
+/// The next term of the preconditioner, and after the last one w = A z.
+template <class Real>
+void BasicAgent<Real>::polynomial_step() {
+  const equilibrium::Interval interval(order_.count);
+  const double sigma = interval.half > 0 ? interval.centre / interval.half : 1;
+  const double rho = 1 / (2 * sigma - static_cast<double>(rho_));
+  const auto keep = static_cast<Real>(rho * static_cast<double>(rho_));
+  const auto gain = static_cast<Real>(interval.half > 0 ? 2 * rho / interval.half : 0);
+  const bool is_last = exchanges_left_ == 1;
+  for (int i = 0; i < node_count(); ++i) {
+    Node<Real>& node = nodes_[static_cast<std::size_t>(i)];
+    if (node.is_fixed) {
+      node.w = {};
+      continue;
+    }
+    if (node.is_ground) {
+      base::add_to(node.image, equilibrium::converted<Real>(mechanics::symmetric_product(
+                                   contact_.facet, node.state, node.is_held,
+                                   equilibrium::converted<double>(node.shared))));
+    }
+    for (std::size_t k = 0; k < 6; ++k) {
+      node.w[k] -= node.image[k];
+    }
+    if (is_last) {
+      for (std::size_t k = 0; k < 6; ++k) {
+        node.w[k] = node.r[k] - node.w[k];
+      }
+      continue;
+    }
+    const typename Node<Real>::Vec term = solve_diagonal(node, node.w);
+    for (std::size_t k = 0; k < 6; ++k) {
+      node.shared[k] = keep * node.shared[k] + gain * term[k];
+    }
+    node.shared = equilibrium::as_sent(node.shared);
+    base::add_to(node.z, node.shared);
+  }
+  rho_ = static_cast<float>(rho);
 }
 
 /// One step of Eq. (14), written for the correction g: g := g + beta D^-1 r(u + g), with the facet
@@ -154,7 +247,7 @@ void BasicAgent<Real>::jacobi_step() {
     const base::Vec6<double> here = facet_force_along(node, contact_, 1);
     const base::Vec6<double> start = facet_force_along(node, contact_, 0);
     for (std::size_t k = 0; k < 6; ++k) {
-      rest[k] = node.r_start[k] - node.w[k] - static_cast<Real>(here[k] - start[k]);
+      rest[k] = node.r_start[k] - node.image[k] - static_cast<Real>(here[k] - start[k]);
     }
     const mechanics::ContactState state = state_along(node, contact_, 1);
     if (node.is_ground && !is_first_step_ && !(state == node.state)) {
@@ -169,19 +262,19 @@ void BasicAgent<Real>::jacobi_step() {
     const typename Node<Real>::Vec step = is_scalar_ ? rest : solve_diagonal(node, rest);
     for (std::size_t k = 0; k < 6; ++k) {
       node.g[k] += static_cast<Real>(kJacobiWeight) * (is_scalar_ ? step[k] / node.p[k] : step[k]);
-      node.z[k] = node.g[k];
     }
+    node.shared = equilibrium::as_sent(node.g);
   }
   is_first_step_ = false;
   jacobi_error_ = static_cast<float>(error);
 }
 
-/// All beams of this module and of those it emulates, for what has been exchanged: into w, or with
-/// all digits into the force of each node.
+/// All beams of this module and of those it emulates, for what has been exchanged: into its image,
+/// or with all digits into the force of each node.
 template <class Real>
 void BasicAgent<Real>::exchange_forces() {
   for (int i = 0; i < node_count(); ++i) {
-    nodes_[static_cast<std::size_t>(i)].w = {};
+    nodes_[static_cast<std::size_t>(i)].image = {};
   }
   const std::uint8_t faces = used_faces();
   const auto& vectors = vectors_[tag_ & 1U];
@@ -198,7 +291,7 @@ void BasicAgent<Real>::exchange_forces() {
     const auto& force = planned_force_[static_cast<std::size_t>(planned_.hosted(i))];
     Node<Real>& node = nodes_[static_cast<std::size_t>(1 + i)];
     for (std::size_t k = 0; k < 6; ++k) {
-      node.w[k] = static_cast<Real>(force[k]);
+      node.image[k] = static_cast<Real>(force[k]);
       node.force[k] += sweep::is_precise(order_.operation) ? force[k] : 0;
     }
   }
@@ -213,9 +306,9 @@ void BasicAgent<Real>::add_beam(int face, const base::Vec6<float>& other) {
   const int k = planned_.at_face(face);
   if (!sweep::is_precise(order_.operation)) {
     const auto& beam = equilibrium::beam_of(setup_, Real{});
-    const auto mine = converted<Real>(sweep::rounded(node.z));
+    const auto mine = converted<Real>(sweep::rounded(node.shared));
     const auto theirs = converted<Real>(other);
-    base::add_to(node.w, mechanics::end_force(beam, direction, mine, theirs));
+    base::add_to(node.image, mechanics::end_force(beam, direction, mine, theirs));
     if (k >= 0) {
       base::add_to(
           planned_force_[static_cast<std::size_t>(k)],
@@ -223,7 +316,7 @@ void BasicAgent<Real>::add_beam(int face, const base::Vec6<float>& other) {
     }
     return;
   }
-  const auto mine = converted<double>(node.z);
+  const auto mine = converted<double>(node.shared);
   const auto theirs = converted<double>(other);
   base::add_to(node.force, mechanics::end_force(setup_.beam, direction, mine, theirs));
   if (k >= 0) {
@@ -292,6 +385,19 @@ void BasicAgent<Real>::visit_loads(Visit&& visit) const {
   }
 }
 
+template <class Real>
+bool BasicAgent<Real>::find_load_ratio(const base::Cell& cell, base::Direction direction,
+                                       float& ratio) const {
+  bool is_found = false;
+  visit_loads([&](const base::Cell& here, base::Direction there, double value) {
+    if (here == cell && there == direction) {
+      ratio = static_cast<float>(value);
+      is_found = true;
+    }
+  });
+  return is_found;
+}
+
 /// Error bound, largest load ratio, facets that want another state, their hash.
 template <class Real>
 Report BasicAgent<Real>::residual_report() {
@@ -325,21 +431,14 @@ Report BasicAgent<Real>::residual_report() {
   return report;
 }
 
-/// (r, z), (z, w) with the facet's part added to w, and the bound on the error.
+/// (r, z), (z, w), and the bound on the error that r means.
 template <class Real>
-Report BasicAgent<Real>::product_report() {
+Report BasicAgent<Real>::product_report() const {
   Real residual_product = 0;
   Real image_product = 0;
   double error = 0;
   for (int i = 0; i < node_count(); ++i) {
-    Node<Real>& node = nodes_[static_cast<std::size_t>(i)];
-    if (node.is_fixed) {
-      node.w = {};
-    } else if (node.is_ground) {
-      base::add_to(node.w, equilibrium::converted<Real>(mechanics::symmetric_product(
-                               contact_.facet, node.state, node.is_held,
-                               equilibrium::converted<double>(node.z))));
-    }
+    const Node<Real>& node = nodes_[static_cast<std::size_t>(i)];
     residual_product += base::dot(node.r, node.z);
     image_product += base::dot(node.z, node.w);
     error += node.is_fixed ? 0 : ratio_error(node.r, setup_, contact_);
@@ -373,7 +472,7 @@ Report BasicAgent<Real>::slope_report() const {
       rest[2] += setup_.weight_n;
       double slope = 0;
       for (std::size_t k = 0; k < 6; ++k) {
-        rest[k] += node.force[k] + t * static_cast<double>(node.w[k]);
+        rest[k] += node.force[k] + t * static_cast<double>(node.image[k]);
         slope += rest[k] * static_cast<double>(node.g[k]);
       }
       sums[static_cast<std::size_t>(place)] += slope;

@@ -157,13 +157,18 @@ Writer encode(const Order& order) {
       break;
     case Operation::kStart:
       out.u8(order.flags);
+      out.u8(static_cast<std::uint8_t>(order.count));
       break;
     case Operation::kBegin:
     case Operation::kSlope:
       out.u8(order.flags);
       [[fallthrough]];
-    case Operation::kGradient:
     case Operation::kHigh:
+      out.real(static_cast<double>(order.reals[0]));
+      out.real(static_cast<double>(order.reals[1]));
+      break;
+    case Operation::kGradient:
+      out.u8(static_cast<std::uint8_t>(order.count));
       out.real(static_cast<double>(order.reals[0]));
       out.real(static_cast<double>(order.reals[1]));
       break;
@@ -210,13 +215,17 @@ Order decode_order(std::span<const std::uint8_t> message) {
       break;
     case Operation::kStart:
       order.flags = in.u8();
+      order.count = in.u8();
       break;
     case Operation::kBegin:
     case Operation::kSlope:
       order.flags = in.u8();
       [[fallthrough]];
-    case Operation::kGradient:
     case Operation::kHigh:
+      order.reals = {in.real(), in.real()};
+      break;
+    case Operation::kGradient:
+      order.count = in.u8();
       order.reals = {in.real(), in.real()};
       break;
     case Operation::kVerdict:

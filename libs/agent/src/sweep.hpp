@@ -91,7 +91,10 @@ void BasicAgent<Real>::take_order(const Order& order) {
   is_sweeping_ = true;
   phase_ = sweep::phase_of(order.operation);
   reports_awaited_ = children_;
-  jacobi_left_ = order.count;
+  // A preconditioner of degree m shares m more vectors than its first and its last one, which are
+  // the same for m = 0.
+  const bool is_jacobi = order.operation == wire::Operation::kJacobi;
+  exchanges_left_ = static_cast<std::uint16_t>(is_jacobi ? order.count : order.count + 1);
   send_to_children(encode(order));
   prepare(order);
   if (sweep::exchanges(order)) {
@@ -106,7 +109,7 @@ void BasicAgent<Real>::start_exchange() {
   ++tag_;
   planned_awaited_ = planned_.from_above();
   planned_force_ = {};
-  const base::Vec6<float> own = sweep::rounded(nodes_[0].z);
+  const base::Vec6<float> own = sweep::rounded(nodes_[0].shared);
   const std::uint8_t faces = used_faces();
   for (int face = 0; face < base::kDirectionCount; ++face) {
     if ((faces & bit(face)) != 0) {
@@ -115,7 +118,7 @@ void BasicAgent<Real>::start_exchange() {
   }
   for (int i = 0; i < planned_.hosted_count(); ++i) {
     planned_vector_[static_cast<std::size_t>(planned_.hosted(i))] =
-        sweep::rounded(nodes_[static_cast<std::size_t>(1 + i)].z);
+        sweep::rounded(nodes_[static_cast<std::size_t>(1 + i)].shared);
   }
   send_planned_down();
 }
@@ -220,9 +223,9 @@ void BasicAgent<Real>::continue_sweep() {
   while (is_sweeping_ && is_exchanging_) {
     const std::size_t slot = tag_ & 1U;
     const std::uint8_t faces = used_faces();
-    const bool is_jacobi = order_.operation == wire::Operation::kJacobi;
-    // What children add to planned modules emulated here comes before their reports.
-    const bool waits_for_children = !is_jacobi || planned_.is_any_remote();
+    // What children add to planned modules emulated here comes before their reports. An order that
+    // needs this has one exchange only.
+    const bool waits_for_children = exchanges_left_ == 1;
     if ((vectors_here_[slot] & faces) != faces || planned_awaited_ != 0 ||
         (waits_for_children && reports_awaited_ != 0)) {
       return;
@@ -231,11 +234,9 @@ void BasicAgent<Real>::continue_sweep() {
     vectors_here_[slot] = 0;
     is_exchanging_ = false;
     send_planned_up();
-    if (is_jacobi) {
-      jacobi_step();
-      if (--jacobi_left_ > 0) {
-        start_exchange();
-      }
+    after_exchange();
+    if (--exchanges_left_ > 0) {
+      start_exchange();
     }
   }
   if (is_sweeping_ && reports_awaited_ == 0) {

@@ -142,7 +142,7 @@ void BasicAgent<Real>::end_stage() {
     return;
   }
   if (stage_ == kTreeStage) {
-    next_order_ = conductor_.begin(setup_, nodes_[0].cell, census_count_);
+    next_order_ = conductor_.begin(setup_, nodes_[0].cell, census_count_, census_hops_);
     has_next_order_ = true;
     return;
   }

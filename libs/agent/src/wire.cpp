@@ -28,7 +28,7 @@ constexpr std::array<std::uint8_t, 10> kMessageBytes = {0, 19, 19, 8, 3, 0, 0, 2
 
 /// Sizes of orders and reports by operation.
 constexpr std::array<std::uint8_t, kOperationCount + 1> kOrderBytes = {
-    0, 12, 10, 11, 14, 11, 10, 3, 3, 10, 4, 11, 3, 2, 2, 18};
+    0, 12, 10, 11, 14, 11, 10, 3, 4, 11, 4, 11, 3, 2, 2, 18};
 constexpr std::array<std::uint8_t, kOperationCount + 1> kReportBytes = {
     0, 13, 3, 17, 19, 2, 2, 17, 12, 12, 10, 22, 10, 21, 24, 6};
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "bits.hpp"
+#include "equilibrium.hpp"
 #include "holdfast/agent/agent.hpp"
 
 /// What the operations do on one module: before the exchange (prepare) and after it (conclude).
@@ -37,7 +38,7 @@ void BasicAgent<Real>::prepare(const Order& order) {
       for (int i = 0; i < node_count(); ++i) {
         Node<Real>& node = nodes_[static_cast<std::size_t>(i)];
         for (std::size_t k = 0; k < 6; ++k) {
-          node.z[k] = static_cast<Real>(node.u[k] - leading_part(node.u[k]));
+          node.shared[k] = static_cast<Real>(node.u[k] - leading_part(node.u[k]));
         }
       }
       break;
@@ -51,7 +52,7 @@ void BasicAgent<Real>::prepare(const Order& order) {
     case Operation::kSlope:
       for (int i = 0; i < node_count(); ++i) {
         Node<Real>& node = nodes_[static_cast<std::size_t>(i)];
-        node.z = node.g;
+        node.shared = equilibrium::as_sent(node.g);
       }
       break;
     case Operation::kVerdict:

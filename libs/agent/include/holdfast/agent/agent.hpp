@@ -110,6 +110,10 @@ class BasicAgent {
   /// The largest load ratio of this module's own connections: its colour. Valid with a verdict.
   float own_load_ratio() const { return own_ratio_; }
 
+  /// The load ratio of one connection of this module, or of a planned module that it emulates, at
+  /// the last residual; false if it has none there.
+  bool find_load_ratio(const base::Cell& cell, base::Direction direction, float& ratio) const;
+
   Phase phase() const { return phase_; }
 
   std::uint16_t epoch() const { return round_.epoch; }
@@ -194,12 +198,15 @@ class BasicAgent {
   void move(const Order& order);
   void start_solve(const Order& order);
   void gradient_step(const Order& order);
+  void precondition(int node, int degree);
+  void after_exchange();
+  void polynomial_step();
   void jacobi_step();
   void exchange_forces();
   void add_beam(int face, const base::Vec6<float>& other);
   void add_planned_beams();
   Report residual_report();
-  Report product_report();
+  Report product_report() const;
   Report slope_report() const;
   Report mix_report() const;
   Report hold_report();
@@ -247,11 +254,12 @@ class BasicAgent {
   bool is_exchanging_ = false;
   bool is_first_step_ = false;  ///< Of a Jacobi method.
   bool is_scalar_ = false;      ///< Scalar diagonal instead of blocks.
+  float rho_ = 0;               ///< Of the polynomial preconditioner.
   std::uint8_t reports_awaited_ = 0;
   std::uint8_t planned_awaited_ = 0;  ///< By planned index: reals still to come from the parent.
   std::uint8_t tag_ = 0;              ///< Of the exchange under way.
   std::array<std::uint8_t, 2> vectors_here_{};  ///< Faces, by the tag's lowest bit.
-  std::uint16_t jacobi_left_ = 0;
+  std::uint16_t exchanges_left_ = 0;
   float jacobi_error_ = 0;
   std::array<std::array<base::Vec6<float>, base::kDirectionCount>, 2> vectors_{};
   std::array<std::array<std::uint8_t, wire::kMessageBytesMax>, base::kDirectionCount> reports_{};

@@ -40,7 +40,9 @@ struct Effort {
 class Conductor {
  public:
   /// The first order. `root` is the root's own cell, `module_count` how many the wave has counted.
-  Order begin(const Setup& setup, const base::Cell& root, std::uint32_t module_count);
+  /// and how many hops the deepest of them is away.
+  Order begin(const Setup& setup, const base::Cell& root, std::uint32_t module_count,
+              std::uint16_t depth);
 
   /// The next order, given what the last one has brought.
   Order next(const Setup& setup, const Report& report);
@@ -107,6 +109,7 @@ class Conductor {
   Effort effort_;
   base::Cell root_;
   std::uint32_t census_ = 0;
+  std::uint16_t degree_ = 0;  ///< Of the polynomial preconditioner.
   std::uint8_t plan_index_ = 0xff;
   base::Cell plan_cell_;
   std::array<std::uint8_t, 8> totals_{};

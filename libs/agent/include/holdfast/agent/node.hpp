@@ -54,6 +54,8 @@ struct Node {
   Vec move{};      ///< The last change of u.
   Vec z{};
   Vec w{};
+  Vec shared{};  ///< What is exchanged with the neighbours, ...
+  Vec image{};   ///< ... and what the beams make of it.
   Vec p{};
   Vec s{};
   Triangle<Real> factor{};  ///< Of the 6x6 diagonal block.

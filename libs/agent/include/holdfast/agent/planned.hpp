@@ -17,7 +17,7 @@
 /// routing table.
 namespace holdfast::agent {
 
-inline constexpr int kPlannedMax = 6;
+inline constexpr int kPlannedMax = 5;
 
 class Planned {
  public:

@@ -1,0 +1,116 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <string_view>
+#include <vector>
+
+#include "holdfast/base/cell.hpp"
+
+/// Golden text of the wire format, written by hand from docs/wire.md, which shows the same lines.
+namespace holdfast::agent::test {
+
+/// By operation, from 1.
+inline constexpr std::array<std::string_view, 15> kGoldenOrders = {
+    "05 01 02 01 00 00 fe ff ff 03 00 00",
+    "05 02 01 02 04 08 10 20 00 00",
+    "05 03 c0 bd f0 40 42 0f 00 00 00",
+    "05 04 1d 00 00 00 fd ff ff ff 05 00 00 00",
+    "05 05 01 00 00 00 3f 00 00 7a 44",
+    "05 06 00 00 80 3f 00 00 80 3e",
+    "05 07 01",
+    "05 08 04",
+    "05 09 00 00 00 c0 00 00 c0 3f",
+    "05 0a 00 10",
+    "05 0b 01 00 00 00 00 00 00 80 3f",
+    "05 0c 02",
+    "05 0d",
+    "05 0e",
+    "05 0f 02 02 00 00 c0 3f 01 00 00 fe ff ff 03 00 00 05"};
+
+inline constexpr std::array<std::string_view, 15> kGoldenReports = {
+    "06 01 21 01 01 00 00 fe ff ff 03 00 00",
+    "06 02 87",
+    "06 03 1d 00 00 00 fd ff ff ff 05 00 00 00 01 2c 01",
+    "06 04 01 01 00 00 00 ff ff ff ff 00 ff ff ff 02 00 00 00",
+    "06 05",
+    "06 06",
+    "06 07 00 00 80 3e 00 00 00 3f 03 00 ef cd ab 89 01",
+    "06 08 00 00 c0 3f 00 00 40 40 80 3e",
+    "06 09 00 00 80 3f 00 00 00 40 01 3f",
+    "06 0a 00 00 80 3e 00 00 00 00",
+    "06 0b 00 00 80 bf 00 00 00 bf 00 00 80 3e 00 00 80 3f 00 00 00 40",
+    "06 0c 02 00 00 00 01 00 00 00",
+    "06 0d 02 01 00 00 ff ff ff 00 00 00 fd ff ff 01 00 00 00 00 00",
+    "06 0e 00 00 c0 3f 01 00 00 fe ff ff 03 00 00 04 01 00 00 00 1d 00 00 00",
+    "06 0f 1d 00 00 00"};
+
+/// Types 7, 8 and 9, label 5, with the reals 1, -2, 0.5, 0.25, -1, 1.5.
+inline constexpr std::array<std::string_view, 3> kGoldenVectors = {
+    "07 05 00 00 80 3f 00 00 00 c0 00 00 00 3f 00 00 80 3e 00 00 80 bf 00 00 c0 3f",
+    "08 05 00 00 80 3f 00 00 00 c0 00 00 00 3f 00 00 80 3e 00 00 80 bf 00 00 c0 3f",
+    "09 05 00 00 80 3f 00 00 00 c0 00 00 00 3f 00 00 80 3e 00 00 80 bf 00 00 c0 3f"};
+
+inline constexpr std::string_view kGoldenHello = "80 40 34 12 00 00 00 00 43";
+inline constexpr std::string_view kGoldenHelloHeard = "80 40 ef be 34 12 00 2d 41";
+inline constexpr std::string_view kGoldenHelloOpen = "80 40 34 12 ef be 01 23 e2";
+inline constexpr std::string_view kGoldenData = "00 40 04 02 01 05 0d 3a 9b";
+inline constexpr std::string_view kGoldenAcknowledge = "40 41 4a 72";
+inline constexpr std::string_view kGoldenPing = "c0 41 d2 69";
+
+/// What one module says through one face, from the beginning.
+struct GoldenStream {
+  std::size_t from = 0;
+  base::Direction face = base::Direction::kPlusX;
+  std::vector<std::string_view> messages;
+};
+
+/// Module 0, id 10, the anchor, at (-1, 2, 0); 1, id 11, at (0, 2, 0); 2, id 12, at (0, 3, 0).
+inline const std::vector<GoldenStream> kGoldenTrace = {
+    {0,
+     base::Direction::kPlusX,
+     {"01 01 00 0a 00 00 00 01 ff ff ff 02 00 00 00 00 00 00 00",  // join: I start, wave 1
+      "03 01 0c 00 00 00 01 00",                                   // appoint 12, half way is 1
+      "02 01 00 0a 00 00 00 02 01 00 00 00 02 00 0a 00 00 00 00",  // echo, wave 2
+      "04 00 00",                                                  // mark: you are half way
+      "02 01 00 0a 00 00 00 03 01 00 00 00 01 00 0a 00 00 00 00",  // echo, wave 3
+      "06 01 00 00 00 00 00 00 00 00 00 00 00",                    // I have announced nothing
+      "06 01 08 00 00 00 00 00 00 00 00 00 00",                    // it is at my face +y
+      "06 02 80",                                                  // hosted elsewhere
+      "06 03 01 00 00 00 ff ff ff ff 00 00 00 00 00 01 00",        // one module at (-1, 0)
+      "06 04 01 08 00 00 00 00 00 00 00 00 00 00 00 08 00 00 00",  // its corner is below the centre
+      "06 05"}},
+    {1,
+     base::Direction::kMinusX,
+     {"02 01 00 0a 00 00 00 01 02 00 00 00 02 00 0c 00 00 00 00",  // echo: two, 12 is furthest
+      "01 01 00 0a 00 00 00 02 00 00 00 02 00 00 00 00 00 01 00",  // join, wave 2
+      "03 02 0a 00 00 00 01 00",                                   // appoint 10
+      "01 01 00 0a 00 00 00 03 00 00 00 02 00 00 00 00 00 00 00",  // join, wave 3: I am the root
+      "05 01 ff 00 00 00 00 00 00 00 00 00",                       // what is planned?
+      "05 01 00 ff ff ff 03 00 00 00 00 00",                       // planned 0 is at (-1, 3, 0)
+      "05 02 09 00 00 00 00 00 00 00",                             // it touches by -y and +x
+      "05 03 00 00 00 02 00 00 00 00 00",                          // count, from (0, 2, 0)
+      "05 04 04 00 00 00 fe ff ff ff 02 00 00 00",                 // four modules, sum (-2, 2)
+      "05 05 00 17 b7 d1 38 00 00 f0 42",                          // gamma 1e-4, lever 120 mm
+      "05 08 02",                                                  // start Jacobi, scalars
+      "05 0a 01 00",                                               // one step
+      "07 01 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00",
+      "08 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00"}},
+    {1,
+     base::Direction::kPlusY,
+     {"01 01 00 0a 00 00 00 01 00 00 00 02 00 00 00 00 00 01 00",   // join, wave 1
+      "03 01 0c 00 00 00 01 00",                                    // appoint 12
+      "02 01 00 0a 00 00 00 02 02 00 00 00 02 00 0a 00 00 00 00"}}, // echo, wave 2
+    {2,
+     base::Direction::kMinusY,
+     {"02 01 00 0a 00 00 00 01 01 00 00 00 02 00 0c 00 00 00 00",  // echo, wave 1
+      "01 01 00 0a 00 00 00 02 00 00 00 03 00 00 00 00 00 00 00",  // join: I start wave 2
+      "03 02 0a 00 00 00 01 00",                                   // appoint 10
+      "02 01 00 0a 00 00 00 03 01 00 00 00 01 00 0c 00 00 00 00",  // echo, wave 3
+      "06 01 00 01 ff ff ff 03 00 00 00 00 00",                    // the first is at (-1, 3, 0)
+      "06 01 01 00 00 00 00 00 00 00 00 00 00"}},                  // it is at my face -x
+};
+
+}  // namespace holdfast::agent::test

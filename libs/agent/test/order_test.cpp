@@ -1,0 +1,296 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// Orders and reports survive the wire, and sums of reports depend neither on the order in which
+// they come nor on the tree: merging is commutative and associative wherever the numbers are exact.
+// The bytes themselves are tested in wire_test.cpp. Comparisons are of all that goes on the wire,
+// as bytes; a report that has been decoded holds nothing else.
+#include "holdfast/agent/order.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <set>
+#include <string>
+
+#include "holdfast/base/rng.hpp"
+#include "test_setup.hpp"
+
+namespace holdfast::agent {
+namespace {
+
+using namespace holdfast::agent::test;
+using wire::Operation;
+
+constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+
+Operation operation_at(int i) { return static_cast<Operation>(i); }
+
+/// A small multiple of 1/8: sums of some hundred are exact.
+float exact_real(base::Rng& rng) {
+  return static_cast<float>(static_cast<int>(rng.below(2001)) - 1000) / 8;
+}
+
+base::Cell random_cell(base::Rng& rng) {
+  const auto coordinate = [&] { return static_cast<std::int32_t>(rng.below(2'000'001)) - 1'000'000; };
+  return {coordinate(), coordinate(), coordinate()};
+}
+
+Order random_order(Operation operation, base::Rng& rng) {
+  Order order{.operation = operation};
+  order.index = static_cast<std::uint8_t>(rng.next());
+  order.flags = static_cast<std::uint8_t>(rng.next());
+  order.count = static_cast<std::uint16_t>(rng.next());
+  order.cell = random_cell(rng);
+  for (std::uint8_t& mask : order.masks) {
+    mask = static_cast<std::uint8_t>(rng.next());
+  }
+  order.module_count = static_cast<std::int32_t>(rng.next());
+  order.cell_sum = {static_cast<std::int32_t>(rng.next()), static_cast<std::int32_t>(rng.next())};
+  order.reals = {exact_real(rng), exact_real(rng)};
+  order.answer = {.verdict = static_cast<Verdict>(rng.below(5)),
+                  .reason = static_cast<Reason>(rng.below(12)),
+                  .load_ratio_max = exact_real(rng),
+                  .worst_cell = random_cell(rng),
+                  .worst_direction = static_cast<base::Direction>(rng.below(6))};
+  return order;
+}
+
+/// Sums of a few stay exact and in range.
+Report random_report(Operation operation, base::Rng& rng) {
+  Report report;
+  report.flags = static_cast<std::uint8_t>(rng.below(4));
+  report.mask = static_cast<std::uint8_t>(rng.next());
+  report.extent = static_cast<std::uint16_t>(rng.next());
+  report.count = static_cast<std::uint32_t>(rng.next());
+  report.number = static_cast<std::uint32_t>(rng.next());
+  const auto sum = [&] { return static_cast<std::int32_t>(rng.below(1'000'001)) - 500'000; };
+  report.cell_sum = {sum(), sum()};
+  for (float& real : report.reals) {
+    real = exact_real(rng);
+  }
+  if (operation == Operation::kStart || operation == Operation::kGradient) {
+    report.reals[2] = static_cast<float>(rng.below(16)) / 8;  // Seven digits of fraction hold it.
+  }
+  report.cell = operation == Operation::kPlan && (report.flags & kFound) == 0 ? base::Cell{}
+                                                                               : random_cell(rng);
+  report.direction = static_cast<base::Direction>(rng.below(6));
+  if (rng.below(4) != 0) {
+    report.angles = mechanics::safe_angles<std::int64_t>({sum(), sum()}, 300'000);
+  }
+  const auto half_cells = [&] { return 2 * static_cast<std::int32_t>(rng.below(5)) - 5; };
+  for (std::uint64_t i = 0; i < rng.below(3); ++i) {
+    report.corners = mechanics::merge(
+        report.corners, {.count = 1, .corners = {{half_cells(), half_cells(), 0}}});
+  }
+  return report;
+}
+
+std::string text_of(Operation operation, const Report& report) {
+  return to_hex(encode(operation, report).bytes());
+}
+
+Report through_wire(Operation operation, const Report& report) {
+  return decode_report(encode(operation, report).bytes());
+}
+
+Report merged(Operation operation, Report into, const Report& from) {
+  merge(operation, into, from);
+  return into;
+}
+
+TEST(Order, every_order_comes_back) {
+  base::Rng rng(1);
+  for (int i = 1; i <= wire::kOperationCount; ++i) {
+    for (int round = 0; round < 100; ++round) {
+      const auto message = encode(random_order(operation_at(i), rng));
+      EXPECT_EQ(message.bytes().size(),
+                static_cast<std::size_t>(wire::message_bytes(5, static_cast<std::uint8_t>(i))));
+      const Order back = decode_order(message.bytes());
+      EXPECT_EQ(back.operation, operation_at(i));
+      EXPECT_EQ(to_hex(encode(back).bytes()), to_hex(message.bytes()));
+    }
+  }
+}
+
+TEST(Order, every_report_comes_back) {
+  base::Rng rng(2);
+  for (int i = 1; i <= wire::kOperationCount; ++i) {
+    for (int round = 0; round < 100; ++round) {
+      const auto message = encode(operation_at(i), random_report(operation_at(i), rng));
+      EXPECT_EQ(message.bytes().size(),
+                static_cast<std::size_t>(wire::message_bytes(6, static_cast<std::uint8_t>(i))));
+      EXPECT_EQ(text_of(operation_at(i), decode_report(message.bytes())), to_hex(message.bytes()));
+    }
+  }
+}
+
+/// Field by field, for what bytes alone would not tell: that decoding puts them where they were.
+TEST(Order, fields_come_back_where_they_were) {
+  base::Rng rng(3);
+  const auto there_and_back = [&](Operation operation, Order& sent) {
+    sent = random_order(operation, rng);
+    return decode_order(encode(sent).bytes());
+  };
+  Order sent;
+  Order back = there_and_back(Operation::kPlan, sent);
+  EXPECT_EQ(back.index, sent.index);
+  EXPECT_EQ(back.cell, sent.cell);
+  back = there_and_back(Operation::kHosts, sent);
+  EXPECT_EQ(back.masks, sent.masks);
+  back = there_and_back(Operation::kAngles, sent);
+  EXPECT_EQ(back.module_count, sent.module_count);
+  EXPECT_EQ(back.cell_sum, sent.cell_sum);
+  back = there_and_back(Operation::kSlope, sent);
+  EXPECT_EQ(back.flags, sent.flags);
+  EXPECT_EQ(back.reals, sent.reals);
+  back = there_and_back(Operation::kVerdict, sent);
+  EXPECT_EQ(back.answer.verdict, sent.answer.verdict);
+  EXPECT_EQ(back.answer.reason, sent.answer.reason);
+  EXPECT_EQ(back.answer.load_ratio_max, sent.answer.load_ratio_max);
+  EXPECT_EQ(back.answer.worst_cell, sent.answer.worst_cell);
+  EXPECT_EQ(back.answer.worst_direction, sent.answer.worst_direction);
+  const Report mass = random_report(Operation::kMass, rng);
+  const Report mass_back = through_wire(Operation::kMass, mass);
+  EXPECT_EQ(mass_back.count, mass.count);
+  EXPECT_EQ(mass_back.cell_sum, mass.cell_sum);
+  EXPECT_EQ(mass_back.extent, mass.extent);
+  const Report low = random_report(Operation::kLow, rng);
+  const Report low_back = through_wire(Operation::kLow, low);
+  EXPECT_EQ(low_back.reals[1], low.reals[1]);
+  EXPECT_EQ(low_back.number, low.number);
+  EXPECT_EQ(low_back.extent, low.extent);
+}
+
+/// Corner sets are left out of associativity: of many corners on a line any two may be kept.
+TEST(Order, merging_is_commutative_and_associative) {
+  base::Rng rng(4);
+  for (int i = 1; i <= wire::kOperationCount; ++i) {
+    const Operation operation = operation_at(i);
+    for (int round = 0; round < 300; ++round) {
+      const Report a = through_wire(operation, random_report(operation, rng));
+      const Report b = through_wire(operation, random_report(operation, rng));
+      const Report c = through_wire(operation, random_report(operation, rng));
+      const Report left = merged(operation, merged(operation, a, b), c);
+      const Report right = merged(operation, a, merged(operation, b, c));
+      if (operation == Operation::kCorners) {
+        EXPECT_EQ(left.corners.stable, right.corners.stable);
+        EXPECT_EQ(left.corners.count, right.corners.count);
+        continue;
+      }
+      EXPECT_EQ(text_of(operation, left), text_of(operation, right)) << i;
+      EXPECT_EQ(text_of(operation, merged(operation, a, b)),
+                text_of(operation, merged(operation, b, a)))
+          << i;
+    }
+  }
+}
+
+TEST(Order, mass_counts_and_keeps_the_largest_extent) {
+  const Report a = {.extent = 7, .count = 2, .cell_sum = {3, -4}};
+  const Report b = {.flags = kAnyFixed, .extent = 9, .count = 5, .cell_sum = {-10, 1}};
+  const Report sum = merged(Operation::kMass, a, b);
+  EXPECT_EQ(sum.count, 7U);
+  EXPECT_EQ(sum.extent, 9);
+  EXPECT_EQ(sum.cell_sum, (std::array<std::int32_t, 2>{-7, -3}));
+  EXPECT_EQ(sum.flags, kAnyFixed);
+}
+
+TEST(Order, sums_of_cells_that_overflow_say_so_and_stay) {
+  constexpr std::int32_t kMost = std::numeric_limits<std::int32_t>::max();
+  const Report most = {.cell_sum = {kMost, -kMost}};
+  const Report still = merged(Operation::kMass, most, {.cell_sum = {0, 0}});
+  EXPECT_EQ(still.flags, 0);
+  EXPECT_EQ(still.cell_sum, most.cell_sum);
+  const Report over = merged(Operation::kMass, most, {.cell_sum = {1, -1}});
+  EXPECT_EQ(over.flags, kSumOverflow);
+  EXPECT_EQ(over.cell_sum, most.cell_sum);
+  // What comes later cannot take it back.
+  const Report later = merged(Operation::kMass, over, {.cell_sum = {-5, 5}});
+  EXPECT_EQ(later.flags, kSumOverflow);
+  EXPECT_EQ(merged(Operation::kMass, {.cell_sum = {-5, 5}}, over).flags, kSumOverflow);
+}
+
+TEST(Order, the_next_planned_cell_is_the_first_of_all) {
+  const Report none;
+  const Report early = {.flags = kFound, .mask = 1, .cell = {-3, 9, 9}};
+  const Report late = {.flags = kFound, .mask = 4, .cell = {2, 0, 0}};
+  for (const auto& [a, b] : {std::pair{early, late}, {late, early}}) {
+    const Report both = merged(Operation::kPlan, a, b);
+    EXPECT_EQ(both.cell, early.cell);
+    EXPECT_EQ(both.mask, 5);
+  }
+  EXPECT_EQ(merged(Operation::kPlan, none, late).cell, late.cell);
+  EXPECT_EQ(merged(Operation::kPlan, late, none).cell, late.cell);
+  EXPECT_EQ(merged(Operation::kPlan, none, none).flags, 0);
+}
+
+TEST(Order, of_equal_loads_the_first_cell_is_the_worst) {
+  const Report low = {.count = 0, .number = 3, .reals = {0.5F}, .cell = {-9, 0, 0}};
+  const Report first = {.count = 1,
+                        .number = 4,
+                        .reals = {1.25F},
+                        .cell = {0, 0, 0},
+                        .direction = base::Direction::kMinusX};
+  const Report second = {.count = 2,
+                         .number = 5,
+                         .reals = {1.25F},
+                         .cell = {0, 0, 1},
+                         .direction = base::Direction::kPlusY};
+  for (const auto& [a, b] : {std::pair{first, second}, {second, first}}) {
+    const Report all = merged(Operation::kLoads, merged(Operation::kLoads, low, a), b);
+    EXPECT_EQ(all.reals[0], 1.25F);
+    EXPECT_EQ(all.cell, first.cell);
+    EXPECT_EQ(all.direction, first.direction);
+    EXPECT_EQ(all.count, 3U);
+    EXPECT_EQ(all.number, 12U);
+  }
+}
+
+TEST(Order, counts_of_hold_and_verdict_add_up) {
+  const Report hold =
+      merged(Operation::kHold, {.count = 2, .number = 1}, {.count = 3, .number = 4});
+  EXPECT_EQ(hold.count, 5U);
+  EXPECT_EQ(hold.number, 5U);
+  EXPECT_EQ(merged(Operation::kVerdict, {.count = 28}, {.count = 1}).count, 29U);
+}
+
+TEST(Order, changed_facets_do_not_wrap) {
+  const Report many = merged(Operation::kLow, {.extent = 0xfffe}, {.extent = 3});
+  EXPECT_EQ(many.extent, 0xffff);
+}
+
+/// From whichever side it comes, and whatever comes after it.
+TEST(Order, what_is_not_a_number_survives) {
+  const Report one = {.reals = {1, 1}};
+  for (const float other : {-1e30F, 0.5F, 2.0F, kNan}) {
+    const Report fine = {.reals = {other, other}};
+    const Report bad_ratio = {.reals = {0, kNan}};
+    EXPECT_TRUE(std::isnan(merged(Operation::kLow, bad_ratio, fine).reals[1])) << other;
+    EXPECT_TRUE(std::isnan(merged(Operation::kLow, fine, bad_ratio).reals[1])) << other;
+    const Report bad_error = {.reals = {kNan, 0}};
+    EXPECT_TRUE(std::isnan(merged(Operation::kLow, bad_error, fine).reals[0])) << other;
+    EXPECT_TRUE(std::isnan(merged(Operation::kLow, fine, bad_error).reals[0])) << other;
+    const Report bad_load = {.reals = {kNan}};
+    EXPECT_TRUE(std::isnan(merged(Operation::kLoads, bad_load, fine).reals[0])) << other;
+    EXPECT_TRUE(std::isnan(merged(Operation::kLoads, fine, bad_load).reals[0])) << other;
+  }
+  EXPECT_EQ(merged(Operation::kLow, one, one).reals[1], 1.0F);
+}
+
+TEST(Order, every_verdict_and_reason_has_a_name_of_its_own) {
+  std::set<std::string> names;
+  for (int i = 0; i <= static_cast<int>(Verdict::kUndecided); ++i) {
+    names.insert(name(static_cast<Verdict>(i)));
+  }
+  EXPECT_EQ(names.size(), 5U);
+  names.clear();
+  for (int i = 0; i <= static_cast<int>(Reason::kAmbiguousFeet); ++i) {
+    names.insert(name(static_cast<Reason>(i)));
+  }
+  EXPECT_EQ(names.size(), 12U);
+}
+
+}  // namespace
+}  // namespace holdfast::agent

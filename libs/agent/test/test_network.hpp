@@ -1,0 +1,181 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "holdfast/agent/agent.hpp"
+#include "holdfast/base/rng.hpp"
+#include "test_setup.hpp"
+
+namespace holdfast::agent::test {
+
+/// One module of the robot under test. Ids count from `id_first` in the order of the list; the
+/// first module is the anchor.
+struct Place {
+  base::Cell cell;
+  bool is_fixed = false;
+  bool is_mute = false;  ///< It is there and never does anything.
+};
+
+struct NetworkOptions {
+  double loss = 0;  ///< Share of packets that vanish.
+  std::uint64_t seed = 1;
+  std::uint32_t id_first = 100;
+};
+
+/// The plainest network: time counts ticks, every line takes one packet a tick, and a packet is on
+/// the other side one tick later, or never.
+class TestNetwork {
+ public:
+  TestNetwork(const Setup& setup, std::vector<Place> places, NetworkOptions options = {})
+      : places_(std::move(places)), loss_(options.loss), rng_(options.seed) {
+    for (std::size_t i = 0; i < places_.size(); ++i) {
+      const Identity identity{.id = options.id_first + static_cast<std::uint32_t>(i),
+                              .is_fixed = places_[i].is_fixed,
+                              .is_anchor = i == 0,
+                              .cell = i == 0 ? places_[i].cell : base::Cell{}};
+      agents_.emplace_back(setup, identity);
+    }
+    actions_.resize(places_.size());
+    for (std::size_t i = 0; i < places_.size(); ++i) {
+      step(i, {.kind = EventKind::kStart, .now = now_});
+      for (const base::Direction face : base::kDirections) {
+        if (find(base::neighbour(places_[i].cell, face)) >= 0) {
+          step(i, {.kind = EventKind::kLinkUp, .now = now_, .face = face, .random = random()});
+        }
+      }
+    }
+  }
+
+  const Agent& agent(std::size_t i) const { return agents_[i]; }
+
+  const std::vector<Place>& places() const { return places_; }
+
+  std::size_t size() const { return agents_.size(); }
+
+  Time now() const { return now_; }
+
+  void plan(std::size_t i, const base::Cell& cell) {
+    step(i, {.kind = EventKind::kPlan, .now = now_, .cell = cell});
+  }
+
+  /// Takes a module off; its neighbours feel it.
+  void remove(std::size_t i) {
+    const base::Cell cell = places_[i].cell;
+    places_[i] = {.cell = {0, 0, -1000 - static_cast<std::int32_t>(i)}, .is_mute = true};
+    for (const base::Direction face : base::kDirections) {
+      const int other = find(base::neighbour(cell, face));
+      if (other >= 0) {
+        step(static_cast<std::size_t>(other),
+             {.kind = EventKind::kLinkDown, .now = now_, .face = base::opposite(face)});
+      }
+    }
+  }
+
+  bool is_every(const std::function<bool(const Agent&)>& holds) const {
+    for (std::size_t i = 0; i < agents_.size(); ++i) {
+      if (!places_[i].is_mute && !holds(agents_[i])) {
+        return false;
+      }
+    }
+    return true;
+  }
+
+  /// Ticks until every module that is not mute fulfils `holds`; false if that takes too long.
+  bool run_until(const std::function<bool(const Agent&)>& holds, Time ticks_max = 200'000) {
+    for (const Time end = now_ + ticks_max; !is_every(holds); tick()) {
+      if (now_ >= end) {
+        return false;
+      }
+    }
+    return true;
+  }
+
+  /// Until every module knows a verdict.
+  bool run() {
+    return run_until([](const Agent& agent) { return agent.phase() == Phase::kDone; });
+  }
+
+  void tick() {
+    ++now_;
+    for (const Flight& flight : std::exchange(in_flight_, {})) {
+      step(flight.to, {.kind = EventKind::kReceive,
+                       .now = now_,
+                       .face = flight.face,
+                       .bytes = std::span(flight.bytes).first(flight.size)});
+    }
+    for (std::size_t i = 0; i < agents_.size(); ++i) {
+      if (actions_[i].wake_at <= now_) {
+        step(i, {.kind = EventKind::kTime, .now = now_});
+      }
+      for (const base::Direction face : base::kDirections) {
+        if (((actions_[i].send_faces >> static_cast<unsigned>(base::index(face))) & 1U) != 0) {
+          take_packet(i, face);
+        }
+      }
+    }
+  }
+
+  /// Called with every packet before it gets lost.
+  std::function<void(std::size_t from, base::Direction face, std::span<const std::uint8_t>)> watch;
+
+ private:
+  struct Flight {
+    std::size_t to = 0;
+    base::Direction face = base::Direction::kPlusX;
+    std::size_t size = 0;
+    std::array<std::uint8_t, wire::kPacketBytesMax> bytes;
+  };
+
+  int find(const base::Cell& cell) const {
+    for (std::size_t i = 0; i < places_.size(); ++i) {
+      if (places_[i].cell == cell) {
+        return static_cast<int>(i);
+      }
+    }
+    return -1;
+  }
+
+  std::uint16_t random() { return static_cast<std::uint16_t>(rng_.next()); }
+
+  void step(std::size_t i, const Event& event) {
+    if (!places_[i].is_mute) {
+      agents_[i].step(event, actions_[i]);
+    }
+  }
+
+  void take_packet(std::size_t i, base::Direction face) {
+    step(i, {.kind = EventKind::kLineFree, .now = now_, .face = face});
+    const auto size = static_cast<std::size_t>(actions_[i].packet_bytes);
+    const int to = find(base::neighbour(places_[i].cell, face));
+    if (size == 0 || to < 0) {
+      return;
+    }
+    if (watch) {
+      watch(i, face, std::span(actions_[i].packet).first(size));
+    }
+    if (static_cast<double>(rng_.below(1'000'000)) >= loss_ * 1e6) {
+      in_flight_.push_back({.to = static_cast<std::size_t>(to),
+                            .face = base::opposite(face),
+                            .size = size,
+                            .bytes = actions_[i].packet});
+    }
+  }
+
+  std::vector<Place> places_;
+  double loss_;
+  base::Rng rng_;
+  std::deque<Agent> agents_;
+  std::vector<Actions> actions_;
+  std::vector<Flight> in_flight_;
+  Time now_ = 0;
+};
+
+}  // namespace holdfast::agent::test

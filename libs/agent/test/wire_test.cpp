@@ -1,0 +1,348 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// The bytes on the wire. Every line of golden text was written by hand from the tables of
+// docs/wire.md, where it stands too (the last test looks it up there); checksums come from a second
+// method, a division of polynomials bit by bit.
+#include "holdfast/agent/wire.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <fstream>
+#include <limits>
+#include <map>
+#include <set>
+#include <sstream>
+#include <string>
+
+#include "golden.hpp"
+#include "holdfast/agent/link.hpp"
+#include "holdfast/agent/order.hpp"
+#include "test_network.hpp"
+
+namespace holdfast::agent {
+namespace {
+
+using namespace holdfast::agent::test;
+using wire::MessageType;
+using wire::Operation;
+using wire::Reader;
+using wire::Writer;
+
+std::string order_text(const Order& order) { return to_hex(encode(order).bytes()); }
+
+std::string report_text(Operation operation, const Report& report) {
+  return to_hex(encode(operation, report).bytes());
+}
+
+constexpr base::Cell kCell = {1, -2, 3};
+
+TEST(Wire, orders_are_these_bytes) {
+  const Answer answer = {.verdict = Verdict::kOverload,
+                         .reason = Reason::kBreaks,
+                         .load_ratio_max = 1.5F,
+                         .worst_cell = kCell,
+                         .worst_direction = base::Direction::kMinusZ};
+  const std::vector<Order> orders = {
+      {.operation = Operation::kPlan, .index = 2, .cell = kCell},
+      {.operation = Operation::kHosts, .masks = {1, 2, 4, 8, 16, 32, 0, 0}},
+      {.operation = Operation::kMass, .cell = {-1'000'000, 1'000'000, 0}},
+      {.operation = Operation::kAngles, .module_count = 29, .cell_sum = {-3, 5}},
+      {.operation = Operation::kBegin, .flags = kUnilateralLaw, .reals = {0.5F, 1000}},
+      {.operation = Operation::kHigh, .reals = {1, 0.25F}},
+      {.operation = Operation::kLow, .flags = kFollowStates},
+      {.operation = Operation::kStart, .flags = kWithBlocks},
+      {.operation = Operation::kGradient, .reals = {-2, 1.5F}},
+      {.operation = Operation::kJacobi, .count = 4096},
+      {.operation = Operation::kSlope, .flags = kExchangeFirst, .reals = {0, 1}},
+      {.operation = Operation::kHold, .flags = kFreeOpen},
+      {.operation = Operation::kCorners},
+      {.operation = Operation::kLoads},
+      {.operation = Operation::kVerdict, .answer = answer}};
+  ASSERT_EQ(orders.size(), kGoldenOrders.size());
+  for (std::size_t i = 0; i < orders.size(); ++i) {
+    EXPECT_EQ(order_text(orders[i]), kGoldenOrders[i]);
+  }
+}
+
+TEST(Wire, reports_are_these_bytes) {
+  const mechanics::SafeAngles<std::int64_t> angles = {.range = mechanics::SafeRange::kArc,
+                                                      .gap_first = {1, -1},
+                                                      .gap_last = {-256, 2}};
+  const mechanics::SupportCorners corners = {.count = 2, .corners = {{1, -1, 0}, {-3, 1, 0}}};
+  const std::vector<Report> reports = {
+      {.flags = kFound, .mask = 0x21, .cell = kCell},
+      {.mask = 0x87},
+      {.flags = kAnyFixed, .extent = 300, .count = 29, .cell_sum = {-3, 5}},
+      {.angles = angles},
+      {},
+      {},
+      {.flags = kAnyTilting, .extent = 3, .number = 0x89abcdef, .reals = {0.25F, 0.5F}},
+      {.reals = {1.5F, 3, 0.25F}},
+      {.reals = {1, 2, 0.501F}},
+      {.reals = {0.25F}},
+      {.reals = {-1, -0.5F, 0.25F, 1, 2}},
+      {.count = 2, .number = 1},
+      {.corners = corners},
+      {.count = 1,
+       .number = 29,
+       .reals = {1.5F},
+       .cell = kCell,
+       .direction = base::Direction::kPlusZ},
+      {.count = 29}};
+  ASSERT_EQ(reports.size(), kGoldenReports.size());
+  for (std::size_t i = 0; i < reports.size(); ++i) {
+    EXPECT_EQ(report_text(static_cast<Operation>(i + 1), reports[i]), kGoldenReports[i]);
+  }
+}
+
+TEST(Wire, vectors_are_a_label_and_six_reals) {
+  constexpr std::array kTypes = {MessageType::kVector, MessageType::kPlannedDown,
+                                 MessageType::kPlannedUp};
+  for (std::size_t i = 0; i < kTypes.size(); ++i) {
+    Writer out(kTypes[i]);
+    out.u8(5);
+    for (const double real : {1.0, -2.0, 0.5, 0.25, -1.0, 1.5}) {
+      out.real(real);
+    }
+    EXPECT_EQ(to_hex(out.bytes()), kGoldenVectors[i]);
+  }
+}
+
+std::string packet_text(Link& link) {
+  std::array<std::uint8_t, wire::kPacketBytesMax> packet{};
+  const int size = link.write_packet(packet, LinkTiming{}, 0);
+  return to_hex(std::span(packet).first(static_cast<std::size_t>(size)));
+}
+
+/// A, number 0x1234, meets B, number 0xbeef.
+TEST(Wire, packets_are_these_bytes) {
+  const LinkTiming timing;
+  Link a;
+  Link b;
+  a.bring_up(0x1234, 0);
+  b.bring_up(0xbeef, 0);
+  EXPECT_EQ(packet_text(a), kGoldenHello);
+  EXPECT_TRUE(b.receive(from_hex(kGoldenHello), timing, 0).empty());
+  EXPECT_EQ(packet_text(b), kGoldenHelloHeard);
+  a.receive(from_hex(kGoldenHelloHeard), timing, 0);
+  EXPECT_EQ(packet_text(a), kGoldenHelloOpen);
+  b.receive(from_hex(kGoldenHelloOpen), timing, 0);
+  EXPECT_EQ(b.state(), Link::State::kOpen);
+
+  Writer mark(MessageType::kMark);
+  mark.u16(258);
+  ASSERT_TRUE(a.send(mark.bytes()));
+  ASSERT_TRUE(a.send(encode(Order{.operation = Operation::kCorners}).bytes()));
+  EXPECT_EQ(packet_text(a), kGoldenData);
+  const auto data = from_hex(kGoldenData);
+  EXPECT_EQ(to_hex(b.receive(data, timing, 0)), "04 02 01 05 0d");
+  b.on_time(timing, true, timing.ping_after);
+  EXPECT_EQ(packet_text(b), kGoldenPing);
+  EXPECT_FALSE(b.has_packet(timing.ping_after));  // A ping acknowledges as well.
+  b.receive(data, timing, 0);                     // Once more: it is acknowledged at once.
+  EXPECT_EQ(packet_text(b), kGoldenAcknowledge);
+}
+
+using Streams = std::map<std::pair<std::size_t, int>, std::vector<std::uint8_t>>;
+
+/// All data of a network without losses, by sender and face.
+void record(TestNetwork& network, Streams& streams) {
+  network.watch = [&](std::size_t from, base::Direction face, auto packet) {
+    if (packet[0] >> 6U == static_cast<int>(wire::PacketKind::kData)) {
+      const auto payload = packet.subspan(2, packet.size() - 4);
+      auto& stream = streams[{from, base::index(face)}];
+      stream.insert(stream.end(), payload.begin(), payload.end());
+    }
+  };
+}
+
+/// What three modules in an L say up to the first exchange. Ids are 10, 11 and 12 from one end to
+/// the other, the anchor is 10; a planned module between the ends touches both.
+TEST(Wire, an_l_of_three_talks_like_this) {
+  Setup setup = table_setup();
+  setup.method = Method::kJacobi;
+  TestNetwork network(setup, {{{-1, 2, 0}}, {{0, 2, 0}}, {{0, 3, 0}}}, {.id_first = 10});
+  network.plan(2, {-1, 3, 0});
+  Streams streams;
+  record(network, streams);
+  ASSERT_TRUE(network.run());
+  for (const GoldenStream& golden : kGoldenTrace) {
+    const auto& stream = streams[{golden.from, base::index(golden.face)}];
+    std::size_t at = 0;
+    for (const std::string_view line : golden.messages) {
+      const std::size_t size = from_hex(line).size();
+      ASSERT_LE(at + size, stream.size());
+      EXPECT_EQ(to_hex(std::span(stream).subspan(at, size)), line);
+      at += size;
+    }
+  }
+  std::set<std::uint8_t> types;
+  for (const auto& [key, stream] : streams) {
+    for (std::size_t at = 0; at + 1 < stream.size();) {
+      types.insert(stream[at]);
+      const int size = wire::message_bytes(stream[at], stream[at + 1]);
+      ASSERT_GT(size, 0);
+      at += static_cast<std::size_t>(size);
+    }
+  }
+  EXPECT_EQ(types, (std::set<std::uint8_t>{1, 2, 3, 4, 5, 6, 7, 8, 9}));
+}
+
+/// Sizes by type, and by operation for orders and reports, as the golden text has them.
+std::map<std::pair<int, int>, std::size_t> golden_sizes() {
+  std::map<std::pair<int, int>, std::size_t> sizes;
+  const auto note = [&](std::string_view text) {
+    const auto bytes = from_hex(text);
+    const bool has_operation = bytes[0] == 5 || bytes[0] == 6;
+    sizes[{bytes[0], has_operation ? bytes[1] : 0}] = bytes.size();
+  };
+  std::for_each(kGoldenOrders.begin(), kGoldenOrders.end(), note);
+  std::for_each(kGoldenReports.begin(), kGoldenReports.end(), note);
+  std::for_each(kGoldenVectors.begin(), kGoldenVectors.end(), note);
+  for (const GoldenStream& stream : kGoldenTrace) {
+    std::for_each(stream.messages.begin(), stream.messages.end(), note);
+  }
+  return sizes;
+}
+
+TEST(Wire, sizes_are_those_of_the_golden_messages_and_there_are_no_others) {
+  const auto sizes = golden_sizes();
+  EXPECT_EQ(sizes.size(), 7 + 2 * std::size_t{wire::kOperationCount});
+  int largest = 0;
+  for (int type = 0; type < 256; ++type) {
+    for (int second = 0; second < 256; ++second) {
+      const int size =
+          wire::message_bytes(static_cast<std::uint8_t>(type), static_cast<std::uint8_t>(second));
+      const auto known = sizes.find({type, type == 5 || type == 6 ? second : 0});
+      EXPECT_EQ(size, known == sizes.end() ? 0 : static_cast<int>(known->second))
+          << type << ' ' << second;
+      largest = std::max(largest, size);
+    }
+  }
+  EXPECT_EQ(largest, wire::kMessageBytesMax);
+}
+
+/// Long division over GF(2), one bit at a time.
+std::uint16_t slow_checksum(std::span<const std::uint8_t> bytes, std::uint16_t start) {
+  std::uint32_t remainder = start;
+  for (const std::uint8_t byte : bytes) {
+    for (int bit = 7; bit >= 0; --bit) {
+      const std::uint32_t out = ((remainder >> 15U) ^ (byte >> static_cast<unsigned>(bit))) & 1U;
+      remainder = ((remainder << 1U) & 0xffffU) ^ (out != 0 ? 0x1021U : 0U);
+    }
+  }
+  return static_cast<std::uint16_t>(remainder);
+}
+
+/// The check value of CRC-16/CCITT-FALSE in every catalogue.
+TEST(Wire, checksum_is_ccitt) {
+  constexpr std::string_view kDigits = "123456789";
+  const std::vector<std::uint8_t> digits(kDigits.begin(), kDigits.end());
+  EXPECT_EQ(wire::checksum(digits, 0xffff), 0x29b1);
+  EXPECT_EQ(wire::checksum({}, 0x1234), 0x1234);
+  base::Rng rng(1);
+  for (int i = 0; i < 1000; ++i) {
+    std::vector<std::uint8_t> bytes(rng.below(230));
+    for (std::uint8_t& byte : bytes) {
+      byte = static_cast<std::uint8_t>(rng.next());
+    }
+    const auto start = static_cast<std::uint16_t>(rng.next());
+    EXPECT_EQ(wire::checksum(bytes, start), slow_checksum(bytes, start));
+  }
+}
+
+TEST(Wire, cells_keep_their_whole_range) {
+  const std::int32_t most = base::kCoordinateMax;
+  for (const base::Cell cell : {base::Cell{most, -most, 0}, base::Cell{-1, 1, -256},
+                                base::Cell{2 * most + 1, -2 * most - 1, 65536}}) {
+    Writer out(MessageType::kOrder);
+    out.cell(cell);
+    EXPECT_EQ(out.bytes().size(), std::size_t{1 + wire::kCellBytes});
+    EXPECT_EQ(Reader(out.bytes()).cell(), cell);
+  }
+}
+
+TEST(Wire, numbers_come_back) {
+  Writer out(MessageType::kEcho);
+  out.u16(0xfffe);
+  out.u32(0x89abcdef);
+  out.i32(-2'147'483'647);
+  out.real(-0.1);
+  EXPECT_EQ(to_hex(out.bytes()), "02 fe ff ef cd ab 89 01 00 00 80 cd cc cc bd");
+  Reader in(out.bytes());
+  EXPECT_EQ(in.u16(), 0xfffe);
+  EXPECT_EQ(in.u32(), 0x89abcdefU);
+  EXPECT_EQ(in.i32(), -2'147'483'647);
+  EXPECT_EQ(in.real(), -0.1F);
+}
+
+TEST(Wire, reading_past_the_end_gives_zeros) {
+  const auto bytes = from_hex("07 ff ff");
+  Reader in(bytes);
+  EXPECT_EQ(in.u32(), 0xffffU);
+  EXPECT_EQ(in.u8(), 0);
+  EXPECT_EQ(in.u16(), 0);
+  EXPECT_EQ(in.i32(), 0);
+  EXPECT_EQ(in.real(), 0.0F);
+  EXPECT_EQ(in.short_real(), 0.0F);
+  EXPECT_EQ(in.cell(), base::Cell{});
+}
+
+float through_short_real(float value) {
+  Writer out(MessageType::kMark);
+  out.short_real(static_cast<double>(value));
+  return Reader(out.bytes()).short_real();
+}
+
+/// 7 bits of fraction are left: the next number away from zero is at most 2^-7 further.
+TEST(Wire, short_reals_round_away_from_zero) {
+  base::Rng rng(2);
+  for (int i = 0; i < 2000; ++i) {
+    const double size = std::ldexp(1 + static_cast<double>(rng.below(1U << 23U)) / (1U << 23U),
+                                   static_cast<int>(rng.below(200)) - 100);
+    const auto value = static_cast<float>(rng.below(2) == 0 ? size : -size);
+    const float back = through_short_real(value);
+    EXPECT_GE(std::abs(back), std::abs(value));
+    EXPECT_LE(std::abs(back), std::abs(value) * (1 + 1.0F / 128));
+    EXPECT_EQ(std::signbit(back), std::signbit(value));
+  }
+  for (const float exact : {0.0F, 1.0F, -0.5F, 384.0F, std::numeric_limits<float>::infinity()}) {
+    EXPECT_EQ(through_short_real(exact), exact);
+  }
+  EXPECT_EQ(through_short_real(std::numeric_limits<float>::max()),
+            std::numeric_limits<float>::infinity());
+}
+
+/// Whatever its payload: a bound on an error that is not a number may not come back as one.
+TEST(Wire, a_short_real_stays_not_a_number) {
+  for (const std::uint32_t bits : {0x7fc00000U, 0x7f800001U, 0xffc00001U, 0x7fffffffU, 0xffffffffU}) {
+    EXPECT_TRUE(std::isnan(through_short_real(std::bit_cast<float>(bits)))) << std::hex << bits;
+  }
+}
+
+TEST(Wire, the_document_shows_every_golden_line) {
+  std::ifstream file(HOLDFAST_WIRE_DOCUMENT);
+  ASSERT_TRUE(file.is_open()) << HOLDFAST_WIRE_DOCUMENT;
+  std::stringstream text;
+  text << file.rdbuf();
+  const auto expect_shown = [&](std::string_view line) {
+    EXPECT_NE(text.str().find(line), std::string::npos) << line;
+  };
+  std::for_each(kGoldenOrders.begin(), kGoldenOrders.end(), expect_shown);
+  std::for_each(kGoldenReports.begin(), kGoldenReports.end(), expect_shown);
+  std::for_each(kGoldenVectors.begin(), kGoldenVectors.end(), expect_shown);
+  for (const GoldenStream& stream : kGoldenTrace) {
+    std::for_each(stream.messages.begin(), stream.messages.end(), expect_shown);
+  }
+  for (const std::string_view line : {kGoldenHello, kGoldenHelloHeard, kGoldenHelloOpen,
+                                      kGoldenData, kGoldenAcknowledge, kGoldenPing}) {
+    expect_shown(line);
+  }
+}
+
+}  // namespace
+}  // namespace holdfast::agent
