@@ -19,7 +19,8 @@ SPDX = ['SPDX-FileCopyrightText: The holdfast authors', 'SPDX-License-Identifier
 FILE_LINES_MAX = 800
 FUNCTION_LINES_MAX = 70
 COLUMNS_MAX = 100
-FREESTANDING = {'base', 'mechanics'}
+FREESTANDING = {'base', 'mechanics', 'agent'}
+FACADE_HEADERS = {'holdfast', 'distributed'}
 HOSTED_HEADERS = {'string', 'vector', 'map', 'set', 'memory', 'iostream', 'fstream', 'variant',
                   'cstdio', 'cstdlib', 'functional', 'stdexcept'}
 # base is freestanding but for what says in its first lines that it is for hosts.
@@ -59,11 +60,14 @@ def check_includes(name, lines, links):
         allowed = None
     for number, line in enumerate(lines, 1):
         include = re.match(r'#include ["<]holdfast/(\w+)[/.]', line)
-        if include and allowed is not None and include[1] not in allowed:
+        if (include and allowed is not None and include[1] not in allowed
+                and not (match[1] == 'holdfast' and include[1] in FACADE_HEADERS)):
             fault(name, number, f'{match[1]} may not include {include[1]}, it links '
                                 f'{sorted(allowed - {match[1]})}')
-        if include and name.startswith(('apps/', 'examples/')) and include[1] != 'holdfast':
-            fault(name, number, 'applications include only the facade, holdfast/holdfast.hpp')
+        if (include and name.startswith(('apps/', 'examples/'))
+                and include[1] not in FACADE_HEADERS):
+            fault(name, number, 'applications include only the facade, holdfast/holdfast.hpp and '
+                                'holdfast/distributed.hpp')
         system = re.match(r'#include <(\w+)>', line)
         if (match and match[1] in FREESTANDING and name not in HOSTED_FILES and system
                 and system[1] in HOSTED_HEADERS):

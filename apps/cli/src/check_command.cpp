@@ -30,22 +30,6 @@ constexpr std::chrono::seconds kProgressInterval(1);
 /// From here on the direct solver can take more than a second.
 constexpr std::size_t kLargeModuleCount = 2000;
 
-bool has_colour() { return isatty(STDOUT_FILENO) != 0 && std::getenv("NO_COLOR") == nullptr; }
-
-/// The verdict in capitals, coloured on a terminal, padded to the longest.
-std::string banner(Verdict verdict) {
-  std::string word = verdict::name(verdict);
-  for (char& letter : word) {
-    letter = static_cast<char>(letter - 'a' + 'A');
-  }
-  word = fmt::format("{:<9}", word);
-  if (!has_colour()) {
-    return word;
-  }
-  constexpr std::array<int, 4> kColours = {32, 31, 35, 33};  // green, red, purple, yellow
-  return fmt::format("\033[1;{}m{}\033[0m", kColours[static_cast<std::size_t>(verdict)], word);
-}
-
 /// Goes through the files of one run and keeps count.
 class CheckRun {
  public:

@@ -28,6 +28,10 @@ struct Command {
 
 Command add_check(CLI::App& app);
 Command add_convert(CLI::App& app);
+Command add_simulate(CLI::App& app);
+
+/// The verdict in capitals, coloured on a terminal, padded to the longest.
+std::string banner(verdict::Verdict verdict);
 
 /// A file, or files, that must be given. The help shows no type beside the name.
 template <class Value>

@@ -3,6 +3,7 @@
 #include "holdfast/agent/link.hpp"
 
 #include <bit>
+#include <cstring>
 
 #include "holdfast/base/check.hpp"
 
@@ -55,10 +56,12 @@ bool Link::send(std::span<const std::uint8_t> message) {
   if (queued_bytes_ + message.size() > static_cast<std::size_t>(kQueueBytes)) {
     return false;
   }
-  for (const std::uint8_t byte : message) {
-    queue_[wrapped(head_ + queued_bytes_)] = byte;
-    ++queued_bytes_;
-  }
+  const std::size_t tail = wrapped(head_ + queued_bytes_);
+  const std::size_t room = kQueueBytes - tail;
+  const std::size_t first = message.size() < room ? message.size() : room;
+  std::memcpy(queue_.data() + tail, message.data(), first);
+  std::memcpy(queue_.data(), message.data() + first, message.size() - first);
+  queued_bytes_ = static_cast<std::uint16_t>(queued_bytes_ + message.size());
   return true;
 }
 
@@ -165,21 +168,27 @@ std::span<const std::uint8_t> Link::receive(std::span<const std::uint8_t> packet
 
 std::span<const std::uint8_t> Link::next_message(std::span<const std::uint8_t>& stream) {
   while (!stream.empty()) {
-    HOLDFAST_ASSERT(message_bytes_ < wire::kMessageBytesMax);
-    message_[message_bytes_++] = stream.front();
-    stream = stream.subspan(1);
-    if (message_bytes_ < 2) {
-      continue;
+    // Two bytes tell the size; then the rest comes in one piece.
+    std::size_t wanted = 1;
+    if (message_bytes_ >= 2) {
+      wanted = static_cast<std::size_t>(message_size_ - message_bytes_);
+      wanted = wanted < stream.size() ? wanted : stream.size();
     }
-    const int size = wire::message_bytes(message_[0], message_[1]);
-    if (size < 2) {
-      state_ = State::kLost;
-      stream = {};
-      return {};
+    HOLDFAST_ASSERT(message_bytes_ + wanted <= message_.size());
+    std::memcpy(message_.data() + message_bytes_, stream.data(), wanted);
+    stream = stream.subspan(wanted);
+    message_bytes_ = static_cast<std::uint8_t>(message_bytes_ + wanted);
+    if (message_bytes_ == 2) {
+      message_size_ = static_cast<std::uint8_t>(wire::message_bytes(message_[0], message_[1]));
+      if (message_size_ < 2) {
+        state_ = State::kLost;
+        stream = {};
+        return {};
+      }
     }
-    if (message_bytes_ == size) {
+    if (message_bytes_ >= 2 && message_bytes_ == message_size_) {
       message_bytes_ = 0;
-      return {message_.data(), static_cast<std::size_t>(size)};
+      return {message_.data(), message_size_};
     }
   }
   return {};
@@ -239,9 +248,13 @@ int Link::write_packet(std::span<std::uint8_t> packet, const LinkTiming& timing,
   if (sent_count_ < kWindow && sent_bytes_ < queued_bytes_) {
     kind = PacketKind::kData;
     const int chunk = packet_chunk(timing);
-    for (int i = 0; i < chunk; ++i) {
-      packet[static_cast<std::size_t>(size++)] = queue_[wrapped(wrapped(head_ + sent_bytes_) + i)];
-    }
+    const int cursor = wrapped(head_ + sent_bytes_);
+    const int room = kQueueBytes - cursor;
+    const auto first = static_cast<std::size_t>(chunk < room ? chunk : room);
+    std::memcpy(packet.data() + size, queue_.data() + cursor, first);
+    std::memcpy(packet.data() + size + first, queue_.data(),
+                static_cast<std::size_t>(chunk) - first);
+    size += chunk;
     number = static_cast<std::uint8_t>((send_number_ + sent_count_) & kNumberMask);
     chunk_bytes_[sent_count_++] = static_cast<std::uint8_t>(chunk);
     sent_bytes_ = static_cast<std::uint16_t>(sent_bytes_ + chunk);

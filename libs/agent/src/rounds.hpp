@@ -196,7 +196,7 @@ std::uint8_t BasicAgent<Real>::used_faces() const {
 /// in anything; it waits a little, as changes come together.
 template <class Real>
 void BasicAgent<Real>::leave_round() {
-  if (round_.epoch > 0) {
+  if (round_.epoch > 0 || silent_faces_ != 0) {
     answer_ = {};
     is_sweeping_ = false;
     restart_at_ = now_ + setup_.timing.acknowledge_after;
@@ -206,7 +206,11 @@ void BasicAgent<Real>::leave_round() {
 template <class Real>
 void BasicAgent<Real>::start_round() {
   if (!has_cell_) {
+    // Others must start; if nobody is left who can, this is the last word.
     restart_at_ = kNever;
+    if (silent_faces_ != 0) {
+      answer_ = {.verdict = Verdict::kUndecided, .reason = Reason::kNeighbourSilent};
+    }
     return;
   }
   enter_round({.epoch = static_cast<std::uint16_t>(round_.epoch + 1), .starter = identity_.id});

@@ -20,12 +20,15 @@
 ///
 /// USE. Make a Setup that all modules share and an Agent for each module, then hand it events in
 /// the order of their times:
-///   kStart        once, when the module starts
-///   kLinkUp       a neighbour is attached to `face` (sensed, or heard for the first time)
-///   kLinkDown     it has been taken off: it is no longer part of the robot
-///   kPlan         a module is planned at `cell`, to be attached in the next step; to any one
-///   module kReceive      `bytes` came in on `face`: one packet kLineFree     the line of `face`
-///   can take a packet: actions.packet kTime         actions.wake_at has come
+/// - kStart: once, when the module starts.
+/// - kLinkUp: a neighbour is attached to `face` (sensed, or heard for the first time).
+/// - kLinkDown: it has been taken off and is no longer part of the robot.
+/// - kPlan: a module is planned at `cell`, to be attached in the next step; to any one module.
+/// - kReceive: `bytes` came in on `face`, one packet.
+/// - kLineFree: the line of `face` can take a packet, actions.packet.
+/// - kTime: actions.wake_at has come. It may lie in the past, when an acknowledgement waits for its
+///   line; handing in kTime again before that line was free brings nothing.
+///
 /// After each step, actions.send_faces says on which faces a packet waits (bit = face index): hand
 /// in kLineFree for them when their lines are free. actions.wake_at replaces the earlier one.
 /// `random` in kLinkUp must differ from one link-up to the next.

@@ -114,7 +114,8 @@ class Link {
   Time acknowledge_at_ = kNever;
   Time heard_at_ = 0;
   std::array<std::uint8_t, wire::kMessageBytesMax> message_{};
-  std::uint8_t message_bytes_ = 0;
+  std::uint8_t message_bytes_ = 0;  ///< Here so far, ...
+  std::uint8_t message_size_ = 0;   ///< ... of so many.
 };
 
 }  // namespace holdfast::agent

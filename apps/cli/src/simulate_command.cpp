@@ -1,0 +1,334 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <charconv>
+#include <chrono>
+#include <cmath>
+#include <fstream>
+#include <iostream>
+#include <memory>
+#include <optional>
+
+#include "commands.hpp"
+#include "holdfast/distributed.hpp"
+
+namespace holdfast::cli {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+using sim::Fault;
+
+constexpr std::chrono::seconds kProgressInterval(1);
+
+struct Options {
+  std::string file;
+  std::string method = "cg";
+  std::string link = "v1";
+  std::uint64_t seed = 1;
+  double loss = 0;
+  double duplication = 0;
+  double reordering = 0;
+  double corruption = 0;
+  double jitter = 0;
+  std::vector<std::string> kills;
+  std::vector<std::string> cuts;
+  std::vector<std::string> detachments;
+  std::string json;
+  std::string trace;
+  std::string story;
+  std::string svg;
+  bool is_quiet = false;
+};
+
+template <class Number>
+bool take_number(std::string_view& text, Number& value) {
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc()) {
+    return false;
+  }
+  text.remove_prefix(static_cast<std::size_t>(end - text.data()));
+  return true;
+}
+
+bool take_mark(std::string_view& text, char mark) {
+  const bool is_there = text.starts_with(mark);
+  text.remove_prefix(is_there ? 1 : 0);
+  return is_there;
+}
+
+/// A time given in seconds, or in rounds where ticks have no length.
+sim::Time ticks(const sim::LinkModel& link, double time) {
+  const double scale = link.ticks_per_second > 0 ? static_cast<double>(link.ticks_per_second) : 1.0;
+  return static_cast<sim::Time>(std::llround(time * scale));
+}
+
+std::optional<base::Direction> find_direction(std::string_view& text) {
+  constexpr std::string_view kNames[] = {"+x", "-x", "+y", "-y", "+z", "-z"};
+  for (std::size_t i = 0; i < std::size(kNames); ++i) {
+    if (text.starts_with(kNames[i])) {
+      text.remove_prefix(kNames[i].size());
+      return static_cast<base::Direction>(i);
+    }
+  }
+  return std::nullopt;
+}
+
+/// "X,Y,Z@T", for a cut "X,Y,Z:+x@T".
+std::optional<Fault> read_fault(std::string_view text, Fault::Kind kind, const Structure& structure,
+                                const sim::LinkModel& link) {
+  base::Cell cell;
+  double time = 0;
+  Fault fault{.kind = kind, .at = 0, .module = -1};
+  if (!take_number(text, cell.x) || !take_mark(text, ',') || !take_number(text, cell.y) ||
+      !take_mark(text, ',') || !take_number(text, cell.z)) {
+    return std::nullopt;
+  }
+  if (kind == Fault::Kind::kCut) {
+    const auto face = take_mark(text, ':') ? find_direction(text) : std::nullopt;
+    if (!face) {
+      return std::nullopt;
+    }
+    fault.face = *face;
+  }
+  if (!take_mark(text, '@') || !take_number(text, time) || !text.empty() || !(time >= 0) ||
+      !(time < 1e12)) {
+    return std::nullopt;
+  }
+  fault.at = ticks(link, time);
+  const auto modules = structure.robot.modules();
+  for (std::size_t i = 0; i < modules.size() - structure.robot.planned_count(); ++i) {
+    fault.module = modules[i].cell == cell ? static_cast<std::int32_t>(i) : fault.module;
+  }
+  return fault.module >= 0 ? std::optional(fault) : std::nullopt;
+}
+
+int usage_error(const std::string& message) {
+  fmt::print(stderr, "holdfast: {}\n", message);
+  return kExitUsage;
+}
+
+/// Reads all faults of one kind; says which one is wrong.
+bool add_faults(const std::vector<std::string>& texts, Fault::Kind kind, const Structure& structure,
+                sim::SimulationOptions& options) {
+  for (const std::string& text : texts) {
+    const auto fault = read_fault(text, kind, structure, options.link);
+    if (!fault) {
+      usage_error(
+          fmt::format("--{} {}: expected is {}@TIME with the cell of an existing module, as in {}",
+                      sim::name(kind), text, kind == Fault::Kind::kCut ? "X,Y,Z:FACE" : "X,Y,Z",
+                      kind == Fault::Kind::kCut ? "2,1,0:+z@1.5" : "2,1,0@1.5"));
+      return false;
+    }
+    options.faults.push_back(*fault);
+  }
+  return true;
+}
+
+/// A trace file and its writer, if asked for.
+template <class Trace>
+struct TraceFile {
+  std::ofstream file;
+  std::unique_ptr<Trace> trace;
+
+  bool open(const std::string& path) {
+    if (path.empty()) {
+      return true;
+    }
+    if (path == "-") {
+      trace = std::make_unique<Trace>(std::cout);
+      return true;
+    }
+    file.open(path, std::ios::binary);
+    if (!file) {
+      print_error({.code = base::ErrorCode::kUnwritable, .message = "cannot be written"}, path);
+      return false;
+    }
+    trace = std::make_unique<Trace>(file);
+    return true;
+  }
+};
+
+class SimulateRun {
+ public:
+  explicit SimulateRun(const Options& options) : options_(options) {}
+
+  int run() {
+    const auto link = sim::find_link_model(options_.link);
+    const auto method = find_method(options_.method);
+    HOLDFAST_CHECK(link && method);
+    simulation_.link = *link;
+    simulation_.method = *method;
+    simulation_.seed = options_.seed;
+    add_noise();
+    const auto structure = load_file(options_.file);
+    if (!structure) {
+      print_error(structure.error(), options_.file);
+      return kExitBadInput;
+    }
+    if (!add_faults(options_.kills, Fault::Kind::kKill, structure.value(), simulation_) ||
+        !add_faults(options_.cuts, Fault::Kind::kCut, structure.value(), simulation_) ||
+        !add_faults(options_.detachments, Fault::Kind::kDetach, structure.value(), simulation_)) {
+      return kExitUsage;
+    }
+    return simulate_structure(structure.value());
+  }
+
+ private:
+  void add_noise() {
+    sim::LinkModel& link = simulation_.link;
+    link.loss = options_.loss;
+    link.duplication = options_.duplication;
+    link.corruption = options_.corruption;
+    link.jitter = ticks(link, options_.jitter);
+    link.reordering = options_.reordering;
+    link.reordering_delay =
+        options_.reordering > 0 ? 3 * sim::line_time(link, link.packet_bytes) : 0;
+  }
+
+  int simulate_structure(const Structure& structure) {
+    TraceFile<sim::PerfettoTrace> perfetto;
+    TraceFile<sim::StoryTrace> story;
+    if (!perfetto.open(options_.trace) || !story.open(options_.story)) {
+      return kExitBadInput;
+    }
+    if (perfetto.trace && story.trace) {
+      return usage_error("--trace and --story: one of them at a time");
+    }
+    simulation_.trace = perfetto.trace ? static_cast<sim::TraceSink*>(perfetto.trace.get())
+                                       : static_cast<sim::TraceSink*>(story.trace.get());
+    const CheckResult exact = check(structure);
+    const auto run =
+        simulate(structure, exact, simulation_,
+                 [this](const sim::SimulationResult& result) { return show_progress(result); });
+    if (!run) {
+      print_error(run.error(), options_.file);
+      return kExitBadInput;
+    }
+    if (!show(structure, exact, run.value())) {
+      return kExitBadInput;
+    }
+    return exit_code(run.value().view.verdict);
+  }
+
+  bool show_progress(const sim::SimulationResult& result) {
+    const auto now = Clock::now();
+    if (!options_.is_quiet && now - shown_ >= kProgressInterval) {
+      shown_ = now;
+      const auto seconds = sim::seconds(simulation_.link, result.time);
+      fmt::print(stderr, "holdfast: {} events, {}\n", result.events,
+                 seconds ? fmt::format("{:.1f} s on the robot", *seconds)
+                         : fmt::format("round {}", result.time));
+    }
+    return true;
+  }
+
+  /// False if a file cannot be written.
+  bool show(const Structure& structure, const CheckResult& exact, const DistributedRun& run) const {
+    const bool has_standard_output = options_.json == "-" || options_.story == "-";
+    if (!options_.is_quiet && !has_standard_output) {
+      fmt::print("{} {}\n{}", banner(run.view.verdict), structure.name,
+                 report_text(structure, exact, run));
+    }
+    bool is_written = true;
+    if (options_.json == "-") {
+      fmt::print("{}\n", report_json(structure, exact, run));
+    } else if (!options_.json.empty()) {
+      is_written = write(options_.json, report_json(structure, exact, run) + "\n");
+    }
+    if (!options_.svg.empty()) {
+      is_written = write(options_.svg, picture_svg(structure, run)) && is_written;
+    }
+    return is_written;
+  }
+
+  static bool write(const std::string& path, const std::string& text) {
+    const auto error = write_file(path, text);
+    if (error) {
+      print_error(*error, path);
+    }
+    return !error;
+  }
+
+  static int exit_code(verdict::Verdict verdict) {
+    switch (verdict) {
+      case verdict::Verdict::kSafe:
+        return kExitSafe;
+      case verdict::Verdict::kOverload:
+      case verdict::Verdict::kUnstable:
+        return kExitUnsafe;
+      case verdict::Verdict::kUndecided:
+        break;
+    }
+    return kExitUndecided;
+  }
+
+  const Options& options_;
+  sim::SimulationOptions simulation_;
+  Clock::time_point shown_ = Clock::now();
+};
+
+void add_noise_options(CLI::App& command, Options& options) {
+  const auto add = [&](const char* name, double& value, const char* help) {
+    command.add_option(name, value, help)->type_name("P")->check(CLI::Range(0.0, 1.0));
+  };
+  add("--loss", options.loss, "Probability that a packet is lost");
+  add("--duplicate", options.duplication, "Probability that a packet arrives twice");
+  add("--reorder", options.reordering, "Probability that a packet is overtaken");
+  add("--corrupt", options.corruption, "Probability that 1 to 3 bits of a packet flip");
+  command.add_option("--jitter", options.jitter, "Delays each packet by 0 to T (s, or rounds)")
+      ->type_name("T")
+      ->check(CLI::Range(0.0, 1e6));
+}
+
+void add_fault_options(CLI::App& command, Options& options) {
+  const auto add = [&](const char* name, std::vector<std::string>& values, const char* type,
+                       const char* help) {
+    command.add_option(name, values, help)->type_name(type)->allow_extra_args(false);
+  };
+  add("--kill", options.kills, "X,Y,Z@T", "A module falls silent at time T (s, or rounds)");
+  add("--cut", options.cuts, "X,Y,Z:FACE@T", "A link fails; FACE is +x, -x, +y, -y, +z or -z");
+  add("--detach", options.detachments, "X,Y,Z@T", "A module is taken off");
+}
+
+}  // namespace
+
+Command add_simulate(CLI::App& app) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command = app.add_subcommand(
+      "simulate", "Let the robot work out its own verdict, module by module, message by message");
+  add_required(*command, "FILE", options->file,
+               "Structure, VisibleSim XML or holdfast JSON; - is standard input");
+  command->add_option("--method", options->method, "cg, block-jacobi, jacobi (the paper's)")
+      ->type_name("NAME")
+      ->check(CLI::IsMember({"cg", "block-jacobi", "jacobi"}))
+      ->capture_default_str();
+  command
+      ->add_option("--link", options->link,
+                   "Blinky Blocks v1 (38,400 baud) or v2 (115,200), unit (rounds)")
+      ->type_name("NAME")
+      ->check(CLI::IsMember({"v1", "v2", "unit"}))
+      ->capture_default_str();
+  command->add_option("--seed", options->seed, "Of everything random")
+      ->type_name("N")
+      ->capture_default_str();
+  add_noise_options(*command, *options);
+  add_fault_options(*command, *options);
+  command->add_option("--json", options->json, "Write the report; - is standard output")
+      ->type_name("FILE");
+  command->add_option("--trace", options->trace, "Write all packets for ui.perfetto.dev")
+      ->type_name("FILE");
+  command
+      ->add_option("--story", options->story, "Write what happens, in words; - is standard output")
+      ->type_name("FILE");
+  command->add_option("--svg", options->svg, "Draw the robot in the colours that it shows")
+      ->type_name("FILE");
+  command->add_flag("--quiet", options->is_quiet, "Print errors only; the exit code is the answer");
+  command->footer(
+      "The exact answer stands beside the robot's own.\n"
+      "Exit, by the robot's verdict: 0 safe, 1 overload or unstable, 2 undecided, 64 wrong usage,\n"
+      "65 bad input.");
+  return {command, [options] { return SimulateRun(*options).run(); }};
+}
+
+}  // namespace holdfast::cli

@@ -1,0 +1,221 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+// The robot's own computation, measured:
+//   distributed_bench cases FILE...       rounds, packets and V1 seconds of each method, a table
+//   distributed_bench random FROM TO      random robots against the exact answer, quiet links
+//   distributed_bench noisy FROM TO       the same with loss, duplication, jitter, bit errors
+//   distributed_bench faults FROM TO      a random module dies or a random link fails
+//   distributed_bench growth              rounds against the length of a fixed arm, each method
+//   distributed_bench throughput          events per second and memory of large robots
+#include <fmt/format.h>
+
+#include <chrono>
+#include <cstdlib>
+#include <filesystem>
+#include <functional>
+#include <string_view>
+
+#include "campaign.hpp"
+#include "holdfast/base/rng.hpp"
+#include "holdfast/distributed.hpp"
+#include "random_robot.hpp"
+
+namespace {
+
+using namespace holdfast;
+using agent::Method;
+
+constexpr Method kMethods[] = {Method::kJacobi, Method::kBlockJacobi, Method::kConjugateGradients};
+
+/// The paper's time of one iteration, message exchange included (Sec. IV-B).
+constexpr double kPaperIterationSeconds = 0.1105;
+
+model::Robot make_robot(const model::RobotSpec& spec) {
+  auto robot = model::Robot::create(spec);
+  HOLDFAST_CHECK(robot.has_value());
+  return std::move(robot).value();
+}
+
+int run_cases(std::span<char*> files) {
+  fmt::print(
+      "| case | modules | exact | robot | method | iterations | rounds | packets | V1 s | "
+      "at 110.5 ms an iteration |\n|---|---|---|---|---|---|---|---|---|---|\n");
+  int wrong_count = 0;
+  for (const char* file : files) {
+    const auto structure = load_file(file);
+    HOLDFAST_CHECK(structure.has_value());
+    for (const Method method : kMethods) {
+      const auto v1 = test::compare(structure.value().robot,
+                                    {.link = sim::blinky_blocks_v1(), .method = method});
+      const sim::SimulationResult& result = v1.result;
+      wrong_count += v1.is_wrong() ? 1 : 0;
+      fmt::print(
+          "| {} | {} | {} {:.4f} | {} {:.4f} | {}{} | {} | {} | {} | {:.1f} | {:.0f} |\n",
+          structure.value().name, structure.value().robot.modules().size(), verdict::name(v1.exact),
+          v1.ratio_exact, agent::name(v1.robot), v1.ratio_robot, name(method),
+          result.effort.method == method ? std::string()
+                                         : fmt::format(", then {}", name(result.effort.method)),
+          result.effort.iterations, result.rounds, result.packets,
+          *sim::seconds(sim::blinky_blocks_v1(), result.verdict_time),
+          result.effort.iterations * kPaperIterationSeconds);
+    }
+  }
+  fmt::print("wrong verdicts: {}\n", wrong_count);
+  return wrong_count;
+}
+
+struct Tally {
+  int count = 0;
+  int wrong = 0;
+  int undecided = 0;
+  int disagreeing = 0;
+  double ratio_error = 0;
+  std::uint64_t iterations = 0;
+
+  void add(const test::Comparison& comparison, std::uint64_t seed) {
+    ++count;
+    wrong += comparison.is_wrong() ? 1 : 0;
+    undecided += comparison.is_undecided() ? 1 : 0;
+    disagreeing += comparison.result.all_agree ? 0 : 1;
+    ratio_error = std::max(ratio_error, comparison.ratio_error());
+    iterations += comparison.result.effort.iterations;
+    if (comparison.is_wrong() || comparison.is_undecided() || !comparison.result.all_agree ||
+        comparison.ratio_error() > 1) {
+      fmt::print("random_robot({}): {}\n", seed, comparison.text());
+    }
+  }
+};
+
+int run_random(std::uint64_t from, std::uint64_t to, bool is_noisy) {
+  Tally tally;
+  for (std::uint64_t seed = from; seed < to; ++seed) {
+    sim::SimulationOptions options{.seed = seed};
+    if (is_noisy) {
+      options.link.loss = 0.1;
+      options.link.duplication = 0.05;
+      options.link.corruption = 0.02;
+      options.link.reordering = 0.05;
+      options.link.reordering_delay = 3;
+      options.link.jitter = 2;
+    }
+    tally.add(test::compare(make_robot(test::random_robot(seed)), options), seed);
+  }
+  fmt::print(
+      "{} robots: {} wrong, {} undecided, {} not agreed; largest error {:.4f} of what is "
+      "allowed; {} iterations\n",
+      tally.count, tally.wrong, tally.undecided, tally.disagreeing, tally.ratio_error,
+      tally.iterations);
+  return tally.wrong + tally.undecided;
+}
+
+int run_faults(std::uint64_t from, std::uint64_t to) {
+  base::Rng rng(from);
+  int wrong = 0;
+  int counts[5] = {};
+  for (std::uint64_t seed = from; seed < to; ++seed) {
+    const model::Robot robot = make_robot(test::random_robot(seed));
+    const auto whole = test::compare(robot, {.seed = seed});
+    const sim::Fault fault = test::random_fault(robot, rng, whole.result.verdict_time);
+    sim::Simulation simulation(robot, {.seed = seed, .faults = {fault}});
+    simulation.run();
+    HOLDFAST_CHECK(simulation.result().is_quiet);
+    bool is_wrong = false;
+    for (std::int32_t i = 0; i < simulation.agent_count(); ++i) {
+      if (simulation.is_alive(i)) {
+        const agent::Verdict verdict = simulation.agent(i).answer().verdict;
+        ++counts[static_cast<int>(verdict)];
+        is_wrong = is_wrong ||
+                   (verdict == agent::Verdict::kSafe && whole.exact != verdict::Verdict::kSafe);
+      }
+    }
+    wrong += is_wrong ? 1 : 0;
+  }
+  fmt::print(
+      "{} faults: {} with a wrong safe; modules in the end: {} safe, {} overload, {} "
+      "unstable, {} undecided, {} without a verdict\n",
+      to - from, wrong, counts[1], counts[2], counts[3], counts[4], counts[0]);
+  return wrong;
+}
+
+/// The paper's Fig. 7: a foot and a post of 2x3, the rest one row; the foot is fixed.
+model::RobotSpec fixed_arm(int count) {
+  model::RobotSpec spec{
+      .existing = {{1, 1, 0}, {2, 1, 0}, {1, 1, 1}, {2, 1, 1}, {1, 1, 2}, {2, 1, 2}}};
+  for (int i = 6; i < count; ++i) {
+    spec.existing.push_back({i - 3, 1, 2});
+  }
+  spec.fixed = {{1, 1, 0}, {2, 1, 0}};
+  return spec;
+}
+
+int run_growth() {
+  fmt::print("# method length rounds iterations seconds_v1\n");
+  for (const Method method : kMethods) {
+    for (const int length : {8, 10, 12, 14, 16, 18, 20, 24, 30, 40, 60, 100}) {
+      if (method != Method::kConjugateGradients && length > 18) {
+        continue;
+      }
+      const model::Robot robot = make_robot(fixed_arm(length));
+      const auto unit = test::compare(robot, {.method = method});
+      fmt::print("{} {} {} {} {}\n", name(method), length,
+                 unit.result.phases[static_cast<std::size_t>(agent::Phase::kEquilibrium)].time,
+                 unit.result.effort.iterations, agent::name(unit.robot));
+    }
+  }
+  return 0;
+}
+
+void measure_throughput(const char* title, const model::RobotSpec& spec,
+                        std::uint64_t event_count) {
+  const model::Robot robot = make_robot(spec);
+  sim::Simulation simulation(robot, {});
+  const auto start = std::chrono::steady_clock::now();
+  simulation.run_for(event_count);
+  const double seconds =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  const sim::SimulationResult result = simulation.result();
+  fmt::print(
+      "{}: {} modules, {} bytes each; {} events in {:.2f} s: {:.2f} million a second, {:.3f} "
+      "us a packet; round {}\n",
+      title, robot.modules().size(), result.bytes_per_module, result.events, seconds,
+      static_cast<double>(result.events) / seconds / 1e6,
+      seconds * 1e6 / static_cast<double>(result.packets), result.time);
+}
+
+int run_throughput() {
+  model::RobotSpec block;
+  for (int i = 0; i < 100 * 100 * 10; ++i) {
+    block.existing.push_back({i % 100, i / 100 % 100, i / 10000});
+  }
+  measure_throughput("block 100 x 100 x 10", block, 20'000'000);
+  measure_throughput("arm 1000", fixed_arm(1000), 20'000'000);
+  return 0;
+}
+
+int usage() {
+  fmt::print(stderr,
+             "usage: distributed_bench cases FILE... | random FROM TO | noisy FROM TO | "
+             "faults FROM TO | growth | throughput\n");
+  return 64;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const std::span arguments(argv, static_cast<std::size_t>(argc));
+  const std::string_view what = argc > 1 ? arguments[1] : "";
+  if (what == "cases" && argc > 2) {
+    return run_cases(arguments.subspan(2)) == 0 ? 0 : 1;
+  }
+  if (what == "growth" || what == "throughput") {
+    return what == "growth" ? run_growth() : run_throughput();
+  }
+  if (argc != 4 || (what != "random" && what != "noisy" && what != "faults")) {
+    return usage();
+  }
+  const std::uint64_t from = std::strtoull(arguments[2], nullptr, 10);
+  const std::uint64_t to = std::strtoull(arguments[3], nullptr, 10);
+  const int faults =
+      what == "faults" ? run_faults(from, to) : run_random(from, to, what == "noisy");
+  return faults == 0 ? 0 : 1;
+}

@@ -1,0 +1,54 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+#include <string>
+
+#include "holdfast/holdfast.hpp"
+#include "holdfast/sim/simulation.hpp"
+
+/// The facade's second half: the robot works its verdict out by itself, in simulation.
+///
+///     holdfast::sim::SimulationOptions options;
+///     options.link = holdfast::sim::blinky_blocks_v1();
+///     auto run = holdfast::simulate(structure, options);
+///     if (run && run.value().result.answer.verdict == holdfast::agent::Verdict::kSafe) { ... }
+namespace holdfast {
+
+struct DistributedRun {
+  sim::LinkModel link;
+  sim::SimulationResult result;
+  /// What the robot knows, in the form of an assessment: its verdict, and its own load ratios where
+  /// it has come to know any.
+  verdict::Assessment view;
+};
+
+/// Called now and then during a long simulation; false ends it.
+using SimulationProgress = std::function<bool(const sim::SimulationResult&)>;
+
+/// Simulates the robot's own computation. `exact` gives what the robot does not work out (margin,
+/// support polygon, torques) to the view. Errors: options that do not fit the structure.
+base::Result<DistributedRun> simulate(const Structure& structure, const CheckResult& exact,
+                                      const sim::SimulationOptions& options,
+                                      const SimulationProgress& progress = {});
+
+/// check's report with the entry "distributed"; see docs/formats.md.
+std::string report_json(const Structure& structure, const CheckResult& exact,
+                        const DistributedRun& run);
+
+/// For people: what the robot found, beside the exact answer, and what it cost by phases.
+std::string report_text(const Structure& structure, const CheckResult& exact,
+                        const DistributedRun& run);
+
+/// The robot in the colours of its own load ratios.
+std::string picture_svg(const Structure& structure, const DistributedRun& run);
+
+/// The same word for a verdict of the robot.
+verdict::Verdict to_verdict(agent::Verdict verdict);
+
+/// "jacobi", "block-jacobi", "cg", and back.
+const char* name(agent::Method method);
+std::optional<agent::Method> find_method(std::string_view name);
+
+}  // namespace holdfast

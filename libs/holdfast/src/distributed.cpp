@@ -1,0 +1,151 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#include "holdfast/distributed.hpp"
+
+#include <fmt/format.h>
+
+#include <optional>
+
+namespace holdfast {
+namespace {
+
+/// Events between two calls of the progress function: well below a second.
+constexpr std::uint64_t kSliceEvents = 200'000;
+
+std::string robot_reason(const sim::SimulationResult& result) {
+  if (result.answer.verdict == agent::Verdict::kNone) {
+    return "the modules came to no verdict";
+  }
+  std::string text = std::string("the robot's own verdict: ") + agent::name(result.answer.reason);
+  if (!result.all_agree) {
+    text += "; not every module knows it";
+  }
+  return text;
+}
+
+/// The load ratio that the module holds which owns the connection: an existing one knows those of
+/// its faces, the host of planned modules those between them.
+std::optional<float> find_load_ratio(const model::Robot& robot, const sim::Simulation& simulation,
+                                     const model::Connection& pair) {
+  const base::Cell& a = robot.modules()[static_cast<std::size_t>(pair.a)].cell;
+  const base::Cell& b = robot.modules()[static_cast<std::size_t>(pair.b)].cell;
+  const base::Direction back = base::opposite(pair.direction);
+  const std::int32_t count = simulation.agent_count();
+  float ratio = 0;
+  if (pair.a < count || pair.b < count) {
+    const bool is_found = pair.a < count
+                              ? simulation.agent(pair.a).find_load_ratio(a, pair.direction, ratio)
+                              : simulation.agent(pair.b).find_load_ratio(b, back, ratio);
+    return is_found ? std::optional(ratio) : std::nullopt;
+  }
+  for (std::int32_t host = 0; host < count; ++host) {
+    if (simulation.agent(host).find_load_ratio(a, pair.direction, ratio)) {
+      return ratio;
+    }
+  }
+  return std::nullopt;
+}
+
+/// False if some connection's owner has no load ratio.
+bool take_load_ratios(const model::Robot& robot, const sim::Simulation& simulation,
+                      std::vector<verdict::ConnectionResult>& connections) {
+  for (std::size_t i = 0; i < connections.size(); ++i) {
+    const auto ratio = find_load_ratio(robot, simulation, robot.connections()[i]);
+    if (!ratio) {
+      return false;
+    }
+    connections[i].load_ratio = static_cast<double>(*ratio);
+  }
+  return !connections.empty();
+}
+
+verdict::Assessment view_of(const model::Robot& robot, const verdict::Assessment& exact,
+                            const sim::Simulation& simulation,
+                            const sim::SimulationResult& result) {
+  verdict::Assessment view = exact;
+  view.verdict = to_verdict(result.answer.verdict);
+  view.reasons = {robot_reason(result)};
+  view.broken.clear();
+  view.worst.reset();
+  view.load_ratio_max.reset();
+  view.weight_factor.reset();
+  const bool has_loads = result.answer.verdict == agent::Verdict::kSafe ||
+                         result.answer.verdict == agent::Verdict::kOverload;
+  if (!has_loads || !take_load_ratios(robot, simulation, view.connections)) {
+    view.connections.clear();
+    return view;
+  }
+  for (std::size_t i = 0; i < view.connections.size(); ++i) {
+    const double ratio = view.connections[i].load_ratio;
+    if (!view.worst || ratio > *view.load_ratio_max) {
+      view.worst = i;
+      view.load_ratio_max = ratio;
+    }
+    if (ratio >= 1) {
+      view.broken.push_back(i);
+    }
+  }
+  return view;
+}
+
+}  // namespace
+
+verdict::Verdict to_verdict(agent::Verdict verdict) {
+  switch (verdict) {
+    case agent::Verdict::kSafe:
+      return verdict::Verdict::kSafe;
+    case agent::Verdict::kOverload:
+      return verdict::Verdict::kOverload;
+    case agent::Verdict::kUnstable:
+      return verdict::Verdict::kUnstable;
+    case agent::Verdict::kNone:
+    case agent::Verdict::kUndecided:
+      break;
+  }
+  return verdict::Verdict::kUndecided;
+}
+
+const char* name(agent::Method method) {
+  switch (method) {
+    case agent::Method::kJacobi:
+      return "jacobi";
+    case agent::Method::kBlockJacobi:
+      return "block-jacobi";
+    case agent::Method::kConjugateGradients:
+      break;
+  }
+  return "cg";
+}
+
+std::optional<agent::Method> find_method(std::string_view name_wanted) {
+  for (const agent::Method method :
+       {agent::Method::kJacobi, agent::Method::kBlockJacobi, agent::Method::kConjugateGradients}) {
+    if (name_wanted == name(method)) {
+      return method;
+    }
+  }
+  return std::nullopt;
+}
+
+base::Result<DistributedRun> simulate(const Structure& structure, const CheckResult& exact,
+                                      const sim::SimulationOptions& options,
+                                      const SimulationProgress& progress) {
+  if (const auto fault = sim::find_options_fault(structure.robot, options)) {
+    return base::Error{.code = base::ErrorCode::kBadInput, .message = *fault, .where = {}};
+  }
+  sim::Simulation simulation(structure.robot, options);
+  while (simulation.run_for(kSliceEvents)) {
+    if (progress && !progress(simulation.result())) {
+      break;
+    }
+  }
+  DistributedRun run{.link = options.link, .result = simulation.result(), .view = {}};
+  run.view = view_of(structure.robot, exact.assessment, simulation, run.result);
+  return run;
+}
+
+std::string picture_svg(const Structure& structure, const DistributedRun& run) {
+  return io::write_svg(structure.robot, run.view, structure.name);
+}
+
+}  // namespace holdfast

@@ -1,0 +1,76 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "holdfast/agent/agent.hpp"
+#include "holdfast/model/robot.hpp"
+#include "holdfast/sim/fault.hpp"
+#include "holdfast/sim/link_model.hpp"
+#include "holdfast/sim/simulation_result.hpp"
+#include "holdfast/sim/trace.hpp"
+
+/// A robot that computes its own verdict: an agent for every existing module, lines between them,
+/// and time that jumps from event to event. The same inputs give the same events and the same
+/// trace hash on every platform.
+namespace holdfast::sim {
+
+struct SimulationOptions {
+  LinkModel link = unit();
+  std::uint64_t seed = 1;  ///< Of noise, clocks and session numbers.
+  agent::Method method = agent::Method::kConjugateGradients;
+  std::vector<Fault> faults = {};
+  std::vector<Announcement> announcements = {};  ///< Besides the robot's planned modules.
+  Time time_max = agent::kNever;                 ///< Later events do not happen.
+  std::uint64_t event_count_max = ~std::uint64_t{0};
+  std::int32_t anchor = 0;       ///< The module that knows its cell.
+  std::int32_t plan_module = 0;  ///< Is told of the robot's planned modules before it starts.
+  TraceSink* trace = nullptr;    ///< Not owned; outlives the simulation.
+};
+
+/// Why a simulation cannot be made (what, value found, values allowed), if it cannot.
+std::optional<std::string> find_options_fault(const model::Robot& robot,
+                                              const SimulationOptions& options);
+
+/// What the agents of a robot have in common, prepared.
+agent::Setup make_setup(const model::Robot& robot, const LinkModel& link, agent::Method method);
+
+class Engine;
+
+class Simulation {
+ public:
+  /// Keeps a reference to the robot. Options with a fault are a bug of the caller.
+  Simulation(const model::Robot& robot, SimulationOptions options);
+  Simulation(model::Robot&&, SimulationOptions) = delete;
+  Simulation(Simulation&&) noexcept;
+  Simulation& operator=(Simulation&&) noexcept;
+  ~Simulation();
+
+  /// Until nothing can happen any more or a limit is reached.
+  void run();
+
+  /// Hands about `event_count` events to modules. False: it is over. The first call also starts all
+  /// modules, which counts.
+  bool run_for(std::uint64_t event_count);
+
+  /// So far.
+  SimulationResult result() const;
+
+  /// Of an existing module.
+  const agent::Agent& agent(std::int32_t module) const;
+
+  /// Is the module attached and not silenced?
+  bool is_alive(std::int32_t module) const;
+
+  std::int32_t agent_count() const;
+
+ private:
+  std::unique_ptr<Engine> engine_;
+};
+
+}  // namespace holdfast::sim

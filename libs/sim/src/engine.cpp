@@ -1,0 +1,275 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#include "engine.hpp"
+
+#include <algorithm>
+
+#include "holdfast/base/check.hpp"
+
+namespace holdfast::sim {
+
+using agent::EventKind;
+
+std::uint64_t Engine::pack(const Happening& what) {
+  return static_cast<std::uint64_t>(what.item) << 32U |
+         static_cast<std::uint64_t>(what.module) << 6U |
+         static_cast<std::uint64_t>(what.face) << 3U | static_cast<std::uint64_t>(what.kind);
+}
+
+Engine::Happening Engine::unpack(std::uint64_t content) {
+  return {.kind = static_cast<Kind>(content & 7U),
+          .face = static_cast<base::Direction>((content >> 3U) & 7U),
+          .module = static_cast<std::int32_t>((content >> 6U) & ((1U << kModuleBits) - 1)),
+          .item = static_cast<std::uint32_t>(content >> 32U)};
+}
+
+bool Engine::run_for(std::uint64_t event_count) {
+  const std::uint64_t start = recorder_.event_count();
+  const std::uint64_t stop =
+      event_count < options_.event_count_max - std::min(start, options_.event_count_max)
+          ? start + event_count
+          : options_.event_count_max;
+  if (!is_booted_) {
+    boot();
+  }
+  while (!is_over_ && recorder_.event_count() < stop) {
+    if (queue_.is_empty() || queue_.next_time() > options_.time_max) {
+      finish();
+      break;
+    }
+    const QueuedEvent event = queue_.pop();
+    now_ = event.time;
+    prefetch();
+    handle(unpack(event.content));
+  }
+  if (recorder_.event_count() >= options_.event_count_max) {
+    finish();
+  }
+  return !is_over_;
+}
+
+/// Agents lie kibibytes apart, and every event would wait for memory. What a step touches first is
+/// at the beginning and the end of an agent. Tuned by timing 9,000 modules: a sixth faster.
+void Engine::prefetch() const {
+  const QueuedEvent* ahead = queue_.peek(kPrefetchAhead);
+  if (ahead == nullptr) {
+    return;
+  }
+  const Happening what = unpack(ahead->content);
+  if (what.kind == Kind::kFault || what.kind == Kind::kAnnounce) {
+    return;
+  }
+  constexpr std::size_t kCacheLine = 64;
+  const auto* port = reinterpret_cast<const char*>(&ports_[at(what.module)]);
+  for (std::size_t byte = 0; byte < sizeof(Port); byte += kCacheLine) {
+    __builtin_prefetch(port + byte);
+  }
+  const auto* agent = reinterpret_cast<const char*>(&agents_[at(what.module)]);
+  __builtin_prefetch(agent);
+  __builtin_prefetch(agent + sizeof(agent::Agent) - kCacheLine);
+  if (what.kind == Kind::kDeliver) {
+    pool_.prefetch(what.item);
+  }
+}
+
+void Engine::handle(const Happening& what) {
+  Port& port = ports_[at(what.module)];
+  switch (what.kind) {
+    case Kind::kDeliver:
+      arrive(what);
+      break;
+    case Kind::kLine:
+      port.line_events =
+          static_cast<std::uint8_t>(port.line_events & ~(1U << static_cast<unsigned>(what.face)));
+      if (port.takes_part() && !port.is_busy) {
+        flush(what.module);
+        arm_timer(what.module);
+      }
+      break;
+    case Kind::kTimer:
+      take_timer(what.module);
+      break;
+    case Kind::kReady:
+      ready(what.module);
+      break;
+    case Kind::kFault:
+      make_fault(options_.faults[what.item]);
+      break;
+    case Kind::kAnnounce:
+      announce(options_.announcements[what.item]);
+      break;
+  }
+}
+
+/// A module that takes part turns to a packet or a timer now, or when it has time.
+void Engine::attend(const Happening& what) {
+  if (ports_[at(what.module)].is_busy) {
+    wait(what);
+  } else {
+    serve(what);
+  }
+}
+
+void Engine::serve(const Happening& what) {
+  if (what.kind == Kind::kDeliver) {
+    recorder_.delivered(trace_of(what));
+    Port& port = ports_[at(what.module)];
+    port.rounds = std::max(port.rounds, pool_.tag(what.item).rounds);
+    recorder_.chained(port.rounds);
+    // The view stays valid: nothing is sent before the step is over.
+    step_event_ = event_of(EventKind::kReceive, what.face);
+    step_event_.bytes = pool_.bytes(what.item);
+    step(what.module);
+    pool_.release(what.item);
+    settle(what.module);
+  } else if (is_due(what.module)) {
+    hand_in(what.module, event_of(EventKind::kTime));
+  }
+}
+
+void Engine::hand_in(std::int32_t module, const agent::Event& event) {
+  step_event_ = event;
+  step(module);
+  settle(module);
+}
+
+void Engine::step(std::int32_t module) {
+  Port& port = ports_[at(module)];
+  step_event_.now = port.clock.local(now_);
+  actions_.send_faces = 0;
+  actions_.wake_at = agent::kNever;
+  actions_.packet_bytes = 0;
+  agents_[at(module)].step(step_event_, actions_);
+  recorder_.handled(now_);
+  port.wanted = actions_.send_faces;
+  port.wake_at = actions_.wake_at;
+  if (actions_.wake_at <= step_event_.now) {
+    // To be woken at once, unless that has just been done: what is due then waits for a line.
+    port.wake_at = step_event_.kind == EventKind::kTime ? agent::kNever : now_;
+  } else if (actions_.wake_at != agent::kNever) {
+    port.wake_at = port.clock.global(actions_.wake_at);
+  }
+  observe(module);
+}
+
+/// Notes what has changed for others to know.
+void Engine::observe(std::int32_t module) {
+  const agent::Agent& agent = agents_[at(module)];
+  Port& port = ports_[at(module)];
+  if (agent.epoch() == port.epoch && agent.phase() == port.phase &&
+      agent.answer().verdict == port.verdict) {
+    return;
+  }
+  TraceSink* trace = recorder_.trace();
+  if (agent.epoch() != port.epoch && trace != nullptr) {
+    trace->joined(now_, module, agent.epoch());
+  }
+  if (agent.phase() != port.phase && trace != nullptr) {
+    trace->phase_changed(now_, module, agent.phase());
+  }
+  if (agent.answer().verdict != port.verdict) {
+    if (agent.answer().verdict != agent::Verdict::kNone) {
+      recorder_.verdict_known(now_);
+    }
+    if (trace != nullptr) {
+      trace->verdict_known(now_, module, agent.answer());
+    }
+  }
+  port.epoch = agent.epoch();
+  port.phase = agent.phase();
+  port.verdict = agent.answer().verdict;
+  recorder_.reached(now_, port.epoch, port.phase);
+}
+
+/// After a step: send, or compute first.
+void Engine::settle(std::int32_t module) {
+  const Time compute_time = options_.link.compute_time;
+  if (compute_time == 0) {
+    flush(module);
+  } else {
+    Port& port = ports_[at(module)];
+    port.busy_until = std::max(port.busy_until, now_) + compute_time;
+    if (!port.is_busy) {
+      port.is_busy = true;
+      push(port.busy_until, {.kind = Kind::kReady, .module = module});
+    }
+  }
+  arm_timer(module);
+}
+
+/// Has the module finished computing? Then it sends, and turns to what has come meanwhile.
+void Engine::ready(std::int32_t module) {
+  Port& port = ports_[at(module)];
+  if (now_ < port.busy_until) {
+    push(port.busy_until, {.kind = Kind::kReady, .module = module});
+    return;
+  }
+  port.is_busy = false;
+  if (!port.takes_part()) {
+    return;
+  }
+  flush(module);
+  arm_timer(module);
+  while (!port.is_busy && port.waiting_first != Port::kNoEvent) {
+    serve(take_waiting(module));
+  }
+}
+
+void Engine::wait(const Happening& what) {
+  Port& port = ports_[at(what.module)];
+  auto place = static_cast<std::uint32_t>(waiting_.size());
+  if (waiting_spare_.empty()) {
+    waiting_.push_back({.what = what});
+  } else {
+    place = waiting_spare_.back();
+    waiting_spare_.pop_back();
+    waiting_[place] = {.what = what};
+  }
+  if (port.waiting_first == Port::kNoEvent) {
+    port.waiting_first = place;
+  } else {
+    waiting_[port.waiting_last].next = place;
+  }
+  port.waiting_last = place;
+}
+
+Engine::Happening Engine::take_waiting(std::int32_t module) {
+  Port& port = ports_[at(module)];
+  const std::uint32_t place = port.waiting_first;
+  port.waiting_first = waiting_[place].next;
+  waiting_spare_.push_back(place);
+  return waiting_[place].what;
+}
+
+bool Engine::is_due(std::int32_t module) const { return ports_[at(module)].wake_at <= now_; }
+
+/// Sees to it that an event is in the queue when the agent wants to wake, or earlier.
+void Engine::arm_timer(std::int32_t module) {
+  Port& port = ports_[at(module)];
+  if (port.wake_at >= port.timer_at) {
+    return;
+  }
+  const Time time = std::max(port.wake_at, now_);
+  push(time, {.kind = Kind::kTimer, .module = module});
+  port.timer_later_at = port.timer_at;
+  port.timer_at = time;
+}
+
+void Engine::take_timer(std::int32_t module) {
+  Port& port = ports_[at(module)];
+  if (now_ != port.timer_at) {
+    return;
+  }
+  port.timer_at = port.timer_later_at;
+  port.timer_later_at = agent::kNever;
+  if (!port.takes_part()) {
+    return;
+  }
+  if (is_due(module)) {
+    attend({.kind = Kind::kTimer, .module = module});
+  } else {
+    arm_timer(module);
+  }
+}
+
+}  // namespace holdfast::sim

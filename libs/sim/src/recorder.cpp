@@ -1,0 +1,88 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#include "recorder.hpp"
+
+namespace holdfast::sim {
+namespace {
+
+constexpr std::uint64_t kHashPrime = 0x100000001b3U;
+
+std::size_t index(agent::Phase phase) { return static_cast<std::size_t>(phase); }
+
+}  // namespace
+
+bool is_data(std::span<const std::uint8_t> packet) {
+  return static_cast<agent::wire::PacketKind>(packet[0] >> 6U) == agent::wire::PacketKind::kData;
+}
+
+void Recorder::sent(const PacketTrace& packet, agent::Phase phase, Time line_time) {
+  constexpr std::size_t kOverhead = agent::wire::kHeaderBytes + agent::wire::kChecksumBytes;
+  const std::size_t size = packet.bytes.size();
+  ++result_.packets;
+  result_.bytes += size;
+  PhaseStatistics& statistics = result_.phases[index(phase)];
+  ++statistics.packets;
+  statistics.bytes += size;
+  if (size > kOverhead && is_data(packet.bytes)) {
+    ++result_.data_packets;
+    result_.payload_bytes += size - kOverhead;
+  }
+  if (trace_ != nullptr) {
+    trace_->packet_sent(packet, line_time);
+  }
+}
+
+void Recorder::delivered(const PacketTrace& packet) {
+  hash(packet.time, 8);
+  hash(static_cast<std::uint64_t>(packet.to), 4);
+  hash(static_cast<std::uint64_t>(base::opposite(packet.face)), 1);
+  hash(static_cast<std::uint64_t>(agent::EventKind::kReceive), 1);
+  for (const std::uint8_t byte : packet.bytes) {
+    hash_ = (hash_ ^ byte) * kHashPrime;
+  }
+  if (trace_ != nullptr) {
+    trace_->packet_delivered(packet);
+  }
+}
+
+void Recorder::lost(const PacketTrace& packet) {
+  ++result_.lost_packets;
+  if (trace_ != nullptr) {
+    trace_->packet_lost(packet);
+  }
+}
+
+void Recorder::reached(Time time, std::uint16_t epoch, agent::Phase phase) {
+  const bool is_newer = epoch > result_.epoch;
+  if (epoch < result_.epoch || (!is_newer && phase <= phase_)) {
+    return;
+  }
+  leave_phase(time, result_);
+  phase_since_ = time;
+  phase_rounds_ = result_.rounds;
+  phase_ = phase;
+  result_.epoch = epoch;
+}
+
+SimulationResult Recorder::result() const {
+  SimulationResult result = result_;
+  result.trace_hash = hash_;
+  leave_phase(result.time, result);
+  return result;
+}
+
+/// Books what has passed since the robot came into its phase.
+void Recorder::leave_phase(Time time, SimulationResult& result) const {
+  PhaseStatistics& statistics = result.phases[index(phase_)];
+  statistics.time += time - phase_since_;
+  statistics.rounds += result.rounds - phase_rounds_;
+}
+
+void Recorder::hash(std::uint64_t value, int bytes) {
+  for (int i = 0; i < bytes; ++i) {
+    hash_ = (hash_ ^ (value & 0xffU)) * kHashPrime;
+    value >>= 8U;
+  }
+}
+
+}  // namespace holdfast::sim
