@@ -13,6 +13,9 @@ constexpr std::uint8_t kNoIndex = 0xff;
 /// is promised (0.01 + 1 %), as the bound is not rigorous for statically indeterminate robots.
 constexpr double kRatioTolerance = 1e-3;
 
+/// Contact states are told at this accuracy while they still change.
+constexpr double kStateTolerance = 1e-2;
+
 /// A verdict needs the largest ratio this many times its error bound away from 1.
 constexpr double kDoubt = 3;
 
@@ -188,7 +191,7 @@ Order Conductor::begin_law(const Setup& setup, bool is_unilateral) {
   stagnation_count_ = 0;
   error_ = 1e30;
   error_best_ = 1e30;
-  target_ = kRatioTolerance;
+  target_ = is_fixed_ ? kRatioTolerance : kStateTolerance;
   solve_iterations_max_ = 200 + 20 * effort_.module_count;
   Order begin = order(Step::kBegin, Operation::kBegin);
   begin.flags = is_unilateral ? kUnilateralLaw : std::uint8_t{0};
@@ -218,7 +221,7 @@ Order Conductor::judge(const Setup& setup, const Report& report) {
   // Contact states first, at the usual tolerance; then the verdict, which may need a better one.
   const bool follows = is_unilateral_ || is_jacobi();
   const bool is_consistent = follows || report.extent == 0;
-  target_ = kRatioTolerance * (1 + absolute(ratio_));
+  target_ = (is_consistent ? kRatioTolerance : kStateTolerance) * (1 + absolute(ratio_));
   if (!is_consistent && (error <= target_ || stagnation_count_ > kStagnationMax)) {
     return judge_regularised(setup, report);
   }
