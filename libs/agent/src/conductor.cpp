@@ -29,7 +29,6 @@ constexpr double kReductionTilting = 1e-3;
 
 /// Judgements without progress before a way is given up.
 constexpr int kStagnationMax = 8;
-constexpr int kJacobiStagnationMax = 2;
 
 constexpr int kContactStepsMax = 100;
 
@@ -188,6 +187,8 @@ Order Conductor::begin_law(const Setup& setup, bool is_unilateral) {
   is_tilting_ = false;
   has_history_ = false;
   seen_count_ = 0;
+  check_at_ = effort_.iterations + 2 * jacobi_span();
+  check_error_ = 1e30;
   stagnation_count_ = 0;
   error_ = 1e30;
   error_best_ = 1e30;
@@ -232,7 +233,7 @@ Order Conductor::judge(const Setup& setup, const Report& report) {
     }
     target_ = distance > kErrorLeast ? distance : kErrorLeast;
   }
-  if (stagnation_count_ > (is_jacobi() ? kJacobiStagnationMax : kStagnationMax)) {
+  if (is_jacobi() ? is_jacobi_stuck() : stagnation_count_ > kStagnationMax) {
     return give_up(setup);
   }
   return is_jacobi() ? start_jacobi() : start_solve(false);
@@ -409,12 +410,27 @@ Order Conductor::start_jacobi() {
   ++effort_.solves;
   solve_iterations_ = 0;
   batch_ = is_any_remote_ ? 1 : 8;
-  check_at_ = 1000 + 10 * effort_.module_count * effort_.module_count;
-  check_error_ = 1e30;
   least_error_ = 1e30;
   Order start = order(Step::kStart, Operation::kStart);
   start.flags = effort_.method == Method::kJacobi ? kWithScalars : kWithBlocks;
   return start;
+}
+
+/// Iterations between two looks at the exact residual.
+std::uint32_t Conductor::jacobi_span() const {
+  return 1000 + 10 * effort_.module_count * effort_.module_count;
+}
+
+/// The slowest mode of an arm decays over a time that grows with the fourth power of its length. So
+/// it is only without any progress over half of all iterations that the method is stuck.
+bool Conductor::is_jacobi_stuck() {
+  if (effort_.iterations < check_at_) {
+    return false;
+  }
+  const bool is_stuck = error_ > 0.999 * check_error_;
+  check_error_ = error_;
+  check_at_ = 2 * effort_.iterations;
+  return is_stuck;
 }
 
 Order Conductor::after_jacobi(const Setup& setup, const Report& report) {
@@ -426,16 +442,9 @@ Order Conductor::after_jacobi(const Setup& setup, const Report& report) {
     return give_up(setup);
   }
   least_error_ = error < least_error_ ? error : least_error_;
-  if (error < 0.5 * target_) {
+  // Now and then rounding is cleared away, at the price of two sweeps.
+  if (error < 0.5 * target_ || solve_iterations_ >= jacobi_span()) {
     return move(1);
-  }
-  if (solve_iterations_ >= check_at_) {
-    // Rounding has the last word, or contact states go round: look at the exact residual.
-    if (least_error_ > 0.999 * check_error_) {
-      return move(1);
-    }
-    check_error_ = least_error_;
-    check_at_ = 2 * solve_iterations_;
   }
   const std::uint32_t grown = is_any_remote_ ? 1U : 1U + solve_iterations_ / 8;
   batch_ = static_cast<std::uint16_t>(grown < kBatchMax ? grown : kBatchMax);

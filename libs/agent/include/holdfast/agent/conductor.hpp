@@ -104,6 +104,8 @@ class Conductor {
   bool is_jacobi() const { return effort_.method != Method::kConjugateGradients; }
 
   bool was_seen(std::uint32_t hash);
+  std::uint32_t jacobi_span() const;
+  bool is_jacobi_stuck();
 
   Step step_ = Step::kPlan;
   Effort effort_;
