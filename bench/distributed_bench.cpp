@@ -149,7 +149,7 @@ model::RobotSpec fixed_arm(int count) {
 }
 
 int run_growth() {
-  fmt::print("# method length rounds iterations seconds_v1\n");
+  fmt::print("# method modules_in_free_row rounds iterations verdict\n");
   for (const Method method : kMethods) {
     for (const int length : {8, 10, 12, 14, 16, 18, 20, 24, 30, 40, 60, 100}) {
       if (method != Method::kConjugateGradients && length > 18) {
@@ -157,7 +157,7 @@ int run_growth() {
       }
       const model::Robot robot = make_robot(fixed_arm(length));
       const auto unit = test::compare(robot, {.method = method});
-      fmt::print("{} {} {} {} {}\n", name(method), length,
+      fmt::print("{} {} {} {} {}\n", name(method), length - 6,
                  unit.result.phases[static_cast<std::size_t>(agent::Phase::kEquilibrium)].time,
                  unit.result.effort.iterations, agent::name(unit.robot));
     }

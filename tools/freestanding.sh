@@ -2,7 +2,7 @@
 # freestanding.sh ARCHIVE...   fails if an archive calls anything but holdfast's own functions and
 # the four memory functions that every compiler may call.
 set -euo pipefail
-allowed='^(memcpy|memmove|memset|memcmp|_GLOBAL_OFFSET_TABLE_|_ZN8holdfast.*)$'
+allowed='^(memcpy|memmove|memset|memcmp|_GLOBAL_OFFSET_TABLE_|_ZNK?8holdfast.*)$'
 symbols=$(nm --undefined-only --format=just-symbols "$@" |
           grep -v -e ':$' -e '^$' | sort -u || true)
 bad=$(grep -Ev "$allowed" <<<"$symbols" || true)

@@ -54,6 +54,31 @@ expect_exit 1 check "$safe" "$overload" "$unstable"
 expect_line out '^3 files: 1 safe, 1 overload, 1 unstable, 0 undecided, 0 not readable$'
 "$program" check - <"$safe" >out || fault "standard input is not read"
 
+# The robot's own verdict.
+expect_exit 0 simulate "$safe"
+expect_line out "^SAFE +arm_breaks_a$"
+expect_line out 'robot +safe, load ratio 0\.640[0-9] +\(2,1,2\)-\(3,1,2\); all modules agree'
+expect_line out 'memory +[0-9]+ bytes in each module'
+expect_exit 1 simulate "$overload" --link unit --seed 7 --loss 0.1 --json simulated.json \
+  --svg own.svg
+expect_line simulated.json '"all_modules_agree": true'
+expect_line own.svg '</svg>'
+expect_exit 1 simulate "$unstable" --link v2 --quiet
+[ -s out ] && fault "--quiet prints: $(cat out)"
+expect_exit 2 simulate "$safe" --kill 2,1,1@0.5
+expect_line out 'does not answer'
+expect_exit 2 simulate "$safe" --cut 2,1,1:+z@0.5
+expect_exit 0 simulate "$safe" --link unit --story story.txt
+expect_line story.txt 'knows the verdict: safe'
+expect_exit 0 simulate "$safe" --link unit --trace trace.json
+python3 -c 'import json; assert len(json.load(open("trace.json"))["traceEvents"]) > 100' ||
+  fault "the trace is not complete JSON"
+expect_exit 64 simulate "$safe" --kill 9,9,9@0
+expect_line err 'cell of an existing module'
+expect_exit 64 simulate "$safe" --loss 1.5
+expect_exit 64 simulate "$safe" --method magic
+expect_exit 65 simulate nowhere.json
+
 # Outputs.
 expect_exit 1 check "$overload" --json report.json --svg picture.svg --vtk loads.vtu
 expect_line report.json '"verdict": "overload"'

@@ -270,7 +270,9 @@ class SimulateRun {
 
 void add_noise_options(CLI::App& command, Options& options) {
   const auto add = [&](const char* name, double& value, const char* help) {
-    command.add_option(name, value, help)->type_name("P")->check(CLI::Range(0.0, 1.0));
+    command.add_option(name, value, help)
+        ->type_name("P")
+        ->check(CLI::Range(0.0, 1.0).description(""));
   };
   add("--loss", options.loss, "Probability that a packet is lost");
   add("--duplicate", options.duplication, "Probability that a packet arrives twice");
@@ -278,7 +280,7 @@ void add_noise_options(CLI::App& command, Options& options) {
   add("--corrupt", options.corruption, "Probability that 1 to 3 bits of a packet flip");
   command.add_option("--jitter", options.jitter, "Delays each packet by 0 to T (s, or rounds)")
       ->type_name("T")
-      ->check(CLI::Range(0.0, 1e6));
+      ->check(CLI::Range(0.0, 1e6).description(""));
 }
 
 void add_fault_options(CLI::App& command, Options& options) {
@@ -301,13 +303,13 @@ Command add_simulate(CLI::App& app) {
                "Structure, VisibleSim XML or holdfast JSON; - is standard input");
   command->add_option("--method", options->method, "cg, block-jacobi, jacobi (the paper's)")
       ->type_name("NAME")
-      ->check(CLI::IsMember({"cg", "block-jacobi", "jacobi"}))
+      ->check(CLI::IsMember({"cg", "block-jacobi", "jacobi"}).description(""))
       ->capture_default_str();
   command
       ->add_option("--link", options->link,
                    "Blinky Blocks v1 (38,400 baud) or v2 (115,200), unit (rounds)")
       ->type_name("NAME")
-      ->check(CLI::IsMember({"v1", "v2", "unit"}))
+      ->check(CLI::IsMember({"v1", "v2", "unit"}).description(""))
       ->capture_default_str();
   command->add_option("--seed", options->seed, "Of everything random")
       ->type_name("N")

@@ -418,7 +418,9 @@ Order Conductor::start_jacobi() {
 
 /// Iterations between two looks at the exact residual.
 std::uint32_t Conductor::jacobi_span() const {
-  return 1000 + 10 * effort_.module_count * effort_.module_count;
+  constexpr std::uint32_t kCountMax = 1000;
+  const std::uint32_t count = effort_.module_count < kCountMax ? effort_.module_count : kCountMax;
+  return 1000 + 10 * count * count;
 }
 
 /// The slowest mode of an arm decays over a time that grows with the fourth power of its length. So

@@ -402,7 +402,7 @@ bool BasicAgent<Real>::find_load_ratio(const base::Cell& cell, base::Direction d
 template <class Real>
 Report BasicAgent<Real>::residual_report() {
   Report report;
-  report.reals[1] = -1e30F;
+  report.reals[1] = kNoLoadRatio;
   for (int i = 0; i < node_count(); ++i) {
     Node<Real>& node = nodes_[static_cast<std::size_t>(i)];
     node.wanted = state_along(node, contact_, 0);
@@ -426,7 +426,10 @@ Report BasicAgent<Real>::residual_report() {
   }
   visit_loads([&](const base::Cell&, base::Direction, double ratio) {
     const auto value = static_cast<float>(ratio);
-    report.reals[1] = value <= report.reals[1] ? report.reals[1] : value;
+    // Not a number stays.
+    if (!(value <= report.reals[1]) && report.reals[1] == report.reals[1]) {
+      report.reals[1] = value;
+    }
   });
   return report;
 }
@@ -525,7 +528,7 @@ Report BasicAgent<Real>::hold_report() {
 template <class Real>
 Report BasicAgent<Real>::loads_report() {
   Report report;
-  report.reals[0] = -1e30F;
+  report.reals[0] = kNoLoadRatio;
   report.number = static_cast<std::uint32_t>(node_count());
   own_ratio_ = 0;
   bool is_own = true;
@@ -538,7 +541,9 @@ Report BasicAgent<Real>::loads_report() {
     own.count = ratio >= 1 ? 1 : 0;
     merge(wire::Operation::kLoads, report, own);
     is_own = cell == nodes_[0].cell;
-    own_ratio_ = is_own && !(value <= own_ratio_) ? value : own_ratio_;
+    if (is_own && !(value <= own_ratio_) && own_ratio_ == own_ratio_) {
+      own_ratio_ = value;
+    }
   });
   return report;
 }

@@ -20,8 +20,15 @@ std::uint8_t header(std::uint8_t top, std::uint8_t number) {
   return static_cast<std::uint8_t>((top << 6U) | (number & kNumberMask));
 }
 
+/// Where the checksum of a session starts. Of even parity, as the start for greetings: then no odd
+/// number of flipped bits turns a packet of one into one of the other.
 std::uint16_t session(std::uint16_t sender, std::uint16_t receiver) {
-  return static_cast<std::uint16_t>(sender ^ std::rotl(receiver, 5));
+  const auto mixed = static_cast<std::uint16_t>(sender ^ std::rotl(receiver, 5));
+  std::uint32_t parity = mixed;
+  for (const unsigned half : {8U, 4U, 2U, 1U}) {
+    parity ^= parity >> half;
+  }
+  return static_cast<std::uint16_t>(mixed ^ (parity & 1U));
 }
 
 std::uint16_t wrapped(int position) {

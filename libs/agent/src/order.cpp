@@ -26,7 +26,7 @@ std::int32_t saturating_sum(std::int32_t a, std::int32_t b, std::uint8_t& flags)
 }
 
 /// Not a number wins: it must not get lost.
-float larger(float a, float b) { return b <= a ? a : b; }
+float larger(float a, float b) { return b <= a || a != a ? a : b; }
 
 void merge_plan(Report& into, const Report& from) {
   into.mask = static_cast<std::uint8_t>(into.mask | from.mask);
@@ -55,7 +55,8 @@ void merge_residual(Report& into, const Report& from) {
 }
 
 void merge_loads(Report& into, const Report& from) {
-  const bool is_worse = !(from.reals[0] <= into.reals[0]);
+  const bool is_worse =
+      larger(into.reals[0], from.reals[0]) != into.reals[0] && into.reals[0] == into.reals[0];
   const bool is_equal = from.reals[0] == into.reals[0];
   if (is_worse || (is_equal && from.cell < into.cell)) {
     into.reals[0] = from.reals[0];
@@ -106,13 +107,12 @@ mechanics::SupportCorners read_corners(Reader& in) {
 int real_count(Operation operation) {
   switch (operation) {
     case Operation::kLow:
-      return 2;
     case Operation::kStart:
     case Operation::kGradient:
-    case Operation::kJacobi:
       return 2;
     case Operation::kSlope:
       return 5;
+    case Operation::kJacobi:
     case Operation::kLoads:
       return 1;
     default:

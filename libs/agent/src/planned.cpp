@@ -50,14 +50,6 @@ bool Planned::is_whole(std::uint8_t cluster, int face) const {
   return true;
 }
 
-bool Planned::is_attached(std::uint8_t cluster) const {
-  std::uint8_t faces = 0;
-  for (int k = 0; k < count_; ++k) {
-    faces = cluster_of(k) == cluster ? static_cast<std::uint8_t>(faces | total(k)) : faces;
-  }
-  return faces != 0;
-}
-
 void Planned::decide_hosts(const std::array<std::uint8_t, 8>& totals) {
   for (int k = 0; k < count_; ++k) {
     totals_[static_cast<std::size_t>(k)] = totals[static_cast<std::size_t>(k)];
@@ -76,7 +68,8 @@ void Planned::decide_hosts(const std::array<std::uint8_t, 8>& totals) {
   }
   for (int k = 0; k < count_; ++k) {
     const std::uint8_t cluster = cluster_of(k);
-    bool is_above = !is_attached(cluster);  // Nobody hosts what touches nothing.
+    // What touches nothing is whole below every face, so nobody hosts it.
+    bool is_above = false;
     bool is_own_only = true;
     for (int face = 0; face < base::kDirectionCount; ++face) {
       is_above = is_above || is_whole(cluster, face);

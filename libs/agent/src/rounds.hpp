@@ -198,6 +198,7 @@ template <class Real>
 void BasicAgent<Real>::leave_round() {
   if (round_.epoch > 0 || silent_faces_ != 0) {
     answer_ = {};
+    phase_ = Phase::kDiscovery;
     is_sweeping_ = false;
     restart_at_ = now_ + setup_.timing.acknowledge_after;
   }

@@ -36,7 +36,7 @@ constexpr std::array<std::uint8_t, 10> kMessageBytes = {0, 19, 19, 8, 3, 0, 0, 2
 constexpr std::array<std::uint8_t, kOperationCount + 1> kOrderBytes = {
     0, 12, 10, 11, 14, 11, 10, 3, 4, 11, 4, 11, 3, 2, 2, 18};
 constexpr std::array<std::uint8_t, kOperationCount + 1> kReportBytes = {
-    0, 13, 3, 17, 19, 2, 2, 17, 12, 12, 10, 22, 10, 21, 24, 6};
+    0, 13, 3, 17, 19, 2, 2, 17, 12, 12, 6, 22, 10, 21, 24, 6};
 
 }  // namespace
 
@@ -84,6 +84,10 @@ void Writer::u32(std::uint32_t value) {
 }
 
 void Writer::short_real(double value) {
+  if (value != value) {
+    u16(0x7fc0);  // Rounding must not turn what is not a number into one.
+    return;
+  }
   const std::uint32_t bits = std::bit_cast<std::uint32_t>(static_cast<float>(value));
   u16(static_cast<std::uint16_t>((bits >> 16U) + ((bits & 0xffffU) != 0 ? 1U : 0U)));
 }

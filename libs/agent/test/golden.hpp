@@ -21,8 +21,8 @@ inline constexpr std::array<std::string_view, 15> kGoldenOrders = {
     "05 05 01 00 00 00 3f 00 00 7a 44",
     "05 06 00 00 80 3f 00 00 80 3e",
     "05 07 01",
-    "05 08 04",
-    "05 09 00 00 00 c0 00 00 c0 3f",
+    "05 08 04 07",
+    "05 09 07 00 00 00 c0 00 00 c0 3f",
     "05 0a 00 10",
     "05 0b 01 00 00 00 00 00 00 80 3f",
     "05 0c 02",
@@ -40,7 +40,7 @@ inline constexpr std::array<std::string_view, 15> kGoldenReports = {
     "06 07 00 00 80 3e 00 00 00 3f 03 00 ef cd ab 89 01",
     "06 08 00 00 c0 3f 00 00 40 40 80 3e",
     "06 09 00 00 80 3f 00 00 00 40 01 3f",
-    "06 0a 00 00 80 3e 00 00 00 00",
+    "06 0a 00 00 80 3e",
     "06 0b 00 00 80 bf 00 00 00 bf 00 00 80 3e 00 00 80 3f 00 00 00 40",
     "06 0c 02 00 00 00 01 00 00 00",
     "06 0d 02 01 00 00 ff ff ff 00 00 00 fd ff ff 01 00 00 00 00 00",
@@ -53,12 +53,12 @@ inline constexpr std::array<std::string_view, 3> kGoldenVectors = {
     "08 05 00 00 80 3f 00 00 00 c0 00 00 00 3f 00 00 80 3e 00 00 80 bf 00 00 c0 3f",
     "09 05 00 00 80 3f 00 00 00 c0 00 00 00 3f 00 00 80 3e 00 00 80 bf 00 00 c0 3f"};
 
-inline constexpr std::string_view kGoldenHello = "80 40 34 12 00 00 00 00 43";
-inline constexpr std::string_view kGoldenHelloHeard = "80 40 ef be 34 12 00 2d 41";
-inline constexpr std::string_view kGoldenHelloOpen = "80 40 34 12 ef be 01 23 e2";
+inline constexpr std::string_view kGoldenHello = "c0 40 34 12 00 00 00 ec 9e";
+inline constexpr std::string_view kGoldenHelloHeard = "c0 40 ef be 34 12 00 c1 9c";
+inline constexpr std::string_view kGoldenHelloOpen = "c0 40 34 12 ef be 01 cf 3f";
 inline constexpr std::string_view kGoldenData = "00 40 04 02 01 05 0d 3a 9b";
 inline constexpr std::string_view kGoldenAcknowledge = "40 41 4a 72";
-inline constexpr std::string_view kGoldenPing = "c0 41 d2 69";
+inline constexpr std::string_view kGoldenPing = "80 41 1e 64";
 
 /// What one module says through one face, from the beginning.
 struct GoldenStream {
@@ -94,15 +94,15 @@ inline const std::vector<GoldenStream> kGoldenTrace = {
       "05 03 00 00 00 02 00 00 00 00 00",                          // count, from (0, 2, 0)
       "05 04 04 00 00 00 fe ff ff ff 02 00 00 00",                 // four modules, sum (-2, 2)
       "05 05 00 17 b7 d1 38 00 00 f0 42",                          // gamma 1e-4, lever 120 mm
-      "05 08 02",                                                  // start Jacobi, scalars
+      "05 08 02 00",                                               // start Jacobi, scalars
       "05 0a 01 00",                                               // one step
       "07 01 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00",
       "08 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00"}},
     {1,
      base::Direction::kPlusY,
-     {"01 01 00 0a 00 00 00 01 00 00 00 02 00 00 00 00 00 01 00",   // join, wave 1
-      "03 01 0c 00 00 00 01 00",                                    // appoint 12
-      "02 01 00 0a 00 00 00 02 02 00 00 00 02 00 0a 00 00 00 00"}}, // echo, wave 2
+     {"01 01 00 0a 00 00 00 01 00 00 00 02 00 00 00 00 00 01 00",    // join, wave 1
+      "03 01 0c 00 00 00 01 00",                                     // appoint 12
+      "02 01 00 0a 00 00 00 02 02 00 00 00 02 00 0a 00 00 00 00"}},  // echo, wave 2
     {2,
      base::Direction::kMinusY,
      {"02 01 00 0a 00 00 00 01 01 00 00 00 02 00 0c 00 00 00 00",  // echo, wave 1

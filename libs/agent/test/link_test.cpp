@@ -200,8 +200,8 @@ void expect_all_arrives(const Faults& faults, int packet_bytes, std::uint64_t se
 }
 
 TEST(Link, delivers_all_once_whole_and_in_order) {
-  constexpr Faults kFaults[] = {
-      {}, {.lost = 30}, {.doubled = 30}, {.late = 30}, {.spoilt = 30}, {20, 20, 20, 20}};
+  constexpr Faults kFaults[] = {{},           {.lost = 30},   {.doubled = 30},
+                                {.late = 30}, {.spoilt = 30}, {20, 20, 20, 20}};
   for (const Faults& faults : kFaults) {
     for (std::uint64_t seed = 1; seed <= 10; ++seed) {
       expect_all_arrives(faults, wire::kPacketBytesMin, seed);
@@ -211,7 +211,7 @@ TEST(Link, delivers_all_once_whole_and_in_order) {
 }
 
 /// Bits i, j and k of a packet flipped; equal ones flip once.
-Bytes flipped(Bytes packet, std::set<std::size_t> bits) {
+Bytes flipped(Bytes packet, const std::set<std::size_t>& bits) {
   for (const std::size_t bit : bits) {
     packet[bit / 8] = static_cast<std::uint8_t>(packet[bit / 8] ^ (0x80U >> (bit % 8)));
   }
@@ -259,7 +259,7 @@ TEST(Link, takes_no_spoilt_packet_for_a_greeting) {
   const LinkTiming timing;
   base::Rng rng(7);
   int restart_count = 0;
-  for (int session = 0; session < 400; ++session) {
+  for (int session = 0; session < 200; ++session) {
     Link a;
     Link b;
     open(a, b, static_cast<std::uint16_t>(rng.next()), static_cast<std::uint16_t>(rng.next()));
@@ -402,7 +402,6 @@ TEST(Link, fills_packets_of_every_size) {
 }
 
 TEST(Link, notices_a_neighbour_that_has_started_again) {
-  const LinkTiming timing;
   Link a;
   Link b;
   open(a, b);
@@ -455,9 +454,9 @@ TEST(Link, ignores_other_versions_and_scraps) {
   a.bring_up(0x1234, 0);
   b.bring_up(0xbeef, 0);
   Bytes hello = write(a, 0);
-  for (const std::uint8_t version : {0x00, 0x80, 0xc0}) {
+  for (const unsigned version : {0U, 2U, 3U}) {
     Bytes other(hello.begin(), hello.end() - 2);
-    other[1] = version;
+    other[1] = static_cast<std::uint8_t>(version << 6U);
     const std::uint16_t sum = wire::checksum(other, 0xffff);
     other.push_back(static_cast<std::uint8_t>(sum & 0xffU));
     other.push_back(static_cast<std::uint8_t>(sum >> 8U));
@@ -466,7 +465,7 @@ TEST(Link, ignores_other_versions_and_scraps) {
   for (std::size_t size = 0; size < hello.size(); ++size) {
     b.receive(std::span(hello).first(size), timing, 0);
   }
-  EXPECT_EQ(to_hex(write(b, 0)).substr(0, 17), "80 40 ef be 00 00");  // It has heard of nobody.
+  EXPECT_EQ(to_hex(write(b, 0)).substr(3, 14), "40 ef be 00 00");  // It has heard of nobody.
 }
 
 /// Whatever has begun to leave arrives whole, the rest not at all, and what comes later as well.
@@ -477,7 +476,7 @@ TEST(Link, drops_whole_messages_only) {
       Link a;
       Link b;
       open(a, b);
-      for (const std::uint8_t label : {1, 2, 3, 4}) {
+      for (std::uint8_t label = 1; label <= 4; ++label) {
         ASSERT_TRUE(a.send(vector_message(label)));
       }
       std::vector<Bytes> got;
@@ -510,7 +509,6 @@ TEST(Link, drops_whole_messages_only) {
 }
 
 TEST(Link, a_full_queue_says_so_and_loses_nothing) {
-  const LinkTiming timing;
   Link a;
   Link b;
   open(a, b);
@@ -543,7 +541,7 @@ TEST(Link, drops_what_is_sent_on_a_link_that_is_not_used) {
   link.bring_up(5, 0);
   link.bring_down();
   EXPECT_EQ(link.state(), Link::State::kDown);
-  EXPECT_TRUE(link.receive(from_hex("80 40 34 12 00 00 00 00 43"), {}, 0).empty());
+  EXPECT_TRUE(link.receive(from_hex("c0 40 34 12 00 00 00 ec 9e"), {}, 0).empty());
   EXPECT_FALSE(link.has_packet(0));
   EXPECT_EQ(link.deadline({}, true), kNever);
 }
@@ -632,7 +630,8 @@ TEST(Link, random_bytes_in_the_stream_do_no_harm) {
     open(link, peer);
     while (link.state() != Link::State::kLost) {
       Bytes bytes(1 + rng.below(13));
-      std::generate(bytes.begin(), bytes.end(), [&] { return static_cast<std::uint8_t>(rng.next()); });
+      std::generate(bytes.begin(), bytes.end(),
+                    [&] { return static_cast<std::uint8_t>(rng.next()); });
       std::span<const std::uint8_t> stream = bytes;
       while (!link.next_message(stream).empty()) {
       }

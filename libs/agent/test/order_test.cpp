@@ -33,7 +33,9 @@ float exact_real(base::Rng& rng) {
 }
 
 base::Cell random_cell(base::Rng& rng) {
-  const auto coordinate = [&] { return static_cast<std::int32_t>(rng.below(2'000'001)) - 1'000'000; };
+  const auto coordinate = [&] {
+    return static_cast<std::int32_t>(rng.below(2'000'001)) - 1'000'000;
+  };
   return {coordinate(), coordinate(), coordinate()};
 }
 
@@ -74,15 +76,15 @@ Report random_report(Operation operation, base::Rng& rng) {
     report.reals[2] = static_cast<float>(rng.below(16)) / 8;  // Seven digits of fraction hold it.
   }
   report.cell = operation == Operation::kPlan && (report.flags & kFound) == 0 ? base::Cell{}
-                                                                               : random_cell(rng);
+                                                                              : random_cell(rng);
   report.direction = static_cast<base::Direction>(rng.below(6));
   if (rng.below(4) != 0) {
     report.angles = mechanics::safe_angles<std::int64_t>({sum(), sum()}, 300'000);
   }
   const auto half_cells = [&] { return 2 * static_cast<std::int32_t>(rng.below(5)) - 5; };
   for (std::uint64_t i = 0; i < rng.below(3); ++i) {
-    report.corners = mechanics::merge(
-        report.corners, {.count = 1, .corners = {{half_cells(), half_cells(), 0}}});
+    report.corners = mechanics::merge(report.corners,
+                                      {.count = 1, .corners = {{half_cells(), half_cells(), 0}}});
   }
   return report;
 }

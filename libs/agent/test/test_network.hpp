@@ -4,8 +4,8 @@
 
 #include <array>
 #include <cstdint>
-#include <deque>
 #include <functional>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -31,30 +31,37 @@ struct NetworkOptions {
 };
 
 /// The plainest network: time counts ticks, every line takes one packet a tick, and a packet is on
-/// the other side one tick later, or never.
+/// the other side one tick later, or never. Keeps a reference to the setup.
 class TestNetwork {
  public:
   TestNetwork(const Setup& setup, std::vector<Place> places, NetworkOptions options = {})
-      : places_(std::move(places)), loss_(options.loss), rng_(options.seed) {
-    for (std::size_t i = 0; i < places_.size(); ++i) {
-      const Identity identity{.id = options.id_first + static_cast<std::uint32_t>(i),
-                              .is_fixed = places_[i].is_fixed,
-                              .is_anchor = i == 0,
-                              .cell = i == 0 ? places_[i].cell : base::Cell{}};
-      agents_.emplace_back(setup, identity);
-    }
+      : setup_(setup), places_(std::move(places)), options_(options), rng_(options.seed) {
+    agents_.resize(places_.size());
     actions_.resize(places_.size());
     for (std::size_t i = 0; i < places_.size(); ++i) {
-      step(i, {.kind = EventKind::kStart, .now = now_});
-      for (const base::Direction face : base::kDirections) {
-        if (find(base::neighbour(places_[i].cell, face)) >= 0) {
-          step(i, {.kind = EventKind::kLinkUp, .now = now_, .face = face, .random = random()});
-        }
-      }
+      start(i);
     }
   }
 
-  const Agent& agent(std::size_t i) const { return agents_[i]; }
+  const Agent& agent(std::size_t i) const { return *agents_[i]; }
+
+  /// The module forgets everything and begins anew; its neighbours are not told.
+  void start(std::size_t i) {
+    const bool is_anchor = i == 0;
+    agents_[i].emplace(setup_, Identity{.id = options_.id_first + static_cast<std::uint32_t>(i),
+                                        .is_fixed = places_[i].is_fixed,
+                                        .is_anchor = is_anchor,
+                                        .cell = is_anchor ? places_[i].cell : base::Cell{}});
+    actions_[i] = {};
+    step(i, event(EventKind::kStart));
+    for (const base::Direction face : base::kDirections) {
+      if (find(base::neighbour(places_[i].cell, face)) >= 0) {
+        Event up = event(EventKind::kLinkUp, face);
+        up.random = ++link_up_count_;  // Different each time, as agent.hpp demands.
+        step(i, up);
+      }
+    }
+  }
 
   const std::vector<Place>& places() const { return places_; }
 
@@ -63,7 +70,9 @@ class TestNetwork {
   Time now() const { return now_; }
 
   void plan(std::size_t i, const base::Cell& cell) {
-    step(i, {.kind = EventKind::kPlan, .now = now_, .cell = cell});
+    Event plan = event(EventKind::kPlan);
+    plan.cell = cell;
+    step(i, plan);
   }
 
   /// Takes a module off; its neighbours feel it.
@@ -73,15 +82,17 @@ class TestNetwork {
     for (const base::Direction face : base::kDirections) {
       const int other = find(base::neighbour(cell, face));
       if (other >= 0) {
-        step(static_cast<std::size_t>(other),
-             {.kind = EventKind::kLinkDown, .now = now_, .face = base::opposite(face)});
+        step(static_cast<std::size_t>(other), event(EventKind::kLinkDown, base::opposite(face)));
       }
     }
   }
 
+  /// It is still there, but does nothing any more.
+  void mute(std::size_t i) { places_[i].is_mute = true; }
+
   bool is_every(const std::function<bool(const Agent&)>& holds) const {
     for (std::size_t i = 0; i < agents_.size(); ++i) {
-      if (!places_[i].is_mute && !holds(agents_[i])) {
+      if (!places_[i].is_mute && !holds(*agents_[i])) {
         return false;
       }
     }
@@ -100,20 +111,29 @@ class TestNetwork {
 
   /// Until every module knows a verdict.
   bool run() {
-    return run_until([](const Agent& agent) { return agent.phase() == Phase::kDone; });
+    return run_until([](const Agent& agent) {
+      return agent.phase() == Phase::kDone && agent.answer().verdict != Verdict::kNone;
+    });
+  }
+
+  /// The same after a change, once the news has gone round: until then an old verdict may stand.
+  bool run_anew() {
+    for (std::size_t i = 0; i < 10 + 4 * size(); ++i) {
+      tick();
+    }
+    return run();
   }
 
   void tick() {
     ++now_;
     for (const Flight& flight : std::exchange(in_flight_, {})) {
-      step(flight.to, {.kind = EventKind::kReceive,
-                       .now = now_,
-                       .face = flight.face,
-                       .bytes = std::span(flight.bytes).first(flight.size)});
+      Event receive = event(EventKind::kReceive, flight.face);
+      receive.bytes = std::span(flight.bytes).first(flight.size);
+      step(flight.to, receive);
     }
     for (std::size_t i = 0; i < agents_.size(); ++i) {
       if (actions_[i].wake_at <= now_) {
-        step(i, {.kind = EventKind::kTime, .now = now_});
+        step(i, event(EventKind::kTime));
       }
       for (const base::Direction face : base::kDirections) {
         if (((actions_[i].send_faces >> static_cast<unsigned>(base::index(face))) & 1U) != 0) {
@@ -143,16 +163,22 @@ class TestNetwork {
     return -1;
   }
 
-  std::uint16_t random() { return static_cast<std::uint16_t>(rng_.next()); }
+  Event event(EventKind kind, base::Direction face = base::Direction::kPlusX) const {
+    Event result;
+    result.kind = kind;
+    result.now = now_;
+    result.face = face;
+    return result;
+  }
 
   void step(std::size_t i, const Event& event) {
     if (!places_[i].is_mute) {
-      agents_[i].step(event, actions_[i]);
+      agents_[i]->step(event, actions_[i]);
     }
   }
 
   void take_packet(std::size_t i, base::Direction face) {
-    step(i, {.kind = EventKind::kLineFree, .now = now_, .face = face});
+    step(i, event(EventKind::kLineFree, face));
     const auto size = static_cast<std::size_t>(actions_[i].packet_bytes);
     const int to = find(base::neighbour(places_[i].cell, face));
     if (size == 0 || to < 0) {
@@ -161,7 +187,7 @@ class TestNetwork {
     if (watch) {
       watch(i, face, std::span(actions_[i].packet).first(size));
     }
-    if (static_cast<double>(rng_.below(1'000'000)) >= loss_ * 1e6) {
+    if (static_cast<double>(rng_.below(1'000'000)) >= options_.loss * 1e6) {
       in_flight_.push_back({.to = static_cast<std::size_t>(to),
                             .face = base::opposite(face),
                             .size = size,
@@ -169,12 +195,14 @@ class TestNetwork {
     }
   }
 
+  const Setup& setup_;
   std::vector<Place> places_;
-  double loss_;
+  NetworkOptions options_;
   base::Rng rng_;
-  std::deque<Agent> agents_;
+  std::vector<std::optional<Agent>> agents_;
   std::vector<Actions> actions_;
   std::vector<Flight> in_flight_;
+  std::uint16_t link_up_count_ = 0;
   Time now_ = 0;
 };
 

@@ -54,8 +54,8 @@ TEST(Wire, orders_are_these_bytes) {
       {.operation = Operation::kBegin, .flags = kUnilateralLaw, .reals = {0.5F, 1000}},
       {.operation = Operation::kHigh, .reals = {1, 0.25F}},
       {.operation = Operation::kLow, .flags = kFollowStates},
-      {.operation = Operation::kStart, .flags = kWithBlocks},
-      {.operation = Operation::kGradient, .reals = {-2, 1.5F}},
+      {.operation = Operation::kStart, .flags = kWithBlocks, .count = 7},
+      {.operation = Operation::kGradient, .count = 7, .reals = {-2, 1.5F}},
       {.operation = Operation::kJacobi, .count = 4096},
       {.operation = Operation::kSlope, .flags = kExchangeFirst, .reals = {0, 1}},
       {.operation = Operation::kHold, .flags = kFreeOpen},
@@ -69,9 +69,8 @@ TEST(Wire, orders_are_these_bytes) {
 }
 
 TEST(Wire, reports_are_these_bytes) {
-  const mechanics::SafeAngles<std::int64_t> angles = {.range = mechanics::SafeRange::kArc,
-                                                      .gap_first = {1, -1},
-                                                      .gap_last = {-256, 2}};
+  const mechanics::SafeAngles<std::int64_t> angles = {
+      .range = mechanics::SafeRange::kArc, .gap_first = {1, -1}, .gap_last = {-256, 2}};
   const mechanics::SupportCorners corners = {.count = 2, .corners = {{1, -1, 0}, {-3, 1, 0}}};
   const std::vector<Report> reports = {
       {.flags = kFound, .mask = 0x21, .cell = kCell},
@@ -163,7 +162,7 @@ void record(TestNetwork& network, Streams& streams) {
 /// What three modules in an L say up to the first exchange. Ids are 10, 11 and 12 from one end to
 /// the other, the anchor is 10; a planned module between the ends touches both.
 TEST(Wire, an_l_of_three_talks_like_this) {
-  Setup setup = table_setup();
+  auto setup = table_setup();
   setup.method = Method::kJacobi;
   TestNetwork network(setup, {{{-1, 2, 0}}, {{0, 2, 0}}, {{0, 3, 0}}}, {.id_first = 10});
   network.plan(2, {-1, 3, 0});
@@ -319,7 +318,8 @@ TEST(Wire, short_reals_round_away_from_zero) {
 
 /// Whatever its payload: a bound on an error that is not a number may not come back as one.
 TEST(Wire, a_short_real_stays_not_a_number) {
-  for (const std::uint32_t bits : {0x7fc00000U, 0x7f800001U, 0xffc00001U, 0x7fffffffU, 0xffffffffU}) {
+  for (const std::uint32_t bits :
+       {0x7fc00000U, 0x7f800001U, 0xffc00001U, 0x7fffffffU, 0xffffffffU}) {
     EXPECT_TRUE(std::isnan(through_short_real(std::bit_cast<float>(bits)))) << std::hex << bits;
   }
 }

@@ -10,6 +10,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <set>
 
 #include "ground_reference.hpp"
@@ -252,6 +253,120 @@ TYPED_TEST(GroundContact, unilateral_has_a_symmetric_and_positive_tangent_in_eve
         EXPECT_GE(base::dot(u, force),
                   0.01 * base::dot(u, image_of(k11, u)) - kRounding<TypeParam> * 2e4);
       }
+    }
+  }
+}
+
+/// The stand-in for solvers that need symmetry: at least gamma / 7 times as stiff as the beam. With
+/// p = uz + ex tx + ey ty its energy is k0 p^2 + gamma (b1 tx^2 + b2 ty^2) where both tilt, and
+/// k0 uz^2 <= 3 k0 (p^2 + l^2 tx^2 + l^2 ty^2), so what is lost is at most 1 + 3 k0 l^2 / b = 6.1.
+TYPED_TEST(GroundContact, symmetric_tangent_is_symmetric_and_positive_in_every_state) {
+  const Dense k11 = paper_k11(lopsided_section<double>());
+  base::Rng rng(8);
+  for (const ContactLaw law : {ContactLaw::kRegularised, ContactLaw::kUnilateral}) {
+    const auto facet = lopsided_facet<TypeParam>(law, 0.01);
+    for (const ContactState state : all_states()) {
+      for (const bool is_held : {false, true}) {
+        const auto tangent = symmetric_tangent(facet, state, is_held);
+        for (int row = 0; row < 6; ++row) {
+          for (int column = 0; column < row; ++column) {
+            EXPECT_NEAR(static_cast<double>(tangent.at(row, column)),
+                        static_cast<double>(tangent.at(column, row)), kRounding<TypeParam> * 1e5);
+          }
+        }
+        for (int i = 0; i < 200; ++i) {
+          const auto u = random_displacement(rng);
+          const auto force = converted<double>(multiply(tangent, converted<TypeParam>(u)));
+          EXPECT_GE(base::dot(u, force),
+                    0.01 / 7 * base::dot(u, image_of(k11, u)) - kRounding<TypeParam> * 2e4);
+        }
+      }
+    }
+  }
+}
+
+/// Gauss's elimination finds positive pivots only, with the weak spring that is in use as well.
+TEST(GroundFacet, symmetric_tangent_has_positive_pivots) {
+  for (const ContactLaw law : {ContactLaw::kRegularised, ContactLaw::kUnilateral}) {
+    for (const ContactState state : all_states()) {
+      for (const bool is_held : {false, true}) {
+        auto rest = symmetric_tangent(lopsided_facet<double>(law, kGamma), state, is_held);
+        for (int pivot = 0; pivot < 6; ++pivot) {
+          ASSERT_GT(rest.at(pivot, pivot), 0);
+          for (int row = pivot + 1; row < 6; ++row) {
+            const double factor = rest.at(row, pivot) / rest.at(pivot, pivot);
+            for (int column = pivot; column < 6; ++column) {
+              rest.at(row, column) -= factor * rest.at(pivot, column);
+            }
+          }
+        }
+      }
+    }
+  }
+}
+
+TYPED_TEST(GroundContact, symmetric_tangent_is_the_tangent_but_for_a_regularised_tilt) {
+  int equal_count = 0;
+  for (const ContactLaw law : {ContactLaw::kRegularised, ContactLaw::kUnilateral}) {
+    const auto facet = lopsided_facet<TypeParam>(law, kGamma);
+    for (const ContactState state : all_states()) {
+      for (const bool is_held : {false, true}) {
+        const auto tangent = contact_tangent(facet, state, is_held);
+        const auto symmetric = symmetric_tangent(facet, state, is_held);
+        double distance = 0;
+        for (std::size_t i = 0; i < 36; ++i) {
+          distance = std::max(distance, std::abs(static_cast<double>(tangent.values[i]) -
+                                                 static_cast<double>(symmetric.values[i])));
+        }
+        const bool tilts = state.tilt_x != 0 || state.tilt_y != 0;
+        const bool is_equal = law == ContactLaw::kUnilateral || !tilts;
+        EXPECT_EQ(distance <= kRounding<TypeParam> * 1e6, is_equal) << code_of(state);
+        equal_count += is_equal ? 1 : 0;
+      }
+    }
+  }
+  EXPECT_EQ(equal_count, 24);  // All 20 of the unilateral law, open and closed of the other.
+}
+
+TYPED_TEST(GroundContact, symmetric_product_is_the_symmetric_tangent_times_the_displacement) {
+  base::Rng rng(9);
+  for (const ContactLaw law : {ContactLaw::kRegularised, ContactLaw::kUnilateral}) {
+    const auto facet = lopsided_facet<TypeParam>(law, kGamma);
+    for (const ContactState state : all_states()) {
+      for (const bool is_held : {false, true}) {
+        const auto tangent = symmetric_tangent(facet, state, is_held);
+        for (int i = 0; i < 50; ++i) {
+          const auto u = converted<TypeParam>(random_displacement(rng));
+          expect_equal_force<TypeParam>(
+              converted<double>(symmetric_product(facet, state, is_held, u)),
+              converted<double>(multiply(tangent, u)));
+        }
+      }
+    }
+  }
+}
+
+/// A regularised facet that tilts: the spring EA/L stands under the pressed edge or corner, and so
+/// does its force, as in Eqs. (11)-(12).
+TYPED_TEST(GroundContact, symmetric_product_puts_the_spring_where_the_facet_presses) {
+  const auto facet = lopsided_facet<TypeParam>(ContactLaw::kRegularised, 0);
+  const double k0 = 100.0 * 1500 / 40;
+  base::Rng rng(10);
+  for (const ContactState state : all_states()) {
+    if (state.tilt_x == 0 && state.tilt_y == 0) {
+      continue;
+    }
+    const auto u = random_displacement(rng);
+    const auto force =
+        converted<double>(symmetric_product(facet, state, true, converted<TypeParam>(u)));
+    const double fz = k0 * (u[2] - kHalfWidth * (state.tilt_x * u[3] + state.tilt_y * u[4]));
+    const double tolerance = kRounding<TypeParam> * 2e4;
+    EXPECT_NEAR(force[2], fz, tolerance);
+    if (state.tilt_x != 0) {
+      EXPECT_NEAR(force[3] - force[1] * kLever, -state.tilt_x * kHalfWidth * fz, tolerance * 20);
+    }
+    if (state.tilt_y != 0) {
+      EXPECT_NEAR(force[4] + force[0] * kLever, -state.tilt_y * kHalfWidth * fz, tolerance * 20);
     }
   }
 }

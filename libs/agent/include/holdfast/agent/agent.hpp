@@ -65,9 +65,9 @@ struct Event {
   EventKind kind = EventKind::kTime;
   Time now = 0;
   base::Direction face = base::Direction::kPlusX;
-  std::uint16_t random = 0;             ///< kLinkUp
-  base::Cell cell = {};                 ///< kPlan
-  std::span<const std::uint8_t> bytes;  ///< kReceive
+  std::uint16_t random = 0;                  ///< kLinkUp
+  base::Cell cell = {};                      ///< kPlan
+  std::span<const std::uint8_t> bytes = {};  ///< kReceive
 };
 
 struct Actions {

@@ -70,6 +70,9 @@ inline constexpr std::uint8_t kMixProducts = 2;    ///< kSlope: how to mix the l
 inline constexpr std::uint8_t kReleaseOpen = 1;    ///< kHold
 inline constexpr std::uint8_t kFreeOpen = 2;       ///< kHold: of all open facets, for comparison.
 
+/// The load ratio of what has no connection: below every real one, and a number.
+inline constexpr float kNoLoadRatio = -1e20F;
+
 struct Report {
   std::uint8_t flags = 0;
   std::uint8_t mask = 0;

@@ -76,7 +76,6 @@ class Planned {
  private:
   std::uint8_t cluster_of(int index) const { return clusters_[static_cast<std::size_t>(index)]; }
 
-  bool is_attached(std::uint8_t cluster) const;
   bool is_whole(std::uint8_t cluster, int face) const;
 
   std::uint8_t count_ = 0;

@@ -26,7 +26,8 @@ inline constexpr int kPacketBytesMax = 228;  ///< Blinky Blocks version 2
 inline constexpr int kMessageBytesMax = 26;
 inline constexpr int kCellBytes = 9;
 
-enum class PacketKind : std::uint8_t { kData, kAcknowledge, kHello, kPing };
+/// A greeting differs in two bits from data, so that few errors make one of the other.
+enum class PacketKind : std::uint8_t { kData, kAcknowledge, kPing, kHello };
 
 enum class MessageType : std::uint8_t {
   kJoin = 1,     ///< A wave: take part in a round, and where you are.

@@ -1,0 +1,521 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// The root's decisions, step by step, from reports made by hand: no robot and no mechanics. What is
+// expected is the way that conductor.hpp describes.
+#include "holdfast/agent/conductor.hpp"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <vector>
+
+#include "test_setup.hpp"
+
+namespace holdfast::agent {
+namespace {
+
+using namespace holdfast::agent::test;
+using wire::Operation;
+
+constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+constexpr std::uint32_t kCensus = 10;
+constexpr base::Cell kRoot = {1, 2, 3};
+
+/// A conductor, its setup and its last order.
+class Drive {
+ public:
+  explicit Drive(Method method = Method::kConjugateGradients) {
+    setup.method = method;
+    order = conductor.begin(setup, kRoot, kCensus, 4);
+  }
+
+  const Order& next(const Report& report = {}) {
+    order = conductor.next(setup, report);
+    return order;
+  }
+
+  /// Without planned modules, up to the report of the mass.
+  void to_mass() {
+    ASSERT_EQ(next().operation, Operation::kHosts);
+    ASSERT_EQ(next().operation, Operation::kMass);
+  }
+
+  void to_equilibrium(bool is_fixed = true) {
+    to_mass();
+    next({.flags = is_fixed ? kAnyFixed : std::uint8_t{0}, .extent = 5, .count = kCensus});
+    if (!is_fixed) {
+      ASSERT_EQ(order.operation, Operation::kAngles);
+      Report stands;
+      stands.angles.range = mechanics::SafeRange::kFull;
+      next(stands);
+    }
+    ASSERT_EQ(order.operation, Operation::kBegin);
+  }
+
+  /// From kBegin or a new solve: gradients that find nothing to do, to the next judgement.
+  void to_judgement() {
+    if (order.operation == Operation::kBegin) {
+      next();
+    }
+    if (order.operation == Operation::kStart) {
+      next();
+    }
+    ASSERT_EQ(order.operation, Operation::kHigh);
+    ASSERT_EQ(next().operation, Operation::kLow);
+  }
+
+  Report low(float error, float ratio) const { return {.reals = {error, ratio}}; }
+
+  void expect_finished(Verdict verdict, Reason reason) {
+    EXPECT_EQ(order.operation, Operation::kVerdict);
+    EXPECT_EQ(order.answer.verdict, verdict);
+    EXPECT_EQ(order.answer.reason, reason);
+    EXPECT_TRUE(conductor.is_finished());
+  }
+
+  agent::Setup setup = table_setup();
+  Conductor conductor;
+  Order order;
+};
+
+Report loads(float ratio, std::uint32_t module_count = kCensus) {
+  return {.number = module_count,
+          .reals = {ratio},
+          .cell = {4, 5, 6},
+          .direction = base::Direction::kMinusY};
+}
+
+// ---- Planned modules, mass, rigid body.
+
+TEST(Conductor, learns_planned_cells_one_by_one) {
+  Drive drive;
+  EXPECT_EQ(drive.order.operation, Operation::kPlan);
+  EXPECT_EQ(drive.order.index, 0xff);
+  drive.next({.flags = kFound, .cell = {7, 0, 0}});
+  EXPECT_EQ(drive.order.operation, Operation::kPlan);
+  EXPECT_EQ(drive.order.index, 0);
+  EXPECT_EQ(drive.order.cell, (base::Cell{7, 0, 0}));
+  drive.next({.flags = kFound, .mask = 2, .cell = {8, 0, 0}});
+  EXPECT_EQ(drive.order.index, 1);
+  EXPECT_EQ(drive.order.cell, (base::Cell{8, 0, 0}));
+  drive.next({.mask = 0x20});
+  EXPECT_EQ(drive.order.operation, Operation::kHosts);
+  EXPECT_EQ(drive.order.masks, (std::array<std::uint8_t, 8>{2, 0x20}));
+  drive.next({.mask = 3});
+  EXPECT_EQ(drive.order.operation, Operation::kMass);
+  EXPECT_EQ(drive.order.cell, kRoot);
+  drive.next({.extent = 5, .count = kCensus + 2, .cell_sum = {-3, 4}});
+  EXPECT_EQ(drive.order.operation, Operation::kAngles);
+  EXPECT_EQ(drive.order.module_count, static_cast<std::int32_t>(kCensus) + 2);
+  EXPECT_EQ(drive.order.cell_sum, (std::array<std::int32_t, 2>{-3, 4}));
+  EXPECT_FALSE(drive.conductor.is_finished());
+}
+
+TEST(Conductor, one_planned_module_too_many_is_undecided) {
+  Drive drive;
+  for (int i = 0; i < kPlannedMax; ++i) {
+    drive.next({.flags = kFound, .cell = {i, 0, 0}});
+    ASSERT_EQ(drive.order.operation, Operation::kPlan);
+    ASSERT_EQ(drive.order.index, i);
+  }
+  Drive enough = drive;
+  EXPECT_EQ(enough.next().operation, Operation::kHosts);
+  drive.next({.flags = kFound, .cell = {kPlannedMax, 0, 0}});
+  drive.expect_finished(Verdict::kUndecided, Reason::kPlannedTooMany);
+}
+
+TEST(Conductor, a_module_that_was_told_too_many_makes_it_undecided) {
+  Drive drive;
+  drive.next({.flags = kFound | kTooManyAnnounced});
+  drive.expect_finished(Verdict::kUndecided, Reason::kPlannedTooMany);
+}
+
+TEST(Conductor, an_occupied_cell_is_undecided) {
+  Drive drive;
+  drive.next({.flags = kFound});
+  drive.next({.mask = Planned::kOccupied | 1});
+  drive.expect_finished(Verdict::kUndecided, Reason::kPlannedOccupied);
+}
+
+TEST(Conductor, a_planned_module_without_a_host_is_undecided) {
+  Drive drive;
+  drive.next({.flags = kFound});
+  drive.next({.flags = kFound, .mask = 1, .cell = {1, 0, 0}});
+  drive.next({.mask = 0});
+  drive.next({.mask = kAnyRemote | 1});  // The second one is missing.
+  drive.expect_finished(Verdict::kUndecided, Reason::kPlannedDetached);
+}
+
+TEST(Conductor, a_missing_module_is_never_safe) {
+  for (const std::uint32_t count : {0U, kCensus - 1, kCensus + 1}) {
+    Drive drive;
+    drive.to_mass();
+    drive.next({.flags = kAnyFixed, .count = count});
+    drive.expect_finished(Verdict::kUndecided, Reason::kNeighbourSilent);
+  }
+  Drive drive;
+  drive.to_equilibrium();
+  drive.to_judgement();
+  ASSERT_EQ(drive.next(drive.low(0, 0.5F)).operation, Operation::kLoads);
+  drive.next(loads(0.5F, kCensus - 1));
+  drive.expect_finished(Verdict::kUndecided, Reason::kNeighbourSilent);
+}
+
+TEST(Conductor, toppling_is_unstable_and_needs_no_equilibrium) {
+  for (const auto range : {mechanics::SafeRange::kEmpty, mechanics::SafeRange::kArc}) {
+    Drive drive;
+    drive.to_mass();
+    ASSERT_EQ(drive.next({.extent = 5, .count = kCensus}).operation, Operation::kAngles);
+    Report topples;
+    topples.angles.range = range;
+    drive.next(topples);
+    drive.expect_finished(Verdict::kUnstable, Reason::kTopples);
+    EXPECT_EQ(drive.conductor.effort().solves, 0U);
+  }
+}
+
+TEST(Conductor, a_fixed_robot_skips_the_angles_and_the_corners) {
+  Drive drive;
+  drive.to_equilibrium(true);
+  EXPECT_EQ(drive.order.flags, 0);
+  EXPECT_EQ(drive.order.reals[0], 1e-4F);
+  EXPECT_EQ(drive.order.reals[1], 240.0F);  // Extent 5 and one more, times the pitch.
+  drive.to_judgement();
+  EXPECT_EQ(drive.next(drive.low(0, 0.5F)).operation, Operation::kLoads);
+}
+
+/// 2^29 bounds the coordinates of the safe angles: 4 extent x count, in these units.
+TEST(Conductor, a_robot_too_large_for_exact_angles_is_undecided) {
+  Drive drive;
+  drive.to_mass();
+  Drive overflow = drive;
+  drive.setup.facet_denominator = 1'000'000;
+  drive.next({.extent = 14, .count = kCensus});  // (4 x 14 + 2) x 1e6 x 10 > 2^29
+  drive.expect_finished(Verdict::kUndecided, Reason::kTooLarge);
+  overflow.next({.flags = kSumOverflow, .extent = 5, .count = kCensus});
+  overflow.expect_finished(Verdict::kUndecided, Reason::kTooLarge);
+}
+
+// ---- Verdicts.
+
+/// From a settled equilibrium of a fixed robot.
+void expect_verdict(float ratio, float error, Verdict verdict, Reason reason) {
+  Drive drive;
+  drive.to_equilibrium();
+  drive.to_judgement();
+  ASSERT_EQ(drive.next(drive.low(error, ratio)).operation, Operation::kLoads);
+  drive.next(loads(ratio));
+  drive.expect_finished(verdict, reason);
+  EXPECT_EQ(drive.order.answer.load_ratio_max, ratio);
+  EXPECT_EQ(drive.order.answer.worst_cell, (base::Cell{4, 5, 6}));
+  EXPECT_EQ(drive.order.answer.worst_direction, base::Direction::kMinusY);
+}
+
+TEST(Conductor, the_largest_ratio_decides) {
+  expect_verdict(0.5F, 1e-4F, Verdict::kSafe, Reason::kHolds);
+  expect_verdict(-3, 1e-4F, Verdict::kSafe, Reason::kHolds);
+  expect_verdict(0.999F, 1e-4F, Verdict::kSafe, Reason::kHolds);
+  expect_verdict(1.5F, 1e-4F, Verdict::kOverload, Reason::kBreaks);
+  expect_verdict(1000, 1e-4F, Verdict::kOverload, Reason::kBreaks);
+}
+
+TEST(Conductor, a_ratio_of_one_is_too_close_to_tell) {
+  expect_verdict(1, 1e-9F, Verdict::kUndecided, Reason::kTooClose);
+}
+
+TEST(Conductor, a_ratio_near_one_asks_for_a_better_solution) {
+  Drive drive;
+  drive.to_equilibrium();
+  drive.to_judgement();
+  const float ratio = 1.0003F;
+  EXPECT_EQ(drive.next(drive.low(2e-4F, ratio)).operation, Operation::kStart);
+  drive.to_judgement();
+  EXPECT_EQ(drive.next(drive.low(5e-5F, ratio)).operation, Operation::kLoads);
+  drive.next(loads(ratio));
+  drive.expect_finished(Verdict::kOverload, Reason::kBreaks);
+}
+
+/// Runs until a verdict: every judgement brings the same report, whatever else is asked nothing.
+void run_with(Drive& drive, const Report& judgement) {
+  for (int i = 0; i < 1000 && !drive.conductor.is_finished(); ++i) {
+    drive.next(drive.order.operation == Operation::kLow ? judgement : Report{});
+  }
+}
+
+TEST(Conductor, a_ratio_near_one_that_gets_no_better_is_too_close) {
+  Drive drive;
+  drive.to_equilibrium();
+  run_with(drive, drive.low(2e-4F, 1.0003F));
+  drive.expect_finished(Verdict::kUndecided, Reason::kTooClose);
+}
+
+TEST(Conductor, loads_that_are_not_numbers_decide_nothing) {
+  Drive drive;
+  drive.to_equilibrium();
+  drive.to_judgement();
+  ASSERT_EQ(drive.next(drive.low(1e-4F, 0.5F)).operation, Operation::kLoads);
+  drive.next(loads(kNan));
+  drive.expect_finished(Verdict::kUndecided, Reason::kNotConverged);
+}
+
+/// A single module has no connection; it reports the least ratio there is.
+TEST(Conductor, a_robot_without_connections_is_safe) {
+  Drive drive;
+  drive.to_equilibrium();
+  drive.to_judgement();
+  ASSERT_EQ(drive.next(drive.low(0, kNoLoadRatio)).operation, Operation::kLoads);
+  drive.next(loads(kNoLoadRatio));
+  drive.expect_finished(Verdict::kSafe, Reason::kHolds);
+}
+
+// ---- Methods.
+
+/// The laws and methods that are tried until the verdict, told by the orders: 'b' begins the
+/// regularised law, 'B' the unilateral one; 's', 'k' and 'g' start a solve with scalars, with
+/// blocks, or by gradients.
+std::string ways_of(Drive& drive, const Report& judgement) {
+  std::string ways;
+  for (int i = 0; i < 1000 && !drive.conductor.is_finished(); ++i) {
+    const Order& order = drive.order;
+    if (order.operation == Operation::kBegin) {
+      ways += (order.flags & kUnilateralLaw) != 0 ? 'B' : 'b';
+    } else if (order.operation == Operation::kStart) {
+      ways += (order.flags & kWithScalars) != 0  ? 's'
+              : (order.flags & kWithBlocks) != 0 ? 'k'
+                                                 : 'g';
+    }
+    const bool reports_error =
+        order.operation == Operation::kLow || order.operation == Operation::kJacobi;
+    drive.next(reports_error ? judgement : Report{});
+  }
+  return ways;
+}
+
+TEST(Conductor, what_is_not_a_number_makes_it_try_every_method_and_law_once) {
+  for (const auto& [method, ways] : {std::pair{Method::kJacobi, "bsbkbgBg"},
+                                     {Method::kBlockJacobi, "bkbgBg"},
+                                     {Method::kConjugateGradients, "bgBg"}}) {
+    Drive drive(method);
+    drive.to_equilibrium();
+    EXPECT_EQ(ways_of(drive, drive.low(kNan, 0)), ways);
+    drive.expect_finished(Verdict::kUndecided, Reason::kNotConverged);
+    EXPECT_EQ(drive.conductor.effort().method, Method::kConjugateGradients);
+    EXPECT_TRUE(drive.conductor.effort().is_unilateral);
+  }
+}
+
+TEST(Conductor, an_error_that_grows_ends_a_jacobi_method) {
+  Drive drive(Method::kJacobi);
+  drive.to_equilibrium();
+  ASSERT_EQ(drive.next().operation, Operation::kStart);
+  EXPECT_EQ(drive.order.flags, kWithScalars);
+  ASSERT_EQ(drive.next().operation, Operation::kJacobi);
+  ASSERT_EQ(drive.next({.reals = {1}}).operation, Operation::kJacobi);
+  ASSERT_EQ(drive.next({.reals = {3e6F}}).operation, Operation::kBegin);
+  EXPECT_EQ(drive.next().flags, kWithBlocks);
+}
+
+TEST(Conductor, batches_of_jacobi_steps_grow_with_the_work_done) {
+  Drive drive(Method::kBlockJacobi);
+  drive.to_equilibrium();
+  drive.next();
+  std::uint32_t steps = 0;
+  for (drive.next(); drive.order.operation == Operation::kJacobi; drive.next({.reals = {1}})) {
+    EXPECT_GE(drive.order.count, 1);
+    EXPECT_LE(drive.order.count, 8 + steps / 8);
+    steps += drive.order.count;
+    ASSERT_LT(steps, 100'000U);
+  }
+  // The error stands still, so the exact residual is asked for.
+  EXPECT_EQ(drive.order.operation, Operation::kHigh);
+  EXPECT_EQ(drive.conductor.effort().iterations, steps);
+}
+
+/// A planned module whose feet are spread over the robot is reached in each step through the tree.
+TEST(Conductor, jacobi_takes_single_steps_when_a_planned_module_is_remote) {
+  Drive drive(Method::kBlockJacobi);
+  drive.next({.flags = kFound});
+  drive.next({.mask = 1});
+  drive.next({.mask = kAnyRemote | 1});
+  drive.next({.flags = kAnyFixed, .extent = 5, .count = kCensus + 1});
+  drive.next();
+  for (drive.next(); drive.order.operation == Operation::kJacobi; drive.next({.reals = {1}})) {
+    ASSERT_EQ(drive.order.count, 1);
+  }
+}
+
+TEST(Conductor, gradients_stop_at_the_limit_of_iterations) {
+  Drive drive;
+  drive.setup.iteration_count_max = 50;
+  drive.to_equilibrium();
+  for (int i = 0; i < 1000 && !drive.conductor.is_finished(); ++i) {
+    // Convergence as slow as it gets: a product, a curvature and an error that stay.
+    drive.next({.reals = {1, 1, 1}});
+  }
+  drive.expect_finished(Verdict::kUndecided, Reason::kNotConverged);
+  EXPECT_LE(drive.conductor.effort().iterations, 51U);
+}
+
+TEST(Conductor, jacobi_stops_at_the_limit_of_iterations) {
+  Drive drive(Method::kJacobi);
+  drive.setup.iteration_count_max = 500;
+  drive.to_equilibrium();
+  std::uint32_t batch_max = 0;
+  for (int i = 0; i < 1000 && !drive.conductor.is_finished(); ++i) {
+    batch_max = std::max<std::uint32_t>(batch_max, drive.order.count);
+    drive.next({.reals = {1, 1, 1}});
+  }
+  drive.expect_finished(Verdict::kUndecided, Reason::kNotConverged);
+  EXPECT_LE(drive.conductor.effort().iterations, 500 + batch_max);
+}
+
+/// gamma = (r, z), delta = (z, w) [Chronopoulos, Gear 1989, CG with one reduction]:
+/// alpha = gamma / delta, then beta = gamma / gamma_old, alpha = gamma / (delta - beta gamma /
+/// alpha_old).
+TEST(Conductor, gradients_take_the_steps_of_the_single_reduction_method) {
+  Drive drive;
+  drive.to_equilibrium();
+  ASSERT_EQ(drive.next().operation, Operation::kStart);
+  ASSERT_EQ(drive.next({.reals = {8, 4, 1}}).operation, Operation::kGradient);
+  EXPECT_EQ(drive.order.reals, (std::array<float, 2>{2, 0}));
+  ASSERT_EQ(drive.next({.reals = {2, 3, 0.5F}}).operation, Operation::kGradient);
+  EXPECT_EQ(drive.order.reals, (std::array<float, 2>{2 / (3 - 0.25F * 2 / 2), 0.25F}));
+  EXPECT_EQ(drive.next({.reals = {1, 1, 0}}).operation, Operation::kHigh);
+  EXPECT_EQ(drive.order.reals, (std::array<float, 2>{1, 0}));
+}
+
+// ---- Contact.
+
+/// Facets want another state: it is adopted and solved for, unless it was there before.
+TEST(Conductor, follows_contact_states_until_they_cycle) {
+  Drive drive;
+  drive.to_equilibrium(false);
+  drive.to_judgement();
+  Report change = drive.low(1e-5F, 0.5F);
+  change.extent = 2;
+  for (const std::uint32_t states : {11U, 12U, 13U}) {
+    change.number = states;
+    drive.next(change);
+    ASSERT_EQ(drive.order.operation, Operation::kStart);
+    EXPECT_EQ(drive.order.flags, kAdoptStates);
+    drive.to_judgement();
+  }
+  EXPECT_EQ(drive.conductor.effort().contact_steps, 3U);
+  change.number = 12;  // Again.
+  drive.next(change);
+  EXPECT_EQ(drive.order.operation, Operation::kBegin);
+  EXPECT_EQ(drive.order.flags, kUnilateralLaw);
+}
+
+TEST(Conductor, corners_that_contradict_the_rigid_body_call_for_the_unilateral_law) {
+  Drive drive;
+  drive.to_equilibrium(false);
+  drive.to_judgement();
+  ASSERT_EQ(drive.next(drive.low(1e-5F, 0.5F)).operation, Operation::kCorners);
+  Drive agrees = drive;
+  Report stable;
+  stable.corners = mechanics::fixed_support();
+  EXPECT_EQ(agrees.next(stable).operation, Operation::kLoads);
+  drive.next();
+  EXPECT_EQ(drive.order.operation, Operation::kBegin);
+  EXPECT_EQ(drive.order.flags, kUnilateralLaw);
+}
+
+/// Up to the loads under the unilateral law, with `open_held` feet that are off the ground and
+/// held.
+Drive unilateral_loads(float ratio, std::uint32_t open_held) {
+  Drive drive;
+  drive.to_equilibrium(false);
+  drive.to_judgement();
+  drive.next(drive.low(1e-5F, 0.5F));
+  drive.next();  // The corners disagree.
+  drive.to_judgement();
+  drive.next(drive.low(1e-5F, ratio));
+  drive.next();  // Corners no longer matter.
+  EXPECT_EQ(drive.order.operation, Operation::kHold);
+  EXPECT_EQ(drive.order.flags, kReleaseOpen);
+  drive.next({.number = open_held});
+  EXPECT_EQ(drive.order.operation, Operation::kLoads);
+  drive.next(loads(ratio));
+  return drive;
+}
+
+TEST(Conductor, without_ambiguous_feet_the_unilateral_law_decides) {
+  unilateral_loads(0.5F, 0).expect_finished(Verdict::kSafe, Reason::kHolds);
+  unilateral_loads(1.5F, 0).expect_finished(Verdict::kOverload, Reason::kBreaks);
+}
+
+TEST(Conductor, ambiguous_feet_are_tried_held_and_free) {
+  for (const auto& [held, freed] : {std::pair{0.5F, 0.6F}, {0.5F, 1.6F}, {1.5F, 1.6F}, {1.5F, 0}}) {
+    Drive drive = unilateral_loads(held, 1);
+    ASSERT_EQ(drive.order.operation, Operation::kHold);
+    EXPECT_EQ(drive.order.flags, kFreeOpen);
+    drive.next({.count = 1});
+    drive.to_judgement();
+    drive.next(drive.low(1e-5F, freed));
+    const bool agrees = (held >= 1) == (freed >= 1);
+    const bool breaks = held >= 1;
+    drive.expect_finished(!agrees  ? Verdict::kUndecided
+                          : breaks ? Verdict::kOverload
+                                   : Verdict::kSafe,
+                          !agrees  ? Reason::kAmbiguousFeet
+                          : breaks ? Reason::kBreaks
+                                   : Reason::kHolds);
+  }
+}
+
+TEST(Conductor, released_feet_are_solved_for_again) {
+  Drive drive;
+  drive.to_equilibrium(false);
+  drive.to_judgement();
+  drive.next(drive.low(1e-5F, 0.5F));
+  drive.next();
+  drive.to_judgement();
+  drive.next(drive.low(1e-5F, 0.5F));
+  ASSERT_EQ(drive.next().operation, Operation::kHold);
+  EXPECT_EQ(drive.next({.count = 2}).operation, Operation::kHigh);
+  EXPECT_EQ(drive.order.reals, (std::array<float, 2>{0, 0}));  // Nothing moves yet.
+}
+
+/// A convex energy's slope at 0, 1/4, 1/2, 3/4 and 1.
+Report slopes(const std::array<float, 5>& values) { return {.reals = values}; }
+
+TEST(Conductor, the_line_search_takes_a_good_full_step_and_narrows_a_bad_one) {
+  Drive drive;
+  drive.to_equilibrium(false);
+  drive.to_judgement();
+  drive.next(drive.low(1e-5F, 0.5F));
+  drive.next();  // Unilateral from here on.
+  ASSERT_EQ(drive.next().operation, Operation::kStart);
+  drive.next({.reals = {8, 4, 1}});
+  ASSERT_EQ(drive.next({.reals = {1, 1, 0}}).operation, Operation::kSlope);
+  EXPECT_EQ(drive.order.flags, kExchangeFirst);
+  EXPECT_EQ(drive.order.reals, (std::array<float, 2>{0, 1}));
+  Drive good = drive;
+  good.next(slopes({-8, -6, -4, -2, 0.5F}));
+  EXPECT_EQ(good.order.operation, Operation::kHigh);
+  EXPECT_EQ(good.order.reals[0], 1);
+  // slope(t) = 8 (t - 0.3): three more looks, each at a quarter of the interval around 0.3.
+  double low = 0;
+  double high = 1;
+  for (int look = 0; look < 4; ++look) {
+    ASSERT_EQ(drive.order.operation, Operation::kSlope);
+    EXPECT_LE(drive.order.reals[0], 0.3F);
+    EXPECT_GE(drive.order.reals[1], 0.3F);
+    low = static_cast<double>(drive.order.reals[0]);
+    high = static_cast<double>(drive.order.reals[1]);
+    std::array<float, 5> values = {-2.4F};
+    for (std::size_t place = 1; place <= 4; ++place) {
+      const double t = low + (high - low) * static_cast<double>(place) / 4;
+      values[place] = static_cast<float>(8 * (t - 0.3));
+    }
+    drive.next(slopes(values));
+  }
+  EXPECT_LE(high - low, 1.0 / 64);
+  ASSERT_EQ(drive.order.operation, Operation::kHigh);
+  EXPECT_NEAR(drive.order.reals[0], 0.3, (high - low) / 4);
+}
+
+}  // namespace
+}  // namespace holdfast::agent

@@ -1,0 +1,290 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// What one module computes alone. Expected values: the blocks of libs/mechanics assembled and
+// multiplied, closed forms, and mechanics' own contact force. The section is lopsided so that no
+// two entries can be mistaken for each other.
+#include "holdfast/agent/node.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "holdfast/base/rng.hpp"
+
+namespace holdfast::agent {
+namespace {
+
+using base::Mat6;
+using base::Vec6;
+using mechanics::ContactLaw;
+using mechanics::ContactState;
+
+template <class Real>
+class NodeOf : public testing::Test {};
+
+using Scalars = testing::Types<float, double>;
+TYPED_TEST_SUITE(NodeOf, Scalars);
+
+auto lopsided_setup() {
+  agent::Setup setup;
+  setup.section = {.elastic_modulus = 100,
+                   .length = 40,
+                   .area = 1500,
+                   .moment_x = 200'000,
+                   .moment_y = 310'000,
+                   .torsion = 130'000};
+  setup.facet_mm = 30;
+  setup.weight_n = 0.6;
+  setup.strength_vertical_n = 12;
+  setup.strength_lateral_n = 15;
+  prepare(setup);
+  return setup;
+}
+
+ContactSetting contact_of(const agent::Setup& setup, ContactLaw law, double gamma = 1e-4) {
+  return {.facet = mechanics::ground_facet(setup.section, setup.facet_mm, gamma, law),
+          .lever_mm = 200};
+}
+
+double random_signed(base::Rng& rng) {
+  return static_cast<double>(rng.below(2'000'001)) / 1'000'000 - 1;
+}
+
+template <class Real>
+Vec6<Real> random_vector(base::Rng& rng, double length, double angle) {
+  Vec6<Real> vector{};
+  for (std::size_t i = 0; i < 6; ++i) {
+    vector[i] = static_cast<Real>(random_signed(rng) * (i < 3 ? length : angle));
+  }
+  return vector;
+}
+
+ContactState random_state(base::Rng& rng) {
+  const auto tilt = [&] { return static_cast<std::int8_t>(static_cast<int>(rng.below(3)) - 1); };
+  if (rng.below(4) == 0) {
+    return {.pressed = false};
+  }
+  return {.pressed = true, .tilt_x = tilt(), .tilt_y = tilt()};
+}
+
+/// The diagonal block, from the same blocks that the exact solver assembles.
+Mat6<double> assembled(const agent::Setup& setup, std::uint8_t faces) {
+  Mat6<double> block;
+  for (const base::Direction direction : base::kDirections) {
+    if (((faces >> static_cast<unsigned>(base::index(direction))) & 1U) != 0) {
+      base::add_to(block, mechanics::block_11(setup.beam, direction));
+    }
+  }
+  return block;
+}
+
+TEST(Setup, prepare_derives_the_beam_in_both_precisions) {
+  const auto setup = lopsided_setup();
+  EXPECT_EQ(setup.beam.axial, 100.0 * 1500 / 40);
+  EXPECT_FLOAT_EQ(setup.beam_float.bend_x, 4.0F * 100 * 200'000 / 40);
+  EXPECT_FLOAT_EQ(setup.beam_float.twist, 100.0F * 130'000 / 40);
+}
+
+TYPED_TEST(NodeOf, reset_brings_back_to_rest) {
+  const auto setup = lopsided_setup();
+  for (const bool is_fixed : {false, true}) {
+    for (const bool is_ground : {false, true}) {
+      Node<TypeParam> node;
+      node.is_fixed = is_fixed;
+      node.is_ground = is_ground;
+      node.is_held = false;
+      node.was_released = true;
+      node.u = {1, 2, 3, 4, 5, 6};
+      node.g = {1, 2, 3, 4, 5, 6};
+      node.force = {1, 2, 3, 4, 5, 6};
+      node.move = {1, 2, 3, 4, 5, 6};
+      reset(node, setup);
+      EXPECT_TRUE(node.is_held);
+      EXPECT_FALSE(node.was_released);
+      EXPECT_EQ(node.state, (ContactState{.pressed = is_ground}));
+      EXPECT_EQ(node.wanted, node.state);
+      EXPECT_EQ(node.u, Vec6<double>{});
+      EXPECT_EQ(node.force, Vec6<double>{});
+      EXPECT_EQ(node.g, Vec6<TypeParam>{});
+      EXPECT_EQ(node.move, Vec6<TypeParam>{});
+      const Vec6<TypeParam> weight = {0, 0, static_cast<TypeParam>(-0.6), 0, 0, 0};
+      EXPECT_EQ(node.r, is_fixed ? Vec6<TypeParam>{} : weight);
+      EXPECT_EQ(node.r_start, node.r);
+    }
+  }
+}
+
+/// x -> block x -> solve gives x. In the metric of the block, where entries are alike in size: an
+/// error of rounding in a displacement counts by the force it makes. 1e-5 and 1e-12 leave room for
+/// the condition number of a block, some 30 when scaled; gamma = 0.01 keeps that of an open facet.
+TYPED_TEST(NodeOf, solve_undoes_multiplication_by_the_block) {
+  const bool is_float = sizeof(TypeParam) == sizeof(float);
+  const double tolerance = is_float ? 1e-5 : 1e-12;
+  const auto setup = lopsided_setup();
+  base::Rng rng(1);
+  for (int round = 0; round < 2000; ++round) {
+    const auto law = rng.below(2) == 0 ? ContactLaw::kRegularised : ContactLaw::kUnilateral;
+    const ContactSetting contact = contact_of(setup, law, 0.01);
+    Node<TypeParam> node;
+    node.is_ground = rng.below(2) == 0;
+    node.is_held = rng.below(2) == 0;
+    node.state = random_state(rng);
+    const auto faces = static_cast<std::uint8_t>(1 + rng.below(63));
+    Mat6<double> block = assembled(setup, faces);
+    if (node.is_ground) {
+      base::add_to(block, mechanics::symmetric_tangent(contact.facet, node.state, node.is_held));
+    }
+    const Vec6<double> x = random_vector<double>(rng, 1, 0.05);
+    const Vec6<double> image = base::multiply(block, x);
+    Vec6<TypeParam> rounded{};
+    for (std::size_t i = 0; i < 6; ++i) {
+      rounded[i] = static_cast<TypeParam>(image[i]);
+    }
+    factor_diagonal(node, setup, contact, faces);
+    const Vec6<TypeParam> back = solve_diagonal(node, rounded);
+    Vec6<double> error{};
+    for (std::size_t i = 0; i < 6; ++i) {
+      error[i] = static_cast<double>(back[i]) - x[i];
+    }
+    const double size = std::sqrt(base::dot(x, image));
+    EXPECT_LE(std::sqrt(base::dot(error, base::multiply(block, error))), tolerance * size)
+        << "faces " << int{faces};
+  }
+}
+
+TYPED_TEST(NodeOf, scalar_diagonal_is_that_of_the_true_tangent) {
+  const auto setup = lopsided_setup();
+  base::Rng rng(2);
+  for (int round = 0; round < 200; ++round) {
+    const ContactSetting contact = contact_of(setup, ContactLaw::kRegularised);
+    Node<TypeParam> node;
+    node.is_ground = rng.below(2) == 0;
+    node.state = random_state(rng);
+    const auto faces = static_cast<std::uint8_t>(rng.below(64));
+    Mat6<double> block = assembled(setup, faces);
+    if (node.is_ground) {
+      base::add_to(block, mechanics::contact_tangent(contact.facet, node.state, true));
+    }
+    const Vec6<TypeParam> diagonal = scalar_diagonal(node, setup, contact, faces);
+    for (int i = 0; i < 6; ++i) {
+      EXPECT_EQ(diagonal[static_cast<std::size_t>(i)], static_cast<TypeParam>(block.at(i, i)));
+    }
+  }
+}
+
+TYPED_TEST(NodeOf, a_fixed_module_does_not_move) {
+  const auto setup = lopsided_setup();
+  const ContactSetting contact = contact_of(setup, ContactLaw::kRegularised);
+  Node<TypeParam> node;
+  node.is_fixed = true;
+  node.force = {1, 2, 3, 4, 5, 6};
+  factor_diagonal(node, setup, contact, 0x3f);
+  EXPECT_EQ(solve_diagonal(node, {1, 2, 3, 4, 5, 6}), Vec6<TypeParam>{});
+  EXPECT_EQ(residual(node, setup, contact), Vec6<double>{});
+}
+
+TYPED_TEST(NodeOf, at_rest_the_residual_is_the_weight) {
+  const auto setup = lopsided_setup();
+  for (const auto law : {ContactLaw::kRegularised, ContactLaw::kUnilateral}) {
+    Node<TypeParam> node;
+    node.is_ground = true;
+    reset(node, setup);
+    EXPECT_EQ(residual(node, setup, contact_of(setup, law)), (Vec6<double>{0, 0, -0.6, 0, 0, 0}));
+  }
+}
+
+TYPED_TEST(NodeOf, the_residual_is_weight_less_beams_less_facet) {
+  const auto setup = lopsided_setup();
+  base::Rng rng(3);
+  for (int round = 0; round < 200; ++round) {
+    const auto law = rng.below(2) == 0 ? ContactLaw::kRegularised : ContactLaw::kUnilateral;
+    const ContactSetting contact = contact_of(setup, law);
+    Node<TypeParam> node;
+    node.is_ground = rng.below(2) == 0;
+    node.is_held = rng.below(2) == 0;
+    node.state = random_state(rng);
+    node.u = random_vector<double>(rng, 1, 0.05);
+    node.force = random_vector<double>(rng, 10, 100);
+    Vec6<double> facet{};
+    if (node.is_ground) {
+      facet = mechanics::contact_force(contact.facet, node.state, node.is_held, node.u);
+    }
+    const Vec6<double> rest = residual(node, setup, contact);
+    for (std::size_t i = 0; i < 6; ++i) {
+      // Three terms are added in another order: a few roundings of the largest.
+      const double size = 1 + std::abs(node.force[i]) + std::abs(facet[i]);
+      EXPECT_NEAR(rest[i], (i == 2 ? -0.6 : 0.0) - node.force[i] - facet[i], 1e-15 * size);
+    }
+  }
+}
+
+/// Along u + t g, in the state that belongs to each place.
+TYPED_TEST(NodeOf, contact_along_a_line_is_that_of_mechanics) {
+  const auto setup = lopsided_setup();
+  base::Rng rng(4);
+  int change_count = 0;
+  for (int round = 0; round < 500; ++round) {
+    const auto law = rng.below(2) == 0 ? ContactLaw::kRegularised : ContactLaw::kUnilateral;
+    const ContactSetting contact = contact_of(setup, law);
+    Node<TypeParam> node;
+    node.is_ground = true;
+    node.is_held = rng.below(2) == 0;
+    node.u = random_vector<double>(rng, 1, 0.05);
+    node.g = random_vector<TypeParam>(rng, 1, 0.05);
+    for (const double t : {0.0, 0.25, 1.0, 1.75}) {
+      Vec6<double> u = node.u;
+      for (std::size_t i = 0; i < 6; ++i) {
+        u[i] += t * static_cast<double>(node.g[i]);
+      }
+      const ContactState state =
+          mechanics::contact_state(contact.facet, mechanics::trial_force(contact.facet, u));
+      EXPECT_EQ(state_along(node, contact, t), state);
+      EXPECT_EQ(facet_force_along(node, contact, t),
+                mechanics::contact_force(contact.facet, state, node.is_held, u));
+    }
+    change_count += state_along(node, contact, 0) == state_along(node, contact, 1) ? 0 : 1;
+  }
+  EXPECT_GT(change_count, 100);
+}
+
+TYPED_TEST(NodeOf, above_the_ground_there_is_no_contact) {
+  const auto setup = lopsided_setup();
+  const ContactSetting contact = contact_of(setup, ContactLaw::kRegularised);
+  Node<TypeParam> node;
+  node.u = {0, 0, -1, 0, 0, 0};
+  EXPECT_EQ(state_along(node, contact, 1), (ContactState{.pressed = false}));
+  EXPECT_EQ(facet_force_along(node, contact, 1), Vec6<double>{});
+}
+
+/// Eq. (17) for the force F at the robot's full extent R and a torque T, on the weaker connector:
+/// (2 (T + F R) / a + F) / Fmax, with a = 30, R = 200, Fmax = 12; sums of magnitudes.
+TYPED_TEST(NodeOf, the_error_of_a_residual_is_the_load_ratio_it_could_make) {
+  auto setup = lopsided_setup();
+  const ContactSetting contact = contact_of(setup, ContactLaw::kRegularised);
+  const Vec6<TypeParam> rest = {1, -2, 0.5, -10, 20, 30};
+  const double force = 3.5;
+  const double torque = 60;
+  const double expected = (2 * (torque + force * 200) / 30 + force) / 12;
+  EXPECT_DOUBLE_EQ(ratio_error(rest, setup, contact), expected);
+  setup.strength_lateral_n = 6;
+  EXPECT_DOUBLE_EQ(ratio_error(rest, setup, contact), 2 * expected);
+  EXPECT_EQ(ratio_error(Vec6<TypeParam>{}, setup, contact), 0);
+  EXPECT_TRUE(std::isnan(
+      ratio_error(Vec6<TypeParam>{0, 0, 0, 0, static_cast<TypeParam>(NAN), 0}, setup, contact)));
+}
+
+/// A cantilever: a module that hangs on a fixed one bends its connection by its weight times half a
+/// pitch. The bound on what its whole weight could do, unbalanced, is larger.
+TEST(Node, the_bound_is_above_what_a_cantilever_carries) {
+  const auto setup = lopsided_setup();
+  ContactSetting contact = contact_of(setup, ContactLaw::kRegularised);
+  contact.lever_mm = 2 * setup.section.length;
+  Node<double> node;
+  reset(node, setup);
+  const double carried = 2 * (0.6 * 20) / 30 / 15;
+  EXPECT_GT(ratio_error(node.r, setup, contact), carried);
+}
+
+}  // namespace
+}  // namespace holdfast::agent

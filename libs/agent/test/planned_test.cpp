@@ -1,0 +1,224 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// Who emulates planned modules. Robots of a few modules with trees drawn by hand; the test plays
+// the sweep: masks go up the tree, their union comes down. Expected hosts are the lowest common
+// ancestors of the participants, read off the drawings.
+#include "holdfast/agent/planned.hpp"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <vector>
+
+namespace holdfast::agent {
+namespace {
+
+using base::Cell;
+using base::Direction;
+
+/// A module: its cell, and the face of its parent; the first one is the root and has none.
+struct Member {
+  Cell cell;
+  int parent_face = -1;
+};
+
+constexpr int face_of(Direction direction) { return base::index(direction); }
+
+constexpr int kPlusX = face_of(Direction::kPlusX);
+constexpr int kMinusX = face_of(Direction::kMinusX);
+constexpr int kMinusY = face_of(Direction::kMinusY);
+
+std::uint8_t bits(std::initializer_list<Direction> faces) {
+  unsigned mask = 0;
+  for (const Direction face : faces) {
+    mask |= 1U << static_cast<unsigned>(face_of(face));
+  }
+  return static_cast<std::uint8_t>(mask);
+}
+
+/// Members are listed parents first. Afterwards every module knows its part.
+std::vector<Planned> share(const std::vector<Member>& members, const std::vector<Cell>& cells) {
+  std::vector<Planned> parts(members.size());
+  std::array<std::uint8_t, 8> totals{};
+  for (std::size_t k = 0; k < cells.size(); ++k) {
+    for (std::size_t i = members.size(); i-- > 0;) {
+      parts[i].add(cells[k], members[i].cell);
+    }
+    // All have learned the cell; masks come up, deepest first.
+    for (std::size_t i = members.size(); i-- > 1;) {
+      const auto face = static_cast<Direction>(members[i].parent_face);
+      for (std::size_t parent = 0; parent < i; ++parent) {
+        if (members[parent].cell == base::neighbour(members[i].cell, face)) {
+          parts[parent].add_below(base::index(base::opposite(face)), static_cast<int>(k),
+                                  parts[i].mask(static_cast<int>(k)));
+        }
+      }
+    }
+    totals[k] = parts[0].mask(static_cast<int>(k));
+  }
+  for (Planned& part : parts) {
+    part.decide_hosts(totals);
+  }
+  return parts;
+}
+
+std::vector<int> hosted(const Planned& part) {
+  std::vector<int> list;
+  for (int i = 0; i < part.hosted_count(); ++i) {
+    list.push_back(part.hosted(i));
+    EXPECT_EQ(part.node_of(part.hosted(i)), 1 + i);
+  }
+  return list;
+}
+
+using List = std::vector<int>;
+
+/// Root (0,0,0), then a row along x.
+const std::vector<Member> kRow = {{{0, 0, 0}}, {{1, 0, 0}, kMinusX}, {{2, 0, 0}, kMinusX}};
+
+/// Root (0,0,0) with two arms, at -x and +x, both bent to +y: a U.
+const std::vector<Member> kU = {{{0, 0, 0}},
+                                {{-1, 0, 0}, kPlusX},
+                                {{1, 0, 0}, kMinusX},
+                                {{-1, 1, 0}, kMinusY},
+                                {{1, 1, 0}, kMinusY}};
+
+TEST(Planned, a_single_participant_is_the_host) {
+  const auto parts = share(kRow, {{2, 0, 1}});
+  EXPECT_EQ(hosted(parts[2]), List{0});
+  EXPECT_EQ(hosted(parts[1]), List{});
+  EXPECT_EQ(hosted(parts[0]), List{});
+  EXPECT_EQ(parts[2].own_face(0), face_of(Direction::kPlusZ));
+  EXPECT_EQ(parts[2].at_face(face_of(Direction::kPlusZ)), 0);
+  EXPECT_EQ(parts[2].at_face(kPlusX), -1);
+  EXPECT_EQ(parts[1].own_face(0), -1);
+  EXPECT_EQ(parts[2].total(0), bits({Direction::kMinusZ}));
+  for (const Planned& part : parts) {
+    EXPECT_EQ(part.count(), 1);
+    EXPECT_FALSE(part.is_any_remote());
+    EXPECT_EQ(part.from_above(), 0);
+    EXPECT_FALSE(part.is_needed_below(kPlusX, 0));  // The host needs nobody.
+  }
+}
+
+/// (0,1,0) lies between the arms and on the root: the root is the host, and (1,1,0) and (-1,1,0)
+/// hear of it through the arms.
+TEST(Planned, the_host_of_two_subtrees_is_their_common_ancestor) {
+  const auto parts = share(kU, {{0, 1, 0}});
+  EXPECT_EQ(hosted(parts[0]), List{0});
+  EXPECT_TRUE(parts[0].is_any_remote());
+  EXPECT_TRUE(parts[0].is_needed_below(kPlusX, 0));
+  EXPECT_TRUE(parts[0].is_needed_below(kMinusX, 0));
+  EXPECT_FALSE(parts[0].is_from_above(0));
+  for (std::size_t i = 1; i < parts.size(); ++i) {
+    EXPECT_EQ(hosted(parts[i]), List{});
+    EXPECT_TRUE(parts[i].is_from_above(0));
+    EXPECT_EQ(parts[i].node_of(0), -1);
+  }
+  EXPECT_EQ(parts[0].total(0), bits({Direction::kMinusX, Direction::kPlusX, Direction::kMinusY}));
+  EXPECT_TRUE(parts[1].is_needed_below(face_of(Direction::kPlusY), 0));
+  EXPECT_FALSE(parts[3].is_needed_below(face_of(Direction::kPlusY), 0));  // A leaf.
+}
+
+/// Three planned modules bridge the ends of the U. The root touches none of them, but it is the
+/// only module above both ends.
+TEST(Planned, the_host_need_not_touch_what_it_emulates) {
+  const auto parts = share(kU, {{-1, 2, 0}, {0, 2, 0}, {1, 2, 0}});
+  EXPECT_EQ(hosted(parts[0]), (List{0, 1, 2}));
+  EXPECT_EQ(parts[0].mask(1), 0);
+  EXPECT_EQ(parts[3].from_above(), 1);  // Each end needs what it touches, ...
+  EXPECT_EQ(parts[4].from_above(), 4);
+  EXPECT_TRUE(parts[0].is_needed_below(kMinusX, 0));
+  EXPECT_FALSE(parts[0].is_needed_below(kMinusX, 2));  // ... and nothing else.
+  EXPECT_FALSE(parts[0].is_needed_below(kMinusX, 1));
+}
+
+/// Both lie below one arm: the root, above, has nothing to do with them.
+TEST(Planned, the_host_is_the_deepest_common_ancestor) {
+  std::vector<Member> members = kU;
+  members.push_back({{2, 0, 0}, kMinusX});
+  const auto parts = share(members, {{2, 1, 0}});  // Between (1,1,0) and (2,0,0).
+  EXPECT_EQ(hosted(parts[2]), List{0});
+  EXPECT_TRUE(parts[2].is_any_remote());
+  EXPECT_EQ(hosted(parts[0]), List{});
+  EXPECT_EQ(parts[0].from_above(), 0);
+  EXPECT_FALSE(parts[0].is_needed_below(kPlusX, 0));
+  EXPECT_TRUE(parts[2].is_needed_below(kPlusX, 0));
+  EXPECT_TRUE(parts[2].is_needed_below(face_of(Direction::kPlusY), 0));
+  EXPECT_TRUE(parts[4].is_from_above(0));
+  EXPECT_TRUE(parts[5].is_from_above(0));
+  EXPECT_FALSE(parts[1].is_from_above(0));
+  EXPECT_FALSE(parts[3].is_from_above(0));
+}
+
+TEST(Planned, a_participant_above_the_other_hosts) {
+  const auto parts = share(kRow, {{1, 1, 0}, {2, 1, 0}});
+  EXPECT_EQ(hosted(parts[1]), (List{0, 1}));
+  EXPECT_EQ(parts[2].from_above(), 2);
+  EXPECT_TRUE(parts[1].is_needed_below(kPlusX, 1));
+  EXPECT_FALSE(parts[1].is_needed_below(kPlusX, 0));
+  EXPECT_EQ(hosted(parts[0]), List{});
+}
+
+TEST(Planned, a_cluster_hangs_together_by_one_foot) {
+  const auto parts = share(kRow, {{2, 0, 1}, {2, 0, 2}});
+  EXPECT_EQ(hosted(parts[2]), (List{0, 1}));
+  EXPECT_FALSE(parts[2].is_any_remote());
+  EXPECT_EQ(parts[2].total(1), 0);
+  EXPECT_EQ(parts[2].neighbour_of(0, Direction::kPlusZ), 1);
+  EXPECT_EQ(parts[2].neighbour_of(1, Direction::kMinusZ), 0);
+  EXPECT_EQ(parts[2].neighbour_of(1, Direction::kPlusZ), -1);
+}
+
+TEST(Planned, clusters_have_hosts_of_their_own) {
+  const auto parts = share(kRow, {{0, 0, 1}, {2, 0, 1}});
+  EXPECT_EQ(hosted(parts[0]), List{0});
+  EXPECT_EQ(hosted(parts[2]), List{1});
+  EXPECT_FALSE(parts[0].is_any_remote());
+  EXPECT_FALSE(parts[0].is_needed_below(kPlusX, 1));
+}
+
+TEST(Planned, what_touches_nothing_is_hosted_by_nobody) {
+  const auto parts = share(kRow, {{0, 0, 1}, {9, 9, 0}, {9, 9, 1}});
+  EXPECT_EQ(hosted(parts[0]), List{0});
+  for (std::size_t i = 1; i < parts.size(); ++i) {
+    EXPECT_EQ(hosted(parts[i]), List{});
+  }
+  for (const Planned& part : parts) {
+    EXPECT_EQ(part.node_of(1), -1);
+    EXPECT_EQ(part.from_above(), 0);
+  }
+}
+
+TEST(Planned, an_occupied_cell_shows_in_the_mask) {
+  const auto parts = share(kRow, {{1, 0, 0}});
+  EXPECT_EQ(parts[1].own_mask(0), Planned::kOccupied);
+  EXPECT_EQ(parts[1].own_face(0), -1);
+  EXPECT_EQ(parts[0].mask(0), Planned::kOccupied | bits({Direction::kMinusX, Direction::kPlusX}));
+}
+
+/// As many as there may be, in a pile at the end of the row. Only the first touches the robot, the
+/// second is at the top, and from there the indices go down: names must travel against them.
+TEST(Planned, as_many_as_there_may_be) {
+  std::vector<Cell> pile = {{2, 0, 1}};
+  List all = {0};
+  for (int i = 1; i < kPlannedMax; ++i) {
+    pile.push_back({2, 0, kPlannedMax + 1 - i});
+    all.push_back(i);
+  }
+  const auto parts = share(kRow, pile);
+  EXPECT_EQ(hosted(parts[2]), all);
+  EXPECT_EQ(parts[2].at_face(face_of(Direction::kPlusZ)), 0);
+}
+
+TEST(Planned, clear_forgets_everything) {
+  auto parts = share(kRow, {{2, 0, 1}});
+  parts[2].clear();
+  EXPECT_EQ(parts[2].count(), 0);
+  EXPECT_EQ(parts[2].hosted_count(), 0);
+  EXPECT_EQ(parts[2].at_face(face_of(Direction::kPlusZ)), -1);
+}
+
+}  // namespace
+}  // namespace holdfast::agent
