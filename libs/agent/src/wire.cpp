@@ -88,7 +88,7 @@ void Writer::short_real(double value) {
     u16(0x7fc0);  // Rounding must not turn what is not a number into one.
     return;
   }
-  const std::uint32_t bits = std::bit_cast<std::uint32_t>(static_cast<float>(value));
+  const auto bits = std::bit_cast<std::uint32_t>(static_cast<float>(value));
   u16(static_cast<std::uint16_t>((bits >> 16U) + ((bits & 0xffffU) != 0 ? 1U : 0U)));
 }
 
