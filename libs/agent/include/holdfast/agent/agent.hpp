@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <span>
 
+#include "holdfast/agent/colour.hpp"
 #include "holdfast/agent/conductor.hpp"
 #include "holdfast/agent/link.hpp"
 #include "holdfast/agent/node.hpp"
@@ -112,6 +113,11 @@ class BasicAgent {
 
   /// The largest load ratio of this module's own connections: its colour. Valid with a verdict.
   float own_load_ratio() const { return own_ratio_; }
+
+  /// What the module's lamp should show now.
+  Colour colour() const {
+    return colour_of(answer_.verdict, own_ratio_, identity_.is_fixed, is_root());
+  }
 
   /// The load ratio of one connection of this module, or of a planned module that it emulates, at
   /// the last residual; false if it has none there.
