@@ -6,6 +6,7 @@
 //   distributed_bench noisy FROM TO       the same with loss, duplication, jitter, bit errors
 //   distributed_bench faults FROM TO      a random module dies or a random link fails
 //   distributed_bench growth              rounds against the length of a fixed arm, each method
+//   distributed_bench sweeps              sweeps of the equilibrium on families of larger robots
 //   distributed_bench throughput          events per second and memory of large robots
 #include <fmt/format.h>
 
@@ -165,6 +166,86 @@ int run_growth() {
   return 0;
 }
 
+/// All cells of a box for which `has` says yes.
+model::RobotSpec box(std::int32_t x_size, std::int32_t y_size, std::int32_t z_size,
+                     const std::function<bool(const base::Cell&)>& has) {
+  model::RobotSpec spec;
+  for (std::int32_t z = 0; z < z_size; ++z) {
+    for (std::int32_t y = 0; y < y_size; ++y) {
+      for (std::int32_t x = 0; x < x_size; ++x) {
+        if (has({x, y, z})) {
+          spec.existing.push_back({x, y, z});
+        }
+      }
+    }
+  }
+  return spec;
+}
+
+model::RobotSpec solid(std::int32_t x_size, std::int32_t y_size, std::int32_t z_size) {
+  return box(x_size, y_size, z_size, [](const base::Cell&) { return true; });
+}
+
+model::RobotSpec scaffold(std::int32_t size) {
+  return box(size, size, size, [](const base::Cell& cell) {
+    return (cell.x % 4 == 0 ? 1 : 0) + (cell.y % 4 == 0 ? 1 : 0) + (cell.z % 4 == 0 ? 1 : 0) >= 2;
+  });
+}
+
+model::RobotSpec portal(std::int32_t width) {
+  return box(width, 4, width / 2, [width](const base::Cell& cell) {
+    return cell.x < 4 || cell.x >= width - 4 || cell.z >= width / 2 - 4;
+  });
+}
+
+model::RobotSpec shell(std::int32_t size) {
+  return box(size, size, size, [size](const base::Cell& cell) {
+    return cell.x == 0 || cell.x == size - 1 || cell.y == 0 || cell.y == size - 1 ||
+           cell.z == size - 1;
+  });
+}
+
+/// A plate 8 wide and 3 thick on a pier of 8 x 8 x 10 at its end.
+model::RobotSpec bridge(std::int32_t length) {
+  return box(length, 8, 13, [](const base::Cell& cell) { return cell.z >= 10 || cell.x < 8; });
+}
+
+void measure_sweeps(const char* title, const model::RobotSpec& spec) {
+  const model::Robot robot = make_robot(spec);
+  fmt::print("| {} | {} |", title, robot.modules().size());
+  for (const std::uint8_t degree_max : {std::uint8_t{0}, std::uint8_t{200}}) {
+    sim::Simulation simulation(robot, {.degree_max = degree_max});
+    simulation.run();
+    const sim::SimulationResult result = simulation.result();
+    int depth = 0;
+    for (std::int32_t i = 0; i < simulation.agent_count(); ++i) {
+      depth = std::max<int>(depth, simulation.agent(i).depth());
+    }
+    const auto phase = static_cast<std::size_t>(agent::Phase::kEquilibrium);
+    const double sweeps = static_cast<double>(result.phases[phase].time) / (2.0 * depth);
+    fmt::print("{} {:.0f} |", degree_max == 0 ? fmt::format(" {} |", depth) : "", sweeps);
+    std::fflush(stdout);
+  }
+  fmt::print("\n");
+}
+
+int run_sweeps() {
+  fmt::print(
+      "| robot | modules | depth | sweeps with blocks | with the polynomial |\n"
+      "|---|---|---|---|---|\n");
+  measure_sweeps("cube 6", solid(6, 6, 6));
+  measure_sweeps("cube 10", solid(10, 10, 10));
+  measure_sweeps("tower 3 x 3 x 30", solid(3, 3, 30));
+  measure_sweeps("scaffold 13", scaffold(13));
+  measure_sweeps("scaffold 21", scaffold(21));
+  measure_sweeps("portal 20", portal(20));
+  measure_sweeps("shell 16", shell(16));
+  measure_sweeps("bridge 20", bridge(20));
+  measure_sweeps("fixed arm 30", fixed_arm(30));
+  measure_sweeps("fixed arm 60", fixed_arm(60));
+  return 0;
+}
+
 void measure_throughput(const char* title, const model::RobotSpec& spec,
                         std::uint64_t event_count) {
   const model::Robot robot = make_robot(spec);
@@ -195,7 +276,7 @@ int run_throughput() {
 int usage() {
   fmt::print(stderr,
              "usage: distributed_bench cases FILE... | random FROM TO | noisy FROM TO | "
-             "faults FROM TO | growth | throughput\n");
+             "faults FROM TO | growth | sweeps | throughput\n");
   return 64;
 }
 
@@ -206,6 +287,9 @@ int main(int argc, char** argv) {
   const std::string_view what = argc > 1 ? arguments[1] : "";
   if (what == "cases" && argc > 2) {
     return run_cases(arguments.subspan(2)) == 0 ? 0 : 1;
+  }
+  if (what == "sweeps") {
+    return run_sweeps();
   }
   if (what == "growth" || what == "throughput") {
     return what == "growth" ? run_growth() : run_throughput();

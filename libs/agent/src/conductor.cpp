@@ -32,10 +32,6 @@ constexpr int kStagnationMax = 8;
 
 constexpr int kContactStepsMax = 100;
 
-/// A preconditioner of degree m costs m rounds more, and saves about a factor m of sweeps of twice
-/// the tree's depth. So the depth is a good degree; beyond this, single precision spoils it.
-constexpr std::uint16_t kDegreeMax = 200;
-
 /// A full step will do if it brings the slope of the energy down this far; else the line is
 /// searched so many times, each to a quarter of the interval.
 constexpr double kSlopeReduction = 0.1;
@@ -62,7 +58,7 @@ Order Conductor::begin(const Setup& setup, const base::Cell& root, std::uint32_t
   *this = Conductor();
   root_ = root;
   census_ = module_count;
-  degree_ = depth < kDegreeMax ? depth : kDegreeMax;
+  degree_ = depth < setup.degree_max ? depth : setup.degree_max;
   effort_.method = setup.method;
   Order first = order(Step::kPlan, Operation::kPlan);
   first.index = kNoIndex;

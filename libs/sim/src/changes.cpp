@@ -51,7 +51,7 @@ bool starts_attached(const SimulationOptions& options, std::int32_t module) {
 Engine::Engine(const model::Robot& robot, SimulationOptions options)
     : robot_(robot),
       options_(std::move(options)),
-      setup_(make_setup(robot, options_.link, options_.method)),
+      setup_(make_setup(robot, options_)),
       noise_(options_.link),
       is_noisy_(has_noise(options_.link)),
       pool_(options_.link.packet_bytes),

@@ -50,7 +50,7 @@ std::optional<std::string> find_options_fault(const model::Robot& robot,
   return found;
 }
 
-agent::Setup make_setup(const model::Robot& robot, const LinkModel& link, agent::Method method) {
+agent::Setup make_setup(const model::Robot& robot, const SimulationOptions& options) {
   // Facet and pitch as a ratio of whole numbers: rounded to this part, then reduced.
   constexpr std::int32_t kParts = 4096;
   const model::Material& material = robot.material();
@@ -67,8 +67,9 @@ agent::Setup make_setup(const model::Robot& robot, const LinkModel& link, agent:
   setup.facet_numerator = numerator / divisor;
   setup.facet_denominator = kParts / divisor;
   setup.support_z = robot.support_z();
-  setup.method = method;
-  setup.timing = link_timing(link);
+  setup.method = options.method;
+  setup.degree_max = options.degree_max;
+  setup.timing = link_timing(options.link);
   agent::prepare(setup);
   return setup;
 }

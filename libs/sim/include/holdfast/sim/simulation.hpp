@@ -24,6 +24,7 @@ struct SimulationOptions {
   LinkModel link = unit();
   std::uint64_t seed = 1;  ///< Of noise, clocks and session numbers.
   agent::Method method = agent::Method::kConjugateGradients;
+  std::uint8_t degree_max = 200;  ///< See agent::Setup.
   std::vector<Fault> faults = {};
   std::vector<Announcement> announcements = {};  ///< Besides the robot's planned modules.
   Time time_max = agent::kNever;                 ///< Later events do not happen.
@@ -38,7 +39,7 @@ std::optional<std::string> find_options_fault(const model::Robot& robot,
                                               const SimulationOptions& options);
 
 /// What the agents of a robot have in common, prepared.
-agent::Setup make_setup(const model::Robot& robot, const LinkModel& link, agent::Method method);
+agent::Setup make_setup(const model::Robot& robot, const SimulationOptions& options);
 
 class Engine;
 
