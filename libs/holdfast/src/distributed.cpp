@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <optional>
 
 namespace holdfast {
@@ -88,6 +89,17 @@ verdict::Assessment view_of(const model::Robot& robot, const verdict::Assessment
   return view;
 }
 
+std::vector<std::string> notes_on(const sim::SimulationOptions& options) {
+  const bool changes = std::ranges::any_of(options.faults, [](const sim::Fault& fault) {
+    return fault.kind == sim::Fault::Kind::kDetach || fault.kind == sim::Fault::Kind::kAttach;
+  });
+  if (!changes) {
+    return {};
+  }
+  return {
+      "the exact answer is for the structure of the file, the robot's for what it is in the end"};
+}
+
 }  // namespace
 
 verdict::Verdict to_verdict(agent::Verdict verdict) {
@@ -139,7 +151,8 @@ base::Result<DistributedRun> simulate(const Structure& structure, const CheckRes
       break;
     }
   }
-  DistributedRun run{.link = options.link, .result = simulation.result(), .view = {}};
+  DistributedRun run{
+      .link = options.link, .result = simulation.result(), .view = {}, .notes = notes_on(options)};
   run.view = view_of(structure.robot, exact.assessment, simulation, run.result);
   return run;
 }

@@ -63,6 +63,7 @@ Json distributed_json(const DistributedRun& run) {
           {"bytes_per_module", result.bytes_per_module},
           {"all_modules_agree", result.all_agree},
           {"epochs", result.epoch},
+          {"notes", run.notes},
           {"trace_hash", fmt::format("{:016x}", result.trace_hash)},
           {"phases", phases_json(run)}};
 }
@@ -137,8 +138,10 @@ std::string report_text(const Structure& structure, const CheckResult& exact,
   const Out out(text);
   write_answer(out, structure, exact, run);
   write_cost(out, run);
-  for (const std::string& warning : structure.warnings) {
-    fmt::format_to(out, "  note        {}\n", warning);
+  for (const auto* list : {&structure.warnings, &run.notes}) {
+    for (const std::string& note : *list) {
+      fmt::format_to(out, "  note        {}\n", note);
+    }
   }
   return text;
 }

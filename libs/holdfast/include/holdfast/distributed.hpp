@@ -22,6 +22,7 @@ struct DistributedRun {
   /// What the robot knows, in the form of an assessment: its verdict, and its own load ratios where
   /// it has come to know any.
   verdict::Assessment view;
+  std::vector<std::string> notes;  ///< What to know when comparing with the exact answer.
 };
 
 /// Called now and then during a long simulation; false ends it.

@@ -31,8 +31,8 @@ struct Setup {
   Method method = Method::kConjugateGradients;
   std::uint32_t iteration_count_max = 4'000'000;
   /// Of the polynomial preconditioner of conjugate gradients. A degree m costs m rounds more and
-  /// saves about a factor m of sweeps of twice the tree's depth, so the depth is a good degree; this
-  /// bounds it, as single precision spoils very high ones. 0 leaves the diagonal blocks alone.
+  /// saves about a factor m of sweeps of twice the tree's depth, so the depth is a good degree.
+  /// This bounds it, as single precision spoils very high ones; 0 leaves the diagonal blocks alone.
   std::uint8_t degree_max = 200;
   LinkTiming timing;
 
