@@ -1,0 +1,110 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+// The second half of the facade: simulate, report, draw.
+#include "holdfast/distributed.hpp"
+
+#include <gtest/gtest.h>
+
+namespace holdfast {
+namespace {
+
+/// A post of two with two modules to be attached side by side: 1.5 modules of weight at one pitch.
+constexpr const char* kPost =
+    R"({"format": "holdfast-structure", "version": 1,
+        "modules": [[0,0,0],[1,0,0],[2,0,0],[1,0,1]], "planned": [[2,0,1],[2,1,1]]})";
+
+Structure post() {
+  auto structure = load_text(kPost, "post");
+  EXPECT_TRUE(structure);
+  return std::move(structure).value();
+}
+
+TEST(Simulate, gives_the_exact_verdict_and_load_ratios_of_every_connection) {
+  const Structure structure = post();
+  const CheckResult exact = check(structure);
+  const auto run = simulate(structure, exact, {});
+  ASSERT_TRUE(run);
+  const DistributedRun& found = run.value();
+  EXPECT_TRUE(found.result.is_quiet);
+  EXPECT_TRUE(found.result.all_agree);
+  EXPECT_EQ(found.view.verdict, exact.assessment.verdict);
+  ASSERT_EQ(found.view.connections.size(), exact.assessment.connections.size());
+  for (std::size_t i = 0; i < found.view.connections.size(); ++i) {
+    EXPECT_NEAR(found.view.connections[i].load_ratio, exact.assessment.connections[i].load_ratio,
+                0.01)
+        << model::ends_text(structure.robot, i);
+  }
+}
+
+TEST(Simulate, says_what_is_wrong_with_the_options) {
+  const Structure structure = post();
+  sim::SimulationOptions options;
+  options.link.loss = 2;
+  const auto run = simulate(structure, check(structure), options);
+  ASSERT_FALSE(run);
+  EXPECT_NE(run.error().message.find("loss"), std::string::npos) << run.error().message;
+}
+
+TEST(Simulate, ends_when_the_caller_says_so_and_claims_nothing_then) {
+  // An arm for which the Jacobi method takes millions of events.
+  const auto arm = load_text(
+      R"({"format": "holdfast-structure", "version": 1,
+          "modules": [{"cell": [0,0,0], "fixed": true}, [0,0,1], [1,0,1], [2,0,1], [3,0,1],
+                      [4,0,1], [5,0,1], [6,0,1]]})",
+      "arm");
+  ASSERT_TRUE(arm) << arm.error().message;
+  int calls = 0;
+  const auto run = simulate(arm.value(), check(arm.value()), {.method = agent::Method::kJacobi},
+                            [&](const sim::SimulationResult& result) {
+                              EXPECT_GT(result.events, 0U);
+                              return ++calls < 2;
+                            });
+  ASSERT_TRUE(run);
+  EXPECT_EQ(calls, 2);
+  EXPECT_EQ(run.value().view.verdict, verdict::Verdict::kUndecided);
+  EXPECT_FALSE(run.value().result.is_quiet);
+}
+
+TEST(Simulate, reports_what_it_found_beside_the_exact_answer) {
+  const Structure structure = post();
+  const CheckResult exact = check(structure);
+  const auto run = simulate(structure, exact, {.link = sim::blinky_blocks_v1()});
+  ASSERT_TRUE(run);
+  const std::string json = report_json(structure, exact, run.value());
+  for (const char* key : {"\"distributed\"",
+                          "\"verdict\"",
+                          "\"load_ratio_max\"",
+                          "\"method\"",
+                          "\"rounds\"",
+                          "\"simulated_s\"",
+                          "\"messages\"",
+                          "\"bytes\"",
+                          "\"iterations\"",
+                          "\"bytes_per_module\"",
+                          "\"all_modules_agree\"",
+                          "\"discovery\"",
+                          "\"coordinates\"",
+                          "\"election\"",
+                          "\"tree\"",
+                          "\"mass\"",
+                          "\"simplified\"",
+                          "\"equilibrium\"",
+                          "\"model\"",
+                          "\"overload\""}) {
+    EXPECT_NE(json.find(key), std::string::npos) << key;
+  }
+  EXPECT_NE(report_text(structure, exact, run.value()).find("all modules agree"),
+            std::string::npos);
+  EXPECT_NE(picture_svg(structure, run.value()).find("</svg>"), std::string::npos);
+}
+
+TEST(Methods, have_names_that_are_found_again) {
+  for (const agent::Method method :
+       {agent::Method::kJacobi, agent::Method::kBlockJacobi, agent::Method::kConjugateGradients}) {
+    EXPECT_EQ(find_method(name(method)), method);
+  }
+  EXPECT_FALSE(find_method("magic"));
+}
+
+}  // namespace
+}  // namespace holdfast
