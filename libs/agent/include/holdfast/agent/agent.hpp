@@ -292,4 +292,8 @@ using Agent = BasicAgent<float>;
 
 static_assert(sizeof(BasicAgent<float>) <= kAgentBytesMax);
 
+// The most that waits on one link: two vectors for every planned module, one more and a report.
+// What came before them has been acknowledged by the order that asked for them.
+static_assert(Link::kQueueBytes >= (2 * kPlannedMax + 2) * wire::kMessageBytesMax);
+
 }  // namespace holdfast::agent

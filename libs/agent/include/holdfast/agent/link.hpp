@@ -38,7 +38,7 @@ class Link {
 
   static constexpr int kWindow = 4;
   /// Bytes that can wait to be sent or acknowledged: a whole sweep of the largest messages.
-  static constexpr int kQueueBytes = 384;
+  static constexpr int kQueueBytes = 320;
 
   /// A neighbour is there. `nonce` should differ each time; 0 is taken as 1.
   void bring_up(std::uint16_t nonce, Time now);
