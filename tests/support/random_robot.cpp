@@ -63,7 +63,9 @@ class Builder {
   void grow(std::size_t count) {
     room_ = count;
     while (cells_.size() < count) {
-      put(base::neighbour(any(), base::kDirections[rng_.below(6)]));
+      // One draw a statement: compilers differ in the order of arguments.
+      const base::Direction direction = base::kDirections[rng_.below(6)];
+      put(base::neighbour(any(), direction));
     }
     room_ = count_max_;
   }
