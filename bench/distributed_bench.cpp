@@ -92,12 +92,7 @@ int run_random(std::uint64_t from, std::uint64_t to, bool is_noisy) {
   for (std::uint64_t seed = from; seed < to; ++seed) {
     sim::SimulationOptions options{.seed = seed};
     if (is_noisy) {
-      options.link.loss = 0.1;
-      options.link.duplication = 0.05;
-      options.link.corruption = 0.02;
-      options.link.reordering = 0.05;
-      options.link.reordering_delay = 3;
-      options.link.jitter = 2;
+      options.link = test::noisy_rounds();
     }
     tally.add(test::compare(make_robot(test::random_robot(seed)), options), seed);
   }

@@ -7,22 +7,12 @@
 #include <cmath>
 
 #include "holdfast/base/check.hpp"
+#include "holdfast/distributed.hpp"
 
 namespace holdfast::test {
 
 bool Comparison::is_wrong() const {
-  switch (robot) {
-    case agent::Verdict::kSafe:
-      return exact != verdict::Verdict::kSafe;
-    case agent::Verdict::kOverload:
-      return exact != verdict::Verdict::kOverload;
-    case agent::Verdict::kUnstable:
-      return exact != verdict::Verdict::kUnstable;
-    case agent::Verdict::kNone:
-    case agent::Verdict::kUndecided:
-      break;
-  }
-  return false;
+  return robot != agent::Verdict::kNone && !is_undecided() && to_verdict(robot) != exact;
 }
 
 double Comparison::ratio_error() const {
@@ -37,6 +27,17 @@ std::string Comparison::text() const {
                      verdict::name(exact), ratio_exact, agent::name(robot), ratio_robot,
                      agent::name(result.answer.reason), result.effort.iterations,
                      result.effort.solves);
+}
+
+sim::LinkModel noisy_rounds() {
+  sim::LinkModel link = sim::unit();
+  link.loss = 0.1;
+  link.duplication = 0.05;
+  link.corruption = 0.02;
+  link.reordering = 0.05;
+  link.reordering_delay = 3;
+  link.jitter = 2;
+  return link;
 }
 
 Comparison compare(const model::Robot& robot, const sim::SimulationOptions& options) {

@@ -29,6 +29,9 @@ struct Comparison {
   std::string text() const;
 };
 
+/// The link `unit` with everything that can go wrong with packets.
+sim::LinkModel noisy_rounds();
+
 /// Ends with a broken check if the simulation does not end by itself.
 Comparison compare(const model::Robot& robot, const sim::SimulationOptions& options);
 

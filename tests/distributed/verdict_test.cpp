@@ -74,14 +74,7 @@ TEST(Distributed, loss_duplication_reordering_and_bit_errors_change_no_verdict) 
     SCOPED_TRACE(::testing::Message() << "random_robot(" << seed << ")");
     const auto robot = model::Robot::create(test::random_robot(seed));
     ASSERT_TRUE(robot);
-    sim::SimulationOptions options{.seed = seed + 1};
-    options.link.loss = 0.1;
-    options.link.duplication = 0.05;
-    options.link.corruption = 0.02;
-    options.link.reordering = 0.05;
-    options.link.reordering_delay = 3;
-    options.link.jitter = 2;
-    expect_right(test::compare(robot.value(), options));
+    expect_right(test::compare(robot.value(), {.link = test::noisy_rounds(), .seed = seed + 1}));
   }
 }
 

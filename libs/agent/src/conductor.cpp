@@ -7,8 +7,6 @@ namespace {
 
 using wire::Operation;
 
-constexpr std::uint8_t kNoIndex = 0xff;
-
 /// Load ratios are to be this good: absolute, and relative to the largest. Less than half of what
 /// is promised (0.01 + 1 %), as the bound is not rigorous for statically indeterminate robots.
 constexpr double kRatioTolerance = 4e-3;
@@ -61,7 +59,7 @@ Order Conductor::begin(const Setup& setup, const base::Cell& root, std::uint32_t
   degree_ = depth < setup.degree_max ? depth : setup.degree_max;
   effort_.method = setup.method;
   Order first = order(Step::kPlan, Operation::kPlan);
-  first.index = kNoIndex;
+  first.index = kNoPlanned;
   return first;
 }
 
@@ -70,7 +68,7 @@ Order Conductor::next(const Setup& setup, const Report& report) {
     case Step::kPlan:
       return after_plan(report);
     case Step::kHosts:
-      return after_hosts(setup, report);
+      return after_hosts(report);
     case Step::kMass:
       return after_mass(setup, report);
     case Step::kAngles:
@@ -110,8 +108,8 @@ Order Conductor::next(const Setup& setup, const Report& report) {
 // ---- Planned modules, mass, rigid body.
 
 Order Conductor::after_plan(const Report& report) {
-  if (plan_index_ != kNoIndex) {
-    totals_[plan_index_] = report.mask;
+  if (planned_count_ > 0) {
+    totals_[planned_count_ - 1U] = report.mask;
     if ((report.mask & Planned::kOccupied) != 0) {
       return finish(Verdict::kUndecided, Reason::kPlannedOccupied);
     }
@@ -120,13 +118,11 @@ Order Conductor::after_plan(const Report& report) {
     return finish(Verdict::kUndecided, Reason::kPlannedTooMany);
   }
   if ((report.flags & kFound) != 0) {
-    plan_index_ =
-        plan_index_ == kNoIndex ? std::uint8_t{0} : static_cast<std::uint8_t>(plan_index_ + 1);
-    if (plan_index_ >= kPlannedMax) {
+    if (planned_count_ == kPlannedMax) {
       return finish(Verdict::kUndecided, Reason::kPlannedTooMany);
     }
     Order plan = order(Step::kPlan, Operation::kPlan);
-    plan.index = plan_index_;
+    plan.index = planned_count_++;
     plan.cell = report.cell;
     return plan;
   }
@@ -135,10 +131,13 @@ Order Conductor::after_plan(const Report& report) {
   return hosts;
 }
 
-Order Conductor::after_hosts(const Setup&, const Report& report) {
+Order Conductor::after_hosts(const Report& report) {
   is_any_remote_ = (report.mask & kAnyRemote) != 0;
-  const unsigned planned = plan_index_ == kNoIndex ? 0U : (2U << plan_index_) - 1;
-  if ((report.mask & 0x7fU) != planned) {
+  // What several modules add to a planned one takes a whole sweep, so there is one exchange in
+  // each.
+  degree_ = is_any_remote_ ? std::uint16_t{0} : degree_;
+  const unsigned all = (1U << planned_count_) - 1;
+  if ((report.mask & 0x7fU) != all) {
     return finish(Verdict::kUndecided, Reason::kPlannedDetached);
   }
   Order mass = order(Step::kMass, Operation::kMass);
@@ -147,8 +146,7 @@ Order Conductor::after_hosts(const Setup&, const Report& report) {
 }
 
 Order Conductor::after_mass(const Setup& setup, const Report& report) {
-  const std::uint32_t planned = plan_index_ == kNoIndex ? 0U : plan_index_ + 1U;
-  if (report.count != census_ + planned) {
+  if (report.count != census_ + planned_count_) {
     return finish(Verdict::kUndecided, Reason::kNeighbourSilent);
   }
   effort_.module_count = report.count;
@@ -290,7 +288,7 @@ Order Conductor::start_solve(bool adopts_states) {
   solve_iterations_ = 0;
   Order start = order(Step::kStart, Operation::kStart);
   start.flags = adopts_states ? kAdoptStates : std::uint8_t{0};
-  start.count = is_any_remote_ ? std::uint16_t{0} : degree_;
+  start.count = degree_;
   return start;
 }
 
@@ -335,7 +333,7 @@ Order Conductor::next_gradient(double gamma, double delta) {
     return end_solve();
   }
   Order gradient = order(Step::kGradient, Operation::kGradient);
-  gradient.count = is_any_remote_ ? std::uint16_t{0} : degree_;
+  gradient.count = degree_;
   gradient.reals = {static_cast<float>(alpha), static_cast<float>(beta)};
   gamma_ = gamma;
   alpha_ = static_cast<double>(gradient.reals[0]);

@@ -16,19 +16,10 @@ inline constexpr double kJacobiWeight = 2.0 / 3.0;
 
 namespace equilibrium {
 
-template <class To, class From>
-base::Vec6<To> converted(const base::Vec6<From>& vector) {
-  base::Vec6<To> result{};
-  for (std::size_t i = 0; i < 6; ++i) {
-    result[i] = static_cast<To>(vector[i]);
-  }
-  return result;
-}
-
 /// What the neighbours get to see of a vector: its leading digits.
 template <class Real>
 base::Vec6<Real> as_sent(const base::Vec6<Real>& vector) {
-  return converted<Real>(sweep::rounded(vector));
+  return base::converted<Real>(base::converted<float>(vector));
 }
 
 /// The preconditioner of degree m is Chebyshev's iteration [Saad 2003, Alg. 12.1] with the diagonal
@@ -125,10 +116,7 @@ void BasicAgent<Real>::start_solve(const Order& order) {
     Node<Real>& node = nodes_[static_cast<std::size_t>(i)];
     if ((order.flags & kAdoptStates) != 0) {
       node.state = node.wanted;
-      const base::Vec6<double> rest = residual(node, setup_, contact_);
-      for (std::size_t k = 0; k < 6; ++k) {
-        node.r[k] = static_cast<Real>(rest[k]);
-      }
+      node.r = base::converted<Real>(residual(node, setup_, contact_));
     }
     node.r_before = node.r_start;
     node.r_start = node.r;
@@ -210,9 +198,9 @@ void BasicAgent<Real>::polynomial_step() {
       continue;
     }
     if (node.is_ground) {
-      base::add_to(node.image, equilibrium::converted<Real>(mechanics::symmetric_product(
+      base::add_to(node.image, base::converted<Real>(mechanics::symmetric_product(
                                    contact_.facet, node.state, node.is_held,
-                                   equilibrium::converted<double>(node.shared))));
+                                   base::converted<double>(node.shared))));
     }
     for (std::size_t k = 0; k < 6; ++k) {
       node.w[k] -= node.image[k];
@@ -300,13 +288,13 @@ void BasicAgent<Real>::exchange_forces() {
 /// The beam at `face` of this module: force on it, on a planned module there, load in the middle.
 template <class Real>
 void BasicAgent<Real>::add_beam(int face, const base::Vec6<float>& other) {
-  using equilibrium::converted;
+  using base::converted;
   const auto direction = static_cast<base::Direction>(face);
   Node<Real>& node = nodes_[0];
   const int k = planned_.at_face(face);
   if (!sweep::is_precise(order_.operation)) {
     const auto& beam = equilibrium::beam_of(setup_, Real{});
-    const auto mine = converted<Real>(sweep::rounded(node.shared));
+    const auto& mine = node.shared;  // As the neighbours have it.
     const auto theirs = converted<Real>(other);
     base::add_to(node.image, mechanics::end_force(beam, direction, mine, theirs));
     if (k >= 0) {
@@ -340,10 +328,8 @@ void BasicAgent<Real>::add_planned_beams() {
       if (other < 0) {
         continue;
       }
-      const auto mine =
-          equilibrium::converted<double>(planned_vector_[static_cast<std::size_t>(k)]);
-      const auto theirs =
-          equilibrium::converted<double>(planned_vector_[static_cast<std::size_t>(other)]);
+      const auto mine = base::converted<double>(planned_vector_[static_cast<std::size_t>(k)]);
+      const auto theirs = base::converted<double>(planned_vector_[static_cast<std::size_t>(other)]);
       base::add_to(planned_force_[static_cast<std::size_t>(k)],
                    mechanics::end_force(setup_.beam, direction, mine, theirs));
     }
@@ -420,16 +406,10 @@ Report BasicAgent<Real>::residual_report() {
     }
     const base::Vec6<double> rest = residual(node, setup_, contact_);
     report.reals[0] += static_cast<float>(ratio_error(rest, setup_, contact_));
-    for (std::size_t k = 0; k < 6; ++k) {
-      node.r[k] = static_cast<Real>(rest[k]);
-    }
+    node.r = base::converted<Real>(rest);
   }
   visit_loads([&](const base::Cell&, base::Direction, double ratio) {
-    const auto value = static_cast<float>(ratio);
-    // Not a number stays.
-    if (!(value <= report.reals[1]) && report.reals[1] == report.reals[1]) {
-      report.reals[1] = value;
-    }
+    report.reals[1] = larger(report.reals[1], static_cast<float>(ratio));
   });
   return report;
 }
@@ -531,7 +511,6 @@ Report BasicAgent<Real>::loads_report() {
   report.reals[0] = kNoLoadRatio;
   report.number = static_cast<std::uint32_t>(node_count());
   own_ratio_ = 0;
-  bool is_own = true;
   visit_loads([&](const base::Cell& cell, base::Direction direction, double ratio) {
     const auto value = static_cast<float>(ratio);
     Report own;
@@ -540,9 +519,8 @@ Report BasicAgent<Real>::loads_report() {
     own.direction = direction;
     own.count = ratio >= 1 ? 1 : 0;
     merge(wire::Operation::kLoads, report, own);
-    is_own = cell == nodes_[0].cell;
-    if (is_own && !(value <= own_ratio_) && own_ratio_ == own_ratio_) {
-      own_ratio_ = value;
+    if (cell == nodes_[0].cell) {
+      own_ratio_ = larger(own_ratio_, value);
     }
   });
   return report;

@@ -25,9 +25,6 @@ std::int32_t saturating_sum(std::int32_t a, std::int32_t b, std::uint8_t& flags)
   return static_cast<std::int32_t>(sum);
 }
 
-/// Not a number wins: it must not get lost.
-float larger(float a, float b) { return b <= a || a != a ? a : b; }
-
 void merge_plan(Report& into, const Report& from) {
   into.mask = static_cast<std::uint8_t>(into.mask | from.mask);
   if ((from.flags & kFound) != 0 && ((into.flags & kFound) == 0 || from.cell < into.cell)) {

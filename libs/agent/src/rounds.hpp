@@ -135,8 +135,7 @@ void BasicAgent<Real>::dispatch(int face, std::span<const std::uint8_t> message)
     return;
   }
   // A link delivers in order, so its last join or echo tells to which round this belongs.
-  const Round& theirs = peer_round_[static_cast<std::size_t>(face)];
-  const bool is_ours = theirs.epoch == round_.epoch && theirs.starter == round_.starter;
+  const bool is_ours = peer_round_[static_cast<std::size_t>(face)] == round_;
   if (!is_ours || restart_at_ != kNever || stage_ == kNoStage) {
     return;
   }

@@ -74,15 +74,6 @@ inline base::Vec6<float> read_vector(wire::Reader& in) {
   return vector;
 }
 
-template <class Real>
-base::Vec6<float> rounded(const base::Vec6<Real>& vector) {
-  base::Vec6<float> result{};
-  for (std::size_t i = 0; i < 6; ++i) {
-    result[i] = static_cast<float>(vector[i]);
-  }
-  return result;
-}
-
 }  // namespace sweep
 
 template <class Real>
@@ -109,7 +100,7 @@ void BasicAgent<Real>::start_exchange() {
   ++tag_;
   planned_awaited_ = planned_.from_above();
   planned_force_ = {};
-  const base::Vec6<float> own = sweep::rounded(nodes_[0].shared);
+  const base::Vec6<float> own = base::converted<float>(nodes_[0].shared);
   const std::uint8_t faces = used_faces();
   for (int face = 0; face < base::kDirectionCount; ++face) {
     if ((faces & bit(face)) != 0) {
@@ -118,24 +109,24 @@ void BasicAgent<Real>::start_exchange() {
   }
   for (int i = 0; i < planned_.hosted_count(); ++i) {
     planned_vector_[static_cast<std::size_t>(planned_.hosted(i))] =
-        sweep::rounded(nodes_[static_cast<std::size_t>(1 + i)].shared);
+        base::converted<float>(nodes_[static_cast<std::size_t>(1 + i)].shared);
   }
-  send_planned_down();
+  for (int k = 0; k < planned_.count(); ++k) {
+    if (planned_.node_of(k) >= 0) {
+      send_planned_down(k);
+    }
+  }
 }
 
-/// Hands down the reals of planned modules that are emulated here, or that have come from above.
+/// Hands the reals of a planned module, emulated here or come from above, on to children that need
+/// them.
 template <class Real>
-void BasicAgent<Real>::send_planned_down() {
-  for (int k = 0; k < planned_.count(); ++k) {
-    if (planned_.node_of(k) < 0) {
-      continue;
-    }
-    for (int face = 0; face < base::kDirectionCount; ++face) {
-      if ((children_ & bit(face)) != 0 && planned_.is_needed_below(face, k)) {
-        send(face,
-             sweep::vector_message(wire::MessageType::kPlannedDown, static_cast<std::uint8_t>(k),
-                                   planned_vector_[static_cast<std::size_t>(k)]));
-      }
+void BasicAgent<Real>::send_planned_down(int k) {
+  for (int face = 0; face < base::kDirectionCount; ++face) {
+    if ((children_ & bit(face)) != 0 && planned_.is_needed_below(face, k)) {
+      send(face,
+           sweep::vector_message(wire::MessageType::kPlannedDown, static_cast<std::uint8_t>(k),
+                                 planned_vector_[static_cast<std::size_t>(k)]));
     }
   }
 }
@@ -149,13 +140,7 @@ void BasicAgent<Real>::take_planned_down(std::span<const std::uint8_t> message) 
   }
   planned_vector_[static_cast<std::size_t>(k)] = sweep::read_vector(in);
   planned_awaited_ = static_cast<std::uint8_t>(planned_awaited_ & ~bit(k));
-  for (int face = 0; face < base::kDirectionCount; ++face) {
-    if ((children_ & bit(face)) != 0 && planned_.is_needed_below(face, k)) {
-      send(face,
-           sweep::vector_message(wire::MessageType::kPlannedDown, static_cast<std::uint8_t>(k),
-                                 planned_vector_[static_cast<std::size_t>(k)]));
-    }
-  }
+  send_planned_down(k);
   continue_sweep();
 }
 
@@ -175,8 +160,9 @@ void BasicAgent<Real>::send_planned_up() {
         leading[i] = part + 1 < parts ? leading_part(force[i]) : force[i];
         force[i] -= leading[i];
       }
-      send(parent_, sweep::vector_message(wire::MessageType::kPlannedUp,
-                                          static_cast<std::uint8_t>(k), sweep::rounded(leading)));
+      send(parent_,
+           sweep::vector_message(wire::MessageType::kPlannedUp, static_cast<std::uint8_t>(k),
+                                 base::converted<float>(leading)));
     }
   }
 }
@@ -250,7 +236,11 @@ void BasicAgent<Real>::finish_sweep() {
   Report report = conclude(order_);
   for (int face = 0; face < base::kDirectionCount; ++face) {
     if ((children_ & bit(face)) != 0) {
-      merge(order_.operation, report, decode_report(reports_[static_cast<std::size_t>(face)]));
+      const Report theirs = decode_report(reports_[static_cast<std::size_t>(face)]);
+      merge(order_.operation, report, theirs);
+      if (order_.operation == wire::Operation::kPlan && order_.index != kNoPlanned) {
+        planned_.add_below(face, order_.index, theirs.mask);
+      }
     }
   }
   if (parent_ >= 0) {
@@ -258,15 +248,6 @@ void BasicAgent<Real>::finish_sweep() {
   } else if (order_.operation != wire::Operation::kVerdict) {
     next_order_ = conductor_.next(setup_, report);
     has_next_order_ = true;
-  }
-  if (order_.operation == wire::Operation::kPlan && order_.index != 0xff) {
-    // The masks of what lies below each child are needed to find hosts.
-    for (int face = 0; face < base::kDirectionCount; ++face) {
-      if ((children_ & bit(face)) != 0) {
-        planned_.add_below(face, order_.index,
-                           decode_report(reports_[static_cast<std::size_t>(face)]).mask);
-      }
-    }
   }
   if (order_.operation == wire::Operation::kVerdict) {
     phase_ = Phase::kDone;

@@ -69,12 +69,9 @@ void BasicAgent<Real>::take_join(int face, std::span<const std::uint8_t> message
   const std::uint8_t stage = in.u8();
   const base::Cell theirs = in.cell();
   const auto hops = static_cast<std::uint16_t>(in.u16() + 1);
-  const bool is_higher =
-      round.epoch != round_.epoch ? round.epoch > round_.epoch : round.starter > round_.starter;
-  const bool is_same = round.epoch == round_.epoch && round.starter == round_.starter;
-  if (is_higher) {
+  if (round > round_) {
     enter_round(round);
-  } else if (!is_same || restart_at_ != kNever) {
+  } else if (round != round_ || restart_at_ != kNever) {
     return;
   }
   if (stage > stage_) {

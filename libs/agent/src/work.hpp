@@ -15,7 +15,7 @@ template <class Real>
 void BasicAgent<Real>::prepare(const Order& order) {
   switch (order.operation) {
     case Operation::kPlan:
-      if (order.index == 0xff) {
+      if (order.index == kNoPlanned) {
         planned_.clear();
       } else {
         planned_.add(order.cell, nodes_[0].cell);
@@ -116,7 +116,7 @@ template <class Real>
 Report BasicAgent<Real>::plan_report() const {
   Report report;
   report.flags = is_announced_overfull_ ? kTooManyAnnounced : std::uint8_t{0};
-  const bool has_last = order_.index != 0xff;
+  const bool has_last = order_.index != kNoPlanned;
   if (has_last) {
     report.mask = planned_.own_mask(order_.index);
   }

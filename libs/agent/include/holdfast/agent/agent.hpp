@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <compare>
 #include <cstdint>
 #include <span>
 
@@ -146,6 +147,8 @@ class BasicAgent {
   struct Round {
     std::uint16_t epoch = 0;
     std::uint32_t starter = 0;
+
+    friend constexpr auto operator<=>(const Round&, const Round&) = default;
   };
 
   static constexpr std::uint8_t kNoStage = 0;
@@ -189,7 +192,7 @@ class BasicAgent {
   void take_report(int face, std::span<const std::uint8_t> message);
   void continue_sweep();
   void finish_sweep();
-  void send_planned_down();
+  void send_planned_down(int k);
   void send_planned_up();
 
   // work.cpp: what the operations do here.

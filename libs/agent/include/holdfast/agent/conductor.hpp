@@ -77,7 +77,7 @@ class Conductor {
 
   Order order(Step step, wire::Operation operation);
   Order after_plan(const Report& report);
-  Order after_hosts(const Setup& setup, const Report& report);
+  Order after_hosts(const Report& report);
   Order after_mass(const Setup& setup, const Report& report);
   Order after_angles(const Setup& setup, const Report& report);
   Order begin_law(const Setup& setup, bool is_unilateral);
@@ -112,8 +112,7 @@ class Conductor {
   base::Cell root_;
   std::uint32_t census_ = 0;
   std::uint16_t degree_ = 0;  ///< Of the polynomial preconditioner.
-  std::uint8_t plan_index_ = 0xff;
-  base::Cell plan_cell_;
+  std::uint8_t planned_count_ = 0;
   std::array<std::uint8_t, 8> totals_{};
   bool is_any_remote_ = false;
   bool is_fixed_ = false;

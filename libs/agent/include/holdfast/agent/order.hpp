@@ -45,6 +45,9 @@ struct Answer {
   base::Direction worst_direction = base::Direction::kPlusX;  ///< ... in this direction.
 };
 
+/// In kPlan: no planned module is learned yet.
+inline constexpr std::uint8_t kNoPlanned = 0xff;
+
 /// Fields are used as the operation needs them; see wire.hpp and docs/wire.md.
 struct Order {
   wire::Operation operation{};
@@ -99,6 +102,9 @@ wire::Writer encode(const Order& order);
 wire::Writer encode(wire::Operation operation, const Report& report);
 Order decode_order(std::span<const std::uint8_t> message);
 Report decode_report(std::span<const std::uint8_t> message);
+
+/// The larger number; not a number wins, as it must not get lost.
+constexpr float larger(float a, float b) { return b <= a || a != a ? a : b; }
 
 /// Adds `from` to `into`, as the operation demands.
 void merge(wire::Operation operation, Report& into, const Report& from);

@@ -40,6 +40,16 @@ constexpr void add_to(Mat6<Real>& sum, const Mat6<Real>& term) {
   }
 }
 
+/// The same numbers in another type, rounded if need be.
+template <class To, class From>
+constexpr Vec6<To> converted(const Vec6<From>& vector) {
+  Vec6<To> result{};
+  for (std::size_t i = 0; i < 6; ++i) {
+    result[i] = static_cast<To>(vector[i]);
+  }
+  return result;
+}
+
 template <class Real>
 constexpr Real dot(const Vec6<Real>& a, const Vec6<Real>& b) {
   Real sum = 0;
