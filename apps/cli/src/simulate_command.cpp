@@ -23,7 +23,7 @@ constexpr std::chrono::seconds kProgressInterval(1);
 
 struct Options {
   std::string file;
-  std::string method = "cg";
+  std::string method = "elimination";
   std::string link = "v1";
   std::uint64_t seed = 1;
   double loss = 0;
@@ -301,9 +301,13 @@ Command add_simulate(CLI::App& app) {
       "simulate", "Let the robot work out its own verdict, module by module, message by message");
   add_required(*command, "FILE", options->file,
                "Structure, VisibleSim XML or holdfast JSON; - is standard input");
-  command->add_option("--method", options->method, "cg, block-jacobi, jacobi (the paper's)")
+  command
+      ->add_option("--method", options->method,
+                   "elimination (residuals if the robot has many loops), residuals, cg, "
+                   "block-jacobi, jacobi (the paper's)")
       ->type_name("NAME")
-      ->check(CLI::IsMember({"cg", "block-jacobi", "jacobi"}).description(""))
+      ->check(CLI::IsMember({"elimination", "residuals", "cg", "block-jacobi", "jacobi"})
+                  .description(""))
       ->capture_default_str();
   command
       ->add_option("--link", options->link,

@@ -2,47 +2,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "holdfast/agent/conductor.hpp"
 
+#include "scalar.hpp"
+#include "tolerances.hpp"
+
 namespace holdfast::agent {
 namespace {
 
 using wire::Operation;
 
-/// Load ratios are to be this good: absolute, and relative to the largest. Less than half of what
-/// is promised (0.01 + 1 %), as the bound is not rigorous for statically indeterminate robots.
-constexpr double kRatioTolerance = 4e-3;
-
-/// Contact states are told at this accuracy while they still change.
-constexpr double kStateTolerance = 2e-2;
-
-/// A verdict needs the largest ratio this many times its error bound away from 1.
-constexpr double kDoubt = 3;
-
-/// The best bound that is tried for: below, the arithmetic itself is in doubt.
-constexpr double kErrorLeast = 2e-8;
-
-/// How much smaller the error bound becomes in one linear solve, at most. Single precision rarely
-/// gives more than five digits in one go; a tilting facet's stand-in tangent deserves fewer.
-constexpr double kReductionLeast = 1e-5;
-constexpr double kReductionTilting = 1e-3;
-
-/// Judgements without progress before a way is given up.
-constexpr int kStagnationMax = 8;
-
-constexpr int kContactStepsMax = 100;
-
-/// A full step will do if it brings the slope of the energy down this far; else the line is
-/// searched so many times, each to a quarter of the interval.
-constexpr double kSlopeReduction = 0.1;
-constexpr int kSlopeCountMax = 3;
-
-/// The weak springs of the unilateral law, as in the exact solver (verdict/assessment.cpp).
-constexpr double kUnilateralGamma = 1e-9;
-
 constexpr std::int64_t kAngleMax = std::int64_t{1} << 29;
-
-double absolute(double value) { return value < 0 ? -value : value; }
-
-bool is_number(double value) { return absolute(value) < 1e30; }
 
 }  // namespace
 
@@ -56,6 +24,7 @@ Order Conductor::begin(const Setup& setup, const base::Cell& root, std::uint32_t
   *this = Conductor();
   root_ = root;
   census_ = module_count;
+  depth_ = depth;
   degree_ = depth < setup.degree_max ? depth : setup.degree_max;
   effort_.method = setup.method;
   Order first = order(Step::kPlan, Operation::kPlan);
@@ -74,7 +43,11 @@ Order Conductor::next(const Setup& setup, const Report& report) {
     case Step::kAngles:
       return after_angles(setup, report);
     case Step::kBegin:
-      return is_jacobi() ? start_jacobi() : start_solve(false);
+      return is_one_sweep() ? first_step() : is_jacobi() ? start_jacobi() : start_solve(false);
+    case Step::kFactor:
+      return restarted_step();
+    case Step::kStep:
+      return after_step(setup, report);
     case Step::kHigh: {
       Order low = order(Step::kLow, Operation::kLow);
       low.flags = is_unilateral_ || is_jacobi() ? kFollowStates : std::uint8_t{0};
@@ -152,6 +125,7 @@ Order Conductor::after_mass(const Setup& setup, const Report& report) {
   effort_.module_count = report.count;
   is_fixed_ = (report.flags & kAnyFixed) != 0;
   extent_ = report.extent;
+  has_many_loops_ = (report.flags & kManyLoops) != 0;
   if (is_fixed_) {
     return begin_law(setup, false);
   }
@@ -190,7 +164,12 @@ Order Conductor::begin_law(const Setup& setup, bool is_unilateral) {
   target_ = is_fixed_ ? kRatioTolerance : kStateTolerance;
   solve_iterations_max_ = 200 + 20 * effort_.module_count;
   Order begin = order(Step::kBegin, Operation::kBegin);
-  begin.flags = is_unilateral ? kUnilateralLaw : std::uint8_t{0};
+  if (is_one_sweep()) {
+    choose_one_sweep(is_unilateral);
+    begin.count = effort_.method == Method::kMinimalResiduals ? step_degree() : std::uint16_t{0};
+  }
+  begin.flags = static_cast<std::uint8_t>((is_unilateral ? kUnilateralLaw : 0U) |
+                                          (is_one_sweep() ? kOneSweep : 0U));
   begin.reals[0] = static_cast<float>(is_unilateral ? kUnilateralGamma : setup.contact_gamma);
   begin.reals[1] = static_cast<float>(static_cast<double>(extent_ + 1) * setup.section.length);
   return begin;

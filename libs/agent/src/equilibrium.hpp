@@ -29,8 +29,8 @@ base::Vec6<Real> as_sent(const base::Vec6<Real>& vector) {
 struct Interval {
   static constexpr double kSpread = 1.75;
 
-  explicit Interval(int degree)
-      : least(degree == 0 ? 2 : kSpread / ((degree + 1.0) * (degree + 1.0))),
+  explicit Interval(int degree, double spread = kSpread)
+      : least(degree == 0 ? 2 : spread / ((degree + 1.0) * (degree + 1.0))),
         centre((2 + least) / 2),
         half((2 - least) / 2) {}
 
@@ -45,6 +45,11 @@ inline const mechanics::BeamStiffness<float>& beam_of(const Setup& setup, float)
 
 inline const mechanics::BeamStiffness<double>& beam_of(const Setup& setup, double) {
   return setup.beam;
+}
+
+/// A number for every contact state.
+inline int code_of(const mechanics::ContactState& state) {
+  return !state.pressed ? 0 : 5 + 3 * state.tilt_x + state.tilt_y;
 }
 
 /// Spreads cells and states over 32 bits, so that sums over the robot tell sets of states apart.
@@ -88,8 +93,17 @@ void BasicAgent<Real>::begin_equilibrium(const Order& order) {
   contact_.facet = mechanics::ground_facet(setup_.section, setup_.facet_mm,
                                            static_cast<double>(order.reals[0]), law);
   contact_.lever_mm = static_cast<double>(order.reals[1]);
+  const bool is_one_sweep = (order.flags & kOneSweep) != 0;
   for (int i = 0; i < node_count(); ++i) {
-    reset(nodes_[static_cast<std::size_t>(i)], setup_);
+    Node<Real>& node = nodes_[static_cast<std::size_t>(i)];
+    reset(node);
+    if (!is_one_sweep) {
+      gradients_of(i) = gradients_at_rest(node, setup_);
+    } else if (order.count > 0) {
+      steps_of(i) = {};
+      factor_diagonal(node, setup_, contact_, node_faces(i));
+      start_terms(i);
+    }
   }
 }
 
@@ -100,10 +114,11 @@ void BasicAgent<Real>::move(const Order& order) {
   const auto mix = static_cast<Real>(order.reals[1]);
   for (int i = 0; i < node_count(); ++i) {
     Node<Real>& node = nodes_[static_cast<std::size_t>(i)];
+    Gradients<Real>& cg = gradients_of(i);
     node.force = {};
     for (std::size_t k = 0; k < 6; ++k) {
-      node.move[k] = length * node.g[k] - mix * (node.move[k] + node.g[k] - node.g_before[k]);
-      node.u[k] += static_cast<double>(node.move[k]);
+      cg.move[k] = length * cg.g[k] - mix * (cg.move[k] + cg.g[k] - cg.g_before[k]);
+      node.u[k] += static_cast<double>(cg.move[k]);
       node.shared[k] = static_cast<Real>(leading_part(node.u[k]));
     }
   }
@@ -114,20 +129,21 @@ template <class Real>
 void BasicAgent<Real>::start_solve(const Order& order) {
   for (int i = 0; i < node_count(); ++i) {
     Node<Real>& node = nodes_[static_cast<std::size_t>(i)];
+    Gradients<Real>& cg = gradients_of(i);
     if ((order.flags & kAdoptStates) != 0) {
       node.state = node.wanted;
-      node.r = base::converted<Real>(residual(node, setup_, contact_));
+      cg.r = base::converted<Real>(residual(node, setup_, contact_));
     }
-    node.r_before = node.r_start;
-    node.r_start = node.r;
-    node.g_before = node.g;
-    node.g = {};
-    node.p = {};
-    node.s = {};
+    cg.r_before = cg.r_start;
+    cg.r_start = cg.r;
+    cg.g_before = cg.g;
+    cg.g = {};
+    cg.p = {};
+    cg.s = {};
     factor_diagonal(node, setup_, contact_, node_faces(i));
     precondition(i, order.count);
     if ((order.flags & kWithScalars) != 0) {
-      node.p = scalar_diagonal(node, setup_, contact_, node_faces(i));
+      cg.p = scalar_diagonal(node, setup_, contact_, node_faces(i));
     }
   }
   is_first_step_ = true;
@@ -140,12 +156,12 @@ void BasicAgent<Real>::gradient_step(const Order& order) {
   const auto alpha = static_cast<Real>(order.reals[0]);
   const auto beta = static_cast<Real>(order.reals[1]);
   for (int i = 0; i < node_count(); ++i) {
-    Node<Real>& node = nodes_[static_cast<std::size_t>(i)];
+    Gradients<Real>& cg = gradients_of(i);
     for (std::size_t k = 0; k < 6; ++k) {
-      node.p[k] = node.z[k] + beta * node.p[k];
-      node.s[k] = node.w[k] + beta * node.s[k];
-      node.g[k] += alpha * node.p[k];
-      node.r[k] -= alpha * node.s[k];
+      cg.p[k] = cg.z[k] + beta * cg.p[k];
+      cg.s[k] = cg.w[k] + beta * cg.s[k];
+      cg.g[k] += alpha * cg.p[k];
+      cg.r[k] -= alpha * cg.s[k];
     }
     precondition(i, order.count);
   }
@@ -155,15 +171,16 @@ void BasicAgent<Real>::gradient_step(const Order& order) {
 template <class Real>
 void BasicAgent<Real>::precondition(int node_index, int degree) {
   Node<Real>& node = nodes_[static_cast<std::size_t>(node_index)];
+  Gradients<Real>& cg = gradients_of(node_index);
   const equilibrium::Interval interval(degree);
   const auto scale = static_cast<Real>(degree == 0 ? 1 : 1 / interval.centre);
-  typename Node<Real>::Vec first = solve_diagonal(node, node.r);
+  typename Gradients<Real>::Vec first = solve_diagonal(node, cg.r);
   for (Real& value : first) {
     value *= scale;
   }
   node.shared = equilibrium::as_sent(first);
-  node.z = node.shared;
-  node.w = node.r;
+  cg.z = node.shared;
+  cg.w = cg.r;
   rho_ = static_cast<float>(degree == 0 ? 0 : interval.half / interval.centre);
 }
 
@@ -177,8 +194,30 @@ void BasicAgent<Real>::after_exchange() {
     case wire::Operation::kGradient:
       polynomial_step();
       break;
+    case wire::Operation::kBegin:
+      next_terms();
+      break;
+    case wire::Operation::kStep:
+      if (exchanges_left_ == exchanges_behind_ + 2) {
+        share_low_part();
+      } else if (exchanges_left_ == exchanges_behind_ + 1) {
+        find_residuals();
+      } else {
+        next_terms();
+      }
+      break;
     default:
       break;
+  }
+}
+
+template <class Real>
+void BasicAgent<Real>::share_low_part() {
+  for (int i = 0; i < node_count(); ++i) {
+    Node<Real>& node = nodes_[static_cast<std::size_t>(i)];
+    for (std::size_t k = 0; k < 6; ++k) {
+      node.shared[k] = static_cast<Real>(node.u[k] - leading_part(node.u[k]));
+    }
   }
 }
 
@@ -193,30 +232,31 @@ void BasicAgent<Real>::polynomial_step() {
   const bool is_last = exchanges_left_ == 1;
   for (int i = 0; i < node_count(); ++i) {
     Node<Real>& node = nodes_[static_cast<std::size_t>(i)];
+    Gradients<Real>& cg = gradients_of(i);
     if (node.is_fixed) {
-      node.w = {};
+      cg.w = {};
       continue;
     }
     if (node.is_ground) {
-      base::add_to(node.image, base::converted<Real>(mechanics::symmetric_product(
+      base::add_to(cg.image, base::converted<Real>(mechanics::symmetric_product(
                                    contact_.facet, node.state, node.is_held,
                                    base::converted<double>(node.shared))));
     }
     for (std::size_t k = 0; k < 6; ++k) {
-      node.w[k] -= node.image[k];
+      cg.w[k] -= cg.image[k];
     }
     if (is_last) {
       for (std::size_t k = 0; k < 6; ++k) {
-        node.w[k] = node.r[k] - node.w[k];
+        cg.w[k] = cg.r[k] - cg.w[k];
       }
       continue;
     }
-    const typename Node<Real>::Vec term = solve_diagonal(node, node.w);
+    const typename Gradients<Real>::Vec term = solve_diagonal(node, cg.w);
     for (std::size_t k = 0; k < 6; ++k) {
       node.shared[k] = keep * node.shared[k] + gain * term[k];
     }
     node.shared = equilibrium::as_sent(node.shared);
-    base::add_to(node.z, node.shared);
+    base::add_to(cg.z, node.shared);
   }
   rho_ = static_cast<float>(rho);
 }
@@ -228,41 +268,58 @@ void BasicAgent<Real>::jacobi_step() {
   double error = 0;
   for (int i = 0; i < node_count(); ++i) {
     Node<Real>& node = nodes_[static_cast<std::size_t>(i)];
+    Gradients<Real>& cg = gradients_of(i);
     if (node.is_fixed) {
       continue;
     }
-    typename Node<Real>::Vec rest{};
-    const base::Vec6<double> here = facet_force_along(node, contact_, 1);
-    const base::Vec6<double> start = facet_force_along(node, contact_, 0);
+    typename Gradients<Real>::Vec rest{};
+    const base::Vec6<double> here = facet_force_along(node, contact_, cg.g, 1);
+    const base::Vec6<double> start = facet_force_along(node, contact_, cg.g, 0);
     for (std::size_t k = 0; k < 6; ++k) {
-      rest[k] = node.r_start[k] - node.image[k] - static_cast<Real>(here[k] - start[k]);
+      rest[k] = cg.r_start[k] - cg.image[k] - static_cast<Real>(here[k] - start[k]);
     }
-    const mechanics::ContactState state = state_along(node, contact_, 1);
+    const mechanics::ContactState state = state_along(node, contact_, cg.g, 1);
     if (node.is_ground && !is_first_step_ && !(state == node.state)) {
       node.state = state;
       if (is_scalar_) {
-        node.p = scalar_diagonal(node, setup_, contact_, node_faces(i));
+        cg.p = scalar_diagonal(node, setup_, contact_, node_faces(i));
       } else {
         factor_diagonal(node, setup_, contact_, node_faces(i));
       }
     }
     error += ratio_error(rest, setup_, contact_);
-    const typename Node<Real>::Vec step = is_scalar_ ? rest : solve_diagonal(node, rest);
+    const typename Gradients<Real>::Vec step = is_scalar_ ? rest : solve_diagonal(node, rest);
     for (std::size_t k = 0; k < 6; ++k) {
-      node.g[k] += static_cast<Real>(kJacobiWeight) * (is_scalar_ ? step[k] / node.p[k] : step[k]);
+      cg.g[k] += static_cast<Real>(kJacobiWeight) * (is_scalar_ ? step[k] / cg.p[k] : step[k]);
     }
-    node.shared = equilibrium::as_sent(node.g);
+    node.shared = equilibrium::as_sent(cg.g);
   }
   is_first_step_ = false;
   jacobi_error_ = static_cast<float>(error);
 }
 
-/// All beams of this module and of those it emulates, for what has been exchanged: into its image,
-/// or with all digits into the force of each node.
+/// What the exchange under way shares, and so where the beams' forces go.
+template <class Real>
+typename BasicAgent<Real>::Exchanged BasicAgent<Real>::exchanged() const {
+  switch (order_.operation) {
+    case wire::Operation::kHigh:
+    case wire::Operation::kLow:
+      return Exchanged::kDisplacement;
+    case wire::Operation::kStep:
+      return exchanges_left_ > exchanges_behind_ ? Exchanged::kDisplacement : Exchanged::kTerm;
+    case wire::Operation::kBegin:
+      return Exchanged::kTerm;
+    default:
+      return Exchanged::kGradient;
+  }
+}
+
+/// All beams of this module and of those it emulates, for what has been exchanged.
 template <class Real>
 void BasicAgent<Real>::exchange_forces() {
-  for (int i = 0; i < node_count(); ++i) {
-    nodes_[static_cast<std::size_t>(i)].image = {};
+  const Exchanged what = exchanged();
+  for (int i = 0; i < node_count() && what == Exchanged::kGradient; ++i) {
+    gradients_of(i).image = {};
   }
   const std::uint8_t faces = used_faces();
   const auto& vectors = vectors_[tag_ & 1U];
@@ -277,10 +334,14 @@ void BasicAgent<Real>::exchange_forces() {
   add_planned_beams();
   for (int i = 0; i < planned_.hosted_count(); ++i) {
     const auto& force = planned_force_[static_cast<std::size_t>(planned_.hosted(i))];
-    Node<Real>& node = nodes_[static_cast<std::size_t>(1 + i)];
     for (std::size_t k = 0; k < 6; ++k) {
-      node.image[k] = static_cast<Real>(force[k]);
-      node.force[k] += sweep::is_precise(order_.operation) ? force[k] : 0;
+      if (what == Exchanged::kDisplacement) {
+        nodes_[static_cast<std::size_t>(1 + i)].force[k] += force[k];
+      } else if (what == Exchanged::kTerm) {
+        steps_of(1 + i).w[k] -= force[k];
+      } else {
+        gradients_of(1 + i).image[k] = static_cast<Real>(force[k]);
+      }
     }
   }
 }
@@ -292,11 +353,12 @@ void BasicAgent<Real>::add_beam(int face, const base::Vec6<float>& other) {
   const auto direction = static_cast<base::Direction>(face);
   Node<Real>& node = nodes_[0];
   const int k = planned_.at_face(face);
-  if (!sweep::is_precise(order_.operation)) {
+  const Exchanged what = exchanged();
+  if (what == Exchanged::kGradient) {
     const auto& beam = equilibrium::beam_of(setup_, Real{});
     const auto& mine = node.shared;  // As the neighbours have it.
     const auto theirs = converted<Real>(other);
-    base::add_to(node.image, mechanics::end_force(beam, direction, mine, theirs));
+    base::add_to(gradients_of(0).image, mechanics::end_force(beam, direction, mine, theirs));
     if (k >= 0) {
       base::add_to(
           planned_force_[static_cast<std::size_t>(k)],
@@ -306,11 +368,18 @@ void BasicAgent<Real>::add_beam(int face, const base::Vec6<float>& other) {
   }
   const auto mine = converted<double>(node.shared);
   const auto theirs = converted<double>(other);
-  base::add_to(node.force, mechanics::end_force(setup_.beam, direction, mine, theirs));
+  const base::Vec6<double> force = mechanics::end_force(setup_.beam, direction, mine, theirs);
   if (k >= 0) {
     base::add_to(planned_force_[static_cast<std::size_t>(k)],
                  mechanics::end_force(setup_.beam, base::opposite(direction), theirs, mine));
   }
+  if (what == Exchanged::kTerm) {
+    for (std::size_t i = 0; i < 6; ++i) {
+      steps_of(0).w[i] -= force[i];
+    }
+    return;
+  }
+  base::add_to(node.force, force);
   const base::Vec6<double> middle = mechanics::middle_force(setup_.beam, direction, mine, theirs);
   MiddleLoad& load = middle_[static_cast<std::size_t>(face)];
   load.axial_n += middle[2];
@@ -391,7 +460,8 @@ Report BasicAgent<Real>::residual_report() {
   report.reals[1] = kNoLoadRatio;
   for (int i = 0; i < node_count(); ++i) {
     Node<Real>& node = nodes_[static_cast<std::size_t>(i)];
-    node.wanted = state_along(node, contact_, 0);
+    Gradients<Real>& cg = gradients_of(i);
+    node.wanted = state_along(node, contact_, cg.g, 0);
     if (node.is_ground && !(node.wanted == node.state)) {
       ++report.extent;
       if ((order_.flags & kFollowStates) != 0) {
@@ -399,14 +469,13 @@ Report BasicAgent<Real>::residual_report() {
       }
     }
     if (node.is_ground) {
-      const int code = !node.wanted.pressed ? 0 : 5 + 3 * node.wanted.tilt_x + node.wanted.tilt_y;
-      report.number += equilibrium::hash_of(node.cell, code);
+      report.number += equilibrium::hash_of(node.cell, equilibrium::code_of(node.wanted));
       const bool tilts = node.state.tilt_x != 0 || node.state.tilt_y != 0;
       report.flags = static_cast<std::uint8_t>(report.flags | (tilts ? kAnyTilting : 0U));
     }
     const base::Vec6<double> rest = residual(node, setup_, contact_);
     report.reals[0] += static_cast<float>(ratio_error(rest, setup_, contact_));
-    node.r = base::converted<Real>(rest);
+    cg.r = base::converted<Real>(rest);
   }
   visit_loads([&](const base::Cell&, base::Direction, double ratio) {
     report.reals[1] = larger(report.reals[1], static_cast<float>(ratio));
@@ -422,9 +491,10 @@ Report BasicAgent<Real>::product_report() const {
   double error = 0;
   for (int i = 0; i < node_count(); ++i) {
     const Node<Real>& node = nodes_[static_cast<std::size_t>(i)];
-    residual_product += base::dot(node.r, node.z);
-    image_product += base::dot(node.z, node.w);
-    error += node.is_fixed ? 0 : ratio_error(node.r, setup_, contact_);
+    const Gradients<Real>& cg = gradients_of(i);
+    residual_product += base::dot(cg.r, cg.z);
+    image_product += base::dot(cg.z, cg.w);
+    error += node.is_fixed ? 0 : ratio_error(cg.r, setup_, contact_);
   }
   Report report;
   report.reals[0] = static_cast<float>(residual_product);
@@ -445,18 +515,19 @@ Report BasicAgent<Real>::slope_report() const {
   std::array<double, 5> sums{};
   for (int i = 0; i < node_count(); ++i) {
     const Node<Real>& node = nodes_[static_cast<std::size_t>(i)];
+    const Gradients<Real>& cg = gradients_of(i);
     if (node.is_fixed) {
       continue;
     }
     // Node by node the sum is small near the equilibrium, so its digits are good.
     for (int place = 0; place <= 4; ++place) {
       const double t = place == 0 ? 0 : low + (high - low) * place / 4;
-      base::Vec6<double> rest = facet_force_along(node, contact_, t);
+      base::Vec6<double> rest = facet_force_along(node, contact_, cg.g, t);
       rest[2] += setup_.weight_n;
       double slope = 0;
       for (std::size_t k = 0; k < 6; ++k) {
-        rest[k] += node.force[k] + t * static_cast<double>(node.image[k]);
-        slope += rest[k] * static_cast<double>(node.g[k]);
+        rest[k] += node.force[k] + t * static_cast<double>(cg.image[k]);
+        slope += rest[k] * static_cast<double>(cg.g[k]);
       }
       sums[static_cast<std::size_t>(place)] += slope;
     }
@@ -472,11 +543,11 @@ template <class Real>
 Report BasicAgent<Real>::mix_report() const {
   Report report;
   for (int i = 0; i < node_count(); ++i) {
-    const Node<Real>& node = nodes_[static_cast<std::size_t>(i)];
+    const Gradients<Real>& cg = gradients_of(i);
     for (std::size_t k = 0; k < 6; ++k) {
-      const Real change = node.g[k] - node.g_before[k];
-      report.reals[0] += static_cast<float>(change * node.r_start[k]);
-      report.reals[1] += static_cast<float>(change * (node.r_start[k] - node.r_before[k]));
+      const Real change = cg.g[k] - cg.g_before[k];
+      report.reals[0] += static_cast<float>(change * cg.r_start[k]);
+      report.reals[1] += static_cast<float>(change * (cg.r_start[k] - cg.r_before[k]));
     }
   }
   return report;

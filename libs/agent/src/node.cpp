@@ -2,30 +2,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "holdfast/agent/node.hpp"
 
+#include "scalar.hpp"
+
 namespace holdfast::agent {
 namespace {
 
 using base::Mat6;
 using base::Vec6;
 
-double absolute(double value) { return value < 0 ? -value : value; }
-
 std::size_t at(int row, int column) {
   return static_cast<std::size_t>(row * (row + 1) / 2 + column);
-}
-
-/// Newton's method, from above; the standard library's is not freestanding.
-template <class Real>
-Real square_root(Real value) {
-  Real root = value > 1 ? value : Real{1};
-  for (int i = 0; i < 60; ++i) {
-    const Real next = (root + value / root) / 2;
-    if (!(next < root)) {
-      break;
-    }
-    root = next;
-  }
-  return root;
 }
 
 /// Sum of K11 over the beams on `faces`.
@@ -40,10 +26,10 @@ Mat6<double> beam_block(const Setup& setup, std::uint8_t faces) {
 }
 
 template <class Real>
-Vec6<double> position_along(const Node<Real>& node, double t) {
+Vec6<double> position_along(const Node<Real>& node, const Vec6<Real>& g, double t) {
   Vec6<double> u = node.u;
   for (std::size_t i = 0; i < 6; ++i) {
-    u[i] += t * static_cast<double>(node.g[i]);
+    u[i] += t * static_cast<double>(g[i]);
   }
   return u;
 }
@@ -63,20 +49,23 @@ void prepare(Setup& setup) {
 }
 
 template <class Real>
-void reset(Node<Real>& node, const Setup& setup) {
+void reset(Node<Real>& node) {
   node.is_held = true;
   node.was_released = false;
   node.state = {.pressed = node.is_ground};
   node.wanted = node.state;
   node.u = {};
   node.force = {};
-  node.g = {};
-  node.r = {};
+}
+
+template <class Real>
+Gradients<Real> gradients_at_rest(const Node<Real>& node, const Setup& setup) {
+  Gradients<Real> rest{};
   if (!node.is_fixed) {
-    node.r[2] = static_cast<Real>(-setup.weight_n);
+    rest.r[2] = static_cast<Real>(-setup.weight_n);
   }
-  node.r_start = node.r;
-  node.move = {};
+  rest.r_start = rest.r;
+  return rest;
 }
 
 template <class Real>
@@ -154,21 +143,22 @@ Vec6<double> residual(const Node<Real>& node, const Setup& setup, const ContactS
 
 template <class Real>
 mechanics::ContactState state_along(const Node<Real>& node, const ContactSetting& contact,
-                                    double t) {
+                                    const Vec6<Real>& g, double t) {
   if (!node.is_ground) {
     return {.pressed = false};
   }
   return mechanics::contact_state(contact.facet,
-                                  mechanics::trial_force(contact.facet, position_along(node, t)));
+                                  mechanics::trial_force(contact.facet, position_along(node, g, t)));
 }
 
 template <class Real>
-Vec6<double> facet_force_along(const Node<Real>& node, const ContactSetting& contact, double t) {
+Vec6<double> facet_force_along(const Node<Real>& node, const ContactSetting& contact,
+                               const Vec6<Real>& g, double t) {
   if (!node.is_ground) {
     return {};
   }
-  return mechanics::contact_force(contact.facet, state_along(node, contact, t), node.is_held,
-                                  position_along(node, t));
+  return mechanics::contact_force(contact.facet, state_along(node, contact, g, t), node.is_held,
+                                  position_along(node, g, t));
 }
 
 template <class Real>
@@ -185,15 +175,18 @@ double ratio_error(const Vec6<Real>& residual, const Setup& setup, const Contact
   return (2 * (torque + force * contact.lever_mm) / setup.facet_mm + force) / strength;
 }
 
-#define HOLDFAST_INSTANTIATE(Real)                                                                \
-  template void reset(Node<Real>&, const Setup&);                                                 \
-  template void factor_diagonal(Node<Real>&, const Setup&, const ContactSetting&, std::uint8_t);  \
-  template Vec6<Real> scalar_diagonal(const Node<Real>&, const Setup&, const ContactSetting&,     \
-                                      std::uint8_t);                                              \
-  template Vec6<Real> solve_diagonal(const Node<Real>&, Vec6<Real>);                              \
-  template Vec6<double> residual(const Node<Real>&, const Setup&, const ContactSetting&);         \
-  template Vec6<double> facet_force_along(const Node<Real>&, const ContactSetting&, double);      \
-  template mechanics::ContactState state_along(const Node<Real>&, const ContactSetting&, double); \
+#define HOLDFAST_INSTANTIATE(Real)                                                               \
+  template void reset(Node<Real>&);                                                              \
+  template Gradients<Real> gradients_at_rest(const Node<Real>&, const Setup&);                   \
+  template void factor_diagonal(Node<Real>&, const Setup&, const ContactSetting&, std::uint8_t); \
+  template Vec6<Real> scalar_diagonal(const Node<Real>&, const Setup&, const ContactSetting&,    \
+                                      std::uint8_t);                                             \
+  template Vec6<Real> solve_diagonal(const Node<Real>&, Vec6<Real>);                             \
+  template Vec6<double> residual(const Node<Real>&, const Setup&, const ContactSetting&);        \
+  template Vec6<double> facet_force_along(const Node<Real>&, const ContactSetting&,              \
+                                          const Vec6<Real>&, double);                            \
+  template mechanics::ContactState state_along(const Node<Real>&, const ContactSetting&,         \
+                                               const Vec6<Real>&, double);                       \
   template double ratio_error(const Vec6<Real>&, const Setup&, const ContactSetting&);
 
 HOLDFAST_INSTANTIATE(float)

@@ -51,6 +51,18 @@ void merge_residual(Report& into, const Report& from) {
   into.flags = static_cast<std::uint8_t>(into.flags | from.flags);
 }
 
+void merge_step(Report& into, const Report& from) {
+  const float ratio = larger(into.reals[1], from.reals[1]);
+  for (std::size_t i = 0; i < into.reals.size(); ++i) {
+    into.reals[i] += from.reals[i];
+  }
+  into.reals[1] = ratio;
+  const std::uint32_t changed = std::uint32_t{into.extent} + from.extent;
+  into.extent = static_cast<std::uint16_t>(changed < 0xffffU ? changed : 0xffffU);
+  into.number += from.number;
+  into.flags = static_cast<std::uint8_t>(into.flags | from.flags);
+}
+
 void merge_loads(Report& into, const Report& from) {
   const bool is_worse =
       larger(into.reals[0], from.reals[0]) != into.reals[0] && into.reals[0] == into.reals[0];
@@ -109,6 +121,8 @@ int real_count(Operation operation) {
       return 2;
     case Operation::kSlope:
       return 5;
+    case Operation::kStep:
+      return 7;
     case Operation::kJacobi:
     case Operation::kLoads:
       return 1;
@@ -157,6 +171,18 @@ Writer encode(const Order& order) {
       out.u8(static_cast<std::uint8_t>(order.count));
       break;
     case Operation::kBegin:
+      out.u8(order.flags);
+      out.u16(order.count);
+      out.real(static_cast<double>(order.reals[0]));
+      out.real(static_cast<double>(order.reals[1]));
+      break;
+    case Operation::kStep:
+      out.u8(order.flags);
+      out.u16(order.count);
+      for (const float real : order.reals) {
+        out.real(static_cast<double>(real));
+      }
+      break;
     case Operation::kSlope:
       out.u8(order.flags);
       [[fallthrough]];
@@ -178,6 +204,7 @@ Writer encode(const Order& order) {
       break;
     case Operation::kCorners:
     case Operation::kLoads:
+    case Operation::kFactor:
       break;
   }
   return out;
@@ -215,6 +242,15 @@ Order decode_order(std::span<const std::uint8_t> message) {
       order.count = in.u8();
       break;
     case Operation::kBegin:
+      order.flags = in.u8();
+      order.count = in.u16();
+      order.reals = {in.real(), in.real()};
+      break;
+    case Operation::kStep:
+      order.flags = in.u8();
+      order.count = in.u16();
+      order.reals = {in.real(), in.real(), in.real()};
+      break;
     case Operation::kSlope:
       order.flags = in.u8();
       [[fallthrough]];
@@ -234,6 +270,7 @@ Order decode_order(std::span<const std::uint8_t> message) {
       break;
     case Operation::kCorners:
     case Operation::kLoads:
+    case Operation::kFactor:
       break;
   }
   return order;
@@ -266,6 +303,7 @@ Writer encode(Operation operation, const Report& report) {
       out.short_real(static_cast<double>(report.reals[2]));
       break;
     case Operation::kLow:
+    case Operation::kStep:
       out.u16(report.extent);
       out.u32(report.number);
       out.u8(report.flags);
@@ -322,6 +360,7 @@ Report decode_report(std::span<const std::uint8_t> message) {
       report.reals[2] = in.short_real();
       break;
     case Operation::kLow:
+    case Operation::kStep:
       report.extent = in.u16();
       report.number = in.u32();
       report.flags = in.u8();
@@ -367,6 +406,8 @@ void merge(Operation operation, Report& into, const Report& from) {
       return;
     case Operation::kLoads:
       return merge_loads(into, from);
+    case Operation::kStep:
+      return merge_step(into, from);
     default:
       break;
   }

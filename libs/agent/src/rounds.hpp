@@ -31,8 +31,11 @@ void BasicAgent<Real>::step(const Event& event, Actions& actions) {
     if (restart_at_ <= now_) {
       start_round();
     }
-    // The root's orders follow each other here, so that no function calls itself.
-    while (has_next_order_) {
+    if (is_streaming_) {
+      continue_sweep();
+    }
+    // Orders follow each other here, so that no function calls itself.
+    while (has_next_order_ && !is_exchanging_) {
       has_next_order_ = false;
       take_order(next_order_);
     }
@@ -147,6 +150,12 @@ void BasicAgent<Real>::dispatch(int face, std::span<const std::uint8_t> message)
     case MessageType::kMark:
       return mark(wire::Reader(message).u16());
     case MessageType::kOrder:
+      if (is_exchanging_) {
+        // What goes on behind the last report comes to its end first.
+        next_order_ = decode_order(message);
+        has_next_order_ = true;
+        return;
+      }
       return take_order(decode_order(message));
     case MessageType::kReport:
       return take_report(face, message);
@@ -156,6 +165,14 @@ void BasicAgent<Real>::dispatch(int face, std::span<const std::uint8_t> message)
       return take_planned_down(message);
     case MessageType::kPlannedUp:
       return take_planned_up(message);
+    case MessageType::kLoop:
+      return take_loop(face, message);
+    case MessageType::kColumn:
+      return take_column(face, message);
+    case MessageType::kBranchUp:
+      return take_branch_up(face, message);
+    case MessageType::kBranchDown:
+      return take_branch_down(message);
     case MessageType::kJoin:
       break;
   }
@@ -199,6 +216,9 @@ void BasicAgent<Real>::leave_round() {
     answer_ = {};
     phase_ = Phase::kDiscovery;
     is_sweeping_ = false;
+    is_exchanging_ = false;
+    is_streaming_ = false;
+    has_next_order_ = false;
     restart_at_ = now_ + setup_.timing.acknowledge_after;
   }
 }
@@ -226,6 +246,7 @@ void BasicAgent<Real>::enter_round(const Round& round) {
   children_ = 0;
   is_sweeping_ = false;
   is_exchanging_ = false;
+  is_streaming_ = false;
   has_next_order_ = false;
   tag_ = 0;
   vectors_here_ = {};

@@ -23,7 +23,10 @@ constexpr bool exchanges(const Order& order) {
     case wire::Operation::kLow:
     case wire::Operation::kGradient:
     case wire::Operation::kJacobi:
+    case wire::Operation::kStep:
       return true;
+    case wire::Operation::kBegin:
+      return order.count > 0;
     case wire::Operation::kStart:
       return (order.flags & (kWithScalars | kWithBlocks)) == 0;
     case wire::Operation::kSlope:
@@ -31,6 +34,27 @@ constexpr bool exchanges(const Order& order) {
     default:
       return false;
   }
+}
+
+/// A preconditioner of degree m shares m more vectors than its first and its last one, which are
+/// the same for m = 0. A step shares its move in two parts and then the terms of its polynomial.
+constexpr std::uint16_t exchange_count(const Order& order) {
+  switch (order.operation) {
+    case wire::Operation::kJacobi:
+    case wire::Operation::kBegin:
+      return order.count;
+    case wire::Operation::kStep:
+      return static_cast<std::uint16_t>(order.count + 2);
+    default:
+      return static_cast<std::uint16_t>(order.count + 1);
+  }
+}
+
+/// Exchanges that go on while the report is on its way up and the next order on its way down.
+constexpr std::uint16_t exchanges_behind(const Order& order) {
+  const bool is_one_sweep = order.operation == wire::Operation::kBegin ||
+                            order.operation == wire::Operation::kStep;
+  return is_one_sweep ? order.count : std::uint16_t{0};
 }
 
 /// Forces whose digits beyond single precision count.
@@ -82,13 +106,12 @@ void BasicAgent<Real>::take_order(const Order& order) {
   is_sweeping_ = true;
   phase_ = sweep::phase_of(order.operation);
   reports_awaited_ = children_;
-  // A preconditioner of degree m shares m more vectors than its first and its last one, which are
-  // the same for m = 0.
-  const bool is_jacobi = order.operation == wire::Operation::kJacobi;
-  exchanges_left_ = static_cast<std::uint16_t>(is_jacobi ? order.count : order.count + 1);
+  exchanges_left_ = sweep::exchange_count(order);
+  exchanges_behind_ = sweep::exchanges_behind(order);
+  down_awaited_ = 0;
   send_to_children(encode(order));
   prepare(order);
-  if (sweep::exchanges(order)) {
+  if (sweep::exchanges(order) && down_awaited_ == 0) {
     start_exchange();
   }
   continue_sweep();
@@ -206,15 +229,15 @@ void BasicAgent<Real>::take_report(int face, std::span<const std::uint8_t> messa
 
 template <class Real>
 void BasicAgent<Real>::continue_sweep() {
-  while (is_sweeping_ && is_exchanging_) {
+  while (is_exchanging_) {
     const std::size_t slot = tag_ & 1U;
     const std::uint8_t faces = used_faces();
     // What children add to planned modules emulated here comes before their reports. An order that
     // needs this has one exchange only.
-    const bool waits_for_children = exchanges_left_ == 1;
+    const bool waits_for_children = exchanges_left_ == 1 && exchanges_behind_ == 0;
     if ((vectors_here_[slot] & faces) != faces || planned_awaited_ != 0 ||
         (waits_for_children && reports_awaited_ != 0)) {
-      return;
+      break;
     }
     exchange_forces();
     vectors_here_[slot] = 0;
@@ -225,15 +248,24 @@ void BasicAgent<Real>::continue_sweep() {
       start_exchange();
     }
   }
-  if (is_sweeping_ && reports_awaited_ == 0) {
+  const bool is_done_here =
+      !sweep::exchanges(order_) || exchanges_left_ <= exchanges_behind_;
+  if (is_sweeping_ && reports_awaited_ == 0 && down_awaited_ == 0 && is_done_here) {
     finish_sweep();
   }
 }
 
 template <class Real>
 void BasicAgent<Real>::finish_sweep() {
+  if (order_.operation == wire::Operation::kFactor && !send_columns()) {
+    return;  // More when there is room.
+  }
   is_sweeping_ = false;
   Report report = conclude(order_);
+  if (order_.operation == wire::Operation::kFactor ||
+      (order_.operation == wire::Operation::kStep && (order_.flags & kAlongTree) != 0)) {
+    send_branch_up();
+  }
   for (int face = 0; face < base::kDirectionCount; ++face) {
     if ((children_ & bit(face)) != 0) {
       const Report theirs = decode_report(reports_[static_cast<std::size_t>(face)]);

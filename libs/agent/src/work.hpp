@@ -3,8 +3,10 @@
 #pragma once
 
 #include "bits.hpp"
+#include "branches.hpp"
 #include "equilibrium.hpp"
 #include "holdfast/agent/agent.hpp"
+#include "steps.hpp"
 
 /// What the operations do on one module: before the exchange (prepare) and after it (conclude).
 namespace holdfast::agent {
@@ -27,6 +29,7 @@ void BasicAgent<Real>::prepare(const Order& order) {
       break;
     case Operation::kMass:
       root_cell_ = order.cell;
+      begin_branch();
       break;
     case Operation::kBegin:
       begin_equilibrium(order);
@@ -35,12 +38,7 @@ void BasicAgent<Real>::prepare(const Order& order) {
       move(order);
       break;
     case Operation::kLow:
-      for (int i = 0; i < node_count(); ++i) {
-        Node<Real>& node = nodes_[static_cast<std::size_t>(i)];
-        for (std::size_t k = 0; k < 6; ++k) {
-          node.shared[k] = static_cast<Real>(node.u[k] - leading_part(node.u[k]));
-        }
-      }
+      share_low_part();
       break;
     case Operation::kStart:
       start_solve(order);
@@ -52,8 +50,14 @@ void BasicAgent<Real>::prepare(const Order& order) {
     case Operation::kSlope:
       for (int i = 0; i < node_count(); ++i) {
         Node<Real>& node = nodes_[static_cast<std::size_t>(i)];
-        node.shared = equilibrium::as_sent(node.g);
+        node.shared = equilibrium::as_sent(gradients_of(i).g);
       }
+      break;
+    case Operation::kFactor:
+      factor_branch();
+      break;
+    case Operation::kStep:
+      begin_step(order);
       break;
     case Operation::kVerdict:
       answer_ = order.answer;
@@ -80,8 +84,13 @@ Report BasicAgent<Real>::conclude(const Order& order) {
           static_cast<std::uint8_t>(report.mask | (planned_.is_any_remote() ? kAnyRemote : 0U));
       return report;
     }
-    case Operation::kMass:
-      return mass_report();
+    case Operation::kMass: {
+      Report report = mass_report();
+      report.flags = static_cast<std::uint8_t>(report.flags | survey_loops());
+      return report;
+    }
+    case Operation::kStep:
+      return step_report();
     case Operation::kAngles:
       return angles_report();
     case Operation::kLow:
@@ -105,6 +114,7 @@ Report BasicAgent<Real>::conclude(const Order& order) {
     case Operation::kVerdict:
       return {.count = 1};
     case Operation::kBegin:
+    case Operation::kFactor:
     case Operation::kHigh:
       break;
   }

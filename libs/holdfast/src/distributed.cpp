@@ -124,14 +124,19 @@ const char* name(agent::Method method) {
     case agent::Method::kBlockJacobi:
       return "block-jacobi";
     case agent::Method::kConjugateGradients:
+      return "cg";
+    case agent::Method::kMinimalResiduals:
+      return "residuals";
+    case agent::Method::kElimination:
       break;
   }
-  return "cg";
+  return "elimination";
 }
 
 std::optional<agent::Method> find_method(std::string_view name_wanted) {
   for (const agent::Method method :
-       {agent::Method::kJacobi, agent::Method::kBlockJacobi, agent::Method::kConjugateGradients}) {
+       {agent::Method::kJacobi, agent::Method::kBlockJacobi, agent::Method::kConjugateGradients,
+        agent::Method::kMinimalResiduals, agent::Method::kElimination}) {
     if (name_wanted == name(method)) {
       return method;
     }

@@ -34,7 +34,7 @@ LinkModel blinky_blocks_v2() {
 LinkModel unit() {
   LinkModel model;
   model.ticks_per_second = 0;
-  model.packet_bytes = 64;
+  model.packet_bytes = 228;
   model.packet_time = 1;
   model.is_unlimited = true;
   model.acknowledge_after = 3;

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <span>
 
+#include "holdfast/agent/branch.hpp"
 #include "holdfast/agent/colour.hpp"
 #include "holdfast/agent/conductor.hpp"
 #include "holdfast/agent/link.hpp"
@@ -99,6 +100,33 @@ enum class Phase : std::uint8_t {
   kModel,
   kOverload,
   kDone,
+};
+
+namespace branches {
+struct Leaves;
+}
+
+/// What elimination over the tree keeps (src/branches.hpp).
+struct BranchWork {
+  Branch branch;
+  BranchLoad load;
+  CutForces forces{};
+  /// By face: the cuts that a child has open, and their slots here.
+  std::array<std::array<Cut, kLoopsMax>, base::kDirectionCount> child_cuts{};
+  std::array<std::array<std::int8_t, kLoopsMax>, base::kDirectionCount> slot_of{};
+  std::array<std::uint8_t, base::kDirectionCount> child_cut_count{};
+  base::Vec6<float> shift{};  ///< M^-1 r, ...
+  base::Vec6<double> parent_shift{};  ///< ... and the parent's.
+};
+
+/// A method's own data; a robot's equilibrium uses one method at a time.
+template <class Real>
+union Work {
+  Work() : gradients{} {}
+
+  std::array<Gradients<Real>, 1 + kPlannedMax> gradients;
+  std::array<Steps, 1 + kPlannedMax> steps;
+  BranchWork tree;
 };
 
 template <class Real>
@@ -205,8 +233,40 @@ class BasicAgent {
   Report loads_report();
   void prepare_hosted();
 
+  // branches.hpp: elimination over the tree.
+  void begin_branch();
+  void take_loop(int face, std::span<const std::uint8_t> message);
+  std::uint8_t survey_loops();
+  void factor_branch();
+  void take_column(int face, std::span<const std::uint8_t> message);
+  void take_branch_up(int face, std::span<const std::uint8_t> message);
+  void take_branch_down(std::span<const std::uint8_t> message);
+  bool send_columns();
+  void send_branch_up();
+  void find_shifts();
+  void send_branch_down();
+  Cut cut_at(int face) const;
+  using LeafStiffness = std::array<base::Mat6<double>, 1 + kPlannedMax>;
+  LeafStiffness leaf_stiffness() const;
+  std::array<base::Vec6<double>, 1 + kPlannedMax> leaf_loads(const branches::Leaves& leaves,
+                                                             const LeafStiffness& stiffness) const;
+
+  // steps.hpp: the one-sweep methods.
+  void begin_step(const Order& order);
+  void share_high_part(Node<Real>& node);
+  void find_residuals();
+  void start_terms(int node);
+  void next_terms();
+  Report step_report() const;
+
   // equilibrium.cpp: the same for the equilibrium's operations.
+  /// Displacements go into forces, a gradient's direction into its image, a term of a step's
+  /// polynomial into what is left of the residual.
+  enum class Exchanged : std::uint8_t { kDisplacement, kGradient, kTerm };
+
+  Exchanged exchanged() const;
   void begin_equilibrium(const Order& order);
+  void share_low_part();
   void move(const Order& order);
   void start_solve(const Order& order);
   void gradient_step(const Order& order);
@@ -228,6 +288,16 @@ class BasicAgent {
   std::uint8_t node_faces(int node) const;
 
   int node_count() const { return 1 + planned_.hosted_count(); }
+
+  Gradients<Real>& gradients_of(int node) {
+    return work_.gradients[static_cast<std::size_t>(node)];
+  }
+
+  const Gradients<Real>& gradients_of(int node) const {
+    return work_.gradients[static_cast<std::size_t>(node)];
+  }
+
+  Steps& steps_of(int node) { return work_.steps[static_cast<std::size_t>(node)]; }
 
   const Setup& setup_;
   Identity identity_;
@@ -272,6 +342,10 @@ class BasicAgent {
   std::uint8_t tag_ = 0;              ///< Of the exchange under way.
   std::array<std::uint8_t, 2> vectors_here_{};  ///< Faces, by the tag's lowest bit.
   std::uint16_t exchanges_left_ = 0;
+  std::uint16_t exchanges_behind_ = 0;  ///< Those that go on when the report has left.
+  std::uint8_t down_awaited_ = 0;       ///< What must come from the parent before a step.
+  std::uint8_t column_ = 0;             ///< The next to send up.
+  bool is_streaming_ = false;           ///< Columns wait for room on the link.
   float jacobi_error_ = 0;
   std::array<std::array<base::Vec6<float>, base::kDirectionCount>, 2> vectors_{};
   std::array<std::array<std::uint8_t, wire::kMessageBytesMax>, base::kDirectionCount> reports_{};
@@ -279,6 +353,8 @@ class BasicAgent {
 
   // Mechanics.
   std::array<Node<Real>, 1 + kPlannedMax> nodes_{};  ///< This module, then those it emulates.
+  Work<Real> work_;
+  double product_ = 0;  ///< (r, M^-1 r) before the last step.
   std::array<base::Vec6<float>, kPlannedMax> planned_vector_{};
   std::array<base::Vec6<double>, kPlannedMax> planned_force_{};
   std::array<MiddleLoad, base::kDirectionCount> middle_{};
@@ -297,6 +373,6 @@ static_assert(sizeof(BasicAgent<float>) <= kAgentBytesMax);
 
 // The most that waits on one link: two vectors for every planned module, one more and a report.
 // What came before them has been acknowledged by the order that asked for them.
-static_assert(Link::kQueueBytes >= (2 * kPlannedMax + 2) * wire::kMessageBytesMax);
+static_assert(Link::kQueueBytes >= (2 * kPlannedMax + 2) * wire::kVectorBytes);
 
 }  // namespace holdfast::agent

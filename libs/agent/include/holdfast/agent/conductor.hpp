@@ -32,7 +32,7 @@ struct Effort {
   std::uint32_t solves = 0;                     ///< Corrections started.
   std::uint32_t contact_steps = 0;              ///< Changes of contact states.
   std::uint32_t module_count = 0;               ///< Planned ones included.
-  Method method = Method::kConjugateGradients;  ///< The last one used.
+  Method method = Method::kElimination;  ///< The last one used.
   bool is_unilateral = false;
   float ratio_error = 0;  ///< Bound at the end.
 };
@@ -63,6 +63,8 @@ class Conductor {
     kLow,
     kStart,
     kGradient,
+    kFactor,
+    kStep,
     kJacobi,
     kSlope,
     kMix,
@@ -85,6 +87,18 @@ class Conductor {
   Order after_start(const Report& report);
   Order after_gradient(const Setup& setup, const Report& report);
   Order next_gradient(double gamma, double delta);
+  // conductor_steps.cpp
+  void choose_one_sweep(bool is_unilateral);
+  std::uint16_t step_degree() const;
+  Order first_step();
+  Order factor();
+  Order next_step(std::uint8_t flags, const std::array<float, 3>& coefficients);
+  Order restarted_step();
+  Order minimised_step(const Report& report);
+  Order after_step(const Setup& setup, const Report& report);
+  double step_error(const Setup& setup, const Report& report, bool has_jumped);
+  Order leave_one_sweep(const Setup& setup, bool is_unilateral);
+
   Order start_jacobi();
   Order after_jacobi(const Setup& setup, const Report& report);
   Order after_slope(const Report& report);
@@ -101,7 +115,13 @@ class Conductor {
   Order decide();
   Order finish(Verdict verdict, Reason reason);
 
-  bool is_jacobi() const { return effort_.method != Method::kConjugateGradients; }
+  bool is_jacobi() const {
+    return effort_.method == Method::kJacobi || effort_.method == Method::kBlockJacobi;
+  }
+
+  bool is_one_sweep() const {
+    return effort_.method == Method::kMinimalResiduals || effort_.method == Method::kElimination;
+  }
 
   bool was_seen(std::uint32_t hash);
   std::uint32_t jacobi_span() const;
@@ -135,6 +155,16 @@ class Conductor {
   std::uint8_t stagnation_count_ = 0;
   std::array<std::uint32_t, kSeenMax> seen_{};
   std::uint8_t seen_count_ = 0;
+  // One-sweep methods.
+  std::uint16_t depth_ = 0;
+  bool has_many_loops_ = false;
+  bool follows_ = false;    ///< The last step took over the wanted contact states.
+  bool has_older_ = false;  ///< There is an older direction.
+  double predicted_ = 0;    ///< Error expected after the last step.
+  double norm_ = 0;         ///< |r|^2 at the last report, ...
+  double least_norm_ = 0;   ///< ... and |r^|^2 from which the last step was made.
+  double older_norm_ = 0;   ///< |q_older|^2
+  double eigenvalue_ = 1;   ///< The least of M^-1 K seen.
   // Jacobi.
   std::uint16_t batch_ = 0;
   std::uint32_t check_at_ = 0;

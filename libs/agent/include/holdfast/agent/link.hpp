@@ -52,6 +52,9 @@ class Link {
   /// Queues a message. On a link that is not used it is dropped. False: the queue is full.
   [[nodiscard]] bool send(std::span<const std::uint8_t> message);
 
+  /// Can a message of so many bytes be queued?
+  bool has_room(int bytes) const { return queued_bytes_ + bytes <= kQueueBytes; }
+
   /// Forgets queued messages of which no byte has been sent.
   void drop_unsent();
 

@@ -30,40 +30,65 @@ struct MiddleLoad {
   double bending_y_nmm = 0;
 };
 
-/// Vectors are named as in the method: u displacements, r residual, g correction being found,
-/// z preconditioned residual, w its image, p and s directions of conjugate gradients.
+/// What every method needs of one module.
 template <class Real>
 struct Node {
-  using Vec = base::Vec6<Real>;
-
   base::Cell cell;
   bool is_fixed = false;
   bool is_ground = false;
   bool is_held = true;  ///< Against slip and twist (unilateral law).
   bool was_released = false;
+  bool has_changed = false;  ///< Wanted another state than was in use, at the last step.
   mechanics::ContactState state;   ///< In use.
   mechanics::ContactState wanted;  ///< That the law prescribes for u.
 
   base::Vec6<double> u{};
   base::Vec6<double> force{};  ///< Of all beams on their module ends, at u.
-  Vec r{};
-  Vec r_start{};   ///< At the start of the present solve, ...
-  Vec r_before{};  ///< ... and of the one before.
-  Vec g{};
-  Vec g_before{};  ///< What the solve before found.
-  Vec move{};      ///< The last change of u.
-  Vec z{};
-  Vec w{};
-  Vec shared{};  ///< What is exchanged with the neighbours, ...
-  Vec image{};   ///< ... and what the beams make of it.
-  Vec p{};
-  Vec s{};
-  Triangle<Real> factor{};  ///< Of the 6x6 diagonal block.
+  base::Vec6<Real> shared{};   ///< What is exchanged with the neighbours.
+  Triangle<Real> factor{};     ///< Of the 6x6 diagonal block.
 };
 
-/// Back to rest: no displacement, the facet stuck, the residual is the weight.
+/// One module's vectors in the Jacobi methods and conjugate gradients, named as in the method:
+/// r residual, g correction being found, z preconditioned residual, w its image, p and s
+/// directions.
 template <class Real>
-void reset(Node<Real>& node, const Setup& setup);
+struct Gradients {
+  using Vec = base::Vec6<Real>;
+
+  Vec r;
+  Vec r_start;   ///< At the start of the present solve, ...
+  Vec r_before;  ///< ... and of the one before.
+  Vec g;
+  Vec g_before;  ///< What the solve before found.
+  Vec move;      ///< The last change of u.
+  Vec z;
+  Vec w;
+  Vec image;  ///< What the beams make of what was exchanged.
+  Vec p;
+  Vec s;
+};
+
+/// A direction of minimal residuals: moving by p takes q from the residual, and z = M^-1 q.
+struct SearchDirection {
+  base::Vec6<double> p;
+  base::Vec6<double> q;
+  base::Vec6<double> z;
+};
+
+/// One module's vectors of minimal residuals (src/steps.hpp).
+struct Steps {
+  base::Vec6<double> w;  ///< What the polynomial leaves of the residual.
+  SearchDirection older;
+  SearchDirection newer;
+};
+
+/// Back to rest: no displacement, the facet stuck.
+template <class Real>
+void reset(Node<Real>& node);
+
+/// The same for its vectors: the residual is the weight.
+template <class Real>
+Gradients<Real> gradients_at_rest(const Node<Real>& node, const Setup& setup);
 
 /// Factor of the diagonal block: K11 of the beams on `faces` and the facet's symmetric tangent.
 template <class Real>
@@ -87,12 +112,12 @@ base::Vec6<double> residual(const Node<Real>& node, const Setup& setup,
 /// The force of the facet at u + t g, in the state that the law prescribes there.
 template <class Real>
 base::Vec6<double> facet_force_along(const Node<Real>& node, const ContactSetting& contact,
-                                     double t);
+                                     const base::Vec6<Real>& g, double t);
 
 /// The state that the law prescribes at u + t g.
 template <class Real>
 mechanics::ContactState state_along(const Node<Real>& node, const ContactSetting& contact,
-                                    double t);
+                                    const base::Vec6<Real>& g, double t);
 
 /// How much a residual can change any load ratio: the force at the robot's full extent, and the
 /// torque, carried by one connection. Rigorous where the robot is statically determinate.

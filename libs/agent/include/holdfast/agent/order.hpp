@@ -53,18 +53,21 @@ struct Order {
   wire::Operation operation{};
   std::uint8_t index = 0;  ///< kPlan: planned index learned, or 0xff.
   std::uint8_t flags = 0;
-  std::uint16_t count = 0;                 ///< kJacobi: steps.
+  std::uint16_t count = 0;  ///< kJacobi: steps; kStart, kGradient, kBegin, kStep: degree.
   base::Cell cell = {};                    ///< kPlan: of that module; kMass: of the root.
   std::array<std::uint8_t, 8> masks{};     ///< kHosts
   std::int32_t module_count = 0;           ///< kAngles
   std::array<std::int32_t, 2> cell_sum{};  ///< kAngles
-  std::array<float, 2> reals{};
+  std::array<float, 3> reals{};
   Answer answer = {};  ///< kVerdict
 };
 
 /// Flags of orders.
 inline constexpr std::uint8_t kUnilateralLaw = 1;  ///< kBegin
-inline constexpr std::uint8_t kFollowStates = 1;   ///< kLow: take over the wanted states first.
+inline constexpr std::uint8_t kOneSweep = 2;       ///< kBegin: for kFactor and kStep.
+inline constexpr std::uint8_t kFollowStates = 1;   ///< kLow, kStep: take over the wanted states first.
+inline constexpr std::uint8_t kRestart = 2;        ///< kStep: without older directions.
+inline constexpr std::uint8_t kAlongTree = 4;      ///< kStep: by elimination, not minimal residuals.
 inline constexpr std::uint8_t kAdoptStates = 1;    ///< kStart
 inline constexpr std::uint8_t kWithScalars = 2;    ///< kStart
 inline constexpr std::uint8_t kWithBlocks = 4;     ///< kStart
@@ -83,7 +86,7 @@ struct Report {
   std::uint32_t count = 0;
   std::uint32_t number = 0;
   std::array<std::int32_t, 2> cell_sum{};
-  std::array<float, 5> reals{};
+  std::array<float, 7> reals{};
   base::Cell cell = {};
   base::Direction direction = base::Direction::kPlusX;
   mechanics::SafeAngles<std::int64_t> angles = {};
@@ -95,6 +98,7 @@ inline constexpr std::uint8_t kFound = 1;             ///< kPlan: cell is set.
 inline constexpr std::uint8_t kAnyRemote = 0x80;      ///< kHosts
 inline constexpr std::uint8_t kAnyFixed = 1;          ///< kMass
 inline constexpr std::uint8_t kSumOverflow = 2;       ///< kMass
+inline constexpr std::uint8_t kManyLoops = 4;         ///< kMass: more than a Branch can hold.
 inline constexpr std::uint8_t kTooManyAnnounced = 2;  ///< kPlan
 inline constexpr std::uint8_t kAnyTilting = 1;        ///< kLow
 

@@ -14,6 +14,8 @@ enum class Method : std::uint8_t {
   kJacobi,              ///< Weighted Jacobi with the scalar diagonal, Eq. (14).
   kBlockJacobi,         ///< The same with 6x6 diagonal blocks.
   kConjugateGradients,  ///< Preconditioned with the 6x6 diagonal blocks.
+  kMinimalResiduals,    ///< One sweep a step, with a polynomial of twice the tree's depth.
+  kElimination,         ///< One sweep a step, exactly over the tree; for robots with few loops.
 };
 
 /// What is known before the robot is built, the same for all its modules. N, mm, MPa.
@@ -28,7 +30,8 @@ struct Setup {
   std::int32_t facet_numerator = 1;
   std::int32_t facet_denominator = 1;
   std::int32_t support_z = 0;  ///< Modules in this layer rest on the ground.
-  Method method = Method::kConjugateGradients;
+  /// kElimination means: or minimal residuals, if the robot has too many loops.
+  Method method = Method::kElimination;
   std::uint32_t iteration_count_max = 4'000'000;
   /// Of the polynomial preconditioner of conjugate gradients. A degree m costs m rounds more and
   /// saves about a factor m of sweeps of twice the tree's depth, so the depth is a good degree.

@@ -23,7 +23,8 @@ inline constexpr int kHeaderBytes = 2;
 inline constexpr int kChecksumBytes = 2;
 inline constexpr int kPacketBytesMin = 17;   ///< Blinky Blocks version 1
 inline constexpr int kPacketBytesMax = 228;  ///< Blinky Blocks version 2
-inline constexpr int kMessageBytesMax = 26;
+inline constexpr int kMessageBytesMax = 37;
+inline constexpr int kVectorBytes = 26;  ///< Of the messages with six reals.
 inline constexpr int kCellBytes = 9;
 
 /// A greeting differs in two bits from data, so that few errors make one of the other.
@@ -39,6 +40,10 @@ enum class MessageType : std::uint8_t {
   kVector,       ///< To every neighbour: six reals.
   kPlannedDown,  ///< From the host of a planned module: its six reals.
   kPlannedUp,    ///< To the host of a planned module: the force on it.
+  kLoop,         ///< Up the tree: a cut whose other end is not below.
+  kColumn,       ///< Up the tree: one column of a branch's condensed stiffness.
+  kBranchUp,     ///< Up the tree: a branch's condensed load, or a loop's gap.
+  kBranchDown,   ///< Down the tree: the parent's displacement, or the force in a loop's cut.
 };
 
 /// What an order asks for. Each has a body for the way down and one for the way up.
@@ -58,8 +63,10 @@ enum class Operation : std::uint8_t {
   kCorners,   ///< Support corners of the model-based stability check.
   kLoads,     ///< The worst connection.
   kVerdict,   ///< The answer, for every module.
+  kFactor,    ///< Condense every branch: stiffness and load.
+  kStep,      ///< One step of the one-sweep methods: move, residual, sums.
 };
-inline constexpr int kOperationCount = 15;
+inline constexpr int kOperationCount = 17;
 
 /// Sizes of whole messages, type byte included; 0 for what is not a message. `second` is the byte
 /// after the type and matters for orders and reports only.

@@ -59,7 +59,7 @@ LinkModel blinky_blocks_v1();
 LinkModel blinky_blocks_v2();
 
 /// Every packet takes one tick and lines are unlimited, so that the simulated time is the number
-/// of rounds of a synchronous network. Packets of 64 bytes hold any message.
+/// of rounds of a synchronous network. Packets of 228 bytes, version 2's, hold any message.
 LinkModel unit();
 
 /// "v1", "v2" or "unit".

@@ -23,7 +23,7 @@ namespace holdfast::sim {
 struct SimulationOptions {
   LinkModel link = unit();
   std::uint64_t seed = 1;  ///< Of noise, clocks and session numbers.
-  agent::Method method = agent::Method::kConjugateGradients;
+  agent::Method method = agent::Method::kElimination;  ///< See agent::Setup.
   std::uint8_t degree_max = 200;  ///< See agent::Setup.
   std::vector<Fault> faults = {};
   std::vector<Announcement> announcements = {};  ///< Besides the robot's planned modules.

@@ -1,0 +1,148 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "holdfast/base/algebra.hpp"
+#include "holdfast/base/cell.hpp"
+#include "holdfast/mechanics/beam.hpp"
+
+/// Exact elimination over the spanning tree: a module with all that hangs below it, condensed.
+///
+/// Let c be a module, p its parent, d the direction from c to p, F = K11^-1 the flexibility of the
+/// beam between them at c's end, T the rigid motion of p seen at c. Everything from c down says
+///   S u + B X - h = force of the parent's beam on c, negative
+///   y + C u - P X = gap                                                              (1)
+/// with the loads h, and for every loop of the robot that passes c but closes further up the force
+/// X in a beam that is cut. In the end its two ends must fit: gap = F X. With S = 0 below the parent
+/// beam nothing is stiff, and c moves by statics alone:
+///   u = G (T u_p + F h - F B X),             G = (1 + F S)^-1                        (2)
+/// and seen from the parent,                  N = (1 + S F)^-1
+///   S' = T^t N S T     B' = T^t N B          h' = T^t N h
+///   C' = C G T         P' = P + C G F B      y' = y + C G F h                        (3)
+/// Stiffnesses are in series here, never subtracted: a branch that touches no ground keeps S = 0
+/// exactly, its forces follow from its loads, and single precision does for storage although the
+/// condition grows with the fourth power of an arm's length.
+///
+/// A beam is cut where it is not part of the tree. The cut has a sign: its lower end a (the smaller
+/// coordinate) gets B = C = 1, its upper end b gets B = -T^t, C = -T, so X is the force that the
+/// beam takes from a. Where both ends have come together the loop closes: X = Q (y + C u),
+/// Q = (P + F)^-1, is put into (1). This is the force method with the redundants kept local
+/// [Przemieniecki 1968, ch. 8], inside a sparse elimination with the tree as its order.
+namespace holdfast::agent {
+
+/// Loops that may pass or close at one module.
+inline constexpr int kLoopsMax = 2;
+
+/// The beam whose cut opens a loop: its lower cell, and its direction from there.
+struct Cut {
+  base::Cell cell = {};
+  base::Direction direction = base::Direction::kPlusX;
+
+  friend constexpr bool operator==(const Cut&, const Cut&) = default;
+};
+
+/// Loads of a branch: h, and y of every loop.
+struct BranchLoad {
+  base::Vec6<double> load{};
+  std::array<base::Vec6<double>, kLoopsMax> gap{};
+};
+
+/// Forces in the cuts.
+using CutForces = std::array<base::Vec6<double>, kLoopsMax>;
+
+class Branch {
+ public:
+  /// Columns that go up: S', then by open loop B', C' (its rows) and P'.
+  static constexpr int kColumnCount = 6 + 12 * kLoopsMax + 6 * kLoopsMax * kLoopsMax;
+
+  // ---- Which loops are here. Once, when the tree and the planned modules are known.
+
+  void clear() { *this = Branch(); }
+
+  /// A loop whose one end is this module or comes from a child; the second time it closes here.
+  /// Returns its slot, or -1 if there are too many.
+  int meet(const Cut& cut);
+
+  /// The slot of a loop that is here.
+  int find(const Cut& cut) const;
+
+  /// Loops that go on to the parent, the i-th of them by slot.
+  int open_count() const;
+  int open_slot(int i) const;
+  const Cut& cut(int slot) const { return cuts_[static_cast<std::size_t>(slot)]; }
+
+  // ---- Stiffness. Whenever a contact has changed.
+
+  void clear_stiffness();
+  void add_stiffness(const base::Mat6<double>& block);
+  void add_end(int slot, bool is_upper, const base::Mat6<double>& transport);
+
+  /// Column `index` of a child, whose i-th open loop has slot_of[i] here.
+  void add_column(int index, const std::array<std::int8_t, kLoopsMax>& slot_of,
+                  const base::Vec6<float>& column);
+
+  /// All children's columns are here.
+  void close_loops(const mechanics::BeamStiffness<double>& beam);
+
+  /// Eq. (3), column by column; `is_fixed` if this module does not move.
+  base::Vec6<double> column_up(const mechanics::BeamStiffness<double>& beam,
+                               base::Direction to_parent, bool is_fixed, int index) const;
+
+  // ---- Loads.
+
+  /// Puts the loops that close here into the loads.
+  void close_loops(BranchLoad& load) const;
+
+  /// Eq. (3): h', and y' in the order of the open loops.
+  BranchLoad load_up(const mechanics::BeamStiffness<double>& beam, base::Direction to_parent,
+                     bool is_fixed, const BranchLoad& load) const;
+
+  /// Eq. (2): the displacement; `forces` has those of the open loops and gets those that close here.
+  base::Vec6<double> displacement(const mechanics::BeamStiffness<double>& beam,
+                                  base::Direction to_parent, const base::Vec6<double>& of_parent,
+                                  const BranchLoad& load, CutForces& forces) const;
+
+  /// The same at the root. Not finite if nothing holds the robot.
+  base::Vec6<double> displacement_of_root(const BranchLoad& load, CutForces& forces) const;
+
+  /// The same forces on a module that does not move.
+  void find_forces(const BranchLoad& load, const base::Vec6<double>& u, CutForces& forces) const;
+
+ private:
+  bool is_open(int slot) const { return ((open_ >> static_cast<unsigned>(slot)) & 1U) != 0; }
+
+  /// Loops are closed in the order of their slots.
+  bool is_closed_after(int slot, int other) const {
+    return other != slot && other < count_ && (is_open(other) || other > slot);
+  }
+
+  base::Mat6<float> stiffness_{};                       // S
+  std::array<base::Mat6<float>, kLoopsMax> onto_{};     // B
+  std::array<base::Mat6<float>, kLoopsMax> across_{};   // C
+  /// P by row and column loop; Q on the diagonal once a loop is closed.
+  std::array<std::array<base::Mat6<float>, kLoopsMax>, kLoopsMax> give_{};
+  std::array<Cut, kLoopsMax> cuts_{};
+  std::uint8_t count_ = 0;
+  std::uint8_t open_ = 0;  ///< By slot.
+};
+
+/// The rigid motion of the neighbour in `direction` seen here: u = T u_neighbour.
+base::Mat6<double> rigid_transport(double pitch_mm, base::Direction direction);
+
+/// Eqs. (2) and (3) for a branch with stiffness S that no loop passes.
+base::Mat6<double> stiffness_up(const mechanics::BeamStiffness<double>& beam,
+                                base::Direction to_parent, const base::Mat6<double>& stiffness);
+base::Vec6<double> load_up(const mechanics::BeamStiffness<double>& beam, base::Direction to_parent,
+                           const base::Mat6<double>& stiffness, const base::Vec6<double>& load);
+base::Vec6<double> displacement(const mechanics::BeamStiffness<double>& beam,
+                                base::Direction to_parent, const base::Mat6<double>& stiffness,
+                                const base::Vec6<double>& of_parent,
+                                const base::Vec6<double>& load);
+
+/// Solves a x = b with pivots, both 6x6; not finite if a is singular.
+base::Vec6<double> solve_general(base::Mat6<double> a, base::Vec6<double> b);
+
+}  // namespace holdfast::agent

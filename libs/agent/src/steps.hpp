@@ -1,0 +1,203 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "bits.hpp"
+#include "equilibrium.hpp"
+#include "holdfast/agent/agent.hpp"
+
+/// The one-sweep methods: every step costs one sweep, residual and contact states included.
+///
+/// A step moves by a correction of the last residual r, exchanges the new displacements in two
+/// parts, computes the new residual precisely and reports sums of it. While they travel to the root
+/// and the next order comes back, the modules work on M^-1 r: with a polynomial, exchange after
+/// exchange; or with the exact elimination of branch.hpp on the sweep's own way up and down. So
+/// neither waits for the other.
+///
+/// Minimal residuals. With the inner product of D^-1 (the diagonal blocks) K M^-1 is self-adjoint,
+/// so that directions (p, q = K p, z = M^-1 q) need to be made orthogonal to the one before only,
+/// as in Orthomin(1) [Vinsome 1976; Greenbaum 1997, ch. 2]. The twist is the delay: when the sums of
+/// r are known, M^-1 r is there already, so the step is taken in full and minimised afterwards, as
+/// Anderson's method does [Walker, Ni 2011]:
+///   newer    p = d, q = r^ - r, z = d - M^-1 r      what the last step d = M^-1 r^ did
+///            minus c times older                    c = (q, q_older) / (q_older, q_older)
+///   r^ = r - a q - b q_older,  d = M^-1 r^ = M^-1 r - a z - b z_older          the least |r^|
+///   u := u + a p + b p_older + d
+/// M^-1 r is not stored: it is newer.p - newer.z until the step.
+/// Residuals are never recurred but computed, in double precision from displacements shared in two
+/// parts: this norm counts slow modes little, and rounding would hide them.
+namespace holdfast::agent {
+
+/// The lower end of the interval in which the polynomial is good is this over (m + 1)^2.
+inline constexpr double kStepSpread = 3;
+
+template <class Real>
+void BasicAgent<Real>::begin_step(const Order& order) {
+  product_ = 0;
+  middle_ = {};
+  if ((order.flags & kAlongTree) != 0) {
+    down_awaited_ =
+        parent_ < 0 ? std::uint8_t{0}
+                    : static_cast<std::uint8_t>(1 + work_.tree.branch.open_count());
+    if (down_awaited_ == 0) {
+      find_shifts();
+      send_branch_down();
+    }
+    return;
+  }
+  const auto c = static_cast<double>(order.reals[0]);
+  const auto a = static_cast<double>(order.reals[1]);
+  const auto b = static_cast<double>(order.reals[2]);
+  const bool restarts = (order.flags & kRestart) != 0;
+  for (int i = 0; i < node_count(); ++i) {
+    Node<Real>& node = nodes_[static_cast<std::size_t>(i)];
+    Steps& steps = steps_of(i);
+    SearchDirection& newer = steps.newer;
+    SearchDirection& older = steps.older;
+    base::Vec6<double> rest = residual(node, setup_, contact_);
+    for (std::size_t k = 0; k < 6; ++k) {
+      double correction = newer.p[k] - newer.z[k];
+      double known = 0;
+      product_ += rest[k] * correction;
+      if (!restarts) {
+        newer.p[k] -= c * older.p[k];
+        newer.q[k] -= c * older.q[k];
+        newer.z[k] -= c * older.z[k];
+        known = a * newer.p[k] + b * older.p[k];
+        correction -= a * newer.z[k] + b * older.z[k];
+        rest[k] -= a * newer.q[k] + b * older.q[k];
+      }
+      node.u[k] += known + correction;
+      older.p[k] = restarts ? 0 : newer.p[k];
+      older.q[k] = restarts ? 0 : newer.q[k];
+      older.z[k] = restarts ? 0 : newer.z[k];
+      newer.p[k] = correction;
+      newer.q[k] = rest[k];
+      newer.z[k] = correction;
+    }
+    share_high_part(node);
+  }
+}
+
+template <class Real>
+void BasicAgent<Real>::share_high_part(Node<Real>& node) {
+  node.force = {};
+  for (std::size_t k = 0; k < 6; ++k) {
+    node.shared[k] = static_cast<Real>(leading_part(node.u[k]));
+  }
+}
+
+/// The forces at the new place are complete: contact states, then what the step has done.
+template <class Real>
+void BasicAgent<Real>::find_residuals() {
+  for (int i = 0; i < node_count(); ++i) {
+    Node<Real>& node = nodes_[static_cast<std::size_t>(i)];
+    node.wanted = state_along(node, contact_, {}, 0);
+    node.has_changed = node.is_ground && !(node.wanted == node.state);
+    if (node.has_changed && (order_.flags & kFollowStates) != 0) {
+      node.state = node.wanted;
+    }
+    if ((order_.flags & kAlongTree) != 0) {
+      continue;
+    }
+    if (node.has_changed) {
+      factor_diagonal(node, setup_, contact_, node_faces(i));
+    }
+    const base::Vec6<double> rest = residual(node, setup_, contact_);
+    for (std::size_t k = 0; k < 6; ++k) {
+      steps_of(i).newer.q[k] -= rest[k];
+    }
+    start_terms(i);
+  }
+}
+
+/// The polynomial's first term for the present residual.
+template <class Real>
+void BasicAgent<Real>::start_terms(int node_index) {
+  Node<Real>& node = nodes_[static_cast<std::size_t>(node_index)];
+  Steps& steps = steps_of(node_index);
+  const equilibrium::Interval interval(order_.count, kStepSpread);
+  steps.w = residual(node, setup_, contact_);
+  const base::Vec6<Real> first = solve_diagonal(node, base::converted<Real>(steps.w));
+  for (std::size_t k = 0; k < 6; ++k) {
+    node.shared[k] = static_cast<Real>(static_cast<double>(first[k]) / interval.centre);
+  }
+  node.shared = equilibrium::as_sent(node.shared);
+  for (std::size_t k = 0; k < 6; ++k) {
+    steps.newer.z[k] -= static_cast<double>(node.shared[k]);
+  }
+  rho_ = static_cast<float>(interval.half / interval.centre);
+}
+
+/// The next term: the beams' forces of the last one are off w already.
+template <class Real>
+void BasicAgent<Real>::next_terms() {
+  const equilibrium::Interval interval(order_.count, kStepSpread);
+  const double rho = 1 / (2 * interval.centre / interval.half - static_cast<double>(rho_));
+  const double keep = rho * static_cast<double>(rho_);
+  const double gain = 2 * rho / interval.half;
+  for (int i = 0; i < node_count(); ++i) {
+    Node<Real>& node = nodes_[static_cast<std::size_t>(i)];
+    Steps& steps = steps_of(i);
+    if (node.is_fixed) {
+      continue;
+    }
+    if (node.is_ground) {
+      const base::Vec6<double> facet = mechanics::contact_force(
+          contact_.facet, node.state, node.is_held, base::converted<double>(node.shared));
+      for (std::size_t k = 0; k < 6; ++k) {
+        steps.w[k] -= facet[k];
+      }
+    }
+    const base::Vec6<Real> term = solve_diagonal(node, base::converted<Real>(steps.w));
+    for (std::size_t k = 0; k < 6; ++k) {
+      node.shared[k] = static_cast<Real>(keep * static_cast<double>(node.shared[k]) +
+                                         gain * static_cast<double>(term[k]));
+    }
+    node.shared = equilibrium::as_sent(node.shared);
+    for (std::size_t k = 0; k < 6; ++k) {
+      steps.newer.z[k] -= static_cast<double>(node.shared[k]);
+    }
+  }
+  rho_ = static_cast<float>(rho);
+}
+
+/// Sums for the root: |r|^2, (q, r), |q|^2, (q, q_older) in the norm of D^-1; (r, M^-1 r) before the
+/// step; the largest load ratio; the bound on the error of load ratios that r means.
+template <class Real>
+Report BasicAgent<Real>::step_report() const {
+  Report report;
+  std::array<double, 5> sums{};
+  for (int i = 0; i < node_count(); ++i) {
+    const Node<Real>& node = nodes_[static_cast<std::size_t>(i)];
+    const base::Vec6<double> rest = residual(node, setup_, contact_);
+    report.extent = static_cast<std::uint16_t>(report.extent + (node.has_changed ? 1 : 0));
+    if (node.is_ground) {
+      report.number += equilibrium::hash_of(node.cell, equilibrium::code_of(node.wanted));
+      const bool tilts = node.state.tilt_x != 0 || node.state.tilt_y != 0;
+      report.flags = static_cast<std::uint8_t>(report.flags | (tilts ? kAnyTilting : 0U));
+    }
+    sums[4] += ratio_error(base::converted<Real>(rest), setup_, contact_);
+    if (node.is_fixed || (order_.flags & kAlongTree) != 0) {
+      continue;
+    }
+    const Steps& steps = work_.steps[static_cast<std::size_t>(i)];
+    const auto weighted = base::converted<double>(solve_diagonal(node, base::converted<Real>(rest)));
+    const auto weighted_q = base::converted<double>(
+        solve_diagonal(node, base::converted<Real>(steps.newer.q)));
+    sums[0] += base::dot(rest, weighted);
+    sums[1] += base::dot(steps.newer.q, weighted);
+    sums[2] += base::dot(steps.newer.q, weighted_q);
+    sums[3] += base::dot(steps.older.q, weighted_q);
+  }
+  report.reals = {static_cast<float>(sums[0]), kNoLoadRatio,
+                  static_cast<float>(sums[1]), static_cast<float>(sums[2]),
+                  static_cast<float>(sums[3]), static_cast<float>(product_),
+                  static_cast<float>(sums[4])};
+  visit_loads([&](const base::Cell&, base::Direction, double ratio) {
+    report.reals[1] = larger(report.reals[1], static_cast<float>(ratio));
+  });
+  return report;
+}
+
+}  // namespace holdfast::agent

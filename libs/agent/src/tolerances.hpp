@@ -1,0 +1,39 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+/// When the conductor is content.
+namespace holdfast::agent {
+
+/// Load ratios are to be this good: absolute, and relative to the largest. Less than half of what
+/// is promised (0.01 + 1 %), as the bound is not rigorous for statically indeterminate robots.
+inline constexpr double kRatioTolerance = 4e-3;
+
+/// Contact states are told at this accuracy while they still change.
+inline constexpr double kStateTolerance = 2e-2;
+
+/// A verdict needs the largest ratio this many times its error bound away from 1.
+inline constexpr double kDoubt = 3;
+
+/// The best bound that is tried for: below, the arithmetic itself is in doubt.
+inline constexpr double kErrorLeast = 2e-8;
+
+/// How much smaller the error bound becomes in one linear solve, at most. Single precision rarely
+/// gives more than five digits in one go; a tilting facet's stand-in tangent deserves fewer.
+inline constexpr double kReductionLeast = 1e-5;
+inline constexpr double kReductionTilting = 1e-3;
+
+/// Judgements without progress before a way is given up.
+inline constexpr int kStagnationMax = 8;
+
+inline constexpr int kContactStepsMax = 100;
+
+/// A full step will do if it brings the slope of the energy down this far; else the line is
+/// searched so many times, each to a quarter of the interval.
+inline constexpr double kSlopeReduction = 0.1;
+inline constexpr int kSlopeCountMax = 3;
+
+/// The weak springs of the unilateral law, as in the exact solver (verdict/assessment.cpp).
+inline constexpr double kUnilateralGamma = 1e-9;
+
+}  // namespace holdfast::agent
