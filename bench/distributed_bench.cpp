@@ -6,14 +6,13 @@
 //   distributed_bench noisy FROM TO       the same with loss, duplication, jitter, bit errors
 //   distributed_bench faults FROM TO      a random module dies or a random link fails
 //   distributed_bench growth              rounds against the length of a fixed arm, each method
-//   distributed_bench sweeps              sweeps of the equilibrium on families of larger robots
+//   distributed_bench sweeps METHOD FILE...   sweeps of the equilibrium, a CSV
 //   distributed_bench throughput          events per second and memory of large robots
 #include <fmt/format.h>
 
 #include <chrono>
 #include <cstdlib>
 #include <filesystem>
-#include <functional>
 #include <string_view>
 
 #include "campaign.hpp"
@@ -26,7 +25,8 @@ namespace {
 using namespace holdfast;
 using agent::Method;
 
-constexpr Method kMethods[] = {Method::kJacobi, Method::kBlockJacobi, Method::kConjugateGradients};
+constexpr Method kMethods[] = {Method::kJacobi, Method::kBlockJacobi, Method::kConjugateGradients,
+                               Method::kElimination};
 
 /// The paper's time of one iteration, message exchange included (Sec. IV-B).
 constexpr double kPaperIterationSeconds = 0.1105;
@@ -148,7 +148,7 @@ int run_growth() {
   fmt::print("# method modules_in_free_row rounds iterations verdict\n");
   for (const Method method : kMethods) {
     for (const int length : {8, 10, 12, 14, 16, 18, 20, 24, 30, 40, 60, 100}) {
-      if (method != Method::kConjugateGradients && length > 18) {
+      if ((method == Method::kJacobi || method == Method::kBlockJacobi) && length > 18) {
         continue;
       }
       const model::Robot robot = make_robot(fixed_arm(length));
@@ -161,84 +161,27 @@ int run_growth() {
   return 0;
 }
 
-/// All cells of a box for which `has` says yes.
-model::RobotSpec box(std::int32_t x_size, std::int32_t y_size, std::int32_t z_size,
-                     const std::function<bool(const base::Cell&)>& has) {
-  model::RobotSpec spec;
-  for (std::int32_t z = 0; z < z_size; ++z) {
-    for (std::int32_t y = 0; y < y_size; ++y) {
-      for (std::int32_t x = 0; x < x_size; ++x) {
-        if (has({x, y, z})) {
-          spec.existing.push_back({x, y, z});
-        }
-      }
-    }
-  }
-  return spec;
-}
-
-model::RobotSpec solid(std::int32_t x_size, std::int32_t y_size, std::int32_t z_size) {
-  return box(x_size, y_size, z_size, [](const base::Cell&) { return true; });
-}
-
-model::RobotSpec scaffold(std::int32_t size) {
-  return box(size, size, size, [](const base::Cell& cell) {
-    return (cell.x % 4 == 0 ? 1 : 0) + (cell.y % 4 == 0 ? 1 : 0) + (cell.z % 4 == 0 ? 1 : 0) >= 2;
-  });
-}
-
-model::RobotSpec portal(std::int32_t width) {
-  return box(width, 4, width / 2, [width](const base::Cell& cell) {
-    return cell.x < 4 || cell.x >= width - 4 || cell.z >= width / 2 - 4;
-  });
-}
-
-model::RobotSpec shell(std::int32_t size) {
-  return box(size, size, size, [size](const base::Cell& cell) {
-    return cell.x == 0 || cell.x == size - 1 || cell.y == 0 || cell.y == size - 1 ||
-           cell.z == size - 1;
-  });
-}
-
-/// A plate 8 wide and 3 thick on a pier of 8 x 8 x 10 at its end.
-model::RobotSpec bridge(std::int32_t length) {
-  return box(length, 8, 13, [](const base::Cell& cell) { return cell.z >= 10 || cell.x < 8; });
-}
-
-void measure_sweeps(const char* title, const model::RobotSpec& spec) {
-  const model::Robot robot = make_robot(spec);
-  fmt::print("| {} | {} |", title, robot.modules().size());
-  for (const std::uint8_t degree_max : {std::uint8_t{0}, std::uint8_t{200}}) {
-    sim::Simulation simulation(robot, {.degree_max = degree_max});
-    simulation.run();
-    const sim::SimulationResult result = simulation.result();
-    int depth = 0;
-    for (std::int32_t i = 0; i < simulation.agent_count(); ++i) {
-      depth = std::max<int>(depth, simulation.agent(i).depth());
-    }
-    const auto phase = static_cast<std::size_t>(agent::Phase::kEquilibrium);
-    const double sweeps = static_cast<double>(result.phases[phase].time) / (2.0 * depth);
-    fmt::print("{} {:.0f} |", degree_max == 0 ? fmt::format(" {} |", depth) : "", sweeps);
+/// One line a file: how many sweeps the equilibrium took, beside the exact answer.
+int run_sweeps(std::string_view method_name, std::span<char*> files) {
+  const auto method = find_method(method_name);
+  HOLDFAST_CHECK(method.has_value());
+  fmt::print("structure,modules,depth,method,steps,rounds,sweeps,verdict,exact,error_of_allowed\n");
+  int wrong_count = 0;
+  for (const char* file : files) {
+    const auto structure = load_file(file);
+    HOLDFAST_CHECK(structure.has_value());
+    const model::Robot& robot = structure.value().robot;
+    const auto run = test::compare(robot, {.method = *method});
+    wrong_count += run.is_wrong() || run.is_undecided() || run.ratio_error() > 1 ? 1 : 0;
+    const auto rounds = static_cast<double>(
+        run.result.phases[static_cast<std::size_t>(agent::Phase::kEquilibrium)].time);
+    fmt::print("{},{},{},{},{},{},{:.1f},{},{},{:.4f}\n", structure.value().name,
+               robot.modules().size(), run.depth, name(run.result.effort.method),
+               run.result.effort.iterations, rounds, rounds / (2.0 * std::max(1, run.depth)),
+               agent::name(run.robot), verdict::name(run.exact), run.ratio_error());
     std::fflush(stdout);
   }
-  fmt::print("\n");
-}
-
-int run_sweeps() {
-  fmt::print(
-      "| robot | modules | depth | sweeps with blocks | with the polynomial |\n"
-      "|---|---|---|---|---|\n");
-  measure_sweeps("cube 6", solid(6, 6, 6));
-  measure_sweeps("cube 10", solid(10, 10, 10));
-  measure_sweeps("tower 3 x 3 x 30", solid(3, 3, 30));
-  measure_sweeps("scaffold 13", scaffold(13));
-  measure_sweeps("scaffold 21", scaffold(21));
-  measure_sweeps("portal 20", portal(20));
-  measure_sweeps("shell 16", shell(16));
-  measure_sweeps("bridge 20", bridge(20));
-  measure_sweeps("fixed arm 30", fixed_arm(30));
-  measure_sweeps("fixed arm 60", fixed_arm(60));
-  return 0;
+  return wrong_count;
 }
 
 void measure_throughput(const char* title, const model::RobotSpec& spec,
@@ -271,7 +214,7 @@ int run_throughput() {
 int usage() {
   fmt::print(stderr,
              "usage: distributed_bench cases FILE... | random FROM TO | noisy FROM TO | "
-             "faults FROM TO | growth | sweeps | throughput\n");
+             "faults FROM TO | growth | sweeps METHOD FILE... | throughput\n");
   return 64;
 }
 
@@ -283,8 +226,8 @@ int main(int argc, char** argv) {
   if (what == "cases" && argc > 2) {
     return run_cases(arguments.subspan(2)) == 0 ? 0 : 1;
   }
-  if (what == "sweeps") {
-    return run_sweeps();
+  if (what == "sweeps" && argc > 3) {
+    return run_sweeps(arguments[2], arguments.subspan(3)) == 0 ? 0 : 1;
   }
   if (what == "growth" || what == "throughput") {
     return what == "growth" ? run_growth() : run_throughput();

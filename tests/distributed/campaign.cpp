@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "holdfast/base/check.hpp"
@@ -40,6 +41,50 @@ sim::LinkModel noisy_rounds() {
   return link;
 }
 
+namespace {
+
+/// The load ratio of a connection as the robot has it: the host of its planned ends knows.
+float host_ratio(const sim::Simulation& simulation, const model::Robot& robot,
+                   const model::Connection& connection) {
+  float ratio = 0;
+  const base::Cell& a = robot.modules()[static_cast<std::size_t>(connection.a)].cell;
+  const base::Cell& b = robot.modules()[static_cast<std::size_t>(connection.b)].cell;
+  for (std::int32_t i = 0; i < simulation.agent_count(); ++i) {
+    if (simulation.agent(i).find_load_ratio(a, connection.direction, ratio) ||
+        simulation.agent(i).find_load_ratio(b, base::opposite(connection.direction), ratio)) {
+      return ratio;
+    }
+  }
+  HOLDFAST_CHECK(false);
+  return ratio;
+}
+
+/// The same, asking the module itself first.
+float find_ratio(const sim::Simulation& simulation, const model::Robot& robot,
+                 const model::Connection& connection) {
+  float ratio = 0;
+  if (connection.a < simulation.agent_count() &&
+      simulation.agent(connection.a)
+          .find_load_ratio(robot.modules()[static_cast<std::size_t>(connection.a)].cell,
+                           connection.direction, ratio)) {
+    return ratio;
+  }
+  return host_ratio(simulation, robot, connection);
+}
+
+double worst_error(const sim::Simulation& simulation, const model::Robot& robot,
+                   const verdict::Assessment& assessment) {
+  double worst = 0;
+  for (std::size_t i = 0; i < robot.connections().size(); ++i) {
+    const double exact = assessment.connections[i].load_ratio;
+    const auto found = static_cast<double>(find_ratio(simulation, robot, robot.connections()[i]));
+    worst = std::max(worst, std::abs(found - exact) / (0.01 + 0.01 * std::abs(exact)));
+  }
+  return worst;
+}
+
+}  // namespace
+
 Comparison compare(const model::Robot& robot, const sim::SimulationOptions& options) {
   const verdict::Assessment assessment = verdict::assess(robot);
   sim::Simulation simulation(robot, options);
@@ -51,6 +96,14 @@ Comparison compare(const model::Robot& robot, const sim::SimulationOptions& opti
   comparison.robot = comparison.result.answer.verdict;
   comparison.ratio_exact = assessment.load_ratio_max.value_or(0);
   comparison.ratio_robot = static_cast<double>(comparison.result.answer.load_ratio_max);
+  const bool has_loads = comparison.robot == agent::Verdict::kSafe ||
+                         comparison.robot == agent::Verdict::kOverload;
+  if (has_loads && assessment.load_ratio_max) {
+    comparison.worst_connection = worst_error(simulation, robot, assessment);
+  }
+  for (std::int32_t i = 0; i < simulation.agent_count(); ++i) {
+    comparison.depth = std::max<int>(comparison.depth, simulation.agent(i).depth());
+  }
   return comparison;
 }
 

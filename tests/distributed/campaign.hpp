@@ -16,6 +16,9 @@ struct Comparison {
   agent::Verdict robot = agent::Verdict::kNone;
   double ratio_exact = 0;
   double ratio_robot = 0;
+  /// Over all connections: the largest error of a load ratio over what is allowed.
+  double worst_connection = 0;
+  int depth = 0;  ///< Of the spanning tree.
   sim::SimulationResult result;
 
   /// Decided, and differently.

@@ -378,11 +378,11 @@ TEST(Conductor, gradients_take_the_steps_of_the_single_reduction_method) {
   drive.to_equilibrium();
   ASSERT_EQ(drive.next().operation, Operation::kStart);
   ASSERT_EQ(drive.next({.reals = {8, 4, 1}}).operation, Operation::kGradient);
-  EXPECT_EQ(drive.order.reals, (std::array<float, 2>{2, 0}));
+  EXPECT_EQ(drive.order.reals, (std::array<float, 3>{2, 0}));
   ASSERT_EQ(drive.next({.reals = {2, 3, 0.5F}}).operation, Operation::kGradient);
-  EXPECT_EQ(drive.order.reals, (std::array<float, 2>{2 / (3 - 0.25F * 2 / 2), 0.25F}));
+  EXPECT_EQ(drive.order.reals, (std::array<float, 3>{2 / (3 - 0.25F * 2 / 2), 0.25F}));
   EXPECT_EQ(drive.next({.reals = {1, 1, 0}}).operation, Operation::kHigh);
-  EXPECT_EQ(drive.order.reals, (std::array<float, 2>{1, 0}));
+  EXPECT_EQ(drive.order.reals, (std::array<float, 3>{1, 0}));
 }
 
 // ---- Contact.
@@ -475,11 +475,11 @@ TEST(Conductor, released_feet_are_solved_for_again) {
   drive.next(drive.low(1e-5F, 0.5F));
   ASSERT_EQ(drive.next().operation, Operation::kHold);
   EXPECT_EQ(drive.next({.count = 2}).operation, Operation::kHigh);
-  EXPECT_EQ(drive.order.reals, (std::array<float, 2>{0, 0}));  // Nothing moves yet.
+  EXPECT_EQ(drive.order.reals, (std::array<float, 3>{0, 0}));  // Nothing moves yet.
 }
 
 /// A convex energy's slope at 0, 1/4, 1/2, 3/4 and 1.
-Report slopes(const std::array<float, 5>& values) { return {.reals = values}; }
+Report slopes(const std::array<float, 7>& values) { return {.reals = values}; }
 
 TEST(Conductor, the_line_search_takes_a_good_full_step_and_narrows_a_bad_one) {
   Drive drive;
@@ -491,7 +491,7 @@ TEST(Conductor, the_line_search_takes_a_good_full_step_and_narrows_a_bad_one) {
   drive.next({.reals = {8, 4, 1}});
   ASSERT_EQ(drive.next({.reals = {1, 1, 0}}).operation, Operation::kSlope);
   EXPECT_EQ(drive.order.flags, kExchangeFirst);
-  EXPECT_EQ(drive.order.reals, (std::array<float, 2>{0, 1}));
+  EXPECT_EQ(drive.order.reals, (std::array<float, 3>{0, 1}));
   Drive good = drive;
   good.next(slopes({-8, -6, -4, -2, 0.5F}));
   EXPECT_EQ(good.order.operation, Operation::kHigh);
@@ -505,7 +505,7 @@ TEST(Conductor, the_line_search_takes_a_good_full_step_and_narrows_a_bad_one) {
     EXPECT_GE(drive.order.reals[1], 0.3F);
     low = static_cast<double>(drive.order.reals[0]);
     high = static_cast<double>(drive.order.reals[1]);
-    std::array<float, 5> values = {-2.4F};
+    std::array<float, 7> values = {-2.4F};
     for (std::size_t place = 1; place <= 4; ++place) {
       const double t = low + (high - low) * static_cast<double>(place) / 4;
       values[place] = static_cast<float>(8 * (t - 0.3));

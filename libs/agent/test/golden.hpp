@@ -13,12 +13,12 @@
 namespace holdfast::agent::test {
 
 /// By operation, from 1.
-inline constexpr std::array<std::string_view, 15> kGoldenOrders = {
+inline constexpr std::array<std::string_view, 17> kGoldenOrders = {
     "05 01 02 01 00 00 fe ff ff 03 00 00",
     "05 02 01 02 04 08 10 20 00 00",
     "05 03 c0 bd f0 40 42 0f 00 00 00",
     "05 04 1d 00 00 00 fd ff ff ff 05 00 00 00",
-    "05 05 01 00 00 00 3f 00 00 7a 44",
+    "05 05 03 09 00 00 00 00 3f 00 00 7a 44",
     "05 06 00 00 80 3f 00 00 80 3e",
     "05 07 01",
     "05 08 04 07",
@@ -28,9 +28,11 @@ inline constexpr std::array<std::string_view, 15> kGoldenOrders = {
     "05 0c 02",
     "05 0d",
     "05 0e",
-    "05 0f 02 02 00 00 c0 3f 01 00 00 fe ff ff 03 00 00 05"};
+    "05 0f 02 02 00 00 c0 3f 01 00 00 fe ff ff 03 00 00 05",
+    "05 10",
+    "05 11 03 2c 01 00 00 80 3e 00 00 00 bf 00 00 80 be"};
 
-inline constexpr std::array<std::string_view, 15> kGoldenReports = {
+inline constexpr std::array<std::string_view, 17> kGoldenReports = {
     "06 01 21 01 01 00 00 fe ff ff 03 00 00",
     "06 02 87",
     "06 03 1d 00 00 00 fd ff ff ff 05 00 00 00 01 2c 01",
@@ -45,13 +47,22 @@ inline constexpr std::array<std::string_view, 15> kGoldenReports = {
     "06 0c 02 00 00 00 01 00 00 00",
     "06 0d 02 01 00 00 ff ff ff 00 00 00 fd ff ff 01 00 00 00 00 00",
     "06 0e 00 00 c0 3f 01 00 00 fe ff ff 03 00 00 04 01 00 00 00 1d 00 00 00",
-    "06 0f 1d 00 00 00"};
+    "06 0f 1d 00 00 00",
+    "06 10",
+    "06 11 00 00 80 3f 00 00 00 3f 00 00 80 3e 00 00 00 40 00 00 80 be 00 00 40 40 00 00 c0 3f "
+    "03 00 ef cd ab 89 01"};
 
-/// Types 7, 8 and 9, label 5, with the reals 1, -2, 0.5, 0.25, -1, 1.5.
-inline constexpr std::array<std::string_view, 3> kGoldenVectors = {
+/// The cut that opens a loop: from (1, -2, 3) to +y.
+inline constexpr std::string_view kGoldenLoop = "0a 01 00 00 fe ff ff 03 00 00 02";
+
+/// Types 7, 8, 9, 11, 12 and 13, label 5, with the reals 1, -2, 0.5, 0.25, -1, 1.5.
+inline constexpr std::array<std::string_view, 6> kGoldenVectors = {
     "07 05 00 00 80 3f 00 00 00 c0 00 00 00 3f 00 00 80 3e 00 00 80 bf 00 00 c0 3f",
     "08 05 00 00 80 3f 00 00 00 c0 00 00 00 3f 00 00 80 3e 00 00 80 bf 00 00 c0 3f",
-    "09 05 00 00 80 3f 00 00 00 c0 00 00 00 3f 00 00 80 3e 00 00 80 bf 00 00 c0 3f"};
+    "09 05 00 00 80 3f 00 00 00 c0 00 00 00 3f 00 00 80 3e 00 00 80 bf 00 00 c0 3f",
+    "0b 05 00 00 80 3f 00 00 00 c0 00 00 00 3f 00 00 80 3e 00 00 80 bf 00 00 c0 3f",
+    "0c 05 00 00 80 3f 00 00 00 c0 00 00 00 3f 00 00 80 3e 00 00 80 bf 00 00 c0 3f",
+    "0d 05 00 00 80 3f 00 00 00 c0 00 00 00 3f 00 00 80 3e 00 00 80 bf 00 00 c0 3f"};
 
 inline constexpr std::string_view kGoldenHello = "c0 40 34 12 00 00 00 ec 9e";
 inline constexpr std::string_view kGoldenHelloHeard = "c0 40 ef be 34 12 00 c1 9c";
@@ -93,7 +104,7 @@ inline const std::vector<GoldenStream> kGoldenTrace = {
       "05 02 09 00 00 00 00 00 00 00",                             // it touches by -y and +x
       "05 03 00 00 00 02 00 00 00 00 00",                          // count, from (0, 2, 0)
       "05 04 04 00 00 00 fe ff ff ff 02 00 00 00",                 // four modules, sum (-2, 2)
-      "05 05 00 17 b7 d1 38 00 00 f0 42",                          // gamma 1e-4, lever 120 mm
+      "05 05 00 00 00 17 b7 d1 38 00 00 f0 42",                    // gamma 1e-4, lever 120 mm
       "05 08 02 00",                                               // start Jacobi, scalars
       "05 0a 01 00",                                               // one step
       "07 01 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00",

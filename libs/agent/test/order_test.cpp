@@ -50,7 +50,7 @@ Order random_order(Operation operation, base::Rng& rng) {
   }
   order.module_count = static_cast<std::int32_t>(rng.next());
   order.cell_sum = {static_cast<std::int32_t>(rng.next()), static_cast<std::int32_t>(rng.next())};
-  order.reals = {exact_real(rng), exact_real(rng)};
+  order.reals = {exact_real(rng), exact_real(rng), exact_real(rng)};
   order.answer = {.verdict = static_cast<Verdict>(rng.below(5)),
                   .reason = static_cast<Reason>(rng.below(12)),
                   .load_ratio_max = exact_real(rng),
@@ -146,6 +146,10 @@ TEST(Order, fields_come_back_where_they_were) {
   EXPECT_EQ(back.cell_sum, sent.cell_sum);
   back = there_and_back(Operation::kSlope, sent);
   EXPECT_EQ(back.flags, sent.flags);
+  EXPECT_EQ(back.reals, (std::array<float, 3>{sent.reals[0], sent.reals[1], 0}));
+  back = there_and_back(Operation::kStep, sent);
+  EXPECT_EQ(back.flags, sent.flags);
+  EXPECT_EQ(back.count, sent.count);
   EXPECT_EQ(back.reals, sent.reals);
   back = there_and_back(Operation::kVerdict, sent);
   EXPECT_EQ(back.answer.verdict, sent.answer.verdict);

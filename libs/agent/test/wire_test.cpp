@@ -51,7 +51,10 @@ TEST(Wire, orders_are_these_bytes) {
       {.operation = Operation::kHosts, .masks = {1, 2, 4, 8, 16, 32, 0, 0}},
       {.operation = Operation::kMass, .cell = {-1'000'000, 1'000'000, 0}},
       {.operation = Operation::kAngles, .module_count = 29, .cell_sum = {-3, 5}},
-      {.operation = Operation::kBegin, .flags = kUnilateralLaw, .reals = {0.5F, 1000}},
+      {.operation = Operation::kBegin,
+       .flags = kUnilateralLaw | kOneSweep,
+       .count = 9,
+       .reals = {0.5F, 1000}},
       {.operation = Operation::kHigh, .reals = {1, 0.25F}},
       {.operation = Operation::kLow, .flags = kFollowStates},
       {.operation = Operation::kStart, .flags = kWithBlocks, .count = 7},
@@ -61,7 +64,12 @@ TEST(Wire, orders_are_these_bytes) {
       {.operation = Operation::kHold, .flags = kFreeOpen},
       {.operation = Operation::kCorners},
       {.operation = Operation::kLoads},
-      {.operation = Operation::kVerdict, .answer = answer}};
+      {.operation = Operation::kVerdict, .answer = answer},
+      {.operation = Operation::kFactor},
+      {.operation = Operation::kStep,
+       .flags = kFollowStates | kRestart,
+       .count = 300,
+       .reals = {0.25F, -0.5F, -0.25F}}};
   ASSERT_EQ(orders.size(), kGoldenOrders.size());
   for (std::size_t i = 0; i < orders.size(); ++i) {
     EXPECT_EQ(order_text(orders[i]), kGoldenOrders[i]);
@@ -91,7 +99,12 @@ TEST(Wire, reports_are_these_bytes) {
        .reals = {1.5F},
        .cell = kCell,
        .direction = base::Direction::kPlusZ},
-      {.count = 29}};
+      {.count = 29},
+      {},
+      {.flags = kAnyTilting,
+       .extent = 3,
+       .number = 0x89abcdef,
+       .reals = {1, 0.5F, 0.25F, 2, -0.25F, 3, 1.5F}}};
   ASSERT_EQ(reports.size(), kGoldenReports.size());
   for (std::size_t i = 0; i < reports.size(); ++i) {
     EXPECT_EQ(report_text(static_cast<Operation>(i + 1), reports[i]), kGoldenReports[i]);
@@ -100,7 +113,8 @@ TEST(Wire, reports_are_these_bytes) {
 
 TEST(Wire, vectors_are_a_label_and_six_reals) {
   constexpr std::array kTypes = {MessageType::kVector, MessageType::kPlannedDown,
-                                 MessageType::kPlannedUp};
+                                 MessageType::kPlannedUp,  MessageType::kColumn,
+                                 MessageType::kBranchUp,   MessageType::kBranchDown};
   for (std::size_t i = 0; i < kTypes.size(); ++i) {
     Writer out(kTypes[i]);
     out.u8(5);
@@ -109,6 +123,13 @@ TEST(Wire, vectors_are_a_label_and_six_reals) {
     }
     EXPECT_EQ(to_hex(out.bytes()), kGoldenVectors[i]);
   }
+}
+
+TEST(Wire, a_loop_is_named_by_its_cut) {
+  Writer out(MessageType::kLoop);
+  out.cell(kCell);
+  out.u8(static_cast<std::uint8_t>(base::Direction::kPlusY));
+  EXPECT_EQ(to_hex(out.bytes()), kGoldenLoop);
 }
 
 std::string packet_text(Link& link) {
@@ -202,6 +223,7 @@ std::map<std::pair<int, int>, std::size_t> golden_sizes() {
   std::for_each(kGoldenOrders.begin(), kGoldenOrders.end(), note);
   std::for_each(kGoldenReports.begin(), kGoldenReports.end(), note);
   std::for_each(kGoldenVectors.begin(), kGoldenVectors.end(), note);
+  note(kGoldenLoop);
   for (const GoldenStream& stream : kGoldenTrace) {
     std::for_each(stream.messages.begin(), stream.messages.end(), note);
   }
@@ -210,7 +232,7 @@ std::map<std::pair<int, int>, std::size_t> golden_sizes() {
 
 TEST(Wire, sizes_are_those_of_the_golden_messages_and_there_are_no_others) {
   const auto sizes = golden_sizes();
-  EXPECT_EQ(sizes.size(), 7 + 2 * std::size_t{wire::kOperationCount});
+  EXPECT_EQ(sizes.size(), 11 + 2 * std::size_t{wire::kOperationCount});
   int largest = 0;
   for (int type = 0; type < 256; ++type) {
     for (int second = 0; second < 256; ++second) {
