@@ -45,7 +45,7 @@ namespace {
 
 /// The load ratio of a connection as the robot has it: the host of its planned ends knows.
 float host_ratio(const sim::Simulation& simulation, const model::Robot& robot,
-                   const model::Connection& connection) {
+                 const model::Connection& connection) {
   float ratio = 0;
   const base::Cell& a = robot.modules()[static_cast<std::size_t>(connection.a)].cell;
   const base::Cell& b = robot.modules()[static_cast<std::size_t>(connection.b)].cell;
@@ -96,8 +96,8 @@ Comparison compare(const model::Robot& robot, const sim::SimulationOptions& opti
   comparison.robot = comparison.result.answer.verdict;
   comparison.ratio_exact = assessment.load_ratio_max.value_or(0);
   comparison.ratio_robot = static_cast<double>(comparison.result.answer.load_ratio_max);
-  const bool has_loads = comparison.robot == agent::Verdict::kSafe ||
-                         comparison.robot == agent::Verdict::kOverload;
+  const bool has_loads =
+      comparison.robot == agent::Verdict::kSafe || comparison.robot == agent::Verdict::kOverload;
   if (has_loads && assessment.load_ratio_max) {
     comparison.worst_connection = worst_error(simulation, robot, assessment);
   }

@@ -13,9 +13,9 @@ using base::Vec6;
 using mechanics::BeamStiffness;
 
 constexpr int kSize = 6;
-constexpr int kOnto = 6;                         // First column of B', ...
-constexpr int kAcross = kOnto + 6 * kLoopsMax;   // ... C' ...
-constexpr int kGive = kAcross + 6 * kLoopsMax;   // ... and P'.
+constexpr int kOnto = 6;                        // First column of B', ...
+constexpr int kAcross = kOnto + 6 * kLoopsMax;  // ... C' ...
+constexpr int kGive = kAcross + 6 * kLoopsMax;  // ... and P'.
 
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
@@ -77,12 +77,11 @@ struct Joint {
     const double x = beam.shear_x * beam.bend_x - beam.couple_x * beam.couple_x;
     const double y = beam.shear_y * beam.bend_y - beam.couple_y * beam.couple_y;
     return mechanics::to_global<double>(
-        direction, {(beam.bend_x * local[0] + beam.couple_x * local[4]) / x,
-                    (beam.bend_y * local[1] - beam.couple_y * local[3]) / y,
-                    local[2] / beam.axial,
-                    (beam.shear_y * local[3] - beam.couple_y * local[1]) / y,
-                    (beam.shear_x * local[4] + beam.couple_x * local[0]) / x,
-                    local[5] / beam.twist});
+        direction,
+        {(beam.bend_x * local[0] + beam.couple_x * local[4]) / x,
+         (beam.bend_y * local[1] - beam.couple_y * local[3]) / y, local[2] / beam.axial,
+         (beam.shear_y * local[3] - beam.couple_y * local[1]) / y,
+         (beam.shear_x * local[4] + beam.couple_x * local[0]) / x, local[5] / beam.twist});
   }
 
   const BeamStiffness<double>& beam;
@@ -324,12 +323,12 @@ Vec6<double> Branch::column_up(const BeamStiffness<double>& beam, Direction to_p
   const Joint joint(beam, to_parent);
   const int j = index % kSize;
   const auto up = [&](const Vec6<double>& vector) {
-    return transposed_product(joint.transport,
-                              solve_general(series(stiffness_, joint), vector));
+    return transposed_product(joint.transport, solve_general(series(stiffness_, joint), vector));
   };
   if (index < kOnto) {
     const Vec6<double> moved = product(joint.transport, unit(j));
-    return is_fixed ? transposed_product(joint.transport, product(mechanics::block_11(beam, to_parent), moved))
+    return is_fixed ? transposed_product(joint.transport,
+                                         product(mechanics::block_11(beam, to_parent), moved))
                     : up(product(stiffness_, moved));
   }
   if (index < kGive) {
@@ -342,8 +341,8 @@ Vec6<double> Branch::column_up(const BeamStiffness<double>& beam, Direction to_p
       return up(product(onto_[at(slot)], unit(j)));
     }
     const Vec6<double> row = transposed_product(across_[at(slot)], unit(j));
-    return transposed_product(
-        joint.transport, solve_general(series_at_child(stiffness_, joint, true), row));
+    return transposed_product(joint.transport,
+                              solve_general(series_at_child(stiffness_, joint, true), row));
   }
   const int row = open_slot((index - kGive) / kSize / kLoopsMax);
   const int column = open_slot((index - kGive) / kSize % kLoopsMax);
@@ -353,8 +352,8 @@ Vec6<double> Branch::column_up(const BeamStiffness<double>& beam, Direction to_p
   Vec6<double> sum = product(give_[at(row)][at(column)], unit(j));
   if (!is_fixed) {
     const Vec6<double> bent = joint.bend(product(onto_[at(column)], unit(j)));
-    base::add_to(sum, product(across_[at(row)], solve_general(series_at_child(stiffness_, joint),
-                                                              bent)));
+    base::add_to(
+        sum, product(across_[at(row)], solve_general(series_at_child(stiffness_, joint), bent)));
   }
   return sum;
 }
@@ -384,13 +383,12 @@ BranchLoad Branch::load_up(const BeamStiffness<double>& beam, Direction to_paren
   if (is_fixed) {
     return up;
   }
-  up.load = transposed_product(joint.transport,
-                               solve_general(series(stiffness_, joint), load.load));
+  up.load =
+      transposed_product(joint.transport, solve_general(series(stiffness_, joint), load.load));
   for (int i = 0; i < open_count(); ++i) {
     base::add_to(up.gap[at(i)],
                  product(across_[at(open_slot(i))],
-                         solve_general(series_at_child(stiffness_, joint),
-                                       joint.bend(load.load))));
+                         solve_general(series_at_child(stiffness_, joint), joint.bend(load.load))));
   }
   return up;
 }

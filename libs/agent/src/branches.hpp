@@ -151,9 +151,8 @@ void BasicAgent<Real>::factor_branch() {
   }
   for (std::size_t i = 0; i < static_cast<std::size_t>(leaves.count); ++i) {
     if (leaves.parent[i] == 0) {
-      branch.add_stiffness(
-          stiffness_up(setup_.beam, leaves.to_parent[i],
-                       stiffness[static_cast<std::size_t>(leaves.node[i])]));
+      branch.add_stiffness(stiffness_up(setup_.beam, leaves.to_parent[i],
+                                        stiffness[static_cast<std::size_t>(leaves.node[i])]));
     }
   }
   work_.tree.load = {};  // Children add theirs as they come.
@@ -172,9 +171,9 @@ typename BasicAgent<Real>::LeafStiffness BasicAgent<Real>::leaf_stiffness() cons
                                                              nodes_[at].is_held));
     }
     if (parent > 0) {
-      base::add_to(stiffness[parent],
-                   stiffness_up(setup_.beam, leaves.to_parent[static_cast<std::size_t>(i)],
-                                stiffness[at]));
+      base::add_to(
+          stiffness[parent],
+          stiffness_up(setup_.beam, leaves.to_parent[static_cast<std::size_t>(i)], stiffness[at]));
     }
   }
   return stiffness;
@@ -199,9 +198,8 @@ bool BasicAgent<Real>::send_columns() {
     is_streaming_ = true;
   }
   for (; column_ < Branch::kColumnCount && parent_ >= 0; ++column_) {
-    const base::Vec6<double> column =
-        branch.column_up(setup_.beam, static_cast<base::Direction>(parent_), nodes_[0].is_fixed,
-                         column_);
+    const base::Vec6<double> column = branch.column_up(
+        setup_.beam, static_cast<base::Direction>(parent_), nodes_[0].is_fixed, column_);
     if (column == base::Vec6<double>{}) {
       continue;
     }
@@ -224,8 +222,8 @@ void BasicAgent<Real>::take_branch_up(int face, std::span<const std::uint8_t> me
   BranchLoad& load = work_.tree.load;
   base::Vec6<double>* into = &load.load;
   if (index > 0 && index <= kLoopsMax) {
-    const int slot = work_.tree.slot_of[static_cast<std::size_t>(face)][static_cast<std::size_t>(
-        index - 1)];
+    const int slot =
+        work_.tree.slot_of[static_cast<std::size_t>(face)][static_cast<std::size_t>(index - 1)];
     into = &load.gap[static_cast<std::size_t>(slot)];
   }
   base::add_to(*into, base::converted<double>(sweep::read_vector(in)));
@@ -243,11 +241,10 @@ void BasicAgent<Real>::send_branch_up() {
   if (parent_ < 0) {
     return;
   }
-  const BranchLoad up =
-      tree.branch.load_up(setup_.beam, static_cast<base::Direction>(parent_), nodes_[0].is_fixed,
-                          tree.load);
-  send(parent_, sweep::vector_message(wire::MessageType::kBranchUp, 0,
-                                      base::converted<float>(up.load)));
+  const BranchLoad up = tree.branch.load_up(setup_.beam, static_cast<base::Direction>(parent_),
+                                            nodes_[0].is_fixed, tree.load);
+  send(parent_,
+       sweep::vector_message(wire::MessageType::kBranchUp, 0, base::converted<float>(up.load)));
   for (int i = 0; i < tree.branch.open_count(); ++i) {
     send(parent_,
          sweep::vector_message(wire::MessageType::kBranchUp, static_cast<std::uint8_t>(1 + i),
@@ -337,9 +334,9 @@ void BasicAgent<Real>::send_branch_down() {
     send(face, sweep::vector_message(wire::MessageType::kBranchDown, 0, tree.shift));
     for (std::size_t i = 0; i < tree.child_cut_count[at]; ++i) {
       const auto slot = static_cast<std::size_t>(tree.slot_of[at][i]);
-      send(face, sweep::vector_message(wire::MessageType::kBranchDown,
-                                       static_cast<std::uint8_t>(1 + i),
-                                       base::converted<float>(tree.forces[slot])));
+      send(face,
+           sweep::vector_message(wire::MessageType::kBranchDown, static_cast<std::uint8_t>(1 + i),
+                                 base::converted<float>(tree.forces[slot])));
     }
   }
   tree.load = {};

@@ -24,8 +24,7 @@ constexpr int kEliminationStagnationMax = 6;
 /// fz^2 / (E A/L) + m^2 / (E I/L) and more, all of it part of e K e, so by Cauchy and Schwarz
 /// (2 m/a + fz)^2 <= (E A/L + 4 E I / (L a^2)) e K e. With that the bound holds for any robot.
 double ratio_per_energy_root(const Setup& setup) {
-  const double bend =
-      setup.beam.bend_x > setup.beam.bend_y ? setup.beam.bend_x : setup.beam.bend_y;
+  const double bend = setup.beam.bend_x > setup.beam.bend_y ? setup.beam.bend_x : setup.beam.bend_y;
   const double strength = setup.strength_vertical_n < setup.strength_lateral_n
                               ? setup.strength_vertical_n
                               : setup.strength_lateral_n;
@@ -44,9 +43,9 @@ void Conductor::choose_one_sweep(bool is_unilateral) {
   }
 }
 
-/// While a report and the next order travel there is time for as many exchanges as the tree is deep:
-/// the root must wait for the modules furthest away to start theirs. Half as many more make a
-/// sweep longer by a quarter and save as many steps.
+/// While a report and the next order travel there is time for as many exchanges as the tree is
+/// deep: the root must wait for the modules furthest away to start theirs. Half as many more make
+/// a sweep longer by a quarter and save as many steps.
 std::uint16_t Conductor::step_degree() const {
   constexpr std::uint32_t kDegreeMax = 4000;
   const std::uint32_t degree = depth_ + (depth_ + 1U) / 2;
@@ -81,16 +80,15 @@ Order Conductor::restarted_step() {
   return next_step(kRestart, {});
 }
 
-/// Reports of kStep: |r|^2, largest ratio, (q, r), |q|^2, (q, q_older), (r, M^-1 r) before the step,
-/// bound on the error; facets that want or wanted another state, the hash of all.
+/// Reports of kStep: |r|^2, largest ratio, (q, r), |q|^2, (q, q_older), (r, M^-1 r) before the
+/// step, bound on the error; facets that want or wanted another state, the hash of all.
 Order Conductor::after_step(const Setup& setup, const Report& report) {
   ++effort_.iterations;
   ratio_ = static_cast<double>(report.reals[1]);
   const bool has_jumped = follows_ && report.extent > 0;
   const double error = step_error(setup, report, has_jumped);
   norm_ = static_cast<double>(report.reals[0]);
-  if (!is_number(error) || !is_number(norm_) ||
-      effort_.iterations > setup.iteration_count_max) {
+  if (!is_number(error) || !is_number(norm_) || effort_.iterations > setup.iteration_count_max) {
     return leave_one_sweep(setup, false);
   }
   const bool is_accurate = predicted_ < kStateTolerance * (1 + absolute(ratio_));
@@ -126,8 +124,9 @@ Order Conductor::after_step(const Setup& setup, const Report& report) {
 
 /// e K e = r K^-1 r <= (r, M^-1 r) / least eigenvalue of M^-1 K. The sum is that of the residual
 /// before, so it counts if the residual has not grown since. The eigenvalue is the least Rayleigh
-/// quotient seen; where slow modes hide from it, the other bound, forces at the robot's full extent,
-/// is nearly as good.
+/// quotient seen; where slow modes hide from it, the other bound, forces at the robot's full
+/// extent, is nearly as good. While a facet tilts the tangent is not symmetric and only that one
+/// counts.
 double Conductor::step_error(const Setup& setup, const Report& report, bool has_jumped) {
   const auto bound = static_cast<double>(report.reals[6]);
   is_tilting_ = (report.flags & kAnyTilting) != 0;
@@ -142,8 +141,7 @@ double Conductor::step_error(const Setup& setup, const Report& report, bool has_
     eigenvalue_ = quotient > kEigenvalueLeast ? quotient : kEigenvalueLeast;
   }
   const double shrunk = norm < norm_ ? norm / norm_ : 1;
-  const double energy =
-      absolute(static_cast<double>(report.reals[5])) / eigenvalue_ * shrunk;
+  const double energy = absolute(static_cast<double>(report.reals[5])) / eigenvalue_ * shrunk;
   const double estimate = ratio_per_energy_root(setup) * square_root(energy);
   return estimate < bound ? estimate : bound;
 }

@@ -239,8 +239,8 @@ void BasicAgent<Real>::polynomial_step() {
     }
     if (node.is_ground) {
       base::add_to(cg.image, base::converted<Real>(mechanics::symmetric_product(
-                                   contact_.facet, node.state, node.is_held,
-                                   base::converted<double>(node.shared))));
+                                 contact_.facet, node.state, node.is_held,
+                                 base::converted<double>(node.shared))));
     }
     for (std::size_t k = 0; k < 6; ++k) {
       cg.w[k] -= cg.image[k];

@@ -147,8 +147,8 @@ mechanics::ContactState state_along(const Node<Real>& node, const ContactSetting
   if (!node.is_ground) {
     return {.pressed = false};
   }
-  return mechanics::contact_state(contact.facet,
-                                  mechanics::trial_force(contact.facet, position_along(node, g, t)));
+  return mechanics::contact_state(
+      contact.facet, mechanics::trial_force(contact.facet, position_along(node, g, t)));
 }
 
 template <class Real>

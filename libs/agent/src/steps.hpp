@@ -16,9 +16,9 @@
 ///
 /// Minimal residuals. With the inner product of D^-1 (the diagonal blocks) K M^-1 is self-adjoint,
 /// so that directions (p, q = K p, z = M^-1 q) need to be made orthogonal to the one before only,
-/// as in Orthomin(1) [Vinsome 1976; Greenbaum 1997, ch. 2]. The twist is the delay: when the sums of
-/// r are known, M^-1 r is there already, so the step is taken in full and minimised afterwards, as
-/// Anderson's method does [Walker, Ni 2011]:
+/// as in Orthomin(1) [Vinsome 1976; Greenbaum 1997, ch. 2]. The twist is the delay: when the sums
+/// of r are known, M^-1 r is there already, so the step is taken in full and minimised afterwards,
+/// as Anderson's method does [Walker, Ni 2011]:
 ///   newer    p = d, q = r^ - r, z = d - M^-1 r      what the last step d = M^-1 r^ did
 ///            minus c times older                    c = (q, q_older) / (q_older, q_older)
 ///   r^ = r - a q - b q_older,  d = M^-1 r^ = M^-1 r - a z - b z_older          the least |r^|
@@ -36,9 +36,8 @@ void BasicAgent<Real>::begin_step(const Order& order) {
   product_ = 0;
   middle_ = {};
   if ((order.flags & kAlongTree) != 0) {
-    down_awaited_ =
-        parent_ < 0 ? std::uint8_t{0}
-                    : static_cast<std::uint8_t>(1 + work_.tree.branch.open_count());
+    down_awaited_ = parent_ < 0 ? std::uint8_t{0}
+                                : static_cast<std::uint8_t>(1 + work_.tree.branch.open_count());
     if (down_awaited_ == 0) {
       find_shifts();
       send_branch_down();
@@ -162,8 +161,8 @@ void BasicAgent<Real>::next_terms() {
   rho_ = static_cast<float>(rho);
 }
 
-/// Sums for the root: |r|^2, (q, r), |q|^2, (q, q_older) in the norm of D^-1; (r, M^-1 r) before the
-/// step; the largest load ratio; the bound on the error of load ratios that r means.
+/// Sums for the root: |r|^2, (q, r), |q|^2, (q, q_older) in the norm of D^-1; (r, M^-1 r) before
+/// the step; the largest load ratio; the bound on the error of load ratios that r means.
 template <class Real>
 Report BasicAgent<Real>::step_report() const {
   Report report;
@@ -182,9 +181,10 @@ Report BasicAgent<Real>::step_report() const {
       continue;
     }
     const Steps& steps = work_.steps[static_cast<std::size_t>(i)];
-    const auto weighted = base::converted<double>(solve_diagonal(node, base::converted<Real>(rest)));
-    const auto weighted_q = base::converted<double>(
-        solve_diagonal(node, base::converted<Real>(steps.newer.q)));
+    const auto weighted =
+        base::converted<double>(solve_diagonal(node, base::converted<Real>(rest)));
+    const auto weighted_q =
+        base::converted<double>(solve_diagonal(node, base::converted<Real>(steps.newer.q)));
     sums[0] += base::dot(rest, weighted);
     sums[1] += base::dot(steps.newer.q, weighted);
     sums[2] += base::dot(steps.newer.q, weighted_q);

@@ -52,8 +52,8 @@ constexpr std::uint16_t exchange_count(const Order& order) {
 
 /// Exchanges that go on while the report is on its way up and the next order on its way down.
 constexpr std::uint16_t exchanges_behind(const Order& order) {
-  const bool is_one_sweep = order.operation == wire::Operation::kBegin ||
-                            order.operation == wire::Operation::kStep;
+  const bool is_one_sweep =
+      order.operation == wire::Operation::kBegin || order.operation == wire::Operation::kStep;
   return is_one_sweep ? order.count : std::uint16_t{0};
 }
 
@@ -248,8 +248,7 @@ void BasicAgent<Real>::continue_sweep() {
       start_exchange();
     }
   }
-  const bool is_done_here =
-      !sweep::exchanges(order_) || exchanges_left_ <= exchanges_behind_;
+  const bool is_done_here = !sweep::exchanges(order_) || exchanges_left_ <= exchanges_behind_;
   if (is_sweeping_ && reports_awaited_ == 0 && down_awaited_ == 0 && is_done_here) {
     finish_sweep();
   }

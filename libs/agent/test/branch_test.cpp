@@ -92,53 +92,56 @@ Vectors dense_solution(const Tree& tree, const Springs& springs, const Vectors& 
   return result;
 }
 
+using Slots = std::vector<std::array<std::int8_t, kLoopsMax>>;
+
+/// visit(cut, is this its upper end) for the connections that are not part of the tree.
+template <class Visit>
+void for_each_cut(const Tree& tree, std::size_t i, Visit&& visit) {
+  for (const Direction direction : base::kDirections) {
+    const Cell other = base::neighbour(tree.cells[i], direction);
+    const int j = tree.find(other);
+    if (j >= 0 && tree.parents[i] != j &&
+        tree.parents[static_cast<std::size_t>(j)] != static_cast<int>(i)) {
+      const bool is_upper = base::index(direction) % 2 != 0;
+      visit(is_upper ? Cut{other, base::opposite(direction)} : Cut{tree.cells[i], direction},
+            is_upper);
+    }
+  }
+}
+
+/// Which loops pass or close where. False: too many.
+bool survey(const Tree& tree, std::vector<Branch>& branches, Slots& slot_of) {
+  bool fits = true;
+  for (std::size_t i = branches.size(); i-- > 0 && fits;) {
+    for_each_cut(tree, i, [&](const Cut& cut, bool) { fits = branches[i].meet(cut) >= 0 && fits; });
+    for (std::size_t child = i + 1; child < branches.size() && fits; ++child) {
+      const bool is_child = tree.parents[child] == static_cast<int>(i);
+      for (int k = 0; is_child && k < branches[child].open_count(); ++k) {
+        const int slot = branches[i].meet(branches[child].cut(branches[child].open_slot(k)));
+        slot_of[child][static_cast<std::size_t>(k)] = static_cast<std::int8_t>(slot);
+        fits = slot >= 0 && fits;
+      }
+    }
+  }
+  return fits;
+}
+
 /// What the modules do, in one loop instead of by messages. False: too many loops.
 bool eliminate(const Tree& tree, const Springs& springs, const Vectors& loads, Vectors& result) {
   const auto beam = lopsided_beam();
   const std::size_t n = tree.cells.size();
   std::vector<Branch> branches(n);
   std::vector<BranchLoad> branch_loads(n);
-  std::vector<std::array<std::int8_t, kLoopsMax>> slot_of(n);
-  std::vector<std::pair<std::size_t, int>> ends;
-  for (std::size_t i = n; i-- > 0;) {
-    for (const Direction direction : base::kDirections) {
-      const int j = tree.find(base::neighbour(tree.cells[i], direction));
-      if (j < 0 || tree.parents[i] == j || tree.parents[static_cast<std::size_t>(j)] ==
-                                               static_cast<int>(i)) {
-        continue;
-      }
-      const bool is_upper = base::index(direction) % 2 != 0;
-      const Cut cut = is_upper ? Cut{tree.cells[static_cast<std::size_t>(j)],
-                                     base::opposite(direction)}
-                               : Cut{tree.cells[i], direction};
-      if (branches[i].meet(cut) < 0) {
-        return false;
-      }
-    }
-    for (std::size_t child = i + 1; child < n; ++child) {
-      for (int k = 0; tree.parents[child] == static_cast<int>(i) && k < branches[child].open_count();
-           ++k) {
-        const int slot = branches[i].meet(branches[child].cut(branches[child].open_slot(k)));
-        if (slot < 0) {
-          return false;
-        }
-        slot_of[child][static_cast<std::size_t>(k)] = static_cast<std::int8_t>(slot);
-      }
-    }
+  Slots slot_of(n);
+  if (!survey(tree, branches, slot_of)) {
+    return false;
   }
   for (std::size_t i = n; i-- > 0;) {
     Branch& branch = branches[i];
     branch.add_stiffness(springs[i]);
-    for (const Direction direction : base::kDirections) {
-      const bool is_upper = base::index(direction) % 2 != 0;
-      const Cell other = base::neighbour(tree.cells[i], direction);
-      const Cut cut = is_upper ? Cut{other, base::opposite(direction)} : Cut{tree.cells[i], direction};
-      if (const int j = tree.find(other);
-          j >= 0 && tree.parents[i] != j &&
-          tree.parents[static_cast<std::size_t>(j)] != static_cast<int>(i)) {
-        branch.add_end(branch.find(cut), is_upper, rigid_transport(40, cut.direction));
-      }
-    }
+    for_each_cut(tree, i, [&](const Cut& cut, bool is_upper) {
+      branch.add_end(branch.find(cut), is_upper, rigid_transport(40, cut.direction));
+    });
     base::add_to(branch_loads[i].load, loads[i]);
     branch.close_loops(beam);
     branch.close_loops(branch_loads[i]);
@@ -155,8 +158,8 @@ bool eliminate(const Tree& tree, const Springs& springs, const Vectors& loads, V
     const BranchLoad up = branch.load_up(beam, tree.to_parent(i), false, branch_loads[i]);
     base::add_to(branch_loads[parent].load, up.load);
     for (int k = 0; k < branch.open_count(); ++k) {
-      base::add_to(branch_loads[parent].gap[static_cast<std::size_t>(
-                       slot_of[i][static_cast<std::size_t>(k)])],
+      base::add_to(branch_loads[parent]
+                       .gap[static_cast<std::size_t>(slot_of[i][static_cast<std::size_t>(k)])],
                    up.gap[static_cast<std::size_t>(k)]);
     }
   }
@@ -180,8 +183,8 @@ Tree random_tree(base::Rng& rng, std::size_t count) {
   Tree tree{.cells = {{0, 0, 0}}, .parents = {-1}};
   while (tree.cells.size() < count) {
     const std::size_t at = rng.below(tree.cells.size());
-    const Cell next = base::neighbour(tree.cells[at],
-                                      base::kDirections[static_cast<std::size_t>(rng.below(6))]);
+    const Cell next =
+        base::neighbour(tree.cells[at], base::kDirections[static_cast<std::size_t>(rng.below(6))]);
     if (tree.find(next) < 0) {
       tree.cells.push_back(next);
       tree.parents.push_back(static_cast<int>(at));
@@ -231,8 +234,7 @@ TEST(Branch, elimination_with_loops_is_the_dense_solution) {
     }
     std::size_t connections = 0;
     for (const Cell& cell : tree.cells) {
-      for (const Direction direction :
-           {Direction::kPlusX, Direction::kPlusY, Direction::kPlusZ}) {
+      for (const Direction direction : {Direction::kPlusX, Direction::kPlusY, Direction::kPlusZ}) {
         connections += tree.find(base::neighbour(cell, direction)) >= 0 ? 1 : 0;
       }
     }

@@ -112,9 +112,9 @@ TEST(Wire, reports_are_these_bytes) {
 }
 
 TEST(Wire, vectors_are_a_label_and_six_reals) {
-  constexpr std::array kTypes = {MessageType::kVector, MessageType::kPlannedDown,
-                                 MessageType::kPlannedUp,  MessageType::kColumn,
-                                 MessageType::kBranchUp,   MessageType::kBranchDown};
+  constexpr std::array kTypes = {MessageType::kVector,    MessageType::kPlannedDown,
+                                 MessageType::kPlannedUp, MessageType::kColumn,
+                                 MessageType::kBranchUp,  MessageType::kBranchDown};
   for (std::size_t i = 0; i < kTypes.size(); ++i) {
     Writer out(kTypes[i]);
     out.u8(5);

@@ -24,7 +24,7 @@ void expect_verdict(const Simulation& simulation, agent::Verdict verdict) {
 
 TEST(Fault, of_a_silent_module_makes_the_verdict_undecided) {
   const model::Robot robot = make_robot(cube(3));
-  for (const Time at : {Time{0}, Time{30}, Time{200}}) {
+  for (const Time at : {Time{0}, Time{30}, Time{100}}) {
     PacketLog log;
     Simulation simulation(
         robot, {.faults = {{.kind = Kind::kKill, .at = at, .module = 13}}, .trace = &log});

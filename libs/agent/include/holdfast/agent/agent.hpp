@@ -115,7 +115,7 @@ struct BranchWork {
   std::array<std::array<Cut, kLoopsMax>, base::kDirectionCount> child_cuts{};
   std::array<std::array<std::int8_t, kLoopsMax>, base::kDirectionCount> slot_of{};
   std::array<std::uint8_t, base::kDirectionCount> child_cut_count{};
-  base::Vec6<float> shift{};  ///< M^-1 r, ...
+  base::Vec6<float> shift{};          ///< M^-1 r, ...
   base::Vec6<double> parent_shift{};  ///< ... and the parent's.
 };
 

@@ -16,8 +16,7 @@
 ///   S u + B X - h = force of the parent's beam on c, negative
 ///   y + C u - P X = gap                                                              (1)
 /// with the loads h, and for every loop of the robot that passes c but closes further up the force
-/// X in a beam that is cut. In the end its two ends must fit: gap = F X. With S = 0 below the parent
-/// beam nothing is stiff, and c moves by statics alone:
+/// X in a beam that is cut. In the end its two ends must fit: gap = F X. So c moves by
 ///   u = G (T u_p + F h - F B X),             G = (1 + F S)^-1                        (2)
 /// and seen from the parent,                  N = (1 + S F)^-1
 ///   S' = T^t N S T     B' = T^t N B          h' = T^t N h
@@ -72,6 +71,7 @@ class Branch {
   /// Loops that go on to the parent, the i-th of them by slot.
   int open_count() const;
   int open_slot(int i) const;
+
   const Cut& cut(int slot) const { return cuts_[static_cast<std::size_t>(slot)]; }
 
   // ---- Stiffness. Whenever a contact has changed.
@@ -100,7 +100,7 @@ class Branch {
   BranchLoad load_up(const mechanics::BeamStiffness<double>& beam, base::Direction to_parent,
                      bool is_fixed, const BranchLoad& load) const;
 
-  /// Eq. (2): the displacement; `forces` has those of the open loops and gets those that close here.
+  /// Eq. (2): the displacement; `forces` has those of the open loops and gets those closed here.
   base::Vec6<double> displacement(const mechanics::BeamStiffness<double>& beam,
                                   base::Direction to_parent, const base::Vec6<double>& of_parent,
                                   const BranchLoad& load, CutForces& forces) const;
@@ -119,9 +119,9 @@ class Branch {
     return other != slot && other < count_ && (is_open(other) || other > slot);
   }
 
-  base::Mat6<float> stiffness_{};                       // S
-  std::array<base::Mat6<float>, kLoopsMax> onto_{};     // B
-  std::array<base::Mat6<float>, kLoopsMax> across_{};   // C
+  base::Mat6<float> stiffness_{};                      // S
+  std::array<base::Mat6<float>, kLoopsMax> onto_{};    // B
+  std::array<base::Mat6<float>, kLoopsMax> across_{};  // C
   /// P by row and column loop; Q on the diagonal once a loop is closed.
   std::array<std::array<base::Mat6<float>, kLoopsMax>, kLoopsMax> give_{};
   std::array<Cut, kLoopsMax> cuts_{};

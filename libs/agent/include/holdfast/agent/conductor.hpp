@@ -28,10 +28,10 @@ namespace holdfast::agent {
 
 /// What was done, for reports.
 struct Effort {
-  std::uint32_t iterations = 0;                 ///< Of the linear method.
-  std::uint32_t solves = 0;                     ///< Corrections started.
-  std::uint32_t contact_steps = 0;              ///< Changes of contact states.
-  std::uint32_t module_count = 0;               ///< Planned ones included.
+  std::uint32_t iterations = 0;          ///< Of the linear method.
+  std::uint32_t solves = 0;              ///< Corrections started.
+  std::uint32_t contact_steps = 0;       ///< Changes of contact states.
+  std::uint32_t module_count = 0;        ///< Planned ones included.
   Method method = Method::kElimination;  ///< The last one used.
   bool is_unilateral = false;
   float ratio_error = 0;  ///< Bound at the end.

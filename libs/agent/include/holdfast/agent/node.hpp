@@ -38,7 +38,7 @@ struct Node {
   bool is_ground = false;
   bool is_held = true;  ///< Against slip and twist (unilateral law).
   bool was_released = false;
-  bool has_changed = false;  ///< Wanted another state than was in use, at the last step.
+  bool has_changed = false;        ///< Wanted another state than was in use, at the last step.
   mechanics::ContactState state;   ///< In use.
   mechanics::ContactState wanted;  ///< That the law prescribes for u.
 

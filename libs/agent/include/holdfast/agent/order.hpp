@@ -54,7 +54,7 @@ struct Order {
   std::uint8_t index = 0;  ///< kPlan: planned index learned, or 0xff.
   std::uint8_t flags = 0;
   std::uint16_t count = 0;  ///< kJacobi: steps; kStart, kGradient, kBegin, kStep: degree.
-  base::Cell cell = {};                    ///< kPlan: of that module; kMass: of the root.
+  base::Cell cell = {};     ///< kPlan: of that module; kMass: of the root.
   std::array<std::uint8_t, 8> masks{};     ///< kHosts
   std::int32_t module_count = 0;           ///< kAngles
   std::array<std::int32_t, 2> cell_sum{};  ///< kAngles
@@ -65,9 +65,9 @@ struct Order {
 /// Flags of orders.
 inline constexpr std::uint8_t kUnilateralLaw = 1;  ///< kBegin
 inline constexpr std::uint8_t kOneSweep = 2;       ///< kBegin: for kFactor and kStep.
-inline constexpr std::uint8_t kFollowStates = 1;   ///< kLow, kStep: take over the wanted states first.
+inline constexpr std::uint8_t kFollowStates = 1;   ///< kLow, kStep: take over wanted states.
 inline constexpr std::uint8_t kRestart = 2;        ///< kStep: without older directions.
-inline constexpr std::uint8_t kAlongTree = 4;      ///< kStep: by elimination, not minimal residuals.
+inline constexpr std::uint8_t kAlongTree = 4;      ///< kStep: by elimination.
 inline constexpr std::uint8_t kAdoptStates = 1;    ///< kStart
 inline constexpr std::uint8_t kWithScalars = 2;    ///< kStart
 inline constexpr std::uint8_t kWithBlocks = 4;     ///< kStart

@@ -22,9 +22,9 @@ namespace holdfast::sim {
 
 struct SimulationOptions {
   LinkModel link = unit();
-  std::uint64_t seed = 1;  ///< Of noise, clocks and session numbers.
+  std::uint64_t seed = 1;                              ///< Of noise, clocks and session numbers.
   agent::Method method = agent::Method::kElimination;  ///< See agent::Setup.
-  std::uint8_t degree_max = 200;  ///< See agent::Setup.
+  std::uint8_t degree_max = 200;                       ///< See agent::Setup.
   std::vector<Fault> faults = {};
   std::vector<Announcement> announcements = {};  ///< Besides the robot's planned modules.
   Time time_max = agent::kNever;                 ///< Later events do not happen.
