@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <cstring>
+#include <utility>
 #include <vector>
 
 #include "vectors.hpp"
@@ -25,13 +26,10 @@ class BlockPool {
     return slot;
   }
 
-  const Block* data() const { return blocks_.data(); }
-  std::size_t size() const { return blocks_.size(); }
-
-  /// Gives the memory back that only insert() needs.
-  void close() {
-    slots_ = {};
+  /// The blocks, in the order in which they came.
+  std::vector<Block> take() {
     blocks_.shrink_to_fit();
+    return std::move(blocks_);
   }
 
  private:

@@ -235,9 +235,32 @@ double dot(const double* r, const Six* z, Range range) {
   return (dots[0] + dots[1]) + (dots[2] + dots[3]);
 }
 
-void turn(const Six* z, float factor, Six* p, Range range) {
+inline double sum_of(Double dots) { return (dots[0] + dots[1]) + (dots[2] + dots[3]); }
+
+double dot_single(const Six* a, const Six* b, Range range) {
+  Double dots = {};
   for (std::size_t node = range.begin; node < range.end; ++node) {
-    store(p[node], load(z[node]) + factor * load(p[node]));
+    const Single u = load(a[node]);
+    const Single v = load(b[node]);
+    dots += low(u) * low(v) + high(u) * high(v);
+  }
+  return sum_of(dots);
+}
+
+double apply_cluster(const ClusterView& level, const Six* z, Six* q, Range range) {
+  Double dots = {};
+  for (std::size_t p = range.begin; p < range.end; ++p) {
+    const Single u = load(z[p]);
+    const Single v = multiply(level.diagonal[level.type[p]], u) + neighbour_sum(level, z, p);
+    store(q[p], v);
+    dots += low(u) * low(v) + high(u) * high(v);
+  }
+  return sum_of(dots);
+}
+
+void combine(float factor, const Six* x, float other, Six* y, Range range) {
+  for (std::size_t node = range.begin; node < range.end; ++node) {
+    store(y[node], factor * load(x[node]) + other * load(y[node]));
   }
 }
 
@@ -247,10 +270,12 @@ constexpr Kernels kAll = {.relax_first = relax_first,
                           .restrict_lattice = restrict_to<LatticeView>,
                           .restrict_cluster = restrict_to<ClusterView>,
                           .prolong = prolong,
+                          .apply_cluster = apply_cluster,
+                          .dot_single = dot_single,
+                          .combine = combine,
                           .apply = apply,
                           .advance = advance,
-                          .dot = dot,
-                          .turn = turn};
+                          .dot = dot};
 
 }  // namespace
 }  // namespace holdfast::solver

@@ -63,15 +63,20 @@ struct Kernels {
                            const Six* r, const Six* z, Six* coarse, Range clusters);
   /// z += the rigid motion of the cluster.
   void (*prolong)(const TransferView&, const Six* coarse, Six* z, Range);
+  /// q = K z on a coarse level; returns z . q.
+  double (*apply_cluster)(const ClusterView&, const Six* z, Six* q, Range);
+  /// a . b in single-precision vectors, summed in double precision.
+  double (*dot_single)(const Six* a, const Six* b, Range);
+  /// y = factor x + other y
+  void (*combine)(float factor, const Six* x, float other, Six* y, Range);
   /// q = K p in double precision; returns p . q.
   double (*apply)(const LatticeView&, const Six* p, double* q, Range);
-  /// x += step p, r -= step q, and r in single precision; returns |D^-1/2 r|^2-free r . r.
+  /// x += step p, r -= step q, and r in single precision; returns the sum of the squared
+  /// forces left, torques left out.
   double (*advance)(double step, const Six* p, const double* q, double* x, double* r, Six* r_single,
                     Range);
-  /// r . z
+  /// r . z, r in double precision.
   double (*dot)(const double* r, const Six* z, Range);
-  /// p = z + factor p
-  void (*turn)(const Six* z, float factor, Six* p, Range);
 };
 
 /// Those for this machine.
