@@ -154,15 +154,22 @@ Spring beam_spring(const model::Material& material, std::size_t direction, std::
                                            static_cast<Direction>(direction))};
 }
 
+void fill_vectors(Level& level) {
+  level.r.assign(level.node_count + 1, {});
+  level.z.assign(level.node_count + 1, {});
+}
+
+}  // namespace
+
 /// The finest level: nodes of the same kind with partners on the same sides share their springs.
-void fill_stage(const Network& network, const model::Material& material, Stage& stage) {
-  const std::size_t count = network.node_count;
-  stage.order = network.order;
+void Hierarchy::fill_stage(Stage& stage) const {
+  const std::size_t count = network_.node_count;
+  stage.order = network_.order;
   stage.key.resize(count);
   stage.place.resize(count);
   for (std::size_t i = 0; i < count; ++i) {
-    stage.key[at(network.order[i])] = network.key[i];
-    stage.place[at(network.order[i])] = place_of(network.key[i], material.pitch_mm);
+    stage.key[at(network_.order[i])] = network_.key[i];
+    stage.place[at(network_.order[i])] = place_of(network_.key[i], material_.pitch_mm);
   }
   stage.start.resize(count + 1);
   stage.other.reserve(6 * count);
@@ -171,12 +178,12 @@ void fill_stage(const Network& network, const model::Material& material, Stage& 
   for (std::size_t node = 0; node < count; ++node) {
     Kind kind{};
     for (std::size_t d = 0; d < 6; ++d) {
-      const std::size_t length = network.kind[node][d];
-      if (length > 0 && at(network.other[node][d]) < count) {
+      const std::size_t length = network_.kind[node][d];
+      if (length > 0 && at(network_.other[node][d]) < count) {
         kind[d] = static_cast<std::uint8_t>(length);
-        stage.other.push_back(network.other[node][d]);
+        stage.other.push_back(network_.other[node][d]);
       } else if (length > 0) {
-        const Spring spring = beam_spring(material, d, length);
+        const Spring spring = beam_spring(material_, d, length);
         stage.anchors.push_back({.node = static_cast<std::int32_t>(node),
                                  .direction = spring.direction,
                                  .length = spring.length,
@@ -185,33 +192,33 @@ void fill_stage(const Network& network, const model::Material& material, Stage& 
                                  .stiffness = spring.stiffness});
       }
     }
+    if (network_.kind[node][kContactByte] != 0) {
+      Spring spring = beam_spring(material_, base::index(Direction::kMinusZ), 1);
+      stage.anchors.push_back({.node = static_cast<std::int32_t>(node),
+                               .direction = spring.direction,
+                               .length = spring.length,
+                               .reach = spring.length,
+                               .middle = spring.middle,
+                               .stiffness = ground_(network_.kind[node][kContactByte])});
+    }
     stage.start[node + 1] = static_cast<std::int32_t>(stage.other.size());
     const auto [found, is_new] = patterns.emplace(
         std::bit_cast<std::uint64_t>(kind), static_cast<std::uint32_t>(stage.springs.size()));
     stage.pattern[node] = found->second;
     for (std::size_t d = 0; is_new && d < 6; ++d) {
       if (kind[d] > 0) {
-        stage.springs.push_back(beam_spring(material, d, kind[d]));
+        stage.springs.push_back(beam_spring(material_, d, kind[d]));
       }
     }
   }
 }
 
-void fill_vectors(Level& level) {
-  level.r.assign(level.node_count + 1, {});
-  level.z.assign(level.node_count + 1, {});
-}
-
-}  // namespace
-
-void Hierarchy::make_lattice(const Network& network, const model::Material& material,
-                             Stage& stage) {
-  fill_stage(network, material, stage);
-  const std::size_t length_max = network.has_long_beams ? kBeamLengthMax : 1;
+void Hierarchy::make_lattice() {
+  const std::size_t length_max = network_.has_long_beams ? kBeamLengthMax : 1;
   beams_.resize(6 * kRow);
   beams_double_.resize(6 * kRow);
   for (std::size_t length = 1; length <= length_max; ++length) {
-    const auto beam = long_beam(material, static_cast<int>(length));
+    const auto beam = long_beam(material_, static_cast<int>(length));
     for (std::size_t d = 0; d < 6; ++d) {
       const Mat k12 = mechanics::block_12(beam, static_cast<Direction>(d));
       beams_double_[d * kRow + length] = beam_row(k12, d / 2);
@@ -219,41 +226,50 @@ void Hierarchy::make_lattice(const Network& network, const model::Material& mate
     }
   }
   Level& level = levels_.emplace_back();
-  level.node_count = network.node_count;
-  level.colour_start = network.colour_start;
-  make_types(network, stage);
+  level.node_count = network_.node_count;
+  level.colour_start = network_.colour_start;
+  level.type.resize(network_.node_count);
   fill_vectors(level);
-  lattice_ = {.other = network.other.data(),
-              .kind = network.has_long_beams ? network.kind.data() : nullptr,
+  update_types();
+}
+
+/// K_pp of a node on the finest level.
+Mat Hierarchy::diagonal(const Kind& kind) const {
+  Mat sum;
+  for (std::size_t d = 0; d < 6; ++d) {
+    if (kind[d] > 0) {
+      base::add_to(sum, mechanics::block_11(long_beam(material_, kind[d]),
+                                            static_cast<Direction>(d)));
+    }
+  }
+  if (kind[kContactByte] != 0) {
+    base::add_to(sum, ground_(kind[kContactByte]));
+  }
+  return sum;
+}
+
+void Hierarchy::update_types() {
+  Level& level = levels_.front();
+  for (std::size_t node = 0; node < network_.node_count; ++node) {
+    const auto kind = std::bit_cast<std::uint64_t>(network_.kind[node]);
+    const auto [found, is_new] =
+        type_of_kind_.emplace(kind, static_cast<std::uint32_t>(type_of_kind_.size()));
+    level.type[node] = found->second;
+    if (is_new) {
+      const Mat sum = diagonal(network_.kind[node]);
+      level.diagonal.push_back(single(sum));
+      level.inverse.push_back(single(inverse_of(sum)));
+      diagonal_double_.push_back(wide(sum));
+    }
+  }
+  lattice_ = {.other = network_.other.data(),
+              .kind = network_.has_long_beams ? network_.kind.data() : nullptr,
               .type = level.type.data(),
               .beams = beams_.data(),
               .diagonal = level.diagonal.data(),
               .inverse = level.inverse.data(),
               .beams_double = beams_double_.data(),
               .diagonal_double = diagonal_double_.data()};
-}
-
-/// K_pp depends on the kind of a node only.
-void Hierarchy::make_types(const Network& network, const Stage& stage) {
-  Level& level = levels_.front();
-  level.type.resize(network.node_count);
-  std::unordered_map<std::uint64_t, std::uint32_t> types;
-  std::size_t next_anchor = 0;
-  for (std::size_t node = 0; node < network.node_count; ++node) {
-    const auto kind = std::bit_cast<std::uint64_t>(network.kind[node]);
-    const auto [found, is_new] = types.emplace(kind, static_cast<std::uint32_t>(types.size()));
-    level.type[node] = found->second;
-    Mat sum = is_new ? spring_sum(stage, node) : Mat{};
-    for (; next_anchor < stage.anchors.size() && at(stage.anchors[next_anchor].node) == node;
-         ++next_anchor) {
-      base::add_to(sum, stage.anchors[next_anchor].stiffness);
-    }
-    if (is_new) {
-      level.diagonal.push_back(single(sum));
-      level.inverse.push_back(single(inverse_of(sum)));
-      diagonal_double_.push_back(wide(sum));
-    }
-  }
 }
 
 /// Blocks in single precision for the sweeps.
@@ -310,9 +326,12 @@ void Hierarchy::add_level(const Stage& stage, std::vector<std::size_t> colour_st
   level.first_image.assign(level.node_count + 1, {});
 }
 
-Hierarchy::Hierarchy(const Network& network, const model::Material& material, Team& team) {
+Hierarchy::Hierarchy(const Network& network, const model::Material& material, Team& team,
+                     GroundStiffness ground)
+    : network_(network), material_(material), ground_(std::move(ground)) {
+  make_lattice();
   Stage stage;
-  make_lattice(network, material, stage);
+  fill_stage(stage);
   while (!coarsest_) {
     Stage coarse;
     std::vector<std::size_t> colour_start;
@@ -323,7 +342,7 @@ Hierarchy::Hierarchy(const Network& network, const model::Material& material, Te
     add_level(stage, std::move(colour_start));
     const std::size_t count = stage.order.size();
     const bool is_small = count <= kCoarsestCount;
-    if (is_small || count < network.node_count / 4) {
+    if (is_small || count < network_.node_count / 4) {
       coarsest_ = factorize(stage, is_small ? count * count : 2 * count);
     }
     if (is_small) {

@@ -3,7 +3,9 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
+#include <unordered_map>
 #include <vector>
 
 #include "coarsening.hpp"
@@ -24,8 +26,15 @@ namespace holdfast::solver {
 
 class Hierarchy {
  public:
-  /// Keeps a reference to the network.
-  Hierarchy(const Network& network, const model::Material& material, Team& team);
+  /// The stiffness of the ground below a node, by the code in kContactByte.
+  using GroundStiffness = std::function<Mat(std::uint8_t code)>;
+
+  /// Keeps references to the network and the material.
+  Hierarchy(const Network& network, const model::Material& material, Team& team,
+            GroundStiffness ground);
+
+  /// Takes over changed kinds of nodes on the finest level only; the coarse ones stay as they were.
+  void update_types();
 
   std::vector<Level>& levels() { return levels_; }
   const LatticeView& lattice() const { return lattice_; }
@@ -36,10 +45,15 @@ class Hierarchy {
   std::size_t bytes() const;
 
  private:
-  void make_lattice(const Network& network, const model::Material& material, Stage& stage);
-  void make_types(const Network& network, const Stage& stage);
+  void make_lattice();
+  void fill_stage(Stage& stage) const;
+  Mat diagonal(const Kind& kind) const;
   void add_level(const Stage& stage, std::vector<std::size_t> colour_start);
 
+  const Network& network_;
+  const model::Material& material_;
+  GroundStiffness ground_;
+  std::unordered_map<std::uint64_t, std::uint32_t> type_of_kind_;
   std::vector<Level> levels_;
   LatticeView lattice_;
   std::vector<BeamRow> beams_;

@@ -379,6 +379,59 @@ Mat6<double> inverse_of(const Mat6<double>& block) {
   return inverse;
 }
 
+/// Block elimination along a run, from its first inner module to its last: the same for all runs of
+/// one direction and length.
+struct RunFactor {
+  std::vector<Mat6<double>> pivot;   ///< Inverse of what is left of K_ii.
+  std::vector<Mat6<double>> factor;  ///< K_i,i-1 times the pivot before.
+  Mat6<double> to_next;              ///< K12 onwards and backwards.
+  Mat6<double> to_last;
+};
+
+RunFactor factorize_run(const mechanics::BeamStiffness<double>& beam, std::size_t direction,
+                        int length) {
+  RunFactor run;
+  run.to_next = mechanics::block_12(beam, direction_of(direction));
+  run.to_last = mechanics::block_12(beam, direction_of(direction ^ 1U));
+  Mat6<double> both = mechanics::block_11(beam, direction_of(direction));
+  base::add_to(both, mechanics::block_11(beam, direction_of(direction ^ 1U)));
+  for (int i = 1; i < length; ++i) {
+    Mat6<double> diagonal = both;
+    run.factor.push_back(i == 1 ? run.to_last : product(run.to_last, run.pivot.back()));
+    if (i > 1) {
+      subtract_product(diagonal, run.factor.back(), run.to_next);
+    }
+    run.pivot.push_back(inverse_of(diagonal));
+  }
+  return run;
+}
+
+void recover_run(const Robot& robot, const Network& network, const Network::Run& run,
+                 const RunFactor& factor, std::vector<Vec6<double>>& displacement) {
+  std::array<std::size_t, kBeamLengthMax + 1> modules{};
+  std::array<Vec6<double>, kBeamLengthMax> right;
+  modules[0] = at(run.from);
+  const auto length = static_cast<std::size_t>(run.length);
+  for (std::size_t i = 1; i <= length; ++i) {
+    modules[i] = at(robot.neighbours()[modules[i - 1]][run.direction]);
+  }
+  for (std::size_t i = 1; i < length; ++i) {
+    right[i] = network.load[modules[i]];
+    subtract_product(right[i], factor.factor[i - 1], i == 1 ? displacement[modules[0]] : right[i - 1]);
+  }
+  for (std::size_t i = length - 1; i > 0; --i) {
+    subtract_product(right[i], factor.to_next, displacement[modules[i + 1]]);
+    displacement[modules[i]] = multiply(factor.pivot[i - 1], right[i]);
+  }
+}
+
+Vec6<double> minus(Vec6<double> a, const Vec6<double>& b) {
+  for (std::size_t i = 0; i < 6; ++i) {
+    a[i] -= b[i];
+  }
+  return a;
+}
+
 }  // namespace
 
 mechanics::BeamStiffness<double> long_beam(const model::Material& material, int length) {
@@ -389,56 +442,21 @@ mechanics::BeamStiffness<double> long_beam(const model::Material& material, int 
 
 Network make_network(const Robot& robot) { return Builder(robot).build(); }
 
-/// Along a run each displacement follows from the one before and from what the beam between them
-/// must carry; a hanging module follows from its host and its own load.
 void recover(const Robot& robot, const Network& network,
              std::vector<Vec6<double>>& displacement) {
   const auto beam = long_beam(robot.material(), 1);
-  std::array<Mat6<double>, 6> k11;
+  std::array<std::vector<RunFactor>, 6> runs;
   std::array<Mat6<double>, 6> inverse_11;
-  std::array<Mat6<double>, 6> inverse_12;
   for (std::size_t d = 0; d < 6; ++d) {
-    k11[d] = mechanics::block_11(beam, direction_of(d));
-    inverse_11[d] = inverse_of(k11[d]);
-    inverse_12[d] = inverse_of(mechanics::block_12(beam, direction_of(d)));
-  }
-  const auto minus = [](Vec6<double> a, const Vec6<double>& b) {
-    for (std::size_t i = 0; i < 6; ++i) {
-      a[i] -= b[i];
-    }
-    return a;
-  };
-  for (const Network::Run& run : network.runs) {
-    std::vector<std::size_t> modules = {at(run.from)};
-    for (int i = 0; i < run.length; ++i) {
-      modules.push_back(at(robot.neighbours()[modules.back()][run.direction]));
-    }
-    // u_k = A_k + B_k with the load marched from a clamped start, then the end condition: the chain
-    // is short, so the two-point problem is solved by block elimination from both ends at once.
-    const std::size_t inner = modules.size() - 2;
-    std::vector<Mat6<double>> pivot(inner);
-    std::vector<Vec6<double>> right(inner);
-    const std::size_t d = run.direction;
-    const Mat6<double> to_next = mechanics::block_12(beam, direction_of(d));
-    const Mat6<double> to_last = mechanics::block_12(beam, direction_of(d ^ 1U));
-    for (std::size_t i = 0; i < inner; ++i) {
-      Mat6<double> diagonal = k11[d];
-      base::add_to(diagonal, k11[d ^ 1U]);
-      right[i] = network.load[modules[i + 1]];
-      if (i == 0) {
-        right[i] = minus(right[i], multiply(to_last, displacement[modules[0]]));
-      } else {
-        const Mat6<double> factor = product(to_last, pivot[i - 1]);
-        subtract_product(diagonal, factor, to_next);
-        right[i] = minus(right[i], multiply(factor, right[i - 1]));
+    inverse_11[d] = inverse_of(mechanics::block_11(beam, direction_of(d)));
+    if (d % 2 == 0) {
+      for (int length = 0; network.has_long_beams && length <= kBeamLengthMax; ++length) {
+        runs[d].push_back(factorize_run(beam, d, length));
       }
-      pivot[i] = inverse_of(diagonal);
     }
-    for (std::size_t i = inner; i-- > 0;) {
-      const Vec6<double> following = displacement[modules[i + 2]];
-      displacement[modules[i + 1]] =
-          multiply(pivot[i], minus(right[i], multiply(to_next, following)));
-    }
+  }
+  for (const Network::Run& run : network.runs) {
+    recover_run(robot, network, run, runs[run.direction][at(run.length)], displacement);
   }
   for (std::size_t i = network.hanging.size(); i-- > 0;) {
     const auto [module, direction] = network.hanging[i];

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -44,7 +45,9 @@ struct Seat {
 /// Direction -> node; the node one past the last stands for "none" and for the immobile ground.
 using Others = std::array<std::int32_t, 6>;
 
-/// Direction -> pitches that the beam there is long, 0 for none; then the code of the contact state.
+/// Direction -> pitches that the beam there is long, 0 for none; then, in kContactByte, what the
+/// ground does that is no such beam, 0 for nothing.
 using Kind = std::array<std::uint8_t, 8>;
+inline constexpr std::size_t kContactByte = 6;
 
 }  // namespace holdfast::solver
