@@ -122,8 +122,8 @@ Cells growth(std::size_t count) {
   while (cells.size() < count) {
     const Cell from = cells[draw_below(twister, static_cast<std::uint32_t>(cells.size()))];
     const Cell next = base::neighbour(from, kSteps[draw_below(twister, 6)]);
-    if (next.z >= 0 && seen.insert(next, static_cast<std::int32_t>(cells.size())) ==
-                           CellIndex::kNone) {
+    if (next.z >= 0 &&
+        seen.insert(next, static_cast<std::int32_t>(cells.size())) == CellIndex::kNone) {
       cells.push_back(next);
     }
   }

@@ -24,8 +24,8 @@ TEST(Families, are_robots_without_double_cells_and_as_many_as_the_formula_says) 
       const std::vector<Cell> cells = family_cells(info.family, size);
       EXPECT_EQ(cells.size(), family_count(info.family, size)) << info.name << ' ' << size;
       const auto robot = Robot::create({.existing = cells});
-      EXPECT_TRUE(robot.has_value()) << info.name << ' ' << size << ' '
-                                     << (robot ? "" : robot.error().message);
+      EXPECT_TRUE(robot.has_value())
+          << info.name << ' ' << size << ' ' << (robot ? "" : robot.error().message);
     }
   }
 }
@@ -39,7 +39,9 @@ TEST(Families, have_the_sizes_of_the_published_comparison) {
 
 TEST(Families, growth_draws_as_python_does) {
   const std::vector<Cell> cells = family_cells(Family::kGrowth, 5000);
-  const std::vector<Cell> first = {{0, 0, 0}, {0, -1, 0}, {-1, 0, 0}, {1, 0, 0}, {2, 0, 0}, {1, -1, 0}, {0, 1, 0}, {2, 0, 1}, {1, -1, 1}, {0, 0, 1}, {1, -1, 2}, {0, 2, 0}};
+  const std::vector<Cell> first = {{0, 0, 0},  {0, -1, 0}, {-1, 0, 0}, {1, 0, 0},
+                                   {2, 0, 0},  {1, -1, 0}, {0, 1, 0},  {2, 0, 1},
+                                   {1, -1, 1}, {0, 0, 1},  {1, -1, 2}, {0, 2, 0}};
   EXPECT_EQ(std::vector<Cell>(cells.begin(), cells.begin() + 12), first);
   EXPECT_EQ(cells[4999], (Cell{11, 4, 5}));
 }

@@ -33,12 +33,12 @@ constexpr std::size_t kDirectFillMax = 7;
 /// What one block of the factorization takes, upper and lower.
 constexpr std::size_t kBlockBytes = 2 * sizeof(Mat6<double>) + 24;
 
-/// Multigrid's errors in the energy norm, as shares of the first: while contact states are sought, at
-/// the end, and of the solution that is compared with the end. What they mean for load ratios is in
-/// docs/solver.md.
+/// Multigrid's errors in the energy norm, as shares of the first: while contact states are sought,
+/// at the end, and of the solution that is compared with the end. What they mean for load ratios is
+/// in docs/solver.md.
 constexpr double kLooseTolerance = 1e-3;
-constexpr double kTightTolerance = 1e-6;
-constexpr double kFinalTolerance = 1e-7;
+constexpr double kTightTolerance = 3e-5;
+constexpr double kFinalTolerance = 3e-6;
 
 std::size_t node_index(std::int32_t node) { return static_cast<std::size_t>(node); }
 
@@ -114,7 +114,6 @@ void EquilibriumSolver::choose_method(std::size_t node_count) {
   if (method == Method::kDirect) {
     make_direct(node_count, block_count_max);
   } else if (Multigrid::bytes_for(node_count) <= options_.memory_bytes_max) {
-    // The progress is told as an error, not as its square.
     multigrid_ = std::make_unique<Multigrid>(robot_, options_.thread_count, options_.progress);
   }
 }

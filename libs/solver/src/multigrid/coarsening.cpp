@@ -97,8 +97,8 @@ class Coarsening {
     return count;
   }
 
-  /// Connected parts within cells whose keys agree but for the last `shift` bits, numbered along the
-  /// Morton curve.
+  /// Connected parts within cells whose keys agree but for the last `shift` bits, numbered along
+  /// the Morton curve.
   void find_clusters(unsigned shift) {
     cluster_.assign(fine_.order.size(), -1);
     std::vector<std::int32_t> open;
@@ -397,8 +397,8 @@ class Coarsening {
         x /= count;
       }
       sum.reach /= count;
-      sum.stiffness = stretched(sum.stiffness, sum.middle, sum.direction / 2U, sum.length / count,
-                                sum.reach);
+      sum.stiffness =
+          stretched(sum.stiffness, sum.middle, sum.direction / 2U, sum.length / count, sum.reach);
       sum.length = sum.reach;
       coarse_.anchors.push_back(sum);
       i = j;

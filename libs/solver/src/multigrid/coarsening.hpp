@@ -33,8 +33,8 @@ struct Anchor {
   Mat stiffness = {};  ///< At the node.
 };
 
-/// A level in double precision, as the next one is made from it. Nodes whose springs are equal share
-/// them: springs[pattern[node] + i] leads to other[start[node] + i].
+/// A level in double precision, as the next one is made from it. Nodes whose springs are equal
+/// share them: springs[pattern[node] + i] leads to other[start[node] + i].
 struct Stage {
   std::vector<std::int32_t> order;  ///< Nodes along the Morton curve.
   std::vector<std::uint64_t> key;   ///< Node -> Morton key of its cell

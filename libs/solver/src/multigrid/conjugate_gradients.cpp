@@ -69,7 +69,8 @@ double ConjugateGradients::begin() {
   return error_;
 }
 
-// x, r, q: displacement, residual, K p;  p, z: direction, preconditioned residual (single precision)
+// x, r, q: displacement, residual, K p;  p, z: direction, preconditioned residual (single
+// precision)
 ConjugateGradients::End ConjugateGradients::run(double target, int iteration_count_max) {
   const Kernels& kernel = kernels();
   Level& finest = hierarchy_.levels().front();

@@ -7,9 +7,9 @@
 
 #include "cycle.hpp"
 
-/// Flexible preconditioned conjugate gradients [Notay 2000]. Displacements and residuals are kept in
-/// double precision; search directions in single precision, but what they do to x and r is computed
-/// from the same rounded direction in double precision, so x and r never part.
+/// Flexible preconditioned conjugate gradients [Notay 2000]. Displacements and residuals are kept
+/// in double precision; search directions in single precision, but what they do to x and r is
+/// computed from the same rounded direction in double precision, so x and r never part.
 namespace holdfast::solver {
 
 class ConjugateGradients {
@@ -18,7 +18,9 @@ class ConjugateGradients {
 
   /// Six numbers per node.
   std::vector<double>& x() { return x_; }
+
   const std::vector<double>& x() const { return x_; }
+
   std::vector<double>& r() { return r_; }
 
   /// r -= K x, for an x that did not come out of run().
@@ -26,8 +28,8 @@ class ConjugateGradients {
 
   enum class End : std::uint8_t { kConverged, kTooSlow, kBroken };
 
-  /// Takes up x and its residual r. Returns r . M^-1 r, which estimates the square of the error of x
-  /// in the energy norm.
+  /// Takes up x and its residual r. Returns r . M^-1 r, which estimates the square of the error of
+  /// x in the energy norm.
   double begin();
 
   /// After begin(): improves x until that estimate is at most `target`.

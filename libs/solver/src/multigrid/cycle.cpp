@@ -61,7 +61,8 @@ void Cycle::descend(std::size_t depth) {
     }
   }
   if (depth + 1 < hierarchy_.levels().size()) {
-    // The last colour has no forces left, and its correction would be overwritten by the next sweep.
+    // The last colour has no forces left, and its correction would be overwritten by the next
+    // sweep.
     const std::size_t settled = level.colour_start[colour_count - 1];
     pass_down(depth, settled);
     solve(depth + 1);

@@ -4,11 +4,11 @@
 
 #include "hierarchy.hpp"
 
-/// The preconditioner z = M^-1 r: one K-cycle [Notay 2008]. On each level relax, pass the forces that
-/// are left to the clusters, move these as rigid bodies, relax again in the opposite order. How the
-/// clusters move is found on the next level by at most two steps of conjugate gradients, each with
-/// the cycle of the levels below. That makes M depend a little on r, so the iteration around it must
-/// be a flexible one.
+/// The preconditioner z = M^-1 r: one K-cycle [Notay 2008]. On each level relax, pass the forces
+/// that are left to the clusters, move these as rigid bodies, relax again in the opposite order.
+/// How the clusters move is found on the next level by at most two steps of conjugate gradients,
+/// each with the cycle of the levels below. That makes M depend a little on r, so the iteration
+/// around it must be a flexible one.
 namespace holdfast::solver {
 
 class Cycle {

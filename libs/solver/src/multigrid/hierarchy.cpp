@@ -202,8 +202,8 @@ void Hierarchy::fill_stage(Stage& stage) const {
                                .stiffness = ground_(network_.kind[node][kContactByte])});
     }
     stage.start[node + 1] = static_cast<std::int32_t>(stage.other.size());
-    const auto [found, is_new] = patterns.emplace(
-        std::bit_cast<std::uint64_t>(kind), static_cast<std::uint32_t>(stage.springs.size()));
+    const auto [found, is_new] = patterns.emplace(std::bit_cast<std::uint64_t>(kind),
+                                                  static_cast<std::uint32_t>(stage.springs.size()));
     stage.pattern[node] = found->second;
     for (std::size_t d = 0; is_new && d < 6; ++d) {
       if (kind[d] > 0) {
@@ -238,8 +238,8 @@ Mat Hierarchy::diagonal(const Kind& kind) const {
   Mat sum;
   for (std::size_t d = 0; d < 6; ++d) {
     if (kind[d] > 0) {
-      base::add_to(sum, mechanics::block_11(long_beam(material_, kind[d]),
-                                            static_cast<Direction>(d)));
+      base::add_to(sum,
+                   mechanics::block_11(long_beam(material_, kind[d]), static_cast<Direction>(d)));
     }
   }
   if (kind[kContactByte] != 0) {
@@ -355,12 +355,14 @@ std::size_t Hierarchy::bytes() const {
   std::size_t sum = 0;
   for (const Level& level : levels_) {
     sum += (level.start.capacity() + level.other.capacity() + level.block.capacity() +
-            level.type.capacity() + level.member.capacity() + level.member_start.capacity()) * 4 +
+            level.type.capacity() + level.member.capacity() + level.member_start.capacity()) *
+               4 +
            (level.blocks.capacity() + level.diagonal.capacity() + level.inverse.capacity()) *
                sizeof(Block) +
            level.seat.capacity() * sizeof(Seat) +
            (level.r.capacity() + level.z.capacity() + level.first.capacity() +
-            level.first_image.capacity()) * sizeof(Six);
+            level.first_image.capacity()) *
+               sizeof(Six);
   }
   return sum;
 }

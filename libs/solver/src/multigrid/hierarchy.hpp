@@ -15,13 +15,13 @@
 
 /// The levels of the preconditioner: ever larger clusters of modules that move as rigid bodies.
 ///
-/// A level is a set of nodes with springs between them (springs.hpp). On the finest level the spring
-/// of a beam is its K11. The next level's nodes are the connected parts of the robot within cells
-/// twice as wide; its springs are the sums of those between its members, carried to the clusters'
-/// centres and lengthened to reach from centre to centre. That is because a cluster is not rigid in
-/// truth: what rigid clusters would leave to the springs between them alone, the modules behind
-/// share. Without it every level is about twice as stiff as the one below, and its corrections are
-/// too small [Braess 1995].
+/// A level is a set of nodes with springs between them (springs.hpp). On the finest level the
+/// spring of a beam is its K11. The next level's nodes are the connected parts of the robot within
+/// cells twice as wide; its springs are the sums of those between its members, carried to the
+/// clusters' centres and lengthened to reach from centre to centre. That is because a cluster is
+/// not rigid in truth: what rigid clusters would leave to the springs between them alone, the
+/// modules behind share. Without it every level is about twice as stiff as the one below, and its
+/// corrections are too small [Braess 1995].
 namespace holdfast::solver {
 
 class Hierarchy {
@@ -37,11 +37,15 @@ class Hierarchy {
   void update_types();
 
   std::vector<Level>& levels() { return levels_; }
+
   const LatticeView& lattice() const { return lattice_; }
+
   /// False if the finest level is the only one, or clusters stopped growing early.
   bool has_coarsest() const { return coarsest_.has_value(); }
+
   /// Factorized coarsest level.
   const BlockLu& coarsest() const { return *coarsest_; }
+
   std::size_t bytes() const;
 
  private:

@@ -53,9 +53,12 @@ inline Single swap(Single a) {
 }
 
 inline Single multiply(const Block& block, Single x) {
-  const Single a = load(block.column[0]) * broadcast<0>(x) + load(block.column[1]) * broadcast<1>(x);
-  const Single b = load(block.column[2]) * broadcast<2>(x) + load(block.column[3]) * broadcast<3>(x);
-  const Single c = load(block.column[4]) * broadcast<4>(x) + load(block.column[5]) * broadcast<5>(x);
+  const Single a =
+      load(block.column[0]) * broadcast<0>(x) + load(block.column[1]) * broadcast<1>(x);
+  const Single b =
+      load(block.column[2]) * broadcast<2>(x) + load(block.column[3]) * broadcast<3>(x);
+  const Single c =
+      load(block.column[4]) * broadcast<4>(x) + load(block.column[5]) * broadcast<5>(x);
   return a + b + c;
 }
 
@@ -170,7 +173,8 @@ inline void add_axis(const LatticeView& level, const Six* p, std::size_t node, W
     const std::size_t length = level.kind == nullptr ? 1 : level.kind[node][direction];
     const BeamRowDouble& beam = level.beams_double[direction * kRow + length];
     sum.low += load_double(beam.direct) * low(u) + load_double(beam.crossed) * low(crossed);
-    sum.high += load_double(beam.direct + 4) * high(u) + load_double(beam.crossed + 4) * high(crossed);
+    sum.high +=
+        load_double(beam.direct + 4) * high(u) + load_double(beam.crossed + 4) * high(crossed);
   }
 }
 

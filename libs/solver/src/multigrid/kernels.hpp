@@ -18,11 +18,11 @@ inline constexpr int kBeamLengthMax = 32;
 /// A robot's nodes and beams as the kernels see them.
 struct LatticeView {
   const Others* other = nullptr;
-  const Kind* kind = nullptr;             ///< Null if every beam is one pitch long.
-  const std::uint32_t* type = nullptr;    ///< Node -> diagonal, inverse
-  const BeamRow* beams = nullptr;         ///< [direction * (kBeamLengthMax + 1) + length]
-  const Block* diagonal = nullptr;        ///< K_pp
-  const Block* inverse = nullptr;         ///< K_pp^-1
+  const Kind* kind = nullptr;           ///< Null if every beam is one pitch long.
+  const std::uint32_t* type = nullptr;  ///< Node -> diagonal, inverse
+  const BeamRow* beams = nullptr;       ///< [direction * (kBeamLengthMax + 1) + length]
+  const Block* diagonal = nullptr;      ///< K_pp
+  const Block* inverse = nullptr;       ///< K_pp^-1
   const BeamRowDouble* beams_double = nullptr;
   const BlockDouble* diagonal_double = nullptr;
 };

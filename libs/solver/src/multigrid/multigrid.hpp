@@ -63,10 +63,11 @@ class Multigrid {
   std::unique_ptr<Hierarchy> hierarchy_;
   std::unique_ptr<ConjugateGradients> gradients_;
   std::function<void(int, double)> progress_;
-  bool is_stale_ = true;                ///< Some facet changed since the last solve.
+  bool is_stale_ = true;                 ///< Some facet changed since the last solve.
   std::size_t changed_facet_count_ = 0;  ///< Since the hierarchy was made.
-  double reference_ = 0;                ///< Square of the first error.
+  double reference_ = 0;                 ///< Square of the first error.
   int iteration_count_ = 0;
+  int told_count_ = 0;
 };
 
 }  // namespace holdfast::solver

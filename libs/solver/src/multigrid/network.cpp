@@ -141,8 +141,8 @@ class Builder {
         is_gone_[leaf] = 1;
         network_.hanging.push_back({.module = static_cast<std::int32_t>(leaf),
                                     .direction = static_cast<std::uint8_t>(direction)});
-        base::add_to(network_.load[host], moved(network_.load[leaf], direction ^ 1U,
-                                                robot_.material().pitch_mm));
+        base::add_to(network_.load[host],
+                     moved(network_.load[leaf], direction ^ 1U, robot_.material().pitch_mm));
         --degree_[host];
         leaf = host;
       }
@@ -417,7 +417,8 @@ void recover_run(const Robot& robot, const Network& network, const Network::Run&
   }
   for (std::size_t i = 1; i < length; ++i) {
     right[i] = network.load[modules[i]];
-    subtract_product(right[i], factor.factor[i - 1], i == 1 ? displacement[modules[0]] : right[i - 1]);
+    subtract_product(right[i], factor.factor[i - 1],
+                     i == 1 ? displacement[modules[0]] : right[i - 1]);
   }
   for (std::size_t i = length - 1; i > 0; --i) {
     subtract_product(right[i], factor.to_next, displacement[modules[i + 1]]);
@@ -442,8 +443,7 @@ mechanics::BeamStiffness<double> long_beam(const model::Material& material, int 
 
 Network make_network(const Robot& robot) { return Builder(robot).build(); }
 
-void recover(const Robot& robot, const Network& network,
-             std::vector<Vec6<double>>& displacement) {
+void recover(const Robot& robot, const Network& network, std::vector<Vec6<double>>& displacement) {
   const auto beam = long_beam(robot.material(), 1);
   std::array<std::vector<RunFactor>, 6> runs;
   std::array<Mat6<double>, 6> inverse_11;

@@ -28,9 +28,9 @@ struct Network {
   std::vector<std::int32_t> module;       ///< Node -> module.
   std::vector<Others> other;
   std::vector<Kind> kind;  ///< A beam down to the ground or to a fixed module has no other node.
-  std::vector<std::int32_t> order;        ///< Nodes along the Morton curve.
-  std::vector<std::uint64_t> key;         ///< Their Morton keys, ascending.
-  std::array<std::int32_t, 3> corner{};   ///< Cell with the key 0.
+  std::vector<std::int32_t> order;       ///< Nodes along the Morton curve.
+  std::vector<std::uint64_t> key;        ///< Their Morton keys, ascending.
+  std::array<std::int32_t, 3> corner{};  ///< Cell with the key 0.
   bool has_long_beams = false;
   std::vector<base::Vec6<double>> load;  ///< By module; empty if nothing was eliminated.
 
@@ -39,6 +39,7 @@ struct Network {
     std::int32_t module = 0;
     std::uint8_t direction = 0;  ///< To what it hangs on.
   };
+
   std::vector<Hanging> hanging;
 
   /// A straight run of modules between two others.
@@ -47,6 +48,7 @@ struct Network {
     std::uint8_t direction = 0;  ///< From there onwards.
     std::int32_t length = 0;     ///< Pitches to the module after the last.
   };
+
   std::vector<Run> runs;
 };
 

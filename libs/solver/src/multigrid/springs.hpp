@@ -33,8 +33,8 @@ Mat carried(const Mat& s, const Point& a);
 /// `reach`, as if its compliance were spread evenly along it: each part bends, and what bends away
 /// from the middle shifts it. So the compliance is multiplied by reach/length, after its shear part
 /// gained (reach^2 - length^2)/12 times the rotational one: that makes a beam of one length a beam
-/// of the other exactly. In a solid the neighbours hinder the bending, so only kBendShare of that is
-/// taken.
+/// of the other exactly. In a solid the neighbours hinder the bending, so only kBendShare of that
+/// is taken.
 Mat stretched(const Mat& stiffness, const Point& arm, std::size_t axis, double length,
               double reach);
 

@@ -27,8 +27,8 @@ class Team {
   /// Nodes in a chunk.
   static constexpr std::size_t kChunk = 512;
 
-  /// Calls work(begin, end) for ranges that together are [first, last); ranges begin at multiples of
-  /// the chunk from `first`, so that each chunk is computed whole by one thread.
+  /// Calls work(begin, end) for ranges that together are [first, last); ranges begin at multiples
+  /// of the chunk from `first`, so that each chunk is computed whole by one thread.
   template <class Work>
   void share(std::size_t first, std::size_t last, const Work& work) {
     const std::size_t chunk_count = (last - first + kChunk - 1) / kChunk;
@@ -48,9 +48,8 @@ class Team {
         work(begin, end);
       }
     };
-    run([](const void* context, int thread) {
-      (*static_cast<decltype(&part)>(context))(thread);
-    }, &part);
+    run([](const void* context, int thread) { (*static_cast<decltype(&part)>(context))(thread); },
+        &part);
   }
 
   /// The sum of work(begin, end) over the chunks of [0, count), in their order.

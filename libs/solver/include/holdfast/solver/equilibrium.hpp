@@ -29,9 +29,9 @@
 ///   release the open ones, solve again. A facet that would be pressed again is held again for
 ///   good, so that loop ends.
 ///
-/// Each linear system is solved directly (block_lu.hpp) where that is the fastest, which is for small
-/// and for thread-like robots, and by multigrid otherwise (docs/solver.md). Then the contact states
-/// are found with coarse solutions first, and each solution starts from the one before.
+/// Each linear system is solved directly (block_lu.hpp) where that is the fastest, which is for
+/// small and for thread-like robots, and by multigrid otherwise (docs/solver.md). Then the contact
+/// states are found with coarse solutions first, and each solution starts from the one before.
 namespace holdfast::solver {
 
 class Multigrid;
@@ -52,7 +52,8 @@ struct EquilibriumOptions {
   bool is_bonded = false;
   /// For multigrid; 0: as many as the machine has cores. The result does not depend on it.
   int thread_count = 0;
-  /// Called after every iteration of multigrid with the error that is left, as a share of the first.
+  /// Called after every iteration of multigrid with the error that is left, as a share of the
+  /// first.
   std::function<void(int iteration, double error)> progress = {};
 };
 
@@ -68,6 +69,7 @@ enum class Outcome : std::uint8_t {
   kNotSettled,  ///< The contact iteration cycles or takes too many steps.
   kSingular,    ///< A pivot vanished.
   kTooLarge,    ///< The solver does not fit into memory_bytes_max.
+  kNotSought,   ///< The robot topples, and finding out how would take long.
   kTooSlow,     ///< Multigrid does not converge: a robot too slender for it.
 };
 
@@ -77,7 +79,8 @@ struct Equilibrium {
   mechanics::ContactLaw law = mechanics::ContactLaw::kRegularised;
   std::vector<base::Vec6<double>> displacement;
   /// A second answer, to see how far the first may be off: before the last step of iterative
-  /// refinement, or ten times farther from convergence; or, if open_but_held_count > 0, with those facets free to slide.
+  /// refinement, or ten times farther from convergence; or, if open_but_held_count > 0, with those
+  /// facets free to slide.
   std::vector<base::Vec6<double>> alternative;
   std::vector<mechanics::ContactState> contact;  ///< Of ground modules; the rest is not pressed.
   std::vector<base::Vec6<double>> ground_force;  ///< By the ground on the module at its node.
