@@ -33,12 +33,11 @@ constexpr std::size_t kDirectFillMax = 7;
 /// What one block of the factorization takes, upper and lower.
 constexpr std::size_t kBlockBytes = 2 * sizeof(Mat6<double>) + 24;
 
-/// Multigrid's errors in the energy norm, as shares of the first: while contact states are sought,
-/// at the end, and of the solution that is compared with the end. What they mean for load ratios is
-/// in docs/solver.md.
+/// Multigrid's error while contact states are sought, as a share of the first.
 constexpr double kLooseTolerance = 1e-3;
-constexpr double kTightTolerance = 3e-5;
-constexpr double kFinalTolerance = 3e-6;
+
+/// The solution that is compared with the last one is so much farther from convergence.
+constexpr double kAlternativeFactor = 10;
 
 std::size_t node_index(std::int32_t node) { return static_cast<std::size_t>(node); }
 
@@ -201,7 +200,8 @@ Equilibrium EquilibriumSolver::solve(const ContactOptions& contact) {
 
 Outcome EquilibriumSolver::iterate(Equilibrium& result) {
   const bool is_linear = options_.is_bonded || facets_.empty();
-  tolerance_ = is_linear ? kTightTolerance : kLooseTolerance;
+  const double tight = kAlternativeFactor * options_.tolerance;
+  tolerance_ = is_linear ? tight : std::max(tight, kLooseTolerance);
   Outcome outcome = Outcome::kSettled;
   if (is_linear) {
     outcome = solve_linear(result) ? Outcome::kSettled : Outcome::kSingular;
@@ -214,7 +214,8 @@ Outcome EquilibriumSolver::iterate(Equilibrium& result) {
 
 /// Once the states hold still: whether the solution is good enough to say so. If not, it will be.
 bool EquilibriumSolver::is_tight_now() {
-  return !multigrid_ || std::exchange(tolerance_, kTightTolerance) == kTightTolerance;
+  const double tight = kAlternativeFactor * options_.tolerance;
+  return !multigrid_ || std::exchange(tolerance_, tight) == tight;
 }
 
 void EquilibriumSolver::set_tangent(const Facet& facet) {
@@ -401,7 +402,7 @@ std::vector<Vec6<double>> EquilibriumSolver::internal_force(
 void EquilibriumSolver::finish(Equilibrium& result) {
   if (multigrid_) {
     result.alternative = std::move(result.displacement);
-    if (!multigrid_->solve(kFinalTolerance)) {
+    if (!multigrid_->solve(options_.tolerance)) {
       result.outcome = Outcome::kTooSlow;
       return;
     }

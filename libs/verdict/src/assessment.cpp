@@ -107,6 +107,9 @@ void assess_connections(const model::Robot& robot, Assessment& assessment) {
 /// than about 1e-8, and keep the matrix regular on the way to the answer.
 constexpr double kStableGammas[] = {1e-9};
 
+/// The same for multigrid, whose single precision weaker springs escape: below its own error.
+constexpr double kStableGammasMultigrid[] = {1e-6};
+
 /// A toppling robot hangs on its weak springs, and bends elastically while it does: if they are
 /// stiff, three corners may still touch and look like a hold. The weaker they are, the more the
 /// tilt outweighs the bending; the second value serves one robot in ten thousand. Much weaker ones
@@ -149,8 +152,11 @@ void find_equilibrium(const model::Robot& robot, const solver::EquilibriumOption
     assessment.contact_model = ContactModel::kBonded;
     return;
   }
+  const bool is_multigrid = assessment.equilibrium.method == solver::Method::kMultigrid;
   const std::span<const double> gammas =
-      assessment.is_stable ? std::span<const double>(kStableGammas) : kTopplingGammas;
+      !assessment.is_stable ? std::span<const double>(kTopplingGammas)
+      : is_multigrid        ? std::span<const double>(kStableGammasMultigrid)
+                            : kStableGammas;
   for (const double gamma : gammas) {
     // A margin of zero is unstable by decision, not by mechanics: no model need agree with it.
     if (agrees(assessment) ||
@@ -158,8 +164,10 @@ void find_equilibrium(const model::Robot& robot, const solver::EquilibriumOption
       return;
     }
     const int steps = assessment.equilibrium.steps;
+    const int iterations = assessment.equilibrium.iteration_count;
     Equilibrium exact = solver.solve({.law = ContactLaw::kUnilateral, .gamma = gamma});
     exact.steps += steps;
+    exact.iteration_count += iterations;
     assessment.equilibrium = std::move(exact);
     assessment.model = model_stability(robot, assessment.equilibrium);
     assessment.contact_model = ContactModel::kUnilateral;

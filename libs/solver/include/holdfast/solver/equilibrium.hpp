@@ -52,6 +52,9 @@ struct EquilibriumOptions {
   bool is_bonded = false;
   /// For multigrid; 0: as many as the machine has cores. The result does not depend on it.
   int thread_count = 0;
+  /// Of multigrid: the error in the energy norm, as a share of that of no displacements at all.
+  /// Load ratios are then within 1e-4 of the largest one (docs/solver.md).
+  double tolerance = 3e-6;
   /// Called after every iteration of multigrid with the error that is left, as a share of the
   /// first.
   std::function<void(int iteration, double error)> progress = {};
