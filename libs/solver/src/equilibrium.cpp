@@ -33,7 +33,9 @@ constexpr std::size_t kDirectFillMax = 7;
 /// What one block of the factorization takes, upper and lower.
 constexpr std::size_t kBlockBytes = 2 * sizeof(Mat6<double>) + 24;
 
-/// Multigrid's error while contact states are sought, as a share of the first.
+/// Multigrid's error while contact states are sought, as a share of the first, where they are
+/// unique. The regularised law may have several answers, and the one meant is that of Newton's
+/// path, so each step of it must be exact.
 constexpr double kLooseTolerance = 1e-3;
 
 /// The solution that is compared with the last one is so much farther from convergence.
@@ -201,7 +203,8 @@ Equilibrium EquilibriumSolver::solve(const ContactOptions& contact) {
 Outcome EquilibriumSolver::iterate(Equilibrium& result) {
   const bool is_linear = options_.is_bonded || facets_.empty();
   const double tight = kAlternativeFactor * options_.tolerance;
-  tolerance_ = is_linear ? tight : std::max(tight, kLooseTolerance);
+  const bool has_one_answer = !is_linear && result.law == ContactLaw::kUnilateral;
+  tolerance_ = has_one_answer ? std::max(tight, kLooseTolerance) : tight;
   Outcome outcome = Outcome::kSettled;
   if (is_linear) {
     outcome = solve_linear(result) ? Outcome::kSettled : Outcome::kSingular;
