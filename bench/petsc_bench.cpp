@@ -17,8 +17,11 @@ Mat assemble(const hf::model::Robot& robot, PetscInt first, PetscInt last) {
   const auto beam = hf::mechanics::beam_stiffness(hf::model::beam_section(robot.material()));
   const auto n = static_cast<PetscInt>(robot.modules().size());
   Mat matrix = nullptr;
-  MatCreateBAIJ(PETSC_COMM_WORLD, 6, 6 * (last - first), 6 * (last - first), 6 * n, 6 * n, 7,
-                nullptr, 6, nullptr, &matrix);
+  MatCreateAIJ(PETSC_COMM_WORLD, 6 * (last - first), 6 * (last - first), 6 * n, 6 * n, 42, nullptr,
+               36, nullptr, &matrix);
+  MatSetBlockSize(matrix, 6);
+  // Two thirds of each block are zero: without them every method here is faster.
+  MatSetOption(matrix, MAT_IGNORE_ZERO_ENTRIES, PETSC_TRUE);
   for (PetscInt row = first; row < last; ++row) {
     const auto module = static_cast<std::size_t>(row);
     Mat6<double> diagonal;

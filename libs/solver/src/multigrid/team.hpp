@@ -26,13 +26,15 @@ class Team {
   static constexpr int kThreadCountMax = 64;
   /// Nodes in a chunk.
   static constexpr std::size_t kChunk = 512;
+  /// Fewer chunks are not shared: waking a thread takes as long as they do.
+  static constexpr std::size_t kSharedChunkMin = 6;
 
   /// Calls work(begin, end) for ranges that together are [first, last); ranges begin at multiples
   /// of the chunk from `first`, so that each chunk is computed whole by one thread.
   template <class Work>
   void share(std::size_t first, std::size_t last, const Work& work) {
     const std::size_t chunk_count = (last - first + kChunk - 1) / kChunk;
-    if (thread_count_ == 1 || chunk_count < 2) {
+    if (thread_count_ == 1 || chunk_count < kSharedChunkMin) {
       if (first < last) {
         work(first, last);
       }
