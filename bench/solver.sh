@@ -3,8 +3,8 @@
 # SPDX-License-Identifier: Apache-2.0
 # solver.sh FOLDER [FAMILY SIZE]...   our solver and its peers on the same structures, in turn
 #
-# FOLDER holds the programs. Each run is a process of its own; ours runs between the peers, and of its
-# runs the median counts. Prints a table and writes FOLDER/solver.csv.
+# FOLDER holds the programs. Each run is a process of its own; ours runs between the peers, and of
+# its runs the median counts. Prints a table and writes FOLDER/solver.csv.
 # Without structures: the three of the published comparison. HOLDFAST_SCALE=1 adds 10^4 to 10^6
 # modules of every family, ours alone.
 set -euo pipefail
@@ -81,8 +81,8 @@ compare() { # FAMILY SIZE
     read -r support threads <<<"$run"
     for _ in 1 2 3; do ours "$family" "$size" "$support" "$threads"; done >"$work/more" || true
     read -r modules seconds mb its <<<"$(median "$work/more")"
-    row "holdfast, $support, $threads threads" "$family" "$size" "$modules" "$seconds" "$mb" "$its" - \
-      "$own"
+    row "holdfast, $support, $threads threads" "$family" "$size" "$modules" "$seconds" "$mb" \
+      "$its" - "$own"
   done
   while IFS='|' read -r name line error; do
     if [ -z "$line" ]; then

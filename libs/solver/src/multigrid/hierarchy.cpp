@@ -351,20 +351,4 @@ Hierarchy::Hierarchy(const Network& network, const model::Material& material, Te
   }
 }
 
-std::size_t Hierarchy::bytes() const {
-  std::size_t sum = 0;
-  for (const Level& level : levels_) {
-    sum += (level.start.capacity() + level.other.capacity() + level.block.capacity() +
-            level.type.capacity() + level.member.capacity() + level.member_start.capacity()) *
-               4 +
-           (level.blocks.capacity() + level.diagonal.capacity() + level.inverse.capacity()) *
-               sizeof(Block) +
-           level.seat.capacity() * sizeof(Seat) +
-           (level.r.capacity() + level.z.capacity() + level.first.capacity() +
-            level.first_image.capacity()) *
-               sizeof(Six);
-  }
-  return sum;
-}
-
 }  // namespace holdfast::solver

@@ -46,8 +46,6 @@ class Hierarchy {
   /// Factorized coarsest level.
   const BlockLu& coarsest() const { return *coarsest_; }
 
-  std::size_t bytes() const;
-
  private:
   void make_lattice();
   void fill_stage(Stage& stage) const;

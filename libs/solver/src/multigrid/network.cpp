@@ -257,7 +257,6 @@ class Builder {
       low = {std::min(low.x, module.cell.x), std::min(low.y, module.cell.y),
              std::min(low.z, module.cell.z)};
     }
-    network_.corner = {low.x, low.y, low.z};
     items_.reserve(modules.size());
     for (std::size_t i = 0; i < modules.size(); ++i) {
       if (is_gone_[i] == 0) {
@@ -449,14 +448,14 @@ void recover(const Robot& robot, const Network& network, std::vector<Vec6<double
   std::array<Mat6<double>, 6> inverse_11;
   for (std::size_t d = 0; d < 6; ++d) {
     inverse_11[d] = inverse_of(mechanics::block_11(beam, direction_of(d)));
-    if (d % 2 == 0) {
-      for (int length = 0; network.has_long_beams && length <= kBeamLengthMax; ++length) {
-        runs[d].push_back(factorize_run(beam, d, length));
-      }
-    }
+    runs[d].resize(kBeamLengthMax + 1);
   }
   for (const Network::Run& run : network.runs) {
-    recover_run(robot, network, run, runs[run.direction][at(run.length)], displacement);
+    RunFactor& factor = runs[run.direction][at(run.length)];
+    if (factor.pivot.empty()) {
+      factor = factorize_run(beam, run.direction, run.length);
+    }
+    recover_run(robot, network, run, factor, displacement);
   }
   for (std::size_t i = network.hanging.size(); i-- > 0;) {
     const auto [module, direction] = network.hanging[i];

@@ -28,9 +28,8 @@ struct Network {
   std::vector<std::int32_t> module;       ///< Node -> module.
   std::vector<Others> other;
   std::vector<Kind> kind;  ///< A beam down to the ground or to a fixed module has no other node.
-  std::vector<std::int32_t> order;       ///< Nodes along the Morton curve.
-  std::vector<std::uint64_t> key;        ///< Their Morton keys, ascending.
-  std::array<std::int32_t, 3> corner{};  ///< Cell with the key 0.
+  std::vector<std::int32_t> order;  ///< Nodes along the Morton curve.
+  std::vector<std::uint64_t> key;   ///< Their Morton keys, ascending.
   bool has_long_beams = false;
   std::vector<base::Vec6<double>> load;  ///< By module; empty if nothing was eliminated.
 
