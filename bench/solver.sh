@@ -1,12 +1,12 @@
 #!/usr/bin/env bash
 # SPDX-FileCopyrightText: The holdfast authors
 # SPDX-License-Identifier: Apache-2.0
-# solver.sh FOLDER [FAMILY SIZE]...   our solver and its peers on the same structures, in turn
+# solver.sh FOLDER [scale | [FAMILY SIZE]...]   our solver and its peers on the same structures, in turn
 #
 # FOLDER holds the programs. Each run is a process of its own; ours runs between the peers, and of
 # its runs the median counts. Prints a table and writes FOLDER/solver.csv.
-# Without structures: the three of the published comparison. HOLDFAST_SCALE=1 adds 10^4 to 10^6
-# modules of every family, ours alone.
+# Without structures: the three of the published comparison. With "scale" instead: 10^4 to 10^6
+# modules of every family, ours alone, and the plots of docs/.
 set -euo pipefail
 folder=$1
 shift
@@ -69,19 +69,19 @@ compare() { # FAMILY SIZE
   if [ -x "$folder/petsc_bench" ]; then
     for ranks in 1 2; do
       for pc in jacobi bjacobi gamg hypre; do
-        peer "PETSc CG, $pc, $ranks ranks" "$family" "$size" petsc "$ranks" "$family" "$size" \
+        peer "PETSc CG $pc $ranks ranks" "$family" "$size" petsc "$ranks" "$family" "$size" \
           -pc_type "$pc"
       done
     done
   fi
   read -r modules own mb its <<<"$(median "$work/ours")"
-  row "holdfast, bonded, 2 threads" "$family" "$size" "$modules" "$own" "$mb" "$its" \
+  row "holdfast bonded 2 threads" "$family" "$size" "$modules" "$own" "$mb" "$its" \
     "$(error_of "$family" "$size" "$work/ours.bin")" "$own"
   for run in "bonded 1" "contact 2"; do
     read -r support threads <<<"$run"
     for _ in 1 2 3; do ours "$family" "$size" "$support" "$threads"; done >"$work/more" || true
     read -r modules seconds mb its <<<"$(median "$work/more")"
-    row "holdfast, $support, $threads threads" "$family" "$size" "$modules" "$seconds" "$mb" \
+    row "holdfast $support $threads threads" "$family" "$size" "$modules" "$seconds" "$mb" \
       "$its" - "$own"
   done
   while IFS='|' read -r name line error; do
@@ -101,19 +101,30 @@ scale() { # ours alone, from 10^4 to 10^6 modules
     "shell 45" "shell 142" "shell 448" "growth 10000" "growth 100000" "growth 1000000" \
     "portal 320" "portal 3130" "tower 1100" "tower 11000" "bridge 400" "bridge 4000"; do
     read -r family size <<<"$run"
-    if ours "$family" "$size" bonded 2 >"$work/more"; then
-      read -r modules seconds mb its <"$work/more"
-      row "holdfast, bonded, 2 threads" "$family" "$size" "$modules" "$seconds" "$mb" "$its" - -
+    if for _ in 1 2 3; do ours "$family" "$size" bonded 2; done >"$work/more"; then
+      read -r modules seconds mb its <<<"$(median "$work/more")"
+      row "holdfast bonded 2 threads" "$family" "$size" "$modules" "$seconds" "$mb" "$its" - -
     else
-      printf '%-34s %-14s no answer\n' "holdfast, bonded, 2 threads" "$family $size"
+      printf '%-34s %-14s no answer\n' "holdfast bonded 2 threads" "$family $size"
     fi
   done
 }
 
 echo "bandwidth of a triad on 2 threads: $("$folder/solver_bench" bandwidth) GB/s"
-while [ $# -ge 2 ]; do
-  compare "$1" "$2"
-  shift 2
-done
-[ "${HOLDFAST_SCALE:-0}" = 0 ] || scale
+plot() { # COLUMN TITLE Y-LABEL PICTURE
+  awk -F, -v column="$1" 'NR > 1 { v = column == 0 ? 1e6 * $5 / $4 : column == 1 ? 1e6 * $6 / $4 : $7
+    print $2, $4, v }' "$csv" | python3 tools/plot_lines.py "$2" modules "$3" >"docs/$4"
+}
+
+if [ "$1" = scale ]; then
+  scale
+  plot 0 "From cells to load ratios, two threads" "us per module" solver_time.svg
+  plot 1 "Memory of the whole program" "bytes per module" solver_memory.svg
+  plot 2 "Iterations" "iterations" solver_iterations.svg
+else
+  while [ $# -ge 2 ]; do
+    compare "$1" "$2"
+    shift 2
+  done
+fi
 echo "table: $csv"

@@ -191,6 +191,14 @@ Equilibrium EquilibriumSolver::solve(const ContactOptions& contact) {
   if (result.outcome == Outcome::kSettled) {
     finish(result);
   }
+  if (result.outcome == Outcome::kTooSlow && options_.method == Method::kAutomatic) {
+    make_direct(robot_.modules().size() - robot_.fixed_count(),
+                options_.memory_bytes_max / kBlockBytes);
+    if (lu_) {
+      multigrid_.reset();
+      return solve(contact);
+    }
+  }
   if (lu_) {
     result.made_column_count = lu_->made_column_count() - made_before;
   } else {

@@ -223,5 +223,14 @@ TEST(Multigrid, is_chosen_for_large_solids_and_the_direct_solver_for_threads) {
   EXPECT_EQ(method(Family::kArm, 4000), Method::kDirect);
 }
 
+/// 3 x 3 modules wide and 3,000 high: bending drowns in single precision. That must be said, not
+/// guessed at; left alone, the solver then takes the direct one.
+TEST(Multigrid, says_when_a_robot_is_too_slender) {
+  const Equilibrium result = EquilibriumSolver(family(Family::kTower, 3000),
+                                               {.method = Method::kMultigrid, .is_bonded = true})
+                                 .solve({});
+  EXPECT_EQ(result.outcome, Outcome::kTooSlow);
+}
+
 }  // namespace
 }  // namespace holdfast::solver

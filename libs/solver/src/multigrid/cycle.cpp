@@ -10,6 +10,10 @@ namespace {
 /// One step of the inner iteration is enough if it removes this share of the residual; Notay's.
 constexpr double kEnough = 0.25;
 
+/// The cycle's own length is right within a factor of two or so. A step far from 1 is rounding: on
+/// a slender robot the energy of a smooth motion drowns in single precision, and no step is better.
+bool is_credible(double step) { return step > 0.25 && step < 4; }
+
 }  // namespace
 
 void Cycle::relax_colour(std::size_t depth, std::size_t colour, bool is_first) {
@@ -90,10 +94,10 @@ void Cycle::solve(std::size_t depth) {
   const double before = dot(count, level.r, level.r);
   const double alpha_1 = dot(count, level.z, level.r);
   const double rho_1 = apply(level, level.first_image);
-  if (!(rho_1 > 0) || !(alpha_1 > 0)) {
-    return;  // Nothing to solve, or rounding only: what descend() found stands.
-  }
   const double step = alpha_1 / rho_1;
+  if (!is_credible(step)) {
+    return;
+  }
   combine(count, -step, level.first_image, 1, level.r);
   if (dot(count, level.r, level.r) <= kEnough * kEnough * before) {
     combine(count, step, level.z, 0, level.z);
@@ -106,7 +110,7 @@ void Cycle::solve(std::size_t depth) {
   // Its image is needed for one number only; first_image is not needed any more.
   const double beta = apply(level, level.first_image);
   const double rho_2 = beta - gamma * gamma / rho_1;
-  if (!(rho_2 > 0)) {
+  if (!is_credible(alpha_2 / rho_2)) {
     combine(count, step, level.first, 0, level.z);
     return;
   }

@@ -30,8 +30,9 @@
 ///   good, so that loop ends.
 ///
 /// Each linear system is solved directly (block_lu.hpp) where that is the fastest, which is for
-/// small and for thread-like robots, and by multigrid otherwise (docs/solver.md). Then the contact
-/// states are found with coarse solutions first, and each solution starts from the one before.
+/// small and for thread-like robots, and by multigrid otherwise (docs/solver.md). Then each
+/// solution starts from the one before. A robot so slender that multigrid's single precision does
+/// not suffice is solved directly after all, if memory allows.
 namespace holdfast::solver {
 
 class Multigrid;
