@@ -113,6 +113,31 @@ cmp -s back.json direct.json || fault "conversion to XML and back changes the st
 expect_exit 1 check there.xml
 expect_exit 64 convert "$overload" there.txt
 
+# Named structures, large ones, bonded supports.
+expect_exit 0 generate cube 3
+expect_line out '"cube 3"'
+expect_exit 0 generate shell 20 -o shell.json
+expect_exit 0 check shell.json
+expect_line out '^SAFE +shell 20$'
+expect_line out 'iterations of multigrid'
+expect_exit 0 generate portal 40 -o portal.xml
+expect_exit 1 check --bonded --threads 2 portal.xml
+expect_line out 'bonded on request'
+expect_exit 0 generate bridge 200 -o bridge.json
+expect_exit 1 check bridge.json
+expect_line out '^UNSTABLE'
+expect_line out 'not sought, as the robot topples'
+expect_exit 0 generate cube 30 -o cube.json
+expect_exit 2 check --memory 0.01 cube.json
+expect_line out 'too many for the solver'
+expect_exit 64 generate castle 3
+expect_line err 'arm, cube, tower'
+expect_exit 64 generate arm 3
+expect_line err '6 or more'
+expect_exit 64 generate cube 1000000
+expect_exit 0 generate --help
+expect_line out 'scaffold'
+
 # Wrong usage.
 expect_exit 64
 expect_exit 64 chek

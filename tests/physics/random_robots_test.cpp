@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "holdfast/verdict/assessment.hpp"
 #include "random_robot.hpp"
@@ -56,6 +57,30 @@ TEST(RandomRobots, have_the_same_answer_when_turned) {
       EXPECT_NEAR(*a.load_ratio_max, *b.load_ratio_max, 1e-7 * (1 + std::abs(*a.load_ratio_max)));
     }
   }
+}
+
+/// The solver of large robots is another method, so each checks the other.
+TEST(RandomRobots, have_the_same_answer_by_multigrid) {
+  int unilateral_count = 0;
+  for (std::uint64_t seed = 0; seed < kRobotCount; seed += 2) {
+    SCOPED_TRACE(::testing::Message() << "random_robot(" << seed << ")");
+    const auto robot = model::Robot::create(test::random_robot(seed)).value();
+    const verdict::Assessment direct = verdict::assess(robot);
+    const verdict::Assessment multigrid =
+        verdict::assess(robot, {.method = solver::Method::kMultigrid});
+    EXPECT_EQ(direct.is_stable, multigrid.is_stable);
+    if (!direct.is_stable || direct.equilibrium.open_but_held_count > 0) {
+      continue;  // Nothing is sought, or the answer is a range.
+    }
+    EXPECT_EQ(direct.contact_model, multigrid.contact_model);
+    ASSERT_TRUE(multigrid.load_ratio_max);
+    if (direct.contact_model == multigrid.contact_model) {
+      EXPECT_NEAR(*direct.load_ratio_max, *multigrid.load_ratio_max,
+                  1e-4 * (1 + std::abs(*direct.load_ratio_max)));
+    }
+    unilateral_count += multigrid.contact_model == verdict::ContactModel::kUnilateral ? 1 : 0;
+  }
+  EXPECT_GT(unilateral_count, 5);
 }
 
 }  // namespace

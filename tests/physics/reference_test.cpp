@@ -150,5 +150,35 @@ TEST(Reference, loads_margins_and_verdicts_agree) {
   }
 }
 
+/// The solver of large robots on these small ones: what it promises is 1e-4 of the largest load
+/// ratio, or of 1 if that is smaller.
+TEST(Reference, load_ratios_agree_by_multigrid_too) {
+  int count = 0;
+  for (const Reference& reference : read_references()) {
+    SCOPED_TRACE(reference.name);
+    const auto robot = model::Robot::create(reference.spec);
+    const verdict::Assessment assessment =
+        verdict::assess(robot.value(), {.method = solver::Method::kMultigrid});
+    EXPECT_EQ(assessment.is_stable, reference.is_stable && !reference.is_tie);
+    if (!assessment.is_stable) {
+      EXPECT_EQ(assessment.verdict, verdict::Verdict::kUnstable);
+    } else if (reference.is_settled) {
+      EXPECT_EQ(assessment.contact_model, verdict::ContactModel::kRegularised);
+      std::map<std::pair<base::Cell, base::Cell>, double> found;
+      for (std::size_t i = 0; i < robot.value().connections().size(); ++i) {
+        const auto [a, b] = model::ends(robot.value(), i);
+        found[{a, b}] = assessment.connections[i].load_ratio;
+      }
+      Comparison ratio(1);
+      for (const ReferenceLoad& load : reference.loads) {
+        ratio.add(load.result.load_ratio, found.at({load.a, load.b}));
+      }
+      EXPECT_LT(ratio.relative(), 1e-4);
+      ++count;
+    }
+  }
+  EXPECT_GT(count, 100);
+}
+
 }  // namespace
 }  // namespace holdfast

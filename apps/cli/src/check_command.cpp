@@ -22,13 +22,13 @@ struct Options {
   std::string svg;
   std::string vtk;
   bool is_quiet = false;
+  bool is_bonded = false;
+  int thread_count = 0;
+  double memory_gb = 4;
 };
 
 /// Progress is shown when a run takes longer than this, and then as often.
 constexpr std::chrono::seconds kProgressInterval(1);
-
-/// From here on the direct solver can take more than a second.
-constexpr std::size_t kLargeModuleCount = 2000;
 
 /// Goes through the files of one run and keeps count.
 class CheckRun {
@@ -61,8 +61,7 @@ class CheckRun {
       report_error(structure.error(), file);
       return;
     }
-    announce_long_work(structure.value(), file);
-    const CheckResult result = check(structure.value());
+    const CheckResult result = check(structure.value(), check_options(structure.value(), file));
     ++counts_[static_cast<std::size_t>(result.assessment.verdict)];
     if (shows_text()) {
       show(structure.value(), result, file);
@@ -133,11 +132,22 @@ class CheckRun {
     fmt::print(stderr, "holdfast: checked {} of {} files\n", done, options_.files.size());
   }
 
-  void announce_long_work(const Structure& structure, const std::string& file) const {
-    const std::size_t count = structure.robot.modules().size();
-    if (!options_.is_quiet && count >= kLargeModuleCount) {
-      fmt::print(stderr, "holdfast: {}: {} modules, this can take minutes\n", file, count);
+  /// With a line per second on what is going on.
+  CheckOptions check_options(const Structure& structure, const std::string& file) {
+    CheckOptions options{
+        .is_bonded = options_.is_bonded,
+        .thread_count = options_.thread_count,
+        .memory_bytes_max = static_cast<std::size_t>(options_.memory_gb * 1073741824.0)};
+    if (!options_.is_quiet) {
+      options.progress = [this, &structure, file](int iteration, double error) {
+        if (Clock::now() - shown_ >= kProgressInterval) {
+          shown_ = Clock::now();
+          fmt::print(stderr, "holdfast: {}: {} modules, iteration {}, error {:.1e} of the first\n",
+                     file, structure.robot.modules().size(), iteration, error);
+        }
+      };
     }
+    return options;
   }
 
   int exit_code() const {
@@ -182,6 +192,15 @@ Command add_check(CLI::App& app) {
   add_output("--svg", options->svg, "Draw the structure and its loads");
   add_output("--vtk", options->vtk, "Write a .vtu file for ParaView");
   command->add_flag("--quiet", options->is_quiet, "Print errors only; the exit code is the answer");
+  command->add_flag("--bonded", options->is_bonded,
+                    "Let the ground hold like a module below would: no lifting, no tilting");
+  command->add_option("--threads", options->thread_count, "For large robots; 0: all cores")
+      ->check(CLI::Range(0, 64));
+  command
+      ->add_option("--memory", options->memory_gb,
+                   "Most memory for the solver, GB; a robot that needs more is undecided")
+      ->check(CLI::Range(0.01, 1024.0))
+      ->capture_default_str();
   command->footer(
       "Verdicts: safe, overload (a connection breaks), unstable (topples), undecided.\n"
       "Exit: 0 all safe, 1 any unsafe, 2 any undecided, 64 wrong usage, 65 bad input.");

@@ -28,6 +28,7 @@ struct Command {
 
 Command add_check(CLI::App& app);
 Command add_convert(CLI::App& app);
+Command add_generate(CLI::App& app);
 Command add_simulate(CLI::App& app);
 
 /// The verdict in capitals, coloured on a terminal, padded to the longest.

@@ -2,8 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "holdfast/holdfast.hpp"
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <chrono>
 
+#include "holdfast/model/families.hpp"
 #include "version.hpp"
 
 namespace holdfast {
@@ -46,9 +50,49 @@ base::Result<Structure> load_file(const std::filesystem::path& path) {
   return load_text(text.value(), path.stem().string());
 }
 
-CheckResult check(const Structure& structure) {
+base::Result<io::Document> generate(std::string_view family, std::size_t size) {
+  const auto found = std::ranges::find(model::families(), family, &model::FamilyInfo::name);
+  if (found == model::families().end()) {
+    std::string names;
+    for (const model::FamilyInfo& info : model::families()) {
+      names += (names.empty() ? "" : ", ") + std::string(info.name);
+    }
+    return base::Error{.code = base::ErrorCode::kBadInput,
+                       .message = fmt::format("no family '{}', there are {}", family, names)};
+  }
+  const std::size_t count = model::family_count(found->family, size);
+  if (size < found->size_min || count > model::kModuleCountMax) {
+    return base::Error{.code = base::ErrorCode::kBadInput,
+                       .message = fmt::format(
+                           "the size {} is not allowed for {}: it is {} or more, and at most {} "
+                           "modules in all",
+                           size, family, found->size_min, model::kModuleCountMax)};
+  }
+  io::Document document;
+  document.name = fmt::format("{} {}", family, size);
+  document.description = found->help;
+  document.modules.reserve(count);
+  for (const base::Cell& cell : model::family_cells(found->family, size)) {
+    document.modules.emplace_back().cell = cell;
+  }
+  return document;
+}
+
+std::vector<std::pair<std::string_view, std::string_view>> family_list() {
+  std::vector<std::pair<std::string_view, std::string_view>> list;
+  for (const model::FamilyInfo& info : model::families()) {
+    list.emplace_back(info.name, info.help);
+  }
+  return list;
+}
+
+CheckResult check(const Structure& structure, const CheckOptions& options) {
   const auto start = std::chrono::steady_clock::now();
-  CheckResult result{.assessment = verdict::assess(structure.robot)};
+  CheckResult result{
+      .assessment = verdict::assess(structure.robot, {.memory_bytes_max = options.memory_bytes_max,
+                                                      .is_bonded = options.is_bonded,
+                                                      .thread_count = options.thread_count,
+                                                      .progress = options.progress})};
   result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return result;
 }

@@ -79,6 +79,22 @@ void write_loads(Out out, const model::Robot& robot, const verdict::Assessment& 
   }
 }
 
+void write_solver(Out out, const verdict::Assessment& assessment, double seconds) {
+  const solver::Equilibrium& equilibrium = assessment.equilibrium;
+  const std::string time =
+      seconds < 0.1 ? fmt::format("{:.0f} us", seconds * 1e6) : fmt::format("{:.2f} s", seconds);
+  if (equilibrium.outcome == solver::Outcome::kNotSought) {
+    fmt::format_to(out, "  loads       not sought, as the robot topples; {}\n", time);
+    return;
+  }
+  fmt::format_to(out, "  contact     {}; {} linear solves{} in {}\n",
+                 verdict::name(assessment.contact_model), equilibrium.steps,
+                 equilibrium.method == solver::Method::kMultigrid
+                     ? fmt::format(", {} iterations of multigrid", equilibrium.iteration_count)
+                     : "",
+                 time);
+}
+
 }  // namespace
 
 std::string write_report_text(const ReportEntry& entry) {
@@ -92,9 +108,7 @@ std::string write_report_text(const ReportEntry& entry) {
   write_modules(out, *entry.robot);
   write_stability(out, assessment);
   write_loads(out, *entry.robot, assessment);
-  fmt::format_to(out, "  contact     {}; {} linear solves in {:.0f} us\n",
-                 verdict::name(assessment.contact_model), assessment.equilibrium.steps,
-                 entry.seconds * 1e6);
+  write_solver(out, assessment, entry.seconds);
   for (const std::string& warning : entry.warnings) {
     fmt::format_to(out, "  note        {}\n", warning);
   }

@@ -7,6 +7,8 @@
 #include <set>
 #include <utility>
 
+#include "multigrid/multigrid.hpp"
+
 namespace holdfast::solver {
 namespace {
 
@@ -20,6 +22,24 @@ constexpr int kRefinementCount = 2;
 
 /// Halvings of the bracket in the line search, to the resolution of double.
 constexpr int kLineStepMax = 60;
+
+/// Up to here the direct solver always wins.
+constexpr std::size_t kDirectCountAlways = 300;
+
+/// Up to here it wins if few blocks fill in: on arms, frames, slim towers.
+constexpr std::size_t kDirectCountMax = 6000;
+constexpr std::size_t kDirectFillMax = 7;
+
+/// What one block of the factorization takes, upper and lower.
+constexpr std::size_t kBlockBytes = 2 * sizeof(Mat6<double>) + 24;
+
+/// Multigrid's error while contact states are sought, as a share of the first, where they are
+/// unique. The regularised law may have several answers, and the one meant is that of Newton's
+/// path, so each step of it must be exact.
+constexpr double kLooseTolerance = 1e-3;
+
+/// The solution that is compared with the last one is so much farther from convergence.
+constexpr double kAlternativeFactor = 10;
 
 std::size_t node_index(std::int32_t node) { return static_cast<std::size_t>(node); }
 
@@ -76,18 +96,44 @@ EquilibriumSolver::EquilibriumSolver(const model::Robot& robot, const Equilibriu
       facets_.push_back({.module = i, .state = {}});
     }
   }
+  choose_method(static_cast<std::size_t>(node_count));
+}
+
+EquilibriumSolver::~EquilibriumSolver() = default;
+
+void EquilibriumSolver::choose_method(std::size_t node_count) {
+  Method method = options_.method;
+  const std::size_t block_count_max = options_.memory_bytes_max / kBlockBytes;
+  if (method == Method::kAutomatic && node_count <= kDirectCountMax) {
+    const std::size_t fill_max = kDirectFillMax * node_count;
+    make_direct(node_count, node_count <= kDirectCountAlways ? block_count_max
+                                                             : std::min(block_count_max, fill_max));
+    if (lu_ || node_count <= kDirectCountAlways) {
+      return;
+    }
+  }
+  if (method == Method::kDirect) {
+    make_direct(node_count, block_count_max);
+  } else if (Multigrid::bytes_for(node_count) <= options_.memory_bytes_max) {
+    multigrid_ = std::make_unique<Multigrid>(robot_, options_.thread_count, options_.progress);
+  }
+}
+
+/// No factorization is left if it is too large.
+void EquilibriumSolver::make_direct(std::size_t node_count, std::size_t block_count_max) {
   std::vector<Edge> edges;
-  edges.reserve(robot.connections().size());
-  for (const model::Connection& connection : robot.connections()) {
+  edges.reserve(robot_.connections().size());
+  for (const model::Connection& connection : robot_.connections()) {
     const Edge edge{node_of_module_[node_index(connection.a)],
                     node_of_module_[node_index(connection.b)]};
     if (edge.a >= 0 && edge.b >= 0) {
       edges.push_back(edge);
     }
   }
-  lu_.emplace(static_cast<std::size_t>(node_count), edges,
-              options.memory_bytes_max / (2 * sizeof(Mat6<double>) + 24));
-  if (!lu_->is_too_large()) {
+  lu_.emplace(node_count, edges, block_count_max);
+  if (lu_->is_too_large()) {
+    lu_.reset();
+  } else {
     assemble();
   }
 }
@@ -125,28 +171,69 @@ void EquilibriumSolver::assemble() {
 Equilibrium EquilibriumSolver::solve(const ContactOptions& contact) {
   Equilibrium result;
   result.law = contact.law;
-  if (lu_->is_too_large()) {
+  if (!lu_ && !multigrid_) {
     result.outcome = Outcome::kTooLarge;
     return result;
   }
   const model::Material& material = robot_.material();
   ground_ = mechanics::ground_facet(model::beam_section(material), material.facet_mm, contact.gamma,
                                     contact.law);
+  if (multigrid_) {
+    multigrid_->set_law(ground_);
+  }
   for (Facet& facet : facets_) {
     facet = {.module = facet.module, .state = {}};
     set_tangent(facet);  // Always: the law may be another one than before.
   }
-  const std::size_t made_before = lu_->made_column_count();
-  result.outcome = contact.law == ContactLaw::kRegularised ? iterate_regularised(result)
-                                                           : iterate_unilateral(result);
+  const std::size_t made_before = lu_ ? lu_->made_column_count() : 0;
+  const int iterations_before = multigrid_ ? multigrid_->iteration_count() : 0;
+  result.outcome = iterate(result);
   if (result.outcome == Outcome::kSettled) {
     finish(result);
   }
-  result.made_column_count = lu_->made_column_count() - made_before;
+  if (result.outcome == Outcome::kTooSlow && options_.method == Method::kAutomatic) {
+    make_direct(robot_.modules().size() - robot_.fixed_count(),
+                options_.memory_bytes_max / kBlockBytes);
+    if (lu_) {
+      multigrid_.reset();
+      return solve(contact);
+    }
+  }
+  if (lu_) {
+    result.made_column_count = lu_->made_column_count() - made_before;
+  } else {
+    result.method = Method::kMultigrid;
+    result.iteration_count = multigrid_->iteration_count() - iterations_before;
+  }
   return result;
 }
 
+Outcome EquilibriumSolver::iterate(Equilibrium& result) {
+  const bool is_linear = options_.is_bonded || facets_.empty();
+  const double tight = kAlternativeFactor * options_.tolerance;
+  const bool has_one_answer = !is_linear && result.law == ContactLaw::kUnilateral;
+  tolerance_ = has_one_answer ? std::max(tight, kLooseTolerance) : tight;
+  Outcome outcome = Outcome::kSettled;
+  if (is_linear) {
+    outcome = solve_linear(result) ? Outcome::kSettled : Outcome::kSingular;
+  } else {
+    outcome = result.law == ContactLaw::kRegularised ? iterate_regularised(result)
+                                                     : iterate_unilateral(result);
+  }
+  return outcome == Outcome::kSingular && multigrid_ ? Outcome::kTooSlow : outcome;
+}
+
+/// Once the states hold still: whether the solution is good enough to say so. If not, it will be.
+bool EquilibriumSolver::is_tight_now() {
+  const double tight = kAlternativeFactor * options_.tolerance;
+  return !multigrid_ || std::exchange(tolerance_, tight) == tight;
+}
+
 void EquilibriumSolver::set_tangent(const Facet& facet) {
+  if (multigrid_) {
+    multigrid_->set_facet(facet.module, facet.state, facet.is_held);
+    return;
+  }
   const std::size_t node = node_index(node_of_module_[facet.module]);
   Mat6<double> block = diagonal_[node];
   base::add_to(block, mechanics::contact_tangent(ground_, facet.state, facet.is_held));
@@ -197,6 +284,13 @@ std::vector<Vec6<double>> EquilibriumSolver::by_module(const std::vector<Vec>& b
 /// Displacements for the present states, under the weight.
 bool EquilibriumSolver::solve_linear(Equilibrium& result) {
   ++result.steps;
+  if (multigrid_) {
+    if (!multigrid_->solve(tolerance_)) {
+      return false;
+    }
+    result.displacement = multigrid_->displacement();
+    return true;
+  }
   if (!lu_->factor()) {
     return false;
   }
@@ -214,7 +308,10 @@ Outcome EquilibriumSolver::iterate_regularised(Equilibrium& result) {
     }
     const std::vector<ContactState> states = states_at(result.displacement);
     if (!set_states(states)) {
-      return Outcome::kSettled;
+      if (is_tight_now()) {
+        return Outcome::kSettled;
+      }
+      continue;
     }
     if (!seen.insert(code_of(states)).second) {
       return Outcome::kNotSettled;
@@ -239,7 +336,10 @@ Outcome EquilibriumSolver::minimise(Equilibrium& result) {
       return Outcome::kSingular;
     }
     if (!set_states(states_at(result.displacement))) {
-      return Outcome::kSettled;
+      if (is_tight_now()) {
+        return Outcome::kSettled;
+      }
+      continue;
     }
     if (!current.empty()) {
       const std::vector<Vec> direction = sum(result.displacement, -1, current);
@@ -311,7 +411,15 @@ std::vector<Vec6<double>> EquilibriumSolver::internal_force(
 
 /// Iterative refinement, then everything that follows from the displacements.
 void EquilibriumSolver::finish(Equilibrium& result) {
-  for (int step = 0; step < kRefinementCount; ++step) {
+  if (multigrid_) {
+    result.alternative = std::move(result.displacement);
+    if (!multigrid_->solve(options_.tolerance)) {
+      result.outcome = Outcome::kTooSlow;
+      return;
+    }
+    result.displacement = multigrid_->displacement();
+  }
+  for (int step = 0; lu_ && step < kRefinementCount; ++step) {
     refine(result);
   }
   const std::size_t count = robot_.modules().size();

@@ -107,11 +107,18 @@ void assess_connections(const model::Robot& robot, Assessment& assessment) {
 /// than about 1e-8, and keep the matrix regular on the way to the answer.
 constexpr double kStableGammas[] = {1e-9};
 
+/// The same for multigrid, whose single precision weaker springs escape: below its own error.
+constexpr double kStableGammasMultigrid[] = {1e-6};
+
 /// A toppling robot hangs on its weak springs, and bends elastically while it does: if they are
 /// stiff, three corners may still touch and look like a hold. The weaker they are, the more the
 /// tilt outweighs the bending; the second value serves one robot in ten thousand. Much weaker ones
 /// drown the contact states in rounding.
 constexpr double kTopplingGammas[] = {1e-6, 1e-7};
+
+/// From here on a robot that topples is told from the rigid body alone, which is certain: its
+/// equilibrium is that of the weak springs it would hang on, a large and almost singular problem.
+constexpr std::size_t kTopplingCountMax = 1000;
 
 bool agrees(const Assessment& assessment) {
   return assessment.model.is_settled && assessment.model.is_stable == assessment.is_stable;
@@ -128,6 +135,11 @@ ContactModel contact_model(const model::Robot& robot, ContactLaw law) {
 /// rigid body, which is certain on flat ground.
 void find_equilibrium(const model::Robot& robot, const solver::EquilibriumOptions& options,
                       Assessment& assessment) {
+  if (!assessment.is_stable && (robot.modules().size() > kTopplingCountMax ||
+                                options.method == solver::Method::kMultigrid)) {
+    assessment.equilibrium.outcome = Outcome::kNotSought;
+    return;
+  }
   solver::EquilibriumSolver solver(robot, options);
   assessment.equilibrium =
       solver.solve({.law = ContactLaw::kRegularised, .gamma = robot.material().contact_gamma});
@@ -136,8 +148,15 @@ void find_equilibrium(const model::Robot& robot, const solver::EquilibriumOption
   if (assessment.equilibrium.outcome == Outcome::kTooLarge || robot.ground_count() == 0) {
     return;
   }
+  if (options.is_bonded) {
+    assessment.contact_model = ContactModel::kBonded;
+    return;
+  }
+  const bool is_multigrid = assessment.equilibrium.method == solver::Method::kMultigrid;
   const std::span<const double> gammas =
-      assessment.is_stable ? std::span<const double>(kStableGammas) : kTopplingGammas;
+      !assessment.is_stable ? std::span<const double>(kTopplingGammas)
+      : is_multigrid        ? std::span<const double>(kStableGammasMultigrid)
+                            : kStableGammas;
   for (const double gamma : gammas) {
     // A margin of zero is unstable by decision, not by mechanics: no model need agree with it.
     if (agrees(assessment) ||
@@ -145,8 +164,10 @@ void find_equilibrium(const model::Robot& robot, const solver::EquilibriumOption
       return;
     }
     const int steps = assessment.equilibrium.steps;
+    const int iterations = assessment.equilibrium.iteration_count;
     Equilibrium exact = solver.solve({.law = ContactLaw::kUnilateral, .gamma = gamma});
     exact.steps += steps;
+    exact.iteration_count += iterations;
     assessment.equilibrium = std::move(exact);
     assessment.model = model_stability(robot, assessment.equilibrium);
     assessment.contact_model = ContactModel::kUnilateral;
@@ -171,9 +192,15 @@ void decide_stable(const model::Robot& robot, Assessment& assessment) {
   const Equilibrium& equilibrium = assessment.equilibrium;
   if (equilibrium.outcome == Outcome::kTooLarge) {
     assessment.reasons.push_back(
-        fmt::format("stable, but the {} modules are too many for the direct solver's memory, so "
-                    "the loads are not known",
+        fmt::format("stable, but the {} modules are too many for the solver's memory, so the loads "
+                    "are not known",
                     robot.modules().size()));
+    return;
+  }
+  if (equilibrium.outcome == Outcome::kTooSlow) {
+    assessment.reasons.emplace_back(
+        "stable, but the loads are not known: the solver does not converge on a robot this "
+        "slender");
     return;
   }
   if (equilibrium.outcome != Outcome::kSettled) {
@@ -228,6 +255,11 @@ void add_contact_remarks(Assessment& assessment) {
                     assessment.equilibrium.open_but_held_count, assessment.load_ratio_range.low,
                     assessment.load_ratio_range.high));
   }
+  if (assessment.contact_model == ContactModel::kBonded) {
+    assessment.reasons.emplace_back(
+        "supports are bonded on request: they can neither lift nor tilt, and nothing topples");
+    return;
+  }
   if (assessment.model.is_settled && assessment.model.is_stable != assessment.is_stable) {
     assessment.reasons.push_back(
         fmt::format("the model-based check says {}; on flat ground the rigid body decides",
@@ -261,6 +293,7 @@ Assessment conclude(const model::Robot& robot, Assessment assessment) {
 
 Assessment assess(const model::Robot& robot, const solver::EquilibriumOptions& options) {
   Assessment assessment = begin(robot);
+  assessment.is_stable = assessment.is_stable || options.is_bonded;
   find_equilibrium(robot, options, assessment);
   return conclude(robot, std::move(assessment));
 }
@@ -293,6 +326,8 @@ const char* name(ContactModel model) {
       return "regularised";
     case ContactModel::kUnilateral:
       return "unilateral";
+    case ContactModel::kBonded:
+      return "bonded";
     case ContactModel::kNone:
       break;
   }

@@ -3,9 +3,11 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "holdfast/io/document.hpp"
@@ -31,6 +33,18 @@ struct Structure {
   std::vector<std::string> warnings;
 };
 
+/// How to check, where the defaults do not do.
+struct CheckOptions {
+  /// The ground holds like a module below would: supports neither lift nor tilt.
+  bool is_bonded = false;
+  /// 0: as many as the machine has cores. The result does not depend on it.
+  int thread_count = 0;
+  /// More than this is not taken; the verdict is then `undecided`.
+  std::size_t memory_bytes_max = std::size_t{4} << 30U;
+  /// Called while a large robot is solved, with the share of the first error that is left.
+  std::function<void(int iteration, double error)> progress = {};
+};
+
 struct CheckResult {
   verdict::Assessment assessment;
   double seconds = 0;  ///< From the robot in memory to the verdict.
@@ -49,7 +63,14 @@ std::optional<base::Error> write_file(const std::filesystem::path& path, std::st
 base::Result<Structure> load_text(std::string_view text, std::string_view name = {});
 base::Result<Structure> load_file(const std::filesystem::path& path);
 
-CheckResult check(const Structure& structure);
+/// One of the named structures in which solvers are compared: arm, cube, tower, scaffold, shell,
+/// portal, bridge, growth. Errors: no such family, a size that is not allowed.
+base::Result<io::Document> generate(std::string_view family, std::size_t size);
+
+/// Name and meaning of the size of each family, in the order of their list.
+std::vector<std::pair<std::string_view, std::string_view>> family_list();
+
+CheckResult check(const Structure& structure, const CheckOptions& options = {});
 
 /// Reports and pictures of a checked structure; see io/report.hpp and io/picture.hpp.
 std::string report_json(const Structure& structure, const CheckResult& result);

@@ -3,6 +3,8 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -26,13 +28,37 @@
 ///   that an open facet loses its hold sideways, is an outer loop: solve with all facets held,
 ///   release the open ones, solve again. A facet that would be pressed again is held again for
 ///   good, so that loop ends.
+///
+/// Each linear system is solved directly (block_lu.hpp) where that is the fastest, which is for
+/// small and for thread-like robots, and by multigrid otherwise (docs/solver.md). Then each
+/// solution starts from the one before. A robot so slender that multigrid's single precision does
+/// not suffice is solved directly after all, if memory allows.
 namespace holdfast::solver {
 
+class Multigrid;
+
+enum class Method : std::uint8_t {
+  kAutomatic,  ///< By size and shape.
+  kDirect,
+  kMultigrid,
+};
+
 struct EquilibriumOptions {
-  /// Memory for the factorization; a robot that needs more gets the outcome kTooLarge.
+  /// Memory for the solver; a robot that needs more gets the outcome kTooLarge.
   std::size_t memory_bytes_max = std::size_t{4} << 30U;
   /// Newton steps per contact problem.
   int step_count_max = 100;
+  Method method = Method::kAutomatic;
+  /// Supports neither lift nor tilt: the ground holds like a module below would. A linear problem.
+  bool is_bonded = false;
+  /// For multigrid; 0: as many as the machine has cores. The result does not depend on it.
+  int thread_count = 0;
+  /// Of multigrid: the error in the energy norm, as a share of that of no displacements at all.
+  /// Load ratios are then within 1e-4 of the largest one (docs/solver.md).
+  double tolerance = 3e-6;
+  /// Called after every iteration of multigrid with the error that is left, as a share of the
+  /// first.
+  std::function<void(int iteration, double error)> progress = {};
 };
 
 struct ContactOptions {
@@ -46,7 +72,9 @@ enum class Outcome : std::uint8_t {
   kSettled,     ///< States and displacements are consistent.
   kNotSettled,  ///< The contact iteration cycles or takes too many steps.
   kSingular,    ///< A pivot vanished.
-  kTooLarge,    ///< The factorization does not fit into memory_bytes_max.
+  kTooLarge,    ///< The solver does not fit into memory_bytes_max.
+  kNotSought,   ///< The robot topples, and finding out how would take long.
+  kTooSlow,     ///< Multigrid does not converge: a robot too slender for it.
 };
 
 /// The result, per module in the robot's order. Frame: global; units: mm, rad, N, N mm.
@@ -55,7 +83,8 @@ struct Equilibrium {
   mechanics::ContactLaw law = mechanics::ContactLaw::kRegularised;
   std::vector<base::Vec6<double>> displacement;
   /// A second answer, to see how far the first may be off: before the last step of iterative
-  /// refinement; or, if open_but_held_count > 0, with those facets free to slide.
+  /// refinement, or ten times farther from convergence; or, if open_but_held_count > 0, with those
+  /// facets free to slide.
   std::vector<base::Vec6<double>> alternative;
   std::vector<mechanics::ContactState> contact;  ///< Of ground modules; the rest is not pressed.
   std::vector<base::Vec6<double>> ground_force;  ///< By the ground on the module at its node.
@@ -66,6 +95,8 @@ struct Equilibrium {
   /// Columns of the factorization made for them: less than steps times the modules, as a change of
   /// some contact states leaves most of the factorization as it is.
   std::size_t made_column_count = 0;
+  Method method = Method::kDirect;  ///< The one that was used.
+  int iteration_count = 0;          ///< Of multigrid, in all linear systems together.
 };
 
 /// Solves one robot, with one law after the other if need be. The factorization's ordering and
@@ -73,6 +104,7 @@ struct Equilibrium {
 class EquilibriumSolver {
  public:
   explicit EquilibriumSolver(const model::Robot& robot, const EquilibriumOptions& options = {});
+  ~EquilibriumSolver();
 
   Equilibrium solve(const ContactOptions& contact);
 
@@ -87,7 +119,11 @@ class EquilibriumSolver {
     bool was_released = false;
   };
 
+  void make_direct(std::size_t node_count, std::size_t block_count_max);
+  void choose_method(std::size_t node_count);
   void assemble();
+  Outcome iterate(Equilibrium& result);
+  bool is_tight_now();
   bool solve_linear(Equilibrium& result);
   Outcome iterate_regularised(Equilibrium& result);
   Outcome iterate_unilateral(Equilibrium& result);
@@ -112,7 +148,10 @@ class EquilibriumSolver {
   std::vector<std::int32_t> node_of_module_;  ///< -1 for fixed modules
   std::vector<base::Mat6<double>> diagonal_;  ///< by node, contact excluded
   std::vector<Facet> facets_;
+  // One of the two, or none if the robot is too large.
   std::optional<BlockLu> lu_;
+  std::unique_ptr<Multigrid> multigrid_;
+  double tolerance_ = 0;  ///< Of multigrid, at present.
 };
 
 }  // namespace holdfast::solver

@@ -24,6 +24,7 @@ enum class Verdict : std::uint8_t {
 /// Which contact model the forces come from.
 enum class ContactModel : std::uint8_t {
   kNone,         ///< Every support is fixed.
+  kBonded,       ///< Supports hold like a module below would, on request.
   kRegularised,  ///< Eqs. (9)-(12), the paper's.
   kUnilateral,   ///< Eqs. (6)-(8), exact; used where (9)-(12) have no usable answer.
 };
@@ -53,11 +54,13 @@ struct Assessment {
   Verdict verdict = Verdict::kUndecided;
   std::vector<std::string> reasons;  ///< One or more sentences.
 
-  RigidBody simplified;    ///< Sec. III-B.
-  ModelStability model;    ///< Sec. III-C.
-  bool is_stable = false;  ///< Decided by the rigid body: the ground is flat.
+  RigidBody simplified;  ///< Sec. III-B.
+  ModelStability model;  ///< Sec. III-C.
+  bool is_stable =
+      false;  ///< By the rigid body, as the ground is flat; bonded supports hold always.
 
-  /// Per connection of the robot; empty if no equilibrium was found. Not meaningful if unstable.
+  /// Per connection of the robot; empty if no equilibrium was found, or sought: a large robot that
+  /// topples is known to topple by the rigid body. Not meaningful if unstable.
   std::vector<ConnectionResult> connections;
   std::optional<double> load_ratio_max;  ///< None without connections or if one is not a number.
   /// Index of the connection with load_ratio_max; none if that is below kLoadRatioTie, which is
@@ -84,7 +87,7 @@ Assessment assess_equilibrium(const model::Robot& robot, solver::Equilibrium equ
 /// "safe", "overload", "unstable", "undecided".
 const char* name(Verdict verdict);
 
-/// "none", "regularised", "unilateral".
+/// "none", "bonded", "regularised", "unilateral".
 const char* name(ContactModel model);
 
 }  // namespace holdfast::verdict

@@ -1,0 +1,56 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <memory>
+
+#include "commands.hpp"
+
+namespace holdfast::cli {
+namespace {
+
+struct Options {
+  std::string family;
+  std::size_t size = 0;
+  std::string to = "-";
+};
+
+int run(const Options& options) {
+  const auto document = generate(options.family, options.size);
+  if (!document) {
+    fmt::print(stderr, "holdfast: {}\n", document.error().message);
+    return kExitUsage;
+  }
+  const std::string text = options.to.ends_with(".xml") ? io::write_visiblesim(document.value())
+                                                        : io::write_json(document.value());
+  if (options.to == "-") {
+    fmt::print("{}", text);
+    return 0;
+  }
+  if (const auto error = write_file(options.to, text)) {
+    print_error(*error, options.to);
+    return kExitBadInput;
+  }
+  return 0;
+}
+
+}  // namespace
+
+Command add_generate(CLI::App& app) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command = app.add_subcommand(
+      "generate", "Write one of the structures in which solvers are compared, of any size");
+  add_required(*command, "FAMILY", options->family, "Its name, see below");
+  add_required(*command, "SIZE", options->size, "How large, see below");
+  command
+      ->add_option("-o,--output", options->to, "File to write, .json or .xml; - is standard output")
+      ->type_name("FILE");
+  std::string footer = "Families:\n";
+  for (const auto& [name, help] : family_list()) {
+    footer += fmt::format("  {:<10}{}\n", name, help);
+  }
+  command->footer(footer + "All stand on z = 0. Exit: 0 written, 64 wrong usage, 65 not writable.");
+  return {command, [options] { return run(*options); }};
+}
+
+}  // namespace holdfast::cli

@@ -1,0 +1,73 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <string>
+#include <vector>
+
+#include "holdfast/mechanics/connector.hpp"
+#include "holdfast/model/families.hpp"
+#include "holdfast/model/robot.hpp"
+
+/// What the programs of `./dev bench solver` share. Each solves one structure in a process of its
+/// own, so that its memory can be told, and leaves the displacements in a file for the comparison.
+namespace holdfast::bench {
+
+using Displacement = std::vector<base::Vec6<double>>;
+
+inline std::vector<base::Cell> cells(const std::string& family, std::size_t size) {
+  const auto found = model::find_family(family);
+  HOLDFAST_CHECK(found.has_value());
+  return model::family_cells(*found, size);
+}
+
+inline double seconds_since(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+/// Peak memory of this process, MB.
+inline double memory_mb() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<double>(usage.ru_maxrss) / 1024;
+}
+
+inline std::vector<double> load_ratios(const model::Robot& robot, const Displacement& u) {
+  const model::Material& material = robot.material();
+  const auto beam = mechanics::beam_stiffness(model::beam_section(material));
+  std::vector<double> ratios;
+  ratios.reserve(robot.connections().size());
+  for (const model::Connection& pair : robot.connections()) {
+    const auto load = mechanics::connection_load(
+        mechanics::middle_force(beam, pair.direction, u[static_cast<std::size_t>(pair.a)],
+                                u[static_cast<std::size_t>(pair.b)]));
+    ratios.push_back(mechanics::load_ratio(load, material.facet_mm,
+                                           base::is_vertical(pair.direction)
+                                               ? material.strength_vertical_n
+                                               : material.strength_lateral_n));
+  }
+  return ratios;
+}
+
+inline void write_displacement(const char* path, const Displacement& u) {
+  std::FILE* file = std::fopen(path, "wb");
+  HOLDFAST_CHECK(file != nullptr);
+  std::fwrite(u.data(), sizeof u[0], u.size(), file);
+  std::fclose(file);
+}
+
+inline Displacement read_displacement(const char* path, std::size_t count) {
+  Displacement u(count);
+  std::FILE* file = std::fopen(path, "rb");
+  HOLDFAST_CHECK(file != nullptr && std::fread(u.data(), sizeof u[0], count, file) == count);
+  std::fclose(file);
+  return u;
+}
+
+}  // namespace holdfast::bench

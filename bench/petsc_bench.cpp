@@ -1,0 +1,168 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+// PETSc on one structure, bonded supports, residual 1e-6; assembly, set-up, solve.
+//   mpirun -n RANKS petsc_bench FAMILY SIZE FILE [PETSc options: -pc_type ...]
+// prints: modules seconds MB-of-all-ranks iterations
+#include <petscksp.h>
+
+#include "large_robots.hpp"
+
+namespace {
+
+namespace hf = holdfast;
+using hf::base::Mat6;
+
+/// Rows of the modules from `first` to before `last`.
+Mat assemble(const hf::model::Robot& robot, PetscInt first, PetscInt last) {
+  const auto beam = hf::mechanics::beam_stiffness(hf::model::beam_section(robot.material()));
+  const auto n = static_cast<PetscInt>(robot.modules().size());
+  Mat matrix = nullptr;
+  MatCreateAIJ(PETSC_COMM_WORLD, 6 * (last - first), 6 * (last - first), 6 * n, 6 * n, 42, nullptr,
+               36, nullptr, &matrix);
+  MatSetBlockSize(matrix, 6);
+  // Two thirds of each block are zero: without them every method here is faster.
+  MatSetOption(matrix, MAT_IGNORE_ZERO_ENTRIES, PETSC_TRUE);
+  for (PetscInt row = first; row < last; ++row) {
+    const auto module = static_cast<std::size_t>(row);
+    Mat6<double> diagonal;
+    for (const hf::base::Direction direction : hf::base::kDirections) {
+      PetscInt column =
+          robot.neighbours()[module][static_cast<std::size_t>(hf::base::index(direction))];
+      const bool is_ground = direction == hf::base::Direction::kMinusZ &&
+                             robot.modules()[module].support == hf::model::Support::kGround;
+      if (column >= 0 || is_ground) {
+        hf::base::add_to(diagonal, hf::mechanics::block_11(beam, direction));
+      }
+      if (column >= 0) {
+        const Mat6<double> block = hf::mechanics::block_12(beam, direction);
+        double by_rows[36];
+        for (int i = 0; i < 36; ++i) {
+          by_rows[i] = block.at(i / 6, i % 6);
+        }
+        MatSetValuesBlocked(matrix, 1, &row, 1, &column, by_rows, INSERT_VALUES);
+      }
+    }
+    double by_rows[36];
+    for (int i = 0; i < 36; ++i) {
+      by_rows[i] = diagonal.at(i / 6, i % 6);
+    }
+    MatSetValuesBlocked(matrix, 1, &row, 1, &row, by_rows, INSERT_VALUES);
+  }
+  MatAssemblyBegin(matrix, MAT_FINAL_ASSEMBLY);
+  MatAssemblyEnd(matrix, MAT_FINAL_ASSEMBLY);
+  MatSetOption(matrix, MAT_SPD, PETSC_TRUE);
+  return matrix;
+}
+
+/// The six rigid motions, which aggregation needs.
+void attach_rigid_motions(const hf::model::Robot& robot, PetscInt first, PetscInt last,
+                          Mat matrix) {
+  Vec motions[6];
+  MatCreateVecs(matrix, &motions[0], nullptr);
+  for (int k = 1; k < 6; ++k) {
+    VecDuplicate(motions[0], &motions[k]);
+  }
+  const double pitch = robot.material().pitch_mm;
+  for (int k = 0; k < 6; ++k) {
+    double* values = nullptr;
+    VecGetArray(motions[k], &values);
+    for (PetscInt row = first; row < last; ++row) {
+      double* u = values + 6 * (row - first);
+      const hf::base::Cell& cell = robot.modules()[static_cast<std::size_t>(row)].cell;
+      const double place[3] = {pitch * cell.x, pitch * cell.y, pitch * cell.z};
+      u[k] = 1;
+      if (k >= 3) {
+        const int i = k - 3;
+        u[(i + 1) % 3] = -place[(i + 2) % 3];
+        u[(i + 2) % 3] = place[(i + 1) % 3];
+      }
+    }
+    VecRestoreArray(motions[k], &values);
+  }
+  for (int k = 0; k < 6; ++k) {
+    PetscScalar dots[6];
+    VecMDot(motions[k], k, motions, dots);
+    for (int i = 0; i < k; ++i) {
+      VecAXPY(motions[k], -dots[i], motions[i]);
+    }
+    VecNormalize(motions[k], nullptr);
+  }
+  MatNullSpace space = nullptr;
+  MatNullSpaceCreate(PETSC_COMM_WORLD, PETSC_FALSE, 6, motions, &space);
+  MatSetNearNullSpace(matrix, space);
+}
+
+void write(Vec x, std::size_t count, const char* path) {
+  VecScatter scatter = nullptr;
+  Vec all = nullptr;
+  VecScatterCreateToZero(x, &scatter, &all);
+  VecScatterBegin(scatter, x, all, INSERT_VALUES, SCATTER_FORWARD);
+  VecScatterEnd(scatter, x, all, INSERT_VALUES, SCATTER_FORWARD);
+  PetscMPIInt rank = 0;
+  MPI_Comm_rank(PETSC_COMM_WORLD, &rank);
+  if (rank == 0) {
+    const double* values = nullptr;
+    VecGetArrayRead(all, &values);
+    hf::bench::Displacement u(count);
+    for (std::size_t i = 0; i < 6 * count; ++i) {
+      u[i / 6][i % 6] = values[i];
+    }
+    hf::bench::write_displacement(path, u);
+    VecRestoreArrayRead(all, &values);
+  }
+}
+
+int run(const char* family, std::size_t size, const char* path) {
+  const auto robot = hf::model::Robot::create({.existing = hf::bench::cells(family, size)}).value();
+  PetscMPIInt rank = 0;
+  PetscMPIInt ranks = 1;
+  MPI_Comm_rank(PETSC_COMM_WORLD, &rank);
+  MPI_Comm_size(PETSC_COMM_WORLD, &ranks);
+  const auto n = static_cast<PetscInt>(robot.modules().size());
+  const PetscInt first = n * rank / ranks;
+  const PetscInt last = n * (rank + 1) / ranks;
+  MPI_Barrier(PETSC_COMM_WORLD);
+  const auto start = std::chrono::steady_clock::now();
+  Mat matrix = assemble(robot, first, last);
+  attach_rigid_motions(robot, first, last, matrix);
+  Vec x = nullptr;
+  Vec b = nullptr;
+  MatCreateVecs(matrix, &x, &b);
+  for (PetscInt row = first; row < last; ++row) {
+    VecSetValue(b, 6 * row + 2, -hf::model::module_weight_n(robot.material()), INSERT_VALUES);
+  }
+  VecAssemblyBegin(b);
+  VecAssemblyEnd(b);
+  KSP solver = nullptr;
+  KSPCreate(PETSC_COMM_WORLD, &solver);
+  KSPSetOperators(solver, matrix, matrix);
+  KSPSetType(solver, KSPCG);
+  KSPSetTolerances(solver, 1e-6, PETSC_DEFAULT, PETSC_DEFAULT, 20000);
+  KSPSetFromOptions(solver);
+  KSPSolve(solver, b, x);
+  MPI_Barrier(PETSC_COMM_WORLD);
+  const double seconds = hf::bench::seconds_since(start);
+  KSPConvergedReason reason = KSP_CONVERGED_ITERATING;
+  KSPGetConvergedReason(solver, &reason);
+  PetscInt iterations = 0;
+  KSPGetIterationNumber(solver, &iterations);
+  double mb = hf::bench::memory_mb();
+  MPI_Allreduce(MPI_IN_PLACE, &mb, 1, MPI_DOUBLE, MPI_SUM, PETSC_COMM_WORLD);
+  if (rank == 0) {
+    std::printf("%d %.6f %.1f %d\n", n, seconds, mb, iterations);
+  }
+  write(x, robot.modules().size(), path);
+  return reason > 0 ? 0 : 1;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  if (argc < 4) {
+    return 64;
+  }
+  PetscInitialize(&argc, &argv, nullptr, nullptr);
+  const int code = run(argv[1], static_cast<std::size_t>(std::atoll(argv[2])), argv[3]);
+  PetscFinalize();
+  return code;
+}

@@ -1,0 +1,69 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <cstring>
+#include <utility>
+#include <vector>
+
+#include "vectors.hpp"
+
+namespace holdfast::solver {
+
+/// Keeps equal blocks once: a lattice has few different ones, and they stay in the cache.
+class BlockPool {
+ public:
+  std::uint32_t insert(const Block& block) {
+    if (2 * (blocks_.size() + 1) > slots_.size()) {
+      grow();
+    }
+    std::uint32_t& slot = find(block);
+    if (slot == kFree) {
+      slot = static_cast<std::uint32_t>(blocks_.size());
+      blocks_.push_back(block);
+    }
+    return slot;
+  }
+
+  /// The blocks, in the order in which they came.
+  std::vector<Block> take() {
+    blocks_.shrink_to_fit();
+    return std::move(blocks_);
+  }
+
+ private:
+  static constexpr std::uint32_t kFree = 0xffffffffU;
+
+  static std::uint64_t hash(const Block& block) {
+    std::uint64_t words[sizeof(Block) / 8];
+    std::memcpy(words, &block, sizeof block);
+    std::uint64_t mixed = 0;
+    for (const std::uint64_t word : words) {
+      mixed = (mixed ^ word) * 0x9e3779b97f4a7c15U;
+      mixed ^= mixed >> 32U;
+    }
+    return mixed;
+  }
+
+  std::uint32_t& find(const Block& block) {
+    std::size_t place = hash(block) & (slots_.size() - 1);
+    while (slots_[place] != kFree &&
+           std::memcmp(&blocks_[slots_[place]], &block, sizeof block) != 0) {
+      place = (place + 1) & (slots_.size() - 1);
+    }
+    return slots_[place];
+  }
+
+  void grow() {
+    slots_.assign(slots_.empty() ? 64 : 2 * slots_.size(), kFree);
+    for (std::uint32_t i = 0; i < blocks_.size(); ++i) {
+      find(blocks_[i]) = i;
+    }
+  }
+
+  std::vector<Block> blocks_;
+  std::vector<std::uint32_t> slots_;
+};
+
+}  // namespace holdfast::solver

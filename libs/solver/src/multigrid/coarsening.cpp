@@ -1,0 +1,426 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#include "coarsening.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <unordered_map>
+
+namespace holdfast::solver {
+namespace {
+
+constexpr std::uint8_t kNoColour = 255;
+
+std::size_t at(std::int32_t index) { return static_cast<std::size_t>(index); }
+
+/// Distance from a node back to the centre of its cluster, against a direction.
+double behind(const Point& offset, std::size_t direction) {
+  const double step = offset[direction / 2];
+  return std::max(0.0, direction % 2 == 0 ? step : -step);
+}
+
+/// The same coordinates for all clusters that look alike: differences lose their last bits.
+Point rounded(const Point& point) {
+  return {static_cast<double>(static_cast<float>(point[0])),
+          static_cast<double>(static_cast<float>(point[1])),
+          static_cast<double>(static_cast<float>(point[2]))};
+}
+
+/// A spring of a member that leads out of the cluster: all that the cluster's spring depends on.
+struct Part {
+  std::uint32_t spring = 0;  ///< Index into the fine level's springs.
+  std::uint32_t target = 0;  ///< Which of the cluster's neighbours, in the order they are met.
+  Point offset = {};         ///< From the cluster's centre to the member.
+  Point far_offset = {};     ///< From the partner's cluster's centre to the partner.
+  Point partner = {};        ///< From the cluster's centre to that of the partner's cluster.
+};
+
+/// Two words that stand for a cluster's parts; equal by chance once in 2^100 clusters.
+struct Signature {
+  std::uint64_t a = 0x243f6a8885a308d3U;
+  std::uint64_t b = 0x13198a2e03707344U;
+
+  void add(std::uint64_t word) {
+    a = (a ^ word) * 0x9e3779b97f4a7c15U;
+    a ^= a >> 32U;
+    b = (b + word) * 0xbf58476d1ce4e5b9U;
+    b ^= b >> 29U;
+  }
+
+  void add(const Point& point) {
+    for (const double x : point) {
+      add(std::bit_cast<std::uint64_t>(x + 0.0));
+    }
+  }
+
+  friend bool operator==(const Signature&, const Signature&) = default;
+};
+
+struct SignatureHash {
+  std::size_t operator()(const Signature& signature) const { return signature.a; }
+};
+
+class Coarsening {
+ public:
+  Coarsening(const Stage& fine, Level& level, Team& team, Stage& coarse)
+      : fine_(fine), level_(level), team_(team), coarse_(coarse) {}
+
+  bool run(std::vector<std::size_t>& colour_start) {
+    unsigned shift = 3;
+    const std::size_t count = fine_.order.size();
+    while (shift < 63 && 5 * count_cells(shift) > 2 * count) {
+      shift += 3;
+    }
+    find_clusters(shift);
+    if (10 * cluster_count_ > 9 * count) {
+      return false;
+    }
+    gather_members();
+    colour(colour_start);
+    renumber(shift);
+    place_centres();
+    seat_members();
+    make_springs();
+    make_anchors();
+    return true;
+  }
+
+ private:
+  std::size_t count_cells(unsigned shift) const {
+    std::size_t count = 0;
+    std::uint64_t last = ~std::uint64_t{0};
+    for (const std::int32_t node : fine_.order) {
+      const std::uint64_t cell = fine_.key[at(node)] >> shift;
+      count += cell != last ? 1 : 0;
+      last = cell;
+    }
+    return count;
+  }
+
+  /// Connected parts within cells whose keys agree but for the last `shift` bits, numbered along
+  /// the Morton curve.
+  void find_clusters(unsigned shift) {
+    cluster_.assign(fine_.order.size(), -1);
+    std::vector<std::int32_t> open;
+    std::int32_t count = 0;
+    for (const std::int32_t first : fine_.order) {
+      if (cluster_[at(first)] >= 0) {
+        continue;
+      }
+      const std::uint64_t cell = fine_.key[at(first)] >> shift;
+      cluster_[at(first)] = count;
+      open.assign(1, first);
+      while (!open.empty()) {
+        const std::size_t node = at(open.back());
+        open.pop_back();
+        for_neighbours(node, [&](std::int32_t other) {
+          if (cluster_[at(other)] < 0 && fine_.key[at(other)] >> shift == cell) {
+            cluster_[at(other)] = count;
+            open.push_back(other);
+          }
+        });
+      }
+      ++count;
+    }
+    cluster_count_ = at(count);
+  }
+
+  template <class F>
+  void for_neighbours(std::size_t node, const F& f) const {
+    for (std::size_t e = at(fine_.start[node]); e < at(fine_.start[node + 1]); ++e) {
+      f(fine_.other[e]);
+    }
+  }
+
+  /// Members by cluster, clusters as yet along the Morton curve.
+  void gather_members() {
+    std::vector<std::int32_t> next(cluster_count_ + 1, 0);
+    for (const std::int32_t c : cluster_) {
+      ++next[at(c) + 1];
+    }
+    for (std::size_t c = 0; c < cluster_count_; ++c) {
+      next[c + 1] += next[c];
+    }
+    member_start_ = next;
+    member_.resize(cluster_.size());
+    for (const std::int32_t node : fine_.order) {
+      member_[at(next[at(cluster_[at(node)])]++)] = node;
+    }
+  }
+
+  template <class F>
+  void for_members(std::size_t cluster, const F& f) const {
+    for (std::size_t i = at(member_start_[cluster]); i < at(member_start_[cluster + 1]); ++i) {
+      f(at(member_[i]));
+    }
+  }
+
+  /// First fit along the curve: two colours on a lattice.
+  void colour(std::vector<std::size_t>& colour_start) {
+    std::vector<std::uint8_t> colours(cluster_count_, kNoColour);
+    std::array<std::size_t, 64> count{};
+    for (std::size_t c = 0; c < cluster_count_; ++c) {
+      std::uint64_t taken = 0;
+      for_members(c, [&](std::size_t node) {
+        for_neighbours(node, [&](std::int32_t other) {
+          const std::uint8_t used = colours[at(cluster_[at(other)])];
+          taken |= used == kNoColour ? 0 : std::uint64_t{1} << used;
+        });
+      });
+      // A 64th colour may be shared by neighbours: the sweep is then not quite Gauss-Seidel.
+      colours[c] = static_cast<std::uint8_t>(std::min(std::countr_one(taken), 63));
+      ++count[colours[c]];
+    }
+    colour_start = {0};
+    std::array<std::int32_t, 64> next{};
+    for (std::size_t k = 0; k < 64; ++k) {
+      next[k] = static_cast<std::int32_t>(colour_start.back());
+      if (count[k] > 0) {
+        colour_start.push_back(colour_start.back() + count[k]);
+      }
+    }
+    final_.resize(cluster_count_);
+    for (std::size_t c = 0; c < cluster_count_; ++c) {
+      final_[c] = next[colours[c]]++;
+    }
+  }
+
+  /// From the order along the curve to the order by colours.
+  void renumber(unsigned shift) {
+    coarse_.order = final_;
+    coarse_.key.resize(cluster_count_);
+    std::vector<std::int32_t> curve(cluster_count_);
+    for (std::size_t c = 0; c < cluster_count_; ++c) {
+      curve[at(final_[c])] = static_cast<std::int32_t>(c);
+      coarse_.key[at(final_[c])] = fine_.key[at(member_[at(member_start_[c])])] >> shift;
+    }
+    level_.member.reserve(member_.size());
+    level_.member_start.reserve(cluster_count_ + 1);
+    level_.member_start.push_back(0);
+    for (const std::int32_t c : curve) {
+      for_members(at(c), [&](std::size_t node) {
+        level_.member.push_back(static_cast<std::int32_t>(node));
+      });
+      level_.member_start.push_back(static_cast<std::int32_t>(level_.member.size()));
+    }
+    for (std::int32_t& c : cluster_) {
+      c = final_[at(c)];
+    }
+    member_ = level_.member;
+    member_start_ = level_.member_start;
+  }
+
+  void place_centres() {
+    coarse_.place.resize(cluster_count_);
+    team_.share(0, cluster_count_, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t c = begin; c < end; ++c) {
+        Point sum{};
+        double count = 0;
+        for_members(c, [&](std::size_t node) {
+          for (std::size_t i = 0; i < 3; ++i) {
+            sum[i] += fine_.place[node][i];
+          }
+          ++count;
+        });
+        coarse_.place[c] = {sum[0] / count, sum[1] / count, sum[2] / count};
+      }
+    });
+  }
+
+  void seat_members() {
+    level_.seat.resize(fine_.order.size());
+    team_.share(0, level_.seat.size(), [&](std::size_t begin, std::size_t end) {
+      for (std::size_t node = begin; node < end; ++node) {
+        const Point offset = difference(fine_.place[node], coarse_.place[at(cluster_[node])]);
+        level_.seat[node] = {
+            .offset = {static_cast<float>(offset[0]), static_cast<float>(offset[1]),
+                       static_cast<float>(offset[2])},
+            .cluster = cluster_[node]};
+      }
+    });
+  }
+
+  Point offset(std::size_t node) const {
+    const float* seat = level_.seat[node].offset;
+    return {static_cast<double>(seat[0]), static_cast<double>(seat[1]),
+            static_cast<double>(seat[2])};
+  }
+
+  /// The parts of a cluster's springs and its neighbours in the order in which they are met.
+  void list_parts(std::size_t c, std::vector<Part>& parts,
+                  std::vector<std::int32_t>& targets) const {
+    parts.clear();
+    targets.clear();
+    for_members(c, [&](std::size_t node) {
+      for (std::size_t e = at(fine_.start[node]); e < at(fine_.start[node + 1]); ++e) {
+        const std::size_t other = at(fine_.other[e]);
+        const std::int32_t to = cluster_[other];
+        if (at(to) == c) {
+          continue;
+        }
+        const auto found = std::ranges::find(targets, to);
+        const auto target = static_cast<std::uint32_t>(found - targets.begin());
+        if (found == targets.end()) {
+          targets.push_back(to);
+        }
+        parts.push_back(
+            {.spring = fine_.pattern[node] + static_cast<std::uint32_t>(e - at(fine_.start[node])),
+             .target = target,
+             .offset = offset(node),
+             .far_offset = offset(other),
+             .partner = rounded(difference(coarse_.place[at(to)], coarse_.place[c]))});
+      }
+    });
+  }
+
+  static Signature sign(const std::vector<Part>& parts) {
+    Signature signature;
+    for (const Part& part : parts) {
+      signature.add(std::uint64_t{part.spring} << 32U | part.target);
+      signature.add(part.offset);
+      signature.add(part.far_offset);
+      signature.add(part.partner);
+    }
+    return signature;
+  }
+
+  /// A pure function of the parts, so it does not matter which of many equal clusters is taken.
+  void add_up(const std::vector<Part>& parts, Spring* springs, std::size_t count) const {
+    std::vector<double> length(count);
+    std::vector<double> reach(count);
+    std::vector<double> weight(count);
+    for (const Part& part : parts) {
+      const Spring& fine = fine_.springs[part.spring];
+      Spring& spring = springs[part.target];
+      spring.direction = fine.direction;
+      spring.partner = part.partner;
+      base::add_to(spring.stiffness, carried(fine.stiffness, part.offset));
+      for (std::size_t k = 0; k < 3; ++k) {
+        spring.middle[k] += part.offset[k] + fine.middle[k];
+      }
+      length[part.target] += fine.length;
+      reach[part.target] += fine.length + behind(part.offset, fine.direction) +
+                            behind(part.far_offset, fine.direction ^ 1U);
+      weight[part.target] += 1;
+    }
+    for (std::size_t i = 0; i < count; ++i) {
+      Spring& spring = springs[i];
+      for (double& x : spring.middle) {
+        x /= weight[i];
+      }
+      spring.length = reach[i] / weight[i];
+      spring.stiffness = stretched(spring.stiffness, spring.middle, spring.direction / 2U,
+                                   length[i] / weight[i], spring.length);
+    }
+  }
+
+  void make_springs() {
+    std::vector<Signature> signatures(cluster_count_);
+    coarse_.start.assign(cluster_count_ + 1, 0);
+    std::vector<std::vector<std::int32_t>> others((cluster_count_ + Team::kChunk - 1) /
+                                                  Team::kChunk);
+    team_.share(0, cluster_count_, [&](std::size_t begin, std::size_t end) {
+      std::vector<Part> parts;
+      std::vector<std::int32_t> targets;
+      for (std::size_t c = begin; c < end; ++c) {
+        list_parts(c, parts, targets);
+        signatures[c] = sign(parts);
+        coarse_.start[c + 1] = static_cast<std::int32_t>(targets.size());
+        std::vector<std::int32_t>& part = others[c / Team::kChunk];
+        part.insert(part.end(), targets.begin(), targets.end());
+      }
+    });
+    for (std::size_t c = 0; c < cluster_count_; ++c) {
+      coarse_.start[c + 1] += coarse_.start[c];
+    }
+    coarse_.other.reserve(at(coarse_.start[cluster_count_]));
+    for (const std::vector<std::int32_t>& part : others) {
+      coarse_.other.insert(coarse_.other.end(), part.begin(), part.end());
+    }
+    find_patterns(signatures);
+  }
+
+  void find_patterns(const std::vector<Signature>& signatures) {
+    coarse_.pattern.resize(cluster_count_);
+    std::unordered_map<Signature, std::uint32_t, SignatureHash> known;
+    std::vector<std::int32_t> examples;
+    std::uint32_t spring_count = 0;
+    for (std::size_t c = 0; c < cluster_count_; ++c) {
+      const auto [found, is_new] = known.emplace(signatures[c], spring_count);
+      coarse_.pattern[c] = found->second;
+      if (is_new) {
+        examples.push_back(static_cast<std::int32_t>(c));
+        spring_count += static_cast<std::uint32_t>(coarse_.start[c + 1] - coarse_.start[c]);
+      }
+    }
+    coarse_.springs.resize(spring_count);
+    team_.share(0, examples.size(), [&](std::size_t begin, std::size_t end) {
+      std::vector<Part> parts;
+      std::vector<std::int32_t> targets;
+      for (std::size_t i = begin; i < end; ++i) {
+        list_parts(at(examples[i]), parts, targets);
+        add_up(parts, coarse_.springs.data() + coarse_.pattern[at(examples[i])], targets.size());
+      }
+    });
+  }
+
+  void make_anchors() {
+    std::vector<Anchor> anchors;
+    anchors.reserve(fine_.anchors.size());
+    for (const Anchor& anchor : fine_.anchors) {
+      const Point arm = offset(at(anchor.node));
+      Anchor moved = anchor;
+      moved.node = cluster_[at(anchor.node)];
+      moved.reach += behind(arm, anchor.direction);
+      moved.stiffness = carried(anchor.stiffness, arm);
+      for (std::size_t k = 0; k < 3; ++k) {
+        moved.middle[k] += arm[k];
+      }
+      anchors.push_back(moved);
+    }
+    std::ranges::stable_sort(anchors, {}, &Anchor::node);
+    for (std::size_t i = 0; i < anchors.size();) {
+      Anchor sum = anchors[i];
+      double count = 1;
+      std::size_t j = i + 1;
+      for (; j < anchors.size() && anchors[j].node == sum.node &&
+             anchors[j].direction == sum.direction;
+           ++j, ++count) {
+        base::add_to(sum.stiffness, anchors[j].stiffness);
+        sum.length += anchors[j].length;
+        sum.reach += anchors[j].reach;
+        for (std::size_t k = 0; k < 3; ++k) {
+          sum.middle[k] += anchors[j].middle[k];
+        }
+      }
+      for (double& x : sum.middle) {
+        x /= count;
+      }
+      sum.reach /= count;
+      sum.stiffness =
+          stretched(sum.stiffness, sum.middle, sum.direction / 2U, sum.length / count, sum.reach);
+      sum.length = sum.reach;
+      coarse_.anchors.push_back(sum);
+      i = j;
+    }
+  }
+
+  const Stage& fine_;
+  Level& level_;
+  Team& team_;
+  Stage& coarse_;
+  std::size_t cluster_count_ = 0;
+  std::vector<std::int32_t> cluster_;
+  std::vector<std::int32_t> member_;
+  std::vector<std::int32_t> member_start_;
+  std::vector<std::int32_t> final_;
+};
+
+}  // namespace
+
+bool coarsen(const Stage& fine, Level& level, Team& team, Stage& coarse,
+             std::vector<std::size_t>& colour_start) {
+  return Coarsening(fine, level, team, coarse).run(colour_start);
+}
+
+}  // namespace holdfast::solver

@@ -1,0 +1,106 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#include "conjugate_gradients.hpp"
+
+namespace holdfast::solver {
+namespace {
+
+/// Gauss-Seidel sweeps before and after the coarse correction. One needs twice the iterations; a
+/// third saves few.
+constexpr int kSweepCount = 2;
+
+}  // namespace
+
+ConjugateGradients::ConjugateGradients(Hierarchy& hierarchy, Team& team, std::size_t node_count)
+    : hierarchy_(hierarchy),
+      team_(team),
+      cycle_(hierarchy, team, kSweepCount),
+      node_count_(node_count),
+      x_(6 * node_count),
+      r_(6 * node_count),
+      q_(6 * node_count),
+      p_(node_count + 1) {}
+
+/// x is taken apart into two directions in single precision, 48 bits together.
+void ConjugateGradients::subtract_product() {
+  for (const bool is_rest : {false, true}) {
+    team_.share(0, node_count_, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = 6 * begin; i < 6 * end; ++i) {
+        const auto upper = static_cast<float>(x_[i]);
+        p_[i / 6].v[i % 6] =
+            is_rest ? static_cast<float>(x_[i] - static_cast<double>(upper)) : upper;
+      }
+    });
+    team_.share(0, node_count_, [&](std::size_t begin, std::size_t end) {
+      kernels().apply(hierarchy_.lattice(), p_.data(), q_.data(), {begin, end});
+      for (std::size_t i = 6 * begin; i < 6 * end; ++i) {
+        r_[i] -= q_[i];
+      }
+    });
+  }
+}
+
+void ConjugateGradients::round_residual() {
+  Level& finest = hierarchy_.levels().front();
+  team_.share(0, node_count_, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = 6 * begin; i < 6 * end; ++i) {
+      finest.r[i / 6].v[i % 6] = static_cast<float>(r_[i]);
+    }
+  });
+}
+
+double ConjugateGradients::dot_with_z(const std::vector<double>& a) {
+  const std::vector<Six>& z = hierarchy_.levels().front().z;
+  return team_.sum(node_count_, [&](std::size_t begin, std::size_t end) {
+    return kernels().dot(a.data(), z.data(), {begin, end});
+  });
+}
+
+/// z = M^-1 r; returns r . z.
+double ConjugateGradients::precondition() {
+  cycle_.run();
+  return dot_with_z(r_);
+}
+
+double ConjugateGradients::begin() {
+  round_residual();
+  error_ = precondition();
+  p_ = hierarchy_.levels().front().z;
+  return error_;
+}
+
+// x, r, q: displacement, residual, K p;  p, z: direction, preconditioned residual (single
+// precision)
+ConjugateGradients::End ConjugateGradients::run(double target, int iteration_count_max) {
+  const Kernels& kernel = kernels();
+  Level& finest = hierarchy_.levels().front();
+  for (int iteration = 0; error_ > target; ++iteration) {
+    if (iteration == iteration_count_max) {
+      return End::kTooSlow;
+    }
+    const double curvature = team_.sum(node_count_, [&](std::size_t begin, std::size_t end) {
+      return kernel.apply(hierarchy_.lattice(), p_.data(), q_.data(), {begin, end});
+    });
+    if (!(curvature > 0)) {
+      return End::kBroken;
+    }
+    const double step = error_ / curvature;
+    team_.share(0, node_count_, [&](std::size_t begin, std::size_t end) {
+      kernel.advance(step, p_.data(), q_.data(), x_.data(), r_.data(), finest.r.data(),
+                     {begin, end});
+    });
+    ++iteration_count_;
+    const double error = precondition();
+    const double turn = -step * dot_with_z(q_) / error_;  // z (r_new - r_old) / z_old r_old
+    error_ = error;
+    team_.share(0, node_count_, [&](std::size_t begin, std::size_t end) {
+      kernel.combine(1, finest.z.data(), static_cast<float>(turn), p_.data(), {begin, end});
+    });
+    if (progress) {
+      progress(iteration_count_, error_);
+    }
+  }
+  return error_ >= 0 ? End::kConverged : End::kBroken;
+}
+
+}  // namespace holdfast::solver

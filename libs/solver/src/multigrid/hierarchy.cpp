@@ -1,0 +1,354 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#include "hierarchy.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <unordered_map>
+#include <utility>
+
+#include "../block_kernels.hpp"
+#include "block_pool.hpp"
+#include "holdfast/base/check.hpp"
+
+namespace holdfast::solver {
+namespace {
+
+using base::Direction;
+
+constexpr std::size_t kRow = kBeamLengthMax + 1;
+
+/// A level this small is factorized whatever its shape: it costs nothing.
+constexpr std::size_t kCoarsestCount = 48;
+
+std::size_t at(std::int32_t index) { return static_cast<std::size_t>(index); }
+
+/// Which displacement bends with which on a beam along an axis; see kernel_loops.hpp.
+constexpr std::size_t kSwap[3][6] = {{0, 5, 4, 3, 2, 1}, {5, 1, 3, 2, 4, 0}, {4, 3, 2, 1, 0, 5}};
+
+Block single(const Mat& matrix) {
+  Block block;
+  for (int column = 0; column < 6; ++column) {
+    for (int row = 0; row < 6; ++row) {
+      block.column[column][row] = static_cast<float>(matrix.at(row, column));
+    }
+  }
+  return block;
+}
+
+BlockDouble wide(const Mat& matrix) {
+  BlockDouble block;
+  for (int column = 0; column < 6; ++column) {
+    for (int row = 0; row < 6; ++row) {
+      block.column[column][row] = matrix.at(row, column);
+    }
+  }
+  return block;
+}
+
+Mat inverse_of(const Mat& matrix) {
+  Mat inverse;
+  HOLDFAST_CHECK(invert(matrix, inverse));
+  return inverse;
+}
+
+BeamRowDouble beam_row(const Mat& k12, std::size_t axis) {
+  BeamRowDouble row;
+  for (std::size_t i = 0; i < 6; ++i) {
+    const std::size_t j = kSwap[axis][i];
+    row.direct[i] = k12.at(static_cast<int>(i), static_cast<int>(i));
+    row.crossed[i] = i == j ? 0 : k12.at(static_cast<int>(i), static_cast<int>(j));
+  }
+  return row;
+}
+
+BeamRow single(const BeamRowDouble& row) {
+  BeamRow result;
+  for (std::size_t i = 0; i < 6; ++i) {
+    result.direct.v[i] = static_cast<float>(row.direct[i]);
+    result.crossed.v[i] = static_cast<float>(row.crossed[i]);
+  }
+  return result;
+}
+
+/// The sum of a node's springs, anchors left out.
+Mat spring_sum(const Stage& stage, std::size_t node) {
+  Mat sum;
+  const std::size_t count = at(stage.start[node + 1] - stage.start[node]);
+  for (std::size_t i = 0; i < count; ++i) {
+    base::add_to(sum, stage.springs[stage.pattern[node] + i].stiffness);
+  }
+  return sum;
+}
+
+Mat coupling(const Spring& spring) {
+  return scaled(times_carry(spring.stiffness, difference({}, spring.partner)), -1);
+}
+
+/// K_pp of all nodes that have anchors, in the order of the anchors.
+std::vector<std::pair<std::size_t, Mat>> anchored_sums(const Stage& stage) {
+  std::vector<std::pair<std::size_t, Mat>> sums;
+  for (const Anchor& anchor : stage.anchors) {
+    if (sums.empty() || sums.back().first != at(anchor.node)) {
+      sums.emplace_back(at(anchor.node), spring_sum(stage, at(anchor.node)));
+    }
+    base::add_to(sums.back().second, anchor.stiffness);
+  }
+  return sums;
+}
+
+/// The whole level as a sparse matrix in double precision.
+std::optional<BlockLu> factorize(const Stage& stage, std::size_t block_count_max) {
+  std::vector<Edge> edges;
+  std::vector<Mat> blocks;
+  for (std::size_t node = 0; node < stage.order.size(); ++node) {
+    for (std::size_t e = at(stage.start[node]); e < at(stage.start[node + 1]); ++e) {
+      if (at(stage.other[e]) > node) {
+        edges.push_back({static_cast<std::int32_t>(node), stage.other[e]});
+        blocks.push_back(coupling(stage.springs[stage.pattern[node] + e - at(stage.start[node])]));
+      }
+    }
+  }
+  BlockLu lu(stage.order.size(), edges, block_count_max);
+  if (lu.is_too_large()) {
+    return std::nullopt;
+  }
+  for (std::size_t e = 0; e < edges.size(); ++e) {
+    lu.set_edge(e, blocks[e]);
+  }
+  for (std::size_t node = 0; node < stage.order.size(); ++node) {
+    lu.set_diagonal(node, spring_sum(stage, node));
+  }
+  for (const auto& [node, sum] : anchored_sums(stage)) {
+    lu.set_diagonal(node, sum);
+  }
+  return lu.factor() ? std::optional(std::move(lu)) : std::nullopt;
+}
+
+/// Cells from Morton keys, as positions.
+Point place_of(std::uint64_t key, double pitch) {
+  std::array<std::uint64_t, 3> cell{};
+  for (unsigned bit = 0; (key >> (3 * bit)) != 0; ++bit) {
+    for (unsigned axis = 0; axis < 3; ++axis) {
+      cell[axis] |= ((key >> (3 * bit + axis)) & 1U) << bit;
+    }
+  }
+  return {pitch * static_cast<double>(cell[0]), pitch * static_cast<double>(cell[1]),
+          pitch * static_cast<double>(cell[2])};
+}
+
+Point along(std::size_t direction, double length) {
+  Point point{};
+  point[direction / 2] = direction % 2 == 0 ? length : -length;
+  return point;
+}
+
+/// Springs of every direction and length; a node's pattern is then per spring, so kinds are listed.
+Spring beam_spring(const model::Material& material, std::size_t direction, std::size_t length) {
+  const double mm = material.pitch_mm * static_cast<double>(length);
+  return {.direction = static_cast<std::uint8_t>(direction),
+          .length = mm,
+          .middle = along(direction, mm / 2),
+          .partner = along(direction, mm),
+          .stiffness = mechanics::block_11(long_beam(material, static_cast<int>(length)),
+                                           static_cast<Direction>(direction))};
+}
+
+void fill_vectors(Level& level) {
+  level.r.assign(level.node_count + 1, {});
+  level.z.assign(level.node_count + 1, {});
+}
+
+}  // namespace
+
+/// The finest level: nodes of the same kind with partners on the same sides share their springs.
+void Hierarchy::fill_stage(Stage& stage) const {
+  const std::size_t count = network_.node_count;
+  stage.order = network_.order;
+  stage.key.resize(count);
+  stage.place.resize(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    stage.key[at(network_.order[i])] = network_.key[i];
+    stage.place[at(network_.order[i])] = place_of(network_.key[i], material_.pitch_mm);
+  }
+  stage.start.resize(count + 1);
+  stage.other.reserve(6 * count);
+  stage.pattern.resize(count);
+  std::unordered_map<std::uint64_t, std::uint32_t> patterns;
+  for (std::size_t node = 0; node < count; ++node) {
+    Kind kind{};
+    for (std::size_t d = 0; d < 6; ++d) {
+      const std::size_t length = network_.kind[node][d];
+      if (length > 0 && at(network_.other[node][d]) < count) {
+        kind[d] = static_cast<std::uint8_t>(length);
+        stage.other.push_back(network_.other[node][d]);
+      } else if (length > 0) {
+        const Spring spring = beam_spring(material_, d, length);
+        stage.anchors.push_back({.node = static_cast<std::int32_t>(node),
+                                 .direction = spring.direction,
+                                 .length = spring.length,
+                                 .reach = spring.length,
+                                 .middle = spring.middle,
+                                 .stiffness = spring.stiffness});
+      }
+    }
+    if (network_.kind[node][kContactByte] != 0) {
+      Spring spring = beam_spring(material_, base::index(Direction::kMinusZ), 1);
+      stage.anchors.push_back({.node = static_cast<std::int32_t>(node),
+                               .direction = spring.direction,
+                               .length = spring.length,
+                               .reach = spring.length,
+                               .middle = spring.middle,
+                               .stiffness = ground_(network_.kind[node][kContactByte])});
+    }
+    stage.start[node + 1] = static_cast<std::int32_t>(stage.other.size());
+    const auto [found, is_new] = patterns.emplace(std::bit_cast<std::uint64_t>(kind),
+                                                  static_cast<std::uint32_t>(stage.springs.size()));
+    stage.pattern[node] = found->second;
+    for (std::size_t d = 0; is_new && d < 6; ++d) {
+      if (kind[d] > 0) {
+        stage.springs.push_back(beam_spring(material_, d, kind[d]));
+      }
+    }
+  }
+}
+
+void Hierarchy::make_lattice() {
+  const std::size_t length_max = network_.has_long_beams ? kBeamLengthMax : 1;
+  beams_.resize(6 * kRow);
+  beams_double_.resize(6 * kRow);
+  for (std::size_t length = 1; length <= length_max; ++length) {
+    const auto beam = long_beam(material_, static_cast<int>(length));
+    for (std::size_t d = 0; d < 6; ++d) {
+      const Mat k12 = mechanics::block_12(beam, static_cast<Direction>(d));
+      beams_double_[d * kRow + length] = beam_row(k12, d / 2);
+      beams_[d * kRow + length] = single(beams_double_[d * kRow + length]);
+    }
+  }
+  Level& level = levels_.emplace_back();
+  level.node_count = network_.node_count;
+  level.colour_start = network_.colour_start;
+  level.type.resize(network_.node_count);
+  fill_vectors(level);
+  update_types();
+}
+
+/// K_pp of a node on the finest level.
+Mat Hierarchy::diagonal(const Kind& kind) const {
+  Mat sum;
+  for (std::size_t d = 0; d < 6; ++d) {
+    if (kind[d] > 0) {
+      base::add_to(sum,
+                   mechanics::block_11(long_beam(material_, kind[d]), static_cast<Direction>(d)));
+    }
+  }
+  if (kind[kContactByte] != 0) {
+    base::add_to(sum, ground_(kind[kContactByte]));
+  }
+  return sum;
+}
+
+void Hierarchy::update_types() {
+  Level& level = levels_.front();
+  for (std::size_t node = 0; node < network_.node_count; ++node) {
+    const auto kind = std::bit_cast<std::uint64_t>(network_.kind[node]);
+    const auto [found, is_new] =
+        type_of_kind_.emplace(kind, static_cast<std::uint32_t>(type_of_kind_.size()));
+    level.type[node] = found->second;
+    if (is_new) {
+      const Mat sum = diagonal(network_.kind[node]);
+      level.diagonal.push_back(single(sum));
+      level.inverse.push_back(single(inverse_of(sum)));
+      diagonal_double_.push_back(wide(sum));
+    }
+  }
+  lattice_ = {.other = network_.other.data(),
+              .kind = network_.has_long_beams ? network_.kind.data() : nullptr,
+              .type = level.type.data(),
+              .beams = beams_.data(),
+              .diagonal = level.diagonal.data(),
+              .inverse = level.inverse.data(),
+              .beams_double = beams_double_.data(),
+              .diagonal_double = diagonal_double_.data()};
+}
+
+/// Blocks in single precision for the sweeps.
+void Hierarchy::add_level(const Stage& stage, std::vector<std::size_t> colour_start) {
+  Level& level = levels_.emplace_back();
+  level.node_count = stage.order.size();
+  level.colour_start = std::move(colour_start);
+  level.start = stage.start;
+  level.other = stage.other;
+  BlockPool couplings;
+  std::vector<std::uint32_t> block_of_spring(stage.springs.size());
+  for (std::size_t i = 0; i < stage.springs.size(); ++i) {
+    block_of_spring[i] = couplings.insert(single(coupling(stage.springs[i])));
+  }
+  level.blocks = couplings.take();
+  level.block.resize(level.other.size());
+  level.type.resize(level.node_count);
+  std::unordered_map<std::uint32_t, std::uint32_t> type_of_pattern;
+  for (std::size_t node = 0; node < level.node_count; ++node) {
+    const std::size_t start = at(stage.start[node]);
+    for (std::size_t e = start; e < at(stage.start[node + 1]); ++e) {
+      level.block[e] = block_of_spring[stage.pattern[node] + e - start];
+    }
+    const auto [found, is_new] = type_of_pattern.emplace(
+        stage.pattern[node], static_cast<std::uint32_t>(type_of_pattern.size()));
+    level.type[node] = found->second;
+  }
+  std::vector<Mat> sums(type_of_pattern.size());
+  std::vector<bool> is_known(sums.size());
+  for (std::size_t node = 0; node < level.node_count; ++node) {
+    if (!is_known[level.type[node]]) {
+      is_known[level.type[node]] = true;
+      sums[level.type[node]] = spring_sum(stage, node);
+    }
+  }
+  for (const Mat& sum : sums) {
+    level.diagonal.push_back(single(sum));
+    Mat inverse;
+    // A pattern that only anchored nodes have may be singular alone; its inverse is not used.
+    level.inverse.push_back(invert(sum, inverse) ? single(inverse) : Block{});
+  }
+  BlockPool anchored;
+  const auto base = static_cast<std::uint32_t>(sums.size());
+  for (const auto& [node, sum] : anchored_sums(stage)) {
+    const std::uint32_t type = anchored.insert(single(sum));
+    level.type[node] = base + type;
+    if (base + type == level.diagonal.size()) {
+      level.diagonal.push_back(single(sum));
+      level.inverse.push_back(single(inverse_of(sum)));
+    }
+  }
+  fill_vectors(level);
+  level.first.assign(level.node_count + 1, {});
+  level.first_image.assign(level.node_count + 1, {});
+}
+
+Hierarchy::Hierarchy(const Network& network, const model::Material& material, Team& team,
+                     GroundStiffness ground)
+    : network_(network), material_(material), ground_(std::move(ground)) {
+  make_lattice();
+  Stage stage;
+  fill_stage(stage);
+  while (!coarsest_) {
+    Stage coarse;
+    std::vector<std::size_t> colour_start;
+    if (!coarsen(stage, levels_.back(), team, coarse, colour_start)) {
+      break;
+    }
+    stage = std::move(coarse);
+    add_level(stage, std::move(colour_start));
+    const std::size_t count = stage.order.size();
+    const bool is_small = count <= kCoarsestCount;
+    if (is_small || count < network_.node_count / 4) {
+      coarsest_ = factorize(stage, is_small ? count * count : 2 * count);
+    }
+    if (is_small) {
+      break;
+    }
+  }
+}
+
+}  // namespace holdfast::solver

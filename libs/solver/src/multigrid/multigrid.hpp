@@ -1,0 +1,73 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "conjugate_gradients.hpp"
+#include "holdfast/mechanics/ground_contact.hpp"
+#include "network.hpp"
+
+/// Displacements of a robot for given contact states, without a factorization: what BlockLu is for
+/// small robots. Elimination by hand (Network), conjugate gradients, multigrid preconditioner.
+namespace holdfast::solver {
+
+class Multigrid {
+ public:
+  using Vec = base::Vec6<double>;
+
+  /// Keeps a reference to the robot. All facets are stuck until set_facet(). 0 threads: all cores.
+  Multigrid(const model::Robot& robot, int thread_count,
+            std::function<void(int iteration, double error)> progress);
+
+  /// A guess of how much memory a robot needs, bytes.
+  static std::size_t bytes_for(std::size_t module_count);
+
+  /// Puts all facets back to stuck, under another law.
+  void set_law(const mechanics::GroundFacet<double>& facet);
+  void set_facet(std::size_t module, const mechanics::ContactState& state, bool is_held);
+
+  /// Goes on from the present displacements until the error in the energy norm is `tolerance` times
+  /// that of the first guess, zero. Returns false if it does not get there.
+  bool solve(double tolerance);
+
+  /// By module.
+  std::vector<Vec> displacement() const;
+
+  int iteration_count() const { return iteration_count_; }
+
+ private:
+  struct Facet {
+    std::int32_t node = 0;
+    std::uint8_t code = 0;  ///< 0: stuck, a beam like any other.
+    mechanics::ContactState state;
+    bool is_held = true;
+  };
+
+  Mat tangent(std::uint8_t code) const;
+  void make_hierarchy();
+  void update_hierarchy();
+  void compute_residual();
+  bool is_symmetric() const;
+
+  const model::Robot& robot_;
+  Team team_;
+  Network network_;
+  mechanics::GroundFacet<double> ground_;
+  Vec weight_{};
+  std::vector<std::int32_t> facet_of_module_;
+  std::vector<Facet> facets_;
+  std::unique_ptr<Hierarchy> hierarchy_;
+  std::unique_ptr<ConjugateGradients> gradients_;
+  std::function<void(int, double)> progress_;
+  bool is_stale_ = true;                 ///< Some facet changed since the last solve.
+  std::size_t changed_facet_count_ = 0;  ///< Since the hierarchy was made.
+  double reference_ = 0;                 ///< Square of the first error.
+  int iteration_count_ = 0;
+  int told_count_ = 0;
+};
+
+}  // namespace holdfast::solver

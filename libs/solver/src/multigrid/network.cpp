@@ -1,0 +1,470 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#include "network.hpp"
+
+#include <algorithm>
+#include <bit>
+
+#include "../block_kernels.hpp"
+#include "holdfast/base/check.hpp"
+#include "kernels.hpp"
+
+namespace holdfast::solver {
+namespace {
+
+using base::Direction;
+using base::Mat6;
+using base::Vec6;
+using model::Robot;
+using model::Support;
+
+std::size_t at(std::int32_t index) { return static_cast<std::size_t>(index); }
+
+Direction direction_of(std::size_t index) { return static_cast<Direction>(index); }
+
+std::array<double, 3> unit_step(std::size_t direction) {
+  std::array<double, 3> step{};
+  step[direction / 2] = direction % 2 == 0 ? 1 : -1;
+  return step;
+}
+
+/// A force at the tip of an arm, as force and torque at its root.
+Vec6<double> moved(Vec6<double> force, std::size_t direction, double length) {
+  const std::array<double, 3> step = unit_step(direction);
+  force[3] += length * (step[1] * force[2] - step[2] * force[1]);
+  force[4] += length * (step[2] * force[0] - step[0] * force[2]);
+  force[5] += length * (step[0] * force[1] - step[1] * force[0]);
+  return force;
+}
+
+/// Spreads the low 21 bits to every third place.
+std::uint64_t spread(std::uint64_t value) {
+  value = (value | value << 32U) & 0x1f00000000ffffU;
+  value = (value | value << 16U) & 0x1f0000ff0000ffU;
+  value = (value | value << 8U) & 0x100f00f00f00f00fU;
+  value = (value | value << 4U) & 0x10c30c30c30c30c3U;
+  value = (value | value << 2U) & 0x1249249249249249U;
+  return value;
+}
+
+struct Keyed {
+  std::uint64_t key = 0;
+  std::int32_t module = 0;
+};
+
+/// Least significant digit first; stable.
+void radix_sort(std::vector<Keyed>& items) {
+  constexpr unsigned kBits = 11;
+  std::uint64_t all = 0;
+  for (const Keyed& item : items) {
+    all |= item.key;
+  }
+  std::vector<Keyed> sorted(items.size());
+  for (unsigned shift = 0; shift < 64 && (all >> shift) != 0; shift += kBits) {
+    std::array<std::size_t, (1U << kBits) + 1> start{};
+    const auto digit = [&](const Keyed& item) { return (item.key >> shift) & ((1U << kBits) - 1); };
+    for (const Keyed& item : items) {
+      ++start[digit(item) + 1];
+    }
+    for (std::size_t i = 1; i < start.size(); ++i) {
+      start[i] += start[i - 1];
+    }
+    for (const Keyed& item : items) {
+      sorted[start[digit(item)]++] = item;
+    }
+    items.swap(sorted);
+  }
+}
+
+/// Builds a network step by step.
+class Builder {
+ public:
+  explicit Builder(const Robot& robot)
+      : robot_(robot), is_gone_(robot.modules().size(), 0), degree_(robot.modules().size()) {
+    const double weight = model::module_weight_n(robot.material());
+    weight_ = {0, 0, -weight, 0, 0, 0};
+  }
+
+  Network build() {
+    count_connections();
+    take_hanging();
+    take_runs();
+    sort_nodes();
+    colour_nodes();
+    connect();
+    return std::move(network_);
+  }
+
+ private:
+  bool is_free(std::size_t module) const {
+    return robot_.modules()[module].support == Support::kNone;
+  }
+
+  void count_connections() {
+    for (std::size_t i = 0; i < degree_.size(); ++i) {
+      int count = 0;
+      for (const std::int32_t other : robot_.neighbours()[i]) {
+        count += other == Robot::kNoNeighbour ? 0 : 1;
+      }
+      degree_[i] = static_cast<std::uint8_t>(count);
+      is_gone_[i] = robot_.modules()[i].support == Support::kFixed ? 1 : 0;
+    }
+  }
+
+  void need_loads() {
+    if (network_.load.empty()) {
+      network_.load.assign(degree_.size(), weight_);
+    }
+  }
+
+  std::size_t next(std::size_t module, std::size_t direction) const {
+    return at(robot_.neighbours()[module][direction]);
+  }
+
+  bool is_connected(std::size_t module, std::size_t direction) const {
+    const std::int32_t other = robot_.neighbours()[module][direction];
+    return other != Robot::kNoNeighbour &&
+           (is_gone_[at(other)] == 0 || robot_.modules()[at(other)].support == Support::kFixed);
+  }
+
+  /// Leaves first, until none is left.
+  void take_hanging() {
+    for (std::size_t start = 0; start < degree_.size(); ++start) {
+      std::size_t leaf = start;
+      while (is_gone_[leaf] == 0 && is_free(leaf) && degree_[leaf] == 1) {
+        need_loads();
+        std::size_t direction = 0;
+        while (!is_connected(leaf, direction)) {
+          ++direction;
+        }
+        const std::size_t host = next(leaf, direction);
+        is_gone_[leaf] = 1;
+        network_.hanging.push_back({.module = static_cast<std::int32_t>(leaf),
+                                    .direction = static_cast<std::uint8_t>(direction)});
+        base::add_to(network_.load[host],
+                     moved(network_.load[leaf], direction ^ 1U, robot_.material().pitch_mm));
+        --degree_[host];
+        leaf = host;
+      }
+    }
+  }
+
+  /// The axis along which a module only passes forces on, or -1.
+  int axis_of_passage(std::size_t module) const {
+    if (is_gone_[module] != 0 || !is_free(module) || degree_[module] != 2) {
+      return -1;
+    }
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      if (is_connected(module, 2 * axis) && is_connected(module, 2 * axis + 1)) {
+        return static_cast<int>(axis);
+      }
+    }
+    return -1;
+  }
+
+  void take_runs() {
+    std::vector<std::int8_t> axis(degree_.size());
+    bool is_any = false;
+    for (std::size_t i = 0; i < axis.size(); ++i) {
+      axis[i] = static_cast<std::int8_t>(axis_of_passage(i));
+      is_any = is_any || axis[i] >= 0;
+    }
+    if (!is_any) {
+      return;
+    }
+    need_loads();
+    for (std::size_t i = 0; i < axis.size(); ++i) {
+      const bool is_end = axis[i] < 0 && (is_gone_[i] == 0 || !is_free(i));
+      for (std::size_t direction = 0; is_end && direction < 6; direction += 2) {
+        if (is_connected(i, direction) &&
+            axis[next(i, direction)] == static_cast<int>(direction / 2)) {
+          take_run(i, direction, axis);
+        }
+      }
+    }
+  }
+
+  /// From an end along +x, +y or +z to the other end, in beams of at most kBeamLengthMax.
+  void take_run(std::size_t from, std::size_t direction, const std::vector<std::int8_t>& axis) {
+    bool is_at_end = false;
+    while (!is_at_end) {
+      std::size_t to = from;
+      int length = 0;
+      do {
+        to = next(to, direction);
+        ++length;
+        is_at_end = axis[to] != static_cast<int>(direction / 2);
+      } while (!is_at_end && length < kBeamLengthMax);
+      if (length > 1) {
+        join(from, direction, length);
+      }
+      from = to;
+    }
+  }
+
+  void join(std::size_t from, std::size_t direction, int length) {
+    network_.runs.push_back({.from = static_cast<std::int32_t>(from),
+                             .direction = static_cast<std::uint8_t>(direction),
+                             .length = length});
+    network_.has_long_beams = true;
+    std::size_t to = from;
+    for (int i = 0; i < length; ++i) {
+      to = next(to, direction);
+    }
+    std::size_t module = from;
+    for (int i = 1; i < length; ++i) {
+      module = next(module, direction);
+      is_gone_[module] = 1;
+      const Vec6<double>& force = network_.load[module];
+      base::add_to(network_.load[from], share(force, direction, i, length));
+      base::add_to(network_.load[to], share(force, direction ^ 1U, length - i, length));
+    }
+  }
+
+  /// What the near end of a beam takes of a force that acts `place` pitches along it: the transpose
+  /// of the displacement there for a unit displacement of that end.
+  Vec6<double> share(const Vec6<double>& force, std::size_t direction, int place,
+                     int length) const {
+    const double s = static_cast<double>(place) / length;
+    const double span = robot_.material().pitch_mm * length;
+    const double linear = 1 - s;
+    const double cubic = 1 - 3 * s * s + 2 * s * s * s;
+    const double slope = span * s * linear * linear;
+    const double cubic_rate = -6 * s * linear / span;
+    const double slope_rate = linear * (1 - 3 * s);
+    const std::array<double, 3> step = unit_step(direction);
+    const std::size_t axis = direction / 2;
+    Vec6<double> taken{};
+    for (std::size_t i = 0; i < 3; ++i) {
+      taken[i] = force[i] * (i == axis ? linear : cubic);
+      taken[i + 3] = force[i + 3] * (i == axis ? linear : slope_rate);
+    }
+    // A rotation t moves the beam by slope * (t x step) and turns it by slope_rate * t; a
+    // displacement u turns it by cubic_rate * (step x u).
+    for (std::size_t i = 0; i < 3; ++i) {
+      const std::size_t j = (i + 1) % 3;
+      const std::size_t k = (i + 2) % 3;
+      taken[i + 3] += slope * (step[j] * force[k] - step[k] * force[j]);
+      taken[i] += cubic_rate * (force[j + 3] * step[k] - force[k + 3] * step[j]);
+    }
+    return taken;
+  }
+
+  void sort_nodes() {
+    const auto modules = robot_.modules();
+    base::Cell low = modules[0].cell;
+    for (const model::Module& module : modules) {
+      low = {std::min(low.x, module.cell.x), std::min(low.y, module.cell.y),
+             std::min(low.z, module.cell.z)};
+    }
+    items_.reserve(modules.size());
+    for (std::size_t i = 0; i < modules.size(); ++i) {
+      if (is_gone_[i] == 0) {
+        const base::Cell& cell = modules[i].cell;
+        items_.push_back({.key = spread(static_cast<std::uint64_t>(cell.x - low.x)) |
+                                 spread(static_cast<std::uint64_t>(cell.y - low.y)) << 1U |
+                                 spread(static_cast<std::uint64_t>(cell.z - low.z)) << 2U,
+                          .module = static_cast<std::int32_t>(i)});
+      }
+    }
+    radix_sort(items_);
+    network_.node_count = items_.size();
+  }
+
+  /// End of a beam from a module, and its length; kNoNeighbour if there is none.
+  std::int32_t far_end(std::size_t module, std::size_t direction, int& length) const {
+    std::int32_t other = robot_.neighbours()[module][direction];
+    length = 1;
+    if (other == Robot::kNoNeighbour || network_.load.empty()) {
+      return other;
+    }
+    while (is_gone_[at(other)] != 0 && is_free(at(other))) {
+      if (degree_[at(other)] != 2 || axis_of_gone(at(other)) != direction / 2) {
+        return Robot::kNoNeighbour;  // Hangs here.
+      }
+      other = robot_.neighbours()[at(other)][direction];
+      ++length;
+    }
+    return other;
+  }
+
+  /// Of a module in a run; a hanging one has no such axis because its degree fell to 1.
+  std::size_t axis_of_gone(std::size_t module) const { return run_axis_[module]; }
+
+  void colour_nodes() {
+    if (network_.has_long_beams) {
+      run_axis_.assign(degree_.size(), 3);
+      for (const Network::Run& run : network_.runs) {
+        std::size_t module = at(run.from);
+        for (int i = 1; i < run.length; ++i) {
+          module = next(module, run.direction);
+          run_axis_[module] = static_cast<std::uint8_t>(run.direction / 2U);
+        }
+      }
+    } else if (!network_.load.empty()) {
+      run_axis_.assign(degree_.size(), 3);
+    }
+    constexpr std::uint8_t kNone = 255;
+    std::vector<std::uint8_t> colour(degree_.size(), kNone);
+    std::array<std::size_t, 8> count{};
+    for (const Keyed& item : items_) {
+      unsigned taken = 0;
+      for (std::size_t direction = 0; direction < 6; ++direction) {
+        int length = 0;
+        const std::int32_t other = far_end(at(item.module), direction, length);
+        if (other != Robot::kNoNeighbour && colour[at(other)] != kNone) {
+          taken |= 1U << colour[at(other)];
+        }
+      }
+      const auto free = static_cast<std::uint8_t>(std::countr_one(taken));
+      colour[at(item.module)] = free;
+      ++count[free];
+    }
+    std::array<std::size_t, 9> start{};
+    network_.colour_start = {0};
+    for (std::size_t c = 0; c < 8 && count[c] > 0; ++c) {
+      start[c + 1] = start[c] + count[c];
+      network_.colour_start.push_back(start[c + 1]);
+    }
+    node_of_.assign(degree_.size(), static_cast<std::int32_t>(network_.node_count));
+    network_.module.resize(items_.size());
+    network_.order.reserve(items_.size());
+    network_.key.reserve(items_.size());
+    for (const Keyed& item : items_) {
+      const std::size_t node = start[colour[at(item.module)]]++;
+      node_of_[at(item.module)] = static_cast<std::int32_t>(node);
+      network_.module[node] = item.module;
+      network_.order.push_back(static_cast<std::int32_t>(node));
+      network_.key.push_back(item.key);
+    }
+    items_ = {};
+  }
+
+  void connect() {
+    network_.other.resize(network_.node_count);
+    network_.kind.resize(network_.node_count);
+    const auto none = static_cast<std::int32_t>(network_.node_count);
+    for (std::size_t node = 0; node < network_.node_count; ++node) {
+      const std::size_t module = at(network_.module[node]);
+      Kind kind{};
+      for (std::size_t direction = 0; direction < 6; ++direction) {
+        int length = 0;
+        const std::int32_t other = far_end(module, direction, length);
+        const bool is_there = other != Robot::kNoNeighbour;
+        network_.other[node][direction] = is_there ? node_of_[at(other)] : none;
+        kind[direction] = static_cast<std::uint8_t>(is_there ? length : 0);
+      }
+      if (robot_.modules()[module].support == Support::kGround) {
+        kind[base::index(Direction::kMinusZ)] = 1;
+      }
+      network_.kind[node] = kind;
+    }
+  }
+
+  const Robot& robot_;
+  Vec6<double> weight_{};
+  std::vector<std::uint8_t> is_gone_;  ///< Eliminated or fixed.
+  std::vector<std::uint8_t> degree_;   ///< Connections that are left.
+  std::vector<std::uint8_t> run_axis_;
+  std::vector<Keyed> items_;
+  std::vector<std::int32_t> node_of_;
+  Network network_;
+};
+
+/// K^-1 as a matrix; the blocks of a beam are regular.
+Mat6<double> inverse_of(const Mat6<double>& block) {
+  Mat6<double> inverse;
+  HOLDFAST_CHECK(invert(block, inverse));
+  return inverse;
+}
+
+/// Block elimination along a run, from its first inner module to its last: the same for all runs of
+/// one direction and length.
+struct RunFactor {
+  std::vector<Mat6<double>> pivot;   ///< Inverse of what is left of K_ii.
+  std::vector<Mat6<double>> factor;  ///< K_i,i-1 times the pivot before.
+  Mat6<double> to_next;              ///< K12 onwards and backwards.
+  Mat6<double> to_last;
+};
+
+RunFactor factorize_run(const mechanics::BeamStiffness<double>& beam, std::size_t direction,
+                        int length) {
+  RunFactor run;
+  run.to_next = mechanics::block_12(beam, direction_of(direction));
+  run.to_last = mechanics::block_12(beam, direction_of(direction ^ 1U));
+  Mat6<double> both = mechanics::block_11(beam, direction_of(direction));
+  base::add_to(both, mechanics::block_11(beam, direction_of(direction ^ 1U)));
+  for (int i = 1; i < length; ++i) {
+    Mat6<double> diagonal = both;
+    run.factor.push_back(i == 1 ? run.to_last : product(run.to_last, run.pivot.back()));
+    if (i > 1) {
+      subtract_product(diagonal, run.factor.back(), run.to_next);
+    }
+    run.pivot.push_back(inverse_of(diagonal));
+  }
+  return run;
+}
+
+void recover_run(const Robot& robot, const Network& network, const Network::Run& run,
+                 const RunFactor& factor, std::vector<Vec6<double>>& displacement) {
+  std::array<std::size_t, kBeamLengthMax + 1> modules{};
+  std::array<Vec6<double>, kBeamLengthMax> right;
+  modules[0] = at(run.from);
+  const auto length = static_cast<std::size_t>(run.length);
+  for (std::size_t i = 1; i <= length; ++i) {
+    modules[i] = at(robot.neighbours()[modules[i - 1]][run.direction]);
+  }
+  for (std::size_t i = 1; i < length; ++i) {
+    right[i] = network.load[modules[i]];
+    subtract_product(right[i], factor.factor[i - 1],
+                     i == 1 ? displacement[modules[0]] : right[i - 1]);
+  }
+  for (std::size_t i = length - 1; i > 0; --i) {
+    subtract_product(right[i], factor.to_next, displacement[modules[i + 1]]);
+    displacement[modules[i]] = multiply(factor.pivot[i - 1], right[i]);
+  }
+}
+
+Vec6<double> minus(Vec6<double> a, const Vec6<double>& b) {
+  for (std::size_t i = 0; i < 6; ++i) {
+    a[i] -= b[i];
+  }
+  return a;
+}
+
+}  // namespace
+
+mechanics::BeamStiffness<double> long_beam(const model::Material& material, int length) {
+  mechanics::BeamSection<double> section = model::beam_section(material);
+  section.length *= length;
+  return mechanics::beam_stiffness(section);
+}
+
+Network make_network(const Robot& robot) { return Builder(robot).build(); }
+
+void recover(const Robot& robot, const Network& network, std::vector<Vec6<double>>& displacement) {
+  const auto beam = long_beam(robot.material(), 1);
+  std::array<std::vector<RunFactor>, 6> runs;
+  std::array<Mat6<double>, 6> inverse_11;
+  for (std::size_t d = 0; d < 6; ++d) {
+    inverse_11[d] = inverse_of(mechanics::block_11(beam, direction_of(d)));
+    runs[d].resize(kBeamLengthMax + 1);
+  }
+  for (const Network::Run& run : network.runs) {
+    RunFactor& factor = runs[run.direction][at(run.length)];
+    if (factor.pivot.empty()) {
+      factor = factorize_run(beam, run.direction, run.length);
+    }
+    recover_run(robot, network, run, factor, displacement);
+  }
+  for (std::size_t i = network.hanging.size(); i-- > 0;) {
+    const auto [module, direction] = network.hanging[i];
+    const std::size_t host = at(robot.neighbours()[at(module)][direction]);
+    const Vec6<double> pull =
+        multiply(mechanics::block_12(beam, direction_of(direction)), displacement[host]);
+    displacement[at(module)] =
+        multiply(inverse_11[direction], minus(network.load[at(module)], pull));
+  }
+}
+
+}  // namespace holdfast::solver

@@ -1,0 +1,63 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "holdfast/base/algebra.hpp"
+#include "holdfast/model/robot.hpp"
+#include "vectors.hpp"
+
+/// What is left of a robot when everything is eliminated that can be eliminated by hand.
+///
+/// Hanging trees carry their own weight only: their load, with its lever, moves to where they hang.
+/// A straight run of modules with two connections each is one longer beam: cubic displacements are
+/// exact for a beam that is loaded at its ends, so its stiffness is Eqs. (1)-(2) with the longer
+/// length, and a load in between moves to the ends by the same cubics [Przemieniecki 1968].
+///
+/// The rest are the nodes. They are sorted by colour, then along the Morton curve; no two nodes of
+/// one colour share a beam, and a lattice needs two colours.
+namespace holdfast::solver {
+
+struct Network {
+  std::size_t node_count = 0;
+  std::vector<std::size_t> colour_start;  ///< First node of each colour, then node_count.
+  std::vector<std::int32_t> module;       ///< Node -> module.
+  std::vector<Others> other;
+  std::vector<Kind> kind;  ///< A beam down to the ground or to a fixed module has no other node.
+  std::vector<std::int32_t> order;  ///< Nodes along the Morton curve.
+  std::vector<std::uint64_t> key;   ///< Their Morton keys, ascending.
+  bool has_long_beams = false;
+  std::vector<base::Vec6<double>> load;  ///< By module; empty if nothing was eliminated.
+
+  /// A module that hangs on one connection, in the order of elimination.
+  struct Hanging {
+    std::int32_t module = 0;
+    std::uint8_t direction = 0;  ///< To what it hangs on.
+  };
+
+  std::vector<Hanging> hanging;
+
+  /// A straight run of modules between two others.
+  struct Run {
+    std::int32_t from = 0;       ///< Module before the first.
+    std::uint8_t direction = 0;  ///< From there onwards.
+    std::int32_t length = 0;     ///< Pitches to the module after the last.
+  };
+
+  std::vector<Run> runs;
+};
+
+Network make_network(const model::Robot& robot);
+
+/// Fills in the displacements of modules that are no nodes; those of nodes are given.
+void recover(const model::Robot& robot, const Network& network,
+             std::vector<base::Vec6<double>>& displacement);
+
+/// The section's beam stretched to `length` pitches.
+mechanics::BeamStiffness<double> long_beam(const model::Material& material, int length);
+
+}  // namespace holdfast::solver

@@ -1,0 +1,41 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstddef>
+
+#include "holdfast/base/algebra.hpp"
+
+/// Springs between rigid bodies: how they look from elsewhere, and when they are longer.
+///
+/// A spring S of a body p acts on the difference of the motion of p and that of its partner q
+/// carried over to p; T(a) [u, t] = [u + t x a, t] carries a motion by a. S is symmetric; with it
+///   K_pp = sum of S_pq,   K_pq = -S_pq T(x_p - x_q).
+namespace holdfast::solver {
+
+using Mat = base::Mat6<double>;
+using Point = std::array<double, 3>;
+
+inline Point difference(const Point& a, const Point& b) {
+  return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
+}
+
+Mat scaled(Mat matrix, double factor);
+
+/// S T(a).
+Mat times_carry(Mat s, const Point& a);
+
+/// T(a)^T S T(a): a spring at x, seen from the point x - a.
+Mat carried(const Mat& s, const Point& a);
+
+/// Lengthens a spring along `axis`, whose middle lies at `arm` from its body, from `length` to
+/// `reach`, as if its compliance were spread evenly along it: each part bends, and what bends away
+/// from the middle shifts it. So the compliance is multiplied by reach/length, after its shear part
+/// gained (reach^2 - length^2)/12 times the rotational one: that makes a beam of one length a beam
+/// of the other exactly. In a solid the neighbours hinder the bending, so only kBendShare of that
+/// is taken.
+Mat stretched(const Mat& stiffness, const Point& arm, std::size_t axis, double length,
+              double reach);
+
+}  // namespace holdfast::solver
