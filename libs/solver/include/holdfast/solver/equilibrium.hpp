@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -30,7 +32,9 @@ namespace holdfast::solver {
 
 struct EquilibriumOptions {
   /// Memory for the factorization; a robot that needs more gets the outcome kTooLarge.
-  std::size_t memory_bytes_max = std::size_t{4} << 30U;
+  /// Half of the address space where that is less than 4 GiB.
+  std::size_t memory_bytes_max =
+      std::min(std::uint64_t{4} << 30U, std::uint64_t{std::numeric_limits<std::size_t>::max() / 2});
   /// Newton steps per contact problem.
   int step_count_max = 100;
 };
