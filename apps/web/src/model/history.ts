@@ -61,6 +61,11 @@ export class History {
     return this.undone.length > 0;
   }
 
+  /** Something was changed that no file holds: cells, not only another robot in place of this one. */
+  get isEdited(): boolean {
+    return this.done.some((step) => 'changes' in step);
+  }
+
   private do(step: Step): void {
     this.done.push(step);
     this.undone = [];

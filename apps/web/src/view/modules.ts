@@ -57,6 +57,7 @@ void main() {
 const FRAGMENT = `
 uniform vec3 codes[6];
 uniform vec3 pointed;
+uniform float opacity;
 varying vec3 vTint;
 varying vec2 vUv;
 varying vec3 vNormal;
@@ -98,7 +99,7 @@ void main() {
     float rim = 1.0 - smoothstep(0.06, 0.06 + pixel, border);
     colour = mix(mix(colour, vec3(1.0), 0.18), pointed, rim);
   }
-  gl_FragColor = vec4(colour, 1.0);
+  gl_FragColor = vec4(colour, opacity);
 }`;
 
 export class ModuleMesh {
@@ -111,13 +112,15 @@ export class ModuleMesh {
   turns = new Float32Array(0);
   faces = new Float32Array(0);
 
-  constructor() {
+  constructor(opacity = 1) {
     const material = new ShaderMaterial({
+      transparent: opacity < 1,
       vertexShader: VERTEX,
       fragmentShader: FRAGMENT,
       uniforms: {
         exaggeration: { value: 0 },
-        codes: { value: [] },
+        opacity: { value: opacity },
+        codes: { value: new Float32Array(18) },
         pointed: { value: [0, 0, 0] },
       },
     });
