@@ -39,6 +39,8 @@ target_compile_definitions(pugixml PUBLIC PUGIXML_NO_EXCEPTIONS)
 target_include_directories(pugixml SYSTEM PUBLIC ${HOLDFAST_PUGIXML_SOURCE})
 add_library(pugixml::pugixml ALIAS pugixml)
 
+# No -msimd128: clang 14's SLP vectorizer makes wrong code of 6x6 blocks for it (solver_test finds
+# that), and without that pass vectors are no faster than scalars.
 add_compile_options(-include ${PROJECT_SOURCE_DIR}/cmake/wasm/missing.hpp)
 
 # GoogleTest from Debian's sources; programs run under Node and read the repository's files.

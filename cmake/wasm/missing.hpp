@@ -60,6 +60,7 @@ struct Rest {
   Iterator last;
 
   Iterator begin() const { return first; }
+
   Iterator end() const { return last; }
 };
 
@@ -80,8 +81,8 @@ constexpr void stable_sort(Range&& range, Compare compare = {}, Projection proje
 template <class Range>
 constexpr auto unique(Range&& range) {
   const auto last = std::end(range);
-  return holdfast_detail::Rest<decltype(std::begin(range))>{
-      std::unique(std::begin(range), last), last};
+  return holdfast_detail::Rest<decltype(std::begin(range))>{std::unique(std::begin(range), last),
+                                                            last};
 }
 
 template <class Range>
@@ -144,7 +145,7 @@ constexpr auto count_if(Range&& range, Predicate predicate, Projection projectio
 template <class Range, class Value, class Compare = holdfast_detail::Less,
           class Projection = holdfast_detail::Identity>
 constexpr auto lower_bound(Range&& range, const Value& value, Compare compare = {},
-                 Projection projection = {}) {
+                           Projection projection = {}) {
   return std::lower_bound(std::begin(range), std::end(range), value,
                           [&](const auto& element, const Value& wanted) {
                             return std::invoke(compare, std::invoke(projection, element), wanted);

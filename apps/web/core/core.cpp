@@ -148,8 +148,7 @@ Reply try_places(const Request& request) {
     spec.planned.push_back(place);
     const auto robot = model::Robot::create(spec);
     spec.planned.pop_back();
-    const verdict::Assessment assessment =
-        robot ? try_place(robot.value()) : verdict::Assessment();
+    const verdict::Assessment assessment = robot ? try_place(robot.value()) : verdict::Assessment();
     out.integers.push_back(robot ? static_cast<std::int32_t>(assessment.verdict) : -1);
     out.numbers.push_back(assessment.load_ratio_max.value_or(-1));
     out.numbers.push_back(assessment.simplified.margin_mm.value_or(0));
@@ -280,9 +279,7 @@ Reply simulate_request(const Request& request) {
   summary["root"] = run.value().result.root;
   summary["is_complete"] = log.is_complete();
   summary["ticks_per_second"] = options.link.ticks_per_second;
-  return {.text = dump(summary),
-          .integers = log.take_integers(),
-          .numbers = log.take_numbers()};
+  return {.text = dump(summary), .integers = log.take_integers(), .numbers = log.take_numbers()};
 }
 
 }  // namespace

@@ -47,8 +47,7 @@ PacketLog::Told PacketLog::read_payload(Stream& stream, std::span<const std::uin
   bool is_told = stream.bytes_left > 0 || stream.first != 0;
   for (std::size_t at = 0; at < payload.size();) {
     if (stream.bytes_left > 0) {
-      const auto taken =
-          std::min(static_cast<std::size_t>(stream.bytes_left), payload.size() - at);
+      const auto taken = std::min(static_cast<std::size_t>(stream.bytes_left), payload.size() - at);
       stream.bytes_left -= static_cast<int>(taken);
       at += taken;
       continue;
@@ -92,9 +91,9 @@ PacketLog::Told PacketLog::follow(Stream& stream, std::span<const std::uint8_t> 
     return {.meaning = stream.meaning, .has_step = false};  // sent again
   }
   stream.next_sequence = (stream.next_sequence + 1) % 64;
-  return read_payload(stream, packet.subspan(wire::kHeaderBytes,
-                                             packet.size() - wire::kHeaderBytes -
-                                                 wire::kChecksumBytes));
+  return read_payload(stream,
+                      packet.subspan(wire::kHeaderBytes,
+                                     packet.size() - wire::kHeaderBytes - wire::kChecksumBytes));
 }
 
 void PacketLog::add(LogEvent event, std::array<std::int32_t, 3> values, sim::Time time,

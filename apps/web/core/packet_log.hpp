@@ -22,7 +22,8 @@ enum class LogEvent : std::int32_t {
   kStep,     ///< From, to: an order for one more step of the linear method is on its way.
 };
 
-/// What a packet carries: kLink is a greeting, ping or acknowledgement; else the first message in it.
+/// What a packet carries: kLink is a greeting, ping or acknowledgement; else the first message in
+/// it.
 enum class PacketMeaning : std::int32_t { kLink, kWave, kOrder, kReport, kVector, kPlanned };
 
 /// Follows the streams of messages in the packets of every link, to tell what they are.
@@ -38,6 +39,7 @@ class PacketLog : public sim::TraceSink {
 
   /// Four integers and two numbers (time and duration in ticks) for each event.
   std::vector<std::int32_t> take_integers() { return std::move(integers_); }
+
   std::vector<double> take_numbers() { return std::move(numbers_); }
 
   bool is_complete() const { return is_complete_; }

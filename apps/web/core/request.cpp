@@ -11,12 +11,18 @@ namespace {
 using model::Material;
 
 constexpr std::array<double Material::*, kMaterialCount> kMaterialMembers = {
-    &Material::elastic_modulus_mpa,  &Material::pitch_mm,
-    &Material::facet_mm,             &Material::section_area_mm2,
-    &Material::moment_x_mm4,         &Material::moment_y_mm4,
-    &Material::torsion_mm4,          &Material::poisson_ratio,
-    &Material::mass_kg,              &Material::gravity_m_s2,
-    &Material::strength_vertical_n,  &Material::strength_lateral_n,
+    &Material::elastic_modulus_mpa,
+    &Material::pitch_mm,
+    &Material::facet_mm,
+    &Material::section_area_mm2,
+    &Material::moment_x_mm4,
+    &Material::moment_y_mm4,
+    &Material::torsion_mm4,
+    &Material::poisson_ratio,
+    &Material::mass_kg,
+    &Material::gravity_m_s2,
+    &Material::strength_vertical_n,
+    &Material::strength_lateral_n,
     &Material::contact_gamma};
 
 /// What files say about a cell, whether its module exists or is planned.
@@ -88,8 +94,7 @@ io::Document edited(const io::Document& base, const Request& request) {
   for (const PlacedModule& module : request.modules) {
     io::ModuleEntry& entry = entries[module.cell];
     if (module.kind == Kind::kPlanned) {
-      step.push_back(
-          {.cell = module.cell, .color = entry.color, .attributes = entry.attributes});
+      step.push_back({.cell = module.cell, .color = entry.color, .attributes = entry.attributes});
     } else {
       document.modules.push_back({.cell = module.cell,
                                   .is_fixed = module.kind == Kind::kFixed,

@@ -29,8 +29,7 @@ std::from_chars_result from_chars(const char* begin, const char* end, Number& nu
     char* rest = nullptr;
     number = std::strtod(text.c_str(), &rest);
     const bool is_number = rest != text.c_str();
-    return {begin + (rest - text.c_str()),
-            is_number ? std::errc() : std::errc::invalid_argument};
+    return {begin + (rest - text.c_str()), is_number ? std::errc() : std::errc::invalid_argument};
   }
 }
 #endif

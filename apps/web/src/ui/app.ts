@@ -26,7 +26,7 @@ export const ROW_MAX = 100;
 
 /** The page's state and what can be done to it. Everything that happens ends in changed(). */
 export class App {
-  readonly stage = new Stage(byId<HTMLCanvasElement>('canvas'));
+  readonly stage = new Stage(byId<HTMLCanvasElement>('canvas'), () => byId('toolbar').offsetHeight);
   readonly view = new RobotView(this.stage);
   readonly ground = new Ground();
   readonly history = new History(new Robot(), (isAnother) => this.changed(isAnother));

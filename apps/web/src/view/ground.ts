@@ -26,7 +26,7 @@ void main() {
   vec2 line = 1.0 - smoothstep(vec2(0.0), pixel * 1.2, 0.5 - cell);
   float density = 1.0 - clamp(max(pixel.x, pixel.y) * 4.0, 0.0, 1.0);
   float fade = 1.0 - smoothstep(0.3 * reach, reach, distance(vAt, middle));
-  gl_FragColor = vec4(ink, 0.35 * max(line.x, line.y) * fade * density);
+  gl_FragColor = vec4(ink, 0.22 * max(line.x, line.y) * fade * density);
 }`;
 
 const GRID_VERTEX = `

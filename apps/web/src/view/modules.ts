@@ -33,8 +33,8 @@ uniform float exaggeration;
 varying vec3 vTint;
 varying vec2 vUv;
 varying vec3 vNormal;
-varying float vPattern;
-varying float vCode;
+flat varying float vPattern;
+flat varying float vCode;
 
 vec3 rotated(vec3 v, vec3 w) {
   float angle = length(w);
@@ -50,7 +50,7 @@ void main() {
   vUv = uv;
   vNormal = mat3(modelMatrix) * rotated(normal, w);
   vPattern = pattern;
-  vCode = mod(floor(faces / pow(8.0, side)), 8.0);
+  vCode = mod(floor((faces + 0.5) / exp2(3.0 * side)), 8.0);
   gl_Position = projectionMatrix * modelViewMatrix * vec4(at, 1.0);
 }`;
 
@@ -61,10 +61,10 @@ uniform float opacity;
 varying vec3 vTint;
 varying vec2 vUv;
 varying vec3 vNormal;
-varying float vPattern;
-varying float vCode;
+flat varying float vPattern;
+flat varying float vCode;
 
-bool has(float bit) { return mod(floor(vPattern / bit), 2.0) > 0.5; }
+bool has(float bit) { return mod(floor((vPattern + 0.5) / bit), 2.0) > 0.5; }
 
 void main() {
   vec3 n = normalize(vNormal);
@@ -75,9 +75,10 @@ void main() {
   float border = min(inner.x, inner.y);
   float pixel = max(fwidth(vUv.x), fwidth(vUv.y));
   vec3 line = colour * 0.55;
-  float width = has(1.0) ? 0.05 : 0.022;
+  float width = has(1.0) ? 0.035 : 0.014;
   float along = inner.x < inner.y ? vUv.y : vUv.x;
-  float dash = has(1.0) ? step(0.5, fract(along * 5.0 + 0.25)) : 1.0;
+  float wave = abs(fract(along * 5.0) - 0.5);
+  float dash = has(1.0) ? smoothstep(0.25 - 2.5 * pixel, 0.25 + 2.5 * pixel, wave) : 1.0;
   if (has(4.0)) {
     float stripe = abs(fract((vUv.x + vUv.y) * 3.0) - 0.5);
     float fade = clamp(0.5 / (pixel * 12.0), 0.0, 1.0);

@@ -29,7 +29,10 @@ export class Stage {
   beforeFrame: (now: number) => boolean = () => false;
   afterFrame: () => void = () => undefined;
 
-  constructor(readonly canvas: HTMLCanvasElement) {
+  constructor(
+    readonly canvas: HTMLCanvasElement,
+    private readonly coveredPixels: () => number,
+  ) {
     this.renderer = new WebGLRenderer({ canvas, antialias: true, alpha: true });
     this.renderer.setClearAlpha(0);
     this.camera.up.set(0, 0, 1);
@@ -108,7 +111,11 @@ export class Stage {
     const { clientWidth, clientHeight } = this.canvas.parentElement!;
     this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
     this.renderer.setSize(Math.max(clientWidth, 1), Math.max(clientHeight, 1), false);
-    this.camera.aspect = Math.max(clientWidth, 1) / Math.max(clientHeight, 1);
+    // The tools cover the lower part: the middle of the picture is the middle of the rest.
+    const covered = Math.min(this.coveredPixels(), clientHeight / 2);
+    const [width, height] = [Math.max(clientWidth, 1), Math.max(clientHeight - covered, 1)];
+    this.camera.aspect = width / height;
+    this.camera.setViewOffset(width, height, 0, 0, width, height + covered);
     this.camera.updateProjectionMatrix();
     this.draw();
   }
