@@ -8,7 +8,7 @@ import type { ScaleName } from './view/colours';
 import { App, KIND_NAMES, type Tool } from './ui/app';
 import { showLegend } from './ui/answer_panel';
 import { byId, icon, make, say, tell } from './ui/dom';
-import { listenToFiles, openFragment, openText, take } from './ui/files';
+import { listenToFiles, openFragment, openText, reportOf, take } from './ui/files';
 import { openGallery } from './ui/gallery';
 import { KEYS, listenToKeys } from './ui/keyboard';
 import { showMaterial } from './ui/material';
@@ -22,6 +22,11 @@ interface Start {
   name: string;
   /** The native report, for people, if the page is that of `holdfast check --html`. */
   report?: string;
+}
+
+declare global {
+  /** A handle for the browser's console, and for the tests. */
+  var holdfast: { app: App; player: Player; reportOf: typeof reportOf };
 }
 
 const TOOLS: readonly [tool: Tool, text: string, key: string][] = [
@@ -191,6 +196,7 @@ async function openFirst(app: App): Promise<void> {
 function begin(): void {
   const app = new App();
   const player = new Player(app);
+  globalThis.holdfast = { app, player, reportOf };
   makeTools(app);
   makeDialogs();
   makePanel(app);

@@ -103,7 +103,6 @@ export interface Trace {
   messages: number;
   bytes: number;
   iterations: number;
-  bytes_per_module: number;
   all_modules_agree: boolean;
   root: number;
   is_complete: boolean;

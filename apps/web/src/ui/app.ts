@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 import { Judge, type Finding } from '../core/judge';
 import { Places, TRIAL_COUNT_MAX } from '../core/places';
-import { Kind, VERDICTS, type Cell, type Trial } from '../core/types';
+import { Kind, LOAD_FIELDS, VERDICTS, type Cell, type Trial } from '../core/types';
 import { History } from '../model/history';
 import { DIRECTIONS, PITCH_INDEX, Robot, plus } from '../model/robot';
 import { UNKNOWN, brokenColour, hex, loadColour, mix, verdictColour, type Rgb, type ScaleName } from '../view/colours';
@@ -322,16 +322,17 @@ export class App {
   private placeLabels(): void {
     const labels = byId('labels');
     const { worst } = this.view;
-    if (worst === undefined || this.topple || this.view.paintOver) {
+    const { finding } = this;
+    if (worst === undefined || !finding?.answer || this.topple || this.view.paintOver) {
       labels.replaceChildren();
       return;
     }
     const at = this.stage.project(this.view.connectionPoint(worst));
-    const ratio = this.finding!.answer!.loads[5 * worst];
+    const ratio = finding.answer.loads[LOAD_FIELDS * worst];
     const label = (labels.firstElementChild ?? make('span')) as HTMLElement;
     label.textContent = formatRatio(ratio);
     label.className = ratio >= 1 - 1e-9 ? 'label breaks' : 'label';
-    label.title = connectionText(this.robot, this.finding!, worst);
+    label.title = connectionText(this.robot, finding, worst);
     label.hidden = !at;
     if (at) {
       label.style.transform = `translate(${at.x.toFixed(1)}px, ${at.y.toFixed(1)}px)`;

@@ -154,6 +154,12 @@ async function copyLink(app: App): Promise<void> {
   }
 }
 
+/** The JSON report of a structure file, by the same calls as everything on the page. */
+export async function reportOf(source: string, name: string): Promise<string> {
+  const robot = robotOf(await client.open(new TextEncoder().encode(source)), source, name);
+  return client.write(robot.toData().data, Output.kReportJson, robot.name, source);
+}
+
 async function showReport(app: App): Promise<void> {
   byId('report-text').textContent = await write(app, Output.kReportText);
   byId<HTMLDialogElement>('takeaway').close();

@@ -169,7 +169,7 @@ export class Player {
     const time = trace.simulated_s === null ? '' : `${trace.simulated_s.toFixed(2)} s, `;
     const agree = trace.all_modules_agree ? 'all modules agree' : 'not all modules agree';
     const cut = trace.is_complete ? '' : ' Only the first million events are played.';
-    return `The robot's own verdict: ${trace.verdict}${ratio}; ${agree}. ${time}${trace.rounds} rounds, ${trace.messages} packets, ${trace.iterations} steps, ${trace.bytes_per_module} bytes in each module.${cut}`;
+    return `The robot's own verdict: ${trace.verdict}${ratio}; ${agree}. ${time}${trace.rounds} rounds, ${trace.messages} packets, ${trace.iterations} steps.${cut}`;
   }
 
   private play(): void {

@@ -122,6 +122,7 @@ export class RobotView {
         (this.pointed.has(slot) ? Pattern.kPointed : 0);
     });
     this.modules.update(this.drawn.length, 'tint', 'pattern');
+    this.collar.visible = this.worst !== undefined && !this.paintOver;
     this.stage.draw();
   }
 
@@ -246,7 +247,7 @@ export class RobotView {
 
   private markWorst(): void {
     const { worst } = this;
-    this.collar.visible = worst !== undefined;
+    this.collar.visible = worst !== undefined && !this.paintOver;
     if (worst !== undefined) {
       const direction = DIRECTIONS[this.judged!.answer.connections[3 * worst + 2]];
       this.collar.position.copy(this.connectionPoint(worst));
