@@ -1,8 +1,9 @@
 // SPDX-FileCopyrightText: The holdfast authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// The page's answers are the native program's: every number of the report, bit by bit, for all
-// scenarios and for the 220 structures of tests/reference.
+// The page's answers are the native program's: every number of the report to the last digit, for all
+// scenarios and for the 220 structures of tests/reference. Only the shear force, which is part of no
+// verdict, comes from the C library's hypot, which may differ in that digit.
 import assert from 'node:assert/strict';
 import { readFileSync, readdirSync, writeFileSync } from 'node:fs';
 import path from 'node:path';
@@ -17,9 +18,12 @@ before(async () => {
 });
 after(() => browser.close());
 
-/** How long it took is not the same. */
-function withoutTime(report) {
+/** Without how long it took, and with digits of the shear force that hypot does not touch. */
+function comparable(report) {
   delete report.solver.seconds;
+  for (const connection of report.connections) {
+    connection.shear_n = connection.shear_n.toPrecision(12);
+  }
   return report;
 }
 
@@ -34,7 +38,7 @@ async function expectNativeAnswers(files) {
       [readFileSync(file, 'utf8'), name],
     );
     const report = JSON.parse(text);
-    assert.deepEqual(withoutTime(report), withoutTime(native[i]), name);
+    assert.deepEqual(comparable(report), comparable(native[i]), name);
     connections += report.connections.length;
   }
   return connections;

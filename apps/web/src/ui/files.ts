@@ -25,7 +25,12 @@ export function robotOf(opened: OpenedDocument, text: string, fallbackName: stri
 }
 
 /** Puts a structure in place of the robot; what was there comes back with undo. */
-export async function openText(app: App, bytes: Uint8Array, name: string): Promise<boolean> {
+export async function openText(
+  app: App,
+  bytes: Uint8Array,
+  name: string,
+  origin = name,
+): Promise<boolean> {
   try {
     const opened = await client.open(bytes);
     const robot = robotOf(opened, new TextDecoder().decode(bytes), name);
@@ -35,11 +40,11 @@ export async function openText(app: App, bytes: Uint8Array, name: string): Promi
       notes.push(`${opened.later_steps} later steps are kept, not shown`);
     }
     if (notes.length > 0) {
-      tell(`${robot.name || name}: ${notes.slice(0, 3).join('; ')}${notes.length > 3 ? '; …' : ''}`);
+      tell(`${origin}: ${notes.slice(0, 3).join('; ')}${notes.length > 3 ? '; …' : ''}`);
     }
     return true;
   } catch (error) {
-    tell(`${name}: ${error instanceof Error ? error.message : String(error)}`, true);
+    tell(`${origin}: ${error instanceof Error ? error.message : String(error)}`, true);
     return false;
   }
 }
@@ -52,7 +57,7 @@ export async function openFile(app: App, file: File): Promise<void> {
   }
   try {
     const bytes = new Uint8Array(await file.arrayBuffer());
-    await openText(app, bytes, file.name.replace(/\.(xml|json)$/i, ''));
+    await openText(app, bytes, file.name.replace(/\.(xml|json)$/i, ''), file.name);
   } catch {
     tell(`${file.name}: cannot be read`, true);
   }

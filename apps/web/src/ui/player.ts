@@ -39,6 +39,8 @@ export class Player {
   /** The module in each slot; those from agentCount on are planned. */
   private moduleOf = new Int32Array(0);
   private agentCount = 0;
+  /** The first that the root orders: one order to it for each step. */
+  private rootChild = -1;
   private allKnow = false;
   private loads?: ModuleLoads;
   private time = 0;
@@ -138,14 +140,16 @@ export class Player {
     this.durationMax = 0;
     const stops = new Set<number>([0]);
     const phases = new Set<number>([0]);
-    let rootChild = -1;
+    this.rootChild = -1;
     let phase = 0;
     for (let i = 0; 2 * i < times.length; ++i) {
       this.end = Math.max(this.end, times[2 * i] + times[2 * i + 1]);
       this.durationMax = Math.max(this.durationMax, times[2 * i + 1]);
       const [kind, from, to] = events.subarray(EVENT_INTEGERS * i, EVENT_INTEGERS * i + 3);
-      if (kind === LogEvent.kStep && from === trace.root && (rootChild < 0 || rootChild === to)) {
-        rootChild = to;
+      if (kind === LogEvent.kStep && from === trace.root && this.rootChild < 0) {
+        this.rootChild = to;
+      }
+      if (kind === LogEvent.kStep && from === trace.root && this.rootChild === to) {
         stops.add(times[2 * i]);
       } else if (kind === LogEvent.kPhase && to > phase) {
         phase = to;
@@ -257,7 +261,7 @@ export class Player {
         moment.phases[a] = b;
       } else if (kind === LogEvent.kVerdict) {
         moment.verdicts[a] = b;
-      } else if (kind === LogEvent.kStep && a === trace.root) {
+      } else if (kind === LogEvent.kStep && a === trace.root && b === this.rootChild) {
         ++moment.steps;
       }
       ++cursor.next;
