@@ -1,7 +1,7 @@
 # Emscripten: the libraries that holdfast needs, from Debian's packages, without the host's own
 # headers and archives. /usr/include as a whole must not be seen, it is another machine's C library.
 
-# find_header_folder(VARIABLE PATH): a folder of the host that holds PATH; an error names the package.
+# find_header_folder(VARIABLE PATH PACKAGE): the host's folder that holds PATH; errors name PACKAGE.
 function(find_header_folder variable path package)
   find_path(${variable} ${path} PATHS /usr/include /usr/include/eigen3 NO_DEFAULT_PATH
             NO_CMAKE_FIND_ROOT_PATH)

@@ -137,9 +137,14 @@ function makePanel(app: App): void {
   };
   const name = byId<HTMLInputElement>('name');
   name.onchange = () => (app.robot.name = name.value);
+  let shown = app.robot;
+  showMaterial(app);
   app.listeners.push(() => {
-    name.value = app.robot.name;
-    showMaterial(app);
+    if (app.robot !== shown) {
+      shown = app.robot;
+      name.value = shown.name;
+      showMaterial(app);
+    }
     if (Number(slider.value) > 0) {
       slider.value = '0';
       slider.dispatchEvent(new Event('input'));
@@ -229,8 +234,14 @@ function begin(): void {
   void openFirst(app).then(() => document.documentElement.classList.add('ready'));
 }
 
-try {
-  begin();
-} catch (error) {
-  tell(`This browser cannot show the page: ${error instanceof Error ? error.message : String(error)}`, true);
-}
+// First the page is painted, then the canvas made, which takes longer; the core compiles meanwhile.
+requestAnimationFrame(() =>
+  setTimeout(() => {
+    try {
+      begin();
+    } catch (error) {
+      const reason = error instanceof Error ? error.message : String(error);
+      tell(`This browser cannot show the page: ${reason}`, true);
+    }
+  }),
+);

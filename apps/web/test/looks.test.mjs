@@ -9,6 +9,7 @@ import { createRequire } from 'node:module';
 import path from 'node:path';
 import { after, before, test } from 'node:test';
 import { facePoint, launch, openExample, openPage, pageFile, repository, settled } from './browser.mjs';
+import { pictureFile, takePicture } from './screenshot.mjs';
 
 const axe = readFileSync(createRequire(import.meta.url).resolve('axe-core/axe.min.js'), 'utf8');
 
@@ -51,14 +52,18 @@ for (const colorScheme of ['light', 'dark']) {
 const COLUMNS = 20;
 const ROWS = 12;
 
-/** The picture in coarse: COLUMNS x ROWS mean colours, a hexadecimal digit for each channel. */
+/** The robot without the tools. */
 async function coarsePicture(page) {
   const clip = await page.locator('#canvas').boundingBox();
-  const picture = (await page.screenshot({ clip: { ...clip, height: clip.height - 60 } })).toString('base64');
+  return coarse(page, await page.screenshot({ clip: { ...clip, height: clip.height - 60 } }));
+}
+
+/** A picture in coarse: COLUMNS x ROWS mean colours, a hexadecimal digit for each channel. */
+function coarse(page, picture) {
   return page.evaluate(
     async ([base64, columns, rows]) => {
       const bytes = Uint8Array.from(atob(base64), (letter) => letter.charCodeAt(0));
-      const bitmap = await createImageBitmap(new Blob([bytes], { type: 'image/png' }));
+      const bitmap = await createImageBitmap(new Blob([bytes]));
       const context = new OffscreenCanvas(bitmap.width, bitmap.height).getContext('2d');
       context.drawImage(bitmap, 0, 0);
       const { data, width, height } = context.getImageData(0, 0, bitmap.width, bitmap.height);
@@ -75,7 +80,7 @@ async function coarsePicture(page) {
       }
       return Array.from(sums, (sum, i) => Math.min(15, Math.floor(sum / counts[Math.floor(i / 3)] / 16)).toString(16)).join('');
     },
-    [picture, COLUMNS, ROWS],
+    [picture.toString('base64'), COLUMNS, ROWS],
   );
 }
 
@@ -116,6 +121,12 @@ test('the gallery looks as it should', async () => {
   assert.ok(difference(pictures.arm_breaks_a, pictures.angle_breaks_a) > 3 * TOLERANCE);
   assert.ok(difference(pictures.crane_tips_a, pictures.crane_tips_b) > 3 * TOLERANCE);
   assert.deepEqual(page.faults, []);
+});
+
+test('the README shows the page as it is', async () => {
+  const now = await coarse(await openPage(browser), await takePicture(browser, { type: 'png' }));
+  const shown = await coarse(await openPage(browser), readFileSync(pictureFile));
+  assert.ok(difference(now, shown) < TOLERANCE, 'node test/screenshot.mjs renews it');
 });
 
 /** The colour of a pixel of the window. */

@@ -17,14 +17,14 @@ import CoreWorker from './worker?worker&inline';
 /** Thrown to who waits for a call that was given up. */
 export class Cancelled extends Error {}
 
-let coreBytes: Promise<Uint8Array<ArrayBuffer>> | undefined;
-
-/** The core travels in the page as base64 of deflated bytes. */
-async function unpackCore(): Promise<Uint8Array<ArrayBuffer>> {
+/** The core travels in the page as base64 of deflated bytes; it is compiled once for all workers. */
+async function compileCore(): Promise<WebAssembly.Module> {
   const packed = Uint8Array.from(atob(CORE), (letter) => letter.charCodeAt(0));
   const stream = new Blob([packed]).stream().pipeThrough(new DecompressionStream('deflate-raw'));
-  return new Uint8Array(await new Response(stream).arrayBuffer());
+  return WebAssembly.compile(await new Response(stream).arrayBuffer());
 }
+
+const compiledCore = compileCore();
 
 interface Waiting {
   resolve(value: unknown): void;
@@ -67,9 +67,8 @@ export class CoreClient {
   }
 
   private async call<Value>(name: WorkerCall['name'], values: unknown[]): Promise<Value> {
-    coreBytes ??= unpackCore();
-    const bytes = await coreBytes;
-    const worker = (this.worker ??= this.start(bytes));
+    const core = await compiledCore;
+    const worker = (this.worker ??= this.start(core));
     const id = this.nextId++;
     return new Promise<Value>((resolve, reject) => {
       this.waiting.set(id, { resolve: resolve as (value: unknown) => void, reject });
@@ -77,9 +76,9 @@ export class CoreClient {
     });
   }
 
-  private start(bytes: Uint8Array): Worker {
+  private start(core: WebAssembly.Module): Worker {
     const worker = new CoreWorker();
-    worker.postMessage(bytes);
+    worker.postMessage(core);
     worker.onmessage = (event: MessageEvent<WorkerReply>) => this.receive(event.data);
     worker.onerror = (event) => this.stop(new CoreError(event.message));
     return worker;

@@ -51,7 +51,7 @@ type Call = 'open' | 'check' | 'try_places' | 'write' | 'simulate';
 export class Core {
   private constructor(private readonly exports: Exports) {}
 
-  static async create(bytes: BufferSource): Promise<Core> {
+  static async create(core: WebAssembly.Module): Promise<Core> {
     let words = '';
     let exports: Exports | undefined = undefined;
     const view = () => new DataView(exports!.memory.buffer);
@@ -85,7 +85,7 @@ export class Core {
         return 0;
       },
     };
-    const { instance } = await WebAssembly.instantiate(bytes, {
+    const instance = await WebAssembly.instantiate(core, {
       env: { emscripten_notify_memory_growth: () => undefined },
       wasi_snapshot_preview1: wasi,
     });

@@ -3,7 +3,7 @@
 import { CoreError } from './types';
 import { Core } from './wasm';
 
-/** Runs the core beside the page. First message: the core's bytes. Then calls, one at a time. */
+/** Runs the core beside the page. First message: the compiled core. Then calls, one at a time. */
 
 export interface WorkerCall {
   id: number;
@@ -22,8 +22,8 @@ export interface WorkerReply {
 
 let core: Promise<Core> | undefined;
 
-self.onmessage = async (event: MessageEvent<Uint8Array<ArrayBuffer> | WorkerCall>) => {
-  if (event.data instanceof Uint8Array) {
+self.onmessage = async (event: MessageEvent<WebAssembly.Module | WorkerCall>) => {
+  if (event.data instanceof WebAssembly.Module) {
     core = Core.create(event.data);
     return;
   }

@@ -5,6 +5,8 @@ import { Kind, type Cell, type RobotData } from '../core/types';
 /** Cells are counted from a robot's first one and stay within this distance of it. */
 const REACH = 100_000;
 const SPAN = 2 * REACH;
+/** Between the keys of neighbours. */
+const STRIDES = [1, SPAN, SPAN * SPAN];
 
 /** Table I of [Piranda 2021], in the order of model::Material. */
 export const TABLE_I = Float64Array.of(
@@ -80,6 +82,12 @@ export class Robot {
     return this.data[4 * slot + 3];
   }
 
+  /** A module with six neighbours, which nobody sees. */
+  isHidden(slot: number): boolean {
+    const key = this.key(this.cellAt(slot))!;
+    return STRIDES.every((stride) => this.slots.has(key + stride) && this.slots.has(key - stride));
+  }
+
   set(cell: Cell, kind: Kind | undefined): void {
     this.origin ??= cell;
     const key = this.key(cell);
@@ -125,7 +133,11 @@ export class Robot {
       }
     }
     const modules = new Int32Array(4 * this.count);
-    slots.forEach((slot, i) => modules.set(this.data.subarray(4 * slot, 4 * slot + 4), 4 * i));
+    slots.forEach((slot, i) => {
+      for (let k = 0; k < 4; ++k) {
+        modules[4 * i + k] = this.data[4 * slot + k];
+      }
+    });
     return { data: { modules, supportZ: this.supportZ, material: this.material }, slots };
   }
 
@@ -150,7 +162,8 @@ export class Robot {
     const dx = x - ox + REACH;
     const dy = y - oy + REACH;
     const dz = z - oz + REACH;
-    const isNear = Math.min(dx, dy, dz) >= 0 && Math.max(dx, dy, dz) < SPAN;
+    // One cell is left free on every side, so that strides stay in the lattice.
+    const isNear = Math.min(dx, dy, dz) > 0 && Math.max(dx, dy, dz) < SPAN - 1;
     return isNear ? (dx * SPAN + dy) * SPAN + dz : undefined;
   }
 
@@ -173,6 +186,9 @@ export class Robot {
       larger.set(this.data);
       this.data = larger;
     }
-    this.data.set([...cell, kind], 4 * slot);
+    this.data[4 * slot] = cell[0];
+    this.data[4 * slot + 1] = cell[1];
+    this.data[4 * slot + 2] = cell[2];
+    this.data[4 * slot + 3] = kind;
   }
 }

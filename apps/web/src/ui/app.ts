@@ -39,6 +39,7 @@ export class App {
   cursor?: Cell;
   private showsFaces = false;
   private wasUnstable = false;
+  private wasPointed = false;
   private lateShow = 0;
   private topple?: { motion: Topple; begun: number };
   private pointedCell?: Cell;
@@ -178,7 +179,7 @@ export class App {
       this.found({ slots: new Int32Array(0) });
     } else {
       this.judge.ask(this.robot);
-      this.lateShow = window.setTimeout(() => this.showRobot(), isAnother ? 0 : LATE_MS);
+      this.lateShow = window.setTimeout(() => this.showRobot(), LATE_MS);
     }
     if (isAnother) {
       this.see();
@@ -191,6 +192,7 @@ export class App {
     const { wasUnstable } = this;
     this.wasUnstable = finding.answer?.verdict === 'unstable';
     this.finding = finding;
+    this.stage.isReady = true;
     this.showRobot();
     performance.mark('shown');
     this.showPointed();
@@ -238,7 +240,10 @@ export class App {
         view.pointed.add(other ?? slot);
       }
     }
-    view.paint();
+    if (slot !== undefined || this.wasPointed) {
+      view.paint();
+    }
+    this.wasPointed = slot !== undefined;
     showDetails(robot, this.finding, this.pointedCell, this.pointedSide);
   }
 

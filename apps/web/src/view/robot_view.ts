@@ -64,6 +64,7 @@ export class RobotView {
   private drawn = new Int32Array(0);
   private robot?: Robot;
   private judged?: Judged;
+  private hasFaces = false;
   scale: ScaleName = 'paper';
   /** Colours of modules that have their own, by slot; the trace player's. */
   paintOver?: (slot: number) => Rgb | undefined;
@@ -85,8 +86,7 @@ export class RobotView {
     this.judged = judged;
     const drawn: number[] = [];
     for (let slot = 0; slot < robot.count; ++slot) {
-      const cell = robot.cellAt(slot);
-      if (!DIRECTIONS.every((direction) => robot.has(plus(cell, direction)))) {
+      if (!robot.isHidden(slot)) {
         drawn.push(slot);
       }
     }
@@ -94,6 +94,7 @@ export class RobotView {
     this.modules.reserve(drawn.length);
     drawn.forEach((slot, i) => this.modules.places.set(robot.cellAt(slot), 3 * i));
     this.modules.faces.fill(0, 0, drawn.length);
+    this.hasFaces = false;
     this.placeMotions();
     this.modules.update(drawn.length, 'place', 'faces', 'motion', 'turn');
     this.paint();
@@ -129,9 +130,10 @@ export class RobotView {
   /** What would come of a module at each free place. */
   showFaces(codeOf: ((place: Cell) => FaceCode) | undefined): void {
     const { robot } = this;
-    if (!robot) {
+    if (!robot || (!codeOf && !this.hasFaces)) {
       return;
     }
+    this.hasFaces = codeOf !== undefined;
     this.drawn.forEach((slot, i) => {
       const cell = robot.cellAt(slot);
       let packed = 0;

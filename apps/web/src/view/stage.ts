@@ -25,6 +25,8 @@ export class Stage {
   private readonly renderer: WebGLRenderer;
   private readonly raycaster = new Raycaster();
   private frame = 0;
+  /** Nothing is drawn before there is something to see. */
+  isReady = false;
   /** Called before each frame with the time; true asks for another one. */
   beforeFrame: (now: number) => boolean = () => false;
   afterFrame: () => void = () => undefined;
@@ -35,6 +37,8 @@ export class Stage {
   ) {
     this.renderer = new WebGLRenderer({ canvas, antialias: true, alpha: true });
     this.renderer.setClearAlpha(0);
+    // Asking for errors waits for the compiler; the tests look at the picture instead.
+    this.renderer.debug.checkShaderErrors = false;
     this.camera.up.set(0, 0, 1);
     this.controls = new OrbitControls(this.camera, canvas);
     this.controls.mouseButtons = { LEFT: MOUSE.ROTATE, MIDDLE: MOUSE.DOLLY, RIGHT: MOUSE.PAN };
@@ -49,6 +53,9 @@ export class Stage {
 
   /** Asks for a frame. */
   draw(): void {
+    if (!this.isReady) {
+      return;
+    }
     this.frame ||= requestAnimationFrame((now) => {
       this.frame = 0;
       const isMoving = this.beforeFrame(now);
