@@ -79,6 +79,7 @@ async function edits(count) {
       const begin = performance.now();
       performance.clearMarks('shown');
       app.edit('bench', [place], i % 2 === 0 ? 0 : undefined);
+      // Small robots are there already.
       while (performance.getEntriesByName('shown').length === 0) {
         await new Promise((done) => {
           const channel = new MessageChannel();

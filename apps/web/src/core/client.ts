@@ -24,7 +24,7 @@ async function compileCore(): Promise<WebAssembly.Module> {
   return WebAssembly.compile(await new Response(stream).arrayBuffer());
 }
 
-const compiledCore = compileCore();
+export const compiledCore = compileCore();
 
 interface Waiting {
   resolve(value: unknown): void;

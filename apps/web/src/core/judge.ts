@@ -1,8 +1,9 @@
 // SPDX-FileCopyrightText: The holdfast authors
 // SPDX-License-Identifier: Apache-2.0
 import type { Robot } from '../model/robot';
-import { CoreClient, Cancelled } from './client';
+import { CoreClient, Cancelled, compiledCore } from './client';
 import type { Answer, RobotData } from './types';
+import { Core } from './wasm';
 
 /** What is known of the robot on the page. `slots` as in Robot.toData(). */
 export interface Finding {
@@ -14,6 +15,8 @@ export interface Finding {
   isFirstLook?: boolean;
 }
 
+/** Up to here the page computes by itself: a worker takes longer to wake up than to answer. */
+const SMALL_COUNT = 150;
 /** From here on the rigid body's answer is shown before the loads are known. */
 const LARGE_COUNT = 1500;
 /** A computation that has run for longer makes way for a newer robot. */
@@ -22,19 +25,30 @@ const PATIENCE_MS = 250;
 interface Task {
   data: RobotData;
   slots: Int32Array;
+  version: number;
 }
 
 /** Keeps the answer up with the robot: one computation at a time, and always for the newest. */
 export class Judge {
   private readonly client = new CoreClient();
+  private core?: Core;
   private next?: Task;
+  private version = 0;
   private isRunning = false;
   private begun = 0;
 
-  constructor(private readonly found: (finding: Finding) => void) {}
+  constructor(private readonly found: (finding: Finding) => void) {
+    void compiledCore.then(Core.create).then((core) => (this.core = core));
+  }
 
   ask(robot: Robot): void {
-    this.next = robot.toData();
+    const task = { ...robot.toData(), version: ++this.version };
+    if (this.core && robot.count <= SMALL_COUNT) {
+      this.next = undefined;
+      this.judgeHere(this.core, task);
+      return;
+    }
+    this.next = task;
     if (!this.isRunning) {
       void this.run();
     } else if (performance.now() - this.begun > PATIENCE_MS) {
@@ -57,15 +71,23 @@ export class Judge {
     this.isRunning = false;
   }
 
-  private async judge({ data, slots }: Task): Promise<void> {
+  private judgeHere(core: Core, { data, slots }: Task): void {
+    try {
+      this.found({ answer: core.check(data, false), slots });
+    } catch (error) {
+      this.found({ problem: error instanceof Error ? error.message : String(error), slots });
+    }
+  }
+
+  private async judge({ data, slots, version }: Task): Promise<void> {
     const tell = (finding: Omit<Finding, 'slots'>) => {
-      if (!this.next) {
+      if (version === this.version) {
         this.found({ ...finding, slots });
       }
     };
     this.begun = performance.now();
+    let look: Answer | undefined;
     try {
-      let look: Answer | undefined;
       if (slots.length >= LARGE_COUNT) {
         look = await this.client.check(data, true);
         tell({ answer: look, isFirstLook: true });
@@ -73,7 +95,8 @@ export class Judge {
       tell({ answer: await this.client.check(data) });
     } catch (error) {
       if (error instanceof Cancelled) {
-        tell({ problem: 'stopped: the loads are not known' });
+        const reasons = ['stopped: the loads are not known'];
+        tell(look ? { answer: { ...look, reasons } } : { problem: reasons[0] });
       } else {
         tell({ problem: error instanceof Error ? error.message : String(error) });
       }

@@ -178,8 +178,8 @@ export class App {
     if (this.robot.count === 0) {
       this.found({ slots: new Int32Array(0) });
     } else {
-      this.judge.ask(this.robot);
       this.lateShow = window.setTimeout(() => this.showRobot(), LATE_MS);
+      this.judge.ask(this.robot);
     }
     if (isAnother) {
       this.see();
