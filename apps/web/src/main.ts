@@ -146,8 +146,7 @@ function makePanel(app: App): void {
       showMaterial(app);
     }
     if (Number(slider.value) > 0) {
-      slider.value = '0';
-      slider.dispatchEvent(new Event('input'));
+      app.straighten();
     }
   });
 }

@@ -40,6 +40,8 @@ export class App {
   private showsFaces = false;
   private wasUnstable = false;
   private wasPointed = false;
+  private previewed: readonly Cell[] = [];
+  private isTrying = false;
   private lateShow = 0;
   private topple?: { motion: Topple; begun: number };
   private pointedCell?: Cell;
@@ -122,19 +124,17 @@ export class App {
   }
 
   /** Modules that would be attached; coloured when it is known what would come of it. */
-  async preview(cells: readonly Cell[]): Promise<void> {
-    this.view.showGhosts(cells, UNKNOWN);
-    if (cells.length === 1 && this.robot.count > 0 && this.robot.count <= TRIAL_COUNT_MAX) {
-      const [place] = cells;
-      const trial = this.places.known(place) ?? (await this.places.find(this.robot, place));
-      if (trial && trial.verdict >= 0) {
-        this.view.showGhosts(cells, this.trialColour(trial));
-      }
-    }
+  preview(cells: readonly Cell[]): void {
+    this.previewed = cells;
+    this.showPreview();
+    void this.tryPreviewed();
   }
 
   setShowsFaces(isShown: boolean): void {
     this.showsFaces = isShown;
+    if (!isShown) {
+      this.places.reset();
+    }
     void this.updateFaces();
   }
 
@@ -142,6 +142,13 @@ export class App {
     const factor = share === 0 ? 0 : this.exaggerationMax() ** share;
     this.view.exaggeration = factor;
     return factor;
+  }
+
+  /** Back to the shape without load. */
+  straighten(): void {
+    const slider = byId<HTMLInputElement>('exaggeration');
+    slider.value = '0';
+    slider.dispatchEvent(new Event('input'));
   }
 
   get canTopple(): boolean {
@@ -172,7 +179,7 @@ export class App {
     this.places.reset();
     this.view.pointed.clear();
     this.pointedCell = undefined;
-    this.view.showGhosts([], UNKNOWN);
+    this.preview([]);
     this.finding = undefined;
     clearTimeout(this.lateShow);
     if (this.robot.count === 0) {
@@ -227,6 +234,27 @@ export class App {
       sum += this.robot.cellAt(slot)[2];
     }
     return sum / Math.max(this.robot.count, 1) - this.robot.supportZ + 0.5;
+  }
+
+  private showPreview(): void {
+    const [place, ...others] = this.previewed;
+    const trial = place && others.length === 0 ? this.places.known(place) : undefined;
+    const isKnown = trial !== undefined && trial.verdict >= 0;
+    this.view.showGhosts(this.previewed, isKnown ? this.trialColour(trial) : UNKNOWN);
+  }
+
+  /** One place at a time, and always where the pointer is now. */
+  private async tryPreviewed(): Promise<void> {
+    if (this.isTrying || this.robot.count === 0 || this.robot.count > TRIAL_COUNT_MAX) {
+      return;
+    }
+    this.isTrying = true;
+    let isCurrent = true;
+    while (isCurrent && this.previewed.length === 1 && !this.places.known(this.previewed[0])) {
+      isCurrent = (await this.places.find(this.robot, this.previewed[0])) !== undefined;
+      this.showPreview();
+    }
+    this.isTrying = false;
   }
 
   private showPointed(): void {

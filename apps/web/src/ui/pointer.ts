@@ -38,11 +38,11 @@ export function listenToPointer(app: App): void {
         clearTimeout(gesture?.timer);
         gesture = undefined;
         controls.enabled = true;
-        void app.preview([]);
+        app.preview([]);
         return;
       }
       const hit = pick(app.robot, app.stage.ray(event.clientX, event.clientY));
-      const isOnRobot = hit !== undefined && !hit.isGround && app.tool !== 'look';
+      const isOnRobot = hit !== undefined && !hit.isGround && app.tool !== 'look' && !isBent(app);
       const turns = event.altKey || event.ctrlKey || event.metaKey || event.shiftKey;
       gesture = { hit, x: event.clientX, y: event.clientY, draws: false, isClick: true, cells: [], timer: 0 };
       if (isOnRobot && !turns) {
@@ -50,7 +50,7 @@ export function listenToPointer(app: App): void {
           gesture!.draws = true;
           gesture!.cells = cellsOf(app, hit);
           controls.enabled = false;
-          void app.preview(app.tool === 'add' ? gesture!.cells : []);
+          app.preview(app.tool === 'add' ? gesture!.cells : []);
         };
         if (event.pointerType === 'touch') {
           gesture.timer = window.setTimeout(begin, LONG_PRESS_MS);
@@ -86,9 +86,11 @@ export function listenToPointer(app: App): void {
     gesture = undefined;
     controls.enabled = true;
     clearTimeout(ended?.timer);
-    if (ended?.draws || ended?.isClick) {
+    if (ended?.isClick && isBent(app)) {
+      app.straighten();
+    } else if (ended?.draws || ended?.isClick) {
       app.use(ended.draws ? ended.cells : cellsOf(app, ended.hit));
-      void app.preview([]);
+      app.preview([]);
     }
     if (event.pointerType === 'touch' && ended?.isClick) {
       app.point(ended.hit?.isGround ? undefined : ended.hit?.cell, ended.hit && nearSeam(app.robot, ended.hit));
@@ -99,24 +101,27 @@ export function listenToPointer(app: App): void {
     clearTimeout(gesture?.timer);
     gesture = undefined;
     controls.enabled = true;
-    void app.preview([]);
+    app.preview([]);
   };
   canvas.addEventListener('pointercancel', forget);
   canvas.addEventListener('pointerleave', () => {
     if (!gesture) {
       app.point(undefined);
-      void app.preview([]);
+      app.preview([]);
     }
   });
   canvas.addEventListener('contextmenu', (event) => event.preventDefault());
 }
+
+/** The shape under load is to look at; what is built is straight. */
+const isBent = (app: App) => app.view.exaggeration > 0;
 
 function hover(app: App, x: number, y: number): void {
   const hit = pick(app.robot, app.stage.ray(x, y));
   const isModule = hit !== undefined && !hit.isGround;
   app.point(isModule ? hit.cell : undefined, isModule ? nearSeam(app.robot, hit) : undefined);
   app.stage.canvas.style.cursor = isModule && app.tool !== 'look' ? 'pointer' : 'grab';
-  void app.preview(app.tool === 'add' ? cellsOf(app, hit) : []);
+  app.preview(app.tool === 'add' && !isBent(app) ? cellsOf(app, hit) : []);
 }
 
 /** What a click there would change. */
@@ -151,7 +156,7 @@ function draw(app: App, gesture: Gesture, x: number, y: number): void {
       row.push(at);
     }
     gesture.cells = row;
-    void app.preview(row);
+    app.preview(row);
     return;
   }
   const hit = pick(app.robot, ray);
