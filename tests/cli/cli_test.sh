@@ -192,5 +192,34 @@ expect_line out '1 safe, 1 overload, 0 unstable, 0 undecided, 1 not readable'
 expect_exit 65 check "$safe" --json /nowhere/report.json
 expect_line err 'cannot be written'
 
+# The page: without a built one the error says how to get it; with one the structure is in it.
+mkdir bin
+cp "$program" bin/holdfast
+program=$work/bin/holdfast
+expect_exit 65 view "$safe" --no-open
+expect_line err "the page is not built: looked for $work/bin/holdfast.html, "
+expect_line err "'./dev page' builds it"
+expect_exit 65 check "$safe" --html page.html
+expect_line err 'the page is not built'
+[ -e page.html ] && fault "a page without a page"
+echo '<p>no page of ours</p>' >bin/holdfast.html
+expect_exit 65 view "$safe" --no-open
+expect_line err "no page of holdfast's"
+grep -F -e '<title>' -e holdfast-start -e 'puts the report here' "$repository/apps/web/index.html" \
+  >bin/holdfast.html
+expect_exit 0 view "$safe" --no-open --out page.html
+expect_line out '^page.html$'
+expect_line page.html '<title>arm_breaks_a - holdfast</title>'
+expect_line page.html 'id="holdfast-start">\{"structure":.*holdfast-structure.*</script>'
+json '"name": "</script><b>", "modules": [[0,0,0]]' >tag.json
+expect_exit 0 view tag.json --no-open --out page.html
+expect_line page.html '<title>&lt;/script>&lt;b> - holdfast</title>'
+[ "$(grep -c '</script' page.html)" -eq 1 ] || fault "a name ends the script: $(cat page.html)"
+expect_exit 1 check "$overload" --html page.html
+expect_line page.html 'carries 1\.2004 of its strength'
+expect_exit 64 check "$safe" "$overload" --html page.html
+expect_exit 65 view missing.json --no-open
+expect_exit 65 view "$safe" --no-open --out /nowhere/page.html
+
 [ "$faults" -eq 0 ] || exit 1
 echo "cli: all as expected"

@@ -9,6 +9,7 @@
 #include <memory>
 
 #include "commands.hpp"
+#include "page.hpp"
 
 namespace holdfast::cli {
 namespace {
@@ -21,6 +22,7 @@ struct Options {
   std::string json;
   std::string svg;
   std::string vtk;
+  std::string html;
   bool is_quiet = false;
   bool is_bonded = false;
   int thread_count = 0;
@@ -75,6 +77,9 @@ class CheckRun {
     if (!options_.vtk.empty()) {
       write(options_.vtk, picture_vtu(structure.value(), result));
     }
+    if (!options_.html.empty()) {
+      write_page(structure.value(), result);
+    }
   }
 
   void show(const Structure& structure, const CheckResult& result, const std::string& file) const {
@@ -108,6 +113,18 @@ class CheckRun {
       ++bad_count_;
       print_error(*error, path);
     }
+  }
+
+  void write_page(const Structure& structure, const CheckResult& result) {
+    const auto page = find_page();
+    const auto filled = page ? fill_page(page.value(), structure, report_text(structure, result))
+                             : base::Result<std::string>(page.error());
+    if (!filled) {
+      ++bad_count_;
+      print_error(filled.error(), options_.html);
+      return;
+    }
+    write(options_.html, filled.value());
   }
 
   void write_json() {
@@ -169,8 +186,9 @@ class CheckRun {
 };
 
 int run(const Options& options) {
-  if (options.files.size() > 1 && !(options.svg.empty() && options.vtk.empty())) {
-    fmt::print(stderr, "holdfast: --svg and --vtk show one structure, {} files are given\n",
+  if (options.files.size() > 1 &&
+      !(options.svg.empty() && options.vtk.empty() && options.html.empty())) {
+    fmt::print(stderr, "holdfast: --svg, --vtk and --html show one structure, {} files are given\n",
                options.files.size());
     return kExitUsage;
   }
@@ -191,6 +209,7 @@ Command add_check(CLI::App& app) {
   add_output("--json", options->json, "Write the whole report as JSON; - is standard output");
   add_output("--svg", options->svg, "Draw the structure and its loads");
   add_output("--vtk", options->vtk, "Write a .vtu file for ParaView");
+  add_output("--html", options->html, "Write a page to look at in a browser, with the report");
   command->add_flag("--quiet", options->is_quiet, "Print errors only; the exit code is the answer");
   command->add_flag("--bonded", options->is_bonded,
                     "Let the ground hold like a module below would: no lifting, no tilting");

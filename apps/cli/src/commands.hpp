@@ -30,6 +30,7 @@ Command add_check(CLI::App& app);
 Command add_convert(CLI::App& app);
 Command add_generate(CLI::App& app);
 Command add_simulate(CLI::App& app);
+Command add_view(CLI::App& app);
 
 /// The verdict in capitals, coloured on a terminal, padded to the longest.
 std::string banner(verdict::Verdict verdict);

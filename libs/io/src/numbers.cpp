@@ -4,17 +4,44 @@
 
 #include <charconv>
 #include <cmath>
+#include <cstdlib>
+#include <string>
+#include <version>
 
 #include "text_input.hpp"
 
 namespace holdfast::io {
+namespace {
+
+#ifdef __cpp_lib_to_chars
+using std::from_chars;
+#else
+/// libc++ before 20 reads integers only. strtod rounds alike, but takes more: signs, hexadecimals.
+template <class Number>
+std::from_chars_result from_chars(const char* begin, const char* end, Number& number) {
+  if constexpr (std::is_integral_v<Number>) {
+    return std::from_chars(begin, end, number);
+  } else {
+    const std::string text(begin, end);
+    if (text.find_first_not_of("0123456789+-.eE") != std::string::npos || text.starts_with('+')) {
+      return {begin, std::errc::invalid_argument};
+    }
+    char* rest = nullptr;
+    number = std::strtod(text.c_str(), &rest);
+    const bool is_number = rest != text.c_str();
+    return {begin + (rest - text.c_str()), is_number ? std::errc() : std::errc::invalid_argument};
+  }
+}
+#endif
+
+}  // namespace
 
 template <class Number>
 std::optional<Number> parse_number(std::string_view text) {
   text = trimmed(text);
   const char* const end = text.data() + text.size();
   Number number{};
-  const auto [rest, fault] = std::from_chars(text.data(), end, number);
+  const auto [rest, fault] = from_chars(text.data(), end, number);
   if (fault != std::errc() || rest != end || !std::isfinite(static_cast<double>(number))) {
     return std::nullopt;
   }

@@ -2,8 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -45,7 +47,9 @@ enum class Method : std::uint8_t {
 
 struct EquilibriumOptions {
   /// Memory for the solver; a robot that needs more gets the outcome kTooLarge.
-  std::size_t memory_bytes_max = std::size_t{4} << 30U;
+  /// Half of the address space where that is less than 4 GiB.
+  std::size_t memory_bytes_max =
+      std::min(std::uint64_t{4} << 30U, std::uint64_t{std::numeric_limits<std::size_t>::max() / 2});
   /// Newton steps per contact problem.
   int step_count_max = 100;
   Method method = Method::kAutomatic;

@@ -1,0 +1,26 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "holdfast/holdfast.hpp"
+
+/// The page (apps/web) with a structure in it: one HTML file that needs no network.
+namespace holdfast::cli {
+
+/// The built page, which `./dev page` makes: holdfast.html beside the program, in ../page or in
+/// ../share/holdfast. The error says where it was looked for and what to do.
+base::Result<std::string> find_page();
+
+/// The page with the structure, and with a report that is shown at first if there is one. Errors:
+/// the page has no place for it.
+base::Result<std::string> fill_page(std::string_view page, const Structure& structure,
+                                    const std::optional<std::string>& report);
+
+/// Opens a file in the user's browser; false if there is no program that does.
+bool open_in_browser(const std::string& path);
+
+}  // namespace holdfast::cli

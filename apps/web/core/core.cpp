@@ -1,0 +1,325 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// The page's core: holdfast's facade behind a few functions of bytes and numbers. Every call reads
+// the buffer that holdfast_input() hands out and leaves one reply: a text of JSON, integers and
+// numbers, valid until the next call. src/core/wasm.ts is the other side.
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "holdfast/distributed.hpp"
+#include "packet_log.hpp"
+#include "request.hpp"
+
+#define HOLDFAST_EXPORT(name) extern "C" __attribute__((export_name(#name))) auto name
+
+namespace holdfast::web {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct Reply {
+  std::string text;
+  std::vector<std::int32_t> integers;
+  std::vector<double> numbers;
+};
+
+// One program, one caller, one call at a time.
+std::vector<std::uint8_t> input;  // NOLINT(cppcoreguidelines-avoid-non-const-global-variables)
+Reply reply;                      // NOLINT(cppcoreguidelines-avoid-non-const-global-variables)
+
+std::string dump(const Json& json) {
+  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+Reply failure(const base::Error& error) {
+  return {.text = dump({{"error", {{"message", error.message}, {"where", error.where}}}}),
+          .integers = {},
+          .numbers = {}};
+}
+
+std::string_view as_text(std::span<const std::uint8_t> bytes) {
+  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
+
+Json point_json(const verdict::PlanPoint& point) { return Json::array({point.x, point.y}); }
+
+template <class Number>
+Json optional_json(const std::optional<Number>& number) {
+  return number ? Json(*number) : Json();
+}
+
+Json stability_json(const verdict::RigidBody& body) {
+  Json polygon = Json::array();
+  for (const verdict::PlanPoint& corner : body.polygon) {
+    polygon.push_back(point_json(corner));
+  }
+  Json edge;
+  if (body.edge) {
+    edge = Json::array({point_json((*body.edge)[0]), point_json((*body.edge)[1])});
+  }
+  return {{"stable", body.is_stable},
+          {"margin_mm", optional_json(body.margin_mm)},
+          {"edge", edge},
+          {"centre_of_mass", point_json(body.centre_of_mass)},
+          {"polygon", polygon}};
+}
+
+/// Integers: connections, broken ones; a, b and direction of each connection; indices of the broken
+/// ones. Numbers: five of each connection (ConnectionResult), six displacements of each module.
+Reply assessment_reply(const model::Robot& robot, const verdict::Assessment& assessment,
+                       double seconds) {
+  Reply out;
+  out.text = dump({{"verdict", verdict::name(assessment.verdict)},
+                   {"reasons", assessment.reasons},
+                   {"stability", stability_json(assessment.simplified)},
+                   {"load_ratio_max", optional_json(assessment.load_ratio_max)},
+                   {"worst", optional_json(assessment.worst)},
+                   {"weight_factor", optional_json(assessment.weight_factor)},
+                   {"contact_model", verdict::name(assessment.contact_model)},
+                   {"solves", assessment.equilibrium.steps},
+                   {"has_loads", !assessment.connections.empty()},
+                   {"seconds", seconds}});
+  const auto connections = robot.connections();
+  out.integers = {static_cast<std::int32_t>(connections.size()),
+                  static_cast<std::int32_t>(assessment.broken.size())};
+  for (const model::Connection& pair : connections) {
+    out.integers.insert(out.integers.end(), {pair.a, pair.b, base::index(pair.direction)});
+  }
+  for (const std::size_t broken : assessment.broken) {
+    out.integers.push_back(static_cast<std::int32_t>(broken));
+  }
+  for (const verdict::ConnectionResult& result : assessment.connections) {
+    out.numbers.insert(out.numbers.end(), {result.load_ratio, result.axial_n, result.bending_nmm,
+                                           result.shear_n, result.torsion_nmm});
+  }
+  for (const auto& displacement : assessment.equilibrium.displacement) {
+    for (int i = 0; i < 6; ++i) {
+      out.numbers.push_back(displacement[static_cast<std::size_t>(i)]);
+    }
+  }
+  return out;
+}
+
+/// The rigid body alone: at once, whatever the size.
+verdict::Assessment first_look(const model::Robot& robot) {
+  verdict::Assessment assessment{.simplified = verdict::assess_rigid_body(robot)};
+  assessment.is_stable = assessment.simplified.is_stable;
+  assessment.verdict =
+      assessment.is_stable ? verdict::Verdict::kUndecided : verdict::Verdict::kUnstable;
+  return assessment;
+}
+
+Structure structure_of(model::Robot robot) {
+  return {.name = {}, .document = {}, .robot = std::move(robot), .warnings = {}};
+}
+
+Reply check_request(const Request& request) {
+  auto robot = model::Robot::create(spec_of(request));
+  if (!robot) {
+    return failure(robot.error());
+  }
+  const bool is_first_look = request.header.options[0] != 0;
+  if (is_first_look) {
+    return assessment_reply(robot.value(), first_look(robot.value()), 0);
+  }
+  const Structure structure = structure_of(std::move(robot).value());
+  const CheckResult result = check(structure);
+  return assessment_reply(structure.robot, result.assessment, result.seconds);
+}
+
+/// The verdict with one more planned module; a place that topples needs no loads.
+verdict::Assessment try_place(const model::Robot& robot) {
+  verdict::Assessment look = first_look(robot);
+  return look.is_stable ? verdict::assess(robot) : look;
+}
+
+/// Integers: the verdict of each place of the tail, -1 if no module can be there. Numbers: its
+/// largest load ratio (-1 if there is none) and its margin in mm (0 if it is fixed).
+Reply try_places(const Request& request) {
+  Reply out;
+  const std::span places(reinterpret_cast<const base::Cell*>(request.tail.data()),
+                         request.tail.size() / sizeof(base::Cell));
+  model::RobotSpec spec = spec_of(request);
+  for (const base::Cell& place : places) {
+    spec.planned.push_back(place);
+    const auto robot = model::Robot::create(spec);
+    spec.planned.pop_back();
+    const verdict::Assessment assessment = robot ? try_place(robot.value()) : verdict::Assessment();
+    out.integers.push_back(robot ? static_cast<std::int32_t>(assessment.verdict) : -1);
+    out.numbers.push_back(assessment.load_ratio_max.value_or(-1));
+    out.numbers.push_back(assessment.simplified.margin_mm.value_or(0));
+  }
+  return out;
+}
+
+/// Integers: x, y, z and Kind of each module. Numbers: the material.
+Reply open_text(std::string_view text) {
+  const auto read = io::read_document(text);
+  if (!read) {
+    return failure(read.error());
+  }
+  const io::Document& document = read.value().document;
+  Reply out;
+  out.text = dump({{"name", document.name},
+                   {"description", document.description},
+                   {"support_z", document.support_z},
+                   {"later_steps", document.steps.empty() ? 0 : document.steps.size() - 1},
+                   {"warnings", read.value().warnings}});
+  const auto add = [&](const base::Cell& cell, Kind kind) {
+    out.integers.insert(out.integers.end(),
+                        {cell.x, cell.y, cell.z, static_cast<std::int32_t>(kind)});
+  };
+  for (const io::ModuleEntry& module : document.modules) {
+    add(module.cell, module.is_fixed ? Kind::kFixed : Kind::kExisting);
+  }
+  if (!document.steps.empty()) {
+    for (const io::PlannedEntry& planned : document.steps.front()) {
+      add(planned.cell, Kind::kPlanned);
+    }
+  }
+  for (const double number : numbers_of(document.material)) {
+    out.numbers.push_back(number);
+  }
+  return out;
+}
+
+enum class Output : std::int32_t { kJson, kXml, kSvg, kReportJson, kReportText, kVtu };
+
+std::string written(const Structure& structure, Output output) {
+  const CheckResult result = check(structure);
+  switch (output) {
+    case Output::kSvg:
+      return picture_svg(structure, result);
+    case Output::kReportJson:
+      return report_json(structure, result);
+    case Output::kVtu:
+      return picture_vtu(structure, result);
+    default:
+      return report_text(structure, result);
+  }
+}
+
+/// The tail: the name in options[1] bytes, then the text of the file that was opened, if any.
+base::Result<io::Document> document_of(const Request& request) {
+  const auto name_size = static_cast<std::size_t>(request.header.options[1]);
+  const std::string_view tail = as_text(request.tail);
+  io::Document base;
+  if (tail.size() > name_size) {
+    auto read = io::read_document(tail.substr(name_size));
+    if (!read) {
+      return read.error();
+    }
+    base = std::move(read).value().document;
+  }
+  io::Document document = edited(base, request);
+  document.name = tail.substr(0, name_size);
+  return document;
+}
+
+/// Text: what options[0] asks for, an Output; not JSON if it is none.
+Reply write_document(const Request& request) {
+  auto document = document_of(request);
+  if (!document) {
+    return failure(document.error());
+  }
+  const auto output = static_cast<Output>(request.header.options[0]);
+  if (output == Output::kJson || output == Output::kXml) {
+    return {.text = output == Output::kJson ? io::write_json(document.value())
+                                            : io::write_visiblesim(document.value()),
+            .integers = {},
+            .numbers = {}};
+  }
+  auto robot = io::make_robot(document.value());
+  if (!robot) {
+    return failure(robot.error());
+  }
+  const std::string name = document.value().name;
+  const Structure structure{.name = name,
+                            .document = std::move(document).value(),
+                            .robot = std::move(robot).value(),
+                            .warnings = {}};
+  return {.text = written(structure, output), .integers = {}, .numbers = {}};
+}
+
+/// options: Method, link (0: Blinky Blocks 1, 1: 2, 2: rounds), seed, loss in thousandths, events
+/// that are kept in thousands.
+sim::SimulationOptions simulation_options(const RequestHeader& header) {
+  sim::SimulationOptions options;
+  options.method = header.options[0] == 1   ? agent::Method::kBlockJacobi
+                   : header.options[0] == 2 ? agent::Method::kJacobi
+                                            : agent::Method::kConjugateGradients;
+  options.link = header.options[1] == 0   ? sim::blinky_blocks_v1()
+                 : header.options[1] == 1 ? sim::blinky_blocks_v2()
+                                          : sim::unit();
+  options.seed = static_cast<std::uint64_t>(header.options[2]);
+  options.link.loss = header.options[3] / 1000.0;
+  return options;
+}
+
+/// Integers and numbers: the events, see PacketLog.
+Reply simulate_request(const Request& request) {
+  auto robot = model::Robot::create(spec_of(request));
+  if (!robot) {
+    return failure(robot.error());
+  }
+  const Structure structure = structure_of(std::move(robot).value());
+  sim::SimulationOptions options = simulation_options(request.header);
+  PacketLog log(static_cast<std::size_t>(request.header.options[4]) * 1000);
+  options.trace = &log;
+  const CheckResult exact = check(structure);
+  const auto run = simulate(structure, exact, options);
+  if (!run) {
+    return failure(run.error());
+  }
+  Json summary = Json::parse(report_json(structure, exact, run.value()))["distributed"];
+  summary["root"] = run.value().result.root;
+  summary["is_complete"] = log.is_complete();
+  summary["ticks_per_second"] = options.link.ticks_per_second;
+  return {.text = dump(summary), .integers = log.take_integers(), .numbers = log.take_numbers()};
+}
+
+}  // namespace
+}  // namespace holdfast::web
+
+namespace web = holdfast::web;
+
+/// Where the next request goes, `size` bytes.
+HOLDFAST_EXPORT(holdfast_input)(std::size_t size)->std::uint8_t* {
+  web::reply = {};
+  web::input.resize(size);
+  return web::input.data();
+}
+
+HOLDFAST_EXPORT(holdfast_open)()->void { web::reply = web::open_text(web::as_text(web::input)); }
+
+HOLDFAST_EXPORT(holdfast_check)()->void {
+  web::reply = web::check_request(web::read_request(web::input));
+}
+
+HOLDFAST_EXPORT(holdfast_try_places)()->void {
+  web::reply = web::try_places(web::read_request(web::input));
+}
+
+HOLDFAST_EXPORT(holdfast_write)()->void {
+  web::reply = web::write_document(web::read_request(web::input));
+}
+
+HOLDFAST_EXPORT(holdfast_simulate)()->void {
+  web::reply = web::simulate_request(web::read_request(web::input));
+}
+
+HOLDFAST_EXPORT(holdfast_text)()->const char* { return web::reply.text.data(); }
+
+HOLDFAST_EXPORT(holdfast_text_size)()->std::size_t { return web::reply.text.size(); }
+
+HOLDFAST_EXPORT(holdfast_integers)()->const std::int32_t* { return web::reply.integers.data(); }
+
+HOLDFAST_EXPORT(holdfast_integers_size)()->std::size_t { return web::reply.integers.size(); }
+
+HOLDFAST_EXPORT(holdfast_numbers)()->const double* { return web::reply.numbers.data(); }
+
+HOLDFAST_EXPORT(holdfast_numbers_size)()->std::size_t { return web::reply.numbers.size(); }

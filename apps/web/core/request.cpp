@@ -1,0 +1,117 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#include "request.hpp"
+
+#include <cstring>
+#include <map>
+
+namespace holdfast::web {
+namespace {
+
+using model::Material;
+
+constexpr std::array<double Material::*, kMaterialCount> kMaterialMembers = {
+    &Material::elastic_modulus_mpa,
+    &Material::pitch_mm,
+    &Material::facet_mm,
+    &Material::section_area_mm2,
+    &Material::moment_x_mm4,
+    &Material::moment_y_mm4,
+    &Material::torsion_mm4,
+    &Material::poisson_ratio,
+    &Material::mass_kg,
+    &Material::gravity_m_s2,
+    &Material::strength_vertical_n,
+    &Material::strength_lateral_n,
+    &Material::contact_gamma};
+
+/// What files say about a cell, whether its module exists or is planned.
+std::map<base::Cell, io::ModuleEntry> entries_by_cell(const io::Document& document) {
+  std::map<base::Cell, io::ModuleEntry> entries;
+  if (!document.steps.empty()) {
+    for (const io::PlannedEntry& planned : document.steps.front()) {
+      entries[planned.cell] = {.cell = planned.cell,
+                               .is_fixed = false,
+                               .color = planned.color,
+                               .attributes = planned.attributes};
+    }
+  }
+  for (const io::ModuleEntry& module : document.modules) {
+    entries[module.cell] = module;
+  }
+  return entries;
+}
+
+}  // namespace
+
+Request read_request(std::span<const std::uint8_t> bytes) {
+  Request request;
+  HOLDFAST_CHECK(bytes.size() >= sizeof(RequestHeader));
+  std::memcpy(&request.header, bytes.data(), sizeof(RequestHeader));
+  const auto count = static_cast<std::size_t>(request.header.module_count);
+  HOLDFAST_CHECK((bytes.size() - sizeof(RequestHeader)) / sizeof(PlacedModule) >= count);
+  const std::uint8_t* const modules = bytes.data() + sizeof(RequestHeader);
+  request.modules = {reinterpret_cast<const PlacedModule*>(modules), count};
+  request.tail = bytes.subspan(sizeof(RequestHeader) + count * sizeof(PlacedModule));
+  return request;
+}
+
+Material material_of(const RequestHeader& header) {
+  Material material;
+  for (std::size_t i = 0; i < kMaterialCount; ++i) {
+    material.*kMaterialMembers[i] = header.material[i];
+  }
+  return material;
+}
+
+std::array<double, kMaterialCount> numbers_of(const Material& material) {
+  std::array<double, kMaterialCount> numbers{};
+  for (std::size_t i = 0; i < kMaterialCount; ++i) {
+    numbers[i] = material.*kMaterialMembers[i];
+  }
+  return numbers;
+}
+
+model::RobotSpec spec_of(const Request& request) {
+  model::RobotSpec spec{.support_z = request.header.support_z,
+                        .material = material_of(request.header)};
+  for (const PlacedModule& module : request.modules) {
+    (module.kind == Kind::kPlanned ? spec.planned : spec.existing).push_back(module.cell);
+    if (module.kind == Kind::kFixed) {
+      spec.fixed.push_back(module.cell);
+    }
+  }
+  return spec;
+}
+
+io::Document edited(const io::Document& base, const Request& request) {
+  std::map<base::Cell, io::ModuleEntry> entries = entries_by_cell(base);
+  io::Document document = base;
+  document.support_z = request.header.support_z;
+  document.material = material_of(request.header);
+  document.modules.clear();
+  io::Step step;
+  for (const PlacedModule& module : request.modules) {
+    io::ModuleEntry& entry = entries[module.cell];
+    if (module.kind == Kind::kPlanned) {
+      step.push_back({.cell = module.cell, .color = entry.color, .attributes = entry.attributes});
+    } else {
+      document.modules.push_back({.cell = module.cell,
+                                  .is_fixed = module.kind == Kind::kFixed,
+                                  .color = entry.color,
+                                  .attributes = entry.attributes});
+    }
+  }
+  if (!step.empty() || document.steps.size() > 1) {
+    document.steps.resize(std::max<std::size_t>(document.steps.size(), 1));
+    document.steps.front() = std::move(step);
+  } else {
+    document.steps.clear();
+  }
+  if (!(document == base)) {
+    document.known_answer.reset();
+  }
+  return document;
+}
+
+}  // namespace holdfast::web

@@ -1,0 +1,54 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <string_view>
+
+#include "holdfast/holdfast.hpp"
+
+/// What the page asks, as bytes. src/core/wasm.ts writes them; both sides must agree.
+namespace holdfast::web {
+
+inline constexpr std::size_t kOptionCount = 6;
+inline constexpr std::size_t kMaterialCount = 13;
+
+/// What a module is on the page.
+enum class Kind : std::int32_t { kExisting, kPlanned, kFixed };
+
+/// Little-endian, this object, then `module_count` PlacedModule, then a tail of bytes whose meaning
+/// depends on the call.
+struct RequestHeader {
+  std::int32_t module_count = 0;
+  std::int32_t support_z = 0;
+  std::array<std::int32_t, kOptionCount> options{};
+  std::array<double, kMaterialCount> material{};  ///< In the order of model::Material.
+};
+
+struct PlacedModule {
+  base::Cell cell;
+  Kind kind = Kind::kExisting;
+};
+
+/// Views into the bytes of a request.
+struct Request {
+  RequestHeader header;
+  std::span<const PlacedModule> modules;
+  std::span<const std::uint8_t> tail;
+};
+
+Request read_request(std::span<const std::uint8_t> bytes);
+
+model::Material material_of(const RequestHeader& header);
+std::array<double, kMaterialCount> numbers_of(const model::Material& material);
+
+/// What has to be known for mechanics; Robot::create checks it.
+model::RobotSpec spec_of(const Request& request);
+
+/// The document that the page's modules are when everything else is as in `base`: what a file said
+/// about a module, its colour and attributes, stays with its cell.
+io::Document edited(const io::Document& base, const Request& request);
+
+}  // namespace holdfast::web

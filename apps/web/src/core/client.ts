@@ -1,0 +1,113 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+import CORE from 'virtual:core';
+import {
+  CoreError,
+  type Answer,
+  type OpenedDocument,
+  type Output,
+  type RobotData,
+  type SimulationChoice,
+  type Trace,
+  type Trial,
+} from './types';
+import type { WorkerCall, WorkerReply } from './worker';
+import CoreWorker from './worker?worker&inline';
+
+/** Thrown to who waits for a call that was given up. */
+export class Cancelled extends Error {}
+
+/** The core travels in the page as base64 of deflated bytes; it is compiled once for all workers. */
+async function compileCore(): Promise<WebAssembly.Module> {
+  const packed = Uint8Array.from(atob(CORE), (letter) => letter.charCodeAt(0));
+  const stream = new Blob([packed]).stream().pipeThrough(new DecompressionStream('deflate-raw'));
+  return WebAssembly.compile(await new Response(stream).arrayBuffer());
+}
+
+export const compiledCore = compileCore();
+
+interface Waiting {
+  resolve(value: unknown): void;
+  reject(error: Error): void;
+}
+
+/** A core in a worker of its own, so that the page never waits. Calls are answered in order. */
+export class CoreClient {
+  private worker?: Worker;
+  private nextId = 0;
+  private waiting = new Map<number, Waiting>();
+
+  open(text: Uint8Array): Promise<OpenedDocument> {
+    return this.call('open', [text]);
+  }
+
+  check(robot: RobotData, firstLook = false): Promise<Answer> {
+    return this.call('check', [robot, firstLook]);
+  }
+
+  tryPlaces(robot: RobotData, places: Int32Array): Promise<Trial[]> {
+    return this.call('tryPlaces', [robot, places]);
+  }
+
+  write(robot: RobotData, output: Output, name: string, base: string): Promise<string> {
+    return this.call('write', [robot, output, name, base]);
+  }
+
+  simulate(robot: RobotData, choice: SimulationChoice): Promise<Trace> {
+    return this.call('simulate', [robot, choice]);
+  }
+
+  /** Gives up all calls, whatever the core is at. */
+  cancel(): void {
+    this.stop(new Cancelled());
+  }
+
+  get isBusy(): boolean {
+    return this.waiting.size > 0;
+  }
+
+  private async call<Value>(name: WorkerCall['name'], values: unknown[]): Promise<Value> {
+    const core = await compiledCore;
+    const worker = (this.worker ??= this.start(core));
+    const id = this.nextId++;
+    return new Promise<Value>((resolve, reject) => {
+      this.waiting.set(id, { resolve: resolve as (value: unknown) => void, reject });
+      worker.postMessage({ id, name, values } satisfies WorkerCall);
+    });
+  }
+
+  private start(core: WebAssembly.Module): Worker {
+    const worker = new CoreWorker();
+    worker.postMessage(core);
+    worker.onmessage = (event: MessageEvent<WorkerReply>) => this.receive(event.data);
+    worker.onerror = (event) => this.stop(new CoreError(event.message));
+    return worker;
+  }
+
+  private receive(reply: WorkerReply): void {
+    const waiting = this.waiting.get(reply.id);
+    this.waiting.delete(reply.id);
+    if (reply.refusal !== undefined) {
+      waiting?.reject(new CoreError(reply.refusal));
+    } else if (reply.fault !== undefined) {
+      waiting?.reject(new CoreError(explain(reply.fault)));
+      this.stop(new Cancelled());
+    } else {
+      waiting?.resolve(reply.value);
+    }
+  }
+
+  private stop(error: Error): void {
+    this.worker?.terminate();
+    this.worker = undefined;
+    const waiting = [...this.waiting.values()];
+    this.waiting.clear();
+    waiting.forEach(({ reject }) => reject(error));
+  }
+}
+
+function explain(fault: string): string {
+  return /memory|unreachable|allocation/i.test(fault)
+    ? 'too large for the memory that a page has; holdfast check may still answer'
+    : fault;
+}

@@ -1,0 +1,122 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+
+/** What the page and the core exchange. Lengths in mm, forces in N, torques in N mm. */
+
+export const enum Kind {
+  kExisting,
+  kPlanned,
+  kFixed,
+}
+
+export type Cell = readonly [x: number, y: number, z: number];
+export type Point = [x: number, y: number];
+
+export const VERDICTS = ['safe', 'overload', 'unstable', 'undecided'] as const;
+export type Verdict = (typeof VERDICTS)[number];
+
+/** Modules as the core sees them: x, y, z and kind of each; existing ones come first. */
+export interface RobotData {
+  modules: Int32Array;
+  supportZ: number;
+  material: Float64Array;
+}
+
+export interface Stability {
+  stable: boolean;
+  margin_mm: number | null;
+  edge: [Point, Point] | null;
+  centre_of_mass: Point;
+  polygon: Point[];
+}
+
+export interface Answer {
+  verdict: Verdict;
+  reasons: string[];
+  stability: Stability;
+  load_ratio_max: number | null;
+  worst: number | null;
+  weight_factor: number | null;
+  contact_model: string;
+  solves: number;
+  has_loads: boolean;
+  seconds: number;
+  /** Indices of two modules and a direction for each connection. */
+  connections: Int32Array;
+  broken: Int32Array;
+  /** Load ratio, axial force, bending torque, shear force, torsion torque for each connection. */
+  loads: Float64Array;
+  /** Three lengths and three angles for each module; empty if not known. */
+  displacements: Float64Array;
+}
+
+export const LOAD_FIELDS = 5;
+export const MOTION_FIELDS = 6;
+
+export interface OpenedDocument {
+  name: string;
+  description: string;
+  support_z: number;
+  later_steps: number;
+  warnings: string[];
+  modules: Int32Array;
+  material: Float64Array;
+}
+
+export interface Trial {
+  /** Index into VERDICTS; -1 where no module can be. */
+  verdict: number;
+  ratio: number;
+  marginMm: number;
+}
+
+export const enum Output {
+  kJson,
+  kXml,
+  kSvg,
+  kReportJson,
+  kReportText,
+}
+
+export interface SimulationChoice {
+  method: number;
+  link: number;
+  seed: number;
+  lossPerMille: number;
+}
+
+export const enum LogEvent {
+  kPacket,
+  kLost,
+  kPhase,
+  kVerdict,
+  kStep,
+}
+
+export interface Trace {
+  verdict: Verdict;
+  reason: string;
+  load_ratio_max: number | null;
+  method: string;
+  rounds: number;
+  simulated_s: number | null;
+  messages: number;
+  bytes: number;
+  iterations: number;
+  all_modules_agree: boolean;
+  root: number;
+  is_complete: boolean;
+  ticks_per_second: number;
+  /** LogEvent and three integers for each event. */
+  events: Int32Array;
+  /** Begin and duration in ticks for each event. */
+  times: Float64Array;
+}
+
+export interface Failure {
+  message: string;
+  where: string;
+}
+
+/** An error that the user can do something about; its message is meant for them. */
+export class CoreError extends Error {}

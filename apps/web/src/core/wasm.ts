@@ -1,0 +1,178 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+import {
+  CoreError,
+  type Answer,
+  type Failure,
+  type OpenedDocument,
+  type Output,
+  type RobotData,
+  type SimulationChoice,
+  type Trace,
+  type Trial,
+} from './types';
+
+/**
+ * The C++ core in its own memory; core/core.cpp is the other side. It needs eight functions of its
+ * host, all of them below: a clock, and a place for the last words of a broken check.
+ */
+
+const HEADER_INTEGERS = 8;
+const MATERIAL_NUMBERS = 13;
+const HEADER_BYTES = 4 * HEADER_INTEGERS + 8 * MATERIAL_NUMBERS;
+const MODULE_INTEGERS = 4;
+const EVENTS_KEPT_THOUSANDS = 1000;
+
+interface Exports {
+  memory: WebAssembly.Memory;
+  _initialize(): void;
+  holdfast_input(size: number): number;
+  holdfast_open(): void;
+  holdfast_check(): void;
+  holdfast_try_places(): void;
+  holdfast_write(): void;
+  holdfast_simulate(): void;
+  holdfast_text(): number;
+  holdfast_text_size(): number;
+  holdfast_integers(): number;
+  holdfast_integers_size(): number;
+  holdfast_numbers(): number;
+  holdfast_numbers_size(): number;
+}
+
+interface Reply {
+  text: string;
+  integers: Int32Array<ArrayBuffer>;
+  numbers: Float64Array<ArrayBuffer>;
+}
+
+type Call = 'open' | 'check' | 'try_places' | 'write' | 'simulate';
+
+export class Core {
+  private constructor(private readonly exports: Exports) {}
+
+  static async create(core: WebAssembly.Module): Promise<Core> {
+    let words = '';
+    let exports: Exports | undefined = undefined;
+    const view = () => new DataView(exports!.memory.buffer);
+    const done = () => 0;
+    const wasi = {
+      clock_time_get: (_clock: number, _precision: bigint, at: number) => {
+        view().setBigUint64(at, BigInt(Math.round(performance.now() * 1e6)), true);
+        return 0;
+      },
+      proc_exit: (code: number) => {
+        throw new Error(`the core has stopped with ${code}: ${words}`);
+      },
+      fd_write: (_file: number, vectors: number, count: number, written: number) => {
+        let size = 0;
+        for (let i = 0; i < count; ++i) {
+          const at = view().getUint32(vectors + 8 * i, true);
+          const length = view().getUint32(vectors + 8 * i + 4, true);
+          words += new TextDecoder().decode(new Uint8Array(exports!.memory.buffer, at, length));
+          size += length;
+        }
+        view().setUint32(written, size, true);
+        return 0;
+      },
+      fd_read: done,
+      fd_close: done,
+      fd_seek: done,
+      environ_get: done,
+      environ_sizes_get: (count: number, size: number) => {
+        view().setUint32(count, 0, true);
+        view().setUint32(size, 0, true);
+        return 0;
+      },
+    };
+    const instance = await WebAssembly.instantiate(core, {
+      env: { emscripten_notify_memory_growth: () => undefined },
+      wasi_snapshot_preview1: wasi,
+    });
+    exports = instance.exports as unknown as Exports;
+    exports._initialize();
+    return new Core(exports);
+  }
+
+  /** Reads a file of either format. Throws CoreError. */
+  open(text: Uint8Array): OpenedDocument {
+    const reply = this.call('open', text);
+    const head = JSON.parse(reply.text) as Omit<OpenedDocument, 'modules' | 'material'>;
+    return { ...head, modules: reply.integers, material: reply.numbers };
+  }
+
+  /** The verdict; `firstLook`: of the rigid body alone. Throws CoreError. */
+  check(robot: RobotData, firstLook: boolean): Answer {
+    const reply = this.call('check', request(robot, [firstLook ? 1 : 0]));
+    const [connections, broken] = reply.integers;
+    const head = JSON.parse(reply.text) as Answer;
+    const loads = head.has_loads ? 5 * connections : 0;
+    return {
+      ...head,
+      connections: reply.integers.slice(2, 2 + 3 * connections),
+      broken: reply.integers.slice(2 + 3 * connections, 2 + 3 * connections + broken),
+      loads: reply.numbers.slice(0, loads),
+      displacements: reply.numbers.slice(loads),
+    };
+  }
+
+  /** What the verdict would be with one more planned module, for each place (x, y, z). */
+  tryPlaces(robot: RobotData, places: Int32Array): Trial[] {
+    const tail = new Uint8Array(places.buffer, places.byteOffset, places.byteLength);
+    const reply = this.call('try_places', request(robot, [], tail));
+    return Array.from(reply.integers, (verdict, i) => ({
+      verdict,
+      ratio: reply.numbers[2 * i],
+      marginMm: reply.numbers[2 * i + 1],
+    }));
+  }
+
+  /** A document, picture or report; `base` is the text of the file it began with. */
+  write(robot: RobotData, output: Output, name: string, base: string): string {
+    const encoder = new TextEncoder();
+    const nameBytes = encoder.encode(name);
+    const tail = encoder.encode(name + base);
+    return this.call('write', request(robot, [output, nameBytes.length], tail)).text;
+  }
+
+  simulate(robot: RobotData, choice: SimulationChoice): Trace {
+    const options = [choice.method, choice.link, choice.seed, choice.lossPerMille];
+    const reply = this.call('simulate', request(robot, [...options, EVENTS_KEPT_THOUSANDS]));
+    return { ...(JSON.parse(reply.text) as Trace), events: reply.integers, times: reply.numbers };
+  }
+
+  private call(name: Call, input: Uint8Array): Reply {
+    const core = this.exports;
+    const at = core.holdfast_input(input.length);
+    new Uint8Array(core.memory.buffer, at, input.length).set(input);
+    core[`holdfast_${name}`]();
+    const buffer = core.memory.buffer as ArrayBuffer;
+    const text = new Uint8Array(buffer, core.holdfast_text(), core.holdfast_text_size());
+    const integers = core.holdfast_integers_size();
+    const numbers = core.holdfast_numbers_size();
+    const reply = {
+      text: new TextDecoder().decode(text),
+      integers: new Int32Array(buffer, integers ? core.holdfast_integers() : 0, integers).slice(),
+      numbers: new Float64Array(buffer, numbers ? core.holdfast_numbers() : 0, numbers).slice(),
+    };
+    if (reply.text.startsWith('{"error":')) {
+      const { message, where } = (JSON.parse(reply.text) as { error: Failure }).error;
+      throw new CoreError(where ? `${where}: ${message}` : message);
+    }
+    return reply;
+  }
+}
+
+/** The bytes of core/request.hpp. */
+function request(robot: RobotData, options: number[], tail?: Uint8Array): Uint8Array {
+  const { modules } = robot;
+  const bytes = new Uint8Array(HEADER_BYTES + 4 * modules.length + (tail?.length ?? 0));
+  const header = new Int32Array(bytes.buffer, 0, HEADER_INTEGERS);
+  header.set([modules.length / MODULE_INTEGERS, robot.supportZ, ...options]);
+  new Float64Array(bytes.buffer, 4 * HEADER_INTEGERS, MATERIAL_NUMBERS).set(robot.material);
+  new Int32Array(bytes.buffer, HEADER_BYTES, modules.length).set(modules);
+  if (tail) {
+    bytes.set(tail, HEADER_BYTES + 4 * modules.length);
+  }
+  return bytes;
+}

@@ -1,0 +1,246 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+import './style.css';
+import { Kind } from './core/types';
+import { FIRST_EXAMPLE } from './model/examples';
+import { Robot } from './model/robot';
+import type { ScaleName } from './view/colours';
+import { App, KIND_NAMES, type Tool } from './ui/app';
+import { showLegend } from './ui/answer_panel';
+import { byId, icon, make, say, tell } from './ui/dom';
+import { listenToFiles, openFragment, openText, reportOf, take } from './ui/files';
+import { openGallery } from './ui/gallery';
+import { KEYS, listenToKeys } from './ui/keyboard';
+import { showMaterial } from './ui/material';
+import { Player } from './ui/player';
+import { listenToPointer } from './ui/pointer';
+
+/** What holdfast view puts into the page. */
+interface Start {
+  /** The text of the structure's file. */
+  structure: string;
+  name: string;
+  /** The native report, for people, if the page is that of `holdfast check --html`. */
+  report?: string;
+}
+
+declare global {
+  /** A handle for the browser's console, and for the tests. */
+  var holdfast: { app: App; player: Player; reportOf: typeof reportOf };
+}
+
+const TOOLS: readonly [tool: Tool, text: string, key: string][] = [
+  ['look', 'Look', 'V'],
+  ['add', 'Attach', 'A'],
+  ['remove', 'Remove', 'D'],
+  ['paint', 'Paint', 'P'],
+];
+const KIND_TEXTS = ['Existing', 'Planned', 'Fixed'];
+
+function radio(text: string, title: string, action: () => void): HTMLButtonElement {
+  const button = make('button', { type: 'button', title }, text);
+  button.setAttribute('role', 'radio');
+  button.onclick = action;
+  return button;
+}
+
+/** Arrow keys move inside a group of radio buttons, as everywhere. */
+function moveInside(group: HTMLElement): void {
+  group.addEventListener('keydown', (event) => {
+    const step = { ArrowRight: 1, ArrowDown: 1, ArrowLeft: -1, ArrowUp: -1 }[event.key];
+    const buttons = [...group.querySelectorAll('button')];
+    const at = buttons.indexOf(document.activeElement as HTMLButtonElement);
+    if (step && at >= 0) {
+      event.preventDefault();
+      event.stopPropagation();
+      const next = buttons[(at + step + buttons.length) % buttons.length];
+      next.focus();
+      next.click();
+    }
+  });
+}
+
+function makeTools(app: App): void {
+  const icons = { look: 'look', add: 'add', remove: 'remove', paint: 'paint' } as const;
+  const tools = TOOLS.map(([tool, text, key]) => {
+    const button = radio('', `${text} (${key})`, () => app.setTool(tool));
+    button.append(icon(icons[tool]), make('span', {}, text));
+    button.setAttribute('aria-label', text);
+    return button;
+  });
+  const kinds = KIND_TEXTS.map((text, kind) => {
+    const button = radio('', `${text} (${kind + 1})`, () =>
+      app.setTool(app.tool === 'paint' ? 'paint' : 'add', kind as Kind),
+    );
+    button.append(make('span', { className: `swatch ${KIND_NAMES[kind]}` }), make('span', {}, text));
+    return button;
+  });
+  byId('tools').append(...tools);
+  byId('kinds').append(...kinds);
+  moveInside(byId('tools'));
+  moveInside(byId('kinds'));
+  const check = (buttons: HTMLButtonElement[], chosen: number) =>
+    buttons.forEach((button, i) => {
+      button.setAttribute('aria-checked', String(i === chosen));
+      button.tabIndex = i === chosen ? 0 : -1;
+    });
+  const show = () => {
+    check(tools, TOOLS.findIndex(([tool]) => tool === app.tool));
+    check(kinds, app.kind);
+    byId('kinds').classList.toggle('idle', app.tool === 'look' || app.tool === 'remove');
+    byId<HTMLButtonElement>('undo').disabled = !app.history.canUndo;
+    byId<HTMLButtonElement>('redo').disabled = !app.history.canRedo;
+  };
+  app.listeners.push(show);
+  show();
+}
+
+function makeDialogs(): void {
+  for (const dialog of document.querySelectorAll('dialog')) {
+    const close = dialog.querySelector<HTMLButtonElement>('.close')!;
+    close.append(icon('close'));
+    close.onclick = () => dialog.close();
+    dialog.addEventListener('click', (event) => {
+      if (event.target === dialog) {
+        dialog.close();
+      }
+    });
+  }
+  const rows = KEYS.map(([keys, text]) => make('tr', {}, make('th', { scope: 'row' }, keys), make('td', {}, text)));
+  byId('keys-list').append(
+    make(
+      'p',
+      {},
+      'Click a face to attach a module, drag from a face to draw a row, drag elsewhere to turn the view. ' +
+        'With a finger: tap, long press and drag, drag. The colour of the ghost is the answer before you click.',
+    ),
+    make('table', { className: 'keys' }, make('tbody', {}, ...rows)),
+  );
+}
+
+function makePanel(app: App): void {
+  showLegend('paper');
+  const scale = byId<HTMLSelectElement>('scale');
+  scale.onchange = () => app.setScale(scale.value as ScaleName);
+  const slider = byId<HTMLInputElement>('exaggeration');
+  slider.oninput = () => {
+    const factor = app.setExaggeration(Number(slider.value) / 100);
+    byId('exaggeration-value').textContent = `${factor < 10 ? factor.toFixed(1) : factor.toFixed(0)} ×`;
+  };
+  byId('topple').onclick = () => app.startTopple();
+  byId('stop').onclick = () => app.stop();
+  const faces = byId('faces');
+  faces.onclick = () => {
+    const isShown = faces.getAttribute('aria-pressed') !== 'true';
+    faces.setAttribute('aria-pressed', String(isShown));
+    app.setShowsFaces(isShown);
+  };
+  const name = byId<HTMLInputElement>('name');
+  name.onchange = () => (app.robot.name = name.value);
+  let shown = app.robot;
+  showMaterial(app);
+  app.listeners.push(() => {
+    if (app.robot !== shown) {
+      shown = app.robot;
+      name.value = shown.name;
+      showMaterial(app);
+    }
+    if (Number(slider.value) > 0) {
+      app.straighten();
+    }
+  });
+}
+
+function makeActions(app: App, player: Player): Record<string, () => void> {
+  const turn = (angle: number) => {
+    const { camera, controls } = app.stage;
+    camera.position.sub(controls.target).applyAxisAngle(camera.up, angle).add(controls.target);
+    controls.update();
+  };
+  const near = (factor: number) => {
+    const { camera, controls } = app.stage;
+    camera.position.sub(controls.target).multiplyScalar(factor).add(controls.target);
+    controls.update();
+  };
+  const tellDone = (label: string | undefined, word: string) =>
+    say(label ? `${word}: ${label}` : 'nothing to undo');
+  return {
+    undo: () => tellDone(app.history.undo(), 'undone'),
+    redo: () => tellDone(app.history.redo(), 'done again'),
+    f: () => byId('faces').click(),
+    h: () => app.see(),
+    t: () => app.startTopple(),
+    q: () => turn(-Math.PI / 12),
+    e: () => turn(Math.PI / 12),
+    '+': () => near(0.85),
+    '=': () => near(0.85),
+    '-': () => near(1 / 0.85),
+    k: () => player.toggle(),
+    ',': () => player.step(-1),
+    '.': () => player.step(1),
+    '?': () => byId<HTMLDialogElement>('keys').showModal(),
+  };
+}
+
+async function openFirst(app: App): Promise<void> {
+  const start = JSON.parse(byId('holdfast-start').textContent ?? 'null') as Start | null;
+  const text = (source: string) => new TextEncoder().encode(source);
+  if (start) {
+    await openText(app, text(start.structure), start.name);
+    if (start.report !== undefined) {
+      byId('report-text').textContent = start.report;
+      byId('report-check').textContent = 'Written by holdfast check when this page was made.';
+      byId<HTMLDialogElement>('report').showModal();
+    }
+  } else if (!(await openFragment(app))) {
+    await openText(app, text(FIRST_EXAMPLE.source()), FIRST_EXAMPLE.name);
+  }
+}
+
+function begin(): void {
+  const app = new App();
+  const player = new Player(app);
+  globalThis.holdfast = { app, player, reportOf };
+  makeTools(app);
+  makeDialogs();
+  makePanel(app);
+  const actions = makeActions(app, player);
+  listenToPointer(app);
+  listenToKeys(app, actions);
+  listenToFiles(app);
+  app.listeners.push(() => player.close());
+  for (const [id, name] of [['undo', 'undo'], ['redo', 'redo'], ['fit', 'fit']] as const) {
+    byId(id).append(icon(name));
+  }
+  byId('undo').onclick = actions.undo;
+  byId('redo').onclick = actions.redo;
+  byId('fit').onclick = actions.h;
+  byId('help').onclick = actions['?'];
+  byId('gallery-open').onclick = () => openGallery(app);
+  byId('new').onclick = () => app.history.replace('beginning anew', new Robot());
+  byId('save').onclick = () => byId<HTMLDialogElement>('takeaway').showModal();
+  for (const button of document.querySelectorAll<HTMLButtonElement>('[data-save]')) {
+    button.onclick = () => {
+      byId<HTMLDialogElement>('takeaway').close();
+      void take(app, button.dataset.save!);
+    };
+  }
+  window.addEventListener('beforeunload', (event) => {
+    if (app.history.canUndo && app.history.isEdited) {
+      event.preventDefault();
+    }
+  });
+  void openFirst(app).then(() => document.documentElement.classList.add('ready'));
+}
+
+// First the page is painted, then the canvas made, which takes longer; the core compiles meanwhile.
+requestAnimationFrame(() =>
+  setTimeout(() => {
+    try {
+      begin();
+    } catch (error) {
+      const reason = error instanceof Error ? error.message : String(error);
+      tell(`This browser cannot show the page: ${reason}`, true);
+    }
+  }),
+);

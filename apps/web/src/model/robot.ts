@@ -1,0 +1,194 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+import { Kind, type Cell, type RobotData } from '../core/types';
+
+/** Cells are counted from a robot's first one and stay within this distance of it. */
+const REACH = 100_000;
+const SPAN = 2 * REACH;
+/** Between the keys of neighbours. */
+const STRIDES = [1, SPAN, SPAN * SPAN];
+
+/** Table I of [Piranda 2021], in the order of model::Material. */
+export const TABLE_I = Float64Array.of(
+  100, 40, 40, 1600, 40 ** 4 / 12, 40 ** 4 / 12, 2.25 * 20 ** 4, 0.3, 0.06106, 9.81, 11.98, 14.97,
+  1e-4,
+);
+export const PITCH_INDEX = 1;
+
+/** +x, -x, +y, -y, +z, -z, as in base::Direction. */
+export const DIRECTIONS: readonly Cell[] = [
+  [1, 0, 0],
+  [-1, 0, 0],
+  [0, 1, 0],
+  [0, -1, 0],
+  [0, 0, 1],
+  [0, 0, -1],
+];
+
+export const plus = (a: Cell, b: Cell): Cell => [a[0] + b[0], a[1] + b[1], a[2] + b[2]];
+export const equal = (a: Cell, b: Cell) => a[0] === b[0] && a[1] === b[1] && a[2] === b[2];
+export const cellText = (cell: Cell) => `(${cell.join(',')})`;
+
+/** One cell before and after; undefined where no module is. */
+export interface CellChange {
+  cell: Cell;
+  before: Kind | undefined;
+  after: Kind | undefined;
+}
+
+/**
+ * The robot that is being edited: modules in slots without gaps, found by their cell in constant
+ * time. It may be anything that cells can be; whether it is a robot is for the core to say.
+ */
+export class Robot {
+  private slots = new Map<number, number>();
+  /** x, y, z and kind of each slot. */
+  private data = new Int32Array(64);
+  private origin?: Cell;
+  count = 0;
+  name = '';
+  supportZ = 0;
+  material: Float64Array = TABLE_I;
+  /** The text of the file that it began with, for what the page does not show. */
+  base = '';
+
+  static from(modules: Int32Array): Robot {
+    const robot = new Robot();
+    for (let i = 0; i < modules.length; i += 4) {
+      robot.set([modules[i], modules[i + 1], modules[i + 2]], modules[i + 3] as Kind);
+    }
+    return robot;
+  }
+
+  slot(cell: Cell): number | undefined {
+    const key = this.key(cell);
+    return key === undefined ? undefined : this.slots.get(key);
+  }
+
+  kind(cell: Cell): Kind | undefined {
+    const slot = this.slot(cell);
+    return slot === undefined ? undefined : (this.data[4 * slot + 3] as Kind);
+  }
+
+  has(cell: Cell): boolean {
+    return this.slot(cell) !== undefined;
+  }
+
+  cellAt(slot: number): Cell {
+    return [this.data[4 * slot], this.data[4 * slot + 1], this.data[4 * slot + 2]];
+  }
+
+  kindAt(slot: number): Kind {
+    return this.data[4 * slot + 3];
+  }
+
+  /** A module with six neighbours, which nobody sees. */
+  isHidden(slot: number): boolean {
+    const key = this.key(this.cellAt(slot))!;
+    return STRIDES.every((stride) => this.slots.has(key + stride) && this.slots.has(key - stride));
+  }
+
+  set(cell: Cell, kind: Kind | undefined): void {
+    this.origin ??= cell;
+    const key = this.key(cell);
+    if (key === undefined) {
+      throw new RangeError(`${cellText(cell)} is more than ${REACH} cells from the first module`);
+    }
+    const slot = this.slots.get(key);
+    if (kind === undefined) {
+      this.drop(key, slot);
+    } else if (slot !== undefined) {
+      this.data[4 * slot + 3] = kind;
+    } else {
+      this.slots.set(key, this.count);
+      this.write(this.count++, cell, kind);
+    }
+  }
+
+  /** Free cells at its faces, on the support level or above. */
+  freePlaces(): Cell[] {
+    const places = new Map<number, Cell>();
+    for (let slot = 0; slot < this.count; ++slot) {
+      const cell = this.cellAt(slot);
+      for (const direction of DIRECTIONS) {
+        const place = plus(cell, direction);
+        const key = this.key(place);
+        if (key !== undefined && place[2] >= this.supportZ && !this.slots.has(key)) {
+          places.set(key, place);
+        }
+      }
+    }
+    return [...places.values()];
+  }
+
+  /** For the core, with the slot of each of its modules: existing ones come first. */
+  toData(): { data: RobotData; slots: Int32Array } {
+    const slots = new Int32Array(this.count);
+    let next = 0;
+    for (const isPlanned of [false, true]) {
+      for (let slot = 0; slot < this.count; ++slot) {
+        if ((this.kindAt(slot) === Kind.kPlanned) === isPlanned) {
+          slots[next++] = slot;
+        }
+      }
+    }
+    const modules = new Int32Array(4 * this.count);
+    slots.forEach((slot, i) => {
+      for (let k = 0; k < 4; ++k) {
+        modules[4 * i + k] = this.data[4 * slot + k];
+      }
+    });
+    return { data: { modules, supportZ: this.supportZ, material: this.material }, slots };
+  }
+
+  /** Smallest and largest cell; undefined if there is none. */
+  bounds(): { low: Cell; high: Cell } | undefined {
+    if (this.count === 0) {
+      return undefined;
+    }
+    const low: [number, number, number] = [Infinity, Infinity, Infinity];
+    const high: [number, number, number] = [-Infinity, -Infinity, -Infinity];
+    for (let i = 0; i < 4 * this.count; ++i) {
+      if (i % 4 < 3) {
+        low[i % 4] = Math.min(low[i % 4], this.data[i]);
+        high[i % 4] = Math.max(high[i % 4], this.data[i]);
+      }
+    }
+    return { low, high };
+  }
+
+  private key([x, y, z]: Cell): number | undefined {
+    const [ox, oy, oz] = this.origin ?? [x, y, z];
+    const dx = x - ox + REACH;
+    const dy = y - oy + REACH;
+    const dz = z - oz + REACH;
+    // One cell is left free on every side, so that strides stay in the lattice.
+    const isNear = Math.min(dx, dy, dz) > 0 && Math.max(dx, dy, dz) < SPAN - 1;
+    return isNear ? (dx * SPAN + dy) * SPAN + dz : undefined;
+  }
+
+  private drop(key: number, slot: number | undefined): void {
+    if (slot === undefined) {
+      return;
+    }
+    this.slots.delete(key);
+    const last = --this.count;
+    if (slot !== last) {
+      const cell = this.cellAt(last);
+      this.write(slot, cell, this.kindAt(last));
+      this.slots.set(this.key(cell)!, slot);
+    }
+  }
+
+  private write(slot: number, cell: Cell, kind: Kind): void {
+    if (4 * slot + 4 > this.data.length) {
+      const larger = new Int32Array(2 * this.data.length);
+      larger.set(this.data);
+      this.data = larger;
+    }
+    this.data[4 * slot] = cell[0];
+    this.data[4 * slot + 1] = cell[1];
+    this.data[4 * slot + 2] = cell[2];
+    this.data[4 * slot + 3] = kind;
+  }
+}

@@ -1,0 +1,180 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+import type { Finding } from '../core/judge';
+import { LOAD_FIELDS, type Answer, type Cell } from '../core/types';
+import { DIRECTIONS, cellText, type Robot } from '../model/robot';
+import { Kind } from '../core/types';
+import { FIXED, UNKNOWN, UNSTABLE, brokenColour, css, loadColour, type ScaleName } from '../view/colours';
+import { byId, make } from './dom';
+
+/** The answer in words and numbers, the legend, and what is under the pointer. */
+
+const WORDS = {
+  safe: ['Safe', 'it holds'],
+  overload: ['Overload', 'it breaks'],
+  unstable: ['Unstable', 'it topples'],
+  undecided: ['Undecided', 'not certain'],
+} as const;
+
+export const formatRatio = (ratio: number) => ratio.toFixed(Math.abs(ratio) < 0.0005 ? 1 : 3);
+
+/** "(2,1,2)-(3,1,2)" */
+export function connectionText(robot: Robot, finding: Finding, index: number): string {
+  const { connections } = finding.answer!;
+  const cell = (end: number) => cellText(robot.cellAt(finding.slots[connections[3 * index + end]]));
+  return `${cell(0)}-${cell(1)}`;
+}
+
+export function showFinding(robot: Robot, finding: Finding | undefined): void {
+  const answer = finding?.answer;
+  const section = byId('verdict');
+  const [word, meaning, state] = headline(robot, finding);
+  section.dataset.verdict = state;
+  byId('verdict-word').replaceChildren(word, ...(meaning ? [make('small', {}, meaning)] : []));
+  byId('verdict-reason').textContent = reason(robot, finding);
+  byId('figures').replaceChildren(
+    ...figures(robot, finding, answer).flatMap(([name, value, title]) => [
+      make('dt', {}, name),
+      make('dd', { title: title ?? '' }, value),
+    ]),
+  );
+}
+
+function headline(robot: Robot, finding: Finding | undefined): [string, string, string] {
+  if (robot.count === 0) {
+    return ['Empty', '', 'none'];
+  }
+  if (finding?.isFirstLook && finding.answer!.stability.stable) {
+    return ['Stable', 'loads to come', 'undecided'];
+  }
+  if (finding?.answer) {
+    const [word, meaning] = WORDS[finding.answer.verdict];
+    return [word, meaning, finding.answer.verdict];
+  }
+  return finding?.problem ? ['No answer', '', 'none'] : ['…', '', 'none'];
+}
+
+function reason(robot: Robot, finding: Finding | undefined): string {
+  if (robot.count === 0) {
+    return 'Click the ground to put down the first module.';
+  }
+  if (finding?.isFirstLook) {
+    return finding.answer!.stability.stable
+      ? 'The centre of mass is above the support polygon.'
+      : 'The centre of mass is not above the support polygon.';
+  }
+  return finding?.problem ?? finding?.answer?.reasons.join(' ') ?? '';
+}
+
+type Figure = [name: string, value: string, title?: string];
+
+function figures(robot: Robot, finding: Finding | undefined, answer: Answer | undefined): Figure[] {
+  const list: Figure[] = [];
+  if (answer?.load_ratio_max != null && answer.verdict !== 'unstable') {
+    const at = answer.worst === null ? '' : `  ${connectionText(robot, finding!, answer.worst)}`;
+    list.push(['Largest load', formatRatio(answer.load_ratio_max) + at, 'share of the strength']);
+  }
+  if (answer?.weight_factor != null && answer.verdict !== 'unstable') {
+    const text = `${answer.weight_factor.toFixed(2)} times this weight`;
+    list.push(['First break at', text]);
+  }
+  if (answer) {
+    const { margin_mm: margin } = answer.stability;
+    const text = margin === null ? 'held by a fixed module' : `${margin.toFixed(2)} mm`;
+    list.push(['Margin', text, 'from the centre of mass to the nearest edge of the support polygon']);
+  }
+  list.push(['Modules', countText(robot)]);
+  if (answer?.has_loads) {
+    const ms = answer.seconds * 1000;
+    const time = ms < 1000 ? `${ms.toPrecision(2)} ms` : `${answer.seconds.toFixed(1)} s`;
+    list.push(['Solved in', `${time}, ${answer.contact_model} contact`]);
+  }
+  return list;
+}
+
+function countText(robot: Robot): string {
+  const counts = [0, 0, 0];
+  for (let slot = 0; slot < robot.count; ++slot) {
+    ++counts[robot.kindAt(slot)];
+  }
+  const names = ['existing', 'planned', 'fixed'];
+  const parts = counts.map((count, i) => `${count.toLocaleString('en')} ${names[i]}`);
+  return parts.filter((_, i) => counts[i] > 0).join(', ') || 'none';
+}
+
+export function showLegend(scale: ScaleName): void {
+  const bar = make('div', { className: 'bar-scale' });
+  const stops = Array.from({ length: 21 }, (_, i) => `${css(loadColour(scale, i / 20))} ${5 * i}%`);
+  bar.style.background = `linear-gradient(to right, ${stops.join(', ')})`;
+  const ticks = make('div', { className: 'ticks' }, ...['0', '0.25', '0.5', '0.75', '1'].map((t) => make('span', {}, t)));
+  const entry = (className: string, colour: string, text: string) => {
+    const swatch = make('span', { className: `swatch ${className}` });
+    swatch.style.backgroundColor = colour;
+    return make('li', {}, swatch, text);
+  };
+  const list = make(
+    'ul',
+    { className: 'swatches' },
+    entry('broken', css(brokenColour(scale)), 'breaks'),
+    entry('fixed', css(FIXED), 'fixed'),
+    entry('', css(UNSTABLE), 'topples'),
+    entry('planned', css(UNKNOWN), 'planned'),
+  );
+  byId('legend').replaceChildren(bar, ticks, list);
+}
+
+const SIDES = ['+x', '−x', '+y', '−y', '+z', '−z'];
+const KINDS = ['existing', 'planned', 'fixed'];
+
+/** One line for each connection of a module; the pointed one is marked. */
+export function showDetails(
+  robot: Robot,
+  finding: Finding | undefined,
+  cell: Cell | undefined,
+  side: number | undefined,
+): string {
+  const panel = byId('details');
+  const slot = cell && robot.slot(cell);
+  if (!cell || slot === undefined) {
+    panel.replaceChildren(make('p', { className: 'quiet' }, 'Point at a module to see its numbers.'));
+    return cell ? `${cellText(cell)}: empty` : '';
+  }
+  const title = `${cellText(cell)}, ${KINDS[robot.kindAt(slot)]}${
+    cell[2] === robot.supportZ && robot.kindAt(slot) !== Kind.kFixed ? ', on the ground' : ''
+  }`;
+  const rows = finding?.answer?.has_loads ? connectionRows(finding, slot) : [];
+  const table = make('table');
+  if (rows.length > 0) {
+    const head = make('tr', {}, ...['to', 'load', 'axial', 'bending'].map((t) => make('th', { scope: 'col' }, t)));
+    table.append(make('thead', {}, head));
+    const body = make('tbody');
+    for (const row of rows) {
+      const line = make(
+        'tr',
+        {},
+        make('th', { scope: 'row' }, SIDES[row.side]),
+        ...[formatRatio(row.ratio), `${row.axial.toFixed(2)} N`, `${row.bending.toFixed(0)} N mm`].map((t) => make('td', {}, t)),
+      );
+      line.className = row.side === side ? 'pointed' : row.ratio >= 1 - 1e-9 ? 'breaks' : '';
+      body.append(line);
+    }
+    table.append(body);
+  }
+  panel.replaceChildren(make('p', { className: 'cell' }, title), ...(rows.length > 0 ? [table] : []));
+  const worst = rows.length > 0 ? `, largest load ${formatRatio(Math.max(...rows.map((r) => r.ratio)))}` : '';
+  return title + worst;
+}
+
+function connectionRows({ answer, slots }: Finding, slot: number) {
+  const rows: { side: number; ratio: number; axial: number; bending: number }[] = [];
+  const { connections, loads } = answer!;
+  for (let i = 0; 3 * i < connections.length; ++i) {
+    const isFirst = slots[connections[3 * i]] === slot;
+    if (isFirst || slots[connections[3 * i + 1]] === slot) {
+      const direction = connections[3 * i + 2];
+      const [ratio, axial, bending] = loads.slice(LOAD_FIELDS * i, LOAD_FIELDS * i + 3);
+      rows.push({ side: isFirst ? direction : direction ^ 1, ratio, axial, bending });
+    }
+  }
+  return rows.sort((a, b) => a.side - b.side).slice(0, DIRECTIONS.length);
+}

@@ -1,0 +1,78 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+
+/** The element with an id, which index.html has. */
+export function byId<T extends HTMLElement = HTMLElement>(id: string): T {
+  const element = document.getElementById(id);
+  if (!element) {
+    throw new Error(`index.html has no #${id}`);
+  }
+  return element as T;
+}
+
+type Child = Node | string;
+
+/** A new element. Text is text, never markup. */
+export function make<K extends keyof HTMLElementTagNameMap>(
+  tag: K,
+  properties: Partial<HTMLElementTagNameMap[K]> = {},
+  ...children: Child[]
+): HTMLElementTagNameMap[K] {
+  const element = Object.assign(document.createElement(tag), properties);
+  element.append(...children);
+  return element;
+}
+
+export function download(name: string, content: Blob): void {
+  const url = URL.createObjectURL(content);
+  make('a', { href: url, download: name }).click();
+  setTimeout(() => URL.revokeObjectURL(url), 10_000);
+}
+
+const SHOWN_MS = 7000;
+
+/** A message for a while; one that is an error stays until it is closed. */
+export function tell(text: string, isError = false): void {
+  const close = make('button', { type: 'button', className: 'close', ariaLabel: 'Close' });
+  const message = make('div', { className: isError ? 'message error' : 'message' }, make('p', {}, text), close);
+  close.append(icon('close'));
+  close.onclick = () => message.remove();
+  byId('messages').replaceChildren(message);
+  if (!isError) {
+    setTimeout(() => message.remove(), SHOWN_MS);
+  }
+}
+
+/** For who listens: the state of what the keyboard's cursor is on. */
+export function say(text: string): void {
+  byId('spoken').textContent = text;
+}
+
+const ICONS = {
+  close: 'M5 5l10 10M15 5L5 15',
+  undo: 'M8 5L4 9l4 4M4 9h8a4 4 0 0 1 0 8h-2',
+  redo: 'M12 5l4 4-4 4M16 9H8a4 4 0 0 0 0 8h2',
+  fit: 'M3 7V3h4M13 3h4v4M17 13v4h-4M7 17H3v-4',
+  look: 'M2.5 10S5.500 4.800 10 4.800 17.500 10 17.500 10 14.500 15.200 10 15.200 2.500 10 2.500 10zM10 8a2 2 0 1 1 0 4 2 2 0 0 1 0-4z',
+  add: 'M10 4v12M4 10h12',
+  remove: 'M4 10h12',
+  paint: 'M4 16l1-4 8-8 3 3-8 8-4 1zM11.500 5.500l3 3',
+  play: 'M6 4l10 6-10 6z',
+  pause: 'M6 4v12M14 4v12',
+  stepOn: 'M5 4l7 6-7 6zM15 4v12',
+  stepBack: 'M15 4l-7 6 7 6zM5 4v12',
+  phaseOn: 'M3 4l6 6-6 6zM10 4l6 6-6 6zM18 4v12',
+  phaseBack: 'M17 4l-6 6 6 6zM10 4l-6 6 6 6zM2 4v12',
+} as const;
+
+export type IconName = keyof typeof ICONS;
+
+export function icon(name: IconName): SVGElement {
+  const svg = document.createElementNS('http://www.w3.org/2000/svg', 'svg');
+  svg.setAttribute('viewBox', '0 0 20 20');
+  svg.setAttribute('aria-hidden', 'true');
+  const path = document.createElementNS('http://www.w3.org/2000/svg', 'path');
+  path.setAttribute('d', ICONS[name]);
+  svg.append(path);
+  return svg;
+}

@@ -1,0 +1,172 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+import { CoreClient } from '../core/client';
+import { Output, type OpenedDocument } from '../core/types';
+import { linkFragment, readFragment } from '../model/link';
+import { Robot } from '../model/robot';
+import type { App } from './app';
+import { byId, download, tell } from './dom';
+
+/** Structures in and out: files, links, pictures, reports. Nothing that fails touches the robot. */
+
+const FILE_BYTES_MAX = 256 << 20;
+/** Browsers and mail programs cut longer links. */
+const LINK_LENGTH_MAX = 32_000;
+
+const client = new CoreClient();
+
+export function robotOf(opened: OpenedDocument, text: string, fallbackName: string): Robot {
+  const robot = Robot.from(opened.modules);
+  robot.name = opened.name || fallbackName;
+  robot.supportZ = opened.support_z;
+  robot.material = opened.material;
+  robot.base = text;
+  return robot;
+}
+
+/** Puts a structure in place of the robot; what was there comes back with undo. */
+export async function openText(
+  app: App,
+  bytes: Uint8Array,
+  name: string,
+  origin = name,
+): Promise<boolean> {
+  try {
+    const opened = await client.open(bytes);
+    const robot = robotOf(opened, new TextDecoder().decode(bytes), name);
+    app.history.replace(`opening ${robot.name || 'a structure'}`, robot);
+    const notes = [...opened.warnings];
+    if (opened.later_steps > 0) {
+      notes.push(`${opened.later_steps} later steps are kept, not shown`);
+    }
+    if (notes.length > 0) {
+      tell(`${origin}: ${notes.slice(0, 3).join('; ')}${notes.length > 3 ? '; …' : ''}`);
+    }
+    return true;
+  } catch (error) {
+    tell(`${origin}: ${error instanceof Error ? error.message : String(error)}`, true);
+    return false;
+  }
+}
+
+export async function openFile(app: App, file: File): Promise<void> {
+  if (file.size > FILE_BYTES_MAX) {
+    const size = (file.size / 2 ** 20).toFixed(0);
+    tell(`${file.name}: ${size} MiB, this page reads at most 256; the program holdfast reads more`, true);
+    return;
+  }
+  try {
+    const bytes = new Uint8Array(await file.arrayBuffer());
+    await openText(app, bytes, file.name.replace(/\.(xml|json)$/i, ''), file.name);
+  } catch {
+    tell(`${file.name}: cannot be read`, true);
+  }
+}
+
+/** The structure in the page's address, if there is one. */
+export async function openFragment(app: App): Promise<boolean> {
+  if (!location.hash) {
+    return false;
+  }
+  try {
+    const bytes = await readFragment(location.hash);
+    return bytes !== undefined && (await openText(app, bytes, 'the link'));
+  } catch {
+    tell('the link is broken: it may have been cut; nothing was opened', true);
+    return false;
+  }
+}
+
+export function listenToFiles(app: App): void {
+  const input = byId<HTMLInputElement>('file');
+  byId('open').onclick = () => input.click();
+  input.onchange = () => {
+    const file = input.files?.[0];
+    input.value = '';
+    if (file) {
+      void openFile(app, file);
+    }
+  };
+  window.addEventListener('dragover', (event) => {
+    event.preventDefault();
+    byId('drop').hidden = false;
+  });
+  window.addEventListener('dragleave', (event) => {
+    byId('drop').hidden = event.relatedTarget === null;
+  });
+  window.addEventListener('drop', (event) => {
+    event.preventDefault();
+    byId('drop').hidden = true;
+    const file = event.dataTransfer?.files[0];
+    if (file) {
+      void openFile(app, file);
+    }
+  });
+  window.addEventListener('hashchange', () => void openFragment(app));
+}
+
+function write(app: App, output: Output): Promise<string> {
+  const { robot } = app;
+  return client.write(robot.toData().data, output, robot.name, robot.base);
+}
+
+const fileName = (app: App) => app.robot.name.replace(/[^\w.-]+/g, '_') || 'structure';
+
+export async function take(app: App, what: string): Promise<void> {
+  const save = async (output: Output, ending: string, type: string) =>
+    download(`${fileName(app)}.${ending}`, new Blob([await write(app, output)], { type }));
+  try {
+    switch (what) {
+      case 'json':
+        return await save(Output.kJson, 'json', 'application/json');
+      case 'xml':
+        return await save(Output.kXml, 'xml', 'text/xml');
+      case 'svg':
+        return await save(Output.kSvg, 'svg', 'image/svg+xml');
+      case 'png':
+        return await savePng(app);
+      case 'link':
+        return await copyLink(app);
+      default:
+        return await showReport(app);
+    }
+  } catch (error) {
+    tell(error instanceof Error ? error.message : String(error), true);
+  }
+}
+
+async function savePng(app: App): Promise<void> {
+  app.stage.render();
+  const blob = await new Promise<Blob | null>((done) => app.stage.canvas.toBlob(done));
+  if (!blob) {
+    throw new Error('the browser gives no picture');
+  }
+  download(`${fileName(app)}.png`, blob);
+}
+
+async function copyLink(app: App): Promise<void> {
+  const fragment = await linkFragment(await write(app, Output.kJson));
+  if (fragment.length > LINK_LENGTH_MAX) {
+    tell(`too large for a link (${fragment.length} letters): save it as a file`, true);
+    return;
+  }
+  history.replaceState(null, '', fragment);
+  try {
+    await navigator.clipboard.writeText(location.href);
+    tell('The link is copied; it holds the whole structure.');
+  } catch {
+    tell('The link is in the address bar; it holds the whole structure.');
+  }
+}
+
+/** The JSON report of a structure file, by the same calls as everything on the page. */
+export async function reportOf(source: string, name: string): Promise<string> {
+  const robot = robotOf(await client.open(new TextEncoder().encode(source)), source, name);
+  return client.write(robot.toData().data, Output.kReportJson, robot.name, source);
+}
+
+async function showReport(app: App): Promise<void> {
+  byId('report-text').textContent = await write(app, Output.kReportText);
+  byId<HTMLDialogElement>('takeaway').close();
+  byId<HTMLDialogElement>('report').showModal();
+}

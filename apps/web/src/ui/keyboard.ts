@@ -1,0 +1,131 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+import { Kind, type Cell } from '../core/types';
+import { DIRECTIONS, plus } from '../model/robot';
+import type { App } from './app';
+import { byId, say } from './dom';
+
+/** Every key and what it does; the help shows the same list. */
+export const KEYS: readonly [keys: string, text: string][] = [
+  ['A  D  P  V', 'tools: attach, remove, paint, look only'],
+  ['1  2  3', 'what is attached or painted: existing, planned, fixed'],
+  ['← → ↑ ↓', 'move the cursor; page up and page down: higher, lower'],
+  ['Enter', 'use the tool at the cursor; Shift with an arrow: draw a row'],
+  ['Ctrl Z  Ctrl Y', 'undo, redo'],
+  ['F', 'where may the next module go?'],
+  ['[  ]', 'less, more exaggeration'],
+  ['Q  E  +  −', 'turn left, turn right, nearer, further'],
+  ['H', 'see all'],
+  ['T', 'let it topple, if it does'],
+  ['K  ,  .', 'the robot’s own computation: play or pause, step back, step on'],
+  ['Esc', 'put the cursor away'],
+  ['?', 'this page'],
+];
+
+const ARROWS: Record<string, [right: number, away: number]> = {
+  ArrowRight: [1, 0],
+  ArrowLeft: [-1, 0],
+  ArrowUp: [0, 1],
+  ArrowDown: [0, -1],
+};
+
+export function listenToKeys(app: App, actions: Record<string, () => void>): void {
+  window.addEventListener('keydown', (event) => {
+    const target = event.target as HTMLElement;
+    const isTyping = target.matches('input, select, textarea, dialog *');
+    if ((event.ctrlKey || event.metaKey) && !isTyping && /^[zy]$/i.test(event.key)) {
+      const isRedo = event.key.toLowerCase() === 'y' || event.shiftKey;
+      actions[isRedo ? 'redo' : 'undo']();
+      event.preventDefault();
+      return;
+    }
+    if (isTyping || event.ctrlKey || event.metaKey || event.altKey) {
+      return;
+    }
+    if (onStage(app, event) || letter(app, actions, event.key)) {
+      event.preventDefault();
+    }
+  });
+}
+
+/** Keys of the cursor count only where the robot has the focus. */
+function onStage(app: App, event: KeyboardEvent): boolean {
+  if (document.activeElement !== app.stage.canvas) {
+    return false;
+  }
+  const step = stepOf(app, event.key);
+  if (step) {
+    app.moveCursor(app.cursor ? plus(app.cursor, step) : startOf(app));
+    if (event.shiftKey && app.cursor) {
+      app.use([app.cursor]);
+      app.moveCursor(app.cursor);
+    }
+    return true;
+  }
+  if (event.key === 'Enter' || event.key === ' ') {
+    if (app.cursor) {
+      const label = app.tool === 'look' ? 'nothing is done: the tool is look' : '';
+      app.use([app.cursor]);
+      app.moveCursor(app.cursor);
+      say(label);
+    } else {
+      app.moveCursor(startOf(app));
+    }
+    return true;
+  }
+  if ((event.key === 'Delete' || event.key === 'Backspace') && app.cursor) {
+    app.edit('removing 1', [app.cursor], undefined);
+    app.moveCursor(app.cursor);
+    return true;
+  }
+  if (event.key === 'Escape') {
+    app.moveCursor(undefined);
+    return true;
+  }
+  return false;
+}
+
+function startOf(app: App): Cell {
+  return app.robot.count > 0 ? app.robot.cellAt(app.robot.count - 1) : [0, 0, app.robot.supportZ];
+}
+
+/** The lattice direction that an arrow means as the robot is seen now. */
+function stepOf(app: App, key: string): Cell | undefined {
+  if (key === 'PageUp' || key === 'PageDown') {
+    return DIRECTIONS[key === 'PageUp' ? 4 : 5];
+  }
+  const arrow = ARROWS[key];
+  if (!arrow) {
+    return undefined;
+  }
+  const [right, away] = arrow;
+  const angle = Math.round(app.stage.controls.getAzimuthalAngle() / (Math.PI / 2));
+  // From the azimuth, a quarter turn at a time: right and away in plan.
+  const quarter = ((angle % 4) + 4) % 4;
+  const rights: [number, number][] = [[1, 0], [0, 1], [-1, 0], [0, -1]];
+  const [rx, ry] = rights[quarter];
+  return [right * rx - away * ry, right * ry + away * rx, 0];
+}
+
+function letter(app: App, actions: Record<string, () => void>, key: string): boolean {
+  const kinds: Record<string, Kind> = { 1: Kind.kExisting, 2: Kind.kPlanned, 3: Kind.kFixed };
+  if (key in kinds) {
+    app.setTool(app.tool === 'paint' ? 'paint' : 'add', kinds[key]);
+    return true;
+  }
+  const tools = { a: 'add', d: 'remove', p: 'paint', v: 'look' } as const;
+  const lower = key.toLowerCase();
+  if (lower in tools) {
+    app.setTool(tools[lower as keyof typeof tools]);
+    return true;
+  }
+  if (key === '[' || key === ']') {
+    const slider = byId<HTMLInputElement>('exaggeration');
+    slider.value = String(Number(slider.value) + (key === ']' ? 10 : -10));
+    slider.dispatchEvent(new Event('input'));
+    return true;
+  }
+  const action = actions[lower];
+  action?.();
+  return action !== undefined;
+}

@@ -1,0 +1,75 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+import type { Verdict } from '../core/types';
+
+/** Colours as libs/io draws them: Fig. 6 of [Piranda 2021]; and a scale for every eye. */
+
+export type Rgb = readonly [red: number, green: number, blue: number];
+export type ScaleName = 'paper' | 'cividis';
+
+interface Scale {
+  stops: readonly [share: number, colour: Rgb][];
+  broken: Rgb;
+}
+
+const SCALES: Record<ScaleName, Scale> = {
+  paper: {
+    stops: [
+      [0, [62, 166, 88]],
+      [0.5, [242, 218, 78]],
+      [1, [240, 138, 36]],
+    ],
+    broken: [214, 32, 43],
+  },
+  // Cividis [Nunez 2018]: the same order of lightness whatever the eye; broken is near black.
+  cividis: {
+    stops: [
+      [0, [0, 62, 128]],
+      [0.25, [65, 85, 108]],
+      [0.5, [124, 123, 120]],
+      [0.75, [188, 174, 108]],
+      [1, [255, 234, 70]],
+    ],
+    broken: [36, 20, 28],
+  },
+};
+
+export const FIXED: Rgb = [58, 123, 200];
+export const UNSTABLE: Rgb = [142, 77, 178];
+export const UNKNOWN: Rgb = [165, 170, 176];
+
+export function mix(a: Rgb, b: Rgb, share: number): Rgb {
+  const channel = (i: 0 | 1 | 2) => Math.round(a[i] + (b[i] - a[i]) * share);
+  return [channel(0), channel(1), channel(2)];
+}
+
+/** The colour of a share of strength below 1. */
+export function loadColour(scale: ScaleName, ratio: number): Rgb {
+  const { stops } = SCALES[scale];
+  const share = Math.round(Math.min(Math.max(ratio, 0), 1) * 100) / 100;
+  const next = stops.findIndex(([at]) => at >= share);
+  if (next <= 0) {
+    return stops[0][1];
+  }
+  const [low, from] = stops[next - 1];
+  const [high, to] = stops[next];
+  return mix(from, to, (share - low) / (high - low));
+}
+
+export const brokenColour = (scale: ScaleName) => SCALES[scale].broken;
+
+export function verdictColour(verdict: Verdict, scale: ScaleName): Rgb {
+  switch (verdict) {
+    case 'safe':
+      return loadColour(scale, 0);
+    case 'overload':
+      return brokenColour(scale);
+    case 'unstable':
+      return UNSTABLE;
+    case 'undecided':
+      return UNKNOWN;
+  }
+}
+
+export const css = ([red, green, blue]: Rgb) => `rgb(${red} ${green} ${blue})`;
+export const hex = ([red, green, blue]: Rgb) => (red << 16) | (green << 8) | blue;

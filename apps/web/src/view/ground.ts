@@ -1,0 +1,182 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+import {
+  BufferGeometry,
+  DoubleSide,
+  Float32BufferAttribute,
+  Group,
+  Mesh,
+  MeshBasicMaterial,
+  PlaneGeometry,
+  ShaderMaterial,
+  type Object3D,
+} from 'three';
+import type { Point, Stability } from '../core/types';
+
+/** The ground: a grid, the support polygon, the centre of mass above it, the edge of toppling. */
+
+const GRID_FRAGMENT = `
+uniform vec3 ink;
+uniform vec2 middle;
+uniform float reach;
+varying vec2 vAt;
+void main() {
+  vec2 cell = abs(fract(vAt) - 0.5);
+  vec2 pixel = fwidth(vAt);
+  vec2 line = 1.0 - smoothstep(vec2(0.0), pixel * 1.2, 0.5 - cell);
+  float density = 1.0 - clamp(max(pixel.x, pixel.y) * 4.0, 0.0, 1.0);
+  float fade = 1.0 - smoothstep(0.3 * reach, reach, distance(vAt, middle));
+  gl_FragColor = vec4(ink, 0.22 * max(line.x, line.y) * fade * density);
+}`;
+
+const GRID_VERTEX = `
+varying vec2 vAt;
+void main() {
+  vec4 at = modelMatrix * vec4(position, 1.0);
+  vAt = at.xy + 0.5;
+  gl_Position = projectionMatrix * viewMatrix * at;
+}`;
+
+export interface GroundColours {
+  ink: [number, number, number];
+  polygon: number;
+  outline: number;
+  mass: number;
+  warn: number;
+}
+
+const SYMBOL_SEGMENTS = 32;
+
+export class Ground {
+  readonly group = new Group();
+  private readonly grid: Mesh<PlaneGeometry, ShaderMaterial>;
+  private readonly answer = new Group();
+  colours: GroundColours = { ink: [0, 0, 0], polygon: 0, outline: 0, mass: 0, warn: 0 };
+
+  constructor() {
+    const material = new ShaderMaterial({
+      vertexShader: GRID_VERTEX,
+      fragmentShader: GRID_FRAGMENT,
+      transparent: true,
+      depthWrite: false,
+      uniforms: { ink: { value: [0, 0, 0] }, middle: { value: [0, 0] }, reach: { value: 20 } },
+    });
+    this.grid = new Mesh(new PlaneGeometry(1, 1), material);
+    this.grid.renderOrder = -2;
+    this.group.add(this.grid, this.answer);
+  }
+
+  /** Where the ground is and how far the grid goes. */
+  place(z: number, middle: Point, reach: number): void {
+    this.group.position.z = z;
+    this.grid.position.set(middle[0], middle[1], -0.01);
+    this.grid.scale.setScalar(2.2 * reach);
+    this.grid.material.uniforms.middle.value = [middle[0] + 0.5, middle[1] + 0.5];
+    this.grid.material.uniforms.reach.value = reach;
+    this.grid.material.uniforms.ink.value = this.colours.ink;
+  }
+
+  /** Lengths in mm; `height` is that of the centre of mass above the ground, in cells. */
+  show(stability: Stability | undefined, pitch: number, height: number): void {
+    for (const child of [...this.answer.children] as Mesh[]) {
+      child.geometry.dispose();
+      (child.material as MeshBasicMaterial).dispose();
+      this.answer.remove(child);
+    }
+    if (!stability || stability.polygon.length < 3) {
+      return;
+    }
+    const scaled = ([x, y]: Point): Point => [x / pitch, y / pitch];
+    const polygon = stability.polygon.map(scaled);
+    const { colours } = this;
+    this.add(fan(polygon), colours.polygon, 0.45, 0);
+    polygon.forEach((a, i) => {
+      this.add(band(a, polygon[(i + 1) % polygon.length], 0.035), colours.outline, 1, 0.002);
+    });
+    const mass = scaled(stability.centre_of_mass);
+    if (stability.edge) {
+      const [a, b] = stability.edge.map(scaled) as [Point, Point];
+      this.add(band(a, b, stability.stable ? 0.06 : 0.1), colours.warn, 1, 0.004);
+      this.add(band(mass, foot(mass, a, b), 0.03), colours.mass, 1, 0.005);
+    }
+    this.add(ring(mass, 0.2, 0.26), colours.mass, 1, 0.006);
+    this.add(ring(mass, 0, 0.08), colours.mass, 1, 0.006);
+    const post = this.add(band([0, 0], [height, 0], 0.02), colours.mass, 0.8, 0);
+    post.position.set(mass[0], mass[1], 0);
+    post.rotation.set(0, -Math.PI / 2, 0);
+    for (const part of [post, this.add(ring([0, 0], 0, 0.09), colours.mass, 0.9, 0)]) {
+      part.material.depthTest = false;
+      part.renderOrder = 3;
+      if (part !== post) {
+        part.position.set(mass[0], mass[1], height);
+        part.onBeforeRender = (_renderer, _scene, camera) => {
+          part.quaternion.copy(camera.quaternion);
+          part.updateMatrixWorld();
+        };
+      }
+    }
+  }
+
+  private add(geometry: BufferGeometry, colour: number, opacity: number, z: number) {
+    const material = new MeshBasicMaterial({
+      color: colour,
+      opacity,
+      transparent: true,
+      depthWrite: false,
+      side: DoubleSide,
+    });
+    const mesh = new Mesh(geometry, material);
+    mesh.position.z = z;
+    mesh.renderOrder = -1;
+    this.answer.add(mesh as Object3D);
+    return mesh;
+  }
+}
+
+/** The point of a line that is nearest. */
+function foot(p: Point, a: Point, b: Point): Point {
+  const [dx, dy] = [b[0] - a[0], b[1] - a[1]];
+  const along = ((p[0] - a[0]) * dx + (p[1] - a[1]) * dy) / (dx * dx + dy * dy);
+  return [a[0] + along * dx, a[1] + along * dy];
+}
+
+function flat(points: Point[], index: number[]): BufferGeometry {
+  const geometry = new BufferGeometry();
+  geometry.setAttribute('position', new Float32BufferAttribute(points.flatMap(([x, y]) => [x, y, 0]), 3));
+  geometry.setIndex(index);
+  return geometry;
+}
+
+/** A convex polygon. */
+function fan(points: Point[]): BufferGeometry {
+  return flat(points, points.slice(2).flatMap((_, i) => [0, i + 1, i + 2]));
+}
+
+function band(a: Point, b: Point, half: number): BufferGeometry {
+  const length = Math.hypot(b[0] - a[0], b[1] - a[1]) || 1;
+  const [ux, uy] = [((b[0] - a[0]) / length) * half, ((b[1] - a[1]) / length) * half];
+  return flat(
+    [
+      [a[0] - uy, a[1] + ux],
+      [a[0] + uy, a[1] - ux],
+      [b[0] + uy, b[1] - ux],
+      [b[0] - uy, b[1] + ux],
+    ],
+    [0, 1, 2, 0, 2, 3],
+  );
+}
+
+function ring(at: Point, inner: number, outer: number): BufferGeometry {
+  const points: Point[] = [];
+  const index: number[] = [];
+  for (let i = 0; i <= SYMBOL_SEGMENTS; ++i) {
+    const angle = (2 * Math.PI * i) / SYMBOL_SEGMENTS;
+    for (const radius of [inner, outer]) {
+      points.push([at[0] + radius * Math.cos(angle), at[1] + radius * Math.sin(angle)]);
+    }
+    if (i > 0) {
+      index.push(2 * i - 2, 2 * i - 1, 2 * i, 2 * i - 1, 2 * i + 1, 2 * i);
+    }
+  }
+  return flat(points, index);
+}

@@ -1,0 +1,272 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+import { BoxGeometry, EdgesGeometry, LineBasicMaterial, LineSegments, Mesh, MeshBasicMaterial, Vector3 } from 'three';
+import { mergeGeometries } from 'three/examples/jsm/utils/BufferGeometryUtils.js';
+import { Kind, LOAD_FIELDS, MOTION_FIELDS, type Answer, type Cell } from '../core/types';
+import { DIRECTIONS, PITCH_INDEX, plus, type Robot } from '../model/robot';
+import { FIXED, UNKNOWN, UNSTABLE, brokenColour, loadColour, mix, type Rgb, type ScaleName } from './colours';
+import { ModuleMesh, Pattern } from './modules';
+import type { Stage } from './stage';
+
+/** An answer and the slots that its modules had when it was asked for. */
+export interface Judged {
+  answer: Answer;
+  slots: Int32Array;
+}
+
+/** What a face of a free place shows. */
+export const enum FaceCode {
+  kNone,
+  kSafe,
+  kOverload,
+  kUnstable,
+  kUndecided,
+  kWaiting,
+}
+
+const WHITE: Rgb = [255, 255, 255];
+const FACE_BASE = 8;
+
+/** The load of each module: the largest ratio of its connections, and whether one breaks. */
+export interface ModuleLoads {
+  ratio: Float64Array;
+  isBroken: Uint8Array;
+}
+
+export function moduleLoads(judged: Judged): ModuleLoads {
+  const { answer, slots } = judged;
+  const ratio = new Float64Array(slots.length).fill(Number.NEGATIVE_INFINITY);
+  const isBroken = new Uint8Array(slots.length);
+  for (let i = 0; 3 * i < answer.connections.length; ++i) {
+    for (const end of [answer.connections[3 * i], answer.connections[3 * i + 1]]) {
+      const slot = slots[end];
+      const value = answer.loads[LOAD_FIELDS * i];
+      ratio[slot] = Number.isNaN(value) ? value : Math.max(ratio[slot], value);
+    }
+  }
+  for (const i of answer.broken) {
+    isBroken[slots[answer.connections[3 * i]]] = 1;
+    isBroken[slots[answer.connections[3 * i + 1]]] = 1;
+  }
+  return { ratio, isBroken };
+}
+
+/** Draws the robot: modules with what is known of them, ghosts, the cursor, the worst connection. */
+export class RobotView {
+  private readonly modules = new ModuleMesh();
+  private readonly ghosts = new ModuleMesh(0.72);
+  private readonly cursor = new LineSegments(
+    new EdgesGeometry(new BoxGeometry(1.07, 1.07, 1.07)),
+    new LineBasicMaterial({ depthTest: false, transparent: true }),
+  );
+  private readonly collar = new Mesh(collarGeometry(), new MeshBasicMaterial());
+  /** Slots that are drawn; modules with six neighbours are not. */
+  private drawn = new Int32Array(0);
+  private robot?: Robot;
+  private judged?: Judged;
+  private hasFaces = false;
+  scale: ScaleName = 'paper';
+  /** Colours of modules that have their own, by slot; the trace player's. */
+  paintOver?: (slot: number) => Rgb | undefined;
+  pointed = new Set<number>();
+
+  constructor(private readonly stage: Stage) {
+    this.cursor.renderOrder = 5;
+    this.cursor.visible = false;
+    this.collar.visible = false;
+    stage.robot.add(this.modules.mesh, this.ghosts.mesh, this.collar);
+    stage.scene.add(this.cursor);
+    this.ghosts.mesh.renderOrder = 2;
+    this.ghosts.update(0);
+  }
+
+  /** Another shape; colours follow with paint(). */
+  show(robot: Robot, judged: Judged | undefined): void {
+    this.robot = robot;
+    this.judged = judged;
+    const drawn: number[] = [];
+    for (let slot = 0; slot < robot.count; ++slot) {
+      if (!robot.isHidden(slot)) {
+        drawn.push(slot);
+      }
+    }
+    this.drawn = Int32Array.from(drawn);
+    this.modules.reserve(drawn.length);
+    drawn.forEach((slot, i) => this.modules.places.set(robot.cellAt(slot), 3 * i));
+    this.modules.faces.fill(0, 0, drawn.length);
+    this.hasFaces = false;
+    this.placeMotions();
+    this.modules.update(drawn.length, 'place', 'faces', 'motion', 'turn');
+    this.paint();
+    this.markWorst();
+  }
+
+  /** Colours and patterns of all modules. */
+  paint(): void {
+    const { robot, judged } = this;
+    if (!robot) {
+      return;
+    }
+    const loads = judged?.answer.has_loads ? moduleLoads(judged) : undefined;
+    const isUnstable = judged?.answer.verdict === 'unstable';
+    this.drawn.forEach((slot, i) => {
+      const kind = robot.kindAt(slot);
+      const isBroken = !isUnstable && loads?.isBroken[slot] === 1;
+      const own = this.paintOver?.(slot);
+      const colour = own ?? this.colour(kind, loads?.ratio[slot], isBroken, isUnstable);
+      const isPlanned = kind === Kind.kPlanned;
+      this.modules.tints.set(isPlanned && !own ? mix(colour, WHITE, 0.38) : colour, 3 * i);
+      this.modules.patterns[i] =
+        (isPlanned ? Pattern.kPlanned : 0) +
+        (kind === Kind.kFixed ? Pattern.kFixed : 0) +
+        (isBroken && !own ? Pattern.kBroken : 0) +
+        (this.pointed.has(slot) ? Pattern.kPointed : 0);
+    });
+    this.modules.update(this.drawn.length, 'tint', 'pattern');
+    this.collar.visible = this.worst !== undefined && !this.paintOver;
+    this.stage.draw();
+  }
+
+  /** What would come of a module at each free place. */
+  showFaces(codeOf: ((place: Cell) => FaceCode) | undefined): void {
+    const { robot } = this;
+    if (!robot || (!codeOf && !this.hasFaces)) {
+      return;
+    }
+    this.hasFaces = codeOf !== undefined;
+    this.drawn.forEach((slot, i) => {
+      const cell = robot.cellAt(slot);
+      let packed = 0;
+      if (codeOf) {
+        DIRECTIONS.forEach((direction, side) => {
+          const place = plus(cell, direction);
+          const code = robot.has(place) ? FaceCode.kNone : codeOf(place);
+          packed += code * FACE_BASE ** side;
+        });
+      }
+      this.modules.faces[i] = packed;
+    });
+    this.modules.update(this.drawn.length, 'faces');
+    this.stage.draw();
+  }
+
+  /** Modules that are about to be attached, in the colour of what comes of it. */
+  showGhosts(cells: readonly Cell[], colour: Rgb): void {
+    this.ghosts.reserve(cells.length);
+    cells.forEach((cell, i) => {
+      this.ghosts.places.set(cell, 3 * i);
+      this.ghosts.tints.set(colour, 3 * i);
+      this.ghosts.patterns[i] = Pattern.kPlanned;
+    });
+    this.ghosts.update(cells.length, 'place', 'tint', 'pattern');
+    this.stage.draw();
+  }
+
+  showCursor(cell: Cell | undefined): void {
+    this.cursor.visible = cell !== undefined;
+    this.cursor.position.fromArray(cell ?? [0, 0, 0]);
+    this.stage.draw();
+  }
+
+  /** How much displacements are magnified. */
+  set exaggeration(factor: number) {
+    this.modules.mesh.material.uniforms.exaggeration.value = factor;
+    this.markWorst();
+    this.stage.draw();
+  }
+
+  get exaggeration(): number {
+    return this.modules.mesh.material.uniforms.exaggeration.value as number;
+  }
+
+  setTheme(ink: Rgb, codes: Rgb[]): void {
+    const unit = (colour: Rgb) => colour.map((value) => value / 255);
+    for (const { mesh } of [this.modules, this.ghosts]) {
+      mesh.material.uniforms.pointed.value = unit(ink);
+      (mesh.material.uniforms.codes.value as Float32Array).set(codes.flatMap(unit));
+    }
+    const [red, green, blue] = unit(ink);
+    this.cursor.material.color.setRGB(red, green, blue, 'srgb');
+    this.collar.material.color.setRGB(red, green, blue, 'srgb');
+  }
+
+  /** The middle of a connection as it is drawn. */
+  connectionPoint(index: number): Vector3 {
+    const { answer, slots } = this.judged!;
+    const ends = [answer.connections[3 * index], answer.connections[3 * index + 1]];
+    const points = ends.map((end) => this.drawnPlace(slots[end], end));
+    return points[0].add(points[1]).multiplyScalar(0.5);
+  }
+
+  /** The connection whose collar is shown; undefined if none is. */
+  get worst(): number | undefined {
+    const answer = this.judged?.answer;
+    return answer && answer.verdict !== 'unstable' ? (answer.worst ?? undefined) : undefined;
+  }
+
+  private colour(kind: Kind, ratio: number | undefined, isBroken: boolean, isUnstable: boolean): Rgb {
+    if (isUnstable) {
+      return UNSTABLE;
+    }
+    if (kind === Kind.kFixed) {
+      return FIXED;
+    }
+    if (ratio === undefined || Number.isNaN(ratio)) {
+      return UNKNOWN;
+    }
+    return isBroken ? brokenColour(this.scale) : loadColour(this.scale, ratio);
+  }
+
+  /** Displacements in cells. */
+  private placeMotions(): void {
+    const { motions, turns } = this.modules;
+    const displacements = this.judged?.answer.displacements;
+    if (!displacements?.length || this.judged?.answer.verdict === 'unstable') {
+      motions.fill(0, 0, 3 * this.drawn.length);
+      turns.fill(0, 0, 3 * this.drawn.length);
+      return;
+    }
+    const pitch = this.robot!.material[PITCH_INDEX];
+    const moduleOf = new Int32Array(this.judged!.slots.length);
+    this.judged!.slots.forEach((slot, module) => (moduleOf[slot] = module));
+    this.drawn.forEach((slot, i) => {
+      const at = MOTION_FIELDS * moduleOf[slot];
+      for (let k = 0; k < 3; ++k) {
+        motions[3 * i + k] = displacements[at + k] / pitch;
+        turns[3 * i + k] = displacements[at + 3 + k];
+      }
+    });
+  }
+
+  private drawnPlace(slot: number, module: number): Vector3 {
+    const place = new Vector3().fromArray(this.robot!.cellAt(slot));
+    const { displacements } = this.judged!.answer;
+    const factor = this.exaggeration / this.robot!.material[PITCH_INDEX];
+    return displacements.length > 0
+      ? place.addScaledVector(new Vector3().fromArray(displacements, MOTION_FIELDS * module), factor)
+      : place;
+  }
+
+  private markWorst(): void {
+    const { worst } = this;
+    this.collar.visible = worst !== undefined && !this.paintOver;
+    if (worst !== undefined) {
+      const direction = DIRECTIONS[this.judged!.answer.connections[3 * worst + 2]];
+      this.collar.position.copy(this.connectionPoint(worst));
+      this.collar.quaternion.setFromUnitVectors(
+        new Vector3(0, 0, 1),
+        new Vector3().fromArray(direction.map(Math.abs)),
+      );
+    }
+  }
+}
+
+/** Four bars around the face between two modules, which lies in the plane z = 0. */
+function collarGeometry() {
+  const bars = [-1, 1].flatMap((side) => {
+    const along = new BoxGeometry(1.16, 0.07, 0.12);
+    const across = new BoxGeometry(0.07, 1.16, 0.12);
+    return [along.translate(0, 0.545 * side, 0), across.translate(0.545 * side, 0, 0)];
+  });
+  return mergeGeometries(bars);
+}

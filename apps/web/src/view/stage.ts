@@ -1,0 +1,129 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+import {
+  Group,
+  MOUSE,
+  PerspectiveCamera,
+  Raycaster,
+  Scene,
+  TOUCH,
+  Vector2,
+  Vector3,
+  WebGLRenderer,
+  type Ray,
+} from 'three';
+import { OrbitControls } from 'three/examples/jsm/controls/OrbitControls.js';
+import type { Cell } from '../core/types';
+
+/** The one canvas: renderer, camera and its controls. Draws only when something has changed. */
+export class Stage {
+  readonly scene = new Scene();
+  /** What topples. */
+  readonly robot = new Group();
+  readonly camera = new PerspectiveCamera(32, 1, 0.1, 5000);
+  readonly controls: OrbitControls;
+  private readonly renderer: WebGLRenderer;
+  private readonly raycaster = new Raycaster();
+  private frame = 0;
+  /** Nothing is drawn before there is something to see. */
+  isReady = false;
+  /** Called before each frame with the time; true asks for another one. */
+  beforeFrame: (now: number) => boolean = () => false;
+  afterFrame: () => void = () => undefined;
+
+  constructor(
+    readonly canvas: HTMLCanvasElement,
+    private readonly coveredPixels: () => number,
+  ) {
+    this.renderer = new WebGLRenderer({ canvas, antialias: true, alpha: true });
+    this.renderer.setClearAlpha(0);
+    // Asking for errors waits for the compiler; the tests look at the picture instead.
+    this.renderer.debug.checkShaderErrors = false;
+    this.camera.up.set(0, 0, 1);
+    this.controls = new OrbitControls(this.camera, canvas);
+    this.controls.mouseButtons = { LEFT: MOUSE.ROTATE, MIDDLE: MOUSE.DOLLY, RIGHT: MOUSE.PAN };
+    this.controls.touches = { ONE: TOUCH.ROTATE, TWO: TOUCH.DOLLY_PAN };
+    this.controls.maxPolarAngle = 0.62 * Math.PI;
+    this.controls.zoomToCursor = true;
+    this.controls.addEventListener('change', () => this.draw());
+    this.scene.add(this.robot);
+    new ResizeObserver(() => this.resize()).observe(canvas.parentElement!);
+    this.resize();
+  }
+
+  /** Asks for a frame. */
+  draw(): void {
+    if (!this.isReady) {
+      return;
+    }
+    this.frame ||= requestAnimationFrame((now) => {
+      this.frame = 0;
+      const isMoving = this.beforeFrame(now);
+      this.render();
+      this.afterFrame();
+      if (isMoving) {
+        this.draw();
+      }
+    });
+  }
+
+  /** Draws now, without waiting for a frame. */
+  render(): void {
+    this.renderer.render(this.scene, this.camera);
+  }
+
+  get drawCalls(): number {
+    return this.renderer.info.render.calls;
+  }
+
+  /** The ray under a point of the window. */
+  ray(x: number, y: number): Ray {
+    const box = this.canvas.getBoundingClientRect();
+    const at = new Vector2(
+      (2 * (x - box.left)) / box.width - 1,
+      1 - (2 * (y - box.top)) / box.height,
+    );
+    this.raycaster.setFromCamera(at, this.camera);
+    return this.raycaster.ray;
+  }
+
+  /** Where a point of the scene is on the canvas, in CSS pixels; undefined behind the camera. */
+  project(point: Vector3): { x: number; y: number } | undefined {
+    const at = point.clone().project(this.camera);
+    const { clientWidth, clientHeight } = this.canvas;
+    return at.z > 1
+      ? undefined
+      : { x: ((at.x + 1) / 2) * clientWidth, y: ((1 - at.y) / 2) * clientHeight };
+  }
+
+  /** Looks at a box of cells from the front right, from the same side if `keepsSide`. */
+  fit(low: Cell, high: Cell, keepsSide = false): void {
+    const middle = new Vector3().fromArray(low.map((value, k) => (value + high[k]) / 2));
+    const radius = 0.5 * Math.hypot(...low.map((value, k) => high[k] - value + 1.6));
+    const half = (this.camera.fov * Math.PI) / 360;
+    const narrow = Math.min(half, Math.atan(Math.tan(half) * this.camera.aspect));
+    const side = keepsSide
+      ? this.camera.position.clone().sub(this.controls.target).normalize()
+      : new Vector3(0.62, -0.62, 0.48).normalize();
+    this.controls.target.copy(middle);
+    this.camera.position.copy(middle).addScaledVector(side, (1.02 * radius) / Math.sin(narrow));
+    this.camera.near = Math.max(0.05, radius / 200);
+    this.camera.far = 200 * radius + 200;
+    this.camera.updateProjectionMatrix();
+    this.controls.update();
+    this.draw();
+  }
+
+  private resize(): void {
+    const { clientWidth, clientHeight } = this.canvas.parentElement!;
+    this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
+    this.renderer.setSize(Math.max(clientWidth, 1), Math.max(clientHeight, 1), false);
+    // The tools cover the lower part: the middle of the picture is the middle of the rest.
+    const covered = Math.min(this.coveredPixels(), clientHeight / 2);
+    const [width, height] = [Math.max(clientWidth, 1), Math.max(clientHeight - covered, 1)];
+    this.camera.aspect = width / height;
+    this.camera.setViewOffset(width, height, 0, 0, width, height + covered);
+    this.camera.updateProjectionMatrix();
+    this.draw();
+  }
+}

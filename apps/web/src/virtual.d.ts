@@ -1,0 +1,15 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+
+/** Made by vite.config.ts. */
+declare module 'virtual:core' {
+  /** The core's .wasm file, deflated, as base64. */
+  const core: string;
+  export default core;
+}
+
+declare module 'virtual:scenarios' {
+  /** The files of scenarios/, by name. */
+  const scenarios: Record<string, object>;
+  export default scenarios;
+}

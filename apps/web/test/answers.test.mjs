@@ -1,0 +1,77 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// The page's answers are the native program's: every number of the report to the last digit, for all
+// scenarios and for the 220 structures of tests/reference. Only the shear force, which is part of no
+// verdict, comes from the C library's hypot, which may differ in that digit.
+import assert from 'node:assert/strict';
+import { readFileSync, readdirSync, writeFileSync } from 'node:fs';
+import path from 'node:path';
+import { after, before, test } from 'node:test';
+import { launch, nativeReports, openPage, repository, temporaryFolder } from './browser.mjs';
+
+let browser;
+let page;
+before(async () => {
+  browser = await launch();
+  page = await openPage(browser);
+});
+after(() => browser.close());
+
+/** Without how long it took, and with digits of the shear force that hypot does not touch. */
+function comparable(report) {
+  delete report.solver.seconds;
+  for (const connection of report.connections) {
+    connection.shear_n = connection.shear_n.toPrecision(12);
+  }
+  return report;
+}
+
+async function expectNativeAnswers(files) {
+  const native = nativeReports(files);
+  assert.equal(native.length, files.length);
+  let connections = 0;
+  for (const [i, file] of files.entries()) {
+    const name = path.basename(file, '.json');
+    const text = await page.evaluate(
+      ([source, title]) => globalThis.holdfast.reportOf(source, title),
+      [readFileSync(file, 'utf8'), name],
+    );
+    const report = JSON.parse(text);
+    assert.deepEqual(comparable(report), comparable(native[i]), name);
+    connections += report.connections.length;
+  }
+  return connections;
+}
+
+test('all scenarios have the same report, to the last digit', async () => {
+  const folder = path.join(repository, 'scenarios');
+  const files = readdirSync(folder).filter((name) => name.endsWith('.json'));
+  assert.equal(files.length, 21);
+  assert.ok((await expectNativeAnswers(files.map((name) => path.join(folder, name)))) > 250);
+});
+
+/** One holdfast JSON file for each structure; tests/reference/README.md has the format. */
+function writeReferences(folder) {
+  const lines = readFileSync(path.join(repository, 'tests/reference/structures.txt'), 'utf8').split('\n');
+  const files = [];
+  for (const [i, line] of lines.entries()) {
+    const [keyword, name, existing] = line.split(' ');
+    if (keyword === 'structure') {
+      const cells = lines[i + 1].split(' ').map((cell) => cell.split(',').map(Number));
+      const file = path.join(folder, `${name}.json`);
+      const modules = cells.slice(0, Number(existing));
+      const planned = cells.slice(Number(existing));
+      writeFileSync(file, JSON.stringify({ format: 'holdfast-structure', version: 1, modules, planned }));
+      files.push(file);
+    }
+  }
+  return files;
+}
+
+test('all reference structures have the same report, to the last digit', async () => {
+  const files = writeReferences(temporaryFolder());
+  assert.equal(files.length, 220);
+  assert.ok((await expectNativeAnswers(files)) > 5000);
+  assert.deepEqual(page.faults, []);
+});

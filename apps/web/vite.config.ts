@@ -1,0 +1,92 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+import { createHash } from 'node:crypto';
+import { readFileSync, readdirSync } from 'node:fs';
+import { deflateRawSync } from 'node:zlib';
+import { defineConfig, type Plugin } from 'vite';
+
+const repository = new URL('../../', import.meta.url);
+const coreFile = new URL('build/wasm/holdfast_core.wasm', repository);
+const scenarioFolder = new URL('scenarios/', repository);
+
+/** Modules that are made from files of the repository. */
+function holdfastFiles(): Plugin {
+  const makers: Record<string, () => unknown> = {
+    'virtual:core': () => deflateRawSync(readFileSync(coreFile), { level: 9 }).toString('base64'),
+    'virtual:scenarios': () =>
+      Object.fromEntries(
+        readdirSync(scenarioFolder)
+          .filter((name) => name.endsWith('.json'))
+          .map((name) => [
+            name.replace('.json', ''),
+            JSON.parse(readFileSync(new URL(name, scenarioFolder), 'utf8')),
+          ]),
+      ),
+  };
+  return {
+    name: 'holdfast-files',
+    resolveId: (id) => (id in makers ? `\0${id}` : undefined),
+    load: (id) =>
+      id.startsWith('\0virtual:') && id.slice(1) in makers
+        ? `export default ${JSON.stringify(makers[id.slice(1)]())};`
+        : undefined,
+  };
+}
+
+const sha256 = (text: string) => `'sha256-${createHash('sha256').update(text).digest('base64')}'`;
+
+/** One HTML file with script and style in it, and a policy that allows exactly these. */
+function oneFile(): Plugin {
+  return {
+    name: 'holdfast-one-file',
+    enforce: 'post',
+    generateBundle(_options, bundle) {
+      let script = '';
+      let style = '';
+      for (const [name, file] of Object.entries(bundle)) {
+        if (file.type === 'chunk') {
+          script += file.code.trim().replaceAll('</script', '<\\/script');
+        } else if (name.endsWith('.css')) {
+          style += String(file.source).trim();
+        } else {
+          continue;
+        }
+        delete bundle[name];
+      }
+      const page = Object.values(bundle).find((file) => file.fileName === 'index.html');
+      if (page?.type !== 'asset') {
+        throw new Error('no index.html was made');
+      }
+      const policy = [
+        "default-src 'none'",
+        `script-src ${sha256(script)} 'wasm-unsafe-eval'`,
+        `style-src ${sha256(style)}`,
+        'worker-src blob:',
+        'img-src blob: data:',
+        "base-uri 'none'",
+        "form-action 'none'",
+      ].join('; ');
+      const head = `<meta http-equiv="Content-Security-Policy" content="${policy}">`;
+      page.source = String(page.source)
+        .replace(/<script type="module"[^>]*><\/script>\s*/, '')
+        .replace(/<link rel="stylesheet"[^>]*>\s*/, '')
+        .replace('<meta charset="utf-8">', () => `<meta charset="utf-8">\n${head}`)
+        .replace('</head>', () => `<style>${style}</style>\n</head>`)
+        .replace('</body>', () => `<script type="module">${script}</script>\n</body>`);
+      page.fileName = 'holdfast.html';
+    },
+  };
+}
+
+export default defineConfig({
+  plugins: [holdfastFiles(), oneFile()],
+  worker: { plugins: () => [holdfastFiles()] },
+  build: {
+    outDir: '../../build/page',
+    emptyOutDir: true,
+    target: 'es2022',
+    modulePreload: false,
+    assetsInlineLimit: 0,
+    chunkSizeWarningLimit: 4000,
+  },
+});
