@@ -318,6 +318,31 @@ void Branch::close_loops(const BeamStiffness<double>& beam) {
   }
 }
 
+int Branch::columns_needed(int index, const std::array<std::int8_t, kLoopsMax>& slot_of,
+                           int child_loops) const {
+  const auto of_child = [&](int open) {
+    for (int i = 0; i < child_loops; ++i) {
+      if (open >= 0 && slot_of[at(i)] == open_slot(open)) {
+        return i;
+      }
+    }
+    return -1;
+  };
+  const int j = index % kSize;
+  if (index < kOnto) {
+    return kOnto;
+  }
+  if (index < kGive) {
+    const int first = index < kAcross ? kOnto : kAcross;
+    const int loop = of_child((index - first) / kSize);
+    return loop < 0 ? kOnto : first + kSize * loop + j + 1;
+  }
+  const int pair = (index - kGive) / kSize;
+  const int row = of_child(pair / kLoopsMax);
+  const int column = of_child(pair % kLoopsMax);
+  return row < 0 || column < 0 ? kGive : kGive + kSize * (kLoopsMax * row + column) + j + 1;
+}
+
 Vec6<double> Branch::column_up(const BeamStiffness<double>& beam, Direction to_parent,
                                bool is_fixed, int index) const {
   const Joint joint(beam, to_parent);

@@ -156,6 +156,7 @@ void BasicAgent<Real>::factor_branch() {
     }
   }
   work_.tree.load = {};  // Children add theirs as they come.
+  work_.tree.columns_here = {};
 }
 
 /// By node: what holds a planned module from its own ground and the planned ones beyond it.
@@ -186,18 +187,47 @@ void BasicAgent<Real>::take_column(int face, std::span<const std::uint8_t> messa
   if (index < Branch::kColumnCount) {
     work_.tree.branch.add_column(index, work_.tree.slot_of[static_cast<std::size_t>(face)],
                                  sweep::read_vector(in));
+    work_.tree.columns_here[static_cast<std::size_t>(face)] = static_cast<std::uint8_t>(index + 1);
+    send_columns();
   }
 }
 
-/// Columns of zeros need not be sent. False: more when there is room on the link.
+/// Is all here that the next column needs?
+template <class Real>
+bool BasicAgent<Real>::is_column_ready() const {
+  const BranchWork& tree = work_.tree;
+  for (int face = 0; face < base::kDirectionCount; ++face) {
+    const auto at = static_cast<std::size_t>(face);
+    if ((reports_awaited_ & bit(face)) != 0 &&
+        (tree.branch.closes_loops() ||
+         tree.columns_here[at] <
+             tree.branch.columns_needed(column_, tree.slot_of[at], tree.child_cut_count[at]))) {
+      return false;
+    }
+  }
+  return true;
+}
+
+/// Columns of zeros need not be sent. False: more when there is room on the link, or when children
+/// have sent more.
 template <class Real>
 bool BasicAgent<Real>::send_columns() {
+  constexpr std::uint8_t kAllSent = Branch::kColumnCount + 1;
   Branch& branch = work_.tree.branch;
-  if (!is_streaming_) {
-    branch.close_loops(setup_.beam);
-    is_streaming_ = true;
+  if (column_ == kAllSent) {
+    return true;
   }
+  if (!is_streaming_ && branch.closes_loops()) {
+    if (reports_awaited_ != 0) {
+      return false;
+    }
+    branch.close_loops(setup_.beam);
+  }
+  is_streaming_ = true;
   for (; column_ < Branch::kColumnCount && parent_ >= 0; ++column_) {
+    if (!is_column_ready()) {
+      return false;
+    }
     const base::Vec6<double> column = branch.column_up(
         setup_.beam, static_cast<base::Direction>(parent_), nodes_[0].is_fixed, column_);
     if (column == base::Vec6<double>{}) {
@@ -212,6 +242,7 @@ bool BasicAgent<Real>::send_columns() {
                                         base::converted<float>(column)));
   }
   is_streaming_ = false;
+  column_ = kAllSent;
   return true;
 }
 

@@ -32,6 +32,7 @@ void BasicAgent<Real>::step(const Event& event, Actions& actions) {
       start_round();
     }
     if (is_streaming_) {
+      send_columns();
       continue_sweep();
     }
     // Orders follow each other here, so that no function calls itself.

@@ -115,8 +115,9 @@ struct BranchWork {
   std::array<std::array<Cut, kLoopsMax>, base::kDirectionCount> child_cuts{};
   std::array<std::array<std::int8_t, kLoopsMax>, base::kDirectionCount> slot_of{};
   std::array<std::uint8_t, base::kDirectionCount> child_cut_count{};
-  base::Vec6<float> shift{};          ///< M^-1 r, ...
-  base::Vec6<double> parent_shift{};  ///< ... and the parent's.
+  std::array<std::uint8_t, base::kDirectionCount> columns_here{};  ///< All before are final.
+  base::Vec6<float> shift{};                                       ///< M^-1 r, ...
+  base::Vec6<double> parent_shift{};                               ///< ... and the parent's.
 };
 
 /// A method's own data; a robot's equilibrium uses one method at a time.
@@ -241,6 +242,7 @@ class BasicAgent {
   void take_column(int face, std::span<const std::uint8_t> message);
   void take_branch_up(int face, std::span<const std::uint8_t> message);
   void take_branch_down(std::span<const std::uint8_t> message);
+  bool is_column_ready() const;
   bool send_columns();
   void send_branch_up();
   void find_shifts();

@@ -84,8 +84,15 @@ class Branch {
   void add_column(int index, const std::array<std::int8_t, kLoopsMax>& slot_of,
                   const base::Vec6<float>& column);
 
-  /// All children's columns are here.
+  bool closes_loops() const { return open_count() < count_; }
+
+  /// Once, when all children's columns are here.
   void close_loops(const mechanics::BeamStiffness<double>& beam);
+
+  /// How many of a child's columns must be here before column `index` may go up: as soon as S is
+  /// complete the columns of a loop pass one by one. Of no use where a loop closes.
+  int columns_needed(int index, const std::array<std::int8_t, kLoopsMax>& slot_of,
+                     int child_loops) const;
 
   /// Eq. (3), column by column; `is_fixed` if this module does not move.
   base::Vec6<double> column_up(const mechanics::BeamStiffness<double>& beam,
