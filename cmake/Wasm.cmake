@@ -28,6 +28,9 @@ add_library(Threads::Threads INTERFACE IMPORTED)  # One thread; see solver's thr
 add_library(nlohmann_json::nlohmann_json INTERFACE IMPORTED)
 target_include_directories(nlohmann_json::nlohmann_json INTERFACE ${headers})
 
+# One thread: nothing to link.
+add_library(Threads::Threads INTERFACE IMPORTED)
+
 # Debian has pugixml only as an archive for the host; ./dev lays its source package here.
 set(HOLDFAST_PUGIXML_SOURCE ${PROJECT_SOURCE_DIR}/build/pugixml/src CACHE PATH
     "Folder of pugixml.cpp (Emscripten only)")

@@ -102,6 +102,12 @@ constexpr bool any_of(Range&& range, Predicate predicate, Projection projection 
                      holdfast_detail::on(predicate, projection));
 }
 
+template <class Range, class Predicate, class Projection = holdfast_detail::Identity>
+constexpr bool none_of(Range&& range, Predicate predicate, Projection projection = {}) {
+  return std::none_of(std::begin(range), std::end(range),
+                      holdfast_detail::on(predicate, projection));
+}
+
 template <class Range, class Function, class Projection = holdfast_detail::Identity>
 constexpr void for_each(Range&& range, Function function, Projection projection = {}) {
   for (auto&& element : range) {

@@ -5,11 +5,10 @@
 #include <fmt/format.h>
 #include <spawn.h>
 #include <sys/wait.h>
+#include <unistd.h>
 
 #include <filesystem>
 #include <nlohmann/json.hpp>
-
-extern char** environ;
 
 namespace holdfast::cli {
 namespace {
