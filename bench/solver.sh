@@ -114,7 +114,8 @@ scale() { # ours alone, from 10^4 to 10^6 modules
 echo "bandwidth of a triad on 2 threads: $("$folder/solver_bench" bandwidth) GB/s"
 plot() { # COLUMN TITLE Y-LABEL PICTURE
   awk -F, -v column="$1" 'NR > 1 {
-    print $2, $4, column == 0 ? 1e6 * $5 / $4 : column == 1 ? 1e6 * $6 / $4 : $7 }' "$csv" | python3 tools/plot_lines.py "$2" modules "$3" >"docs/$4"
+    print $2, $4, column == 0 ? 1e6 * $5 / $4 : column == 1 ? 1e6 * $6 / $4 : $7 }' "$csv" |
+    python3 tools/plot_lines.py "$2" modules "$3" >"docs/$4"
 }
 
 if [ "$1" = scale ]; then
