@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-FileCopyrightText: The holdfast authors
 # SPDX-License-Identifier: Apache-2.0
-# solver.sh FOLDER [scale | [FAMILY SIZE]...]   our solver and its peers on the same structures, in turn
+# solver.sh FOLDER [scale | [FAMILY SIZE]...]
+# Our solver and its peers on the same structures, in turn.
 #
 # FOLDER holds the programs. Each run is a process of its own; ours runs between the peers, and of
 # its runs the median counts. Prints a table and writes FOLDER/solver.csv.
@@ -112,8 +113,9 @@ scale() { # ours alone, from 10^4 to 10^6 modules
 
 echo "bandwidth of a triad on 2 threads: $("$folder/solver_bench" bandwidth) GB/s"
 plot() { # COLUMN TITLE Y-LABEL PICTURE
-  awk -F, -v column="$1" 'NR > 1 { v = column == 0 ? 1e6 * $5 / $4 : column == 1 ? 1e6 * $6 / $4 : $7
-    print $2, $4, v }' "$csv" | python3 tools/plot_lines.py "$2" modules "$3" >"docs/$4"
+  awk -F, -v column="$1" 'NR > 1 {
+    print $2, $4, column == 0 ? 1e6 * $5 / $4 : column == 1 ? 1e6 * $6 / $4 : $7 }' "$csv" |
+    python3 tools/plot_lines.py "$2" modules "$3" >"docs/$4"
 }
 
 if [ "$1" = scale ]; then
