@@ -24,7 +24,6 @@ target_include_directories(Eigen3::Eigen INTERFACE ${HOLDFAST_EIGEN_INCLUDE})
 add_library(fmt::fmt INTERFACE IMPORTED)
 target_include_directories(fmt::fmt INTERFACE ${headers})
 target_compile_definitions(fmt::fmt INTERFACE FMT_HEADER_ONLY)
-add_library(Threads::Threads INTERFACE IMPORTED)  # One thread; see solver's threads.hpp.
 add_library(nlohmann_json::nlohmann_json INTERFACE IMPORTED)
 target_include_directories(nlohmann_json::nlohmann_json INTERFACE ${headers})
 
