@@ -517,5 +517,84 @@ TEST(Conductor, the_line_search_takes_a_good_full_step_and_narrows_a_bad_one) {
   EXPECT_NEAR(drive.order.reals[0], 0.3, (high - low) / 4);
 }
 
+// ---- One-sweep methods.
+
+/// |r|^2, ratio, (q, r), |q|^2, (q, older q), (r, M^-1 r), bound on the error.
+Report step_report(const std::array<float, 7>& sums, std::uint16_t changed = 0) {
+  return {.extent = changed, .reals = sums};
+}
+
+/// Up to kBegin, with more loops than modules can keep, or not.
+Drive one_sweep_drive(bool has_many_loops) {
+  Drive drive(Method::kElimination);
+  drive.to_mass();
+  const unsigned flags = kAnyFixed | (has_many_loops ? kManyLoops : 0U);
+  drive.next({.flags = static_cast<std::uint8_t>(flags), .extent = 5, .count = kCensus});
+  EXPECT_EQ(drive.order.operation, Operation::kBegin);
+  EXPECT_EQ(drive.order.flags, kOneSweep);
+  return drive;
+}
+
+TEST(Conductor, few_loops_are_eliminated_many_are_left_to_minimal_residuals) {
+  Drive tree = one_sweep_drive(false);
+  EXPECT_EQ(tree.order.count, 0);
+  ASSERT_EQ(tree.next().operation, Operation::kFactor);
+  ASSERT_EQ(tree.next().operation, Operation::kStep);
+  EXPECT_EQ(tree.order.count, 0);
+  EXPECT_NE(tree.order.flags & kAlongTree, 0);
+  EXPECT_EQ(tree.next(step_report({0, 0.5F, 0, 0, 0, 0, 1e-6F})).operation, Operation::kLoads);
+
+  Drive loops = one_sweep_drive(true);
+  EXPECT_EQ(loops.order.count, 6);  // One and a half times the depth of 4.
+  ASSERT_EQ(loops.next().operation, Operation::kStep);
+  EXPECT_EQ(loops.order.flags, kRestart);
+  EXPECT_EQ(loops.order.count, 6);
+}
+
+TEST(Conductor, a_change_of_contact_states_is_factored_or_starts_directions_anew) {
+  Drive tree = one_sweep_drive(false);
+  tree.next();
+  tree.next();
+  EXPECT_EQ(tree.next(step_report({0, 0.5F, 0, 0, 0, 0, 1e-6F}, 1)).operation, Operation::kFactor);
+  EXPECT_EQ(tree.conductor.effort().contact_steps, 1U);
+
+  Drive loops = one_sweep_drive(true);
+  loops.next();
+  // Not yet followed, as nothing was known of the error; then it is, and jumps.
+  loops.next(step_report({1e-9F, 0.5F, 1e-9F, 1e-9F, 0, 1e-9F, 0.1F}, 2));
+  ASSERT_EQ(loops.order.operation, Operation::kStep);
+  ASSERT_NE(loops.order.flags & kFollowStates, 0);
+  loops.next(step_report({1, 0.5F, 0, 0, 0, 0, 1}, 2));
+  EXPECT_NE(loops.order.flags & kRestart, 0);
+  EXPECT_EQ(loops.conductor.effort().contact_steps, 1U);
+}
+
+/// In a space of three: r^ = (4, 0, 1) and q = (3, 1, 0) leave r = (1, -1, 1). The least residual
+/// along q is r^ = r - a q = (2/5, -6/5, 1) with a = (q, r) / |q|^2 = 1/5. The next q = (0, 2, 0)
+/// leaves r = (2/5, -16/5, 1): c = (q, older) / |older|^2 = 1/5.
+TEST(Conductor, minimises_the_residual_over_two_directions) {
+  Drive drive = one_sweep_drive(true);
+  drive.next();
+  drive.next(step_report({3, 0.5F, 2, 10, 0, 1, 100}));
+  ASSERT_EQ(drive.order.operation, Operation::kStep);
+  EXPECT_FLOAT_EQ(drive.order.reals[0], 0);
+  EXPECT_FLOAT_EQ(drive.order.reals[1], 0.2F);
+  EXPECT_FLOAT_EQ(drive.order.reals[2], 0);
+  drive.next(step_report({11.4F, 0.5F, -6.4F, 4, 2, 1, 100}));
+  EXPECT_FLOAT_EQ(drive.order.reals[0], 0.2F);
+  // q - c older = (-3/5, 9/5, 0), of square 18/5; (r, that) = -6; a = -5/3.
+  EXPECT_FLOAT_EQ(drive.order.reals[1], -6 / 3.6F);
+  EXPECT_FLOAT_EQ(drive.order.reals[2], -0.2F);
+}
+
+TEST(Conductor, leaves_a_one_sweep_method_that_brings_no_number) {
+  Drive drive = one_sweep_drive(false);
+  drive.next();
+  drive.next();
+  ASSERT_EQ(drive.next(step_report({0, kNan, 0, 0, 0, 0, kNan})).operation, Operation::kBegin);
+  EXPECT_EQ(drive.order.flags & kOneSweep, 0);
+  EXPECT_EQ(drive.conductor.effort().method, Method::kConjugateGradients);
+}
+
 }  // namespace
 }  // namespace holdfast::agent
