@@ -22,6 +22,12 @@ PacketMeaning meaning_of(std::uint8_t type) {
       return PacketMeaning::kReport;
     case wire::MessageType::kVector:
       return PacketMeaning::kVector;
+    case wire::MessageType::kBranchDown:
+      return PacketMeaning::kOrder;
+    case wire::MessageType::kLoop:
+    case wire::MessageType::kColumn:
+    case wire::MessageType::kBranchUp:
+      return PacketMeaning::kReport;
     case wire::MessageType::kPlannedDown:
     case wire::MessageType::kPlannedUp:
       break;
@@ -31,7 +37,8 @@ PacketMeaning meaning_of(std::uint8_t type) {
 
 bool is_step(std::uint8_t type, std::uint8_t operation) {
   return static_cast<wire::MessageType>(type) == wire::MessageType::kOrder &&
-         (static_cast<wire::Operation>(operation) == wire::Operation::kGradient ||
+         (static_cast<wire::Operation>(operation) == wire::Operation::kStep ||
+          static_cast<wire::Operation>(operation) == wire::Operation::kGradient ||
           static_cast<wire::Operation>(operation) == wire::Operation::kJacobi);
 }
 
