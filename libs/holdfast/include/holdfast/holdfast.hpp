@@ -40,7 +40,7 @@ struct CheckOptions {
   /// 0: as many as the machine has cores. The result does not depend on it.
   int thread_count = 0;
   /// More than this is not taken; the verdict is then `undecided`.
-  std::size_t memory_bytes_max = std::size_t{4} << 30U;
+  std::size_t memory_bytes_max = solver::EquilibriumOptions{}.memory_bytes_max;
   /// Called while a large robot is solved, with the share of the first error that is left.
   std::function<void(int iteration, double error)> progress = {};
 };
