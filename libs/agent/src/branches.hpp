@@ -92,10 +92,8 @@ template <class Real>
 std::uint8_t BasicAgent<Real>::survey_loops() {
   BranchWork& tree = work_.tree;
   bool has_too_many = branches::leaf_connections(planned_) != planned_.hosted_count();
-  const std::uint8_t faces = used_faces();
   for (int face = 0; face < base::kDirectionCount; ++face) {
-    const bool is_in_tree = face == parent_ || (children_ & bit(face)) != 0;
-    if ((faces & bit(face)) != 0 && !is_in_tree) {
+    if (is_cut(face)) {
       has_too_many = tree.branch.meet(cut_at(face)) < 0 || has_too_many;
     }
   }
@@ -119,6 +117,13 @@ std::uint8_t BasicAgent<Real>::survey_loops() {
   return 0;
 }
 
+/// Is there a connection at this face that is not part of the tree?
+template <class Real>
+bool BasicAgent<Real>::is_cut(int face) const {
+  const bool is_in_tree = face == parent_ || (children_ & bit(face)) != 0;
+  return (used_faces() & bit(face)) != 0 && !is_in_tree;
+}
+
 /// The connection at a face, named from its lower end.
 template <class Real>
 Cut BasicAgent<Real>::cut_at(int face) const {
@@ -134,10 +139,8 @@ void BasicAgent<Real>::factor_branch() {
   Branch& branch = work_.tree.branch;
   branch.clear_stiffness();
   column_ = 0;
-  const std::uint8_t faces = used_faces();
   for (int face = 0; face < base::kDirectionCount; ++face) {
-    const bool is_in_tree = face == parent_ || (children_ & bit(face)) != 0;
-    if ((faces & bit(face)) != 0 && !is_in_tree) {
+    if (is_cut(face)) {
       const Cut cut = cut_at(face);
       branch.add_end(branch.find(cut), face % 2 != 0,
                      rigid_transport(setup_.section.length, cut.direction));

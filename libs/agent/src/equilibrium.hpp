@@ -62,6 +62,17 @@ inline std::uint32_t hash_of(const base::Cell& cell, int code) {
   return hash;
 }
 
+/// The hash of the state that a facet wants, and whether it tilts in the one in use.
+template <class Real>
+void report_facet(Report& report, const Node<Real>& node) {
+  if (!node.is_ground) {
+    return;
+  }
+  report.number += hash_of(node.cell, code_of(node.wanted));
+  const bool tilts = node.state.tilt_x != 0 || node.state.tilt_y != 0;
+  report.flags = static_cast<std::uint8_t>(report.flags | (tilts ? kAnyTilting : 0U));
+}
+
 }  // namespace equilibrium
 
 /// Faces on which a node has a beam.
@@ -115,12 +126,11 @@ void BasicAgent<Real>::move(const Order& order) {
   for (int i = 0; i < node_count(); ++i) {
     Node<Real>& node = nodes_[static_cast<std::size_t>(i)];
     Gradients<Real>& cg = gradients_of(i);
-    node.force = {};
     for (std::size_t k = 0; k < 6; ++k) {
       cg.move[k] = length * cg.g[k] - mix * (cg.move[k] + cg.g[k] - cg.g_before[k]);
       node.u[k] += static_cast<double>(cg.move[k]);
-      node.shared[k] = static_cast<Real>(leading_part(node.u[k]));
     }
+    share_high_part(node);
   }
   middle_ = {};
 }
@@ -468,11 +478,7 @@ Report BasicAgent<Real>::residual_report() {
         node.state = node.wanted;
       }
     }
-    if (node.is_ground) {
-      report.number += equilibrium::hash_of(node.cell, equilibrium::code_of(node.wanted));
-      const bool tilts = node.state.tilt_x != 0 || node.state.tilt_y != 0;
-      report.flags = static_cast<std::uint8_t>(report.flags | (tilts ? kAnyTilting : 0U));
-    }
+    equilibrium::report_facet(report, node);
     const base::Vec6<double> rest = residual(node, setup_, contact_);
     report.reals[0] += static_cast<float>(ratio_error(rest, setup_, contact_));
     cg.r = base::converted<Real>(rest);

@@ -42,13 +42,18 @@ void merge_mass(Report& into, const Report& from) {
   }
 }
 
-void merge_residual(Report& into, const Report& from) {
-  into.reals[0] += from.reals[0];
-  into.reals[1] = larger(into.reals[1], from.reals[1]);
+/// How many want another state, the hash of all, whether any tilts.
+void merge_facets(Report& into, const Report& from) {
   const std::uint32_t changed = std::uint32_t{into.extent} + from.extent;
   into.extent = static_cast<std::uint16_t>(changed < 0xffffU ? changed : 0xffffU);
   into.number += from.number;
   into.flags = static_cast<std::uint8_t>(into.flags | from.flags);
+}
+
+void merge_residual(Report& into, const Report& from) {
+  into.reals[0] += from.reals[0];
+  into.reals[1] = larger(into.reals[1], from.reals[1]);
+  merge_facets(into, from);
 }
 
 void merge_step(Report& into, const Report& from) {
@@ -57,10 +62,7 @@ void merge_step(Report& into, const Report& from) {
     into.reals[i] += from.reals[i];
   }
   into.reals[1] = ratio;
-  const std::uint32_t changed = std::uint32_t{into.extent} + from.extent;
-  into.extent = static_cast<std::uint16_t>(changed < 0xffffU ? changed : 0xffffU);
-  into.number += from.number;
-  into.flags = static_cast<std::uint8_t>(into.flags | from.flags);
+  merge_facets(into, from);
 }
 
 void merge_loads(Report& into, const Report& from) {

@@ -93,20 +93,30 @@ void BasicAgent<Real>::find_residuals() {
     Node<Real>& node = nodes_[static_cast<std::size_t>(i)];
     node.wanted = state_along(node, contact_, {}, 0);
     node.has_changed = node.is_ground && !(node.wanted == node.state);
-    if (node.has_changed && (order_.flags & kFollowStates) != 0) {
+    const bool follows = node.has_changed && (order_.flags & kFollowStates) != 0;
+    if (follows) {
       node.state = node.wanted;
     }
     if ((order_.flags & kAlongTree) != 0) {
       continue;
     }
-    if (node.has_changed) {
+    if (follows) {
       factor_diagonal(node, setup_, contact_, node_faces(i));
     }
-    const base::Vec6<double> rest = residual(node, setup_, contact_);
-    for (std::size_t k = 0; k < 6; ++k) {
-      steps_of(i).newer.q[k] -= rest[k];
-    }
     start_terms(i);
+    Steps& steps = steps_of(i);
+    for (std::size_t k = 0; k < 6; ++k) {
+      steps.newer.q[k] -= steps.w[k];  // Still the residual.
+    }
+  }
+}
+
+/// A term goes out as the neighbours will have it, and into M^-1 r.
+template <class Real>
+void BasicAgent<Real>::share_term(Node<Real>& node, Steps& steps) {
+  node.shared = equilibrium::as_sent(node.shared);
+  for (std::size_t k = 0; k < 6; ++k) {
+    steps.newer.z[k] -= static_cast<double>(node.shared[k]);
   }
 }
 
@@ -121,10 +131,7 @@ void BasicAgent<Real>::start_terms(int node_index) {
   for (std::size_t k = 0; k < 6; ++k) {
     node.shared[k] = static_cast<Real>(static_cast<double>(first[k]) / interval.centre);
   }
-  node.shared = equilibrium::as_sent(node.shared);
-  for (std::size_t k = 0; k < 6; ++k) {
-    steps.newer.z[k] -= static_cast<double>(node.shared[k]);
-  }
+  share_term(node, steps);
   rho_ = static_cast<float>(interval.half / interval.centre);
 }
 
@@ -153,10 +160,7 @@ void BasicAgent<Real>::next_terms() {
       node.shared[k] = static_cast<Real>(keep * static_cast<double>(node.shared[k]) +
                                          gain * static_cast<double>(term[k]));
     }
-    node.shared = equilibrium::as_sent(node.shared);
-    for (std::size_t k = 0; k < 6; ++k) {
-      steps.newer.z[k] -= static_cast<double>(node.shared[k]);
-    }
+    share_term(node, steps);
   }
   rho_ = static_cast<float>(rho);
 }
@@ -171,11 +175,7 @@ Report BasicAgent<Real>::step_report() const {
     const Node<Real>& node = nodes_[static_cast<std::size_t>(i)];
     const base::Vec6<double> rest = residual(node, setup_, contact_);
     report.extent = static_cast<std::uint16_t>(report.extent + (node.has_changed ? 1 : 0));
-    if (node.is_ground) {
-      report.number += equilibrium::hash_of(node.cell, equilibrium::code_of(node.wanted));
-      const bool tilts = node.state.tilt_x != 0 || node.state.tilt_y != 0;
-      report.flags = static_cast<std::uint8_t>(report.flags | (tilts ? kAnyTilting : 0U));
-    }
+    equilibrium::report_facet(report, node);
     sums[4] += ratio_error(base::converted<Real>(rest), setup_, contact_);
     if (node.is_fixed || (order_.flags & kAlongTree) != 0) {
       continue;

@@ -247,6 +247,7 @@ class BasicAgent {
   void send_branch_up();
   void find_shifts();
   void send_branch_down();
+  bool is_cut(int face) const;
   Cut cut_at(int face) const;
   using LeafStiffness = std::array<base::Mat6<double>, 1 + kPlannedMax>;
   LeafStiffness leaf_stiffness() const;
@@ -257,6 +258,7 @@ class BasicAgent {
   void begin_step(const Order& order);
   void share_high_part(Node<Real>& node);
   void find_residuals();
+  void share_term(Node<Real>& node, Steps& steps);
   void start_terms(int node);
   void next_terms();
   Report step_report() const;

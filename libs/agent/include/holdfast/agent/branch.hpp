@@ -59,8 +59,6 @@ class Branch {
 
   // ---- Which loops are here. Once, when the tree and the planned modules are known.
 
-  void clear() { *this = Branch(); }
-
   /// A loop whose one end is this module or comes from a child; the second time it closes here.
   /// Returns its slot, or -1 if there are too many.
   int meet(const Cut& cut);
