@@ -38,6 +38,7 @@ PacketMeaning meaning_of(std::uint8_t type) {
 bool is_step(std::uint8_t type, std::uint8_t operation) {
   return static_cast<wire::MessageType>(type) == wire::MessageType::kOrder &&
          (static_cast<wire::Operation>(operation) == wire::Operation::kStep ||
+          static_cast<wire::Operation>(operation) == wire::Operation::kTreeStep ||
           static_cast<wire::Operation>(operation) == wire::Operation::kGradient ||
           static_cast<wire::Operation>(operation) == wire::Operation::kJacobi);
 }
