@@ -29,8 +29,7 @@ double EnergyBound::add(double rho, double alpha) {
   is_first_ = false;
   rho_ = rho;
   alpha_ = alpha;
-  const double bound = rho * (phi_ * inverse_ - alpha);
-  return bound > 0 ? bound : 0;
+  return phi_ * rho * inverse_;
 }
 
 }  // namespace holdfast::agent

@@ -21,8 +21,8 @@ class EnergyBound {
  public:
   void restart() { is_first_ = true; }
 
-  /// A step of length `alpha` from a residual with `rho`, both positive. Returns a bound on e K e
-  /// of the iterate after it.
+  /// A step of length `alpha` from a residual with `rho`, both positive. Returns the bound on e K e
+  /// of the iterate before it; after it e K e is less by alpha rho.
   double add(double rho, double alpha);
 
   /// The least eigenvalue of M^-1 K that has shown so far.
