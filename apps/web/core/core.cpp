@@ -245,13 +245,11 @@ Reply write_document(const Request& request) {
   return {.text = written(structure, output), .integers = {}, .numbers = {}};
 }
 
-/// options: Method, link (0: Blinky Blocks 1, 1: 2, 2: rounds), seed, loss in thousandths, events
-/// that are kept in thousands.
+/// options: agent::Method, link (0: Blinky Blocks 1, 1: 2, 2: rounds), seed, loss in thousandths,
+/// events that are kept in thousands.
 sim::SimulationOptions simulation_options(const RequestHeader& header) {
   sim::SimulationOptions options;
-  options.method = header.options[0] == 1   ? agent::Method::kBlockJacobi
-                   : header.options[0] == 2 ? agent::Method::kJacobi
-                                            : agent::Method::kConjugateGradients;
+  options.method = static_cast<agent::Method>(header.options[0]);
   options.link = header.options[1] == 0   ? sim::blinky_blocks_v1()
                  : header.options[1] == 1 ? sim::blinky_blocks_v2()
                                           : sim::unit();

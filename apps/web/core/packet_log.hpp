@@ -19,7 +19,7 @@ enum class LogEvent : std::int32_t {
   kLost,     ///< From a module, to a module.
   kPhase,    ///< Module, agent::Phase.
   kVerdict,  ///< Module, agent::Verdict.
-  kStep,     ///< From, to: an order for one more step of the linear method is on its way.
+  kOrder,    ///< From, to, wire::Operation: an order is on its way.
 };
 
 /// What a packet carries: kLink is a greeting, ping or acknowledgement; else the first message in
@@ -56,7 +56,7 @@ class PacketLog : public sim::TraceSink {
 
   struct Told {
     PacketMeaning meaning = PacketMeaning::kLink;
-    bool has_step = false;
+    std::uint8_t operation = 0;  ///< Of the first order, if there is one.
   };
 
   static Told follow(Stream& stream, std::span<const std::uint8_t> packet);

@@ -79,6 +79,7 @@ export const enum Output {
 }
 
 export interface SimulationChoice {
+  /** An agent::Method. */
   method: number;
   link: number;
   seed: number;
@@ -90,7 +91,7 @@ export const enum LogEvent {
   kLost,
   kPhase,
   kVerdict,
-  kStep,
+  kOrder,
 }
 
 export interface Trace {

@@ -11,6 +11,13 @@ import { byId, icon, make, say, tell, type IconName } from './dom';
 /** Plays what the modules tell each other until every one of them knows the verdict. */
 
 const PHASES = ['discovery', 'coordinates', 'election', 'tree', 'mass', 'simplified', 'equilibrium', 'model', 'overload', 'done'];
+/** By wire::Operation: what the root orders, and which of it counts as a step of the method. */
+const ORDERS = [
+  '', 'planned cells', 'who hosts planned modules', 'centre of mass', 'safe angles', 'begin', 'move, exchange displacements',
+  'residual, contact states', 'begin a linear solve', 'step of conjugate gradients', 'Jacobi steps', 'slope of the energy',
+  'release and hold facets', 'support corners', 'worst connection', 'the verdict', 'condense the branches', 'step: move, residual, sums',
+];
+const STEP_ORDERS = new Set([9, 10, 17]);
 const PHASE_COLOURS: Rgb[] = [
   [150, 156, 164], [86, 156, 196], [70, 120, 190], [64, 148, 140], [120, 160, 90],
   [190, 160, 70], [226, 130, 60], [190, 100, 150], [150, 90, 180], [90, 100, 110],
@@ -29,12 +36,14 @@ interface Moment {
   verdicts: Int8Array;
   packets: number;
   steps: number;
+  /** What the root has ordered last. */
+  order: number;
 }
 
 export class Player {
   private readonly client = new CoreClient();
   private readonly packets = new Packets();
-  private trace?: Trace;
+  trace?: Trace;
   private slots: Int32Array = new Int32Array(0);
   /** The module in each slot; those from agentCount on are planned. */
   private moduleOf = new Int32Array(0);
@@ -48,7 +57,7 @@ export class Player {
   private isPlaying = false;
   private lastFrame = 0;
   private durationMax = 0;
-  /** Times at which step-on stops: orders of the root for one more step, changes of phase. */
+  /** Times at which step-on stops: orders of the root, changes of phase. */
   private stops: number[] = [];
   private phaseStops: number[] = [];
   private readonly cursor = { next: 0 };
@@ -146,10 +155,10 @@ export class Player {
       this.end = Math.max(this.end, times[2 * i] + times[2 * i + 1]);
       this.durationMax = Math.max(this.durationMax, times[2 * i + 1]);
       const [kind, from, to] = events.subarray(EVENT_INTEGERS * i, EVENT_INTEGERS * i + 3);
-      if (kind === LogEvent.kStep && from === trace.root && this.rootChild < 0) {
+      if (kind === LogEvent.kOrder && from === trace.root && this.rootChild < 0) {
         this.rootChild = to;
       }
-      if (kind === LogEvent.kStep && from === trace.root && this.rootChild === to) {
+      if (kind === LogEvent.kOrder && from === trace.root && this.rootChild === to) {
         stops.add(times[2 * i]);
       } else if (kind === LogEvent.kPhase && to > phase) {
         phase = to;
@@ -163,6 +172,7 @@ export class Player {
     this.drawTimeline();
     byId('player').hidden = false;
     byId('trace-result').textContent = this.result(trace);
+    byId('player').scrollIntoView({ block: 'nearest' });
     this.app.view.paintOver = (slot) => this.colour(slot);
     this.show(0);
     this.play();
@@ -247,22 +257,23 @@ export class Player {
   }
 
   private begin(count: number): Moment {
-    return { phases: new Int8Array(count).fill(-1), verdicts: new Int8Array(count), packets: 0, steps: 0 };
+    return { phases: new Int8Array(count).fill(-1), verdicts: new Int8Array(count), packets: 0, steps: 0, order: 0 };
   }
 
   private advance(trace: Trace, time: number): void {
     const { moment, cursor } = this;
     const { events, times } = trace;
     while (2 * cursor.next < times.length && times[2 * cursor.next] <= time) {
-      const [kind, a, b] = events.subarray(EVENT_INTEGERS * cursor.next, EVENT_INTEGERS * cursor.next + 3);
+      const [kind, a, b, c] = events.subarray(EVENT_INTEGERS * cursor.next, EVENT_INTEGERS * (cursor.next + 1));
       if (kind === LogEvent.kPacket) {
         ++moment.packets;
       } else if (kind === LogEvent.kPhase) {
         moment.phases[a] = b;
       } else if (kind === LogEvent.kVerdict) {
         moment.verdicts[a] = b;
-      } else if (kind === LogEvent.kStep && a === trace.root && b === this.rootChild) {
-        ++moment.steps;
+      } else if (kind === LogEvent.kOrder && a === trace.root && b === this.rootChild) {
+        moment.order = c;
+        moment.steps += STEP_ORDERS.has(c) ? 1 : 0;
       }
       ++cursor.next;
     }
@@ -292,7 +303,8 @@ export class Player {
     this.allKnow = knowing >= agents;
     const phase = Math.max(...moment.phases, 0);
     const time = trace.ticks_per_second > 0 ? `${(this.time / trace.ticks_per_second).toFixed(3)} s` : `round ${Math.floor(this.time)}`;
-    byId('moment').textContent = `${time} · ${PHASES[phase]} · step ${moment.steps} · ${moment.packets} packets · ${knowing} of ${agents} know the verdict`;
+    const order = moment.order > 0 ? ` · order: ${ORDERS[moment.order]}` : '';
+    byId('moment').textContent = `${time} · ${PHASES[phase]} · step ${moment.steps} · ${moment.packets} packets · ${knowing} of ${agents} know the verdict${order}`;
     byId<HTMLInputElement>('time').value = String(Math.round((10_000 * this.time) / Math.max(this.end, 1)));
   }
 
