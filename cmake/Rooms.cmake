@@ -24,8 +24,8 @@ function(holdfast_freestanding name)
   target_compile_options(holdfast_${name} PRIVATE -fno-exceptions -fno-rtti)
 endfunction()
 
-# holdfast_test(NAME SOURCES ... LINKS ...): one test program, its tests found by ctest. As WebAssembly
-# it is one test in all, as starting Node takes longer than most of them.
+# holdfast_test(NAME SOURCES ... LINKS ...): one test program, its tests found by ctest. As
+# WebAssembly it is one test in all, as starting Node takes longer than most of them.
 function(holdfast_test name)
   cmake_parse_arguments(TEST "" "" "SOURCES;LINKS" ${ARGN})
   if(NOT HOLDFAST_BUILD_TESTS)

@@ -199,7 +199,8 @@ std::string written(const Structure& structure, Output output) {
     case Output::kVtu:
       return picture_vtu(structure, result);
     default:
-      return report_text(structure, result);
+      return fmt::format("{}: {}\n{}", structure.name, verdict::name(result.assessment.verdict),
+                         report_text(structure, result));
   }
 }
 
