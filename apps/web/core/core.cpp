@@ -278,6 +278,11 @@ Reply simulate_request(const Request& request) {
   summary["root"] = run.value().result.root;
   summary["is_complete"] = log.is_complete();
   summary["ticks_per_second"] = options.link.ticks_per_second;
+  Json& orders = summary["orders"] = Json::array();
+  for (int operation = 0; operation <= agent::wire::kOperationCount; ++operation) {
+    const auto [text, is_step] = order_text(static_cast<agent::wire::Operation>(operation));
+    orders.push_back({{"text", text}, {"is_step", is_step}});
+  }
   return {.text = dump(summary), .integers = log.take_integers(), .numbers = log.take_numbers()};
 }
 

@@ -205,7 +205,7 @@ test('the robot finds out by itself, and the trace can be stepped through', asyn
     orders.push(/order: (.*)$/.exec(await moment())[1]);
     assert.ok(orders.length < 10, orders.join('; '));
   }
-  assert.deepEqual(orders.slice(-2), ['condense the branches', 'step: move, residual, sums'], orders.join('; '));
+  assert.deepEqual(orders.slice(-2), ['condense the branches', 'a step: move, residual'], orders.join('; '));
   const later = await moment();
   await page.click('#step-back');
   await page.click('#step-on');

@@ -45,7 +45,7 @@ Order Conductor::next(const Setup& setup, const Report& report) {
     case Step::kBegin:
       return is_one_sweep() ? first_step() : is_jacobi() ? start_jacobi() : start_solve(false);
     case Step::kFactor:
-      return restarted_step();
+      return tree_step();
     case Step::kStep:
       return after_step(setup, report);
     case Step::kHigh: {

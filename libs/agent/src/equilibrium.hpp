@@ -208,6 +208,7 @@ void BasicAgent<Real>::after_exchange() {
       next_terms();
       break;
     case wire::Operation::kStep:
+    case wire::Operation::kTreeStep:
       if (exchanges_left_ == exchanges_behind_ + 2) {
         share_low_part();
       } else if (exchanges_left_ == exchanges_behind_ + 1) {
@@ -316,6 +317,7 @@ typename BasicAgent<Real>::Exchanged BasicAgent<Real>::exchanged() const {
     case wire::Operation::kLow:
       return Exchanged::kDisplacement;
     case wire::Operation::kStep:
+    case wire::Operation::kTreeStep:
       return exchanges_left_ > exchanges_behind_ ? Exchanged::kDisplacement : Exchanged::kTerm;
     case wire::Operation::kBegin:
       return Exchanged::kTerm;

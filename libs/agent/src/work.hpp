@@ -59,6 +59,9 @@ void BasicAgent<Real>::prepare(const Order& order) {
     case Operation::kStep:
       begin_step(order);
       break;
+    case Operation::kTreeStep:
+      begin_tree_step();
+      break;
     case Operation::kVerdict:
       answer_ = order.answer;
       break;
@@ -91,6 +94,8 @@ Report BasicAgent<Real>::conclude(const Order& order) {
     }
     case Operation::kStep:
       return step_report();
+    case Operation::kTreeStep:
+      return tree_step_report();
     case Operation::kAngles:
       return angles_report();
     case Operation::kLow:

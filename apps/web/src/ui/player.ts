@@ -11,13 +11,6 @@ import { byId, icon, make, say, tell, type IconName } from './dom';
 /** Plays what the modules tell each other until every one of them knows the verdict. */
 
 const PHASES = ['discovery', 'coordinates', 'election', 'tree', 'mass', 'simplified', 'equilibrium', 'model', 'overload', 'done'];
-/** By wire::Operation: what the root orders, and which of it counts as a step of the method. */
-const ORDERS = [
-  '', 'planned cells', 'who hosts planned modules', 'centre of mass', 'safe angles', 'begin', 'move, exchange displacements',
-  'residual, contact states', 'begin a linear solve', 'step of conjugate gradients', 'Jacobi steps', 'slope of the energy',
-  'release and hold facets', 'support corners', 'worst connection', 'the verdict', 'condense the branches', 'step: move, residual, sums',
-];
-const STEP_ORDERS = new Set([9, 10, 17]);
 const PHASE_COLOURS: Rgb[] = [
   [150, 156, 164], [86, 156, 196], [70, 120, 190], [64, 148, 140], [120, 160, 90],
   [190, 160, 70], [226, 130, 60], [190, 100, 150], [150, 90, 180], [90, 100, 110],
@@ -273,7 +266,7 @@ export class Player {
         moment.verdicts[a] = b;
       } else if (kind === LogEvent.kOrder && a === trace.root && b === this.rootChild) {
         moment.order = c;
-        moment.steps += STEP_ORDERS.has(c) ? 1 : 0;
+        moment.steps += trace.orders[c].is_step ? 1 : 0;
       }
       ++cursor.next;
     }
@@ -303,7 +296,7 @@ export class Player {
     this.allKnow = knowing >= agents;
     const phase = Math.max(...moment.phases, 0);
     const time = trace.ticks_per_second > 0 ? `${(this.time / trace.ticks_per_second).toFixed(3)} s` : `round ${Math.floor(this.time)}`;
-    const order = moment.order > 0 ? ` · order: ${ORDERS[moment.order]}` : '';
+    const order = moment.order > 0 ? ` · order: ${trace.orders[moment.order].text}` : '';
     byId('moment').textContent = `${time} · ${PHASES[phase]} · step ${moment.steps} · ${moment.packets} packets · ${knowing} of ${agents} know the verdict${order}`;
     byId<HTMLInputElement>('time').value = String(Math.round((10_000 * this.time) / Math.max(this.end, 1)));
   }
