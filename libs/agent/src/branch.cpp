@@ -283,6 +283,20 @@ void Branch::add_column(int index, const std::array<std::int8_t, kLoopsMax>& slo
   }
 }
 
+void Branch::add_packed(int index, const Vec6<float>& part) {
+  int place = 0;
+  for (int column = 0; column < kSize; ++column) {
+    for (int row = column; row < kSize; ++row, ++place) {
+      if (place / kSize != index) {
+        continue;
+      }
+      const float value = part[at(place % kSize)];
+      stiffness_.at(row, column) += value;
+      stiffness_.at(column, row) += row != column ? value : 0;
+    }
+  }
+}
+
 void Branch::close_loops(const BeamStiffness<double>& beam) {
   for (int slot = 0; slot < count_; ++slot) {
     if (is_open(slot)) {
@@ -381,6 +395,29 @@ Vec6<double> Branch::column_up(const BeamStiffness<double>& beam, Direction to_p
         sum, product(across_[at(row)], solve_general(series_at_child(stiffness_, joint), bent)));
   }
   return sum;
+}
+
+bool Branch::pack_up(const BeamStiffness<double>& beam, Direction to_parent, bool is_fixed,
+                     Packed& packed) const {
+  constexpr double kRounding = 1e-5;
+  std::array<Vec6<double>, kSize> columns;
+  for (int i = 0; i < kSize; ++i) {
+    columns[at(i)] = column_up(beam, to_parent, is_fixed, i);
+  }
+  packed = {};
+  int place = 0;
+  for (int column = 0; column < kSize; ++column) {
+    for (int row = column; row < kSize; ++row, ++place) {
+      const double value = columns[at(column)][at(row)];
+      const double apart = value - columns[at(row)][at(column)];
+      const double size = absolute(columns[at(row)][at(row)] * columns[at(column)][at(column)]);
+      if (apart * apart > kRounding * kRounding * size) {
+        return false;
+      }
+      packed[at(place / kSize)][at(place % kSize)] = static_cast<float>(value);
+    }
+  }
+  return true;
 }
 
 void Branch::close_loops(BranchLoad& load) const {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <new>
+#include <tuple>
 
 #include "bits.hpp"
 #include "equilibrium.hpp"
@@ -187,12 +188,19 @@ template <class Real>
 void BasicAgent<Real>::take_column(int face, std::span<const std::uint8_t> message) {
   wire::Reader in(message);
   const int index = in.u8();
-  if (index < Branch::kColumnCount) {
-    work_.tree.branch.add_column(index, work_.tree.slot_of[static_cast<std::size_t>(face)],
-                                 sweep::read_vector(in));
-    work_.tree.columns_here[static_cast<std::size_t>(face)] = static_cast<std::uint8_t>(index + 1);
-    send_columns();
+  const int part = index - Branch::kColumnCount;
+  constexpr int kPackedCount = std::tuple_size_v<Branch::Packed>;
+  BranchWork& tree = work_.tree;
+  std::uint8_t& here = tree.columns_here[static_cast<std::size_t>(face)];
+  if (part < 0) {
+    tree.branch.add_column(index, tree.slot_of[static_cast<std::size_t>(face)],
+                           sweep::read_vector(in));
+    here = static_cast<std::uint8_t>(index + 1);
+  } else if (part < kPackedCount) {
+    tree.branch.add_packed(part, sweep::read_vector(in));
+    here = part + 1 == kPackedCount ? std::uint8_t{6} : here;
   }
+  send_columns();
 }
 
 /// Is all here that the next column needs?
@@ -209,6 +217,21 @@ bool BasicAgent<Real>::is_column_ready() const {
     }
   }
   return true;
+}
+
+/// Column `column_` for the parent; of a packed S' the part of that number, zeros beyond the last.
+template <class Real>
+base::Vec6<float> BasicAgent<Real>::next_column() {
+  BranchWork& tree = work_.tree;
+  const auto to_parent = static_cast<base::Direction>(parent_);
+  if (column_ == 0) {
+    tree.is_packed = tree.branch.pack_up(setup_.beam, to_parent, nodes_[0].is_fixed, tree.packed);
+  }
+  if (tree.is_packed && column_ < 6) {
+    return column_ < tree.packed.size() ? tree.packed[column_] : base::Vec6<float>{};
+  }
+  return base::converted<float>(
+      tree.branch.column_up(setup_.beam, to_parent, nodes_[0].is_fixed, column_));
 }
 
 /// Columns of zeros need not be sent. False: more when there is room on the link, or when children
@@ -231,9 +254,8 @@ bool BasicAgent<Real>::send_columns() {
     if (!is_column_ready()) {
       return false;
     }
-    const base::Vec6<double> column = branch.column_up(
-        setup_.beam, static_cast<base::Direction>(parent_), nodes_[0].is_fixed, column_);
-    if (column == base::Vec6<double>{}) {
+    const base::Vec6<float> column = next_column();
+    if (column == base::Vec6<float>{}) {
       continue;
     }
     // What follows must find room too.
@@ -241,8 +263,10 @@ bool BasicAgent<Real>::send_columns() {
     if (!links_[static_cast<std::size_t>(parent_)].has_room(kRoom)) {
       return false;
     }
-    send(parent_, sweep::vector_message(wire::MessageType::kColumn, column_,
-                                        base::converted<float>(column)));
+    const bool is_part = work_.tree.is_packed && column_ < 6;
+    const int label = column_ + (is_part ? Branch::kColumnCount : 0);
+    send(parent_, sweep::vector_message(wire::MessageType::kColumn,
+                                        static_cast<std::uint8_t>(label), column));
   }
   is_streaming_ = false;
   column_ = kAllSent;

@@ -127,9 +127,9 @@ int real_count(Operation operation) {
   }
 }
 
-void write_reals(Writer& out, const Report& report, int count) {
-  for (int i = 0; i < count; ++i) {
-    out.real(static_cast<double>(report.reals[static_cast<std::size_t>(i)]));
+void write_reals(Writer& out, std::span<const float> reals) {
+  for (const float real : reals) {
+    out.real(static_cast<double>(real));
   }
 }
 
@@ -175,9 +175,7 @@ Writer encode(const Order& order) {
     case Operation::kStep:
       out.u8(order.flags);
       out.u16(order.count);
-      for (const float real : order.reals) {
-        out.real(static_cast<double>(real));
-      }
+      write_reals(out, order.reals);
       break;
     case Operation::kSlope:
       out.u8(order.flags);
@@ -276,7 +274,7 @@ Order decode_order(std::span<const std::uint8_t> message) {
 
 Writer encode(Operation operation, const Report& report) {
   Writer out(MessageType::kReport, operation);
-  write_reals(out, report, real_count(operation));
+  write_reals(out, std::span(report.reals).first(static_cast<std::size_t>(real_count(operation))));
   switch (operation) {
     case Operation::kPlan:
       out.u8(report.mask);

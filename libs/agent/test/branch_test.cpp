@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
+#include <cmath>
 #include <vector>
 
 #include "holdfast/base/rng.hpp"
@@ -276,6 +277,47 @@ TEST(Branch, a_long_arm_loses_no_digits) {
            slope * 40 * (kCount - i);
   }
   EXPECT_NEAR(found.back()[2] / -sag, 1, 1e-5);
+}
+
+TEST(Branch, a_symmetric_stiffness_is_the_same_in_parts) {
+  const auto beam = lopsided_beam();
+  base::Rng rng(5);
+  for (int round = 0; round < 20; ++round) {
+    Mat6<double> spring;
+    for (int i = 0; i < 6; ++i) {
+      for (int j = 0; j <= i; ++j) {
+        const double value =
+            (static_cast<double>(rng.below(2001)) - 1000) / 1000 + (i == j ? 9 : 0);
+        spring.at(i, j) = spring.at(j, i) = value;
+      }
+    }
+    Branch below;
+    below.add_stiffness(spring);
+    Branch::Packed packed;
+    const Direction up = base::kDirections[rng.below(6)];
+    ASSERT_TRUE(below.pack_up(beam, up, round % 5 == 0, packed));
+    Branch by_parts;
+    Branch by_columns;
+    for (std::size_t i = 0; i < packed.size(); ++i) {
+      by_parts.add_packed(static_cast<int>(i), packed[i]);
+    }
+    for (int i = 0; i < 6; ++i) {
+      by_columns.add_column(i, {},
+                            base::converted<float>(below.column_up(beam, up, round % 5 == 0, i)));
+    }
+    for (int i = 0; i < 6; ++i) {
+      const Vec6<double> a = by_parts.column_up(beam, up, false, i);
+      const Vec6<double> b = by_columns.column_up(beam, up, false, i);
+      for (std::size_t k = 0; k < 6; ++k) {
+        EXPECT_NEAR(a[k], b[k], 1e-4 * (1 + std::abs(b[k])));
+      }
+    }
+    // Every entry of S' matters.
+    spring.at(static_cast<int>(rng.below(3)), 4) += 1;
+    Branch lopsided;
+    lopsided.add_stiffness(spring);
+    EXPECT_FALSE(lopsided.pack_up(beam, up, false, packed));
+  }
 }
 
 TEST(Branch, a_third_loop_does_not_fit) {

@@ -116,6 +116,8 @@ struct BranchWork {
   std::array<std::array<std::int8_t, kLoopsMax>, base::kDirectionCount> slot_of{};
   std::array<std::uint8_t, base::kDirectionCount> child_cut_count{};
   std::array<std::uint8_t, base::kDirectionCount> columns_here{};  ///< All before are final.
+  Branch::Packed packed{};                                         ///< S' for the parent, ...
+  bool is_packed = false;                                          ///< ... if it is symmetric.
   base::Vec6<float> shift{};                                       ///< M^-1 r, ...
   base::Vec6<double> parent_shift{};                               ///< ... and the parent's.
 };
@@ -244,6 +246,7 @@ class BasicAgent {
   void take_branch_down(std::span<const std::uint8_t> message);
   bool is_column_ready() const;
   bool send_columns();
+  base::Vec6<float> next_column();
   void send_branch_up();
   void find_shifts();
   void send_branch_down();

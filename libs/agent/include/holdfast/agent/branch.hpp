@@ -57,6 +57,9 @@ class Branch {
   /// Columns that go up: S', then by open loop B', C' (its rows) and P'.
   static constexpr int kColumnCount = 6 + 12 * kLoopsMax + 6 * kLoopsMax * kLoopsMax;
 
+  /// A symmetric S' fits into four vectors: its lower triangle, column by column, and zeros.
+  using Packed = std::array<base::Vec6<float>, 4>;
+
   // ---- Which loops are here. Once, when the tree and the planned modules are known.
 
   /// A loop whose one end is this module or comes from a child; the second time it closes here.
@@ -82,6 +85,9 @@ class Branch {
   void add_column(int index, const std::array<std::int8_t, kLoopsMax>& slot_of,
                   const base::Vec6<float>& column);
 
+  /// Part `index` of a child's packed S'.
+  void add_packed(int index, const base::Vec6<float>& part);
+
   bool closes_loops() const { return open_count() < count_; }
 
   /// Once, when all children's columns are here.
@@ -95,6 +101,10 @@ class Branch {
   /// Eq. (3), column by column; `is_fixed` if this module does not move.
   base::Vec6<double> column_up(const mechanics::BeamStiffness<double>& beam,
                                base::Direction to_parent, bool is_fixed, int index) const;
+
+  /// S' if it is symmetric but for rounding, as it is where no facet tilts.
+  bool pack_up(const mechanics::BeamStiffness<double>& beam, base::Direction to_parent,
+               bool is_fixed, Packed& packed) const;
 
   // ---- Loads.
 
