@@ -4,6 +4,7 @@
 // The one-sweep methods as the root sees them: from the sums of one step to the coefficients of the
 // next (steps.hpp), and when to stop.
 #include "holdfast/agent/conductor.hpp"
+#include "methods.hpp"
 #include "scalar.hpp"
 #include "tolerances.hpp"
 
@@ -63,7 +64,7 @@ Order Conductor::first_step() {
 Order Conductor::factor() { return order(Step::kFactor, Operation::kFactor); }
 
 Order Conductor::next_step(std::uint8_t flags, const std::array<float, 3>& coefficients) {
-  const bool is_elimination = effort_.method == Method::kElimination;
+  const bool is_elimination = !kHasAllMethods || effort_.method == Method::kElimination;
   const bool follows = is_elimination || predicted_ < kFollowTolerance * (1 + absolute(ratio_));
   Order step = order(Step::kStep, Operation::kStep);
   step.flags = static_cast<std::uint8_t>(flags | (follows ? kFollowStates : 0U) |
@@ -114,7 +115,7 @@ Order Conductor::after_step(const Setup& setup, const Report& report) {
   error_best_ = is_better ? error : error_best_;
   stagnation_count_ =
       is_better ? std::uint8_t{0} : static_cast<std::uint8_t>(stagnation_count_ + 1);
-  const bool is_elimination = effort_.method == Method::kElimination;
+  const bool is_elimination = !kHasAllMethods || effort_.method == Method::kElimination;
   if (stagnation_count_ > (is_elimination ? kEliminationStagnationMax : kStepStagnationMax)) {
     return leave_one_sweep(setup, false);
   }
@@ -130,7 +131,7 @@ Order Conductor::after_step(const Setup& setup, const Report& report) {
 double Conductor::step_error(const Setup& setup, const Report& report, bool has_jumped) {
   const auto bound = static_cast<double>(report.reals[6]);
   is_tilting_ = (report.flags & kAnyTilting) != 0;
-  if (has_jumped || is_tilting_ || effort_.method == Method::kElimination) {
+  if (!kHasAllMethods || has_jumped || is_tilting_ || effort_.method == Method::kElimination) {
     return bound;
   }
   const auto norm = static_cast<double>(report.reals[0]);

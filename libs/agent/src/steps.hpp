@@ -5,6 +5,7 @@
 #include "bits.hpp"
 #include "equilibrium.hpp"
 #include "holdfast/agent/agent.hpp"
+#include "methods.hpp"
 
 /// The one-sweep methods: every step costs one sweep, residual and contact states included.
 ///
@@ -42,6 +43,9 @@ void BasicAgent<Real>::begin_step(const Order& order) {
       find_shifts();
       send_branch_down();
     }
+    return;
+  }
+  if constexpr (!kHasAllMethods) {
     return;
   }
   const auto c = static_cast<double>(order.reals[0]);
@@ -97,7 +101,7 @@ void BasicAgent<Real>::find_residuals() {
     if (follows) {
       node.state = node.wanted;
     }
-    if ((order_.flags & kAlongTree) != 0) {
+    if (!kHasAllMethods || (order_.flags & kAlongTree) != 0) {
       continue;
     }
     if (follows) {
@@ -177,7 +181,7 @@ Report BasicAgent<Real>::step_report() const {
     report.extent = static_cast<std::uint16_t>(report.extent + (node.has_changed ? 1 : 0));
     equilibrium::report_facet(report, node);
     sums[4] += ratio_error(base::converted<Real>(rest), setup_, contact_);
-    if (node.is_fixed || (order_.flags & kAlongTree) != 0) {
+    if (!kHasAllMethods || node.is_fixed || (order_.flags & kAlongTree) != 0) {
       continue;
     }
     const Steps& steps = work_.steps[static_cast<std::size_t>(i)];

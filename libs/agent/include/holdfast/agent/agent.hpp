@@ -226,7 +226,9 @@ class BasicAgent {
 
   // work.cpp: what the operations do here.
   void prepare(const Order& order);
+  void prepare_solve(const Order& order);
   Report conclude(const Order& order);
+  Report conclude_solve(const Order& order);
   Report plan_report() const;
   Report mass_report() const;
   Report angles_report() const;
