@@ -14,7 +14,9 @@ extern const holdfast::module::Configuration holdfast_configuration;  // From th
 const holdfast::module::Status* volatile holdfast_status = nullptr;
 volatile holdfast::firmware::Stop holdfast_stop = holdfast::firmware::Stop::kRunning;
 /// For those who take the program apart: how much of the memory the agent is.
-extern const std::uint32_t holdfast_agent_bytes = sizeof(holdfast::agent::Agent);
+extern const std::uint32_t holdfast_agent_bytes;
+[[gnu::section(".facts"), gnu::used]] const std::uint32_t holdfast_agent_bytes =
+    sizeof(holdfast::agent::Agent);
 }
 
 namespace holdfast {

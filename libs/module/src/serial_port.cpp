@@ -14,9 +14,12 @@ bool SerialPort::receive(Incoming& incoming) {
       if (found == FrameReader::Found::kNothing) {
         continue;
       }
-      face.heard_at = now();
-      face.is_connected = true;
-      if (found == FrameReader::Found::kFrame) {
+      const bool is_frame = found == FrameReader::Found::kFrame;
+      if (!is_frame || face.reader.kind() == FrameKind::kPacket) {
+        face.heard_at = now();
+        face.is_connected = true;
+      }
+      if (is_frame) {
         incoming = {.face = at, .kind = face.reader.kind(), .payload = face.reader.payload()};
         return true;
       }
