@@ -187,7 +187,8 @@ Order Conductor::begin_law(const Setup& setup, bool is_unilateral) {
     choose_one_sweep(is_unilateral);
     begin.count = effort_.method == Method::kMinimalResiduals ? step_degree() : std::uint16_t{0};
   }
-  if (!kHasAllMethods && effort_.method != Method::kElimination) {
+  const bool has_all = kHasAllMethods && !setup.only_elimination;
+  if (!has_all && effort_.method != Method::kElimination) {
     return finish(Verdict::kUndecided, Reason::kNotConverged);
   }
   begin.flags = static_cast<std::uint8_t>((is_unilateral ? kUnilateralLaw : 0U) |

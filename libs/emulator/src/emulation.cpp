@@ -2,12 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "holdfast/emulator/emulation.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <bit>
 
-#include "../../../firmware/stm32f0/board.hpp"
+#include "board.hpp"
 #include "holdfast/base/check.hpp"
 #include "module_cpu.hpp"
 
@@ -85,6 +83,7 @@ Robot::Robot(const Image& image, const model::Robot& robot, const EmulationOptio
   simulation.link = sim::blinky_blocks_v2();
   module::Configuration configuration;
   configuration.setup = sim::make_setup(robot, simulation);
+  configuration.setup.only_elimination = true;
   const std::size_t count = robot.modules().size() - robot.planned_count();
   base::Rng rng(options.seed);
   for (std::size_t i = 0; i < count; ++i) {
@@ -180,10 +179,9 @@ void Robot::hand_over(std::int32_t module) {
     for (const std::uint8_t byte : sent.bytes) {
       time += sent.byte_cycles;
       std::uint8_t& flip = flips_[at(other)][static_cast<std::size_t>(back)];
-      modules_[at(other)]->arrive(usart_of(back),
-                                  {.time = time,
-                                   .byte_cycles = sent.byte_cycles,
-                                   .byte = static_cast<std::uint8_t>(byte ^ flip)});
+      modules_[at(other)]->arrive(usart_of(back), {.time = time,
+                                                   .byte_cycles = sent.byte_cycles,
+                                                   .byte = static_cast<std::uint8_t>(byte ^ flip)});
       flip = 0;
     }
   }

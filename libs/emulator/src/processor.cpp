@@ -7,6 +7,7 @@
 #include <array>
 
 #include "holdfast/base/check.hpp"
+#include "holdfast/emulator/emulation.hpp"
 
 namespace holdfast::emulator {
 namespace {
@@ -29,6 +30,8 @@ std::uint32_t register_of(uc_engine* engine, int name) {
 
 }  // namespace
 
+bool is_available() { return true; }
+
 /// Unicorn's callbacks are C functions.
 struct Processor::Callbacks {
   static void block(uc_engine*, std::uint64_t address, std::uint32_t size, void* self) {
@@ -37,8 +40,8 @@ struct Processor::Callbacks {
 
   template <std::size_t Index>
   static std::uint64_t read(uc_engine*, std::uint64_t offset, unsigned, void* self) {
-    return static_cast<Processor*>(self)->peripherals_.read(
-        kWindows[Index].begin + static_cast<std::uint32_t>(offset));
+    return static_cast<Processor*>(self)->peripherals_.read(kWindows[Index].begin +
+                                                            static_cast<std::uint32_t>(offset));
   }
 
   template <std::size_t Index>

@@ -13,8 +13,8 @@
 #include "holdfast/model/robot.hpp"
 #include "holdfast/sim/simulation.hpp"
 
-/// A robot whose modules are emulated microcontrollers: one image of the firmware for every existing
-/// module, each with its own memory, wired face to face by their USARTs.
+/// A robot whose modules are emulated microcontrollers: one image of the firmware for every
+/// existing module, each with its own memory, wired face to face by their USARTs.
 ///
 /// Time is counted in cycles of 48 MHz. A byte takes as long on its line as the baud rate says, so
 /// nothing that a module sends can reach another within one byte's time: all modules run for that
@@ -62,10 +62,10 @@ struct FirmwareReport {
   std::uint64_t step_count = 0;
   std::uint64_t step_cycles_mean = 0;
   std::uint64_t step_cycles_max = 0;
-  std::string step_longest;           ///< In which phase.
-  std::uint64_t mismatch_count = 0;   ///< Steps in which image and host differ.
-  std::uint64_t lost_bytes = 0;       ///< That came to a USART that was not ready.
-  Time planned_at = 0;                ///< When the last plan was complete.
+  std::string step_longest;          ///< In which phase.
+  std::uint64_t mismatch_count = 0;  ///< Steps in which image and host differ.
+  std::uint64_t lost_bytes = 0;      ///< That came to a USART that was not ready.
+  Time planned_at = 0;               ///< When the last plan was complete.
 };
 
 struct ModuleView {
@@ -74,6 +74,9 @@ struct ModuleView {
   float own_load_ratio = 0;
   bool is_alive = true;
 };
+
+/// Was this built with Unicorn? Without, no Emulation may be made.
+bool is_available();
 
 class Robot;
 
