@@ -18,18 +18,18 @@ struct Line {
   std::uint8_t pin_send;
   std::uint8_t pin_receive;
   std::uint8_t function;  ///< Alternate function of both pins.
-  std::uint8_t dma_send;  ///< 10 x controller + channel.
+  std::uint8_t dma_send;  ///< 16 x controller + channel.
   std::uint8_t dma_receive;
 };
 
 /// By face: +x right, -x left, +y back, -y front, +z top, -z bottom.
 inline constexpr std::array<Line, 6> kLines = {{
-    {0x40004800, 10, 1, 10, 11, 4, 17, 15},  // USART3
-    {0x40004C00, 11, 0, 0, 1, 4, 21, 16},    // USART4
-    {0x40005000, 12, 1, 3, 4, 4, 24, 22},    // USART5
-    {0x40013800, 8, 0, 9, 10, 1, 12, 11},    // USART1
-    {0x40011400, 13, 0, 4, 5, 5, 25, 23},    // USART6
-    {0x40004400, 9, 0, 2, 3, 1, 14, 13},     // USART2
+    {0x40004800, 10, 1, 10, 11, 4, 0x17, 0x15},  // USART3
+    {0x40004C00, 11, 0, 0, 1, 4, 0x21, 0x16},    // USART4
+    {0x40005000, 12, 1, 3, 4, 4, 0x24, 0x22},    // USART5
+    {0x40013800, 8, 0, 9, 10, 1, 0x12, 0x11},    // USART1
+    {0x40011400, 13, 0, 4, 5, 5, 0x25, 0x23},    // USART6
+    {0x40004400, 9, 0, 2, 3, 1, 0x14, 0x13},     // USART2
 }};
 
 /// 48 MHz / 115,200 baud.

@@ -68,8 +68,6 @@ inline Timer& timer3() { return at<Timer>(0x40000400); }
 inline Adc& adc() { return at<Adc>(0x40012400); }
 
 /// DMA1 or DMA2.
-inline Dma& dma(int number) {
-  return at<Dma>(0x40020000 + static_cast<std::uintptr_t>(number - 1) * 0x400);
-}
+inline Dma& dma(std::uint32_t number) { return at<Dma>(0x40020000 + (number - 1) * 0x400); }
 
 }  // namespace holdfast::stm32f0

@@ -22,9 +22,9 @@ constexpr std::uint32_t kCompared = 1U << 1U;
 
 Usart& usart(int face) { return at<Usart>(kLines[static_cast<std::size_t>(face)].usart); }
 
-Dma& controller(std::uint8_t code) { return dma(code / 10); }
+Dma& controller(std::uint8_t code) { return dma(code >> 4U); }
 
-DmaChannel& channel(std::uint8_t code) { return controller(code).channel[code % 10 - 1]; }
+DmaChannel& channel(std::uint8_t code) { return controller(code).channel[(code & 15U) - 1]; }
 
 DmaChannel& sender(int face) { return channel(kLines[static_cast<std::size_t>(face)].dma_send); }
 
@@ -63,7 +63,7 @@ void start_pin(int port, std::uint32_t pin, std::uint32_t function) {
 }
 
 void select_request(std::uint8_t code, std::uint32_t request) {
-  const std::uint32_t nibble = (code % 10U - 1U) * 4U;
+  const std::uint32_t nibble = ((code & 15U) - 1U) * 4U;
   Register& select = controller(code).CSELR;
   select = (select & ~(15U << nibble)) | request << nibble;
 }

@@ -20,8 +20,9 @@ class Stm32f0Port final : public module::SerialPort {
   void show(const agent::Colour& colour) override;
 
  private:
-  /// 22 ms of bytes: longer than any step.
-  static constexpr std::size_t kRingBytes = 256;
+  /// 44 ms of bytes. A line on which more comes in during one step loses some, and the links repeat
+  /// them.
+  static constexpr std::size_t kRingBytes = 512;
 
   bool read(int face, std::uint8_t& byte) override;
   std::span<std::uint8_t, module::kFrameBytesMax> buffer(int face) override;
