@@ -24,9 +24,9 @@ function(holdfast_freestanding name)
   target_compile_options(holdfast_${name} PRIVATE -fno-exceptions -fno-rtti)
 endfunction()
 
-# holdfast_test(NAME SOURCES ... LINKS ...): one test program, its tests found by ctest.
+# holdfast_test(NAME SOURCES ... LINKS ... [LABELS ...]): one test program, its tests found by ctest.
 function(holdfast_test name)
-  cmake_parse_arguments(TEST "" "" "SOURCES;LINKS" ${ARGN})
+  cmake_parse_arguments(TEST "" "" "SOURCES;LINKS;LABELS" ${ARGN})
   if(NOT HOLDFAST_BUILD_TESTS)
     return()
   endif()
@@ -34,5 +34,5 @@ function(holdfast_test name)
   set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/tests)
   target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR}/tests/support)
   target_link_libraries(${name} PRIVATE ${TEST_LINKS} GTest::gtest_main)
-  gtest_discover_tests(${name} PROPERTIES TIMEOUT 300)
+  gtest_discover_tests(${name} PROPERTIES TIMEOUT 300 LABELS "${TEST_LABELS}")
 endfunction()

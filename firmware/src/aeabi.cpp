@@ -7,6 +7,7 @@
 
 namespace sf = holdfast::softfloat;
 
+namespace holdfast::firmware {
 namespace {
 
 /// Quotient below, remainder above: as the ABI returns the two.
@@ -31,6 +32,10 @@ std::uint32_t size_of(std::int32_t a) {
 }
 
 }  // namespace
+}  // namespace holdfast::firmware
+
+using holdfast::firmware::divide;
+using holdfast::firmware::size_of;
 
 extern "C" {
 

@@ -24,6 +24,8 @@ struct Configuration {
   agent::Setup setup;
 };
 
+// An AVR aligns nothing and has no binary64: its pages are its own.
+#ifndef __AVR__
 static_assert(sizeof(agent::Identity) == 20 && offsetof(agent::Identity, is_anchor) == 5 &&
               offsetof(agent::Identity, cell) == 8);
 static_assert(offsetof(agent::Setup, facet_mm) == 48 &&
@@ -33,6 +35,7 @@ static_assert(offsetof(agent::Setup, facet_mm) == 48 &&
               offsetof(agent::Setup, timing) == 112 && offsetof(agent::Setup, beam) == 152 &&
               offsetof(agent::Setup, beam_float) == 216 && sizeof(agent::Setup) == 248);
 static_assert(offsetof(Configuration, setup) == 32 && sizeof(Configuration) == 280);
+#endif
 
 /// Of everything but the magic number, the version and the sum itself.
 std::uint32_t checksum_of(const Configuration& configuration);

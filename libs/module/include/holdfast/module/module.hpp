@@ -44,7 +44,9 @@ struct Status {
   std::uint32_t epoch = 0;
 };
 
+#ifndef __AVR__
 static_assert(sizeof(Status) == 40);
+#endif
 
 class Module {
  public:
