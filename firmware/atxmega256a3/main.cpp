@@ -54,7 +54,7 @@ void base::panic(const char*, const char*, int) {
 
 }  // namespace holdfast
 
-int main() {
+extern "C" int main() {
   using namespace holdfast;
   agent::prepare(atxmega::configuration.setup);
   auto& port = *new (atxmega::port_storage) atxmega::AbsentPort();
