@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "holdfast/agent/branch.hpp"
 
+#include <span>
+
 #include "scalar.hpp"
 
 namespace holdfast::agent {
@@ -47,6 +49,16 @@ Vec6<double> unit(int i) {
   return vector;
 }
 
+/// a times the unit vector `j`.
+template <class Real>
+Vec6<double> column_of(const Mat6<Real>& a, int j) {
+  Vec6<double> column;
+  for (int row = 0; row < kSize; ++row) {
+    column[at(row)] = static_cast<double>(a.at(row, j));
+  }
+  return column;
+}
+
 void subtract(Vec6<double>& from, const Vec6<double>& what) {
   for (std::size_t i = 0; i < kSize; ++i) {
     from[i] -= what[i];
@@ -57,7 +69,7 @@ void subtract(Vec6<double>& from, const Vec6<double>& what) {
 void add_product(Mat6<float>& into, double factor, const Mat6<float>& a, const Mat6<float>& q,
                  const Mat6<float>& c) {
   for (int column = 0; column < kSize; ++column) {
-    const Vec6<double> image = product(a, product(q, product(c, unit(column))));
+    const Vec6<double> image = product(a, product(q, column_of(c, column)));
     for (int row = 0; row < kSize; ++row) {
       into.at(row, column) += static_cast<float>(factor * image[at(row)]);
     }
@@ -89,6 +101,46 @@ struct Joint {
   Mat6<double> transport;
 };
 
+/// Solves a x = b with pivots for every b, in place; a is used up.
+void solve_all(Mat6<double>& a, std::span<Vec6<double>> right) {
+  for (int column = 0; column < kSize; ++column) {
+    int pivot = column;
+    for (int row = column + 1; row < kSize; ++row) {
+      pivot = absolute(a.at(row, column)) > absolute(a.at(pivot, column)) ? row : pivot;
+    }
+    for (int k = column; k < kSize && pivot != column; ++k) {
+      const double kept = a.at(pivot, k);
+      a.at(pivot, k) = a.at(column, k);
+      a.at(column, k) = kept;
+    }
+    for (Vec6<double>& b : right) {
+      const double kept = b[at(pivot)];
+      b[at(pivot)] = b[at(column)];
+      b[at(column)] = kept;
+    }
+    for (int row = column + 1; row < kSize; ++row) {
+      const double factor = a.at(row, column) / a.at(column, column);
+      if (factor == 0) {
+        continue;
+      }
+      for (int k = column; k < kSize; ++k) {
+        a.at(row, k) -= factor * a.at(column, k);
+      }
+      for (Vec6<double>& b : right) {
+        b[at(row)] -= factor * b[at(column)];
+      }
+    }
+  }
+  for (Vec6<double>& b : right) {
+    for (int row = kSize - 1; row >= 0; --row) {
+      for (int k = row + 1; k < kSize; ++k) {
+        b[at(row)] -= a.at(row, k) * b[at(k)];
+      }
+      b[at(row)] /= a.at(row, row);
+    }
+  }
+}
+
 /// 1 + S F
 template <class Real>
 Mat6<double> series(const Mat6<Real>& stiffness, const Joint& joint) {
@@ -108,7 +160,7 @@ Mat6<double> series_at_child(const Mat6<Real>& stiffness, const Joint& joint,
                              bool is_transposed = false) {
   Mat6<double> sum;
   for (int column = 0; column < kSize; ++column) {
-    const Vec6<double> image = joint.bend(product(stiffness, unit(column)));
+    const Vec6<double> image = joint.bend(column_of(stiffness, column));
     for (int row = 0; row < kSize; ++row) {
       const double value = image[at(row)] + (row == column ? 1 : 0);
       (is_transposed ? sum.at(column, row) : sum.at(row, column)) = value;
@@ -141,12 +193,15 @@ Mat6<double> rigid_transport(double pitch_mm, Direction direction) {
 Mat6<double> stiffness_up(const BeamStiffness<double>& beam, Direction to_parent,
                           const Mat6<double>& stiffness) {
   const Joint joint(beam, to_parent);
-  const Mat6<double> sum = series(stiffness, joint);
+  Mat6<double> sum = series(stiffness, joint);
+  std::array<Vec6<double>, kSize> forces;
+  for (int column = 0; column < kSize; ++column) {
+    forces[at(column)] = product(stiffness, column_of(joint.transport, column));
+  }
+  solve_all(sum, forces);
   Mat6<double> up;
   for (int column = 0; column < kSize; ++column) {
-    const Vec6<double> force =
-        solve_general(sum, product(stiffness, product(joint.transport, unit(column))));
-    const Vec6<double> image = transposed_product(joint.transport, force);
+    const Vec6<double> image = transposed_product(joint.transport, forces[at(column)]);
     for (int row = 0; row < kSize; ++row) {
       up.at(row, column) = image[at(row)];
     }
@@ -170,33 +225,7 @@ Vec6<double> displacement(const BeamStiffness<double>& beam, Direction to_parent
 }
 
 Vec6<double> solve_general(Mat6<double> a, Vec6<double> b) {
-  for (int column = 0; column < kSize; ++column) {
-    int pivot = column;
-    for (int row = column + 1; row < kSize; ++row) {
-      pivot = absolute(a.at(row, column)) > absolute(a.at(pivot, column)) ? row : pivot;
-    }
-    for (int k = column; k < kSize && pivot != column; ++k) {
-      const double kept = a.at(pivot, k);
-      a.at(pivot, k) = a.at(column, k);
-      a.at(column, k) = kept;
-    }
-    const double kept = b[at(pivot)];
-    b[at(pivot)] = b[at(column)];
-    b[at(column)] = kept;
-    for (int row = column + 1; row < kSize; ++row) {
-      const double factor = a.at(row, column) / a.at(column, column);
-      for (int k = column; k < kSize; ++k) {
-        a.at(row, k) -= factor * a.at(column, k);
-      }
-      b[at(row)] -= factor * b[at(column)];
-    }
-  }
-  for (int row = kSize - 1; row >= 0; --row) {
-    for (int k = row + 1; k < kSize; ++k) {
-      b[at(row)] -= a.at(row, k) * b[at(k)];
-    }
-    b[at(row)] /= a.at(row, row);
-  }
+  solve_all(a, {&b, 1});
   return b;
 }
 
@@ -293,13 +322,13 @@ void Branch::close_loops(const BeamStiffness<double>& beam) {
     const Mat6<double> stiffness = mechanics::block_11(beam, cuts_[at(slot)].direction);
     Mat6<double> sum;
     for (int column = 0; column < kSize; ++column) {
-      const Vec6<double> image = product(stiffness, product(give, unit(column)));
+      const Vec6<double> image = product(stiffness, column_of(give, column));
       for (int row = 0; row < kSize; ++row) {
         sum.at(row, column) = image[at(row)] + (row == column ? 1 : 0);
       }
     }
     for (int column = 0; column < kSize; ++column) {
-      const Vec6<double> inverse = solve_general(sum, product(stiffness, unit(column)));
+      const Vec6<double> inverse = solve_general(sum, column_of(stiffness, column));
       for (int row = 0; row < kSize; ++row) {
         give.at(row, column) = static_cast<float>(inverse[at(row)]);
       }
@@ -351,7 +380,7 @@ Vec6<double> Branch::column_up(const BeamStiffness<double>& beam, Direction to_p
     return transposed_product(joint.transport, solve_general(series(stiffness_, joint), vector));
   };
   if (index < kOnto) {
-    const Vec6<double> moved = product(joint.transport, unit(j));
+    const Vec6<double> moved = column_of(joint.transport, j);
     return is_fixed ? transposed_product(joint.transport,
                                          product(mechanics::block_11(beam, to_parent), moved))
                     : up(product(stiffness_, moved));
@@ -363,9 +392,12 @@ Vec6<double> Branch::column_up(const BeamStiffness<double>& beam, Direction to_p
       return {};
     }
     if (is_onto) {
-      return up(product(onto_[at(slot)], unit(j)));
+      return up(column_of(onto_[at(slot)], j));
     }
-    const Vec6<double> row = transposed_product(across_[at(slot)], unit(j));
+    Vec6<double> row;
+    for (int i = 0; i < kSize; ++i) {
+      row[at(i)] = static_cast<double>(across_[at(slot)].at(j, i));
+    }
     return transposed_product(joint.transport,
                               solve_general(series_at_child(stiffness_, joint, true), row));
   }
@@ -374,9 +406,9 @@ Vec6<double> Branch::column_up(const BeamStiffness<double>& beam, Direction to_p
   if (row < 0 || column < 0) {
     return {};
   }
-  Vec6<double> sum = product(give_[at(row)][at(column)], unit(j));
+  Vec6<double> sum = column_of(give_[at(row)][at(column)], j);
   if (!is_fixed) {
-    const Vec6<double> bent = joint.bend(product(onto_[at(column)], unit(j)));
+    const Vec6<double> bent = joint.bend(column_of(onto_[at(column)], j));
     base::add_to(
         sum, product(across_[at(row)], solve_general(series_at_child(stiffness_, joint), bent)));
   }
