@@ -38,10 +38,10 @@ constexpr std::uint32_t kPaint = 0xc5c5c5c5;
 
 using Handler = void (*)();
 
-/// ARMv6-M, B1.5.2: the first stack pointer, then 15 handlers of the processor. No interrupt is
-/// ever enabled.
-extern const Handler holdfast_vectors[16];
-[[gnu::section(".vectors"), gnu::used]] const Handler holdfast_vectors[16] = {
+/// ARMv6-M, B1.5.2: the first stack pointer, then 14 handlers of the processor. A port that has
+/// interrupts puts SysTick's and the chip's behind them (.vectors.tick, .vectors.interrupts).
+extern const Handler holdfast_vectors[15];
+[[gnu::section(".vectors"), gnu::used]] const Handler holdfast_vectors[15] = {
     reinterpret_cast<Handler>(&holdfast_stack_end),
     holdfast_reset,
     holdfast_fault,

@@ -21,6 +21,7 @@ struct Options {
   std::string file;
   std::string board = "v2";
   std::string image;
+  std::string pages;
   std::uint64_t seed = 1;
   std::vector<std::string> kills;
   std::vector<std::string> cuts;
@@ -50,6 +51,9 @@ class EmulateRun {
       print_error(structure.error(), options_.file);
       return kExitBadInput;
     }
+    if (!options_.pages.empty()) {
+      return write_pages(structure.value());
+    }
     emulation_.seed = options_.seed;
     emulation_.time_max = microseconds(options_.time_max_s);
     if (!add_faults("kill", options_.kills, Fault::Kind::kKill, structure.value()) ||
@@ -62,6 +66,19 @@ class EmulateRun {
   }
 
  private:
+  /// Every module's page, as module_0.bin and so on.
+  int write_pages(const Structure& structure) const {
+    const auto pages = emulator::configuration_pages(structure.robot, emulation_.anchor);
+    for (std::size_t i = 0; i < pages.size(); ++i) {
+      const std::string path = fmt::format("{}/module_{}.bin", options_.pages, i);
+      if (!write(path, {reinterpret_cast<const char*>(pages[i].data()), pages[i].size()})) {
+        return kExitBadInput;
+      }
+    }
+    fmt::print("{} pages written to {}\n", pages.size(), options_.pages);
+    return kExitSafe;
+  }
+
   static sim::Time microseconds(double seconds) { return static_cast<sim::Time>(seconds * 1e6); }
 
   /// Reads all faults of one kind; says which one is wrong.
@@ -166,6 +183,11 @@ Command add_emulate(CLI::App& app) {
       ->add_option("--image", options->image,
                    "The firmware; without this option the one that './dev firmware' has built")
       ->type_name("FILE");
+  command
+      ->add_option("--pages", options->pages,
+                   "Only write the page of flash of every module, module_0.bin and so on, for a "
+                   "programmer")
+      ->type_name("FOLDER");
   command->add_option("--seed", options->seed, "Of everything random")
       ->type_name("N")
       ->capture_default_str();

@@ -9,7 +9,9 @@ namespace {
 
 constexpr unsigned kFlashWait = 1;
 
-unsigned register_count(std::uint16_t code) { return static_cast<unsigned>(std::popcount(code & 0xffU)); }
+unsigned register_count(std::uint16_t code) {
+  return static_cast<unsigned>(std::popcount(code & 0xffU));
+}
 
 /// Instructions of 16 bits; conditional branches as if they were not taken.
 unsigned cycles_of(std::uint16_t code) {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cstring>
 
 #include "board.hpp"
 #include "holdfast/base/check.hpp"
@@ -26,6 +27,26 @@ int face_of(int usart) {
     ++face;
   }
   return face;
+}
+
+/// What the modules of a robot know, the same as the simulator's agents.
+std::vector<module::Configuration> configurations(const model::Robot& robot, std::int32_t anchor) {
+  sim::SimulationOptions simulation;
+  simulation.link = sim::blinky_blocks_v2();
+  module::Configuration configuration;
+  configuration.setup = sim::make_setup(robot, simulation);
+  configuration.setup.only_elimination = true;
+  std::vector<module::Configuration> all;
+  for (std::size_t i = 0; i < robot.modules().size() - robot.planned_count(); ++i) {
+    const model::Module& module = robot.modules()[i];
+    configuration.identity = {.id = static_cast<std::uint32_t>(i + 1),
+                              .is_fixed = module.support == model::Support::kFixed,
+                              .is_anchor = i == static_cast<std::size_t>(anchor),
+                              .cell = module.cell};
+    configuration.checksum = module::checksum_of(configuration);
+    all.push_back(configuration);
+  }
+  return all;
 }
 
 bool is_same(const agent::Answer& a, const agent::Answer& b) {
@@ -79,19 +100,9 @@ Robot::Robot(const Image& image, const model::Robot& robot, const EmulationOptio
       robot_(robot),
       options_(options),
       costs_(Processor::kFlashBegin, Processor::kFlashBytes) {
-  sim::SimulationOptions simulation;
-  simulation.link = sim::blinky_blocks_v2();
-  module::Configuration configuration;
-  configuration.setup = sim::make_setup(robot, simulation);
-  configuration.setup.only_elimination = true;
   const std::size_t count = robot.modules().size() - robot.planned_count();
   base::Rng rng(options.seed);
-  for (std::size_t i = 0; i < count; ++i) {
-    const model::Module& module = robot.modules()[i];
-    configuration.identity = {.id = static_cast<std::uint32_t>(i + 1),
-                              .is_fixed = module.support == model::Support::kFixed,
-                              .is_anchor = i == at(options.anchor),
-                              .cell = module.cell};
+  for (const module::Configuration& configuration : configurations(robot, options.anchor)) {
     const std::uint64_t seed = rng.next();
     const Cycles start = cycles(rng.below(options.start_spread + 1));
     modules_.push_back(std::make_unique<ModuleCpu>(image, costs_, configuration, seed, start));
@@ -132,7 +143,7 @@ void Robot::announce() {
           usart_of(face), {.time = time, .byte_cycles = kByteCycles, .byte = frame[k]});
     }
   }
-  planned_at_ = time / kCyclesPerMicrosecond;
+  planned_at_ = robot_.planned_count() > 0 ? time / kCyclesPerMicrosecond : 0;
 }
 
 bool Robot::run_for(Time duration) {
@@ -305,6 +316,16 @@ FirmwareReport Robot::report() const {
   }
   report.step_cycles_mean = report.step_count > 0 ? cycles_all / report.step_count : 0;
   return report;
+}
+
+std::vector<std::vector<std::uint8_t>> configuration_pages(const model::Robot& robot,
+                                                           std::int32_t anchor) {
+  std::vector<std::vector<std::uint8_t>> pages;
+  for (const module::Configuration& configuration : configurations(robot, anchor)) {
+    pages.emplace_back(sizeof(configuration));
+    std::memcpy(pages.back().data(), &configuration, sizeof(configuration));
+  }
+  return pages;
 }
 
 std::optional<std::string> find_options_fault(const model::Robot& robot,

@@ -91,8 +91,8 @@ base::Result<Image> load_image(const std::string& path) {
   }
   const std::vector<std::uint8_t> file{std::istreambuf_iterator<char>(stream), {}};
   const auto header = value_at<Elf32_Ehdr>(file, 0);
-  if (std::memcmp(header.e_ident, ELFMAG, SELFMAG) != 0 ||
-      header.e_ident[EI_CLASS] != ELFCLASS32 || header.e_machine != EM_ARM) {
+  if (std::memcmp(header.e_ident, ELFMAG, SELFMAG) != 0 || header.e_ident[EI_CLASS] != ELFCLASS32 ||
+      header.e_machine != EM_ARM) {
     return fault("is no ELF file for a 32-bit Arm");
   }
   Image image;
@@ -100,9 +100,10 @@ base::Result<Image> load_image(const std::string& path) {
     return fault("is damaged: a segment lies outside the file");
   }
   take_symbols(file, header, image);
-  for (const char* name : {"holdfast_status", "holdfast_stop", "holdfast_stack_begin",
-                           "holdfast_stack_end", "holdfast_configuration", "holdfast_vectors", "holdfast_agent_bytes",
-                           "_ZN8holdfast5agent10BasicAgentIfE4stepERKNS0_5EventERNS0_7ActionsE"}) {
+  for (const char* name :
+       {"holdfast_status", "holdfast_stop", "holdfast_stack_begin", "holdfast_stack_end",
+        "holdfast_configuration", "holdfast_vectors", "holdfast_agent_bytes",
+        "_ZN8holdfast5agent10BasicAgentIfE4stepERKNS0_5EventERNS0_7ActionsE"}) {
     if (!image.symbols.contains(name)) {
       return fault(std::string("is no firmware of holdfast: it has no symbol ") + name);
     }

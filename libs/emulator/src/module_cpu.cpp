@@ -10,8 +10,7 @@
 namespace holdfast::emulator {
 namespace {
 
-constexpr const char* kStep =
-    "_ZN8holdfast5agent10BasicAgentIfE4stepERKNS0_5EventERNS0_7ActionsE";
+constexpr const char* kStep = "_ZN8holdfast5agent10BasicAgentIfE4stepERKNS0_5EventERNS0_7ActionsE";
 
 /// agent::Event and agent::Actions as they lie in the module's memory.
 struct EventLayout {
@@ -43,20 +42,20 @@ Value read_value(const Processor& processor, std::uint32_t address) {
 }  // namespace
 
 Stm32f091::Hooks ModuleCpu::hooks() {
-  return {.now = [this] { return processor_.now(); },
-          .store =
-              [this](std::uint32_t address, std::uint8_t byte) {
-                processor_.write(address, {&byte, 1});
-              },
-          .load = [this](std::uint32_t address) {
-            return read_value<std::uint8_t>(processor_, address);
+  return {
+      .now = [this] { return processor_.now(); },
+      .store =
+          [this](std::uint32_t address, std::uint8_t byte) {
+            processor_.write(address, {&byte, 1});
           },
-          .idle =
-              [this] {
-                is_waiting_ = true;
-                wake_at_ = stm_.next_event();
-                processor_.stop();
-              }};
+      .load =
+          [this](std::uint32_t address) { return read_value<std::uint8_t>(processor_, address); },
+      .idle =
+          [this] {
+            is_waiting_ = true;
+            wake_at_ = stm_.next_event();
+            processor_.stop();
+          }};
 }
 
 ModuleCpu::ModuleCpu(const Image& image, CostTable& costs,
@@ -67,7 +66,6 @@ ModuleCpu::ModuleCpu(const Image& image, CostTable& costs,
       stm_(hooks(), seed),
       processor_(image, costs, stm_, *this, image.at(kStep)),
       wake_at_(start) {
-  configuration_.checksum = module::checksum_of(configuration_);
   std::array<std::uint8_t, sizeof(module::Configuration)> page{};
   std::memcpy(page.data(), &configuration_, page.size());
   processor_.write(image.at("holdfast_configuration"), page);

@@ -218,8 +218,7 @@ void Stm32f091::start_channel(std::uint32_t channel) {
     return;
   }
   const std::uint32_t controller = (channel - kDma) / 0x400;
-  const std::uint32_t number =
-      ((channel - kDma) % 0x400 - kDmaFirstChannel) / kDmaChannelBytes + 1;
+  const std::uint32_t number = ((channel - kDma) % 0x400 - kDmaFirstChannel) / kDmaChannelBytes + 1;
   const std::uint32_t request =
       look(kDma + 0x400 * controller + kDmaCselr) >> (4 * (number - 1)) & 15U;
   const bool sends = has(control, kFromMemory);
@@ -247,7 +246,8 @@ void Stm32f091::start_sending(int usart, Transfer& transfer) {
     return;
   }
   transfer.begin = std::max(transfer.begin, line_free_at_[at(usart)]);
-  Sent sent{.usart = usart, .begin = transfer.begin, .byte_cycles = byte_cycles(usart), .bytes = {}};
+  Sent sent{
+      .usart = usart, .begin = transfer.begin, .byte_cycles = byte_cycles(usart), .bytes = {}};
   for (std::uint32_t i = 0; i < transfer.total; ++i) {
     sent.bytes.push_back(hooks_.load(look(transfer.channel + kCmar) + i));
   }
@@ -287,8 +287,8 @@ bool Stm32f091::take_byte(int usart, const Arrival& arrival) {
   const std::uint32_t base = kUsarts[at(usart)];
   const Transfer& transfer = receiving_[at(usart)];
   const Cycles own = byte_cycles(usart);
-  const Cycles apart = own > arrival.byte_cycles ? own - arrival.byte_cycles
-                                                 : arrival.byte_cycles - own;
+  const Cycles apart =
+      own > arrival.byte_cycles ? own - arrival.byte_cycles : arrival.byte_cycles - own;
   const bool is_ready = has(look(base + kUsartCr1), kReceives) &&
                         has(look(base + kUsartCr3), kDmaReceives) && 40 * apart <= own;
   if (!is_ready || transfer.channel == 0) {

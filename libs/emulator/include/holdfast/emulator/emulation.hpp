@@ -65,7 +65,7 @@ struct FirmwareReport {
   std::string step_longest;          ///< In which phase.
   std::uint64_t mismatch_count = 0;  ///< Steps in which image and host differ.
   std::uint64_t lost_bytes = 0;      ///< That came to a USART that was not ready.
-  Time planned_at = 0;               ///< When the last plan was complete.
+  Time planned_at = 0;               ///< When the last plan was complete; 0: there is none.
 };
 
 struct ModuleView {
@@ -74,6 +74,10 @@ struct ModuleView {
   float own_load_ratio = 0;
   bool is_alive = true;
 };
+
+/// What each existing module knows before it starts, as the bytes of its page in flash.
+std::vector<std::vector<std::uint8_t>> configuration_pages(const model::Robot& robot,
+                                                           std::int32_t anchor);
 
 /// Was this built with Unicorn? Without, no Emulation may be made.
 bool is_available();
