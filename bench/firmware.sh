@@ -31,6 +31,6 @@ for path in sorted(pathlib.Path('scenarios').glob('*.json')):
           f'| {image["step_cycles_max"] / 48e3:.1f} | {image["step_cycles_mean"]:,} '
           f'| {image["stack_bytes_max"]:,} | {"yes" if image["steps_unlike_host"] == 0 else "NO"} '
           f'| {PUBLISHED_S.get(path.stem, 0):,} |', flush=True)
-print(f'\nimage: {image["flash_bytes"]:,} bytes of flash, {image["ram_bytes"]:,} of RAM without the '
-      f'stack, {image["agent_bytes"]:,} of them the agent')
+print(f'\nimage: {image["flash_bytes"]:,} bytes of flash, {image["ram_bytes"]:,} of RAM without '
+      f'the stack, {image["agent_bytes"]:,} of them the agent')
 PYTHON

@@ -24,7 +24,7 @@ function(holdfast_freestanding name)
   target_compile_options(holdfast_${name} PRIVATE -fno-exceptions -fno-rtti)
 endfunction()
 
-# holdfast_test(NAME SOURCES ... LINKS ... [LABELS ...]): one test program, its tests found by ctest.
+# holdfast_test(NAME SOURCES ... LINKS ... [LABELS ...]): a test program, its tests found by ctest.
 function(holdfast_test name)
   cmake_parse_arguments(TEST "" "" "SOURCES;LINKS;LABELS" ${ARGN})
   if(NOT HOLDFAST_BUILD_TESTS)

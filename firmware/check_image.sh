@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# check_image.sh IMAGE   sizes and contents of the firmware of an STM32F091: fails if it is too large,
-# or if anything is linked that is not holdfast's or on the list.
+# check_image.sh IMAGE   sizes and contents of the firmware of an STM32F091: fails if it is too
+# large, or if anything is linked that is not holdfast's or on the list.
 set -euo pipefail
 image=$1
 flash_max=40960  # 40 KB
@@ -9,8 +9,9 @@ ram_max=20992    # 8 KB, and 12.5 KB in which Blinky Blocks' own library keeps i
 # Names of ours, the compiler's calls that firmware/src defines, and what is left of libgcc: shifts,
 # products of 64 bits, jump tables, leading zeros, float to integer for the lamp.
 allowed='^(_Z.*8holdfast.*|holdfast_.*|CSWTCH\.[0-9]+|memcpy|memmove|memset|memcmp'
-allowed+='|__aeabi_(d|f)(add|sub|mul|div|cmp(eq|lt|gt|le|ge))|__aeabi_(d2f|f2d|i2d|ui2d|d2iz|i2f|ui2f)'
-allowed+='|__aeabi_u?idiv(mod)?|__aeabi_(llsl|llsr|lmul|idiv0|ldiv0|f2iz|f2uiz)|__(ashl|lshr|mul)di3'
+allowed+='|__aeabi_(d|f)(add|sub|mul|div|cmp(eq|lt|gt|le|ge))'
+allowed+='|__aeabi_(d2f|f2d|i2d|ui2d|d2iz|i2f|ui2f)|__aeabi_u?idiv(mod)?'
+allowed+='|__aeabi_(llsl|llsr|lmul|idiv0|ldiv0|f2iz|f2uiz)|__(ashl|lshr|mul)di3'
 allowed+='|__clzsi2|__fixunssfsi|__fixsfsi|__gnu_thumb1_case_(u|s)(q|h)i)$'
 
 bad=$(arm-none-eabi-nm --defined-only --format=just-symbols "$image" |

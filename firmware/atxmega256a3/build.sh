@@ -1,9 +1,10 @@
 #!/usr/bin/env bash
-# build.sh FOLDER   compiles the module's program for the ATxmega256A3 (Blinky Blocks 1) into FOLDER and
-# says how large it is. Debian's avr-g++ 5 knows no C++20, so clang compiles and avr-g++ links; the
-# headers of the standard library are those of the Cortex-M0's compiler.
+# build.sh FOLDER   compiles the module's program for the ATxmega256A3 (Blinky Blocks 1) into FOLDER
+# and says how large it is. Debian's avr-g++ 5 knows no C++20, so clang compiles and avr-g++ links;
+# the headers of the standard library are those of the Cortex-M0's compiler.
 set -euo pipefail
-rooms=$(cd "$(dirname "${BASH_SOURCE[0]}")/../../libs" && pwd)
+here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
+rooms=$here/../../libs
 out=$1
 flash_max=262144
 ram_max=16384
@@ -18,8 +19,7 @@ for room in base mechanics agent module; do
 done
 mkdir -p "$out"
 objects=()
-for source in "$rooms"/mechanics/src/*.cpp "$rooms"/agent/src/*.cpp "$rooms"/module/src/*.cpp \
-              "$(dirname "${BASH_SOURCE[0]}")/main.cpp"; do
+for source in "$rooms"/{mechanics,agent,module}/src/*.cpp "$here/main.cpp"; do
   object=$out/$(basename "$(dirname "$(dirname "$source")")")_$(basename "$source" .cpp).o
   if [ "$source" -nt "$object" ]; then
     clang++-14 "${flags[@]}" -c "$source" -o "$object"
@@ -28,5 +28,6 @@ for source in "$rooms"/mechanics/src/*.cpp "$rooms"/agent/src/*.cpp "$rooms"/mod
 done
 avr-g++ -mmcu=atxmega256a3 -Wl,--gc-sections "${objects[@]}" -o "$out/module_atxmega256a3.elf"
 read -r text data bss _ < <(avr-size "$out/module_atxmega256a3.elf" | tail -1)
-echo "atxmega256a3: $((text + data)) bytes of flash of $flash_max, $((data + bss)) of RAM of $ram_max"
+echo "atxmega256a3: $((text + data)) bytes of flash of $flash_max, $((data + bss)) of RAM of" \
+     "$ram_max"
 [ $((text + data)) -le $flash_max ] && [ $((data + bss)) -le $ram_max ]

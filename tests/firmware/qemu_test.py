@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: The holdfast authors
 # SPDX-License-Identifier: Apache-2.0
-"""qemu_test.py HOLDFAST IMAGE STRUCTURE...   the firmware with interrupts: one QEMU for every module.
+"""qemu_test.py HOLDFAST IMAGE STRUCTURE...   the firmware with interrupts, one QEMU per module.
 
-Each module is QEMU's machine netduinoplus2 (an STM32F405) in a process of its own; faces are joined by
-socket pairs, handed over as character devices. The plan is written to a free face. Every module's
-verdict is then read from its memory and must be the exact one of 'holdfast check'.
+Each module is QEMU's machine netduinoplus2 (an STM32F405) in a process of its own; faces are joined
+by socket pairs, handed over as character devices. The plan is written to a free face. Every
+module's verdict is then read from its memory and must be the exact one of 'holdfast check'.
 """
 import json
 import pathlib

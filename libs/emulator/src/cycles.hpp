@@ -9,8 +9,8 @@
 /// How long a Cortex-M0 takes.
 ///
 /// Cycles of instructions: Cortex-M0 Technical Reference Manual, table 3-1, with the multiplier of
-/// one cycle that the STM32F0 has. At 48 MHz its flash has one wait state; the prefetch buffer hides
-/// it on straight code, and a taken branch waits for it.
+/// one cycle that the STM32F0 has. At 48 MHz its flash has one wait state; the prefetch buffer
+/// hides it on straight code, and a taken branch waits for it.
 namespace holdfast::emulator {
 
 using Cycles = std::uint64_t;

@@ -14,8 +14,8 @@
 
 /// The peripherals of an STM32F091 as far as a module uses them, after the reference manual RM0091:
 /// reset and clock control (6), DMA (10), the ADC's temperature sensor (13), TIM2 and TIM3 (17, 18)
-/// and USART1 to 6 (27). A peripheral whose clock is off reads as zero and takes nothing; a transfer
-/// needs the right channel, request, direction and address; a byte needs matching baud rates.
+/// and USART1 to 6 (27). A peripheral whose clock is off reads as zero and takes nothing; a
+/// transfer needs the right channel, request, direction and address; a byte matching baud rates.
 namespace holdfast::emulator {
 
 inline constexpr int kUsartCount = 6;
