@@ -4,6 +4,7 @@
 
 #include <span>
 
+#include "holdfast/base/check.hpp"
 #include "scalar.hpp"
 
 namespace holdfast::agent {
@@ -57,6 +58,20 @@ Vec6<double> column_of(const Mat6<Real>& a, int j) {
     column[at(row)] = static_cast<double>(a.at(row, j));
   }
   return column;
+}
+
+void set_column(Mat6<double>& a, int j, const Vec6<double>& column) {
+  for (int row = 0; row < kSize; ++row) {
+    a.at(row, j) = column[at(row)];
+  }
+}
+
+Mat6<double> converted(const Mat6<float>& a) {
+  Mat6<double> result;
+  for (std::size_t i = 0; i < a.values.size(); ++i) {
+    result.values[i] = static_cast<double>(a.values[i]);
+  }
+  return result;
 }
 
 void subtract(Vec6<double>& from, const Vec6<double>& what) {
@@ -169,6 +184,38 @@ Mat6<double> series_at_child(const Mat6<Real>& stiffness, const Joint& joint,
   return sum;
 }
 
+/// Does nothing below touch the ground? Then F does not matter: the forces follow from the loads.
+template <class Real>
+bool is_free(const Mat6<Real>& stiffness) {
+  for (const Real value : stiffness.values) {
+    if (value != 0) {
+      return false;
+    }
+  }
+  return true;
+}
+
+/// N v = (1 + S F)^-1 v
+template <class Real>
+Vec6<double> through(const Mat6<Real>& stiffness, const Joint& joint, Vec6<double> vector) {
+  if (!is_free(stiffness)) {
+    Mat6<double> sum = series(stiffness, joint);
+    solve_all(sum, {&vector, 1});
+  }
+  return vector;
+}
+
+/// G v = (1 + F S)^-1 v, or transposed.
+template <class Real>
+Vec6<double> through_at_child(const Mat6<Real>& stiffness, const Joint& joint, Vec6<double> vector,
+                              bool is_transposed = false) {
+  if (!is_free(stiffness)) {
+    Mat6<double> sum = series_at_child(stiffness, joint, is_transposed);
+    solve_all(sum, {&vector, 1});
+  }
+  return vector;
+}
+
 }  // namespace
 
 Mat6<double> rigid_transport(double pitch_mm, Direction direction) {
@@ -192,6 +239,9 @@ Mat6<double> rigid_transport(double pitch_mm, Direction direction) {
 
 Mat6<double> stiffness_up(const BeamStiffness<double>& beam, Direction to_parent,
                           const Mat6<double>& stiffness) {
+  if (is_free(stiffness)) {
+    return {};
+  }
   const Joint joint(beam, to_parent);
   Mat6<double> sum = series(stiffness, joint);
   std::array<Vec6<double>, kSize> forces;
@@ -201,10 +251,7 @@ Mat6<double> stiffness_up(const BeamStiffness<double>& beam, Direction to_parent
   solve_all(sum, forces);
   Mat6<double> up;
   for (int column = 0; column < kSize; ++column) {
-    const Vec6<double> image = transposed_product(joint.transport, forces[at(column)]);
-    for (int row = 0; row < kSize; ++row) {
-      up.at(row, column) = image[at(row)];
-    }
+    set_column(up, column, transposed_product(joint.transport, forces[at(column)]));
   }
   return up;
 }
@@ -212,7 +259,7 @@ Mat6<double> stiffness_up(const BeamStiffness<double>& beam, Direction to_parent
 Vec6<double> load_up(const BeamStiffness<double>& beam, Direction to_parent,
                      const Mat6<double>& stiffness, const Vec6<double>& load) {
   const Joint joint(beam, to_parent);
-  return transposed_product(joint.transport, solve_general(series(stiffness, joint), load));
+  return transposed_product(joint.transport, through(stiffness, joint, load));
 }
 
 Vec6<double> displacement(const BeamStiffness<double>& beam, Direction to_parent,
@@ -221,7 +268,7 @@ Vec6<double> displacement(const BeamStiffness<double>& beam, Direction to_parent
   const Joint joint(beam, to_parent);
   Vec6<double> sum = product(joint.transport, of_parent);
   base::add_to(sum, joint.bend(load));
-  return solve_general(series_at_child(stiffness, joint), sum);
+  return through_at_child(stiffness, joint, sum);
 }
 
 Vec6<double> solve_general(Mat6<double> a, Vec6<double> b) {
@@ -372,19 +419,26 @@ int Branch::columns_needed(int index, const std::array<std::int8_t, kLoopsMax>& 
   return row < 0 || column < 0 ? kGive : kGive + kSize * (kLoopsMax * row + column) + j + 1;
 }
 
+Mat6<double> Branch::stiffness_up(const BeamStiffness<double>& beam, Direction to_parent,
+                                  bool is_fixed) const {
+  if (!is_fixed) {
+    return agent::stiffness_up(beam, to_parent, converted(stiffness_));
+  }
+  const Mat6<double> transport = Joint(beam, to_parent).transport;
+  const Mat6<double> block = mechanics::block_11(beam, to_parent);
+  Mat6<double> up;
+  for (int column = 0; column < kSize; ++column) {
+    set_column(up, column,
+               transposed_product(transport, product(block, column_of(transport, column))));
+  }
+  return up;
+}
+
 Vec6<double> Branch::column_up(const BeamStiffness<double>& beam, Direction to_parent,
                                bool is_fixed, int index) const {
+  HOLDFAST_ASSERT(index >= kOnto);
   const Joint joint(beam, to_parent);
   const int j = index % kSize;
-  const auto up = [&](const Vec6<double>& vector) {
-    return transposed_product(joint.transport, solve_general(series(stiffness_, joint), vector));
-  };
-  if (index < kOnto) {
-    const Vec6<double> moved = column_of(joint.transport, j);
-    return is_fixed ? transposed_product(joint.transport,
-                                         product(mechanics::block_11(beam, to_parent), moved))
-                    : up(product(stiffness_, moved));
-  }
   if (index < kGive) {
     const bool is_onto = index < kAcross;
     const int slot = open_slot((index - (is_onto ? kOnto : kAcross)) / kSize);
@@ -392,14 +446,14 @@ Vec6<double> Branch::column_up(const BeamStiffness<double>& beam, Direction to_p
       return {};
     }
     if (is_onto) {
-      return up(column_of(onto_[at(slot)], j));
+      return transposed_product(joint.transport,
+                                through(stiffness_, joint, column_of(onto_[at(slot)], j)));
     }
     Vec6<double> row;
     for (int i = 0; i < kSize; ++i) {
       row[at(i)] = static_cast<double>(across_[at(slot)].at(j, i));
     }
-    return transposed_product(joint.transport,
-                              solve_general(series_at_child(stiffness_, joint, true), row));
+    return transposed_product(joint.transport, through_at_child(stiffness_, joint, row, true));
   }
   const int row = open_slot((index - kGive) / kSize / kLoopsMax);
   const int column = open_slot((index - kGive) / kSize % kLoopsMax);
@@ -409,8 +463,7 @@ Vec6<double> Branch::column_up(const BeamStiffness<double>& beam, Direction to_p
   Vec6<double> sum = column_of(give_[at(row)][at(column)], j);
   if (!is_fixed) {
     const Vec6<double> bent = joint.bend(column_of(onto_[at(column)], j));
-    base::add_to(
-        sum, product(across_[at(row)], solve_general(series_at_child(stiffness_, joint), bent)));
+    base::add_to(sum, product(across_[at(row)], through_at_child(stiffness_, joint, bent)));
   }
   return sum;
 }
@@ -440,12 +493,11 @@ BranchLoad Branch::load_up(const BeamStiffness<double>& beam, Direction to_paren
   if (is_fixed) {
     return up;
   }
-  up.load =
-      transposed_product(joint.transport, solve_general(series(stiffness_, joint), load.load));
+  up.load = transposed_product(joint.transport, through(stiffness_, joint, load.load));
   for (int i = 0; i < open_count(); ++i) {
     base::add_to(up.gap[at(i)],
                  product(across_[at(open_slot(i))],
-                         solve_general(series_at_child(stiffness_, joint), joint.bend(load.load))));
+                         through_at_child(stiffness_, joint, joint.bend(load.load))));
   }
   return up;
 }
@@ -462,17 +514,13 @@ Vec6<double> Branch::displacement(const BeamStiffness<double>& beam, Direction t
   }
   Vec6<double> sum = product(joint.transport, of_parent);
   base::add_to(sum, joint.bend(carried));
-  const Vec6<double> u = solve_general(series_at_child(stiffness_, joint), sum);
+  const Vec6<double> u = through_at_child(stiffness_, joint, sum);
   find_forces(load, u, forces);
   return u;
 }
 
 Vec6<double> Branch::displacement_of_root(const BranchLoad& load, CutForces& forces) const {
-  Mat6<double> stiffness;
-  for (std::size_t i = 0; i < stiffness.values.size(); ++i) {
-    stiffness.values[i] = static_cast<double>(stiffness_.values[i]);
-  }
-  const Vec6<double> u = solve_general(stiffness, load.load);
+  const Vec6<double> u = solve_general(converted(stiffness_), load.load);
   find_forces(load, u, forces);
   return u;
 }

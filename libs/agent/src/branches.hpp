@@ -216,6 +216,7 @@ bool BasicAgent<Real>::is_column_ready() const {
 template <class Real>
 bool BasicAgent<Real>::send_columns() {
   constexpr std::uint8_t kAllSent = Branch::kColumnCount + 1;
+  constexpr int kStiffnessColumns = 6;
   Branch& branch = work_.tree.branch;
   if (column_ == kAllSent) {
     return true;
@@ -227,12 +228,25 @@ bool BasicAgent<Real>::send_columns() {
     branch.close_loops(setup_.beam);
   }
   is_streaming_ = true;
+  const auto to_parent = static_cast<base::Direction>(parent_);
+  base::Mat6<double> stiffness;  // S', which is complete as soon as its first column is.
+  bool has_stiffness = false;
   for (; column_ < Branch::kColumnCount && parent_ >= 0; ++column_) {
     if (!is_column_ready()) {
       return false;
     }
-    const base::Vec6<double> column = branch.column_up(
-        setup_.beam, static_cast<base::Direction>(parent_), nodes_[0].is_fixed, column_);
+    base::Vec6<double> column;
+    if (column_ < kStiffnessColumns) {
+      if (!has_stiffness) {
+        stiffness = branch.stiffness_up(setup_.beam, to_parent, nodes_[0].is_fixed);
+        has_stiffness = true;
+      }
+      for (int row = 0; row < kStiffnessColumns; ++row) {
+        column[static_cast<std::size_t>(row)] = stiffness.at(row, column_);
+      }
+    } else {
+      column = branch.column_up(setup_.beam, to_parent, nodes_[0].is_fixed, column_);
+    }
     if (column == base::Vec6<double>{}) {
       continue;
     }

@@ -149,8 +149,15 @@ bool eliminate(const Tree& tree, const Springs& springs, const Vectors& loads, V
       break;
     }
     const auto parent = static_cast<std::size_t>(tree.parents[i]);
+    const auto stiffness = branch.stiffness_up(beam, tree.to_parent(i), false);
     for (int column = 0; column < Branch::kColumnCount; ++column) {
-      const auto sent = branch.column_up(beam, tree.to_parent(i), false, column);
+      Vec6<double> sent{};
+      for (int row = 0; row < 6 && column < 6; ++row) {
+        sent[static_cast<std::size_t>(row)] = stiffness.at(row, column);
+      }
+      if (column >= 6) {
+        sent = branch.column_up(beam, tree.to_parent(i), false, column);
+      }
       if (sent != Vec6<double>{}) {
         branches[parent].add_column(column, slot_of[i], base::converted<float>(sent));
       }

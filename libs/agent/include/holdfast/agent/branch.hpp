@@ -54,7 +54,7 @@ using CutForces = std::array<base::Vec6<double>, kLoopsMax>;
 
 class Branch {
  public:
-  /// Columns that go up: S', then by open loop B', C' (its rows) and P'.
+  /// Columns that go up: six of S', then by open loop B', C' (its rows) and P'.
   static constexpr int kColumnCount = 6 + 12 * kLoopsMax + 6 * kLoopsMax * kLoopsMax;
 
   // ---- Which loops are here. Once, when the tree and the planned modules are known.
@@ -92,7 +92,11 @@ class Branch {
   int columns_needed(int index, const std::array<std::int8_t, kLoopsMax>& slot_of,
                      int child_loops) const;
 
-  /// Eq. (3), column by column; `is_fixed` if this module does not move.
+  /// Eq. (3): S'; `is_fixed` if this module does not move.
+  base::Mat6<double> stiffness_up(const mechanics::BeamStiffness<double>& beam,
+                                  base::Direction to_parent, bool is_fixed) const;
+
+  /// Eq. (3): the columns behind S', one by one.
   base::Vec6<double> column_up(const mechanics::BeamStiffness<double>& beam,
                                base::Direction to_parent, bool is_fixed, int index) const;
 
