@@ -134,9 +134,9 @@ Double add_any(Double a, Double b) {
     }
   } else {
     digits -= digits_b;
-    if (digits == 0) {
-      return 0;
-    }
+  }
+  if (digits == 0) {
+    return is_difference ? 0 : sign;
   }
   int shift = leading_zeros(digits) - (63 - kDigits - static_cast<int>(kGuard));
   shift = shift < exponent ? shift : exponent - 1;
