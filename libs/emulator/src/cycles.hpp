@@ -18,7 +18,7 @@ using Cycles = std::uint64_t;
 inline constexpr Cycles kClockHz = 48'000'000;
 
 struct BlockCost {
-  std::uint32_t size = 0;   ///< In bytes; 0: not known yet.
+  std::uint32_t size = 0;  ///< In bytes; 0: not known yet.
   std::uint16_t cycles = 0;
   std::uint16_t if_taken = 0;  ///< More of them if the conditional branch at its end is taken.
 };
