@@ -79,8 +79,8 @@ class Processor {
   Cycles cycles_ = 0;
   Cycles limit_ = 0;
   std::uint64_t next_ = 0;      ///< Where the last block goes on if its branch is not taken, ...
-  std::uint32_t if_taken_ = 0;    ///< ... and what it costs if it is.
-  std::uint32_t return_ = 0;      ///< The watched function will return to here.
+  std::uint32_t if_taken_ = 0;  ///< ... and what it costs if it is.
+  std::uint32_t return_ = 0;    ///< The watched function will return to here.
   std::uint32_t program_counter_ = 0;
 };
 
