@@ -42,8 +42,6 @@ target_compile_definitions(pugixml PUBLIC PUGIXML_NO_EXCEPTIONS)
 target_include_directories(pugixml SYSTEM PUBLIC ${HOLDFAST_PUGIXML_SOURCE})
 add_library(pugixml::pugixml ALIAS pugixml)
 
-# No -msimd128: clang 14's SLP vectorizer makes wrong code of 6x6 blocks for it (solver_test finds
-# that), and without that pass vectors are no faster than scalars.
 add_compile_options(-include ${PROJECT_SOURCE_DIR}/cmake/wasm/missing.hpp)
 
 # GoogleTest from Debian's sources; programs run under Node and read the repository's files.
@@ -52,8 +50,9 @@ if(HOLDFAST_BUILD_TESTS)
   add_library(gtest_main STATIC ${googletest}/src/gtest-all.cc ${googletest}/src/gtest_main.cc)
   target_include_directories(gtest_main SYSTEM PUBLIC ${googletest}/include PRIVATE ${googletest})
   target_compile_options(gtest_main PRIVATE -w)
-  target_link_options(gtest_main INTERFACE -sNODERAWFS=1 -sALLOW_MEMORY_GROWTH=1 -sEXIT_RUNTIME=1
-                                           -sENVIRONMENT=node
+  # -O1 leaves out the passes of Binaryen, which take longer than the tests.
+  target_link_options(gtest_main INTERFACE -O1 -sNODERAWFS=1 -sALLOW_MEMORY_GROWTH=1
+                                           -sEXIT_RUNTIME=1 -sENVIRONMENT=node
                                            -sWASM_ASYNC_COMPILATION=0)
   add_library(GTest::gtest_main ALIAS gtest_main)
 endif()

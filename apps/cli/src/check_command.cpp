@@ -117,8 +117,11 @@ class CheckRun {
 
   void write_page(const Structure& structure, const CheckResult& result) {
     const auto page = find_page();
-    const auto filled = page ? fill_page(page.value(), structure, report_text(structure, result))
-                             : base::Result<std::string>(page.error());
+    const std::string report =
+        fmt::format("{}: {}\n{}", structure.name, verdict::name(result.assessment.verdict),
+                    report_text(structure, result));
+    const auto filled =
+        page ? fill_page(page.value(), structure, report) : base::Result<std::string>(page.error());
     if (!filled) {
       ++bad_count_;
       print_error(filled.error(), options_.html);

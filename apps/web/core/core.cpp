@@ -199,7 +199,8 @@ std::string written(const Structure& structure, Output output) {
     case Output::kVtu:
       return picture_vtu(structure, result);
     default:
-      return report_text(structure, result);
+      return fmt::format("{}: {}\n{}", structure.name, verdict::name(result.assessment.verdict),
+                         report_text(structure, result));
   }
 }
 
@@ -245,13 +246,11 @@ Reply write_document(const Request& request) {
   return {.text = written(structure, output), .integers = {}, .numbers = {}};
 }
 
-/// options: Method, link (0: Blinky Blocks 1, 1: 2, 2: rounds), seed, loss in thousandths, events
-/// that are kept in thousands.
+/// options: agent::Method, link (0: Blinky Blocks 1, 1: 2, 2: rounds), seed, loss in thousandths,
+/// events that are kept in thousands.
 sim::SimulationOptions simulation_options(const RequestHeader& header) {
   sim::SimulationOptions options;
-  options.method = header.options[0] == 1   ? agent::Method::kBlockJacobi
-                   : header.options[0] == 2 ? agent::Method::kJacobi
-                                            : agent::Method::kConjugateGradients;
+  options.method = static_cast<agent::Method>(header.options[0]);
   options.link = header.options[1] == 0   ? sim::blinky_blocks_v1()
                  : header.options[1] == 1 ? sim::blinky_blocks_v2()
                                           : sim::unit();
@@ -279,6 +278,11 @@ Reply simulate_request(const Request& request) {
   summary["root"] = run.value().result.root;
   summary["is_complete"] = log.is_complete();
   summary["ticks_per_second"] = options.link.ticks_per_second;
+  Json& orders = summary["orders"] = Json::array();
+  for (int operation = 0; operation <= agent::wire::kOperationCount; ++operation) {
+    const auto [text, is_step] = order_text(static_cast<agent::wire::Operation>(operation));
+    orders.push_back({{"text", text}, {"is_step", is_step}});
+  }
   return {.text = dump(summary), .integers = log.take_integers(), .numbers = log.take_numbers()};
 }
 

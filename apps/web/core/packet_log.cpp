@@ -35,22 +35,60 @@ PacketMeaning meaning_of(std::uint8_t type) {
   return PacketMeaning::kPlanned;
 }
 
-bool is_step(std::uint8_t type, std::uint8_t operation) {
-  return static_cast<wire::MessageType>(type) == wire::MessageType::kOrder &&
-         (static_cast<wire::Operation>(operation) == wire::Operation::kStep ||
-          static_cast<wire::Operation>(operation) == wire::Operation::kGradient ||
-          static_cast<wire::Operation>(operation) == wire::Operation::kJacobi);
+bool is_order(std::uint8_t type) {
+  return static_cast<wire::MessageType>(type) == wire::MessageType::kOrder;
 }
 
 bool has_operation(std::uint8_t type) {
-  return static_cast<wire::MessageType>(type) == wire::MessageType::kOrder ||
-         static_cast<wire::MessageType>(type) == wire::MessageType::kReport;
+  return is_order(type) || static_cast<wire::MessageType>(type) == wire::MessageType::kReport;
 }
 
 }  // namespace
 
+OrderText order_text(wire::Operation operation) {
+  switch (operation) {
+    case wire::Operation::kPlan:
+      return {"planned cells"};
+    case wire::Operation::kHosts:
+      return {"who hosts planned modules"};
+    case wire::Operation::kMass:
+      return {"centre of mass"};
+    case wire::Operation::kAngles:
+      return {"safe angles"};
+    case wire::Operation::kBegin:
+      return {"begin an equilibrium"};
+    case wire::Operation::kHigh:
+      return {"move, exchange displacements"};
+    case wire::Operation::kLow:
+      return {"residual, contact states"};
+    case wire::Operation::kStart:
+      return {"begin a linear solve"};
+    case wire::Operation::kGradient:
+      return {"a step of conjugate gradients", true};
+    case wire::Operation::kJacobi:
+      return {"steps of Jacobi's method", true};
+    case wire::Operation::kSlope:
+      return {"slope of the energy"};
+    case wire::Operation::kHold:
+      return {"release and hold facets"};
+    case wire::Operation::kCorners:
+      return {"support corners"};
+    case wire::Operation::kLoads:
+      return {"the worst connection"};
+    case wire::Operation::kVerdict:
+      return {"know the verdict"};
+    case wire::Operation::kFactor:
+      return {"condense the branches"};
+    case wire::Operation::kStep:
+      return {"a step: move, residual, sums", true};
+    case wire::Operation::kTreeStep:
+      return {"a step: move, residual", true};
+  }
+  return {""};
+}
+
 PacketLog::Told PacketLog::read_payload(Stream& stream, std::span<const std::uint8_t> payload) {
-  Told told{.meaning = stream.meaning, .has_step = false};
+  Told told{.meaning = stream.meaning};
   bool is_told = stream.bytes_left > 0 || stream.first != 0;
   for (std::size_t at = 0; at < payload.size();) {
     if (stream.bytes_left > 0) {
@@ -71,7 +109,7 @@ PacketLog::Told PacketLog::read_payload(Stream& stream, std::span<const std::uin
       break;
     }
     const std::uint8_t second = second_at < payload.size() ? payload[second_at] : std::uint8_t{0};
-    told.has_step = told.has_step || is_step(type, second);
+    told.operation = is_order(type) && told.operation == 0 ? second : told.operation;
     // The type byte may have been the last of the packet before.
     stream.bytes_left = wire::message_bytes(type, second) - (is_second ? 1 : 0);
     if (stream.bytes_left <= 0) {
@@ -95,7 +133,7 @@ PacketLog::Told PacketLog::follow(Stream& stream, std::span<const std::uint8_t> 
     return {};
   }
   if (sequence != stream.next_sequence) {
-    return {.meaning = stream.meaning, .has_step = false};  // sent again
+    return {.meaning = stream.meaning};  // sent again
   }
   stream.next_sequence = (stream.next_sequence + 1) % 64;
   return read_payload(stream,
@@ -119,8 +157,8 @@ void PacketLog::packet_sent(const sim::PacketTrace& packet, sim::Time line_time)
   const Told told = follow(streams_[{packet.from, packet.to}], packet.bytes);
   add(LogEvent::kPacket, {packet.from, packet.to, static_cast<std::int32_t>(told.meaning)},
       packet.time, line_time);
-  if (told.has_step) {
-    add(LogEvent::kStep, {packet.from, packet.to, 0}, packet.time);
+  if (told.operation != 0) {
+    add(LogEvent::kOrder, {packet.from, packet.to, told.operation}, packet.time);
   }
 }
 

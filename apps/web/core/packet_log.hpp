@@ -19,12 +19,20 @@ enum class LogEvent : std::int32_t {
   kLost,     ///< From a module, to a module.
   kPhase,    ///< Module, agent::Phase.
   kVerdict,  ///< Module, agent::Verdict.
-  kStep,     ///< From, to: an order for one more step of the linear method is on its way.
+  kOrder,    ///< From, to, wire::Operation: an order is on its way.
 };
 
 /// What a packet carries: kLink is a greeting, ping or acknowledgement; else the first message in
 /// it.
 enum class PacketMeaning : std::int32_t { kLink, kWave, kOrder, kReport, kVector, kPlanned };
+
+/// An order of the root in words; and whether it is a step of the linear method.
+struct OrderText {
+  const char* text;
+  bool is_step = false;
+};
+
+OrderText order_text(agent::wire::Operation operation);
 
 /// Follows the streams of messages in the packets of every link, to tell what they are.
 class PacketLog : public sim::TraceSink {
@@ -56,7 +64,7 @@ class PacketLog : public sim::TraceSink {
 
   struct Told {
     PacketMeaning meaning = PacketMeaning::kLink;
-    bool has_step = false;
+    std::uint8_t operation = 0;  ///< Of the first order, if there is one.
   };
 
   static Told follow(Stream& stream, std::span<const std::uint8_t> packet);

@@ -209,6 +209,7 @@ function begin(): void {
   listenToKeys(app, actions);
   listenToFiles(app);
   app.listeners.push(() => player.close());
+  app.listeners.push(() => (byId('hint').hidden ||= app.history.canUndo));
   for (const [id, name] of [['undo', 'undo'], ['redo', 'redo'], ['fit', 'fit']] as const) {
     byId(id).append(icon(name));
   }

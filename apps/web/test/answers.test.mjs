@@ -2,13 +2,15 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // The page's answers are the native program's: every number of the report to the last digit, for all
-// scenarios and for the 220 structures of tests/reference. Only the shear force, which is part of no
-// verdict, comes from the C library's hypot, which may differ in that digit.
+// scenarios, for the 220 structures of tests/reference and for robots that multigrid solves. Only the
+// shear force, which is part of no verdict, comes from the C library's hypot, which may differ in that
+// digit. And what a robot finds out by itself is the same, packet by packet.
 import assert from 'node:assert/strict';
+import { execFileSync } from 'node:child_process';
 import { readFileSync, readdirSync, writeFileSync } from 'node:fs';
 import path from 'node:path';
 import { after, before, test } from 'node:test';
-import { launch, nativeReports, openPage, repository, temporaryFolder } from './browser.mjs';
+import { launch, nativeReports, nativeSimulation, openExample, openPage, program, repository, scenario, temporaryFolder } from './browser.mjs';
 
 let browser;
 let page;
@@ -73,5 +75,39 @@ test('all reference structures have the same report, to the last digit', async (
   const files = writeReferences(temporaryFolder());
   assert.equal(files.length, 220);
   assert.ok((await expectNativeAnswers(files)) > 5000);
+  assert.deepEqual(page.faults, []);
+});
+
+test('robots that multigrid solves have the same report, to the last digit', async () => {
+  const folder = temporaryFolder();
+  const sizes = { cube: 10, shell: 12, portal: 26, bridge: 14, growth: 1500 };
+  const files = Object.entries(sizes).map(([family, size]) => {
+    const file = path.join(folder, `${family}.json`);
+    execFileSync(program, ['generate', family, String(size), '--output', file]);
+    return file;
+  });
+  for (const report of nativeReports(files)) {
+    assert.match(report.solver.name, /multigrid/, `${report.name}: ${report.solver.name}`);
+  }
+  assert.ok((await expectNativeAnswers(files)) > 5000);
+  assert.deepEqual(page.faults, []);
+});
+
+/** In the order of agent::Method, whose numbers the page's choices have. */
+const METHODS = ['jacobi', 'block-jacobi', 'cg', 'residuals', 'elimination'];
+
+test('the robot finds out the same by every method, packet by packet', async () => {
+  await openExample(page, 'arm_tips_a');
+  assert.equal(await page.locator('#method option').count(), METHODS.length);
+  for (const [number, method] of METHODS.entries()) {
+    await page.selectOption('#method', String(number));
+    await page.click('#simulate');
+    await page.waitForFunction((name) => globalThis.holdfast.player.trace?.method === name, method);
+    const own = await page.evaluate(() => globalThis.holdfast.player.trace);
+    const native = nativeSimulation(scenario('arm_tips_a'), method);
+    for (const key of ['verdict', 'method', 'messages', 'iterations', 'trace_hash', 'load_ratio_max']) {
+      assert.equal(own[key], native[key], `${method}: ${key}`);
+    }
+  }
   assert.deepEqual(page.faults, []);
 });

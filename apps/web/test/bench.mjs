@@ -103,6 +103,8 @@ const EDITED = {
   shell_1016: box([14, 14, 14], onShell(14)),
   plate_1024: box([32, 32, 1]),
   cube_1000: box([10, 10, 10]),
+  tower_999: box([3, 3, 111]),
+  table_996: box([30, 30, 25], (x, y, z) => z > 23 || (x % 29 === 0 && y % 29 === 0)),
 };
 for (const [name, cells] of Object.entries(EDITED)) {
   const modules = [...cells];

@@ -11,7 +11,7 @@ import { chromium } from 'playwright-core';
 
 export const repository = fileURLToPath(new URL('../../../', import.meta.url));
 export const pageFile = path.join(repository, 'build/page/holdfast.html');
-export const program = path.join(repository, 'build/release/holdfast');
+export const program = path.join(repository, 'build/dev/holdfast');
 export const scenario = (name) => path.join(repository, 'scenarios', `${name}.json`);
 export const temporaryFolder = () => mkdtempSync(path.join(tmpdir(), 'holdfast-'));
 
@@ -119,16 +119,20 @@ export async function openExample(page, name) {
 }
 
 /** The native program's reports of structure files. */
-export function nativeReports(files) {
+export const nativeReports = (files) => [report(['check', '--json', '-', ...files])].flat();
+
+/** What a robot finds out by itself, natively. */
+export const nativeSimulation = (file, method) =>
+  report(['simulate', '--quiet', '--json', '-', '--method', method, file]).distributed;
+
+function report(options) {
   try {
-    return read(execFileSync(program, ['check', '--json', '-', ...files], { encoding: 'utf8', maxBuffer: 1 << 28 }));
+    return JSON.parse(execFileSync(program, options, { encoding: 'utf8', maxBuffer: 1 << 28 }));
   } catch (error) {
     // Exit codes 1 and 2 are verdicts.
     if (error.status !== 1 && error.status !== 2) {
       throw error;
     }
-    return read(error.stdout);
+    return JSON.parse(error.stdout);
   }
 }
-
-const read = (text) => [JSON.parse(text)].flat();

@@ -20,6 +20,7 @@ test('an arm breaks with its fifth module, as statics say', async () => {
   // a pressure of (n + 1) w: shares n^2 w / 14.97 N and (n^2 - 1) w / 11.98 N of their strengths.
   const weight = 0.06106 * 9.81;
   const page = await openPage(browser);
+  assert.ok(await page.isDisabled('#undo'), 'nothing was done yet');
   await page.click('#new');
   await page.click('#kinds button >> text=Fixed');
   await page.mouse.click(400, 320);

@@ -12,7 +12,7 @@
 ///
 ///   kMass      with the reports: cuts that are open, so that each module knows its loops
 ///   kFactor    with the reports: columns of condensed stiffness, then condensed loads
-///   kStep      with the order: displacements and forces in cuts; with the reports: loads
+///   kTreeStep  with the order: displacements and forces in cuts; with the reports: loads
 ///
 /// Planned modules emulated here are leaves of the tree: they hang on this module or on each other.
 namespace holdfast::agent {
@@ -318,6 +318,18 @@ std::array<base::Vec6<double>, 1 + kPlannedMax> BasicAgent<Real>::leaf_loads(
   return loads;
 }
 
+/// What comes down first; the root has it.
+template <class Real>
+void BasicAgent<Real>::begin_tree_step() {
+  middle_ = {};
+  down_awaited_ =
+      parent_ < 0 ? std::uint8_t{0} : static_cast<std::uint8_t>(1 + work_.tree.branch.open_count());
+  if (down_awaited_ == 0) {
+    find_shifts();
+    send_branch_down();
+  }
+}
+
 template <class Real>
 void BasicAgent<Real>::take_branch_down(std::span<const std::uint8_t> message) {
   if (!is_sweeping_ || down_awaited_ == 0) {
@@ -364,7 +376,6 @@ void BasicAgent<Real>::find_shifts() {
   for (int i = 0; i < node_count(); ++i) {
     const auto at = static_cast<std::size_t>(i);
     Node<Real>& node = nodes_[at];
-    product_ += base::dot(residual(node, setup_, contact_), shifts[at]);
     base::add_to(node.u, shifts[at]);
     share_high_part(node);
   }

@@ -49,7 +49,7 @@ Order Conductor::next(const Setup& setup, const Report& report) {
       }
       break;
     case Step::kFactor:
-      return restarted_step();
+      return tree_step();
     case Step::kStep:
       return after_step(setup, report);
     case Step::kCorners:

@@ -199,7 +199,9 @@ void BasicAgent<Real>::precondition(int node_index, int degree) {
 
 template <class Real>
 void BasicAgent<Real>::after_exchange() {
-  if (order_.operation == wire::Operation::kStep && exchanges_left_ > exchanges_behind_) {
+  const bool is_step =
+      order_.operation == wire::Operation::kStep || order_.operation == wire::Operation::kTreeStep;
+  if (is_step && exchanges_left_ > exchanges_behind_) {
     exchanges_left_ == exchanges_behind_ + 2 ? share_low_part() : find_residuals();
     return;
   }
@@ -320,6 +322,7 @@ typename BasicAgent<Real>::Exchanged BasicAgent<Real>::exchanged() const {
     case wire::Operation::kLow:
       return Exchanged::kDisplacement;
     case wire::Operation::kStep:
+    case wire::Operation::kTreeStep:
       return exchanges_left_ > exchanges_behind_ ? Exchanged::kDisplacement : Exchanged::kTerm;
     case wire::Operation::kBegin:
       return Exchanged::kTerm;

@@ -53,15 +53,9 @@ void merge_facets(Report& into, const Report& from) {
 void merge_residual(Report& into, const Report& from) {
   into.reals[0] += from.reals[0];
   into.reals[1] = larger(into.reals[1], from.reals[1]);
-  merge_facets(into, from);
-}
-
-void merge_step(Report& into, const Report& from) {
-  const float ratio = larger(into.reals[1], from.reals[1]);
-  for (std::size_t i = 0; i < into.reals.size(); ++i) {
-    into.reals[i] += from.reals[i];
+  for (std::size_t i = 0; i < into.products.size(); ++i) {
+    into.products[i] += from.products[i];
   }
-  into.reals[1] = ratio;
   merge_facets(into, from);
 }
 
@@ -120,11 +114,11 @@ int real_count(Operation operation) {
     case Operation::kLow:
     case Operation::kStart:
     case Operation::kGradient:
+    case Operation::kStep:
+    case Operation::kTreeStep:
       return 2;
     case Operation::kSlope:
       return 5;
-    case Operation::kStep:
-      return 7;
     case Operation::kJacobi:
     case Operation::kLoads:
       return 1;
@@ -207,6 +201,7 @@ Writer encode(const Order& order) {
     case Operation::kCorners:
     case Operation::kLoads:
     case Operation::kFactor:
+    case Operation::kTreeStep:
       break;
   }
   return out;
@@ -273,6 +268,7 @@ Order decode_order(std::span<const std::uint8_t> message) {
     case Operation::kCorners:
     case Operation::kLoads:
     case Operation::kFactor:
+    case Operation::kTreeStep:
       break;
   }
   return order;
@@ -306,9 +302,15 @@ Writer encode(Operation operation, const Report& report) {
       break;
     case Operation::kLow:
     case Operation::kStep:
+    case Operation::kTreeStep:
       out.u16(report.extent);
       out.u32(report.number);
       out.u8(report.flags);
+      if (operation == Operation::kStep) {
+        for (const double product : report.products) {
+          out.long_real(product);
+        }
+      }
       break;
     case Operation::kHold:
       out.u32(report.count);
@@ -363,9 +365,15 @@ Report decode_report(std::span<const std::uint8_t> message) {
       break;
     case Operation::kLow:
     case Operation::kStep:
+    case Operation::kTreeStep:
       report.extent = in.u16();
       report.number = in.u32();
       report.flags = in.u8();
+      if (operation == Operation::kStep) {
+        for (double& product : report.products) {
+          product = in.long_real();
+        }
+      }
       break;
     case Operation::kHold:
       report.count = in.u32();
@@ -402,14 +410,14 @@ void merge(Operation operation, Report& into, const Report& from) {
       into.angles = mechanics::merge(into.angles, from.angles);
       return;
     case Operation::kLow:
+    case Operation::kStep:
+    case Operation::kTreeStep:
       return merge_residual(into, from);
     case Operation::kCorners:
       into.corners = mechanics::merge(into.corners, from.corners);
       return;
     case Operation::kLoads:
       return merge_loads(into, from);
-    case Operation::kStep:
-      return merge_step(into, from);
     default:
       break;
   }

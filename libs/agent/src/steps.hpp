@@ -34,20 +34,7 @@ inline constexpr double kStepSpread = 3;
 
 template <class Real>
 void BasicAgent<Real>::begin_step(const Order& order) {
-  product_ = 0;
   middle_ = {};
-  if ((order.flags & kAlongTree) != 0) {
-    down_awaited_ = parent_ < 0 ? std::uint8_t{0}
-                                : static_cast<std::uint8_t>(1 + work_.tree.branch.open_count());
-    if (down_awaited_ == 0) {
-      find_shifts();
-      send_branch_down();
-    }
-    return;
-  }
-  if constexpr (!kHasAllMethods) {
-    return;
-  }
   const auto c = static_cast<double>(order.reals[0]);
   const auto a = static_cast<double>(order.reals[1]);
   const auto b = static_cast<double>(order.reals[2]);
@@ -61,7 +48,6 @@ void BasicAgent<Real>::begin_step(const Order& order) {
     for (std::size_t k = 0; k < 6; ++k) {
       double correction = newer.p[k] - newer.z[k];
       double known = 0;
-      product_ += rest[k] * correction;
       if (!restarts) {
         newer.p[k] -= c * older.p[k];
         newer.q[k] -= c * older.q[k];
@@ -97,14 +83,13 @@ void BasicAgent<Real>::find_residuals() {
     Node<Real>& node = nodes_[static_cast<std::size_t>(i)];
     node.wanted = state_along(node, contact_, {}, 0);
     node.has_changed = node.is_ground && !(node.wanted == node.state);
-    const bool follows = node.has_changed && (order_.flags & kFollowStates) != 0;
-    if (follows) {
+    if (node.has_changed) {
       node.state = node.wanted;
     }
-    if (!kHasAllMethods || (order_.flags & kAlongTree) != 0) {
+    if (!kHasAllMethods || order_.operation == wire::Operation::kTreeStep) {
       continue;
     }
-    if (follows) {
+    if (node.has_changed) {
       factor_diagonal(node, setup_, contact_, node_faces(i));
     }
     start_terms(i);
@@ -169,38 +154,45 @@ void BasicAgent<Real>::next_terms() {
   rho_ = static_cast<float>(rho);
 }
 
-/// Sums for the root: |r|^2, (q, r), |q|^2, (q, q_older) in the norm of D^-1; (r, M^-1 r) before
-/// the step; the largest load ratio; the bound on the error of load ratios that r means.
+/// What every step reports: the bound on the error of load ratios that the residual means, the
+/// largest of them, and the facets.
 template <class Real>
-Report BasicAgent<Real>::step_report() const {
+Report BasicAgent<Real>::tree_step_report() const {
   Report report;
-  std::array<double, 5> sums{};
+  double error = 0;
   for (int i = 0; i < node_count(); ++i) {
     const Node<Real>& node = nodes_[static_cast<std::size_t>(i)];
-    const base::Vec6<double> rest = residual(node, setup_, contact_);
     report.extent = static_cast<std::uint16_t>(report.extent + (node.has_changed ? 1 : 0));
     equilibrium::report_facet(report, node);
-    sums[4] += ratio_error(base::converted<Real>(rest), setup_, contact_);
-    if (!kHasAllMethods || node.is_fixed || (order_.flags & kAlongTree) != 0) {
-      continue;
-    }
-    const Steps& steps = work_.steps[static_cast<std::size_t>(i)];
-    const auto weighted =
-        base::converted<double>(solve_diagonal(node, base::converted<Real>(rest)));
-    const auto weighted_q =
-        base::converted<double>(solve_diagonal(node, base::converted<Real>(steps.newer.q)));
-    sums[0] += base::dot(rest, weighted);
-    sums[1] += base::dot(steps.newer.q, weighted);
-    sums[2] += base::dot(steps.newer.q, weighted_q);
-    sums[3] += base::dot(steps.older.q, weighted_q);
+    error += ratio_error(residual(node, setup_, contact_), setup_, contact_);
   }
-  report.reals = {static_cast<float>(sums[0]), kNoLoadRatio,
-                  static_cast<float>(sums[1]), static_cast<float>(sums[2]),
-                  static_cast<float>(sums[3]), static_cast<float>(product_),
-                  static_cast<float>(sums[4])};
+  report.reals = {static_cast<float>(error), kNoLoadRatio};
   visit_loads([&](const base::Cell&, base::Direction, double ratio) {
     report.reals[1] = larger(report.reals[1], static_cast<float>(ratio));
   });
+  return report;
+}
+
+/// And the products with v = p for the least energy, v = D^-1 q for the least residual:
+/// (r, v), (q, v), (q_older, v).
+template <class Real>
+Report BasicAgent<Real>::step_report() const {
+  Report report = tree_step_report();
+  const bool is_residual = (order_.flags & kLeastResidual) != 0;
+  for (int i = 0; i < node_count(); ++i) {
+    const Node<Real>& node = nodes_[static_cast<std::size_t>(i)];
+    if (node.is_fixed) {
+      continue;
+    }
+    const Steps& steps = work_.steps[static_cast<std::size_t>(i)];
+    base::Vec6<double> test = steps.newer.p;
+    if (is_residual) {
+      test = base::converted<double>(solve_diagonal(node, base::converted<Real>(steps.newer.q)));
+    }
+    report.products[0] += base::dot(residual(node, setup_, contact_), test);
+    report.products[1] += base::dot(steps.newer.q, test);
+    report.products[2] += base::dot(steps.older.q, test);
+  }
   return report;
 }
 

@@ -24,6 +24,7 @@ constexpr bool exchanges(const Order& order) {
     case wire::Operation::kGradient:
     case wire::Operation::kJacobi:
     case wire::Operation::kStep:
+    case wire::Operation::kTreeStep:
       return true;
     case wire::Operation::kBegin:
       return order.count > 0;
@@ -44,6 +45,7 @@ constexpr std::uint16_t exchange_count(const Order& order) {
     case wire::Operation::kBegin:
       return order.count;
     case wire::Operation::kStep:
+    case wire::Operation::kTreeStep:
       return static_cast<std::uint16_t>(order.count + 2);
     default:
       return static_cast<std::uint16_t>(order.count + 1);
@@ -262,7 +264,7 @@ void BasicAgent<Real>::finish_sweep() {
   is_sweeping_ = false;
   Report report = conclude(order_);
   if (order_.operation == wire::Operation::kFactor ||
-      (order_.operation == wire::Operation::kStep && (order_.flags & kAlongTree) != 0)) {
+      order_.operation == wire::Operation::kTreeStep) {
     send_branch_up();
   }
   for (int face = 0; face < base::kDirectionCount; ++face) {

@@ -35,9 +35,9 @@ constexpr std::array<std::uint8_t, 14> kMessageBytes = {0,  19, 19, 8,  3,  0,  
 
 /// Sizes of orders and reports by operation.
 constexpr std::array<std::uint8_t, kOperationCount + 1> kOrderBytes = {
-    0, 12, 10, 11, 14, 13, 10, 3, 4, 11, 4, 11, 3, 2, 2, 18, 2, 17};
+    0, 12, 10, 11, 14, 13, 10, 3, 4, 11, 4, 11, 3, 2, 2, 18, 2, 17, 2};
 constexpr std::array<std::uint8_t, kOperationCount + 1> kReportBytes = {
-    0, 13, 3, 17, 19, 2, 2, 17, 12, 12, 6, 22, 10, 21, 24, 6, 2, 37};
+    0, 13, 3, 17, 19, 2, 2, 17, 12, 12, 6, 22, 10, 21, 24, 6, 2, 41, 17};
 
 }  // namespace
 
@@ -114,6 +114,12 @@ void Writer::short_real(double value) {
 
 void Writer::real(double value) { u32(std::bit_cast<std::uint32_t>(static_cast<float>(value))); }
 
+void Writer::long_real(double value) {
+  const auto leading = static_cast<float>(value);
+  real(static_cast<double>(leading));
+  real(value - static_cast<double>(leading));
+}
+
 void Writer::cell(const base::Cell& cell) {
   for (const std::int32_t coordinate : {cell.x, cell.y, cell.z}) {
     const auto bits = static_cast<std::uint32_t>(coordinate);
@@ -155,6 +161,11 @@ float Reader::short_real() {
 }
 
 float Reader::real() { return std::bit_cast<float>(u32()); }
+
+double Reader::long_real() {
+  const auto leading = static_cast<double>(real());
+  return leading + static_cast<double>(real());
+}
 
 base::Cell Reader::cell() {
   std::array<std::int32_t, 3> values{};

@@ -38,8 +38,8 @@ void BasicAgent<Real>::prepare(const Order& order) {
     case Operation::kFactor:
       factor_branch();
       break;
-    case Operation::kStep:
-      begin_step(order);
+    case Operation::kTreeStep:
+      begin_tree_step();
       break;
     case Operation::kVerdict:
       answer_ = order.answer;
@@ -55,10 +55,13 @@ void BasicAgent<Real>::prepare(const Order& order) {
   }
 }
 
-/// The same for the operations of conjugate gradients and the Jacobi methods.
+/// The same for the operations of all methods but elimination.
 template <class Real>
 void BasicAgent<Real>::prepare_solve(const Order& order) {
   switch (order.operation) {
+    case Operation::kStep:
+      begin_step(order);
+      break;
     case Operation::kHigh:
       move(order);
       break;
@@ -102,8 +105,8 @@ Report BasicAgent<Real>::conclude(const Order& order) {
       report.flags = static_cast<std::uint8_t>(report.flags | survey_loops());
       return report;
     }
-    case Operation::kStep:
-      return step_report();
+    case Operation::kTreeStep:
+      return tree_step_report();
     case Operation::kAngles:
       return angles_report();
     case Operation::kCorners:
@@ -124,10 +127,12 @@ Report BasicAgent<Real>::conclude(const Order& order) {
   return {};
 }
 
-/// The same for the operations of conjugate gradients and the Jacobi methods.
+/// The same for the operations of all methods but elimination.
 template <class Real>
 Report BasicAgent<Real>::conclude_solve(const Order& order) {
   switch (order.operation) {
+    case Operation::kStep:
+      return step_report();
     case Operation::kLow:
       return residual_report();
     case Operation::kStart:

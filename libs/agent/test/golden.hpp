@@ -13,7 +13,7 @@
 namespace holdfast::agent::test {
 
 /// By operation, from 1.
-inline constexpr std::array<std::string_view, 17> kGoldenOrders = {
+inline constexpr std::array<std::string_view, 18> kGoldenOrders = {
     "05 01 02 01 00 00 fe ff ff 03 00 00",
     "05 02 01 02 04 08 10 20 00 00",
     "05 03 c0 bd f0 40 42 0f 00 00 00",
@@ -30,9 +30,10 @@ inline constexpr std::array<std::string_view, 17> kGoldenOrders = {
     "05 0e",
     "05 0f 02 02 00 00 c0 3f 01 00 00 fe ff ff 03 00 00 05",
     "05 10",
-    "05 11 03 2c 01 00 00 80 3e 00 00 00 bf 00 00 80 be"};
+    "05 11 03 2c 01 00 00 80 3e 00 00 00 bf 00 00 80 be",
+    "05 12"};
 
-inline constexpr std::array<std::string_view, 17> kGoldenReports = {
+inline constexpr std::array<std::string_view, 18> kGoldenReports = {
     "06 01 21 01 01 00 00 fe ff ff 03 00 00",
     "06 02 87",
     "06 03 1d 00 00 00 fd ff ff ff 05 00 00 00 01 2c 01",
@@ -49,8 +50,9 @@ inline constexpr std::array<std::string_view, 17> kGoldenReports = {
     "06 0e 00 00 c0 3f 01 00 00 fe ff ff 03 00 00 04 01 00 00 00 1d 00 00 00",
     "06 0f 1d 00 00 00",
     "06 10",
-    "06 11 00 00 80 3f 00 00 00 3f 00 00 80 3e 00 00 00 40 00 00 80 be 00 00 40 40 00 00 c0 3f "
-    "03 00 ef cd ab 89 01"};
+    "06 11 00 00 80 3e 00 00 00 3f 03 00 ef cd ab 89 01 00 00 80 3f 00 00 80 30 00 00 80 be "
+    "00 00 00 00 00 00 40 40 00 00 00 00",
+    "06 12 00 00 80 3e 00 00 00 3f 03 00 ef cd ab 89 01"};
 
 /// The cut that opens a loop: from (1, -2, 3) to +y.
 inline constexpr std::string_view kGoldenLoop = "0a 01 00 00 fe ff ff 03 00 00 02";

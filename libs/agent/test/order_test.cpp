@@ -72,6 +72,9 @@ Report random_report(Operation operation, base::Rng& rng) {
   for (float& real : report.reals) {
     real = exact_real(rng);
   }
+  for (double& product : report.products) {
+    product = static_cast<double>(exact_real(rng));
+  }
   if (operation == Operation::kStart || operation == Operation::kGradient) {
     report.reals[2] = static_cast<float>(rng.below(16)) / 8;  // Seven digits of fraction hold it.
   }

@@ -67,9 +67,10 @@ TEST(Wire, orders_are_these_bytes) {
       {.operation = Operation::kVerdict, .answer = answer},
       {.operation = Operation::kFactor},
       {.operation = Operation::kStep,
-       .flags = kFollowStates | kRestart,
+       .flags = kRestart | kLeastResidual,
        .count = 300,
-       .reals = {0.25F, -0.5F, -0.25F}}};
+       .reals = {0.25F, -0.5F, -0.25F}},
+      {.operation = Operation::kTreeStep}};
   ASSERT_EQ(orders.size(), kGoldenOrders.size());
   for (std::size_t i = 0; i < orders.size(); ++i) {
     EXPECT_EQ(order_text(orders[i]), kGoldenOrders[i]);
@@ -104,7 +105,9 @@ TEST(Wire, reports_are_these_bytes) {
       {.flags = kAnyTilting,
        .extent = 3,
        .number = 0x89abcdef,
-       .reals = {1, 0.5F, 0.25F, 2, -0.25F, 3, 1.5F}}};
+       .reals = {0.25F, 0.5F},
+       .products = {1 + 0x1p-30, -0.25, 3}},
+      {.flags = kAnyTilting, .extent = 3, .number = 0x89abcdef, .reals = {0.25F, 0.5F}}};
   ASSERT_EQ(reports.size(), kGoldenReports.size());
   for (std::size_t i = 0; i < reports.size(); ++i) {
     EXPECT_EQ(report_text(static_cast<Operation>(i + 1), reports[i]), kGoldenReports[i]);

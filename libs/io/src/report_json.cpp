@@ -73,6 +73,11 @@ Json connections_json(const model::Robot& robot, const verdict::Assessment& asse
   return list;
 }
 
+const char* solver_name(solver::Method method) {
+  return method == solver::Method::kMultigrid ? "conjugate gradients with multigrid"
+                                              : "sparse direct, 6x6 block LU";
+}
+
 }  // namespace
 
 std::string write_report_json(const ReportEntry& entry) {
@@ -92,8 +97,9 @@ std::string write_report_json(const ReportEntry& entry) {
       {"connections", connections_json(robot, assessment)},
       {"contact_model", verdict::name(assessment.contact_model)},
       {"solver",
-       {{"name", "sparse direct, 6x6 block LU"},
+       {{"name", solver_name(assessment.equilibrium.method)},
         {"iterations", assessment.equilibrium.steps},
+        {"multigrid_iterations", assessment.equilibrium.iteration_count},
         {"seconds", entry.seconds}}},
       {"warnings", std::vector<std::string>(entry.warnings.begin(), entry.warnings.end())}};
   return report.dump(2, ' ', false, Json::error_handler_t::replace);

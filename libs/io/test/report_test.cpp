@@ -60,6 +60,17 @@ TEST(Report, as_json_has_the_keys_that_other_tools_rely_on) {
   EXPECT_EQ(report["warnings"], Json(warnings));
 }
 
+TEST(Report, as_json_names_the_solver_that_was_used) {
+  Checked chain(long_chain());
+  const Json direct = Json::parse(write_report_json(chain.entry()))["solver"];
+  EXPECT_EQ(direct["name"], "sparse direct, 6x6 block LU");
+  EXPECT_EQ(direct["multigrid_iterations"], 0);
+  chain.assessment = verdict::assess(chain.robot, {.method = solver::Method::kMultigrid});
+  const Json multigrid = Json::parse(write_report_json(chain.entry()))["solver"];
+  EXPECT_EQ(multigrid["name"], "conjugate gradients with multigrid");
+  EXPECT_EQ(multigrid["multigrid_iterations"], chain.assessment.equilibrium.iteration_count);
+}
+
 TEST(Report, as_json_keeps_every_digit) {
   const Checked chain(long_chain());
   const Json report = Json::parse(write_report_json(chain.entry()));

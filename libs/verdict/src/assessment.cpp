@@ -237,8 +237,8 @@ void decide_stable(const model::Robot& robot, Assessment& assessment) {
   } else {
     assessment.verdict = Verdict::kSafe;
     assessment.reasons.push_back(
-        fmt::format("stable, and no connection carries more than {:.4f} of its strength ({})",
-                    ratio, model::ends_text(robot, *assessment.worst)));
+        fmt::format("stable; the worst connection, {}, carries {:.4f} of its strength",
+                    model::ends_text(robot, *assessment.worst), ratio));
   }
 }
 

@@ -79,6 +79,7 @@ export const enum Output {
 }
 
 export interface SimulationChoice {
+  /** An agent::Method. */
   method: number;
   link: number;
   seed: number;
@@ -90,7 +91,7 @@ export const enum LogEvent {
   kLost,
   kPhase,
   kVerdict,
-  kStep,
+  kOrder,
 }
 
 export interface Trace {
@@ -107,6 +108,8 @@ export interface Trace {
   root: number;
   is_complete: boolean;
   ticks_per_second: number;
+  /** What the root can order, by wire::Operation. */
+  orders: { text: string; is_step: boolean }[];
   /** LogEvent and three integers for each event. */
   events: Int32Array;
   /** Begin and duration in ticks for each event. */

@@ -109,10 +109,10 @@ export class Core {
     const loads = head.has_loads ? 5 * connections : 0;
     return {
       ...head,
-      connections: reply.integers.slice(2, 2 + 3 * connections),
-      broken: reply.integers.slice(2 + 3 * connections, 2 + 3 * connections + broken),
-      loads: reply.numbers.slice(0, loads),
-      displacements: reply.numbers.slice(loads),
+      connections: reply.integers.subarray(2, 2 + 3 * connections),
+      broken: reply.integers.subarray(2 + 3 * connections, 2 + 3 * connections + broken),
+      loads: reply.numbers.subarray(0, loads),
+      displacements: reply.numbers.subarray(loads),
     };
   }
 

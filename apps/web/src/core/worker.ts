@@ -22,6 +22,13 @@ export interface WorkerReply {
 
 let core: Promise<Core> | undefined;
 
+/** What is handed over instead of copied. */
+function buffersOf(value: unknown): ArrayBuffer[] {
+  const parts = typeof value === 'object' && value !== null ? Object.values(value) : [];
+  const buffers = parts.filter(ArrayBuffer.isView).map((view) => view.buffer as ArrayBuffer);
+  return [...new Set(buffers)];
+}
+
 self.onmessage = async (event: MessageEvent<WebAssembly.Module | WorkerCall>) => {
   if (event.data instanceof WebAssembly.Module) {
     core = Core.create(event.data);
@@ -31,7 +38,7 @@ self.onmessage = async (event: MessageEvent<WebAssembly.Module | WorkerCall>) =>
   try {
     const run = (await core!)[name] as (...values: unknown[]) => unknown;
     const value = run.apply(await core!, values);
-    self.postMessage({ id, value } satisfies WorkerReply);
+    self.postMessage({ id, value } satisfies WorkerReply, { transfer: buffersOf(value) });
   } catch (error) {
     const message = error instanceof Error ? error.message : String(error);
     const reply = error instanceof CoreError ? { refusal: message } : { fault: message };

@@ -30,8 +30,14 @@ export class History {
     return changes.length > 0;
   }
 
+  /** Puts another robot in place of this one; the empty page at the beginning is not kept. */
   replace(label: string, after: Robot): void {
-    this.do({ label, before: this.robot, after });
+    const step = { label, before: this.robot, after };
+    if (this.robot.count === 0 && !this.canUndo && !this.canRedo) {
+      this.apply(step, true);
+    } else {
+      this.do(step);
+    }
   }
 
   /** The label of what was undone. */

@@ -63,7 +63,13 @@ function reason(robot: Robot, finding: Finding | undefined): string {
       ? 'The centre of mass is above the support polygon.'
       : 'The centre of mass is not above the support polygon.';
   }
-  return finding?.problem ?? finding?.answer?.reasons.join(' ') ?? '';
+  const sentences = finding?.answer?.reasons.map((text) => `${text[0].toUpperCase()}${text.slice(1)}.`);
+  return finding?.problem ?? sentences?.join(' ') ?? '';
+}
+
+function formatTime(seconds: number): string {
+  const ms = 1000 * seconds;
+  return ms < 10 ? `${ms.toPrecision(2)} ms` : ms < 1000 ? `${ms.toFixed(0)} ms` : `${seconds.toFixed(1)} s`;
 }
 
 type Figure = [name: string, value: string, title?: string];
@@ -85,9 +91,7 @@ function figures(robot: Robot, finding: Finding | undefined, answer: Answer | un
   }
   list.push(['Modules', countText(robot)]);
   if (answer?.has_loads) {
-    const ms = answer.seconds * 1000;
-    const time = ms < 1000 ? `${ms.toPrecision(2)} ms` : `${answer.seconds.toFixed(1)} s`;
-    list.push(['Solved in', `${time}, ${answer.contact_model} contact`]);
+    list.push(['Contact', answer.contact_model], ['Solved in', formatTime(answer.seconds)]);
   }
   return list;
 }

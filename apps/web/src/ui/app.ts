@@ -170,6 +170,7 @@ export class App {
     this.topple = undefined;
     this.stage.robot.matrixAutoUpdate = true;
     this.stage.robot.updateMatrix();
+    this.ground.follow(undefined);
     this.stage.draw();
   }
 
@@ -342,6 +343,7 @@ export class App {
       } else {
         this.stage.robot.matrixAutoUpdate = false;
         this.stage.robot.matrix.copy(this.topple.motion.matrix(Math.max(seconds, 0)));
+        this.ground.follow(this.stage.robot.matrix);
         isMoving = true;
       }
     }

@@ -32,15 +32,16 @@ export function download(name: string, content: Blob): void {
 const SHOWN_MS = 7000;
 
 /** A message for a while; one that is an error stays until it is closed. */
-export function tell(text: string, isError = false): void {
+export function tell(text: string, isError = false, shownMs = isError ? Infinity : SHOWN_MS): HTMLElement {
   const close = make('button', { type: 'button', className: 'close', ariaLabel: 'Close' });
   const message = make('div', { className: isError ? 'message error' : 'message' }, make('p', {}, text), close);
   close.append(icon('close'));
   close.onclick = () => message.remove();
   byId('messages').replaceChildren(message);
-  if (!isError) {
-    setTimeout(() => message.remove(), SHOWN_MS);
+  if (shownMs < Infinity) {
+    setTimeout(() => message.remove(), shownMs);
   }
+  return message;
 }
 
 /** For who listens: the state of what the keyboard's cursor is on. */

@@ -24,6 +24,9 @@ export function robotOf(opened: OpenedDocument, text: string, fallbackName: stri
   return robot;
 }
 
+/** A structure that takes longer to read is said to be read. */
+const LATE_MS = 1000;
+
 /** Puts a structure in place of the robot; what was there comes back with undo. */
 export async function openText(
   app: App,
@@ -31,8 +34,10 @@ export async function openText(
   name: string,
   origin = name,
 ): Promise<boolean> {
+  let note: HTMLElement | undefined;
+  const late = setTimeout(() => (note = tell(`reading ${origin} …`, false, Infinity)), LATE_MS);
   try {
-    const opened = await client.open(bytes);
+    const opened = await client.open(bytes).finally(() => clearTimeout(late));
     const robot = robotOf(opened, new TextDecoder().decode(bytes), name);
     app.history.replace(`opening ${robot.name || 'a structure'}`, robot);
     const notes = [...opened.warnings];
@@ -46,6 +51,8 @@ export async function openText(
   } catch (error) {
     tell(`${origin}: ${error instanceof Error ? error.message : String(error)}`, true);
     return false;
+  } finally {
+    note?.remove();
   }
 }
 

@@ -40,26 +40,26 @@ function fill(app: App, dialog: HTMLDialogElement): void {
 function card(app: App, dialog: HTMLDialogElement, example: Example): HTMLButtonElement {
   const picture = make('canvas', { width: 2 * WIDTH, height: 2 * HEIGHT });
   const verdict = make('span', { className: 'card-verdict' });
-  const caption = example.title.length === 1 ? example.text : `${example.title}: ${example.text}`;
-  const button = make('button', { type: 'button', className: 'card' }, picture, verdict, caption);
+  const title = example.title.length === 1 ? [] : [make('span', { className: 'card-title' }, example.title)];
+  const button = make('button', { type: 'button', className: 'card' }, picture, verdict, ...title, example.text);
   button.dataset.example = example.name;
   button.onclick = () => {
     dialog.close();
     void openText(app, new TextEncoder().encode(example.source()), example.name);
   };
-  if (!example.isLarge) {
-    void judge(example, picture, verdict);
-  }
+  void judge(example, picture, verdict);
   return button;
 }
 
 async function judge(example: Example, picture: HTMLCanvasElement, verdict: HTMLElement): Promise<void> {
-  const source = example.source();
+  const source = (example.sketch ?? example.source)();
   const robot = robotOf(await client.open(new TextEncoder().encode(source)), source, '');
   const { data, slots } = robot.toData();
   const answer = await client.check(data);
-  verdict.textContent = answer.verdict;
-  verdict.dataset.verdict = answer.verdict;
+  if (!example.sketch) {
+    verdict.textContent = answer.verdict;
+    verdict.dataset.verdict = answer.verdict;
+  }
   drawSmall(picture, robot, answer, slots);
 }
 

@@ -29,12 +29,14 @@ interface Moment {
   verdicts: Int8Array;
   packets: number;
   steps: number;
+  /** What the root has ordered last. */
+  order: number;
 }
 
 export class Player {
   private readonly client = new CoreClient();
   private readonly packets = new Packets();
-  private trace?: Trace;
+  trace?: Trace;
   private slots: Int32Array = new Int32Array(0);
   /** The module in each slot; those from agentCount on are planned. */
   private moduleOf = new Int32Array(0);
@@ -48,7 +50,7 @@ export class Player {
   private isPlaying = false;
   private lastFrame = 0;
   private durationMax = 0;
-  /** Times at which step-on stops: orders of the root for one more step, changes of phase. */
+  /** Times at which step-on stops: orders of the root, changes of phase. */
   private stops: number[] = [];
   private phaseStops: number[] = [];
   private readonly cursor = { next: 0 };
@@ -146,10 +148,10 @@ export class Player {
       this.end = Math.max(this.end, times[2 * i] + times[2 * i + 1]);
       this.durationMax = Math.max(this.durationMax, times[2 * i + 1]);
       const [kind, from, to] = events.subarray(EVENT_INTEGERS * i, EVENT_INTEGERS * i + 3);
-      if (kind === LogEvent.kStep && from === trace.root && this.rootChild < 0) {
+      if (kind === LogEvent.kOrder && from === trace.root && this.rootChild < 0) {
         this.rootChild = to;
       }
-      if (kind === LogEvent.kStep && from === trace.root && this.rootChild === to) {
+      if (kind === LogEvent.kOrder && from === trace.root && this.rootChild === to) {
         stops.add(times[2 * i]);
       } else if (kind === LogEvent.kPhase && to > phase) {
         phase = to;
@@ -163,6 +165,7 @@ export class Player {
     this.drawTimeline();
     byId('player').hidden = false;
     byId('trace-result').textContent = this.result(trace);
+    byId('player').scrollIntoView({ block: 'nearest' });
     this.app.view.paintOver = (slot) => this.colour(slot);
     this.show(0);
     this.play();
@@ -247,22 +250,23 @@ export class Player {
   }
 
   private begin(count: number): Moment {
-    return { phases: new Int8Array(count).fill(-1), verdicts: new Int8Array(count), packets: 0, steps: 0 };
+    return { phases: new Int8Array(count).fill(-1), verdicts: new Int8Array(count), packets: 0, steps: 0, order: 0 };
   }
 
   private advance(trace: Trace, time: number): void {
     const { moment, cursor } = this;
     const { events, times } = trace;
     while (2 * cursor.next < times.length && times[2 * cursor.next] <= time) {
-      const [kind, a, b] = events.subarray(EVENT_INTEGERS * cursor.next, EVENT_INTEGERS * cursor.next + 3);
+      const [kind, a, b, c] = events.subarray(EVENT_INTEGERS * cursor.next, EVENT_INTEGERS * (cursor.next + 1));
       if (kind === LogEvent.kPacket) {
         ++moment.packets;
       } else if (kind === LogEvent.kPhase) {
         moment.phases[a] = b;
       } else if (kind === LogEvent.kVerdict) {
         moment.verdicts[a] = b;
-      } else if (kind === LogEvent.kStep && a === trace.root && b === this.rootChild) {
-        ++moment.steps;
+      } else if (kind === LogEvent.kOrder && a === trace.root && b === this.rootChild) {
+        moment.order = c;
+        moment.steps += trace.orders[c].is_step ? 1 : 0;
       }
       ++cursor.next;
     }
@@ -292,7 +296,8 @@ export class Player {
     this.allKnow = knowing >= agents;
     const phase = Math.max(...moment.phases, 0);
     const time = trace.ticks_per_second > 0 ? `${(this.time / trace.ticks_per_second).toFixed(3)} s` : `round ${Math.floor(this.time)}`;
-    byId('moment').textContent = `${time} · ${PHASES[phase]} · step ${moment.steps} · ${moment.packets} packets · ${knowing} of ${agents} know the verdict`;
+    const order = moment.order > 0 ? ` · order: ${trace.orders[moment.order].text}` : '';
+    byId('moment').textContent = `${time} · ${PHASES[phase]} · step ${moment.steps} · ${moment.packets} packets · ${knowing} of ${agents} know the verdict${order}`;
     byId<HTMLInputElement>('time').value = String(Math.round((10_000 * this.time) / Math.max(this.end, 1)));
   }
 

@@ -9,7 +9,8 @@ import {
   MeshBasicMaterial,
   PlaneGeometry,
   ShaderMaterial,
-  type Object3D,
+  Vector3,
+  type Matrix4,
 } from 'three';
 import type { Point, Stability } from '../core/types';
 
@@ -51,6 +52,12 @@ export class Ground {
   readonly group = new Group();
   private readonly grid: Mesh<PlaneGeometry, ShaderMaterial>;
   private readonly answer = new Group();
+  /** Kept: with the last material of its kind the renderer drops the program, and compiles it anew. */
+  private readonly materials = new Map<string, MeshBasicMaterial>();
+  /** The centre of mass in the air, where it is while the robot stands, what shows how high. */
+  private ball?: Mesh;
+  private readonly ballPlace = new Vector3();
+  private post?: Mesh;
   colours: GroundColours = { ink: [0, 0, 0], polygon: 0, outline: 0, mass: 0, warn: 0 };
 
   constructor() {
@@ -80,55 +87,82 @@ export class Ground {
   show(stability: Stability | undefined, pitch: number, height: number): void {
     for (const child of [...this.answer.children] as Mesh[]) {
       child.geometry.dispose();
-      (child.material as MeshBasicMaterial).dispose();
       this.answer.remove(child);
     }
+    this.ball = this.post = undefined;
     if (!stability || stability.polygon.length < 3) {
       return;
     }
     const scaled = ([x, y]: Point): Point => [x / pitch, y / pitch];
     const polygon = stability.polygon.map(scaled);
     const { colours } = this;
-    this.add(fan(polygon), colours.polygon, 0.45, 0);
+    this.add(fan(polygon), this.material(colours.polygon, 0.45), 0);
     polygon.forEach((a, i) => {
-      this.add(band(a, polygon[(i + 1) % polygon.length], 0.035), colours.outline, 1, 0.002);
+      this.add(band(a, polygon[(i + 1) % polygon.length], 0.035), this.material(colours.outline), 0.002);
     });
     const mass = scaled(stability.centre_of_mass);
     if (stability.edge) {
       const [a, b] = stability.edge.map(scaled) as [Point, Point];
-      this.add(band(a, b, stability.stable ? 0.06 : 0.1), colours.warn, 1, 0.004);
-      this.add(band(mass, foot(mass, a, b), 0.03), colours.mass, 1, 0.005);
+      this.add(band(a, b, stability.stable ? 0.06 : 0.1), this.material(colours.warn), 0.004);
+      this.add(band(mass, foot(mass, a, b), 0.03), this.material(colours.mass), 0.005);
     }
-    this.add(ring(mass, 0.2, 0.26), colours.mass, 1, 0.006);
-    this.add(ring(mass, 0, 0.08), colours.mass, 1, 0.006);
-    const post = this.add(band([0, 0], [height, 0], 0.02), colours.mass, 0.8, 0);
-    post.position.set(mass[0], mass[1], 0);
-    post.rotation.set(0, -Math.PI / 2, 0);
-    for (const part of [post, this.add(ring([0, 0], 0, 0.09), colours.mass, 0.9, 0)]) {
-      part.material.depthTest = false;
-      part.renderOrder = 3;
-      if (part !== post) {
-        part.position.set(mass[0], mass[1], height);
-        part.onBeforeRender = (_renderer, _scene, camera) => {
-          part.quaternion.copy(camera.quaternion);
-          part.updateMatrixWorld();
-        };
-      }
+    this.add(ring(mass, 0.2, 0.26), this.material(colours.mass), 0.006);
+    this.add(ring(mass, 0, 0.08), this.material(colours.mass), 0.006);
+    this.showMass(mass, height);
+  }
+
+  /** The centre of mass moves with the robot; undefined: back to where it stands. */
+  follow(motion: Matrix4 | undefined): void {
+    if (!this.ball || !this.post) {
+      return;
+    }
+    this.post.visible = motion === undefined;
+    this.ball.position.copy(this.ballPlace);
+    if (motion) {
+      const { z } = this.group.position;
+      this.ball.position.setZ(this.ballPlace.z + z).applyMatrix4(motion);
+      this.ball.position.z -= z;
     }
   }
 
-  private add(geometry: BufferGeometry, colour: number, opacity: number, z: number) {
-    const material = new MeshBasicMaterial({
-      color: colour,
-      opacity,
-      transparent: true,
-      depthWrite: false,
-      side: DoubleSide,
-    });
+  /** Seen through the modules around it. */
+  private showMass([x, y]: Point, height: number): void {
+    const { mass } = this.colours;
+    const post = this.add(band([0, 0], [height, 0], 0.02), this.material(mass, 0.8, true), 0);
+    post.position.set(x, y, 0);
+    post.rotation.set(0, -Math.PI / 2, 0);
+    const ball = this.add(ring([0, 0], 0, 0.09), this.material(mass, 0.9, true), 0);
+    ball.position.copy(this.ballPlace.set(x, y, height));
+    ball.onBeforeRender = (_renderer, _scene, camera) => {
+      ball.quaternion.copy(camera.quaternion);
+      ball.updateMatrixWorld();
+    };
+    post.renderOrder = ball.renderOrder = 3;
+    this.post = post;
+    this.ball = ball;
+  }
+
+  private material(colour: number, opacity = 1, isInFront = false): MeshBasicMaterial {
+    const name = `${colour} ${opacity} ${isInFront}`;
+    const material =
+      this.materials.get(name) ??
+      new MeshBasicMaterial({
+        color: colour,
+        opacity,
+        transparent: true,
+        depthTest: !isInFront,
+        depthWrite: false,
+        side: DoubleSide,
+      });
+    this.materials.set(name, material);
+    return material;
+  }
+
+  private add(geometry: BufferGeometry, material: MeshBasicMaterial, z: number): Mesh {
     const mesh = new Mesh(geometry, material);
     mesh.position.z = z;
     mesh.renderOrder = -1;
-    this.answer.add(mesh as Object3D);
+    this.answer.add(mesh);
     return mesh;
   }
 }

@@ -15,7 +15,7 @@ namespace holdfast::solver {
 
 class Team {
  public:
-  /// 0: as many as the machine has cores, at most kThreadCountMax.
+  /// At most kThreadCountMax; 0: as many as the machine has cores.
   explicit Team(int thread_count);
   ~Team();
   Team(const Team&) = delete;
@@ -23,7 +23,11 @@ class Team {
 
   int thread_count() const { return thread_count_; }
 
+#if defined(__EMSCRIPTEN__) && !defined(__EMSCRIPTEN_PTHREADS__)
+  static constexpr int kThreadCountMax = 1;  // There are none to be had.
+#else
   static constexpr int kThreadCountMax = 64;
+#endif
   /// Nodes in a chunk.
   static constexpr std::size_t kChunk = 512;
   /// Fewer chunks are not shared: waking a thread takes as long as they do.

@@ -258,12 +258,14 @@ class BasicAgent {
 
   // steps.hpp: the one-sweep methods.
   void begin_step(const Order& order);
+  void begin_tree_step();
   void share_high_part(Node<Real>& node);
   void find_residuals();
   void share_term(Node<Real>& node, Steps& steps);
   void start_terms(int node);
   void next_terms();
   Report step_report() const;
+  Report tree_step_report() const;
 
   // equilibrium.cpp: the same for the equilibrium's operations.
   /// Displacements go into forces, a gradient's direction into its image, a term of a step's
@@ -360,7 +362,6 @@ class BasicAgent {
   // Mechanics.
   std::array<Node<Real>, 1 + kPlannedMax> nodes_{};  ///< This module, then those it emulates.
   Work<Real> work_;
-  double product_ = 0;  ///< (r, M^-1 r) before the last step.
   std::array<base::Vec6<float>, kPlannedMax> planned_vector_{};
   std::array<base::Vec6<double>, kPlannedMax> planned_force_{};
   std::array<MiddleLoad, base::kDirectionCount> middle_{};

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 
+#include "holdfast/agent/energy_bound.hpp"
 #include "holdfast/agent/order.hpp"
 #include "holdfast/agent/planned.hpp"
 #include "holdfast/agent/setup.hpp"
@@ -53,6 +54,14 @@ class Conductor {
   const Effort& effort() const { return effort_; }
 
  private:
+  /// The next step of a one-sweep method: u + a (p - c p_older) + b p_older.
+  struct Minimum {
+    double a = 0;
+    double b = 0;
+    double c = 0;
+    double square = 0;  ///< (p, q) of p - c p_older, or |q|^2
+  };
+
   enum class Step : std::uint8_t {
     kPlan,
     kHosts,
@@ -93,11 +102,13 @@ class Conductor {
   std::uint16_t step_degree() const;
   Order first_step();
   Order factor();
+  Order tree_step();
   Order next_step(std::uint8_t flags, const std::array<float, 3>& coefficients);
   Order restarted_step();
   Order minimised_step(const Report& report);
   Order after_step(const Setup& setup, const Report& report);
-  double step_error(const Setup& setup, const Report& report, bool has_jumped);
+  Minimum minimum(const Report& report) const;
+  double step_error(const Setup& setup, const Report& report, double bound);
   Order leave_one_sweep(const Setup& setup, bool is_unilateral);
 
   Order start_jacobi();
@@ -159,13 +170,11 @@ class Conductor {
   // One-sweep methods.
   std::uint16_t depth_ = 0;
   bool has_many_loops_ = false;
-  bool follows_ = false;    ///< The last step took over the wanted contact states.
-  bool has_older_ = false;  ///< There is an older direction.
-  double predicted_ = 0;    ///< Error expected after the last step.
-  double norm_ = 0;         ///< |r|^2 at the last report, ...
-  double least_norm_ = 0;   ///< ... and |r^|^2 from which the last step was made.
-  double older_norm_ = 0;   ///< |q_older|^2
-  double eigenvalue_ = 1;   ///< The least of M^-1 K seen.
+  bool has_older_ = false;       ///< There is an older direction.
+  bool least_residual_ = false;  ///< A facet tilts: no energy to minimise.
+  double predicted_ = 0;         ///< Error expected after the last step.
+  double older_square_ = 0;      ///< (p, q) of the older direction, or |q|^2.
+  EnergyBound energy_bound_;
   // Jacobi.
   std::uint16_t batch_ = 0;
   std::uint32_t check_at_ = 0;

@@ -64,10 +64,10 @@ struct Order {
 
 /// Flags of orders.
 inline constexpr std::uint8_t kUnilateralLaw = 1;  ///< kBegin
-inline constexpr std::uint8_t kOneSweep = 2;       ///< kBegin: for kFactor and kStep.
-inline constexpr std::uint8_t kFollowStates = 1;   ///< kLow, kStep: take over wanted states.
-inline constexpr std::uint8_t kRestart = 2;        ///< kStep: without older directions.
-inline constexpr std::uint8_t kAlongTree = 4;      ///< kStep: by elimination.
+inline constexpr std::uint8_t kOneSweep = 2;       ///< kBegin: for kStep or kTreeStep.
+inline constexpr std::uint8_t kFollowStates = 1;   ///< kLow: take over wanted states.
+inline constexpr std::uint8_t kRestart = 1;        ///< kStep: without older directions.
+inline constexpr std::uint8_t kLeastResidual = 2;  ///< kStep: least residual, not least energy.
 inline constexpr std::uint8_t kAdoptStates = 1;    ///< kStart
 inline constexpr std::uint8_t kWithScalars = 2;    ///< kStart
 inline constexpr std::uint8_t kWithBlocks = 4;     ///< kStart
@@ -86,7 +86,8 @@ struct Report {
   std::uint32_t count = 0;
   std::uint32_t number = 0;
   std::array<std::int32_t, 2> cell_sum{};
-  std::array<float, 7> reals{};
+  std::array<float, 5> reals{};
+  std::array<double, 3> products{};  ///< kStep
   base::Cell cell = {};
   base::Direction direction = base::Direction::kPlusX;
   mechanics::SafeAngles<std::int64_t> angles = {};

@@ -23,7 +23,7 @@ inline constexpr int kHeaderBytes = 2;
 inline constexpr int kChecksumBytes = 2;
 inline constexpr int kPacketBytesMin = 17;   ///< Blinky Blocks version 1
 inline constexpr int kPacketBytesMax = 228;  ///< Blinky Blocks version 2
-inline constexpr int kMessageBytesMax = 37;
+inline constexpr int kMessageBytesMax = 41;
 inline constexpr int kVectorBytes = 26;  ///< Of the messages with six reals.
 inline constexpr int kCellBytes = 9;
 
@@ -64,9 +64,10 @@ enum class Operation : std::uint8_t {
   kLoads,     ///< The worst connection.
   kVerdict,   ///< The answer, for every module.
   kFactor,    ///< Condense every branch: stiffness and load.
-  kStep,      ///< One step of the one-sweep methods: move, residual, sums.
+  kStep,      ///< One step of the polynomial: move, residual, sums.
+  kTreeStep,  ///< One step of the elimination: move, residual.
 };
-inline constexpr int kOperationCount = 17;
+inline constexpr int kOperationCount = 18;
 
 /// Sizes of whole messages, type byte included; 0 for what is not a message. `second` is the byte
 /// after the type and matters for orders and reports only.
@@ -92,6 +93,7 @@ class Writer {
 
   void short_real(double value);      ///< Its upper 16 bits, rounded away from zero.
   void real(double value);            ///< Rounded to binary32.
+  void long_real(double value);       ///< As binary32, and what that leaves as another.
   void cell(const base::Cell& cell);  ///< Three times 24 bits, two's complement.
   void pad();                         ///< Zeros up to the size of the message.
 
@@ -116,6 +118,7 @@ class Reader {
 
   float short_real();
   float real();
+  double long_real();
   base::Cell cell();
 
  private:
