@@ -24,10 +24,10 @@ function(holdfast_freestanding name)
   target_compile_options(holdfast_${name} PRIVATE -fno-exceptions -fno-rtti)
 endfunction()
 
-# holdfast_test(NAME SOURCES ... LINKS ...): one test program, its tests found by ctest. As
-# WebAssembly it is one test in all, as starting Node takes longer than most of them.
+# holdfast_test(NAME SOURCES ... LINKS ... [LABELS ...]): a test program, its tests found by ctest.
+# As WebAssembly it is one test in all, as starting Node takes longer than most of them.
 function(holdfast_test name)
-  cmake_parse_arguments(TEST "" "" "SOURCES;LINKS" ${ARGN})
+  cmake_parse_arguments(TEST "" "" "SOURCES;LINKS;LABELS" ${ARGN})
   if(NOT HOLDFAST_BUILD_TESTS)
     return()
   endif()
@@ -40,6 +40,6 @@ function(holdfast_test name)
     add_test(NAME ${name} COMMAND ${name})
     set_tests_properties(${name} PROPERTIES TIMEOUT 600)
   else()
-    gtest_discover_tests(${name} PROPERTIES TIMEOUT 300)
+    gtest_discover_tests(${name} PROPERTIES TIMEOUT 300 LABELS "${TEST_LABELS}")
   endif()
 endfunction()

@@ -19,8 +19,8 @@ SPDX = ['SPDX-FileCopyrightText: The holdfast authors', 'SPDX-License-Identifier
 FILE_LINES_MAX = 800
 FUNCTION_LINES_MAX = 70
 COLUMNS_MAX = 100
-FREESTANDING = {'base', 'mechanics', 'agent'}
-FACADE_HEADERS = {'holdfast', 'distributed'}
+FREESTANDING = {'base', 'mechanics', 'agent', 'module'}
+FACADE_HEADERS = {'holdfast', 'distributed', 'emulated'}
 HOSTED_HEADERS = {'string', 'vector', 'map', 'set', 'memory', 'iostream', 'fstream', 'variant',
                   'cstdio', 'cstdlib', 'functional', 'stdexcept'}
 # base is freestanding but for what says in its first lines that it is for hosts.
@@ -66,8 +66,8 @@ def check_includes(name, lines, links):
                                 f'{sorted(allowed - {match[1]})}')
         if (include and name.startswith(('apps/', 'examples/'))
                 and include[1] not in FACADE_HEADERS):
-            fault(name, number, 'applications include only the facade, holdfast/holdfast.hpp and '
-                                'holdfast/distributed.hpp')
+            fault(name, number, 'applications include only the facade, holdfast/holdfast.hpp, '
+                                'distributed.hpp and emulated.hpp')
         system = re.match(r'#include <(\w+)>', line)
         if (match and match[1] in FREESTANDING and name not in HOSTED_FILES and system
                 and system[1] in HOSTED_HEADERS):

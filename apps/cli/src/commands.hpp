@@ -28,12 +28,16 @@ struct Command {
 
 Command add_check(CLI::App& app);
 Command add_convert(CLI::App& app);
+Command add_emulate(CLI::App& app);
 Command add_generate(CLI::App& app);
 Command add_simulate(CLI::App& app);
 Command add_view(CLI::App& app);
 
 /// The verdict in capitals, coloured on a terminal, padded to the longest.
 std::string banner(verdict::Verdict verdict);
+
+/// What the program ends with when the robot has worked out this verdict.
+int exit_code(verdict::Verdict verdict);
 
 /// A file, or files, that must be given. The help shows no type beside the name.
 template <class Value>

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
-#include <charconv>
 #include <chrono>
 #include <cmath>
 #include <fstream>
@@ -11,6 +10,7 @@
 #include <optional>
 
 #include "commands.hpp"
+#include "faults.hpp"
 #include "holdfast/distributed.hpp"
 
 namespace holdfast::cli {
@@ -41,66 +41,10 @@ struct Options {
   bool is_quiet = false;
 };
 
-template <class Number>
-bool take_number(std::string_view& text, Number& value) {
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc()) {
-    return false;
-  }
-  text.remove_prefix(static_cast<std::size_t>(end - text.data()));
-  return true;
-}
-
-bool take_mark(std::string_view& text, char mark) {
-  const bool is_there = text.starts_with(mark);
-  text.remove_prefix(is_there ? 1 : 0);
-  return is_there;
-}
-
 /// A time given in seconds, or in rounds where ticks have no length.
 sim::Time ticks(const sim::LinkModel& link, double time) {
   const double scale = link.ticks_per_second > 0 ? static_cast<double>(link.ticks_per_second) : 1.0;
   return static_cast<sim::Time>(std::llround(time * scale));
-}
-
-std::optional<base::Direction> find_direction(std::string_view& text) {
-  constexpr std::string_view kNames[] = {"+x", "-x", "+y", "-y", "+z", "-z"};
-  for (std::size_t i = 0; i < std::size(kNames); ++i) {
-    if (text.starts_with(kNames[i])) {
-      text.remove_prefix(kNames[i].size());
-      return static_cast<base::Direction>(i);
-    }
-  }
-  return std::nullopt;
-}
-
-/// "X,Y,Z@T", for a cut "X,Y,Z:+x@T".
-std::optional<Fault> read_fault(std::string_view text, Fault::Kind kind, const Structure& structure,
-                                const sim::LinkModel& link) {
-  base::Cell cell;
-  double time = 0;
-  Fault fault{.kind = kind, .at = 0, .module = -1};
-  if (!take_number(text, cell.x) || !take_mark(text, ',') || !take_number(text, cell.y) ||
-      !take_mark(text, ',') || !take_number(text, cell.z)) {
-    return std::nullopt;
-  }
-  if (kind == Fault::Kind::kCut) {
-    const auto face = take_mark(text, ':') ? find_direction(text) : std::nullopt;
-    if (!face) {
-      return std::nullopt;
-    }
-    fault.face = *face;
-  }
-  if (!take_mark(text, '@') || !take_number(text, time) || !text.empty() || !(time >= 0) ||
-      !(time < 1e12)) {
-    return std::nullopt;
-  }
-  fault.at = ticks(link, time);
-  const auto modules = structure.robot.modules();
-  for (std::size_t i = 0; i < modules.size() - structure.robot.planned_count(); ++i) {
-    fault.module = modules[i].cell == cell ? static_cast<std::int32_t>(i) : fault.module;
-  }
-  return fault.module >= 0 ? std::optional(fault) : std::nullopt;
 }
 
 int usage_error(const std::string& message) {
@@ -112,15 +56,16 @@ int usage_error(const std::string& message) {
 bool add_faults(const std::vector<std::string>& texts, Fault::Kind kind, const Structure& structure,
                 sim::SimulationOptions& options) {
   for (const std::string& text : texts) {
-    const auto fault = read_fault(text, kind, structure, options.link);
-    if (!fault) {
-      usage_error(
-          fmt::format("--{} {}: expected is {}@TIME with the cell of an existing module, as in {}",
-                      sim::name(kind), text, kind == Fault::Kind::kCut ? "X,Y,Z:FACE" : "X,Y,Z",
-                      kind == Fault::Kind::kCut ? "2,1,0:+z@1.5" : "2,1,0@1.5"));
+    const bool has_face = kind == Fault::Kind::kCut;
+    const auto place = read_fault_place(text, has_face, structure);
+    if (!place) {
+      usage_error(fault_usage(sim::name(kind), text, has_face));
       return false;
     }
-    options.faults.push_back(*fault);
+    options.faults.push_back({.kind = kind,
+                              .at = ticks(options.link, place->time),
+                              .module = place->module,
+                              .face = place->face});
   }
   return true;
 }
@@ -248,19 +193,6 @@ class SimulateRun {
       print_error(*error, path);
     }
     return !error;
-  }
-
-  static int exit_code(verdict::Verdict verdict) {
-    switch (verdict) {
-      case verdict::Verdict::kSafe:
-        return kExitSafe;
-      case verdict::Verdict::kOverload:
-      case verdict::Verdict::kUnstable:
-        return kExitUnsafe;
-      case verdict::Verdict::kUndecided:
-        break;
-    }
-    return kExitUndecided;
   }
 
   const Options& options_;

@@ -14,8 +14,14 @@ constexpr std::uint8_t bit(int i) {
 
 /// The leading 24 binary digits of a number, which single precision holds exactly. By its bits and
 /// not by a conversion to float and back, which g++ 12 loses at -O3 when it vectorises a loop of 6.
-constexpr double leading_part(double value) {
-  return std::bit_cast<double>(std::bit_cast<std::uint64_t>(value) & ~std::uint64_t{0x1fffffff});
+/// (Where double is binary32, as on an AVR, all digits are leading ones.)
+template <class Real>
+constexpr Real leading_part(Real value) {
+  if constexpr (sizeof(Real) == sizeof(std::uint32_t)) {
+    return value;
+  } else {
+    return std::bit_cast<Real>(std::bit_cast<std::uint64_t>(value) & ~std::uint64_t{0x1fffffff});
+  }
 }
 
 }  // namespace holdfast::agent

@@ -2,6 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "holdfast/agent/branch.hpp"
 
+#include <span>
+
+#include "holdfast/base/check.hpp"
 #include "scalar.hpp"
 
 namespace holdfast::agent {
@@ -47,6 +50,30 @@ Vec6<double> unit(int i) {
   return vector;
 }
 
+/// a times the unit vector `j`.
+template <class Real>
+Vec6<double> column_of(const Mat6<Real>& a, int j) {
+  Vec6<double> column;
+  for (int row = 0; row < kSize; ++row) {
+    column[at(row)] = static_cast<double>(a.at(row, j));
+  }
+  return column;
+}
+
+void set_column(Mat6<double>& a, int j, const Vec6<double>& column) {
+  for (int row = 0; row < kSize; ++row) {
+    a.at(row, j) = column[at(row)];
+  }
+}
+
+Mat6<double> converted(const Mat6<float>& a) {
+  Mat6<double> result;
+  for (std::size_t i = 0; i < a.values.size(); ++i) {
+    result.values[i] = static_cast<double>(a.values[i]);
+  }
+  return result;
+}
+
 void subtract(Vec6<double>& from, const Vec6<double>& what) {
   for (std::size_t i = 0; i < kSize; ++i) {
     from[i] -= what[i];
@@ -57,7 +84,7 @@ void subtract(Vec6<double>& from, const Vec6<double>& what) {
 void add_product(Mat6<float>& into, double factor, const Mat6<float>& a, const Mat6<float>& q,
                  const Mat6<float>& c) {
   for (int column = 0; column < kSize; ++column) {
-    const Vec6<double> image = product(a, product(q, product(c, unit(column))));
+    const Vec6<double> image = product(a, product(q, column_of(c, column)));
     for (int row = 0; row < kSize; ++row) {
       into.at(row, column) += static_cast<float>(factor * image[at(row)]);
     }
@@ -89,6 +116,46 @@ struct Joint {
   Mat6<double> transport;
 };
 
+/// Solves a x = b with pivots for every b, in place; a is used up.
+void solve_all(Mat6<double>& a, std::span<Vec6<double>> right) {
+  for (int column = 0; column < kSize; ++column) {
+    int pivot = column;
+    for (int row = column + 1; row < kSize; ++row) {
+      pivot = absolute(a.at(row, column)) > absolute(a.at(pivot, column)) ? row : pivot;
+    }
+    for (int k = column; k < kSize && pivot != column; ++k) {
+      const double kept = a.at(pivot, k);
+      a.at(pivot, k) = a.at(column, k);
+      a.at(column, k) = kept;
+    }
+    for (Vec6<double>& b : right) {
+      const double kept = b[at(pivot)];
+      b[at(pivot)] = b[at(column)];
+      b[at(column)] = kept;
+    }
+    for (int row = column + 1; row < kSize; ++row) {
+      const double factor = a.at(row, column) / a.at(column, column);
+      if (factor == 0) {
+        continue;
+      }
+      for (int k = column; k < kSize; ++k) {
+        a.at(row, k) -= factor * a.at(column, k);
+      }
+      for (Vec6<double>& b : right) {
+        b[at(row)] -= factor * b[at(column)];
+      }
+    }
+  }
+  for (Vec6<double>& b : right) {
+    for (int row = kSize - 1; row >= 0; --row) {
+      for (int k = row + 1; k < kSize; ++k) {
+        b[at(row)] -= a.at(row, k) * b[at(k)];
+      }
+      b[at(row)] /= a.at(row, row);
+    }
+  }
+}
+
 /// 1 + S F
 template <class Real>
 Mat6<double> series(const Mat6<Real>& stiffness, const Joint& joint) {
@@ -108,7 +175,7 @@ Mat6<double> series_at_child(const Mat6<Real>& stiffness, const Joint& joint,
                              bool is_transposed = false) {
   Mat6<double> sum;
   for (int column = 0; column < kSize; ++column) {
-    const Vec6<double> image = joint.bend(product(stiffness, unit(column)));
+    const Vec6<double> image = joint.bend(column_of(stiffness, column));
     for (int row = 0; row < kSize; ++row) {
       const double value = image[at(row)] + (row == column ? 1 : 0);
       (is_transposed ? sum.at(column, row) : sum.at(row, column)) = value;
@@ -117,7 +184,83 @@ Mat6<double> series_at_child(const Mat6<Real>& stiffness, const Joint& joint,
   return sum;
 }
 
+/// Does nothing below touch the ground? Then F does not matter: the forces follow from the loads.
+template <class Real>
+bool is_free(const Mat6<Real>& stiffness) {
+  for (const Real value : stiffness.values) {
+    if (value != 0) {
+      return false;
+    }
+  }
+  return true;
+}
+
+/// N v = (1 + S F)^-1 v
+template <class Real>
+Vec6<double> through(const Mat6<Real>& stiffness, const Joint& joint, Vec6<double> vector) {
+  if (!is_free(stiffness)) {
+    Mat6<double> sum = series(stiffness, joint);
+    solve_all(sum, {&vector, 1});
+  }
+  return vector;
+}
+
+/// G v = (1 + F S)^-1 v, or transposed.
+template <class Real>
+Vec6<double> through_at_child(const Mat6<Real>& stiffness, const Joint& joint, Vec6<double> vector,
+                              bool is_transposed = false) {
+  if (!is_free(stiffness)) {
+    Mat6<double> sum = series_at_child(stiffness, joint, is_transposed);
+    solve_all(sum, {&vector, 1});
+  }
+  return vector;
+}
+
+struct Entry {
+  int row = 0;
+  int column = 0;
+};
+
+constexpr int kTriangle = kSize * (kSize + 1) / 2;
+
+/// Entry `place` of a lower triangle, column by column.
+Entry lower_entry(int place) {
+  Entry entry;
+  for (int i = 0; i < place; ++i) {
+    const bool is_last = entry.row + 1 == kSize;
+    entry.column += is_last ? 1 : 0;
+    entry.row = is_last ? entry.column : entry.row + 1;
+  }
+  return entry;
+}
+
 }  // namespace
+
+bool is_symmetric(const Mat6<float>& stiffness) {
+  constexpr double kRounding = 1e-5;
+  const auto entry = [&](int row, int column) {
+    return static_cast<double>(stiffness.at(row, column));
+  };
+  for (int column = 0; column < kSize; ++column) {
+    for (int row = column + 1; row < kSize; ++row) {
+      const double apart = entry(row, column) - entry(column, row);
+      const double size = absolute(entry(row, row) * entry(column, column));
+      if (apart * apart > kRounding * kRounding * size) {
+        return false;
+      }
+    }
+  }
+  return true;
+}
+
+Vec6<float> part_of(const Mat6<float>& stiffness, int index) {
+  Vec6<float> part{};
+  for (int i = 0; i < kSize && kSize * index + i < kTriangle; ++i) {
+    const Entry entry = lower_entry(kSize * index + i);
+    part[at(i)] = stiffness.at(entry.row, entry.column);
+  }
+  return part;
+}
 
 Mat6<double> rigid_transport(double pitch_mm, Direction direction) {
   const base::Cell step = base::neighbour({0, 0, 0}, direction);
@@ -140,16 +283,19 @@ Mat6<double> rigid_transport(double pitch_mm, Direction direction) {
 
 Mat6<double> stiffness_up(const BeamStiffness<double>& beam, Direction to_parent,
                           const Mat6<double>& stiffness) {
+  if (is_free(stiffness)) {
+    return {};
+  }
   const Joint joint(beam, to_parent);
-  const Mat6<double> sum = series(stiffness, joint);
+  Mat6<double> sum = series(stiffness, joint);
+  std::array<Vec6<double>, kSize> forces;
+  for (int column = 0; column < kSize; ++column) {
+    forces[at(column)] = product(stiffness, column_of(joint.transport, column));
+  }
+  solve_all(sum, forces);
   Mat6<double> up;
   for (int column = 0; column < kSize; ++column) {
-    const Vec6<double> force =
-        solve_general(sum, product(stiffness, product(joint.transport, unit(column))));
-    const Vec6<double> image = transposed_product(joint.transport, force);
-    for (int row = 0; row < kSize; ++row) {
-      up.at(row, column) = image[at(row)];
-    }
+    set_column(up, column, transposed_product(joint.transport, forces[at(column)]));
   }
   return up;
 }
@@ -157,7 +303,7 @@ Mat6<double> stiffness_up(const BeamStiffness<double>& beam, Direction to_parent
 Vec6<double> load_up(const BeamStiffness<double>& beam, Direction to_parent,
                      const Mat6<double>& stiffness, const Vec6<double>& load) {
   const Joint joint(beam, to_parent);
-  return transposed_product(joint.transport, solve_general(series(stiffness, joint), load));
+  return transposed_product(joint.transport, through(stiffness, joint, load));
 }
 
 Vec6<double> displacement(const BeamStiffness<double>& beam, Direction to_parent,
@@ -166,37 +312,11 @@ Vec6<double> displacement(const BeamStiffness<double>& beam, Direction to_parent
   const Joint joint(beam, to_parent);
   Vec6<double> sum = product(joint.transport, of_parent);
   base::add_to(sum, joint.bend(load));
-  return solve_general(series_at_child(stiffness, joint), sum);
+  return through_at_child(stiffness, joint, sum);
 }
 
 Vec6<double> solve_general(Mat6<double> a, Vec6<double> b) {
-  for (int column = 0; column < kSize; ++column) {
-    int pivot = column;
-    for (int row = column + 1; row < kSize; ++row) {
-      pivot = absolute(a.at(row, column)) > absolute(a.at(pivot, column)) ? row : pivot;
-    }
-    for (int k = column; k < kSize && pivot != column; ++k) {
-      const double kept = a.at(pivot, k);
-      a.at(pivot, k) = a.at(column, k);
-      a.at(column, k) = kept;
-    }
-    const double kept = b[at(pivot)];
-    b[at(pivot)] = b[at(column)];
-    b[at(column)] = kept;
-    for (int row = column + 1; row < kSize; ++row) {
-      const double factor = a.at(row, column) / a.at(column, column);
-      for (int k = column; k < kSize; ++k) {
-        a.at(row, k) -= factor * a.at(column, k);
-      }
-      b[at(row)] -= factor * b[at(column)];
-    }
-  }
-  for (int row = kSize - 1; row >= 0; --row) {
-    for (int k = row + 1; k < kSize; ++k) {
-      b[at(row)] -= a.at(row, k) * b[at(k)];
-    }
-    b[at(row)] /= a.at(row, row);
-  }
+  solve_all(a, {&b, 1});
   return b;
 }
 
@@ -283,16 +403,12 @@ void Branch::add_column(int index, const std::array<std::int8_t, kLoopsMax>& slo
   }
 }
 
-void Branch::add_packed(int index, const Vec6<float>& part) {
-  int place = 0;
-  for (int column = 0; column < kSize; ++column) {
-    for (int row = column; row < kSize; ++row, ++place) {
-      if (place / kSize != index) {
-        continue;
-      }
-      const float value = part[at(place % kSize)];
-      stiffness_.at(row, column) += value;
-      stiffness_.at(column, row) += row != column ? value : 0;
+void Branch::add_part(int index, const Vec6<float>& part) {
+  for (int i = 0; i < kSize && kSize * index + i < kTriangle; ++i) {
+    const Entry entry = lower_entry(kSize * index + i);
+    stiffness_.at(entry.row, entry.column) += part[at(i)];
+    if (entry.row != entry.column) {
+      stiffness_.at(entry.column, entry.row) += part[at(i)];
     }
   }
 }
@@ -307,13 +423,13 @@ void Branch::close_loops(const BeamStiffness<double>& beam) {
     const Mat6<double> stiffness = mechanics::block_11(beam, cuts_[at(slot)].direction);
     Mat6<double> sum;
     for (int column = 0; column < kSize; ++column) {
-      const Vec6<double> image = product(stiffness, product(give, unit(column)));
+      const Vec6<double> image = product(stiffness, column_of(give, column));
       for (int row = 0; row < kSize; ++row) {
         sum.at(row, column) = image[at(row)] + (row == column ? 1 : 0);
       }
     }
     for (int column = 0; column < kSize; ++column) {
-      const Vec6<double> inverse = solve_general(sum, product(stiffness, unit(column)));
+      const Vec6<double> inverse = solve_general(sum, column_of(stiffness, column));
       for (int row = 0; row < kSize; ++row) {
         give.at(row, column) = static_cast<float>(inverse[at(row)]);
       }
@@ -357,19 +473,26 @@ int Branch::columns_needed(int index, const std::array<std::int8_t, kLoopsMax>& 
   return row < 0 || column < 0 ? kGive : kGive + kSize * (kLoopsMax * row + column) + j + 1;
 }
 
+Mat6<double> Branch::stiffness_up(const BeamStiffness<double>& beam, Direction to_parent,
+                                  bool is_fixed) const {
+  if (!is_fixed) {
+    return agent::stiffness_up(beam, to_parent, converted(stiffness_));
+  }
+  const Mat6<double> transport = Joint(beam, to_parent).transport;
+  const Mat6<double> block = mechanics::block_11(beam, to_parent);
+  Mat6<double> up;
+  for (int column = 0; column < kSize; ++column) {
+    set_column(up, column,
+               transposed_product(transport, product(block, column_of(transport, column))));
+  }
+  return up;
+}
+
 Vec6<double> Branch::column_up(const BeamStiffness<double>& beam, Direction to_parent,
                                bool is_fixed, int index) const {
+  HOLDFAST_ASSERT(index >= kOnto);
   const Joint joint(beam, to_parent);
   const int j = index % kSize;
-  const auto up = [&](const Vec6<double>& vector) {
-    return transposed_product(joint.transport, solve_general(series(stiffness_, joint), vector));
-  };
-  if (index < kOnto) {
-    const Vec6<double> moved = product(joint.transport, unit(j));
-    return is_fixed ? transposed_product(joint.transport,
-                                         product(mechanics::block_11(beam, to_parent), moved))
-                    : up(product(stiffness_, moved));
-  }
   if (index < kGive) {
     const bool is_onto = index < kAcross;
     const int slot = open_slot((index - (is_onto ? kOnto : kAcross)) / kSize);
@@ -377,47 +500,26 @@ Vec6<double> Branch::column_up(const BeamStiffness<double>& beam, Direction to_p
       return {};
     }
     if (is_onto) {
-      return up(product(onto_[at(slot)], unit(j)));
+      return transposed_product(joint.transport,
+                                through(stiffness_, joint, column_of(onto_[at(slot)], j)));
     }
-    const Vec6<double> row = transposed_product(across_[at(slot)], unit(j));
-    return transposed_product(joint.transport,
-                              solve_general(series_at_child(stiffness_, joint, true), row));
+    Vec6<double> row;
+    for (int i = 0; i < kSize; ++i) {
+      row[at(i)] = static_cast<double>(across_[at(slot)].at(j, i));
+    }
+    return transposed_product(joint.transport, through_at_child(stiffness_, joint, row, true));
   }
   const int row = open_slot((index - kGive) / kSize / kLoopsMax);
   const int column = open_slot((index - kGive) / kSize % kLoopsMax);
   if (row < 0 || column < 0) {
     return {};
   }
-  Vec6<double> sum = product(give_[at(row)][at(column)], unit(j));
+  Vec6<double> sum = column_of(give_[at(row)][at(column)], j);
   if (!is_fixed) {
-    const Vec6<double> bent = joint.bend(product(onto_[at(column)], unit(j)));
-    base::add_to(
-        sum, product(across_[at(row)], solve_general(series_at_child(stiffness_, joint), bent)));
+    const Vec6<double> bent = joint.bend(column_of(onto_[at(column)], j));
+    base::add_to(sum, product(across_[at(row)], through_at_child(stiffness_, joint, bent)));
   }
   return sum;
-}
-
-bool Branch::pack_up(const BeamStiffness<double>& beam, Direction to_parent, bool is_fixed,
-                     Packed& packed) const {
-  constexpr double kRounding = 1e-5;
-  std::array<Vec6<double>, kSize> columns;
-  for (int i = 0; i < kSize; ++i) {
-    columns[at(i)] = column_up(beam, to_parent, is_fixed, i);
-  }
-  packed = {};
-  int place = 0;
-  for (int column = 0; column < kSize; ++column) {
-    for (int row = column; row < kSize; ++row, ++place) {
-      const double value = columns[at(column)][at(row)];
-      const double apart = value - columns[at(row)][at(column)];
-      const double size = absolute(columns[at(row)][at(row)] * columns[at(column)][at(column)]);
-      if (apart * apart > kRounding * kRounding * size) {
-        return false;
-      }
-      packed[at(place / kSize)][at(place % kSize)] = static_cast<float>(value);
-    }
-  }
-  return true;
 }
 
 void Branch::close_loops(BranchLoad& load) const {
@@ -445,12 +547,11 @@ BranchLoad Branch::load_up(const BeamStiffness<double>& beam, Direction to_paren
   if (is_fixed) {
     return up;
   }
-  up.load =
-      transposed_product(joint.transport, solve_general(series(stiffness_, joint), load.load));
+  up.load = transposed_product(joint.transport, through(stiffness_, joint, load.load));
   for (int i = 0; i < open_count(); ++i) {
     base::add_to(up.gap[at(i)],
                  product(across_[at(open_slot(i))],
-                         solve_general(series_at_child(stiffness_, joint), joint.bend(load.load))));
+                         through_at_child(stiffness_, joint, joint.bend(load.load))));
   }
   return up;
 }
@@ -467,17 +568,13 @@ Vec6<double> Branch::displacement(const BeamStiffness<double>& beam, Direction t
   }
   Vec6<double> sum = product(joint.transport, of_parent);
   base::add_to(sum, joint.bend(carried));
-  const Vec6<double> u = solve_general(series_at_child(stiffness_, joint), sum);
+  const Vec6<double> u = through_at_child(stiffness_, joint, sum);
   find_forces(load, u, forces);
   return u;
 }
 
 Vec6<double> Branch::displacement_of_root(const BranchLoad& load, CutForces& forces) const {
-  Mat6<double> stiffness;
-  for (std::size_t i = 0; i < stiffness.values.size(); ++i) {
-    stiffness.values[i] = static_cast<double>(stiffness_.values[i]);
-  }
-  const Vec6<double> u = solve_general(stiffness, load.load);
+  const Vec6<double> u = solve_general(converted(stiffness_), load.load);
   find_forces(load, u, forces);
   return u;
 }

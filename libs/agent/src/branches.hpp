@@ -3,7 +3,6 @@
 #pragma once
 
 #include <new>
-#include <tuple>
 
 #include "bits.hpp"
 #include "equilibrium.hpp"
@@ -19,6 +18,9 @@
 namespace holdfast::agent {
 
 namespace branches {
+
+/// Columns of S', complete as soon as the first is; those of B', C' and P' follow.
+inline constexpr int kStiffnessColumns = 6;
 
 /// The planned modules of one host as a tree, parents before children.
 struct Leaves {
@@ -189,16 +191,15 @@ void BasicAgent<Real>::take_column(int face, std::span<const std::uint8_t> messa
   wire::Reader in(message);
   const int index = in.u8();
   const int part = index - Branch::kColumnCount;
-  constexpr int kPackedCount = std::tuple_size_v<Branch::Packed>;
   BranchWork& tree = work_.tree;
   std::uint8_t& here = tree.columns_here[static_cast<std::size_t>(face)];
   if (part < 0) {
     tree.branch.add_column(index, tree.slot_of[static_cast<std::size_t>(face)],
                            sweep::read_vector(in));
     here = static_cast<std::uint8_t>(index + 1);
-  } else if (part < kPackedCount) {
-    tree.branch.add_packed(part, sweep::read_vector(in));
-    here = part + 1 == kPackedCount ? std::uint8_t{6} : here;
+  } else if (part < Branch::kPartCount) {
+    tree.branch.add_part(part, sweep::read_vector(in));
+    here = part + 1 == Branch::kPartCount ? std::uint8_t{6} : here;
   }
   send_columns();
 }
@@ -219,19 +220,31 @@ bool BasicAgent<Real>::is_column_ready() const {
   return true;
 }
 
-/// Column `column_` for the parent; of a packed S' the part of that number, zeros beyond the last.
+/// Column `column_` for the parent; of a symmetric S' the part of that number, zeros beyond the
+/// last.
 template <class Real>
 base::Vec6<float> BasicAgent<Real>::next_column() {
   BranchWork& tree = work_.tree;
   const auto to_parent = static_cast<base::Direction>(parent_);
+  if (column_ >= branches::kStiffnessColumns) {
+    return base::converted<float>(
+        tree.branch.column_up(setup_.beam, to_parent, nodes_[0].is_fixed, column_));
+  }
   if (column_ == 0) {
-    tree.is_packed = tree.branch.pack_up(setup_.beam, to_parent, nodes_[0].is_fixed, tree.packed);
+    const auto stiffness = tree.branch.stiffness_up(setup_.beam, to_parent, nodes_[0].is_fixed);
+    for (std::size_t i = 0; i < stiffness.values.size(); ++i) {
+      tree.stiffness_up.values[i] = static_cast<float>(stiffness.values[i]);
+    }
+    tree.is_symmetric = is_symmetric(tree.stiffness_up);
   }
-  if (tree.is_packed && column_ < 6) {
-    return column_ < tree.packed.size() ? tree.packed[column_] : base::Vec6<float>{};
+  if (tree.is_symmetric) {
+    return column_ < Branch::kPartCount ? part_of(tree.stiffness_up, column_) : base::Vec6<float>{};
   }
-  return base::converted<float>(
-      tree.branch.column_up(setup_.beam, to_parent, nodes_[0].is_fixed, column_));
+  base::Vec6<float> column;
+  for (int row = 0; row < 6; ++row) {
+    column[static_cast<std::size_t>(row)] = tree.stiffness_up.at(row, column_);
+  }
+  return column;
 }
 
 /// Columns of zeros need not be sent. False: more when there is room on the link, or when children
@@ -263,7 +276,7 @@ bool BasicAgent<Real>::send_columns() {
     if (!links_[static_cast<std::size_t>(parent_)].has_room(kRoom)) {
       return false;
     }
-    const bool is_part = work_.tree.is_packed && column_ < 6;
+    const bool is_part = work_.tree.is_symmetric && column_ < branches::kStiffnessColumns;
     const int label = column_ + (is_part ? Branch::kColumnCount : 0);
     send(parent_, sweep::vector_message(wire::MessageType::kColumn,
                                         static_cast<std::uint8_t>(label), column));

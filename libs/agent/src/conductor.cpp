@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "holdfast/agent/conductor.hpp"
 
+#include "methods.hpp"
 #include "scalar.hpp"
 #include "tolerances.hpp"
 
@@ -43,11 +44,34 @@ Order Conductor::next(const Setup& setup, const Report& report) {
     case Step::kAngles:
       return after_angles(setup, report);
     case Step::kBegin:
-      return is_one_sweep() ? first_step() : is_jacobi() ? start_jacobi() : start_solve(false);
+      if (is_one_sweep()) {
+        return first_step();
+      }
+      break;
     case Step::kFactor:
       return tree_step();
     case Step::kStep:
       return after_step(setup, report);
+    case Step::kCorners:
+      return after_corners(setup, report);
+    case Step::kLoads:
+      return after_loads(report);
+    case Step::kVerdict:
+      return finish(Verdict::kUndecided, Reason::kNotConverged);
+    default:
+      break;
+  }
+  if constexpr (kHasAllMethods) {
+    return next_of_solve(setup, report);
+  }
+  return finish(Verdict::kUndecided, Reason::kNotConverged);
+}
+
+/// The same for conjugate gradients and the Jacobi methods.
+Order Conductor::next_of_solve(const Setup& setup, const Report& report) {
+  switch (step_) {
+    case Step::kBegin:
+      return is_jacobi() ? start_jacobi() : start_solve(false);
     case Step::kHigh: {
       Order low = order(Step::kLow, Operation::kLow);
       low.flags = is_unilateral_ || is_jacobi() ? kFollowStates : std::uint8_t{0};
@@ -65,17 +89,12 @@ Order Conductor::next(const Setup& setup, const Report& report) {
       return after_slope(report);
     case Step::kMix:
       return after_mix(report);
-    case Step::kCorners:
-      return after_corners(setup, report);
     case Step::kRelease:
     case Step::kFree:
       return after_hold(report);
-    case Step::kLoads:
-      return after_loads(report);
-    case Step::kVerdict:
-      break;
+    default:
+      return finish(Verdict::kUndecided, Reason::kNotConverged);
   }
-  return finish(Verdict::kUndecided, Reason::kNotConverged);
 }
 
 // ---- Planned modules, mass, rigid body.
@@ -167,6 +186,10 @@ Order Conductor::begin_law(const Setup& setup, bool is_unilateral) {
   if (is_one_sweep()) {
     choose_one_sweep(is_unilateral);
     begin.count = effort_.method == Method::kMinimalResiduals ? step_degree() : std::uint16_t{0};
+  }
+  const bool has_all = kHasAllMethods && !setup.only_elimination;
+  if (!has_all && effort_.method != Method::kElimination) {
+    return finish(Verdict::kUndecided, Reason::kNotConverged);
   }
   begin.flags = static_cast<std::uint8_t>((is_unilateral ? kUnilateralLaw : 0U) |
                                           (is_one_sweep() ? kOneSweep : 0U));

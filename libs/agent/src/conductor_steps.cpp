@@ -4,6 +4,7 @@
 // The one-sweep methods as the root sees them: from the sums of one step to the coefficients of the
 // next (steps.hpp), and when to stop.
 #include "holdfast/agent/conductor.hpp"
+#include "methods.hpp"
 #include "scalar.hpp"
 #include "tolerances.hpp"
 
@@ -81,7 +82,7 @@ Order Conductor::after_step(const Setup& setup, const Report& report) {
   is_tilting_ = (report.flags & kAnyTilting) != 0;
   const bool was_accurate = predicted_ < kStateTolerance * (1 + absolute(ratio_));
   const bool has_jumped = report.extent > 0;
-  const bool is_elimination = effort_.method == Method::kElimination;
+  const bool is_elimination = !kHasAllMethods || effort_.method == Method::kElimination;
   const auto bound = static_cast<double>(report.reals[0]);
   const double error = has_jumped || is_elimination ? bound : step_error(setup, report, bound);
   if (!is_number(error) || effort_.iterations > setup.iteration_count_max) {

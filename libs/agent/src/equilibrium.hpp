@@ -5,6 +5,7 @@
 #include "bits.hpp"
 #include "holdfast/agent/agent.hpp"
 #include "holdfast/mechanics/connector.hpp"
+#include "methods.hpp"
 #include "sweep.hpp"
 
 /// The equilibrium's operations on one module and on those it emulates. The loop that they belong
@@ -108,7 +109,9 @@ void BasicAgent<Real>::begin_equilibrium(const Order& order) {
   for (int i = 0; i < node_count(); ++i) {
     Node<Real>& node = nodes_[static_cast<std::size_t>(i)];
     reset(node);
-    if (!is_one_sweep) {
+    if constexpr (!kHasAllMethods) {
+      continue;
+    } else if (!is_one_sweep) {
       gradients_of(i) = gradients_at_rest(node, setup_);
     } else if (order.count > 0) {
       steps_of(i) = {};
@@ -196,29 +199,28 @@ void BasicAgent<Real>::precondition(int node_index, int degree) {
 
 template <class Real>
 void BasicAgent<Real>::after_exchange() {
-  switch (order_.operation) {
-    case wire::Operation::kJacobi:
-      jacobi_step();
-      break;
-    case wire::Operation::kStart:
-    case wire::Operation::kGradient:
-      polynomial_step();
-      break;
-    case wire::Operation::kBegin:
-      next_terms();
-      break;
-    case wire::Operation::kStep:
-    case wire::Operation::kTreeStep:
-      if (exchanges_left_ == exchanges_behind_ + 2) {
-        share_low_part();
-      } else if (exchanges_left_ == exchanges_behind_ + 1) {
-        find_residuals();
-      } else {
+  const bool is_step =
+      order_.operation == wire::Operation::kStep || order_.operation == wire::Operation::kTreeStep;
+  if (is_step && exchanges_left_ > exchanges_behind_) {
+    exchanges_left_ == exchanges_behind_ + 2 ? share_low_part() : find_residuals();
+    return;
+  }
+  if constexpr (kHasAllMethods) {
+    switch (order_.operation) {
+      case wire::Operation::kJacobi:
+        jacobi_step();
+        break;
+      case wire::Operation::kStart:
+      case wire::Operation::kGradient:
+        polynomial_step();
+        break;
+      case wire::Operation::kBegin:
+      case wire::Operation::kStep:
         next_terms();
-      }
-      break;
-    default:
-      break;
+        break;
+      default:
+        break;
+    }
   }
 }
 
@@ -312,6 +314,9 @@ void BasicAgent<Real>::jacobi_step() {
 /// What the exchange under way shares, and so where the beams' forces go.
 template <class Real>
 typename BasicAgent<Real>::Exchanged BasicAgent<Real>::exchanged() const {
+  if constexpr (!kHasAllMethods) {
+    return Exchanged::kDisplacement;
+  }
   switch (order_.operation) {
     case wire::Operation::kHigh:
     case wire::Operation::kLow:

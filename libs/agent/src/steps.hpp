@@ -5,6 +5,7 @@
 #include "bits.hpp"
 #include "equilibrium.hpp"
 #include "holdfast/agent/agent.hpp"
+#include "methods.hpp"
 
 /// The one-sweep methods: every step costs one sweep, residual and contact states included.
 ///
@@ -85,7 +86,7 @@ void BasicAgent<Real>::find_residuals() {
     if (node.has_changed) {
       node.state = node.wanted;
     }
-    if (order_.operation == wire::Operation::kTreeStep) {
+    if (!kHasAllMethods || order_.operation == wire::Operation::kTreeStep) {
       continue;
     }
     if (node.has_changed) {

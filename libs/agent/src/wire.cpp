@@ -27,7 +27,7 @@ constexpr ChecksumTables checksum_tables() {
   return tables;
 }
 
-constexpr ChecksumTables kChecksumTables = checksum_tables();
+[[maybe_unused]] constexpr ChecksumTables kChecksumTables = checksum_tables();
 
 /// Sizes by type, without orders and reports.
 constexpr std::array<std::uint8_t, 14> kMessageBytes = {0,  19, 19, 8,  3,  0,  0,
@@ -53,6 +53,24 @@ int message_bytes(std::uint8_t type, std::uint8_t second) {
   return second > kOperationCount ? 0 : (is_order ? kOrderBytes : kReportBytes)[second];
 }
 
+#ifdef HOLDFAST_AGENT_SMALL_CHECKSUM
+/// The same with a table of 32 bytes instead of 2,048: four bits at a time.
+std::uint16_t checksum(std::span<const std::uint8_t> bytes, std::uint16_t start) {
+  static constexpr std::array<std::uint16_t, 16> kTable = [] {
+    std::array<std::uint16_t, 16> table{};
+    for (std::size_t i = 0; i < table.size(); ++i) {
+      table[i] = checksum_tables()[0][i];
+    }
+    return table;
+  }();
+  std::uint32_t value = start;
+  for (const std::uint8_t byte : bytes) {
+    value = (value << 4U) ^ kTable[((value >> 12U) ^ (byte >> 4U)) & 15U];
+    value = (value << 4U) ^ kTable[((value >> 12U) ^ byte) & 15U];
+  }
+  return static_cast<std::uint16_t>(value);
+}
+#else
 std::uint16_t checksum(std::span<const std::uint8_t> bytes, std::uint16_t start) {
   const auto& [last, third, second, first] = kChecksumTables;
   std::uint32_t value = start;
@@ -65,6 +83,7 @@ std::uint16_t checksum(std::span<const std::uint8_t> bytes, std::uint16_t start)
   }
   return static_cast<std::uint16_t>(value);
 }
+#endif
 
 void Writer::u8(std::uint8_t value) {
   HOLDFAST_CHECK(size_ < bytes_.size());

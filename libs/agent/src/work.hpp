@@ -6,6 +6,7 @@
 #include "branches.hpp"
 #include "equilibrium.hpp"
 #include "holdfast/agent/agent.hpp"
+#include "methods.hpp"
 #include "steps.hpp"
 
 /// What the operations do on one module: before the exchange (prepare) and after it (conclude).
@@ -34,6 +35,33 @@ void BasicAgent<Real>::prepare(const Order& order) {
     case Operation::kBegin:
       begin_equilibrium(order);
       break;
+    case Operation::kFactor:
+      factor_branch();
+      break;
+    case Operation::kTreeStep:
+      begin_tree_step();
+      break;
+    case Operation::kVerdict:
+      answer_ = order.answer;
+      break;
+    case Operation::kAngles:
+    case Operation::kCorners:
+    case Operation::kLoads:
+      break;
+    default:
+      if constexpr (kHasAllMethods) {
+        prepare_solve(order);
+      }
+  }
+}
+
+/// The same for the operations of all methods but elimination.
+template <class Real>
+void BasicAgent<Real>::prepare_solve(const Order& order) {
+  switch (order.operation) {
+    case Operation::kStep:
+      begin_step(order);
+      break;
     case Operation::kHigh:
       move(order);
       break;
@@ -53,22 +81,7 @@ void BasicAgent<Real>::prepare(const Order& order) {
         node.shared = equilibrium::as_sent(gradients_of(i).g);
       }
       break;
-    case Operation::kFactor:
-      factor_branch();
-      break;
-    case Operation::kStep:
-      begin_step(order);
-      break;
-    case Operation::kTreeStep:
-      begin_tree_step();
-      break;
-    case Operation::kVerdict:
-      answer_ = order.answer;
-      break;
-    case Operation::kAngles:
-    case Operation::kHold:
-    case Operation::kCorners:
-    case Operation::kLoads:
+    default:
       break;
   }
 }
@@ -92,12 +105,34 @@ Report BasicAgent<Real>::conclude(const Order& order) {
       report.flags = static_cast<std::uint8_t>(report.flags | survey_loops());
       return report;
     }
-    case Operation::kStep:
-      return step_report();
     case Operation::kTreeStep:
       return tree_step_report();
     case Operation::kAngles:
       return angles_report();
+    case Operation::kCorners:
+      return corners_report();
+    case Operation::kLoads:
+      return loads_report();
+    case Operation::kVerdict:
+      return {.count = 1};
+    case Operation::kBegin:
+    case Operation::kFactor:
+      return {};
+    default:
+      break;
+  }
+  if constexpr (kHasAllMethods) {
+    return conclude_solve(order);
+  }
+  return {};
+}
+
+/// The same for the operations of all methods but elimination.
+template <class Real>
+Report BasicAgent<Real>::conclude_solve(const Order& order) {
+  switch (order.operation) {
+    case Operation::kStep:
+      return step_report();
     case Operation::kLow:
       return residual_report();
     case Operation::kStart:
@@ -112,18 +147,9 @@ Report BasicAgent<Real>::conclude(const Order& order) {
       return slope_report();
     case Operation::kHold:
       return hold_report();
-    case Operation::kCorners:
-      return corners_report();
-    case Operation::kLoads:
-      return loads_report();
-    case Operation::kVerdict:
-      return {.count = 1};
-    case Operation::kBegin:
-    case Operation::kFactor:
-    case Operation::kHigh:
-      break;
+    default:
+      return {};
   }
-  return {};
 }
 
 /// What touches the planned module just learned, and the next announced cell after it.

@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <optional>
 
+#include "distributed_parts.hpp"
+
 namespace holdfast {
 namespace {
 
@@ -26,21 +28,21 @@ std::string robot_reason(const sim::SimulationResult& result) {
 
 /// The load ratio that the module holds which owns the connection: an existing one knows those of
 /// its faces, the host of planned modules those between them.
-std::optional<float> find_load_ratio(const model::Robot& robot, const sim::Simulation& simulation,
+std::optional<float> find_load_ratio(const model::Robot& robot, const Agents& agents,
                                      const model::Connection& pair) {
   const base::Cell& a = robot.modules()[static_cast<std::size_t>(pair.a)].cell;
   const base::Cell& b = robot.modules()[static_cast<std::size_t>(pair.b)].cell;
   const base::Direction back = base::opposite(pair.direction);
-  const std::int32_t count = simulation.agent_count();
+  const std::int32_t count = agents.count;
   float ratio = 0;
   if (pair.a < count || pair.b < count) {
     const bool is_found = pair.a < count
-                              ? simulation.agent(pair.a).find_load_ratio(a, pair.direction, ratio)
-                              : simulation.agent(pair.b).find_load_ratio(b, back, ratio);
+                              ? agents.at(pair.a).find_load_ratio(a, pair.direction, ratio)
+                              : agents.at(pair.b).find_load_ratio(b, back, ratio);
     return is_found ? std::optional(ratio) : std::nullopt;
   }
   for (std::int32_t host = 0; host < count; ++host) {
-    if (simulation.agent(host).find_load_ratio(a, pair.direction, ratio)) {
+    if (agents.at(host).find_load_ratio(a, pair.direction, ratio)) {
       return ratio;
     }
   }
@@ -48,10 +50,10 @@ std::optional<float> find_load_ratio(const model::Robot& robot, const sim::Simul
 }
 
 /// False if some connection's owner has no load ratio.
-bool take_load_ratios(const model::Robot& robot, const sim::Simulation& simulation,
+bool take_load_ratios(const model::Robot& robot, const Agents& agents,
                       std::vector<verdict::ConnectionResult>& connections) {
   for (std::size_t i = 0; i < connections.size(); ++i) {
-    const auto ratio = find_load_ratio(robot, simulation, robot.connections()[i]);
+    const auto ratio = find_load_ratio(robot, agents, robot.connections()[i]);
     if (!ratio) {
       return false;
     }
@@ -60,9 +62,21 @@ bool take_load_ratios(const model::Robot& robot, const sim::Simulation& simulati
   return !connections.empty();
 }
 
+std::vector<std::string> notes_on(const sim::SimulationOptions& options) {
+  const bool changes = std::ranges::any_of(options.faults, [](const sim::Fault& fault) {
+    return fault.kind == sim::Fault::Kind::kDetach || fault.kind == sim::Fault::Kind::kAttach;
+  });
+  if (!changes) {
+    return {};
+  }
+  return {
+      "the exact answer is for the structure of the file, the robot's for what it is in the end"};
+}
+
+}  // namespace
+
 verdict::Assessment view_of(const model::Robot& robot, const verdict::Assessment& exact,
-                            const sim::Simulation& simulation,
-                            const sim::SimulationResult& result) {
+                            const Agents& agents, const sim::SimulationResult& result) {
   verdict::Assessment view = exact;
   view.verdict = to_verdict(result.answer.verdict);
   view.reasons = {robot_reason(result)};
@@ -72,7 +86,7 @@ verdict::Assessment view_of(const model::Robot& robot, const verdict::Assessment
   view.weight_factor.reset();
   const bool has_loads = result.answer.verdict == agent::Verdict::kSafe ||
                          result.answer.verdict == agent::Verdict::kOverload;
-  if (!has_loads || !take_load_ratios(robot, simulation, view.connections)) {
+  if (!has_loads || !take_load_ratios(robot, agents, view.connections)) {
     view.connections.clear();
     return view;
   }
@@ -88,19 +102,6 @@ verdict::Assessment view_of(const model::Robot& robot, const verdict::Assessment
   }
   return view;
 }
-
-std::vector<std::string> notes_on(const sim::SimulationOptions& options) {
-  const bool changes = std::ranges::any_of(options.faults, [](const sim::Fault& fault) {
-    return fault.kind == sim::Fault::Kind::kDetach || fault.kind == sim::Fault::Kind::kAttach;
-  });
-  if (!changes) {
-    return {};
-  }
-  return {
-      "the exact answer is for the structure of the file, the robot's for what it is in the end"};
-}
-
-}  // namespace
 
 verdict::Verdict to_verdict(agent::Verdict verdict) {
   switch (verdict) {
@@ -158,7 +159,10 @@ base::Result<DistributedRun> simulate(const Structure& structure, const CheckRes
   }
   DistributedRun run{
       .link = options.link, .result = simulation.result(), .view = {}, .notes = notes_on(options)};
-  run.view = view_of(structure.robot, exact.assessment, simulation, run.result);
+  const Agents agents{
+      .at = [&](std::int32_t i) -> const agent::Agent& { return simulation.agent(i); },
+      .count = simulation.agent_count()};
+  run.view = view_of(structure.robot, exact.assessment, agents, run.result);
   return run;
 }
 

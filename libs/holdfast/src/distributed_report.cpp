@@ -2,9 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
-#include <iterator>
-#include <nlohmann/json.hpp>
-
+#include "distributed_parts.hpp"
 #include "holdfast/distributed.hpp"
 
 namespace holdfast {
@@ -68,36 +66,12 @@ Json distributed_json(const DistributedRun& run) {
           {"phases", phases_json(run)}};
 }
 
-using Out = std::back_insert_iterator<std::string>;
-
 std::string time_text(const sim::LinkModel& link, sim::Time time) {
   const auto seconds = sim::seconds(link, time);
   return seconds ? fmt::format("{:.3f} s", *seconds) : std::string("-");
 }
 
-void write_answer(Out out, const Structure& structure, const CheckResult& exact,
-                  const DistributedRun& run) {
-  const agent::Answer& answer = run.result.answer;
-  const verdict::Assessment& truth = exact.assessment;
-  for (const std::string& reason : run.view.reasons) {
-    fmt::format_to(out, "  {}\n", reason);
-  }
-  fmt::format_to(out, "\n  exact       {}", verdict::name(truth.verdict));
-  if (truth.is_stable && truth.worst) {
-    fmt::format_to(out, ", load ratio {:.4f}  {}", *truth.load_ratio_max,
-                   model::ends_text(structure.robot, *truth.worst));
-  }
-  fmt::format_to(out, "\n  robot       {}", verdict::name(run.view.verdict));
-  if (has_load_ratio(answer) && run.result.effort.module_count > 1) {
-    const base::Cell& a = answer.worst_cell;
-    const base::Cell b = base::neighbour(a, answer.worst_direction);
-    fmt::format_to(out, ", load ratio {:.4f}  ({},{},{})-({},{},{})", answer.load_ratio_max, a.x,
-                   a.y, a.z, b.x, b.y, b.z);
-  }
-  fmt::format_to(out, "{}\n", run.result.all_agree ? "; all modules agree" : "; NOT all agree");
-}
-
-void write_cost(Out out, const DistributedRun& run) {
+void write_cost(TextOut out, const DistributedRun& run) {
   const sim::SimulationResult& result = run.result;
   if (result.effort.solves > 0) {
     fmt::format_to(out,
@@ -125,6 +99,28 @@ void write_cost(Out out, const DistributedRun& run) {
 
 }  // namespace
 
+void write_answer(TextOut out, const Structure& structure, const CheckResult& exact,
+                  const DistributedRun& run) {
+  const agent::Answer& answer = run.result.answer;
+  const verdict::Assessment& truth = exact.assessment;
+  for (const std::string& reason : run.view.reasons) {
+    fmt::format_to(out, "  {}\n", reason);
+  }
+  fmt::format_to(out, "\n  exact       {}", verdict::name(truth.verdict));
+  if (truth.is_stable && truth.worst) {
+    fmt::format_to(out, ", load ratio {:.4f}  {}", *truth.load_ratio_max,
+                   model::ends_text(structure.robot, *truth.worst));
+  }
+  fmt::format_to(out, "\n  robot       {}", verdict::name(run.view.verdict));
+  if (has_load_ratio(answer) && run.result.effort.module_count > 1) {
+    const base::Cell& a = answer.worst_cell;
+    const base::Cell b = base::neighbour(a, answer.worst_direction);
+    fmt::format_to(out, ", load ratio {:.4f}  ({},{},{})-({},{},{})", answer.load_ratio_max, a.x,
+                   a.y, a.z, b.x, b.y, b.z);
+  }
+  fmt::format_to(out, "{}\n", run.result.all_agree ? "; all modules agree" : "; NOT all agree");
+}
+
 std::string report_json(const Structure& structure, const CheckResult& exact,
                         const DistributedRun& run) {
   Json report = Json::parse(report_json(structure, exact));
@@ -135,7 +131,7 @@ std::string report_json(const Structure& structure, const CheckResult& exact,
 std::string report_text(const Structure& structure, const CheckResult& exact,
                         const DistributedRun& run) {
   std::string text;
-  const Out out(text);
+  const TextOut out(text);
   write_answer(out, structure, exact, run);
   write_cost(out, run);
   for (const auto* list : {&structure.warnings, &run.notes}) {

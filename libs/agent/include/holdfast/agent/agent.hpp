@@ -116,8 +116,8 @@ struct BranchWork {
   std::array<std::array<std::int8_t, kLoopsMax>, base::kDirectionCount> slot_of{};
   std::array<std::uint8_t, base::kDirectionCount> child_cut_count{};
   std::array<std::uint8_t, base::kDirectionCount> columns_here{};  ///< All before are final.
-  Branch::Packed packed{};                                         ///< S' for the parent, ...
-  bool is_packed = false;                                          ///< ... if it is symmetric.
+  base::Mat6<float> stiffness_up{};                                ///< S' for the parent.
+  bool is_symmetric = false;                                       ///< It goes up in parts.
   base::Vec6<float> shift{};                                       ///< M^-1 r, ...
   base::Vec6<double> parent_shift{};                               ///< ... and the parent's.
 };
@@ -228,7 +228,9 @@ class BasicAgent {
 
   // work.cpp: what the operations do here.
   void prepare(const Order& order);
+  void prepare_solve(const Order& order);
   Report conclude(const Order& order);
+  Report conclude_solve(const Order& order);
   Report plan_report() const;
   Report mass_report() const;
   Report angles_report() const;

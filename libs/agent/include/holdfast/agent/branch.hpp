@@ -54,11 +54,11 @@ using CutForces = std::array<base::Vec6<double>, kLoopsMax>;
 
 class Branch {
  public:
-  /// Columns that go up: S', then by open loop B', C' (its rows) and P'.
+  /// Columns that go up: six of S', then by open loop B', C' (its rows) and P'.
   static constexpr int kColumnCount = 6 + 12 * kLoopsMax + 6 * kLoopsMax * kLoopsMax;
 
-  /// A symmetric S' fits into four vectors: its lower triangle, column by column, and zeros.
-  using Packed = std::array<base::Vec6<float>, 4>;
+  /// Vectors for a symmetric S' instead of six: its lower triangle, column by column, and zeros.
+  static constexpr int kPartCount = 4;
 
   // ---- Which loops are here. Once, when the tree and the planned modules are known.
 
@@ -85,8 +85,8 @@ class Branch {
   void add_column(int index, const std::array<std::int8_t, kLoopsMax>& slot_of,
                   const base::Vec6<float>& column);
 
-  /// Part `index` of a child's packed S'.
-  void add_packed(int index, const base::Vec6<float>& part);
+  /// Part `index` of a child's S' that is symmetric.
+  void add_part(int index, const base::Vec6<float>& part);
 
   bool closes_loops() const { return open_count() < count_; }
 
@@ -98,13 +98,13 @@ class Branch {
   int columns_needed(int index, const std::array<std::int8_t, kLoopsMax>& slot_of,
                      int child_loops) const;
 
-  /// Eq. (3), column by column; `is_fixed` if this module does not move.
+  /// Eq. (3): S'; `is_fixed` if this module does not move.
+  base::Mat6<double> stiffness_up(const mechanics::BeamStiffness<double>& beam,
+                                  base::Direction to_parent, bool is_fixed) const;
+
+  /// Eq. (3): the columns behind S', one by one.
   base::Vec6<double> column_up(const mechanics::BeamStiffness<double>& beam,
                                base::Direction to_parent, bool is_fixed, int index) const;
-
-  /// S' if it is symmetric but for rounding, as it is where no facet tilts.
-  bool pack_up(const mechanics::BeamStiffness<double>& beam, base::Direction to_parent,
-               bool is_fixed, Packed& packed) const;
 
   // ---- Loads.
 
@@ -143,6 +143,12 @@ class Branch {
   std::uint8_t count_ = 0;
   std::uint8_t open_ = 0;  ///< By slot.
 };
+
+/// Symmetric but for rounding, as S' is where no facet tilts.
+bool is_symmetric(const base::Mat6<float>& stiffness);
+
+/// Part `index` of Branch::kPartCount.
+base::Vec6<float> part_of(const base::Mat6<float>& stiffness, int index);
 
 /// The rigid motion of the neighbour in `direction` seen here: u = T u_neighbour.
 base::Mat6<double> rigid_transport(double pitch_mm, base::Direction direction);

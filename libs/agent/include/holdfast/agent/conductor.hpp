@@ -87,6 +87,7 @@ class Conductor {
   static constexpr int kSeenMax = 24;
 
   Order order(Step step, wire::Operation operation);
+  Order next_of_solve(const Setup& setup, const Report& report);
   Order after_plan(const Report& report);
   Order after_hosts(const Report& report);
   Order after_mass(const Setup& setup, const Report& report);

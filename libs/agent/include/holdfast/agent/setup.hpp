@@ -32,6 +32,9 @@ struct Setup {
   std::int32_t support_z = 0;  ///< Modules in this layer rest on the ground.
   /// kElimination means: or minimal residuals, if the robot has too many loops.
   Method method = Method::kElimination;
+  /// Where elimination does not do, the verdict is `undecided`: for robots some of whose modules
+  /// have no other method (src/methods.hpp).
+  bool only_elimination = false;
   std::uint32_t iteration_count_max = 4'000'000;
   /// Of the polynomial preconditioner of conjugate gradients. A degree m costs m rounds more and
   /// saves about a factor m of sweeps of twice the tree's depth, so the depth is a good degree.

@@ -1,0 +1,74 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#include "faults.hpp"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <iterator>
+
+namespace holdfast::cli {
+namespace {
+
+template <class Number>
+bool take_number(std::string_view& text, Number& value) {
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc()) {
+    return false;
+  }
+  text.remove_prefix(static_cast<std::size_t>(end - text.data()));
+  return true;
+}
+
+bool take_mark(std::string_view& text, char mark) {
+  const bool is_there = text.starts_with(mark);
+  text.remove_prefix(is_there ? 1 : 0);
+  return is_there;
+}
+
+std::optional<base::Direction> find_direction(std::string_view& text) {
+  constexpr std::string_view kNames[] = {"+x", "-x", "+y", "-y", "+z", "-z"};
+  for (std::size_t i = 0; i < std::size(kNames); ++i) {
+    if (text.starts_with(kNames[i])) {
+      text.remove_prefix(kNames[i].size());
+      return static_cast<base::Direction>(i);
+    }
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+std::optional<FaultPlace> read_fault_place(std::string_view text, bool has_face,
+                                           const Structure& structure) {
+  base::Cell cell;
+  FaultPlace place;
+  if (!take_number(text, cell.x) || !take_mark(text, ',') || !take_number(text, cell.y) ||
+      !take_mark(text, ',') || !take_number(text, cell.z)) {
+    return std::nullopt;
+  }
+  if (has_face) {
+    const auto face = take_mark(text, ':') ? find_direction(text) : std::nullopt;
+    if (!face) {
+      return std::nullopt;
+    }
+    place.face = *face;
+  }
+  if (!take_mark(text, '@') || !take_number(text, place.time) || !text.empty() ||
+      !(place.time >= 0) || !(place.time < 1e12)) {
+    return std::nullopt;
+  }
+  const auto modules = structure.robot.modules();
+  for (std::size_t i = 0; i < modules.size() - structure.robot.planned_count(); ++i) {
+    place.module = modules[i].cell == cell ? static_cast<std::int32_t>(i) : place.module;
+  }
+  return place.module >= 0 ? std::optional(place) : std::nullopt;
+}
+
+std::string fault_usage(std::string_view option, std::string_view text, bool has_face) {
+  return fmt::format("--{} {}: expected is {}@TIME with the cell of an existing module, as in {}",
+                     option, text, has_face ? "X,Y,Z:FACE" : "X,Y,Z",
+                     has_face ? "2,1,0:+z@1.5" : "2,1,0@1.5");
+}
+
+}  // namespace holdfast::cli

@@ -1,0 +1,27 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "holdfast/holdfast.hpp"
+
+/// Faults as they are written on the command line: "X,Y,Z@T", at a face "X,Y,Z:+x@T".
+namespace holdfast::cli {
+
+struct FaultPlace {
+  std::int32_t module = -1;  ///< An existing one.
+  base::Direction face = base::Direction::kPlusX;
+  double time = 0;
+};
+
+/// None if the text is no place of an existing module.
+std::optional<FaultPlace> read_fault_place(std::string_view text, bool has_face,
+                                           const Structure& structure);
+
+/// What is wrong with a text that is none.
+std::string fault_usage(std::string_view option, std::string_view text, bool has_face);
+
+}  // namespace holdfast::cli

@@ -1,0 +1,33 @@
+#!/usr/bin/env bash
+# build.sh FOLDER   compiles the module's program for the ATxmega256A3 (Blinky Blocks 1) into FOLDER
+# and says how large it is. Debian's avr-g++ 5 knows no C++20, so clang compiles and avr-g++ links;
+# the headers of the standard library are those of the Cortex-M0's compiler.
+set -euo pipefail
+here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
+rooms=$here/../../libs
+out=$1
+flash_max=262144
+ram_max=16384
+headers=$(echo /usr/include/newlib/c++/*/ | tr ' ' '\n' | tail -1)
+flags=(--target=avr -mmcu=atxmega256a3 -std=c++20 -Os -DNDEBUG -ffreestanding -fno-exceptions
+       -fno-rtti -ffp-contract=off -ffunction-sections -fdata-sections -nostdinc++
+       -DHOLDFAST_AGENT_ELIMINATION_ONLY -DHOLDFAST_AGENT_SMALL_CHECKSUM
+       -isystem "$headers" -isystem "${headers}arm-none-eabi/thumb/v6-m/nofp"
+       -isystem /usr/lib/avr/include)
+for room in base mechanics agent module; do
+  flags+=("-I$rooms/$room/include")
+done
+mkdir -p "$out"
+objects=()
+for source in "$rooms"/{mechanics,agent,module}/src/*.cpp "$here/main.cpp"; do
+  object=$out/$(basename "$(dirname "$(dirname "$source")")")_$(basename "$source" .cpp).o
+  if [ "$source" -nt "$object" ]; then
+    clang++-14 "${flags[@]}" -c "$source" -o "$object"
+  fi
+  objects+=("$object")
+done
+avr-g++ -mmcu=atxmega256a3 -Wl,--gc-sections "${objects[@]}" -o "$out/module_atxmega256a3.elf"
+read -r text data bss _ < <(avr-size "$out/module_atxmega256a3.elf" | tail -1)
+echo "atxmega256a3: $((text + data)) bytes of flash of $flash_max, $((data + bss)) of RAM of" \
+     "$ram_max"
+[ $((text + data)) -le $flash_max ] && [ $((data + bss)) -le $ram_max ]

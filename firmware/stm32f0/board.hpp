@@ -1,0 +1,39 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+/// How a board with an STM32F091CB is wired: which USART, pins and DMA channels serve which face.
+/// The USARTs follow the port numbers of Blinky Blocks 2: front 0 is USART1, bottom 1 USART2, right
+/// 2, left 3, back 4, top 5. The pins are ours, as its schematics are not public: all of them exist
+/// on the package of 48 pins; change them here.
+namespace holdfast::stm32f0 {
+
+struct Line {
+  std::uint32_t usart;  ///< Base address.
+  std::uint8_t code;    ///< In DMA's CSELR: USART1 8, ..., USART6 13 (RM0091, 10.3.7).
+  std::uint8_t gpio;    ///< Port A is 0, ...
+  std::uint8_t pin_send;
+  std::uint8_t pin_receive;
+  std::uint8_t function;  ///< Alternate function of both pins.
+  std::uint8_t dma_send;  ///< 16 x controller + channel.
+  std::uint8_t dma_receive;
+};
+
+/// By face: +x right, -x left, +y back, -y front, +z top, -z bottom.
+inline constexpr std::array<Line, 6> kLines = {{
+    {0x40004800, 10, 1, 10, 11, 4, 0x17, 0x15},  // USART3
+    {0x40004C00, 11, 0, 0, 1, 4, 0x21, 0x16},    // USART4
+    {0x40005000, 12, 1, 3, 4, 4, 0x24, 0x22},    // USART5
+    {0x40013800, 8, 0, 9, 10, 1, 0x12, 0x11},    // USART1
+    {0x40011400, 13, 0, 4, 5, 5, 0x25, 0x23},    // USART6
+    {0x40004400, 9, 0, 2, 3, 1, 0x14, 0x13},     // USART2
+}};
+
+/// 48 MHz / 115,200 baud.
+inline constexpr std::uint32_t kClockHz = 48'000'000;
+inline constexpr std::uint32_t kBaudDivisor = (kClockHz + 57'600) / 115'200;
+
+}  // namespace holdfast::stm32f0

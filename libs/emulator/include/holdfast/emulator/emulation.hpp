@@ -1,0 +1,118 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "holdfast/emulator/image.hpp"
+#include "holdfast/model/robot.hpp"
+#include "holdfast/sim/simulation.hpp"
+
+/// A robot whose modules are emulated microcontrollers: one image of the firmware for every
+/// existing module, each with its own memory, wired face to face by their USARTs.
+///
+/// Time is counted in cycles of 48 MHz. A byte takes as long on its line as the baud rate says, so
+/// nothing that a module sends can reach another within one byte's time: all modules run for that
+/// long, one after the other, then bytes are handed over. So the order in which they run does not
+/// matter, and the same inputs give the same bits.
+///
+/// Beside every module runs an agent of the host (its shadow), which is handed the same events at
+/// the same times. What the image does must be the same, bit for bit; `mismatch_count` counts the
+/// steps in which it is not.
+namespace holdfast::emulator {
+
+using sim::Time;
+
+/// What goes wrong. Times are microseconds.
+struct Fault {
+  enum class Kind : std::uint8_t {
+    kKill,   ///< The module has no power any more. It still hangs there.
+    kCut,    ///< The line at `face` carries nothing, both ways.
+    kFlip,   ///< One bit of the next byte that comes in at `face` flips.
+    kReset,  ///< The module starts again; its memory stays as it is.
+  };
+
+  Kind kind = Kind::kKill;
+  Time at = 0;
+  std::int32_t module = 0;
+  base::Direction face = base::Direction::kPlusX;
+};
+
+struct EmulationOptions {
+  std::uint64_t seed = 1;  ///< Of the noise of the sensors and of when the modules start.
+  std::vector<Fault> faults = {};
+  std::int32_t anchor = 0;       ///< The module that knows its cell.
+  std::int32_t plan_module = 0;  ///< Is told of the robot's planned modules, on a free face.
+  Time plan_at = 400'000;        ///< When.
+  Time start_spread = 20'000;    ///< Modules start within so long.
+  Time time_max = 60'000'000;
+};
+
+/// What it took, over all modules.
+struct FirmwareReport {
+  std::uint32_t flash_bytes = 0;
+  std::uint32_t ram_bytes = 0;    ///< Without the stack.
+  std::uint32_t agent_bytes = 0;  ///< Of these.
+  std::uint32_t stack_bytes_max = 0;
+  std::uint64_t step_count = 0;
+  std::uint64_t step_cycles_mean = 0;
+  std::uint64_t step_cycles_max = 0;
+  std::string step_longest;          ///< In which phase.
+  std::uint64_t mismatch_count = 0;  ///< Steps in which image and host differ.
+  std::uint64_t lost_bytes = 0;      ///< That came to a USART that was not ready.
+  Time planned_at = 0;               ///< When the last plan was complete; 0: there is none.
+};
+
+struct ModuleView {
+  agent::Answer answer;  ///< As in the module's memory.
+  agent::Colour colour;
+  float own_load_ratio = 0;
+  bool is_alive = true;
+};
+
+/// What each existing module knows before it starts, as the bytes of its page in flash.
+std::vector<std::vector<std::uint8_t>> configuration_pages(const model::Robot& robot,
+                                                           std::int32_t anchor);
+
+/// Was this built with Unicorn? Without, no Emulation may be made.
+bool is_available();
+
+class Robot;
+
+class Emulation {
+ public:
+  /// Keeps a reference to the robot. Options with a fault are a bug of the caller.
+  Emulation(const Image& image, const model::Robot& robot, const EmulationOptions& options);
+  Emulation(Emulation&&) noexcept;
+  ~Emulation();
+
+  /// Lets that much simulated time pass, or less. False: it is over: every living module knows
+  /// the verdict, or the time is up.
+  bool run_for(Time duration);
+
+  /// In microseconds, otherwise as the simulator's. Rounds are not counted.
+  sim::SimulationResult result() const;
+
+  FirmwareReport report() const;
+
+  ModuleView module(std::int32_t module) const;
+
+  /// The host's agent beside the module.
+  const agent::Agent& shadow(std::int32_t module) const;
+
+  std::int32_t module_count() const;
+
+ private:
+  std::unique_ptr<Robot> robot_;
+};
+
+/// Why options do not fit the robot, if they do not.
+std::optional<std::string> find_options_fault(const model::Robot& robot,
+                                              const EmulationOptions& options);
+
+}  // namespace holdfast::emulator

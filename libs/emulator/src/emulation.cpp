@@ -1,0 +1,370 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#include "holdfast/emulator/emulation.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cstring>
+
+#include "board.hpp"
+#include "holdfast/base/check.hpp"
+#include "module_cpu.hpp"
+
+namespace holdfast::emulator {
+namespace {
+
+constexpr Cycles kCyclesPerMicrosecond = kClockHz / 1'000'000;
+constexpr Cycles kByteCycles = Cycles{10} * stm32f0::kBaudDivisor;
+
+Cycles cycles(Time time) { return time * kCyclesPerMicrosecond; }
+
+/// USART1 is 0.
+int usart_of(int face) { return stm32f0::kLines[static_cast<std::size_t>(face)].code - 8; }
+
+int face_of(int usart) {
+  int face = 0;
+  while (usart_of(face) != usart) {
+    ++face;
+  }
+  return face;
+}
+
+/// What the modules of a robot know, the same as the simulator's agents.
+std::vector<module::Configuration> configurations(const model::Robot& robot, std::int32_t anchor) {
+  sim::SimulationOptions simulation;
+  simulation.link = sim::blinky_blocks_v2();
+  module::Configuration configuration;
+  configuration.setup = sim::make_setup(robot, simulation);
+  configuration.setup.only_elimination = true;
+  std::vector<module::Configuration> all;
+  for (std::size_t i = 0; i < robot.modules().size() - robot.planned_count(); ++i) {
+    const model::Module& module = robot.modules()[i];
+    configuration.identity = {.id = static_cast<std::uint32_t>(i + 1),
+                              .is_fixed = module.support == model::Support::kFixed,
+                              .is_anchor = i == static_cast<std::size_t>(anchor),
+                              .cell = module.cell};
+    configuration.checksum = module::checksum_of(configuration);
+    all.push_back(configuration);
+  }
+  return all;
+}
+
+bool is_same(const agent::Answer& a, const agent::Answer& b) {
+  return a.verdict == b.verdict && a.reason == b.reason &&
+         std::bit_cast<std::uint32_t>(a.load_ratio_max) ==
+             std::bit_cast<std::uint32_t>(b.load_ratio_max) &&
+         a.worst_cell == b.worst_cell && a.worst_direction == b.worst_direction;
+}
+
+}  // namespace
+
+/// All modules and the lines between them.
+class Robot {
+ public:
+  Robot(const Image& image, const model::Robot& robot, const EmulationOptions& options);
+
+  bool run_for(Time duration);
+  sim::SimulationResult result() const;
+  FirmwareReport report() const;
+  ModuleView view(std::int32_t module) const;
+
+  const ModuleCpu& cpu(std::int32_t module) const { return *modules_[at(module)]; }
+
+  std::int32_t count() const { return static_cast<std::int32_t>(modules_.size()); }
+
+ private:
+  static std::size_t at(std::int32_t module) { return static_cast<std::size_t>(module); }
+
+  std::int32_t neighbour(std::int32_t module, int face) const;
+  void announce();
+  void run_slice(Cycles begin);
+  void hand_over(std::int32_t module);
+  void make_fault(const Fault& fault);
+  bool is_cut(std::int32_t module, int face) const;
+  bool is_settled() const;
+
+  const Image& image_;
+  const model::Robot& robot_;
+  EmulationOptions options_;
+  CostTable costs_;
+  std::vector<std::unique_ptr<ModuleCpu>> modules_;
+  std::vector<std::uint8_t> cut_faces_;
+  std::vector<std::array<std::uint8_t, base::kDirectionCount>> flips_;  ///< Of the next byte.
+  std::size_t next_fault_ = 0;
+  Cycles now_ = 0;
+  Time planned_at_ = 0;
+};
+
+Robot::Robot(const Image& image, const model::Robot& robot, const EmulationOptions& options)
+    : image_(image),
+      robot_(robot),
+      options_(options),
+      costs_(Processor::kFlashBegin, Processor::kFlashBytes) {
+  const std::size_t count = robot.modules().size() - robot.planned_count();
+  base::Rng rng(options.seed);
+  for (const module::Configuration& configuration : configurations(robot, options.anchor)) {
+    const std::uint64_t seed = rng.next();
+    const Cycles start = cycles(rng.below(options.start_spread + 1));
+    modules_.push_back(std::make_unique<ModuleCpu>(image, costs_, configuration, seed, start));
+  }
+  cut_faces_.resize(count);
+  flips_.resize(count);
+  std::ranges::stable_sort(options_.faults, {}, &Fault::at);
+  announce();
+}
+
+std::int32_t Robot::neighbour(std::int32_t module, int face) const {
+  const std::int32_t other = robot_.neighbours()[at(module)][static_cast<std::size_t>(face)];
+  return other < count() ? other : model::Robot::kNoNeighbour;
+}
+
+/// From outside, byte by byte, on a free face.
+void Robot::announce() {
+  const auto is_free = [&](int face) { return neighbour(options_.plan_module, face) < 0; };
+  int face = 0;
+  while (face < base::kDirectionCount - 1 && !is_free(face)) {
+    ++face;
+  }
+  Cycles time = cycles(options_.plan_at);
+  for (std::size_t i = modules_.size(); i < robot_.modules().size(); ++i) {
+    std::array<std::uint8_t, 12> payload{};
+    const base::Cell& cell = robot_.modules()[i].cell;
+    std::size_t place = 0;
+    for (const std::int32_t value : {cell.x, cell.y, cell.z}) {
+      for (unsigned shift = 0; shift < 32; shift += 8) {
+        payload[place++] = static_cast<std::uint8_t>(static_cast<std::uint32_t>(value) >> shift);
+      }
+    }
+    std::array<std::uint8_t, module::kFrameBytesMax> frame{};
+    const int size = module::write_frame(module::FrameKind::kPlan, payload, frame);
+    for (std::size_t k = 0; k < static_cast<std::size_t>(size); ++k) {
+      time += kByteCycles;
+      modules_[at(options_.plan_module)]->arrive(
+          usart_of(face), {.time = time, .byte_cycles = kByteCycles, .byte = frame[k]});
+    }
+  }
+  planned_at_ = robot_.planned_count() > 0 ? time / kCyclesPerMicrosecond : 0;
+}
+
+bool Robot::run_for(Time duration) {
+  const Cycles until = now_ + cycles(duration);
+  const Cycles end = cycles(options_.time_max);
+  while (now_ < std::min(until, end)) {
+    Cycles next = ~Cycles{0};
+    for (const auto& module : modules_) {
+      next = module->is_alive() ? std::min(next, module->next_time()) : next;
+    }
+    if (next_fault_ < options_.faults.size() && cycles(options_.faults[next_fault_].at) <= next) {
+      make_fault(options_.faults[next_fault_++]);
+      continue;
+    }
+    if (next == ~Cycles{0}) {
+      return false;
+    }
+    run_slice(next);
+  }
+  return now_ < end && !is_settled();
+}
+
+/// Nothing that is sent from `begin` on arrives within a byte's time.
+void Robot::run_slice(Cycles begin) {
+  const Cycles end = begin + kByteCycles;
+  for (const auto& module : modules_) {
+    module->run(end);
+  }
+  for (std::int32_t module = 0; module < count(); ++module) {
+    hand_over(module);
+  }
+  now_ = end;
+}
+
+void Robot::hand_over(std::int32_t module) {
+  for (const Sent& sent : modules_[at(module)]->take_sent()) {
+    const int face = face_of(sent.usart);
+    const std::int32_t other = neighbour(module, face);
+    if (other < 0 || !modules_[at(other)]->is_alive() || is_cut(module, face)) {
+      continue;
+    }
+    const int back = base::index(base::opposite(static_cast<base::Direction>(face)));
+    Cycles time = sent.begin;
+    for (const std::uint8_t byte : sent.bytes) {
+      time += sent.byte_cycles;
+      std::uint8_t& flip = flips_[at(other)][static_cast<std::size_t>(back)];
+      modules_[at(other)]->arrive(usart_of(back), {.time = time,
+                                                   .byte_cycles = sent.byte_cycles,
+                                                   .byte = static_cast<std::uint8_t>(byte ^ flip)});
+      flip = 0;
+    }
+  }
+}
+
+bool Robot::is_cut(std::int32_t module, int face) const {
+  return (cut_faces_[at(module)] >> static_cast<unsigned>(face) & 1U) != 0;
+}
+
+void Robot::make_fault(const Fault& fault) {
+  const int face = base::index(fault.face);
+  const auto cut = [&](std::int32_t module, int at_face) {
+    std::uint8_t& faces = cut_faces_[at(module)];
+    faces = static_cast<std::uint8_t>(faces | 1U << static_cast<unsigned>(at_face));
+  };
+  switch (fault.kind) {
+    case Fault::Kind::kKill:
+      modules_[at(fault.module)]->kill();
+      break;
+    case Fault::Kind::kCut:
+      cut(fault.module, face);
+      cut(neighbour(fault.module, face), base::index(base::opposite(fault.face)));
+      break;
+    case Fault::Kind::kFlip:
+      flips_[at(fault.module)][static_cast<std::size_t>(face)] = 0x10;
+      break;
+    case Fault::Kind::kReset:
+      modules_[at(fault.module)]->reset();
+      break;
+  }
+}
+
+/// Does everybody alive know the verdict, with all plans and after all faults?
+bool Robot::is_settled() const {
+  if (now_ <= cycles(planned_at_) + kByteCycles || next_fault_ < options_.faults.size()) {
+    return false;
+  }
+  return std::ranges::all_of(modules_, [](const auto& module) {
+    return !module->is_alive() || module->status().verdict != agent::Verdict::kNone;
+  });
+}
+
+ModuleView Robot::view(std::int32_t module) const {
+  const ModuleCpu& cpu = *modules_[at(module)];
+  const module::Status status = cpu.status();
+  return {.answer = {.verdict = status.verdict,
+                     .reason = status.reason,
+                     .load_ratio_max = status.load_ratio_max,
+                     .worst_cell = status.worst_cell,
+                     .worst_direction = status.worst_direction},
+          .colour = status.colour,
+          .own_load_ratio = status.own_load_ratio,
+          .is_alive = cpu.is_alive()};
+}
+
+sim::SimulationResult Robot::result() const {
+  sim::SimulationResult result;
+  result.time = now_ / kCyclesPerMicrosecond;
+  result.is_quiet = is_settled();
+  result.all_agree = true;
+  bool is_first = true;
+  for (std::int32_t i = 0; i < count(); ++i) {
+    const StepRecord& steps = modules_[at(i)]->steps();
+    result.events += steps.count;
+    result.packets += steps.packets;
+    result.bytes += steps.bytes;
+    result.data_packets += steps.data_packets;
+    result.payload_bytes += steps.payload_bytes;
+    if (steps.bytes > result.bytes_module_max) {
+      result.bytes_module_max = steps.bytes;
+      result.packets_module_max = steps.packets;
+    }
+    for (std::size_t k = 0; k < sim::kPhaseCount; ++k) {
+      result.phases[k].packets += steps.phases[k].packets;
+      result.phases[k].bytes += steps.phases[k].bytes;
+    }
+    if (!modules_[at(i)]->is_alive()) {
+      continue;
+    }
+    const agent::Answer answer = view(i).answer;
+    result.answer = is_first ? answer : result.answer;
+    is_first = false;
+    result.all_agree = result.all_agree && answer.verdict != agent::Verdict::kNone &&
+                       is_same(answer, result.answer);
+    result.verdict_time =
+        std::max(result.verdict_time, Time{steps.verdict_time / kCyclesPerMicrosecond});
+    const agent::Agent& shadow = modules_[at(i)]->shadow();
+    result.epoch = std::max(result.epoch, shadow.epoch());
+  }
+  for (std::int32_t i = 0; i < count(); ++i) {
+    const agent::Agent& shadow = modules_[at(i)]->shadow();
+    if (modules_[at(i)]->is_alive() && shadow.is_root() && shadow.epoch() == result.epoch) {
+      result.root = i;
+      result.effort = shadow.effort();
+    }
+  }
+  const auto agent_bytes = image_.word("holdfast_agent_bytes");
+  result.bytes_per_module = modules_.empty() ? 0 : agent_bytes;
+  result.all_agree = result.all_agree && !is_first;
+  return result;
+}
+
+FirmwareReport Robot::report() const {
+  FirmwareReport report;
+  report.flash_bytes = image_.flash_bytes;
+  report.ram_bytes = image_.ram_bytes;
+  report.agent_bytes = image_.word("holdfast_agent_bytes");
+  report.planned_at = planned_at_;
+  Cycles cycles_all = 0;
+  for (const auto& module : modules_) {
+    const StepRecord& steps = module->steps();
+    report.stack_bytes_max = std::max(report.stack_bytes_max, module->stack_bytes());
+    report.step_count += steps.count;
+    cycles_all += steps.cycles;
+    if (steps.cycles_max > report.step_cycles_max) {
+      report.step_cycles_max = steps.cycles_max;
+      report.step_longest = sim::name(steps.longest);
+    }
+    report.mismatch_count += steps.mismatch_count;
+    report.lost_bytes += module->lost_bytes();
+  }
+  report.step_cycles_mean = report.step_count > 0 ? cycles_all / report.step_count : 0;
+  return report;
+}
+
+std::vector<std::vector<std::uint8_t>> configuration_pages(const model::Robot& robot,
+                                                           std::int32_t anchor) {
+  std::vector<std::vector<std::uint8_t>> pages;
+  for (const module::Configuration& configuration : configurations(robot, anchor)) {
+    pages.emplace_back(sizeof(configuration));
+    std::memcpy(pages.back().data(), &configuration, sizeof(configuration));
+  }
+  return pages;
+}
+
+std::optional<std::string> find_options_fault(const model::Robot& robot,
+                                              const EmulationOptions& options) {
+  sim::SimulationOptions same;
+  same.anchor = options.anchor;
+  same.plan_module = options.plan_module;
+  for (const Fault& fault : options.faults) {
+    const bool has_face = fault.kind == Fault::Kind::kCut || fault.kind == Fault::Kind::kFlip;
+    same.faults.push_back({.kind = has_face ? sim::Fault::Kind::kCut : sim::Fault::Kind::kKill,
+                           .at = fault.at,
+                           .module = fault.module,
+                           .face = fault.face});
+  }
+  return sim::find_options_fault(robot, same);
+}
+
+Emulation::Emulation(const Image& image, const model::Robot& robot,
+                     const EmulationOptions& options) {
+  HOLDFAST_CHECK(!find_options_fault(robot, options));
+  robot_ = std::make_unique<Robot>(image, robot, options);
+}
+
+Emulation::Emulation(Emulation&&) noexcept = default;
+
+Emulation::~Emulation() = default;
+
+bool Emulation::run_for(Time duration) { return robot_->run_for(duration); }
+
+sim::SimulationResult Emulation::result() const { return robot_->result(); }
+
+FirmwareReport Emulation::report() const { return robot_->report(); }
+
+ModuleView Emulation::module(std::int32_t module) const { return robot_->view(module); }
+
+const agent::Agent& Emulation::shadow(std::int32_t module) const {
+  return robot_->cpu(module).shadow();
+}
+
+std::int32_t Emulation::module_count() const { return robot_->count(); }
+
+}  // namespace holdfast::emulator

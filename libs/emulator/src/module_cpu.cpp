@@ -1,0 +1,185 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#include "module_cpu.hpp"
+
+#include <algorithm>
+#include <cstring>
+
+#include "holdfast/base/check.hpp"
+
+namespace holdfast::emulator {
+namespace {
+
+constexpr const char* kStep = "_ZN8holdfast5agent10BasicAgentIfE4stepERKNS0_5EventERNS0_7ActionsE";
+
+/// agent::Event and agent::Actions as they lie in the module's memory.
+struct EventLayout {
+  std::uint8_t kind;
+  std::uint64_t now;
+  std::uint8_t face;
+  std::uint16_t random;
+  std::int32_t cell[3];
+  std::uint32_t bytes;
+  std::uint32_t byte_count;
+};
+
+struct ActionsLayout {
+  std::uint8_t send_faces;
+  std::uint64_t wake_at;
+  std::int32_t packet_bytes;
+  std::uint8_t packet[agent::wire::kPacketBytesMax];
+};
+
+static_assert(sizeof(EventLayout) == 40 && sizeof(ActionsLayout) == 248);
+
+template <class Value>
+Value read_value(const Processor& processor, std::uint32_t address) {
+  Value value{};
+  processor.read(address, {reinterpret_cast<std::uint8_t*>(&value), sizeof(Value)});
+  return value;
+}
+
+}  // namespace
+
+Stm32f091::Hooks ModuleCpu::hooks() {
+  return {
+      .now = [this] { return processor_.now(); },
+      .store =
+          [this](std::uint32_t address, std::uint8_t byte) {
+            processor_.write(address, {&byte, 1});
+          },
+      .load =
+          [this](std::uint32_t address) { return read_value<std::uint8_t>(processor_, address); },
+      .idle =
+          [this] {
+            is_waiting_ = true;
+            wake_at_ = stm_.next_event();
+            processor_.stop();
+          }};
+}
+
+ModuleCpu::ModuleCpu(const Image& image, CostTable& costs,
+                     const module::Configuration& configuration, std::uint64_t seed, Cycles start)
+    : image_(image),
+      configuration_(configuration),
+      shadow_(std::make_unique<agent::Agent>(configuration_.setup, configuration_.identity)),
+      stm_(hooks(), seed),
+      processor_(image, costs, stm_, *this, image.at(kStep)),
+      wake_at_(start) {
+  std::array<std::uint8_t, sizeof(module::Configuration)> page{};
+  std::memcpy(page.data(), &configuration_, page.size());
+  processor_.write(image.at("holdfast_configuration"), page);
+}
+
+void ModuleCpu::run(Cycles limit) {
+  while (is_alive_ && next_time() < limit) {
+    if (is_waiting_) {
+      processor_.skip_to(std::max(wake_at_, processor_.now()));
+      is_waiting_ = false;
+    }
+    if (!processor_.run(limit)) {
+      kill();
+    }
+  }
+}
+
+void ModuleCpu::arrive(int usart, const Arrival& arrival) {
+  stm_.arrive(usart, arrival);
+  wake_at_ = std::min(wake_at_, arrival.time);
+}
+
+void ModuleCpu::reset() {
+  stm_.reset();
+  processor_.reset();
+  shadow_ = std::make_unique<agent::Agent>(configuration_.setup, configuration_.identity);
+  is_inside_ = false;
+  is_waiting_ = false;
+  verdict_ = agent::Verdict::kNone;
+}
+
+module::Status ModuleCpu::status() const {
+  const std::uint32_t address = processor_.word(image_.at("holdfast_status"));
+  return address == 0 ? module::Status{} : read_value<module::Status>(processor_, address);
+}
+
+std::uint32_t ModuleCpu::stack_bytes() const {
+  constexpr std::uint32_t kPaint = 0xc5c5c5c5;
+  const std::uint32_t end = image_.at("holdfast_stack_end");
+  std::uint32_t address = image_.at("holdfast_stack_begin");
+  while (address < end && processor_.word(address) == kPaint) {
+    address += 4;
+  }
+  return end - address;
+}
+
+void ModuleCpu::entered(std::span<const std::uint32_t, 4> arguments) {
+  read_event(arguments[1]);
+  actions_address_ = arguments[2];
+  entered_at_ = processor_.now();
+  is_inside_ = true;
+}
+
+void ModuleCpu::read_event(std::uint32_t address) {
+  const auto event = read_value<EventLayout>(processor_, address);
+  event_ = {.kind = static_cast<agent::EventKind>(event.kind),
+            .now = event.now,
+            .face = static_cast<base::Direction>(event.face),
+            .random = event.random,
+            .cell = {event.cell[0], event.cell[1], event.cell[2]},
+            .bytes = {}};
+  if (event_.kind == agent::EventKind::kReceive && event.byte_count <= event_bytes_.size()) {
+    const auto bytes = std::span(event_bytes_).first(event.byte_count);
+    processor_.read(event.bytes, bytes);
+    event_.bytes = bytes;
+  }
+}
+
+void ModuleCpu::left() {
+  if (!is_inside_) {
+    return;
+  }
+  is_inside_ = false;
+  const Cycles cycles = processor_.now() - entered_at_;
+  const agent::Phase phase = shadow_->phase();
+  shadow_->step(event_, actions_);
+  compare_actions();
+  ++steps_.count;
+  steps_.cycles += cycles;
+  if (cycles > steps_.cycles_max) {
+    steps_.cycles_max = cycles;
+    steps_.longest = phase;
+  }
+  const agent::Verdict verdict = shadow_->answer().verdict;
+  if (verdict != verdict_ && verdict != agent::Verdict::kNone) {
+    steps_.verdict_time = processor_.now();
+  }
+  verdict_ = verdict;
+}
+
+void ModuleCpu::compare_actions() {
+  const auto actions = read_value<ActionsLayout>(processor_, actions_address_);
+  const auto size = static_cast<std::size_t>(std::clamp(actions_.packet_bytes, 0, 228));
+  const bool is_same = actions.send_faces == actions_.send_faces &&
+                       actions.wake_at == actions_.wake_at &&
+                       actions.packet_bytes == actions_.packet_bytes &&
+                       std::equal(actions.packet, actions.packet + size, actions_.packet.begin());
+  steps_.mismatch_count += is_same ? 0 : 1;
+  if (size > 0) {
+    take_packet({actions.packet, size});
+  }
+}
+
+void ModuleCpu::take_packet(std::span<const std::uint8_t> packet) {
+  constexpr std::size_t kOverhead = agent::wire::kHeaderBytes + agent::wire::kChecksumBytes;
+  sim::PhaseStatistics& phase = steps_.phases[static_cast<std::size_t>(shadow_->phase())];
+  ++steps_.packets;
+  ++phase.packets;
+  steps_.bytes += packet.size();
+  phase.bytes += packet.size();
+  if (packet[0] >> 6U == static_cast<unsigned>(agent::wire::PacketKind::kData)) {
+    ++steps_.data_packets;
+    steps_.payload_bytes += packet.size() - kOverhead;
+  }
+}
+
+}  // namespace holdfast::emulator

@@ -1,0 +1,157 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#include "processor.hpp"
+
+#include <unicorn/unicorn.h>
+
+#include <array>
+
+#include "holdfast/base/check.hpp"
+#include "holdfast/emulator/emulation.hpp"
+
+namespace holdfast::emulator {
+namespace {
+
+/// Peripherals of the buses APB and AHB1, and ports of AHB2 (RM0091, 2.2.2).
+struct Window {
+  std::uint32_t begin;
+  std::uint32_t size;
+};
+
+constexpr std::array<Window, 2> kWindows = {{{0x40000000, 0x24000}, {0x48000000, 0x2000}}};
+
+void check(uc_err error) { HOLDFAST_CHECK(error == UC_ERR_OK); }
+
+std::uint32_t register_of(uc_engine* engine, int name) {
+  std::uint32_t value = 0;
+  check(uc_reg_read(engine, name, &value));
+  return value;
+}
+
+}  // namespace
+
+bool is_available() { return true; }
+
+/// Unicorn's callbacks are C functions.
+struct Processor::Callbacks {
+  static void block(uc_engine*, std::uint64_t address, std::uint32_t size, void* self) {
+    static_cast<Processor*>(self)->enter_block(address, size);
+  }
+
+  template <std::size_t Index>
+  static std::uint64_t read(uc_engine*, std::uint64_t offset, unsigned, void* self) {
+    return static_cast<Processor*>(self)->peripherals_.read(kWindows[Index].begin +
+                                                            static_cast<std::uint32_t>(offset));
+  }
+
+  template <std::size_t Index>
+  static void write(uc_engine*, std::uint64_t offset, unsigned, std::uint64_t value, void* self) {
+    static_cast<Processor*>(self)->peripherals_.write(
+        kWindows[Index].begin + static_cast<std::uint32_t>(offset),
+        static_cast<std::uint32_t>(value));
+  }
+
+  template <std::size_t Index>
+  static void map(uc_engine* engine, Processor* self) {
+    check(uc_mmio_map(engine, kWindows[Index].begin, kWindows[Index].size, &read<Index>, self,
+                      &write<Index>, self));
+  }
+};
+
+Processor::Processor(const Image& image, CostTable& costs, Peripherals& peripherals,
+                     Watcher& watcher, std::uint32_t watched)
+    : costs_(costs),
+      peripherals_(peripherals),
+      watcher_(watcher),
+      watched_(watched),
+      vectors_(image.at("holdfast_vectors")) {
+  check(uc_open(UC_ARCH_ARM, static_cast<uc_mode>(UC_MODE_THUMB | UC_MODE_MCLASS), &engine_));
+  check(uc_ctl_set_cpu_model(engine_, UC_CPU_ARM_CORTEX_M0));
+  check(uc_mem_map(engine_, kFlashBegin, kFlashBytes, UC_PROT_READ | UC_PROT_EXEC));
+  check(uc_mem_map(engine_, kRamBegin, kRamBytes, UC_PROT_READ | UC_PROT_WRITE));
+  Callbacks::map<0>(engine_, this);
+  Callbacks::map<1>(engine_, this);
+  for (const Image::Segment& segment : image.segments) {
+    write(segment.address, segment.bytes);
+  }
+  uc_hook hook = 0;
+  check(uc_hook_add(engine_, &hook, UC_HOOK_BLOCK, reinterpret_cast<void*>(&Callbacks::block),
+                    static_cast<void*>(this), std::uint64_t{1}, std::uint64_t{0}));
+  reset();
+}
+
+Processor::~Processor() { uc_close(engine_); }
+
+void Processor::reset() {
+  const std::uint32_t stack = word(vectors_);
+  check(uc_reg_write(engine_, UC_ARM_REG_SP, &stack));
+  program_counter_ = word(vectors_ + 4);
+  next_ = 0;
+  if_taken_ = 0;
+  return_ = 0;
+}
+
+bool Processor::run(Cycles limit) {
+  // No block of this program is here.
+  constexpr std::uint64_t kNowhere = 0xfffffffe;
+  limit_ = limit;
+  const uc_err error = uc_emu_start(engine_, program_counter_ | 1U, kNowhere, 0, 0);
+  program_counter_ = register_of(engine_, UC_ARM_REG_PC);
+  return error == UC_ERR_OK;
+}
+
+void Processor::stop() {
+  if_taken_ = 0;
+  uc_emu_stop(engine_);
+}
+
+void Processor::enter_block(std::uint64_t address, std::uint32_t size) {
+  cycles_ += address == next_ ? 0 : if_taken_;
+  if_taken_ = 0;
+  if (cycles_ >= limit_) {
+    uc_emu_stop(engine_);  // Before the block is run; it comes here again.
+    return;
+  }
+  BlockCost fresh;
+  BlockCost* known = costs_.find(address);
+  BlockCost& cost = known != nullptr ? *known : fresh;
+  if (cost.size != size) {
+    learn(address, size, cost);
+  }
+  cycles_ += cost.cycles;
+  next_ = address + size;
+  if_taken_ = cost.if_taken;
+  if (address == return_) {
+    return_ = 0;
+    watcher_.left();
+  } else if (address == watched_) {
+    return_ = register_of(engine_, UC_ARM_REG_LR) & ~1U;
+    const std::array<std::uint32_t, 4> arguments = {
+        register_of(engine_, UC_ARM_REG_R0), register_of(engine_, UC_ARM_REG_R1),
+        register_of(engine_, UC_ARM_REG_R2), register_of(engine_, UC_ARM_REG_R3)};
+    watcher_.entered(arguments);
+  }
+}
+
+void Processor::learn(std::uint64_t address, std::uint32_t size, BlockCost& cost) const {
+  std::vector<std::uint8_t> code(size);
+  read(static_cast<std::uint32_t>(address), code);
+  cost = cost_of(code);
+}
+
+void Processor::read(std::uint32_t address, std::span<std::uint8_t> bytes) const {
+  check(uc_mem_read(engine_, address, bytes.data(), bytes.size()));
+}
+
+void Processor::write(std::uint32_t address, std::span<const std::uint8_t> bytes) {
+  check(uc_mem_write(engine_, address, bytes.data(), bytes.size()));
+}
+
+std::uint32_t Processor::word(std::uint32_t address) const {
+  std::array<std::uint8_t, 4> bytes{};
+  read(address, bytes);
+  return static_cast<std::uint32_t>(bytes[0] | bytes[1] << 8 | bytes[2] << 16) |
+         static_cast<std::uint32_t>(bytes[3]) << 24;
+}
+
+}  // namespace holdfast::emulator

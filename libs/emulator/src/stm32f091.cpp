@@ -1,0 +1,333 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#include "stm32f091.hpp"
+
+#include <algorithm>
+
+namespace holdfast::emulator {
+namespace {
+
+constexpr Cycles kNever = ~Cycles{0};
+
+// RM0091, table 1.
+constexpr std::uint32_t kTimer2 = 0x40000000;
+constexpr std::uint32_t kTimer3 = 0x40000400;
+constexpr std::uint32_t kAdc = 0x40012400;
+constexpr std::uint32_t kDma = 0x40020000;  // DMA2 lies 0x400 behind DMA1.
+constexpr std::uint32_t kRcc = 0x40021000;
+constexpr std::uint32_t kGpio = 0x48000000;
+constexpr std::array<std::uint32_t, kUsartCount> kUsarts = {0x40013800, 0x40004400, 0x40004800,
+                                                            0x40004C00, 0x40005000, 0x40011400};
+
+// Offsets of registers.
+constexpr std::uint32_t kRccCfgr = kRcc + 0x04;
+constexpr std::uint32_t kRccAhb = kRcc + 0x14;
+constexpr std::uint32_t kRccApb2 = kRcc + 0x18;
+constexpr std::uint32_t kRccApb1 = kRcc + 0x1C;
+constexpr std::uint32_t kRccCr2 = kRcc + 0x34;
+constexpr std::uint32_t kUsartCr1 = 0x00;
+constexpr std::uint32_t kUsartCr3 = 0x08;
+constexpr std::uint32_t kUsartBrr = 0x0C;
+constexpr std::uint32_t kUsartRdr = 0x24;
+constexpr std::uint32_t kUsartTdr = 0x28;
+constexpr std::uint32_t kDmaFirstChannel = 0x08;
+constexpr std::uint32_t kDmaChannelBytes = 0x14;
+constexpr std::uint32_t kDmaChannelCount = 7;
+constexpr std::uint32_t kDmaCselr = 0xA8;
+constexpr std::uint32_t kCndtr = 0x04;  // Of a channel, behind its CCR.
+constexpr std::uint32_t kCpar = 0x08;
+constexpr std::uint32_t kCmar = 0x0C;
+constexpr std::uint32_t kTimerCr1 = 0x00;
+constexpr std::uint32_t kTimerSr = 0x10;
+constexpr std::uint32_t kTimerCnt = 0x24;
+constexpr std::uint32_t kTimerPsc = 0x28;
+constexpr std::uint32_t kTimerCcr1 = 0x34;
+constexpr std::uint32_t kAdcIsr = kAdc + 0x00;
+constexpr std::uint32_t kAdcCr = kAdc + 0x08;
+constexpr std::uint32_t kAdcDr = kAdc + 0x40;
+
+// Bits.
+constexpr std::uint32_t kEnable = 1;
+constexpr std::uint32_t kFromMemory = 1U << 4U;
+constexpr std::uint32_t kCircular = 1U << 5U;
+constexpr std::uint32_t kMemoryIncrement = 1U << 7U;
+constexpr std::uint32_t kReceives = 1U << 0U | 1U << 2U;  // USART: UE, RE ...
+constexpr std::uint32_t kSends = 1U << 0U | 1U << 3U;     // ... or TE
+constexpr std::uint32_t kDmaReceives = 1U << 6U;
+constexpr std::uint32_t kDmaSends = 1U << 7U;
+constexpr std::uint32_t kCompared = 1U << 1U;
+
+// Channels that can serve a USART (RM0091, tables 33 and 34), by controller; bit: channel.
+constexpr std::array<std::uint32_t, 2> kReceiveChannels = {0b01101010, 0b00001100};
+constexpr std::array<std::uint32_t, 2> kSendChannels = {0b10010100, 0b00110010};
+
+bool has(std::uint32_t value, std::uint32_t bits) { return (value & bits) == bits; }
+
+}  // namespace
+
+Stm32f091::Stm32f091(Hooks hooks, std::uint64_t seed) : hooks_(std::move(hooks)), noise_(seed) {}
+
+void Stm32f091::reset() {
+  registers_.clear();
+  receiving_ = {};
+  sending_ = {};
+  line_free_at_ = {};
+  sent_.clear();
+  is_compare_armed_ = false;
+  is_compared_ = false;
+}
+
+std::uint32_t Stm32f091::look(std::uint32_t address) const {
+  const auto found = registers_.find(address);
+  return found == registers_.end() ? 0 : found->second;
+}
+
+/// RM0091, 6.4.6 to 6.4.8.
+bool Stm32f091::is_clocked(std::uint32_t address) const {
+  const std::uint32_t block = address & ~0x3ffU;
+  const std::uint32_t ahb = look(kRccAhb);
+  if (block >= kGpio) {
+    return ((ahb >> (17 + (block - kGpio) / 0x400)) & 1U) != 0;
+  }
+  switch (block) {
+    case kTimer2:
+      return has(look(kRccApb1), 1U << 0U);
+    case kTimer3:
+      return has(look(kRccApb1), 1U << 1U);
+    case kUsarts[0]:
+      return has(look(kRccApb2), 1U << 14U);
+    case kUsarts[1]:
+      return has(look(kRccApb1), 1U << 17U);
+    case kUsarts[2]:
+      return has(look(kRccApb1), 1U << 18U);
+    case kUsarts[3]:
+      return has(look(kRccApb1), 1U << 19U);
+    case kUsarts[4]:
+      return has(look(kRccApb1), 1U << 20U);
+    case kUsarts[5]:
+      return has(look(kRccApb2), 1U << 5U);
+    case kAdc:
+      return has(look(kRccApb2), 1U << 9U);
+    case kDma:
+      return has(ahb, 1U << 0U);
+    case kDma + 0x400:
+      return has(ahb, 1U << 1U);
+    default:
+      return true;
+  }
+}
+
+Cycles Stm32f091::byte_cycles(int usart) const {
+  constexpr Cycles kBits = 10;  // 8N1
+  return kBits * look(kUsarts[at(usart)] + kUsartBrr);
+}
+
+std::uint32_t Stm32f091::count() const {
+  if (!has(look(kTimer2 + kTimerCr1), kEnable)) {
+    return 0;
+  }
+  return static_cast<std::uint32_t>((hooks_.now() - timer_begin_) /
+                                    (look(kTimer2 + kTimerPsc) + 1));
+}
+
+/// When the counter will equal CCR1 next.
+Cycles Stm32f091::compare_time() const {
+  const Cycles tick = look(kTimer2 + kTimerPsc) + 1;
+  const Cycles now = (hooks_.now() - timer_begin_) / tick;
+  const auto rest = look(kTimer2 + kTimerCcr1) - static_cast<std::uint32_t>(now);
+  return timer_begin_ + (now + rest) * tick;
+}
+
+std::uint32_t Stm32f091::read(std::uint32_t address) {
+  if (!is_clocked(address)) {
+    return 0;
+  }
+  catch_up();
+  switch (address) {
+    case kTimer2 + kTimerCnt:
+      return count();
+    case kTimer2 + kTimerSr:
+      if (!is_compared_ && ++idle_reads_ >= 3) {
+        idle_reads_ = 0;
+        hooks_.idle();
+      }
+      return is_compared_ ? kCompared : 0;
+    case kAdcDr:
+      return 1750 + static_cast<std::uint32_t>(noise_.below(16));  // About 30 degrees, with noise
+    default:
+      break;
+  }
+  for (const Transfer& transfer : sending_) {
+    if (transfer.channel != 0 && address == transfer.channel + kCndtr) {
+      return left_to_send(transfer, hooks_.now());
+    }
+  }
+  return look(address);
+}
+
+void Stm32f091::write(std::uint32_t address, std::uint32_t value) {
+  if (!is_clocked(address)) {
+    return;
+  }
+  catch_up();
+  idle_reads_ = 0;
+  if (address == kTimer2 + kTimerSr) {
+    is_compared_ = is_compared_ && has(value, kCompared);
+    return;
+  }
+  reg(address) = value;
+  const std::uint32_t place = address - kDma;
+  const bool is_channel = place < 0x800 && place % 0x400 >= kDmaFirstChannel &&
+                          place % 0x400 < kDmaFirstChannel + kDmaChannelBytes * kDmaChannelCount;
+  if (is_channel && (place % 0x400 - kDmaFirstChannel) % kDmaChannelBytes == 0) {
+    start_channel(address);
+  }
+  switch (address) {
+    case kRccCr2:
+      reg(kRccCr2) = value | (value & 1U << 16U) << 1U;  // HSI48 is ready at once.
+      break;
+    case kRccCfgr:
+      reg(kRccCfgr) = (value & ~0xcU) | (value & 3U) << 2U;
+      break;
+    case kAdcCr:
+      reg(kAdcIsr) = value & 5U;  // Ready, and every conversion done at once.
+      break;
+    case kTimer2 + kTimerCr1:
+      timer_begin_ = hooks_.now();
+      break;
+    case kTimer2 + kTimerCcr1:
+      is_compare_armed_ = true;
+      compare_at_ = compare_time();
+      break;
+    default:
+      break;
+  }
+}
+
+/// A channel's CCR has been written: who does it serve now?
+void Stm32f091::start_channel(std::uint32_t channel) {
+  for (auto* transfers : {&receiving_, &sending_}) {
+    for (Transfer& transfer : *transfers) {
+      if (transfer.channel == channel) {
+        transfer = {};
+      }
+    }
+  }
+  const std::uint32_t control = look(channel);
+  if (!has(control, kEnable | kMemoryIncrement)) {
+    return;
+  }
+  const std::uint32_t controller = (channel - kDma) / 0x400;
+  const std::uint32_t number = ((channel - kDma) % 0x400 - kDmaFirstChannel) / kDmaChannelBytes + 1;
+  const std::uint32_t request =
+      look(kDma + 0x400 * controller + kDmaCselr) >> (4 * (number - 1)) & 15U;
+  const bool sends = has(control, kFromMemory);
+  const std::uint32_t allowed = (sends ? kSendChannels : kReceiveChannels)[controller];
+  if (request < 8 || request >= 8 + kUsartCount || !has(allowed, 1U << number)) {
+    return;
+  }
+  const auto usart = static_cast<int>(request - 8);
+  const std::uint32_t base = kUsarts[at(usart)];
+  if (look(channel + kCpar) != base + (sends ? kUsartTdr : kUsartRdr)) {
+    return;
+  }
+  Transfer& transfer = (sends ? sending_ : receiving_)[at(usart)];
+  transfer = {.channel = channel, .total = look(channel + kCndtr), .begin = hooks_.now()};
+  if (sends) {
+    start_sending(usart, transfer);
+  }
+}
+
+/// Reads the whole message at once: a program must leave it alone until it has been sent.
+void Stm32f091::start_sending(int usart, Transfer& transfer) {
+  const std::uint32_t base = kUsarts[at(usart)];
+  if (!is_clocked(base) || !has(look(base + kUsartCr1), kSends) ||
+      !has(look(base + kUsartCr3), kDmaSends) || byte_cycles(usart) == 0 || transfer.total == 0) {
+    return;
+  }
+  transfer.begin = std::max(transfer.begin, line_free_at_[at(usart)]);
+  Sent sent{
+      .usart = usart, .begin = transfer.begin, .byte_cycles = byte_cycles(usart), .bytes = {}};
+  for (std::uint32_t i = 0; i < transfer.total; ++i) {
+    sent.bytes.push_back(hooks_.load(look(transfer.channel + kCmar) + i));
+  }
+  line_free_at_[at(usart)] = transfer.begin + transfer.total * sent.byte_cycles;
+  sent_.push_back(std::move(sent));
+}
+
+/// The data register holds one byte and the shift register another, so DMA is two bytes ahead.
+std::uint32_t Stm32f091::left_to_send(const Transfer& transfer, Cycles time) const {
+  const auto usart = static_cast<int>(&transfer - sending_.data());
+  const Cycles byte = byte_cycles(usart);
+  if (byte == 0 || time < transfer.begin) {
+    return transfer.total;
+  }
+  const Cycles moved = (time - transfer.begin) / byte + 2;
+  return moved >= transfer.total ? 0 : transfer.total - static_cast<std::uint32_t>(moved);
+}
+
+/// Everything that has happened up to now.
+void Stm32f091::catch_up() {
+  const Cycles now = hooks_.now();
+  for (int usart = 0; usart < kUsartCount; ++usart) {
+    std::deque<Arrival>& line = arrivals_[at(usart)];
+    while (!line.empty() && line.front().time <= now) {
+      lost_bytes_ += take_byte(usart, line.front()) ? 0 : 1;
+      line.pop_front();
+      idle_reads_ = 0;
+    }
+  }
+  if (is_compare_armed_ && compare_at_ <= now) {
+    is_compare_armed_ = false;
+    is_compared_ = true;
+  }
+}
+
+bool Stm32f091::take_byte(int usart, const Arrival& arrival) {
+  const std::uint32_t base = kUsarts[at(usart)];
+  const Transfer& transfer = receiving_[at(usart)];
+  const Cycles own = byte_cycles(usart);
+  const Cycles apart =
+      own > arrival.byte_cycles ? own - arrival.byte_cycles : arrival.byte_cycles - own;
+  const bool is_ready = has(look(base + kUsartCr1), kReceives) &&
+                        has(look(base + kUsartCr3), kDmaReceives) && 40 * apart <= own;
+  if (!is_ready || transfer.channel == 0) {
+    return false;
+  }
+  std::uint32_t& left = reg(transfer.channel + kCndtr);
+  if (left == 0) {
+    return false;
+  }
+  hooks_.store(look(transfer.channel + kCmar) + transfer.total - left, arrival.byte);
+  --left;
+  if (left == 0 && has(look(transfer.channel), kCircular)) {
+    left = transfer.total;
+  }
+  return true;
+}
+
+Cycles Stm32f091::next_event() {
+  const Cycles now = hooks_.now();
+  Cycles next = is_compare_armed_ ? compare_at_ : kNever;
+  for (int usart = 0; usart < kUsartCount; ++usart) {
+    if (!arrivals_[at(usart)].empty()) {
+      next = std::min(next, arrivals_[at(usart)].front().time);
+    }
+    const Transfer& transfer = sending_[at(usart)];
+    if (transfer.channel != 0 && left_to_send(transfer, now) > 0) {
+      const Cycles byte = byte_cycles(usart);
+      next = std::min(next, transfer.begin + (transfer.total > 2 ? transfer.total - 2 : 0) * byte);
+    }
+  }
+  return next;
+}
+
+std::array<std::uint8_t, 3> Stm32f091::lamp() const {
+  std::array<std::uint8_t, 3> colour{};
+  for (std::uint32_t i = 0; i < 3; ++i) {
+    colour[i] = static_cast<std::uint8_t>(look(kTimer3 + kTimerCcr1 + 4 * i));
+  }
+  return colour;
+}
+
+}  // namespace holdfast::emulator

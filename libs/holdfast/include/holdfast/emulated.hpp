@@ -1,0 +1,40 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+#include <string>
+
+#include "holdfast/distributed.hpp"
+#include "holdfast/emulator/emulation.hpp"
+
+/// The facade's third part: the robot works its verdict out by itself, as firmware on emulated
+/// microcontrollers.
+///
+///     auto run = holdfast::emulate(structure, exact, "build/firmware/module_stm32f0.elf", {});
+namespace holdfast {
+
+struct EmulatedRun {
+  DistributedRun run;
+  emulator::FirmwareReport firmware;
+};
+
+/// Called now and then; false ends the run.
+using EmulationProgress = std::function<bool(const sim::SimulationResult&)>;
+
+/// Runs the robot's firmware. Errors: this program was built without Unicorn; no image; options
+/// that do not fit the structure.
+base::Result<EmulatedRun> emulate(const Structure& structure, const CheckResult& exact,
+                                  const std::string& image,
+                                  const emulator::EmulationOptions& options,
+                                  const EmulationProgress& progress = {});
+
+/// simulate's report with the entry "firmware"; see docs/firmware.md.
+std::string report_json(const Structure& structure, const CheckResult& exact,
+                        const EmulatedRun& run);
+
+/// For people.
+std::string report_text(const Structure& structure, const CheckResult& exact,
+                        const EmulatedRun& run);
+
+}  // namespace holdfast

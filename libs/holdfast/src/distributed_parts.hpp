@@ -1,0 +1,30 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+#include <iterator>
+#include <nlohmann/json.hpp>
+
+#include "holdfast/distributed.hpp"
+
+/// What simulated and emulated robots have in common.
+namespace holdfast {
+
+/// The agents of a robot, wherever they are.
+struct Agents {
+  std::function<const agent::Agent&(std::int32_t)> at;
+  std::int32_t count = 0;
+};
+
+/// What the robot knows, in the form of an assessment.
+verdict::Assessment view_of(const model::Robot& robot, const verdict::Assessment& exact,
+                            const Agents& agents, const sim::SimulationResult& result);
+
+using TextOut = std::back_insert_iterator<std::string>;
+
+/// The exact answer and the robot's.
+void write_answer(TextOut out, const Structure& structure, const CheckResult& exact,
+                  const DistributedRun& run);
+
+}  // namespace holdfast

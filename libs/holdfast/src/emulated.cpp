@@ -1,0 +1,118 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#include "holdfast/emulated.hpp"
+
+#include <fmt/format.h>
+
+#include "distributed_parts.hpp"
+
+namespace holdfast {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// Simulated time between two calls of the progress function, and between two looks whether it is
+/// over.
+constexpr sim::Time kSlice = 5'000;
+
+double seconds(sim::Time time) { return static_cast<double>(time) * 1e-6; }
+
+/// From the plan, or from the start if there is none, to the last module's verdict.
+double seconds_to_verdict(const EmulatedRun& run) {
+  const sim::Time end = run.run.result.verdict_time;
+  const sim::Time begin = run.firmware.planned_at;
+  return end > begin ? seconds(end - begin) : 0;
+}
+
+Json firmware_json(const EmulatedRun& run) {
+  const emulator::FirmwareReport& firmware = run.firmware;
+  return {{"flash_bytes", firmware.flash_bytes},
+          {"ram_bytes", firmware.ram_bytes},
+          {"agent_bytes", firmware.agent_bytes},
+          {"stack_bytes_max", firmware.stack_bytes_max},
+          {"steps", firmware.step_count},
+          {"step_cycles_mean", firmware.step_cycles_mean},
+          {"step_cycles_max", firmware.step_cycles_max},
+          {"step_longest", firmware.step_longest},
+          {"steps_unlike_host", firmware.mismatch_count},
+          {"lost_bytes", firmware.lost_bytes},
+          {"planned_s", seconds(firmware.planned_at)},
+          {"verdict_after_s", seconds_to_verdict(run)}};
+}
+
+}  // namespace
+
+base::Result<EmulatedRun> emulate(const Structure& structure, const CheckResult& exact,
+                                  const std::string& image_path,
+                                  const emulator::EmulationOptions& options,
+                                  const EmulationProgress& progress) {
+  if (!emulator::is_available()) {
+    return base::Error{.code = base::ErrorCode::kUnsupported,
+                       .message =
+                           "this holdfast was built without Unicorn and cannot emulate; "
+                           "'./dev firmware' installs it and builds one that can"};
+  }
+  if (const auto fault = emulator::find_options_fault(structure.robot, options)) {
+    return base::Error{.code = base::ErrorCode::kBadInput, .message = *fault, .where = {}};
+  }
+  const auto image = emulator::load_image(image_path);
+  if (!image) {
+    base::Error error = image.error();
+    error.where = image_path;
+    return error;
+  }
+  emulator::Emulation emulation(image.value(), structure.robot, options);
+  while (emulation.run_for(kSlice)) {
+    if (progress && !progress(emulation.result())) {
+      break;
+    }
+  }
+  EmulatedRun run{.run = {.link = sim::blinky_blocks_v2(),
+                          .result = emulation.result(),
+                          .view = {},
+                          .notes = {}},
+                  .firmware = emulation.report()};
+  const Agents agents{
+      .at = [&](std::int32_t i) -> const agent::Agent& { return emulation.shadow(i); },
+      .count = emulation.module_count()};
+  run.run.view = view_of(structure.robot, exact.assessment, agents, run.run.result);
+  return run;
+}
+
+std::string report_json(const Structure& structure, const CheckResult& exact,
+                        const EmulatedRun& run) {
+  Json report = Json::parse(report_json(structure, exact, run.run));
+  report["firmware"] = firmware_json(run);
+  return report.dump(2, ' ', false, Json::error_handler_t::replace);
+}
+
+std::string report_text(const Structure& structure, const CheckResult& exact,
+                        const EmulatedRun& run) {
+  const sim::SimulationResult& result = run.run.result;
+  const emulator::FirmwareReport& firmware = run.firmware;
+  std::string text;
+  const TextOut out(text);
+  write_answer(out, structure, exact, run.run);
+  fmt::format_to(out, "  time        {:.3f} s, {}\n", seconds_to_verdict(run),
+                 structure.robot.planned_count() > 0
+                     ? "from the plan to the last module's verdict"
+                     : "from the start to the last module's verdict");
+  fmt::format_to(out, "  packets     {}, {} bytes; busiest module {} packets\n", result.packets,
+                 result.bytes, result.packets_module_max);
+  fmt::format_to(out, "  image       {} bytes of flash, {} of RAM ({} of them the agent)\n",
+                 firmware.flash_bytes, firmware.ram_bytes, firmware.agent_bytes);
+  fmt::format_to(out, "  stack       {} bytes at its deepest\n", firmware.stack_bytes_max);
+  fmt::format_to(out, "  steps       {}, {} cycles on average; longest {} cycles, {:.1f} ms ({})\n",
+                 firmware.step_count, firmware.step_cycles_mean, firmware.step_cycles_max,
+                 static_cast<double>(firmware.step_cycles_max) / 48e3, firmware.step_longest);
+  fmt::format_to(out, "  host        {}\n",
+                 firmware.mismatch_count == 0
+                     ? std::string("every step bit for bit the same")
+                     : fmt::format("{} steps are NOT the same", firmware.mismatch_count));
+  for (const std::string& note : structure.warnings) {
+    fmt::format_to(out, "  note        {}\n", note);
+  }
+  return text;
+}
+
+}  // namespace holdfast

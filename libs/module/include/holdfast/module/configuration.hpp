@@ -1,0 +1,46 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "holdfast/agent/agent.hpp"
+
+/// What a module knows before it starts, as it lies in its flash: the robot's common setup, already
+/// prepared, and who the module is. docs/firmware.md lists the bytes. A whole page of flash is kept
+/// for it, so that it can be written without touching the program; the program uses the setup
+/// where it lies. Little-endian, IEEE 754, natural alignment: the same on the module and on hosts.
+namespace holdfast::module {
+
+inline constexpr std::uint32_t kConfigurationMagic = 0x46434648;  ///< "HFCF"
+inline constexpr std::uint32_t kConfigurationVersion = 1;
+
+struct Configuration {
+  std::uint32_t magic = kConfigurationMagic;
+  std::uint32_t version = kConfigurationVersion;
+  agent::Identity identity;
+  std::uint32_t checksum = 0;  ///< checksum_of()
+  agent::Setup setup;
+};
+
+// An AVR aligns nothing and has no binary64: its pages are its own.
+#ifndef __AVR__
+static_assert(sizeof(agent::Identity) == 20 && offsetof(agent::Identity, is_anchor) == 5 &&
+              offsetof(agent::Identity, cell) == 8);
+static_assert(offsetof(agent::Setup, facet_mm) == 48 &&
+              offsetof(agent::Setup, facet_numerator) == 88 &&
+              offsetof(agent::Setup, method) == 100 &&
+              offsetof(agent::Setup, iteration_count_max) == 104 &&
+              offsetof(agent::Setup, timing) == 112 && offsetof(agent::Setup, beam) == 152 &&
+              offsetof(agent::Setup, beam_float) == 216 && sizeof(agent::Setup) == 248);
+static_assert(offsetof(Configuration, setup) == 32 && sizeof(Configuration) == 280);
+#endif
+
+/// Of everything but the magic number, the version and the sum itself.
+std::uint32_t checksum_of(const Configuration& configuration);
+
+/// Is this a configuration that the program can use?
+bool is_valid(const Configuration& configuration);
+
+}  // namespace holdfast::module

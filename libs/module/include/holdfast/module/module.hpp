@@ -1,0 +1,80 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+
+#include "holdfast/agent/agent.hpp"
+#include "holdfast/module/configuration.hpp"
+#include "holdfast/module/port.hpp"
+
+/// The program of a module around its agent: from what a port offers to events, and from actions
+/// back to the port. No algorithm.
+///
+///     Module module(configuration, plans, port);
+///     for (;;) module.run_once();
+///
+/// A neighbour that is heard for the first time, or again after it was gone, is a link that comes
+/// up. One that is no longer heard is left to the agent's link: whether it has been taken off or
+/// has only failed cannot be told from here, and a module that still hangs there still weighs. So
+/// the verdict is `undecided` then, never `safe`.
+namespace holdfast::module {
+
+/// The plans that a module has been told of, in memory that a reset leaves alone: a module that
+/// starts again must not think of a robot without them.
+struct PlanMemory {
+  std::uint32_t magic;
+  std::uint32_t count;
+  std::array<std::int32_t, 3 * (agent::kPlannedMax + 1)> coordinates;
+  std::uint32_t checksum;
+};
+
+/// What the module has come to, for a debugger.
+struct Status {
+  std::uint32_t step_count = 0;
+  std::uint32_t plan_count = 0;  ///< Announced to this module.
+  agent::Verdict verdict = agent::Verdict::kNone;
+  agent::Reason reason{};
+  std::uint8_t phase = 0;
+  base::Direction worst_direction{};
+  float load_ratio_max = 0;
+  base::Cell worst_cell;
+  float own_load_ratio = 0;
+  agent::Colour colour;
+  std::uint32_t epoch = 0;
+};
+
+#ifndef __AVR__
+static_assert(sizeof(Status) == 40);
+#endif
+
+class Module {
+ public:
+  /// Keeps references to all three.
+  Module(const Configuration& configuration, PlanMemory& plans, Port& port);
+
+  /// Does what there is to do, then waits for more.
+  void run_once();
+
+  const Status& status() const { return status_; }
+
+ private:
+  void step(agent::EventKind kind, int face = 0);
+  void recall_plans();
+  void take_plan(std::span<const std::uint8_t> payload);
+  void watch_neighbours();
+  void take_incoming();
+  void send();
+  void show();
+
+  Port& port_;
+  PlanMemory& plans_;
+  Status status_;
+  agent::Event event_;
+  agent::Actions actions_;
+  std::uint8_t connected_ = 0;  ///< Faces with a neighbour, by bit.
+  Time wake_at_ = agent::kNever;
+  agent::Agent agent_;
+};
+
+}  // namespace holdfast::module

@@ -1,0 +1,163 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+// The firmware on emulated microcontrollers against the exact solver and against the host's agent,
+// which takes the same steps. Needs the images that './dev firmware' builds.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include "holdfast/base/rng.hpp"
+#include "holdfast/emulated.hpp"
+
+namespace holdfast {
+namespace {
+
+using emulator::EmulationOptions;
+using emulator::Fault;
+
+constexpr sim::Time kSlice = 5'000;
+
+std::vector<std::string> scenario_names() {
+  std::vector<std::string> names;
+  for (const auto& entry : std::filesystem::directory_iterator(HOLDFAST_SCENARIO_DIR)) {
+    if (entry.path().extension() == ".json") {
+      names.push_back(entry.path().stem().string());
+    }
+  }
+  std::ranges::sort(names);
+  return names;
+}
+
+Structure load(const std::string& name) {
+  auto structure = load_file(std::string(HOLDFAST_SCENARIO_DIR) + "/" + name + ".json");
+  EXPECT_TRUE(structure);
+  return std::move(structure).value();
+}
+
+const emulator::Image& image() {
+  static const base::Result<emulator::Image> loaded = emulator::load_image(HOLDFAST_IMAGE);
+  EXPECT_TRUE(loaded) << loaded.error().message;
+  return loaded.value();
+}
+
+emulator::Emulation finished(const Structure& structure, const EmulationOptions& options) {
+  emulator::Emulation emulation(image(), structure.robot, options);
+  while (emulation.run_for(kSlice)) {
+  }
+  return emulation;
+}
+
+class EveryScenario : public ::testing::TestWithParam<std::string> {};
+
+/// The goals: every module's verdict is the exact one, load ratios within 0.01 + 1 %, every
+/// step bit for bit the host's, and at most 10 s from the plan to the last verdict.
+TEST_P(EveryScenario, is_decided_by_the_firmware_like_the_exact_answer) {
+  const Structure structure = load(GetParam());
+  const verdict::Assessment exact = check(structure).assessment;
+  const emulator::Emulation emulation = finished(structure, {});
+  const auto result = emulation.result();
+  const auto report = emulation.report();
+  EXPECT_TRUE(result.all_agree);
+  EXPECT_EQ(report.mismatch_count, 0U);
+  EXPECT_LE(result.verdict_time, report.planned_at + 10'000'000);
+  for (std::int32_t i = 0; i < emulation.module_count(); ++i) {
+    const emulator::ModuleView module = emulation.module(i);
+    ASSERT_EQ(to_verdict(module.answer.verdict), exact.verdict) << "module " << i;
+    EXPECT_EQ(module.own_load_ratio, emulation.shadow(i).own_load_ratio()) << "module " << i;
+    EXPECT_EQ(module.colour, emulation.shadow(i).colour()) << "module " << i;
+    if (exact.verdict != verdict::Verdict::kUnstable) {
+      EXPECT_NEAR(module.answer.load_ratio_max, *exact.load_ratio_max,
+                  0.01 + 0.01 * *exact.load_ratio_max);
+    }
+  }
+  for (std::size_t i = 0; i < exact.connections.size() && exact.is_stable; ++i) {
+    const model::Connection& pair = structure.robot.connections()[i];
+    float ratio = 0;
+    if (pair.a < emulation.module_count() &&
+        emulation.shadow(pair.a).find_load_ratio(
+            structure.robot.modules()[static_cast<std::size_t>(pair.a)].cell, pair.direction,
+            ratio)) {
+      const double expected = exact.connections[i].load_ratio;
+      EXPECT_NEAR(static_cast<double>(ratio), expected, 0.01 + 0.01 * std::abs(expected)) << i;
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Firmware, EveryScenario, ::testing::ValuesIn(scenario_names()),
+                         [](const auto& scenario) { return scenario.param; });
+
+TEST(Firmware, takes_a_plan_on_any_module) {
+  const Structure structure = load("crane_tips_b");
+  const auto count =
+      static_cast<std::int32_t>(structure.robot.modules().size() - structure.robot.planned_count());
+  for (std::int32_t module = 0; module < count; ++module) {
+    const auto emulation =
+        finished(structure, {.seed = 7, .anchor = count - 1, .plan_module = module});
+    EXPECT_TRUE(emulation.result().all_agree) << module;
+    EXPECT_EQ(emulation.result().answer.verdict, agent::Verdict::kUnstable) << module;
+    EXPECT_EQ(emulation.report().mismatch_count, 0U) << module;
+  }
+}
+
+TEST(Firmware, does_the_same_when_run_again_and_something_else_with_another_seed) {
+  const Structure structure = load("bush_tips_b");
+  const auto first = finished(structure, {.seed = 3}).result();
+  const auto second = finished(structure, {.seed = 3}).result();
+  const auto other = finished(structure, {.seed = 4}).result();
+  EXPECT_EQ(first.events, second.events);
+  EXPECT_EQ(first.bytes, second.bytes);
+  EXPECT_EQ(first.verdict_time, second.verdict_time);
+  EXPECT_NE(first.verdict_time, other.verdict_time);
+}
+
+/// A random fault at a random time between the start and the verdict. `is_unsafe` robots may not be
+/// called safe by any module; every run comes to its end by itself.
+void break_robots(Fault::Kind kind, std::uint64_t seed) {
+  base::Rng rng(seed);
+  for (const char* name : {"arm_tips_b", "bush_tips_b", "crane_tips_b", "crane_breaks_b"}) {
+    const Structure structure = load(name);
+    const auto& robot = structure.robot;
+    const std::size_t count = robot.modules().size() - robot.planned_count();
+    Fault fault{.kind = kind,
+                .at = 20'000 + rng.below(900'000),
+                .module = static_cast<std::int32_t>(rng.below(count))};
+    const auto has_neighbour = [&](base::Direction face) {
+      const std::int32_t other = robot.neighbours()[static_cast<std::size_t>(fault.module)]
+                                                   [static_cast<std::size_t>(base::index(face))];
+      return other >= 0 && other < static_cast<std::int32_t>(count);
+    };
+    fault.face = *std::ranges::find_if(base::kDirections, has_neighbour);
+    SCOPED_TRACE(std::string(name) + " module " + std::to_string(fault.module) + " at " +
+                 std::to_string(fault.at));
+    const EmulationOptions options{.seed = rng.next(), .faults = {fault}, .time_max = 30'000'000};
+    const auto emulation = finished(structure, options);
+    const auto result = emulation.result();
+    EXPECT_LT(result.time, options.time_max);
+    EXPECT_EQ(emulation.report().mismatch_count, 0U);
+    const bool heals = kind == Fault::Kind::kFlip || kind == Fault::Kind::kReset;
+    for (std::int32_t i = 0; i < emulation.module_count(); ++i) {
+      const emulator::ModuleView module = emulation.module(i);
+      if (!module.is_alive || module.answer.verdict == agent::Verdict::kUndecided) {
+        EXPECT_TRUE(!heals) << "module " << i;
+        continue;
+      }
+      const auto exact = check(structure).assessment.verdict;
+      EXPECT_EQ(to_verdict(module.answer.verdict), exact) << "module " << i;
+    }
+  }
+}
+
+TEST(FirmwareFaults, a_module_without_power_never_makes_a_wrong_safe) {
+  break_robots(Fault::Kind::kKill, 1);
+}
+
+TEST(FirmwareFaults, a_cut_line_never_makes_a_wrong_safe) { break_robots(Fault::Kind::kCut, 2); }
+
+TEST(FirmwareFaults, a_damaged_byte_does_no_harm) { break_robots(Fault::Kind::kFlip, 3); }
+
+TEST(FirmwareFaults, a_module_that_starts_again_joins_in) { break_robots(Fault::Kind::kReset, 4); }
+
+}  // namespace
+}  // namespace holdfast
