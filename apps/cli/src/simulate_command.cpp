@@ -235,10 +235,10 @@ Command add_simulate(CLI::App& app) {
                "Structure, VisibleSim XML or holdfast JSON; - is standard input");
   command
       ->add_option("--method", options->method,
-                   "elimination (residuals if the robot has many loops), residuals, cg, "
+                   "elimination (polynomial if the robot has many loops), polynomial, cg, "
                    "block-jacobi, jacobi (the paper's)")
       ->type_name("NAME")
-      ->check(CLI::IsMember({"elimination", "residuals", "cg", "block-jacobi", "jacobi"})
+      ->check(CLI::IsMember({"elimination", "polynomial", "cg", "block-jacobi", "jacobi"})
                   .description(""))
       ->capture_default_str();
   command

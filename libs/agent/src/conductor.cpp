@@ -185,7 +185,7 @@ Order Conductor::begin_law(const Setup& setup, bool is_unilateral) {
   Order begin = order(Step::kBegin, Operation::kBegin);
   if (is_one_sweep()) {
     choose_one_sweep(is_unilateral);
-    begin.count = effort_.method == Method::kMinimalResiduals ? step_degree() : std::uint16_t{0};
+    begin.count = effort_.method == Method::kPolynomial ? step_degree() : std::uint16_t{0};
   }
   const bool has_all = kHasAllMethods && !setup.only_elimination;
   if (!has_all && effort_.method != Method::kElimination) {

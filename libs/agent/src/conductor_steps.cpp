@@ -36,7 +36,7 @@ void Conductor::choose_one_sweep(bool is_unilateral) {
   if (is_unilateral || is_any_remote_) {
     effort_.method = Method::kConjugateGradients;
   } else if (has_many_loops_) {
-    effort_.method = Method::kMinimalResiduals;
+    effort_.method = Method::kPolynomial;
   }
 }
 

@@ -15,18 +15,21 @@
 /// exchange; or with the exact elimination of branch.hpp on the sweep's own way up and down. So
 /// neither waits for the other.
 ///
-/// Minimal residuals. With the inner product of D^-1 (the diagonal blocks) K M^-1 is self-adjoint,
-/// so that directions (p, q = K p, z = M^-1 q) need to be made orthogonal to the one before only,
-/// as in Orthomin(1) [Vinsome 1976; Greenbaum 1997, ch. 2]. The twist is the delay: when the sums
+/// Least energy. K and M^-1 are symmetric, so directions (p, q = K p, z = M^-1 q) need to be made
+/// conjugate to the one before only: conjugate gradients. The twist is the delay: when the sums
 /// of r are known, M^-1 r is there already, so the step is taken in full and minimised afterwards,
 /// as Anderson's method does [Walker, Ni 2011]:
 ///   newer    p = d, q = r^ - r, z = d - M^-1 r      what the last step d = M^-1 r^ did
-///            minus c times older                    c = (q, q_older) / (q_older, q_older)
-///   r^ = r - a q - b q_older,  d = M^-1 r^ = M^-1 r - a z - b z_older          the least |r^|
+///            minus c times older                    c = (p, q_older) / (p_older, q_older)
+///   r^ = r - a q - b q_older,  d = M^-1 r^ = M^-1 r - a z - b z_older      the least energy
 ///   u := u + a p + b p_older + d
 /// M^-1 r is not stored: it is newer.p - newer.z until the step.
+/// While a facet tilts K is not symmetric and has no energy. Then |r| is minimised in the norm of
+/// D^-1 (the diagonal blocks), with D^-1 q in the place of p, as in Orthomin(1) [Vinsome 1976;
+/// Greenbaum 1997, ch. 2].
 /// Residuals are never recurred but computed, in double precision from displacements shared in two
-/// parts: this norm counts slow modes little, and rounding would hide them.
+/// parts. The products are sums of large terms that cancel, as p is large and smooth and r small and
+/// rough, so they travel in two parts as well.
 namespace holdfast::agent {
 
 /// The lower end of the interval in which the polynomial is good is this over (m + 1)^2.

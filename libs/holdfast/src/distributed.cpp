@@ -126,8 +126,8 @@ const char* name(agent::Method method) {
       return "block-jacobi";
     case agent::Method::kConjugateGradients:
       return "cg";
-    case agent::Method::kMinimalResiduals:
-      return "residuals";
+    case agent::Method::kPolynomial:
+      return "polynomial";
     case agent::Method::kElimination:
       break;
   }
@@ -137,7 +137,7 @@ const char* name(agent::Method method) {
 std::optional<agent::Method> find_method(std::string_view name_wanted) {
   for (const agent::Method method :
        {agent::Method::kJacobi, agent::Method::kBlockJacobi, agent::Method::kConjugateGradients,
-        agent::Method::kMinimalResiduals, agent::Method::kElimination}) {
+        agent::Method::kPolynomial, agent::Method::kElimination}) {
     if (name_wanted == name(method)) {
       return method;
     }

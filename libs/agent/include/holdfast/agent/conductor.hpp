@@ -132,7 +132,7 @@ class Conductor {
   }
 
   bool is_one_sweep() const {
-    return effort_.method == Method::kMinimalResiduals || effort_.method == Method::kElimination;
+    return effort_.method == Method::kPolynomial || effort_.method == Method::kElimination;
   }
 
   bool was_seen(std::uint32_t hash);

@@ -14,7 +14,7 @@ enum class Method : std::uint8_t {
   kJacobi,              ///< Weighted Jacobi with the scalar diagonal, Eq. (14).
   kBlockJacobi,         ///< The same with 6x6 diagonal blocks.
   kConjugateGradients,  ///< Preconditioned with the 6x6 diagonal blocks.
-  kMinimalResiduals,    ///< One sweep a step, with a polynomial of twice the tree's depth.
+  kPolynomial,          ///< One sweep a step, with a polynomial of 1.5 times the tree's depth.
   kElimination,         ///< One sweep a step, exactly over the tree; for robots with few loops.
 };
 
@@ -30,7 +30,7 @@ struct Setup {
   std::int32_t facet_numerator = 1;
   std::int32_t facet_denominator = 1;
   std::int32_t support_z = 0;  ///< Modules in this layer rest on the ground.
-  /// kElimination means: or minimal residuals, if the robot has too many loops.
+  /// kElimination means: or kPolynomial, if the robot has too many loops.
   Method method = Method::kElimination;
   /// Where elimination does not do, the verdict is `undecided`: for robots some of whose modules
   /// have no other method (src/methods.hpp).
