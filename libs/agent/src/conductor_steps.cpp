@@ -52,7 +52,8 @@ std::uint16_t Conductor::step_degree() const {
 Order Conductor::first_step() {
   ++effort_.solves;
   predicted_ = 1e30;
-  return effort_.method == Method::kElimination ? factor() : restarted_step();
+  const bool is_elimination = !kHasAllMethods || effort_.method == Method::kElimination;
+  return is_elimination ? factor() : restarted_step();
 }
 
 Order Conductor::factor() { return order(Step::kFactor, Operation::kFactor); }

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "holdfast/agent/order.hpp"
 
+#include "methods.hpp"
+
 namespace holdfast::agent {
 namespace {
 
@@ -53,7 +55,7 @@ void merge_facets(Report& into, const Report& from) {
 void merge_residual(Report& into, const Report& from) {
   into.reals[0] += from.reals[0];
   into.reals[1] = larger(into.reals[1], from.reals[1]);
-  for (std::size_t i = 0; i < into.products.size(); ++i) {
+  for (std::size_t i = 0; kHasAllMethods && i < into.products.size(); ++i) {
     into.products[i] += from.products[i];
   }
   merge_facets(into, from);
@@ -304,7 +306,7 @@ Writer encode(Operation operation, const Report& report) {
       out.u16(report.extent);
       out.u32(report.number);
       out.u8(report.flags);
-      if (operation == Operation::kStep) {
+      if (kHasAllMethods && operation == Operation::kStep) {
         for (const double product : report.products) {
           out.long_real(product);
         }
@@ -367,7 +369,7 @@ Report decode_report(std::span<const std::uint8_t> message) {
       report.extent = in.u16();
       report.number = in.u32();
       report.flags = in.u8();
-      if (operation == Operation::kStep) {
+      if (kHasAllMethods && operation == Operation::kStep) {
         for (double& product : report.products) {
           product = in.long_real();
         }

@@ -28,8 +28,8 @@
 /// D^-1 (the diagonal blocks), with D^-1 q in the place of p, as in Orthomin(1) [Vinsome 1976;
 /// Greenbaum 1997, ch. 2].
 /// Residuals are never recurred but computed, in double precision from displacements shared in two
-/// parts. The products are sums of large terms that cancel, as p is large and smooth and r small and
-/// rough, so they travel in two parts as well.
+/// parts. The products are sums of large terms that cancel, as p is large and smooth and r small
+/// and rough, so they travel in two parts as well.
 namespace holdfast::agent {
 
 /// The lower end of the interval in which the polynomial is good is this over (m + 1)^2.
