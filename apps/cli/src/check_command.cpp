@@ -109,10 +109,7 @@ class CheckRun {
   }
 
   void write(const std::string& path, const std::string& text) {
-    if (const auto error = write_file(path, text)) {
-      ++bad_count_;
-      print_error(*error, path);
-    }
+    bad_count_ += write_or_complain(path, text) ? 0 : 1;
   }
 
   void write_page(const Structure& structure, const CheckResult& result) {

@@ -7,6 +7,7 @@
 #include <CLI/CLI.hpp>
 #include <functional>
 #include <string>
+#include <string_view>
 
 #include "holdfast/holdfast.hpp"
 
@@ -49,6 +50,15 @@ void add_required(CLI::App& command, const std::string& name, Value& value,
 /// The one form of an error on the terminal.
 inline void print_error(const base::Error& error, const std::string& file) {
   fmt::print(stderr, "holdfast: {}\n", describe(error, file));
+}
+
+/// False, and the error is printed, if the file cannot be written.
+inline bool write_or_complain(const std::string& path, std::string_view text) {
+  const auto error = write_file(path, text);
+  if (error) {
+    print_error(*error, path);
+  }
+  return !error;
 }
 
 }  // namespace holdfast::cli

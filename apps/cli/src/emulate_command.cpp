@@ -8,6 +8,7 @@
 #include "commands.hpp"
 #include "faults.hpp"
 #include "holdfast/emulated.hpp"
+#include "run_report.hpp"
 
 namespace holdfast::cli {
 namespace {
@@ -71,7 +72,8 @@ class EmulateRun {
     const auto pages = emulator::configuration_pages(structure.robot, emulation_.anchor);
     for (std::size_t i = 0; i < pages.size(); ++i) {
       const std::string path = fmt::format("{}/module_{}.bin", options_.pages, i);
-      if (!write(path, {reinterpret_cast<const char*>(pages[i].data()), pages[i].size()})) {
+      if (!write_or_complain(path,
+                             {reinterpret_cast<const char*>(pages[i].data()), pages[i].size()})) {
         return kExitBadInput;
       }
     }
@@ -125,28 +127,8 @@ class EmulateRun {
 
   /// False if a file cannot be written.
   bool show(const Structure& structure, const CheckResult& exact, const EmulatedRun& run) const {
-    if (!options_.is_quiet && options_.json != "-") {
-      fmt::print("{} {}\n{}", banner(run.run.view.verdict), structure.name,
-                 report_text(structure, exact, run));
-    }
-    bool is_written = true;
-    if (options_.json == "-") {
-      fmt::print("{}\n", report_json(structure, exact, run));
-    } else if (!options_.json.empty()) {
-      is_written = write(options_.json, report_json(structure, exact, run) + "\n");
-    }
-    if (!options_.svg.empty()) {
-      is_written = write(options_.svg, picture_svg(structure, run.run)) && is_written;
-    }
-    return is_written;
-  }
-
-  static bool write(const std::string& path, const std::string& text) {
-    const auto error = write_file(path, text);
-    if (error) {
-      print_error(*error, path);
-    }
-    return !error;
+    const bool is_silent = options_.is_quiet || options_.json == "-";
+    return show_run(options_, is_silent, structure, exact, run, run.run);
   }
 
   const Options& options_;

@@ -27,11 +27,7 @@ int run(const Options& options) {
     fmt::print("{}", text);
     return 0;
   }
-  if (const auto error = write_file(options.to, text)) {
-    print_error(*error, options.to);
-    return kExitBadInput;
-  }
-  return 0;
+  return write_or_complain(options.to, text) ? kExitSafe : kExitBadInput;
 }
 
 }  // namespace

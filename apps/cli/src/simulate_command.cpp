@@ -11,7 +11,7 @@
 
 #include "commands.hpp"
 #include "faults.hpp"
-#include "holdfast/distributed.hpp"
+#include "run_report.hpp"
 
 namespace holdfast::cli {
 namespace {
@@ -170,29 +170,8 @@ class SimulateRun {
 
   /// False if a file cannot be written.
   bool show(const Structure& structure, const CheckResult& exact, const DistributedRun& run) const {
-    const bool has_standard_output = options_.json == "-" || options_.story == "-";
-    if (!options_.is_quiet && !has_standard_output) {
-      fmt::print("{} {}\n{}", banner(run.view.verdict), structure.name,
-                 report_text(structure, exact, run));
-    }
-    bool is_written = true;
-    if (options_.json == "-") {
-      fmt::print("{}\n", report_json(structure, exact, run));
-    } else if (!options_.json.empty()) {
-      is_written = write(options_.json, report_json(structure, exact, run) + "\n");
-    }
-    if (!options_.svg.empty()) {
-      is_written = write(options_.svg, picture_svg(structure, run)) && is_written;
-    }
-    return is_written;
-  }
-
-  static bool write(const std::string& path, const std::string& text) {
-    const auto error = write_file(path, text);
-    if (error) {
-      print_error(*error, path);
-    }
-    return !error;
+    const bool is_silent = options_.is_quiet || options_.json == "-" || options_.story == "-";
+    return show_run(options_, is_silent, structure, exact, run, run);
   }
 
   const Options& options_;

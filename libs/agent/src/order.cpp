@@ -55,8 +55,10 @@ void merge_facets(Report& into, const Report& from) {
 void merge_residual(Report& into, const Report& from) {
   into.reals[0] += from.reals[0];
   into.reals[1] = larger(into.reals[1], from.reals[1]);
-  for (std::size_t i = 0; kHasAllMethods && i < into.products.size(); ++i) {
-    into.products[i] += from.products[i];
+  if constexpr (kHasAllMethods) {
+    for (std::size_t i = 0; i < into.products.size(); ++i) {
+      into.products[i] += from.products[i];
+    }
   }
   merge_facets(into, from);
 }

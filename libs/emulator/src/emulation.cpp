@@ -3,7 +3,6 @@
 #include "holdfast/emulator/emulation.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <cstring>
 
 #include "board.hpp"
@@ -47,13 +46,6 @@ std::vector<module::Configuration> configurations(const model::Robot& robot, std
     all.push_back(configuration);
   }
   return all;
-}
-
-bool is_same(const agent::Answer& a, const agent::Answer& b) {
-  return a.verdict == b.verdict && a.reason == b.reason &&
-         std::bit_cast<std::uint32_t>(a.load_ratio_max) ==
-             std::bit_cast<std::uint32_t>(b.load_ratio_max) &&
-         a.worst_cell == b.worst_cell && a.worst_direction == b.worst_direction;
 }
 
 }  // namespace
@@ -276,7 +268,7 @@ sim::SimulationResult Robot::result() const {
     result.answer = is_first ? answer : result.answer;
     is_first = false;
     result.all_agree = result.all_agree && answer.verdict != agent::Verdict::kNone &&
-                       is_same(answer, result.answer);
+                       sim::is_same(answer, result.answer);
     result.verdict_time =
         std::max(result.verdict_time, Time{steps.verdict_time / kCyclesPerMicrosecond});
     const agent::Agent& shadow = modules_[at(i)]->shadow();

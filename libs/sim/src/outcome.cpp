@@ -6,17 +6,13 @@
 
 /// What a simulation has come to.
 namespace holdfast::sim {
-namespace {
 
-/// Are the answers the same in every respect?
 bool is_same(const agent::Answer& a, const agent::Answer& b) {
   return a.verdict == b.verdict && a.reason == b.reason &&
          std::bit_cast<std::uint32_t>(a.load_ratio_max) ==
              std::bit_cast<std::uint32_t>(b.load_ratio_max) &&
          a.worst_cell == b.worst_cell && a.worst_direction == b.worst_direction;
 }
-
-}  // namespace
 
 SimulationResult Engine::result() const {
   SimulationResult result = recorder_.result();

@@ -17,6 +17,9 @@ inline constexpr std::size_t kPhaseCount = static_cast<std::size_t>(agent::Phase
 /// "discovery", "coordinates", ...
 std::string_view name(agent::Phase phase);
 
+/// Are the answers the same in every respect, their load ratios to the last bit?
+bool is_same(const agent::Answer& a, const agent::Answer& b);
+
 struct PhaseStatistics {
   std::uint64_t packets = 0;  ///< By the phase of the sender when it hands out the packet.
   std::uint64_t bytes = 0;

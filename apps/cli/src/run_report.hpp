@@ -1,0 +1,32 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "commands.hpp"
+#include "holdfast/distributed.hpp"
+
+namespace holdfast::cli {
+
+/// Prints what a robot has worked out, simulated or emulated, and writes the files that the options
+/// `json` and `svg` name; `is_silent` if the terminal gets nothing but a report asked for with "-".
+/// False if a file cannot be written.
+template <class Options, class Run>
+bool show_run(const Options& options, bool is_silent, const Structure& structure,
+              const CheckResult& exact, const Run& run, const DistributedRun& picture) {
+  if (!is_silent) {
+    fmt::print("{} {}\n{}", banner(picture.view.verdict), structure.name,
+               report_text(structure, exact, run));
+  }
+  bool is_written = true;
+  if (options.json == "-") {
+    fmt::print("{}\n", report_json(structure, exact, run));
+  } else if (!options.json.empty()) {
+    is_written = write_or_complain(options.json, report_json(structure, exact, run) + "\n");
+  }
+  if (!options.svg.empty()) {
+    is_written = write_or_complain(options.svg, picture_svg(structure, picture)) && is_written;
+  }
+  return is_written;
+}
+
+}  // namespace holdfast::cli
