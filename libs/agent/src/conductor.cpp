@@ -175,6 +175,7 @@ Order Conductor::begin_law(const Setup& setup, bool is_unilateral) {
   is_tilting_ = false;
   has_history_ = false;
   seen_count_ = 0;
+  contact_steps_max_ = effort_.contact_steps + kContactStepsMax;
   check_at_ = effort_.iterations + 2 * jacobi_span();
   check_error_ = 1e30;
   stagnation_count_ = 0;
@@ -239,7 +240,7 @@ Order Conductor::judge(const Setup& setup, const Report& report) {
 
 /// The linear problem is solved and some facets want another state.
 Order Conductor::judge_regularised(const Setup& setup, const Report& report) {
-  if (was_seen(report.number) || effort_.contact_steps > kContactStepsMax) {
+  if (was_seen(report.number) || effort_.contact_steps > contact_steps_max_) {
     return begin_law(setup, true);
   }
   ++effort_.contact_steps;

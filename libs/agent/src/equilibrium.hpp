@@ -344,9 +344,14 @@ void BasicAgent<Real>::exchange_forces() {
     const int k = planned_.at_face(face);
     if ((faces & bit(face)) != 0) {
       add_beam(face, vectors[static_cast<std::size_t>(face)]);
+    } else if (k >= 0 && is_apart()) {
+      add_beam_apart(face);
     } else if (k >= 0) {
       add_beam(face, planned_vector_[static_cast<std::size_t>(k)]);
     }
+  }
+  if (is_apart()) {
+    return;
   }
   add_planned_beams();
   for (int i = 0; i < planned_.hosted_count(); ++i) {

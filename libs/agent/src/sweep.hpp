@@ -4,6 +4,7 @@
 
 #include "bits.hpp"
 #include "holdfast/agent/agent.hpp"
+#include "methods.hpp"
 
 /// Sweeps: an order goes down the tree, its report comes up, and most of them exchange six reals
 /// between all neighbours on the way.
@@ -61,7 +62,8 @@ constexpr std::uint16_t exchanges_behind(const Order& order) {
 
 /// Forces whose digits beyond single precision count.
 constexpr bool is_precise(wire::Operation operation) {
-  return operation == wire::Operation::kHigh || operation == wire::Operation::kLow;
+  return operation == wire::Operation::kHigh || operation == wire::Operation::kLow ||
+         operation == wire::Operation::kStep;
 }
 
 constexpr Phase phase_of(wire::Operation operation) {
@@ -81,6 +83,11 @@ constexpr Phase phase_of(wire::Operation operation) {
       return Phase::kEquilibrium;
   }
 }
+
+/// In the label of `planned down`: the index, and for a step which part of a displacement it is.
+inline constexpr std::uint8_t kIndexMask = 0x3f;
+inline constexpr std::uint8_t kLeading = 0x40;
+inline constexpr std::uint8_t kTrailing = 0x80;
 
 inline wire::Writer vector_message(wire::MessageType type, std::uint8_t label,
                                    const base::Vec6<float>& vector) {
@@ -123,8 +130,8 @@ template <class Real>
 void BasicAgent<Real>::start_exchange() {
   is_exchanging_ = true;
   ++tag_;
-  planned_awaited_ = planned_.from_above();
-  planned_force_ = {};
+  const bool is_joined = !is_apart();
+  planned_awaited_ = is_joined ? planned_.from_above() : std::uint8_t{0};
   const base::Vec6<float> own = base::converted<float>(nodes_[0].shared);
   const std::uint8_t faces = used_faces();
   for (int face = 0; face < base::kDirectionCount; ++face) {
@@ -132,6 +139,15 @@ void BasicAgent<Real>::start_exchange() {
       send(face, sweep::vector_message(wire::MessageType::kVector, tag_, own));
     }
   }
+  if (is_joined) {
+    start_planned_exchange();
+  }
+}
+
+/// What the planned modules emulated here share, to all that touch them.
+template <class Real>
+void BasicAgent<Real>::start_planned_exchange() {
+  planned_force_ = {};
   for (int i = 0; i < planned_.hosted_count(); ++i) {
     planned_vector_[static_cast<std::size_t>(planned_.hosted(i))] =
         base::converted<float>(nodes_[static_cast<std::size_t>(1 + i)].shared);
@@ -160,6 +176,9 @@ template <class Real>
 void BasicAgent<Real>::take_planned_down(std::span<const std::uint8_t> message) {
   wire::Reader in(message);
   const int k = in.u8();
+  if (kHasAllMethods && (k & ~sweep::kIndexMask) != 0) {
+    return take_remote_down(static_cast<std::uint8_t>(k), sweep::read_vector(in));
+  }
   if (k >= planned_.count()) {
     return;
   }
@@ -241,10 +260,16 @@ void BasicAgent<Real>::continue_sweep() {
         (waits_for_children && reports_awaited_ != 0)) {
       break;
     }
+    const bool is_moved = exchanges_left_ == exchanges_behind_ + 1;
+    if (is_apart() && is_moved && !is_remote_here()) {
+      break;
+    }
     exchange_forces();
     vectors_here_[slot] = 0;
     is_exchanging_ = false;
-    send_planned_up();
+    if (!is_apart()) {
+      send_planned_up();
+    }
     after_exchange();
     if (--exchanges_left_ > 0) {
       start_exchange();
@@ -262,6 +287,10 @@ void BasicAgent<Real>::finish_sweep() {
     return;  // More when there is room.
   }
   is_sweeping_ = false;
+  if (order_.operation == wire::Operation::kStep && is_apart()) {
+    find_remote_residuals();
+    send_planned_up();
+  }
   Report report = conclude(order_);
   if (order_.operation == wire::Operation::kFactor ||
       order_.operation == wire::Operation::kTreeStep) {
