@@ -125,9 +125,6 @@ Order Conductor::after_plan(const Report& report) {
 
 Order Conductor::after_hosts(const Report& report) {
   is_any_remote_ = (report.mask & kAnyRemote) != 0;
-  // What several modules add to a planned one takes a whole sweep, so there is one exchange in
-  // each.
-  degree_ = is_any_remote_ ? std::uint16_t{0} : degree_;
   const unsigned all = (1U << planned_count_) - 1;
   if ((report.mask & 0x7fU) != all) {
     return finish(Verdict::kUndecided, Reason::kPlannedDetached);

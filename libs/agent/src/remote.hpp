@@ -17,13 +17,23 @@
 /// a module costs some steps more.
 namespace holdfast::agent {
 
-/// Do planned modules stand apart in the exchanges of the present order?
+/// Do planned modules stand apart in the present exchange?
 template <class Real>
 bool BasicAgent<Real>::is_apart() const {
-  const bool is_one_sweep =
-      order_.operation == wire::Operation::kStep ||
-      (order_.operation == wire::Operation::kBegin && (order_.flags & kOneSweep) != 0);
-  return kHasAllMethods && is_one_sweep && planned_.is_any_remote();
+  if (!kHasAllMethods || !planned_.is_any_remote()) {
+    return false;
+  }
+  switch (order_.operation) {
+    case wire::Operation::kStep:
+      return true;
+    case wire::Operation::kBegin:
+      return (order_.flags & kOneSweep) != 0;
+    case wire::Operation::kStart:
+    case wire::Operation::kGradient:
+      return exchanges_left_ > 1;
+    default:
+      return false;
+  }
 }
 
 /// Nodes with a part in the polynomial.
@@ -83,20 +93,32 @@ void BasicAgent<Real>::take_remote_down(std::uint8_t label, const base::Vec6<flo
   continue_sweep();
 }
 
+/// Does the present exchange need what hosts send? Of a step it is the second.
 template <class Real>
-bool BasicAgent<Real>::is_remote_here() const {
-  return (planned_here_ & planned_.from_above()) == planned_.from_above();
+bool BasicAgent<Real>::needs_hosts() const {
+  const bool is_step = order_.operation == wire::Operation::kStep;
+  return !is_apart() || (is_step && exchanges_left_ == exchanges_behind_ + 1);
+}
+
+template <class Real>
+bool BasicAgent<Real>::is_waiting_for_hosts() const {
+  return needs_hosts() && (planned_here_ & planned_.from_above()) != planned_.from_above();
 }
 
 /// In the polynomial the planned module at the other end stands still.
 template <class Real>
 void BasicAgent<Real>::add_beam_apart(int face) {
-  if (exchanged() != Exchanged::kTerm) {
+  const Exchanged what = exchanged();
+  if (what == Exchanged::kDisplacement) {
     return;
   }
   const base::Vec6<double> force =
       mechanics::end_force(setup_.beam, static_cast<base::Direction>(face),
                            base::converted<double>(nodes_[0].shared), {});
+  if (what == Exchanged::kGradient) {
+    base::add_to(gradients_of(0).image, base::converted<Real>(force));
+    return;
+  }
   for (std::size_t i = 0; i < 6; ++i) {
     steps_of(0).w[i] -= force[i];
   }
@@ -105,7 +127,6 @@ void BasicAgent<Real>::add_beam_apart(int face) {
 /// The beams between this module and planned ones, at u.
 template <class Real>
 void BasicAgent<Real>::add_remote_beams() {
-  planned_here_ = 0;
   Node<Real>& node = nodes_[0];
   for (int k = 0; k < planned_.count(); ++k) {
     const int face = planned_.own_face(k);

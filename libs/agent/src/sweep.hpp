@@ -66,6 +66,11 @@ constexpr bool is_precise(wire::Operation operation) {
          operation == wire::Operation::kStep;
 }
 
+/// A linear solve's exchanges: the preconditioner's terms, then w = A z.
+constexpr bool is_preconditioned(wire::Operation operation) {
+  return operation == wire::Operation::kStart || operation == wire::Operation::kGradient;
+}
+
 constexpr Phase phase_of(wire::Operation operation) {
   switch (operation) {
     case wire::Operation::kPlan:
@@ -130,8 +135,6 @@ template <class Real>
 void BasicAgent<Real>::start_exchange() {
   is_exchanging_ = true;
   ++tag_;
-  const bool is_joined = !is_apart();
-  planned_awaited_ = is_joined ? planned_.from_above() : std::uint8_t{0};
   const base::Vec6<float> own = base::converted<float>(nodes_[0].shared);
   const std::uint8_t faces = used_faces();
   for (int face = 0; face < base::kDirectionCount; ++face) {
@@ -139,7 +142,7 @@ void BasicAgent<Real>::start_exchange() {
       send(face, sweep::vector_message(wire::MessageType::kVector, tag_, own));
     }
   }
-  if (is_joined) {
+  if (!is_apart()) {
     start_planned_exchange();
   }
 }
@@ -183,7 +186,7 @@ void BasicAgent<Real>::take_planned_down(std::span<const std::uint8_t> message) 
     return;
   }
   planned_vector_[static_cast<std::size_t>(k)] = sweep::read_vector(in);
-  planned_awaited_ = static_cast<std::uint8_t>(planned_awaited_ & ~bit(k));
+  planned_here_ = static_cast<std::uint8_t>(planned_here_ | bit(k));
   send_planned_down(k);
   continue_sweep();
 }
@@ -253,19 +256,16 @@ void BasicAgent<Real>::continue_sweep() {
   while (is_exchanging_) {
     const std::size_t slot = tag_ & 1U;
     const std::uint8_t faces = used_faces();
-    // What children add to planned modules emulated here comes before their reports. An order that
-    // needs this has one exchange only.
+    // What children add to planned modules emulated here comes before their reports. It belongs to
+    // an order's last exchange.
     const bool waits_for_children = exchanges_left_ == 1 && exchanges_behind_ == 0;
-    if ((vectors_here_[slot] & faces) != faces || planned_awaited_ != 0 ||
+    if ((vectors_here_[slot] & faces) != faces || is_waiting_for_hosts() ||
         (waits_for_children && reports_awaited_ != 0)) {
-      break;
-    }
-    const bool is_moved = exchanges_left_ == exchanges_behind_ + 1;
-    if (is_apart() && is_moved && !is_remote_here()) {
       break;
     }
     exchange_forces();
     vectors_here_[slot] = 0;
+    planned_here_ = needs_hosts() ? std::uint8_t{0} : planned_here_;
     is_exchanging_ = false;
     if (!is_apart()) {
       send_planned_up();

@@ -279,7 +279,8 @@ class BasicAgent {
   void share_remote();
   void send_remote_down(std::uint8_t label, const base::Vec6<float>& part);
   void take_remote_down(std::uint8_t label, const base::Vec6<float>& part);
-  bool is_remote_here() const;
+  bool needs_hosts() const;
+  bool is_waiting_for_hosts() const;
   void add_beam_apart(int face);
   void add_remote_beams();
   void find_remote_residuals();
@@ -363,9 +364,8 @@ class BasicAgent {
   bool is_scalar_ = false;      ///< Scalar diagonal instead of blocks.
   float rho_ = 0;               ///< Of the polynomial preconditioner.
   std::uint8_t reports_awaited_ = 0;
-  std::uint8_t planned_awaited_ = 0;  ///< By planned index: reals still to come from the parent.
-  std::uint8_t planned_here_ = 0;  ///< By planned index: displacements that have come for a step.
-  std::uint8_t tag_ = 0;           ///< Of the exchange under way.
+  std::uint8_t planned_here_ = 0;               ///< By planned index: what has come from its host.
+  std::uint8_t tag_ = 0;                        ///< Of the exchange under way.
   std::array<std::uint8_t, 2> vectors_here_{};  ///< Faces, by the tag's lowest bit.
   std::uint16_t exchanges_left_ = 0;
   std::uint16_t exchanges_behind_ = 0;  ///< Those that go on when the report has left.
