@@ -183,14 +183,16 @@ Order Conductor::begin_law(const Setup& setup, bool is_unilateral) {
   Order begin = order(Step::kBegin, Operation::kBegin);
   if (is_one_sweep()) {
     choose_one_sweep(is_unilateral);
-    begin.count = effort_.method == Method::kPolynomial ? step_degree() : std::uint16_t{0};
+    const bool starts = effort_.method == Method::kPolynomial && !is_any_remote_;
+    begin.count = starts ? step_degree() : std::uint16_t{0};
   }
   const bool has_all = kHasAllMethods && !setup.only_elimination;
   if (!has_all && effort_.method != Method::kElimination) {
     return finish(Verdict::kUndecided, Reason::kNotConverged);
   }
-  begin.flags = static_cast<std::uint8_t>((is_unilateral ? kUnilateralLaw : 0U) |
-                                          (is_one_sweep() ? kOneSweep : 0U));
+  begin.flags = static_cast<std::uint8_t>(
+      (is_unilateral ? kUnilateralLaw : 0U) | (is_one_sweep() ? kOneSweep : 0U) |
+      (effort_.method == Method::kPolynomial ? kWithSteps : 0U));
   begin.reals[0] = static_cast<float>(is_unilateral ? kUnilateralGamma : setup.contact_gamma);
   begin.reals[1] = static_cast<float>(static_cast<double>(extent_ + 1) * setup.section.length);
   return begin;

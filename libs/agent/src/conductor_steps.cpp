@@ -30,10 +30,9 @@ double ratio_per_energy_root(const Setup& setup) {
 
 }  // namespace
 
-/// The unilateral law needs a line search, which conjugate gradients have, and more planned modules
-/// than a link can take the forces of at once a sweep for each exchange.
+/// The unilateral law needs a line search, which conjugate gradients have.
 void Conductor::choose_one_sweep(bool is_unilateral) {
-  if (is_unilateral || (is_any_remote_ && planned_count_ > kRemoteMax)) {
+  if (is_unilateral) {
     effort_.method = Method::kConjugateGradients;
   } else if (has_many_loops_ || is_any_remote_) {
     effort_.method = Method::kPolynomial;
@@ -53,7 +52,13 @@ Order Conductor::first_step() {
   ++effort_.solves;
   predicted_ = 1e30;
   const bool is_elimination = !kHasAllMethods || effort_.method == Method::kElimination;
-  return is_elimination ? factor() : restarted_step();
+  if (is_elimination) {
+    return factor();
+  }
+  Order step = restarted_step();
+  // Where planned modules are condensed it moves nothing: nobody has their weight yet.
+  step.flags = static_cast<std::uint8_t>(step.flags | (is_any_remote_ ? kKeepStates : 0U));
+  return step;
 }
 
 Order Conductor::factor() { return order(Step::kFactor, Operation::kFactor); }

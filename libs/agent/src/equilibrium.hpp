@@ -113,10 +113,12 @@ void BasicAgent<Real>::begin_equilibrium(const Order& order) {
       continue;
     } else if (!is_one_sweep) {
       gradients_of(i) = gradients_at_rest(node, setup_);
-    } else if (order.count > 0) {
+    } else if ((order.flags & kWithSteps) != 0 && i < joined_count()) {
       steps_of(i) = {};
       factor_diagonal(node, setup_, contact_, node_faces(i));
-      start_terms(i);
+      if (order.count > 0) {
+        start_terms(i);
+      }
     }
   }
 }

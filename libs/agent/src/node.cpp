@@ -88,12 +88,19 @@ void factor_diagonal(Node<Real>& node, const Setup& setup, const ContactSetting&
 }
 
 template <class Real>
-Vec6<Real> scalar_diagonal(const Node<Real>& node, const Setup& setup,
-                           const ContactSetting& contact, std::uint8_t faces) {
+Mat6<double> diagonal_block(const Node<Real>& node, const Setup& setup,
+                            const ContactSetting& contact, std::uint8_t faces) {
   Mat6<double> block = beam_block(setup, faces);
   if (node.is_ground) {
     base::add_to(block, mechanics::contact_tangent(contact.facet, node.state, node.is_held));
   }
+  return block;
+}
+
+template <class Real>
+Vec6<Real> scalar_diagonal(const Node<Real>& node, const Setup& setup,
+                           const ContactSetting& contact, std::uint8_t faces) {
+  const Mat6<double> block = diagonal_block(node, setup, contact, faces);
   Vec6<Real> diagonal{};
   for (int i = 0; i < 6; ++i) {
     diagonal[static_cast<std::size_t>(i)] = static_cast<Real>(block.at(i, i));
@@ -179,6 +186,8 @@ double ratio_error(const Vec6<Real>& residual, const Setup& setup, const Contact
   template void reset(Node<Real>&);                                                              \
   template Gradients<Real> gradients_at_rest(const Node<Real>&, const Setup&);                   \
   template void factor_diagonal(Node<Real>&, const Setup&, const ContactSetting&, std::uint8_t); \
+  template Mat6<double> diagonal_block(const Node<Real>&, const Setup&, const ContactSetting&,   \
+                                       std::uint8_t);                                            \
   template Vec6<Real> scalar_diagonal(const Node<Real>&, const Setup&, const ContactSetting&,    \
                                       std::uint8_t);                                             \
   template Vec6<Real> solve_diagonal(const Node<Real>&, Vec6<Real>);                             \

@@ -3,18 +3,27 @@
 #pragma once
 
 #include "bits.hpp"
+#include "equilibrium.hpp"
 #include "holdfast/agent/agent.hpp"
 #include "holdfast/mechanics/connector.hpp"
 #include "methods.hpp"
+#include "scalar.hpp"
+#include "sweep.hpp"
 
-/// Planned modules that touch several others, in the one-sweep methods.
+/// Planned modules that touch several others.
 ///
-/// The host of such a module lies above all that it touches, so an exchange with them takes a
-/// sweep. A step has one: its order brings the module's new displacement down, its report the
-/// beams' forces up, and no round more is spent. The polynomial, which has an exchange every round,
-/// does without these beams: in its matrix the planned module stands apart, and M^-1 has the
-/// inverse of its diagonal block. That is symmetric and positive as before, only not as good: such
-/// a module costs some steps more.
+/// The host of such a module lies above all that it touches, so an exchange with them takes longer
+/// than a round. A step does without the planned module: it is condensed. With the displacements u
+/// of those that it touches its own is known,
+///   u_p = K_pp^-1 (f_p - K_pr u),
+/// so no force is left on it, and for the others remains S = K_rr - K_rp K_pp^-1 K_pr: as symmetric
+/// as K and a little stiffer than the robot without the planned module. So M^-1 is the polynomial
+/// of the robot without it, and the steps are as many as without it, or a few more. In each of them
+/// the forces K_pr u go up to the host behind the order, and u_p comes down: at most one sweep
+/// more.
+///
+/// Conjugate gradients have u_p among their unknowns. Their polynomial has its diagonal block
+/// apart, and only the last exchange of a sweep, for w = A z, has its beams in it.
 namespace holdfast::agent {
 
 /// Do planned modules stand apart in the present exchange?
@@ -47,10 +56,33 @@ Node<Real>& BasicAgent<Real>::planned_node(int k) {
   return nodes_[static_cast<std::size_t>(planned_.slot_of(k))];
 }
 
-/// Behind a step's order: where planned modules are now.
+/// Behind a step's order: the forces on planned modules at rest go up to their hosts.
 template <class Real>
-void BasicAgent<Real>::share_remote() {
+void BasicAgent<Real>::begin_condensing() {
   planned_force_ = {};
+  planned_up_awaited_ = 0;
+  for (int k = 0; k < planned_.count(); ++k) {
+    const int own = planned_.own_face(k);
+    if (own >= 0) {
+      const auto direction = base::opposite(static_cast<base::Direction>(own));
+      base::add_to(planned_force_[static_cast<std::size_t>(k)],
+                   mechanics::end_force(setup_.beam, direction, {}, nodes_[0].u));
+    }
+    for (int face = 0; face < base::kDirectionCount; ++face) {
+      const bool is_coming = (children_ & bit(face)) != 0 && planned_.is_needed_below(face, k);
+      planned_up_awaited_ = static_cast<std::uint8_t>(planned_up_awaited_ + (is_coming ? 2 : 0));
+    }
+  }
+  if (planned_up_awaited_ == 0) {
+    pass_condensed();
+  }
+}
+
+/// All forces from below are here: on to the host, or from it down again.
+template <class Real>
+void BasicAgent<Real>::pass_condensed() {
+  send_planned_up();
+  condense();
   for (int i = 0; i < planned_.hosted_count(); ++i) {
     const int k = planned_.hosted(i);
     const base::Vec6<double>& u = nodes_[static_cast<std::size_t>(1 + i)].u;
@@ -65,6 +97,71 @@ void BasicAgent<Real>::share_remote() {
   }
 }
 
+/// u_p of all planned modules emulated here, in the contact states that belong to it.
+template <class Real>
+void BasicAgent<Real>::condense() {
+  constexpr int kStateRounds = 20;
+  for (int i = 1; i < node_count(); ++i) {
+    nodes_[static_cast<std::size_t>(i)].has_changed = false;
+  }
+  bool is_settled = node_count() == 1;
+  for (int round = 0; round < kStateRounds && !is_settled; ++round) {
+    is_settled = true;
+    solve_hosted();
+    for (int i = 1; i < node_count(); ++i) {
+      Node<Real>& node = nodes_[static_cast<std::size_t>(i)];
+      const mechanics::ContactState before = node.state;
+      follow_state(node);
+      is_settled = is_settled && node.state == before;
+    }
+  }
+}
+
+/// Gauss and Seidel, module by module: exact at once for one alone, and there are five at most.
+template <class Real>
+void BasicAgent<Real>::solve_hosted() {
+  constexpr int kPassesMax = 1000;
+  constexpr double kLeastMove = 1e-14;
+  double move = 1;
+  double size = 0;
+  for (int pass = 0; pass < kPassesMax && move > kLeastMove * size; ++pass) {
+    move = 0;
+    for (int i = 1; i < node_count(); ++i) {
+      Node<Real>& node = nodes_[static_cast<std::size_t>(i)];
+      node.force = force_on_hosted(i);
+      const base::Vec6<double> change = solve_general(
+          diagonal_block(node, setup_, contact_, node_faces(i)), residual(node, setup_, contact_));
+      for (std::size_t j = 0; j < 6; ++j) {
+        node.u[j] += change[j];
+        move = absolute(change[j]) > move ? absolute(change[j]) : move;
+        size = absolute(node.u[j]) > size ? absolute(node.u[j]) : size;
+      }
+    }
+  }
+  for (int i = 1; i < node_count(); ++i) {
+    nodes_[static_cast<std::size_t>(i)].force = force_on_hosted(i);
+  }
+}
+
+/// All beams of a planned module emulated here; those to other modules have left their force at
+/// u_p = 0 in planned_force_.
+template <class Real>
+base::Vec6<double> BasicAgent<Real>::force_on_hosted(int node_index) const {
+  const int k = planned_.hosted(node_index - 1);
+  const base::Vec6<double>& own = nodes_[static_cast<std::size_t>(node_index)].u;
+  base::Vec6<double> force = planned_force_[static_cast<std::size_t>(k)];
+  for (const base::Direction direction : base::kDirections) {
+    const int other = planned_.neighbour_of(k, direction);
+    if (other >= 0) {
+      const auto slot = static_cast<std::size_t>(planned_.node_of(other));
+      base::add_to(force, mechanics::end_force(setup_.beam, direction, own, nodes_[slot].u));
+    } else if ((planned_.total(k) & bit(base::index(direction))) != 0) {
+      base::add_to(force, mechanics::end_force(setup_.beam, direction, own, {}));
+    }
+  }
+  return force;
+}
+
 template <class Real>
 void BasicAgent<Real>::send_remote_down(std::uint8_t label, const base::Vec6<float>& part) {
   for (int face = 0; face < base::kDirectionCount; ++face) {
@@ -74,7 +171,6 @@ void BasicAgent<Real>::send_remote_down(std::uint8_t label, const base::Vec6<flo
   }
 }
 
-/// It may come before the step's order, which waits for the exchanges of the step before.
 template <class Real>
 void BasicAgent<Real>::take_remote_down(std::uint8_t label, const base::Vec6<float>& part) {
   const int k = label & sweep::kIndexMask;
@@ -102,25 +198,17 @@ bool BasicAgent<Real>::needs_hosts() const {
 
 template <class Real>
 bool BasicAgent<Real>::is_waiting_for_hosts() const {
-  return needs_hosts() && (planned_here_ & planned_.from_above()) != planned_.from_above();
+  const bool is_missing = (planned_here_ & planned_.from_above()) != planned_.from_above();
+  return needs_hosts() && (is_missing || (is_apart() && planned_up_awaited_ != 0));
 }
 
-/// In the polynomial the planned module at the other end stands still.
+/// In the polynomial of conjugate gradients a planned module stands still.
 template <class Real>
 void BasicAgent<Real>::add_beam_apart(int face) {
-  const Exchanged what = exchanged();
-  if (what == Exchanged::kDisplacement) {
-    return;
-  }
-  const base::Vec6<double> force =
-      mechanics::end_force(setup_.beam, static_cast<base::Direction>(face),
-                           base::converted<double>(nodes_[0].shared), {});
-  if (what == Exchanged::kGradient) {
-    base::add_to(gradients_of(0).image, base::converted<Real>(force));
-    return;
-  }
-  for (std::size_t i = 0; i < 6; ++i) {
-    steps_of(0).w[i] -= force[i];
+  if (exchanged() == Exchanged::kGradient) {
+    base::add_to(gradients_of(0).image,
+                 mechanics::end_force(equilibrium::beam_of(setup_, Real{}),
+                                      static_cast<base::Direction>(face), nodes_[0].shared, {}));
   }
 }
 
@@ -136,29 +224,9 @@ void BasicAgent<Real>::add_remote_beams() {
     const auto direction = static_cast<base::Direction>(face);
     const base::Vec6<double>& theirs = planned_node(k).u;
     base::add_to(node.force, mechanics::end_force(setup_.beam, direction, node.u, theirs));
-    base::add_to(planned_force_[static_cast<std::size_t>(k)],
-                 mechanics::end_force(setup_.beam, base::opposite(direction), theirs, node.u));
     const base::Vec6<double> middle =
         mechanics::middle_force(setup_.beam, direction, node.u, theirs);
     middle_[static_cast<std::size_t>(face)] = {middle[2], middle[3], middle[4]};
-  }
-}
-
-/// All reports have come, and with them the forces on the planned modules of this host.
-template <class Real>
-void BasicAgent<Real>::find_remote_residuals() {
-  for (int i = 1; i < node_count(); ++i) {
-    Node<Real>& node = nodes_[static_cast<std::size_t>(i)];
-    const int k = planned_.hosted(i - 1);
-    node.force = planned_force_[static_cast<std::size_t>(k)];
-    for (const base::Direction direction : base::kDirections) {
-      const int other = planned_.neighbour_of(k, direction);
-      if (other >= 0) {
-        base::add_to(node.force,
-                     mechanics::end_force(setup_.beam, direction, node.u, planned_node(other).u));
-      }
-    }
-    find_residual(i);
   }
 }
 

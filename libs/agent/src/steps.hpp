@@ -42,7 +42,7 @@ void BasicAgent<Real>::begin_step(const Order& order) {
   const auto a = static_cast<double>(order.reals[1]);
   const auto b = static_cast<double>(order.reals[2]);
   const bool restarts = (order.flags & kRestart) != 0;
-  for (int i = 0; i < node_count(); ++i) {
+  for (int i = 0; i < joined_count(); ++i) {
     Node<Real>& node = nodes_[static_cast<std::size_t>(i)];
     Steps& steps = steps_of(i);
     SearchDirection& newer = steps.newer;
@@ -70,7 +70,7 @@ void BasicAgent<Real>::begin_step(const Order& order) {
     share_high_part(node);
   }
   if (is_apart()) {
-    share_remote();
+    begin_condensing();
   }
 }
 
@@ -93,14 +93,23 @@ void BasicAgent<Real>::find_residuals() {
   }
 }
 
+/// The contact state that belongs to u.
+template <class Real>
+void BasicAgent<Real>::follow_state(Node<Real>& node) {
+  const bool is_kept = kHasAllMethods && order_.operation == wire::Operation::kStep &&
+                       (order_.flags & kKeepStates) != 0;
+  node.wanted = is_kept ? node.state : state_along(node, contact_, {}, 0);
+  if (node.is_ground && !(node.wanted == node.state)) {
+    node.state = node.wanted;
+    node.has_changed = true;
+  }
+}
+
 template <class Real>
 void BasicAgent<Real>::find_residual(int node_index) {
   Node<Real>& node = nodes_[static_cast<std::size_t>(node_index)];
-  node.wanted = state_along(node, contact_, {}, 0);
-  node.has_changed = node.is_ground && !(node.wanted == node.state);
-  if (node.has_changed) {
-    node.state = node.wanted;
-  }
+  node.has_changed = false;
+  follow_state(node);
   if (!kHasAllMethods || order_.operation == wire::Operation::kTreeStep) {
     return;
   }
@@ -123,8 +132,7 @@ void BasicAgent<Real>::share_term(Node<Real>& node, Steps& steps) {
   }
 }
 
-/// The polynomial's first term for the present residual; all of M^-1 r for a module that stands
-/// apart (remote.hpp).
+/// The polynomial's first term for the present residual.
 template <class Real>
 void BasicAgent<Real>::start_terms(int node_index) {
   Node<Real>& node = nodes_[static_cast<std::size_t>(node_index)];
@@ -132,14 +140,11 @@ void BasicAgent<Real>::start_terms(int node_index) {
   const equilibrium::Interval interval(order_.count, kStepSpread);
   steps.w = residual(node, setup_, contact_);
   const base::Vec6<Real> first = solve_diagonal(node, base::converted<Real>(steps.w));
-  const double scale = node_index < joined_count() ? interval.centre : 1;
   for (std::size_t k = 0; k < 6; ++k) {
-    node.shared[k] = static_cast<Real>(static_cast<double>(first[k]) / scale);
+    node.shared[k] = static_cast<Real>(static_cast<double>(first[k]) / interval.centre);
   }
   share_term(node, steps);
-  if (node_index == 0) {
-    rho_ = static_cast<float>(interval.half / interval.centre);
-  }
+  rho_ = static_cast<float>(interval.half / interval.centre);
 }
 
 /// The next term: the beams' forces of the last one are off w already.
@@ -197,7 +202,7 @@ template <class Real>
 Report BasicAgent<Real>::step_report() const {
   Report report = tree_step_report();
   const bool is_residual = (order_.flags & kLeastResidual) != 0;
-  for (int i = 0; i < node_count(); ++i) {
+  for (int i = 0; i < joined_count(); ++i) {
     const Node<Real>& node = nodes_[static_cast<std::size_t>(i)];
     if (node.is_fixed) {
       continue;

@@ -225,6 +225,10 @@ void BasicAgent<Real>::take_planned_up(std::span<const std::uint8_t> message) {
   for (std::size_t i = 0; i < 6; ++i) {
     planned_force_[static_cast<std::size_t>(k)][i] += static_cast<double>(force[i]);
   }
+  if (kHasAllMethods && order_.operation == wire::Operation::kStep && --planned_up_awaited_ == 0) {
+    pass_condensed();
+    continue_sweep();
+  }
 }
 
 template <class Real>
@@ -287,10 +291,6 @@ void BasicAgent<Real>::finish_sweep() {
     return;  // More when there is room.
   }
   is_sweeping_ = false;
-  if (order_.operation == wire::Operation::kStep && is_apart()) {
-    find_remote_residuals();
-    send_planned_up();
-  }
   Report report = conclude(order_);
   if (order_.operation == wire::Operation::kFactor ||
       order_.operation == wire::Operation::kTreeStep) {

@@ -345,22 +345,20 @@ TEST(Conductor, jacobi_takes_single_steps_when_a_planned_module_is_remote) {
   }
 }
 
-/// Their forces share a link with what a step exchanges; all five may be too many for it.
-TEST(Conductor, one_sweep_steps_take_up_to_four_remote_planned_modules) {
-  for (int count = 1; count <= kPlannedMax; ++count) {
-    Drive drive(Method::kElimination);
-    drive.next({.flags = kFound});
-    for (int i = 1; i < count; ++i) {
-      drive.next({.flags = kFound, .mask = 1});
-    }
-    drive.next({.mask = 1});
-    ASSERT_EQ(drive.order.operation, Operation::kHosts);
-    drive.next({.mask = static_cast<std::uint8_t>(kAnyRemote | ((1U << count) - 1))});
-    drive.next({.flags = kAnyFixed, .extent = 5, .count = kCensus + static_cast<unsigned>(count)});
-    ASSERT_EQ(drive.order.operation, Operation::kBegin);
-    const bool is_step = (drive.order.flags & kOneSweep) != 0 && drive.order.count > 0;
-    EXPECT_EQ(is_step, count <= kRemoteMax) << count;
-  }
+/// Nobody has the weight of a condensed module before the first exchange, so nothing is begun.
+TEST(Conductor, with_a_remote_planned_module_the_first_step_only_looks) {
+  Drive drive(Method::kElimination);
+  drive.next({.flags = kFound});
+  drive.next({.mask = 1});
+  drive.next({.mask = kAnyRemote | 1});
+  drive.next({.flags = kAnyFixed, .extent = 5, .count = kCensus + 1});
+  ASSERT_EQ(drive.order.operation, Operation::kBegin);
+  EXPECT_EQ(drive.order.flags, kOneSweep | kWithSteps);
+  EXPECT_EQ(drive.order.count, 0);
+  ASSERT_EQ(drive.next().operation, Operation::kStep);
+  EXPECT_EQ(drive.order.flags, kRestart | kKeepStates);
+  ASSERT_EQ(drive.next({.reals = {5, 0.5F}}).operation, Operation::kStep);
+  EXPECT_EQ(drive.order.flags, kRestart) << "it has moved nothing, so there is nothing to minimise";
 }
 
 TEST(Conductor, gradients_stop_at_the_limit_of_iterations) {
@@ -550,7 +548,7 @@ Drive one_sweep_drive(bool has_many_loops) {
   const unsigned flags = kAnyFixed | (has_many_loops ? kManyLoops : 0U);
   drive.next({.flags = static_cast<std::uint8_t>(flags), .extent = 5, .count = kCensus});
   EXPECT_EQ(drive.order.operation, Operation::kBegin);
-  EXPECT_EQ(drive.order.flags, kOneSweep);
+  EXPECT_EQ(drive.order.flags, has_many_loops ? kOneSweep | kWithSteps : kOneSweep);
   return drive;
 }
 

@@ -266,6 +266,7 @@ class BasicAgent {
   void share_high_part(Node<Real>& node);
   void find_residuals();
   void find_residual(int node);
+  void follow_state(Node<Real>& node);
   void share_term(Node<Real>& node, Steps& steps);
   void start_terms(int node);
   void next_terms();
@@ -276,14 +277,17 @@ class BasicAgent {
   bool is_apart() const;
   int joined_count() const;
   Node<Real>& planned_node(int k);
-  void share_remote();
+  void begin_condensing();
+  void pass_condensed();
+  void condense();
+  void solve_hosted();
+  base::Vec6<double> force_on_hosted(int node) const;
   void send_remote_down(std::uint8_t label, const base::Vec6<float>& part);
   void take_remote_down(std::uint8_t label, const base::Vec6<float>& part);
   bool needs_hosts() const;
   bool is_waiting_for_hosts() const;
   void add_beam_apart(int face);
   void add_remote_beams();
-  void find_remote_residuals();
 
   // equilibrium.cpp: the same for the equilibrium's operations.
   /// Displacements go into forces, a gradient's direction into its image, a term of a step's
@@ -364,8 +368,9 @@ class BasicAgent {
   bool is_scalar_ = false;      ///< Scalar diagonal instead of blocks.
   float rho_ = 0;               ///< Of the polynomial preconditioner.
   std::uint8_t reports_awaited_ = 0;
-  std::uint8_t planned_here_ = 0;               ///< By planned index: what has come from its host.
-  std::uint8_t tag_ = 0;                        ///< Of the exchange under way.
+  std::uint8_t planned_up_awaited_ = 0;  ///< Forces on planned modules that a step waits for.
+  std::uint8_t planned_here_ = 0;        ///< By planned index: what has come from its host.
+  std::uint8_t tag_ = 0;                 ///< Of the exchange under way.
   std::array<std::uint8_t, 2> vectors_here_{};  ///< Faces, by the tag's lowest bit.
   std::uint16_t exchanges_left_ = 0;
   std::uint16_t exchanges_behind_ = 0;  ///< Those that go on when the report has left.
@@ -399,8 +404,5 @@ static_assert(sizeof(BasicAgent<float>) <= kAgentBytesMax);
 // The most that waits on one link: two vectors for every planned module, one more and a report.
 // What came before them has been acknowledged by the order that asked for them.
 static_assert(Link::kQueueBytes >= (2 * kPlannedMax + 2) * wire::kVectorBytes);
-// In a step two vectors of the polynomial may be on the way beside them.
-static_assert(Link::kQueueBytes >=
-              (2 * kRemoteMax + 2) * wire::kVectorBytes + wire::kMessageBytesMax);
 
 }  // namespace holdfast::agent

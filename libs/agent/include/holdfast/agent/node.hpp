@@ -95,7 +95,12 @@ template <class Real>
 void factor_diagonal(Node<Real>& node, const Setup& setup, const ContactSetting& contact,
                      std::uint8_t faces);
 
-/// The scalar diagonal of the same block with the facet's true tangent (Eq. 14).
+/// The same block with the facet's true tangent.
+template <class Real>
+base::Mat6<double> diagonal_block(const Node<Real>& node, const Setup& setup,
+                                  const ContactSetting& contact, std::uint8_t faces);
+
+/// Its scalar diagonal (Eq. 14).
 template <class Real>
 base::Vec6<Real> scalar_diagonal(const Node<Real>& node, const Setup& setup,
                                  const ContactSetting& contact, std::uint8_t faces);

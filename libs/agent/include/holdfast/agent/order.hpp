@@ -65,9 +65,11 @@ struct Order {
 /// Flags of orders.
 inline constexpr std::uint8_t kUnilateralLaw = 1;  ///< kBegin
 inline constexpr std::uint8_t kOneSweep = 2;       ///< kBegin: for kStep or kTreeStep.
+inline constexpr std::uint8_t kWithSteps = 4;      ///< kBegin: for kStep.
 inline constexpr std::uint8_t kFollowStates = 1;   ///< kLow: take over wanted states.
 inline constexpr std::uint8_t kRestart = 1;        ///< kStep: without older directions.
 inline constexpr std::uint8_t kLeastResidual = 2;  ///< kStep: least residual, not least energy.
+inline constexpr std::uint8_t kKeepStates = 4;     ///< kStep: contact states are not looked up.
 inline constexpr std::uint8_t kAdoptStates = 1;    ///< kStart
 inline constexpr std::uint8_t kWithScalars = 2;    ///< kStart
 inline constexpr std::uint8_t kWithBlocks = 4;     ///< kStart

@@ -19,9 +19,6 @@ namespace holdfast::agent {
 
 inline constexpr int kPlannedMax = 5;
 
-/// So many planned modules may touch several others in the one-sweep methods (src/remote.hpp).
-inline constexpr int kRemoteMax = 4;
-
 class Planned {
  public:
   static constexpr std::uint8_t kOccupied = 0x40;  ///< In a mask: the cell is not free.
