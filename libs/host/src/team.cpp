@@ -1,11 +1,11 @@
 // SPDX-FileCopyrightText: The holdfast authors
 // SPDX-License-Identifier: Apache-2.0
-#include "team.hpp"
+#include "holdfast/host/team.hpp"
 
 #include <algorithm>
 #include <system_error>
 
-namespace holdfast::solver {
+namespace holdfast::host {
 namespace {
 
 /// Turns of waiting before a thread sleeps: a few microseconds, as long as a small loop takes.
@@ -78,4 +78,4 @@ void Team::serve(int thread) {
   }
 }
 
-}  // namespace holdfast::solver
+}  // namespace holdfast::host

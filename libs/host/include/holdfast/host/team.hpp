@@ -11,7 +11,7 @@
 /// A few threads that share loops. Work is cut into chunks of fixed size, each thread takes one run
 /// of chunks, and sums are kept by chunk and added in order: the result has the same bits with any
 /// number of threads.
-namespace holdfast::solver {
+namespace holdfast::host {
 
 class Team {
  public:
@@ -92,4 +92,4 @@ class Team {
   std::atomic<bool> is_over_{false};
 };
 
-}  // namespace holdfast::solver
+}  // namespace holdfast::host
