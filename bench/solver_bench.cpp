@@ -20,7 +20,7 @@ int run_holdfast(const std::string& family, std::size_t size, bool is_bonded, in
                  const char* path) {
   model::RobotSpec spec{.existing = cells(family, size)};
   const auto start = Clock::now();
-  const auto robot = model::Robot::create(spec);
+  const auto robot = model::Robot::create(spec, thread_count);
   HOLDFAST_CHECK(robot.has_value());
   const verdict::Assessment assessment =
       verdict::assess(robot.value(), {.is_bonded = is_bonded, .thread_count = thread_count});

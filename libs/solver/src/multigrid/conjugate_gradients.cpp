@@ -63,42 +63,57 @@ double ConjugateGradients::precondition() {
 }
 
 double ConjugateGradients::begin() {
+  older_.clear();
   round_residual();
   error_ = precondition();
   p_ = hierarchy_.levels().front().z;
   return error_;
 }
 
+/// q = K p; returns p . q.
+double ConjugateGradients::multiply() {
+  return team_.sum(node_count_, [&](std::size_t begin, std::size_t end) {
+    return kernels().apply(hierarchy_.lattice(), p_.data(), q_.data(), {begin, end});
+  });
+}
+
+/// x += step p, r -= step q
+void ConjugateGradients::advance(double step) {
+  Level& finest = hierarchy_.levels().front();
+  team_.share(0, node_count_, [&](std::size_t begin, std::size_t end) {
+    kernels().advance(step, p_.data(), q_.data(), x_.data(), r_.data(), finest.r.data(),
+                      {begin, end});
+  });
+  ++iteration_count_;
+}
+
+void ConjugateGradients::tell() const {
+  if (progress) {
+    progress(iteration_count_, error_);
+  }
+}
+
 // x, r, q: displacement, residual, K p;  p, z: direction, preconditioned residual (single
 // precision)
 ConjugateGradients::End ConjugateGradients::run(double target, int iteration_count_max) {
-  const Kernels& kernel = kernels();
-  Level& finest = hierarchy_.levels().front();
+  const std::vector<Six>& z = hierarchy_.levels().front().z;
   for (int iteration = 0; error_ > target; ++iteration) {
     if (iteration == iteration_count_max) {
       return End::kTooSlow;
     }
-    const double curvature = team_.sum(node_count_, [&](std::size_t begin, std::size_t end) {
-      return kernel.apply(hierarchy_.lattice(), p_.data(), q_.data(), {begin, end});
-    });
+    const double curvature = multiply();
     if (!(curvature > 0)) {
       return End::kBroken;
     }
     const double step = error_ / curvature;
-    team_.share(0, node_count_, [&](std::size_t begin, std::size_t end) {
-      kernel.advance(step, p_.data(), q_.data(), x_.data(), r_.data(), finest.r.data(),
-                     {begin, end});
-    });
-    ++iteration_count_;
+    advance(step);
     const double error = precondition();
     const double turn = -step * dot_with_z(q_) / error_;  // z (r_new - r_old) / z_old r_old
     error_ = error;
     team_.share(0, node_count_, [&](std::size_t begin, std::size_t end) {
-      kernel.combine(1, finest.z.data(), static_cast<float>(turn), p_.data(), {begin, end});
+      kernels().combine(1, z.data(), static_cast<float>(turn), p_.data(), {begin, end});
     });
-    if (progress) {
-      progress(iteration_count_, error_);
-    }
+    tell();
   }
   return error_ >= 0 ? End::kConverged : End::kBroken;
 }

@@ -97,25 +97,34 @@ std::vector<std::pair<std::size_t, Mat>> anchored_sums(const Stage& stage) {
   return sums;
 }
 
-/// The whole level as a sparse matrix in double precision.
-std::optional<BlockLu> factorize(const Stage& stage, std::size_t block_count_max) {
-  std::vector<Edge> edges;
-  std::vector<Mat> blocks;
+/// Calls f(node, other, spring) for every spring once.
+template <class F>
+void for_springs(const Stage& stage, const F& f) {
   for (std::size_t node = 0; node < stage.order.size(); ++node) {
-    for (std::size_t e = at(stage.start[node]); e < at(stage.start[node + 1]); ++e) {
+    const std::size_t start = at(stage.start[node]);
+    for (std::size_t e = start; e < at(stage.start[node + 1]); ++e) {
       if (at(stage.other[e]) > node) {
-        edges.push_back({static_cast<std::int32_t>(node), stage.other[e]});
-        blocks.push_back(coupling(stage.springs[stage.pattern[node] + e - at(stage.start[node])]));
+        f(static_cast<std::int32_t>(node), stage.other[e],
+          stage.springs[stage.pattern[node] + e - start]);
       }
     }
   }
+}
+
+/// The whole level as a sparse matrix in double precision.
+std::optional<BlockLu> factorize(const Stage& stage, std::size_t block_count_max) {
+  std::vector<Edge> edges;
+  for_springs(stage, [&](std::int32_t a, std::int32_t b, const Spring&) {
+    edges.push_back({a, b});
+  });
   BlockLu lu(stage.order.size(), edges, block_count_max);
   if (lu.is_too_large()) {
     return std::nullopt;
   }
-  for (std::size_t e = 0; e < edges.size(); ++e) {
-    lu.set_edge(e, blocks[e]);
-  }
+  std::size_t edge = 0;
+  for_springs(stage, [&](std::int32_t, std::int32_t, const Spring& spring) {
+    lu.set_edge(edge++, coupling(spring));
+  });
   for (std::size_t node = 0; node < stage.order.size(); ++node) {
     lu.set_diagonal(node, spring_sum(stage, node));
   }

@@ -13,10 +13,6 @@ using mechanics::ContactState;
 
 constexpr int kIterationMax = 500;
 
-/// Corrections for tangents that are not symmetric, each to a tenth of the error before it.
-constexpr int kCorrectionMax = 60;
-constexpr double kCorrectionShare = 0.1;
-
 /// With up to this share of changed facets the coarse levels stay as they are: they need not know
 /// of every facet to be good, and making them anew costs as much as some iterations.
 constexpr double kChangedShareMax = 0.02;
@@ -151,41 +147,46 @@ void Multigrid::compute_residual() {
   }
 }
 
-bool Multigrid::is_symmetric() const {
-  return ground_.law == mechanics::ContactLaw::kUnilateral ||
-         std::ranges::none_of(facets_, [](const Facet& facet) {
-           return facet.state.tilt_x != 0 || facet.state.tilt_y != 0;
-         });
+/// What the contact's tangent has beyond the symmetric stand-in for it.
+std::vector<NodeTerm> Multigrid::unsymmetric_terms() const {
+  std::vector<NodeTerm> terms;
+  for (const Facet& facet : facets_) {
+    if (ground_.law == mechanics::ContactLaw::kRegularised &&
+        (facet.state.tilt_x != 0 || facet.state.tilt_y != 0)) {
+      Mat difference = mechanics::contact_tangent(ground_, facet.state, facet.is_held);
+      base::add_to(difference, scaled(tangent(facet.code), -1));
+      terms.push_back({.node = facet.node, .difference = difference});
+    }
+  }
+  return terms;
+}
+
+/// Takes up changed facets. What has not changed since the last solution goes on from there.
+void Multigrid::begin() {
+  if (!is_stale_ && hierarchy_) {
+    return;
+  }
+  update_hierarchy();
+  compute_residual();
+  const double error = gradients_->begin();
+  if (reference_ == 0) {
+    reference_ = error;
+  }
+  is_stale_ = false;
 }
 
 bool Multigrid::solve(double tolerance) {
   if (network_.node_count == 0) {
     return true;
   }
-  if (is_stale_ || !hierarchy_) {
-    update_hierarchy();
-    is_stale_ = false;
-  }
-  const bool is_symmetric = this->is_symmetric();
-  for (int correction = 0; correction < kCorrectionMax; ++correction) {
-    compute_residual();
-    const int before = gradients_->iteration_count();
-    const double start = gradients_->begin();
-    if (reference_ == 0) {
-      reference_ = start;
-    }
-    const double target = tolerance * tolerance * reference_;
-    const double share = is_symmetric ? 0 : kCorrectionShare * kCorrectionShare * start;
-    const auto end = gradients_->run(std::max(target, share), kIterationMax);
-    iteration_count_ += gradients_->iteration_count() - before;
-    if (end != ConjugateGradients::End::kConverged) {
-      return false;
-    }
-    if (is_symmetric || start <= target) {
-      return true;
-    }
-  }
-  return false;
+  begin();
+  const int before = gradients_->iteration_count();
+  const double target = tolerance * tolerance * reference_;
+  const std::vector<NodeTerm> terms = unsymmetric_terms();
+  const auto end = terms.empty() ? gradients_->run(target, kIterationMax)
+                                 : gradients_->run_unsymmetric(target, kIterationMax, terms);
+  iteration_count_ += gradients_->iteration_count() - before;
+  return end == ConjugateGradients::End::kConverged;
 }
 
 std::vector<base::Vec6<double>> Multigrid::displacement() const {

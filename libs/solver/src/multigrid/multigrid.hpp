@@ -49,9 +49,10 @@ class Multigrid {
 
   Mat tangent(std::uint8_t code) const;
   void make_hierarchy();
+  void begin();
   void update_hierarchy();
   void compute_residual();
-  bool is_symmetric() const;
+  std::vector<NodeTerm> unsymmetric_terms() const;
 
   const model::Robot& robot_;
   Team team_;
