@@ -33,10 +33,11 @@ constexpr std::size_t kDirectFillMax = 7;
 /// What one block of the factorization takes, upper and lower.
 constexpr std::size_t kBlockBytes = 2 * sizeof(Mat6<double>) + 24;
 
-/// Multigrid's error while contact states are sought, as a share of the first, where they are
-/// unique. The regularised law may have several answers, and the one meant is that of Newton's
-/// path, so each step of it must be exact.
+/// Multigrid's error while contact states are sought, as a share of the first: where they are
+/// unique, and under the regularised law. That may have several answers, and the one meant is that
+/// of Newton's path, so each step of it must be exact.
 constexpr double kLooseTolerance = 1e-3;
+constexpr double kPathTolerance = 3e-5;
 
 /// The solution that is compared with the last one is so much farther from convergence.
 constexpr double kAlternativeFactor = 10;
@@ -211,8 +212,9 @@ Equilibrium EquilibriumSolver::solve(const ContactOptions& contact) {
 Outcome EquilibriumSolver::iterate(Equilibrium& result) {
   const bool is_linear = options_.is_bonded || facets_.empty();
   const double tight = kAlternativeFactor * options_.tolerance;
-  const bool has_one_answer = !is_linear && result.law == ContactLaw::kUnilateral;
-  tolerance_ = has_one_answer ? std::max(tight, kLooseTolerance) : tight;
+  tolerance_ = is_linear                               ? tight
+               : result.law == ContactLaw::kUnilateral ? std::max(tight, kLooseTolerance)
+                                                       : std::min(tight, kPathTolerance);
   Outcome outcome = Outcome::kSettled;
   if (is_linear) {
     outcome = solve_linear(result) ? Outcome::kSettled : Outcome::kSingular;
@@ -226,7 +228,7 @@ Outcome EquilibriumSolver::iterate(Equilibrium& result) {
 /// Once the states hold still: whether the solution is good enough to say so. If not, it will be.
 bool EquilibriumSolver::is_tight_now() {
   const double tight = kAlternativeFactor * options_.tolerance;
-  return !multigrid_ || std::exchange(tolerance_, tight) == tight;
+  return !multigrid_ || std::exchange(tolerance_, std::min(tolerance_, tight)) <= tight;
 }
 
 void EquilibriumSolver::set_tangent(const Facet& facet) {
@@ -413,7 +415,8 @@ std::vector<Vec6<double>> EquilibriumSolver::internal_force(
 void EquilibriumSolver::finish(Equilibrium& result) {
   if (multigrid_) {
     result.alternative = std::move(result.displacement);
-    if (!multigrid_->solve(options_.tolerance)) {
+    // One iteration at least: else the two answers are the same, and say nothing about the error.
+    if (!multigrid_->solve(options_.tolerance, 1)) {
       result.outcome = Outcome::kTooSlow;
       return;
     }

@@ -161,6 +161,9 @@ constexpr double kTopplingGammas[] = {1e-6, 1e-7};
 /// equilibrium is that of the weak springs it would hang on, a large and almost singular problem.
 constexpr std::size_t kTopplingCountMax = 1000;
 
+/// A verdict that hangs on multigrid's error is sought once more with so much less of it.
+constexpr double kFinerTolerance = 1e-3;
+
 bool agrees(const Assessment& assessment) {
   return assessment.model.is_settled && assessment.model.is_stable == assessment.is_stable;
 }
@@ -330,13 +333,34 @@ Assessment conclude(const model::Robot& robot, Assessment assessment, int thread
   return assessment;
 }
 
-}  // namespace
-
-Assessment assess(const model::Robot& robot, const solver::EquilibriumOptions& options) {
+Assessment assess_once(const model::Robot& robot, const solver::EquilibriumOptions& options) {
   Assessment assessment = begin(robot);
   assessment.is_stable = assessment.is_stable || options.is_bonded;
   find_equilibrium(robot, options, assessment);
   return conclude(robot, std::move(assessment), options.thread_count);
+}
+
+/// So near to breaking that multigrid's error would decide.
+bool is_too_coarse(const Assessment& assessment) {
+  return assessment.is_stable && assessment.equilibrium.outcome == Outcome::kSettled &&
+         assessment.equilibrium.method == solver::Method::kMultigrid &&
+         assessment.equilibrium.open_but_held_count == 0 &&
+         breaks(assessment.load_ratio_range.low) != breaks(assessment.load_ratio_range.high);
+}
+
+}  // namespace
+
+Assessment assess(const model::Robot& robot, const solver::EquilibriumOptions& options) {
+  Assessment assessment = assess_once(robot, options);
+  if (is_too_coarse(assessment)) {
+    solver::EquilibriumOptions finer = options;
+    finer.tolerance *= kFinerTolerance;
+    Assessment second = assess_once(robot, finer);
+    if (second.equilibrium.outcome == Outcome::kSettled) {
+      return second;
+    }
+  }
+  return assessment;
 }
 
 Assessment assess_equilibrium(const model::Robot& robot, Equilibrium equilibrium) {

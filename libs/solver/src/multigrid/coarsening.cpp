@@ -346,7 +346,7 @@ class Coarsening {
     std::vector<std::int32_t> examples;
     std::uint32_t spring_count = 0;
     for (std::size_t c = 0; c < cluster_count_; ++c) {
-      const auto [found, is_new] = known.emplace(signatures[c], spring_count);
+      const auto [found, is_new] = known.try_emplace(signatures[c], spring_count);
       coarse_.pattern[c] = found->second;
       if (is_new) {
         examples.push_back(static_cast<std::int32_t>(c));

@@ -9,6 +9,9 @@ namespace {
 /// third saves few.
 constexpr int kSweepCount = 2;
 
+/// An error so far below the one sought, both squared, may be rounding, which no step improves.
+constexpr double kRounding = 0.01;
+
 }  // namespace
 
 ConjugateGradients::ConjugateGradients(Hierarchy& hierarchy, Team& team, std::size_t node_count)
@@ -63,7 +66,6 @@ double ConjugateGradients::precondition() {
 }
 
 double ConjugateGradients::begin() {
-  older_.clear();
   round_residual();
   error_ = precondition();
   p_ = hierarchy_.levels().front().z;
@@ -87,6 +89,11 @@ void ConjugateGradients::advance(double step) {
   ++iteration_count_;
 }
 
+bool ConjugateGradients::is_reached(const Goal& goal, int iteration) const {
+  const bool may_stop = iteration >= goal.iteration_count_min || error_ <= kRounding * goal.error;
+  return error_ <= goal.error && may_stop;
+}
+
 void ConjugateGradients::tell() const {
   if (progress) {
     progress(iteration_count_, error_);
@@ -95,10 +102,10 @@ void ConjugateGradients::tell() const {
 
 // x, r, q: displacement, residual, K p;  p, z: direction, preconditioned residual (single
 // precision)
-ConjugateGradients::End ConjugateGradients::run(double target, int iteration_count_max) {
+ConjugateGradients::End ConjugateGradients::run(const Goal& goal) {
   const std::vector<Six>& z = hierarchy_.levels().front().z;
-  for (int iteration = 0; error_ > target; ++iteration) {
-    if (iteration == iteration_count_max) {
+  for (int iteration = 0; !is_reached(goal, iteration); ++iteration) {
+    if (iteration == goal.iteration_count_max) {
       return End::kTooSlow;
     }
     const double curvature = multiply();

@@ -39,15 +39,21 @@ class ConjugateGradients {
   /// x in the energy norm.
   double begin();
 
-  /// After begin(), or to go on with a smaller target: improves x until that estimate is at most
-  /// `target`.
-  End run(double target, int iteration_count_max);
+  /// Until when to iterate.
+  struct Goal {
+    double error = 0;             ///< Of the estimate r . M^-1 r.
+    int iteration_count_min = 0;  ///< Unless the error is far below that already.
+    int iteration_count_max = 0;
+  };
+
+  /// After begin(), or to go on with another goal: improves x.
+  End run(const Goal& goal);
 
   /// The same for a matrix A = K + terms that is not symmetric, by full orthogonalization
   /// [Saad 1981]: r is kept orthogonal to all directions so far, as conjugate gradients do by
   /// themselves. (To make r smallest instead, as GMRES does, would need directions in double
   /// precision: r counts every rounding error of a stiff lattice.)
-  End run_unsymmetric(double target, int iteration_count_max, std::span<const NodeTerm> terms);
+  End run_unsymmetric(const Goal& goal, std::span<const NodeTerm> terms);
 
   int iteration_count() const { return iteration_count_; }
 
@@ -62,6 +68,7 @@ class ConjugateGradients {
     double curvature = 0;       ///< p . A p
   };
 
+  bool is_reached(const Goal& goal, int iteration) const;
   double precondition();
   double multiply();
   void advance(double step);

@@ -1,14 +1,18 @@
 // SPDX-FileCopyrightText: The holdfast authors
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <cmath>
 
 #include "conjugate_gradients.hpp"
 
 namespace holdfast::solver {
 namespace {
 
-/// Directions that are remembered; older ones are dropped.
-constexpr std::size_t kMemory = 12;
+/// Directions are remembered, for all of them together no more than so many bytes, but a few in any
+/// case; then the oldest are dropped, and robots whose contact is far from symmetric may fail.
+constexpr std::size_t kMemoryBytes = std::size_t{256} << 20U;
+constexpr std::size_t kMemoryMin = 8;
+constexpr std::size_t kNodeBytes = sizeof(Six) + 6 * sizeof(double);
 
 /// Adds difference * p at the nodes that have one; returns p times that.
 double add_terms(std::span<const NodeTerm> terms, bool is_transposed, const std::vector<Six>& p,
@@ -48,7 +52,7 @@ void ConjugateGradients::turn_away_from_older() {
 /// q := A p; remembers p and A^T p. Returns p . A p.
 double ConjugateGradients::remember_direction(std::span<const NodeTerm> terms) {
   const double symmetric_part = multiply();
-  if (older_.size() == kMemory) {
+  if (older_.size() >= std::max(kMemoryMin, kMemoryBytes / (kNodeBytes * node_count_))) {
     std::ranges::rotate(older_, older_.begin() + 1);
   } else {
     older_.emplace_back();
@@ -61,21 +65,23 @@ double ConjugateGradients::remember_direction(std::span<const NodeTerm> terms) {
   return newest.curvature;
 }
 
-ConjugateGradients::End ConjugateGradients::run_unsymmetric(double target, int iteration_count_max,
+ConjugateGradients::End ConjugateGradients::run_unsymmetric(const Goal& goal,
                                                             std::span<const NodeTerm> terms) {
-  for (int iteration = 0; error_ > target; ++iteration) {
-    if (iteration == iteration_count_max) {
+  older_.clear();
+  for (int iteration = 0; !is_reached(goal, iteration); ++iteration) {
+    if (iteration == goal.iteration_count_max) {
       return End::kTooSlow;
     }
     turn_away_from_older();
     const double curvature = remember_direction(terms);
-    if (!(curvature > 0)) {
+    if (curvature == 0 || !std::isfinite(curvature)) {
       return End::kBroken;
     }
     advance(error_ / curvature);
     error_ = precondition();
     tell();
   }
+  older_ = {};
   return error_ >= 0 ? End::kConverged : End::kBroken;
 }
 

@@ -171,15 +171,17 @@ void fill_vectors(Level& level) {
 }  // namespace
 
 /// The finest level: nodes of the same kind with partners on the same sides share their springs.
-void Hierarchy::fill_stage(Stage& stage) const {
+void Hierarchy::fill_stage(Team& team, Stage& stage) const {
   const std::size_t count = network_.node_count;
   stage.order = network_.order;
   stage.key.resize(count);
   stage.place.resize(count);
-  for (std::size_t i = 0; i < count; ++i) {
-    stage.key[at(network_.order[i])] = network_.key[i];
-    stage.place[at(network_.order[i])] = place_of(network_.key[i], material_.pitch_mm);
-  }
+  team.share(0, count, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      stage.key[at(network_.order[i])] = network_.key[i];
+      stage.place[at(network_.order[i])] = place_of(network_.key[i], material_.pitch_mm);
+    }
+  });
   stage.start.resize(count + 1);
   stage.other.reserve(6 * count);
   stage.pattern.resize(count);
@@ -211,8 +213,8 @@ void Hierarchy::fill_stage(Stage& stage) const {
                                .stiffness = ground_(network_.kind[node][kContactByte])});
     }
     stage.start[node + 1] = static_cast<std::int32_t>(stage.other.size());
-    const auto [found, is_new] = patterns.emplace(std::bit_cast<std::uint64_t>(kind),
-                                                  static_cast<std::uint32_t>(stage.springs.size()));
+    const auto [found, is_new] = patterns.try_emplace(
+        std::bit_cast<std::uint64_t>(kind), static_cast<std::uint32_t>(stage.springs.size()));
     stage.pattern[node] = found->second;
     for (std::size_t d = 0; is_new && d < 6; ++d) {
       if (kind[d] > 0) {
@@ -262,7 +264,7 @@ void Hierarchy::update_types() {
   for (std::size_t node = 0; node < network_.node_count; ++node) {
     const auto kind = std::bit_cast<std::uint64_t>(network_.kind[node]);
     const auto [found, is_new] =
-        type_of_kind_.emplace(kind, static_cast<std::uint32_t>(type_of_kind_.size()));
+        type_of_kind_.try_emplace(kind, static_cast<std::uint32_t>(type_of_kind_.size()));
     level.type[node] = found->second;
     if (is_new) {
       const Mat sum = diagonal(network_.kind[node]);
@@ -302,7 +304,7 @@ void Hierarchy::add_level(const Stage& stage, std::vector<std::size_t> colour_st
     for (std::size_t e = start; e < at(stage.start[node + 1]); ++e) {
       level.block[e] = block_of_spring[stage.pattern[node] + e - start];
     }
-    const auto [found, is_new] = type_of_pattern.emplace(
+    const auto [found, is_new] = type_of_pattern.try_emplace(
         stage.pattern[node], static_cast<std::uint32_t>(type_of_pattern.size()));
     level.type[node] = found->second;
   }
@@ -340,7 +342,7 @@ Hierarchy::Hierarchy(const Network& network, const model::Material& material, Te
     : network_(network), material_(material), ground_(std::move(ground)) {
   make_lattice();
   Stage stage;
-  fill_stage(stage);
+  fill_stage(team, stage);
   while (!coarsest_) {
     Stage coarse;
     std::vector<std::size_t> colour_start;

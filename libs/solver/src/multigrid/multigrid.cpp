@@ -47,8 +47,8 @@ ContactState state_of(std::uint8_t code) {
 Multigrid::Multigrid(const model::Robot& robot, int thread_count,
                      std::function<void(int, double)> progress)
     : robot_(robot),
-      team_(thread_count),
-      network_(make_network(robot)),
+      team_(thread_count, robot.modules().size()),
+      network_(make_network(robot, team_)),
       weight_({0, 0, -model::module_weight_n(robot.material()), 0, 0, 0}),
       facet_of_module_(robot.ground_count() > 0 ? robot.modules().size() : 0, -1),
       progress_(std::move(progress)) {
@@ -127,10 +127,12 @@ void Multigrid::update_hierarchy() {
 void Multigrid::compute_residual() {
   std::vector<double>& r = gradients_->r();
   std::vector<double>& x = gradients_->x();
-  for (std::size_t node = 0; node < network_.node_count; ++node) {
-    const Vec& load = network_.load.empty() ? weight_ : network_.load[at(network_.module[node])];
-    std::copy(load.begin(), load.end(), r.begin() + static_cast<std::ptrdiff_t>(6 * node));
-  }
+  team_.share(0, network_.node_count, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t node = begin; node < end; ++node) {
+      const Vec& load = network_.load.empty() ? weight_ : network_.load[at(network_.module[node])];
+      std::copy(load.begin(), load.end(), r.begin() + static_cast<std::ptrdiff_t>(6 * node));
+    }
+  });
   if (reference_ > 0) {
     gradients_->subtract_product();
   }
@@ -175,30 +177,33 @@ void Multigrid::begin() {
   is_stale_ = false;
 }
 
-bool Multigrid::solve(double tolerance) {
+bool Multigrid::solve(double tolerance, int iteration_count_min) {
   if (network_.node_count == 0) {
     return true;
   }
   begin();
   const int before = gradients_->iteration_count();
-  const double target = tolerance * tolerance * reference_;
+  const ConjugateGradients::Goal goal = {.error = tolerance * tolerance * reference_,
+                                         .iteration_count_min = iteration_count_min,
+                                         .iteration_count_max = kIterationMax};
   const std::vector<NodeTerm> terms = unsymmetric_terms();
-  const auto end = terms.empty() ? gradients_->run(target, kIterationMax)
-                                 : gradients_->run_unsymmetric(target, kIterationMax, terms);
+  const auto end = terms.empty() ? gradients_->run(goal) : gradients_->run_unsymmetric(goal, terms);
   iteration_count_ += gradients_->iteration_count() - before;
   return end == ConjugateGradients::End::kConverged;
 }
 
-std::vector<base::Vec6<double>> Multigrid::displacement() const {
+std::vector<base::Vec6<double>> Multigrid::displacement() {
   std::vector<Vec> by_module(robot_.modules().size());
   if (gradients_) {
-    const std::vector<double>& x = std::as_const(*gradients_).x();
-    for (std::size_t node = 0; node < network_.node_count; ++node) {
-      std::copy_n(x.begin() + static_cast<std::ptrdiff_t>(6 * node), 6,
-                  by_module[at(network_.module[node])].begin());
-    }
+    const std::vector<double>& x = gradients_->x();
+    team_.share(0, network_.node_count, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t node = begin; node < end; ++node) {
+        std::copy_n(x.begin() + static_cast<std::ptrdiff_t>(6 * node), 6,
+                    by_module[at(network_.module[node])].begin());
+      }
+    });
   }
-  recover(robot_, network_, by_module);
+  recover(robot_, network_, team_, by_module);
   return by_module;
 }
 

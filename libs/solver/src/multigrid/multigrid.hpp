@@ -31,11 +31,12 @@ class Multigrid {
   void set_facet(std::size_t module, const mechanics::ContactState& state, bool is_held);
 
   /// Goes on from the present displacements until the error in the energy norm is `tolerance` times
-  /// that of the first guess, zero. Returns false if it does not get there.
-  bool solve(double tolerance);
+  /// that of the first guess, zero. Returns false if it does not get there. As long as errors are
+  /// more than rounding, at least `iteration_count_min` iterations.
+  bool solve(double tolerance, int iteration_count_min = 0);
 
   /// By module.
-  std::vector<Vec> displacement() const;
+  std::vector<Vec> displacement();
 
   int iteration_count() const { return iteration_count_; }
 

@@ -59,7 +59,7 @@ struct EquilibriumOptions {
   int thread_count = 0;
   /// Of multigrid: the error in the energy norm, as a share of that of no displacements at all.
   /// Load ratios are then within 1e-4 of the largest one (docs/solver.md).
-  double tolerance = 3e-6;
+  double tolerance = 1e-5;
   /// Called after every iteration of multigrid with the error that is left, as a share of the
   /// first.
   std::function<void(int iteration, double error)> progress = {};
