@@ -53,7 +53,7 @@ void ConjugateGradients::turn_away_from_older() {
 double ConjugateGradients::remember_direction(std::span<const NodeTerm> terms) {
   const double symmetric_part = multiply();
   if (older_.size() >= std::max(kMemoryMin, kMemoryBytes / (kNodeBytes * node_count_))) {
-    std::ranges::rotate(older_, older_.begin() + 1);
+    std::rotate(older_.begin(), older_.begin() + 1, older_.end());
   } else {
     older_.emplace_back();
   }

@@ -21,6 +21,9 @@ constexpr std::size_t kRow = kBeamLengthMax + 1;
 /// A level this small is factorized whatever its shape: it costs nothing.
 constexpr std::size_t kCoarsestCount = 48;
 
+/// Where nodes have more neighbours than this on average, too many blocks fill in.
+constexpr std::size_t kThinDegree = 3;
+
 std::size_t at(std::int32_t index) { return static_cast<std::size_t>(index); }
 
 /// Which displacement bends with which on a beam along an axis; see kernel_loops.hpp.
@@ -353,7 +356,8 @@ Hierarchy::Hierarchy(const Network& network, const model::Material& material, Te
     add_level(stage, std::move(colour_start));
     const std::size_t count = stage.order.size();
     const bool is_small = count <= kCoarsestCount;
-    if (is_small || count < network_.node_count / 4) {
+    const bool is_thin = stage.other.size() <= kThinDegree * count;
+    if (is_small || (is_thin && count < network_.node_count / 4)) {
       coarsest_ = factorize(stage, is_small ? count * count : 2 * count);
     }
     if (is_small) {

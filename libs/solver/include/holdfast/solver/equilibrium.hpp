@@ -139,6 +139,7 @@ class EquilibriumSolver {
   std::vector<Vec> by_module(const std::vector<Vec>& by_node) const;
   std::vector<Vec> internal_force(const std::vector<Vec>& displacement) const;
   std::vector<mechanics::ContactState> states_at(const std::vector<Vec>& displacement) const;
+  bool are_states_clear(const std::vector<Vec>& displacement) const;
   bool set_states(const std::vector<mechanics::ContactState>& states);
   void finish(Equilibrium& result);
   void refine(Equilibrium& result) const;
