@@ -303,7 +303,7 @@ std::vector<Vec6<double>> EquilibriumSolver::by_module(const std::vector<Vec>& b
 
 /// Displacements for the present states, under the weight.
 bool EquilibriumSolver::solve_linear(Equilibrium& result) {
-  ++result.steps;
+  result.steps += multigrid_ && !multigrid_->is_new() ? 0 : 1;
   if (multigrid_) {
     if (!multigrid_->solve(tolerance_)) {
       return false;

@@ -165,7 +165,7 @@ std::vector<NodeTerm> Multigrid::unsymmetric_terms() const {
 
 /// Takes up changed facets. What has not changed since the last solution goes on from there.
 void Multigrid::begin() {
-  if (!is_stale_ && hierarchy_) {
+  if (!is_new()) {
     return;
   }
   update_hierarchy();

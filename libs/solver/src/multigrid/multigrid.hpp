@@ -30,6 +30,9 @@ class Multigrid {
   void set_law(const mechanics::GroundFacet<double>& facet);
   void set_facet(std::size_t module, const mechanics::ContactState& state, bool is_held);
 
+  /// Whether anything changed since the last solution; if not, solve() goes on with that system.
+  bool is_new() const { return is_stale_ || !hierarchy_; }
+
   /// Goes on from the present displacements until the error in the energy norm is `tolerance` times
   /// that of the first guess, zero. Returns false if it does not get there. As long as errors are
   /// more than rounding, at least `iteration_count_min` iterations.
