@@ -27,8 +27,10 @@ inline std::vector<base::Cell> cells(const std::string& family, std::size_t size
   return model::family_cells(*found, size);
 }
 
-inline double seconds_since(std::chrono::steady_clock::time_point start) {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+using Clock = std::chrono::steady_clock;
+
+inline double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
 /// Peak memory of this process, MB.
@@ -36,6 +38,11 @@ inline double memory_mb() {
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
   return static_cast<double>(usage.ru_maxrss) / 1024;
+}
+
+/// What a run tells bench/solver.sh.
+inline void print_run(std::size_t count, double seconds, int iterations) {
+  std::printf("%zu %.6f %.1f %d\n", count, seconds, memory_mb(), iterations);
 }
 
 inline std::vector<double> load_ratios(const model::Robot& robot, const Displacement& u) {

@@ -65,7 +65,7 @@ compare() { # FAMILY SIZE
   rm -f "$work"/{ours,peers,reference.bin}
   "$folder/solver_bench" reference "$family" "$size" "$work/reference.bin" || true
   ours "$family" "$size" bonded 2 >"$work/ours"
-  peer "CHOLMOD" "$family" "$size" timeout "$limit_s" "$folder/solver_bench" cholmod "$family" \
+  peer "CHOLMOD" "$family" "$size" timeout "$limit_s" "$folder/cholmod_bench" "$family" \
     "$size" "$work/peer.bin"
   if [ -x "$folder/petsc_bench" ]; then
     for ranks in 1 2; do

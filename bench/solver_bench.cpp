@@ -1,17 +1,12 @@
 // SPDX-FileCopyrightText: The holdfast authors
 // SPDX-License-Identifier: Apache-2.0
-// One structure by one solver; bench/solver.sh calls it again and again and makes the table.
-//   solver_bench holdfast FAMILY SIZE bonded|contact THREADS FILE   cells in memory to all load
-//   ratios solver_bench cholmod FAMILY SIZE FILE                           assembly, factorization,
-//   solve solver_bench reference FAMILY SIZE FILE                         over-converged, error
-//   below 1e-9 solver_bench compare FAMILY SIZE FILE REFERENCE                 largest error of a
-//   load ratio solver_bench bandwidth                                          a triad over memory,
-//   GB/s
+// One structure by our solver; bench/solver.sh calls it again and again and makes the table.
+//   solver_bench holdfast FAMILY SIZE bonded|contact THREADS FILE   cells in memory to load ratios
+//   solver_bench reference FAMILY SIZE FILE                         over-converged
+//   solver_bench compare FAMILY SIZE FILE REFERENCE                 largest error of a load ratio
+//   solver_bench bandwidth                                          a triad over memory, GB/s
 // A run prints: modules seconds MB iterations
-#include <cholmod.h>
-
 #include <cstdlib>
-#include <cstring>
 #include <thread>
 
 #include "holdfast/holdfast.hpp"
@@ -21,17 +16,11 @@
 namespace holdfast::bench {
 namespace {
 
-using Clock = std::chrono::steady_clock;
-
-void print_run(std::size_t count, double seconds, int iterations) {
-  std::printf("%zu %.6f %.1f %d\n", count, seconds, memory_mb(), iterations);
-}
-
 int run_holdfast(const std::string& family, std::size_t size, bool is_bonded, int thread_count,
                  const char* path) {
   model::RobotSpec spec{.existing = cells(family, size)};
   const auto start = Clock::now();
-  const auto robot = model::Robot::create(spec);
+  const auto robot = model::Robot::create(spec, thread_count);
   HOLDFAST_CHECK(robot.has_value());
   const verdict::Assessment assessment =
       verdict::assess(robot.value(), {.is_bonded = is_bonded, .thread_count = thread_count});
@@ -69,73 +58,6 @@ int compare(const std::string& family, std::size_t size, const char* path, const
   return 0;
 }
 
-/// The lower triangle of the bonded stiffness matrix in CHOLMOD's triplet form.
-cholmod_triplet* assemble(const model::Robot& robot, cholmod_common& common) {
-  const auto beam = mechanics::beam_stiffness(model::beam_section(robot.material()));
-  const std::size_t n = robot.modules().size();
-  cholmod_triplet* matrix = cholmod_l_allocate_triplet(
-      6 * n, 6 * n, 21 * n + 20 * robot.connections().size(), -1, CHOLMOD_REAL, &common);
-  auto* rows = static_cast<SuiteSparse_long*>(matrix->i);
-  auto* columns = static_cast<SuiteSparse_long*>(matrix->j);
-  auto* values = static_cast<double*>(matrix->x);
-  const auto add = [&](std::size_t a, std::size_t b, const base::Mat6<double>& block) {
-    for (int row = 0; row < 6; ++row) {
-      for (int column = 0; column < 6; ++column) {
-        const double value = block.at(row, column);
-        if (value != 0 && (a > b || row >= column)) {
-          rows[matrix->nnz] = static_cast<SuiteSparse_long>(6 * a) + row;
-          columns[matrix->nnz] = static_cast<SuiteSparse_long>(6 * b) + column;
-          values[matrix->nnz++] = value;
-        }
-      }
-    }
-  };
-  std::vector<base::Mat6<double>> diagonal(n);
-  for (const model::Connection& pair : robot.connections()) {
-    const auto a = static_cast<std::size_t>(pair.a);
-    const auto b = static_cast<std::size_t>(pair.b);
-    const base::Direction back = base::opposite(pair.direction);
-    base::add_to(diagonal[a], mechanics::block_11(beam, pair.direction));
-    base::add_to(diagonal[b], mechanics::block_11(beam, back));
-    if (a > b) {
-      add(a, b, mechanics::block_12(beam, pair.direction));
-    } else {
-      add(b, a, mechanics::block_12(beam, back));
-    }
-  }
-  for (std::size_t i = 0; i < n; ++i) {
-    if (robot.modules()[i].support == model::Support::kGround) {
-      base::add_to(diagonal[i], mechanics::block_11(beam, base::Direction::kMinusZ));
-    }
-    add(i, i, diagonal[i]);
-  }
-  return matrix;
-}
-
-int run_cholmod(const std::string& family, std::size_t size, const char* path) {
-  const auto robot = model::Robot::create({.existing = cells(family, size)}).value();
-  cholmod_common common;
-  cholmod_l_start(&common);
-  const auto start = Clock::now();
-  cholmod_triplet* triplet = assemble(robot, common);
-  cholmod_sparse* matrix = cholmod_l_triplet_to_sparse(triplet, 0, &common);
-  cholmod_factor* factor = cholmod_l_analyze(matrix, &common);
-  if (cholmod_l_factorize(matrix, factor, &common) == 0 || common.status != CHOLMOD_OK) {
-    return 1;
-  }
-  const std::size_t n = robot.modules().size();
-  cholmod_dense* right = cholmod_l_zeros(6 * n, 1, CHOLMOD_REAL, &common);
-  for (std::size_t i = 0; i < n; ++i) {
-    static_cast<double*>(right->x)[6 * i + 2] = -model::module_weight_n(robot.material());
-  }
-  cholmod_dense* x = cholmod_l_solve(CHOLMOD_A, factor, right, &common);
-  print_run(n, seconds_since(start), 0);
-  Displacement u(n);
-  std::memcpy(u.data(), x->x, n * sizeof u[0]);
-  write_displacement(path, u);
-  return 0;
-}
-
 /// a = b + c * d over much more than the caches hold, on two threads.
 int measure_bandwidth() {
   constexpr std::size_t kCount = 20'000'000;
@@ -160,6 +82,7 @@ int measure_bandwidth() {
 }
 
 int run(int argc, char** argv) {
+  host::use_large_pages();
   const std::string what = argc > 1 ? argv[1] : "";
   if (what == "bandwidth") {
     return measure_bandwidth();
@@ -173,9 +96,6 @@ int run(int argc, char** argv) {
   if (what == "holdfast" && argc == 7) {
     return run_holdfast(family, size, std::string(argv[4]) == "bonded", std::atoi(argv[5]),
                         argv[6]);
-  }
-  if (what == "cholmod") {
-    return run_cholmod(family, size, argv[4]);
   }
   if (what == "reference") {
     return make_reference(family, size, argv[4]);

@@ -36,6 +36,7 @@ int run(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  holdfast::host::use_large_pages();
   try {
     return run(argc, argv);
   } catch (const std::exception& error) {

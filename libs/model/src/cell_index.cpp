@@ -5,8 +5,28 @@
 #include <bit>
 
 namespace holdfast::model {
+namespace {
+
+/// Up to here the table is smaller than the slots would be, or not much larger.
+constexpr std::uint64_t kPlacesPerCell = 16;
+
+std::uint32_t width(std::int32_t low, std::int32_t high) {
+  return static_cast<std::uint32_t>(high - low) + 1;
+}
+
+}  // namespace
 
 CellIndex::CellIndex(std::size_t cell_count_max) : slots_(std::bit_ceil(2 * cell_count_max + 2)) {}
+
+CellIndex::CellIndex(std::size_t cell_count_max, const base::Cell& low, const base::Cell& high)
+    : low_(low), width_({width(low.x, high.x), width(low.y, high.y), width(low.z, high.z)}) {
+  const std::uint64_t places = std::uint64_t{width_[0]} * width_[1] * width_[2];
+  if (places <= kPlacesPerCell * cell_count_max) {
+    table_.assign(places, kNone);
+  } else {
+    *this = CellIndex(cell_count_max);
+  }
+}
 
 std::size_t CellIndex::slot_of(const base::Cell& cell) const {
   std::uint64_t key = static_cast<std::uint32_t>(cell.x);
@@ -22,7 +42,24 @@ std::size_t CellIndex::slot_of(const base::Cell& cell) const {
   return slot;
 }
 
+bool CellIndex::is_inside(const base::Cell& cell) const {
+  return static_cast<std::uint32_t>(cell.x - low_.x) < width_[0] &&
+         static_cast<std::uint32_t>(cell.y - low_.y) < width_[1] &&
+         static_cast<std::uint32_t>(cell.z - low_.z) < width_[2];
+}
+
+std::size_t CellIndex::place_of(const base::Cell& cell) const {
+  const auto x = static_cast<std::size_t>(cell.x - low_.x);
+  const auto y = static_cast<std::size_t>(cell.y - low_.y);
+  const auto z = static_cast<std::size_t>(cell.z - low_.z);
+  return (z * width_[1] + y) * width_[0] + x;
+}
+
 std::int32_t CellIndex::insert(const base::Cell& cell, std::int32_t index) {
+  if (!table_.empty()) {
+    std::int32_t& place = table_[place_of(cell)];
+    return place == kNone ? (place = index, kNone) : place;
+  }
   Slot& slot = slots_[slot_of(cell)];
   if (slot.index == kNone) {
     slot = {cell, index};
@@ -31,6 +68,11 @@ std::int32_t CellIndex::insert(const base::Cell& cell, std::int32_t index) {
   return slot.index;
 }
 
-std::int32_t CellIndex::find(const base::Cell& cell) const { return slots_[slot_of(cell)].index; }
+std::int32_t CellIndex::find(const base::Cell& cell) const {
+  if (!table_.empty()) {
+    return is_inside(cell) ? table_[place_of(cell)] : kNone;
+  }
+  return slots_[slot_of(cell)].index;
+}
 
 }  // namespace holdfast::model

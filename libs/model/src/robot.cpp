@@ -6,8 +6,10 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <numeric>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "holdfast/model/cell_index.hpp"
 
@@ -45,6 +47,18 @@ std::optional<std::string> find_coordinate_fault(std::span<const Cell> cells) {
   return std::nullopt;
 }
 
+CellIndex index_of(const RobotSpec& spec) {
+  Cell low = spec.existing.front();
+  Cell high = low;
+  for (const auto* cells : {&spec.existing, &spec.planned}) {
+    for (const Cell& cell : *cells) {
+      low = {std::min(low.x, cell.x), std::min(low.y, cell.y), std::min(low.z, cell.z)};
+      high = {std::max(high.x, cell.x), std::max(high.y, cell.y), std::max(high.z, cell.z)};
+    }
+  }
+  return {spec.existing.size() + spec.planned.size(), low, high};
+}
+
 /// Puts all cells into the index; existing cells first.
 std::optional<std::string> find_double_cell(const RobotSpec& spec, CellIndex& index) {
   std::int32_t next = 0;
@@ -65,42 +79,70 @@ std::optional<std::string> find_double_cell(const RobotSpec& spec, CellIndex& in
   return std::nullopt;
 }
 
-/// Modules that `first` reaches through connections among the first `count` modules.
-std::vector<bool> reach(std::span<const Robot::Neighbours> neighbours, std::size_t count) {
-  std::vector<bool> is_reached(neighbours.size(), false);
-  std::vector<std::int32_t> open = {0};
-  is_reached[0] = true;
-  while (!open.empty()) {
-    const auto module = static_cast<std::size_t>(open.back());
-    open.pop_back();
-    for (const std::int32_t next : neighbours[module]) {
-      if (next != Robot::kNoNeighbour && static_cast<std::size_t>(next) < count &&
-          !is_reached[static_cast<std::size_t>(next)]) {
-        is_reached[static_cast<std::size_t>(next)] = true;
-        open.push_back(next);
-      }
-    }
+/// Which modules hang together [Galler and Fischer 1964].
+class Parts {
+ public:
+  explicit Parts(std::size_t count) : parent_(count) {
+    std::iota(parent_.begin(), parent_.end(), 0);
   }
-  return is_reached;
-}
 
-std::optional<std::string> find_connection_fault(std::span<const Robot::Neighbours> neighbours,
+  /// The smallest member of the part.
+  std::int32_t find(std::int32_t module) {
+    std::int32_t& parent = parent_[static_cast<std::size_t>(module)];
+    while (parent != parent_[static_cast<std::size_t>(parent)]) {
+      parent = parent_[static_cast<std::size_t>(parent)];
+    }
+    return parent;
+  }
+
+  void join(std::int32_t a, std::int32_t b) {
+    a = find(a);
+    b = find(b);
+    parent_[static_cast<std::size_t>(std::max(a, b))] = std::min(a, b);
+  }
+
+ private:
+  std::vector<std::int32_t> parent_;
+};
+
+std::optional<std::string> find_connection_fault(std::span<const Connection> connections,
                                                  std::span<const Module> modules,
                                                  std::size_t existing_count) {
-  const std::vector<bool> robot = reach(neighbours, existing_count);
-  const auto reached = static_cast<std::size_t>(std::ranges::count(robot, true));
-  if (reached < existing_count) {
-    const auto loose = static_cast<std::size_t>(std::ranges::find(robot, false) - robot.begin());
+  Parts parts(modules.size());
+  const auto is_loose = [&](std::size_t i) {
+    return parts.find(static_cast<std::int32_t>(i)) != 0;
+  };
+  const auto first_planned = static_cast<std::int32_t>(existing_count);
+  for (const Connection& pair : connections) {
+    if (pair.a < first_planned && pair.b < first_planned) {
+      parts.join(pair.a, pair.b);
+    }
+  }
+  std::size_t loose_count = 0;
+  std::size_t loose = 0;
+  for (std::size_t i = existing_count; i-- > 0;) {
+    if (is_loose(i)) {
+      loose = i;
+      ++loose_count;
+    }
+  }
+  if (loose_count > 0) {
     return fmt::format(
         "the robot is not connected: {} of {} modules, {} among them, share no "
         "chain of faces with {}",
-        existing_count - reached, existing_count, text(modules[loose].cell), text(modules[0].cell));
+        loose_count, existing_count, text(modules[loose].cell), text(modules[0].cell));
   }
-  const std::vector<bool> whole = reach(neighbours, modules.size());
-  const auto loose = std::ranges::find(whole, false);
-  if (loose != whole.end()) {
-    return fmt::format("the planned cell {} touches neither the robot nor a planned cell that does",
-                       text(modules[static_cast<std::size_t>(loose - whole.begin())].cell));
+  for (const Connection& pair : connections) {
+    if (pair.a >= first_planned || pair.b >= first_planned) {
+      parts.join(pair.a, pair.b);
+    }
+  }
+  for (std::size_t i = existing_count; i < modules.size(); ++i) {
+    if (is_loose(i)) {
+      return fmt::format(
+          "the planned cell {} touches neither the robot nor a planned cell that does",
+          text(modules[i].cell));
+    }
   }
   return std::nullopt;
 }
@@ -137,7 +179,7 @@ base::Error bad_input(std::string message) {
 
 }  // namespace
 
-base::Result<Robot> Robot::create(const RobotSpec& spec) {
+base::Result<Robot> Robot::create(const RobotSpec& spec, int thread_count) {
   auto fault = find_size_fault(spec);
   for (const auto* cells : {&spec.existing, &spec.planned, &spec.fixed}) {
     if (!fault) {
@@ -148,7 +190,7 @@ base::Result<Robot> Robot::create(const RobotSpec& spec) {
     return bad_input(*fault);
   }
   const std::size_t count = spec.existing.size() + spec.planned.size();
-  CellIndex index(count);
+  CellIndex index = index_of(spec);
   if (fault = find_double_cell(spec, index); fault) {
     return bad_input(*fault);
   }
@@ -173,8 +215,9 @@ base::Result<Robot> Robot::create(const RobotSpec& spec) {
     }
     robot.modules_[static_cast<std::size_t>(fixed)].support = Support::kFixed;
   }
-  robot.connect(index);
-  if (fault = find_connection_fault(robot.neighbours_, robot.modules_, spec.existing.size());
+  host::Team team(thread_count, count);
+  robot.connect(index, team);
+  if (fault = find_connection_fault(robot.connections_, robot.modules_, spec.existing.size());
       !fault) {
     fault = find_support_fault(robot);
   }
@@ -184,19 +227,40 @@ base::Result<Robot> Robot::create(const RobotSpec& spec) {
   return robot;
 }
 
-void Robot::connect(const CellIndex& index) {
+void Robot::connect(const CellIndex& index, host::Team& team) {
   neighbours_.resize(modules_.size());
-  for (std::size_t i = 0; i < modules_.size(); ++i) {
-    ground_count_ += modules_[i].support == Support::kGround ? 1 : 0;
-    fixed_count_ += modules_[i].support == Support::kFixed ? 1 : 0;
-    for (const base::Direction direction : base::kDirections) {
-      const std::int32_t other = index.find(base::neighbour(modules_[i].cell, direction));
-      neighbours_[i][static_cast<std::size_t>(base::index(direction))] = other;
-      if (other != CellIndex::kNone && base::index(direction) % 2 == 0) {
-        connections_.push_back(
-            {.a = static_cast<std::int32_t>(i), .b = other, .direction = direction});
+  std::vector<std::size_t> first;  // Connection of every chunk of modules.
+  team.map(modules_.size(), first, [&](std::size_t begin, std::size_t end) {
+    std::size_t count = 0;
+    for (std::size_t i = begin; i < end; ++i) {
+      for (const base::Direction direction : base::kDirections) {
+        const std::int32_t other = index.find(base::neighbour(modules_[i].cell, direction));
+        neighbours_[i][static_cast<std::size_t>(base::index(direction))] = other;
+        count += other != kNoNeighbour && base::index(direction) % 2 == 0 ? 1 : 0;
       }
     }
+    return count;
+  });
+  std::size_t total = 0;
+  for (std::size_t& count : first) {
+    total += std::exchange(count, total);
+  }
+  connections_.resize(total);
+  team.share(0, modules_.size(), [&](std::size_t begin, std::size_t end) {
+    std::size_t next = first[begin / host::Team::kChunk];
+    for (std::size_t i = begin; i < end; ++i) {
+      for (std::size_t d = 0; d < base::kDirectionCount; d += 2) {
+        if (neighbours_[i][d] != kNoNeighbour) {
+          connections_[next++] = {.a = static_cast<std::int32_t>(i),
+                                  .b = neighbours_[i][d],
+                                  .direction = base::kDirections[d]};
+        }
+      }
+    }
+  });
+  for (const Module& module : modules_) {
+    ground_count_ += module.support == Support::kGround ? 1 : 0;
+    fixed_count_ += module.support == Support::kFixed ? 1 : 0;
   }
 }
 

@@ -51,24 +51,41 @@ TEST(CellIndex, tells_coordinates_and_signs_apart) {
 }
 
 /// Full to the number of cells that it was made for, from dense to scattered.
-TEST(CellIndex, answers_like_a_map) {
+void compare_with_map(std::uint64_t width, CellIndex index) {
   base::Rng rng(1);
+  std::map<Cell, std::int32_t> expected;
+  for (std::int32_t i = 0; expected.size() < 1000; ++i) {
+    const Cell cell = random_cell(rng, width);
+    const auto [place, is_new] = expected.try_emplace(cell, i);
+    EXPECT_EQ(index.insert(cell, i), is_new ? CellIndex::kNone : place->second);
+  }
+  for (const auto& [cell, number] : expected) {
+    EXPECT_EQ(index.find(cell), number);
+  }
+  for (int i = 0; i < 1000; ++i) {
+    const Cell cell = random_cell(rng, width);
+    const auto place = expected.find(cell);
+    EXPECT_EQ(index.find(cell), place == expected.end() ? CellIndex::kNone : place->second);
+  }
+}
+
+TEST(CellIndex, answers_like_a_map) {
   for (const std::uint64_t width : {14U, 40U, 1'999'999U}) {
-    std::map<Cell, std::int32_t> expected;
-    CellIndex index(1000);
-    for (std::int32_t i = 0; expected.size() < 1000; ++i) {
-      const Cell cell = random_cell(rng, width);
-      const auto [place, is_new] = expected.try_emplace(cell, i);
-      EXPECT_EQ(index.insert(cell, i), is_new ? CellIndex::kNone : place->second);
-    }
-    for (const auto& [cell, number] : expected) {
-      EXPECT_EQ(index.find(cell), number);
-    }
-    for (int i = 0; i < 1000; ++i) {
-      const Cell cell = random_cell(rng, width);
-      const auto place = expected.find(cell);
-      EXPECT_EQ(index.find(cell), place == expected.end() ? CellIndex::kNone : place->second);
-    }
+    const auto half = static_cast<std::int32_t>(width / 2);
+    compare_with_map(width, CellIndex(1000));
+    compare_with_map(width, CellIndex(1000, {-half, -half, -half}, {half, half, half}));
+  }
+}
+
+TEST(CellIndex, finds_nothing_outside_its_box) {
+  CellIndex index(27, {-1, 4, 0}, {1, 6, 2});
+  for (std::int32_t i = 0; i < 27; ++i) {
+    index.insert({i % 3 - 1, i / 3 % 3 + 4, i / 9}, i);
+  }
+  EXPECT_EQ(index.find({1, 6, 2}), 26);
+  for (const Cell& cell : {Cell{2, 5, 1}, Cell{-2, 5, 1}, Cell{0, 3, 1}, Cell{0, 7, 1},
+                           Cell{0, 5, -1}, Cell{0, 5, 3}}) {
+    EXPECT_EQ(index.find(cell), CellIndex::kNone);
   }
 }
 

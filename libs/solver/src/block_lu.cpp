@@ -40,7 +40,11 @@ std::vector<std::int32_t> elimination_order(std::size_t node_count, std::span<co
 }  // namespace
 
 BlockLu::BlockLu(std::size_t node_count, std::span<const Edge> edges, std::size_t block_count_max)
-    : edges_(edges.begin(), edges.end()), position_(elimination_order(node_count, edges)) {
+    : edges_(edges.begin(), edges.end()), is_too_large_(edges.size() > block_count_max) {
+  if (is_too_large_) {
+    return;  // Before anything fills in.
+  }
+  position_ = elimination_order(node_count, edges);
   for (Edge& edge : edges_) {
     edge = {position_[static_cast<std::size_t>(edge.a)],
             position_[static_cast<std::size_t>(edge.b)]};

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <set>
 #include <utility>
 
@@ -33,10 +34,12 @@ constexpr std::size_t kDirectFillMax = 7;
 /// What one block of the factorization takes, upper and lower.
 constexpr std::size_t kBlockBytes = 2 * sizeof(Mat6<double>) + 24;
 
-/// Multigrid's error while contact states are sought, as a share of the first, where they are
-/// unique. The regularised law may have several answers, and the one meant is that of Newton's
-/// path, so each step of it must be exact.
+/// Multigrid's error while contact states are sought, as a share of the first. The regularised law
+/// may have several answers, and the one meant is that of Newton's path: where a facet is so near
+/// to another state that the error could decide, that step must be exact.
 constexpr double kLooseTolerance = 1e-3;
+constexpr double kPathTolerance = 3e-5;
+constexpr double kClearShare = 0.05;
 
 /// The solution that is compared with the last one is so much farther from convergence.
 constexpr double kAlternativeFactor = 10;
@@ -211,8 +214,7 @@ Equilibrium EquilibriumSolver::solve(const ContactOptions& contact) {
 Outcome EquilibriumSolver::iterate(Equilibrium& result) {
   const bool is_linear = options_.is_bonded || facets_.empty();
   const double tight = kAlternativeFactor * options_.tolerance;
-  const bool has_one_answer = !is_linear && result.law == ContactLaw::kUnilateral;
-  tolerance_ = has_one_answer ? std::max(tight, kLooseTolerance) : tight;
+  tolerance_ = is_linear ? tight : std::max(tight, kLooseTolerance);
   Outcome outcome = Outcome::kSettled;
   if (is_linear) {
     outcome = solve_linear(result) ? Outcome::kSettled : Outcome::kSingular;
@@ -226,7 +228,7 @@ Outcome EquilibriumSolver::iterate(Equilibrium& result) {
 /// Once the states hold still: whether the solution is good enough to say so. If not, it will be.
 bool EquilibriumSolver::is_tight_now() {
   const double tight = kAlternativeFactor * options_.tolerance;
-  return !multigrid_ || std::exchange(tolerance_, tight) == tight;
+  return !multigrid_ || std::exchange(tolerance_, std::min(tolerance_, tight)) <= tight;
 }
 
 void EquilibriumSolver::set_tangent(const Facet& facet) {
@@ -270,6 +272,24 @@ std::vector<ContactState> EquilibriumSolver::states_at(const std::vector<Vec>& d
   return states;
 }
 
+/// Whether every facet's state would be the same with a little more or less pressure.
+bool EquilibriumSolver::are_states_clear(const std::vector<Vec>& displacement) const {
+  double largest = 0;
+  for (const Facet& facet : facets_) {
+    const Vec force = mechanics::trial_force(ground_, displacement[facet.module]);
+    largest = std::max(largest, std::abs(force[2]));
+  }
+  return std::ranges::all_of(facets_, [&](const Facet& facet) {
+    Vec more = mechanics::trial_force(ground_, displacement[facet.module]);
+    Vec less = more;
+    const double bending = (std::abs(more[3]) + std::abs(more[4])) / ground_.half_width;
+    const double margin = kClearShare * (std::abs(more[2]) + bending + kClearShare * largest);
+    more[2] -= margin;
+    less[2] += margin;
+    return mechanics::contact_state(ground_, more) == mechanics::contact_state(ground_, less);
+  });
+}
+
 /// From one vector per node to one per module; fixed modules get zero.
 std::vector<Vec6<double>> EquilibriumSolver::by_module(const std::vector<Vec>& by_node) const {
   std::vector<Vec> vectors(node_of_module_.size(), Vec{});
@@ -283,7 +303,7 @@ std::vector<Vec6<double>> EquilibriumSolver::by_module(const std::vector<Vec>& b
 
 /// Displacements for the present states, under the weight.
 bool EquilibriumSolver::solve_linear(Equilibrium& result) {
-  ++result.steps;
+  result.steps += multigrid_ && !multigrid_->is_new() ? 0 : 1;
   if (multigrid_) {
     if (!multigrid_->solve(tolerance_)) {
       return false;
@@ -305,6 +325,10 @@ Outcome EquilibriumSolver::iterate_regularised(Equilibrium& result) {
   for (int step = 0; step < options_.step_count_max; ++step) {
     if (!solve_linear(result)) {
       return Outcome::kSingular;
+    }
+    if (multigrid_ && tolerance_ > kPathTolerance && !are_states_clear(result.displacement)) {
+      tolerance_ = kPathTolerance;
+      continue;
     }
     const std::vector<ContactState> states = states_at(result.displacement);
     if (!set_states(states)) {
@@ -413,7 +437,8 @@ std::vector<Vec6<double>> EquilibriumSolver::internal_force(
 void EquilibriumSolver::finish(Equilibrium& result) {
   if (multigrid_) {
     result.alternative = std::move(result.displacement);
-    if (!multigrid_->solve(options_.tolerance)) {
+    // One iteration at least: else the two answers are the same, and say nothing about the error.
+    if (!multigrid_->solve(options_.tolerance, 1)) {
       result.outcome = Outcome::kTooSlow;
       return;
     }

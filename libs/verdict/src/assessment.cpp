@@ -6,8 +6,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
+#include "holdfast/host/team.hpp"
 #include "holdfast/mechanics/connector.hpp"
 #include "holdfast/mechanics/support_corners.hpp"
 
@@ -50,7 +52,7 @@ ConnectionResult connection_result(const model::Material& material, base::Direct
       .load_ratio = mechanics::load_ratio(load, material.facet_mm, strength_n(material, direction)),
       .axial_n = load.axial,
       .bending_nmm = load.bending,
-      .shear_n = std::hypot(middle[0], middle[1]),
+      .shear_n = std::sqrt(middle[0] * middle[0] + middle[1] * middle[1]),
       .torsion_nmm = middle[5]};
 }
 
@@ -59,47 +61,86 @@ double max_or_nan(double a, double b) { return std::isnan(a) || a > b ? a : b; }
 
 bool is_nan(const LoadRange& range) { return std::isnan(range.low) || std::isnan(range.high); }
 
-/// Sec. III-D for every connection.
-void assess_connections(const model::Robot& robot, Assessment& assessment) {
+/// What some connections in a row say together.
+struct Loads {
+  LoadRange range = {.low = -std::numeric_limits<double>::infinity(),
+                     .high = -std::numeric_limits<double>::infinity()};
+  double ratio_max = -std::numeric_limits<double>::infinity();
+  std::size_t worst = 0;
+  std::vector<std::size_t> broken;
+
+  void add(std::size_t connection, double ratio, double other_ratio) {
+    const auto [low, high] = std::minmax(ratio, other_ratio);
+    range = {.low = max_or_nan(range.low, low), .high = max_or_nan(range.high, high)};
+    if (ratio > ratio_max) {
+      ratio_max = ratio;
+      worst = connection;
+    }
+    if (breaks(ratio)) {
+      broken.push_back(connection);
+    }
+  }
+
+  void add(const Loads& next) {
+    range = {.low = max_or_nan(range.low, next.range.low),
+             .high = max_or_nan(range.high, next.range.high)};
+    if (next.ratio_max > ratio_max) {
+      ratio_max = next.ratio_max;
+      worst = next.worst;
+    }
+    broken.insert(broken.end(), next.broken.begin(), next.broken.end());
+  }
+};
+
+/// Every connection's result, and what they say together.
+Loads add_up(const model::Robot& robot, int thread_count, Assessment& assessment) {
   const model::Material& material = robot.material();
   const auto beam = mechanics::beam_stiffness(model::beam_section(material));
   const auto connections = robot.connections();
   const Equilibrium& equilibrium = assessment.equilibrium;
-  assessment.connections.reserve(connections.size());
-  for (std::size_t i = 0; i < connections.size(); ++i) {
-    const model::Connection& pair = connections[i];
-    const auto result_at = [&](const std::vector<base::Vec6<double>>& u) {
-      return connection_result(
-          material, pair.direction,
-          mechanics::middle_force(beam, pair.direction, u[static_cast<std::size_t>(pair.a)],
-                                  u[static_cast<std::size_t>(pair.b)]));
-    };
-    const ConnectionResult result = result_at(equilibrium.displacement);
-    const double other_ratio = result_at(equilibrium.alternative).load_ratio;
-    assessment.connections.push_back(result);
-    const auto [low, high] = std::minmax(result.load_ratio, other_ratio);
-    LoadRange& range = assessment.load_ratio_range;
-    range.low = i == 0 ? low : max_or_nan(range.low, low);
-    range.high = i == 0 ? high : max_or_nan(range.high, high);
-    if (!assessment.worst || result.load_ratio > *assessment.load_ratio_max) {
-      assessment.worst = i;
-      assessment.load_ratio_max = result.load_ratio;
+  assessment.connections.resize(connections.size());
+  host::Team team(thread_count, connections.size());
+  std::vector<Loads> parts;
+  team.map(connections.size(), parts, [&](std::size_t begin, std::size_t end) {
+    Loads part;
+    for (std::size_t i = begin; i < end; ++i) {
+      const model::Connection& pair = connections[i];
+      const auto result_at = [&](const std::vector<base::Vec6<double>>& u) {
+        return connection_result(
+            material, pair.direction,
+            mechanics::middle_force(beam, pair.direction, u[static_cast<std::size_t>(pair.a)],
+                                    u[static_cast<std::size_t>(pair.b)]));
+      };
+      assessment.connections[i] = result_at(equilibrium.displacement);
+      part.add(i, assessment.connections[i].load_ratio,
+               result_at(equilibrium.alternative).load_ratio);
     }
-    if (breaks(result.load_ratio)) {
-      assessment.broken.push_back(i);
-    }
+    return part;
+  });
+  Loads all;
+  for (const Loads& part : parts) {
+    all.add(part);
   }
+  return all;
+}
+
+/// Sec. III-D for every connection.
+void assess_connections(const model::Robot& robot, int thread_count, Assessment& assessment) {
+  if (robot.connections().empty()) {
+    return;
+  }
+  Loads loads = add_up(robot, thread_count, assessment);
+  assessment.load_ratio_range = loads.range;
+  assessment.broken = std::move(loads.broken);
   std::ranges::stable_sort(assessment.broken, std::greater<>(),
                            [&](std::size_t i) { return assessment.connections[i].load_ratio; });
-  if (is_nan(assessment.load_ratio_range)) {
-    assessment.worst.reset();
-    assessment.load_ratio_max.reset();
+  if (is_nan(loads.range)) {
+    return;
   }
-  if (assessment.worst && *assessment.load_ratio_max < kLoadRatioTie) {
-    assessment.worst.reset();
-  }
-  if (assessment.worst) {
-    assessment.weight_factor = 1 / *assessment.load_ratio_max;
+  assessment.load_ratio_max = loads.ratio_max;
+  if (loads.ratio_max >= kLoadRatioTie) {
+    assessment.worst = loads.worst;
+    assessment.weight_factor = 1 / loads.ratio_max;
   }
 }
 
@@ -119,6 +160,9 @@ constexpr double kTopplingGammas[] = {1e-6, 1e-7};
 /// From here on a robot that topples is told from the rigid body alone, which is certain: its
 /// equilibrium is that of the weak springs it would hang on, a large and almost singular problem.
 constexpr std::size_t kTopplingCountMax = 1000;
+
+/// A verdict that hangs on multigrid's error is sought once more with so much less of it.
+constexpr double kFinerTolerance = 1e-3;
 
 bool agrees(const Assessment& assessment) {
   return assessment.model.is_settled && assessment.model.is_stable == assessment.is_stable;
@@ -275,9 +319,9 @@ Assessment begin(const model::Robot& robot) {
 }
 
 /// Loads, verdict and reasons, once there is an equilibrium.
-Assessment conclude(const model::Robot& robot, Assessment assessment) {
+Assessment conclude(const model::Robot& robot, Assessment assessment, int thread_count) {
   if (assessment.equilibrium.outcome == Outcome::kSettled) {
-    assess_connections(robot, assessment);
+    assess_connections(robot, thread_count, assessment);
   }
   if (assessment.is_stable) {
     decide_stable(robot, assessment);
@@ -289,13 +333,34 @@ Assessment conclude(const model::Robot& robot, Assessment assessment) {
   return assessment;
 }
 
-}  // namespace
-
-Assessment assess(const model::Robot& robot, const solver::EquilibriumOptions& options) {
+Assessment assess_once(const model::Robot& robot, const solver::EquilibriumOptions& options) {
   Assessment assessment = begin(robot);
   assessment.is_stable = assessment.is_stable || options.is_bonded;
   find_equilibrium(robot, options, assessment);
-  return conclude(robot, std::move(assessment));
+  return conclude(robot, std::move(assessment), options.thread_count);
+}
+
+/// So near to breaking that multigrid's error would decide.
+bool is_too_coarse(const Assessment& assessment) {
+  return assessment.is_stable && assessment.equilibrium.outcome == Outcome::kSettled &&
+         assessment.equilibrium.method == solver::Method::kMultigrid &&
+         assessment.equilibrium.open_but_held_count == 0 &&
+         breaks(assessment.load_ratio_range.low) != breaks(assessment.load_ratio_range.high);
+}
+
+}  // namespace
+
+Assessment assess(const model::Robot& robot, const solver::EquilibriumOptions& options) {
+  Assessment assessment = assess_once(robot, options);
+  if (is_too_coarse(assessment)) {
+    solver::EquilibriumOptions finer = options;
+    finer.tolerance *= kFinerTolerance;
+    Assessment second = assess_once(robot, finer);
+    if (second.equilibrium.outcome == Outcome::kSettled) {
+      return second;
+    }
+  }
+  return assessment;
 }
 
 Assessment assess_equilibrium(const model::Robot& robot, Equilibrium equilibrium) {
@@ -303,7 +368,7 @@ Assessment assess_equilibrium(const model::Robot& robot, Equilibrium equilibrium
   assessment.equilibrium = std::move(equilibrium);
   assessment.model = model_stability(robot, assessment.equilibrium);
   assessment.contact_model = contact_model(robot, assessment.equilibrium.law);
-  return conclude(robot, std::move(assessment));
+  return conclude(robot, std::move(assessment), 0);
 }
 
 const char* name(Verdict verdict) {

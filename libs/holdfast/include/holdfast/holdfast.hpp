@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "holdfast/host/large_pages.hpp"
 #include "holdfast/io/document.hpp"
 #include "holdfast/io/picture.hpp"
 #include "holdfast/io/report.hpp"

@@ -47,10 +47,10 @@ struct Signature {
     b ^= b >> 29U;
   }
 
-  void add(const Point& point) {
-    for (const double x : point) {
-      add(std::bit_cast<std::uint64_t>(x + 0.0));
-    }
+  /// Two coordinates that single precision holds.
+  void add(double x, double y) {
+    add(std::uint64_t{std::bit_cast<std::uint32_t>(static_cast<float>(x + 0.0))} << 32U |
+        std::bit_cast<std::uint32_t>(static_cast<float>(y + 0.0)));
   }
 
   friend bool operator==(const Signature&, const Signature&) = default;
@@ -275,11 +275,17 @@ class Coarsening {
 
   static Signature sign(const std::vector<Part>& parts) {
     Signature signature;
+    std::uint32_t target_count = 0;
     for (const Part& part : parts) {
       signature.add(std::uint64_t{part.spring} << 32U | part.target);
-      signature.add(part.offset);
-      signature.add(part.far_offset);
-      signature.add(part.partner);
+      signature.add(part.offset[0], part.offset[1]);
+      signature.add(part.offset[2], part.far_offset[0]);
+      signature.add(part.far_offset[1], part.far_offset[2]);
+      if (part.target == target_count) {  // Met for the first time.
+        ++target_count;
+        signature.add(part.partner[0], part.partner[1]);
+        signature.add(part.partner[2], 0);
+      }
     }
     return signature;
   }
@@ -346,7 +352,7 @@ class Coarsening {
     std::vector<std::int32_t> examples;
     std::uint32_t spring_count = 0;
     for (std::size_t c = 0; c < cluster_count_; ++c) {
-      const auto [found, is_new] = known.emplace(signatures[c], spring_count);
+      const auto [found, is_new] = known.try_emplace(signatures[c], spring_count);
       coarse_.pattern[c] = found->second;
       if (is_new) {
         examples.push_back(static_cast<std::int32_t>(c));

@@ -6,13 +6,15 @@
 #include <cstdint>
 #include <vector>
 
+#include "holdfast/host/team.hpp"
 #include "level.hpp"
 #include "network.hpp"
 #include "springs.hpp"
-#include "team.hpp"
 
 /// From one level to the next coarser one.
 namespace holdfast::solver {
+
+using host::Team;
 
 /// A spring as its node sees it.
 struct Spring {

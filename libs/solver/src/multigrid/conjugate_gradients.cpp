@@ -9,6 +9,9 @@ namespace {
 /// third saves few.
 constexpr int kSweepCount = 2;
 
+/// An error so far below the one sought, both squared, may be rounding, which no step improves.
+constexpr double kRounding = 0.01;
+
 }  // namespace
 
 ConjugateGradients::ConjugateGradients(Hierarchy& hierarchy, Team& team, std::size_t node_count)
@@ -69,36 +72,55 @@ double ConjugateGradients::begin() {
   return error_;
 }
 
+/// q = K p; returns p . q.
+double ConjugateGradients::multiply() {
+  return team_.sum(node_count_, [&](std::size_t begin, std::size_t end) {
+    return kernels().apply(hierarchy_.lattice(), p_.data(), q_.data(), {begin, end});
+  });
+}
+
+/// x += step p, r -= step q
+void ConjugateGradients::advance(double step) {
+  Level& finest = hierarchy_.levels().front();
+  team_.share(0, node_count_, [&](std::size_t begin, std::size_t end) {
+    kernels().advance(step, p_.data(), q_.data(), x_.data(), r_.data(), finest.r.data(),
+                      {begin, end});
+  });
+  ++iteration_count_;
+}
+
+bool ConjugateGradients::is_reached(const Goal& goal, int iteration) const {
+  const bool may_stop = iteration >= goal.iteration_count_min || error_ <= kRounding * goal.error;
+  return error_ <= goal.error && may_stop;
+}
+
+void ConjugateGradients::tell() const {
+  if (progress) {
+    progress(iteration_count_, error_);
+  }
+}
+
 // x, r, q: displacement, residual, K p;  p, z: direction, preconditioned residual (single
 // precision)
-ConjugateGradients::End ConjugateGradients::run(double target, int iteration_count_max) {
-  const Kernels& kernel = kernels();
-  Level& finest = hierarchy_.levels().front();
-  for (int iteration = 0; error_ > target; ++iteration) {
-    if (iteration == iteration_count_max) {
+ConjugateGradients::End ConjugateGradients::run(const Goal& goal) {
+  const std::vector<Six>& z = hierarchy_.levels().front().z;
+  for (int iteration = 0; !is_reached(goal, iteration); ++iteration) {
+    if (iteration == goal.iteration_count_max) {
       return End::kTooSlow;
     }
-    const double curvature = team_.sum(node_count_, [&](std::size_t begin, std::size_t end) {
-      return kernel.apply(hierarchy_.lattice(), p_.data(), q_.data(), {begin, end});
-    });
+    const double curvature = multiply();
     if (!(curvature > 0)) {
       return End::kBroken;
     }
     const double step = error_ / curvature;
-    team_.share(0, node_count_, [&](std::size_t begin, std::size_t end) {
-      kernel.advance(step, p_.data(), q_.data(), x_.data(), r_.data(), finest.r.data(),
-                     {begin, end});
-    });
-    ++iteration_count_;
+    advance(step);
     const double error = precondition();
     const double turn = -step * dot_with_z(q_) / error_;  // z (r_new - r_old) / z_old r_old
     error_ = error;
     team_.share(0, node_count_, [&](std::size_t begin, std::size_t end) {
-      kernel.combine(1, finest.z.data(), static_cast<float>(turn), p_.data(), {begin, end});
+      kernels().combine(1, z.data(), static_cast<float>(turn), p_.data(), {begin, end});
     });
-    if (progress) {
-      progress(iteration_count_, error_);
-    }
+    tell();
   }
   return error_ >= 0 ? End::kConverged : End::kBroken;
 }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <functional>
+#include <span>
 #include <vector>
 
 #include "cycle.hpp"
@@ -11,6 +12,12 @@
 /// in double precision; search directions in single precision, but what they do to x and r is
 /// computed from the same rounded direction in double precision, so x and r never part.
 namespace holdfast::solver {
+
+/// What a matrix A has at a node that K has not.
+struct NodeTerm {
+  std::int32_t node = 0;
+  Mat difference;
+};
 
 class ConjugateGradients {
  public:
@@ -32,8 +39,21 @@ class ConjugateGradients {
   /// x in the energy norm.
   double begin();
 
-  /// After begin(): improves x until that estimate is at most `target`.
-  End run(double target, int iteration_count_max);
+  /// Until when to iterate.
+  struct Goal {
+    double error = 0;             ///< Of the estimate r . M^-1 r.
+    int iteration_count_min = 0;  ///< Unless the error is far below that already.
+    int iteration_count_max = 0;
+  };
+
+  /// After begin(), or to go on with another goal: improves x.
+  End run(const Goal& goal);
+
+  /// The same for a matrix A = K + terms that is not symmetric, by full orthogonalization
+  /// [Saad 1981]: r is kept orthogonal to all directions so far, as conjugate gradients do by
+  /// themselves. (To make r smallest instead, as GMRES does, would need directions in double
+  /// precision: r counts every rounding error of a stiff lattice.)
+  End run_unsymmetric(const Goal& goal, std::span<const NodeTerm> terms);
 
   int iteration_count() const { return iteration_count_; }
 
@@ -41,9 +61,22 @@ class ConjugateGradients {
   std::function<void(int, double)> progress;
 
  private:
+  /// One that A made unsymmetric runs remember.
+  struct Direction {
+    std::vector<Six> p;
+    std::vector<double> image;  ///< A^T p
+    double curvature = 0;       ///< p . A p
+  };
+
+  bool is_reached(const Goal& goal, int iteration) const;
   double precondition();
+  double multiply();
+  void advance(double step);
+  void tell() const;
   double dot_with_z(const std::vector<double>& a);
   void round_residual();
+  void turn_away_from_older();
+  double remember_direction(std::span<const NodeTerm> terms);
 
   Hierarchy& hierarchy_;
   Team& team_;
@@ -53,6 +86,7 @@ class ConjugateGradients {
   std::vector<double> r_;
   std::vector<double> q_;
   std::vector<Six> p_;
+  std::vector<Direction> older_;
   double error_ = 0;
   int iteration_count_ = 0;
 };

@@ -21,6 +21,9 @@ constexpr std::size_t kRow = kBeamLengthMax + 1;
 /// A level this small is factorized whatever its shape: it costs nothing.
 constexpr std::size_t kCoarsestCount = 48;
 
+/// Where nodes have more neighbours than this on average, too many blocks fill in.
+constexpr std::size_t kThinDegree = 3;
+
 std::size_t at(std::int32_t index) { return static_cast<std::size_t>(index); }
 
 /// Which displacement bends with which on a beam along an axis; see kernel_loops.hpp.
@@ -97,25 +100,34 @@ std::vector<std::pair<std::size_t, Mat>> anchored_sums(const Stage& stage) {
   return sums;
 }
 
-/// The whole level as a sparse matrix in double precision.
-std::optional<BlockLu> factorize(const Stage& stage, std::size_t block_count_max) {
-  std::vector<Edge> edges;
-  std::vector<Mat> blocks;
+/// Calls f(node, other, spring) for every spring once.
+template <class F>
+void for_springs(const Stage& stage, const F& f) {
   for (std::size_t node = 0; node < stage.order.size(); ++node) {
-    for (std::size_t e = at(stage.start[node]); e < at(stage.start[node + 1]); ++e) {
+    const std::size_t start = at(stage.start[node]);
+    for (std::size_t e = start; e < at(stage.start[node + 1]); ++e) {
       if (at(stage.other[e]) > node) {
-        edges.push_back({static_cast<std::int32_t>(node), stage.other[e]});
-        blocks.push_back(coupling(stage.springs[stage.pattern[node] + e - at(stage.start[node])]));
+        f(static_cast<std::int32_t>(node), stage.other[e],
+          stage.springs[stage.pattern[node] + e - start]);
       }
     }
   }
+}
+
+/// The whole level as a sparse matrix in double precision.
+std::optional<BlockLu> factorize(const Stage& stage, std::size_t block_count_max) {
+  std::vector<Edge> edges;
+  for_springs(stage, [&](std::int32_t a, std::int32_t b, const Spring&) {
+    edges.push_back({a, b});
+  });
   BlockLu lu(stage.order.size(), edges, block_count_max);
   if (lu.is_too_large()) {
     return std::nullopt;
   }
-  for (std::size_t e = 0; e < edges.size(); ++e) {
-    lu.set_edge(e, blocks[e]);
-  }
+  std::size_t edge = 0;
+  for_springs(stage, [&](std::int32_t, std::int32_t, const Spring& spring) {
+    lu.set_edge(edge++, coupling(spring));
+  });
   for (std::size_t node = 0; node < stage.order.size(); ++node) {
     lu.set_diagonal(node, spring_sum(stage, node));
   }
@@ -162,15 +174,17 @@ void fill_vectors(Level& level) {
 }  // namespace
 
 /// The finest level: nodes of the same kind with partners on the same sides share their springs.
-void Hierarchy::fill_stage(Stage& stage) const {
+void Hierarchy::fill_stage(Team& team, Stage& stage) const {
   const std::size_t count = network_.node_count;
   stage.order = network_.order;
   stage.key.resize(count);
   stage.place.resize(count);
-  for (std::size_t i = 0; i < count; ++i) {
-    stage.key[at(network_.order[i])] = network_.key[i];
-    stage.place[at(network_.order[i])] = place_of(network_.key[i], material_.pitch_mm);
-  }
+  team.share(0, count, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      stage.key[at(network_.order[i])] = network_.key[i];
+      stage.place[at(network_.order[i])] = place_of(network_.key[i], material_.pitch_mm);
+    }
+  });
   stage.start.resize(count + 1);
   stage.other.reserve(6 * count);
   stage.pattern.resize(count);
@@ -202,8 +216,8 @@ void Hierarchy::fill_stage(Stage& stage) const {
                                .stiffness = ground_(network_.kind[node][kContactByte])});
     }
     stage.start[node + 1] = static_cast<std::int32_t>(stage.other.size());
-    const auto [found, is_new] = patterns.emplace(std::bit_cast<std::uint64_t>(kind),
-                                                  static_cast<std::uint32_t>(stage.springs.size()));
+    const auto [found, is_new] = patterns.try_emplace(
+        std::bit_cast<std::uint64_t>(kind), static_cast<std::uint32_t>(stage.springs.size()));
     stage.pattern[node] = found->second;
     for (std::size_t d = 0; is_new && d < 6; ++d) {
       if (kind[d] > 0) {
@@ -253,7 +267,7 @@ void Hierarchy::update_types() {
   for (std::size_t node = 0; node < network_.node_count; ++node) {
     const auto kind = std::bit_cast<std::uint64_t>(network_.kind[node]);
     const auto [found, is_new] =
-        type_of_kind_.emplace(kind, static_cast<std::uint32_t>(type_of_kind_.size()));
+        type_of_kind_.try_emplace(kind, static_cast<std::uint32_t>(type_of_kind_.size()));
     level.type[node] = found->second;
     if (is_new) {
       const Mat sum = diagonal(network_.kind[node]);
@@ -293,7 +307,7 @@ void Hierarchy::add_level(const Stage& stage, std::vector<std::size_t> colour_st
     for (std::size_t e = start; e < at(stage.start[node + 1]); ++e) {
       level.block[e] = block_of_spring[stage.pattern[node] + e - start];
     }
-    const auto [found, is_new] = type_of_pattern.emplace(
+    const auto [found, is_new] = type_of_pattern.try_emplace(
         stage.pattern[node], static_cast<std::uint32_t>(type_of_pattern.size()));
     level.type[node] = found->second;
   }
@@ -331,7 +345,7 @@ Hierarchy::Hierarchy(const Network& network, const model::Material& material, Te
     : network_(network), material_(material), ground_(std::move(ground)) {
   make_lattice();
   Stage stage;
-  fill_stage(stage);
+  fill_stage(team, stage);
   while (!coarsest_) {
     Stage coarse;
     std::vector<std::size_t> colour_start;
@@ -342,7 +356,8 @@ Hierarchy::Hierarchy(const Network& network, const model::Material& material, Te
     add_level(stage, std::move(colour_start));
     const std::size_t count = stage.order.size();
     const bool is_small = count <= kCoarsestCount;
-    if (is_small || count < network_.node_count / 4) {
+    const bool is_thin = stage.other.size() <= kThinDegree * count;
+    if (is_small || (is_thin && count < network_.node_count / 4)) {
       coarsest_ = factorize(stage, is_small ? count * count : 2 * count);
     }
     if (is_small) {

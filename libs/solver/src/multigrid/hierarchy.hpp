@@ -48,7 +48,7 @@ class Hierarchy {
 
  private:
   void make_lattice();
-  void fill_stage(Stage& stage) const;
+  void fill_stage(Team& team, Stage& stage) const;
   Mat diagonal(const Kind& kind) const;
   void add_level(const Stage& stage, std::vector<std::size_t> colour_start);
 

@@ -13,10 +13,6 @@ using mechanics::ContactState;
 
 constexpr int kIterationMax = 500;
 
-/// Corrections for tangents that are not symmetric, each to a tenth of the error before it.
-constexpr int kCorrectionMax = 60;
-constexpr double kCorrectionShare = 0.1;
-
 /// With up to this share of changed facets the coarse levels stay as they are: they need not know
 /// of every facet to be good, and making them anew costs as much as some iterations.
 constexpr double kChangedShareMax = 0.02;
@@ -51,8 +47,8 @@ ContactState state_of(std::uint8_t code) {
 Multigrid::Multigrid(const model::Robot& robot, int thread_count,
                      std::function<void(int, double)> progress)
     : robot_(robot),
-      team_(thread_count),
-      network_(make_network(robot)),
+      team_(thread_count, robot.modules().size()),
+      network_(make_network(robot, team_)),
       weight_({0, 0, -model::module_weight_n(robot.material()), 0, 0, 0}),
       facet_of_module_(robot.ground_count() > 0 ? robot.modules().size() : 0, -1),
       progress_(std::move(progress)) {
@@ -131,10 +127,12 @@ void Multigrid::update_hierarchy() {
 void Multigrid::compute_residual() {
   std::vector<double>& r = gradients_->r();
   std::vector<double>& x = gradients_->x();
-  for (std::size_t node = 0; node < network_.node_count; ++node) {
-    const Vec& load = network_.load.empty() ? weight_ : network_.load[at(network_.module[node])];
-    std::copy(load.begin(), load.end(), r.begin() + static_cast<std::ptrdiff_t>(6 * node));
-  }
+  team_.share(0, network_.node_count, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t node = begin; node < end; ++node) {
+      const Vec& load = network_.load.empty() ? weight_ : network_.load[at(network_.module[node])];
+      std::copy(load.begin(), load.end(), r.begin() + static_cast<std::ptrdiff_t>(6 * node));
+    }
+  });
   if (reference_ > 0) {
     gradients_->subtract_product();
   }
@@ -151,53 +149,61 @@ void Multigrid::compute_residual() {
   }
 }
 
-bool Multigrid::is_symmetric() const {
-  return ground_.law == mechanics::ContactLaw::kUnilateral ||
-         std::ranges::none_of(facets_, [](const Facet& facet) {
-           return facet.state.tilt_x != 0 || facet.state.tilt_y != 0;
-         });
+/// What the contact's tangent has beyond the symmetric stand-in for it.
+std::vector<NodeTerm> Multigrid::unsymmetric_terms() const {
+  std::vector<NodeTerm> terms;
+  for (const Facet& facet : facets_) {
+    if (ground_.law == mechanics::ContactLaw::kRegularised &&
+        (facet.state.tilt_x != 0 || facet.state.tilt_y != 0)) {
+      Mat difference = mechanics::contact_tangent(ground_, facet.state, facet.is_held);
+      base::add_to(difference, scaled(tangent(facet.code), -1));
+      terms.push_back({.node = facet.node, .difference = difference});
+    }
+  }
+  return terms;
 }
 
-bool Multigrid::solve(double tolerance) {
+/// Takes up changed facets. What has not changed since the last solution goes on from there.
+void Multigrid::begin() {
+  if (!is_new()) {
+    return;
+  }
+  update_hierarchy();
+  compute_residual();
+  const double error = gradients_->begin();
+  if (reference_ == 0) {
+    reference_ = error;
+  }
+  is_stale_ = false;
+}
+
+bool Multigrid::solve(double tolerance, int iteration_count_min) {
   if (network_.node_count == 0) {
     return true;
   }
-  if (is_stale_ || !hierarchy_) {
-    update_hierarchy();
-    is_stale_ = false;
-  }
-  const bool is_symmetric = this->is_symmetric();
-  for (int correction = 0; correction < kCorrectionMax; ++correction) {
-    compute_residual();
-    const int before = gradients_->iteration_count();
-    const double start = gradients_->begin();
-    if (reference_ == 0) {
-      reference_ = start;
-    }
-    const double target = tolerance * tolerance * reference_;
-    const double share = is_symmetric ? 0 : kCorrectionShare * kCorrectionShare * start;
-    const auto end = gradients_->run(std::max(target, share), kIterationMax);
-    iteration_count_ += gradients_->iteration_count() - before;
-    if (end != ConjugateGradients::End::kConverged) {
-      return false;
-    }
-    if (is_symmetric || start <= target) {
-      return true;
-    }
-  }
-  return false;
+  begin();
+  const int before = gradients_->iteration_count();
+  const ConjugateGradients::Goal goal = {.error = tolerance * tolerance * reference_,
+                                         .iteration_count_min = iteration_count_min,
+                                         .iteration_count_max = kIterationMax};
+  const std::vector<NodeTerm> terms = unsymmetric_terms();
+  const auto end = terms.empty() ? gradients_->run(goal) : gradients_->run_unsymmetric(goal, terms);
+  iteration_count_ += gradients_->iteration_count() - before;
+  return end == ConjugateGradients::End::kConverged;
 }
 
-std::vector<base::Vec6<double>> Multigrid::displacement() const {
+std::vector<base::Vec6<double>> Multigrid::displacement() {
   std::vector<Vec> by_module(robot_.modules().size());
   if (gradients_) {
-    const std::vector<double>& x = std::as_const(*gradients_).x();
-    for (std::size_t node = 0; node < network_.node_count; ++node) {
-      std::copy_n(x.begin() + static_cast<std::ptrdiff_t>(6 * node), 6,
-                  by_module[at(network_.module[node])].begin());
-    }
+    const std::vector<double>& x = gradients_->x();
+    team_.share(0, network_.node_count, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t node = begin; node < end; ++node) {
+        std::copy_n(x.begin() + static_cast<std::ptrdiff_t>(6 * node), 6,
+                    by_module[at(network_.module[node])].begin());
+      }
+    });
   }
-  recover(robot_, network_, by_module);
+  recover(robot_, network_, team_, by_module);
   return by_module;
 }
 

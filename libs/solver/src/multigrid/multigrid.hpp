@@ -30,12 +30,16 @@ class Multigrid {
   void set_law(const mechanics::GroundFacet<double>& facet);
   void set_facet(std::size_t module, const mechanics::ContactState& state, bool is_held);
 
+  /// Whether anything changed since the last solution; if not, solve() goes on with that system.
+  bool is_new() const { return is_stale_ || !hierarchy_; }
+
   /// Goes on from the present displacements until the error in the energy norm is `tolerance` times
-  /// that of the first guess, zero. Returns false if it does not get there.
-  bool solve(double tolerance);
+  /// that of the first guess, zero. Returns false if it does not get there. As long as errors are
+  /// more than rounding, at least `iteration_count_min` iterations.
+  bool solve(double tolerance, int iteration_count_min = 0);
 
   /// By module.
-  std::vector<Vec> displacement() const;
+  std::vector<Vec> displacement();
 
   int iteration_count() const { return iteration_count_; }
 
@@ -49,9 +53,10 @@ class Multigrid {
 
   Mat tangent(std::uint8_t code) const;
   void make_hierarchy();
+  void begin();
   void update_hierarchy();
   void compute_residual();
-  bool is_symmetric() const;
+  std::vector<NodeTerm> unsymmetric_terms() const;
 
   const model::Robot& robot_;
   Team team_;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <span>
 
 #include "../block_kernels.hpp"
 #include "holdfast/base/check.hpp"
@@ -15,6 +16,7 @@ namespace {
 using base::Direction;
 using base::Mat6;
 using base::Vec6;
+using host::Team;
 using model::Robot;
 using model::Support;
 
@@ -79,8 +81,11 @@ void radix_sort(std::vector<Keyed>& items) {
 /// Builds a network step by step.
 class Builder {
  public:
-  explicit Builder(const Robot& robot)
-      : robot_(robot), is_gone_(robot.modules().size(), 0), degree_(robot.modules().size()) {
+  Builder(const Robot& robot, Team& team)
+      : robot_(robot),
+        team_(team),
+        is_gone_(robot.modules().size(), 0),
+        degree_(robot.modules().size()) {
     const double weight = model::module_weight_n(robot.material());
     weight_ = {0, 0, -weight, 0, 0, 0};
   }
@@ -101,14 +106,16 @@ class Builder {
   }
 
   void count_connections() {
-    for (std::size_t i = 0; i < degree_.size(); ++i) {
-      int count = 0;
-      for (const std::int32_t other : robot_.neighbours()[i]) {
-        count += other == Robot::kNoNeighbour ? 0 : 1;
+    team_.share(0, degree_.size(), [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        int count = 0;
+        for (const std::int32_t other : robot_.neighbours()[i]) {
+          count += other == Robot::kNoNeighbour ? 0 : 1;
+        }
+        degree_[i] = static_cast<std::uint8_t>(count);
+        is_gone_[i] = robot_.modules()[i].support == Support::kFixed ? 1 : 0;
       }
-      degree_[i] = static_cast<std::uint8_t>(count);
-      is_gone_[i] = robot_.modules()[i].support == Support::kFixed ? 1 : 0;
-    }
+    });
   }
 
   void need_loads() {
@@ -343,25 +350,32 @@ class Builder {
   void connect() {
     network_.other.resize(network_.node_count);
     network_.kind.resize(network_.node_count);
-    const auto none = static_cast<std::int32_t>(network_.node_count);
-    for (std::size_t node = 0; node < network_.node_count; ++node) {
-      const std::size_t module = at(network_.module[node]);
-      Kind kind{};
-      for (std::size_t direction = 0; direction < 6; ++direction) {
-        int length = 0;
-        const std::int32_t other = far_end(module, direction, length);
-        const bool is_there = other != Robot::kNoNeighbour;
-        network_.other[node][direction] = is_there ? node_of_[at(other)] : none;
-        kind[direction] = static_cast<std::uint8_t>(is_there ? length : 0);
+    team_.share(0, network_.node_count, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t node = begin; node < end; ++node) {
+        connect(node);
       }
-      if (robot_.modules()[module].support == Support::kGround) {
-        kind[base::index(Direction::kMinusZ)] = 1;
-      }
-      network_.kind[node] = kind;
+    });
+  }
+
+  void connect(std::size_t node) {
+    const std::size_t module = at(network_.module[node]);
+    Kind kind{};
+    for (std::size_t direction = 0; direction < 6; ++direction) {
+      int length = 0;
+      const std::int32_t other = far_end(module, direction, length);
+      const bool is_there = other != Robot::kNoNeighbour;
+      network_.other[node][direction] =
+          is_there ? node_of_[at(other)] : static_cast<std::int32_t>(network_.node_count);
+      kind[direction] = static_cast<std::uint8_t>(is_there ? length : 0);
     }
+    if (robot_.modules()[module].support == Support::kGround) {
+      kind[base::index(Direction::kMinusZ)] = 1;
+    }
+    network_.kind[node] = kind;
   }
 
   const Robot& robot_;
+  Team& team_;
   Vec6<double> weight_{};
   std::vector<std::uint8_t> is_gone_;  ///< Eliminated or fixed.
   std::vector<std::uint8_t> degree_;   ///< Connections that are left.
@@ -440,9 +454,10 @@ mechanics::BeamStiffness<double> long_beam(const model::Material& material, int 
   return mechanics::beam_stiffness(section);
 }
 
-Network make_network(const Robot& robot) { return Builder(robot).build(); }
+Network make_network(const Robot& robot, Team& team) { return Builder(robot, team).build(); }
 
-void recover(const Robot& robot, const Network& network, std::vector<Vec6<double>>& displacement) {
+void recover(const Robot& robot, const Network& network, Team& team,
+             std::vector<Vec6<double>>& displacement) {
   const auto beam = long_beam(robot.material(), 1);
   std::array<std::vector<RunFactor>, 6> runs;
   std::array<Mat6<double>, 6> inverse_11;
@@ -455,8 +470,12 @@ void recover(const Robot& robot, const Network& network, std::vector<Vec6<double
     if (factor.pivot.empty()) {
       factor = factorize_run(beam, run.direction, run.length);
     }
-    recover_run(robot, network, run, factor, displacement);
   }
+  team.share(0, network.runs.size(), [&](std::size_t begin, std::size_t end) {
+    for (const Network::Run& run : std::span(network.runs).subspan(begin, end - begin)) {
+      recover_run(robot, network, run, runs[run.direction][at(run.length)], displacement);
+    }
+  });
   for (std::size_t i = network.hanging.size(); i-- > 0;) {
     const auto [module, direction] = network.hanging[i];
     const std::size_t host = at(robot.neighbours()[at(module)][direction]);

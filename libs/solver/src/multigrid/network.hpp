@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "holdfast/base/algebra.hpp"
+#include "holdfast/host/team.hpp"
 #include "holdfast/model/robot.hpp"
 #include "vectors.hpp"
 
@@ -51,10 +52,10 @@ struct Network {
   std::vector<Run> runs;
 };
 
-Network make_network(const model::Robot& robot);
+Network make_network(const model::Robot& robot, host::Team& team);
 
 /// Fills in the displacements of modules that are no nodes; those of nodes are given.
-void recover(const model::Robot& robot, const Network& network,
+void recover(const model::Robot& robot, const Network& network, host::Team& team,
              std::vector<base::Vec6<double>>& displacement);
 
 /// The section's beam stretched to `length` pitches.

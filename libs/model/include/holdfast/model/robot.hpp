@@ -10,6 +10,7 @@
 
 #include "holdfast/base/cell.hpp"
 #include "holdfast/base/result.hpp"
+#include "holdfast/host/team.hpp"
 #include "holdfast/model/cell_index.hpp"
 #include "holdfast/model/material.hpp"
 
@@ -54,8 +55,9 @@ class Robot {
   static constexpr std::int32_t kNoNeighbour = -1;
   using Neighbours = std::array<std::int32_t, base::kDirectionCount>;
 
-  /// Checks every rule; the error names the cell, what was found and what is allowed.
-  static base::Result<Robot> create(const RobotSpec& spec);
+  /// Checks every rule; the error names the cell, what was found and what is allowed. 0 threads:
+  /// as many as the machine has cores.
+  static base::Result<Robot> create(const RobotSpec& spec, int thread_count = 0);
 
   /// Existing modules first, then the planned ones, each in the order of the spec.
   std::span<const Module> modules() const { return modules_; }
@@ -80,7 +82,7 @@ class Robot {
   Robot() = default;
 
   /// Finds neighbours and connections, counts supports.
-  void connect(const CellIndex& index);
+  void connect(const CellIndex& index, host::Team& team);
 
   std::vector<Module> modules_;
   std::vector<Neighbours> neighbours_;

@@ -59,7 +59,7 @@ struct EquilibriumOptions {
   int thread_count = 0;
   /// Of multigrid: the error in the energy norm, as a share of that of no displacements at all.
   /// Load ratios are then within 1e-4 of the largest one (docs/solver.md).
-  double tolerance = 3e-6;
+  double tolerance = 1e-5;
   /// Called after every iteration of multigrid with the error that is left, as a share of the
   /// first.
   std::function<void(int iteration, double error)> progress = {};
@@ -139,6 +139,7 @@ class EquilibriumSolver {
   std::vector<Vec> by_module(const std::vector<Vec>& by_node) const;
   std::vector<Vec> internal_force(const std::vector<Vec>& displacement) const;
   std::vector<mechanics::ContactState> states_at(const std::vector<Vec>& displacement) const;
+  bool are_states_clear(const std::vector<Vec>& displacement) const;
   bool set_states(const std::vector<mechanics::ContactState>& states);
   void finish(Equilibrium& result);
   void refine(Equilibrium& result) const;

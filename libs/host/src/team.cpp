@@ -1,11 +1,11 @@
 // SPDX-FileCopyrightText: The holdfast authors
 // SPDX-License-Identifier: Apache-2.0
-#include "team.hpp"
+#include "holdfast/host/team.hpp"
 
 #include <algorithm>
 #include <system_error>
 
-namespace holdfast::solver {
+namespace holdfast::host {
 namespace {
 
 /// Turns of waiting before a thread sleeps: a few microseconds, as long as a small loop takes.
@@ -23,9 +23,10 @@ void wait_while(const std::atomic<Value>& variable, Value value) {
 
 }  // namespace
 
-Team::Team(int thread_count) {
+Team::Team(int thread_count, std::size_t item_count) {
   const auto cores = static_cast<int>(std::thread::hardware_concurrency());
-  thread_count = std::clamp(thread_count > 0 ? thread_count : cores, 1, kThreadCountMax);
+  thread_count = std::clamp(thread_count > 0 ? thread_count : cores, 1,
+                            item_count < kSharedItemMin ? 1 : kThreadCountMax);
   thread_count_ = 1;
   for (int thread = 1; thread < thread_count; ++thread) {
     try {
@@ -78,4 +79,4 @@ void Team::serve(int thread) {
   }
 }
 
-}  // namespace holdfast::solver
+}  // namespace holdfast::host

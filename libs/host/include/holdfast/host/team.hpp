@@ -11,12 +11,13 @@
 /// A few threads that share loops. Work is cut into chunks of fixed size, each thread takes one run
 /// of chunks, and sums are kept by chunk and added in order: the result has the same bits with any
 /// number of threads.
-namespace holdfast::solver {
+namespace holdfast::host {
 
 class Team {
  public:
-  /// At most kThreadCountMax; 0: as many as the machine has cores.
-  explicit Team(int thread_count);
+  /// At most kThreadCountMax; 0: as many as the machine has cores. One alone if there are fewer
+  /// than kSharedItemMin items to share: starting a thread takes longer.
+  explicit Team(int thread_count, std::size_t item_count = kSharedItemMin);
   ~Team();
   Team(const Team&) = delete;
   Team& operator=(const Team&) = delete;
@@ -30,6 +31,7 @@ class Team {
 #endif
   /// Nodes in a chunk.
   static constexpr std::size_t kChunk = 512;
+  static constexpr std::size_t kSharedItemMin = 4096;
   /// Fewer chunks are not shared: waking a thread takes as long as they do.
   static constexpr std::size_t kSharedChunkMin = 6;
 
@@ -58,16 +60,21 @@ class Team {
         &part);
   }
 
+  /// work(begin, end) of every chunk of [0, count), in their order.
+  template <class Value, class Work>
+  void map(std::size_t count, std::vector<Value>& values, const Work& work) {
+    values.resize((count + kChunk - 1) / kChunk);
+    share(0, count, [&](std::size_t begin, std::size_t end) {
+      for (; begin < end; begin += kChunk) {
+        values[begin / kChunk] = work(begin, end < begin + kChunk ? end : begin + kChunk);
+      }
+    });
+  }
+
   /// The sum of work(begin, end) over the chunks of [0, count), in their order.
   template <class Work>
   double sum(std::size_t count, const Work& work) {
-    const std::size_t chunk_count = (count + kChunk - 1) / kChunk;
-    partial_.assign(chunk_count, 0);
-    share(0, count, [&](std::size_t begin, std::size_t end) {
-      for (; begin < end; begin += kChunk) {
-        partial_[begin / kChunk] = work(begin, end < begin + kChunk ? end : begin + kChunk);
-      }
-    });
+    map(count, partial_, work);
     double total = 0;
     for (const double part : partial_) {
       total += part;
@@ -92,4 +99,4 @@ class Team {
   std::atomic<bool> is_over_{false};
 };
 
-}  // namespace holdfast::solver
+}  // namespace holdfast::host

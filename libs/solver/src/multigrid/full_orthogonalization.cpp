@@ -1,0 +1,88 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+
+#include "conjugate_gradients.hpp"
+
+namespace holdfast::solver {
+namespace {
+
+/// Directions are remembered, for all of them together no more than so many bytes, but a few in any
+/// case; then the oldest are dropped, and robots whose contact is far from symmetric may fail.
+constexpr std::size_t kMemoryBytes = std::size_t{256} << 20U;
+constexpr std::size_t kMemoryMin = 8;
+constexpr std::size_t kNodeBytes = sizeof(Six) + 6 * sizeof(double);
+
+/// Adds difference * p at the nodes that have one; returns p times that.
+double add_terms(std::span<const NodeTerm> terms, bool is_transposed, const std::vector<Six>& p,
+                 std::vector<double>& image) {
+  double sum = 0;
+  for (const NodeTerm& term : terms) {
+    const auto node = static_cast<std::size_t>(term.node);
+    for (int row = 0; row < 6; ++row) {
+      for (int column = 0; column < 6; ++column) {
+        const double factor =
+            is_transposed ? term.difference.at(column, row) : term.difference.at(row, column);
+        const double part = factor * static_cast<double>(p[node].v[column]);
+        image[6 * node + static_cast<std::size_t>(row)] += part;
+        sum += part * static_cast<double>(p[node].v[row]);
+      }
+    }
+  }
+  return sum;
+}
+
+}  // namespace
+
+/// p := z, less what an older direction answers for: p_old . A p = 0.
+void ConjugateGradients::turn_away_from_older() {
+  p_ = hierarchy_.levels().front().z;
+  for (const Direction& old : older_) {
+    const double product = team_.sum(node_count_, [&](std::size_t begin, std::size_t end) {
+      return kernels().dot(old.image.data(), p_.data(), {begin, end});
+    });
+    const auto turn = static_cast<float>(-product / old.curvature);
+    team_.share(0, node_count_, [&](std::size_t begin, std::size_t end) {
+      kernels().combine(turn, old.p.data(), 1, p_.data(), {begin, end});
+    });
+  }
+}
+
+/// q := A p; remembers p and A^T p. Returns p . A p.
+double ConjugateGradients::remember_direction(std::span<const NodeTerm> terms) {
+  const double symmetric_part = multiply();
+  if (older_.size() >= std::max(kMemoryMin, kMemoryBytes / (kNodeBytes * node_count_))) {
+    std::rotate(older_.begin(), older_.begin() + 1, older_.end());
+  } else {
+    older_.emplace_back();
+  }
+  Direction& newest = older_.back();
+  newest.p = p_;
+  newest.image = q_;
+  add_terms(terms, true, p_, newest.image);
+  newest.curvature = symmetric_part + add_terms(terms, false, p_, q_);
+  return newest.curvature;
+}
+
+ConjugateGradients::End ConjugateGradients::run_unsymmetric(const Goal& goal,
+                                                            std::span<const NodeTerm> terms) {
+  older_.clear();
+  for (int iteration = 0; !is_reached(goal, iteration); ++iteration) {
+    if (iteration == goal.iteration_count_max) {
+      return End::kTooSlow;
+    }
+    turn_away_from_older();
+    const double curvature = remember_direction(terms);
+    if (curvature == 0 || !std::isfinite(curvature)) {
+      return End::kBroken;
+    }
+    advance(error_ / curvature);
+    error_ = precondition();
+    tell();
+  }
+  older_ = {};
+  return error_ >= 0 ? End::kConverged : End::kBroken;
+}
+
+}  // namespace holdfast::solver
