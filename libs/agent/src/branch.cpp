@@ -73,6 +73,12 @@ void subtract_column(Mat6<float>& into, int column, const Vec6<double>& x) {
   }
 }
 
+/// into -= a x in column `column`.
+[[gnu::noinline]] void subtract_product(Mat6<float>& into, int column, const Mat6<float>& a,
+                                        const Vec6<double>& x) {
+  subtract_column(into, column, product(a, x));
+}
+
 /// A 6x6 system, factored with pivots once its matrix is there.
 class System {
  public:
@@ -153,19 +159,9 @@ class InSeries {
  public:
   InSeries(const Mat6<float>& stiffness, const Joint& joint, Series series)
       : is_one_(is_free(stiffness)) {
-    if (is_one_) {
-      return;
+    if (!is_one_) {
+      factor(stiffness, joint, series);
     }
-    // F is symmetric: S F has F times S's rows as its rows.
-    for (int i = 0; i < kSize; ++i) {
-      Vec6<double> line =
-          joint.bend(series == Series::kAtParent ? row_of(stiffness, i) : column_of(stiffness, i));
-      line[at(i)] += 1;
-      for (int k = 0; k < kSize; ++k) {
-        (series == Series::kAtChild ? system_.at(k, i) : system_.at(i, k)) = line[at(k)];
-      }
-    }
-    system_.factor();
   }
 
   /// N v, G v or G^t v, in place.
@@ -176,6 +172,20 @@ class InSeries {
   }
 
  private:
+  [[gnu::noinline]] void factor(const Mat6<float>& stiffness, const Joint& joint, Series series) {
+    // F is symmetric: S F has F times S's rows as its rows.
+    for (int i = 0; i < kSize; ++i) {
+      Vec6<double> line =
+          series == Series::kAtParent ? row_of(stiffness, i) : column_of(stiffness, i);
+      joint.bend(line);
+      line[at(i)] += 1;
+      for (int k = 0; k < kSize; ++k) {
+        (series == Series::kAtChild ? system_.at(k, i) : system_.at(i, k)) = line[at(k)];
+      }
+    }
+    system_.factor();
+  }
+
   System system_;
   bool is_one_;
 };
@@ -183,16 +193,26 @@ class InSeries {
 using Columns = Branch::Columns;
 using Which = std::array<std::uint8_t, Branch::kBatch>;
 
+/// v = S T e_j
+[[gnu::noinline]] void force_of_unit(const Joint& joint, const Mat6<float>& stiffness, int j,
+                                     Vec6<double>& v) {
+  Vec6<double> moved = unit(j);
+  joint.carry(moved);
+  v = {};
+  add_product(v, stiffness, moved);
+}
+
 /// Columns of T^t N S T.
-Columns condensed(const Joint& joint, const Mat6<float>& stiffness, const Which& which) {
+void condense(const Joint& joint, const Mat6<float>& stiffness, const Which& which,
+              Columns& columns) {
   const InSeries series(stiffness, joint, Series::kAtParent);
-  Columns columns;
+  Vec6<double> force;
   for (std::size_t i = 0; i < which.size(); ++i) {
-    Vec6<double> force = product(stiffness, joint.carried(unit(which[i])));
+    force_of_unit(joint, stiffness, which[i], force);
     series.pass(force);
-    columns[i] = base::converted<float>(joint.handed_on(force));
+    joint.hand_on(force);
+    columns[i] = base::converted<float>(force);
   }
-  return columns;
 }
 
 Which three_from(int first) {
@@ -216,54 +236,49 @@ Joint::Joint(const BeamStiffness<double>& beam, Direction direction)
   across_y_ = -beam.couple_y * y;
 }
 
-Vec6<double> Joint::bend(const Vec6<double>& force) const {
-  const Vec6<double> local = mechanics::to_local(direction_, force);
-  Vec6<double> bent;
-  for (std::size_t i = 0; i < kSize; ++i) {
-    bent[i] = straight_[i] * local[i];
-  }
-  bent[0] += across_x_ * local[4];
-  bent[4] += across_x_ * local[0];
-  bent[1] += across_y_ * local[3];
-  bent[3] += across_y_ * local[1];
-  return mechanics::to_global(direction_, bent);
+void Joint::bend(Vec6<double>& force) const {
+  Vec6<double> local = mechanics::to_local(direction_, force);
+  const double fx = local[0];
+  const double fy = local[1];
+  local[0] = straight_[0] * fx + across_x_ * local[4];
+  local[1] = straight_[1] * fy + across_y_ * local[3];
+  local[2] *= straight_[2];
+  local[3] = straight_[3] * local[3] + across_y_ * fy;
+  local[4] = straight_[4] * local[4] + across_x_ * fx;
+  local[5] *= straight_[5];
+  force = mechanics::to_global(direction_, local);
 }
 
-Vec6<double> Joint::hold(const Vec6<double>& u) const {
-  return mechanics::end_force(beam_, direction_, u, {});
+void Joint::hold(Vec6<double>& u) const { u = mechanics::end_force(beam_, direction_, u, {}); }
+
+void Joint::carry(Vec6<double>& u) const {
+  u[0] += lever_[2] * u[4] - lever_[1] * u[5];
+  u[1] += lever_[0] * u[5] - lever_[2] * u[3];
+  u[2] += lever_[1] * u[3] - lever_[0] * u[4];
 }
 
-Vec6<double> Joint::carried(Vec6<double> u) const {
-  const auto [x, y, z] = lever_;
-  u[0] += z * u[4] - y * u[5];
-  u[1] += x * u[5] - z * u[3];
-  u[2] += y * u[3] - x * u[4];
-  return u;
+void Joint::hand_on(Vec6<double>& force) const {
+  force[3] += lever_[1] * force[2] - lever_[2] * force[1];
+  force[4] += lever_[2] * force[0] - lever_[0] * force[2];
+  force[5] += lever_[0] * force[1] - lever_[1] * force[0];
 }
 
-Vec6<double> Joint::handed_on(Vec6<double> force) const {
-  const auto [x, y, z] = lever_;
-  force[3] += y * force[2] - z * force[1];
-  force[4] += z * force[0] - x * force[2];
-  force[5] += x * force[1] - y * force[0];
-  return force;
+void find_stiffness_up(const Joint& to_parent, const Mat6<float>& stiffness, int first,
+                       Columns& columns) {
+  condense(to_parent, stiffness, three_from(first), columns);
 }
 
-Columns stiffness_up(const Joint& to_parent, const Mat6<float>& stiffness, int first) {
-  return condensed(to_parent, stiffness, three_from(first));
-}
-
-Vec6<double> load_up(const Joint& to_parent, const Mat6<float>& stiffness, Vec6<double> load) {
+void find_load_up(const Joint& to_parent, const Mat6<float>& stiffness, Vec6<double>& load) {
   InSeries(stiffness, to_parent, Series::kAtParent).pass(load);
-  return to_parent.handed_on(load);
+  to_parent.hand_on(load);
 }
 
-Vec6<double> displacement(const Joint& to_parent, const Mat6<float>& stiffness,
-                          const Vec6<double>& of_parent, const Vec6<double>& load) {
-  Vec6<double> sum = to_parent.carried(of_parent);
-  base::add_to(sum, to_parent.bend(load));
-  InSeries(stiffness, to_parent, Series::kAtChild).pass(sum);
-  return sum;
+void find_displacement(const Joint& to_parent, const Mat6<float>& stiffness, Vec6<double>& load,
+                       Vec6<double>& u) {
+  to_parent.carry(u);
+  to_parent.bend(load);
+  base::add_to(u, load);
+  InSeries(stiffness, to_parent, Series::kAtChild).pass(u);
 }
 
 int Branch::meet(const Cut& cut) {
@@ -323,7 +338,10 @@ void Branch::add_stiffness(const Mat6<double>& block) {
 void Branch::add_end(int slot, bool is_upper, const BeamStiffness<double>& beam) {
   const Joint joint(beam, cuts_[at(slot)].direction);
   for (int column = 0; column < kSize; ++column) {
-    const Vec6<double> moved = is_upper ? joint.carried(unit(column)) : unit(column);
+    Vec6<double> moved = unit(column);
+    if (is_upper) {
+      joint.carry(moved);
+    }
     for (int row = 0; row < kSize; ++row) {
       const auto value = static_cast<float>(is_upper ? -moved[at(row)] : moved[at(row)]);
       across_[at(slot)].at(row, column) += value;
@@ -386,7 +404,8 @@ void Branch::close_loop(const BeamStiffness<double>& beam, int slot) {
   const Joint joint(beam, cuts_[at(slot)].direction);
   System sum;
   for (int column = 0; column < kSize; ++column) {
-    const Vec6<double> bent = joint.bend(unit(column));
+    Vec6<double> bent = unit(column);
+    joint.bend(bent);
     for (int row = 0; row < kSize; ++row) {
       sum.at(row, column) = static_cast<double>(give.at(row, column)) + bent[at(row)];
     }
@@ -394,11 +413,9 @@ void Branch::close_loop(const BeamStiffness<double>& beam, int slot) {
   sum.factor();
   give = {};
   for (int column = 0; column < kSize; ++column) {
-    Vec6<double> inverse = unit(column);
+    Vec6<double> inverse{};
+    inverse[at(column)] = -1;
     sum.solve(inverse);
-    for (double& value : inverse) {
-      value = -value;
-    }
     subtract_column(give, column, inverse);
   }
 }
@@ -406,23 +423,23 @@ void Branch::close_loop(const BeamStiffness<double>& beam, int slot) {
 /// Column `column` of what the force X = Q (y + C u) of a closed loop does to the others.
 void Branch::close_column(int slot, int column) {
   const Mat6<float>& give = give_[at(slot)][at(slot)];
-  Vec6<double> force = product(give, column_of(across_[at(slot)], column));
-  for (double& value : force) {
-    value = -value;
-  }
-  subtract_column(stiffness_, column, product(onto_[at(slot)], force));
+  const Mat6<float>& onto = onto_[at(slot)];
   for (int other = 0; other < count_; ++other) {
     if (!is_closed_after(slot, other)) {
       continue;
     }
     const Mat6<float>& there = give_[at(other)][at(slot)];
-    Vec6<double> shift{};
-    subtract(shift, force);
-    subtract_column(across_[at(other)], column, product(there, shift));
-    const Vec6<double> of_other = product(give, column_of(give_[at(slot)][at(other)], column));
-    subtract_column(onto_[at(other)], column, product(onto_[at(slot)], of_other));
-    subtract_column(give_[at(other)][at(other)], column, product(there, of_other));
+    Vec6<double> force = product(give, column_of(across_[at(slot)], column));
+    subtract_product(across_[at(other)], column, there, force);
+    force = product(give, column_of(give_[at(slot)][at(other)], column));
+    subtract_product(onto_[at(other)], column, onto, force);
+    subtract_product(give_[at(other)][at(other)], column, there, force);
   }
+  Vec6<double> force = product(give, column_of(across_[at(slot)], column));
+  for (double& value : force) {
+    value = -value;
+  }
+  subtract_product(stiffness_, column, onto, force);
 }
 
 int Branch::columns_needed(int index, const std::array<std::int8_t, kLoopsMax>& slot_of,
@@ -458,70 +475,90 @@ bool Branch::has_columns(int index, bool is_fixed) const {
                            : open_slot(pair / kLoopsMax) >= 0 && open_slot(pair % kLoopsMax) >= 0;
 }
 
-Columns Branch::stiffness_up(const Joint& to_parent, bool is_fixed, const Which& which) const {
+void Branch::find_stiffness_up(const Joint& to_parent, bool is_fixed, const Which& which,
+                               Columns& columns) const {
   if (!is_fixed) {
-    return condensed(to_parent, stiffness_, which);
+    condense(to_parent, stiffness_, which, columns);
+    return;
   }
-  Columns columns;
   for (std::size_t i = 0; i < which.size(); ++i) {
-    columns[i] = base::converted<float>(
-        to_parent.handed_on(to_parent.hold(to_parent.carried(unit(which[i])))));
+    Vec6<double> force = unit(which[i]);
+    to_parent.carry(force);
+    to_parent.hold(force);
+    to_parent.hand_on(force);
+    columns[i] = base::converted<float>(force);
   }
-  return columns;
 }
 
-Columns Branch::columns_up(const Joint& to_parent, bool is_fixed, int first) const {
-  const Which which = three_from(first);
+void Branch::find_columns_up(const Joint& to_parent, bool is_fixed, int first,
+                             Columns& columns) const {
   if (first < kOnto) {
-    return stiffness_up(to_parent, is_fixed, which);
+    find_stiffness_up(to_parent, is_fixed, three_from(first), columns);
+  } else if (first < kGive) {
+    find_end_columns(to_parent, first, columns);
+  } else {
+    find_give_columns(to_parent, is_fixed, first, columns);
   }
-  Columns columns;
-  if (first < kGive) {
-    const bool is_onto = first < kAcross;
-    const int slot = open_slot((first - (is_onto ? kOnto : kAcross)) / kSize);
-    HOLDFAST_ASSERT(slot >= 0 && !is_fixed);
-    const InSeries series(stiffness_, to_parent, is_onto ? Series::kAtParent : Series::kTransposed);
-    for (std::size_t i = 0; i < which.size(); ++i) {
-      Vec6<double> vector =
-          is_onto ? column_of(onto_[at(slot)], which[i]) : row_of(across_[at(slot)], which[i]);
-      series.pass(vector);
-      columns[i] = base::converted<float>(to_parent.handed_on(vector));
-    }
-    return columns;
+}
+
+/// B' = T^t N B or the transposed C' = C G T.
+void Branch::find_end_columns(const Joint& to_parent, int first, Columns& columns) const {
+  const bool is_onto = first < kAcross;
+  const int slot = open_slot((first - (is_onto ? kOnto : kAcross)) / kSize);
+  HOLDFAST_ASSERT(slot >= 0);
+  const InSeries series(stiffness_, to_parent, is_onto ? Series::kAtParent : Series::kTransposed);
+  Vec6<double> vector;
+  for (int i = 0; i < kBatch; ++i) {
+    const int j = first % kSize + i;
+    vector = is_onto ? column_of(onto_[at(slot)], j) : row_of(across_[at(slot)], j);
+    series.pass(vector);
+    to_parent.hand_on(vector);
+    columns[at(i)] = base::converted<float>(vector);
   }
+}
+
+/// P' = P + C G F B
+void Branch::find_give_columns(const Joint& to_parent, bool is_fixed, int first,
+                               Columns& columns) const {
   const int row = open_slot((first - kGive) / kSize / kLoopsMax);
   const int column = open_slot((first - kGive) / kSize % kLoopsMax);
   HOLDFAST_ASSERT(row >= 0 && column >= 0);
-  const InSeries series(stiffness_, to_parent, Series::kAtChild);
-  for (std::size_t i = 0; i < which.size(); ++i) {
-    Vec6<double> sum = column_of(give_[at(row)][at(column)], which[i]);
-    if (!is_fixed) {
-      Vec6<double> bent = to_parent.bend(column_of(onto_[at(column)], which[i]));
-      series.pass(bent);
-      add_product(sum, across_[at(row)], bent);
+  const Mat6<float>& give = give_[at(row)][at(column)];
+  const int j = first % kSize;
+  if (is_fixed) {
+    for (int i = 0; i < kGiveBatch; ++i) {
+      columns[at(i)] = base::converted<float>(column_of(give, j + i));
     }
-    columns[i] = base::converted<float>(sum);
+    return;
   }
-  return columns;
+  const InSeries series(stiffness_, to_parent, Series::kAtChild);
+  Vec6<double> bent;
+  for (int i = 0; i < kGiveBatch; ++i) {
+    bent = column_of(onto_[at(column)], j + i);
+    to_parent.bend(bent);
+    series.pass(bent);
+    bent = product(across_[at(row)], bent);
+    base::add_to(bent, column_of(give, j + i));
+    columns[at(i)] = base::converted<float>(bent);
+  }
 }
 
-Columns Branch::parts_up(const Joint& to_parent, bool is_fixed, int first) const {
+void Branch::find_parts_up(const Joint& to_parent, bool is_fixed, int first,
+                           Columns& columns) const {
   const auto i = static_cast<std::uint8_t>(first);
   // Column 6 - i for both parts; the first has none, the last only one.
   const Which which = first == 0 ? Which{0, 1, 5} : Which{i, static_cast<std::uint8_t>(i + 1), 4};
-  const Columns columns = stiffness_up(to_parent, is_fixed, which);
-  Columns parts{};
+  find_stiffness_up(to_parent, is_fixed, which, columns);
   for (int part = first; part < first + 2; ++part) {
-    Vec6<float>& into = parts[at(part - first)];
-    for (int row = part; row < kSize; ++row) {
-      into[at(row - part)] = columns[at(part - first)][at(row)];
+    Vec6<float>& into = columns[at(part - first)];
+    for (int row = 0; row < kSize; ++row) {
+      into[at(row)] = row + part < kSize ? into[at(row + part)] : 0;
     }
     const int behind = kSize - part;
     for (int row = behind; row < kSize && behind == which[2]; ++row) {
       into[at(row)] = columns[2][at(row)];
     }
   }
-  return parts;
 }
 
 void Branch::close_loops(BranchLoad& load) const {
@@ -539,38 +576,42 @@ void Branch::close_loops(BranchLoad& load) const {
   }
 }
 
-Vec6<double> Branch::load_up(const Joint& to_parent, bool is_fixed, const BranchLoad& load) const {
-  return is_fixed ? Vec6<double>{} : agent::load_up(to_parent, stiffness_, load.load);
+void Branch::find_load_up(const Joint& to_parent, bool is_fixed, Vec6<double>& load) const {
+  if (is_fixed) {
+    load = {};
+  } else {
+    agent::find_load_up(to_parent, stiffness_, load);
+  }
 }
 
-std::array<Vec6<float>, kLoopsMax> Branch::gaps_up(const Joint& to_parent, bool is_fixed,
-                                                   const BranchLoad& load) const {
+void Branch::find_gaps_up(const Joint& to_parent, bool is_fixed, const BranchLoad& load,
+                          CutForces& gaps) const {
   Vec6<double> bent{};
   if (!is_fixed && open_count() > 0) {
-    bent = to_parent.bend(load.load);
+    bent = load.load;
+    to_parent.bend(bent);
     InSeries(stiffness_, to_parent, Series::kAtChild).pass(bent);
   }
-  std::array<Vec6<float>, kLoopsMax> gaps{};
   for (int i = 0; i < open_count(); ++i) {
-    Vec6<double> gap = load.gap[at(open_slot(i))];
-    add_product(gap, across_[at(open_slot(i))], bent);
+    const auto slot = at(open_slot(i));
+    Vec6<double> gap = load.gap[slot];
+    add_product(gap, across_[slot], bent);
     gaps[at(i)] = base::converted<float>(gap);
   }
-  return gaps;
 }
 
-Vec6<double> Branch::displacement(const Joint& to_parent, const Vec6<double>& of_parent,
-                                  const BranchLoad& load, const CutForces& forces) const {
+void Branch::find_displacement(const Joint& to_parent, const BranchLoad& load,
+                               const CutForces& forces, Vec6<double>& u) const {
   Vec6<double> carried = load.load;
   for (int slot = 0; slot < count_; ++slot) {
     if (is_open(slot)) {
       subtract(carried, product(onto_[at(slot)], base::converted<double>(forces[at(slot)])));
     }
   }
-  return agent::displacement(to_parent, stiffness_, of_parent, carried);
+  agent::find_displacement(to_parent, stiffness_, carried, u);
 }
 
-Vec6<double> Branch::displacement_of_root(const BranchLoad& load) const {
+void Branch::find_displacement_of_root(const BranchLoad& load, Vec6<double>& u) const {
   System system;
   for (int column = 0; column < kSize; ++column) {
     for (int row = 0; row < kSize; ++row) {
@@ -578,9 +619,8 @@ Vec6<double> Branch::displacement_of_root(const BranchLoad& load) const {
     }
   }
   system.factor();
-  Vec6<double> u = load.load;
+  u = load.load;
   system.solve(u);
-  return u;
 }
 
 void Branch::find_forces(const BranchLoad& load, const Vec6<double>& u, CutForces& forces) const {

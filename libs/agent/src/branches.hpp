@@ -265,8 +265,9 @@ void BasicAgent<Real>::send_leaf_columns(const branches::Leaves& leaves, int lea
   const auto i = static_cast<std::size_t>(leaf);
   const auto parent = static_cast<std::size_t>(leaves.parent[i]);
   const Joint joint(setup_.beam, leaves.to_parent[i]);
-  const Branch::Columns columns =
-      stiffness_up(joint, leaf_stiffness(static_cast<std::size_t>(leaves.node[i])), first);
+  Branch::Columns columns;
+  find_stiffness_up(joint, leaf_stiffness(static_cast<std::size_t>(leaves.node[i])), first,
+                    columns);
   for (int k = 0; k < Branch::kBatch; ++k) {
     const base::Vec6<float>& column = columns[static_cast<std::size_t>(k)];
     if (parent == 0) {
@@ -319,10 +320,10 @@ bool BasicAgent<Real>::send_columns() {
   const BranchWork& tree = work_.tree;
   const bool is_fixed = nodes_[0].is_fixed;
   const auto next = [&] {
-    piece_index_ = static_cast<std::uint8_t>(piece_index_ + Branch::kBatch);
+    piece_index_ = static_cast<std::uint8_t>(piece_index_ + Branch::batch_at(piece_index_));
   };
   for (; piece_index_ < Branch::kColumnCount && parent_ >= 0; next()) {
-    if (!is_column_ready(piece_index_ + Branch::kBatch - 1)) {
+    if (!is_column_ready(piece_index_ + Branch::batch_at(piece_index_) - 1)) {
       return false;
     }
     if (!tree.branch.has_columns(piece_index_, is_fixed)) {
@@ -334,24 +335,38 @@ bool BasicAgent<Real>::send_columns() {
     if (!links_[static_cast<std::size_t>(parent_)].has_room(kRoom)) {
       return false;
     }
-    const bool has_parts = tree.is_symmetric && piece_index_ < branches::kStiffnessColumns;
-    // Two parts are made of three columns.
-    const int first = has_parts ? piece_index_ * 2 / Branch::kBatch : piece_index_;
-    const int count = has_parts ? 2 : Branch::kBatch;
-    const Branch::Columns columns =
-        has_parts ? tree.branch.parts_up(joint_to_parent(), is_fixed, first)
-                  : tree.branch.columns_up(joint_to_parent(), is_fixed, first);
-    for (int k = 0; k < count; ++k) {
-      const int label = first + k + (has_parts ? Branch::kColumnCount : 0);
-      send(parent_,
-           sweep::vector_message(wire::MessageType::kColumn, static_cast<std::uint8_t>(label),
-                                 columns[static_cast<std::size_t>(k)]));
-    }
+    send_batch(piece_index_);
     next();
     return true;
   }
   begin_piece(Piece::kResiduals);
   return true;
+}
+
+template <class Real>
+void BasicAgent<Real>::send_batch(int column) {
+  const Branch& branch = work_.tree.branch;
+  const bool is_fixed = nodes_[0].is_fixed;
+  const bool has_parts = work_.tree.is_symmetric && column < branches::kStiffnessColumns;
+  // Two parts are made of three columns.
+  const int first = has_parts ? column * 2 / Branch::kBatch : column;
+  const int count = has_parts ? 2 : Branch::batch_at(column);
+  Branch::Columns columns;
+  {
+    const Joint joint = joint_to_parent();
+    has_parts ? branch.find_parts_up(joint, is_fixed, first, columns)
+              : branch.find_columns_up(joint, is_fixed, first, columns);
+  }
+  for (int k = 0; k < count; ++k) {
+    const int label = first + k + (has_parts ? Branch::kColumnCount : 0);
+    send_column(label, columns[static_cast<std::size_t>(k)]);
+  }
+}
+
+template <class Real>
+[[gnu::noinline]] void BasicAgent<Real>::send_column(int label, const base::Vec6<float>& column) {
+  send(parent_,
+       sweep::vector_message(wire::MessageType::kColumn, static_cast<std::uint8_t>(label), column));
 }
 
 template <class Real>
@@ -392,19 +407,31 @@ bool BasicAgent<Real>::do_load_piece() {
       begin_piece(parent_ < 0 ? Piece::kNone : Piece::kLoadUp);
       break;
     case Piece::kLoadUp:
-      send_branch_up(0, base::converted<float>(
-                            tree.branch.load_up(joint_to_parent(), nodes_[0].is_fixed, tree.load)));
+      send_load_up();
       begin_piece(Piece::kGapsUp);
       break;
-    default: {
-      const auto gaps = tree.branch.gaps_up(joint_to_parent(), nodes_[0].is_fixed, tree.load);
-      for (int i = 0; i < tree.branch.open_count(); ++i) {
-        send_branch_up(1 + i, gaps[static_cast<std::size_t>(i)]);
-      }
+    default:
+      send_gaps_up();
       begin_piece(Piece::kNone);
-    }
   }
   return true;
+}
+
+template <class Real>
+[[gnu::noinline]] void BasicAgent<Real>::send_load_up() {
+  base::Vec6<double> load = work_.tree.load.load;
+  work_.tree.branch.find_load_up(joint_to_parent(), nodes_[0].is_fixed, load);
+  send_branch_up(0, base::converted<float>(load));
+}
+
+template <class Real>
+[[gnu::noinline]] void BasicAgent<Real>::send_gaps_up() {
+  const BranchWork& tree = work_.tree;
+  CutForces gaps{};
+  tree.branch.find_gaps_up(joint_to_parent(), nodes_[0].is_fixed, tree.load, gaps);
+  for (int i = 0; i < tree.branch.open_count(); ++i) {
+    send_branch_up(1 + i, gaps[static_cast<std::size_t>(i)]);
+  }
 }
 
 template <class Real>
@@ -420,9 +447,8 @@ template <class Real>
 void BasicAgent<Real>::send_leaf_load(const branches::Leaves& leaves, std::size_t leaf) {
   const auto at = static_cast<std::size_t>(leaves.node[leaf]);
   const auto parent = static_cast<std::size_t>(leaves.parent[leaf]);
-  const base::Vec6<double> load =
-      agent::load_up(Joint(setup_.beam, leaves.to_parent[leaf]), leaf_stiffness(at),
-                     base::converted<double>(nodes_[at].shared));
+  auto load = base::converted<double>(nodes_[at].shared);
+  find_load_up(Joint(setup_.beam, leaves.to_parent[leaf]), leaf_stiffness(at), load);
   if (parent == 0) {
     base::add_to(work_.tree.load.load, load);
   } else {
@@ -471,22 +497,13 @@ void BasicAgent<Real>::take_branch_down(std::span<const std::uint8_t> message) {
 template <class Real>
 void BasicAgent<Real>::do_shift_piece() {
   BranchWork& tree = work_.tree;
-  Node<Real>& own = nodes_[0];
-  const auto shift = base::converted<double>(own.shared);
   switch (piece_) {
     case Piece::kShift:
-      if (own.is_fixed) {
-        own.shared = {};
-      } else {
-        own.shared = equilibrium::as_sent(base::converted<Real>(
-            parent_ < 0
-                ? tree.branch.displacement_of_root(tree.load)
-                : tree.branch.displacement(joint_to_parent(), shift, tree.load, tree.forces)));
-      }
+      find_own_shift();
       begin_piece(Piece::kForces);
       break;
     case Piece::kForces:
-      tree.branch.find_forces(tree.load, shift, tree.forces);
+      tree.branch.find_forces(tree.load, base::converted<double>(nodes_[0].shared), tree.forces);
       send_branch_down();
       begin_piece(Piece::kLeafShifts);
       break;
@@ -509,12 +526,27 @@ void BasicAgent<Real>::do_shift_piece() {
 }
 
 template <class Real>
+[[gnu::noinline]] void BasicAgent<Real>::find_own_shift() {
+  const BranchWork& tree = work_.tree;
+  auto shift = base::converted<double>(nodes_[0].shared);
+  if (nodes_[0].is_fixed) {
+    shift = {};
+  } else if (parent_ < 0) {
+    tree.branch.find_displacement_of_root(tree.load, shift);
+  } else {
+    tree.branch.find_displacement(joint_to_parent(), tree.load, tree.forces, shift);
+  }
+  nodes_[0].shared = equilibrium::as_sent(base::converted<Real>(shift));
+}
+
+template <class Real>
 void BasicAgent<Real>::find_leaf_shift(const branches::Leaves& leaves, std::size_t leaf) {
   const auto at = static_cast<std::size_t>(leaves.node[leaf]);
   const auto parent = static_cast<std::size_t>(leaves.parent[leaf]);
-  nodes_[at].shared = base::converted<Real>(agent::displacement(
-      Joint(setup_.beam, leaves.to_parent[leaf]), leaf_stiffness(at),
-      base::converted<double>(nodes_[parent].shared), base::converted<double>(nodes_[at].shared)));
+  auto load = base::converted<double>(nodes_[at].shared);
+  auto shift = base::converted<double>(nodes_[parent].shared);
+  find_displacement(Joint(setup_.beam, leaves.to_parent[leaf]), leaf_stiffness(at), load, shift);
+  nodes_[at].shared = base::converted<Real>(shift);
 }
 
 template <class Real>

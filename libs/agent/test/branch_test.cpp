@@ -152,17 +152,21 @@ bool eliminate(const Tree& tree, const Springs& springs, const Vectors& loads, V
     }
     const auto parent = static_cast<std::size_t>(tree.parents[i]);
     const Joint joint(beam, tree.to_parent(i));
-    for (int first = 0; first < Branch::kColumnCount; first += Branch::kBatch) {
+    Branch::Columns columns;
+    for (int first = 0; first < Branch::kColumnCount; first += Branch::batch_at(first)) {
       if (!branch.has_columns(first, false)) {
         continue;
       }
-      const Branch::Columns columns = branch.columns_up(joint, false, first);
-      for (int k = 0; k < Branch::kBatch; ++k) {
+      branch.find_columns_up(joint, false, first, columns);
+      for (int k = 0; k < Branch::batch_at(first); ++k) {
         branches[parent].add_column(first + k, slot_of[i], columns[static_cast<std::size_t>(k)]);
       }
     }
-    base::add_to(branch_loads[parent].load, branch.load_up(joint, false, branch_loads[i]));
-    const auto gaps = branch.gaps_up(joint, false, branch_loads[i]);
+    Vec6<double> load = branch_loads[i].load;
+    branch.find_load_up(joint, false, load);
+    base::add_to(branch_loads[parent].load, load);
+    CutForces gaps{};
+    branch.find_gaps_up(joint, false, branch_loads[i], gaps);
     for (std::size_t k = 0; k < static_cast<std::size_t>(branch.open_count()); ++k) {
       base::add_to(branch_loads[parent].gap[static_cast<std::size_t>(slot_of[i][k])],
                    base::converted<double>(gaps[k]));
@@ -170,7 +174,7 @@ bool eliminate(const Tree& tree, const Springs& springs, const Vectors& loads, V
   }
   std::vector<CutForces> forces(n);
   result.resize(n);
-  result[0] = branches[0].displacement_of_root(branch_loads[0]);
+  branches[0].find_displacement_of_root(branch_loads[0], result[0]);
   branches[0].find_forces(branch_loads[0], result[0], forces[0]);
   for (std::size_t i = 1; i < n; ++i) {
     const auto parent = static_cast<std::size_t>(tree.parents[i]);
@@ -178,8 +182,9 @@ bool eliminate(const Tree& tree, const Springs& springs, const Vectors& loads, V
       forces[i][static_cast<std::size_t>(branches[i].open_slot(k))] =
           forces[parent][static_cast<std::size_t>(slot_of[i][static_cast<std::size_t>(k)])];
     }
-    result[i] = branches[i].displacement(Joint(beam, tree.to_parent(i)), result[parent],
-                                         branch_loads[i], forces[i]);
+    result[i] = result[parent];
+    branches[i].find_displacement(Joint(beam, tree.to_parent(i)), branch_loads[i], forces[i],
+                                  result[i]);
     branches[i].find_forces(branch_loads[i], result[i], forces[i]);
   }
   return true;
@@ -303,23 +308,25 @@ TEST(Branch, a_symmetric_stiffness_is_the_same_in_parts) {
     branch.add_stiffness(springs);
     Branch by_parts;
     Branch by_columns;
+    Branch::Columns columns;
     for (int first = 0; first < Branch::kPartCount; first += 2) {
-      const Branch::Columns parts = branch.parts_up(up, is_fixed, first);
-      by_parts.add_part(first, parts[0]);
-      by_parts.add_part(first + 1, parts[1]);
+      branch.find_parts_up(up, is_fixed, first, columns);
+      by_parts.add_part(first, columns[0]);
+      by_parts.add_part(first + 1, columns[1]);
     }
     for (int first = 0; first < 6; first += Branch::kBatch) {
-      const Branch::Columns columns = branch.columns_up(up, is_fixed, first);
+      branch.find_columns_up(up, is_fixed, first, columns);
       for (int k = 0; k < Branch::kBatch; ++k) {
         by_columns.add_column(first + k, {}, columns[static_cast<std::size_t>(k)]);
       }
     }
     for (int first = 0; first < 6; first += Branch::kBatch) {
-      const Branch::Columns a = by_parts.columns_up(up, false, first);
-      const Branch::Columns b = by_columns.columns_up(up, false, first);
+      Branch::Columns other;
+      by_parts.find_columns_up(up, false, first, columns);
+      by_columns.find_columns_up(up, false, first, other);
       for (std::size_t k = 0; k < Branch::kBatch; ++k) {
         for (std::size_t row = 0; row < 6; ++row) {
-          EXPECT_NEAR(a[k][row], b[k][row], 1e-4F * (1 + std::abs(b[k][row]))) << round;
+          EXPECT_NEAR(columns[k][row], other[k][row], 1e-4F * (1 + std::abs(other[k][row])));
         }
       }
     }

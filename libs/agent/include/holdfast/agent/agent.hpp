@@ -285,6 +285,11 @@ class BasicAgent {
   void send_leaf_columns(const branches::Leaves& leaves, int leaf, int first);
   bool is_column_ready(int column) const;
   bool send_columns();
+  void send_batch(int column);
+  void send_column(int label, const base::Vec6<float>& column);
+  void send_load_up();
+  void send_gaps_up();
+  void find_own_shift();
   void find_residual_loads();
   void send_leaf_load(const branches::Leaves& leaves, std::size_t leaf);
   void send_branch_up(int index, const base::Vec6<float>& vector);

@@ -57,17 +57,19 @@ class Joint {
  public:
   Joint(const mechanics::BeamStiffness<double>& beam, base::Direction direction);
 
+  // All in place: stacks are small.
+
   /// F f
-  base::Vec6<double> bend(const base::Vec6<double>& force) const;
+  void bend(base::Vec6<double>& force) const;
 
   /// F^-1 u = K11 u
-  base::Vec6<double> hold(const base::Vec6<double>& u) const;
+  void hold(base::Vec6<double>& u) const;
 
   /// T u: the other end's rigid motion, seen here.
-  base::Vec6<double> carried(base::Vec6<double> u) const;
+  void carry(base::Vec6<double>& u) const;
 
   /// T^t f: a force here, seen at the other end.
-  base::Vec6<double> handed_on(base::Vec6<double> force) const;
+  void hand_on(base::Vec6<double>& force) const;
 
  private:
   const mechanics::BeamStiffness<double>& beam_;
@@ -88,9 +90,14 @@ class Branch {
   static constexpr int kPartCount = 4;
 
   /// Columns that are made at a time, from one factor of 1 + S F: so that no step of a small
-  /// processor takes long.
+  /// processor takes long. Those of P' take longest.
   static constexpr int kBatch = 3;
+  static constexpr int kGiveBatch = 2;
   using Columns = std::array<base::Vec6<float>, kBatch>;
+
+  static constexpr int batch_at(int index) {
+    return index < kColumnCount - 6 * kLoopsMax * kLoopsMax ? kBatch : kGiveBatch;
+  }
 
   // ---- Which loops are here. Once, when the tree and the planned modules are known.
 
@@ -134,30 +141,30 @@ class Branch {
   /// Are there columns at `index`, or only zeros? `is_fixed` if this module does not move.
   bool has_columns(int index, bool is_fixed) const;
 
-  /// Eq. (3): columns `first` to `first` + kBatch - 1.
-  Columns columns_up(const Joint& to_parent, bool is_fixed, int first) const;
+  /// Eq. (3): columns `first` to `first` + batch_at(first) - 1.
+  void find_columns_up(const Joint& to_parent, bool is_fixed, int first, Columns& columns) const;
 
   /// The same for parts `first` and the next of a symmetric S'.
-  Columns parts_up(const Joint& to_parent, bool is_fixed, int first) const;
+  void find_parts_up(const Joint& to_parent, bool is_fixed, int first, Columns& columns) const;
 
   // ---- Loads.
 
   /// Puts the loops that close here into the loads.
   void close_loops(BranchLoad& load) const;
 
-  /// Eq. (3): h'.
-  base::Vec6<double> load_up(const Joint& to_parent, bool is_fixed, const BranchLoad& load) const;
+  /// Eq. (3): h' instead of h.
+  void find_load_up(const Joint& to_parent, bool is_fixed, base::Vec6<double>& load) const;
 
   /// Eq. (3): y' in the order of the open loops.
-  std::array<base::Vec6<float>, kLoopsMax> gaps_up(const Joint& to_parent, bool is_fixed,
-                                                   const BranchLoad& load) const;
+  void find_gaps_up(const Joint& to_parent, bool is_fixed, const BranchLoad& load,
+                    CutForces& gaps) const;
 
-  /// Eq. (2): the displacement; `forces` has those of the open loops.
-  base::Vec6<double> displacement(const Joint& to_parent, const base::Vec6<double>& of_parent,
-                                  const BranchLoad& load, const CutForces& forces) const;
+  /// Eq. (2): the displacement instead of the parent's; `forces` has those of the open loops.
+  void find_displacement(const Joint& to_parent, const BranchLoad& load, const CutForces& forces,
+                         base::Vec6<double>& u) const;
 
   /// The same at the root. Not finite if nothing holds the robot.
-  base::Vec6<double> displacement_of_root(const BranchLoad& load) const;
+  void find_displacement_of_root(const BranchLoad& load, base::Vec6<double>& u) const;
 
   /// Forces in the loops closed here, for the displacement u.
   void find_forces(const BranchLoad& load, const base::Vec6<double>& u, CutForces& forces) const;
@@ -165,8 +172,10 @@ class Branch {
  private:
   bool is_open(int slot) const { return ((open_ >> static_cast<unsigned>(slot)) & 1U) != 0; }
 
-  Columns stiffness_up(const Joint& to_parent, bool is_fixed,
-                       const std::array<std::uint8_t, kBatch>& which) const;
+  void find_stiffness_up(const Joint& to_parent, bool is_fixed,
+                         const std::array<std::uint8_t, kBatch>& which, Columns& columns) const;
+  void find_end_columns(const Joint& to_parent, int first, Columns& columns) const;
+  void find_give_columns(const Joint& to_parent, bool is_fixed, int first, Columns& columns) const;
   void close_loop(const mechanics::BeamStiffness<double>& beam, int slot);
   void close_column(int slot, int column);
 
@@ -188,15 +197,15 @@ class Branch {
 // ---- For branches that no loop passes: planned modules that hang on their host.
 
 /// Eq. (3): columns `first` to `first` + Branch::kBatch - 1 of S'.
-Branch::Columns stiffness_up(const Joint& to_parent, const base::Mat6<float>& stiffness, int first);
+void find_stiffness_up(const Joint& to_parent, const base::Mat6<float>& stiffness, int first,
+                       Branch::Columns& columns);
 
-/// Eq. (3): h'.
-base::Vec6<double> load_up(const Joint& to_parent, const base::Mat6<float>& stiffness,
-                           base::Vec6<double> load);
+/// Eq. (3): h' instead of h.
+void find_load_up(const Joint& to_parent, const base::Mat6<float>& stiffness,
+                  base::Vec6<double>& load);
 
-/// Eq. (2).
-base::Vec6<double> displacement(const Joint& to_parent, const base::Mat6<float>& stiffness,
-                                const base::Vec6<double>& of_parent,
-                                const base::Vec6<double>& load);
+/// Eq. (2): the displacement instead of the parent's; the load is used up.
+void find_displacement(const Joint& to_parent, const base::Mat6<float>& stiffness,
+                       base::Vec6<double>& load, base::Vec6<double>& u);
 
 }  // namespace holdfast::agent
