@@ -175,8 +175,7 @@ void BasicAgent<Real>::add_leaf_stiffness(std::size_t node, int row, int column,
   }
 }
 
-/// This module's own part of its branch, and that of the planned ones here, in the contact states
-/// in use.
+/// From nothing: tangents, then columns of leaves, come piece by piece.
 template <class Real>
 void BasicAgent<Real>::factor_branch() {
   BranchWork& tree = work_.tree;
@@ -185,31 +184,38 @@ void BasicAgent<Real>::factor_branch() {
   tree.columns_here = {};
   tree.leaves = {};
   tree.is_symmetric = true;
+  for (int i = 0; i < node_count(); ++i) {
+    Node<Real>& node = nodes_[static_cast<std::size_t>(i)];
+    node.factor = {};
+    const bool tilts = node.is_ground && (node.state.tilt_x != 0 || node.state.tilt_y != 0);
+    tree.is_symmetric = tree.is_symmetric && !tilts;
+  }
   for (int face = 0; face < base::kDirectionCount; ++face) {
     if (is_cut(face)) {
       tree.branch.add_end(tree.branch.find(cut_at(face)), face % 2 != 0, setup_.beam);
     }
   }
-  for (std::size_t i = 0; i < static_cast<std::size_t>(node_count()); ++i) {
-    Node<Real>& node = nodes_[i];
-    node.factor = {};
-    if (!node.is_ground) {
-      continue;
-    }
-    tree.is_symmetric = tree.is_symmetric && node.state.tilt_x == 0 && node.state.tilt_y == 0;
-    const base::Mat6<double> tangent =
-        mechanics::contact_tangent(contact_.facet, node.state, node.is_held);
-    if (i == 0) {
-      tree.branch.add_stiffness(tangent);
-      continue;
-    }
-    for (int row = 0; row < 6; ++row) {
-      for (int column = 0; column < 6; ++column) {
-        add_leaf_stiffness(i, row, column, static_cast<float>(tangent.at(row, column)));
-      }
+  begin_piece(Piece::kTangents, node_count());
+}
+
+/// What a facet holds, in the contact state in use.
+template <class Real>
+void BasicAgent<Real>::add_tangent(std::size_t at) {
+  const Node<Real>& node = nodes_[at];
+  if (!node.is_ground) {
+    return;
+  }
+  const base::Mat6<double> tangent =
+      mechanics::contact_tangent(contact_.facet, node.state, node.is_held);
+  if (at == 0) {
+    work_.tree.branch.add_stiffness(tangent);
+    return;
+  }
+  for (int row = 0; row < 6; ++row) {
+    for (int column = 0; column < 6; ++column) {
+      add_leaf_stiffness(at, row, column, static_cast<float>(tangent.at(row, column)));
     }
   }
-  begin_piece(Piece::kLeafColumns, branches::kLeafPieces * planned_.hosted_count());
 }
 
 template <class Real>
@@ -236,6 +242,13 @@ bool BasicAgent<Real>::do_piece() {
 
 template <class Real>
 bool BasicAgent<Real>::do_factor_piece() {
+  if (piece_ == Piece::kTangents) {
+    add_tangent(--piece_index_);
+    if (piece_index_ == 0) {
+      begin_piece(Piece::kLeafColumns, branches::kLeafPieces * planned_.hosted_count());
+    }
+    return true;
+  }
   if (piece_ == Piece::kLeafColumns) {
     if (piece_index_ == 0) {
       begin_piece(Piece::kLoops);

@@ -60,7 +60,7 @@ void BasicAgent<Real>::begin(const Event& event, Actions& actions) {
 /// another.
 template <class Real>
 void BasicAgent<Real>::go_on() {
-  is_busy_ = exchange() || do_piece() || finish_sweep() || take_next_order();
+  is_busy_ = exchange() || do_piece() || finish_sweep() || end_stage() || take_next_order();
 }
 
 template <class Real>
@@ -241,6 +241,7 @@ void BasicAgent<Real>::leave_round() {
     is_sweeping_ = false;
     is_exchanging_ = false;
     piece_ = Piece::kNone;
+    is_stage_over_ = false;
     has_next_order_ = false;
     restart_at_ = now_ + setup_.timing.acknowledge_after;
   }
@@ -271,6 +272,7 @@ void BasicAgent<Real>::enter_round(const Round& round) {
   is_sweeping_ = false;
   is_exchanging_ = false;
   piece_ = Piece::kNone;
+  is_stage_over_ = false;
   has_next_order_ = false;
   tag_ = 0;
   vectors_here_ = {};

@@ -223,7 +223,7 @@ class BasicAgent {
   void take_echo(int face, std::span<const std::uint8_t> message);
   void take_appointment(std::span<const std::uint8_t> message);
   void await_less(int face);
-  void end_stage();
+  bool end_stage();
   void mark(std::uint16_t hops);
 
   // sweep.cpp: orders and reports.
@@ -255,6 +255,7 @@ class BasicAgent {
   /// What comes next, in the order of a kFactor, and from the residuals on of a kTreeStep as well.
   enum class Piece : std::uint8_t {
     kNone,
+    kTangents,
     kLeafColumns,
     kLoops,
     kColumns,
@@ -277,6 +278,7 @@ class BasicAgent {
   bool is_cut(int face) const;
   Cut cut_at(int face) const;
   void factor_branch();
+  void add_tangent(std::size_t node);
   void begin_piece(Piece piece, int index = 0);
   bool do_piece();
   bool do_factor_piece();
@@ -378,6 +380,7 @@ class BasicAgent {
   std::uint16_t census_hops_ = 0;
   std::uint32_t census_id_ = 0;
   bool is_anyone_silent_ = false;
+  bool is_stage_over_ = false;  ///< The wave has come back to this module.
   bool has_next_order_ = false;
   Order next_order_;  ///< Of the root.
 
