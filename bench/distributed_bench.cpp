@@ -10,10 +10,12 @@
 //   distributed_bench throughput          events per second and memory of large robots
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cstdlib>
 #include <filesystem>
 #include <string_view>
+#include <vector>
 
 #include "campaign.hpp"
 #include "holdfast/base/rng.hpp"
@@ -71,7 +73,7 @@ struct Tally {
   int undecided = 0;
   int disagreeing = 0;
   double ratio_error = 0;
-  std::uint64_t iterations = 0;
+  std::vector<double> sweeps;  ///< Of those that needed an equilibrium.
 
   void add(const test::Comparison& comparison, std::uint64_t seed) {
     ++count;
@@ -79,7 +81,9 @@ struct Tally {
     undecided += comparison.is_undecided() ? 1 : 0;
     disagreeing += comparison.result.all_agree ? 0 : 1;
     ratio_error = std::max(ratio_error, comparison.ratio_error());
-    iterations += comparison.result.effort.iterations;
+    if (comparison.sweeps() > 0) {
+      sweeps.push_back(comparison.sweeps());
+    }
     if (comparison.is_wrong() || comparison.is_undecided() || !comparison.result.all_agree ||
         comparison.ratio_error() > 1) {
       fmt::print("random_robot({}): {}\n", seed, comparison.text());
@@ -96,11 +100,16 @@ int run_random(std::uint64_t from, std::uint64_t to, bool is_noisy) {
     }
     tally.add(test::compare(make_robot(test::random_robot(seed)), options), seed);
   }
+  std::ranges::sort(tally.sweeps);
+  const auto share = [&](double part) {
+    const auto last = static_cast<double>(tally.sweeps.size()) - 1;
+    return tally.sweeps.empty() ? 0 : tally.sweeps[static_cast<std::size_t>(part * last)];
+  };
   fmt::print(
       "{} robots: {} wrong, {} undecided, {} not agreed; largest error {:.4f} of what is "
-      "allowed; {} iterations\n",
+      "allowed; sweeps of {}: median {:.0f}, 90 % {:.0f}, 99 % {:.0f}, most {:.0f}\n",
       tally.count, tally.wrong, tally.undecided, tally.disagreeing, tally.ratio_error,
-      tally.iterations);
+      tally.sweeps.size(), share(0.5), share(0.9), share(0.99), share(1));
   return tally.wrong + tally.undecided;
 }
 
@@ -165,7 +174,7 @@ int run_growth() {
 int run_sweeps(std::string_view method_name, std::span<char*> files) {
   const auto method = find_method(method_name);
   HOLDFAST_CHECK(method.has_value());
-  fmt::print("structure,modules,depth,method,steps,rounds,sweeps,verdict,exact,error_of_allowed\n");
+  fmt::print("structure,modules,depth,method,steps,sweeps,verdict,exact,error_of_allowed\n");
   int wrong_count = 0;
   for (const char* file : files) {
     const auto structure = load_file(file);
@@ -173,12 +182,10 @@ int run_sweeps(std::string_view method_name, std::span<char*> files) {
     const model::Robot& robot = structure.value().robot;
     const auto run = test::compare(robot, {.method = *method});
     wrong_count += run.is_wrong() || run.is_undecided() || run.ratio_error() > 1 ? 1 : 0;
-    const auto rounds = static_cast<double>(
-        run.result.phases[static_cast<std::size_t>(agent::Phase::kEquilibrium)].time);
-    fmt::print("{},{},{},{},{},{},{:.1f},{},{},{:.4f}\n", structure.value().name,
+    fmt::print("{},{},{},{},{},{:.1f},{},{},{:.4f}\n", structure.value().name,
                robot.modules().size(), run.depth, name(run.result.effort.method),
-               run.result.effort.iterations, rounds, rounds / (2.0 * std::max(1, run.depth)),
-               agent::name(run.robot), verdict::name(run.exact), run.ratio_error());
+               run.result.effort.iterations, run.sweeps(), agent::name(run.robot),
+               verdict::name(run.exact), run.ratio_error());
     std::fflush(stdout);
   }
   return wrong_count;

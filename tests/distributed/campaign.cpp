@@ -23,6 +23,11 @@ double Comparison::ratio_error() const {
              : 0;
 }
 
+double Comparison::sweeps() const {
+  const auto phase = static_cast<std::size_t>(agent::Phase::kEquilibrium);
+  return static_cast<double>(result.phases[phase].time) / (2.0 * std::max(1, depth));
+}
+
 std::string Comparison::text() const {
   return fmt::format("exact {} {:.6f}, robot {} {:.6f} ({}), {} iterations, {} solves",
                      verdict::name(exact), ratio_exact, agent::name(robot), ratio_robot,

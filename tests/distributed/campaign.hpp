@@ -29,6 +29,9 @@ struct Comparison {
   /// The error of the largest load ratio over what is allowed, 0.01 + 1 %; 0 if there is none.
   double ratio_error() const;
 
+  /// Rounds of the equilibrium over twice the tree's depth, on the link `unit`.
+  double sweeps() const;
+
   std::string text() const;
 };
 

@@ -69,6 +69,32 @@ TEST(Distributed, random_robots_are_decided_like_the_exact_answer) {
   }
 }
 
+/// A portal with one module missing in the lower edge of its beam, which is to be put back.
+TEST(Distributed, a_planned_module_between_others_costs_some_steps_more_and_no_other_method) {
+  model::RobotSpec spec;
+  const base::Cell gap{4, 0, 4};
+  for (std::int32_t x = 0; x < 9; ++x) {
+    for (std::int32_t z = 0; z < 6; ++z) {
+      for (std::int32_t y = 0; y < 2; ++y) {
+        const base::Cell cell{x, y, z};
+        if ((x < 2 || x > 6 || z > 3) && cell != gap) {
+          spec.existing.push_back(cell);
+        }
+      }
+    }
+  }
+  const auto whole = model::Robot::create(spec);
+  spec.planned = {gap};
+  const auto planned = model::Robot::create(spec);
+  ASSERT_TRUE(whole && planned);
+  const auto without = test::compare(whole.value(), {});
+  const auto with = test::compare(planned.value(), {});
+  expect_right(without);
+  expect_right(with);
+  EXPECT_EQ(with.result.effort.method, agent::Method::kPolynomial);
+  EXPECT_LT(with.result.effort.iterations, 4 * without.result.effort.iterations);
+}
+
 TEST(Distributed, loss_duplication_reordering_and_bit_errors_change_no_verdict) {
   for (std::uint64_t seed = 0; seed < 20; ++seed) {
     SCOPED_TRACE(::testing::Message() << "random_robot(" << seed << ")");

@@ -3,6 +3,7 @@
 #include "holdfast/agent/agent.hpp"
 
 #include "equilibrium.hpp"
+#include "remote.hpp"
 #include "rounds.hpp"
 #include "sweep.hpp"
 #include "waves.hpp"

@@ -125,9 +125,6 @@ Order Conductor::after_plan(const Report& report) {
 
 Order Conductor::after_hosts(const Report& report) {
   is_any_remote_ = (report.mask & kAnyRemote) != 0;
-  // What several modules add to a planned one takes a whole sweep, so there is one exchange in
-  // each.
-  degree_ = is_any_remote_ ? std::uint16_t{0} : degree_;
   const unsigned all = (1U << planned_count_) - 1;
   if ((report.mask & 0x7fU) != all) {
     return finish(Verdict::kUndecided, Reason::kPlannedDetached);
@@ -175,6 +172,7 @@ Order Conductor::begin_law(const Setup& setup, bool is_unilateral) {
   is_tilting_ = false;
   has_history_ = false;
   seen_count_ = 0;
+  contact_steps_max_ = effort_.contact_steps + kContactStepsMax;
   check_at_ = effort_.iterations + 2 * jacobi_span();
   check_error_ = 1e30;
   stagnation_count_ = 0;
@@ -239,7 +237,7 @@ Order Conductor::judge(const Setup& setup, const Report& report) {
 
 /// The linear problem is solved and some facets want another state.
 Order Conductor::judge_regularised(const Setup& setup, const Report& report) {
-  if (was_seen(report.number) || effort_.contact_steps > kContactStepsMax) {
+  if (was_seen(report.number) || effort_.contact_steps > contact_steps_max_) {
     return begin_law(setup, true);
   }
   ++effort_.contact_steps;

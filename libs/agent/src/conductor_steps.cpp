@@ -30,12 +30,12 @@ double ratio_per_energy_root(const Setup& setup) {
 
 }  // namespace
 
-/// Planned modules that touch several others need a sweep for every exchange, and the unilateral
-/// law a line search: conjugate gradients have both.
+/// The unilateral law needs a line search, which conjugate gradients have, and more planned modules
+/// than a link can take the forces of at once a sweep for each exchange.
 void Conductor::choose_one_sweep(bool is_unilateral) {
-  if (is_unilateral || is_any_remote_) {
+  if (is_unilateral || (is_any_remote_ && planned_count_ > kRemoteMax)) {
     effort_.method = Method::kConjugateGradients;
-  } else if (has_many_loops_) {
+  } else if (has_many_loops_ || is_any_remote_) {
     effort_.method = Method::kPolynomial;
   }
 }
@@ -93,8 +93,9 @@ Order Conductor::after_step(const Setup& setup, const Report& report) {
   if (has_jumped) {
     ++effort_.contact_steps;
     const bool is_cycle = was_accurate && was_seen(report.number);
-    if (is_cycle || effort_.contact_steps > kContactStepsMax) {
-      return leave_one_sweep(setup, is_cycle);
+    if (is_cycle || effort_.contact_steps > contact_steps_max_) {
+      // Only exact steps are certain to go round in circles: conjugate gradients try first.
+      return leave_one_sweep(setup, is_cycle && is_elimination);
     }
     error_best_ = 1e30;
     stagnation_count_ = 0;

@@ -186,7 +186,8 @@ void BasicAgent<Real>::precondition(int node_index, int degree) {
   Node<Real>& node = nodes_[static_cast<std::size_t>(node_index)];
   Gradients<Real>& cg = gradients_of(node_index);
   const equilibrium::Interval interval(degree);
-  const auto scale = static_cast<Real>(degree == 0 ? 1 : 1 / interval.centre);
+  const bool is_joined = node_index < joined_count();
+  const auto scale = static_cast<Real>(degree == 0 || !is_joined ? 1 : 1 / interval.centre);
   typename Gradients<Real>::Vec first = solve_diagonal(node, cg.r);
   for (Real& value : first) {
     value *= scale;
@@ -243,7 +244,7 @@ void BasicAgent<Real>::polynomial_step() {
   const auto keep = static_cast<Real>(rho * static_cast<double>(rho_));
   const auto gain = static_cast<Real>(interval.half > 0 ? 2 * rho / interval.half : 0);
   const bool is_last = exchanges_left_ == 1;
-  for (int i = 0; i < node_count(); ++i) {
+  for (int i = 0; i < joined_count(); ++i) {
     Node<Real>& node = nodes_[static_cast<std::size_t>(i)];
     Gradients<Real>& cg = gradients_of(i);
     if (node.is_fixed) {
@@ -344,9 +345,14 @@ void BasicAgent<Real>::exchange_forces() {
     const int k = planned_.at_face(face);
     if ((faces & bit(face)) != 0) {
       add_beam(face, vectors[static_cast<std::size_t>(face)]);
+    } else if (k >= 0 && is_apart()) {
+      add_beam_apart(face);
     } else if (k >= 0) {
       add_beam(face, planned_vector_[static_cast<std::size_t>(k)]);
     }
+  }
+  if (is_apart()) {
+    return;
   }
   add_planned_beams();
   for (int i = 0; i < planned_.hosted_count(); ++i) {
@@ -377,9 +383,13 @@ void BasicAgent<Real>::add_beam(int face, const base::Vec6<float>& other) {
     const auto theirs = converted<Real>(other);
     base::add_to(gradients_of(0).image, mechanics::end_force(beam, direction, mine, theirs));
     if (k >= 0) {
+      // A planned module that has stood apart has all terms to catch up with.
+      const auto& whole = planned_.is_any_remote() && sweep::is_preconditioned(order_.operation)
+                              ? gradients_of(0).z
+                              : mine;
       base::add_to(
           planned_force_[static_cast<std::size_t>(k)],
-          converted<double>(mechanics::end_force(beam, base::opposite(direction), theirs, mine)));
+          converted<double>(mechanics::end_force(beam, base::opposite(direction), theirs, whole)));
     }
     return;
   }

@@ -123,6 +123,18 @@ int Planned::node_of(int index) const {
   return -1;
 }
 
+int Planned::slot_of(int index) const {
+  const int node = node_of(index);
+  if (node >= 0) {
+    return node;
+  }
+  int slot = 1 + hosted_count_;
+  for (int k = 0; k < index; ++k) {
+    slot += is_from_above(k) ? 1 : 0;
+  }
+  return slot;
+}
+
 bool Planned::is_needed_below(int face, int index) const {
   return (involved_ & bit(index)) != 0 &&
          below_[static_cast<std::size_t>(face)][static_cast<std::size_t>(index)] != 0;

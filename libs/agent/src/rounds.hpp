@@ -276,6 +276,7 @@ void BasicAgent<Real>::enter_round(const Round& round) {
   has_next_order_ = false;
   tag_ = 0;
   vectors_here_ = {};
+  planned_here_ = 0;
   planned_.clear();
   answer_ = {};
   phase_ = Phase::kCoordinates;

@@ -69,6 +69,9 @@ void BasicAgent<Real>::begin_step(const Order& order) {
     }
     share_high_part(node);
   }
+  if (is_apart()) {
+    share_remote();
+  }
 }
 
 template <class Real>
@@ -82,24 +85,32 @@ void BasicAgent<Real>::share_high_part(Node<Real>& node) {
 /// The forces at the new place are complete: contact states, then what the step has done.
 template <class Real>
 void BasicAgent<Real>::find_residuals() {
-  for (int i = 0; i < node_count(); ++i) {
-    Node<Real>& node = nodes_[static_cast<std::size_t>(i)];
-    node.wanted = state_along(node, contact_, {}, 0);
-    node.has_changed = node.is_ground && !(node.wanted == node.state);
-    if (node.has_changed) {
-      node.state = node.wanted;
-    }
-    if (!kHasAllMethods || order_.operation == wire::Operation::kTreeStep) {
-      continue;
-    }
-    if (node.has_changed) {
-      factor_diagonal(node, setup_, contact_, node_faces(i));
-    }
-    start_terms(i);
-    Steps& steps = steps_of(i);
-    for (std::size_t k = 0; k < 6; ++k) {
-      steps.newer.q[k] -= steps.w[k];  // Still the residual.
-    }
+  if (is_apart()) {
+    add_remote_beams();
+  }
+  for (int i = 0; i < joined_count(); ++i) {
+    find_residual(i);
+  }
+}
+
+template <class Real>
+void BasicAgent<Real>::find_residual(int node_index) {
+  Node<Real>& node = nodes_[static_cast<std::size_t>(node_index)];
+  node.wanted = state_along(node, contact_, {}, 0);
+  node.has_changed = node.is_ground && !(node.wanted == node.state);
+  if (node.has_changed) {
+    node.state = node.wanted;
+  }
+  if (!kHasAllMethods || order_.operation == wire::Operation::kTreeStep) {
+    return;
+  }
+  if (node.has_changed) {
+    factor_diagonal(node, setup_, contact_, node_faces(node_index));
+  }
+  start_terms(node_index);
+  Steps& steps = steps_of(node_index);
+  for (std::size_t k = 0; k < 6; ++k) {
+    steps.newer.q[k] -= steps.w[k];  // Still the residual.
   }
 }
 
@@ -112,7 +123,8 @@ void BasicAgent<Real>::share_term(Node<Real>& node, Steps& steps) {
   }
 }
 
-/// The polynomial's first term for the present residual.
+/// The polynomial's first term for the present residual; all of M^-1 r for a module that stands
+/// apart (remote.hpp).
 template <class Real>
 void BasicAgent<Real>::start_terms(int node_index) {
   Node<Real>& node = nodes_[static_cast<std::size_t>(node_index)];
@@ -120,11 +132,14 @@ void BasicAgent<Real>::start_terms(int node_index) {
   const equilibrium::Interval interval(order_.count, kStepSpread);
   steps.w = residual(node, setup_, contact_);
   const base::Vec6<Real> first = solve_diagonal(node, base::converted<Real>(steps.w));
+  const double scale = node_index < joined_count() ? interval.centre : 1;
   for (std::size_t k = 0; k < 6; ++k) {
-    node.shared[k] = static_cast<Real>(static_cast<double>(first[k]) / interval.centre);
+    node.shared[k] = static_cast<Real>(static_cast<double>(first[k]) / scale);
   }
   share_term(node, steps);
-  rho_ = static_cast<float>(interval.half / interval.centre);
+  if (node_index == 0) {
+    rho_ = static_cast<float>(interval.half / interval.centre);
+  }
 }
 
 /// The next term: the beams' forces of the last one are off w already.
@@ -134,7 +149,7 @@ void BasicAgent<Real>::next_terms() {
   const double rho = 1 / (2 * interval.centre / interval.half - static_cast<double>(rho_));
   const double keep = rho * static_cast<double>(rho_);
   const double gain = 2 * rho / interval.half;
-  for (int i = 0; i < node_count(); ++i) {
+  for (int i = 0; i < joined_count(); ++i) {
     Node<Real>& node = nodes_[static_cast<std::size_t>(i)];
     Steps& steps = steps_of(i);
     if (node.is_fixed) {

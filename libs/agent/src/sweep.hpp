@@ -4,6 +4,7 @@
 
 #include "bits.hpp"
 #include "holdfast/agent/agent.hpp"
+#include "methods.hpp"
 
 /// Sweeps: an order goes down the tree, its report comes up, and most of them exchange six reals
 /// between all neighbours on the way.
@@ -61,7 +62,13 @@ constexpr std::uint16_t exchanges_behind(const Order& order) {
 
 /// Forces whose digits beyond single precision count.
 constexpr bool is_precise(wire::Operation operation) {
-  return operation == wire::Operation::kHigh || operation == wire::Operation::kLow;
+  return operation == wire::Operation::kHigh || operation == wire::Operation::kLow ||
+         operation == wire::Operation::kStep;
+}
+
+/// A linear solve's exchanges: the preconditioner's terms, then w = A z.
+constexpr bool is_preconditioned(wire::Operation operation) {
+  return operation == wire::Operation::kStart || operation == wire::Operation::kGradient;
 }
 
 constexpr Phase phase_of(wire::Operation operation) {
@@ -81,6 +88,11 @@ constexpr Phase phase_of(wire::Operation operation) {
       return Phase::kEquilibrium;
   }
 }
+
+/// In the label of `planned down`: the index, and for a step which part of a displacement it is.
+inline constexpr std::uint8_t kIndexMask = 0x3f;
+inline constexpr std::uint8_t kLeading = 0x40;
+inline constexpr std::uint8_t kTrailing = 0x80;
 
 inline wire::Writer vector_message(wire::MessageType type, std::uint8_t label,
                                    const base::Vec6<float>& vector) {
@@ -123,8 +135,6 @@ template <class Real>
 void BasicAgent<Real>::start_exchange() {
   is_exchanging_ = true;
   ++tag_;
-  planned_awaited_ = planned_.from_above();
-  planned_force_ = {};
   const base::Vec6<float> own = base::converted<float>(nodes_[0].shared);
   const std::uint8_t faces = used_faces();
   for (int face = 0; face < base::kDirectionCount; ++face) {
@@ -132,6 +142,15 @@ void BasicAgent<Real>::start_exchange() {
       send(face, sweep::vector_message(wire::MessageType::kVector, tag_, own));
     }
   }
+  if (!is_apart()) {
+    start_planned_exchange();
+  }
+}
+
+/// What the planned modules emulated here share, to all that touch them.
+template <class Real>
+void BasicAgent<Real>::start_planned_exchange() {
+  planned_force_ = {};
   for (int i = 0; i < planned_.hosted_count(); ++i) {
     planned_vector_[static_cast<std::size_t>(planned_.hosted(i))] =
         base::converted<float>(nodes_[static_cast<std::size_t>(1 + i)].shared);
@@ -160,11 +179,14 @@ template <class Real>
 void BasicAgent<Real>::take_planned_down(std::span<const std::uint8_t> message) {
   wire::Reader in(message);
   const int k = in.u8();
+  if (kHasAllMethods && (k & ~sweep::kIndexMask) != 0) {
+    return take_remote_down(static_cast<std::uint8_t>(k), sweep::read_vector(in));
+  }
   if (k >= planned_.count()) {
     return;
   }
   planned_vector_[static_cast<std::size_t>(k)] = sweep::read_vector(in);
-  planned_awaited_ = static_cast<std::uint8_t>(planned_awaited_ & ~bit(k));
+  planned_here_ = static_cast<std::uint8_t>(planned_here_ | bit(k));
   send_planned_down(k);
 }
 
@@ -231,17 +253,20 @@ template <class Real>
 bool BasicAgent<Real>::exchange() {
   const std::size_t slot = tag_ & 1U;
   const std::uint8_t faces = used_faces();
-  // What children add to planned modules emulated here comes before their reports. An order that
-  // needs this has one exchange only.
+  // What children add to planned modules emulated here comes before their reports. It belongs to an
+  // order's last exchange.
   const bool waits_for_children = exchanges_left_ == 1 && exchanges_behind_ == 0;
-  if (!is_exchanging_ || (vectors_here_[slot] & faces) != faces || planned_awaited_ != 0 ||
+  if (!is_exchanging_ || (vectors_here_[slot] & faces) != faces || is_waiting_for_hosts() ||
       (waits_for_children && reports_awaited_ != 0)) {
     return false;
   }
   exchange_forces();
   vectors_here_[slot] = 0;
+  planned_here_ = needs_hosts() ? std::uint8_t{0} : planned_here_;
   is_exchanging_ = false;
-  send_planned_up();
+  if (!is_apart()) {
+    send_planned_up();
+  }
   after_exchange();
   if (--exchanges_left_ > 0) {
     start_exchange();
@@ -268,6 +293,10 @@ bool BasicAgent<Real>::finish_sweep() {
     return false;
   }
   is_sweeping_ = false;
+  if (order_.operation == wire::Operation::kStep && is_apart()) {
+    find_remote_residuals();
+    send_planned_up();
+  }
   Report report = conclude(order_);
   for (int face = 0; face < base::kDirectionCount; ++face) {
     if ((children_ & bit(face)) != 0) {

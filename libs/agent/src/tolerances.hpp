@@ -26,7 +26,7 @@ inline constexpr double kReductionTilting = 1e-3;
 /// Judgements without progress before a way is given up.
 inline constexpr int kStagnationMax = 8;
 
-inline constexpr int kContactStepsMax = 100;
+inline constexpr std::uint32_t kContactStepsMax = 100;
 
 /// A full step will do if it brings the slope of the energy down this far; else the line is
 /// searched so many times, each to a quarter of the interval.

@@ -345,6 +345,24 @@ TEST(Conductor, jacobi_takes_single_steps_when_a_planned_module_is_remote) {
   }
 }
 
+/// Their forces share a link with what a step exchanges; all five may be too many for it.
+TEST(Conductor, one_sweep_steps_take_up_to_four_remote_planned_modules) {
+  for (int count = 1; count <= kPlannedMax; ++count) {
+    Drive drive(Method::kElimination);
+    drive.next({.flags = kFound});
+    for (int i = 1; i < count; ++i) {
+      drive.next({.flags = kFound, .mask = 1});
+    }
+    drive.next({.mask = 1});
+    ASSERT_EQ(drive.order.operation, Operation::kHosts);
+    drive.next({.mask = static_cast<std::uint8_t>(kAnyRemote | ((1U << count) - 1))});
+    drive.next({.flags = kAnyFixed, .extent = 5, .count = kCensus + static_cast<unsigned>(count)});
+    ASSERT_EQ(drive.order.operation, Operation::kBegin);
+    const bool is_step = (drive.order.flags & kOneSweep) != 0 && drive.order.count > 0;
+    EXPECT_EQ(is_step, count <= kRemoteMax) << count;
+  }
+}
+
 TEST(Conductor, gradients_stop_at_the_limit_of_iterations) {
   Drive drive;
   drive.setup.iteration_count_max = 50;

@@ -152,6 +152,18 @@ TEST(Planned, the_host_is_the_deepest_common_ancestor) {
   EXPECT_FALSE(parts[3].is_from_above(0));
 }
 
+/// Node 0 is the module itself, then come those emulated here, then those kept of hosts above.
+TEST(Planned, every_module_that_hears_of_a_planned_one_has_a_place_for_it) {
+  const auto parts = share(kRow, {{0, 0, 1}, {1, 1, 0}, {2, 0, 1}, {2, 1, 0}});
+  EXPECT_EQ(hosted(parts[1]), (List{1, 3}));
+  EXPECT_EQ(parts[1].slot_of(1), 1);
+  EXPECT_EQ(parts[1].slot_of(3), 2);
+  EXPECT_EQ(hosted(parts[2]), List{2});
+  EXPECT_EQ(parts[2].from_above(), 8);
+  EXPECT_EQ(parts[2].slot_of(2), 1);
+  EXPECT_EQ(parts[2].slot_of(3), 2);
+}
+
 TEST(Planned, a_participant_above_the_other_hosts) {
   const auto parts = share(kRow, {{1, 1, 0}, {2, 1, 0}});
   EXPECT_EQ(hosted(parts[1]), (List{0, 1}));

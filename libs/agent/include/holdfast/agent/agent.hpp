@@ -229,6 +229,7 @@ class BasicAgent {
   // sweep.cpp: orders and reports.
   void take_order(const Order& order);
   void start_exchange();
+  void start_planned_exchange();
   void take_vector(int face, std::span<const std::uint8_t> message);
   void take_planned_down(std::span<const std::uint8_t> message);
   void take_planned_up(std::span<const std::uint8_t> message);
@@ -306,11 +307,25 @@ class BasicAgent {
   void begin_tree_step();
   void share_high_part(Node<Real>& node);
   void find_residuals();
+  void find_residual(int node);
   void share_term(Node<Real>& node, Steps& steps);
   void start_terms(int node);
   void next_terms();
   Report step_report() const;
   Report tree_step_report() const;
+
+  // remote.hpp: planned modules that touch several others, in a step.
+  bool is_apart() const;
+  int joined_count() const;
+  Node<Real>& planned_node(int k);
+  void share_remote();
+  void send_remote_down(std::uint8_t label, const base::Vec6<float>& part);
+  void take_remote_down(std::uint8_t label, const base::Vec6<float>& part);
+  bool needs_hosts() const;
+  bool is_waiting_for_hosts() const;
+  void add_beam_apart(int face);
+  void add_remote_beams();
+  void find_remote_residuals();
 
   // equilibrium.cpp: the same for the equilibrium's operations.
   /// Displacements go into forces, a gradient's direction into its image, a term of a step's
@@ -392,8 +407,8 @@ class BasicAgent {
   bool is_scalar_ = false;      ///< Scalar diagonal instead of blocks.
   float rho_ = 0;               ///< Of the polynomial preconditioner.
   std::uint8_t reports_awaited_ = 0;
-  std::uint8_t planned_awaited_ = 0;  ///< By planned index: reals still to come from the parent.
-  std::uint8_t tag_ = 0;              ///< Of the exchange under way.
+  std::uint8_t planned_here_ = 0;               ///< By planned index: what has come from its host.
+  std::uint8_t tag_ = 0;                        ///< Of the exchange under way.
   std::array<std::uint8_t, 2> vectors_here_{};  ///< Faces, by the tag's lowest bit.
   std::uint16_t exchanges_left_ = 0;
   std::uint16_t exchanges_behind_ = 0;  ///< Those that go on when the report has left.
@@ -428,5 +443,8 @@ static_assert(sizeof(BasicAgent<float>) <= kAgentBytesMax);
 // The most that waits on one link: two vectors for every planned module, one more and a report.
 // What came before them has been acknowledged by the order that asked for them.
 static_assert(Link::kQueueBytes >= (2 * kPlannedMax + 2) * wire::kVectorBytes);
+// In a step two vectors of the polynomial may be on the way beside them.
+static_assert(Link::kQueueBytes >=
+              (2 * kRemoteMax + 2) * wire::kVectorBytes + wire::kMessageBytesMax);
 
 }  // namespace holdfast::agent

@@ -147,6 +147,7 @@ class Conductor {
   std::uint8_t planned_count_ = 0;
   std::array<std::uint8_t, 8> totals_{};
   bool is_any_remote_ = false;
+  std::uint32_t contact_steps_max_ = 0;  ///< Under the present law.
   bool is_fixed_ = false;
   std::uint16_t extent_ = 0;
 

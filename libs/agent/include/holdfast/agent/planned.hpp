@@ -19,6 +19,9 @@ namespace holdfast::agent {
 
 inline constexpr int kPlannedMax = 5;
 
+/// So many planned modules may touch several others in the one-sweep methods (src/remote.hpp).
+inline constexpr int kRemoteMax = 4;
+
 class Planned {
  public:
   static constexpr std::uint8_t kOccupied = 0x40;  ///< In a mask: the cell is not free.
@@ -61,6 +64,10 @@ class Planned {
 
   /// The other way round: its node, 1 and up, or -1 if it is not emulated here.
   int node_of(int index) const;
+
+  /// The node that holds planned module `index`: of those emulated here, or else one behind them
+  /// that a module with `is_from_above(index)` keeps of it.
+  int slot_of(int index) const;
 
   /// Does this module lie below the host and have participants from itself down?
   bool is_from_above(int index) const { return (from_above_ >> static_cast<unsigned>(index)) & 1U; }
