@@ -344,7 +344,7 @@ bool BasicAgent<Real>::send_columns() {
     }
     // What follows must find room too.
     constexpr int kRoom =
-        (Branch::kBatch + 2 + kLoopsMax) * wire::kVectorBytes + wire::kMessageBytesMax;
+        (Branch::kBatch + 1 + kLoopsMax) * wire::kVectorBytes + wire::kMessageBytesMax;
     if (!links_[static_cast<std::size_t>(parent_)].has_room(kRoom)) {
       return false;
     }

@@ -193,15 +193,20 @@ Mat6<Real> matrix_of(Map&& map) {
 }  // namespace
 
 template <class Real>
-GroundFacet<Real> ground_facet(const BeamSection<Real>& section, Real facet_width, Real gamma,
-                               ContactLaw law) {
-  const BeamStiffness<Real> beam = beam_stiffness(section);
+GroundFacet<Real> ground_facet(const BeamStiffness<Real>& beam, Real length, Real facet_width,
+                               Real gamma, ContactLaw law) {
   return {.stiffness = {beam.shear_x, beam.shear_y, beam.axial, beam.bend_y / 4, beam.bend_x / 4,
                         beam.twist},
-          .lever = section.length / 2,
+          .lever = length / 2,
           .half_width = facet_width / 2,
           .gamma = gamma,
           .law = law};
+}
+
+template <class Real>
+GroundFacet<Real> ground_facet(const BeamSection<Real>& section, Real facet_width, Real gamma,
+                               ContactLaw law) {
+  return ground_facet(beam_stiffness(section), section.length, facet_width, gamma, law);
 }
 
 template <class Real>
@@ -287,6 +292,8 @@ Mat6<Real> symmetric_tangent(const GroundFacet<Real>& facet, ContactState state,
 
 #define HOLDFAST_INSTANTIATE(Real)                                                           \
   template GroundFacet<Real> ground_facet(const BeamSection<Real>&, Real, Real, ContactLaw); \
+  template GroundFacet<Real> ground_facet(const BeamStiffness<Real>&, Real, Real, Real,      \
+                                          ContactLaw);                                       \
   template Vec6<Real> trial_force(const GroundFacet<Real>&, const Vec6<Real>&);              \
   template ContactState contact_state(const GroundFacet<Real>&, const Vec6<Real>&);          \
   template Mat6<Real> corrector(const GroundFacet<Real>&, ContactState, bool);               \

@@ -85,7 +85,7 @@ Double rounded(Double sign, int exponent, std::uint64_t digits) {
 }
 
 /// 32 x 32 to 64 digits from four products of 16 x 16.
-std::uint64_t product(std::uint32_t a, std::uint32_t b) {
+[[gnu::always_inline]] inline std::uint64_t product(std::uint32_t a, std::uint32_t b) {
   const std::uint32_t a0 = a & 0xffffU;
   const std::uint32_t a1 = a >> 16U;
   const std::uint32_t b0 = b & 0xffffU;

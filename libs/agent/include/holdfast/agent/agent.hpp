@@ -353,6 +353,9 @@ class BasicAgent {
   double ratio_of(const MiddleLoad& load, base::Direction direction) const;
   template <class Visit>
   void visit_loads(Visit&& visit) const;
+  using LoadVisit = void (*)(void* visitor, const base::Cell& cell, base::Direction direction,
+                             double ratio);
+  void visit_all_loads(LoadVisit visit, void* visitor) const;
   std::uint8_t node_faces(int node) const;
 
   int node_count() const { return 1 + planned_.hosted_count(); }
