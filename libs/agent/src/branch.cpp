@@ -490,25 +490,26 @@ void Branch::find_stiffness_up(const Joint& to_parent, bool is_fixed, const Whic
   }
 }
 
-void Branch::find_columns_up(const Joint& to_parent, bool is_fixed, int first,
+void Branch::find_columns_up(const Joint& to_parent, bool is_fixed, int first, int count,
                              Columns& columns) const {
   if (first < kOnto) {
     find_stiffness_up(to_parent, is_fixed, three_from(first), columns);
   } else if (first < kGive) {
-    find_end_columns(to_parent, first, columns);
+    find_end_columns(to_parent, first, count, columns);
   } else {
-    find_give_columns(to_parent, is_fixed, first, columns);
+    find_give_columns(to_parent, is_fixed, first, count, columns);
   }
 }
 
 /// B' = T^t N B or the transposed C' = C G T.
-void Branch::find_end_columns(const Joint& to_parent, int first, Columns& columns) const {
+void Branch::find_end_columns(const Joint& to_parent, int first, int count,
+                              Columns& columns) const {
   const bool is_onto = first < kAcross;
   const int slot = open_slot((first - (is_onto ? kOnto : kAcross)) / kSize);
   HOLDFAST_ASSERT(slot >= 0);
   const InSeries series(stiffness_, to_parent, is_onto ? Series::kAtParent : Series::kTransposed);
   Vec6<double> vector;
-  for (int i = 0; i < kBatch; ++i) {
+  for (int i = 0; i < count; ++i) {
     const int j = first % kSize + i;
     vector = is_onto ? column_of(onto_[at(slot)], j) : row_of(across_[at(slot)], j);
     series.pass(vector);
@@ -518,7 +519,7 @@ void Branch::find_end_columns(const Joint& to_parent, int first, Columns& column
 }
 
 /// P' = P + C G F B
-void Branch::find_give_columns(const Joint& to_parent, bool is_fixed, int first,
+void Branch::find_give_columns(const Joint& to_parent, bool is_fixed, int first, int count,
                                Columns& columns) const {
   const int row = open_slot((first - kGive) / kSize / kLoopsMax);
   const int column = open_slot((first - kGive) / kSize % kLoopsMax);
@@ -526,14 +527,14 @@ void Branch::find_give_columns(const Joint& to_parent, bool is_fixed, int first,
   const Mat6<float>& give = give_[at(row)][at(column)];
   const int j = first % kSize;
   if (is_fixed) {
-    for (int i = 0; i < kGiveBatch; ++i) {
+    for (int i = 0; i < count; ++i) {
       columns[at(i)] = base::converted<float>(column_of(give, j + i));
     }
     return;
   }
   const InSeries series(stiffness_, to_parent, Series::kAtChild);
   Vec6<double> bent;
-  for (int i = 0; i < kGiveBatch; ++i) {
+  for (int i = 0; i < count; ++i) {
     bent = column_of(onto_[at(column)], j + i);
     to_parent.bend(bent);
     series.pass(bent);

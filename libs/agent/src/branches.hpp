@@ -326,20 +326,16 @@ bool BasicAgent<Real>::is_column_ready(int column) const {
   return true;
 }
 
-/// The next columns for the parent; those of zeros need not be sent. False: more when there is room
-/// on the link, or when children have sent more.
+/// The next columns for the parent, as many as are ready; those of zeros need not be sent. False:
+/// more when there is room on the link, or when children have sent more.
 template <class Real>
 bool BasicAgent<Real>::send_columns() {
-  const BranchWork& tree = work_.tree;
-  const bool is_fixed = nodes_[0].is_fixed;
-  const auto next = [&] {
-    piece_index_ = static_cast<std::uint8_t>(piece_index_ + Branch::batch_at(piece_index_));
-  };
-  for (; piece_index_ < Branch::kColumnCount && parent_ >= 0; next()) {
-    if (!is_column_ready(piece_index_ + Branch::batch_at(piece_index_) - 1)) {
+  const Branch& branch = work_.tree.branch;
+  for (; piece_index_ < Branch::kColumnCount && parent_ >= 0; ++piece_index_) {
+    if (!is_column_ready(piece_index_)) {
       return false;
     }
-    if (!tree.branch.has_columns(piece_index_, is_fixed)) {
+    if (!branch.has_columns(piece_index_, nodes_[0].is_fixed)) {
       continue;
     }
     // What follows must find room too.
@@ -348,8 +344,12 @@ bool BasicAgent<Real>::send_columns() {
     if (!links_[static_cast<std::size_t>(parent_)].has_room(kRoom)) {
       return false;
     }
-    send_batch(piece_index_);
-    next();
+    int count = 1;
+    while (count < Branch::batch_at(piece_index_) && is_column_ready(piece_index_ + count)) {
+      ++count;
+    }
+    send_batch(piece_index_, count);
+    piece_index_ = static_cast<std::uint8_t>(piece_index_ + count);
     return true;
   }
   begin_piece(Piece::kResiduals);
@@ -357,20 +357,19 @@ bool BasicAgent<Real>::send_columns() {
 }
 
 template <class Real>
-void BasicAgent<Real>::send_batch(int column) {
+void BasicAgent<Real>::send_batch(int column, int count) {
   const Branch& branch = work_.tree.branch;
   const bool is_fixed = nodes_[0].is_fixed;
   const bool has_parts = work_.tree.is_symmetric && column < branches::kStiffnessColumns;
   // Two parts are made of three columns.
   const int first = has_parts ? column * 2 / Branch::kBatch : column;
-  const int count = has_parts ? 2 : Branch::batch_at(column);
   Branch::Columns columns;
   {
     const Joint joint = joint_to_parent();
     has_parts ? branch.find_parts_up(joint, is_fixed, first, columns)
-              : branch.find_columns_up(joint, is_fixed, first, columns);
+              : branch.find_columns_up(joint, is_fixed, first, count, columns);
   }
-  for (int k = 0; k < count; ++k) {
+  for (int k = 0; k < (has_parts ? 2 : count); ++k) {
     const int label = first + k + (has_parts ? Branch::kColumnCount : 0);
     send_column(label, columns[static_cast<std::size_t>(k)]);
   }

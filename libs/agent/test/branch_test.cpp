@@ -157,7 +157,7 @@ bool eliminate(const Tree& tree, const Springs& springs, const Vectors& loads, V
       if (!branch.has_columns(first, false)) {
         continue;
       }
-      branch.find_columns_up(joint, false, first, columns);
+      branch.find_columns_up(joint, false, first, Branch::batch_at(first), columns);
       for (int k = 0; k < Branch::batch_at(first); ++k) {
         branches[parent].add_column(first + k, slot_of[i], columns[static_cast<std::size_t>(k)]);
       }
@@ -315,15 +315,15 @@ TEST(Branch, a_symmetric_stiffness_is_the_same_in_parts) {
       by_parts.add_part(first + 1, columns[1]);
     }
     for (int first = 0; first < 6; first += Branch::kBatch) {
-      branch.find_columns_up(up, is_fixed, first, columns);
+      branch.find_columns_up(up, is_fixed, first, Branch::kBatch, columns);
       for (int k = 0; k < Branch::kBatch; ++k) {
         by_columns.add_column(first + k, {}, columns[static_cast<std::size_t>(k)]);
       }
     }
     for (int first = 0; first < 6; first += Branch::kBatch) {
       Branch::Columns other;
-      by_parts.find_columns_up(up, false, first, columns);
-      by_columns.find_columns_up(up, false, first, other);
+      by_parts.find_columns_up(up, false, first, Branch::kBatch, columns);
+      by_columns.find_columns_up(up, false, first, Branch::kBatch, other);
       for (std::size_t k = 0; k < Branch::kBatch; ++k) {
         for (std::size_t row = 0; row < 6; ++row) {
           EXPECT_NEAR(columns[k][row], other[k][row], 1e-4F * (1 + std::abs(other[k][row])));

@@ -288,7 +288,7 @@ class BasicAgent {
   void send_leaf_columns(const branches::Leaves& leaves, int leaf, int first);
   bool is_column_ready(int column) const;
   bool send_columns();
-  void send_batch(int column);
+  void send_batch(int column, int count);
   void send_column(int label, const base::Vec6<float>& column);
   void send_load_up();
   void send_gaps_up();

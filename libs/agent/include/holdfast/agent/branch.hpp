@@ -95,8 +95,12 @@ class Branch {
   static constexpr int kGiveBatch = 2;
   using Columns = std::array<base::Vec6<float>, kBatch>;
 
+  /// The most from column `index` on; they belong to one block.
   static constexpr int batch_at(int index) {
-    return index < kColumnCount - 6 * kLoopsMax * kLoopsMax ? kBatch : kGiveBatch;
+    const bool is_give = index >= kColumnCount - 6 * kLoopsMax * kLoopsMax;
+    const int most = is_give ? kGiveBatch : kBatch;
+    const int rest = 6 - index % 6;
+    return most < rest ? most : rest;
   }
 
   // ---- Which loops are here. Once, when the tree and the planned modules are known.
@@ -141,8 +145,9 @@ class Branch {
   /// Are there columns at `index`, or only zeros? `is_fixed` if this module does not move.
   bool has_columns(int index, bool is_fixed) const;
 
-  /// Eq. (3): columns `first` to `first` + batch_at(first) - 1.
-  void find_columns_up(const Joint& to_parent, bool is_fixed, int first, Columns& columns) const;
+  /// Eq. (3): `count` columns from `first` on, batch_at(first) at most; of S' exactly as many.
+  void find_columns_up(const Joint& to_parent, bool is_fixed, int first, int count,
+                       Columns& columns) const;
 
   /// The same for parts `first` and the next of a symmetric S'.
   void find_parts_up(const Joint& to_parent, bool is_fixed, int first, Columns& columns) const;
@@ -174,8 +179,9 @@ class Branch {
 
   void find_stiffness_up(const Joint& to_parent, bool is_fixed,
                          const std::array<std::uint8_t, kBatch>& which, Columns& columns) const;
-  void find_end_columns(const Joint& to_parent, int first, Columns& columns) const;
-  void find_give_columns(const Joint& to_parent, bool is_fixed, int first, Columns& columns) const;
+  void find_end_columns(const Joint& to_parent, int first, int count, Columns& columns) const;
+  void find_give_columns(const Joint& to_parent, bool is_fixed, int first, int count,
+                         Columns& columns) const;
   void close_loop(const mechanics::BeamStiffness<double>& beam, int slot);
   void close_column(int slot, int column);
 
