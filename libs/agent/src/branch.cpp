@@ -475,6 +475,20 @@ bool Branch::has_columns(int index, bool is_fixed) const {
                            : open_slot(pair / kLoopsMax) >= 0 && open_slot(pair % kLoopsMax) >= 0;
 }
 
+bool Branch::is_symmetric() const {
+  constexpr float kRounding = 1e-5F;
+  for (int column = 0; column < kSize; ++column) {
+    for (int row = column + 1; row < kSize; ++row) {
+      const float apart = stiffness_.at(row, column) - stiffness_.at(column, row);
+      const float size = stiffness_.at(row, row) * stiffness_.at(column, column);
+      if (apart * apart > kRounding * kRounding * size) {
+        return false;
+      }
+    }
+  }
+  return true;
+}
+
 void Branch::find_stiffness_up(const Joint& to_parent, bool is_fixed, const Which& which,
                                Columns& columns) const {
   if (!is_fixed) {

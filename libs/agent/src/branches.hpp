@@ -265,8 +265,17 @@ bool BasicAgent<Real>::do_factor_piece() {
       return false;
     }
     if (!branch.close_loops(setup_.beam, piece_index_)) {
-      begin_piece(Piece::kColumns);
+      begin_piece(Piece::kSymmetry);
     }
+    return true;
+  }
+  if (piece_ == Piece::kSymmetry) {
+    if (!is_column_ready(0)) {
+      return false;
+    }
+    BranchWork& tree = work_.tree;
+    tree.is_symmetric = tree.is_symmetric || tree.branch.is_symmetric();
+    begin_piece(Piece::kColumns);
     return true;
   }
   return send_columns();
@@ -338,15 +347,14 @@ bool BasicAgent<Real>::send_columns() {
     if (!branch.has_columns(piece_index_, nodes_[0].is_fixed)) {
       continue;
     }
-    // What follows must find room too.
-    constexpr int kRoom =
-        (Branch::kBatch + 1 + kLoopsMax) * wire::kVectorBytes + wire::kMessageBytesMax;
-    if (!links_[static_cast<std::size_t>(parent_)].has_room(kRoom)) {
-      return false;
-    }
     int count = 1;
     while (count < Branch::batch_at(piece_index_) && is_column_ready(piece_index_ + count)) {
       ++count;
+    }
+    // What follows must find room too.
+    const int room = (count + 1 + kLoopsMax) * wire::kVectorBytes + wire::kMessageBytesMax;
+    if (!links_[static_cast<std::size_t>(parent_)].has_room(room)) {
+      return false;
     }
     send_batch(piece_index_, count);
     piece_index_ = static_cast<std::uint8_t>(piece_index_ + count);

@@ -124,7 +124,7 @@ struct BranchWork {
   std::array<std::array<std::int8_t, kLoopsMax>, base::kDirectionCount> slot_of{};
   std::array<std::uint8_t, base::kDirectionCount> child_cut_count{};
   std::array<std::uint8_t, base::kDirectionCount> columns_here{};  ///< All before are final.
-  bool is_symmetric = false;  ///< No facet below tilts: S' goes up in parts.
+  bool is_symmetric = false;  ///< S' goes up in parts: no facet below tilts, or it hardly matters.
   /// What holds each planned module here, above its diagonal; Node::factor has the rest.
   std::array<std::array<float, 15>, kPlannedMax> leaves{};
 };
@@ -259,6 +259,7 @@ class BasicAgent {
     kTangents,
     kLeafColumns,
     kLoops,
+    kSymmetry,
     kColumns,
     kResiduals,
     kLeafLoads,

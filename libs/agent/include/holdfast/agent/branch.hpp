@@ -145,6 +145,9 @@ class Branch {
   /// Are there columns at `index`, or only zeros? `is_fixed` if this module does not move.
   bool has_columns(int index, bool is_fixed) const;
 
+  /// Is S symmetric but for rounding? Then S' is as well.
+  bool is_symmetric() const;
+
   /// Eq. (3): `count` columns from `first` on, batch_at(first) at most; of S' exactly as many.
   void find_columns_up(const Joint& to_parent, bool is_fixed, int first, int count,
                        Columns& columns) const;
