@@ -340,11 +340,15 @@ bool BasicAgent<Real>::is_column_ready(int column) const {
 template <class Real>
 bool BasicAgent<Real>::send_columns() {
   const Branch& branch = work_.tree.branch;
-  for (; piece_index_ < Branch::kColumnCount && parent_ >= 0; ++piece_index_) {
+  const auto skip = [&](int count) {
+    piece_index_ = static_cast<std::uint8_t>(piece_index_ + count);
+  };
+  while (piece_index_ < Branch::kColumnCount && parent_ >= 0) {
     if (!is_column_ready(piece_index_)) {
       return false;
     }
     if (!branch.has_columns(piece_index_, nodes_[0].is_fixed)) {
+      skip(6);  // A whole block.
       continue;
     }
     int count = 1;
@@ -357,7 +361,7 @@ bool BasicAgent<Real>::send_columns() {
       return false;
     }
     send_batch(piece_index_, count);
-    piece_index_ = static_cast<std::uint8_t>(piece_index_ + count);
+    skip(count);
     return true;
   }
   begin_piece(Piece::kResiduals);
