@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "holdfast/agent/branch.hpp"
 
-#include <span>
-
 #include "holdfast/base/check.hpp"
 #include "scalar.hpp"
 
@@ -22,25 +20,21 @@ constexpr int kGive = kAcross + 6 * kLoopsMax;  // ... and P'.
 
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
-template <class Real>
-Vec6<double> product(const Mat6<Real>& a, const Vec6<double>& x) {
-  Vec6<double> y{};
+/// y += a x. Zeros in x, of which there are many, cost nothing.
+void add_product(Vec6<double>& y, const Mat6<float>& a, const Vec6<double>& x) {
   for (int column = 0; column < kSize; ++column) {
+    if (x[at(column)] == 0) {
+      continue;
+    }
     for (int row = 0; row < kSize; ++row) {
       y[at(row)] += static_cast<double>(a.at(row, column)) * x[at(column)];
     }
   }
-  return y;
 }
 
-template <class Real>
-Vec6<double> transposed_product(const Mat6<Real>& a, const Vec6<double>& x) {
+Vec6<double> product(const Mat6<float>& a, const Vec6<double>& x) {
   Vec6<double> y{};
-  for (int column = 0; column < kSize; ++column) {
-    for (int row = 0; row < kSize; ++row) {
-      y[at(column)] += static_cast<double>(a.at(row, column)) * x[at(row)];
-    }
-  }
+  add_product(y, a, x);
   return y;
 }
 
@@ -50,9 +44,7 @@ Vec6<double> unit(int i) {
   return vector;
 }
 
-/// a times the unit vector `j`.
-template <class Real>
-Vec6<double> column_of(const Mat6<Real>& a, int j) {
+Vec6<double> column_of(const Mat6<float>& a, int j) {
   Vec6<double> column;
   for (int row = 0; row < kSize; ++row) {
     column[at(row)] = static_cast<double>(a.at(row, j));
@@ -60,18 +52,12 @@ Vec6<double> column_of(const Mat6<Real>& a, int j) {
   return column;
 }
 
-void set_column(Mat6<double>& a, int j, const Vec6<double>& column) {
-  for (int row = 0; row < kSize; ++row) {
-    a.at(row, j) = column[at(row)];
+Vec6<double> row_of(const Mat6<float>& a, int i) {
+  Vec6<double> row;
+  for (int column = 0; column < kSize; ++column) {
+    row[at(column)] = static_cast<double>(a.at(i, column));
   }
-}
-
-Mat6<double> converted(const Mat6<float>& a) {
-  Mat6<double> result;
-  for (std::size_t i = 0; i < a.values.size(); ++i) {
-    result.values[i] = static_cast<double>(a.values[i]);
-  }
-  return result;
+  return row;
 }
 
 void subtract(Vec6<double>& from, const Vec6<double>& what) {
@@ -80,114 +66,81 @@ void subtract(Vec6<double>& from, const Vec6<double>& what) {
   }
 }
 
-/// into += factor a q c, all 6x6.
-void add_product(Mat6<float>& into, double factor, const Mat6<float>& a, const Mat6<float>& q,
-                 const Mat6<float>& c) {
-  for (int column = 0; column < kSize; ++column) {
-    const Vec6<double> image = product(a, product(q, column_of(c, column)));
-    for (int row = 0; row < kSize; ++row) {
-      into.at(row, column) += static_cast<float>(factor * image[at(row)]);
-    }
+/// into -= x in column `column`.
+void subtract_column(Mat6<float>& into, int column, const Vec6<double>& x) {
+  for (int row = 0; row < kSize; ++row) {
+    into.at(row, column) -= static_cast<float>(x[at(row)]);
   }
 }
 
-/// A beam's end at the child: its flexibility, and the parent's motion there.
-struct Joint {
-  Joint(const BeamStiffness<double>& stiffness, Direction to_parent)
-      : beam(stiffness),
-        direction(to_parent),
-        transport(rigid_transport(2 * beam.couple_x / beam.shear_x, to_parent)) {}  // c/s = L/2
+/// into -= a x in column `column`.
+[[gnu::noinline]] void subtract_product(Mat6<float>& into, int column, const Mat6<float>& a,
+                                        const Vec6<double>& x) {
+  subtract_column(into, column, product(a, x));
+}
 
-  /// F = K11^-1: in the local frame two 2x2 blocks and two numbers.
-  Vec6<double> bend(const Vec6<double>& force) const {
-    const Vec6<double> local = mechanics::to_local(direction, force);
-    const double x = beam.shear_x * beam.bend_x - beam.couple_x * beam.couple_x;
-    const double y = beam.shear_y * beam.bend_y - beam.couple_y * beam.couple_y;
-    return mechanics::to_global<double>(
-        direction,
-        {(beam.bend_x * local[0] + beam.couple_x * local[4]) / x,
-         (beam.bend_y * local[1] - beam.couple_y * local[3]) / y, local[2] / beam.axial,
-         (beam.shear_y * local[3] - beam.couple_y * local[1]) / y,
-         (beam.shear_x * local[4] + beam.couple_x * local[0]) / x, local[5] / beam.twist});
-  }
+/// A 6x6 system, factored with pivots once its matrix is there.
+class System {
+ public:
+  double& at(int row, int column) { return matrix_.at(row, column); }
 
-  const BeamStiffness<double>& beam;
-  Direction direction;
-  Mat6<double> transport;
+  double at(int row, int column) const { return matrix_.at(row, column); }
+
+  void factor();
+
+  /// In place.
+  void solve(Vec6<double>& b) const;
+
+ private:
+  Mat6<double> matrix_;  // In the end L U, and the inverse of U's diagonal.
+  std::array<std::uint8_t, kSize> pivots_{};
 };
 
-/// Solves a x = b with pivots for every b, in place; a is used up.
-void solve_all(Mat6<double>& a, std::span<Vec6<double>> right) {
+void System::factor() {
   for (int column = 0; column < kSize; ++column) {
     int pivot = column;
     for (int row = column + 1; row < kSize; ++row) {
-      pivot = absolute(a.at(row, column)) > absolute(a.at(pivot, column)) ? row : pivot;
+      pivot = absolute(at(row, column)) > absolute(at(pivot, column)) ? row : pivot;
     }
-    for (int k = column; k < kSize && pivot != column; ++k) {
-      const double kept = a.at(pivot, k);
-      a.at(pivot, k) = a.at(column, k);
-      a.at(column, k) = kept;
+    pivots_[agent::at(column)] = static_cast<std::uint8_t>(pivot);
+    for (int k = 0; k < kSize && pivot != column; ++k) {
+      const double kept = at(pivot, k);
+      at(pivot, k) = at(column, k);
+      at(column, k) = kept;
     }
-    for (Vec6<double>& b : right) {
-      const double kept = b[at(pivot)];
-      b[at(pivot)] = b[at(column)];
-      b[at(column)] = kept;
-    }
+    at(column, column) = 1 / at(column, column);
     for (int row = column + 1; row < kSize; ++row) {
-      const double factor = a.at(row, column) / a.at(column, column);
-      if (factor == 0) {
-        continue;
+      const double share = at(row, column) * at(column, column);
+      at(row, column) = share;
+      for (int k = column + 1; k < kSize && share != 0; ++k) {
+        at(row, k) -= share * at(column, k);
       }
-      for (int k = column; k < kSize; ++k) {
-        a.at(row, k) -= factor * a.at(column, k);
-      }
-      for (Vec6<double>& b : right) {
-        b[at(row)] -= factor * b[at(column)];
-      }
-    }
-  }
-  for (Vec6<double>& b : right) {
-    for (int row = kSize - 1; row >= 0; --row) {
-      for (int k = row + 1; k < kSize; ++k) {
-        b[at(row)] -= a.at(row, k) * b[at(k)];
-      }
-      b[at(row)] /= a.at(row, row);
     }
   }
 }
 
-/// 1 + S F
-template <class Real>
-Mat6<double> series(const Mat6<Real>& stiffness, const Joint& joint) {
-  Mat6<double> sum;
+void System::solve(Vec6<double>& b) const {
+  for (int row = 0; row < kSize; ++row) {
+    const double kept = b[pivots_[agent::at(row)]];
+    b[pivots_[agent::at(row)]] = b[agent::at(row)];
+    b[agent::at(row)] = kept;
+  }
   for (int column = 0; column < kSize; ++column) {
-    const Vec6<double> image = product(stiffness, joint.bend(unit(column)));
-    for (int row = 0; row < kSize; ++row) {
-      sum.at(row, column) = image[at(row)] + (row == column ? 1 : 0);
+    for (int row = column + 1; row < kSize; ++row) {
+      b[agent::at(row)] -= at(row, column) * b[agent::at(column)];
     }
   }
-  return sum;
-}
-
-/// 1 + F S, or transposed 1 + S^t F.
-template <class Real>
-Mat6<double> series_at_child(const Mat6<Real>& stiffness, const Joint& joint,
-                             bool is_transposed = false) {
-  Mat6<double> sum;
-  for (int column = 0; column < kSize; ++column) {
-    const Vec6<double> image = joint.bend(column_of(stiffness, column));
-    for (int row = 0; row < kSize; ++row) {
-      const double value = image[at(row)] + (row == column ? 1 : 0);
-      (is_transposed ? sum.at(column, row) : sum.at(row, column)) = value;
+  for (int row = kSize - 1; row >= 0; --row) {
+    for (int k = row + 1; k < kSize; ++k) {
+      b[agent::at(row)] -= at(row, k) * b[agent::at(k)];
     }
+    b[agent::at(row)] *= at(row, row);
   }
-  return sum;
 }
 
 /// Does nothing below touch the ground? Then F does not matter: the forces follow from the loads.
-template <class Real>
-bool is_free(const Mat6<Real>& stiffness) {
-  for (const Real value : stiffness.values) {
+bool is_free(const Mat6<float>& stiffness) {
+  for (const float value : stiffness.values) {
     if (value != 0) {
       return false;
     }
@@ -195,129 +148,137 @@ bool is_free(const Mat6<Real>& stiffness) {
   return true;
 }
 
-/// N v = (1 + S F)^-1 v
-template <class Real>
-Vec6<double> through(const Mat6<Real>& stiffness, const Joint& joint, Vec6<double> vector) {
-  if (!is_free(stiffness)) {
-    Mat6<double> sum = series(stiffness, joint);
-    solve_all(sum, {&vector, 1});
-  }
-  return vector;
-}
-
-/// G v = (1 + F S)^-1 v, or transposed.
-template <class Real>
-Vec6<double> through_at_child(const Mat6<Real>& stiffness, const Joint& joint, Vec6<double> vector,
-                              bool is_transposed = false) {
-  if (!is_free(stiffness)) {
-    Mat6<double> sum = series_at_child(stiffness, joint, is_transposed);
-    solve_all(sum, {&vector, 1});
-  }
-  return vector;
-}
-
-struct Entry {
-  int row = 0;
-  int column = 0;
+/// Springs in series with a beam.
+enum class Series : std::uint8_t {
+  kAtParent,    // N = (1 + S F)^-1
+  kAtChild,     // G = (1 + F S)^-1
+  kTransposed,  // G^t
 };
 
-constexpr int kTriangle = kSize * (kSize + 1) / 2;
-
-/// Entry `place` of a lower triangle, column by column.
-Entry lower_entry(int place) {
-  Entry entry;
-  for (int i = 0; i < place; ++i) {
-    const bool is_last = entry.row + 1 == kSize;
-    entry.column += is_last ? 1 : 0;
-    entry.row = is_last ? entry.column : entry.row + 1;
+class InSeries {
+ public:
+  InSeries(const Mat6<float>& stiffness, const Joint& joint, Series series)
+      : is_one_(is_free(stiffness)) {
+    if (!is_one_) {
+      factor(stiffness, joint, series);
+    }
   }
-  return entry;
+
+  /// N v, G v or G^t v, in place.
+  void pass(Vec6<double>& vector) const {
+    if (!is_one_) {
+      system_.solve(vector);
+    }
+  }
+
+ private:
+  [[gnu::noinline]] void factor(const Mat6<float>& stiffness, const Joint& joint, Series series) {
+    // F is symmetric: S F has F times S's rows as its rows.
+    for (int i = 0; i < kSize; ++i) {
+      Vec6<double> line =
+          series == Series::kAtParent ? row_of(stiffness, i) : column_of(stiffness, i);
+      joint.bend(line);
+      line[at(i)] += 1;
+      for (int k = 0; k < kSize; ++k) {
+        (series == Series::kAtChild ? system_.at(k, i) : system_.at(i, k)) = line[at(k)];
+      }
+    }
+    system_.factor();
+  }
+
+  System system_;
+  bool is_one_;
+};
+
+using Columns = Branch::Columns;
+using Which = std::array<std::uint8_t, Branch::kBatch>;
+
+/// v = S T e_j
+[[gnu::noinline]] void force_of_unit(const Joint& joint, const Mat6<float>& stiffness, int j,
+                                     Vec6<double>& v) {
+  Vec6<double> moved = unit(j);
+  joint.carry(moved);
+  v = {};
+  add_product(v, stiffness, moved);
+}
+
+/// Columns of T^t N S T.
+void condense(const Joint& joint, const Mat6<float>& stiffness, const Which& which,
+              Columns& columns) {
+  const InSeries series(stiffness, joint, Series::kAtParent);
+  Vec6<double> force;
+  for (std::size_t i = 0; i < which.size(); ++i) {
+    force_of_unit(joint, stiffness, which[i], force);
+    series.pass(force);
+    joint.hand_on(force);
+    columns[i] = base::converted<float>(force);
+  }
+}
+
+Which three_from(int first) {
+  const auto j = static_cast<std::uint8_t>(first % kSize);
+  return {j, static_cast<std::uint8_t>(j + 1), static_cast<std::uint8_t>(j + 2)};
 }
 
 }  // namespace
 
-bool is_symmetric(const Mat6<float>& stiffness) {
-  constexpr double kRounding = 1e-5;
-  const auto entry = [&](int row, int column) {
-    return static_cast<double>(stiffness.at(row, column));
-  };
-  for (int column = 0; column < kSize; ++column) {
-    for (int row = column + 1; row < kSize; ++row) {
-      const double apart = entry(row, column) - entry(column, row);
-      const double size = absolute(entry(row, row) * entry(column, column));
-      if (apart * apart > kRounding * kRounding * size) {
-        return false;
-      }
-    }
-  }
-  return true;
-}
-
-Vec6<float> part_of(const Mat6<float>& stiffness, int index) {
-  Vec6<float> part{};
-  for (int i = 0; i < kSize && kSize * index + i < kTriangle; ++i) {
-    const Entry entry = lower_entry(kSize * index + i);
-    part[at(i)] = stiffness.at(entry.row, entry.column);
-  }
-  return part;
-}
-
-Mat6<double> rigid_transport(double pitch_mm, Direction direction) {
+/// In the local frame F is two 2x2 blocks and two numbers.
+Joint::Joint(const BeamStiffness<double>& beam, Direction direction)
+    : beam_(beam), direction_(direction) {
+  const double pitch = 2 * beam.couple_x / beam.shear_x;  // c/s = L/2
   const base::Cell step = base::neighbour({0, 0, 0}, direction);
-  const double x = -pitch_mm * step.x;
-  const double y = -pitch_mm * step.y;
-  const double z = -pitch_mm * step.z;
-  Mat6<double> transport;
-  for (int i = 0; i < kSize; ++i) {
-    transport.at(i, i) = 1;
-  }
-  // The neighbour's rotation times the way from it to here.
-  transport.at(0, 4) = z;
-  transport.at(0, 5) = -y;
-  transport.at(1, 3) = -z;
-  transport.at(1, 5) = x;
-  transport.at(2, 3) = y;
-  transport.at(2, 4) = -x;
-  return transport;
+  lever_ = {-pitch * step.x, -pitch * step.y, -pitch * step.z};
+  const double x = 1 / (beam.shear_x * beam.bend_x - beam.couple_x * beam.couple_x);
+  const double y = 1 / (beam.shear_y * beam.bend_y - beam.couple_y * beam.couple_y);
+  straight_ = {beam.bend_x * x,  beam.bend_y * y,  1 / beam.axial,
+               beam.shear_y * y, beam.shear_x * x, 1 / beam.twist};
+  across_x_ = beam.couple_x * x;
+  across_y_ = -beam.couple_y * y;
 }
 
-Mat6<double> stiffness_up(const BeamStiffness<double>& beam, Direction to_parent,
-                          const Mat6<double>& stiffness) {
-  if (is_free(stiffness)) {
-    return {};
-  }
-  const Joint joint(beam, to_parent);
-  Mat6<double> sum = series(stiffness, joint);
-  std::array<Vec6<double>, kSize> forces;
-  for (int column = 0; column < kSize; ++column) {
-    forces[at(column)] = product(stiffness, column_of(joint.transport, column));
-  }
-  solve_all(sum, forces);
-  Mat6<double> up;
-  for (int column = 0; column < kSize; ++column) {
-    set_column(up, column, transposed_product(joint.transport, forces[at(column)]));
-  }
-  return up;
+void Joint::bend(Vec6<double>& force) const {
+  Vec6<double> local = mechanics::to_local(direction_, force);
+  const double fx = local[0];
+  const double fy = local[1];
+  local[0] = straight_[0] * fx + across_x_ * local[4];
+  local[1] = straight_[1] * fy + across_y_ * local[3];
+  local[2] *= straight_[2];
+  local[3] = straight_[3] * local[3] + across_y_ * fy;
+  local[4] = straight_[4] * local[4] + across_x_ * fx;
+  local[5] *= straight_[5];
+  force = mechanics::to_global(direction_, local);
 }
 
-Vec6<double> load_up(const BeamStiffness<double>& beam, Direction to_parent,
-                     const Mat6<double>& stiffness, const Vec6<double>& load) {
-  const Joint joint(beam, to_parent);
-  return transposed_product(joint.transport, through(stiffness, joint, load));
+void Joint::hold(Vec6<double>& u) const { u = mechanics::end_force(beam_, direction_, u, {}); }
+
+void Joint::carry(Vec6<double>& u) const {
+  u[0] += lever_[2] * u[4] - lever_[1] * u[5];
+  u[1] += lever_[0] * u[5] - lever_[2] * u[3];
+  u[2] += lever_[1] * u[3] - lever_[0] * u[4];
 }
 
-Vec6<double> displacement(const BeamStiffness<double>& beam, Direction to_parent,
-                          const Mat6<double>& stiffness, const Vec6<double>& of_parent,
-                          const Vec6<double>& load) {
-  const Joint joint(beam, to_parent);
-  Vec6<double> sum = product(joint.transport, of_parent);
-  base::add_to(sum, joint.bend(load));
-  return through_at_child(stiffness, joint, sum);
+void Joint::hand_on(Vec6<double>& force) const {
+  force[3] += lever_[1] * force[2] - lever_[2] * force[1];
+  force[4] += lever_[2] * force[0] - lever_[0] * force[2];
+  force[5] += lever_[0] * force[1] - lever_[1] * force[0];
 }
 
-Vec6<double> solve_general(Mat6<double> a, Vec6<double> b) {
-  solve_all(a, {&b, 1});
-  return b;
+void find_stiffness_up(const Joint& to_parent, const Mat6<float>& stiffness, int first,
+                       Columns& columns) {
+  condense(to_parent, stiffness, three_from(first), columns);
+}
+
+void find_load_up(const Joint& to_parent, const Mat6<float>& stiffness, Vec6<double>& load) {
+  InSeries(stiffness, to_parent, Series::kAtParent).pass(load);
+  to_parent.hand_on(load);
+}
+
+void find_displacement(const Joint& to_parent, const Mat6<float>& stiffness, Vec6<double>& load,
+                       Vec6<double>& u) {
+  to_parent.carry(u);
+  to_parent.bend(load);
+  base::add_to(u, load);
+  InSeries(stiffness, to_parent, Series::kAtChild).pass(u);
 }
 
 int Branch::meet(const Cut& cut) {
@@ -373,14 +334,18 @@ void Branch::add_stiffness(const Mat6<double>& block) {
   }
 }
 
-void Branch::add_end(int slot, bool is_upper, const Mat6<double>& transport) {
-  for (int row = 0; row < kSize; ++row) {
-    for (int column = 0; column < kSize; ++column) {
-      const double one = row == column ? 1 : 0;
-      onto_[at(slot)].at(row, column) +=
-          static_cast<float>(is_upper ? -transport.at(column, row) : one);
-      across_[at(slot)].at(row, column) +=
-          static_cast<float>(is_upper ? -transport.at(row, column) : one);
+/// B = C = 1, or B = -T^t, C = -T.
+void Branch::add_end(int slot, bool is_upper, const BeamStiffness<double>& beam) {
+  const Joint joint(beam, cuts_[at(slot)].direction);
+  for (int column = 0; column < kSize; ++column) {
+    Vec6<double> moved = unit(column);
+    if (is_upper) {
+      joint.carry(moved);
+    }
+    for (int row = 0; row < kSize; ++row) {
+      const auto value = static_cast<float>(is_upper ? -moved[at(row)] : moved[at(row)]);
+      across_[at(slot)].at(row, column) += value;
+      onto_[at(slot)].at(column, row) += value;
     }
   }
 }
@@ -404,48 +369,77 @@ void Branch::add_column(int index, const std::array<std::int8_t, kLoopsMax>& slo
 }
 
 void Branch::add_part(int index, const Vec6<float>& part) {
-  for (int i = 0; i < kSize && kSize * index + i < kTriangle; ++i) {
-    const Entry entry = lower_entry(kSize * index + i);
-    stiffness_.at(entry.row, entry.column) += part[at(i)];
-    if (entry.row != entry.column) {
-      stiffness_.at(entry.column, entry.row) += part[at(i)];
+  const auto add = [&](int row, int column, float value) {
+    stiffness_.at(row, column) += value;
+    if (row != column) {
+      stiffness_.at(column, row) += value;
     }
+  };
+  for (int row = index; row < kSize; ++row) {
+    add(row, index, part[at(row - index)]);
+  }
+  for (int row = kSize - index; row < kSize && index < kPartCount - 1; ++row) {
+    add(row, kSize - index, part[at(row)]);
   }
 }
 
-void Branch::close_loops(const BeamStiffness<double>& beam) {
-  for (int slot = 0; slot < count_; ++slot) {
+bool Branch::close_loops(const BeamStiffness<double>& beam, std::uint8_t& piece) {
+  constexpr int kPieces = 1 + kSize;
+  while (piece < kPieces * count_) {
+    const int slot = piece / kPieces;
+    const int part = piece % kPieces;
+    ++piece;
     if (is_open(slot)) {
       continue;
     }
-    // Q = (P + F)^-1 = (K P + 1)^-1 K
-    Mat6<float>& give = give_[at(slot)][at(slot)];
-    const Mat6<double> stiffness = mechanics::block_11(beam, cuts_[at(slot)].direction);
-    Mat6<double> sum;
-    for (int column = 0; column < kSize; ++column) {
-      const Vec6<double> image = product(stiffness, column_of(give, column));
-      for (int row = 0; row < kSize; ++row) {
-        sum.at(row, column) = image[at(row)] + (row == column ? 1 : 0);
-      }
-    }
-    for (int column = 0; column < kSize; ++column) {
-      const Vec6<double> inverse = solve_general(sum, column_of(stiffness, column));
-      for (int row = 0; row < kSize; ++row) {
-        give.at(row, column) = static_cast<float>(inverse[at(row)]);
-      }
-    }
-    add_product(stiffness_, 1, onto_[at(slot)], give, across_[at(slot)]);
-    for (int other = 0; other < count_; ++other) {
-      if (!is_closed_after(slot, other)) {
-        continue;
-      }
-      const Mat6<float>& here = give_[at(slot)][at(other)];
-      const Mat6<float>& there = give_[at(other)][at(slot)];
-      add_product(onto_[at(other)], -1, onto_[at(slot)], give, here);
-      add_product(across_[at(other)], -1, there, give, across_[at(slot)]);
-      add_product(give_[at(other)][at(other)], -1, there, give, here);
+    part == 0 ? close_loop(beam, slot) : close_column(slot, part - 1);
+    return true;
+  }
+  return false;
+}
+
+/// Q = (P + F)^-1 instead of P.
+void Branch::close_loop(const BeamStiffness<double>& beam, int slot) {
+  Mat6<float>& give = give_[at(slot)][at(slot)];
+  const Joint joint(beam, cuts_[at(slot)].direction);
+  System sum;
+  for (int column = 0; column < kSize; ++column) {
+    Vec6<double> bent = unit(column);
+    joint.bend(bent);
+    for (int row = 0; row < kSize; ++row) {
+      sum.at(row, column) = static_cast<double>(give.at(row, column)) + bent[at(row)];
     }
   }
+  sum.factor();
+  give = {};
+  for (int column = 0; column < kSize; ++column) {
+    Vec6<double> inverse{};
+    inverse[at(column)] = -1;
+    sum.solve(inverse);
+    subtract_column(give, column, inverse);
+  }
+}
+
+/// Column `column` of what the force X = Q (y + C u) of a closed loop does to the others.
+void Branch::close_column(int slot, int column) {
+  const Mat6<float>& give = give_[at(slot)][at(slot)];
+  const Mat6<float>& onto = onto_[at(slot)];
+  for (int other = 0; other < count_; ++other) {
+    if (!is_closed_after(slot, other)) {
+      continue;
+    }
+    const Mat6<float>& there = give_[at(other)][at(slot)];
+    Vec6<double> force = product(give, column_of(across_[at(slot)], column));
+    subtract_product(across_[at(other)], column, there, force);
+    force = product(give, column_of(give_[at(slot)][at(other)], column));
+    subtract_product(onto_[at(other)], column, onto, force);
+    subtract_product(give_[at(other)][at(other)], column, there, force);
+  }
+  Vec6<double> force = product(give, column_of(across_[at(slot)], column));
+  for (double& value : force) {
+    value = -value;
+  }
+  subtract_product(stiffness_, column, onto, force);
 }
 
 int Branch::columns_needed(int index, const std::array<std::int8_t, kLoopsMax>& slot_of,
@@ -473,53 +467,113 @@ int Branch::columns_needed(int index, const std::array<std::int8_t, kLoopsMax>& 
   return row < 0 || column < 0 ? kGive : kGive + kSize * (kLoopsMax * row + column) + j + 1;
 }
 
-Mat6<double> Branch::stiffness_up(const BeamStiffness<double>& beam, Direction to_parent,
-                                  bool is_fixed) const {
-  if (!is_fixed) {
-    return agent::stiffness_up(beam, to_parent, converted(stiffness_));
-  }
-  const Mat6<double> transport = Joint(beam, to_parent).transport;
-  const Mat6<double> block = mechanics::block_11(beam, to_parent);
-  Mat6<double> up;
-  for (int column = 0; column < kSize; ++column) {
-    set_column(up, column,
-               transposed_product(transport, product(block, column_of(transport, column))));
-  }
-  return up;
+bool Branch::has_columns(int index, bool is_fixed) const {
+  const int pair = (index - kGive) / kSize;
+  return index < kOnto     ? is_fixed || !is_free(stiffness_)
+         : index < kAcross ? !is_fixed && open_slot((index - kOnto) / kSize) >= 0
+         : index < kGive   ? !is_fixed && open_slot((index - kAcross) / kSize) >= 0
+                           : open_slot(pair / kLoopsMax) >= 0 && open_slot(pair % kLoopsMax) >= 0;
 }
 
-Vec6<double> Branch::column_up(const BeamStiffness<double>& beam, Direction to_parent,
-                               bool is_fixed, int index) const {
-  HOLDFAST_ASSERT(index >= kOnto);
-  const Joint joint(beam, to_parent);
-  const int j = index % kSize;
-  if (index < kGive) {
-    const bool is_onto = index < kAcross;
-    const int slot = open_slot((index - (is_onto ? kOnto : kAcross)) / kSize);
-    if (slot < 0 || is_fixed) {
-      return {};
+bool Branch::is_symmetric() const {
+  constexpr float kRounding = 1e-5F;
+  for (int column = 0; column < kSize; ++column) {
+    for (int row = column + 1; row < kSize; ++row) {
+      const float apart = stiffness_.at(row, column) - stiffness_.at(column, row);
+      const float size = stiffness_.at(row, row) * stiffness_.at(column, column);
+      if (apart * apart > kRounding * kRounding * size) {
+        return false;
+      }
     }
-    if (is_onto) {
-      return transposed_product(joint.transport,
-                                through(stiffness_, joint, column_of(onto_[at(slot)], j)));
-    }
-    Vec6<double> row;
-    for (int i = 0; i < kSize; ++i) {
-      row[at(i)] = static_cast<double>(across_[at(slot)].at(j, i));
-    }
-    return transposed_product(joint.transport, through_at_child(stiffness_, joint, row, true));
   }
-  const int row = open_slot((index - kGive) / kSize / kLoopsMax);
-  const int column = open_slot((index - kGive) / kSize % kLoopsMax);
-  if (row < 0 || column < 0) {
-    return {};
-  }
-  Vec6<double> sum = column_of(give_[at(row)][at(column)], j);
+  return true;
+}
+
+void Branch::find_stiffness_up(const Joint& to_parent, bool is_fixed, const Which& which,
+                               Columns& columns) const {
   if (!is_fixed) {
-    const Vec6<double> bent = joint.bend(column_of(onto_[at(column)], j));
-    base::add_to(sum, product(across_[at(row)], through_at_child(stiffness_, joint, bent)));
+    condense(to_parent, stiffness_, which, columns);
+    return;
   }
-  return sum;
+  for (std::size_t i = 0; i < which.size(); ++i) {
+    Vec6<double> force = unit(which[i]);
+    to_parent.carry(force);
+    to_parent.hold(force);
+    to_parent.hand_on(force);
+    columns[i] = base::converted<float>(force);
+  }
+}
+
+void Branch::find_columns_up(const Joint& to_parent, bool is_fixed, int first, int count,
+                             Columns& columns) const {
+  if (first < kOnto) {
+    find_stiffness_up(to_parent, is_fixed, three_from(first), columns);
+  } else if (first < kGive) {
+    find_end_columns(to_parent, first, count, columns);
+  } else {
+    find_give_columns(to_parent, is_fixed, first, count, columns);
+  }
+}
+
+/// B' = T^t N B or the transposed C' = C G T.
+void Branch::find_end_columns(const Joint& to_parent, int first, int count,
+                              Columns& columns) const {
+  const bool is_onto = first < kAcross;
+  const int slot = open_slot((first - (is_onto ? kOnto : kAcross)) / kSize);
+  HOLDFAST_ASSERT(slot >= 0);
+  const InSeries series(stiffness_, to_parent, is_onto ? Series::kAtParent : Series::kTransposed);
+  Vec6<double> vector;
+  for (int i = 0; i < count; ++i) {
+    const int j = first % kSize + i;
+    vector = is_onto ? column_of(onto_[at(slot)], j) : row_of(across_[at(slot)], j);
+    series.pass(vector);
+    to_parent.hand_on(vector);
+    columns[at(i)] = base::converted<float>(vector);
+  }
+}
+
+/// P' = P + C G F B
+void Branch::find_give_columns(const Joint& to_parent, bool is_fixed, int first, int count,
+                               Columns& columns) const {
+  const int row = open_slot((first - kGive) / kSize / kLoopsMax);
+  const int column = open_slot((first - kGive) / kSize % kLoopsMax);
+  HOLDFAST_ASSERT(row >= 0 && column >= 0);
+  const Mat6<float>& give = give_[at(row)][at(column)];
+  const int j = first % kSize;
+  if (is_fixed) {
+    for (int i = 0; i < count; ++i) {
+      columns[at(i)] = base::converted<float>(column_of(give, j + i));
+    }
+    return;
+  }
+  const InSeries series(stiffness_, to_parent, Series::kAtChild);
+  Vec6<double> bent;
+  for (int i = 0; i < count; ++i) {
+    bent = column_of(onto_[at(column)], j + i);
+    to_parent.bend(bent);
+    series.pass(bent);
+    bent = product(across_[at(row)], bent);
+    base::add_to(bent, column_of(give, j + i));
+    columns[at(i)] = base::converted<float>(bent);
+  }
+}
+
+void Branch::find_parts_up(const Joint& to_parent, bool is_fixed, int first,
+                           Columns& columns) const {
+  const auto i = static_cast<std::uint8_t>(first);
+  // Column 6 - i for both parts; the first has none, the last only one.
+  const Which which = first == 0 ? Which{0, 1, 5} : Which{i, static_cast<std::uint8_t>(i + 1), 4};
+  find_stiffness_up(to_parent, is_fixed, which, columns);
+  for (int part = first; part < first + 2; ++part) {
+    Vec6<float>& into = columns[at(part - first)];
+    for (int row = 0; row < kSize; ++row) {
+      into[at(row)] = row + part < kSize ? into[at(row + part)] : 0;
+    }
+    const int behind = kSize - part;
+    for (int row = behind; row < kSize && behind == which[2]; ++row) {
+      into[at(row)] = columns[2][at(row)];
+    }
+  }
 }
 
 void Branch::close_loops(BranchLoad& load) const {
@@ -537,46 +591,51 @@ void Branch::close_loops(BranchLoad& load) const {
   }
 }
 
-BranchLoad Branch::load_up(const BeamStiffness<double>& beam, Direction to_parent, bool is_fixed,
-                           const BranchLoad& load) const {
-  const Joint joint(beam, to_parent);
-  BranchLoad up;
-  for (int i = 0; i < open_count(); ++i) {
-    up.gap[at(i)] = load.gap[at(open_slot(i))];
-  }
+void Branch::find_load_up(const Joint& to_parent, bool is_fixed, Vec6<double>& load) const {
   if (is_fixed) {
-    return up;
+    load = {};
+  } else {
+    agent::find_load_up(to_parent, stiffness_, load);
   }
-  up.load = transposed_product(joint.transport, through(stiffness_, joint, load.load));
-  for (int i = 0; i < open_count(); ++i) {
-    base::add_to(up.gap[at(i)],
-                 product(across_[at(open_slot(i))],
-                         through_at_child(stiffness_, joint, joint.bend(load.load))));
-  }
-  return up;
 }
 
-Vec6<double> Branch::displacement(const BeamStiffness<double>& beam, Direction to_parent,
-                                  const Vec6<double>& of_parent, const BranchLoad& load,
-                                  CutForces& forces) const {
-  const Joint joint(beam, to_parent);
+void Branch::find_gaps_up(const Joint& to_parent, bool is_fixed, const BranchLoad& load,
+                          CutForces& gaps) const {
+  Vec6<double> bent{};
+  if (!is_fixed && open_count() > 0) {
+    bent = load.load;
+    to_parent.bend(bent);
+    InSeries(stiffness_, to_parent, Series::kAtChild).pass(bent);
+  }
+  for (int i = 0; i < open_count(); ++i) {
+    const auto slot = at(open_slot(i));
+    Vec6<double> gap = load.gap[slot];
+    add_product(gap, across_[slot], bent);
+    gaps[at(i)] = base::converted<float>(gap);
+  }
+}
+
+void Branch::find_displacement(const Joint& to_parent, const BranchLoad& load,
+                               const CutForces& forces, Vec6<double>& u) const {
   Vec6<double> carried = load.load;
   for (int slot = 0; slot < count_; ++slot) {
     if (is_open(slot)) {
-      subtract(carried, product(onto_[at(slot)], forces[at(slot)]));
+      subtract(carried, product(onto_[at(slot)], base::converted<double>(forces[at(slot)])));
     }
   }
-  Vec6<double> sum = product(joint.transport, of_parent);
-  base::add_to(sum, joint.bend(carried));
-  const Vec6<double> u = through_at_child(stiffness_, joint, sum);
-  find_forces(load, u, forces);
-  return u;
+  agent::find_displacement(to_parent, stiffness_, carried, u);
 }
 
-Vec6<double> Branch::displacement_of_root(const BranchLoad& load, CutForces& forces) const {
-  const Vec6<double> u = solve_general(converted(stiffness_), load.load);
-  find_forces(load, u, forces);
-  return u;
+void Branch::find_displacement_of_root(const BranchLoad& load, Vec6<double>& u) const {
+  System system;
+  for (int column = 0; column < kSize; ++column) {
+    for (int row = 0; row < kSize; ++row) {
+      system.at(row, column) = static_cast<double>(stiffness_.at(row, column));
+    }
+  }
+  system.factor();
+  u = load.load;
+  system.solve(u);
 }
 
 void Branch::find_forces(const BranchLoad& load, const Vec6<double>& u, CutForces& forces) const {
@@ -585,13 +644,14 @@ void Branch::find_forces(const BranchLoad& load, const Vec6<double>& u, CutForce
       continue;
     }
     Vec6<double> gap = load.gap[at(slot)];
-    base::add_to(gap, product(across_[at(slot)], u));
+    add_product(gap, across_[at(slot)], u);
     for (int other = 0; other < count_; ++other) {
       if (is_closed_after(slot, other)) {
-        subtract(gap, product(give_[at(slot)][at(other)], forces[at(other)]));
+        subtract(gap,
+                 product(give_[at(slot)][at(other)], base::converted<double>(forces[at(other)])));
       }
     }
-    forces[at(slot)] = product(give_[at(slot)][at(slot)], gap);
+    forces[at(slot)] = base::converted<float>(product(give_[at(slot)][at(slot)], gap));
   }
 }
 

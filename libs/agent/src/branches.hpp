@@ -15,12 +15,19 @@
 ///   kTreeStep  with the order: displacements and forces in cuts; with the reports: loads
 ///
 /// Planned modules emulated here are leaves of the tree: they hang on this module or on each other.
+///
+/// All is done in pieces, none longer than 5 ms on a Cortex-M0; each makes the factor of 1 + S F
+/// that it needs. Between the residuals of one step and the displacements of the next, Node::shared
+/// has the condensed load of a planned module, then its shift.
 namespace holdfast::agent {
 
 namespace branches {
 
-/// Columns of S', complete as soon as the first is; those of B', C' and P' follow.
+/// Columns of S'; those of B', C' and P' follow.
 inline constexpr int kStiffnessColumns = 6;
+
+/// Pieces in which a leaf's columns go to its parent.
+inline constexpr int kLeafPieces = kStiffnessColumns / Branch::kBatch;
 
 /// The planned modules of one host as a tree, parents before children.
 struct Leaves {
@@ -136,54 +143,163 @@ Cut BasicAgent<Real>::cut_at(int face) const {
                   : Cut{nodes_[0].cell, direction};
 }
 
-/// This module's own part of its branch, in the contact states in use.
 template <class Real>
-void BasicAgent<Real>::factor_branch() {
-  Branch& branch = work_.tree.branch;
-  branch.clear_stiffness();
-  column_ = 0;
-  for (int face = 0; face < base::kDirectionCount; ++face) {
-    if (is_cut(face)) {
-      const Cut cut = cut_at(face);
-      branch.add_end(branch.find(cut), face % 2 != 0,
-                     rigid_transport(setup_.section.length, cut.direction));
-    }
-  }
-  const branches::Leaves leaves = branches::leaves_of(planned_);
-  const LeafStiffness stiffness = leaf_stiffness();
-  if (nodes_[0].is_ground) {
-    branch.add_stiffness(
-        mechanics::contact_tangent(contact_.facet, nodes_[0].state, nodes_[0].is_held));
-  }
-  for (std::size_t i = 0; i < static_cast<std::size_t>(leaves.count); ++i) {
-    if (leaves.parent[i] == 0) {
-      branch.add_stiffness(stiffness_up(setup_.beam, leaves.to_parent[i],
-                                        stiffness[static_cast<std::size_t>(leaves.node[i])]));
-    }
-  }
-  work_.tree.load = {};  // Children add theirs as they come.
-  work_.tree.columns_here = {};
+Joint BasicAgent<Real>::joint_to_parent() const {
+  return {setup_.beam, static_cast<base::Direction>(parent_)};
 }
 
-/// By node: what holds a planned module from its own ground and the planned ones beyond it.
+/// What holds a planned module, from its own ground and the planned ones beyond it.
 template <class Real>
-typename BasicAgent<Real>::LeafStiffness BasicAgent<Real>::leaf_stiffness() const {
-  LeafStiffness stiffness{};
-  const branches::Leaves leaves = branches::leaves_of(planned_);
-  for (int i = leaves.count - 1; i >= 0; --i) {
-    const auto at = static_cast<std::size_t>(leaves.node[static_cast<std::size_t>(i)]);
-    const auto parent = static_cast<std::size_t>(leaves.parent[static_cast<std::size_t>(i)]);
-    if (nodes_[at].is_ground) {
-      base::add_to(stiffness[at], mechanics::contact_tangent(contact_.facet, nodes_[at].state,
-                                                             nodes_[at].is_held));
-    }
-    if (parent > 0) {
-      base::add_to(
-          stiffness[parent],
-          stiffness_up(setup_.beam, leaves.to_parent[static_cast<std::size_t>(i)], stiffness[at]));
+base::Mat6<float> BasicAgent<Real>::leaf_stiffness(std::size_t node) const {
+  base::Mat6<float> stiffness;
+  std::size_t below = 0;
+  std::size_t above = 0;
+  for (int i = 0; i < 6; ++i) {
+    for (int k = 0; k <= i; ++k) {
+      stiffness.at(i, k) = static_cast<float>(nodes_[node].factor[below++]);
+      if (k < i) {
+        stiffness.at(k, i) = work_.tree.leaves[node - 1][above++];
+      }
     }
   }
   return stiffness;
+}
+
+template <class Real>
+void BasicAgent<Real>::add_leaf_stiffness(std::size_t node, int row, int column, float value) {
+  if (column <= row) {
+    nodes_[node].factor[static_cast<std::size_t>(row * (row + 1) / 2 + column)] +=
+        static_cast<Real>(value);
+  } else {
+    work_.tree.leaves[node - 1][static_cast<std::size_t>(column * (column - 1) / 2 + row)] += value;
+  }
+}
+
+/// From nothing: tangents, then columns of leaves, come piece by piece.
+template <class Real>
+void BasicAgent<Real>::factor_branch() {
+  BranchWork& tree = work_.tree;
+  tree.branch.clear_stiffness();
+  tree.load = {};  // Children add theirs as they come.
+  tree.columns_here = {};
+  tree.leaves = {};
+  tree.is_symmetric = true;
+  for (int i = 0; i < node_count(); ++i) {
+    Node<Real>& node = nodes_[static_cast<std::size_t>(i)];
+    node.factor = {};
+    const bool tilts = node.is_ground && (node.state.tilt_x != 0 || node.state.tilt_y != 0);
+    tree.is_symmetric = tree.is_symmetric && !tilts;
+  }
+  for (int face = 0; face < base::kDirectionCount; ++face) {
+    if (is_cut(face)) {
+      tree.branch.add_end(tree.branch.find(cut_at(face)), face % 2 != 0, setup_.beam);
+    }
+  }
+  begin_piece(Piece::kTangents, node_count());
+}
+
+/// What a facet holds, in the contact state in use.
+template <class Real>
+void BasicAgent<Real>::add_tangent(std::size_t at) {
+  const Node<Real>& node = nodes_[at];
+  if (!node.is_ground) {
+    return;
+  }
+  const base::Mat6<double> tangent =
+      mechanics::contact_tangent(contact_.facet, node.state, node.is_held);
+  if (at == 0) {
+    work_.tree.branch.add_stiffness(tangent);
+    return;
+  }
+  for (int row = 0; row < 6; ++row) {
+    for (int column = 0; column < 6; ++column) {
+      add_leaf_stiffness(at, row, column, static_cast<float>(tangent.at(row, column)));
+    }
+  }
+}
+
+template <class Real>
+void BasicAgent<Real>::begin_piece(Piece piece, int index) {
+  piece_ = piece;
+  piece_index_ = static_cast<std::uint8_t>(index);
+}
+
+/// The next piece; false if there is none, or if it has to wait.
+template <class Real>
+bool BasicAgent<Real>::do_piece() {
+  if (piece_ == Piece::kNone || is_exchanging_) {
+    return false;
+  }
+  if (piece_ < Piece::kResiduals) {
+    return do_factor_piece();
+  }
+  if (piece_ < Piece::kShift) {
+    return do_load_piece();
+  }
+  do_shift_piece();
+  return true;
+}
+
+template <class Real>
+bool BasicAgent<Real>::do_factor_piece() {
+  if (piece_ == Piece::kTangents) {
+    add_tangent(--piece_index_);
+    if (piece_index_ == 0) {
+      begin_piece(Piece::kLeafColumns, branches::kLeafPieces * planned_.hosted_count());
+    }
+    return true;
+  }
+  if (piece_ == Piece::kLeafColumns) {
+    if (piece_index_ == 0) {
+      begin_piece(Piece::kLoops);
+      return true;
+    }
+    --piece_index_;
+    send_leaf_columns(branches::leaves_of(planned_), piece_index_ / branches::kLeafPieces,
+                      piece_index_ % branches::kLeafPieces * Branch::kBatch);
+    return true;
+  }
+  if (piece_ == Piece::kLoops) {
+    Branch& branch = work_.tree.branch;
+    if (branch.closes_loops() && reports_awaited_ != 0) {
+      return false;
+    }
+    if (!branch.close_loops(setup_.beam, piece_index_)) {
+      begin_piece(Piece::kSymmetry);
+    }
+    return true;
+  }
+  if (piece_ == Piece::kSymmetry) {
+    if (!is_column_ready(0)) {
+      return false;
+    }
+    BranchWork& tree = work_.tree;
+    tree.is_symmetric = tree.is_symmetric || tree.branch.is_symmetric();
+    begin_piece(Piece::kColumns);
+    return true;
+  }
+  return send_columns();
+}
+
+/// A leaf hands its stiffness on: columns `first` and on.
+template <class Real>
+void BasicAgent<Real>::send_leaf_columns(const branches::Leaves& leaves, int leaf, int first) {
+  const auto i = static_cast<std::size_t>(leaf);
+  const auto parent = static_cast<std::size_t>(leaves.parent[i]);
+  const Joint joint(setup_.beam, leaves.to_parent[i]);
+  Branch::Columns columns;
+  find_stiffness_up(joint, leaf_stiffness(static_cast<std::size_t>(leaves.node[i])), first,
+                    columns);
+  for (int k = 0; k < Branch::kBatch; ++k) {
+    const base::Vec6<float>& column = columns[static_cast<std::size_t>(k)];
+    if (parent == 0) {
+      work_.tree.branch.add_column(first + k, {}, column);
+      continue;
+    }
+    for (int row = 0; row < 6; ++row) {
+      add_leaf_stiffness(parent, row, first + k, column[static_cast<std::size_t>(row)]);
+    }
+  }
 }
 
 template <class Real>
@@ -194,6 +310,7 @@ void BasicAgent<Real>::take_column(int face, std::span<const std::uint8_t> messa
   BranchWork& tree = work_.tree;
   std::uint8_t& here = tree.columns_here[static_cast<std::size_t>(face)];
   if (part < 0) {
+    tree.is_symmetric = tree.is_symmetric && index >= branches::kStiffnessColumns;
     tree.branch.add_column(index, tree.slot_of[static_cast<std::size_t>(face)],
                            sweep::read_vector(in));
     here = static_cast<std::uint8_t>(index + 1);
@@ -201,89 +318,79 @@ void BasicAgent<Real>::take_column(int face, std::span<const std::uint8_t> messa
     tree.branch.add_part(part, sweep::read_vector(in));
     here = part + 1 == Branch::kPartCount ? std::uint8_t{6} : here;
   }
-  send_columns();
 }
 
-/// Is all here that the next column needs?
+/// Is all here that this column needs?
 template <class Real>
-bool BasicAgent<Real>::is_column_ready() const {
+bool BasicAgent<Real>::is_column_ready(int column) const {
   const BranchWork& tree = work_.tree;
   for (int face = 0; face < base::kDirectionCount; ++face) {
     const auto at = static_cast<std::size_t>(face);
     if ((reports_awaited_ & bit(face)) != 0 &&
-        (tree.branch.closes_loops() ||
-         tree.columns_here[at] <
-             tree.branch.columns_needed(column_, tree.slot_of[at], tree.child_cut_count[at]))) {
+        tree.columns_here[at] <
+            tree.branch.columns_needed(column, tree.slot_of[at], tree.child_cut_count[at])) {
       return false;
     }
   }
   return true;
 }
 
-/// Column `column_` for the parent; of a symmetric S' the part of that number, zeros beyond the
-/// last.
-template <class Real>
-base::Vec6<float> BasicAgent<Real>::next_column() {
-  BranchWork& tree = work_.tree;
-  const auto to_parent = static_cast<base::Direction>(parent_);
-  if (column_ >= branches::kStiffnessColumns) {
-    return base::converted<float>(
-        tree.branch.column_up(setup_.beam, to_parent, nodes_[0].is_fixed, column_));
-  }
-  if (column_ == 0) {
-    const auto stiffness = tree.branch.stiffness_up(setup_.beam, to_parent, nodes_[0].is_fixed);
-    for (std::size_t i = 0; i < stiffness.values.size(); ++i) {
-      tree.stiffness_up.values[i] = static_cast<float>(stiffness.values[i]);
-    }
-    tree.is_symmetric = is_symmetric(tree.stiffness_up);
-  }
-  if (tree.is_symmetric) {
-    return column_ < Branch::kPartCount ? part_of(tree.stiffness_up, column_) : base::Vec6<float>{};
-  }
-  base::Vec6<float> column;
-  for (int row = 0; row < 6; ++row) {
-    column[static_cast<std::size_t>(row)] = tree.stiffness_up.at(row, column_);
-  }
-  return column;
-}
-
-/// Columns of zeros need not be sent. False: more when there is room on the link, or when children
-/// have sent more.
+/// The next columns for the parent, as many as are ready; those of zeros need not be sent. False:
+/// more when there is room on the link, or when children have sent more.
 template <class Real>
 bool BasicAgent<Real>::send_columns() {
-  constexpr std::uint8_t kAllSent = Branch::kColumnCount + 1;
-  Branch& branch = work_.tree.branch;
-  if (column_ == kAllSent) {
-    return true;
-  }
-  if (!is_streaming_ && branch.closes_loops()) {
-    if (reports_awaited_ != 0) {
+  const Branch& branch = work_.tree.branch;
+  const auto skip = [&](int count) {
+    piece_index_ = static_cast<std::uint8_t>(piece_index_ + count);
+  };
+  while (piece_index_ < Branch::kColumnCount && parent_ >= 0) {
+    if (!is_column_ready(piece_index_)) {
       return false;
     }
-    branch.close_loops(setup_.beam);
-  }
-  is_streaming_ = true;
-  for (; column_ < Branch::kColumnCount && parent_ >= 0; ++column_) {
-    if (!is_column_ready()) {
-      return false;
-    }
-    const base::Vec6<float> column = next_column();
-    if (column == base::Vec6<float>{}) {
+    if (!branch.has_columns(piece_index_, nodes_[0].is_fixed)) {
+      skip(6);  // A whole block.
       continue;
     }
+    int count = 1;
+    while (count < Branch::batch_at(piece_index_) && is_column_ready(piece_index_ + count)) {
+      ++count;
+    }
     // What follows must find room too.
-    constexpr int kRoom = (2 + kLoopsMax) * wire::kVectorBytes + wire::kMessageBytesMax;
-    if (!links_[static_cast<std::size_t>(parent_)].has_room(kRoom)) {
+    const int room = (count + 1 + kLoopsMax) * wire::kVectorBytes + wire::kMessageBytesMax;
+    if (!links_[static_cast<std::size_t>(parent_)].has_room(room)) {
       return false;
     }
-    const bool is_part = work_.tree.is_symmetric && column_ < branches::kStiffnessColumns;
-    const int label = column_ + (is_part ? Branch::kColumnCount : 0);
-    send(parent_, sweep::vector_message(wire::MessageType::kColumn,
-                                        static_cast<std::uint8_t>(label), column));
+    send_batch(piece_index_, count);
+    skip(count);
+    return true;
   }
-  is_streaming_ = false;
-  column_ = kAllSent;
+  begin_piece(Piece::kResiduals);
   return true;
+}
+
+template <class Real>
+void BasicAgent<Real>::send_batch(int column, int count) {
+  const Branch& branch = work_.tree.branch;
+  const bool is_fixed = nodes_[0].is_fixed;
+  const bool has_parts = work_.tree.is_symmetric && column < branches::kStiffnessColumns;
+  // Two parts are made of three columns.
+  const int first = has_parts ? column * 2 / Branch::kBatch : column;
+  Branch::Columns columns;
+  {
+    const Joint joint = joint_to_parent();
+    has_parts ? branch.find_parts_up(joint, is_fixed, first, columns)
+              : branch.find_columns_up(joint, is_fixed, first, count, columns);
+  }
+  for (int k = 0; k < (has_parts ? 2 : count); ++k) {
+    const int label = first + k + (has_parts ? Branch::kColumnCount : 0);
+    send_column(label, columns[static_cast<std::size_t>(k)]);
+  }
+}
+
+template <class Real>
+[[gnu::noinline]] void BasicAgent<Real>::send_column(int label, const base::Vec6<float>& column) {
+  send(parent_,
+       sweep::vector_message(wire::MessageType::kColumn, static_cast<std::uint8_t>(label), column));
 }
 
 template <class Real>
@@ -302,43 +409,81 @@ void BasicAgent<Real>::take_branch_up(int face, std::span<const std::uint8_t> me
 
 /// The residuals here join the loads from below, and all go up.
 template <class Real>
-void BasicAgent<Real>::send_branch_up() {
+bool BasicAgent<Real>::do_load_piece() {
   BranchWork& tree = work_.tree;
-  const branches::Leaves leaves = branches::leaves_of(planned_);
-  const LeafStiffness stiffness = leaf_stiffness();
-  std::array<base::Vec6<double>, 1 + kPlannedMax> loads = leaf_loads(leaves, stiffness);
-  base::add_to(tree.load.load, loads[0]);
-  tree.branch.close_loops(tree.load);
-  if (parent_ < 0) {
-    return;
+  if (reports_awaited_ != 0) {
+    return false;
   }
-  const BranchLoad up = tree.branch.load_up(setup_.beam, static_cast<base::Direction>(parent_),
-                                            nodes_[0].is_fixed, tree.load);
-  send(parent_,
-       sweep::vector_message(wire::MessageType::kBranchUp, 0, base::converted<float>(up.load)));
+  switch (piece_) {
+    case Piece::kResiduals:
+      find_residual_loads();
+      begin_piece(Piece::kLeafLoads, planned_.hosted_count());
+      break;
+    case Piece::kLeafLoads:
+      if (piece_index_ == 0) {
+        begin_piece(Piece::kCloseLoad);
+      } else {
+        send_leaf_load(branches::leaves_of(planned_), --piece_index_);
+      }
+      break;
+    case Piece::kCloseLoad:
+      tree.branch.close_loops(tree.load);
+      begin_piece(parent_ < 0 ? Piece::kNone : Piece::kLoadUp);
+      break;
+    case Piece::kLoadUp:
+      send_load_up();
+      begin_piece(Piece::kGapsUp);
+      break;
+    default:
+      send_gaps_up();
+      begin_piece(Piece::kNone);
+  }
+  return true;
+}
+
+template <class Real>
+[[gnu::noinline]] void BasicAgent<Real>::send_load_up() {
+  base::Vec6<double> load = work_.tree.load.load;
+  work_.tree.branch.find_load_up(joint_to_parent(), nodes_[0].is_fixed, load);
+  send_branch_up(0, base::converted<float>(load));
+}
+
+template <class Real>
+[[gnu::noinline]] void BasicAgent<Real>::send_gaps_up() {
+  const BranchWork& tree = work_.tree;
+  CutForces gaps{};
+  tree.branch.find_gaps_up(joint_to_parent(), nodes_[0].is_fixed, tree.load, gaps);
   for (int i = 0; i < tree.branch.open_count(); ++i) {
-    send(parent_,
-         sweep::vector_message(wire::MessageType::kBranchUp, static_cast<std::uint8_t>(1 + i),
-                               base::converted<float>(up.gap[static_cast<std::size_t>(i)])));
+    send_branch_up(1 + i, gaps[static_cast<std::size_t>(i)]);
   }
 }
 
-/// By node: its residual and what planned ones beyond it hand on.
 template <class Real>
-std::array<base::Vec6<double>, 1 + kPlannedMax> BasicAgent<Real>::leaf_loads(
-    const branches::Leaves& leaves, const LeafStiffness& stiffness) const {
-  std::array<base::Vec6<double>, 1 + kPlannedMax> loads{};
-  for (int i = 0; i < node_count(); ++i) {
-    loads[static_cast<std::size_t>(i)] =
-        residual(nodes_[static_cast<std::size_t>(i)], setup_, contact_);
+void BasicAgent<Real>::find_residual_loads() {
+  base::add_to(work_.tree.load.load, residual(nodes_[0], setup_, contact_));
+  for (std::size_t i = 1; i < static_cast<std::size_t>(node_count()); ++i) {
+    nodes_[i].shared = base::converted<Real>(residual(nodes_[i], setup_, contact_));
   }
-  for (int i = leaves.count - 1; i >= 0; --i) {
-    const auto leaf = static_cast<std::size_t>(i);
-    const auto at = static_cast<std::size_t>(leaves.node[leaf]);
-    base::add_to(loads[static_cast<std::size_t>(leaves.parent[leaf])],
-                 agent::load_up(setup_.beam, leaves.to_parent[leaf], stiffness[at], loads[at]));
+}
+
+/// A leaf hands its load on.
+template <class Real>
+void BasicAgent<Real>::send_leaf_load(const branches::Leaves& leaves, std::size_t leaf) {
+  const auto at = static_cast<std::size_t>(leaves.node[leaf]);
+  const auto parent = static_cast<std::size_t>(leaves.parent[leaf]);
+  auto load = base::converted<double>(nodes_[at].shared);
+  find_load_up(Joint(setup_.beam, leaves.to_parent[leaf]), leaf_stiffness(at), load);
+  if (parent == 0) {
+    base::add_to(work_.tree.load.load, load);
+  } else {
+    base::add_to(nodes_[parent].shared, base::converted<Real>(load));
   }
-  return loads;
+}
+
+template <class Real>
+void BasicAgent<Real>::send_branch_up(int index, const base::Vec6<float>& vector) {
+  send(parent_, sweep::vector_message(wire::MessageType::kBranchUp,
+                                      static_cast<std::uint8_t>(index), vector));
 }
 
 /// What comes down first; the root has it.
@@ -348,8 +493,7 @@ void BasicAgent<Real>::begin_tree_step() {
   down_awaited_ =
       parent_ < 0 ? std::uint8_t{0} : static_cast<std::uint8_t>(1 + work_.tree.branch.open_count());
   if (down_awaited_ == 0) {
-    find_shifts();
-    send_branch_down();
+    begin_piece(Piece::kShift);
   }
 }
 
@@ -361,48 +505,72 @@ void BasicAgent<Real>::take_branch_down(std::span<const std::uint8_t> message) {
   wire::Reader in(message);
   const int index = in.u8();
   BranchWork& tree = work_.tree;
-  const auto vector = base::converted<double>(sweep::read_vector(in));
+  const base::Vec6<float> vector = sweep::read_vector(in);
   if (index == 0) {
-    tree.parent_shift = vector;
+    nodes_[0].shared = base::converted<Real>(vector);  // The parent's shift.
   } else if (index <= tree.branch.open_count()) {
     tree.forces[static_cast<std::size_t>(tree.branch.open_slot(index - 1))] = vector;
   }
   if (--down_awaited_ == 0) {
-    find_shifts();
-    send_branch_down();
-    start_exchange();
-    continue_sweep();
+    begin_piece(Piece::kShift);
   }
 }
 
-/// M^-1 r of this module and of the planned ones here; then they move by it.
+/// M^-1 r of this module and of the planned ones here; then they move by it. All see it in single
+/// precision, as the children do.
 template <class Real>
-void BasicAgent<Real>::find_shifts() {
+void BasicAgent<Real>::do_shift_piece() {
   BranchWork& tree = work_.tree;
-  const branches::Leaves leaves = branches::leaves_of(planned_);
-  const LeafStiffness stiffness = leaf_stiffness();
-  const auto loads = leaf_loads(leaves, stiffness);
-  std::array<base::Vec6<double>, 1 + kPlannedMax> shifts{};
+  switch (piece_) {
+    case Piece::kShift:
+      find_own_shift();
+      begin_piece(Piece::kForces);
+      break;
+    case Piece::kForces:
+      tree.branch.find_forces(tree.load, base::converted<double>(nodes_[0].shared), tree.forces);
+      send_branch_down();
+      begin_piece(Piece::kLeafShifts);
+      break;
+    case Piece::kLeafShifts:
+      if (piece_index_ == planned_.hosted_count()) {
+        begin_piece(Piece::kMove);
+      } else {
+        find_leaf_shift(branches::leaves_of(planned_), piece_index_++);
+      }
+      break;
+    default:
+      for (int i = 0; i < node_count(); ++i) {
+        Node<Real>& node = nodes_[static_cast<std::size_t>(i)];
+        base::add_to(node.u, base::converted<double>(node.shared));
+        share_high_part(node);
+      }
+      start_exchange();
+      begin_piece(Piece::kResiduals);
+  }
+}
+
+template <class Real>
+[[gnu::noinline]] void BasicAgent<Real>::find_own_shift() {
+  const BranchWork& tree = work_.tree;
+  auto shift = base::converted<double>(nodes_[0].shared);
   if (nodes_[0].is_fixed) {
-    tree.branch.find_forces(tree.load, {}, tree.forces);
+    shift = {};
   } else if (parent_ < 0) {
-    shifts[0] = tree.branch.displacement_of_root(tree.load, tree.forces);
+    tree.branch.find_displacement_of_root(tree.load, shift);
   } else {
-    shifts[0] = tree.branch.displacement(setup_.beam, static_cast<base::Direction>(parent_),
-                                         tree.parent_shift, tree.load, tree.forces);
+    tree.branch.find_displacement(joint_to_parent(), tree.load, tree.forces, shift);
   }
-  for (std::size_t i = 0; i < static_cast<std::size_t>(leaves.count); ++i) {
-    const auto at = static_cast<std::size_t>(leaves.node[i]);
-    shifts[at] = agent::displacement(setup_.beam, leaves.to_parent[i], stiffness[at],
-                                     shifts[static_cast<std::size_t>(leaves.parent[i])], loads[at]);
-  }
-  for (int i = 0; i < node_count(); ++i) {
-    const auto at = static_cast<std::size_t>(i);
-    Node<Real>& node = nodes_[at];
-    base::add_to(node.u, shifts[at]);
-    share_high_part(node);
-  }
-  tree.shift = base::converted<float>(shifts[0]);
+  nodes_[0].shared = equilibrium::as_sent(base::converted<Real>(shift));
+}
+
+template <class Real>
+void BasicAgent<Real>::find_leaf_shift(const branches::Leaves& leaves, std::size_t leaf) {
+  const auto at = static_cast<std::size_t>(leaves.node[leaf]);
+  const auto parent = static_cast<std::size_t>(leaves.parent[leaf]);
+  auto load = base::converted<double>(nodes_[at].shared);
+  auto shift = base::converted<double>(nodes_[parent].shared);
+  find_displacement(Joint(setup_.beam, leaves.to_parent[leaf]), leaf_stiffness(at), load, shift);
+  nodes_[at].shared = base::converted<Real>(shift);
 }
 
 template <class Real>
@@ -413,12 +581,12 @@ void BasicAgent<Real>::send_branch_down() {
       continue;
     }
     const auto at = static_cast<std::size_t>(face);
-    send(face, sweep::vector_message(wire::MessageType::kBranchDown, 0, tree.shift));
+    send(face, sweep::vector_message(wire::MessageType::kBranchDown, 0,
+                                     base::converted<float>(nodes_[0].shared)));
     for (std::size_t i = 0; i < tree.child_cut_count[at]; ++i) {
       const auto slot = static_cast<std::size_t>(tree.slot_of[at][i]);
-      send(face,
-           sweep::vector_message(wire::MessageType::kBranchDown, static_cast<std::uint8_t>(1 + i),
-                                 base::converted<float>(tree.forces[slot])));
+      send(face, sweep::vector_message(wire::MessageType::kBranchDown,
+                                       static_cast<std::uint8_t>(1 + i), tree.forces[slot]));
     }
   }
   tree.load = {};

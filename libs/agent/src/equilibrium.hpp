@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <type_traits>
+
 #include "bits.hpp"
 #include "holdfast/agent/agent.hpp"
 #include "holdfast/mechanics/connector.hpp"
@@ -102,7 +104,7 @@ template <class Real>
 void BasicAgent<Real>::begin_equilibrium(const Order& order) {
   const auto law = (order.flags & kUnilateralLaw) != 0 ? mechanics::ContactLaw::kUnilateral
                                                        : mechanics::ContactLaw::kRegularised;
-  contact_.facet = mechanics::ground_facet(setup_.section, setup_.facet_mm,
+  contact_.facet = mechanics::ground_facet(setup_.beam, setup_.section.length, setup_.facet_mm,
                                            static_cast<double>(order.reals[0]), law);
   contact_.lever_mm = static_cast<double>(order.reals[1]);
   const bool is_one_sweep = (order.flags & kOneSweep) != 0;
@@ -447,10 +449,19 @@ double BasicAgent<Real>::ratio_of(const MiddleLoad& load, base::Direction direct
 template <class Real>
 template <class Visit>
 void BasicAgent<Real>::visit_loads(Visit&& visit) const {
+  using Visitor = std::remove_reference_t<Visit>;
+  visit_all_loads([](void* visitor, const base::Cell& cell, base::Direction direction,
+                     double ratio) { (*static_cast<Visitor*>(visitor))(cell, direction, ratio); },
+                  &visit);
+}
+
+/// The same for any visitor, so that it is in flash once.
+template <class Real>
+void BasicAgent<Real>::visit_all_loads(LoadVisit visit, void* visitor) const {
   const std::uint8_t faces = node_faces(0);
   for (const base::Direction direction : base::kDirections) {
     if ((faces & bit(base::index(direction))) != 0) {
-      visit(nodes_[0].cell, direction,
+      visit(visitor, nodes_[0].cell, direction,
             ratio_of(middle_[static_cast<std::size_t>(base::index(direction))], direction));
     }
   }
@@ -464,7 +475,7 @@ void BasicAgent<Real>::visit_loads(Visit&& visit) const {
       const base::Vec6<double> middle =
           mechanics::middle_force(setup_.beam, direction, node.u,
                                   nodes_[static_cast<std::size_t>(planned_.node_of(other))].u);
-      visit(node.cell, direction, ratio_of({middle[2], middle[3], middle[4]}, direction));
+      visit(visitor, node.cell, direction, ratio_of({middle[2], middle[3], middle[4]}, direction));
     }
   }
 }

@@ -186,7 +186,6 @@ void BasicAgent<Real>::take_remote_down(std::uint8_t label, const base::Vec6<flo
     planned_here_ = static_cast<std::uint8_t>(planned_here_ | bit(k));
   }
   send_remote_down(label, part);
-  continue_sweep();
 }
 
 /// Does the present exchange need what hosts send? Of a step it is the second.

@@ -19,29 +19,48 @@ BasicAgent<Real>::BasicAgent(const Setup& setup, const Identity& identity)
 
 template <class Real>
 void BasicAgent<Real>::step(const Event& event, Actions& actions) {
+  begin(event, actions);
+  while (is_busy_) {
+    go_on();
+  }
+  finish_step(actions);
+}
+
+template <class Real>
+void BasicAgent<Real>::step_part(const Event& event, Actions& actions) {
+  begin(event, actions);
+  finish_step(actions);
+}
+
+template <class Real>
+void BasicAgent<Real>::begin(const Event& event, Actions& actions) {
   now_ = event.now;
   actions.packet_bytes = 0;
   if (event.kind == EventKind::kLineFree) {
     const int face = base::index(event.face);
     actions.packet_bytes =
         links_[static_cast<std::size_t>(face)].write_packet(actions.packet, setup_.timing, now_);
-    touched_ = bit(face);
-  } else {
-    handle(event);
-    if (restart_at_ <= now_) {
-      start_round();
-    }
-    if (is_streaming_) {
-      send_columns();
-      continue_sweep();
-    }
-    // Orders follow each other here, so that no function calls itself.
-    while (has_next_order_ && !is_exchanging_) {
-      has_next_order_ = false;
-      take_order(next_order_);
-    }
+    touched_ = static_cast<std::uint8_t>(touched_ | bit(face));
+    return;
   }
-  finish_step(actions);
+  if (event.kind == EventKind::kContinue) {
+    go_on();
+    return;
+  }
+  while (event.kind == EventKind::kReceive && is_busy_) {
+    go_on();
+  }
+  handle(event);
+  if (restart_at_ <= now_) {
+    start_round();
+  }
+}
+
+/// Messages only leave something to do; it is done here, a piece at a time, none of which calls
+/// another.
+template <class Real>
+void BasicAgent<Real>::go_on() {
+  is_busy_ = exchange() || do_piece() || finish_sweep() || end_stage() || take_next_order();
 }
 
 template <class Real>
@@ -77,6 +96,7 @@ void BasicAgent<Real>::handle(const Event& event) {
       }
       break;
     case EventKind::kLineFree:
+    case EventKind::kContinue:
       break;
   }
 }
@@ -94,6 +114,7 @@ void BasicAgent<Real>::finish_step(Actions& actions) {
     }
   }
   touched_ = 0;
+  actions.is_unfinished = is_busy_;
   actions.send_faces = send_faces_;
   actions.wake_at = restart_at_;
   for (const Time at : deadline_) {
@@ -105,6 +126,7 @@ template <class Real>
 void BasicAgent<Real>::receive(int face, std::span<const std::uint8_t> packet) {
   Link& link = links_[static_cast<std::size_t>(face)];
   touched_ = static_cast<std::uint8_t>(touched_ | bit(face));
+  is_busy_ = true;
   std::span<const std::uint8_t> stream = link.receive(packet, setup_.timing, now_);
   for (auto message = link.next_message(stream); !message.empty();
        message = link.next_message(stream)) {
@@ -218,7 +240,8 @@ void BasicAgent<Real>::leave_round() {
     phase_ = Phase::kDiscovery;
     is_sweeping_ = false;
     is_exchanging_ = false;
-    is_streaming_ = false;
+    piece_ = Piece::kNone;
+    is_stage_over_ = false;
     has_next_order_ = false;
     restart_at_ = now_ + setup_.timing.acknowledge_after;
   }
@@ -236,6 +259,7 @@ void BasicAgent<Real>::start_round() {
   }
   enter_round({.epoch = static_cast<std::uint16_t>(round_.epoch + 1), .starter = identity_.id});
   start_wave(kFirstStage);
+  is_busy_ = true;
 }
 
 template <class Real>
@@ -247,7 +271,8 @@ void BasicAgent<Real>::enter_round(const Round& round) {
   children_ = 0;
   is_sweeping_ = false;
   is_exchanging_ = false;
-  is_streaming_ = false;
+  piece_ = Piece::kNone;
+  is_stage_over_ = false;
   has_next_order_ = false;
   tag_ = 0;
   vectors_here_ = {};

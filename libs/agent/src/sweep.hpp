@@ -125,10 +125,10 @@ void BasicAgent<Real>::take_order(const Order& order) {
   down_awaited_ = 0;
   send_to_children(encode(order));
   prepare(order);
-  if (sweep::exchanges(order) && down_awaited_ == 0) {
+  // Displacements of a kTreeStep have to be found first.
+  if (sweep::exchanges(order) && order.operation != wire::Operation::kTreeStep) {
     start_exchange();
   }
-  continue_sweep();
 }
 
 template <class Real>
@@ -188,7 +188,6 @@ void BasicAgent<Real>::take_planned_down(std::span<const std::uint8_t> message) 
   planned_vector_[static_cast<std::size_t>(k)] = sweep::read_vector(in);
   planned_here_ = static_cast<std::uint8_t>(planned_here_ | bit(k));
   send_planned_down(k);
-  continue_sweep();
 }
 
 /// The beams' forces on planned modules from here down, to their hosts above; where digits count,
@@ -238,7 +237,6 @@ void BasicAgent<Real>::take_vector(int face, std::span<const std::uint8_t> messa
   const std::size_t slot = tag & 1U;
   vectors_[slot][static_cast<std::size_t>(face)] = sweep::read_vector(in);
   vectors_here_[slot] = static_cast<std::uint8_t>(vectors_here_[slot] | bit(face));
-  continue_sweep();
 }
 
 template <class Real>
@@ -252,50 +250,54 @@ void BasicAgent<Real>::take_report(int face, std::span<const std::uint8_t> messa
     stored[i] = message[i];
   }
   reports_awaited_ = static_cast<std::uint8_t>(reports_awaited_ & ~bit(face));
-  continue_sweep();
+}
+
+/// The next exchange, if all that it needs is here.
+template <class Real>
+bool BasicAgent<Real>::exchange() {
+  const std::size_t slot = tag_ & 1U;
+  const std::uint8_t faces = used_faces();
+  // What children add to planned modules emulated here comes before their reports. It belongs to an
+  // order's last exchange.
+  const bool waits_for_children = exchanges_left_ == 1 && exchanges_behind_ == 0;
+  if (!is_exchanging_ || (vectors_here_[slot] & faces) != faces || is_waiting_for_hosts() ||
+      (waits_for_children && reports_awaited_ != 0)) {
+    return false;
+  }
+  exchange_forces();
+  vectors_here_[slot] = 0;
+  planned_here_ = needs_hosts() ? std::uint8_t{0} : planned_here_;
+  is_exchanging_ = false;
+  if (!is_apart()) {
+    send_planned_up();
+  }
+  after_exchange();
+  if (--exchanges_left_ > 0) {
+    start_exchange();
+  }
+  return true;
 }
 
 template <class Real>
-void BasicAgent<Real>::continue_sweep() {
-  while (is_exchanging_) {
-    const std::size_t slot = tag_ & 1U;
-    const std::uint8_t faces = used_faces();
-    // What children add to planned modules emulated here comes before their reports. It belongs to
-    // an order's last exchange.
-    const bool waits_for_children = exchanges_left_ == 1 && exchanges_behind_ == 0;
-    if ((vectors_here_[slot] & faces) != faces || is_waiting_for_hosts() ||
-        (waits_for_children && reports_awaited_ != 0)) {
-      break;
-    }
-    exchange_forces();
-    vectors_here_[slot] = 0;
-    planned_here_ = needs_hosts() ? std::uint8_t{0} : planned_here_;
-    is_exchanging_ = false;
-    if (!is_apart()) {
-      send_planned_up();
-    }
-    after_exchange();
-    if (--exchanges_left_ > 0) {
-      start_exchange();
-    }
+bool BasicAgent<Real>::take_next_order() {
+  if (!has_next_order_ || is_exchanging_) {
+    return false;
   }
+  has_next_order_ = false;
+  take_order(next_order_);
+  return true;
+}
+
+/// Reports, if all is done here and below.
+template <class Real>
+bool BasicAgent<Real>::finish_sweep() {
   const bool is_done_here = !sweep::exchanges(order_) || exchanges_left_ <= exchanges_behind_;
-  if (is_sweeping_ && reports_awaited_ == 0 && down_awaited_ == 0 && is_done_here) {
-    finish_sweep();
-  }
-}
-
-template <class Real>
-void BasicAgent<Real>::finish_sweep() {
-  if (order_.operation == wire::Operation::kFactor && !send_columns()) {
-    return;  // More when there is room.
+  if (!is_sweeping_ || reports_awaited_ != 0 || down_awaited_ != 0 || piece_ != Piece::kNone ||
+      !is_done_here) {
+    return false;
   }
   is_sweeping_ = false;
   Report report = conclude(order_);
-  if (order_.operation == wire::Operation::kFactor ||
-      order_.operation == wire::Operation::kTreeStep) {
-    send_branch_up();
-  }
   for (int face = 0; face < base::kDirectionCount; ++face) {
     if ((children_ & bit(face)) != 0) {
       const Report theirs = decode_report(reports_[static_cast<std::size_t>(face)]);
@@ -315,6 +317,7 @@ void BasicAgent<Real>::finish_sweep() {
     phase_ = Phase::kDone;
     touched_ = 0x3f;
   }
+  return true;
 }
 
 }  // namespace holdfast::agent

@@ -39,6 +39,7 @@ void BasicAgent<Real>::begin_stage(std::uint8_t stage, int parent, std::uint16_t
   parent_ = static_cast<std::int8_t>(parent);
   hops_ = hops;
   children_ = 0;
+  is_stage_over_ = false;
   census_count_ = 1;
   census_hops_ = hops;
   census_id_ = identity_.id;
@@ -115,7 +116,7 @@ void BasicAgent<Real>::await_less(int face) {
     return;
   }
   if (parent_ < 0) {
-    end_stage();
+    is_stage_over_ = true;
     return;
   }
   Writer echo(MessageType::kEcho);
@@ -129,25 +130,30 @@ void BasicAgent<Real>::await_less(int face) {
   send(parent_, echo);
 }
 
-/// The wave has come back to where it started.
+/// Once the wave has come back to where it started.
 template <class Real>
-void BasicAgent<Real>::end_stage() {
+bool BasicAgent<Real>::end_stage() {
+  if (!is_stage_over_) {
+    return false;
+  }
+  is_stage_over_ = false;
   if (is_anyone_silent_) {
     next_order_ = {.operation = wire::Operation::kVerdict};
     next_order_.answer = {.verdict = Verdict::kUndecided, .reason = Reason::kNeighbourSilent};
     has_next_order_ = true;
-    return;
+    return true;
   }
   if (stage_ == kTreeStage) {
     next_order_ = conductor_.begin(setup_, nodes_[0].cell, census_count_, census_hops_);
     has_next_order_ = true;
-    return;
+    return true;
   }
   Writer appoint(MessageType::kAppoint);
   appoint.u8(stage_);
   appoint.u32(census_id_);
   appoint.u16(static_cast<std::uint16_t>(census_hops_ / 2));
   take_appointment(appoint.bytes());
+  return true;
 }
 
 template <class Real>

@@ -243,6 +243,32 @@ TEST(Agent, losses_change_the_time_and_not_the_answer) {
   EXPECT_GT(times.size(), 1U);
 }
 
+/// A ring on a fixed module with planned ones at its far corner, the last of which stands on the
+/// ground: loops, leaves and a facet. Half of the pieces are interrupted by packets.
+TEST(Agent, a_piece_at_a_time_finds_the_same) {
+  const auto setup = table_setup();
+  std::vector<Place> places = {{.cell = {0, 0, 1}, .is_fixed = true}};
+  for (const Cell& cell : {Cell{1, 0, 1}, Cell{2, 0, 1}, Cell{2, 1, 1}, Cell{2, 2, 1},
+                           Cell{1, 2, 1}, Cell{0, 2, 1}, Cell{0, 1, 1}}) {
+    places.push_back({.cell = cell});
+  }
+  std::vector<Answer> answers;
+  for (const bool in_parts : {false, true}) {
+    TestNetwork network(setup, places, {.in_parts = in_parts});
+    network.plan(0, {3, 2, 1});
+    network.plan(0, {4, 2, 1});
+    network.plan(0, {4, 2, 0});
+    ASSERT_TRUE(network.run_anew());
+    expect_agreement(network);
+    answers.push_back(network.agent(0).answer());
+    EXPECT_EQ(network.unfinished_count() > 100, in_parts);
+  }
+  EXPECT_EQ(answers[0].verdict, Verdict::kSafe);
+  EXPECT_EQ(answers[1].verdict, Verdict::kSafe);
+  EXPECT_EQ(answers[1].worst_cell, answers[0].worst_cell);
+  EXPECT_NEAR(answers[1].load_ratio_max, answers[0].load_ratio_max, 1e-5);
+}
+
 TEST(Agent, the_same_seed_gives_the_same_bits) {
   for (const std::uint64_t seed : {1U, 2U, 3U}) {
     const Outcome first = run_bracket(0.1, seed);

@@ -28,6 +28,7 @@ struct NetworkOptions {
   double loss = 0;  ///< Share of packets that vanish.
   std::uint64_t seed = 1;
   std::uint32_t id_first = 100;
+  bool in_parts = false;  ///< Modules work a piece each tick; packets interrupt them.
 };
 
 /// The plainest network: time counts ticks, every line takes one packet a tick, and a packet is on
@@ -135,6 +136,10 @@ class TestNetwork {
       if (actions_[i].wake_at <= now_) {
         step(i, event(EventKind::kTime));
       }
+      if (actions_[i].is_unfinished) {
+        step(i, event(EventKind::kContinue));
+        unfinished_count_ += actions_[i].is_unfinished ? 1 : 0;
+      }
       for (const base::Direction face : base::kDirections) {
         if (((actions_[i].send_faces >> static_cast<unsigned>(base::index(face))) & 1U) != 0) {
           take_packet(i, face);
@@ -142,6 +147,9 @@ class TestNetwork {
       }
     }
   }
+
+  /// How often a module had still more to do after a piece.
+  int unfinished_count() const { return unfinished_count_; }
 
   /// Called with every packet before it gets lost.
   std::function<void(std::size_t from, base::Direction face, std::span<const std::uint8_t>)> watch;
@@ -173,7 +181,8 @@ class TestNetwork {
 
   void step(std::size_t i, const Event& event) {
     if (!places_[i].is_mute) {
-      agents_[i]->step(event, actions_[i]);
+      options_.in_parts ? agents_[i]->step_part(event, actions_[i])
+                        : agents_[i]->step(event, actions_[i]);
     }
   }
 
@@ -204,6 +213,7 @@ class TestNetwork {
   std::vector<Flight> in_flight_;
   std::uint16_t link_up_count_ = 0;
   Time now_ = 0;
+  int unfinished_count_ = 0;
 };
 
 }  // namespace holdfast::agent::test

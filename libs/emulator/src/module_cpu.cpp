@@ -10,7 +10,8 @@
 namespace holdfast::emulator {
 namespace {
 
-constexpr const char* kStep = "_ZN8holdfast5agent10BasicAgentIfE4stepERKNS0_5EventERNS0_7ActionsE";
+constexpr const char* kStep =
+    "_ZN8holdfast5agent10BasicAgentIfE9step_partERKNS0_5EventERNS0_7ActionsE";
 
 /// agent::Event and agent::Actions as they lie in the module's memory.
 struct EventLayout {
@@ -25,6 +26,7 @@ struct EventLayout {
 
 struct ActionsLayout {
   std::uint8_t send_faces;
+  std::uint8_t is_unfinished;
   std::uint64_t wake_at;
   std::int32_t packet_bytes;
   std::uint8_t packet[agent::wire::kPacketBytesMax];
@@ -141,7 +143,7 @@ void ModuleCpu::left() {
   is_inside_ = false;
   const Cycles cycles = processor_.now() - entered_at_;
   const agent::Phase phase = shadow_->phase();
-  shadow_->step(event_, actions_);
+  shadow_->step_part(event_, actions_);
   compare_actions();
   ++steps_.count;
   steps_.cycles += cycles;
@@ -160,6 +162,7 @@ void ModuleCpu::compare_actions() {
   const auto actions = read_value<ActionsLayout>(processor_, actions_address_);
   const auto size = static_cast<std::size_t>(std::clamp(actions_.packet_bytes, 0, 228));
   const bool is_same = actions.send_faces == actions_.send_faces &&
+                       (actions.is_unfinished != 0) == actions_.is_unfinished &&
                        actions.wake_at == actions_.wake_at &&
                        actions.packet_bytes == actions_.packet_bytes &&
                        std::equal(actions.packet, actions.packet + size, actions_.packet.begin());

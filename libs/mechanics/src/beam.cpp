@@ -25,6 +25,11 @@ constexpr Frame kFrames[base::kDirectionCount] = {
 };
 
 template <class Real>
+Real signed_as(Real value, std::int8_t sign) {
+  return sign < 0 ? -value : value;
+}
+
+template <class Real>
 Vec6<Real> local_end_force(const BeamStiffness<Real>& k, const Vec6<Real>& p, const Vec6<Real>& q) {
   const Real dx = p[0] - q[0];
   const Real dy = p[1] - q[1];
@@ -73,8 +78,8 @@ Vec6<Real> to_local(Direction direction, const Vec6<Real>& global) {
   const Frame& frame = kFrames[base::index(direction)];
   Vec6<Real> local;
   for (std::size_t i = 0; i < 3; ++i) {
-    local[i] = static_cast<Real>(frame.sign[i]) * global[frame.axis[i]];
-    local[i + 3] = static_cast<Real>(frame.sign[i]) * global[frame.axis[i] + 3U];
+    local[i] = signed_as(global[frame.axis[i]], frame.sign[i]);
+    local[i + 3] = signed_as(global[frame.axis[i] + 3U], frame.sign[i]);
   }
   return local;
 }
@@ -84,8 +89,8 @@ Vec6<Real> to_global(Direction direction, const Vec6<Real>& local) {
   const Frame& frame = kFrames[base::index(direction)];
   Vec6<Real> global;
   for (std::size_t i = 0; i < 3; ++i) {
-    global[frame.axis[i]] = static_cast<Real>(frame.sign[i]) * local[i];
-    global[frame.axis[i] + 3U] = static_cast<Real>(frame.sign[i]) * local[i + 3];
+    global[frame.axis[i]] = signed_as(local[i], frame.sign[i]);
+    global[frame.axis[i] + 3U] = signed_as(local[i + 3], frame.sign[i]);
   }
   return global;
 }

@@ -26,6 +26,17 @@ std::int8_t sign(Real value) {
   return value < 0 ? std::int8_t{-1} : std::int8_t{1};
 }
 
+#ifdef HOLDFAST_REGULARISED_LAW_ONLY
+constexpr bool kHasUnilateralLaw = false;  // A program with little flash.
+#else
+constexpr bool kHasUnilateralLaw = true;
+#endif
+
+template <class Real>
+bool is_regularised(const GroundFacet<Real>& facet) {
+  return !kHasUnilateralLaw || facet.law == ContactLaw::kRegularised;
+}
+
 /// Force at the facet centre to force at the node: the torques gain the lever of the force.
 template <class Real>
 Vec6<Real> at_node(const GroundFacet<Real>& facet, Vec6<Real> force) {
@@ -86,23 +97,27 @@ ContactState unilateral_state(const GroundFacet<Real>& facet, const Vec6<Real>& 
   return state;
 }
 
-/// Eqs. (10)-(12) as a matrix.
+/// Eqs. (10)-(12).
 template <class Real>
-Mat6<Real> regularised_corrector(const GroundFacet<Real>& facet, ContactState state) {
+Vec6<Real> regularised_force(const GroundFacet<Real>& facet, ContactState state,
+                             const Vec6<Real>& trial) {
   const Real gamma = facet.gamma;
-  Mat6<Real> matrix;
-  for (int i = 0; i < 6; ++i) {
-    matrix.at(i, i) = state.pressed ? Real{1} : gamma;
+  Vec6<Real> force = trial;
+  if (!state.pressed) {
+    for (Real& value : force) {
+      value *= gamma;
+    }
   }
+  const Real arm = (1 - gamma) * facet.half_width;
   if (state.tilt_x != 0) {
-    matrix.at(kMx, kMx) = gamma;
-    matrix.at(kMx, kFz) = -(1 - gamma) * static_cast<Real>(state.tilt_x) * facet.half_width;
+    const Real follows = arm * trial[kFz];
+    force[kMx] = gamma * trial[kMx] - (state.tilt_x < 0 ? -follows : follows);
   }
   if (state.tilt_y != 0) {
-    matrix.at(kMy, kMy) = gamma;
-    matrix.at(kMy, kFz) = -(1 - gamma) * static_cast<Real>(state.tilt_y) * facet.half_width;
+    const Real follows = arm * trial[kFz];
+    force[kMy] = gamma * trial[kMy] - (state.tilt_y < 0 ? -follows : follows);
   }
-  return matrix;
+  return force;
 }
 
 /// The pressed part of the cone law: p is linear in the trial force, fz = -p, m^ = sign p l.
@@ -178,15 +193,20 @@ Mat6<Real> matrix_of(Map&& map) {
 }  // namespace
 
 template <class Real>
-GroundFacet<Real> ground_facet(const BeamSection<Real>& section, Real facet_width, Real gamma,
-                               ContactLaw law) {
-  const BeamStiffness<Real> beam = beam_stiffness(section);
+GroundFacet<Real> ground_facet(const BeamStiffness<Real>& beam, Real length, Real facet_width,
+                               Real gamma, ContactLaw law) {
   return {.stiffness = {beam.shear_x, beam.shear_y, beam.axial, beam.bend_y / 4, beam.bend_x / 4,
                         beam.twist},
-          .lever = section.length / 2,
+          .lever = length / 2,
           .half_width = facet_width / 2,
           .gamma = gamma,
           .law = law};
+}
+
+template <class Real>
+GroundFacet<Real> ground_facet(const BeamSection<Real>& section, Real facet_width, Real gamma,
+                               ContactLaw law) {
+  return ground_facet(beam_stiffness(section), section.length, facet_width, gamma, law);
 }
 
 template <class Real>
@@ -202,28 +222,33 @@ Vec6<Real> trial_force(const GroundFacet<Real>& facet, const Vec6<Real>& u) {
 
 template <class Real>
 ContactState contact_state(const GroundFacet<Real>& facet, const Vec6<Real>& trial) {
-  return facet.law == ContactLaw::kRegularised ? regularised_state(facet, trial)
-                                               : unilateral_state(facet, trial);
+  return is_regularised(facet) ? regularised_state(facet, trial) : unilateral_state(facet, trial);
+}
+
+/// The force on the facet, about its centre.
+template <class Real>
+Vec6<Real> corrected(const GroundFacet<Real>& facet, ContactState state, bool is_held,
+                     const Vec6<Real>& trial) {
+  return is_regularised(facet) ? regularised_force(facet, state, trial)
+                               : multiply(unilateral_corrector(facet, state, is_held), trial);
 }
 
 template <class Real>
 Mat6<Real> corrector(const GroundFacet<Real>& facet, ContactState state, bool is_held) {
-  return facet.law == ContactLaw::kRegularised ? regularised_corrector(facet, state)
-                                               : unilateral_corrector(facet, state, is_held);
+  return matrix_of<Real>(
+      [&](const Vec6<Real>& unit) { return corrected(facet, state, is_held, unit); });
 }
 
 template <class Real>
 Vec6<Real> contact_force(const GroundFacet<Real>& facet, ContactState state, bool is_held,
                          const Vec6<Real>& u) {
-  return at_node(facet, multiply(corrector(facet, state, is_held), trial_force(facet, u)));
+  return at_node(facet, corrected(facet, state, is_held, trial_force(facet, u)));
 }
 
 template <class Real>
 Mat6<Real> contact_tangent(const GroundFacet<Real>& facet, ContactState state, bool is_held) {
-  const Mat6<Real> correct = corrector(facet, state, is_held);
-  return matrix_of<Real>([&](const Vec6<Real>& unit) {
-    return at_node(facet, multiply(correct, trial_force(facet, unit)));
-  });
+  return matrix_of<Real>(
+      [&](const Vec6<Real>& unit) { return contact_force(facet, state, is_held, unit); });
 }
 
 /// Facet coordinates: a diagonal, and kappa e e^T where the facet tilts, e = [uz, tx, ty] -> lift
@@ -267,6 +292,8 @@ Mat6<Real> symmetric_tangent(const GroundFacet<Real>& facet, ContactState state,
 
 #define HOLDFAST_INSTANTIATE(Real)                                                           \
   template GroundFacet<Real> ground_facet(const BeamSection<Real>&, Real, Real, ContactLaw); \
+  template GroundFacet<Real> ground_facet(const BeamStiffness<Real>&, Real, Real, Real,      \
+                                          ContactLaw);                                       \
   template Vec6<Real> trial_force(const GroundFacet<Real>&, const Vec6<Real>&);              \
   template ContactState contact_state(const GroundFacet<Real>&, const Vec6<Real>&);          \
   template Mat6<Real> corrector(const GroundFacet<Real>&, ContactState, bool);               \

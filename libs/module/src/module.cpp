@@ -36,13 +36,17 @@ Module::Module(const Configuration& configuration, PlanMemory& plans, Port& port
 
 void Module::run_once() {
   watch_neighbours();
-  take_incoming();
+  if (actions_.is_unfinished) {
+    step(EventKind::kContinue);
+  } else {
+    take_incoming();
+  }
   if (wake_at_ <= port_.now()) {
     step(EventKind::kTime);
   }
   send();
   show();
-  const bool is_due = wake_at_ <= port_.now();
+  const bool is_due = actions_.is_unfinished || wake_at_ <= port_.now();
   port_.wait(is_due ? Time{0} : wake_at_);
 }
 
@@ -51,9 +55,11 @@ void Module::step(EventKind kind, int face) {
   event_.kind = kind;
   event_.face = static_cast<base::Direction>(face);
   event_.now = port_.now();
-  agent_.step(event_, actions_);
+  agent_.step_part(event_, actions_);
   // What is due at once but waits for a line is not handed in again.
-  const bool is_waiting = kind == EventKind::kTime && actions_.wake_at <= event_.now;
+  const bool was_handed_in =
+      kind == EventKind::kTime || (kind == EventKind::kContinue && wake_at_ == agent::kNever);
+  const bool is_waiting = was_handed_in && actions_.wake_at <= event_.now;
   wake_at_ = is_waiting ? agent::kNever : actions_.wake_at;
   ++status_.step_count;
 }
@@ -105,7 +111,7 @@ void Module::watch_neighbours() {
 
 void Module::take_incoming() {
   Incoming incoming;
-  while (port_.receive(incoming)) {
+  while (!actions_.is_unfinished && port_.receive(incoming)) {
     watch_neighbours();
     if (incoming.kind == FrameKind::kPlan) {
       take_plan(incoming.payload);

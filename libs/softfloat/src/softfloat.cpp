@@ -85,7 +85,7 @@ Double rounded(Double sign, int exponent, std::uint64_t digits) {
 }
 
 /// 32 x 32 to 64 digits from four products of 16 x 16.
-std::uint64_t product(std::uint32_t a, std::uint32_t b) {
+[[gnu::always_inline]] inline std::uint64_t product(std::uint32_t a, std::uint32_t b) {
   const std::uint32_t a0 = a & 0xffffU;
   const std::uint32_t a1 = a >> 16U;
   const std::uint32_t b0 = b & 0xffffU;
@@ -190,7 +190,33 @@ Double add(Double a, Double b) {
   return packed(a & kSign, exponent, digits);
 }
 
-Double multiply(Double a, Double b) {
+namespace {
+
+/// Neither zero nor subnormal, infinite or a NaN.
+bool is_usual(Double a) { return ((high(a) + 0x100000U) & 0x7fe00000U) != 0; }
+
+/// From digits with the hidden one.
+[[gnu::noinline]] Double multiply_digits(std::uint64_t x, std::uint64_t y, int exponent,
+                                         Double sign) {
+  // 106 digits; the lower 32 only matter as a trace.
+  const std::uint64_t bottom = product(low(x), low(y));
+  const std::uint64_t middle = product(high(x), low(y)) + high(bottom);
+  const std::uint64_t other = product(low(x), high(y)) + low(middle);
+  const std::uint64_t top = product(high(x), high(y)) + high(middle) + high(other);
+  // The value is top 2^64 + low(other) 2^32 + low(bottom), its first digit at 104 or 105.
+  constexpr unsigned kUp = 64 - (kDigits - kGuard);  // Brings digit 104 to 55.
+  std::uint64_t digits = top << kUp | low(other) >> (32 - kUp);
+  digits |= (low(other) << kUp) != 0 || low(bottom) != 0 ? 1U : 0U;
+  if (digits >> (kDigits + kGuard + 1) != 0) {
+    digits = digits >> 1U | (low(digits) & 1U);
+    ++exponent;
+  }
+  const bool is_normal = exponent > 0 && exponent < kExponentMax - 1;
+  return is_normal ? packed(sign, exponent, digits) : rounded(sign, exponent, digits);
+}
+
+/// Whatever is not two usual numbers.
+[[gnu::noinline]] Double multiply_any(Double a, Double b) {
   const Double sign = (a ^ b) & kSign;
   a &= ~kSign;
   b &= ~kSign;
@@ -202,22 +228,34 @@ Double multiply(Double a, Double b) {
   }
   const Parts x(a);
   const Parts y(b);
-  // 106 digits; the lower 32 only matter as a trace.
-  const std::uint64_t bottom = product(low(x.digits), low(y.digits));
-  const std::uint64_t middle = product(high(x.digits), low(y.digits)) + high(bottom);
-  const std::uint64_t other = product(low(x.digits), high(y.digits)) + low(middle);
-  const std::uint64_t top = product(high(x.digits), high(y.digits)) + high(middle) + high(other);
-  // The value is top 2^64 + low(other) 2^32 + low(bottom), its first digit at 104 or 105.
-  constexpr unsigned kUp = 64 - (kDigits - kGuard);  // Brings digit 104 to 55.
-  std::uint64_t digits = top << kUp | low(other) >> (32 - kUp);
-  digits |= (low(other) << kUp) != 0 || low(bottom) != 0 ? 1U : 0U;
-  int exponent = x.exponent + y.exponent - kBias;
-  if (digits >> (kDigits + kGuard + 1) != 0) {
-    digits = digits >> 1U | (low(digits) & 1U);
-    ++exponent;
+  return multiply_digits(x.digits, y.digits, x.exponent + y.exponent - kBias, sign);
+}
+
+/// The next digits of rest / by, at most 32; what is left of rest.
+[[gnu::noinline]] std::uint32_t divide_digits(std::uint64_t& rest, std::uint64_t by, int count) {
+  std::uint32_t quotient = 0;
+  std::uint64_t left = rest;
+  for (; count > 0; --count) {
+    quotient <<= 1U;
+    const std::uint64_t less = left - by;
+    if (static_cast<std::int64_t>(less) >= 0) {
+      left = less;
+      quotient += 1;
+    }
+    left <<= 1U;
   }
-  const bool is_usual = exponent > 0 && exponent < kExponentMax - 1;
-  return is_usual ? packed(sign, exponent, digits) : rounded(sign, exponent, digits);
+  rest = left;
+  return quotient;
+}
+
+}  // namespace
+
+Double multiply(Double a, Double b) {
+  if (!is_usual(a) || !is_usual(b)) {
+    return multiply_any(a, b);
+  }
+  return multiply_digits((a & (kHidden - 1)) | kHidden, (b & (kHidden - 1)) | kHidden,
+                         exponent_of(a) + exponent_of(b) - kBias, (a ^ b) & kSign);
 }
 
 Double divide(Double a, Double b) {
@@ -239,15 +277,9 @@ Double divide(Double a, Double b) {
     rest <<= 1U;
     --exponent;
   }
-  std::uint64_t quotient = 0;
-  for (unsigned i = 0; i <= kDigits + 2; ++i) {
-    quotient <<= 1U;
-    if (rest >= y.digits) {
-      rest -= y.digits;
-      quotient |= 1U;
-    }
-    rest <<= 1U;
-  }
+  const std::uint32_t first = divide_digits(rest, y.digits, kDigits + 3 - 32);
+  const std::uint32_t last = divide_digits(rest, y.digits, 32);
+  const std::uint64_t quotient = std::uint64_t{first} << 32U | last;
   return rounded(sign, exponent, quotient << 1U | (rest != 0 ? 1U : 0U));
 }
 

@@ -32,6 +32,12 @@
 /// - kTime: actions.wake_at has come. It may lie in the past, when an acknowledgement waits for its
 ///   line; handing in kTime again before that line was free brings nothing.
 ///
+/// step() does all there is to do. A port that may not compute for long calls step_part() instead,
+/// which leaves what follows from a packet in pieces of at most 5 ms of a Cortex-M0 at 48 MHz:
+/// while actions.is_unfinished, hand in kContinue. Events that come in between may be handed in as
+/// well; kReceive first does all that is left, as a packet must find the work before it done. So
+/// the pieces change no bit of the result.
+///
 /// After each step, actions.send_faces says on which faces a packet waits (bit = face index): hand
 /// in kLineFree for them when their lines are free. actions.wake_at replaces the earlier one.
 /// `random` in kLinkUp must differ from one link-up to the next.
@@ -62,6 +68,7 @@ enum class EventKind : std::uint8_t {
   kReceive,
   kLineFree,
   kTime,
+  kContinue,  ///< Only after step_part().
 };
 
 struct Event {
@@ -75,6 +82,7 @@ struct Event {
 
 struct Actions {
   std::uint8_t send_faces = 0;
+  bool is_unfinished = false;  ///< Of step_part(): there is more to do, hand in kContinue.
   Time wake_at = kNever;
   int packet_bytes = 0;  ///< After kLineFree; 0: nothing to send after all.
   std::array<std::uint8_t, wire::kPacketBytesMax> packet;
@@ -116,10 +124,9 @@ struct BranchWork {
   std::array<std::array<std::int8_t, kLoopsMax>, base::kDirectionCount> slot_of{};
   std::array<std::uint8_t, base::kDirectionCount> child_cut_count{};
   std::array<std::uint8_t, base::kDirectionCount> columns_here{};  ///< All before are final.
-  base::Mat6<float> stiffness_up{};                                ///< S' for the parent.
-  bool is_symmetric = false;                                       ///< It goes up in parts.
-  base::Vec6<float> shift{};                                       ///< M^-1 r, ...
-  base::Vec6<double> parent_shift{};                               ///< ... and the parent's.
+  bool is_symmetric = false;  ///< S' goes up in parts: no facet below tilts, or it hardly matters.
+  /// What holds each planned module here, above its diagonal; Node::factor has the rest.
+  std::array<std::array<float, 15>, kPlannedMax> leaves{};
 };
 
 /// A method's own data; a robot's equilibrium uses one method at a time.
@@ -139,6 +146,9 @@ class BasicAgent {
   BasicAgent(const Setup& setup, const Identity& identity);
 
   void step(const Event& event, Actions& actions);
+
+  /// The same, a piece at a time.
+  void step_part(const Event& event, Actions& actions);
 
   /// The verdict as far as this module knows it; kNone while it is being worked out.
   const Answer& answer() const { return answer_; }
@@ -187,8 +197,10 @@ class BasicAgent {
   static constexpr std::uint8_t kFarStage = 2;    ///< From the module furthest from the starter.
   static constexpr std::uint8_t kTreeStage = 3;   ///< From the middle: the tree that is used.
 
-  // agent.cpp: events, links, rounds.
+  // rounds.hpp: events, links, rounds.
+  void begin(const Event& event, Actions& actions);
   void handle(const Event& event);
+  void go_on();
   void receive(int face, std::span<const std::uint8_t> packet);
   void check_link(int face);
   void dispatch(int face, std::span<const std::uint8_t> message);
@@ -211,7 +223,7 @@ class BasicAgent {
   void take_echo(int face, std::span<const std::uint8_t> message);
   void take_appointment(std::span<const std::uint8_t> message);
   void await_less(int face);
-  void end_stage();
+  bool end_stage();
   void mark(std::uint16_t hops);
 
   // sweep.cpp: orders and reports.
@@ -222,8 +234,9 @@ class BasicAgent {
   void take_planned_down(std::span<const std::uint8_t> message);
   void take_planned_up(std::span<const std::uint8_t> message);
   void take_report(int face, std::span<const std::uint8_t> message);
-  void continue_sweep();
-  void finish_sweep();
+  bool exchange();
+  bool finish_sweep();
+  bool take_next_order();
   void send_planned_down(int k);
   void send_planned_up();
 
@@ -240,25 +253,55 @@ class BasicAgent {
   void prepare_hosted();
 
   // branches.hpp: elimination over the tree.
+  /// What comes next, in the order of a kFactor, and from the residuals on of a kTreeStep as well.
+  enum class Piece : std::uint8_t {
+    kNone,
+    kTangents,
+    kLeafColumns,
+    kLoops,
+    kSymmetry,
+    kColumns,
+    kResiduals,
+    kLeafLoads,
+    kCloseLoad,
+    kLoadUp,
+    kGapsUp,
+    kShift,  // Of a kTreeStep, before its exchanges.
+    kForces,
+    kLeafShifts,
+    kMove,
+  };
   void begin_branch();
   void take_loop(int face, std::span<const std::uint8_t> message);
   std::uint8_t survey_loops();
-  void factor_branch();
   void take_column(int face, std::span<const std::uint8_t> message);
   void take_branch_up(int face, std::span<const std::uint8_t> message);
   void take_branch_down(std::span<const std::uint8_t> message);
-  bool is_column_ready() const;
-  bool send_columns();
-  base::Vec6<float> next_column();
-  void send_branch_up();
-  void find_shifts();
-  void send_branch_down();
   bool is_cut(int face) const;
   Cut cut_at(int face) const;
-  using LeafStiffness = std::array<base::Mat6<double>, 1 + kPlannedMax>;
-  LeafStiffness leaf_stiffness() const;
-  std::array<base::Vec6<double>, 1 + kPlannedMax> leaf_loads(const branches::Leaves& leaves,
-                                                             const LeafStiffness& stiffness) const;
+  void factor_branch();
+  void add_tangent(std::size_t node);
+  void begin_piece(Piece piece, int index = 0);
+  bool do_piece();
+  bool do_factor_piece();
+  bool do_load_piece();
+  void do_shift_piece();
+  void send_leaf_columns(const branches::Leaves& leaves, int leaf, int first);
+  bool is_column_ready(int column) const;
+  bool send_columns();
+  void send_batch(int column, int count);
+  void send_column(int label, const base::Vec6<float>& column);
+  void send_load_up();
+  void send_gaps_up();
+  void find_own_shift();
+  void find_residual_loads();
+  void send_leaf_load(const branches::Leaves& leaves, std::size_t leaf);
+  void send_branch_up(int index, const base::Vec6<float>& vector);
+  void find_leaf_shift(const branches::Leaves& leaves, std::size_t leaf);
+  void send_branch_down();
+  void add_leaf_stiffness(std::size_t node, int row, int column, float value);
+  base::Mat6<float> leaf_stiffness(std::size_t node) const;
+  Joint joint_to_parent() const;
 
   // steps.hpp: the one-sweep methods.
   void begin_step(const Order& order);
@@ -315,6 +358,9 @@ class BasicAgent {
   double ratio_of(const MiddleLoad& load, base::Direction direction) const;
   template <class Visit>
   void visit_loads(Visit&& visit) const;
+  using LoadVisit = void (*)(void* visitor, const base::Cell& cell, base::Direction direction,
+                             double ratio);
+  void visit_all_loads(LoadVisit visit, void* visitor) const;
   std::uint8_t node_faces(int node) const;
 
   int node_count() const { return 1 + planned_.hosted_count(); }
@@ -357,6 +403,7 @@ class BasicAgent {
   std::uint16_t census_hops_ = 0;
   std::uint32_t census_id_ = 0;
   bool is_anyone_silent_ = false;
+  bool is_stage_over_ = false;  ///< The wave has come back to this module.
   bool has_next_order_ = false;
   Order next_order_;  ///< Of the root.
 
@@ -375,8 +422,9 @@ class BasicAgent {
   std::uint16_t exchanges_left_ = 0;
   std::uint16_t exchanges_behind_ = 0;  ///< Those that go on when the report has left.
   std::uint8_t down_awaited_ = 0;       ///< What must come from the parent before a step.
-  std::uint8_t column_ = 0;             ///< The next to send up.
-  bool is_streaming_ = false;           ///< Columns wait for room on the link.
+  bool is_busy_ = false;                ///< There may be something to go on with.
+  Piece piece_ = Piece::kNone;
+  std::uint8_t piece_index_ = 0;
   float jacobi_error_ = 0;
   std::array<std::array<base::Vec6<float>, base::kDirectionCount>, 2> vectors_{};
   std::array<std::array<std::uint8_t, wire::kMessageBytesMax>, base::kDirectionCount> reports_{};

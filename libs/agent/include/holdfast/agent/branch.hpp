@@ -49,16 +49,59 @@ struct BranchLoad {
   std::array<base::Vec6<double>, kLoopsMax> gap{};
 };
 
-/// Forces in the cuts.
-using CutForces = std::array<base::Vec6<double>, kLoopsMax>;
+/// Forces in the cuts, as they go down.
+using CutForces = std::array<base::Vec6<float>, kLoopsMax>;
+
+/// The beam between a module and its parent, or the other side of a cut, seen from the module.
+class Joint {
+ public:
+  Joint(const mechanics::BeamStiffness<double>& beam, base::Direction direction);
+
+  // All in place: stacks are small.
+
+  /// F f
+  void bend(base::Vec6<double>& force) const;
+
+  /// F^-1 u = K11 u
+  void hold(base::Vec6<double>& u) const;
+
+  /// T u: the other end's rigid motion, seen here.
+  void carry(base::Vec6<double>& u) const;
+
+  /// T^t f: a force here, seen at the other end.
+  void hand_on(base::Vec6<double>& force) const;
+
+ private:
+  const mechanics::BeamStiffness<double>& beam_;
+  base::Direction direction_;
+  std::array<double, 3> lever_{};  // From the other end to here.
+  base::Vec6<double> straight_{};  // F in the local frame: its diagonal, ...
+  double across_x_ = 0;            // ... between fx and my, ...
+  double across_y_ = 0;            // ... and between fy and mx.
+};
 
 class Branch {
  public:
   /// Columns that go up: six of S', then by open loop B', C' (its rows) and P'.
   static constexpr int kColumnCount = 6 + 12 * kLoopsMax + 6 * kLoopsMax * kLoopsMax;
 
-  /// Vectors for a symmetric S' instead of six: its lower triangle, column by column, and zeros.
+  /// Vectors for a symmetric S' instead of six. Part i has column i from its diagonal down, and
+  /// behind it column 6 - i.
   static constexpr int kPartCount = 4;
+
+  /// Columns that are made at a time, from one factor of 1 + S F: so that no step of a small
+  /// processor takes long. Those of P' take longest.
+  static constexpr int kBatch = 3;
+  static constexpr int kGiveBatch = 2;
+  using Columns = std::array<base::Vec6<float>, kBatch>;
+
+  /// The most from column `index` on; they belong to one block.
+  static constexpr int batch_at(int index) {
+    const bool is_give = index >= kColumnCount - 6 * kLoopsMax * kLoopsMax;
+    const int most = is_give ? kGiveBatch : kBatch;
+    const int rest = 6 - index % 6;
+    return most < rest ? most : rest;
+  }
 
   // ---- Which loops are here. Once, when the tree and the planned modules are known.
 
@@ -79,7 +122,7 @@ class Branch {
 
   void clear_stiffness();
   void add_stiffness(const base::Mat6<double>& block);
-  void add_end(int slot, bool is_upper, const base::Mat6<double>& transport);
+  void add_end(int slot, bool is_upper, const mechanics::BeamStiffness<double>& beam);
 
   /// Column `index` of a child, whose i-th open loop has slot_of[i] here.
   void add_column(int index, const std::array<std::int8_t, kLoopsMax>& slot_of,
@@ -90,44 +133,60 @@ class Branch {
 
   bool closes_loops() const { return open_count() < count_; }
 
-  /// Once, when all children's columns are here.
-  void close_loops(const mechanics::BeamStiffness<double>& beam);
+  /// When all children's columns are here: the next piece of closing loops, from `piece` = 0.
+  /// False: all are closed.
+  bool close_loops(const mechanics::BeamStiffness<double>& beam, std::uint8_t& piece);
 
   /// How many of a child's columns must be here before column `index` may go up: as soon as S is
   /// complete the columns of a loop pass one by one. Of no use where a loop closes.
   int columns_needed(int index, const std::array<std::int8_t, kLoopsMax>& slot_of,
                      int child_loops) const;
 
-  /// Eq. (3): S'; `is_fixed` if this module does not move.
-  base::Mat6<double> stiffness_up(const mechanics::BeamStiffness<double>& beam,
-                                  base::Direction to_parent, bool is_fixed) const;
+  /// Are there columns at `index`, or only zeros? `is_fixed` if this module does not move.
+  bool has_columns(int index, bool is_fixed) const;
 
-  /// Eq. (3): the columns behind S', one by one.
-  base::Vec6<double> column_up(const mechanics::BeamStiffness<double>& beam,
-                               base::Direction to_parent, bool is_fixed, int index) const;
+  /// Is S symmetric but for rounding? Then S' is as well.
+  bool is_symmetric() const;
+
+  /// Eq. (3): `count` columns from `first` on, batch_at(first) at most; of S' exactly as many.
+  void find_columns_up(const Joint& to_parent, bool is_fixed, int first, int count,
+                       Columns& columns) const;
+
+  /// The same for parts `first` and the next of a symmetric S'.
+  void find_parts_up(const Joint& to_parent, bool is_fixed, int first, Columns& columns) const;
 
   // ---- Loads.
 
   /// Puts the loops that close here into the loads.
   void close_loops(BranchLoad& load) const;
 
-  /// Eq. (3): h', and y' in the order of the open loops.
-  BranchLoad load_up(const mechanics::BeamStiffness<double>& beam, base::Direction to_parent,
-                     bool is_fixed, const BranchLoad& load) const;
+  /// Eq. (3): h' instead of h.
+  void find_load_up(const Joint& to_parent, bool is_fixed, base::Vec6<double>& load) const;
 
-  /// Eq. (2): the displacement; `forces` has those of the open loops and gets those closed here.
-  base::Vec6<double> displacement(const mechanics::BeamStiffness<double>& beam,
-                                  base::Direction to_parent, const base::Vec6<double>& of_parent,
-                                  const BranchLoad& load, CutForces& forces) const;
+  /// Eq. (3): y' in the order of the open loops.
+  void find_gaps_up(const Joint& to_parent, bool is_fixed, const BranchLoad& load,
+                    CutForces& gaps) const;
+
+  /// Eq. (2): the displacement instead of the parent's; `forces` has those of the open loops.
+  void find_displacement(const Joint& to_parent, const BranchLoad& load, const CutForces& forces,
+                         base::Vec6<double>& u) const;
 
   /// The same at the root. Not finite if nothing holds the robot.
-  base::Vec6<double> displacement_of_root(const BranchLoad& load, CutForces& forces) const;
+  void find_displacement_of_root(const BranchLoad& load, base::Vec6<double>& u) const;
 
-  /// The same forces on a module that does not move.
+  /// Forces in the loops closed here, for the displacement u.
   void find_forces(const BranchLoad& load, const base::Vec6<double>& u, CutForces& forces) const;
 
  private:
   bool is_open(int slot) const { return ((open_ >> static_cast<unsigned>(slot)) & 1U) != 0; }
+
+  void find_stiffness_up(const Joint& to_parent, bool is_fixed,
+                         const std::array<std::uint8_t, kBatch>& which, Columns& columns) const;
+  void find_end_columns(const Joint& to_parent, int first, int count, Columns& columns) const;
+  void find_give_columns(const Joint& to_parent, bool is_fixed, int first, int count,
+                         Columns& columns) const;
+  void close_loop(const mechanics::BeamStiffness<double>& beam, int slot);
+  void close_column(int slot, int column);
 
   /// Loops are closed in the order of their slots.
   bool is_closed_after(int slot, int other) const {
@@ -144,26 +203,18 @@ class Branch {
   std::uint8_t open_ = 0;  ///< By slot.
 };
 
-/// Symmetric but for rounding, as S' is where no facet tilts.
-bool is_symmetric(const base::Mat6<float>& stiffness);
+// ---- For branches that no loop passes: planned modules that hang on their host.
 
-/// Part `index` of Branch::kPartCount.
-base::Vec6<float> part_of(const base::Mat6<float>& stiffness, int index);
+/// Eq. (3): columns `first` to `first` + Branch::kBatch - 1 of S'.
+void find_stiffness_up(const Joint& to_parent, const base::Mat6<float>& stiffness, int first,
+                       Branch::Columns& columns);
 
-/// The rigid motion of the neighbour in `direction` seen here: u = T u_neighbour.
-base::Mat6<double> rigid_transport(double pitch_mm, base::Direction direction);
+/// Eq. (3): h' instead of h.
+void find_load_up(const Joint& to_parent, const base::Mat6<float>& stiffness,
+                  base::Vec6<double>& load);
 
-/// Eqs. (2) and (3) for a branch with stiffness S that no loop passes.
-base::Mat6<double> stiffness_up(const mechanics::BeamStiffness<double>& beam,
-                                base::Direction to_parent, const base::Mat6<double>& stiffness);
-base::Vec6<double> load_up(const mechanics::BeamStiffness<double>& beam, base::Direction to_parent,
-                           const base::Mat6<double>& stiffness, const base::Vec6<double>& load);
-base::Vec6<double> displacement(const mechanics::BeamStiffness<double>& beam,
-                                base::Direction to_parent, const base::Mat6<double>& stiffness,
-                                const base::Vec6<double>& of_parent,
-                                const base::Vec6<double>& load);
-
-/// Solves a x = b with pivots, both 6x6; not finite if a is singular.
-base::Vec6<double> solve_general(base::Mat6<double> a, base::Vec6<double> b);
+/// Eq. (2): the displacement instead of the parent's; the load is used up.
+void find_displacement(const Joint& to_parent, const base::Mat6<float>& stiffness,
+                       base::Vec6<double>& load, base::Vec6<double>& u);
 
 }  // namespace holdfast::agent

@@ -68,6 +68,11 @@ template <class Real>
 GroundFacet<Real> ground_facet(const BeamSection<Real>& section, Real facet_width, Real gamma,
                                ContactLaw law);
 
+/// The same from the section's stiffness.
+template <class Real>
+GroundFacet<Real> ground_facet(const BeamStiffness<Real>& beam, Real length, Real facet_width,
+                               Real gamma, ContactLaw law);
+
 /// The trial force t for the displacement u of the node, torques about the facet centre (Eq. 9).
 template <class Real>
 base::Vec6<Real> trial_force(const GroundFacet<Real>& facet, const base::Vec6<Real>& u);
