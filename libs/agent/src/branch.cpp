@@ -4,6 +4,7 @@
 
 #include "holdfast/base/check.hpp"
 #include "scalar.hpp"
+#include "system.hpp"
 
 namespace holdfast::agent {
 namespace {
@@ -77,65 +78,6 @@ void subtract_column(Mat6<float>& into, int column, const Vec6<double>& x) {
 [[gnu::noinline]] void subtract_product(Mat6<float>& into, int column, const Mat6<float>& a,
                                         const Vec6<double>& x) {
   subtract_column(into, column, product(a, x));
-}
-
-/// A 6x6 system, factored with pivots once its matrix is there.
-class System {
- public:
-  double& at(int row, int column) { return matrix_.at(row, column); }
-
-  double at(int row, int column) const { return matrix_.at(row, column); }
-
-  void factor();
-
-  /// In place.
-  void solve(Vec6<double>& b) const;
-
- private:
-  Mat6<double> matrix_;  // In the end L U, and the inverse of U's diagonal.
-  std::array<std::uint8_t, kSize> pivots_{};
-};
-
-void System::factor() {
-  for (int column = 0; column < kSize; ++column) {
-    int pivot = column;
-    for (int row = column + 1; row < kSize; ++row) {
-      pivot = absolute(at(row, column)) > absolute(at(pivot, column)) ? row : pivot;
-    }
-    pivots_[agent::at(column)] = static_cast<std::uint8_t>(pivot);
-    for (int k = 0; k < kSize && pivot != column; ++k) {
-      const double kept = at(pivot, k);
-      at(pivot, k) = at(column, k);
-      at(column, k) = kept;
-    }
-    at(column, column) = 1 / at(column, column);
-    for (int row = column + 1; row < kSize; ++row) {
-      const double share = at(row, column) * at(column, column);
-      at(row, column) = share;
-      for (int k = column + 1; k < kSize && share != 0; ++k) {
-        at(row, k) -= share * at(column, k);
-      }
-    }
-  }
-}
-
-void System::solve(Vec6<double>& b) const {
-  for (int row = 0; row < kSize; ++row) {
-    const double kept = b[pivots_[agent::at(row)]];
-    b[pivots_[agent::at(row)]] = b[agent::at(row)];
-    b[agent::at(row)] = kept;
-  }
-  for (int column = 0; column < kSize; ++column) {
-    for (int row = column + 1; row < kSize; ++row) {
-      b[agent::at(row)] -= at(row, column) * b[agent::at(column)];
-    }
-  }
-  for (int row = kSize - 1; row >= 0; --row) {
-    for (int k = row + 1; k < kSize; ++k) {
-      b[agent::at(row)] -= at(row, k) * b[agent::at(k)];
-    }
-    b[agent::at(row)] *= at(row, row);
-  }
 }
 
 /// Does nothing below touch the ground? Then F does not matter: the forces follow from the loads.

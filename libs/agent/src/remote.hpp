@@ -9,6 +9,7 @@
 #include "methods.hpp"
 #include "scalar.hpp"
 #include "sweep.hpp"
+#include "system.hpp"
 
 /// Planned modules that touch several others.
 ///
@@ -129,8 +130,10 @@ void BasicAgent<Real>::solve_hosted() {
     for (int i = 1; i < node_count(); ++i) {
       Node<Real>& node = nodes_[static_cast<std::size_t>(i)];
       node.force = force_on_hosted(i);
-      const base::Vec6<double> change = solve_general(
-          diagonal_block(node, setup_, contact_, node_faces(i)), residual(node, setup_, contact_));
+      System system(diagonal_block(node, setup_, contact_, node_faces(i)));
+      system.factor();
+      base::Vec6<double> change = residual(node, setup_, contact_);
+      system.solve(change);
       for (std::size_t j = 0; j < 6; ++j) {
         node.u[j] += change[j];
         move = absolute(change[j]) > move ? absolute(change[j]) : move;

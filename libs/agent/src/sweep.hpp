@@ -226,7 +226,6 @@ void BasicAgent<Real>::take_planned_up(std::span<const std::uint8_t> message) {
   }
   if (kHasAllMethods && order_.operation == wire::Operation::kStep && --planned_up_awaited_ == 0) {
     pass_condensed();
-    continue_sweep();
   }
 }
 
