@@ -31,7 +31,7 @@ class Team {
 #endif
   /// Nodes in a chunk.
   static constexpr std::size_t kChunk = 512;
-  static constexpr std::size_t kSharedItemMin = 4096;
+  static constexpr std::size_t kSharedItemMin = 8192;
   /// Fewer chunks are not shared: waking a thread takes as long as they do.
   static constexpr std::size_t kSharedChunkMin = 6;
 
