@@ -141,7 +141,6 @@ void Module::send() {
 
 void Module::show() {
   const agent::Answer& answer = agent_.answer();
-  status_.verdict = answer.verdict;
   status_.reason = answer.reason;
   status_.phase = static_cast<std::uint8_t>(agent_.phase());
   status_.epoch = agent_.epoch();
@@ -152,6 +151,8 @@ void Module::show() {
   status_.colour = agent_.colour();
   const bool is_dark = status_.colour.blinks && (port_.now() & kBlinkBit) != 0;
   port_.show(is_dark ? agent::Colour{} : status_.colour);
+  // Last: who reads it from outside finds all the rest.
+  status_.verdict = answer.verdict;
 }
 
 }  // namespace holdfast::module
