@@ -53,6 +53,14 @@ class Drive {
     ASSERT_EQ(order.operation, Operation::kBegin);
   }
 
+  void to_equilibrium_with_a_remote_planned_module() {
+    next({.flags = kFound});
+    next({.mask = 1});
+    next({.mask = kAnyRemote | 1});
+    next({.flags = kAnyFixed, .extent = 5, .count = kCensus + 1});
+    ASSERT_EQ(order.operation, Operation::kBegin);
+  }
+
   /// From kBegin or a new solve: gradients that find nothing to do, to the next judgement.
   void to_judgement() {
     if (order.operation == Operation::kBegin) {
@@ -335,10 +343,7 @@ TEST(Conductor, batches_of_jacobi_steps_grow_with_the_work_done) {
 /// A planned module whose feet are spread over the robot is reached in each step through the tree.
 TEST(Conductor, jacobi_takes_single_steps_when_a_planned_module_is_remote) {
   Drive drive(Method::kBlockJacobi);
-  drive.next({.flags = kFound});
-  drive.next({.mask = 1});
-  drive.next({.mask = kAnyRemote | 1});
-  drive.next({.flags = kAnyFixed, .extent = 5, .count = kCensus + 1});
+  drive.to_equilibrium_with_a_remote_planned_module();
   drive.next();
   for (drive.next(); drive.order.operation == Operation::kJacobi; drive.next({.reals = {1}})) {
     ASSERT_EQ(drive.order.count, 1);
@@ -348,11 +353,7 @@ TEST(Conductor, jacobi_takes_single_steps_when_a_planned_module_is_remote) {
 /// Nobody has the weight of a condensed module before the first exchange, so nothing is begun.
 TEST(Conductor, with_a_remote_planned_module_the_first_step_only_looks) {
   Drive drive(Method::kElimination);
-  drive.next({.flags = kFound});
-  drive.next({.mask = 1});
-  drive.next({.mask = kAnyRemote | 1});
-  drive.next({.flags = kAnyFixed, .extent = 5, .count = kCensus + 1});
-  ASSERT_EQ(drive.order.operation, Operation::kBegin);
+  drive.to_equilibrium_with_a_remote_planned_module();
   EXPECT_EQ(drive.order.flags, kOneSweep | kWithSteps);
   EXPECT_EQ(drive.order.count, 0);
   ASSERT_EQ(drive.next().operation, Operation::kStep);
