@@ -8,15 +8,21 @@
 namespace holdfast::host {
 namespace {
 
-/// Turns of waiting before a thread sleeps: a few microseconds, as long as a small loop takes.
-constexpr int kSpinCount = 4000;
+/// A thread that waits spins for about a hundred microseconds before it sleeps: waking one takes as
+/// long as most loops here. Now and then it lets others have the core, as a thread it waits for may
+/// be one of them.
+constexpr int kYieldCount = 250;
+constexpr int kSpinCount = 256;
 
 template <class Value>
 void wait_while(const std::atomic<Value>& variable, Value value) {
-  for (int spin = 0; spin < kSpinCount; ++spin) {
-    if (variable.load(std::memory_order_acquire) != value) {
-      return;
+  for (int yield = 0; yield < kYieldCount; ++yield) {
+    for (int spin = 0; spin < kSpinCount; ++spin) {
+      if (variable.load(std::memory_order_acquire) != value) {
+        return;
+      }
     }
+    std::this_thread::yield();
   }
   variable.wait(value, std::memory_order_acquire);
 }

@@ -24,12 +24,8 @@ constexpr int kRefinementCount = 2;
 /// Halvings of the bracket in the line search, to the resolution of double.
 constexpr int kLineStepMax = 60;
 
-/// Up to here the direct solver always wins.
-constexpr std::size_t kDirectCountAlways = 300;
-
-/// Up to here it wins if few blocks fill in: on arms, frames, slim towers.
-constexpr std::size_t kDirectCountMax = 6000;
-constexpr std::size_t kDirectFillMax = 7;
+/// Up to here the direct solver is as fast, and exact.
+constexpr std::size_t kDirectCountMax = 128;
 
 /// What one block of the factorization takes, upper and lower.
 constexpr std::size_t kBlockBytes = 2 * sizeof(Mat6<double>) + 24;
@@ -106,17 +102,11 @@ EquilibriumSolver::~EquilibriumSolver() = default;
 
 void EquilibriumSolver::choose_method(std::size_t node_count) {
   Method method = options_.method;
-  const std::size_t block_count_max = options_.memory_bytes_max / kBlockBytes;
   if (method == Method::kAutomatic && node_count <= kDirectCountMax) {
-    const std::size_t fill_max = kDirectFillMax * node_count;
-    make_direct(node_count, node_count <= kDirectCountAlways ? block_count_max
-                                                             : std::min(block_count_max, fill_max));
-    if (lu_ || node_count <= kDirectCountAlways) {
-      return;
-    }
+    method = Method::kDirect;
   }
   if (method == Method::kDirect) {
-    make_direct(node_count, block_count_max);
+    make_direct(node_count, options_.memory_bytes_max / kBlockBytes);
   } else if (Multigrid::bytes_for(node_count) <= options_.memory_bytes_max) {
     multigrid_ = std::make_unique<Multigrid>(robot_, options_.thread_count, options_.progress);
   }

@@ -214,13 +214,14 @@ TEST(Multigrid, says_when_memory_does_not_suffice) {
             Outcome::kTooLarge);
 }
 
-TEST(Multigrid, is_chosen_for_large_solids_and_the_direct_solver_for_threads) {
+TEST(Multigrid, is_chosen_for_all_but_small_robots) {
   const auto method = [](Family name, std::size_t size) {
     return EquilibriumSolver(family(name, size), {.is_bonded = true}).solve({}).method;
   };
   EXPECT_EQ(method(Family::kCube, 5), Method::kDirect);
   EXPECT_EQ(method(Family::kCube, 12), Method::kMultigrid);
-  EXPECT_EQ(method(Family::kArm, 4000), Method::kDirect);
+  EXPECT_EQ(method(Family::kArm, 100), Method::kDirect);
+  EXPECT_EQ(method(Family::kArm, 4000), Method::kMultigrid);
 }
 
 /// 3 x 3 modules wide and 3,000 high: bending drowns in single precision. That must be said, not

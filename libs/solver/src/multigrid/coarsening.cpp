@@ -13,12 +13,6 @@ constexpr std::uint8_t kNoColour = 255;
 
 std::size_t at(std::int32_t index) { return static_cast<std::size_t>(index); }
 
-/// Distance from a node back to the centre of its cluster, against a direction.
-double behind(const Point& offset, std::size_t direction) {
-  const double step = offset[direction / 2];
-  return std::max(0.0, direction % 2 == 0 ? step : -step);
-}
-
 /// The same coordinates for all clusters that look alike: differences lose their last bits.
 Point rounded(const Point& point) {
   return {static_cast<double>(static_cast<float>(point[0])),
@@ -81,7 +75,6 @@ class Coarsening {
     place_centres();
     seat_members();
     make_springs();
-    make_anchors();
     return true;
   }
 
@@ -240,12 +233,6 @@ class Coarsening {
     });
   }
 
-  Point offset(std::size_t node) const {
-    const float* seat = level_.seat[node].offset;
-    return {static_cast<double>(seat[0]), static_cast<double>(seat[1]),
-            static_cast<double>(seat[2])};
-  }
-
   /// The parts of a cluster's springs and its neighbours in the order in which they are met.
   void list_parts(std::size_t c, std::vector<Part>& parts,
                   std::vector<std::int32_t>& targets) const {
@@ -266,8 +253,8 @@ class Coarsening {
         parts.push_back(
             {.spring = fine_.pattern[node] + static_cast<std::uint32_t>(e - at(fine_.start[node])),
              .target = target,
-             .offset = offset(node),
-             .far_offset = offset(other),
+             .offset = offset(level_.seat[node]),
+             .far_offset = offset(level_.seat[other]),
              .partner = rounded(difference(coarse_.place[at(to)], coarse_.place[c]))});
       }
     });
@@ -368,47 +355,6 @@ class Coarsening {
         add_up(parts, coarse_.springs.data() + coarse_.pattern[at(examples[i])], targets.size());
       }
     });
-  }
-
-  void make_anchors() {
-    std::vector<Anchor> anchors;
-    anchors.reserve(fine_.anchors.size());
-    for (const Anchor& anchor : fine_.anchors) {
-      const Point arm = offset(at(anchor.node));
-      Anchor moved = anchor;
-      moved.node = cluster_[at(anchor.node)];
-      moved.reach += behind(arm, anchor.direction);
-      moved.stiffness = carried(anchor.stiffness, arm);
-      for (std::size_t k = 0; k < 3; ++k) {
-        moved.middle[k] += arm[k];
-      }
-      anchors.push_back(moved);
-    }
-    std::ranges::stable_sort(anchors, {}, &Anchor::node);
-    for (std::size_t i = 0; i < anchors.size();) {
-      Anchor sum = anchors[i];
-      double count = 1;
-      std::size_t j = i + 1;
-      for (; j < anchors.size() && anchors[j].node == sum.node &&
-             anchors[j].direction == sum.direction;
-           ++j, ++count) {
-        base::add_to(sum.stiffness, anchors[j].stiffness);
-        sum.length += anchors[j].length;
-        sum.reach += anchors[j].reach;
-        for (std::size_t k = 0; k < 3; ++k) {
-          sum.middle[k] += anchors[j].middle[k];
-        }
-      }
-      for (double& x : sum.middle) {
-        x /= count;
-      }
-      sum.reach /= count;
-      sum.stiffness =
-          stretched(sum.stiffness, sum.middle, sum.direction / 2U, sum.length / count, sum.reach);
-      sum.length = sum.reach;
-      coarse_.anchors.push_back(sum);
-      i = j;
-    }
   }
 
   const Stage& fine_;

@@ -66,6 +66,7 @@ double ConjugateGradients::precondition() {
 }
 
 double ConjugateGradients::begin() {
+  older_ = {};
   round_residual();
   error_ = precondition();
   p_ = hierarchy_.levels().front().z;

@@ -67,7 +67,6 @@ double ConjugateGradients::remember_direction(std::span<const NodeTerm> terms) {
 
 ConjugateGradients::End ConjugateGradients::run_unsymmetric(const Goal& goal,
                                                             std::span<const NodeTerm> terms) {
-  older_.clear();
   for (int iteration = 0; !is_reached(goal, iteration); ++iteration) {
     if (iteration == goal.iteration_count_max) {
       return End::kTooSlow;
@@ -81,7 +80,6 @@ ConjugateGradients::End ConjugateGradients::run_unsymmetric(const Goal& goal,
     error_ = precondition();
     tell();
   }
-  older_ = {};
   return error_ >= 0 ? End::kConverged : End::kBroken;
 }
 

@@ -88,18 +88,6 @@ Mat coupling(const Spring& spring) {
   return scaled(times_carry(spring.stiffness, difference({}, spring.partner)), -1);
 }
 
-/// K_pp of all nodes that have anchors, in the order of the anchors.
-std::vector<std::pair<std::size_t, Mat>> anchored_sums(const Stage& stage) {
-  std::vector<std::pair<std::size_t, Mat>> sums;
-  for (const Anchor& anchor : stage.anchors) {
-    if (sums.empty() || sums.back().first != at(anchor.node)) {
-      sums.emplace_back(at(anchor.node), spring_sum(stage, at(anchor.node)));
-    }
-    base::add_to(sums.back().second, anchor.stiffness);
-  }
-  return sums;
-}
-
 /// Calls f(node, other, spring) for every spring once.
 template <class F>
 void for_springs(const Stage& stage, const F& f) {
@@ -114,8 +102,8 @@ void for_springs(const Stage& stage, const F& f) {
   }
 }
 
-/// The whole level as a sparse matrix in double precision.
-std::optional<BlockLu> factorize(const Stage& stage, std::size_t block_count_max) {
+/// The whole level as a sparse matrix in double precision, as yet without anchors.
+std::optional<BlockLu> unheld_matrix(const Stage& stage, std::size_t block_count_max) {
   std::vector<Edge> edges;
   for_springs(stage, [&](std::int32_t a, std::int32_t b, const Spring&) {
     edges.push_back({a, b});
@@ -131,10 +119,7 @@ std::optional<BlockLu> factorize(const Stage& stage, std::size_t block_count_max
   for (std::size_t node = 0; node < stage.order.size(); ++node) {
     lu.set_diagonal(node, spring_sum(stage, node));
   }
-  for (const auto& [node, sum] : anchored_sums(stage)) {
-    lu.set_diagonal(node, sum);
-  }
-  return lu.factor() ? std::optional(std::move(lu)) : std::nullopt;
+  return lu;
 }
 
 /// Cells from Morton keys, as positions.
@@ -147,23 +132,6 @@ Point place_of(std::uint64_t key, double pitch) {
   }
   return {pitch * static_cast<double>(cell[0]), pitch * static_cast<double>(cell[1]),
           pitch * static_cast<double>(cell[2])};
-}
-
-Point along(std::size_t direction, double length) {
-  Point point{};
-  point[direction / 2] = direction % 2 == 0 ? length : -length;
-  return point;
-}
-
-/// Springs of every direction and length; a node's pattern is then per spring, so kinds are listed.
-Spring beam_spring(const model::Material& material, std::size_t direction, std::size_t length) {
-  const double mm = material.pitch_mm * static_cast<double>(length);
-  return {.direction = static_cast<std::uint8_t>(direction),
-          .length = mm,
-          .middle = along(direction, mm / 2),
-          .partner = along(direction, mm),
-          .stiffness = mechanics::block_11(long_beam(material, static_cast<int>(length)),
-                                           static_cast<Direction>(direction))};
 }
 
 void fill_vectors(Level& level) {
@@ -196,24 +164,7 @@ void Hierarchy::fill_stage(Team& team, Stage& stage) const {
       if (length > 0 && at(network_.other[node][d]) < count) {
         kind[d] = static_cast<std::uint8_t>(length);
         stage.other.push_back(network_.other[node][d]);
-      } else if (length > 0) {
-        const Spring spring = beam_spring(material_, d, length);
-        stage.anchors.push_back({.node = static_cast<std::int32_t>(node),
-                                 .direction = spring.direction,
-                                 .length = spring.length,
-                                 .reach = spring.length,
-                                 .middle = spring.middle,
-                                 .stiffness = spring.stiffness});
       }
-    }
-    if (network_.kind[node][kContactByte] != 0) {
-      Spring spring = beam_spring(material_, base::index(Direction::kMinusZ), 1);
-      stage.anchors.push_back({.node = static_cast<std::int32_t>(node),
-                               .direction = spring.direction,
-                               .length = spring.length,
-                               .reach = spring.length,
-                               .middle = spring.middle,
-                               .stiffness = ground_(network_.kind[node][kContactByte])});
     }
     stage.start[node + 1] = static_cast<std::int32_t>(stage.other.size());
     const auto [found, is_new] = patterns.try_emplace(
@@ -244,7 +195,10 @@ void Hierarchy::make_lattice() {
   level.colour_start = network_.colour_start;
   level.type.resize(network_.node_count);
   fill_vectors(level);
-  update_types();
+  for (std::size_t node = 0; node < network_.node_count; ++node) {
+    set_type(node);
+  }
+  point_at_lattice();
 }
 
 /// K_pp of a node on the finest level.
@@ -262,20 +216,22 @@ Mat Hierarchy::diagonal(const Kind& kind) const {
   return sum;
 }
 
-void Hierarchy::update_types() {
+void Hierarchy::set_type(std::size_t node) {
   Level& level = levels_.front();
-  for (std::size_t node = 0; node < network_.node_count; ++node) {
-    const auto kind = std::bit_cast<std::uint64_t>(network_.kind[node]);
-    const auto [found, is_new] =
-        type_of_kind_.try_emplace(kind, static_cast<std::uint32_t>(type_of_kind_.size()));
-    level.type[node] = found->second;
-    if (is_new) {
-      const Mat sum = diagonal(network_.kind[node]);
-      level.diagonal.push_back(single(sum));
-      level.inverse.push_back(single(inverse_of(sum)));
-      diagonal_double_.push_back(wide(sum));
-    }
+  const auto kind = std::bit_cast<std::uint64_t>(network_.kind[node]);
+  const auto [found, is_new] =
+      type_of_kind_.try_emplace(kind, static_cast<std::uint32_t>(type_of_kind_.size()));
+  level.type[node] = found->second;
+  if (is_new) {
+    const Mat sum = diagonal(network_.kind[node]);
+    level.diagonal.push_back(single(sum));
+    level.inverse.push_back(single(inverse_of(sum)));
+    diagonal_double_.push_back(wide(sum));
   }
+}
+
+void Hierarchy::point_at_lattice() {
+  const Level& level = levels_.front();
   lattice_ = {.other = network_.other.data(),
               .kind = network_.has_long_beams ? network_.kind.data() : nullptr,
               .type = level.type.data(),
@@ -325,19 +281,80 @@ void Hierarchy::add_level(const Stage& stage, std::vector<std::size_t> colour_st
     // A pattern that only anchored nodes have may be singular alone; its inverse is not used.
     level.inverse.push_back(invert(sum, inverse) ? single(inverse) : Block{});
   }
-  BlockPool anchored;
-  const auto base = static_cast<std::uint32_t>(sums.size());
-  for (const auto& [node, sum] : anchored_sums(stage)) {
-    const std::uint32_t type = anchored.insert(single(sum));
-    level.type[node] = base + type;
-    if (base + type == level.diagonal.size()) {
-      level.diagonal.push_back(single(sum));
-      level.inverse.push_back(single(inverse_of(sum)));
-    }
-  }
   fill_vectors(level);
   level.first.assign(level.node_count + 1, {});
   level.first_image.assign(level.node_count + 1, {});
+}
+
+/// Takes note of the nodes of the newest level that have anchors.
+Hierarchy::Held Hierarchy::held_nodes(const Stage& stage,
+                                      const std::vector<Anchor>& anchors) const {
+  Held held;
+  held.free_type_count = levels_.back().diagonal.size();
+  for (const Anchor& anchor : anchors) {
+    if (held.nodes.empty() || held.nodes.back().node != at(anchor.node)) {
+      held.nodes.push_back(
+          {.node = at(anchor.node), .spring_sum = spring_sum(stage, at(anchor.node))});
+    }
+  }
+  return held;
+}
+
+/// K_pp of the nodes that have anchors.
+void Hierarchy::set_anchors(std::size_t depth, const std::vector<Anchor>& anchors) {
+  Level& level = levels_[depth];
+  Held& held = held_[depth - 1];
+  level.diagonal.resize(held.free_type_count);
+  level.inverse.resize(held.free_type_count);
+  BlockPool pool;
+  auto anchor = anchors.begin();
+  for (HeldNode& node : held.nodes) {
+    node.sum = node.spring_sum;
+    for (; anchor != anchors.end() && at(anchor->node) == node.node; ++anchor) {
+      base::add_to(node.sum, anchor->stiffness);
+    }
+    const std::size_t type = held.free_type_count + pool.insert(single(node.sum));
+    level.type[node.node] = static_cast<std::uint32_t>(type);
+    if (type == level.diagonal.size()) {
+      level.diagonal.push_back(single(node.sum));
+      level.inverse.push_back(single(inverse_of(node.sum)));
+    }
+  }
+}
+
+bool Hierarchy::factor_coarsest() {
+  for (const HeldNode& node : held_.back().nodes) {
+    coarsest_->set_diagonal(node.node, node.sum);
+  }
+  return coarsest_->factor();
+}
+
+void Hierarchy::update_contact() {
+  std::vector<Anchor> anchors = finest_anchors(network_, material_, ground_);
+  for (const Anchor& anchor : anchors) {
+    set_type(at(anchor.node));
+  }
+  point_at_lattice();
+  for (std::size_t depth = 1; depth < levels_.size(); ++depth) {
+    anchors = coarse_anchors(anchors, levels_[depth - 1].seat);
+    set_anchors(depth, anchors);
+  }
+  if (coarsest_ && !factor_coarsest()) {
+    coarsest_.reset();
+  }
+}
+
+/// If its shape allows, or it is small.
+void Hierarchy::try_to_factor(const Stage& stage) {
+  const std::size_t count = stage.order.size();
+  const bool is_small = count <= kCoarsestCount;
+  const bool is_thin = stage.other.size() <= kThinDegree * count;
+  if (is_small || (is_thin && count < network_.node_count / 4)) {
+    coarsest_ = unheld_matrix(stage, is_small ? count * count : 2 * count);
+    if (coarsest_ && !factor_coarsest()) {
+      coarsest_.reset();
+    }
+  }
 }
 
 Hierarchy::Hierarchy(const Network& network, const model::Material& material, Team& team,
@@ -346,23 +363,19 @@ Hierarchy::Hierarchy(const Network& network, const model::Material& material, Te
   make_lattice();
   Stage stage;
   fill_stage(team, stage);
-  while (!coarsest_) {
+  std::vector<Anchor> anchors = finest_anchors(network_, material_, ground_);
+  while (!coarsest_ && (levels_.size() == 1 || stage.order.size() > kCoarsestCount)) {
     Stage coarse;
     std::vector<std::size_t> colour_start;
     if (!coarsen(stage, levels_.back(), team, coarse, colour_start)) {
       break;
     }
     stage = std::move(coarse);
+    anchors = coarse_anchors(anchors, levels_.back().seat);
     add_level(stage, std::move(colour_start));
-    const std::size_t count = stage.order.size();
-    const bool is_small = count <= kCoarsestCount;
-    const bool is_thin = stage.other.size() <= kThinDegree * count;
-    if (is_small || (is_thin && count < network_.node_count / 4)) {
-      coarsest_ = factorize(stage, is_small ? count * count : 2 * count);
-    }
-    if (is_small) {
-      break;
-    }
+    held_.push_back(held_nodes(stage, anchors));
+    set_anchors(levels_.size() - 1, anchors);
+    try_to_factor(stage);
   }
 }
 

@@ -3,11 +3,11 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <optional>
 #include <unordered_map>
 #include <vector>
 
+#include "anchors.hpp"
 #include "coarsening.hpp"
 #include "holdfast/model/material.hpp"
 #include "holdfast/solver/block_lu.hpp"
@@ -26,15 +26,12 @@ namespace holdfast::solver {
 
 class Hierarchy {
  public:
-  /// The stiffness of the ground below a node, by the code in kContactByte.
-  using GroundStiffness = std::function<Mat(std::uint8_t code)>;
-
   /// Keeps references to the network and the material.
   Hierarchy(const Network& network, const model::Material& material, Team& team,
             GroundStiffness ground);
 
-  /// Takes over changed kinds of nodes on the finest level only; the coarse ones stay as they were.
-  void update_types();
+  /// Takes over changed contact: the same levels, held in another way.
+  void update_contact();
 
   std::vector<Level>& levels() { return levels_; }
 
@@ -47,16 +44,35 @@ class Hierarchy {
   const BlockLu& coarsest() const { return *coarsest_; }
 
  private:
+  struct HeldNode {
+    std::size_t node = 0;
+    Mat spring_sum;  ///< K_pp without anchors.
+    Mat sum = {};    ///< With them.
+  };
+
+  /// Nodes of a coarse level that have anchors. Their blocks come after those of all others.
+  struct Held {
+    std::size_t free_type_count = 0;
+    std::vector<HeldNode> nodes;
+  };
+
   void make_lattice();
+  void point_at_lattice();
+  void set_type(std::size_t node);
   void fill_stage(Team& team, Stage& stage) const;
   Mat diagonal(const Kind& kind) const;
   void add_level(const Stage& stage, std::vector<std::size_t> colour_start);
+  Held held_nodes(const Stage& stage, const std::vector<Anchor>& anchors) const;
+  void set_anchors(std::size_t depth, const std::vector<Anchor>& anchors);
+  void try_to_factor(const Stage& stage);
+  bool factor_coarsest();
 
   const Network& network_;
   const model::Material& material_;
   GroundStiffness ground_;
   std::unordered_map<std::uint64_t, std::uint32_t> type_of_kind_;
   std::vector<Level> levels_;
+  std::vector<Held> held_;  ///< By level, from the second on.
   LatticeView lattice_;
   std::vector<BeamRow> beams_;
   std::vector<BeamRowDouble> beams_double_;

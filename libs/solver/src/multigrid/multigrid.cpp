@@ -13,10 +13,6 @@ using mechanics::ContactState;
 
 constexpr int kIterationMax = 500;
 
-/// With up to this share of changed facets the coarse levels stay as they are: they need not know
-/// of every facet to be good, and making them anew costs as much as some iterations.
-constexpr double kChangedShareMax = 0.02;
-
 /// Memory per module: measured 330 to 400 bytes on solids and on random growth.
 constexpr std::size_t kBytesPerModule = 450;
 
@@ -88,7 +84,6 @@ void Multigrid::set_facet(std::size_t module, const ContactState& state, bool is
   kind[base::index(base::Direction::kMinusZ)] = code == 0 ? 1 : 0;
   kind[kContactByte] = code;
   is_stale_ = true;
-  ++changed_facet_count_;
 }
 
 Mat Multigrid::tangent(std::uint8_t code) const {
@@ -96,19 +91,15 @@ Mat Multigrid::tangent(std::uint8_t code) const {
 }
 
 void Multigrid::update_hierarchy() {
-  const auto changed_max =
-      static_cast<std::size_t>(kChangedShareMax * static_cast<double>(facets_.size())) + 2;
-  if (hierarchy_ && changed_facet_count_ <= changed_max) {
-    hierarchy_->update_types();
+  if (hierarchy_) {
+    hierarchy_->update_contact();
     return;
   }
-  // The old one goes first, so that there are never two in memory.
   std::vector<double> x;
   if (gradients_) {
     x = std::move(gradients_->x());
   }
   gradients_.reset();
-  hierarchy_.reset();
   hierarchy_ = std::make_unique<Hierarchy>(network_, robot_.material(), team_,
                                            [this](std::uint8_t code) { return tangent(code); });
   gradients_ = std::make_unique<ConjugateGradients>(*hierarchy_, team_, network_.node_count);
@@ -120,7 +111,6 @@ void Multigrid::update_hierarchy() {
       progress_(++told_count_, std::sqrt(std::max(0.0, error) / reference_));
     };
   }
-  changed_facet_count_ = 0;
 }
 
 /// What the present displacements leave unbalanced, with the contact's own tangent.

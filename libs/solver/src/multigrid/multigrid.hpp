@@ -52,7 +52,6 @@ class Multigrid {
   };
 
   Mat tangent(std::uint8_t code) const;
-  void make_hierarchy();
   void begin();
   void update_hierarchy();
   void compute_residual();
@@ -68,9 +67,8 @@ class Multigrid {
   std::unique_ptr<Hierarchy> hierarchy_;
   std::unique_ptr<ConjugateGradients> gradients_;
   std::function<void(int, double)> progress_;
-  bool is_stale_ = true;                 ///< Some facet changed since the last solve.
-  std::size_t changed_facet_count_ = 0;  ///< Since the hierarchy was made.
-  double reference_ = 0;                 ///< Square of the first error.
+  bool is_stale_ = true;  ///< Some facet changed since the last solve.
+  double reference_ = 0;  ///< Square of the first error.
   int iteration_count_ = 0;
   int told_count_ = 0;
 };

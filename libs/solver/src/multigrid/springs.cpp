@@ -2,7 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "springs.hpp"
 
+#include <algorithm>
+
 #include "../block_kernels.hpp"
+#include "network.hpp"
 
 namespace holdfast::solver {
 namespace {
@@ -64,7 +67,28 @@ Mat3 rotational_compliance(const Mat& c) {
   return inverse_of(left);
 }
 
+Point along(std::size_t direction, double length) {
+  Point point{};
+  point[direction / 2] = direction % 2 == 0 ? length : -length;
+  return point;
+}
+
 }  // namespace
+
+Spring beam_spring(const model::Material& material, std::size_t direction, std::size_t length) {
+  const double mm = material.pitch_mm * static_cast<double>(length);
+  return {.direction = static_cast<std::uint8_t>(direction),
+          .length = mm,
+          .middle = along(direction, mm / 2),
+          .partner = along(direction, mm),
+          .stiffness = mechanics::block_11(long_beam(material, static_cast<int>(length)),
+                                           static_cast<base::Direction>(direction))};
+}
+
+double behind(const Point& offset, std::size_t direction) {
+  const double step = offset[direction / 2];
+  return std::max(0.0, direction % 2 == 0 ? step : -step);
+}
 
 Mat scaled(Mat matrix, double factor) {
   for (double& value : matrix.values) {

@@ -4,8 +4,11 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 
 #include "holdfast/base/algebra.hpp"
+#include "holdfast/model/material.hpp"
+#include "vectors.hpp"
 
 /// Springs between rigid bodies: how they look from elsewhere, and when they are longer.
 ///
@@ -20,6 +23,27 @@ using Point = std::array<double, 3>;
 inline Point difference(const Point& a, const Point& b) {
   return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
 }
+
+/// A spring as its node sees it.
+struct Spring {
+  std::uint8_t direction = 0;  ///< In which its partner lies.
+  double length = 0;           ///< mm
+  Point middle = {};           ///< From the node.
+  Point partner = {};          ///< From the node.
+  Mat stiffness = {};          ///< At the node.
+};
+
+/// Of a beam `length` pitches long.
+Spring beam_spring(const model::Material& material, std::size_t direction, std::size_t length);
+
+/// From the centre of its cluster to a node, mm.
+inline Point offset(const Seat& seat) {
+  return {static_cast<double>(seat.offset[0]), static_cast<double>(seat.offset[1]),
+          static_cast<double>(seat.offset[2])};
+}
+
+/// Distance from a node back to the centre of its cluster, against a direction.
+double behind(const Point& offset, std::size_t direction);
 
 Mat scaled(Mat matrix, double factor);
 

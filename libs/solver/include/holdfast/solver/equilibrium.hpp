@@ -31,10 +31,10 @@
 ///   release the open ones, solve again. A facet that would be pressed again is held again for
 ///   good, so that loop ends.
 ///
-/// Each linear system is solved directly (block_lu.hpp) where that is the fastest, which is for
-/// small and for thread-like robots, and by multigrid otherwise (docs/solver.md). Then each
-/// solution starts from the one before. A robot so slender that multigrid's single precision does
-/// not suffice is solved directly after all, if memory allows.
+/// Each linear system is solved directly (block_lu.hpp) for robots of up to 128 modules and by
+/// multigrid otherwise (docs/solver.md). Then each solution starts from the one before. A robot so
+/// slender that multigrid's single precision does not suffice is solved directly after all, if
+/// memory allows.
 namespace holdfast::solver {
 
 class Multigrid;
