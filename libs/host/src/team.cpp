@@ -3,29 +3,37 @@
 #include "holdfast/host/team.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <system_error>
 
 namespace holdfast::host {
 namespace {
 
-/// A thread that waits spins for about a hundred microseconds before it sleeps: waking one takes as
-/// long as most loops here. Now and then it lets others have the core, as a thread it waits for may
-/// be one of them.
-constexpr int kYieldCount = 250;
-constexpr int kSpinCount = 256;
+/// A thread that waits spins for so long before it sleeps: waking one takes longer than most loops
+/// here. It does not yield meanwhile, as on a busy machine each time might cost a time slice.
+constexpr std::chrono::microseconds kSpinTime{100};
+constexpr int kSpinCount = 256;  ///< Turns between two looks at the clock.
 
 template <class Value>
 void wait_while(const std::atomic<Value>& variable, Value value) {
-  for (int yield = 0; yield < kYieldCount; ++yield) {
+  const auto end = std::chrono::steady_clock::now() + kSpinTime;
+  do {
     for (int spin = 0; spin < kSpinCount; ++spin) {
       if (variable.load(std::memory_order_acquire) != value) {
         return;
       }
     }
-    std::this_thread::yield();
-  }
+  } while (std::chrono::steady_clock::now() < end);
   variable.wait(value, std::memory_order_acquire);
 }
+
+std::uint64_t pack(std::size_t first, std::size_t last) {
+  return std::uint64_t{last} << 32U | first;
+}
+
+std::size_t first_of(std::uint64_t chunks) { return chunks & 0xffffffffU; }
+
+std::size_t last_of(std::uint64_t chunks) { return chunks >> 32U; }
 
 }  // namespace
 
@@ -33,6 +41,7 @@ Team::Team(int thread_count, std::size_t item_count) {
   const auto cores = static_cast<int>(std::thread::hardware_concurrency());
   thread_count = std::clamp(thread_count > 0 ? thread_count : cores, 1,
                             item_count < kSharedItemMin ? 1 : kThreadCountMax);
+  ranges_ = std::vector<Range>(static_cast<std::size_t>(thread_count));
   thread_count_ = 1;
   for (int thread = 1; thread < thread_count; ++thread) {
     try {
@@ -53,35 +62,62 @@ Team::~Team() {
   }
 }
 
-void Team::run(Task task, const void* context) {
+void Team::run(std::size_t chunk_count, Task task, const void* context) {
   task_ = task;
   context_ = context;
-  running_.store(thread_count_ - 1, std::memory_order_relaxed);
+  unfinished_.store(chunk_count, std::memory_order_relaxed);
+  const auto count = static_cast<std::size_t>(thread_count_);
+  for (std::size_t thread = 0; thread < count; ++thread) {
+    ranges_[thread].chunks.store(
+        pack(chunk_count * thread / count, chunk_count * (thread + 1) / count),
+        std::memory_order_release);
+  }
   round_.fetch_add(1, std::memory_order_release);
   round_.notify_all();
-  task(context, 0);
-  for (int left = running_.load(std::memory_order_acquire); left > 0;
-       left = running_.load(std::memory_order_acquire)) {
-    wait_while(running_, left);
+  work_on_ranges(0);
+  for (std::size_t left = unfinished_.load(std::memory_order_acquire); left > 0;
+       left = unfinished_.load(std::memory_order_acquire)) {
+    wait_while(unfinished_, left);
+  }
+}
+
+/// Takes half of what is left of a range and works on it. A thread that comes late, to a later loop
+/// than it was called for, is as welcome there: which loop it is follows from the chunks it gets.
+/// Returns false if there is nothing left.
+bool Team::work_on(Range& range) {
+  std::uint64_t seen = range.chunks.load(std::memory_order_acquire);
+  std::size_t begin = 0;
+  std::size_t taken = 0;
+  do {
+    begin = first_of(seen);
+    taken = (last_of(seen) - begin + 1) / 2;
+    if (taken == 0) {
+      return false;
+    }
+  } while (!range.chunks.compare_exchange_weak(seen, pack(begin + taken, last_of(seen)),
+                                               std::memory_order_acq_rel,
+                                               std::memory_order_acquire));
+  task_(context_, begin, begin + taken);
+  if (unfinished_.fetch_sub(taken, std::memory_order_acq_rel) == taken) {
+    unfinished_.notify_one();
+  }
+  return true;
+}
+
+void Team::work_on_ranges(int thread) {
+  const auto own = static_cast<std::size_t>(thread);
+  for (std::size_t i = 0; i < ranges_.size(); ++i) {
+    while (work_on(ranges_[(own + i) % ranges_.size()])) {
+    }
   }
 }
 
 void Team::serve(int thread) {
   std::uint32_t seen = 0;
-  while (true) {
+  while (!is_over_.load()) {
     wait_while(round_, seen);
-    const std::uint32_t round = round_.load(std::memory_order_acquire);
-    if (round == seen) {
-      continue;
-    }
-    seen = round;
-    if (is_over_.load()) {
-      return;
-    }
-    task_(context_, thread);
-    if (running_.fetch_sub(1, std::memory_order_acq_rel) == 1) {
-      running_.notify_one();
-    }
+    seen = round_.load(std::memory_order_acquire);
+    work_on_ranges(thread);
   }
 }
 

@@ -8,9 +8,11 @@
 #include <thread>
 #include <vector>
 
-/// A few threads that share loops. Work is cut into chunks of fixed size, each thread takes one run
-/// of chunks, and sums are kept by chunk and added in order: the result has the same bits with any
-/// number of threads.
+/// A few threads that share loops. Work is cut into chunks of fixed size, and sums are kept by
+/// chunk and added in order: the result has the same bits with any number of threads. Each thread
+/// has a range of chunks of its own, the same in every loop over the same data, and helps with the
+/// ranges of others when that is done: on a busy machine nobody waits for a thread that is not
+/// running.
 namespace holdfast::host {
 
 class Team {
@@ -30,10 +32,10 @@ class Team {
   static constexpr int kThreadCountMax = 64;
 #endif
   /// Nodes in a chunk.
-  static constexpr std::size_t kChunk = 512;
-  static constexpr std::size_t kSharedItemMin = 8192;
+  static constexpr std::size_t kChunk = 128;
+  static constexpr std::size_t kSharedItemMin = 2000;
   /// Fewer chunks are not shared: waking a thread takes as long as they do.
-  static constexpr std::size_t kSharedChunkMin = 6;
+  static constexpr std::size_t kSharedChunkMin = 4;
 
   /// Calls work(begin, end) for ranges that together are [first, last); ranges begin at multiples
   /// of the chunk from `first`, so that each chunk is computed whole by one thread.
@@ -46,17 +48,15 @@ class Team {
       }
       return;
     }
-    const auto part = [&](int thread) {
-      const std::size_t begin = first + chunk_count * static_cast<std::size_t>(thread) /
-                                            static_cast<std::size_t>(thread_count_) * kChunk;
-      std::size_t end = first + chunk_count * static_cast<std::size_t>(thread + 1) /
-                                    static_cast<std::size_t>(thread_count_) * kChunk;
-      end = end < last ? end : last;
-      if (begin < end) {
-        work(begin, end);
-      }
+    const auto part = [&](std::size_t begin, std::size_t end) {
+      end = first + end * kChunk;
+      work(first + begin * kChunk, end < last ? end : last);
     };
-    run([](const void* context, int thread) { (*static_cast<decltype(&part)>(context))(thread); },
+    run(
+        chunk_count,
+        [](const void* context, std::size_t begin, std::size_t end) {
+          (*static_cast<decltype(&part)>(context))(begin, end);
+        },
         &part);
   }
 
@@ -83,19 +83,27 @@ class Team {
   }
 
  private:
-  using Task = void (*)(const void* context, int thread);
+  using Task = void (*)(const void* context, std::size_t begin, std::size_t end);
 
-  /// Runs task(context, thread) on every thread and waits for all.
-  void run(Task task, const void* context);
+  /// Chunks that nobody has taken yet: the first and the one after the last, in 32 bits each.
+  struct alignas(64) Range {
+    std::atomic<std::uint64_t> chunks{0};
+  };
+
+  /// Runs task(context, begin, end) on chunks that together are [0, chunk_count); waits for all.
+  void run(std::size_t chunk_count, Task task, const void* context);
   void serve(int thread);
+  void work_on_ranges(int thread);
+  bool work_on(Range& range);
 
   int thread_count_ = 1;
   std::vector<double> partial_;
   std::vector<std::thread> threads_;
+  std::vector<Range> ranges_;
   Task task_ = nullptr;
   const void* context_ = nullptr;
   std::atomic<std::uint32_t> round_{0};
-  std::atomic<int> running_{0};
+  std::atomic<std::size_t> unfinished_{0};  ///< Chunks.
   std::atomic<bool> is_over_{false};
 };
 
