@@ -90,7 +90,7 @@ int run_cholmod(const std::string& family, std::size_t size, const char* path) {
   cholmod_l_start(&common);
   Displacement u(robot.modules().size());
   bool is_solved = true;
-  const double seconds = fastest([&] {
+  const Timing timing = fastest([&] {
     const std::optional<double> run = solve(robot, common, u);
     is_solved = is_solved && run.has_value();
     return run.value_or(1e30);
@@ -98,7 +98,7 @@ int run_cholmod(const std::string& family, std::size_t size, const char* path) {
   if (!is_solved) {
     return 1;
   }
-  print_run(u.size(), seconds, 0);
+  print_run(u.size(), timing, 0);
   write_displacement(path, u);
   return 0;
 }

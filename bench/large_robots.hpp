@@ -40,19 +40,6 @@ inline bool is_once_more(int run_count, double total_seconds) {
   return total_seconds < 15 && run_count < 50 && (run_count < 3 || total_seconds < 1);
 }
 
-/// Seconds of the fastest of several runs; run() returns its own time.
-template <class Run>
-double fastest(const Run& run) {
-  double best = 1e30;
-  double total = 0;
-  for (int count = 0; is_once_more(count, total); ++count) {
-    const double seconds = run();
-    best = std::min(best, seconds);
-    total += seconds;
-  }
-  return best;
-}
-
 /// Peak memory of this process, MB.
 inline double memory_mb() {
   rusage usage{};
@@ -60,9 +47,28 @@ inline double memory_mb() {
   return static_cast<double>(usage.ru_maxrss) / 1024;
 }
 
+struct Timing {
+  double seconds = 1e30;  ///< Of the fastest run.
+  double mb = 0;          ///< After the first one.
+};
+
+/// Runs several times; run() returns its own time.
+template <class Run>
+Timing fastest(const Run& run) {
+  Timing timing;
+  double total = 0;
+  for (int count = 0; is_once_more(count, total); ++count) {
+    const double seconds = run();
+    timing.seconds = std::min(timing.seconds, seconds);
+    timing.mb = count == 0 ? memory_mb() : timing.mb;
+    total += seconds;
+  }
+  return timing;
+}
+
 /// What a run tells bench/solver.sh.
-inline void print_run(std::size_t count, double seconds, int iterations) {
-  std::printf("%zu %.6f %.1f %d\n", count, seconds, memory_mb(), iterations);
+inline void print_run(std::size_t count, const Timing& timing, int iterations) {
+  std::printf("%zu %.6f %.1f %d\n", count, timing.seconds, timing.mb, iterations);
 }
 
 inline std::vector<double> load_ratios(const model::Robot& robot, const Displacement& u) {

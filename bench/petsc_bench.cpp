@@ -160,15 +160,15 @@ int run(const char* family, std::size_t size, const char* path) {
   MPI_Comm_size(PETSC_COMM_WORLD, &ranks);
   const auto n = static_cast<PetscInt>(robot.modules().size());
   Run last;
-  const double seconds = hf::bench::fastest([&] {
+  const hf::bench::Timing timing = hf::bench::fastest([&] {
     VecDestroy(&last.x);
     last = solve(robot, n * rank / ranks, n * (rank + 1) / ranks);
     return last.seconds;
   });
-  double mb = hf::bench::memory_mb();
+  double mb = timing.mb;
   MPI_Allreduce(MPI_IN_PLACE, &mb, 1, MPI_DOUBLE, MPI_SUM, PETSC_COMM_WORLD);
   if (rank == 0) {
-    std::printf("%d %.6f %.1f %d\n", n, seconds, mb, last.iterations);
+    std::printf("%d %.6f %.1f %d\n", n, timing.seconds, mb, last.iterations);
   }
   write(last.x, robot.modules().size(), path);
   return last.is_converged ? 0 : 1;

@@ -5,6 +5,7 @@
 //   solver_bench reference FAMILY SIZE FILE                         over-converged
 //   solver_bench compare FAMILY SIZE FILE REFERENCE                 largest error of a load ratio
 //   solver_bench bandwidth                                          a triad over memory, GB/s
+//   solver_bench iteration FAMILY SIZE THREADS                      ns per module and iteration
 // A run prints: modules seconds-of-the-fastest-of-several MB iterations
 #include <cstdlib>
 #include <thread>
@@ -20,7 +21,7 @@ int run_holdfast(const std::string& family, std::size_t size, bool is_bonded, in
                  const char* path) {
   model::RobotSpec spec{.existing = cells(family, size)};
   verdict::Assessment assessment;
-  const double seconds = fastest([&] {
+  const Timing timing = fastest([&] {
     assessment = {};
     const auto start = Clock::now();
     const auto robot = model::Robot::create(spec, thread_count);
@@ -29,7 +30,7 @@ int run_holdfast(const std::string& family, std::size_t size, bool is_bonded, in
         verdict::assess(robot.value(), {.is_bonded = is_bonded, .thread_count = thread_count});
     return seconds_since(start);
   });
-  print_run(spec.existing.size(), seconds, assessment.equilibrium.iteration_count);
+  print_run(spec.existing.size(), timing, assessment.equilibrium.iteration_count);
   if (assessment.equilibrium.displacement.empty()) {
     return 1;
   }
@@ -85,6 +86,27 @@ int measure_bandwidth() {
   return 0;
 }
 
+/// What iterations cost without all that comes before and after them: many less a few.
+int measure_iteration(const std::string& family, std::size_t size, int thread_count) {
+  const auto robot = model::Robot::create({.existing = cells(family, size)}).value();
+  double seconds[2];
+  int iterations[2];
+  for (int k = 0; k < 2; ++k) {
+    seconds[k] = fastest([&] {
+                   solver::EquilibriumSolver solver(robot, {.method = solver::Method::kMultigrid,
+                                                            .is_bonded = true,
+                                                            .thread_count = thread_count,
+                                                            .tolerance = k == 0 ? 1e-5 : 1e-10});
+                   const auto start = Clock::now();
+                   iterations[k] = solver.solve({}).iteration_count;
+                   return seconds_since(start);
+                 }).seconds;
+  }
+  std::printf("%.1f\n", 1e9 * (seconds[1] - seconds[0]) / (iterations[1] - iterations[0]) /
+                            static_cast<double>(robot.modules().size()));
+  return 0;
+}
+
 int run(int argc, char** argv) {
   host::use_large_pages();
   const std::string what = argc > 1 ? argv[1] : "";
@@ -100,6 +122,9 @@ int run(int argc, char** argv) {
   if (what == "holdfast" && argc == 7) {
     return run_holdfast(family, size, std::string(argv[4]) == "bonded", std::atoi(argv[5]),
                         argv[6]);
+  }
+  if (what == "iteration") {
+    return measure_iteration(family, size, std::atoi(argv[4]));
   }
   if (what == "reference") {
     return make_reference(family, size, argv[4]);
