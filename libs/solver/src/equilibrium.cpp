@@ -27,8 +27,11 @@ constexpr int kLineStepMax = 60;
 /// Up to here the direct solver is as fast, and exact.
 constexpr std::size_t kDirectCountMax = 128;
 
-/// What one block of the factorization takes, upper and lower.
+/// What the factorization takes: for a block, upper and lower; for a node, the diagonal and its
+/// inverse; for an edge, its own block.
 constexpr std::size_t kBlockBytes = 2 * sizeof(Mat6<double>) + 24;
+constexpr std::size_t kNodeBytes = 3 * sizeof(Mat6<double>) + 120;
+constexpr std::size_t kEdgeBytes = sizeof(Mat6<double>) + 64;
 
 /// Multigrid's error while contact states are sought, as a share of the first. The regularised law
 /// may have several answers, and the one meant is that of Newton's path: where a facet is so near
@@ -106,14 +109,14 @@ void EquilibriumSolver::choose_method(std::size_t node_count) {
     method = Method::kDirect;
   }
   if (method == Method::kDirect) {
-    make_direct(node_count, options_.memory_bytes_max / kBlockBytes);
+    make_direct(node_count);
   } else if (Multigrid::bytes_for(node_count) <= options_.memory_bytes_max) {
     multigrid_ = std::make_unique<Multigrid>(robot_, options_.thread_count, options_.progress);
   }
 }
 
 /// No factorization is left if it is too large.
-void EquilibriumSolver::make_direct(std::size_t node_count, std::size_t block_count_max) {
+void EquilibriumSolver::make_direct(std::size_t node_count) {
   std::vector<Edge> edges;
   edges.reserve(robot_.connections().size());
   for (const model::Connection& connection : robot_.connections()) {
@@ -123,7 +126,9 @@ void EquilibriumSolver::make_direct(std::size_t node_count, std::size_t block_co
       edges.push_back(edge);
     }
   }
-  lu_.emplace(node_count, edges, block_count_max);
+  const std::size_t always = kNodeBytes * node_count + kEdgeBytes * edges.size();
+  const std::size_t memory = options_.memory_bytes_max;
+  lu_.emplace(node_count, edges, memory > always ? (memory - always) / kBlockBytes : 0);
   if (lu_->is_too_large()) {
     lu_.reset();
   } else {
@@ -185,8 +190,7 @@ Equilibrium EquilibriumSolver::solve(const ContactOptions& contact) {
     finish(result);
   }
   if (result.outcome == Outcome::kTooSlow && options_.method == Method::kAutomatic) {
-    make_direct(robot_.modules().size() - robot_.fixed_count(),
-                options_.memory_bytes_max / kBlockBytes);
+    make_direct(robot_.modules().size() - robot_.fixed_count());
     if (lu_) {
       multigrid_.reset();
       return solve(contact);

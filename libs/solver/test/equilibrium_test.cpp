@@ -205,10 +205,10 @@ TEST(Equilibrium, does_not_depend_on_what_is_planned_and_what_exists) {
 
 TEST(Equilibrium, says_when_the_factorization_does_not_fit) {
   const Robot robot = make({.existing = row({}, Direction::kPlusX, 3)});
-  // Two connections in a row make two blocks of 600 bytes.
-  EquilibriumSolver fits(robot, {.memory_bytes_max = 1200});
+  // Three nodes of 984 bytes, two edges of 352; a row makes two blocks of 600 bytes of them.
+  EquilibriumSolver fits(robot, {.memory_bytes_max = 4856});
   EXPECT_EQ(fits.solve({}).outcome, Outcome::kSettled);
-  EquilibriumSolver exceeds(robot, {.memory_bytes_max = 1199});
+  EquilibriumSolver exceeds(robot, {.memory_bytes_max = 4855});
   const Equilibrium result = exceeds.solve({});
   EXPECT_EQ(result.outcome, Outcome::kTooLarge);
   EXPECT_TRUE(result.displacement.empty());

@@ -243,8 +243,8 @@ void decide_stable(const model::Robot& robot, Assessment& assessment) {
   }
   if (equilibrium.outcome == Outcome::kTooSlow) {
     assessment.reasons.emplace_back(
-        "stable, but the loads are not known: the solver does not converge on a robot this "
-        "slender");
+        "stable, but the loads are not known: the iteration does not converge on a robot this "
+        "slender, and the direct solver does not fit into the memory allowed");
     return;
   }
   if (equilibrium.outcome != Outcome::kSettled) {

@@ -14,6 +14,10 @@ constexpr std::size_t kMemoryBytes = std::size_t{256} << 20U;
 constexpr std::size_t kMemoryMin = 8;
 constexpr std::size_t kNodeBytes = sizeof(Six) + 6 * sizeof(double);
 
+/// The last run's directions go on to count, unless there is more than one for so many nodes: in
+/// small robots they soon fill the space, and what is left then is rounding.
+constexpr std::size_t kNodesPerDirection = 2;
+
 /// Adds difference * p at the nodes that have one; returns p times that.
 double add_terms(std::span<const NodeTerm> terms, bool is_transposed, const std::vector<Six>& p,
                  std::vector<double>& image) {
@@ -67,6 +71,9 @@ double ConjugateGradients::remember_direction(std::span<const NodeTerm> terms) {
 
 ConjugateGradients::End ConjugateGradients::run_unsymmetric(const Goal& goal,
                                                             std::span<const NodeTerm> terms) {
+  if (kNodesPerDirection * older_.size() > node_count_) {
+    older_.clear();
+  }
   for (int iteration = 0; !is_reached(goal, iteration); ++iteration) {
     if (iteration == goal.iteration_count_max) {
       return End::kTooSlow;

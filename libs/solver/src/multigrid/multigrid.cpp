@@ -179,7 +179,12 @@ bool Multigrid::solve(double tolerance, int iteration_count_min) {
   const std::vector<NodeTerm> terms = unsymmetric_terms();
   const auto end = terms.empty() ? gradients_->run(goal) : gradients_->run_unsymmetric(goal, terms);
   iteration_count_ += gradients_->iteration_count() - before;
-  return end == ConjugateGradients::End::kConverged;
+  if (end == ConjugateGradients::End::kConverged) {
+    return true;
+  }
+  std::ranges::fill(gradients_->x(), 0);  // Nothing to go on from.
+  is_stale_ = true;
+  return false;
 }
 
 std::vector<base::Vec6<double>> Multigrid::displacement() {

@@ -123,7 +123,7 @@ class EquilibriumSolver {
     bool was_released = false;
   };
 
-  void make_direct(std::size_t node_count, std::size_t block_count_max);
+  void make_direct(std::size_t node_count);
   void choose_method(std::size_t node_count);
   void assemble();
   Outcome iterate(Equilibrium& result);
