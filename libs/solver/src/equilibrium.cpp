@@ -27,11 +27,18 @@ constexpr int kLineStepMax = 60;
 /// Up to here the direct solver is as fast, and exact.
 constexpr std::size_t kDirectCountMax = 128;
 
+/// The unilateral law takes dozens of steps that change a few facets each, and its weak springs
+/// cost multigrid digits. So up to here the direct solver, which makes only some columns again, is
+/// faster if no more blocks than this fill in per node.
+constexpr std::size_t kUnilateralCountMax = 6000;
+constexpr std::size_t kUnilateralFillMax = 16;
+
 /// What the factorization takes: for a block, upper and lower; for a node, the diagonal and its
 /// inverse; for an edge, its own block.
 constexpr std::size_t kBlockBytes = 2 * sizeof(Mat6<double>) + 24;
 constexpr std::size_t kNodeBytes = 3 * sizeof(Mat6<double>) + 120;
 constexpr std::size_t kEdgeBytes = sizeof(Mat6<double>) + 64;
+constexpr std::size_t kNoLimit = std::numeric_limits<std::size_t>::max();
 
 /// Multigrid's error while contact states are sought, as a share of the first. The regularised law
 /// may have several answers, and the one meant is that of Newton's path: where a facet is so near
@@ -89,34 +96,40 @@ EquilibriumSolver::EquilibriumSolver(const model::Robot& robot, const Equilibriu
       beam_(mechanics::beam_stiffness(model::beam_section(robot.material()))) {
   const auto modules = robot.modules();
   node_of_module_.assign(modules.size(), -1);
-  std::int32_t node_count = 0;
+  std::int32_t next = 0;
   for (std::size_t i = 0; i < modules.size(); ++i) {
     if (modules[i].support != model::Support::kFixed) {
-      node_of_module_[i] = node_count++;
+      node_of_module_[i] = next++;
     }
     if (modules[i].support == model::Support::kGround) {
       facets_.push_back({.module = i, .state = {}});
     }
   }
-  choose_method(static_cast<std::size_t>(node_count));
+  choose_method();
 }
 
 EquilibriumSolver::~EquilibriumSolver() = default;
 
-void EquilibriumSolver::choose_method(std::size_t node_count) {
+void EquilibriumSolver::choose_method() {
+  const std::size_t node_count = free_count();
   Method method = options_.method;
   if (method == Method::kAutomatic && node_count <= kDirectCountMax) {
     method = Method::kDirect;
   }
   if (method == Method::kDirect) {
-    make_direct(node_count);
+    make_direct(kNoLimit);
   } else if (Multigrid::bytes_for(node_count) <= options_.memory_bytes_max) {
     multigrid_ = std::make_unique<Multigrid>(robot_, options_.thread_count, options_.progress);
   }
 }
 
+std::size_t EquilibriumSolver::free_count() const {
+  return robot_.modules().size() - robot_.fixed_count();
+}
+
 /// No factorization is left if it is too large.
-void EquilibriumSolver::make_direct(std::size_t node_count) {
+void EquilibriumSolver::make_direct(std::size_t block_count_max) {
+  const std::size_t node_count = free_count();
   std::vector<Edge> edges;
   edges.reserve(robot_.connections().size());
   for (const model::Connection& connection : robot_.connections()) {
@@ -128,10 +141,12 @@ void EquilibriumSolver::make_direct(std::size_t node_count) {
   }
   const std::size_t always = kNodeBytes * node_count + kEdgeBytes * edges.size();
   const std::size_t memory = options_.memory_bytes_max;
-  lu_.emplace(node_count, edges, memory > always ? (memory - always) / kBlockBytes : 0);
+  const std::size_t affordable = memory > always ? (memory - always) / kBlockBytes : 0;
+  lu_.emplace(node_count, edges, std::min(affordable, block_count_max));
   if (lu_->is_too_large()) {
     lu_.reset();
   } else {
+    multigrid_.reset();
     assemble();
   }
 }
@@ -145,7 +160,7 @@ void EquilibriumSolver::assemble() {
     k11[i] = mechanics::block_11(beam_, direction);
     k12[i] = mechanics::block_12(beam_, direction);
   }
-  diagonal_.resize(robot_.modules().size() - robot_.fixed_count());
+  diagonal_.resize(free_count());
   std::size_t edge = 0;
   for (const model::Connection& connection : robot_.connections()) {
     const std::int32_t a = node_of_module_[node_index(connection.a)];
@@ -166,6 +181,15 @@ void EquilibriumSolver::assemble() {
   }
 }
 
+Method EquilibriumSolver::method_for(ContactLaw law) {
+  const std::size_t node_count = free_count();
+  if (multigrid_ && options_.method == Method::kAutomatic && law == ContactLaw::kUnilateral &&
+      node_count <= kUnilateralCountMax) {
+    make_direct(kUnilateralFillMax * node_count);
+  }
+  return multigrid_ ? Method::kMultigrid : Method::kDirect;
+}
+
 Equilibrium EquilibriumSolver::solve(const ContactOptions& contact) {
   Equilibrium result;
   result.law = contact.law;
@@ -173,6 +197,7 @@ Equilibrium EquilibriumSolver::solve(const ContactOptions& contact) {
     result.outcome = Outcome::kTooLarge;
     return result;
   }
+  method_for(contact.law);
   const model::Material& material = robot_.material();
   ground_ = mechanics::ground_facet(model::beam_section(material), material.facet_mm, contact.gamma,
                                     contact.law);
@@ -190,9 +215,8 @@ Equilibrium EquilibriumSolver::solve(const ContactOptions& contact) {
     finish(result);
   }
   if (result.outcome == Outcome::kTooSlow && options_.method == Method::kAutomatic) {
-    make_direct(robot_.modules().size() - robot_.fixed_count());
+    make_direct(kNoLimit);
     if (lu_) {
-      multigrid_.reset();
       return solve(contact);
     }
   }

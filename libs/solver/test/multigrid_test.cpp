@@ -224,6 +224,15 @@ TEST(Multigrid, is_chosen_for_all_but_small_robots) {
   EXPECT_EQ(method(Family::kArm, 4000), Method::kMultigrid);
 }
 
+TEST(Multigrid, leaves_the_unilateral_law_to_the_direct_solver_where_little_fills_in) {
+  const auto method = [](Family name, std::size_t size) {
+    return EquilibriumSolver(family(name, size)).method_for(mechanics::ContactLaw::kUnilateral);
+  };
+  EXPECT_EQ(method(Family::kTower, 100), Method::kDirect);
+  EXPECT_EQ(method(Family::kCube, 12), Method::kMultigrid);
+  EXPECT_EQ(method(Family::kArm, 7000), Method::kMultigrid);
+}
+
 /// 3 x 3 modules wide and 3,000 high: bending drowns in single precision. That must be said, not
 /// guessed at; left alone, the solver then takes the direct one.
 TEST(Multigrid, says_when_a_robot_is_too_slender) {

@@ -164,8 +164,11 @@ constexpr std::size_t kTopplingCountMax = 1000;
 /// A verdict that hangs on multigrid's error is sought once more with so much less of it.
 constexpr double kFinerTolerance = 1e-3;
 
+/// Whether the model's stability is the rigid body's. A margin of zero is unstable by decision, not
+/// by mechanics: no model need agree with it.
 bool agrees(const Assessment& assessment) {
-  return assessment.model.is_settled && assessment.model.is_stable == assessment.is_stable;
+  return assessment.model.is_settled && (assessment.model.is_stable == assessment.is_stable ||
+                                         assessment.simplified.margin_mm == 0);
 }
 
 ContactModel contact_model(const model::Robot& robot, ContactLaw law) {
@@ -196,15 +199,17 @@ void find_equilibrium(const model::Robot& robot, const solver::EquilibriumOption
     assessment.contact_model = ContactModel::kBonded;
     return;
   }
-  const bool is_multigrid = assessment.equilibrium.method == solver::Method::kMultigrid;
+  if (agrees(assessment)) {
+    return;
+  }
+  const bool is_multigrid =
+      solver.method_for(ContactLaw::kUnilateral) == solver::Method::kMultigrid;
   const std::span<const double> gammas =
       !assessment.is_stable ? std::span<const double>(kTopplingGammas)
       : is_multigrid        ? std::span<const double>(kStableGammasMultigrid)
                             : kStableGammas;
   for (const double gamma : gammas) {
-    // A margin of zero is unstable by decision, not by mechanics: no model need agree with it.
-    if (agrees(assessment) ||
-        (assessment.model.is_settled && assessment.simplified.margin_mm == 0)) {
+    if (agrees(assessment)) {
       return;
     }
     const int steps = assessment.equilibrium.steps;

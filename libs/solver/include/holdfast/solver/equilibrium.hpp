@@ -31,10 +31,10 @@
 ///   release the open ones, solve again. A facet that would be pressed again is held again for
 ///   good, so that loop ends.
 ///
-/// Each linear system is solved directly (block_lu.hpp) for robots of up to 128 modules and by
-/// multigrid otherwise (docs/solver.md). Then each solution starts from the one before. A robot so
-/// slender that multigrid's single precision does not suffice is solved directly after all, if
-/// memory allows.
+/// Each linear system is solved directly (block_lu.hpp) for robots of up to 128 modules, under the
+/// unilateral law for many of up to 6,000, and by multigrid otherwise (docs/solver.md). Then each
+/// solution starts from the one before. A robot so slender that multigrid's single precision does
+/// not suffice is solved directly after all, if memory allows.
 namespace holdfast::solver {
 
 class Multigrid;
@@ -112,6 +112,9 @@ class EquilibriumSolver {
 
   Equilibrium solve(const ContactOptions& contact);
 
+  /// Which method the next solve() under this law begins with; prepares it.
+  Method method_for(mechanics::ContactLaw law);
+
  private:
   using Vec = base::Vec6<double>;
 
@@ -123,8 +126,9 @@ class EquilibriumSolver {
     bool was_released = false;
   };
 
-  void make_direct(std::size_t node_count);
-  void choose_method(std::size_t node_count);
+  std::size_t free_count() const;
+  void make_direct(std::size_t block_count_max);
+  void choose_method();
   void assemble();
   Outcome iterate(Equilibrium& result);
   bool is_tight_now();
