@@ -10,7 +10,8 @@ import math
 import sys
 
 WIDTH, HEIGHT, LEFT, BOTTOM, TOP, RIGHT = 720, 440, 70, 50, 40, 150
-COLOURS = ['#0072b2', '#d55e00', '#009e73', '#cc79a7', '#e69f00', '#56b4e9']  # Okabe and Ito
+# Okabe and Ito's, with black.
+COLOURS = ['#0072b2', '#d55e00', '#009e73', '#cc79a7', '#e69f00', '#56b4e9', '#000000']
 
 
 def read_series(lines):
@@ -31,7 +32,11 @@ def ticks(low, high):
 
 
 def label(value):
-    return f'{value:,.0f}' if value < 1e5 else f'10^{math.log10(value):.0f}'
+    if value < 1e5:
+        return f'{value:,g}'
+    exponent = math.floor(math.log10(value) + 1e-9)
+    lead = round(value / 10 ** exponent)
+    return f'10^{exponent}' if lead == 1 else f'{lead} 10^{exponent}'
 
 
 def main():
