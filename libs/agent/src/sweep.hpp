@@ -26,7 +26,6 @@ constexpr bool exchanges(const Order& order) {
     case wire::Operation::kJacobi:
     case wire::Operation::kStep:
     case wire::Operation::kTreeStep:
-      return true;
     case wire::Operation::kClusters:
       return true;
     case wire::Operation::kBegin:
