@@ -95,6 +95,58 @@ TEST(Distributed, a_planned_module_between_others_costs_some_steps_more_and_no_o
   EXPECT_LT(with.result.effort.iterations, 4 * without.result.effort.iterations);
 }
 
+/// A frame two modules thick.
+model::RobotSpec slender_frame(std::int32_t width, std::int32_t height) {
+  model::RobotSpec spec;
+  for (std::int32_t x = 0; x < width; ++x) {
+    for (std::int32_t z = 0; z < height; ++z) {
+      for (std::int32_t y = 0; y < 2; ++y) {
+        if (x < 2 || x >= width - 2 || z >= height - 2) {
+          spec.existing.push_back({x, y, z});
+        }
+      }
+    }
+  }
+  return spec;
+}
+
+/// Fixed at one end; too many loops for elimination.
+model::RobotSpec thick_cantilever(std::int32_t length) {
+  model::RobotSpec spec;
+  for (std::int32_t x = 0; x < length; ++x) {
+    for (std::int32_t y = 0; y < 3; ++y) {
+      for (const std::int32_t z : {1, 2}) {
+        spec.existing.push_back({x, y, z});
+        if (x == 0) {
+          spec.fixed.push_back({x, y, z});
+        }
+      }
+    }
+  }
+  return spec;
+}
+
+/// Bending of long robots is what rigid clusters are for. Without them the cantilever takes 40
+/// steps and the frame 89.
+TEST(Distributed, long_thick_robots_are_decided_in_few_steps) {
+  model::RobotSpec planned = slender_frame(70, 60);
+  planned.planned = {{30, 0, 60}, {31, 0, 60}};
+  model::RobotSpec between = slender_frame(70, 60);
+  std::erase(between.existing, base::Cell{35, 0, 58});
+  between.planned = {{35, 0, 58}};
+  for (const model::RobotSpec& spec :
+       {thick_cantilever(140), slender_frame(71, 61), planned, between}) {
+    SCOPED_TRACE(spec.existing.size());
+    const auto robot = model::Robot::create(spec);
+    ASSERT_TRUE(robot);
+    const auto comparison = test::compare(robot.value(), {});
+    expect_right(comparison);
+    EXPECT_GE(comparison.depth, 64);
+    EXPECT_EQ(comparison.result.effort.method, agent::Method::kPolynomial);
+    EXPECT_LE(comparison.result.effort.iterations, 40U);
+  }
+}
+
 TEST(Distributed, loss_duplication_reordering_and_bit_errors_change_no_verdict) {
   for (std::uint64_t seed = 0; seed < 20; ++seed) {
     SCOPED_TRACE(::testing::Message() << "random_robot(" << seed << ")");

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "holdfast/agent/agent.hpp"
 
+#include "clusters.hpp"
 #include "equilibrium.hpp"
 #include "remote.hpp"
 #include "rounds.hpp"

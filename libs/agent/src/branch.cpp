@@ -310,17 +310,17 @@ void Branch::add_column(int index, const std::array<std::int8_t, kLoopsMax>& slo
   }
 }
 
-void Branch::add_part(int index, const Vec6<float>& part) {
+void add_part(Mat6<float>& into, int index, const Vec6<float>& part) {
   const auto add = [&](int row, int column, float value) {
-    stiffness_.at(row, column) += value;
+    into.at(row, column) += value;
     if (row != column) {
-      stiffness_.at(column, row) += value;
+      into.at(column, row) += value;
     }
   };
   for (int row = index; row < kSize; ++row) {
     add(row, index, part[at(row - index)]);
   }
-  for (int row = kSize - index; row < kSize && index < kPartCount - 1; ++row) {
+  for (int row = kSize - index; row < kSize && index < Branch::kPartCount - 1; ++row) {
     add(row, kSize - index, part[at(row)]);
   }
 }

@@ -45,6 +45,9 @@ Order Conductor::next(const Setup& setup, const Report& report) {
       return after_angles(setup, report);
     case Step::kBegin:
       if (is_one_sweep()) {
+        if constexpr (kHasAllMethods) {
+          choose_clusters(report);
+        }
         return first_step();
       }
       break;
@@ -183,6 +186,10 @@ Order Conductor::begin_law(const Setup& setup, bool is_unilateral) {
   Order begin = order(Step::kBegin, Operation::kBegin);
   if (is_one_sweep()) {
     choose_one_sweep(is_unilateral);
+    if constexpr (kHasAllMethods) {
+      had_clusters_ = false;
+      begin.operation = may_have_clusters() ? Operation::kClusters : Operation::kBegin;
+    }
     const bool starts = effort_.method == Method::kPolynomial && !is_any_remote_;
     begin.count = starts ? step_degree() : std::uint16_t{0};
   }

@@ -16,6 +16,25 @@ using wire::Operation;
 /// Steps without progress before the method is left.
 constexpr int kStepStagnationMax = 40;
 constexpr int kEliminationStagnationMax = 6;
+constexpr int kClusterStagnationMax = 12;
+
+/// Steps with clusters before they are given up, those included that change contact states.
+constexpr std::uint32_t kClusterStepsMax = 40;
+
+/// A step with clusters was too long if so much of it has to be taken back.
+constexpr double kLongStep = 0.3;
+
+/// Clusters are tried from this depth on. Below, a polynomial of 1.5 times the depth is as good.
+constexpr int kClusterDepthMin = 64;
+
+/// They are left alone if more than one of so many beams between them is stray. In long robots it
+/// is one in three at most, in solids, shells and scaffolds more than half of them.
+constexpr std::uint32_t kStrayShare = 2;
+
+/// Degree of each of the two polynomials. They have to smooth what clusters 8 modules long do
+/// wrong; a step takes 3 rounds more for each degree, so in deep robots some more cost little.
+constexpr std::uint16_t kClusterDegreeMin = 16;
+constexpr std::uint16_t kClusterDegreeShare = 5;
 
 /// The error of any load ratio for an error e of the displacements with e K e = 1. One beam stores
 /// fz^2 / (E A/L) + m^2 / (E I/L) and more, all of it part of e K e, so by Cauchy and Schwarz
@@ -48,6 +67,21 @@ std::uint16_t Conductor::step_degree() const {
   return static_cast<std::uint16_t>(degree < kDegreeMax ? degree : kDegreeMax);
 }
 
+std::uint16_t Conductor::cluster_degree() const {
+  const auto degree = static_cast<std::uint16_t>(depth_ / kClusterDegreeShare);
+  return degree < kClusterDegreeMin ? kClusterDegreeMin : degree;
+}
+
+bool Conductor::may_have_clusters() const {
+  return effort_.method == Method::kPolynomial && depth_ >= kClusterDepthMin &&
+         planned_count_ <= kClusterPlannedMax && !has_left_clusters_;
+}
+
+/// The report of kClusters: beams between clusters, and those that do not go to the parent.
+void Conductor::choose_clusters(const Report& report) {
+  has_clusters_ = may_have_clusters() && kStrayShare * report.number < report.count;
+}
+
 Order Conductor::first_step() {
   ++effort_.solves;
   predicted_ = 1e30;
@@ -67,15 +101,19 @@ Order Conductor::tree_step() { return order(Step::kStep, Operation::kTreeStep); 
 
 Order Conductor::next_step(std::uint8_t flags, const std::array<float, 3>& coefficients) {
   Order step = order(Step::kStep, Operation::kStep);
-  step.flags = static_cast<std::uint8_t>(flags | (least_residual_ ? kLeastResidual : 0U));
-  step.count = step_degree();
+  const bool has_clusters = has_clusters_ && !least_residual_;
+  step.flags = static_cast<std::uint8_t>(flags | (least_residual_ ? kLeastResidual : 0U) |
+                                         (has_clusters ? kWithClusters : 0U));
+  step.count = has_clusters ? cluster_degree() : step_degree();
   step.reals = coefficients;
+  has_changed_ = has_clusters != had_clusters_;
+  had_clusters_ = has_clusters;
   return step;
 }
 
 Order Conductor::restarted_step() {
   has_older_ = false;
-  least_residual_ = is_tilting_;
+  least_residual_ = is_tilting_ && !has_clusters_;
   energy_bound_.restart();
   return next_step(kRestart, {});
 }
@@ -105,7 +143,7 @@ Order Conductor::after_step(const Setup& setup, const Report& report) {
     error_best_ = 1e30;
     stagnation_count_ = 0;
     predicted_ = 1e30;
-    return is_elimination ? factor() : restarted_step();
+    return is_elimination ? factor() : jumped_step(setup, report);
   }
   target_ = kRatioTolerance * (1 + absolute(ratio_));
   const double distance = absolute(ratio_ - 1) / kDoubt;
@@ -123,7 +161,11 @@ Order Conductor::after_step(const Setup& setup, const Report& report) {
     predicted_ = error;
     return tree_step();
   }
-  return minimised_step(report);
+  if (had_clusters_ &&
+      (stagnation_count_ > kClusterStagnationMax || effort_.iterations > kClusterStepsMax)) {
+    return leave_clusters(setup);
+  }
+  return has_changed_ ? restarted_step() : minimised_step(report);
 }
 
 /// The least energy, or the least residual, over the last two directions. The residual before was
@@ -170,6 +212,30 @@ Order Conductor::minimised_step(const Report& report) {
   has_older_ = true;
   return next_step(
       0, {static_cast<float>(least.c), static_cast<float>(least.a), static_cast<float>(least.b)});
+}
+
+/// Other contact states are another K: directions start anew. The full step of a polynomial is
+/// never far too long. With clusters M^-1 K has eigenvalues up to Cluster::kReach, so before, what
+/// was too long of the last step is taken back, as if K had not changed.
+Order Conductor::jumped_step(const Setup& setup, const Report& report) {
+  if (had_clusters_ && effort_.iterations > kClusterStepsMax) {
+    return leave_clusters(setup);
+  }
+  const bool is_long = report.products[0] < -kLongStep * report.products[1];
+  if (!had_clusters_ || has_changed_ || !is_long) {
+    return restarted_step();
+  }
+  energy_bound_.restart();
+  has_older_ = false;
+  const Order step = minimised_step(report);
+  has_older_ = false;
+  return step;
+}
+
+/// From the beginning, as if there were no clusters.
+Order Conductor::leave_clusters(const Setup& setup) {
+  has_left_clusters_ = true;
+  return begin_law(setup, false);
 }
 
 Order Conductor::leave_one_sweep(const Setup& setup, bool is_unilateral) {

@@ -108,6 +108,12 @@ void BasicAgent<Real>::begin_equilibrium(const Order& order) {
                                            static_cast<double>(order.reals[0]), law);
   contact_.lever_mm = static_cast<double>(order.reals[1]);
   const bool is_one_sweep = (order.flags & kOneSweep) != 0;
+  if constexpr (kHasAllMethods) {
+    is_clustered_ = order.operation == wire::Operation::kClusters;
+    if (is_clustered_) {
+      begin_clusters();
+    }
+  }
   for (int i = 0; i < node_count(); ++i) {
     Node<Real>& node = nodes_[static_cast<std::size_t>(i)];
     reset(node);
@@ -118,7 +124,7 @@ void BasicAgent<Real>::begin_equilibrium(const Order& order) {
     } else if ((order.flags & kWithSteps) != 0 && i < joined_count()) {
       steps_of(i) = {};
       factor_diagonal(node, setup_, contact_, node_faces(i));
-      if (order.count > 0) {
+      if (order.count > 0 && !is_clustered_) {
         start_terms(i);
       }
     }
@@ -211,6 +217,7 @@ void BasicAgent<Real>::after_exchange() {
     return;
   }
   if constexpr (kHasAllMethods) {
+    const Exchanged what = exchanged();
     switch (order_.operation) {
       case wire::Operation::kJacobi:
         jacobi_step();
@@ -219,9 +226,17 @@ void BasicAgent<Real>::after_exchange() {
       case wire::Operation::kGradient:
         polynomial_step();
         break;
-      case wire::Operation::kBegin:
       case wire::Operation::kStep:
-        next_terms();
+        has_clusters() ? next_terms_with_clusters() : next_terms();
+        break;
+      case wire::Operation::kBegin:
+      case wire::Operation::kClusters:
+        for (int i = 0; i < joined_count() && what == Exchanged::kChoice; ++i) {
+          start_terms(i);
+        }
+        if (what == Exchanged::kTerm) {
+          next_terms();
+        }
         break;
       default:
         break;
@@ -331,6 +346,8 @@ typename BasicAgent<Real>::Exchanged BasicAgent<Real>::exchanged() const {
       return exchanges_left_ > exchanges_behind_ ? Exchanged::kDisplacement : Exchanged::kTerm;
     case wire::Operation::kBegin:
       return Exchanged::kTerm;
+    case wire::Operation::kClusters:
+      return exchanges_left_ > exchanges_behind_ ? Exchanged::kChoice : Exchanged::kTerm;
     default:
       return Exchanged::kGradient;
   }
@@ -340,6 +357,9 @@ typename BasicAgent<Real>::Exchanged BasicAgent<Real>::exchanged() const {
 template <class Real>
 void BasicAgent<Real>::exchange_forces() {
   const Exchanged what = exchanged();
+  if (kHasAllMethods && what == Exchanged::kChoice) {
+    return meet_neighbours();
+  }
   for (int i = 0; i < node_count() && what == Exchanged::kGradient; ++i) {
     gradients_of(i).image = {};
   }

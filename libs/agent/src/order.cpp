@@ -171,6 +171,7 @@ Writer encode(const Order& order) {
       out.u8(static_cast<std::uint8_t>(order.count));
       break;
     case Operation::kBegin:
+    case Operation::kClusters:
       out.u8(order.flags);
       out.u16(order.count);
       out.real(static_cast<double>(order.reals[0]));
@@ -241,6 +242,7 @@ Order decode_order(std::span<const std::uint8_t> message) {
       order.count = in.u8();
       break;
     case Operation::kBegin:
+    case Operation::kClusters:
       order.flags = in.u8();
       order.count = in.u16();
       order.reals = {in.real(), in.real()};
@@ -315,6 +317,7 @@ Writer encode(Operation operation, const Report& report) {
       }
       break;
     case Operation::kHold:
+    case Operation::kClusters:
       out.u32(report.count);
       out.u32(report.number);
       break;
@@ -378,6 +381,7 @@ Report decode_report(std::span<const std::uint8_t> message) {
       }
       break;
     case Operation::kHold:
+    case Operation::kClusters:
       report.count = in.u32();
       report.number = in.u32();
       break;

@@ -37,13 +37,13 @@ std::uint8_t Planned::mask(int index) const {
   return mask;
 }
 
-/// Are all participants of a cluster below the child at `face`, or from this module down?
-bool Planned::is_whole(std::uint8_t cluster, int face) const {
+/// Are all participants of a group below the child at `face`, or from this module down?
+bool Planned::is_whole(std::uint8_t group, int face) const {
   for (int k = 0; k < count_; ++k) {
     const auto i = static_cast<std::size_t>(k);
     const std::uint8_t here =
         face == kWholeSubtree ? mask(k) : below_[static_cast<std::size_t>(face)][i];
-    if (clusters_[i] == cluster && here != totals_[i]) {
+    if (groups_[i] == group && here != totals_[i]) {
       return false;
     }
   }
@@ -53,37 +53,37 @@ bool Planned::is_whole(std::uint8_t cluster, int face) const {
 void Planned::decide_hosts(const std::array<std::uint8_t, 8>& totals) {
   for (int k = 0; k < count_; ++k) {
     totals_[static_cast<std::size_t>(k)] = totals[static_cast<std::size_t>(k)];
-    clusters_[static_cast<std::size_t>(k)] = static_cast<std::uint8_t>(k);
+    groups_[static_cast<std::size_t>(k)] = static_cast<std::uint8_t>(k);
   }
-  // A cluster is named after its first module; names spread until nothing changes.
+  // A group is named after its first module; names spread until nothing changes.
   for (int pass = 0; pass < count_; ++pass) {
     for (int k = 0; k < count_; ++k) {
       for (const base::Direction direction : base::kDirections) {
         const int other = neighbour_of(k, direction);
-        if (other >= 0 && cluster_of(other) < cluster_of(k)) {
-          clusters_[static_cast<std::size_t>(k)] = cluster_of(other);
+        if (other >= 0 && group_of(other) < group_of(k)) {
+          groups_[static_cast<std::size_t>(k)] = group_of(other);
         }
       }
     }
   }
   for (int k = 0; k < count_; ++k) {
-    const std::uint8_t cluster = cluster_of(k);
+    const std::uint8_t group = group_of(k);
     // What touches nothing is whole below every face, so nobody hosts it.
     bool is_above = false;
     bool is_own_only = true;
     for (int face = 0; face < base::kDirectionCount; ++face) {
-      is_above = is_above || is_whole(cluster, face);
+      is_above = is_above || is_whole(group, face);
       for (int other = 0; other < count_; ++other) {
         is_own_only =
             is_own_only &&
-            !(cluster_of(other) == cluster &&
+            !(group_of(other) == group &&
               below_[static_cast<std::size_t>(face)][static_cast<std::size_t>(other)] != 0);
       }
     }
     if (is_above) {
       continue;
     }
-    if (is_whole(cluster, kWholeSubtree)) {
+    if (is_whole(group, kWholeSubtree)) {
       hosted_[hosted_count_++] = static_cast<std::uint8_t>(k);
       involved_ = static_cast<std::uint8_t>(involved_ | bit(k));
       is_any_remote_ = is_any_remote_ || !is_own_only;

@@ -37,6 +37,7 @@ bool BasicAgent<Real>::is_apart() const {
     case wire::Operation::kStep:
       return true;
     case wire::Operation::kBegin:
+    case wire::Operation::kClusters:
       return (order_.flags & kOneSweep) != 0;
     case wire::Operation::kStart:
     case wire::Operation::kGradient:

@@ -4,6 +4,7 @@
 
 #include "bits.hpp"
 #include "holdfast/agent/agent.hpp"
+#include "methods.hpp"
 
 namespace holdfast::agent {
 
@@ -60,7 +61,8 @@ void BasicAgent<Real>::begin(const Event& event, Actions& actions) {
 /// another.
 template <class Real>
 void BasicAgent<Real>::go_on() {
-  is_busy_ = exchange() || do_piece() || finish_sweep() || end_stage() || take_next_order();
+  is_busy_ = exchange() || do_piece() || (kHasAllMethods && do_cluster_piece()) || finish_sweep() ||
+             end_stage() || take_next_order();
 }
 
 template <class Real>
@@ -173,7 +175,7 @@ void BasicAgent<Real>::dispatch(int face, std::span<const std::uint8_t> message)
     case MessageType::kMark:
       return mark(wire::Reader(message).u16());
     case MessageType::kOrder:
-      if (is_exchanging_) {
+      if (is_exchanging_ || is_coarse()) {
         // What goes on behind the last report comes to its end first.
         next_order_ = decode_order(message);
         has_next_order_ = true;
@@ -191,14 +193,26 @@ void BasicAgent<Real>::dispatch(int face, std::span<const std::uint8_t> message)
     case MessageType::kLoop:
       return take_loop(face, message);
     case MessageType::kColumn:
-      return take_column(face, message);
     case MessageType::kBranchUp:
-      return take_branch_up(face, message);
     case MessageType::kBranchDown:
-      return take_branch_down(message);
+      return dispatch_branch(face, message);
     case MessageType::kJoin:
       break;
   }
+}
+
+/// What goes up and down a tree: the branches', or the clusters'.
+template <class Real>
+void BasicAgent<Real>::dispatch_branch(int face, std::span<const std::uint8_t> message) {
+  const auto type = static_cast<MessageType>(message[0]);
+  if (kHasAllMethods && is_clustered_) {
+    return type == MessageType::kColumn     ? take_cluster_part(face, message)
+           : type == MessageType::kBranchUp ? take_cluster_load(face, message)
+                                            : take_cluster_shift(message);
+  }
+  return type == MessageType::kColumn     ? take_column(face, message)
+         : type == MessageType::kBranchUp ? take_branch_up(face, message)
+                                          : take_branch_down(message);
 }
 
 /// A neighbour that does not take what it is sent is as good as silent.
@@ -240,6 +254,7 @@ void BasicAgent<Real>::leave_round() {
     phase_ = Phase::kDiscovery;
     is_sweeping_ = false;
     is_exchanging_ = false;
+    leave_clusters();
     piece_ = Piece::kNone;
     is_stage_over_ = false;
     has_next_order_ = false;
@@ -271,6 +286,7 @@ void BasicAgent<Real>::enter_round(const Round& round) {
   children_ = 0;
   is_sweeping_ = false;
   is_exchanging_ = false;
+  leave_clusters();
   piece_ = Piece::kNone;
   is_stage_over_ = false;
   has_next_order_ = false;

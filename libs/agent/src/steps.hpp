@@ -72,6 +72,7 @@ void BasicAgent<Real>::begin_step(const Order& order) {
   if (is_apart()) {
     begin_condensing();
   }
+  clear_clusters();
 }
 
 template <class Real>
@@ -132,13 +133,19 @@ void BasicAgent<Real>::share_term(Node<Real>& node, Steps& steps) {
   }
 }
 
-/// The polynomial's first term for the present residual.
+/// The polynomial's first term for the present residual, or for what w has.
 template <class Real>
 void BasicAgent<Real>::start_terms(int node_index) {
+  const Node<Real>& node = nodes_[static_cast<std::size_t>(node_index)];
+  steps_of(node_index).w = residual(node, setup_, contact_);
+  first_term(node_index);
+}
+
+template <class Real>
+void BasicAgent<Real>::first_term(int node_index) {
   Node<Real>& node = nodes_[static_cast<std::size_t>(node_index)];
   Steps& steps = steps_of(node_index);
   const equilibrium::Interval interval(order_.count, kStepSpread);
-  steps.w = residual(node, setup_, contact_);
   const base::Vec6<Real> first = solve_diagonal(node, base::converted<Real>(steps.w));
   for (std::size_t k = 0; k < 6; ++k) {
     node.shared[k] = static_cast<Real>(static_cast<double>(first[k]) / interval.centre);
@@ -147,7 +154,21 @@ void BasicAgent<Real>::start_terms(int node_index) {
   rho_ = static_cast<float>(interval.half / interval.centre);
 }
 
-/// The next term: the beams' forces of the last one are off w already.
+/// The facet's force of the last term comes off w; those of the beams are off already.
+template <class Real>
+void BasicAgent<Real>::subtract_facet(int node_index) {
+  const Node<Real>& node = nodes_[static_cast<std::size_t>(node_index)];
+  if (!node.is_ground) {
+    return;
+  }
+  const base::Vec6<double> facet = mechanics::contact_force(
+      contact_.facet, node.state, node.is_held, base::converted<double>(node.shared));
+  for (std::size_t k = 0; k < 6; ++k) {
+    steps_of(node_index).w[k] -= facet[k];
+  }
+}
+
+/// The next term.
 template <class Real>
 void BasicAgent<Real>::next_terms() {
   const equilibrium::Interval interval(order_.count, kStepSpread);
@@ -160,13 +181,7 @@ void BasicAgent<Real>::next_terms() {
     if (node.is_fixed) {
       continue;
     }
-    if (node.is_ground) {
-      const base::Vec6<double> facet = mechanics::contact_force(
-          contact_.facet, node.state, node.is_held, base::converted<double>(node.shared));
-      for (std::size_t k = 0; k < 6; ++k) {
-        steps.w[k] -= facet[k];
-      }
-    }
+    subtract_facet(i);
     const base::Vec6<Real> term = solve_diagonal(node, base::converted<Real>(steps.w));
     for (std::size_t k = 0; k < 6; ++k) {
       node.shared[k] = static_cast<Real>(keep * static_cast<double>(node.shared[k]) +
@@ -207,7 +222,7 @@ Report BasicAgent<Real>::step_report() const {
     if (node.is_fixed) {
       continue;
     }
-    const Steps& steps = work_.steps[static_cast<std::size_t>(i)];
+    const Steps& steps = steps_of(i);
     base::Vec6<double> test = steps.newer.p;
     if (is_residual) {
       test = base::converted<double>(solve_diagonal(node, base::converted<Real>(steps.newer.q)));

@@ -26,6 +26,7 @@ constexpr bool exchanges(const Order& order) {
     case wire::Operation::kJacobi:
     case wire::Operation::kStep:
     case wire::Operation::kTreeStep:
+    case wire::Operation::kClusters:
       return true;
     case wire::Operation::kBegin:
       return order.count > 0;
@@ -38,6 +39,24 @@ constexpr bool exchanges(const Order& order) {
   }
 }
 
+/// Exchanges that go on while the report is on its way up and the next order on its way down. With
+/// clusters two polynomials; the image of the first is needed, and that of the clusters' part.
+constexpr std::uint16_t exchanges_behind(const Order& order) {
+  if constexpr (!kHasAllMethods) {
+    return 0;
+  }
+  switch (order.operation) {
+    case wire::Operation::kStep:
+      return static_cast<std::uint16_t>((order.flags & kWithClusters) != 0 ? 2 * order.count + 2
+                                                                           : order.count);
+    case wire::Operation::kBegin:
+    case wire::Operation::kClusters:
+      return order.count;
+    default:
+      return 0;
+  }
+}
+
 /// A preconditioner of degree m shares m more vectors than its first and its last one, which are
 /// the same for m = 0. A step shares its move in two parts and then the terms of its polynomial.
 constexpr std::uint16_t exchange_count(const Order& order) {
@@ -46,18 +65,12 @@ constexpr std::uint16_t exchange_count(const Order& order) {
     case wire::Operation::kBegin:
       return order.count;
     case wire::Operation::kStep:
+      return static_cast<std::uint16_t>(2 + exchanges_behind(order));
     case wire::Operation::kTreeStep:
-      return static_cast<std::uint16_t>(order.count + 2);
+      return 2;
     default:
       return static_cast<std::uint16_t>(order.count + 1);
   }
-}
-
-/// Exchanges that go on while the report is on its way up and the next order on its way down.
-constexpr std::uint16_t exchanges_behind(const Order& order) {
-  const bool is_one_sweep =
-      order.operation == wire::Operation::kBegin || order.operation == wire::Operation::kStep;
-  return is_one_sweep ? order.count : std::uint16_t{0};
 }
 
 /// Forces whose digits beyond single precision count.
@@ -125,8 +138,9 @@ void BasicAgent<Real>::take_order(const Order& order) {
   down_awaited_ = 0;
   send_to_children(encode(order));
   prepare(order);
-  // Displacements of a kTreeStep have to be found first.
-  if (sweep::exchanges(order) && order.operation != wire::Operation::kTreeStep) {
+  // Displacements of a kTreeStep have to be found first, and clusters.
+  if (sweep::exchanges(order) && order.operation != wire::Operation::kTreeStep &&
+      order.operation != wire::Operation::kClusters) {
     start_exchange();
   }
 }
@@ -271,7 +285,7 @@ bool BasicAgent<Real>::exchange() {
     send_planned_up();
   }
   after_exchange();
-  if (--exchanges_left_ > 0) {
+  if (--exchanges_left_ > 0 && !is_coarse()) {
     start_exchange();
   }
   return true;
@@ -279,7 +293,7 @@ bool BasicAgent<Real>::exchange() {
 
 template <class Real>
 bool BasicAgent<Real>::take_next_order() {
-  if (!has_next_order_ || is_exchanging_) {
+  if (!has_next_order_ || is_exchanging_ || is_coarse()) {
     return false;
   }
   has_next_order_ = false;
@@ -292,7 +306,7 @@ template <class Real>
 bool BasicAgent<Real>::finish_sweep() {
   const bool is_done_here = !sweep::exchanges(order_) || exchanges_left_ <= exchanges_behind_;
   if (!is_sweeping_ || reports_awaited_ != 0 || down_awaited_ != 0 || piece_ != Piece::kNone ||
-      !is_done_here) {
+      is_clustering() || !is_done_here) {
     return false;
   }
   is_sweeping_ = false;

@@ -4,6 +4,7 @@
 
 #include "bits.hpp"
 #include "holdfast/agent/agent.hpp"
+#include "methods.hpp"
 
 /// Three waves with echo [Segall 1983], one after the other.
 ///
@@ -38,6 +39,9 @@ void BasicAgent<Real>::begin_stage(std::uint8_t stage, int parent, std::uint16_t
                                 : Phase::kTree;
   parent_ = static_cast<std::int8_t>(parent);
   hops_ = hops;
+  if constexpr (kHasAllMethods) {
+    nearer_ = parent < 0 ? std::uint8_t{0} : bit(parent);
+  }
   children_ = 0;
   is_stage_over_ = false;
   census_count_ = 1;
@@ -81,6 +85,9 @@ void BasicAgent<Real>::take_join(int face, std::span<const std::uint8_t> message
     has_cell_ = true;
     begin_stage(stage, face, hops);
   } else if (stage == stage_) {
+    if constexpr (kHasAllMethods) {
+      nearer_ = static_cast<std::uint8_t>(nearer_ | (hops <= hops_ ? bit(face) : 0U));
+    }
     await_less(face);
   }
 }

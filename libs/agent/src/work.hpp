@@ -59,6 +59,9 @@ void BasicAgent<Real>::prepare(const Order& order) {
 template <class Real>
 void BasicAgent<Real>::prepare_solve(const Order& order) {
   switch (order.operation) {
+    case Operation::kClusters:
+      begin_equilibrium(order);
+      break;
     case Operation::kStep:
       begin_step(order);
       break;
@@ -131,6 +134,8 @@ Report BasicAgent<Real>::conclude(const Order& order) {
 template <class Real>
 Report BasicAgent<Real>::conclude_solve(const Order& order) {
   switch (order.operation) {
+    case Operation::kClusters:
+      return {.count = work_.clustered.link_count, .number = work_.clustered.stray_count};
     case Operation::kStep:
       return step_report();
     case Operation::kLow:

@@ -269,6 +269,33 @@ TEST(Agent, a_piece_at_a_time_finds_the_same) {
   EXPECT_NEAR(answers[1].load_ratio_max, answers[0].load_ratio_max, 1e-5);
 }
 
+/// Two rows side by side, fixed at one end, too many loops for elimination and deep enough for
+/// clusters: a piece at a time and with losses, the answer is the same. (That it is right is tested
+/// in tests/distributed.)
+TEST(Agent, clusters_find_the_same_a_piece_at_a_time) {
+  const auto setup = table_setup();
+  std::vector<Place> places;
+  for (int x = 0; x < 132; ++x) {
+    places.push_back({.cell = {x, 0, 1}, .is_fixed = x == 0});
+    places.push_back({.cell = {x, 1, 1}, .is_fixed = x == 0});
+  }
+  std::vector<Answer> answers;
+  for (const bool in_parts : {false, true}) {
+    TestNetwork network(setup, places, {.loss = in_parts ? 0.01 : 0, .in_parts = in_parts});
+    int shifts = 0;
+    network.watch = [&](std::size_t, Direction, std::span<const std::uint8_t> packet) {
+      shifts += packet.size() > 2 && packet[2] == 0x0d ? 1 : 0;  // Branch down.
+    };
+    ASSERT_TRUE(network.run());
+    EXPECT_GT(shifts, 100);
+    expect_agreement(network);
+    answers.push_back(network.agent(0).answer());
+  }
+  EXPECT_EQ(answers[0].verdict, Verdict::kOverload);
+  EXPECT_EQ(answers[1].worst_cell, answers[0].worst_cell);
+  EXPECT_NEAR(answers[1].load_ratio_max / answers[0].load_ratio_max, 1, 2e-3);
+}
+
 TEST(Agent, the_same_seed_gives_the_same_bits) {
   for (const std::uint64_t seed : {1U, 2U, 3U}) {
     const Outcome first = run_bracket(0.1, seed);

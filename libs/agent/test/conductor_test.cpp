@@ -25,9 +25,9 @@ constexpr base::Cell kRoot = {1, 2, 3};
 /// A conductor, its setup and its last order.
 class Drive {
  public:
-  explicit Drive(Method method = Method::kConjugateGradients) {
+  explicit Drive(Method method = Method::kConjugateGradients, std::uint16_t depth = 4) {
     setup.method = method;
-    order = conductor.begin(setup, kRoot, kCensus, 4);
+    order = conductor.begin(setup, kRoot, kCensus, depth);
   }
 
   const Order& next(const Report& report = {}) {
@@ -614,6 +614,65 @@ TEST(Conductor, minimises_the_energy_over_two_directions) {
   EXPECT_FLOAT_EQ(drive.order.reals[0], -2.F / 7);
   EXPECT_FLOAT_EQ(drive.order.reals[1], -24.F / 360);
   EXPECT_FLOAT_EQ(drive.order.reals[2], 2.F / 7);
+}
+
+/// Up to the begin of the equilibrium of a deep robot with many loops.
+Drive deep_drive(std::uint16_t depth) {
+  Drive drive(Method::kElimination, depth);
+  drive.to_mass();
+  drive.next({.flags = kAnyFixed | kManyLoops, .extent = 5, .count = kCensus});
+  return drive;
+}
+
+TEST(Conductor, deep_robots_take_steps_with_clusters) {
+  EXPECT_EQ(deep_drive(63).order.operation, Operation::kBegin);
+  Drive drive = deep_drive(200);
+  ASSERT_EQ(drive.order.operation, Operation::kClusters);
+  EXPECT_EQ(drive.order.count, 300);  // The first step is that of the polynomial.
+  drive.next({.count = 100, .number = 49});
+  ASSERT_EQ(drive.order.operation, Operation::kStep);
+  EXPECT_EQ(drive.order.flags, kRestart | kWithClusters);
+  EXPECT_EQ(drive.order.count, 40);  // A fifth of the depth.
+  drive.next(step_report(100, {1, 1, 0}));
+  EXPECT_EQ(drive.order.flags, kRestart | kWithClusters) << "the step before had another M^-1";
+  drive.next(step_report(100, {1, 1, 0}));
+  EXPECT_EQ(drive.order.flags, kWithClusters);
+}
+
+TEST(Conductor, clusters_with_many_stray_beams_are_left_alone) {
+  Drive drive = deep_drive(200);
+  drive.next({.count = 100, .number = 50});
+  EXPECT_EQ(drive.order.flags, kRestart);
+  EXPECT_EQ(drive.order.count, 300);
+  drive.next(step_report(100, {1, 1, 0}));
+  EXPECT_EQ(drive.order.flags, 0);
+}
+
+/// Steps are full ones when contact states have changed, but for what was too long.
+TEST(Conductor, takes_back_what_is_too_long_of_a_step_with_clusters) {
+  Drive drive = deep_drive(200);
+  drive.next({.count = 100});
+  drive.next(step_report(100, {1, 1, 0}));
+  drive.next(step_report(100, {0.5, 1, 0}, 3));
+  EXPECT_EQ(drive.order.flags, kRestart | kWithClusters);
+  drive.next(step_report(100, {-0.5, 1, 0}, 3));
+  EXPECT_EQ(drive.order.flags, kWithClusters);
+  EXPECT_EQ(drive.order.reals, (std::array<float, 3>{0, -0.5F, 0}));
+}
+
+TEST(Conductor, gives_clusters_up_that_bring_no_progress) {
+  Drive drive = deep_drive(200);
+  drive.next({.count = 100});
+  int steps = 0;
+  while (drive.order.operation == Operation::kStep && steps < 100) {
+    EXPECT_NE(drive.order.flags & kWithClusters, 0);
+    drive.next(step_report(100, {0, 1, 0}));
+    ++steps;
+  }
+  EXPECT_LT(steps, 20);
+  ASSERT_EQ(drive.order.operation, Operation::kBegin);
+  drive.next();
+  EXPECT_EQ(drive.order.flags, kRestart);
 }
 
 TEST(Conductor, leaves_a_one_sweep_method_that_brings_no_number) {

@@ -173,7 +173,7 @@ TEST(Planned, a_participant_above_the_other_hosts) {
   EXPECT_EQ(hosted(parts[0]), List{});
 }
 
-TEST(Planned, a_cluster_hangs_together_by_one_foot) {
+TEST(Planned, a_group_hangs_together_by_one_foot) {
   const auto parts = share(kRow, {{2, 0, 1}, {2, 0, 2}});
   EXPECT_EQ(hosted(parts[2]), (List{0, 1}));
   EXPECT_FALSE(parts[2].is_any_remote());
@@ -183,7 +183,7 @@ TEST(Planned, a_cluster_hangs_together_by_one_foot) {
   EXPECT_EQ(parts[2].neighbour_of(1, Direction::kPlusZ), -1);
 }
 
-TEST(Planned, clusters_have_hosts_of_their_own) {
+TEST(Planned, groups_have_hosts_of_their_own) {
   const auto parts = share(kRow, {{0, 0, 1}, {2, 0, 1}});
   EXPECT_EQ(hosted(parts[0]), List{0});
   EXPECT_EQ(hosted(parts[2]), List{1});

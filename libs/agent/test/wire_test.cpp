@@ -70,7 +70,11 @@ TEST(Wire, orders_are_these_bytes) {
        .flags = kRestart | kLeastResidual,
        .count = 300,
        .reals = {0.25F, -0.5F, -0.25F}},
-      {.operation = Operation::kTreeStep}};
+      {.operation = Operation::kTreeStep},
+      {.operation = Operation::kClusters,
+       .flags = kOneSweep | kWithSteps,
+       .count = 3,
+       .reals = {0.5F, 1000}}};
   ASSERT_EQ(orders.size(), kGoldenOrders.size());
   for (std::size_t i = 0; i < orders.size(); ++i) {
     EXPECT_EQ(order_text(orders[i]), kGoldenOrders[i]);
@@ -107,7 +111,8 @@ TEST(Wire, reports_are_these_bytes) {
        .number = 0x89abcdef,
        .reals = {0.25F, 0.5F},
        .products = {1 + 0x1p-30, -0.25, 3}},
-      {.flags = kAnyTilting, .extent = 3, .number = 0x89abcdef, .reals = {0.25F, 0.5F}}};
+      {.flags = kAnyTilting, .extent = 3, .number = 0x89abcdef, .reals = {0.25F, 0.5F}},
+      {.count = 29, .number = 2}};
   ASSERT_EQ(reports.size(), kGoldenReports.size());
   for (std::size_t i = 0; i < reports.size(); ++i) {
     EXPECT_EQ(report_text(static_cast<Operation>(i + 1), reports[i]), kGoldenReports[i]);

@@ -8,6 +8,7 @@
 #include <span>
 
 #include "holdfast/agent/branch.hpp"
+#include "holdfast/agent/cluster.hpp"
 #include "holdfast/agent/colour.hpp"
 #include "holdfast/agent/conductor.hpp"
 #include "holdfast/agent/link.hpp"
@@ -129,6 +130,23 @@ struct BranchWork {
   std::array<std::array<float, 15>, kPlannedMax> leaves{};
 };
 
+/// What a module with a cluster does next (src/clusters.hpp): in kClusters, then in a kStep.
+enum class ClusterPiece : std::uint8_t { kNone, kChoose, kLink, kStiffness, kLoad, kShift };
+
+/// What steps with rigid clusters keep (src/clusters.hpp).
+struct ClusteredSteps {
+  std::array<Steps, 1 + kClusterPlannedMax> steps{};
+  Cluster cluster;
+  std::uint8_t parent = 0;    ///< Face of the parent in the clusters' tree.
+  std::uint8_t children = 0;  ///< Faces.
+  std::uint8_t awaited = 0;   ///< Children that have something to send.
+  ClusterPiece piece = ClusterPiece::kNone;
+  bool is_top = true;
+  bool is_shift_here = false;
+  std::uint8_t link_count = 0;   ///< Beams of this module to its parent's cluster, ...
+  std::uint8_t stray_count = 0;  ///< ... and those of them that lead elsewhere.
+};
+
 /// A method's own data; a robot's equilibrium uses one method at a time.
 template <class Real>
 union Work {
@@ -136,6 +154,7 @@ union Work {
 
   std::array<Gradients<Real>, 1 + kPlannedMax> gradients;
   std::array<Steps, 1 + kPlannedMax> steps;
+  ClusteredSteps clustered;
   BranchWork tree;
 };
 
@@ -204,6 +223,7 @@ class BasicAgent {
   void receive(int face, std::span<const std::uint8_t> packet);
   void check_link(int face);
   void dispatch(int face, std::span<const std::uint8_t> message);
+  void dispatch_branch(int face, std::span<const std::uint8_t> message);
   void send(int face, const wire::Writer& message);
   void send_to_children(const wire::Writer& message);
   void leave_round();
@@ -312,9 +332,33 @@ class BasicAgent {
   void follow_state(Node<Real>& node);
   void share_term(Node<Real>& node, Steps& steps);
   void start_terms(int node);
+  void first_term(int node);
+  void subtract_facet(int node);
   void next_terms();
   Report step_report() const;
   Report tree_step_report() const;
+
+  // clusters.hpp: rigid clusters between two polynomials.
+  void begin_clusters();
+  void leave_clusters();
+  void clear_clusters();
+  bool has_clusters() const;
+  bool is_clustering() const;
+  bool is_coarse() const;
+  bool do_cluster_piece();
+  bool choose_cluster();
+  void meet_neighbours();
+  bool send_link();
+  Joint joint_to_cluster() const;
+  void send_parts(const Cluster::Parts& parts);
+  void take_cluster_part(int face, std::span<const std::uint8_t> message);
+  void take_cluster_load(int face, std::span<const std::uint8_t> message);
+  void take_cluster_shift(std::span<const std::uint8_t> message);
+  void add_own_to_cluster();
+  bool send_cluster_stiffness();
+  void send_cluster_load();
+  bool shift_cluster();
+  void next_terms_with_clusters();
 
   // remote.hpp: planned modules that touch several others, in a step.
   bool is_apart() const;
@@ -334,8 +378,8 @@ class BasicAgent {
 
   // equilibrium.cpp: the same for the equilibrium's operations.
   /// Displacements go into forces, a gradient's direction into its image, a term of a step's
-  /// polynomial into what is left of the residual.
-  enum class Exchanged : std::uint8_t { kDisplacement, kGradient, kTerm };
+  /// polynomial into what is left of the residual. A choice is that of a cluster.
+  enum class Exchanged : std::uint8_t { kDisplacement, kGradient, kTerm, kChoice };
 
   Exchanged exchanged() const;
   void begin_equilibrium(const Order& order);
@@ -373,7 +417,15 @@ class BasicAgent {
     return work_.gradients[static_cast<std::size_t>(node)];
   }
 
-  Steps& steps_of(int node) { return work_.steps[static_cast<std::size_t>(node)]; }
+  Steps& steps_of(int node) {
+    const auto i = static_cast<std::size_t>(node);
+    return is_clustered_ ? work_.clustered.steps[i] : work_.steps[i];
+  }
+
+  const Steps& steps_of(int node) const {
+    const auto i = static_cast<std::size_t>(node);
+    return is_clustered_ ? work_.clustered.steps[i] : work_.steps[i];
+  }
 
   const Setup& setup_;
   Identity identity_;
@@ -399,13 +451,15 @@ class BasicAgent {
   std::uint8_t children_ = 0;
   std::uint8_t awaited_ = 0;
   std::uint16_t hops_ = 0;
+  std::uint8_t nearer_ = 0;  ///< Faces of neighbours with fewer hops.
   std::uint32_t census_count_ = 0;
   std::uint16_t census_hops_ = 0;
   std::uint32_t census_id_ = 0;
   bool is_anyone_silent_ = false;
   bool is_stage_over_ = false;  ///< The wave has come back to this module.
   bool has_next_order_ = false;
-  Order next_order_;  ///< Of the root.
+  bool is_clustered_ = false;  ///< This equilibrium has clusters.
+  Order next_order_;           ///< Of the root.
 
   // Sweeps.
   Order order_;

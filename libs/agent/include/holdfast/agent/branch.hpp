@@ -80,6 +80,9 @@ class Joint {
   double across_y_ = 0;            // ... and between fy and mx.
 };
 
+/// Adds part `index` of a symmetric matrix that comes in Branch::kPartCount vectors.
+void add_part(base::Mat6<float>& into, int index, const base::Vec6<float>& part);
+
 class Branch {
  public:
   /// Columns that go up: six of S', then by open loop B', C' (its rows) and P'.
@@ -129,7 +132,9 @@ class Branch {
                   const base::Vec6<float>& column);
 
   /// Part `index` of a child's S' that is symmetric.
-  void add_part(int index, const base::Vec6<float>& part);
+  void add_part(int index, const base::Vec6<float>& part) {
+    agent::add_part(stiffness_, index, part);
+  }
 
   bool closes_loops() const { return open_count() < count_; }
 

@@ -100,11 +100,16 @@ class Conductor {
   // conductor_steps.cpp
   void choose_one_sweep(bool is_unilateral);
   std::uint16_t step_degree() const;
+  std::uint16_t cluster_degree() const;
+  bool may_have_clusters() const;
+  void choose_clusters(const Report& report);
   Order first_step();
   Order factor();
   Order tree_step();
   Order next_step(std::uint8_t flags, const std::array<float, 3>& coefficients);
   Order restarted_step();
+  Order jumped_step(const Setup& setup, const Report& report);
+  Order leave_clusters(const Setup& setup);
   Order minimised_step(const Report& report);
   Order after_step(const Setup& setup, const Report& report);
   Minimum minimum(const Report& report) const;
@@ -171,10 +176,14 @@ class Conductor {
   // One-sweep methods.
   std::uint16_t depth_ = 0;
   bool has_many_loops_ = false;
-  bool has_older_ = false;       ///< There is an older direction.
-  bool least_residual_ = false;  ///< A facet tilts: no energy to minimise.
-  double predicted_ = 0;         ///< Error expected after the last step.
-  double older_square_ = 0;      ///< (p, q) of the older direction, or |q|^2.
+  bool has_clusters_ = false;       ///< Steps are taken with clusters, ...
+  bool has_left_clusters_ = false;  ///< They brought nothing: never again.
+  bool had_clusters_ = false;       ///< ... as the last one was; ...
+  bool has_changed_ = false;        ///< ... not as the one before it: M^-1 is another one.
+  bool has_older_ = false;          ///< There is an older direction.
+  bool least_residual_ = false;     ///< A facet tilts: no energy to minimise.
+  double predicted_ = 0;            ///< Error expected after the last step.
+  double older_square_ = 0;         ///< (p, q) of the older direction, or |q|^2.
   EnergyBound energy_bound_;
   // Jacobi.
   std::uint16_t batch_ = 0;

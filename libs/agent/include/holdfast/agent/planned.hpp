@@ -9,15 +9,18 @@
 
 /// The planned modules and who emulates them.
 ///
-/// Planned modules that touch each other form a cluster; a cluster has one host. Each of their
+/// Planned modules that touch each other form a group; a group has one host. Each of their
 /// faces may touch an existing module, a participant. The host is the deepest module of the
-/// spanning tree below which (itself included) all participants of the cluster are: often the only
+/// spanning tree below which (itself included) all participants of the group are: often the only
 /// participant itself. What the others need of the planned modules goes down from the host, what
 /// they add comes up to it, on the same paths as orders and reports, so that no module needs a
 /// routing table.
 namespace holdfast::agent {
 
 inline constexpr int kPlannedMax = 5;
+
+/// Planned modules in a robot with clusters, at most: the vectors of more leave no memory for them.
+inline constexpr int kClusterPlannedMax = 2;
 
 class Planned {
  public:
@@ -40,7 +43,7 @@ class Planned {
   /// The same for everything from this module down.
   std::uint8_t mask(int index) const;
 
-  /// All masks are known: find clusters and hosts.
+  /// All masks are known: find groups and hosts.
   void decide_hosts(const std::array<std::uint8_t, 8>& totals);
 
   std::uint8_t total(int index) const { return totals_[static_cast<std::size_t>(index)]; }
@@ -74,13 +77,13 @@ class Planned {
   /// Does the child at `face` need to hear of planned module `index`? False above the host.
   bool is_needed_below(int face, int index) const;
 
-  /// Is any cluster spread over several modules?
+  /// Is any group spread over several modules?
   bool is_any_remote() const { return is_any_remote_; }
 
  private:
-  std::uint8_t cluster_of(int index) const { return clusters_[static_cast<std::size_t>(index)]; }
+  std::uint8_t group_of(int index) const { return groups_[static_cast<std::size_t>(index)]; }
 
-  bool is_whole(std::uint8_t cluster, int face) const;
+  bool is_whole(std::uint8_t group, int face) const;
 
   std::uint8_t count_ = 0;
   std::uint8_t hosted_count_ = 0;
@@ -88,7 +91,7 @@ class Planned {
   std::uint8_t involved_ = 0;  ///< Hosted here, or from above.
   bool is_any_remote_ = false;
   std::array<base::Cell, kPlannedMax> cells_{};
-  std::array<std::uint8_t, kPlannedMax> clusters_{};
+  std::array<std::uint8_t, kPlannedMax> groups_{};
   std::array<std::uint8_t, kPlannedMax> totals_{};
   std::array<std::uint8_t, kPlannedMax> hosted_{};
   std::array<std::int8_t, kPlannedMax> own_face_{};

@@ -66,8 +66,9 @@ enum class Operation : std::uint8_t {
   kFactor,    ///< Condense every branch: stiffness and load.
   kStep,      ///< One step of the polynomial: move, residual, sums.
   kTreeStep,  ///< One step of the elimination: move, residual.
+  kClusters,  ///< kBegin, and find rigid clusters.
 };
-inline constexpr int kOperationCount = 18;
+inline constexpr int kOperationCount = 19;
 
 /// Sizes of whole messages, type byte included; 0 for what is not a message. `second` is the byte
 /// after the type and matters for orders and reports only.
