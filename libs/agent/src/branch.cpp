@@ -292,7 +292,7 @@ void Branch::add_end(int slot, bool is_upper, const BeamStiffness<double>& beam)
   }
 }
 
-void Branch::add_column(int index, const std::array<std::int8_t, kLoopsMax>& slot_of,
+void Branch::add_column(int index, const std::array<std::uint8_t, kLoopsMax>& slot_of,
                         const Vec6<float>& column) {
   Mat6<float>* block = &stiffness_;
   bool is_row = false;
@@ -384,7 +384,7 @@ void Branch::close_column(int slot, int column) {
   subtract_product(stiffness_, column, onto, force);
 }
 
-int Branch::columns_needed(int index, const std::array<std::int8_t, kLoopsMax>& slot_of,
+int Branch::columns_needed(int index, const std::array<std::uint8_t, kLoopsMax>& slot_of,
                            int child_loops) const {
   const auto of_child = [&](int open) {
     for (int i = 0; i < child_loops; ++i) {

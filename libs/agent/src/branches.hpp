@@ -110,7 +110,7 @@ std::uint8_t BasicAgent<Real>::survey_loops() {
   for (std::size_t face = 0; face < tree.child_cuts.size(); ++face) {
     for (std::size_t i = 0; i < tree.child_cut_count[face]; ++i) {
       const int slot = tree.branch.meet(tree.child_cuts[face][i]);
-      tree.slot_of[face][i] = static_cast<std::int8_t>(slot);
+      tree.slot_of[face][i] = static_cast<std::uint8_t>(slot);
       has_too_many = slot < 0 || has_too_many;
     }
   }

@@ -92,7 +92,7 @@ Vectors dense_solution(const Tree& tree, const Springs& springs, const Vectors& 
   return result;
 }
 
-using Slots = std::vector<std::array<std::int8_t, kLoopsMax>>;
+using Slots = std::vector<std::array<std::uint8_t, kLoopsMax>>;
 
 /// visit(cut, is this its upper end) for the connections that are not part of the tree.
 template <class Visit>
@@ -118,7 +118,7 @@ bool survey(const Tree& tree, std::vector<Branch>& branches, Slots& slot_of) {
       const bool is_child = tree.parents[child] == static_cast<int>(i);
       for (int k = 0; is_child && k < branches[child].open_count(); ++k) {
         const int slot = branches[i].meet(branches[child].cut(branches[child].open_slot(k)));
-        slot_of[child][static_cast<std::size_t>(k)] = static_cast<std::int8_t>(slot);
+        slot_of[child][static_cast<std::size_t>(k)] = static_cast<std::uint8_t>(slot);
         fits = slot >= 0 && fits;
       }
     }

@@ -89,9 +89,9 @@ std::vector<std::int8_t> code_of(const std::vector<ContactState>& states) {
 
 }  // namespace
 
-EquilibriumSolver::EquilibriumSolver(const model::Robot& robot, const EquilibriumOptions& options)
+EquilibriumSolver::EquilibriumSolver(const model::Robot& robot, EquilibriumOptions options)
     : robot_(robot),
-      options_(options),
+      options_(std::move(options)),
       weight_n_(model::module_weight_n(robot.material())),
       beam_(mechanics::beam_stiffness(model::beam_section(robot.material()))) {
   const auto modules = robot.modules();

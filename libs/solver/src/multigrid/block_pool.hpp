@@ -48,7 +48,8 @@ class BlockPool {
 
   std::uint32_t& find(const Block& block) {
     std::size_t place = hash(block) & (slots_.size() - 1);
-    while (slots_[place] != kFree &&
+    // Equal bits are meant: what differs in the sign of a zero may be kept twice.
+    while (slots_[place] != kFree &&  // NOLINTNEXTLINE(bugprone-suspicious-memory-comparison)
            std::memcmp(&blocks_[slots_[place]], &block, sizeof block) != 0) {
       place = (place + 1) & (slots_.size() - 1);
     }

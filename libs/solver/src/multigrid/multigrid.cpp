@@ -182,7 +182,7 @@ bool Multigrid::solve(double tolerance, int iteration_count_min) {
   if (end == ConjugateGradients::End::kConverged) {
     return true;
   }
-  std::ranges::fill(gradients_->x(), 0);  // Nothing to go on from.
+  gradients_->x().assign(gradients_->x().size(), 0);  // Nothing to go on from.
   is_stale_ = true;
   return false;
 }

@@ -122,7 +122,7 @@ struct BranchWork {
   CutForces forces{};
   /// By face: the cuts that a child has open, and their slots here.
   std::array<std::array<Cut, kLoopsMax>, base::kDirectionCount> child_cuts{};
-  std::array<std::array<std::int8_t, kLoopsMax>, base::kDirectionCount> slot_of{};
+  std::array<std::array<std::uint8_t, kLoopsMax>, base::kDirectionCount> slot_of{};
   std::array<std::uint8_t, base::kDirectionCount> child_cut_count{};
   std::array<std::uint8_t, base::kDirectionCount> columns_here{};  ///< All before are final.
   bool is_symmetric = false;  ///< S' goes up in parts: no facet below tilts, or it hardly matters.

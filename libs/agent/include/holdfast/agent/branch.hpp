@@ -128,7 +128,7 @@ class Branch {
   void add_end(int slot, bool is_upper, const mechanics::BeamStiffness<double>& beam);
 
   /// Column `index` of a child, whose i-th open loop has slot_of[i] here.
-  void add_column(int index, const std::array<std::int8_t, kLoopsMax>& slot_of,
+  void add_column(int index, const std::array<std::uint8_t, kLoopsMax>& slot_of,
                   const base::Vec6<float>& column);
 
   /// Part `index` of a child's S' that is symmetric.
@@ -144,7 +144,7 @@ class Branch {
 
   /// How many of a child's columns must be here before column `index` may go up: as soon as S is
   /// complete the columns of a loop pass one by one. Of no use where a loop closes.
-  int columns_needed(int index, const std::array<std::int8_t, kLoopsMax>& slot_of,
+  int columns_needed(int index, const std::array<std::uint8_t, kLoopsMax>& slot_of,
                      int child_loops) const;
 
   /// Are there columns at `index`, or only zeros? `is_fixed` if this module does not move.

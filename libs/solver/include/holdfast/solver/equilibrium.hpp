@@ -107,7 +107,7 @@ struct Equilibrium {
 /// everything that does not depend on the contact is made once. Keeps a reference to the robot.
 class EquilibriumSolver {
  public:
-  explicit EquilibriumSolver(const model::Robot& robot, const EquilibriumOptions& options = {});
+  explicit EquilibriumSolver(const model::Robot& robot, EquilibriumOptions options = {});
   ~EquilibriumSolver();
 
   Equilibrium solve(const ContactOptions& contact);
