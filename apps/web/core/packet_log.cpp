@@ -83,6 +83,8 @@ OrderText order_text(wire::Operation operation) {
       return {"a step: move, residual, sums", true};
     case wire::Operation::kTreeStep:
       return {"a step: move, residual", true};
+    case wire::Operation::kClusters:
+      return {"begin an equilibrium, find rigid clusters"};
   }
   return {""};
 }
