@@ -29,6 +29,12 @@ Mat6<double> converted(const Mat6<float>& matrix) {
   return result;
 }
 
+void add_block(Mat6<float>& into, const Mat6<double>& block) {
+  for (std::size_t i = 0; i < block.values.size(); ++i) {
+    into.values[i] += static_cast<float>(block.values[i]);
+  }
+}
+
 void set_column(Mat6<double>& matrix, int column, const Vec6<double>& vector) {
   for (int row = 0; row < kSize; ++row) {
     matrix.at(row, column) = vector[at(row)];
@@ -80,11 +86,7 @@ Mat6<double> carried(const Joint& joint, const Mat6<double>& stiffness) {
   return result;
 }
 
-void Cluster::add_to_link(const Mat6<double>& block) {
-  for (std::size_t i = 0; i < block.values.size(); ++i) {
-    link_.values[i] += static_cast<float>(block.values[i]);
-  }
-}
+void Cluster::add_to_link(const Mat6<double>& block) { add_block(link_, block); }
 
 void Cluster::add_to_link(int part, const Vec6<float>& vector) { add_part(link_, part, vector); }
 
@@ -111,11 +113,7 @@ void Cluster::clear() {
   is_held_ = false;
 }
 
-void Cluster::add_stiffness(const Mat6<double>& block) {
-  for (std::size_t i = 0; i < block.values.size(); ++i) {
-    stiffness_.values[i] += static_cast<float>(block.values[i]);
-  }
-}
+void Cluster::add_stiffness(const Mat6<double>& block) { add_block(stiffness_, block); }
 
 void Cluster::add_stiffness(int part, const Vec6<float>& vector) {
   add_part(stiffness_, part, vector);

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "holdfast/base/rng.hpp"
+#include "test_setup.hpp"
 
 namespace holdfast::agent {
 namespace {
@@ -18,15 +19,7 @@ using base::Cell;
 using base::Direction;
 using base::Mat6;
 using base::Vec6;
-
-mechanics::BeamStiffness<double> lopsided_beam() {
-  return mechanics::beam_stiffness<double>({.elastic_modulus = 100,
-                                            .length = 40,
-                                            .area = 1500,
-                                            .moment_x = 200'000,
-                                            .moment_y = 310'000,
-                                            .torsion = 130'000});
-}
+using test::lopsided_beam;
 
 /// A robot with its spanning tree: parents come before children.
 struct Tree {

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "holdfast/base/rng.hpp"
+#include "test_setup.hpp"
 
 namespace holdfast::agent {
 namespace {
@@ -18,18 +19,10 @@ using base::Cell;
 using base::Direction;
 using base::Mat6;
 using base::Vec6;
+using test::lopsided_beam;
 using Matrix6 = Eigen::Matrix<double, 6, 6>;
 
 constexpr double kPitch = 40;
-
-mechanics::BeamStiffness<double> lopsided_beam() {
-  return mechanics::beam_stiffness<double>({.elastic_modulus = 100,
-                                            .length = kPitch,
-                                            .area = 1500,
-                                            .moment_x = 200'000,
-                                            .moment_y = 310'000,
-                                            .torsion = 130'000});
-}
 
 /// Parents come before children; a module that is no top is in its parent's cluster.
 struct Robot {

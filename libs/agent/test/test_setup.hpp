@@ -15,6 +15,16 @@ namespace holdfast::agent::test {
 /// Weight of one module, Table I of [Piranda 2021].
 inline constexpr double kWeight = 0.06106 * 9.81;
 
+/// Bends more easily about one axis than about the other, so that no axes can be mixed up.
+inline mechanics::BeamStiffness<double> lopsided_beam() {
+  return mechanics::beam_stiffness<double>({.elastic_modulus = 100,
+                                            .length = 40,
+                                            .area = 1500,
+                                            .moment_x = 200'000,
+                                            .moment_y = 310'000,
+                                            .torsion = 130'000});
+}
+
 /// Blinky Blocks, Table I of [Piranda 2021]; times in ticks of the test network.
 inline Setup table_setup() {
   Setup setup;
