@@ -106,10 +106,8 @@ export async function dropFile(page, name, text) {
   );
 }
 
-export const message = async (page) => {
-  await page.waitForSelector('.message');
-  return page.innerText('.message');
-};
+/** What the page says in the end, not that it is still reading. */
+export const message = (page) => page.locator('.message').filter({ hasNotText: /^reading/ }).innerText();
 
 export async function openExample(page, name) {
   await page.click('#gallery-open');

@@ -124,6 +124,7 @@ test('pictures and the report are taken away', async () => {
   assert.ok(png.length > 5000, 'the picture is not empty');
   await page.click('#save');
   await page.click('[data-save=report]');
+  await page.waitForSelector('#report[open]');
   assert.match(await page.innerText('#report-text'), /load ratio +1\.2004 +\(2,1,2\)-\(3,1,2\)/);
   assert.deepEqual(page.faults, []);
 });

@@ -31,13 +31,14 @@ export function download(name: string, content: Blob): void {
 
 const SHOWN_MS = 7000;
 
-/** A message for a while; one that is an error stays until it is closed. */
+/** A message for a while; one that is an error stays until it is closed or another one comes. */
 export function tell(text: string, isError = false, shownMs = isError ? Infinity : SHOWN_MS): HTMLElement {
   const close = make('button', { type: 'button', className: 'close', ariaLabel: 'Close' });
   const message = make('div', { className: isError ? 'message error' : 'message' }, make('p', {}, text), close);
   close.append(icon('close'));
   close.onclick = () => message.remove();
-  byId('messages').replaceChildren(message);
+  const messages = byId('messages');
+  messages.replaceChildren(...(isError ? [] : messages.querySelectorAll('.error')), message);
   if (shownMs < Infinity) {
     setTimeout(() => message.remove(), shownMs);
   }
