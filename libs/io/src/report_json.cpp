@@ -73,9 +73,13 @@ Json connections_json(const model::Robot& robot, const verdict::Assessment& asse
   return list;
 }
 
-const char* solver_name(solver::Method method) {
-  return method == solver::Method::kMultigrid ? "conjugate gradients with multigrid"
-                                              : "sparse direct, 6x6 block LU";
+const char* solver_name(const solver::Equilibrium& equilibrium) {
+  if (equilibrium.method != solver::Method::kMultigrid) {
+    return "sparse direct, 6x6 block LU";
+  }
+  return equilibrium.precision == solver::Precision::kSingle
+             ? "conjugate gradients with multigrid"
+             : "conjugate gradients with multigrid in double precision";
 }
 
 }  // namespace
@@ -97,7 +101,7 @@ std::string write_report_json(const ReportEntry& entry) {
       {"connections", connections_json(robot, assessment)},
       {"contact_model", verdict::name(assessment.contact_model)},
       {"solver",
-       {{"name", solver_name(assessment.equilibrium.method)},
+       {{"name", solver_name(assessment.equilibrium)},
         {"iterations", assessment.equilibrium.steps},
         {"multigrid_iterations", assessment.equilibrium.iteration_count},
         {"seconds", entry.seconds}}},

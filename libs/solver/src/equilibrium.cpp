@@ -21,6 +21,9 @@ using mechanics::ContactState;
 /// The first step removes most of the rounding error, the second measures what is left.
 constexpr int kRefinementCount = 2;
 
+/// If the last step still moves something by more than this share, digits are missing.
+constexpr double kRefinedShare = 1e-3;
+
 /// Halvings of the bracket in the line search, to the resolution of double.
 constexpr int kLineStepMax = 60;
 
@@ -118,9 +121,41 @@ void EquilibriumSolver::choose_method() {
   }
   if (method == Method::kDirect) {
     make_direct(kNoLimit);
-  } else if (Multigrid::bytes_for(node_count) <= options_.memory_bytes_max) {
-    multigrid_ = std::make_unique<Multigrid>(robot_, options_.thread_count, options_.progress);
+  } else {
+    make_multigrid(options_.precision);
   }
+}
+
+/// None is left if it is too large.
+void EquilibriumSolver::make_multigrid(Precision precision) {
+  multigrid_.reset();
+  if (Multigrid::bytes_for(free_count(), precision) <= options_.memory_bytes_max) {
+    lu_.reset();
+    multigrid_ =
+        std::make_unique<Multigrid>(robot_, precision, options_.thread_count, options_.progress);
+  }
+}
+
+/// After an attempt that did not get there: multigrid in double precision, and the direct solver;
+/// small robots the other way round. Returns whether there is something to try.
+bool EquilibriumSolver::try_otherwise() {
+  if (options_.method == Method::kDirect) {
+    return false;
+  }
+  const bool may_be_direct = options_.method == Method::kAutomatic && !has_tried_direct_;
+  const bool prefers_direct = free_count() <= kUnilateralCountMax;
+  has_tried_double_ = has_tried_double_ || options_.precision == Precision::kDouble;
+  if (!has_tried_double_ && !(may_be_direct && prefers_direct)) {
+    has_tried_double_ = true;
+    make_multigrid(Precision::kDouble);
+    return multigrid_ != nullptr || try_otherwise();
+  }
+  if (may_be_direct) {
+    has_tried_direct_ = true;
+    make_direct(kNoLimit);
+    return lu_.has_value() || try_otherwise();
+  }
+  return false;
 }
 
 std::size_t EquilibriumSolver::free_count() const {
@@ -214,16 +249,14 @@ Equilibrium EquilibriumSolver::solve(const ContactOptions& contact) {
   if (result.outcome == Outcome::kSettled) {
     finish(result);
   }
-  if (result.outcome == Outcome::kTooSlow && options_.method == Method::kAutomatic) {
-    make_direct(kNoLimit);
-    if (lu_) {
-      return solve(contact);
-    }
+  if (result.outcome == Outcome::kTooSlow && try_otherwise()) {
+    return solve(contact);
   }
   if (lu_) {
     result.made_column_count = lu_->made_column_count() - made_before;
-  } else {
+  } else if (multigrid_) {
     result.method = Method::kMultigrid;
+    result.precision = multigrid_->precision();
     result.iteration_count = multigrid_->iteration_count() - iterations_before;
   }
   return result;
@@ -465,6 +498,10 @@ void EquilibriumSolver::finish(Equilibrium& result) {
   for (int step = 0; lu_ && step < kRefinementCount; ++step) {
     refine(result);
   }
+  if (lu_ && !is_refined(result)) {
+    result.outcome = Outcome::kTooSlow;
+    return;
+  }
   const std::size_t count = robot_.modules().size();
   result.contact.assign(count, ContactState{.pressed = false});
   result.ground_force.assign(count, Vec{});
@@ -495,6 +532,20 @@ void EquilibriumSolver::compare_with_free_facets(Equilibrium& result) {
   if (is_settled) {
     result.alternative = std::move(free.displacement);
   }
+}
+
+/// Whether the last refinement had next to nothing to correct. On a robot so slender that bending
+/// drowns in double precision's rounding, each finds something else.
+bool EquilibriumSolver::is_refined(const Equilibrium& result) {
+  double largest = 0;
+  double change = 0;
+  for (std::size_t i = 0; i < result.displacement.size(); ++i) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      largest = std::max(largest, std::abs(result.displacement[i][k]));
+      change = std::max(change, std::abs(result.displacement[i][k] - result.alternative[i][k]));
+    }
+  }
+  return change <= kRefinedShare * largest;
 }
 
 /// Solves for the residual and adds the correction.

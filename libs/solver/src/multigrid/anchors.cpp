@@ -21,7 +21,8 @@ Anchor beam_anchor(const model::Material& material, std::size_t node, std::size_
 }
 
 /// An anchor of a member as its cluster has it.
-Anchor moved(Anchor anchor, const Seat& seat) {
+template <class Real>
+Anchor moved(Anchor anchor, const Seat<Real>& seat) {
   const Point arm = offset(seat);
   anchor.node = seat.cluster;
   anchor.reach += behind(arm, anchor.direction);
@@ -79,7 +80,9 @@ std::vector<Anchor> finest_anchors(const Network& network, const model::Material
   return anchors;
 }
 
-std::vector<Anchor> coarse_anchors(const std::vector<Anchor>& fine, const std::vector<Seat>& seat) {
+template <class Real>
+std::vector<Anchor> coarse_anchors(const std::vector<Anchor>& fine,
+                                   const std::vector<Seat<Real>>& seat) {
   std::vector<Anchor> all;
   all.reserve(fine.size());
   for (const Anchor& anchor : fine) {
@@ -96,5 +99,10 @@ std::vector<Anchor> coarse_anchors(const std::vector<Anchor>& fine, const std::v
   }
   return coarse;
 }
+
+template std::vector<Anchor> coarse_anchors(const std::vector<Anchor>&,
+                                            const std::vector<Seat<float>>&);
+template std::vector<Anchor> coarse_anchors(const std::vector<Anchor>&,
+                                            const std::vector<Seat<double>>&);
 
 }  // namespace holdfast::solver

@@ -34,6 +34,8 @@ std::vector<Anchor> finest_anchors(const Network& network, const model::Material
 
 /// Those of the next level's clusters, ascending by node: sums over the members, lengthened like
 /// springs. `seat` says where the members sit.
-std::vector<Anchor> coarse_anchors(const std::vector<Anchor>& fine, const std::vector<Seat>& seat);
+template <class Real>
+std::vector<Anchor> coarse_anchors(const std::vector<Anchor>& fine,
+                                   const std::vector<Seat<Real>>& seat);
 
 }  // namespace holdfast::solver

@@ -12,9 +12,10 @@
 namespace holdfast::solver {
 
 /// Keeps equal blocks once: a lattice has few different ones, and they stay in the cache.
+template <class Real>
 class BlockPool {
  public:
-  std::uint32_t insert(const Block& block) {
+  std::uint32_t insert(const Block<Real>& block) {
     if (2 * (blocks_.size() + 1) > slots_.size()) {
       grow();
     }
@@ -27,7 +28,7 @@ class BlockPool {
   }
 
   /// The blocks, in the order in which they came.
-  std::vector<Block> take() {
+  std::vector<Block<Real>> take() {
     blocks_.shrink_to_fit();
     return std::move(blocks_);
   }
@@ -35,8 +36,8 @@ class BlockPool {
  private:
   static constexpr std::uint32_t kFree = 0xffffffffU;
 
-  static std::uint64_t hash(const Block& block) {
-    std::uint64_t words[sizeof(Block) / 8];
+  static std::uint64_t hash(const Block<Real>& block) {
+    std::uint64_t words[sizeof(Block<Real>) / 8];
     std::memcpy(words, &block, sizeof block);
     std::uint64_t mixed = 0;
     for (const std::uint64_t word : words) {
@@ -46,7 +47,7 @@ class BlockPool {
     return mixed;
   }
 
-  std::uint32_t& find(const Block& block) {
+  std::uint32_t& find(const Block<Real>& block) {
     std::size_t place = hash(block) & (slots_.size() - 1);
     // Equal bits are meant: what differs in the sign of a zero may be kept twice.
     while (slots_[place] != kFree &&  // NOLINTNEXTLINE(bugprone-suspicious-memory-comparison)
@@ -63,7 +64,7 @@ class BlockPool {
     }
   }
 
-  std::vector<Block> blocks_;
+  std::vector<Block<Real>> blocks_;
   std::vector<std::uint32_t> slots_;
 };
 

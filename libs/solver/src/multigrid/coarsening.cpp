@@ -4,7 +4,11 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
+#include <type_traits>
 #include <unordered_map>
+
+#include "slivers.hpp"
 
 namespace holdfast::solver {
 namespace {
@@ -13,11 +17,26 @@ constexpr std::uint8_t kNoColour = 255;
 
 std::size_t at(std::int32_t index) { return static_cast<std::size_t>(index); }
 
-/// The same coordinates for all clusters that look alike: differences lose their last bits.
+/// The same coordinates for all clusters that look alike: differences lose their last bits. In
+/// double precision they have none to lose: centres lie on a grid.
+template <class Real>
 Point rounded(const Point& point) {
-  return {static_cast<double>(static_cast<float>(point[0])),
-          static_cast<double>(static_cast<float>(point[1])),
-          static_cast<double>(static_cast<float>(point[2]))};
+  return {static_cast<double>(static_cast<Real>(point[0])),
+          static_cast<double>(static_cast<Real>(point[1])),
+          static_cast<double>(static_cast<Real>(point[2]))};
+}
+
+/// Where a cluster's motion is meant; any point near its middle will do. In double precision one of
+/// a grid, so that differences are exact and turning everything deforms nothing.
+template <class Real>
+Point centre(Point mean) {
+  if constexpr (std::is_same_v<Real, double>) {
+    constexpr double kPerMm = 1024;
+    for (double& x : mean) {
+      x = std::nearbyint(x * kPerMm) / kPerMm;
+    }
+  }
+  return mean;
 }
 
 /// A spring of a member that leads out of the cluster: all that the cluster's spring depends on.
@@ -41,8 +60,14 @@ struct Signature {
     b ^= b >> 29U;
   }
 
-  /// Two coordinates that single precision holds.
+  /// Two coordinates that Real holds.
+  template <class Real>
   void add(double x, double y) {
+    if constexpr (std::is_same_v<Real, double>) {
+      add(std::bit_cast<std::uint64_t>(x + 0.0));
+      add(std::bit_cast<std::uint64_t>(y + 0.0));
+      return;
+    }
     add(std::uint64_t{std::bit_cast<std::uint32_t>(static_cast<float>(x + 0.0))} << 32U |
         std::bit_cast<std::uint32_t>(static_cast<float>(y + 0.0)));
   }
@@ -54,9 +79,10 @@ struct SignatureHash {
   std::size_t operator()(const Signature& signature) const { return signature.a; }
 };
 
+template <class Real>
 class Coarsening {
  public:
-  Coarsening(const Stage& fine, Level& level, Team& team, Stage& coarse)
+  Coarsening(const Stage& fine, Level<Real>& level, Team& team, Stage& coarse)
       : fine_(fine), level_(level), team_(team), coarse_(coarse) {}
 
   bool run(std::vector<std::size_t>& colour_start) {
@@ -66,6 +92,10 @@ class Coarsening {
       shift += 3;
     }
     find_clusters(shift);
+    coarse_.shift = fine_.shift + shift;
+    if (!fine_.box.empty()) {
+      cluster_count_ = unite_slivers(fine_, coarse_.shift, cluster_, cluster_count_, coarse_.box);
+    }
     if (10 * cluster_count_ > 9 * count) {
       return false;
     }
@@ -187,6 +217,10 @@ class Coarsening {
       curve[at(final_[c])] = static_cast<std::int32_t>(c);
       coarse_.key[at(final_[c])] = fine_.key[at(member_[at(member_start_[c])])] >> shift;
     }
+    const std::vector<Box> box = coarse_.box;
+    for (std::size_t c = 0; c < box.size(); ++c) {
+      coarse_.box[at(final_[c])] = box[c];
+    }
     level_.member.reserve(member_.size());
     level_.member_start.reserve(cluster_count_ + 1);
     level_.member_start.push_back(0);
@@ -215,7 +249,7 @@ class Coarsening {
           }
           ++count;
         });
-        coarse_.place[c] = {sum[0] / count, sum[1] / count, sum[2] / count};
+        coarse_.place[c] = centre<Real>({sum[0] / count, sum[1] / count, sum[2] / count});
       }
     });
   }
@@ -225,10 +259,9 @@ class Coarsening {
     team_.share(0, level_.seat.size(), [&](std::size_t begin, std::size_t end) {
       for (std::size_t node = begin; node < end; ++node) {
         const Point offset = difference(fine_.place[node], coarse_.place[at(cluster_[node])]);
-        level_.seat[node] = {
-            .offset = {static_cast<float>(offset[0]), static_cast<float>(offset[1]),
-                       static_cast<float>(offset[2])},
-            .cluster = cluster_[node]};
+        level_.seat[node] = {.offset = {static_cast<Real>(offset[0]), static_cast<Real>(offset[1]),
+                                        static_cast<Real>(offset[2])},
+                             .cluster = cluster_[node]};
       }
     });
   }
@@ -255,7 +288,7 @@ class Coarsening {
              .target = target,
              .offset = offset(level_.seat[node]),
              .far_offset = offset(level_.seat[other]),
-             .partner = rounded(difference(coarse_.place[at(to)], coarse_.place[c]))});
+             .partner = rounded<Real>(difference(coarse_.place[at(to)], coarse_.place[c]))});
       }
     });
   }
@@ -265,13 +298,13 @@ class Coarsening {
     std::uint32_t target_count = 0;
     for (const Part& part : parts) {
       signature.add(std::uint64_t{part.spring} << 32U | part.target);
-      signature.add(part.offset[0], part.offset[1]);
-      signature.add(part.offset[2], part.far_offset[0]);
-      signature.add(part.far_offset[1], part.far_offset[2]);
+      signature.add<Real>(part.offset[0], part.offset[1]);
+      signature.add<Real>(part.offset[2], part.far_offset[0]);
+      signature.add<Real>(part.far_offset[1], part.far_offset[2]);
       if (part.target == target_count) {  // Met for the first time.
         ++target_count;
-        signature.add(part.partner[0], part.partner[1]);
-        signature.add(part.partner[2], 0);
+        signature.add<Real>(part.partner[0], part.partner[1]);
+        signature.add<Real>(part.partner[2], 0);
       }
     }
     return signature;
@@ -358,7 +391,7 @@ class Coarsening {
   }
 
   const Stage& fine_;
-  Level& level_;
+  Level<Real>& level_;
   Team& team_;
   Stage& coarse_;
   std::size_t cluster_count_ = 0;
@@ -370,9 +403,13 @@ class Coarsening {
 
 }  // namespace
 
-bool coarsen(const Stage& fine, Level& level, Team& team, Stage& coarse,
+template <class Real>
+bool coarsen(const Stage& fine, Level<Real>& level, Team& team, Stage& coarse,
              std::vector<std::size_t>& colour_start) {
-  return Coarsening(fine, level, team, coarse).run(colour_start);
+  return Coarsening<Real>(fine, level, team, coarse).run(colour_start);
 }
+
+template bool coarsen(const Stage&, Level<float>&, Team&, Stage&, std::vector<std::size_t>&);
+template bool coarsen(const Stage&, Level<double>&, Team&, Stage&, std::vector<std::size_t>&);
 
 }  // namespace holdfast::solver

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "conjugate_gradients.hpp"
 
+#include <utility>
+
 namespace holdfast::solver {
 namespace {
 
@@ -14,28 +16,31 @@ constexpr double kRounding = 0.01;
 
 }  // namespace
 
-ConjugateGradients::ConjugateGradients(Hierarchy& hierarchy, Team& team, std::size_t node_count)
-    : hierarchy_(hierarchy),
+template <class Real>
+ConjugateGradients<Real>::ConjugateGradients(const Network& network,
+                                             const model::Material& material, Team& team,
+                                             GroundStiffness ground)
+    : Iteration(network.node_count),
       team_(team),
-      cycle_(hierarchy, team, kSweepCount),
-      node_count_(node_count),
-      x_(6 * node_count),
-      r_(6 * node_count),
-      q_(6 * node_count),
-      p_(node_count + 1) {}
+      hierarchy_(network, material, team, std::move(ground)),
+      cycle_(hierarchy_, team, kSweepCount),
+      node_count_(network.node_count),
+      q_(6 * node_count_),
+      p_(node_count_ + 1) {}
 
-/// x is taken apart into two directions in single precision, 48 bits together.
-void ConjugateGradients::subtract_product() {
+/// x is taken apart into two directions: 48 bits in single precision, all in double.
+template <class Real>
+void ConjugateGradients<Real>::subtract_product() {
   for (const bool is_rest : {false, true}) {
     team_.share(0, node_count_, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = 6 * begin; i < 6 * end; ++i) {
-        const auto upper = static_cast<float>(x_[i]);
+        const auto upper = static_cast<Real>(x_[i]);
         p_[i / 6].v[i % 6] =
-            is_rest ? static_cast<float>(x_[i] - static_cast<double>(upper)) : upper;
+            is_rest ? static_cast<Real>(x_[i] - static_cast<double>(upper)) : upper;
       }
     });
     team_.share(0, node_count_, [&](std::size_t begin, std::size_t end) {
-      kernels().apply(hierarchy_.lattice(), p_.data(), q_.data(), {begin, end});
+      kernels<Real>().apply(hierarchy_.lattice(), p_.data(), q_.data(), {begin, end});
       for (std::size_t i = 6 * begin; i < 6 * end; ++i) {
         r_[i] -= q_[i];
       }
@@ -43,29 +48,33 @@ void ConjugateGradients::subtract_product() {
   }
 }
 
-void ConjugateGradients::round_residual() {
-  Level& finest = hierarchy_.levels().front();
+template <class Real>
+void ConjugateGradients<Real>::round_residual() {
+  Level<Real>& finest = hierarchy_.levels().front();
   team_.share(0, node_count_, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = 6 * begin; i < 6 * end; ++i) {
-      finest.r[i / 6].v[i % 6] = static_cast<float>(r_[i]);
+      finest.r[i / 6].v[i % 6] = static_cast<Real>(r_[i]);
     }
   });
 }
 
-double ConjugateGradients::dot_with_z(const std::vector<double>& a) {
-  const std::vector<Six>& z = hierarchy_.levels().front().z;
+template <class Real>
+double ConjugateGradients<Real>::dot_with_z(const std::vector<double>& a) {
+  const std::vector<Six<Real>>& z = hierarchy_.levels().front().z;
   return team_.sum(node_count_, [&](std::size_t begin, std::size_t end) {
-    return kernels().dot(a.data(), z.data(), {begin, end});
+    return kernels<Real>().dot(a.data(), z.data(), {begin, end});
   });
 }
 
 /// z = M^-1 r; returns r . z.
-double ConjugateGradients::precondition() {
+template <class Real>
+double ConjugateGradients<Real>::precondition() {
   cycle_.run();
   return dot_with_z(r_);
 }
 
-double ConjugateGradients::begin() {
+template <class Real>
+double ConjugateGradients<Real>::begin() {
   older_ = {};
   round_residual();
   error_ = precondition();
@@ -74,37 +83,41 @@ double ConjugateGradients::begin() {
 }
 
 /// q = K p; returns p . q.
-double ConjugateGradients::multiply() {
+template <class Real>
+double ConjugateGradients<Real>::multiply() {
   return team_.sum(node_count_, [&](std::size_t begin, std::size_t end) {
-    return kernels().apply(hierarchy_.lattice(), p_.data(), q_.data(), {begin, end});
+    return kernels<Real>().apply(hierarchy_.lattice(), p_.data(), q_.data(), {begin, end});
   });
 }
 
 /// x += step p, r -= step q
-void ConjugateGradients::advance(double step) {
-  Level& finest = hierarchy_.levels().front();
+template <class Real>
+void ConjugateGradients<Real>::advance(double step) {
+  Level<Real>& finest = hierarchy_.levels().front();
   team_.share(0, node_count_, [&](std::size_t begin, std::size_t end) {
-    kernels().advance(step, p_.data(), q_.data(), x_.data(), r_.data(), finest.r.data(),
-                      {begin, end});
+    kernels<Real>().advance(step, p_.data(), q_.data(), x_.data(), r_.data(), finest.r.data(),
+                            {begin, end});
   });
   ++iteration_count_;
 }
 
-bool ConjugateGradients::is_reached(const Goal& goal, int iteration) const {
+template <class Real>
+bool ConjugateGradients<Real>::is_reached(const Goal& goal, int iteration) const {
   const bool may_stop = iteration >= goal.iteration_count_min || error_ <= kRounding * goal.error;
   return error_ <= goal.error && may_stop;
 }
 
-void ConjugateGradients::tell() const {
+template <class Real>
+void ConjugateGradients<Real>::tell() const {
   if (progress) {
     progress(iteration_count_, error_);
   }
 }
 
-// x, r, q: displacement, residual, K p;  p, z: direction, preconditioned residual (single
-// precision)
-ConjugateGradients::End ConjugateGradients::run(const Goal& goal) {
-  const std::vector<Six>& z = hierarchy_.levels().front().z;
+// x, r, q: displacement, residual, K p;  p, z: direction, preconditioned residual
+template <class Real>
+Iteration::End ConjugateGradients<Real>::run(const Goal& goal) {
+  const std::vector<Six<Real>>& z = hierarchy_.levels().front().z;
   for (int iteration = 0; !is_reached(goal, iteration); ++iteration) {
     if (iteration == goal.iteration_count_max) {
       return End::kTooSlow;
@@ -119,11 +132,14 @@ ConjugateGradients::End ConjugateGradients::run(const Goal& goal) {
     const double turn = -step * dot_with_z(q_) / error_;  // z (r_new - r_old) / z_old r_old
     error_ = error;
     team_.share(0, node_count_, [&](std::size_t begin, std::size_t end) {
-      kernels().combine(1, z.data(), static_cast<float>(turn), p_.data(), {begin, end});
+      kernels<Real>().combine(1, z.data(), static_cast<Real>(turn), p_.data(), {begin, end});
     });
     tell();
   }
   return error_ >= 0 ? End::kConverged : End::kBroken;
 }
+
+template class ConjugateGradients<float>;
+template class ConjugateGradients<double>;
 
 }  // namespace holdfast::solver

@@ -3,6 +3,7 @@
 #include "cycle.hpp"
 
 #include <algorithm>
+#include <type_traits>
 
 namespace holdfast::solver {
 namespace {
@@ -10,15 +11,20 @@ namespace {
 /// One step of the inner iteration is enough if it removes this share of the residual; Notay's.
 constexpr double kEnough = 0.25;
 
+/// Of the coarsest level's solution.
+template <class Real>
+constexpr int kRefinementCount = std::is_same_v<Real, double> ? 2 : 0;
+
 /// The cycle's own length is right within a factor of two or so. A step far from 1 is rounding: on
 /// a slender robot the energy of a smooth motion drowns in single precision, and no step is better.
 bool is_credible(double step) { return step > 0.25 && step < 4; }
 
 }  // namespace
 
-void Cycle::relax_colour(std::size_t depth, std::size_t colour, bool is_first) {
-  Level& level = hierarchy_.levels()[depth];
-  const Kernels& kernel = kernels();
+template <class Real>
+void Cycle<Real>::relax_colour(std::size_t depth, std::size_t colour, bool is_first) {
+  Level<Real>& level = hierarchy_.levels()[depth];
+  const Kernels<Real>& kernel = kernels<Real>();
   team_.share(level.colour_start[colour], level.colour_start[colour + 1],
               [&](std::size_t begin, std::size_t end) {
                 const Range range{begin, end};
@@ -34,10 +40,11 @@ void Cycle::relax_colour(std::size_t depth, std::size_t colour, bool is_first) {
 }
 
 /// The forces that are left at the members become those of the clusters.
-void Cycle::pass_down(std::size_t depth, std::size_t settled) {
-  Level& level = hierarchy_.levels()[depth];
-  Level& coarse = hierarchy_.levels()[depth + 1];
-  const Kernels& kernel = kernels();
+template <class Real>
+void Cycle<Real>::pass_down(std::size_t depth, std::size_t settled) {
+  Level<Real>& level = hierarchy_.levels()[depth];
+  Level<Real>& coarse = hierarchy_.levels()[depth + 1];
+  const Kernels<Real>& kernel = kernels<Real>();
   team_.share(0, coarse.node_count, [&](std::size_t begin, std::size_t end) {
     const Range range{begin, end};
     if (depth == 0) {
@@ -51,13 +58,14 @@ void Cycle::pass_down(std::size_t depth, std::size_t settled) {
 }
 
 /// z = M^-1 r on this level and all below.
-void Cycle::descend(std::size_t depth) {
-  Level& level = hierarchy_.levels()[depth];
+template <class Real>
+void Cycle<Real>::descend(std::size_t depth) {
+  Level<Real>& level = hierarchy_.levels()[depth];
   const std::size_t colour_count = level.colour_start.size() - 1;
   // From zero: a colour sees only those before it, so the rest must be zero in the first sweep.
   team_.share(level.colour_start[1], level.node_count, [&](std::size_t begin, std::size_t end) {
     std::fill(level.z.begin() + static_cast<std::ptrdiff_t>(begin),
-              level.z.begin() + static_cast<std::ptrdiff_t>(end), Six{});
+              level.z.begin() + static_cast<std::ptrdiff_t>(end), Six<Real>{});
   });
   for (int sweep = 0; sweep < sweep_count_; ++sweep) {
     for (std::size_t colour = 0; colour < colour_count; ++colour) {
@@ -70,9 +78,9 @@ void Cycle::descend(std::size_t depth) {
     const std::size_t settled = level.colour_start[colour_count - 1];
     pass_down(depth, settled);
     solve(depth + 1);
-    const Level& coarse = hierarchy_.levels()[depth + 1];
+    const Level<Real>& coarse = hierarchy_.levels()[depth + 1];
     team_.share(0, settled, [&](std::size_t begin, std::size_t end) {
-      kernels().prolong(level.transfer(), coarse.z.data(), level.z.data(), {begin, end});
+      kernels<Real>().prolong(level.transfer(), coarse.z.data(), level.z.data(), {begin, end});
     });
   }
   for (int sweep = 0; sweep < sweep_count_; ++sweep) {
@@ -83,12 +91,13 @@ void Cycle::descend(std::size_t depth) {
 }
 
 /// K z = r on a coarse level, about: Algorithm 3.2 of [Notay 2008].
-void Cycle::solve(std::size_t depth) {
+template <class Real>
+void Cycle<Real>::solve(std::size_t depth) {
   if (depth + 1 == hierarchy_.levels().size() && hierarchy_.has_coarsest()) {
     solve_coarsest();
     return;
   }
-  Level& level = hierarchy_.levels()[depth];
+  Level<Real>& level = hierarchy_.levels()[depth];
   const std::size_t count = level.node_count;
   descend(depth);
   const double before = dot(count, level.r, level.r);
@@ -117,42 +126,62 @@ void Cycle::solve(std::size_t depth) {
   combine(count, step - gamma * alpha_2 / (rho_1 * rho_2), level.first, alpha_2 / rho_2, level.z);
 }
 
-void Cycle::solve_coarsest() {
-  Level& level = hierarchy_.levels().back();
-  coarsest_.resize(level.node_count);
-  for (std::size_t node = 0; node < level.node_count; ++node) {
+/// By factors of K; in double precision their error is found spring by spring, and corrected.
+template <class Real>
+void Cycle<Real>::solve_coarsest() {
+  Level<Real>& level = hierarchy_.levels().back();
+  add_coarsest(level.r, level.z, 0);
+  for (int step = 0; step < kRefinementCount<Real>; ++step) {
+    apply(level, level.first_image);
+    combine(level.node_count, 1, level.r, -1, level.first_image);
+    add_coarsest(level.first_image, level.z, 1);
+  }
+}
+
+/// z := share z + K^-1 r
+template <class Real>
+void Cycle<Real>::add_coarsest(const Vector& r, Vector& z, Real share) {
+  const std::size_t count = hierarchy_.levels().back().node_count;
+  coarsest_.resize(count);
+  for (std::size_t node = 0; node < count; ++node) {
     for (std::size_t i = 0; i < 6; ++i) {
-      coarsest_[node][i] = static_cast<double>(level.r[node].v[i]);
+      coarsest_[node][i] = static_cast<double>(r[node].v[i]);
     }
   }
   hierarchy_.coarsest().solve(coarsest_);
-  for (std::size_t node = 0; node < level.node_count; ++node) {
+  for (std::size_t node = 0; node < count; ++node) {
     for (std::size_t i = 0; i < 6; ++i) {
-      level.z[node].v[i] = static_cast<float>(coarsest_[node][i]);
+      z[node].v[i] = share * z[node].v[i] + static_cast<Real>(coarsest_[node][i]);
     }
   }
 }
 
 /// image = K z; returns z . image.
-double Cycle::apply(Level& level, std::vector<Six>& image) {
+template <class Real>
+double Cycle<Real>::apply(Level<Real>& level, Vector& image) {
   return team_.sum(level.node_count, [&](std::size_t begin, std::size_t end) {
-    return kernels().apply_cluster(level.view(), level.z.data(), image.data(), {begin, end});
+    return kernels<Real>().apply_cluster(level.view(), level.z.data(), image.data(), {begin, end});
   });
 }
 
-double Cycle::dot(std::size_t count, const std::vector<Six>& a, const std::vector<Six>& b) {
+template <class Real>
+double Cycle<Real>::dot(std::size_t count, const Vector& a, const Vector& b) {
   return team_.sum(count, [&](std::size_t begin, std::size_t end) {
-    return kernels().dot_single(a.data(), b.data(), {begin, end});
+    return kernels<Real>().dot_same(a.data(), b.data(), {begin, end});
   });
 }
 
 /// y = factor x + other y
-void Cycle::combine(std::size_t count, double factor, const std::vector<Six>& x, double other,
-                    std::vector<Six>& y) {
+template <class Real>
+void Cycle<Real>::combine(std::size_t count, double factor, const Vector& x, double other,
+                          Vector& y) {
   team_.share(0, count, [&](std::size_t begin, std::size_t end) {
-    kernels().combine(static_cast<float>(factor), x.data(), static_cast<float>(other), y.data(),
-                      {begin, end});
+    kernels<Real>().combine(static_cast<Real>(factor), x.data(), static_cast<Real>(other), y.data(),
+                            {begin, end});
   });
 }
+
+template class Cycle<float>;
+template class Cycle<double>;
 
 }  // namespace holdfast::solver

@@ -11,26 +11,29 @@
 /// around it must be a flexible one.
 namespace holdfast::solver {
 
+template <class Real>
 class Cycle {
  public:
-  Cycle(Hierarchy& hierarchy, Team& team, int sweep_count)
+  Cycle(Hierarchy<Real>& hierarchy, Team& team, int sweep_count)
       : hierarchy_(hierarchy), team_(team), sweep_count_(sweep_count) {}
 
   /// From the finest level's r to its z.
   void run() { descend(0); }
 
  private:
+  using Vector = std::vector<Six<Real>>;
+
   void descend(std::size_t depth);
   void solve(std::size_t depth);
   void solve_coarsest();
+  void add_coarsest(const Vector& r, Vector& z, Real share);
   void relax_colour(std::size_t depth, std::size_t colour, bool is_first);
   void pass_down(std::size_t depth, std::size_t settled);
-  double apply(Level& level, std::vector<Six>& image);
-  double dot(std::size_t count, const std::vector<Six>& a, const std::vector<Six>& b);
-  void combine(std::size_t count, double factor, const std::vector<Six>& x, double other,
-               std::vector<Six>& y);
+  double apply(Level<Real>& level, Vector& image);
+  double dot(std::size_t count, const Vector& a, const Vector& b);
+  void combine(std::size_t count, double factor, const Vector& x, double other, Vector& y);
 
-  Hierarchy& hierarchy_;
+  Hierarchy<Real>& hierarchy_;
   Team& team_;
   int sweep_count_;
   std::vector<base::Vec6<double>> coarsest_;

@@ -12,15 +12,17 @@ namespace {
 /// case; then the oldest are dropped, and robots whose contact is far from symmetric may fail.
 constexpr std::size_t kMemoryBytes = std::size_t{256} << 20U;
 constexpr std::size_t kMemoryMin = 8;
-constexpr std::size_t kNodeBytes = sizeof(Six) + 6 * sizeof(double);
+template <class Real>
+constexpr std::size_t kNodeBytes = sizeof(Six<Real>) + 6 * sizeof(double);
 
 /// The last run's directions go on to count, unless there is more than one for so many nodes: in
 /// small robots they soon fill the space, and what is left then is rounding.
 constexpr std::size_t kNodesPerDirection = 2;
 
 /// Adds difference * p at the nodes that have one; returns p times that.
-double add_terms(std::span<const NodeTerm> terms, bool is_transposed, const std::vector<Six>& p,
-                 std::vector<double>& image) {
+template <class Real>
+double add_terms(std::span<const NodeTerm> terms, bool is_transposed,
+                 const std::vector<Six<Real>>& p, std::vector<double>& image) {
   double sum = 0;
   for (const NodeTerm& term : terms) {
     const auto node = static_cast<std::size_t>(term.node);
@@ -40,23 +42,25 @@ double add_terms(std::span<const NodeTerm> terms, bool is_transposed, const std:
 }  // namespace
 
 /// p := z, less what an older direction answers for: p_old . A p = 0.
-void ConjugateGradients::turn_away_from_older() {
+template <class Real>
+void ConjugateGradients<Real>::turn_away_from_older() {
   p_ = hierarchy_.levels().front().z;
   for (const Direction& old : older_) {
     const double product = team_.sum(node_count_, [&](std::size_t begin, std::size_t end) {
-      return kernels().dot(old.image.data(), p_.data(), {begin, end});
+      return kernels<Real>().dot(old.image.data(), p_.data(), {begin, end});
     });
-    const auto turn = static_cast<float>(-product / old.curvature);
+    const auto turn = static_cast<Real>(-product / old.curvature);
     team_.share(0, node_count_, [&](std::size_t begin, std::size_t end) {
-      kernels().combine(turn, old.p.data(), 1, p_.data(), {begin, end});
+      kernels<Real>().combine(turn, old.p.data(), 1, p_.data(), {begin, end});
     });
   }
 }
 
 /// q := A p; remembers p and A^T p. Returns p . A p.
-double ConjugateGradients::remember_direction(std::span<const NodeTerm> terms) {
+template <class Real>
+double ConjugateGradients<Real>::remember_direction(std::span<const NodeTerm> terms) {
   const double symmetric_part = multiply();
-  if (older_.size() >= std::max(kMemoryMin, kMemoryBytes / (kNodeBytes * node_count_))) {
+  if (older_.size() >= std::max(kMemoryMin, kMemoryBytes / (kNodeBytes<Real> * node_count_))) {
     std::rotate(older_.begin(), older_.begin() + 1, older_.end());
   } else {
     older_.emplace_back();
@@ -69,8 +73,9 @@ double ConjugateGradients::remember_direction(std::span<const NodeTerm> terms) {
   return newest.curvature;
 }
 
-ConjugateGradients::End ConjugateGradients::run_unsymmetric(const Goal& goal,
-                                                            std::span<const NodeTerm> terms) {
+template <class Real>
+Iteration::End ConjugateGradients<Real>::run_unsymmetric(const Goal& goal,
+                                                         std::span<const NodeTerm> terms) {
   if (kNodesPerDirection * older_.size() > node_count_) {
     older_.clear();
   }
@@ -89,5 +94,10 @@ ConjugateGradients::End ConjugateGradients::run_unsymmetric(const Goal& goal,
   }
   return error_ >= 0 ? End::kConverged : End::kBroken;
 }
+
+template Iteration::End ConjugateGradients<float>::run_unsymmetric(const Goal&,
+                                                                   std::span<const NodeTerm>);
+template Iteration::End ConjugateGradients<double>::run_unsymmetric(const Goal&,
+                                                                    std::span<const NodeTerm>);
 
 }  // namespace holdfast::solver

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <type_traits>
 #include <unordered_map>
 #include <utility>
 
@@ -21,6 +22,12 @@ constexpr std::size_t kRow = kBeamLengthMax + 1;
 /// A level this small is factorized whatever its shape: it costs nothing.
 constexpr std::size_t kCoarsestCount = 48;
 
+/// The factors of a longer chain of clusters have lost too many digits. In double precision they
+/// are refined with forces that have not, and that counts; in single precision there are none to
+/// lose.
+template <class Real>
+constexpr std::size_t kChainMax = std::is_same_v<Real, float> ? 1600 : 600;
+
 /// Where nodes have more neighbours than this on average, too many blocks fill in.
 constexpr std::size_t kThinDegree = 3;
 
@@ -29,21 +36,12 @@ std::size_t at(std::int32_t index) { return static_cast<std::size_t>(index); }
 /// Which displacement bends with which on a beam along an axis; see kernel_loops.hpp.
 constexpr std::size_t kSwap[3][6] = {{0, 5, 4, 3, 2, 1}, {5, 1, 3, 2, 4, 0}, {4, 3, 2, 1, 0, 5}};
 
-Block single(const Mat& matrix) {
-  Block block;
+template <class Real>
+Block<Real> block_of(const Mat& matrix) {
+  Block<Real> block;
   for (int column = 0; column < 6; ++column) {
     for (int row = 0; row < 6; ++row) {
-      block.column[column][row] = static_cast<float>(matrix.at(row, column));
-    }
-  }
-  return block;
-}
-
-BlockDouble wide(const Mat& matrix) {
-  BlockDouble block;
-  for (int column = 0; column < 6; ++column) {
-    for (int row = 0; row < 6; ++row) {
-      block.column[column][row] = matrix.at(row, column);
+      block.column[column][row] = static_cast<Real>(matrix.at(row, column));
     }
   }
   return block;
@@ -55,23 +53,37 @@ Mat inverse_of(const Mat& matrix) {
   return inverse;
 }
 
-BeamRowDouble beam_row(const Mat& k12, std::size_t axis) {
-  BeamRowDouble row;
+BeamRow<double> beam_row(const Mat& k12, std::size_t axis) {
+  BeamRow<double> row;
   for (std::size_t i = 0; i < 6; ++i) {
     const std::size_t j = kSwap[axis][i];
-    row.direct[i] = k12.at(static_cast<int>(i), static_cast<int>(i));
-    row.crossed[i] = i == j ? 0 : k12.at(static_cast<int>(i), static_cast<int>(j));
+    row.direct.v[i] = k12.at(static_cast<int>(i), static_cast<int>(i));
+    row.crossed.v[i] = i == j ? 0 : k12.at(static_cast<int>(i), static_cast<int>(j));
   }
   return row;
 }
 
-BeamRow single(const BeamRowDouble& row) {
-  BeamRow result;
+BeamRow<float> single(const BeamRow<double>& row) {
+  BeamRow<float> result;
   for (std::size_t i = 0; i < 6; ++i) {
-    result.direct.v[i] = static_cast<float>(row.direct[i]);
-    result.crossed.v[i] = static_cast<float>(row.crossed[i]);
+    result.direct.v[i] = static_cast<float>(row.direct.v[i]);
+    result.crossed.v[i] = static_cast<float>(row.crossed.v[i]);
   }
   return result;
+}
+
+/// How stiff a beam is against what its middle sees. K12 has that but for the share of the shear
+/// force in bending: -k + shear * (length/2)^2.
+Six<double> middle_stiffness(const Mat& k12, std::size_t axis, double length) {
+  Six<double> stiffness;
+  for (std::size_t i = 0; i < 6; ++i) {
+    stiffness.v[i] = -k12.at(static_cast<int>(i), static_cast<int>(i));
+  }
+  for (std::size_t i = 3; i < 6; ++i) {
+    const std::size_t sheared = kSwap[axis][i];
+    stiffness.v[i] += sheared == i ? 0 : stiffness.v[sheared] * length * length / 4;
+  }
+  return stiffness;
 }
 
 /// The sum of a node's springs, anchors left out.
@@ -134,7 +146,8 @@ Point place_of(std::uint64_t key, double pitch) {
           pitch * static_cast<double>(cell[2])};
 }
 
-void fill_vectors(Level& level) {
+template <class Real>
+void fill_vectors(Level<Real>& level) {
   level.r.assign(level.node_count + 1, {});
   level.z.assign(level.node_count + 1, {});
 }
@@ -142,15 +155,25 @@ void fill_vectors(Level& level) {
 }  // namespace
 
 /// The finest level: nodes of the same kind with partners on the same sides share their springs.
-void Hierarchy::fill_stage(Team& team, Stage& stage) const {
+template <class Real>
+void Hierarchy<Real>::fill_stage(Team& team, Stage& stage) const {
   const std::size_t count = network_.node_count;
   stage.order = network_.order;
   stage.key.resize(count);
   stage.place.resize(count);
+  stage.box.resize(std::is_same_v<Real, double> ? count : 0);
   team.share(0, count, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      stage.key[at(network_.order[i])] = network_.key[i];
-      stage.place[at(network_.order[i])] = place_of(network_.key[i], material_.pitch_mm);
+      const std::size_t node = at(network_.order[i]);
+      stage.key[node] = network_.key[i];
+      stage.place[node] = place_of(network_.key[i], material_.pitch_mm);
+      if constexpr (std::is_same_v<Real, double>) {
+        const Point cell = place_of(network_.key[i], 1);
+        stage.box[node].low = {static_cast<std::int32_t>(cell[0]),
+                               static_cast<std::int32_t>(cell[1]),
+                               static_cast<std::int32_t>(cell[2])};
+        stage.box[node].high = stage.box[node].low;
+      }
     }
   });
   stage.start.resize(count + 1);
@@ -178,19 +201,38 @@ void Hierarchy::fill_stage(Team& team, Stage& stage) const {
   }
 }
 
-void Hierarchy::make_lattice() {
+template <>
+void Hierarchy<float>::make_beams() {
   const std::size_t length_max = network_.has_long_beams ? kBeamLengthMax : 1;
-  beams_.resize(6 * kRow);
-  beams_double_.resize(6 * kRow);
+  beams_.rows.resize(6 * kRow);
+  beams_.rows_double.resize(6 * kRow);
   for (std::size_t length = 1; length <= length_max; ++length) {
     const auto beam = long_beam(material_, static_cast<int>(length));
     for (std::size_t d = 0; d < 6; ++d) {
       const Mat k12 = mechanics::block_12(beam, static_cast<Direction>(d));
-      beams_double_[d * kRow + length] = beam_row(k12, d / 2);
-      beams_[d * kRow + length] = single(beams_double_[d * kRow + length]);
+      beams_.rows_double[d * kRow + length] = beam_row(k12, d / 2);
+      beams_.rows[d * kRow + length] = single(beams_.rows_double[d * kRow + length]);
     }
   }
-  Level& level = levels_.emplace_back();
+}
+
+template <>
+void Hierarchy<double>::make_beams() {
+  beams_.springs.resize(3 * kRow);
+  for (std::size_t length = 1; length < kRow; ++length) {
+    const auto beam = long_beam(material_, static_cast<int>(length));
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      beams_.springs[axis * kRow + length] =
+          middle_stiffness(mechanics::block_12(beam, static_cast<Direction>(2 * axis)), axis,
+                           material_.pitch_mm * static_cast<double>(length));
+    }
+  }
+}
+
+template <class Real>
+void Hierarchy<Real>::make_lattice() {
+  make_beams();
+  Level<Real>& level = levels_.emplace_back();
   level.node_count = network_.node_count;
   level.colour_start = network_.colour_start;
   level.type.resize(network_.node_count);
@@ -202,7 +244,8 @@ void Hierarchy::make_lattice() {
 }
 
 /// K_pp of a node on the finest level.
-Mat Hierarchy::diagonal(const Kind& kind) const {
+template <class Real>
+Mat Hierarchy<Real>::diagonal(const Kind& kind) const {
   Mat sum;
   for (std::size_t d = 0; d < 6; ++d) {
     if (kind[d] > 0) {
@@ -216,53 +259,136 @@ Mat Hierarchy::diagonal(const Kind& kind) const {
   return sum;
 }
 
-void Hierarchy::set_type(std::size_t node) {
-  Level& level = levels_.front();
+template <>
+void Hierarchy<float>::add_type(const Kind& kind) {
+  const Mat sum = diagonal(kind);
+  levels_.front().inverse.push_back(block_of<float>(inverse_of(sum)));
+  beams_.diagonal.push_back(block_of<float>(sum));
+  beams_.diagonal_double.push_back(block_of<double>(sum));
+}
+
+template <>
+void Hierarchy<double>::add_type(const Kind& kind) {
+  levels_.front().inverse.push_back(block_of<double>(inverse_of(diagonal(kind))));
+  const std::uint8_t code = kind[kContactByte];
+  beams_.ground.push_back(code == 0 ? Block<double>{} : block_of<double>(ground_(code)));
+}
+
+template <class Real>
+void Hierarchy<Real>::set_type(std::size_t node) {
   const auto kind = std::bit_cast<std::uint64_t>(network_.kind[node]);
   const auto [found, is_new] =
       type_of_kind_.try_emplace(kind, static_cast<std::uint32_t>(type_of_kind_.size()));
-  level.type[node] = found->second;
+  levels_.front().type[node] = found->second;
   if (is_new) {
-    const Mat sum = diagonal(network_.kind[node]);
-    level.diagonal.push_back(single(sum));
-    level.inverse.push_back(single(inverse_of(sum)));
-    diagonal_double_.push_back(wide(sum));
+    add_type(network_.kind[node]);
   }
 }
 
-void Hierarchy::point_at_lattice() {
-  const Level& level = levels_.front();
+template <>
+void Hierarchy<float>::point_at_lattice() {
+  const Level<float>& level = levels_.front();
   lattice_ = {.other = network_.other.data(),
               .kind = network_.has_long_beams ? network_.kind.data() : nullptr,
               .type = level.type.data(),
-              .beams = beams_.data(),
-              .diagonal = level.diagonal.data(),
               .inverse = level.inverse.data(),
-              .beams_double = beams_double_.data(),
-              .diagonal_double = diagonal_double_.data()};
+              .beams = beams_.rows.data(),
+              .diagonal = beams_.diagonal.data(),
+              .beams_double = beams_.rows_double.data(),
+              .diagonal_double = beams_.diagonal_double.data()};
 }
 
-/// Blocks in single precision for the sweeps.
-void Hierarchy::add_level(const Stage& stage, std::vector<std::size_t> colour_start) {
-  Level& level = levels_.emplace_back();
+template <>
+void Hierarchy<double>::point_at_lattice() {
+  const Level<double>& level = levels_.front();
+  lattice_ = {.other = network_.other.data(),
+              .kind = network_.kind.data(),
+              .type = level.type.data(),
+              .inverse = level.inverse.data(),
+              .springs = beams_.springs.data(),
+              .ground = beams_.ground.data(),
+              .pitch = material_.pitch_mm};
+}
+
+template <>
+void Hierarchy<float>::couple(const Stage& stage, Level<float>& level) const {
+  BlockPool<float> pool;
+  std::vector<std::uint32_t> block_of_spring(stage.springs.size());
+  for (std::size_t i = 0; i < stage.springs.size(); ++i) {
+    block_of_spring[i] = pool.insert(block_of<float>(coupling(stage.springs[i])));
+  }
+  level.couplings.blocks = pool.take();
+  level.couplings.block.resize(level.other.size());
+  for (std::size_t node = 0; node < level.node_count; ++node) {
+    const std::size_t start = at(stage.start[node]);
+    for (std::size_t e = start; e < at(stage.start[node + 1]); ++e) {
+      level.couplings.block[e] = block_of_spring[stage.pattern[node] + e - start];
+    }
+  }
+}
+
+template <>
+void Hierarchy<double>::couple(const Stage& stage, Level<double>& level) const {
+  for (const Spring& spring : stage.springs) {
+    level.couplings.springs.push_back(
+        {.stiffness = block_of<double>(spring.stiffness),
+         .arm = {-spring.partner[0], -spring.partner[1], -spring.partner[2]}});
+  }
+  level.couplings.spring.resize(level.other.size());
+  const auto spring_at = [&](std::size_t node, std::size_t e) {
+    return stage.pattern[node] + static_cast<std::uint32_t>(e - at(stage.start[node]));
+  };
+  for (std::size_t node = 0; node < level.node_count; ++node) {
+    for (std::size_t e = at(stage.start[node]); e < at(stage.start[node + 1]); ++e) {
+      const std::size_t other = at(stage.other[e]);
+      if (node < other) {
+        const auto begin = stage.other.begin() + stage.start[other];
+        const auto end = stage.other.begin() + stage.start[other + 1];
+        const auto back = std::find(begin, end, static_cast<std::int32_t>(node));
+        level.couplings.spring[e] = spring_at(node, e);
+        level.couplings.spring[static_cast<std::size_t>(back - stage.other.begin())] =
+            spring_at(node, e);
+      }
+    }
+  }
+}
+
+template <>
+void Hierarchy<float>::clear_anchors(Level<float>& level, std::size_t free_type_count) const {
+  level.inverse.resize(free_type_count);
+  level.couplings.diagonal.resize(free_type_count);
+}
+
+template <>
+void Hierarchy<double>::clear_anchors(Level<double>& level, std::size_t free_type_count) const {
+  level.inverse.resize(free_type_count);
+  level.couplings.anchors.clear();
+  level.couplings.free_type_count = free_type_count;
+}
+
+template <>
+void Hierarchy<float>::add_anchored_type(Level<float>& level, const HeldNode& node) const {
+  level.inverse.push_back(block_of<float>(inverse_of(node.sum)));
+  level.couplings.diagonal.push_back(block_of<float>(node.sum));
+}
+
+template <>
+void Hierarchy<double>::add_anchored_type(Level<double>& level, const HeldNode& node) const {
+  level.inverse.push_back(block_of<double>(inverse_of(node.sum)));
+  level.couplings.anchors.push_back(block_of<double>(node.anchor_sum));
+}
+
+template <class Real>
+void Hierarchy<Real>::add_level(const Stage& stage, std::vector<std::size_t> colour_start) {
+  Level<Real>& level = levels_.emplace_back();
   level.node_count = stage.order.size();
   level.colour_start = std::move(colour_start);
   level.start = stage.start;
   level.other = stage.other;
-  BlockPool couplings;
-  std::vector<std::uint32_t> block_of_spring(stage.springs.size());
-  for (std::size_t i = 0; i < stage.springs.size(); ++i) {
-    block_of_spring[i] = couplings.insert(single(coupling(stage.springs[i])));
-  }
-  level.blocks = couplings.take();
-  level.block.resize(level.other.size());
+  couple(stage, level);
   level.type.resize(level.node_count);
   std::unordered_map<std::uint32_t, std::uint32_t> type_of_pattern;
   for (std::size_t node = 0; node < level.node_count; ++node) {
-    const std::size_t start = at(stage.start[node]);
-    for (std::size_t e = start; e < at(stage.start[node + 1]); ++e) {
-      level.block[e] = block_of_spring[stage.pattern[node] + e - start];
-    }
     const auto [found, is_new] = type_of_pattern.try_emplace(
         stage.pattern[node], static_cast<std::uint32_t>(type_of_pattern.size()));
     level.type[node] = found->second;
@@ -276,10 +402,12 @@ void Hierarchy::add_level(const Stage& stage, std::vector<std::size_t> colour_st
     }
   }
   for (const Mat& sum : sums) {
-    level.diagonal.push_back(single(sum));
     Mat inverse;
     // A pattern that only anchored nodes have may be singular alone; its inverse is not used.
-    level.inverse.push_back(invert(sum, inverse) ? single(inverse) : Block{});
+    level.inverse.push_back(invert(sum, inverse) ? block_of<Real>(inverse) : Block<Real>{});
+    if constexpr (std::is_same_v<Real, float>) {
+      level.couplings.diagonal.push_back(block_of<float>(sum));
+    }
   }
   fill_vectors(level);
   level.first.assign(level.node_count + 1, {});
@@ -287,10 +415,11 @@ void Hierarchy::add_level(const Stage& stage, std::vector<std::size_t> colour_st
 }
 
 /// Takes note of the nodes of the newest level that have anchors.
-Hierarchy::Held Hierarchy::held_nodes(const Stage& stage,
-                                      const std::vector<Anchor>& anchors) const {
+template <class Real>
+typename Hierarchy<Real>::Held Hierarchy<Real>::held_nodes(
+    const Stage& stage, const std::vector<Anchor>& anchors) const {
   Held held;
-  held.free_type_count = levels_.back().diagonal.size();
+  held.free_type_count = levels_.back().inverse.size();
   for (const Anchor& anchor : anchors) {
     if (held.nodes.empty() || held.nodes.back().node != at(anchor.node)) {
       held.nodes.push_back(
@@ -301,35 +430,41 @@ Hierarchy::Held Hierarchy::held_nodes(const Stage& stage,
 }
 
 /// K_pp of the nodes that have anchors.
-void Hierarchy::set_anchors(std::size_t depth, const std::vector<Anchor>& anchors) {
-  Level& level = levels_[depth];
+template <class Real>
+void Hierarchy<Real>::set_anchors(std::size_t depth, const std::vector<Anchor>& anchors) {
+  Level<Real>& level = levels_[depth];
   Held& held = held_[depth - 1];
-  level.diagonal.resize(held.free_type_count);
-  level.inverse.resize(held.free_type_count);
-  BlockPool pool;
+  clear_anchors(level, held.free_type_count);
+  BlockPool<Real> pool;
   auto anchor = anchors.begin();
   for (HeldNode& node : held.nodes) {
-    node.sum = node.spring_sum;
+    node.anchor_sum = {};
     for (; anchor != anchors.end() && at(anchor->node) == node.node; ++anchor) {
-      base::add_to(node.sum, anchor->stiffness);
+      base::add_to(node.anchor_sum, anchor->stiffness);
     }
-    const std::size_t type = held.free_type_count + pool.insert(single(node.sum));
+    node.sum = node.spring_sum;
+    base::add_to(node.sum, node.anchor_sum);
+    // Only K_pp counts in single precision; in double, what is anchored must be known by itself.
+    const std::size_t type = std::is_same_v<Real, float>
+                                 ? held.free_type_count + pool.insert(block_of<Real>(node.sum))
+                                 : level.inverse.size();
     level.type[node.node] = static_cast<std::uint32_t>(type);
-    if (type == level.diagonal.size()) {
-      level.diagonal.push_back(single(node.sum));
-      level.inverse.push_back(single(inverse_of(node.sum)));
+    if (type == level.inverse.size()) {
+      add_anchored_type(level, node);
     }
   }
 }
 
-bool Hierarchy::factor_coarsest() {
+template <class Real>
+bool Hierarchy<Real>::factor_coarsest() {
   for (const HeldNode& node : held_.back().nodes) {
     coarsest_->set_diagonal(node.node, node.sum);
   }
   return coarsest_->factor();
 }
 
-void Hierarchy::update_contact() {
+template <class Real>
+void Hierarchy<Real>::update_contact() {
   std::vector<Anchor> anchors = finest_anchors(network_, material_, ground_);
   for (const Anchor& anchor : anchors) {
     set_type(at(anchor.node));
@@ -345,10 +480,15 @@ void Hierarchy::update_contact() {
 }
 
 /// If its shape allows, or it is small.
-void Hierarchy::try_to_factor(const Stage& stage) {
+template <class Real>
+void Hierarchy<Real>::try_to_factor(const Stage& stage) {
   const std::size_t count = stage.order.size();
   const bool is_small = count <= kCoarsestCount;
   const bool is_thin = stage.other.size() <= kThinDegree * count;
+  if (!is_small && is_thin && count > kChainMax<Real>) {
+    is_too_slender_ = true;
+    return;
+  }
   if (is_small || (is_thin && count < network_.node_count / 4)) {
     coarsest_ = unheld_matrix(stage, is_small ? count * count : 2 * count);
     if (coarsest_ && !factor_coarsest()) {
@@ -357,8 +497,9 @@ void Hierarchy::try_to_factor(const Stage& stage) {
   }
 }
 
-Hierarchy::Hierarchy(const Network& network, const model::Material& material, Team& team,
-                     GroundStiffness ground)
+template <class Real>
+Hierarchy<Real>::Hierarchy(const Network& network, const model::Material& material, Team& team,
+                           GroundStiffness ground)
     : network_(network), material_(material), ground_(std::move(ground)) {
   make_lattice();
   Stage stage;
@@ -378,5 +519,8 @@ Hierarchy::Hierarchy(const Network& network, const model::Material& material, Te
     try_to_factor(stage);
   }
 }
+
+template class Hierarchy<float>;
+template class Hierarchy<double>;
 
 }  // namespace holdfast::solver

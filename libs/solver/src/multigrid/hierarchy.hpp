@@ -24,6 +24,25 @@
 /// corrections are too small [Braess 1995].
 namespace holdfast::solver {
 
+/// The finest level's beams, and what its types of nodes have besides an inverse.
+template <class Real>
+struct Beams;
+
+template <>
+struct Beams<float> {
+  std::vector<BeamRow<float>> rows;  ///< K12 by direction and length.
+  std::vector<BeamRow<double>> rows_double;
+  std::vector<Block<float>> diagonal;  ///< K_pp
+  std::vector<Block<double>> diagonal_double;
+};
+
+template <>
+struct Beams<double> {
+  std::vector<Six<double>> springs;   ///< By axis and length.
+  std::vector<Block<double>> ground;  ///< What the contact adds to K_pp.
+};
+
+template <class Real>
 class Hierarchy {
  public:
   /// Keeps references to the network and the material.
@@ -33,12 +52,15 @@ class Hierarchy {
   /// Takes over changed contact: the same levels, held in another way.
   void update_contact();
 
-  std::vector<Level>& levels() { return levels_; }
+  std::vector<Level<Real>>& levels() { return levels_; }
 
-  const LatticeView& lattice() const { return lattice_; }
+  const LatticeView<Real>& lattice() const { return lattice_; }
 
   /// False if the finest level is the only one, or clusters stopped growing early.
   bool has_coarsest() const { return coarsest_.has_value(); }
+
+  /// Whether a level was found that is a chain of thousands of clusters.
+  bool is_too_slender() const { return is_too_slender_; }
 
   /// Factorized coarsest level.
   const BlockLu& coarsest() const { return *coarsest_; }
@@ -46,8 +68,9 @@ class Hierarchy {
  private:
   struct HeldNode {
     std::size_t node = 0;
-    Mat spring_sum;  ///< K_pp without anchors.
-    Mat sum = {};    ///< With them.
+    Mat spring_sum;       ///< K_pp without anchors.
+    Mat anchor_sum = {};  ///< What they add.
+    Mat sum = {};         ///< K_pp
   };
 
   /// Nodes of a coarse level that have anchors. Their blocks come after those of all others.
@@ -57,10 +80,15 @@ class Hierarchy {
   };
 
   void make_lattice();
+  void make_beams();
   void point_at_lattice();
   void set_type(std::size_t node);
   void fill_stage(Team& team, Stage& stage) const;
   Mat diagonal(const Kind& kind) const;
+  void add_type(const Kind& kind);
+  void couple(const Stage& stage, Level<Real>& level) const;
+  void clear_anchors(Level<Real>& level, std::size_t free_type_count) const;
+  void add_anchored_type(Level<Real>& level, const HeldNode& node) const;
   void add_level(const Stage& stage, std::vector<std::size_t> colour_start);
   Held held_nodes(const Stage& stage, const std::vector<Anchor>& anchors) const;
   void set_anchors(std::size_t depth, const std::vector<Anchor>& anchors);
@@ -71,13 +99,12 @@ class Hierarchy {
   const model::Material& material_;
   GroundStiffness ground_;
   std::unordered_map<std::uint64_t, std::uint32_t> type_of_kind_;
-  std::vector<Level> levels_;
+  std::vector<Level<Real>> levels_;
   std::vector<Held> held_;  ///< By level, from the second on.
-  LatticeView lattice_;
-  std::vector<BeamRow> beams_;
-  std::vector<BeamRowDouble> beams_double_;
-  std::vector<BlockDouble> diagonal_double_;
+  LatticeView<Real> lattice_;
+  Beams<Real> beams_;
   std::optional<BlockLu> coarsest_;
+  bool is_too_slender_ = false;
 };
 
 }  // namespace holdfast::solver

@@ -7,16 +7,28 @@
 namespace holdfast::solver {
 
 #ifdef HOLDFAST_HAS_AVX2
-extern const Kernels kKernelsAvx2;
+extern const Kernels<float> kKernelsAvx2;
+extern const Kernels<double> kPreciseKernelsAvx2;
 #endif
 
-const Kernels& kernels() {
+template <>
+const Kernels<float>& kernels<float>() {
 #ifdef HOLDFAST_HAS_AVX2
   if (__builtin_cpu_supports("avx2") != 0) {
     return kKernelsAvx2;
   }
 #endif
-  return kAll;
+  return kAll<float>;
+}
+
+template <>
+const Kernels<double>& kernels<double>() {
+#ifdef HOLDFAST_HAS_AVX2
+  if (__builtin_cpu_supports("avx2") != 0) {
+    return kPreciseKernelsAvx2;
+  }
+#endif
+  return kAll<double>;
 }
 
 }  // namespace holdfast::solver

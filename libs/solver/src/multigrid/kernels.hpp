@@ -16,31 +16,67 @@ namespace holdfast::solver {
 inline constexpr int kBeamLengthMax = 32;
 
 /// A robot's nodes and beams as the kernels see them.
-struct LatticeView {
+template <class Real>
+struct LatticeView;
+
+/// With blocks of K.
+template <>
+struct LatticeView<float> {
   const Others* other = nullptr;
-  const Kind* kind = nullptr;           ///< Null if every beam is one pitch long.
-  const std::uint32_t* type = nullptr;  ///< Node -> diagonal, inverse
-  const BeamRow* beams = nullptr;       ///< [direction * (kBeamLengthMax + 1) + length]
-  const Block* diagonal = nullptr;      ///< K_pp
-  const Block* inverse = nullptr;       ///< K_pp^-1
-  const BeamRowDouble* beams_double = nullptr;
-  const BlockDouble* diagonal_double = nullptr;
+  const Kind* kind = nullptr;              ///< Null if every beam is one pitch long.
+  const std::uint32_t* type = nullptr;     ///< Node -> diagonal, inverse
+  const Block<float>* inverse = nullptr;   ///< K_pp^-1
+  const BeamRow<float>* beams = nullptr;   ///< [direction * (kBeamLengthMax + 1) + length]
+  const Block<float>* diagonal = nullptr;  ///< K_pp
+  const BeamRow<double>* beams_double = nullptr;
+  const Block<double>* diagonal_double = nullptr;
 };
 
-/// A coarse level: compressed rows of 6x6 blocks, equal blocks stored once.
-struct ClusterView {
+/// With beams as springs.
+template <>
+struct LatticeView<double> {
+  const Others* other = nullptr;
+  const Kind* kind = nullptr;
+  const std::uint32_t* type = nullptr;     ///< Node -> inverse, ground
+  const Block<double>* inverse = nullptr;  ///< K_pp^-1
+  const Six<double>* springs = nullptr;    ///< [axis * (kBeamLengthMax + 1) + length]
+  const Block<double>* ground = nullptr;   ///< What kContactByte stands for.
+  double pitch = 0;                        ///< mm
+};
+
+/// A coarse level in compressed rows; equal ones are stored once.
+template <class Real>
+struct ClusterView;
+
+/// With blocks of K.
+template <>
+struct ClusterView<float> {
   const std::int32_t* start = nullptr;
   const std::int32_t* other = nullptr;
-  const std::uint32_t* block = nullptr;
-  const Block* blocks = nullptr;
   const std::uint32_t* type = nullptr;
-  const Block* diagonal = nullptr;
-  const Block* inverse = nullptr;
+  const Block<float>* inverse = nullptr;
+  const std::uint32_t* block = nullptr;
+  const Block<float>* blocks = nullptr;
+  const Block<float>* diagonal = nullptr;
+};
+
+/// With springs. Both ends of a spring mean the one of the end that comes first.
+template <>
+struct ClusterView<double> {
+  const std::int32_t* start = nullptr;
+  const std::int32_t* other = nullptr;
+  const std::uint32_t* type = nullptr;
+  const Block<double>* inverse = nullptr;
+  const std::uint32_t* spring = nullptr;
+  const BodySpring* springs = nullptr;
+  const Block<double>* anchors = nullptr;  ///< Of the types from free_type_count on.
+  std::size_t free_type_count = 0;
 };
 
 /// From a level to the next coarser one.
+template <class Real>
 struct TransferView {
-  const Seat* seat = nullptr;
+  const Seat<Real>* seat = nullptr;
   const std::int32_t* start = nullptr;  ///< Cluster -> its first member in `member`
   const std::int32_t* member = nullptr;
 };
@@ -50,36 +86,49 @@ struct Range {
   std::size_t end = 0;
 };
 
+template <class Real>
 struct Kernels {
+  using Vector = Six<Real>;
+  using Lattice = LatticeView<Real>;
+  using Cluster = ClusterView<Real>;
+  using Transfer = TransferView<Real>;
+
   /// z = K_pp^-1 r: relaxation from zero.
-  void (*relax_first)(const std::uint32_t* type, const Block* inverse, const Six* r, Six* z, Range);
+  void (*relax_first)(const std::uint32_t* type, const Block<Real>* inverse, const Vector* r,
+                      Vector* z, Range);
   /// z_p = K_pp^-1 (r_p - sum of K_pq z_q): Gauss-Seidel on nodes of one colour.
-  void (*relax_lattice)(const LatticeView&, const Six* r, Six* z, Range);
-  void (*relax_cluster)(const ClusterView&, const Six* r, Six* z, Range);
+  void (*relax_lattice)(const Lattice&, const Vector* r, Vector* z, Range);
+  void (*relax_cluster)(const Cluster&, const Vector* r, Vector* z, Range);
   /// Forces left over, gathered at the clusters' centres; nodes from `settled` on have none.
-  void (*restrict_lattice)(const LatticeView&, const TransferView&, std::size_t settled,
-                           const Six* r, const Six* z, Six* coarse, Range clusters);
-  void (*restrict_cluster)(const ClusterView&, const TransferView&, std::size_t settled,
-                           const Six* r, const Six* z, Six* coarse, Range clusters);
+  void (*restrict_lattice)(const Lattice&, const Transfer&, std::size_t settled, const Vector* r,
+                           const Vector* z, Vector* coarse, Range clusters);
+  void (*restrict_cluster)(const Cluster&, const Transfer&, std::size_t settled, const Vector* r,
+                           const Vector* z, Vector* coarse, Range clusters);
   /// z += the rigid motion of the cluster.
-  void (*prolong)(const TransferView&, const Six* coarse, Six* z, Range);
+  void (*prolong)(const Transfer&, const Vector* coarse, Vector* z, Range);
   /// q = K z on a coarse level; returns z . q.
-  double (*apply_cluster)(const ClusterView&, const Six* z, Six* q, Range);
-  /// a . b in single-precision vectors, summed in double precision.
-  double (*dot_single)(const Six* a, const Six* b, Range);
+  double (*apply_cluster)(const Cluster&, const Vector* z, Vector* q, Range);
+  /// a . b, summed in double precision.
+  double (*dot_same)(const Vector* a, const Vector* b, Range);
   /// y = factor x + other y
-  void (*combine)(float factor, const Six* x, float other, Six* y, Range);
+  void (*combine)(Real factor, const Vector* x, Real other, Vector* y, Range);
   /// q = K p in double precision; returns p . q.
-  double (*apply)(const LatticeView&, const Six* p, double* q, Range);
-  /// x += step p, r -= step q, and r in single precision; returns the sum of the squared
-  /// forces left, torques left out.
-  double (*advance)(double step, const Six* p, const double* q, double* x, double* r, Six* r_single,
-                    Range);
+  double (*apply)(const Lattice&, const Vector* p, double* q, Range);
+  /// x += step p, r -= step q, and r rounded; returns the sum of the squared forces left, torques
+  /// left out.
+  double (*advance)(double step, const Vector* p, const double* q, double* x, double* r,
+                    Vector* rounded, Range);
   /// r . z, r in double precision.
-  double (*dot)(const double* r, const Six* z, Range);
+  double (*dot)(const double* r, const Vector* z, Range);
 };
 
 /// Those for this machine.
-const Kernels& kernels();
+template <class Real>
+const Kernels<Real>& kernels();
+
+template <>
+const Kernels<float>& kernels<float>();
+template <>
+const Kernels<double>& kernels<double>();
 
 }  // namespace holdfast::solver

@@ -5,7 +5,9 @@
 
 namespace holdfast::solver {
 
-extern const Kernels kKernelsAvx2;
-const Kernels kKernelsAvx2 = kAll;
+extern const Kernels<float> kKernelsAvx2;
+extern const Kernels<double> kPreciseKernelsAvx2;
+const Kernels<float> kKernelsAvx2 = kAll<float>;
+const Kernels<double> kPreciseKernelsAvx2 = kAll<double>;
 
 }  // namespace holdfast::solver

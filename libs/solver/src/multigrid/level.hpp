@@ -9,42 +9,76 @@
 
 namespace holdfast::solver {
 
-/// One level of the preconditioner, in single precision. The finest keeps its springs in Network.
+/// What couples the nodes of a level.
+template <class Real>
+struct Couplings;
+
+/// Blocks K_pq by edge and K_pp by type; equal ones are stored once.
+template <>
+struct Couplings<float> {
+  std::vector<std::uint32_t> block;
+  std::vector<Block<float>> blocks;
+  std::vector<Block<float>> diagonal;
+};
+
+/// Springs by edge, and what holds the types from free_type_count on.
+template <>
+struct Couplings<double> {
+  std::vector<std::uint32_t> spring;
+  std::vector<BodySpring> springs;
+  std::vector<Block<double>> anchors;
+  std::size_t free_type_count = 0;
+};
+
+/// One level of the preconditioner. The finest keeps its springs in Network.
+template <class Real>
 struct Level {
   std::size_t node_count = 0;
   std::vector<std::size_t> colour_start;
-  // K_pq, compressed rows; equal blocks are stored once.
+  // Compressed rows.
   std::vector<std::int32_t> start;
   std::vector<std::int32_t> other;
-  std::vector<std::uint32_t> block;
-  std::vector<Block> blocks;
-  // K_pp and its inverse.
-  std::vector<std::uint32_t> type;
-  std::vector<Block> diagonal;
-  std::vector<Block> inverse;
+  Couplings<Real> couplings;
+  std::vector<std::uint32_t> type;   ///< Node -> K_pp
+  std::vector<Block<Real>> inverse;  ///< K_pp^-1
   // To the next level; empty on the coarsest.
-  std::vector<Seat> seat;
+  std::vector<Seat<Real>> seat;
   std::vector<std::int32_t> member_start;
   std::vector<std::int32_t> member;
   // Vectors of the cycle, one node more than there are, which stays zero.
-  std::vector<Six> r;
-  std::vector<Six> z;
-  std::vector<Six> first;        ///< First direction of the inner iteration, coarse levels.
-  std::vector<Six> first_image;  ///< K times it.
+  std::vector<Six<Real>> r;
+  std::vector<Six<Real>> z;
+  std::vector<Six<Real>> first;        ///< First direction of the inner iteration, coarse levels.
+  std::vector<Six<Real>> first_image;  ///< K times it.
 
-  ClusterView view() const {
-    return {.start = start.data(),
-            .other = other.data(),
-            .block = block.data(),
-            .blocks = blocks.data(),
-            .type = type.data(),
-            .diagonal = diagonal.data(),
-            .inverse = inverse.data()};
-  }
+  ClusterView<Real> view() const;
 
-  TransferView transfer() const {
+  TransferView<Real> transfer() const {
     return {.seat = seat.data(), .start = member_start.data(), .member = member.data()};
   }
 };
+
+template <>
+inline ClusterView<float> Level<float>::view() const {
+  return {.start = start.data(),
+          .other = other.data(),
+          .type = type.data(),
+          .inverse = inverse.data(),
+          .block = couplings.block.data(),
+          .blocks = couplings.blocks.data(),
+          .diagonal = couplings.diagonal.data()};
+}
+
+template <>
+inline ClusterView<double> Level<double>::view() const {
+  return {.start = start.data(),
+          .other = other.data(),
+          .type = type.data(),
+          .inverse = inverse.data(),
+          .spring = couplings.spring.data(),
+          .springs = couplings.springs.data(),
+          .anchors = couplings.anchors.data(),
+          .free_type_count = couplings.free_type_count};
+}
 
 }  // namespace holdfast::solver

@@ -12,9 +12,12 @@ namespace {
 using mechanics::ContactState;
 
 constexpr int kIterationMax = 500;
+constexpr int kIterationMaxDouble = 200;
 
-/// Memory per module: measured 330 to 400 bytes on solids and on random growth.
+/// Memory per module: measured 330 to 400 bytes on solids and on random growth, in double precision
+/// 500 to 700 on slender robots.
 constexpr std::size_t kBytesPerModule = 450;
+constexpr std::size_t kBytesPerModuleDouble = 800;
 
 std::size_t at(std::int32_t index) { return static_cast<std::size_t>(index); }
 
@@ -40,9 +43,10 @@ ContactState state_of(std::uint8_t code) {
 
 }  // namespace
 
-Multigrid::Multigrid(const model::Robot& robot, int thread_count,
+Multigrid::Multigrid(const model::Robot& robot, Precision precision, int thread_count,
                      std::function<void(int, double)> progress)
     : robot_(robot),
+      precision_(precision),
       team_(thread_count, robot.modules().size()),
       network_(make_network(robot, team_)),
       weight_({0, 0, -model::module_weight_n(robot.material()), 0, 0, 0}),
@@ -57,8 +61,8 @@ Multigrid::Multigrid(const model::Robot& robot, int thread_count,
   }
 }
 
-std::size_t Multigrid::bytes_for(std::size_t module_count) {
-  return module_count * kBytesPerModule;
+std::size_t Multigrid::bytes_for(std::size_t module_count, Precision precision) {
+  return module_count * (precision == Precision::kSingle ? kBytesPerModule : kBytesPerModuleDouble);
 }
 
 void Multigrid::set_law(const mechanics::GroundFacet<double>& facet) {
@@ -68,7 +72,8 @@ void Multigrid::set_law(const mechanics::GroundFacet<double>& facet) {
       set_facet(module, {}, true);
     }
   }
-  hierarchy_.reset();
+  is_law_new_ = true;
+  is_stale_ = true;
 }
 
 void Multigrid::set_facet(std::size_t module, const ContactState& state, bool is_held) {
@@ -90,24 +95,31 @@ Mat Multigrid::tangent(std::uint8_t code) const {
   return mechanics::symmetric_tangent(ground_, state_of(code), (code - 1) % 2 == 1);
 }
 
-void Multigrid::update_hierarchy() {
-  if (hierarchy_) {
-    hierarchy_->update_contact();
+std::unique_ptr<Iteration> Multigrid::make_iteration() {
+  const auto ground = [this](std::uint8_t code) { return tangent(code); };
+  if (precision_ == Precision::kDouble) {
+    return std::make_unique<ConjugateGradients<double>>(network_, robot_.material(), team_, ground);
+  }
+  return std::make_unique<ConjugateGradients<float>>(network_, robot_.material(), team_, ground);
+}
+
+void Multigrid::update_iteration() {
+  if (iteration_ && !is_law_new_) {
+    iteration_->update_contact();
     return;
   }
   std::vector<double> x;
-  if (gradients_) {
-    x = std::move(gradients_->x());
+  if (iteration_) {
+    x = std::move(iteration_->x());
   }
-  gradients_.reset();
-  hierarchy_ = std::make_unique<Hierarchy>(network_, robot_.material(), team_,
-                                           [this](std::uint8_t code) { return tangent(code); });
-  gradients_ = std::make_unique<ConjugateGradients>(*hierarchy_, team_, network_.node_count);
+  iteration_.reset();
+  iteration_ = make_iteration();
+  is_law_new_ = false;
   if (!x.empty()) {
-    gradients_->x() = std::move(x);
+    iteration_->x() = std::move(x);
   }
   if (progress_) {
-    gradients_->progress = [this](int, double error) {
+    iteration_->progress = [this](int, double error) {
       progress_(++told_count_, std::sqrt(std::max(0.0, error) / reference_));
     };
   }
@@ -115,8 +127,8 @@ void Multigrid::update_hierarchy() {
 
 /// What the present displacements leave unbalanced, with the contact's own tangent.
 void Multigrid::compute_residual() {
-  std::vector<double>& r = gradients_->r();
-  std::vector<double>& x = gradients_->x();
+  std::vector<double>& r = iteration_->r();
+  std::vector<double>& x = iteration_->x();
   team_.share(0, network_.node_count, [&](std::size_t begin, std::size_t end) {
     for (std::size_t node = begin; node < end; ++node) {
       const Vec& load = network_.load.empty() ? weight_ : network_.load[at(network_.module[node])];
@@ -124,7 +136,7 @@ void Multigrid::compute_residual() {
     }
   });
   if (reference_ > 0) {
-    gradients_->subtract_product();
+    iteration_->subtract_product();
   }
   for (const Facet& facet : facets_) {
     if (facet.code != 0) {
@@ -153,44 +165,53 @@ std::vector<NodeTerm> Multigrid::unsymmetric_terms() const {
   return terms;
 }
 
-/// Takes up changed facets. What has not changed since the last solution goes on from there.
-void Multigrid::begin() {
+/// Takes up changed facets. What has not changed since the last solution goes on from there. False
+/// if the robot is too slender.
+bool Multigrid::begin() {
   if (!is_new()) {
-    return;
+    return true;
   }
-  update_hierarchy();
+  update_iteration();
+  if (precision_ == Precision::kSingle && iteration_->is_too_slender()) {
+    return false;
+  }
   compute_residual();
-  const double error = gradients_->begin();
+  const double error = iteration_->begin();
   if (reference_ == 0) {
     reference_ = error;
   }
   is_stale_ = false;
+  return true;
 }
 
 bool Multigrid::solve(double tolerance, int iteration_count_min) {
   if (network_.node_count == 0) {
     return true;
   }
-  begin();
-  const int before = gradients_->iteration_count();
-  const ConjugateGradients::Goal goal = {.error = tolerance * tolerance * reference_,
-                                         .iteration_count_min = iteration_count_min,
-                                         .iteration_count_max = kIterationMax};
+  if (!begin()) {
+    return false;
+  }
+  const int before = iteration_->iteration_count();
+  const Iteration::Goal goal = {.error = tolerance * tolerance * reference_,
+                                .iteration_count_min = iteration_count_min,
+                                .iteration_count_max = precision_ == Precision::kSingle
+                                                           ? kIterationMax
+                                                           : kIterationMaxDouble};
   const std::vector<NodeTerm> terms = unsymmetric_terms();
-  const auto end = terms.empty() ? gradients_->run(goal) : gradients_->run_unsymmetric(goal, terms);
-  iteration_count_ += gradients_->iteration_count() - before;
-  if (end == ConjugateGradients::End::kConverged) {
+  const auto end = terms.empty() ? iteration_->run(goal) : iteration_->run_unsymmetric(goal, terms);
+  iteration_count_ += iteration_->iteration_count() - before;
+  if (end == Iteration::End::kConverged) {
     return true;
   }
-  gradients_->x().assign(gradients_->x().size(), 0);  // Nothing to go on from.
+  iteration_->x().assign(iteration_->x().size(), 0);  // Nothing to go on from.
   is_stale_ = true;
   return false;
 }
 
 std::vector<base::Vec6<double>> Multigrid::displacement() {
   std::vector<Vec> by_module(robot_.modules().size());
-  if (gradients_) {
-    const std::vector<double>& x = gradients_->x();
+  if (iteration_) {
+    const std::vector<double>& x = iteration_->x();
     team_.share(0, network_.node_count, [&](std::size_t begin, std::size_t end) {
       for (std::size_t node = begin; node < end; ++node) {
         std::copy_n(x.begin() + static_cast<std::ptrdiff_t>(6 * node), 6,

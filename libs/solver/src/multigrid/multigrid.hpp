@@ -9,6 +9,7 @@
 
 #include "conjugate_gradients.hpp"
 #include "holdfast/mechanics/ground_contact.hpp"
+#include "holdfast/solver/equilibrium.hpp"
 #include "network.hpp"
 
 /// Displacements of a robot for given contact states, without a factorization: what BlockLu is for
@@ -20,21 +21,24 @@ class Multigrid {
   using Vec = base::Vec6<double>;
 
   /// Keeps a reference to the robot. All facets are stuck until set_facet(). 0 threads: all cores.
-  Multigrid(const model::Robot& robot, int thread_count,
+  Multigrid(const model::Robot& robot, Precision precision, int thread_count,
             std::function<void(int iteration, double error)> progress);
 
   /// A guess of how much memory a robot needs, bytes.
-  static std::size_t bytes_for(std::size_t module_count);
+  static std::size_t bytes_for(std::size_t module_count, Precision precision);
+
+  Precision precision() const { return precision_; }
 
   /// Puts all facets back to stuck, under another law.
   void set_law(const mechanics::GroundFacet<double>& facet);
   void set_facet(std::size_t module, const mechanics::ContactState& state, bool is_held);
 
   /// Whether anything changed since the last solution; if not, solve() goes on with that system.
-  bool is_new() const { return is_stale_ || !hierarchy_; }
+  bool is_new() const { return is_stale_; }
 
   /// Goes on from the present displacements until the error in the energy norm is `tolerance` times
-  /// that of the first guess, zero. Returns false if it does not get there. As long as errors are
+  /// that of the first guess, zero. Returns false if it does not get there, or the robot is too
+  /// slender for the precision. As long as errors are
   /// more than rounding, at least `iteration_count_min` iterations.
   bool solve(double tolerance, int iteration_count_min = 0);
 
@@ -52,20 +56,22 @@ class Multigrid {
   };
 
   Mat tangent(std::uint8_t code) const;
-  void begin();
-  void update_hierarchy();
+  bool begin();
+  std::unique_ptr<Iteration> make_iteration();
+  void update_iteration();
   void compute_residual();
   std::vector<NodeTerm> unsymmetric_terms() const;
 
   const model::Robot& robot_;
+  Precision precision_;
   Team team_;
   Network network_;
   mechanics::GroundFacet<double> ground_;
   Vec weight_{};
   std::vector<std::int32_t> facet_of_module_;
   std::vector<Facet> facets_;
-  std::unique_ptr<Hierarchy> hierarchy_;
-  std::unique_ptr<ConjugateGradients> gradients_;
+  std::unique_ptr<Iteration> iteration_;
+  bool is_law_new_ = false;  ///< Everything must be made again.
   std::function<void(int, double)> progress_;
   bool is_stale_ = true;  ///< Some facet changed since the last solve.
   double reference_ = 0;  ///< Square of the first error.

@@ -37,7 +37,8 @@ struct Spring {
 Spring beam_spring(const model::Material& material, std::size_t direction, std::size_t length);
 
 /// From the centre of its cluster to a node, mm.
-inline Point offset(const Seat& seat) {
+template <class Real>
+Point offset(const Seat<Real>& seat) {
   return {static_cast<double>(seat.offset[0]), static_cast<double>(seat.offset[1]),
           static_cast<double>(seat.offset[2])};
 }

@@ -7,38 +7,41 @@
 #include <cstdint>
 #include <vector>
 
-/// Single-precision vectors and blocks of the preconditioner, laid out for 8-lane arithmetic: one
-/// node is one register, of which two lanes stay zero.
+/// Vectors and blocks of the preconditioner, laid out for 8-lane arithmetic: of a node's eight
+/// lanes two stay zero. Real is float, or double where robots are so slender that bending drowns in
+/// single precision's rounding (precise_forces.hpp).
 namespace holdfast::solver {
 
-struct alignas(32) Six {
-  float v[8] = {};
+template <class Real>
+struct alignas(8 * sizeof(Real)) Six {
+  Real v[8] = {};
 };
 
 /// A 6x6 block by columns.
-struct alignas(32) Block {
-  float column[6][8] = {};
-};
-
-struct alignas(32) BlockDouble {
-  double column[6][8] = {};
+template <class Real>
+struct alignas(8 * sizeof(Real)) Block {
+  Real column[6][8] = {};
 };
 
 /// K12 of a beam along an axis has ten nonzeros: a diagonal, and one number in four rows at a place
 /// that depends on the axis only. So K12 u = direct * u + crossed * swap(u), lane by lane.
+template <class Real>
 struct BeamRow {
-  Six direct;
-  Six crossed;
+  Six<Real> direct;
+  Six<Real> crossed;
 };
 
-struct alignas(32) BeamRowDouble {
-  double direct[8] = {};
-  double crossed[8] = {};
+/// A spring between clusters: S acts on the motion of one body less that of the other, carried
+/// over by `arm`.
+struct BodySpring {
+  Block<double> stiffness;
+  double arm[3] = {};  ///< mm, from the other body to the one.
 };
 
 /// Where a node sits in its cluster: u = [u_c + t_c x offset, t_c].
+template <class Real>
 struct Seat {
-  float offset[3] = {};  ///< mm, from the cluster's centre to the node.
+  Real offset[3] = {};  ///< mm, from the cluster's centre to the node.
   std::int32_t cluster = 0;
 };
 

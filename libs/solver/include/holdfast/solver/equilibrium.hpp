@@ -34,7 +34,8 @@
 /// Each linear system is solved directly (block_lu.hpp) for robots of up to 128 modules, under the
 /// unilateral law for many of up to 6,000, and by multigrid otherwise (docs/solver.md). Then each
 /// solution starts from the one before. A robot so slender that multigrid's single precision does
-/// not suffice is solved directly after all, if memory allows.
+/// not suffice is solved in double precision, or directly if that fails and memory allows. Where
+/// even double precision has no digits left the outcome is kTooSlow.
 namespace holdfast::solver {
 
 class Multigrid;
@@ -45,6 +46,10 @@ enum class Method : std::uint8_t {
   kMultigrid,
 };
 
+/// Of multigrid's preconditioner. Single precision suffices but for slender robots; double is several
+/// times slower.
+enum class Precision : std::uint8_t { kSingle, kDouble };
+
 struct EquilibriumOptions {
   /// Memory for the solver; a robot that needs more gets the outcome kTooLarge.
   /// Half of the address space where that is less than 4 GiB.
@@ -53,6 +58,8 @@ struct EquilibriumOptions {
   /// Newton steps per contact problem.
   int step_count_max = 100;
   Method method = Method::kAutomatic;
+  /// Which multigrid begins with; where single precision is not enough it takes the other by itself.
+  Precision precision = Precision::kSingle;
   /// Supports neither lift nor tilt: the ground holds like a module below would. A linear problem.
   bool is_bonded = false;
   /// For multigrid; 0: as many as the machine has cores. The result does not depend on it.
@@ -78,7 +85,7 @@ enum class Outcome : std::uint8_t {
   kSingular,    ///< A pivot vanished.
   kTooLarge,    ///< The solver does not fit into memory_bytes_max.
   kNotSought,   ///< The robot topples, and finding out how would take long.
-  kTooSlow,     ///< Multigrid does not converge: a robot too slender for it.
+  kTooSlow,     ///< No solver gets there: a robot too slender for double precision.
 };
 
 /// The result, per module in the robot's order. Frame: global; units: mm, rad, N, N mm.
@@ -100,6 +107,7 @@ struct Equilibrium {
   /// some contact states leaves most of the factorization as it is.
   std::size_t made_column_count = 0;
   Method method = Method::kDirect;  ///< The one that was used.
+  Precision precision = Precision::kSingle;
   int iteration_count = 0;          ///< Of multigrid, in all linear systems together.
 };
 
@@ -129,6 +137,8 @@ class EquilibriumSolver {
   std::size_t free_count() const;
   void make_direct(std::size_t block_count_max);
   void choose_method();
+  void make_multigrid(Precision precision);
+  bool try_otherwise();
   void assemble();
   Outcome iterate(Equilibrium& result);
   bool is_tight_now();
@@ -147,6 +157,7 @@ class EquilibriumSolver {
   bool set_states(const std::vector<mechanics::ContactState>& states);
   void finish(Equilibrium& result);
   void refine(Equilibrium& result) const;
+  static bool is_refined(const Equilibrium& result);
   void compare_with_free_facets(Equilibrium& result);
 
   const model::Robot& robot_;
@@ -160,6 +171,8 @@ class EquilibriumSolver {
   // One of the two, or none if the robot is too large.
   std::optional<BlockLu> lu_;
   std::unique_ptr<Multigrid> multigrid_;
+  bool has_tried_double_ = false;
+  bool has_tried_direct_ = false;
   double tolerance_ = 0;  ///< Of multigrid, at present.
 };
 

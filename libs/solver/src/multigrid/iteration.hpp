@@ -1,0 +1,74 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "springs.hpp"
+
+namespace holdfast::solver {
+
+/// What a matrix A has at a node that K has not.
+struct NodeTerm {
+  std::int32_t node = 0;
+  Mat difference;
+};
+
+/// Solves K x = f by iteration, whatever the precision of its preconditioner.
+class Iteration {
+ public:
+  virtual ~Iteration() = default;
+
+  /// Six numbers per node.
+  std::vector<double>& x() { return x_; }
+
+  std::vector<double>& r() { return r_; }
+
+  /// Whether the robot is so slender that single precision is not to be trusted.
+  virtual bool is_too_slender() const = 0;
+
+  /// Takes over changed contact.
+  virtual void update_contact() = 0;
+
+  /// r -= K x, for an x that did not come out of run().
+  virtual void subtract_product() = 0;
+
+  enum class End : std::uint8_t { kConverged, kTooSlow, kBroken };
+
+  /// Takes up x and its residual r. Returns r . M^-1 r, which estimates the square of the error of
+  /// x in the energy norm.
+  virtual double begin() = 0;
+
+  /// Until when to iterate.
+  struct Goal {
+    double error = 0;             ///< Of the estimate r . M^-1 r.
+    int iteration_count_min = 0;  ///< Unless the error is far below that already.
+    int iteration_count_max = 0;
+  };
+
+  /// After begin(), or to go on with another goal: improves x.
+  virtual End run(const Goal& goal) = 0;
+
+  /// The same for a matrix A = K + terms that is not symmetric, by full orthogonalization
+  /// [Saad 1981]: r is kept orthogonal to all directions so far, as conjugate gradients do by
+  /// themselves. (To make r smallest instead, as GMRES does, would need directions in double
+  /// precision: r counts every rounding error of a stiff lattice.)
+  virtual End run_unsymmetric(const Goal& goal, std::span<const NodeTerm> terms) = 0;
+
+  int iteration_count() const { return iteration_count_; }
+
+  /// Called once per iteration with the estimated error; may be empty.
+  std::function<void(int, double)> progress;
+
+ protected:
+  explicit Iteration(std::size_t node_count) : x_(6 * node_count), r_(6 * node_count) {}
+
+  std::vector<double> x_;
+  std::vector<double> r_;
+  int iteration_count_ = 0;
+};
+
+}  // namespace holdfast::solver

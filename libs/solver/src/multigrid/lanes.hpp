@@ -1,0 +1,204 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstring>
+
+#include "kernels.hpp"
+
+/// Eight lanes at once: a node's vector of single or double precision.
+/// Included once per instruction set, in a namespace of its own.
+namespace holdfast::solver {
+namespace {
+
+using Single = float __attribute__((vector_size(32)));
+using Quad = float __attribute__((vector_size(16)));
+using Double = double __attribute__((vector_size(32)));
+using Pair = double __attribute__((vector_size(16)));
+
+/// Eight lanes of double precision.
+struct Wide {
+  Double low;
+  Double high;
+
+  Wide& operator+=(const Wide& b) {
+    low += b.low;
+    high += b.high;
+    return *this;
+  }
+
+  Wide& operator-=(const Wide& b) {
+    low -= b.low;
+    high -= b.high;
+    return *this;
+  }
+
+  friend Wide operator+(Wide a, const Wide& b) { return a += b; }
+
+  friend Wide operator-(Wide a, const Wide& b) { return a -= b; }
+
+  friend Wide operator*(const Wide& a, const Wide& b) { return {a.low * b.low, a.high * b.high}; }
+
+  friend Wide operator*(double a, const Wide& b) { return {a * b.low, a * b.high}; }
+};
+
+inline Single load(const float* lanes) {
+  Single value;
+  std::memcpy(&value, lanes, sizeof value);
+  return value;
+}
+
+inline Double load_double(const double* lanes) {
+  Double value;
+  std::memcpy(&value, lanes, sizeof value);
+  return value;
+}
+
+inline Wide load(const double* lanes) { return {load_double(lanes), load_double(lanes + 4)}; }
+
+inline Single load(const Six<float>& six) { return load(six.v); }
+
+inline Wide load(const Six<double>& six) { return load(six.v); }
+
+inline void store(Six<float>& six, Single value) { std::memcpy(six.v, &value, sizeof value); }
+
+inline void store(Six<double>& six, const Wide& value) {
+  std::memcpy(six.v, &value.low, sizeof value.low);
+  std::memcpy(six.v + 4, &value.high, sizeof value.high);
+}
+
+inline Double load_high(const double* lanes) {
+  Pair pair;
+  std::memcpy(&pair, lanes, sizeof pair);
+  return Double{pair[0], pair[1], 0, 0};
+}
+
+inline Double low(Single a) {
+  return __builtin_convertvector(__builtin_shufflevector(a, a, 0, 1, 2, 3), Double);
+}
+
+inline Double high(Single a) {
+  return __builtin_convertvector(__builtin_shufflevector(a, a, 4, 5, 6, 7), Double);
+}
+
+inline Double low(const Wide& a) { return a.low; }
+
+inline Double high(const Wide& a) { return a.high; }
+
+/// Rounds six numbers to the precision of the preconditioner.
+inline void store_rounded(Six<float>& six, Double low, Double high) {
+  const Quad single_low = __builtin_convertvector(low, Quad);
+  const Quad single_high = __builtin_convertvector(high, Quad);
+  std::memcpy(six.v, &single_low, 16);
+  std::memcpy(six.v + 4, &single_high, 16);
+}
+
+inline void store_rounded(Six<double>& six, Double low, Double high) {
+  store(six, Wide{low, high});
+}
+
+template <int kLane>
+inline Single broadcast(Single a) {
+  return __builtin_shufflevector(a, a, kLane, kLane, kLane, kLane, kLane, kLane, kLane, kLane);
+}
+
+/// Lane 0 to 5 of eight.
+template <int kLane>
+inline Double broadcast(const Wide& a) {
+  if constexpr (kLane < 4) {
+    return __builtin_shufflevector(a.low, a.low, kLane, kLane, kLane, kLane);
+  } else {
+    return __builtin_shufflevector(a.high, a.high, kLane - 4, kLane - 4, kLane - 4, kLane - 4);
+  }
+}
+
+/// Which displacement bends with which: the axis keeps its own pair, the others cross.
+template <int kAxis>
+inline Single swap(Single a) {
+  if constexpr (kAxis == 0) {
+    return __builtin_shufflevector(a, a, 0, 5, 4, 3, 2, 1, 6, 7);
+  } else if constexpr (kAxis == 1) {
+    return __builtin_shufflevector(a, a, 5, 1, 3, 2, 4, 0, 6, 7);
+  } else {
+    return __builtin_shufflevector(a, a, 4, 3, 2, 1, 0, 5, 6, 7);
+  }
+}
+
+template <int kAxis>
+inline Wide swap(const Wide& a) {
+  if constexpr (kAxis == 0) {
+    return {__builtin_shufflevector(a.low, a.high, 0, 5, 4, 3),
+            __builtin_shufflevector(a.low, a.high, 2, 1, 6, 7)};
+  } else if constexpr (kAxis == 1) {
+    return {__builtin_shufflevector(a.low, a.high, 5, 1, 3, 2),
+            __builtin_shufflevector(a.low, a.high, 4, 0, 6, 7)};
+  } else {
+    return {__builtin_shufflevector(a.low, a.high, 4, 3, 2, 1),
+            __builtin_shufflevector(a.low, a.high, 0, 5, 6, 7)};
+  }
+}
+
+inline Single multiply(const Block<float>& block, Single x) {
+  const Single a =
+      load(block.column[0]) * broadcast<0>(x) + load(block.column[1]) * broadcast<1>(x);
+  const Single b =
+      load(block.column[2]) * broadcast<2>(x) + load(block.column[3]) * broadcast<3>(x);
+  const Single c =
+      load(block.column[4]) * broadcast<4>(x) + load(block.column[5]) * broadcast<5>(x);
+  return a + b + c;
+}
+
+template <int kColumn>
+inline Wide column_product(const Block<double>& block, const Wide& x) {
+  const Double factor = broadcast<kColumn>(x);
+  const Wide column = load(block.column[kColumn]);
+  return {column.low * factor, column.high * factor};
+}
+
+inline Wide multiply(const Block<double>& block, const Wide& x) {
+  return (column_product<0>(block, x) + column_product<1>(block, x)) +
+         (column_product<2>(block, x) + column_product<3>(block, x)) +
+         (column_product<4>(block, x) + column_product<5>(block, x));
+}
+
+/// [f, m] at a node is [f, m + arm x f] at the point that lies -arm from it.
+inline Single force_moved(const float* arm, Single force) {
+  const float x = arm[0];
+  const float y = arm[1];
+  const float z = arm[2];
+  const Single first = {0, 0, 0, y, z, x, 0, 0};
+  const Single second = {0, 0, 0, z, x, y, 0, 0};
+  return force + (first * __builtin_shufflevector(force, force, 6, 6, 6, 2, 0, 1, 6, 7) -
+                  second * __builtin_shufflevector(force, force, 6, 6, 6, 1, 2, 0, 6, 7));
+}
+
+inline Wide force_moved(const double* arm, Wide force) {
+  const Double f = force.low;
+  force.low[3] += arm[1] * f[2] - arm[2] * f[1];
+  force.high[0] += arm[2] * f[0] - arm[0] * f[2];
+  force.high[1] += arm[0] * f[1] - arm[1] * f[0];
+  return force;
+}
+
+/// [u, t] of a body is [u + t x arm, t] at the point that lies `arm` from where u is.
+inline Single motion_moved(const float* arm, Single motion) {
+  const float x = arm[0];
+  const float y = arm[1];
+  const float z = arm[2];
+  const Single first = {z, x, y, 0, 0, 0, 0, 0};
+  const Single second = {y, z, x, 0, 0, 0, 0, 0};
+  return motion + (first * __builtin_shufflevector(motion, motion, 4, 5, 3, 6, 6, 6, 6, 7) -
+                   second * __builtin_shufflevector(motion, motion, 5, 3, 4, 6, 6, 6, 6, 7));
+}
+
+inline Wide motion_moved(const double* arm, const Wide& motion) {
+  const double x = motion.low[3];
+  const double y = motion.high[0];
+  const double z = motion.high[1];
+  const Double shift = {y * arm[2] - z * arm[1], z * arm[0] - x * arm[2], x * arm[1] - y * arm[0],
+                        0};
+  return {motion.low + shift, motion.high};
+}
+
+}  // namespace
+}  // namespace holdfast::solver
