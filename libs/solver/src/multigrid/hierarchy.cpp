@@ -8,16 +8,13 @@
 #include <unordered_map>
 #include <utility>
 
-#include "../block_kernels.hpp"
 #include "block_pool.hpp"
-#include "holdfast/base/check.hpp"
+#include "matrix_blocks.hpp"
 
 namespace holdfast::solver {
 namespace {
 
 using base::Direction;
-
-constexpr std::size_t kRow = kBeamLengthMax + 1;
 
 /// A level this small is factorized whatever its shape: it costs nothing.
 constexpr std::size_t kCoarsestCount = 48;
@@ -33,59 +30,6 @@ constexpr std::size_t kThinDegree = 3;
 
 std::size_t at(std::int32_t index) { return static_cast<std::size_t>(index); }
 
-/// Which displacement bends with which on a beam along an axis; see kernel_loops.hpp.
-constexpr std::size_t kSwap[3][6] = {{0, 5, 4, 3, 2, 1}, {5, 1, 3, 2, 4, 0}, {4, 3, 2, 1, 0, 5}};
-
-template <class Real>
-Block<Real> block_of(const Mat& matrix) {
-  Block<Real> block;
-  for (int column = 0; column < 6; ++column) {
-    for (int row = 0; row < 6; ++row) {
-      block.column[column][row] = static_cast<Real>(matrix.at(row, column));
-    }
-  }
-  return block;
-}
-
-Mat inverse_of(const Mat& matrix) {
-  Mat inverse;
-  HOLDFAST_CHECK(invert(matrix, inverse));
-  return inverse;
-}
-
-BeamRow<double> beam_row(const Mat& k12, std::size_t axis) {
-  BeamRow<double> row;
-  for (std::size_t i = 0; i < 6; ++i) {
-    const std::size_t j = kSwap[axis][i];
-    row.direct.v[i] = k12.at(static_cast<int>(i), static_cast<int>(i));
-    row.crossed.v[i] = i == j ? 0 : k12.at(static_cast<int>(i), static_cast<int>(j));
-  }
-  return row;
-}
-
-BeamRow<float> single(const BeamRow<double>& row) {
-  BeamRow<float> result;
-  for (std::size_t i = 0; i < 6; ++i) {
-    result.direct.v[i] = static_cast<float>(row.direct.v[i]);
-    result.crossed.v[i] = static_cast<float>(row.crossed.v[i]);
-  }
-  return result;
-}
-
-/// How stiff a beam is against what its middle sees. K12 has that but for the share of the shear
-/// force in bending: -k + shear * (length/2)^2.
-Six<double> middle_stiffness(const Mat& k12, std::size_t axis, double length) {
-  Six<double> stiffness;
-  for (std::size_t i = 0; i < 6; ++i) {
-    stiffness.v[i] = -k12.at(static_cast<int>(i), static_cast<int>(i));
-  }
-  for (std::size_t i = 3; i < 6; ++i) {
-    const std::size_t sheared = kSwap[axis][i];
-    stiffness.v[i] += sheared == i ? 0 : stiffness.v[sheared] * length * length / 4;
-  }
-  return stiffness;
-}
-
 /// The sum of a node's springs, anchors left out.
 Mat spring_sum(const Stage& stage, std::size_t node) {
   Mat sum;
@@ -94,10 +38,6 @@ Mat spring_sum(const Stage& stage, std::size_t node) {
     base::add_to(sum, stage.springs[stage.pattern[node] + i].stiffness);
   }
   return sum;
-}
-
-Mat coupling(const Spring& spring) {
-  return scaled(times_carry(spring.stiffness, difference({}, spring.partner)), -1);
 }
 
 /// Calls f(node, other, spring) for every spring once.
@@ -201,34 +141,6 @@ void Hierarchy<Real>::fill_stage(Team& team, Stage& stage) const {
   }
 }
 
-template <>
-void Hierarchy<float>::make_beams() {
-  const std::size_t length_max = network_.has_long_beams ? kBeamLengthMax : 1;
-  beams_.rows.resize(6 * kRow);
-  beams_.rows_double.resize(6 * kRow);
-  for (std::size_t length = 1; length <= length_max; ++length) {
-    const auto beam = long_beam(material_, static_cast<int>(length));
-    for (std::size_t d = 0; d < 6; ++d) {
-      const Mat k12 = mechanics::block_12(beam, static_cast<Direction>(d));
-      beams_.rows_double[d * kRow + length] = beam_row(k12, d / 2);
-      beams_.rows[d * kRow + length] = single(beams_.rows_double[d * kRow + length]);
-    }
-  }
-}
-
-template <>
-void Hierarchy<double>::make_beams() {
-  beams_.springs.resize(3 * kRow);
-  for (std::size_t length = 1; length < kRow; ++length) {
-    const auto beam = long_beam(material_, static_cast<int>(length));
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      beams_.springs[axis * kRow + length] =
-          middle_stiffness(mechanics::block_12(beam, static_cast<Direction>(2 * axis)), axis,
-                           material_.pitch_mm * static_cast<double>(length));
-    }
-  }
-}
-
 template <class Real>
 void Hierarchy<Real>::make_lattice() {
   make_beams();
@@ -259,21 +171,6 @@ Mat Hierarchy<Real>::diagonal(const Kind& kind) const {
   return sum;
 }
 
-template <>
-void Hierarchy<float>::add_type(const Kind& kind) {
-  const Mat sum = diagonal(kind);
-  levels_.front().inverse.push_back(block_of<float>(inverse_of(sum)));
-  beams_.diagonal.push_back(block_of<float>(sum));
-  beams_.diagonal_double.push_back(block_of<double>(sum));
-}
-
-template <>
-void Hierarchy<double>::add_type(const Kind& kind) {
-  levels_.front().inverse.push_back(block_of<double>(inverse_of(diagonal(kind))));
-  const std::uint8_t code = kind[kContactByte];
-  beams_.ground.push_back(code == 0 ? Block<double>{} : block_of<double>(ground_(code)));
-}
-
 template <class Real>
 void Hierarchy<Real>::set_type(std::size_t node) {
   const auto kind = std::bit_cast<std::uint64_t>(network_.kind[node]);
@@ -283,99 +180,6 @@ void Hierarchy<Real>::set_type(std::size_t node) {
   if (is_new) {
     add_type(network_.kind[node]);
   }
-}
-
-template <>
-void Hierarchy<float>::point_at_lattice() {
-  const Level<float>& level = levels_.front();
-  lattice_ = {.other = network_.other.data(),
-              .kind = network_.has_long_beams ? network_.kind.data() : nullptr,
-              .type = level.type.data(),
-              .inverse = level.inverse.data(),
-              .beams = beams_.rows.data(),
-              .diagonal = beams_.diagonal.data(),
-              .beams_double = beams_.rows_double.data(),
-              .diagonal_double = beams_.diagonal_double.data()};
-}
-
-template <>
-void Hierarchy<double>::point_at_lattice() {
-  const Level<double>& level = levels_.front();
-  lattice_ = {.other = network_.other.data(),
-              .kind = network_.kind.data(),
-              .type = level.type.data(),
-              .inverse = level.inverse.data(),
-              .springs = beams_.springs.data(),
-              .ground = beams_.ground.data(),
-              .pitch = material_.pitch_mm};
-}
-
-template <>
-void Hierarchy<float>::couple(const Stage& stage, Level<float>& level) const {
-  BlockPool<float> pool;
-  std::vector<std::uint32_t> block_of_spring(stage.springs.size());
-  for (std::size_t i = 0; i < stage.springs.size(); ++i) {
-    block_of_spring[i] = pool.insert(block_of<float>(coupling(stage.springs[i])));
-  }
-  level.couplings.blocks = pool.take();
-  level.couplings.block.resize(level.other.size());
-  for (std::size_t node = 0; node < level.node_count; ++node) {
-    const std::size_t start = at(stage.start[node]);
-    for (std::size_t e = start; e < at(stage.start[node + 1]); ++e) {
-      level.couplings.block[e] = block_of_spring[stage.pattern[node] + e - start];
-    }
-  }
-}
-
-template <>
-void Hierarchy<double>::couple(const Stage& stage, Level<double>& level) const {
-  for (const Spring& spring : stage.springs) {
-    level.couplings.springs.push_back(
-        {.stiffness = block_of<double>(spring.stiffness),
-         .arm = {-spring.partner[0], -spring.partner[1], -spring.partner[2]}});
-  }
-  level.couplings.spring.resize(level.other.size());
-  const auto spring_at = [&](std::size_t node, std::size_t e) {
-    return stage.pattern[node] + static_cast<std::uint32_t>(e - at(stage.start[node]));
-  };
-  for (std::size_t node = 0; node < level.node_count; ++node) {
-    for (std::size_t e = at(stage.start[node]); e < at(stage.start[node + 1]); ++e) {
-      const std::size_t other = at(stage.other[e]);
-      if (node < other) {
-        const auto begin = stage.other.begin() + stage.start[other];
-        const auto end = stage.other.begin() + stage.start[other + 1];
-        const auto back = std::find(begin, end, static_cast<std::int32_t>(node));
-        level.couplings.spring[e] = spring_at(node, e);
-        level.couplings.spring[static_cast<std::size_t>(back - stage.other.begin())] =
-            spring_at(node, e);
-      }
-    }
-  }
-}
-
-template <>
-void Hierarchy<float>::clear_anchors(Level<float>& level, std::size_t free_type_count) const {
-  level.inverse.resize(free_type_count);
-  level.couplings.diagonal.resize(free_type_count);
-}
-
-template <>
-void Hierarchy<double>::clear_anchors(Level<double>& level, std::size_t free_type_count) const {
-  level.inverse.resize(free_type_count);
-  level.couplings.anchors.clear();
-  level.couplings.free_type_count = free_type_count;
-}
-
-template <>
-void Hierarchy<float>::add_anchored_type(Level<float>& level, const HeldNode& node) const {
-  level.inverse.push_back(block_of<float>(inverse_of(node.sum)));
-  level.couplings.diagonal.push_back(block_of<float>(node.sum));
-}
-
-template <>
-void Hierarchy<double>::add_anchored_type(Level<double>& level, const HeldNode& node) const {
-  level.inverse.push_back(block_of<double>(inverse_of(node.sum)));
-  level.couplings.anchors.push_back(block_of<double>(node.anchor_sum));
 }
 
 template <class Real>

@@ -107,4 +107,30 @@ class Hierarchy {
   bool is_too_slender_ = false;
 };
 
+// In hierarchy_single.cpp and hierarchy_double.cpp.
+template <>
+void Hierarchy<float>::make_beams();
+template <>
+void Hierarchy<float>::add_type(const Kind& kind);
+template <>
+void Hierarchy<float>::point_at_lattice();
+template <>
+void Hierarchy<float>::couple(const Stage& stage, Level<float>& level) const;
+template <>
+void Hierarchy<float>::clear_anchors(Level<float>& level, std::size_t free_type_count) const;
+template <>
+void Hierarchy<float>::add_anchored_type(Level<float>& level, const HeldNode& node) const;
+template <>
+void Hierarchy<double>::make_beams();
+template <>
+void Hierarchy<double>::add_type(const Kind& kind);
+template <>
+void Hierarchy<double>::point_at_lattice();
+template <>
+void Hierarchy<double>::couple(const Stage& stage, Level<double>& level) const;
+template <>
+void Hierarchy<double>::clear_anchors(Level<double>& level, std::size_t free_type_count) const;
+template <>
+void Hierarchy<double>::add_anchored_type(Level<double>& level, const HeldNode& node) const;
+
 }  // namespace holdfast::solver

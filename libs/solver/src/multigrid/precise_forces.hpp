@@ -6,13 +6,13 @@
 
 /// What forces a displacement leaves unbalanced, spring by spring.
 ///
-/// A slender robot of N modules sags by N^4 times what one connection of it deforms. Whoever
+/// A slender robot of N modules sags by N^4 times what its weight does to one connection. Whoever
 /// multiplies K and z makes at every node an error of a rounding of K_pp z_p, which acts on the
-/// robot like a load and is magnified like one: nothing is left of bending where N^4 exceeds 1e16
-/// in double precision. Here every spring's deformation is computed once and for both of its ends
-/// alike, to the last bit; its force acts on them as equal and opposite. So its error is a false
-/// stress, not a false load, and what follows from that is N^2 times a rounding: the springs'
-/// stiffnesses are known to so many digits anyway.
+/// robot like a load and is magnified like one: where N^4 exceeds 1e16 not a digit is left in
+/// double precision. Here every spring's deformation is computed once for both of its ends, or by
+/// both of them alike to the last bit, and its forces on them are equal and opposite. So an error
+/// in it is a false stress, not a false load: N^2 roundings of the true stress, 1e-7 for 30,000
+/// modules.
 namespace holdfast::solver {
 namespace {
 

@@ -1,0 +1,103 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+// What the levels of double precision consist of: springs (precise_forces.hpp).
+#include <algorithm>
+
+#include "hierarchy.hpp"
+#include "matrix_blocks.hpp"
+
+namespace holdfast::solver {
+namespace {
+
+using base::Direction;
+
+std::size_t at(std::int32_t index) { return static_cast<std::size_t>(index); }
+
+/// How stiff a beam is against what its middle sees. K12 has that but for the share of the shear
+/// force in bending: -k + shear * (length/2)^2.
+Six<double> middle_stiffness(const Mat& k12, std::size_t axis, double length) {
+  Six<double> stiffness;
+  for (std::size_t i = 0; i < 6; ++i) {
+    stiffness.v[i] = -k12.at(static_cast<int>(i), static_cast<int>(i));
+  }
+  for (std::size_t i = 3; i < 6; ++i) {
+    const std::size_t sheared = kSwap[axis][i];
+    stiffness.v[i] += sheared == i ? 0 : stiffness.v[sheared] * length * length / 4;
+  }
+  return stiffness;
+}
+
+}  // namespace
+
+template <>
+void Hierarchy<double>::make_beams() {
+  beams_.springs.resize(3 * kRow);
+  for (std::size_t length = 1; length < kRow; ++length) {
+    const auto beam = long_beam(material_, static_cast<int>(length));
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      beams_.springs[axis * kRow + length] =
+          middle_stiffness(mechanics::block_12(beam, static_cast<Direction>(2 * axis)), axis,
+                           material_.pitch_mm * static_cast<double>(length));
+    }
+  }
+}
+
+template <>
+void Hierarchy<double>::add_type(const Kind& kind) {
+  levels_.front().inverse.push_back(block_of<double>(inverse_of(diagonal(kind))));
+  const std::uint8_t code = kind[kContactByte];
+  beams_.ground.push_back(code == 0 ? Block<double>{} : block_of<double>(ground_(code)));
+}
+
+template <>
+void Hierarchy<double>::point_at_lattice() {
+  const Level<double>& level = levels_.front();
+  lattice_ = {.other = network_.other.data(),
+              .kind = network_.kind.data(),
+              .type = level.type.data(),
+              .inverse = level.inverse.data(),
+              .springs = beams_.springs.data(),
+              .ground = beams_.ground.data(),
+              .pitch = material_.pitch_mm};
+}
+
+template <>
+void Hierarchy<double>::couple(const Stage& stage, Level<double>& level) const {
+  for (const Spring& spring : stage.springs) {
+    level.couplings.springs.push_back(
+        {.stiffness = block_of<double>(spring.stiffness),
+         .arm = {-spring.partner[0], -spring.partner[1], -spring.partner[2]}});
+  }
+  level.couplings.spring.resize(level.other.size());
+  const auto spring_at = [&](std::size_t node, std::size_t e) {
+    return stage.pattern[node] + static_cast<std::uint32_t>(e - at(stage.start[node]));
+  };
+  for (std::size_t node = 0; node < level.node_count; ++node) {
+    for (std::size_t e = at(stage.start[node]); e < at(stage.start[node + 1]); ++e) {
+      const std::size_t other = at(stage.other[e]);
+      if (node < other) {
+        const auto begin = stage.other.begin() + stage.start[other];
+        const auto end = stage.other.begin() + stage.start[other + 1];
+        const auto back = std::find(begin, end, static_cast<std::int32_t>(node));
+        level.couplings.spring[e] = spring_at(node, e);
+        level.couplings.spring[static_cast<std::size_t>(back - stage.other.begin())] =
+            spring_at(node, e);
+      }
+    }
+  }
+}
+
+template <>
+void Hierarchy<double>::clear_anchors(Level<double>& level, std::size_t free_type_count) const {
+  level.inverse.resize(free_type_count);
+  level.couplings.anchors.clear();
+  level.couplings.free_type_count = free_type_count;
+}
+
+template <>
+void Hierarchy<double>::add_anchored_type(Level<double>& level, const HeldNode& node) const {
+  level.inverse.push_back(block_of<double>(inverse_of(node.sum)));
+  level.couplings.anchors.push_back(block_of<double>(node.anchor_sum));
+}
+
+}  // namespace holdfast::solver
