@@ -33,11 +33,11 @@ inline double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-/// Whether one more run is worth it: at least three and a second in all, unless they take long. The
+/// Whether one more run is worth it: three and a second in all, unless they take seconds each. The
 /// fastest counts: first runs pay for fresh memory, which a virtual machine hands out slowly and at
 /// very different speeds, for whoever asks.
 inline bool is_once_more(int run_count, double total_seconds) {
-  return total_seconds < 15 && run_count < 50 && (run_count < 3 || total_seconds < 1);
+  return total_seconds < 5 && run_count < 50 && (run_count < 3 || total_seconds < 1);
 }
 
 /// Peak memory of this process, MB.

@@ -248,8 +248,8 @@ void decide_stable(const model::Robot& robot, Assessment& assessment) {
   }
   if (equilibrium.outcome == Outcome::kTooSlow) {
     assessment.reasons.emplace_back(
-        "stable, but the loads are not known: the robot is so slender that rounding leaves no digits "
-        "of them, or the solver that would keep some does not fit into the memory allowed");
+        "stable, but the loads are not known: the robot is so slender that rounding leaves no "
+        "digits of them, or the solver that would keep some does not fit into the memory allowed");
     return;
   }
   if (equilibrium.outcome != Outcome::kSettled) {

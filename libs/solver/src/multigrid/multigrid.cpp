@@ -12,7 +12,6 @@ namespace {
 using mechanics::ContactState;
 
 constexpr int kIterationMax = 500;
-constexpr int kIterationMaxDouble = 200;
 
 /// Memory per module: measured 330 to 400 bytes on solids and on random growth, in double precision
 /// 500 to 700 on slender robots.
@@ -194,12 +193,11 @@ bool Multigrid::solve(double tolerance, int iteration_count_min) {
   const int before = iteration_->iteration_count();
   const Iteration::Goal goal = {.error = tolerance * tolerance * reference_,
                                 .iteration_count_min = iteration_count_min,
-                                .iteration_count_max = precision_ == Precision::kSingle
-                                                           ? kIterationMax
-                                                           : kIterationMaxDouble};
+                                .iteration_count_max = kIterationMax};
   const std::vector<NodeTerm> terms = unsymmetric_terms();
   const auto end = terms.empty() ? iteration_->run(goal) : iteration_->run_unsymmetric(goal, terms);
-  iteration_count_ += iteration_->iteration_count() - before;
+  last_count_ = iteration_->iteration_count() - before;
+  iteration_count_ += last_count_;
   if (end == Iteration::End::kConverged) {
     return true;
   }

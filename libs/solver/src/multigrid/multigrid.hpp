@@ -47,6 +47,9 @@ class Multigrid {
 
   int iteration_count() const { return iteration_count_; }
 
+  /// Of the last solution, for its system.
+  int last_count() const { return last_count_; }
+
  private:
   struct Facet {
     std::int32_t node = 0;
@@ -76,6 +79,7 @@ class Multigrid {
   bool is_stale_ = true;  ///< Some facet changed since the last solve.
   double reference_ = 0;  ///< Square of the first error.
   int iteration_count_ = 0;
+  int last_count_ = 0;
   int told_count_ = 0;
 };
 

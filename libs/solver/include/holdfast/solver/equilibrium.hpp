@@ -46,8 +46,8 @@ enum class Method : std::uint8_t {
   kMultigrid,
 };
 
-/// Of multigrid's preconditioner. Single precision suffices but for slender robots; double is several
-/// times slower.
+/// Of multigrid's preconditioner. Single precision suffices but for slender robots; double is
+/// several times slower.
 enum class Precision : std::uint8_t { kSingle, kDouble };
 
 struct EquilibriumOptions {
@@ -58,7 +58,7 @@ struct EquilibriumOptions {
   /// Newton steps per contact problem.
   int step_count_max = 100;
   Method method = Method::kAutomatic;
-  /// Which multigrid begins with; where single precision is not enough it takes the other by itself.
+  /// Which multigrid begins with. Where single precision is not enough it takes double.
   Precision precision = Precision::kSingle;
   /// Supports neither lift nor tilt: the ground holds like a module below would. A linear problem.
   bool is_bonded = false;
