@@ -108,7 +108,7 @@ struct Equilibrium {
   std::size_t made_column_count = 0;
   Method method = Method::kDirect;  ///< The one that was used.
   Precision precision = Precision::kSingle;
-  int iteration_count = 0;          ///< Of multigrid, in all linear systems together.
+  int iteration_count = 0;  ///< Of multigrid, in all linear systems together.
 };
 
 /// Solves one robot, with one law after the other if need be. The factorization's ordering and
