@@ -100,7 +100,8 @@ scale() { # ours alone, from 10^4 to 10^6 modules
   rm -f "$work/reference.bin"
   for run in "cube 22" "cube 46" "cube 100" "scaffold 40" "scaffold 85" "scaffold 184" \
     "shell 45" "shell 142" "shell 448" "growth 10000" "growth 100000" "growth 1000000" \
-    "portal 320" "portal 3130" "tower 1100" "tower 11000" "bridge 400" "bridge 4000"; do
+    "portal 320" "portal 3130" "portal 31250" "tower 1100" "tower 11000" "tower 111111" \
+    "bridge 400" "bridge 4000" "bridge 41600"; do
     read -r family size <<<"$run"
     if for _ in 1 2 3; do ours "$family" "$size" bonded 2; done >"$work/more"; then
       read -r modules seconds mb its <<<"$(median "$work/more")"

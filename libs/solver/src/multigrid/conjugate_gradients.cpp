@@ -14,6 +14,9 @@ constexpr int kSweepCount = 2;
 /// An error so far below the one sought, both squared, may be rounding, which no step improves.
 constexpr double kRounding = 0.01;
 
+/// After so many iterations that gained nothing only rounding is left.
+constexpr int kPatience = 50;
+
 }  // namespace
 
 template <class Real>
@@ -107,6 +110,16 @@ bool ConjugateGradients<Real>::is_reached(const Goal& goal, int iteration) const
   return error_ <= goal.error && may_stop;
 }
 
+/// Whether all iterations are used up, or many have gained nothing.
+template <class Real>
+bool ConjugateGradients<Real>::is_stuck(const Goal& goal, int iteration) {
+  if (iteration == 0 || error_ < least_error_) {
+    least_error_ = error_;
+    least_at_ = iteration;
+  }
+  return iteration == goal.iteration_count_max || iteration - least_at_ > kPatience;
+}
+
 template <class Real>
 void ConjugateGradients<Real>::tell() const {
   if (progress) {
@@ -119,7 +132,7 @@ template <class Real>
 Iteration::End ConjugateGradients<Real>::run(const Goal& goal) {
   const std::vector<Six<Real>>& z = hierarchy_.levels().front().z;
   for (int iteration = 0; !is_reached(goal, iteration); ++iteration) {
-    if (iteration == goal.iteration_count_max) {
+    if (is_stuck(goal, iteration)) {
       return End::kTooSlow;
     }
     const double curvature = multiply();

@@ -35,6 +35,7 @@ class ConjugateGradients final : public Iteration {
   };
 
   bool is_reached(const Goal& goal, int iteration) const;
+  bool is_stuck(const Goal& goal, int iteration);
   double precondition();
   double multiply();
   void advance(double step);
@@ -52,6 +53,8 @@ class ConjugateGradients final : public Iteration {
   std::vector<Six<Real>> p_;
   std::vector<Direction> older_;
   double error_ = 0;
+  double least_error_ = 0;  ///< Of this run,
+  int least_at_ = 0;        ///< and in which iteration.
 };
 
 }  // namespace holdfast::solver

@@ -80,7 +80,7 @@ Iteration::End ConjugateGradients<Real>::run_unsymmetric(const Goal& goal,
     older_.clear();
   }
   for (int iteration = 0; !is_reached(goal, iteration); ++iteration) {
-    if (iteration == goal.iteration_count_max) {
+    if (is_stuck(goal, iteration)) {
       return End::kTooSlow;
     }
     turn_away_from_older();
