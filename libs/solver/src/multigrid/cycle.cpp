@@ -130,17 +130,18 @@ void Cycle<Real>::solve(std::size_t depth) {
 template <class Real>
 void Cycle<Real>::solve_coarsest() {
   Level<Real>& level = hierarchy_.levels().back();
-  add_coarsest(level.r, level.z, 0);
+  std::fill(level.z.begin(), level.z.end(), Six<Real>{});
+  add_coarsest(level.r, level.z);
   for (int step = 0; step < kRefinementCount<Real>; ++step) {
     apply(level, level.first_image);
     combine(level.node_count, 1, level.r, -1, level.first_image);
-    add_coarsest(level.first_image, level.z, 1);
+    add_coarsest(level.first_image, level.z);
   }
 }
 
-/// z := share z + K^-1 r
+/// z += K^-1 r
 template <class Real>
-void Cycle<Real>::add_coarsest(const Vector& r, Vector& z, Real share) {
+void Cycle<Real>::add_coarsest(const Vector& r, Vector& z) {
   const std::size_t count = hierarchy_.levels().back().node_count;
   coarsest_.resize(count);
   for (std::size_t node = 0; node < count; ++node) {
@@ -151,7 +152,7 @@ void Cycle<Real>::add_coarsest(const Vector& r, Vector& z, Real share) {
   hierarchy_.coarsest().solve(coarsest_);
   for (std::size_t node = 0; node < count; ++node) {
     for (std::size_t i = 0; i < 6; ++i) {
-      z[node].v[i] = share * z[node].v[i] + static_cast<Real>(coarsest_[node][i]);
+      z[node].v[i] += static_cast<Real>(coarsest_[node][i]);
     }
   }
 }

@@ -26,7 +26,7 @@ class Cycle {
   void descend(std::size_t depth);
   void solve(std::size_t depth);
   void solve_coarsest();
-  void add_coarsest(const Vector& r, Vector& z, Real share);
+  void add_coarsest(const Vector& r, Vector& z);
   void relax_colour(std::size_t depth, std::size_t colour, bool is_first);
   void pass_down(std::size_t depth, std::size_t settled);
   double apply(Level<Real>& level, Vector& image);
