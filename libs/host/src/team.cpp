@@ -27,6 +27,12 @@ void wait_while(const std::atomic<Value>& variable, Value value) {
   variable.wait(value, std::memory_order_acquire);
 }
 
+/// Asked once: the answer is read from files.
+int core_count() {
+  static const auto count = static_cast<int>(std::thread::hardware_concurrency());
+  return count;
+}
+
 std::uint64_t pack(std::size_t first, std::size_t last) {
   return std::uint64_t{last} << 32U | first;
 }
@@ -38,8 +44,7 @@ std::size_t last_of(std::uint64_t chunks) { return chunks >> 32U; }
 }  // namespace
 
 Team::Team(int thread_count, std::size_t item_count) {
-  const auto cores = static_cast<int>(std::thread::hardware_concurrency());
-  thread_count = std::clamp(thread_count > 0 ? thread_count : cores, 1,
+  thread_count = std::clamp(thread_count > 0 ? thread_count : core_count(), 1,
                             item_count < kSharedItemMin ? 1 : kThreadCountMax);
   ranges_ = std::vector<Range>(static_cast<std::size_t>(thread_count));
   thread_count_ = 1;

@@ -9,8 +9,8 @@
 #include <limits>
 #include <utility>
 
+#include "connection_law.hpp"
 #include "holdfast/host/team.hpp"
-#include "holdfast/mechanics/connector.hpp"
 #include "holdfast/mechanics/support_corners.hpp"
 
 namespace holdfast::verdict {
@@ -40,22 +40,6 @@ ModelStability model_stability(const model::Robot& robot, const Equilibrium& equ
 
 bool breaks(double load_ratio) { return load_ratio >= 1 - kLoadRatioTie; }
 
-double strength_n(const model::Material& material, base::Direction direction) {
-  return base::is_vertical(direction) ? material.strength_vertical_n : material.strength_lateral_n;
-}
-
-/// Eqs. (16)-(17).
-ConnectionResult connection_result(const model::Material& material, base::Direction direction,
-                                   const base::Vec6<double>& middle) {
-  const auto load = mechanics::connection_load(middle);
-  return {
-      .load_ratio = mechanics::load_ratio(load, material.facet_mm, strength_n(material, direction)),
-      .axial_n = load.axial,
-      .bending_nmm = load.bending,
-      .shear_n = std::sqrt(middle[0] * middle[0] + middle[1] * middle[1]),
-      .torsion_nmm = middle[5]};
-}
-
 /// Unlike with std::max, a NaN on either side wins: what is not known must not hide.
 double max_or_nan(double a, double b) { return std::isnan(a) || a > b ? a : b; }
 
@@ -70,7 +54,8 @@ struct Loads {
   std::vector<std::size_t> broken;
 
   void add(std::size_t connection, double ratio, double other_ratio) {
-    const auto [low, high] = std::minmax(ratio, other_ratio);
+    const double low = ratio < other_ratio ? ratio : other_ratio;
+    const double high = ratio < other_ratio ? other_ratio : ratio;
     range = {.low = max_or_nan(range.low, low), .high = max_or_nan(range.high, high)};
     if (ratio > ratio_max) {
       ratio_max = ratio;
@@ -94,8 +79,10 @@ struct Loads {
 
 /// Every connection's result, and what they say together.
 Loads add_up(const model::Robot& robot, int thread_count, Assessment& assessment) {
-  const model::Material& material = robot.material();
-  const auto beam = mechanics::beam_stiffness(model::beam_section(material));
+  // Of a connection the second module lies in a positive direction.
+  const ConnectionLaw laws[] = {{robot.material(), base::Direction::kPlusX},
+                                {robot.material(), base::Direction::kPlusY},
+                                {robot.material(), base::Direction::kPlusZ}};
   const auto connections = robot.connections();
   const Equilibrium& equilibrium = assessment.equilibrium;
   assessment.connections.resize(connections.size());
@@ -105,15 +92,13 @@ Loads add_up(const model::Robot& robot, int thread_count, Assessment& assessment
     Loads part;
     for (std::size_t i = begin; i < end; ++i) {
       const model::Connection& pair = connections[i];
-      const auto result_at = [&](const std::vector<base::Vec6<double>>& u) {
-        return connection_result(
-            material, pair.direction,
-            mechanics::middle_force(beam, pair.direction, u[static_cast<std::size_t>(pair.a)],
-                                    u[static_cast<std::size_t>(pair.b)]));
-      };
-      assessment.connections[i] = result_at(equilibrium.displacement);
+      const ConnectionLaw& law = laws[base::index(pair.direction) / 2];
+      const auto a = static_cast<std::size_t>(pair.a);
+      const auto b = static_cast<std::size_t>(pair.b);
+      assessment.connections[i] =
+          law.result(equilibrium.displacement[a], equilibrium.displacement[b]);
       part.add(i, assessment.connections[i].load_ratio,
-               result_at(equilibrium.alternative).load_ratio);
+               law.load_ratio(equilibrium.alternative[a], equilibrium.alternative[b]));
     }
     return part;
   });

@@ -6,7 +6,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
+
+#include "holdfast/mechanics/connector.hpp"
 
 namespace holdfast::verdict {
 namespace {
@@ -54,6 +57,38 @@ TEST(Assessment, counts_the_modules_that_a_vertical_connection_can_hold) {
   EXPECT_EQ(breaks.broken[0], *breaks.worst);
   EXPECT_NEAR(*breaks.weight_factor, 11.98 / (21 * kWeight), kRounding);
   EXPECT_EQ(breaks.contact_model, ContactModel::kNone);
+}
+
+/// Against the functions of mechanics, one connection at a time; to the last bit. A section with
+/// unequal moments tells the axes apart.
+TEST(Assessment, says_of_every_connection_what_mechanics_says) {
+  model::RobotSpec spec{.fixed = {{0, 0, 0}}, .support_z = -10};
+  for (const Cell& cell : {Cell{0, 0, 0}, Cell{1, 0, 0}, Cell{1, 1, 0}, Cell{1, 1, 1}, Cell{2, 1, 1},
+                           Cell{2, 0, 1}, Cell{2, -1, 1}, Cell{2, -1, 0}}) {
+    spec.existing.push_back(cell);
+  }
+  spec.material.moment_y_mm4 *= 3;
+  const auto robot = model::Robot::create(spec).value();
+  const Assessment found = assess(robot);
+  const model::Material& material = robot.material();
+  const auto beam = mechanics::beam_stiffness(model::beam_section(material));
+  ASSERT_EQ(found.connections.size(), robot.connections().size());
+  for (std::size_t i = 0; i < found.connections.size(); ++i) {
+    const model::Connection& pair = robot.connections()[i];
+    const auto middle =
+        mechanics::middle_force(beam, pair.direction,
+                                found.equilibrium.displacement[static_cast<std::size_t>(pair.a)],
+                                found.equilibrium.displacement[static_cast<std::size_t>(pair.b)]);
+    const auto load = mechanics::connection_load(middle);
+    const double strength = base::is_vertical(pair.direction) ? material.strength_vertical_n
+                                                              : material.strength_lateral_n;
+    EXPECT_EQ(found.connections[i].load_ratio,
+              mechanics::load_ratio(load, material.facet_mm, strength));
+    EXPECT_EQ(found.connections[i].axial_n, load.axial);
+    EXPECT_EQ(found.connections[i].bending_nmm, load.bending);
+    EXPECT_DOUBLE_EQ(found.connections[i].shear_n, std::hypot(middle[0], middle[1]));
+    EXPECT_EQ(found.connections[i].torsion_nmm, middle[5]);
+  }
 }
 
 TEST(Assessment, calls_a_load_ratio_of_exactly_one_an_overload) {

@@ -57,28 +57,33 @@ inline Single product(const ClusterView<float>& level, const Six<float>* z, std:
   return multiply(level.diagonal[level.type[p]], load(z[p])) + neighbour_sum(level, z, p);
 }
 
+inline Wide widened(const Six<float>& six) {
+  const Single u = load(six);
+  return {low(u), high(u)};
+}
+
+/// What the two neighbours on an axis contribute.
 template <int kAxis>
-inline void add_axis(const LatticeView<float>& level, const Six<float>* p, std::size_t node,
-                     Wide& sum) {
+inline Wide wide_axis_sum(const LatticeView<float>& level, const Six<float>* p, std::size_t node) {
   constexpr int kRow = kBeamLengthMax + 1;
-  for (int sign = 0; sign < 2; ++sign) {
-    const auto direction = static_cast<std::size_t>(2 * kAxis + sign);
-    const Single u = load(p[level.other[node][direction]]);
-    const Single crossed = swap<kAxis>(u);
-    const std::size_t length = level.kind == nullptr ? 1 : level.kind[node][direction];
-    const BeamRow<double>& beam = level.beams_double[direction * kRow + length];
-    sum.low += load_double(beam.direct.v) * low(u) + load_double(beam.crossed.v) * low(crossed);
-    sum.high +=
-        load_double(beam.direct.v + 4) * high(u) + load_double(beam.crossed.v + 4) * high(crossed);
+  const Others& other = level.other[node];
+  const Wide plus = widened(p[other[2 * kAxis]]);
+  const Wide minus = widened(p[other[2 * kAxis + 1]]);
+  if (level.kind == nullptr) {
+    const BeamRow<double>& beam = level.beams_double[2 * kAxis * kRow + 1];
+    return load(beam.direct) * (plus + minus) + load(beam.crossed) * swap<kAxis>(plus - minus);
   }
+  const Kind& kind = level.kind[node];
+  const BeamRow<double>& up = level.beams_double[2 * kAxis * kRow + kind[2 * kAxis]];
+  const BeamRow<double>& down = level.beams_double[(2 * kAxis + 1) * kRow + kind[2 * kAxis + 1]];
+  return load(up.direct) * plus + load(up.crossed) * swap<kAxis>(plus) +
+         (load(down.direct) * minus + load(down.crossed) * swap<kAxis>(minus));
 }
 
 /// (K p)_node of the finest level, in double precision.
 inline Wide wide_product(const LatticeView<float>& level, const Six<float>* p, std::size_t node) {
-  Wide sum = {};
-  add_axis<0>(level, p, node, sum);
-  add_axis<1>(level, p, node, sum);
-  add_axis<2>(level, p, node, sum);
+  Wide sum = wide_axis_sum<0>(level, p, node) + wide_axis_sum<1>(level, p, node) +
+             wide_axis_sum<2>(level, p, node);
   const Block<double>& diagonal = level.diagonal_double[level.type[node]];
   for (int k = 0; k < 6; ++k) {
     const double factor = static_cast<double>(p[node].v[k]);

@@ -39,6 +39,31 @@ Vec6<double> moved(Vec6<double> force, std::size_t direction, double length) {
   return force;
 }
 
+/// How an end of an unloaded beam moves its point `place` pitches away, by Hermite's cubics: a
+/// displacement u moves it by `linear` u along the axis and by `cubic` u across, and turns it by
+/// cubic_rate (step x u); a rotation t turns it by `linear` t about the axis and by slope_rate t
+/// across, and moves it by slope (t x step).
+struct BeamShape {
+  BeamShape(double pitch, std::size_t direction, int place, int length)
+      : axis(direction / 2), step(unit_step(direction)) {
+    const double s = static_cast<double>(place) / length;
+    const double span = pitch * length;
+    linear = 1 - s;
+    cubic = 1 - 3 * s * s + 2 * s * s * s;
+    slope = span * s * linear * linear;
+    cubic_rate = -6 * s * linear / span;
+    slope_rate = linear * (1 - 3 * s);
+  }
+
+  std::size_t axis = 0;
+  std::array<double, 3> step;  ///< From the end to the point.
+  double linear = 0;
+  double cubic = 0;
+  double slope = 0;
+  double cubic_rate = 0;
+  double slope_rate = 0;
+};
+
 /// Spreads the low 21 bits to every third place.
 std::uint64_t spread(std::uint64_t value) {
   value = (value | value << 32U) & 0x1f00000000ffffU;
@@ -232,27 +257,18 @@ class Builder {
   /// of the displacement there for a unit displacement of that end.
   Vec6<double> share(const Vec6<double>& force, std::size_t direction, int place,
                      int length) const {
-    const double s = static_cast<double>(place) / length;
-    const double span = robot_.material().pitch_mm * length;
-    const double linear = 1 - s;
-    const double cubic = 1 - 3 * s * s + 2 * s * s * s;
-    const double slope = span * s * linear * linear;
-    const double cubic_rate = -6 * s * linear / span;
-    const double slope_rate = linear * (1 - 3 * s);
-    const std::array<double, 3> step = unit_step(direction);
-    const std::size_t axis = direction / 2;
+    const BeamShape shape(robot_.material().pitch_mm, direction, place, length);
+    const std::array<double, 3>& step = shape.step;
     Vec6<double> taken{};
     for (std::size_t i = 0; i < 3; ++i) {
-      taken[i] = force[i] * (i == axis ? linear : cubic);
-      taken[i + 3] = force[i + 3] * (i == axis ? linear : slope_rate);
+      taken[i] = force[i] * (i == shape.axis ? shape.linear : shape.cubic);
+      taken[i + 3] = force[i + 3] * (i == shape.axis ? shape.linear : shape.slope_rate);
     }
-    // A rotation t moves the beam by slope * (t x step) and turns it by slope_rate * t; a
-    // displacement u turns it by cubic_rate * (step x u).
     for (std::size_t i = 0; i < 3; ++i) {
       const std::size_t j = (i + 1) % 3;
       const std::size_t k = (i + 2) % 3;
-      taken[i + 3] += slope * (step[j] * force[k] - step[k] * force[j]);
-      taken[i] += cubic_rate * (force[j + 3] * step[k] - force[k + 3] * step[j]);
+      taken[i + 3] += shape.slope * (step[j] * force[k] - step[k] * force[j]);
+      taken[i] += shape.cubic_rate * (force[j + 3] * step[k] - force[k + 3] * step[j]);
     }
     return taken;
   }
@@ -419,31 +435,88 @@ RunFactor factorize_run(const mechanics::BeamStiffness<double>& beam, std::size_
   return run;
 }
 
-void recover_run(const Robot& robot, const Network& network, const Network::Run& run,
-                 const RunFactor& factor, std::vector<Vec6<double>>& displacement) {
-  std::array<std::size_t, kBeamLengthMax + 1> modules{};
-  std::array<Vec6<double>, kBeamLengthMax> right;
-  modules[0] = at(run.from);
+/// Replaces the loads of a run's modules by how far they bend it while its ends are held.
+void bend_run(const Robot& robot, const Network::Run& run, const RunFactor& factor,
+              std::vector<Vec6<double>>& load) {
+  std::array<std::size_t, kBeamLengthMax> modules{};
   const auto length = static_cast<std::size_t>(run.length);
-  for (std::size_t i = 1; i <= length; ++i) {
-    modules[i] = at(robot.neighbours()[modules[i - 1]][run.direction]);
-  }
+  std::size_t module = at(run.from);
   for (std::size_t i = 1; i < length; ++i) {
-    right[i] = network.load[modules[i]];
-    subtract_product(right[i], factor.factor[i - 1],
-                     i == 1 ? displacement[modules[0]] : right[i - 1]);
+    module = at(robot.neighbours()[module][run.direction]);
+    modules[i] = module;
+    if (i > 1) {
+      subtract_product(load[module], factor.factor[i - 1], load[modules[i - 1]]);
+    }
   }
   for (std::size_t i = length - 1; i > 0; --i) {
-    subtract_product(right[i], factor.to_next, displacement[modules[i + 1]]);
-    displacement[modules[i]] = multiply(factor.pivot[i - 1], right[i]);
+    Vec6<double>& right = load[modules[i]];
+    if (i + 1 < length) {
+      subtract_product(right, factor.to_next, load[modules[i + 1]]);
+    }
+    right = multiply(factor.pivot[i - 1], right);
   }
 }
 
-Vec6<double> minus(Vec6<double> a, const Vec6<double>& b) {
-  for (std::size_t i = 0; i < 6; ++i) {
-    a[i] -= b[i];
+/// All runs and hanging modules: from loads to what bends while the ends, or the host, are held.
+void bend_alone(const Robot& robot, Team& team, Network& network) {
+  const auto beam = long_beam(robot.material(), 1);
+  std::array<std::vector<RunFactor>, 6> factors;
+  std::array<Mat6<double>, 6> inverse_11;
+  for (std::size_t d = 0; d < 6; ++d) {
+    inverse_11[d] = inverse_of(mechanics::block_11(beam, direction_of(d)));
+    factors[d].resize(kBeamLengthMax + 1);
   }
-  return a;
+  for (const Network::Run& run : network.runs) {
+    RunFactor& factor = factors[run.direction][at(run.length)];
+    if (factor.pivot.empty()) {
+      factor = factorize_run(beam, run.direction, run.length);
+    }
+  }
+  team.share(0, network.runs.size(), [&](std::size_t begin, std::size_t end) {
+    for (const Network::Run& run : std::span(network.runs).subspan(begin, end - begin)) {
+      bend_run(robot, run, factors[run.direction][at(run.length)], network.load);
+    }
+  });
+  team.share(0, network.hanging.size(), [&](std::size_t begin, std::size_t end) {
+    for (const auto& [module, direction] :
+         std::span(network.hanging).subspan(begin, end - begin)) {
+      network.load[at(module)] = multiply(inverse_11[direction], network.load[at(module)]);
+    }
+  });
+}
+
+/// t x a
+std::array<double, 3> cross(const double* t, const std::array<double, 3>& a) {
+  return {t[1] * a[2] - t[2] * a[1], t[2] * a[0] - t[0] * a[2], t[0] * a[1] - t[1] * a[0]};
+}
+
+/// Adds how the motion of an end of a beam moves the point that lies `shape` from it.
+void add_motion(const BeamShape& shape, const Vec6<double>& end, Vec6<double>& u) {
+  const std::array<double, 3> by_turn = cross(end.data() + 3, shape.step);
+  const std::array<double, 3> by_shift = cross(end.data(), shape.step);
+  for (std::size_t i = 0; i < 3; ++i) {
+    u[i] += (i == shape.axis ? shape.linear : shape.cubic) * end[i] + shape.slope * by_turn[i];
+    u[i + 3] += (i == shape.axis ? shape.linear : shape.slope_rate) * end[i + 3] -
+                shape.cubic_rate * by_shift[i];
+  }
+}
+
+void recover_run(const Robot& robot, const Network& network, const Network::Run& run,
+                 std::vector<Vec6<double>>& displacement) {
+  const double pitch = robot.material().pitch_mm;
+  std::size_t to = at(run.from);
+  for (int i = 0; i < run.length; ++i) {
+    to = at(robot.neighbours()[to][run.direction]);
+  }
+  std::size_t module = at(run.from);
+  for (int i = 1; i < run.length; ++i) {
+    module = at(robot.neighbours()[module][run.direction]);
+    displacement[module] = network.load[module];
+    add_motion(BeamShape(pitch, run.direction, i, run.length), displacement[at(run.from)],
+               displacement[module]);
+    add_motion(BeamShape(pitch, run.direction ^ 1U, run.length - i, run.length), displacement[to],
+               displacement[module]);
+  }
 }
 
 }  // namespace
@@ -454,35 +527,31 @@ mechanics::BeamStiffness<double> long_beam(const model::Material& material, int 
   return mechanics::beam_stiffness(section);
 }
 
-Network make_network(const Robot& robot, Team& team) { return Builder(robot, team).build(); }
+Network make_network(const Robot& robot, Team& team) {
+  Network network = Builder(robot, team).build();
+  if (!network.load.empty()) {
+    bend_alone(robot, team, network);
+  }
+  return network;
+}
 
 void recover(const Robot& robot, const Network& network, Team& team,
              std::vector<Vec6<double>>& displacement) {
-  const auto beam = long_beam(robot.material(), 1);
-  std::array<std::vector<RunFactor>, 6> runs;
-  std::array<Mat6<double>, 6> inverse_11;
-  for (std::size_t d = 0; d < 6; ++d) {
-    inverse_11[d] = inverse_of(mechanics::block_11(beam, direction_of(d)));
-    runs[d].resize(kBeamLengthMax + 1);
-  }
-  for (const Network::Run& run : network.runs) {
-    RunFactor& factor = runs[run.direction][at(run.length)];
-    if (factor.pivot.empty()) {
-      factor = factorize_run(beam, run.direction, run.length);
-    }
-  }
   team.share(0, network.runs.size(), [&](std::size_t begin, std::size_t end) {
     for (const Network::Run& run : std::span(network.runs).subspan(begin, end - begin)) {
-      recover_run(robot, network, run, runs[run.direction][at(run.length)], displacement);
+      recover_run(robot, network, run, displacement);
     }
   });
   for (std::size_t i = network.hanging.size(); i-- > 0;) {
     const auto [module, direction] = network.hanging[i];
     const std::size_t host = at(robot.neighbours()[at(module)][direction]);
-    const Vec6<double> pull =
-        multiply(mechanics::block_12(beam, direction_of(direction)), displacement[host]);
-    displacement[at(module)] =
-        multiply(inverse_11[direction], minus(network.load[at(module)], pull));
+    Vec6<double>& u = displacement[at(module)];
+    u = displacement[host];  // As one rigid body, from the host to what hangs on it.
+    const std::array<double, 3> by_turn = cross(&u[3], unit_step(direction ^ 1U));
+    for (std::size_t k = 0; k < 3; ++k) {
+      u[k] += robot.material().pitch_mm * by_turn[k];
+    }
+    base::add_to(u, network.load[at(module)]);
   }
 }
 

@@ -99,20 +99,25 @@ Mat scaled(Mat matrix, double factor) {
 
 /// The columns of t gain those of u times -[a]x.
 Mat times_carry(Mat s, const Point& a) {
-  for (int row = 0; row < 6; ++row) {
-    const double x = s.at(row, 0);
-    const double y = s.at(row, 1);
-    const double z = s.at(row, 2);
-    // (t x a) = [ty az - tz ay, tz ax - tx az, tx ay - ty ax]
-    s.at(row, 3) += z * a[1] - y * a[2];
-    s.at(row, 4) += x * a[2] - z * a[0];
-    s.at(row, 5) += y * a[0] - x * a[1];
+  double* const v = s.values.data();
+  // (t x a) = [ty az - tz ay, tz ax - tx az, tx ay - ty ax]
+  for (std::size_t row = 0; row < 6; ++row) {
+    v[18 + row] += v[12 + row] * a[1] - v[6 + row] * a[2];
+    v[24 + row] += v[row] * a[2] - v[12 + row] * a[0];
+    v[30 + row] += v[6 + row] * a[0] - v[row] * a[1];
   }
   return s;
 }
 
 Mat carried(const Mat& s, const Point& a) {
-  return times_carry(transpose(times_carry(transpose(s), a)), a);
+  Mat result = s;
+  for (std::size_t column = 0; column < 36; column += 6) {
+    double* const v = result.values.data() + column;
+    v[3] += v[2] * a[1] - v[1] * a[2];
+    v[4] += v[0] * a[2] - v[2] * a[0];
+    v[5] += v[1] * a[0] - v[0] * a[1];
+  }
+  return times_carry(result, a);
 }
 
 Mat stretched(const Mat& stiffness, const Point& arm, std::size_t axis, double length,
