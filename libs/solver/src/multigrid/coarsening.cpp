@@ -39,7 +39,7 @@ Point centre(Point mean) {
   return mean;
 }
 
-/// A spring of a member that leads out of the cluster: all that the cluster's spring depends on.
+/// A spring of a member that leads out of the cluster: what the cluster's spring depends on.
 struct Part {
   std::uint32_t spring = 0;  ///< Index into the fine level's springs.
   std::uint32_t target = 0;  ///< Which of the cluster's neighbours, in the order they are met.
@@ -266,55 +266,83 @@ class Coarsening {
     });
   }
 
-  /// The parts of a cluster's springs and its neighbours in the order in which they are met.
-  void list_parts(std::size_t c, std::vector<Part>& parts,
-                  std::vector<std::int32_t>& targets) const {
-    parts.clear();
-    targets.clear();
+  /// Calls f(node, edge, other node) for every spring that leads out of a cluster.
+  template <class F>
+  void for_parts(std::size_t c, const F& f) const {
     for_members(c, [&](std::size_t node) {
       for (std::size_t e = at(fine_.start[node]); e < at(fine_.start[node + 1]); ++e) {
         const std::size_t other = at(fine_.other[e]);
-        const std::int32_t to = cluster_[other];
-        if (at(to) == c) {
-          continue;
+        if (at(cluster_[other]) != c) {
+          f(node, e, other);
         }
-        const auto found = std::ranges::find(targets, to);
-        const auto target = static_cast<std::uint32_t>(found - targets.begin());
-        if (found == targets.end()) {
-          targets.push_back(to);
-        }
-        parts.push_back(
-            {.spring = fine_.pattern[node] + static_cast<std::uint32_t>(e - at(fine_.start[node])),
-             .target = target,
-             .offset = offset(level_.seat[node]),
-             .far_offset = offset(level_.seat[other]),
-             .partner = rounded<Real>(difference(coarse_.place[at(to)], coarse_.place[c]))});
       }
     });
   }
 
-  static Signature sign(const std::vector<Part>& parts) {
-    Signature signature;
-    std::uint32_t target_count = 0;
-    for (const Part& part : parts) {
-      signature.add(std::uint64_t{part.spring} << 32U | part.target);
-      signature.add<Real>(part.offset[0], part.offset[1]);
-      signature.add<Real>(part.offset[2], part.far_offset[0]);
-      signature.add<Real>(part.far_offset[1], part.far_offset[2]);
-      if (part.target == target_count) {  // Met for the first time.
-        ++target_count;
-        signature.add<Real>(part.partner[0], part.partner[1]);
-        signature.add<Real>(part.partner[2], 0);
-      }
+  std::uint32_t spring_of(std::size_t node, std::size_t edge) const {
+    return fine_.pattern[node] + static_cast<std::uint32_t>(edge - at(fine_.start[node]));
+  }
+
+  Point partner(std::size_t c, std::int32_t other) const {
+    return rounded<Real>(difference(coarse_.place[at(other)], coarse_.place[c]));
+  }
+
+  /// The place of a cluster among a cluster's neighbours, in the order in which they are met.
+  static std::uint32_t target_of(std::int32_t cluster, std::vector<std::int32_t>& targets) {
+    const auto found = std::ranges::find(targets, cluster);
+    const auto target = static_cast<std::uint32_t>(found - targets.begin());
+    if (found == targets.end()) {
+      targets.push_back(cluster);
     }
+    return target;
+  }
+
+  /// The parts of a cluster's springs and its neighbours.
+  void list_parts(std::size_t c, std::vector<Part>& parts,
+                  std::vector<std::int32_t>& targets) const {
+    parts.clear();
+    targets.clear();
+    for_parts(c, [&](std::size_t node, std::size_t edge, std::size_t other) {
+      parts.push_back({.spring = spring_of(node, edge),
+                       .target = target_of(cluster_[other], targets),
+                       .offset = offset(level_.seat[node]),
+                       .far_offset = offset(level_.seat[other]),
+                       .partner = partner(c, cluster_[other])});
+    });
+  }
+
+  /// What a cluster's parts are made of, and its neighbours. (The far offsets follow from the rest.)
+  Signature sign(std::size_t c, std::vector<std::int32_t>& targets) const {
+    Signature signature;
+    targets.clear();
+    std::size_t last = fine_.order.size();
+    for_parts(c, [&](std::size_t node, std::size_t edge, std::size_t other) {
+      const std::size_t met_count = targets.size();
+      const std::uint32_t target = target_of(cluster_[other], targets);
+      signature.add(std::uint64_t{spring_of(node, edge)} << 32U | target);
+      if (node != last) {
+        const Point place = offset(level_.seat[node]);
+        signature.add<Real>(place[0], place[1]);
+        signature.add<Real>(place[2], 0);
+        last = node;
+      }
+      if (target == met_count) {  // Met for the first time.
+        const Point to = partner(c, cluster_[other]);
+        signature.add<Real>(to[0], to[1]);
+        signature.add<Real>(to[2], 0);
+      }
+    });
     return signature;
   }
 
   /// A pure function of the parts, so it does not matter which of many equal clusters is taken.
   void add_up(const std::vector<Part>& parts, Spring* springs, std::size_t count) const {
-    std::vector<double> length(count);
-    std::vector<double> reach(count);
-    std::vector<double> weight(count);
+    struct Sum {
+      double length = 0;
+      double reach = 0;
+      double weight = 0;
+    };
+    std::vector<Sum> sums(count);
     for (const Part& part : parts) {
       const Spring& fine = fine_.springs[part.spring];
       Spring& spring = springs[part.target];
@@ -324,19 +352,20 @@ class Coarsening {
       for (std::size_t k = 0; k < 3; ++k) {
         spring.middle[k] += part.offset[k] + fine.middle[k];
       }
-      length[part.target] += fine.length;
-      reach[part.target] += fine.length + behind(part.offset, fine.direction) +
-                            behind(part.far_offset, fine.direction ^ 1U);
-      weight[part.target] += 1;
+      Sum& sum = sums[part.target];
+      sum.length += fine.length;
+      sum.reach += fine.length + behind(part.offset, fine.direction) +
+                   behind(part.far_offset, fine.direction ^ 1U);
+      sum.weight += 1;
     }
     for (std::size_t i = 0; i < count; ++i) {
       Spring& spring = springs[i];
       for (double& x : spring.middle) {
-        x /= weight[i];
+        x /= sums[i].weight;
       }
-      spring.length = reach[i] / weight[i];
+      spring.length = sums[i].reach / sums[i].weight;
       spring.stiffness = stretched(spring.stiffness, spring.middle, spring.direction / 2U,
-                                   length[i] / weight[i], spring.length);
+                                   sums[i].length / sums[i].weight, spring.length);
     }
   }
 
@@ -346,11 +375,9 @@ class Coarsening {
     std::vector<std::vector<std::int32_t>> others((cluster_count_ + Team::kChunk - 1) /
                                                   Team::kChunk);
     team_.share(0, cluster_count_, [&](std::size_t begin, std::size_t end) {
-      std::vector<Part> parts;
       std::vector<std::int32_t> targets;
       for (std::size_t c = begin; c < end; ++c) {
-        list_parts(c, parts, targets);
-        signatures[c] = sign(parts);
+        signatures[c] = sign(c, targets);
         coarse_.start[c + 1] = static_cast<std::int32_t>(targets.size());
         std::vector<std::int32_t>& part = others[c / Team::kChunk];
         part.insert(part.end(), targets.begin(), targets.end());

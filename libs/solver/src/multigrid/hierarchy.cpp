@@ -120,6 +120,7 @@ void Hierarchy<Real>::fill_stage(Team& team, Stage& stage) const {
   stage.other.reserve(6 * count);
   stage.pattern.resize(count);
   std::unordered_map<std::uint64_t, std::uint32_t> patterns;
+  Kind last{};
   for (std::size_t node = 0; node < count; ++node) {
     Kind kind{};
     for (std::size_t d = 0; d < 6; ++d) {
@@ -130,6 +131,11 @@ void Hierarchy<Real>::fill_stage(Team& team, Stage& stage) const {
       }
     }
     stage.start[node + 1] = static_cast<std::int32_t>(stage.other.size());
+    if (node > 0 && kind == last) {
+      stage.pattern[node] = stage.pattern[node - 1];
+      continue;
+    }
+    last = kind;
     const auto [found, is_new] = patterns.try_emplace(
         std::bit_cast<std::uint64_t>(kind), static_cast<std::uint32_t>(stage.springs.size()));
     stage.pattern[node] = found->second;
@@ -150,7 +156,11 @@ void Hierarchy<Real>::make_lattice() {
   level.type.resize(network_.node_count);
   fill_vectors(level);
   for (std::size_t node = 0; node < network_.node_count; ++node) {
-    set_type(node);
+    if (node > 0 && network_.kind[node] == network_.kind[node - 1]) {
+      level.type[node] = level.type[node - 1];
+    } else {
+      set_type(node);
+    }
   }
   point_at_lattice();
 }
@@ -191,20 +201,21 @@ void Hierarchy<Real>::add_level(const Stage& stage, std::vector<std::size_t> col
   level.other = stage.other;
   couple(stage, level);
   level.type.resize(level.node_count);
-  std::unordered_map<std::uint32_t, std::uint32_t> type_of_pattern;
+  constexpr std::uint32_t kNone = 0xffffffffU;
+  // The last is for nodes without springs, whose pattern is that of the next one, too.
+  std::vector<std::uint32_t> type_of_pattern(stage.springs.size() + 1, kNone);
+  std::vector<Mat> sums;
   for (std::size_t node = 0; node < level.node_count; ++node) {
-    const auto [found, is_new] = type_of_pattern.try_emplace(
-        stage.pattern[node], static_cast<std::uint32_t>(type_of_pattern.size()));
-    level.type[node] = found->second;
-  }
-  std::vector<Mat> sums(type_of_pattern.size());
-  std::vector<bool> is_known(sums.size());
-  for (std::size_t node = 0; node < level.node_count; ++node) {
-    if (!is_known[level.type[node]]) {
-      is_known[level.type[node]] = true;
-      sums[level.type[node]] = spring_sum(stage, node);
+    const bool is_alone = stage.start[node] == stage.start[node + 1];
+    std::uint32_t& type =
+        type_of_pattern[is_alone ? stage.springs.size() : stage.pattern[node]];
+    if (type == kNone) {
+      type = static_cast<std::uint32_t>(sums.size());
+      sums.push_back(spring_sum(stage, node));
     }
+    level.type[node] = type;
   }
+  level.inverse.reserve(sums.size());
   for (const Mat& sum : sums) {
     Mat inverse;
     // A pattern that only anchored nodes have may be singular alone; its inverse is not used.
