@@ -3,8 +3,15 @@
 #include "holdfast/host/team.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
+#include <cstdint>
 #include <system_error>
+#include <thread>
+
+#if __has_include(<pthread.h>)
+#include <pthread.h>
+#endif
 
 namespace holdfast::host {
 namespace {
@@ -43,22 +50,58 @@ std::size_t last_of(std::uint64_t chunks) { return chunks >> 32U; }
 
 }  // namespace
 
-Team::Team(int thread_count, std::size_t item_count) {
-  thread_count = std::clamp(thread_count > 0 ? thread_count : core_count(), 1,
-                            item_count < kSharedItemMin ? 1 : kThreadCountMax);
-  ranges_ = std::vector<Range>(static_cast<std::size_t>(thread_count));
-  thread_count_ = 1;
+/// The threads of a team besides the one that it was made by, and the loop that they are in.
+class Team::Crew {
+ public:
+  explicit Crew(int thread_count);
+  ~Crew();
+  Crew(const Crew&) = delete;
+  Crew& operator=(const Crew&) = delete;
+
+  /// As many as were asked for, though the machine may have given fewer.
+  std::size_t wanted_count() const { return ranges_.size(); }
+
+  int thread_count() const { return static_cast<int>(threads_.size()) + 1; }
+
+  void run(std::size_t chunk_count, Task task, const void* context);
+
+  /// A crew that has no team, for the next one. It is never destroyed: at the program's end its
+  /// threads sleep.
+  static std::atomic<Crew*>& idle() {
+    static std::atomic<Crew*> crew{nullptr};
+    return crew;
+  }
+
+ private:
+  /// Chunks that nobody has taken yet: the first and the one after the last, in 32 bits each.
+  struct alignas(64) Range {
+    std::atomic<std::uint64_t> chunks{0};
+  };
+
+  void serve(int thread);
+  void work_on_ranges(int thread);
+  bool work_on(Range& range);
+
+  std::vector<std::thread> threads_;
+  std::vector<Range> ranges_;
+  Task task_ = nullptr;
+  const void* context_ = nullptr;
+  std::atomic<std::uint32_t> round_{0};
+  std::atomic<std::size_t> unfinished_{0};  ///< Chunks.
+  std::atomic<bool> is_over_{false};
+};
+
+Team::Crew::Crew(int thread_count) : ranges_(static_cast<std::size_t>(thread_count)) {
   for (int thread = 1; thread < thread_count; ++thread) {
     try {
       threads_.emplace_back([this, thread] { serve(thread); });
     } catch (const std::system_error&) {
       break;  // The machine gives no more threads: those there are suffice.
     }
-    ++thread_count_;
   }
 }
 
-Team::~Team() {
+Team::Crew::~Crew() {
   is_over_.store(true);
   round_.fetch_add(1, std::memory_order_release);
   round_.notify_all();
@@ -67,11 +110,11 @@ Team::~Team() {
   }
 }
 
-void Team::run(std::size_t chunk_count, Task task, const void* context) {
+void Team::Crew::run(std::size_t chunk_count, Task task, const void* context) {
   task_ = task;
   context_ = context;
   unfinished_.store(chunk_count, std::memory_order_relaxed);
-  const auto count = static_cast<std::size_t>(thread_count_);
+  const auto count = static_cast<std::size_t>(thread_count());
   for (std::size_t thread = 0; thread < count; ++thread) {
     ranges_[thread].chunks.store(
         pack(chunk_count * thread / count, chunk_count * (thread + 1) / count),
@@ -89,7 +132,7 @@ void Team::run(std::size_t chunk_count, Task task, const void* context) {
 /// Takes half of what is left of a range and works on it. A thread that comes late, to a later loop
 /// than it was called for, is as welcome there: which loop it is follows from the chunks it gets.
 /// Returns false if there is nothing left.
-bool Team::work_on(Range& range) {
+bool Team::Crew::work_on(Range& range) {
   std::uint64_t seen = range.chunks.load(std::memory_order_acquire);
   std::size_t begin = 0;
   std::size_t taken = 0;
@@ -109,7 +152,7 @@ bool Team::work_on(Range& range) {
   return true;
 }
 
-void Team::work_on_ranges(int thread) {
+void Team::Crew::work_on_ranges(int thread) {
   const auto own = static_cast<std::size_t>(thread);
   for (std::size_t i = 0; i < ranges_.size(); ++i) {
     while (work_on(ranges_[(own + i) % ranges_.size()])) {
@@ -117,13 +160,46 @@ void Team::work_on_ranges(int thread) {
   }
 }
 
-void Team::serve(int thread) {
+void Team::Crew::serve(int thread) {
   std::uint32_t seen = 0;
   while (!is_over_.load()) {
     wait_while(round_, seen);
     seen = round_.load(std::memory_order_acquire);
     work_on_ranges(thread);
   }
+}
+
+Team::Crew* Team::call(int thread_count) {
+#if __has_include(<pthread.h>)
+  // Threads do not follow into a forked process; what is left of their crew stays unused there.
+  [[maybe_unused]] static const int is_told =
+      pthread_atfork(nullptr, nullptr, [] { Crew::idle().store(nullptr); });
+#endif
+  std::unique_ptr<Crew> crew(Crew::idle().exchange(nullptr));
+  if (!crew || crew->wanted_count() != static_cast<std::size_t>(thread_count)) {
+    crew = std::make_unique<Crew>(thread_count);
+  }
+  return crew.release();
+}
+
+void Team::Dismiss::operator()(Crew* crew) const {
+  Crew* none = nullptr;
+  if (!Crew::idle().compare_exchange_strong(none, crew)) {
+    delete crew;
+  }
+}
+
+Team::Team(int thread_count, std::size_t item_count) {
+  thread_count = std::clamp(thread_count > 0 ? thread_count : core_count(), 1,
+                            item_count < kSharedItemMin ? 1 : kThreadCountMax);
+  if (thread_count > 1) {
+    crew_.reset(call(thread_count));
+    thread_count_ = crew_->thread_count();
+  }
+}
+
+void Team::run(std::size_t chunk_count, Task task, const void* context) {
+  crew_->run(chunk_count, task, context);
 }
 
 }  // namespace holdfast::host

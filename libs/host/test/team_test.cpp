@@ -5,8 +5,15 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <atomic>
 #include <bit>
 #include <cmath>
+#include <thread>
+
+#if __has_include(<sys/wait.h>) && !defined(__EMSCRIPTEN__)
+#include <sys/wait.h>
+#include <unistd.h>
+#endif
 
 namespace holdfast::host {
 namespace {
@@ -62,6 +69,52 @@ TEST(Team, ThreadsThatComeLateDoNoHarm) {
   }
   EXPECT_EQ(std::ranges::count(loop_of, 3000U), static_cast<std::ptrdiff_t>(kCount));
 }
+
+/// 1 + 2 + ... + n, shared by a new team.
+bool adds_up(int thread_count) {
+  constexpr std::size_t kCount = 20 * Team::kChunk;
+  const double sum = Team(thread_count).sum(kCount, [](std::size_t begin, std::size_t end) {
+    double part = 0;
+    for (std::size_t i = begin; i < end; ++i) {
+      part += static_cast<double>(i + 1);
+    }
+    return part;
+  });
+  return sum == kCount * (kCount + 1) / 2;
+}
+
+/// They take over each other's threads, or find none.
+TEST(Team, WorksOneAfterTheOtherAndManyAtOnce) {
+  std::atomic<int> wrong_count{0};
+  const auto ask = [&] {
+    for (int turn = 0; turn < 200; ++turn) {
+      wrong_count += adds_up(2 + turn % 2) ? 0 : 1;
+    }
+  };
+  ask();
+  std::vector<std::thread> askers;
+  for (int i = 0; i < 4; ++i) {
+    askers.emplace_back(ask);
+  }
+  for (std::thread& asker : askers) {
+    asker.join();
+  }
+  EXPECT_EQ(wrong_count.load(), 0);
+}
+
+#if __has_include(<sys/wait.h>) && !defined(__EMSCRIPTEN__)
+/// Whose threads did not follow.
+TEST(Team, WorksInAForkedProcess) {
+  EXPECT_TRUE(adds_up(3));
+  const pid_t child = fork();
+  if (child == 0) {
+    _exit(adds_up(3) && adds_up(2) ? 0 : 1);
+  }
+  int status = 0;
+  ASSERT_EQ(waitpid(child, &status, 0), child);
+  EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0);
+}
+#endif
 
 }  // namespace
 }  // namespace holdfast::host

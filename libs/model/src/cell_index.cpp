@@ -42,19 +42,6 @@ std::size_t CellIndex::slot_of(const base::Cell& cell) const {
   return slot;
 }
 
-bool CellIndex::is_inside(const base::Cell& cell) const {
-  return static_cast<std::uint32_t>(cell.x - low_.x) < width_[0] &&
-         static_cast<std::uint32_t>(cell.y - low_.y) < width_[1] &&
-         static_cast<std::uint32_t>(cell.z - low_.z) < width_[2];
-}
-
-std::size_t CellIndex::place_of(const base::Cell& cell) const {
-  const auto x = static_cast<std::size_t>(cell.x - low_.x);
-  const auto y = static_cast<std::size_t>(cell.y - low_.y);
-  const auto z = static_cast<std::size_t>(cell.z - low_.z);
-  return (z * width_[1] + y) * width_[0] + x;
-}
-
 std::int32_t CellIndex::insert(const base::Cell& cell, std::int32_t index) {
   if (!table_.empty()) {
     std::int32_t& place = table_[place_of(cell)];
@@ -66,13 +53,6 @@ std::int32_t CellIndex::insert(const base::Cell& cell, std::int32_t index) {
     return kNone;
   }
   return slot.index;
-}
-
-std::int32_t CellIndex::find(const base::Cell& cell) const {
-  if (!table_.empty()) {
-    return is_inside(cell) ? table_[place_of(cell)] : kNone;
-  }
-  return slots_[slot_of(cell)].index;
 }
 
 }  // namespace holdfast::model

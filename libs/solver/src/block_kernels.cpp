@@ -9,46 +9,55 @@ namespace holdfast::solver {
 namespace {
 
 /// Swaps rows so that the largest element of a column, from the diagonal down, is the pivot.
-void bring_up_pivot(base::Mat6<double>& work, base::Mat6<double>& inverse, int step) {
-  int pivot = step;
-  for (int row = step + 1; row < 6; ++row) {
-    if (std::abs(work.at(row, step)) > std::abs(work.at(pivot, step))) {
+/// Returns its row.
+std::size_t bring_up_pivot(base::Mat6<double>& work, std::size_t step) {
+  double* const v = work.values.data();
+  std::size_t pivot = step;
+  for (std::size_t row = step + 1; row < 6; ++row) {
+    if (std::abs(v[6 * step + row]) > std::abs(v[6 * step + pivot])) {
       pivot = row;
     }
   }
-  for (int column = 0; pivot != step && column < 6; ++column) {
-    std::swap(work.at(step, column), work.at(pivot, column));
-    std::swap(inverse.at(step, column), inverse.at(pivot, column));
+  for (std::size_t column = 0; pivot != step && column < 6; ++column) {
+    std::swap(v[6 * column + step], v[6 * column + pivot]);
   }
+  return pivot;
 }
 
 }  // namespace
 
+// In place: a column that is done makes room for that of the inverse. Swapped rows of the block are
+// swapped columns of its inverse.
 bool invert(const base::Mat6<double>& block, base::Mat6<double>& inverse) {
-  base::Mat6<double> work = block;
-  inverse = {};
-  for (int i = 0; i < 6; ++i) {
-    inverse.at(i, i) = 1;
-  }
-  for (int step = 0; step < 6; ++step) {
-    bring_up_pivot(work, inverse, step);
-    const double pivot = work.at(step, step);
+  inverse = block;
+  double* const v = inverse.values.data();
+  std::size_t pivot_row[6];
+  for (std::size_t step = 0; step < 6; ++step) {
+    pivot_row[step] = bring_up_pivot(inverse, step);
+    double* const own = v + 6 * step;
+    const double pivot = own[step];
     if (!(std::abs(pivot) > 0) || !std::isfinite(pivot)) {
       return false;
     }
     const double scale = 1 / pivot;
-    base::Vec6<double> factor;
-    for (int row = 0; row < 6; ++row) {
-      factor[static_cast<std::size_t>(row)] = row == step ? 1 - scale : work.at(row, step) * scale;
-    }
-    // Row `step` becomes itself times scale; every other row loses its multiple of it.
-    for (auto* matrix : {&work, &inverse}) {
-      for (int column = 0; column < 6; ++column) {
-        const double value = matrix->at(step, column);
-        for (int row = 0; row < 6; ++row) {
-          matrix->at(row, column) -= factor[static_cast<std::size_t>(row)] * value;
-        }
+    for (std::size_t column = 0; column < 36; column += 6) {
+      if (column == 6 * step) {
+        continue;
       }
+      const double value = v[column + step] * scale;
+      for (std::size_t row = 0; row < 6; ++row) {
+        v[column + row] -= own[row] * value;
+      }
+      v[column + step] = value;
+    }
+    for (std::size_t row = 0; row < 6; ++row) {
+      own[row] *= -scale;
+    }
+    own[step] = scale;
+  }
+  for (std::size_t step = 6; step-- > 0;) {
+    for (std::size_t row = 0; pivot_row[step] != step && row < 6; ++row) {
+      std::swap(v[6 * step + row], v[6 * pivot_row[step] + row]);
     }
   }
   return true;

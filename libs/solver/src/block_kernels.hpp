@@ -75,7 +75,8 @@ inline base::Mat6<double> transpose(const base::Mat6<double>& a) {
   return t;
 }
 
-/// Gauss-Jordan with row pivoting. Returns false for a singular or non-finite block.
+/// Gauss-Jordan with row pivoting. Returns false for a singular or non-finite block; `inverse` is
+/// then void.
 bool invert(const base::Mat6<double>& block, base::Mat6<double>& inverse);
 
 }  // namespace holdfast::solver

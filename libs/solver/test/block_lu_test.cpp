@@ -10,6 +10,7 @@
 
 #include <Eigen/LU>
 #include <array>
+#include <cmath>
 #include <limits>
 #include <utility>
 
@@ -181,6 +182,24 @@ TEST(BlockLu, chooses_pivots_within_a_block) {
 }
 
 /// A solve between changes must not spoil what is kept.
+/// Pivots are stiffnesses of very different size; of none may a digit be lost.
+TEST(BlockLu, inverts_large_and_small_pivots_to_the_last_digits) {
+  BlockLu lu(1, {}, kUnlimited);
+  Mat6<double> block;
+  Vec6<double> exact{};
+  for (int i = 0; i < 6; ++i) {
+    block.at(i, i) = 3 * std::pow(10.0, 4 * i - 8);
+    exact[static_cast<std::size_t>(i)] = 1 / block.at(i, i);
+  }
+  lu.set_diagonal(0, block);
+  ASSERT_TRUE(lu.factor());
+  std::vector<Vec6<double>> x = {{1, 1, 1, 1, 1, 1}};
+  lu.solve(x);
+  for (std::size_t i = 0; i < 6; ++i) {
+    EXPECT_NEAR(x[0][i], exact[i], 1e-15 * exact[i]);
+  }
+}
+
 TEST(BlockLu, makes_again_only_what_a_changed_diagonal_touches_but_all_of_it) {
   base::Rng rng(4);
   System system(36, lattice(4, 3, 3), rng);

@@ -3,52 +3,63 @@
 #include "anchors.hpp"
 
 #include <algorithm>
+#include <numeric>
 
 namespace holdfast::solver {
 namespace {
 
 std::size_t at(std::int32_t index) { return static_cast<std::size_t>(index); }
 
-Anchor beam_anchor(const model::Material& material, std::size_t node, std::size_t direction,
-                   std::size_t length) {
-  const Spring spring = beam_spring(material, direction, length);
-  return {.node = static_cast<std::int32_t>(node),
-          .direction = spring.direction,
-          .length = spring.length,
-          .reach = spring.length,
-          .middle = spring.middle,
-          .stiffness = spring.stiffness};
-}
+/// Anchors of beams; what was asked last is remembered, as most are alike.
+class BeamAnchors {
+ public:
+  explicit BeamAnchors(const model::Material& material) : material_(material) {}
+
+  Anchor anchor(std::size_t node, std::size_t direction, std::size_t length) {
+    if (direction != direction_ || length != length_) {
+      spring_ = beam_spring(material_, direction, length);
+      direction_ = direction;
+      length_ = length;
+    }
+    return {.node = static_cast<std::int32_t>(node),
+            .direction = spring_.direction,
+            .length = spring_.length,
+            .reach = spring_.length,
+            .middle = spring_.middle,
+            .stiffness = spring_.stiffness};
+  }
+
+ private:
+  const model::Material& material_;
+  std::size_t direction_ = base::kDirectionCount;  ///< None yet.
+  std::size_t length_ = 0;
+  Spring spring_;
+};
 
 /// An anchor of a member as its cluster has it.
 template <class Real>
-Anchor moved(Anchor anchor, const Seat<Real>& seat) {
+Anchor moved(const Anchor& anchor, const Seat<Real>& seat) {
   const Point arm = offset(seat);
-  anchor.node = seat.cluster;
-  anchor.reach += behind(arm, anchor.direction);
-  anchor.stiffness = carried(anchor.stiffness, arm);
+  return {.node = seat.cluster,
+          .direction = anchor.direction,
+          .length = anchor.length,
+          .reach = anchor.reach + behind(arm, anchor.direction),
+          .middle = {anchor.middle[0] + arm[0], anchor.middle[1] + arm[1],
+                     anchor.middle[2] + arm[2]},
+          .stiffness = carried(anchor.stiffness, arm)};
+}
+
+void add_to(Anchor& sum, const Anchor& anchor) {
+  base::add_to(sum.stiffness, anchor.stiffness);
+  sum.length += anchor.length;
+  sum.reach += anchor.reach;
   for (std::size_t k = 0; k < 3; ++k) {
-    anchor.middle[k] += arm[k];
+    sum.middle[k] += anchor.middle[k];
   }
-  return anchor;
 }
 
-bool are_alike(const Anchor& a, const Anchor& b) {
-  return a.node == b.node && a.direction == b.direction;
-}
-
-/// Anchors of one cluster in one direction as a single one.
-Anchor united(const Anchor* first, const Anchor* last) {
-  Anchor sum = *first;
-  for (const Anchor* anchor = first + 1; anchor != last; ++anchor) {
-    base::add_to(sum.stiffness, anchor->stiffness);
-    sum.length += anchor->length;
-    sum.reach += anchor->reach;
-    for (std::size_t k = 0; k < 3; ++k) {
-      sum.middle[k] += anchor->middle[k];
-    }
-  }
-  const auto count = static_cast<double>(last - first);
+/// A sum of anchors of one cluster in one direction as a single one.
+void unite(Anchor& sum, double count) {
   for (double& x : sum.middle) {
     x /= count;
   }
@@ -56,7 +67,6 @@ Anchor united(const Anchor* first, const Anchor* last) {
   sum.stiffness =
       stretched(sum.stiffness, sum.middle, sum.direction / 2U, sum.length / count, sum.reach);
   sum.length = sum.reach;
-  return sum;
 }
 
 }  // namespace
@@ -65,15 +75,16 @@ std::vector<Anchor> finest_anchors(const Network& network, const model::Material
                                    const GroundStiffness& ground) {
   constexpr std::size_t kDown = base::index(base::Direction::kMinusZ);
   std::vector<Anchor> anchors;
+  BeamAnchors beams(material);
   for (std::size_t node = 0; node < network.node_count; ++node) {
     const Kind& kind = network.kind[node];
     for (std::size_t d = 0; d < 6; ++d) {
       if (kind[d] > 0 && at(network.other[node][d]) >= network.node_count) {
-        anchors.push_back(beam_anchor(material, node, d, kind[d]));
+        anchors.push_back(beams.anchor(node, d, kind[d]));
       }
     }
     if (kind[kContactByte] != 0) {
-      anchors.push_back(beam_anchor(material, node, kDown, 1));
+      anchors.push_back(beams.anchor(node, kDown, 1));
       anchors.back().stiffness = ground(kind[kContactByte]);
     }
   }
@@ -83,19 +94,22 @@ std::vector<Anchor> finest_anchors(const Network& network, const model::Material
 template <class Real>
 std::vector<Anchor> coarse_anchors(const std::vector<Anchor>& fine,
                                    const std::vector<Seat<Real>>& seat) {
-  std::vector<Anchor> all;
-  all.reserve(fine.size());
-  for (const Anchor& anchor : fine) {
-    all.push_back(moved(anchor, seat[at(anchor.node)]));
-  }
-  std::ranges::stable_sort(all, {}, &Anchor::node);
+  const auto cluster = [&](std::size_t i) { return seat[at(fine[i].node)].cluster; };
+  std::vector<std::size_t> order(fine.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::ranges::stable_sort(order, {}, cluster);
   std::vector<Anchor> coarse;
-  const Anchor* end = all.data() + all.size();
-  for (const Anchor* first = all.data(); first != end;) {
-    const Anchor* last = std::find_if_not(
-        first, end, [&](const Anchor& anchor) { return are_alike(anchor, *first); });
-    coarse.push_back(united(first, last));
-    first = last;
+  for (auto i = order.begin(); i != order.end();) {
+    const std::size_t first = *i;
+    coarse.push_back(moved(fine[first], seat[at(fine[first].node)]));
+    double count = 1;
+    for (++i; i != order.end() && cluster(*i) == cluster(first) &&
+              fine[*i].direction == fine[first].direction;
+         ++i) {
+      add_to(coarse.back(), moved(fine[*i], seat[at(fine[*i].node)]));
+      ++count;
+    }
+    unite(coarse.back(), count);
   }
   return coarse;
 }

@@ -74,16 +74,21 @@ std::optional<BlockLu> unheld_matrix(const Stage& stage, std::size_t block_count
   return lu;
 }
 
+/// Every third bit, from the lowest on.
+std::uint64_t gathered(std::uint64_t key) {
+  key &= 0x1249249249249249U;
+  key = (key | key >> 2U) & 0x10c30c30c30c30c3U;
+  key = (key | key >> 4U) & 0x100f00f00f00f00fU;
+  key = (key | key >> 8U) & 0x1f0000ff0000ffU;
+  key = (key | key >> 16U) & 0x1f00000000ffffU;
+  return (key | key >> 32U) & 0x1fffffU;
+}
+
 /// Cells from Morton keys, as positions.
 Point place_of(std::uint64_t key, double pitch) {
-  std::array<std::uint64_t, 3> cell{};
-  for (unsigned bit = 0; (key >> (3 * bit)) != 0; ++bit) {
-    for (unsigned axis = 0; axis < 3; ++axis) {
-      cell[axis] |= ((key >> (3 * bit + axis)) & 1U) << bit;
-    }
-  }
-  return {pitch * static_cast<double>(cell[0]), pitch * static_cast<double>(cell[1]),
-          pitch * static_cast<double>(cell[2])};
+  return {pitch * static_cast<double>(gathered(key)),
+          pitch * static_cast<double>(gathered(key >> 1U)),
+          pitch * static_cast<double>(gathered(key >> 2U))};
 }
 
 template <class Real>

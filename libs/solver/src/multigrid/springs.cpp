@@ -45,26 +45,37 @@ Mat3 inverse_of(const Mat3& m) {
 /// stiffness when displacements follow freely.
 Mat3 rotational_compliance(const Mat& c) {
   Mat3 uu;
-  for (int i = 0; i < 3; ++i) {
-    for (int j = 0; j < 3; ++j) {
-      uu[static_cast<std::size_t>(i)][static_cast<std::size_t>(j)] = c.at(i, j);
+  Mat3 ut;
+  Mat3 left;
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t j = 0; j < 3; ++j) {
+      uu[i][j] = c.values[i + 6 * j];
+      ut[i][j] = c.values[i + 6 * (3 + j)];
+      left[i][j] = c.values[3 + i + 6 * (3 + j)];
     }
   }
   const Mat3 free = inverse_of(uu);
-  Mat3 left;
-  for (int i = 0; i < 3; ++i) {
-    for (int j = 0; j < 3; ++j) {
-      double value = c.at(3 + i, 3 + j);
-      for (int k = 0; k < 3; ++k) {
-        for (int l = 0; l < 3; ++l) {
-          value -= c.at(3 + i, k) * free[static_cast<std::size_t>(k)][static_cast<std::size_t>(l)] *
-                   c.at(l, 3 + j);
-        }
-      }
-      left[static_cast<std::size_t>(i)][static_cast<std::size_t>(j)] = value;
+  for (std::size_t j = 0; j < 3; ++j) {
+    std::array<double, 3> follows{};
+    for (std::size_t k = 0; k < 3; ++k) {
+      follows[k] = free[k][0] * ut[0][j] + free[k][1] * ut[1][j] + free[k][2] * ut[2][j];
+    }
+    for (std::size_t i = 0; i < 3; ++i) {
+      left[i][j] -= ut[0][i] * follows[0] + ut[1][i] * follows[1] + ut[2][i] * follows[2];
     }
   }
   return inverse_of(left);
+}
+
+/// The columns of t gain those of u times -[a]x.
+void carry_columns(Mat& s, const Point& a) {
+  double* const v = s.values.data();
+  // (t x a) = [ty az - tz ay, tz ax - tx az, tx ay - ty ax]
+  for (std::size_t row = 0; row < 6; ++row) {
+    v[18 + row] += v[12 + row] * a[1] - v[6 + row] * a[2];
+    v[24 + row] += v[row] * a[2] - v[12 + row] * a[0];
+    v[30 + row] += v[6 + row] * a[0] - v[row] * a[1];
+  }
 }
 
 Point along(std::size_t direction, double length) {
@@ -97,27 +108,28 @@ Mat scaled(Mat matrix, double factor) {
   return matrix;
 }
 
-/// The columns of t gain those of u times -[a]x.
+/// S T(a): the columns of t gain those of u times -[a]x.
 Mat times_carry(Mat s, const Point& a) {
-  double* const v = s.values.data();
-  // (t x a) = [ty az - tz ay, tz ax - tx az, tx ay - ty ax]
-  for (std::size_t row = 0; row < 6; ++row) {
-    v[18 + row] += v[12 + row] * a[1] - v[6 + row] * a[2];
-    v[24 + row] += v[row] * a[2] - v[12 + row] * a[0];
-    v[30 + row] += v[6 + row] * a[0] - v[row] * a[1];
-  }
+  carry_columns(s, a);
   return s;
 }
 
+/// Of what has S T(a) on its right half by now, S being symmetric, the rows of t follow.
 Mat carried(const Mat& s, const Point& a) {
   Mat result = s;
-  for (std::size_t column = 0; column < 36; column += 6) {
-    double* const v = result.values.data() + column;
-    v[3] += v[2] * a[1] - v[1] * a[2];
-    v[4] += v[0] * a[2] - v[2] * a[0];
-    v[5] += v[1] * a[0] - v[0] * a[1];
+  carry_columns(result, a);
+  double* const v = result.values.data();
+  for (std::size_t i = 18; i < 36; i += 6) {
+    v[i + 3] += v[i + 2] * a[1] - v[i + 1] * a[2];
+    v[i + 4] += v[i] * a[2] - v[i + 2] * a[0];
+    v[i + 5] += v[i + 1] * a[0] - v[i] * a[1];
   }
-  return times_carry(result, a);
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t j = 0; j < 3; ++j) {
+      v[6 * i + 3 + j] = v[6 * (3 + j) + i];
+    }
+  }
+  return result;
 }
 
 Mat stretched(const Mat& stiffness, const Point& arm, std::size_t axis, double length,
@@ -146,11 +158,14 @@ Mat stretched(const Mat& stiffness, const Point& arm, std::size_t axis, double l
   const double w01 = (a11 * m_ij - a01 * m_jj) / determinant;
   const double w11 = (-a10 * m_ij + a00 * m_jj) / determinant;
   Mat reduced = c;
-  for (int column = 0; column < 6; ++column) {
-    const double t0 = w00 * c.at(r0, column) + w01 * c.at(r1, column);
-    const double t1 = w01 * c.at(r0, column) + w11 * c.at(r1, column);
-    for (int row = 0; row < 6; ++row) {
-      reduced.at(row, column) -= c.at(row, r0) * t0 + c.at(row, r1) * t1;
+  const double* const column_0 = c.values.data() + 6 * i;
+  const double* const column_1 = c.values.data() + 6 * j;
+  for (std::size_t column = 0; column < 6; ++column) {
+    const double t0 = w00 * column_0[column] + w01 * column_1[column];
+    const double t1 = w01 * column_0[column] + w11 * column_1[column];
+    double* const target = reduced.values.data() + 6 * column;
+    for (std::size_t row = 0; row < 6; ++row) {
+      target[row] -= column_0[row] * t0 + column_1[row] * t1;
     }
   }
   return carried(scaled(reduced, kCorrection * length / reach), arm);

@@ -2,10 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <atomic>
 #include <cstddef>
-#include <cstdint>
-#include <thread>
+#include <memory>
 #include <vector>
 
 /// A few threads that share loops. Work is cut into chunks of fixed size, and sums are kept by
@@ -13,16 +11,16 @@
 /// has a range of chunks of its own, the same in every loop over the same data, and helps with the
 /// ranges of others when that is done: on a busy machine nobody waits for a thread that is not
 /// running.
+///
+/// Threads outlive their team: they sleep until the next one comes, so that who asks a thousand
+/// small questions does not start a thousand threads.
 namespace holdfast::host {
 
 class Team {
  public:
   /// At most kThreadCountMax; 0: as many as the machine has cores. One alone if there are fewer
-  /// than kSharedItemMin items to share: starting a thread takes longer.
+  /// than kSharedItemMin items to share.
   explicit Team(int thread_count, std::size_t item_count = kSharedItemMin);
-  ~Team();
-  Team(const Team&) = delete;
-  Team& operator=(const Team&) = delete;
 
   int thread_count() const { return thread_count_; }
 
@@ -33,7 +31,7 @@ class Team {
 #endif
   /// Nodes in a chunk.
   static constexpr std::size_t kChunk = 128;
-  static constexpr std::size_t kSharedItemMin = 2000;
+  static constexpr std::size_t kSharedItemMin = 500;
   /// Fewer chunks are not shared: waking a thread takes as long as they do.
   static constexpr std::size_t kSharedChunkMin = 4;
 
@@ -85,26 +83,21 @@ class Team {
  private:
   using Task = void (*)(const void* context, std::size_t begin, std::size_t end);
 
-  /// Chunks that nobody has taken yet: the first and the one after the last, in 32 bits each.
-  struct alignas(64) Range {
-    std::atomic<std::uint64_t> chunks{0};
+  class Crew;
+
+  /// What becomes of a team's threads.
+  struct Dismiss {
+    void operator()(Crew* crew) const;
   };
+
+  static Crew* call(int thread_count);
 
   /// Runs task(context, begin, end) on chunks that together are [0, chunk_count); waits for all.
   void run(std::size_t chunk_count, Task task, const void* context);
-  void serve(int thread);
-  void work_on_ranges(int thread);
-  bool work_on(Range& range);
 
+  std::unique_ptr<Crew, Dismiss> crew_;  ///< None if there is one thread only.
   int thread_count_ = 1;
   std::vector<double> partial_;
-  std::vector<std::thread> threads_;
-  std::vector<Range> ranges_;
-  Task task_ = nullptr;
-  const void* context_ = nullptr;
-  std::atomic<std::uint32_t> round_{0};
-  std::atomic<std::size_t> unfinished_{0};  ///< Chunks.
-  std::atomic<bool> is_over_{false};
 };
 
 }  // namespace holdfast::host

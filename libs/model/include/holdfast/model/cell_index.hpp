@@ -27,7 +27,12 @@ class CellIndex {
   std::int32_t insert(const base::Cell& cell, std::int32_t index);
 
   /// The index of a cell, or kNone.
-  std::int32_t find(const base::Cell& cell) const;
+  std::int32_t find(const base::Cell& cell) const {
+    if (!table_.empty()) {
+      return is_inside(cell) ? table_[place_of(cell)] : kNone;
+    }
+    return slots_[slot_of(cell)].index;
+  }
 
  private:
   struct Slot {
@@ -36,8 +41,19 @@ class CellIndex {
   };
 
   std::size_t slot_of(const base::Cell& cell) const;
-  bool is_inside(const base::Cell& cell) const;
-  std::size_t place_of(const base::Cell& cell) const;
+
+  bool is_inside(const base::Cell& cell) const {
+    return static_cast<std::uint32_t>(cell.x - low_.x) < width_[0] &&
+           static_cast<std::uint32_t>(cell.y - low_.y) < width_[1] &&
+           static_cast<std::uint32_t>(cell.z - low_.z) < width_[2];
+  }
+
+  std::size_t place_of(const base::Cell& cell) const {
+    const auto x = static_cast<std::size_t>(cell.x - low_.x);
+    const auto y = static_cast<std::size_t>(cell.y - low_.y);
+    const auto z = static_cast<std::size_t>(cell.z - low_.z);
+    return (z * width_[1] + y) * width_[0] + x;
+  }
 
   base::Cell low_;
   std::array<std::uint32_t, 3> width_{};  ///< Of the box.
