@@ -39,29 +39,91 @@ Vec6<double> moved(Vec6<double> force, std::size_t direction, double length) {
   return force;
 }
 
-/// How an end of an unloaded beam moves its point `place` pitches away, by Hermite's cubics: a
-/// displacement u moves it by `linear` u along the axis and by `cubic` u across, and turns it by
-/// cubic_rate (step x u); a rotation t turns it by `linear` t about the axis and by slope_rate t
-/// across, and moves it by slope (t x step).
+/// How an end of an unloaded beam moves a point of it, by Hermite's cubics: a displacement u moves
+/// it by `linear` u along the axis and by `cubic` u across, and turns it by cubic_rate (step x u); a
+/// rotation t turns it by `linear` t about the axis and by slope_rate t across, and moves it by
+/// slope (t x step). The step leads from the end to the point.
 struct BeamShape {
-  BeamShape(double pitch, std::size_t direction, int place, int length)
-      : axis(direction / 2), step(unit_step(direction)) {
-    const double s = static_cast<double>(place) / length;
-    const double span = pitch * length;
-    linear = 1 - s;
-    cubic = 1 - 3 * s * s + 2 * s * s * s;
-    slope = span * s * linear * linear;
-    cubic_rate = -6 * s * linear / span;
-    slope_rate = linear * (1 - 3 * s);
-  }
-
-  std::size_t axis = 0;
-  std::array<double, 3> step;  ///< From the end to the point.
   double linear = 0;
   double cubic = 0;
   double slope = 0;
   double cubic_rate = 0;
   double slope_rate = 0;
+};
+
+BeamShape beam_shape(double pitch, int place, int length) {
+  const double s = static_cast<double>(place) / length;
+  const double span = pitch * length;
+  const double linear = 1 - s;
+  return {.linear = linear,
+          .cubic = 1 - 3 * s * s + 2 * s * s * s,
+          .slope = span * s * linear * linear,
+          .cubic_rate = -6 * s * linear / span,
+          .slope_rate = linear * (1 - 3 * s)};
+}
+
+/// The axis of a direction and the two across, right-handed; the sign of a step.
+struct Axes {
+  explicit Axes(std::size_t direction)
+      : along(direction / 2),
+        next(along == 2 ? 0 : along + 1),
+        last(along == 0 ? 2 : along - 1),
+        sign(direction % 2 == 0 ? 1 : -1) {}
+
+  std::size_t along = 0;
+  std::size_t next = 0;
+  std::size_t last = 0;
+  double sign = 1;
+};
+
+/// Adds to a point's motion what an end of its beam does to it; the direction leads from that end.
+void add_motion(const BeamShape& shape, std::size_t direction, const Vec6<double>& end,
+                Vec6<double>& u) {
+  const auto [a, j, k, sign] = Axes(direction);
+  const double slope = sign * shape.slope;
+  const double rate = sign * shape.cubic_rate;
+  u[a] += shape.linear * end[a];
+  u[j] += shape.cubic * end[j] + slope * end[k + 3];
+  u[k] += shape.cubic * end[k] - slope * end[j + 3];
+  u[a + 3] += shape.linear * end[a + 3];
+  u[j + 3] += shape.slope_rate * end[j + 3] - rate * end[k];
+  u[k + 3] += shape.slope_rate * end[k + 3] + rate * end[j];
+}
+
+/// Adds to the load of an end what it takes of a force on that point: the transpose.
+void add_share(const BeamShape& shape, std::size_t direction, const Vec6<double>& force,
+               Vec6<double>& load) {
+  const auto [a, j, k, sign] = Axes(direction);
+  const double slope = sign * shape.slope;
+  const double rate = sign * shape.cubic_rate;
+  load[a] += shape.linear * force[a];
+  load[j] += shape.cubic * force[j] + rate * force[k + 3];
+  load[k] += shape.cubic * force[k] - rate * force[j + 3];
+  load[a + 3] += shape.linear * force[a + 3];
+  load[j + 3] += shape.slope_rate * force[j + 3] - slope * force[k];
+  load[k + 3] += shape.slope_rate * force[k + 3] + slope * force[j];
+}
+
+/// Shapes of beams by length and place; those of a length that was asked for stay.
+class ShapeTable {
+ public:
+  explicit ShapeTable(double pitch) : pitch_(pitch), shapes_(kBeamLengthMax + 1) {}
+
+  /// By place, from the end on.
+  const std::vector<BeamShape>& of(int length) {
+    std::vector<BeamShape>& shapes = shapes_[at(length)];
+    for (int place = 0; shapes.size() <= at(length); ++place) {
+      shapes.push_back(beam_shape(pitch_, place, length));
+    }
+    return shapes;
+  }
+
+  /// Of a length that was asked for before.
+  const std::vector<BeamShape>& known(int length) const { return shapes_[at(length)]; }
+
+ private:
+  double pitch_ = 0;
+  std::vector<std::vector<BeamShape>> shapes_;
 };
 
 /// Spreads the low 21 bits to every third place.
@@ -110,7 +172,8 @@ class Builder {
       : robot_(robot),
         team_(team),
         is_gone_(robot.modules().size(), 0),
-        degree_(robot.modules().size()) {
+        degree_(robot.modules().size()),
+        shapes_(robot.material().pitch_mm) {
     const double weight = model::module_weight_n(robot.material());
     weight_ = {0, 0, -weight, 0, 0, 0};
   }
@@ -239,38 +302,18 @@ class Builder {
                              .direction = static_cast<std::uint8_t>(direction),
                              .length = length});
     network_.has_long_beams = true;
-    std::size_t to = from;
-    for (int i = 0; i < length; ++i) {
-      to = next(to, direction);
-    }
+    const std::vector<BeamShape>& shapes = shapes_.of(length);
+    Vec6<double> near{};
+    Vec6<double> far{};
     std::size_t module = from;
     for (int i = 1; i < length; ++i) {
       module = next(module, direction);
       is_gone_[module] = 1;
-      const Vec6<double>& force = network_.load[module];
-      base::add_to(network_.load[from], share(force, direction, i, length));
-      base::add_to(network_.load[to], share(force, direction ^ 1U, length - i, length));
+      add_share(shapes[at(i)], direction, network_.load[module], near);
+      add_share(shapes[at(length - i)], direction ^ 1U, network_.load[module], far);
     }
-  }
-
-  /// What the near end of a beam takes of a force that acts `place` pitches along it: the transpose
-  /// of the displacement there for a unit displacement of that end.
-  Vec6<double> share(const Vec6<double>& force, std::size_t direction, int place,
-                     int length) const {
-    const BeamShape shape(robot_.material().pitch_mm, direction, place, length);
-    const std::array<double, 3>& step = shape.step;
-    Vec6<double> taken{};
-    for (std::size_t i = 0; i < 3; ++i) {
-      taken[i] = force[i] * (i == shape.axis ? shape.linear : shape.cubic);
-      taken[i + 3] = force[i + 3] * (i == shape.axis ? shape.linear : shape.slope_rate);
-    }
-    for (std::size_t i = 0; i < 3; ++i) {
-      const std::size_t j = (i + 1) % 3;
-      const std::size_t k = (i + 2) % 3;
-      taken[i + 3] += shape.slope * (step[j] * force[k] - step[k] * force[j]);
-      taken[i] += shape.cubic_rate * (force[j + 3] * step[k] - force[k + 3] * step[j]);
-    }
-    return taken;
+    base::add_to(network_.load[from], near);
+    base::add_to(network_.load[next(module, direction)], far);
   }
 
   void sort_nodes() {
@@ -396,6 +439,7 @@ class Builder {
   std::vector<std::uint8_t> is_gone_;  ///< Eliminated or fixed.
   std::vector<std::uint8_t> degree_;   ///< Connections that are left.
   std::vector<std::uint8_t> run_axis_;
+  ShapeTable shapes_;
   std::vector<Keyed> items_;
   std::vector<std::int32_t> node_of_;
   Network network_;
@@ -415,6 +459,8 @@ struct RunFactor {
   std::vector<Mat6<double>> factor;  ///< K_i,i-1 times the pivot before.
   Mat6<double> to_next;              ///< K12 onwards and backwards.
   Mat6<double> to_last;
+  Vec6<double> weight{};             ///< Of one module.
+  std::vector<Vec6<double>> plain;   ///< How far weights bend it while its ends are held.
 };
 
 RunFactor factorize_run(const mechanics::BeamStiffness<double>& beam, std::size_t direction,
@@ -435,25 +481,38 @@ RunFactor factorize_run(const mechanics::BeamStiffness<double>& beam, std::size_
   return run;
 }
 
-/// Replaces the loads of a run's modules by how far they bend it while its ends are held.
+/// From the loads of a run's inner modules to how far these bend it while its ends are held.
+void bend(const RunFactor& factor, std::span<Vec6<double>> load) {
+  for (std::size_t i = 1; i < load.size(); ++i) {
+    subtract_product(load[i], factor.factor[i], load[i - 1]);
+  }
+  for (std::size_t i = load.size(); i-- > 0;) {
+    if (i + 1 < load.size()) {
+      subtract_product(load[i], factor.to_next, load[i + 1]);
+    }
+    load[i] = multiply(factor.pivot[i], load[i]);
+  }
+}
+
+/// Of one run. Most carry nothing but themselves, and bend alike.
 void bend_run(const Robot& robot, const Network::Run& run, const RunFactor& factor,
               std::vector<Vec6<double>>& load) {
   std::array<std::size_t, kBeamLengthMax> modules{};
-  const auto length = static_cast<std::size_t>(run.length);
+  std::array<Vec6<double>, kBeamLengthMax> own;
+  const std::size_t count = at(run.length) - 1;
   std::size_t module = at(run.from);
-  for (std::size_t i = 1; i < length; ++i) {
+  bool is_plain = true;
+  for (std::size_t i = 0; i < count; ++i) {
     module = at(robot.neighbours()[module][run.direction]);
     modules[i] = module;
-    if (i > 1) {
-      subtract_product(load[module], factor.factor[i - 1], load[modules[i - 1]]);
-    }
+    own[i] = load[module];
+    is_plain = is_plain && own[i] == factor.weight;
   }
-  for (std::size_t i = length - 1; i > 0; --i) {
-    Vec6<double>& right = load[modules[i]];
-    if (i + 1 < length) {
-      subtract_product(right, factor.to_next, load[modules[i + 1]]);
-    }
-    right = multiply(factor.pivot[i - 1], right);
+  if (!is_plain) {
+    bend(factor, std::span(own).first(count));
+  }
+  for (std::size_t i = 0; i < count; ++i) {
+    load[modules[i]] = is_plain ? factor.plain[i] : own[i];
   }
 }
 
@@ -470,6 +529,9 @@ void bend_alone(const Robot& robot, Team& team, Network& network) {
     RunFactor& factor = factors[run.direction][at(run.length)];
     if (factor.pivot.empty()) {
       factor = factorize_run(beam, run.direction, run.length);
+      factor.weight = {0, 0, -model::module_weight_n(robot.material()), 0, 0, 0};
+      factor.plain.assign(factor.pivot.size(), factor.weight);
+      bend(factor, factor.plain);
     }
   }
   team.share(0, network.runs.size(), [&](std::size_t begin, std::size_t end) {
@@ -485,37 +547,21 @@ void bend_alone(const Robot& robot, Team& team, Network& network) {
   });
 }
 
-/// t x a
-std::array<double, 3> cross(const double* t, const std::array<double, 3>& a) {
-  return {t[1] * a[2] - t[2] * a[1], t[2] * a[0] - t[0] * a[2], t[0] * a[1] - t[1] * a[0]};
-}
-
-/// Adds how the motion of an end of a beam moves the point that lies `shape` from it.
-void add_motion(const BeamShape& shape, const Vec6<double>& end, Vec6<double>& u) {
-  const std::array<double, 3> by_turn = cross(end.data() + 3, shape.step);
-  const std::array<double, 3> by_shift = cross(end.data(), shape.step);
-  for (std::size_t i = 0; i < 3; ++i) {
-    u[i] += (i == shape.axis ? shape.linear : shape.cubic) * end[i] + shape.slope * by_turn[i];
-    u[i + 3] += (i == shape.axis ? shape.linear : shape.slope_rate) * end[i + 3] -
-                shape.cubic_rate * by_shift[i];
-  }
-}
-
 void recover_run(const Robot& robot, const Network& network, const Network::Run& run,
-                 std::vector<Vec6<double>>& displacement) {
-  const double pitch = robot.material().pitch_mm;
-  std::size_t to = at(run.from);
-  for (int i = 0; i < run.length; ++i) {
-    to = at(robot.neighbours()[to][run.direction]);
+                 const std::vector<BeamShape>& shapes, std::vector<Vec6<double>>& displacement) {
+  std::array<std::size_t, kBeamLengthMax + 1> modules{};
+  modules[0] = at(run.from);
+  const std::size_t length = at(run.length);
+  for (std::size_t i = 1; i <= length; ++i) {
+    modules[i] = at(robot.neighbours()[modules[i - 1]][run.direction]);
   }
-  std::size_t module = at(run.from);
-  for (int i = 1; i < run.length; ++i) {
-    module = at(robot.neighbours()[module][run.direction]);
-    displacement[module] = network.load[module];
-    add_motion(BeamShape(pitch, run.direction, i, run.length), displacement[at(run.from)],
-               displacement[module]);
-    add_motion(BeamShape(pitch, run.direction ^ 1U, run.length - i, run.length), displacement[to],
-               displacement[module]);
+  const Vec6<double> near = displacement[modules[0]];
+  const Vec6<double> far = displacement[modules[length]];
+  for (std::size_t i = 1; i < length; ++i) {
+    Vec6<double> u = network.load[modules[i]];
+    add_motion(shapes[i], run.direction, near, u);
+    add_motion(shapes[length - i], run.direction ^ 1U, far, u);
+    displacement[modules[i]] = u;
   }
 }
 
@@ -537,9 +583,13 @@ Network make_network(const Robot& robot, Team& team) {
 
 void recover(const Robot& robot, const Network& network, Team& team,
              std::vector<Vec6<double>>& displacement) {
+  ShapeTable shapes(robot.material().pitch_mm);
+  for (const Network::Run& run : network.runs) {
+    shapes.of(run.length);
+  }
   team.share(0, network.runs.size(), [&](std::size_t begin, std::size_t end) {
     for (const Network::Run& run : std::span(network.runs).subspan(begin, end - begin)) {
-      recover_run(robot, network, run, displacement);
+      recover_run(robot, network, run, shapes.known(run.length), displacement);
     }
   });
   for (std::size_t i = network.hanging.size(); i-- > 0;) {
@@ -547,10 +597,10 @@ void recover(const Robot& robot, const Network& network, Team& team,
     const std::size_t host = at(robot.neighbours()[at(module)][direction]);
     Vec6<double>& u = displacement[at(module)];
     u = displacement[host];  // As one rigid body, from the host to what hangs on it.
-    const std::array<double, 3> by_turn = cross(&u[3], unit_step(direction ^ 1U));
-    for (std::size_t k = 0; k < 3; ++k) {
-      u[k] += robot.material().pitch_mm * by_turn[k];
-    }
+    const auto [a, j, k, sign] = Axes(direction ^ 1U);
+    const double arm = sign * robot.material().pitch_mm;
+    u[j] += arm * u[k + 3];
+    u[k] -= arm * u[j + 3];
     base::add_to(u, network.load[at(module)]);
   }
 }
