@@ -136,8 +136,8 @@ TEST(Multigrid, solves_what_hangs_exactly) {
 }
 
 /// A row of a thousand from a fixed module: n modules beyond a connection bend its middle by
-/// n^2/2 weights times the pitch. Rounding: the tip sags by 1e8 times what the last connection does,
-/// and yet the loads have all their digits.
+/// n^2/2 weights times the pitch. Rounding: the tip sags by 1e8 times what the last connection
+/// does, and yet the loads have all their digits.
 TEST(Multigrid, knows_the_bending_of_a_long_arm_to_the_last_digits) {
   model::RobotSpec spec{.fixed = {{0, 0, 0}}, .support_z = -1000};
   constexpr int kLength = 1000;
@@ -151,7 +151,8 @@ TEST(Multigrid, knows_the_bending_of_a_long_arm_to_the_last_digits) {
   const double unit = model::module_weight_n(material) * material.pitch_mm / material.facet_mm /
                       material.strength_lateral_n;
   for (std::size_t i = 0; i < ratios.size(); ++i) {
-    const double beyond = robot.modules()[static_cast<std::size_t>(robot.connections()[i].a)].cell.x;
+    const double beyond =
+        robot.modules()[static_cast<std::size_t>(robot.connections()[i].a)].cell.x;
     const double count = kLength - 1 - beyond;
     EXPECT_NEAR(ratios[i], unit * count * count, 1e-12 * unit * kLength * kLength);
   }

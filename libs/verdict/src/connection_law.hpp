@@ -13,8 +13,8 @@
 /// What connections carry, Eqs. (16)-(17), for very many of them.
 namespace holdfast::verdict {
 
-/// For one direction: what mechanics::middle_force() and load_ratio() compute, to the last bit, with
-/// the beam's frame and constants worked out beforehand. For a load ratio that leaves three
+/// For one direction: what mechanics::middle_force() and load_ratio() compute, to the last bit,
+/// with the beam's frame and constants worked out beforehand. For a load ratio that leaves three
 /// differences: of the displacements along the beam, and of the rotations across.
 class ConnectionLaw {
  public:

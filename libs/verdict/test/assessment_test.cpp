@@ -63,8 +63,8 @@ TEST(Assessment, counts_the_modules_that_a_vertical_connection_can_hold) {
 /// unequal moments tells the axes apart.
 TEST(Assessment, says_of_every_connection_what_mechanics_says) {
   model::RobotSpec spec{.fixed = {{0, 0, 0}}, .support_z = -10};
-  for (const Cell& cell : {Cell{0, 0, 0}, Cell{1, 0, 0}, Cell{1, 1, 0}, Cell{1, 1, 1}, Cell{2, 1, 1},
-                           Cell{2, 0, 1}, Cell{2, -1, 1}, Cell{2, -1, 0}}) {
+  for (const Cell& cell : {Cell{0, 0, 0}, Cell{1, 0, 0}, Cell{1, 1, 0}, Cell{1, 1, 1},
+                           Cell{2, 1, 1}, Cell{2, 0, 1}, Cell{2, -1, 1}, Cell{2, -1, 0}}) {
     spec.existing.push_back(cell);
   }
   spec.material.moment_y_mm4 *= 3;
@@ -75,10 +75,9 @@ TEST(Assessment, says_of_every_connection_what_mechanics_says) {
   ASSERT_EQ(found.connections.size(), robot.connections().size());
   for (std::size_t i = 0; i < found.connections.size(); ++i) {
     const model::Connection& pair = robot.connections()[i];
-    const auto middle =
-        mechanics::middle_force(beam, pair.direction,
-                                found.equilibrium.displacement[static_cast<std::size_t>(pair.a)],
-                                found.equilibrium.displacement[static_cast<std::size_t>(pair.b)]);
+    const auto middle = mechanics::middle_force(
+        beam, pair.direction, found.equilibrium.displacement[static_cast<std::size_t>(pair.a)],
+        found.equilibrium.displacement[static_cast<std::size_t>(pair.b)]);
     const auto load = mechanics::connection_load(middle);
     const double strength = base::is_vertical(pair.direction) ? material.strength_vertical_n
                                                               : material.strength_lateral_n;

@@ -40,13 +40,13 @@ class BeamAnchors {
 template <class Real>
 Anchor moved(const Anchor& anchor, const Seat<Real>& seat) {
   const Point arm = offset(seat);
-  return {.node = seat.cluster,
-          .direction = anchor.direction,
-          .length = anchor.length,
-          .reach = anchor.reach + behind(arm, anchor.direction),
-          .middle = {anchor.middle[0] + arm[0], anchor.middle[1] + arm[1],
-                     anchor.middle[2] + arm[2]},
-          .stiffness = carried(anchor.stiffness, arm)};
+  return {
+      .node = seat.cluster,
+      .direction = anchor.direction,
+      .length = anchor.length,
+      .reach = anchor.reach + behind(arm, anchor.direction),
+      .middle = {anchor.middle[0] + arm[0], anchor.middle[1] + arm[1], anchor.middle[2] + arm[2]},
+      .stiffness = carried(anchor.stiffness, arm)};
 }
 
 void add_to(Anchor& sum, const Anchor& anchor) {

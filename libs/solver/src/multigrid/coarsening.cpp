@@ -311,7 +311,8 @@ class Coarsening {
     });
   }
 
-  /// What a cluster's parts are made of, and its neighbours. (The far offsets follow from the rest.)
+  /// What a cluster's parts are made of, and its neighbours. (The far offsets follow from the
+  /// rest.)
   Signature sign(std::size_t c, std::vector<std::int32_t>& targets) const {
     Signature signature;
     targets.clear();
@@ -342,6 +343,7 @@ class Coarsening {
       double reach = 0;
       double weight = 0;
     };
+
     std::vector<Sum> sums(count);
     for (const Part& part : parts) {
       const Spring& fine = fine_.springs[part.spring];

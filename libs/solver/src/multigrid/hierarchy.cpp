@@ -212,8 +212,7 @@ void Hierarchy<Real>::add_level(const Stage& stage, std::vector<std::size_t> col
   std::vector<Mat> sums;
   for (std::size_t node = 0; node < level.node_count; ++node) {
     const bool is_alone = stage.start[node] == stage.start[node + 1];
-    std::uint32_t& type =
-        type_of_pattern[is_alone ? stage.springs.size() : stage.pattern[node]];
+    std::uint32_t& type = type_of_pattern[is_alone ? stage.springs.size() : stage.pattern[node]];
     if (type == kNone) {
       type = static_cast<std::uint32_t>(sums.size());
       sums.push_back(spring_sum(stage, node));

@@ -40,8 +40,8 @@ Vec6<double> moved(Vec6<double> force, std::size_t direction, double length) {
 }
 
 /// How an end of an unloaded beam moves a point of it, by Hermite's cubics: a displacement u moves
-/// it by `linear` u along the axis and by `cubic` u across, and turns it by cubic_rate (step x u); a
-/// rotation t turns it by `linear` t about the axis and by slope_rate t across, and moves it by
+/// it by `linear` u along the axis and by `cubic` u across, and turns it by cubic_rate (step x u);
+/// a rotation t turns it by `linear` t about the axis and by slope_rate t across, and moves it by
 /// slope (t x step). The step leads from the end to the point.
 struct BeamShape {
   double linear = 0;
@@ -459,8 +459,8 @@ struct RunFactor {
   std::vector<Mat6<double>> factor;  ///< K_i,i-1 times the pivot before.
   Mat6<double> to_next;              ///< K12 onwards and backwards.
   Mat6<double> to_last;
-  Vec6<double> weight{};             ///< Of one module.
-  std::vector<Vec6<double>> plain;   ///< How far weights bend it while its ends are held.
+  Vec6<double> weight{};            ///< Of one module.
+  std::vector<Vec6<double>> plain;  ///< How far weights bend it while its ends are held.
 };
 
 RunFactor factorize_run(const mechanics::BeamStiffness<double>& beam, std::size_t direction,
@@ -540,8 +540,7 @@ void bend_alone(const Robot& robot, Team& team, Network& network) {
     }
   });
   team.share(0, network.hanging.size(), [&](std::size_t begin, std::size_t end) {
-    for (const auto& [module, direction] :
-         std::span(network.hanging).subspan(begin, end - begin)) {
+    for (const auto& [module, direction] : std::span(network.hanging).subspan(begin, end - begin)) {
       network.load[at(module)] = multiply(inverse_11[direction], network.load[at(module)]);
     }
   });
