@@ -23,7 +23,7 @@ constexpr std::size_t kCoarsestCount = 48;
 /// are refined with forces that have not, and that counts; in single precision there are none to
 /// lose.
 template <class Real>
-constexpr std::size_t kChainMax = std::is_same_v<Real, float> ? 4000 : 600;
+constexpr std::size_t kChainMax = std::is_same_v<Real, float> ? 3000 : 600;
 
 /// Where nodes have more neighbours than this on average, too many blocks fill in.
 constexpr std::size_t kThinDegree = 3;
