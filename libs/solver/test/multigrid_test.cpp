@@ -232,6 +232,34 @@ TEST(Multigrid, needs_hardly_more_iterations_for_more_modules) {
   EXPECT_LE(iterations(Family::kShell, 60), 24);
 }
 
+/// A slab with towers on it, each on one module as its neck.
+std::vector<base::Cell> towers_on_necks() {
+  std::vector<base::Cell> cells;
+  const auto add = [&](std::int32_t x, std::int32_t y, std::int32_t z) {
+    cells.push_back({x, y, z});
+  };
+  for (int i = 0; i < 24 * 24 * 4; ++i) {
+    add(i % 24, i / 24 % 24, i / 576);
+  }
+  for (int tower = 0; tower < 9; ++tower) {
+    const int x = 8 * (tower % 3);
+    const int y = 8 * (tower / 3);
+    add(x + 1, y + 2, 4);
+    for (int i = 0; i < 4 * 4 * 12; ++i) {
+      add(x + i % 4, y + i / 4 % 4, 5 + i / 16);
+    }
+  }
+  return cells;
+}
+
+TEST(Multigrid, bends_at_necks) {
+  const model::Robot robot = model::Robot::create({.existing = towers_on_necks()}).value();
+  expect_agreement(robot, {}, true);
+  EquilibriumSolver solver(robot, {.method = Method::kMultigrid, .is_bonded = true});
+  const Equilibrium result = solver.solve({});
+  EXPECT_LE(result.iteration_count, 10);  // 39 if necks may lie within clusters.
+}
+
 TEST(Multigrid, says_when_memory_does_not_suffice) {
   const model::Robot robot = family(Family::kCube, 12);
   EXPECT_EQ(EquilibriumSolver(robot, {.memory_bytes_max = 100'000, .method = Method::kMultigrid})

@@ -9,6 +9,7 @@
 #include <unordered_map>
 
 #include "slivers.hpp"
+#include "weak_springs.hpp"
 
 namespace holdfast::solver {
 namespace {
@@ -43,9 +44,10 @@ Point centre(Point mean) {
 struct Part {
   std::uint32_t spring = 0;  ///< Index into the fine level's springs.
   std::uint32_t target = 0;  ///< Which of the cluster's neighbours, in the order they are met.
-  Point offset = {};         ///< From the cluster's centre to the member.
-  Point far_offset = {};     ///< From the partner's cluster's centre to the partner.
-  Point partner = {};        ///< From the cluster's centre to that of the partner's cluster.
+  bool is_weak = false;
+  Point offset = {};      ///< From the cluster's centre to the member.
+  Point far_offset = {};  ///< From the partner's cluster's centre to the partner.
+  Point partner = {};     ///< From the cluster's centre to that of the partner's cluster.
 };
 
 /// Two words that stand for a cluster's parts; equal by chance once in 2^100 clusters.
@@ -91,6 +93,9 @@ class Coarsening {
     while (shift < 63 && 5 * count_cells(shift) > 2 * count) {
       shift += 3;
     }
+    if constexpr (std::is_same_v<Real, float>) {
+      is_weak_ = weak_springs(fine_, team_);
+    }
     find_clusters(shift);
     coarse_.shift = fine_.shift + shift;
     if (!fine_.box.empty()) {
@@ -120,6 +125,8 @@ class Coarsening {
     return count;
   }
 
+  bool is_weak(std::size_t edge) const { return !is_weak_.empty() && is_weak_[edge] == 1; }
+
   /// Connected parts within cells whose keys agree but for the last `shift` bits, numbered along
   /// the Morton curve.
   void find_clusters(unsigned shift) {
@@ -136,12 +143,13 @@ class Coarsening {
       while (!open.empty()) {
         const std::size_t node = at(open.back());
         open.pop_back();
-        for_neighbours(node, [&](std::int32_t other) {
-          if (cluster_[at(other)] < 0 && fine_.key[at(other)] >> shift == cell) {
+        for (std::size_t e = at(fine_.start[node]); e < at(fine_.start[node + 1]); ++e) {
+          const std::int32_t other = fine_.other[e];
+          if (cluster_[at(other)] < 0 && fine_.key[at(other)] >> shift == cell && !is_weak(e)) {
             cluster_[at(other)] = count;
             open.push_back(other);
           }
-        });
+        }
       }
       ++count;
     }
@@ -305,6 +313,7 @@ class Coarsening {
     for_parts(c, [&](std::size_t node, std::size_t edge, std::size_t other) {
       parts.push_back({.spring = spring_of(node, edge),
                        .target = target_of(cluster_[other], targets),
+                       .is_weak = is_weak(edge),
                        .offset = offset(level_.seat[node]),
                        .far_offset = offset(level_.seat[other]),
                        .partner = partner(c, cluster_[other])});
@@ -320,7 +329,8 @@ class Coarsening {
     for_parts(c, [&](std::size_t node, std::size_t edge, std::size_t other) {
       const std::size_t met_count = targets.size();
       const std::uint32_t target = target_of(cluster_[other], targets);
-      signature.add(std::uint64_t{spring_of(node, edge)} << 32U | target);
+      signature.add(std::uint64_t{spring_of(node, edge)} << 32U | target << 1U |
+                    (is_weak(edge) ? 1U : 0U));
       if (node != last) {
         const Point place = offset(level_.seat[node]);
         signature.add<Real>(place[0], place[1]);
@@ -356,8 +366,10 @@ class Coarsening {
       }
       Sum& sum = sums[part.target];
       sum.length += fine.length;
-      sum.reach += fine.length + behind(part.offset, fine.direction) +
-                   behind(part.far_offset, fine.direction ^ 1U);
+      // Behind a neck the robot is stiffer than the neck, which is as soft as it is long.
+      sum.reach += fine.length + (part.is_weak ? 0
+                                               : behind(part.offset, fine.direction) +
+                                                     behind(part.far_offset, fine.direction ^ 1U));
       sum.weight += 1;
     }
     for (std::size_t i = 0; i < count; ++i) {
@@ -423,6 +435,7 @@ class Coarsening {
   Level<Real>& level_;
   Team& team_;
   Stage& coarse_;
+  std::vector<std::uint8_t> is_weak_;  ///< By edge of the fine level; empty if none is.
   std::size_t cluster_count_ = 0;
   std::vector<std::int32_t> cluster_;
   std::vector<std::int32_t> member_;
