@@ -131,8 +131,11 @@ void EquilibriumSolver::choose_method() {
 
 /// None is left if it is too large.
 void EquilibriumSolver::make_multigrid(Precision precision) {
-  multigrid_.reset();
-  if (Multigrid::bytes_for(free_count(), precision) <= options_.memory_bytes_max) {
+  if (Multigrid::bytes_for(free_count(), precision) > options_.memory_bytes_max) {
+    multigrid_.reset();
+  } else if (multigrid_) {
+    multigrid_->set_precision(precision);
+  } else {
     lu_.reset();
     multigrid_ =
         std::make_unique<Multigrid>(robot_, precision, options_.thread_count, options_.progress);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 namespace holdfast::solver {
@@ -17,6 +18,16 @@ constexpr int kIterationMax = 500;
 /// 500 to 700 on slender robots.
 constexpr std::size_t kBytesPerModule = 450;
 constexpr std::size_t kBytesPerModuleDouble = 800;
+
+/// A robot of n modules that is N long consists of N / sqrt(n / N) cubes in a row, at most, as if
+/// its modules were in one bar. Rounding moves it by that number squared times what it moves a
+/// cube, and where it so moves it by more than this share of the true motion, single precision is
+/// not even tried. Towers give up from N^3 / n = 0.7e6 on, portals and bridges somewhere from 3e6
+/// to 6e6; this is 4e6. A robot that is sent on wrongly takes a few times as long.
+constexpr double kRoundingShare = 0.25;
+
+/// So small a network is solved on its coarsest level, in double precision anyway.
+constexpr std::size_t kTrivialCount = 48;
 
 std::size_t at(std::int32_t index) { return static_cast<std::size_t>(index); }
 
@@ -58,6 +69,22 @@ Multigrid::Multigrid(const model::Robot& robot, Precision precision, int thread_
       facets_.push_back({.node = static_cast<std::int32_t>(node), .state = {}});
     }
   }
+}
+
+void Multigrid::set_precision(Precision precision) {
+  precision_ = precision;
+  iteration_.reset();
+  reference_ = 0;
+  is_stale_ = true;
+}
+
+/// Whether it is plain from the robot's shape that single precision will not do.
+bool Multigrid::is_too_slender() const {
+  const double length = network_.extent;
+  const auto count = static_cast<double>(robot_.modules().size());
+  const double slenderness_squared = length * length * length / count;
+  return network_.node_count > kTrivialCount &&
+         std::numeric_limits<float>::epsilon() / 2 * slenderness_squared > kRoundingShare;
 }
 
 std::size_t Multigrid::bytes_for(std::size_t module_count, Precision precision) {
@@ -169,6 +196,9 @@ std::vector<NodeTerm> Multigrid::unsymmetric_terms() const {
 bool Multigrid::begin() {
   if (!is_new()) {
     return true;
+  }
+  if (precision_ == Precision::kSingle && is_too_slender()) {
+    return false;
   }
   update_iteration();
   if (precision_ == Precision::kSingle && iteration_->is_too_slender()) {

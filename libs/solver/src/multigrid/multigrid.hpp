@@ -29,6 +29,9 @@ class Multigrid {
 
   Precision precision() const { return precision_; }
 
+  /// Starts anew in another precision, with the same network and facets.
+  void set_precision(Precision precision);
+
   /// Puts all facets back to stuck, under another law.
   void set_law(const mechanics::GroundFacet<double>& facet);
   void set_facet(std::size_t module, const mechanics::ContactState& state, bool is_held);
@@ -59,6 +62,7 @@ class Multigrid {
   };
 
   Mat tangent(std::uint8_t code) const;
+  bool is_too_slender() const;
   bool begin();
   std::unique_ptr<Iteration> make_iteration();
   void update_iteration();

@@ -32,6 +32,7 @@ struct Network {
   std::vector<std::int32_t> order;  ///< Nodes along the Morton curve.
   std::vector<std::uint64_t> key;   ///< Their Morton keys, ascending.
   bool has_long_beams = false;
+  std::int32_t extent = 0;               ///< Longest side of the box around the nodes, pitches.
   std::vector<base::Vec6<double>> load;  ///< By module; empty if nothing was eliminated.
 
   /// A module that hangs on one connection, in the order of elimination.
