@@ -90,6 +90,10 @@ template <class Real>
 void fill_vectors(Level<Real>& level) {
   level.r.assign(level.node_count + 1, {});
   level.z.assign(level.node_count + 1, {});
+  if constexpr (std::is_same_v<Real, double>) {
+    level.rough_r.assign(level.node_count + 1, {});
+    level.rough_z.assign(level.node_count + 1, {});
+  }
 }
 
 }  // namespace
@@ -208,9 +212,9 @@ void Hierarchy<Real>::add_level(const Stage& stage, std::vector<std::size_t> col
   for (const Mat& sum : sums) {
     Mat inverse;
     // A pattern that only anchored nodes have may be singular alone; its inverse is not used.
-    level.inverse.push_back(invert(sum, inverse) ? block_of<Real>(inverse) : Block<Real>{});
+    level.inverse.push_back(invert(sum, inverse) ? block_of<float>(inverse) : Block<float>{});
     if constexpr (std::is_same_v<Real, float>) {
-      level.couplings.diagonal.push_back(block_of<float>(sum));
+      level.couplings.blocks.diagonal.push_back(block_of<float>(sum));
     }
   }
   fill_vectors(level);

@@ -38,7 +38,8 @@ struct Beams<float> {
 
 template <>
 struct Beams<double> {
-  std::vector<Six<double>> springs;   ///< By axis and length.
+  std::vector<BeamRow<float>> rows;   ///< As above.
+  std::vector<MiddleSpring> springs;  ///< By axis and length.
   std::vector<Block<double>> ground;  ///< What the contact adds to K_pp.
 };
 
@@ -55,6 +56,9 @@ class Hierarchy {
   std::vector<Level<Real>>& levels() { return levels_; }
 
   const LatticeView<Real>& lattice() const { return lattice_; }
+
+  /// What the sweeps need.
+  const LatticeView<float>& block_lattice() const { return block_lattice_; }
 
   /// False if the finest level is the only one, or clusters stopped growing early.
   bool has_coarsest() const { return coarsest_.has_value(); }
@@ -102,6 +106,7 @@ class Hierarchy {
   std::vector<Level<Real>> levels_;
   std::vector<Held> held_;  ///< By level, from the second on.
   LatticeView<Real> lattice_;
+  LatticeView<float> block_lattice_;
   Beams<Real> beams_;
   std::optional<BlockLu> coarsest_;
   bool is_too_slender_ = false;
