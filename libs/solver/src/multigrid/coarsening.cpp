@@ -310,15 +310,24 @@ class Coarsening {
     return signature;
   }
 
+  /// In which direction most of a cluster's connections with another lead. United slivers may meet
+  /// around a corner, and both ends must find the same axis.
+  static std::uint8_t main_direction(const std::array<int, 3>& along, const Point& partner) {
+    const auto axis = std::ranges::max_element(along) - along.begin();
+    const bool is_down = partner[static_cast<std::size_t>(axis)] < 0;
+    return static_cast<std::uint8_t>(2 * axis + (is_down ? 1 : 0));
+  }
+
   /// A pure function of the parts, so it does not matter which of many equal clusters is taken.
   void add_up(const std::vector<Part>& parts, Spring* springs, std::size_t count) const {
     std::vector<double> length(count);
     std::vector<double> reach(count);
     std::vector<double> weight(count);
+    std::vector<std::array<int, 3>> along(count);
     for (const Part& part : parts) {
       const Spring& fine = fine_.springs[part.spring];
       Spring& spring = springs[part.target];
-      spring.direction = fine.direction;
+      ++along[part.target][fine.direction / 2U];
       spring.partner = part.partner;
       base::add_to(spring.stiffness, carried(fine.stiffness, part.offset));
       for (std::size_t k = 0; k < 3; ++k) {
@@ -335,6 +344,7 @@ class Coarsening {
         x /= weight[i];
       }
       spring.length = reach[i] / weight[i];
+      spring.direction = main_direction(along[i], spring.partner);
       spring.stiffness = stretched(spring.stiffness, spring.middle, spring.direction / 2U,
                                    length[i] / weight[i], spring.length);
     }
