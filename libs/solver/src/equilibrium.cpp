@@ -138,7 +138,10 @@ void EquilibriumSolver::make_multigrid(Precision precision) {
   } else {
     lu_.reset();
     multigrid_ =
-        std::make_unique<Multigrid>(robot_, precision, options_.thread_count, options_.progress);
+        std::make_unique<Multigrid>(robot_, MultigridOptions{.precision = precision,
+                                                             .may_yield = !options_.is_bonded,
+                                                             .thread_count = options_.thread_count,
+                                                             .progress = options_.progress});
   }
 }
 

@@ -105,6 +105,7 @@ class Coarsening {
     place_centres();
     seat_members();
     make_springs();
+    leave_alone();
     return true;
   }
 
@@ -132,12 +133,13 @@ class Coarsening {
       }
       const std::uint64_t cell = fine_.key[at(first)] >> shift;
       cluster_[at(first)] = count;
-      open.assign(1, first);
+      open.assign(is_alone(at(first)) ? 0 : 1, first);
       while (!open.empty()) {
         const std::size_t node = at(open.back());
         open.pop_back();
         for_neighbours(node, [&](std::int32_t other) {
-          if (cluster_[at(other)] < 0 && fine_.key[at(other)] >> shift == cell) {
+          if (cluster_[at(other)] < 0 && fine_.key[at(other)] >> shift == cell &&
+              !is_alone(at(other))) {
             cluster_[at(other)] = count;
             open.push_back(other);
           }
@@ -147,6 +149,8 @@ class Coarsening {
     }
     cluster_count_ = at(count);
   }
+
+  bool is_alone(std::size_t node) const { return !fine_.is_alone.empty() && fine_.is_alone[node]; }
 
   template <class F>
   void for_neighbours(std::size_t node, const F& f) const {
@@ -252,6 +256,16 @@ class Coarsening {
         coarse_.place[c] = centre<Real>({sum[0] / count, sum[1] / count, sum[2] / count});
       }
     });
+  }
+
+  /// What was alone stays alone.
+  void leave_alone() {
+    coarse_.is_alone.assign(fine_.is_alone.empty() ? 0 : cluster_count_, false);
+    for (std::size_t node = 0; node < fine_.is_alone.size(); ++node) {
+      if (fine_.is_alone[node]) {
+        coarse_.is_alone[at(cluster_[node])] = true;
+      }
+    }
   }
 
   void seat_members() {

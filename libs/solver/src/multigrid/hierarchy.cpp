@@ -28,6 +28,12 @@ constexpr std::size_t kChainMax = std::is_same_v<Real, float> ? 4000 : 600;
 /// Where nodes have more neighbours than this on average, too many blocks fill in.
 constexpr std::size_t kThinDegree = 3;
 
+/// Blocks that may fill in per node: a chain or a ladder has no more. Nodes that join no cluster
+/// are those of a few feet, next to each other, and bring more; between two feet a chain has a
+/// second block per node.
+constexpr std::size_t kFill = 2;
+constexpr std::size_t kAloneFill = 40;
+
 std::size_t at(std::int32_t index) { return static_cast<std::size_t>(index); }
 
 /// The sum of a node's springs, anchors left out.
@@ -291,14 +297,16 @@ void Hierarchy<Real>::update_contact() {
 template <class Real>
 void Hierarchy<Real>::try_to_factor(const Stage& stage) {
   const std::size_t count = stage.order.size();
-  const bool is_small = count <= kCoarsestCount;
-  const bool is_thin = stage.other.size() <= kThinDegree * count;
-  if (!is_small && is_thin && count > kChainMax<Real>) {
+  const bool is_small = count <= kCoarsestCount + alone_count_;
+  const bool is_thin = stage.other.size() <= kThinDegree * (count + alone_count_);
+  if (!is_small && is_thin && count > kChainMax<Real> + alone_count_) {
     is_too_slender_ = true;
     return;
   }
   if (is_small || (is_thin && count < network_.node_count / 4)) {
-    coarsest_ = unheld_matrix(stage, is_small ? count * count : 2 * count);
+    const std::size_t fill_max =
+        alone_count_ == 0 ? kFill * count : 2 * kFill * count + kAloneFill * alone_count_;
+    coarsest_ = unheld_matrix(stage, is_small ? count * count : fill_max);
     if (coarsest_ && !factor_coarsest()) {
       coarsest_.reset();
     }
@@ -307,13 +315,21 @@ void Hierarchy<Real>::try_to_factor(const Stage& stage) {
 
 template <class Real>
 Hierarchy<Real>::Hierarchy(const Network& network, const model::Material& material, Team& team,
-                           GroundStiffness ground)
-    : network_(network), material_(material), ground_(std::move(ground)) {
+                           GroundStiffness ground, std::span<const std::int32_t> alone)
+    : network_(network),
+      material_(material),
+      ground_(std::move(ground)),
+      alone_count_(alone.size()) {
   make_lattice();
   Stage stage;
   fill_stage(team, stage);
+  stage.is_alone.assign(alone.empty() ? 0 : network_.node_count, false);
+  for (const std::int32_t node : alone) {
+    stage.is_alone[at(node)] = true;
+  }
   std::vector<Anchor> anchors = finest_anchors(network_, material_, ground_);
-  while (!coarsest_ && (levels_.size() == 1 || stage.order.size() > kCoarsestCount)) {
+  while (!coarsest_ &&
+         (levels_.size() == 1 || stage.order.size() > kCoarsestCount + alone_count_)) {
     Stage coarse;
     std::vector<std::size_t> colour_start;
     if (!coarsen(stage, levels_.back(), team, coarse, colour_start)) {

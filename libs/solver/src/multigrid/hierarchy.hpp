@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <unordered_map>
 #include <vector>
 
@@ -46,9 +47,9 @@ struct Beams<double> {
 template <class Real>
 class Hierarchy {
  public:
-  /// Keeps references to the network and the material.
+  /// Keeps references to the network and the material. Nodes that are `alone` join no cluster.
   Hierarchy(const Network& network, const model::Material& material, Team& team,
-            GroundStiffness ground);
+            GroundStiffness ground, std::span<const std::int32_t> alone);
 
   /// Takes over changed contact: the same levels, held in another way.
   void update_contact();
@@ -102,6 +103,7 @@ class Hierarchy {
   const Network& network_;
   const model::Material& material_;
   GroundStiffness ground_;
+  std::size_t alone_count_ = 0;
   std::unordered_map<std::uint64_t, std::uint32_t> type_of_kind_;
   std::vector<Level<Real>> levels_;
   std::vector<Held> held_;  ///< By level, from the second on.
