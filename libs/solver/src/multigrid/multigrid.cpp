@@ -24,9 +24,10 @@ constexpr std::size_t kBytesPerModuleDouble = 800;
 /// A robot of n modules that is N long consists of N / sqrt(n / N) cubes in a row, at most, as if
 /// its modules were in one bar. Rounding moves it by that number squared times what it moves a
 /// cube, and where it so moves it by more than this share of the true motion, single precision is
-/// not even tried. Towers give up from N^3 / n = 0.7e6 on, portals and bridges somewhere from 3e6
-/// to 6e6; this is 4e6. A robot that is sent on wrongly takes a few times as long.
-constexpr double kRoundingShare = 0.25;
+/// not even tried. By experiment it gives up in towers from N^3 / n = 0.7e6 on, in bridges and
+/// portals from 2.7e6 and 3.1e6; this is 2.5e6. A robot that is sent on wrongly takes twice as
+/// long.
+constexpr double kRoundingShare = 0.15;
 
 /// So small a network is solved on its coarsest level, in double precision anyway.
 constexpr std::size_t kTrivialCount = 48;
