@@ -301,6 +301,82 @@ TEST(Multigrid, agrees_with_the_direct_solver_in_double_precision) {
   }
 }
 
+/// What the ground carries together is what the robot weighs.
+double ground_force_n(const Equilibrium& result) {
+  double sum = 0;
+  for (const Vec6<double>& force : result.ground_force) {
+    sum += force[2];
+  }
+  return sum;
+}
+
+TEST(Multigrid, agrees_with_the_direct_solver_in_double_precision_under_the_exact_law) {
+  const std::pair<Family, std::size_t> robots[] = {{Family::kCube, 8},      {Family::kTower, 40},
+                                                   {Family::kScaffold, 13}, {Family::kShell, 12},
+                                                   {Family::kPortal, 60},   {Family::kPortal, 130},
+                                                   {Family::kBridge, 16},   {Family::kGrowth, 600}};
+  const ContactOptions contact = {.law = ContactLaw::kUnilateral, .gamma = 1e-6};
+  for (const auto& [name, size] : robots) {
+    SCOPED_TRACE(model::families()[static_cast<std::size_t>(name)].name);
+    const model::Robot robot = family(name, size);
+    expect_agreement(robot, contact, false, Precision::kDouble);
+    const Equilibrium direct = EquilibriumSolver(robot, {.method = Method::kDirect}).solve(contact);
+    const Equilibrium found =
+        EquilibriumSolver(robot, {.method = Method::kMultigrid, .precision = Precision::kDouble})
+            .solve(contact);
+    EXPECT_EQ(found.contact, direct.contact);
+    EXPECT_EQ(found.open_but_held_count, direct.open_but_held_count);
+    const double weight =
+        model::module_weight_n(robot.material()) * static_cast<double>(robot.modules().size());
+    EXPECT_NEAR(ground_force_n(found), weight, 1e-4 * weight);
+  }
+}
+
+TEST(Multigrid, finds_on_which_edges_a_few_feet_stand) {
+  // Feet of 4 x 4 modules, most of which lift; the others tilt, and the tangent is not symmetric.
+  for (const std::size_t width : {100U, 130U, 201U}) {
+    const model::Robot robot = family(Family::kPortal, width);
+    const Equilibrium direct = EquilibriumSolver(robot, {.method = Method::kDirect}).solve({});
+    for (const Precision precision : {Precision::kSingle, Precision::kDouble}) {
+      SCOPED_TRACE(std::to_string(width));
+      expect_agreement(robot, {}, false, precision);
+      const Equilibrium found =
+          EquilibriumSolver(robot, {.method = Method::kMultigrid, .precision = precision})
+              .solve({});
+      EXPECT_EQ(found.contact, direct.contact);
+      EXPECT_LE(found.iteration_count, 16);
+    }
+  }
+}
+
+TEST(Multigrid, unites_slivers_around_a_corner) {
+  // 1,602 modules wide: cells cut the legs lengthwise, and what is united meets at the corners in
+  // two directions. The second method is single precision, which unites nothing.
+  const model::Robot robot = family(Family::kPortal, 1602);
+  const auto ratios = [&](Precision precision) {
+    const Equilibrium result =
+        EquilibriumSolver(robot,
+                          {.method = Method::kMultigrid, .precision = precision, .is_bonded = true})
+            .solve({});
+    EXPECT_EQ(result.outcome, Outcome::kSettled);
+    EXPECT_EQ(result.precision, precision);
+    return load_ratios(robot, result.displacement);
+  };
+  EXPECT_LE(largest_difference(ratios(Precision::kSingle), ratios(Precision::kDouble)),
+            2 * kRatioTolerance);
+}
+
+TEST(Multigrid, does_not_even_try_single_precision_where_it_cannot_do) {
+  int told_count = 0;
+  const Equilibrium result =
+      EquilibriumSolver(family(Family::kTower, 7000),
+                        {.is_bonded = true, .progress = [&](int, double) { ++told_count; }})
+          .solve({});
+  ASSERT_EQ(result.outcome, Outcome::kSettled);
+  EXPECT_EQ(result.precision, Precision::kDouble);
+  EXPECT_EQ(told_count, result.iteration_count);
+}
+
 constexpr std::int32_t kLongRow = 30'000;
 
 /// Two rows of modules, one upon the other, fixed at both ends, whose first cell is `low`.

@@ -110,6 +110,7 @@ class Coarsening {
     place_centres();
     seat_members();
     make_springs();
+    leave_alone();
     return true;
   }
 
@@ -139,13 +140,14 @@ class Coarsening {
       }
       const std::uint64_t cell = fine_.key[at(first)] >> shift;
       cluster_[at(first)] = count;
-      open.assign(1, first);
+      open.assign(is_alone(at(first)) ? 0 : 1, first);
       while (!open.empty()) {
         const std::size_t node = at(open.back());
         open.pop_back();
         for (std::size_t e = at(fine_.start[node]); e < at(fine_.start[node + 1]); ++e) {
           const std::int32_t other = fine_.other[e];
-          if (cluster_[at(other)] < 0 && fine_.key[at(other)] >> shift == cell && !is_weak(e)) {
+          if (cluster_[at(other)] < 0 && fine_.key[at(other)] >> shift == cell && !is_weak(e) &&
+              !is_alone(at(other))) {
             cluster_[at(other)] = count;
             open.push_back(other);
           }
@@ -155,6 +157,8 @@ class Coarsening {
     }
     cluster_count_ = at(count);
   }
+
+  bool is_alone(std::size_t node) const { return !fine_.is_alone.empty() && fine_.is_alone[node]; }
 
   template <class F>
   void for_neighbours(std::size_t node, const F& f) const {
@@ -262,6 +266,16 @@ class Coarsening {
     });
   }
 
+  /// What was alone stays alone.
+  void leave_alone() {
+    coarse_.is_alone.assign(fine_.is_alone.empty() ? 0 : cluster_count_, false);
+    for (std::size_t node = 0; node < fine_.is_alone.size(); ++node) {
+      if (fine_.is_alone[node]) {
+        coarse_.is_alone[at(cluster_[node])] = true;
+      }
+    }
+  }
+
   void seat_members() {
     level_.seat.resize(fine_.order.size());
     team_.share(0, level_.seat.size(), [&](std::size_t begin, std::size_t end) {
@@ -346,19 +360,27 @@ class Coarsening {
     return signature;
   }
 
+  /// In which direction most of a cluster's connections with another lead. United slivers may meet
+  /// around a corner, and both ends must find the same axis.
+  static std::uint8_t main_direction(const std::array<int, 3>& along, const Point& partner) {
+    const auto axis = std::ranges::max_element(along) - along.begin();
+    const bool is_down = partner[static_cast<std::size_t>(axis)] < 0;
+    return static_cast<std::uint8_t>(2 * axis + (is_down ? 1 : 0));
+  }
+
   /// A pure function of the parts, so it does not matter which of many equal clusters is taken.
   void add_up(const std::vector<Part>& parts, Spring* springs, std::size_t count) const {
     struct Sum {
       double length = 0;
       double reach = 0;
       double weight = 0;
+      std::array<int, 3> along = {};  ///< How many lead along each axis.
     };
 
     std::vector<Sum> sums(count);
     for (const Part& part : parts) {
       const Spring& fine = fine_.springs[part.spring];
       Spring& spring = springs[part.target];
-      spring.direction = fine.direction;
       spring.partner = part.partner;
       base::add_to(spring.stiffness, carried(fine.stiffness, part.offset));
       for (std::size_t k = 0; k < 3; ++k) {
@@ -366,6 +388,7 @@ class Coarsening {
       }
       Sum& sum = sums[part.target];
       sum.length += fine.length;
+      ++sum.along[fine.direction / 2U];
       // Behind a neck the robot is stiffer than the neck, which is as soft as it is long.
       sum.reach += fine.length + (part.is_weak ? 0
                                                : behind(part.offset, fine.direction) +
@@ -378,6 +401,7 @@ class Coarsening {
         x /= sums[i].weight;
       }
       spring.length = sums[i].reach / sums[i].weight;
+      spring.direction = main_direction(sums[i].along, spring.partner);
       spring.stiffness = stretched(spring.stiffness, spring.middle, spring.direction / 2U,
                                    sums[i].length / sums[i].weight, spring.length);
     }

@@ -30,6 +30,7 @@ struct Stage {
   std::vector<std::uint64_t> key;   ///< Node -> Morton key of its cell
   std::vector<Point> place;         ///< mm
   std::vector<Box> box;             ///< Only in double precision.
+  std::vector<bool> is_alone;       ///< Nodes that join no cluster; empty if there are none.
   std::vector<std::int32_t> start;
   std::vector<std::int32_t> other;
   std::vector<std::uint32_t> pattern;

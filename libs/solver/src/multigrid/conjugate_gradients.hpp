@@ -15,7 +15,7 @@ class ConjugateGradients final : public Iteration {
  public:
   /// Keeps references to the network and the material.
   ConjugateGradients(const Network& network, const model::Material& material, Team& team,
-                     GroundStiffness ground);
+                     GroundStiffness ground, std::span<const std::int32_t> alone);
 
   bool is_too_slender() const override { return hierarchy_.is_too_slender(); }
 

@@ -15,6 +15,15 @@ constexpr double kEnough = 0.25;
 template <class Real>
 constexpr int kRefinementCount = std::is_same_v<Real, double> ? 2 : 0;
 
+/// What the sweeps work on.
+std::vector<Six<float>>& swept_r(Level<float>& level) { return level.r; }
+
+std::vector<Six<float>>& swept_r(Level<double>& level) { return level.rough_r; }
+
+std::vector<Six<float>>& swept_z(Level<float>& level) { return level.z; }
+
+std::vector<Six<float>>& swept_z(Level<double>& level) { return level.rough_z; }
+
 /// The cycle's own length is right within a factor of two or so. A step far from 1 is rounding: on
 /// a slender robot the energy of a smooth motion drowns in single precision, and no step is better.
 bool is_credible(double step) { return step > 0.25 && step < 4; }
@@ -24,70 +33,136 @@ bool is_credible(double step) { return step > 0.25 && step < 4; }
 template <class Real>
 void Cycle<Real>::relax_colour(std::size_t depth, std::size_t colour, bool is_first) {
   Level<Real>& level = hierarchy_.levels()[depth];
-  const Kernels<Real>& kernel = kernels<Real>();
+  const Six<float>* r = swept_r(level).data();
+  Six<float>* z = swept_z(level).data();
   team_.share(level.colour_start[colour], level.colour_start[colour + 1],
               [&](std::size_t begin, std::size_t end) {
                 const Range range{begin, end};
                 if (is_first) {
-                  kernel.relax_first(level.type.data(), level.inverse.data(), level.r.data(),
-                                     level.z.data(), range);
+                  sweeps().relax_first(level.type.data(), level.inverse.data(), r, z, range);
                 } else if (depth == 0) {
-                  kernel.relax_lattice(hierarchy_.lattice(), level.r.data(), level.z.data(), range);
+                  sweeps().relax_lattice(hierarchy_.block_lattice(), r, z, range);
                 } else {
-                  kernel.relax_cluster(level.view(), level.r.data(), level.z.data(), range);
+                  sweeps().relax_cluster(level.block_view(), r, z, range);
                 }
               });
 }
 
-/// The forces that are left at the members become those of the clusters.
+/// All sweeps before or after the coarse correction.
+template <class Real>
+void Cycle<Real>::relax(std::size_t depth, Order order, Start start) {
+  Level<Real>& level = hierarchy_.levels()[depth];
+  const std::size_t colour_count = level.colour_start.size() - 1;
+  const auto colour_at = [&](std::size_t i) {
+    return order == Order::kForward ? i : colour_count - 1 - i;
+  };
+  if (start == Start::kZero) {
+    // A colour sees only those before it, so the rest must be zero in the first sweep.
+    const std::size_t first = colour_at(0);
+    std::vector<Six<float>>& z = swept_z(level);
+    team_.share(0, level.node_count, [&](std::size_t begin, std::size_t end) {
+      const std::size_t own_begin = std::clamp(level.colour_start[first], begin, end);
+      const std::size_t own_end = std::clamp(level.colour_start[first + 1], begin, end);
+      std::fill(z.data() + begin, z.data() + own_begin, Six<float>{});
+      std::fill(z.data() + own_end, z.data() + end, Six<float>{});
+    });
+  }
+  for (int sweep = 0; sweep < sweep_count_; ++sweep) {
+    for (std::size_t i = 0; i < colour_count; ++i) {
+      relax_colour(depth, colour_at(i), start == Start::kZero && sweep == 0 && i == 0);
+    }
+  }
+}
+
+/// The forces that the sweeps left at the members become those of the clusters.
 template <class Real>
 void Cycle<Real>::pass_down(std::size_t depth, std::size_t settled) {
   Level<Real>& level = hierarchy_.levels()[depth];
   Level<Real>& coarse = hierarchy_.levels()[depth + 1];
+  const Six<float>* z = swept_z(level).data();
   const Kernels<Real>& kernel = kernels<Real>();
   team_.share(0, coarse.node_count, [&](std::size_t begin, std::size_t end) {
     const Range range{begin, end};
     if (depth == 0) {
-      kernel.restrict_lattice(hierarchy_.lattice(), level.transfer(), settled, level.r.data(),
-                              level.z.data(), coarse.r.data(), range);
+      kernel.restrict_lattice(hierarchy_.lattice(), level.transfer(), settled, level.r.data(), z,
+                              coarse.r.data(), range);
     } else {
-      kernel.restrict_cluster(level.view(), level.transfer(), settled, level.r.data(),
-                              level.z.data(), coarse.r.data(), range);
+      kernel.restrict_cluster(level.view(), level.transfer(), settled, level.r.data(), z,
+                              coarse.r.data(), range);
     }
   });
 }
 
 /// z = M^-1 r on this level and all below.
-template <class Real>
-void Cycle<Real>::descend(std::size_t depth) {
-  Level<Real>& level = hierarchy_.levels()[depth];
-  const std::size_t colour_count = level.colour_start.size() - 1;
-  // From zero: a colour sees only those before it, so the rest must be zero in the first sweep.
-  team_.share(level.colour_start[1], level.node_count, [&](std::size_t begin, std::size_t end) {
-    std::fill(level.z.begin() + static_cast<std::ptrdiff_t>(begin),
-              level.z.begin() + static_cast<std::ptrdiff_t>(end), Six<Real>{});
-  });
-  for (int sweep = 0; sweep < sweep_count_; ++sweep) {
-    for (std::size_t colour = 0; colour < colour_count; ++colour) {
-      relax_colour(depth, colour, sweep == 0 && colour == 0);
-    }
-  }
+template <>
+void Cycle<float>::descend(std::size_t depth) {
+  Level<float>& level = hierarchy_.levels()[depth];
+  relax(depth, Order::kForward, Start::kZero);
   if (depth + 1 < hierarchy_.levels().size()) {
     // The last colour has no forces left, and its correction would be overwritten by the next
     // sweep.
-    const std::size_t settled = level.colour_start[colour_count - 1];
+    const std::size_t settled = level.colour_start[level.colour_start.size() - 2];
     pass_down(depth, settled);
     solve(depth + 1);
-    const Level<Real>& coarse = hierarchy_.levels()[depth + 1];
+    const Level<float>& coarse = hierarchy_.levels()[depth + 1];
     team_.share(0, settled, [&](std::size_t begin, std::size_t end) {
-      kernels<Real>().prolong(level.transfer(), coarse.z.data(), level.z.data(), {begin, end});
+      kernels<float>().prolong(level.transfer(), coarse.z.data(), level.z.data(), {begin, end});
     });
   }
-  for (int sweep = 0; sweep < sweep_count_; ++sweep) {
-    for (std::size_t colour = colour_count; colour-- > 0;) {
-      relax_colour(depth, colour, false);
+  relax(depth, Order::kBackward, Start::kPresent);
+}
+
+/// What z leaves of r, for the sweeps.
+template <>
+void Cycle<double>::leave_residual(std::size_t depth) {
+  Level<double>& level = hierarchy_.levels()[depth];
+  team_.share(0, level.node_count, [&](std::size_t begin, std::size_t end) {
+    const Range range{begin, end};
+    if (depth == 0) {
+      rounding().leave_lattice(hierarchy_.lattice(), level.r.data(), level.z.data(),
+                               level.rough_r.data(), range);
+    } else {
+      rounding().leave_cluster(level.view(), level.r.data(), level.z.data(), level.rough_r.data(),
+                               range);
     }
+  });
+}
+
+/// The same with sweeps in single precision: they begin at zero each time, so what they find is
+/// small and has no digits to lose. What is large, the clusters' motion, and what it leaves of r is
+/// in double precision. There, as in single precision no forces are left only up to its rounding,
+/// all nodes' forces are passed down.
+template <>
+void Cycle<double>::descend(std::size_t depth) {
+  Level<double>& level = hierarchy_.levels()[depth];
+  team_.share(0, level.node_count, [&](std::size_t begin, std::size_t end) {
+    rounding().round(level.r.data(), level.rough_r.data(), {begin, end});
+  });
+  relax(depth, Order::kForward, Start::kZero);
+  if (depth + 1 < hierarchy_.levels().size()) {
+    pass_down(depth, level.node_count);
+    solve(depth + 1);
+    const Level<double>& coarse = hierarchy_.levels()[depth + 1];
+    team_.share(0, level.node_count, [&](std::size_t begin, std::size_t end) {
+      rounding().prolong(level.transfer(), coarse.z.data(), level.rough_z.data(), level.z.data(),
+                         {begin, end});
+    });
+  } else {
+    std::fill(level.z.begin(), level.z.end(), Six<double>{});
+    add_rough(depth);
   }
+  leave_residual(depth);
+  relax(depth, Order::kBackward, Start::kZero);
+  add_rough(depth);
+}
+
+/// z += what the sweeps found.
+template <>
+void Cycle<double>::add_rough(std::size_t depth) {
+  Level<double>& level = hierarchy_.levels()[depth];
+  team_.share(0, level.node_count, [&](std::size_t begin, std::size_t end) {
+    rounding().add(level.rough_z.data(), level.z.data(), {begin, end});
+  });
 }
 
 /// K z = r on a coarse level, about: Algorithm 3.2 of [Notay 2008].

@@ -27,8 +27,13 @@ class Cycle {
   void solve(std::size_t depth);
   void solve_coarsest();
   void add_coarsest(const Vector& r, Vector& z);
+  enum class Start : std::uint8_t { kZero, kPresent };
+  enum class Order : std::uint8_t { kForward, kBackward };
+  void relax(std::size_t depth, Order order, Start start);
   void relax_colour(std::size_t depth, std::size_t colour, bool is_first);
   void pass_down(std::size_t depth, std::size_t settled);
+  void leave_residual(std::size_t depth);
+  void add_rough(std::size_t depth);
   double apply(Level<Real>& level, Vector& image);
   double dot(std::size_t count, const Vector& a, const Vector& b);
   void combine(std::size_t count, double factor, const Vector& x, double other, Vector& y);
@@ -38,5 +43,14 @@ class Cycle {
   int sweep_count_;
   std::vector<base::Vec6<double>> coarsest_;
 };
+
+template <>
+void Cycle<float>::descend(std::size_t depth);
+template <>
+void Cycle<double>::descend(std::size_t depth);
+template <>
+void Cycle<double>::leave_residual(std::size_t depth);
+template <>
+void Cycle<double>::add_rough(std::size_t depth);
 
 }  // namespace holdfast::solver

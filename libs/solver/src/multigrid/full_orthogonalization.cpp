@@ -19,18 +19,20 @@ constexpr std::size_t kNodeBytes = sizeof(Six<Real>) + 6 * sizeof(double);
 /// small robots they soon fill the space, and what is left then is rounding.
 constexpr std::size_t kNodesPerDirection = 2;
 
-/// Adds difference * p at the nodes that have one; returns p times that.
+/// An estimate of the error that falls by more than this in one step fell by chance.
+constexpr double kFallMax = 1e4;
+
+/// Adds a difference times p at the nodes that have one; returns p times that.
 template <class Real>
-double add_terms(std::span<const NodeTerm> terms, bool is_transposed,
+double add_terms(std::span<const NodeTerm> terms, Mat NodeTerm::*difference,
                  const std::vector<Six<Real>>& p, std::vector<double>& image) {
   double sum = 0;
   for (const NodeTerm& term : terms) {
     const auto node = static_cast<std::size_t>(term.node);
     for (int row = 0; row < 6; ++row) {
       for (int column = 0; column < 6; ++column) {
-        const double factor =
-            is_transposed ? term.difference.at(column, row) : term.difference.at(row, column);
-        const double part = factor * static_cast<double>(p[node].v[column]);
+        const double part =
+            (term.*difference).at(row, column) * static_cast<double>(p[node].v[column]);
         image[6 * node + static_cast<std::size_t>(row)] += part;
         sum += part * static_cast<double>(p[node].v[row]);
       }
@@ -68,8 +70,8 @@ double ConjugateGradients<Real>::remember_direction(std::span<const NodeTerm> te
   Direction& newest = older_.back();
   newest.p = p_;
   newest.image = q_;
-  add_terms(terms, true, p_, newest.image);
-  newest.curvature = symmetric_part + add_terms(terms, false, p_, q_);
+  add_terms(terms, &NodeTerm::transposed_difference, p_, newest.image);
+  newest.curvature = symmetric_part + add_terms(terms, &NodeTerm::difference, p_, q_);
   return newest.curvature;
 }
 
@@ -79,7 +81,9 @@ Iteration::End ConjugateGradients<Real>::run_unsymmetric(const Goal& goal,
   if (kNodesPerDirection * older_.size() > node_count_) {
     older_.clear();
   }
-  for (int iteration = 0; !is_reached(goal, iteration); ++iteration) {
+  double before = error_;
+  for (int iteration = 0; !is_reached(goal, iteration) || std::abs(before) > kFallMax * goal.error;
+       ++iteration) {
     if (is_stuck(goal, iteration)) {
       return End::kTooSlow;
     }
@@ -88,6 +92,7 @@ Iteration::End ConjugateGradients<Real>::run_unsymmetric(const Goal& goal,
     if (curvature == 0 || !std::isfinite(curvature)) {
       return End::kBroken;
     }
+    before = error_;
     advance(error_ / curvature);
     error_ = precondition();
     tell();

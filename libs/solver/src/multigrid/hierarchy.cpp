@@ -25,8 +25,19 @@ constexpr std::size_t kCoarsestCount = 48;
 template <class Real>
 constexpr std::size_t kChainMax = std::is_same_v<Real, float> ? 3000 : 600;
 
+/// The same where facets are kept out of the clusters: there a level more costs more iterations
+/// than digits, portals 5,000 wide take 18 instead of 101.
+template <class Real>
+constexpr std::size_t kChainMaxOnFeet = std::is_same_v<Real, float> ? 4000 : 1000;
+
 /// Where nodes have more neighbours than this on average, too many blocks fill in.
 constexpr std::size_t kThinDegree = 3;
+
+/// Blocks that may fill in per node: a chain or a ladder has no more. Nodes that join no cluster
+/// are those of a few feet, next to each other, and bring more; between two feet a chain has a
+/// second block per node.
+constexpr std::size_t kFill = 2;
+constexpr std::size_t kAloneFill = 40;
 
 std::size_t at(std::int32_t index) { return static_cast<std::size_t>(index); }
 
@@ -95,6 +106,10 @@ template <class Real>
 void fill_vectors(Level<Real>& level) {
   level.r.assign(level.node_count + 1, {});
   level.z.assign(level.node_count + 1, {});
+  if constexpr (std::is_same_v<Real, double>) {
+    level.rough_r.assign(level.node_count + 1, {});
+    level.rough_z.assign(level.node_count + 1, {});
+  }
 }
 
 }  // namespace
@@ -223,9 +238,9 @@ void Hierarchy<Real>::add_level(const Stage& stage, std::vector<std::size_t> col
   for (const Mat& sum : sums) {
     Mat inverse;
     // A pattern that only anchored nodes have may be singular alone; its inverse is not used.
-    level.inverse.push_back(invert(sum, inverse) ? block_of<Real>(inverse) : Block<Real>{});
+    level.inverse.push_back(invert(sum, inverse) ? block_of<float>(inverse) : Block<float>{});
     if constexpr (std::is_same_v<Real, float>) {
-      level.couplings.diagonal.push_back(block_of<float>(sum));
+      level.couplings.blocks.diagonal.push_back(block_of<float>(sum));
     }
   }
   fill_vectors(level);
@@ -302,14 +317,17 @@ void Hierarchy<Real>::update_contact() {
 template <class Real>
 void Hierarchy<Real>::try_to_factor(const Stage& stage) {
   const std::size_t count = stage.order.size();
-  const bool is_small = count <= kCoarsestCount;
-  const bool is_thin = stage.other.size() <= kThinDegree * count;
-  if (!is_small && is_thin && count > kChainMax<Real>) {
+  const bool is_small = count <= kCoarsestCount + alone_count_;
+  const bool is_thin = stage.other.size() <= kThinDegree * (count + alone_count_);
+  if (!is_small && is_thin &&
+      count > (alone_count_ == 0 ? kChainMax<Real> : kChainMaxOnFeet<Real>)) {
     is_too_slender_ = true;
     return;
   }
   if (is_small || (is_thin && count < network_.node_count / 4)) {
-    coarsest_ = unheld_matrix(stage, is_small ? count * count : 2 * count);
+    const std::size_t fill_max =
+        alone_count_ == 0 ? kFill * count : 2 * kFill * count + kAloneFill * alone_count_;
+    coarsest_ = unheld_matrix(stage, is_small ? count * count : fill_max);
     if (coarsest_ && !factor_coarsest()) {
       coarsest_.reset();
     }
@@ -318,13 +336,21 @@ void Hierarchy<Real>::try_to_factor(const Stage& stage) {
 
 template <class Real>
 Hierarchy<Real>::Hierarchy(const Network& network, const model::Material& material, Team& team,
-                           GroundStiffness ground)
-    : network_(network), material_(material), ground_(std::move(ground)) {
+                           GroundStiffness ground, std::span<const std::int32_t> alone)
+    : network_(network),
+      material_(material),
+      ground_(std::move(ground)),
+      alone_count_(alone.size()) {
   make_lattice();
   Stage stage;
   fill_stage(team, stage);
+  stage.is_alone.assign(alone.empty() ? 0 : network_.node_count, false);
+  for (const std::int32_t node : alone) {
+    stage.is_alone[at(node)] = true;
+  }
   std::vector<Anchor> anchors = finest_anchors(network_, material_, ground_);
-  while (!coarsest_ && (levels_.size() == 1 || stage.order.size() > kCoarsestCount)) {
+  while (!coarsest_ &&
+         (levels_.size() == 1 || stage.order.size() > kCoarsestCount + alone_count_)) {
     Stage coarse;
     std::vector<std::size_t> colour_start;
     if (!coarsen(stage, levels_.back(), team, coarse, colour_start)) {

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <unordered_map>
 #include <vector>
 
@@ -38,16 +39,17 @@ struct Beams<float> {
 
 template <>
 struct Beams<double> {
-  std::vector<Six<double>> springs;   ///< By axis and length.
+  std::vector<BeamRow<float>> rows;   ///< As above.
+  std::vector<MiddleSpring> springs;  ///< By axis and length.
   std::vector<Block<double>> ground;  ///< What the contact adds to K_pp.
 };
 
 template <class Real>
 class Hierarchy {
  public:
-  /// Keeps references to the network and the material.
+  /// Keeps references to the network and the material. Nodes that are `alone` join no cluster.
   Hierarchy(const Network& network, const model::Material& material, Team& team,
-            GroundStiffness ground);
+            GroundStiffness ground, std::span<const std::int32_t> alone);
 
   /// Takes over changed contact: the same levels, held in another way.
   void update_contact();
@@ -55,6 +57,9 @@ class Hierarchy {
   std::vector<Level<Real>>& levels() { return levels_; }
 
   const LatticeView<Real>& lattice() const { return lattice_; }
+
+  /// What the sweeps need.
+  const LatticeView<float>& block_lattice() const { return block_lattice_; }
 
   /// False if the finest level is the only one, or clusters stopped growing early.
   bool has_coarsest() const { return coarsest_.has_value(); }
@@ -98,10 +103,12 @@ class Hierarchy {
   const Network& network_;
   const model::Material& material_;
   GroundStiffness ground_;
+  std::size_t alone_count_ = 0;
   std::unordered_map<std::uint64_t, std::uint32_t> type_of_kind_;
   std::vector<Level<Real>> levels_;
   std::vector<Held> held_;  ///< By level, from the second on.
   LatticeView<Real> lattice_;
+  LatticeView<float> block_lattice_;
   Beams<Real> beams_;
   std::optional<BlockLu> coarsest_;
   bool is_too_slender_ = false;

@@ -1,9 +1,11 @@
 // SPDX-FileCopyrightText: The holdfast authors
 // SPDX-License-Identifier: Apache-2.0
-// What the levels of double precision consist of: springs (precise_forces.hpp).
+// What the levels of double precision consist of: springs (precise_forces.hpp), and blocks of K in
+// single precision for the sweeps.
 #include <algorithm>
 
 #include "hierarchy.hpp"
+#include "level_blocks.hpp"
 #include "matrix_blocks.hpp"
 
 namespace holdfast::solver {
@@ -27,24 +29,37 @@ Six<double> middle_stiffness(const Mat& k12, std::size_t axis, double length) {
   return stiffness;
 }
 
+MiddleSpring middle_spring(const Mat& k12, std::size_t axis, double length) {
+  MiddleSpring spring;
+  spring.stiffness = middle_stiffness(k12, axis, length);
+  const std::size_t next = (axis + 1) % 3;
+  const std::size_t last = (axis + 2) % 3;
+  spring.shift[next] = length / 2;
+  spring.shift[last] = -length / 2;
+  spring.torque.v[3 + next] = length / 2;
+  spring.torque.v[3 + last] = -length / 2;
+  return spring;
+}
+
 }  // namespace
 
 template <>
 void Hierarchy<double>::make_beams() {
+  beams_.rows = single(beam_rows(network_, material_));
   beams_.springs.resize(3 * kRow);
   for (std::size_t length = 1; length < kRow; ++length) {
     const auto beam = long_beam(material_, static_cast<int>(length));
     for (std::size_t axis = 0; axis < 3; ++axis) {
       beams_.springs[axis * kRow + length] =
-          middle_stiffness(mechanics::block_12(beam, static_cast<Direction>(2 * axis)), axis,
-                           material_.pitch_mm * static_cast<double>(length));
+          middle_spring(mechanics::block_12(beam, static_cast<Direction>(2 * axis)), axis,
+                        material_.pitch_mm * static_cast<double>(length));
     }
   }
 }
 
 template <>
 void Hierarchy<double>::add_type(const Kind& kind) {
-  levels_.front().inverse.push_back(block_of<double>(inverse_of(diagonal(kind))));
+  levels_.front().inverse.push_back(block_of<float>(inverse_of(diagonal(kind))));
   const std::uint8_t code = kind[kContactByte];
   beams_.ground.push_back(code == 0 ? Block<double>{} : block_of<double>(ground_(code)));
 }
@@ -55,18 +70,22 @@ void Hierarchy<double>::point_at_lattice() {
   lattice_ = {.other = network_.other.data(),
               .kind = network_.kind.data(),
               .type = level.type.data(),
-              .inverse = level.inverse.data(),
               .springs = beams_.springs.data(),
-              .ground = beams_.ground.data(),
-              .pitch = material_.pitch_mm};
+              .ground = beams_.ground.data()};
+  block_lattice_ = {.other = network_.other.data(),
+                    .kind = network_.has_long_beams ? network_.kind.data() : nullptr,
+                    .type = level.type.data(),
+                    .inverse = level.inverse.data(),
+                    .beams = beams_.rows.data()};
 }
 
 template <>
 void Hierarchy<double>::couple(const Stage& stage, Level<double>& level) const {
+  fill_blocks(stage, level.couplings.blocks);
   for (const Spring& spring : stage.springs) {
     level.couplings.springs.push_back(
         {.stiffness = block_of<double>(spring.stiffness),
-         .arm = {-spring.partner[0], -spring.partner[1], -spring.partner[2]}});
+         .arm = {-spring.partner[0], -spring.partner[1], -spring.partner[2], 0}});
   }
   level.couplings.spring.resize(level.other.size());
   const auto spring_at = [&](std::size_t node, std::size_t e) {
@@ -96,7 +115,7 @@ void Hierarchy<double>::clear_anchors(Level<double>& level, std::size_t free_typ
 
 template <>
 void Hierarchy<double>::add_anchored_type(Level<double>& level, const HeldNode& node) const {
-  level.inverse.push_back(block_of<double>(inverse_of(node.sum)));
+  level.inverse.push_back(block_of<float>(inverse_of(node.sum)));
   level.couplings.anchors.push_back(block_of<double>(node.anchor_sum));
 }
 

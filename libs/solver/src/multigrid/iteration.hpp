@@ -11,10 +11,11 @@
 
 namespace holdfast::solver {
 
-/// What a matrix A has at a node that K has not.
+/// What a matrix A that is not symmetric has at a node that the hierarchy's matrix K has not.
 struct NodeTerm {
   std::int32_t node = 0;
-  Mat difference;
+  Mat difference;             ///< A - K
+  Mat transposed_difference;  ///< A^T - K
 };
 
 /// Solves K x = f by iteration, whatever the precision of its preconditioner.
@@ -52,7 +53,7 @@ class Iteration {
   /// After begin(), or to go on with another goal: improves x.
   virtual End run(const Goal& goal) = 0;
 
-  /// The same for a matrix A = K + terms that is not symmetric, by full orthogonalization
+  /// The same for a matrix A that is not symmetric, by full orthogonalization
   /// [Saad 1981]: r is kept orthogonal to all directions so far, as conjugate gradients do by
   /// themselves. (To make r smallest instead, as GMRES does, would need directions in double
   /// precision: r counts every rounding error of a stiff lattice.)

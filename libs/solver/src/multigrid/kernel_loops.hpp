@@ -9,16 +9,15 @@
 namespace holdfast::solver {
 namespace {
 
-template <class Real>
-void relax_first(const std::uint32_t* type, const Block<Real>* inverse, const Six<Real>* r,
-                 Six<Real>* z, Range range) {
+inline void relax_first(const std::uint32_t* type, const Block<float>* inverse, const Six<float>* r,
+                        Six<float>* z, Range range) {
   for (std::size_t p = range.begin; p < range.end; ++p) {
     store(z[p], multiply(inverse[type[p]], load(r[p])));
   }
 }
 
-template <class Real, class View>
-void relax(const View& level, const Six<Real>* r, Six<Real>* z, Range range) {
+template <class View>
+void relax(const View& level, const Six<float>* r, Six<float>* z, Range range) {
   for (std::size_t p = range.begin; p < range.end; ++p) {
     store(z[p], balanced(level, r, z, p));
   }
@@ -26,7 +25,7 @@ void relax(const View& level, const Six<Real>* r, Six<Real>* z, Range range) {
 
 template <class Real, class View>
 void restrict_to(const View& level, const TransferView<Real>& transfer, std::size_t settled,
-                 const Six<Real>* r, const Six<Real>* z, Six<Real>* coarse, Range clusters) {
+                 const Six<Real>* r, const Six<float>* z, Six<Real>* coarse, Range clusters) {
   for (std::size_t c = clusters.begin; c < clusters.end; ++c) {
     decltype(load(r[0])) sum = {};
     for (std::int32_t i = transfer.start[c]; i < transfer.start[c + 1]; ++i) {
@@ -45,6 +44,36 @@ void prolong(const TransferView<Real>& transfer, const Six<Real>* coarse, Six<Re
   for (std::size_t p = range.begin; p < range.end; ++p) {
     const Seat<Real>& seat = transfer.seat[p];
     store(z[p], load(z[p]) + motion_moved(seat.offset, load(coarse[seat.cluster])));
+  }
+}
+
+inline void round(const Six<double>* r, Six<float>* rounded, Range range) {
+  for (std::size_t p = range.begin; p < range.end; ++p) {
+    const Wide value = load(r[p]);
+    store_rounded(rounded[p], value.low, value.high);
+  }
+}
+
+inline void prolong_rough(const TransferView<double>& transfer, const Six<double>* coarse,
+                          const Six<float>* rough, Six<double>* z, Range range) {
+  for (std::size_t p = range.begin; p < range.end; ++p) {
+    const Seat<double>& seat = transfer.seat[p];
+    store(z[p], load_wide(rough[p]) + motion_moved(seat.offset, load(coarse[seat.cluster])));
+  }
+}
+
+template <class View>
+void leave(const View& level, const Six<double>* r, const Six<double>* z, Six<float>* rounded,
+           Range range) {
+  for (std::size_t p = range.begin; p < range.end; ++p) {
+    const Wide left = unbalanced(level, r, z, p);
+    store_rounded(rounded[p], left.low, left.high);
+  }
+}
+
+inline void add(const Six<float>* rough, Six<double>* z, Range range) {
+  for (std::size_t p = range.begin; p < range.end; ++p) {
+    store(z[p], load(z[p]) + load_wide(rough[p]));
   }
 }
 
@@ -126,11 +155,18 @@ void combine(Real factor, const Six<Real>* x, Real other, Six<Real>* y, Range ra
   }
 }
 
+constexpr Sweeps kSweeps = {.relax_first = relax_first,
+                            .relax_lattice = relax<LatticeView<float>>,
+                            .relax_cluster = relax<ClusterView<float>>};
+
+constexpr Rounding kRounding = {.round = round,
+                                .prolong = prolong_rough,
+                                .leave_lattice = leave<LatticeView<double>>,
+                                .leave_cluster = leave<ClusterView<double>>,
+                                .add = add};
+
 template <class Real>
-constexpr Kernels<Real> kAll = {.relax_first = relax_first<Real>,
-                                .relax_lattice = relax<Real, LatticeView<Real>>,
-                                .relax_cluster = relax<Real, ClusterView<Real>>,
-                                .restrict_lattice = restrict_to<Real, LatticeView<Real>>,
+constexpr Kernels<Real> kAll = {.restrict_lattice = restrict_to<Real, LatticeView<Real>>,
                                 .restrict_cluster = restrict_to<Real, ClusterView<Real>>,
                                 .prolong = prolong<Real>,
                                 .apply_cluster = apply_cluster<Real>,

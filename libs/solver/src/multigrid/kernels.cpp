@@ -7,28 +7,38 @@
 namespace holdfast::solver {
 
 #ifdef HOLDFAST_HAS_AVX2
+extern const Sweeps kSweepsAvx2;
+extern const Rounding kRoundingAvx2;
 extern const Kernels<float> kKernelsAvx2;
 extern const Kernels<double> kPreciseKernelsAvx2;
 
 namespace {
 
-template <class Real>
-const Kernels<Real>& choose(const Kernels<Real>& with_avx2) {
-  return __builtin_cpu_supports("avx2") != 0 ? with_avx2 : kAll<Real>;
+template <class Table>
+const Table& choose(const Table& with_avx2, const Table& without) {
+  return __builtin_cpu_supports("avx2") != 0 ? with_avx2 : without;
 }
 
 }  // namespace
 
+const Sweeps& sweeps() { return choose(kSweepsAvx2, kSweeps); }
+
+const Rounding& rounding() { return choose(kRoundingAvx2, kRounding); }
+
 template <>
 const Kernels<float>& kernels<float>() {
-  return choose(kKernelsAvx2);
+  return choose(kKernelsAvx2, kAll<float>);
 }
 
 template <>
 const Kernels<double>& kernels<double>() {
-  return choose(kPreciseKernelsAvx2);
+  return choose(kPreciseKernelsAvx2, kAll<double>);
 }
 #else
+const Sweeps& sweeps() { return kSweeps; }
+
+const Rounding& rounding() { return kRounding; }
+
 template <>
 const Kernels<float>& kernels<float>() {
   return kAll<float>;

@@ -37,11 +37,9 @@ template <>
 struct LatticeView<double> {
   const Others* other = nullptr;
   const Kind* kind = nullptr;
-  const std::uint32_t* type = nullptr;     ///< Node -> inverse, ground
-  const Block<double>* inverse = nullptr;  ///< K_pp^-1
-  const Six<double>* springs = nullptr;    ///< [axis * (kBeamLengthMax + 1) + length]
-  const Block<double>* ground = nullptr;   ///< What kContactByte stands for.
-  double pitch = 0;                        ///< mm
+  const std::uint32_t* type = nullptr;    ///< Node -> ground
+  const MiddleSpring* springs = nullptr;  ///< [axis * (kBeamLengthMax + 1) + length]
+  const Block<double>* ground = nullptr;  ///< What kContactByte stands for.
 };
 
 /// A coarse level in compressed rows; equal ones are stored once.
@@ -66,7 +64,6 @@ struct ClusterView<double> {
   const std::int32_t* start = nullptr;
   const std::int32_t* other = nullptr;
   const std::uint32_t* type = nullptr;
-  const Block<double>* inverse = nullptr;
   const std::uint32_t* spring = nullptr;
   const BodySpring* springs = nullptr;
   const Block<double>* anchors = nullptr;  ///< Of the types from free_type_count on.
@@ -86,6 +83,31 @@ struct Range {
   std::size_t end = 0;
 };
 
+/// Gauss-Seidel, in single precision.
+struct Sweeps {
+  /// z = K_pp^-1 r: relaxation from zero.
+  void (*relax_first)(const std::uint32_t* type, const Block<float>* inverse, const Six<float>* r,
+                      Six<float>* z, Range);
+  /// z_p = K_pp^-1 (r_p - sum of K_pq z_q), nodes of one colour.
+  void (*relax_lattice)(const LatticeView<float>&, const Six<float>* r, Six<float>* z, Range);
+  void (*relax_cluster)(const ClusterView<float>&, const Six<float>* r, Six<float>* z, Range);
+};
+
+/// From double precision to sweeps in single, and back.
+struct Rounding {
+  void (*round)(const Six<double>* r, Six<float>* rounded, Range);
+  /// z = rough + the rigid motion of the cluster.
+  void (*prolong)(const TransferView<double>&, const Six<double>* coarse, const Six<float>* rough,
+                  Six<double>* z, Range);
+  /// r - K z, rounded.
+  void (*leave_lattice)(const LatticeView<double>&, const Six<double>* r, const Six<double>* z,
+                        Six<float>* rounded, Range);
+  void (*leave_cluster)(const ClusterView<double>&, const Six<double>* r, const Six<double>* z,
+                        Six<float>* rounded, Range);
+  /// z += rough
+  void (*add)(const Six<float>* rough, Six<double>* z, Range);
+};
+
 template <class Real>
 struct Kernels {
   using Vector = Six<Real>;
@@ -93,17 +115,12 @@ struct Kernels {
   using Cluster = ClusterView<Real>;
   using Transfer = TransferView<Real>;
 
-  /// z = K_pp^-1 r: relaxation from zero.
-  void (*relax_first)(const std::uint32_t* type, const Block<Real>* inverse, const Vector* r,
-                      Vector* z, Range);
-  /// z_p = K_pp^-1 (r_p - sum of K_pq z_q): Gauss-Seidel on nodes of one colour.
-  void (*relax_lattice)(const Lattice&, const Vector* r, Vector* z, Range);
-  void (*relax_cluster)(const Cluster&, const Vector* r, Vector* z, Range);
-  /// Forces left over, gathered at the clusters' centres; nodes from `settled` on have none.
+  /// Forces that a sweep's z left over, gathered at the clusters' centres; nodes from `settled` on
+  /// have none.
   void (*restrict_lattice)(const Lattice&, const Transfer&, std::size_t settled, const Vector* r,
-                           const Vector* z, Vector* coarse, Range clusters);
+                           const Six<float>* z, Vector* coarse, Range clusters);
   void (*restrict_cluster)(const Cluster&, const Transfer&, std::size_t settled, const Vector* r,
-                           const Vector* z, Vector* coarse, Range clusters);
+                           const Six<float>* z, Vector* coarse, Range clusters);
   /// z += the rigid motion of the cluster.
   void (*prolong)(const Transfer&, const Vector* coarse, Vector* z, Range);
   /// q = K z on a coarse level; returns z . q.
@@ -123,6 +140,8 @@ struct Kernels {
 };
 
 /// Those for this machine.
+const Sweeps& sweeps();
+const Rounding& rounding();
 template <class Real>
 const Kernels<Real>& kernels();
 

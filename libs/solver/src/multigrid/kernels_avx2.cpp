@@ -5,8 +5,12 @@
 
 namespace holdfast::solver {
 
+extern const Sweeps kSweepsAvx2;
+extern const Rounding kRoundingAvx2;
 extern const Kernels<float> kKernelsAvx2;
 extern const Kernels<double> kPreciseKernelsAvx2;
+const Sweeps kSweepsAvx2 = kSweeps;
+const Rounding kRoundingAvx2 = kRounding;
 const Kernels<float> kKernelsAvx2 = kAll<float>;
 const Kernels<double> kPreciseKernelsAvx2 = kAll<double>;
 

@@ -85,6 +85,14 @@ inline Double low(const Wide& a) { return a.low; }
 
 inline Double high(const Wide& a) { return a.high; }
 
+/// In double precision, whatever it is.
+inline Wide load_wide(const Six<float>& six) {
+  const Single value = load(six);
+  return {low(value), high(value)};
+}
+
+inline Wide load_wide(const Six<double>& six) { return load(six); }
+
 /// Rounds six numbers to the precision of the preconditioner.
 inline void store_rounded(Six<float>& six, Double low, Double high) {
   const Quad single_low = __builtin_convertvector(low, Quad);
@@ -161,6 +169,9 @@ inline Wide multiply(const Block<double>& block, const Wide& x) {
          (column_product<4>(block, x) + column_product<5>(block, x));
 }
 
+/// Three numbers, and what follows them in memory left out.
+inline Double load_arm(const double* arm) { return Double{arm[0], arm[1], arm[2], 0}; }
+
 /// [f, m] at a node is [f, m + arm x f] at the point that lies -arm from it.
 inline Single force_moved(const float* arm, Single force) {
   const float x = arm[0];
@@ -173,10 +184,14 @@ inline Single force_moved(const float* arm, Single force) {
 }
 
 inline Wide force_moved(const double* arm, Wide force) {
+  const Double a = load_arm(arm);
   const Double f = force.low;
-  force.low[3] += arm[1] * f[2] - arm[2] * f[1];
-  force.high[0] += arm[2] * f[0] - arm[0] * f[2];
-  force.high[1] += arm[0] * f[1] - arm[1] * f[0];
+  const Double torque =
+      __builtin_shufflevector(a, a, 1, 2, 0, 3) * __builtin_shufflevector(f, f, 2, 0, 1, 3) -
+      __builtin_shufflevector(a, a, 2, 0, 1, 3) * __builtin_shufflevector(f, f, 1, 2, 0, 3);
+  const Double zero = {};
+  force.low += __builtin_shufflevector(torque, zero, 4, 4, 4, 0);
+  force.high += __builtin_shufflevector(torque, zero, 1, 2, 4, 4);
   return force;
 }
 
@@ -192,11 +207,11 @@ inline Single motion_moved(const float* arm, Single motion) {
 }
 
 inline Wide motion_moved(const double* arm, const Wide& motion) {
-  const double x = motion.low[3];
-  const double y = motion.high[0];
-  const double z = motion.high[1];
-  const Double shift = {y * arm[2] - z * arm[1], z * arm[0] - x * arm[2], x * arm[1] - y * arm[0],
-                        0};
+  const Double a = load_arm(arm);
+  const Double t = __builtin_shufflevector(motion.low, motion.high, 3, 4, 5, 6);
+  const Double shift =
+      __builtin_shufflevector(t, t, 1, 2, 0, 3) * __builtin_shufflevector(a, a, 2, 0, 1, 3) -
+      __builtin_shufflevector(t, t, 2, 0, 1, 3) * __builtin_shufflevector(a, a, 1, 2, 0, 3);
   return {motion.low + shift, motion.high};
 }
 

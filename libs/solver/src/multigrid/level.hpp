@@ -9,21 +9,26 @@
 
 namespace holdfast::solver {
 
+/// Blocks K_pq by edge and K_pp by type; equal ones are stored once.
+struct Blocks {
+  std::vector<std::uint32_t> block;
+  std::vector<Block<float>> blocks;
+  std::vector<Block<float>> diagonal;  ///< In single precision only.
+};
+
 /// What couples the nodes of a level.
 template <class Real>
 struct Couplings;
 
-/// Blocks K_pq by edge and K_pp by type; equal ones are stored once.
 template <>
 struct Couplings<float> {
-  std::vector<std::uint32_t> block;
-  std::vector<Block<float>> blocks;
-  std::vector<Block<float>> diagonal;
+  Blocks blocks;
 };
 
-/// Springs by edge, and what holds the types from free_type_count on.
+/// Springs by edge, and what holds the types from free_type_count on; blocks for the sweeps.
 template <>
 struct Couplings<double> {
+  Blocks blocks;
   std::vector<std::uint32_t> spring;
   std::vector<BodySpring> springs;
   std::vector<Block<double>> anchors;
@@ -39,8 +44,8 @@ struct Level {
   std::vector<std::int32_t> start;
   std::vector<std::int32_t> other;
   Couplings<Real> couplings;
-  std::vector<std::uint32_t> type;   ///< Node -> K_pp
-  std::vector<Block<Real>> inverse;  ///< K_pp^-1
+  std::vector<std::uint32_t> type;    ///< Node -> K_pp
+  std::vector<Block<float>> inverse;  ///< K_pp^-1
   // To the next level; empty on the coarsest.
   std::vector<Seat<Real>> seat;
   std::vector<std::int32_t> member_start;
@@ -51,7 +56,22 @@ struct Level {
   std::vector<Six<Real>> first;        ///< First direction of the inner iteration, coarse levels.
   std::vector<Six<Real>> first_image;  ///< K times it.
 
+  // What the sweeps see of r and z, in double precision, where r and z are not that themselves.
+  std::vector<Six<float>> rough_r;
+  std::vector<Six<float>> rough_z;
+
   ClusterView<Real> view() const;
+
+  /// What the sweeps need.
+  ClusterView<float> block_view() const {
+    return {.start = start.data(),
+            .other = other.data(),
+            .type = type.data(),
+            .inverse = inverse.data(),
+            .block = couplings.blocks.block.data(),
+            .blocks = couplings.blocks.blocks.data(),
+            .diagonal = couplings.blocks.diagonal.data()};
+  }
 
   TransferView<Real> transfer() const {
     return {.seat = seat.data(), .start = member_start.data(), .member = member.data()};
@@ -60,13 +80,7 @@ struct Level {
 
 template <>
 inline ClusterView<float> Level<float>::view() const {
-  return {.start = start.data(),
-          .other = other.data(),
-          .type = type.data(),
-          .inverse = inverse.data(),
-          .block = couplings.block.data(),
-          .blocks = couplings.blocks.data(),
-          .diagonal = couplings.diagonal.data()};
+  return block_view();
 }
 
 template <>
@@ -74,7 +88,6 @@ inline ClusterView<double> Level<double>::view() const {
   return {.start = start.data(),
           .other = other.data(),
           .type = type.data(),
-          .inverse = inverse.data(),
           .spring = couplings.spring.data(),
           .springs = couplings.springs.data(),
           .anchors = couplings.anchors.data(),

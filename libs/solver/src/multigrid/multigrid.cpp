@@ -4,7 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
+
+#include "../block_kernels.hpp"
 
 namespace holdfast::solver {
 namespace {
@@ -18,6 +21,22 @@ constexpr int kIterationMax = 500;
 constexpr std::size_t kBytesPerModule = 450;
 constexpr std::size_t kBytesPerModuleDouble = 800;
 
+/// A robot of n modules that is N long consists of N / sqrt(n / N) cubes in a row, at most, as if
+/// its modules were in one bar. Rounding moves it by that number squared times what it moves a
+/// cube, and where it so moves it by more than this share of the true motion, single precision is
+/// not even tried. By experiment it gives up in towers from N^3 / n = 0.7e6 on, in bridges and
+/// portals from 2.7e6 and 3.1e6; this is 2.5e6. A robot that is sent on wrongly takes twice as
+/// long.
+constexpr double kRoundingShare = 0.15;
+
+/// So small a network is solved on its coarsest level, in double precision anyway.
+constexpr std::size_t kTrivialCount = 48;
+
+/// So many facets may stay out of all clusters, one of so many nodes: the coarsest level then has
+/// them all, and is factorized anew after each change. A foot of a portal has 16.
+constexpr std::size_t kAloneMax = 128;
+constexpr std::size_t kAloneShare = 64;
+
 std::size_t at(std::int32_t index) { return static_cast<std::size_t>(index); }
 
 /// 0 for a facet that is stuck, else which of the twenty contact states it is in.
@@ -29,6 +48,8 @@ std::uint8_t code_of(const ContactState& state, bool is_held, mechanics::Contact
   const int shape = state.pressed ? 3 * (state.tilt_x + 1) + (state.tilt_y + 1) : 9;
   return static_cast<std::uint8_t>(1 + 2 * shape + (holds_sideways ? 1 : 0));
 }
+
+bool is_held(std::uint8_t code) { return (code - 1) % 2 == 1; }
 
 ContactState state_of(std::uint8_t code) {
   const int shape = (code - 1) / 2;
@@ -42,15 +63,15 @@ ContactState state_of(std::uint8_t code) {
 
 }  // namespace
 
-Multigrid::Multigrid(const model::Robot& robot, Precision precision, int thread_count,
-                     std::function<void(int, double)> progress)
+Multigrid::Multigrid(const model::Robot& robot, MultigridOptions options)
     : robot_(robot),
-      precision_(precision),
-      team_(thread_count, robot.modules().size()),
+      precision_(options.precision),
+      team_(options.thread_count, robot.modules().size()),
       network_(make_network(robot, team_)),
       weight_({0, 0, -model::module_weight_n(robot.material()), 0, 0, 0}),
       facet_of_module_(robot.ground_count() > 0 ? robot.modules().size() : 0, -1),
-      progress_(std::move(progress)) {
+      may_yield_(options.may_yield),
+      progress_(std::move(options.progress)) {
   for (std::size_t node = 0; node < network_.node_count; ++node) {
     const std::int32_t module = network_.module[node];
     if (robot.modules()[at(module)].support == model::Support::kGround) {
@@ -58,6 +79,23 @@ Multigrid::Multigrid(const model::Robot& robot, Precision precision, int thread_
       facets_.push_back({.node = static_cast<std::int32_t>(node), .state = {}});
     }
   }
+  alone_ = nodes_alone();
+}
+
+void Multigrid::set_precision(Precision precision) {
+  precision_ = precision;
+  iteration_.reset();
+  reference_ = 0;
+  is_stale_ = true;
+}
+
+/// Whether it is plain from the robot's shape that single precision will not do.
+bool Multigrid::is_too_slender() const {
+  const double length = network_.extent;
+  const auto count = static_cast<double>(robot_.modules().size());
+  const double slenderness_squared = length * length * length / count;
+  return network_.node_count > kTrivialCount &&
+         std::numeric_limits<float>::epsilon() / 2 * slenderness_squared > kRoundingShare;
 }
 
 std::size_t Multigrid::bytes_for(std::size_t module_count, Precision precision) {
@@ -90,16 +128,42 @@ void Multigrid::set_facet(std::size_t module, const ContactState& state, bool is
   is_stale_ = true;
 }
 
+/// The hierarchy knows the tangent itself, symmetric or not, if its coarsest level has all facets;
+/// else a stand-in for it.
 Mat Multigrid::tangent(std::uint8_t code) const {
-  return mechanics::symmetric_tangent(ground_, state_of(code), (code - 1) % 2 == 1);
+  return alone_.empty() ? mechanics::symmetric_tangent(ground_, state_of(code), is_held(code))
+                        : mechanics::contact_tangent(ground_, state_of(code), is_held(code));
+}
+
+/// On the ground, by the facet of a node.
+Multigrid::Vec Multigrid::force(std::uint8_t code, std::size_t node) const {
+  Vec u;
+  std::copy_n(iteration_->x().begin() + static_cast<std::ptrdiff_t>(6 * node), 6, u.begin());
+  return code == 0 ? mechanics::contact_force(ground_, {}, true, u)
+                   : mechanics::contact_force(ground_, state_of(code), is_held(code), u);
+}
+
+/// Facets, where they are few: those of a few feet. Which part of a foot presses decides how it
+/// tilts, and a cluster as large as the foot cannot know.
+std::vector<std::int32_t> Multigrid::nodes_alone() const {
+  std::vector<std::int32_t> nodes;
+  if (may_yield_ && facets_.size() <= kAloneMax &&
+      kAloneShare * facets_.size() <= network_.node_count) {
+    for (const Facet& facet : facets_) {
+      nodes.push_back(facet.node);
+    }
+  }
+  return nodes;
 }
 
 std::unique_ptr<Iteration> Multigrid::make_iteration() {
   const auto ground = [this](std::uint8_t code) { return tangent(code); };
   if (precision_ == Precision::kDouble) {
-    return std::make_unique<ConjugateGradients<double>>(network_, robot_.material(), team_, ground);
+    return std::make_unique<ConjugateGradients<double>>(network_, robot_.material(), team_, ground,
+                                                        alone_);
   }
-  return std::make_unique<ConjugateGradients<float>>(network_, robot_.material(), team_, ground);
+  return std::make_unique<ConjugateGradients<float>>(network_, robot_.material(), team_, ground,
+                                                     alone_);
 }
 
 void Multigrid::update_iteration() {
@@ -114,6 +178,7 @@ void Multigrid::update_iteration() {
   iteration_.reset();
   iteration_ = make_iteration();
   is_law_new_ = false;
+  is_residual_known_ = false;
   if (!x.empty()) {
     iteration_->x() = std::move(x);
   }
@@ -141,24 +206,41 @@ void Multigrid::compute_residual() {
     if (facet.code != 0) {
       const std::size_t i = 6 * at(facet.node);
       const Vec u = {x[i], x[i + 1], x[i + 2], x[i + 3], x[i + 4], x[i + 5]};
-      const Vec true_force = mechanics::contact_force(ground_, facet.state, facet.is_held, u);
-      const Vec force = mechanics::symmetric_product(ground_, facet.state, facet.is_held, u);
+      const Vec known = base::multiply(tangent(facet.code), u);
+      const Vec true_force = force(facet.code, at(facet.node));
       for (std::size_t k = 0; k < 6; ++k) {
-        r[i + k] -= true_force[k] - force[k];
+        r[i + k] -= true_force[k] - known[k];
       }
     }
   }
 }
 
-/// What the contact's tangent has beyond the symmetric stand-in for it.
+/// The same if only facets have changed since: x and r have never parted.
+void Multigrid::update_residual() {
+  std::vector<double>& r = iteration_->r();
+  for (const Facet& facet : facets_) {
+    if (facet.code != facet.old_code) {
+      const Vec before = force(facet.old_code, at(facet.node));
+      const Vec now = force(facet.code, at(facet.node));
+      for (std::size_t k = 0; k < 6; ++k) {
+        r[6 * at(facet.node) + k] += before[k] - now[k];
+      }
+    }
+  }
+}
+
+/// What the contact's tangent has beyond what the hierarchy knows of it.
 std::vector<NodeTerm> Multigrid::unsymmetric_terms() const {
   std::vector<NodeTerm> terms;
   for (const Facet& facet : facets_) {
     if (ground_.law == mechanics::ContactLaw::kRegularised &&
         (facet.state.tilt_x != 0 || facet.state.tilt_y != 0)) {
-      Mat difference = mechanics::contact_tangent(ground_, facet.state, facet.is_held);
-      base::add_to(difference, scaled(tangent(facet.code), -1));
-      terms.push_back({.node = facet.node, .difference = difference});
+      const Mat exact = mechanics::contact_tangent(ground_, facet.state, facet.is_held);
+      const Mat minus_known = scaled(tangent(facet.code), -1);
+      NodeTerm& term = terms.emplace_back();
+      term = {.node = facet.node, .difference = exact, .transposed_difference = transpose(exact)};
+      base::add_to(term.difference, minus_known);
+      base::add_to(term.transposed_difference, minus_known);
     }
   }
   return terms;
@@ -170,11 +252,22 @@ bool Multigrid::begin() {
   if (!is_new()) {
     return true;
   }
+  if (precision_ == Precision::kSingle && is_too_slender()) {
+    return false;
+  }
   update_iteration();
   if (precision_ == Precision::kSingle && iteration_->is_too_slender()) {
     return false;
   }
-  compute_residual();
+  if (is_residual_known_) {
+    update_residual();
+  } else {
+    compute_residual();
+  }
+  is_residual_known_ = true;
+  for (Facet& facet : facets_) {
+    facet.old_code = facet.code;
+  }
   const double error = iteration_->begin();
   if (reference_ == 0) {
     reference_ = error;
@@ -202,6 +295,7 @@ bool Multigrid::solve(double tolerance, int iteration_count_min) {
     return true;
   }
   iteration_->x().assign(iteration_->x().size(), 0);  // Nothing to go on from.
+  is_residual_known_ = false;
   is_stale_ = true;
   return false;
 }

@@ -16,18 +16,27 @@
 /// small robots. Elimination by hand (Network), conjugate gradients, multigrid preconditioner.
 namespace holdfast::solver {
 
+struct MultigridOptions {
+  Precision precision = Precision::kSingle;
+  bool may_yield = true;  ///< Whether facets' states will be other than stuck.
+  int thread_count = 0;   ///< 0: all cores.
+  std::function<void(int iteration, double error)> progress = {};
+};
+
 class Multigrid {
  public:
   using Vec = base::Vec6<double>;
 
-  /// Keeps a reference to the robot. All facets are stuck until set_facet(). 0 threads: all cores.
-  Multigrid(const model::Robot& robot, Precision precision, int thread_count,
-            std::function<void(int iteration, double error)> progress);
+  /// Keeps a reference to the robot. All facets are stuck until set_facet().
+  Multigrid(const model::Robot& robot, MultigridOptions options);
 
   /// A guess of how much memory a robot needs, bytes.
   static std::size_t bytes_for(std::size_t module_count, Precision precision);
 
   Precision precision() const { return precision_; }
+
+  /// Starts anew in another precision, with the same network and facets.
+  void set_precision(Precision precision);
 
   /// Puts all facets back to stuck, under another law.
   void set_law(const mechanics::GroundFacet<double>& facet);
@@ -53,16 +62,21 @@ class Multigrid {
  private:
   struct Facet {
     std::int32_t node = 0;
-    std::uint8_t code = 0;  ///< 0: stuck, a beam like any other.
+    std::uint8_t code = 0;      ///< 0: stuck, a beam like any other.
+    std::uint8_t old_code = 0;  ///< The one that the residual knows.
     mechanics::ContactState state;
     bool is_held = true;
   };
 
   Mat tangent(std::uint8_t code) const;
+  Vec force(std::uint8_t code, std::size_t node) const;
+  bool is_too_slender() const;
+  std::vector<std::int32_t> nodes_alone() const;
   bool begin();
   std::unique_ptr<Iteration> make_iteration();
   void update_iteration();
   void compute_residual();
+  void update_residual();
   std::vector<NodeTerm> unsymmetric_terms() const;
 
   const model::Robot& robot_;
@@ -73,8 +87,11 @@ class Multigrid {
   Vec weight_{};
   std::vector<std::int32_t> facet_of_module_;
   std::vector<Facet> facets_;
+  std::vector<std::int32_t> alone_;  ///< Nodes that join no cluster.
   std::unique_ptr<Iteration> iteration_;
-  bool is_law_new_ = false;  ///< Everything must be made again.
+  bool is_law_new_ = false;         ///< Everything must be made again.
+  bool is_residual_known_ = false;  ///< But for facets that changed.
+  bool may_yield_ = true;
   std::function<void(int, double)> progress_;
   bool is_stale_ = true;  ///< Some facet changed since the last solve.
   double reference_ = 0;  ///< Square of the first error.

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <limits>
 #include <span>
 
 #include "../block_kernels.hpp"
@@ -124,6 +125,25 @@ class ShapeTable {
  private:
   double pitch_ = 0;
   std::vector<std::vector<BeamShape>> shapes_;
+};
+
+/// The box around some cells.
+struct Extent {
+  base::Cell low = {std::numeric_limits<std::int32_t>::max(),
+                    std::numeric_limits<std::int32_t>::max(),
+                    std::numeric_limits<std::int32_t>::max()};
+  base::Cell high = {std::numeric_limits<std::int32_t>::min(),
+                     std::numeric_limits<std::int32_t>::min(),
+                     std::numeric_limits<std::int32_t>::min()};
+
+  void add(const base::Cell& cell) {
+    low = {std::min(low.x, cell.x), std::min(low.y, cell.y), std::min(low.z, cell.z)};
+    high = {std::max(high.x, cell.x), std::max(high.y, cell.y), std::max(high.z, cell.z)};
+  }
+
+  std::int32_t longest() const {
+    return high.x < low.x ? 0 : std::max({high.x - low.x, high.y - low.y, high.z - low.z}) + 1;
+  }
 };
 
 /// Spreads the low 21 bits to every third place.
@@ -324,9 +344,11 @@ class Builder {
              std::min(low.z, module.cell.z)};
     }
     items_.reserve(modules.size());
+    Extent extent;
     for (std::size_t i = 0; i < modules.size(); ++i) {
       if (is_gone_[i] == 0) {
         const base::Cell& cell = modules[i].cell;
+        extent.add(cell);
         items_.push_back({.key = spread(static_cast<std::uint64_t>(cell.x - low.x)) |
                                  spread(static_cast<std::uint64_t>(cell.y - low.y)) << 1U |
                                  spread(static_cast<std::uint64_t>(cell.z - low.z)) << 2U,
@@ -335,6 +357,7 @@ class Builder {
     }
     radix_sort(items_);
     network_.node_count = items_.size();
+    network_.extent = extent.longest();
   }
 
   /// End of a beam from a module, and its length; kNoNeighbour if there is none.

@@ -32,6 +32,7 @@ struct Network {
   std::vector<std::int32_t> order;  ///< Nodes along the Morton curve.
   std::vector<std::uint64_t> key;   ///< Their Morton keys, ascending.
   bool has_long_beams = false;
+  std::int32_t extent = 0;  ///< Longest side of the box around the nodes, pitches.
   /// By module; empty if nothing was eliminated. Of modules that were: not their load, but how far
   /// it moves them while the ends of their run, or what they hang on, are held.
   std::vector<base::Vec6<double>> load;

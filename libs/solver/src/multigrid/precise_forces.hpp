@@ -16,73 +16,48 @@
 namespace holdfast::solver {
 namespace {
 
-/// What the rotation of an end does half a beam away; the rotations of both, crossed, are given.
+/// Force and torque in the middle of the beam from a to b. The rotations of both ends, crossed,
+/// shift them half a beam away.
 template <int kAxis>
-inline Wide shift(double half, const Wide& crossed) {
-  constexpr int kNext = (kAxis + 1) % 3;
-  constexpr int kLast = (kAxis + 2) % 3;
-  Wide arm = {};
-  arm.low[kNext] = half;
-  arm.low[kLast] = -half;
-  return arm * crossed;
+inline Wide middle_force(const MiddleSpring& spring, const Wide& a, const Wide& b) {
+  Wide deformation = b - a;
+  deformation.low -= load_double(spring.shift) * swap<kAxis>(a + b).low;
+  return load(spring.stiffness) * deformation;
 }
 
-/// What forces at a beam's middle are at its ends in torques; crossed forces are given.
-template <int kAxis>
-inline Wide torque(double half, const Wide& crossed) {
-  constexpr int kNext = (kAxis + 1) % 3;
-  constexpr int kLast = (kAxis + 2) % 3;
-  Six<double> arm;
-  arm.v[3 + kNext] = half;
-  arm.v[3 + kLast] = -half;
-  return load(arm) * crossed;
-}
-
-/// Force and torque in the middle of the beam from a to b.
-template <int kAxis>
-inline Wide middle_force(const LatticeView<double>& level, const Wide& a, const Wide& b,
-                         std::size_t length, double half) {
-  const Wide deformation = (b - a) - shift<kAxis>(half, swap<kAxis>(a + b));
-  return load(level.springs[kAxis * (kBeamLengthMax + 1) + static_cast<int>(length)]) * deformation;
-}
-
-template <int kAxis>
-inline Wide axis_product(const LatticeView<double>& level, const Six<double>* z, std::size_t p) {
+/// What a node gets from its two beams along an axis. Beams that are missing have no stiffness.
+template <int kAxis, class Real>
+inline Wide axis_product(const LatticeView<double>& level, const Six<Real>* z, std::size_t p) {
   const Others& other = level.other[p];
-  const std::size_t up = level.kind[p][2 * kAxis];
-  const std::size_t down = level.kind[p][2 * kAxis + 1];
-  const Wide own = load(z[p]);
-  Wide sum = {};
-  if (up > 0) {
-    const double half = level.pitch * static_cast<double>(up) / 2;
-    const Wide force = middle_force<kAxis>(level, own, load(z[other[2 * kAxis]]), up, half);
-    sum += torque<kAxis>(half, swap<kAxis>(force)) - force;
-  }
-  if (down > 0) {
-    const double half = level.pitch * static_cast<double>(down) / 2;
-    const Wide force = middle_force<kAxis>(level, load(z[other[2 * kAxis + 1]]), own, down, half);
-    sum += torque<kAxis>(half, swap<kAxis>(force)) + force;
-  }
-  return sum;
+  const MiddleSpring* springs = level.springs + kAxis * (kBeamLengthMax + 1);
+  const MiddleSpring& up = springs[level.kind[p][2 * kAxis]];
+  const MiddleSpring& down = springs[level.kind[p][2 * kAxis + 1]];
+  const Wide own = load_wide(z[p]);
+  const Wide above = middle_force<kAxis>(up, own, load_wide(z[other[2 * kAxis]]));
+  const Wide below = middle_force<kAxis>(down, load_wide(z[other[2 * kAxis + 1]]), own);
+  return (below - above) +
+         (load(up.torque) * swap<kAxis>(above) + load(down.torque) * swap<kAxis>(below));
 }
 
 /// (K z)_p
-inline Wide product(const LatticeView<double>& level, const Six<double>* z, std::size_t p) {
+template <class Real>
+inline Wide product(const LatticeView<double>& level, const Six<Real>* z, std::size_t p) {
   Wide sum =
       axis_product<0>(level, z, p) + axis_product<1>(level, z, p) + axis_product<2>(level, z, p);
   if (level.kind[p][kContactByte] != 0) {
-    sum += multiply(level.ground[level.type[p]], load(z[p]));
+    sum += multiply(level.ground[level.type[p]], load_wide(z[p]));
   }
   return sum;
 }
 
-inline Wide product(const ClusterView<double>& level, const Six<double>* z, std::size_t p) {
+template <class Real>
+inline Wide product(const ClusterView<double>& level, const Six<Real>* z, std::size_t p) {
   Wide sum = {};
-  const Wide own = load(z[p]);
+  const Wide own = load_wide(z[p]);
   for (std::int32_t e = level.start[p]; e < level.start[p + 1]; ++e) {
     const auto q = static_cast<std::size_t>(level.other[e]);
     const BodySpring& spring = level.springs[level.spring[e]];
-    const Wide other = load(z[q]);
+    const Wide other = load_wide(z[q]);
     if (p < q) {
       sum -= multiply(spring.stiffness, motion_moved(spring.arm, other) - own);
     } else {
@@ -97,16 +72,9 @@ inline Wide product(const ClusterView<double>& level, const Six<double>* z, std:
 }
 
 /// (r - K z)_p
-template <class View>
-inline Wide unbalanced(const View& level, const Six<double>* r, const Six<double>* z,
-                       std::size_t p) {
+template <class View, class Real>
+inline Wide unbalanced(const View& level, const Six<double>* r, const Six<Real>* z, std::size_t p) {
   return load(r[p]) - product(level, z, p);
-}
-
-/// z_p for which node p is balanced.
-template <class View>
-inline Wide balanced(const View& level, const Six<double>* r, const Six<double>* z, std::size_t p) {
-  return load(z[p]) + multiply(level.inverse[level.type[p]], unbalanced(level, r, z, p));
 }
 
 inline Wide wide_product(const LatticeView<double>& level, const Six<double>* p, std::size_t node) {

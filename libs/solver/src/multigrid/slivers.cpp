@@ -73,8 +73,10 @@ std::size_t unite_slivers(const Stage& fine, unsigned shift, std::vector<std::in
   const std::vector<Box>& part = fine.box;
   std::vector<Box> old(count);
   std::vector<bool> is_met(count);
+  std::vector<bool> is_alone(count);
   for (std::size_t node = 0; node < cluster.size(); ++node) {
     const std::size_t c = at(cluster[node]);
+    is_alone[c] = !fine.is_alone.empty() && fine.is_alone[node];
     old[c] = is_met[c] ? united(old[c], part[node]) : part[node];
     is_met[c] = true;
   }
@@ -88,7 +90,8 @@ std::size_t unite_slivers(const Stage& fine, unsigned shift, std::vector<std::in
     std::int32_t partner = kNone;
     double most = 0;
     for (const auto& [d, strength] : ties[c]) {
-      if (number[at(d)] == kNone && strength > most * kStronger) {
+      if (number[at(d)] == kNone && !is_alone[c] && !is_alone[at(d)] &&
+          strength > most * kStronger) {
         most = strength;
         partner = d;
       }

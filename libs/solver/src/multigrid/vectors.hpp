@@ -31,11 +31,18 @@ struct BeamRow {
   Six<Real> crossed;
 };
 
+/// A beam as its middle sees it.
+struct MiddleSpring {
+  Six<double> stiffness;
+  Six<double> torque;    ///< Levers by which forces, crossed, are torques at the end.
+  double shift[4] = {};  ///< Levers by which rotations, crossed, shift the middle.
+};
+
 /// A spring between clusters: S acts on the motion of one body less that of the other, carried
 /// over by `arm`.
 struct BodySpring {
   Block<double> stiffness;
-  double arm[3] = {};  ///< mm, from the other body to the one.
+  double arm[4] = {};  ///< mm, from the other body to the one; then zero.
 };
 
 /// Where a node sits in its cluster: u = [u_c + t_c x offset, t_c].

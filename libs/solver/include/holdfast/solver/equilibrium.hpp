@@ -46,8 +46,8 @@ enum class Method : std::uint8_t {
   kMultigrid,
 };
 
-/// Of multigrid's preconditioner. Single precision suffices but for slender robots; double is
-/// several times slower.
+/// Of multigrid's preconditioner. Single precision suffices but for slender robots; double takes
+/// about twice as long.
 enum class Precision : std::uint8_t { kSingle, kDouble };
 
 struct EquilibriumOptions {

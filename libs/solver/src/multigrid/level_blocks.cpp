@@ -1,0 +1,74 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#include "level_blocks.hpp"
+
+#include "block_pool.hpp"
+#include "matrix_blocks.hpp"
+
+namespace holdfast::solver {
+namespace {
+
+using base::Direction;
+
+std::size_t at(std::int32_t index) { return static_cast<std::size_t>(index); }
+
+BeamRow<double> beam_row(const Mat& k12, std::size_t axis) {
+  BeamRow<double> row;
+  for (std::size_t i = 0; i < 6; ++i) {
+    const std::size_t j = kSwap[axis][i];
+    row.direct.v[i] = k12.at(static_cast<int>(i), static_cast<int>(i));
+    row.crossed.v[i] = i == j ? 0 : k12.at(static_cast<int>(i), static_cast<int>(j));
+  }
+  return row;
+}
+
+BeamRow<float> single(const BeamRow<double>& row) {
+  BeamRow<float> result;
+  for (std::size_t i = 0; i < 6; ++i) {
+    result.direct.v[i] = static_cast<float>(row.direct.v[i]);
+    result.crossed.v[i] = static_cast<float>(row.crossed.v[i]);
+  }
+  return result;
+}
+
+}  // namespace
+
+std::vector<BeamRow<double>> beam_rows(const Network& network, const model::Material& material) {
+  const std::size_t length_max = network.has_long_beams ? kBeamLengthMax : 1;
+  std::vector<BeamRow<double>> rows(6 * kRow);
+  for (std::size_t length = 1; length <= length_max; ++length) {
+    const auto beam = long_beam(material, static_cast<int>(length));
+    for (std::size_t d = 0; d < 6; ++d) {
+      rows[d * kRow + length] =
+          beam_row(mechanics::block_12(beam, static_cast<Direction>(d)), d / 2);
+    }
+  }
+  return rows;
+}
+
+std::vector<BeamRow<float>> single(const std::vector<BeamRow<double>>& rows) {
+  std::vector<BeamRow<float>> result;
+  result.reserve(rows.size());
+  for (const BeamRow<double>& row : rows) {
+    result.push_back(single(row));
+  }
+  return result;
+}
+
+void fill_blocks(const Stage& stage, Blocks& blocks) {
+  BlockPool<float> pool;
+  std::vector<std::uint32_t> block_of_spring(stage.springs.size());
+  for (std::size_t i = 0; i < stage.springs.size(); ++i) {
+    block_of_spring[i] = pool.insert(block_of<float>(coupling(stage.springs[i])));
+  }
+  blocks.blocks = pool.take();
+  blocks.block.resize(stage.other.size());
+  for (std::size_t node = 0; node < stage.order.size(); ++node) {
+    const std::size_t start = at(stage.start[node]);
+    for (std::size_t e = start; e < at(stage.start[node + 1]); ++e) {
+      blocks.block[e] = block_of_spring[stage.pattern[node] + e - start];
+    }
+  }
+}
+
+}  // namespace holdfast::solver

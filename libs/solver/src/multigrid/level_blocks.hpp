@@ -1,0 +1,23 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "coarsening.hpp"
+#include "holdfast/model/material.hpp"
+#include "level.hpp"
+#include "network.hpp"
+
+/// The blocks of K that sweeps read, in single precision whatever the levels are.
+namespace holdfast::solver {
+
+/// K12 by direction and length: [direction * (kBeamLengthMax + 1) + length].
+std::vector<BeamRow<double>> beam_rows(const Network& network, const model::Material& material);
+
+std::vector<BeamRow<float>> single(const std::vector<BeamRow<double>>& rows);
+
+/// K_pq for every edge.
+void fill_blocks(const Stage& stage, Blocks& blocks);
+
+}  // namespace holdfast::solver
