@@ -24,9 +24,9 @@ constexpr std::size_t kBytesPerModuleDouble = 800;
 /// A robot of n modules that is N long consists of N / sqrt(n / N) cubes in a row, at most, as if
 /// its modules were in one bar. Rounding moves it by that number squared times what it moves a
 /// cube, and where it so moves it by more than this share of the true motion, single precision is
-/// not even tried. By experiment it gives up in towers from N^3 / n = 0.7e6 on, in bridges and
-/// portals from 2.7e6 and 3.1e6; this is 2.5e6. A robot that is sent on wrongly takes twice as
-/// long.
+/// not even tried: from N^3 / n = 2.5e6 on. By experiment it gives up in portals from 2.0e6 on,
+/// needs dozens of iterations in bridges from 2.1e6 on, and does well in towers up to 9e6. A robot
+/// that is sent on wrongly takes twice as long.
 constexpr double kRoundingShare = 0.15;
 
 /// So small a network is solved on its coarsest level, in double precision anyway.
