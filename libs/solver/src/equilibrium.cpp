@@ -505,7 +505,7 @@ void EquilibriumSolver::finish(Equilibrium& result) {
     const double pace = std::min(1.0, kBriskIterations / multigrid_->last_count());
     const double share = multigrid_->precision() == Precision::kDouble ? kSlenderShare : 1;
     // One iteration at least: else the two answers are the same, and say nothing about the error.
-    if (!multigrid_->solve(options_.tolerance * share * pace * pace, 1)) {
+    if (!multigrid_->solve(options_.tolerance * share * pace * pace * pace, 1)) {
       result.outcome = Outcome::kTooSlow;
       return;
     }

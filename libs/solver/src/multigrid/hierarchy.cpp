@@ -19,16 +19,12 @@ using base::Direction;
 /// A level this small is factorized whatever its shape: it costs nothing.
 constexpr std::size_t kCoarsestCount = 48;
 
-/// The factors of a longer chain of clusters have lost too many digits. In double precision they
-/// are refined with forces that have not, and that counts; in single precision there are none to
-/// lose.
-template <class Real>
-constexpr std::size_t kChainMax = std::is_same_v<Real, float> ? 3000 : 600;
+/// The factors of a longer chain of clusters have lost too many digits.
+constexpr std::size_t kChainMax = 3000;
 
 /// The same where facets are kept out of the clusters: there a level more costs more iterations
 /// than digits, portals 5,000 wide take 18 instead of 101.
-template <class Real>
-constexpr std::size_t kChainMaxOnFeet = std::is_same_v<Real, float> ? 4000 : 1000;
+constexpr std::size_t kChainMaxOnFeet = 4000;
 
 /// Where nodes have more neighbours than this on average, too many blocks fill in.
 constexpr std::size_t kThinDegree = 3;
@@ -319,8 +315,7 @@ void Hierarchy<Real>::try_to_factor(const Stage& stage) {
   const std::size_t count = stage.order.size();
   const bool is_small = count <= kCoarsestCount + alone_count_;
   const bool is_thin = stage.other.size() <= kThinDegree * (count + alone_count_);
-  if (!is_small && is_thin &&
-      count > (alone_count_ == 0 ? kChainMax<Real> : kChainMaxOnFeet<Real>)) {
+  if (!is_small && is_thin && count > (alone_count_ == 0 ? kChainMax : kChainMaxOnFeet)) {
     is_too_slender_ = true;
     return;
   }
