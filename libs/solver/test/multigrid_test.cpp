@@ -450,7 +450,7 @@ void expect_own_weight_only(std::int32_t height, const Equilibrium& result,
 }
 
 TEST(Multigrid, stands_as_high_as_one_likes) {
-  constexpr std::int32_t kHeight = 5000;
+  constexpr std::int32_t kHeight = 4000;
   const model::Robot robot = family(Family::kTower, kHeight);
   for (const Precision precision : {Precision::kSingle, Precision::kDouble}) {
     const Equilibrium result =
