@@ -65,6 +65,15 @@ class Team::Crew {
 
   void run(std::size_t chunk_count, Task task, const void* context);
 
+  /// Whether its threads are those of this process, and did not stay behind when it was forked.
+  bool is_here() const { return process_ == process_number().load(); }
+
+  /// How many forks lie between the program's start and this process.
+  static std::atomic<int>& process_number() {
+    static std::atomic<int> number{0};
+    return number;
+  }
+
   /// A crew that has no team, for the next one. It is never destroyed: at the program's end its
   /// threads sleep.
   static std::atomic<Crew*>& idle() {
@@ -80,8 +89,9 @@ class Team::Crew {
 
   void serve(int thread);
   void work_on_ranges(int thread);
-  bool work_on(Range& range);
+  bool work_on(Range& range) noexcept;  // What is thrown in work would leave the others behind.
 
+  const int process_ = process_number().load();
   std::vector<std::thread> threads_;
   std::vector<Range> ranges_;
   Task task_ = nullptr;
@@ -132,7 +142,7 @@ void Team::Crew::run(std::size_t chunk_count, Task task, const void* context) {
 /// Takes half of what is left of a range and works on it. A thread that comes late, to a later loop
 /// than it was called for, is as welcome there: which loop it is follows from the chunks it gets.
 /// Returns false if there is nothing left.
-bool Team::Crew::work_on(Range& range) {
+bool Team::Crew::work_on(Range& range) noexcept {
   std::uint64_t seen = range.chunks.load(std::memory_order_acquire);
   std::size_t begin = 0;
   std::size_t taken = 0;
@@ -172,8 +182,10 @@ void Team::Crew::serve(int thread) {
 Team::Crew* Team::call(int thread_count) {
 #if __has_include(<pthread.h>)
   // Threads do not follow into a forked process; what is left of their crew stays unused there.
-  [[maybe_unused]] static const int is_told =
-      pthread_atfork(nullptr, nullptr, [] { Crew::idle().store(nullptr); });
+  [[maybe_unused]] static const int is_told = pthread_atfork(nullptr, nullptr, [] {
+    Crew::process_number().fetch_add(1);
+    Crew::idle().store(nullptr);
+  });
 #endif
   std::unique_ptr<Crew> crew(Crew::idle().exchange(nullptr));
   if (!crew || crew->wanted_count() != static_cast<std::size_t>(thread_count)) {
@@ -183,6 +195,9 @@ Team::Crew* Team::call(int thread_count) {
 }
 
 void Team::Dismiss::operator()(Crew* crew) const {
+  if (!crew->is_here()) {
+    return;
+  }
   Crew* none = nullptr;
   if (!Crew::idle().compare_exchange_strong(none, crew)) {
     delete crew;

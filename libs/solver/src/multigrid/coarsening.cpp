@@ -101,7 +101,11 @@ class Coarsening {
     if (!fine_.box.empty()) {
       cluster_count_ = unite_slivers(fine_, coarse_.shift, cluster_, cluster_count_, coarse_.box);
     }
-    if (10 * cluster_count_ > 9 * count) {
+    if (!has_merged() && !is_weak_.empty()) {
+      is_weak_.clear();
+      find_clusters(shift);
+    }
+    if (!has_merged()) {
       return false;
     }
     gather_members();
@@ -115,6 +119,9 @@ class Coarsening {
   }
 
  private:
+  /// Enough for a level of its own.
+  bool has_merged() const { return 10 * cluster_count_ <= 9 * fine_.order.size(); }
+
   std::size_t count_cells(unsigned shift) const {
     std::size_t count = 0;
     std::uint64_t last = ~std::uint64_t{0};

@@ -15,10 +15,6 @@ constexpr std::size_t kMemoryMin = 8;
 template <class Real>
 constexpr std::size_t kNodeBytes = sizeof(Six<Real>) + 6 * sizeof(double);
 
-/// The last run's directions go on to count, unless there is more than one for so many nodes: in
-/// small robots they soon fill the space, and what is left then is rounding.
-constexpr std::size_t kNodesPerDirection = 2;
-
 /// An estimate of the error that falls by more than this in one step fell by chance.
 constexpr double kFallMax = 1e4;
 
@@ -78,9 +74,8 @@ double ConjugateGradients<Real>::remember_direction(std::span<const NodeTerm> te
 template <class Real>
 Iteration::End ConjugateGradients<Real>::run_unsymmetric(const Goal& goal,
                                                          std::span<const NodeTerm> terms) {
-  if (kNodesPerDirection * older_.size() > node_count_) {
-    older_.clear();
-  }
+  // The last run's directions would count on, if r were free of them to the last digit: it is not.
+  older_.clear();
   double before = error_;
   for (int iteration = 0; !is_reached(goal, iteration) || std::abs(before) > kFallMax * goal.error;
        ++iteration) {
@@ -93,7 +88,11 @@ Iteration::End ConjugateGradients<Real>::run_unsymmetric(const Goal& goal,
       return End::kBroken;
     }
     before = error_;
-    advance(error_ / curvature);
+    // r . z but for rounding, which must not add up.
+    const double force = team_.sum(node_count_, [&](std::size_t begin, std::size_t end) {
+      return kernels<Real>().dot(r_.data(), p_.data(), {begin, end});
+    });
+    advance(force / curvature);
     error_ = precondition();
     tell();
   }

@@ -8,7 +8,7 @@
 namespace holdfast::solver {
 namespace {
 
-/// Chosen on random growth and on slender plates. from 0.0078 on a long bridge is cut lengthwise.
+/// Chosen on random growth and on slender plates. From 0.0078 on a long bridge is cut lengthwise.
 constexpr double kWeakShare = 0.007;
 
 std::size_t at(std::int32_t index) { return static_cast<std::size_t>(index); }

@@ -16,6 +16,8 @@
 /// springs of the node do: S - kWeakShare K_pp is not positive definite. In a solid the least
 /// resistance of a spring between clusters is 0.03 of K_pp's, in a plate 0.01. A node that hangs
 /// from one spring alone has K_pp = S, so a bump joins its neck once it is a single node itself.
+/// Frames of beams a dozen modules long are as weak as necks: where hardly anything would unite
+/// without weak springs, they do unite.
 namespace holdfast::solver {
 
 /// 1 for every edge of the level whose spring is weak at both ends; empty if there is none. On the

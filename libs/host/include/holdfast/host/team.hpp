@@ -21,6 +21,9 @@ class Team {
   /// At most kThreadCountMax; 0: as many as the machine has cores. One alone if there are fewer
   /// than kSharedItemMin items to share.
   explicit Team(int thread_count, std::size_t item_count = kSharedItemMin);
+  Team(const Team&) = delete;
+  Team& operator=(const Team&) = delete;
+  ~Team() = default;
 
   int thread_count() const { return thread_count_; }
 
