@@ -94,8 +94,8 @@ struct Equilibrium {
   mechanics::ContactLaw law = mechanics::ContactLaw::kRegularised;
   std::vector<base::Vec6<double>> displacement;
   /// A second answer, to see how far the first may be off: before the last step of iterative
-  /// refinement, or ten times farther from convergence or more; or, if open_but_held_count > 0, with those
-  /// facets free to slide.
+  /// refinement, or at least ten times farther from convergence; or, if open_but_held_count > 0,
+  /// with those facets free to slide.
   std::vector<base::Vec6<double>> alternative;
   std::vector<mechanics::ContactState> contact;  ///< Of ground modules; the rest is not pressed.
   std::vector<base::Vec6<double>> ground_force;  ///< By the ground on the module at its node.
