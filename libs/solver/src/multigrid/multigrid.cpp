@@ -128,8 +128,8 @@ void Multigrid::set_facet(std::size_t module, const ContactState& state, bool is
   is_stale_ = true;
 }
 
-/// The hierarchy knows the tangent itself, symmetric or not, if its coarsest level has all facets;
-/// else a stand-in for it.
+/// If its coarsest level has all facets the hierarchy gets the tangent itself: the finest level as
+/// it is, the others with its upper half on both sides, as springs are carried. Else a stand-in.
 Mat Multigrid::tangent(std::uint8_t code) const {
   return alone_.empty() ? mechanics::symmetric_tangent(ground_, state_of(code), is_held(code))
                         : mechanics::contact_tangent(ground_, state_of(code), is_held(code));

@@ -116,9 +116,6 @@ Mat times_carry(Mat s, const Point& a) {
 
 /// Of what has S T(a) on its right half by now, S being symmetric, the rows of t follow.
 Mat carried(const Mat& s, const Point& a) {
-  if (a == Point{}) {
-    return s;
-  }
   Mat result = s;
   carry_columns(result, a);
   double* const v = result.values.data();
