@@ -11,12 +11,21 @@
 #include <unistd.h>
 #endif
 
+// A sanitizer brings an allocator of its own, which would write to all that it is asked for.
+#if defined(__SANITIZE_ADDRESS__)
+#define HOLDFAST_HAS_SANITIZER
+#elif defined(__has_feature)
+#if __has_feature(address_sanitizer)
+#define HOLDFAST_HAS_SANITIZER
+#endif
+#endif
+
 namespace holdfast::host {
 
 // The heap is stretched over half of the machine's memory at once, marked, and given back to the
 // allocator, which is told never to give it back to the system: addresses, not memory.
 void use_large_pages() {
-#if defined(__GLIBC__) && !defined(__SANITIZE_ADDRESS__)
+#if defined(__GLIBC__) && !defined(HOLDFAST_HAS_SANITIZER)
   constexpr std::size_t kPage = std::size_t{2} << 20U;
   const auto memory = static_cast<std::size_t>(sysconf(_SC_PHYS_PAGES)) *
                       static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
