@@ -7,15 +7,17 @@ namespace holdfast::base {
 
 /// high + low, where |low| is at most half a unit in the last place of high. Sums, differences,
 /// products and quotients are within a few 2^-104 of the true ones, relative to the result
-/// [Joldes, Muller, Popescu 2017]. Needs doubles that are rounded to nearest and neither widened nor
-/// fused; numbers beyond 1e290 overflow.
+/// [Joldes, Muller, Popescu 2017]. Needs doubles that are rounded to nearest and neither widened
+/// nor fused; numbers beyond 1e290 overflow.
 struct DoubleDouble {
   double high = 0;
   double low = 0;
 
   constexpr DoubleDouble() = default;
+
   // A double is one of these numbers, so formulas written for double serve both.
   constexpr DoubleDouble(double value) : high(value) {}  // NOLINT(google-explicit-constructor)
+
   constexpr DoubleDouble(double h, double l) : high(h), low(l) {}
 
   explicit constexpr operator double() const { return high + low; }
