@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The holdfast authors
 // SPDX-License-Identifier: Apache-2.0
-// How right are verdicts and ranges? Random robots against another solver in 80 bits.
+// How right are verdicts and ranges? Random robots against another solver in 106 bits.
 //   limit_bench errors FROM TO MIN MAX   seeds, module counts: errors of every load ratio, ranges
 //   limit_bench limit FROM TO MIN MAX    strengths scaled so that the largest load ratio is 1 + d
 #include <cstdio>
@@ -81,7 +81,7 @@ void run(bool is_near, std::uint64_t seed, std::size_t low, std::size_t high, Ta
     return;
   }
   ++tally.tried;
-  const auto exact = ExactLoads(robot.value()).load_ratios();
+  const auto exact = test::ExactLoads(robot.value()).load_ratios();
   if (!exact) {
     ++tally.exact_law;
     return;

@@ -20,8 +20,17 @@ class Builder {
 
   model::RobotSpec build(std::uint64_t kind) {
     put({0, 0, 0});
+    if (kind >= kSlenderKind) {
+      plate();
+    }
     while (cells_.size() < count_max_) {
       switch (kind) {
+        case kSlenderKind:
+          spiral();
+          break;
+        case kSlenderKind + 1:
+          ladder();
+          break;
         case 0:
           grow(count_max_);
           break;
@@ -116,6 +125,56 @@ class Builder {
     }
   }
 
+  /// A foot of 3 x 3 around the first module.
+  void plate() {
+    for (const base::Cell& cell : {Cell{1, 0, 0},
+                                   {-1, 0, 0},
+                                   {0, 1, 0},
+                                   {0, -1, 0},
+                                   {1, 1, 0},
+                                   {1, -1, 0},
+                                   {-1, 1, 0},
+                                   {-1, -1, 0}}) {
+      put(cell);
+    }
+  }
+
+  /// One module thick, round a square shaft and up in steps, until there is no more room.
+  void spiral() {
+    const std::int32_t width = 1 + number(3);
+    Cell cell = {0, 0, 0};
+    for (std::uint64_t turn = 0; cells_.size() < room_; turn = (turn + 1) % 4) {
+      for (std::int32_t i = 1 + number(4); i > 0; --i) {
+        put(cell = base::neighbour(cell, base::Direction::kPlusZ));
+      }
+      constexpr base::Direction kAround[] = {base::Direction::kPlusX, base::Direction::kPlusY,
+                                             base::Direction::kMinusX, base::Direction::kMinusY};
+      for (std::int32_t i = 0; i < width; ++i) {
+        put(cell = base::neighbour(cell, kAround[turn]));
+      }
+    }
+  }
+
+  /// Two posts with rungs, here and there a spike, until there is no more room.
+  void ladder() {
+    const std::int32_t step = 1 + number(8);
+    for (std::int32_t z = 1; cells_.size() < room_; ++z) {
+      put({0, 0, z});
+      if (z == 1) {
+        put({1, 0, z});
+      }
+      put({2, 0, z});
+      if (z % step == 0) {
+        put({1, 0, z});
+      }
+      if (number(20) == 0) {
+        put({number(2) == 0 ? -1 : 3, 0, z});
+      }
+    }
+  }
+
+  static constexpr std::uint64_t kSlenderKind = 4;
+
   base::Rng rng_;
   std::size_t count_max_;
   std::size_t room_ = count_max_;
@@ -128,8 +187,8 @@ class Builder {
 model::RobotSpec random_robot(std::uint64_t seed) { return Builder(seed, 3, 60).build(seed % 4); }
 
 model::RobotSpec random_robot(std::uint64_t seed, std::size_t count_min, std::size_t count_max) {
-  model::RobotSpec spec = Builder(seed, count_min, count_max).build(seed % 4);
-  if (seed % 3 == 0) {
+  model::RobotSpec spec = Builder(seed, count_min, count_max).build(seed % 6);
+  if (seed % 5 == 0) {
     spec.fixed = {spec.existing.front()};
   }
   return spec;

@@ -4,7 +4,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+
+#include "holdfast/mechanics/connector.hpp"
 
 namespace holdfast::model {
 namespace {
@@ -33,6 +36,12 @@ mechanics::BeamSection<double> beam_section(const Material& material) {
 
 double module_weight_n(const Material& material) {
   return material.mass_kg * material.gravity_m_s2;
+}
+
+double load_ratio_per_energy_norm(const Material& material) {
+  return std::sqrt(mechanics::load_ratio_squared_per_energy(
+      mechanics::beam_stiffness(beam_section(material)), material.facet_mm,
+      std::min(material.strength_vertical_n, material.strength_lateral_n)));
 }
 
 std::optional<std::string> find_material_fault(const Material& material) {

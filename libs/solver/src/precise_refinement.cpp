@@ -23,24 +23,16 @@ constexpr int kStepMax = 60;
 
 using PreciseVec = base::Vec6<DoubleDouble>;
 
-template <class To, class From>
-mechanics::BeamStiffness<To> converted(const mechanics::BeamStiffness<From>& beam) {
-  return {.shear_x = beam.shear_x,
-          .shear_y = beam.shear_y,
-          .axial = beam.axial,
-          .couple_x = beam.couple_x,
-          .couple_y = beam.couple_y,
-          .bend_x = beam.bend_x,
-          .bend_y = beam.bend_y,
-          .twist = beam.twist};
-}
-
-mechanics::GroundFacet<DoubleDouble> converted(const mechanics::GroundFacet<double>& ground) {
-  return {.stiffness = base::converted<DoubleDouble>(ground.stiffness),
-          .lever = ground.lever,
-          .half_width = ground.half_width,
-          .gamma = ground.gamma,
-          .law = ground.law};
+/// In 106 bits from the start: rounded to double the numbers of one beam would no longer fit
+/// together, and a beam that turns as a rigid body would resist.
+mechanics::BeamSection<DoubleDouble> precise_section(const model::Material& material) {
+  const mechanics::BeamSection<double> section = model::beam_section(material);
+  return {.elastic_modulus = section.elastic_modulus,
+          .length = section.length,
+          .area = section.area,
+          .moment_x = section.moment_x,
+          .moment_y = section.moment_y,
+          .torsion = section.torsion};
 }
 
 std::size_t at(std::int32_t index) { return static_cast<std::size_t>(index); }
@@ -75,9 +67,9 @@ PreciseRefinement::PreciseRefinement(const model::Robot& robot,
                                      const mechanics::GroundFacet<double>& ground,
                                      std::vector<FacetState> facets)
     : robot_(robot),
-      beam_(converted<DoubleDouble>(
-          mechanics::beam_stiffness(model::beam_section(robot.material())))),
-      ground_(converted(ground)),
+      beam_(mechanics::beam_stiffness(precise_section(robot.material()))),
+      ground_(mechanics::ground_facet<DoubleDouble>(
+          precise_section(robot.material()), robot.material().facet_mm, ground.gamma, ground.law)),
       facets_(std::move(facets)) {}
 
 bool PreciseRefinement::run(const std::vector<Vec>& displacement, const Solve& solve) {

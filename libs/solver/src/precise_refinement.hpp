@@ -33,7 +33,8 @@ class PreciseRefinement {
   /// accuracy finds for them, in place. Fixed modules' loads mean nothing.
   using Solve = std::function<void(std::vector<Vec>& load)>;
 
-  /// Keeps references to the robot and the ground. The stiffness constants are those of double.
+  /// Keeps a reference to the robot. Of `ground` only gamma and the law are taken; the numbers of
+  /// the section count as exact.
   PreciseRefinement(const model::Robot& robot, const mechanics::GroundFacet<double>& ground,
                     std::vector<FacetState> facets);
 

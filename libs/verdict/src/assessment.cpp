@@ -153,13 +153,16 @@ Loads add_up(const model::Robot& robot, int thread_count, Assessment& assessment
 /// What load ratios may be off by rounding alone, as a share of the largest or of 1.
 constexpr double kRounding = 1e-12;
 
-/// By weak springs of 1e-9 beside the unilateral contact of a stable robot, in the same terms.
-constexpr double kWeakSprings = 1e-7;
+/// By weak springs beside the unilateral contact of a stable robot, in the same terms: so many
+/// times their share of the contact's stiffness. Springs of 1e-6 have moved a load ratio by 6e-4.
+constexpr double kWeakSprings = 1e3;
 
-/// Two answers of multigrid differ by less than the error of the better one, once in a while: of
-/// any connection the margin takes the largest difference so many times, and never less than what
-/// is promised (docs/solver.md).
+/// Two answers of multigrid differ by less than the error of the better one, once in a while, and
+/// the error's energy is estimated too low. So of any connection the margin takes the largest
+/// difference so many times, or what the energy so many times could do to a load ratio, whichever
+/// is less; and never less than what is promised (docs/solver.md).
 constexpr double kMultigridFactor = 10;
+constexpr double kEnergyFactor = 3;
 constexpr double kMultigridError = 1e-4;
 
 double tolerance_share(const solver::EquilibriumOptions& options) {
@@ -168,18 +171,21 @@ double tolerance_share(const solver::EquilibriumOptions& options) {
 
 /// How far the largest load ratio may be from the truth, if multigrid's tolerance is so many times
 /// the usual one.
-double error_margin(const Equilibrium& equilibrium, double tolerance_share, const Loads& loads) {
+double error_margin(const model::Robot& robot, const Equilibrium& equilibrium,
+                    double tolerance_share, const Loads& loads) {
   const double scale = std::max(1.0, loads.ratio_max);
   double margin = kRounding * scale;
   if (equilibrium.law == ContactLaw::kUnilateral && equilibrium.gamma > 0) {
-    margin += kWeakSprings * scale;
+    margin += kWeakSprings * equilibrium.gamma * scale;
   }
   if (equilibrium.open_but_held_count > 0) {
     return margin;  // The answers differ by more than an error.
   }
   if (equilibrium.method == solver::Method::kMultigrid) {
-    return margin +
-           std::max(kMultigridError * tolerance_share * scale, kMultigridFactor * loads.change);
+    const double bound = kEnergyFactor * model::load_ratio_per_energy_norm(robot.material()) *
+                         equilibrium.energy_error;
+    return margin + std::max(kMultigridError * tolerance_share * scale,
+                             std::min(kMultigridFactor * loads.change, bound));
   }
   return margin + 2 * loads.change;
 }
@@ -192,7 +198,8 @@ void assess_connections(const model::Robot& robot, const solver::EquilibriumOpti
   }
   Loads loads = add_up(robot, options.thread_count, assessment);
   assessment.load_ratio_change = loads.change;
-  const double margin = error_margin(assessment.equilibrium, tolerance_share(options), loads);
+  const double margin =
+      error_margin(robot, assessment.equilibrium, tolerance_share(options), loads);
   assessment.load_ratio_range = {.low = loads.range.low - margin,
                                  .high = loads.range.high + margin};
   assessment.broken = std::move(loads.broken);

@@ -37,6 +37,11 @@ constexpr std::size_t kTrivialCount = 48;
 constexpr std::size_t kAloneMax = 128;
 constexpr std::size_t kAloneShare = 64;
 
+/// What counts as thin: plates one module thick and solids have four neighbours a node and more, but
+/// for their edges; full ladders have three.
+constexpr std::size_t kThinCountMax = 2000;
+constexpr double kThinDegree = 3.5;
+
 std::size_t at(std::int32_t index) { return static_cast<std::size_t>(index); }
 
 /// 0 for a facet that is stuck, else which of the twenty contact states it is in.
@@ -276,7 +281,19 @@ bool Multigrid::begin() {
   return true;
 }
 
-bool Multigrid::solve(double tolerance, int iteration_count_min) {
+bool Multigrid::is_thin() const {
+  std::size_t ends = 0;
+  for (std::size_t node = 0; node < network_.node_count && network_.node_count <= kThinCountMax;
+       ++node) {
+    ends += static_cast<std::size_t>(std::count_if(
+        network_.kind[node].begin(), network_.kind[node].begin() + base::kDirectionCount,
+        [](auto length) { return length > 0; }));
+  }
+  return network_.node_count <= kThinCountMax &&
+         static_cast<double>(ends) <= kThinDegree * static_cast<double>(network_.node_count);
+}
+
+bool Multigrid::solve(double tolerance, int iteration_count_min, double energy_error_max) {
   if (network_.node_count == 0) {
     return true;
   }
@@ -284,7 +301,8 @@ bool Multigrid::solve(double tolerance, int iteration_count_min) {
     return false;
   }
   const int before = iteration_->iteration_count();
-  const Iteration::Goal goal = {.error = tolerance * tolerance * reference_,
+  energy_error_ = std::min(tolerance * std::sqrt(reference_), energy_error_max);
+  const Iteration::Goal goal = {.error = energy_error_ * energy_error_,
                                 .iteration_count_min = iteration_count_min,
                                 .iteration_count_max = kIterationMax};
   const std::vector<NodeTerm> terms = unsymmetric_terms();

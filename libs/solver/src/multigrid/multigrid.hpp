@@ -3,6 +3,7 @@
 #pragma once
 
 #include <functional>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -46,10 +47,18 @@ class Multigrid {
   bool is_new() const { return is_stale_; }
 
   /// Goes on from the present displacements until the error in the energy norm is `tolerance` times
-  /// that of the first guess, zero. Returns false if it does not get there, or the robot is too
-  /// slender for the precision. As long as errors are
-  /// more than rounding, at least `iteration_count_min` iterations.
-  bool solve(double tolerance, int iteration_count_min = 0);
+  /// that of the first guess, zero, and at most `energy_error_max`. Returns false if it does not
+  /// get there, or the robot is too slender for the precision. As long as errors are more than
+  /// rounding, at least `iteration_count_min` iterations.
+  bool solve(double tolerance, int iteration_count_min = 0,
+             double energy_error_max = std::numeric_limits<double>::infinity());
+
+  /// The error that the last solution was to have in the energy norm, (N mm)^(1/2), by estimate.
+  double energy_error() const { return energy_error_; }
+
+  /// Whether bending is that of chains: the network has few nodes, and these few neighbours. A
+  /// single beam may then have a large part of the whole error's energy.
+  bool is_thin() const;
 
   /// By module.
   std::vector<Vec> displacement();
@@ -95,6 +104,7 @@ class Multigrid {
   std::function<void(int, double)> progress_;
   bool is_stale_ = true;  ///< Some facet changed since the last solve.
   double reference_ = 0;  ///< Square of the first error.
+  double energy_error_ = 0;
   int iteration_count_ = 0;
   int last_count_ = 0;
   int told_count_ = 0;

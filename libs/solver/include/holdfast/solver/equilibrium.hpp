@@ -65,7 +65,7 @@ struct EquilibriumOptions {
   /// For multigrid; 0: as many as the machine has cores. The result does not depend on it.
   int thread_count = 0;
   /// Of multigrid: the error in the energy norm, as a share of that of no displacements at all.
-  /// Load ratios are then within 1e-4 of the largest one (docs/solver.md).
+  /// Load ratios are then within 1e-4 of the largest one or of 1 (docs/solver.md).
   double tolerance = 1e-5;
   /// Of the direct solver: displacements in 106 bits, so that load ratios have twelve digits and
   /// more however slender or soft the robot is, and no weak springs beside the unilateral law where
@@ -120,6 +120,8 @@ struct Equilibrium {
   /// Open facets that are held sideways all the same, as they would close when released: no slip
   /// and no force at once is then impossible, and the truth lies between held and free.
   int open_but_held_count = 0;
+  /// Of multigrid: the error in the energy norm, (N mm)^(1/2), by its own estimate.
+  double energy_error = 0;
   int steps = 0;  ///< Linear systems solved.
   /// Columns of the factorization made for them: less than steps times the modules, as a change of
   /// some contact states leaves most of the factorization as it is.

@@ -8,14 +8,14 @@
 #include <optional>
 #include <vector>
 
-#include "holdfast/mechanics/connector.hpp"
+#include "holdfast/base/double_double.hpp"
 #include "holdfast/mechanics/ground_contact.hpp"
 #include "holdfast/model/robot.hpp"
 
 /// Load ratios by another way than the library's: Eqs. (1)-(13) assembled into a general sparse
-/// matrix, Eigen's SparseLU, and iterative refinement with displacements and residuals in long
-/// double (80 bits on x86). Only the formulas of one beam and one facet are the library's.
-namespace holdfast::bench {
+/// matrix, Eigen's SparseLU, and iterative refinement with coefficients, displacements and
+/// residuals of 106 bits. Only the formulas of one beam and one facet are the library's.
+namespace holdfast::test {
 
 class ExactLoads {
  public:
@@ -23,7 +23,10 @@ class ExactLoads {
       : robot_(robot),
         ground_(mechanics::ground_facet(model::beam_section(robot.material()),
                                         robot.material().facet_mm, robot.material().contact_gamma,
-                                        mechanics::ContactLaw::kRegularised)) {
+                                        mechanics::ContactLaw::kRegularised)),
+        precise_ground_(mechanics::ground_facet<Precise>(
+            precise_section(), robot.material().facet_mm, robot.material().contact_gamma,
+            mechanics::ContactLaw::kRegularised)) {
     node_.assign(robot.modules().size(), -1);
     for (std::size_t i = 0; i < node_.size(); ++i) {
       if (robot.modules()[i].support != model::Support::kFixed) {
@@ -51,14 +54,32 @@ class ExactLoads {
 
  private:
   using Matrix = Eigen::SparseMatrix<double>;
+  using Precise = base::DoubleDouble;
+
+  struct Entry {
+    int row = 0;
+    int column = 0;
+    Precise value;
+  };
+
+  mechanics::BeamSection<Precise> precise_section() const {
+    const auto section = model::beam_section(robot_.material());
+    return {.elastic_modulus = section.elastic_modulus,
+            .length = section.length,
+            .area = section.area,
+            .moment_x = section.moment_x,
+            .moment_y = section.moment_y,
+            .torsion = section.torsion};
+  }
 
   int index(std::size_t module, int component) const { return 6 * node_[module] + component; }
 
-  void add(std::size_t row, std::size_t column, const base::Mat6<double>& block) {
+  void add(std::size_t row, std::size_t column, const base::Mat6<Precise>& block) {
     for (int i = 0; node_[row] >= 0 && node_[column] >= 0 && i < 6; ++i) {
       for (int j = 0; j < 6; ++j) {
-        if (block.at(i, j) != 0) {
-          entries_.emplace_back(index(row, i), index(column, j), block.at(i, j));
+        const Precise value = block.at(i, j);
+        if (value.high != 0) {
+          entries_.push_back({index(row, i), index(column, j), value});
         }
       }
     }
@@ -66,7 +87,7 @@ class ExactLoads {
 
   void assemble() {
     entries_.clear();
-    const auto beam = mechanics::beam_stiffness(model::beam_section(robot_.material()));
+    const auto beam = mechanics::beam_stiffness(precise_section());
     for (const model::Connection& pair : robot_.connections()) {
       const auto a = static_cast<std::size_t>(pair.a);
       const auto b = static_cast<std::size_t>(pair.b);
@@ -78,24 +99,28 @@ class ExactLoads {
     }
     for (std::size_t i = 0; i < node_.size(); ++i) {
       if (robot_.modules()[i].support == model::Support::kGround) {
-        add(i, i, mechanics::contact_tangent(ground_, states_[i], true));
+        add(i, i, mechanics::contact_tangent(precise_ground_, states_[i], true));
       }
     }
+    std::vector<Eigen::Triplet<double>> rounded;
+    for (const Entry& entry : entries_) {
+      rounded.emplace_back(entry.row, entry.column, static_cast<double>(entry.value));
+    }
     matrix_.resize(6 * count_, 6 * count_);
-    matrix_.setFromTriplets(entries_.begin(), entries_.end());
+    matrix_.setFromTriplets(rounded.begin(), rounded.end());
   }
 
   void solve(Eigen::SparseLU<Matrix>& lu) {
     const auto n = static_cast<std::size_t>(6 * count_);
-    u_.assign(n, 0);
+    u_.assign(n, {});
     for (int step = 0; step < 12; ++step) {
-      std::vector<long double> r(n, 0);
+      std::vector<Precise> r(n);
       for (std::size_t i = 2; i < n; i += 6) {
-        r[i] = -static_cast<long double>(model::module_weight_n(robot_.material()));
+        r[i] = -model::module_weight_n(robot_.material());
       }
-      for (const auto& entry : entries_) {
-        r[static_cast<std::size_t>(entry.row())] -=
-            static_cast<long double>(entry.value()) * u_[static_cast<std::size_t>(entry.col())];
+      for (const Entry& entry : entries_) {
+        r[static_cast<std::size_t>(entry.row)] -=
+            entry.value * u_[static_cast<std::size_t>(entry.column)];
       }
       Eigen::VectorXd right(static_cast<Eigen::Index>(n));
       for (std::size_t i = 0; i < n; ++i) {
@@ -108,8 +133,15 @@ class ExactLoads {
     }
   }
 
-  long double u(std::size_t module, int component) const {
-    return node_[module] < 0 ? 0 : u_[static_cast<std::size_t>(index(module, component))];
+  Precise u(std::size_t module, std::size_t component) const {
+    return node_[module] < 0
+               ? Precise()
+               : u_[static_cast<std::size_t>(index(module, static_cast<int>(component)))];
+  }
+
+  long double difference(std::size_t module, std::size_t other, std::size_t component) const {
+    const Precise value = u(module, component) - u(other, component);
+    return static_cast<long double>(value.high) + value.low;
   }
 
   bool update_states() {
@@ -117,8 +149,8 @@ class ExactLoads {
     for (std::size_t i = 0; i < node_.size(); ++i) {
       if (robot_.modules()[i].support == model::Support::kGround) {
         base::Vec6<double> here;
-        for (int k = 0; k < 6; ++k) {
-          here[static_cast<std::size_t>(k)] = static_cast<double>(u(i, k));
+        for (std::size_t k = 0; k < 6; ++k) {
+          here[k] = static_cast<double>(u(i, k));
         }
         const auto state = mechanics::contact_state(ground_, mechanics::trial_force(ground_, here));
         is_changed = is_changed || !(state == states_[i]);
@@ -136,17 +168,16 @@ class ExactLoads {
     for (const model::Connection& pair : robot_.connections()) {
       const auto a = static_cast<std::size_t>(pair.a);
       const auto b = static_cast<std::size_t>(pair.b);
-      const int axis = base::index(pair.direction) / 2;
+      const auto axis = static_cast<std::size_t>(base::index(pair.direction)) / 2;
       const long double e_by_l = static_cast<long double>(section.elastic_modulus) / section.length;
-      const long double axial = e_by_l * section.area * (u(b, axis) - u(a, axis));
+      const long double axial = e_by_l * section.area * difference(b, a, axis);
       long double bending = 0;
-      for (int k = 0; k < 3; ++k) {
+      for (std::size_t k = 0; k < 3; ++k) {
         // Local y is horizontal on a lateral beam: bending about it is the one in a vertical plane.
-        const bool is_vertical = axis == 2;
-        const bool is_about_local_x = is_vertical ? k == 0 : k == 2;
+        const bool is_about_local_x = k == (axis == 2 ? 0 : 2);
         const double moment = is_about_local_x ? section.moment_y : section.moment_x;
         if (k != axis) {
-          bending = std::max(bending, std::abs(e_by_l * moment * (u(a, 3 + k) - u(b, 3 + k))));
+          bending = std::max(bending, std::abs(e_by_l * moment * difference(a, b, 3 + k)));
         }
       }
       const double strength =
@@ -158,12 +189,13 @@ class ExactLoads {
 
   const model::Robot& robot_;
   mechanics::GroundFacet<double> ground_;
+  mechanics::GroundFacet<Precise> precise_ground_;
   std::vector<int> node_;
   int count_ = 0;
   std::vector<mechanics::ContactState> states_;
-  std::vector<Eigen::Triplet<double>> entries_;
+  std::vector<Entry> entries_;
   Matrix matrix_;
-  std::vector<long double> u_;
+  std::vector<Precise> u_;
 };
 
-}  // namespace holdfast::bench
+}  // namespace holdfast::test
