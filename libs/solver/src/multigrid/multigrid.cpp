@@ -37,8 +37,8 @@ constexpr std::size_t kTrivialCount = 48;
 constexpr std::size_t kAloneMax = 128;
 constexpr std::size_t kAloneShare = 64;
 
-/// What counts as thin: plates one module thick and solids have four neighbours a node and more, but
-/// for their edges; full ladders have three.
+/// What counts as thin: plates one module thick and solids have four neighbours a node and more,
+/// but for their edges; full ladders have three.
 constexpr std::size_t kThinCountMax = 2000;
 constexpr double kThinDegree = 3.5;
 
