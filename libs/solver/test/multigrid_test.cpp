@@ -491,7 +491,7 @@ TEST(EquilibriumSolver, finds_digits_where_a_factorization_has_lost_them_all) {
   EXPECT_EQ(found.outcome, Outcome::kSettled);
   EXPECT_FALSE(found.displacement_low.empty());
   const double tension = clamped_tension_n(longest, kLongest);
-  EXPECT_NEAR(end_tension_n(longest, found), tension, 1e-6 * tension);
+  EXPECT_NEAR(end_tension_n(longest, found), tension, 1e-4 * tension);
 }
 
 }  // namespace
