@@ -116,6 +116,20 @@ export async function openExample(page, name) {
   await settled(page);
 }
 
+/** The colours of the pixels of a part of the window, row by row. */
+export async function pixels(page, { x, y, width, height }) {
+  const clip = { x: Math.round(x), y: Math.round(y), width, height };
+  const shot = (await page.screenshot({ clip })).toString('base64');
+  return page.evaluate(async ([base64, columns, rows]) => {
+    const bytes = Uint8Array.from(atob(base64), (letter) => letter.charCodeAt(0));
+    const bitmap = await createImageBitmap(new Blob([bytes]));
+    const context = new OffscreenCanvas(columns, rows).getContext('2d');
+    context.drawImage(bitmap, 0, 0);
+    const { data } = context.getImageData(0, 0, columns, rows);
+    return Array.from({ length: columns * rows }, (_, i) => [...data.slice(4 * i, 4 * i + 3)]);
+  }, [shot, width, height]);
+}
+
 /** The native program's reports of structure files. */
 export const nativeReports = (files) => [report(['check', '--json', '-', ...files])].flat();
 

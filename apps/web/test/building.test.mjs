@@ -141,7 +141,7 @@ test('free faces are tinted by what would come of a module there', async () => {
   await page.waitForFunction(() => /free places are safe/.test(document.getElementById('spoken').textContent));
   const known = await page.evaluate(() => {
     const { app } = globalThis.holdfast;
-    const at = (place) => app.places.known(place).verdict;
+    const at = (place) => app.places.known(place, 0).verdict;
     return { count: app.robot.freePlaces().length, beyondTip: at([7, 1, 2]), foot: at([0, 1, 0]) };
   });
   // 0 safe, 1 overload: (7,1,2) makes the free arm of test 4 five modules long, and its root then
