@@ -130,7 +130,7 @@ function makePanel(app: App, keeper: Keeper): void {
     app.setShowsFaces(isShown);
   };
   const name = byId<HTMLInputElement>('name');
-  name.onchange = () => {
+  name.oninput = () => {
     app.robot.name = name.value;
     app.robot.isEdited = true;
     showTitle(app);

@@ -27,24 +27,35 @@ const ARGUMENTS = [
   '--disable-sync',
 ];
 
-export const launch = () => chromium.launch({ executablePath: '/usr/bin/chromium', args: ARGUMENTS });
+export const launch = (...more) =>
+  chromium.launch({ executablePath: '/usr/bin/chromium', args: [...ARGUMENTS, ...more] });
 
-/**
- * A page that has opened its first structure. Whatever it asks for beyond its own file, and every
- * fault in it, is listed in `faults`.
- */
-export async function openPage(browser, { fragment = '', file = pageFile, ...options } = {}) {
-  if (!existsSync(file)) {
-    throw new Error(`${file} is not there: run ./dev page`);
-  }
-  const context = await browser.newContext({
+/** A browser of its own: nothing is kept in it yet. */
+export const newContext = (browser, options = {}) =>
+  browser.newContext({
     viewport: { width: 1000, height: 640 },
     reducedMotion: 'reduce',
     colorScheme: 'light',
     acceptDownloads: true,
     ...options,
   });
-  const page = await context.newPage();
+
+/**
+ * A page that has opened its first structure. Whatever it asks for beyond its own file, and every
+ * fault in it, is listed in `faults`.
+ */
+export async function openPage(browser, { fragment = '', file = pageFile, context, ...options } = {}) {
+  const page = await openUnsettled(browser, { fragment, file, context, ...options });
+  await settled(page);
+  return page;
+}
+
+/** The same where there may be no robot to wait for. */
+export async function openUnsettled(browser, { fragment = '', file = pageFile, context, ...options } = {}) {
+  if (!existsSync(file)) {
+    throw new Error(`${file} is not there: run ./dev page`);
+  }
+  const page = await (context ?? (await newContext(browser, options))).newPage();
   page.faults = [];
   page.on('pageerror', (error) => page.faults.push(error.message));
   page.on('console', (message) => {
@@ -59,7 +70,6 @@ export async function openPage(browser, { fragment = '', file = pageFile, ...opt
   });
   await page.goto(pathToFileURL(file).href + fragment);
   await page.waitForSelector('html.ready');
-  await settled(page);
   return page;
 }
 
@@ -129,6 +139,31 @@ export async function pixels(page, { x, y, width, height }) {
     return Array.from({ length: columns * rows }, (_, i) => [...data.slice(4 * i, 4 * i + 3)]);
   }, [shot, width, height]);
 }
+
+/** Moves the pointer over the middle of the canvas: time of each move, and how often it asks about cells. */
+export const pointerMoves = (page) =>
+  page.evaluate(() => {
+    const { app } = globalThis.holdfast;
+    const { robot, stage } = app;
+    const box = stage.canvas.getBoundingClientRect();
+    let calls = 0;
+    for (const name of ['cellAt', 'kindAt', 'slot', 'isHidden']) {
+      const own = robot[name].bind(robot);
+      robot[name] = (...values) => (++calls, own(...values));
+    }
+    const found = [];
+    const cells = new Set();
+    for (let i = 0; i < 80; ++i) {
+      calls = 0;
+      const clientX = box.left + box.width * (0.35 + (0.3 * ((i * 37) % 80)) / 80);
+      const clientY = box.top + box.height * (0.35 + (0.2 * i) / 80);
+      const begun = performance.now();
+      stage.canvas.dispatchEvent(new PointerEvent('pointermove', { clientX, clientY, pointerType: 'mouse' }));
+      found.push({ ms: performance.now() - begun, calls });
+      cells.add(String(app.pointedCell));
+    }
+    return { found, cells: cells.size };
+  });
 
 /** The native program's reports of structure files. */
 export const nativeReports = (files) => [report(['check', '--json', '-', ...files])].flat();

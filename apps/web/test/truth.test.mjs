@@ -74,14 +74,17 @@ test('the ghost says what the click gives, for every kind at every free place of
 test('the ghost under the pointer follows the kind that is chosen', async () => {
   const page = await openPage(browser);
   await openExample(page, 'crane_tips_a');
-  // A fixed module holds the crane: what topples with a planned module at its tip stands with a fixed one.
-  const places = await page.evaluate(async () => {
+  // A fixed module holds the crane: a place where a planned one topples it and a fixed one does not.
+  const place = await page.evaluate(async () => {
     const { app } = globalThis.holdfast;
     const all = app.robot.freePlaces();
-    await app.places.findAll(app.robot, all, 1, () => undefined);
-    return all.filter((place) => app.places.known(place, 1).verdict === 2);
+    const topples = [];
+    for (const kind of [1, 2]) {
+      await app.places.findAll(app.robot, all, kind, () => undefined);
+      topples.push(all.map((at) => app.places.known(at, kind).verdict === 2));
+    }
+    return all.find((_, i) => topples[0][i] && !topples[1][i]);
   });
-  const place = places.find(([x, y, z]) => z > 0 && x >= Math.max(...places.map(([other]) => other)) - 0 && y >= 0);
   const ghost = (kind) =>
     page.evaluate(async ([at, chosen]) => {
       const { app } = globalThis.holdfast;
@@ -210,7 +213,7 @@ const contrast = (a, b) => {
   return (high + 0.05) / (low + 0.05);
 };
 
-/** One face in sight for each verdict: the largest, by how far its corners are apart in the window. */
+/** One face in sight for each verdict: where the pointer points at its module and previews its place. */
 function visibleFaces() {
   const { app } = globalThis.holdfast;
   const { stage } = app;
@@ -224,15 +227,17 @@ function visibleFaces() {
       const place = cell.map((value, k) => value + side[k]);
       const verdict = app.places.known(place, 0)?.verdict ?? -1;
       const { x, y } = point(cell.map((value, k) => value + side[k] / 2));
-      const hit = app.pickAt(x + box.left, y + box.top);
-      const isSeen = verdict >= 0 && hit && String(hit.cell) === String(cell) && String(sides[hit.face]) === String(side);
-      // Faces to the front or the right, below which no label stands.
+      const at = { clientX: x + box.left, clientY: y + box.top, pointerType: 'mouse' };
+      stage.canvas.dispatchEvent(new PointerEvent('pointermove', at));
+      const isSeen = verdict >= 0 && String(app.pointedCell) === String(cell) && String(app.previewed[0]) === String(place);
+      // Faces to the front or the right, on which no label stands.
       if (isSeen && side[2] === 0) {
         const name = ['safe', 'overload', 'unstable', 'undecided'][verdict];
         best[name] ??= { cell, side };
       }
     }
   }
+  stage.canvas.dispatchEvent(new PointerEvent('pointerleave', { pointerType: 'mouse' }));
   return best;
 }
 
@@ -250,6 +255,7 @@ test('safe, breaking, toppling faces differ without colour, for every eye: 3 : 1
   await page.click('#faces');
   await page.waitForFunction(() => /free places are safe/.test(document.getElementById('spoken').textContent));
   const seen = await page.evaluate(visibleFaces);
+  assert.deepEqual(Object.keys(seen).sort(), ['overload', 'safe', 'unstable']);
   for (const type of ['none', 'deuteranopia', 'protanopia', 'tritanopia', 'achromatopsia']) {
     await debuggerOf.send('Emulation.setEmulatedVisionDeficiency', { type });
     const found = {};
