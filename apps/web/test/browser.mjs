@@ -140,6 +140,16 @@ export async function pixels(page, { x, y, width, height }) {
   }, [shot, width, height]);
 }
 
+/** Relative luminance and contrast as WCAG 2 defines them. */
+export const luminance = (rgb) => {
+  const [r, g, b] = rgb.map((value) => (value / 255 <= 0.04045 ? value / 255 / 12.92 : ((value / 255 + 0.055) / 1.055) ** 2.4));
+  return 0.2126 * r + 0.7152 * g + 0.0722 * b;
+};
+export const contrast = (a, b) => {
+  const [high, low] = [luminance(a), luminance(b)].sort((x, y) => y - x);
+  return (high + 0.05) / (low + 0.05);
+};
+
 /** Moves the pointer over the middle of the canvas: time of each move, and how often it asks about cells. */
 export const pointerMoves = (page) =>
   page.evaluate(() => {

@@ -31,6 +31,10 @@ for (const colorScheme of ['light', 'dark']) {
     test(`axe finds nothing to object to: ${name}, ${colorScheme}`, async () => {
       const page = await openPage(browser, { colorScheme, viewport });
       await expectAccessible(page, 'first sight');
+      await page.evaluate(() => globalThis.holdfast.app.use([globalThis.holdfast.app.robot.freePlaces()[0]]));
+      await page.click('#faces');
+      await expectAccessible(page, 'where next');
+      await page.waitForFunction(() => localStorage.length > 0);
       await page.click('summary');
       await page.click('#simulate');
       await page.waitForSelector('#player:not([hidden])');

@@ -9,7 +9,7 @@ import { readdirSync, writeFileSync } from 'node:fs';
 import path from 'node:path';
 import { after, before, test } from 'node:test';
 import {
-  count, dropFile, facePoint, launch, message, openExample, openPage, pixels, program, repository, scenario, settled,
+  contrast, count, dropFile, facePoint, launch, luminance, message, openExample, openPage, pixels, program, repository, scenario, settled,
   temporaryFolder, verdict,
 } from './browser.mjs';
 
@@ -196,6 +196,15 @@ test('another tool leaves the running computation alone, another robot ends it',
   assert.equal(await page.isVisible('#player'), false);
 });
 
+test('a message never lies over the answer', async () => {
+  const page = await openPage(browser);
+  await dropFile(page, 'empty.json', '');
+  await message(page);
+  const right = await page.locator('.message').evaluate((element) => element.getBoundingClientRect().right);
+  const left = await page.locator('#verdict').evaluate((element) => element.getBoundingClientRect().left);
+  assert.ok(right <= left, `${right} beside ${left}`);
+});
+
 test('an error is gone with the robot that it was about', async () => {
   const page = await openPage(browser);
   await dropFile(page, 'empty.json', '');
@@ -203,15 +212,6 @@ test('an error is gone with the robot that it was about', async () => {
   await openExample(page, 'arm_tips_a');
   assert.equal(await page.locator('.message.error').count(), 0);
 });
-
-const luminance = (rgb) => {
-  const [r, g, b] = rgb.map((value) => (value / 255 <= 0.04045 ? value / 255 / 12.92 : ((value / 255 + 0.055) / 1.055) ** 2.4));
-  return 0.2126 * r + 0.7152 * g + 0.0722 * b;
-};
-const contrast = (a, b) => {
-  const [high, low] = [luminance(a), luminance(b)].sort((x, y) => y - x);
-  return (high + 0.05) / (low + 0.05);
-};
 
 /** One face in sight for each verdict: where the pointer points at its module and previews its place. */
 function visibleFaces() {

@@ -9,7 +9,7 @@ import { moduleLoads } from '../view/robot_view';
 import type { App } from './app';
 import { byId, make } from './dom';
 import { openText, robotOf } from './files';
-import { nameOf, type Keeper } from './keeper';
+import { nameOf, whenOf, type Keeper } from './keeper';
 
 /** The gallery: a small picture of each example in the colours of its answer. */
 
@@ -48,8 +48,7 @@ function fill(app: App, dialog: HTMLDialogElement): void {
 /** Robots of this browser, newest first. */
 function showKept(dialog: HTMLDialogElement, keeper: Keeper): void {
   const cards = keeper.list().map((entry) => {
-    const when = new Date(entry.time).toLocaleString('en', { dateStyle: 'medium', timeStyle: 'short' });
-    const made = card(dialog, nameOf(entry), when, () => keeper.open(entry));
+    const made = card(dialog, nameOf(entry), whenOf(entry), () => keeper.open(entry));
     const robot = keeper.restore(entry);
     if (robot.count <= PICTURE_COUNT_MAX) {
       void judge(robot, made, true);

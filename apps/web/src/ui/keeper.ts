@@ -6,8 +6,9 @@ import type { App } from './app';
 import { addMessage, make, tell } from './dom';
 import { askedFor } from './start';
 
-/** So long after a change it is kept; at once when the page goes away. */
+/** So long after a change it is kept, and longer if it is large; at once when the page goes away. */
 const DELAY_MS = 300;
+const DELAY_PER_MODULE_MS = 0.03;
 
 /** Keeps every robot that is changed, and brings it back. */
 export class Keeper {
@@ -33,7 +34,8 @@ export class Keeper {
   changed(): void {
     this.pending = this.app.robot;
     clearTimeout(this.timer);
-    this.timer = window.setTimeout(() => this.flush(), DELAY_MS);
+    const delay = DELAY_MS + DELAY_PER_MODULE_MS * this.pending.count;
+    this.timer = window.setTimeout(() => this.flush(), delay);
   }
 
   /** The robot that was built last where nothing else is asked for. */
@@ -51,7 +53,7 @@ export class Keeper {
     const entry = this.kept?.last(originOf(askedFor()));
     if (entry) {
       const button = make('button', { type: 'button', textContent: 'Bring it back' });
-      const message = addMessage('You changed this structure here before.', false, button);
+      const message = addMessage(`You changed this structure here on ${whenOf(entry)}.`, false, button);
       button.onclick = () => {
         message.remove();
         this.open(entry);
@@ -97,3 +99,6 @@ export class Keeper {
 }
 
 export const nameOf = ({ name, modules }: KeptRobot) => name || `a structure of ${modules.length / 4} modules`;
+
+export const whenOf = ({ time }: KeptRobot) =>
+  new Date(time).toLocaleString('en', { dateStyle: 'medium', timeStyle: 'short' });

@@ -19,7 +19,12 @@ export interface Start {
   report?: string;
 }
 
-export const readStart = () => JSON.parse(byId('holdfast-start').textContent ?? 'null') as Start | null;
+let start: Start | null | undefined;
+
+export function readStart(): Start | null {
+  start ??= JSON.parse(byId('holdfast-start').textContent ?? 'null') as Start | null;
+  return start;
+}
 
 /** What the page is asked to show, whatever it is; '' if nothing. */
 export const askedFor = () => (isLink(location.hash) ? location.hash : (readStart()?.structure ?? ''));
@@ -32,12 +37,12 @@ export async function openFirst(app: App, keeper: Keeper): Promise<void> {
     tell(BROKEN_LINK, true);
     return false;
   });
-  const start = readStart();
+  const viewed = readStart();
   if (isLinkOpen) {
     keeper.offer();
-  } else if (start) {
-    await openText(app, encoded(start.structure), start.name);
-    showReport(start);
+  } else if (viewed) {
+    await openText(app, encoded(viewed.structure), viewed.name);
+    showReport(viewed);
     keeper.offer();
   } else if (isLinkOpen === false || !keeper.bringBack()) {
     await openText(app, encoded(FIRST_EXAMPLE.source()), FIRST_EXAMPLE.name);
@@ -54,16 +59,16 @@ function showReport({ report }: Start): void {
 
 /** Where no picture can be drawn the answer is still given, in words. */
 export async function showWithoutPicture(reason: string): Promise<void> {
-  const start = readStart();
-  document.querySelector('nav')!.hidden = true;
+  const viewed = readStart();
+  document.querySelectorAll<HTMLElement>('header nav, header label').forEach((part) => (part.hidden = true));
   const text = make('pre', { tabIndex: 0 }, '…');
   const note = make('p', { className: 'quiet' }, `This browser cannot draw the robot (${reason}); this is its report.`);
   document.querySelector('main')!.replaceWith(make('main', { id: 'words' }, note, text));
   try {
     const link = await readFragment(location.hash);
-    const source = link ? new TextDecoder().decode(link) : (start?.structure ?? FIRST_EXAMPLE.source());
-    const own = () => reportOf(source, link ? 'the link' : (start?.name ?? FIRST_EXAMPLE.name), Output.kReportText);
-    text.textContent = link ? await own() : (start?.report ?? (await own()));
+    const source = link ? new TextDecoder().decode(link) : (viewed?.structure ?? FIRST_EXAMPLE.source());
+    const own = () => reportOf(source, link ? 'the link' : (viewed?.name ?? FIRST_EXAMPLE.name), Output.kReportText);
+    text.textContent = link ? await own() : (viewed?.report ?? (await own()));
   } catch (error) {
     text.textContent = error instanceof Error ? error.message : String(error);
   }
