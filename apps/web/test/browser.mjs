@@ -105,6 +105,16 @@ export async function clickFace(page, cell, direction) {
   await settled(page);
 }
 
+/** Attaches one module at the first free place, as a click does. */
+export const attach = (page) =>
+  page.evaluate(() => globalThis.holdfast.app.use([globalThis.holdfast.app.robot.freePlaces()[0]]));
+
+/** A cube of n^3 modules, as a file. */
+export function cube(n) {
+  const modules = Array.from({ length: n ** 3 }, (_, i) => [i % n, Math.floor(i / n) % n, Math.floor(i / n / n)]);
+  return JSON.stringify({ format: 'holdfast-structure', version: 1, name: `cube_${n}`, modules });
+}
+
 export async function dropFile(page, name, text) {
   await page.evaluate(
     ([fileName, content]) => {

@@ -7,17 +7,13 @@ import assert from 'node:assert/strict';
 import { execFileSync } from 'node:child_process';
 import path from 'node:path';
 import { after, before, test } from 'node:test';
-import { count, launch, newContext, openExample, openPage, program, scenario, settled, temporaryFolder } from './browser.mjs';
+import {
+  attach, count, cube, dropFile, launch, newContext, openExample, openPage, program, scenario, settled, temporaryFolder,
+} from './browser.mjs';
 
 let browser;
 before(async () => (browser = await launch()));
 after(() => browser.close());
-
-/** Attaches one module at the first free place, as a click does. */
-const attach = (page) =>
-  page.evaluate(() => globalThis.holdfast.app.use([globalThis.holdfast.app.robot.freePlaces()[0]]));
-const nameOf = (page) => page.evaluate(() => globalThis.holdfast.app.robot.name);
-const messages = (page) => page.innerText('#messages');
 
 test('cells, name and material come back when the page is opened again', async () => {
   const context = await newContext(browser);
@@ -145,6 +141,36 @@ test('damaged entries are left alone', async () => {
   const again = await openPage(browser, { context });
   assert.equal(await nameOf(again), 'arm_breaks_b');
   assert.deepEqual(again.faults, []);
+  await context.close();
+});
+
+test('97,336 modules are kept as well', async () => {
+  const context = await newContext(browser);
+  const page = await openPage(browser, { context });
+  await dropFile(page, 'cube_46.json', cube(46));
+  await page.waitForFunction(() => globalThis.holdfast.app.robot.count === 46 ** 3, null, { timeout: 60_000 });
+  await settled(page);
+  await attach(page);
+  await page.close();
+  const again = await openPage(browser, { context });
+  assert.equal(await count(again), 46 ** 3 + 1);
+  assert.deepEqual(again.faults, []);
+  await context.close();
+});
+
+test('what is too large to be kept is said to be, and is asked about', async () => {
+  const context = await newContext(browser);
+  const page = await openPage(browser, { context });
+  await attach(page);
+  await page.fill('#name', 'small');
+  await dropFile(page, 'cube_3.json', cube(3) + ' '.repeat(5_000_000));
+  await page.waitForFunction(() => globalThis.holdfast.app.robot.count === 27);
+  await attach(page);
+  await page.waitForSelector('.message >> text=Too large to be kept');
+  const [dialog] = await Promise.all([page.waitForEvent('dialog'), page.close({ runBeforeUnload: true })]);
+  assert.equal(dialog.type(), 'beforeunload');
+  await dialog.accept();
+  assert.equal(await nameOf(await openPage(browser, { context })), 'small', 'and nothing was forgotten for it');
   await context.close();
 });
 

@@ -7,7 +7,7 @@ import { execFileSync } from 'node:child_process';
 import path from 'node:path';
 import { after, before, test } from 'node:test';
 import {
-  contrast, count, dropFile, facePoint, launch, openExample, openPage, openUnsettled, pixels, pointerMoves, program, scenario, settled, temporaryFolder,
+  attach, contrast, count, cube, dropFile, facePoint, launch, openExample, openPage, openUnsettled, pixels, pointerMoves, program, scenario, settled, temporaryFolder,
 } from './browser.mjs';
 
 const UP = [0, 0, 1];
@@ -15,9 +15,6 @@ const UP = [0, 0, 1];
 let browser;
 before(async () => (browser = await launch()));
 after(() => browser.close());
-
-const attach = (page) =>
-  page.evaluate(() => globalThis.holdfast.app.use([globalThis.holdfast.app.robot.freePlaces()[0]]));
 
 test('the numbers of what a finger has tapped stay', async () => {
   const page = await openPage(browser, { viewport: { width: 390, height: 780 }, hasTouch: true });
@@ -27,6 +24,15 @@ test('the numbers of what a finger has tapped stay', async () => {
   await page.touchscreen.tap(x, y);
   await page.waitForTimeout(200);
   assert.match(await page.textContent('#details'), /\(1,1,2\), existing.*to.*load/);
+  const finger = await page.context().newCDPSession(page);
+  const touch = (type, ...touchPoints) => finger.send('Input.dispatchTouchEvent', { type, touchPoints });
+  await touch('touchStart', { x: 60, y: 300 });
+  for (let dx = 10; dx <= 60; dx += 10) {
+    await touch('touchMove', { x: 60 + dx, y: 300 });
+  }
+  await touch('touchEnd');
+  assert.match(await page.textContent('#details'), /\(1,1,2\), existing/, 'turning the view leaves them');
+  await page.evaluate(() => globalThis.holdfast.app.see());
   await page.touchscreen.tap(20, 200);
   assert.match(await page.textContent('#details'), /Point at a module/);
 });
@@ -187,11 +193,6 @@ test('a core that has stopped is not used again', async () => {
   await page.waitForFunction(() => globalThis.holdfast.app.judge.core);
   assert.ok(await page.evaluate(() => globalThis.holdfast.app.judge.core !== globalThis.broken));
 });
-
-const cube = (n) => {
-  const modules = Array.from({ length: n ** 3 }, (_, i) => [i % n, Math.floor(i / n) % n, Math.floor(i / n / n)]);
-  return JSON.stringify({ format: 'holdfast-structure', version: 1, name: `cube_${n}`, modules });
-};
 
 async function openCube(page, n) {
   await dropFile(page, `cube_${n}.json`, cube(n));

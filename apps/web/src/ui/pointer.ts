@@ -33,7 +33,9 @@ export function listenToPointer(app: App): void {
     'pointerdown',
     (event) => {
       app.stopTopple();
-      app.moveCursor(undefined);
+      if (app.cursor) {
+        app.moveCursor(undefined);
+      }
       if (gesture || event.button !== 0) {
         clearTimeout(gesture?.timer);
         gesture = undefined;
