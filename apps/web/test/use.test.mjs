@@ -7,7 +7,8 @@ import { execFileSync } from 'node:child_process';
 import path from 'node:path';
 import { after, before, test } from 'node:test';
 import {
-  attach, contrast, count, cube, dropFile, facePoint, launch, openExample, openPage, openUnsettled, pixels, pointerMoves, program, scenario, settled, temporaryFolder,
+  attach, contrast, count, cube, dropFile, facePoint, launch, openExample, openPage, openUnsettled, pixels, pointerMoves,
+  program, scenario, settled, temporaryFolder,
 } from './browser.mjs';
 
 const UP = [0, 0, 1];
