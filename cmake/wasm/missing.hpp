@@ -135,6 +135,17 @@ constexpr auto adjacent_find(Range&& range, Compare compare = {}, Projection pro
                             holdfast_detail::by(compare, projection));
 }
 
+template <class RangeA, class RangeB, class Compare = std::equal_to<>,
+          class ProjectionA = holdfast_detail::Identity,
+          class ProjectionB = holdfast_detail::Identity>
+constexpr bool equal(RangeA&& a, RangeB&& b, Compare compare = {}, ProjectionA project_a = {},
+                     ProjectionB project_b = {}) {
+  return std::equal(
+      std::begin(a), std::end(a), std::begin(b), std::end(b), [&](const auto& x, const auto& y) {
+        return std::invoke(compare, std::invoke(project_a, x), std::invoke(project_b, y));
+      });
+}
+
 template <class Range, class Value, class Projection = holdfast_detail::Identity>
 constexpr auto count(Range&& range, const Value& value, Projection projection = {}) {
   return std::count_if(std::begin(range), std::end(range), [&](const auto& element) {

@@ -131,38 +131,49 @@ Reply check_request(const Request& request) {
   return assessment_reply(structure.robot, result.assessment, result.seconds);
 }
 
-/// The verdict with one more planned module; a place that topples needs no loads.
-verdict::Assessment try_place(const model::Robot& robot) {
+/// The answer that a click would get; a robot that topples needs no loads.
+verdict::Assessment try_robot(model::Robot robot) {
   verdict::Assessment look = first_look(robot);
-  return look.is_stable ? verdict::assess(robot) : look;
+  return look.is_stable ? check(structure_of(std::move(robot))).assessment : look;
 }
 
-/// Integers: the verdict of each place of the tail, -1 if no module can be there. Numbers: its
-/// largest load ratio (-1 if there is none) and its margin in mm (0 if it is fixed).
+/// With one more module of the Kind in options[0] at each place of the tail. Integers: the verdict,
+/// -1 if no module can be there. Numbers: the largest load ratio (-1 if there is none) and the
+/// margin in mm (0 if it is fixed).
 Reply try_places(const Request& request) {
   Reply out;
+  const auto kind = static_cast<Kind>(request.header.options[0]);
   const std::span places(reinterpret_cast<const base::Cell*>(request.tail.data()),
                          request.tail.size() / sizeof(base::Cell));
-  model::RobotSpec spec = spec_of(request);
+  const model::RobotSpec spec = spec_of(request);
   for (const base::Cell& place : places) {
-    spec.planned.push_back(place);
-    const auto robot = model::Robot::create(spec);
-    spec.planned.pop_back();
-    const verdict::Assessment assessment = robot ? try_place(robot.value()) : verdict::Assessment();
-    out.integers.push_back(robot ? static_cast<std::int32_t>(assessment.verdict) : -1);
+    model::RobotSpec grown = spec;
+    add(grown, {.cell = place, .kind = kind});
+    auto robot = model::Robot::create(grown);
+    const bool is_robot = robot.has_value();
+    const verdict::Assessment assessment =
+        is_robot ? try_robot(std::move(robot).value()) : verdict::Assessment();
+    out.integers.push_back(is_robot ? static_cast<std::int32_t>(assessment.verdict) : -1);
     out.numbers.push_back(assessment.load_ratio_max.value_or(-1));
     out.numbers.push_back(assessment.simplified.margin_mm.value_or(0));
   }
   return out;
 }
 
-/// Integers: x, y, z and Kind of each module. Numbers: the material.
+/// Integers: x, y, z and Kind of each module. Numbers: the material. Cells that are no robot yet
+/// can be opened and mended; cells that the page cannot hold as they are, two modules in one, get
+/// the program's error.
 Reply open_text(std::string_view text) {
   const auto read = io::read_document(text);
   if (!read) {
     return failure(read.error());
   }
   const io::Document& document = read.value().document;
+  if (has_double_cell(document)) {
+    const auto robot = io::make_robot(document);
+    HOLDFAST_CHECK(!robot);
+    return failure(robot.error());
+  }
   Reply out;
   out.text = dump({{"name", document.name},
                    {"description", document.description},

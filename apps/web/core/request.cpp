@@ -2,8 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "request.hpp"
 
+#include <algorithm>
 #include <cstring>
 #include <map>
+#include <vector>
 
 namespace holdfast::web {
 namespace {
@@ -76,12 +78,30 @@ model::RobotSpec spec_of(const Request& request) {
   model::RobotSpec spec{.support_z = request.header.support_z,
                         .material = material_of(request.header)};
   for (const PlacedModule& module : request.modules) {
-    (module.kind == Kind::kPlanned ? spec.planned : spec.existing).push_back(module.cell);
-    if (module.kind == Kind::kFixed) {
-      spec.fixed.push_back(module.cell);
-    }
+    add(spec, module);
   }
   return spec;
+}
+
+void add(model::RobotSpec& spec, const PlacedModule& module) {
+  (module.kind == Kind::kPlanned ? spec.planned : spec.existing).push_back(module.cell);
+  if (module.kind == Kind::kFixed) {
+    spec.fixed.push_back(module.cell);
+  }
+}
+
+bool has_double_cell(const io::Document& document) {
+  std::vector<base::Cell> cells;
+  for (const io::ModuleEntry& module : document.modules) {
+    cells.push_back(module.cell);
+  }
+  if (!document.steps.empty()) {
+    for (const io::PlannedEntry& planned : document.steps.front()) {
+      cells.push_back(planned.cell);
+    }
+  }
+  std::sort(cells.begin(), cells.end());
+  return std::adjacent_find(cells.begin(), cells.end()) != cells.end();
 }
 
 io::Document edited(const io::Document& base, const Request& request) {

@@ -47,6 +47,12 @@ std::array<double, kMaterialCount> numbers_of(const model::Material& material);
 /// What has to be known for mechanics; Robot::create checks it.
 model::RobotSpec spec_of(const Request& request);
 
+/// One more module, as spec_of() adds it: after the others of its kind.
+void add(model::RobotSpec& spec, const PlacedModule& module);
+
+/// Two modules of the robot or of the step that is planned first are in one cell.
+bool has_double_cell(const io::Document& document);
+
 /// The document that the page's modules are when everything else is as in `base`: what a file said
 /// about a module, its colour and attributes, stays with its cell.
 io::Document edited(const io::Document& base, const Request& request);

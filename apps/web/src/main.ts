@@ -2,27 +2,19 @@
 // SPDX-License-Identifier: Apache-2.0
 import './style.css';
 import { Kind } from './core/types';
-import { FIRST_EXAMPLE } from './model/examples';
 import { Robot } from './model/robot';
 import type { ScaleName } from './view/colours';
 import { App, KIND_NAMES, type Tool } from './ui/app';
-import { showLegend } from './ui/answer_panel';
-import { byId, icon, make, say, tell } from './ui/dom';
-import { listenToFiles, openFragment, openText, reportOf, take } from './ui/files';
+import { showFaceLegend, showLegend } from './ui/answer_panel';
+import { byId, icon, make, say } from './ui/dom';
+import { listenToFiles, reportOf, take } from './ui/files';
 import { openGallery } from './ui/gallery';
+import { Keeper } from './ui/keeper';
 import { KEYS, listenToKeys } from './ui/keyboard';
-import { showMaterial } from './ui/material';
+import { makeMaterial } from './ui/material';
 import { Player } from './ui/player';
 import { listenToPointer } from './ui/pointer';
-
-/** What holdfast view puts into the page. */
-interface Start {
-  /** The text of the structure's file. */
-  structure: string;
-  name: string;
-  /** The native report, for people, if the page is that of `holdfast check --html`. */
-  report?: string;
-}
+import { openFirst, showWithoutPicture } from './ui/start';
 
 declare global {
   /** A handle for the browser's console, and for the tests. */
@@ -91,7 +83,8 @@ function makeTools(app: App): void {
     byId<HTMLButtonElement>('undo').disabled = !app.history.canUndo;
     byId<HTMLButtonElement>('redo').disabled = !app.history.canRedo;
   };
-  app.listeners.push(show);
+  app.robotListeners.push(show);
+  app.toolListeners.push(show);
   show();
 }
 
@@ -118,8 +111,9 @@ function makeDialogs(): void {
   );
 }
 
-function makePanel(app: App): void {
+function makePanel(app: App, keeper: Keeper): void {
   showLegend('paper');
+  showFaceLegend('paper');
   const scale = byId<HTMLSelectElement>('scale');
   scale.onchange = () => app.setScale(scale.value as ScaleName);
   const slider = byId<HTMLInputElement>('exaggeration');
@@ -136,20 +130,25 @@ function makePanel(app: App): void {
     app.setShowsFaces(isShown);
   };
   const name = byId<HTMLInputElement>('name');
-  name.onchange = () => (app.robot.name = name.value);
-  let shown = app.robot;
-  showMaterial(app);
-  app.listeners.push(() => {
-    if (app.robot !== shown) {
-      shown = app.robot;
-      name.value = shown.name;
-      showMaterial(app);
+  name.oninput = () => {
+    app.robot.name = name.value;
+    app.robot.isEdited = true;
+    showTitle(app);
+    keeper.changed();
+  };
+  makeMaterial(app);
+  app.robotListeners.push((what) => {
+    if (what === 'robot') {
+      name.value = app.robot.name;
+      showTitle(app);
     }
     if (Number(slider.value) > 0) {
       app.straighten();
     }
   });
 }
+
+const showTitle = ({ robot }: App) => (document.title = robot.name ? `${robot.name} - holdfast` : 'holdfast');
 
 function makeActions(app: App, player: Player): Record<string, () => void> {
   const turn = (angle: number) => {
@@ -182,34 +181,20 @@ function makeActions(app: App, player: Player): Record<string, () => void> {
   };
 }
 
-async function openFirst(app: App): Promise<void> {
-  const start = JSON.parse(byId('holdfast-start').textContent ?? 'null') as Start | null;
-  const text = (source: string) => new TextEncoder().encode(source);
-  if (start) {
-    await openText(app, text(start.structure), start.name);
-    if (start.report !== undefined) {
-      byId('report-text').textContent = start.report;
-      byId('report-check').textContent = 'Written by holdfast check when this page was made.';
-      byId<HTMLDialogElement>('report').showModal();
-    }
-  } else if (!(await openFragment(app))) {
-    await openText(app, text(FIRST_EXAMPLE.source()), FIRST_EXAMPLE.name);
-  }
-}
-
 function begin(): void {
   const app = new App();
   const player = new Player(app);
   globalThis.holdfast = { app, player, reportOf };
+  const keeper = new Keeper(app);
   makeTools(app);
   makeDialogs();
-  makePanel(app);
+  makePanel(app, keeper);
   const actions = makeActions(app, player);
   listenToPointer(app);
   listenToKeys(app, actions);
   listenToFiles(app);
-  app.listeners.push(() => player.close());
-  app.listeners.push(() => (byId('hint').hidden ||= app.history.canUndo));
+  app.robotListeners.push(() => player.close());
+  app.robotListeners.push(() => (byId('hint').hidden ||= app.history.canUndo));
   for (const [id, name] of [['undo', 'undo'], ['redo', 'redo'], ['fit', 'fit']] as const) {
     byId(id).append(icon(name));
   }
@@ -217,7 +202,7 @@ function begin(): void {
   byId('redo').onclick = actions.redo;
   byId('fit').onclick = actions.h;
   byId('help').onclick = actions['?'];
-  byId('gallery-open').onclick = () => openGallery(app);
+  byId('gallery-open').onclick = () => openGallery(app, keeper);
   byId('new').onclick = () => app.history.replace('beginning anew', new Robot());
   byId('save').onclick = () => byId<HTMLDialogElement>('takeaway').showModal();
   for (const button of document.querySelectorAll<HTMLButtonElement>('[data-save]')) {
@@ -226,13 +211,10 @@ function begin(): void {
       void take(app, button.dataset.save!);
     };
   }
-  window.addEventListener('beforeunload', (event) => {
-    if (app.history.canUndo && app.history.isEdited) {
-      event.preventDefault();
-    }
-  });
-  void openFirst(app).then(() => document.documentElement.classList.add('ready'));
+  void openFirst(app, keeper).then(showReady);
 }
+
+const showReady = () => document.documentElement.classList.add('ready');
 
 // First the page is painted, then the canvas made, which takes longer; the core compiles meanwhile.
 requestAnimationFrame(() =>
@@ -241,7 +223,7 @@ requestAnimationFrame(() =>
       begin();
     } catch (error) {
       const reason = error instanceof Error ? error.message : String(error);
-      tell(`This browser cannot show the page: ${reason}`, true);
+      void showWithoutPicture(reason).then(showReady);
     }
   }),
 );

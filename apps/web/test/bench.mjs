@@ -5,7 +5,7 @@
 import { readFileSync, statSync } from 'node:fs';
 import { deflateRawSync } from 'node:zlib';
 import path from 'node:path';
-import { launch, openPage, pageFile, repository } from './browser.mjs';
+import { launch, openPage, pageFile, pointerMoves, repository } from './browser.mjs';
 
 const kilobytes = (bytes) => `${(bytes / 1000).toFixed(0)} kB`;
 const ms = (values) => {
@@ -111,6 +111,12 @@ for (const [name, cells] of Object.entries(EDITED)) {
   await load(name, modules);
   line(`edit, ${name}, ${modules.length} modules`, ms(await edits(16)));
 }
+
+await load('cube_97336', box([46, 46, 46]));
+const { found: moves } = await pointerMoves(page);
+line('a move of the pointer, cube_97336', ms(moves.map((move) => move.ms)));
+await page.close();
+page = await openPage(browser, small);
 
 for (const [name, size] of [['slab_50000', [200, 125, 2]], ['slab_100000', [250, 200, 2]], ['tower_100000', [20, 20, 250]]]) {
   const { shown, answered, verdict, problem } = await load(name, box(size));

@@ -27,24 +27,35 @@ const ARGUMENTS = [
   '--disable-sync',
 ];
 
-export const launch = () => chromium.launch({ executablePath: '/usr/bin/chromium', args: ARGUMENTS });
+export const launch = (...more) =>
+  chromium.launch({ executablePath: '/usr/bin/chromium', args: [...ARGUMENTS, ...more] });
 
-/**
- * A page that has opened its first structure. Whatever it asks for beyond its own file, and every
- * fault in it, is listed in `faults`.
- */
-export async function openPage(browser, { fragment = '', file = pageFile, ...options } = {}) {
-  if (!existsSync(file)) {
-    throw new Error(`${file} is not there: run ./dev page`);
-  }
-  const context = await browser.newContext({
+/** A browser of its own: nothing is kept in it yet. */
+export const newContext = (browser, options = {}) =>
+  browser.newContext({
     viewport: { width: 1000, height: 640 },
     reducedMotion: 'reduce',
     colorScheme: 'light',
     acceptDownloads: true,
     ...options,
   });
-  const page = await context.newPage();
+
+/**
+ * A page that has opened its first structure. Whatever it asks for beyond its own file, and every
+ * fault in it, is listed in `faults`.
+ */
+export async function openPage(browser, { fragment = '', file = pageFile, context, ...options } = {}) {
+  const page = await openUnsettled(browser, { fragment, file, context, ...options });
+  await settled(page);
+  return page;
+}
+
+/** The same where there may be no robot to wait for. */
+export async function openUnsettled(browser, { fragment = '', file = pageFile, context, ...options } = {}) {
+  if (!existsSync(file)) {
+    throw new Error(`${file} is not there: run ./dev page`);
+  }
+  const page = await (context ?? (await newContext(browser, options))).newPage();
   page.faults = [];
   page.on('pageerror', (error) => page.faults.push(error.message));
   page.on('console', (message) => {
@@ -59,7 +70,6 @@ export async function openPage(browser, { fragment = '', file = pageFile, ...opt
   });
   await page.goto(pathToFileURL(file).href + fragment);
   await page.waitForSelector('html.ready');
-  await settled(page);
   return page;
 }
 
@@ -95,6 +105,16 @@ export async function clickFace(page, cell, direction) {
   await settled(page);
 }
 
+/** Attaches one module at the first free place, as a click does. */
+export const attach = (page) =>
+  page.evaluate(() => globalThis.holdfast.app.use([globalThis.holdfast.app.robot.freePlaces()[0]]));
+
+/** A cube of n^3 modules, as a file. */
+export function cube(n) {
+  const modules = Array.from({ length: n ** 3 }, (_, i) => [i % n, Math.floor(i / n) % n, Math.floor(i / n / n)]);
+  return JSON.stringify({ format: 'holdfast-structure', version: 1, name: `cube_${n}`, modules });
+}
+
 export async function dropFile(page, name, text) {
   await page.evaluate(
     ([fileName, content]) => {
@@ -115,6 +135,55 @@ export async function openExample(page, name) {
   await page.waitForFunction((title) => globalThis.holdfast.app.robot.name === title, name);
   await settled(page);
 }
+
+/** The colours of the pixels of a part of the window, row by row. */
+export async function pixels(page, { x, y, width, height }) {
+  const clip = { x: Math.round(x), y: Math.round(y), width, height };
+  const shot = (await page.screenshot({ clip })).toString('base64');
+  return page.evaluate(async ([base64, columns, rows]) => {
+    const bytes = Uint8Array.from(atob(base64), (letter) => letter.charCodeAt(0));
+    const bitmap = await createImageBitmap(new Blob([bytes]));
+    const context = new OffscreenCanvas(columns, rows).getContext('2d');
+    context.drawImage(bitmap, 0, 0);
+    const { data } = context.getImageData(0, 0, columns, rows);
+    return Array.from({ length: columns * rows }, (_, i) => [...data.slice(4 * i, 4 * i + 3)]);
+  }, [shot, width, height]);
+}
+
+/** Relative luminance and contrast as WCAG 2 defines them. */
+export const luminance = (rgb) => {
+  const [r, g, b] = rgb.map((value) => (value / 255 <= 0.04045 ? value / 255 / 12.92 : ((value / 255 + 0.055) / 1.055) ** 2.4));
+  return 0.2126 * r + 0.7152 * g + 0.0722 * b;
+};
+export const contrast = (a, b) => {
+  const [high, low] = [luminance(a), luminance(b)].sort((x, y) => y - x);
+  return (high + 0.05) / (low + 0.05);
+};
+
+/** Moves the pointer over the middle of the canvas: time of each move, and how often it asks about cells. */
+export const pointerMoves = (page) =>
+  page.evaluate(() => {
+    const { app } = globalThis.holdfast;
+    const { robot, stage } = app;
+    const box = stage.canvas.getBoundingClientRect();
+    let calls = 0;
+    for (const name of ['cellAt', 'kindAt', 'slot', 'isHidden']) {
+      const own = robot[name].bind(robot);
+      robot[name] = (...values) => (++calls, own(...values));
+    }
+    const found = [];
+    const cells = new Set();
+    for (let i = 0; i < 80; ++i) {
+      calls = 0;
+      const clientX = box.left + box.width * (0.35 + (0.3 * ((i * 37) % 80)) / 80);
+      const clientY = box.top + box.height * (0.35 + (0.2 * i) / 80);
+      const begun = performance.now();
+      stage.canvas.dispatchEvent(new PointerEvent('pointermove', { clientX, clientY, pointerType: 'mouse' }));
+      found.push({ ms: performance.now() - begun, calls });
+      cells.add(String(app.pointedCell));
+    }
+    return { found, cells: cells.size };
+  });
 
 /** The native program's reports of structure files. */
 export const nativeReports = (files) => [report(['check', '--json', '-', ...files])].flat();

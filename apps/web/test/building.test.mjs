@@ -137,11 +137,12 @@ test('fingers build too: a tap attaches', async () => {
 test('free faces are tinted by what would come of a module there', async () => {
   const page = await openPage(browser);
   await openExample(page, 'arm_breaks_a');
+  await page.click('#kinds button >> text=Planned');
   await page.click('#faces');
   await page.waitForFunction(() => /free places are safe/.test(document.getElementById('spoken').textContent));
   const known = await page.evaluate(() => {
     const { app } = globalThis.holdfast;
-    const at = (place) => app.places.known(place).verdict;
+    const at = (place) => app.places.known(place, 1).verdict;
     return { count: app.robot.freePlaces().length, beyondTip: at([7, 1, 2]), foot: at([0, 1, 0]) };
   });
   // 0 safe, 1 overload: (7,1,2) makes the free arm of test 4 five modules long, and its root then

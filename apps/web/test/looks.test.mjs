@@ -8,7 +8,7 @@ import { readFileSync, readdirSync, writeFileSync } from 'node:fs';
 import { createRequire } from 'node:module';
 import path from 'node:path';
 import { after, before, test } from 'node:test';
-import { facePoint, launch, openExample, openPage, pageFile, repository, settled } from './browser.mjs';
+import { facePoint, launch, openExample, openPage, pageFile, pixels, repository, settled } from './browser.mjs';
 import { pictureFile, takePicture } from './screenshot.mjs';
 
 const axe = readFileSync(createRequire(import.meta.url).resolve('axe-core/axe.min.js'), 'utf8');
@@ -31,6 +31,10 @@ for (const colorScheme of ['light', 'dark']) {
     test(`axe finds nothing to object to: ${name}, ${colorScheme}`, async () => {
       const page = await openPage(browser, { colorScheme, viewport });
       await expectAccessible(page, 'first sight');
+      await page.evaluate(() => globalThis.holdfast.app.use([globalThis.holdfast.app.robot.freePlaces()[0]]));
+      await page.click('#faces');
+      await expectAccessible(page, 'where next');
+      await page.waitForFunction(() => localStorage.length > 0);
       await page.click('summary');
       await page.click('#simulate');
       await page.waitForSelector('#player:not([hidden])');
@@ -129,26 +133,15 @@ test('the README shows the page as it is', async () => {
   assert.ok(difference(now, shown) < TOLERANCE, 'node test/screenshot.mjs renews it');
 });
 
-/** The colour of a pixel of the window. */
-async function pixel(page, { x, y }) {
-  const shot = (await page.screenshot({ clip: { x: x - 1, y: y - 1, width: 3, height: 3 } })).toString('base64');
-  return page.evaluate(async (base64) => {
-    const bytes = Uint8Array.from(atob(base64), (letter) => letter.charCodeAt(0));
-    const bitmap = await createImageBitmap(new Blob([bytes]));
-    const context = new OffscreenCanvas(3, 3).getContext('2d');
-    context.drawImage(bitmap, 0, 0);
-    return [...context.getImageData(1, 1, 1, 1).data.slice(0, 3)];
-  }, shot);
-}
-
 test('modules have the colours of the paper, or of the scale for every eye', async () => {
   const page = await openPage(browser);
   const at = await facePoint(page, [6, 1, 2], [0, 0, 1]);
-  const [red, green, blue] = await pixel(page, at);
+  const pixelAt = async (point) => (await pixels(page, { ...point, width: 1, height: 1 }))[0];
+  const [red, green, blue] = await pixelAt(at);
   assert.ok(green > red + 20 && green > blue + 20, `nearly no load is green: ${[red, green, blue]}`);
   await page.selectOption('#scale', 'cividis');
   await settled(page);
-  const [r, g, b] = await pixel(page, at);
+  const [r, g, b] = await pixelAt(at);
   assert.ok(b > r + 20 && b > g, `and blue on the other scale: ${[r, g, b]}`);
 });
 

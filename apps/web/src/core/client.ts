@@ -4,6 +4,7 @@ import CORE from 'virtual:core';
 import {
   CoreError,
   type Answer,
+  type Kind,
   type OpenedDocument,
   type Output,
   type RobotData,
@@ -45,8 +46,8 @@ export class CoreClient {
     return this.call('check', [robot, firstLook]);
   }
 
-  tryPlaces(robot: RobotData, places: Int32Array): Promise<Trial[]> {
-    return this.call('tryPlaces', [robot, places]);
+  tryPlaces(robot: RobotData, places: Int32Array, kind: Kind): Promise<Trial[]> {
+    return this.call('tryPlaces', [robot, places, kind]);
   }
 
   write(robot: RobotData, output: Output, name: string, base: string): Promise<string> {
@@ -106,7 +107,8 @@ export class CoreClient {
   }
 }
 
-function explain(fault: string): string {
+/** In words for the user: why a core has stopped. */
+export function explain(fault: string): string {
   return /memory|unreachable|allocation/i.test(fault)
     ? 'too large for the memory that a page has; holdfast check may still answer'
     : fault;

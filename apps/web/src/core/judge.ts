@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: The holdfast authors
 // SPDX-License-Identifier: Apache-2.0
 import type { Robot } from '../model/robot';
-import { CoreClient, Cancelled, compiledCore } from './client';
-import type { Answer, RobotData } from './types';
+import { CoreClient, Cancelled, compiledCore, explain } from './client';
+import { CoreError, type Answer, type RobotData } from './types';
 import { Core } from './wasm';
 
 /** What is known of the robot on the page. `slots` as in Robot.toData(). */
@@ -22,6 +22,8 @@ const LARGE_COUNT = 1500;
 /** A computation that has run for longer makes way for a newer robot. */
 const PATIENCE_MS = 250;
 
+const STOPPED = 'stopped: the loads are not known';
+
 interface Task {
   data: RobotData;
   slots: Int32Array;
@@ -38,7 +40,7 @@ export class Judge {
   private begun = 0;
 
   constructor(private readonly found: (finding: Finding) => void) {
-    void compiledCore.then(Core.create).then((core) => (this.core = core));
+    this.startCore();
   }
 
   ask(robot: Robot): void {
@@ -61,45 +63,80 @@ export class Judge {
     this.client.cancel();
   }
 
+  /** Until it is there, the worker answers. */
+  private startCore(): void {
+    this.core = undefined;
+    void compiledCore.then(Core.create).then((core) => (this.core = core));
+  }
+
   private async run(): Promise<void> {
     this.isRunning = true;
-    while (this.next) {
-      const task: Task = this.next;
-      this.next = undefined;
-      await this.judge(task);
+    try {
+      while (this.next) {
+        const task: Task = this.next;
+        this.next = undefined;
+        await this.judge(task);
+      }
+    } finally {
+      this.isRunning = false;
     }
-    this.isRunning = false;
   }
 
   private judgeHere(core: Core, { data, slots }: Task): void {
+    this.tell({ ...this.answerHere(core, data), slots });
+  }
+
+  private answerHere(core: Core, data: RobotData): Omit<Finding, 'slots'> {
     try {
-      this.found({ answer: core.check(data, false), slots });
+      return { answer: core.check(data, false) };
     } catch (error) {
-      this.found({ problem: error instanceof Error ? error.message : String(error), slots });
+      const message = error instanceof Error ? error.message : String(error);
+      if (error instanceof CoreError) {
+        return { problem: message };
+      }
+      // It has stopped somewhere in the middle: its memory is not to be used again.
+      this.startCore();
+      return { problem: explain(message) };
     }
   }
 
   private async judge({ data, slots, version }: Task): Promise<void> {
     const tell = (finding: Omit<Finding, 'slots'>) => {
       if (version === this.version) {
-        this.found({ ...finding, slots });
+        this.tell({ ...finding, slots });
       }
     };
     this.begun = performance.now();
     let look: Answer | undefined;
-    try {
-      if (slots.length >= LARGE_COUNT) {
-        look = await this.client.check(data, true);
-        tell({ answer: look, isFirstLook: true });
+    if (slots.length >= LARGE_COUNT) {
+      const first = await this.answer(data, true);
+      look = first.answer;
+      if (!look) {
+        return tell(first);
       }
-      tell({ answer: await this.client.check(data) });
+      tell({ ...first, isFirstLook: true });
+    }
+    const finding = await this.answer(data, false);
+    tell(finding.problem === STOPPED && look ? { answer: { ...look, reasons: [STOPPED] } } : finding);
+  }
+
+  private async answer(data: RobotData, firstLook: boolean): Promise<Omit<Finding, 'slots'>> {
+    try {
+      return { answer: await this.client.check(data, firstLook) };
     } catch (error) {
       if (error instanceof Cancelled) {
-        const reasons = ['stopped: the loads are not known'];
-        tell(look ? { answer: { ...look, reasons } } : { problem: reasons[0] });
-      } else {
-        tell({ problem: error instanceof Error ? error.message : String(error) });
+        return { problem: STOPPED };
       }
+      return { problem: error instanceof Error ? error.message : String(error) };
+    }
+  }
+
+  /** A fault in what is drawn is no fault of the answer, and no reason to give no more answers. */
+  private tell(finding: Finding): void {
+    try {
+      this.found(finding);
+    } catch (error) {
+      reportError(error);
     }
   }
 }

@@ -2,18 +2,20 @@
 // SPDX-License-Identifier: Apache-2.0
 import { cellText, type Robot } from '../model/robot';
 import { CoreClient } from './client';
-import type { Cell, Trial } from './types';
+import type { Cell, Kind, Trial } from './types';
 
 /** About so long may a batch of places take. */
 const BATCH_MS = 40;
 /** Robots up to this size are tried at once where the pointer is. */
 export const TRIAL_COUNT_MAX = 1500;
 
-/** Where may the next module go? Tries free places in the background, batch by batch. */
+/** Where may the next module of a kind go? Tries free places in the background, batch by batch. */
 export class Places {
   private readonly client = new CoreClient();
   private trials = new Map<string, Trial>();
   private version = 0;
+  /** Of findAll(): the newest one goes on, others end. */
+  private searches = 0;
   private begun = 0;
 
   /** Forgets everything: the robot has changed. */
@@ -25,23 +27,25 @@ export class Places {
     }
   }
 
-  known(place: Cell): Trial | undefined {
-    return this.trials.get(cellText(place));
+  known(place: Cell, kind: Kind): Trial | undefined {
+    return this.trials.get(keyOf(place, kind));
   }
 
   /** The verdict at one place; undefined if the robot has changed meanwhile. */
-  async find(robot: Robot, place: Cell): Promise<Trial | undefined> {
-    const isCurrent = await this.batch(robot, [place]);
-    return isCurrent ? this.known(place) : undefined;
+  async find(robot: Robot, place: Cell, kind: Kind): Promise<Trial | undefined> {
+    const isCurrent = await this.batch(robot, [place], kind);
+    return isCurrent ? this.known(place, kind) : undefined;
   }
 
-  /** All places; `told` after each batch. False: the robot has changed meanwhile. */
-  async findAll(robot: Robot, places: readonly Cell[], told: (count: number) => void) {
-    const waiting = places.filter((place) => !this.known(place));
+  /** All places; `told` after each batch. False: the robot or the question has changed meanwhile. */
+  async findAll(robot: Robot, places: readonly Cell[], kind: Kind, told: (count: number) => void) {
+    const search = ++this.searches;
+    const waiting = places.filter((place) => !this.known(place, kind));
     let size = 4;
     for (let at = 0; at < waiting.length; ) {
       const begun = performance.now();
-      if (!(await this.batch(robot, waiting.slice(at, at + size)))) {
+      const isCurrent = await this.batch(robot, waiting.slice(at, at + size), kind);
+      if (!isCurrent || search !== this.searches) {
         return false;
       }
       at += size;
@@ -52,13 +56,14 @@ export class Places {
     return true;
   }
 
-  private async batch(robot: Robot, places: readonly Cell[]): Promise<boolean> {
+  private async batch(robot: Robot, places: readonly Cell[], kind: Kind): Promise<boolean> {
     const { version } = this;
     this.begun = performance.now();
     try {
-      const trials = await this.client.tryPlaces(robot.toData().data, Int32Array.from(places.flat()));
+      const cells = Int32Array.from(places.flat());
+      const trials = await this.client.tryPlaces(robot.toData().data, cells, kind);
       if (version === this.version) {
-        places.forEach((place, i) => this.trials.set(cellText(place), trials[i]));
+        places.forEach((place, i) => this.trials.set(keyOf(place, kind), trials[i]));
       }
     } catch {
       return false;
@@ -66,3 +71,5 @@ export class Places {
     return version === this.version;
   }
 }
+
+const keyOf = (place: Cell, kind: Kind) => `${kind} ${cellText(place)}`;

@@ -4,6 +4,7 @@ import {
   CoreError,
   type Answer,
   type Failure,
+  type Kind,
   type OpenedDocument,
   type Output,
   type RobotData,
@@ -116,10 +117,10 @@ export class Core {
     };
   }
 
-  /** What the verdict would be with one more planned module, for each place (x, y, z). */
-  tryPlaces(robot: RobotData, places: Int32Array): Trial[] {
+  /** What the verdict would be with one more module of a kind, for each place (x, y, z). */
+  tryPlaces(robot: RobotData, places: Int32Array, kind: Kind): Trial[] {
     const tail = new Uint8Array(places.buffer, places.byteOffset, places.byteLength);
-    const reply = this.call('try_places', request(robot, [], tail));
+    const reply = this.call('try_places', request(robot, [kind], tail));
     return Array.from(reply.integers, (verdict, i) => ({
       verdict,
       ratio: reply.numbers[2 * i],

@@ -1,13 +1,16 @@
 // SPDX-FileCopyrightText: The holdfast authors
 // SPDX-License-Identifier: Apache-2.0
 import type { Kind, Cell } from '../core/types';
-import { Robot, type CellChange } from './robot';
+import { Robot, type CellChange, type Settings } from './robot';
 
-/** What can be undone: changed cells, or another robot in place of this one. */
+/** What can be undone: changed cells, changed settings, or another robot in place of this one. */
 type Step = { label: string } & (
-  | { changes: CellChange[] }
-  | { before: Robot; after: Robot }
+  | { what: 'cells'; changes: CellChange[] }
+  | { what: 'settings'; before: Settings; after: Settings }
+  | { what: 'robot'; before: Robot; after: Robot }
 );
+
+export type Change = Step['what'];
 
 /** The robot on the page and everything that was done to it. Tells its listener of every change. */
 export class History {
@@ -16,7 +19,7 @@ export class History {
 
   constructor(
     public robot: Robot,
-    private readonly changed: (isAnother: boolean) => void,
+    private readonly changed: (what: Change) => void,
   ) {}
 
   /** Sets cells to a kind, or empties them; what is so already is left out. */
@@ -25,16 +28,24 @@ export class History {
       .map((cell) => ({ cell, before: this.robot.kind(cell), after }))
       .filter(({ before }) => before !== after);
     if (changes.length > 0) {
-      this.do({ label, changes });
+      this.do({ label, what: 'cells', changes });
     }
     return changes.length > 0;
   }
 
+  /** Gives the robot another material or another ground. */
+  configure(label: string, change: Partial<Settings>): void {
+    const { supportZ, material } = this.robot;
+    const before = { supportZ, material };
+    this.do({ label, what: 'settings', before, after: { ...before, ...change } });
+  }
+
   /** Puts another robot in place of this one; the empty page at the beginning is not kept. */
   replace(label: string, after: Robot): void {
-    const step = { label, before: this.robot, after };
+    const step: Step = { label, what: 'robot', before: this.robot, after };
     if (this.robot.count === 0 && !this.canUndo && !this.canRedo) {
       this.apply(step, true);
+      this.changed('robot');
     } else {
       this.do(step);
     }
@@ -42,21 +53,11 @@ export class History {
 
   /** The label of what was undone. */
   undo(): string | undefined {
-    const step = this.done.pop();
-    if (step) {
-      this.undone.push(step);
-      this.apply(step, false);
-    }
-    return step?.label;
+    return this.move(this.done, this.undone, false);
   }
 
   redo(): string | undefined {
-    const step = this.undone.pop();
-    if (step) {
-      this.done.push(step);
-      this.apply(step, true);
-    }
-    return step?.label;
+    return this.move(this.undone, this.done, true);
   }
 
   get canUndo(): boolean {
@@ -67,26 +68,51 @@ export class History {
     return this.undone.length > 0;
   }
 
-  /** Something was changed that no file holds: cells, not only another robot in place of this one. */
-  get isEdited(): boolean {
-    return this.done.some((step) => 'changes' in step);
+  private move(from: Step[], to: Step[], isForward: boolean): string | undefined {
+    const step = from.at(-1);
+    if (step) {
+      this.apply(step, isForward);
+      from.pop();
+      to.push(step);
+      this.changed(step.what);
+    }
+    return step?.label;
   }
 
+  /** What cannot be applied was never done: it throws, and nothing has changed. */
   private do(step: Step): void {
+    this.apply(step, true);
     this.done.push(step);
     this.undone = [];
-    this.apply(step, true);
+    this.changed(step.what);
   }
 
   private apply(step: Step, isForward: boolean): void {
-    const isAnother = 'before' in step;
-    if (isAnother) {
+    if (step.what === 'robot') {
       this.robot = isForward ? step.after : step.before;
-    } else {
-      for (const { cell, before, after } of step.changes) {
-        this.robot.set(cell, isForward ? after : before);
-      }
+      return;
     }
-    this.changed(isAnother);
+    if (step.what === 'settings') {
+      Object.assign(this.robot, isForward ? step.after : step.before);
+    } else {
+      this.setCells(step.changes, isForward);
+    }
+    this.robot.isEdited = true;
+  }
+
+  /** All cells or none. */
+  private setCells(changes: readonly CellChange[], isForward: boolean): void {
+    let count = 0;
+    try {
+      for (const { cell, before, after } of changes) {
+        this.robot.set(cell, isForward ? after : before);
+        ++count;
+      }
+    } catch (error) {
+      for (const { cell, before, after } of changes.slice(0, count).reverse()) {
+        this.robot.set(cell, isForward ? before : after);
+      }
+      throw error;
+    }
   }
 }

@@ -39,9 +39,11 @@ export async function linkFragment(json: string): Promise<string> {
   return PREFIX + btoa(text).replaceAll('+', '-').replaceAll('/', '_').replaceAll('=', '');
 }
 
+export const isLink = (fragment: string) => fragment.startsWith(PREFIX);
+
 /** The bytes of the structure; undefined if the fragment is none of ours. Throws if it is broken. */
 export async function readFragment(fragment: string): Promise<Uint8Array | undefined> {
-  if (!fragment.startsWith(PREFIX)) {
+  if (!isLink(fragment)) {
     return undefined;
   }
   const text = fragment.slice(PREFIX.length).replaceAll('-', '+').replaceAll('_', '/');

@@ -25,6 +25,30 @@ export const DIRECTIONS: readonly Cell[] = [
   [0, 0, -1],
 ];
 
+/** What a robot has beside its cells and its name, and what the answer depends on. */
+export interface Settings {
+  supportZ: number;
+  material: Float64Array;
+}
+
+/** Smallest and largest cell, coordinate by coordinate. */
+export interface Box {
+  low: [number, number, number];
+  high: [number, number, number];
+}
+
+const isAtBorder = ({ low, high }: Box, cell: Cell) =>
+  cell.some((value, k) => value === low[k] || value === high[k]);
+
+function widen({ low, high }: Box, cell: Cell): void {
+  for (let k = 0; k < 3; ++k) {
+    low[k] = Math.min(low[k], cell[k]);
+    high[k] = Math.max(high[k], cell[k]);
+  }
+}
+
+const randomId = () => Array.from(crypto.getRandomValues(new Uint32Array(3)), (value) => value.toString(36)).join('');
+
 export const plus = (a: Cell, b: Cell): Cell => [a[0] + b[0], a[1] + b[1], a[2] + b[2]];
 export const equal = (a: Cell, b: Cell) => a[0] === b[0] && a[1] === b[1] && a[2] === b[2];
 export const cellText = (cell: Cell) => `(${cell.join(',')})`;
@@ -45,6 +69,12 @@ export class Robot {
   /** x, y, z and kind of each slot. */
   private data = new Int32Array(64);
   private origin?: Cell;
+  /** Undefined if there is no module, or if it has to be found again. */
+  private box?: Box;
+  /** Under which it is kept in the browser. */
+  id = randomId();
+  /** Something of it is in no file and no link. */
+  isEdited = false;
   count = 0;
   name = '';
   supportZ = 0;
@@ -102,6 +132,9 @@ export class Robot {
     } else {
       this.slots.set(key, this.count);
       this.write(this.count++, cell, kind);
+      if (this.box) {
+        widen(this.box, cell);
+      }
     }
   }
 
@@ -141,20 +174,21 @@ export class Robot {
     return { data: { modules, supportZ: this.supportZ, material: this.material }, slots };
   }
 
-  /** Smallest and largest cell; undefined if there is none. */
-  bounds(): { low: Cell; high: Cell } | undefined {
-    if (this.count === 0) {
-      return undefined;
-    }
-    const low: [number, number, number] = [Infinity, Infinity, Infinity];
-    const high: [number, number, number] = [-Infinity, -Infinity, -Infinity];
-    for (let i = 0; i < 4 * this.count; ++i) {
-      if (i % 4 < 3) {
-        low[i % 4] = Math.min(low[i % 4], this.data[i]);
-        high[i % 4] = Math.max(high[i % 4], this.data[i]);
+  /** x, y, z and kind of each module, in the order of its slots. */
+  toModules(): Int32Array {
+    return this.data.slice(0, 4 * this.count);
+  }
+
+  /** Smallest and largest cell; undefined if there is none. Kept, and found again only after a removal there. */
+  bounds(): Readonly<Box> | undefined {
+    if (!this.box && this.count > 0) {
+      const first = this.cellAt(0);
+      this.box = { low: [...first], high: [...first] };
+      for (let slot = 1; slot < this.count; ++slot) {
+        widen(this.box, this.cellAt(slot));
       }
     }
-    return { low, high };
+    return this.box;
   }
 
   private key([x, y, z]: Cell): number | undefined {
@@ -172,6 +206,9 @@ export class Robot {
       return;
     }
     this.slots.delete(key);
+    if (this.box && isAtBorder(this.box, this.cellAt(slot))) {
+      this.box = undefined;
+    }
     const last = --this.count;
     if (slot !== last) {
       const cell = this.cellAt(last);

@@ -4,7 +4,7 @@ import type { Finding } from '../core/judge';
 import { LOAD_FIELDS, type Answer, type Cell } from '../core/types';
 import { DIRECTIONS, cellText, type Robot } from '../model/robot';
 import { Kind } from '../core/types';
-import { FIXED, UNKNOWN, UNSTABLE, brokenColour, css, loadColour, type ScaleName } from '../view/colours';
+import { FIXED, UNKNOWN, UNSTABLE, brokenColour, css, loadColour, type Rgb, type ScaleName } from '../view/colours';
 import { byId, make } from './dom';
 
 /** The answer in words and numbers, the legend, and what is under the pointer. */
@@ -127,6 +127,22 @@ export function showLegend(scale: ScaleName): void {
   byId('legend').replaceChildren(bar, ticks, list);
 }
 
+/** What free faces say, with the marks that the shader draws. */
+export function showFaceLegend(scale: ScaleName): void {
+  const entry = (mark: string, colour: Rgb, text: string) => {
+    const swatch = make('span', { className: `swatch mark ${mark}` });
+    swatch.style.backgroundColor = css(colour);
+    return make('li', {}, swatch, text);
+  };
+  byId('face-legend').replaceChildren(
+    make('li', {}, 'One more there:'),
+    entry('plain', loadColour(scale, 0), 'safe'),
+    entry('cross', brokenColour(scale), 'breaks'),
+    entry('rising', UNSTABLE, 'topples'),
+    entry('circle', UNKNOWN, 'not certain'),
+  );
+}
+
 const SIDES = ['+x', '−x', '+y', '−y', '+z', '−z'];
 const KINDS = ['existing', 'planned', 'fixed'];
 
@@ -169,16 +185,35 @@ export function showDetails(
   return title + worst;
 }
 
-function connectionRows({ answer, slots }: Finding, slot: number) {
-  const rows: { side: number; ratio: number; axial: number; bending: number }[] = [];
-  const { connections, loads } = answer!;
+/** The connection at each side of each slot, by index; -1: none. Made once for each answer. */
+const connectionsAt = new WeakMap<Answer, Int32Array>();
+
+function sidesOf({ slots }: Finding, answer: Answer): Int32Array {
+  const known = connectionsAt.get(answer);
+  if (known) {
+    return known;
+  }
+  const sides = new Int32Array(DIRECTIONS.length * slots.length).fill(-1);
+  const { connections } = answer;
   for (let i = 0; 3 * i < connections.length; ++i) {
-    const isFirst = slots[connections[3 * i]] === slot;
-    if (isFirst || slots[connections[3 * i + 1]] === slot) {
-      const direction = connections[3 * i + 2];
-      const [ratio, axial, bending] = loads.slice(LOAD_FIELDS * i, LOAD_FIELDS * i + 3);
-      rows.push({ side: isFirst ? direction : direction ^ 1, ratio, axial, bending });
+    const direction = connections[3 * i + 2];
+    sides[DIRECTIONS.length * slots[connections[3 * i]] + direction] = i;
+    sides[DIRECTIONS.length * slots[connections[3 * i + 1]] + (direction ^ 1)] = i;
+  }
+  connectionsAt.set(answer, sides);
+  return sides;
+}
+
+function connectionRows(finding: Finding, slot: number) {
+  const rows: { side: number; ratio: number; axial: number; bending: number }[] = [];
+  const answer = finding.answer!;
+  const sides = sidesOf(finding, answer);
+  for (let side = 0; side < DIRECTIONS.length; ++side) {
+    const i = sides[DIRECTIONS.length * slot + side];
+    if (i >= 0) {
+      const [ratio, axial, bending] = answer.loads.subarray(LOAD_FIELDS * i, LOAD_FIELDS * i + 3);
+      rows.push({ side, ratio, axial, bending });
     }
   }
-  return rows.sort((a, b) => a.side - b.side).slice(0, DIRECTIONS.length);
+  return rows;
 }

@@ -3,15 +3,17 @@
 import { Judge, type Finding } from '../core/judge';
 import { Places, TRIAL_COUNT_MAX } from '../core/places';
 import { Kind, LOAD_FIELDS, VERDICTS, type Cell, type Trial } from '../core/types';
-import { History } from '../model/history';
+import { History, type Change } from '../model/history';
 import { DIRECTIONS, PITCH_INDEX, Robot, plus } from '../model/robot';
 import { UNKNOWN, brokenColour, hex, loadColour, mix, verdictColour, type Rgb, type ScaleName } from '../view/colours';
 import { Ground } from '../view/ground';
 import { FaceCode, RobotView } from '../view/robot_view';
 import { Stage } from '../view/stage';
 import { Topple } from '../view/topple';
-import { connectionText, formatRatio, showDetails, showFinding, showLegend } from './answer_panel';
-import { byId, make, say } from './dom';
+import { connectionText, formatRatio, showDetails, showFaceLegend, showFinding, showLegend } from './answer_panel';
+import { byId, clearErrors, make, say } from './dom';
+
+const codeOf = ({ verdict }: Trial) => (verdict < 0 ? FaceCode.kNone : ((verdict + 1) as FaceCode));
 
 export type Tool = 'look' | 'add' | 'remove' | 'paint';
 
@@ -24,12 +26,18 @@ const LATE_MS = 80;
 /** No more modules than this in one row. */
 export const ROW_MAX = 100;
 
+/** In pixels of the canvas; where there is little room the tools stand below it. */
+function coveredByTools(): number {
+  const tools = byId('toolbar');
+  return getComputedStyle(tools).position === 'absolute' ? tools.offsetHeight : 0;
+}
+
 /** The page's state and what can be done to it. Everything that happens ends in changed(). */
 export class App {
-  readonly stage = new Stage(byId<HTMLCanvasElement>('canvas'), () => byId('toolbar').offsetHeight);
+  readonly stage = new Stage(byId<HTMLCanvasElement>('canvas'), coveredByTools);
   readonly view = new RobotView(this.stage);
   readonly ground = new Ground();
-  readonly history = new History(new Robot(), (isAnother) => this.changed(isAnother));
+  readonly history = new History(new Robot(), (what) => this.changed(what));
   readonly places = new Places();
   private readonly judge = new Judge((finding) => this.found(finding));
   finding?: Finding;
@@ -39,15 +47,16 @@ export class App {
   cursor?: Cell;
   private showsFaces = false;
   private wasUnstable = false;
-  private wasPointed = false;
   private previewed: readonly Cell[] = [];
   private isTrying = false;
   private lateShow = 0;
   private topple?: { motion: Topple; begun: number };
   private pointedCell?: Cell;
   private pointedSide?: number;
-  /** Called after every change of the robot or of the tool. */
-  listeners: (() => void)[] = [];
+  /** Called after every change of the robot. */
+  robotListeners: ((what: Change) => void)[] = [];
+  /** Called after every choice of a tool, or of what it attaches. */
+  toolListeners: (() => void)[] = [];
 
   constructor() {
     this.stage.scene.add(this.ground.group);
@@ -83,16 +92,21 @@ export class App {
   }
 
   setTool(tool: Tool, kind = this.kind): void {
+    const isOtherKind = kind !== this.kind;
     this.tool = tool;
     this.kind = kind;
-    this.listeners.forEach((listener) => listener());
+    this.preview(tool === 'add' ? this.previewed : []);
+    if (isOtherKind) {
+      void this.updateFaces();
+    }
+    this.toolListeners.forEach((listener) => listener());
   }
 
   setScale(scale: ScaleName): void {
     this.view.scale = scale;
     showLegend(scale);
+    showFaceLegend(scale);
     this.setTheme();
-    this.view.paint();
   }
 
   stop(): void {
@@ -175,10 +189,10 @@ export class App {
   }
 
   /** Everything is drawn anew for a changed robot. */
-  changed(isAnother: boolean): void {
+  private changed(what: Change): void {
     this.stopTopple();
     this.places.reset();
-    this.view.pointed.clear();
+    this.view.point([]);
     this.pointedCell = undefined;
     this.preview([]);
     this.finding = undefined;
@@ -189,10 +203,14 @@ export class App {
       this.lateShow = window.setTimeout(() => this.showRobot(), LATE_MS);
       this.judge.ask(this.robot);
     }
-    if (isAnother) {
+    if (what === 'robot') {
       this.see();
     }
-    this.listeners.forEach((listener) => listener());
+    // Before the first robot there was none that an error could be about.
+    if (what === 'robot' && (this.history.canUndo || this.history.canRedo)) {
+      clearErrors();
+    }
+    this.robotListeners.forEach((listener) => listener(what));
   }
 
   private found(finding: Finding): void {
@@ -225,6 +243,7 @@ export class App {
     const reach = Math.max(bounds.high[0] - bounds.low[0], bounds.high[1] - bounds.low[1]) + 10;
     this.ground.place(robot.supportZ - 0.5, middle, reach);
     this.ground.show(finding?.answer?.stability, robot.material[PITCH_INDEX], this.massHeight());
+    this.paintFaces();
     this.stage.draw();
   }
 
@@ -239,9 +258,11 @@ export class App {
 
   private showPreview(): void {
     const [place, ...others] = this.previewed;
-    const trial = place && others.length === 0 ? this.places.known(place) : undefined;
+    const { kind } = this;
+    const trial = place && others.length === 0 ? this.places.known(place, kind) : undefined;
     const isKnown = trial !== undefined && trial.verdict >= 0;
-    this.view.showGhosts(this.previewed, isKnown ? this.trialColour(trial) : UNKNOWN);
+    const code = isKnown && VERDICTS[trial.verdict] !== 'safe' ? codeOf(trial) : FaceCode.kNone;
+    this.view.showGhosts(this.previewed, kind, isKnown ? this.trialColour(trial) : UNKNOWN, code);
   }
 
   /** One place at a time, and always where the pointer is now. */
@@ -251,8 +272,8 @@ export class App {
     }
     this.isTrying = true;
     let isCurrent = true;
-    while (isCurrent && this.previewed.length === 1 && !this.places.known(this.previewed[0])) {
-      isCurrent = (await this.places.find(this.robot, this.previewed[0])) !== undefined;
+    while (isCurrent && this.previewed.length === 1 && !this.places.known(this.previewed[0], this.kind)) {
+      isCurrent = (await this.places.find(this.robot, this.previewed[0], this.kind)) !== undefined;
       this.showPreview();
     }
     this.isTrying = false;
@@ -261,42 +282,43 @@ export class App {
   private showPointed(): void {
     const { view, robot } = this;
     const slot = this.pointedCell && robot.slot(this.pointedCell);
-    view.pointed.clear();
-    if (slot !== undefined) {
-      view.pointed.add(slot);
-      if (this.pointedSide !== undefined) {
-        const other = robot.slot(plus(this.pointedCell!, DIRECTIONS[this.pointedSide]));
-        view.pointed.add(other ?? slot);
-      }
-    }
-    if (slot !== undefined || this.wasPointed) {
-      view.paint();
-    }
-    this.wasPointed = slot !== undefined;
+    const side = this.pointedSide === undefined ? undefined : DIRECTIONS[this.pointedSide];
+    const other = slot !== undefined && side ? robot.slot(plus(this.pointedCell!, side)) : undefined;
+    view.point([slot, other].filter((one) => one !== undefined));
     showDetails(robot, this.finding, this.pointedCell, this.pointedSide);
   }
 
+  private get knowsLoads(): boolean {
+    return this.finding?.answer !== undefined && !this.finding.isFirstLook;
+  }
+
+  /** Draws what is known of free faces. */
+  private paintFaces(): void {
+    const code = (place: Cell) => (this.knowsLoads ? this.faceCode(place) : FaceCode.kWaiting);
+    this.view.showFaces(this.showsFaces ? code : undefined);
+  }
+
+  /** Finds out what is not known of free faces. */
   private async updateFaces(): Promise<void> {
-    const { robot, view } = this;
+    const { robot, kind } = this;
     const button = byId('faces');
-    if (!this.showsFaces || !this.finding?.answer || this.finding.isFirstLook) {
-      view.showFaces(this.showsFaces ? () => FaceCode.kWaiting : undefined);
-      button.textContent = 'Where next?';
+    this.paintFaces();
+    button.textContent = 'Where next?';
+    byId('face-legend').hidden = !this.showsFaces;
+    if (!this.showsFaces || !this.knowsLoads) {
       return;
     }
     const places = robot.freePlaces();
-    const show = () => view.showFaces((place) => this.faceCode(place));
-    show();
-    const isDone = await this.places.findAll(robot, places, (count) => {
+    const isDone = await this.places.findAll(robot, places, kind, (count) => {
       if (this.showsFaces && this.robot === robot) {
         button.textContent = `${Math.round((100 * count) / places.length)} %`;
-        show();
+        this.paintFaces();
       }
     });
     if (isDone && this.showsFaces) {
       button.textContent = 'Where next?';
-      const safe = places.filter((place) => this.places.known(place)?.verdict === 0).length;
-      say(`${safe} of ${places.length} free places are safe`);
+      const safe = places.filter((place) => this.places.known(place, kind)?.verdict === 0).length;
+      say(`${safe} of ${places.length} free places are safe for one more ${KIND_NAMES[kind]} module`);
     }
   }
 
@@ -304,11 +326,11 @@ export class App {
     if (place[2] < this.robot.supportZ) {
       return FaceCode.kNone;
     }
-    const trial = this.places.known(place);
+    const trial = this.places.known(place, this.kind);
     if (!trial) {
       return FaceCode.kWaiting;
     }
-    return trial.verdict < 0 ? FaceCode.kNone : ((trial.verdict + 1) as FaceCode);
+    return codeOf(trial);
   }
 
   private trialColour(trial: Trial): Rgb {
@@ -319,7 +341,7 @@ export class App {
   }
 
   private trialText(cell: Cell): string {
-    const trial = this.robot.has(cell) ? undefined : this.places.known(cell);
+    const trial = this.robot.has(cell) ? undefined : this.places.known(cell, this.kind);
     return trial && trial.verdict >= 0 ? `, would be ${VERDICTS[trial.verdict]}` : '';
   }
 

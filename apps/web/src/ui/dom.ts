@@ -31,18 +31,31 @@ export function download(name: string, content: Blob): void {
 
 const SHOWN_MS = 7000;
 
-/** A message for a while; one that is an error stays until it is closed or another one comes. */
-export function tell(text: string, isError = false, shownMs = isError ? Infinity : SHOWN_MS): HTMLElement {
+/** A message below the others, until it is closed; `more` stands beside its text. */
+export function addMessage(text: string, isError = false, ...more: HTMLElement[]): HTMLElement {
   const close = make('button', { type: 'button', className: 'close', ariaLabel: 'Close' });
-  const message = make('div', { className: isError ? 'message error' : 'message' }, make('p', {}, text), close);
+  const className = isError ? 'message error' : 'message';
+  const message = make('div', { className }, make('p', {}, text), ...more, close);
   close.append(icon('close'));
   close.onclick = () => message.remove();
+  byId('messages').append(message);
+  return message;
+}
+
+/** A message for a while; one that is an error stays until it is closed or another one comes. */
+export function tell(text: string, isError = false, shownMs = isError ? Infinity : SHOWN_MS): HTMLElement {
   const messages = byId('messages');
-  messages.replaceChildren(...(isError ? [] : messages.querySelectorAll('.error')), message);
+  messages.replaceChildren(...(isError ? [] : messages.querySelectorAll('.error')));
+  const message = addMessage(text, isError);
   if (shownMs < Infinity) {
     setTimeout(() => message.remove(), shownMs);
   }
   return message;
+}
+
+/** Errors are about what was there before. */
+export function clearErrors(): void {
+  byId('messages').querySelectorAll('.error').forEach((message) => message.remove());
 }
 
 /** For who listens: the state of what the keyboard's cursor is on. */

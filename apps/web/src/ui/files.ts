@@ -70,18 +70,12 @@ export async function openFile(app: App, file: File): Promise<void> {
   }
 }
 
-/** The structure in the page's address, if there is one. */
-export async function openFragment(app: App): Promise<boolean> {
-  if (!location.hash) {
-    return false;
-  }
-  try {
-    const bytes = await readFragment(location.hash);
-    return bytes !== undefined && (await openText(app, bytes, 'the link'));
-  } catch {
-    tell('the link is broken: it may have been cut; nothing was opened', true);
-    return false;
-  }
+export const BROKEN_LINK = 'the link is broken: it may have been cut; nothing was opened';
+
+/** The structure in the page's address; undefined if there is none. Throws if it is broken. */
+export async function openFragment(app: App): Promise<boolean | undefined> {
+  const bytes = await readFragment(location.hash);
+  return bytes && openText(app, bytes, 'the link');
 }
 
 export function listenToFiles(app: App): void {
@@ -109,7 +103,7 @@ export function listenToFiles(app: App): void {
       void openFile(app, file);
     }
   });
-  window.addEventListener('hashchange', () => void openFragment(app));
+  window.addEventListener('hashchange', () => openFragment(app).catch(() => tell(BROKEN_LINK, true)));
 }
 
 function write(app: App, output: Output): Promise<string> {
@@ -166,10 +160,10 @@ async function copyLink(app: App): Promise<void> {
   }
 }
 
-/** The JSON report of a structure file, by the same calls as everything on the page. */
-export async function reportOf(source: string, name: string): Promise<string> {
+/** A report of a structure file, by the same calls as everything on the page. */
+export async function reportOf(source: string, name: string, output = Output.kReportJson): Promise<string> {
   const robot = robotOf(await client.open(new TextEncoder().encode(source)), source, name);
-  return client.write(robot.toData().data, Output.kReportJson, robot.name, source);
+  return client.write(robot.toData().data, output, robot.name, source);
 }
 
 async function showReport(app: App): Promise<void> {

@@ -9,58 +9,100 @@ import { moduleLoads } from '../view/robot_view';
 import type { App } from './app';
 import { byId, make } from './dom';
 import { openText, robotOf } from './files';
+import { nameOf, whenOf, type Keeper } from './keeper';
 
 /** The gallery: a small picture of each example in the colours of its answer. */
 
 const WIDTH = 132;
 const HEIGHT = 92;
+/** Larger robots have no picture: it would take seconds. */
+const PICTURE_COUNT_MAX = 2000;
 
 const client = new CoreClient();
 let isFilled = false;
 
-export function openGallery(app: App): void {
+export function openGallery(app: App, keeper: Keeper): void {
   const dialog = byId<HTMLDialogElement>('gallery');
   if (!isFilled) {
     isFilled = true;
     fill(app, dialog);
   }
+  showKept(dialog, keeper);
   dialog.showModal();
 }
 
 function fill(app: App, dialog: HTMLDialogElement): void {
   for (const group of GALLERY) {
-    const list = make('div', { className: 'cards' });
-    for (const example of group.examples) {
-      list.append(card(app, dialog, example));
-    }
-    byId('gallery-list').append(make('section', {}, make('h3', {}, group.title), list));
+    const cards = group.examples.map((example) => {
+      const open = () => void openText(app, new TextEncoder().encode(example.source()), example.name);
+      const title = example.title.length === 1 ? '' : example.title;
+      const made = card(dialog, title, example.text, open);
+      made.button.dataset.example = example.name;
+      void exampleRobot(example).then((robot) => judge(robot, made, !example.sketch));
+      return made.button;
+    });
+    byId('gallery-list').append(section(group.title, cards));
   }
 }
 
-function card(app: App, dialog: HTMLDialogElement, example: Example): HTMLButtonElement {
+/** Robots of this browser, newest first. */
+function showKept(dialog: HTMLDialogElement, keeper: Keeper): void {
+  const cards = keeper.list().map((entry) => {
+    const made = card(dialog, nameOf(entry), whenOf(entry), () => keeper.open(entry));
+    const robot = keeper.restore(entry);
+    if (robot.count <= PICTURE_COUNT_MAX) {
+      void judge(robot, made, true);
+    }
+    return made.button;
+  });
+  const place = byId('kept');
+  place.hidden = cards.length === 0;
+  const forget = make('button', { type: 'button', textContent: 'Forget these' });
+  forget.onclick = () => {
+    keeper.forgetAll();
+    showKept(dialog, keeper);
+  };
+  place.replaceChildren(...section('Built here, kept in this browser', cards).children, forget);
+}
+
+const section = (title: string, cards: HTMLElement[]) =>
+  make('section', {}, make('h3', {}, title), make('div', { className: 'cards' }, ...cards));
+
+interface Card {
+  button: HTMLButtonElement;
+  picture: HTMLCanvasElement;
+  verdict: HTMLElement;
+}
+
+function card(dialog: HTMLDialogElement, title: string, text: string, open: () => void): Card {
   const picture = make('canvas', { width: 2 * WIDTH, height: 2 * HEIGHT });
   const verdict = make('span', { className: 'card-verdict' });
-  const title = example.title.length === 1 ? [] : [make('span', { className: 'card-title' }, example.title)];
-  const button = make('button', { type: 'button', className: 'card' }, picture, verdict, ...title, example.text);
-  button.dataset.example = example.name;
+  const heading = title ? [make('span', { className: 'card-title' }, title)] : [];
+  const button = make('button', { type: 'button', className: 'card' }, picture, verdict, ...heading, text);
   button.onclick = () => {
     dialog.close();
-    void openText(app, new TextEncoder().encode(example.source()), example.name);
+    open();
   };
-  void judge(example, picture, verdict);
-  return button;
+  return { button, picture, verdict };
 }
 
-async function judge(example: Example, picture: HTMLCanvasElement, verdict: HTMLElement): Promise<void> {
+async function exampleRobot(example: Example): Promise<Robot> {
   const source = (example.sketch ?? example.source)();
-  const robot = robotOf(await client.open(new TextEncoder().encode(source)), source, '');
+  return robotOf(await client.open(new TextEncoder().encode(source)), source, '');
+}
+
+async function judge(robot: Robot, { picture, verdict }: Card, saysVerdict: boolean): Promise<void> {
   const { data, slots } = robot.toData();
-  const answer = await client.check(data);
-  if (!example.sketch) {
-    verdict.textContent = answer.verdict;
-    verdict.dataset.verdict = answer.verdict;
+  try {
+    const answer = await client.check(data);
+    if (saysVerdict) {
+      verdict.textContent = answer.verdict;
+      verdict.dataset.verdict = answer.verdict;
+    }
+    drawSmall(picture, robot, answer, slots);
+  } catch {
+    verdict.textContent = 'no answer';
   }
-  drawSmall(picture, robot, answer, slots);
 }
 
 /** An isometric picture, far modules first. */

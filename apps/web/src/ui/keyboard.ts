@@ -29,17 +29,25 @@ const ARROWS: Record<string, [right: number, away: number]> = {
   ArrowDown: [0, -1],
 };
 
+/** What takes letters, arrows or Enter for itself. */
+const CONTROLS = 'input, select, textarea';
+/** What has an undo of its own. */
+const TEXTS = 'input[type=text], textarea';
+
 export function listenToKeys(app: App, actions: Record<string, () => void>): void {
   window.addEventListener('keydown', (event) => {
+    // Wherever the focus is: behind a dialog nothing is meant.
+    if (document.querySelector('dialog[open]')) {
+      return;
+    }
     const target = event.target as HTMLElement;
-    const isTyping = target.matches('input, select, textarea, dialog *');
-    if ((event.ctrlKey || event.metaKey) && !isTyping && /^[zy]$/i.test(event.key)) {
+    if ((event.ctrlKey || event.metaKey) && !target.matches(TEXTS) && /^[zy]$/i.test(event.key)) {
       const isRedo = event.key.toLowerCase() === 'y' || event.shiftKey;
       actions[isRedo ? 'redo' : 'undo']();
       event.preventDefault();
       return;
     }
-    if (isTyping || event.ctrlKey || event.metaKey || event.altKey) {
+    if (target.matches(CONTROLS) || event.ctrlKey || event.metaKey || event.altKey) {
       return;
     }
     if (onStage(app, event) || letter(app, actions, event.key)) {

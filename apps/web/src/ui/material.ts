@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The holdfast authors
 // SPDX-License-Identifier: Apache-2.0
-import { Robot, TABLE_I } from '../model/robot';
+import { TABLE_I, type Settings } from '../model/robot';
 import type { App } from './app';
 import { byId, make, tell } from './dom';
 
@@ -21,39 +21,39 @@ const FIELDS: readonly [label: string, unit: string][] = [
   ['Contact gamma', ''],
 ];
 
-export function showMaterial(app: App): void {
-  const { robot } = app;
-  const rows = FIELDS.map(([label, unit], i) => {
-    const input = make('input', { type: 'text', inputMode: 'decimal', value: shown(robot.material[i]) });
-    input.onchange = () => change(app, input, (copy, value) => {
-      copy.material = copy.material.slice();
-      copy.material[i] = value;
-    });
+const LEVEL = FIELDS.length;
+
+/** Makes the form once; what it shows follows the robot, and the focus stays where it is. */
+export function makeMaterial(app: App): void {
+  const field = (label: string, unit: string, settings: (value: number) => Partial<Settings>) => {
+    const input = make('input', { type: 'text', inputMode: 'decimal' });
+    input.onchange = () => change(app, input.value, settings);
     return make('label', { className: 'row' }, label, make('span', { className: 'field' }, input, unit));
-  });
-  const level = make('input', { type: 'text', inputMode: 'numeric', value: String(robot.supportZ) });
-  level.onchange = () => change(app, level, (copy, value) => (copy.supportZ = Math.round(value)));
-  const reset = make('button', { type: 'button', textContent: 'Blinky Blocks (Table I)' });
-  reset.onclick = () => change(app, level, (copy) => (copy.material = TABLE_I));
-  byId('material').replaceChildren(
-    ...rows,
-    make('label', { className: 'row' }, 'Ground at z', make('span', { className: 'field' }, level)),
-    reset,
+  };
+  const rows = FIELDS.map(([label, unit], i) =>
+    field(label, unit, (value) => ({ material: app.robot.material.map((old, k) => (k === i ? value : old)) })),
   );
+  const level = field('Ground at z', '', (value) => ({ supportZ: Math.round(value) }));
+  const reset = make('button', { type: 'button', textContent: 'Blinky Blocks (Table I)' });
+  reset.onclick = () => app.history.configure('changing the material', { material: TABLE_I });
+  byId('material').replaceChildren(...rows, level, reset);
+  app.robotListeners.push((what) => what !== 'cells' && showMaterial(app));
+}
+
+function showMaterial({ robot }: App): void {
+  byId('material').querySelectorAll('input').forEach((input, i) => {
+    input.value = i === LEVEL ? String(robot.supportZ) : shown(robot.material[i]);
+  });
 }
 
 const shown = (value: number) => String(Number(value.toPrecision(8)));
 
-function change(app: App, input: HTMLInputElement, apply: (copy: Robot, value: number) => void): void {
-  const value = Number(input.value.trim().replace(',', '.'));
-  if (input.value.trim() === '' || !Number.isFinite(value)) {
-    tell(`“${input.value}” is no number`, true);
+function change(app: App, text: string, settings: (value: number) => Partial<Settings>): void {
+  const value = Number(text.trim().replace(',', '.'));
+  if (text.trim() === '' || !Number.isFinite(value)) {
+    tell(`“${text}” is no number`, true);
     showMaterial(app);
-    return;
+  } else {
+    app.history.configure('changing the material', settings(value));
   }
-  const { robot } = app;
-  const copy = Robot.from(robot.toData().data.modules);
-  Object.assign(copy, { name: robot.name, supportZ: robot.supportZ, material: robot.material, base: robot.base });
-  apply(copy, value);
-  app.history.replace('changing the material', copy);
 }

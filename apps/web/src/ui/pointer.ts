@@ -33,7 +33,9 @@ export function listenToPointer(app: App): void {
     'pointerdown',
     (event) => {
       app.stopTopple();
-      app.moveCursor(undefined);
+      if (app.cursor) {
+        app.moveCursor(undefined);
+      }
       if (gesture || event.button !== 0) {
         clearTimeout(gesture?.timer);
         gesture = undefined;
@@ -104,8 +106,9 @@ export function listenToPointer(app: App): void {
     app.preview([]);
   };
   canvas.addEventListener('pointercancel', forget);
-  canvas.addEventListener('pointerleave', () => {
-    if (!gesture) {
+  canvas.addEventListener('pointerleave', (event) => {
+    // A finger leaves with every tap: what it has pointed at stays until the next one.
+    if (!gesture && event.pointerType !== 'touch') {
       app.point(undefined);
       app.preview([]);
     }
@@ -162,7 +165,6 @@ function draw(app: App, gesture: Gesture, x: number, y: number): void {
   const hit = pick(app.robot, ray);
   if (hit && !hit.isGround && !gesture.cells.some((other) => String(other) === String(hit.cell))) {
     gesture.cells.push(hit.cell);
-    gesture.cells.forEach((one) => app.view.pointed.add(app.robot.slot(one)!));
-    app.view.paint();
+    app.view.point(gesture.cells.map((one) => app.robot.slot(one)!));
   }
 }

@@ -64,6 +64,22 @@ varying vec3 vNormal;
 flat varying float vPattern;
 flat varying float vCode;
 
+float stroke(float across, float width, float pixel) {
+  return 1.0 - smoothstep(width, width + pixel, abs(across));
+}
+
+// What a face says without its colour: a cross breaks, a stroke topples, a ring is not certain.
+float markOf(float code, vec2 uv, float pixel) {
+  vec2 at = uv - 0.5;
+  float isInside = 1.0 - smoothstep(0.27, 0.27 + pixel, max(abs(at.x), abs(at.y)));
+  float rising = stroke((at.x - at.y) * 0.7071, 0.055, pixel);
+  float falling = stroke((at.x + at.y) * 0.7071, 0.055, pixel);
+  if (code < 1.5 || code > 4.5) return 0.0;
+  if (code < 2.5) return isInside * max(rising, falling);
+  if (code < 3.5) return isInside * rising;
+  return stroke(length(at) - 0.2, 0.05, pixel);
+}
+
 bool has(float bit) { return mod(floor((vPattern + 0.5) / bit), 2.0) > 0.5; }
 
 void main() {
@@ -74,7 +90,7 @@ void main() {
   vec2 inner = min(vUv, 1.0 - vUv);
   float border = min(inner.x, inner.y);
   float pixel = max(fwidth(vUv.x), fwidth(vUv.y));
-  vec3 line = colour * 0.55;
+  vec3 rimColour = colour * 0.55;
   float width = has(1.0) ? 0.035 : 0.014;
   float along = inner.x < inner.y ? vUv.y : vUv.x;
   float wave = abs(fract(along * 5.0) - 0.5);
@@ -92,10 +108,12 @@ void main() {
     float inset = smoothstep(0.0, pixel, border - 0.13);
     vec3 code = codes[int(vCode + 0.5) - 1] * (0.35 + 0.65 * mix(light, 1.1, top));
     colour = mix(colour, code, inset);
+    float isDark = step(dot(code, vec3(0.2126, 0.7152, 0.0722)), 0.45);
+    colour = mix(colour, vec3(isDark), markOf(vCode, vUv, pixel));
   }
   float visible = clamp(1.5 * width / pixel, 0.25, 1.0);
   float edge = 1.0 - smoothstep(width, width + pixel, border);
-  colour = mix(colour, line, edge * dash * visible);
+  colour = mix(colour, rimColour, edge * dash * visible);
   if (has(8.0)) {
     float rim = 1.0 - smoothstep(0.06, 0.06 + pixel, border);
     colour = mix(mix(colour, vec3(1.0), 0.18), pointed, rim);
@@ -161,6 +179,13 @@ export class ModuleMesh {
     add('faces', this.faces, 1);
     this.mesh.geometry.dispose();
     this.mesh.geometry = geometry;
+  }
+
+  /** Says that an array has changed at one instance. */
+  updateAt(index: number, name: string): void {
+    const attribute = this.mesh.geometry.getAttribute(name) as InstancedBufferAttribute;
+    attribute.addUpdateRange(index * attribute.itemSize, attribute.itemSize);
+    attribute.needsUpdate = true;
   }
 
   /** Says which arrays have changed. */

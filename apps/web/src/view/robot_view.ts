@@ -62,13 +62,16 @@ export class RobotView {
   private readonly collar = new Mesh(collarGeometry(), new MeshBasicMaterial());
   /** Slots that are drawn; modules with six neighbours are not. */
   private drawn = new Int32Array(0);
+  /** Where in `drawn` each slot is; -1: nowhere. */
+  private instances = new Int32Array(0);
   private robot?: Robot;
   private judged?: Judged;
+  private loads?: ModuleLoads;
   private hasFaces = false;
   scale: ScaleName = 'paper';
   /** Colours of modules that have their own, by slot; the trace player's. */
   paintOver?: (slot: number) => Rgb | undefined;
-  pointed = new Set<number>();
+  private pointed: readonly number[] = [];
 
   constructor(private readonly stage: Stage) {
     this.cursor.renderOrder = 5;
@@ -84,6 +87,7 @@ export class RobotView {
   show(robot: Robot, judged: Judged | undefined): void {
     this.robot = robot;
     this.judged = judged;
+    this.loads = judged?.answer.has_loads ? moduleLoads(judged) : undefined;
     const drawn: number[] = [];
     for (let slot = 0; slot < robot.count; ++slot) {
       if (!robot.isHidden(slot)) {
@@ -91,6 +95,8 @@ export class RobotView {
       }
     }
     this.drawn = Int32Array.from(drawn);
+    this.instances = new Int32Array(robot.count).fill(-1);
+    drawn.forEach((slot, i) => (this.instances[slot] = i));
     this.modules.reserve(drawn.length);
     drawn.forEach((slot, i) => this.modules.places.set(robot.cellAt(slot), 3 * i));
     this.modules.faces.fill(0, 0, drawn.length);
@@ -103,11 +109,10 @@ export class RobotView {
 
   /** Colours and patterns of all modules. */
   paint(): void {
-    const { robot, judged } = this;
+    const { robot, judged, loads } = this;
     if (!robot) {
       return;
     }
-    const loads = judged?.answer.has_loads ? moduleLoads(judged) : undefined;
     const isUnstable = judged?.answer.verdict === 'unstable';
     this.drawn.forEach((slot, i) => {
       const kind = robot.kindAt(slot);
@@ -119,12 +124,29 @@ export class RobotView {
       this.modules.patterns[i] =
         (isPlanned ? Pattern.kPlanned : 0) +
         (kind === Kind.kFixed ? Pattern.kFixed : 0) +
-        (isBroken && !own ? Pattern.kBroken : 0) +
-        (this.pointed.has(slot) ? Pattern.kPointed : 0);
+        (isBroken && !own ? Pattern.kBroken : 0);
     });
+    this.pointed.forEach((slot) => this.mark(slot, Pattern.kPointed));
     this.modules.update(this.drawn.length, 'tint', 'pattern');
     this.collar.visible = this.worst !== undefined && !this.paintOver;
     this.stage.draw();
+  }
+
+  /** Rims around some modules, and around no others; costs what they are, not what the robot is. */
+  point(slots: readonly number[]): void {
+    const change = (slot: number, by: number) => {
+      this.mark(slot, by);
+      if (this.instances[slot] >= 0) {
+        this.modules.updateAt(this.instances[slot], 'pattern');
+      }
+    };
+    const isSame = slots.length === this.pointed.length && slots.every((slot, i) => slot === this.pointed[i]);
+    if (!isSame) {
+      this.pointed.forEach((slot) => change(slot, -Pattern.kPointed));
+      slots.forEach((slot) => change(slot, Pattern.kPointed));
+      this.pointed = [...slots];
+      this.stage.draw();
+    }
   }
 
   /** What would come of a module at each free place. */
@@ -150,15 +172,18 @@ export class RobotView {
     this.stage.draw();
   }
 
-  /** Modules that are about to be attached, in the colour of what comes of it. */
-  showGhosts(cells: readonly Cell[], colour: Rgb): void {
+  /** Modules that are about to be attached, in the colour of what comes of it; all faces have its mark. */
+  showGhosts(cells: readonly Cell[], kind: Kind, colour: Rgb, code: FaceCode): void {
+    const pattern = { [Kind.kExisting]: 0, [Kind.kPlanned]: Pattern.kPlanned, [Kind.kFixed]: Pattern.kFixed }[kind];
+    const packed = DIRECTIONS.reduce((sum, _, side) => sum + code * FACE_BASE ** side, 0);
     this.ghosts.reserve(cells.length);
     cells.forEach((cell, i) => {
       this.ghosts.places.set(cell, 3 * i);
       this.ghosts.tints.set(colour, 3 * i);
-      this.ghosts.patterns[i] = Pattern.kPlanned;
+      this.ghosts.patterns[i] = pattern;
+      this.ghosts.faces[i] = packed;
     });
-    this.ghosts.update(cells.length, 'place', 'tint', 'pattern');
+    this.ghosts.update(cells.length, 'place', 'tint', 'pattern', 'faces');
     this.stage.draw();
   }
 
@@ -202,6 +227,13 @@ export class RobotView {
   get worst(): number | undefined {
     const answer = this.judged?.answer;
     return answer && answer.verdict !== 'unstable' ? (answer.worst ?? undefined) : undefined;
+  }
+
+  private mark(slot: number, by: number): void {
+    const at = this.instances[slot] ?? -1;
+    if (at >= 0) {
+      this.modules.patterns[at] += by;
+    }
   }
 
   private colour(kind: Kind, ratio: number | undefined, isBroken: boolean, isUnstable: boolean): Rgb {

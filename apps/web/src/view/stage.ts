@@ -47,7 +47,7 @@ export class Stage {
     this.controls.zoomToCursor = true;
     this.controls.addEventListener('change', () => this.draw());
     this.scene.add(this.robot);
-    new ResizeObserver(() => this.resize()).observe(canvas.parentElement!);
+    new ResizeObserver(() => this.resize()).observe(canvas);
     this.resize();
   }
 
@@ -115,7 +115,7 @@ export class Stage {
   }
 
   private resize(): void {
-    const { clientWidth, clientHeight } = this.canvas.parentElement!;
+    const { clientWidth, clientHeight } = this.canvas;
     this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
     this.renderer.setSize(Math.max(clientWidth, 1), Math.max(clientHeight, 1), false);
     // The tools cover the lower part: the middle of the picture is the middle of the rest.
