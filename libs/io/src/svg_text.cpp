@@ -151,7 +151,9 @@ void Path::line_to(ScreenPoint point) {
 void Path::close() { text_ += 'z'; }
 
 Path& PathElements::next() {
-  constexpr std::size_t kPathBytesMax = std::size_t{1} << 20U;
+  // libxml2 counts its 10 million from where it last emptied its buffer, between elements and by
+  // chance: short ones leave it many.
+  constexpr std::size_t kPathBytesMax = std::size_t{1} << 15U;
   if (path_.text().size() > kPathBytesMax) {
     end_element();
   }

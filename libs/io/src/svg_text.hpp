@@ -59,7 +59,7 @@ class Path {
   std::int64_t y_ = 0;
 };
 
-/// One path in as many elements as it takes: readers refuse an attribute of 10 million bytes.
+/// One path in as many elements as it takes: readers refuse what is longer than 10 million bytes.
 class PathElements {
  public:
   /// `attributes` are those of every element, besides the data.
