@@ -18,6 +18,9 @@ constexpr int kGlassLightness = 34;
 /// Below this size the outlines of single modules would only darken the picture.
 constexpr double kInnerLinePxMin = 2.5;
 
+/// Below this size so would all outlines but those of the whole.
+constexpr double kOutlinePxMin = 1.5;
+
 struct Widths {
   double inner = 0;
   double outline = 0;
@@ -155,8 +158,10 @@ std::string fill_of(const Scene& scene, const VisibleSurface& surface, bool is_p
 std::string lines(const Scene& scene, const std::vector<VisibleEdge>& edges, bool is_outline,
                   bool is_planned, std::string attributes) {
   PathElements paths(std::move(attributes));
+  const bool has_all = scene.projection.edge_px >= kOutlinePxMin;
   for (const VisibleEdge& edge : edges) {
-    if (edge.is_outline == is_outline && edge.is_planned == is_planned) {
+    if (edge.is_outline == is_outline && edge.is_planned == is_planned &&
+        (has_all || edge.far_side == 0)) {
       Path& path = paths.next();
       path.move_to(scene.projection.at(edge.from));
       path.line_to(scene.projection.at(edge.to));

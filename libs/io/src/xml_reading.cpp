@@ -237,10 +237,10 @@ void XmlReading::take_back_shift(const pugi::xml_node& own) {
   if (!own.attribute(kShift)) {
     return;
   }
-  const auto [x, y, z] = triple(own, kShift, {0, base::kCoordinateMax});
-  shift_ = {x, y, z};
+  const std::array<std::int32_t, 3> by = triple(own, kShift, {0, base::kCoordinateMax});
+  shift_ = {by[0], by[1], by[2]};
   const auto move = [&](base::Cell& cell) {
-    cell = {cell.x - x, cell.y - y, cell.z - z};
+    cell = {cell.x - shift_.x, cell.y - shift_.y, cell.z - shift_.z};
     if (!kCoordinateRange.contains(std::min({cell.x, cell.y, cell.z}))) {
       fail(own,
            fmt::format("without the shift a cell is ({},{},{}), allowed are coordinates from "
@@ -248,7 +248,7 @@ void XmlReading::take_back_shift(const pugi::xml_node& own) {
                        cell.x, cell.y, cell.z, kCoordinateRange.lowest, kCoordinateRange.highest));
     }
   };
-  base::Cell support = {x, y, document.support_z};
+  base::Cell support = {shift_.x, shift_.y, document.support_z};
   move(support);
   document.support_z = support.z;
   std::ranges::for_each(document.modules, move, &ModuleEntry::cell);

@@ -33,7 +33,7 @@ class Number {
 
   void shift(int bits) {
     for (; bits >= 32; bits -= 32) {
-      std::ranges::rotate(words_, words_.end() - 1);
+      std::rotate(words_.begin(), words_.end() - 1, words_.end());
       words_[0] = 0;
     }
     *this = times(std::uint32_t{1} << static_cast<unsigned>(bits));

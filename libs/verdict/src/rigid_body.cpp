@@ -35,9 +35,9 @@ std::vector<Point> convex_hull(std::vector<Point> points, const Measure& measure
     return x != 0 ? x : measure.sign(a.y - b.y);
   };
   std::ranges::sort(points, [&](const Point& a, const Point& b) { return compare(a, b) < 0; });
-  const auto twins = std::ranges::unique(
-      points, [&](const Point& a, const Point& b) { return compare(a, b) == 0; });
-  points.erase(twins.begin(), twins.end());
+  points.erase(std::unique(points.begin(), points.end(),
+                           [&](const Point& a, const Point& b) { return compare(a, b) == 0; }),
+               points.end());
   std::vector<Point> hull;
   for (int pass = 0; pass < 2; ++pass) {
     const std::size_t start = hull.size();
