@@ -192,6 +192,177 @@ expect_line out '1 safe, 1 overload, 0 unstable, 0 undecided, 1 not readable'
 expect_exit 65 check "$safe" --json /nowhere/report.json
 expect_line err 'cannot be written'
 
+# Names that look like known ones are errors in both formats, and the known name is said; notes go
+# to standard error with several files and with --quiet, too.
+json '"modules": [[0,0,0],[0,0,1]], "planed": [[0,0,2]]' >slip.json
+expect_refusal "/planed: the key 'planed' is unknown: did you mean 'planned'\?" slip.json
+json '"modules": [[0,0,0]], "materal": {"mass_kg": 5}' >slip.json
+expect_refusal "did you mean 'material'\?" slip.json
+json '"modules": [{"cell": [0,0,0], "fixd": true}]' >slip.json
+expect_refusal "/modules/0/fixd: .*did you mean 'fixed'\?" slip.json
+json '"modules": [[0,0,0]], "material": {"mass": 5}' >slip.json
+expect_refusal "did you mean 'mass_kg'\?" slip.json
+xml() { printf '<parameters %s/><world gridSize="2,2,2">%s</world>' "$1" "$2"; }
+xml 'globalmass="0.1"' '<blockList><block position="0,0,0"/></blockList>' >slip.xml
+expect_refusal "'globalmass' is unknown: did you mean 'globalMass'\?" slip.xml
+xml '' '<blockList><block position="0,0,0" fixd="true"/></blockList>' >slip.xml
+expect_refusal "'fixd' is unknown: did you mean 'fixed'\?" slip.xml
+xml '' '<blockList><block position="0,0,0"/></blockList><targetlist/>' >slip.xml
+expect_refusal "did you mean 'targetList'\?" slip.xml
+json '"modules": [[0,0,0]], "colour_scheme": 3' >noted.json
+xml '' '<blockList><block position="0,0,0" isWall="true"/></blockList>' >noted.xml
+expect_exit 0 check --quiet noted.json noted.xml
+expect_line err "^holdfast: noted.json: note: /colour_scheme: .*is unknown and ignored$"
+expect_line err "^holdfast: noted.xml: note: .*'isWall' is unknown and kept$"
+expect_exit 65 check slip.xml "$safe"
+expect_exit 0 simulate --quiet noted.json
+expect_line err "note: .*'colour_scheme'"
+expect_exit 0 convert noted.json noted_again.xml
+expect_line err "note: .*'colour_scheme'"
+
+# No output overwrites an input or another output, however they are spelt.
+cp "$safe" in.json
+cp "$safe" kept.json
+ln -s in.json link.json
+ln in.json hard.json
+for other in in.json ./in.json "$work/in.json" link.json hard.json; do
+  expect_exit 64 check in.json --json "$other"
+  expect_line err 'would overwrite the input'
+  expect_exit 64 check "$other" --svg in.json
+done
+expect_exit 64 convert in.json in.json
+expect_exit 64 simulate in.json --story link.json
+expect_exit 64 view in.json --no-open --out ./in.json
+expect_exit 64 emulate in.json --json in.json
+code=0
+"$program" check - --json in.json <in.json >out 2>err || code=$?
+[ "$code" -eq 64 ] || fault "standard input is overwritten: exit $code"
+expect_exit 64 check "$safe" --json twice --svg ./twice
+expect_line err '--json twice and --svg ./twice are one file'
+expect_exit 64 simulate "$safe" --json - --story -
+code=0
+"$program" check "$safe" --json shared.txt >shared.txt 2>err || code=$?
+[ "$code" -eq 64 ] || fault "standard output and --json share a file: exit $code"
+cmp -s in.json kept.json || fault "an input has changed"
+expect_exit 0 check "$safe" --json /dev/null --svg /dev/null
+
+# A full disk and a closed output are errors of every command.
+for arguments in "check $safe" "check $safe --json -" "simulate $safe --link unit" \
+  "simulate $safe --link unit --story -" "generate cube 3" "generate cube 30" "--help"; do
+  for closed in '>/dev/full' '>&-'; do
+    code=0
+    eval "\"$program\" $arguments $closed 2>err" || code=$?
+    [ "$code" -eq 65 ] ||
+      fault "exit $code with $closed: $arguments: $(cat err)"
+    expect_line err 'cannot be written'
+  done
+done
+for arguments in "check $safe --json" "check $safe --svg" "check $safe --vtk" \
+  "convert $safe" "simulate $safe --link unit --trace" "simulate $safe --link unit --story" \
+  "generate cube 3 -o"; do
+  case $arguments in
+    convert*) ln -sf /dev/full full.json && full=full.json ;;
+    *) full=/dev/full ;;
+  esac
+  # shellcheck disable=SC2086
+  expect_exit 65 $arguments "$full"
+  expect_line err 'cannot be written: No space left on device'
+done
+expect_exit 0 check --quiet "$safe" --json /dev/stdout
+expect_line out '"verdict": "safe"'
+code=0
+"$program" check --quiet "$safe" >&- 2>err || code=$?
+[ "$code" -eq 0 ] || fault "exit $code though nothing was to be written"
+
+# What is replaced keeps its rights and its links; nothing is left behind, a signal included.
+mkdir tidy
+echo old >tidy/report.json
+chmod 600 tidy/report.json
+ln -s report.json tidy/link.json
+echo precious >victim
+ln -s ../victim tidy/report.json.part
+expect_exit 0 check "$safe" --json tidy/link.json
+[ -L tidy/link.json ] || fault "a link was replaced"
+grep -q '"verdict": "safe"' tidy/report.json || fault "what the link leads to was not replaced"
+[ "$(stat -c %a tidy/report.json)" = 600 ] || fault "rights: $(stat -c %a tidy/report.json)"
+[ "$(cat victim)" = precious ] || fault "a link beside the output was followed"
+[ "$(find tidy | wc -l)" -eq 4 ] || fault "left behind: $(find tidy)"
+"$program" generate cube 12 -o slow.json
+for signal in TERM INT HUP; do
+  python3 - "$program" "$signal" <<'PYTHON' || fault "SIG$signal: $(find tidy)"
+import os, signal, subprocess, sys, time
+program, name = sys.argv[1:]
+process = subprocess.Popen([program, 'simulate', 'slow.json', '--story', 'tidy/story.txt'],
+                           stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+def unfinished():
+    return [file for file in os.listdir('tidy') if file.startswith('.holdfast-')]
+while not unfinished() and process.poll() is None:
+    time.sleep(0.01)
+assert unfinished()
+process.send_signal(getattr(signal, 'SIG' + name))
+assert process.wait() == -getattr(signal, 'SIG' + name)
+assert not unfinished() and not os.path.exists('tidy/story.txt')
+PYTHON
+done
+
+# Cells below 0 are moved for VisibleSim, which is said, and come back.
+json '"modules": [[-3,-2,-1],[-3,-2,0]], "planned": [[-4,-2,0]], "support_z": -1' >below.json
+expect_exit 0 convert below.json below.xml
+expect_line err 'moved by \(4,2,1\)'
+expect_line below.xml 'position="1,0,0"'
+grep -q 'position="[^"]*-' below.xml && fault "a negative cell: $(cat below.xml)"
+expect_exit 0 convert below.xml below_again.json
+expect_exit 0 convert below.json below_direct.json
+cmp -s below_again.json below_direct.json || fault "a moved structure does not come back"
+json '"modules": [[-1000000,0,0],[1,0,0]]' >wide.json
+expect_exit 65 convert wide.json wide.xml
+expect_line err "VisibleSim's grid, which goes from 0 to 1000000"
+
+# Sizes and streams that are none.
+expect_exit 64 generate cube -5
+expect_line err "'-5'|-5"
+expect_exit 64 generate cube 100000
+expect_refusal 'zero byte' /dev/zero
+json '"name": "two\\nlines", "modules": [[0,0,0]]' >lines.json
+expect_exit 0 check lines.json --svg lines.svg
+expect_line out '^SAFE +two\\nlines$'
+cp lines.json "$(printf 'a\nb.json')"
+expect_exit 0 check "$safe" "$(printf 'a\nb.json')"
+[ "$(wc -l <out)" -eq 3 ] || fault "a name of two lines: $(cat out)"
+expect_exit 65 check "$(printf 'c\nd.json')"
+[ "$(wc -l <err)" -eq 1 ] || fault "a name of two lines: $(cat err)"
+
+# Little memory: an answer, or one clear line and 70; never an abort. Sanitizers need all there is.
+"$program" generate cube 60 -o big.json
+if (ulimit -v 400000 && "$program" --version) >/dev/null 2>&1; then
+  for limit in 30000 45000 60000 80000 100000 130000 170000 220000 300000 400000; do
+    for arguments in "check big.json --threads 4" "convert big.json small.xml" \
+      "generate cube 100"; do
+      code=0
+      # shellcheck disable=SC2086
+      (ulimit -v "$limit" && exec "$program" $arguments) >out 2>err || code=$?
+      case $code in
+        0 | 2) ;;
+        70) expect_line err '^holdfast: out of memory: ' ;;
+        127) ;;  # Not even the program's own libraries fit.
+        *) fault "exit $code with $limit KiB: $arguments: $(head -c 300 err)" ;;
+      esac
+    done
+  done
+else
+  echo 'not checked: little memory, as this build needs more address space than a limit leaves'
+fi
+
+# Loads that are rounding are not told as loads; a load below 1 does not read as 1.
+expect_exit 0 generate tower 200 -o tower.json
+expect_exit 0 check tower.json
+expect_line out 'no connection is known to be pulled apart'
+grep -q 'breaks at' out && fault "a weight that breaks nothing: $(cat out)"
+json '"modules": [[0,0,0],[0,0,1],[1,0,1]], "material": {"facet_mm": 50}' >facet.json
+code=0
+"$program" check --quiet facet.json 2>err || code=$?
+expect_line err 'note: facets of 50 mm are wider than the pitch of 40 mm'
+
 # The page: without a built one the error says how to get it; with one the structure is in it.
 mkdir bin
 cp "$program" bin/holdfast
@@ -218,6 +389,10 @@ expect_line page.html '<title>&lt;/script>&lt;b> - holdfast</title>'
 expect_exit 1 check "$overload" --html page.html
 expect_line page.html 'carries 1\.2004 of its strength'
 expect_exit 64 check "$safe" "$overload" --html page.html
+expect_exit 0 view "$safe" --out -
+expect_line out '<title>arm_breaks_a - holdfast</title>'
+[ "$(head -n 1 out)" != "-" ] || fault "the page's name stands before it"
+[ ! -e ./- ] || fault "a file called -"
 expect_exit 65 view missing.json --no-open
 expect_exit 65 view "$safe" --no-open --out /nowhere/page.html
 

@@ -9,6 +9,7 @@
 #include <memory>
 
 #include "commands.hpp"
+#include "file_clash.hpp"
 #include "page.hpp"
 
 namespace holdfast::cli {
@@ -58,7 +59,7 @@ class CheckRun {
   bool shows_text() const { return !options_.is_quiet && options_.json != "-"; }
 
   void check_file(const std::string& file) {
-    const auto structure = load_file(file);
+    const auto structure = load_with_notes(file);
     if (!structure) {
       report_error(structure.error(), file);
       return;
@@ -85,19 +86,19 @@ class CheckRun {
   void show(const Structure& structure, const CheckResult& result, const std::string& file) const {
     const verdict::Assessment& assessment = result.assessment;
     if (!is_many()) {
-      fmt::print("{} {}\n{}", banner(assessment.verdict), structure.name,
+      fmt::print("{} {}\n{}", banner(assessment.verdict), io::one_line(structure.name),
                  report_text(structure, result));
       return;
     }
     const std::string ratio = !assessment.load_ratio_max ? "-"
                               : assessment.is_stable
-                                  ? fmt::format("{:.4f} ", *assessment.load_ratio_max)
+                                  ? verdict::beside_one(*assessment.load_ratio_max, 4) + " "
                                   : fmt::format("({:.4f})", *assessment.load_ratio_max);
     const std::string margin = assessment.simplified.margin_mm
                                    ? fmt::format("{:9.2f} mm", *assessment.simplified.margin_mm)
                                    : "       fixed";
     fmt::print("{}  load ratio {:>9}  margin {}  {}\n", banner(assessment.verdict), ratio, margin,
-               file);
+               io::one_line(file));
   }
 
   void report_error(const base::Error& error, const std::string& file) {
@@ -115,8 +116,8 @@ class CheckRun {
   void write_page(const Structure& structure, const CheckResult& result) {
     const auto page = find_page();
     const std::string report =
-        fmt::format("{}: {}\n{}", structure.name, verdict::name(result.assessment.verdict),
-                    report_text(structure, result));
+        fmt::format("{}: {}\n{}", io::one_line(structure.name),
+                    verdict::name(result.assessment.verdict), report_text(structure, result));
     const auto filled =
         page ? fill_page(page.value(), structure, report) : base::Result<std::string>(page.error());
     if (!filled) {
@@ -133,11 +134,7 @@ class CheckRun {
       text += (i > 0 ? ",\n" : "") + reports_[i];
     }
     text += is_many() ? "\n]\n" : "\n";
-    if (options_.json == "-") {
-      fmt::print("{}", text);
-    } else {
-      write(options_.json, text);
-    }
+    write(options_.json, text);
   }
 
   void show_progress(std::size_t done) {
@@ -160,7 +157,7 @@ class CheckRun {
         if (Clock::now() - shown_ >= kProgressInterval) {
           shown_ = Clock::now();
           fmt::print(stderr, "holdfast: {}: {} modules, iteration {}, error {:.1e} of the first\n",
-                     file, structure.robot.modules().size(), iteration, error);
+                     io::one_line(file), structure.robot.modules().size(), iteration, error);
         }
       };
     }
@@ -190,6 +187,12 @@ int run(const Options& options) {
       !(options.svg.empty() && options.vtk.empty() && options.html.empty())) {
     fmt::print(stderr, "holdfast: --svg, --vtk and --html show one structure, {} files are given\n",
                options.files.size());
+    return kExitUsage;
+  }
+  if (complain_of_clash(options.files, {{"--json", options.json},
+                                        {"--svg", options.svg},
+                                        {"--vtk", options.vtk},
+                                        {"--html", options.html}})) {
     return kExitUsage;
   }
   return CheckRun(options).run();
@@ -222,7 +225,8 @@ Command add_check(CLI::App& app) {
       ->capture_default_str();
   command->footer(
       "Verdicts: safe, overload (a connection breaks), unstable (topples), undecided.\n"
-      "Exit: 0 all safe, 1 any unsafe, 2 any undecided, 64 wrong usage, 65 bad input.");
+      "Exit: 0 all safe, 1 any unsafe, 2 any undecided, 64 wrong usage, 65 bad input\n"
+      "or not writable, 70 out of memory. Notes of the reader always go to standard error.");
   return {command, [options] { return run(*options); }};
 }
 

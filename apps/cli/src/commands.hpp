@@ -6,6 +6,7 @@
 
 #include <CLI/CLI.hpp>
 #include <functional>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -15,12 +16,13 @@
 /// that returns the exit code.
 namespace holdfast::cli {
 
-// Exit codes; 64 and 65 are those of sysexits.h.
+// Exit codes; from 64 on those of sysexits.h.
 inline constexpr int kExitSafe = 0;
 inline constexpr int kExitUnsafe = 1;
 inline constexpr int kExitUndecided = 2;
 inline constexpr int kExitUsage = 64;
 inline constexpr int kExitBadInput = 65;
+inline constexpr int kExitFailure = 70;  ///< Out of memory, or a fault of the program.
 
 struct Command {
   CLI::App* app = nullptr;
@@ -52,7 +54,24 @@ inline void print_error(const base::Error& error, const std::string& file) {
   fmt::print(stderr, "holdfast: {}\n", describe(error, file));
 }
 
-/// False, and the error is printed, if the file cannot be written.
+/// What a reader noticed. Goes to standard error whatever is asked for: a silent note is a lost
+/// one.
+inline void print_notes(std::span<const std::string> notes, const std::string& file) {
+  for (const std::string& note : notes) {
+    fmt::print(stderr, "holdfast: {}: note: {}\n", io::one_line(file), note);
+  }
+}
+
+/// Reads a structure and prints its notes.
+inline base::Result<Structure> load_with_notes(const std::string& file) {
+  auto structure = load_file(file);
+  if (structure) {
+    print_notes(structure.value().warnings, file);
+  }
+  return structure;
+}
+
+/// False, and the error is printed, if the file cannot be written. "-" is standard output.
 inline bool write_or_complain(const std::string& path, std::string_view text) {
   const auto error = write_file(path, text);
   if (error) {

@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "commands.hpp"
+#include "file_clash.hpp"
 
 namespace holdfast::cli {
 namespace {
@@ -19,6 +20,23 @@ int fail(const base::Error& error, const std::string& file) {
   return kExitBadInput;
 }
 
+/// False, and an error, if VisibleSim has no grid for these cells.
+bool note_shift(const io::Document& document, const Options& options) {
+  const auto shift = io::visiblesim_shift(document);
+  if (!shift) {
+    print_error(shift.error(), options.from);
+    return false;
+  }
+  if (shift.value() != base::Cell{}) {
+    const std::string note = fmt::format(
+        "all cells and the support level are moved by {}, as VisibleSim knows none below 0; "
+        "holdfast takes it back when it reads the file, scenery and targets are not moved",
+        model::text(shift.value()));
+    print_notes({&note, 1}, options.to);
+  }
+  return true;
+}
+
 int run(const Options& options) {
   const bool to_json = options.to.ends_with(".json");
   if (!to_json && !options.to.ends_with(".xml")) {
@@ -26,6 +44,9 @@ int run(const Options& options) {
                "holdfast: {}: the ending says the format: expected is .json (holdfast JSON) or "
                ".xml (VisibleSim XML)\n",
                options.to);
+    return kExitUsage;
+  }
+  if (complain_of_clash({&options.from, 1}, {{"the output", options.to}})) {
     return kExitUsage;
   }
   const auto text = read_file(options.from);
@@ -36,10 +57,11 @@ int run(const Options& options) {
   if (!read) {
     return fail(read.error(), options.from);
   }
-  for (const std::string& warning : read.value().warnings) {
-    fmt::print(stderr, "holdfast: {}: note: {}\n", options.from, warning);
-  }
+  print_notes(read.value().warnings, options.from);
   const io::Document& document = read.value().document;
+  if (!to_json && !note_shift(document, options)) {
+    return kExitBadInput;
+  }
   const auto error =
       write_file(options.to, to_json ? io::write_json(document) : io::write_visiblesim(document));
   return error ? fail(*error, options.to) : 0;

@@ -7,6 +7,7 @@
 
 #include "commands.hpp"
 #include "faults.hpp"
+#include "file_clash.hpp"
 #include "holdfast/emulated.hpp"
 #include "run_report.hpp"
 
@@ -47,7 +48,11 @@ class EmulateRun {
   explicit EmulateRun(const Options& options) : options_(options) {}
 
   int run() {
-    const auto structure = load_file(options_.file);
+    const std::string inputs[] = {options_.file, image()};
+    if (complain_of_clash(inputs, {{"--json", options_.json}, {"--svg", options_.svg}})) {
+      return kExitUsage;
+    }
+    const auto structure = load_with_notes(options_.file);
     if (!structure) {
       print_error(structure.error(), options_.file);
       return kExitBadInput;
@@ -67,6 +72,8 @@ class EmulateRun {
   }
 
  private:
+  std::string image() const { return options_.image.empty() ? default_image() : options_.image; }
+
   /// Every module's page, as module_0.bin and so on.
   int write_pages(const Structure& structure) const {
     const auto pages = emulator::configuration_pages(structure.robot, emulation_.anchor);
@@ -103,9 +110,8 @@ class EmulateRun {
 
   int emulate_structure(const Structure& structure) {
     const CheckResult exact = check(structure);
-    const std::string image = options_.image.empty() ? default_image() : options_.image;
     const auto run =
-        emulate(structure, exact, image, emulation_,
+        emulate(structure, exact, image(), emulation_,
                 [this](const sim::SimulationResult& result) { return show_progress(result); });
     if (!run) {
       print_error(run.error(), options_.file);

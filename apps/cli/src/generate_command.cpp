@@ -11,22 +11,22 @@ namespace {
 
 struct Options {
   std::string family;
-  std::size_t size = 0;
+  std::int64_t size = 0;
   std::string to = "-";
 };
 
 int run(const Options& options) {
-  const auto document = generate(options.family, options.size);
+  if (options.size < 0) {
+    fmt::print(stderr, "holdfast: the size {} is not allowed: it is 1 or more\n", options.size);
+    return kExitUsage;
+  }
+  const auto document = generate(options.family, static_cast<std::size_t>(options.size));
   if (!document) {
     fmt::print(stderr, "holdfast: {}\n", document.error().message);
     return kExitUsage;
   }
   const std::string text = options.to.ends_with(".xml") ? io::write_visiblesim(document.value())
                                                         : io::write_json(document.value());
-  if (options.to == "-") {
-    fmt::print("{}", text);
-    return 0;
-  }
   return write_or_complain(options.to, text) ? kExitSafe : kExitBadInput;
 }
 

@@ -1,16 +1,25 @@
 // SPDX-FileCopyrightText: The holdfast authors
 // SPDX-License-Identifier: Apache-2.0
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <cerrno>
 #include <cstdio>
+#include <cstring>
 #include <exception>
+#include <new>
+#include <stdexcept>
 #include <string>
+#include <system_error>
 
 #include "commands.hpp"
 #include "holdfast/holdfast.hpp"
 
 namespace {
 
+namespace cli = holdfast::cli;
+
 int run(int argc, char** argv) {
-  namespace cli = holdfast::cli;
   CLI::App app(
       "Will it hold? Predicts whether a modular robot breaks or topples when modules are attached.",
       "holdfast");
@@ -33,17 +42,82 @@ int run(int argc, char** argv) {
   return cli::kExitUsage;
 }
 
-}  // namespace
+/// Descriptors 0 to 2 are never those of a file: one that is closed is opened so that it cannot be
+/// used, and whoever tries gets an error.
+void occupy_standard_descriptors() {
+  while (true) {
+    const int descriptor = ::open("/dev/null", O_RDONLY);
+    if (descriptor < 0 || descriptor > STDERR_FILENO) {
+      ::close(descriptor);
+      return;
+    }
+    if (descriptor == STDIN_FILENO) {
+      ::close(descriptor);
+      ::open("/dev/null", O_WRONLY);
+    }
+  }
+}
 
-int main(int argc, char** argv) {
-  holdfast::host::use_large_pages();
+/// Without memory of its own: there may be none.
+int fail_out_of_memory() {
+  std::fputs(
+      "holdfast: out of memory: the structure is too large for this machine, or for the limit "
+      "that is set here\n",
+      stderr);
+  return cli::kExitFailure;
+}
+
+int fail_output(int error) {
+  std::fputs("holdfast: standard output cannot be written: ", stderr);
+  std::fputs(std::strerror(error), stderr);
+  std::fputs("\n", stderr);
+  return cli::kExitBadInput;
+}
+
+/// The exit code for what a command threw.
+int fail_exception() {
   try {
-    return run(argc, argv);
+    throw;
+  } catch (const std::bad_alloc&) {
+    return fail_out_of_memory();
+  } catch (const std::length_error&) {
+    return fail_out_of_memory();
+  } catch (const std::system_error& error) {
+    // Printing throws this one.
+    return fail_output(error.code().value());
   } catch (const std::exception& error) {
-    // What can still happen is that memory runs out for a huge input.
     std::fputs("holdfast: ", stderr);
     std::fputs(error.what(), stderr);
     std::fputs("\n", stderr);
-    return holdfast::cli::kExitBadInput;
   }
+  return cli::kExitFailure;
+}
+
+/// Where an exception has nobody left to catch it: what it is decides, as in main.
+[[noreturn]] void terminate_by_exit() {
+  if (std::current_exception()) {
+    ::_exit(fail_exception());
+  }
+  std::abort();
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  occupy_standard_descriptors();
+  std::set_terminate(terminate_by_exit);
+  holdfast::host::OutputFile::remove_unfinished_on_signals();
+  holdfast::host::use_large_pages();
+  int code = 0;
+  try {
+    code = run(argc, argv);
+  } catch (...) {
+    code = fail_exception();
+  }
+  // Small texts are written only now.
+  errno = 0;
+  if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {
+    return code >= cli::kExitUsage ? code : fail_output(errno != 0 ? errno : EIO);
+  }
+  return code;
 }

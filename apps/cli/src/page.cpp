@@ -90,8 +90,9 @@ base::Result<std::string> fill_page(std::string_view page, const Structure& stru
       replace_once(filled, kPlace,
                    fmt::format("id=\"holdfast-start\">{}<", harmless_json(start))) &&
       replace_once(filled, kReportPlace, fmt::format("<pre>{}</pre>", escaped(text))) &&
-      replace_once(filled, "<title>holdfast</title>",
-                   fmt::format("<title>{} - holdfast</title>", escaped(structure.name)));
+      replace_once(
+          filled, "<title>holdfast</title>",
+          fmt::format("<title>{} - holdfast</title>", escaped(io::one_line(structure.name))));
   if (!is_filled) {
     return base::Error{.code = base::ErrorCode::kUnsupported,
                        .message = "holdfast.html is no page of holdfast's; './dev page' builds it",

@@ -14,13 +14,11 @@ template <class Options, class Run>
 bool show_run(const Options& options, bool is_silent, const Structure& structure,
               const CheckResult& exact, const Run& run, const DistributedRun& picture) {
   if (!is_silent) {
-    fmt::print("{} {}\n{}", banner(picture.view.verdict), structure.name,
+    fmt::print("{} {}\n{}", banner(picture.view.verdict), io::one_line(structure.name),
                report_text(structure, exact, run));
   }
   bool is_written = true;
-  if (options.json == "-") {
-    fmt::print("{}\n", report_json(structure, exact, run));
-  } else if (!options.json.empty()) {
+  if (!options.json.empty()) {
     is_written = write_or_complain(options.json, report_json(structure, exact, run) + "\n");
   }
   if (!options.svg.empty()) {

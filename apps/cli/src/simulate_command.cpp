@@ -4,13 +4,12 @@
 
 #include <chrono>
 #include <cmath>
-#include <fstream>
-#include <iostream>
 #include <memory>
 #include <optional>
 
 #include "commands.hpp"
 #include "faults.hpp"
+#include "file_clash.hpp"
 #include "run_report.hpp"
 
 namespace holdfast::cli {
@@ -73,24 +72,34 @@ bool add_faults(const std::vector<std::string>& texts, Fault::Kind kind, const S
 /// A trace file and its writer, if asked for.
 template <class Trace>
 struct TraceFile {
-  std::ofstream file;
+  std::string path;
+  std::optional<host::OutputFile> file;
   std::unique_ptr<Trace> trace;
 
-  bool open(const std::string& path) {
+  /// False, and the error is printed, if there is one.
+  bool open(const std::string& a_path) {
+    path = a_path;
     if (path.empty()) {
       return true;
     }
-    if (path == "-") {
-      trace = std::make_unique<Trace>(std::cout);
-      return true;
-    }
-    file.open(path, std::ios::binary);
-    if (!file) {
-      print_error({.code = base::ErrorCode::kUnwritable, .message = "cannot be written"}, path);
+    auto opened = host::OutputFile::open(path);
+    if (!opened) {
+      print_error(opened.error(), path);
       return false;
     }
-    trace = std::make_unique<Trace>(file);
+    file.emplace(std::move(opened).value());
+    trace = std::make_unique<Trace>(file->stream());
     return true;
+  }
+
+  /// The same. The trace ends here.
+  bool close() {
+    trace.reset();
+    const auto error = file ? file->finish() : std::nullopt;
+    if (error) {
+      print_error(*error, path);
+    }
+    return !error;
   }
 };
 
@@ -106,7 +115,13 @@ class SimulateRun {
     simulation_.method = *method;
     simulation_.seed = options_.seed;
     add_noise();
-    const auto structure = load_file(options_.file);
+    if (complain_of_clash({&options_.file, 1}, {{"--json", options_.json},
+                                                {"--trace", options_.trace},
+                                                {"--story", options_.story},
+                                                {"--svg", options_.svg}})) {
+      return kExitUsage;
+    }
+    const auto structure = load_with_notes(options_.file);
     if (!structure) {
       print_error(structure.error(), options_.file);
       return kExitBadInput;
@@ -146,11 +161,13 @@ class SimulateRun {
     const auto run =
         simulate(structure, exact, simulation_,
                  [this](const sim::SimulationResult& result) { return show_progress(result); });
+    simulation_.trace = nullptr;
+    const bool is_traced = perfetto.close() && story.close();
     if (!run) {
       print_error(run.error(), options_.file);
       return kExitBadInput;
     }
-    if (!show(structure, exact, run.value())) {
+    if (!is_traced || !show(structure, exact, run.value())) {
       return kExitBadInput;
     }
     return exit_code(run.value().view.verdict);

@@ -1,9 +1,11 @@
 // SPDX-FileCopyrightText: The holdfast authors
 // SPDX-License-Identifier: Apache-2.0
+#include <cstdlib>
 #include <filesystem>
 #include <memory>
 
 #include "commands.hpp"
+#include "file_clash.hpp"
 #include "page.hpp"
 
 namespace holdfast::cli {
@@ -20,20 +22,44 @@ int fail(const base::Error& error, const std::string& file) {
   return kExitBadInput;
 }
 
-/// Where nobody minds a file: the user looks at it, or saves it.
-std::string temporary_path(const std::string& name) {
+/// Where nobody minds a file: the user looks at it, or saves it. In a folder of its own that only
+/// the user may enter.
+base::Result<std::string> temporary_path(const std::string& name) {
   std::string safe;
   for (const char letter : name) {
     const bool is_plain = std::isalnum(static_cast<unsigned char>(letter)) != 0 || letter == '-';
     safe += is_plain ? letter : '_';
   }
   std::error_code code;
-  const auto folder = std::filesystem::temp_directory_path(code);
-  return (folder / ("holdfast_" + safe.substr(0, 80) + ".html")).string();
+  std::string folder = (std::filesystem::temp_directory_path(code) / "holdfast-XXXXXX").string();
+  if (code || mkdtemp(folder.data()) == nullptr) {
+    return base::Error{
+        .code = base::ErrorCode::kUnwritable,
+        .message = "no folder can be made there; --out FILE says where the page goes"};
+  }
+  return folder + "/" + safe.substr(0, 80) + ".html";
+}
+
+/// Writes the page, prints its name and opens it; to standard output the page alone goes.
+int show(const std::string& page, const std::string& out, bool stays_closed) {
+  if (const auto error = write_file(out, page)) {
+    return fail(*error, out);
+  }
+  if (out == "-") {
+    return 0;
+  }
+  fmt::print("{}\n", out);
+  if (!stays_closed && !open_in_browser(out)) {
+    fmt::print(stderr, "holdfast: no browser was found to open it\n");
+  }
+  return 0;
 }
 
 int run(const Options& options) {
-  const auto structure = load_file(options.file);
+  if (complain_of_clash({&options.file, 1}, {{"--out", options.out}})) {
+    return kExitUsage;
+  }
+  const auto structure = load_with_notes(options.file);
   if (!structure) {
     return fail(structure.error(), options.file);
   }
@@ -45,16 +71,12 @@ int run(const Options& options) {
   if (!filled) {
     return fail(filled.error(), "view");
   }
-  const std::string out =
-      options.out.empty() ? temporary_path(structure.value().name) : options.out;
-  if (const auto error = write_file(out, filled.value())) {
-    return fail(*error, out);
+  const auto out = options.out.empty() ? temporary_path(structure.value().name)
+                                       : base::Result<std::string>(options.out);
+  if (!out) {
+    return fail(out.error(), "the folder for temporary files");
   }
-  fmt::print("{}\n", out);
-  if (!options.stays_closed && !open_in_browser(out)) {
-    fmt::print(stderr, "holdfast: no browser was found to open it\n");
-  }
-  return 0;
+  return show(filled.value(), out.value(), options.stays_closed);
 }
 
 }  // namespace
@@ -65,11 +87,14 @@ Command add_view(CLI::App& app) {
       app.add_subcommand("view", "Open a structure in the browser, to look at and to change");
   add_required(*command, "FILE", options->file,
                "Structure, VisibleSim XML or holdfast JSON; - is standard input");
-  command->add_option("--out", options->out, "Write the page there, not into a temporary file")
+  command
+      ->add_option("--out", options->out,
+                   "Write the page there, not into a temporary file; - is standard output")
       ->type_name("FILE");
   command->add_flag("--no-open", options->stays_closed, "Write the page only");
   command->footer(
-      "Writes one HTML file that needs neither a server nor a network, prints its name, opens it.\n"
+      "Writes one HTML file that needs neither a server nor a network, prints its name, opens it;\n"
+      "with --out - the page goes to standard output, and nothing is opened.\n"
       "Exit: 0 written, 64 wrong usage, 65 bad input, no page or not writable.");
   return {command, [options] { return run(*options); }};
 }

@@ -4,6 +4,7 @@
 
 #include "distributed_parts.hpp"
 #include "holdfast/distributed.hpp"
+#include "holdfast/verdict/beside_one.hpp"
 
 namespace holdfast {
 namespace {
@@ -108,15 +109,15 @@ void write_answer(TextOut out, const Structure& structure, const CheckResult& ex
   }
   fmt::format_to(out, "\n  exact       {}", verdict::name(truth.verdict));
   if (truth.is_stable && truth.worst) {
-    fmt::format_to(out, ", load ratio {:.4f}  {}", *truth.load_ratio_max,
+    fmt::format_to(out, ", load ratio {}  {}", verdict::beside_one(*truth.load_ratio_max, 4),
                    model::ends_text(structure.robot, *truth.worst));
   }
   fmt::format_to(out, "\n  robot       {}", verdict::name(run.view.verdict));
   if (has_load_ratio(answer) && run.result.effort.module_count > 1) {
     const base::Cell& a = answer.worst_cell;
     const base::Cell b = base::neighbour(a, answer.worst_direction);
-    fmt::format_to(out, ", load ratio {:.4f}  ({},{},{})-({},{},{})", answer.load_ratio_max, a.x,
-                   a.y, a.z, b.x, b.y, b.z);
+    fmt::format_to(out, ", load ratio {}  ({},{},{})-({},{},{})",
+                   verdict::beside_one(answer.load_ratio_max, 4), a.x, a.y, a.z, b.x, b.y, b.z);
   }
   fmt::format_to(out, "{}\n", run.result.all_agree ? "; all modules agree" : "; NOT all agree");
 }

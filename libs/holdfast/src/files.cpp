@@ -17,16 +17,17 @@ base::Error unreadable(std::string message) {
   return {.code = base::ErrorCode::kUnreadable, .message = std::move(message)};
 }
 
-base::Error unwritable(std::string message) {
-  return {.code = base::ErrorCode::kUnwritable, .message = std::move(message)};
-}
-
-/// Reads to the end or one byte beyond the limit.
+/// Reads to the end, to the first zero byte or one byte beyond the limit.
 base::Result<std::string> read_stream(std::istream& stream) {
   std::string text;
   char buffer[1U << 16U];
   while (stream.read(buffer, sizeof buffer) || stream.gcount() > 0) {
-    text.append(buffer, static_cast<std::size_t>(stream.gcount()));
+    const std::string_view block(buffer, static_cast<std::size_t>(stream.gcount()));
+    if (const std::size_t at = block.find('\0'); at != std::string_view::npos) {
+      return unreadable("holds a zero byte after " + std::to_string(text.size() + at) +
+                        " bytes, expected is text, in UTF-8");
+    }
+    text += block;
     if (text.size() > io::kFileBytesMax) {
       return unreadable("larger than " + std::to_string(io::kFileBytesMax) +
                         " bytes, the most that is read");
@@ -60,35 +61,13 @@ base::Result<std::string> read_file(const fs::path& path) {
 }
 
 std::optional<base::Error> write_file(const fs::path& path, std::string_view text) {
-  std::error_code code;
-  if (fs::is_directory(path, code)) {
-    return unwritable("is a folder, expected is the name of a file to write");
+  auto opened = host::OutputFile::open(path);
+  if (!opened) {
+    return opened.error();
   }
-  // A device or pipe cannot be renamed onto.
-  const bool is_special = fs::exists(path, code) && !fs::is_regular_file(path, code);
-  fs::path target = path;
-  if (!is_special) {
-    target += ".part";
-  }
-  {
-    std::ofstream stream(target, std::ios::binary | std::ios::trunc);
-    stream.write(text.data(), static_cast<std::streamsize>(text.size()));
-    stream.close();
-    if (!stream) {
-      if (!is_special) {
-        fs::remove(target, code);
-      }
-      return unwritable("cannot be written");
-    }
-  }
-  if (!is_special) {
-    fs::rename(target, path, code);
-    if (code) {
-      fs::remove(target, code);
-      return unwritable("cannot be written");
-    }
-  }
-  return std::nullopt;
+  host::OutputFile file = std::move(opened).value();
+  file.stream().write(text.data(), static_cast<std::streamsize>(text.size()));
+  return file.finish();
 }
 
 }  // namespace holdfast

@@ -118,7 +118,7 @@ std::string error_json(const base::Error& error, std::string_view name) {
 }
 
 std::string describe(const base::Error& error, std::string_view file) {
-  std::string line(file);
+  std::string line = io::one_line(file);
   for (const std::string& part : {error.where, error.message}) {
     if (!part.empty()) {
       line += (line.empty() ? "" : ": ") + part;

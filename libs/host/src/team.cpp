@@ -6,8 +6,9 @@
 #include <atomic>
 #include <chrono>
 #include <cstdint>
-#include <system_error>
+#include <exception>
 #include <thread>
+#include <utility>
 
 #if __has_include(<pthread.h>)
 #include <pthread.h>
@@ -89,7 +90,8 @@ class Team::Crew {
 
   void serve(int thread);
   void work_on_ranges(int thread);
-  bool work_on(Range& range) noexcept;  // What is thrown in work would leave the others behind.
+  bool work_on(Range& range) noexcept;
+  void do_task(std::size_t begin, std::size_t end) noexcept;
 
   const int process_ = process_number().load();
   std::vector<std::thread> threads_;
@@ -98,15 +100,18 @@ class Team::Crew {
   const void* context_ = nullptr;
   std::atomic<std::uint32_t> round_{0};
   std::atomic<std::size_t> unfinished_{0};  ///< Chunks.
+  std::atomic<bool> has_failed_{false};
+  std::exception_ptr failure_;  ///< The first thing thrown in this loop, once it is over.
   std::atomic<bool> is_over_{false};
 };
 
 Team::Crew::Crew(int thread_count) : ranges_(static_cast<std::size_t>(thread_count)) {
+  threads_.reserve(static_cast<std::size_t>(thread_count));
   for (int thread = 1; thread < thread_count; ++thread) {
     try {
       threads_.emplace_back([this, thread] { serve(thread); });
-    } catch (const std::system_error&) {
-      break;  // The machine gives no more threads: those there are suffice.
+    } catch (const std::exception&) {
+      break;  // The machine gives no more threads, or memory for them: those there are suffice.
     }
   }
 }
@@ -137,6 +142,22 @@ void Team::Crew::run(std::size_t chunk_count, Task task, const void* context) {
        left = unfinished_.load(std::memory_order_acquire)) {
     wait_while(unfinished_, left);
   }
+  if (has_failed_.load(std::memory_order_acquire)) {
+    has_failed_.store(false, std::memory_order_relaxed);
+    std::rethrow_exception(std::exchange(failure_, nullptr));
+  }
+}
+
+/// What is thrown in a task, such as std::bad_alloc, waits for the end of the loop: the others are
+/// not left behind, and the thread that called is the one that hears of it.
+void Team::Crew::do_task(std::size_t begin, std::size_t end) noexcept {
+  try {
+    task_(context_, begin, end);
+  } catch (...) {
+    if (!has_failed_.exchange(true, std::memory_order_acq_rel)) {
+      failure_ = std::current_exception();
+    }
+  }
 }
 
 /// Takes half of what is left of a range and works on it. A thread that comes late, to a later loop
@@ -155,7 +176,7 @@ bool Team::Crew::work_on(Range& range) noexcept {
   } while (!range.chunks.compare_exchange_weak(seen, pack(begin + taken, last_of(seen)),
                                                std::memory_order_acq_rel,
                                                std::memory_order_acquire));
-  task_(context_, begin, begin + taken);
+  do_task(begin, begin + taken);
   if (unfinished_.fetch_sub(taken, std::memory_order_acq_rel) == taken) {
     unfinished_.notify_one();
   }

@@ -19,6 +19,26 @@
 namespace holdfast::host {
 namespace {
 
+// Whoever called the team hears of it, after everybody has ended, and the team works on.
+TEST(Team, hands_on_what_is_thrown_in_a_thread) {
+  for (const int thread_count : {1, 2, 4}) {
+    Team team(thread_count);
+    constexpr std::size_t kCount = 100 * Team::kChunk;
+    for (const std::size_t bad : {std::size_t{0}, kCount / 2, kCount - 1}) {
+      EXPECT_THROW(team.share(0, kCount,
+                              [&](std::size_t begin, std::size_t end) {
+                                if (begin <= bad && bad < end) {
+                                  throw std::bad_alloc();
+                                }
+                              }),
+                   std::bad_alloc);
+      EXPECT_EQ(team.sum(kCount, [](std::size_t begin,
+                                    std::size_t end) { return static_cast<double>(end - begin); }),
+                static_cast<double>(kCount));
+    }
+  }
+}
+
 TEST(Team, TouchesEveryIndexOnceFromTheFirstToTheLast) {
   for (const int threads : {1, 2, 3, 7}) {
     Team team(threads);

@@ -100,7 +100,7 @@ void JsonReader::read_member(const std::string& key, const Json& value, const Pl
   } else if (key == "visiblesim") {
     read_visiblesim(value, place);
   } else if (key != "format" && key != "version" && key != "$schema") {
-    reading_.warn_unknown(place);
+    reading_.note_unknown_key(place, kTopKeys);
   }
 }
 
@@ -111,7 +111,7 @@ void JsonReader::read_material(const Json& value, const Place& place) {
     if (parameter != kMaterialParameters.end()) {
       reading_.document.material.*parameter->value = reading_.number(member, here);
     } else {
-      reading_.warn_unknown(here);
+      reading_.note_unknown_key(here, material_keys());
     }
   }
 }
@@ -129,7 +129,7 @@ void JsonReader::read_known_answer(const Json& value, const Place& place) {
     } else if (key == "source") {
       answer.source = reading_.string(member, here);
     } else {
-      reading_.warn_unknown(here);
+      reading_.note_unknown_key(here, kKnownAnswerKeys);
     }
   }
   reading_.take_known_answer(std::move(answer), [&] { return place.at("verdict").pointer(); });
@@ -152,7 +152,7 @@ void JsonReader::read_visiblesim(const Json& value, const Place& place) {
     } else if (key == "targets") {
       document.targets = targets(member, here);
     } else {
-      reading_.warn_unknown(here);
+      reading_.note_unknown_key(here, kVisibleSimKeys);
     }
   }
 }
@@ -221,7 +221,7 @@ Entry JsonReader::entry(const Json& value, const Place& place) {
       entry.attributes =
           reading_.attributes(member, here, kIsModule ? is_module_attribute : is_planned_attribute);
     } else {
-      reading_.warn_unknown(here);
+      reading_.note_unknown_key(here, kIsModule ? Names(kModuleKeys) : Names(kPlannedKeys));
     }
   }
   return entry;

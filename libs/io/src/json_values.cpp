@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "text_input.hpp"
+#include "vocabulary.hpp"
 
 namespace holdfast::io {
 namespace {
@@ -56,9 +57,9 @@ void JsonReading::refuse(const Json& value, const Place& place, std::string_view
   fail(place, fmt::format("found {}, expected is {}", describe(value), expected));
 }
 
-void JsonReading::warn_unknown(const Place& place) {
-  warn(fmt::format("the key {} is unknown and ignored", excerpt(place.key)),
-       [&] { return place.pointer(); });
+void JsonReading::note_unknown_key(const Place& place, Names known) {
+  note_unknown(fmt::format("the key {}", excerpt(place.key)), place.key, known, "ignored",
+               [&] { return place.pointer(); });
 }
 
 const Json::object_t& JsonReading::members(const Json& value, const Place& place) {
@@ -155,7 +156,7 @@ Element JsonReading::element(const Json& value, const Place& place, int depth) {
     } else if (key == "children") {
       element.children = element_list(member, here, depth + 1);
     } else {
-      warn_unknown(here);
+      note_unknown_key(here, kElementKeys);
     }
   }
   if (const auto fault = find_name_fault(element.name)) {

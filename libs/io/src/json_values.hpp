@@ -37,7 +37,8 @@ class JsonReading : public Reading {
   /// The one message for a value that is not what it should be.
   void refuse(const Json& value, const Place& place, std::string_view expected);
 
-  void warn_unknown(const Place& place);
+  /// A key that is none of the known ones.
+  void note_unknown_key(const Place& place, Names known);
 
   const Json::object_t& members(const Json& value, const Place& place);
   const Json::array_t& elements(const Json& value, const Place& place);

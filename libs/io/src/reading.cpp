@@ -14,18 +14,19 @@ namespace {
 
 /// Warns of attributes that nobody knows and of a cell outside the grid.
 template <class Entry>
-void warn_of_entry(Reading& reading, const Entry& entry) {
+void warn_of_entry(Reading& reading, const Entry& entry, Names known) {
   const base::Cell& cell = entry.cell;
   const auto where = [&] { return fmt::format("module ({},{},{})", cell.x, cell.y, cell.z); };
   for (const auto& attribute : entry.attributes) {
     if (!is_simulation_attribute(attribute.first)) {
-      reading.warn(fmt::format("the attribute {} is unknown and kept", excerpt(attribute.first)),
-                   where);
+      reading.note_unknown(fmt::format("the attribute {}", excerpt(attribute.first)),
+                           attribute.first, known, "kept", where);
     }
   }
   const auto& grid = reading.grid();
-  const bool is_outside = grid && (std::min({cell.x, cell.y, cell.z}) < 0 || cell.x >= grid->x ||
-                                   cell.y >= grid->y || cell.z >= grid->z);
+  const base::Cell at = reading.in_file(cell);
+  const bool is_outside = grid && (std::min({at.x, at.y, at.z}) < 0 || at.x >= grid->x ||
+                                   at.y >= grid->y || at.z >= grid->z);
   if (is_outside) {
     reading.warn(fmt::format("outside gridSize '{},{},{}'", grid->x, grid->y, grid->z), where);
   }
@@ -53,6 +54,16 @@ void Reading::warn(std::string message, const Where& where) {
     ++warnings_left_out_;
   } else {
     warnings_.push_back({std::move(message), where()});
+  }
+}
+
+void Reading::note_unknown(const std::string& what, std::string_view name, Names known,
+                           std::string_view fate, const Where& where) {
+  if (const auto meant = near_miss(name, known)) {
+    fail({base::ErrorCode::kBadInput,
+          fmt::format("{} is unknown: did you mean '{}'?", what, *meant), where()});
+  } else {
+    warn(fmt::format("{} is unknown and {}", what, fate), where);
   }
 }
 
@@ -102,19 +113,28 @@ base::Result<ReadDocument> Reading::finish() && {
     document.steps.pop_back();
   }
   warn_of_content();
+  if (error_) {
+    return *error_;
+  }
   return ReadDocument{std::move(document), warning_texts()};
 }
 
 void Reading::warn_of_content() {
   const Where nowhere = [] { return std::string(); };
-  for (const auto& parameter : document.parameters) {
-    if (!is_solver_parameter(parameter.first)) {
-      warn(fmt::format("the parameter {} is unknown and kept", excerpt(parameter.first)), nowhere);
-    }
+  if (document.material.facet_mm > document.material.pitch_mm) {
+    warn(fmt::format("facets of {} mm are wider than the pitch of {} mm: feet reach beyond their "
+                     "cells, and the support polygon with them",
+                     document.material.facet_mm, document.material.pitch_mm),
+         nowhere);
   }
-  std::ranges::for_each(document.modules, [&](const auto& entry) { warn_of_entry(*this, entry); });
+  warn_of_attributes();
+  for (const ModuleEntry& module : document.modules) {
+    warn_of_entry(*this, module, kBlockAttributes);
+  }
   for (const Step& step : document.steps) {
-    std::ranges::for_each(step, [&](const auto& entry) { warn_of_entry(*this, entry); });
+    for (const PlannedEntry& planned : step) {
+      warn_of_entry(*this, planned, kCellAttributes);
+    }
   }
   if (document.steps.size() > 1) {
     warn(fmt::format("{} steps are read, only the first one is checked", document.steps.size()),
@@ -125,11 +145,38 @@ void Reading::warn_of_content() {
       warn("obstacles are not supported: <obstacleList> is kept, but nothing rests on them",
            nowhere);
     } else if (!is_scenery_element(element.name)) {
-      warn(fmt::format("the element {} is unknown and kept", excerpt(element.name)), nowhere);
+      note_unknown(fmt::format("the element {}", excerpt(element.name)), element.name,
+                   kWorldElements, "kept", nowhere);
     }
   }
+  warn_of_targets();
+}
+
+/// Of <parameters>, <world> and <blockList>, which both formats keep whole.
+void Reading::warn_of_attributes() {
+  const auto look_at = [&](const Attributes& attributes, const char* kind, Names known) {
+    for (const auto& attribute : attributes) {
+      if (std::ranges::find(known, attribute.first) == known.end()) {
+        note_unknown(fmt::format("the {} {}", kind, excerpt(attribute.first)), attribute.first,
+                     known, "kept", [] { return std::string(); });
+      }
+    }
+  };
+  look_at(document.parameters, "parameter", parameter_names());
+  look_at(document.world, "attribute of <world>", kWorldAttributes);
+  look_at(document.block_list, "attribute of <blockList>", kBlockListAttributes);
+}
+
+void Reading::warn_of_targets() {
+  const Where nowhere = [] { return std::string(); };
   for (const Element& target : document.targets) {
     const std::string* const format = find_attribute(target.attributes, "format");
+    if (const auto meant = near_miss(format == nullptr ? "" : *format, kTargetFormats)) {
+      fail({base::ErrorCode::kBadInput,
+            fmt::format("the target format {} is unknown: did you mean '{}'?", excerpt(*format),
+                        *meant),
+            ""});
+    }
     warn(fmt::format("the target format {} is not supported: the target is kept, not checked",
                      format == nullptr ? "''" : excerpt(*format)),
          nowhere);

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "holdfast/io/document.hpp"
+#include "near_miss.hpp"
 #include "numbers.hpp"
 
 namespace holdfast::io {
@@ -46,6 +47,11 @@ class Reading {
 
   void warn(std::string message, const Where& where);
 
+  /// Warns of something that has a name and is not known, such as "the key 'x'", and says what
+  /// becomes of it; a failure if the name looks like a known one.
+  void note_unknown(const std::string& what, std::string_view name, Names known,
+                    std::string_view fate, const Where& where);
+
   /// Counts cells that are about to be read; false, and a failure, if they become too many.
   bool take_room(std::size_t cell_count, const Where& where);
 
@@ -55,11 +61,20 @@ class Reading {
   /// Looks for gridSize in document.world.
   void read_grid(const Where& where);
 
+  /// A cell as it stands in the file, where the grid counts.
+  base::Cell in_file(const base::Cell& cell) const {
+    return {cell.x + shift_.x, cell.y + shift_.y, cell.z + shift_.z};
+  }
+
   /// Cells per axis, after read_grid.
   const std::optional<base::Cell>& grid() const { return grid_; }
 
   /// The document with its warnings, or the failure. Warns of what mechanics do not know.
   base::Result<ReadDocument> finish() &&;
+
+ protected:
+  /// From the document's cells to those of the file, in which its grid counts.
+  base::Cell shift_;
 
  private:
   struct Warning {
@@ -69,6 +84,8 @@ class Reading {
   };
 
   void warn_of_content();
+  void warn_of_attributes();
+  void warn_of_targets();
   std::vector<std::string> warning_texts() const;
 
   std::optional<base::Error> error_;

@@ -9,6 +9,7 @@
 #include <numeric>
 
 #include "holdfast/io/report.hpp"
+#include "holdfast/verdict/beside_one.hpp"
 
 namespace holdfast::io {
 namespace {
@@ -29,9 +30,10 @@ void write_stability(Out out, const verdict::Assessment& assessment) {
   const char* word = assessment.is_stable ? "stable" : "unstable";
   if (body.margin_mm) {
     const auto& [a, b] = *body.edge;
-    fmt::format_to(out,
-                   "  stability   {}, margin {:.2f} mm at the edge ({:g}, {:g})-({:g}, {:g}) mm",
-                   word, *body.margin_mm, a.x, a.y, b.x, b.y);
+    fmt::format_to(
+        out,
+        "  stability   {}, margin {:.2f} mm at the edge ({:.10g}, {:.10g})-({:.10g}, {:.10g}) mm",
+        word, *body.margin_mm, a.x, a.y, b.x, b.y);
   } else {
     fmt::format_to(out, "  stability   {}, held by a fixed module", word);
   }
@@ -53,7 +55,9 @@ double rank(const verdict::ConnectionResult& result) {
 
 void write_loads(Out out, const model::Robot& robot, const verdict::Assessment& assessment) {
   if (assessment.load_ratio_max && !assessment.worst) {
-    fmt::format_to(out, "  load ratio  no connection is pulled apart\n");
+    const bool is_known = assessment.load_ratio_range.high < verdict::kLoadRatioTie;
+    fmt::format_to(out, "  load ratio  no connection is {}pulled apart\n",
+                   is_known ? "" : "known to be ");
     return;
   }
   std::vector<std::size_t> order(assessment.connections.size());
@@ -67,15 +71,15 @@ void write_loads(Out out, const model::Robot& robot, const verdict::Assessment& 
                     });
   for (std::size_t i = 0; i < count; ++i) {
     const verdict::ConnectionResult& result = assessment.connections[order[i]];
-    fmt::format_to(out, "  {}  {:>7.4f}  {:<24} {:9.3f} N axial {:9.1f} N mm bending\n",
-                   i == 0 ? "load ratio" : "          ", result.load_ratio,
+    fmt::format_to(out, "  {}  {:>7}  {:<24} {:9.3f} N axial {:9.1f} N mm bending\n",
+                   i == 0 ? "load ratio" : "          ", verdict::beside_one(result.load_ratio, 4),
                    model::ends_text(robot, order[i]), result.axial_n, result.bending_nmm);
   }
   if (count > 0 && !assessment.is_stable) {
     fmt::format_to(out, "              (not meaningful: the robot topples)\n");
   } else if (assessment.weight_factor) {
-    fmt::format_to(out, "  weight      the first connection breaks at {:.3f} times this weight\n",
-                   *assessment.weight_factor);
+    fmt::format_to(out, "  weight      the first connection breaks at {} times this weight\n",
+                   verdict::beside_one(*assessment.weight_factor, 3));
   }
 }
 

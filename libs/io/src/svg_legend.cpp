@@ -32,7 +32,9 @@ std::string load_text(const Scene& scene) {
     return "no connection that could break";
   }
   if (!assessment.worst) {
-    return "no connection is pulled apart";
+    return assessment.load_ratio_range.high < verdict::kLoadRatioTie
+               ? "no connection is pulled apart"
+               : "no connection is known to be pulled apart";
   }
   if (*assessment.load_ratio_max < kNoLoad) {
     return "no connection carries 0.01 of its strength";

@@ -18,6 +18,9 @@ constexpr int kGlassLightness = 34;
 /// Below this size the outlines of single modules would only darken the picture.
 constexpr double kInnerLinePxMin = 2.5;
 
+/// Below this size so would all outlines but those of the whole.
+constexpr double kOutlinePxMin = 1.5;
+
 struct Widths {
   double inner = 0;
   double outline = 0;
@@ -62,12 +65,11 @@ void append_polygon(const Scene& scene, const VisibleFace& face, Path& path) {
 
 /// Of faces in one colour. Stroked in it too, lest the card shine through between them.
 std::string face_path(const Scene& scene, std::span<const PaintedFace> faces) {
-  Path path;
+  PathElements paths(fmt::format("fill=\"{0}\" stroke=\"{0}\"", hex(faces.front().color)));
   for (const PaintedFace& face : faces) {
-    append_polygon(scene, face.face, path);
+    append_polygon(scene, face.face, paths.next());
   }
-  const std::string color = hex(faces.front().color);
-  return fmt::format("<path fill=\"{0}\" stroke=\"{0}\" d=\"{1}\"/>\n", color, path.text());
+  return paths.text();
 }
 
 bool have_one_color(const PaintedFace& a, const PaintedFace& b) { return a.color == b.color; }
@@ -152,21 +154,30 @@ std::string fill_of(const Scene& scene, const VisibleSurface& surface, bool is_p
   return fill(scene, std::move(faces));
 }
 
+/// `attributes` are those of the stroke.
 std::string lines(const Scene& scene, const std::vector<VisibleEdge>& edges, bool is_outline,
-                  bool is_planned) {
-  Path path;
+                  bool is_planned, std::string attributes) {
+  PathElements paths(std::move(attributes));
+  const bool has_all = scene.projection.edge_px >= kOutlinePxMin;
   for (const VisibleEdge& edge : edges) {
-    if (edge.is_outline == is_outline && edge.is_planned == is_planned) {
+    if (edge.is_outline == is_outline && edge.is_planned == is_planned &&
+        (has_all || edge.far_side == 0)) {
+      Path& path = paths.next();
       path.move_to(scene.projection.at(edge.from));
       path.line_to(scene.projection.at(edge.to));
     }
   }
-  return path.text();
+  return paths.text();
 }
 
-/// A light gap along the far side of outlines: what is cut off there goes on behind.
+/// A light gap along the far side of outlines: what is cut off there goes on behind. None between
+/// modules so small that gaps would hide them.
 std::string gaps(const Scene& scene, const std::vector<VisibleEdge>& edges, double width) {
-  Path path;
+  if (scene.projection.edge_px < kInnerLinePxMin) {
+    return {};
+  }
+  PathElements paths(
+      fmt::format("class=\"gaps\" fill=\"{}\" fill-opacity=\"0.8\" stroke=\"none\"", kCardFill));
   for (const VisibleEdge& edge : edges) {
     if (edge.far_side == 0 || edge.is_planned) {
       continue;
@@ -176,13 +187,14 @@ std::string gaps(const Scene& scene, const std::vector<VisibleEdge>& edges, doub
     const ScreenPoint shift = is_upright ? ScreenPoint{offset, 0} : ScreenPoint{0, offset};
     const ScreenPoint from = scene.projection.at(edge.from);
     const ScreenPoint to = scene.projection.at(edge.to);
+    Path& path = paths.next();
     path.move_to(from);
     path.line_to(to);
     path.line_to(to + shift);
     path.line_to(from + shift);
     path.close();
   }
-  return path.text();
+  return paths.text();
 }
 
 std::string draw_existing(const Scene& scene) {
@@ -194,19 +206,13 @@ std::string draw_existing(const Scene& scene) {
   out += fmt::format(
       "<g class=\"outlines\" fill=\"none\" stroke=\"{}\" stroke-linecap=\"round\">\n", kInk);
   // Under glass there are none.
-  const std::string gap = gaps(scene, scene.all ? scene.all->edges() : edges, outline * 1.5);
-  if (!gap.empty()) {
-    out += fmt::format(
-        "<path class=\"gaps\" fill=\"{}\" fill-opacity=\"0.8\" stroke=\"none\" d=\"{}\"/>\n",
-        kCardFill, gap);
-  }
+  out += gaps(scene, scene.all ? scene.all->edges() : edges, outline * 1.5);
   if (scene.projection.edge_px >= kInnerLinePxMin) {
-    out += fmt::format("<path stroke-width=\"{}\" stroke-opacity=\"0.55\" d=\"{}\"/>\n",
-                       number(inner), lines(scene, edges, false, false));
+    out += lines(scene, edges, false, false,
+                 fmt::format("stroke-width=\"{}\" stroke-opacity=\"0.55\"", number(inner)));
   }
-  out += fmt::format("<path stroke-width=\"{}\" d=\"{}\"/>\n</g>\n", number(outline),
-                     lines(scene, edges, true, false));
-  return out;
+  out += lines(scene, edges, true, false, fmt::format("stroke-width=\"{}\"", number(outline)));
+  return out + "</g>\n";
 }
 
 /// Dashes of a seventh of the edge: every edge begins and ends with one.
@@ -222,11 +228,8 @@ std::string draw_planned(const Scene& scene) {
       "<g class=\"planned-outlines\" fill=\"none\" stroke=\"{}\" stroke-dasharray=\"{}\">\n", kInk,
       number(dash));
   for (const bool is_outline : {false, true}) {
-    const std::string path = lines(scene, edges, is_outline, true);
-    if (!path.empty()) {
-      out += fmt::format("<path stroke-width=\"{}\" d=\"{}\"/>\n",
-                         number(is_outline ? outline : inner), path);
-    }
+    out += lines(scene, edges, is_outline, true,
+                 fmt::format("stroke-width=\"{}\"", number(is_outline ? outline : inner)));
   }
   return out + "</g>\n";
 }

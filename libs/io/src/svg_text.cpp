@@ -8,6 +8,8 @@
 #include <cmath>
 #include <cstdlib>
 
+#include "holdfast/verdict/beside_one.hpp"
+
 namespace holdfast::io {
 namespace {
 
@@ -109,8 +111,7 @@ std::string number(double value) {
 std::string ratio_text(double ratio, bool is_broken) {
   std::string text = fmt::format("{:.2f}", ratio);
   if (!is_broken && text == "1.00") {
-    text = fmt::format("{:.4f}", ratio);
-    return text == "1.0000" ? "0.9999" : text;
+    return verdict::beside_one(ratio, 4);
   }
   return text == "-0.00" ? "0.00" : text;
 }
@@ -148,6 +149,28 @@ void Path::line_to(ScreenPoint point) {
 }
 
 void Path::close() { text_ += 'z'; }
+
+Path& PathElements::next() {
+  // libxml2 counts its 10 million from where it last emptied its buffer, between elements and by
+  // chance: short ones leave it many.
+  constexpr std::size_t kPathBytesMax = std::size_t{1} << 15U;
+  if (path_.text().size() > kPathBytesMax) {
+    end_element();
+  }
+  return path_;
+}
+
+std::string PathElements::text() {
+  end_element();
+  return std::move(elements_);
+}
+
+void PathElements::end_element() {
+  if (!path_.empty()) {
+    elements_ += fmt::format("<path {} d=\"{}\"/>\n", attributes_, path_.text());
+    path_ = Path();
+  }
+}
 
 std::string escape(std::string_view text) {
   std::string escaped;

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <string>
 #include <string_view>
+#include <utility>
 
 /// Numbers, paths and words as an SVG wants them. All coordinates are rounded once, to hundredths
 /// of a pixel, and from there on are integers: the same text with every compiler.
@@ -56,6 +57,26 @@ class Path {
   std::string text_;
   std::int64_t x_ = 0;  ///< Hundredths of a pixel.
   std::int64_t y_ = 0;
+};
+
+/// One path in as many elements as it takes: readers refuse what is longer than 10 million bytes.
+class PathElements {
+ public:
+  /// `attributes` are those of every element, besides the data.
+  explicit PathElements(std::string attributes) : attributes_(std::move(attributes)) {}
+
+  /// Where the next piece goes, which begins with move_to. For that piece only.
+  Path& next();
+
+  /// The elements, none if there was no piece. Called once.
+  std::string text();
+
+ private:
+  void end_element();
+
+  std::string attributes_;
+  Path path_;
+  std::string elements_;
 };
 
 /// For use in text and attributes; what is no UTF-8 or not allowed in XML becomes U+FFFD.

@@ -10,6 +10,7 @@
 #include <cstdint>
 
 #include "holdfast/io/document.hpp"
+#include "holdfast/io/report.hpp"
 
 namespace holdfast::io {
 namespace {
@@ -69,6 +70,30 @@ std::string excerpt(std::string_view text) {
   std::ranges::replace_if(
       printable, [](char c) { return c < ' ' || c > '~'; }, '?');
   return fmt::format("'{}{}'", printable, text.size() > kExcerptMax ? "..." : "");
+}
+
+std::string one_line(std::string_view text) {
+  std::string line;
+  while (!text.empty()) {
+    const std::size_t length = utf8_length(text);
+    const std::string_view letter = text.substr(0, std::max<std::size_t>(length, 1));
+    const auto byte = static_cast<unsigned char>(letter.front());
+    // The second set of control characters is C2 80 to C2 9F; E2 80 A8 and A9 end a line, too.
+    const bool is_control = byte < 0x20 || byte == 0x7F || length == 0 ||
+                            (byte == 0xC2 && static_cast<unsigned char>(letter[1]) < 0xA0) ||
+                            letter == "\xE2\x80\xA8" || letter == "\xE2\x80\xA9";
+    if (!is_control) {
+      line += letter;
+    } else if (byte == '\n' || byte == '\t') {
+      line += byte == '\n' ? "\\n" : "\\t";
+    } else {
+      for (const char c : letter) {
+        line += fmt::format("\\x{:02x}", static_cast<unsigned char>(c));
+      }
+    }
+    text.remove_prefix(letter.size());
+  }
+  return line;
 }
 
 std::string_view trimmed(std::string_view text) {

@@ -51,9 +51,7 @@ template <class Entry>
 void read_row(XmlReading& reading, const pugi::xml_node& row, std::int32_t& plane,
               std::vector<Entry>& entries) {
   reading.expect_no_content(row);
-  reading.expect_attributes(row, [](std::string_view name) {
-    return is_one_of(name, {"line", "plane", "values", "color"});
-  });
+  reading.expect_attributes(row, kRowAttributes);
   const auto coordinate = [&](const char* name, std::int32_t fallback) {
     const pugi::xml_attribute attribute = row.attribute(name);
     return attribute ? reading.integer(row, attribute, kCoordinateRange) : fallback;
@@ -146,9 +144,7 @@ std::array<IndexRange, 3> read_box_ranges(XmlReading& reading, const pugi::xml_n
 
 void read_box(XmlReading& reading, const pugi::xml_node& box) {
   reading.expect_no_content(box);
-  reading.expect_attributes(box, [](std::string_view name) {
-    return is_one_of(name, {"boxOrigin", "boxSize", "color"});
-  });
+  reading.expect_attributes(box, kBoxAttributes);
   const std::optional<Color> color = reading.color(box);
   const auto [xs, ys, zs] = read_box_ranges(reading, box);
   const std::size_t count = xs.count() * ys.count() * zs.count();
@@ -186,7 +182,7 @@ void read_block_list(XmlReading& reading, const pugi::xml_node& list) {
       reading.fail(child, "<csg> in <blockList> is not supported: write its modules as <block>",
                    base::ErrorCode::kUnsupported);
     } else {
-      reading.warn_of_unknown_child(child);
+      reading.warn_of_unknown_child(child, kBlockListElements);
     }
     if (reading.has_failed()) {
       return;
@@ -195,7 +191,8 @@ void read_block_list(XmlReading& reading, const pugi::xml_node& list) {
 }
 
 Step read_grid_target(XmlReading& reading, const pugi::xml_node& target) {
-  reading.expect_attributes(target, [](std::string_view name) { return name == "format"; });
+  constexpr std::string_view kFormat[] = {"format"};
+  reading.expect_attributes(target, kFormat);
   Step step;
   std::int32_t plane = 0;
   for (const pugi::xml_node& child : target.children()) {
@@ -205,7 +202,7 @@ Step read_grid_target(XmlReading& reading, const pugi::xml_node& target) {
     } else if (name == "targetLine") {
       read_row(reading, child, plane, step);
     } else {
-      reading.warn_of_unknown_child(child);
+      reading.warn_of_unknown_child(child, kTargetElements);
     }
     if (reading.has_failed()) {
       return step;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <pugixml.hpp>
 #include <utility>
+#include <vector>
 
 #include "holdfast/io/document.hpp"
 #include "text_input.hpp"
@@ -42,9 +43,7 @@ void read_parameters(XmlReading& reading, const pugi::xml_node& node) {
 }
 
 void read_known_answer(XmlReading& reading, const pugi::xml_node& node) {
-  reading.expect_attributes(node, [](std::string_view name) {
-    return is_one_of(name, {"verdict", "margin_mm", "load_ratio_max", "source"});
-  });
+  reading.expect_attributes(node, kKnownAnswerKeys);
   const auto number = [&](const char* name) -> std::optional<double> {
     const pugi::xml_attribute attribute = node.attribute(name);
     return attribute ? std::optional(reading.number(node, attribute)) : std::nullopt;
@@ -59,12 +58,19 @@ void read_known_answer(XmlReading& reading, const pugi::xml_node& node) {
 /// <holdfast>: what our writer adds to the file.
 void read_own_element(XmlReading& reading, const pugi::xml_node& node) {
   Document& document = reading.document;
-  reading.expect_attributes(node, [](std::string_view name) {
-    return is_one_of(name, {"name", "description", "computed"}) ||
-           std::ranges::any_of(kMaterialParameters, [&](const MaterialParameter& parameter) {
-             return parameter.visiblesim == nullptr && parameter.key == name;
-           });
-  });
+  std::vector<std::string_view> known = {"name", "description", "computed", kShift};
+  for (const MaterialParameter& parameter : kMaterialParameters) {
+    if (parameter.visiblesim == nullptr) {
+      known.emplace_back(parameter.key);
+    }
+  }
+  reading.expect_attributes(node, known);
+  constexpr std::string_view kChildren[] = {"knownAnswer"};
+  for (const pugi::xml_node& child : node.children()) {
+    if (child.name() != kChildren[0]) {
+      reading.warn_of_unknown_child(child, kChildren);
+    }
+  }
   document.name = node.attribute("name").value();
   document.description = node.attribute("description").value();
   for (const MaterialParameter& parameter : kMaterialParameters) {
@@ -73,16 +79,18 @@ void read_own_element(XmlReading& reading, const pugi::xml_node& node) {
       document.material.*parameter.value = reading.number(node, attribute);
     }
   }
-  if (const auto known = only_child(reading, node, "knownAnswer")) {
-    read_known_answer(reading, known);
+  if (const auto answer = only_child(reading, node, "knownAnswer")) {
+    read_known_answer(reading, answer);
   }
+  reading.take_back_shift(node);
 }
 
 void read_targets(XmlReading& reading, const pugi::xml_node& list) {
-  reading.expect_attributes(list, is_free);
+  reading.expect_attributes(list, {});
   for (const pugi::xml_node& child : list.children()) {
     if (child.name() != std::string_view("target")) {
-      reading.warn_of_unknown_child(child);
+      constexpr std::string_view kTarget[] = {"target"};
+      reading.warn_of_unknown_child(child, kTarget);
     } else if (child.attribute("format").value() == std::string_view("grid")) {
       reading.document.steps.push_back(read_grid_target(reading, child));
     } else {
@@ -97,7 +105,7 @@ void read_targets(XmlReading& reading, const pugi::xml_node& list) {
 void read_scenery(XmlReading& reading, const pugi::xml_node& world) {
   for (const pugi::xml_node& child : world.children()) {
     if (child.type() != pugi::node_element) {
-      reading.warn_of_unknown_child(child);
+      reading.warn_of_unknown_child(child, kWorldElements);
     } else if (!is_structural_element(child.name())) {
       reading.document.scenery.push_back(reading.element(child));
     }
@@ -133,7 +141,7 @@ void read_world(XmlReading& reading, const pugi::xml_node& world) {
 void read_roots(XmlReading& reading, const pugi::xml_document& tree) {
   for (const pugi::xml_node& child : tree.children()) {
     if (!is_one_of(child.name(), {"parameters", "world"})) {
-      reading.warn_of_unknown_child(child);
+      reading.warn_of_unknown_child(child, kRootElements);
     }
   }
   const pugi::xml_node parameters = only_child(reading, tree, "parameters");

@@ -6,6 +6,7 @@
 #include <array>
 #include <initializer_list>
 #include <string_view>
+#include <vector>
 
 #include "holdfast/model/material.hpp"
 
@@ -48,6 +49,9 @@ inline constexpr const char* kOwnElement = "holdfast";
 /// Its attribute `computed` with this value says that a writer had to make gridSize up.
 inline constexpr const char* kGridSize = "gridSize";
 
+/// Its attribute that says what a writer has added to every cell and to the support level.
+inline constexpr const char* kShift = "shift";
+
 constexpr bool is_one_of(std::string_view name, std::initializer_list<std::string_view> names) {
   return std::ranges::find(names, name) != names.end();
 }
@@ -60,10 +64,82 @@ constexpr bool is_mechanical_parameter(std::string_view name) {
          });
 }
 
+// All the names that may stand in one place, those included that only VisibleSim's own reader or
+// its shipped examples have a use for: what is like one of them, but none, is a slip.
+
+inline constexpr auto kTopKeys = std::to_array<std::string_view>(
+    {"$schema", "format", "version", "name", "description", "support_z", "material", "modules",
+     "planned", "later_steps", "known_answer", "visiblesim"});
+inline constexpr auto kKnownAnswerKeys =
+    std::to_array<std::string_view>({"verdict", "margin_mm", "load_ratio_max", "source"});
+inline constexpr auto kVisibleSimKeys =
+    std::to_array<std::string_view>({"parameters", "world", "block_list", "scenery", "targets"});
+inline constexpr auto kModuleKeys =
+    std::to_array<std::string_view>({"cell", "fixed", "color", "attributes"});
+inline constexpr auto kPlannedKeys =
+    std::to_array<std::string_view>({"cell", "color", "attributes"});
+inline constexpr auto kElementKeys =
+    std::to_array<std::string_view>({"element", "attributes", "text", "children"});
+
+inline constexpr auto kWorldAttributes = std::to_array<std::string_view>(
+    {kGridSize, "gridsize", "windowSize", "maxSimulationTime", "separatorPlane"});
+inline constexpr auto kBlockListAttributes = std::to_array<std::string_view>(
+    {"blockSize", "blocksize", "color", "size", "ids", "idseed", "seed", "step", "format"});
+inline constexpr auto kBlockAttributes = std::to_array<std::string_view>(
+    {"position", "color", "fixed", "centroid", "solver", "stabilityCheck", "id", "master", "leader",
+     "alive", "angle", "orientation", "rotation", "piston", "isTarget", "isWall"});
+inline constexpr auto kCellAttributes = std::to_array<std::string_view>({"position", "color"});
+inline constexpr auto kRowAttributes =
+    std::to_array<std::string_view>({"line", "plane", "values", "color", "isTarget"});
+inline constexpr auto kBoxAttributes =
+    std::to_array<std::string_view>({"boxOrigin", "boxSize", "color"});
+inline constexpr auto kTargetFormats =
+    std::to_array<std::string_view>({"grid", "csg", "relativeGrid", "surface"});
+
+inline constexpr auto kRootElements = std::to_array<std::string_view>(
+    {"parameters", "world", "visuals", "vm", "capabilities", "scenario"});
+inline constexpr auto kWorldElements = std::to_array<std::string_view>(
+    {"blockList", "targetList", kOwnElement, "obstacleList", "camera", "spotlight", "customization",
+     "capabilities", "targetGrid", "trash", "scenario"});
+inline constexpr auto kBlockListElements =
+    std::to_array<std::string_view>({"block", "blocksLine", "blockBox", "csg"});
+inline constexpr auto kTargetElements =
+    std::to_array<std::string_view>({"cell", "targetLine", "csg", "method"});
+
 /// Attributes of <parameters> that only VisibleSim's own solver has a use for.
+inline constexpr auto kSolverParameters =
+    std::to_array<std::string_view>({"nofIterations", "preconditioner", "globalBeta", "globalEps",
+                                     "globalMu", "globalOmega", "globalI"});
+
 constexpr bool is_solver_parameter(std::string_view name) {
-  return is_one_of(name, {"nofIterations", "preconditioner", "globalBeta", "globalEps", "globalMu",
-                          "globalOmega", "globalI"});
+  return std::ranges::find(kSolverParameters, name) != kSolverParameters.end();
+}
+
+/// All attributes of <parameters>.
+inline const std::vector<std::string_view>& parameter_names() {
+  static const std::vector<std::string_view> names = [] {
+    std::vector<std::string_view> list(kSolverParameters.begin(), kSolverParameters.end());
+    list.emplace_back(kSupportParameter);
+    for (const MaterialParameter& parameter : kMaterialParameters) {
+      if (parameter.visiblesim != nullptr) {
+        list.emplace_back(parameter.visiblesim);
+      }
+    }
+    return list;
+  }();
+  return names;
+}
+
+/// All keys of a material.
+inline const std::vector<std::string_view>& material_keys() {
+  static const std::vector<std::string_view> keys = [] {
+    std::vector<std::string_view> list;
+    for (const MaterialParameter& parameter : kMaterialParameters) {
+      list.emplace_back(parameter.key);
+    }
+    return list;
+  }();
+  return keys;
 }
 
 /// Attributes of <cell>, and those of <block>, that have members of their own in a Document.

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <new>
 #include <utility>
 #include <vector>
 
@@ -101,6 +102,9 @@ void XmlReading::parse(pugi::xml_document& tree) {
   // A fragment, because VisibleSim's files have two root elements.
   const auto result = tree.load_buffer(
       text_.data(), text_.size(), pugi::parse_default | pugi::parse_fragment, pugi::encoding_utf8);
+  if (result.status == pugi::status_out_of_memory) {
+    throw std::bad_alloc();  // It is not the file that is at fault.
+  }
   if (!result) {
     fail(syntax_error(text_, static_cast<std::size_t>(result.offset),
                       fmt::format("no well-formed XML ({})", result.description())));
@@ -121,11 +125,12 @@ void XmlReading::warn_at(const pugi::xml_node& node, std::string message) {
   warn(std::move(message), [&] { return line(node); });
 }
 
-void XmlReading::expect_attributes(const pugi::xml_node& node,
-                                   bool (*is_known)(std::string_view name)) {
-  for (const auto& unknown : attributes(node, is_known)) {
-    warn_at(node, fmt::format("the attribute {} of <{}> is unknown and ignored",
-                              excerpt(unknown.first), node.name()));
+void XmlReading::expect_attributes(const pugi::xml_node& node, Names known) {
+  for (const auto& [name, value] : attributes(node, [](std::string_view) { return false; })) {
+    if (std::ranges::find(known, name) == known.end()) {
+      note_unknown(fmt::format("the attribute {} of <{}>", excerpt(name), node.name()), name, known,
+                   "ignored", [&] { return line(node); });
+    }
   }
 }
 
@@ -135,10 +140,10 @@ void XmlReading::expect_no_content(const pugi::xml_node& node) {
   }
 }
 
-void XmlReading::warn_of_unknown_child(const pugi::xml_node& child) {
+void XmlReading::warn_of_unknown_child(const pugi::xml_node& child, Names known) {
   if (!is_text(child)) {
-    warn_at(child,
-            fmt::format("the element {} is unknown here and ignored", excerpt(child.name())));
+    note_unknown(fmt::format("the element {}", excerpt(child.name())), child.name(), known,
+                 "ignored here", [&] { return line(child); });
   } else if (is_conflict_marker(trimmed(child.value()))) {
     fail(child, "unresolved merge-conflict marker at " + excerpt(trimmed(child.value())));
   } else {
@@ -226,6 +231,30 @@ std::optional<Color> XmlReading::color(const pugi::xml_node& node) {
   }
   const auto [red, green, blue] = triple(node, "color", kColorRange);
   return Color{red, green, blue};
+}
+
+void XmlReading::take_back_shift(const pugi::xml_node& own) {
+  if (!own.attribute(kShift)) {
+    return;
+  }
+  const std::array<std::int32_t, 3> by = triple(own, kShift, {0, base::kCoordinateMax});
+  shift_ = {by[0], by[1], by[2]};
+  const auto move = [&](base::Cell& cell) {
+    cell = {cell.x - shift_.x, cell.y - shift_.y, cell.z - shift_.z};
+    if (!kCoordinateRange.contains(std::min({cell.x, cell.y, cell.z}))) {
+      fail(own,
+           fmt::format("without the shift a cell is ({},{},{}), allowed are coordinates from "
+                       "{} to {}",
+                       cell.x, cell.y, cell.z, kCoordinateRange.lowest, kCoordinateRange.highest));
+    }
+  };
+  base::Cell support = {shift_.x, shift_.y, document.support_z};
+  move(support);
+  document.support_z = support.z;
+  std::ranges::for_each(document.modules, move, &ModuleEntry::cell);
+  for (Step& step : document.steps) {
+    std::ranges::for_each(step, move, &PlannedEntry::cell);
+  }
 }
 
 Element XmlReading::element(const pugi::xml_node& node, int depth) {

@@ -33,9 +33,9 @@ class XmlReading : public Reading {
   void warn_at(const pugi::xml_node& node, std::string message);
 
   /// Checks an element that is not kept: attributes once each, known ones only, no content.
-  void expect_attributes(const pugi::xml_node& node, bool (*is_known)(std::string_view name));
+  void expect_attributes(const pugi::xml_node& node, Names known);
   void expect_no_content(const pugi::xml_node& node);
-  void warn_of_unknown_child(const pugi::xml_node& child);
+  void warn_of_unknown_child(const pugi::xml_node& child, Names known);
 
   /// Those attributes that `is_read` leaves.
   Attributes attributes(const pugi::xml_node& node, bool (*is_read)(std::string_view name));
@@ -55,6 +55,9 @@ class XmlReading : public Reading {
 
   /// Attribute "color", if there is one.
   std::optional<Color> color(const pugi::xml_node& node);
+
+  /// What our writer has added to every cell, lest any be negative, by the attribute of <holdfast>.
+  void take_back_shift(const pugi::xml_node& own);
 
   /// An element with everything in it. `depth` counts from 1.
   Element element(const pugi::xml_node& node, int depth = 1);

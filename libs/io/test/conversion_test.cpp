@@ -164,7 +164,7 @@ TEST(Conversion, gives_visiblesim_a_grid_that_holds_every_cell) {
   Document document;
   document.modules = {{{0, 4, 0}, false, std::nullopt, {}}, {{-3, 0, 0}, false, std::nullopt, {}}};
   document.steps = {{{{2, 0, 6}, std::nullopt, {}}}};
-  EXPECT_NE(write_visiblesim(document).find("<world gridSize=\"3,5,7\">"), std::string::npos);
+  EXPECT_NE(write_visiblesim(document).find("<world gridSize=\"6,5,7\">"), std::string::npos);
   // It is no part of the document: it would not be there if the file had not been needed.
   EXPECT_TRUE(through_xml(document).world.empty());
 
@@ -188,6 +188,39 @@ TEST(Conversion, writes_for_visiblesim_only_what_visiblesim_knows) {
   </targetList>
 </world>
 )");
+}
+
+/// VisibleSim's cells are counted from 0: all are moved, the ground with them, and come back.
+TEST(Conversion, moves_cells_below_zero_and_takes_it_back) {
+  Document document;
+  document.support_z = -1;
+  document.modules = {{{-3, -2, -1}, false, std::nullopt, {}}, {{-3, -2, 0}, true, Color{}, {}}};
+  document.steps = {{{{-4, -2, 0}, std::nullopt, {}}}, {{{-3, 5, 0}, std::nullopt, {}}}};
+  EXPECT_EQ(visiblesim_shift(document).value(), (base::Cell{4, 2, 1}));
+  const std::string text = write_visiblesim(document);
+  EXPECT_NE(text.find("<cell position=\"0,0,1\""), std::string::npos) << text;
+  EXPECT_NE(text.find("globalSupportZ=\"0\""), std::string::npos) << text;
+  EXPECT_NE(text.find("gridSize=\"2,8,2\""), std::string::npos) << text;
+  EXPECT_NE(text.find("shift=\"4,2,1\""), std::string::npos) << text;
+  expect_equal_after_conversion(document);
+  EXPECT_TRUE(read_visiblesim(text).value().warnings.size() == 1);  // Of the second step.
+  // Nothing is moved, or said, without need.
+  document.modules.clear();
+  document.steps.clear();
+  document.support_z = 0;
+  EXPECT_EQ(visiblesim_shift(document).value(), base::Cell{});
+  EXPECT_EQ(write_visiblesim(document).find("shift"), std::string::npos);
+}
+
+TEST(Conversion, says_so_where_cells_reach_beyond_any_grid) {
+  Document document;
+  document.modules = {{{-1, 0, 0}, false, std::nullopt, {}},
+                      {{base::kCoordinateMax, 0, 0}, false, std::nullopt, {}}};
+  EXPECT_FALSE(visiblesim_shift(document));
+  expect_equal_after_conversion(document);
+  document.modules.back().cell.x -= 1;
+  EXPECT_TRUE(visiblesim_shift(document));
+  expect_equal_after_conversion(document);
 }
 
 }  // namespace

@@ -92,15 +92,68 @@ TEST(Json, whole_numbers_may_be_written_with_a_point) {
 
 TEST(Json, unknown_keys_are_named_by_their_pointer) {
   const ReadDocument result = read(json(
-      R"("modules": [[0,0,0], {"cell": [1,0,0], "colour": 1}, {"cell": [2,0,0], "colour": 2}],
+      R"("modules": [[0,0,0], {"cell": [1,0,0], "paint": 1}, {"cell": [2,0,0], "paint": 2}],
          "material": {"m/a~s": 1}, "author": {"deep": []},
          "visiblesim": {"scenery": [{"element": "camera", "zoom": 1}]})"));
   EXPECT_EQ(result.warnings,
             (std::vector<std::string>{
-                "/modules/1/colour: the key 'colour' is unknown and ignored (2 times, first here)",
+                "/modules/1/paint: the key 'paint' is unknown and ignored (2 times, first here)",
                 "/material/m~1a~0s: the key 'm/a~s' is unknown and ignored",
                 "/author: the key 'author' is unknown and ignored",
                 "/visiblesim/scenery/0/zoom: the key 'zoom' is unknown and ignored"}));
+}
+
+/// What a slip of one or two letters makes of a key loses what the key says, so it is an error.
+TEST(Json, keys_that_look_like_known_ones_are_errors) {
+  struct Slip {
+    const char* members;
+    const char* where;
+    const char* meant;
+  };
+
+  const Slip slips[] = {
+      {R"("modules": [], "planed": [])", "/planed", "'planned'"},
+      {R"("modules": [], "Planned": [])", "/Planned", "'planned'"},
+      {R"("modules": [], "later-steps": [])", "/later-steps", "'later_steps'"},
+      {R"("modules": [], "materal": {})", "/materal", "'material'"},
+      {R"("modules": [], "suport_z": 1)", "/suport_z", "'support_z'"},
+      {R"("modules": [], "material": {"mass": 1})", "/material/mass", "'mass_kg'"},
+      {R"("modules": [], "material": {"mass_g": 1})", "/material/mass_g", "'mass_kg'"},
+      {R"("modules": [], "material": {"pitch_m": 1})", "/material/pitch_m", "'pitch_mm'"},
+      {R"("modules": [{"cell": [0,0,0], "fixd": true}])", "/modules/0/fixd", "'fixed'"},
+      {R"("modules": [{"cell": [0,0,0], "fiexd": true}])", "/modules/0/fiexd", "'fixed'"},
+      {R"("modules": [{"cell": [0,0,0], "attributes": {"fixd": "1"}}])", "module (0,0,0)",
+       "'fixed'"},
+      {R"("modules": [], "visiblesim": {"parameters": {"globalmass": "1"}})", "", "'globalMass'"},
+      {R"("modules": [], "known_answer": {"verdict": "safe", "margin": 1})", "/known_answer/margin",
+       "'margin_mm'"}};
+  for (const Slip& slip : slips) {
+    const auto result = read_json(json(slip.members));
+    ASSERT_FALSE(result) << slip.members;
+    EXPECT_EQ(result.error().where, slip.where);
+    EXPECT_NE(result.error().message.find("did you mean " + std::string(slip.meant) + "?"),
+              std::string::npos)
+        << result.error().message;
+  }
+}
+
+TEST(Json, keys_of_others_are_noted_however_short) {
+  const ReadDocument result = read(json(
+      R"("modules": [], "author": 1, "date": 1, "x": 1, "id": 1, "units": 1, "note": 1, "v": 2)"));
+  EXPECT_EQ(result.warnings.size(), 7U);
+}
+
+TEST(Json, facets_wider_than_the_pitch_are_noted) {
+  const auto warnings = [](const char* facet) {
+    return read(json(R"("modules": [[0,0,0]], "material": {"facet_mm": )" + std::string(facet) +
+                     "}"))
+        .warnings;
+  };
+  EXPECT_TRUE(warnings("40").empty());
+  EXPECT_TRUE(warnings("39.5").empty());
+  ASSERT_EQ(warnings("40.5").size(), 1U);
+  EXPECT_NE(warnings("40.5")[0].find("40.5 mm are wider than the pitch of 40 mm"),
+            std::string::npos);
 }
 
 TEST(Json, many_different_warnings_end_in_a_count) {

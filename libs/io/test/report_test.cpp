@@ -138,5 +138,38 @@ TEST(Report, of_a_failure_is_an_object_with_its_place) {
   EXPECT_EQ(report["where"], "line 3");
 }
 
+/// Whoever reads the report must be able to tell what holds from what breaks.
+TEST(Report, never_writes_one_for_a_ratio_below_one) {
+  struct Case {
+    double strength;  ///< Over the load.
+    const char* ratio;
+  };
+
+  // The chain carries 25 modules.
+  for (const auto& [strength, ratio] : {Case{1.00004, " 0.99996 "}, Case{1 + 4e-9, " 0.999999996 "},
+                                        Case{1, " 1.0000 "}, Case{1 - 4e-6, " 1.000004 "}}) {
+    model::RobotSpec spec = long_chain();
+    spec.material.strength_vertical_n = 25 * model::module_weight_n(spec.material) * strength;
+    const std::string text = write_report_text(Checked(spec).entry());
+    const bool is_one = std::string_view(ratio) == " 1.0000 ";
+    EXPECT_NE(text.find("carries" + std::string(ratio) + "of"), std::string::npos) << text;
+    EXPECT_EQ(text.find("at 1.000 times") != std::string::npos, is_one) << text;
+  }
+}
+
+TEST(Report, writes_coordinates_of_far_robots_in_full) {
+  constexpr std::int32_t kFar = base::kCoordinateMax;
+  const Checked far({.existing = {{kFar, kFar, 0}}});
+  const std::string text = write_report_text(far.entry());
+  EXPECT_NE(text.find("(39999980, 39999980)-(40000020, 39999980) mm"), std::string::npos) << text;
+}
+
+TEST(Report, lines_stay_one_line) {
+  EXPECT_EQ(one_line("plain \u00e4\u4e16"), "plain \u00e4\u4e16");
+  EXPECT_EQ(one_line("a\nb\tc\rd\x1b[31m\x7f"), "a\\nb\\tc\\x0dd\\x1b[31m\\x7f");
+  EXPECT_EQ(one_line("\xc2\x85|\xe2\x80\xa8|\xff"), "\\xc2\\x85|\\xe2\\x80\\xa8|\\xff");
+  EXPECT_EQ(one_line(""), "");
+}
+
 }  // namespace
 }  // namespace holdfast::io

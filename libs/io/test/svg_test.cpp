@@ -56,7 +56,7 @@ TEST(Svg, every_other_broken_connection_is_outlined) {
 TEST(Svg, a_ratio_below_one_is_never_shown_as_one) {
   const model::Robot robot = make({.existing = {{0, 0, 0}, {1, 0, 0}}});
   EXPECT_EQ(label(Picture(write_svg(robot, with_ratios(robot, {0.998}), ""))), "0.9980");
-  EXPECT_EQ(label(Picture(write_svg(robot, with_ratios(robot, {0.999999}), ""))), "0.9999");
+  EXPECT_EQ(label(Picture(write_svg(robot, with_ratios(robot, {0.999999}), ""))), "0.999999");
   EXPECT_EQ(label(Picture(write_svg(robot, with_ratios(robot, {1.0}), ""))), "1.00 \u00d7");
   for (const Face& face :
        Picture(write_svg(robot, with_ratios(robot, {0.998}), "")).faces("modules")) {
@@ -233,6 +233,32 @@ TEST(Svg, it_tells_a_screen_reader_what_it_shows) {
   const std::string description = picture.root().child_value("desc");
   EXPECT_NE(description.find("7 modules"), std::string::npos);
   EXPECT_NE(description.find("OVERLOAD"), std::string::npos);
+}
+
+/// libxml2 and what is built on it refuse an attribute of 10 million bytes.
+TEST(Svg, of_a_large_rough_robot_has_no_attribute_that_readers_refuse) {
+  constexpr std::int32_t kSide = 260;
+  model::RobotSpec spec;
+  std::uint32_t random = 1;
+  for (std::int32_t i = 0; i < kSide * kSide; ++i) {
+    const base::Cell cell = {i % kSide, i / kSide, 0};
+    spec.existing.push_back(cell);
+    random = random * 1664525U + 1013904223U;
+    for (std::int32_t z = 1; z <= static_cast<std::int32_t>(random >> 30U); ++z) {
+      spec.existing.push_back({cell.x, cell.y, z});
+    }
+  }
+  const model::Robot robot = make(spec);
+  ASSERT_GT(robot.modules().size(), 40'000U);
+  const std::string svg = write_svg(robot, without_loads(robot), "rough");
+  std::size_t longest = 0;
+  for (std::size_t at = svg.find('"'); at != std::string::npos; at = svg.find('"', at + 1)) {
+    const std::size_t end = svg.find('"', at + 1);
+    longest = std::max(longest, end - at);
+    at = end;
+  }
+  EXPECT_GT(svg.size(), 2'000'000U);  // It is as large a picture as it should be.
+  EXPECT_LT(longest, 40'000U);
 }
 
 }  // namespace

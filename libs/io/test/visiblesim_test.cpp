@@ -97,7 +97,8 @@ TEST(VisibleSim, parameters_are_independent_of_each_other) {
         read("<parameters " + std::string(name) + "=\" 0.125 \"/><world><blockList/></world>");
     EXPECT_EQ(result.document.material, expected) << name;
     EXPECT_TRUE(result.document.parameters.empty()) << name;
-    EXPECT_TRUE(result.warnings.empty()) << name;
+    // So small a pitch leaves the facets too wide, which is noted.
+    EXPECT_EQ(result.warnings.size(), value == &model::Material::pitch_mm ? 1U : 0U) << name;
   }
 }
 
@@ -291,6 +292,57 @@ TEST(VisibleSim, our_own_element_holds_what_visiblesim_has_no_word_for) {
   expected.material.strength_lateral_n = 12;
   expected.known_answer = KnownAnswer{"unstable", -8.0, std::nullopt, "s"};
   EXPECT_EQ(result.document, expected);
+}
+
+/// One of every attribute and element that VisibleSim's reader asks for or its examples have: none
+/// is called a slip of another.
+TEST(VisibleSim, knows_every_name_of_visiblesim) {
+  const std::string text =
+      "<visuals windowSize=\"1,1\" showGrid=\"1\"/><vm serverport=\"1\"/>"
+      "<parameters nofIterations=\"1\" preconditioner=\"1\" E=\"100\" a=\"40\" A=\"1600\" "
+      "globalL=\"40\" globalI=\"1\" globalIy=\"1\" globalIz=\"1\" globalJ=\"1\" globalNu=\"0.3\" "
+      "globalMu=\"1\" globalBeta=\"1\" globalOmega=\"1\" globalEps=\"1\" globalGamma=\"0.001\" "
+      "globalMass=\"1\" globalSupportZ=\"0\"/>"
+      "<world gridSize=\"9,9,9\" gridsize=\"9,9,9\" windowSize=\"1,1\" maxSimulationTime=\"1\" "
+      "separatorPlane=\"1\"><camera/><spotlight/><customization/><capabilities/><targetGrid/>"
+      "<trash/><blockList blockSize=\"1,1,1\" blocksize=\"1,1,1\" color=\"1,1,1\" size=\"1\" "
+      "ids=\"MANUAL\" idseed=\"1\" seed=\"1\" step=\"1\" format=\"1\">"
+      "<block position=\"0,0,0\" color=\"1,1,1\" fixed=\"1\" centroid=\"1\" solver=\"1\" "
+      "stabilityCheck=\"1\" id=\"1\" master=\"1\" leader=\"1\" alive=\"1\" angle=\"1\" "
+      "orientation=\"1\" rotation=\"1\" piston=\"1\" isTarget=\"1\" isWall=\"1\"/>"
+      "<blocksLine line=\"1\" plane=\"0\" values=\"10\" color=\"1,1,1\" isTarget=\"1\"/>"
+      "<blockBox boxOrigin=\"2,2,2\" boxSize=\"1,1,1\" color=\"1,1,1\"/></blockList>"
+      "<targetList><target format=\"grid\"><cell position=\"3,3,3\" color=\"1,1,1\"/>"
+      "<targetLine line=\"4\" plane=\"4\" values=\"1\"/></target><target format=\"csg\"/>"
+      "<target format=\"relativeGrid\"/><target format=\"surface\"/></targetList></world>";
+  const ReadDocument result = read(text);
+  EXPECT_EQ(result.document.modules.front().attributes.size(), 13U);
+  EXPECT_FALSE(contains(warning_of(text), "did you mean"));
+}
+
+TEST(VisibleSim, names_that_look_like_known_ones_are_errors) {
+  const auto refused = [](const std::string& text, const std::string& meant) {
+    const auto result = read_visiblesim(text);
+    EXPECT_FALSE(result) << text;
+    EXPECT_TRUE(contains(result ? "" : result.error().message, "did you mean '" + meant + "'?"))
+        << text;
+  };
+  const std::string block = "<block position=\"0,0,0\"/>";
+  refused("<parameters globalmass=\"1\"/><world><blockList/></world>", "globalMass");
+  refused("<parameters gobalMass=\"1\"/><world><blockList/></world>", "globalMass");
+  refused("<parameters e=\"1\"/><world><blockList/></world>", "E");
+  refused("<parameter/><world><blockList/></world>", "parameters");
+  refused(world("<block position=\"0,0,0\" fixd=\"1\"/>"), "fixed");
+  refused(world("<block position=\"0,0,0\" colour=\"1,1,1\"/>"), "color");
+  refused(world("<blok position=\"0,0,0\"/>"), "block");
+  refused(world("<blockLine values=\"1\"/>"), "blocksLine");
+  refused(world("<blocksLine values=\"1\" plan=\"2\"/>"), "plane");
+  refused(world("<blockBox boxorigin=\"0,0,0\"/>"), "boxOrigin");
+  refused(world(block, "<targetlist/>"), "targetList");
+  refused(world(block, "<targetList><targt/></targetList>"), "target");
+  refused(world(block, "<targetList><target format=\"Grid\"/></targetList>"), "grid");
+  refused(world(block, "<targetList><target format=\"grid\"><cel/></target></targetList>"), "cell");
+  refused(world(block, "<holdfast gravity=\"1\"/>"), "gravity_m_s2");
 }
 
 }  // namespace

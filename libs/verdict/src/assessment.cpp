@@ -13,6 +13,7 @@
 #include "holdfast/base/double_double.hpp"
 #include "holdfast/host/team.hpp"
 #include "holdfast/mechanics/support_corners.hpp"
+#include "holdfast/verdict/beside_one.hpp"
 
 namespace holdfast::verdict {
 namespace {
@@ -190,6 +191,21 @@ double error_margin(const model::Robot& robot, const Equilibrium& equilibrium,
   return margin + 2 * loads.change;
 }
 
+/// Nothing is said of a load below its own uncertainty: then it may as well be compression. Between
+/// the answers of ambiguous feet, which lie far apart, each is as good as the other.
+bool is_pulled_apart(double ratio_max, const Assessment& assessment) {
+  const LoadRange& range = assessment.load_ratio_range;
+  const bool is_known = breaks(ratio_max) || assessment.equilibrium.open_but_held_count > 0 ||
+                        ratio_max > range.high - range.low;
+  return ratio_max >= kLoadRatioTie && is_known;
+}
+
+/// A number with one digit that is not below it.
+double rounded_up(double number) {
+  const double unit = std::pow(10, std::floor(std::log10(number)));
+  return std::ceil(number / unit) * unit;
+}
+
 /// Sec. III-D for every connection.
 void assess_connections(const model::Robot& robot, const solver::EquilibriumOptions& options,
                         Assessment& assessment) {
@@ -209,7 +225,7 @@ void assess_connections(const model::Robot& robot, const solver::EquilibriumOpti
     return;
   }
   assessment.load_ratio_max = loads.ratio_max;
-  if (loads.ratio_max >= kLoadRatioTie) {
+  if (is_pulled_apart(loads.ratio_max, assessment)) {
     assessment.worst = loads.worst;
     assessment.weight_factor = 1 / loads.ratio_max;
   }
@@ -301,7 +317,7 @@ void find_equilibrium(const model::Robot& robot, const solver::EquilibriumOption
 std::string toppling_reason(const RigidBody& body) {
   const auto& [a, b] = *body.edge;
   const std::string where =
-      fmt::format("the edge ({:g}, {:g})-({:g}, {:g}) mm", a.x, a.y, b.x, b.y);
+      fmt::format("the edge ({:.10g}, {:.10g})-({:.10g}, {:.10g}) mm", a.x, a.y, b.x, b.y);
   if (*body.margin_mm == 0) {
     return fmt::format(
         "the centre of mass lies exactly over {} of the support polygon: nothing "
@@ -348,21 +364,26 @@ void decide_stable(const model::Robot& robot, Assessment& assessment) {
                     range.low, range.high));
   } else if (is_broken) {
     assessment.verdict = Verdict::kOverload;
-    assessment.reasons.push_back(fmt::format(
-        "{} of {} connections would break; the worst, {}, carries {:.4f} of its strength",
-        assessment.broken.size(), assessment.connections.size(),
-        model::ends_text(robot, *assessment.worst), ratio));
+    assessment.reasons.push_back(
+        fmt::format("{} of {} connections would break; the worst, {}, carries {} of its strength",
+                    assessment.broken.size(), assessment.connections.size(),
+                    model::ends_text(robot, *assessment.worst), beside_one(ratio, 4)));
   } else if (assessment.connections.empty()) {
     assessment.verdict = Verdict::kSafe;
     assessment.reasons.emplace_back("stable, and a single module has no connection to break");
   } else if (!assessment.worst) {
     assessment.verdict = Verdict::kSafe;
-    assessment.reasons.emplace_back("stable, and no connection is pulled apart");
+    assessment.reasons.push_back(
+        range.high < kLoadRatioTie
+            ? "stable, and no connection is pulled apart"
+            : fmt::format("stable, and no connection is known to be pulled apart: none carries "
+                          "more than {:.1g} of its strength",
+                          rounded_up(range.high)));
   } else {
     assessment.verdict = Verdict::kSafe;
     assessment.reasons.push_back(
-        fmt::format("stable; the worst connection, {}, carries {:.4f} of its strength",
-                    model::ends_text(robot, *assessment.worst), ratio));
+        fmt::format("stable; the worst connection, {}, carries {} of its strength",
+                    model::ends_text(robot, *assessment.worst), beside_one(ratio, 4)));
   }
 }
 
@@ -373,11 +394,11 @@ void add_contact_remarks(Assessment& assessment) {
         "(Eqs. 9-12) has no usable answer here");
   }
   if (assessment.equilibrium.open_but_held_count > 0) {
-    assessment.reasons.push_back(
-        fmt::format("{} lifted feet would touch down again if they slid freely, and lift again if "
-                    "held; between the two the largest load ratio lies from {:.4f} to {:.4f}",
-                    assessment.equilibrium.open_but_held_count, assessment.load_ratio_range.low,
-                    assessment.load_ratio_range.high));
+    assessment.reasons.push_back(fmt::format(
+        "{} lifted feet would touch down again if they slid freely, and lift again if "
+        "held; between the two the largest load ratio lies from {} to {}",
+        assessment.equilibrium.open_but_held_count, beside_one(assessment.load_ratio_range.low, 4),
+        beside_one(assessment.load_ratio_range.high, 4)));
   }
   if (assessment.contact_model == ContactModel::kBonded) {
     assessment.reasons.emplace_back(

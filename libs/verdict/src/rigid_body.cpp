@@ -5,39 +5,45 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
+
+#include "exact_sign.hpp"
 
 namespace holdfast::verdict {
 namespace {
 
-/// In units of a half pitch or a fraction of it. Scaled by the number of modules where the centre
-/// of mass takes part.
+/// In half pitches and half facets. Scaled by the number of modules where the centre of mass takes
+/// part: coordinates reach 2^21 times 2^25 modules, products 2^70.
 struct Point {
-  std::int64_t x = 0;
-  std::int64_t y = 0;
-
-  friend constexpr auto operator<=>(const Point&, const Point&) = default;
+  Length x;
+  Length y;
 };
 
-// Coordinates reach 2^21 times 2^12 units times 2^25 modules: products need up to 119 bits.
-__extension__ using Wide = __int128;
-
-/// Twice the signed area of the triangle a, b, c; positive if c lies left of a -> b.
-Wide turn(const Point& a, const Point& b, const Point& c) {
-  return static_cast<Wide>(b.x - a.x) * (c.y - a.y) - static_cast<Wide>(b.y - a.y) * (c.x - a.x);
+/// Twice the signed area of the triangle a, b, c, where c is `count` times as large;
+/// positive if c lies left of a -> b.
+Area turn(const Point& a, const Point& b, const Point& c, std::int64_t count = 1) {
+  return (b.x - a.x) * (c.y - count * a.y) - (b.y - a.y) * (c.x - count * a.x);
 }
 
 /// Andrew's monotone chain; counter-clockwise, no three points on one line.
-std::vector<Point> convex_hull(std::vector<Point> points) {
+std::vector<Point> convex_hull(std::vector<Point> points, const Measure& measure) {
   if (points.empty()) {
     return points;
   }
-  std::ranges::sort(points);
-  points.erase(std::unique(points.begin(), points.end()), points.end());
+  const auto compare = [&](const Point& a, const Point& b) {
+    const int x = measure.sign(a.x - b.x);
+    return x != 0 ? x : measure.sign(a.y - b.y);
+  };
+  std::ranges::sort(points, [&](const Point& a, const Point& b) { return compare(a, b) < 0; });
+  points.erase(std::unique(points.begin(), points.end(),
+                           [&](const Point& a, const Point& b) { return compare(a, b) == 0; }),
+               points.end());
   std::vector<Point> hull;
   for (int pass = 0; pass < 2; ++pass) {
     const std::size_t start = hull.size();
     for (const Point& point : points) {
-      while (hull.size() >= start + 2 && turn(hull[hull.size() - 2], hull.back(), point) <= 0) {
+      while (hull.size() >= start + 2 &&
+             measure.sign(turn(hull[hull.size() - 2], hull.back(), point)) <= 0) {
         hull.pop_back();
       }
       hull.push_back(point);
@@ -48,25 +54,27 @@ std::vector<Point> convex_hull(std::vector<Point> points) {
   return hull;
 }
 
-/// Units per half pitch. A facet as wide as the pitch has its corners at odd half pitches; any
-/// other width is rounded down to 1/4096 of a half pitch, towards the safe side.
-std::int64_t units_per_half_pitch(const model::Material& material) {
-  return material.facet_mm == material.pitch_mm ? 1 : 4096;
-}
+/// Corners of the feet, as far as they can be corners of the polygon: of every row along x those at
+/// its two ends.
+std::vector<Point> support_corners(const model::Robot& robot) {
+  struct Row {
+    std::int32_t first;
+    std::int32_t last;
+  };
 
-std::vector<Point> support_corners(const model::Robot& robot, std::int64_t units) {
-  const model::Material& material = robot.material();
-  const auto reach =
-      static_cast<std::int64_t>(static_cast<double>(units) * material.facet_mm / material.pitch_mm);
-  std::vector<Point> corners;
+  std::map<std::int32_t, Row> rows;
   for (const model::Module& module : robot.modules()) {
     if (module.support == model::Support::kGround) {
-      const std::int64_t x = 2 * units * module.cell.x;
-      const std::int64_t y = 2 * units * module.cell.y;
-      corners.insert(corners.end(), {{x - reach, y - reach},
-                                     {x + reach, y - reach},
-                                     {x - reach, y + reach},
-                                     {x + reach, y + reach}});
+      const auto [x, y, z] = module.cell;
+      Row& row = rows.try_emplace(y, Row{x, x}).first->second;
+      row = {std::min(row.first, x), std::max(row.last, x)};
+    }
+  }
+  std::vector<Point> corners;
+  for (const auto& [y, row] : rows) {
+    for (const std::int64_t side : {-1, 1}) {
+      corners.push_back({{2 * std::int64_t{row.first}, -1}, {2 * std::int64_t{y}, side}});
+      corners.push_back({{2 * std::int64_t{row.last}, 1}, {2 * std::int64_t{y}, side}});
     }
   }
   return corners;
@@ -79,23 +87,26 @@ struct EdgeDistance {
   Point b;
 };
 
-bool contains_strictly(const std::vector<Point>& hull, const Point& point) {
+/// `mass` is `count` times as large.
+bool contains_strictly(const std::vector<Point>& hull, const Point& mass, std::int64_t count,
+                       const Measure& measure) {
   for (std::size_t i = 0; i < hull.size(); ++i) {
-    if (turn(hull[i], hull[(i + 1) % hull.size()], point) <= 0) {
+    if (measure.sign(turn(hull[i], hull[(i + 1) % hull.size()], mass, count)) <= 0) {
       return false;
     }
   }
   return true;
 }
 
-EdgeDistance nearest_edge(const std::vector<Point>& hull, const Point& mass) {
+/// In half pitches, times `count`.
+EdgeDistance nearest_edge(const std::vector<Point>& hull, const Point& mass, std::int64_t count,
+                          const Measure& measure) {
   EdgeDistance nearest;
   for (std::size_t i = 0; i < hull.size(); ++i) {
     const Point& a = hull[i];
     const Point& b = hull[(i + 1) % hull.size()];
-    const double length =
-        std::hypot(static_cast<double>(b.x - a.x), static_cast<double>(b.y - a.y));
-    const double distance = static_cast<double>(turn(a, b, mass)) / length;
+    const double length = std::hypot(measure.value(b.x - a.x), measure.value(b.y - a.y));
+    const double distance = measure.value(turn(a, b, mass, count)) / length;
     if (distance < nearest.distance) {
       nearest = {.distance = distance, .a = a, .b = b};
     }
@@ -106,27 +117,29 @@ EdgeDistance nearest_edge(const std::vector<Point>& hull, const Point& mass) {
 }  // namespace
 
 RigidBody assess_rigid_body(const model::Robot& robot) {
-  // Everything in half pitches times count: the centre of mass becomes an integer.
-  const auto count = static_cast<std::int64_t>(robot.modules().size());
-  const std::int64_t units = units_per_half_pitch(robot.material());
-  const double unit_mm =
-      robot.material().pitch_mm / 2 / static_cast<double>(units) / static_cast<double>(count);
+  const model::Material& material = robot.material();
+  const Measure measure(material.pitch_mm, material.facet_mm);
   const auto plan_point = [&](const Point& point) {
-    return PlanPoint{static_cast<double>(point.x) * unit_mm,
-                     static_cast<double>(point.y) * unit_mm};
+    const auto length = [&](const Length& part) {
+      return (static_cast<double>(part.pitches) * material.pitch_mm +
+              static_cast<double>(part.facets) * material.facet_mm) /
+             2;
+    };
+    return PlanPoint{length(point.x), length(point.y)};
   };
+  // Times count, the centre of mass is a whole number of half pitches.
+  const auto count = static_cast<std::int64_t>(robot.modules().size());
   Point mass;
   for (const model::Module& module : robot.modules()) {
-    mass.x += 2 * units * module.cell.x;
-    mass.y += 2 * units * module.cell.y;
+    mass.x.pitches += 2 * std::int64_t{module.cell.x};
+    mass.y.pitches += 2 * std::int64_t{module.cell.y};
   }
-  std::vector<Point> hull = convex_hull(support_corners(robot, units));
-  for (Point& point : hull) {
-    point = {point.x * count, point.y * count};
-  }
+  const std::vector<Point> hull = convex_hull(support_corners(robot), measure);
 
   RigidBody body;
-  body.centre_of_mass = plan_point(mass);
+  const double half_pitch_mm = material.pitch_mm / 2 / static_cast<double>(count);
+  body.centre_of_mass = {static_cast<double>(mass.x.pitches) * half_pitch_mm,
+                         static_cast<double>(mass.y.pitches) * half_pitch_mm};
   for (const Point& point : hull) {
     body.polygon.push_back(plan_point(point));
   }
@@ -134,9 +147,9 @@ RigidBody assess_rigid_body(const model::Robot& robot) {
     body.is_stable = true;
     return body;
   }
-  body.is_stable = contains_strictly(hull, mass);
-  const EdgeDistance nearest = nearest_edge(hull, mass);
-  body.margin_mm = nearest.distance * unit_mm;
+  body.is_stable = contains_strictly(hull, mass, count, measure);
+  const EdgeDistance nearest = nearest_edge(hull, mass, count, measure);
+  body.margin_mm = nearest.distance * half_pitch_mm;
   body.edge = {plan_point(nearest.a), plan_point(nearest.b)};
   return body;
 }

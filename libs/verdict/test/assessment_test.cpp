@@ -262,5 +262,27 @@ TEST(Assessment, uses_the_width_of_the_facet_for_both_stability_checks) {
   EXPECT_FALSE(narrow.model.is_stable);
 }
 
+/// Blocks that stand on the ground press on every connection but those on their lowest layers,
+/// where there is nothing but the solver's error: of a true zero no digit is told.
+TEST(Assessment, tells_nothing_of_a_load_below_its_own_uncertainty) {
+  model::RobotSpec tower;
+  for (std::int32_t i = 0; i < 3 * 3 * 60; ++i) {
+    tower.existing.push_back({i % 3, i / 3 % 3, i / 9});
+  }
+  const Assessment assessment = assess_spec(tower);
+  ASSERT_EQ(assessment.equilibrium.method, solver::Method::kMultigrid);
+  EXPECT_EQ(assessment.verdict, Verdict::kSafe);
+  EXPECT_FALSE(assessment.worst.has_value());
+  EXPECT_FALSE(assessment.weight_factor.has_value());
+  EXPECT_NE(assessment.reasons.front().find("no connection is "), std::string::npos);
+  // The same tower with an arm has a load, and it is told.
+  for (std::int32_t x = 3; x < 8; ++x) {
+    tower.existing.push_back({x, 1, 30});
+  }
+  const Assessment loaded = assess_spec(tower);
+  ASSERT_TRUE(loaded.worst.has_value());
+  EXPECT_GT(*loaded.load_ratio_max, 0.1);
+}
+
 }  // namespace
 }  // namespace holdfast::verdict

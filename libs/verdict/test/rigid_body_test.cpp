@@ -275,5 +275,50 @@ TEST(RigidBody, agrees_with_the_safe_angles_of_its_feet) {
   EXPECT_LT(stable_count, 1900);
 }
 
+/// A post with an arm to +x whose centre of mass lies `sum` / 8 cells from its foot's middle.
+RobotSpec leaning_post(double pitch, double facet) {
+  return {
+      .existing =
+          {{0, 0, 0}, {0, 0, 1}, {0, 0, 2}, {0, 0, 3}, {0, 0, 4}, {1, 0, 4}, {2, 0, 4}, {0, 0, 5}},
+      .material = {.pitch_mm = pitch, .facet_mm = facet}};
+}
+
+/// The centre of mass is 3/8 of a pitch off the middle, the edge half a facet: with a facet of 3/4
+/// of the pitch nothing is left, and one more or less in the last bit of the double decides.
+TEST(RigidBody, is_exact_for_facets_that_are_not_as_wide_as_the_pitch) {
+  // Of numbers with 24 bits, 4 and 3 times them are doubles without rounding.
+  for (const float quarter : {10.0F, 0.1F, 1.0F / 3, 2.5e-4F, 2.5e11F}) {
+    const double pitch = 4 * static_cast<double>(quarter);
+    const double tie = 3 * static_cast<double>(quarter);
+    const RigidBody none = assess(leaning_post(pitch, tie));
+    EXPECT_FALSE(none.is_stable) << pitch;
+    EXPECT_EQ(*none.margin_mm, 0) << pitch;
+    const RigidBody less = assess(leaning_post(pitch, std::nextafter(tie, 0)));
+    EXPECT_FALSE(less.is_stable) << pitch;
+    EXPECT_LT(*less.margin_mm, 0) << pitch;
+    const RigidBody more = assess(leaning_post(pitch, std::nextafter(tie, pitch)));
+    EXPECT_TRUE(more.is_stable) << pitch;
+    EXPECT_GT(*more.margin_mm, 0) << pitch;
+    EXPECT_LT(*more.margin_mm, 1e-15 * pitch) << pitch;
+  }
+}
+
+/// No 4096th of anything: a third of the pitch, exactly.
+TEST(RigidBody, has_the_margin_of_any_facet_to_the_last_digits) {
+  for (const double facet : {10.0, 29.0, 30.0, 31.0, 45.0, 1e-12, 1e12}) {
+    const RobotSpec spec{.existing = {{0, 0, 0}, {0, 0, 1}},
+                         .material = {.pitch_mm = 30, .facet_mm = facet}};
+    const RigidBody body = assess(spec);
+    EXPECT_TRUE(body.is_stable);
+    EXPECT_NEAR(*body.margin_mm, facet / 2, 1e-15 * facet);
+    EXPECT_NEAR(body.polygon[2].x, facet / 2, 1e-15 * facet);
+  }
+  // Far beyond the 64 bits that quotients of this size once had to fit in.
+  const RobotSpec wide{.existing = {{0, 0, 0}, {1, 0, 0}, {1, 0, 1}},
+                       .material = {.pitch_mm = 1e-12, .facet_mm = 1e12}};
+  EXPECT_TRUE(assess(wide).is_stable);
+  EXPECT_NEAR(*assess(wide).margin_mm, 5e11, 1e-3);
+}
+
 }  // namespace
 }  // namespace holdfast::verdict

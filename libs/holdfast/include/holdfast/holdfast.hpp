@@ -11,10 +11,12 @@
 #include <vector>
 
 #include "holdfast/host/large_pages.hpp"
+#include "holdfast/host/output_file.hpp"
 #include "holdfast/io/document.hpp"
 #include "holdfast/io/picture.hpp"
 #include "holdfast/io/report.hpp"
 #include "holdfast/verdict/assessment.hpp"
+#include "holdfast/verdict/beside_one.hpp"
 
 /// The facade: load a structure, check it, show the answer. Everything an application needs.
 ///
@@ -54,10 +56,11 @@ struct CheckResult {
 /// The library's version, "major.minor.patch".
 std::string_view version();
 
-/// Reads a whole file; "-" is standard input. Errors: a folder, too large, not readable.
+/// Reads a whole file of text; "-" is standard input. Errors: a folder, too large, not readable, a
+/// zero byte, at which reading ends.
 base::Result<std::string> read_file(const std::filesystem::path& path);
 
-/// Writes a whole file or nothing: into a temporary file beside it, which is then renamed.
+/// Writes a whole file or nothing, as host::OutputFile does; "-" is standard output.
 std::optional<base::Error> write_file(const std::filesystem::path& path, std::string_view text);
 
 /// Reads VisibleSim XML or holdfast JSON and builds the robot with the first planned step.

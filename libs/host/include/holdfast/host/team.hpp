@@ -39,7 +39,8 @@ class Team {
   static constexpr std::size_t kSharedChunkMin = 4;
 
   /// Calls work(begin, end) for ranges that together are [first, last); ranges begin at multiples
-  /// of the chunk from `first`, so that each chunk is computed whole by one thread.
+  /// of the chunk from `first`, so that each chunk is computed whole by one thread. What a call
+  /// throws is thrown here once all have ended; of several one.
   template <class Work>
   void share(std::size_t first, std::size_t last, const Work& work) {
     const std::size_t chunk_count = (last - first + kChunk - 1) / kChunk;

@@ -111,8 +111,14 @@ base::Result<ReadDocument> read_document(std::string_view text);
 base::Result<ReadDocument> read_visiblesim(std::string_view text);
 base::Result<ReadDocument> read_json(std::string_view text);
 
+/// What write_visiblesim adds to every cell and to support_z: VisibleSim knows no cell below 0. The
+/// attribute `shift` of <holdfast> says it, and the reader takes it back. Positions in scenery,
+/// targets and attributes stay as they are. Error: the cells reach further than its grid can.
+base::Result<base::Cell> visiblesim_shift(const Document& document);
+
 /// Reading back gives an equal document. Comments and the layout of the text are not kept, and
-/// blocksLine and blockBox are written as single blocks.
+/// blocksLine and blockBox are written as single blocks. Where visiblesim_shift is an error, cells
+/// are written as they are.
 std::string write_visiblesim(const Document& document);
 std::string write_json(const Document& document);
 

@@ -10,6 +10,10 @@
 
 namespace holdfast::io {
 
+/// A text from outside, such as a name, in one line: line feeds, other control characters and what
+/// is not UTF-8 as escapes ("\\n", "\\x1b").
+std::string one_line(std::string_view text);
+
 /// One checked structure, for a report. Views must outlive the call.
 struct ReportEntry {
   std::string_view name;

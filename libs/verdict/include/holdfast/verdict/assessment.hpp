@@ -64,7 +64,8 @@ struct Assessment {
   std::vector<ConnectionResult> connections;
   std::optional<double> load_ratio_max;  ///< None without connections or if one is not a number.
   /// Index of the connection with load_ratio_max; none if that is below kLoadRatioTie, which is
-  /// rounding or compression: no connection is pulled apart.
+  /// rounding or compression, or below the width of load_ratio_range, its own uncertainty: no
+  /// connection is known to be pulled apart.
   std::optional<std::size_t> worst;
   std::vector<std::size_t> broken;  ///< Indices of connections at 1 or more, worst first.
   /// The weight could grow by this factor before the first connection breaks; none without `worst`.

@@ -11,7 +11,8 @@
 /// The rigid body on flat ground (Sec. III-B of [Piranda 2021]), decided exactly.
 ///
 /// All modules weigh the same and sit on a lattice, so the centre of mass is a fraction of two
-/// integers and every comparison below is made in integers: a margin of zero is recognised as zero.
+/// integers, and every comparison is one of whole numbers times pitch and facet, exact for the two
+/// doubles given: a margin of zero is recognised as zero, whatever the width of the facets.
 namespace holdfast::verdict {
 
 /// A point in plan, mm; the centre of cell (0,0) is at the origin.

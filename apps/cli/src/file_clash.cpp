@@ -1,0 +1,119 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#include "file_clash.hpp"
+
+#include <fmt/format.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <system_error>
+#include <vector>
+
+#include "commands.hpp"
+
+namespace holdfast::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// What tells a file from all others: its number if it exists, or else its place.
+struct Identity {
+  bool exists = false;
+  bool is_regular = false;
+  dev_t device = 0;
+  ino_t number = 0;
+  fs::path place;
+
+  bool is_file() const { return !exists || is_regular; }
+};
+
+Identity identity(const struct stat& status) {
+  return {.exists = true,
+          .is_regular = S_ISREG(status.st_mode),
+          .device = status.st_dev,
+          .number = status.st_ino,
+          .place = {}};
+}
+
+/// "-" is the descriptor.
+Identity identify(std::string_view path, int descriptor) {
+  struct stat status {};
+
+  if (path == "-") {
+    return ::fstat(descriptor, &status) == 0 ? identity(status)
+                                             : Identity{.exists = true, .place = {}};
+  }
+  const fs::path target = host::OutputFile::target(path);
+  if (::stat(target.c_str(), &status) == 0) {
+    return identity(status);
+  }
+  std::error_code code;
+  const fs::path parent = target.has_parent_path() ? target.parent_path() : ".";
+  return {.exists = false, .place = fs::weakly_canonical(parent, code) / target.filename()};
+}
+
+bool are_one(const Identity& a, const Identity& b) {
+  if (a.exists != b.exists) {
+    return false;
+  }
+  return a.exists ? a.device == b.device && a.number == b.number : a.place == b.place;
+}
+
+bool is_standard_output(std::string_view path) {
+  return path == "-" || host::OutputFile::is_descriptor(host::OutputFile::target(path));
+}
+
+struct Entry {
+  Output output;
+  Identity identity;
+  bool is_standard = false;
+};
+
+bool clash(const Entry& a, const Entry& b) {
+  return (a.is_standard && b.is_standard) ||
+         (are_one(a.identity, b.identity) && a.identity.is_file());
+}
+
+}  // namespace
+
+std::optional<std::string> find_clash(std::span<const std::string> inputs,
+                                      std::initializer_list<Output> outputs) {
+  std::vector<Entry> entries;
+  for (const Output& output : outputs) {
+    if (!output.path.empty()) {
+      entries.push_back(
+          {output, identify(output.path, STDOUT_FILENO), is_standard_output(output.path)});
+    }
+  }
+  for (std::size_t i = 0; i < entries.size(); ++i) {
+    const auto& [output, file, is_standard] = entries[i];
+    for (const std::string& input : inputs) {
+      const Identity read = identify(input, STDIN_FILENO);
+      if (read.exists && read.is_regular && are_one(read, file)) {
+        return fmt::format("{} {} would overwrite the input {}", output.option, output.path, input);
+      }
+    }
+    for (std::size_t j = 0; j < i; ++j) {
+      if (clash(entries[j], entries[i])) {
+        return fmt::format("{} {} and {} {} are one file", entries[j].output.option,
+                           entries[j].output.path, output.option, output.path);
+      }
+    }
+    const Identity shown = identify("-", STDOUT_FILENO);
+    if (!is_standard && shown.is_regular && are_one(shown, file)) {
+      return fmt::format("{} {} is also where standard output goes", output.option, output.path);
+    }
+  }
+  return std::nullopt;
+}
+
+bool complain_of_clash(std::span<const std::string> inputs, std::initializer_list<Output> outputs) {
+  const auto clash = find_clash(inputs, outputs);
+  if (clash) {
+    fmt::print(stderr, "holdfast: {}\n", io::one_line(*clash));
+  }
+  return clash.has_value();
+}
+
+}  // namespace holdfast::cli

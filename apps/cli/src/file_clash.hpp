@@ -1,0 +1,28 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <initializer_list>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+
+/// Files that would overwrite each other.
+namespace holdfast::cli {
+
+struct Output {
+  std::string_view option;  ///< As it is called on the command line.
+  std::string_view path;    ///< "-" is standard output; empty if there is none.
+};
+
+/// What is wrong if an output is an input, or two outputs are one: by whatever spelling, link or
+/// further name, or because standard output goes there. Nothing if all is well. Of devices only
+/// standard output counts: /dev/null may be given twice.
+std::optional<std::string> find_clash(std::span<const std::string> inputs,
+                                      std::initializer_list<Output> outputs);
+
+/// Prints it as wrong usage; false if there is none.
+bool complain_of_clash(std::span<const std::string> inputs, std::initializer_list<Output> outputs);
+
+}  // namespace holdfast::cli
