@@ -1,0 +1,274 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#include "holdfast/proof/proof.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace holdfast::proof {
+namespace {
+
+using certificate::Certificate;
+using certificate::Integer;
+using certificate::Law;
+using certificate::Residual;
+using certificate::Residuals;
+using mechanics::ContactState;
+using solver::EquilibriumSolver;
+using verdict::Assessment;
+using verdict::ContactModel;
+using Vec = base::Vec6<double>;
+
+/// Of a correction by multigrid, as a share of it: as many digits as its single precision gives
+/// cheaply.
+constexpr double kTolerance = 1e-5;
+
+/// Corrections at most; each brings five digits, or ten and more with the direct solver.
+constexpr int kPassMax = 8;
+
+/// Residuals below so many times the rounding of one force are as good as none, and a pass that
+/// does not bring this factor is the last.
+constexpr double kRoundings = 4;
+constexpr double kGain = 0.3;
+
+/// Of all spare bits of a number so many are left for the solution to grow.
+constexpr int kSpareBits = 6;
+
+Law law_of(ContactModel model) {
+  switch (model) {
+    case ContactModel::kRegularised:
+      return Law::kRegularised;
+    case ContactModel::kUnilateral:
+      return Law::kUnilateral;
+    case ContactModel::kNone:
+    case ContactModel::kBonded:
+      break;
+  }
+  return Law::kBonded;
+}
+
+certificate::Material material_of(const model::Material& material) {
+  return {.pitch = material.pitch_mm,
+          .facet = material.facet_mm,
+          .area = material.section_area_mm2,
+          .moment_x = material.moment_x_mm4,
+          .moment_y = material.moment_y_mm4,
+          .torsion = material.torsion_mm4,
+          .poisson = material.poisson_ratio,
+          .mass = material.mass_kg,
+          .gravity = material.gravity_m_s2,
+          .strength_vertical = material.strength_vertical_n,
+          .strength_lateral = material.strength_lateral_n,
+          .gamma = material.contact_gamma};
+}
+
+/// Everything but the fields.
+Certificate certificate_of(const model::Robot& robot, const Assessment& assessment) {
+  Certificate made;
+  made.law = law_of(assessment.contact_model);
+  made.material = material_of(robot.material());
+  made.support_z = robot.support_z();
+  for (std::size_t i = 0; i < robot.modules().size(); ++i) {
+    const model::Module& module = robot.modules()[i];
+    certificate::Module& copy = made.modules.emplace_back();
+    copy.cell = {module.cell.x, module.cell.y, module.cell.z};
+    copy.is_fixed = module.support == model::Support::kFixed;
+    if (module.support == model::Support::kGround && made.law != Law::kBonded) {
+      const ContactState& state = assessment.equilibrium.contact[i];
+      copy.state = {
+          .is_pressed = state.pressed, .tilt_x = state.tilt_x, .tilt_y = state.tilt_y};
+    }
+  }
+  return made;
+}
+
+/// Why there is nothing to prove, or empty.
+std::string find_obstacle(const model::Robot& robot, const Assessment& assessment) {
+  if (!assessment.is_stable) {
+    return "the robot topples, which the rigid body decides in integers";
+  }
+  if (assessment.equilibrium.outcome != solver::Outcome::kSettled) {
+    return "no equilibrium was found";
+  }
+  if (assessment.equilibrium.open_but_held_count > 0) {
+    return "lifted feet would touch down again if they slid freely";
+  }
+  return robot.modules().empty() ? "there is no module" : "";
+}
+
+/// Makes the fields of a certificate.
+class Prover {
+ public:
+  Prover(const model::Robot& robot, const Assessment& assessment, const ProofOptions& options,
+         Proof& proof)
+      : robot_(robot), assessment_(assessment), options_(options), proof_(proof) {
+    const model::Material& material = robot.material();
+    force_n_ = model::module_weight_n(material);
+    lever_mm_ = material.pitch_mm / 2;
+    displacement_mm_ = force_n_ * material.pitch_mm /
+                       (material.elastic_modulus_mpa * material.section_area_mm2);
+  }
+
+  void run() {
+    Certificate& made = proof_.certificate;
+    made = certificate_of(robot_, assessment_);
+    made.bits = bits_for(assessment_.equilibrium.displacement);
+    made.fields.emplace_back(made.modules.size());
+    add(assessment_.equilibrium.displacement, 0);
+    std::size_t tilted = 0;
+    for (const certificate::Module& module : made.modules) {
+      tilted += made.law == Law::kRegularised && module.state.is_tilted() ? 1 : 0;
+    }
+    made.fields.resize(1 + tilted, certificate::Field(made.modules.size()));
+    const auto precision = assessment_.equilibrium.precision;
+    if (!improve_all(precision) && precision == solver::Precision::kSingle) {
+      improve_all(solver::Precision::kDouble);
+    }
+  }
+
+ private:
+  /// As many bits after the point as the largest displacement leaves room for.
+  int bits_for(const std::vector<Vec>& displacement) const {
+    double largest = 1;
+    for (const Vec& u : displacement) {
+      for (std::size_t k = 0; k < 6; ++k) {
+        largest = std::max(largest, std::abs(scaled(u[k], k)));
+      }
+    }
+    const int room = certificate::kMagnitudeBitsMax - kSpareBits - std::ilogb(largest);
+    return std::clamp(room, 0, certificate::kBitsMax);
+  }
+
+  /// From mm and rad to the certificate's unit.
+  double scaled(double displacement, std::size_t k) const {
+    return (k < 3 ? displacement : displacement * lever_mm_) / displacement_mm_;
+  }
+
+  void add(const std::vector<Vec>& displacement, std::size_t field) {
+    const double unit = std::ldexp(1.0, proof_.certificate.bits);
+    const double most = std::ldexp(1.0, certificate::kMagnitudeBitsMax);
+    for (std::size_t i = 0; i < displacement.size(); ++i) {
+      for (std::size_t k = 0; k < 6; ++k) {
+        const double step = scaled(displacement[i][k], k) * unit;
+        if (std::abs(step) < most && !proof_.certificate.modules[i].is_fixed) {
+          proof_.certificate.fields[field][i][k] += static_cast<Integer>(step);
+        }
+      }
+    }
+  }
+
+  /// False if a solver gave up.
+  bool improve_all(solver::Precision precision) {
+    EquilibriumSolver solver(robot_, {.memory_bytes_max = options_.memory_bytes_max,
+                                      .method = assessment_.equilibrium.method,
+                                      .precision = precision,
+                                      .is_bonded = proof_.certificate.law == Law::kBonded,
+                                      .thread_count = options_.thread_count});
+    const bool is_unilateral = proof_.certificate.law == Law::kUnilateral;
+    const solver::ContactOptions contact = {
+        .law = is_unilateral ? mechanics::ContactLaw::kUnilateral
+                             : mechanics::ContactLaw::kRegularised,
+        .gamma = is_unilateral ? kUnilateralGamma : robot_.material().contact_gamma};
+    if (!solver.set_contact(contact, assessment_.equilibrium.contact)) {
+      return false;
+    }
+    const Residuals residuals(proof_.certificate);
+    bool is_done = improve(0, kPassMax, residuals, solver);
+    // What tilting facets do is needed roughly; seldom once more.
+    for (int round = 0; round < 2 && is_done && !proof_.is_proved(); ++round) {
+      for (std::size_t field = 1; field < proof_.certificate.fields.size(); ++field) {
+        is_done = is_done && improve(field, 1, residuals, solver);
+      }
+      proof_.verification = certificate::verify(proof_.certificate);
+    }
+    return is_done;
+  }
+
+  /// Iterative refinement: the residual is that of the certificate's integers, so the digits that
+  /// differences of displacements lose are there.
+  bool improve(std::size_t field, int pass_max, const Residuals& residuals,
+               EquilibriumSolver& solver) {
+    double before = std::numeric_limits<double>::infinity();
+    for (int pass = 0; pass < pass_max; ++pass) {
+      const Residual left = residuals.of(field);
+      if (left.largest <= kRoundings * left.rounding || left.largest > kGain * before) {
+        return true;
+      }
+      before = left.largest;
+      const auto step = solver.respond(force_of(left), kTolerance);
+      if (!step) {
+        return false;
+      }
+      ++proof_.solve_count;
+      add(*step, field);
+    }
+    return true;
+  }
+
+  /// In N and N mm.
+  std::vector<Vec> force_of(const Residual& residual) const {
+    const double unit = std::ldexp(force_n_, -proof_.certificate.bits);
+    std::vector<Vec> force(residual.force.size());
+    for (std::size_t i = 0; i < force.size(); ++i) {
+      for (std::size_t k = 0; k < 6; ++k) {
+        force[i][k] = residual.force[i][k] * unit * (k < 3 ? 1 : lever_mm_);
+      }
+    }
+    return force;
+  }
+
+  /// Weak springs in the approximate tangent only; what they add is refined away.
+  static constexpr double kUnilateralGamma = 1e-9;
+
+  const model::Robot& robot_;
+  const Assessment& assessment_;
+  const ProofOptions& options_;
+  Proof& proof_;
+  double force_n_ = 0;  ///< The certificate's units.
+  double lever_mm_ = 0;
+  double displacement_mm_ = 0;
+};
+
+}  // namespace
+
+Proof prove(const model::Robot& robot, const Assessment& assessment, const ProofOptions& options) {
+  Proof proof;
+  proof.verification.reason = find_obstacle(robot, assessment);
+  if (proof.verification.reason.empty()) {
+    Prover(robot, assessment, options, proof).run();
+  }
+  return proof;
+}
+
+void apply(const Proof& proof, Assessment& assessment) {
+  using verdict::Verdict;
+  const certificate::Verification& found = proof.verification;
+  if (assessment.verdict == Verdict::kUnstable) {
+    return;
+  }
+  if (!found.is_proved) {
+    assessment.verdict = Verdict::kUndecided;
+    assessment.reasons.push_back(fmt::format("not proved: {}", found.reason));
+    return;
+  }
+  if (!found.is_standing) {
+    assessment.verdict = Verdict::kUndecided;
+    assessment.reasons.emplace_back("not proved: the robot stands, but not by more than rounding");
+    return;
+  }
+  const double limit = 1 - verdict::kLoadRatioTie;
+  if (found.ratio_high < limit) {
+    assessment.verdict = Verdict::kSafe;
+  } else if (found.ratio_low >= limit) {
+    assessment.verdict = Verdict::kOverload;
+  } else {
+    assessment.verdict = Verdict::kUndecided;
+  }
+  assessment.load_ratio_range = {.low = found.ratio_low, .high = found.ratio_high};
+}
+
+}  // namespace holdfast::proof
