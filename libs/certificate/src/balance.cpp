@@ -76,8 +76,8 @@ Springs Balancer::facet_springs(const State& state) const {
     return springs;
   }
   for (std::size_t i = 0; i < 6; ++i) {
-    const bool is_weak = !state.is_pressed || (i == 3 && state.tilt_x != 0) ||
-                         (i == 4 && state.tilt_y != 0);
+    const bool is_weak =
+        !state.is_pressed || (i == 3 && state.tilt_x != 0) || (i == 4 && state.tilt_y != 0);
     springs[i] = is_weak ? constants_.weakness * springs[i] : springs[i];
   }
   return springs;
@@ -156,8 +156,8 @@ Balance Balancer::from_springs(std::size_t field) const {
   }
   bool is_too_large = false;
   for (const Beam& beam : structure_.beams()) {
-    const Six& s = balance.beam.emplace_back(
-        spring_force(constants_.h[static_cast<std::size_t>(beam.axis)], gap(u, beam), is_too_large));
+    const Six& s = balance.beam.emplace_back(spring_force(
+        constants_.h[static_cast<std::size_t>(beam.axis)], gap(u, beam), is_too_large));
     add_at_a(balance.rest[beam.a], s, beam.axis);
     add_at_b(balance.rest[beam.b], s, beam.axis);
   }
@@ -206,8 +206,8 @@ void Balancer::close(Balance& balance) const {
       is_fine = is_fine && is_small(carried);
     } else {
       const Beam& beam = structure_.beams()[link];
-      const Six s = beam.b == module ? balancing_at_b(rest, beam.axis)
-                                     : balancing_at_a(rest, beam.axis);
+      const Six s =
+          beam.b == module ? balancing_at_b(rest, beam.axis) : balancing_at_a(rest, beam.axis);
       add_to(balance.beam[link], s);
       add_at_a(balance.rest[beam.a], s, beam.axis);
       add_at_b(balance.rest[beam.b], s, beam.axis);

@@ -13,13 +13,13 @@ namespace holdfast::certificate {
 
 /// The forces that belong to a field, and how far the two are apart.
 struct Balance {
-  std::vector<Six> beam;    ///< s, by beam.
-  std::vector<Six> facet;   ///< s of the springs, by facet.
-  std::vector<Six> hold;    ///< The gap of the facet's springs: less than facet_gap() by how far an
-                            ///< edge or corner lifts (kUnilateral).
+  std::vector<Six> beam;   ///< s, by beam.
+  std::vector<Six> facet;  ///< s of the springs, by facet.
+  std::vector<Six> hold;   ///< The gap of the facet's springs: less than facet_gap() by how far an
+                           ///< edge or corner lifts (kUnilateral).
   std::vector<Integer> follower;  ///< By facet: what follows its pressure (kRegularised).
-  std::vector<Six> rest;    ///< By module: what the springs leave unbalanced.
-  std::string fault;        ///< Why the forces are not admissible, or empty.
+  std::vector<Six> rest;          ///< By module: what the springs leave unbalanced.
+  std::string fault;              ///< Why the forces are not admissible, or empty.
 };
 
 class Balancer {

@@ -38,9 +38,9 @@ class Ball {
   }
 
   friend Ball operator*(const Ball& a, const Ball& b) {
-    return rounded(a.middle_ * b.middle_, std::abs(a.middle_) * b.radius_ +
-                                              std::abs(b.middle_) * a.radius_ +
-                                              a.radius_ * b.radius_);
+    return rounded(
+        a.middle_ * b.middle_,
+        std::abs(a.middle_) * b.radius_ + std::abs(b.middle_) * a.radius_ + a.radius_ * b.radius_);
   }
 
   /// Infinite where the divisor may be zero. For a' in a, b' in b and the computed q = a / b:

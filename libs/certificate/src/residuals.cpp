@@ -8,7 +8,9 @@ namespace holdfast::certificate {
 
 struct Residuals::Parts {
   explicit Parts(const Certificate& made)
-      : certificate(made), structure(made), constants(made.material),
+      : certificate(made),
+        structure(made),
+        constants(made.material),
         balancer(made, structure, constants) {}
 
   const Certificate& certificate;

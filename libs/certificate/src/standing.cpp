@@ -93,7 +93,8 @@ bool stands(const Certificate& certificate, const Structure& structure,
     const auto& cell = certificate.modules[module].cell;
     for (const int side_x : {-1, 1}) {
       for (const int side_y : {-1, 1}) {
-        corners.push_back({.x = 2.0 * cell[0], .y = 2.0 * cell[1], .side_x = side_x, .side_y = side_y});
+        corners.push_back(
+            {.x = 2.0 * cell[0], .y = 2.0 * cell[1], .side_x = side_x, .side_y = side_y});
       }
     }
   }

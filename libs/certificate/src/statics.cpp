@@ -16,8 +16,7 @@ Ball number(double value) {
 }
 
 struct Axes {
-  explicit Axes(int axis)
-      : i(static_cast<std::size_t>(axis)), j((i + 1) % 3), k((i + 2) % 3) {}
+  explicit Axes(int axis) : i(static_cast<std::size_t>(axis)), j((i + 1) % 3), k((i + 2) % 3) {}
 
   std::size_t i, j, k;
 };

@@ -22,9 +22,9 @@ Ball absolute(const Ball& a) { return a.middle() < 0 ? Ball(0) - a : a; }
 
 std::string find_form_fault(const Certificate& certificate) {
   const Material& m = certificate.material;
-  for (const double value : {m.pitch, m.facet, m.area, m.moment_x, m.moment_y, m.torsion, m.mass,
-                             m.gravity, m.strength_vertical, m.strength_lateral, m.gamma,
-                             1 + m.poisson, 1 - m.gamma}) {
+  for (const double value :
+       {m.pitch, m.facet, m.area, m.moment_x, m.moment_y, m.torsion, m.mass, m.gravity,
+        m.strength_vertical, m.strength_lateral, m.gamma, 1 + m.poisson, 1 - m.gamma}) {
     if (!(value > 0 && value < kInfinity)) {
       return "a number of the material is not allowed";
     }
@@ -193,8 +193,8 @@ class Verifier {
       for (const std::size_t index : {std::size_t{3}, std::size_t{4}}) {
         if (state.is_pressed && !state.is_tilted()) {
           const double off = (Ball(error_) * Ball(constants_.h[kZ][index].root_high())).high();
-          is_proved = is_proved &&
-                      is_surely_less(absolute(ball_of(s[index])).widened(off), pressure);
+          is_proved =
+              is_proved && is_surely_less(absolute(ball_of(s[index])).widened(off), pressure);
         }
       }
       if (!is_proved) {

@@ -79,8 +79,7 @@ Certificate certificate_of(const model::Robot& robot, const Assessment& assessme
     copy.is_fixed = module.support == model::Support::kFixed;
     if (module.support == model::Support::kGround && made.law != Law::kBonded) {
       const ContactState& state = assessment.equilibrium.contact[i];
-      copy.state = {
-          .is_pressed = state.pressed, .tilt_x = state.tilt_x, .tilt_y = state.tilt_y};
+      copy.state = {.is_pressed = state.pressed, .tilt_x = state.tilt_x, .tilt_y = state.tilt_y};
     }
   }
   return made;
@@ -109,8 +108,8 @@ class Prover {
     const model::Material& material = robot.material();
     force_n_ = model::module_weight_n(material);
     lever_mm_ = material.pitch_mm / 2;
-    displacement_mm_ = force_n_ * material.pitch_mm /
-                       (material.elastic_modulus_mpa * material.section_area_mm2);
+    displacement_mm_ =
+        force_n_ * material.pitch_mm / (material.elastic_modulus_mpa * material.section_area_mm2);
   }
 
   void run() {
@@ -244,31 +243,53 @@ Proof prove(const model::Robot& robot, const Assessment& assessment, const Proof
   return proof;
 }
 
-void apply(const Proof& proof, Assessment& assessment) {
-  using verdict::Verdict;
-  const certificate::Verification& found = proof.verification;
-  if (assessment.verdict == Verdict::kUnstable) {
-    return;
-  }
-  if (!found.is_proved) {
-    assessment.verdict = Verdict::kUndecided;
-    assessment.reasons.push_back(fmt::format("not proved: {}", found.reason));
-    return;
-  }
-  if (!found.is_standing) {
-    assessment.verdict = Verdict::kUndecided;
-    assessment.reasons.emplace_back("not proved: the robot stands, but not by more than rounding");
-    return;
-  }
+namespace {
+
+/// What the range says, by the rule that a ratio within kLoadRatioTie below 1 counts as 1.
+verdict::Verdict verdict_of(const certificate::Verification& found) {
   const double limit = 1 - verdict::kLoadRatioTie;
-  if (found.ratio_high < limit) {
-    assessment.verdict = Verdict::kSafe;
-  } else if (found.ratio_low >= limit) {
-    assessment.verdict = Verdict::kOverload;
-  } else {
-    assessment.verdict = Verdict::kUndecided;
+  if (found.ratio_low >= limit) {
+    return verdict::Verdict::kOverload;
+  }
+  return found.ratio_high < limit ? verdict::Verdict::kSafe : verdict::Verdict::kUndecided;
+}
+
+const char* what_is_proved(ContactModel model) {
+  switch (model) {
+    case ContactModel::kRegularised:
+      return "proved, with the states of all facets, for one solution of the paper's contact law, "
+             "which may have others";
+    case ContactModel::kUnilateral:
+      return "proved, with which facets press, for the exact contact law, whose forces are unique "
+             "then";
+    case ContactModel::kNone:
+    case ContactModel::kBonded:
+      break;
+  }
+  return "proved; the solution is unique";
+}
+
+}  // namespace
+
+void apply(const Proof& proof, Assessment& assessment) {
+  const certificate::Verification& found = proof.verification;
+  if (assessment.verdict == verdict::Verdict::kUnstable) {
+    return;
+  }
+  const bool holds = found.is_proved && found.is_standing;
+  const verdict::Verdict verdict = holds ? verdict_of(found) : verdict::Verdict::kUndecided;
+  if (verdict != assessment.verdict) {
+    assessment.reasons.clear();
+  }
+  assessment.verdict = verdict;
+  if (!holds) {
+    assessment.reasons.push_back(fmt::format(
+        "not proved: {}",
+        found.is_proved ? "the robot stands, but not by more than rounding" : found.reason));
+    return;
   }
   assessment.load_ratio_range = {.low = found.ratio_low, .high = found.ratio_high};
+  assessment.reasons.emplace_back(what_is_proved(assessment.contact_model));
 }
 
 }  // namespace holdfast::proof

@@ -98,7 +98,8 @@ struct Verification {
   double ratio_low = 0;   ///< The largest load ratio is at least this,
   double ratio_high = 0;  ///< and at most this.
   std::size_t connection_count = 0;
-  /// The centre of mass lies strictly inside the support polygon, or a fixed module holds the robot.
+  /// The centre of mass lies strictly inside the support polygon, or a fixed module holds the
+  /// robot.
   bool is_standing = false;
   std::size_t facet_count = 0;
 };
