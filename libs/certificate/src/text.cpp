@@ -59,6 +59,18 @@ void append_integer(std::string& text, Integer value) {
   }
 }
 
+/// FNV-1a of 64 bits [Fowler, Noll and Vo 1991]: against accidents, not against forgers, who would
+/// have to prove something true anyway.
+std::uint64_t checksum(std::string_view text) {
+  std::uint64_t sum = 14695981039346656037U;
+  for (const char c : text) {
+    sum = (sum ^ static_cast<unsigned char>(c)) * 1099511628211U;
+  }
+  return sum;
+}
+
+constexpr std::string_view kEnd = "\nend ";
+
 void append_state(std::string& text, const State& state) {
   text += state.is_pressed ? " pressed " : " open ";
   text += kSigns[state.tilt_x + 1];
@@ -240,7 +252,10 @@ std::string write(const Certificate& certificate) {
       }
     }
   }
-  return text + "\nend\n";
+  const std::uint64_t sum = checksum(text);
+  text += kEnd;
+  append_integer(text, static_cast<Integer>(sum));
+  return text + '\n';
 }
 
 Reading read(std::string_view text) {
@@ -265,6 +280,9 @@ Reading read(std::string_view text) {
     }
   }
   words.expect("end");
+  if (words.integer() != static_cast<Integer>(checksum(text.substr(0, text.rfind(kEnd))))) {
+    words.fail("the checksum of all before 'end'");
+  }
   if (words.fault().empty() && !words.is_at_end()) {
     words.fail("nothing after 'end'");
   }
