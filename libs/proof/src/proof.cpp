@@ -123,10 +123,14 @@ class Prover {
       tilted += made.law == Law::kRegularised && module.state.is_tilted() ? 1 : 0;
     }
     made.fields.resize(1 + tilted, certificate::Field(made.modules.size()));
-    const auto precision = assessment_.equilibrium.precision;
-    if (!improve_all(precision) && precision == solver::Precision::kSingle) {
-      improve_all(solver::Precision::kDouble);
+    const solver::Equilibrium& known = assessment_.equilibrium;
+    const bool is_done = improve_all(known.method, known.precision) ||
+                         improve_all(solver::Method::kMultigrid, solver::Precision::kDouble) ||
+                         improve_all(solver::Method::kDirect, known.precision);
+    if (!is_done) {
+      proof_.verification = certificate::verify(made);
     }
+    take_displacements();
   }
 
  private:
@@ -147,6 +151,16 @@ class Prover {
     return (k < 3 ? displacement : displacement * lever_mm_) / displacement_mm_;
   }
 
+  void take_displacements() {
+    const double unit = std::ldexp(displacement_mm_, -proof_.certificate.bits);
+    for (const certificate::Six& six : proof_.certificate.fields[0]) {
+      Vec& u = proof_.displacement.emplace_back();
+      for (std::size_t k = 0; k < 6; ++k) {
+        u[k] = static_cast<double>(six[k]) * unit / (k < 3 ? 1 : lever_mm_);
+      }
+    }
+  }
+
   void add(const std::vector<Vec>& displacement, std::size_t field) {
     const double unit = std::ldexp(1.0, proof_.certificate.bits);
     const double most = std::ldexp(1.0, certificate::kMagnitudeBitsMax);
@@ -161,9 +175,9 @@ class Prover {
   }
 
   /// False if a solver gave up.
-  bool improve_all(solver::Precision precision) {
+  bool improve_all(solver::Method method, solver::Precision precision) {
     EquilibriumSolver solver(robot_, {.memory_bytes_max = options_.memory_bytes_max,
-                                      .method = assessment_.equilibrium.method,
+                                      .method = method,
                                       .precision = precision,
                                       .is_bonded = proof_.certificate.law == Law::kBonded,
                                       .thread_count = options_.thread_count});
@@ -269,25 +283,41 @@ const char* what_is_proved(ContactModel model) {
   return "proved; the solution is unique";
 }
 
+/// Of an assessment that stands the first reason is about the loads, and all others stay true.
+void take_loads(const model::Robot& robot, const Proof& proof, bool is_changed,
+                Assessment& assessment) {
+  assessment.equilibrium.displacement = proof.displacement;
+  assessment.equilibrium.alternative = proof.displacement;
+  Assessment fresh = verdict::assess_equilibrium(robot, assessment.equilibrium);
+  assessment.connections = std::move(fresh.connections);
+  assessment.load_ratio_max = fresh.load_ratio_max;
+  assessment.worst = fresh.worst;
+  assessment.broken = std::move(fresh.broken);
+  assessment.weight_factor = fresh.weight_factor;
+  if (fresh.verdict == assessment.verdict) {
+    assessment.reasons.front() = std::move(fresh.reasons.front());
+  } else if (is_changed) {
+    assessment.reasons.erase(assessment.reasons.begin());
+  }
+}
+
 }  // namespace
 
-void apply(const Proof& proof, Assessment& assessment) {
+void apply(const model::Robot& robot, const Proof& proof, Assessment& assessment) {
   const certificate::Verification& found = proof.verification;
   if (assessment.verdict == verdict::Verdict::kUnstable) {
     return;
   }
   const bool holds = found.is_proved && found.is_standing;
   const verdict::Verdict verdict = holds ? verdict_of(found) : verdict::Verdict::kUndecided;
-  if (verdict != assessment.verdict) {
-    assessment.reasons.clear();
-  }
-  assessment.verdict = verdict;
+  const bool is_changed = verdict != std::exchange(assessment.verdict, verdict);
   if (!holds) {
-    assessment.reasons.push_back(fmt::format(
+    assessment.reasons = {fmt::format(
         "not proved: {}",
-        found.is_proved ? "the robot stands, but not by more than rounding" : found.reason));
+        found.is_proved ? "the robot stands, but not by more than rounding" : found.reason)};
     return;
   }
+  take_loads(robot, proof, is_changed, assessment);
   assessment.load_ratio_range = {.low = found.ratio_low, .high = found.ratio_high};
   assessment.reasons.emplace_back(what_is_proved(assessment.contact_model));
 }

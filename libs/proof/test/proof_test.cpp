@@ -66,11 +66,12 @@ TEST(Proof, decides_near_the_limit) {
         const Robot robot = cantilever_at(count, ratio);
         Assessment assessment = verdict::assess(robot);
         const Proof proof = prove(robot, assessment);
-        apply(proof, assessment);
+        apply(robot, proof, assessment);
         ASSERT_TRUE(proof.is_proved());
         EXPECT_LT(std::abs(proof.verification.ratio_low - ratio), 1e-11);
         EXPECT_LT(std::abs(proof.verification.ratio_high - ratio), 1e-11);
         EXPECT_EQ(assessment.verdict, ratio < 1 ? Verdict::kSafe : Verdict::kOverload);
+        EXPECT_NEAR(*assessment.load_ratio_max, ratio, 1e-9);
       }
     }
   }
@@ -79,7 +80,7 @@ TEST(Proof, decides_near_the_limit) {
 TEST(Proof, leaves_undecided_what_the_range_leaves_open) {
   const Robot robot = cantilever_at(28, 1 - verdict::kLoadRatioTie);
   Assessment assessment = verdict::assess(robot);
-  apply(prove(robot, assessment), assessment);
+  apply(robot, prove(robot, assessment), assessment);
   EXPECT_EQ(assessment.verdict, Verdict::kUndecided);
 }
 
@@ -103,7 +104,7 @@ TEST(Proof, refuses_other_contact_states) {
       }
       const Proof proof = prove(robot, wrong);
       EXPECT_FALSE(proof.is_proved()) << module << ' ' << tilt;
-      apply(proof, wrong);
+      apply(robot, proof, wrong);
       EXPECT_EQ(wrong.verdict, Verdict::kUndecided);
       ++refused;
     }
@@ -192,7 +193,7 @@ TEST(Proof, says_why_there_is_none) {
   EXPECT_TRUE(proof.certificate.modules.empty());
   EXPECT_EQ(proof.verification.reason,
             "the robot topples, which the rigid body decides in integers");
-  apply(proof, assessment);
+  apply(robot.value(), proof, assessment);
   EXPECT_EQ(assessment.verdict, Verdict::kUnstable);
 }
 

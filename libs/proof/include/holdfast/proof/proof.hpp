@@ -3,7 +3,7 @@
 #pragma once
 
 #include <cstddef>
-#include <string>
+#include <vector>
 
 #include "holdfast/certificate/certificate.hpp"
 #include "holdfast/verdict/assessment.hpp"
@@ -18,9 +18,10 @@ struct ProofOptions {
 };
 
 struct Proof {
-  certificate::Certificate certificate;      ///< Without modules if there is nothing to check.
-  certificate::Verification verification{};  ///< What its checker says.
-  int solve_count = 0;                       ///< Linear systems solved for it.
+  certificate::Certificate certificate;          ///< Without modules if there is nothing to check.
+  certificate::Verification verification{};      ///< What its checker says.
+  int solve_count = 0;                           ///< Linear systems solved for it.
+  std::vector<base::Vec6<double>> displacement;  ///< The certificate's, mm and rad.
 
   bool is_proved() const { return verification.is_proved; }
 };
@@ -30,8 +31,9 @@ struct Proof {
 Proof prove(const model::Robot& robot, const verdict::Assessment& assessment,
             const ProofOptions& options = {});
 
-/// Takes the proved range over into the assessment: its verdict is then what the range says, and
-/// `undecided` where nothing is proved. A robot that topples is known to from integers alone.
-void apply(const Proof& proof, verdict::Assessment& assessment);
+/// Takes the proof over into the assessment: its loads are then the certificate's, its verdict is
+/// what the range says, and `undecided` where nothing is proved. A robot that topples is known to
+/// from integers alone.
+void apply(const model::Robot& robot, const Proof& proof, verdict::Assessment& assessment);
 
 }  // namespace holdfast::proof
