@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: The holdfast authors
 // SPDX-License-Identifier: Apache-2.0
 #include <charconv>
-#include <limits>
+#include <cstdio>
+#include <cstdlib>
 
 #include "holdfast/certificate/certificate.hpp"
 
@@ -39,6 +40,13 @@ void append(std::string& text, Number number) {
   char digits[32];
   const auto end = std::to_chars(digits, digits + sizeof digits, number);
   text.append(digits, end.ptr);
+}
+
+/// So many digits that the same double is read again.
+void append(std::string& text, double number) {
+  char digits[32];
+  std::snprintf(digits, sizeof digits, "%.17g", number);
+  text += digits;
 }
 
 /// Hexadecimal, with a sign.
@@ -112,6 +120,17 @@ class Words {
     if (word.empty() || error != std::errc() || end != word.data() + word.size()) {
       fail(std::string(what));
       return {};
+    }
+    return value;
+  }
+
+  double real(std::string_view what) {
+    const std::string word(next());
+    char* end = nullptr;
+    const double value = std::strtod(word.c_str(), &end);
+    if (word.empty() || end != word.c_str() + word.size()) {
+      fail(std::string(what));
+      return 0;
     }
     return value;
   }
@@ -206,7 +225,7 @@ void read_head(Words& words, Certificate& certificate) {
   }
   for (const auto& [name, value] : kNumbers) {
     words.expect(name);
-    certificate.material.*value = words.number<double>("a number");
+    certificate.material.*value = words.real("a number");
   }
   words.expect("support_z");
   certificate.support_z = words.number<std::int32_t>("a number");
