@@ -17,7 +17,7 @@ struct ReportEntry {
   const model::Robot* robot = nullptr;
   const verdict::Assessment* assessment = nullptr;
   std::span<const std::string> warnings;
-  double seconds = 0;  ///< From the robot in memory to the verdict.
+  double seconds = 0;                   ///< From the robot in memory to the verdict.
   const proof::Proof* proof = nullptr;  ///< If one was asked for.
   double proof_seconds = 0;             ///< What it took beyond that.
 };
