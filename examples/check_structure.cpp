@@ -21,7 +21,7 @@ int main(int argc, char** argv) {
     std::cerr << holdfast::describe(structure.error(), argv[1]) << '\n';
     return 65;
   }
-  const auto [assessment, seconds] = holdfast::check(structure.value());
+  const holdfast::verdict::Assessment assessment = holdfast::check(structure.value()).assessment;
   std::cout << holdfast::verdict::name(assessment.verdict) << '\n';
   for (const std::string& reason : assessment.reasons) {
     std::cout << "  " << reason << '\n';

@@ -64,7 +64,10 @@ def check_includes(name, lines, links):
                 and not (match[1] == 'holdfast' and include[1] in FACADE_HEADERS)):
             fault(name, number, f'{match[1]} may not include {include[1]}, it links '
                                 f'{sorted(allowed - {match[1]})}')
-        if (include and name.startswith(('apps/', 'examples/'))
+        if name.startswith('apps/checker/'):
+            if include and include[1] != 'certificate':
+                fault(name, number, 'the checker includes only certificate')
+        elif (include and name.startswith(('apps/', 'examples/'))
                 and include[1] not in FACADE_HEADERS):
             fault(name, number, 'applications include only the facade, holdfast/holdfast.hpp, '
                                 'distributed.hpp and emulated.hpp')

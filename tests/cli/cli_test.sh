@@ -54,6 +54,28 @@ expect_exit 1 check "$safe" "$overload" "$unstable"
 expect_line out '^3 files: 1 safe, 1 overload, 1 unstable, 0 undecided, 0 not readable$'
 "$program" check - <"$safe" >out || fault "standard input is not read"
 
+# Proofs: arm_breaks_b carries 1.200397996 (tests/reference), arm_breaks_a 0.6402122645.
+checker=$(dirname "$program")/holdfast-checker
+expect_exit 0 check --prove "$safe"
+expect_line out '^SAFE'
+expect_line out 'proof +the .* ratio lies between 0\.64021226[0-9]* and 0\.64021226[0-9]*;'
+expect_exit 1 check "$overload" --certificate proof.txt --json proof.json
+expect_line proof.json '"proved": true'
+"$checker" proof.txt >out || fault "the checker does not prove: $(cat out)"
+expect_line out '^PROVED .* between 1\.2003979959[0-9]* and 1\.2003979959[0-9]*$'
+expect_line out '^  13 modules, 14 connections, 3 facets on the ground; contact regularised$'
+sed 's/^3 1 0 ground pressed 00$/3 1 0 ground open 00/' proof.txt >forged.txt
+code=0
+"$checker" forged.txt >out 2>err || code=$?
+[ "$code" -eq 65 ] || fault "the checker takes a changed certificate: $code $(cat out err)"
+code=0
+"$checker" "$safe" >out 2>err || code=$?
+[ "$code" -eq 65 ] || fault "the checker takes a structure: $code"
+expect_exit 1 check "$unstable" --certificate none.txt
+expect_line err 'no certificate: the robot topples'
+[ -e none.txt ] && fault "a certificate of a robot that topples"
+expect_exit 64 check "$safe" "$overload" --certificate both.txt
+
 # The robot's own verdict.
 expect_exit 0 simulate "$safe"
 expect_line out "^SAFE +arm_breaks_a$"

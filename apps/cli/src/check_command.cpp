@@ -24,8 +24,10 @@ struct Options {
   std::string svg;
   std::string vtk;
   std::string html;
+  std::string certificate;
   bool is_quiet = false;
   bool is_bonded = false;
+  bool is_proof_wanted = false;
   int thread_count = 0;
   double memory_gb = 4;
 };
@@ -81,6 +83,9 @@ class CheckRun {
     if (!options_.html.empty()) {
       write_page(structure.value(), result);
     }
+    if (!options_.certificate.empty()) {
+      write_certificate(result);
+    }
   }
 
   void show(const Structure& structure, const CheckResult& result, const std::string& file) const {
@@ -128,6 +133,15 @@ class CheckRun {
     write(options_.html, filled.value());
   }
 
+  void write_certificate(const CheckResult& result) {
+    const auto text = certificate_text(result);
+    if (text) {
+      write(options_.certificate, text.value());
+    } else {
+      print_error(text.error(), options_.certificate);
+    }
+  }
+
   void write_json() {
     std::string text = is_many() ? "[\n" : "";
     for (std::size_t i = 0; i < reports_.size(); ++i) {
@@ -151,7 +165,8 @@ class CheckRun {
     CheckOptions options{
         .is_bonded = options_.is_bonded,
         .thread_count = options_.thread_count,
-        .memory_bytes_max = static_cast<std::size_t>(options_.memory_gb * 1073741824.0)};
+        .memory_bytes_max = static_cast<std::size_t>(options_.memory_gb * 1073741824.0),
+        .is_proof_wanted = options_.is_proof_wanted || !options_.certificate.empty()};
     if (!options_.is_quiet) {
       options.progress = [this, &structure, file](int iteration, double error) {
         if (Clock::now() - shown_ >= kProgressInterval) {
@@ -183,10 +198,13 @@ class CheckRun {
 };
 
 int run(const Options& options) {
-  if (options.files.size() > 1 &&
-      !(options.svg.empty() && options.vtk.empty() && options.html.empty())) {
-    fmt::print(stderr, "holdfast: --svg, --vtk and --html show one structure, {} files are given\n",
-               options.files.size());
+  if (options.files.size() > 1 && !(options.svg.empty() && options.vtk.empty() &&
+                                    options.html.empty() && options.certificate.empty())) {
+    fmt::print(
+        stderr,
+        "holdfast: --svg, --vtk, --html and --certificate are for one structure, {} files are "
+        "given\n",
+        options.files.size());
     return kExitUsage;
   }
   if (complain_of_clash(options.files, {{"--json", options.json},
@@ -213,6 +231,10 @@ Command add_check(CLI::App& app) {
   add_output("--svg", options->svg, "Draw the structure and its loads");
   add_output("--vtk", options->vtk, "Write a .vtu file for ParaView");
   add_output("--html", options->html, "Write a page to look at in a browser, with the report");
+  add_output("--certificate", options->certificate,
+             "Write the proof for holdfast-checker; implies --prove");
+  command->add_flag("--prove", options->is_proof_wanted,
+                    "Prove the largest load ratio; a verdict that is not proved is undecided");
   command->add_flag("--quiet", options->is_quiet, "Print errors only; the exit code is the answer");
   command->add_flag("--bonded", options->is_bonded,
                     "Let the ground hold like a module below would: no lifting, no tilting");

@@ -18,7 +18,9 @@ io::ReportEntry entry_of(const Structure& structure, const CheckResult& result) 
           .robot = &structure.robot,
           .assessment = &result.assessment,
           .warnings = structure.warnings,
-          .seconds = result.seconds};
+          .seconds = result.seconds,
+          .proof = result.proof ? &*result.proof : nullptr,
+          .proof_seconds = result.proof_seconds};
 }
 
 }  // namespace
@@ -88,13 +90,34 @@ std::vector<std::pair<std::string_view, std::string_view>> family_list() {
 
 CheckResult check(const Structure& structure, const CheckOptions& options) {
   const auto start = std::chrono::steady_clock::now();
+  const auto passed = [&] {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  };
   CheckResult result{
       .assessment = verdict::assess(structure.robot, {.memory_bytes_max = options.memory_bytes_max,
                                                       .is_bonded = options.is_bonded,
                                                       .thread_count = options.thread_count,
                                                       .progress = options.progress})};
-  result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  result.seconds = passed();
+  if (options.is_proof_wanted) {
+    result.proof = proof::prove(
+        structure.robot, result.assessment,
+        {.memory_bytes_max = options.memory_bytes_max, .thread_count = options.thread_count});
+    proof::apply(structure.robot, *result.proof, result.assessment);
+    result.proof_seconds = passed() - result.seconds;
+  }
   return result;
+}
+
+base::Result<std::string> certificate_text(const CheckResult& result) {
+  const bool is_there = result.proof && !result.proof->certificate.modules.empty();
+  if (!is_there) {
+    return base::Error{.code = base::ErrorCode::kBadInput,
+                       .message = result.proof
+                                      ? "no certificate: " + result.proof->verification.reason
+                                      : "no certificate, as no proof was wanted"};
+  }
+  return certificate::write(result.proof->certificate);
 }
 
 std::string report_json(const Structure& structure, const CheckResult& result) {

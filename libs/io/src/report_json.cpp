@@ -82,12 +82,22 @@ const char* solver_name(const solver::Equilibrium& equilibrium) {
              : "conjugate gradients with multigrid in double precision";
 }
 
+Json proof_json(const ReportEntry& entry) {
+  const certificate::Verification& found = entry.proof->verification;
+  return {{"proved", found.is_proved},
+          {"load_ratio_range",
+           found.is_proved ? Json::array({found.ratio_low, found.ratio_high}) : Json()},
+          {"reason", found.is_proved ? Json() : Json(found.reason)},
+          {"solves", entry.proof->solve_count},
+          {"seconds", entry.proof_seconds}};
+}
+
 }  // namespace
 
 std::string write_report_json(const ReportEntry& entry) {
   const model::Robot& robot = *entry.robot;
   const verdict::Assessment& assessment = *entry.assessment;
-  const Json report = {
+  Json report = {
       {"name", entry.name},
       {"verdict", verdict::name(assessment.verdict)},
       {"reasons", assessment.reasons},
@@ -106,6 +116,9 @@ std::string write_report_json(const ReportEntry& entry) {
         {"multigrid_iterations", assessment.equilibrium.iteration_count},
         {"seconds", entry.seconds}}},
       {"warnings", std::vector<std::string>(entry.warnings.begin(), entry.warnings.end())}};
+  if (entry.proof != nullptr) {
+    report["proof"] = proof_json(entry);
+  }
   return report.dump(2, ' ', false, Json::error_handler_t::replace);
 }
 

@@ -83,10 +83,13 @@ void write_loads(Out out, const model::Robot& robot, const verdict::Assessment& 
   }
 }
 
+std::string time_text(double seconds) {
+  return seconds < 0.1 ? fmt::format("{:.0f} us", seconds * 1e6) : fmt::format("{:.2f} s", seconds);
+}
+
 void write_solver(Out out, const verdict::Assessment& assessment, double seconds) {
   const solver::Equilibrium& equilibrium = assessment.equilibrium;
-  const std::string time =
-      seconds < 0.1 ? fmt::format("{:.0f} us", seconds * 1e6) : fmt::format("{:.2f} s", seconds);
+  const std::string time = time_text(seconds);
   if (equilibrium.outcome == solver::Outcome::kNotSought) {
     fmt::format_to(out, "  loads       not sought, as the robot topples; {}\n", time);
     return;
@@ -97,6 +100,22 @@ void write_solver(Out out, const verdict::Assessment& assessment, double seconds
                      ? fmt::format(", {} iterations of multigrid", equilibrium.iteration_count)
                      : "",
                  time);
+}
+
+/// Rounded outwards to about twelve digits.
+void write_proof(Out out, const ReportEntry& entry) {
+  constexpr double kOutwards = 1e-12;
+  const certificate::Verification& found = entry.proof->verification;
+  if (!found.is_proved) {
+    fmt::format_to(out, "  proof       none: {}\n", found.reason);
+    return;
+  }
+  const double low = found.ratio_low - std::abs(found.ratio_low) * kOutwards;
+  const double high = found.ratio_high + std::abs(found.ratio_high) * kOutwards;
+  fmt::format_to(out,
+                 "  proof       the largest load ratio lies between {:.13g} and {:.13g}; {} linear "
+                 "solves in {}\n",
+                 low, high, entry.proof->solve_count, time_text(entry.proof_seconds));
 }
 
 }  // namespace
@@ -113,6 +132,9 @@ std::string write_report_text(const ReportEntry& entry) {
   write_stability(out, assessment);
   write_loads(out, *entry.robot, assessment);
   write_solver(out, assessment, entry.seconds);
+  if (entry.proof != nullptr) {
+    write_proof(out, entry);
+  }
   for (const std::string& warning : entry.warnings) {
     fmt::format_to(out, "  note        {}\n", warning);
   }

@@ -253,17 +253,7 @@ Equilibrium EquilibriumSolver::solve(const ContactOptions& contact) {
     result.outcome = Outcome::kTooLarge;
     return result;
   }
-  method_for(contact.law);
-  const model::Material& material = robot_.material();
-  ground_ = mechanics::ground_facet(model::beam_section(material), material.facet_mm, contact.gamma,
-                                    contact.law);
-  if (multigrid_) {
-    multigrid_->set_law(ground_);
-  }
-  for (Facet& facet : facets_) {
-    facet = {{.module = facet.module, .state = {}}};
-    set_tangent(facet);  // Always: the law may be another one than before.
-  }
+  set_law(contact);
   const std::size_t made_before = lu_ ? lu_->made_column_count() : 0;
   const int iterations_before = multigrid_ ? multigrid_->iteration_count() : 0;
   result.outcome = iterate(result);
@@ -281,6 +271,53 @@ Equilibrium EquilibriumSolver::solve(const ContactOptions& contact) {
     result.iteration_count = multigrid_->iteration_count() - iterations_before;
   }
   return result;
+}
+
+/// All facets stuck.
+void EquilibriumSolver::set_law(const ContactOptions& contact) {
+  method_for(contact.law);
+  const model::Material& material = robot_.material();
+  ground_ = mechanics::ground_facet(model::beam_section(material), material.facet_mm, contact.gamma,
+                                    contact.law);
+  if (multigrid_) {
+    multigrid_->set_law(ground_);
+  }
+  for (Facet& facet : facets_) {
+    facet = {{.module = facet.module, .state = {}}};
+    set_tangent(facet);  // Always: the law may be another one than before.
+  }
+}
+
+bool EquilibriumSolver::set_contact(const ContactOptions& contact,
+                                    const std::vector<ContactState>& states) {
+  if (!lu_ && !multigrid_) {
+    return false;
+  }
+  set_law(contact);
+  for (Facet& facet : facets_) {
+    const ContactState& state = states[facet.module];
+    set_facet(facet, state, contact.law == ContactLaw::kRegularised || state.pressed);
+  }
+  return true;
+}
+
+std::optional<std::vector<Vec6<double>>> EquilibriumSolver::respond(const std::vector<Vec>& force,
+                                                                    double tolerance) {
+  if (multigrid_) {
+    multigrid_->set_load(force);
+    return multigrid_->solve(tolerance) ? std::optional(multigrid_->displacement()) : std::nullopt;
+  }
+  if (!lu_->factor()) {
+    return std::nullopt;
+  }
+  std::vector<Vec> x(diagonal_.size());
+  for (std::size_t i = 0; i < force.size(); ++i) {
+    if (node_of_module_[i] >= 0) {
+      x[node_index(node_of_module_[i])] = force[i];
+    }
+  }
+  lu_->solve(x);
+  return by_module(x);
 }
 
 Outcome EquilibriumSolver::iterate(Equilibrium& result) {

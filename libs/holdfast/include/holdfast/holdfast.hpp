@@ -15,6 +15,7 @@
 #include "holdfast/io/document.hpp"
 #include "holdfast/io/picture.hpp"
 #include "holdfast/io/report.hpp"
+#include "holdfast/proof/proof.hpp"
 #include "holdfast/verdict/assessment.hpp"
 #include "holdfast/verdict/beside_one.hpp"
 
@@ -44,6 +45,8 @@ struct CheckOptions {
   int thread_count = 0;
   /// More than this is not taken; the verdict is then `undecided`.
   std::size_t memory_bytes_max = solver::EquilibriumOptions{}.memory_bytes_max;
+  /// Proves the largest load ratio; a verdict that is not proved becomes `undecided`.
+  bool is_proof_wanted = false;
   /// Called while a large robot is solved, with the share of the first error that is left.
   std::function<void(int iteration, double error)> progress = {};
 };
@@ -51,6 +54,8 @@ struct CheckOptions {
 struct CheckResult {
   verdict::Assessment assessment;
   double seconds = 0;  ///< From the robot in memory to the verdict.
+  std::optional<proof::Proof> proof = {};
+  double proof_seconds = 0;  ///< Beyond `seconds`.
 };
 
 /// The library's version, "major.minor.patch".
@@ -75,6 +80,10 @@ base::Result<io::Document> generate(std::string_view family, std::size_t size);
 std::vector<std::pair<std::string_view, std::string_view>> family_list();
 
 CheckResult check(const Structure& structure, const CheckOptions& options = {});
+
+/// The certificate of a check's proof, for holdfast-checker; see docs/formats.md. Errors: there is
+/// none, as nothing could be proved, or no proof was wanted.
+base::Result<std::string> certificate_text(const CheckResult& result);
 
 /// Reports and pictures of a checked structure; see io/report.hpp and io/picture.hpp.
 std::string report_json(const Structure& structure, const CheckResult& result);

@@ -133,6 +133,16 @@ void Multigrid::set_facet(std::size_t module, const ContactState& state, bool is
   is_stale_ = true;
 }
 
+void Multigrid::set_load(std::vector<Vec> load) {
+  carry(robot_, team_, std::move(load), network_);
+  if (iteration_) {
+    iteration_->x().assign(iteration_->x().size(), 0);
+  }
+  is_residual_known_ = false;
+  reference_ = 0;
+  is_stale_ = true;
+}
+
 /// If its coarsest level has all facets the hierarchy gets the tangent itself: the finest level as
 /// it is, the others with its upper half on both sides, as springs are carried. Else a stand-in.
 Mat Multigrid::tangent(std::uint8_t code) const {

@@ -43,6 +43,9 @@ class Multigrid {
   void set_law(const mechanics::GroundFacet<double>& facet);
   void set_facet(std::size_t module, const mechanics::ContactState& state, bool is_held);
 
+  /// Another load than the weight, by module; the displacements begin at zero again.
+  void set_load(std::vector<Vec> load);
+
   /// Whether anything changed since the last solution; if not, solve() goes on with that system.
   bool is_new() const { return is_stale_; }
 

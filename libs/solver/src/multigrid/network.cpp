@@ -192,11 +192,7 @@ class Builder {
       : robot_(robot),
         team_(team),
         is_gone_(robot.modules().size(), 0),
-        degree_(robot.modules().size()),
-        shapes_(robot.material().pitch_mm) {
-    const double weight = model::module_weight_n(robot.material());
-    weight_ = {0, 0, -weight, 0, 0, 0};
-  }
+        degree_(robot.modules().size()) {}
 
   Network build() {
     count_connections();
@@ -226,12 +222,6 @@ class Builder {
     });
   }
 
-  void need_loads() {
-    if (network_.load.empty()) {
-      network_.load.assign(degree_.size(), weight_);
-    }
-  }
-
   std::size_t next(std::size_t module, std::size_t direction) const {
     return at(robot_.neighbours()[module][direction]);
   }
@@ -247,7 +237,6 @@ class Builder {
     for (std::size_t start = 0; start < degree_.size(); ++start) {
       std::size_t leaf = start;
       while (is_gone_[leaf] == 0 && is_free(leaf) && degree_[leaf] == 1) {
-        need_loads();
         std::size_t direction = 0;
         while (!is_connected(leaf, direction)) {
           ++direction;
@@ -256,8 +245,6 @@ class Builder {
         is_gone_[leaf] = 1;
         network_.hanging.push_back({.module = static_cast<std::int32_t>(leaf),
                                     .direction = static_cast<std::uint8_t>(direction)});
-        base::add_to(network_.load[host],
-                     moved(network_.load[leaf], direction ^ 1U, robot_.material().pitch_mm));
         --degree_[host];
         leaf = host;
       }
@@ -287,7 +274,6 @@ class Builder {
     if (!is_any) {
       return;
     }
-    need_loads();
     for (std::size_t i = 0; i < axis.size(); ++i) {
       const bool is_end = axis[i] < 0 && (is_gone_[i] == 0 || !is_free(i));
       for (std::size_t direction = 0; is_end && direction < 6; direction += 2) {
@@ -322,18 +308,11 @@ class Builder {
                              .direction = static_cast<std::uint8_t>(direction),
                              .length = length});
     network_.has_long_beams = true;
-    const std::vector<BeamShape>& shapes = shapes_.of(length);
-    Vec6<double> near{};
-    Vec6<double> far{};
     std::size_t module = from;
     for (int i = 1; i < length; ++i) {
       module = next(module, direction);
       is_gone_[module] = 1;
-      add_share(shapes[at(i)], direction, network_.load[module], near);
-      add_share(shapes[at(length - i)], direction ^ 1U, network_.load[module], far);
     }
-    base::add_to(network_.load[from], near);
-    base::add_to(network_.load[next(module, direction)], far);
   }
 
   void sort_nodes() {
@@ -364,7 +343,7 @@ class Builder {
   std::int32_t far_end(std::size_t module, std::size_t direction, int& length) const {
     std::int32_t other = robot_.neighbours()[module][direction];
     length = 1;
-    if (other == Robot::kNoNeighbour || network_.load.empty()) {
+    if (other == Robot::kNoNeighbour || !network_.is_reduced()) {
       return other;
     }
     while (is_gone_[at(other)] != 0 && is_free(at(other))) {
@@ -390,7 +369,7 @@ class Builder {
           run_axis_[module] = static_cast<std::uint8_t>(run.direction / 2U);
         }
       }
-    } else if (!network_.load.empty()) {
+    } else if (network_.is_reduced()) {
       run_axis_.assign(degree_.size(), 3);
     }
     constexpr std::uint8_t kNone = 255;
@@ -458,11 +437,9 @@ class Builder {
 
   const Robot& robot_;
   Team& team_;
-  Vec6<double> weight_{};
   std::vector<std::uint8_t> is_gone_;  ///< Eliminated or fixed.
   std::vector<std::uint8_t> degree_;   ///< Connections that are left.
   std::vector<std::uint8_t> run_axis_;
-  ShapeTable shapes_;
   std::vector<Keyed> items_;
   std::vector<std::int32_t> node_of_;
   Network network_;
@@ -539,6 +516,21 @@ void bend_run(const Robot& robot, const Network::Run& run, const RunFactor& fact
   }
 }
 
+/// Carries the load of a run's inner modules to its ends.
+void carry_to_ends(const Robot& robot, const Network::Run& run,
+                   const std::vector<BeamShape>& shapes, std::vector<Vec6<double>>& load) {
+  Vec6<double> near{};
+  Vec6<double> far{};
+  std::size_t module = at(run.from);
+  for (int i = 1; i < run.length; ++i) {
+    module = at(robot.neighbours()[module][run.direction]);
+    add_share(shapes[at(i)], run.direction, load[module], near);
+    add_share(shapes[at(run.length - i)], run.direction ^ 1U, load[module], far);
+  }
+  base::add_to(load[at(run.from)], near);
+  base::add_to(load[at(robot.neighbours()[module][run.direction])], far);
+}
+
 /// All runs and hanging modules: from loads to what bends while the ends, or the host, are held.
 void bend_alone(const Robot& robot, Team& team, Network& network) {
   const auto beam = long_beam(robot.material(), 1);
@@ -597,10 +589,25 @@ mechanics::BeamStiffness<double> long_beam(const model::Material& material, int 
 
 Network make_network(const Robot& robot, Team& team) {
   Network network = Builder(robot, team).build();
-  if (!network.load.empty()) {
-    bend_alone(robot, team, network);
+  if (network.is_reduced()) {
+    const Vec6<double> weight = {0, 0, -model::module_weight_n(robot.material()), 0, 0, 0};
+    carry(robot, team, std::vector<Vec6<double>>(robot.modules().size(), weight), network);
   }
   return network;
+}
+
+void carry(const Robot& robot, Team& team, std::vector<Vec6<double>> load, Network& network) {
+  network.load = std::move(load);
+  const double pitch = robot.material().pitch_mm;
+  for (const auto& [module, direction] : network.hanging) {
+    const std::size_t host = at(robot.neighbours()[at(module)][direction]);
+    base::add_to(network.load[host], moved(network.load[at(module)], direction ^ 1U, pitch));
+  }
+  ShapeTable shapes(pitch);
+  for (const Network::Run& run : network.runs) {
+    carry_to_ends(robot, run, shapes.of(run.length), network.load);
+  }
+  bend_alone(robot, team, network);
 }
 
 void recover(const Robot& robot, const Network& network, Team& team,

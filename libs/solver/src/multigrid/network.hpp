@@ -53,9 +53,17 @@ struct Network {
   };
 
   std::vector<Run> runs;
+
+  /// Whether anything was eliminated.
+  bool is_reduced() const { return !hanging.empty() || !runs.empty(); }
 };
 
+/// Under the robot's own weight.
 Network make_network(const model::Robot& robot, host::Team& team);
+
+/// Puts another load on the modules, by module.
+void carry(const model::Robot& robot, host::Team& team, std::vector<base::Vec6<double>> load,
+           Network& network);
 
 /// Fills in the displacements of modules that are no nodes; those of nodes are given.
 void recover(const model::Robot& robot, const Network& network, host::Team& team,

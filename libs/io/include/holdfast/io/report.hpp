@@ -6,6 +6,7 @@
 #include <string>
 #include <string_view>
 
+#include "holdfast/proof/proof.hpp"
 #include "holdfast/verdict/assessment.hpp"
 
 namespace holdfast::io {
@@ -20,7 +21,9 @@ struct ReportEntry {
   const model::Robot* robot = nullptr;
   const verdict::Assessment* assessment = nullptr;
   std::span<const std::string> warnings;
-  double seconds = 0;  ///< From the robot in memory to the verdict.
+  double seconds = 0;                   ///< From the robot in memory to the verdict.
+  const proof::Proof* proof = nullptr;  ///< If one was asked for.
+  double proof_seconds = 0;             ///< What it took beyond that.
 };
 
 /// The JSON report, one object; keys are in docs/formats.md.

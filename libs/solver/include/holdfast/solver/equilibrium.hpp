@@ -140,6 +140,17 @@ class EquilibriumSolver {
 
   Equilibrium solve(const ContactOptions& contact);
 
+  /// Puts the facets into given states, by module, for respond(); of the unilateral law those that
+  /// press are held, the others are not. False if the robot is too large.
+  bool set_contact(const ContactOptions& contact,
+                   const std::vector<mechanics::ContactState>& states);
+
+  /// After set_contact(): how forces move the modules whose facets stay in these states, both by
+  /// module. A linear system; `tolerance` is multigrid's. None if no solver gets there. No solve()
+  /// may follow: the weight is forgotten.
+  std::optional<std::vector<base::Vec6<double>>> respond(
+      const std::vector<base::Vec6<double>>& force, double tolerance);
+
   /// Which method the next solve() under this law begins with; prepares it.
   Method method_for(mechanics::ContactLaw law);
 
@@ -163,6 +174,7 @@ class EquilibriumSolver {
   Outcome iterate_unilateral(Equilibrium& result);
   Outcome minimise(Equilibrium& result);
   bool update_held();
+  void set_law(const ContactOptions& contact);
   void set_tangent(const Facet& facet);
   bool set_facet(Facet& facet, const mechanics::ContactState& state, bool is_held);
   double search_line(const std::vector<Vec>& from, const std::vector<Vec>& direction) const;
