@@ -51,6 +51,9 @@ class Multigrid {
   /// more than rounding, at least `iteration_count_min` iterations.
   bool solve(double tolerance, int iteration_count_min = 0);
 
+  /// About what the displacement of a module on the ground is still off by. After solve().
+  Vec facet_correction(std::size_t module) const;
+
   /// By module.
   std::vector<Vec> displacement();
 

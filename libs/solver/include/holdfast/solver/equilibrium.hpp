@@ -153,7 +153,8 @@ class EquilibriumSolver {
   std::vector<Vec> by_module(const std::vector<Vec>& by_node) const;
   std::vector<Vec> internal_force(const std::vector<Vec>& displacement) const;
   std::vector<mechanics::ContactState> states_at(const std::vector<Vec>& displacement) const;
-  bool are_states_clear(const std::vector<Vec>& displacement) const;
+  bool are_states_certain(const std::vector<Vec>& displacement) const;
+  bool solve_for_states(Equilibrium& result);
   bool set_states(const std::vector<mechanics::ContactState>& states);
   void finish(Equilibrium& result);
   void refine(Equilibrium& result) const;
