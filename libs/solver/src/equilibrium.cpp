@@ -283,8 +283,7 @@ Equilibrium EquilibriumSolver::solve(const ContactOptions& contact) {
 
 Outcome EquilibriumSolver::iterate(Equilibrium& result) {
   const bool is_linear = options_.is_bonded || facets_.empty();
-  const double tight = kAlternativeFactor * options_.tolerance;
-  tolerance_ = is_linear ? tight : std::max(tight, kLooseTolerance);
+  tolerance_ = is_linear ? kAlternativeFactor * options_.tolerance : loose_tolerance();
   Outcome outcome = Outcome::kSettled;
   if (is_linear) {
     outcome = solve_linear(result) ? Outcome::kSettled : Outcome::kSingular;
@@ -293,6 +292,11 @@ Outcome EquilibriumSolver::iterate(Equilibrium& result) {
                                                      : iterate_unilateral(result);
   }
   return outcome == Outcome::kSingular && multigrid_ ? Outcome::kTooSlow : outcome;
+}
+
+/// For a start.
+double EquilibriumSolver::loose_tolerance() const {
+  return std::max(kAlternativeFactor * options_.tolerance, kLooseTolerance);
 }
 
 /// Once the states hold still: whether the solution is good enough to say so. If not, it will be.
@@ -330,6 +334,15 @@ bool EquilibriumSolver::set_states(const std::vector<ContactState>& states) {
     is_changed = set_facet(facets_[i], states[i], facets_[i].is_held) || is_changed;
   }
   return is_changed;
+}
+
+std::vector<ContactState> EquilibriumSolver::present_states() const {
+  std::vector<ContactState> states;
+  states.reserve(facets_.size());
+  for (const Facet& facet : facets_) {
+    states.push_back(facet.state);
+  }
+  return states;
 }
 
 std::vector<ContactState> EquilibriumSolver::states_at(const std::vector<Vec>& displacement) const {
@@ -414,7 +427,6 @@ bool EquilibriumSolver::solve_for_states(Equilibrium& result) {
 
 /// From the facets' present states on.
 Outcome EquilibriumSolver::iterate_regularised(Equilibrium& result) {
-  const double loose = tolerance_;
   std::set<std::vector<std::int8_t>> seen;
   for (int step = 0; step < options_.step_count_max; ++step) {
     if (!solve_for_states(result)) {
@@ -430,7 +442,7 @@ Outcome EquilibriumSolver::iterate_regularised(Equilibrium& result) {
     if (!seen.insert(code_of(states)).second) {
       return Outcome::kNotSettled;
     }
-    tolerance_ = loose;
+    tolerance_ = loose_tolerance();
   }
   return Outcome::kNotSettled;
 }
@@ -524,8 +536,9 @@ std::vector<Vec6<double>> EquilibriumSolver::internal_force(
   return force;
 }
 
-/// Iterative refinement, then everything that follows from the displacements.
-void EquilibriumSolver::finish(Equilibrium& result) {
+/// From displacements good enough to look up contact states to those that are handed out: iterative
+/// refinement, or some more iterations. False if digits are missing.
+bool EquilibriumSolver::sharpen(Equilibrium& result) {
   if (multigrid_) {
     result.alternative = std::move(result.displacement);
     // Where convergence is slow r . M^-1 r misses more of the error.
@@ -533,15 +546,20 @@ void EquilibriumSolver::finish(Equilibrium& result) {
     const double share = multigrid_->precision() == Precision::kDouble ? kSlenderShare : 1;
     // One iteration at least: else the two answers are the same, and say nothing about the error.
     if (!multigrid_->solve(options_.tolerance * share * pace * pace * pace, 1)) {
-      result.outcome = Outcome::kTooSlow;
-      return;
+      return false;
     }
     result.displacement = multigrid_->displacement();
+    return true;
   }
-  for (int step = 0; lu_ && step < kRefinementCount; ++step) {
+  for (int step = 0; step < kRefinementCount; ++step) {
     refine(result);
   }
-  if (lu_ && !is_refined(result)) {
+  return is_refined(result);
+}
+
+/// Everything that follows from the displacements.
+void EquilibriumSolver::finish(Equilibrium& result) {
+  if (!sharpen(result)) {
     result.outcome = Outcome::kTooSlow;
     return;
   }

@@ -12,6 +12,7 @@
 #include "connection_law.hpp"
 #include "holdfast/host/team.hpp"
 #include "holdfast/mechanics/support_corners.hpp"
+#include "several_solutions.hpp"
 
 namespace holdfast::verdict {
 namespace {
@@ -37,8 +38,6 @@ ModelStability model_stability(const model::Robot& robot, const Equilibrium& equ
   }
   return {.is_stable = corners.stable, .is_settled = true};
 }
-
-bool breaks(double load_ratio) { return load_ratio >= 1 - kLoadRatioTie; }
 
 /// Unlike with std::max, a NaN on either side wins: what is not known must not hide.
 double max_or_nan(double a, double b) { return std::isnan(a) || a > b ? a : b; }
@@ -163,8 +162,17 @@ ContactModel contact_model(const model::Robot& robot, ContactLaw law) {
   return law == ContactLaw::kUnilateral ? ContactModel::kUnilateral : ContactModel::kRegularised;
 }
 
+std::span<const double> weak_springs(solver::EquilibriumSolver& solver, bool is_stable) {
+  if (!is_stable) {
+    return kTopplingGammas;
+  }
+  return solver.method_for(ContactLaw::kUnilateral) == solver::Method::kMultigrid
+             ? std::span<const double>(kStableGammasMultigrid)
+             : kStableGammas;
+}
+
 /// The paper's contact law first; the exact one where it has no answer or one that contradicts the
-/// rigid body, which is certain on flat ground.
+/// rigid body, which is certain on flat ground, and beside it where the paper's has several.
 void find_equilibrium(const model::Robot& robot, const solver::EquilibriumOptions& options,
                       Assessment& assessment) {
   if (!assessment.is_stable && (robot.modules().size() > kTopplingCountMax ||
@@ -184,15 +192,21 @@ void find_equilibrium(const model::Robot& robot, const solver::EquilibriumOption
     assessment.contact_model = ContactModel::kBonded;
     return;
   }
-  if (agrees(assessment)) {
+  const bool is_settled = agrees(assessment);
+  if (is_settled && !assessment.is_stable) {
     return;
   }
-  const bool is_multigrid =
-      solver.method_for(ContactLaw::kUnilateral) == solver::Method::kMultigrid;
-  const std::span<const double> gammas =
-      !assessment.is_stable ? std::span<const double>(kTopplingGammas)
-      : is_multigrid        ? std::span<const double>(kStableGammasMultigrid)
-                            : kStableGammas;
+  if (is_settled) {
+    solver.seek_others(assessment.equilibrium);
+    if (assessment.equilibrium.others.empty()) {
+      return;
+    }
+  }
+  const std::span<const double> gammas = weak_springs(solver, assessment.is_stable);
+  if (is_settled) {
+    compare_solutions(robot, solver, gammas.front(), assessment);
+    return;
+  }
   for (const double gamma : gammas) {
     if (agrees(assessment)) {
       return;
@@ -256,6 +270,9 @@ void decide_stable(const model::Robot& robot, Assessment& assessment) {
         fmt::format("stable, but the largest load ratio is only known to lie between {:.9g} and "
                     "{:.9g}",
                     range.low, range.high));
+  } else if (assessment.several && !do_agree(*assessment.several, is_broken)) {
+    assessment.reasons.push_back("stable, but " + text(*assessment.several) +
+                                 "; they do not agree whether anything breaks");
   } else if (is_broken) {
     assessment.verdict = Verdict::kOverload;
     assessment.reasons.push_back(fmt::format(
@@ -281,6 +298,9 @@ void add_contact_remarks(Assessment& assessment) {
     assessment.reasons.emplace_back(
         "the loads come from exact unilateral contact (Eqs. 6-8): the paper's regularised contact "
         "(Eqs. 9-12) has no usable answer here");
+  }
+  if (assessment.several && assessment.verdict != Verdict::kUndecided) {
+    assessment.reasons.push_back(text(*assessment.several) + "; all give this verdict");
   }
   if (assessment.equilibrium.open_but_held_count > 0) {
     assessment.reasons.push_back(

@@ -1,0 +1,24 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+#include "holdfast/verdict/assessment.hpp"
+
+/// What to say where the paper's contact law has several solutions (theory.md).
+namespace holdfast::verdict {
+
+/// Sets `assessment.several` from `assessment.equilibrium`, whose `others` are known, and the exact
+/// law's answer, with weak springs of `gamma`.
+void compare_solutions(const model::Robot& robot, solver::EquilibriumSolver& solver, double gamma,
+                       Assessment& assessment);
+
+/// Whether all of them, the exact law's among them, break something if `is_broken`, and nothing if
+/// not. False if the exact law has no answer.
+bool do_agree(const SeveralSolutions& several, bool is_broken);
+
+/// "the paper's contact law (Eqs. 9-12) has several solutions here: the largest load ratio is ..."
+std::string text(const SeveralSolutions& several);
+
+}  // namespace holdfast::verdict
