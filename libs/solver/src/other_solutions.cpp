@@ -105,7 +105,8 @@ bool EquilibriumSolver::goes_on_from(std::size_t facet, Equilibrium& other) {
   const bool was_pressed = facets_[facet].state.pressed;
   tolerance_ = loose_tolerance();
   return solve_for_states(other) && states_at(other.displacement)[facet].pressed == was_pressed &&
-         iterate_regularised(other) == Outcome::kSettled && sharpen(other);
+         iterate_regularised(other) == Outcome::kSettled &&
+         (multigrid_ ? finish_multigrid(other) : finish_direct(other));
 }
 
 }  // namespace holdfast::solver

@@ -47,9 +47,11 @@ constexpr LoadRange kEmpty = {.low = std::numeric_limits<double>::infinity(),
                               .high = -std::numeric_limits<double>::infinity()};
 
 /// False for what is not a number.
-bool is_on_side(const LoadRange& range, bool is_broken) {
-  return is_broken ? breaks(range.low) && breaks(range.high)
-                   : range.low < 1 - kLoadRatioTie && range.high < 1 - kLoadRatioTie;
+bool is_on_side(const LoadRange& range, double error, bool is_broken) {
+  const double low = range.low - error;
+  const double high = range.high + error;
+  return is_broken ? breaks(low) && breaks(high)
+                   : low < 1 - kLoadRatioTie && high < 1 - kLoadRatioTie;
 }
 
 /// Four decimals, or as many as tell the two apart.
@@ -62,7 +64,7 @@ std::string text(const LoadRange& range) {
 }  // namespace
 
 void compare_solutions(const model::Robot& robot, solver::EquilibriumSolver& solver, double gamma,
-                       Assessment& assessment) {
+                       double tolerance_share, Assessment& assessment) {
   if (robot.connections().empty()) {
     return;
   }
@@ -81,11 +83,17 @@ void compare_solutions(const model::Robot& robot, solver::EquilibriumSolver& sol
   if (exact.outcome == solver::Outcome::kSettled) {
     widen(several.unilateral.emplace(kEmpty), robot, exact.displacement, exact.alternative);
   }
+  const bool is_multigrid =
+      settled.method == solver::Method::kMultigrid || exact.method == solver::Method::kMultigrid;
+  several.error =
+      std::max(1.0, several.regularised.high) * (is_multigrid ? kMultigridError * tolerance_share
+                                                 : exact.gamma > 0 ? kWeakSprings
+                                                                   : kRounding);
 }
 
 bool do_agree(const SeveralSolutions& several, bool is_broken) {
-  return is_on_side(several.regularised, is_broken) && several.unilateral &&
-         is_on_side(*several.unilateral, is_broken);
+  return is_on_side(several.regularised, several.error, is_broken) && several.unilateral &&
+         is_on_side(*several.unilateral, several.error, is_broken);
 }
 
 std::string text(const SeveralSolutions& several) {

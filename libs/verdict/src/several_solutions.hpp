@@ -9,10 +9,19 @@
 /// What to say where the paper's contact law has several solutions (theory.md).
 namespace holdfast::verdict {
 
+/// What load ratios may be off by rounding alone, as a share of the largest or of 1.
+inline constexpr double kRounding = 1e-12;
+
+/// By weak springs of 1e-9 beside the unilateral contact of a stable robot, in the same terms.
+inline constexpr double kWeakSprings = 1e-7;
+
+/// By multigrid: what is promised (docs/solver.md).
+inline constexpr double kMultigridError = 1e-4;
+
 /// Sets `assessment.several` from `assessment.equilibrium`, whose `others` are known, and the exact
-/// law's answer, with weak springs of `gamma`.
+/// law's answer, with weak springs of `gamma`, if multigrid's tolerance is so many times the usual.
 void compare_solutions(const model::Robot& robot, solver::EquilibriumSolver& solver, double gamma,
-                       Assessment& assessment);
+                       double tolerance_share, Assessment& assessment);
 
 /// Whether all of them, the exact law's among them, break something if `is_broken`, and nothing if
 /// not. False if the exact law has no answer.

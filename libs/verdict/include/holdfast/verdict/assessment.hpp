@@ -51,6 +51,7 @@ struct SeveralSolutions {
   std::size_t found_count = 0;          ///< At least so many; 2 or more.
   LoadRange regularised;                ///< Over all solutions found.
   std::optional<LoadRange> unilateral;  ///< None if no equilibrium was found.
+  double error = 0;                     ///< By which each of these may be off.
 };
 
 struct ModelStability {
@@ -78,6 +79,8 @@ struct Assessment {
   /// The weight could grow by this factor before the first connection breaks; none without `worst`.
   std::optional<double> weight_factor;
   LoadRange load_ratio_range;  ///< Void where load_ratio_max is.
+  /// The most by which any load ratio changed between the last two solutions of the linear system.
+  double load_ratio_change = 0;
 
   ContactModel contact_model = ContactModel::kNone;
   /// None if the law that the forces come from has one solution, as far as was found.
