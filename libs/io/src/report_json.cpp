@@ -40,6 +40,8 @@ Json stability_json(const verdict::Assessment& assessment) {
           {"stable", assessment.is_stable}};
 }
 
+Json range_json(const verdict::LoadRange& range) { return Json::array({range.low, range.high}); }
+
 Json overload_json(const model::Robot& robot, const verdict::Assessment& assessment) {
   Json broken = Json::array();
   for (const std::size_t connection : assessment.broken) {
@@ -47,7 +49,7 @@ Json overload_json(const model::Robot& robot, const verdict::Assessment& assessm
   }
   Json range;
   if (assessment.load_ratio_max) {
-    range = Json::array({assessment.load_ratio_range.low, assessment.load_ratio_range.high});
+    range = range_json(assessment.load_ratio_range);
   }
   return {{"meaningful", assessment.is_stable && assessment.load_ratio_max.has_value()},
           {"load_ratio_max", or_null(assessment.load_ratio_max)},
@@ -71,6 +73,16 @@ Json connections_json(const model::Robot& robot, const verdict::Assessment& asse
                     {"torsion_nmm", result.torsion_nmm}});
   }
   return list;
+}
+
+Json several_json(const verdict::Assessment& assessment) {
+  if (!assessment.several) {
+    return {};
+  }
+  const verdict::SeveralSolutions& several = *assessment.several;
+  return {{"found", several.found_count},
+          {"regularised", range_json(several.regularised)},
+          {"unilateral", several.unilateral ? range_json(*several.unilateral) : Json()}};
 }
 
 const char* solver_name(const solver::Equilibrium& equilibrium) {
@@ -110,6 +122,7 @@ std::string write_report_json(const ReportEntry& entry) {
       {"overload", overload_json(robot, assessment)},
       {"connections", connections_json(robot, assessment)},
       {"contact_model", verdict::name(assessment.contact_model)},
+      {"several_solutions", several_json(assessment)},
       {"solver",
        {{"name", solver_name(assessment.equilibrium)},
         {"iterations", assessment.equilibrium.steps},

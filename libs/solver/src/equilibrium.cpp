@@ -47,10 +47,16 @@ constexpr std::size_t kNoLimit = std::numeric_limits<std::size_t>::max();
 
 /// Multigrid's error while contact states are sought, as a share of the first. The regularised law
 /// may have several answers, and the one meant is that of Newton's path: where a facet is so near
-/// to another state that the error could decide, that step must be exact.
+/// to another state that the error could decide, that step goes on, a factor at a time, down to the
+/// finest.
 constexpr double kLooseTolerance = 1e-3;
-constexpr double kPathTolerance = 3e-5;
-constexpr double kClearShare = 0.05;
+constexpr double kPathFactor = 0.1;
+constexpr double kFinestTolerance = 1e-9;
+
+/// How far a facet's force may be off: so many times what the preconditioner would still change it
+/// by, and such a share of what it would change any facet by.
+constexpr double kCorrectionFactor = 3;
+constexpr double kCorrectionShare = 0.3;
 
 /// Up to so many iterations to the alternative solution the tolerance means what it says.
 constexpr double kBriskIterations = 8;
@@ -322,8 +328,7 @@ std::optional<std::vector<Vec6<double>>> EquilibriumSolver::respond(const std::v
 
 Outcome EquilibriumSolver::iterate(Equilibrium& result) {
   const bool is_linear = options_.is_bonded || facets_.empty();
-  const double tight = kAlternativeFactor * options_.tolerance;
-  tolerance_ = is_linear ? tight : std::max(tight, kLooseTolerance);
+  tolerance_ = is_linear ? kAlternativeFactor * options_.tolerance : loose_tolerance();
   Outcome outcome = Outcome::kSettled;
   if (is_linear) {
     outcome = solve_linear(result) ? Outcome::kSettled : Outcome::kSingular;
@@ -332,6 +337,11 @@ Outcome EquilibriumSolver::iterate(Equilibrium& result) {
                                                      : iterate_unilateral(result);
   }
   return outcome == Outcome::kSingular && multigrid_ ? Outcome::kTooSlow : outcome;
+}
+
+/// For a start.
+double EquilibriumSolver::loose_tolerance() const {
+  return std::max(kAlternativeFactor * options_.tolerance, kLooseTolerance);
 }
 
 /// Once the states hold still: whether the solution is good enough to say so. If not, it will be.
@@ -371,6 +381,15 @@ bool EquilibriumSolver::set_states(const std::vector<ContactState>& states) {
   return is_changed;
 }
 
+std::vector<ContactState> EquilibriumSolver::present_states() const {
+  std::vector<ContactState> states;
+  states.reserve(facets_.size());
+  for (const Facet& facet : facets_) {
+    states.push_back(facet.state);
+  }
+  return states;
+}
+
 std::vector<ContactState> EquilibriumSolver::states_at(const std::vector<Vec>& displacement) const {
   std::vector<ContactState> states;
   states.reserve(facets_.size());
@@ -381,22 +400,33 @@ std::vector<ContactState> EquilibriumSolver::states_at(const std::vector<Vec>& d
   return states;
 }
 
-/// Whether every facet's state would be the same with a little more or less pressure.
-bool EquilibriumSolver::are_states_clear(const std::vector<Vec>& displacement) const {
-  double largest = 0;
-  for (const Facet& facet : facets_) {
-    const Vec force = mechanics::trial_force(ground_, displacement[facet.module]);
-    largest = std::max(largest, std::abs(force[2]));
+/// Whether every facet's state is that of the exact solution. Where the iteration converges slowly
+/// the preconditioner misses more of the error.
+bool EquilibriumSolver::are_states_certain(const std::vector<Vec>& displacement) const {
+  if (!multigrid_) {
+    return true;
   }
-  return std::ranges::all_of(facets_, [&](const Facet& facet) {
-    Vec more = mechanics::trial_force(ground_, displacement[facet.module]);
-    Vec less = more;
-    const double bending = (std::abs(more[3]) + std::abs(more[4])) / ground_.half_width;
-    const double margin = kClearShare * (std::abs(more[2]) + bending + kClearShare * largest);
-    more[2] -= margin;
-    less[2] += margin;
-    return mechanics::contact_state(ground_, more) == mechanics::contact_state(ground_, less);
-  });
+  std::vector<double> errors;  // N, torques counted at half a width.
+  errors.reserve(facets_.size());
+  for (const Facet& facet : facets_) {
+    const Vec force = mechanics::trial_force(ground_, multigrid_->facet_correction(facet.module));
+    errors.push_back(std::abs(force[2]) +
+                     std::max(std::abs(force[3]), std::abs(force[4])) / ground_.half_width);
+  }
+  const double pace = std::max(1.0, multigrid_->last_count() / kBriskIterations);
+  const double common = kCorrectionShare * *std::ranges::max_element(errors);
+  for (std::size_t i = 0; i < facets_.size(); ++i) {
+    const double error = kCorrectionFactor * pace * std::max(errors[i], common);
+    const Vec force = mechanics::trial_force(ground_, displacement[facets_[i].module]);
+    Vec more = force;
+    Vec less = force;
+    more[2] -= error;
+    less[2] += error;
+    if (mechanics::contact_state(ground_, more) != mechanics::contact_state(ground_, less)) {
+      return false;
+    }
+  }
+  return true;
 }
 
 /// From one vector per node to one per module; fixed modules get zero.
@@ -429,15 +459,23 @@ bool EquilibriumSolver::solve_linear(Equilibrium& result) {
   return true;
 }
 
+/// Displacements good enough to look up the states that the exact ones prescribe.
+bool EquilibriumSolver::solve_for_states(Equilibrium& result) {
+  while (solve_linear(result)) {
+    if (are_states_certain(result.displacement) || tolerance_ <= kFinestTolerance) {
+      return true;
+    }
+    tolerance_ = std::max(kPathFactor * tolerance_, kFinestTolerance);
+  }
+  return false;
+}
+
+/// From the facets' present states on.
 Outcome EquilibriumSolver::iterate_regularised(Equilibrium& result) {
   std::set<std::vector<std::int8_t>> seen;
   for (int step = 0; step < options_.step_count_max; ++step) {
-    if (!solve_linear(result)) {
+    if (!solve_for_states(result)) {
       return Outcome::kSingular;
-    }
-    if (multigrid_ && tolerance_ > kPathTolerance && !are_states_clear(result.displacement)) {
-      tolerance_ = kPathTolerance;
-      continue;
     }
     const std::vector<ContactState> states = states_at(result.displacement);
     if (!set_states(states)) {
@@ -449,6 +487,7 @@ Outcome EquilibriumSolver::iterate_regularised(Equilibrium& result) {
     if (!seen.insert(code_of(states)).second) {
       return Outcome::kNotSettled;
     }
+    tolerance_ = loose_tolerance();
   }
   return Outcome::kNotSettled;
 }
@@ -545,12 +584,8 @@ std::vector<Vec6<double>> EquilibriumSolver::internal_force(
 /// The last digits, then everything that follows from the displacements.
 void EquilibriumSolver::finish(Equilibrium& result) {
   result.gamma = ground_.gamma;
-  if (multigrid_) {
-    finish_multigrid(result);
-  } else if (lu_ && !finish_direct(result)) {
+  if (!(multigrid_ ? finish_multigrid(result) : finish_direct(result))) {
     result.outcome = Outcome::kTooSlow;
-  }
-  if (result.outcome != Outcome::kSettled) {
     return;
   }
   const std::size_t count = robot_.modules().size();
@@ -571,7 +606,8 @@ void EquilibriumSolver::finish(Equilibrium& result) {
   }
 }
 
-void EquilibriumSolver::finish_multigrid(Equilibrium& result) {
+/// Returns false if it does not get there.
+bool EquilibriumSolver::finish_multigrid(Equilibrium& result) {
   result.alternative = std::move(result.displacement);
   // Where convergence is slow r . M^-1 r misses more of the error.
   const double pace = std::min(1.0, kBriskIterations / multigrid_->last_count());
@@ -582,11 +618,11 @@ void EquilibriumSolver::finish_multigrid(Equilibrium& result) {
           ? kThinError * options_.tolerance / model::load_ratio_per_energy_norm(robot_.material())
           : std::numeric_limits<double>::infinity();
   if (!multigrid_->solve(options_.tolerance * share * pace * pace * pace, 1, energy_error_max)) {
-    result.outcome = Outcome::kTooSlow;
-    return;
+    return false;
   }
   result.energy_error = multigrid_->energy_error();
   result.displacement = multigrid_->displacement();
+  return true;
 }
 
 /// Returns false if there are no digits left.

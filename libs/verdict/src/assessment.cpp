@@ -14,6 +14,7 @@
 #include "holdfast/host/team.hpp"
 #include "holdfast/mechanics/support_corners.hpp"
 #include "holdfast/verdict/beside_one.hpp"
+#include "several_solutions.hpp"
 
 namespace holdfast::verdict {
 namespace {
@@ -39,8 +40,6 @@ ModelStability model_stability(const model::Robot& robot, const Equilibrium& equ
   }
   return {.is_stable = corners.stable, .is_settled = true};
 }
-
-bool breaks(double load_ratio) { return load_ratio >= 1 - kLoadRatioTie; }
 
 /// Unlike with std::max, a NaN on either side wins: what is not known must not hide.
 double max_or_nan(double a, double b) { return std::isnan(a) || a > b ? a : b; }
@@ -151,20 +150,12 @@ Loads add_up(const model::Robot& robot, int thread_count, Assessment& assessment
   return all;
 }
 
-/// What load ratios may be off by rounding alone, as a share of the largest or of 1.
-constexpr double kRounding = 1e-12;
-
-/// By weak springs beside the unilateral contact of a stable robot, in the same terms: so many
-/// times their share of the contact's stiffness. Springs of 1e-6 have moved a load ratio by 6e-4.
-constexpr double kWeakSprings = 1e3;
-
 /// Two answers of multigrid differ by less than the error of the better one, once in a while, and
 /// the error's energy is estimated too low. So of any connection the margin takes the largest
 /// difference so many times, or what the energy so many times could do to a load ratio, whichever
 /// is less; and never less than what is promised (docs/solver.md).
 constexpr double kMultigridFactor = 10;
 constexpr double kEnergyFactor = 3;
-constexpr double kMultigridError = 1e-4;
 
 double tolerance_share(const solver::EquilibriumOptions& options) {
   return options.tolerance / solver::EquilibriumOptions{}.tolerance;
@@ -269,8 +260,17 @@ ContactModel contact_model(const model::Robot& robot, ContactLaw law) {
   return law == ContactLaw::kUnilateral ? ContactModel::kUnilateral : ContactModel::kRegularised;
 }
 
+std::span<const double> weak_springs(solver::EquilibriumSolver& solver, bool is_stable) {
+  if (!is_stable) {
+    return kTopplingGammas;
+  }
+  return solver.method_for(ContactLaw::kUnilateral) == solver::Method::kMultigrid
+             ? std::span<const double>(kStableGammasMultigrid)
+             : kStableGammas;
+}
+
 /// The paper's contact law first; the exact one where it has no answer or one that contradicts the
-/// rigid body, which is certain on flat ground.
+/// rigid body, which is certain on flat ground, and beside it where the paper's has several.
 void find_equilibrium(const model::Robot& robot, const solver::EquilibriumOptions& options,
                       Assessment& assessment) {
   if (!assessment.is_stable && (robot.modules().size() > kTopplingCountMax ||
@@ -290,15 +290,21 @@ void find_equilibrium(const model::Robot& robot, const solver::EquilibriumOption
     assessment.contact_model = ContactModel::kBonded;
     return;
   }
-  if (agrees(assessment)) {
+  const bool is_settled = agrees(assessment);
+  if (is_settled && !assessment.is_stable) {
     return;
   }
-  const bool is_multigrid =
-      solver.method_for(ContactLaw::kUnilateral) == solver::Method::kMultigrid;
-  const std::span<const double> gammas =
-      !assessment.is_stable ? std::span<const double>(kTopplingGammas)
-      : is_multigrid        ? std::span<const double>(kStableGammasMultigrid)
-                            : kStableGammas;
+  if (is_settled) {
+    solver.seek_others(assessment.equilibrium);
+    if (assessment.equilibrium.others.empty()) {
+      return;
+    }
+  }
+  const std::span<const double> gammas = weak_springs(solver, assessment.is_stable);
+  if (is_settled) {
+    compare_solutions(robot, solver, gammas.front(), tolerance_share(options), assessment);
+    return;
+  }
   for (const double gamma : gammas) {
     if (agrees(assessment)) {
       return;
@@ -362,6 +368,9 @@ void decide_stable(const model::Robot& robot, Assessment& assessment) {
         fmt::format("stable, but the largest load ratio is only known to lie between {:.9g} and "
                     "{:.9g}",
                     range.low, range.high));
+  } else if (assessment.several && !do_agree(*assessment.several, is_broken)) {
+    assessment.reasons.push_back("stable, but " + text(*assessment.several) +
+                                 "; they do not agree whether anything breaks");
   } else if (is_broken) {
     assessment.verdict = Verdict::kOverload;
     assessment.reasons.push_back(
@@ -392,6 +401,9 @@ void add_contact_remarks(Assessment& assessment) {
     assessment.reasons.emplace_back(
         "the loads come from exact unilateral contact (Eqs. 6-8): the paper's regularised contact "
         "(Eqs. 9-12) has no usable answer here");
+  }
+  if (assessment.several && assessment.verdict != Verdict::kUndecided) {
+    assessment.reasons.push_back(text(*assessment.several) + "; all give this verdict");
   }
   if (assessment.equilibrium.open_but_held_count > 0) {
     assessment.reasons.push_back(fmt::format(
@@ -446,7 +458,9 @@ Assessment assess_once(const model::Robot& robot, const solver::EquilibriumOptio
 bool is_near_limit(const Assessment& assessment) {
   return assessment.is_stable && assessment.equilibrium.outcome == Outcome::kSettled &&
          assessment.equilibrium.open_but_held_count == 0 &&
-         breaks(assessment.load_ratio_range.low) != breaks(assessment.load_ratio_range.high);
+         (breaks(assessment.load_ratio_range.low) != breaks(assessment.load_ratio_range.high) ||
+          (assessment.several &&
+           !do_agree(*assessment.several, breaks(assessment.load_ratio_range.low))));
 }
 
 /// Where the verdict hangs on the error: the direct solver with all digits, if it fits, and

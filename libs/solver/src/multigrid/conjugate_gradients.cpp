@@ -86,6 +86,15 @@ double ConjugateGradients<Real>::begin() {
   return error_;
 }
 
+template <class Real>
+base::Vec6<double> ConjugateGradients<Real>::correction(std::size_t node) {
+  base::Vec6<double> z{};
+  for (std::size_t k = 0; k < 6; ++k) {
+    z[k] = static_cast<double>(hierarchy_.levels().front().z[node].v[k]);
+  }
+  return z;
+}
+
 /// q = K p; returns p . q.
 template <class Real>
 double ConjugateGradients<Real>::multiply() {

@@ -25,6 +25,7 @@ class ConjugateGradients final : public Iteration {
   double begin() override;
   End run(const Goal& goal) override;
   End run_unsymmetric(const Goal& goal, std::span<const NodeTerm> terms) override;
+  base::Vec6<double> correction(std::size_t node) override;
 
  private:
   /// One that A made unsymmetric runs remember.

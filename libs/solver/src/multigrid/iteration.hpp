@@ -59,6 +59,9 @@ class Iteration {
   /// precision: r counts every rounding error of a stiff lattice.)
   virtual End run_unsymmetric(const Goal& goal, std::span<const NodeTerm> terms) = 0;
 
+  /// M^-1 r at a node: about what x is still off by there. After begin() or run().
+  virtual base::Vec6<double> correction(std::size_t node) = 0;
+
   int iteration_count() const { return iteration_count_; }
 
   /// Called once per iteration with the estimated error; may be empty.

@@ -328,6 +328,11 @@ bool Multigrid::solve(double tolerance, int iteration_count_min, double energy_e
   return false;
 }
 
+base::Vec6<double> Multigrid::facet_correction(std::size_t module) const {
+  const Facet& facet = facets_[at(facet_of_module_[module])];
+  return iteration_ ? iteration_->correction(at(facet.node)) : Vec{};
+}
+
 std::vector<base::Vec6<double>> Multigrid::displacement() {
   std::vector<Vec> by_module(robot_.modules().size());
   if (iteration_) {

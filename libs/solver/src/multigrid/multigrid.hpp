@@ -63,6 +63,9 @@ class Multigrid {
   /// single beam may then have a large part of the whole error's energy.
   bool is_thin() const;
 
+  /// About what the displacement of a module on the ground is still off by. After solve().
+  Vec facet_correction(std::size_t module) const;
+
   /// By module.
   std::vector<Vec> displacement();
 

@@ -22,6 +22,9 @@
 /// the equilibrium. How such a consistent set of states is found depends on the law:
 /// - kRegularised: Newton's method from "all stuck", that is, repeat until nothing changes. Settles
 ///   in 1 to 5 steps on most robots, cycles on some, and some have no consistent states at all.
+///   Some have several solutions (theory.md); the one on this path is the answer, and every step
+///   looks up the states of its exact solution, so that it does not depend on method, order of the
+///   modules or frame.
 /// - kUnilateral: the equilibrium minimises a convex function, once differentiable and piecewise
 ///   quadratic. For a robot that stands, and in exact arithmetic, Newton's method with an exact
 ///   line search arrives in finitely many steps. A robot that topples has a minimum only by the
@@ -94,6 +97,12 @@ enum class Outcome : std::uint8_t {
   kTooSlow,     ///< No solver gets there: a robot too slender for double precision.
 };
 
+/// Displacements that fulfil the same law, and a second answer as of an Equilibrium.
+struct OtherSolution {
+  std::vector<base::Vec6<double>> displacement;
+  std::vector<base::Vec6<double>> alternative;
+};
+
 /// A module on the ground, and the contact state that its facet is taken to be in.
 struct FacetState {
   std::size_t module = 0;
@@ -115,6 +124,8 @@ struct Equilibrium {
   /// refinement, or at least ten times farther from convergence; or, if open_but_held_count > 0,
   /// with those facets free to slide.
   std::vector<base::Vec6<double>> alternative;
+  /// Further solutions of the same law, as far as seek_others() found any.
+  std::vector<OtherSolution> others;
   std::vector<mechanics::ContactState> contact;  ///< Of ground modules; the rest is not pressed.
   std::vector<base::Vec6<double>> ground_force;  ///< By the ground on the module at its node.
   /// Open facets that are held sideways all the same, as they would close when released: no slip
@@ -139,6 +150,12 @@ class EquilibriumSolver {
   ~EquilibriumSolver();
 
   Equilibrium solve(const ContactOptions& contact);
+
+  /// Looks for further solutions of the regularised law and adds them to `settled`, which the last
+  /// solve() must have returned. Feet that hardly press and are pulled sideways are put into
+  /// another state, one at a time, and Newton's method goes on from there. Takes nothing where
+  /// there are none, else a few linear systems for each. Not certain to find all.
+  void seek_others(Equilibrium& settled);
 
   /// Puts the facets into given states, by module, for respond(); of the unilateral law those that
   /// press are held, the others are not. False if the robot is too large.
@@ -168,9 +185,12 @@ class EquilibriumSolver {
   bool try_otherwise();
   void assemble();
   Outcome iterate(Equilibrium& result);
+  double loose_tolerance() const;
   bool is_tight_now();
   bool solve_linear(Equilibrium& result);
   Outcome iterate_regularised(Equilibrium& result);
+  std::vector<std::size_t> doubtful_facets(const Equilibrium& settled) const;
+  bool goes_on_from(std::size_t facet, Equilibrium& other);
   Outcome iterate_unilateral(Equilibrium& result);
   Outcome minimise(Equilibrium& result);
   bool update_held();
@@ -180,12 +200,14 @@ class EquilibriumSolver {
   double search_line(const std::vector<Vec>& from, const std::vector<Vec>& direction) const;
   std::vector<Vec> by_module(const std::vector<Vec>& by_node) const;
   std::vector<Vec> internal_force(const std::vector<Vec>& displacement) const;
+  std::vector<mechanics::ContactState> present_states() const;
   std::vector<mechanics::ContactState> states_at(const std::vector<Vec>& displacement) const;
-  bool are_states_clear(const std::vector<Vec>& displacement) const;
+  bool are_states_certain(const std::vector<Vec>& displacement) const;
+  bool solve_for_states(Equilibrium& result);
   bool set_states(const std::vector<mechanics::ContactState>& states);
   void finish(Equilibrium& result);
   bool finish_direct(Equilibrium& result);
-  void finish_multigrid(Equilibrium& result);
+  bool finish_multigrid(Equilibrium& result);
   void refine(Equilibrium& result) const;
   bool refine_precisely(Equilibrium& result);
   bool refine_without_weak_springs(Equilibrium& result);

@@ -45,6 +45,15 @@ struct LoadRange {
   double high = 0;
 };
 
+/// Where the paper's contact law has more than one solution: what it says about the largest load
+/// ratio, and what the exact law says beside it. A verdict needs all of them on one side of 1.
+struct SeveralSolutions {
+  std::size_t found_count = 0;          ///< At least so many; 2 or more.
+  LoadRange regularised;                ///< Over all solutions found.
+  std::optional<LoadRange> unilateral;  ///< None if no equilibrium was found.
+  double error = 0;                     ///< By which each of these may be off.
+};
+
 struct ModelStability {
   bool is_stable = false;
   bool is_settled = false;  ///< False: no consistent contact state was found, is_stable is void.
@@ -75,12 +84,17 @@ struct Assessment {
   double load_ratio_change = 0;
 
   ContactModel contact_model = ContactModel::kNone;
+  /// None if the law that the forces come from has one solution, as far as was found.
+  std::optional<SeveralSolutions> several;
   solver::Equilibrium equilibrium;  ///< Displacements, contact states, ground forces.
 };
 
 /// A load ratio this close below 1 counts as 1: the margin is rounding, not strength. One below
 /// this counts as no load. Rounding moves ratios by about 1e-13.
 inline constexpr double kLoadRatioTie = 1e-9;
+
+/// Whether a connection with this load ratio breaks.
+inline bool breaks(double load_ratio) { return load_ratio >= 1 - kLoadRatioTie; }
 
 Assessment assess(const model::Robot& robot, const solver::EquilibriumOptions& options = {});
 

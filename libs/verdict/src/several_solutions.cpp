@@ -1,0 +1,105 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#include "several_solutions.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "connection_law.hpp"
+#include "holdfast/verdict/beside_one.hpp"
+
+namespace holdfast::verdict {
+namespace {
+
+using Displacements = std::vector<base::Vec6<double>>;
+
+/// Largest load ratio; NaN if one is.
+double load_ratio_max(const model::Robot& robot, const Displacements& u) {
+  const ConnectionLaw laws[] = {{robot.material(), base::Direction::kPlusX},
+                                {robot.material(), base::Direction::kPlusY},
+                                {robot.material(), base::Direction::kPlusZ}};
+  double largest = -std::numeric_limits<double>::infinity();
+  for (const model::Connection& pair : robot.connections()) {
+    const double ratio = laws[base::index(pair.direction) / 2].load_ratio(
+        u[static_cast<std::size_t>(pair.a)], u[static_cast<std::size_t>(pair.b)]);
+    largest = ratio > largest || std::isnan(ratio) ? ratio : largest;
+    if (std::isnan(largest)) {
+      break;
+    }
+  }
+  return largest;
+}
+
+/// Takes in what a solution and its alternative say.
+void widen(LoadRange& range, const model::Robot& robot, const Displacements& displacement,
+           const Displacements& alternative) {
+  for (const Displacements* u : {&displacement, &alternative}) {
+    const double ratio = load_ratio_max(robot, *u);
+    range.low = ratio < range.low || std::isnan(ratio) ? ratio : range.low;
+    range.high = ratio > range.high || std::isnan(ratio) ? ratio : range.high;
+  }
+}
+
+constexpr LoadRange kEmpty = {.low = std::numeric_limits<double>::infinity(),
+                              .high = -std::numeric_limits<double>::infinity()};
+
+/// False for what is not a number.
+bool is_on_side(const LoadRange& range, double error, bool is_broken) {
+  const double low = range.low - error;
+  const double high = range.high + error;
+  return is_broken ? breaks(low) && breaks(high)
+                   : low < 1 - kLoadRatioTie && high < 1 - kLoadRatioTie;
+}
+
+std::string text(const LoadRange& range) {
+  const std::string low = beside_one(range.low, 4);
+  const std::string high = beside_one(range.high, 4);
+  return low == high ? low : fmt::format("{} to {}", low, high);
+}
+
+}  // namespace
+
+void compare_solutions(const model::Robot& robot, solver::EquilibriumSolver& solver, double gamma,
+                       double tolerance_share, Assessment& assessment) {
+  if (robot.connections().empty()) {
+    return;
+  }
+  solver::Equilibrium& settled = assessment.equilibrium;
+  SeveralSolutions& several = assessment.several.emplace();
+  several.found_count = settled.others.size() + 1;
+  several.regularised = kEmpty;
+  widen(several.regularised, robot, settled.displacement, settled.alternative);
+  for (const solver::OtherSolution& other : settled.others) {
+    widen(several.regularised, robot, other.displacement, other.alternative);
+  }
+  const solver::Equilibrium exact =
+      solver.solve({.law = mechanics::ContactLaw::kUnilateral, .gamma = gamma});
+  settled.steps += exact.steps;
+  settled.iteration_count += exact.iteration_count;
+  if (exact.outcome == solver::Outcome::kSettled) {
+    widen(several.unilateral.emplace(kEmpty), robot, exact.displacement, exact.alternative);
+  }
+  const bool is_multigrid =
+      settled.method == solver::Method::kMultigrid || exact.method == solver::Method::kMultigrid;
+  const double share = is_multigrid ? kMultigridError * tolerance_share : kRounding;
+  several.error = std::max(1.0, several.regularised.high) * (share + kWeakSprings * exact.gamma);
+}
+
+bool do_agree(const SeveralSolutions& several, bool is_broken) {
+  return is_on_side(several.regularised, several.error, is_broken) && several.unilateral &&
+         is_on_side(*several.unilateral, several.error, is_broken);
+}
+
+std::string text(const SeveralSolutions& several) {
+  return fmt::format(
+      "the paper's contact law (Eqs. 9-12) has several solutions here: the largest load ratio is "
+      "{} in the {} that were found, {} by exact unilateral contact (Eqs. 6-8)",
+      text(several.regularised), several.found_count,
+      several.unilateral ? text(*several.unilateral) : "not known");
+}
+
+}  // namespace holdfast::verdict

@@ -1,0 +1,34 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+#include "holdfast/verdict/assessment.hpp"
+
+/// What to say where the paper's contact law has several solutions (theory.md).
+namespace holdfast::verdict {
+
+/// What load ratios may be off by rounding alone, as a share of the largest or of 1.
+inline constexpr double kRounding = 1e-12;
+
+/// By weak springs beside the unilateral contact of a stable robot, in the same terms: so many
+/// times their share of the contact's stiffness. Springs of 1e-6 have moved a load ratio by 6e-4.
+inline constexpr double kWeakSprings = 1e3;
+
+/// By multigrid: what is promised (docs/solver.md).
+inline constexpr double kMultigridError = 1e-4;
+
+/// Sets `assessment.several` from `assessment.equilibrium`, whose `others` are known, and the exact
+/// law's answer, with weak springs of `gamma`, if multigrid's tolerance is so many times the usual.
+void compare_solutions(const model::Robot& robot, solver::EquilibriumSolver& solver, double gamma,
+                       double tolerance_share, Assessment& assessment);
+
+/// Whether all of them, the exact law's among them, break something if `is_broken`, and nothing if
+/// not. False if the exact law has no answer.
+bool do_agree(const SeveralSolutions& several, bool is_broken);
+
+/// "the paper's contact law (Eqs. 9-12) has several solutions here: the largest load ratio is ..."
+std::string text(const SeveralSolutions& several);
+
+}  // namespace holdfast::verdict
