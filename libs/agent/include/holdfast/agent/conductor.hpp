@@ -179,11 +179,13 @@ class Conductor {
   bool has_clusters_ = false;       ///< Steps are taken with clusters, ...
   bool has_left_clusters_ = false;  ///< They brought nothing: never again.
   bool had_clusters_ = false;       ///< ... as the last one was; ...
-  bool has_changed_ = false;        ///< ... not as the one before it: M^-1 is another one.
-  bool has_older_ = false;          ///< There is an older direction.
-  bool least_residual_ = false;     ///< A facet tilts: no energy to minimise.
-  double predicted_ = 0;            ///< Error expected after the last step.
-  double older_square_ = 0;         ///< (p, q) of the older direction, or |q|^2.
+  bool holds_planned_ = false;   ///< Planned modules stand still in M, since contact changed; ...
+  bool held_planned_ = false;    ///< ... they did in the last step; ...
+  bool has_changed_ = false;     ///< ... not as the one before it: M^-1 is another one.
+  bool has_older_ = false;       ///< There is an older direction.
+  bool least_residual_ = false;  ///< A facet tilts: no energy to minimise.
+  double predicted_ = 0;         ///< Error expected after the last step.
+  double older_square_ = 0;      ///< (p, q) of the older direction, or |q|^2.
   EnergyBound energy_bound_;
   // Jacobi.
   std::uint16_t batch_ = 0;
