@@ -125,7 +125,7 @@ TEST(Team, WorksInAForkedProcess) {
   wait_for_threads(*team);
   const pid_t child = fork();
   if (child == 0) {
-    alarm(20);  // Rather than wait for ever for threads that stayed behind.
+    alarm(200);  // Rather than wait for ever for threads that stayed behind.
     team.reset();
     _exit(adds_up(3) && adds_up(2) ? 0 : 1);
   }
