@@ -1,9 +1,10 @@
 # How every room is built, so that a room's own CMakeLists.txt only lists what is in it.
 
-# holdfast_same_bits(TARGET): the same bits with every compiler and level. No fused multiply-add; and
-# not the part of g++'s vectoriser that loses roundings: g++ 12.2 takes the conversion of two doubles
-# to float and back for none at all, from -O2 on (libs/base/test/rounding_test.cpp). For all that is
-# compiled here, as functions of headers are compiled anew everywhere and the linker keeps any one.
+# holdfast_same_bits(TARGET): the same bits with every compiler and level. No fused multiply-add;
+# and not the part of g++'s vectoriser that loses roundings: g++ 12.2 takes the conversion of two
+# doubles to float and back for none at all, from -O2 on (libs/base/test/rounding_test.cpp). For all
+# that is compiled here, as functions of headers are compiled anew everywhere and the linker keeps
+# any one of them.
 function(holdfast_same_bits target)
   target_compile_options(${target} PRIVATE
     -ffp-contract=off $<$<CXX_COMPILER_ID:GNU>:-fno-tree-slp-vectorize>)

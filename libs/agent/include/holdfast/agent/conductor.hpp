@@ -171,6 +171,8 @@ class Conductor {
   double ratio_ = 0;
   double target_ = 0;
   std::uint8_t stagnation_count_ = 0;
+  bool holds_planned_ = false;  ///< Of one-sweep methods: planned modules stand still in M, ...
+  bool held_planned_ = false;   ///< ... as they did in the last step.
   std::array<std::uint32_t, kSeenMax> seen_{};
   std::uint8_t seen_count_ = 0;
   // One-sweep methods.
@@ -179,13 +181,11 @@ class Conductor {
   bool has_clusters_ = false;       ///< Steps are taken with clusters, ...
   bool has_left_clusters_ = false;  ///< They brought nothing: never again.
   bool had_clusters_ = false;       ///< ... as the last one was; ...
-  bool holds_planned_ = false;   ///< Planned modules stand still in M, since contact changed; ...
-  bool held_planned_ = false;    ///< ... they did in the last step; ...
-  bool has_changed_ = false;     ///< ... not as the one before it: M^-1 is another one.
-  bool has_older_ = false;       ///< There is an older direction.
-  bool least_residual_ = false;  ///< A facet tilts: no energy to minimise.
-  double predicted_ = 0;         ///< Error expected after the last step.
-  double older_square_ = 0;      ///< (p, q) of the older direction, or |q|^2.
+  bool has_changed_ = false;        ///< ... not as the one before it: M^-1 is another one.
+  bool has_older_ = false;          ///< There is an older direction.
+  bool least_residual_ = false;     ///< A facet tilts: no energy to minimise.
+  double predicted_ = 0;            ///< Error expected after the last step.
+  double older_square_ = 0;         ///< (p, q) of the older direction, or |q|^2.
   EnergyBound energy_bound_;
   // Jacobi.
   std::uint16_t batch_ = 0;
