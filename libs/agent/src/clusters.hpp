@@ -281,9 +281,6 @@ void BasicAgent<Real>::add_own_to_cluster() {
     if (node.is_ground) {
       stiffness = mechanics::symmetric_tangent(contact_.facet, node.state, node.is_held);
     }
-    if (holds_planned()) {
-      add_held_stiffness(stiffness);
-    }
     // From leaf to leaf to this module.
     int at = i;
     for (int k = leaves.count - 1; k >= 0 && at > 0; --k) {
@@ -296,7 +293,7 @@ void BasicAgent<Real>::add_own_to_cluster() {
       }
     }
     cluster.add_load(load);
-    if (node.is_ground || holds_planned()) {
+    if (node.is_ground) {
       cluster.add_stiffness(stiffness);
     }
   }

@@ -151,7 +151,7 @@ Order Conductor::after_step(const Setup& setup, const Report& report) {
     error_best_ = 1e30;
     stagnation_count_ = 0;
     predicted_ = 1e30;
-    holds_planned_ = is_any_remote_;
+    holds_planned_ = is_any_remote_ && !has_clusters_;
     return is_elimination ? factor() : jumped_step(setup, report);
   }
   target_ = kRatioTolerance * (1 + absolute(ratio_));
@@ -224,9 +224,9 @@ Order Conductor::minimised_step(const Report& report) {
 }
 
 /// Other contact states are another K: directions start anew. The full step of a polynomial is
-/// never far too long, where planned modules are held from now on (remote.hpp). With clusters M^-1
-/// K has eigenvalues up to Cluster::kReach, so before, what was too long of the last step is taken
-/// back, as if K had not changed.
+/// never far too long, with planned modules that are held from now on (remote.hpp). With clusters
+/// M^-1 K has eigenvalues up to Cluster::kReach, so before, what was too long of the last step is
+/// taken back, as if K had not changed.
 Order Conductor::jumped_step(const Setup& setup, const Report& report) {
   if (had_clusters_ && effort_.iterations > kClusterStepsMax) {
     return leave_clusters(setup);

@@ -23,13 +23,13 @@
 /// many as without it, or a few more. But where the planned module joins parts that bend freely
 /// M^-1 S has eigenvalues of hundreds, and a full step, which every step is before its length is
 /// known, goes so far that contact states change for nothing, again and again. So from the first
-/// change of contact states on (kHoldPlanned) the planned module stands still in M, its beams
-/// kHeldShare of what they are. With whole ones S would be the softer matrix, as
-/// K_rp K_pp^-1 K_pr is never negative, and no eigenvalue greater than the polynomial's own; so
-/// none is greater than 1 / kHeldShare times that. What is too stiff in M then, six displacements
-/// for each planned module, are small eigenvalues, which conjugate gradients find in some more
-/// steps. In each step the forces K_pr u go up to the host behind the order, and u_p comes down: at
-/// most one sweep more.
+/// change of contact states on (kHoldPlanned; not with clusters, whose steps are damped) the
+/// planned module stands still in M, its beams kHeldShare of what they are. With whole ones S would
+/// be the softer matrix, as K_rp K_pp^-1 K_pr is never negative, and no eigenvalue greater than the
+/// polynomial's own; so none is greater than 1 / kHeldShare times that. What is too stiff in M
+/// then, six displacements for each planned module, are small eigenvalues, which conjugate
+/// gradients find in some more steps. In each step the forces K_pr u go up to the host behind the
+/// order, and u_p comes down: at most one sweep more.
 ///
 /// Conjugate gradients have u_p among their unknowns. Their polynomial has its diagonal block
 /// apart, and only the last exchange of a sweep, for w = A z, has its beams in it.
@@ -237,19 +237,6 @@ void BasicAgent<Real>::add_beam_apart(int face) {
         mechanics::end_force(setup_.beam, direction, base::converted<double>(nodes_[0].shared), {});
     for (std::size_t i = 0; i < 6; ++i) {
       steps_of(0).w[i] -= kHeldShare * force[i];
-    }
-  }
-}
-
-/// The stiffness of the same beams, for the cluster that this module is in.
-template <class Real>
-void BasicAgent<Real>::add_held_stiffness(base::Mat6<double>& stiffness) const {
-  for (int face = 0; face < base::kDirectionCount; ++face) {
-    if (planned_.at_face(face) >= 0) {
-      const auto block = mechanics::block_11(setup_.beam, static_cast<base::Direction>(face));
-      for (std::size_t i = 0; i < block.values.size(); ++i) {
-        stiffness.values[i] += kHeldShare * block.values[i];
-      }
     }
   }
 }

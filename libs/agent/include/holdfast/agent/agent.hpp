@@ -375,7 +375,6 @@ class BasicAgent {
   bool is_waiting_for_hosts() const;
   bool holds_planned() const;
   void add_beam_apart(int face);
-  void add_held_stiffness(base::Mat6<double>& stiffness) const;
   void add_remote_beams();
 
   // equilibrium.cpp: the same for the equilibrium's operations.
