@@ -72,6 +72,7 @@ struct Tally {
   int wrong = 0;
   int undecided = 0;
   int disagreeing = 0;
+  int fallen_back = 0;  ///< To conjugate gradients, under the regularised law.
   double ratio_error = 0;
   std::vector<double> sweeps;  ///< Of those that needed an equilibrium.
 
@@ -80,6 +81,8 @@ struct Tally {
     wrong += comparison.is_wrong() ? 1 : 0;
     undecided += comparison.is_undecided() ? 1 : 0;
     disagreeing += comparison.result.all_agree ? 0 : 1;
+    const agent::Effort& effort = comparison.result.effort;
+    fallen_back += effort.method == Method::kConjugateGradients && !effort.is_unilateral ? 1 : 0;
     ratio_error = std::max(ratio_error, comparison.ratio_error());
     if (comparison.sweeps() > 0) {
       sweeps.push_back(comparison.sweeps());
@@ -106,10 +109,11 @@ int run_random(std::uint64_t from, std::uint64_t to, bool is_noisy) {
     return tally.sweeps.empty() ? 0 : tally.sweeps[static_cast<std::size_t>(part * last)];
   };
   fmt::print(
-      "{} robots: {} wrong, {} undecided, {} not agreed; largest error {:.4f} of what is "
-      "allowed; sweeps of {}: median {:.0f}, 90 % {:.0f}, 99 % {:.0f}, most {:.0f}\n",
-      tally.count, tally.wrong, tally.undecided, tally.disagreeing, tally.ratio_error,
-      tally.sweeps.size(), share(0.5), share(0.9), share(0.99), share(1));
+      "{} robots: {} wrong, {} undecided, {} not agreed; {} to conjugate gradients; largest error "
+      "{:.4f} of what is allowed; sweeps of {}: median {:.0f}, 90 % {:.0f}, 99 % {:.0f}, most "
+      "{:.0f}\n",
+      tally.count, tally.wrong, tally.undecided, tally.disagreeing, tally.fallen_back,
+      tally.ratio_error, tally.sweeps.size(), share(0.5), share(0.9), share(0.99), share(1));
   return tally.wrong + tally.undecided;
 }
 

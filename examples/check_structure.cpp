@@ -3,7 +3,7 @@
 //
 // Load a structure, ask whether it holds, say why.
 //
-// $ build/dev/examples/check_structure scenarios/crane_tips_b.json
+// $ build/release/examples/check_structure scenarios/crane_tips_b.json
 // > unstable
 // >   it topples over the edge (100, 60)-(60, 100) mm: the centre of mass lies 2.57 mm beyond it
 

@@ -3,7 +3,7 @@
 //
 // Let the robot work out its own verdict, then again while one of its modules dies.
 //
-// $ build/dev/examples/lose_a_module scenarios/arm_breaks_a.json
+// $ build/release/examples/lose_a_module scenarios/arm_breaks_a.json
 // > all modules well: safe, it holds
 // > module 4 dies in round 100: undecided, a module that is there does not answer
 

@@ -3,7 +3,7 @@
 //
 // Where may the next module go? Tries every free face of an arm, without any file.
 //
-// $ build/dev/examples/next_module
+// $ build/release/examples/next_module
 // > 21 places are safe
 // > 9 places are unstable
 

@@ -95,6 +95,19 @@ TEST(Distributed, a_planned_module_between_others_costs_some_steps_more_and_no_o
   EXPECT_LT(with.result.effort.iterations, 4 * without.result.effort.iterations);
 }
 
+/// Where such modules join parts that bend freely and contact changes on the way, a step that is
+/// too long once changed contact states for nothing: these five went to conjugate gradients.
+TEST(Distributed, planned_modules_between_others_let_no_step_go_too_far) {
+  for (const std::uint64_t seed : {3U, 32U, 46U, 48U, 59U}) {
+    SCOPED_TRACE(::testing::Message() << "random_robot(" << seed << ")");
+    const auto robot = model::Robot::create(test::random_robot(seed));
+    ASSERT_TRUE(robot);
+    const auto comparison = test::compare(robot.value(), {.seed = seed});
+    expect_right(comparison);
+    EXPECT_EQ(comparison.result.effort.method, agent::Method::kPolynomial);
+  }
+}
+
 /// A frame two modules thick.
 model::RobotSpec slender_frame(std::int32_t width, std::int32_t height) {
   model::RobotSpec spec;

@@ -11,7 +11,7 @@ import { chromium } from 'playwright-core';
 
 export const repository = fileURLToPath(new URL('../../../', import.meta.url));
 export const pageFile = path.join(repository, 'build/page/holdfast.html');
-export const program = path.join(repository, 'build/dev/holdfast');
+export const program = path.join(repository, 'build/release/holdfast');
 export const scenario = (name) => path.join(repository, 'scenarios', `${name}.json`);
 export const temporaryFolder = () => mkdtempSync(path.join(tmpdir(), 'holdfast-'));
 

@@ -13,8 +13,9 @@ constexpr std::uint8_t bit(int i) {
 }
 
 /// The leading 24 binary digits of a number, which single precision holds exactly. By its bits and
-/// not by a conversion to float and back, which g++ 12 loses at -O3 when it vectorises a loop of 6.
-/// (Where double is binary32, as on an AVR, all digits are leading ones.)
+/// not by a conversion to float and back, which g++ 12 loses when it vectorises straight code; what
+/// converts elsewhere relies on it being compiled without (holdfast_same_bits in
+/// cmake/Rooms.cmake). (Where double is binary32, as on an AVR, all digits are leading ones.)
 template <class Real>
 constexpr Real leading_part(Real value) {
   if constexpr (sizeof(Real) == sizeof(std::uint32_t)) {

@@ -85,6 +85,8 @@ void Conductor::choose_clusters(const Report& report) {
 Order Conductor::first_step() {
   ++effort_.solves;
   predicted_ = 1e30;
+  holds_planned_ = false;
+  held_planned_ = false;
   const bool is_elimination = !kHasAllMethods || effort_.method == Method::kElimination;
   if (is_elimination) {
     return factor();
@@ -103,17 +105,23 @@ Order Conductor::next_step(std::uint8_t flags, const std::array<float, 3>& coeff
   Order step = order(Step::kStep, Operation::kStep);
   const bool has_clusters = has_clusters_ && !least_residual_;
   step.flags = static_cast<std::uint8_t>(flags | (least_residual_ ? kLeastResidual : 0U) |
-                                         (has_clusters ? kWithClusters : 0U));
+                                         (has_clusters ? kWithClusters : 0U) |
+                                         (holds_planned_ ? kHoldPlanned : 0U));
   step.count = has_clusters ? cluster_degree() : step_degree();
   step.reals = coefficients;
-  has_changed_ = has_clusters != had_clusters_;
+  has_changed_ = has_clusters != had_clusters_ || holds_planned_ != held_planned_;
   had_clusters_ = has_clusters;
+  held_planned_ = holds_planned_;
   return step;
 }
 
+/// While a facet tilts K is not symmetric, and the least residual is safer than the least energy;
+/// not where M^-1 K has eigenvalues that are very small or above 2, as with clusters and with
+/// planned modules that stand still in M: there it makes no progress, and the energy is minimised
+/// as if.
 Order Conductor::restarted_step() {
   has_older_ = false;
-  least_residual_ = is_tilting_ && !has_clusters_;
+  least_residual_ = is_tilting_ && !has_clusters_ && !is_any_remote_;
   energy_bound_.restart();
   return next_step(kRestart, {});
 }
@@ -143,6 +151,7 @@ Order Conductor::after_step(const Setup& setup, const Report& report) {
     error_best_ = 1e30;
     stagnation_count_ = 0;
     predicted_ = 1e30;
+    holds_planned_ = is_any_remote_ && !has_clusters_;
     return is_elimination ? factor() : jumped_step(setup, report);
   }
   target_ = kRatioTolerance * (1 + absolute(ratio_));
@@ -215,8 +224,9 @@ Order Conductor::minimised_step(const Report& report) {
 }
 
 /// Other contact states are another K: directions start anew. The full step of a polynomial is
-/// never far too long. With clusters M^-1 K has eigenvalues up to Cluster::kReach, so before, what
-/// was too long of the last step is taken back, as if K had not changed.
+/// never far too long, with planned modules that are held from now on (remote.hpp). With clusters
+/// M^-1 K has eigenvalues up to Cluster::kReach, so before, what was too long of the last step is
+/// taken back, as if K had not changed.
 Order Conductor::jumped_step(const Setup& setup, const Report& report) {
   if (had_clusters_ && effort_.iterations > kClusterStepsMax) {
     return leave_clusters(setup);

@@ -62,15 +62,35 @@ bool take_load_ratios(const model::Robot& robot, const Agents& agents,
   return !connections.empty();
 }
 
-std::vector<std::string> notes_on(const sim::SimulationOptions& options) {
+/// A robot that finds no state under the regularised law answers by the unilateral one, also where
+/// the exact solver, which starts from other states, has found one.
+bool is_other_law(const verdict::Assessment& exact, const sim::SimulationResult& result) {
+  const bool has_law = exact.contact_model == verdict::ContactModel::kRegularised ||
+                       exact.contact_model == verdict::ContactModel::kUnilateral;
+  const bool is_unilateral = exact.contact_model == verdict::ContactModel::kUnilateral;
+  const bool has_ratio = result.answer.verdict == agent::Verdict::kSafe ||
+                         result.answer.verdict == agent::Verdict::kOverload;
+  return has_law && has_ratio && result.effort.solves > 0 &&
+         result.effort.is_unilateral != is_unilateral;
+}
+
+std::vector<std::string> notes_on(const sim::SimulationOptions& options,
+                                  const verdict::Assessment& exact,
+                                  const sim::SimulationResult& result) {
+  std::vector<std::string> notes;
   const bool changes = std::ranges::any_of(options.faults, [](const sim::Fault& fault) {
     return fault.kind == sim::Fault::Kind::kDetach || fault.kind == sim::Fault::Kind::kAttach;
   });
-  if (!changes) {
-    return {};
+  if (changes) {
+    notes.emplace_back(
+        "the exact answer is for the structure of the file, the robot's for what it is in the end");
   }
-  return {
-      "the exact answer is for the structure of the file, the robot's for what it is in the end"};
+  if (is_other_law(exact, result)) {
+    notes.emplace_back(
+        "the robot's load ratios are those of another contact law than the exact answer's: they "
+        "are as near to their own law's as stated, not to the exact answer's");
+  }
+  return notes;
 }
 
 }  // namespace
@@ -157,8 +177,8 @@ base::Result<DistributedRun> simulate(const Structure& structure, const CheckRes
       break;
     }
   }
-  DistributedRun run{
-      .link = options.link, .result = simulation.result(), .view = {}, .notes = notes_on(options)};
+  DistributedRun run{.link = options.link, .result = simulation.result(), .view = {}, .notes = {}};
+  run.notes = notes_on(options, exact.assessment, run.result);
   const Agents agents{
       .at = [&](std::int32_t i) -> const agent::Agent& { return simulation.agent(i); },
       .count = simulation.agent_count()};

@@ -45,6 +45,22 @@ TEST(Simulate, says_what_is_wrong_with_the_options) {
   EXPECT_NE(run.error().message.find("loss"), std::string::npos) << run.error().message;
 }
 
+/// The exact answer is given another law here; the robot's is the regularised one.
+TEST(Simulate, says_so_if_its_load_ratios_are_those_of_another_contact_law) {
+  const Structure structure = post();
+  CheckResult exact = check(structure);
+  ASSERT_EQ(exact.assessment.contact_model, verdict::ContactModel::kRegularised);
+  const auto same = simulate(structure, exact, {});
+  ASSERT_TRUE(same);
+  EXPECT_TRUE(same.value().notes.empty());
+  exact.assessment.contact_model = verdict::ContactModel::kUnilateral;
+  const auto other = simulate(structure, exact, {});
+  ASSERT_TRUE(other);
+  ASSERT_EQ(other.value().notes.size(), 1U);
+  EXPECT_NE(report_text(structure, exact, other.value()).find("another contact law"),
+            std::string::npos);
+}
+
 TEST(Simulate, ends_when_the_caller_says_so_and_claims_nothing_then) {
   // An arm for which the Jacobi method takes millions of events.
   const auto arm = load_text(

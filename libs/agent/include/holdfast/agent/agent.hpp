@@ -373,6 +373,7 @@ class BasicAgent {
   void take_remote_down(std::uint8_t label, const base::Vec6<float>& part);
   bool needs_hosts() const;
   bool is_waiting_for_hosts() const;
+  bool holds_planned() const;
   void add_beam_apart(int face);
   void add_remote_beams();
 

@@ -171,6 +171,8 @@ class Conductor {
   double ratio_ = 0;
   double target_ = 0;
   std::uint8_t stagnation_count_ = 0;
+  bool holds_planned_ = false;  ///< Of one-sweep methods: planned modules stand still in M, ...
+  bool held_planned_ = false;   ///< ... as they did in the last step.
   std::array<std::uint32_t, kSeenMax> seen_{};
   std::uint8_t seen_count_ = 0;
   // One-sweep methods.

@@ -71,6 +71,8 @@ inline constexpr std::uint8_t kRestart = 1;        ///< kStep: without older dir
 inline constexpr std::uint8_t kLeastResidual = 2;  ///< kStep: least residual, not least energy.
 inline constexpr std::uint8_t kKeepStates = 4;     ///< kStep: contact states are not looked up.
 inline constexpr std::uint8_t kWithClusters = 8;   ///< kStep: clusters between two polynomials.
+/// kStep: planned modules between others stand still in the polynomial.
+inline constexpr std::uint8_t kHoldPlanned = 16;
 inline constexpr std::uint8_t kAdoptStates = 1;    ///< kStart
 inline constexpr std::uint8_t kWithScalars = 2;    ///< kStart
 inline constexpr std::uint8_t kWithBlocks = 4;     ///< kStart
