@@ -15,6 +15,8 @@ constexpr std::int64_t kAngleMax = std::int64_t{1} << 29;
 
 }  // namespace
 
+bool fits_exact_check(const Setup&, std::int64_t module_count) { return module_count > 0; }
+
 Order Conductor::order(Step step, Operation operation) {
   step_ = step;
   return {.operation = operation};
@@ -409,8 +411,6 @@ Order Conductor::after_slope(const Report& report) {
 
 // ---- Jacobi methods.
 
-constexpr std::uint16_t kBatchMax = 4096;
-
 Order Conductor::start_jacobi() {
   ++effort_.solves;
   solve_iterations_ = 0;
@@ -454,7 +454,7 @@ Order Conductor::after_jacobi(const Setup& setup, const Report& report) {
     return move(1);
   }
   const std::uint32_t grown = is_any_remote_ ? 1U : 1U + solve_iterations_ / 8;
-  batch_ = static_cast<std::uint16_t>(grown < kBatchMax ? grown : kBatchMax);
+  batch_ = static_cast<std::uint16_t>(grown < kJacobiCountMax ? grown : kJacobiCountMax);
   Order jacobi = order(Step::kJacobi, Operation::kJacobi);
   jacobi.count = batch_;
   return jacobi;

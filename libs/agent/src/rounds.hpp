@@ -4,6 +4,7 @@
 
 #include "bits.hpp"
 #include "holdfast/agent/agent.hpp"
+#include "holdfast/agent/legal.hpp"
 #include "methods.hpp"
 
 namespace holdfast::agent {
@@ -130,9 +131,9 @@ void BasicAgent<Real>::receive(int face, std::span<const std::uint8_t> packet) {
   touched_ = static_cast<std::uint8_t>(touched_ | bit(face));
   is_busy_ = true;
   std::span<const std::uint8_t> stream = link.receive(packet, setup_.timing, now_);
-  for (auto message = link.next_message(stream); !message.empty();
+  for (auto message = link.next_message(stream); !message.empty() && link.is_used();
        message = link.next_message(stream)) {
-    dispatch(face, message);
+    wire::is_legal(message) ? dispatch(face, message) : refuse(face);
   }
   check_link(face);
 }
@@ -166,6 +167,9 @@ void BasicAgent<Real>::dispatch(int face, std::span<const std::uint8_t> message)
   const bool is_ours = peer_round_[static_cast<std::size_t>(face)] == round_;
   if (!is_ours || restart_at_ != kNever || stage_ == kNoStage) {
     return;
+  }
+  if (!is_expected(face, message)) {
+    return refuse(face);
   }
   switch (type) {
     case MessageType::kEcho:
@@ -294,6 +298,7 @@ void BasicAgent<Real>::enter_round(const Round& round) {
   vectors_here_ = {};
   planned_here_ = 0;
   planned_.clear();
+  course_ = Course::kWaves;
   answer_ = {};
   phase_ = Phase::kCoordinates;
   touched_ = 0x3f;

@@ -79,7 +79,9 @@ void BasicAgent<Real>::take_join(int face, std::span<const std::uint8_t> message
   } else if (round != round_ || restart_at_ != kNever) {
     return;
   }
-  if (stage > stage_) {
+  if (stage > stage_ && course_ != Course::kWaves) {
+    refuse(face);  // The tree is in use.
+  } else if (stage > stage_) {
     const auto direction = static_cast<base::Direction>(face);
     nodes_[0].cell = base::neighbour(theirs, base::opposite(direction));
     has_cell_ = true;

@@ -125,6 +125,7 @@ struct BranchWork {
   std::array<std::array<std::uint8_t, kLoopsMax>, base::kDirectionCount> slot_of{};
   std::array<std::uint8_t, base::kDirectionCount> child_cut_count{};
   std::array<std::uint8_t, base::kDirectionCount> columns_here{};  ///< All before are final.
+  bool has_too_many = false;  ///< More loops here than a Branch can hold: no elimination.
   bool is_symmetric = false;  ///< S' goes up in parts: no facet below tilts, or it hardly matters.
   /// What holds each planned module here, above its diagonal; Node::factor has the rest.
   std::array<std::array<float, 15>, kPlannedMax> leaves{};
@@ -199,6 +200,10 @@ class BasicAgent {
 
   std::uint16_t depth() const { return hops_; }
 
+  /// Messages that a working neighbour would not have sent, 255 at most; each has made its sender
+  /// count as silent.
+  std::uint8_t refused_count() const { return refused_count_; }
+
   /// Of the root: what was done to find the equilibrium.
   const Effort& effort() const { return conductor_.effort(); }
 
@@ -235,6 +240,27 @@ class BasicAgent {
   bool is_working() const { return stage_ != kNoStage && phase_ != Phase::kDone; }
 
   std::uint8_t used_faces() const;
+
+  // guard.hpp: what may be said now.
+  /// Where the root is in its work, as far as its orders tell. The last four are equilibria, by
+  /// what Work holds.
+  enum class Course : std::uint8_t {
+    kWaves,
+    kPlanned,
+    kHosted,
+    kWeighed,
+    kElimination,
+    kSteps,
+    kClusters,
+    kGradients,
+    kAnswered,
+  };
+  void refuse(int face);
+  Course course_after(const Order& order) const;
+  bool is_in_course(const Order& order) const;
+  bool is_good_begin(const Order& order) const;
+  bool is_expected(int face, std::span<const std::uint8_t> message) const;
+  bool is_expected_of_branch(int face, std::span<const std::uint8_t> message, bool reports) const;
 
   // waves.cpp: coordinates, election, tree.
   void start_wave(std::uint8_t stage);
@@ -447,6 +473,8 @@ class BasicAgent {
 
   // Waves and tree.
   std::uint8_t stage_ = kNoStage;
+  Course course_ = Course::kWaves;
+  std::uint8_t refused_count_ = 0;
   std::int8_t parent_ = -1;
   std::uint8_t children_ = 0;
   std::uint8_t awaited_ = 0;

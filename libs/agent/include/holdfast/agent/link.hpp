@@ -45,6 +45,9 @@ class Link {
 
   void bring_down();
 
+  /// The neighbour has said what it must not: it counts as silent.
+  void lose() { state_ = State::kLost; }
+
   State state() const { return state_; }
 
   bool is_used() const { return state_ == State::kGreeting || state_ == State::kOpen; }

@@ -32,6 +32,7 @@ enum class Reason : std::uint8_t {
   kTooClose,         ///< The largest load ratio cannot be told from 1.
   kAmbiguousFeet,    ///< The verdict depends on feet that are neither held nor free.
 };
+inline constexpr int kReasonCount = 12;
 
 const char* name(Verdict verdict);
 const char* name(Reason reason);
@@ -47,6 +48,10 @@ struct Answer {
 
 /// In kPlan: no planned module is learned yet.
 inline constexpr std::uint8_t kNoPlanned = 0xff;
+
+/// Exchanges that one order may ask for: the degree of a polynomial, and steps of a Jacobi method.
+inline constexpr std::uint16_t kDegreeMax = 4000;
+inline constexpr std::uint16_t kJacobiCountMax = 4096;
 
 /// Fields are used as the operation needs them; see wire.hpp and docs/wire.md.
 struct Order {
