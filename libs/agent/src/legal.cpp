@@ -21,6 +21,7 @@ enum class Rule : std::uint8_t {
   kCell,       ///< 9 bytes, coordinates up to kCoordinateMax.
   kExchanges,  ///< u16, up to kDegreeMax.
   kSteps,      ///< u16, 1 to kJacobiCountMax.
+  kEpoch,      ///< u16, not 0.
   kCorners,    ///< u8, how many: 0, 1 or 2; 4: held.
 };
 
@@ -41,8 +42,10 @@ using T = MessageType;
 using O = Operation;
 
 constexpr Field kFields[] = {
+    {T::kJoin, kAny, 1, Rule::kEpoch, 0},
     {T::kJoin, kAny, 7, Rule::kOneTo, kStages},
     {T::kJoin, kAny, 8, Rule::kCell, 0},
+    {T::kEcho, kAny, 1, Rule::kEpoch, 0},
     {T::kEcho, kAny, 7, Rule::kOneTo, kStages},
     {T::kEcho, kAny, 18, Rule::kAtMost, 1},
     {T::kAppoint, kAny, 1, Rule::kOneTo, kStages - 1},
@@ -127,6 +130,8 @@ bool is_kept(const Field& field, std::span<const std::uint8_t> message) {
       return is_good_cell(in.cell());
     case Rule::kExchanges:
       return in.u16() <= kDegreeMax;
+    case Rule::kEpoch:
+      return in.u16() != 0;
     case Rule::kSteps: {
       const std::uint16_t count = in.u16();
       return count >= 1 && count <= kJacobiCountMax;

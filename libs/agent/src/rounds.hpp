@@ -276,7 +276,7 @@ void BasicAgent<Real>::start_round() {
     }
     return;
   }
-  enter_round({.epoch = static_cast<std::uint16_t>(round_.epoch + 1), .starter = identity_.id});
+  enter_round({.epoch = epoch_after(round_.epoch), .starter = identity_.id});
   start_wave(kFirstStage);
   is_busy_ = true;
 }

@@ -74,9 +74,9 @@ void BasicAgent<Real>::take_join(int face, std::span<const std::uint8_t> message
   const std::uint8_t stage = in.u8();
   const base::Cell theirs = in.cell();
   const auto hops = static_cast<std::uint16_t>(in.u16() + 1);
-  if (round > round_) {
+  if (is_newer(round, round_)) {
     enter_round(round);
-  } else if (round != round_ || restart_at_ != kNever) {
+  } else if (!(round == round_) || restart_at_ != kNever) {
     return;
   }
   if (stage > stage_ && course_ != Course::kWaves) {

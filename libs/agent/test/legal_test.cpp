@@ -109,6 +109,12 @@ TEST(Legal, exchanges_are_bounded) {
   EXPECT_FALSE(wire::is_legal(from_hex("05 0a 00 00")));
 }
 
+TEST(Legal, rounds_have_a_number) {
+  EXPECT_FALSE(
+      wire::is_legal(from_hex("01 00 00 0a 00 00 00 01 ff ff ff 02 00 00 00 00 00 00 00")));
+  EXPECT_TRUE(wire::is_legal(from_hex("01 ff ff 0a 00 00 00 01 ff ff ff 02 00 00 00 00 00 00 00")));
+}
+
 /// 1,000,000 = 0x0f4240, in 24 bits.
 TEST(Legal, cells_stay_within_the_lattice) {
   EXPECT_TRUE(wire::is_legal(from_hex("05 03 40 42 0f c0 bd f0 00 00 00")));

@@ -89,6 +89,19 @@ class TestNetwork {
     }
   }
 
+  /// Opens a connection and closes it again; both ends feel it.
+  void reconnect(std::size_t i, base::Direction face) {
+    const auto other = static_cast<std::size_t>(neighbour(i, face));
+    for (const EventKind kind : {EventKind::kLinkDown, EventKind::kLinkUp}) {
+      Event own = event(kind, face);
+      Event theirs = event(kind, base::opposite(face));
+      own.random = ++link_up_count_;
+      theirs.random = ++link_up_count_;
+      step(i, own);
+      step(other, theirs);
+    }
+  }
+
   /// It is still there, but does nothing any more.
   void mute(std::size_t i) { places_[i].is_mute = true; }
 

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <array>
-#include <compare>
 #include <cstdint>
 #include <span>
 
@@ -14,6 +13,7 @@
 #include "holdfast/agent/link.hpp"
 #include "holdfast/agent/node.hpp"
 #include "holdfast/agent/planned.hpp"
+#include "holdfast/agent/round.hpp"
 #include "holdfast/agent/setup.hpp"
 
 /// The program that every module of the robot runs. One object per module, one function: step().
@@ -41,7 +41,8 @@
 ///
 /// After each step, actions.send_faces says on which faces a packet waits (bit = face index): hand
 /// in kLineFree for them when their lines are free. actions.wake_at replaces the earlier one.
-/// `random` in kLinkUp must differ from one link-up to the next.
+/// `random` in kLinkUp should differ from one link-up to the next, also over a reset. Where it does
+/// not, a link notices and takes another number (link.hpp), which costs two packets.
 ///
 /// WHAT HAPPENS. One module, the anchor, knows its cell. From it a wave gives every module its cell
 /// and counts them; two more waves find a module near the middle and a spanning tree from there.
@@ -208,14 +209,6 @@ class BasicAgent {
   const Effort& effort() const { return conductor_.effort(); }
 
  private:
-  /// One attempt at a verdict. The higher one wins: epoch first, then the starter's id.
-  struct Round {
-    std::uint16_t epoch = 0;
-    std::uint32_t starter = 0;
-
-    friend constexpr auto operator<=>(const Round&, const Round&) = default;
-  };
-
   static constexpr std::uint8_t kNoStage = 0;
   static constexpr std::uint8_t kFirstStage = 1;  ///< From the starter: coordinates, census.
   static constexpr std::uint8_t kFarStage = 2;    ///< From the module furthest from the starter.
