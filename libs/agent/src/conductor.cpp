@@ -7,15 +7,8 @@
 #include "tolerances.hpp"
 
 namespace holdfast::agent {
-namespace {
 
 using wire::Operation;
-
-constexpr std::int64_t kAngleMax = std::int64_t{1} << 29;
-
-}  // namespace
-
-bool fits_exact_check(const Setup&, std::int64_t module_count) { return module_count > 0; }
 
 Order Conductor::order(Step step, Operation operation) {
   step_ = step;
@@ -147,12 +140,13 @@ Order Conductor::after_mass(const Setup& setup, const Report& report) {
   is_fixed_ = (report.flags & kAnyFixed) != 0;
   extent_ = report.extent;
   has_many_loops_ = (report.flags & kManyLoops) != 0;
+  if (extent_ > kExtentMax || depth_ > kExtentMax) {
+    return finish(Verdict::kUndecided, Reason::kTooLarge);
+  }
   if (is_fixed_) {
     return begin_law(setup, false);
   }
-  const std::int64_t reach = (4 * std::int64_t{extent_} + 2 * std::int64_t{setup.facet_numerator}) *
-                             setup.facet_denominator * report.count;
-  if ((report.flags & kSumOverflow) != 0 || reach > kAngleMax) {
+  if ((report.flags & kSumOverflow) != 0 || !fits_exact_check(setup, report.count)) {
     return finish(Verdict::kUndecided, Reason::kTooLarge);
   }
   Order angles = order(Step::kAngles, Operation::kAngles);
@@ -163,7 +157,7 @@ Order Conductor::after_mass(const Setup& setup, const Report& report) {
 }
 
 Order Conductor::after_angles(const Setup& setup, const Report& report) {
-  if (report.angles.range != mechanics::SafeRange::kFull) {
+  if (report.feet.range != mechanics::SafeRange::kFull) {
     return finish(Verdict::kUnstable, Reason::kTopples);
   }
   return begin_law(setup, false);

@@ -22,6 +22,7 @@ enum class Rule : std::uint8_t {
   kExchanges,  ///< u16, up to kDegreeMax.
   kSteps,      ///< u16, 1 to kJacobiCountMax.
   kEpoch,      ///< u16, not 0.
+  kFeet,       ///< u8, a safe range, and two corners if it is an arc.
   kCorners,    ///< u8, how many: 0, 1 or 2; 4: held.
 };
 
@@ -83,8 +84,7 @@ constexpr Field kFields[] = {
     {T::kReport, O::kPlan, 4, Rule::kCell, 0},
     {T::kReport, O::kHosts, 2, Rule::kFlags, (1U << kPlannedMax) - 1 + kAnyRemote},
     {T::kReport, O::kMass, 14, Rule::kFlags, kAnyFixed | kSumOverflow | kManyLoops},
-    {T::kReport, O::kAngles, 2, Rule::kAtMost,
-     static_cast<std::uint8_t>(mechanics::SafeRange::kFull)},
+    {T::kReport, O::kAngles, 2, Rule::kFeet, 0},
     {T::kReport, O::kLow, 16, Rule::kFlags, kAnyTilting},
     {T::kReport, O::kStep, 16, Rule::kFlags, kAnyTilting},
     {T::kReport, O::kTreeStep, 16, Rule::kFlags, kAnyTilting},
@@ -110,6 +110,14 @@ bool are_good_masks(Reader in, std::uint8_t allowed) {
   return (all & ~unsigned{allowed}) == 0;
 }
 
+bool are_good_feet(Reader in) {
+  const auto range = static_cast<mechanics::SafeRange>(in.u8());
+  const FootCorner first = {in.i32(), in.i32()};
+  const FootCorner last = {in.i32(), in.i32()};
+  return range == mechanics::SafeRange::kArc ? is_good_corner(first) && is_good_corner(last)
+                                             : range <= mechanics::SafeRange::kFull;
+}
+
 bool is_kept(const Field& field, std::span<const std::uint8_t> message) {
   Reader in(message, field.offset);
   const std::uint8_t value = message[field.offset];
@@ -130,6 +138,8 @@ bool is_kept(const Field& field, std::span<const std::uint8_t> message) {
       return is_good_cell(in.cell());
     case Rule::kExchanges:
       return in.u16() <= kDegreeMax;
+    case Rule::kFeet:
+      return are_good_feet(in);
     case Rule::kEpoch:
       return in.u16() != 0;
     case Rule::kSteps: {

@@ -305,7 +305,7 @@ bool BasicAgent<Real>::finish_sweep() {
   for (int face = 0; face < base::kDirectionCount; ++face) {
     if ((children_ & bit(face)) != 0) {
       const Report theirs = decode_report(reports_[static_cast<std::size_t>(face)]);
-      merge(order_.operation, report, theirs);
+      add_report(report, theirs);
       if (order_.operation == wire::Operation::kPlan && order_.index != kNoPlanned) {
         planned_.add_below(face, order_.index, theirs.mask);
       }

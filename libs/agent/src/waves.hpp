@@ -73,7 +73,9 @@ void BasicAgent<Real>::take_join(int face, std::span<const std::uint8_t> message
   const Round round = peer_round_[static_cast<std::size_t>(face)];
   const std::uint8_t stage = in.u8();
   const base::Cell theirs = in.cell();
-  const auto hops = static_cast<std::uint16_t>(in.u16() + 1);
+  // 65,535 stands for all that is further: too large (feet.hpp).
+  const std::uint16_t theirs_hops = in.u16();
+  const auto hops = static_cast<std::uint16_t>(theirs_hops + (theirs_hops > kExtentMax ? 0 : 1));
   if (is_newer(round, round_)) {
     enter_round(round);
   } else if (!(round == round_) || restart_at_ != kNever) {

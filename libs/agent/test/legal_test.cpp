@@ -109,6 +109,20 @@ TEST(Legal, exchanges_are_bounded) {
   EXPECT_FALSE(wire::is_legal(from_hex("05 0a 00 00")));
 }
 
+/// 4 x 65,534 + 1 = 0x3fff9; sides of cells are odd.
+TEST(Legal, corners_are_those_of_cells_near_enough) {
+  const auto angles = [](std::string_view x) {
+    return wire::is_legal(
+        from_hex("06 04 01 " + std::string(x) + " 01 00 00 00 01 00 00 00 ff ff ff ff"));
+  };
+  EXPECT_TRUE(angles("f9 ff 03 00"));
+  EXPECT_TRUE(angles("07 00 fc ff"));
+  EXPECT_FALSE(angles("fb ff 03 00"));
+  EXPECT_FALSE(angles("05 00 fc ff"));
+  EXPECT_FALSE(angles("02 00 00 00"));
+  EXPECT_FALSE(angles("00 00 00 80"));
+}
+
 TEST(Legal, rounds_have_a_number) {
   EXPECT_FALSE(
       wire::is_legal(from_hex("01 00 00 0a 00 00 00 01 ff ff ff 02 00 00 00 00 00 00 00")));

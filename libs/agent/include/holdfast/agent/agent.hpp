@@ -288,6 +288,7 @@ class BasicAgent {
   Report mass_report() const;
   Report angles_report() const;
   Report corners_report() const;
+  void add_report(Report& into, const Report& theirs) const;
   Report loads_report();
   void prepare_hosted();
 

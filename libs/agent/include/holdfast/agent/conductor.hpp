@@ -38,9 +38,6 @@ struct Effort {
   float ratio_error = 0;  ///< Bound at the end.
 };
 
-/// Can so many modules do the exact stability check? Of their numbers none overflows.
-bool fits_exact_check(const Setup& setup, std::int64_t module_count);
-
 class Conductor {
  public:
   /// The first order. `root` is the root's own cell, `module_count` how many the wave has counted.

@@ -6,9 +6,9 @@
 #include <cstdint>
 #include <span>
 
+#include "holdfast/agent/feet.hpp"
 #include "holdfast/agent/wire.hpp"
 #include "holdfast/base/cell.hpp"
-#include "holdfast/mechanics/safe_angles.hpp"
 #include "holdfast/mechanics/support_corners.hpp"
 
 /// What the root asks for and what comes back, as values; encode() and decode() turn them into
@@ -27,7 +27,7 @@ enum class Reason : std::uint8_t {
   kPlannedTooMany,   ///< More than kPlannedMax planned modules.
   kPlannedOccupied,  ///< A planned cell holds a module already.
   kPlannedDetached,  ///< A planned module touches nothing.
-  kTooLarge,         ///< The exact stability check would overflow.
+  kTooLarge,         ///< Too many modules, or too far apart, to be counted (feet.hpp).
   kNotConverged,     ///< No method settled within the limit of iterations.
   kTooClose,         ///< The largest load ratio cannot be told from 1.
   kAmbiguousFeet,    ///< The verdict depends on feet that are neither held nor free.
@@ -98,7 +98,7 @@ struct Report {
   std::array<double, 3> products{};  ///< kStep
   base::Cell cell = {};
   base::Direction direction = base::Direction::kPlusX;
-  mechanics::SafeAngles<std::int64_t> angles = {};
+  SafeCorners feet = {};
   mechanics::SupportCorners corners = {};
 };
 
@@ -119,7 +119,7 @@ Report decode_report(std::span<const std::uint8_t> message);
 /// The larger number; not a number wins, as it must not get lost.
 constexpr float larger(float a, float b) { return b <= a || a != a ? a : b; }
 
-/// Adds `from` to `into`, as the operation demands.
+/// Adds `from` to `into`, as the operation demands; of kAngles that is FeetCheck::merge().
 void merge(wire::Operation operation, Report& into, const Report& from);
 
 }  // namespace holdfast::agent
