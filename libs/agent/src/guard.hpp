@@ -118,7 +118,8 @@ bool BasicAgent<Real>::is_expected(int face, std::span<const std::uint8_t> messa
       return message[1] < stage_ ||
              (message[1] == stage_ && is_parent && course_ == Course::kWaves);
     case MessageType::kMark:
-      return stage_ == kFarStage && is_child && awaited_ == 0 && course_ == Course::kWaves;
+      return stage_ == kFarStage && (nearer_ & bit(face)) == 0 && awaited_ == 0 &&
+             course_ == Course::kWaves;
     case MessageType::kOrder:
       return is_parent && !is_sweeping_ && !has_next_order_ && is_in_course(decode_order(message));
     case MessageType::kReport:

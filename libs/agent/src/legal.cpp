@@ -50,6 +50,7 @@ constexpr Field kFields[] = {
     {T::kEcho, kAny, 7, Rule::kOneTo, kStages},
     {T::kEcho, kAny, 18, Rule::kAtMost, 1},
     {T::kAppoint, kAny, 1, Rule::kOneTo, kStages - 1},
+    {T::kMark, kAny, 3, Rule::kCell, 0},
     {T::kPlannedDown, kAny, 1, Rule::kPlanned, 0x3f},
     {T::kPlannedUp, kAny, 1, Rule::kPlanned, 0xff},
     {T::kLoop, kAny, 1, Rule::kCell, 0},

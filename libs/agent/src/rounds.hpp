@@ -177,7 +177,7 @@ void BasicAgent<Real>::dispatch(int face, std::span<const std::uint8_t> message)
     case MessageType::kAppoint:
       return take_appointment(message);
     case MessageType::kMark:
-      return mark(wire::Reader(message).u16());
+      return take_mark(message);
     case MessageType::kOrder:
       if (is_exchanging_ || is_coarse()) {
         // What goes on behind the last report comes to its end first.

@@ -89,7 +89,7 @@ inline const std::vector<GoldenStream> kGoldenTrace = {
      {"01 01 00 0a 00 00 00 01 ff ff ff 02 00 00 00 00 00 00 00",  // join: I start, wave 1
       "03 01 0c 00 00 00 01 00",                                   // appoint 12, half way is 1
       "02 01 00 0a 00 00 00 02 01 00 00 00 02 00 0a 00 00 00 00",  // echo, wave 2
-      "04 00 00",                                                  // mark: you are half way
+      "04 00 00 ff ff ff 02 00 00 00 00 00",                       // mark: you are half way
       "02 01 00 0a 00 00 00 03 01 00 00 00 01 00 0a 00 00 00 00",  // echo, wave 3
       "06 01 00 00 00 00 00 00 00 00 00 00 00",                    // I have announced nothing
       "06 01 08 00 00 00 00 00 00 00 00 00 00",                    // it is at my face +y
@@ -100,7 +100,7 @@ inline const std::vector<GoldenStream> kGoldenTrace = {
     {1,
      base::Direction::kMinusX,
      {"02 01 00 0a 00 00 00 01 02 00 00 00 02 00 0c 00 00 00 00",  // echo: two, 12 is furthest
-      "01 01 00 0a 00 00 00 02 00 00 00 02 00 00 00 00 00 01 00",  // join, wave 2
+      "01 01 00 0a 00 00 00 02 00 00 00 03 00 00 00 00 00 01 00",  // join, wave 2
       "03 02 0a 00 00 00 01 00",                                   // appoint 10
       "01 01 00 0a 00 00 00 03 00 00 00 02 00 00 00 00 00 00 00",  // join, wave 3: I am the root
       "05 01 ff 00 00 00 00 00 00 00 00 00",                       // what is planned?

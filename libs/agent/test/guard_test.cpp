@@ -117,7 +117,7 @@ TEST(Guard, orders_keep_their_course) {
 /// Up and down: orders come from the parent, reports and marks from children.
 TEST(Guard, everybody_has_a_place_in_the_tree) {
   expect_refused(row(), {0, "06 01", "05 02 00 00 00 00 00 00 00 00", true});
-  expect_refused(row(), {0, "06 01", "04 00 00"});
+  expect_refused(row(), {0, "06 01", "04 00 00 00 00 00 00 00 00 00 00 00"});
   expect_refused(row(), {0, "06 03", "06 03 01 00 00 00 00 00 00 00 00 00 00 00 00 01 00"});
 }
 

@@ -53,7 +53,8 @@
 /// verdict is then `undecided`, never `safe`.
 ///
 /// LIMITS. At most kPlannedMax planned modules in the whole robot; more end as `undecided`, as does
-/// everything else that the program cannot be certain of; answer().reason says which.
+/// everything else that the program cannot be certain of; answer().reason says which. What a faulty
+/// neighbour says and a working one would not is refused (refused_count()); it counts as silent then.
 /// All modules have the same orientation: face indices are base::Direction.
 ///
 /// No heap, no exceptions, no recursion, no I/O. Storage is the object itself, kAgentBytesMax at
@@ -263,7 +264,9 @@ class BasicAgent {
   void take_appointment(std::span<const std::uint8_t> message);
   void await_less(int face);
   bool end_stage();
-  void mark(std::uint16_t hops);
+  void take_mark(std::span<const std::uint8_t> message);
+  void mark(std::uint16_t hops, const base::Cell& end);
+  int face_towards_root(const base::Cell& end) const;
 
   // sweep.cpp: orders and reports.
   void take_order(const Order& order);
@@ -513,7 +516,7 @@ class BasicAgent {
   std::array<base::Vec6<double>, kPlannedMax> planned_force_{};
   std::array<MiddleLoad, base::kDirectionCount> middle_{};
   ContactSetting contact_;
-  base::Cell root_cell_;
+  base::Cell root_cell_;  ///< Of the module that started the wave, and of the tree's root.
 
   Conductor conductor_;
   Answer answer_;
