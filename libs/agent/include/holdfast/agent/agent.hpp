@@ -54,7 +54,7 @@
 ///
 /// LIMITS. At most kPlannedMax planned modules in the whole robot; more end as `undecided`, as does
 /// everything else that the program cannot be certain of; answer().reason says which. What a faulty
-/// neighbour says and a working one would not is refused (refused_count()); it counts as silent then.
+/// neighbour says and a working one would not is refused (refused_count()); it counts as silent.
 /// All modules have the same orientation: face indices are base::Direction.
 ///
 /// No heap, no exceptions, no recursion, no I/O. Storage is the object itself, kAgentBytesMax at
