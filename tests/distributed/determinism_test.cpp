@@ -22,7 +22,7 @@ TEST(Determinism, the_trace_is_the_same_with_every_compiler_and_level) {
   options.link.clock_drift = 0.001;
   const auto comparison = test::compare(robot.value(), options);
   EXPECT_FALSE(comparison.is_wrong()) << comparison.text();
-  EXPECT_EQ(comparison.result.trace_hash, 6716901633756993043U);
+  EXPECT_EQ(comparison.result.trace_hash, 7476639310636017002U);
 }
 
 }  // namespace

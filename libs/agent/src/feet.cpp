@@ -23,8 +23,7 @@ bool fits_exact_check(const Setup& setup, std::int64_t module_count) {
 
 FeetCheck::FeetCheck(const Setup& setup, std::int32_t module_count,
                      const std::array<std::int32_t, 2>& cell_sum)
-    : count_(module_count),
-      pitch_(2 * std::int64_t{setup.facet_denominator} * module_count),
+    : pitch_(2 * std::int64_t{setup.facet_denominator} * module_count),
       half_width_(std::int64_t{setup.facet_numerator} * module_count),
       mass_{2 * std::int64_t{setup.facet_denominator} * cell_sum[0],
             2 * std::int64_t{setup.facet_denominator} * cell_sum[1]} {}

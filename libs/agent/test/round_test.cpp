@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The holdfast authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// Which of two rounds is newer: serial number arithmetic [RFC 1982], and a robot that has lived
+// Which of two rounds is newer: serial number arithmetic [RFC1982], and a robot that has lived
 // through more rounds than 16 bits can count.
 #include "holdfast/agent/round.hpp"
 

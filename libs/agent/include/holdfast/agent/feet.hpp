@@ -67,7 +67,6 @@ class FeetCheck {
   Vector seen(const FootCorner& corner) const;
   Angles angles_of(const SafeCorners& corners) const;
 
-  std::int64_t count_;
   std::int64_t pitch_;       ///< Of a cell: its parts times the modules.
   std::int64_t half_width_;  ///< Of a facet.
   Vector mass_;

@@ -19,7 +19,7 @@ constexpr std::uint16_t epoch_after(std::uint16_t epoch) {
   return static_cast<std::uint16_t>(epoch == 0xffffU ? 1 : epoch + 1);
 }
 
-/// Does `a` put an end to `b`? Epochs are serial numbers [RFC 1982]: of two the one is newer that
+/// Does `a` put an end to `b`? Epochs are serial numbers [RFC1982]: of two the one is newer that
 /// comes less than 32,768 behind the other, counted in a circle. So rounds never run out, as long
 /// as no two parts that are put together have lived through so many without each other. Where the
 /// RFC leaves it open, 32,768 apart, the larger number is newer: both sides must think the same. Of
