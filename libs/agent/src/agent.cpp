@@ -4,6 +4,7 @@
 
 #include "clusters.hpp"
 #include "equilibrium.hpp"
+#include "guard.hpp"
 #include "remote.hpp"
 #include "rounds.hpp"
 #include "sweep.hpp"

@@ -246,6 +246,19 @@ int Branch::find(const Cut& cut) const {
   return -1;
 }
 
+int Branch::loops_of_column(int index) {
+  if (index < kOnto || index >= kColumnCount) {
+    return 0;
+  }
+  if (index < kGive) {
+    return 1 + (index - kOnto) / kSize % kLoopsMax;
+  }
+  const int pair = (index - kGive) / kSize;
+  const int row = pair / kLoopsMax;
+  const int column = pair % kLoopsMax;
+  return 1 + (row > column ? row : column);
+}
+
 int Branch::open_count() const {
   int count = 0;
   for (int slot = 0; slot < count_; ++slot) {

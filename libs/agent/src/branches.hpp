@@ -90,11 +90,9 @@ template <class Real>
 void BasicAgent<Real>::take_loop(int face, std::span<const std::uint8_t> message) {
   wire::Reader in(message);
   std::uint8_t& count = work_.tree.child_cut_count[static_cast<std::size_t>(face)];
-  if (count < kLoopsMax) {
-    Cut& cut = work_.tree.child_cuts[static_cast<std::size_t>(face)][count++];
-    cut.cell = in.cell();
-    cut.direction = static_cast<base::Direction>(in.u8() % base::kDirectionCount);
-  }
+  Cut& cut = work_.tree.child_cuts[static_cast<std::size_t>(face)][count++];
+  cut.cell = in.cell();
+  cut.direction = static_cast<base::Direction>(in.u8());
 }
 
 /// Finds out which loops pass or close here, and tells the parent.
@@ -114,6 +112,7 @@ std::uint8_t BasicAgent<Real>::survey_loops() {
       has_too_many = slot < 0 || has_too_many;
     }
   }
+  tree.has_too_many = has_too_many;
   if (has_too_many) {
     return kManyLoops;
   }
@@ -314,7 +313,7 @@ void BasicAgent<Real>::take_column(int face, std::span<const std::uint8_t> messa
     tree.branch.add_column(index, tree.slot_of[static_cast<std::size_t>(face)],
                            sweep::read_vector(in));
     here = static_cast<std::uint8_t>(index + 1);
-  } else if (part < Branch::kPartCount) {
+  } else {
     tree.branch.add_part(part, sweep::read_vector(in));
     here = part + 1 == Branch::kPartCount ? std::uint8_t{6} : here;
   }
@@ -399,7 +398,7 @@ void BasicAgent<Real>::take_branch_up(int face, std::span<const std::uint8_t> me
   const int index = in.u8();
   BranchLoad& load = work_.tree.load;
   base::Vec6<double>* into = &load.load;
-  if (index > 0 && index <= kLoopsMax) {
+  if (index > 0) {
     const int slot =
         work_.tree.slot_of[static_cast<std::size_t>(face)][static_cast<std::size_t>(index - 1)];
     into = &load.gap[static_cast<std::size_t>(slot)];
@@ -499,16 +498,13 @@ void BasicAgent<Real>::begin_tree_step() {
 
 template <class Real>
 void BasicAgent<Real>::take_branch_down(std::span<const std::uint8_t> message) {
-  if (!is_sweeping_ || down_awaited_ == 0) {
-    return;
-  }
   wire::Reader in(message);
   const int index = in.u8();
   BranchWork& tree = work_.tree;
   const base::Vec6<float> vector = sweep::read_vector(in);
   if (index == 0) {
     nodes_[0].shared = base::converted<Real>(vector);  // The parent's shift.
-  } else if (index <= tree.branch.open_count()) {
+  } else {
     tree.forces[static_cast<std::size_t>(tree.branch.open_slot(index - 1))] = vector;
   }
   if (--down_awaited_ == 0) {

@@ -59,9 +59,14 @@ inline base::Vec6<double> encoded(const Choice& choice) {
           static_cast<double>(choice.parent_top.z)};
 }
 
+/// Numbers that no choice has are 0: what a vector says is nowhere checked.
 template <class Real>
 Choice decoded(const base::Vec6<Real>& vector) {
-  const auto number = [&](std::size_t i) { return static_cast<std::int32_t>(vector[i]); };
+  constexpr Real kMost = 16 * base::kCoordinateMax + 8;
+  const auto number = [&](std::size_t i) {
+    const bool is_good = vector[i] >= -kMost && vector[i] <= kMost;
+    return is_good ? static_cast<std::int32_t>(vector[i]) : std::int32_t{0};
+  };
   const std::int32_t first = number(0);
   return {.top = {first >> 3, number(1), number(2)},
           .parent_top = {number(3), number(4), number(5)},

@@ -7,13 +7,8 @@
 #include "tolerances.hpp"
 
 namespace holdfast::agent {
-namespace {
 
 using wire::Operation;
-
-constexpr std::int64_t kAngleMax = std::int64_t{1} << 29;
-
-}  // namespace
 
 Order Conductor::order(Step step, Operation operation) {
   step_ = step;
@@ -145,12 +140,13 @@ Order Conductor::after_mass(const Setup& setup, const Report& report) {
   is_fixed_ = (report.flags & kAnyFixed) != 0;
   extent_ = report.extent;
   has_many_loops_ = (report.flags & kManyLoops) != 0;
+  if (extent_ > kExtentMax || depth_ > kExtentMax) {
+    return finish(Verdict::kUndecided, Reason::kTooLarge);
+  }
   if (is_fixed_) {
     return begin_law(setup, false);
   }
-  const std::int64_t reach = (4 * std::int64_t{extent_} + 2 * std::int64_t{setup.facet_numerator}) *
-                             setup.facet_denominator * report.count;
-  if ((report.flags & kSumOverflow) != 0 || reach > kAngleMax) {
+  if ((report.flags & kSumOverflow) != 0 || !fits_exact_check(setup, report.count)) {
     return finish(Verdict::kUndecided, Reason::kTooLarge);
   }
   Order angles = order(Step::kAngles, Operation::kAngles);
@@ -161,7 +157,7 @@ Order Conductor::after_mass(const Setup& setup, const Report& report) {
 }
 
 Order Conductor::after_angles(const Setup& setup, const Report& report) {
-  if (report.angles.range != mechanics::SafeRange::kFull) {
+  if (report.feet.range != mechanics::SafeRange::kFull) {
     return finish(Verdict::kUnstable, Reason::kTopples);
   }
   return begin_law(setup, false);
@@ -409,8 +405,6 @@ Order Conductor::after_slope(const Report& report) {
 
 // ---- Jacobi methods.
 
-constexpr std::uint16_t kBatchMax = 4096;
-
 Order Conductor::start_jacobi() {
   ++effort_.solves;
   solve_iterations_ = 0;
@@ -454,7 +448,7 @@ Order Conductor::after_jacobi(const Setup& setup, const Report& report) {
     return move(1);
   }
   const std::uint32_t grown = is_any_remote_ ? 1U : 1U + solve_iterations_ / 8;
-  batch_ = static_cast<std::uint16_t>(grown < kBatchMax ? grown : kBatchMax);
+  batch_ = static_cast<std::uint16_t>(grown < kJacobiCountMax ? grown : kJacobiCountMax);
   Order jacobi = order(Step::kJacobi, Operation::kJacobi);
   jacobi.count = batch_;
   return jacobi;

@@ -62,14 +62,14 @@ void Conductor::choose_one_sweep(bool is_unilateral) {
 /// deep: the root must wait for the modules furthest away to start theirs. Half as many more make
 /// a sweep longer by a quarter and save as many steps.
 std::uint16_t Conductor::step_degree() const {
-  constexpr std::uint32_t kDegreeMax = 4000;
   const std::uint32_t degree = depth_ + (depth_ + 1U) / 2;
   return static_cast<std::uint16_t>(degree < kDegreeMax ? degree : kDegreeMax);
 }
 
 std::uint16_t Conductor::cluster_degree() const {
   const auto degree = static_cast<std::uint16_t>(depth_ / kClusterDegreeShare);
-  return degree < kClusterDegreeMin ? kClusterDegreeMin : degree;
+  const std::uint16_t bounded = degree < kDegreeMax ? degree : kDegreeMax;
+  return bounded < kClusterDegreeMin ? kClusterDegreeMin : bounded;
 }
 
 bool Conductor::may_have_clusters() const {

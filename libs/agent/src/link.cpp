@@ -47,14 +47,22 @@ int finish(std::span<std::uint8_t> packet, int size, std::uint16_t start) {
 }  // namespace
 
 void Link::bring_up(std::uint16_t nonce, Time now) {
+  const std::uint16_t last = nonce_;
   *this = Link();
   state_ = State::kGreeting;
-  nonce_ = nonce == 0 ? std::uint16_t{1} : nonce;
+  nonce_ = nonce;
+  while (nonce_ == 0 || nonce_ == last) {
+    ++nonce_;
+  }
   needs_greeting_ = true;
   heard_at_ = now;
 }
 
-void Link::bring_down() { *this = Link(); }
+void Link::bring_down() {
+  const std::uint16_t last = nonce_;
+  *this = Link();
+  nonce_ = last;
+}
 
 bool Link::send(std::span<const std::uint8_t> message) {
   if (!is_used()) {
@@ -81,6 +89,12 @@ std::span<const std::uint8_t> Link::receive_greeting(std::span<const std::uint8_
   const auto theirs = static_cast<std::uint16_t>(body[0] | (body[1] << 8U));
   const auto heard = static_cast<std::uint16_t>(body[2] | (body[3] << 8U));
   const bool is_peer_open = body[4] != 0;
+  if (is_peer_open && heard == nonce_ && peer_nonce_ == 0) {
+    // To open it must have heard its own number from me, who have not heard it yet: that was before
+    // I started, and I have drawn the same number again.
+    bring_up(nonce_, heard_at_);
+    return {};
+  }
   if (peer_nonce_ != 0 && theirs != peer_nonce_) {
     if (state_ == State::kOpen) {
       is_restarted_ = true;

@@ -76,22 +76,22 @@ void merge_loads(Report& into, const Report& from) {
   into.number += from.number;
 }
 
-void write_angles(Writer& out, const mechanics::SafeAngles<std::int64_t>& angles) {
-  out.u8(static_cast<std::uint8_t>(angles.range));
-  for (const auto& vector : {angles.gap_first, angles.gap_last}) {
-    out.i32(static_cast<std::int32_t>(vector.x));
-    out.i32(static_cast<std::int32_t>(vector.y));
+void write_feet(Writer& out, const SafeCorners& feet) {
+  out.u8(static_cast<std::uint8_t>(feet.range));
+  for (const FootCorner& corner : {feet.first, feet.last}) {
+    out.i32(corner.x);
+    out.i32(corner.y);
   }
 }
 
-mechanics::SafeAngles<std::int64_t> read_angles(Reader& in) {
-  mechanics::SafeAngles<std::int64_t> angles;
-  angles.range = static_cast<mechanics::SafeRange>(in.u8());
-  for (auto* vector : {&angles.gap_first, &angles.gap_last}) {
-    vector->x = in.i32();
-    vector->y = in.i32();
+SafeCorners read_feet(Reader& in) {
+  SafeCorners feet;
+  feet.range = static_cast<mechanics::SafeRange>(in.u8());
+  for (FootCorner* corner : {&feet.first, &feet.last}) {
+    corner->x = in.i32();
+    corner->y = in.i32();
   }
-  return angles;
+  return feet;
 }
 
 void write_corners(Writer& out, const mechanics::SupportCorners& corners) {
@@ -298,7 +298,7 @@ Writer encode(Operation operation, const Report& report) {
       out.u16(report.extent);
       break;
     case Operation::kAngles:
-      write_angles(out, report.angles);
+      write_feet(out, report.feet);
       break;
     case Operation::kStart:
     case Operation::kGradient:
@@ -362,7 +362,7 @@ Report decode_report(std::span<const std::uint8_t> message) {
       report.extent = in.u16();
       break;
     case Operation::kAngles:
-      report.angles = read_angles(in);
+      report.feet = read_feet(in);
       break;
     case Operation::kStart:
     case Operation::kGradient:
@@ -412,9 +412,6 @@ void merge(Operation operation, Report& into, const Report& from) {
       return;
     case Operation::kMass:
       return merge_mass(into, from);
-    case Operation::kAngles:
-      into.angles = mechanics::merge(into.angles, from.angles);
-      return;
     case Operation::kLow:
     case Operation::kStep:
     case Operation::kTreeStep:
@@ -459,7 +456,7 @@ const char* name(Reason reason) {
                                     "too many planned modules",
                                     "a planned cell is not free",
                                     "a planned module touches nothing",
-                                    "the robot is too large for the exact stability check",
+                                    "the robot is too large to be counted",
                                     "no method settled",
                                     "the largest load ratio cannot be told from 1",
                                     "the verdict depends on feet that are neither held nor free"};

@@ -12,6 +12,9 @@ constexpr int kWholeSubtree = -1;
 }  // namespace
 
 void Planned::add(const base::Cell& cell, const base::Cell& self) {
+  if (count_ == kPlannedMax) {
+    return;
+  }
   const auto i = static_cast<std::size_t>(count_++);
   cells_[i] = cell;
   own_face_[i] = -1;
@@ -25,7 +28,9 @@ void Planned::add(const base::Cell& cell, const base::Cell& self) {
 }
 
 void Planned::add_below(int face, int index, std::uint8_t mask) {
-  below_[static_cast<std::size_t>(face)][static_cast<std::size_t>(index)] = mask;
+  if (index < count_) {
+    below_[static_cast<std::size_t>(face)][static_cast<std::size_t>(index)] = mask;
+  }
 }
 
 std::uint8_t Planned::mask(int index) const {
@@ -51,6 +56,10 @@ bool Planned::is_whole(std::uint8_t group, int face) const {
 }
 
 void Planned::decide_hosts(const std::array<std::uint8_t, 8>& totals) {
+  hosted_count_ = 0;
+  from_above_ = 0;
+  involved_ = 0;
+  is_any_remote_ = false;
   for (int k = 0; k < count_; ++k) {
     totals_[static_cast<std::size_t>(k)] = totals[static_cast<std::size_t>(k)];
     groups_[static_cast<std::size_t>(k)] = static_cast<std::uint8_t>(k);
@@ -93,6 +102,15 @@ void Planned::decide_hosts(const std::array<std::uint8_t, 8>& totals) {
       is_any_remote_ = true;
     }
   }
+}
+
+bool Planned::agrees_with(const std::array<std::uint8_t, 8>& totals) const {
+  for (int k = 0; k < count_; ++k) {
+    if ((mask(k) & ~unsigned{totals[static_cast<std::size_t>(k)]}) != 0) {
+      return false;
+    }
+  }
+  return true;
 }
 
 int Planned::at_face(int face) const {

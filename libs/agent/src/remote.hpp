@@ -190,7 +190,7 @@ void BasicAgent<Real>::send_remote_down(std::uint8_t label, const base::Vec6<flo
 template <class Real>
 void BasicAgent<Real>::take_remote_down(std::uint8_t label, const base::Vec6<float>& part) {
   const int k = label & sweep::kIndexMask;
-  if (k >= planned_.count() || !planned_.is_from_above(k)) {
+  if (!planned_.is_from_above(k)) {
     return;
   }
   Node<Real>& node = planned_node(k);

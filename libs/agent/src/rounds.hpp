@@ -4,6 +4,7 @@
 
 #include "bits.hpp"
 #include "holdfast/agent/agent.hpp"
+#include "holdfast/agent/legal.hpp"
 #include "methods.hpp"
 
 namespace holdfast::agent {
@@ -130,9 +131,9 @@ void BasicAgent<Real>::receive(int face, std::span<const std::uint8_t> packet) {
   touched_ = static_cast<std::uint8_t>(touched_ | bit(face));
   is_busy_ = true;
   std::span<const std::uint8_t> stream = link.receive(packet, setup_.timing, now_);
-  for (auto message = link.next_message(stream); !message.empty();
+  for (auto message = link.next_message(stream); !message.empty() && link.is_used();
        message = link.next_message(stream)) {
-    dispatch(face, message);
+    wire::is_legal(message) ? dispatch(face, message) : refuse(face);
   }
   check_link(face);
 }
@@ -167,13 +168,16 @@ void BasicAgent<Real>::dispatch(int face, std::span<const std::uint8_t> message)
   if (!is_ours || restart_at_ != kNever || stage_ == kNoStage) {
     return;
   }
+  if (!is_expected(face, message)) {
+    return refuse(face);
+  }
   switch (type) {
     case MessageType::kEcho:
       return take_echo(face, message);
     case MessageType::kAppoint:
       return take_appointment(message);
     case MessageType::kMark:
-      return mark(wire::Reader(message).u16());
+      return take_mark(message);
     case MessageType::kOrder:
       if (is_exchanging_ || is_coarse()) {
         // What goes on behind the last report comes to its end first.
@@ -272,7 +276,7 @@ void BasicAgent<Real>::start_round() {
     }
     return;
   }
-  enter_round({.epoch = static_cast<std::uint16_t>(round_.epoch + 1), .starter = identity_.id});
+  enter_round({.epoch = epoch_after(round_.epoch), .starter = identity_.id});
   start_wave(kFirstStage);
   is_busy_ = true;
 }
@@ -294,6 +298,7 @@ void BasicAgent<Real>::enter_round(const Round& round) {
   vectors_here_ = {};
   planned_here_ = 0;
   planned_.clear();
+  course_ = Course::kWaves;
   answer_ = {};
   phase_ = Phase::kCoordinates;
   touched_ = 0x3f;

@@ -130,6 +130,7 @@ inline base::Vec6<float> read_vector(wire::Reader& in) {
 template <class Real>
 void BasicAgent<Real>::take_order(const Order& order) {
   order_ = order;
+  course_ = course_after(order);
   is_sweeping_ = true;
   phase_ = sweep::phase_of(order.operation);
   reports_awaited_ = children_;
@@ -196,9 +197,6 @@ void BasicAgent<Real>::take_planned_down(std::span<const std::uint8_t> message) 
   if (kHasAllMethods && (k & ~sweep::kIndexMask) != 0) {
     return take_remote_down(static_cast<std::uint8_t>(k), sweep::read_vector(in));
   }
-  if (k >= planned_.count()) {
-    return;
-  }
   planned_vector_[static_cast<std::size_t>(k)] = sweep::read_vector(in);
   planned_here_ = static_cast<std::uint8_t>(planned_here_ | bit(k));
   send_planned_down(k);
@@ -231,9 +229,6 @@ template <class Real>
 void BasicAgent<Real>::take_planned_up(std::span<const std::uint8_t> message) {
   wire::Reader in(message);
   const int k = in.u8();
-  if (k >= planned_.count()) {
-    return;
-  }
   const base::Vec6<float> force = sweep::read_vector(in);
   for (std::size_t i = 0; i < 6; ++i) {
     planned_force_[static_cast<std::size_t>(k)][i] += static_cast<double>(force[i]);
@@ -254,10 +249,6 @@ void BasicAgent<Real>::take_vector(int face, std::span<const std::uint8_t> messa
 
 template <class Real>
 void BasicAgent<Real>::take_report(int face, std::span<const std::uint8_t> message) {
-  if (!is_sweeping_ || (reports_awaited_ & bit(face)) == 0 ||
-      message[1] != static_cast<std::uint8_t>(order_.operation)) {
-    return;
-  }
   auto& stored = reports_[static_cast<std::size_t>(face)];
   for (std::size_t i = 0; i < message.size(); ++i) {
     stored[i] = message[i];
@@ -314,7 +305,7 @@ bool BasicAgent<Real>::finish_sweep() {
   for (int face = 0; face < base::kDirectionCount; ++face) {
     if ((children_ & bit(face)) != 0) {
       const Report theirs = decode_report(reports_[static_cast<std::size_t>(face)]);
-      merge(order_.operation, report, theirs);
+      add_report(report, theirs);
       if (order_.operation == wire::Operation::kPlan && order_.index != kNoPlanned) {
         planned_.add_below(face, order_.index, theirs.mask);
       }

@@ -15,8 +15,10 @@
 ///      is furthest away, A.
 ///   2  from A: names one that is furthest from A, B. (A path from A to B is nearly a longest one.)
 ///   3  from the module half way from B to A: near the topological centre. Its tree is used.
-/// The double sweep finds the centre of any tree exactly [Handler 1973]; in lattices it is near it
-/// (test/waves_test.cpp measures how near).
+/// The double sweep finds the centre of any tree exactly [Handler 1973]. In a lattice there are
+/// many shortest ways from B to A, and those along its edges have their middle in a corner, at the
+/// end of everything: so of all of them one is taken that keeps to the straight line between the
+/// two (test/waves_test.cpp measures how near the centre it is).
 namespace holdfast::agent {
 
 using wire::MessageType;
@@ -28,6 +30,7 @@ inline constexpr std::size_t kRoundBytes = 7;
 
 template <class Real>
 void BasicAgent<Real>::start_wave(std::uint8_t stage) {
+  root_cell_ = nodes_[0].cell;
   begin_stage(stage, -1, 0);
 }
 
@@ -39,9 +42,7 @@ void BasicAgent<Real>::begin_stage(std::uint8_t stage, int parent, std::uint16_t
                                 : Phase::kTree;
   parent_ = static_cast<std::int8_t>(parent);
   hops_ = hops;
-  if constexpr (kHasAllMethods) {
-    nearer_ = parent < 0 ? std::uint8_t{0} : bit(parent);
-  }
+  nearer_ = parent < 0 ? std::uint8_t{0} : bit(parent);
   children_ = 0;
   is_stage_over_ = false;
   census_count_ = 1;
@@ -60,7 +61,7 @@ void BasicAgent<Real>::begin_stage(std::uint8_t stage, int parent, std::uint16_t
     join.u16(round_.epoch);
     join.u32(round_.starter);
     join.u8(stage);
-    join.cell(nodes_[0].cell);
+    join.cell(stage == kFirstStage ? nodes_[0].cell : root_cell_);
     join.u16(hops);
     send(face, join);
   }
@@ -73,21 +74,27 @@ void BasicAgent<Real>::take_join(int face, std::span<const std::uint8_t> message
   const Round round = peer_round_[static_cast<std::size_t>(face)];
   const std::uint8_t stage = in.u8();
   const base::Cell theirs = in.cell();
-  const auto hops = static_cast<std::uint16_t>(in.u16() + 1);
-  if (round > round_) {
+  // 65,535 stands for all that is further: too large (feet.hpp).
+  const std::uint16_t theirs_hops = in.u16();
+  const auto hops = static_cast<std::uint16_t>(theirs_hops + (theirs_hops > kExtentMax ? 0 : 1));
+  if (is_newer(round, round_)) {
     enter_round(round);
-  } else if (round != round_ || restart_at_ != kNever) {
+  } else if (!(round == round_) || restart_at_ != kNever) {
     return;
   }
-  if (stage > stage_) {
-    const auto direction = static_cast<base::Direction>(face);
-    nodes_[0].cell = base::neighbour(theirs, base::opposite(direction));
-    has_cell_ = true;
+  if (stage > stage_ + 1 || (stage > stage_ && course_ != Course::kWaves)) {
+    refuse(face);  // A wave has been left out, or the tree is in use.
+  } else if (stage > stage_) {
+    if (stage == kFirstStage) {
+      const auto direction = static_cast<base::Direction>(face);
+      nodes_[0].cell = base::neighbour(theirs, base::opposite(direction));
+      has_cell_ = true;
+    } else {
+      root_cell_ = theirs;
+    }
     begin_stage(stage, face, hops);
   } else if (stage == stage_) {
-    if constexpr (kHasAllMethods) {
-      nearer_ = static_cast<std::uint8_t>(nearer_ | (hops <= hops_ ? bit(face) : 0U));
-    }
+    nearer_ = static_cast<std::uint8_t>(nearer_ | (hops <= hops_ ? bit(face) : 0U));
     await_less(face);
   }
 }
@@ -177,7 +184,7 @@ void BasicAgent<Real>::take_appointment(std::span<const std::uint8_t> message) {
     if (stage == kFirstStage) {
       start_wave(kFarStage);
     } else {
-      mark(hops);
+      mark(hops, nodes_[0].cell);
     }
     return;
   }
@@ -188,15 +195,47 @@ void BasicAgent<Real>::take_appointment(std::span<const std::uint8_t> message) {
   send_to_children(onward);
 }
 
+/// One step towards the wave's root: of the neighbours nearer to it the one that is nearest to the
+/// place half way between it and `end`.
 template <class Real>
-void BasicAgent<Real>::mark(std::uint16_t hops) {
+int BasicAgent<Real>::face_towards_root(const base::Cell& end) const {
+  int best = parent_;
+  std::int64_t least = ~(std::int64_t{1} << 63U);
+  for (const base::Direction direction : base::kDirections) {
+    if ((nearer_ & bit(base::index(direction))) == 0) {
+      continue;
+    }
+    const base::Cell there = base::neighbour(nodes_[0].cell, direction);
+    const std::int64_t x = 2 * there.x - root_cell_.x - end.x;
+    const std::int64_t y = 2 * there.y - root_cell_.y - end.y;
+    const std::int64_t z = 2 * there.z - root_cell_.z - end.z;
+    const std::int64_t square = x * x + y * y + z * z;
+    if (square < least) {
+      least = square;
+      best = base::index(direction);
+    }
+  }
+  return best;
+}
+
+template <class Real>
+void BasicAgent<Real>::take_mark(std::span<const std::uint8_t> message) {
+  Reader in(message);
+  const std::uint16_t hops = in.u16();
+  mark(hops, in.cell());
+}
+
+/// So many hops more to the middle of the way from `end` to the wave's root.
+template <class Real>
+void BasicAgent<Real>::mark(std::uint16_t hops, const base::Cell& end) {
   if (hops == 0 || parent_ < 0) {
     start_wave(kTreeStage);
     return;
   }
   Writer onward(MessageType::kMark);
   onward.u16(static_cast<std::uint16_t>(hops - 1));
-  send(parent_, onward);
+  onward.cell(end);
+  send(face_towards_root(end), onward);
 }
 
 }  // namespace holdfast::agent

@@ -30,7 +30,7 @@ constexpr ChecksumTables checksum_tables() {
 [[maybe_unused]] constexpr ChecksumTables kChecksumTables = checksum_tables();
 
 /// Sizes by type, without orders and reports.
-constexpr std::array<std::uint8_t, 14> kMessageBytes = {0,  19, 19, 8,  3,  0,  0,
+constexpr std::array<std::uint8_t, 14> kMessageBytes = {0,  19, 19, 8,  12, 0,  0,
                                                         26, 26, 26, 11, 26, 26, 26};
 
 /// Sizes of orders and reports by operation.

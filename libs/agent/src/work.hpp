@@ -209,26 +209,29 @@ Report BasicAgent<Real>::mass_report() const {
   return report;
 }
 
-/// In units of half a cell divided by the number of modules, all numbers are integers.
 template <class Real>
 Report BasicAgent<Real>::angles_report() const {
+  const FeetCheck check(setup_, order_.module_count, order_.cell_sum);
   Report report;
-  const std::int64_t count = order_.module_count;
   for (int i = 0; i < node_count(); ++i) {
     const Node<Real>& node = nodes_[static_cast<std::size_t>(i)];
-    if (!node.is_ground) {
-      continue;
+    if (node.is_ground) {
+      report.feet = check.merge(
+          report.feet, check.of_foot(node.cell.x - root_cell_.x, node.cell.y - root_cell_.y));
     }
-    const std::int64_t x = std::int64_t{node.cell.x} - root_cell_.x;
-    const std::int64_t y = std::int64_t{node.cell.y} - root_cell_.y;
-    const mechanics::PlanVector<std::int64_t> away = {
-        2 * (x * count - order_.cell_sum[0]) * setup_.facet_denominator,
-        2 * (y * count - order_.cell_sum[1]) * setup_.facet_denominator};
-    Report own;
-    own.angles = mechanics::safe_angles(away, count * setup_.facet_numerator);
-    merge(Operation::kAngles, report, own);
   }
   return report;
+}
+
+/// Adds what a child has reported.
+template <class Real>
+void BasicAgent<Real>::add_report(Report& into, const Report& theirs) const {
+  if (order_.operation == Operation::kAngles) {
+    const FeetCheck check(setup_, order_.module_count, order_.cell_sum);
+    into.feet = check.merge(into.feet, theirs.feet);
+  } else {
+    merge(order_.operation, into, theirs);
+  }
 }
 
 template <class Real>

@@ -25,9 +25,10 @@ constexpr base::Cell kRoot = {1, 2, 3};
 /// A conductor, its setup and its last order.
 class Drive {
  public:
-  explicit Drive(Method method = Method::kConjugateGradients, std::uint16_t depth = 4) {
+  explicit Drive(Method method = Method::kConjugateGradients, std::uint16_t depth = 4,
+                 std::uint32_t census = kCensus) {
     setup.method = method;
-    order = conductor.begin(setup, kRoot, kCensus, depth);
+    order = conductor.begin(setup, kRoot, census, depth);
   }
 
   const Order& next(const Report& report = {}) {
@@ -47,7 +48,7 @@ class Drive {
     if (!is_fixed) {
       ASSERT_EQ(order.operation, Operation::kAngles);
       Report stands;
-      stands.angles.range = mechanics::SafeRange::kFull;
+      stands.feet.range = mechanics::SafeRange::kFull;
       next(stands);
     }
     ASSERT_EQ(order.operation, Operation::kBegin);
@@ -176,7 +177,7 @@ TEST(Conductor, toppling_is_unstable_and_needs_no_equilibrium) {
     drive.to_mass();
     ASSERT_EQ(drive.next({.extent = 5, .count = kCensus}).operation, Operation::kAngles);
     Report topples;
-    topples.angles.range = range;
+    topples.feet.range = range;
     drive.next(topples);
     drive.expect_finished(Verdict::kUnstable, Reason::kTopples);
     EXPECT_EQ(drive.conductor.effort().solves, 0U);
@@ -193,16 +194,31 @@ TEST(Conductor, a_fixed_robot_skips_the_angles_and_the_corners) {
   EXPECT_EQ(drive.next(drive.low(0, 0.5F)).operation, Operation::kLoads);
 }
 
-/// 2^29 bounds the coordinates of the safe angles: 4 extent x count, in these units.
-TEST(Conductor, a_robot_too_large_for_exact_angles_is_undecided) {
-  Drive drive;
-  drive.to_mass();
-  Drive overflow = drive;
-  drive.setup.facet_denominator = 1'000'000;
-  drive.next({.extent = 14, .count = kCensus});  // (4 x 14 + 2) x 1e6 x 10 > 2^29
-  drive.expect_finished(Verdict::kUndecided, Reason::kTooLarge);
-  overflow.next({.flags = kSumOverflow, .extent = 5, .count = kCensus});
+/// 65,534 hops, 2^24 modules and sums of cells below 2^31 are exact (feet.hpp); what is more says
+/// so. A row of 131,069 has its ends 65,534 from its middle.
+TEST(Conductor, a_robot_too_large_to_be_counted_is_undecided) {
+  constexpr std::uint32_t kRow = 131'069;
+  Drive longest(Method::kConjugateGradients, 65'534, kRow);
+  longest.to_mass();
+  Drive further = longest;
+  Drive overflow = longest;
+  Drive fine = longest;
+  EXPECT_EQ(longest.next({.extent = 65'534, .count = kRow}).operation, Operation::kAngles);
+  further.next({.extent = 65'535, .count = kRow});
+  further.expect_finished(Verdict::kUndecided, Reason::kTooLarge);
+  overflow.next({.flags = kSumOverflow, .extent = 5, .count = kRow});
   overflow.expect_finished(Verdict::kUndecided, Reason::kTooLarge);
+  fine.setup.facet_denominator = kFacetPartMax + 1;
+  fine.next({.extent = 5, .count = kRow});
+  fine.expect_finished(Verdict::kUndecided, Reason::kTooLarge);
+  Drive many(Method::kConjugateGradients, 4, (1U << 24U) + 1);
+  many.to_mass();
+  many.next({.extent = 5, .count = (1U << 24U) + 1});
+  many.expect_finished(Verdict::kUndecided, Reason::kTooLarge);
+  Drive deep(Method::kConjugateGradients, 0xffff);
+  deep.to_mass();
+  deep.next({.flags = kAnyFixed, .extent = 5, .count = kCensus});
+  deep.expect_finished(Verdict::kUndecided, Reason::kTooLarge);
 }
 
 // ---- Verdicts.

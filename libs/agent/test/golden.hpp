@@ -38,7 +38,7 @@ inline constexpr std::array<std::string_view, 19> kGoldenReports = {
     "06 01 21 01 01 00 00 fe ff ff 03 00 00",
     "06 02 87",
     "06 03 1d 00 00 00 fd ff ff ff 05 00 00 00 01 2c 01",
-    "06 04 01 01 00 00 00 ff ff ff ff 00 ff ff ff 02 00 00 00",
+    "06 04 01 01 00 00 00 ff ff ff ff 01 ff ff ff 03 00 00 00",
     "06 05",
     "06 06",
     "06 07 00 00 80 3e 00 00 00 3f 03 00 ef cd ab 89 01",
@@ -89,18 +89,18 @@ inline const std::vector<GoldenStream> kGoldenTrace = {
      {"01 01 00 0a 00 00 00 01 ff ff ff 02 00 00 00 00 00 00 00",  // join: I start, wave 1
       "03 01 0c 00 00 00 01 00",                                   // appoint 12, half way is 1
       "02 01 00 0a 00 00 00 02 01 00 00 00 02 00 0a 00 00 00 00",  // echo, wave 2
-      "04 00 00",                                                  // mark: you are half way
+      "04 00 00 ff ff ff 02 00 00 00 00 00",                       // mark: you are half way
       "02 01 00 0a 00 00 00 03 01 00 00 00 01 00 0a 00 00 00 00",  // echo, wave 3
       "06 01 00 00 00 00 00 00 00 00 00 00 00",                    // I have announced nothing
       "06 01 08 00 00 00 00 00 00 00 00 00 00",                    // it is at my face +y
       "06 02 80",                                                  // hosted elsewhere
       "06 03 01 00 00 00 ff ff ff ff 00 00 00 00 00 01 00",        // one module at (-1, 0)
-      "06 04 01 08 00 00 00 00 00 00 00 00 00 00 00 08 00 00 00",  // its corner is below the centre
+      "06 04 01 fb ff ff ff 01 00 00 00 fd ff ff ff ff ff ff ff",  // its corner is below the centre
       "06 05"}},
     {1,
      base::Direction::kMinusX,
      {"02 01 00 0a 00 00 00 01 02 00 00 00 02 00 0c 00 00 00 00",  // echo: two, 12 is furthest
-      "01 01 00 0a 00 00 00 02 00 00 00 02 00 00 00 00 00 01 00",  // join, wave 2
+      "01 01 00 0a 00 00 00 02 00 00 00 03 00 00 00 00 00 01 00",  // join, wave 2
       "03 02 0a 00 00 00 01 00",                                   // appoint 10
       "01 01 00 0a 00 00 00 03 00 00 00 02 00 00 00 00 00 00 00",  // join, wave 3: I am the root
       "05 01 ff 00 00 00 00 00 00 00 00 00",                       // what is planned?

@@ -424,6 +424,65 @@ TEST(Link, notices_a_neighbour_that_has_started_again) {
   EXPECT_EQ(take(b, write(a, 0), 0).size(), std::size_t{1});
 }
 
+/// The number that a greeting names as its sender's.
+int greeted_number(const Bytes& greeting) { return greeting[2] | (greeting[3] << 8); }
+
+TEST(Link, takes_another_number_than_the_last_one) {
+  for (const bool goes_down : {false, true}) {
+    Link link;
+    link.bring_up(0x1234, 0);
+    EXPECT_EQ(greeted_number(write(link, 0)), 0x1234);
+    if (goes_down) {
+      link.bring_down();
+    }
+    link.bring_up(0x1234, 0);
+    EXPECT_EQ(greeted_number(write(link, 0)), 0x1235);
+    link.bring_up(0, 0);
+    EXPECT_EQ(greeted_number(write(link, 0)), 1);
+    link.bring_up(0, 0);
+    EXPECT_EQ(greeted_number(write(link, 0)), 2);
+    link.bring_up(0xffff, 0);
+    link.bring_up(0xffff, 0);
+    EXPECT_EQ(greeted_number(write(link, 0)), 1);
+  }
+}
+
+/// A module that has lost its memory draws the number of its last session, and its neighbour has
+/// not noticed that it was away. Before, both thought the session went on, one at packet 9, the
+/// other at packet 0.
+TEST(Link, a_restart_with_the_same_number_is_noticed) {
+  Link a;
+  Link b;
+  open(a, b);
+  const Time now = 0;
+  for (std::uint8_t i = 0; i < 9; ++i) {
+    ASSERT_TRUE(a.send(vector_message(i)));
+    take(b, write(a, now), now);
+    take(a, write(b, now), now);
+  }
+  a = Link();
+  a.bring_up(0x1234, now);
+  bool has_noticed = false;
+  for (int i = 0; i < 10; ++i) {
+    take(b, write(a, now), now);
+    if (b.take_restarted()) {
+      has_noticed = true;
+      b.bring_up(0xbeef, now);  // As bad: it must differ from its own last one.
+    }
+    take(a, write(b, now), now);
+  }
+  EXPECT_TRUE(has_noticed);
+  EXPECT_FALSE(a.take_restarted());
+  ASSERT_EQ(a.state(), Link::State::kOpen);
+  ASSERT_EQ(b.state(), Link::State::kOpen);
+  ASSERT_TRUE(a.send(vector_message(42)));
+  ASSERT_TRUE(b.send(vector_message(43)));
+  EXPECT_TRUE(take(b, write(a, now), now).empty());  // Each takes two packets.
+  EXPECT_EQ(take(b, write(a, now), now), std::vector<Bytes>{vector_message(42)});
+  EXPECT_TRUE(take(a, write(b, now), now).empty());
+  EXPECT_EQ(take(a, write(b, now), now), std::vector<Bytes>{vector_message(43)});
+}
+
 TEST(Link, refuses_packets_of_an_old_session) {
   const LinkTiming timing;
   Link a;

@@ -59,6 +59,14 @@ Order random_order(Operation operation, base::Rng& rng) {
   return order;
 }
 
+const Setup& feet_setup() {
+  static const auto setup = table_setup();
+  return setup;
+}
+
+/// Three modules, their centre of mass at (1, -2) / 3.
+FeetCheck feet_check() { return {feet_setup(), 3, {1, -2}}; }
+
 /// Sums of a few stay exact and in range.
 Report random_report(Operation operation, base::Rng& rng) {
   Report report;
@@ -82,7 +90,7 @@ Report random_report(Operation operation, base::Rng& rng) {
                                                                               : random_cell(rng);
   report.direction = static_cast<base::Direction>(rng.below(6));
   if (rng.below(4) != 0) {
-    report.angles = mechanics::safe_angles<std::int64_t>({sum(), sum()}, 300'000);
+    report.feet = feet_check().of_foot(sum(), sum());
   }
   const auto half_cells = [&] { return 2 * static_cast<std::int32_t>(rng.below(5)) - 5; };
   for (std::uint64_t i = 0; i < rng.below(3); ++i) {
@@ -101,6 +109,10 @@ Report through_wire(Operation operation, const Report& report) {
 }
 
 Report merged(Operation operation, Report into, const Report& from) {
+  if (operation == Operation::kAngles) {
+    into.feet = feet_check().merge(into.feet, from.feet);
+    return into;
+  }
   merge(operation, into, from);
   return into;
 }

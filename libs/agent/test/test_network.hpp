@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <functional>
@@ -88,6 +89,19 @@ class TestNetwork {
     }
   }
 
+  /// Opens a connection and closes it again; both ends feel it.
+  void reconnect(std::size_t i, base::Direction face) {
+    const auto other = static_cast<std::size_t>(neighbour(i, face));
+    for (const EventKind kind : {EventKind::kLinkDown, EventKind::kLinkUp}) {
+      Event own = event(kind, face);
+      Event theirs = event(kind, base::opposite(face));
+      own.random = ++link_up_count_;
+      theirs.random = ++link_up_count_;
+      step(i, own);
+      step(other, theirs);
+    }
+  }
+
   /// It is still there, but does nothing any more.
   void mute(std::size_t i) { places_[i].is_mute = true; }
 
@@ -151,6 +165,21 @@ class TestNetwork {
   /// How often a module had still more to do after a piece.
   int unfinished_count() const { return unfinished_count_; }
 
+  /// A packet from outside; it is on the other side with the next tick.
+  void inject(std::size_t to, base::Direction face, std::span<const std::uint8_t> packet) {
+    Flight flight{.to = to, .face = face, .size = packet.size(), .bytes = {}};
+    std::copy(packet.begin(), packet.end(), flight.bytes.begin());
+    in_flight_.push_back(flight);
+  }
+
+  /// The module at a face, or -1.
+  int neighbour(std::size_t i, base::Direction face) const {
+    return find(base::neighbour(places_[i].cell, face));
+  }
+
+  /// Is this packet taken off its line?
+  std::function<bool(std::size_t from, base::Direction face, std::span<const std::uint8_t>)> divert;
+
   /// Called with every packet before it gets lost.
   std::function<void(std::size_t from, base::Direction face, std::span<const std::uint8_t>)> watch;
 
@@ -195,6 +224,9 @@ class TestNetwork {
     }
     if (watch) {
       watch(i, face, std::span(actions_[i].packet).first(size));
+    }
+    if (divert && divert(i, face, std::span(actions_[i].packet).first(size))) {
+      return;
     }
     if (static_cast<double>(rng_.below(1'000'000)) >= options_.loss * 1e6) {
       in_flight_.push_back({.to = static_cast<std::size_t>(to),

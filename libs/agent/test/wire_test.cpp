@@ -82,14 +82,14 @@ TEST(Wire, orders_are_these_bytes) {
 }
 
 TEST(Wire, reports_are_these_bytes) {
-  const mechanics::SafeAngles<std::int64_t> angles = {
-      .range = mechanics::SafeRange::kArc, .gap_first = {1, -1}, .gap_last = {-256, 2}};
+  const SafeCorners feet = {
+      .range = mechanics::SafeRange::kArc, .first = {1, -1}, .last = {-255, 3}};
   const mechanics::SupportCorners corners = {.count = 2, .corners = {{1, -1, 0}, {-3, 1, 0}}};
   const std::vector<Report> reports = {
       {.flags = kFound, .mask = 0x21, .cell = kCell},
       {.mask = 0x87},
       {.flags = kAnyFixed, .extent = 300, .count = 29, .cell_sum = {-3, 5}},
-      {.angles = angles},
+      {.feet = feet},
       {},
       {},
       {.flags = kAnyTilting, .extent = 3, .number = 0x89abcdef, .reals = {0.25F, 0.5F}},

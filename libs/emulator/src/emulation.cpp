@@ -272,7 +272,9 @@ sim::SimulationResult Robot::result() const {
     result.verdict_time =
         std::max(result.verdict_time, Time{steps.verdict_time / kCyclesPerMicrosecond});
     const agent::Agent& shadow = modules_[at(i)]->shadow();
-    result.epoch = std::max(result.epoch, shadow.epoch());
+    if (agent::is_newer({.epoch = shadow.epoch()}, {.epoch = result.epoch})) {
+      result.epoch = shadow.epoch();
+    }
   }
   for (std::int32_t i = 0; i < count(); ++i) {
     const agent::Agent& shadow = modules_[at(i)]->shadow();

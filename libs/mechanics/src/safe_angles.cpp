@@ -2,19 +2,73 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "holdfast/mechanics/safe_angles.hpp"
 
+#include <initializer_list>
 #include <limits>
 
 namespace holdfast::mechanics {
 namespace {
 
+/// The sign of p q + r s.
 template <class Real>
-Real cross(PlanVector<Real> a, PlanVector<Real> b) {
-  return a.x * b.y - a.y * b.x;
+int sign_of_products(Real p, Real q, Real r, Real s) {
+  const Real sum = p * q + r * s;
+  return sum > 0 ? 1 : sum == 0 ? 0 : -1;
+}
+
+/// 128 bits in two's complement, without the compiler's own: no module's processor has them.
+struct Wide {
+  std::uint64_t high = 0;
+  std::uint64_t low = 0;
+};
+
+/// By halves of 32 bits.
+Wide product(std::int64_t a, std::int64_t b) {
+  const auto size = [](std::int64_t value) {
+    const auto bits = static_cast<std::uint64_t>(value);
+    return value < 0 ? 0 - bits : bits;
+  };
+  constexpr std::uint64_t kHalf = 0xffffffffU;
+  const std::uint64_t x = size(a);
+  const std::uint64_t y = size(b);
+  const std::uint64_t lowest = (x & kHalf) * (y & kHalf);
+  const std::uint64_t left = (x >> 32U) * (y & kHalf) + (lowest >> 32U);
+  const std::uint64_t right = (x & kHalf) * (y >> 32U) + (left & kHalf);
+  Wide wide = {(x >> 32U) * (y >> 32U) + (left >> 32U) + (right >> 32U),
+               (right << 32U) | (lowest & kHalf)};
+  if ((a < 0) != (b < 0)) {
+    wide.low = 0 - wide.low;
+    wide.high = ~wide.high + (wide.low == 0 ? 1U : 0U);
+  }
+  return wide;
+}
+
+/// Exact for all that has_direction() admits.
+template <>
+int sign_of_products(std::int64_t p, std::int64_t q, std::int64_t r, std::int64_t s) {
+  constexpr std::int64_t kSmall = std::int64_t{1} << 30U;
+  bool is_small = true;
+  for (const std::int64_t value : {p, q, r, s}) {
+    is_small = is_small && -kSmall <= value && value <= kSmall;
+  }
+  if (is_small) {
+    const std::int64_t sum = p * q + r * s;
+    return sum > 0 ? 1 : sum == 0 ? 0 : -1;
+  }
+  const Wide first = product(p, q);
+  const Wide second = product(r, s);
+  const std::uint64_t low = first.low + second.low;
+  const std::uint64_t high = first.high + second.high + (low < first.low ? 1U : 0U);
+  return (high >> 63U) != 0 ? -1 : (high | low) != 0 ? 1 : 0;
 }
 
 template <class Real>
-Real dot(PlanVector<Real> a, PlanVector<Real> b) {
-  return a.x * b.x + a.y * b.y;
+int sign_of_cross(PlanVector<Real> a, PlanVector<Real> b) {
+  return sign_of_products(a.x, b.y, -a.y, b.x);
+}
+
+template <class Real>
+int sign_of_dot(PlanVector<Real> a, PlanVector<Real> b) {
+  return sign_of_products(a.x, b.x, a.y, b.y);
 }
 
 /// Is v in the closed convex cone from `first` counter-clockwise to `last`?
@@ -22,14 +76,37 @@ template <class Real>
 bool is_in_gap(const SafeAngles<Real>& angles, PlanVector<Real> v) {
   const PlanVector<Real>& first = angles.gap_first;
   const PlanVector<Real>& last = angles.gap_last;
-  return cross(first, v) >= 0 && cross(v, last) >= 0 && (dot(first, v) > 0 || dot(last, v) > 0);
+  return sign_of_cross(first, v) >= 0 && sign_of_cross(v, last) >= 0 &&
+         (sign_of_dot(first, v) > 0 || sign_of_dot(last, v) > 0);
 }
 
 /// Neither zero nor a NaN nor so large that products of two such vectors overflow.
 template <class Real>
 bool has_direction(PlanVector<Real> v) {
-  const Real square = dot(v, v);
+  const Real square = v.x * v.x + v.y * v.y;
   return square > 0 && square <= std::numeric_limits<Real>::max();
+}
+
+template <>
+bool has_direction(PlanVector<std::int64_t> v) {
+  const auto is_good = [](std::int64_t x) { return -kPlanVectorMax <= x && x <= kPlanVectorMax; };
+  return (v.x != 0 || v.y != 0) && is_good(v.x) && is_good(v.y);
+}
+
+/// Can a vector and a half width be added without overflow? Reals tell by themselves.
+template <class Real>
+bool is_finite_facet(PlanVector<Real>, Real) {
+  return true;
+}
+
+template <>
+bool is_finite_facet(PlanVector<std::int64_t> facet, std::int64_t half_width) {
+  constexpr std::int64_t kMost = kPlanVectorMax / 2;
+  bool is_good = true;
+  for (const std::int64_t value : {facet.x, facet.y, half_width}) {
+    is_good = is_good && -kMost <= value && value <= kMost;
+  }
+  return is_good;
 }
 
 /// Says nothing about any direction: empty, or an arc whose gap is not known.
@@ -44,28 +121,33 @@ bool is_void(const SafeAngles<Real>& angles) {
 
 template <class Real>
 SafeAngles<Real> safe_angles(PlanVector<Real> facet, Real half_width) {
-  const PlanVector<Real> corners[4] = {{facet.x - half_width, facet.y - half_width},
-                                       {facet.x + half_width, facet.y - half_width},
-                                       {facet.x + half_width, facet.y + half_width},
-                                       {facet.x - half_width, facet.y + half_width}};
+  if (!is_finite_facet(facet, half_width)) {
+    return {};
+  }
   if (-half_width < facet.x && facet.x < half_width && -half_width < facet.y &&
       facet.y < half_width) {
     return {.range = SafeRange::kFull};
   }
   // Seen from outside, the facet spans less than a half turn (a half turn from its edge): every
-  // corner lies left of the first and right of the last one. A corner at zero has no direction.
+  // corner lies left of the first and right of the last one, which is so if the two next to it do.
+  // A corner at zero has no direction.
   SafeAngles<Real> angles{.range = SafeRange::kArc};
-  for (const PlanVector<Real>& candidate : corners) {
-    bool is_first = dot(candidate, candidate) > 0;
-    bool is_last = is_first;
-    for (const PlanVector<Real>& other : corners) {
-      is_first = is_first && cross(candidate, other) >= 0;
-      is_last = is_last && cross(other, candidate) >= 0;
+  constexpr int kSides[4][2] = {{-1, -1}, {1, -1}, {1, 1}, {-1, 1}};
+  for (const auto& side : kSides) {
+    const PlanVector<Real> candidate = {facet.x + static_cast<Real>(side[0]) * half_width,
+                                        facet.y + static_cast<Real>(side[1]) * half_width};
+    // Where the others lie tells the way to the two next to it: one along x, one along y.
+    const bool is_x_left = static_cast<Real>(side[0]) * candidate.y >= 0;
+    const bool is_x_right = static_cast<Real>(side[0]) * candidate.y <= 0;
+    const bool is_y_left = static_cast<Real>(side[1]) * candidate.x <= 0;
+    const bool is_y_right = static_cast<Real>(side[1]) * candidate.x >= 0;
+    if (candidate.x == 0 && candidate.y == 0) {
+      continue;
     }
-    if (is_first) {
+    if (is_x_left && is_y_left) {
       angles.gap_last = {candidate.y, -candidate.x};
     }
-    if (is_last) {
+    if (is_x_right && is_y_right) {
       angles.gap_first = {-candidate.y, candidate.x};
     }
   }

@@ -188,6 +188,33 @@ TYPED_TEST(SafeAnglesOf, a_tree_do_not_depend_on_its_order) {
   }
 }
 
+/// Whole numbers stay exact far beyond 32 bits: no factor changes an answer.
+TEST(SafeAnglesOfLargeNumbers, are_those_of_small_ones) {
+  base::Rng rng(17);
+  constexpr std::int64_t kFactor = 123'456'789'012'345'677;  // Times 9: half of kPlanVectorMax.
+  for (int sample = 0; sample < 3000; ++sample) {
+    std::vector<Facet> small(1 + rng.below(4));
+    std::vector<Facet> large;
+    for (Facet& facet : small) {
+      facet = {static_cast<std::int64_t>(rng.below(17)) - 8,
+               static_cast<std::int64_t>(rng.below(17)) - 8,
+               1 + static_cast<std::int64_t>(rng.below(3))};
+      large.push_back({facet.x * kFactor, facet.y * kFactor, facet.half_width * kFactor});
+    }
+    EXPECT_EQ(joined<std::int64_t>(large).range, joined<std::int64_t>(small).range);
+    EXPECT_EQ(joined<std::int64_t>(small).range == SafeRange::kFull, surrounds_origin(small));
+  }
+  constexpr std::int64_t kMost = kPlanVectorMax / 2;
+  EXPECT_EQ(safe_angles<std::int64_t>({kMost, 0}, 1).range, SafeRange::kArc);
+  EXPECT_EQ(safe_angles<std::int64_t>({kMost + 1, 0}, 1).range, SafeRange::kEmpty);
+  EXPECT_EQ(safe_angles<std::int64_t>({0, 0}, kMost + 1).range, SafeRange::kEmpty);
+  const SafeAngles<std::int64_t> good = safe_angles<std::int64_t>({4, 0}, 1);
+  const SafeAngles<std::int64_t> bad = {
+      .range = SafeRange::kArc, .gap_first = {1, kPlanVectorMax + 1}, .gap_last = {1, 1}};
+  EXPECT_EQ(merge(bad, good).range, SafeRange::kArc);
+  EXPECT_EQ(merge(bad, bad).range, SafeRange::kEmpty);
+}
+
 /// An operand that is not a number counts as nothing, so it can only make the answer less safe.
 TYPED_TEST(SafeAnglesOf, what_is_not_a_number_are_never_full) {
   using Real = TypeParam;

@@ -53,8 +53,9 @@ void Recorder::lost(const PacketTrace& packet) {
 }
 
 void Recorder::reached(Time time, std::uint16_t epoch, agent::Phase phase) {
-  const bool is_newer = epoch > result_.epoch;
-  if (epoch < result_.epoch || (!is_newer && phase <= phase_)) {
+  const bool is_same = epoch == result_.epoch;
+  const bool is_newer = agent::is_newer({.epoch = epoch}, {.epoch = result_.epoch});
+  if (is_same ? phase <= phase_ : !is_newer) {
     return;
   }
   leave_phase(time, result_);

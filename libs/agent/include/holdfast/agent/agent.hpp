@@ -3,7 +3,6 @@
 #pragma once
 
 #include <array>
-#include <compare>
 #include <cstdint>
 #include <span>
 
@@ -14,6 +13,7 @@
 #include "holdfast/agent/link.hpp"
 #include "holdfast/agent/node.hpp"
 #include "holdfast/agent/planned.hpp"
+#include "holdfast/agent/round.hpp"
 #include "holdfast/agent/setup.hpp"
 
 /// The program that every module of the robot runs. One object per module, one function: step().
@@ -41,7 +41,8 @@
 ///
 /// After each step, actions.send_faces says on which faces a packet waits (bit = face index): hand
 /// in kLineFree for them when their lines are free. actions.wake_at replaces the earlier one.
-/// `random` in kLinkUp must differ from one link-up to the next.
+/// `random` in kLinkUp should differ from one link-up to the next, also over a reset. Where it does
+/// not, a link notices and takes another number (link.hpp), which costs two packets.
 ///
 /// WHAT HAPPENS. One module, the anchor, knows its cell. From it a wave gives every module its cell
 /// and counts them; two more waves find a module near the middle and a spanning tree from there.
@@ -52,7 +53,8 @@
 /// verdict is then `undecided`, never `safe`.
 ///
 /// LIMITS. At most kPlannedMax planned modules in the whole robot; more end as `undecided`, as does
-/// everything else that the program cannot be certain of; answer().reason says which.
+/// everything else that the program cannot be certain of; answer().reason says which. What a faulty
+/// neighbour says and a working one would not is refused (refused_count()); it counts as silent.
 /// All modules have the same orientation: face indices are base::Direction.
 ///
 /// No heap, no exceptions, no recursion, no I/O. Storage is the object itself, kAgentBytesMax at
@@ -125,6 +127,7 @@ struct BranchWork {
   std::array<std::array<std::uint8_t, kLoopsMax>, base::kDirectionCount> slot_of{};
   std::array<std::uint8_t, base::kDirectionCount> child_cut_count{};
   std::array<std::uint8_t, base::kDirectionCount> columns_here{};  ///< All before are final.
+  bool has_too_many = false;  ///< More loops here than a Branch can hold: no elimination.
   bool is_symmetric = false;  ///< S' goes up in parts: no facet below tilts, or it hardly matters.
   /// What holds each planned module here, above its diagonal; Node::factor has the rest.
   std::array<std::array<float, 15>, kPlannedMax> leaves{};
@@ -199,18 +202,14 @@ class BasicAgent {
 
   std::uint16_t depth() const { return hops_; }
 
+  /// Messages that a working neighbour would not have sent, 255 at most; each has made its sender
+  /// count as silent.
+  std::uint8_t refused_count() const { return refused_count_; }
+
   /// Of the root: what was done to find the equilibrium.
   const Effort& effort() const { return conductor_.effort(); }
 
  private:
-  /// One attempt at a verdict. The higher one wins: epoch first, then the starter's id.
-  struct Round {
-    std::uint16_t epoch = 0;
-    std::uint32_t starter = 0;
-
-    friend constexpr auto operator<=>(const Round&, const Round&) = default;
-  };
-
   static constexpr std::uint8_t kNoStage = 0;
   static constexpr std::uint8_t kFirstStage = 1;  ///< From the starter: coordinates, census.
   static constexpr std::uint8_t kFarStage = 2;    ///< From the module furthest from the starter.
@@ -236,6 +235,27 @@ class BasicAgent {
 
   std::uint8_t used_faces() const;
 
+  // guard.hpp: what may be said now.
+  /// Where the root is in its work, as far as its orders tell. The last four are equilibria, by
+  /// what Work holds.
+  enum class Course : std::uint8_t {
+    kWaves,
+    kPlanned,
+    kHosted,
+    kWeighed,
+    kElimination,
+    kSteps,
+    kClusters,
+    kGradients,
+    kAnswered,
+  };
+  void refuse(int face);
+  Course course_after(const Order& order) const;
+  bool is_in_course(const Order& order) const;
+  bool is_good_begin(const Order& order) const;
+  bool is_expected(int face, std::span<const std::uint8_t> message) const;
+  bool is_expected_of_branch(int face, std::span<const std::uint8_t> message, bool reports) const;
+
   // waves.cpp: coordinates, election, tree.
   void start_wave(std::uint8_t stage);
   void begin_stage(std::uint8_t stage, int parent, std::uint16_t hops);
@@ -244,7 +264,9 @@ class BasicAgent {
   void take_appointment(std::span<const std::uint8_t> message);
   void await_less(int face);
   bool end_stage();
-  void mark(std::uint16_t hops);
+  void take_mark(std::span<const std::uint8_t> message);
+  void mark(std::uint16_t hops, const base::Cell& end);
+  int face_towards_root(const base::Cell& end) const;
 
   // sweep.cpp: orders and reports.
   void take_order(const Order& order);
@@ -269,6 +291,7 @@ class BasicAgent {
   Report mass_report() const;
   Report angles_report() const;
   Report corners_report() const;
+  void add_report(Report& into, const Report& theirs) const;
   Report loads_report();
   void prepare_hosted();
 
@@ -448,6 +471,8 @@ class BasicAgent {
 
   // Waves and tree.
   std::uint8_t stage_ = kNoStage;
+  Course course_ = Course::kWaves;
+  std::uint8_t refused_count_ = 0;
   std::int8_t parent_ = -1;
   std::uint8_t children_ = 0;
   std::uint8_t awaited_ = 0;
@@ -492,7 +517,7 @@ class BasicAgent {
   std::array<base::Vec6<double>, kPlannedMax> planned_force_{};
   std::array<MiddleLoad, base::kDirectionCount> middle_{};
   ContactSetting contact_;
-  base::Cell root_cell_;
+  base::Cell root_cell_;  ///< Of the module that started the wave, and of the tree's root.
 
   Conductor conductor_;
   Answer answer_;

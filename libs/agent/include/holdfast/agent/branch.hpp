@@ -98,6 +98,9 @@ class Branch {
   static constexpr int kGiveBatch = 2;
   using Columns = std::array<base::Vec6<float>, kBatch>;
 
+  /// How many open loops a branch has at least that sends column `index`; 0 for parts of S'.
+  static int loops_of_column(int index);
+
   /// The most from column `index` on; they belong to one block.
   static constexpr int batch_at(int index) {
     const bool is_give = index >= kColumnCount - 6 * kLoopsMax * kLoopsMax;

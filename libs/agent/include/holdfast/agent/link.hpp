@@ -40,10 +40,15 @@ class Link {
   /// Bytes that can wait to be sent or acknowledged: a whole sweep of the largest messages.
   static constexpr int kQueueBytes = 320;
 
-  /// A neighbour is there. `nonce` should differ each time; 0 is taken as 1.
+  /// A neighbour is there. `nonce` should differ each time. 0 and the last one are never used, the
+  /// next number is; if it is that of a session before this object was made, which the neighbour
+  /// still believes in, the first greetings tell, and the next number is used as well.
   void bring_up(std::uint16_t nonce, Time now);
 
   void bring_down();
+
+  /// The neighbour has said what it must not: it counts as silent.
+  void lose() { state_ = State::kLost; }
 
   State state() const { return state_; }
 

@@ -6,9 +6,9 @@
 #include <cstdint>
 #include <span>
 
+#include "holdfast/agent/feet.hpp"
 #include "holdfast/agent/wire.hpp"
 #include "holdfast/base/cell.hpp"
-#include "holdfast/mechanics/safe_angles.hpp"
 #include "holdfast/mechanics/support_corners.hpp"
 
 /// What the root asks for and what comes back, as values; encode() and decode() turn them into
@@ -27,11 +27,12 @@ enum class Reason : std::uint8_t {
   kPlannedTooMany,   ///< More than kPlannedMax planned modules.
   kPlannedOccupied,  ///< A planned cell holds a module already.
   kPlannedDetached,  ///< A planned module touches nothing.
-  kTooLarge,         ///< The exact stability check would overflow.
+  kTooLarge,         ///< Too many modules, or too far apart, to be counted (feet.hpp).
   kNotConverged,     ///< No method settled within the limit of iterations.
   kTooClose,         ///< The largest load ratio cannot be told from 1.
   kAmbiguousFeet,    ///< The verdict depends on feet that are neither held nor free.
 };
+inline constexpr int kReasonCount = 12;
 
 const char* name(Verdict verdict);
 const char* name(Reason reason);
@@ -47,6 +48,10 @@ struct Answer {
 
 /// In kPlan: no planned module is learned yet.
 inline constexpr std::uint8_t kNoPlanned = 0xff;
+
+/// Exchanges that one order may ask for: the degree of a polynomial, and steps of a Jacobi method.
+inline constexpr std::uint16_t kDegreeMax = 4000;
+inline constexpr std::uint16_t kJacobiCountMax = 4096;
 
 /// Fields are used as the operation needs them; see wire.hpp and docs/wire.md.
 struct Order {
@@ -95,7 +100,7 @@ struct Report {
   std::array<double, 3> products{};  ///< kStep
   base::Cell cell = {};
   base::Direction direction = base::Direction::kPlusX;
-  mechanics::SafeAngles<std::int64_t> angles = {};
+  SafeCorners feet = {};
   mechanics::SupportCorners corners = {};
 };
 
@@ -116,7 +121,7 @@ Report decode_report(std::span<const std::uint8_t> message);
 /// The larger number; not a number wins, as it must not get lost.
 constexpr float larger(float a, float b) { return b <= a || a != a ? a : b; }
 
-/// Adds `from` to `into`, as the operation demands.
+/// Adds `from` to `into`, as the operation demands; of kAngles that is FeetCheck::merge().
 void merge(wire::Operation operation, Report& into, const Report& from);
 
 }  // namespace holdfast::agent

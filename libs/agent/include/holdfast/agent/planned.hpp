@@ -32,10 +32,12 @@ class Planned {
 
   const base::Cell& cell(int index) const { return cells_[static_cast<std::size_t>(index)]; }
 
-  /// Learns the next cell and what touches it here. `own` has no cell: it is the module at `self`.
+  /// Learns the next cell and what touches it here; `self` is this module's cell. Of more than
+  /// kPlannedMax cells the later ones are not kept.
   void add(const base::Cell& cell, const base::Cell& self);
 
   /// Faces of planned module `index` that touch modules in a child's subtree (bit = direction).
+  /// An index of none is ignored.
   void add_below(int face, int index, std::uint8_t mask);
 
   std::uint8_t own_mask(int index) const { return own_mask_[static_cast<std::size_t>(index)]; }
@@ -43,8 +45,11 @@ class Planned {
   /// The same for everything from this module down.
   std::uint8_t mask(int index) const;
 
-  /// All masks are known: find groups and hosts.
+  /// All masks are known: find groups and hosts, as if for the first time.
   void decide_hosts(const std::array<std::uint8_t, 8>& totals);
+
+  /// Do these masks say at least what is known from here down?
+  bool agrees_with(const std::array<std::uint8_t, 8>& totals) const;
 
   std::uint8_t total(int index) const { return totals_[static_cast<std::size_t>(index)]; }
 

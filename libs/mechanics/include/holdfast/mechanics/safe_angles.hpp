@@ -16,6 +16,9 @@
 ///   as two direction vectors. No seam, no trigonometry.
 namespace holdfast::mechanics {
 
+/// Directions of whole numbers up to here are compared exactly; larger ones count as not known.
+inline constexpr std::int64_t kPlanVectorMax = std::int64_t{1} << 62U;
+
 template <class Real>
 struct PlanVector {
   Real x = 0;
@@ -34,12 +37,12 @@ struct SafeAngles {
 };
 
 /// The joined range of the four corners of a square facet, given its centre minus the centre of
-/// mass. Full if the centre of mass lies strictly over the facet; empty if an argument is a NaN or
-/// squares overflow.
+/// mass. Full if the centre of mass lies strictly over the facet; empty if an argument is a NaN,
+/// squares overflow, or whole numbers are larger than half of kPlanVectorMax.
 template <class Real>
 SafeAngles<Real> safe_angles(PlanVector<Real> facet_minus_mass, Real half_width);
 
-/// The union of two ranges. An arc whose gap is zero, a NaN or as large as to overflow when squared
+/// The union of two ranges. An arc whose gap is zero, a NaN or too large, as above,
 /// counts as empty: what is not known keeps no robot from tipping.
 template <class Real>
 SafeAngles<Real> merge(const SafeAngles<Real>& a, const SafeAngles<Real>& b);

@@ -1,0 +1,75 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "holdfast/agent/setup.hpp"
+#include "holdfast/mechanics/safe_angles.hpp"
+
+/// The feet of the robot and its centre of mass, in whole numbers: does it topple? Exactly.
+///
+/// The gap that safe angles leave (holdfast/mechanics/safe_angles.hpp) is bounded by two corners of
+/// feet. Corners are small numbers, so they go over the wire; directions from the centre of mass to
+/// them, in half cells / facet_denominator / modules, are not, and every module works them out.
+namespace holdfast::agent {
+
+/// Hops from the root along the axes, and of its tree, that are told from more. A robot that
+/// reaches further ends as Reason::kTooLarge.
+inline constexpr std::uint16_t kExtentMax = 0xfffe;
+
+/// Modules, and parts of Setup's fraction, of a robot that is checked; others are kTooLarge. With
+/// them no direction is beyond 2^(17 + 20 + 24).
+inline constexpr std::int64_t kCheckedCountMax = std::int64_t{1} << 24U;
+inline constexpr std::int32_t kFacetPartMax = 1 << 20;
+
+/// A corner of a foot from the root's centre, in quarters of a cell: 4 x - 1 and 4 x + 1 are the
+/// sides of cell x, however wide the facet is.
+struct FootCorner {
+  std::int32_t x = 0;
+  std::int32_t y = 0;
+
+  friend constexpr bool operator==(const FootCorner&, const FootCorner&) = default;
+};
+
+/// kArc: every direction is safe but those from a right angle left of `last` to one right of
+/// `first`, seen from the centre of mass.
+struct SafeCorners {
+  mechanics::SafeRange range = mechanics::SafeRange::kEmpty;
+  FootCorner first = {};
+  FootCorner last = {};
+};
+
+/// Is that a corner of a robot which is not too large?
+bool is_good_corner(const FootCorner& corner);
+
+/// Can so many modules of this setup be checked without overflow?
+bool fits_exact_check(const Setup& setup, std::int64_t module_count);
+
+/// The centre of mass, and what feet are as seen from it.
+class FeetCheck {
+ public:
+  /// `cell_sum` is the sum of x and of y of so many cells, from the root. Only if it fits.
+  FeetCheck(const Setup& setup, std::int32_t module_count,
+            const std::array<std::int32_t, 2>& cell_sum);
+
+  /// Of one foot, at cell (x, y) from the root.
+  SafeCorners of_foot(std::int32_t x, std::int32_t y) const;
+
+  /// The union.
+  SafeCorners merge(const SafeCorners& a, const SafeCorners& b) const;
+
+ private:
+  using Vector = mechanics::PlanVector<std::int64_t>;
+  using Angles = mechanics::SafeAngles<std::int64_t>;
+
+  Vector seen(const FootCorner& corner) const;
+  Angles angles_of(const SafeCorners& corners) const;
+
+  std::int64_t pitch_;       ///< Of a cell: its parts times the modules.
+  std::int64_t half_width_;  ///< Of a facet.
+  Vector mass_;
+};
+
+}  // namespace holdfast::agent

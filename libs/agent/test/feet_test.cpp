@@ -1,0 +1,133 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// Does it topple, in whole numbers? Expected values: the centre of mass against the convex hull of
+// all corners (second method, for small robots), and closed forms for rows that are as long as
+// rows can be.
+#include "holdfast/agent/feet.hpp"
+
+#include <gtest/gtest.h>
+
+#include <vector>
+
+#include "holdfast/base/rng.hpp"
+#include "test_setup.hpp"
+
+namespace holdfast::agent {
+namespace {
+
+using namespace holdfast::agent::test;
+using mechanics::SafeRange;
+
+struct Place {
+  std::int32_t x = 0;
+  std::int32_t y = 0;
+};
+
+/// Of feet merged one by one.
+SafeRange range_of(const FeetCheck& check, const std::vector<Place>& feet) {
+  SafeCorners all;
+  for (const Place& foot : feet) {
+    all = check.merge(check.of_foot(foot.x, foot.y), all);
+  }
+  return all.range;
+}
+
+/// Second method: a line through the centre of mass and a corner with all corners on one side.
+bool topples(const std::vector<Place>& feet, std::int64_t half_width, std::int64_t pitch,
+             const Place& mass_times_count, std::int64_t count) {
+  std::vector<std::array<std::int64_t, 2>> corners;
+  for (const Place& foot : feet) {
+    for (const std::int64_t sx : {-half_width, half_width}) {
+      for (const std::int64_t sy : {-half_width, half_width}) {
+        corners.push_back({(pitch * foot.x + sx) * count - pitch * mass_times_count.x,
+                           (pitch * foot.y + sy) * count - pitch * mass_times_count.y});
+      }
+    }
+  }
+  for (const auto& border : corners) {
+    for (const std::int64_t side : {-1, 1}) {
+      bool holds_all = border[0] != 0 || border[1] != 0;
+      for (const auto& corner : corners) {
+        holds_all = holds_all && side * (border[0] * corner[1] - border[1] * corner[0]) >= 0;
+      }
+      if (holds_all) {
+        return true;
+      }
+    }
+  }
+  return false;
+}
+
+TEST(Feet, small_robots_topple_when_their_mass_is_not_over_them) {
+  base::Rng rng(11);
+  int stable_count = 0;
+  for (int sample = 0; sample < 4000; ++sample) {
+    auto setup = table_setup();
+    setup.facet_denominator = 1 + static_cast<std::int32_t>(rng.below(4));
+    setup.facet_numerator = 1 + static_cast<std::int32_t>(rng.below(5));
+    std::vector<Place> feet(1 + rng.below(5));
+    for (Place& foot : feet) {
+      foot = {static_cast<std::int32_t>(rng.below(9)) - 4,
+              static_cast<std::int32_t>(rng.below(9)) - 4};
+    }
+    const auto count = static_cast<std::int32_t>(1 + rng.below(20));
+    const Place sum = {static_cast<std::int32_t>(rng.below(80)) - 40,
+                       static_cast<std::int32_t>(rng.below(80)) - 40};
+    const FeetCheck check(setup, count, {sum.x, sum.y});
+    const bool is_stable =
+        !topples(feet, setup.facet_numerator, 2 * setup.facet_denominator, sum, count);
+    EXPECT_EQ(range_of(check, feet) == SafeRange::kFull, is_stable) << "sample " << sample;
+    stable_count += is_stable ? 1 : 0;
+  }
+  EXPECT_GT(stable_count, 400);
+}
+
+/// A row from -n to n on one foot in its middle, and one module more on top of place k: the centre
+/// of mass is at k / (2 n + 2), the edge of the foot at 1/2. On the edge there is nothing to spare.
+TEST(Feet, the_longest_rows_are_exact) {
+  const auto setup = table_setup();
+  for (const std::int32_t n : {100, 8191, 8192, 16'384, 65'533}) {
+    const std::int32_t count = 2 * n + 2;
+    for (const std::int32_t k : {n, n + 1}) {
+      const FeetCheck along_x(setup, count, {k, 0});
+      const FeetCheck along_y(setup, count, {0, -k});
+      const SafeRange expected = k == n ? SafeRange::kFull : SafeRange::kArc;
+      EXPECT_EQ(range_of(along_x, {{0, 0}}), expected) << n;
+      EXPECT_EQ(range_of(along_y, {{0, 0}}), expected) << n;
+    }
+  }
+}
+
+/// Feet at (r, 1), (-r, 1) and (0, -r), facets of a millionth less than a cell: the edge between
+/// the first two is y = 3/2 - 1/2000000. All numbers are as large as they may be: 2^24 modules.
+TEST(Feet, the_largest_numbers_are_exact) {
+  auto setup = table_setup();
+  setup.facet_denominator = 1'000'000;
+  setup.facet_numerator = 999'999;
+  constexpr std::int32_t kReach = 65'534;
+  constexpr auto kCount = static_cast<std::int32_t>(kCheckedCountMax);
+  ASSERT_TRUE(fits_exact_check(setup, kCount));
+  const std::vector<Place> feet = {{kReach, 1}, {-kReach, 1}, {0, -kReach}};
+  // kCount x 1.4999995 = 25165815.6114
+  EXPECT_EQ(range_of(FeetCheck(setup, kCount, {0, 25'165'815}), feet), SafeRange::kFull);
+  EXPECT_EQ(range_of(FeetCheck(setup, kCount, {0, 25'165'816}), feet), SafeRange::kArc);
+  EXPECT_EQ(range_of(FeetCheck(setup, kCount, {0x7fffffff, -0x7fffffff}), feet), SafeRange::kFull);
+  EXPECT_EQ(range_of(FeetCheck(setup, kCount, {0x7fffffff, 25'165'816}), feet), SafeRange::kArc);
+}
+
+/// What comes off the wire is a corner of a cell, at the end of the largest robot at most.
+TEST(Feet, corners_stay_what_they_are) {
+  const auto setup = table_setup();
+  const FeetCheck check(setup, 4, {-2, 2});
+  const SafeCorners foot = check.of_foot(-1, 0);
+  EXPECT_EQ(foot.range, SafeRange::kArc);
+  EXPECT_EQ(foot.first, (FootCorner{-5, 1}));
+  EXPECT_EQ(foot.last, (FootCorner{-3, -1}));
+  const SafeCorners both = check.merge(foot, {});
+  EXPECT_EQ(both.first, foot.first);
+  EXPECT_EQ(both.last, foot.last);
+}
+
+}  // namespace
+}  // namespace holdfast::agent

@@ -1,0 +1,156 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// One module says what it must not, with the right numbers and checksums. The module that hears it
+// takes nothing of it, counts it, and no longer trusts the other: the verdict is `undecided`.
+#include <gtest/gtest.h>
+
+#include <string_view>
+
+#include "holdfast/base/rng.hpp"
+#include "tampered_network.hpp"
+
+namespace holdfast::agent {
+namespace {
+
+using namespace holdfast::agent::test;
+
+std::vector<Place> row() {
+  return {{.cell = {0, 0, 0}}, {.cell = {1, 0, 0}}, {.cell = {2, 0, 0}}, {.cell = {3, 0, 0}}};
+}
+
+/// What comes of a robot in which module `faulty` sends `wrong` behind the first message that
+/// begins like `after`, or in its place.
+struct Outcome {
+  bool is_said = false;  ///< There was such a message.
+  int refused_count = 0;
+  bool is_every_undecided = false;
+};
+
+struct Lie {
+  std::size_t faulty = 0;
+  std::string_view after;
+  std::string_view wrong;
+  bool replaces = false;
+};
+
+Outcome outcome_of(const std::vector<Place>& places, const Lie& lie,
+                   Method method = Method::kElimination) {
+  auto setup = table_setup();
+  setup.method = method;
+  Outcome outcome;
+  const Message after = from_hex(lie.after);
+  const Message wrong = from_hex(lie.wrong);
+  TamperedNetwork tampered(setup, places, lie.faulty, [&](base::Direction, const Message& message) {
+    const bool is_here = !outcome.is_said && message.size() >= after.size() &&
+                         std::equal(after.begin(), after.end(), message.begin());
+    outcome.is_said = outcome.is_said || is_here;
+    return !is_here       ? std::vector<Message>{message}
+           : lie.replaces ? std::vector<Message>{wrong}
+                          : std::vector<Message>{message, wrong};
+  });
+  tampered.network().plan(0, {0, 0, 1});
+  for (int tick = 0; tick < 6000; ++tick) {
+    tampered.tick();
+  }
+  outcome.refused_count = tampered.refused_count();
+  outcome.is_every_undecided = tampered.network().is_every(
+      [](const Agent& agent) { return agent.answer().verdict == Verdict::kUndecided; });
+  return outcome;
+}
+
+void expect_refused(const std::vector<Place>& places, const Lie& lie,
+                    Method method = Method::kElimination) {
+  const Outcome outcome = outcome_of(places, lie, method);
+  EXPECT_TRUE(outcome.is_said) << lie.after;
+  EXPECT_EQ(outcome.refused_count, 1) << lie.wrong;
+  EXPECT_TRUE(outcome.is_every_undecided) << lie.wrong;
+}
+
+TEST(Guard, what_is_true_is_not_refused) {
+  const Outcome outcome = outcome_of(row(), {.faulty = 1, .after = "ff", .wrong = ""});
+  EXPECT_EQ(outcome.refused_count, 0);
+  EXPECT_FALSE(outcome.is_every_undecided);
+}
+
+/// Before, the sixth cell was written behind the array of five.
+TEST(Guard, planned_cells_come_one_by_one) {
+  constexpr std::string_view kFirst = "05 01 00";
+  expect_refused(row(), {1, kFirst, "05 01 00 00 00 00 00 00 00 01 00 00"});  // Again.
+  expect_refused(row(), {1, kFirst, "05 01 02 01 00 00 00 00 00 01 00 00", true});
+  expect_refused(row(), {1, kFirst, "05 01 09 01 00 00 00 00 00 01 00 00", true});
+  expect_refused(row(), {1, kFirst, "05 01 ff 00 00 00 00 00 00 00 00 00", true});
+}
+
+/// Before, each time some planned modules more were emulated, behind the array of six nodes.
+TEST(Guard, hosts_are_decided_once) {
+  expect_refused(row(), {1, "05 02", "05 02 20 00 00 00 00 00 00 00"});
+  expect_refused(row(), {1, "05 03", "05 02 10 00 00 00 00 00 00 00", true});
+}
+
+/// 3 corners were read behind the array of two, verdict 200 and its reason behind those of names.
+TEST(Guard, kinds_that_there_are_not) {
+  expect_refused(row(),
+                 {0, "06 04", "06 04 03 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00", true});
+  expect_refused(
+      row(), {0, "06 0d", "06 0d 03 01 00 00 02 00 00 03 00 00 01 00 00 02 00 00 09 00 00", true});
+  expect_refused(row(),
+                 {1, "05 0f", "05 0f 01 c8 00 00 00 00 00 00 00 00 00 00 00 00 00 00", true});
+  expect_refused(
+      row(), {0, "06 0e", "06 0e 00 00 00 00 00 00 00 00 00 00 00 00 00 c8 00 00 00 00 01 00 00 00",
+              true});
+}
+
+/// An equilibrium that has not begun, or belongs to another method, has no data to work on.
+TEST(Guard, orders_keep_their_course) {
+  expect_refused(row(), {1, "05 03", "05 10", true});
+  expect_refused(row(), {1, "05 10", "05 11 01 02 00 00 00 00 00 00 00 00 00 00 00 00 00", true});
+  expect_refused(row(), {1, "05 10", "05 09 02 00 00 00 00 00 00 00 00", true});
+  expect_refused(row(), {1, "05 05", "05 05 04 00 00 17 b7 d1 38 00 00 f0 42", true});
+  expect_refused(row(), {1, "05 11", "05 10", true}, Method::kPolynomial);
+  expect_refused(row(), {1, "05 11", "05 11 08 02 00 00 00 00 00 00 00 00 00 00 00 00 00", true},
+                 Method::kPolynomial);
+  expect_refused(row(), {1, "05 08", "05 05 02 00 00 17 b7 d1 38 00 00 f0 42", true},
+                 Method::kConjugateGradients);
+}
+
+/// Up and down: orders come from the parent, reports and marks from children.
+TEST(Guard, everybody_has_a_place_in_the_tree) {
+  expect_refused(row(), {0, "06 01", "05 02 00 00 00 00 00 00 00 00", true});
+  expect_refused(row(), {0, "06 01", "04 00 00 00 00 00 00 00 00 00 00 00"});
+  expect_refused(row(), {0, "06 03", "06 03 01 00 00 00 00 00 00 00 00 00 00 00 00 01 00"});
+}
+
+/// A third loop of a child was kept nowhere, its column added behind the array of two.
+TEST(Guard, columns_belong_to_loops_that_are_known) {
+  constexpr std::string_view kLoop = "0a 05 00 00 05 00 00 05 00 00 02";
+  expect_refused(row(), {0, "06 04", kLoop});
+  constexpr std::string_view kColumn =
+      "0b 06 00 00 80 3f 00 00 00 c0 00 00 00 3f 00 00 80 3e 00 00 80 bf 00 00 c0 3f";
+  expect_refused(row(), {0, "0b", kColumn});
+  constexpr std::string_view kGap =
+      "0c 01 00 00 80 3f 00 00 00 c0 00 00 00 3f 00 00 80 3e 00 00 80 bf 00 00 c0 3f";
+  expect_refused(row(), {0, "0c", kGap});
+}
+
+/// 200 scripts of any bytes, the same ones everywhere; tests/fuzz looks for others.
+TEST(Guard, no_faulty_module_makes_others_do_what_there_is_not) {
+  int changed = 0;
+  int refused = 0;
+  for (std::uint64_t seed = 1; seed <= 200; ++seed) {
+    base::Rng rng(seed);
+    std::vector<std::uint8_t> bytes(40 + rng.below(200));
+    for (std::uint8_t& byte : bytes) {
+      byte = static_cast<std::uint8_t>(rng.next());
+    }
+    FaultScript script(bytes);
+    EXPECT_TRUE(script.run(1500)) << "seed " << seed;
+    changed += script.changed_count();
+    refused += script.refused_count();
+  }
+  EXPECT_GT(changed, 100);
+  EXPECT_GT(refused, 30);
+}
+
+}  // namespace
+}  // namespace holdfast::agent

@@ -1,0 +1,141 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// What docs/wire.md allows, and that anything else is refused; the golden messages are allowed.
+#include "holdfast/agent/legal.hpp"
+
+#include <gtest/gtest.h>
+
+#include <string_view>
+
+#include "golden.hpp"
+#include "test_setup.hpp"
+
+namespace holdfast::agent {
+namespace {
+
+using namespace holdfast::agent::test;
+
+TEST(Legal, all_golden_messages_are) {
+  for (const auto& texts : {kGoldenOrders, kGoldenReports}) {
+    for (const std::string_view text : texts) {
+      EXPECT_TRUE(wire::is_legal(from_hex(text))) << text;
+    }
+  }
+  for (const GoldenStream& stream : kGoldenTrace) {
+    for (const std::string_view text : stream.messages) {
+      EXPECT_TRUE(wire::is_legal(from_hex(text))) << text;
+    }
+  }
+  EXPECT_TRUE(wire::is_legal(from_hex(kGoldenLoop)));
+}
+
+/// The values of one byte of a message that are allowed.
+struct Limit {
+  std::string_view message;
+  std::size_t offset = 0;
+  bool (*allows)(unsigned value) = nullptr;
+};
+
+bool is_face(unsigned value) { return value <= 5; }
+
+bool is_planned(unsigned value) { return value < 5; }
+
+template <unsigned kBits>
+bool is_flags(unsigned value) {
+  return (value & ~kBits) == 0;
+}
+
+template <unsigned kFirst, unsigned kLast>
+bool is_within(unsigned value) {
+  return kFirst <= value && value <= kLast;
+}
+
+/// The bytes that name one of several things; the last column is docs/wire.md in other words.
+const Limit kLimits[] = {
+    {kGoldenTrace[0].messages[0], 7, is_within<1, 3>},                         // join: stage
+    {kGoldenTrace[0].messages[2], 7, is_within<1, 3>},                         // echo: stage
+    {kGoldenTrace[0].messages[2], 18, is_within<0, 1>},                        // echo: silent
+    {kGoldenTrace[0].messages[1], 1, is_within<1, 2>},                         // appoint
+    {kGoldenVectors[1], 1, [](unsigned v) { return is_planned(v & 0x3fU); }},  // planned down
+    {kGoldenVectors[2], 1, is_planned},                                        // planned up
+    {kGoldenLoop, 10, [](unsigned v) { return v == 0 || v == 2 || v == 4; }},
+    {kGoldenVectors[3], 1, is_within<0, 57>},  // column
+    {kGoldenVectors[4], 1, is_within<0, 2>},   // branch up
+    {kGoldenVectors[5], 1, is_within<0, 2>},   // branch down
+    {kGoldenOrders[0], 2, [](unsigned v) { return is_planned(v) || v == 0xff; }},
+    {kGoldenOrders[1], 2, is_flags<0x3f>},    // hosts, the first ...
+    {kGoldenOrders[1], 9, is_flags<0x3f>},    // ... and the last
+    {kGoldenOrders[4], 2, is_flags<7>},       // begin
+    {kGoldenOrders[6], 2, is_flags<1>},       // low
+    {kGoldenOrders[7], 2, is_flags<7>},       // start
+    {kGoldenOrders[10], 2, is_flags<3>},      // slope
+    {kGoldenOrders[11], 2, is_flags<3>},      // hold
+    {kGoldenOrders[14], 2, is_within<1, 4>},  // verdict
+    {kGoldenOrders[14], 3, is_within<0, 11>},
+    {kGoldenOrders[14], 17, is_face},
+    {kGoldenOrders[16], 2, is_flags<15>},    // step
+    {kGoldenOrders[18], 2, is_flags<7>},     // clusters
+    {kGoldenReports[0], 2, is_flags<0x7f>},  // plan
+    {kGoldenReports[0], 3, is_flags<3>},
+    {kGoldenReports[1], 2, is_flags<0x9f>},   // hosts
+    {kGoldenReports[2], 14, is_flags<7>},     // mass
+    {kGoldenReports[3], 2, is_within<0, 2>},  // angles
+    {kGoldenReports[6], 16, is_flags<1>},     // low
+    {kGoldenReports[12], 2, [](unsigned v) { return v <= 2 || v == 4; }},
+    {kGoldenReports[13], 15, is_face},       // loads
+    {kGoldenReports[16], 16, is_flags<1>},   // step
+    {kGoldenReports[17], 16, is_flags<1>}};  // tree step
+
+TEST(Legal, bytes_that_name_something_name_what_there_is) {
+  for (const Limit& limit : kLimits) {
+    auto message = from_hex(limit.message);
+    for (unsigned value = 0; value <= 0xff; ++value) {
+      message[limit.offset] = static_cast<std::uint8_t>(value);
+      EXPECT_EQ(wire::is_legal(message), limit.allows(value)) << to_hex(message);
+    }
+  }
+}
+
+/// kDegreeMax = 0x0fa0 and kJacobiCountMax = 0x1000.
+TEST(Legal, exchanges_are_bounded) {
+  EXPECT_TRUE(wire::is_legal(from_hex("05 11 00 a0 0f 00 00 00 00 00 00 00 00 00 00 00 00")));
+  EXPECT_FALSE(wire::is_legal(from_hex("05 11 00 a1 0f 00 00 00 00 00 00 00 00 00 00 00 00")));
+  EXPECT_TRUE(wire::is_legal(from_hex("05 05 06 a0 0f 00 00 00 3f 00 00 7a 44")));
+  EXPECT_FALSE(wire::is_legal(from_hex("05 05 06 a1 0f 00 00 00 3f 00 00 7a 44")));
+  EXPECT_FALSE(wire::is_legal(from_hex("05 13 06 a1 0f 00 00 00 3f 00 00 7a 44")));
+  EXPECT_TRUE(wire::is_legal(from_hex("05 0a 00 10")));
+  EXPECT_FALSE(wire::is_legal(from_hex("05 0a 01 10")));
+  EXPECT_FALSE(wire::is_legal(from_hex("05 0a 00 00")));
+}
+
+/// 4 x 65,534 + 1 = 0x3fff9; sides of cells are odd.
+TEST(Legal, corners_are_those_of_cells_near_enough) {
+  const auto angles = [](std::string_view x) {
+    return wire::is_legal(
+        from_hex("06 04 01 " + std::string(x) + " 01 00 00 00 01 00 00 00 ff ff ff ff"));
+  };
+  EXPECT_TRUE(angles("f9 ff 03 00"));
+  EXPECT_TRUE(angles("07 00 fc ff"));
+  EXPECT_FALSE(angles("fb ff 03 00"));
+  EXPECT_FALSE(angles("05 00 fc ff"));
+  EXPECT_FALSE(angles("02 00 00 00"));
+  EXPECT_FALSE(angles("00 00 00 80"));
+}
+
+TEST(Legal, rounds_have_a_number) {
+  EXPECT_FALSE(
+      wire::is_legal(from_hex("01 00 00 0a 00 00 00 01 ff ff ff 02 00 00 00 00 00 00 00")));
+  EXPECT_TRUE(wire::is_legal(from_hex("01 ff ff 0a 00 00 00 01 ff ff ff 02 00 00 00 00 00 00 00")));
+}
+
+/// 1,000,000 = 0x0f4240, in 24 bits.
+TEST(Legal, cells_stay_within_the_lattice) {
+  EXPECT_TRUE(wire::is_legal(from_hex("05 03 40 42 0f c0 bd f0 00 00 00")));
+  EXPECT_FALSE(wire::is_legal(from_hex("05 03 41 42 0f c0 bd f0 00 00 00")));
+  EXPECT_FALSE(wire::is_legal(from_hex("05 03 00 00 00 bf bd f0 00 00 00")));
+  EXPECT_FALSE(wire::is_legal(from_hex("05 03 00 00 00 00 00 00 00 00 80")));
+}
+
+}  // namespace
+}  // namespace holdfast::agent
