@@ -5,6 +5,7 @@
 #include "bits.hpp"
 #include "holdfast/agent/agent.hpp"
 #include "methods.hpp"
+#include "watch.hpp"
 
 namespace holdfast::agent {
 
@@ -55,6 +56,9 @@ void BasicAgent<Real>::begin(const Event& event, Actions& actions) {
   if (restart_at_ <= now_) {
     start_round();
   }
+  if (watch_at_ <= now_) {
+    end_watch();
+  }
 }
 
 /// Messages only leave something to do; it is done here, a piece at a time, none of which calls
@@ -71,6 +75,7 @@ void BasicAgent<Real>::handle(const Event& event) {
   Link& link = links_[static_cast<std::size_t>(face)];
   switch (event.kind) {
     case EventKind::kStart:
+      watch_at_ = now_ + watch::silence(setup_.timing);
       if (identity_.is_anchor) {
         restart_at_ = now_ + setup_.timing.acknowledge_after;
       }
@@ -118,7 +123,7 @@ void BasicAgent<Real>::finish_step(Actions& actions) {
   touched_ = 0;
   actions.is_unfinished = is_busy_;
   actions.send_faces = send_faces_;
-  actions.wake_at = restart_at_;
+  actions.wake_at = restart_at_ < watch_at_ ? restart_at_ : watch_at_;
   for (const Time at : deadline_) {
     actions.wake_at = at < actions.wake_at ? at : actions.wake_at;
   }
@@ -167,6 +172,7 @@ void BasicAgent<Real>::dispatch(int face, std::span<const std::uint8_t> message)
   if (!is_ours || restart_at_ != kNever || stage_ == kNoStage) {
     return;
   }
+  keep_waiting();
   switch (type) {
     case MessageType::kEcho:
       return take_echo(face, message);
@@ -259,6 +265,7 @@ void BasicAgent<Real>::leave_round() {
     is_stage_over_ = false;
     has_next_order_ = false;
     restart_at_ = now_ + setup_.timing.acknowledge_after;
+    keep_waiting();
   }
 }
 
@@ -296,6 +303,8 @@ void BasicAgent<Real>::enter_round(const Round& round) {
   planned_.clear();
   answer_ = {};
   phase_ = Phase::kCoordinates;
+  wave_time_ = static_cast<std::uint32_t>(now_);
+  keep_waiting();
   touched_ = 0x3f;
   for (Link& link : links_) {
     link.drop_unsent();

@@ -131,7 +131,7 @@ template <class Real>
 void BasicAgent<Real>::take_order(const Order& order) {
   order_ = order;
   is_sweeping_ = true;
-  phase_ = sweep::phase_of(order.operation);
+  begin_waiting();
   reports_awaited_ = children_;
   exchanges_left_ = sweep::exchange_count(order);
   exchanges_behind_ = sweep::exchanges_behind(order);
@@ -327,8 +327,7 @@ bool BasicAgent<Real>::finish_sweep() {
     has_next_order_ = true;
   }
   if (order_.operation == wire::Operation::kVerdict) {
-    phase_ = Phase::kDone;
-    touched_ = 0x3f;
+    watch_verdict();
   }
   return true;
 }

@@ -79,6 +79,7 @@ void BasicAgent<Real>::take_join(int face, std::span<const std::uint8_t> message
   } else if (round != round_ || restart_at_ != kNever) {
     return;
   }
+  keep_waiting();
   if (stage > stage_) {
     const auto direction = static_cast<base::Direction>(face);
     nodes_[0].cell = base::neighbour(theirs, base::opposite(direction));

@@ -31,6 +31,8 @@ enum class Reason : std::uint8_t {
   kNotConverged,     ///< No method settled within the limit of iterations.
   kTooClose,         ///< The largest load ratio cannot be told from 1.
   kAmbiguousFeet,    ///< The verdict depends on feet that are neither held nor free.
+  kNoAnswer,         ///< The computation has stopped, or the root is no longer heard.
+  kNoAnchor,         ///< Nobody has said where this module is.
 };
 
 const char* name(Verdict verdict);
