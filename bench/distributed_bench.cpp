@@ -207,10 +207,10 @@ int run_liars(std::uint64_t from, std::uint64_t to) {
     std::vector<double> times;
     for (std::uint64_t seed = from; seed < to; ++seed) {
       const model::Robot robot = make_robot(test::random_robot(seed));
-      test::FaultyOptions faulty{.kind = kind, .one_in = 5 + rng.below(500), .seed = seed};
+      test::FaultyOptions faulty{.kind = kind, .one_in = 2 + rng.below(100), .seed = seed};
       faulty.module =
           static_cast<std::int32_t>(rng.below(robot.modules().size() - robot.planned_count()));
-      faulty.at = rng.below(2'000'000);
+      faulty.at = rng.below(1'000'000);
       const auto outcome = test::run_faulty(robot, faulty, sim::blinky_blocks_v2());
       faulty_runs += outcome.change_count > 0 ? 1 : 0;
       changes += outcome.change_count;

@@ -111,6 +111,38 @@ TEST(Watch, modules_cut_off_from_the_anchor_are_undecided) {
   }
 }
 
+/// One packet in ten is lost: the root is heard late now and then, but long before the clock runs
+/// out.
+TEST(Watch, noise_does_not_shake_a_verdict) {
+  class Counter : public sim::TraceSink {
+   public:
+    void verdict_known(sim::Time /*time*/, std::int32_t /*module*/,
+                       const agent::Answer& answer) override {
+      doubt_count += answer.verdict == agent::Verdict::kUndecided ? 1 : 0;
+    }
+
+    int doubt_count = 0;
+  };
+
+  for (sim::LinkModel link : {sim::blinky_blocks_v1(), sim::blinky_blocks_v2()}) {
+    link.loss = 0.1;
+    link.duplication = 0.05;
+    link.corruption = 0.02;
+    link.jitter = 5'000;
+    for (std::uint64_t seed = 0; seed < 4; ++seed) {
+      const auto robot = model::Robot::create(random_robot(seed));
+      ASSERT_TRUE(robot);
+      Counter counter;
+      sim::Simulation simulation(
+          robot.value(), {.link = link, .seed = seed, .watch_for = 60'000'000, .trace = &counter});
+      simulation.run();
+      EXPECT_TRUE(simulation.result().is_quiet);
+      EXPECT_TRUE(simulation.result().all_agree);
+      EXPECT_EQ(counter.doubt_count, 0) << seed;
+    }
+  }
+}
+
 /// An order of 18 bytes takes two packets of version 1 and a report of 6 one, each link carries
 /// both every 2 s or somewhat less often, and each packet may want an acknowledgement of its own.
 TEST(Watch, costs_few_packets) {

@@ -36,9 +36,9 @@ constexpr Time silence(const LinkTiming& timing) {
   return 16 * (timing.ping_after + 8 * timing.retransmit_after);
 }
 
-/// Nothing is known of the robot's size before it has a tree: 10 minutes on Blinky Blocks 1, in
-/// which waves cross 12,000 modules in a row.
-inline constexpr Time kWaveSilences = 16;
+/// Nothing is known of the robot's size before it has a tree: 2.6 minutes on Blinky Blocks 1, in
+/// which waves cross 3,000 modules in a row and come back. A longer robot is `undecided` meanwhile.
+inline constexpr Time kWaveSilences = 4;
 
 /// An order's way down the tree and back is shorter than the waves' by half, but what it sets off
 /// can take twenty times as long in every module: the condensed stiffness of a branch is 54
