@@ -91,11 +91,11 @@ TEST(Watch, without_the_root_a_verdict_ends_in_its_time) {
   EXPECT_EQ(network.agent(root == 0 ? 1 : 0).answer().reason, Reason::kNoAnswer);
 }
 
-/// Retries so quick that the clock of the waves is 2,112 ticks, while they take some 2,800 here.
+/// Retries so quick that the clock of the waves is 2,112 ticks, while they take 2,200 and more here.
 TEST(Watch, a_clock_that_was_too_short_changes_no_verdict) {
   auto setup = table_setup();
   setup.timing = {.acknowledge_after = 1, .retransmit_after = 4, .ping_after = 1};
-  TestNetwork network(setup, row(700));
+  TestNetwork network(setup, row(560));
   bool was_early = false;
   ASSERT_TRUE(network.run_until([&](const Agent& agent) {
     was_early = was_early || agent.answer().reason == Reason::kNoAnswer;
