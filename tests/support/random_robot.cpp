@@ -14,7 +14,9 @@ using base::Cell;
 
 class Builder {
  public:
-  explicit Builder(std::uint64_t seed) : rng_(seed), count_max_(3 + rng_.below(58)) {}
+  /// Of `count_min` to `count_max` modules.
+  Builder(std::uint64_t seed, std::size_t count_min, std::size_t count_max)
+      : rng_(seed), count_max_(count_min + rng_.below(count_max - count_min + 1)) {}
 
   model::RobotSpec build(std::uint64_t kind) {
     put({0, 0, 0});
@@ -123,6 +125,14 @@ class Builder {
 
 }  // namespace
 
-model::RobotSpec random_robot(std::uint64_t seed) { return Builder(seed).build(seed % 4); }
+model::RobotSpec random_robot(std::uint64_t seed) { return Builder(seed, 3, 60).build(seed % 4); }
+
+model::RobotSpec random_robot(std::uint64_t seed, std::size_t count_min, std::size_t count_max) {
+  model::RobotSpec spec = Builder(seed, count_min, count_max).build(seed % 4);
+  if (seed % 3 == 0) {
+    spec.fixed = {spec.existing.front()};
+  }
+  return spec;
+}
 
 }  // namespace holdfast::test

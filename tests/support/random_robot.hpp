@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 
 #include "holdfast/model/robot.hpp"
@@ -12,5 +13,9 @@ namespace holdfast::test {
 /// seeds take turns at four ways of building: free growth, walls with doors and windows, beams and
 /// arms that overhang, and feet with gaps under a common deck. Up to four planned modules.
 model::RobotSpec random_robot(std::uint64_t seed);
+
+/// The same with `count_min` to `count_max` existing modules and up to four planned ones. The first
+/// module of every third is fixed, as most that are large and grown freely topple.
+model::RobotSpec random_robot(std::uint64_t seed, std::size_t count_min, std::size_t count_max);
 
 }  // namespace holdfast::test

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "holdfast/mechanics/beam.hpp"
 
+#include "holdfast/base/double_double.hpp"
+
 namespace holdfast::mechanics {
 namespace {
 
@@ -138,5 +140,6 @@ Mat6<Real> block_12(const BeamStiffness<Real>& beam, Direction direction) {
 
 HOLDFAST_INSTANTIATE(float)
 HOLDFAST_INSTANTIATE(double)
+HOLDFAST_INSTANTIATE(base::DoubleDouble)
 
 }  // namespace holdfast::mechanics

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "holdfast/mechanics/ground_contact.hpp"
 
+#include "holdfast/base/double_double.hpp"
+
 namespace holdfast::mechanics {
 namespace {
 
@@ -306,5 +308,6 @@ Mat6<Real> symmetric_tangent(const GroundFacet<Real>& facet, ContactState state,
 
 HOLDFAST_INSTANTIATE(float)
 HOLDFAST_INSTANTIATE(double)
+HOLDFAST_INSTANTIATE(base::DoubleDouble)
 
 }  // namespace holdfast::mechanics

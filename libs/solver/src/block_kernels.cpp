@@ -2,22 +2,37 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "block_kernels.hpp"
 
+#include <array>
 #include <cmath>
 #include <utility>
 
 namespace holdfast::solver {
 namespace {
 
-/// Swaps rows so that the largest element of a column, from the diagonal down, is the pivot.
-/// Returns its row.
-std::size_t bring_up_pivot(base::Mat6<double>& work, std::size_t step) {
+using Weights = std::array<double, 6>;
+
+/// Rows are forces and torques, soft and stiff: what is large in one is small in another. Beside
+/// the roots of the diagonal all are numbers around 1, as in a matrix scaled from both sides.
+Weights row_weights(const base::Mat6<double>& block) {
+  Weights weight;
+  for (std::size_t row = 0; row < 6; ++row) {
+    const double diagonal = std::abs(block.values[7 * row]);
+    weight[row] = diagonal > 0 ? 1 / std::sqrt(diagonal) : 1;
+  }
+  return weight;
+}
+
+/// Swaps rows so that the largest weighted element of a column, from the diagonal down, is the
+/// pivot. Returns its row.
+std::size_t bring_up_pivot(base::Mat6<double>& work, Weights& weight, std::size_t step) {
   double* const v = work.values.data();
   std::size_t pivot = step;
   for (std::size_t row = step + 1; row < 6; ++row) {
-    if (std::abs(v[6 * step + row]) > std::abs(v[6 * step + pivot])) {
+    if (std::abs(v[6 * step + row]) * weight[row] > std::abs(v[6 * step + pivot]) * weight[pivot]) {
       pivot = row;
     }
   }
+  std::swap(weight[step], weight[pivot]);
   for (std::size_t column = 0; pivot != step && column < 6; ++column) {
     std::swap(v[6 * column + step], v[6 * column + pivot]);
   }
@@ -31,9 +46,10 @@ std::size_t bring_up_pivot(base::Mat6<double>& work, std::size_t step) {
 bool invert(const base::Mat6<double>& block, base::Mat6<double>& inverse) {
   inverse = block;
   double* const v = inverse.values.data();
+  Weights weight = row_weights(block);
   std::size_t pivot_row[6];
   for (std::size_t step = 0; step < 6; ++step) {
-    pivot_row[step] = bring_up_pivot(inverse, step);
+    pivot_row[step] = bring_up_pivot(inverse, weight, step);
     double* const own = v + 6 * step;
     const double pivot = own[step];
     if (!(std::abs(pivot) > 0) || !std::isfinite(pivot)) {

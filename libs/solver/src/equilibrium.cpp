@@ -8,7 +8,9 @@
 #include <set>
 #include <utility>
 
+#include "holdfast/base/check.hpp"
 #include "multigrid/multigrid.hpp"
+#include "precise_refinement.hpp"
 
 namespace holdfast::solver {
 namespace {
@@ -112,7 +114,7 @@ EquilibriumSolver::EquilibriumSolver(const model::Robot& robot, EquilibriumOptio
       node_of_module_[i] = next++;
     }
     if (modules[i].support == model::Support::kGround) {
-      facets_.push_back({.module = i, .state = {}});
+      facets_.push_back({{.module = i, .state = {}}});
     }
   }
   choose_method();
@@ -127,7 +129,8 @@ void EquilibriumSolver::choose_method() {
     method = Method::kDirect;
   }
   if (method == Method::kDirect) {
-    make_direct(kNoLimit);
+    const bool is_limited = options_.fill_max < kNoLimit / (node_count + 1);
+    make_direct(is_limited ? options_.fill_max * node_count : kNoLimit);
   } else {
     make_multigrid(options_.precision);
   }
@@ -253,7 +256,7 @@ Equilibrium EquilibriumSolver::solve(const ContactOptions& contact) {
     multigrid_->set_law(ground_);
   }
   for (Facet& facet : facets_) {
-    facet = {.module = facet.module, .state = {}};
+    facet = {{.module = facet.module, .state = {}}};
     set_tangent(facet);  // Always: the law may be another one than before.
   }
   const std::size_t made_before = lu_ ? lu_->made_column_count() : 0;
@@ -497,25 +500,15 @@ std::vector<Vec6<double>> EquilibriumSolver::internal_force(
   return force;
 }
 
-/// Iterative refinement, then everything that follows from the displacements.
+/// The last digits, then everything that follows from the displacements.
 void EquilibriumSolver::finish(Equilibrium& result) {
+  result.gamma = ground_.gamma;
   if (multigrid_) {
-    result.alternative = std::move(result.displacement);
-    // Where convergence is slow r . M^-1 r misses more of the error.
-    const double pace = std::min(1.0, kBriskIterations / multigrid_->last_count());
-    const double share = multigrid_->precision() == Precision::kDouble ? kSlenderShare : 1;
-    // One iteration at least: else the two answers are the same, and say nothing about the error.
-    if (!multigrid_->solve(options_.tolerance * share * pace * pace * pace, 1)) {
-      result.outcome = Outcome::kTooSlow;
-      return;
-    }
-    result.displacement = multigrid_->displacement();
-  }
-  for (int step = 0; lu_ && step < kRefinementCount; ++step) {
-    refine(result);
-  }
-  if (lu_ && !is_refined(result)) {
+    finish_multigrid(result);
+  } else if (lu_ && !finish_direct(result)) {
     result.outcome = Outcome::kTooSlow;
+  }
+  if (result.outcome != Outcome::kSettled) {
     return;
   }
   const std::size_t count = robot_.modules().size();
@@ -534,6 +527,82 @@ void EquilibriumSolver::finish(Equilibrium& result) {
   if (result.open_but_held_count > 0) {
     compare_with_free_facets(result);
   }
+}
+
+void EquilibriumSolver::finish_multigrid(Equilibrium& result) {
+  result.alternative = std::move(result.displacement);
+  // Where convergence is slow r . M^-1 r misses more of the error.
+  const double pace = std::min(1.0, kBriskIterations / multigrid_->last_count());
+  const double share = multigrid_->precision() == Precision::kDouble ? kSlenderShare : 1;
+  // One iteration at least: else the two answers are the same, and say nothing about the error.
+  if (!multigrid_->solve(options_.tolerance * share * pace * pace * pace, 1)) {
+    result.outcome = Outcome::kTooSlow;
+    return;
+  }
+  result.displacement = multigrid_->displacement();
+}
+
+/// Returns false if there are no digits left.
+bool EquilibriumSolver::finish_direct(Equilibrium& result) {
+  for (int step = 0; step < kRefinementCount; ++step) {
+    refine(result);
+  }
+  if (is_refined(result) && !options_.is_precise) {
+    return true;
+  }
+  if (ground_.law == ContactLaw::kUnilateral && refine_without_weak_springs(result)) {
+    return true;
+  }
+  return refine_precisely(result);
+}
+
+/// Returns false if that does not settle, or the facets' states are then other ones.
+bool EquilibriumSolver::refine_precisely(Equilibrium& result) {
+  PreciseRefinement refinement(robot_, ground_,
+                               std::vector<FacetState>(facets_.begin(), facets_.end()));
+  const bool is_found = refinement.run(result.displacement, [&](std::vector<Vec>& load) {
+    std::vector<Vec> x(diagonal_.size());
+    for (std::size_t i = 0; i < load.size(); ++i) {
+      if (node_of_module_[i] >= 0) {
+        x[node_index(node_of_module_[i])] = load[i];
+      }
+    }
+    lu_->solve(x);
+    load = by_module(x);
+  });
+  const std::vector<ContactState> states = refinement.states();
+  const bool is_consistent =
+      options_.is_bonded || std::ranges::equal(facets_, states, {}, &Facet::state);
+  if (!is_found || !is_consistent) {
+    return false;
+  }
+  result.displacement = refinement.high();
+  result.displacement_low = refinement.low();
+  result.alternative = result.displacement;
+  return true;
+}
+
+void EquilibriumSolver::set_gamma(double gamma) {
+  ground_.gamma = gamma;
+  for (const Facet& facet : facets_) {
+    set_tangent(facet);
+  }
+}
+
+/// The weak springs keep the matrix regular until the states are found; a robot that stands does
+/// without them then. Leaves everything as it was if this one does not.
+bool EquilibriumSolver::refine_without_weak_springs(Equilibrium& result) {
+  const double gamma = ground_.gamma;
+  const std::vector<Vec> displacement = result.displacement;
+  set_gamma(0);
+  if (lu_->factor() && refine_precisely(result)) {
+    result.gamma = 0;
+    return true;
+  }
+  result.displacement = displacement;
+  set_gamma(gamma);
+  HOLDFAST_CHECK(lu_->factor());  // As it was before.
+  return false;
 }
 
 /// The alternative where some facets can neither be held nor free: half open, half closed.

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "connection_law.hpp"
+#include "holdfast/base/double_double.hpp"
 #include "holdfast/host/team.hpp"
 #include "holdfast/mechanics/support_corners.hpp"
 
@@ -50,6 +51,7 @@ struct Loads {
   LoadRange range = {.low = -std::numeric_limits<double>::infinity(),
                      .high = -std::numeric_limits<double>::infinity()};
   double ratio_max = -std::numeric_limits<double>::infinity();
+  double change = 0;  ///< The most by which the two answers differ, of any connection.
   std::size_t worst = 0;
   std::vector<std::size_t> broken;
 
@@ -57,6 +59,7 @@ struct Loads {
     const double low = ratio < other_ratio ? ratio : other_ratio;
     const double high = ratio < other_ratio ? other_ratio : ratio;
     range = {.low = max_or_nan(range.low, low), .high = max_or_nan(range.high, high)};
+    change = high - low > change ? high - low : change;
     if (ratio > ratio_max) {
       ratio_max = ratio;
       worst = connection;
@@ -69,6 +72,7 @@ struct Loads {
   void add(const Loads& next) {
     range = {.low = max_or_nan(range.low, next.range.low),
              .high = max_or_nan(range.high, next.range.high)};
+    change = std::max(change, next.change);
     if (next.ratio_max > ratio_max) {
       ratio_max = next.ratio_max;
       worst = next.worst;
@@ -76,6 +80,39 @@ struct Loads {
     broken.insert(broken.end(), next.broken.begin(), next.broken.end());
   }
 };
+
+/// How the first module moves as seen by the second, where both move far more than their beam
+/// bends: in 106 bits until what is common to both is gone.
+base::Vec6<double> relative_motion(const model::Robot& robot, const Equilibrium& equilibrium,
+                                   const model::Connection& pair) {
+  base::Vec6<base::DoubleDouble> motion;
+  base::Vec6<base::DoubleDouble> second;
+  const auto a = static_cast<std::size_t>(pair.a);
+  const auto b = static_cast<std::size_t>(pair.b);
+  for (std::size_t k = 0; k < 6; ++k) {
+    second[k] = {equilibrium.displacement[b][k], equilibrium.displacement_low[b][k]};
+    motion[k] =
+        base::DoubleDouble(equilibrium.displacement[a][k], equilibrium.displacement_low[a][k]) -
+        second[k];
+  }
+  // The second turns about itself, and takes the first along on a lever of one pitch backwards.
+  const std::size_t along = static_cast<std::size_t>(base::index(pair.direction)) / 2;
+  const std::size_t next = (along + 1) % 3;
+  const std::size_t last = (along + 2) % 3;
+  const base::DoubleDouble pitch = robot.material().pitch_mm;
+  motion[next] += pitch * second[3 + last];
+  motion[last] -= pitch * second[3 + next];
+  return base::converted<double>(motion);
+}
+
+ConnectionResult connection_result(const model::Robot& robot, const ConnectionLaw& law,
+                                   const Equilibrium& equilibrium, const model::Connection& pair) {
+  if (!equilibrium.displacement_low.empty()) {
+    return law.result(relative_motion(robot, equilibrium, pair), base::Vec6<double>{});
+  }
+  return law.result(equilibrium.displacement[static_cast<std::size_t>(pair.a)],
+                    equilibrium.displacement[static_cast<std::size_t>(pair.b)]);
+}
 
 /// Every connection's result, and what they say together.
 Loads add_up(const model::Robot& robot, int thread_count, Assessment& assessment) {
@@ -85,6 +122,8 @@ Loads add_up(const model::Robot& robot, int thread_count, Assessment& assessment
                                 {robot.material(), base::Direction::kPlusZ}};
   const auto connections = robot.connections();
   const Equilibrium& equilibrium = assessment.equilibrium;
+  const bool has_alternative =
+      equilibrium.displacement_low.empty() || equilibrium.open_but_held_count > 0;
   assessment.connections.resize(connections.size());
   host::Team team(thread_count, connections.size());
   std::vector<Loads> parts;
@@ -95,10 +134,12 @@ Loads add_up(const model::Robot& robot, int thread_count, Assessment& assessment
       const ConnectionLaw& law = laws[base::index(pair.direction) / 2];
       const auto a = static_cast<std::size_t>(pair.a);
       const auto b = static_cast<std::size_t>(pair.b);
-      assessment.connections[i] =
-          law.result(equilibrium.displacement[a], equilibrium.displacement[b]);
-      part.add(i, assessment.connections[i].load_ratio,
-               law.load_ratio(equilibrium.alternative[a], equilibrium.alternative[b]));
+      assessment.connections[i] = connection_result(robot, law, equilibrium, pair);
+      const double ratio = assessment.connections[i].load_ratio;
+      part.add(i, ratio,
+               has_alternative
+                   ? law.load_ratio(equilibrium.alternative[a], equilibrium.alternative[b])
+                   : ratio);
     }
     return part;
   });
@@ -109,13 +150,51 @@ Loads add_up(const model::Robot& robot, int thread_count, Assessment& assessment
   return all;
 }
 
+/// What load ratios may be off by rounding alone, as a share of the largest or of 1.
+constexpr double kRounding = 1e-12;
+
+/// By weak springs of 1e-9 beside the unilateral contact of a stable robot, in the same terms.
+constexpr double kWeakSprings = 1e-7;
+
+/// Two answers of multigrid differ by less than the error of the better one, once in a while: of
+/// any connection the margin takes the largest difference so many times, and never less than what
+/// is promised (docs/solver.md).
+constexpr double kMultigridFactor = 10;
+constexpr double kMultigridError = 1e-4;
+
+double tolerance_share(const solver::EquilibriumOptions& options) {
+  return options.tolerance / solver::EquilibriumOptions{}.tolerance;
+}
+
+/// How far the largest load ratio may be from the truth, if multigrid's tolerance is so many times
+/// the usual one.
+double error_margin(const Equilibrium& equilibrium, double tolerance_share, const Loads& loads) {
+  const double scale = std::max(1.0, loads.ratio_max);
+  double margin = kRounding * scale;
+  if (equilibrium.law == ContactLaw::kUnilateral && equilibrium.gamma > 0) {
+    margin += kWeakSprings * scale;
+  }
+  if (equilibrium.open_but_held_count > 0) {
+    return margin;  // The answers differ by more than an error.
+  }
+  if (equilibrium.method == solver::Method::kMultigrid) {
+    return margin +
+           std::max(kMultigridError * tolerance_share * scale, kMultigridFactor * loads.change);
+  }
+  return margin + 2 * loads.change;
+}
+
 /// Sec. III-D for every connection.
-void assess_connections(const model::Robot& robot, int thread_count, Assessment& assessment) {
+void assess_connections(const model::Robot& robot, const solver::EquilibriumOptions& options,
+                        Assessment& assessment) {
   if (robot.connections().empty()) {
     return;
   }
-  Loads loads = add_up(robot, thread_count, assessment);
-  assessment.load_ratio_range = loads.range;
+  Loads loads = add_up(robot, options.thread_count, assessment);
+  assessment.load_ratio_change = loads.change;
+  const double margin = error_margin(assessment.equilibrium, tolerance_share(options), loads);
+  assessment.load_ratio_range = {.low = loads.range.low - margin,
+                                 .high = loads.range.high + margin};
   assessment.broken = std::move(loads.broken);
   std::ranges::stable_sort(assessment.broken, std::greater<>(),
                            [&](std::size_t i) { return assessment.connections[i].load_ratio; });
@@ -147,7 +226,11 @@ constexpr double kTopplingGammas[] = {1e-6, 1e-7};
 constexpr std::size_t kTopplingCountMax = 1000;
 
 /// A verdict that hangs on multigrid's error is sought once more with so much less of it.
-constexpr double kFinerTolerance = 1e-3;
+constexpr double kFinerTolerance = 1e-6;
+
+/// Then the direct solver is asked first where no more blocks than this fill in per module: a solid
+/// cube of 17, 4,913 modules, has 60.
+constexpr std::size_t kPreciseFillMax = 100;
 
 /// Whether the model's stability is the rigid body's. A margin of zero is unstable by decision, not
 /// by mechanics: no model need agree with it.
@@ -309,9 +392,10 @@ Assessment begin(const model::Robot& robot) {
 }
 
 /// Loads, verdict and reasons, once there is an equilibrium.
-Assessment conclude(const model::Robot& robot, Assessment assessment, int thread_count) {
+Assessment conclude(const model::Robot& robot, Assessment assessment,
+                    const solver::EquilibriumOptions& options) {
   if (assessment.equilibrium.outcome == Outcome::kSettled) {
-    assess_connections(robot, thread_count, assessment);
+    assess_connections(robot, options, assessment);
   }
   if (assessment.is_stable) {
     decide_stable(robot, assessment);
@@ -327,27 +411,49 @@ Assessment assess_once(const model::Robot& robot, const solver::EquilibriumOptio
   Assessment assessment = begin(robot);
   assessment.is_stable = assessment.is_stable || options.is_bonded;
   find_equilibrium(robot, options, assessment);
-  return conclude(robot, std::move(assessment), options.thread_count);
+  return conclude(robot, std::move(assessment), options);
 }
 
-/// So near to breaking that multigrid's error would decide.
-bool is_too_coarse(const Assessment& assessment) {
+/// Whether an error no larger than what the range allows for would decide.
+bool is_near_limit(const Assessment& assessment) {
   return assessment.is_stable && assessment.equilibrium.outcome == Outcome::kSettled &&
-         assessment.equilibrium.method == solver::Method::kMultigrid &&
          assessment.equilibrium.open_but_held_count == 0 &&
          breaks(assessment.load_ratio_range.low) != breaks(assessment.load_ratio_range.high);
+}
+
+/// Where the verdict hangs on the error: the direct solver with all digits, if it fits, and
+/// multigrid with more of them.
+std::vector<solver::EquilibriumOptions> finer_options(const solver::EquilibriumOptions& options) {
+  std::vector<solver::EquilibriumOptions> list;
+  if (options.method != solver::Method::kMultigrid) {
+    solver::EquilibriumOptions& direct = list.emplace_back(options);
+    direct.method = solver::Method::kDirect;
+    direct.is_precise = true;
+    direct.fill_max = kPreciseFillMax;
+  }
+  if (options.method != solver::Method::kDirect) {
+    solver::EquilibriumOptions& multigrid = list.emplace_back(options);
+    multigrid.method = solver::Method::kMultigrid;
+    multigrid.precision = solver::Precision::kDouble;
+    multigrid.tolerance *= kFinerTolerance;
+  }
+  return list;
 }
 
 }  // namespace
 
 Assessment assess(const model::Robot& robot, const solver::EquilibriumOptions& options) {
   Assessment assessment = assess_once(robot, options);
-  if (is_too_coarse(assessment)) {
-    solver::EquilibriumOptions finer = options;
-    finer.tolerance *= kFinerTolerance;
-    Assessment second = assess_once(robot, finer);
-    if (second.equilibrium.outcome == Outcome::kSettled) {
-      return second;
+  if (!is_near_limit(assessment)) {
+    return assessment;
+  }
+  for (const solver::EquilibriumOptions& finer : finer_options(options)) {
+    Assessment next = assess_once(robot, finer);
+    if (next.equilibrium.outcome == Outcome::kSettled) {
+      assessment = std::move(next);
+    }
+    if (!is_near_limit(assessment)) {
+      break;
     }
   }
   return assessment;
@@ -358,7 +464,7 @@ Assessment assess_equilibrium(const model::Robot& robot, Equilibrium equilibrium
   assessment.equilibrium = std::move(equilibrium);
   assessment.model = model_stability(robot, assessment.equilibrium);
   assessment.contact_model = contact_model(robot, assessment.equilibrium.law);
-  return conclude(robot, std::move(assessment), 0);
+  return conclude(robot, std::move(assessment), {});
 }
 
 const char* name(Verdict verdict) {

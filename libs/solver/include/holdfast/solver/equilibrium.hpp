@@ -67,6 +67,12 @@ struct EquilibriumOptions {
   /// Of multigrid: the error in the energy norm, as a share of that of no displacements at all.
   /// Load ratios are then within 1e-4 of the largest one (docs/solver.md).
   double tolerance = 1e-5;
+  /// Of the direct solver: displacements in 106 bits, so that load ratios have twelve digits and
+  /// more however slender or soft the robot is, and no weak springs beside the unilateral law where
+  /// it needs none. Without it that is done only where double precision does not suffice.
+  bool is_precise = false;
+  /// The direct solver gives up (kTooLarge) where more blocks than this fill in per node.
+  std::size_t fill_max = std::numeric_limits<std::size_t>::max();
   /// Called after every iteration of multigrid with the error that is left, as a share of the
   /// first.
   std::function<void(int iteration, double error)> progress = {};
@@ -88,11 +94,23 @@ enum class Outcome : std::uint8_t {
   kTooSlow,     ///< No solver gets there: a robot too slender for double precision.
 };
 
+/// A module on the ground, and the contact state that its facet is taken to be in.
+struct FacetState {
+  std::size_t module = 0;
+  mechanics::ContactState state;
+  bool is_held = true;  ///< Against slip and twist; kUnilateral only.
+};
+
 /// The result, per module in the robot's order. Frame: global; units: mm, rad, N, N mm.
 struct Equilibrium {
   Outcome outcome = Outcome::kNotSettled;
   mechanics::ContactLaw law = mechanics::ContactLaw::kRegularised;
   std::vector<base::Vec6<double>> displacement;
+  /// What is to be added to `displacement` for 106 bits; empty if double precision sufficed.
+  std::vector<base::Vec6<double>> displacement_low;
+  /// Of the weak springs that hold beside the contact, as in ContactOptions; 0 if they were left
+  /// out.
+  double gamma = 0;
   /// A second answer, to see how far the first may be off: before the last step of iterative
   /// refinement, or at least ten times farther from convergence; or, if open_but_held_count > 0,
   /// with those facets free to slide.
@@ -126,11 +144,7 @@ class EquilibriumSolver {
  private:
   using Vec = base::Vec6<double>;
 
-  /// A module on the ground and what it does there.
-  struct Facet {
-    std::size_t module = 0;
-    mechanics::ContactState state;
-    bool is_held = true;  ///< Against slip and twist; kUnilateral only.
+  struct Facet : FacetState {
     bool was_released = false;
   };
 
@@ -156,7 +170,12 @@ class EquilibriumSolver {
   bool are_states_clear(const std::vector<Vec>& displacement) const;
   bool set_states(const std::vector<mechanics::ContactState>& states);
   void finish(Equilibrium& result);
+  bool finish_direct(Equilibrium& result);
+  void finish_multigrid(Equilibrium& result);
   void refine(Equilibrium& result) const;
+  bool refine_precisely(Equilibrium& result);
+  bool refine_without_weak_springs(Equilibrium& result);
+  void set_gamma(double gamma);
   static bool is_refined(const Equilibrium& result);
   void compare_with_free_facets(Equilibrium& result);
 

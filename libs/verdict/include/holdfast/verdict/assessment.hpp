@@ -70,6 +70,8 @@ struct Assessment {
   /// The weight could grow by this factor before the first connection breaks; none without `worst`.
   std::optional<double> weight_factor;
   LoadRange load_ratio_range;  ///< Void where load_ratio_max is.
+  /// The most by which any load ratio changed between the last two solutions of the linear system.
+  double load_ratio_change = 0;
 
   ContactModel contact_model = ContactModel::kNone;
   solver::Equilibrium equilibrium;  ///< Displacements, contact states, ground forces.
