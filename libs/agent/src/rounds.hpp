@@ -256,8 +256,8 @@ std::uint8_t BasicAgent<Real>::used_faces() const {
 template <class Real>
 void BasicAgent<Real>::leave_round() {
   if (round_.epoch > 0 || silent_faces_ != 0) {
-    answer_ = {};
     phase_ = Phase::kDiscovery;
+    forget_answer();
     is_sweeping_ = false;
     is_exchanging_ = false;
     leave_clusters();
@@ -265,7 +265,6 @@ void BasicAgent<Real>::leave_round() {
     is_stage_over_ = false;
     has_next_order_ = false;
     restart_at_ = now_ + setup_.timing.acknowledge_after;
-    keep_waiting();
   }
 }
 
@@ -301,10 +300,11 @@ void BasicAgent<Real>::enter_round(const Round& round) {
   vectors_here_ = {};
   planned_here_ = 0;
   planned_.clear();
-  answer_ = {};
   phase_ = Phase::kCoordinates;
   wave_time_ = static_cast<std::uint32_t>(now_);
-  keep_waiting();
+  rounds_without_end_ = static_cast<std::uint8_t>(
+      rounds_without_end_ + (rounds_without_end_ < watch::kRoundsWithoutEndMax ? 1 : 0));
+  forget_answer();
   touched_ = 0x3f;
   for (Link& link : links_) {
     link.drop_unsent();

@@ -45,6 +45,10 @@ inline constexpr Time kWaveSilences = 4;
 /// messages and a join is one.
 inline constexpr Time kWavesPerSilence = 32;
 
+/// Rounds that begin one after the other without an end, as when a module starts again and again;
+/// from then on the module is `undecided` until one ends.
+inline constexpr std::uint8_t kRoundsWithoutEndMax = 16;
+
 }  // namespace watch
 
 template <class Real>
@@ -62,6 +66,16 @@ void BasicAgent<Real>::keep_waiting() {
   }
 }
 
+/// What was true of the robot is so no longer.
+template <class Real>
+void BasicAgent<Real>::forget_answer() {
+  answer_ = {};
+  if (rounds_without_end_ == watch::kRoundsWithoutEndMax) {
+    answer_ = {.verdict = Verdict::kUndecided, .reason = Reason::kNoAnswer};
+  }
+  keep_waiting();
+}
+
 /// An order has come. One that says the verdict again leaves the phase as it is.
 template <class Real>
 void BasicAgent<Real>::begin_waiting() {
@@ -73,6 +87,7 @@ void BasicAgent<Real>::begin_waiting() {
     phase_ = sweep::phase_of(order_.operation);
   }
   if (is_verdict) {
+    rounds_without_end_ = 0;
     watch_at_ = now_ + watch_time();
   } else {
     keep_waiting();

@@ -91,7 +91,28 @@ TEST(Watch, without_the_root_a_verdict_ends_in_its_time) {
   EXPECT_EQ(network.agent(root == 0 ? 1 : 0).answer().reason, Reason::kNoAnswer);
 }
 
-/// Retries so quick that the clock of the waves is 2,112 ticks, while they take 2,200 and more here.
+/// A module that crashes again and again begins a round each time; none comes to its end.
+TEST(Watch, rounds_that_never_end_are_undecided_until_one_does) {
+  const auto setup = table_setup();
+  TestNetwork network(setup, row(6));
+  ASSERT_TRUE(network.run());
+  const auto crash_for = [&](int count) {
+    for (int i = 0; i < count; ++i) {
+      network.start(3);
+      run_ticks(network, 40);
+    }
+  };
+  crash_for(10);
+  EXPECT_FALSE(network.is_every(is_undecided));
+  crash_for(30);
+  for (std::size_t i = 0; i < network.size(); ++i) {
+    EXPECT_TRUE(i == 3 || is_undecided(network.agent(i))) << i;
+  }
+  EXPECT_TRUE(network.run_until(is_safe));
+}
+
+/// Retries so quick that the clock of the waves is 2,112 ticks, while they take 2,200 and more
+/// here.
 TEST(Watch, a_clock_that_was_too_short_changes_no_verdict) {
   auto setup = table_setup();
   setup.timing = {.acknowledge_after = 1, .retransmit_after = 4, .ping_after = 1};

@@ -250,6 +250,7 @@ class BasicAgent {
 
   // watch.hpp: the clock that ends every wait.
   void keep_waiting();
+  void forget_answer();
   void begin_waiting();
   void watch_verdict();
   void end_watch();
@@ -455,6 +456,7 @@ class BasicAgent {
   std::array<Round, base::kDirectionCount> peer_round_;  ///< Of what comes in on each link.
   std::uint8_t silent_faces_ = 0;  ///< Neighbours that ought to answer and do not.
   bool has_cell_ = false;
+  std::uint8_t rounds_without_end_ = 0;
   Time restart_at_ = kNever;
   Time watch_at_ = kNever;
   /// How long the waves took; before they are over, when the round began. Modulo 2^32.
