@@ -5,6 +5,9 @@
 //   distributed_bench random FROM TO      random robots against the exact answer, quiet links
 //   distributed_bench noisy FROM TO       the same with loss, duplication, jitter, bit errors
 //   distributed_bench faults FROM TO      a random module dies or a random link fails
+//   distributed_bench stale FROM TO       the same after a safe verdict; then an unsafe plan is
+//   told distributed_bench liars FROM TO       a random module hangs, or changes what it sends
+//   distributed_bench watching FILE...    packets that watching over the verdict costs, a table
 //   distributed_bench growth              rounds against the length of a fixed arm, each method
 //   distributed_bench sweeps METHOD FILE...   sweeps of the equilibrium, a CSV
 //   distributed_bench throughput          events per second and memory of large robots
@@ -21,6 +24,7 @@
 #include "holdfast/base/rng.hpp"
 #include "holdfast/distributed.hpp"
 #include "random_robot.hpp"
+#include "watch_campaign.hpp"
 
 namespace {
 
@@ -146,6 +150,105 @@ int run_faults(std::uint64_t from, std::uint64_t to) {
   return wrong;
 }
 
+struct NamedLink {
+  const char* name;
+  sim::LinkModel link;
+};
+
+const NamedLink kBlinkyBlocks[] = {{"v1", sim::blinky_blocks_v1()},
+                                   {"v2", sim::blinky_blocks_v2()}};
+
+/// Who still shows the old `safe`, and for how long did anybody?
+int run_stale(std::uint64_t from, std::uint64_t to) {
+  constexpr const char* kNames[] = {"one module dies", "three die", "a link is cut"};
+  int stale_count = 0;
+  fmt::print(
+      "| link | after a safe verdict | runs | with an old safe | modules | of | "
+      "longest: s | largest part of the stated time |\n|---|---|---|---|---|---|---|---|\n");
+  for (const auto& [link_name, link] : kBlinkyBlocks) {
+    for (const test::Break kind :
+         {test::Break::kOneDies, test::Break::kThreeDie, test::Break::kLinkCut}) {
+      int runs = 0;
+      int stale_runs = 0;
+      int old_safe = 0;
+      int modules = 0;
+      double longest = 0;
+      double part = 0;
+      for (std::uint64_t seed = from; seed < to; ++seed) {
+        const auto robot = test::endangered_robot(seed);
+        const auto outcome = robot ? test::break_and_plan(*robot, kind, link, seed) : std::nullopt;
+        if (!outcome) {
+          continue;
+        }
+        ++runs;
+        stale_runs += outcome->old_safe_count > 0 ? 1 : 0;
+        old_safe += outcome->old_safe_count;
+        modules += outcome->module_count;
+        longest = std::max(longest, *sim::seconds(link, outcome->longest));
+        part = std::max(
+            part, static_cast<double>(outcome->longest) / static_cast<double>(outcome->time_bound));
+      }
+      fmt::print("| {} | {} | {} | {} | {} | {} | {:.1f} | {:.2f} |\n", link_name,
+                 kNames[static_cast<int>(kind)], runs, stale_runs, old_safe, modules, longest,
+                 part);
+      stale_count += stale_runs + (part > 1 ? 1 : 0);
+    }
+  }
+  return stale_count;
+}
+
+/// Does every run end with a verdict at every other module?
+int run_liars(std::uint64_t from, std::uint64_t to) {
+  using Kind = test::FaultyOptions::Kind;
+  int waiting_runs = 0;
+  for (const Kind kind : {Kind::kHangs, Kind::kLies}) {
+    base::Rng rng(from);
+    int faulty_runs = 0;
+    int endless = 0;
+    int waiting = 0;
+    int wrong = 0;
+    long changes = 0;
+    std::vector<double> times;
+    for (std::uint64_t seed = from; seed < to; ++seed) {
+      const model::Robot robot = make_robot(test::random_robot(seed));
+      test::FaultyOptions faulty{.kind = kind, .one_in = 2 + rng.below(100), .seed = seed};
+      faulty.module =
+          static_cast<std::int32_t>(rng.below(robot.modules().size() - robot.planned_count()));
+      faulty.at = rng.below(1'000'000);
+      const auto outcome = test::run_faulty(robot, faulty, sim::blinky_blocks_v2());
+      faulty_runs += outcome.change_count > 0 ? 1 : 0;
+      changes += outcome.change_count;
+      endless += outcome.is_quiet ? 0 : 1;
+      waiting += outcome.without_verdict_count > 0 ? 1 : 0;
+      wrong += outcome.is_wrongly_safe ? 1 : 0;
+      times.push_back(*sim::seconds(sim::blinky_blocks_v2(), outcome.verdict_time));
+    }
+    std::ranges::sort(times);
+    fmt::print(
+        "{}: {} runs, {} with something changed, {} changes; {} do not end, {} with a module "
+        "without a verdict; {} with a wrong safe; last verdict after {:.1f} s (median), "
+        "{:.1f} s (longest)\n",
+        kind == Kind::kHangs ? "hangs" : "lies", times.size(), faulty_runs, changes, endless,
+        waiting, wrong, times[times.size() / 2], times.back());
+    waiting_runs += endless + waiting;
+  }
+  return waiting_runs;
+}
+
+int run_watching(std::span<char*> files) {
+  fmt::print("| case | modules | v1: packets a module and second | v2 |\n|---|---|---|---|\n");
+  for (const char* file : files) {
+    const auto structure = load_file(file);
+    HOLDFAST_CHECK(structure.has_value());
+    const model::Robot& robot = structure.value().robot;
+    fmt::print("| {} | {} | {:.2f} | {:.2f} |\n", structure.value().name,
+               robot.modules().size() - robot.planned_count(),
+               test::watching_packets(robot, sim::blinky_blocks_v1()),
+               test::watching_packets(robot, sim::blinky_blocks_v2()));
+  }
+  return 0;
+}
+
 /// The paper's Fig. 7: a foot and a post of 2x3, the rest one row; the foot is fixed.
 model::RobotSpec fixed_arm(int count) {
   model::RobotSpec spec{
@@ -225,7 +328,8 @@ int run_throughput() {
 int usage() {
   fmt::print(stderr,
              "usage: distributed_bench cases FILE... | random FROM TO | noisy FROM TO | "
-             "faults FROM TO | growth | sweeps METHOD FILE... | throughput\n");
+             "faults FROM TO | stale FROM TO | liars FROM TO | watching FILE... | growth | sweeps "
+             "METHOD FILE... | throughput\n");
   return 64;
 }
 
@@ -237,18 +341,25 @@ int main(int argc, char** argv) {
   if (what == "cases" && argc > 2) {
     return run_cases(arguments.subspan(2)) == 0 ? 0 : 1;
   }
+  if (what == "watching" && argc > 2) {
+    return run_watching(arguments.subspan(2));
+  }
   if (what == "sweeps" && argc > 3) {
     return run_sweeps(arguments[2], arguments.subspan(3)) == 0 ? 0 : 1;
   }
   if (what == "growth" || what == "throughput") {
     return what == "growth" ? run_growth() : run_throughput();
   }
-  if (argc != 4 || (what != "random" && what != "noisy" && what != "faults")) {
+  const bool is_campaign =
+      what == "random" || what == "noisy" || what == "faults" || what == "stale" || what == "liars";
+  if (argc != 4 || !is_campaign) {
     return usage();
   }
   const std::uint64_t from = std::strtoull(arguments[2], nullptr, 10);
   const std::uint64_t to = std::strtoull(arguments[3], nullptr, 10);
-  const int faults =
-      what == "faults" ? run_faults(from, to) : run_random(from, to, what == "noisy");
+  const int faults = what == "faults"  ? run_faults(from, to)
+                     : what == "stale" ? run_stale(from, to)
+                     : what == "liars" ? run_liars(from, to)
+                                       : run_random(from, to, what == "noisy");
   return faults == 0 ? 0 : 1;
 }

@@ -172,6 +172,34 @@ TEST(FirmwareFaults, a_module_without_power_never_makes_a_wrong_safe) {
   break_robots(Fault::Kind::kKill, 1);
 }
 
+/// docs/distributed.md, Watching: on lines of version 2 after 15 s and three times what the waves
+/// take, a quarter of a second here. The arm's middle dies long after the verdict; what sticks out
+/// hears no order any more.
+TEST(FirmwareFaults, nobody_keeps_an_old_verdict) {
+  const Structure structure = load("arm_breaks_a");
+  const auto& modules = structure.robot.modules();
+  const auto dead = std::ranges::find(modules, base::Cell{3, 1, 2}, &model::Module::cell);
+  ASSERT_NE(dead, modules.end());
+  const emulator::Time break_at = 6'000'000;
+  for (const emulator::Time watched : {emulator::Time{0}, emulator::Time{16'000'000}}) {
+    const auto emulation = finished(
+        structure,
+        {.faults = {{.kind = Fault::Kind::kKill,
+                     .at = break_at,
+                     .module = static_cast<std::int32_t>(std::distance(modules.begin(), dead))}},
+         .time_min = break_at + watched});
+    EXPECT_EQ(emulation.report().mismatch_count, 0U);
+    EXPECT_LE(emulation.report().step_cycles_max, kStepCyclesMax);
+    for (std::int32_t i = 0; i < emulation.module_count(); ++i) {
+      if (emulation.module(i).is_alive) {
+        EXPECT_EQ(emulation.module(i).answer.verdict,
+                  watched > 0 ? agent::Verdict::kUndecided : agent::Verdict::kSafe)
+            << "module " << i;
+      }
+    }
+  }
+}
+
 TEST(FirmwareFaults, a_cut_line_never_makes_a_wrong_safe) { break_robots(Fault::Kind::kCut, 2); }
 
 TEST(FirmwareFaults, a_damaged_byte_does_no_harm) { break_robots(Fault::Kind::kFlip, 3); }

@@ -8,6 +8,7 @@
 #include "remote.hpp"
 #include "rounds.hpp"
 #include "sweep.hpp"
+#include "watch.hpp"
 #include "waves.hpp"
 #include "work.hpp"
 

@@ -53,8 +53,8 @@ typename BasicAgent<Real>::Course BasicAgent<Real>::course_after(const Order& or
 template <class Real>
 bool BasicAgent<Real>::is_in_course(const Order& order) const {
   const Course course = course_;
-  if (order.operation == Operation::kVerdict) {
-    return course != Course::kAnswered;
+  if (order.operation == Operation::kVerdict) {  // Said again, it is the same one.
+    return course != Course::kAnswered || order.answer == order_.answer;
   }
   if (stage_ != kTreeStage) {
     return false;

@@ -74,10 +74,11 @@ constexpr Field kFields[] = {
     {T::kOrder, O::kSlope, 2, Rule::kFlags, kExchangeFirst | kMixProducts},
     {T::kOrder, O::kHold, 2, Rule::kFlags, kReleaseOpen | kFreeOpen},
     {T::kOrder, O::kVerdict, 2, Rule::kOneTo, static_cast<std::uint8_t>(Verdict::kUndecided)},
-    {T::kOrder, O::kVerdict, 3, Rule::kAtMost, kReasonCount - 1},
+    {T::kOrder, O::kVerdict, 3, Rule::kAtMost, static_cast<int>(Reason::kAmbiguousFeet)},
     {T::kOrder, O::kVerdict, 8, Rule::kCell, 0},
     {T::kOrder, O::kVerdict, 17, Rule::kAtMost, kLastFace},
-    {T::kOrder, O::kStep, 2, Rule::kFlags, kRestart | kLeastResidual | kKeepStates | kWithClusters},
+    {T::kOrder, O::kStep, 2, Rule::kFlags,
+     kRestart | kLeastResidual | kKeepStates | kWithClusters | kHoldPlanned},
     {T::kOrder, O::kStep, 3, Rule::kExchanges, 0},
 
     {T::kReport, O::kPlan, 2, Rule::kFlags, kFaces | Planned::kOccupied},

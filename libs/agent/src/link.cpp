@@ -44,7 +44,21 @@ int finish(std::span<std::uint8_t> packet, int size, std::uint16_t start) {
   return size + wire::kChecksumBytes;
 }
 
+/// How long to wait for an answer: the first retries come at an even pace.
+Time patience_of(const LinkTiming& timing, int retry_count) {
+  const int extra = retry_count > timing.retry_count ? retry_count - timing.retry_count : 0;
+  return timing.retransmit_after << static_cast<unsigned>(extra < 3 ? extra : 3);
+}
+
 }  // namespace
+
+Time lost_after(const LinkTiming& timing) {
+  Time sum = 0;
+  for (int retry_count = 0; retry_count <= timing.lost_after_retries; ++retry_count) {
+    sum += patience_of(timing, retry_count);
+  }
+  return sum;
+}
 
 void Link::bring_up(std::uint16_t nonce, Time now) {
   const std::uint16_t last = nonce_;
@@ -307,11 +321,7 @@ int Link::write_packet(std::span<std::uint8_t> packet, const LinkTiming& timing,
   return finish(packet, size, session(nonce_, peer_nonce_));
 }
 
-/// How long to wait for an answer: the first retries come at an even pace.
-Time Link::patience(const LinkTiming& timing) const {
-  const int extra = retry_count_ > timing.retry_count ? retry_count_ - timing.retry_count : 0;
-  return timing.retransmit_after << static_cast<unsigned>(extra < 3 ? extra : 3);
-}
+Time Link::patience(const LinkTiming& timing) const { return patience_of(timing, retry_count_); }
 
 void Link::on_time(const LinkTiming& timing, bool is_watched, Time now) {
   if (!is_used()) {

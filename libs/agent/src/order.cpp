@@ -459,7 +459,9 @@ const char* name(Reason reason) {
                                     "the robot is too large to be counted",
                                     "no method settled",
                                     "the largest load ratio cannot be told from 1",
-                                    "the verdict depends on feet that are neither held nor free"};
+                                    "the verdict depends on feet that are neither held nor free",
+                                    "no answer in time",
+                                    "no module that knows its cell was heard"};
   return kNames[static_cast<std::size_t>(reason)];
 }
 

@@ -6,6 +6,7 @@
 #include "holdfast/agent/agent.hpp"
 #include "holdfast/agent/legal.hpp"
 #include "methods.hpp"
+#include "watch.hpp"
 
 namespace holdfast::agent {
 
@@ -56,6 +57,9 @@ void BasicAgent<Real>::begin(const Event& event, Actions& actions) {
   if (restart_at_ <= now_) {
     start_round();
   }
+  if (watch_at_ <= now_) {
+    end_watch();
+  }
 }
 
 /// Messages only leave something to do; it is done here, a piece at a time, none of which calls
@@ -72,6 +76,7 @@ void BasicAgent<Real>::handle(const Event& event) {
   Link& link = links_[static_cast<std::size_t>(face)];
   switch (event.kind) {
     case EventKind::kStart:
+      watch_at_ = now_ + watch::silence(setup_.timing);
       if (identity_.is_anchor) {
         restart_at_ = now_ + setup_.timing.acknowledge_after;
       }
@@ -119,7 +124,7 @@ void BasicAgent<Real>::finish_step(Actions& actions) {
   touched_ = 0;
   actions.is_unfinished = is_busy_;
   actions.send_faces = send_faces_;
-  actions.wake_at = restart_at_;
+  actions.wake_at = restart_at_ < watch_at_ ? restart_at_ : watch_at_;
   for (const Time at : deadline_) {
     actions.wake_at = at < actions.wake_at ? at : actions.wake_at;
   }
@@ -171,6 +176,7 @@ void BasicAgent<Real>::dispatch(int face, std::span<const std::uint8_t> message)
   if (!is_expected(face, message)) {
     return refuse(face);
   }
+  keep_waiting();
   switch (type) {
     case MessageType::kEcho:
       return take_echo(face, message);
@@ -254,8 +260,8 @@ std::uint8_t BasicAgent<Real>::used_faces() const {
 template <class Real>
 void BasicAgent<Real>::leave_round() {
   if (round_.epoch > 0 || silent_faces_ != 0) {
-    answer_ = {};
     phase_ = Phase::kDiscovery;
+    forget_answer();
     is_sweeping_ = false;
     is_exchanging_ = false;
     leave_clusters();
@@ -299,8 +305,11 @@ void BasicAgent<Real>::enter_round(const Round& round) {
   planned_here_ = 0;
   planned_.clear();
   course_ = Course::kWaves;
-  answer_ = {};
   phase_ = Phase::kCoordinates;
+  wave_time_ = static_cast<std::uint32_t>(now_);
+  rounds_without_end_ = static_cast<std::uint8_t>(
+      rounds_without_end_ + (rounds_without_end_ < watch::kRoundsWithoutEndMax ? 1 : 0));
+  forget_answer();
   touched_ = 0x3f;
   for (Link& link : links_) {
     link.drop_unsent();

@@ -132,7 +132,7 @@ void BasicAgent<Real>::take_order(const Order& order) {
   order_ = order;
   course_ = course_after(order);
   is_sweeping_ = true;
-  phase_ = sweep::phase_of(order.operation);
+  begin_waiting();
   reports_awaited_ = children_;
   exchanges_left_ = sweep::exchange_count(order);
   exchanges_behind_ = sweep::exchanges_behind(order);
@@ -318,8 +318,7 @@ bool BasicAgent<Real>::finish_sweep() {
     has_next_order_ = true;
   }
   if (order_.operation == wire::Operation::kVerdict) {
-    phase_ = Phase::kDone;
-    touched_ = 0x3f;
+    watch_verdict();
   }
   return true;
 }

@@ -83,8 +83,10 @@ void BasicAgent<Real>::take_join(int face, std::span<const std::uint8_t> message
     return;
   }
   if (stage > stage_ + 1 || (stage > stage_ && course_ != Course::kWaves)) {
-    refuse(face);  // A wave has been left out, or the tree is in use.
-  } else if (stage > stage_) {
+    return refuse(face);  // A wave has been left out, or the tree is in use.
+  }
+  keep_waiting();
+  if (stage > stage_) {
     if (stage == kFirstStage) {
       const auto direction = static_cast<base::Direction>(face);
       nodes_[0].cell = base::neighbour(theirs, base::opposite(direction));

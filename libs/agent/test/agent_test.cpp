@@ -306,7 +306,7 @@ TEST(Agent, the_same_seed_gives_the_same_bits) {
 }
 
 /// All that the anchor reaches know it, and so do the neighbours of the silent one beyond it. Who
-/// is further beyond waits for a wave, without an answer.
+/// is further beyond hears no wave, and its own clock says so.
 TEST(Agent, a_module_that_never_answers_makes_it_undecided) {
   const auto setup = table_setup();
   for (std::size_t mute = 1; mute < bracket().size(); ++mute) {
@@ -317,13 +317,16 @@ TEST(Agent, a_module_that_never_answers_makes_it_undecided) {
       network.tick();
       ASSERT_TRUE(network.is_every([](const Agent& agent) {
         return agent.answer().verdict == Verdict::kNone ||
-               agent.answer().reason == Reason::kNeighbourSilent;
+               agent.answer().reason == Reason::kNeighbourSilent ||
+               agent.answer().reason == Reason::kNoAnchor;
       }));
     }
     for (std::size_t i = 0; i < places.size(); ++i) {
       const bool is_beside = distance(places[i].cell, places[mute].cell) == 1;
-      if (i != mute && (is_beside || network.agent(i).has_cell())) {
+      if (i != mute) {
         EXPECT_EQ(network.agent(i).answer().verdict, Verdict::kUndecided) << i << ' ' << mute;
+        EXPECT_EQ(network.agent(i).answer().reason == Reason::kNoAnchor,
+                  !is_beside && !network.agent(i).has_cell());
       }
     }
   }

@@ -307,10 +307,10 @@ TEST(Order, every_verdict_and_reason_has_a_name_of_its_own) {
   }
   EXPECT_EQ(names.size(), 5U);
   names.clear();
-  for (int i = 0; i <= static_cast<int>(Reason::kAmbiguousFeet); ++i) {
+  for (int i = 0; i <= static_cast<int>(Reason::kNoAnchor); ++i) {
     names.insert(name(static_cast<Reason>(i)));
   }
-  EXPECT_EQ(names.size(), 12U);
+  EXPECT_EQ(names.size(), 14U);
 }
 
 }  // namespace

@@ -219,7 +219,8 @@ void Robot::make_fault(const Fault& fault) {
 
 /// Does everybody alive know the verdict, with all plans and after all faults?
 bool Robot::is_settled() const {
-  if (now_ <= cycles(planned_at_) + kByteCycles || next_fault_ < options_.faults.size()) {
+  if (now_ <= cycles(planned_at_) + kByteCycles || now_ < cycles(options_.time_min) ||
+      next_fault_ < options_.faults.size()) {
     return false;
   }
   return std::ranges::all_of(modules_, [](const auto& module) {

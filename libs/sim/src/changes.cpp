@@ -144,10 +144,12 @@ void Engine::make_fault(const Fault& fault) {
   };
   switch (fault.kind) {
     case Fault::Kind::kKill:
+      break_at_ = now_;
       port.is_silenced = true;
       silence(fault.module);
       break;
     case Fault::Kind::kCut:
+      break_at_ = now_;
       cut(fault.module, fault.face);
       cut(neighbour(fault.module, fault.face), base::opposite(fault.face));
       break;
@@ -163,7 +165,7 @@ void Engine::make_fault(const Fault& fault) {
 /// The agent gets no more events; those that wait for it are void.
 void Engine::silence(std::int32_t module) {
   Port& port = ports_[at(module)];
-  port.wake_at = agent::kNever;
+  set_wake(port, agent::kNever, false);
   port.wanted = 0;
   while (port.waiting_first != Port::kNoEvent) {
     const Happening what = take_waiting(module);

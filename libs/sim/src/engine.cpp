@@ -33,19 +33,43 @@ bool Engine::run_for(std::uint64_t event_count) {
     boot();
   }
   while (!is_over_ && recorder_.event_count() < stop) {
-    if (queue_.is_empty() || queue_.next_time() > options_.time_max) {
+    const Time next = queue_.is_empty() ? agent::kNever : queue_.next_time();
+    is_quiet_ = next == agent::kNever || is_at_rest(next);
+    if (is_quiet_ || next > options_.time_max) {
       finish();
       break;
     }
     const QueuedEvent event = queue_.pop();
+    const Happening what = unpack(event.content);
+    work_count_ -= what.kind == Kind::kTimer ? 0 : 1;
     now_ = event.time;
     prefetch();
-    handle(unpack(event.content));
+    handle(what);
   }
   if (recorder_.event_count() >= options_.event_count_max) {
     finish();
   }
   return !is_over_;
+}
+
+/// Nothing is left to do but to watch over verdicts, and there is nothing to be found by that: no
+/// module has died and no link was cut so lately that modules may not know yet. `next`: when the
+/// next event comes.
+bool Engine::is_at_rest(Time next) const {
+  if (work_count_ > 0) {
+    return false;
+  }
+  const Time verdict_at = recorder_.verdict_time();
+  Time until = options_.watch_for > 0 ? verdict_at + options_.watch_for : 0;
+  if (break_at_ != agent::kNever) {
+    // Twice: each side of the break may have to hear of the other's new round.
+    for (std::size_t i = 0; i < agents_.size(); ++i) {
+      if (ports_[i].takes_part()) {
+        until = std::max(until, break_at_ + 2 * agents_[i].watch_time());
+      }
+    }
+  }
+  return next > until;
 }
 
 /// Agents lie kibibytes apart, and every event would wait for memory. What a step touches first is
@@ -142,14 +166,24 @@ void Engine::step(std::int32_t module) {
   agents_[at(module)].step(step_event_, actions_);
   recorder_.handled(now_);
   port.wanted = actions_.send_faces;
-  port.wake_at = actions_.wake_at;
-  if (actions_.wake_at <= step_event_.now) {
+  Time wake_at = actions_.wake_at;
+  if (wake_at <= step_event_.now) {
     // To be woken at once, unless that has just been done: what is due then waits for a line.
-    port.wake_at = step_event_.kind == EventKind::kTime ? agent::kNever : now_;
-  } else if (actions_.wake_at != agent::kNever) {
-    port.wake_at = port.clock.global(actions_.wake_at);
+    wake_at = step_event_.kind == EventKind::kTime ? agent::kNever : now_;
+  } else if (wake_at != agent::kNever) {
+    wake_at = port.clock.global(wake_at);
   }
+  const agent::Agent& agent = agents_[at(module)];
+  set_wake(port, wake_at,
+           agent.phase() == agent::Phase::kDone && actions_.wake_at == agent.watch_at());
   observe(module);
+}
+
+void Engine::set_wake(Port& port, Time wake_at, bool is_watching) {
+  work_count_ -= port.has_work() ? 1 : 0;
+  port.wake_at = wake_at;
+  port.is_watching = is_watching;
+  work_count_ += port.has_work() ? 1 : 0;
 }
 
 /// Notes what has changed for others to know.

@@ -67,7 +67,13 @@ class Engine {
   static Happening unpack(std::uint64_t content);
 
   // engine.cpp: the loop, steps, timers, computing.
-  void push(Time time, const Happening& what) { queue_.push(time, pack(what)); }
+  void push(Time time, const Happening& what) {
+    work_count_ += what.kind == Kind::kTimer ? 0 : 1;
+    queue_.push(time, pack(what));
+  }
+
+  bool is_at_rest(Time next) const;
+  void set_wake(Port& port, Time wake_at, bool is_watching);
 
   void prefetch() const;
   void handle(const Happening& what);
@@ -127,7 +133,12 @@ class Engine {
   agent::Actions actions_{};
   Time now_ = 0;
   std::uint64_t packet_count_ = 0;
+  /// What is to be done besides watching: events in the queue that are no timers, modules that want
+  /// to wake.
+  std::size_t work_count_ = 0;
+  Time break_at_ = agent::kNever;  ///< Of the last thing that nobody was told of.
   bool is_booted_ = false;
+  bool is_quiet_ = false;
   bool is_over_ = false;
 };
 

@@ -39,7 +39,12 @@ void Engine::offer_line(std::int32_t module, int face) {
 bool Engine::send_one(std::int32_t module, int face) {
   step_event_ = event_of(agent::EventKind::kLineFree, static_cast<base::Direction>(face));
   step(module);
-  const int size = actions_.packet_bytes;
+  int size = actions_.packet_bytes;
+  if (size > 0 && options_.tamper) {
+    const auto room = static_cast<std::size_t>(options_.link.packet_bytes);
+    size = options_.tamper(now_, module, static_cast<base::Direction>(face),
+                           std::span(actions_.packet).first(room), size);
+  }
   HOLDFAST_CHECK(size >= 0 && size <= options_.link.packet_bytes);
   if (size == 0) {
     return false;

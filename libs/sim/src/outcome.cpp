@@ -16,7 +16,7 @@ bool is_same(const agent::Answer& a, const agent::Answer& b) {
 
 SimulationResult Engine::result() const {
   SimulationResult result = recorder_.result();
-  result.is_quiet = is_booted_ && queue_.is_empty();
+  result.is_quiet = is_quiet_;
   result.all_agree = true;
   bool is_first = true;
   for (std::size_t i = 0; i < agents_.size(); ++i) {

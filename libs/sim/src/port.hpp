@@ -44,11 +44,15 @@ struct Port {
   std::uint8_t wanted = 0;       ///< Faces on which a packet waits.
   std::uint8_t line_events = 0;  ///< Faces with an event in the queue for a free line.
   std::uint8_t cut_faces = 0;    ///< Links that drop everything.
+  bool is_watching = false;      ///< wake_at is for watching over a verdict, nothing else.
   bool is_busy = false;          ///< Computing; an event in the queue says when it is done.
   bool is_attached = true;
   bool is_silenced = false;
 
   bool takes_part() const { return is_attached && !is_silenced; }
+
+  /// Has the agent something to do at wake_at but watching?
+  bool has_work() const { return wake_at != agent::kNever && !is_watching; }
 };
 
 }  // namespace holdfast::sim

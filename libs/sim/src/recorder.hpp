@@ -41,6 +41,8 @@ class Recorder {
     ++result_.events;
   }
 
+  Time verdict_time() const { return result_.verdict_time; }
+
   std::uint64_t event_count() const { return result_.events; }
 
   /// The counts, with the time of the present phase up to the last event.

@@ -50,7 +50,9 @@
 /// made reliable (link.hpp). When a module is attached or removed, or a neighbour falls silent, the
 /// work so far is void: the module that notices starts a new round with a higher epoch, and what
 /// belongs to an older one is ignored. A silent neighbour is still part of the structure, so the
-/// verdict is then `undecided`, never `safe`.
+/// verdict is then `undecided`, never `safe`. Nobody waits for ever: a clock of its own ends every
+/// wait of a module as `undecided`, and the root says its verdict again and again, so that a module
+/// that is cut off from it does not keep an old one (src/watch.hpp).
 ///
 /// LIMITS. At most kPlannedMax planned modules in the whole robot; more end as `undecided`, as does
 /// everything else that the program cannot be certain of; answer().reason says which. What a faulty
@@ -206,6 +208,14 @@ class BasicAgent {
   /// count as silent.
   std::uint8_t refused_count() const { return refused_count_; }
 
+  /// When this module's clock runs out (src/watch.hpp), or when the root says its verdict again;
+  /// kNever if there is nothing to wait for.
+  Time watch_at() const { return watch_at_; }
+
+  /// For how long a verdict stands that the root does not say again. W being the time that the
+  /// waves of the last round took here: ping_after + lost_after(timing) + 2 W.
+  Time watch_time() const;
+
   /// Of the root: what was done to find the equilibrium.
   const Effort& effort() const { return conductor_.effort(); }
 
@@ -231,7 +241,9 @@ class BasicAgent {
   void plan(const base::Cell& cell);
   void finish_step(Actions& actions);
 
-  bool is_working() const { return stage_ != kNoStage && phase_ != Phase::kDone; }
+  bool is_working() const {
+    return stage_ != kNoStage && phase_ != Phase::kDone && watch_at_ != kNever;
+  }
 
   std::uint8_t used_faces() const;
 
@@ -255,6 +267,13 @@ class BasicAgent {
   bool is_good_begin(const Order& order) const;
   bool is_expected(int face, std::span<const std::uint8_t> message) const;
   bool is_expected_of_branch(int face, std::span<const std::uint8_t> message, bool reports) const;
+
+  // watch.hpp: the clock that ends every wait.
+  void keep_waiting();
+  void forget_answer();
+  void begin_waiting();
+  void watch_verdict();
+  void end_watch();
 
   // waves.cpp: coordinates, election, tree.
   void start_wave(std::uint8_t stage);
@@ -461,7 +480,11 @@ class BasicAgent {
   std::array<Round, base::kDirectionCount> peer_round_;  ///< Of what comes in on each link.
   std::uint8_t silent_faces_ = 0;  ///< Neighbours that ought to answer and do not.
   bool has_cell_ = false;
+  std::uint8_t rounds_without_end_ = 0;
   Time restart_at_ = kNever;
+  Time watch_at_ = kNever;
+  /// How long the waves took; before they are over, when the round began. Modulo 2^32.
+  std::uint32_t wave_time_ = 0;
   std::uint8_t touched_ = 0;  ///< Faces whose link has changed in this step.
   std::uint8_t send_faces_ = 0;
   std::array<Time, base::kDirectionCount> deadline_{};

@@ -32,6 +32,9 @@ struct LinkTiming {
   Time ping_after = 2'000'000;     ///< Of silence, while waiting for the neighbour.
 };
 
+/// How long the first packet that nobody acknowledges is under way before the link is lost.
+Time lost_after(const LinkTiming& timing);
+
 class Link {
  public:
   enum class State : std::uint8_t { kDown, kGreeting, kOpen, kLost };

@@ -31,8 +31,10 @@ enum class Reason : std::uint8_t {
   kNotConverged,     ///< No method settled within the limit of iterations.
   kTooClose,         ///< The largest load ratio cannot be told from 1.
   kAmbiguousFeet,    ///< The verdict depends on feet that are neither held nor free.
+  kNoAnswer,         ///< The computation has stopped, or the root is no longer heard.
+  kNoAnchor,         ///< Nobody has said where this module is.
 };
-inline constexpr int kReasonCount = 12;
+inline constexpr int kReasonCount = 14;
 
 const char* name(Verdict verdict);
 const char* name(Reason reason);
@@ -44,6 +46,8 @@ struct Answer {
   float load_ratio_max = 0;    ///< Not meaningful if unstable or undecided.
   base::Cell worst_cell = {};  ///< The worst connection: this cell and its neighbour ...
   base::Direction worst_direction = base::Direction::kPlusX;  ///< ... in this direction.
+
+  friend constexpr bool operator==(const Answer&, const Answer&) = default;
 };
 
 /// In kPlan: no planned module is learned yet.

@@ -51,6 +51,7 @@ struct EmulationOptions {
   Time plan_at = 400'000;        ///< When.
   Time start_spread = 20'000;    ///< Modules start within so long.
   Time time_max = 60'000'000;
+  Time time_min = 0;  ///< Not over sooner, as modules watch over a verdict that they know.
 };
 
 /// What it took, over all modules.

@@ -3,8 +3,10 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -20,6 +22,11 @@
 /// trace hash on every platform.
 namespace holdfast::sim {
 
+/// What a module sends is changed before it is on its line: `packet` holds `size` bytes and has
+/// room for those of the largest packet. Returns the new size.
+using Tamper = std::function<int(Time now, std::int32_t module, base::Direction face,
+                                 std::span<std::uint8_t> packet, int size)>;
+
 struct SimulationOptions {
   LinkModel link = unit();
   std::uint64_t seed = 1;                              ///< Of noise, clocks and session numbers.
@@ -29,9 +36,12 @@ struct SimulationOptions {
   std::vector<Announcement> announcements = {};  ///< Besides the robot's planned modules.
   Time time_max = agent::kNever;                 ///< Later events do not happen.
   std::uint64_t event_count_max = ~std::uint64_t{0};
+  /// How long after the last verdict the modules' watching over it is simulated as well.
+  Time watch_for = 0;
   std::int32_t anchor = 0;       ///< The module that knows its cell.
   std::int32_t plan_module = 0;  ///< Is told of the robot's planned modules before it starts.
   TraceSink* trace = nullptr;    ///< Not owned; outlives the simulation.
+  Tamper tamper = {};            ///< Called for every packet, if there is one: faulty modules.
 };
 
 /// Why a simulation cannot be made (what, value found, values allowed), if it cannot.
@@ -52,7 +62,8 @@ class Simulation {
   Simulation& operator=(Simulation&&) noexcept;
   ~Simulation();
 
-  /// Until nothing can happen any more or a limit is reached.
+  /// Until nothing can happen any more or a limit is reached. Modules watch over their verdict for
+  /// ever; the run ends when that is all they do and there is nothing that it could find.
   void run();
 
   /// Hands about `event_count` events to modules. False: it is over. The first call also starts all

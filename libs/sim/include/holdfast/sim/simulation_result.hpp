@@ -36,7 +36,7 @@ struct SimulationResult {
   /// before: what a synchronous network would need at least. Acknowledgements hand on the count.
   std::uint64_t rounds = 0;
   std::uint64_t events = 0;  ///< Handed to modules.
-  bool is_quiet = false;     ///< It ended by itself: nothing can happen any more.
+  bool is_quiet = false;     ///< It ended by itself: nothing can happen but watching.
 
   std::uint64_t packets = 0;  ///< Sent, acknowledgements and repetitions included.
   std::uint64_t bytes = 0;

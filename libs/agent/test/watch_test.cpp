@@ -1,0 +1,129 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+// The clock that ends every wait, docs/distributed.md, Watching. tests/distributed/watch_test.cpp
+// breaks whole robots.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "test_network.hpp"
+
+namespace holdfast::agent::test {
+namespace {
+
+std::vector<Place> row(std::int32_t count) {
+  std::vector<Place> places;
+  for (std::int32_t x = 0; x < count; ++x) {
+    places.push_back({.cell = {x, 0, 0}});
+  }
+  return places;
+}
+
+bool is_safe(const Agent& agent) { return agent.answer().verdict == Verdict::kSafe; }
+
+bool is_undecided(const Agent& agent) { return agent.answer().verdict == Verdict::kUndecided; }
+
+void run_ticks(TestNetwork& network, Time ticks) {
+  for (Time i = 0; i < ticks; ++i) {
+    network.tick();
+  }
+}
+
+/// The sum of all waits of 8 ticks and twice, four and eight times as long: 5 + 2 + 4 + 14 x 8.
+TEST(Watch, a_link_is_lost_after_all_its_retries) {
+  EXPECT_EQ(lost_after({.retransmit_after = 8}), 8U * 123);
+  EXPECT_EQ(lost_after({.retransmit_after = 8, .retry_count = 4, .lost_after_retries = 4}), 40U);
+}
+
+/// Once every ping_after and the time of a sweep, over each of the five links.
+TEST(Watch, the_root_says_a_verdict_again_for_as_long_as_it_stands) {
+  const auto setup = table_setup();
+  TestNetwork network(setup, row(6));
+  ASSERT_TRUE(network.run());
+  int order_count = 0;
+  network.watch = [&](std::size_t, base::Direction, std::span<const std::uint8_t> packet) {
+    const bool is_data = packet[0] >> 6U == static_cast<int>(wire::PacketKind::kData);
+    order_count += is_data && packet[2] == static_cast<int>(wire::MessageType::kOrder) &&
+                           packet[3] == static_cast<int>(wire::Operation::kVerdict)
+                       ? 1
+                       : 0;
+  };
+  constexpr Time kTicks = 5'000;
+  run_ticks(network, kTicks);
+  EXPECT_TRUE(network.is_every(is_safe));
+  EXPECT_LE(order_count, 5 * static_cast<int>(kTicks / setup.timing.ping_after));
+  EXPECT_GE(order_count, 5 * static_cast<int>(kTicks / (setup.timing.ping_after + 4 * 6)));
+}
+
+TEST(Watch, an_undecided_verdict_is_said_once) {
+  const auto setup = table_setup();
+  auto places = row(6);
+  places[4].is_mute = true;
+  TestNetwork network(setup, places);
+  ASSERT_TRUE(network.run_until(is_undecided));
+  run_ticks(network, 1'000);
+  int packet_count = 0;
+  network.watch = [&](std::size_t, base::Direction, std::span<const std::uint8_t>) {
+    ++packet_count;
+  };
+  run_ticks(network, 20'000);
+  EXPECT_EQ(packet_count, 0);
+}
+
+/// Nobody says anything any more, and no link tells, as only the root would have sent.
+TEST(Watch, without_the_root_a_verdict_ends_in_its_time) {
+  const auto setup = table_setup();
+  TestNetwork network(setup, row(7));
+  ASSERT_TRUE(network.run());
+  Time watch_time = 0;
+  std::size_t root = 0;
+  for (std::size_t i = 0; i < network.size(); ++i) {
+    watch_time = std::max(watch_time, network.agent(i).watch_time());
+    root = network.agent(i).is_root() ? i : root;
+  }
+  run_ticks(network, 3'000);
+  EXPECT_TRUE(network.is_every(is_safe));
+  network.mute(root);
+  run_ticks(network, setup.timing.ping_after);
+  EXPECT_TRUE(network.is_every(is_safe));
+  run_ticks(network, watch_time);
+  EXPECT_TRUE(network.is_every(is_undecided));
+  EXPECT_EQ(network.agent(root == 0 ? 1 : 0).answer().reason, Reason::kNoAnswer);
+}
+
+/// A module that crashes again and again begins a round each time; none comes to its end.
+TEST(Watch, rounds_that_never_end_are_undecided_until_one_does) {
+  const auto setup = table_setup();
+  TestNetwork network(setup, row(6));
+  ASSERT_TRUE(network.run());
+  const auto crash_for = [&](int count) {
+    for (int i = 0; i < count; ++i) {
+      network.start(3);
+      run_ticks(network, 40);
+    }
+  };
+  crash_for(10);
+  EXPECT_FALSE(network.is_every(is_undecided));
+  crash_for(30);
+  for (std::size_t i = 0; i < network.size(); ++i) {
+    EXPECT_TRUE(i == 3 || is_undecided(network.agent(i))) << i;
+  }
+  EXPECT_TRUE(network.run_until(is_safe));
+}
+
+/// Retries so quick that the clock of the waves is 2,112 ticks, while they take 2,200 and more
+/// here.
+TEST(Watch, a_clock_that_was_too_short_changes_no_verdict) {
+  auto setup = table_setup();
+  setup.timing = {.acknowledge_after = 1, .retransmit_after = 4, .ping_after = 1};
+  TestNetwork network(setup, row(560));
+  bool was_early = false;
+  ASSERT_TRUE(network.run_until([&](const Agent& agent) {
+    was_early = was_early || agent.answer().reason == Reason::kNoAnswer;
+    return agent.phase() == Phase::kDone && is_safe(agent);
+  }));
+  EXPECT_TRUE(was_early);
+}
+
+}  // namespace
+}  // namespace holdfast::agent::test
