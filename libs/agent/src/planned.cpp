@@ -12,10 +12,13 @@ constexpr int kWholeSubtree = -1;
 }  // namespace
 
 void Planned::add(const base::Cell& cell, const base::Cell& self) {
+  if (count_ == kPlannedMax) {
+    return;
+  }
   const auto i = static_cast<std::size_t>(count_++);
   cells_[i] = cell;
   own_face_[i] = -1;
-  own_mask_[i] = cell == self ? kOccupied : std::uint8_t{0};
+  own_mask_[i] = 0;
   for (const base::Direction face : base::kDirections) {
     if (base::neighbour(self, face) == cell) {
       own_face_[i] = static_cast<std::int8_t>(base::index(face));
@@ -25,7 +28,9 @@ void Planned::add(const base::Cell& cell, const base::Cell& self) {
 }
 
 void Planned::add_below(int face, int index, std::uint8_t mask) {
-  below_[static_cast<std::size_t>(face)][static_cast<std::size_t>(index)] = mask;
+  if (index < count_) {
+    below_[static_cast<std::size_t>(face)][static_cast<std::size_t>(index)] = mask;
+  }
 }
 
 std::uint8_t Planned::mask(int index) const {

@@ -87,6 +87,7 @@ constexpr bool is_preconditioned(wire::Operation operation) {
 constexpr Phase phase_of(wire::Operation operation) {
   switch (operation) {
     case wire::Operation::kPlan:
+    case wire::Operation::kForget:
     case wire::Operation::kHosts:
     case wire::Operation::kMass:
       return Phase::kMass;

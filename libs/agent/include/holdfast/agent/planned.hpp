@@ -24,15 +24,14 @@ inline constexpr int kClusterPlannedMax = 2;
 
 class Planned {
  public:
-  static constexpr std::uint8_t kOccupied = 0x40;  ///< In a mask: the cell is not free.
-
   void clear() { *this = Planned(); }
 
   int count() const { return count_; }
 
   const base::Cell& cell(int index) const { return cells_[static_cast<std::size_t>(index)]; }
 
-  /// Learns the next cell and what touches it here. `own` has no cell: it is the module at `self`.
+  /// Learns the next cell and what touches it here, the module at `self`. More than kPlannedMax are
+  /// not kept.
   void add(const base::Cell& cell, const base::Cell& self);
 
   /// Faces of planned module `index` that touch modules in a child's subtree (bit = direction).
