@@ -5,6 +5,7 @@
 //   distributed_bench random FROM TO      random robots against the exact answer, quiet links
 //   distributed_bench noisy FROM TO       the same with loss, duplication, jitter, bit errors
 //   distributed_bench faults FROM TO      a random module dies or a random link fails
+//   distributed_bench plans FROM TO       plans told, carried out and withdrawn at any time
 //   distributed_bench growth              rounds against the length of a fixed arm, each method
 //   distributed_bench sweeps METHOD FILE...   sweeps of the equilibrium, a CSV
 //   distributed_bench throughput          events per second and memory of large robots
@@ -20,6 +21,7 @@
 #include "campaign.hpp"
 #include "holdfast/base/rng.hpp"
 #include "holdfast/distributed.hpp"
+#include "plan_campaign.hpp"
 #include "random_robot.hpp"
 
 namespace {
@@ -142,6 +144,26 @@ int run_faults(std::uint64_t from, std::uint64_t to) {
   return wrong;
 }
 
+int run_plans(std::uint64_t from, std::uint64_t to) {
+  int faults = 0;
+  fmt::print(
+      "| case | runs | modules right | wrong safe | wrong | undecided | disputed | none | "
+      "plans left over |\n|---|---|---|---|---|---|---|---|---|\n");
+  for (std::size_t i = 0; i < test::kPlanCaseCount; ++i) {
+    const auto what = static_cast<test::PlanCase>(i);
+    test::PlanTally tally;
+    for (std::uint64_t seed = from; seed < to; ++seed) {
+      test::run_plan_case(what, seed, tally);
+    }
+    fmt::print("| {} | {} | {} | {} | {} | {} | {} | {} | {} |\n", test::name(what), tally.runs,
+               tally.right, tally.wrong_safe, tally.wrong_otherwise,
+               tally.undecided - tally.disputed, tally.disputed, tally.none, tally.left_over);
+    std::fflush(stdout);
+    faults += tally.faults();
+  }
+  return faults;
+}
+
 /// The paper's Fig. 7: a foot and a post of 2x3, the rest one row; the foot is fixed.
 model::RobotSpec fixed_arm(int count) {
   model::RobotSpec spec{
@@ -221,7 +243,7 @@ int run_throughput() {
 int usage() {
   fmt::print(stderr,
              "usage: distributed_bench cases FILE... | random FROM TO | noisy FROM TO | "
-             "faults FROM TO | growth | sweeps METHOD FILE... | throughput\n");
+             "faults FROM TO | plans FROM TO | growth | sweeps METHOD FILE... | throughput\n");
   return 64;
 }
 
@@ -239,12 +261,13 @@ int main(int argc, char** argv) {
   if (what == "growth" || what == "throughput") {
     return what == "growth" ? run_growth() : run_throughput();
   }
-  if (argc != 4 || (what != "random" && what != "noisy" && what != "faults")) {
+  if (argc != 4 || (what != "random" && what != "noisy" && what != "faults" && what != "plans")) {
     return usage();
   }
   const std::uint64_t from = std::strtoull(arguments[2], nullptr, 10);
   const std::uint64_t to = std::strtoull(arguments[3], nullptr, 10);
-  const int faults =
-      what == "faults" ? run_faults(from, to) : run_random(from, to, what == "noisy");
+  const int faults = what == "faults"  ? run_faults(from, to)
+                     : what == "plans" ? run_plans(from, to)
+                                       : run_random(from, to, what == "noisy");
   return faults == 0 ? 0 : 1;
 }

@@ -64,13 +64,14 @@ bool take_load_ratios(const model::Robot& robot, const Agents& agents,
 
 std::vector<std::string> notes_on(const sim::SimulationOptions& options) {
   const bool changes = std::ranges::any_of(options.faults, [](const sim::Fault& fault) {
-    return fault.kind == sim::Fault::Kind::kDetach || fault.kind == sim::Fault::Kind::kAttach;
+    return fault.kind == sim::Fault::Kind::kDetach;
   });
   if (!changes) {
     return {};
   }
   return {
-      "the exact answer is for the structure of the file, the robot's for what it is in the end"};
+      "the exact answer is for the robot with the modules that were taken off, its own without "
+      "them"};
 }
 
 }  // namespace

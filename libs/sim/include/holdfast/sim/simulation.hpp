@@ -31,6 +31,7 @@ struct SimulationOptions {
   std::uint64_t event_count_max = ~std::uint64_t{0};
   std::int32_t anchor = 0;       ///< The module that knows its cell.
   std::int32_t plan_module = 0;  ///< Is told of the robot's planned modules before it starts.
+  bool tells_planned = true;     ///< False: nobody is told of them but by `announcements`.
   TraceSink* trace = nullptr;    ///< Not owned; outlives the simulation.
 };
 
