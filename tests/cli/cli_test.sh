@@ -86,7 +86,8 @@ assert abs(report['distributed']['load_ratio_max'] - 0.6402) < 1e-3
 PYTHON
 expect_exit 1 simulate "$safe" --attach 6,1,2@10 --plan 7,1,2@20
 expect_line out 'robot +overload, load ratio 1\.000[0-9] .*all modules agree'
-expect_exit 0 simulate "$safe" --attach 6,1,2@10 --plan 7,1,2@20 --withdraw 7,1,2@30 --story told.txt
+expect_exit 0 simulate "$safe" --attach 6,1,2@10 --plan 7,1,2@20 --withdraw 7,1,2@30 \
+  --story told.txt
 expect_line told.txt 'is told that a plan is withdrawn: \(7,1,2\)'
 expect_exit 0 simulate "$safe" --withdraw all@9
 expect_line out 'exact +safe, load ratio 0\.3601'

@@ -147,19 +147,15 @@ void write_reals(Writer& out, std::span<const float> reals) {
 Writer encode(const Order& order) {
   Writer out(MessageType::kOrder, order.operation);
   switch (order.operation) {
-    case Operation::kPlan:
-      out.u8(order.index);
-      out.cell(order.cell);
-      break;
-    case Operation::kForget:
-      out.u8(order.flags);
-      out.cell(order.cell);
-      break;
     case Operation::kHosts:
       for (const std::uint8_t mask : order.masks) {
         out.u8(mask);
       }
       break;
+    case Operation::kPlan:
+    case Operation::kForget:
+      out.u8(order.operation == Operation::kPlan ? order.index : order.flags);
+      [[fallthrough]];
     case Operation::kMass:
       out.cell(order.cell);
       break;
@@ -227,15 +223,14 @@ Order decode_order(std::span<const std::uint8_t> message) {
       order.index = in.u8();
       order.cell = in.cell();
       break;
-    case Operation::kForget:
-      order.flags = in.u8();
-      order.cell = in.cell();
-      break;
     case Operation::kHosts:
       for (std::uint8_t& mask : order.masks) {
         mask = in.u8();
       }
       break;
+    case Operation::kForget:
+      order.flags = in.u8();
+      [[fallthrough]];
     case Operation::kMass:
       order.cell = in.cell();
       break;
