@@ -3,6 +3,20 @@
 #include "holdfast/agent/announcements.hpp"
 
 namespace holdfast::agent {
+namespace {
+
+/// Can the wire carry it? 24 bits a coordinate.
+bool is_on_wire(const base::Cell& cell) {
+  constexpr std::int32_t kLeast = kEveryCell.x;
+  for (const std::int32_t value : {cell.x, cell.y, cell.z}) {
+    if (value < kLeast || value >= -kLeast) {
+      return false;
+    }
+  }
+  return true;
+}
+
+}  // namespace
 
 int Announcements::find(const base::Cell& cell) const {
   for (int i = 0; i < count_; ++i) {
@@ -16,7 +30,11 @@ int Announcements::find(const base::Cell& cell) const {
 /// What is told of a cell replaces what was told of it before.
 void Announcements::put(const base::Cell& cell, Told told) {
   const int found = find(cell);
-  if (found < 0 && count_ == kAnnouncedMax) {
+  const bool is_possible = is_on_wire(cell);
+  if (!is_possible && told == Told::kWithdrawal) {
+    return;
+  }
+  if (!is_possible || (found < 0 && count_ == kAnnouncedMax)) {
     lost_ = Told::kPlan;
     return;
   }

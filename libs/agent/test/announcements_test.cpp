@@ -120,6 +120,22 @@ TEST(Announcements, one_too_many_stays_lost_until_all_are_withdrawn) {
   EXPECT_EQ(list, Announcements());
 }
 
+/// Its bytes would name another cell.
+TEST(Announcements, a_plan_beyond_the_wire_is_lost) {
+  constexpr std::int32_t kFar = 1 << 23;
+  for (const Cell cell : {Cell{kFar, 0, 0}, Cell{0, -kFar - 1, 0}, Cell{0, 0, 1 << 30}}) {
+    Announcements list;
+    list.withdraw(cell);
+    EXPECT_EQ(list, Announcements());
+    list.plan(cell);
+    EXPECT_TRUE(list.is_overfull());
+    EXPECT_EQ(told(list, cell), Told::kNothing);
+  }
+  Announcements list;
+  list.plan({kFar - 1, -kFar, 0});
+  EXPECT_FALSE(list.is_overfull());
+}
+
 TEST(Announcements, a_withdrawal_of_all_spares_what_may_be_younger) {
   Announcements list;
   list.plan(kA);
