@@ -62,31 +62,49 @@ void Announcements::withdraw(const base::Cell& cell) {
 }
 
 void Announcements::recall(const base::Cell& cell, Told told) {
-  if (cell == kEveryCell && told != Told::kWithdrawal) {
+  if (cell == kEveryCell && !is_withdrawal(told)) {
     lost_ = told;
   } else {
-    put(cell, told);
+    put(cell, is_withdrawal(told) ? Told::kWithdrawal : told);
   }
 }
 
 void Announcements::settle() {
   for (Told& told : told_) {
-    told = told == Told::kPlan ? Told::kKnownPlan : told;
+    told = told == Told::kPlan           ? Told::kKnownPlan
+           : told == Told::kDisputedPlan ? Told::kKnownDispute
+                                         : told;
   }
   lost_ = lost_ == Told::kPlan ? Told::kKnownPlan : lost_;
+}
+
+void Announcements::finish_forgetting() {
+  for (int i = count_; i-- > 0;) {
+    if (told_[static_cast<std::size_t>(i)] == Told::kCarriedWithdrawal) {
+      erase(i);
+    }
+  }
+}
+
+void Announcements::begin_anew() {
+  for (Told& told : told_) {
+    told = is_withdrawal(told) ? Told::kWithdrawal : told;
+  }
 }
 
 void Announcements::forget(const base::Cell& cell, bool is_fulfilled) {
   const bool is_every = cell == kEveryCell;
   for (int i = count_; i-- > 0;) {
+    Told& told = told_[static_cast<std::size_t>(i)];
     if (!is_every && cells_[static_cast<std::size_t>(i)] != cell) {
       continue;
     }
-    Told& told = told_[static_cast<std::size_t>(i)];
-    if (told == Told::kPlan && !is_fulfilled) {
-      told = Told::kDisputedPlan;
-    } else {
+    if (is_withdrawal(told)) {
+      told = is_fulfilled ? told : Told::kCarriedWithdrawal;
+    } else if (is_fulfilled || told == Told::kKnownPlan || told == Told::kKnownDispute) {
       erase(i);
+    } else {
+      told = Told::kDisputedPlan;
     }
   }
   if (is_every && lost_ == Told::kKnownPlan) {
@@ -97,7 +115,7 @@ void Announcements::forget(const base::Cell& cell, bool is_fulfilled) {
 int Announcements::plan_count() const {
   int plans = 0;
   for (int i = 0; i < count(); ++i) {
-    plans += told(i) != Told::kWithdrawal ? 1 : 0;
+    plans += is_withdrawal(told(i)) ? 0 : 1;
   }
   return plans;
 }

@@ -286,6 +286,7 @@ void BasicAgent<Real>::start_round() {
 template <class Real>
 void BasicAgent<Real>::enter_round(const Round& round) {
   round_ = round;
+  announcements_.begin_anew();
   restart_at_ = kNever;
   stage_ = kNoStage;
   parent_ = -1;

@@ -131,6 +131,7 @@ inline base::Vec6<float> read_vector(wire::Reader& in) {
 template <class Real>
 void BasicAgent<Real>::take_order(const Order& order) {
   order_ = order;
+  announcements_.finish_forgetting();
   is_sweeping_ = true;
   phase_ = sweep::phase_of(order.operation);
   reports_awaited_ = children_;

@@ -179,15 +179,17 @@ Report BasicAgent<Real>::plan_report() const {
     merge(Operation::kPlan, report, {.flags = kEnded | kFulfilled, .cell = order_.cell});
   }
   for (int i = 0; i < announcements_.count(); ++i) {
+    const Told told = announcements_.told(i);
     Report own{.cell = announcements_.cell(i)};
-    if (announcements_.told(i) == Told::kWithdrawal) {
-      own.flags = kEnded;
+    if (is_withdrawal(told)) {
+      own.flags = told == Told::kWithdrawal ? kEnded : std::uint8_t{0};
     } else if (own.cell == kEveryCell) {
       own.flags = kTooManyAnnounced;
     } else {
-      own.flags = announcements_.told(i) == Told::kDisputedPlan ? kDisputed : std::uint8_t{0};
+      const bool is_disputed = told == Told::kDisputedPlan || told == Told::kKnownDispute;
       const bool is_next = !has_last || own.cell > order_.cell;
-      own.flags = static_cast<std::uint8_t>(own.flags | (is_next ? kFound : 0U));
+      own.flags =
+          static_cast<std::uint8_t>((is_disputed ? kDisputed : 0U) | (is_next ? kFound : 0U));
     }
     merge(Operation::kPlan, report, own);
   }

@@ -680,5 +680,26 @@ TEST(Agent, a_withdrawal_waits_until_the_robot_is_whole) {
   EXPECT_EQ(network.agent(0).announcements().count(), 1);
 }
 
+/// A round that is given up at any moment must not take the withdrawal along before the plan.
+TEST(Agent, a_withdrawal_outlives_a_round_that_is_given_up) {
+  const auto setup = table_setup();
+  for (int run = 0; run < 160; ++run) {
+    SCOPED_TRACE(run);
+    TestNetwork network(setup, row(3));
+    network.plan(3, {4, 0, 1});
+    ASSERT_TRUE(network.run());
+    network.withdraw(0, {4, 0, 1});
+    for (int i = 0; i < run / 2; ++i) {
+      network.tick();
+    }
+    // Whichever of the two is not the root stands between it and one of the ends.
+    network.withdraw(run % 2 == 0 ? 1 : 2, {9, 9, 9});
+    ASSERT_TRUE(network.run_anew());
+    expect_answer(network, Verdict::kSafe, Reason::kHolds);
+    expect_ratio(network, 9 * kRowRatio);
+    expect_no_plans(network);
+  }
+}
+
 }  // namespace
 }  // namespace holdfast::agent

@@ -67,8 +67,12 @@ TEST(Announcements, a_plan_that_may_be_younger_than_its_withdrawal_is_disputed) 
   list.plan(kA);
   list.forget(kA, false);
   EXPECT_EQ(told(list, kA), Told::kDisputedPlan);
-  list.settle();
+  // The round is given up, and the same withdrawal comes again: it settles nothing.
+  list.begin_anew();
+  list.forget(kA, false);
   EXPECT_EQ(told(list, kA), Told::kDisputedPlan);
+  list.settle();
+  EXPECT_EQ(told(list, kA), Told::kKnownDispute);
   Announcements again = list;
   again.plan(kA);
   EXPECT_EQ(told(again, kA), Told::kPlan);
@@ -89,7 +93,23 @@ TEST(Announcements, what_one_module_was_told_last_holds) {
   EXPECT_EQ(told(list, kA), Told::kPlan);
   list.withdraw(kA);
   list.forget(kA, false);
+  list.finish_forgetting();
   EXPECT_EQ(list, Announcements());
+}
+
+/// The order may not have reached those that hold the plan.
+TEST(Announcements, a_withdrawal_is_kept_until_all_have_forgotten_the_plan) {
+  Announcements list;
+  list.withdraw(kA);
+  list.withdraw(kB);
+  list.forget(kA, false);
+  EXPECT_EQ(told(list, kA), Told::kCarriedWithdrawal);
+  list.begin_anew();
+  EXPECT_EQ(told(list, kA), Told::kWithdrawal);
+  list.forget(kA, false);
+  list.finish_forgetting();
+  EXPECT_EQ(told(list, kA), Told::kNothing);
+  EXPECT_EQ(told(list, kB), Told::kWithdrawal);
 }
 
 TEST(Announcements, one_too_many_stays_lost_until_all_are_withdrawn) {
@@ -117,6 +137,7 @@ TEST(Announcements, one_too_many_stays_lost_until_all_are_withdrawn) {
   EXPECT_FALSE(list.is_overfull());
   EXPECT_EQ(told(list, kEveryCell), Told::kWithdrawal);
   list.forget(kEveryCell, false);
+  list.finish_forgetting();
   EXPECT_EQ(list, Announcements());
 }
 
@@ -143,6 +164,7 @@ TEST(Announcements, a_withdrawal_of_all_spares_what_may_be_younger) {
   list.plan(kB);
   list.withdraw({7, 7, 7});
   list.forget(kEveryCell, false);
+  list.finish_forgetting();
   EXPECT_EQ(list.count(), 1);
   EXPECT_EQ(told(list, kB), Told::kDisputedPlan);
   for (int i = 0; i < kAnnouncedMax; ++i) {

@@ -35,8 +35,14 @@ enum class Told : std::uint8_t {
   kPlan,       ///< Since the robot last learned all plans.
   kKnownPlan,  ///< Before that.
   kDisputedPlan,
+  kKnownDispute,  ///< A disputed plan, before the robot last learned all plans.
   kWithdrawal,
+  kCarriedWithdrawal,  ///< All have been ordered to forget its plan, and may not have done so yet.
 };
+
+constexpr bool is_withdrawal(Told told) {
+  return told == Told::kWithdrawal || told == Told::kCarriedWithdrawal;
+}
 
 class Announcements {
  public:
@@ -51,6 +57,13 @@ class Announcements {
 
   /// The robot has learned all plans.
   void settle();
+
+  /// The next order after forget(): all have done it. Until then a withdrawal is kept, as the round
+  /// may be given up before its order has reached those that hold the plan.
+  void finish_forgetting();
+
+  /// The round was given up, and another one begins.
+  void begin_anew();
 
   /// A plan has ended.
   void forget(const base::Cell& cell, bool is_fulfilled);
