@@ -5,9 +5,10 @@
 //   distributed_bench random FROM TO      random robots against the exact answer, quiet links
 //   distributed_bench noisy FROM TO       the same with loss, duplication, jitter, bit errors
 //   distributed_bench faults FROM TO      a random module dies or a random link fails
-//   distributed_bench stale FROM TO       the same after a safe verdict; then an unsafe plan is
-//   told distributed_bench liars FROM TO       a random module hangs, or changes what it sends
+//   distributed_bench stale FROM TO       the same after a safe verdict; then an unsafe plan is told
+//   distributed_bench liars FROM TO       a random module hangs, or changes what it sends
 //   distributed_bench watching FILE...    packets that watching over the verdict costs, a table
+//   distributed_bench plans FROM TO       plans told, carried out and withdrawn at any time
 //   distributed_bench growth              rounds against the length of a fixed arm, each method
 //   distributed_bench sweeps METHOD FILE...   sweeps of the equilibrium, a CSV
 //   distributed_bench throughput          events per second and memory of large robots
@@ -23,6 +24,7 @@
 #include "campaign.hpp"
 #include "holdfast/base/rng.hpp"
 #include "holdfast/distributed.hpp"
+#include "plan_campaign.hpp"
 #include "random_robot.hpp"
 #include "watch_campaign.hpp"
 
@@ -249,6 +251,26 @@ int run_watching(std::span<char*> files) {
   return 0;
 }
 
+int run_plans(std::uint64_t from, std::uint64_t to) {
+  int faults = 0;
+  fmt::print(
+      "| case | runs | modules right | wrong safe | wrong | undecided | disputed | none | "
+      "plans left over |\n|---|---|---|---|---|---|---|---|---|\n");
+  for (std::size_t i = 0; i < test::kPlanCaseCount; ++i) {
+    const auto what = static_cast<test::PlanCase>(i);
+    test::PlanTally tally;
+    for (std::uint64_t seed = from; seed < to; ++seed) {
+      test::run_plan_case(what, seed, tally);
+    }
+    fmt::print("| {} | {} | {} | {} | {} | {} | {} | {} | {} |\n", test::name(what), tally.runs,
+               tally.right, tally.wrong_safe, tally.wrong_otherwise,
+               tally.undecided - tally.disputed, tally.disputed, tally.none, tally.left_over);
+    std::fflush(stdout);
+    faults += tally.faults();
+  }
+  return faults;
+}
+
 /// The paper's Fig. 7: a foot and a post of 2x3, the rest one row; the foot is fixed.
 model::RobotSpec fixed_arm(int count) {
   model::RobotSpec spec{
@@ -328,8 +350,8 @@ int run_throughput() {
 int usage() {
   fmt::print(stderr,
              "usage: distributed_bench cases FILE... | random FROM TO | noisy FROM TO | "
-             "faults FROM TO | stale FROM TO | liars FROM TO | watching FILE... | growth | sweeps "
-             "METHOD FILE... | throughput\n");
+             "faults FROM TO | stale FROM TO | liars FROM TO | plans FROM TO | watching FILE... | "
+             "growth | sweeps METHOD FILE... | throughput\n");
   return 64;
 }
 
@@ -350,9 +372,8 @@ int main(int argc, char** argv) {
   if (what == "growth" || what == "throughput") {
     return what == "growth" ? run_growth() : run_throughput();
   }
-  const bool is_campaign =
-      what == "random" || what == "noisy" || what == "faults" || what == "stale" || what == "liars";
-  if (argc != 4 || !is_campaign) {
+  constexpr std::string_view kCampaigns[] = {"random", "noisy", "faults", "stale", "liars", "plans"};
+  if (argc != 4 || std::ranges::find(kCampaigns, what) == std::end(kCampaigns)) {
     return usage();
   }
   const std::uint64_t from = std::strtoull(arguments[2], nullptr, 10);
@@ -360,6 +381,7 @@ int main(int argc, char** argv) {
   const int faults = what == "faults"  ? run_faults(from, to)
                      : what == "stale" ? run_stale(from, to)
                      : what == "liars" ? run_liars(from, to)
+                     : what == "plans" ? run_plans(from, to)
                                        : run_random(from, to, what == "noisy");
   return faults == 0 ? 0 : 1;
 }

@@ -97,6 +97,35 @@ python3 -c 'import json; assert len(json.load(open("trace.json"))["traceEvents"]
   fault "the trace is not complete JSON"
 expect_exit 64 simulate "$safe" --kill 9,9,9@0
 expect_line err 'cell of an existing module'
+# Step by step: its planned module comes, the next one is planned, and withdrawn.
+expect_exit 0 simulate "$safe" --attach 6,1,2@10 --json steps.json
+python3 - <<'PYTHON' || fault "the report of an attached module is wrong"
+import json
+report = json.load(open('steps.json'))
+assert report['modules']['existing'] == 11 and report['modules']['planned'] == 0
+assert report['distributed']['verdict'] == report['verdict'] == 'safe'
+assert abs(report['distributed']['load_ratio_max'] - 0.6402) < 1e-3
+PYTHON
+expect_exit 1 simulate "$safe" --attach 6,1,2@10 --plan 7,1,2@20
+expect_line out 'robot +overload, load ratio 1\.000[0-9] .*all modules agree'
+expect_exit 0 simulate "$safe" --attach 6,1,2@10 --plan 7,1,2@20 --withdraw 7,1,2@30 \
+  --story told.txt
+expect_line told.txt 'is told that a plan is withdrawn: \(7,1,2\)'
+expect_exit 0 simulate "$safe" --withdraw all@9
+expect_line out 'exact +safe, load ratio 0\.3601'
+expect_line out 'robot +safe, load ratio 0\.360[0-9]'
+# One plan, whether it is told once or six times, and whether its cell is free or not.
+expect_exit 0 simulate "$safe" --link unit --plan 6,1,2@0 --plan 6,1,2@0 --plan 6,1,2@1 \
+  --plan 6,1,2@900 --plan 6,1,2@901 --plan 6,1,2@902 --plan 5,1,2@903
+expect_line out 'robot +safe, load ratio 0\.640'
+expect_exit 64 simulate "$safe" --plan 7,1,2
+expect_line err 'expected is X,Y,Z@TIME, as in'
+expect_exit 64 simulate "$safe" --withdraw none@1
+expect_line err 'or all@TIME'
+expect_exit 65 simulate "$safe" --attach 5,1,2@1
+expect_line err 'one is there'
+expect_exit 65 simulate "$safe" --plan 9,9,9@1
+expect_line err 'touches neither'
 expect_exit 64 simulate "$safe" --loss 1.5
 expect_exit 64 simulate "$safe" --method magic
 expect_exit 65 simulate nowhere.json

@@ -120,6 +120,38 @@ TEST(Firmware, takes_a_plan_on_any_module) {
   }
 }
 
+/// The arm grows by one module: planned, attached;
+/// one more is planned and withdrawn. The module that holds the plans starts again before and
+/// after.
+TEST(Firmware, plans_end_when_they_are_carried_out_or_withdrawn) {
+  const Structure structure = load("arm_breaks_a");
+  const base::Cell first = structure.robot.modules().back().cell;
+  ASSERT_EQ(structure.robot.planned_count(), 1U);
+  const base::Cell aside = base::neighbour(first, base::Direction::kPlusZ);
+  const auto changed =
+      with_changes(structure, {{.kind = Change::Kind::kPlan, .at = 2'000'000, .cell = aside},
+                               {.kind = Change::Kind::kAttach, .at = 4'000'000, .cell = first},
+                               {.kind = Change::Kind::kWithdraw, .at = 6'000'000, .cell = aside}});
+  ASSERT_TRUE(changed);
+  emulator::EmulationOptions options{.tells_planned = false,
+                                     .announcements = changed.value().announcements};
+  options.announcements.front().at = options.plan_at;
+  options.faults = {{.kind = emulator::Fault::Kind::kReset, .at = 3'000'000, .module = 0},
+                    {.kind = emulator::Fault::Kind::kAttach,
+                     .at = 4'000'000,
+                     .module = changed.value().attachments[0].module},
+                    {.kind = emulator::Fault::Kind::kReset, .at = 8'000'000, .module = 0}};
+  const Structure& end = changed.value().structure;
+  const auto emulation = finished(end, options);
+  EXPECT_TRUE(emulation.result().all_agree);
+  EXPECT_EQ(to_verdict(emulation.result().answer.verdict), check(end).assessment.verdict);
+  EXPECT_NE(emulation.result().answer.verdict, agent::Verdict::kUndecided);
+  EXPECT_EQ(emulation.report().mismatch_count, 0U);
+  for (std::int32_t i = 0; i < emulation.module_count(); ++i) {
+    EXPECT_EQ(emulation.shadow(i).announcements().count(), 0) << i;
+  }
+}
+
 TEST(Firmware, does_the_same_when_run_again_and_something_else_with_another_seed) {
   const Structure structure = load("bush_tips_b");
   const auto first = finished(structure, {.seed = 3}).result();

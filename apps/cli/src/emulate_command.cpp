@@ -2,9 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <memory>
 
+#include "change_options.hpp"
 #include "commands.hpp"
 #include "faults.hpp"
 #include "file_clash.hpp"
@@ -29,6 +31,7 @@ struct Options {
   std::vector<std::string> cuts;
   std::vector<std::string> flips;
   std::vector<std::string> resets;
+  ChangeOptions changes;
   double time_max_s = 60;
   std::string json;
   std::string svg;
@@ -62,17 +65,45 @@ class EmulateRun {
     }
     emulation_.seed = options_.seed;
     emulation_.time_max = microseconds(options_.time_max_s);
-    if (!add_faults("kill", options_.kills, Fault::Kind::kKill, structure.value()) ||
-        !add_faults("reset", options_.resets, Fault::Kind::kReset, structure.value()) ||
-        !add_faults("cut", options_.cuts, Fault::Kind::kCut, structure.value()) ||
-        !add_faults("flip", options_.flips, Fault::Kind::kFlip, structure.value())) {
-      return kExitUsage;
-    }
-    return emulate_structure(structure.value());
+    return options_.changes.is_empty() ? run_with_faults(structure.value())
+                                       : run_with_changes(structure.value());
   }
 
  private:
   std::string image() const { return options_.image.empty() ? default_image() : options_.image; }
+
+  int run_with_changes(const Structure& structure) {
+    const auto changes = read_changes(options_.changes, microseconds);
+    if (!changes) {
+      return kExitUsage;
+    }
+    const auto changed = with_changes(structure, *changes);
+    if (!changed) {
+      print_error(changed.error(), options_.file);
+      return kExitBadInput;
+    }
+    emulation_.tells_planned = false;
+    emulation_.announcements = changed.value().announcements;
+    for (sim::Announcement& announcement : emulation_.announcements) {
+      // Not before the modules have started.
+      announcement.at = std::max(announcement.at, emulation_.plan_at);
+    }
+    for (const sim::Fault& fault : changed.value().attachments) {
+      emulation_.faults.push_back(
+          {.kind = Fault::Kind::kAttach, .at = fault.at, .module = fault.module});
+    }
+    return run_with_faults(changed.value().structure);
+  }
+
+  int run_with_faults(const Structure& structure) {
+    if (!add_faults("kill", options_.kills, Fault::Kind::kKill, structure) ||
+        !add_faults("reset", options_.resets, Fault::Kind::kReset, structure) ||
+        !add_faults("cut", options_.cuts, Fault::Kind::kCut, structure) ||
+        !add_faults("flip", options_.flips, Fault::Kind::kFlip, structure)) {
+      return kExitUsage;
+    }
+    return emulate_structure(structure);
+  }
 
   /// Every module's page, as module_0.bin and so on.
   int write_pages(const Structure& structure) const {
@@ -180,6 +211,7 @@ Command add_emulate(CLI::App& app) {
       ->type_name("N")
       ->capture_default_str();
   add_fault_options(*command, *options);
+  add_change_options(*command, options->changes, "s");
   command->add_option("--time", options->time_max_s, "Give up after so long (s on the robot)")
       ->type_name("T")
       ->check(CLI::Range(0.001, 3600.0).description(""))
@@ -190,8 +222,9 @@ Command add_emulate(CLI::App& app) {
       ->type_name("FILE");
   command->add_flag("--quiet", options->is_quiet, "Print errors only; the exit code is the answer");
   command->footer(
-      "The exact answer stands beside the robot's own. Planned modules are announced 0.4 s after\n"
-      "the start.\n"
+      "The exact answer stands beside the robot's own: with --plan, --withdraw and --attach that "
+      "for\n"
+      "the robot and what is planned in the end. Nothing is told before 0.4 s after the start.\n"
       "Exit, by the robot's verdict: 0 safe, 1 overload or unstable, 2 undecided, 64 wrong usage,\n"
       "65 bad input, no firmware, or a program without Unicorn.");
   return {command, [options] { return EmulateRun(*options).run(); }};

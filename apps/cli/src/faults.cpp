@@ -37,14 +37,24 @@ std::optional<base::Direction> find_direction(std::string_view& text) {
   return std::nullopt;
 }
 
+bool take_cell(std::string_view& text, base::Cell& cell) {
+  return take_number(text, cell.x) && take_mark(text, ',') && take_number(text, cell.y) &&
+         take_mark(text, ',') && take_number(text, cell.z);
+}
+
+/// "@T", and nothing behind it.
+bool take_time(std::string_view text, double& time) {
+  return take_mark(text, '@') && take_number(text, time) && text.empty() && time >= 0 &&
+         time < 1e12;
+}
+
 }  // namespace
 
 std::optional<FaultPlace> read_fault_place(std::string_view text, bool has_face,
                                            const Structure& structure) {
   base::Cell cell;
   FaultPlace place;
-  if (!take_number(text, cell.x) || !take_mark(text, ',') || !take_number(text, cell.y) ||
-      !take_mark(text, ',') || !take_number(text, cell.z)) {
+  if (!take_cell(text, cell)) {
     return std::nullopt;
   }
   if (has_face) {
@@ -54,8 +64,7 @@ std::optional<FaultPlace> read_fault_place(std::string_view text, bool has_face,
     }
     place.face = *face;
   }
-  if (!take_mark(text, '@') || !take_number(text, place.time) || !text.empty() ||
-      !(place.time >= 0) || !(place.time < 1e12)) {
+  if (!take_time(text, place.time)) {
     return std::nullopt;
   }
   const auto modules = structure.robot.modules();
@@ -63,6 +72,23 @@ std::optional<FaultPlace> read_fault_place(std::string_view text, bool has_face,
     place.module = modules[i].cell == cell ? static_cast<std::int32_t>(i) : place.module;
   }
   return place.module >= 0 ? std::optional(place) : std::nullopt;
+}
+
+std::optional<ChangePlace> read_change_place(std::string_view text, bool allows_all) {
+  constexpr std::string_view kAll = "all";
+  ChangePlace place;
+  if (allows_all && text.starts_with(kAll)) {
+    place.cell = agent::kEveryCell;
+    text.remove_prefix(kAll.size());
+  } else if (!take_cell(text, place.cell)) {
+    return std::nullopt;
+  }
+  return take_time(text, place.time) ? std::optional(place) : std::nullopt;
+}
+
+std::string change_usage(std::string_view option, std::string_view text, bool allows_all) {
+  return fmt::format("--{} {}: expected is X,Y,Z@TIME{}, as in 2,1,0@1.5", option, text,
+                     allows_all ? " or all@TIME" : "");
 }
 
 std::string fault_usage(std::string_view option, std::string_view text, bool has_face) {

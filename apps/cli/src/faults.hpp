@@ -6,9 +6,9 @@
 #include <string>
 #include <string_view>
 
-#include "holdfast/holdfast.hpp"
+#include "holdfast/distributed.hpp"
 
-/// Faults as they are written on the command line: "X,Y,Z@T", at a face "X,Y,Z:+x@T".
+/// Faults and changes as they are written on the command line: "X,Y,Z@T", at a face "X,Y,Z:+x@T".
 namespace holdfast::cli {
 
 struct FaultPlace {
@@ -21,7 +21,16 @@ struct FaultPlace {
 std::optional<FaultPlace> read_fault_place(std::string_view text, bool has_face,
                                            const Structure& structure);
 
+/// Any cell, and when. With `allows_all` "all@T" is agent::kEveryCell.
+struct ChangePlace {
+  base::Cell cell;
+  double time = 0;
+};
+
+std::optional<ChangePlace> read_change_place(std::string_view text, bool allows_all);
+
 /// What is wrong with a text that is none.
+std::string change_usage(std::string_view option, std::string_view text, bool allows_all);
 std::string fault_usage(std::string_view option, std::string_view text, bool has_face);
 
 }  // namespace holdfast::cli

@@ -7,6 +7,7 @@
 #include <memory>
 #include <optional>
 
+#include "change_options.hpp"
 #include "commands.hpp"
 #include "faults.hpp"
 #include "file_clash.hpp"
@@ -33,6 +34,7 @@ struct Options {
   std::vector<std::string> kills;
   std::vector<std::string> cuts;
   std::vector<std::string> detachments;
+  ChangeOptions changes;
   std::string json;
   std::string trace;
   std::string story;
@@ -126,15 +128,37 @@ class SimulateRun {
       print_error(structure.error(), options_.file);
       return kExitBadInput;
     }
-    if (!add_faults(options_.kills, Fault::Kind::kKill, structure.value(), simulation_) ||
-        !add_faults(options_.cuts, Fault::Kind::kCut, structure.value(), simulation_) ||
-        !add_faults(options_.detachments, Fault::Kind::kDetach, structure.value(), simulation_)) {
-      return kExitUsage;
-    }
-    return simulate_structure(structure.value());
+    return options_.changes.is_empty() ? run_with_faults(structure.value())
+                                       : run_with_changes(structure.value());
   }
 
  private:
+  int run_with_changes(const Structure& structure) {
+    const auto changes = read_changes(
+        options_.changes, [this](double time) { return ticks(simulation_.link, time); });
+    if (!changes) {
+      return kExitUsage;
+    }
+    const auto changed = with_changes(structure, *changes);
+    if (!changed) {
+      print_error(changed.error(), options_.file);
+      return kExitBadInput;
+    }
+    simulation_.tells_planned = false;
+    simulation_.announcements = changed.value().announcements;
+    simulation_.faults = changed.value().attachments;
+    return run_with_faults(changed.value().structure);
+  }
+
+  int run_with_faults(const Structure& structure) {
+    if (!add_faults(options_.kills, Fault::Kind::kKill, structure, simulation_) ||
+        !add_faults(options_.cuts, Fault::Kind::kCut, structure, simulation_) ||
+        !add_faults(options_.detachments, Fault::Kind::kDetach, structure, simulation_)) {
+      return kExitUsage;
+    }
+    return simulate_structure(structure);
+  }
+
   void add_noise() {
     sim::LinkModel& link = simulation_.link;
     link.loss = options_.loss;
@@ -248,6 +272,7 @@ Command add_simulate(CLI::App& app) {
       ->capture_default_str();
   add_noise_options(*command, *options);
   add_fault_options(*command, *options);
+  add_change_options(*command, options->changes, "s, or rounds");
   command->add_option("--json", options->json, "Write the report; - is standard output")
       ->type_name("FILE");
   command->add_option("--trace", options->trace, "Write all packets for ui.perfetto.dev")
@@ -259,7 +284,9 @@ Command add_simulate(CLI::App& app) {
       ->type_name("FILE");
   command->add_flag("--quiet", options->is_quiet, "Print errors only; the exit code is the answer");
   command->footer(
-      "The exact answer stands beside the robot's own.\n"
+      "The exact answer stands beside the robot's own: with --plan, --withdraw and --attach that "
+      "for\n"
+      "the robot and what is planned in the end.\n"
       "Exit, by the robot's verdict: 0 safe, 1 overload or unstable, 2 undecided, 64 wrong usage,\n"
       "65 bad input.");
   return {command, [options] { return SimulateRun(*options).run(); }};

@@ -97,28 +97,46 @@ Order Conductor::next_of_solve(const Setup& setup, const Report& report) {
 
 // ---- Planned modules, mass, rigid body.
 
+/// One planned cell after the other, by their order. A plan that has ended is forgotten by all, and
+/// then all begins anew: so every withdrawal goes before every plan. It is only behind the last
+/// plan that a robot with too many or disputed ones gives up: by then another sweep has gone down
+/// than the one that found them, as Announcements::settle() needs.
 Order Conductor::after_plan(const Report& report) {
-  if (planned_count_ > 0) {
-    totals_[planned_count_ - 1U] = report.mask;
-    if ((report.mask & Planned::kOccupied) != 0) {
-      return finish(Verdict::kUndecided, Reason::kPlannedOccupied);
-    }
+  if ((report.flags & kEnded) != 0) {
+    return forget(report);
   }
-  if ((report.flags & kTooManyAnnounced) != 0) {
+  if (planned_count_ > kPlannedMax) {
     return finish(Verdict::kUndecided, Reason::kPlannedTooMany);
   }
+  if (planned_count_ > 0) {
+    totals_[planned_count_ - 1U] = report.mask;
+  }
   if ((report.flags & kFound) != 0) {
-    if (planned_count_ == kPlannedMax) {
-      return finish(Verdict::kUndecided, Reason::kPlannedTooMany);
-    }
+    // One too many is asked for, too: it may be one that has ended.
     Order plan = order(Step::kPlan, Operation::kPlan);
     plan.index = planned_count_++;
     plan.cell = report.cell;
     return plan;
   }
+  if ((report.flags & (kTooManyAnnounced | kDisputed)) != 0) {
+    return finish(Verdict::kUndecided, (report.flags & kDisputed) != 0 ? Reason::kPlanDisputed
+                                                                       : Reason::kPlannedTooMany);
+  }
   Order hosts = order(Step::kHosts, Operation::kHosts);
   hosts.masks = totals_;
   return hosts;
+}
+
+Order Conductor::forget(const Report& report) {
+  if (forgotten_count_++ == kForgottenMax) {
+    return finish(Verdict::kUndecided, Reason::kNotConverged);
+  }
+  planned_count_ = 0;
+  totals_ = {};
+  Order forget = order(Step::kPlan, Operation::kForget);
+  forget.cell = report.cell;
+  forget.flags = (report.flags & kFulfilled) != 0 ? kIsFulfilled : std::uint8_t{0};
+  return forget;
 }
 
 Order Conductor::after_hosts(const Report& report) {

@@ -31,6 +31,7 @@ template <class Real>
 typename BasicAgent<Real>::Course BasicAgent<Real>::course_after(const Order& order) const {
   switch (order.operation) {
     case Operation::kPlan:
+    case Operation::kForget:
       return Course::kPlanned;
     case Operation::kHosts:
       return Course::kHosted;
@@ -64,6 +65,8 @@ bool BasicAgent<Real>::is_in_course(const Order& order) const {
       return order.index == kNoPlanned
                  ? course == Course::kWaves
                  : course == Course::kPlanned && order.index == planned_.count();
+    case Operation::kForget:
+      return course == Course::kPlanned;
     case Operation::kHosts:
       return course == Course::kPlanned && planned_.agrees_with(order.masks);
     case Operation::kMass:

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "holdfast/agent/legal.hpp"
 
+#include "holdfast/agent/announcements.hpp"
 #include "holdfast/agent/branch.hpp"
 #include "holdfast/agent/order.hpp"
 #include "holdfast/agent/planned.hpp"
@@ -16,9 +17,10 @@ enum class Rule : std::uint8_t {
   kOneTo,      ///< u8, 1 to the limit.
   kFlags,      ///< u8, no other bits than those of the limit.
   kPlanned,    ///< u8, a planned index in the bits of the limit.
-  kMaybe,      ///< u8, a planned index or kNoPlanned.
+  kMaybe,      ///< u8, a planned index, kPlannedMax for one too many, or kNoPlanned.
   kMasks,      ///< 8 u8, faces of planned modules.
   kCell,       ///< 9 bytes, coordinates up to kCoordinateMax.
+  kPlanCell,   ///< The same, or kEveryCell.
   kExchanges,  ///< u16, up to kDegreeMax.
   kSteps,      ///< u16, 1 to kJacobiCountMax.
   kEpoch,      ///< u16, not 0.
@@ -38,6 +40,8 @@ constexpr Operation kAny{};
 constexpr std::uint8_t kStages = 3;
 constexpr std::uint8_t kFaces = 0x3f;
 constexpr std::uint8_t kLastFace = base::kDirectionCount - 1;
+constexpr std::uint8_t kPlanReportFlags =
+    kFound | kTooManyAnnounced | kEnded | kFulfilled | kDisputed;
 
 using T = MessageType;
 using O = Operation;
@@ -62,6 +66,8 @@ constexpr Field kFields[] = {
 
     {T::kOrder, O::kPlan, 2, Rule::kMaybe, 0},
     {T::kOrder, O::kPlan, 3, Rule::kCell, 0},
+    {T::kOrder, O::kForget, 2, Rule::kFlags, kIsFulfilled},
+    {T::kOrder, O::kForget, 3, Rule::kPlanCell, 0},
     {T::kOrder, O::kHosts, 2, Rule::kMasks, kFaces},
     {T::kOrder, O::kMass, 2, Rule::kCell, 0},
     {T::kOrder, O::kBegin, 2, Rule::kFlags, kUnilateralLaw | kOneSweep | kWithSteps},
@@ -81,9 +87,12 @@ constexpr Field kFields[] = {
      kRestart | kLeastResidual | kKeepStates | kWithClusters | kHoldPlanned},
     {T::kOrder, O::kStep, 3, Rule::kExchanges, 0},
 
-    {T::kReport, O::kPlan, 2, Rule::kFlags, kFaces | Planned::kOccupied},
-    {T::kReport, O::kPlan, 3, Rule::kFlags, kFound | kTooManyAnnounced},
-    {T::kReport, O::kPlan, 4, Rule::kCell, 0},
+    {T::kReport, O::kPlan, 2, Rule::kFlags, kFaces},
+    {T::kReport, O::kPlan, 3, Rule::kFlags, kPlanReportFlags},
+    {T::kReport, O::kPlan, 4, Rule::kPlanCell, 0},
+    {T::kReport, O::kForget, 2, Rule::kFlags, kFaces},
+    {T::kReport, O::kForget, 3, Rule::kFlags, kPlanReportFlags},
+    {T::kReport, O::kForget, 4, Rule::kPlanCell, 0},
     {T::kReport, O::kHosts, 2, Rule::kFlags, (1U << kPlannedMax) - 1 + kAnyRemote},
     {T::kReport, O::kMass, 14, Rule::kFlags, kAnyFixed | kSumOverflow | kManyLoops},
     {T::kReport, O::kAngles, 2, Rule::kFeet, 0},
@@ -133,11 +142,15 @@ bool is_kept(const Field& field, std::span<const std::uint8_t> message) {
     case Rule::kPlanned:
       return (value & field.limit) < kPlannedMax;
     case Rule::kMaybe:
-      return value < kPlannedMax || value == kNoPlanned;
+      return value <= kPlannedMax || value == kNoPlanned;
     case Rule::kMasks:
       return are_good_masks(in, field.limit);
     case Rule::kCell:
       return is_good_cell(in.cell());
+    case Rule::kPlanCell: {
+      const base::Cell cell = in.cell();
+      return cell == kEveryCell || is_good_cell(cell);
+    }
     case Rule::kExchanges:
       return in.u16() <= kDegreeMax;
     case Rule::kFeet:

@@ -27,9 +27,14 @@ std::int32_t saturating_sum(std::int32_t a, std::int32_t b, std::uint8_t& flags)
   return static_cast<std::int32_t>(sum);
 }
 
+/// A plan that has ended goes before all others.
 void merge_plan(Report& into, const Report& from) {
+  const auto weight = [](const Report& report) {
+    return (report.flags & kEnded) != 0 ? 2 : (report.flags & kFound) != 0 ? 1 : 0;
+  };
   into.mask = static_cast<std::uint8_t>(into.mask | from.mask);
-  if ((from.flags & kFound) != 0 && ((into.flags & kFound) == 0 || from.cell < into.cell)) {
+  const bool is_first = weight(from) == weight(into) && from.cell < into.cell;
+  if (weight(from) > weight(into) || (weight(from) > 0 && is_first)) {
     into.cell = from.cell;
   }
   into.flags = static_cast<std::uint8_t>(into.flags | from.flags);
@@ -142,15 +147,15 @@ void write_reals(Writer& out, std::span<const float> reals) {
 Writer encode(const Order& order) {
   Writer out(MessageType::kOrder, order.operation);
   switch (order.operation) {
-    case Operation::kPlan:
-      out.u8(order.index);
-      out.cell(order.cell);
-      break;
     case Operation::kHosts:
       for (const std::uint8_t mask : order.masks) {
         out.u8(mask);
       }
       break;
+    case Operation::kPlan:
+    case Operation::kForget:
+      out.u8(order.operation == Operation::kPlan ? order.index : order.flags);
+      [[fallthrough]];
     case Operation::kMass:
       out.cell(order.cell);
       break;
@@ -223,6 +228,9 @@ Order decode_order(std::span<const std::uint8_t> message) {
         mask = in.u8();
       }
       break;
+    case Operation::kForget:
+      order.flags = in.u8();
+      [[fallthrough]];
     case Operation::kMass:
       order.cell = in.cell();
       break;
@@ -283,6 +291,7 @@ Writer encode(Operation operation, const Report& report) {
   write_reals(out, std::span(report.reals).first(static_cast<std::size_t>(real_count(operation))));
   switch (operation) {
     case Operation::kPlan:
+    case Operation::kForget:
       out.u8(report.mask);
       out.u8(report.flags);
       out.cell(report.cell);
@@ -348,6 +357,7 @@ Report decode_report(std::span<const std::uint8_t> message) {
   }
   switch (operation) {
     case Operation::kPlan:
+    case Operation::kForget:
       report.mask = in.u8();
       report.flags = in.u8();
       report.cell = in.cell();
@@ -406,6 +416,7 @@ Report decode_report(std::span<const std::uint8_t> message) {
 void merge(Operation operation, Report& into, const Report& from) {
   switch (operation) {
     case Operation::kPlan:
+    case Operation::kForget:
       return merge_plan(into, from);
     case Operation::kHosts:
       into.mask = static_cast<std::uint8_t>(into.mask | from.mask);
@@ -454,7 +465,7 @@ const char* name(Reason reason) {
                                     "it topples",
                                     "a module that is there does not answer",
                                     "too many planned modules",
-                                    "a planned cell is not free",
+                                    "a plan and its withdrawal were told at once",
                                     "a planned module touches nothing",
                                     "the robot is too large to be counted",
                                     "no method settled",

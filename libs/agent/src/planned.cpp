@@ -18,7 +18,7 @@ void Planned::add(const base::Cell& cell, const base::Cell& self) {
   const auto i = static_cast<std::size_t>(count_++);
   cells_[i] = cell;
   own_face_[i] = -1;
-  own_mask_[i] = cell == self ? kOccupied : std::uint8_t{0};
+  own_mask_[i] = 0;
   for (const base::Direction face : base::kDirections) {
     if (base::neighbour(self, face) == cell) {
       own_face_[i] = static_cast<std::int8_t>(base::index(face));

@@ -89,7 +89,13 @@ void BasicAgent<Real>::handle(const Event& event) {
       leave_round();
       break;
     case EventKind::kPlan:
-      plan(event.cell);
+    case EventKind::kWithdraw:
+      event.kind == EventKind::kPlan ? announcements_.plan(event.cell)
+                                     : announcements_.withdraw(event.cell);
+      leave_round();
+      break;
+    case EventKind::kRecall:
+      announcements_.recall(event.cell, event.told);
       break;
     case EventKind::kReceive:
       receive(face, event.bytes);
@@ -290,6 +296,7 @@ void BasicAgent<Real>::start_round() {
 template <class Real>
 void BasicAgent<Real>::enter_round(const Round& round) {
   round_ = round;
+  announcements_.begin_anew();
   restart_at_ = kNever;
   stage_ = kNoStage;
   parent_ = -1;
@@ -314,16 +321,6 @@ void BasicAgent<Real>::enter_round(const Round& round) {
   for (Link& link : links_) {
     link.drop_unsent();
   }
-}
-
-template <class Real>
-void BasicAgent<Real>::plan(const base::Cell& cell) {
-  if (announced_count_ == kPlannedMax) {
-    is_announced_overfull_ = true;
-  } else {
-    announced_[announced_count_++] = cell;
-  }
-  leave_round();
 }
 
 }  // namespace holdfast::agent

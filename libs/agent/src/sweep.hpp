@@ -87,6 +87,7 @@ constexpr bool is_preconditioned(wire::Operation operation) {
 constexpr Phase phase_of(wire::Operation operation) {
   switch (operation) {
     case wire::Operation::kPlan:
+    case wire::Operation::kForget:
     case wire::Operation::kHosts:
     case wire::Operation::kMass:
       return Phase::kMass;
@@ -131,6 +132,7 @@ template <class Real>
 void BasicAgent<Real>::take_order(const Order& order) {
   order_ = order;
   course_ = course_after(order);
+  announcements_.finish_forgetting();
   is_sweeping_ = true;
   begin_waiting();
   reports_awaited_ = children_;

@@ -24,7 +24,12 @@ void BasicAgent<Real>::prepare(const Order& order) {
         planned_.add(order.cell, nodes_[0].cell);
       }
       break;
+    case Operation::kForget:
+      planned_.clear();
+      announcements_.forget(order.cell, (order.flags & kIsFulfilled) != 0);
+      break;
     case Operation::kHosts:
+      announcements_.settle();
       planned_.decide_hosts(order.masks);
       prepare_hosted();
       break;
@@ -43,6 +48,9 @@ void BasicAgent<Real>::prepare(const Order& order) {
       break;
     case Operation::kVerdict:
       answer_ = order.answer;
+      if (answer_.reason == Reason::kPlannedTooMany || answer_.reason == Reason::kPlanDisputed) {
+        announcements_.settle();
+      }
       break;
     case Operation::kAngles:
     case Operation::kCorners:
@@ -93,6 +101,7 @@ template <class Real>
 Report BasicAgent<Real>::conclude(const Order& order) {
   switch (order.operation) {
     case Operation::kPlan:
+    case Operation::kForget:
       return plan_report();
     case Operation::kHosts: {
       Report report;
@@ -157,24 +166,32 @@ Report BasicAgent<Real>::conclude_solve(const Order& order) {
   }
 }
 
-/// What touches the planned module just learned, and the next announced cell after it.
+/// What touches the planned module just learned, and the next announced cell after it; or a plan
+/// that has ended: it is withdrawn, or this module sits in its cell.
 template <class Real>
 Report BasicAgent<Real>::plan_report() const {
   Report report;
-  report.flags = is_announced_overfull_ ? kTooManyAnnounced : std::uint8_t{0};
-  const bool has_last = order_.index != kNoPlanned;
-  if (has_last) {
+  const bool has_last = order_.operation == Operation::kPlan && order_.index != kNoPlanned;
+  if (has_last && order_.index < planned_.count()) {
     report.mask = planned_.own_mask(order_.index);
   }
-  for (int i = 0; i < announced_count_; ++i) {
-    const base::Cell& cell = announced_[static_cast<std::size_t>(i)];
-    if (has_last && cell <= order_.cell) {
-      continue;
+  if (has_last && order_.cell == nodes_[0].cell) {
+    merge(Operation::kPlan, report, {.flags = kEnded | kFulfilled, .cell = order_.cell});
+  }
+  for (int i = 0; i < announcements_.count(); ++i) {
+    const Told told = announcements_.told(i);
+    Report own{.cell = announcements_.cell(i)};
+    if (is_withdrawal(told)) {
+      own.flags = told == Told::kWithdrawal ? kEnded : std::uint8_t{0};
+    } else if (own.cell == kEveryCell) {
+      own.flags = kTooManyAnnounced;
+    } else {
+      const bool is_disputed = told == Told::kDisputedPlan || told == Told::kKnownDispute;
+      const bool is_next = !has_last || own.cell > order_.cell;
+      own.flags =
+          static_cast<std::uint8_t>((is_disputed ? kDisputed : 0U) | (is_next ? kFound : 0U));
     }
-    if ((report.flags & kFound) == 0 || cell < report.cell) {
-      report.flags = static_cast<std::uint8_t>(report.flags | kFound);
-      report.cell = cell;
-    }
+    merge(Operation::kPlan, report, own);
   }
   return report;
 }

@@ -508,11 +508,6 @@ TEST(Agent, tells_a_ratio_from_one_with_remote_planned_modules_as_well) {
 
 TEST(Agent, planned_modules_it_cannot_judge_make_it_undecided) {
   const auto setup = table_setup();
-  TestNetwork occupied(setup, row(3));
-  occupied.plan(1, {3, 0, 1});
-  ASSERT_TRUE(occupied.run());
-  expect_answer(occupied, Verdict::kUndecided, Reason::kPlannedOccupied);
-
   TestNetwork detached(setup, row(3));
   detached.plan(1, {3, 0, 2});
   detached.plan(1, {9, 9, 9});
@@ -529,6 +524,184 @@ TEST(Agent, planned_modules_it_cannot_judge_make_it_undecided) {
   expect_answer(many, Verdict::kUndecided, Reason::kPlannedTooMany);
   ASSERT_TRUE(too_many_here.run());
   expect_answer(too_many_here, Verdict::kUndecided, Reason::kPlannedTooMany);
+}
+
+// ---- Plans end. The robot is the row, as above: the load ratio of n modules is n^2 kRowRatio.
+
+void expect_no_plans(const TestNetwork& network) {
+  for (std::size_t i = 0; i < network.size(); ++i) {
+    EXPECT_EQ(network.agent(i).announcements(), Announcements()) << "module " << i;
+  }
+}
+
+TEST(Agent, a_plan_of_a_cell_with_a_module_is_fulfilled_at_once) {
+  const auto setup = table_setup();
+  TestNetwork network(setup, row(3));
+  network.plan(1, {3, 0, 1});
+  network.plan(0, {3, 0, 1});
+  network.plan(2, {4, 0, 1});
+  ASSERT_TRUE(network.run());
+  expect_answer(network, Verdict::kSafe, Reason::kHolds);
+  expect_ratio(network, 16 * kRowRatio);
+  EXPECT_EQ(network.agent(0).announcements().count(), 0);
+  EXPECT_EQ(network.agent(1).announcements().count(), 0);
+  EXPECT_EQ(network.agent(2).announcements().count(), 1);
+}
+
+TEST(Agent, a_plan_told_six_times_or_to_three_modules_is_one_plan) {
+  const auto setup = table_setup();
+  TestNetwork network(setup, row(3));
+  for (int i = 0; i < 6; ++i) {
+    network.plan(2, {4, 0, 1});
+  }
+  network.plan(0, {4, 0, 1});
+  network.plan(1, {4, 0, 1});
+  ASSERT_TRUE(network.run());
+  expect_ratio(network, 16 * kRowRatio);
+  for (int i = 0; i < 6; ++i) {
+    network.plan(2, {4, 0, 1});
+    ASSERT_TRUE(network.run_anew());
+    expect_answer(network, Verdict::kSafe, Reason::kHolds);
+    expect_ratio(network, 16 * kRowRatio);
+  }
+}
+
+TEST(Agent, a_plan_is_withdrawn_through_any_module) {
+  const auto setup = table_setup();
+  for (const std::size_t by : {0U, 1U, 2U}) {
+    TestNetwork network(setup, row(3));
+    network.plan(2, {4, 0, 1});
+    network.plan(1, {4, 0, 1});
+    network.plan(0, {5, 0, 1});
+    ASSERT_TRUE(network.run());
+    expect_ratio(network, 25 * kRowRatio);
+    network.withdraw(by, {5, 0, 1});
+    ASSERT_TRUE(network.run_anew());
+    expect_ratio(network, 16 * kRowRatio);
+    network.withdraw(by, {4, 0, 1});
+    ASSERT_TRUE(network.run_anew());
+    expect_answer(network, Verdict::kSafe, Reason::kHolds);
+    expect_ratio(network, 9 * kRowRatio);
+    expect_no_plans(network);
+    // Planned anew it counts again: the withdrawal is not kept.
+    network.plan(0, {4, 0, 1});
+    ASSERT_TRUE(network.run_anew());
+    expect_ratio(network, 16 * kRowRatio);
+  }
+}
+
+TEST(Agent, a_withdrawal_of_what_is_not_planned_changes_nothing_and_is_forgotten) {
+  const auto setup = table_setup();
+  TestNetwork network(setup, row(3));
+  network.plan(0, {4, 0, 1});
+  network.withdraw(2, {9, 9, 9});
+  ASSERT_TRUE(network.run());
+  expect_ratio(network, 16 * kRowRatio);
+  EXPECT_EQ(network.agent(2).announcements().count(), 0);
+}
+
+/// What was told to two modules with no round between: nobody knows what holds.
+TEST(Agent, a_plan_and_its_withdrawal_at_once_are_undecided_until_one_is_told_again) {
+  const auto setup = table_setup();
+  for (const int way : {0, 1, 2}) {
+    TestNetwork network(setup, row(3));
+    network.withdraw(2, {4, 0, 1});
+    network.plan(0, {4, 0, 1});
+    ASSERT_TRUE(network.run());
+    expect_answer(network, Verdict::kUndecided, Reason::kPlanDisputed);
+    if (way == 0) {
+      network.withdraw(1, {4, 0, 1});
+    } else if (way == 1) {
+      network.withdraw(1, kEveryCell);
+    } else {
+      network.plan(0, {4, 0, 1});
+    }
+    ASSERT_TRUE(network.run_anew());
+    expect_answer(network, Verdict::kSafe, Reason::kHolds);
+    expect_ratio(network, (way == 2 ? 16 : 9) * kRowRatio);
+  }
+}
+
+/// One module, the latest word: no doubt about the order.
+TEST(Agent, the_latest_word_to_one_module_holds) {
+  const auto setup = table_setup();
+  TestNetwork network(setup, row(3));
+  network.plan(1, {4, 0, 1});
+  network.withdraw(1, {4, 0, 1});
+  ASSERT_TRUE(network.run());
+  expect_ratio(network, 9 * kRowRatio);
+  expect_no_plans(network);
+}
+
+TEST(Agent, too_many_plans_end_by_withdrawals) {
+  const auto setup = table_setup();
+  TestNetwork many(setup, row(3));
+  TestNetwork too_many_here(setup, row(3));
+  for (int i = 0; i <= kPlannedMax; ++i) {
+    many.plan(i < 3 ? 1 : 2, {4 + i, 0, 1});
+    too_many_here.plan(1, {4 + i, 0, 1});
+  }
+  ASSERT_TRUE(many.run());
+  ASSERT_TRUE(too_many_here.run());
+  many.withdraw(0, {4 + kPlannedMax, 0, 1});
+  ASSERT_TRUE(many.run_anew());
+  expect_ratio(many, (3 + kPlannedMax) * (3 + kPlannedMax) * kRowRatio);
+  // What was lost cannot be named.
+  too_many_here.withdraw(0, {4, 0, 1});
+  ASSERT_TRUE(too_many_here.run_anew());
+  expect_answer(too_many_here, Verdict::kUndecided, Reason::kPlannedTooMany);
+  too_many_here.withdraw(2, kEveryCell);
+  ASSERT_TRUE(too_many_here.run_anew());
+  expect_answer(too_many_here, Verdict::kSafe, Reason::kHolds);
+  expect_ratio(too_many_here, 9 * kRowRatio);
+  expect_no_plans(too_many_here);
+}
+
+/// A sixth plan that has ended is none too many, wherever it stands in their order.
+TEST(Agent, a_plan_that_has_ended_does_not_count_as_one_too_many) {
+  const auto setup = table_setup();
+  TestNetwork network(setup, row(3));
+  for (int i = 0; i < kPlannedMax; ++i) {
+    network.plan(static_cast<std::size_t>(i % 3), {2 - i % 3, -1 - i / 3, 1});
+  }
+  network.plan(0, {3, 0, 1});
+  ASSERT_TRUE(network.run());
+  EXPECT_NE(network.agent(0).answer().reason, Reason::kPlannedTooMany);
+  EXPECT_EQ(network.agent(0).announcements().count(), 2);
+}
+
+/// The holder does not answer for a while; a withdrawal waits for it.
+TEST(Agent, a_withdrawal_waits_until_the_robot_is_whole) {
+  const auto setup = table_setup();
+  TestNetwork network(setup, row(3));
+  network.plan(2, {4, 0, 1});
+  ASSERT_TRUE(network.run());
+  network.mute(2);
+  network.withdraw(0, {4, 0, 1});
+  ASSERT_TRUE(network.run_anew());
+  EXPECT_EQ(network.agent(0).answer().reason, Reason::kNeighbourSilent);
+  EXPECT_EQ(network.agent(0).announcements().count(), 1);
+}
+
+/// A round that is given up at any moment must not take the withdrawal along before the plan.
+TEST(Agent, a_withdrawal_outlives_a_round_that_is_given_up) {
+  const auto setup = table_setup();
+  for (int run = 0; run < 160; ++run) {
+    SCOPED_TRACE(run);
+    TestNetwork network(setup, row(3));
+    network.plan(3, {4, 0, 1});
+    ASSERT_TRUE(network.run());
+    network.withdraw(0, {4, 0, 1});
+    for (int i = 0; i < run / 2; ++i) {
+      network.tick();
+    }
+    // Whichever of the two is not the root stands between it and one of the ends.
+    network.withdraw(run % 2 == 0 ? 1 : 2, {9, 9, 9});
+    ASSERT_TRUE(network.run_anew());
+    expect_answer(network, Verdict::kSafe, Reason::kHolds);
+    expect_ratio(network, 9 * kRowRatio);
+    expect_no_plans(network);
+  }
 }
 
 }  // namespace

@@ -130,21 +130,60 @@ TEST(Conductor, one_planned_module_too_many_is_undecided) {
   }
   Drive enough = drive;
   EXPECT_EQ(enough.next().operation, Operation::kHosts);
+  // The one too many may be one that has ended.
   drive.next({.flags = kFound, .cell = {kPlannedMax, 0, 0}});
+  ASSERT_EQ(drive.order.operation, Operation::kPlan);
+  ASSERT_EQ(drive.order.index, kPlannedMax);
+  Drive ended = drive;
+  ended.next({.flags = kEnded | kFulfilled, .cell = {kPlannedMax, 0, 0}});
+  EXPECT_EQ(ended.order.operation, Operation::kForget);
+  drive.next({.flags = kFound, .cell = {kPlannedMax + 1, 0, 0}});
   drive.expect_finished(Verdict::kUndecided, Reason::kPlannedTooMany);
 }
 
+/// Not before all plans are known: two of them might have ended.
 TEST(Conductor, a_module_that_was_told_too_many_makes_it_undecided) {
-  Drive drive;
-  drive.next({.flags = kFound | kTooManyAnnounced});
-  drive.expect_finished(Verdict::kUndecided, Reason::kPlannedTooMany);
+  for (const bool is_disputed : {false, true}) {
+    const std::uint8_t flag = is_disputed ? kDisputed : kTooManyAnnounced;
+    Drive drive;
+    drive.next({.flags = static_cast<std::uint8_t>(kFound | flag)});
+    ASSERT_EQ(drive.order.operation, Operation::kPlan);
+    drive.next({.flags = flag});
+    drive.expect_finished(Verdict::kUndecided,
+                          is_disputed ? Reason::kPlanDisputed : Reason::kPlannedTooMany);
+  }
 }
 
-TEST(Conductor, an_occupied_cell_is_undecided) {
+/// Nothing of a planned module that is there already may stay: the next one is number 0 again.
+TEST(Conductor, has_a_plan_that_has_ended_forgotten_and_begins_anew) {
+  for (const bool is_fulfilled : {false, true}) {
+    Drive drive;
+    drive.next({.flags = kFound, .cell = {1, 0, 0}});
+    drive.next({.flags = kFound, .mask = 3, .cell = {2, 0, 0}});
+    const std::uint8_t flags = is_fulfilled ? kEnded | kFulfilled : kEnded;
+    drive.next({.flags = flags, .mask = 1, .cell = {2, 0, 0}});
+    EXPECT_EQ(drive.order.operation, Operation::kForget);
+    EXPECT_EQ(drive.order.cell, (base::Cell{2, 0, 0}));
+    EXPECT_EQ(drive.order.flags, is_fulfilled ? kIsFulfilled : 0);
+    drive.next({.flags = kFound, .cell = {1, 0, 0}});
+    EXPECT_EQ(drive.order.operation, Operation::kPlan);
+    EXPECT_EQ(drive.order.index, 0);
+    drive.next({.mask = 3});
+    EXPECT_EQ(drive.order.operation, Operation::kHosts);
+    EXPECT_EQ(drive.order.masks, (std::array<std::uint8_t, 8>{3}));
+  }
+}
+
+/// A module that goes on inventing plans that have ended cannot keep the robot busy for ever.
+TEST(Conductor, has_no_more_than_so_many_plans_forgotten_in_a_round) {
   Drive drive;
-  drive.next({.flags = kFound});
-  drive.next({.mask = Planned::kOccupied | 1});
-  drive.expect_finished(Verdict::kUndecided, Reason::kPlannedOccupied);
+  int forgotten_count = 0;
+  while (drive.next({.flags = kEnded, .cell = {forgotten_count, 0, 0}}).operation ==
+         Operation::kForget) {
+    ASSERT_LT(++forgotten_count, 1000);
+  }
+  EXPECT_EQ(forgotten_count, 200);
+  drive.expect_finished(Verdict::kUndecided, Reason::kNotConverged);
 }
 
 TEST(Conductor, a_planned_module_without_a_host_is_undecided) {

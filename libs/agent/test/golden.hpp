@@ -13,7 +13,7 @@
 namespace holdfast::agent::test {
 
 /// By operation, from 1.
-inline constexpr std::array<std::string_view, 19> kGoldenOrders = {
+inline constexpr std::array<std::string_view, 20> kGoldenOrders = {
     "05 01 02 01 00 00 fe ff ff 03 00 00",
     "05 02 01 02 04 08 10 20 00 00",
     "05 03 c0 bd f0 40 42 0f 00 00 00",
@@ -32,9 +32,10 @@ inline constexpr std::array<std::string_view, 19> kGoldenOrders = {
     "05 10",
     "05 11 03 2c 01 00 00 80 3e 00 00 00 bf 00 00 80 be",
     "05 12",
-    "05 13 06 03 00 00 00 00 3f 00 00 7a 44"};
+    "05 13 06 03 00 00 00 00 3f 00 00 7a 44",
+    "05 14 01 01 00 00 fe ff ff 03 00 00"};
 
-inline constexpr std::array<std::string_view, 19> kGoldenReports = {
+inline constexpr std::array<std::string_view, 20> kGoldenReports = {
     "06 01 21 01 01 00 00 fe ff ff 03 00 00",
     "06 02 87",
     "06 03 1d 00 00 00 fd ff ff ff 05 00 00 00 01 2c 01",
@@ -54,7 +55,8 @@ inline constexpr std::array<std::string_view, 19> kGoldenReports = {
     "06 11 00 00 80 3e 00 00 00 3f 03 00 ef cd ab 89 01 00 00 80 3f 00 00 80 30 00 00 80 be "
     "00 00 00 00 00 00 40 40 00 00 00 00",
     "06 12 00 00 80 3e 00 00 00 3f 03 00 ef cd ab 89 01",
-    "06 13 1d 00 00 00 02 00 00 00"};
+    "06 13 1d 00 00 00 02 00 00 00",
+    "06 14 00 04 01 00 00 fe ff ff 03 00 00"};
 
 /// The cut that opens a loop: from (1, -2, 3) to +y.
 inline constexpr std::string_view kGoldenLoop = "0a 01 00 00 fe ff ff 03 00 00 02";

@@ -60,24 +60,24 @@ const Limit kLimits[] = {
     {kGoldenVectors[1], 1, [](unsigned v) { return is_planned(v & 0x3fU); }},  // planned down
     {kGoldenVectors[2], 1, is_planned},                                        // planned up
     {kGoldenLoop, 10, [](unsigned v) { return v == 0 || v == 2 || v == 4; }},
-    {kGoldenVectors[3], 1, is_within<0, 57>},  // column
-    {kGoldenVectors[4], 1, is_within<0, 2>},   // branch up
-    {kGoldenVectors[5], 1, is_within<0, 2>},   // branch down
-    {kGoldenOrders[0], 2, [](unsigned v) { return is_planned(v) || v == 0xff; }},
-    {kGoldenOrders[1], 2, is_flags<0x3f>},    // hosts, the first ...
-    {kGoldenOrders[1], 9, is_flags<0x3f>},    // ... and the last
-    {kGoldenOrders[4], 2, is_flags<7>},       // begin
-    {kGoldenOrders[6], 2, is_flags<1>},       // low
-    {kGoldenOrders[7], 2, is_flags<7>},       // start
-    {kGoldenOrders[10], 2, is_flags<3>},      // slope
-    {kGoldenOrders[11], 2, is_flags<3>},      // hold
-    {kGoldenOrders[14], 2, is_within<1, 4>},  // verdict
+    {kGoldenVectors[3], 1, is_within<0, 57>},                               // column
+    {kGoldenVectors[4], 1, is_within<0, 2>},                                // branch up
+    {kGoldenVectors[5], 1, is_within<0, 2>},                                // branch down
+    {kGoldenOrders[0], 2, [](unsigned v) { return v <= 5 || v == 0xff; }},  // plan
+    {kGoldenOrders[1], 2, is_flags<0x3f>},                                  // hosts, the first ...
+    {kGoldenOrders[1], 9, is_flags<0x3f>},                                  // ... and the last
+    {kGoldenOrders[4], 2, is_flags<7>},                                     // begin
+    {kGoldenOrders[6], 2, is_flags<1>},                                     // low
+    {kGoldenOrders[7], 2, is_flags<7>},                                     // start
+    {kGoldenOrders[10], 2, is_flags<3>},                                    // slope
+    {kGoldenOrders[11], 2, is_flags<3>},                                    // hold
+    {kGoldenOrders[14], 2, is_within<1, 4>},                                // verdict
     {kGoldenOrders[14], 3, is_within<0, 11>},
     {kGoldenOrders[14], 17, is_face},
-    {kGoldenOrders[16], 2, is_flags<15>},    // step
+    {kGoldenOrders[16], 2, is_flags<31>},    // step
     {kGoldenOrders[18], 2, is_flags<7>},     // clusters
-    {kGoldenReports[0], 2, is_flags<0x7f>},  // plan
-    {kGoldenReports[0], 3, is_flags<3>},
+    {kGoldenReports[0], 2, is_flags<0x3f>},  // plan
+    {kGoldenReports[0], 3, is_flags<31>},
     {kGoldenReports[1], 2, is_flags<0x9f>},   // hosts
     {kGoldenReports[2], 14, is_flags<7>},     // mass
     {kGoldenReports[3], 2, is_within<0, 2>},  // angles

@@ -70,7 +70,8 @@ FeetCheck feet_check() { return {feet_setup(), 3, {1, -2}}; }
 /// Sums of a few stay exact and in range.
 Report random_report(Operation operation, base::Rng& rng) {
   Report report;
-  report.flags = static_cast<std::uint8_t>(rng.below(4));
+  const bool is_learning = operation == Operation::kPlan || operation == Operation::kForget;
+  report.flags = static_cast<std::uint8_t>(rng.below(is_learning ? 32 : 4));
   report.mask = static_cast<std::uint8_t>(rng.next());
   report.extent = static_cast<std::uint16_t>(rng.next());
   report.count = static_cast<std::uint32_t>(rng.next());
@@ -86,8 +87,8 @@ Report random_report(Operation operation, base::Rng& rng) {
   if (operation == Operation::kStart || operation == Operation::kGradient) {
     report.reals[2] = static_cast<float>(rng.below(16)) / 8;  // Seven digits of fraction hold it.
   }
-  report.cell = operation == Operation::kPlan && (report.flags & kFound) == 0 ? base::Cell{}
-                                                                              : random_cell(rng);
+  const bool has_cell = !is_learning || (report.flags & (kFound | kEnded)) != 0;
+  report.cell = has_cell ? random_cell(rng) : base::Cell{};
   report.direction = static_cast<base::Direction>(rng.below(6));
   if (rng.below(4) != 0) {
     report.feet = feet_check().of_foot(sum(), sum());
@@ -153,6 +154,9 @@ TEST(Order, fields_come_back_where_they_were) {
   Order sent;
   Order back = there_and_back(Operation::kPlan, sent);
   EXPECT_EQ(back.index, sent.index);
+  EXPECT_EQ(back.cell, sent.cell);
+  back = there_and_back(Operation::kForget, sent);
+  EXPECT_EQ(back.flags, sent.flags);
   EXPECT_EQ(back.cell, sent.cell);
   back = there_and_back(Operation::kHosts, sent);
   EXPECT_EQ(back.masks, sent.masks);
@@ -245,6 +249,21 @@ TEST(Order, the_next_planned_cell_is_the_first_of_all) {
   EXPECT_EQ(merged(Operation::kPlan, none, late).cell, late.cell);
   EXPECT_EQ(merged(Operation::kPlan, late, none).cell, late.cell);
   EXPECT_EQ(merged(Operation::kPlan, none, none).flags, 0);
+}
+
+/// Whatever is planned: the root must have it forgotten before it learns anything else.
+TEST(Order, a_plan_that_has_ended_goes_before_all_others) {
+  const Report planned = {.flags = kFound | kDisputed, .cell = {-9, 0, 0}};
+  const Report ended = {.flags = kEnded | kFulfilled, .cell = {5, 0, 0}};
+  const Report later = {.flags = kEnded, .cell = {6, 0, 0}};
+  for (const Operation operation : {Operation::kPlan, Operation::kForget}) {
+    for (const auto& [a, b] : {std::pair{planned, ended}, {ended, planned}}) {
+      const Report both = merged(operation, a, b);
+      EXPECT_EQ(both.cell, ended.cell);
+      EXPECT_EQ(both.flags, kFound | kDisputed | kEnded | kFulfilled);
+      EXPECT_EQ(merged(operation, later, both).cell, ended.cell);
+    }
+  }
 }
 
 TEST(Order, of_equal_loads_the_first_cell_is_the_worst) {

@@ -203,11 +203,16 @@ TEST(Planned, what_touches_nothing_is_hosted_by_nobody) {
   }
 }
 
-TEST(Planned, an_occupied_cell_shows_in_the_mask) {
-  const auto parts = share(kRow, {{1, 0, 0}});
-  EXPECT_EQ(parts[1].own_mask(0), Planned::kOccupied);
-  EXPECT_EQ(parts[1].own_face(0), -1);
-  EXPECT_EQ(parts[0].mask(0), Planned::kOccupied | bits({Direction::kMinusX, Direction::kPlusX}));
+/// The root asks for one more than there may be, as its plan may have ended.
+TEST(Planned, one_too_many_is_not_kept) {
+  Planned part;
+  for (int i = 0; i <= kPlannedMax; ++i) {
+    part.add({1, 1, i}, {0, 0, 0});
+    part.add_below(kPlusX, i, bits({Direction::kMinusX}));
+  }
+  EXPECT_EQ(part.count(), kPlannedMax);
+  EXPECT_EQ(part.cell(kPlannedMax - 1), (Cell{1, 1, kPlannedMax - 1}));
+  EXPECT_EQ(part.mask(kPlannedMax - 1), bits({Direction::kMinusX}));
 }
 
 /// As many as there may be, in a pile at the end of the row. Only the first touches the robot, the

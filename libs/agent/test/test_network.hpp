@@ -77,6 +77,12 @@ class TestNetwork {
     step(i, plan);
   }
 
+  void withdraw(std::size_t i, const base::Cell& cell) {
+    Event withdrawal = event(EventKind::kWithdraw);
+    withdrawal.cell = cell;
+    step(i, withdrawal);
+  }
+
   /// Takes a module off; its neighbours feel it.
   void remove(std::size_t i) {
     const base::Cell cell = places_[i].cell;

@@ -74,7 +74,8 @@ TEST(Wire, orders_are_these_bytes) {
       {.operation = Operation::kClusters,
        .flags = kOneSweep | kWithSteps,
        .count = 3,
-       .reals = {0.5F, 1000}}};
+       .reals = {0.5F, 1000}},
+      {.operation = Operation::kForget, .flags = kIsFulfilled, .cell = kCell}};
   ASSERT_EQ(orders.size(), kGoldenOrders.size());
   for (std::size_t i = 0; i < orders.size(); ++i) {
     EXPECT_EQ(order_text(orders[i]), kGoldenOrders[i]);
@@ -112,7 +113,8 @@ TEST(Wire, reports_are_these_bytes) {
        .reals = {0.25F, 0.5F},
        .products = {1 + 0x1p-30, -0.25, 3}},
       {.flags = kAnyTilting, .extent = 3, .number = 0x89abcdef, .reals = {0.25F, 0.5F}},
-      {.count = 29, .number = 2}};
+      {.count = 29, .number = 2},
+      {.flags = kEnded, .cell = kCell}};
   ASSERT_EQ(reports.size(), kGoldenReports.size());
   for (std::size_t i = 0; i < reports.size(); ++i) {
     EXPECT_EQ(report_text(static_cast<Operation>(i + 1), reports[i]), kGoldenReports[i]);

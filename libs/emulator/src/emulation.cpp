@@ -13,6 +13,9 @@ namespace holdfast::emulator {
 namespace {
 
 constexpr Cycles kCyclesPerMicrosecond = kClockHz / 1'000'000;
+/// Within it a module that has nothing else to do has read a frame.
+constexpr Time kReadTime = 10'000;
+
 constexpr Cycles kByteCycles = Cycles{10} * stm32f0::kBaudDivisor;
 
 Cycles cycles(Time time) { return time * kCyclesPerMicrosecond; }
@@ -48,6 +51,23 @@ std::vector<module::Configuration> configurations(const model::Robot& robot, std
   return all;
 }
 
+/// What a module is told, as a frame on its line.
+std::vector<std::uint8_t> frame_of(const sim::Announcement& announcement) {
+  std::vector<std::uint8_t> payload;
+  const base::Cell& cell = announcement.cell;
+  for (const std::int32_t value : {cell.x, cell.y, cell.z}) {
+    for (unsigned shift = 0; shift < 32; shift += 8) {
+      payload.push_back(static_cast<std::uint8_t>(static_cast<std::uint32_t>(value) >> shift));
+    }
+  }
+  if (announcement.is_withdrawal) {
+    payload.push_back(1);
+  }
+  std::array<std::uint8_t, module::kFrameBytesMax> frame{};
+  const int size = module::write_frame(module::FrameKind::kPlan, payload, frame);
+  return {frame.begin(), frame.begin() + size};
+}
+
 }  // namespace
 
 /// All modules and the lines between them.
@@ -81,6 +101,7 @@ class Robot {
   CostTable costs_;
   std::vector<std::unique_ptr<ModuleCpu>> modules_;
   std::vector<std::uint8_t> cut_faces_;
+  std::vector<std::uint8_t> attached_;                                  ///< By module, 0 or 1.
   std::vector<std::array<std::uint8_t, base::kDirectionCount>> flips_;  ///< Of the next byte.
   std::size_t next_fault_ = 0;
   Cycles now_ = 0;
@@ -100,8 +121,15 @@ Robot::Robot(const Image& image, const model::Robot& robot, const EmulationOptio
     modules_.push_back(std::make_unique<ModuleCpu>(image, costs_, configuration, seed, start));
   }
   cut_faces_.resize(count);
+  attached_.resize(count, 1);
   flips_.resize(count);
   std::ranges::stable_sort(options_.faults, {}, &Fault::at);
+  for (const Fault& fault : options_.faults) {
+    if (fault.kind == Fault::Kind::kAttach) {
+      attached_[at(fault.module)] = 0;
+      modules_[at(fault.module)]->start_at(cycles(fault.at));
+    }
+  }
   announce();
 }
 
@@ -110,32 +138,29 @@ std::int32_t Robot::neighbour(std::int32_t module, int face) const {
   return other < count() ? other : model::Robot::kNoNeighbour;
 }
 
-/// From outside, byte by byte, on a free face.
+/// From outside, byte by byte, on a face that is free for good.
 void Robot::announce() {
-  const auto is_free = [&](int face) { return neighbour(options_.plan_module, face) < 0; };
-  int face = 0;
-  while (face < base::kDirectionCount - 1 && !is_free(face)) {
-    ++face;
+  std::vector<sim::Announcement> all = options_.announcements;
+  for (std::size_t i = modules_.size(); options_.tells_planned && i < robot_.modules().size();
+       ++i) {
+    all.push_back(
+        {.at = options_.plan_at, .module = options_.plan_module, .cell = robot_.modules()[i].cell});
   }
-  Cycles time = cycles(options_.plan_at);
-  for (std::size_t i = modules_.size(); i < robot_.modules().size(); ++i) {
-    std::array<std::uint8_t, 12> payload{};
-    const base::Cell& cell = robot_.modules()[i].cell;
-    std::size_t place = 0;
-    for (const std::int32_t value : {cell.x, cell.y, cell.z}) {
-      for (unsigned shift = 0; shift < 32; shift += 8) {
-        payload[place++] = static_cast<std::uint8_t>(static_cast<std::uint32_t>(value) >> shift);
-      }
+  std::ranges::stable_sort(all, {}, &sim::Announcement::at);
+  Cycles time = 0;
+  for (const sim::Announcement& announcement : all) {
+    int face = 0;
+    while (face < base::kDirectionCount - 1 && neighbour(announcement.module, face) >= 0) {
+      ++face;
     }
-    std::array<std::uint8_t, module::kFrameBytesMax> frame{};
-    const int size = module::write_frame(module::FrameKind::kPlan, payload, frame);
-    for (std::size_t k = 0; k < static_cast<std::size_t>(size); ++k) {
+    time = std::max(time, cycles(announcement.at));
+    for (const std::uint8_t byte : frame_of(announcement)) {
       time += kByteCycles;
-      modules_[at(options_.plan_module)]->arrive(
-          usart_of(face), {.time = time, .byte_cycles = kByteCycles, .byte = frame[k]});
+      modules_[at(announcement.module)]->arrive(
+          usart_of(face), {.time = time, .byte_cycles = kByteCycles, .byte = byte});
     }
   }
-  planned_at_ = robot_.planned_count() > 0 ? time / kCyclesPerMicrosecond : 0;
+  planned_at_ = time / kCyclesPerMicrosecond;
 }
 
 bool Robot::run_for(Time duration) {
@@ -174,7 +199,8 @@ void Robot::hand_over(std::int32_t module) {
   for (const Sent& sent : modules_[at(module)]->take_sent()) {
     const int face = face_of(sent.usart);
     const std::int32_t other = neighbour(module, face);
-    if (other < 0 || !modules_[at(other)]->is_alive() || is_cut(module, face)) {
+    if (other < 0 || attached_[at(other)] == 0 || !modules_[at(other)]->is_alive() ||
+        is_cut(module, face)) {
       continue;
     }
     const int back = base::index(base::opposite(static_cast<base::Direction>(face)));
@@ -214,12 +240,15 @@ void Robot::make_fault(const Fault& fault) {
     case Fault::Kind::kReset:
       modules_[at(fault.module)]->reset();
       break;
+    case Fault::Kind::kAttach:
+      attached_[at(fault.module)] = 1;
+      break;
   }
 }
 
 /// Does everybody alive know the verdict, with all plans and after all faults?
 bool Robot::is_settled() const {
-  if (now_ <= cycles(planned_at_) + kByteCycles || now_ < cycles(options_.time_min) ||
+  if (now_ <= cycles(planned_at_ + kReadTime) || now_ < cycles(options_.time_min) ||
       next_fault_ < options_.faults.size()) {
     return false;
   }
@@ -328,9 +357,14 @@ std::optional<std::string> find_options_fault(const model::Robot& robot,
   sim::SimulationOptions same;
   same.anchor = options.anchor;
   same.plan_module = options.plan_module;
+  same.tells_planned = options.tells_planned;
+  same.announcements = options.announcements;
   for (const Fault& fault : options.faults) {
     const bool has_face = fault.kind == Fault::Kind::kCut || fault.kind == Fault::Kind::kFlip;
-    same.faults.push_back({.kind = has_face ? sim::Fault::Kind::kCut : sim::Fault::Kind::kKill,
+    const bool attaches = fault.kind == Fault::Kind::kAttach;
+    same.faults.push_back({.kind = has_face   ? sim::Fault::Kind::kCut
+                                   : attaches ? sim::Fault::Kind::kAttach
+                                              : sim::Fault::Kind::kKill,
                            .at = fault.at,
                            .module = fault.module,
                            .face = fault.face});

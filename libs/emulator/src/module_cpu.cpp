@@ -16,6 +16,7 @@ constexpr const char* kStep =
 /// agent::Event and agent::Actions as they lie in the module's memory.
 struct EventLayout {
   std::uint8_t kind;
+  std::uint8_t told;
   std::uint64_t now;
   std::uint8_t face;
   std::uint16_t random;
@@ -124,6 +125,7 @@ void ModuleCpu::entered(std::span<const std::uint32_t, 4> arguments) {
 void ModuleCpu::read_event(std::uint32_t address) {
   const auto event = read_value<EventLayout>(processor_, address);
   event_ = {.kind = static_cast<agent::EventKind>(event.kind),
+            .told = static_cast<agent::Told>(event.told),
             .now = event.now,
             .face = static_cast<base::Direction>(event.face),
             .random = event.random,

@@ -48,6 +48,9 @@ class ModuleCpu final : public Watcher {
 
   void kill() { is_alive_ = false; }
 
+  /// The module starts only then.
+  void start_at(Cycles time) { wake_at_ = time; }
+
   bool is_alive() const { return is_alive_; }
 
   module::Status status() const;

@@ -79,11 +79,12 @@ std::vector<std::string> notes_on(const sim::SimulationOptions& options,
                                   const sim::SimulationResult& result) {
   std::vector<std::string> notes;
   const bool changes = std::ranges::any_of(options.faults, [](const sim::Fault& fault) {
-    return fault.kind == sim::Fault::Kind::kDetach || fault.kind == sim::Fault::Kind::kAttach;
+    return fault.kind == sim::Fault::Kind::kDetach;
   });
   if (changes) {
     notes.emplace_back(
-        "the exact answer is for the structure of the file, the robot's for what it is in the end");
+        "the exact answer is for the robot with the modules that were taken off, its own without "
+        "them");
   }
   if (is_other_law(exact, result)) {
     notes.emplace_back(

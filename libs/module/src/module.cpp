@@ -7,23 +7,27 @@ namespace {
 
 using agent::EventKind;
 
-constexpr std::uint32_t kPlanMagic = 0x4e414c50;             // "PLAN"
-constexpr std::uint32_t kPlansMax = agent::kPlannedMax + 1;  // One too many is remembered as well.
+constexpr std::uint32_t kPlanMagic = 0x4e414c50;  // "PLAN"
 constexpr std::size_t kPlanBytes = 12;
+constexpr std::size_t kWithdrawalBytes = kPlanBytes + 1;
 
 /// A blinking lamp is dark while this bit of the time is set: on and off take 0.26 s each.
 constexpr Time kBlinkBit = Time{1} << 18U;
 
-std::uint32_t sum_of(const PlanMemory& plans) {
-  std::uint32_t sum = plans.magic ^ plans.count;
-  for (std::uint32_t i = 0; i < 3 * plans.count; ++i) {
-    sum = (sum << 5U | sum >> 27U) ^ static_cast<std::uint32_t>(plans.coordinates[i]);
+std::uint32_t sum_of(const PlanMemory::Copy& copy) {
+  std::uint32_t sum = copy.magic ^ copy.number;
+  for (int i = 0; i < copy.told.count(); ++i) {
+    const base::Cell cell = copy.told.cell(i);
+    for (const std::int32_t value :
+         {cell.x, cell.y, cell.z, static_cast<std::int32_t>(copy.told.told(i))}) {
+      sum = (sum << 5U | sum >> 27U) ^ static_cast<std::uint32_t>(value);
+    }
   }
   return ~sum;
 }
 
-bool is_sound(const PlanMemory& plans) {
-  return plans.magic == kPlanMagic && plans.count <= kPlansMax && plans.checksum == sum_of(plans);
+bool is_sound(const PlanMemory::Copy& copy) {
+  return copy.magic == kPlanMagic && copy.told.is_sound() && copy.checksum == sum_of(copy);
 }
 
 }  // namespace
@@ -62,39 +66,58 @@ void Module::step(EventKind kind, int face) {
   const bool is_waiting = was_handed_in && actions_.wake_at <= event_.now;
   wake_at_ = is_waiting ? agent::kNever : actions_.wake_at;
   ++status_.step_count;
+  // Before anything of this step is on a line: what the robot has forgotten must not come back.
+  if (kind != EventKind::kRecall) {
+    keep_plans();
+  }
 }
 
 /// What was announced before a reset still holds.
 void Module::recall_plans() {
-  if (!is_sound(plans_)) {
-    plans_ = {.magic = kPlanMagic, .count = 0, .coordinates = {}, .checksum = 0};
-    plans_.checksum = sum_of(plans_);
+  const bool is_second_later = plans_.copies[1].number - plans_.copies[0].number < 0x80000000U;
+  kept_ = is_second_later ? 1 : 0;
+  if (!is_sound(plans_.copies[kept_])) {
+    kept_ = 1 - kept_;
   }
-  for (std::uint32_t i = 0; i < plans_.count; ++i) {
-    event_.cell = {plans_.coordinates[3 * i], plans_.coordinates[3 * i + 1],
-                   plans_.coordinates[3 * i + 2]};
-    step(EventKind::kPlan);
+  if (!is_sound(plans_.copies[kept_])) {
+    plans_ = {};
+    return;
   }
-  status_.plan_count = plans_.count;
+  const agent::Announcements& before = plans_.copies[kept_].told;
+  for (int i = 0; i < before.count(); ++i) {
+    event_.cell = before.cell(i);
+    event_.told = before.told(i);
+    step(EventKind::kRecall);
+  }
+  status_.plan_count = static_cast<std::uint32_t>(before.plan_count());
 }
 
+/// Writes what the agent has been told beside what was kept before, if it is something else.
+void Module::keep_plans() {
+  const agent::Announcements& told = agent_.announcements();
+  PlanMemory::Copy& other = plans_.copies[1 - kept_];
+  if (told == plans_.copies[kept_].told) {
+    return;
+  }
+  other.magic = kPlanMagic;
+  other.number = plans_.copies[kept_].number + 1;
+  other.told = told;
+  other.checksum = sum_of(other);
+  kept_ = 1 - kept_;
+  status_.plan_count = static_cast<std::uint32_t>(told.plan_count());
+}
+
+/// Three i32, the cell; behind a withdrawal's a byte 1.
 void Module::take_plan(std::span<const std::uint8_t> payload) {
-  if (payload.size() != kPlanBytes) {
+  const bool is_withdrawal = payload.size() == kWithdrawalBytes && payload.back() == 1;
+  if (payload.size() != kPlanBytes && !is_withdrawal) {
     return;
   }
   agent::wire::Reader in(payload, 0);
   event_.cell.x = in.i32();
   event_.cell.y = in.i32();
   event_.cell.z = in.i32();
-  if (plans_.count < kPlansMax) {
-    const std::size_t at = 3 * static_cast<std::size_t>(plans_.count++);
-    plans_.coordinates[at] = event_.cell.x;
-    plans_.coordinates[at + 1] = event_.cell.y;
-    plans_.coordinates[at + 2] = event_.cell.z;
-    plans_.checksum = sum_of(plans_);
-  }
-  status_.plan_count = plans_.count;
-  step(EventKind::kPlan);
+  step(is_withdrawal ? EventKind::kWithdraw : EventKind::kPlan);
 }
 
 void Module::watch_neighbours() {

@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cstring>
 #include <vector>
 
 #include "holdfast/module/configuration.hpp"
@@ -156,9 +157,114 @@ TEST(Module, remembers_a_plan_over_a_reset) {
   EXPECT_EQ(module.status().reason, agent::Reason::kPlannedDetached);
 }
 
+Packet frame_of(const base::Cell& cell, bool is_withdrawal = false) {
+  Packet payload;
+  for (const std::int32_t value : {cell.x, cell.y, cell.z}) {
+    for (unsigned shift = 0; shift < 32; shift += 8) {
+      payload.push_back(static_cast<std::uint8_t>(static_cast<std::uint32_t>(value) >> shift));
+    }
+  }
+  if (is_withdrawal) {
+    payload.push_back(1);
+  }
+  return payload;
+}
+
+/// Hands the plans in, last one first, and runs until the verdict; a start with this memory.
+Status started(PlanMemory& plans, const std::vector<Packet>& told) {
+  const Configuration configuration = lonely();
+  ScriptedPort port;
+  Module module(configuration, plans, port);
+  port.plans = told;
+  for (int i = 0; i < 100; ++i) {
+    module.run_once();
+  }
+  return module.status();
+}
+
+PlanMemory::Copy& latest(PlanMemory& plans) {
+  return plans.copies[plans.copies[0].number < plans.copies[1].number ? 1 : 0];
+}
+
+/// Its own cell: the module planned there is there.
+TEST(Module, forgets_a_plan_that_is_fulfilled_and_a_reset_does_not_bring_it_back) {
+  PlanMemory plans{};
+  Status status = started(plans, {frame_of({0, 0, 0})});
+  EXPECT_EQ(status.plan_count, 0U);
+  EXPECT_EQ(status.verdict, agent::Verdict::kSafe);
+  status = started(plans, {});
+  EXPECT_EQ(status.plan_count, 0U);
+  EXPECT_EQ(status.verdict, agent::Verdict::kSafe);
+}
+
+TEST(Module, forgets_a_plan_that_is_withdrawn_and_a_reset_does_not_bring_it_back) {
+  PlanMemory plans{};
+  EXPECT_EQ(started(plans, {frame_of({9, 0, 0})}).reason, agent::Reason::kPlannedDetached);
+  EXPECT_EQ(started(plans, {frame_of({8, 0, 0}, true)}).plan_count, 1U);
+  const Status status = started(plans, {frame_of({9, 0, 0}, true)});
+  EXPECT_EQ(status.plan_count, 0U);
+  EXPECT_EQ(status.verdict, agent::Verdict::kSafe);
+  EXPECT_EQ(started(plans, {}).verdict, agent::Verdict::kSafe);
+}
+
+TEST(Module, remembers_over_a_reset_that_it_was_told_too_much_until_all_is_withdrawn) {
+  PlanMemory plans{};
+  std::vector<Packet> many;
+  for (int i = 0; i <= agent::kAnnouncedMax; ++i) {
+    many.push_back(frame_of({0, 0, 1 + i}));
+  }
+  EXPECT_EQ(started(plans, many).reason, agent::Reason::kPlannedTooMany);
+  EXPECT_EQ(started(plans, {}).reason, agent::Reason::kPlannedTooMany);
+  EXPECT_EQ(started(plans, {frame_of(agent::kEveryCell, true)}).verdict, agent::Verdict::kSafe);
+  EXPECT_EQ(started(plans, {}).plan_count, 0U);
+}
+
+/// A withdrawal that no round has carried yet is kept as well: a neighbour is silent meanwhile.
+TEST(Module, remembers_a_withdrawal_over_a_reset) {
+  const Configuration configuration = lonely();
+  PlanMemory plans{};
+  {
+    ScriptedPort port;
+    Module module(configuration, plans, port);
+    port.connected = 1;
+    port.plans = {frame_of({9, 0, 0}, true)};
+    module.run_once();
+  }
+  const auto& told = plans.copies[1].told;
+  ASSERT_EQ(told.count(), 1);
+  EXPECT_EQ(told.told(0), agent::Told::kWithdrawal);
+  EXPECT_EQ(started(plans, {}).plan_count, 0U);
+  EXPECT_EQ(latest(plans).told, agent::Announcements());  // Carried now, and forgotten.
+}
+
+/// A reset in the midst of writing: one copy is damaged, the other one is what was before.
+TEST(Module, keeps_the_plans_before_when_a_reset_spoils_the_writing) {
+  PlanMemory plans{};
+  started(plans, {frame_of({9, 0, 0})});
+  const PlanMemory whole = plans;
+  latest(plans).told.plan({8, 0, 0});
+  // Known already, then new: the copy before has the plan, too.
+  EXPECT_EQ(started(plans, {}).plan_count, 1U);
+  for (std::size_t i = 0; i < plans.copies.size(); ++i) {
+    PlanMemory half = whole;
+    half.copies[i].checksum ^= 1U;
+    EXPECT_EQ(started(half, {}).plan_count, 1U);
+  }
+}
+
+TEST(Module, takes_no_frame_of_another_form) {
+  PlanMemory plans{};
+  Packet odd = frame_of({9, 0, 0}, true);
+  odd.back() = 2;
+  Packet longer = frame_of({9, 0, 0}, true);
+  longer.push_back(1);
+  EXPECT_EQ(started(plans, {odd, longer, {1, 2, 3}, {}}).verdict, agent::Verdict::kSafe);
+}
+
 TEST(Module, starts_without_plans_when_its_memory_is_noise) {
   const Configuration configuration = lonely();
-  PlanMemory plans{.magic = 1, .count = 77, .coordinates = {}, .checksum = 5};
+  PlanMemory plans{};
+  std::memset(static_cast<void*>(&plans), 0xa5, sizeof(plans));
   ScriptedPort port;
   const Module module(configuration, plans, port);
   EXPECT_EQ(module.status().plan_count, 0U);

@@ -103,7 +103,7 @@ void Engine::boot() {
     if (!ports_[at(module)].is_attached) {
       continue;
     }
-    if (module == options_.plan_module) {
+    if (options_.tells_planned && module == options_.plan_module) {
       for (std::size_t i = at(agent_count()); i < robot_.modules().size(); ++i) {
         announce({.at = 0, .module = module, .cell = robot_.modules()[i].cell});
       }
@@ -218,7 +218,8 @@ void Engine::announce(const Announcement& announcement) {
     recorder_.trace()->announced(announcement);
   }
   if (ports_[at(announcement.module)].takes_part()) {
-    agent::Event event = event_of(agent::EventKind::kPlan);
+    agent::Event event = event_of(announcement.is_withdrawal ? agent::EventKind::kWithdraw
+                                                             : agent::EventKind::kPlan);
     event.cell = announcement.cell;
     hand_in(announcement.module, event);
   }

@@ -145,7 +145,9 @@ void PerfettoTrace::fault_happened(const Fault& fault) {
 }
 
 void PerfettoTrace::announced(const Announcement& announcement) {
-  writer_->instant(announcement.at, announcement.module, "told of a planned module");
+  writer_->instant(
+      announcement.at, announcement.module,
+      announcement.is_withdrawal ? "told that a plan is withdrawn" : "told of a planned module");
 }
 
 void PerfettoTrace::end(const SimulationResult& result) {

@@ -44,7 +44,8 @@ std::optional<std::string> find_options_fault(const model::Robot& robot,
       }
     }
   }
-  if (!found && robot.planned_count() > 0 && !starts_attached(options, options.plan_module)) {
+  if (!found && options.tells_planned && robot.planned_count() > 0 &&
+      !starts_attached(options, options.plan_module)) {
     found = fmt::format("plan_module {} is not there at the start", options.plan_module);
   }
   return found;

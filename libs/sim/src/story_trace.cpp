@@ -123,8 +123,12 @@ void StoryTrace::fault_happened(const Fault& fault) {
 }
 
 void StoryTrace::announced(const Announcement& announcement) {
+  const bool is_all = announcement.is_withdrawal && announcement.cell == agent::kEveryCell;
   writer_->tell(announcement.at, announcement.module,
-                fmt::format("is told of a planned module at {}", text(announcement.cell)));
+                fmt::format("is told {} {}",
+                            announcement.is_withdrawal ? "that a plan is withdrawn:"
+                                                       : "of a planned module at",
+                            is_all ? "all" : text(announcement.cell)));
 }
 
 void StoryTrace::end(const SimulationResult& result) {

@@ -25,6 +25,32 @@ struct DistributedRun {
   std::vector<std::string> notes;  ///< What to know when comparing with the exact answer.
 };
 
+/// What is done to a robot while it computes.
+struct Change {
+  enum class Kind : std::uint8_t {
+    kAttach,    ///< A module comes to the cell.
+    kPlan,      ///< A module is planned there.
+    kWithdraw,  ///< It is not planned any more; with agent::kEveryCell nothing is.
+  };
+
+  Kind kind = Kind::kPlan;
+  sim::Time at = 0;
+  base::Cell cell;
+};
+
+/// A structure with its changes.
+struct ChangedStructure {
+  Structure structure;                           ///< As it is in the end.
+  std::vector<sim::Announcement> announcements;  ///< What the file plans, at 0, then the changes.
+  std::vector<sim::Fault> attachments;
+};
+
+/// What becomes of a structure: with the modules that are attached, behind all others, and the
+/// plans that are neither fulfilled nor withdrawn then. The first module of the file is told of
+/// plans. Errors: a module is attached to an occupied cell; what there is in the end is no robot.
+base::Result<ChangedStructure> with_changes(const Structure& structure,
+                                            std::vector<Change> changes);
+
 /// Called now and then during a long simulation; false ends it.
 using SimulationProgress = std::function<bool(const sim::SimulationResult&)>;
 

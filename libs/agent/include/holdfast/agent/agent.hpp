@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <span>
 
+#include "holdfast/agent/announcements.hpp"
 #include "holdfast/agent/branch.hpp"
 #include "holdfast/agent/cluster.hpp"
 #include "holdfast/agent/colour.hpp"
@@ -27,7 +28,11 @@
 /// - kStart: once, when the module starts.
 /// - kLinkUp: a neighbour is attached to `face` (sensed, or heard for the first time).
 /// - kLinkDown: it has been taken off and is no longer part of the robot.
-/// - kPlan: a module is planned at `cell`, to be attached in the next step; to any one module.
+/// - kPlan: a module is planned at `cell`, to be attached in the next step; to any one module, or
+/// to
+///   several: it is one plan. A plan ends when a module sits in its cell.
+/// - kWithdraw: the plan of `cell` is withdrawn, or with kEveryCell all plans; to any one module.
+/// - kRecall: after a restart, what announcements() held before: `cell` and `told`.
 /// - kReceive: `bytes` came in on `face`, one packet.
 /// - kLineFree: the line of `face` can take a packet, actions.packet.
 /// - kTime: actions.wake_at has come. It may lie in the past, when an acknowledgement waits for its
@@ -54,10 +59,11 @@
 /// wait of a module as `undecided`, and the root says its verdict again and again, so that a module
 /// that is cut off from it does not keep an old one (src/watch.hpp).
 ///
-/// LIMITS. At most kPlannedMax planned modules in the whole robot; more end as `undecided`, as does
-/// everything else that the program cannot be certain of; answer().reason says which. What a faulty
-/// neighbour says and a working one would not is refused (refused_count()); it counts as silent.
-/// All modules have the same orientation: face indices are base::Direction.
+/// LIMITS. At most kPlannedMax planned modules in the whole robot, and kAnnouncedMax plans and
+/// withdrawals told to one module; more end as `undecided`, as does everything else that the
+/// program cannot be certain of; answer().reason says which. What a faulty neighbour says and a
+/// working one would not is refused (refused_count()); it counts as silent. All modules have the
+/// same orientation: face indices are base::Direction.
 ///
 /// No heap, no exceptions, no recursion, no I/O. Storage is the object itself, kAgentBytesMax at
 /// most. Not re-entrant: one step at a time.
@@ -74,14 +80,17 @@ enum class EventKind : std::uint8_t {
   kLineFree,
   kTime,
   kContinue,  ///< Only after step_part().
+  kWithdraw,
+  kRecall,
 };
 
 struct Event {
   EventKind kind = EventKind::kTime;
+  Told told = Told::kNothing;  ///< kRecall
   Time now = 0;
   base::Direction face = base::Direction::kPlusX;
   std::uint16_t random = 0;                  ///< kLinkUp
-  base::Cell cell = {};                      ///< kPlan
+  base::Cell cell = {};                      ///< kPlan, kWithdraw, kRecall
   std::span<const std::uint8_t> bytes = {};  ///< kReceive
 };
 
@@ -216,6 +225,10 @@ class BasicAgent {
   /// waves of the last round took here: ping_after + lost_after(timing) + 2 W.
   Time watch_time() const;
 
+  /// Plans and withdrawals that this module was told of and that have not ended. Who keeps them
+  /// over a restart hands them in again, kRecall.
+  const Announcements& announcements() const { return announcements_; }
+
   /// Of the root: what was done to find the equilibrium.
   const Effort& effort() const { return conductor_.effort(); }
 
@@ -238,7 +251,6 @@ class BasicAgent {
   void leave_round();
   void start_round();
   void enter_round(const Round& round);
-  void plan(const base::Cell& cell);
   void finish_step(Actions& actions);
 
   bool is_working() const {
@@ -488,9 +500,7 @@ class BasicAgent {
   std::uint8_t touched_ = 0;  ///< Faces whose link has changed in this step.
   std::uint8_t send_faces_ = 0;
   std::array<Time, base::kDirectionCount> deadline_{};
-  std::array<base::Cell, kPlannedMax> announced_{};
-  std::uint8_t announced_count_ = 0;
-  bool is_announced_overfull_ = false;
+  Announcements announcements_;
 
   // Waves and tree.
   std::uint8_t stage_ = kNoStage;

@@ -63,7 +63,7 @@ class Conductor {
   };
 
   enum class Step : std::uint8_t {
-    kPlan,
+    kPlan,  // Or kForget: its report is the same.
     kHosts,
     kMass,
     kAngles,
@@ -86,9 +86,13 @@ class Conductor {
 
   static constexpr int kSeenMax = 24;
 
+  /// Plans that end in one round, at most; more end as `undecided`.
+  static constexpr std::uint8_t kForgottenMax = 200;
+
   Order order(Step step, wire::Operation operation);
   Order next_of_solve(const Setup& setup, const Report& report);
   Order after_plan(const Report& report);
+  Order forget(const Report& report);
   Order after_hosts(const Report& report);
   Order after_mass(const Setup& setup, const Report& report);
   Order after_angles(const Setup& setup, const Report& report);
@@ -150,6 +154,7 @@ class Conductor {
   std::uint32_t census_ = 0;
   std::uint16_t degree_ = 0;  ///< Of the polynomial preconditioner.
   std::uint8_t planned_count_ = 0;
+  std::uint8_t forgotten_count_ = 0;
   std::array<std::uint8_t, 8> totals_{};
   bool is_any_remote_ = false;
   std::uint32_t contact_steps_max_ = 0;  ///< Under the present law.

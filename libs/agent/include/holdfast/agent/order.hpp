@@ -25,7 +25,7 @@ enum class Reason : std::uint8_t {
   kTopples,
   kNeighbourSilent,  ///< A module that is there did not take part.
   kPlannedTooMany,   ///< More than kPlannedMax planned modules.
-  kPlannedOccupied,  ///< A planned cell holds a module already.
+  kPlanDisputed,     ///< A plan and its withdrawal, which came first is not known.
   kPlannedDetached,  ///< A planned module touches nothing.
   kTooLarge,         ///< Too many modules, or too far apart, to be counted (feet.hpp).
   kNotConverged,     ///< No method settled within the limit of iterations.
@@ -60,10 +60,10 @@ inline constexpr std::uint16_t kJacobiCountMax = 4096;
 /// Fields are used as the operation needs them; see wire.hpp and docs/wire.md.
 struct Order {
   wire::Operation operation{};
-  std::uint8_t index = 0;  ///< kPlan: planned index learned, or 0xff.
+  std::uint8_t index = 0;  ///< kPlan: planned index learned, kPlannedMax: one too many, or 0xff.
   std::uint8_t flags = 0;
   std::uint16_t count = 0;  ///< kJacobi: steps; kStart, kGradient, kBegin, kStep: degree.
-  base::Cell cell = {};     ///< kPlan: of that module; kMass: of the root.
+  base::Cell cell = {};     ///< kPlan, kForget: of that module; kMass: of the root.
   std::array<std::uint8_t, 8> masks{};     ///< kHosts
   std::int32_t module_count = 0;           ///< kAngles
   std::array<std::int32_t, 2> cell_sum{};  ///< kAngles
@@ -72,6 +72,7 @@ struct Order {
 };
 
 /// Flags of orders.
+inline constexpr std::uint8_t kIsFulfilled = 1;    ///< kForget
 inline constexpr std::uint8_t kUnilateralLaw = 1;  ///< kBegin
 inline constexpr std::uint8_t kOneSweep = 2;       ///< kBegin: for kStep or kTreeStep.
 inline constexpr std::uint8_t kWithSteps = 4;      ///< kBegin: for kStep.
@@ -109,12 +110,15 @@ struct Report {
 };
 
 /// Flags of reports.
-inline constexpr std::uint8_t kFound = 1;             ///< kPlan: cell is set.
+inline constexpr std::uint8_t kFound = 1;             ///< kPlan: cell is planned.
 inline constexpr std::uint8_t kAnyRemote = 0x80;      ///< kHosts
 inline constexpr std::uint8_t kAnyFixed = 1;          ///< kMass
 inline constexpr std::uint8_t kSumOverflow = 2;       ///< kMass
 inline constexpr std::uint8_t kManyLoops = 4;         ///< kMass: more than a Branch can hold.
 inline constexpr std::uint8_t kTooManyAnnounced = 2;  ///< kPlan
+inline constexpr std::uint8_t kEnded = 4;             ///< kPlan: the plan of cell has ended, ...
+inline constexpr std::uint8_t kFulfilled = 8;         ///< ... as a module sits there.
+inline constexpr std::uint8_t kDisputed = 16;         ///< kPlan
 inline constexpr std::uint8_t kAnyTilting = 1;        ///< kLow
 
 wire::Writer encode(const Order& order);

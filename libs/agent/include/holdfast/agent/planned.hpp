@@ -24,8 +24,6 @@ inline constexpr int kClusterPlannedMax = 2;
 
 class Planned {
  public:
-  static constexpr std::uint8_t kOccupied = 0x40;  ///< In a mask: the cell is not free.
-
   void clear() { *this = Planned(); }
 
   int count() const { return count_; }

@@ -67,8 +67,9 @@ enum class Operation : std::uint8_t {
   kStep,      ///< One step of the polynomial: move, residual, sums.
   kTreeStep,  ///< One step of the elimination: move, residual.
   kClusters,  ///< kBegin, and find rigid clusters.
+  kForget,    ///< A plan has ended; learn from the first one on.
 };
-inline constexpr int kOperationCount = 19;
+inline constexpr int kOperationCount = 20;
 
 /// Sizes of whole messages, type byte included; 0 for what is not a message. `second` is the byte
 /// after the type and matters for orders and reports only.

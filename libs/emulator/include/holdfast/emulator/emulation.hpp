@@ -31,10 +31,11 @@ using sim::Time;
 /// What goes wrong. Times are microseconds.
 struct Fault {
   enum class Kind : std::uint8_t {
-    kKill,   ///< The module has no power any more. It still hangs there.
-    kCut,    ///< The line at `face` carries nothing, both ways.
-    kFlip,   ///< One bit of the next byte that comes in at `face` flips.
-    kReset,  ///< The module starts again; its memory stays as it is.
+    kKill,    ///< The module has no power any more. It still hangs there.
+    kCut,     ///< The line at `face` carries nothing, both ways.
+    kFlip,    ///< One bit of the next byte that comes in at `face` flips.
+    kReset,   ///< The module starts again; its memory stays as it is.
+    kAttach,  ///< The module comes to its place and starts; before, it is not there.
   };
 
   Kind kind = Kind::kKill;
@@ -49,7 +50,10 @@ struct EmulationOptions {
   std::int32_t anchor = 0;       ///< The module that knows its cell.
   std::int32_t plan_module = 0;  ///< Is told of the robot's planned modules, on a free face.
   Time plan_at = 400'000;        ///< When.
-  Time start_spread = 20'000;    ///< Modules start within so long.
+  bool tells_planned = true;     ///< False: nobody is told of them but by `announcements`.
+  /// In the order of their times, each on a face of the module that is free then.
+  std::vector<sim::Announcement> announcements = {};
+  Time start_spread = 20'000;  ///< Modules start within so long.
   Time time_max = 60'000'000;
   Time time_min = 0;  ///< Not over sooner, as modules watch over a verdict that they know.
 };

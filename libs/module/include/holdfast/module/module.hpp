@@ -20,19 +20,25 @@
 /// the verdict is `undecided` then, never `safe`.
 namespace holdfast::module {
 
-/// The plans that a module has been told of, in memory that a reset leaves alone: a module that
-/// starts again must not think of a robot without them.
+/// What a module has been told of plans and withdrawals, in memory that a reset leaves alone: a
+/// module that starts again must not think of a robot without them. What has ended is no longer in
+/// it. Of the two copies the sound one with the later number holds; the other is written next, so
+/// that a reset in the midst of writing loses nothing but what was about to be written.
 struct PlanMemory {
-  std::uint32_t magic;
-  std::uint32_t count;
-  std::array<std::int32_t, 3 * (agent::kPlannedMax + 1)> coordinates;
-  std::uint32_t checksum;
+  struct Copy {
+    std::uint32_t magic = 0;
+    std::uint32_t number = 0;
+    agent::Announcements told;
+    std::uint32_t checksum = 0;
+  };
+
+  std::array<Copy, 2> copies;
 };
 
 /// What the module has come to, for a debugger.
 struct Status {
   std::uint32_t step_count = 0;
-  std::uint32_t plan_count = 0;  ///< Announced to this module.
+  std::uint32_t plan_count = 0;  ///< Announced to this module and not ended.
   agent::Verdict verdict = agent::Verdict::kNone;
   agent::Reason reason{};
   std::uint8_t phase = 0;
@@ -61,6 +67,7 @@ class Module {
  private:
   void step(agent::EventKind kind, int face = 0);
   void recall_plans();
+  void keep_plans();
   void take_plan(std::span<const std::uint8_t> payload);
   void watch_neighbours();
   void take_incoming();
@@ -69,6 +76,7 @@ class Module {
 
   Port& port_;
   PlanMemory& plans_;
+  std::size_t kept_ = 0;  ///< The copy that holds.
   Status status_;
   agent::Event event_;
   agent::Actions actions_;

@@ -28,11 +28,13 @@ struct Fault {
   base::Direction face = base::Direction::kPlusX;  ///< kCut
 };
 
-/// A module is told that another one is planned.
+/// A module is told that another one is planned, or not any more. One that is silent or not there
+/// hears nothing.
 struct Announcement {
   agent::Time at = 0;
   std::int32_t module = 0;  ///< The one that is told.
-  base::Cell cell;          ///< Of the planned one.
+  base::Cell cell;          ///< Of the planned one; with a withdrawal agent::kEveryCell is all.
+  bool is_withdrawal = false;
 };
 
 /// "kill", "cut", "detach", "attach".

@@ -40,6 +40,7 @@ struct SimulationOptions {
   Time watch_for = 0;
   std::int32_t anchor = 0;       ///< The module that knows its cell.
   std::int32_t plan_module = 0;  ///< Is told of the robot's planned modules before it starts.
+  bool tells_planned = true;     ///< False: nobody is told of them but by `announcements`.
   TraceSink* trace = nullptr;    ///< Not owned; outlives the simulation.
   Tamper tamper = {};            ///< Called for every packet, if there is one: faulty modules.
 };

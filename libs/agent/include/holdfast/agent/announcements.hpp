@@ -1,0 +1,102 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "holdfast/agent/planned.hpp"
+#include "holdfast/base/cell.hpp"
+
+/// What one module has been told from outside: cells that are planned, and plans that are
+/// withdrawn.
+///
+/// A plan is a cell; told to several modules, or several times, it is one. It ends in one of two
+/// ways, and then every module forgets it:
+/// - fulfilled: a module sits in its cell, the planned one or any other;
+/// - withdrawn: some module, not only one that holds it, was told so.
+///
+/// Which of two modules was told first is known only if a round came between. A plan that has been
+/// through a whole learning of plans (the robot knows it) is older than a withdrawal that was not.
+/// A plan that has not is as likely younger: it becomes disputed, and the verdict is `undecided`
+/// until it is told once more to the same module, withdrawn once more, or fulfilled.
+namespace holdfast::agent {
+
+/// What one module can be told of, at most. More is remembered as lost, as is a plan of a cell that
+/// the wire cannot carry (24 bits a coordinate); the verdict is `undecided` then until everything
+/// is withdrawn.
+inline constexpr int kAnnouncedMax = kPlannedMax;
+
+/// Withdrawn, it means all plans, lost ones as well. The lowest cell that the wire can carry.
+inline constexpr base::Cell kEveryCell = {-(1 << 23), -(1 << 23), -(1 << 23)};
+
+enum class Told : std::uint8_t {
+  kNothing,
+  kPlan,       ///< Since the robot last learned all plans.
+  kKnownPlan,  ///< Before that.
+  kDisputedPlan,
+  kKnownDispute,  ///< A disputed plan, before the robot last learned all plans.
+  kWithdrawal,
+  kCarriedWithdrawal,  ///< All have been ordered to forget its plan, and may not have done so yet.
+};
+
+constexpr bool is_withdrawal(Told told) {
+  return told == Told::kWithdrawal || told == Told::kCarriedWithdrawal;
+}
+
+class Announcements {
+ public:
+  /// The module is told of a planned cell.
+  void plan(const base::Cell& cell);
+
+  /// The module is told that the plan of a cell is withdrawn, or with kEveryCell all plans.
+  void withdraw(const base::Cell& cell);
+
+  /// What cell() and told() gave before a reset.
+  void recall(const base::Cell& cell, Told told);
+
+  /// The robot has learned all plans.
+  void settle();
+
+  /// The next order after forget(): all have done it. Until then a withdrawal is kept, as the round
+  /// may be given up before its order has reached those that hold the plan.
+  void finish_forgetting();
+
+  /// The round was given up, and another one begins.
+  void begin_anew();
+
+  /// A plan has ended.
+  void forget(const base::Cell& cell, bool is_fulfilled);
+
+  /// The lost ones are the last, as one plan of kEveryCell.
+  int count() const { return count_ + (lost_ != Told::kNothing ? 1 : 0); }
+
+  base::Cell cell(int i) const {
+    return i < count_ ? cells_[static_cast<std::size_t>(i)] : kEveryCell;
+  }
+
+  Told told(int i) const { return i < count_ ? told_[static_cast<std::size_t>(i)] : lost_; }
+
+  /// Plans in it.
+  int plan_count() const;
+
+  /// Has it been told more than it can keep?
+  bool is_overfull() const { return lost_ != Told::kNothing; }
+
+  /// False only of memory that never was one.
+  bool is_sound() const { return count_ <= kAnnouncedMax; }
+
+  friend bool operator==(const Announcements&, const Announcements&) = default;
+
+ private:
+  int find(const base::Cell& cell) const;
+  void put(const base::Cell& cell, Told told);
+  void erase(int i);
+
+  std::array<base::Cell, kAnnouncedMax> cells_{};
+  std::array<Told, kAnnouncedMax> told_{};
+  std::uint8_t count_ = 0;
+  Told lost_ = Told::kNothing;  ///< As of plans that found no place.
+};
+
+}  // namespace holdfast::agent

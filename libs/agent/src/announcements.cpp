@@ -1,0 +1,123 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#include "holdfast/agent/announcements.hpp"
+
+namespace holdfast::agent {
+namespace {
+
+/// Can the wire carry it? 24 bits a coordinate.
+bool is_on_wire(const base::Cell& cell) {
+  constexpr std::int32_t kLeast = kEveryCell.x;
+  for (const std::int32_t value : {cell.x, cell.y, cell.z}) {
+    if (value < kLeast || value >= -kLeast) {
+      return false;
+    }
+  }
+  return true;
+}
+
+}  // namespace
+
+int Announcements::find(const base::Cell& cell) const {
+  for (int i = 0; i < count_; ++i) {
+    if (cells_[static_cast<std::size_t>(i)] == cell) {
+      return i;
+    }
+  }
+  return -1;
+}
+
+/// What is told of a cell replaces what was told of it before.
+void Announcements::put(const base::Cell& cell, Told told) {
+  const int found = find(cell);
+  const bool is_possible = is_on_wire(cell);
+  if (!is_possible && told == Told::kWithdrawal) {
+    return;
+  }
+  if (!is_possible || (found < 0 && count_ == kAnnouncedMax)) {
+    lost_ = Told::kPlan;
+    return;
+  }
+  const auto i = static_cast<std::size_t>(found < 0 ? count_++ : found);
+  cells_[i] = cell;
+  told_[i] = told;
+}
+
+/// The last one takes its place; free places are empty, so that equal contents are equal.
+void Announcements::erase(int i) {
+  const auto last = static_cast<std::size_t>(--count_);
+  cells_[static_cast<std::size_t>(i)] = cells_[last];
+  told_[static_cast<std::size_t>(i)] = told_[last];
+  cells_[last] = {};
+  told_[last] = Told::kNothing;
+}
+
+void Announcements::plan(const base::Cell& cell) { recall(cell, Told::kPlan); }
+
+void Announcements::withdraw(const base::Cell& cell) {
+  if (cell == kEveryCell) {
+    *this = Announcements();
+  }
+  put(cell, Told::kWithdrawal);
+}
+
+void Announcements::recall(const base::Cell& cell, Told told) {
+  if (cell == kEveryCell && !is_withdrawal(told)) {
+    lost_ = told;
+  } else {
+    put(cell, is_withdrawal(told) ? Told::kWithdrawal : told);
+  }
+}
+
+void Announcements::settle() {
+  for (Told& told : told_) {
+    told = told == Told::kPlan           ? Told::kKnownPlan
+           : told == Told::kDisputedPlan ? Told::kKnownDispute
+                                         : told;
+  }
+  lost_ = lost_ == Told::kPlan ? Told::kKnownPlan : lost_;
+}
+
+void Announcements::finish_forgetting() {
+  for (int i = count_; i-- > 0;) {
+    if (told_[static_cast<std::size_t>(i)] == Told::kCarriedWithdrawal) {
+      erase(i);
+    }
+  }
+}
+
+void Announcements::begin_anew() {
+  for (Told& told : told_) {
+    told = is_withdrawal(told) ? Told::kWithdrawal : told;
+  }
+}
+
+void Announcements::forget(const base::Cell& cell, bool is_fulfilled) {
+  const bool is_every = cell == kEveryCell;
+  for (int i = count_; i-- > 0;) {
+    Told& told = told_[static_cast<std::size_t>(i)];
+    if (!is_every && cells_[static_cast<std::size_t>(i)] != cell) {
+      continue;
+    }
+    if (is_withdrawal(told)) {
+      told = is_fulfilled ? told : Told::kCarriedWithdrawal;
+    } else if (is_fulfilled || told == Told::kKnownPlan || told == Told::kKnownDispute) {
+      erase(i);
+    } else {
+      told = Told::kDisputedPlan;
+    }
+  }
+  if (is_every && lost_ == Told::kKnownPlan) {
+    lost_ = Told::kNothing;
+  }
+}
+
+int Announcements::plan_count() const {
+  int plans = 0;
+  for (int i = 0; i < count(); ++i) {
+    plans += is_withdrawal(told(i)) ? 0 : 1;
+  }
+  return plans;
+}
+
+}  // namespace holdfast::agent

@@ -1,0 +1,78 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "holdfast/distributed.hpp"
+
+namespace holdfast {
+namespace {
+
+using Modules = std::vector<io::ModuleEntry>;
+
+bool is_occupied(const Modules& modules, const base::Cell& cell) {
+  return std::ranges::find(modules, cell, &io::ModuleEntry::cell) != modules.end();
+}
+
+/// What is planned after a change.
+void follow(const Change& change, const Modules& modules, io::Step& step) {
+  const bool is_all = change.kind == Change::Kind::kWithdraw && change.cell == agent::kEveryCell;
+  std::erase_if(step,
+                [&](const io::PlannedEntry& entry) { return is_all || entry.cell == change.cell; });
+  if (change.kind == Change::Kind::kPlan && !is_occupied(modules, change.cell)) {
+    step.emplace_back().cell = change.cell;
+  }
+}
+
+}  // namespace
+
+base::Result<ChangedStructure> with_changes(const Structure& structure,
+                                            std::vector<Change> changes) {
+  io::Document document = structure.document;
+  if (document.steps.empty()) {
+    document.steps.emplace_back();
+  }
+  io::Step& step = document.steps.front();
+  std::vector<sim::Announcement> announcements;
+  std::vector<sim::Fault> attachments;
+  for (const io::PlannedEntry& planned : step) {
+    announcements.push_back({.at = 0, .module = 0, .cell = planned.cell});
+  }
+  // What happens at the same time happens in this order: attached, planned, withdrawn.
+  std::ranges::stable_sort(changes, [](const Change& a, const Change& b) {
+    return a.at != b.at ? a.at < b.at : a.kind < b.kind;
+  });
+  for (const Change& change : changes) {
+    if (change.kind == Change::Kind::kAttach) {
+      if (is_occupied(document.modules, change.cell)) {
+        return base::Error{.code = base::ErrorCode::kBadInput,
+                           .message = fmt::format("a module cannot be attached at {}: one is there",
+                                                  model::text(change.cell)),
+                           .where = {}};
+      }
+      attachments.push_back({.kind = sim::Fault::Kind::kAttach,
+                             .at = change.at,
+                             .module = static_cast<std::int32_t>(document.modules.size())});
+      document.modules.emplace_back().cell = change.cell;
+    } else {
+      announcements.push_back({.at = change.at,
+                               .module = 0,
+                               .cell = change.cell,
+                               .is_withdrawal = change.kind == Change::Kind::kWithdraw});
+    }
+    follow(change, document.modules, step);
+  }
+  auto robot = io::make_robot(document);
+  if (!robot) {
+    return robot.error();
+  }
+  return ChangedStructure{.structure = {.name = structure.name,
+                                        .document = std::move(document),
+                                        .robot = std::move(robot).value(),
+                                        .warnings = structure.warnings},
+                          .announcements = std::move(announcements),
+                          .attachments = std::move(attachments)};
+}
+
+}  // namespace holdfast
