@@ -5,7 +5,7 @@
 //   distributed_bench random FROM TO      random robots against the exact answer, quiet links
 //   distributed_bench noisy FROM TO       the same with loss, duplication, jitter, bit errors
 //   distributed_bench faults FROM TO      a random module dies or a random link fails
-//   distributed_bench stale FROM TO       the same after a safe verdict; then an unsafe plan is told
+//   distributed_bench stale FROM TO       the same after a safe verdict, then an unsafe plan
 //   distributed_bench liars FROM TO       a random module hangs, or changes what it sends
 //   distributed_bench watching FILE...    packets that watching over the verdict costs, a table
 //   distributed_bench plans FROM TO       plans told, carried out and withdrawn at any time
@@ -372,7 +372,8 @@ int main(int argc, char** argv) {
   if (what == "growth" || what == "throughput") {
     return what == "growth" ? run_growth() : run_throughput();
   }
-  constexpr std::string_view kCampaigns[] = {"random", "noisy", "faults", "stale", "liars", "plans"};
+  constexpr std::string_view kCampaigns[] = {"random", "noisy", "faults",
+                                             "stale",  "liars", "plans"};
   if (argc != 4 || std::ranges::find(kCampaigns, what) == std::end(kCampaigns)) {
     return usage();
   }
