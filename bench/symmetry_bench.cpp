@@ -48,7 +48,8 @@ Answer answer(const model::RobotSpec& spec, int turn, Method method) {
   const auto robot =
       model::Robot::create(test::turned(spec, turn, static_cast<std::uint64_t>(turn)));
   HOLDFAST_CHECK(robot.has_value());
-  Answer answer{.assessment = verdict::assess(robot.value(), {.method = method})};
+  Answer answer;
+  answer.assessment = verdict::assess(robot.value(), {.method = method});
   const auto original = [&](const base::Cell& cell) { return test::turned(cell, inverse(turn)); };
   for (std::size_t i = 0; i < answer.assessment.connections.size(); ++i) {
     const auto [a, b] = model::ends(robot.value(), i);
