@@ -22,6 +22,7 @@ struct Proof {
   certificate::Verification verification{};      ///< What its checker says.
   int solve_count = 0;                           ///< Linear systems solved for it.
   std::vector<base::Vec6<double>> displacement;  ///< The certificate's, mm and rad.
+  std::vector<base::Vec6<double>> displacement_low;  ///< To be added to it for 106 bits.
 
   bool is_proved() const { return verification.is_proved; }
 };
