@@ -168,10 +168,26 @@ TEST(SeveralSolutions, give_a_verdict_only_where_they_agree) {
     EXPECT_EQ(torn.verdict, verdict::Verdict::kUndecided);
     EXPECT_TRUE(has(torn, "several solutions"));
     EXPECT_TRUE(has(torn, "they do not agree"));
+    EXPECT_EQ(torn.equilibrium.method, Method::kDirect);  // With all digits; none are given up.
   }
   EXPECT_EQ(with_strength(paper.low / 1.01).verdict, verdict::Verdict::kOverload);
   EXPECT_EQ(with_strength(exact.high * 1.01).verdict, verdict::Verdict::kSafe);
   EXPECT_TRUE(has(with_strength(exact.high * 1.01), "several solutions"));
+}
+
+/// A robot that bends half a million times as easily moves so far that displacements in double have
+/// no more than ten digits of the loads.
+TEST(SeveralSolutions, are_known_to_all_digits_where_the_answer_is) {
+  model::RobotSpec spec = test::standing_robot(342);
+  spec.material.moment_x_mm4 *= 2e-6;
+  spec.material.moment_y_mm4 *= 2e-6;
+  const auto assessment =
+      verdict::assess(make_robot(spec), {.method = Method::kDirect, .is_precise = true});
+  ASSERT_TRUE(assessment.several);
+  const verdict::SeveralSolutions& several = *assessment.several;
+  EXPECT_LT(several.error, 1e-11);
+  EXPECT_LE(several.regularised.low - several.error, *assessment.load_ratio_max);
+  EXPECT_GE(several.regularised.high + several.error, *assessment.load_ratio_max);
 }
 
 TEST(SeveralSolutions, stand_in_the_report) {
