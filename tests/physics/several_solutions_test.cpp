@@ -190,6 +190,23 @@ TEST(SeveralSolutions, are_known_to_all_digits_where_the_answer_is) {
   EXPECT_GE(several.regularised.high + several.error, *assessment.load_ratio_max);
 }
 
+/// A proof is of one solution, and decides nothing about the others.
+TEST(SeveralSolutions, that_do_not_agree_are_not_decided_by_a_proof) {
+  model::RobotSpec spec = test::standing_robot(94);
+  const auto first = verdict::assess(make_robot(spec));
+  ASSERT_TRUE(first.several && first.several->unilateral);
+  const double strength = (first.several->regularised.high + first.several->unilateral->low) / 2;
+  spec.material.strength_vertical_n *= strength;
+  spec.material.strength_lateral_n *= strength;
+  const model::Robot robot = make_robot(spec);
+  auto assessment = verdict::assess(robot);
+  const proof::Proof proof = proof::prove(robot, assessment);
+  ASSERT_TRUE(proof.is_proved()) << proof.verification.reason;
+  proof::apply(robot, proof, assessment);
+  EXPECT_EQ(assessment.verdict, verdict::Verdict::kUndecided);
+  EXPECT_NE(assessment.reasons.front().find("they do not agree"), std::string::npos);
+}
+
 TEST(SeveralSolutions, stand_in_the_report) {
   for (const auto& [seed, text] : {std::pair{94U, "\"several_solutions\": {\n    \"found\": 2,"},
                                    std::pair{93U, "\"several_solutions\": null"}}) {

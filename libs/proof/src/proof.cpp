@@ -324,7 +324,10 @@ void apply(const model::Robot& robot, const Proof& proof, Assessment& assessment
     return;
   }
   const bool holds = found.is_proved && found.is_standing;
-  const verdict::Verdict verdict = holds ? verdict_of(found) : verdict::Verdict::kUndecided;
+  verdict::Verdict verdict = holds ? verdict_of(found) : verdict::Verdict::kUndecided;
+  if (assessment.several && verdict != assessment.verdict) {
+    verdict = verdict::Verdict::kUndecided;  // Nothing is proved of the other solutions.
+  }
   const bool is_changed = verdict != std::exchange(assessment.verdict, verdict);
   if (!holds) {
     assessment.reasons = {fmt::format(

@@ -33,8 +33,8 @@ Proof prove(const model::Robot& robot, const verdict::Assessment& assessment,
             const ProofOptions& options = {});
 
 /// Takes the proof over into the assessment: its loads are then the certificate's, its verdict is
-/// what the range says, and `undecided` where nothing is proved. A robot that topples is known to
-/// from integers alone.
+/// what the range says, and `undecided` where nothing is proved or other solutions do not agree. A
+/// robot that topples is known to from integers alone.
 void apply(const model::Robot& robot, const Proof& proof, verdict::Assessment& assessment);
 
 }  // namespace holdfast::proof
