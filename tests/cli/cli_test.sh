@@ -280,6 +280,7 @@ for other in in.json ./in.json "$work/in.json" link.json hard.json; do
   expect_exit 64 check in.json --json "$other"
   expect_line err 'would overwrite the input'
   expect_exit 64 check "$other" --svg in.json
+  expect_exit 64 check in.json --certificate "$other"
 done
 expect_exit 64 convert in.json in.json
 expect_exit 64 simulate in.json --story link.json

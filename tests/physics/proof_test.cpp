@@ -66,6 +66,19 @@ TEST(Proof, proves_every_scenario_that_stands) {
   }
 }
 
+/// Also where displacements in double have no digits of the loads left.
+TEST(Proof, shows_a_load_ratio_inside_its_range) {
+  for (const auto& file : std::filesystem::directory_iterator(HOLDFAST_NEAR_LIMIT_DIR)) {
+    SCOPED_TRACE(file.path().filename().string());
+    const CheckResult result = check(load_file(file.path()).value(), {.is_proof_wanted = true});
+    ASSERT_TRUE(result.proof && result.proof->is_proved());
+    const verdict::LoadRange range = result.assessment.load_ratio_range;
+    // Four roundings of what is shown.
+    EXPECT_GE(*result.assessment.load_ratio_max, range.low * (1 - 1e-15));
+    EXPECT_LE(*result.assessment.load_ratio_max, range.high * (1 + 1e-15));
+  }
+}
+
 /// Scaled so that the ratio is 1 + off, robots of all kinds and sizes are decided.
 TEST(Proof, decides_robots_within_1e_9_of_the_limit) {
   int decided = 0;

@@ -168,10 +168,43 @@ TEST(SeveralSolutions, give_a_verdict_only_where_they_agree) {
     EXPECT_EQ(torn.verdict, verdict::Verdict::kUndecided);
     EXPECT_TRUE(has(torn, "several solutions"));
     EXPECT_TRUE(has(torn, "they do not agree"));
+    EXPECT_EQ(torn.equilibrium.method, Method::kDirect);  // With all digits; none are given up.
   }
   EXPECT_EQ(with_strength(paper.low / 1.01).verdict, verdict::Verdict::kOverload);
   EXPECT_EQ(with_strength(exact.high * 1.01).verdict, verdict::Verdict::kSafe);
   EXPECT_TRUE(has(with_strength(exact.high * 1.01), "several solutions"));
+}
+
+/// A robot that bends half a million times as easily moves so far that displacements in double have
+/// no more than ten digits of the loads.
+TEST(SeveralSolutions, are_known_to_all_digits_where_the_answer_is) {
+  model::RobotSpec spec = test::standing_robot(342);
+  spec.material.moment_x_mm4 *= 2e-6;
+  spec.material.moment_y_mm4 *= 2e-6;
+  const auto assessment =
+      verdict::assess(make_robot(spec), {.method = Method::kDirect, .is_precise = true});
+  ASSERT_TRUE(assessment.several);
+  const verdict::SeveralSolutions& several = *assessment.several;
+  EXPECT_LT(several.error, 1e-11);
+  EXPECT_LE(several.regularised.low - several.error, *assessment.load_ratio_max);
+  EXPECT_GE(several.regularised.high + several.error, *assessment.load_ratio_max);
+}
+
+/// A proof is of one solution, and decides nothing about the others.
+TEST(SeveralSolutions, that_do_not_agree_are_not_decided_by_a_proof) {
+  model::RobotSpec spec = test::standing_robot(94);
+  const auto first = verdict::assess(make_robot(spec));
+  ASSERT_TRUE(first.several && first.several->unilateral);
+  const double strength = (first.several->regularised.high + first.several->unilateral->low) / 2;
+  spec.material.strength_vertical_n *= strength;
+  spec.material.strength_lateral_n *= strength;
+  const model::Robot robot = make_robot(spec);
+  auto assessment = verdict::assess(robot);
+  const proof::Proof proof = proof::prove(robot, assessment);
+  ASSERT_TRUE(proof.is_proved()) << proof.verification.reason;
+  proof::apply(robot, proof, assessment);
+  EXPECT_EQ(assessment.verdict, verdict::Verdict::kUndecided);
+  EXPECT_NE(assessment.reasons.front().find("they do not agree"), std::string::npos);
 }
 
 TEST(SeveralSolutions, stand_in_the_report) {

@@ -210,7 +210,8 @@ int run(const Options& options) {
   if (complain_of_clash(options.files, {{"--json", options.json},
                                         {"--svg", options.svg},
                                         {"--vtk", options.vtk},
-                                        {"--html", options.html}})) {
+                                        {"--html", options.html},
+                                        {"--certificate", options.certificate}})) {
     return kExitUsage;
   }
   return CheckRun(options).run();

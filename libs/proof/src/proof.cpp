@@ -9,9 +9,12 @@
 #include <limits>
 #include <utility>
 
+#include "holdfast/base/double_double.hpp"
+
 namespace holdfast::proof {
 namespace {
 
+using base::DoubleDouble;
 using certificate::Certificate;
 using certificate::Integer;
 using certificate::Law;
@@ -155,12 +158,18 @@ class Prover {
     return (k < 3 ? displacement : displacement * lever_mm_) / displacement_mm_;
   }
 
+  /// In 106 bits: of a slender robot the loads are in the digits that a double has not.
   void take_displacements() {
     const double unit = std::ldexp(displacement_mm_, -proof_.certificate.bits);
     for (const certificate::Six& six : proof_.certificate.fields[0]) {
-      Vec& u = proof_.displacement.emplace_back();
+      Vec& high = proof_.displacement.emplace_back();
+      Vec& low = proof_.displacement_low.emplace_back();
       for (std::size_t k = 0; k < 6; ++k) {
-        u[k] = static_cast<double>(six[k]) * unit / (k < 3 ? 1 : lever_mm_);
+        const auto upper = static_cast<double>(six[k]);
+        const DoubleDouble steps(upper, static_cast<double>(six[k] - static_cast<Integer>(upper)));
+        const DoubleDouble u = steps * unit / (k < 3 ? 1 : lever_mm_);
+        high[k] = u.high;
+        low[k] = u.low;
       }
     }
   }
@@ -292,6 +301,7 @@ const char* what_is_proved(ContactModel model) {
 void take_loads(const model::Robot& robot, const Proof& proof, bool is_changed,
                 Assessment& assessment) {
   assessment.equilibrium.displacement = proof.displacement;
+  assessment.equilibrium.displacement_low = proof.displacement_low;
   assessment.equilibrium.alternative = proof.displacement;
   Assessment fresh = verdict::assess_equilibrium(robot, assessment.equilibrium);
   assessment.connections = std::move(fresh.connections);
@@ -314,7 +324,10 @@ void apply(const model::Robot& robot, const Proof& proof, Assessment& assessment
     return;
   }
   const bool holds = found.is_proved && found.is_standing;
-  const verdict::Verdict verdict = holds ? verdict_of(found) : verdict::Verdict::kUndecided;
+  verdict::Verdict verdict = holds ? verdict_of(found) : verdict::Verdict::kUndecided;
+  if (assessment.several && verdict != assessment.verdict) {
+    verdict = verdict::Verdict::kUndecided;  // Nothing is proved of the other solutions.
+  }
   const bool is_changed = verdict != std::exchange(assessment.verdict, verdict);
   if (!holds) {
     assessment.reasons = {fmt::format(

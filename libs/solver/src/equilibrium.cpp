@@ -591,10 +591,9 @@ void EquilibriumSolver::finish(Equilibrium& result) {
   const std::size_t count = robot_.modules().size();
   result.contact.assign(count, ContactState{.pressed = false});
   result.ground_force.assign(count, Vec{});
-  const bool law_has_holds = ground_.law == ContactLaw::kUnilateral;
+  result.open_but_held_count = open_but_held_count();
   for (const Facet& facet : facets_) {
     result.contact[facet.module] = facet.state;
-    result.open_but_held_count += law_has_holds && !facet.state.pressed && facet.is_held ? 1 : 0;
     const Vec force = mechanics::contact_force(ground_, facet.state, facet.is_held,
                                                result.displacement[facet.module]);
     for (std::size_t k = 0; k < 6; ++k) {
@@ -633,7 +632,8 @@ bool EquilibriumSolver::finish_direct(Equilibrium& result) {
   if (is_refined(result) && !options_.is_precise) {
     return true;
   }
-  if (ground_.law == ContactLaw::kUnilateral && refine_without_weak_springs(result)) {
+  const bool may_go_without = ground_.law == ContactLaw::kUnilateral && open_but_held_count() == 0;
+  if (may_go_without && refine_without_weak_springs(result)) {
     return true;
   }
   return refine_precisely(result);
@@ -673,7 +673,8 @@ void EquilibriumSolver::set_gamma(double gamma) {
 }
 
 /// The weak springs keep the matrix regular until the states are found; a robot that stands does
-/// without them then. Leaves everything as it was if this one does not.
+/// without them then, unless feet are yet to be freed. Leaves everything as it was if this one does
+/// not.
 bool EquilibriumSolver::refine_without_weak_springs(Equilibrium& result) {
   const double gamma = ground_.gamma;
   const std::vector<Vec> displacement = result.displacement;
@@ -686,6 +687,12 @@ bool EquilibriumSolver::refine_without_weak_springs(Equilibrium& result) {
   set_gamma(gamma);
   HOLDFAST_CHECK(lu_->factor());  // As it was before.
   return false;
+}
+
+int EquilibriumSolver::open_but_held_count() const {
+  return static_cast<int>(std::ranges::count_if(facets_, [&](const Facet& facet) {
+    return ground_.law == ContactLaw::kUnilateral && !facet.state.pressed && facet.is_held;
+  }));
 }
 
 /// The alternative where some facets can neither be held nor free: half open, half closed.

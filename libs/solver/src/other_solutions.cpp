@@ -93,6 +93,7 @@ void EquilibriumSolver::seek_others(Equilibrium& settled) {
     if (is_found && std::ranges::find(known, found) == known.end()) {
       known.push_back(found);
       settled.others.push_back({.displacement = std::move(other.displacement),
+                                .displacement_low = std::move(other.displacement_low),
                                 .alternative = std::move(other.alternative)});
     }
   }

@@ -10,7 +10,6 @@
 #include <utility>
 
 #include "connection_law.hpp"
-#include "holdfast/base/double_double.hpp"
 #include "holdfast/host/team.hpp"
 #include "holdfast/mechanics/support_corners.hpp"
 #include "holdfast/verdict/beside_one.hpp"
@@ -81,34 +80,12 @@ struct Loads {
   }
 };
 
-/// How the first module moves as seen by the second, where both move far more than their beam
-/// bends: in 106 bits until what is common to both is gone.
-base::Vec6<double> relative_motion(const model::Robot& robot, const Equilibrium& equilibrium,
-                                   const model::Connection& pair) {
-  base::Vec6<base::DoubleDouble> motion;
-  base::Vec6<base::DoubleDouble> second;
-  const auto a = static_cast<std::size_t>(pair.a);
-  const auto b = static_cast<std::size_t>(pair.b);
-  for (std::size_t k = 0; k < 6; ++k) {
-    second[k] = {equilibrium.displacement[b][k], equilibrium.displacement_low[b][k]};
-    motion[k] =
-        base::DoubleDouble(equilibrium.displacement[a][k], equilibrium.displacement_low[a][k]) -
-        second[k];
-  }
-  // The second turns about itself, and takes the first along on a lever of one pitch backwards.
-  const std::size_t along = static_cast<std::size_t>(base::index(pair.direction)) / 2;
-  const std::size_t next = (along + 1) % 3;
-  const std::size_t last = (along + 2) % 3;
-  const base::DoubleDouble pitch = robot.material().pitch_mm;
-  motion[next] += pitch * second[3 + last];
-  motion[last] -= pitch * second[3 + next];
-  return base::converted<double>(motion);
-}
-
 ConnectionResult connection_result(const model::Robot& robot, const ConnectionLaw& law,
                                    const Equilibrium& equilibrium, const model::Connection& pair) {
   if (!equilibrium.displacement_low.empty()) {
-    return law.result(relative_motion(robot, equilibrium, pair), base::Vec6<double>{});
+    return law.result(
+        relative_motion(robot, pair, equilibrium.displacement, equilibrium.displacement_low),
+        base::Vec6<double>{});
   }
   return law.result(equilibrium.displacement[static_cast<std::size_t>(pair.a)],
                     equilibrium.displacement[static_cast<std::size_t>(pair.b)]);
@@ -463,8 +440,8 @@ bool is_near_limit(const Assessment& assessment) {
            !do_agree(*assessment.several, breaks(assessment.load_ratio_range.low))));
 }
 
-/// Where the verdict hangs on the error: the direct solver with all digits, if it fits, and
-/// multigrid with more of them.
+/// Where the verdict hangs on the error: the direct solver with all digits, or where that does not
+/// fit multigrid with more of them.
 std::vector<solver::EquilibriumOptions> finer_options(const solver::EquilibriumOptions& options) {
   std::vector<solver::EquilibriumOptions> list;
   if (options.method != solver::Method::kMultigrid) {
@@ -492,10 +469,7 @@ Assessment assess(const model::Robot& robot, const solver::EquilibriumOptions& o
   for (const solver::EquilibriumOptions& finer : finer_options(options)) {
     Assessment next = assess_once(robot, finer);
     if (next.equilibrium.outcome == Outcome::kSettled) {
-      assessment = std::move(next);
-    }
-    if (!is_near_limit(assessment)) {
-      break;
+      return next;
     }
   }
   return assessment;

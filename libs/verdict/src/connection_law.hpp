@@ -4,10 +4,12 @@
 
 #include <cmath>
 #include <cstddef>
+#include <vector>
 
 #include "holdfast/mechanics/beam.hpp"
 #include "holdfast/mechanics/connector.hpp"
 #include "holdfast/model/material.hpp"
+#include "holdfast/model/robot.hpp"
 #include "holdfast/verdict/assessment.hpp"
 
 /// What connections carry, Eqs. (16)-(17), for very many of them.
@@ -74,5 +76,11 @@ class ConnectionLaw {
   double width_ = 0;     ///< mm
   double strength_ = 0;  ///< N
 };
+
+/// How the first module of a connection moves as seen by the second, where both move far more than
+/// their beam bends: in 106 bits, high + low by module, until what is common to both is gone.
+base::Vec6<double> relative_motion(const model::Robot& robot, const model::Connection& pair,
+                                   const std::vector<base::Vec6<double>>& high,
+                                   const std::vector<base::Vec6<double>>& low);
 
 }  // namespace holdfast::verdict

@@ -17,15 +17,17 @@ namespace {
 
 using Displacements = std::vector<base::Vec6<double>>;
 
-/// Largest load ratio; NaN if one is.
-double load_ratio_max(const model::Robot& robot, const Displacements& u) {
+/// Largest load ratio; NaN if one is. `low` as of an Equilibrium.
+double load_ratio_max(const model::Robot& robot, const Displacements& u, const Displacements& low) {
   const ConnectionLaw laws[] = {{robot.material(), base::Direction::kPlusX},
                                 {robot.material(), base::Direction::kPlusY},
                                 {robot.material(), base::Direction::kPlusZ}};
   double largest = -std::numeric_limits<double>::infinity();
   for (const model::Connection& pair : robot.connections()) {
-    const double ratio = laws[base::index(pair.direction) / 2].load_ratio(
-        u[static_cast<std::size_t>(pair.a)], u[static_cast<std::size_t>(pair.b)]);
+    const ConnectionLaw& law = laws[base::index(pair.direction) / 2];
+    const double ratio = low.empty() ? law.load_ratio(u[static_cast<std::size_t>(pair.a)],
+                                                      u[static_cast<std::size_t>(pair.b)])
+                                     : law.load_ratio(relative_motion(robot, pair, u, low), {});
     largest = ratio > largest || std::isnan(ratio) ? ratio : largest;
     if (std::isnan(largest)) {
       break;
@@ -34,13 +36,19 @@ double load_ratio_max(const model::Robot& robot, const Displacements& u) {
   return largest;
 }
 
-/// Takes in what a solution and its alternative say.
-void widen(LoadRange& range, const model::Robot& robot, const Displacements& displacement,
-           const Displacements& alternative) {
-  for (const Displacements* u : {&displacement, &alternative}) {
-    const double ratio = load_ratio_max(robot, *u);
-    range.low = ratio < range.low || std::isnan(ratio) ? ratio : range.low;
-    range.high = ratio > range.high || std::isnan(ratio) ? ratio : range.high;
+void widen(LoadRange& range, double ratio) {
+  range.low = ratio < range.low || std::isnan(ratio) ? ratio : range.low;
+  range.high = ratio > range.high || std::isnan(ratio) ? ratio : range.high;
+}
+
+/// Takes in what a solution and its alternative say. Beside 106 bits the alternative says something
+/// only if feet are ambiguous.
+template <class Solution>
+void widen(LoadRange& range, const model::Robot& robot, const Solution& solution,
+           bool is_ambiguous = false) {
+  widen(range, load_ratio_max(robot, solution.displacement, solution.displacement_low));
+  if (solution.displacement_low.empty() || is_ambiguous) {
+    widen(range, load_ratio_max(robot, solution.alternative, {}));
   }
 }
 
@@ -72,16 +80,16 @@ void compare_solutions(const model::Robot& robot, solver::EquilibriumSolver& sol
   SeveralSolutions& several = assessment.several.emplace();
   several.found_count = settled.others.size() + 1;
   several.regularised = kEmpty;
-  widen(several.regularised, robot, settled.displacement, settled.alternative);
+  widen(several.regularised, robot, settled);
   for (const solver::OtherSolution& other : settled.others) {
-    widen(several.regularised, robot, other.displacement, other.alternative);
+    widen(several.regularised, robot, other);
   }
   const solver::Equilibrium exact =
       solver.solve({.law = mechanics::ContactLaw::kUnilateral, .gamma = gamma});
   settled.steps += exact.steps;
   settled.iteration_count += exact.iteration_count;
   if (exact.outcome == solver::Outcome::kSettled) {
-    widen(several.unilateral.emplace(kEmpty), robot, exact.displacement, exact.alternative);
+    widen(several.unilateral.emplace(kEmpty), robot, exact, exact.open_but_held_count > 0);
   }
   const bool is_multigrid =
       settled.method == solver::Method::kMultigrid || exact.method == solver::Method::kMultigrid;

@@ -22,6 +22,7 @@ struct Proof {
   certificate::Verification verification{};      ///< What its checker says.
   int solve_count = 0;                           ///< Linear systems solved for it.
   std::vector<base::Vec6<double>> displacement;  ///< The certificate's, mm and rad.
+  std::vector<base::Vec6<double>> displacement_low;  ///< To be added to it for 106 bits.
 
   bool is_proved() const { return verification.is_proved; }
 };
@@ -32,8 +33,8 @@ Proof prove(const model::Robot& robot, const verdict::Assessment& assessment,
             const ProofOptions& options = {});
 
 /// Takes the proof over into the assessment: its loads are then the certificate's, its verdict is
-/// what the range says, and `undecided` where nothing is proved. A robot that topples is known to
-/// from integers alone.
+/// what the range says, and `undecided` where nothing is proved or other solutions do not agree. A
+/// robot that topples is known to from integers alone.
 void apply(const model::Robot& robot, const Proof& proof, verdict::Assessment& assessment);
 
 }  // namespace holdfast::proof

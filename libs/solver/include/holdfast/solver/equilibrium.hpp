@@ -97,9 +97,11 @@ enum class Outcome : std::uint8_t {
   kTooSlow,     ///< No solver gets there: a robot too slender for double precision.
 };
 
-/// Displacements that fulfil the same law, and a second answer as of an Equilibrium.
+/// Displacements that fulfil the same law, their low parts, and a second answer, as of an
+/// Equilibrium.
 struct OtherSolution {
   std::vector<base::Vec6<double>> displacement;
+  std::vector<base::Vec6<double>> displacement_low;
   std::vector<base::Vec6<double>> alternative;
 };
 
@@ -213,6 +215,7 @@ class EquilibriumSolver {
   bool refine_without_weak_springs(Equilibrium& result);
   void set_gamma(double gamma);
   static bool is_refined(const Equilibrium& result);
+  int open_but_held_count() const;
   void compare_with_free_facets(Equilibrium& result);
 
   const model::Robot& robot_;

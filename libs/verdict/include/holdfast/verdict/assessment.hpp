@@ -38,8 +38,8 @@ struct ConnectionResult {
   double torsion_nmm = 0;  ///< Not part of the criterion.
 };
 
-/// What the largest load ratio lies between: apart by rounding, or by feet whose hold on the ground
-/// is ambiguous. A verdict needs both on the same side of 1.
+/// What the largest load ratio lies between: apart by the solver's error, with a margin, or by feet
+/// whose hold on the ground is ambiguous. A verdict needs both on the same side of 1.
 struct LoadRange {
   double low = 0;
   double high = 0;
