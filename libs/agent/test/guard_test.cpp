@@ -101,6 +101,36 @@ TEST(Guard, kinds_that_there_are_not) {
               true});
 }
 
+/// 2,000,000 cells away, in a robot of 2^24 modules: such a place is no 64-bit number of parts of
+/// a facet. A sound root that finds one ends as `too large`.
+TEST(Guard, feet_are_near_the_root) {
+  auto setup = table_setup();
+  setup.facet_numerator = kFacetPartMax / 2;
+  setup.facet_denominator = kFacetPartMax;
+  const std::vector<Place> places = {{.cell = {-base::kCoordinateMax, 0, 0}},
+                                     {.cell = {1 - base::kCoordinateMax, 0, 0}},
+                                     {.cell = {2 - base::kCoordinateMax, 0, 0}},
+                                     {.cell = {3 - base::kCoordinateMax, 0, 0}}};
+  int angles_count = 0;
+  TamperedNetwork tampered(setup, places, 1, [&](base::Direction, const Message& message) {
+    const bool is_order = message[0] == static_cast<int>(wire::MessageType::kOrder);
+    if (is_order && message[1] == static_cast<int>(wire::Operation::kMass)) {
+      return std::vector<Message>{from_hex("05 03 40 42 0f 00 00 00 00 00 00")};
+    }
+    if (is_order && message[1] == static_cast<int>(wire::Operation::kVerdict)) {
+      ++angles_count;
+      return std::vector<Message>{from_hex("05 04 00 00 00 01 00 00 00 00 00 00 00 00")};
+    }
+    return std::vector<Message>{message};
+  });
+  for (int tick = 0; tick < 1000; ++tick) {
+    tampered.tick();
+  }
+  EXPECT_GT(angles_count, 0);
+  EXPECT_EQ(tampered.network().agent(0).refused_count(), 1);  // Who was lied to, nobody else.
+  EXPECT_EQ(tampered.refused_count(), angles_count);
+}
+
 /// An equilibrium that has not begun, or belongs to another method, has no data to work on.
 TEST(Guard, orders_keep_their_course) {
   expect_refused(row(), {1, "05 03", "05 10", true});
