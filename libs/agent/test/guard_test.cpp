@@ -5,6 +5,8 @@
 // takes nothing of it, counts it, and no longer trusts the other: the verdict is `undecided`.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <string_view>
 
 #include "holdfast/base/rng.hpp"
@@ -71,6 +73,68 @@ TEST(Guard, what_is_true_is_not_refused) {
   const Outcome outcome = outcome_of(row(), {.faulty = 1, .after = "ff", .wrong = ""});
   EXPECT_EQ(outcome.refused_count, 0);
   EXPECT_FALSE(outcome.is_every_undecided);
+}
+
+/// Some cells, each at a face of one before it.
+std::vector<Place> random_places(base::Rng& rng) {
+  std::vector<Place> places = {{.cell = {0, 0, 0}}};
+  const std::size_t count = 2 + rng.below(12);
+  while (places.size() < count) {
+    const base::Cell from = places[rng.below(places.size())].cell;
+    const base::Cell cell = base::neighbour(from, base::kDirections[rng.below(5)]);
+    const bool is_taken = std::any_of(places.begin(), places.end(),
+                                      [&](const Place& place) { return place.cell == cell; });
+    if (!is_taken) {
+      places.push_back({.cell = cell, .is_fixed = rng.below(8) == 0});
+    }
+  }
+  return places;
+}
+
+/// One thing that happens to sound robots.
+void disturb(TestNetwork& network, base::Rng& rng) {
+  const std::size_t module = rng.below(network.size());
+  const std::size_t other = rng.below(network.size());
+  const base::Direction face = base::kDirections[rng.below(6)];
+  const base::Cell cell = base::neighbour(network.places()[other].cell, face);
+  switch (rng.below(8)) {
+    case 0:
+      network.withdraw(module, rng.below(3) == 0 ? kEveryCell : cell);
+      break;
+    case 1:
+      network.start(module);
+      break;
+    case 2:
+      if (network.neighbour(other, face) >= 0) {
+        network.reconnect(other, face);
+      }
+      break;
+    default:
+      network.plan(module, cell);
+  }
+}
+
+/// Plans and withdrawals at any moment, modules that start again, links that open: whatever the
+/// robot says then, late or given up, is what a neighbour may say.
+TEST(Guard, nothing_that_a_sound_robot_says_is_refused) {
+  constexpr std::array kMethods = {Method::kElimination, Method::kPolynomial,
+                                   Method::kConjugateGradients, Method::kBlockJacobi};
+  for (std::uint64_t seed = 1; seed <= 60; ++seed) {
+    base::Rng rng(seed);
+    auto setup = table_setup();
+    setup.method = kMethods[seed % kMethods.size()];
+    setup.iteration_count_max = 300;
+    TestNetwork network(setup, random_places(rng),
+                        {.loss = seed % 3 == 0 ? 0.1 : 0, .seed = seed, .in_parts = seed % 2 == 0});
+    for (int i = 0; i < 12; ++i) {
+      disturb(network, rng);
+      for (std::uint64_t tick = rng.below(i % 3 == 0 ? 2000 : 200); tick > 0; --tick) {
+        network.tick();
+      }
+      EXPECT_TRUE(network.is_every([](const Agent& agent) { return agent.refused_count() == 0; }))
+          << "seed " << seed;
+    }
+  }
 }
 
 /// Before, the sixth cell was written behind the array of five.
