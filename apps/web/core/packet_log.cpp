@@ -85,6 +85,8 @@ OrderText order_text(wire::Operation operation) {
       return {"a step: move, residual", true};
     case wire::Operation::kClusters:
       return {"begin an equilibrium, find rigid clusters"};
+    case wire::Operation::kForget:
+      return {"forget a plan that has ended"};
   }
   return {""};
 }

@@ -5,12 +5,11 @@
 namespace holdfast::agent {
 namespace {
 
-/// Can the wire carry it? 24 bits a coordinate.
-bool is_on_wire(const base::Cell& cell) {
-  constexpr std::int32_t kLeast = kEveryCell.x;
+/// Can it be told? Neighbours refuse what is outside the lattice (legal.hpp).
+bool is_legal(const base::Cell& cell) {
   for (const std::int32_t value : {cell.x, cell.y, cell.z}) {
-    if (value < kLeast || value >= -kLeast) {
-      return false;
+    if (value < -base::kCoordinateMax || value > base::kCoordinateMax) {
+      return cell == kEveryCell;
     }
   }
   return true;
@@ -30,7 +29,7 @@ int Announcements::find(const base::Cell& cell) const {
 /// What is told of a cell replaces what was told of it before.
 void Announcements::put(const base::Cell& cell, Told told) {
   const int found = find(cell);
-  const bool is_possible = is_on_wire(cell);
+  const bool is_possible = is_legal(cell);
   if (!is_possible && told == Told::kWithdrawal) {
     return;
   }

@@ -6,6 +6,7 @@
 #include "holdfast/agent/agent.hpp"
 #include "holdfast/agent/legal.hpp"
 #include "methods.hpp"
+#include "sweep.hpp"
 
 /// What a neighbour may say at this moment.
 ///
@@ -72,7 +73,8 @@ bool BasicAgent<Real>::is_in_course(const Order& order) const {
     case Operation::kMass:
       return course == Course::kHosted;
     case Operation::kAngles:
-      return course == Course::kWeighed && fits_exact_check(setup_, order.module_count);
+      return course == Course::kWeighed && fits_exact_check(setup_, order.module_count) &&
+             mass_report().extent <= kExtentMax;
     case Operation::kBegin:
       return is_good_begin(order);
     case Operation::kFactor:
@@ -128,7 +130,8 @@ bool BasicAgent<Real>::is_expected(int face, std::span<const std::uint8_t> messa
     case MessageType::kReport:
       return reports && message[1] == static_cast<std::uint8_t>(order_.operation);
     case MessageType::kPlannedDown:
-      return is_parent && (message[1] & 0x3f) < planned_.count();
+      return is_parent && (message[1] & sweep::kIndexMask) < planned_.count() &&
+             (kHasAllMethods || message[1] <= sweep::kIndexMask);  // Parts are those of steps.
     case MessageType::kPlannedUp:
       return is_child && message[1] < planned_.count() &&
              (order_.operation != Operation::kStep || planned_up_awaited_ != 0);

@@ -657,6 +657,22 @@ TEST(Agent, too_many_plans_end_by_withdrawals) {
   expect_no_plans(too_many_here);
 }
 
+/// Such a cell is told to nobody: a neighbour would refuse it, and count its sender as silent.
+TEST(Agent, a_plan_outside_the_lattice_is_lost_until_all_are_withdrawn) {
+  const auto setup = table_setup();
+  for (const std::int32_t x : {base::kCoordinateMax + 1, -(1 << 23)}) {
+    TestNetwork network(setup, row(3));
+    network.plan(1, {x, 0, 0});
+    ASSERT_TRUE(network.run());
+    expect_answer(network, Verdict::kUndecided, Reason::kPlannedTooMany);
+    network.withdraw(2, {x, 0, 0});
+    network.withdraw(2, kEveryCell);
+    ASSERT_TRUE(network.run_anew());
+    expect_answer(network, Verdict::kSafe, Reason::kHolds);
+    expect_no_plans(network);
+  }
+}
+
 /// A sixth plan that has ended is none too many, wherever it stands in their order.
 TEST(Agent, a_plan_that_has_ended_does_not_count_as_one_too_many) {
   const auto setup = table_setup();

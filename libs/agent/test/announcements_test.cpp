@@ -141,9 +141,9 @@ TEST(Announcements, one_too_many_stays_lost_until_all_are_withdrawn) {
   EXPECT_EQ(list, Announcements());
 }
 
-/// Its bytes would name another cell.
-TEST(Announcements, a_plan_beyond_the_wire_is_lost) {
-  constexpr std::int32_t kFar = 1 << 23;
+/// Its bytes would be refused, or name another cell.
+TEST(Announcements, a_plan_outside_the_lattice_is_lost) {
+  constexpr std::int32_t kFar = base::kCoordinateMax + 1;
   for (const Cell cell : {Cell{kFar, 0, 0}, Cell{0, -kFar - 1, 0}, Cell{0, 0, 1 << 30}}) {
     Announcements list;
     list.withdraw(cell);
@@ -153,7 +153,7 @@ TEST(Announcements, a_plan_beyond_the_wire_is_lost) {
     EXPECT_EQ(told(list, cell), Told::kNothing);
   }
   Announcements list;
-  list.plan({kFar - 1, -kFar, 0});
+  list.plan({kFar - 1, 1 - kFar, 0});
   EXPECT_FALSE(list.is_overfull());
 }
 

@@ -5,6 +5,8 @@
 // takes nothing of it, counts it, and no longer trusts the other: the verdict is `undecided`.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <string_view>
 
 #include "holdfast/base/rng.hpp"
@@ -73,6 +75,68 @@ TEST(Guard, what_is_true_is_not_refused) {
   EXPECT_FALSE(outcome.is_every_undecided);
 }
 
+/// Some cells, each at a face of one before it.
+std::vector<Place> random_places(base::Rng& rng) {
+  std::vector<Place> places = {{.cell = {0, 0, 0}}};
+  const std::size_t count = 2 + rng.below(12);
+  while (places.size() < count) {
+    const base::Cell from = places[rng.below(places.size())].cell;
+    const base::Cell cell = base::neighbour(from, base::kDirections[rng.below(5)]);
+    const bool is_taken = std::any_of(places.begin(), places.end(),
+                                      [&](const Place& place) { return place.cell == cell; });
+    if (!is_taken) {
+      places.push_back({.cell = cell, .is_fixed = rng.below(8) == 0});
+    }
+  }
+  return places;
+}
+
+/// One thing that happens to sound robots.
+void disturb(TestNetwork& network, base::Rng& rng) {
+  const std::size_t module = rng.below(network.size());
+  const std::size_t other = rng.below(network.size());
+  const base::Direction face = base::kDirections[rng.below(6)];
+  const base::Cell cell = base::neighbour(network.places()[other].cell, face);
+  switch (rng.below(8)) {
+    case 0:
+      network.withdraw(module, rng.below(3) == 0 ? kEveryCell : cell);
+      break;
+    case 1:
+      network.start(module);
+      break;
+    case 2:
+      if (network.neighbour(other, face) >= 0) {
+        network.reconnect(other, face);
+      }
+      break;
+    default:
+      network.plan(module, cell);
+  }
+}
+
+/// Plans and withdrawals at any moment, modules that start again, links that open: whatever the
+/// robot says then, late or given up, is what a neighbour may say.
+TEST(Guard, nothing_that_a_sound_robot_says_is_refused) {
+  constexpr std::array kMethods = {Method::kElimination, Method::kPolynomial,
+                                   Method::kConjugateGradients, Method::kBlockJacobi};
+  for (std::uint64_t seed = 1; seed <= 60; ++seed) {
+    base::Rng rng(seed);
+    auto setup = table_setup();
+    setup.method = kMethods[seed % kMethods.size()];
+    setup.iteration_count_max = 300;
+    TestNetwork network(setup, random_places(rng),
+                        {.loss = seed % 3 == 0 ? 0.1 : 0, .seed = seed, .in_parts = seed % 2 == 0});
+    for (int i = 0; i < 12; ++i) {
+      disturb(network, rng);
+      for (std::uint64_t tick = rng.below(i % 3 == 0 ? 2000 : 200); tick > 0; --tick) {
+        network.tick();
+      }
+      EXPECT_TRUE(network.is_every([](const Agent& agent) { return agent.refused_count() == 0; }))
+          << "seed " << seed;
+    }
+  }
+}
+
 /// Before, the sixth cell was written behind the array of five.
 TEST(Guard, planned_cells_come_one_by_one) {
   constexpr std::string_view kFirst = "05 01 00";
@@ -99,6 +163,36 @@ TEST(Guard, kinds_that_there_are_not) {
   expect_refused(
       row(), {0, "06 0e", "06 0e 00 00 00 00 00 00 00 00 00 00 00 00 00 c8 00 00 00 00 01 00 00 00",
               true});
+}
+
+/// 2,000,000 cells away, in a robot of 2^24 modules: such a place is no 64-bit number of parts of
+/// a facet. A sound root that finds one ends as `too large`.
+TEST(Guard, feet_are_near_the_root) {
+  auto setup = table_setup();
+  setup.facet_numerator = kFacetPartMax / 2;
+  setup.facet_denominator = kFacetPartMax;
+  const std::vector<Place> places = {{.cell = {-base::kCoordinateMax, 0, 0}},
+                                     {.cell = {1 - base::kCoordinateMax, 0, 0}},
+                                     {.cell = {2 - base::kCoordinateMax, 0, 0}},
+                                     {.cell = {3 - base::kCoordinateMax, 0, 0}}};
+  int angles_count = 0;
+  TamperedNetwork tampered(setup, places, 1, [&](base::Direction, const Message& message) {
+    const bool is_order = message[0] == static_cast<int>(wire::MessageType::kOrder);
+    if (is_order && message[1] == static_cast<int>(wire::Operation::kMass)) {
+      return std::vector<Message>{from_hex("05 03 40 42 0f 00 00 00 00 00 00")};
+    }
+    if (is_order && message[1] == static_cast<int>(wire::Operation::kVerdict)) {
+      ++angles_count;
+      return std::vector<Message>{from_hex("05 04 00 00 00 01 00 00 00 00 00 00 00 00")};
+    }
+    return std::vector<Message>{message};
+  });
+  for (int tick = 0; tick < 1000; ++tick) {
+    tampered.tick();
+  }
+  EXPECT_GT(angles_count, 0);
+  EXPECT_EQ(tampered.network().agent(0).refused_count(), 1);  // Who was lied to, nobody else.
+  EXPECT_EQ(tampered.refused_count(), angles_count);
 }
 
 /// An equilibrium that has not begun, or belongs to another method, has no data to work on.

@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include <string>
 #include <string_view>
 
 #include "golden.hpp"
@@ -76,6 +77,7 @@ const Limit kLimits[] = {
     {kGoldenOrders[14], 17, is_face},
     {kGoldenOrders[16], 2, is_flags<31>},    // step
     {kGoldenOrders[18], 2, is_flags<7>},     // clusters
+    {kGoldenOrders[19], 2, is_flags<1>},     // forget
     {kGoldenReports[0], 2, is_flags<0x3f>},  // plan
     {kGoldenReports[0], 3, is_flags<31>},
     {kGoldenReports[1], 2, is_flags<0x9f>},   // hosts
@@ -83,9 +85,11 @@ const Limit kLimits[] = {
     {kGoldenReports[3], 2, is_within<0, 2>},  // angles
     {kGoldenReports[6], 16, is_flags<1>},     // low
     {kGoldenReports[12], 2, [](unsigned v) { return v <= 2 || v == 4; }},
-    {kGoldenReports[13], 15, is_face},       // loads
-    {kGoldenReports[16], 16, is_flags<1>},   // step
-    {kGoldenReports[17], 16, is_flags<1>}};  // tree step
+    {kGoldenReports[13], 15, is_face},        // loads
+    {kGoldenReports[16], 16, is_flags<1>},    // step
+    {kGoldenReports[17], 16, is_flags<1>},    // tree step
+    {kGoldenReports[19], 2, is_flags<0x3f>},  // forget
+    {kGoldenReports[19], 3, is_flags<31>}};
 
 TEST(Legal, bytes_that_name_something_name_what_there_is) {
   for (const Limit& limit : kLimits) {
@@ -135,6 +139,17 @@ TEST(Legal, cells_stay_within_the_lattice) {
   EXPECT_FALSE(wire::is_legal(from_hex("05 03 41 42 0f c0 bd f0 00 00 00")));
   EXPECT_FALSE(wire::is_legal(from_hex("05 03 00 00 00 bf bd f0 00 00 00")));
   EXPECT_FALSE(wire::is_legal(from_hex("05 03 00 00 00 00 00 00 00 00 80")));
+}
+
+/// -2^23 is 80 00 00. It stands for all plans only in all three places, and is never planned.
+TEST(Legal, all_plans_are_a_cell_of_plans_that_end_only) {
+  constexpr std::string_view kAll = " 00 00 80 00 00 80 00 00 80";
+  constexpr std::string_view kPart = " 00 00 80 00 00 80 00 00 00";
+  for (const std::string_view front : {"05 14 00", "06 14 00 04", "06 01 00 04"}) {
+    EXPECT_TRUE(wire::is_legal(from_hex(std::string(front).append(kAll)))) << front;
+    EXPECT_FALSE(wire::is_legal(from_hex(std::string(front).append(kPart)))) << front;
+  }
+  EXPECT_FALSE(wire::is_legal(from_hex(std::string("05 01 00").append(kAll))));
 }
 
 }  // namespace

@@ -22,9 +22,9 @@
 /// until it is told once more to the same module, withdrawn once more, or fulfilled.
 namespace holdfast::agent {
 
-/// What one module can be told of, at most. More is remembered as lost, as is a plan of a cell that
-/// the wire cannot carry (24 bits a coordinate); the verdict is `undecided` then until everything
-/// is withdrawn.
+/// What one module can be told of, at most. More is remembered as lost, as is a plan of a cell
+/// outside the lattice (base::kCoordinateMax), which no neighbour would listen to; the verdict is
+/// `undecided` then until everything is withdrawn.
 inline constexpr int kAnnouncedMax = kPlannedMax;
 
 /// Withdrawn, it means all plans, lost ones as well. The lowest cell that the wire can carry.
