@@ -4,6 +4,7 @@
 
 #include "bits.hpp"
 #include "holdfast/agent/agent.hpp"
+#include "holdfast/agent/order.hpp"
 #include "sweep.hpp"
 
 /// The one clock of a module that ends every wait. When it runs out the module says `undecided`;
@@ -49,6 +50,13 @@ inline constexpr Time kWavesPerSilence = 32;
 /// from then on the module is `undecided` until one ends.
 inline constexpr std::uint8_t kRoundsWithoutEndMax = 16;
 
+/// Messages between two orders, and orders of one round, that set the clock anew: more than a sound
+/// robot ever needs (kDegreeMax vectors twice through each of six faces; kJacobiCountMax steps an
+/// order). A neighbour that talks without end is not waited for without end.
+inline constexpr std::uint16_t kMessagesMax = 0xffff;
+inline constexpr std::uint16_t kOrdersMax = 0xffff;
+static_assert(2 * 6 * kDegreeMax < kMessagesMax);
+
 }  // namespace watch
 
 template <class Real>
@@ -59,7 +67,8 @@ Time BasicAgent<Real>::watch_time() const {
 /// Something of this module's round has come, or it has begun.
 template <class Real>
 void BasicAgent<Real>::keep_waiting() {
-  if (answer_.verdict == Verdict::kNone) {
+  if (answer_.verdict == Verdict::kNone && messages_heard_ < watch::kMessagesMax) {
+    ++messages_heard_;
     const Time silence = watch::silence(setup_.timing);
     watch_at_ = now_ + (phase_ <= Phase::kTree ? watch::kWaveSilences * silence
                                                : silence + watch::kWavesPerSilence * wave_time_);
@@ -70,6 +79,8 @@ void BasicAgent<Real>::keep_waiting() {
 template <class Real>
 void BasicAgent<Real>::forget_answer() {
   answer_ = {};
+  messages_heard_ = 0;
+  orders_heard_ = 0;
   if (rounds_without_end_ == watch::kRoundsWithoutEndMax) {
     answer_ = {.verdict = Verdict::kUndecided, .reason = Reason::kNoAnswer};
   }
@@ -89,7 +100,9 @@ void BasicAgent<Real>::begin_waiting() {
   if (is_verdict) {
     rounds_without_end_ = 0;
     watch_at_ = now_ + watch_time();
-  } else {
+  } else if (orders_heard_ < watch::kOrdersMax) {
+    ++orders_heard_;
+    messages_heard_ = 0;
     keep_waiting();
   }
 }

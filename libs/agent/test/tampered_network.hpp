@@ -62,6 +62,11 @@ class TamperedNetwork {
     }
   }
 
+  /// Says a message in the faulty module's place that it has not sent.
+  void say(base::Direction face, Message message) {
+    taps_[index(face)].to_far.push_back(std::move(message));
+  }
+
   /// Messages refused, by all modules but the faulty one.
   int refused_count() const {
     int count = 0;

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 
+#include "tampered_network.hpp"
 #include "test_network.hpp"
 
 namespace holdfast::agent::test {
@@ -123,6 +124,34 @@ TEST(Watch, a_clock_that_was_too_short_changes_no_verdict) {
     return agent.phase() == Phase::kDone && is_safe(agent);
   }));
   EXPECT_TRUE(was_early);
+}
+
+/// The last module of a row reports nothing, and says instead, without end, what a module that is
+/// late may say: `appoint` of the first wave.
+TEST(Watch, a_module_that_talks_without_end_is_not_waited_for_without_end) {
+  const auto setup = table_setup();
+  const Message late = from_hex("03 01 00 00 00 00 00 00");
+  TamperedNetwork tampered(setup, row(4), 3, [](base::Direction, const Message& message) {
+    const bool is_report = message[0] == static_cast<int>(wire::MessageType::kReport);
+    return is_report ? std::vector<Message>{} : std::vector<Message>{message};
+  });
+  const auto is_over = [](const Agent& agent) { return agent.answer().verdict != Verdict::kNone; };
+  constexpr Time kTicks = 400'000;
+  Time ticks = 0;
+  while (ticks < kTicks &&
+         !(is_over(tampered.network().agent(0)) && is_over(tampered.network().agent(1)) &&
+           is_over(tampered.network().agent(2)))) {
+    tampered.tick();
+    if (++ticks > 200) {
+      tampered.say(base::Direction::kMinusX, late);
+    }
+  }
+  EXPECT_LT(ticks, kTicks);
+  EXPECT_GT(ticks, 65'535U);  // It was listened to for long, and was not refused.
+  EXPECT_EQ(tampered.refused_count(), 0);
+  for (const std::size_t module : {0U, 1U, 2U}) {
+    EXPECT_TRUE(is_undecided(tampered.network().agent(module)));
+  }
 }
 
 }  // namespace

@@ -704,9 +704,11 @@ void EquilibriumSolver::compare_with_free_facets(Equilibrium& result) {
   Equilibrium free;
   const bool is_settled = minimise(free) == Outcome::kSettled;
   result.steps += free.steps;
-  if (is_settled) {
-    result.alternative = std::move(free.displacement);
+  if (!is_settled) {
+    result.outcome = Outcome::kNotSettled;  // Held is one limit, and the other is not known.
+    return;
   }
+  result.alternative = std::move(free.displacement);
 }
 
 /// Whether the last refinement had next to nothing to correct. On a robot so slender that bending

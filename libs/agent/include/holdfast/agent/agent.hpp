@@ -493,6 +493,9 @@ class BasicAgent {
   std::uint8_t silent_faces_ = 0;  ///< Neighbours that ought to answer and do not.
   bool has_cell_ = false;
   std::uint8_t rounds_without_end_ = 0;
+  std::uint16_t messages_heard_ =
+      0;                            ///< Of the round since the last order; they set the clock anew.
+  std::uint16_t orders_heard_ = 0;  ///< Of the round.
   Time restart_at_ = kNever;
   Time watch_at_ = kNever;
   /// How long the waves took; before they are over, when the round began. Modulo 2^32.
