@@ -25,6 +25,7 @@ struct Tally {
   int other_answer = 0;  ///< Contact states differ.
   int wrong = 0;
   int undecided = 0;
+  int several = 0;             ///< Of these, as several solutions of the law do not agree.
   int missed = 0;              ///< The range does not hold the truth.
   int beyond_1e4 = 0;          ///< Some load ratio is off by more than 1e-4 of the largest or of 1.
   double error = 0;            ///< The largest of these.
@@ -63,8 +64,10 @@ void compare(const Assessment& found, const std::vector<long double>& exact, std
         std::max(tally.error_by_change, error * scale / found.load_ratio_change);
   }
   tally.wrong += is_wrong ? 1 : 0;
-  tally.undecided += found.verdict == Verdict::kUndecided ? 1 : 0;
-  if (is_missed || is_wrong || error > 1e-4 || found.verdict == Verdict::kUndecided) {
+  const bool is_undecided = found.verdict == Verdict::kUndecided;
+  tally.undecided += is_undecided ? 1 : 0;
+  tally.several += is_undecided && found.several ? 1 : 0;
+  if (is_missed || is_wrong || error > 1e-4 || (is_undecided && !found.several)) {
     std::printf("seed %llu: exact %.12Lf range [%.12f, %.12f] error %.1e %s%s\n",
                 static_cast<unsigned long long>(seed), top, found.load_ratio_range.low,
                 found.load_ratio_range.high, error, verdict::name(found.verdict),
@@ -126,11 +129,12 @@ int main(int argc, char** argv) {
                          std::strtoull(argv[5], nullptr, 10), tally);
   }
   std::printf(
-      "stable %d, compared %d, wrong %d, undecided %d, range missed %d, beyond 1e-4 %d, "
+      "stable %d, compared %d, wrong %d, undecided %d (%d by several solutions), range missed %d, "
+      "beyond 1e-4 %d, "
       "largest error %.1e, at most %.2f of the last change; without an answer by the paper's law "
       "%d, answered by the exact "
       "law %d\n",
-      tally.tried, tally.compared, tally.wrong, tally.undecided, tally.missed, tally.beyond_1e4,
-      tally.error, tally.error_by_change, tally.exact_law, tally.other_answer);
+      tally.tried, tally.compared, tally.wrong, tally.undecided, tally.several, tally.missed,
+      tally.beyond_1e4, tally.error, tally.error_by_change, tally.exact_law, tally.other_answer);
   return tally.wrong == 0 ? 0 : 1;
 }
