@@ -140,6 +140,8 @@ Mat6<Real> block_12(const BeamStiffness<Real>& beam, Direction direction) {
 
 HOLDFAST_INSTANTIATE(float)
 HOLDFAST_INSTANTIATE(double)
+#if __SIZEOF_DOUBLE__ == 8  // Not on an ATxmega.
 HOLDFAST_INSTANTIATE(base::DoubleDouble)
+#endif
 
 }  // namespace holdfast::mechanics

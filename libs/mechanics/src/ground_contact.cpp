@@ -308,6 +308,8 @@ Mat6<Real> symmetric_tangent(const GroundFacet<Real>& facet, ContactState state,
 
 HOLDFAST_INSTANTIATE(float)
 HOLDFAST_INSTANTIATE(double)
+#if __SIZEOF_DOUBLE__ == 8  // Not on an ATxmega.
 HOLDFAST_INSTANTIATE(base::DoubleDouble)
+#endif
 
 }  // namespace holdfast::mechanics

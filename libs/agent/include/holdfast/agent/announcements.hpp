@@ -28,7 +28,8 @@ namespace holdfast::agent {
 inline constexpr int kAnnouncedMax = kPlannedMax;
 
 /// Withdrawn, it means all plans, lost ones as well. The lowest cell that the wire can carry.
-inline constexpr base::Cell kEveryCell = {-(1 << 23), -(1 << 23), -(1 << 23)};
+inline constexpr std::int32_t kEveryCoordinate = -(std::int32_t{1} << 23);
+inline constexpr base::Cell kEveryCell = {kEveryCoordinate, kEveryCoordinate, kEveryCoordinate};
 
 enum class Told : std::uint8_t {
   kNothing,

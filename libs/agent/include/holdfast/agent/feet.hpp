@@ -22,7 +22,7 @@ inline constexpr std::uint16_t kExtentMax = 0xfffe;
 /// Modules, and parts of Setup's fraction, of a robot that is checked; others are kTooLarge. With
 /// them no direction is beyond 2^(17 + 20 + 24).
 inline constexpr std::int64_t kCheckedCountMax = std::int64_t{1} << 24U;
-inline constexpr std::int32_t kFacetPartMax = 1 << 20;
+inline constexpr std::int32_t kFacetPartMax = std::int32_t{1} << 20;
 
 /// A corner of a foot from the root's centre, in quarters of a cell: 4 x - 1 and 4 x + 1 are the
 /// sides of cell x, however wide the facet is.

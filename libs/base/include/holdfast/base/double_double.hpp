@@ -58,7 +58,7 @@ constexpr DoubleDouble quick_two_sum(double a, double b) {
 
 /// The upper 26 bits of a double, and the rest [Dekker 1971].
 constexpr DoubleDouble split(double value) {
-  constexpr double kFactor = 134217729;  // 2^27 + 1
+  constexpr auto kFactor = static_cast<double>(134217729);  // 2^27 + 1
   const double big = kFactor * value;
   const double high = big - (big - value);
   return {high, value - high};
