@@ -468,7 +468,9 @@ Assessment assess(const model::Robot& robot, const solver::EquilibriumOptions& o
   }
   for (const solver::EquilibriumOptions& finer : finer_options(options)) {
     Assessment next = assess_once(robot, finer);
-    if (next.equilibrium.outcome == Outcome::kSettled) {
+    // Solutions that were found once are there, whether or not they are found again.
+    const bool is_one_lost = assessment.several && !next.several;
+    if (next.equilibrium.outcome == Outcome::kSettled && !is_one_lost) {
       return next;
     }
   }
