@@ -15,6 +15,9 @@ namespace {
 constexpr Cycles kCyclesPerMicrosecond = kClockHz / 1'000'000;
 /// Within it a module that has nothing else to do has read a frame.
 constexpr Time kReadTime = 10'000;
+/// Within it a module that was reset has started, and its neighbours have noticed; one that is gone
+/// is missed after 250 ms.
+constexpr Time kNoticeTime = 300'000;
 
 constexpr Cycles kByteCycles = Cycles{10} * stm32f0::kBaudDivisor;
 
@@ -106,6 +109,7 @@ class Robot {
   std::size_t next_fault_ = 0;
   Cycles now_ = 0;
   Time planned_at_ = 0;
+  Time noticed_at_ = 0;  ///< When the last fault so far has changed what modules show.
 };
 
 Robot::Robot(const Image& image, const model::Robot& robot, const EmulationOptions& options)
@@ -221,6 +225,7 @@ bool Robot::is_cut(std::int32_t module, int face) const {
 }
 
 void Robot::make_fault(const Fault& fault) {
+  noticed_at_ = fault.at + kNoticeTime;
   const int face = base::index(fault.face);
   const auto cut = [&](std::int32_t module, int at_face) {
     std::uint8_t& faces = cut_faces_[at(module)];
@@ -249,7 +254,7 @@ void Robot::make_fault(const Fault& fault) {
 /// Does everybody alive know the verdict, with all plans and after all faults?
 bool Robot::is_settled() const {
   if (now_ <= cycles(planned_at_ + kReadTime) || now_ < cycles(options_.time_min) ||
-      next_fault_ < options_.faults.size()) {
+      next_fault_ < options_.faults.size() || now_ <= cycles(noticed_at_)) {
     return false;
   }
   return std::ranges::all_of(modules_, [](const auto& module) {

@@ -134,6 +134,10 @@ Loads add_up(const model::Robot& robot, int thread_count, Assessment& assessment
 constexpr double kMultigridFactor = 10;
 constexpr double kEnergyFactor = 3;
 
+/// Refinements in double that find nothing but rounding differ by less than their error now and
+/// then.
+constexpr double kDirectFactor = 10;
+
 double tolerance_share(const solver::EquilibriumOptions& options) {
   return options.tolerance / solver::EquilibriumOptions{}.tolerance;
 }
@@ -156,7 +160,7 @@ double error_margin(const model::Robot& robot, const Equilibrium& equilibrium,
     return margin + std::max(kMultigridError * tolerance_share * scale,
                              std::min(kMultigridFactor * loads.change, bound));
   }
-  return margin + 2 * loads.change;
+  return margin + kDirectFactor * loads.change;
 }
 
 /// Nothing is said of a load below its own uncertainty: then it may as well be compression. Between
