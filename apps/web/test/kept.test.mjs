@@ -15,6 +15,9 @@ let browser;
 before(async () => (browser = await launch()));
 after(() => browser.close());
 
+const nameOf = (page) => page.evaluate(() => globalThis.holdfast.app.robot.name);
+const messages = (page) => page.innerText('#messages');
+
 test('cells, name and material come back when the page is opened again', async () => {
   const context = await newContext(browser);
   const page = await openPage(browser, { context });
