@@ -316,10 +316,15 @@ std::optional<std::vector<Vec6<double>>> EquilibriumSolver::respond(const std::v
   if (!lu_->factor()) {
     return std::nullopt;
   }
+  return solve_directly(force);
+}
+
+/// From loads to displacements, both by module; what is on fixed modules means nothing.
+std::vector<Vec6<double>> EquilibriumSolver::solve_directly(const std::vector<Vec>& load) const {
   std::vector<Vec> x(diagonal_.size());
-  for (std::size_t i = 0; i < force.size(); ++i) {
+  for (std::size_t i = 0; i < load.size(); ++i) {
     if (node_of_module_[i] >= 0) {
-      x[node_index(node_of_module_[i])] = force[i];
+      x[node_index(node_of_module_[i])] = load[i];
     }
   }
   lu_->solve(x);
@@ -643,16 +648,8 @@ bool EquilibriumSolver::finish_direct(Equilibrium& result) {
 bool EquilibriumSolver::refine_precisely(Equilibrium& result) {
   PreciseRefinement refinement(robot_, ground_,
                                std::vector<FacetState>(facets_.begin(), facets_.end()));
-  const bool is_found = refinement.run(result.displacement, [&](std::vector<Vec>& load) {
-    std::vector<Vec> x(diagonal_.size());
-    for (std::size_t i = 0; i < load.size(); ++i) {
-      if (node_of_module_[i] >= 0) {
-        x[node_index(node_of_module_[i])] = load[i];
-      }
-    }
-    lu_->solve(x);
-    load = by_module(x);
-  });
+  const bool is_found = refinement.run(
+      result.displacement, [&](std::vector<Vec>& load) { load = solve_directly(load); });
   const std::vector<ContactState> states = refinement.states();
   const bool is_consistent =
       options_.is_bonded || std::ranges::equal(facets_, states, {}, &Facet::state);

@@ -292,15 +292,16 @@ bool Multigrid::begin() {
 }
 
 bool Multigrid::is_thin() const {
+  if (network_.node_count > kThinCountMax) {
+    return false;
+  }
   std::size_t ends = 0;
-  for (std::size_t node = 0; node < network_.node_count && network_.node_count <= kThinCountMax;
-       ++node) {
+  for (std::size_t node = 0; node < network_.node_count; ++node) {
     ends += static_cast<std::size_t>(std::count_if(
         network_.kind[node].begin(), network_.kind[node].begin() + base::kDirectionCount,
         [](auto length) { return length > 0; }));
   }
-  return network_.node_count <= kThinCountMax &&
-         static_cast<double>(ends) <= kThinDegree * static_cast<double>(network_.node_count);
+  return static_cast<double>(ends) <= kThinDegree * static_cast<double>(network_.node_count);
 }
 
 bool Multigrid::solve(double tolerance, int iteration_count_min, double energy_error_max) {

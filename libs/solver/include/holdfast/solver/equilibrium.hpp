@@ -201,6 +201,7 @@ class EquilibriumSolver {
   bool set_facet(Facet& facet, const mechanics::ContactState& state, bool is_held);
   double search_line(const std::vector<Vec>& from, const std::vector<Vec>& direction) const;
   std::vector<Vec> by_module(const std::vector<Vec>& by_node) const;
+  std::vector<Vec> solve_directly(const std::vector<Vec>& load) const;
   std::vector<Vec> internal_force(const std::vector<Vec>& displacement) const;
   std::vector<mechanics::ContactState> present_states() const;
   std::vector<mechanics::ContactState> states_at(const std::vector<Vec>& displacement) const;
