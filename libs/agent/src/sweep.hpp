@@ -18,89 +18,9 @@ namespace holdfast::agent {
 
 namespace sweep {
 
-constexpr bool exchanges(const Order& order) {
-  switch (order.operation) {
-    case wire::Operation::kHigh:
-    case wire::Operation::kLow:
-    case wire::Operation::kGradient:
-    case wire::Operation::kJacobi:
-    case wire::Operation::kStep:
-    case wire::Operation::kTreeStep:
-    case wire::Operation::kClusters:
-      return true;
-    case wire::Operation::kBegin:
-      return order.count > 0;
-    case wire::Operation::kStart:
-      return (order.flags & (kWithScalars | kWithBlocks)) == 0;
-    case wire::Operation::kSlope:
-      return (order.flags & kExchangeFirst) != 0;
-    default:
-      return false;
-  }
-}
-
-/// Exchanges that go on while the report is on its way up and the next order on its way down. With
-/// clusters two polynomials; the image of the first is needed, and that of the clusters' part.
-constexpr std::uint16_t exchanges_behind(const Order& order) {
-  if constexpr (!kHasAllMethods) {
-    return 0;
-  }
-  switch (order.operation) {
-    case wire::Operation::kStep:
-      return static_cast<std::uint16_t>((order.flags & kWithClusters) != 0 ? 2 * order.count + 2
-                                                                           : order.count);
-    case wire::Operation::kBegin:
-    case wire::Operation::kClusters:
-      return order.count;
-    default:
-      return 0;
-  }
-}
-
-/// A preconditioner of degree m shares m more vectors than its first and its last one, which are
-/// the same for m = 0. A step shares its move in two parts and then the terms of its polynomial.
-constexpr std::uint16_t exchange_count(const Order& order) {
-  switch (order.operation) {
-    case wire::Operation::kJacobi:
-    case wire::Operation::kBegin:
-      return order.count;
-    case wire::Operation::kStep:
-      return static_cast<std::uint16_t>(2 + exchanges_behind(order));
-    case wire::Operation::kTreeStep:
-      return 2;
-    default:
-      return static_cast<std::uint16_t>(order.count + 1);
-  }
-}
-
-/// Forces whose digits beyond single precision count.
-constexpr bool is_precise(wire::Operation operation) {
-  return operation == wire::Operation::kHigh || operation == wire::Operation::kLow ||
-         operation == wire::Operation::kStep;
-}
-
 /// A linear solve's exchanges: the preconditioner's terms, then w = A z.
 constexpr bool is_preconditioned(wire::Operation operation) {
   return operation == wire::Operation::kStart || operation == wire::Operation::kGradient;
-}
-
-constexpr Phase phase_of(wire::Operation operation) {
-  switch (operation) {
-    case wire::Operation::kPlan:
-    case wire::Operation::kForget:
-    case wire::Operation::kHosts:
-    case wire::Operation::kMass:
-      return Phase::kMass;
-    case wire::Operation::kAngles:
-      return Phase::kSimplified;
-    case wire::Operation::kCorners:
-      return Phase::kModel;
-    case wire::Operation::kLoads:
-    case wire::Operation::kVerdict:
-      return Phase::kOverload;
-    default:
-      return Phase::kEquilibrium;
-  }
 }
 
 /// In the label of `planned down`: the index, and for a step which part of a displacement it is.
@@ -136,13 +56,13 @@ void BasicAgent<Real>::take_order(const Order& order) {
   is_sweeping_ = true;
   begin_waiting();
   reports_awaited_ = children_;
-  exchanges_left_ = sweep::exchange_count(order);
-  exchanges_behind_ = sweep::exchanges_behind(order);
+  exchanges_left_ = exchange_count(order);
+  exchanges_behind_ = exchanges_behind(order);
   down_awaited_ = 0;
   send_to_children(encode(order));
   prepare(order);
   // Displacements of a kTreeStep have to be found first, and clusters.
-  if (sweep::exchanges(order) && order.operation != wire::Operation::kTreeStep &&
+  if (exchanges_left_ > 0 && order.operation != wire::Operation::kTreeStep &&
       order.operation != wire::Operation::kClusters) {
     start_exchange();
   }
@@ -213,7 +133,7 @@ void BasicAgent<Real>::send_planned_up() {
       continue;
     }
     base::Vec6<double>& force = planned_force_[static_cast<std::size_t>(k)];
-    const int parts = sweep::is_precise(order_.operation) ? 2 : 1;
+    const int parts = is_precise(order_.operation) ? 2 : 1;
     for (int part = 0; part < parts; ++part) {
       base::Vec6<double> leading = force;
       for (std::size_t i = 0; i < 6; ++i) {
@@ -297,7 +217,7 @@ bool BasicAgent<Real>::take_next_order() {
 /// Reports, if all is done here and below.
 template <class Real>
 bool BasicAgent<Real>::finish_sweep() {
-  const bool is_done_here = !sweep::exchanges(order_) || exchanges_left_ <= exchanges_behind_;
+  const bool is_done_here = exchanges_left_ <= exchanges_behind_;
   if (!is_sweeping_ || reports_awaited_ != 0 || down_awaited_ != 0 || piece_ != Piece::kNone ||
       is_clustering() || !is_done_here) {
     return false;
