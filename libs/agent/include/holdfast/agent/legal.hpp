@@ -9,10 +9,10 @@
 ///
 /// A checksum tells that a message is what the neighbour has sent, not that it makes sense. So
 /// every number of a message that names one of several things, or a place in memory, is looked at
-/// before anything is done with it: kinds, flags, indices, faces, cells, counts of exchanges. Reals
-/// may be anything, what is not a number included: a method that diverges says so with them. The
-/// limits are those of docs/wire.md. What may be said at a certain time only is the agent's to know
-/// (src/guard.hpp).
+/// where it is read (src/codec.hpp): kinds, flags, indices, faces, cells, counts of exchanges.
+/// Reals may be anything, what is not a number included: a method that diverges says so with them.
+/// The limits are those of docs/wire.md. What may be said at a certain time only is the agent's to
+/// know (src/guard.hpp).
 namespace holdfast::agent::wire {
 
 /// `message` is whole, as Link::next_message() gives it. False: no program of this version writes
