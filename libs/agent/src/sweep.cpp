@@ -11,13 +11,13 @@ void Agent::take_order(const Order& order) {
   is_sweeping_ = true;
   begin_waiting();
   reports_awaited_ = children_;
-  exchanges_left_ = sweep::exchange_count(order);
-  exchanges_behind_ = sweep::exchanges_behind(order);
+  exchanges_left_ = exchange_count(order);
+  exchanges_behind_ = exchanges_behind(order);
   down_awaited_ = 0;
   send_to_children(encode(order));
   prepare(order);
   // Displacements of a kTreeStep have to be found first, and clusters.
-  if (sweep::exchanges(order) && order.operation != wire::Operation::kTreeStep &&
+  if (exchanges_left_ > 0 && order.operation != wire::Operation::kTreeStep &&
       order.operation != wire::Operation::kClusters) {
     start_exchange();
   }
@@ -83,7 +83,7 @@ void Agent::send_planned_up() {
       continue;
     }
     base::Vec6<double>& force = planned_force_[static_cast<std::size_t>(k)];
-    const int parts = sweep::is_precise(order_.operation) ? 2 : 1;
+    const int parts = is_precise(order_.operation) ? 2 : 1;
     for (int part = 0; part < parts; ++part) {
       base::Vec6<double> leading = force;
       for (std::size_t i = 0; i < 6; ++i) {
@@ -161,7 +161,7 @@ bool Agent::take_next_order() {
 
 /// Reports, if all is done here and below.
 bool Agent::finish_sweep() {
-  const bool is_done_here = !sweep::exchanges(order_) || exchanges_left_ <= exchanges_behind_;
+  const bool is_done_here = exchanges_left_ <= exchanges_behind_;
   if (!is_sweeping_ || reports_awaited_ != 0 || down_awaited_ != 0 || piece_ != Piece::kNone ||
       is_clustering() || !is_done_here) {
     return false;

@@ -36,7 +36,7 @@ void Agent::begin_waiting() {
   }
   const bool is_verdict = order_.operation == wire::Operation::kVerdict;
   if (!is_verdict || phase_ != Phase::kDone) {
-    phase_ = sweep::phase_of(order_.operation);
+    phase_ = phase_of(order_.operation);
   }
   if (is_verdict) {
     rounds_without_end_ = 0;

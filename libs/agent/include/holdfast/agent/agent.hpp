@@ -14,6 +14,7 @@
 #include "holdfast/agent/conductor.hpp"
 #include "holdfast/agent/link.hpp"
 #include "holdfast/agent/node.hpp"
+#include "holdfast/agent/operations.hpp"
 #include "holdfast/agent/planned.hpp"
 #include "holdfast/agent/round.hpp"
 #include "holdfast/agent/setup.hpp"
@@ -109,20 +110,6 @@ struct Identity {
   bool is_fixed = false;   ///< Held from outside, does not move.
   bool is_anchor = false;  ///< Knows `cell` from the start; exactly one module.
   base::Cell cell = {};    ///< Of the anchor.
-};
-
-/// What a module is busy with; its messages are counted under this.
-enum class Phase : std::uint8_t {
-  kDiscovery,
-  kCoordinates,
-  kElection,
-  kTree,
-  kMass,
-  kSimplified,
-  kEquilibrium,
-  kModel,
-  kOverload,
-  kDone,
 };
 
 namespace branches {
