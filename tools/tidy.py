@@ -20,7 +20,7 @@ SPDX = ['SPDX-FileCopyrightText: The holdfast authors', 'SPDX-License-Identifier
 FILE_LINES_MAX = 800
 FUNCTION_LINES_MAX = 70
 COLUMNS_MAX = 100
-FREESTANDING = {'base', 'mechanics', 'agent', 'module'}
+FREESTANDING = {'base', 'boards', 'mechanics', 'agent', 'module'}
 FACADE_HEADERS = {'holdfast', 'distributed', 'emulated', 'trial'}
 HOSTED_HEADERS = {'string', 'vector', 'map', 'set', 'memory', 'iostream', 'fstream', 'variant',
                   'cstdio', 'cstdlib', 'functional', 'stdexcept'}
