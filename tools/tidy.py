@@ -9,6 +9,7 @@
 - every source begins with the two SPDX lines; every header has #pragma once
 - every room has a README.md of 10 to 40 lines
 - no tab, no trailing blank, no path of a machine, no TODO without an issue number
+- a link from one document leads to a file that is there, and to a heading that is there
 """
 import pathlib
 import re
@@ -141,6 +142,25 @@ def check_room_readmes(root):
             fault(readme.relative_to(root), 1, f'{count} lines, a room has a README of 10 to 40')
 
 
+def anchors_of(path):
+    """As forges make them from headings: small letters, blanks as dashes, no other signs."""
+    headings = re.findall(r'^#+ (.*)$', path.read_text(), re.M)
+    return {re.sub(r'[^\w -]', '', heading.lower()).replace(' ', '-') for heading in headings}
+
+
+def check_links(root, name, lines):
+    for number, line in enumerate(lines, 1):
+        for link in re.findall(r'\]\(([^)\s]+)\)', line):
+            if re.match(r'[a-z]+:', link):
+                continue
+            file, _, anchor = link.partition('#')
+            target = (root / name).parent / file if file else root / name
+            if not target.exists():
+                fault(name, number, f'nothing is at {link}')
+            elif anchor and anchor not in anchors_of(target):
+                fault(name, number, f'no heading makes #{anchor}')
+
+
 def main():
     root = pathlib.Path(sys.argv[1]).resolve()
     links = room_links(root)
@@ -153,6 +173,8 @@ def main():
             check_text(name, lines)
         elif path.suffix in {'.py', '.sh', '.cmake'} or path.name == 'CMakeLists.txt':
             check_text(name, path.read_text().splitlines())
+        elif path.suffix == '.md':
+            check_links(root, name, path.read_text().splitlines())
     check_room_readmes(root)
     print('\n'.join(faults) if faults else 'tidy: no breach')
     sys.exit(1 if faults else 0)
