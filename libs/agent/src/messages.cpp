@@ -4,6 +4,7 @@
 
 #include "codec.hpp"
 #include "holdfast/agent/branch.hpp"
+#include "holdfast/agent/order.hpp"
 #include "holdfast/agent/planned.hpp"
 
 namespace holdfast::agent {
@@ -51,10 +52,10 @@ constexpr void fields(auto& codec, Mark& mark) {
   codec.cell(mark.sender);
 }
 
-constexpr void fields(auto& codec, Loop& loop) {
-  codec.cell(loop.cell);
-  codec.kind(loop.direction, base::kDirections.front(), base::kDirections.back());
-  codec.require(base::index(loop.direction) % 2 == 0);
+constexpr void fields(auto& codec, Cut& cut) {
+  codec.cell(cut.cell);
+  codec.kind(cut.direction, base::kDirections.front(), base::kDirections.back());
+  codec.require(base::index(cut.direction) % 2 == 0);
 }
 
 /// The largest label.
@@ -96,6 +97,13 @@ bool read(std::span<const std::uint8_t> bytes, Message& message) {
   return codec.is_legal();
 }
 
+/// Is it a legal order, or report?
+template <class Message>
+bool is_read(std::span<const std::uint8_t> bytes) {
+  Message message;
+  return decode(bytes, message);
+}
+
 template <class Message>
 constexpr int bytes_of(Message message) {
   Ruler ruler(kFieldsAt);
@@ -107,6 +115,40 @@ static_assert(bytes_of(LabelledVector{}) == wire::kVectorBytes);
 
 }  // namespace
 
+bool is_legal(std::span<const std::uint8_t> message) {
+  Codec codec(message, kFieldsAt);
+  const auto is_legal_as = [&codec](auto value) {
+    fields(codec, value);
+    return codec.is_legal();
+  };
+  const auto type = static_cast<MessageType>(message[0]);
+  switch (type) {
+    case MessageType::kVector:
+      return true;  // Most messages are.
+    case MessageType::kOrder:
+      return is_read<Order>(message);
+    case MessageType::kReport:
+      return is_read<Report>(message);
+    case MessageType::kJoin:
+      return is_legal_as(Join{});
+    case MessageType::kEcho:
+      return is_legal_as(Echo{});
+    case MessageType::kAppoint:
+      return is_legal_as(Appointment{});
+    case MessageType::kMark:
+      return is_legal_as(Mark{});
+    case MessageType::kLoop:
+      return is_legal_as(Cut{});
+    case MessageType::kPlannedDown:
+    case MessageType::kPlannedUp:
+    case MessageType::kColumn:
+    case MessageType::kBranchUp:
+    case MessageType::kBranchDown:
+      return is_legal_as(LabelledVector{.type = type});
+  }
+  return false;
+}
+
 Writer encode(const Join& join) { return written(MessageType::kJoin, join); }
 
 Writer encode(const Echo& echo) { return written(MessageType::kEcho, echo); }
@@ -117,7 +159,7 @@ Writer encode(const Appointment& appointment) {
 
 Writer encode(const Mark& mark) { return written(MessageType::kMark, mark); }
 
-Writer encode(const Loop& loop) { return written(MessageType::kLoop, loop); }
+Writer encode(const Cut& cut) { return written(MessageType::kLoop, cut); }
 
 Writer encode(const LabelledVector& labelled) { return written(labelled.type, labelled); }
 
@@ -131,7 +173,7 @@ bool decode(std::span<const std::uint8_t> message, Appointment& appointment) {
 
 bool decode(std::span<const std::uint8_t> message, Mark& mark) { return read(message, mark); }
 
-bool decode(std::span<const std::uint8_t> message, Loop& loop) { return read(message, loop); }
+bool decode(std::span<const std::uint8_t> message, Cut& cut) { return read(message, cut); }
 
 bool decode(std::span<const std::uint8_t> message, LabelledVector& labelled) {
   labelled.type = static_cast<MessageType>(message[0]);

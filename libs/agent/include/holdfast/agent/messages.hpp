@@ -5,12 +5,20 @@
 #include <cstdint>
 #include <span>
 
+#include "holdfast/agent/branch.hpp"
 #include "holdfast/agent/round.hpp"
 #include "holdfast/agent/wire.hpp"
 #include "holdfast/base/algebra.hpp"
 #include "holdfast/base/cell.hpp"
 
 /// All messages but orders and reports (order.hpp), as values. docs/wire.md says what they are for.
+///
+/// A checksum tells that a message is what the neighbour has sent, not that it makes sense. So
+/// every number of a message that names one of several things, or a place in memory, is looked at
+/// where it is read (src/codec.hpp): kinds, flags, indices, faces, cells, counts of exchanges.
+/// Reals may be anything, what is not a number included: a method that diverges says so with them.
+/// The limits are those of docs/wire.md. What may be said at a certain time only is the agent's to
+/// know (src/guard.cpp).
 namespace holdfast::agent {
 
 /// A wave on its way out: take part in a round, and where you are.
@@ -44,11 +52,10 @@ struct Mark {
   base::Cell sender = {};  ///< Of the module that sent it first.
 };
 
-/// A cut whose other end is not below: the connection of a cell in a positive direction.
-struct Loop {
-  base::Cell cell = {};
-  base::Direction direction = base::Direction::kPlusX;
-};
+/// In the label of `planned down`: the index, and for a step which part of a displacement it is.
+inline constexpr std::uint8_t kPlannedIndexMask = 0x3f;
+inline constexpr std::uint8_t kLeadingPart = 0x40;
+inline constexpr std::uint8_t kTrailingPart = 0x80;
 
 /// Six reals and what they are: an exchange's tag, a planned index, a column, a loop.
 struct LabelledVector {
@@ -57,16 +64,15 @@ struct LabelledVector {
   base::Vec6<float> vector = {};
 };
 
-/// In the label of `planned down`: the index, and for a step which part of a displacement it is.
-inline constexpr std::uint8_t kPlannedIndexMask = 0x3f;
-inline constexpr std::uint8_t kLeadingPart = 0x40;
-inline constexpr std::uint8_t kTrailingPart = 0x80;
+/// `message` is whole, as Link::next_message() gives it. False: no program of this version writes
+/// it.
+bool is_legal(std::span<const std::uint8_t> message);
 
 wire::Writer encode(const Join& join);
 wire::Writer encode(const Echo& echo);
 wire::Writer encode(const Appointment& appointment);
 wire::Writer encode(const Mark& mark);
-wire::Writer encode(const Loop& loop);
+wire::Writer encode(const Cut& cut);
 wire::Writer encode(const LabelledVector& labelled);
 
 /// Reads a message of this type. False: no program of this version writes it.
@@ -74,8 +80,13 @@ bool decode(std::span<const std::uint8_t> message, Join& join);
 bool decode(std::span<const std::uint8_t> message, Echo& echo);
 bool decode(std::span<const std::uint8_t> message, Appointment& appointment);
 bool decode(std::span<const std::uint8_t> message, Mark& mark);
-bool decode(std::span<const std::uint8_t> message, Loop& loop);
+bool decode(std::span<const std::uint8_t> message, Cut& cut);
 bool decode(std::span<const std::uint8_t> message, LabelledVector& labelled);
+
+inline wire::Writer vector_message(wire::MessageType type, std::uint8_t label,
+                                   const base::Vec6<float>& vector) {
+  return encode(LabelledVector{.type = type, .label = label, .vector = vector});
+}
 
 /// A message that is legal, as a value.
 template <class Message>
