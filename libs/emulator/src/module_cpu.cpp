@@ -10,8 +10,7 @@
 namespace holdfast::emulator {
 namespace {
 
-constexpr const char* kStep =
-    "_ZN8holdfast5agent5Agent9step_partERKNS0_5EventERNS0_7ActionsE";
+constexpr const char* kStep = "_ZN8holdfast5agent5Agent9step_partERKNS0_5EventERNS0_7ActionsE";
 
 /// agent::Event and agent::Actions as they lie in the module's memory.
 struct EventLayout {
@@ -181,7 +180,7 @@ void ModuleCpu::take_packet(std::span<const std::uint8_t> packet) {
   ++phase.packets;
   steps_.bytes += packet.size();
   phase.bytes += packet.size();
-  if (packet[0] >> 6U == static_cast<unsigned>(agent::wire::PacketKind::kData)) {
+  if (agent::wire::header_of(packet).kind == agent::wire::PacketKind::kData) {
     ++steps_.data_packets;
     steps_.payload_bytes += packet.size() - kOverhead;
   }
