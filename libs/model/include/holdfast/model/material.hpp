@@ -5,7 +5,9 @@
 #include <optional>
 #include <string>
 
+#include "holdfast/base/lattice.hpp"
 #include "holdfast/mechanics/beam.hpp"
+#include "holdfast/mechanics/connector.hpp"
 
 namespace holdfast::model {
 
@@ -34,6 +36,10 @@ mechanics::BeamSection<double> beam_section(const Material& material);
 
 /// Weight of one module in N.
 double module_weight_n(const Material& material);
+
+/// What joins two modules of this material, by the class of their direction: Eq. (17) with the
+/// width of a face and the strength of that class.
+mechanics::Connector<double> connector(const Material& material, base::ConnectorClass kind);
 
 /// By how much an error of the displacements e can change any load ratio, as a share of its energy
 /// norm (e . K e)^(1/2); in (N mm)^(-1/2). See mechanics::load_ratio_squared_per_energy().
