@@ -137,7 +137,7 @@ std::string element_list(const std::vector<Element>& elements, std::size_t inden
 Items material_members(const model::Material& material) {
   const model::Material defaults;
   Items members;
-  for (const MaterialParameter& parameter : kMaterialParameters) {
+  for (const model::MaterialParameter& parameter : model::kMaterialParameters) {
     if (material.*parameter.value != defaults.*parameter.value) {
       members.push_back(member(parameter.key, text(material.*parameter.value)));
     }
