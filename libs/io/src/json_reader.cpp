@@ -132,8 +132,9 @@ void JsonReader::read_member(const std::string& key, const Json& value, const Pl
 void JsonReader::read_material(const Json& value, const Place& place) {
   for (const auto& [key, member] : reading_.members(value, place)) {
     const Place here = place.at(key);
-    const auto* parameter = std::ranges::find(kMaterialParameters, key, &MaterialParameter::key);
-    if (parameter != kMaterialParameters.end()) {
+    const auto* parameter =
+        std::ranges::find(model::kMaterialParameters, key, &model::MaterialParameter::key);
+    if (parameter != model::kMaterialParameters.end()) {
       reading_.document.material.*parameter->value = reading_.number(member, here);
     } else if (std::ranges::find(kConnectorKeys, key) != kConnectorKeys.end()) {
       if (allows(here)) {

@@ -98,7 +98,7 @@ Items material_members(const Document& document) {
   const model::Material& material = document.material;
   const model::Material defaults;
   Items members;
-  for (const MaterialParameter& parameter : kMaterialParameters) {
+  for (const model::MaterialParameter& parameter : model::kMaterialParameters) {
     if (material.*parameter.value != defaults.*parameter.value) {
       members.push_back(member(parameter.key, json_text(material.*parameter.value)));
     }

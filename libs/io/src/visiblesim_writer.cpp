@@ -87,7 +87,7 @@ void add_element(pugi::xml_node parent, const Element& element) {
 void add_parameters(pugi::xml_node parent, const Document& document, const base::Cell& shift) {
   pugi::xml_node node = append(parent, "parameters");
   const model::Material defaults;
-  for (const MaterialParameter& parameter : kMaterialParameters) {
+  for (const model::MaterialParameter& parameter : model::kMaterialParameters) {
     const double value = document.material.*parameter.value;
     const bool is_mass = parameter.value == &model::Material::mass_kg;
     if (parameter.visiblesim != nullptr && (is_mass || value != defaults.*parameter.value)) {
@@ -139,7 +139,7 @@ void add_own_element(pugi::xml_node world, const Document& document, const base:
   add_if_any(node, "name", document.name);
   add_if_any(node, "description", document.description);
   const model::Material defaults;
-  for (const MaterialParameter& parameter : kMaterialParameters) {
+  for (const model::MaterialParameter& parameter : model::kMaterialParameters) {
     const double value = document.material.*parameter.value;
     if (parameter.visiblesim == nullptr && value != defaults.*parameter.value) {
       add(node, parameter.key, value);

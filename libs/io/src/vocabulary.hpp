@@ -17,30 +17,6 @@ namespace holdfast::io {
 inline constexpr std::string_view kJsonFormatName = "holdfast-structure";
 inline constexpr int kJsonVersionMax = 2;
 
-struct MaterialParameter {
-  const char* key;         ///< In holdfast JSON.
-  const char* visiblesim;  ///< Attribute of <parameters>; nullptr: VisibleSim has no word for it.
-  double model::Material::*value;
-};
-
-/// VisibleSim counts its moments the other way round: its Iy bends lateral beams in the vertical
-/// plane, which is our Ix.
-inline constexpr auto kMaterialParameters = std::to_array<MaterialParameter>({
-    {"elastic_modulus_mpa", "E", &model::Material::elastic_modulus_mpa},
-    {"pitch_mm", "globalL", &model::Material::pitch_mm},
-    {"facet_mm", "a", &model::Material::facet_mm},
-    {"section_area_mm2", "A", &model::Material::section_area_mm2},
-    {"moment_x_mm4", "globalIy", &model::Material::moment_x_mm4},
-    {"moment_y_mm4", "globalIz", &model::Material::moment_y_mm4},
-    {"torsion_mm4", "globalJ", &model::Material::torsion_mm4},
-    {"poisson_ratio", "globalNu", &model::Material::poisson_ratio},
-    {"mass_kg", "globalMass", &model::Material::mass_kg},
-    {"gravity_m_s2", nullptr, &model::Material::gravity_m_s2},
-    {"strength_vertical_n", nullptr, &model::Material::strength_vertical_n},
-    {"strength_lateral_n", nullptr, &model::Material::strength_lateral_n},
-    {"contact_gamma", "globalGamma", &model::Material::contact_gamma},
-});
-
 /// The attribute of <parameters> that is Document::support_z.
 inline constexpr const char* kSupportParameter = "globalSupportZ";
 
@@ -60,9 +36,10 @@ constexpr bool is_one_of(std::string_view name, std::initializer_list<std::strin
 /// Attributes of <parameters> that are part of the material or the support level.
 constexpr bool is_mechanical_parameter(std::string_view name) {
   return name == kSupportParameter ||
-         std::ranges::any_of(kMaterialParameters, [&](const MaterialParameter& parameter) {
-           return parameter.visiblesim != nullptr && parameter.visiblesim == name;
-         });
+         std::ranges::any_of(
+             model::kMaterialParameters, [&](const model::MaterialParameter& parameter) {
+               return parameter.visiblesim != nullptr && parameter.visiblesim == name;
+             });
 }
 
 template <std::size_t A, std::size_t B>
@@ -163,7 +140,7 @@ inline const std::vector<std::string_view>& parameter_names() {
   static const std::vector<std::string_view> names = [] {
     std::vector<std::string_view> list(kSolverParameters.begin(), kSolverParameters.end());
     list.emplace_back(kSupportParameter);
-    for (const MaterialParameter& parameter : kMaterialParameters) {
+    for (const model::MaterialParameter& parameter : model::kMaterialParameters) {
       if (parameter.visiblesim != nullptr) {
         list.emplace_back(parameter.visiblesim);
       }
@@ -177,7 +154,7 @@ inline const std::vector<std::string_view>& parameter_names() {
 inline const std::vector<std::string_view>& material_keys() {
   static const std::vector<std::string_view> keys = [] {
     std::vector<std::string_view> list;
-    for (const MaterialParameter& parameter : kMaterialParameters) {
+    for (const model::MaterialParameter& parameter : model::kMaterialParameters) {
       list.emplace_back(parameter.key);
     }
     return list;
