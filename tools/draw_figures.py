@@ -223,7 +223,121 @@ def element():
     return canvas
 
 
-FIGURES = {'element': element}
+# ---- The hierarchy: a block, an arm that hangs on it, and a leg.
+
+BLOCK = [(x, y) for x in range(8) for y in range(4)]
+RUN = [(x, 3) for x in range(8, 13)] + [(13, 2), (13, 1)]
+HANGING = [(2, 4), (2, 5), (3, 5), (4, 5)]
+CORNERS = [(13, 3), (13, 0)]
+STEP = 22
+
+
+def clusters_of(width):
+    """Nodes by the cell of this width that they lie in; here each is one connected part."""
+    found = {}
+    for x, y in BLOCK + CORNERS:
+        found.setdefault((x // width, y // width), []).append((x, y))
+    return list(found.values())
+
+
+def centre_of(nodes):
+    return tuple(sum(node[axis] for node in nodes) / len(nodes) for axis in (0, 1))
+
+
+def place(origin, node):
+    return origin[0] + STEP * node[0] + STEP / 2, origin[1] + 132 - STEP * node[1] - STEP / 2
+
+
+def draw_robot(canvas, origin):
+    for cells, fill in ((BLOCK + CORNERS, PALE), (RUN, '#fde3cf'), (HANGING, '#d5efe6')):
+        for x, y in cells:
+            left, top = origin[0] + STEP * x, origin[1] + 110 - STEP * y
+            canvas.parts.append(f'<rect x="{left}" y="{top}" width="{STEP}" height="{STEP}" '
+                                f'fill="{fill}" stroke="{GREY}"/>')
+    canvas.line((origin[0] - 6, origin[1] + 132), (origin[0] + 314, origin[1] + 132), width=2)
+
+
+def draw_network(canvas, origin):
+    for x, y in BLOCK:
+        for other in ((x + 1, y), (x, y + 1)):
+            if other in BLOCK:
+                canvas.line(place(origin, (x, y)), place(origin, other), colour=GREY, width=1.5)
+    for a, b in (((7, 3), (13, 3)), ((13, 3), (13, 0))):
+        canvas.line(place(origin, a), place(origin, b), colour=RED, width=3)
+    for node in BLOCK + CORNERS:
+        even = (node[0] + node[1]) % 2 == 0
+        canvas.dot(place(origin, node), 4, INK, INK if even else '#fff')
+    x, y = place(origin, (2, 3))
+    canvas.arrow((x, y - 46), (x, y - 8), colour=GREEN, width=2)
+    canvas.turn((x, y), 24, 130, -80, colour=GREEN, width=1.6)
+    canvas.text((x + 28, y - 30), 'weight and lever of what hung there', 'start', GREEN, 12)
+
+
+def draw_level(canvas, origin, width, pairs):
+    for nodes in clusters_of(width):
+        low = [min(node[axis] for node in nodes) for axis in (0, 1)]
+        high = [max(node[axis] for node in nodes) for axis in (0, 1)]
+        canvas.parts.append(
+            f'<rect x="{origin[0] + STEP * low[0] + 2}" '
+            f'y="{origin[1] + 112 - STEP * high[1]}" '
+            f'width="{STEP * (high[0] - low[0] + 1) - 4}" '
+            f'height="{STEP * (high[1] - low[1] + 1) - 4}" rx="6" '
+            f'fill="{PALE}" stroke="{GREY}"/>')
+    centres = [centre_of(nodes) for nodes in clusters_of(width)]
+    for a in centres:
+        for b in centres:
+            if a < b and pairs(a, b):
+                canvas.line(place(origin, a), place(origin, b), colour=BLUE, width=2.5)
+    for centre in centres:
+        canvas.dot(place(origin, centre), 5)
+
+
+def draw_cycle(canvas, top):
+    canvas.heading((20, top), 'One K-cycle, z = M^-1 r')
+    levels = [top + 46, top + 106, top + 166]
+    for y, name in zip(levels, ('level 0: the network', 'level 1', 'level 2: coarsest')):
+        canvas.text((20, y + 4), name, 'start')
+    canvas.parts.append(f'<rect x="268" y="{top + 76}" width="372" height="118" rx="10" '
+                        f'fill="none" stroke="{BLUE}" stroke-dasharray="5 4"/>')
+    spots = [(212, levels[0], 'sweeps'), (324, levels[1], 'sweeps'), (454, levels[2], 'solve'),
+             (584, levels[1], 'sweeps'), (696, levels[0], 'sweeps')]
+    for (x0, y0, _), (x1, y1, _) in zip(spots, spots[1:]):
+        down = y1 > y0
+        canvas.arrow((x0 + (24 if down else 44), y0 + (21 if down else 0)),
+                     (x1 - (44 if down else 24), y1 + (0 if down else 21)))
+    notes = ['colours 1, 2', 'colours 1, 2', 'factorized', 'colours 2, 1', 'colours 2, 1']
+    for (x, y, words), note in zip(spots, notes):
+        canvas.box((x - 44, y - 19), (88, 40), f'{words}\n{note}')
+    canvas.text((222, levels[1] - 10), 'forces left', 'middle', GREY, 12)
+    canvas.text((698, levels[1] - 10), 'rigid motions', 'middle', GREY, 12)
+    canvas.text((454, levels[1] - 8), 'twice at most, as steps', 'middle', BLUE, 12)
+    canvas.text((454, levels[1] + 8), 'of conjugate gradients', 'middle', BLUE, 12)
+
+
+def hierarchy():
+    canvas = Canvas(780, 612, 'From modules to the coarsest level, and one cycle')
+    left, right, upper, lower = 24, 424, 52, 218
+    canvas.heading((left, upper - 24), '1  Modules: 45')
+    draw_robot(canvas, (left, upper))
+    canvas.heading((right, upper - 24), '2  Reduced network: 34 nodes, 2 colours')
+    draw_network(canvas, (right, upper))
+    canvas.text((right + 196, upper + 84), 'runs are single', 'start', RED, 12)
+    canvas.text((right + 196, upper + 100), 'longer beams', 'start', RED, 12)
+    canvas.heading((left, lower + 22), '3  Level 1: clusters in cells of 2')
+    draw_level(canvas, (left, lower), 2,
+               lambda a, b: abs(a[0] - b[0]) + abs(a[1] - b[1]) < 2.1 or (a, b) == (
+                   (6.5, 2.5), (13.0, 3.0)) or a[0] == b[0] == 13)
+    canvas.heading((right, lower + 22), '4  Level 2: clusters in cells of 4')
+    draw_level(canvas, (right, lower), 4,
+               lambda a, b: a == (1.5, 1.5) and b == (5.5, 1.5) or a == (5.5, 1.5))
+    for number, words in enumerate(('springs reach', 'from centre', 'to centre')):
+        canvas.text((left + 188, lower + 84 + 16 * number), words, 'start', BLUE, 12)
+    canvas.line((20, 374), (760, 374), colour='#ccc', width=1)
+    draw_cycle(canvas, 402)
+    return canvas
+
+
+FIGURES = {'element': element, 'hierarchy': hierarchy}
 
 
 def main():
