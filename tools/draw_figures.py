@@ -337,7 +337,144 @@ def hierarchy():
     return canvas
 
 
-FIGURES = {'element': element, 'hierarchy': hierarchy}
+# ---- One sweep: an order down the tree, exchanges with neighbours, reports up.
+
+LANES = {'root': 150, 'inner': 390, 'leaf': 630}
+
+
+def draw_lanes(canvas, bottom):
+    for (lane, x), words in zip(LANES.items(), ('root\nwith the conductor', 'a module between\n',
+                                                'a leaf\nno children')):
+        canvas.box((x - 66, 14), (132, 42), words.strip('\n'))
+        canvas.line((x, 56), (x, bottom), colour=GREY, width=1, dash='4 4')
+
+
+def message(canvas, source, target, y, words, colour=INK, drop=14):
+    x0, x1 = LANES[source], LANES[target]
+    side = 5 if x1 > x0 else -5
+    canvas.arrow((x0 + side, y), (x1 - side, y + drop), colour=colour)
+    canvas.text(((x0 + x1) / 2, y - 2 + (0 if drop < 8 else 3)), words, colour=colour, size=12)
+
+
+def exchange(canvas, pair, y, words):
+    a, b = (LANES[name] for name in pair)
+    canvas.arrow((b - 5, y), (a + 5, y), colour=BLUE)
+    canvas.arrow((a + 5, y), (b - 5, y), colour=BLUE)
+    canvas.text(((a + b) / 2, y - 5), words, colour=BLUE, size=12)
+
+
+def work(canvas, lane, y, words, height=20, side=58):
+    canvas.box((LANES[lane] - side, y), (2 * side, height), words, '#fff', GREY)
+
+
+def draw_steps(canvas):
+    message(canvas, 'root', 'inner', 68, 'order: step')
+    work(canvas, 'root', 84, 'u := u + step')
+    message(canvas, 'inner', 'leaf', 90, 'order: step')
+    work(canvas, 'inner', 108, 'u := u + step')
+    work(canvas, 'leaf', 112, 'u := u + step')
+    for y, words in ((176, 'vector: leading digits of u'), (206, 'vector: the other digits')):
+        exchange(canvas, ('root', 'inner'), y, words)
+        exchange(canvas, ('inner', 'leaf'), y, words)
+    for lane in LANES:
+        work(canvas, lane, 222, 'r = f - K(s) u, state s', side=78)
+    message(canvas, 'leaf', 'inner', 258, 'report: sums of r', GREEN)
+    work(canvas, 'inner', 277, 'adds its own')
+    message(canvas, 'inner', 'root', 301, 'report: sums of r', GREEN)
+    work(canvas, 'root', 320, 'makes the next order', side=74)
+    for y, words in ((334, 'vector: first term of M^-1 r'), (392, 'vector: last term of M^-1 r')):
+        exchange(canvas, ('inner', 'leaf'), y, words)
+    exchange(canvas, ('root', 'inner'), 364, 'vector: first term')
+    exchange(canvas, ('root', 'inner'), 418, 'vector: last term')
+    message(canvas, 'root', 'inner', 444, 'order: the next one')
+    message(canvas, 'inner', 'leaf', 476, 'order: the next one')
+
+
+def sweep():
+    canvas = Canvas(800, 520, 'One sweep: an order down, exchanges, reports up')
+    draw_lanes(canvas, 505)
+    draw_steps(canvas)
+    for top, bottom, words in ((66, 132, ('down:', 'depth', 'rounds')),
+                               (164, 246, ('exchange:', '2 rounds')),
+                               (252, 326, ('up:', 'depth', 'rounds')),
+                               (332, 430, ('behind it:', 'm rounds,', 'mostly in', 'idle time'))):
+        canvas.line((714, top), (720, top), (720, bottom), (714, bottom), colour=GREY, width=1)
+        for number, word in enumerate(words):
+            canvas.text((726, (top + bottom) / 2 + 4 + 15 * (number - (len(words) - 1) / 2)), word,
+                        'start', GREY, 11)
+    return canvas
+
+
+# ---- The conductor: from each report to the next order.
+
+STATES = {  # name: centre, what else it may be
+    'plan': (70, 86, 'or forget'), 'hosts': (190, 86, ''), 'mass': (310, 86, ''),
+    'angles': (430, 86, ''), 'begin': (580, 86, 'or clusters'),
+    'factor': (470, 206, ''), 'step': (600, 206, 'or tree step'),
+    'start': (190, 206, ''), 'gradient': (70, 296, ''), 'jacobi': (190, 296, ''),
+    'slope': (70, 386, ''), 'mix': (190, 386, 'order: slope'), 'high': (310, 386, ''), 'low': (450, 386, ''),
+    'corners': (600, 386, ''), 'release': (310, 496, 'order: hold'),
+    'free': (430, 496, 'order: hold'), 'loads': (600, 496, ''), 'verdict': (600, 590, '')}
+FILLS = {**dict.fromkeys(('factor', 'step'), '#d5efe6'),
+         **dict.fromkeys(('start', 'gradient', 'jacobi', 'slope', 'mix', 'high', 'low'), '#fde3cf'),
+         **dict.fromkeys(('corners', 'release', 'free', 'loads', 'verdict'), '#f3f3f3')}
+AGAIN = {'plan': -1, 'gradient': -1, 'slope': -1, 'jacobi': -1, 'step': 1}
+EDGES = [  # corners of the way, colour
+    ((114, 86), (146, 86)), ((234, 86), (266, 86)), ((354, 86), (386, 86)), ((474, 86), (536, 86)),
+    ((310, 66), (310, 44), (580, 44), (580, 66)),
+    ((430, 66), (430, 26), (764, 26), (764, 590), (644, 590)),
+    ((560, 106), (560, 150), (470, 150), (470, 186)), ((600, 106), (600, 186)),
+    ((546, 106), (546, 124), (190, 124), (190, 186)),
+    ((514, 206), (556, 206)), ((580, 226), (580, 250), (470, 250), (470, 226)),
+    ((612, 226), (612, 366)), ((494, 386), (556, 386)),
+    ((420, 366), (420, 251), (212, 251), (212, 226)),
+    ((234, 206), (310, 206), (310, 366)), ((166, 226), (100, 276)), ((180, 226), (180, 276)),
+    ((60, 316), (60, 366)), ((95, 316), (160, 366)),
+    ((114, 308), (130, 308), (130, 340), (280, 340), (280, 366)),
+    ((234, 290), (295, 290), (295, 366)),
+    ((70, 406), (70, 428), (285, 428), (285, 406)), ((234, 386), (266, 386)),
+    ((354, 386), (406, 386)), ((585, 406), (585, 441), (330, 441), (330, 476)),
+    ((310, 476), (310, 406)), ((440, 476), (440, 420), (345, 420), (345, 406)),
+    ((556, 496), (474, 496)), ((310, 516), (310, 540), (580, 540), (580, 516)),
+    ((610, 406), (610, 476)), ((600, 516), (600, 570))]
+RED_EDGES = [((644, 191), (694, 191), (694, 98), (624, 98)),
+             ((470, 366), (470, 286), (722, 286), (722, 86), (624, 86)),
+             ((644, 386), (744, 386), (744, 74), (624, 74))]
+WORDS = [((506, 39), 'a module is fixed', INK), ((690, 21), 'topples', INK),
+         ((516, 145), 'elimination', INK), ((634, 146), 'polynomial', INK),
+         ((300, 119), 'cg, block-jacobi, jacobi', INK), ((525, 264), 'new states', INK),
+         ((635, 320), 'settled', INK), ((525, 381), 'settled', INK),
+         ((365, 246), 'next correction', INK), ((516, 436), 'under law 2', INK),
+         ((292, 462), 'freed', INK), ((516, 490), 'open, held', INK), ((445, 535), 'none', INK),
+         ((662, 184), 'stuck', RED), ((538, 281), 'stuck: next method, law', RED),
+         ((692, 381), 'contradict: law 2', RED)]
+NOTES = ['Green: one sweep a step. Orange: conjugate gradients and Jacobi methods.',
+         'Law 2: the unilateral one, Eqs. (6)-(8).',
+         'Settled: of a robot with a fixed module, loads comes next; behind free, the verdict.',
+         'Stuck: a step without clusters if it had them, else cg; a Jacobi method, the next one.',
+         'From every state: verdict, undecided, with the reason.']
+
+
+def conductor():
+    canvas = Canvas(780, 715, 'What the root orders next')
+    for points in EDGES:
+        canvas.arrow(*points, width=1.3)
+    for points in RED_EDGES:
+        canvas.arrow(*points, width=1.3, colour=RED)
+    for name, side in AGAIN.items():
+        x, y, _ = STATES[name]
+        canvas.turn((x + side * 47, y), 11, 50 if side < 0 else 130, -side * 260, width=1.3)
+    for name, (x, y, note) in STATES.items():
+        canvas.box((x - 44, y - 20), (88, 40), name + (f'\n{note}' if note else ''),
+                   FILLS.get(name, PALE))
+    for at, words, colour in WORDS:
+        canvas.text(at, words, colour=colour, size=11)
+    for number, words in enumerate(NOTES):
+        canvas.text((24, 630 + 17 * number), words, 'start', size=12)
+    return canvas
+
+
+FIGURES = {'element': element, 'hierarchy': hierarchy, 'sweep': sweep, 'conductor': conductor}
 
 
 def main():
