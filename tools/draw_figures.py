@@ -412,8 +412,8 @@ STATES = {  # name: centre, what else it may be
     'angles': (430, 86, ''), 'begin': (580, 86, 'or clusters'),
     'factor': (470, 206, ''), 'step': (600, 206, 'or tree step'),
     'start': (190, 206, ''), 'gradient': (70, 296, ''), 'jacobi': (190, 296, ''),
-    'slope': (70, 386, ''), 'mix': (190, 386, 'order: slope'), 'high': (310, 386, ''), 'low': (450, 386, ''),
-    'corners': (600, 386, ''), 'release': (310, 496, 'order: hold'),
+    'slope': (70, 386, ''), 'mix': (190, 386, 'order: slope'), 'high': (310, 386, ''),
+    'low': (450, 386, ''), 'corners': (600, 386, ''), 'release': (310, 496, 'order: hold'),
     'free': (430, 496, 'order: hold'), 'loads': (600, 496, ''), 'verdict': (600, 590, '')}
 FILLS = {**dict.fromkeys(('factor', 'step'), '#d5efe6'),
          **dict.fromkeys(('start', 'gradient', 'jacobi', 'slope', 'mix', 'high', 'low'), '#fde3cf'),

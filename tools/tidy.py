@@ -4,6 +4,7 @@
 """tidy.py ROOT   checks what STYLE.md says and a script can check; prints every breach, exits 1.
 
 - a room includes only itself and the rooms that its CMakeLists.txt links (include direction)
+- applications include only the facade, and name only the rooms that it exports
 - files stop at 800 lines, lines at 100 characters; functions stop at 70 lines
 - every source begins with the two SPDX lines; every header has #pragma once
 - every room has a README.md of 10 to 40 lines
@@ -21,8 +22,8 @@ SPDX = ['SPDX-FileCopyrightText: The holdfast authors', 'SPDX-License-Identifier
 FILE_LINES_MAX = 800
 FUNCTION_LINES_MAX = 70
 COLUMNS_MAX = 100
-FREESTANDING = {'base', 'mechanics', 'agent', 'module'}
-FACADE_HEADERS = {'holdfast', 'distributed', 'emulated'}
+FREESTANDING = {'base', 'boards', 'mechanics', 'agent', 'module'}
+FACADE_HEADERS = {'holdfast', 'distributed', 'emulated', 'trial'}
 HOSTED_HEADERS = {'string', 'vector', 'map', 'set', 'memory', 'iostream', 'fstream', 'variant',
                   'cstdio', 'cstdlib', 'functional', 'stdexcept'}
 # base is freestanding but for what says in its first lines that it is for hosts.
@@ -55,6 +56,25 @@ def room_links(root):
     return {room: closure(room) for room in direct}
 
 
+def facade_exports(root):
+    """The rooms whose headers the facade's headers export."""
+    exported = set()
+    for header in FACADE_HEADERS:
+        text = (root / f'libs/holdfast/include/holdfast/{header}.hpp').read_text()
+        exported |= set(re.findall(r'holdfast/(\w+)/\w+\.hpp" *// IWYU pragma: export', text))
+    return exported
+
+
+def check_named_rooms(name, lines, links, exported):
+    if not name.startswith(('apps/', 'examples/')) or name.startswith('apps/checker/'):
+        return
+    for number, line in enumerate(lines, 1):
+        for room in re.findall(r'(?<![\w:])(?:holdfast::|hf::)?(\w+)::', line.split('//')[0]):
+            if room in links and room not in exported | {'holdfast'}:
+                fault(name, number, f'{room} is not exported by the facade, which exports '
+                                    f'{sorted(exported)}')
+
+
 def check_includes(name, lines, links):
     match = re.match(r'libs/(\w+)/(include|src)/', name)
     allowed = links[match[1]] if match else None
@@ -72,7 +92,7 @@ def check_includes(name, lines, links):
         elif (include and name.startswith(('apps/', 'examples/'))
                 and include[1] not in FACADE_HEADERS):
             fault(name, number, 'applications include only the facade, holdfast/holdfast.hpp, '
-                                'distributed.hpp and emulated.hpp')
+                                'trial.hpp, distributed.hpp and emulated.hpp')
         system = re.match(r'#include <(\w+)>', line)
         if (match and match[1] in FREESTANDING and name not in HOSTED_FILES and system
                 and system[1] in HOSTED_HEADERS):
@@ -103,7 +123,7 @@ def check_text(name, lines):
             fault(name, number, 'TODO without an issue number')
 
 
-def check_source(name, lines, links):
+def check_source(name, lines, links, exported):
     if [line[3:] for line in lines[:2]] != SPDX:
         fault(name, 1, 'the first two lines are not the SPDX notice')
     if name.endswith('.hpp') and '#pragma once' not in lines:
@@ -111,6 +131,7 @@ def check_source(name, lines, links):
     if len(lines) > FILE_LINES_MAX:
         fault(name, len(lines), f'{len(lines)} lines, allowed are {FILE_LINES_MAX}')
     check_includes(name, lines, links)
+    check_named_rooms(name, lines, links, exported)
     check_functions(name, lines)
 
 
@@ -153,11 +174,12 @@ def main():
     root = pathlib.Path(sys.argv[1]).resolve()
     links = room_links(root)
     cited = set(re.findall(r'^@\w+{(\w+),', (root / 'docs/references.bib').read_text(), re.M))
+    exported = facade_exports(root)
     for name in tracked_files(root):
         path = root / name
         if path.suffix in SOURCE_SUFFIXES:
             lines = path.read_text().splitlines()
-            check_source(name, lines, links)
+            check_source(name, lines, links, exported)
             check_text(name, lines)
             check_citations(name, lines, cited)
         elif path.suffix in {'.py', '.sh', '.cmake'} or path.name == 'CMakeLists.txt':
