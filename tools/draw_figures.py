@@ -299,8 +299,8 @@ def draw_cycle(canvas, top):
         canvas.text((20, y + 4), name, 'start')
     canvas.parts.append(f'<rect x="268" y="{top + 76}" width="372" height="118" rx="10" '
                         f'fill="none" stroke="{BLUE}" stroke-dasharray="5 4"/>')
-    spots = [(212, levels[0], 'sweeps'), (324, levels[1], 'sweeps'), (454, levels[2], 'solve'),
-             (584, levels[1], 'sweeps'), (696, levels[0], 'sweeps')]
+    spots = [(212, levels[0], 'relax'), (324, levels[1], 'relax'), (454, levels[2], 'solve'),
+             (584, levels[1], 'relax'), (696, levels[0], 'relax')]
     for (x0, y0, _), (x1, y1, _) in zip(spots, spots[1:]):
         down = y1 > y0
         canvas.arrow((x0 + (24 if down else 44), y0 + (21 if down else 0)),
