@@ -63,7 +63,7 @@ class Simulation {
   Simulation& operator=(Simulation&&) noexcept;
   ~Simulation();
 
-  /// Until nothing can happen any more or a limit is reached. Modules watch over their verdict for
+  /// Runs until nothing can happen any more or a limit is reached. Modules watch over their verdict for
   /// ever; the run ends when that is all they do and there is nothing that it could find.
   void run();
 
@@ -74,7 +74,7 @@ class Simulation {
   /// So far.
   SimulationResult result() const;
 
-  /// Of an existing module.
+  /// The agent of an existing module.
   const agent::Agent& agent(std::int32_t module) const;
 
   /// Is the module attached and not silenced?
