@@ -63,8 +63,8 @@ class Simulation {
   Simulation& operator=(Simulation&&) noexcept;
   ~Simulation();
 
-  /// Runs until nothing can happen any more or a limit is reached. Modules watch over their verdict for
-  /// ever; the run ends when that is all they do and there is nothing that it could find.
+  /// Runs until nothing can happen any more or a limit is reached. Modules watch over their verdict
+  /// for ever; the run ends when that is all they do and there is nothing that it could find.
   void run();
 
   /// Hands about `event_count` events to modules. False: it is over. The first call also starts all

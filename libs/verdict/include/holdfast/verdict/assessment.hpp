@@ -68,8 +68,8 @@ struct Assessment {
   bool is_stable =
       false;  ///< By the rigid body, as the ground is flat; bonded supports hold always.
 
-  /// One result per connection of the robot; empty if no equilibrium was found, or sought: a large robot that
-  /// topples is known to topple by the rigid body. Not meaningful if unstable.
+  /// One result per connection of the robot; empty if no equilibrium was found, or sought: a large
+  /// robot that topples is known to topple by the rigid body. Not meaningful if unstable.
   std::vector<ConnectionResult> connections;
   std::optional<double> load_ratio_max;  ///< None without connections or if one is not a number.
   /// Index of the connection with load_ratio_max; none if that is below kLoadRatioTie, which is
