@@ -58,7 +58,7 @@ constexpr void add_to(Mat6<Real>& sum, const Mat6<Real>& term) {
   }
 }
 
-/// The same numbers in another type, rounded if need be.
+/// The vector with its numbers in another type, rounded if need be.
 template <class To, class From>
 constexpr Vec6<To> converted(const Vec6<From>& vector) {
   Vec6<To> result{};

@@ -103,8 +103,8 @@ enum class Format : std::uint8_t { kVisibleSimXml, kJson };
 inline constexpr std::size_t kFileBytesMax = std::size_t{1} << 30U;
 inline constexpr int kNestingMax = 64;
 
-/// By the first character that is not white space: '<' for XML, '{' or '[' for JSON; an error for
-/// anything else.
+/// The format by the first character that is not white space: '<' for XML, '{' or '[' for JSON; an
+/// error for anything else.
 base::Result<Format> detect_format(std::string_view text);
 
 /// Reads either format. Error::where is "line 12" or a JSON pointer such as "/modules/3".

@@ -27,7 +27,7 @@ struct ConnectionLoad {
   Real bending = 0;  ///< N mm; the larger of |mx| and |my|.
 };
 
-/// From the force in the middle of a connection, Eq. (16), local frame.
+/// What a connection carries, given the force in its middle, Eq. (16), local frame.
 template <class Real>
 ConnectionLoad<Real> connection_load(const base::Vec6<Real>& middle_force);
 
