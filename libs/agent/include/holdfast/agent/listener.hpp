@@ -13,7 +13,7 @@ namespace holdfast::agent::wire {
 /// What a data packet carries.
 struct Carried {
   MessageType type = MessageType::kJoin;  ///< Of the first message, whole or a part of it.
-  std::optional<Operation> order;         ///< Of the first order that begins in it.
+  std::optional<Operation> order = {};    ///< Of the first order that begins in it.
 };
 
 /// Follows one direction of a link from the side, packet by packet as they are sent.
