@@ -13,6 +13,7 @@
 #include "holdfast/distributed.hpp"
 #include "packet_log.hpp"
 #include "request.hpp"
+#include "vocabulary.hpp"
 
 #define HOLDFAST_EXPORT(name) extern "C" __attribute__((export_name(#name))) auto name
 
@@ -137,11 +138,12 @@ verdict::Assessment try_robot(model::Robot robot) {
   return look.is_stable ? check(structure_of(std::move(robot))).assessment : look;
 }
 
-/// With one more module of the Kind in options[0] at each place of the tail. Integers: the verdict,
-/// -1 if no module can be there. Numbers: the largest load ratio (-1 if there is none) and the
-/// margin in mm (0 if it is fixed).
+/// With one more module of the Kind in options[0] at each place of the tail. Text: a list of
+/// verdicts, null where no module can be. Numbers: the largest load ratio (-1 if there is none) and
+/// the margin in mm (0 if it is fixed).
 Reply try_places(const Request& request) {
   Reply out;
+  Json verdicts = Json::array();
   const auto kind = static_cast<Kind>(request.header.options[0]);
   const std::span places(reinterpret_cast<const base::Cell*>(request.tail.data()),
                          request.tail.size() / sizeof(base::Cell));
@@ -153,10 +155,11 @@ Reply try_places(const Request& request) {
     const bool is_robot = robot.has_value();
     const verdict::Assessment assessment =
         is_robot ? try_robot(std::move(robot).value()) : verdict::Assessment();
-    out.integers.push_back(is_robot ? static_cast<std::int32_t>(assessment.verdict) : -1);
+    verdicts.push_back(is_robot ? Json(verdict::name(assessment.verdict)) : Json());
     out.numbers.push_back(assessment.load_ratio_max.value_or(-1));
     out.numbers.push_back(assessment.simplified.margin_mm.value_or(0));
   }
+  out.text = dump(verdicts);
   return out;
 }
 
@@ -257,14 +260,12 @@ Reply write_document(const Request& request) {
   return {.text = written(structure, output), .integers = {}, .numbers = {}};
 }
 
-/// options: agent::Method, link (0: Blinky Blocks 1, 1: 2, 2: rounds), seed, loss in thousandths,
-/// events that are kept in thousands.
+/// options: method and line as vocabulary_json() gives them, seed, loss in thousandths, events that
+/// are kept in thousands.
 sim::SimulationOptions simulation_options(const RequestHeader& header) {
   sim::SimulationOptions options;
   options.method = static_cast<agent::Method>(header.options[0]);
-  options.link = header.options[1] == 0   ? sim::blinky_blocks_v1()
-                 : header.options[1] == 1 ? sim::blinky_blocks_v2()
-                                          : sim::unit();
+  options.link = link_of(header.options[1]);
   options.seed = static_cast<std::uint64_t>(header.options[2]);
   options.link.loss = header.options[3] / 1000.0;
   return options;
@@ -307,6 +308,10 @@ HOLDFAST_EXPORT(holdfast_input)(std::size_t size)->std::uint8_t* {
   web::reply = {};
   web::input.resize(size);
   return web::input.data();
+}
+
+HOLDFAST_EXPORT(holdfast_vocabulary)()->void {
+  web::reply = {.text = web::vocabulary_json(), .integers = {}, .numbers = {}};
 }
 
 HOLDFAST_EXPORT(holdfast_open)()->void { web::reply = web::open_text(web::as_text(web::input)); }

@@ -12,21 +12,6 @@ namespace {
 
 using model::Material;
 
-constexpr std::array<double Material::*, kMaterialCount> kMaterialMembers = {
-    &Material::elastic_modulus_mpa,
-    &Material::pitch_mm,
-    &Material::facet_mm,
-    &Material::section_area_mm2,
-    &Material::moment_x_mm4,
-    &Material::moment_y_mm4,
-    &Material::torsion_mm4,
-    &Material::poisson_ratio,
-    &Material::mass_kg,
-    &Material::gravity_m_s2,
-    &Material::strength_vertical_n,
-    &Material::strength_lateral_n,
-    &Material::contact_gamma};
-
 /// What files say about a cell, whether its module exists or is planned.
 std::map<base::Cell, io::ModuleEntry> entries_by_cell(const io::Document& document) {
   std::map<base::Cell, io::ModuleEntry> entries;
@@ -61,7 +46,7 @@ Request read_request(std::span<const std::uint8_t> bytes) {
 Material material_of(const RequestHeader& header) {
   Material material;
   for (std::size_t i = 0; i < kMaterialCount; ++i) {
-    material.*kMaterialMembers[i] = header.material[i];
+    material.*model::kMaterialParameters[i].value = header.material[i];
   }
   return material;
 }
@@ -69,7 +54,7 @@ Material material_of(const RequestHeader& header) {
 std::array<double, kMaterialCount> numbers_of(const Material& material) {
   std::array<double, kMaterialCount> numbers{};
   for (std::size_t i = 0; i < kMaterialCount; ++i) {
-    numbers[i] = material.*kMaterialMembers[i];
+    numbers[i] = material.*model::kMaterialParameters[i].value;
   }
   return numbers;
 }

@@ -13,7 +13,7 @@
 namespace holdfast::web {
 
 inline constexpr std::size_t kOptionCount = 6;
-inline constexpr std::size_t kMaterialCount = 13;
+inline constexpr std::size_t kMaterialCount = model::kMaterialParameters.size();
 
 /// What a module is on the page.
 enum class Kind : std::int32_t { kExisting, kPlanned, kFixed };
@@ -24,7 +24,7 @@ struct RequestHeader {
   std::int32_t module_count = 0;
   std::int32_t support_z = 0;
   std::array<std::int32_t, kOptionCount> options{};
-  std::array<double, kMaterialCount> material{};  ///< In the order of model::Material.
+  std::array<double, kMaterialCount> material{};  ///< As kMaterialParameters.
 };
 
 struct PlacedModule {

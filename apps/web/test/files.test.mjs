@@ -31,7 +31,7 @@ async function takeAway(page, what) {
 test('VisibleSim XML is dropped, changed and taken away as XML and JSON without loss', async () => {
   const page = await openPage(browser);
   await dropFile(page, 'small.xml', XML);
-  await page.waitForFunction(() => globalThis.holdfast.app.robot.name === 'small');
+  await page.waitForFunction(() => globalThis.holdfast.bench.robot.name === 'small');
   await settled(page);
   assert.equal(await verdict(page), 'safe');
   await clickFace(page, [1, 1, 1], [0, -1, 0]);
@@ -89,7 +89,7 @@ test('a file that is too large is refused before it is read', async () => {
 test('cells that are no robot are said to be none, and undo brings the robot back', async () => {
   const page = await openPage(browser);
   await dropFile(page, 'two.json', '{"format":"holdfast-structure","version":1,"modules":[[0,0,0],[5,0,0]]}');
-  await page.waitForFunction(() => globalThis.holdfast.app.robot.name === 'two');
+  await page.waitForFunction(() => globalThis.holdfast.bench.robot.name === 'two');
   await settled(page);
   assert.equal(await page.innerText('#verdict-word'), 'No answer');
   assert.match(await page.innerText('#verdict-reason'), /connect|pieces|parts/);

@@ -14,7 +14,7 @@ export async function takePicture(browser, options) {
   await page.click('#kinds button >> text=Planned');
   const { x, y } = await facePoint(page, [5, 1, 2], [0, 0, 1]);
   await page.mouse.move(x, y);
-  await page.waitForFunction(() => globalThis.holdfast.app.places.known([5, 1, 3], 1));
+  await page.waitForFunction(() => globalThis.holdfast.app.whereNext.places.known([5, 1, 3], 1));
   await settled(page);
   const picture = await page.screenshot(options);
   await page.close();

@@ -22,21 +22,22 @@ const KINDS = ['existing', 'planned', 'fixed'];
 /** For each free place of the robot on the page: what its ghost says and what the click then gives. */
 const ghostsAndClicks = (page, kind) =>
   page.evaluate(async (chosen) => {
-    const { app } = globalThis.holdfast;
-    app.setTool('add', chosen);
-    const places = app.robot.freePlaces();
-    await app.places.findAll(app.robot, places, chosen, () => undefined);
-    const ghosts = places.map((place) => app.places.known(place, chosen));
+    const { app, bench } = globalThis.holdfast;
+    const trials = app.whereNext.places;
+    bench.setTool('add', chosen);
+    const places = bench.robot.freePlaces();
+    await trials.findAll(bench.robot, places, chosen, () => undefined);
+    const ghosts = places.map((place) => trials.known(place, chosen));
     const rows = [];
     for (const [i, place] of places.entries()) {
-      app.use([place]);
+      bench.use([place]);
       const { answer, problem } = app.finding;
       const clicked = answer
         ? { verdict: answer.verdict, ratio: answer.load_ratio_max, margin: answer.stability.margin_mm ?? 0 }
         : { verdict: 'none', problem };
-      app.history.undo();
-      const { verdict: number, ratio, marginMm } = ghosts[i];
-      rows.push({ place, ghost: { verdict: ['safe', 'overload', 'unstable', 'undecided'][number] ?? 'none', ratio, margin: marginMm }, clicked });
+      bench.history.undo();
+      const { verdict, ratio, marginMm } = ghosts[i];
+      rows.push({ place, ghost: { verdict: verdict ?? 'none', ratio, margin: marginMm }, clicked });
     }
     return rows;
   }, kind);
@@ -76,21 +77,22 @@ test('the ghost under the pointer follows the kind that is chosen', async () => 
   await openExample(page, 'crane_tips_a');
   // A fixed module holds the crane: a place where a planned one topples it and a fixed one does not.
   const place = await page.evaluate(async () => {
-    const { app } = globalThis.holdfast;
-    const all = app.robot.freePlaces();
+    const { app, bench } = globalThis.holdfast;
+    const { places } = app.whereNext;
+    const all = bench.robot.freePlaces();
     const topples = [];
     for (const kind of [1, 2]) {
-      await app.places.findAll(app.robot, all, kind, () => undefined);
-      topples.push(all.map((at) => app.places.known(at, kind).verdict === 2));
+      await places.findAll(bench.robot, all, kind, () => undefined);
+      topples.push(all.map((at) => places.known(at, kind).verdict === 'unstable'));
     }
     return all.find((_, i) => topples[0][i] && !topples[1][i]);
   });
   const ghost = (kind) =>
     page.evaluate(async ([at, chosen]) => {
-      const { app } = globalThis.holdfast;
-      app.setTool('add', chosen);
-      app.preview([at]);
-      while (!app.places.known(at, chosen)) {
+      const { app, bench } = globalThis.holdfast;
+      bench.setTool('add', chosen);
+      app.whereNext.preview([at]);
+      while (!app.whereNext.places.known(at, chosen)) {
         await new Promise((done) => setTimeout(done, 5));
       }
       await new Promise((done) => setTimeout(done, 20));
@@ -139,7 +141,7 @@ test('a link from a page of holdfast view opens the robot of the link', async ()
   execFileSync(program, ['view', scenario('crane_tips_b'), '--no-open', '--out', viewed]);
   const page = await openPage(browser, { file: viewed });
   const modules = await count(page);
-  await page.evaluate(() => globalThis.holdfast.app.edit('one more', [globalThis.holdfast.app.robot.freePlaces()[0]], 0));
+  await page.evaluate(() => globalThis.holdfast.bench.edit('one more', [globalThis.holdfast.bench.robot.freePlaces()[0]], 0));
   await page.click('#save');
   await page.click('[data-save=link]');
   await page.waitForFunction(() => location.hash.startsWith('#s='));
@@ -215,25 +217,24 @@ test('an error is gone with the robot that it was about', async () => {
 
 /** One face in sight for each verdict: where the pointer points at its module and previews its place. */
 function visibleFaces() {
-  const { app } = globalThis.holdfast;
-  const { stage } = app;
+  const { app, bench } = globalThis.holdfast;
+  const { stage, whereNext } = app;
   const box = stage.canvas.getBoundingClientRect();
   const point = (at) => stage.project(stage.controls.target.clone().fromArray(at));
   const sides = [[1, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -1, 0], [0, 0, 1], [0, 0, -1]];
   const best = {};
-  for (let slot = 0; slot < app.robot.count; ++slot) {
-    const cell = app.robot.cellAt(slot);
+  for (let slot = 0; slot < bench.robot.count; ++slot) {
+    const cell = bench.robot.cellAt(slot);
     for (const side of sides) {
       const place = cell.map((value, k) => value + side[k]);
-      const verdict = app.places.known(place, 0)?.verdict ?? -1;
+      const verdict = whereNext.places.known(place, 0)?.verdict;
       const { x, y } = point(cell.map((value, k) => value + side[k] / 2));
       const at = { clientX: x + box.left, clientY: y + box.top, pointerType: 'mouse' };
       stage.canvas.dispatchEvent(new PointerEvent('pointermove', at));
-      const isSeen = verdict >= 0 && String(app.pointedCell) === String(cell) && String(app.previewed[0]) === String(place);
+      const isSeen = verdict && String(app.pointedCell) === String(cell) && String(whereNext.previewed[0]) === String(place);
       // Faces to the front or the right, on which no label stands.
       if (isSeen && side[2] === 0) {
-        const name = ['safe', 'overload', 'unstable', 'undecided'][verdict];
-        best[name] ??= { cell, side };
+        best[verdict] ??= { cell, side };
       }
     }
   }

@@ -1,13 +1,13 @@
 // SPDX-FileCopyrightText: The holdfast authors
 // SPDX-License-Identifier: Apache-2.0
 import CORE from 'virtual:core';
+import type { Kind } from '../model/cell';
+import type { RobotData } from '../model/robot';
 import {
   CoreError,
   type Answer,
-  type Kind,
   type OpenedDocument,
   type Output,
-  type RobotData,
   type SimulationChoice,
   type Trace,
   type Trial,

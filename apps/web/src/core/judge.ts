@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: The holdfast authors
 // SPDX-License-Identifier: Apache-2.0
-import type { Robot } from '../model/robot';
+import type { Robot, RobotData } from '../model/robot';
 import { CoreClient, Cancelled, compiledCore, explain } from './client';
-import { CoreError, type Answer, type RobotData } from './types';
+import { CoreError, type Answer } from './types';
 import { Core } from './wasm';
 
 /** What is known of the robot on the page. `slots` as in Robot.toData(). */

@@ -1,13 +1,12 @@
 // SPDX-FileCopyrightText: The holdfast authors
 // SPDX-License-Identifier: Apache-2.0
-import { cellText, type Robot } from '../model/robot';
+import { cellText, type Cell, type Kind } from '../model/cell';
+import type { Robot } from '../model/robot';
 import { CoreClient } from './client';
-import type { Cell, Kind, Trial } from './types';
+import type { Trial } from './types';
 
 /** About so long may a batch of places take. */
 const BATCH_MS = 40;
-/** Robots up to this size are tried at once where the pointer is. */
-export const TRIAL_COUNT_MAX = 1500;
 
 /** Where may the next module of a kind go? Tries free places in the background, batch by batch. */
 export class Places {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The holdfast authors
 // SPDX-License-Identifier: Apache-2.0
-import type { Kind, Cell } from '../core/types';
+import type { Cell, Kind } from './cell';
 import { Robot, type CellChange, type Settings } from './robot';
 
 /** What can be undone: changed cells, changed settings, or another robot in place of this one. */

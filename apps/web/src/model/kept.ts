@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: The holdfast authors
 // SPDX-License-Identifier: Apache-2.0
+import { PARAMETERS } from './material';
 import { Robot } from './robot';
 
 /**
@@ -14,7 +15,6 @@ const TAB = 'holdfast.tab';
 const KEPT_MAX = 8;
 /** In letters; browsers allow about five million for all that a site keeps. */
 const LENGTH_MAX = 4_500_000;
-const MATERIAL_NUMBERS = 13;
 
 export interface KeptRobot {
   id: string;
@@ -139,7 +139,7 @@ function isKept({ id, origin, time, name, supportZ, material, modules, base }: K
     Number.isFinite(time) &&
     Number.isInteger(supportZ) &&
     material.every(Number.isFinite) &&
-    material.length === MATERIAL_NUMBERS &&
+    material.length === PARAMETERS.length &&
     modules.every((value, i) => Number.isInteger(value) && (i % 4 < 3 || (value >= 0 && value <= 2))) &&
     modules.length % 4 === 0
   );

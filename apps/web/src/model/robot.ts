@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: The holdfast authors
 // SPDX-License-Identifier: Apache-2.0
-import { Kind, type Cell, type RobotData } from '../core/types';
+import { DIRECTIONS, Kind, cellText, plus, type Cell } from './cell';
+import { TABLE_I, pitchMm } from './material';
 
 /** Cells are counted from a robot's first one and stay within this distance of it. */
 const REACH = 100_000;
@@ -8,27 +9,15 @@ const SPAN = 2 * REACH;
 /** Between the keys of neighbours. */
 const STRIDES = [1, SPAN, SPAN * SPAN];
 
-/** Table I of [Piranda 2021], in the order of model::Material. */
-export const TABLE_I = Float64Array.of(
-  100, 40, 40, 1600, 40 ** 4 / 12, 40 ** 4 / 12, 2.25 * 20 ** 4, 0.3, 0.06106, 9.81, 11.98, 14.97,
-  1e-4,
-);
-export const PITCH_INDEX = 1;
-
-/** +x, -x, +y, -y, +z, -z, as in base::Direction. */
-export const DIRECTIONS: readonly Cell[] = [
-  [1, 0, 0],
-  [-1, 0, 0],
-  [0, 1, 0],
-  [0, -1, 0],
-  [0, 0, 1],
-  [0, 0, -1],
-];
-
 /** What a robot has beside its cells and its name, and what the answer depends on. */
 export interface Settings {
   supportZ: number;
   material: Float64Array;
+}
+
+/** Modules as the core sees them: x, y, z and kind of each; existing ones come first. */
+export interface RobotData extends Settings {
+  modules: Int32Array;
 }
 
 /** Smallest and largest cell, coordinate by coordinate. */
@@ -48,10 +37,6 @@ function widen({ low, high }: Box, cell: Cell): void {
 }
 
 const randomId = () => Array.from(crypto.getRandomValues(new Uint32Array(3)), (value) => value.toString(36)).join('');
-
-export const plus = (a: Cell, b: Cell): Cell => [a[0] + b[0], a[1] + b[1], a[2] + b[2]];
-export const equal = (a: Cell, b: Cell) => a[0] === b[0] && a[1] === b[1] && a[2] === b[2];
-export const cellText = (cell: Cell) => `(${cell.join(',')})`;
 
 /** One cell before and after; undefined where no module is. */
 export interface CellChange {
@@ -81,6 +66,10 @@ export class Robot {
   material: Float64Array = TABLE_I;
   /** The text of the file that it began with, for what the page does not show. */
   base = '';
+
+  get pitchMm(): number {
+    return pitchMm(this.material);
+  }
 
   static from(modules: Int32Array): Robot {
     const robot = new Robot();
@@ -152,6 +141,15 @@ export class Robot {
       }
     }
     return [...places.values()];
+  }
+
+  /** Of the centre of mass above the ground, in cells. */
+  massHeight(): number {
+    let sum = 0;
+    for (let slot = 0; slot < this.count; ++slot) {
+      sum += this.data[4 * slot + 2];
+    }
+    return sum / Math.max(this.count, 1) - this.supportZ + 0.5;
   }
 
   /** For the core, with the slot of each of its modules: existing ones come first. */

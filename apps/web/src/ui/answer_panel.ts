@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: The holdfast authors
 // SPDX-License-Identifier: Apache-2.0
 import type { Finding } from '../core/judge';
-import { LOAD_FIELDS, type Answer, type Cell } from '../core/types';
-import { DIRECTIONS, cellText, type Robot } from '../model/robot';
-import { Kind } from '../core/types';
+import { LOAD_FIELDS, type Answer } from '../core/types';
+import { DIRECTIONS, KIND_NAMES, Kind, cellText, type Cell } from '../model/cell';
+import type { Robot } from '../model/robot';
 import { FIXED, UNKNOWN, UNSTABLE, brokenColour, css, loadColour, type Rgb, type ScaleName } from '../view/colours';
 import { byId, make } from './dom';
 
@@ -101,8 +101,7 @@ function countText(robot: Robot): string {
   for (let slot = 0; slot < robot.count; ++slot) {
     ++counts[robot.kindAt(slot)];
   }
-  const names = ['existing', 'planned', 'fixed'];
-  const parts = counts.map((count, i) => `${count.toLocaleString('en')} ${names[i]}`);
+  const parts = counts.map((count, i) => `${count.toLocaleString('en')} ${KIND_NAMES[i]}`);
   return parts.filter((_, i) => counts[i] > 0).join(', ') || 'none';
 }
 
@@ -144,7 +143,6 @@ export function showFaceLegend(scale: ScaleName): void {
 }
 
 const SIDES = ['+x', '−x', '+y', '−y', '+z', '−z'];
-const KINDS = ['existing', 'planned', 'fixed'];
 
 /** One line for each connection of a module; the pointed one is marked. */
 export function showDetails(
@@ -159,7 +157,7 @@ export function showDetails(
     panel.replaceChildren(make('p', { className: 'quiet' }, 'Point at a module to see its numbers.'));
     return cell ? `${cellText(cell)}: empty` : '';
   }
-  const title = `${cellText(cell)}, ${KINDS[robot.kindAt(slot)]}${
+  const title = `${cellText(cell)}, ${KIND_NAMES[robot.kindAt(slot)]}${
     cell[2] === robot.supportZ && robot.kindAt(slot) !== Kind.kFixed ? ', on the ground' : ''
   }`;
   const rows = finding?.answer?.has_loads ? connectionRows(finding, slot) : [];
@@ -175,7 +173,7 @@ export function showDetails(
         make('th', { scope: 'row' }, SIDES[row.side]),
         ...[formatRatio(row.ratio), `${row.axial.toFixed(2)} N`, `${row.bending.toFixed(0)} N mm`].map((t) => make('td', {}, t)),
       );
-      line.className = row.side === side ? 'pointed' : row.ratio >= 1 - 1e-9 ? 'breaks' : '';
+      line.className = row.side === side ? 'pointed' : row.isBroken ? 'breaks' : '';
       body.append(line);
     }
     table.append(body);
@@ -205,14 +203,14 @@ function sidesOf({ slots }: Finding, answer: Answer): Int32Array {
 }
 
 function connectionRows(finding: Finding, slot: number) {
-  const rows: { side: number; ratio: number; axial: number; bending: number }[] = [];
+  const rows: { side: number; ratio: number; axial: number; bending: number; isBroken: boolean }[] = [];
   const answer = finding.answer!;
   const sides = sidesOf(finding, answer);
   for (let side = 0; side < DIRECTIONS.length; ++side) {
     const i = sides[DIRECTIONS.length * slot + side];
     if (i >= 0) {
       const [ratio, axial, bending] = answer.loads.subarray(LOAD_FIELDS * i, LOAD_FIELDS * i + 3);
-      rows.push({ side, ratio, axial, bending });
+      rows.push({ side, ratio, axial, bending, isBroken: answer.broken.includes(i) });
     }
   }
   return rows;

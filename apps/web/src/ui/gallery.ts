@@ -1,12 +1,13 @@
 // SPDX-FileCopyrightText: The holdfast authors
 // SPDX-License-Identifier: Apache-2.0
 import { CoreClient } from '../core/client';
-import { Kind, type Answer } from '../core/types';
+import type { Answer } from '../core/types';
+import { DIRECTIONS, Kind, plus } from '../model/cell';
 import { GALLERY, type Example } from '../model/examples';
-import { DIRECTIONS, plus, type Robot } from '../model/robot';
+import type { Robot } from '../model/robot';
+import type { Workbench } from '../model/workbench';
 import { FIXED, UNKNOWN, UNSTABLE, brokenColour, css, loadColour, mix, type Rgb } from '../view/colours';
 import { moduleLoads } from '../view/robot_view';
-import type { App } from './app';
 import { byId, make } from './dom';
 import { openText, robotOf } from './files';
 import { nameOf, whenOf, type Keeper } from './keeper';
@@ -21,20 +22,20 @@ const PICTURE_COUNT_MAX = 2000;
 const client = new CoreClient();
 let isFilled = false;
 
-export function openGallery(app: App, keeper: Keeper): void {
+export function openGallery(bench: Workbench, keeper: Keeper): void {
   const dialog = byId<HTMLDialogElement>('gallery');
   if (!isFilled) {
     isFilled = true;
-    fill(app, dialog);
+    fill(bench, dialog);
   }
   showKept(dialog, keeper);
   dialog.showModal();
 }
 
-function fill(app: App, dialog: HTMLDialogElement): void {
+function fill(bench: Workbench, dialog: HTMLDialogElement): void {
   for (const group of GALLERY) {
     const cards = group.examples.map((example) => {
-      const open = () => void openText(app, new TextEncoder().encode(example.source()), example.name);
+      const open = () => void openText(bench, new TextEncoder().encode(example.source()), example.name);
       const title = example.title.length === 1 ? '' : example.title;
       const made = card(dialog, title, example.text, open);
       made.button.dataset.example = example.name;

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: The holdfast authors
 // SPDX-License-Identifier: Apache-2.0
 import type { Ray } from 'three';
-import type { Cell } from '../core/types';
-import { DIRECTIONS, type Robot } from '../model/robot';
+import { DIRECTIONS, type Cell } from '../model/cell';
+import type { Robot } from '../model/robot';
 
 /** Where a ray meets the robot or the ground. */
 export interface Hit {

@@ -2,8 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 import { BoxGeometry, EdgesGeometry, LineBasicMaterial, LineSegments, Mesh, MeshBasicMaterial, Vector3 } from 'three';
 import { mergeGeometries } from 'three/examples/jsm/utils/BufferGeometryUtils.js';
-import { Kind, LOAD_FIELDS, MOTION_FIELDS, type Answer, type Cell } from '../core/types';
-import { DIRECTIONS, PITCH_INDEX, plus, type Robot } from '../model/robot';
+import { LOAD_FIELDS, MOTION_FIELDS, type Answer } from '../core/types';
+import { DIRECTIONS, Kind, plus, type Cell } from '../model/cell';
+import type { Robot } from '../model/robot';
 import { FIXED, UNKNOWN, UNSTABLE, brokenColour, loadColour, mix, type Rgb, type ScaleName } from './colours';
 import { ModuleMesh, Pattern } from './modules';
 import type { Stage } from './stage';
@@ -258,7 +259,7 @@ export class RobotView {
       turns.fill(0, 0, 3 * this.drawn.length);
       return;
     }
-    const pitch = this.robot!.material[PITCH_INDEX];
+    const pitch = this.robot!.pitchMm;
     const moduleOf = new Int32Array(this.judged!.slots.length);
     this.judged!.slots.forEach((slot, module) => (moduleOf[slot] = module));
     this.drawn.forEach((slot, i) => {
@@ -273,7 +274,7 @@ export class RobotView {
   private drawnPlace(slot: number, module: number): Vector3 {
     const place = new Vector3().fromArray(this.robot!.cellAt(slot));
     const { displacements } = this.judged!.answer;
-    const factor = this.exaggeration / this.robot!.material[PITCH_INDEX];
+    const factor = this.exaggeration / this.robot!.pitchMm;
     return displacements.length > 0
       ? place.addScaledVector(new Vector3().fromArray(displacements, MOTION_FIELDS * module), factor)
       : place;
