@@ -291,9 +291,9 @@ Reply simulate_request(const Request& request) {
   summary["is_complete"] = log.is_complete();
   summary["ticks_per_second"] = options.link.ticks_per_second;
   Json& orders = summary["orders"] = Json::array();
-  for (int operation = 0; operation <= agent::wire::kOperationCount; ++operation) {
-    const auto [text, is_step] = order_text(static_cast<agent::wire::Operation>(operation));
-    orders.push_back({{"text", text}, {"is_step", is_step}});
+  orders.push_back({{"text", ""}, {"is_step", false}});  // 0 is no operation.
+  for (const agent::OperationInfo& row : agent::kOperations) {
+    orders.push_back({{"text", row.text}, {"is_step", row.is_iteration}});
   }
   return {.text = dump(summary), .integers = log.take_integers(), .numbers = log.take_numbers()};
 }
