@@ -63,16 +63,9 @@ model::RobotSpec spec_of(const Request& request) {
   model::RobotSpec spec{.support_z = request.header.support_z,
                         .material = material_of(request.header)};
   for (const PlacedModule& module : request.modules) {
-    add(spec, module);
+    add_module(spec, module.cell, module.role());
   }
   return spec;
-}
-
-void add(model::RobotSpec& spec, const PlacedModule& module) {
-  (module.kind == Kind::kPlanned ? spec.planned : spec.existing).push_back(module.cell);
-  if (module.kind == Kind::kFixed) {
-    spec.fixed.push_back(module.cell);
-  }
 }
 
 bool has_double_cell(const io::Document& document) {
@@ -98,11 +91,11 @@ io::Document edited(const io::Document& base, const Request& request) {
   io::Step step;
   for (const PlacedModule& module : request.modules) {
     io::ModuleEntry& entry = entries[module.cell];
-    if (module.kind == Kind::kPlanned) {
+    if (module.role() == Role::kPlanned) {
       step.push_back({.cell = module.cell, .color = entry.color, .attributes = entry.attributes});
     } else {
       document.modules.push_back({.cell = module.cell,
-                                  .is_fixed = module.kind == Kind::kFixed,
+                                  .is_fixed = module.role() == Role::kFixed,
                                   .color = entry.color,
                                   .attributes = entry.attributes});
     }

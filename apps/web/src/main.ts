@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: The holdfast authors
 // SPDX-License-Identifier: Apache-2.0
 import './style.css';
-import { KIND_NAMES, type Kind } from './model/cell';
-import { Robot } from './model/robot';
+import { ROLE_NAMES, type Role } from './model/cell';
+import { EditedRobot } from './model/edited_robot';
 import { Workbench, type Tool } from './model/workbench';
 import type { ScaleName } from './view/colours';
 import { App } from './ui/app';
@@ -28,7 +28,6 @@ const TOOLS: readonly [tool: Tool, text: string, key: string][] = [
   ['remove', 'Remove', 'D'],
   ['paint', 'Paint', 'P'],
 ];
-const KIND_TEXTS = ['Existing', 'Planned', 'Fixed'];
 
 function radio(text: string, title: string, action: () => void): HTMLButtonElement {
   const button = make('button', { type: 'button', title }, text);
@@ -61,15 +60,16 @@ function makeTools(bench: Workbench): void {
     button.setAttribute('aria-label', text);
     return button;
   });
-  const kinds = KIND_TEXTS.map((text, kind) => {
-    const button = radio('', `${text} (${kind + 1})`, () => bench.setKind(kind as Kind));
-    button.append(make('span', { className: `swatch ${KIND_NAMES[kind]}` }), make('span', {}, text));
+  const roles = ROLE_NAMES.map((name, role) => {
+    const text = `${name[0].toUpperCase()}${name.slice(1)}`;
+    const button = radio('', `${text} (${role + 1})`, () => bench.setRole(role as Role));
+    button.append(make('span', { className: `swatch ${name}` }), make('span', {}, text));
     return button;
   });
   byId('tools').append(...tools);
-  byId('kinds').append(...kinds);
+  byId('roles').append(...roles);
   moveInside(byId('tools'));
-  moveInside(byId('kinds'));
+  moveInside(byId('roles'));
   const check = (buttons: HTMLButtonElement[], chosen: number) =>
     buttons.forEach((button, i) => {
       button.setAttribute('aria-checked', String(i === chosen));
@@ -77,8 +77,8 @@ function makeTools(bench: Workbench): void {
     });
   const show = () => {
     check(tools, TOOLS.findIndex(([tool]) => tool === bench.tool));
-    check(kinds, bench.kind);
-    byId('kinds').classList.toggle('idle', bench.tool === 'look' || bench.tool === 'remove');
+    check(roles, bench.role);
+    byId('roles').classList.toggle('idle', bench.tool === 'look' || bench.tool === 'remove');
     byId<HTMLButtonElement>('undo').disabled = !bench.history.canUndo;
     byId<HTMLButtonElement>('redo').disabled = !bench.history.canRedo;
   };
@@ -203,7 +203,7 @@ function begin(): void {
   byId('fit').onclick = actions.h;
   byId('help').onclick = actions['?'];
   byId('gallery-open').onclick = () => openGallery(bench, keeper);
-  byId('new').onclick = () => bench.history.replace('beginning anew', new Robot());
+  byId('new').onclick = () => bench.history.replace('beginning anew', new EditedRobot());
   byId('save').onclick = () => byId<HTMLDialogElement>('takeaway').showModal();
   for (const button of document.querySelectorAll<HTMLButtonElement>('[data-save]')) {
     button.onclick = () => {

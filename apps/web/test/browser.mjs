@@ -84,7 +84,7 @@ export const settled = (page) =>
 export const verdict = (page) => page.getAttribute('#verdict', 'data-verdict');
 export const figures = (page) => page.innerText('#figures');
 export const count = (page) => page.evaluate(() => globalThis.holdfast.bench.robot.count);
-export const kindOf = (page, cell) => page.evaluate((at) => globalThis.holdfast.bench.robot.kind(at), cell);
+export const roleOf = (page, cell) => page.evaluate((at) => globalThis.holdfast.bench.robot.role(at), cell);
 
 /** Where the middle of a cell's face is in the window. */
 export const facePoint = (page, cell, direction, share = 0.5) =>
@@ -168,7 +168,7 @@ export const pointerMoves = (page) =>
     const { robot } = bench;
     const box = stage.canvas.getBoundingClientRect();
     let calls = 0;
-    for (const name of ['cellAt', 'kindAt', 'slot', 'isHidden']) {
+    for (const name of ['cellAt', 'roleAt', 'slot', 'isHidden']) {
       const own = robot[name].bind(robot);
       robot[name] = (...values) => (++calls, own(...values));
     }

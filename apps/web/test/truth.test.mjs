@@ -17,10 +17,10 @@ let browser;
 before(async () => (browser = await launch()));
 after(() => browser.close());
 
-const KINDS = ['existing', 'planned', 'fixed'];
+const ROLES = ['existing', 'planned', 'fixed'];
 
 /** For each free place of the robot on the page: what its ghost says and what the click then gives. */
-const ghostsAndClicks = (page, kind) =>
+const ghostsAndClicks = (page, role) =>
   page.evaluate(async (chosen) => {
     const { app, bench } = globalThis.holdfast;
     const trials = app.whereNext.places;
@@ -40,9 +40,9 @@ const ghostsAndClicks = (page, kind) =>
       rows.push({ place, ghost: { verdict: verdict ?? 'none', ratio, margin: marginMm }, clicked });
     }
     return rows;
-  }, kind);
+  }, role);
 
-test('the ghost says what the click gives, for every kind at every free place of all scenarios', async () => {
+test('the ghost says what the click gives, for every role at every free place of all scenarios', async () => {
   const page = await openPage(browser);
   const names = readdirSync(path.join(repository, 'scenarios')).filter((name) => name.endsWith('.json'));
   const counts = [0, 0, 0];
@@ -51,28 +51,28 @@ test('the ghost says what the click gives, for every kind at every free place of
   for (const name of names) {
     await openExample(page, name.replace('.json', ''));
     const planned = new Map();
-    for (const kind of [1, 0, 2]) {
-      for (const { place, ghost, clicked } of await ghostsAndClicks(page, kind)) {
-        const where = `${name} ${place} ${KINDS[kind]}`;
+    for (const role of [1, 0, 2]) {
+      for (const { place, ghost, clicked } of await ghostsAndClicks(page, role)) {
+        const where = `${name} ${place} ${ROLES[role]}`;
         assert.equal(ghost.verdict, clicked.verdict, where);
         if (clicked.verdict === 'safe' || clicked.verdict === 'overload') {
           assert.equal(ghost.ratio, clicked.ratio, where);
           assert.equal(ghost.margin, clicked.margin, where);
         }
         planned.set(String(place), planned.get(String(place)) ?? ghost.verdict);
-        ++counts[kind];
-        unlikePlanned[kind] += ghost.verdict === planned.get(String(place)) ? 0 : 1;
+        ++counts[role];
+        unlikePlanned[role] += ghost.verdict === planned.get(String(place)) ? 0 : 1;
       }
     }
   }
   console.log(`# places ${counts}, of them another verdict than a planned module's ${unlikePlanned}`);
   assert.ok(counts.every((many) => many > 900), `${counts}`);
-  // The kinds do differ: this test would find a ghost that is always planned.
+  // The roles do differ: this test would find a ghost that is always planned.
   assert.ok(unlikePlanned[0] > 20 && unlikePlanned[2] > 100, `${unlikePlanned}`);
   assert.deepEqual(page.faults, []);
 });
 
-test('the ghost under the pointer follows the kind that is chosen', async () => {
+test('the ghost under the pointer follows the role that is chosen', async () => {
   const page = await openPage(browser);
   await openExample(page, 'crane_tips_a');
   // A fixed module holds the crane: a place where a planned one topples it and a fixed one does not.
@@ -81,13 +81,13 @@ test('the ghost under the pointer follows the kind that is chosen', async () => 
     const { places } = app.whereNext;
     const all = bench.robot.freePlaces();
     const topples = [];
-    for (const kind of [1, 2]) {
-      await places.findAll(bench.robot, all, kind, () => undefined);
-      topples.push(all.map((at) => places.known(at, kind).verdict === 'unstable'));
+    for (const role of [1, 2]) {
+      await places.findAll(bench.robot, all, role, () => undefined);
+      topples.push(all.map((at) => places.known(at, role).verdict === 'unstable'));
     }
     return all.find((_, i) => topples[0][i] && !topples[1][i]);
   });
-  const ghost = (kind) =>
+  const ghost = (role) =>
     page.evaluate(async ([at, chosen]) => {
       const { app, bench } = globalThis.holdfast;
       bench.setTool('add', chosen);
@@ -98,7 +98,7 @@ test('the ghost under the pointer follows the kind that is chosen', async () => 
       await new Promise((done) => setTimeout(done, 20));
       const { tints, faces } = app.view.ghosts;
       return { tint: [...tints.slice(0, 3)], hasMark: faces[0] > 0 };
-    }, [place, kind]);
+    }, [place, role]);
   assert.deepEqual(await ghost(1), { tint: [142, 77, 178], hasMark: true }, `${place}, planned: topples`);
   const fixed = await ghost(2);
   assert.notDeepEqual(fixed.tint, [142, 77, 178], `${place}, fixed`);
@@ -179,7 +179,7 @@ test('other colours, light or dark: “Where next?” stays', async () => {
   assert.deepEqual(await faceCodes(page), codes, 'dark');
   await page.keyboard.press('3');
   await page.waitForFunction(() => /for one more fixed module/.test(document.getElementById('spoken').textContent));
-  assert.notDeepEqual(await faceCodes(page), codes, 'another kind has other answers');
+  assert.notDeepEqual(await faceCodes(page), codes, 'another role has other answers');
 });
 
 test('another tool leaves the running computation alone, another robot ends it', async () => {

@@ -48,7 +48,7 @@ test('no key reaches through an open dialog', async () => {
     for (const key of ['d', '3', 'f', 'Control+z', '?']) {
       await page.keyboard.press(key);
     }
-    const state = await page.evaluate(() => [globalThis.holdfast.bench.tool, globalThis.holdfast.bench.kind]);
+    const state = await page.evaluate(() => [globalThis.holdfast.bench.tool, globalThis.holdfast.bench.role]);
     assert.deepEqual(state, ['add', 0], button);
     assert.equal(await count(page), 14, button);
     assert.equal(await page.getAttribute('#faces', 'aria-pressed'), 'false', button);
@@ -114,7 +114,7 @@ test('with the user’s own colours the chosen tool can be seen', async () => {
   };
   for (const [chosen, other] of [
     ['#tools [aria-checked=true]', '#tools [aria-checked=false]'],
-    ['#kinds [aria-checked=true]', '#kinds [aria-checked=false]'],
+    ['#roles [aria-checked=true]', '#roles [aria-checked=false]'],
     ['#faces', '#fit'],
   ]) {
     const colours = [await ground(chosen), await ground(other)];

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The holdfast authors
 // SPDX-License-Identifier: Apache-2.0
-import type { Kind } from '../model/cell';
-import type { RobotData } from '../model/robot';
+import type { Role } from '../model/cell';
+import type { RobotData } from '../model/edited_robot';
 import {
   CoreError,
   type Answer,
@@ -122,10 +122,10 @@ export class Core {
     };
   }
 
-  /** What the verdict would be with one more module of a kind, for each place (x, y, z). */
-  tryPlaces(robot: RobotData, places: Int32Array, kind: Kind): Trial[] {
+  /** What the verdict would be with one more module of a role, for each place (x, y, z). */
+  tryPlaces(robot: RobotData, places: Int32Array, role: Role): Trial[] {
     const tail = new Uint8Array(places.buffer, places.byteOffset, places.byteLength);
-    const reply = this.call('try_places', request(robot, [kind], tail));
+    const reply = this.call('try_places', request(robot, [role], tail));
     const verdicts = JSON.parse(reply.text) as (Verdict | null)[];
     return verdicts.map((verdict, i) => ({
       verdict,

@@ -3,15 +3,15 @@
 
 /** Cells of the lattice, and what a module in one of them is. */
 
-/** As web::Kind in core/request.hpp. */
-export const enum Kind {
+/** As Role in holdfast/trial.hpp. */
+export const enum Role {
   kExisting,
   kPlanned,
   kFixed,
 }
 
-/** By Kind. */
-export const KIND_NAMES = ['existing', 'planned', 'fixed'] as const;
+/** By Role. */
+export const ROLE_NAMES = ['existing', 'planned', 'fixed'] as const;
 
 export type Cell = readonly [x: number, y: number, z: number];
 

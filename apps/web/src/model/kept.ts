@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The holdfast authors
 // SPDX-License-Identifier: Apache-2.0
 import { PARAMETERS } from './material';
-import { Robot } from './robot';
+import { EditedRobot } from './edited_robot';
 
 /**
  * Robots that were changed here, in the browser's own storage, each under its own name there: closing
@@ -57,7 +57,7 @@ export class Kept {
   }
 
   /** False: it is too large. */
-  keep(robot: Robot, origin: string): boolean {
+  keep(robot: EditedRobot, origin: string): boolean {
     const { id, name, supportZ, base } = robot;
     const [material, modules] = [Array.from(robot.material), Array.from(robot.toModules())];
     const entry: KeptRobot = { id, origin, time: Date.now(), name, supportZ, material, modules, base };
@@ -84,8 +84,8 @@ export class Kept {
   }
 
   /** A robot of its own, or, in the tab that has kept it last, the same. */
-  restore(entry: KeptRobot): Robot {
-    const robot = Robot.from(Int32Array.from(entry.modules));
+  restore(entry: KeptRobot): EditedRobot {
+    const robot = EditedRobot.from(Int32Array.from(entry.modules));
     const { name, supportZ, base } = entry;
     Object.assign(robot, { name, supportZ, base, material: Float64Array.from(entry.material) });
     if (entry.id === this.tab.getItem(TAB)) {

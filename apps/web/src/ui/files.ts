@@ -3,7 +3,7 @@
 import { CoreClient } from '../core/client';
 import { Output, type OpenedDocument } from '../core/types';
 import { linkFragment, readFragment } from '../model/link';
-import { Robot } from '../model/robot';
+import { EditedRobot } from '../model/edited_robot';
 import type { Workbench } from '../model/workbench';
 import type { Stage } from '../view/stage';
 import { byId, download, tell } from './dom';
@@ -16,8 +16,8 @@ const LINK_LENGTH_MAX = 32_000;
 
 const client = new CoreClient();
 
-export function robotOf(opened: OpenedDocument, text: string, fallbackName: string): Robot {
-  const robot = Robot.from(opened.modules);
+export function robotOf(opened: OpenedDocument, text: string, fallbackName: string): EditedRobot {
+  const robot = EditedRobot.from(opened.modules);
   robot.name = opened.name || fallbackName;
   robot.supportZ = opened.support_z;
   robot.material = opened.material;

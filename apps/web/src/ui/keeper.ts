@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The holdfast authors
 // SPDX-License-Identifier: Apache-2.0
 import { Kept, originOf, type KeptRobot } from '../model/kept';
-import type { Robot } from '../model/robot';
+import type { EditedRobot } from '../model/edited_robot';
 import type { Workbench } from '../model/workbench';
 import { addMessage, make, tell } from './dom';
 import { askedFor } from './start';
@@ -14,7 +14,7 @@ const DELAY_PER_MODULE_MS = 0.03;
 export class Keeper {
   private readonly kept = Kept.open();
   /** Changed and not kept yet. */
-  private pending?: Robot;
+  private pending?: EditedRobot;
   private timer = 0;
   private isFull = false;
 
@@ -65,7 +65,7 @@ export class Keeper {
     return this.kept?.list() ?? [];
   }
 
-  restore(entry: KeptRobot): Robot {
+  restore(entry: KeptRobot): EditedRobot {
     return this.kept!.restore(entry);
   }
 

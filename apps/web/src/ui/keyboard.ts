@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The holdfast authors
 // SPDX-License-Identifier: Apache-2.0
-import { DIRECTIONS, Kind, plus, type Cell } from '../model/cell';
+import { DIRECTIONS, Role, plus, type Cell } from '../model/cell';
 import type { Workbench } from '../model/workbench';
 import type { App } from './app';
 import { byId, say } from './dom';
@@ -119,9 +119,9 @@ function stepOf(app: App, key: string): Cell | undefined {
 }
 
 function letter(bench: Workbench, actions: Record<string, () => void>, key: string): boolean {
-  const kinds: Record<string, Kind> = { 1: Kind.kExisting, 2: Kind.kPlanned, 3: Kind.kFixed };
-  if (key in kinds) {
-    bench.setKind(kinds[key]);
+  const roles: Record<string, Role> = { 1: Role.kExisting, 2: Role.kPlanned, 3: Role.kFixed };
+  if (key in roles) {
+    bench.setRole(roles[key]);
     return true;
   }
   const tools = { a: 'add', d: 'remove', p: 'paint', v: 'look' } as const;

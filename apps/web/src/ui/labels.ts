@@ -2,14 +2,14 @@
 // SPDX-License-Identifier: Apache-2.0
 import type { Finding } from '../core/judge';
 import { LOAD_FIELDS } from '../core/types';
-import type { Robot } from '../model/robot';
+import type { EditedRobot } from '../model/edited_robot';
 import type { RobotView } from '../view/robot_view';
 import type { Stage } from '../view/stage';
 import { connectionText, formatRatio } from './answer_panel';
 import { byId, make } from './dom';
 
 /** Texts that stand in the picture: the load ratio of the worst connection, beside its collar. */
-export function placeLabels(stage: Stage, view: RobotView, robot: Robot, finding: Finding | undefined): void {
+export function placeLabels(stage: Stage, view: RobotView, robot: EditedRobot, finding: Finding | undefined): void {
   const labels = byId('labels');
   const { worst } = view;
   const answer = finding?.answer;

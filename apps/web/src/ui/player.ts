@@ -3,7 +3,7 @@
 import VOCABULARY from 'virtual:vocabulary';
 import { CoreClient, Cancelled } from '../core/client';
 import { LogEvent, type Choice, type Trace } from '../core/types';
-import { Kind } from '../model/cell';
+import { Role } from '../model/cell';
 import { UNKNOWN, UNSTABLE, css, loadColour, brokenColour, mix, type Rgb } from '../view/colours';
 import { Packets } from '../view/packets';
 import { moduleLoads, type ModuleLoads } from '../view/robot_view';
@@ -139,7 +139,7 @@ export class Player {
     this.slots = slots;
     this.moduleOf = new Int32Array(slots.length);
     slots.forEach((slot, module) => (this.moduleOf[slot] = module));
-    this.agentCount = slots.filter((slot) => app.bench.robot.kindAt(slot) !== Kind.kPlanned).length;
+    this.agentCount = slots.filter((slot) => app.bench.robot.roleAt(slot) !== Role.kPlanned).length;
     const answer = app.finding?.answer;
     this.loads = answer?.has_loads ? moduleLoads({ answer, slots: app.finding!.slots }) : undefined;
     const { times, events } = trace;

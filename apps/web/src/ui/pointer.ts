@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The holdfast authors
 // SPDX-License-Identifier: Apache-2.0
 import { DIRECTIONS, plus, type Cell } from '../model/cell';
-import type { Robot } from '../model/robot';
+import type { EditedRobot } from '../model/edited_robot';
 import { ROW_MAX } from '../model/workbench';
 import { alongAxis, nearSeam, pick, type Hit } from '../view/pick';
 import type { App } from './app';
@@ -140,10 +140,10 @@ function cellsOf(app: App, hit: Hit | undefined): Cell[] {
   return mayBe(app.bench.robot, cell, !hit.isGround || touches(app.bench.robot, cell)) ? [cell] : [];
 }
 
-const touches = (robot: Robot, cell: Cell) =>
+const touches = (robot: EditedRobot, cell: Cell) =>
   robot.count === 0 || DIRECTIONS.some((direction) => robot.has(plus(cell, direction)));
 
-const mayBe = (robot: Robot, cell: Cell, touchesRobot: boolean) =>
+const mayBe = (robot: EditedRobot, cell: Cell, touchesRobot: boolean) =>
   touchesRobot && cell[2] >= robot.supportZ && !robot.has(cell);
 
 /** A row of new modules, or more modules for a stroke. */

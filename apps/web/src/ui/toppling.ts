@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The holdfast authors
 // SPDX-License-Identifier: Apache-2.0
 import type { Answer } from '../core/types';
-import type { Robot } from '../model/robot';
+import type { EditedRobot } from '../model/edited_robot';
 import type { Ground } from '../view/ground';
 import type { Stage } from '../view/stage';
 import { Topple } from '../view/topple';
@@ -21,7 +21,7 @@ export class Toppling {
     return this.running !== undefined;
   }
 
-  start(robot: Robot, answer: Answer): void {
+  start(robot: EditedRobot, answer: Answer): void {
     const { edge } = answer.stability;
     if (topples(answer) && edge) {
       const scaled = edge.map(([x, y]) => [x / robot.pitchMm, y / robot.pitchMm]) as typeof edge;

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 import { Places } from '../core/places';
 import type { Trial, Verdict } from '../core/types';
-import { KIND_NAMES, type Cell, type Kind } from '../model/cell';
+import { ROLE_NAMES, type Cell, type Role } from '../model/cell';
 import type { Workbench } from '../model/workbench';
 import { UNKNOWN, loadColour, verdictColour, type Rgb } from '../view/colours';
 import { FaceCode, type RobotView } from '../view/robot_view';
@@ -30,13 +30,13 @@ export class WhereNext {
   private isShown = false;
   private isTrying = false;
   /** That of the workbench before its last change. */
-  private kind: Kind;
+  private role: Role;
 
   constructor(
     private readonly bench: Workbench,
     private readonly view: RobotView,
   ) {
-    this.kind = bench.kind;
+    this.role = bench.role;
     bench.toolListeners.push(() => this.toolChanged());
   }
 
@@ -57,7 +57,7 @@ export class WhereNext {
 
   /** Finds out what is not known of free faces. */
   async update(): Promise<void> {
-    const { robot, kind } = this.bench;
+    const { robot, role } = this.bench;
     const button = byId('faces');
     this.paint();
     button.textContent = 'Where next?';
@@ -66,7 +66,7 @@ export class WhereNext {
       return;
     }
     const places = robot.freePlaces();
-    const isDone = await this.places.findAll(robot, places, kind, (count) => {
+    const isDone = await this.places.findAll(robot, places, role, (count) => {
       if (this.isShown && this.bench.robot === robot) {
         button.textContent = `${Math.round((100 * count) / places.length)} %`;
         this.paint();
@@ -74,8 +74,8 @@ export class WhereNext {
     });
     if (isDone && this.isShown) {
       button.textContent = 'Where next?';
-      const safe = places.filter((place) => this.places.known(place, kind)?.verdict === 'safe').length;
-      say(`${safe} of ${places.length} free places are safe for one more ${KIND_NAMES[kind]} module`);
+      const safe = places.filter((place) => this.places.known(place, role)?.verdict === 'safe').length;
+      say(`${safe} of ${places.length} free places are safe for one more ${ROLE_NAMES[role]} module`);
     }
   }
 
@@ -94,28 +94,28 @@ export class WhereNext {
 
   /** For who listens: what would come of a module in a free cell, if it is known. */
   trialText(cell: Cell): string {
-    const { robot, kind } = this.bench;
-    const verdict = robot.has(cell) ? undefined : this.places.known(cell, kind)?.verdict;
+    const { robot, role } = this.bench;
+    const verdict = robot.has(cell) ? undefined : this.places.known(cell, role)?.verdict;
     return verdict ? `, would be ${verdict}` : '';
   }
 
   private toolChanged(): void {
-    const isOtherKind = this.kind !== this.bench.kind;
-    this.kind = this.bench.kind;
+    const isOtherRole = this.role !== this.bench.role;
+    this.role = this.bench.role;
     this.preview(this.bench.tool === 'add' ? this.previewed : []);
-    if (isOtherKind) {
+    if (isOtherRole) {
       void this.update();
     }
   }
 
   private showPreview(): void {
     const [place, ...others] = this.previewed;
-    const { kind } = this.bench;
-    const trial = place && others.length === 0 ? this.places.known(place, kind) : undefined;
+    const { role } = this.bench;
+    const trial = place && others.length === 0 ? this.places.known(place, role) : undefined;
     const verdict = trial?.verdict;
     const colour = trial && verdict ? this.colour(verdict, trial.ratio) : UNKNOWN;
     const code = trial && verdict !== 'safe' ? codeOf(trial) : FaceCode.kNone;
-    this.view.showGhosts(this.previewed, kind, colour, code);
+    this.view.showGhosts(this.previewed, role, colour, code);
   }
 
   private colour(verdict: Verdict, ratio: number): Rgb {
@@ -131,8 +131,8 @@ export class WhereNext {
     }
     this.isTrying = true;
     let isCurrent = true;
-    while (isCurrent && this.previewed.length === 1 && !this.places.known(this.previewed[0], bench.kind)) {
-      isCurrent = (await this.places.find(bench.robot, this.previewed[0], bench.kind)) !== undefined;
+    while (isCurrent && this.previewed.length === 1 && !this.places.known(this.previewed[0], bench.role)) {
+      isCurrent = (await this.places.find(bench.robot, this.previewed[0], bench.role)) !== undefined;
       this.showPreview();
     }
     this.isTrying = false;
@@ -142,7 +142,7 @@ export class WhereNext {
     if (place[2] < this.bench.robot.supportZ) {
       return FaceCode.kNone;
     }
-    const trial = this.places.known(place, this.bench.kind);
+    const trial = this.places.known(place, this.bench.role);
     return trial ? codeOf(trial) : FaceCode.kWaiting;
   }
 }
