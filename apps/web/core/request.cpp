@@ -108,6 +108,8 @@ io::Document edited(const io::Document& base, const Request& request) {
   }
   if (!(document == base)) {
     document.known_answer.reset();
+    // By index, of modules that may be others now; what is computed has the material's mass anyway.
+    document.extension.own.clear();
   }
   return document;
 }

@@ -190,6 +190,12 @@ class StringWriter : public pugi::xml_writer {
 }  // namespace
 
 base::Result<base::Cell> visiblesim_shift(const Document& document) {
+  if (json_version(document) > 1) {
+    return base::Error{base::ErrorCode::kUnsupported,
+                       "VisibleSim XML has no words for what only version 2 of holdfast JSON says: "
+                       "write .json",
+                       ""};
+  }
   base::Cell lowest;
   base::Cell highest;
   for_each_cell(document, [&](const base::Cell& cell) {

@@ -8,13 +8,14 @@
 #include <string_view>
 #include <vector>
 
+#include "holdfast/io/extension.hpp"
 #include "holdfast/model/material.hpp"
 
 /// What things are called in files, once for all readers and writers.
 namespace holdfast::io {
 
 inline constexpr std::string_view kJsonFormatName = "holdfast-structure";
-inline constexpr int kJsonVersion = 1;
+inline constexpr int kJsonVersionMax = 2;
 
 /// The attribute of <parameters> that is Document::support_z.
 inline constexpr const char* kSupportParameter = "globalSupportZ";
@@ -41,18 +42,60 @@ constexpr bool is_mechanical_parameter(std::string_view name) {
              });
 }
 
+template <std::size_t A, std::size_t B>
+constexpr std::array<std::string_view, A + B> joined(const std::array<std::string_view, A>& a,
+                                                     const std::array<std::string_view, B>& b) {
+  std::array<std::string_view, A + B> all;
+  std::ranges::copy(b, std::ranges::copy(a, all.begin()).out);
+  return all;
+}
+
 // All the names that may stand in one place, those included that only VisibleSim's own reader or
 // its shipped examples have a use for: what is like one of them, but none, is a slip.
 
+inline constexpr auto kModuleKeys =
+    std::to_array<std::string_view>({"cell", "fixed", "color", "attributes"});
 inline constexpr auto kTopKeys = std::to_array<std::string_view>(
     {"$schema", "format", "version", "name", "description", "support_z", "material", "modules",
      "planned", "later_steps", "known_answer", "visiblesim"});
+
+/// Those that only version 2 has, alone and with all others.
+inline constexpr auto kExtensionKeys = std::to_array<std::string_view>(
+    {"lattice", "floor", "gravity_m_s2", "kinds", "obstacles", "loads", "steps"});
+inline constexpr auto kAllTopKeys = joined(kTopKeys, kExtensionKeys);
+inline constexpr auto kOwnParameterKeys = std::to_array<std::string_view>({"kind", "mass_kg"});
+inline constexpr auto kAllModuleKeys = joined(kModuleKeys, kOwnParameterKeys);
+
+/// Parameters of a material that only version 2 has: other limits of connections, other facets.
+inline constexpr auto kConnectorKeys = std::to_array<std::string_view>(
+    {"strength_n", "lever_mm", "shear_strength_n", "torsion_strength_nmm", "friction",
+     "torsion_radius_mm", "gap_limit_mm", "foot_mm"});
+
+/// The parameters in which a kind of modules may differ from the material.
+inline constexpr auto kKindKeys = std::to_array<std::string_view>(
+    {"mass_kg", "strength_vertical_n", "strength_lateral_n", "strength_n", "lever_mm",
+     "shear_strength_n", "torsion_strength_nmm", "friction", "torsion_radius_mm", "gap_limit_mm",
+     "foot_mm"});
+inline constexpr auto kFloorKeys = std::to_array<std::string_view>({"friction"});
+inline constexpr auto kObstacleKeys =
+    std::to_array<std::string_view>({"from", "to", "cells", "hold", "friction"});
+inline constexpr auto kLoadKeys =
+    std::to_array<std::string_view>({"cell", "force_n", "torque_nmm"});
+inline constexpr auto kStepKeys =
+    std::to_array<std::string_view>({"attach", "detach", "move", "release", "connect"});
+inline constexpr auto kMoveKeys = std::to_array<std::string_view>({"from", "to", "carrier"});
+
+/// By LatticeName.
+inline constexpr auto kLatticeNames =
+    std::to_array<std::string_view>({"cubic", "face-centred", "hexagonal", "hexagonal-prism"});
+
+/// By Hold.
+inline constexpr auto kHoldNames = std::to_array<std::string_view>({"contact", "bonded"});
+
 inline constexpr auto kKnownAnswerKeys =
     std::to_array<std::string_view>({"verdict", "margin_mm", "load_ratio_max", "source"});
 inline constexpr auto kVisibleSimKeys =
     std::to_array<std::string_view>({"parameters", "world", "block_list", "scenery", "targets"});
-inline constexpr auto kModuleKeys =
-    std::to_array<std::string_view>({"cell", "fixed", "color", "attributes"});
 inline constexpr auto kPlannedKeys =
     std::to_array<std::string_view>({"cell", "color", "attributes"});
 inline constexpr auto kElementKeys =

@@ -4,10 +4,7 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
-
-#include "holdfast/mechanics/connector.hpp"
 
 namespace holdfast::model {
 mechanics::BeamSection<double> beam_section(const Material& material) {
@@ -23,10 +20,17 @@ double module_weight_n(const Material& material) {
   return material.mass_kg * material.gravity_m_s2;
 }
 
+mechanics::Connector<double> connector(const Material& material, base::ConnectorClass kind) {
+  return {.width = material.facet_mm,
+          .strength = kind == base::ConnectorClass::kVertical ? material.strength_vertical_n
+                                                              : material.strength_lateral_n};
+}
+
 double load_ratio_per_energy_norm(const Material& material) {
+  const auto weakest = mechanics::weaker(connector(material, base::ConnectorClass::kVertical),
+                                         connector(material, base::ConnectorClass::kLateral));
   return std::sqrt(mechanics::load_ratio_squared_per_energy(
-      mechanics::beam_stiffness(beam_section(material)), material.facet_mm,
-      std::min(material.strength_vertical_n, material.strength_lateral_n)));
+      mechanics::beam_stiffness(beam_section(material)), weakest.width, weakest.strength));
 }
 
 std::optional<std::string> find_material_fault(const Material& material) {

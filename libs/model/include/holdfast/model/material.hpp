@@ -6,7 +6,9 @@
 #include <optional>
 #include <string>
 
+#include "holdfast/base/lattice.hpp"
 #include "holdfast/mechanics/beam.hpp"
+#include "holdfast/mechanics/connector.hpp"
 
 namespace holdfast::model {
 
@@ -70,8 +72,12 @@ mechanics::BeamSection<double> beam_section(const Material& material);
 /// Weight of one module in N.
 double module_weight_n(const Material& material);
 
-/// By how much an error of the displacements e can change any load ratio, as a share of its energy
-/// norm (e . K e)^(1/2); in (N mm)^(-1/2). See mechanics::load_ratio_squared_per_energy().
+/// What joins two modules of this material, by the class of their direction: Eq. (17) with the
+/// width of a face and the strength of that class.
+mechanics::Connector<double> connector(const Material& material, base::ConnectorClass kind);
+
+/// The most by which an error e of the displacements can change any load ratio, as a share of its
+/// energy norm (e . K e)^(1/2); in (N mm)^(-1/2). See mechanics::load_ratio_squared_per_energy().
 double load_ratio_per_energy_norm(const Material& material);
 
 /// Why a material cannot be computed with (name, value found, values allowed), if it cannot.
