@@ -2,7 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // Any bytes are either refused with one printable line, or read as a document that JSON gives back
-// as it is, and VisibleSim XML too if the document needs no more than version 1 of JSON. HOLDFAST_FUZZ_READER is the reader under test: read_json, read_visiblesim.
+// as it is, and VisibleSim XML too if the document needs no more than version 1 of JSON.
+// HOLDFAST_FUZZ_READER is the reader under test: read_json, read_visiblesim.
 #include <algorithm>
 #include <cstdint>
 #include <cstdlib>
