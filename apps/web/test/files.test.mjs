@@ -45,6 +45,24 @@ test('VisibleSim XML is dropped, changed and taken away as XML and JSON without 
   assert.deepEqual(page.faults, []);
 });
 
+test('a mass of a module’s own, which is the material’s, does not outlive a change of the material', async () => {
+  const page = await openPage(browser);
+  const modules = [[0, 0, 0], [0, 0, 1], { cell: [1, 0, 1], mass_kg: 0.06106 }];
+  const file = { format: 'holdfast-structure', version: 2, name: 'own', modules };
+  await dropFile(page, 'own.json', JSON.stringify(file));
+  await page.waitForFunction(() => globalThis.holdfast.bench.robot.name === 'own');
+  assert.deepEqual(JSON.parse(await takeAway(page, 'json')).modules, modules, 'as it was opened');
+  await page.evaluate(() => {
+    const { bench } = globalThis.holdfast;
+    bench.history.configure('heavier', { material: bench.robot.material.map((old, i) => (i === 8 ? 0.07 : old)) });
+  });
+  await settled(page);
+  const changed = JSON.parse(await takeAway(page, 'json'));
+  assert.deepEqual(changed.material, { mass_kg: 0.07 });
+  assert.deepEqual(changed.modules, [[0, 0, 0], [0, 0, 1], [1, 0, 1]]);
+  assert.deepEqual(page.faults, []);
+});
+
 test('a bad file is refused in words and the robot stays', async () => {
   const page = await openPage(browser);
   await openExample(page, 'crane_tips_a');

@@ -5,7 +5,7 @@
 // every colour.
 import assert from 'node:assert/strict';
 import { execFileSync, spawnSync } from 'node:child_process';
-import { readdirSync, writeFileSync } from 'node:fs';
+import { readFileSync, readdirSync, writeFileSync } from 'node:fs';
 import path from 'node:path';
 import { after, before, test } from 'node:test';
 import {
@@ -103,6 +103,18 @@ test('the ghost under the pointer follows the role that is chosen', async () => 
   const fixed = await ghost(2);
   assert.notDeepEqual(fixed.tint, [142, 77, 178], `${place}, fixed`);
   assert.equal((await ghost(1)).hasMark, true, 'and back');
+});
+
+test('the form of the material has the parameters, units and defaults of docs/formats.md', async () => {
+  const document = readFileSync(path.join(repository, 'docs/formats.md'), 'utf8');
+  const table = document.split('| key | what | unit | allowed | Table I | in VisibleSim XML |\n')[1].split('\n\n')[0];
+  const rows = table.split('\n').slice(1).map((line) => line.split('|').map((word) => word.trim()));
+  const page = await openPage(browser);
+  const fields = await page.$$eval('#material label', (labels) =>
+    labels.map((label) => [label.firstChild.textContent, label.lastChild.lastChild.textContent, label.querySelector('input').value]),
+  );
+  assert.deepEqual(fields.slice(0, -1), rows.map(([, , what, unit, , value]) => [what, unit, value]));
+  assert.equal(fields.at(-1)[0], 'Ground at z');
 });
 
 /** What the program says of a file that it refuses. */

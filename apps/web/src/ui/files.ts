@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 import { CoreClient } from '../core/client';
 import { Output, type OpenedDocument } from '../core/types';
-import { linkFragment, readFragment } from '../model/link';
 import { EditedRobot } from '../model/edited_robot';
+import { linkFragment, readFragment } from '../model/link';
 import type { Workbench } from '../model/workbench';
 import type { Stage } from '../view/stage';
 import { byId, download, tell } from './dom';

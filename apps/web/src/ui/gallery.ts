@@ -3,8 +3,8 @@
 import { CoreClient } from '../core/client';
 import type { Answer } from '../core/types';
 import { DIRECTIONS, Role, plus } from '../model/cell';
-import { GALLERY, type Example } from '../model/examples';
 import type { EditedRobot } from '../model/edited_robot';
+import { GALLERY, type Example } from '../model/examples';
 import type { Workbench } from '../model/workbench';
 import { FIXED, UNKNOWN, UNSTABLE, brokenColour, css, loadColour, mix, type Rgb } from '../view/colours';
 import { moduleLoads } from '../view/robot_view';

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The holdfast authors
 // SPDX-License-Identifier: Apache-2.0
-import { Kept, originOf, type KeptRobot } from '../model/kept';
 import type { EditedRobot } from '../model/edited_robot';
+import { Kept, originOf, type KeptRobot } from '../model/kept';
 import type { Workbench } from '../model/workbench';
 import { addMessage, make, tell } from './dom';
 import { askedFor } from './start';

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The holdfast authors
 // SPDX-License-Identifier: Apache-2.0
-import { PARAMETERS, TABLE_I } from '../model/material';
 import type { Settings } from '../model/edited_robot';
+import { PARAMETERS, TABLE_I } from '../model/material';
 import type { Workbench } from '../model/workbench';
 import { byId, make, tell } from './dom';
 
