@@ -289,7 +289,7 @@ TEST(Multigrid, is_chosen_for_all_but_small_robots) {
 
 TEST(Multigrid, leaves_the_unilateral_law_to_the_direct_solver_where_little_fills_in) {
   const auto method = [](Family name, std::size_t size) {
-    return EquilibriumSolver(family(name, size)).method_for(mechanics::ContactLaw::kUnilateral);
+    return EquilibriumSolver(family(name, size)).prepare(mechanics::ContactLaw::kUnilateral);
   };
   EXPECT_EQ(method(Family::kTower, 100), Method::kDirect);
   EXPECT_EQ(method(Family::kCube, 12), Method::kMultigrid);

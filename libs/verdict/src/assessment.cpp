@@ -245,7 +245,7 @@ std::span<const double> weak_springs(solver::EquilibriumSolver& solver, bool is_
   if (!is_stable) {
     return kTopplingGammas;
   }
-  return solver.method_for(ContactLaw::kUnilateral) == solver::Method::kMultigrid
+  return solver.prepare(ContactLaw::kUnilateral) == solver::Method::kMultigrid
              ? std::span<const double>(kStableGammasMultigrid)
              : kStableGammas;
 }

@@ -73,7 +73,7 @@ void unite(GroundSpring& sum, double count) {
 
 std::vector<GroundSpring> finest_ground_springs(const ReducedNetwork& network,
                                                 const model::Material& material,
-                                                const GroundStiffness& ground) {
+                                                const GroundTable& ground) {
   constexpr std::size_t kDown = base::index(base::Direction::kMinusZ);
   std::vector<GroundSpring> springs;
   BeamGroundSprings beams(material);
@@ -86,7 +86,7 @@ std::vector<GroundSpring> finest_ground_springs(const ReducedNetwork& network,
     }
     if (kind[kContactByte] != 0) {
       springs.push_back(beams.spring(node, kDown, 1));
-      springs.back().stiffness = ground(kind[kContactByte]);
+      springs.back().stiffness = ground[kind[kContactByte]];
     }
   }
   return springs;

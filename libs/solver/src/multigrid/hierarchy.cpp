@@ -8,6 +8,7 @@
 #include <unordered_map>
 #include <utility>
 
+#include "beam_shapes.hpp"
 #include "block_pool.hpp"
 #include "matrix_blocks.hpp"
 
@@ -192,7 +193,7 @@ Mat Hierarchy<Real>::diagonal(const Kind& kind) const {
     }
   }
   if (kind[kContactByte] != 0) {
-    base::add_to(sum, ground_(kind[kContactByte]));
+    base::add_to(sum, ground_[kind[kContactByte]]);
   }
   return sum;
 }
@@ -333,11 +334,9 @@ void Hierarchy<Real>::try_to_factor(const SpringGraph& graph) {
 
 template <class Real>
 Hierarchy<Real>::Hierarchy(const ReducedNetwork& network, const model::Material& material,
-                           Team& team, GroundStiffness ground, std::span<const std::int32_t> alone)
-    : network_(network),
-      material_(material),
-      ground_(std::move(ground)),
-      alone_count_(alone.size()) {
+                           Team& team, const GroundTable& ground,
+                           std::span<const std::int32_t> alone)
+    : network_(network), material_(material), ground_(ground), alone_count_(alone.size()) {
   make_lattice();
   SpringGraph graph;
   fill_graph(team, graph);

@@ -47,9 +47,10 @@ struct Beams<double> {
 template <class Real>
 class Hierarchy {
  public:
-  /// Keeps references to the network and the material. Nodes that are `alone` join no cluster.
+  /// Keeps references to the network, the material and the table of what facets are. Nodes that are
+  /// `alone` join no cluster.
   Hierarchy(const ReducedNetwork& network, const model::Material& material, Team& team,
-            GroundStiffness ground, std::span<const std::int32_t> alone);
+            const GroundTable& ground, std::span<const std::int32_t> alone);
 
   /// Takes over changed contact: the same levels, held in another way.
   void update_contact();
@@ -102,7 +103,7 @@ class Hierarchy {
 
   const ReducedNetwork& network_;
   const model::Material& material_;
-  GroundStiffness ground_;
+  const GroundTable& ground_;
   std::size_t alone_count_ = 0;
   std::unordered_map<std::uint64_t, std::uint32_t> type_of_kind_;
   std::vector<Level<Real>> levels_;

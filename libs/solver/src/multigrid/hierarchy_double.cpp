@@ -4,6 +4,7 @@
 // single precision for the sweeps.
 #include <algorithm>
 
+#include "beam_shapes.hpp"
 #include "hierarchy.hpp"
 #include "level_blocks.hpp"
 #include "matrix_blocks.hpp"
@@ -61,7 +62,7 @@ template <>
 void Hierarchy<double>::add_type(const Kind& kind) {
   levels_.front().inverse.push_back(block_of<float>(inverse_of(diagonal(kind))));
   const std::uint8_t code = kind[kContactByte];
-  beams_.ground.push_back(code == 0 ? Block<double>{} : block_of<double>(ground_(code)));
+  beams_.ground.push_back(code == 0 ? Block<double>{} : block_of<double>(ground_[code]));
 }
 
 template <>
