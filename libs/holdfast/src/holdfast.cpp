@@ -103,7 +103,7 @@ CheckResult check(const Structure& structure, const CheckOptions& options) {
     result.proof = proof::prove(
         structure.robot, result.assessment,
         {.memory_bytes_max = options.memory_bytes_max, .thread_count = options.thread_count});
-    proof::apply(structure.robot, *result.proof, result.assessment);
+    proof::apply(structure.robot, *result.proof, result.assessment, options.thread_count);
     result.proof_seconds = passed() - result.seconds;
   }
   return result;

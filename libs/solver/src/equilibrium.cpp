@@ -15,8 +15,10 @@ using mechanics::ContactLaw;
 using mechanics::ContactState;
 
 /// What a system has done since an earlier report.
-Attempt attempt_since(const LinearReport& before, const LinearReport& now, Outcome outcome) {
-  return {.outcome = outcome,
+Attempt attempt_since(const LinearReport& before, const LinearReport& now,
+                      const Equilibrium& result) {
+  return {.law = result.law,
+          .outcome = result.outcome,
           .method = now.method,
           .precision = now.precision,
           .steps = now.solve_count - before.solve_count,
@@ -67,6 +69,12 @@ void compare_with_free_facets(UnilateralContact& contact, Equilibrium& result) {
 
 }  // namespace
 
+void Equilibrium::begin_with(const Equilibrium& earlier) {
+  attempts.insert(attempts.begin(), earlier.attempts.begin(), earlier.attempts.end());
+  steps += earlier.steps;
+  iteration_count += earlier.iteration_count;
+}
+
 EquilibriumSolver::EquilibriumSolver(const model::Robot& robot, EquilibriumOptions options)
     : options_(std::move(options)), choice_(std::make_unique<SystemChoice>(robot, options_)) {}
 
@@ -111,8 +119,7 @@ void EquilibriumSolver::attempt(const ContactOptions& contact, Equilibrium& resu
     finish(system, result);
     compare_with_free_facets(search, result);
   }
-  const Attempt& last =
-      attempts.emplace_back(attempt_since(before, system.report(), result.outcome));
+  const Attempt& last = attempts.emplace_back(attempt_since(before, system.report(), result));
   result.method = last.method;
   result.precision = last.precision;
   result.steps = last.steps;

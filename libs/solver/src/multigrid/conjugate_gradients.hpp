@@ -19,6 +19,8 @@ class ConjugateGradients final : public Iteration {
 
   bool is_too_slender() const override { return hierarchy_.is_too_slender(); }
 
+  bool is_singular() const override { return hierarchy_.is_singular(); }
+
   void update_contact() override { hierarchy_.update_contact(); }
 
   void subtract_product() override;

@@ -68,6 +68,9 @@ class Hierarchy {
   /// Whether a level was found that is a chain of thousands of clusters.
   bool is_too_slender() const { return is_too_slender_; }
 
+  /// Whether, in the facets' present states, a node or a cluster is held by nothing.
+  bool is_singular() const { return is_singular_; }
+
   /// Factorized coarsest level.
   const BlockLu& coarsest() const { return *coarsest_; }
 
@@ -98,6 +101,7 @@ class Hierarchy {
   void add_level(const SpringGraph& graph, std::vector<std::size_t> colour_start);
   Held held_nodes(const SpringGraph& graph, const std::vector<GroundSpring>& springs) const;
   void set_ground_springs(std::size_t depth, const std::vector<GroundSpring>& springs);
+  void look_for_singular_nodes(const std::vector<GroundSpring>& springs);
   void try_to_factor(const SpringGraph& graph);
   bool factor_coarsest();
 
@@ -113,6 +117,7 @@ class Hierarchy {
   Beams<Real> beams_;
   std::optional<BlockLu> coarsest_;
   bool is_too_slender_ = false;
+  bool is_singular_ = false;
 };
 
 // In hierarchy_single.cpp and hierarchy_double.cpp.

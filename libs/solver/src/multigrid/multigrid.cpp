@@ -292,18 +292,21 @@ std::vector<NodeTerm> Multigrid::unsymmetric_terms() const {
   return terms;
 }
 
-/// Takes up changed facets. What has not changed since the last solution goes on from there. False
-/// if the robot is too slender.
-bool Multigrid::begin() {
+/// Takes up changed facets. What has not changed since the last solution goes on from there.
+LinearOutcome Multigrid::begin() {
   if (!is_stale_) {
-    return true;
+    return LinearOutcome::kSolved;
   }
   if (precision_ == Precision::kSingle && is_too_slender()) {
-    return false;
+    return LinearOutcome::kTooSlow;
   }
   update_iteration();
+  if (iteration_->is_singular()) {
+    is_residual_known_ = false;
+    return LinearOutcome::kSingular;
+  }
   if (precision_ == Precision::kSingle && iteration_->is_too_slender()) {
-    return false;
+    return LinearOutcome::kTooSlow;
   }
   if (is_residual_known_) {
     update_residual();
@@ -319,7 +322,7 @@ bool Multigrid::begin() {
     reference_ = error;
   }
   is_stale_ = false;
-  return true;
+  return LinearOutcome::kSolved;
 }
 
 /// Whether bending is that of chains: the network has few nodes, and these few neighbours. A single
@@ -339,17 +342,17 @@ bool Multigrid::is_thin() const {
 
 LinearOutcome Multigrid::solve(double tolerance) {
   solve_count_ += is_stale_ ? 1 : 0;
-  return improve({.tolerance = tolerance}) ? LinearOutcome::kSolved : LinearOutcome::kTooSlow;
+  return improve({.tolerance = tolerance});
 }
 
-/// Goes on from the present displacements. Returns false if it does not get there, or the robot is
-/// too slender for the precision.
-bool Multigrid::improve(const Target& target) {
+/// Goes on from the present displacements.
+LinearOutcome Multigrid::improve(const Target& target) {
   if (network_.node_count == 0) {
-    return true;
+    return LinearOutcome::kSolved;
   }
-  if (!begin()) {
-    return false;
+  const LinearOutcome beginning = begin();
+  if (beginning != LinearOutcome::kSolved) {
+    return beginning;
   }
   const int before = iteration_->iteration_count();
   energy_error_ = std::min(target.tolerance * std::sqrt(reference_), target.error_max);
@@ -361,12 +364,12 @@ bool Multigrid::improve(const Target& target) {
   last_count_ = iteration_->iteration_count() - before;
   iteration_count_ += last_count_;
   if (end == Iteration::End::kConverged) {
-    return true;
+    return LinearOutcome::kSolved;
   }
   iteration_->x().assign(iteration_->x().size(), 0);  // Nothing to go on from.
   is_residual_known_ = false;
   is_stale_ = true;
-  return false;
+  return LinearOutcome::kTooSlow;
 }
 
 bool Multigrid::refine(Solution& solution) {
@@ -382,7 +385,7 @@ bool Multigrid::refine(Solution& solution) {
     target.error_max =
         kThinError * options_.tolerance / model::load_ratio_per_energy_norm(robot().material());
   }
-  if (!improve(target)) {
+  if (improve(target) != LinearOutcome::kSolved) {
     return false;
   }
   solution.energy_error = energy_error_;

@@ -68,8 +68,8 @@ class Multigrid final : public LinearSystem {
   bool is_too_slender() const;
   bool is_thin() const;
   std::vector<std::int32_t> nodes_alone() const;
-  bool begin();
-  bool improve(const Target& target);
+  LinearOutcome begin();
+  LinearOutcome improve(const Target& target);
   std::unique_ptr<Iteration> make_iteration();
   void update_iteration();
   void compute_residual();

@@ -53,6 +53,7 @@ enum class Outcome : std::uint8_t {
 
 /// One method's try at an equilibrium, and how it ended.
 struct Attempt {
+  mechanics::ContactLaw law = mechanics::ContactLaw::kRegularised;
   Outcome outcome = Outcome::kNotSettled;
   Method method = Method::kDirect;
   Precision precision = Precision::kSingle;  ///< Multigrid's.
@@ -84,6 +85,9 @@ struct Equilibrium : Solution {
   /// Columns of the factorization made for them: less than steps times the modules, as a change of
   /// some contact states leaves most of the factorization as it is.
   std::size_t made_column_count = 0;
+
+  /// Counts as part of this what another search took that came before, with other options.
+  void begin_with(const Equilibrium& earlier);
 };
 
 /// Solves one robot, with one law after the other if need be. Everything that does not depend on
