@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "../block_kernels.hpp"
-#include "reduced_network.hpp"
+#include "beam_shapes.hpp"
 
 namespace holdfast::solver {
 namespace {
