@@ -9,9 +9,9 @@
 #include <Eigen/Dense>
 #include <cmath>
 
-#include "holdfast/base/rng.hpp"
 #include "holdfast/mechanics/beam.hpp"
 #include "holdfast/model/material.hpp"
+#include "random_numbers.hpp"
 
 namespace holdfast::solver {
 namespace {
@@ -23,14 +23,6 @@ Dense dense(const base::Mat6<double>& m) { return Eigen::Map<const Dense>(m.valu
 
 Eigen::Matrix<double, 6, 1> dense(const Vec6<double>& v) {
   return Eigen::Map<const Eigen::Matrix<double, 6, 1>>(v.data());
-}
-
-Vec6<double> random_six(base::Rng& rng) {
-  Vec6<double> six;
-  for (double& value : six) {
-    value = rng.uniform() - 0.5;
-  }
-  return six;
 }
 
 double dot(const Vec6<double>& a, const Vec6<double>& b) { return dense(a).dot(dense(b)); }
@@ -87,8 +79,8 @@ TEST(BeamShapes, between_moved_ends_modules_lie_where_a_chain_of_beams_has_them)
   for (std::size_t direction = 0; direction < 6; ++direction) {
     const auto onwards = static_cast<base::Direction>(direction);
     const auto back = static_cast<base::Direction>(direction ^ 1U);
-    const Dense k11 = dense(mechanics::block_11(beam, onwards)) +
-                      dense(mechanics::block_11(beam, back));
+    const Dense k11 =
+        dense(mechanics::block_11(beam, onwards)) + dense(mechanics::block_11(beam, back));
     const Dense to_next = dense(mechanics::block_12(beam, onwards));
     const Dense to_last = dense(mechanics::block_12(beam, back));
     const int n = kLength - 1;

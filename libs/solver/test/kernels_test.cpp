@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "../src/multigrid/kernel_loops.hpp"
-#include "holdfast/base/rng.hpp"
+#include "random_numbers.hpp"
 
 namespace holdfast::solver {
 namespace {
@@ -22,7 +22,7 @@ constexpr Range kEvery = {0, kCount};
 template <class Real>
 void fill(base::Rng& rng, Real* lanes) {
   for (int i = 0; i < 6; ++i) {
-    lanes[i] = static_cast<Real>(rng.uniform() - 0.5);
+    lanes[i] = static_cast<Real>(random_number(rng));
   }
 }
 
@@ -178,8 +178,7 @@ TEST(Kernels, restriction_is_the_transpose_of_prolongation) {
                        gathered.data(), {0, clusters.cluster_count()});
   all.prolong(clusters.transfer(), c.data(), moved.data(), kEvery);
   const double work = all.dot_same(f.data(), moved.data(), kEvery);
-  const double coarse_work =
-      all.dot_same(gathered.data(), c.data(), {0, clusters.cluster_count()});
+  const double coarse_work = all.dot_same(gathered.data(), c.data(), {0, clusters.cluster_count()});
   EXPECT_GT(std::abs(work), 1);
   // Sums of 600 products of numbers below 3 in single precision.
   EXPECT_NEAR(work, coarse_work, 1e-4);

@@ -9,9 +9,9 @@
 #include <Eigen/Dense>
 #include <cmath>
 
-#include "../src/multigrid/reduced_network.hpp"
+#include "../src/multigrid/beam_shapes.hpp"
 #include "../src/multigrid/weak_springs.hpp"
-#include "holdfast/base/rng.hpp"
+#include "random_numbers.hpp"
 
 namespace holdfast::solver {
 namespace {
@@ -36,7 +36,7 @@ Dense carrying(const Point& a) {
 Mat random_spring(base::Rng& rng) {
   Dense a;
   for (int i = 0; i < 36; ++i) {
-    a(i) = rng.uniform() - 0.5;
+    a(i) = random_number(rng);
   }
   Mat result;
   Eigen::Map<Dense>(result.values.data()) = a * a.transpose() + 0.1 * Dense::Identity();
@@ -44,7 +44,7 @@ Mat random_spring(base::Rng& rng) {
 }
 
 Point random_point(base::Rng& rng) {
-  return {rng.uniform() - 0.5, 3 * rng.uniform(), 1 - rng.uniform()};
+  return {random_number(rng), 2 + 3 * random_number(rng), -2 * random_number(rng)};
 }
 
 /// Largest difference as a share of the largest entry.
@@ -83,8 +83,7 @@ TEST(Springs, a_beams_spring_couples_its_ends_as_k12_does) {
   for (std::size_t direction = 0; direction < 6; ++direction) {
     for (const std::size_t length : {1U, 2U, 7U}) {
       const Spring spring = beam_spring(material, direction, length);
-      const Mat coupled =
-          times_carry(spring.stiffness, solver::difference({}, spring.partner));
+      const Mat coupled = times_carry(spring.stiffness, solver::difference({}, spring.partner));
       const Mat k12 = mechanics::block_12(long_beam(material, static_cast<int>(length)),
                                           static_cast<base::Direction>(direction));
       EXPECT_LT(difference(-dense(coupled), dense(k12)), kRounding);
@@ -108,8 +107,8 @@ TEST(Springs, a_stretched_beam_gives_as_beam_theory_says) {
         return carried(s, {-from.middle[0], -from.middle[1], -from.middle[2]});
       };
       const auto middle_of = [](const Spring& spring) {
-        return dense(carried(spring.stiffness,
-                             {-spring.middle[0], -spring.middle[1], -spring.middle[2]}));
+        return dense(
+            carried(spring.stiffness, {-spring.middle[0], -spring.middle[1], -spring.middle[2]}));
       };
       const Dense found = dense(at_middle(longer)).inverse();
       const Dense shorter = middle_of(from).inverse();
