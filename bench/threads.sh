@@ -14,9 +14,13 @@ turns=${2:-9}
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 
-column() { sort -g "$work/$1" | awk '{ at[NR] = $1 } END { printf "%.3f %.3f", at[1], at[int((NR + 1) / 2)] }'; }
+column() { # PROGRAM: the fastest and the median of its runs
+  sort -g "$work/$1" |
+    awk '{ at[NR] = $1 } END { printf "%.3f %.3f", at[1], at[int((NR + 1) / 2)] }'
+}
 
-printf '%-14s %9s  %-17s %-25s %s\n' structure modules 'ours ms' 'OpenMP ms, ratio' 'oneTBB ms, ratio'
+printf '%-14s %9s  %-17s %-25s %s\n' \
+  structure modules 'ours ms' 'OpenMP ms, ratio' 'oneTBB ms, ratio'
 while read -r family size; do
   rm -f "$work"/*
   for ((turn = 0; turn < turns; ++turn)); do
