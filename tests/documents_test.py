@@ -10,7 +10,7 @@ The documents show what the program does.
 - the figures are those that tools/draw_figures.py draws
 - the rounds, packets and seconds of the scenarios' tables are those of `holdfast simulate`
 
-With --renew outputs without dots, tables and figures are written anew instead; look at the difference.
+With --renew outputs without dots, tables and figures are written anew; look at the difference.
 """
 import json
 import os
