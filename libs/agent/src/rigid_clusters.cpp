@@ -30,7 +30,7 @@ struct Choice {
 };
 
 // A cell is at most 2 kCoordinateMax from the root's, so single precision holds the first number.
-static_assert(8 * 2 * base::kCoordinateMax + Choice::kNoFace < 1 << 24);
+static_assert(8 * 2 * base::kCoordinateMax + Choice::kNoFace < std::int32_t{1} << 24);
 
 base::Vec6<float> encoded(const Choice& choice) {
   return {static_cast<float>(8 * choice.top.x + choice.parent_face),
