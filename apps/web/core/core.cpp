@@ -162,13 +162,16 @@ Reply try_places(const Request& request) {
 
 /// Integers: x, y, z and Kind of each module. Numbers: the material. Cells that are no robot yet
 /// can be opened and mended; cells that the page cannot hold as they are, two modules in one, get
-/// the program's error.
+/// the program's error, and so does what cannot be computed with yet.
 Reply open_text(std::string_view text) {
   const auto read = io::read_document(text);
   if (!read) {
     return failure(read.error());
   }
   const io::Document& document = read.value().document;
+  if (const auto error = io::find_unsupported(document)) {
+    return failure(*error);
+  }
   if (has_double_cell(document)) {
     const auto robot = io::make_robot(document);
     HOLDFAST_CHECK(!robot);
@@ -290,9 +293,9 @@ Reply simulate_request(const Request& request) {
   summary["is_complete"] = log.is_complete();
   summary["ticks_per_second"] = options.link.ticks_per_second;
   Json& orders = summary["orders"] = Json::array();
-  for (int operation = 0; operation <= agent::wire::kOperationCount; ++operation) {
-    const auto [text, is_step] = order_text(static_cast<agent::wire::Operation>(operation));
-    orders.push_back({{"text", text}, {"is_step", is_step}});
+  orders.push_back({{"text", ""}, {"is_step", false}});  // 0 is no operation.
+  for (const agent::OperationInfo& row : agent::kOperations) {
+    orders.push_back({{"text", row.text}, {"is_step", row.is_iteration}});
   }
   return {.text = dump(summary), .integers = log.take_integers(), .numbers = log.take_numbers()};
 }

@@ -3,7 +3,7 @@
 #include "holdfast/agent/agent.hpp"
 
 #include "beams.hpp"
-#include "holdfast/agent/legal.hpp"
+#include "holdfast/agent/messages.hpp"
 
 namespace holdfast::agent {
 namespace {
@@ -24,7 +24,7 @@ Phase phase_of(SpanningTree::Stage stage) {
 }  // namespace
 
 Agent::Agent(const Setup& setup, const Identity& identity)
-    : identity_(identity), ws_(setup, identity) {}
+    : identity_(identity), clock_{.timing = setup.timing}, ws_(setup, identity) {}
 
 // ---- An event comes in.
 
@@ -42,11 +42,10 @@ void Agent::step_part(const Event& event, Actions& actions) {
 }
 
 void Agent::begin(const Event& event, Actions& actions) {
-  now_ = event.now;
+  clock_.now = event.now;
   actions.packet_bytes = 0;
   if (event.kind == EventKind::kLineFree) {
-    actions.packet_bytes =
-        ws_.links.write_packet(event.face, actions.packet, ws_.setup.timing, now_);
+    actions.packet_bytes = ws_.links.write_packet(event.face, actions.packet, clock_);
     return;
   }
   if (event.kind == EventKind::kContinue) {
@@ -57,25 +56,24 @@ void Agent::begin(const Event& event, Actions& actions) {
     go_on();
   }
   handle(event);
-  if (rounds_.restart_at() <= now_) {
+  if (rounds_.restart_at() <= clock_.now) {
     start_round();
   }
-  if (watch_.at() <= now_) {
+  if (watch_.at() <= clock_.now) {
     run_out();
   }
 }
 
 void Agent::handle(const Event& event) {
-  const LinkTiming& timing = ws_.setup.timing;
   switch (event.kind) {
     case EventKind::kStart:
-      watch_.start(timing, now_);
+      watch_.start(clock_);
       if (identity_.is_anchor) {
-        rounds_.leave_until(now_ + timing.acknowledge_after);
+        rounds_.leave_until(clock_.now + clock_.timing.acknowledge_after);
       }
       break;
     case EventKind::kLinkUp:
-      ws_.links.bring_up(event.face, event.random, now_);
+      ws_.links.bring_up(event.face, event.random, clock_.now);
       leave_round();
       break;
     case EventKind::kLinkDown:
@@ -97,8 +95,8 @@ void Agent::handle(const Event& event) {
       receive(event.face, event.bytes);
       break;
     case EventKind::kTime:
-      for (const Direction face : ws_.links.due(now_)) {
-        ws_.links.on_time(face, timing, is_waiting(), now_);
+      for (const Direction face : ws_.links.due(clock_.now)) {
+        ws_.links.on_time(face, clock_, is_waiting());
         notice_change(face);
       }
       break;
@@ -109,7 +107,7 @@ void Agent::handle(const Event& event) {
 }
 
 void Agent::finish_step(Actions& actions) {
-  ws_.links.finish_step(ws_.setup.timing, is_waiting(), now_);
+  ws_.links.finish_step(clock_, is_waiting());
   actions.is_unfinished = is_busy_;
   actions.send_faces = ws_.links.waiting().mask();
   actions.wake_at = ws_.links.deadline();
@@ -126,10 +124,10 @@ bool Agent::is_waiting() const {
 void Agent::receive(Direction face, std::span<const std::uint8_t> packet) {
   Links& links = ws_.links;
   is_busy_ = true;
-  std::span<const std::uint8_t> stream = links.receive(face, packet, ws_.setup.timing, now_);
+  std::span<const std::uint8_t> stream = links.receive(face, packet, clock_);
   for (auto message = links.next_message(face, stream); !message.empty() && links.is_used(face);
        message = links.next_message(face, stream)) {
-    if (!wire::is_legal(message) || !take(face, message)) {
+    if (!is_legal(message) || !take(face, message)) {
       links.refuse(face);
     }
     if (links.take_refusal()) {
@@ -141,8 +139,8 @@ void Agent::receive(Direction face, std::span<const std::uint8_t> packet) {
 
 /// A neighbour that is there and does not answer makes every verdict uncertain.
 void Agent::notice_change(Direction face) {
-  const auto nonce = static_cast<std::uint16_t>(now_ ^ identity_.id ^ 0x5a5aU);
-  if (ws_.links.notice_change(face, nonce, now_)) {
+  const auto nonce = static_cast<std::uint16_t>(clock_.now ^ identity_.id ^ 0x5a5aU);
+  if (ws_.links.notice_change(face, nonce, clock_.now)) {
     leave_round();
   }
 }
@@ -150,13 +148,11 @@ void Agent::notice_change(Direction face) {
 /// False: no working neighbour sends this message now.
 bool Agent::take(Direction face, std::span<const std::uint8_t> message) {
   const auto type = static_cast<MessageType>(message[0]);
-  if (type == MessageType::kJoin || type == MessageType::kEcho) {
-    wire::Reader in(message);
-    const std::uint16_t epoch = in.u16();
-    rounds_.hear(face, {.epoch = epoch, .starter = in.u32()});
-  }
   if (type == MessageType::kJoin) {
-    return take_join(face, message);
+    return take_join(face, decoded<Join>(message));
+  }
+  if (type == MessageType::kEcho) {
+    rounds_.hear(face, decoded<Echo>(message).round);
   }
   const bool is_ours = rounds_.of(face) == rounds_.current();
   if (!is_ours || rounds_.is_left() || ws_.tree.stage() == SpanningTree::Stage::kNone) {
@@ -165,23 +161,23 @@ bool Agent::take(Direction face, std::span<const std::uint8_t> message) {
   if (!expects(face, message)) {
     return false;
   }
-  watch_.keep_waiting(ws_.setup.timing, now_);
+  watch_.keep_waiting(clock_);
   take_expected(face, message);
   return true;
 }
 
-bool Agent::take_join(Direction face, std::span<const std::uint8_t> message) {
-  const Round& round = rounds_.of(face);
-  if (is_newer(round, rounds_.current())) {
-    enter_round(round);
-  } else if (!(round == rounds_.current()) || rounds_.is_left()) {
+bool Agent::take_join(Direction face, const Join& join) {
+  rounds_.hear(face, join.round);
+  if (is_newer(join.round, rounds_.current())) {
+    enter_round(join.round);
+  } else if (!(join.round == rounds_.current()) || rounds_.is_left()) {
     return true;
   }
   const SpanningTree::Stage before = ws_.tree.stage();
-  if (!ws_.tree.take_join(ws_.links, rounds_.current(), face, message, sweep_.has_begun())) {
+  if (!ws_.tree.take_join(ws_.links, face, join, sweep_.has_begun())) {
     return false;
   }
-  watch_.keep_waiting(ws_.setup.timing, now_);
+  watch_.keep_waiting(clock_);
   follow_wave(before);
   return true;
 }
@@ -207,14 +203,14 @@ void Agent::take_expected(Direction face, std::span<const std::uint8_t> message)
   const SpanningTree::Stage before = ws_.tree.stage();
   switch (static_cast<MessageType>(message[0])) {
     case MessageType::kEcho:
-      return ws_.tree.take_echo(ws_.links, round, face, message);
+      return ws_.tree.take_echo(ws_.links, face, decoded<Echo>(message));
     case MessageType::kAppoint:
-      if (ws_.tree.take_appointment(ws_.links, round, message)) {
+      if (ws_.tree.take_appointment(ws_.links, round, decoded<Appointment>(message))) {
         watch_.enter_phase(Phase::kElection);
       }
       return follow_wave(before);
     case MessageType::kMark:
-      ws_.tree.take_mark(ws_.links, round, message);
+      ws_.tree.take_mark(ws_.links, round, decoded<Mark>(message));
       return follow_wave(before);
     case MessageType::kOrder:
       // What goes on behind the last report comes to its end first.
@@ -248,7 +244,7 @@ bool Agent::finish_sweep() {
   if (order.operation == wire::Operation::kVerdict) {
     const bool is_alone = is_root && ws_.tree.children().is_empty();
     const bool is_watched = order.answer.verdict != Verdict::kUndecided && !is_alone;
-    watch_.end_verdict(is_watched, is_root, ws_.setup.timing, now_);
+    watch_.end_verdict(is_watched, is_root, clock_);
     ws_.links.touch_all();
   } else if (is_root) {
     keep_order(conductor_.next(ws_.setup, sum));
@@ -293,7 +289,7 @@ void Agent::keep_order(const Order& order) {
 }
 
 void Agent::take_order(const Order& order) {
-  watch_.begin_order(order.operation, ws_.setup.timing, now_);
+  watch_.begin_order(order.operation, clock_);
   sweep_.take_order(ws_, announcements_, order);
   if (order.operation == wire::Operation::kVerdict) {
     watch_.set_answer(order.answer);
@@ -329,9 +325,9 @@ bool Agent::find_load_ratio(const base::Cell& cell, Direction direction, float& 
 /// in anything; it waits a little, as changes come together.
 void Agent::leave_round() {
   if (epoch() > 0 || !ws_.links.silent().is_empty()) {
-    watch_.leave_round(ws_.setup.timing, now_);
+    watch_.leave_round(clock_);
     abandon_work();
-    rounds_.leave_until(now_ + ws_.setup.timing.acknowledge_after);
+    rounds_.leave_until(clock_.now + clock_.timing.acknowledge_after);
   }
 }
 
@@ -365,7 +361,7 @@ void Agent::enter_round(const Round& round) {
   ws_.planned_exchange.enter();
   ws_.planned.clear();
   ws_.links.drop_unsent();
-  watch_.enter_round(ws_.setup.timing, now_);
+  watch_.enter_round(clock_);
 }
 
 /// A wave has been here: another phase if it was a new one.

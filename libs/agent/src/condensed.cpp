@@ -3,6 +3,7 @@
 #include "condensed.hpp"
 
 #include "displacements.hpp"
+#include "holdfast/agent/messages.hpp"
 #include "scalar.hpp"
 #include "system.hpp"
 
@@ -109,21 +110,19 @@ void pass_condensed(Workspace& ws, const Order& order) {
       leading[j] = static_cast<float>(leading_part(u[j]));
       trailing[j] = static_cast<float>(u[j] - leading_part(u[j]));
     }
-    send_part(ws, k | PlannedExchange::kLeading, leading);
-    send_part(ws, k | PlannedExchange::kTrailing, trailing);
+    send_part(ws, k | kLeadingPart, leading);
+    send_part(ws, k | kTrailingPart, trailing);
   }
 }
 
 void take_condensed(Workspace& ws, std::span<const std::uint8_t> message) {
-  wire::Reader in(message);
-  const std::uint8_t label = in.u8();
-  const base::Vec6<float> part = read_vector(in);
-  const int k = label & PlannedExchange::kIndexMask;
+  const auto [type, label, part] = decoded<LabelledVector>(message);
+  const int k = label & kPlannedIndexMask;
   if (!ws.planned.is_from_above(k)) {
     return;
   }
   Node& node = ws.node(ws.planned.slot_of(k));
-  const bool is_leading = (label & PlannedExchange::kLeading) != 0;
+  const bool is_leading = (label & kLeadingPart) != 0;
   for (std::size_t j = 0; j < 6; ++j) {
     node.u[j] = static_cast<double>(part[j]) + (is_leading ? 0 : node.u[j]);
   }

@@ -46,9 +46,9 @@ void Links::refuse(Direction face) {
 }
 
 std::span<const std::uint8_t> Links::receive(Direction face, std::span<const std::uint8_t> packet,
-                                             const LinkTiming& timing, Time now) {
+                                             const Clock& clock) {
   touched_.add(face);
-  return at(face).receive(packet, timing, now);
+  return at(face).receive(packet, clock.timing, clock.now);
 }
 
 bool Links::notice_change(Direction face, std::uint16_t nonce, Time now) {
@@ -64,10 +64,9 @@ bool Links::notice_change(Direction face, std::uint16_t nonce, Time now) {
   return has_restarted || falls_silent;
 }
 
-int Links::write_packet(Direction face, std::span<std::uint8_t> packet, const LinkTiming& timing,
-                        Time now) {
+int Links::write_packet(Direction face, std::span<std::uint8_t> packet, const Clock& clock) {
   touched_.add(face);
-  return at(face).write_packet(packet, timing, now);
+  return at(face).write_packet(packet, clock.timing, clock.now);
 }
 
 Faces Links::due(Time now) const {
@@ -78,9 +77,9 @@ Faces Links::due(Time now) const {
   return faces;
 }
 
-void Links::on_time(Direction face, const LinkTiming& timing, bool is_watched, Time now) {
+void Links::on_time(Direction face, const Clock& clock, bool is_watched) {
   touched_.add(face);
-  at(face).on_time(timing, is_watched, now);
+  at(face).on_time(clock.timing, is_watched, clock.now);
 }
 
 void Links::drop_unsent() {
@@ -90,10 +89,10 @@ void Links::drop_unsent() {
   touch_all();
 }
 
-void Links::finish_step(const LinkTiming& timing, bool is_watched, Time now) {
+void Links::finish_step(const Clock& clock, bool is_watched) {
   for (const Direction face : touched_) {
-    waiting_.set(face, at(face).has_packet(now));
-    deadline_[static_cast<std::size_t>(face)] = at(face).deadline(timing, is_watched);
+    waiting_.set(face, at(face).has_packet(clock.now));
+    deadline_[static_cast<std::size_t>(face)] = at(face).deadline(clock.timing, is_watched);
   }
   touched_ = {};
 }

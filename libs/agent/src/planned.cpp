@@ -16,7 +16,7 @@ void Planned::add(const base::Cell& cell, const base::Cell& self) {
   own_touching_[i] = {};
   for (const Direction face : base::kDirections) {
     if (base::neighbour(self, face) == cell) {
-      own_touching_[i] = {base::opposite(face)};
+      own_touching_[i] = Faces::only(base::opposite(face));
     }
   }
 }

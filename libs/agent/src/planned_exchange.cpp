@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "holdfast/agent/planned_exchange.hpp"
 
+#include "holdfast/agent/messages.hpp"
 #include "scalar.hpp"
 
 namespace holdfast::agent {
@@ -19,17 +20,16 @@ void PlannedExchange::share(Links& links, Faces children, const Planned& planned
 
 void PlannedExchange::take_down(Links& links, Faces children, const Planned& planned,
                                 std::span<const std::uint8_t> message) {
-  wire::Reader in(message);
-  const int index = in.u8();
-  note_here(index);
-  share(links, children, planned, index, read_vector(in));
+  const auto in = decoded<LabelledVector>(message);
+  note_here(in.label);
+  share(links, children, planned, in.label, in.vector);
 }
 
 void PlannedExchange::send_down(Links& links, Faces children, const Planned& planned,
                                 std::uint8_t label, const base::Vec6<float>& vector) {
   for (const Direction face : children) {
-    if (planned.is_needed_below(face, label & kIndexMask)) {
-      links.send({face}, vector_message(wire::MessageType::kPlannedDown, label, vector));
+    if (planned.is_needed_below(face, label & kPlannedIndexMask)) {
+      links.send(Faces::only(face), vector_message(wire::MessageType::kPlannedDown, label, vector));
     }
   }
 }
@@ -54,9 +54,8 @@ void PlannedExchange::send_up(Links& links, Faces parent, const Planned& planned
 }
 
 bool PlannedExchange::take_up(std::span<const std::uint8_t> message) {
-  wire::Reader in(message);
-  const int index = in.u8();
-  add_force(index, base::converted<double>(read_vector(in)));
+  const auto in = decoded<LabelledVector>(message);
+  add_force(in.label, base::converted<double>(in.vector));
   return awaits_forces() && --forces_awaited_ == 0;
 }
 

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "holdfast/agent/rigid_clusters.hpp"
 
+#include "holdfast/agent/messages.hpp"
 #include "leaves.hpp"
 #include "minimal_residuals.hpp"
 
@@ -29,8 +30,10 @@ struct Choice {
   static constexpr int kNoFace = 7;
 };
 
-// A cell is at most 2 kCoordinateMax from the root's, so single precision holds the first number.
+// A cell is at most twice kCoordinateMax from the root, and all numbers have to be whole ones of
+// binary32.
 static_assert(8 * 2 * base::kCoordinateMax + Choice::kNoFace < std::int32_t{1} << 24);
+static_assert(Choice::kNoFace < 8 && base::kDirectionCount <= Choice::kNoFace);
 
 base::Vec6<float> encoded(const Choice& choice) {
   return {static_cast<float>(8 * choice.top.x + choice.parent_face),
@@ -42,7 +45,7 @@ base::Vec6<float> encoded(const Choice& choice) {
 }
 
 /// Numbers that no choice has are 0: what a vector says is nowhere checked.
-Choice decoded(const base::Vec6<float>& vector) {
+Choice choice_in(const base::Vec6<float>& vector) {
   constexpr float kMost = 16 * base::kCoordinateMax + 8;
   const auto number = [&](std::size_t i) {
     const bool is_good = vector[i] >= -kMost && vector[i] <= kMost;
@@ -172,16 +175,16 @@ bool RigidClusters::choose(Workspace& ws) {
   const base::Cell here = {own.x - root.x, own.y - root.y, own.z - root.z};
   Choice choice{.top = here, .parent_top = here};
   for (const Direction face : ws.tree.nearer()) {
-    const Choice theirs = decoded(ws.exchange.next_vector(face));
+    const Choice theirs = choice_in(ws.exchange.next_vector(face));
     if (may_join(here, theirs.top)) {
       choice = {
           .top = theirs.top, .parent_top = theirs.parent_top, .parent_face = base::index(face)};
-      parent_ = {face};
+      parent_ = Faces::only(face);
       break;
     }
     if (parent_.is_empty()) {
       choice = {.top = here, .parent_top = theirs.top, .parent_face = base::index(face)};
-      parent_ = {face};
+      parent_ = Faces::only(face);
     }
   }
   ws.node(0).vector.sent = encoded(choice);
@@ -192,9 +195,9 @@ bool RigidClusters::choose(Workspace& ws) {
 
 /// All choices are here: who is what.
 void RigidClusters::meet_neighbours(const Workspace& ws) {
-  const Choice own = decoded(ws.node(0).vector.sent);
+  const Choice own = choice_in(ws.node(0).vector.sent);
   for (const Direction face : ws.links.used()) {
-    const Choice theirs = decoded(ws.exchange.vector(face));
+    const Choice theirs = choice_in(ws.exchange.vector(face));
     const bool is_child = theirs.parent_face == base::index(base::opposite(face));
     const bool is_member = theirs.top == own.top;
     if (is_child) {
@@ -247,16 +250,16 @@ void RigidClusters::send_parts(Workspace& ws, const Cluster::Parts& parts) const
 
 void RigidClusters::take_part(const Order& order, Direction face,
                               std::span<const std::uint8_t> message) {
-  wire::Reader in(message);
-  const int part = in.u8() - Branch::kColumnCount;
+  const auto in = decoded<LabelledVector>(message);
+  const int part = in.label - Branch::kColumnCount;
   if (part < 0 || part >= Branch::kPartCount) {
     return;
   }
   if (order.operation == Operation::kStep) {
-    cluster_.add_stiffness(part, read_vector(in));
+    cluster_.add_stiffness(part, in.vector);
     return;
   }
-  cluster_.add_to_joint(part, read_vector(in));
+  cluster_.add_to_joint(part, in.vector);
   if (part + 1 == Branch::kPartCount) {
     awaited_.set(face, !awaited_.has(face));
   }
@@ -264,11 +267,11 @@ void RigidClusters::take_part(const Order& order, Direction face,
 
 /// A child's load: all that comes from it.
 void RigidClusters::take_load(Direction face, std::span<const std::uint8_t> message) {
-  wire::Reader in(message);
-  if (in.u8() == kHeld) {
+  const auto in = decoded<LabelledVector>(message);
+  if (in.label == kHeld) {
     cluster_.hold();
   }
-  cluster_.add_load(base::converted<double>(read_vector(in)));
+  cluster_.add_load(base::converted<double>(in.vector));
   awaited_.remove(face);
 }
 
@@ -336,9 +339,9 @@ bool RigidClusters::send_load(Workspace& ws) {
 }
 
 void RigidClusters::take_shift(Workspace& ws, std::span<const std::uint8_t> message) {
-  wire::Reader in(message);
-  if (in.u8() == 0 && piece_ == Piece::kShift) {
-    ws.node(0).vector.shift = read_vector(in);
+  const auto in = decoded<LabelledVector>(message);
+  if (in.label == 0 && piece_ == Piece::kShift) {
+    ws.node(0).vector.shift = in.vector;
     is_shift_here_ = true;
   }
 }

@@ -7,20 +7,7 @@
 namespace holdfast::agent {
 namespace {
 
-using wire::MessageType;
-using wire::Reader;
-using wire::Writer;
-
-/// Joins and echoes begin with the type and the round.
-constexpr std::size_t kRoundBytes = 7;
-
-Writer wave_message(MessageType type, const Round& round, SpanningTree::Stage stage) {
-  Writer message(type);
-  message.u16(round.epoch);
-  message.u32(round.starter);
-  message.u8(static_cast<std::uint8_t>(stage));
-  return message;
-}
+std::uint8_t number_of(SpanningTree::Stage stage) { return static_cast<std::uint8_t>(stage); }
 
 }  // namespace
 
@@ -46,58 +33,50 @@ void SpanningTree::begin_stage(Links& links, const Round& round, Stage stage, Fa
   has_returned_ = false;
   census_ = {.count = 1, .hops = hops, .id = id_, .is_anyone_silent = !links.silent().is_empty()};
   awaited_ = links.used() - parent;
-  Writer join = wave_message(MessageType::kJoin, round, stage);
-  join.cell(stage == Stage::kFirst ? cell_ : root_cell_);
-  join.u16(hops);
-  links.send(awaited_, join);
+  links.send(awaited_, encode(Join{.round = round,
+                                   .wave = number_of(stage),
+                                   .cell = stage == Stage::kFirst ? cell_ : root_cell_,
+                                   .hops = hops}));
   await_less(links, round, {});
 }
 
-bool SpanningTree::take_join(Links& links, const Round& round, Direction face,
-                             std::span<const std::uint8_t> message, bool is_in_use) {
-  Reader in(message, kRoundBytes);
-  const auto stage = static_cast<Stage>(in.u8());
-  const base::Cell theirs = in.cell();
+bool SpanningTree::take_join(Links& links, Direction face, const Join& join, bool is_in_use) {
+  const auto stage = static_cast<Stage>(join.wave);
   // 65,535 stands for all that is further: too large (feet.hpp).
-  const std::uint16_t theirs_hops = in.u16();
-  const auto hops = static_cast<std::uint16_t>(theirs_hops + (theirs_hops > kExtentMax ? 0 : 1));
+  const auto hops = static_cast<std::uint16_t>(join.hops + (join.hops > kExtentMax ? 0 : 1));
   const bool is_next = stage > stage_;
   if (is_next && (static_cast<int>(stage) > static_cast<int>(stage_) + 1 || is_in_use)) {
     return false;  // A wave has been left out, or the tree is in use.
   }
   if (is_next) {
     if (stage == Stage::kFirst) {
-      cell_ = base::neighbour(theirs, base::opposite(face));
+      cell_ = base::neighbour(join.cell, base::opposite(face));
       has_cell_ = true;
     } else {
-      root_cell_ = theirs;
+      root_cell_ = join.cell;
     }
-    begin_stage(links, round, stage, {face}, hops);
+    begin_stage(links, join.round, stage, Faces::only(face), hops);
   } else if (stage == stage_) {
     if (hops <= hops_) {
       nearer_.add(face);
     }
-    await_less(links, round, {face});
+    await_less(links, join.round, Faces::only(face));
   }
   return true;
 }
 
-void SpanningTree::take_echo(Links& links, const Round& round, Direction face,
-                             std::span<const std::uint8_t> message) {
-  Reader in(message, kRoundBytes);
-  if (static_cast<Stage>(in.u8()) != stage_) {
+void SpanningTree::take_echo(Links& links, Direction face, const Echo& echo) {
+  if (echo.wave != number_of(stage_)) {
     return;
   }
-  census_.count += in.u32();
-  const std::uint16_t hops = in.u16();
-  const std::uint32_t id = in.u32();
-  if (hops > census_.hops || (hops == census_.hops && id < census_.id)) {
-    census_.hops = hops;
-    census_.id = id;
+  census_.count += echo.count;
+  if (echo.hops > census_.hops || (echo.hops == census_.hops && echo.id < census_.id)) {
+    census_.hops = echo.hops;
+    census_.id = echo.id;
   }
-  census_.is_anyone_silent = in.u8() != 0 || census_.is_anyone_silent;
+  census_.is_anyone_silent = echo.is_anyone_silent != 0 || census_.is_anyone_silent;
   children_.add(face);
-  await_less(links, round, {face});
+  await_less(links, echo.round, Faces::only(face));
 }
 
 /// These neighbours less to wait for; when none is left the wave has come back.
@@ -117,12 +96,13 @@ void SpanningTree::await_less(Links& links, const Round& round, Faces faces) {
 }
 
 void SpanningTree::send_echo(Links& links, const Round& round) const {
-  Writer echo = wave_message(MessageType::kEcho, round, stage_);
-  echo.u32(census_.count);
-  echo.u16(census_.hops);
-  echo.u32(census_.id);
-  echo.u8(census_.is_anyone_silent ? 1 : 0);
-  links.send(parent_, echo);
+  const std::uint8_t is_anyone_silent = census_.is_anyone_silent ? 1 : 0;
+  links.send(parent_, encode(Echo{.round = round,
+                                  .wave = number_of(stage_),
+                                  .count = census_.count,
+                                  .hops = census_.hops,
+                                  .id = census_.id,
+                                  .is_anyone_silent = is_anyone_silent}));
 }
 
 bool SpanningTree::take_return() {
@@ -132,11 +112,10 @@ bool SpanningTree::take_return() {
 }
 
 void SpanningTree::appoint(Links& links, const Round& round) {
-  Writer appointment(MessageType::kAppoint);
-  appointment.u8(static_cast<std::uint8_t>(stage_));
-  appointment.u32(census_.id);
-  appointment.u16(static_cast<std::uint16_t>(census_.hops / 2));
-  take_appointment(links, round, appointment.bytes());
+  take_appointment(links, round,
+                   {.wave = number_of(stage_),
+                    .id = census_.id,
+                    .hops = static_cast<std::uint16_t>(census_.hops / 2)});
 }
 
 /// One of an earlier stage is late: the next wave was here before it.
@@ -151,24 +130,16 @@ bool SpanningTree::expects_mark(Direction face, bool is_in_use) const {
 }
 
 bool SpanningTree::take_appointment(Links& links, const Round& round,
-                                    std::span<const std::uint8_t> message) {
-  Reader in(message);
-  const auto stage = static_cast<Stage>(in.u8());
-  const std::uint32_t id = in.u32();
-  const std::uint16_t hops = in.u16();
-  if (stage != stage_) {
+                                    const Appointment& appointment) {
+  if (appointment.wave != number_of(stage_)) {
     return false;
   }
-  if (id != id_) {
-    Writer onward(MessageType::kAppoint);
-    onward.u8(static_cast<std::uint8_t>(stage));
-    onward.u32(id);
-    onward.u16(hops);
-    links.send(children_, onward);
-  } else if (stage == Stage::kFirst) {
+  if (appointment.id != id_) {
+    links.send(children_, encode(appointment));
+  } else if (stage_ == Stage::kFirst) {
     start_wave(links, round, Stage::kFar);
   } else {
-    mark(links, round, hops, cell_);
+    take_mark(links, round, {.hops = appointment.hops, .sender = cell_});
   }
   return true;
 }
@@ -186,30 +157,20 @@ Faces SpanningTree::towards_root(const base::Cell& end) const {
     const std::int64_t square = x * x + y * y + z * z;
     if (square < least) {
       least = square;
-      best = {face};
+      best = Faces::only(face);
     }
   }
   return best;
 }
 
-void SpanningTree::take_mark(Links& links, const Round& round,
-                             std::span<const std::uint8_t> message) {
-  Reader in(message);
-  const std::uint16_t hops = in.u16();
-  mark(links, round, hops, in.cell());
-}
-
-/// So many hops more to the middle of the way from `end` to the wave's root.
-void SpanningTree::mark(Links& links, const Round& round, std::uint16_t hops,
-                        const base::Cell& end) {
-  if (hops == 0 || is_root()) {
+/// So many hops more to the middle of the way from the sender to the wave's root.
+void SpanningTree::take_mark(Links& links, const Round& round, const Mark& mark) {
+  if (mark.hops == 0 || is_root()) {
     start_wave(links, round, Stage::kTree);
     return;
   }
-  Writer onward(MessageType::kMark);
-  onward.u16(static_cast<std::uint16_t>(hops - 1));
-  onward.cell(end);
-  links.send(towards_root(end), onward);
+  const auto hops = static_cast<std::uint16_t>(mark.hops - 1);
+  links.send(towards_root(mark.sender), encode(Mark{.hops = hops, .sender = mark.sender}));
 }
 
 }  // namespace holdfast::agent

@@ -124,22 +124,6 @@ Report loads_report(Workspace& ws) {
 
 }  // namespace
 
-bool is_survey(Operation operation) {
-  switch (operation) {
-    case Operation::kPlan:
-    case Operation::kForget:
-    case Operation::kHosts:
-    case Operation::kMass:
-    case Operation::kAngles:
-    case Operation::kCorners:
-    case Operation::kLoads:
-    case Operation::kVerdict:
-      return true;
-    default:
-      return false;
-  }
-}
-
 void begin_survey(Workspace& ws, Announcements& announcements, const Order& order) {
   switch (order.operation) {
     case Operation::kPlan:

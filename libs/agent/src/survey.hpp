@@ -3,7 +3,7 @@
 #pragma once
 
 #include "holdfast/agent/announcements.hpp"
-#include "holdfast/agent/order.hpp"
+#include "holdfast/agent/operations.hpp"
 #include "holdfast/agent/workspace.hpp"
 
 /// The orders before and after an equilibrium: who is there, what is planned, does it topple, what
@@ -11,7 +11,9 @@
 namespace holdfast::agent {
 
 /// Is the operation one of these?
-bool is_survey(wire::Operation operation);
+inline bool is_survey(wire::Operation operation) {
+  return phase_of(operation) != Phase::kEquilibrium;
+}
 
 /// The order has come.
 void begin_survey(Workspace& ws, Announcements& announcements, const Order& order);

@@ -2,8 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "holdfast/agent/sweep.hpp"
 
-#include "exchange_plan.hpp"
 #include "holdfast/agent/feet.hpp"
+#include "holdfast/agent/messages.hpp"
+#include "holdfast/agent/operations.hpp"
 #include "method.hpp"
 #include "survey.hpp"
 
@@ -12,6 +13,11 @@ namespace {
 
 using wire::MessageType;
 using wire::Operation;
+
+/// Of orders with exchanges. Displacements of a kTreeStep have to be found first, and clusters.
+bool starts_at_once(Operation operation) {
+  return operation != Operation::kTreeStep && operation != Operation::kClusters;
+}
 
 /// Where an order leads; what it must not lead to has been refused before.
 Course course_after(const Order& order, Course course) {
@@ -125,9 +131,8 @@ bool Sweep::expects(const Workspace& ws, Direction face, Message message) const 
       return ws.reports.awaits(face) && message[1] == static_cast<std::uint8_t>(order_.operation);
     case MessageType::kPlannedDown: {
       // Parts are those of condensed modules.
-      const bool is_part = message[1] > PlannedExchange::kIndexMask;
-      return ws.tree.is_led_by(face) &&
-             (message[1] & PlannedExchange::kIndexMask) < ws.planned.count() &&
+      const bool is_part = message[1] > kPlannedIndexMask;
+      return ws.tree.is_led_by(face) && (message[1] & kPlannedIndexMask) < ws.planned.count() &&
              (!is_part || (own != nullptr && own->take_condensed != nullptr));
     }
     case MessageType::kPlannedUp:
@@ -148,14 +153,13 @@ void Sweep::take_order(Workspace& ws, Announcements& announcements, const Order&
   is_under_way_ = true;
   announcements.finish_forgetting();
   ws.reports.await(ws.tree.children());
-  const ExchangePlan plan = plan_of(order);
-  ws.exchange.plan(plan.count, plan.behind);
+  ws.exchange.plan(exchange_count(order), exchanges_behind(order));
   ws.links.send(ws.tree.children(), encode(order));
   if (is_survey(order.operation)) {
     begin_survey(ws, announcements, order);
   }
   begin_method(ws, order);
-  if (plan.count > 0 && plan.starts_at_once) {
+  if (ws.exchange.left() > 0 && starts_at_once(order.operation)) {
     ws.start_exchange(planned_part(ws));
   }
 }
@@ -188,7 +192,7 @@ void Sweep::take(Workspace& ws, Direction face, Message message) {
 }
 
 void Sweep::take_planned_down(Workspace& ws, Message message) {
-  if (message[1] > PlannedExchange::kIndexMask) {
+  if (message[1] > kPlannedIndexMask) {
     method()->take_condensed(ws, message);
   } else {
     ws.planned_exchange.take_down(ws.links, ws.tree.children(), ws.planned, message);

@@ -4,6 +4,7 @@
 
 #include "beams.hpp"
 #include "displacements.hpp"
+#include "holdfast/agent/messages.hpp"
 #include "leaves.hpp"
 
 namespace holdfast::agent {
@@ -164,19 +165,13 @@ std::uint8_t TreeElimination::survey_loops(Workspace& ws) {
   }
   for (int i = 0; i < branch_.open_count(); ++i) {
     const Cut& cut = branch_.cut(branch_.open_slot(i));
-    wire::Writer message(MessageType::kLoop);
-    message.cell(cut.cell);
-    message.u8(static_cast<std::uint8_t>(cut.direction));
-    ws.links.send(ws.tree.parent(), message);
+    ws.links.send(ws.tree.parent(), encode(cut));
   }
   return 0;
 }
 
 void TreeElimination::take_loop(Direction face, std::span<const std::uint8_t> message) {
-  wire::Reader in(message);
-  Cut& cut = child_cuts_[at(face)][child_cut_count_[at(face)]++];
-  cut.cell = in.cell();
-  cut.direction = static_cast<Direction>(in.u8());
+  decode(message, child_cuts_[at(face)][child_cut_count_[at(face)]++]);
 }
 
 // ---- Stiffness.
@@ -300,16 +295,16 @@ bool TreeElimination::do_symmetry(const Workspace& ws) {
 }
 
 void TreeElimination::take_column(Direction face, std::span<const std::uint8_t> message) {
-  wire::Reader in(message);
-  const int index = in.u8();
+  const auto in = decoded<LabelledVector>(message);
+  const int index = in.label;
   const int part = index - Branch::kColumnCount;
   std::uint8_t& here = columns_here_[at(face)];
   if (part < 0) {
     is_symmetric_ = is_symmetric_ && index >= kStiffnessColumns;
-    branch_.add_column(index, slot_of_[at(face)], read_vector(in));
+    branch_.add_column(index, slot_of_[at(face)], in.vector);
     here = static_cast<std::uint8_t>(index + 1);
   } else {
-    branch_.add_part(part, read_vector(in));
+    branch_.add_part(part, in.vector);
     here = part + 1 == Branch::kPartCount ? std::uint8_t{kStiffnessColumns} : here;
   }
 }
@@ -445,21 +440,21 @@ void TreeElimination::send_leaf_load(Workspace& ws, const Leaves& leaves, int le
 }
 
 void TreeElimination::take_up(Direction face, std::span<const std::uint8_t> message) {
-  wire::Reader in(message);
-  const int index = in.u8();
+  const auto in = decoded<LabelledVector>(message);
+  const int index = in.label;
   base::Vec6<double>& into = index == 0 ? load_.load : load_.gap[slot_of_[at(face)][at(index - 1)]];
-  base::add_to(into, base::converted<double>(read_vector(in)));
+  base::add_to(into, base::converted<double>(in.vector));
 }
 
 // ---- Displacements.
 
 void TreeElimination::take_down(Workspace& ws, std::span<const std::uint8_t> message) {
-  wire::Reader in(message);
-  const int index = in.u8();
+  const auto in = decoded<LabelledVector>(message);
+  const int index = in.label;
   if (index == 0) {
-    ws.node(0).vector.shift = read_vector(in);  // The parent's shift.
+    ws.node(0).vector.shift = in.vector;  // The parent's shift.
   } else {
-    forces_[at(branch_.open_slot(index - 1))] = read_vector(in);
+    forces_[at(branch_.open_slot(index - 1))] = in.vector;
   }
   if (--down_awaited_ == 0) {
     begin_piece(Piece::kShift);
@@ -522,9 +517,9 @@ void TreeElimination::find_leaf_shift(Workspace& ws, const Leaves& leaves, int l
 
 void TreeElimination::send_down(Workspace& ws) {
   for (const Direction face : ws.tree.children()) {
-    ws.links.send({face}, vector_message(MessageType::kBranchDown, 0, ws.node(0).vector.shift));
+    ws.links.send(Faces::only(face), vector_message(MessageType::kBranchDown, 0, ws.node(0).vector.shift));
     for (std::size_t i = 0; i < child_cut_count_[at(face)]; ++i) {
-      ws.links.send({face},
+      ws.links.send(Faces::only(face),
                     vector_message(MessageType::kBranchDown, static_cast<std::uint8_t>(1 + i),
                                    forces_[slot_of_[at(face)][i]]));
     }

@@ -33,67 +33,47 @@ static_assert(2 * 6 * kDegreeMax < kMessagesMax);
 
 }  // namespace
 
-Phase phase_of(wire::Operation operation) {
-  using wire::Operation;
-  switch (operation) {
-    case Operation::kPlan:
-    case Operation::kForget:
-    case Operation::kHosts:
-    case Operation::kMass:
-      return Phase::kMass;
-    case Operation::kAngles:
-      return Phase::kSimplified;
-    case Operation::kCorners:
-      return Phase::kModel;
-    case Operation::kLoads:
-    case Operation::kVerdict:
-      return Phase::kOverload;
-    default:
-      return Phase::kEquilibrium;
-  }
-}
-
 Time Watch::verdict_time(const LinkTiming& timing) const {
   return timing.ping_after + lost_after(timing) + 2 * Time{wave_time_};
 }
 
-void Watch::start(const LinkTiming& timing, Time now) { at_ = now + silence(timing); }
+void Watch::start(const Clock& clock) { at_ = clock.now + silence(clock.timing); }
 
-void Watch::leave_round(const LinkTiming& timing, Time now) {
+void Watch::leave_round(const Clock& clock) {
   phase_ = Phase::kDiscovery;
-  forget_answer(timing, now);
+  forget_answer(clock);
 }
 
-void Watch::enter_round(const LinkTiming& timing, Time now) {
+void Watch::enter_round(const Clock& clock) {
   phase_ = Phase::kCoordinates;
-  wave_time_ = static_cast<std::uint32_t>(now);
+  wave_time_ = static_cast<std::uint32_t>(clock.now);
   rounds_without_end_ = static_cast<std::uint8_t>(
       rounds_without_end_ + (rounds_without_end_ < kRoundsWithoutEndMax ? 1 : 0));
-  forget_answer(timing, now);
+  forget_answer(clock);
 }
 
-void Watch::forget_answer(const LinkTiming& timing, Time now) {
+void Watch::forget_answer(const Clock& clock) {
   answer_ = {};
   messages_heard_ = 0;
   orders_heard_ = 0;
   if (rounds_without_end_ == kRoundsWithoutEndMax) {
     answer_ = {.verdict = Verdict::kUndecided, .reason = Reason::kNoAnswer};
   }
-  keep_waiting(timing, now);
+  keep_waiting(clock);
 }
 
-void Watch::keep_waiting(const LinkTiming& timing, Time now) {
+void Watch::keep_waiting(const Clock& clock) {
   if (answer_.verdict == Verdict::kNone && messages_heard_ < kMessagesMax) {
     ++messages_heard_;
-    const Time quiet = silence(timing);
-    at_ = now +
+    const Time quiet = silence(clock.timing);
+    at_ = clock.now +
           (phase_ <= Phase::kTree ? kWaveSilences * quiet : quiet + kWavesPerSilence * wave_time_);
   }
 }
 
-void Watch::begin_order(wire::Operation operation, const LinkTiming& timing, Time now) {
+void Watch::begin_order(wire::Operation operation, const Clock& clock) {
   if (phase_ <= Phase::kTree) {
-    wave_time_ = static_cast<std::uint32_t>(now) - wave_time_;
+    wave_time_ = static_cast<std::uint32_t>(clock.now) - wave_time_;
   }
   const bool is_verdict = operation == wire::Operation::kVerdict;
   if (!is_verdict || phase_ != Phase::kDone) {
@@ -101,20 +81,20 @@ void Watch::begin_order(wire::Operation operation, const LinkTiming& timing, Tim
   }
   if (is_verdict) {
     rounds_without_end_ = 0;
-    at_ = now + verdict_time(timing);
+    at_ = clock.now + verdict_time(clock.timing);
   } else if (orders_heard_ < kOrdersMax) {
     ++orders_heard_;
     messages_heard_ = 0;
-    keep_waiting(timing, now);
+    keep_waiting(clock);
   }
 }
 
-void Watch::end_verdict(bool is_watched, bool is_root, const LinkTiming& timing, Time now) {
+void Watch::end_verdict(bool is_watched, bool is_root, const Clock& clock) {
   phase_ = Phase::kDone;
   if (!is_watched) {
     at_ = kNever;
   } else if (is_root) {
-    at_ = now + timing.ping_after;
+    at_ = clock.now + clock.timing.ping_after;
   }
 }
 

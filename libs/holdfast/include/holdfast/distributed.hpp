@@ -5,8 +5,9 @@
 #include <functional>
 #include <string>
 
-#include "holdfast/holdfast.hpp"
-#include "holdfast/sim/simulation.hpp"
+#include "holdfast/agent/agent.hpp"     // IWYU pragma: export
+#include "holdfast/holdfast.hpp"        // IWYU pragma: export
+#include "holdfast/sim/simulation.hpp"  // IWYU pragma: export
 
 /// The facade's second half: the robot works its verdict out by itself, in simulation.
 ///
@@ -71,7 +72,7 @@ std::string report_text(const Structure& structure, const CheckResult& exact,
 /// The robot in the colours of its own load ratios.
 std::string picture_svg(const Structure& structure, const DistributedRun& run);
 
-/// The same word for a verdict of the robot.
+/// The word that the exact answer has for a verdict of the robot.
 verdict::Verdict to_verdict(agent::Verdict verdict);
 
 /// "jacobi", "block-jacobi", "cg", and back.

@@ -152,7 +152,7 @@ class Agent {
 
   /// For how long a verdict stands that the root does not say again. W being the time that the
   /// waves of the last round took here: ping_after + lost_after(timing) + 2 W.
-  Time watch_time() const { return watch_.verdict_time(ws_.setup.timing); }
+  Time watch_time() const { return watch_.verdict_time(clock_.timing); }
 
   /// Plans and withdrawals that this module was told of and that have not ended. Who keeps them
   /// over a restart hands them in again, kRecall.
@@ -168,7 +168,7 @@ class Agent {
   void finish_step(Actions& actions);
   void receive(Direction face, std::span<const std::uint8_t> packet);
   bool take(Direction face, std::span<const std::uint8_t> message);
-  bool take_join(Direction face, std::span<const std::uint8_t> message);
+  bool take_join(Direction face, const Join& join);
   bool expects(Direction face, std::span<const std::uint8_t> message) const;
   void take_expected(Direction face, std::span<const std::uint8_t> message);
   void notice_change(Direction face);
@@ -193,7 +193,7 @@ class Agent {
   bool is_waiting() const;
 
   Identity identity_;
-  Time now_ = 0;
+  Clock clock_;
   bool is_busy_ = false;         ///< There may be something to go on with.
   bool has_next_order_ = false;  ///< Of the root, or one that has to wait.
   Rounds rounds_;

@@ -11,12 +11,6 @@
 
 namespace holdfast::agent {
 
-/// A message of six reals behind a label.
-wire::Writer vector_message(wire::MessageType type, std::uint8_t label,
-                            const base::Vec6<float>& vector);
-
-base::Vec6<float> read_vector(wire::Reader& in);
-
 /// Exchanges of six reals between all neighbours, as many as an order asks for.
 ///
 /// A neighbour nearer to the root may be one exchange ahead, never two: its next vector depends on

@@ -16,6 +16,12 @@ namespace holdfast::agent {
 using base::Direction;
 using base::Faces;
 
+/// What a module knows of time in a step.
+struct Clock {
+  const LinkTiming& timing;
+  Time now = 0;
+};
+
 class Links {
  public:
   Links() { deadline_.fill(kNever); }
@@ -50,7 +56,7 @@ class Links {
 
   /// Takes in a packet; next_message() takes the stream that it returns apart (see Link).
   std::span<const std::uint8_t> receive(Direction face, std::span<const std::uint8_t> packet,
-                                        const LinkTiming& timing, Time now);
+                                        const Clock& clock);
 
   std::span<const std::uint8_t> next_message(Direction face,
                                              std::span<const std::uint8_t>& stream) {
@@ -61,12 +67,11 @@ class Links {
   /// with `nonce`.
   bool notice_change(Direction face, std::uint16_t nonce, Time now);
 
-  int write_packet(Direction face, std::span<std::uint8_t> packet, const LinkTiming& timing,
-                   Time now);
+  int write_packet(Direction face, std::span<std::uint8_t> packet, const Clock& clock);
 
   /// Faces whose link has to be looked after now: hand them to on_time().
   Faces due(Time now) const;
-  void on_time(Direction face, const LinkTiming& timing, bool is_watched, Time now);
+  void on_time(Direction face, const Clock& clock, bool is_watched);
 
   void drop_unsent();
 
@@ -74,7 +79,7 @@ class Links {
   void touch_all() { touched_ = Faces::all(); }
 
   /// At the end of a step: finds out which links have a packet to send, and their deadlines.
-  void finish_step(const LinkTiming& timing, bool is_watched, Time now);
+  void finish_step(const Clock& clock, bool is_watched);
 
   /// Faces on which a packet waits, as finish_step() has found.
   Faces waiting() const { return waiting_; }

@@ -23,12 +23,6 @@ enum class PlannedPart : std::uint8_t {
 /// forces on them come up to their hosts.
 class PlannedExchange {
  public:
-  /// In the label of `planned down`: the index, and with condensed modules which part of a
-  /// displacement it is.
-  static constexpr std::uint8_t kIndexMask = 0x3f;
-  static constexpr std::uint8_t kLeading = 0x40;
-  static constexpr std::uint8_t kTrailing = 0x80;
-
   /// A round begins.
   void enter();
 
@@ -43,7 +37,7 @@ class PlannedExchange {
   void take_down(Links& links, Faces children, const Planned& planned,
                  std::span<const std::uint8_t> message);
 
-  /// Hands a vector on to children that need those of planned module `label` & kIndexMask.
+  /// Hands a vector on to children that need those of planned module `label` & kPlannedIndexMask.
   static void send_down(Links& links, Faces children, const Planned& planned, std::uint8_t label,
                         const base::Vec6<float>& vector);
 

@@ -6,6 +6,7 @@
 #include <span>
 
 #include "holdfast/agent/links.hpp"
+#include "holdfast/agent/messages.hpp"
 #include "holdfast/agent/round.hpp"
 #include "holdfast/base/cell.hpp"
 
@@ -96,13 +97,11 @@ class SpanningTree {
   bool expects_mark(Direction face, bool is_in_use) const;
 
   /// A join of the present round. False: a working neighbour would not have sent it.
-  [[nodiscard]] bool take_join(Links& links, const Round& round, Direction face,
-                               std::span<const std::uint8_t> message, bool is_in_use);
-  void take_echo(Links& links, const Round& round, Direction face,
-                 std::span<const std::uint8_t> message);
+  [[nodiscard]] bool take_join(Links& links, Direction face, const Join& join, bool is_in_use);
+  void take_echo(Links& links, Direction face, const Echo& echo);
   /// Returns false if it came too late: the next wave was here before it.
-  bool take_appointment(Links& links, const Round& round, std::span<const std::uint8_t> message);
-  void take_mark(Links& links, const Round& round, std::span<const std::uint8_t> message);
+  bool take_appointment(Links& links, const Round& round, const Appointment& appointment);
+  void take_mark(Links& links, const Round& round, const Mark& mark);
 
   /// Has the wave come back to this module, where it started? Says so once.
   bool take_return();
@@ -114,7 +113,6 @@ class SpanningTree {
   void begin_stage(Links& links, const Round& round, Stage stage, Faces parent, std::uint16_t hops);
   void await_less(Links& links, const Round& round, Faces faces);
   void send_echo(Links& links, const Round& round) const;
-  void mark(Links& links, const Round& round, std::uint16_t hops, const base::Cell& end);
   Faces towards_root(const base::Cell& end) const;
 
   std::uint32_t id_;

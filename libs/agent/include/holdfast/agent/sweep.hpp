@@ -19,8 +19,9 @@ struct MethodTable;
 
 /// A method's own data; a robot's equilibrium uses one method at a time.
 union MethodState {
-  MethodState() : elimination() {}
+  MethodState() : none() {}
 
+  std::uint8_t none;
   TreeElimination elimination;
   PolynomialSteps steps;
   RigidClusters clusters;

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "holdfast/agent/link.hpp"
-#include "holdfast/agent/order.hpp"
+#include "holdfast/agent/links.hpp"
+#include "holdfast/agent/operations.hpp"
 
 /// The one clock of a module that ends every wait. When it runs out the module says `undecided`;
 /// nothing else changes, so that a clock that was too short does no harm: what comes later counts
@@ -27,23 +27,6 @@
 ///   hear none; it reports nothing, so the root gives none.
 namespace holdfast::agent {
 
-/// What a module is busy with; its messages are counted under this.
-enum class Phase : std::uint8_t {
-  kDiscovery,
-  kCoordinates,
-  kElection,
-  kTree,
-  kMass,
-  kSimplified,
-  kEquilibrium,
-  kModel,
-  kOverload,
-  kDone,
-};
-
-/// The phase that an order belongs to.
-Phase phase_of(wire::Operation operation);
-
 /// What a module waits for and how long yet, and the answer that ends its waiting.
 class Watch {
  public:
@@ -59,24 +42,24 @@ class Watch {
   /// For how long a verdict stands that the root does not say again.
   Time verdict_time(const LinkTiming& timing) const;
 
-  void start(const LinkTiming& timing, Time now);
+  void start(const Clock& clock);
 
   /// What was true of the robot is so no longer.
-  void leave_round(const LinkTiming& timing, Time now);
-  void enter_round(const LinkTiming& timing, Time now);
+  void leave_round(const Clock& clock);
+  void enter_round(const Clock& clock);
 
   void enter_phase(Phase phase) { phase_ = phase; }
 
   void set_answer(const Answer& answer) { answer_ = answer; }
 
   /// Something of this module's round has come.
-  void keep_waiting(const LinkTiming& timing, Time now);
+  void keep_waiting(const Clock& clock);
 
   /// An order has come. One that says the verdict again leaves the phase as it is.
-  void begin_order(wire::Operation operation, const LinkTiming& timing, Time now);
+  void begin_order(wire::Operation operation, const Clock& clock);
 
   /// The sweep of a verdict is over here. `is_watched`: it is to be said again.
-  void end_verdict(bool is_watched, bool is_root, const LinkTiming& timing, Time now);
+  void end_verdict(bool is_watched, bool is_root, const Clock& clock);
 
   /// There is nothing to wait for.
   void stop() { at_ = kNever; }
@@ -85,7 +68,7 @@ class Watch {
   void give_up(bool has_cell);
 
  private:
-  void forget_answer(const LinkTiming& timing, Time now);
+  void forget_answer(const Clock& clock);
 
   Time at_ = kNever;
   /// How long the waves took; before they are over, when the round began. Modulo 2^32.

@@ -9,7 +9,7 @@
 /// The USARTs follow the port numbers of Blinky Blocks 2: front 0 is USART1, bottom 1 USART2, right
 /// 2, left 3, back 4, top 5. The pins are ours, as its schematics are not public: all of them exist
 /// on the package of 48 pins; change them here.
-namespace holdfast::stm32f0 {
+namespace holdfast::boards::stm32f0 {
 
 struct Line {
   std::uint32_t usart;  ///< Base address.
@@ -22,7 +22,7 @@ struct Line {
   std::uint8_t dma_receive;
 };
 
-/// By face: +x right, -x left, +y back, -y front, +z top, -z bottom.
+/// The line of each face: +x right, -x left, +y back, -y front, +z top, -z bottom.
 inline constexpr std::array<Line, 6> kLines = {{
     {0x40004800, 10, 1, 10, 11, 4, 0x17, 0x15},  // USART3
     {0x40004C00, 11, 0, 0, 1, 4, 0x21, 0x16},    // USART4
@@ -36,4 +36,4 @@ inline constexpr std::array<Line, 6> kLines = {{
 inline constexpr std::uint32_t kClockHz = 48'000'000;
 inline constexpr std::uint32_t kBaudDivisor = (kClockHz + 57'600) / 115'200;
 
-}  // namespace holdfast::stm32f0
+}  // namespace holdfast::boards::stm32f0
