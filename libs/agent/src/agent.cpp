@@ -182,6 +182,14 @@ bool Agent::take_join(Direction face, const Join& join) {
   return true;
 }
 
+/// What a neighbour may say at this moment.
+///
+/// A message that is legal by itself can still be one that no working program sends now: an order
+/// from a child, a column of a loop that nobody has told of, a step before there is an equilibrium.
+/// Taking it would work on memory that belongs to another method. Such a message, and one that
+/// is_legal() refuses, has no effect but two: it is counted, and the neighbour, whose faults are
+/// now known, counts as silent. Leaving it out alone would not do: a sum without it could make a
+/// robot `safe` that is not.
 bool Agent::expects(Direction face, std::span<const std::uint8_t> message) const {
   switch (static_cast<MessageType>(message[0])) {
     case MessageType::kEcho:

@@ -517,7 +517,8 @@ void TreeElimination::find_leaf_shift(Workspace& ws, const Leaves& leaves, int l
 
 void TreeElimination::send_down(Workspace& ws) {
   for (const Direction face : ws.tree.children()) {
-    ws.links.send(Faces::only(face), vector_message(MessageType::kBranchDown, 0, ws.node(0).vector.shift));
+    ws.links.send(Faces::only(face),
+                  vector_message(MessageType::kBranchDown, 0, ws.node(0).vector.shift));
     for (std::size_t i = 0; i < child_cut_count_[at(face)]; ++i) {
       ws.links.send(Faces::only(face),
                     vector_message(MessageType::kBranchDown, static_cast<std::uint8_t>(1 + i),

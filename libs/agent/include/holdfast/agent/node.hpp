@@ -85,7 +85,7 @@ struct SearchDirection {
   base::Vec6<double> z;
 };
 
-/// One module's vectors of minimal residuals (src/steps.cpp).
+/// One module's vectors of minimal residuals (src/minimal_residuals.hpp).
 struct Steps {
   base::Vec6<double> w;  ///< What the polynomial leaves of the residual.
   SearchDirection older;
