@@ -298,12 +298,12 @@ const char* what_is_proved(ContactModel model) {
 }
 
 /// Of an assessment that stands the first reason is about the loads, and all others stay true.
-void take_loads(const model::Robot& robot, const Proof& proof, bool is_changed,
+void take_loads(const model::Robot& robot, const Proof& proof, bool is_changed, int thread_count,
                 Assessment& assessment) {
   assessment.equilibrium.displacement = proof.displacement;
   assessment.equilibrium.displacement_low = proof.displacement_low;
   assessment.equilibrium.alternative = proof.displacement;
-  Assessment fresh = verdict::assess_equilibrium(robot, assessment.equilibrium);
+  Assessment fresh = verdict::assess_equilibrium(robot, assessment.equilibrium, thread_count);
   assessment.connections = std::move(fresh.connections);
   assessment.load_ratio_max = fresh.load_ratio_max;
   assessment.worst = fresh.worst;
@@ -318,7 +318,8 @@ void take_loads(const model::Robot& robot, const Proof& proof, bool is_changed,
 
 }  // namespace
 
-void apply(const model::Robot& robot, const Proof& proof, Assessment& assessment) {
+void apply(const model::Robot& robot, const Proof& proof, Assessment& assessment,
+           int thread_count) {
   const certificate::Verification& found = proof.verification;
   if (assessment.verdict == verdict::Verdict::kUnstable) {
     return;
@@ -335,7 +336,7 @@ void apply(const model::Robot& robot, const Proof& proof, Assessment& assessment
         found.is_proved ? "the robot stands, but not by more than rounding" : found.reason)};
     return;
   }
-  take_loads(robot, proof, is_changed, assessment);
+  take_loads(robot, proof, is_changed, thread_count, assessment);
   assessment.load_ratio_range = {.low = found.ratio_low, .high = found.ratio_high};
   assessment.reasons.emplace_back(what_is_proved(assessment.contact_model));
 }

@@ -481,12 +481,13 @@ Assessment assess(const model::Robot& robot, const solver::EquilibriumOptions& o
   return assessment;
 }
 
-Assessment assess_equilibrium(const model::Robot& robot, Equilibrium equilibrium) {
+Assessment assess_equilibrium(const model::Robot& robot, Equilibrium equilibrium,
+                              int thread_count) {
   Assessment assessment = begin(robot);
   assessment.equilibrium = std::move(equilibrium);
   assessment.model = model_stability(robot, assessment.equilibrium);
   assessment.contact_model = contact_model(robot, assessment.equilibrium.law);
-  return conclude(robot, std::move(assessment), {});
+  return conclude(robot, std::move(assessment), {.thread_count = thread_count, .progress = {}});
 }
 
 const char* name(Verdict verdict) {

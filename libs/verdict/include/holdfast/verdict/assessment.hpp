@@ -99,7 +99,8 @@ inline bool breaks(double load_ratio) { return load_ratio >= 1 - kLoadRatioTie; 
 Assessment assess(const model::Robot& robot, const solver::EquilibriumOptions& options = {});
 
 /// Assesses a robot whose equilibrium is already there, whoever found it.
-Assessment assess_equilibrium(const model::Robot& robot, solver::Equilibrium equilibrium);
+Assessment assess_equilibrium(const model::Robot& robot, solver::Equilibrium equilibrium,
+                              int thread_count = 0);
 
 /// "safe", "overload", "unstable", "undecided".
 const char* name(Verdict verdict);
