@@ -15,15 +15,13 @@ namespace {
 /// Events between two calls of the progress function: well below a second.
 constexpr std::uint64_t kSliceEvents = 200'000;
 
-std::string robot_reason(const sim::SimulationResult& result) {
+verdict::Reason robot_reason(const sim::SimulationResult& result) {
   if (result.answer.verdict == agent::Verdict::kNone) {
-    return "the modules came to no verdict";
+    return {.code = verdict::ReasonCode::kNoVerdictOfTheRobot};
   }
-  std::string text = std::string("the robot's own verdict: ") + agent::name(result.answer.reason);
-  if (!result.all_agree) {
-    text += "; not every module knows it";
-  }
-  return text;
+  return {.code = verdict::ReasonCode::kVerdictOfTheRobot,
+          .numbers = {result.all_agree ? 1.0 : 0.0},
+          .quoted = agent::name(result.answer.reason)};
 }
 
 /// The load ratio that the module holds which owns the connection: an existing one knows those of
