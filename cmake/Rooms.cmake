@@ -10,22 +10,33 @@ function(holdfast_same_bits target)
     -ffp-contract=off $<$<CXX_COMPILER_ID:GNU>:-fno-tree-slp-vectorize>)
 endfunction()
 
-# holdfast_room(NAME HEADERS ... SOURCES ... [LINKS ...] [PRIVATE_LINKS ...])
-# A static library holdfast_NAME, alias holdfast::NAME. HEADERS are below include/holdfast/NAME/;
-# that each of them compiles alone is checked by the target all_verify_interface_header_sets.
+# holdfast_room(NAME HEADERS ... [SOURCES ...] [LINKS ...] [PRIVATE_LINKS ...])
+# A static library holdfast_NAME, alias holdfast::NAME; without SOURCES only its headers. HEADERS are
+# below include/holdfast/NAME/; that each of them compiles alone is checked by the target
+# all_verify_interface_header_sets.
 function(holdfast_room name)
   cmake_parse_arguments(ROOM "" "" "HEADERS;SOURCES;LINKS;PRIVATE_LINKS" ${ARGN})
   set(target holdfast_${name})
   list(TRANSFORM ROOM_HEADERS PREPEND include/holdfast/${name}/)
-  add_library(${target} STATIC ${ROOM_SOURCES})
+  set_property(GLOBAL APPEND PROPERTY HOLDFAST_ROOMS ${name})
+  set(kind STATIC)
+  set(scope PUBLIC)
+  if(NOT ROOM_SOURCES)
+    set(kind INTERFACE)
+    set(scope INTERFACE)
+  endif()
+  add_library(${target} ${kind} ${ROOM_SOURCES})
   add_library(holdfast::${name} ALIAS ${target})
-  target_sources(${target} PUBLIC FILE_SET HEADERS BASE_DIRS include FILES ${ROOM_HEADERS})
-  target_include_directories(${target} PRIVATE src)
-  target_compile_features(${target} PUBLIC cxx_std_20)
-  holdfast_same_bits(${target})
-  target_link_libraries(${target} PUBLIC ${ROOM_LINKS} PRIVATE ${ROOM_PRIVATE_LINKS})
+  target_sources(${target} ${scope} FILE_SET HEADERS BASE_DIRS include FILES ${ROOM_HEADERS})
+  target_compile_features(${target} ${scope} cxx_std_20)
+  target_link_libraries(${target} ${scope} ${ROOM_LINKS})
   set_target_properties(${target} PROPERTIES
     VERIFY_INTERFACE_HEADER_SETS ${HOLDFAST_BUILD_TESTS})
+  if(ROOM_SOURCES)
+    target_include_directories(${target} PRIVATE src)
+    target_link_libraries(${target} PRIVATE ${ROOM_PRIVATE_LINKS})
+    holdfast_same_bits(${target})
+  endif()
 endfunction()
 
 # Freestanding rooms run on a microcontroller.

@@ -4,10 +4,12 @@
 """tidy.py ROOT   checks what STYLE.md says and a script can check; prints every breach, exits 1.
 
 - a room includes only itself and the rooms that its CMakeLists.txt links (include direction)
+- applications include only the facade, and name only the rooms that it exports
 - files stop at 800 lines, lines at 100 characters; functions stop at 70 lines
 - every source begins with the two SPDX lines; every header has #pragma once
 - every room has a README.md of 10 to 40 lines
 - no tab, no trailing blank, no path of a machine, no TODO without an issue number
+- a link from one document leads to a file that is there, and to a heading that is there
 """
 import pathlib
 import re
@@ -19,8 +21,8 @@ SPDX = ['SPDX-FileCopyrightText: The holdfast authors', 'SPDX-License-Identifier
 FILE_LINES_MAX = 800
 FUNCTION_LINES_MAX = 70
 COLUMNS_MAX = 100
-FREESTANDING = {'base', 'mechanics', 'agent', 'module'}
-FACADE_HEADERS = {'holdfast', 'distributed', 'emulated'}
+FREESTANDING = {'base', 'boards', 'mechanics', 'agent', 'module'}
+FACADE_HEADERS = {'holdfast', 'distributed', 'emulated', 'trial'}
 HOSTED_HEADERS = {'string', 'vector', 'map', 'set', 'memory', 'iostream', 'fstream', 'variant',
                   'cstdio', 'cstdlib', 'functional', 'stdexcept'}
 # base is freestanding but for what says in its first lines that it is for hosts.
@@ -53,6 +55,25 @@ def room_links(root):
     return {room: closure(room) for room in direct}
 
 
+def facade_exports(root):
+    """The rooms whose headers the facade's headers export."""
+    exported = set()
+    for header in FACADE_HEADERS:
+        text = (root / f'libs/holdfast/include/holdfast/{header}.hpp').read_text()
+        exported |= set(re.findall(r'holdfast/(\w+)/\w+\.hpp" *// IWYU pragma: export', text))
+    return exported
+
+
+def check_named_rooms(name, lines, links, exported):
+    if not name.startswith(('apps/', 'examples/')) or name.startswith('apps/checker/'):
+        return
+    for number, line in enumerate(lines, 1):
+        for room in re.findall(r'(?<![\w:])(?:holdfast::|hf::)?(\w+)::', line.split('//')[0]):
+            if room in links and room not in exported | {'holdfast'}:
+                fault(name, number, f'{room} is not exported by the facade, which exports '
+                                    f'{sorted(exported)}')
+
+
 def check_includes(name, lines, links):
     match = re.match(r'libs/(\w+)/(include|src)/', name)
     allowed = links[match[1]] if match else None
@@ -70,7 +91,7 @@ def check_includes(name, lines, links):
         elif (include and name.startswith(('apps/', 'examples/'))
                 and include[1] not in FACADE_HEADERS):
             fault(name, number, 'applications include only the facade, holdfast/holdfast.hpp, '
-                                'distributed.hpp and emulated.hpp')
+                                'trial.hpp, distributed.hpp and emulated.hpp')
         system = re.match(r'#include <(\w+)>', line)
         if (match and match[1] in FREESTANDING and name not in HOSTED_FILES and system
                 and system[1] in HOSTED_HEADERS):
@@ -101,7 +122,7 @@ def check_text(name, lines):
             fault(name, number, 'TODO without an issue number')
 
 
-def check_source(name, lines, links):
+def check_source(name, lines, links, exported):
     if [line[3:] for line in lines[:2]] != SPDX:
         fault(name, 1, 'the first two lines are not the SPDX notice')
     if name.endswith('.hpp') and '#pragma once' not in lines:
@@ -109,6 +130,7 @@ def check_source(name, lines, links):
     if len(lines) > FILE_LINES_MAX:
         fault(name, len(lines), f'{len(lines)} lines, allowed are {FILE_LINES_MAX}')
     check_includes(name, lines, links)
+    check_named_rooms(name, lines, links, exported)
     check_functions(name, lines)
 
 
@@ -120,17 +142,39 @@ def check_room_readmes(root):
             fault(readme.relative_to(root), 1, f'{count} lines, a room has a README of 10 to 40')
 
 
+def anchors_of(path):
+    """As forges make them from headings: small letters, blanks as dashes, no other signs."""
+    headings = re.findall(r'^#+ (.*)$', path.read_text(), re.M)
+    return {re.sub(r'[^\w -]', '', heading.lower()).replace(' ', '-') for heading in headings}
+
+
+def check_links(root, name, lines):
+    for number, line in enumerate(lines, 1):
+        for link in re.findall(r'\]\(([^)\s]+)\)', line):
+            if re.match(r'[a-z]+:', link):
+                continue
+            file, _, anchor = link.partition('#')
+            target = (root / name).parent / file if file else root / name
+            if not target.exists():
+                fault(name, number, f'nothing is at {link}')
+            elif anchor and anchor not in anchors_of(target):
+                fault(name, number, f'no heading makes #{anchor}')
+
+
 def main():
     root = pathlib.Path(sys.argv[1]).resolve()
     links = room_links(root)
+    exported = facade_exports(root)
     for name in tracked_files(root):
         path = root / name
         if path.suffix in SOURCE_SUFFIXES:
             lines = path.read_text().splitlines()
-            check_source(name, lines, links)
+            check_source(name, lines, links, exported)
             check_text(name, lines)
         elif path.suffix in {'.py', '.sh', '.cmake'} or path.name == 'CMakeLists.txt':
             check_text(name, path.read_text().splitlines())
+        elif path.suffix == '.md':
+            check_links(root, name, path.read_text().splitlines())
     check_room_readmes(root)
     print('\n'.join(faults) if faults else 'tidy: no breach')
     sys.exit(1 if faults else 0)

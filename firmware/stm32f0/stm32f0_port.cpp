@@ -2,12 +2,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "stm32f0_port.hpp"
 
-#include "board.hpp"
+#include "holdfast/boards/stm32f0.hpp"
 #include "registers.hpp"
 
 namespace holdfast::stm32f0 {
 namespace {
 
+using boards::stm32f0::kBaudDivisor;
+using boards::stm32f0::kClockHz;
+using boards::stm32f0::kLines;
+using boards::stm32f0::Line;
 using module::Time;
 
 constexpr std::uint32_t kEnable = 1U << 0U;  // Of DMA channels, timers, the ADC.

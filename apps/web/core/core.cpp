@@ -278,6 +278,13 @@ sim::SimulationOptions simulation_options(const RequestHeader& header) {
   return options;
 }
 
+void write_order(io::JsonStream& json, const char* text, bool is_step) {
+  json.begin_object();
+  json.member("text", text);
+  json.member("is_step", is_step);
+  json.end_object();
+}
+
 /// What a report says of a simulation, and what the page needs besides to play it.
 std::string simulation_summary(const DistributedRun& run, bool is_complete) {
   std::string text;
@@ -289,12 +296,9 @@ std::string simulation_summary(const DistributedRun& run, bool is_complete) {
   json.member("ticks_per_second", run.link.ticks_per_second);
   json.key("orders");
   json.begin_array();
-  for (int operation = 0; operation <= agent::wire::kOperationCount; ++operation) {
-    const auto [words, is_step] = order_text(static_cast<agent::wire::Operation>(operation));
-    json.begin_object();
-    json.member("text", words);
-    json.member("is_step", is_step);
-    json.end_object();
+  write_order(json, "", false);  // 0 is no operation.
+  for (const agent::OperationInfo& row : agent::kOperations) {
+    write_order(json, row.text, row.is_iteration);
   }
   json.end_array();
   json.end_object();

@@ -45,52 +45,6 @@ bool has_operation(std::uint8_t type) {
 
 }  // namespace
 
-OrderText order_text(wire::Operation operation) {
-  switch (operation) {
-    case wire::Operation::kPlan:
-      return {"planned cells"};
-    case wire::Operation::kHosts:
-      return {"who hosts planned modules"};
-    case wire::Operation::kMass:
-      return {"centre of mass"};
-    case wire::Operation::kAngles:
-      return {"safe angles"};
-    case wire::Operation::kBegin:
-      return {"begin an equilibrium"};
-    case wire::Operation::kHigh:
-      return {"move, exchange displacements"};
-    case wire::Operation::kLow:
-      return {"residual, contact states"};
-    case wire::Operation::kStart:
-      return {"begin a linear solve"};
-    case wire::Operation::kGradient:
-      return {"a step of conjugate gradients", true};
-    case wire::Operation::kJacobi:
-      return {"steps of Jacobi's method", true};
-    case wire::Operation::kSlope:
-      return {"slope of the energy"};
-    case wire::Operation::kHold:
-      return {"release and hold facets"};
-    case wire::Operation::kCorners:
-      return {"support corners"};
-    case wire::Operation::kLoads:
-      return {"the worst connection"};
-    case wire::Operation::kVerdict:
-      return {"know the verdict"};
-    case wire::Operation::kFactor:
-      return {"condense the branches"};
-    case wire::Operation::kStep:
-      return {"a step: move, residual, sums", true};
-    case wire::Operation::kTreeStep:
-      return {"a step: move, residual", true};
-    case wire::Operation::kClusters:
-      return {"begin an equilibrium, find rigid clusters"};
-    case wire::Operation::kForget:
-      return {"forget a plan that has ended"};
-  }
-  return {""};
-}
-
 PacketLog::Told PacketLog::read_payload(Stream& stream, std::span<const std::uint8_t> payload) {
   Told told{.meaning = stream.meaning};
   bool is_told = stream.bytes_left > 0 || stream.first != 0;

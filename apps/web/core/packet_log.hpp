@@ -26,14 +26,6 @@ enum class LogEvent : std::int32_t {
 /// it.
 enum class PacketMeaning : std::int32_t { kLink, kWave, kOrder, kReport, kVector, kPlanned };
 
-/// An order of the root in words; and whether it is a step of the linear method.
-struct OrderText {
-  const char* text;
-  bool is_step = false;
-};
-
-OrderText order_text(agent::wire::Operation operation);
-
 /// Follows the streams of messages in the packets of every link, to tell what they are.
 class PacketLog : public sim::TraceSink {
  public:

@@ -25,8 +25,7 @@ Mat6<double> beam_block(const Setup& setup, std::uint8_t faces) {
   return block;
 }
 
-template <class Real>
-Vec6<double> position_along(const Node<Real>& node, const Vec6<Real>& g, double t) {
+Vec6<double> position_along(const Node& node, const Vec6<float>& g, double t) {
   Vec6<double> u = node.u;
   for (std::size_t i = 0; i < 6; ++i) {
     u[i] += t * static_cast<double>(g[i]);
@@ -48,8 +47,7 @@ void prepare(Setup& setup) {
                                     .torsion = static_cast<float>(section.torsion)});
 }
 
-template <class Real>
-void reset(Node<Real>& node) {
+void reset(Node& node) {
   node.is_held = true;
   node.was_released = false;
   node.state = {.pressed = node.is_ground};
@@ -58,27 +56,25 @@ void reset(Node<Real>& node) {
   node.force = {};
 }
 
-template <class Real>
-Gradients<Real> gradients_at_rest(const Node<Real>& node, const Setup& setup) {
-  Gradients<Real> rest{};
+Gradients gradients_at_rest(const Node& node, const Setup& setup) {
+  Gradients rest{};
   if (!node.is_fixed) {
-    rest.r[2] = static_cast<Real>(-setup.weight_n);
+    rest.r[2] = static_cast<float>(-setup.weight_n);
   }
   rest.r_start = rest.r;
   return rest;
 }
 
-template <class Real>
-void factor_diagonal(Node<Real>& node, const Setup& setup, const ContactSetting& contact,
+void factor_diagonal(Node& node, const Setup& setup, const ContactSetting& contact,
                      std::uint8_t faces) {
   Mat6<double> block = beam_block(setup, faces);
   if (node.is_ground) {
     base::add_to(block, mechanics::symmetric_tangent(contact.facet, node.state, node.is_held));
   }
-  Triangle<Real>& factor = node.factor;
+  Triangle& factor = node.factor;
   for (int row = 0; row < 6; ++row) {
     for (int column = 0; column <= row; ++column) {
-      auto sum = static_cast<Real>(block.at(row, column));
+      auto sum = static_cast<float>(block.at(row, column));
       for (int k = 0; k < column; ++k) {
         sum -= factor[at(row, k)] * factor[at(column, k)];
       }
@@ -87,9 +83,8 @@ void factor_diagonal(Node<Real>& node, const Setup& setup, const ContactSetting&
   }
 }
 
-template <class Real>
-Mat6<double> diagonal_block(const Node<Real>& node, const Setup& setup,
-                            const ContactSetting& contact, std::uint8_t faces) {
+Mat6<double> diagonal_block(const Node& node, const Setup& setup, const ContactSetting& contact,
+                            std::uint8_t faces) {
   Mat6<double> block = beam_block(setup, faces);
   if (node.is_ground) {
     base::add_to(block, mechanics::contact_tangent(contact.facet, node.state, node.is_held));
@@ -97,32 +92,30 @@ Mat6<double> diagonal_block(const Node<Real>& node, const Setup& setup,
   return block;
 }
 
-template <class Real>
-Vec6<Real> scalar_diagonal(const Node<Real>& node, const Setup& setup,
-                           const ContactSetting& contact, std::uint8_t faces) {
+Vec6<float> scalar_diagonal(const Node& node, const Setup& setup, const ContactSetting& contact,
+                            std::uint8_t faces) {
   const Mat6<double> block = diagonal_block(node, setup, contact, faces);
-  Vec6<Real> diagonal{};
+  Vec6<float> diagonal{};
   for (int i = 0; i < 6; ++i) {
-    diagonal[static_cast<std::size_t>(i)] = static_cast<Real>(block.at(i, i));
+    diagonal[static_cast<std::size_t>(i)] = static_cast<float>(block.at(i, i));
   }
   return diagonal;
 }
 
-template <class Real>
-Vec6<Real> solve_diagonal(const Node<Real>& node, Vec6<Real> vector) {
+Vec6<float> solve_diagonal(const Node& node, Vec6<float> vector) {
   if (node.is_fixed) {
     return {};
   }
-  const Triangle<Real>& factor = node.factor;
+  const Triangle& factor = node.factor;
   for (int row = 0; row < 6; ++row) {
-    Real& value = vector[static_cast<std::size_t>(row)];
+    float& value = vector[static_cast<std::size_t>(row)];
     for (int k = 0; k < row; ++k) {
       value -= factor[at(row, k)] * vector[static_cast<std::size_t>(k)];
     }
     value /= factor[at(row, row)];
   }
   for (int row = 5; row >= 0; --row) {
-    Real& value = vector[static_cast<std::size_t>(row)];
+    float& value = vector[static_cast<std::size_t>(row)];
     for (int k = row + 1; k < 6; ++k) {
       value -= factor[at(k, row)] * vector[static_cast<std::size_t>(k)];
     }
@@ -131,8 +124,7 @@ Vec6<Real> solve_diagonal(const Node<Real>& node, Vec6<Real> vector) {
   return vector;
 }
 
-template <class Real>
-Vec6<double> residual(const Node<Real>& node, const Setup& setup, const ContactSetting& contact) {
+Vec6<double> residual(const Node& node, const Setup& setup, const ContactSetting& contact) {
   Vec6<double> rest{};
   if (node.is_fixed) {
     return rest;
@@ -148,9 +140,8 @@ Vec6<double> residual(const Node<Real>& node, const Setup& setup, const ContactS
   return rest;
 }
 
-template <class Real>
-mechanics::ContactState state_along(const Node<Real>& node, const ContactSetting& contact,
-                                    const Vec6<Real>& g, double t) {
+mechanics::ContactState state_along(const Node& node, const ContactSetting& contact,
+                                    const Vec6<float>& g, double t) {
   if (!node.is_ground) {
     return {.pressed = false};
   }
@@ -158,9 +149,8 @@ mechanics::ContactState state_along(const Node<Real>& node, const ContactSetting
       contact.facet, mechanics::trial_force(contact.facet, position_along(node, g, t)));
 }
 
-template <class Real>
-Vec6<double> facet_force_along(const Node<Real>& node, const ContactSetting& contact,
-                               const Vec6<Real>& g, double t) {
+Vec6<double> facet_force_along(const Node& node, const ContactSetting& contact,
+                               const Vec6<float>& g, double t) {
   if (!node.is_ground) {
     return {};
   }
@@ -168,8 +158,8 @@ Vec6<double> facet_force_along(const Node<Real>& node, const ContactSetting& con
                                   position_along(node, g, t));
 }
 
-template <class Real>
-double ratio_error(const Vec6<Real>& residual, const Setup& setup, const ContactSetting& contact) {
+double ratio_error(const Vec6<double>& residual, const Setup& setup,
+                   const ContactSetting& contact) {
   double force = 0;
   double torque = 0;
   for (std::size_t i = 0; i < 3; ++i) {
@@ -181,24 +171,5 @@ double ratio_error(const Vec6<Real>& residual, const Setup& setup, const Contact
                               : setup.strength_lateral_n;
   return (2 * (torque + force * contact.lever_mm) / setup.facet_mm + force) / strength;
 }
-
-#define HOLDFAST_INSTANTIATE(Real)                                                               \
-  template void reset(Node<Real>&);                                                              \
-  template Gradients<Real> gradients_at_rest(const Node<Real>&, const Setup&);                   \
-  template void factor_diagonal(Node<Real>&, const Setup&, const ContactSetting&, std::uint8_t); \
-  template Mat6<double> diagonal_block(const Node<Real>&, const Setup&, const ContactSetting&,   \
-                                       std::uint8_t);                                            \
-  template Vec6<Real> scalar_diagonal(const Node<Real>&, const Setup&, const ContactSetting&,    \
-                                      std::uint8_t);                                             \
-  template Vec6<Real> solve_diagonal(const Node<Real>&, Vec6<Real>);                             \
-  template Vec6<double> residual(const Node<Real>&, const Setup&, const ContactSetting&);        \
-  template Vec6<double> facet_force_along(const Node<Real>&, const ContactSetting&,              \
-                                          const Vec6<Real>&, double);                            \
-  template mechanics::ContactState state_along(const Node<Real>&, const ContactSetting&,         \
-                                               const Vec6<Real>&, double);                       \
-  template double ratio_error(const Vec6<Real>&, const Setup&, const ContactSetting&);
-
-HOLDFAST_INSTANTIATE(float)
-HOLDFAST_INSTANTIATE(double)
 
 }  // namespace holdfast::agent

@@ -4,6 +4,7 @@
 
 #include <bit>
 
+#include "holdfast/agent/operations.hpp"
 #include "holdfast/base/check.hpp"
 
 namespace holdfast::agent::wire {
@@ -33,11 +34,8 @@ constexpr ChecksumTables checksum_tables() {
 constexpr std::array<std::uint8_t, 14> kMessageBytes = {0,  19, 19, 8,  12, 0,  0,
                                                         26, 26, 26, 11, 26, 26, 26};
 
-/// Sizes of orders and reports by operation.
-constexpr std::array<std::uint8_t, kOperationCount + 1> kOrderBytes = {
-    0, 12, 10, 11, 14, 13, 10, 3, 4, 11, 4, 11, 3, 2, 2, 18, 2, 17, 2, 13, 12};
-constexpr std::array<std::uint8_t, kOperationCount + 1> kReportBytes = {
-    0, 13, 3, 17, 19, 2, 2, 17, 12, 12, 6, 22, 10, 21, 24, 6, 2, 41, 17, 10, 13};
+constexpr auto kOrderBytes = column(&OperationInfo::order_bytes);
+constexpr auto kReportBytes = column(&OperationInfo::report_bytes);
 
 }  // namespace
 

@@ -127,21 +127,6 @@ TEST(Agent, every_method_finds_the_same) {
   }
 }
 
-TEST(Agent, the_double_of_the_program_finds_the_same) {
-  // BasicAgent<double> is used on hosts only: alone, as the network is made of Agents.
-  const auto setup = table_setup();
-  BasicAgent<double> agent(setup, {.id = 1, .is_fixed = true, .is_anchor = true});
-  Actions actions;
-  Event event;
-  event.kind = EventKind::kStart;
-  agent.step(event, actions);
-  event.kind = EventKind::kTime;
-  event.now = actions.wake_at;
-  agent.step(event, actions);
-  EXPECT_EQ(agent.phase(), Phase::kDone);
-  EXPECT_EQ(actions.send_faces, 0);
-}
-
 /// The weight beyond the edge of the only foot: centre of mass at 0.75 of a pitch.
 TEST(Agent, a_robot_that_topples_is_unstable) {
   const auto setup = table_setup();

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cstring>
 
-#include "board.hpp"
 #include "holdfast/base/check.hpp"
+#include "holdfast/boards/stm32f0.hpp"
 #include "module_cpu.hpp"
 
 namespace holdfast::emulator {
@@ -19,12 +19,12 @@ constexpr Time kReadTime = 10'000;
 /// is missed after 250 ms.
 constexpr Time kNoticeTime = 300'000;
 
-constexpr Cycles kByteCycles = Cycles{10} * stm32f0::kBaudDivisor;
+constexpr Cycles kByteCycles = Cycles{10} * boards::stm32f0::kBaudDivisor;
 
 Cycles cycles(Time time) { return time * kCyclesPerMicrosecond; }
 
 /// USART1 is 0.
-int usart_of(int face) { return stm32f0::kLines[static_cast<std::size_t>(face)].code - 8; }
+int usart_of(int face) { return boards::stm32f0::kLines[static_cast<std::size_t>(face)].code - 8; }
 
 int face_of(int usart) {
   int face = 0;
@@ -74,9 +74,9 @@ std::vector<std::uint8_t> frame_of(const sim::Announcement& announcement) {
 }  // namespace
 
 /// All modules and the lines between them.
-class Robot {
+class EmulatedModules {
  public:
-  Robot(const Image& image, const model::Robot& robot, const EmulationOptions& options);
+  EmulatedModules(const Image& image, const model::Robot& robot, const EmulationOptions& options);
 
   bool run_for(Time duration);
   sim::SimulationResult result() const;
@@ -112,7 +112,8 @@ class Robot {
   Time noticed_at_ = 0;  ///< When the last fault so far has changed what modules show.
 };
 
-Robot::Robot(const Image& image, const model::Robot& robot, const EmulationOptions& options)
+EmulatedModules::EmulatedModules(const Image& image, const model::Robot& robot,
+                                 const EmulationOptions& options)
     : image_(image),
       robot_(robot),
       options_(options),
@@ -137,13 +138,13 @@ Robot::Robot(const Image& image, const model::Robot& robot, const EmulationOptio
   announce();
 }
 
-std::int32_t Robot::neighbour(std::int32_t module, int face) const {
+std::int32_t EmulatedModules::neighbour(std::int32_t module, int face) const {
   const std::int32_t other = robot_.neighbours()[at(module)][static_cast<std::size_t>(face)];
   return other < count() ? other : model::Robot::kNoNeighbour;
 }
 
 /// From outside, byte by byte, on a face that is free for good.
-void Robot::announce() {
+void EmulatedModules::announce() {
   std::vector<sim::Announcement> all = options_.announcements;
   for (std::size_t i = modules_.size(); options_.tells_planned && i < robot_.modules().size();
        ++i) {
@@ -167,7 +168,7 @@ void Robot::announce() {
   planned_at_ = time / kCyclesPerMicrosecond;
 }
 
-bool Robot::run_for(Time duration) {
+bool EmulatedModules::run_for(Time duration) {
   const Cycles until = now_ + cycles(duration);
   const Cycles end = cycles(options_.time_max);
   while (now_ < std::min(until, end)) {
@@ -188,7 +189,7 @@ bool Robot::run_for(Time duration) {
 }
 
 /// Nothing that is sent from `begin` on arrives within a byte's time.
-void Robot::run_slice(Cycles begin) {
+void EmulatedModules::run_slice(Cycles begin) {
   const Cycles end = begin + kByteCycles;
   for (const auto& module : modules_) {
     module->run(end);
@@ -199,7 +200,7 @@ void Robot::run_slice(Cycles begin) {
   now_ = end;
 }
 
-void Robot::hand_over(std::int32_t module) {
+void EmulatedModules::hand_over(std::int32_t module) {
   for (const Sent& sent : modules_[at(module)]->take_sent()) {
     const int face = face_of(sent.usart);
     const std::int32_t other = neighbour(module, face);
@@ -220,11 +221,11 @@ void Robot::hand_over(std::int32_t module) {
   }
 }
 
-bool Robot::is_cut(std::int32_t module, int face) const {
+bool EmulatedModules::is_cut(std::int32_t module, int face) const {
   return (cut_faces_[at(module)] >> static_cast<unsigned>(face) & 1U) != 0;
 }
 
-void Robot::make_fault(const Fault& fault) {
+void EmulatedModules::make_fault(const Fault& fault) {
   noticed_at_ = fault.at + kNoticeTime;
   const int face = base::index(fault.face);
   const auto cut = [&](std::int32_t module, int at_face) {
@@ -252,7 +253,7 @@ void Robot::make_fault(const Fault& fault) {
 }
 
 /// Does everybody alive know the verdict, with all plans and after all faults?
-bool Robot::is_settled() const {
+bool EmulatedModules::is_settled() const {
   if (now_ <= cycles(planned_at_ + kReadTime) || now_ < cycles(options_.time_min) ||
       next_fault_ < options_.faults.size() || now_ <= cycles(noticed_at_)) {
     return false;
@@ -262,7 +263,7 @@ bool Robot::is_settled() const {
   });
 }
 
-ModuleView Robot::view(std::int32_t module) const {
+ModuleView EmulatedModules::view(std::int32_t module) const {
   const ModuleCpu& cpu = *modules_[at(module)];
   const module::Status status = cpu.status();
   return {.answer = {.verdict = status.verdict,
@@ -275,7 +276,7 @@ ModuleView Robot::view(std::int32_t module) const {
           .is_alive = cpu.is_alive()};
 }
 
-sim::SimulationResult Robot::result() const {
+sim::SimulationResult EmulatedModules::result() const {
   sim::SimulationResult result;
   result.time = now_ / kCyclesPerMicrosecond;
   result.is_quiet = is_settled();
@@ -324,7 +325,7 @@ sim::SimulationResult Robot::result() const {
   return result;
 }
 
-FirmwareReport Robot::report() const {
+FirmwareReport EmulatedModules::report() const {
   FirmwareReport report;
   report.flash_bytes = image_.flash_bytes;
   report.ram_bytes = image_.ram_bytes;
@@ -380,25 +381,25 @@ std::optional<std::string> find_options_fault(const model::Robot& robot,
 Emulation::Emulation(const Image& image, const model::Robot& robot,
                      const EmulationOptions& options) {
   HOLDFAST_CHECK(!find_options_fault(robot, options));
-  robot_ = std::make_unique<Robot>(image, robot, options);
+  modules_ = std::make_unique<EmulatedModules>(image, robot, options);
 }
 
 Emulation::Emulation(Emulation&&) noexcept = default;
 
 Emulation::~Emulation() = default;
 
-bool Emulation::run_for(Time duration) { return robot_->run_for(duration); }
+bool Emulation::run_for(Time duration) { return modules_->run_for(duration); }
 
-sim::SimulationResult Emulation::result() const { return robot_->result(); }
+sim::SimulationResult Emulation::result() const { return modules_->result(); }
 
-FirmwareReport Emulation::report() const { return robot_->report(); }
+FirmwareReport Emulation::report() const { return modules_->report(); }
 
-ModuleView Emulation::module(std::int32_t module) const { return robot_->view(module); }
+ModuleView Emulation::module(std::int32_t module) const { return modules_->view(module); }
 
 const agent::Agent& Emulation::shadow(std::int32_t module) const {
-  return robot_->cpu(module).shadow();
+  return modules_->cpu(module).shadow();
 }
 
-std::int32_t Emulation::module_count() const { return robot_->count(); }
+std::int32_t Emulation::module_count() const { return modules_->count(); }
 
 }  // namespace holdfast::emulator

@@ -103,7 +103,7 @@ base::Result<Image> load_image(const std::string& path) {
   for (const char* name :
        {"holdfast_status", "holdfast_stop", "holdfast_stack_begin", "holdfast_stack_end",
         "holdfast_configuration", "holdfast_vectors", "holdfast_agent_bytes",
-        "_ZN8holdfast5agent10BasicAgentIfE9step_partERKNS0_5EventERNS0_7ActionsE"}) {
+        "_ZN8holdfast5agent5Agent9step_partERKNS0_5EventERNS0_7ActionsE"}) {
     if (!image.symbols.contains(name)) {
       return fault(std::string("is no firmware of holdfast: it has no symbol ") + name);
     }

@@ -86,25 +86,38 @@ std::vector<std::pair<std::string_view, std::string_view>> family_list() {
   return list;
 }
 
-CheckResult check(const Structure& structure, const CheckOptions& options) {
+base::Result<model::Robot> make_robot(const RobotCells& cells, int thread_count) {
+  return model::Robot::create({.existing = {cells.existing.begin(), cells.existing.end()},
+                               .planned = {cells.planned.begin(), cells.planned.end()},
+                               .fixed = {cells.fixed.begin(), cells.fixed.end()},
+                               .support_z = cells.support_z,
+                               .material = cells.material},
+                              thread_count);
+}
+
+CheckResult check(const model::Robot& robot, const CheckOptions& options) {
   const auto start = std::chrono::steady_clock::now();
   const auto passed = [&] {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   };
-  CheckResult result{
-      .assessment = verdict::assess(structure.robot, {.memory_bytes_max = options.memory_bytes_max,
-                                                      .is_bonded = options.is_bonded,
-                                                      .thread_count = options.thread_count,
-                                                      .progress = options.progress})};
+  CheckResult result{.assessment =
+                         verdict::assess(robot, {.memory_bytes_max = options.memory_bytes_max,
+                                                 .is_bonded = options.is_bonded,
+                                                 .thread_count = options.thread_count,
+                                                 .progress = options.progress})};
   result.seconds = passed();
   if (options.is_proof_wanted) {
     result.proof = proof::prove(
-        structure.robot, result.assessment,
+        robot, result.assessment,
         {.memory_bytes_max = options.memory_bytes_max, .thread_count = options.thread_count});
-    proof::apply(structure.robot, *result.proof, result.assessment);
+    proof::apply(robot, *result.proof, result.assessment);
     result.proof_seconds = passed() - result.seconds;
   }
   return result;
+}
+
+CheckResult check(const Structure& structure, const CheckOptions& options) {
+  return check(structure.robot, options);
 }
 
 base::Result<std::string> certificate_text(const CheckResult& result) {

@@ -6,6 +6,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <filesystem>
 #include <fstream>
 
@@ -42,6 +44,68 @@ TEST(Facade, goes_from_text_to_a_verdict_and_its_reports) {
             std::string::npos);
   EXPECT_NE(picture_svg(structure.value(), result).find("</svg>"), std::string::npos);
   EXPECT_NE(picture_vtu(structure.value(), result).find("</VTKFile>"), std::string::npos);
+}
+
+TEST(Facade, checks_a_robot_made_of_cells_as_it_checks_the_same_of_a_file) {
+  const std::array<base::Cell, 2> existing = {{{0, 0, 0}, {0, 0, 1}}};
+  const std::array<base::Cell, 1> planned = {{{1, 0, 1}}};
+  const auto robot = make_robot({.existing = existing, .planned = planned});
+  ASSERT_TRUE(robot) << robot.error().message;
+  const auto structure = load_text(R"({"format": "holdfast-structure", "version": 1,
+                                       "modules": [[0,0,0],[0,0,1]], "planned": [[1,0,1]]})");
+  ASSERT_TRUE(structure) << structure.error().message;
+  const verdict::Assessment of_cells = check(robot.value()).assessment;
+  const verdict::Assessment of_file = check(structure.value()).assessment;
+  EXPECT_EQ(of_cells.verdict, of_file.verdict);
+  EXPECT_EQ(of_cells.load_ratio_max, of_file.load_ratio_max);
+  EXPECT_EQ(of_cells.equilibrium.displacement, of_file.equilibrium.displacement);
+}
+
+TEST(Facade, names_the_rule_that_cells_break) {
+  const std::array<base::Cell, 2> apart = {{{0, 0, 0}, {2, 0, 0}}};
+  const auto robot = make_robot({.existing = apart});
+  ASSERT_FALSE(robot);
+  EXPECT_NE(robot.error().message.find("not connected"), std::string::npos);
+}
+
+// A module on a fixed one hangs from nothing and is pressed by its weight: the beam between them
+// carries m g as compression, and the ground carries nothing. Below the fixed one it is tension.
+TEST(Rows, are_the_loads_the_motions_and_the_ground_forces_in_the_robots_order) {
+  const std::array<base::Cell, 3> cells = {{{0, 0, 4}, {0, 0, 5}, {0, 0, 3}}};
+  const std::array<base::Cell, 1> fixed = {{{0, 0, 4}}};
+  const auto robot = make_robot({.existing = cells, .fixed = fixed});
+  ASSERT_TRUE(robot) << robot.error().message;
+  const CheckResult result = check(robot.value());
+  const double weight_n = model::module_weight_n({});
+  const Rows connections = connection_rows(result);
+  ASSERT_EQ(connections.count(), robot.value().connections().size());
+  ASSERT_EQ(connections.width, 5U);
+  for (std::size_t i = 0; i < connections.count(); ++i) {
+    const bool is_above = robot.value().connections()[i].a == 0;
+    EXPECT_NEAR(connections.row(i)[1], is_above ? -weight_n : weight_n, 1e-9 * weight_n);
+    EXPECT_EQ(connections.row(i)[0], result.assessment.connections[i].load_ratio);
+    EXPECT_EQ(connections.row(i)[4], result.assessment.connections[i].torsion_nmm);
+  }
+  const Rows displacements = displacement_rows(result);
+  ASSERT_EQ(displacements.count(), 3U);
+  ASSERT_EQ(displacements.width, 6U);
+  EXPECT_EQ(displacements.row(0)[2], 0) << "it is fixed";
+  EXPECT_LT(displacements.row(1)[2], 0) << "its weight presses it down";
+  EXPECT_EQ(displacements.row(2)[2], result.assessment.equilibrium.displacement[2][2]);
+  const Rows ground = ground_force_rows(result);
+  ASSERT_EQ(ground.count(), 3U);
+  EXPECT_TRUE(std::ranges::all_of(ground.numbers, [](double force) { return force == 0; }));
+}
+
+TEST(Rows, of_the_ground_carry_the_robots_weight) {
+  const std::array<base::Cell, 3> cells = {{{0, 0, 0}, {1, 0, 0}, {0, 0, 1}}};
+  const auto robot = make_robot({.existing = cells});
+  ASSERT_TRUE(robot);
+  const CheckResult result = check(robot.value());
+  const Rows ground = ground_force_rows(result);
+  const double up_n = ground.row(0)[2] + ground.row(1)[2];
+  EXPECT_NEAR(up_n, 3 * model::module_weight_n({}), 1e-9);
+  EXPECT_EQ(ground.row(2)[2], 0) << "it does not touch the ground";
 }
 
 TEST(Facade, describes_an_error_in_one_line) {

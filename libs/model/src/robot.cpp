@@ -195,8 +195,7 @@ base::Result<Robot> Robot::create(const RobotSpec& spec, int thread_count) {
     return bad_input(*fault);
   }
 
-  Robot robot;
-  robot.material_ = spec.material;
+  Robot robot(spec.material);
   robot.support_z_ = spec.support_z;
   robot.planned_count_ = spec.planned.size();
   robot.modules_.reserve(count);

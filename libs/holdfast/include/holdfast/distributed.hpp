@@ -5,8 +5,9 @@
 #include <functional>
 #include <string>
 
-#include "holdfast/holdfast.hpp"
-#include "holdfast/sim/simulation.hpp"
+#include "holdfast/agent/agent.hpp"     // IWYU pragma: export
+#include "holdfast/holdfast.hpp"        // IWYU pragma: export
+#include "holdfast/sim/simulation.hpp"  // IWYU pragma: export
 
 /// The facade's second half: the robot works its verdict out by itself, in simulation.
 ///

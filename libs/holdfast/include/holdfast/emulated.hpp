@@ -5,8 +5,8 @@
 #include <functional>
 #include <string>
 
-#include "holdfast/distributed.hpp"
-#include "holdfast/emulator/emulation.hpp"
+#include "holdfast/distributed.hpp"         // IWYU pragma: export
+#include "holdfast/emulator/emulation.hpp"  // IWYU pragma: export
 
 /// The facade's third part: the robot works its verdict out by itself, as firmware on emulated
 /// microcontrollers.

@@ -6,28 +6,38 @@
 #include <functional>
 #include <optional>
 #include <ostream>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
-#include "holdfast/host/large_pages.hpp"
-#include "holdfast/host/output_file.hpp"
-#include "holdfast/io/document.hpp"
-#include "holdfast/io/picture.hpp"
-#include "holdfast/io/report.hpp"
-#include "holdfast/proof/proof.hpp"
-#include "holdfast/verdict/assessment.hpp"
-#include "holdfast/io/beside_one.hpp"
+#include "holdfast/base/cell.hpp"           // IWYU pragma: export
+#include "holdfast/base/result.hpp"         // IWYU pragma: export
+#include "holdfast/host/large_pages.hpp"    // IWYU pragma: export
+#include "holdfast/host/output_file.hpp"    // IWYU pragma: export
+#include "holdfast/io/beside_one.hpp"       // IWYU pragma: export
+#include "holdfast/io/document.hpp"         // IWYU pragma: export
+#include "holdfast/io/picture.hpp"          // IWYU pragma: export
+#include "holdfast/io/report.hpp"           // IWYU pragma: export
+#include "holdfast/model/robot.hpp"         // IWYU pragma: export
+#include "holdfast/proof/proof.hpp"         // IWYU pragma: export
+#include "holdfast/verdict/assessment.hpp"  // IWYU pragma: export
 
-/// The facade: load a structure, check it, show the answer. Everything an application needs.
+/// The facade: load a structure or make a robot of cells, check it, show the answer. Everything an
+/// application needs.
 ///
 ///     auto structure = holdfast::load_file("robot.xml");
 ///     if (!structure) { ... structure.error().message ... }
 ///     const holdfast::CheckResult result = holdfast::check(structure.value());
 ///     if (result.assessment.verdict == holdfast::verdict::Verdict::kSafe) { ... }
 ///
-/// No function throws or prints. Units: N, mm, kg, s. Frame: global, z up, one cell = one pitch.
+///     auto robot = holdfast::make_robot({.existing = cells, .planned = next});
+///     if (robot) { ... holdfast::check(robot.value()) ... }
+///
+/// What an application may name of the rooms below is what is exported here, and by trial.hpp,
+/// distributed.hpp and emulated.hpp. No function throws or prints. Units: N, mm, kg, s. Frame:
+/// global, z up, one cell = one pitch.
 namespace holdfast {
 
 /// A structure that can be checked: what the file says and the robot that it means.
@@ -37,6 +47,20 @@ struct Structure {
   model::Robot robot;
   std::vector<std::string> warnings;
 };
+
+/// A robot's cells where a program keeps them, in any order; as model::RobotSpec, but only looked
+/// at.
+struct RobotCells {
+  std::span<const base::Cell> existing;
+  std::span<const base::Cell> planned = {};  ///< Attached in the planned step, all at once.
+  std::span<const base::Cell> fixed = {};    ///< Those of `existing` that are fixed.
+  std::int32_t support_z = 0;                ///< Modules in this layer rest on the ground.
+  model::Material material = {};
+};
+
+/// Makes a robot without a file. Its modules are the existing ones, then the planned ones, each in
+/// the order given. Errors: as of model::Robot::create. 0 threads: as many as there are cores.
+base::Result<model::Robot> make_robot(const RobotCells& cells, int thread_count = 0);
 
 /// How to check, where the defaults do not do.
 struct CheckOptions {
@@ -84,7 +108,36 @@ base::Result<io::Document> generate(std::string_view family, std::size_t size);
 /// Name and meaning of the size of each family, in the order of their list.
 std::vector<std::pair<std::string_view, std::string_view>> family_list();
 
+CheckResult check(const model::Robot& robot, const CheckOptions& options = {});
+
+/// Checks the structure's robot.
 CheckResult check(const Structure& structure, const CheckOptions& options = {});
+
+/// Numbers in rows of `width`, one row behind the other without gaps: a view of what is owned by
+/// the result that it was taken of.
+struct Rows {
+  std::span<const double> numbers;
+  std::size_t width = 0;
+
+  std::size_t count() const { return numbers.size() / width; }
+
+  std::span<const double> row(std::size_t index) const {
+    return numbers.subspan(index * width, width);
+  }
+};
+
+/// What every connection carries, in the order of Robot::connections(), as the members of
+/// verdict::ConnectionResult: load ratio, axial force (N), bending moment (N mm), shear force (N),
+/// torsional moment (N mm). No rows where no equilibrium is known.
+Rows connection_rows(const CheckResult& result);
+
+/// How far every module moves, in the order of Robot::modules(): along x, y, z in mm, about x, y, z
+/// in rad. No rows where no equilibrium is known.
+Rows displacement_rows(const CheckResult& result);
+
+/// What the ground does to every module, in the same order: force in N, moment about the module's
+/// centre in N mm. No rows where no equilibrium is known.
+Rows ground_force_rows(const CheckResult& result);
 
 /// The certificate of a check's proof, for holdfast-checker; see docs/formats.md. Errors: there is
 /// none, as nothing could be proved, or no proof was wanted.

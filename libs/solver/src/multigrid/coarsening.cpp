@@ -84,7 +84,7 @@ struct SignatureHash {
 template <class Real>
 class Coarsening {
  public:
-  Coarsening(const Stage& fine, Level<Real>& level, Team& team, Stage& coarse)
+  Coarsening(const SpringGraph& fine, Level<Real>& level, Team& team, SpringGraph& coarse)
       : fine_(fine), level_(level), team_(team), coarse_(coarse) {}
 
   bool run(std::vector<std::size_t>& colour_start) {
@@ -236,7 +236,7 @@ class Coarsening {
       curve[at(final_[c])] = static_cast<std::int32_t>(c);
       coarse_.key[at(final_[c])] = fine_.key[at(member_[at(member_start_[c])])] >> shift;
     }
-    const std::vector<Box> box = coarse_.box;
+    const std::vector<CellBox> box = coarse_.box;
     for (std::size_t c = 0; c < box.size(); ++c) {
       coarse_.box[at(final_[c])] = box[c];
     }
@@ -462,10 +462,10 @@ class Coarsening {
     });
   }
 
-  const Stage& fine_;
+  const SpringGraph& fine_;
   Level<Real>& level_;
   Team& team_;
-  Stage& coarse_;
+  SpringGraph& coarse_;
   std::vector<std::uint8_t> is_weak_;  ///< By edge of the fine level; empty if none is.
   std::size_t cluster_count_ = 0;
   std::vector<std::int32_t> cluster_;
@@ -477,12 +477,14 @@ class Coarsening {
 }  // namespace
 
 template <class Real>
-bool coarsen(const Stage& fine, Level<Real>& level, Team& team, Stage& coarse,
+bool coarsen(const SpringGraph& fine, Level<Real>& level, Team& team, SpringGraph& coarse,
              std::vector<std::size_t>& colour_start) {
   return Coarsening<Real>(fine, level, team, coarse).run(colour_start);
 }
 
-template bool coarsen(const Stage&, Level<float>&, Team&, Stage&, std::vector<std::size_t>&);
-template bool coarsen(const Stage&, Level<double>&, Team&, Stage&, std::vector<std::size_t>&);
+template bool coarsen(const SpringGraph&, Level<float>&, Team&, SpringGraph&,
+                      std::vector<std::size_t>&);
+template bool coarsen(const SpringGraph&, Level<double>&, Team&, SpringGraph&,
+                      std::vector<std::size_t>&);
 
 }  // namespace holdfast::solver

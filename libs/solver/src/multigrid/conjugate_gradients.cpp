@@ -20,7 +20,7 @@ constexpr int kPatience = 50;
 }  // namespace
 
 template <class Real>
-ConjugateGradients<Real>::ConjugateGradients(const Network& network,
+ConjugateGradients<Real>::ConjugateGradients(const ReducedNetwork& network,
                                              const model::Material& material, Team& team,
                                              GroundStiffness ground,
                                              std::span<const std::int32_t> alone)

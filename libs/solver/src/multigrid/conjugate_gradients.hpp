@@ -14,7 +14,7 @@ template <class Real>
 class ConjugateGradients final : public Iteration {
  public:
   /// Keeps references to the network and the material.
-  ConjugateGradients(const Network& network, const model::Material& material, Team& team,
+  ConjugateGradients(const ReducedNetwork& network, const model::Material& material, Team& team,
                      GroundStiffness ground, std::span<const std::int32_t> alone);
 
   bool is_too_slender() const override { return hierarchy_.is_too_slender(); }

@@ -37,46 +37,46 @@ constexpr std::size_t kAloneFill = 40;
 
 std::size_t at(std::int32_t index) { return static_cast<std::size_t>(index); }
 
-/// The sum of a node's springs, anchors left out.
-Mat spring_sum(const Stage& stage, std::size_t node) {
+/// The sum of a node's springs, those to the ground left out.
+Mat spring_sum(const SpringGraph& graph, std::size_t node) {
   Mat sum;
-  const std::size_t count = at(stage.start[node + 1] - stage.start[node]);
+  const std::size_t count = at(graph.start[node + 1] - graph.start[node]);
   for (std::size_t i = 0; i < count; ++i) {
-    base::add_to(sum, stage.springs[stage.pattern[node] + i].stiffness);
+    base::add_to(sum, graph.springs[graph.pattern[node] + i].stiffness);
   }
   return sum;
 }
 
 /// Calls f(node, other, spring) for every spring once.
 template <class F>
-void for_springs(const Stage& stage, const F& f) {
-  for (std::size_t node = 0; node < stage.order.size(); ++node) {
-    const std::size_t start = at(stage.start[node]);
-    for (std::size_t e = start; e < at(stage.start[node + 1]); ++e) {
-      if (at(stage.other[e]) > node) {
-        f(static_cast<std::int32_t>(node), stage.other[e],
-          stage.springs[stage.pattern[node] + e - start]);
+void for_springs(const SpringGraph& graph, const F& f) {
+  for (std::size_t node = 0; node < graph.order.size(); ++node) {
+    const std::size_t start = at(graph.start[node]);
+    for (std::size_t e = start; e < at(graph.start[node + 1]); ++e) {
+      if (at(graph.other[e]) > node) {
+        f(static_cast<std::int32_t>(node), graph.other[e],
+          graph.springs[graph.pattern[node] + e - start]);
       }
     }
   }
 }
 
-/// The whole level as a sparse matrix in double precision, as yet without anchors.
-std::optional<BlockLu> unheld_matrix(const Stage& stage, std::size_t block_count_max) {
+/// The whole level as a sparse matrix in double precision, as yet without ground springs.
+std::optional<BlockLu> unheld_matrix(const SpringGraph& graph, std::size_t block_count_max) {
   std::vector<Edge> edges;
-  for_springs(stage, [&](std::int32_t a, std::int32_t b, const Spring&) {
+  for_springs(graph, [&](std::int32_t a, std::int32_t b, const Spring&) {
     edges.push_back({a, b});
   });
-  BlockLu lu(stage.order.size(), edges, block_count_max);
+  BlockLu lu(graph.order.size(), edges, block_count_max);
   if (lu.is_too_large()) {
     return std::nullopt;
   }
   std::size_t edge = 0;
-  for_springs(stage, [&](std::int32_t, std::int32_t, const Spring& spring) {
+  for_springs(graph, [&](std::int32_t, std::int32_t, const Spring& spring) {
     lu.set_edge(edge++, coupling(spring));
   });
-  for (std::size_t node = 0; node < stage.order.size(); ++node) {
-    lu.set_diagonal(node, spring_sum(stage, node));
+  for (std::size_t node = 0; node < graph.order.size(); ++node) {
+    lu.set_diagonal(node, spring_sum(graph, node));
   }
   return lu;
 }
@@ -112,29 +112,29 @@ void fill_vectors(Level<Real>& level) {
 
 /// The finest level: nodes of the same kind with partners on the same sides share their springs.
 template <class Real>
-void Hierarchy<Real>::fill_stage(Team& team, Stage& stage) const {
+void Hierarchy<Real>::fill_graph(Team& team, SpringGraph& graph) const {
   const std::size_t count = network_.node_count;
-  stage.order = network_.order;
-  stage.key.resize(count);
-  stage.place.resize(count);
-  stage.box.resize(std::is_same_v<Real, double> ? count : 0);
+  graph.order = network_.order;
+  graph.key.resize(count);
+  graph.place.resize(count);
+  graph.box.resize(std::is_same_v<Real, double> ? count : 0);
   team.share(0, count, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const std::size_t node = at(network_.order[i]);
-      stage.key[node] = network_.key[i];
-      stage.place[node] = place_of(network_.key[i], material_.pitch_mm);
+      graph.key[node] = network_.key[i];
+      graph.place[node] = place_of(network_.key[i], material_.pitch_mm);
       if constexpr (std::is_same_v<Real, double>) {
         const Point cell = place_of(network_.key[i], 1);
-        stage.box[node].low = {static_cast<std::int32_t>(cell[0]),
+        graph.box[node].low = {static_cast<std::int32_t>(cell[0]),
                                static_cast<std::int32_t>(cell[1]),
                                static_cast<std::int32_t>(cell[2])};
-        stage.box[node].high = stage.box[node].low;
+        graph.box[node].high = graph.box[node].low;
       }
     }
   });
-  stage.start.resize(count + 1);
-  stage.other.reserve(6 * count);
-  stage.pattern.resize(count);
+  graph.start.resize(count + 1);
+  graph.other.reserve(6 * count);
+  graph.pattern.resize(count);
   std::unordered_map<std::uint64_t, std::uint32_t> patterns;
   Kind last{};
   for (std::size_t node = 0; node < count; ++node) {
@@ -143,21 +143,21 @@ void Hierarchy<Real>::fill_stage(Team& team, Stage& stage) const {
       const std::size_t length = network_.kind[node][d];
       if (length > 0 && at(network_.other[node][d]) < count) {
         kind[d] = static_cast<std::uint8_t>(length);
-        stage.other.push_back(network_.other[node][d]);
+        graph.other.push_back(network_.other[node][d]);
       }
     }
-    stage.start[node + 1] = static_cast<std::int32_t>(stage.other.size());
+    graph.start[node + 1] = static_cast<std::int32_t>(graph.other.size());
     if (node > 0 && kind == last) {
-      stage.pattern[node] = stage.pattern[node - 1];
+      graph.pattern[node] = graph.pattern[node - 1];
       continue;
     }
     last = kind;
     const auto [found, is_new] = patterns.try_emplace(
-        std::bit_cast<std::uint64_t>(kind), static_cast<std::uint32_t>(stage.springs.size()));
-    stage.pattern[node] = found->second;
+        std::bit_cast<std::uint64_t>(kind), static_cast<std::uint32_t>(graph.springs.size()));
+    graph.pattern[node] = found->second;
     for (std::size_t d = 0; is_new && d < 6; ++d) {
       if (kind[d] > 0) {
-        stage.springs.push_back(beam_spring(material_, d, kind[d]));
+        graph.springs.push_back(beam_spring(material_, d, kind[d]));
       }
     }
   }
@@ -209,31 +209,31 @@ void Hierarchy<Real>::set_type(std::size_t node) {
 }
 
 template <class Real>
-void Hierarchy<Real>::add_level(const Stage& stage, std::vector<std::size_t> colour_start) {
+void Hierarchy<Real>::add_level(const SpringGraph& graph, std::vector<std::size_t> colour_start) {
   Level<Real>& level = levels_.emplace_back();
-  level.node_count = stage.order.size();
+  level.node_count = graph.order.size();
   level.colour_start = std::move(colour_start);
-  level.start = stage.start;
-  level.other = stage.other;
-  couple(stage, level);
+  level.start = graph.start;
+  level.other = graph.other;
+  couple(graph, level);
   level.type.resize(level.node_count);
   constexpr std::uint32_t kNone = 0xffffffffU;
   // The last is for nodes without springs, whose pattern is that of the next one, too.
-  std::vector<std::uint32_t> type_of_pattern(stage.springs.size() + 1, kNone);
+  std::vector<std::uint32_t> type_of_pattern(graph.springs.size() + 1, kNone);
   std::vector<Mat> sums;
   for (std::size_t node = 0; node < level.node_count; ++node) {
-    const bool is_alone = stage.start[node] == stage.start[node + 1];
-    std::uint32_t& type = type_of_pattern[is_alone ? stage.springs.size() : stage.pattern[node]];
+    const bool is_alone = graph.start[node] == graph.start[node + 1];
+    std::uint32_t& type = type_of_pattern[is_alone ? graph.springs.size() : graph.pattern[node]];
     if (type == kNone) {
       type = static_cast<std::uint32_t>(sums.size());
-      sums.push_back(spring_sum(stage, node));
+      sums.push_back(spring_sum(graph, node));
     }
     level.type[node] = type;
   }
   level.inverse.reserve(sums.size());
   for (const Mat& sum : sums) {
     Mat inverse;
-    // A pattern that only anchored nodes have may be singular alone; its inverse is not used.
+    // A pattern that only nodes on the ground have may be singular alone; its inverse is not used.
     level.inverse.push_back(invert(sum, inverse) ? block_of<float>(inverse) : Block<float>{});
     if constexpr (std::is_same_v<Real, float>) {
       level.couplings.blocks.diagonal.push_back(block_of<float>(sum));
@@ -244,43 +244,45 @@ void Hierarchy<Real>::add_level(const Stage& stage, std::vector<std::size_t> col
   level.first_image.assign(level.node_count + 1, {});
 }
 
-/// Takes note of the nodes of the newest level that have anchors.
+/// Takes note of the nodes of the newest level that have ground springs.
 template <class Real>
 typename Hierarchy<Real>::Held Hierarchy<Real>::held_nodes(
-    const Stage& stage, const std::vector<Anchor>& anchors) const {
+    const SpringGraph& graph, const std::vector<GroundSpring>& springs) const {
   Held held;
   held.free_type_count = levels_.back().inverse.size();
-  for (const Anchor& anchor : anchors) {
-    if (held.nodes.empty() || held.nodes.back().node != at(anchor.node)) {
+  for (const GroundSpring& spring : springs) {
+    if (held.nodes.empty() || held.nodes.back().node != at(spring.node)) {
       held.nodes.push_back(
-          {.node = at(anchor.node), .spring_sum = spring_sum(stage, at(anchor.node))});
+          {.node = at(spring.node), .spring_sum = spring_sum(graph, at(spring.node))});
     }
   }
   return held;
 }
 
-/// K_pp of the nodes that have anchors.
+/// K_pp of the nodes that have ground springs.
 template <class Real>
-void Hierarchy<Real>::set_anchors(std::size_t depth, const std::vector<Anchor>& anchors) {
+void Hierarchy<Real>::set_ground_springs(std::size_t depth,
+                                         const std::vector<GroundSpring>& springs) {
   Level<Real>& level = levels_[depth];
   Held& held = held_[depth - 1];
-  clear_anchors(level, held.free_type_count);
+  clear_ground(level, held.free_type_count);
   BlockPool<Real> pool;
-  auto anchor = anchors.begin();
+  auto spring = springs.begin();
   for (HeldNode& node : held.nodes) {
-    node.anchor_sum = {};
-    for (; anchor != anchors.end() && at(anchor->node) == node.node; ++anchor) {
-      base::add_to(node.anchor_sum, anchor->stiffness);
+    node.ground_sum = {};
+    for (; spring != springs.end() && at(spring->node) == node.node; ++spring) {
+      base::add_to(node.ground_sum, spring->stiffness);
     }
     node.sum = node.spring_sum;
-    base::add_to(node.sum, node.anchor_sum);
-    // Only K_pp counts in single precision; in double, what is anchored must be known by itself.
+    base::add_to(node.sum, node.ground_sum);
+    // Only K_pp counts in single precision; in double, what is on the ground must be known by
+    // itself.
     const std::size_t type = std::is_same_v<Real, float>
                                  ? held.free_type_count + pool.insert(block_of<Real>(node.sum))
                                  : level.inverse.size();
     level.type[node.node] = static_cast<std::uint32_t>(type);
     if (type == level.inverse.size()) {
-      add_anchored_type(level, node);
+      add_grounded_type(level, node);
     }
   }
 }
@@ -295,14 +297,14 @@ bool Hierarchy<Real>::factor_coarsest() {
 
 template <class Real>
 void Hierarchy<Real>::update_contact() {
-  std::vector<Anchor> anchors = finest_anchors(network_, material_, ground_);
-  for (const Anchor& anchor : anchors) {
-    set_type(at(anchor.node));
+  std::vector<GroundSpring> springs = finest_ground_springs(network_, material_, ground_);
+  for (const GroundSpring& spring : springs) {
+    set_type(at(spring.node));
   }
   point_at_lattice();
   for (std::size_t depth = 1; depth < levels_.size(); ++depth) {
-    anchors = coarse_anchors(anchors, levels_[depth - 1].seat);
-    set_anchors(depth, anchors);
+    springs = coarse_ground_springs(springs, levels_[depth - 1].seat);
+    set_ground_springs(depth, springs);
   }
   if (coarsest_ && !factor_coarsest()) {
     coarsest_.reset();
@@ -311,10 +313,10 @@ void Hierarchy<Real>::update_contact() {
 
 /// If its shape allows, or it is small.
 template <class Real>
-void Hierarchy<Real>::try_to_factor(const Stage& stage) {
-  const std::size_t count = stage.order.size();
+void Hierarchy<Real>::try_to_factor(const SpringGraph& graph) {
+  const std::size_t count = graph.order.size();
   const bool is_small = count <= kCoarsestCount + alone_count_;
-  const bool is_thin = stage.other.size() <= kThinDegree * (count + alone_count_);
+  const bool is_thin = graph.other.size() <= kThinDegree * (count + alone_count_);
   if (!is_small && is_thin && count > (alone_count_ == 0 ? kChainMax : kChainMaxOnFeet)) {
     is_too_slender_ = true;
     return;
@@ -322,7 +324,7 @@ void Hierarchy<Real>::try_to_factor(const Stage& stage) {
   if (is_small || (is_thin && count < network_.node_count / 4)) {
     const std::size_t fill_max =
         alone_count_ == 0 ? kFill * count : 2 * kFill * count + kAloneFill * alone_count_;
-    coarsest_ = unheld_matrix(stage, is_small ? count * count : fill_max);
+    coarsest_ = unheld_matrix(graph, is_small ? count * count : fill_max);
     if (coarsest_ && !factor_coarsest()) {
       coarsest_.reset();
     }
@@ -330,33 +332,33 @@ void Hierarchy<Real>::try_to_factor(const Stage& stage) {
 }
 
 template <class Real>
-Hierarchy<Real>::Hierarchy(const Network& network, const model::Material& material, Team& team,
-                           GroundStiffness ground, std::span<const std::int32_t> alone)
+Hierarchy<Real>::Hierarchy(const ReducedNetwork& network, const model::Material& material,
+                           Team& team, GroundStiffness ground, std::span<const std::int32_t> alone)
     : network_(network),
       material_(material),
       ground_(std::move(ground)),
       alone_count_(alone.size()) {
   make_lattice();
-  Stage stage;
-  fill_stage(team, stage);
-  stage.is_alone.assign(alone.empty() ? 0 : network_.node_count, false);
+  SpringGraph graph;
+  fill_graph(team, graph);
+  graph.is_alone.assign(alone.empty() ? 0 : network_.node_count, false);
   for (const std::int32_t node : alone) {
-    stage.is_alone[at(node)] = true;
+    graph.is_alone[at(node)] = true;
   }
-  std::vector<Anchor> anchors = finest_anchors(network_, material_, ground_);
+  std::vector<GroundSpring> springs = finest_ground_springs(network_, material_, ground_);
   while (!coarsest_ &&
-         (levels_.size() == 1 || stage.order.size() > kCoarsestCount + alone_count_)) {
-    Stage coarse;
+         (levels_.size() == 1 || graph.order.size() > kCoarsestCount + alone_count_)) {
+    SpringGraph coarse;
     std::vector<std::size_t> colour_start;
-    if (!coarsen(stage, levels_.back(), team, coarse, colour_start)) {
+    if (!coarsen(graph, levels_.back(), team, coarse, colour_start)) {
       break;
     }
-    stage = std::move(coarse);
-    anchors = coarse_anchors(anchors, levels_.back().seat);
-    add_level(stage, std::move(colour_start));
-    held_.push_back(held_nodes(stage, anchors));
-    set_anchors(levels_.size() - 1, anchors);
-    try_to_factor(stage);
+    graph = std::move(coarse);
+    springs = coarse_ground_springs(springs, levels_.back().seat);
+    add_level(graph, std::move(colour_start));
+    held_.push_back(held_nodes(graph, springs));
+    set_ground_springs(levels_.size() - 1, springs);
+    try_to_factor(graph);
   }
 }
 

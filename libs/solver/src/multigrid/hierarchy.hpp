@@ -8,8 +8,8 @@
 #include <unordered_map>
 #include <vector>
 
-#include "anchors.hpp"
 #include "coarsening.hpp"
+#include "ground_springs.hpp"
 #include "holdfast/model/material.hpp"
 #include "holdfast/solver/block_lu.hpp"
 #include "level.hpp"
@@ -48,7 +48,7 @@ template <class Real>
 class Hierarchy {
  public:
   /// Keeps references to the network and the material. Nodes that are `alone` join no cluster.
-  Hierarchy(const Network& network, const model::Material& material, Team& team,
+  Hierarchy(const ReducedNetwork& network, const model::Material& material, Team& team,
             GroundStiffness ground, std::span<const std::int32_t> alone);
 
   /// Takes over changed contact: the same levels, held in another way.
@@ -73,12 +73,12 @@ class Hierarchy {
  private:
   struct HeldNode {
     std::size_t node = 0;
-    Mat spring_sum;       ///< K_pp without anchors.
-    Mat anchor_sum = {};  ///< What they add.
+    Mat spring_sum;       ///< K_pp without ground springs.
+    Mat ground_sum = {};  ///< What they add.
     Mat sum = {};         ///< K_pp
   };
 
-  /// Nodes of a coarse level that have anchors. Their blocks come after those of all others.
+  /// Nodes of a coarse level that have ground springs. Their blocks come after those of all others.
   struct Held {
     std::size_t free_type_count = 0;
     std::vector<HeldNode> nodes;
@@ -88,19 +88,19 @@ class Hierarchy {
   void make_beams();
   void point_at_lattice();
   void set_type(std::size_t node);
-  void fill_stage(Team& team, Stage& stage) const;
+  void fill_graph(Team& team, SpringGraph& graph) const;
   Mat diagonal(const Kind& kind) const;
   void add_type(const Kind& kind);
-  void couple(const Stage& stage, Level<Real>& level) const;
-  void clear_anchors(Level<Real>& level, std::size_t free_type_count) const;
-  void add_anchored_type(Level<Real>& level, const HeldNode& node) const;
-  void add_level(const Stage& stage, std::vector<std::size_t> colour_start);
-  Held held_nodes(const Stage& stage, const std::vector<Anchor>& anchors) const;
-  void set_anchors(std::size_t depth, const std::vector<Anchor>& anchors);
-  void try_to_factor(const Stage& stage);
+  void couple(const SpringGraph& graph, Level<Real>& level) const;
+  void clear_ground(Level<Real>& level, std::size_t free_type_count) const;
+  void add_grounded_type(Level<Real>& level, const HeldNode& node) const;
+  void add_level(const SpringGraph& graph, std::vector<std::size_t> colour_start);
+  Held held_nodes(const SpringGraph& graph, const std::vector<GroundSpring>& springs) const;
+  void set_ground_springs(std::size_t depth, const std::vector<GroundSpring>& springs);
+  void try_to_factor(const SpringGraph& graph);
   bool factor_coarsest();
 
-  const Network& network_;
+  const ReducedNetwork& network_;
   const model::Material& material_;
   GroundStiffness ground_;
   std::size_t alone_count_ = 0;
@@ -122,11 +122,11 @@ void Hierarchy<float>::add_type(const Kind& kind);
 template <>
 void Hierarchy<float>::point_at_lattice();
 template <>
-void Hierarchy<float>::couple(const Stage& stage, Level<float>& level) const;
+void Hierarchy<float>::couple(const SpringGraph& graph, Level<float>& level) const;
 template <>
-void Hierarchy<float>::clear_anchors(Level<float>& level, std::size_t free_type_count) const;
+void Hierarchy<float>::clear_ground(Level<float>& level, std::size_t free_type_count) const;
 template <>
-void Hierarchy<float>::add_anchored_type(Level<float>& level, const HeldNode& node) const;
+void Hierarchy<float>::add_grounded_type(Level<float>& level, const HeldNode& node) const;
 template <>
 void Hierarchy<double>::make_beams();
 template <>
@@ -134,10 +134,10 @@ void Hierarchy<double>::add_type(const Kind& kind);
 template <>
 void Hierarchy<double>::point_at_lattice();
 template <>
-void Hierarchy<double>::couple(const Stage& stage, Level<double>& level) const;
+void Hierarchy<double>::couple(const SpringGraph& graph, Level<double>& level) const;
 template <>
-void Hierarchy<double>::clear_anchors(Level<double>& level, std::size_t free_type_count) const;
+void Hierarchy<double>::clear_ground(Level<double>& level, std::size_t free_type_count) const;
 template <>
-void Hierarchy<double>::add_anchored_type(Level<double>& level, const HeldNode& node) const;
+void Hierarchy<double>::add_grounded_type(Level<double>& level, const HeldNode& node) const;
 
 }  // namespace holdfast::solver

@@ -80,26 +80,26 @@ void Hierarchy<double>::point_at_lattice() {
 }
 
 template <>
-void Hierarchy<double>::couple(const Stage& stage, Level<double>& level) const {
-  fill_blocks(stage, level.couplings.blocks);
-  for (const Spring& spring : stage.springs) {
+void Hierarchy<double>::couple(const SpringGraph& graph, Level<double>& level) const {
+  fill_blocks(graph, level.couplings.blocks);
+  for (const Spring& spring : graph.springs) {
     level.couplings.springs.push_back(
         {.stiffness = block_of<double>(spring.stiffness),
          .arm = {-spring.partner[0], -spring.partner[1], -spring.partner[2], 0}});
   }
   level.couplings.spring.resize(level.other.size());
   const auto spring_at = [&](std::size_t node, std::size_t e) {
-    return stage.pattern[node] + static_cast<std::uint32_t>(e - at(stage.start[node]));
+    return graph.pattern[node] + static_cast<std::uint32_t>(e - at(graph.start[node]));
   };
   for (std::size_t node = 0; node < level.node_count; ++node) {
-    for (std::size_t e = at(stage.start[node]); e < at(stage.start[node + 1]); ++e) {
-      const std::size_t other = at(stage.other[e]);
+    for (std::size_t e = at(graph.start[node]); e < at(graph.start[node + 1]); ++e) {
+      const std::size_t other = at(graph.other[e]);
       if (node < other) {
-        const auto begin = stage.other.begin() + stage.start[other];
-        const auto end = stage.other.begin() + stage.start[other + 1];
+        const auto begin = graph.other.begin() + graph.start[other];
+        const auto end = graph.other.begin() + graph.start[other + 1];
         const auto back = std::find(begin, end, static_cast<std::int32_t>(node));
         level.couplings.spring[e] = spring_at(node, e);
-        level.couplings.spring[static_cast<std::size_t>(back - stage.other.begin())] =
+        level.couplings.spring[static_cast<std::size_t>(back - graph.other.begin())] =
             spring_at(node, e);
       }
     }
@@ -107,16 +107,16 @@ void Hierarchy<double>::couple(const Stage& stage, Level<double>& level) const {
 }
 
 template <>
-void Hierarchy<double>::clear_anchors(Level<double>& level, std::size_t free_type_count) const {
+void Hierarchy<double>::clear_ground(Level<double>& level, std::size_t free_type_count) const {
   level.inverse.resize(free_type_count);
-  level.couplings.anchors.clear();
+  level.couplings.ground.clear();
   level.couplings.free_type_count = free_type_count;
 }
 
 template <>
-void Hierarchy<double>::add_anchored_type(Level<double>& level, const HeldNode& node) const {
+void Hierarchy<double>::add_grounded_type(Level<double>& level, const HeldNode& node) const {
   level.inverse.push_back(block_of<float>(inverse_of(node.sum)));
-  level.couplings.anchors.push_back(block_of<double>(node.anchor_sum));
+  level.couplings.ground.push_back(block_of<double>(node.ground_sum));
 }
 
 }  // namespace holdfast::solver

@@ -36,18 +36,18 @@ void Hierarchy<float>::point_at_lattice() {
 }
 
 template <>
-void Hierarchy<float>::couple(const Stage& stage, Level<float>& level) const {
-  fill_blocks(stage, level.couplings.blocks);
+void Hierarchy<float>::couple(const SpringGraph& graph, Level<float>& level) const {
+  fill_blocks(graph, level.couplings.blocks);
 }
 
 template <>
-void Hierarchy<float>::clear_anchors(Level<float>& level, std::size_t free_type_count) const {
+void Hierarchy<float>::clear_ground(Level<float>& level, std::size_t free_type_count) const {
   level.inverse.resize(free_type_count);
   level.couplings.blocks.diagonal.resize(free_type_count);
 }
 
 template <>
-void Hierarchy<float>::add_anchored_type(Level<float>& level, const HeldNode& node) const {
+void Hierarchy<float>::add_grounded_type(Level<float>& level, const HeldNode& node) const {
   level.inverse.push_back(block_of<float>(inverse_of(node.sum)));
   level.couplings.blocks.diagonal.push_back(block_of<float>(node.sum));
 }

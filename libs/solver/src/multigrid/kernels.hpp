@@ -66,7 +66,7 @@ struct ClusterView<double> {
   const std::uint32_t* type = nullptr;
   const std::uint32_t* spring = nullptr;
   const BodySpring* springs = nullptr;
-  const Block<double>* anchors = nullptr;  ///< Of the types from free_type_count on.
+  const Block<double>* ground = nullptr;  ///< Of the types from free_type_count on.
   std::size_t free_type_count = 0;
 };
 

@@ -31,11 +31,11 @@ struct Couplings<double> {
   Blocks blocks;
   std::vector<std::uint32_t> spring;
   std::vector<BodySpring> springs;
-  std::vector<Block<double>> anchors;
+  std::vector<Block<double>> ground;
   std::size_t free_type_count = 0;
 };
 
-/// One level of the preconditioner. The finest keeps its springs in Network.
+/// One level of the preconditioner. The finest keeps its springs in ReducedNetwork.
 template <class Real>
 struct Level {
   std::size_t node_count = 0;
@@ -90,7 +90,7 @@ inline ClusterView<double> Level<double>::view() const {
           .type = type.data(),
           .spring = couplings.spring.data(),
           .springs = couplings.springs.data(),
-          .anchors = couplings.anchors.data(),
+          .ground = couplings.ground.data(),
           .free_type_count = couplings.free_type_count};
 }
 

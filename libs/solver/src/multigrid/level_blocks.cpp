@@ -33,7 +33,8 @@ BeamRow<float> single(const BeamRow<double>& row) {
 
 }  // namespace
 
-std::vector<BeamRow<double>> beam_rows(const Network& network, const model::Material& material) {
+std::vector<BeamRow<double>> beam_rows(const ReducedNetwork& network,
+                                       const model::Material& material) {
   const std::size_t length_max = network.has_long_beams ? kBeamLengthMax : 1;
   std::vector<BeamRow<double>> rows(6 * kRow);
   for (std::size_t length = 1; length <= length_max; ++length) {
@@ -55,18 +56,18 @@ std::vector<BeamRow<float>> single(const std::vector<BeamRow<double>>& rows) {
   return result;
 }
 
-void fill_blocks(const Stage& stage, Blocks& blocks) {
+void fill_blocks(const SpringGraph& graph, Blocks& blocks) {
   BlockPool<float> pool;
-  std::vector<std::uint32_t> block_of_spring(stage.springs.size());
-  for (std::size_t i = 0; i < stage.springs.size(); ++i) {
-    block_of_spring[i] = pool.insert(block_of<float>(coupling(stage.springs[i])));
+  std::vector<std::uint32_t> block_of_spring(graph.springs.size());
+  for (std::size_t i = 0; i < graph.springs.size(); ++i) {
+    block_of_spring[i] = pool.insert(block_of<float>(coupling(graph.springs[i])));
   }
   blocks.blocks = pool.take();
-  blocks.block.resize(stage.other.size());
-  for (std::size_t node = 0; node < stage.order.size(); ++node) {
-    const std::size_t start = at(stage.start[node]);
-    for (std::size_t e = start; e < at(stage.start[node + 1]); ++e) {
-      blocks.block[e] = block_of_spring[stage.pattern[node] + e - start];
+  blocks.block.resize(graph.other.size());
+  for (std::size_t node = 0; node < graph.order.size(); ++node) {
+    const std::size_t start = at(graph.start[node]);
+    for (std::size_t e = start; e < at(graph.start[node + 1]); ++e) {
+      blocks.block[e] = block_of_spring[graph.pattern[node] + e - start];
     }
   }
 }

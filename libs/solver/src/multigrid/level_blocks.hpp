@@ -4,20 +4,21 @@
 
 #include <vector>
 
-#include "coarsening.hpp"
 #include "holdfast/model/material.hpp"
 #include "level.hpp"
-#include "network.hpp"
+#include "reduced_network.hpp"
+#include "spring_graph.hpp"
 
 /// The blocks of K that sweeps read, in single precision whatever the levels are.
 namespace holdfast::solver {
 
 /// K12 by direction and length: [direction * (kBeamLengthMax + 1) + length].
-std::vector<BeamRow<double>> beam_rows(const Network& network, const model::Material& material);
+std::vector<BeamRow<double>> beam_rows(const ReducedNetwork& network,
+                                       const model::Material& material);
 
 std::vector<BeamRow<float>> single(const std::vector<BeamRow<double>>& rows);
 
 /// K_pq for every edge.
-void fill_blocks(const Stage& stage, Blocks& blocks);
+void fill_blocks(const SpringGraph& graph, Blocks& blocks);
 
 }  // namespace holdfast::solver

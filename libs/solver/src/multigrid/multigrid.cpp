@@ -72,7 +72,7 @@ Multigrid::Multigrid(const model::Robot& robot, MultigridOptions options)
     : robot_(robot),
       precision_(options.precision),
       team_(options.thread_count, robot.modules().size()),
-      network_(make_network(robot, team_)),
+      network_(make_reduced_network(robot, team_)),
       weight_({0, 0, -model::module_weight_n(robot.material()), 0, 0, 0}),
       facet_of_module_(robot.ground_count() > 0 ? robot.modules().size() : 0, -1),
       may_yield_(options.may_yield),

@@ -10,11 +10,13 @@
 
 #include "conjugate_gradients.hpp"
 #include "holdfast/mechanics/ground_contact.hpp"
-#include "holdfast/solver/equilibrium.hpp"
-#include "network.hpp"
+#include "holdfast/model/robot.hpp"
+#include "holdfast/solver/precision.hpp"
+#include "reduced_network.hpp"
 
 /// Displacements of a robot for given contact states, without a factorization: what BlockLu is for
-/// small robots. Elimination by hand (Network), conjugate gradients, multigrid preconditioner.
+/// small robots. Elimination by hand (ReducedNetwork), conjugate gradients, multigrid
+/// preconditioner.
 namespace holdfast::solver {
 
 struct MultigridOptions {
@@ -97,7 +99,7 @@ class Multigrid {
   const model::Robot& robot_;
   Precision precision_;
   Team team_;
-  Network network_;
+  ReducedNetwork network_;
   mechanics::GroundFacet<double> ground_;
   Vec weight_{};
   std::vector<std::int32_t> facet_of_module_;

@@ -66,7 +66,7 @@ inline Wide product(const ClusterView<double>& level, const Six<Real>* z, std::s
     }
   }
   if (level.type[p] >= level.free_type_count) {
-    sum += multiply(level.anchors[level.type[p] - level.free_type_count], own);
+    sum += multiply(level.ground[level.type[p] - level.free_type_count], own);
   }
   return sum;
 }

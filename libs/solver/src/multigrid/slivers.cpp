@@ -15,7 +15,7 @@ constexpr double kStronger = 1 + 1e-9;
 
 std::size_t at(std::int32_t index) { return static_cast<std::size_t>(index); }
 
-Box united(Box a, const Box& b) {
+CellBox united(CellBox a, const CellBox& b) {
   for (std::size_t k = 0; k < 3; ++k) {
     a.low[k] = std::min(a.low[k], b.low[k]);
     a.high[k] = std::max(a.high[k], b.high[k]);
@@ -23,7 +23,7 @@ Box united(Box a, const Box& b) {
   return a;
 }
 
-bool fits(const Box& box, std::int32_t width) {
+bool fits(const CellBox& box, std::int32_t width) {
   for (std::size_t k = 0; k < 3; ++k) {
     if (box.high[k] - box.low[k] >= width) {
       return false;
@@ -34,7 +34,7 @@ bool fits(const Box& box, std::int32_t width) {
 
 /// Calls f(c, d, strength) for every spring between two clusters, once for each of them.
 template <class F>
-void for_ties(const Stage& fine, const std::vector<std::int32_t>& cluster, const F& f) {
+void for_ties(const SpringGraph& fine, const std::vector<std::int32_t>& cluster, const F& f) {
   for (std::size_t node = 0; node < cluster.size(); ++node) {
     const std::size_t start = at(fine.start[node]);
     for (std::size_t e = start; e < at(fine.start[node + 1]); ++e) {
@@ -51,9 +51,9 @@ using Ties = std::vector<std::pair<std::int32_t, double>>;
 
 /// By cluster: those neighbours that it would fit into one cell with, and how strongly they are
 /// tied to it.
-std::vector<Ties> ties_that_fit(const Stage& fine, std::int32_t width,
+std::vector<Ties> ties_that_fit(const SpringGraph& fine, std::int32_t width,
                                 const std::vector<std::int32_t>& cluster,
-                                const std::vector<Box>& box) {
+                                const std::vector<CellBox>& box) {
   std::vector<Ties> ties(box.size());
   for_ties(fine, cluster, [&](std::size_t c, std::int32_t d, double strength) {
     const auto found = std::ranges::find(ties[c], d, &Ties::value_type::first);
@@ -68,10 +68,11 @@ std::vector<Ties> ties_that_fit(const Stage& fine, std::int32_t width,
 
 }  // namespace
 
-std::size_t unite_slivers(const Stage& fine, unsigned shift, std::vector<std::int32_t>& cluster,
-                          std::size_t count, std::vector<Box>& box) {
-  const std::vector<Box>& part = fine.box;
-  std::vector<Box> old(count);
+std::size_t unite_slivers(const SpringGraph& fine, unsigned shift,
+                          std::vector<std::int32_t>& cluster, std::size_t count,
+                          std::vector<CellBox>& box) {
+  const std::vector<CellBox>& part = fine.box;
+  std::vector<CellBox> old(count);
   std::vector<bool> is_met(count);
   std::vector<bool> is_alone(count);
   for (std::size_t node = 0; node < cluster.size(); ++node) {

@@ -2,7 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "coarsening.hpp"
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "spring_graph.hpp"
 
 /// A beam four modules thick whose place does not suit the cells is cut along its length into two
 /// slivers. Their level is no chain but a ladder, which bends by stretching its rails, and rigid
@@ -13,7 +17,8 @@ namespace holdfast::solver {
 /// the neighbour it is tied to most strongly. Renumbers `cluster` (node -> cluster) without gaps,
 /// fills `box` (cluster -> cells), and returns how many clusters there are now. Cells are
 /// 2^(shift/3) modules wide.
-std::size_t unite_slivers(const Stage& fine, unsigned shift, std::vector<std::int32_t>& cluster,
-                          std::size_t count, std::vector<Box>& box);
+std::size_t unite_slivers(const SpringGraph& fine, unsigned shift,
+                          std::vector<std::int32_t>& cluster, std::size_t count,
+                          std::vector<CellBox>& box);
 
 }  // namespace holdfast::solver

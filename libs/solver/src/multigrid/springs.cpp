@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "../block_kernels.hpp"
-#include "network.hpp"
+#include "reduced_network.hpp"
 
 namespace holdfast::solver {
 namespace {

@@ -19,12 +19,12 @@ bool is_positive_definite(const Mat& matrix) {
 }
 
 /// One node of each pattern.
-std::vector<std::size_t> examples(const Stage& stage) {
-  std::vector<bool> is_met(stage.springs.size());
+std::vector<std::size_t> examples(const SpringGraph& graph) {
+  std::vector<bool> is_met(graph.springs.size());
   std::vector<std::size_t> nodes;
-  for (std::size_t node = 0; node < stage.order.size(); ++node) {
-    const std::size_t pattern = stage.pattern[node];
-    if (stage.start[node + 1] > stage.start[node] && !is_met[pattern]) {
+  for (std::size_t node = 0; node < graph.order.size(); ++node) {
+    const std::size_t pattern = graph.pattern[node];
+    if (graph.start[node + 1] > graph.start[node] && !is_met[pattern]) {
       is_met[pattern] = true;
       nodes.push_back(node);
     }
@@ -33,20 +33,20 @@ std::vector<std::size_t> examples(const Stage& stage) {
 }
 
 /// By spring of the level: whether it is weak at its own node.
-std::vector<std::uint8_t> weak_at_node(const Stage& stage, Team& team) {
-  std::vector<std::uint8_t> is_weak(stage.springs.size());
-  const std::vector<std::size_t> nodes = examples(stage);
+std::vector<std::uint8_t> weak_at_node(const SpringGraph& graph, host::Team& team) {
+  std::vector<std::uint8_t> is_weak(graph.springs.size());
+  const std::vector<std::size_t> nodes = examples(graph);
   team.share(0, nodes.size(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) {
-      const std::size_t first = stage.pattern[nodes[k]];
-      const std::size_t last = first + at(stage.start[nodes[k] + 1] - stage.start[nodes[k]]);
+      const std::size_t first = graph.pattern[nodes[k]];
+      const std::size_t last = first + at(graph.start[nodes[k] + 1] - graph.start[nodes[k]]);
       Mat sum{};
       for (std::size_t i = first; i < last; ++i) {
-        base::add_to(sum, stage.springs[i].stiffness);
+        base::add_to(sum, graph.springs[i].stiffness);
       }
       const Mat share = scaled(sum, -kWeakShare);
       for (std::size_t i = first; i < last; ++i) {
-        Mat rest = stage.springs[i].stiffness;
+        Mat rest = graph.springs[i].stiffness;
         base::add_to(rest, share);
         is_weak[i] = is_positive_definite(rest) ? 0 : 1;
       }
@@ -56,9 +56,9 @@ std::vector<std::uint8_t> weak_at_node(const Stage& stage, Team& team) {
 }
 
 /// The edge from `q` to `p`.
-std::size_t edge_back(const Stage& stage, std::size_t p, std::size_t q) {
-  std::size_t edge = at(stage.start[q]);
-  while (at(stage.other[edge]) != p) {
+std::size_t edge_back(const SpringGraph& graph, std::size_t p, std::size_t q) {
+  std::size_t edge = at(graph.start[q]);
+  while (at(graph.other[edge]) != p) {
     ++edge;
   }
   return edge;
@@ -66,22 +66,22 @@ std::size_t edge_back(const Stage& stage, std::size_t p, std::size_t q) {
 
 }  // namespace
 
-std::vector<std::uint8_t> weak_springs(const Stage& stage, Team& team) {
-  if (stage.shift == 0) {
+std::vector<std::uint8_t> weak_springs(const SpringGraph& graph, host::Team& team) {
+  if (graph.shift == 0) {
     return {};
   }
-  const std::vector<std::uint8_t> is_weak = weak_at_node(stage, team);
+  const std::vector<std::uint8_t> is_weak = weak_at_node(graph, team);
   if (std::ranges::find(is_weak, 1) == is_weak.end()) {
     return {};
   }
   const auto spring = [&](std::size_t node, std::size_t edge) {
-    return stage.pattern[node] + edge - at(stage.start[node]);
+    return graph.pattern[node] + edge - at(graph.start[node]);
   };
-  std::vector<std::uint8_t> edges(stage.other.size());
-  for (std::size_t p = 0; p < stage.order.size(); ++p) {
-    for (std::size_t e = at(stage.start[p]); e < at(stage.start[p + 1]); ++e) {
-      const std::size_t q = at(stage.other[e]);
-      edges[e] = is_weak[spring(p, e)] == 1 && is_weak[spring(q, edge_back(stage, p, q))] == 1;
+  std::vector<std::uint8_t> edges(graph.other.size());
+  for (std::size_t p = 0; p < graph.order.size(); ++p) {
+    for (std::size_t e = at(graph.start[p]); e < at(graph.start[p + 1]); ++e) {
+      const std::size_t q = at(graph.other[e]);
+      edges[e] = is_weak[spring(p, e)] == 1 && is_weak[spring(q, edge_back(graph, p, q))] == 1;
     }
   }
   return edges;

@@ -5,7 +5,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "coarsening.hpp"
+#include "holdfast/host/team.hpp"
+#include "spring_graph.hpp"
 
 /// What hangs by a neck must not become one rigid body with what it hangs from.
 ///
@@ -22,6 +23,6 @@ namespace holdfast::solver {
 
 /// 1 for every edge of the level whose spring is weak at both ends; empty if there is none. On the
 /// finest level each spring is one beam, and none counts as weak.
-std::vector<std::uint8_t> weak_springs(const Stage& stage, Team& team);
+std::vector<std::uint8_t> weak_springs(const SpringGraph& graph, host::Team& team);
 
 }  // namespace holdfast::solver

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <span>
+#include <type_traits>
 
 #include "holdfast/agent/announcements.hpp"
 #include "holdfast/agent/branch.hpp"
@@ -13,6 +14,7 @@
 #include "holdfast/agent/conductor.hpp"
 #include "holdfast/agent/link.hpp"
 #include "holdfast/agent/node.hpp"
+#include "holdfast/agent/operations.hpp"
 #include "holdfast/agent/planned.hpp"
 #include "holdfast/agent/round.hpp"
 #include "holdfast/agent/setup.hpp"
@@ -110,20 +112,6 @@ struct Identity {
   base::Cell cell = {};    ///< Of the anchor.
 };
 
-/// What a module is busy with; its messages are counted under this.
-enum class Phase : std::uint8_t {
-  kDiscovery,
-  kCoordinates,
-  kElection,
-  kTree,
-  kMass,
-  kSimplified,
-  kEquilibrium,
-  kModel,
-  kOverload,
-  kDone,
-};
-
 namespace branches {
 struct Leaves;
 }
@@ -162,21 +150,19 @@ struct ClusteredSteps {
 };
 
 /// A method's own data; a robot's equilibrium uses one method at a time.
-template <class Real>
 union Work {
   Work() : gradients{} {}
 
-  std::array<Gradients<Real>, 1 + kPlannedMax> gradients;
+  std::array<Gradients, 1 + kPlannedMax> gradients;
   std::array<Steps, 1 + kPlannedMax> steps;
   ClusteredSteps clustered;
   BranchWork tree;
 };
 
-template <class Real>
-class BasicAgent {
+class Agent {
  public:
   /// Keeps a reference to the setup.
-  BasicAgent(const Setup& setup, const Identity& identity);
+  Agent(const Setup& setup, const Identity& identity);
 
   void step(const Event& event, Actions& actions);
 
@@ -238,7 +224,7 @@ class BasicAgent {
   static constexpr std::uint8_t kFarStage = 2;    ///< From the module furthest from the starter.
   static constexpr std::uint8_t kTreeStage = 3;   ///< From the middle: the tree that is used.
 
-  // rounds.hpp: events, links, rounds.
+  // rounds.cpp: events, links, rounds.
   void begin(const Event& event, Actions& actions);
   void handle(const Event& event);
   void go_on();
@@ -259,7 +245,7 @@ class BasicAgent {
 
   std::uint8_t used_faces() const;
 
-  // guard.hpp: what may be said now.
+  // guard.cpp: what may be said now.
   /// Where the root is in its work, as far as its orders tell. The last four are equilibria, by
   /// what Work holds.
   enum class Course : std::uint8_t {
@@ -280,7 +266,7 @@ class BasicAgent {
   bool is_expected(int face, std::span<const std::uint8_t> message) const;
   bool is_expected_of_branch(int face, std::span<const std::uint8_t> message, bool reports) const;
 
-  // watch.hpp: the clock that ends every wait.
+  // watch.cpp: the clock that ends every wait.
   void keep_waiting();
   void forget_answer();
   void begin_waiting();
@@ -326,7 +312,7 @@ class BasicAgent {
   Report loads_report();
   void prepare_hosted();
 
-  // branches.hpp: elimination over the tree.
+  // branches.cpp: elimination over the tree.
   /// What comes next, in the order of a kFactor, and from the residuals on of a kTreeStep as well.
   enum class Piece : std::uint8_t {
     kNone,
@@ -377,14 +363,14 @@ class BasicAgent {
   base::Mat6<float> leaf_stiffness(std::size_t node) const;
   Joint joint_to_parent() const;
 
-  // steps.hpp: the one-sweep methods.
+  // steps.cpp: the one-sweep methods.
   void begin_step(const Order& order);
   void begin_tree_step();
-  void share_high_part(Node<Real>& node);
+  void share_high_part(Node& node);
   void find_residuals();
   void find_residual(int node);
-  void follow_state(Node<Real>& node);
-  void share_term(Node<Real>& node, Steps& steps);
+  void follow_state(Node& node);
+  void share_term(Node& node, Steps& steps);
   void start_terms(int node);
   void first_term(int node);
   void subtract_facet(int node);
@@ -392,7 +378,7 @@ class BasicAgent {
   Report step_report() const;
   Report tree_step_report() const;
 
-  // clusters.hpp: rigid clusters between two polynomials.
+  // clusters.cpp: rigid clusters between two polynomials.
   void begin_clusters();
   void leave_clusters();
   void clear_clusters();
@@ -414,10 +400,10 @@ class BasicAgent {
   bool shift_cluster();
   void next_terms_with_clusters();
 
-  // remote.hpp: planned modules that touch several others, in a step.
+  // remote.cpp: planned modules that touch several others, in a step.
   bool is_apart() const;
   int joined_count() const;
-  Node<Real>& planned_node(int k);
+  Node& planned_node(int k);
   void begin_condensing();
   void pass_condensed();
   void condense();
@@ -455,20 +441,26 @@ class BasicAgent {
   Report mix_report() const;
   Report hold_report();
   double ratio_of(const MiddleLoad& load, base::Direction direction) const;
-  template <class Visit>
-  void visit_loads(Visit&& visit) const;
   using LoadVisit = void (*)(void* visitor, const base::Cell& cell, base::Direction direction,
                              double ratio);
+
+  /// Any visitor, in flash once.
+  template <class Visit>
+  void visit_loads(Visit&& visit) const {
+    using Visitor = std::remove_reference_t<Visit>;
+    visit_all_loads([](void* visitor, const base::Cell& cell, base::Direction direction,
+                       double ratio) { (*static_cast<Visitor*>(visitor))(cell, direction, ratio); },
+                    &visit);
+  }
+
   void visit_all_loads(LoadVisit visit, void* visitor) const;
   std::uint8_t node_faces(int node) const;
 
   int node_count() const { return 1 + planned_.hosted_count(); }
 
-  Gradients<Real>& gradients_of(int node) {
-    return work_.gradients[static_cast<std::size_t>(node)];
-  }
+  Gradients& gradients_of(int node) { return work_.gradients[static_cast<std::size_t>(node)]; }
 
-  const Gradients<Real>& gradients_of(int node) const {
+  const Gradients& gradients_of(int node) const {
     return work_.gradients[static_cast<std::size_t>(node)];
   }
 
@@ -547,8 +539,8 @@ class BasicAgent {
   Planned planned_;
 
   // Mechanics.
-  std::array<Node<Real>, 1 + kPlannedMax> nodes_{};  ///< This module, then those it emulates.
-  Work<Real> work_;
+  std::array<Node, 1 + kPlannedMax> nodes_{};  ///< This module, then those it emulates.
+  Work work_;
   std::array<base::Vec6<float>, kPlannedMax> planned_vector_{};
   std::array<base::Vec6<double>, kPlannedMax> planned_force_{};
   std::array<MiddleLoad, base::kDirectionCount> middle_{};
@@ -561,9 +553,7 @@ class BasicAgent {
   Phase phase_ = Phase::kDiscovery;
 };
 
-using Agent = BasicAgent<float>;
-
-static_assert(sizeof(BasicAgent<float>) <= kAgentBytesMax);
+static_assert(sizeof(Agent) <= kAgentBytesMax);
 
 // The most that waits on one link: two vectors for every planned module, one more and a report.
 // What came before them has been acknowledged by the order that asked for them.

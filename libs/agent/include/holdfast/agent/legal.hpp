@@ -12,7 +12,7 @@
 /// before anything is done with it: kinds, flags, indices, faces, cells, counts of exchanges. Reals
 /// may be anything, what is not a number included: a method that diverges says so with them. The
 /// limits are those of docs/wire.md. What may be said at a certain time only is the agent's to know
-/// (src/guard.hpp).
+/// (src/guard.cpp).
 namespace holdfast::agent::wire {
 
 /// `message` is whole, as Link::next_message() gives it. False: no program of this version writes

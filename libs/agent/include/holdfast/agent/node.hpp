@@ -20,8 +20,7 @@ struct ContactSetting {
 };
 
 /// Lower triangle of a Cholesky factor, by rows.
-template <class Real>
-using Triangle = std::array<Real, 21>;
+using Triangle = std::array<float, 21>;
 
 /// In the middle of one connection, local frame: what Eq. (17) needs.
 struct MiddleLoad {
@@ -31,7 +30,6 @@ struct MiddleLoad {
 };
 
 /// What every method needs of one module.
-template <class Real>
 struct Node {
   base::Cell cell;
   bool is_fixed = false;
@@ -44,16 +42,15 @@ struct Node {
 
   base::Vec6<double> u{};
   base::Vec6<double> force{};  ///< Of all beams on their module ends, at u.
-  base::Vec6<Real> shared{};   ///< What is exchanged with the neighbours.
-  Triangle<Real> factor{};     ///< Of the 6x6 diagonal block.
+  base::Vec6<float> shared{};  ///< What is exchanged with the neighbours.
+  Triangle factor{};           ///< Of the 6x6 diagonal block.
 };
 
 /// One module's vectors in the Jacobi methods and conjugate gradients, named as in the method:
 /// r residual, g correction being found, z preconditioned residual, w its image, p and s
 /// directions.
-template <class Real>
 struct Gradients {
-  using Vec = base::Vec6<Real>;
+  using Vec = base::Vec6<float>;
 
   Vec r;
   Vec r_start;   ///< At the start of the present solve, ...
@@ -75,7 +72,7 @@ struct SearchDirection {
   base::Vec6<double> z;
 };
 
-/// One module's vectors of minimal residuals (src/steps.hpp).
+/// One module's vectors of minimal residuals (src/steps.cpp).
 struct Steps {
   base::Vec6<double> w;  ///< What the polynomial leaves of the residual.
   SearchDirection older;
@@ -83,51 +80,40 @@ struct Steps {
 };
 
 /// Back to rest: no displacement, the facet stuck.
-template <class Real>
-void reset(Node<Real>& node);
+void reset(Node& node);
 
 /// The same for its vectors: the residual is the weight.
-template <class Real>
-Gradients<Real> gradients_at_rest(const Node<Real>& node, const Setup& setup);
+Gradients gradients_at_rest(const Node& node, const Setup& setup);
 
 /// Factor of the diagonal block: K11 of the beams on `faces` and the facet's symmetric tangent.
-template <class Real>
-void factor_diagonal(Node<Real>& node, const Setup& setup, const ContactSetting& contact,
+void factor_diagonal(Node& node, const Setup& setup, const ContactSetting& contact,
                      std::uint8_t faces);
 
 /// The same block with the facet's true tangent.
-template <class Real>
-base::Mat6<double> diagonal_block(const Node<Real>& node, const Setup& setup,
+base::Mat6<double> diagonal_block(const Node& node, const Setup& setup,
                                   const ContactSetting& contact, std::uint8_t faces);
 
 /// Its scalar diagonal (Eq. 14).
-template <class Real>
-base::Vec6<Real> scalar_diagonal(const Node<Real>& node, const Setup& setup,
-                                 const ContactSetting& contact, std::uint8_t faces);
+base::Vec6<float> scalar_diagonal(const Node& node, const Setup& setup,
+                                  const ContactSetting& contact, std::uint8_t faces);
 
 /// Solves with the factor.
-template <class Real>
-base::Vec6<Real> solve_diagonal(const Node<Real>& node, base::Vec6<Real> vector);
+base::Vec6<float> solve_diagonal(const Node& node, base::Vec6<float> vector);
 
 /// Residual at u: weight less beams less facet, in the state in use. Zero on a fixed module.
-template <class Real>
-base::Vec6<double> residual(const Node<Real>& node, const Setup& setup,
-                            const ContactSetting& contact);
+base::Vec6<double> residual(const Node& node, const Setup& setup, const ContactSetting& contact);
 
 /// The force of the facet at u + t g, in the state that the law prescribes there.
-template <class Real>
-base::Vec6<double> facet_force_along(const Node<Real>& node, const ContactSetting& contact,
-                                     const base::Vec6<Real>& g, double t);
+base::Vec6<double> facet_force_along(const Node& node, const ContactSetting& contact,
+                                     const base::Vec6<float>& g, double t);
 
 /// The state that the law prescribes at u + t g.
-template <class Real>
-mechanics::ContactState state_along(const Node<Real>& node, const ContactSetting& contact,
-                                    const base::Vec6<Real>& g, double t);
+mechanics::ContactState state_along(const Node& node, const ContactSetting& contact,
+                                    const base::Vec6<float>& g, double t);
 
 /// How much a residual can change any load ratio: the force at the robot's full extent, and the
 /// torque, carried by one connection. Rigorous where the robot is statically determinate.
-template <class Real>
-double ratio_error(const base::Vec6<Real>& residual, const Setup& setup,
+double ratio_error(const base::Vec6<double>& residual, const Setup& setup,
                    const ContactSetting& contact);
 
 }  // namespace holdfast::agent

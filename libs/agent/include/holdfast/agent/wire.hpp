@@ -46,7 +46,8 @@ enum class MessageType : std::uint8_t {
   kBranchDown,   ///< Down the tree: the parent's displacement, or the force in a loop's cut.
 };
 
-/// What an order asks for. Each has a body for the way down and one for the way up.
+/// What an order asks for. Each has a body for the way down and one for the way up; operations.hpp
+/// has all that is known of them.
 enum class Operation : std::uint8_t {
   kPlan = 1,  ///< Learn one planned cell, find the next.
   kHosts,     ///< Which faces of planned modules touch; who emulates them.
@@ -69,7 +70,7 @@ enum class Operation : std::uint8_t {
   kClusters,  ///< kBegin, and find rigid clusters.
   kForget,    ///< A plan has ended; learn from the first one on.
 };
-inline constexpr int kOperationCount = 20;
+inline constexpr int kOperationCount = static_cast<int>(Operation::kForget);  ///< The last one.
 
 /// Sizes of whole messages, type byte included; 0 for what is not a message. `second` is the byte
 /// after the type and matters for orders and reports only.

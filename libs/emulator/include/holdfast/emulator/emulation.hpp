@@ -87,7 +87,7 @@ std::vector<std::vector<std::uint8_t>> configuration_pages(const model::Robot& r
 /// Was this built with Unicorn? Without, no Emulation may be made.
 bool is_available();
 
-class Robot;
+class EmulatedModules;
 
 class Emulation {
  public:
@@ -113,7 +113,7 @@ class Emulation {
   std::int32_t module_count() const;
 
  private:
-  std::unique_ptr<Robot> robot_;
+  std::unique_ptr<EmulatedModules> modules_;
 };
 
 /// Why options do not fit the robot, if they do not.

@@ -12,6 +12,7 @@
 #include "holdfast/base/result.hpp"
 #include "holdfast/host/team.hpp"
 #include "holdfast/model/cell_index.hpp"
+#include "holdfast/model/loads.hpp"
 #include "holdfast/model/material.hpp"
 
 /// A whole robot with the step that is planned for it: modules, connections, supports.
@@ -70,6 +71,9 @@ class Robot {
 
   const Material& material() const { return material_; }
 
+  /// What acts on the modules from outside: their weight.
+  const Loads& loads() const { return loads_; }
+
   std::int32_t support_z() const { return support_z_; }
 
   std::size_t planned_count() const { return planned_count_; }
@@ -79,7 +83,7 @@ class Robot {
   std::size_t fixed_count() const { return fixed_count_; }
 
  private:
-  Robot() = default;
+  explicit Robot(const Material& material) : material_(material), loads_(weight_loads(material)) {}
 
   /// Finds neighbours and connections, counts supports.
   void connect(const CellIndex& index, host::Team& team);
@@ -88,6 +92,7 @@ class Robot {
   std::vector<Neighbours> neighbours_;
   std::vector<Connection> connections_;
   Material material_;
+  Loads loads_;
   std::int32_t support_z_ = 0;
   std::size_t planned_count_ = 0;
   std::size_t ground_count_ = 0;

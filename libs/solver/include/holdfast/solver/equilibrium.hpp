@@ -14,6 +14,7 @@
 #include "holdfast/mechanics/ground_contact.hpp"
 #include "holdfast/model/robot.hpp"
 #include "holdfast/solver/block_lu.hpp"
+#include "holdfast/solver/precision.hpp"
 
 /// Static equilibrium of a whole robot under its weight: Eq. (13) of [Piranda 2021], exactly.
 ///
@@ -48,10 +49,6 @@ enum class Method : std::uint8_t {
   kDirect,
   kMultigrid,
 };
-
-/// Of multigrid's preconditioner. Single precision suffices but for slender robots; double takes
-/// about twice as long.
-enum class Precision : std::uint8_t { kSingle, kDouble };
 
 struct EquilibriumOptions {
   /// Memory for the solver; a robot that needs more gets the outcome kTooLarge.

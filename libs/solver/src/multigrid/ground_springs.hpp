@@ -8,15 +8,15 @@
 
 #include "holdfast/model/material.hpp"
 #include "kernels.hpp"
-#include "network.hpp"
+#include "reduced_network.hpp"
 #include "springs.hpp"
 
 /// What holds a robot. Contact states change while everything else of a hierarchy stays as it is,
-/// so anchors go from level to level by themselves.
+/// so ground springs go from level to level by themselves.
 namespace holdfast::solver {
 
 /// A spring to something that does not move: the ground, a fixed module.
-struct Anchor {
+struct GroundSpring {
   std::int32_t node = 0;
   std::uint8_t direction = 0;
   double length = 0;  ///< mm
@@ -29,13 +29,14 @@ struct Anchor {
 using GroundStiffness = std::function<Mat(std::uint8_t code)>;
 
 /// Those of the nodes themselves, ascending by node.
-std::vector<Anchor> finest_anchors(const Network& network, const model::Material& material,
-                                   const GroundStiffness& ground);
+std::vector<GroundSpring> finest_ground_springs(const ReducedNetwork& network,
+                                                const model::Material& material,
+                                                const GroundStiffness& ground);
 
 /// Those of the next level's clusters, ascending by node: sums over the members, lengthened like
 /// springs. `seat` says where the members sit.
 template <class Real>
-std::vector<Anchor> coarse_anchors(const std::vector<Anchor>& fine,
-                                   const std::vector<Seat<Real>>& seat);
+std::vector<GroundSpring> coarse_ground_springs(const std::vector<GroundSpring>& fine,
+                                                const std::vector<Seat<Real>>& seat);
 
 }  // namespace holdfast::solver

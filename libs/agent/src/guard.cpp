@@ -1,7 +1,5 @@
 // SPDX-FileCopyrightText: The holdfast authors
 // SPDX-License-Identifier: Apache-2.0
-#pragma once
-
 #include "bits.hpp"
 #include "holdfast/agent/agent.hpp"
 #include "holdfast/agent/legal.hpp"
@@ -21,15 +19,13 @@ namespace holdfast::agent {
 using wire::MessageType;
 using wire::Operation;
 
-template <class Real>
-void BasicAgent<Real>::refuse(int face) {
+void Agent::refuse(int face) {
   refused_count_ = static_cast<std::uint8_t>(refused_count_ < 0xff ? refused_count_ + 1 : 0xff);
   links_[static_cast<std::size_t>(face)].lose();
 }
 
 /// Where an order leads; what it must not lead to has been refused before.
-template <class Real>
-typename BasicAgent<Real>::Course BasicAgent<Real>::course_after(const Order& order) const {
+Agent::Course Agent::course_after(const Order& order) const {
   switch (order.operation) {
     case Operation::kPlan:
     case Operation::kForget:
@@ -52,8 +48,7 @@ typename BasicAgent<Real>::Course BasicAgent<Real>::course_after(const Order& or
 }
 
 /// Of orders: may this one come next?
-template <class Real>
-bool BasicAgent<Real>::is_in_course(const Order& order) const {
+bool Agent::is_in_course(const Order& order) const {
   const Course course = course_;
   if (order.operation == Operation::kVerdict) {  // Said again, it is the same one.
     return course != Course::kAnswered || order.answer == order_.answer;
@@ -94,8 +89,7 @@ bool BasicAgent<Real>::is_in_course(const Order& order) const {
 }
 
 /// Of an equilibrium. What elimination knows of the tree lives until another method begins.
-template <class Real>
-bool BasicAgent<Real>::is_good_begin(const Order& order) const {
+bool Agent::is_good_begin(const Order& order) const {
   if (course_ < Course::kWeighed || course_ == Course::kAnswered) {
     return false;
   }
@@ -110,8 +104,7 @@ bool BasicAgent<Real>::is_good_begin(const Order& order) const {
 }
 
 /// Of messages of the present round, in a stage.
-template <class Real>
-bool BasicAgent<Real>::is_expected(int face, std::span<const std::uint8_t> message) const {
+bool Agent::is_expected(int face, std::span<const std::uint8_t> message) const {
   const bool is_parent = face == parent_ && awaited_ == 0;
   const bool is_child = (children_ & bit(face)) != 0;
   const bool reports = is_sweeping_ && (reports_awaited_ & bit(face)) != 0;
@@ -150,9 +143,8 @@ bool BasicAgent<Real>::is_expected(int face, std::span<const std::uint8_t> messa
 }
 
 /// Of elimination: only what a child's loops, or this module's own, account for.
-template <class Real>
-bool BasicAgent<Real>::is_expected_of_branch(int face, std::span<const std::uint8_t> message,
-                                             bool reports) const {
+bool Agent::is_expected_of_branch(int face, std::span<const std::uint8_t> message,
+                                  bool reports) const {
   if (course_ != Course::kElimination) {
     return false;
   }

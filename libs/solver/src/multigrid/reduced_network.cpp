@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The holdfast authors
 // SPDX-License-Identifier: Apache-2.0
-#include "network.hpp"
+#include "reduced_network.hpp"
 
 #include <algorithm>
 #include <bit>
@@ -8,6 +8,7 @@
 #include <span>
 
 #include "../block_kernels.hpp"
+#include "beam_shapes.hpp"
 #include "holdfast/base/check.hpp"
 #include "kernels.hpp"
 
@@ -39,93 +40,6 @@ Vec6<double> moved(Vec6<double> force, std::size_t direction, double length) {
   force[5] += length * (step[0] * force[1] - step[1] * force[0]);
   return force;
 }
-
-/// How an end of an unloaded beam moves a point of it, by Hermite's cubics: a displacement u moves
-/// it by `linear` u along the axis and by `cubic` u across, and turns it by cubic_rate (step x u);
-/// a rotation t turns it by `linear` t about the axis and by slope_rate t across, and moves it by
-/// slope (t x step). The step leads from the end to the point.
-struct BeamShape {
-  double linear = 0;
-  double cubic = 0;
-  double slope = 0;
-  double cubic_rate = 0;
-  double slope_rate = 0;
-};
-
-BeamShape beam_shape(double pitch, int place, int length) {
-  const double s = static_cast<double>(place) / length;
-  const double span = pitch * length;
-  const double linear = 1 - s;
-  return {.linear = linear,
-          .cubic = 1 - 3 * s * s + 2 * s * s * s,
-          .slope = span * s * linear * linear,
-          .cubic_rate = -6 * s * linear / span,
-          .slope_rate = linear * (1 - 3 * s)};
-}
-
-/// The axis of a direction and the two across, right-handed; the sign of a step.
-struct Axes {
-  explicit Axes(std::size_t direction)
-      : along(direction / 2),
-        next(along == 2 ? 0 : along + 1),
-        last(along == 0 ? 2 : along - 1),
-        sign(direction % 2 == 0 ? 1 : -1) {}
-
-  std::size_t along = 0;
-  std::size_t next = 0;
-  std::size_t last = 0;
-  double sign = 1;
-};
-
-/// Adds to a point's motion what an end of its beam does to it; the direction leads from that end.
-void add_motion(const BeamShape& shape, std::size_t direction, const Vec6<double>& end,
-                Vec6<double>& u) {
-  const auto [a, j, k, sign] = Axes(direction);
-  const double slope = sign * shape.slope;
-  const double rate = sign * shape.cubic_rate;
-  u[a] += shape.linear * end[a];
-  u[j] += shape.cubic * end[j] + slope * end[k + 3];
-  u[k] += shape.cubic * end[k] - slope * end[j + 3];
-  u[a + 3] += shape.linear * end[a + 3];
-  u[j + 3] += shape.slope_rate * end[j + 3] - rate * end[k];
-  u[k + 3] += shape.slope_rate * end[k + 3] + rate * end[j];
-}
-
-/// Adds to the load of an end what it takes of a force on that point: the transpose.
-void add_share(const BeamShape& shape, std::size_t direction, const Vec6<double>& force,
-               Vec6<double>& load) {
-  const auto [a, j, k, sign] = Axes(direction);
-  const double slope = sign * shape.slope;
-  const double rate = sign * shape.cubic_rate;
-  load[a] += shape.linear * force[a];
-  load[j] += shape.cubic * force[j] + rate * force[k + 3];
-  load[k] += shape.cubic * force[k] - rate * force[j + 3];
-  load[a + 3] += shape.linear * force[a + 3];
-  load[j + 3] += shape.slope_rate * force[j + 3] - slope * force[k];
-  load[k + 3] += shape.slope_rate * force[k + 3] + slope * force[j];
-}
-
-/// Shapes of beams by length and place; those of a length that was asked for stay.
-class ShapeTable {
- public:
-  explicit ShapeTable(double pitch) : pitch_(pitch), shapes_(kBeamLengthMax + 1) {}
-
-  /// By place, from the end on.
-  const std::vector<BeamShape>& of(int length) {
-    std::vector<BeamShape>& shapes = shapes_[at(length)];
-    for (int place = 0; shapes.size() <= at(length); ++place) {
-      shapes.push_back(beam_shape(pitch_, place, length));
-    }
-    return shapes;
-  }
-
-  /// Of a length that was asked for before.
-  const std::vector<BeamShape>& known(int length) const { return shapes_[at(length)]; }
-
- private:
-  double pitch_ = 0;
-  std::vector<std::vector<BeamShape>> shapes_;
-};
 
 /// The box around some cells.
 struct Extent {
@@ -194,7 +108,7 @@ class Builder {
         is_gone_(robot.modules().size(), 0),
         degree_(robot.modules().size()) {}
 
-  Network build() {
+  ReducedNetwork build() {
     count_connections();
     take_hanging();
     take_runs();
@@ -362,7 +276,7 @@ class Builder {
   void colour_nodes() {
     if (network_.has_long_beams) {
       run_axis_.assign(degree_.size(), 3);
-      for (const Network::Run& run : network_.runs) {
+      for (const ReducedNetwork::Run& run : network_.runs) {
         std::size_t module = at(run.from);
         for (int i = 1; i < run.length; ++i) {
           module = next(module, run.direction);
@@ -442,7 +356,7 @@ class Builder {
   std::vector<std::uint8_t> run_axis_;
   std::vector<Keyed> items_;
   std::vector<std::int32_t> node_of_;
-  Network network_;
+  ReducedNetwork network_;
 };
 
 /// K^-1 as a matrix; the blocks of a beam are regular.
@@ -495,7 +409,7 @@ void bend(const RunFactor& factor, std::span<Vec6<double>> load) {
 }
 
 /// Of one run. Most carry nothing but themselves, and bend alike.
-void bend_run(const Robot& robot, const Network::Run& run, const RunFactor& factor,
+void bend_run(const Robot& robot, const ReducedNetwork::Run& run, const RunFactor& factor,
               std::vector<Vec6<double>>& load) {
   std::array<std::size_t, kBeamLengthMax> modules{};
   std::array<Vec6<double>, kBeamLengthMax> own;
@@ -517,7 +431,7 @@ void bend_run(const Robot& robot, const Network::Run& run, const RunFactor& fact
 }
 
 /// Carries the load of a run's inner modules to its ends.
-void carry_to_ends(const Robot& robot, const Network::Run& run,
+void carry_to_ends(const Robot& robot, const ReducedNetwork::Run& run,
                    const std::vector<BeamShape>& shapes, std::vector<Vec6<double>>& load) {
   Vec6<double> near{};
   Vec6<double> far{};
@@ -532,7 +446,7 @@ void carry_to_ends(const Robot& robot, const Network::Run& run,
 }
 
 /// All runs and hanging modules: from loads to what bends while the ends, or the host, are held.
-void bend_alone(const Robot& robot, Team& team, Network& network) {
+void bend_alone(const Robot& robot, Team& team, ReducedNetwork& network) {
   const auto beam = long_beam(robot.material(), 1);
   std::array<std::vector<RunFactor>, 6> factors;
   std::array<Mat6<double>, 6> inverse_11;
@@ -540,7 +454,7 @@ void bend_alone(const Robot& robot, Team& team, Network& network) {
     inverse_11[d] = inverse_of(mechanics::block_11(beam, direction_of(d)));
     factors[d].resize(kBeamLengthMax + 1);
   }
-  for (const Network::Run& run : network.runs) {
+  for (const ReducedNetwork::Run& run : network.runs) {
     RunFactor& factor = factors[run.direction][at(run.length)];
     if (factor.pivot.empty()) {
       factor = factorize_run(beam, run.direction, run.length);
@@ -550,7 +464,7 @@ void bend_alone(const Robot& robot, Team& team, Network& network) {
     }
   }
   team.share(0, network.runs.size(), [&](std::size_t begin, std::size_t end) {
-    for (const Network::Run& run : std::span(network.runs).subspan(begin, end - begin)) {
+    for (const ReducedNetwork::Run& run : std::span(network.runs).subspan(begin, end - begin)) {
       bend_run(robot, run, factors[run.direction][at(run.length)], network.load);
     }
   });
@@ -561,7 +475,7 @@ void bend_alone(const Robot& robot, Team& team, Network& network) {
   });
 }
 
-void recover_run(const Robot& robot, const Network& network, const Network::Run& run,
+void recover_run(const Robot& robot, const ReducedNetwork& network, const ReducedNetwork::Run& run,
                  const std::vector<BeamShape>& shapes, std::vector<Vec6<double>>& displacement) {
   std::array<std::size_t, kBeamLengthMax + 1> modules{};
   modules[0] = at(run.from);
@@ -587,8 +501,8 @@ mechanics::BeamStiffness<double> long_beam(const model::Material& material, int 
   return mechanics::beam_stiffness(section);
 }
 
-Network make_network(const Robot& robot, Team& team) {
-  Network network = Builder(robot, team).build();
+ReducedNetwork make_reduced_network(const Robot& robot, Team& team) {
+  ReducedNetwork network = Builder(robot, team).build();
   if (network.is_reduced()) {
     const Vec6<double> weight = {0, 0, -model::module_weight_n(robot.material()), 0, 0, 0};
     carry(robot, team, std::vector<Vec6<double>>(robot.modules().size(), weight), network);
@@ -596,7 +510,8 @@ Network make_network(const Robot& robot, Team& team) {
   return network;
 }
 
-void carry(const Robot& robot, Team& team, std::vector<Vec6<double>> load, Network& network) {
+void carry(const Robot& robot, Team& team, std::vector<Vec6<double>> load,
+           ReducedNetwork& network) {
   network.load = std::move(load);
   const double pitch = robot.material().pitch_mm;
   for (const auto& [module, direction] : network.hanging) {
@@ -604,20 +519,20 @@ void carry(const Robot& robot, Team& team, std::vector<Vec6<double>> load, Netwo
     base::add_to(network.load[host], moved(network.load[at(module)], direction ^ 1U, pitch));
   }
   ShapeTable shapes(pitch);
-  for (const Network::Run& run : network.runs) {
+  for (const ReducedNetwork::Run& run : network.runs) {
     carry_to_ends(robot, run, shapes.of(run.length), network.load);
   }
   bend_alone(robot, team, network);
 }
 
-void recover(const Robot& robot, const Network& network, Team& team,
+void recover(const Robot& robot, const ReducedNetwork& network, Team& team,
              std::vector<Vec6<double>>& displacement) {
   ShapeTable shapes(robot.material().pitch_mm);
-  for (const Network::Run& run : network.runs) {
+  for (const ReducedNetwork::Run& run : network.runs) {
     shapes.of(run.length);
   }
   team.share(0, network.runs.size(), [&](std::size_t begin, std::size_t end) {
-    for (const Network::Run& run : std::span(network.runs).subspan(begin, end - begin)) {
+    for (const ReducedNetwork::Run& run : std::span(network.runs).subspan(begin, end - begin)) {
       recover_run(robot, network, run, shapes.known(run.length), displacement);
     }
   });

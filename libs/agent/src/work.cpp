@@ -1,21 +1,17 @@
 // SPDX-FileCopyrightText: The holdfast authors
 // SPDX-License-Identifier: Apache-2.0
-#pragma once
-
 #include "bits.hpp"
 #include "branches.hpp"
 #include "equilibrium.hpp"
 #include "holdfast/agent/agent.hpp"
 #include "methods.hpp"
-#include "steps.hpp"
 
 /// What the operations do on one module: before the exchange (prepare) and after it (conclude).
 namespace holdfast::agent {
 
 using wire::Operation;
 
-template <class Real>
-void BasicAgent<Real>::prepare(const Order& order) {
+void Agent::prepare(const Order& order) {
   switch (order.operation) {
     case Operation::kPlan:
       if (order.index == kNoPlanned) {
@@ -64,8 +60,7 @@ void BasicAgent<Real>::prepare(const Order& order) {
 }
 
 /// The same for the operations of all methods but elimination.
-template <class Real>
-void BasicAgent<Real>::prepare_solve(const Order& order) {
+void Agent::prepare_solve(const Order& order) {
   switch (order.operation) {
     case Operation::kClusters:
       begin_equilibrium(order);
@@ -88,8 +83,8 @@ void BasicAgent<Real>::prepare_solve(const Order& order) {
     case Operation::kJacobi:
     case Operation::kSlope:
       for (int i = 0; i < node_count(); ++i) {
-        Node<Real>& node = nodes_[static_cast<std::size_t>(i)];
-        node.shared = equilibrium::as_sent(gradients_of(i).g);
+        Node& node = nodes_[static_cast<std::size_t>(i)];
+        node.shared = gradients_of(i).g;
       }
       break;
     default:
@@ -97,8 +92,7 @@ void BasicAgent<Real>::prepare_solve(const Order& order) {
   }
 }
 
-template <class Real>
-Report BasicAgent<Real>::conclude(const Order& order) {
+Report Agent::conclude(const Order& order) {
   switch (order.operation) {
     case Operation::kPlan:
     case Operation::kForget:
@@ -140,8 +134,7 @@ Report BasicAgent<Real>::conclude(const Order& order) {
 }
 
 /// The same for the operations of all methods but elimination.
-template <class Real>
-Report BasicAgent<Real>::conclude_solve(const Order& order) {
+Report Agent::conclude_solve(const Order& order) {
   switch (order.operation) {
     case Operation::kClusters:
       return {.count = work_.clustered.link_count, .number = work_.clustered.stray_count};
@@ -168,8 +161,7 @@ Report BasicAgent<Real>::conclude_solve(const Order& order) {
 
 /// What touches the planned module just learned, and the next announced cell after it; or a plan
 /// that has ended: it is withdrawn, or this module sits in its cell.
-template <class Real>
-Report BasicAgent<Real>::plan_report() const {
+Report Agent::plan_report() const {
   Report report;
   const bool has_last = order_.operation == Operation::kPlan && order_.index != kNoPlanned;
   if (has_last && order_.index < planned_.count()) {
@@ -196,23 +188,21 @@ Report BasicAgent<Real>::plan_report() const {
   return report;
 }
 
-template <class Real>
-void BasicAgent<Real>::prepare_hosted() {
+void Agent::prepare_hosted() {
   nodes_[0].is_fixed = identity_.is_fixed;
   nodes_[0].is_ground = !identity_.is_fixed && nodes_[0].cell.z == setup_.support_z;
   for (int i = 0; i < planned_.hosted_count(); ++i) {
-    Node<Real>& node = nodes_[static_cast<std::size_t>(1 + i)];
+    Node& node = nodes_[static_cast<std::size_t>(1 + i)];
     node = {};
     node.cell = planned_.cell(planned_.hosted(i));
     node.is_ground = node.cell.z == setup_.support_z;
   }
 }
 
-template <class Real>
-Report BasicAgent<Real>::mass_report() const {
+Report Agent::mass_report() const {
   Report report;
   for (int i = 0; i < node_count(); ++i) {
-    const Node<Real>& node = nodes_[static_cast<std::size_t>(i)];
+    const Node& node = nodes_[static_cast<std::size_t>(i)];
     const base::Cell away = {node.cell.x - root_cell_.x, node.cell.y - root_cell_.y,
                              node.cell.z - root_cell_.z};
     const auto size = [](std::int32_t value) { return value < 0 ? -value : value; };
@@ -226,12 +216,11 @@ Report BasicAgent<Real>::mass_report() const {
   return report;
 }
 
-template <class Real>
-Report BasicAgent<Real>::angles_report() const {
+Report Agent::angles_report() const {
   const FeetCheck check(setup_, order_.module_count, order_.cell_sum);
   Report report;
   for (int i = 0; i < node_count(); ++i) {
-    const Node<Real>& node = nodes_[static_cast<std::size_t>(i)];
+    const Node& node = nodes_[static_cast<std::size_t>(i)];
     if (node.is_ground) {
       report.feet = check.merge(
           report.feet, check.of_foot(node.cell.x - root_cell_.x, node.cell.y - root_cell_.y));
@@ -241,8 +230,7 @@ Report BasicAgent<Real>::angles_report() const {
 }
 
 /// Adds what a child has reported.
-template <class Real>
-void BasicAgent<Real>::add_report(Report& into, const Report& theirs) const {
+void Agent::add_report(Report& into, const Report& theirs) const {
   if (order_.operation == Operation::kAngles) {
     const FeetCheck check(setup_, order_.module_count, order_.cell_sum);
     into.feet = check.merge(into.feet, theirs.feet);
@@ -251,11 +239,10 @@ void BasicAgent<Real>::add_report(Report& into, const Report& theirs) const {
   }
 }
 
-template <class Real>
-Report BasicAgent<Real>::corners_report() const {
+Report Agent::corners_report() const {
   Report report;
   for (int i = 0; i < node_count(); ++i) {
-    const Node<Real>& node = nodes_[static_cast<std::size_t>(i)];
+    const Node& node = nodes_[static_cast<std::size_t>(i)];
     Report own;
     if (node.is_fixed) {
       own.corners = mechanics::fixed_support();

@@ -1,7 +1,5 @@
 // SPDX-FileCopyrightText: The holdfast authors
 // SPDX-License-Identifier: Apache-2.0
-#pragma once
-
 #include "bits.hpp"
 #include "equilibrium.hpp"
 #include "holdfast/agent/agent.hpp"
@@ -35,15 +33,14 @@ namespace holdfast::agent {
 /// The lower end of the interval in which the polynomial is good is this over (m + 1)^2.
 inline constexpr double kStepSpread = 3;
 
-template <class Real>
-void BasicAgent<Real>::begin_step(const Order& order) {
+void Agent::begin_step(const Order& order) {
   middle_ = {};
   const auto c = static_cast<double>(order.reals[0]);
   const auto a = static_cast<double>(order.reals[1]);
   const auto b = static_cast<double>(order.reals[2]);
   const bool restarts = (order.flags & kRestart) != 0;
   for (int i = 0; i < joined_count(); ++i) {
-    Node<Real>& node = nodes_[static_cast<std::size_t>(i)];
+    Node& node = nodes_[static_cast<std::size_t>(i)];
     Steps& steps = steps_of(i);
     SearchDirection& newer = steps.newer;
     SearchDirection& older = steps.older;
@@ -75,17 +72,15 @@ void BasicAgent<Real>::begin_step(const Order& order) {
   clear_clusters();
 }
 
-template <class Real>
-void BasicAgent<Real>::share_high_part(Node<Real>& node) {
+void Agent::share_high_part(Node& node) {
   node.force = {};
   for (std::size_t k = 0; k < 6; ++k) {
-    node.shared[k] = static_cast<Real>(leading_part(node.u[k]));
+    node.shared[k] = static_cast<float>(leading_part(node.u[k]));
   }
 }
 
 /// The forces at the new place are complete: contact states, then what the step has done.
-template <class Real>
-void BasicAgent<Real>::find_residuals() {
+void Agent::find_residuals() {
   if (is_apart()) {
     add_remote_beams();
   }
@@ -95,8 +90,7 @@ void BasicAgent<Real>::find_residuals() {
 }
 
 /// The contact state that belongs to u.
-template <class Real>
-void BasicAgent<Real>::follow_state(Node<Real>& node) {
+void Agent::follow_state(Node& node) {
   const bool is_kept = kHasAllMethods && order_.operation == wire::Operation::kStep &&
                        (order_.flags & kKeepStates) != 0;
   node.wanted = is_kept ? node.state : state_along(node, contact_, {}, 0);
@@ -106,9 +100,8 @@ void BasicAgent<Real>::follow_state(Node<Real>& node) {
   }
 }
 
-template <class Real>
-void BasicAgent<Real>::find_residual(int node_index) {
-  Node<Real>& node = nodes_[static_cast<std::size_t>(node_index)];
+void Agent::find_residual(int node_index) {
+  Node& node = nodes_[static_cast<std::size_t>(node_index)];
   node.has_changed = false;
   follow_state(node);
   if (!kHasAllMethods || order_.operation == wire::Operation::kTreeStep) {
@@ -125,39 +118,34 @@ void BasicAgent<Real>::find_residual(int node_index) {
 }
 
 /// A term goes out as the neighbours will have it, and into M^-1 r.
-template <class Real>
-void BasicAgent<Real>::share_term(Node<Real>& node, Steps& steps) {
-  node.shared = equilibrium::as_sent(node.shared);
+void Agent::share_term(Node& node, Steps& steps) {
   for (std::size_t k = 0; k < 6; ++k) {
     steps.newer.z[k] -= static_cast<double>(node.shared[k]);
   }
 }
 
 /// The polynomial's first term for the present residual, or for what w has.
-template <class Real>
-void BasicAgent<Real>::start_terms(int node_index) {
-  const Node<Real>& node = nodes_[static_cast<std::size_t>(node_index)];
+void Agent::start_terms(int node_index) {
+  const Node& node = nodes_[static_cast<std::size_t>(node_index)];
   steps_of(node_index).w = residual(node, setup_, contact_);
   first_term(node_index);
 }
 
-template <class Real>
-void BasicAgent<Real>::first_term(int node_index) {
-  Node<Real>& node = nodes_[static_cast<std::size_t>(node_index)];
+void Agent::first_term(int node_index) {
+  Node& node = nodes_[static_cast<std::size_t>(node_index)];
   Steps& steps = steps_of(node_index);
   const equilibrium::Interval interval(order_.count, kStepSpread);
-  const base::Vec6<Real> first = solve_diagonal(node, base::converted<Real>(steps.w));
+  const base::Vec6<float> first = solve_diagonal(node, base::converted<float>(steps.w));
   for (std::size_t k = 0; k < 6; ++k) {
-    node.shared[k] = static_cast<Real>(static_cast<double>(first[k]) / interval.centre);
+    node.shared[k] = static_cast<float>(static_cast<double>(first[k]) / interval.centre);
   }
   share_term(node, steps);
   rho_ = static_cast<float>(interval.half / interval.centre);
 }
 
 /// The facet's force of the last term comes off w; those of the beams are off already.
-template <class Real>
-void BasicAgent<Real>::subtract_facet(int node_index) {
-  const Node<Real>& node = nodes_[static_cast<std::size_t>(node_index)];
+void Agent::subtract_facet(int node_index) {
+  const Node& node = nodes_[static_cast<std::size_t>(node_index)];
   if (!node.is_ground) {
     return;
   }
@@ -169,23 +157,22 @@ void BasicAgent<Real>::subtract_facet(int node_index) {
 }
 
 /// The next term.
-template <class Real>
-void BasicAgent<Real>::next_terms() {
+void Agent::next_terms() {
   const equilibrium::Interval interval(order_.count, kStepSpread);
   const double rho = 1 / (2 * interval.centre / interval.half - static_cast<double>(rho_));
   const double keep = rho * static_cast<double>(rho_);
   const double gain = 2 * rho / interval.half;
   for (int i = 0; i < joined_count(); ++i) {
-    Node<Real>& node = nodes_[static_cast<std::size_t>(i)];
+    Node& node = nodes_[static_cast<std::size_t>(i)];
     Steps& steps = steps_of(i);
     if (node.is_fixed) {
       continue;
     }
     subtract_facet(i);
-    const base::Vec6<Real> term = solve_diagonal(node, base::converted<Real>(steps.w));
+    const base::Vec6<float> term = solve_diagonal(node, base::converted<float>(steps.w));
     for (std::size_t k = 0; k < 6; ++k) {
-      node.shared[k] = static_cast<Real>(keep * static_cast<double>(node.shared[k]) +
-                                         gain * static_cast<double>(term[k]));
+      node.shared[k] = static_cast<float>(keep * static_cast<double>(node.shared[k]) +
+                                          gain * static_cast<double>(term[k]));
     }
     share_term(node, steps);
   }
@@ -194,12 +181,11 @@ void BasicAgent<Real>::next_terms() {
 
 /// What every step reports: the bound on the error of load ratios that the residual means, the
 /// largest of them, and the facets.
-template <class Real>
-Report BasicAgent<Real>::tree_step_report() const {
+Report Agent::tree_step_report() const {
   Report report;
   double error = 0;
   for (int i = 0; i < node_count(); ++i) {
-    const Node<Real>& node = nodes_[static_cast<std::size_t>(i)];
+    const Node& node = nodes_[static_cast<std::size_t>(i)];
     report.extent = static_cast<std::uint16_t>(report.extent + (node.has_changed ? 1 : 0));
     equilibrium::report_facet(report, node);
     error += ratio_error(residual(node, setup_, contact_), setup_, contact_);
@@ -213,19 +199,18 @@ Report BasicAgent<Real>::tree_step_report() const {
 
 /// And the products with v = p for the least energy, v = D^-1 q for the least residual:
 /// (r, v), (q, v), (q_older, v).
-template <class Real>
-Report BasicAgent<Real>::step_report() const {
+Report Agent::step_report() const {
   Report report = tree_step_report();
   const bool is_residual = (order_.flags & kLeastResidual) != 0;
   for (int i = 0; i < joined_count(); ++i) {
-    const Node<Real>& node = nodes_[static_cast<std::size_t>(i)];
+    const Node& node = nodes_[static_cast<std::size_t>(i)];
     if (node.is_fixed) {
       continue;
     }
     const Steps& steps = steps_of(i);
     base::Vec6<double> test = steps.newer.p;
     if (is_residual) {
-      test = base::converted<double>(solve_diagonal(node, base::converted<Real>(steps.newer.q)));
+      test = base::converted<double>(solve_diagonal(node, base::converted<float>(steps.newer.q)));
     }
     report.products[0] += base::dot(residual(node, setup_, contact_), test);
     report.products[1] += base::dot(steps.newer.q, test);

@@ -9,7 +9,7 @@
 /// The USARTs follow the port numbers of Blinky Blocks 2: front 0 is USART1, bottom 1 USART2, right
 /// 2, left 3, back 4, top 5. The pins are ours, as its schematics are not public: all of them exist
 /// on the package of 48 pins; change them here.
-namespace holdfast::stm32f0 {
+namespace holdfast::boards::stm32f0 {
 
 struct Line {
   std::uint32_t usart;  ///< Base address.
@@ -36,4 +36,4 @@ inline constexpr std::array<Line, 6> kLines = {{
 inline constexpr std::uint32_t kClockHz = 48'000'000;
 inline constexpr std::uint32_t kBaudDivisor = (kClockHz + 57'600) / 115'200;
 
-}  // namespace holdfast::stm32f0
+}  // namespace holdfast::boards::stm32f0

@@ -1,7 +1,5 @@
 // SPDX-FileCopyrightText: The holdfast authors
 // SPDX-License-Identifier: Apache-2.0
-#pragma once
-
 #include "bits.hpp"
 #include "holdfast/agent/agent.hpp"
 #include "methods.hpp"
@@ -28,14 +26,12 @@ using wire::Writer;
 /// Joins and echoes begin with the type and the round.
 inline constexpr std::size_t kRoundBytes = 7;
 
-template <class Real>
-void BasicAgent<Real>::start_wave(std::uint8_t stage) {
+void Agent::start_wave(std::uint8_t stage) {
   root_cell_ = nodes_[0].cell;
   begin_stage(stage, -1, 0);
 }
 
-template <class Real>
-void BasicAgent<Real>::begin_stage(std::uint8_t stage, int parent, std::uint16_t hops) {
+void Agent::begin_stage(std::uint8_t stage, int parent, std::uint16_t hops) {
   stage_ = stage;
   phase_ = stage == kFirstStage ? Phase::kCoordinates
            : stage == kFarStage ? Phase::kElection
@@ -68,8 +64,7 @@ void BasicAgent<Real>::begin_stage(std::uint8_t stage, int parent, std::uint16_t
   await_less(-1);
 }
 
-template <class Real>
-void BasicAgent<Real>::take_join(int face, std::span<const std::uint8_t> message) {
+void Agent::take_join(int face, std::span<const std::uint8_t> message) {
   Reader in(message, kRoundBytes);
   const Round round = peer_round_[static_cast<std::size_t>(face)];
   const std::uint8_t stage = in.u8();
@@ -101,8 +96,7 @@ void BasicAgent<Real>::take_join(int face, std::span<const std::uint8_t> message
   }
 }
 
-template <class Real>
-void BasicAgent<Real>::take_echo(int face, std::span<const std::uint8_t> message) {
+void Agent::take_echo(int face, std::span<const std::uint8_t> message) {
   Reader in(message, kRoundBytes);
   if (in.u8() != stage_) {
     return;
@@ -120,8 +114,7 @@ void BasicAgent<Real>::take_echo(int face, std::span<const std::uint8_t> message
 }
 
 /// One neighbour less to wait for; -1 only looks.
-template <class Real>
-void BasicAgent<Real>::await_less(int face) {
+void Agent::await_less(int face) {
   if (face >= 0) {
     if ((awaited_ & bit(face)) == 0) {
       return;
@@ -147,8 +140,7 @@ void BasicAgent<Real>::await_less(int face) {
 }
 
 /// Once the wave has come back to where it started.
-template <class Real>
-bool BasicAgent<Real>::end_stage() {
+bool Agent::end_stage() {
   if (!is_stage_over_) {
     return false;
   }
@@ -172,8 +164,7 @@ bool BasicAgent<Real>::end_stage() {
   return true;
 }
 
-template <class Real>
-void BasicAgent<Real>::take_appointment(std::span<const std::uint8_t> message) {
+void Agent::take_appointment(std::span<const std::uint8_t> message) {
   Reader in(message);
   const std::uint8_t stage = in.u8();
   const std::uint32_t id = in.u32();
@@ -199,8 +190,7 @@ void BasicAgent<Real>::take_appointment(std::span<const std::uint8_t> message) {
 
 /// One step towards the wave's root: of the neighbours nearer to it the one that is nearest to the
 /// place half way between it and `end`.
-template <class Real>
-int BasicAgent<Real>::face_towards_root(const base::Cell& end) const {
+int Agent::face_towards_root(const base::Cell& end) const {
   int best = parent_;
   std::int64_t least = ~(std::int64_t{1} << 63U);
   for (const base::Direction direction : base::kDirections) {
@@ -220,16 +210,14 @@ int BasicAgent<Real>::face_towards_root(const base::Cell& end) const {
   return best;
 }
 
-template <class Real>
-void BasicAgent<Real>::take_mark(std::span<const std::uint8_t> message) {
+void Agent::take_mark(std::span<const std::uint8_t> message) {
   Reader in(message);
   const std::uint16_t hops = in.u16();
   mark(hops, in.cell());
 }
 
 /// So many hops more to the middle of the way from `end` to the wave's root.
-template <class Real>
-void BasicAgent<Real>::mark(std::uint16_t hops, const base::Cell& end) {
+void Agent::mark(std::uint16_t hops, const base::Cell& end) {
   if (hops == 0 || parent_ < 0) {
     start_wave(kTreeStage);
     return;

@@ -1,7 +1,5 @@
 // SPDX-FileCopyrightText: The holdfast authors
 // SPDX-License-Identifier: Apache-2.0
-#pragma once
-
 #include "bits.hpp"
 #include "equilibrium.hpp"
 #include "holdfast/agent/agent.hpp"
@@ -40,8 +38,7 @@ namespace holdfast::agent {
 inline constexpr double kHeldShare = 0.5;
 
 /// Do planned modules stand apart in the present exchange?
-template <class Real>
-bool BasicAgent<Real>::is_apart() const {
+bool Agent::is_apart() const {
   if (!kHasAllMethods || !planned_.is_any_remote()) {
     return false;
   }
@@ -60,19 +57,12 @@ bool BasicAgent<Real>::is_apart() const {
 }
 
 /// Nodes with a part in the polynomial.
-template <class Real>
-int BasicAgent<Real>::joined_count() const {
-  return is_apart() ? 1 : node_count();
-}
+int Agent::joined_count() const { return is_apart() ? 1 : node_count(); }
 
-template <class Real>
-Node<Real>& BasicAgent<Real>::planned_node(int k) {
-  return nodes_[static_cast<std::size_t>(planned_.slot_of(k))];
-}
+Node& Agent::planned_node(int k) { return nodes_[static_cast<std::size_t>(planned_.slot_of(k))]; }
 
 /// Behind a step's order: the forces on planned modules at rest go up to their hosts.
-template <class Real>
-void BasicAgent<Real>::begin_condensing() {
+void Agent::begin_condensing() {
   planned_force_ = {};
   planned_up_awaited_ = 0;
   for (int k = 0; k < planned_.count(); ++k) {
@@ -93,8 +83,7 @@ void BasicAgent<Real>::begin_condensing() {
 }
 
 /// All forces from below are here: on to the host, or from it down again.
-template <class Real>
-void BasicAgent<Real>::pass_condensed() {
+void Agent::pass_condensed() {
   send_planned_up();
   condense();
   for (int i = 0; i < planned_.hosted_count(); ++i) {
@@ -112,8 +101,7 @@ void BasicAgent<Real>::pass_condensed() {
 }
 
 /// u_p of all planned modules emulated here, in the contact states that belong to it.
-template <class Real>
-void BasicAgent<Real>::condense() {
+void Agent::condense() {
   constexpr int kStateRounds = 20;
   for (int i = 1; i < node_count(); ++i) {
     nodes_[static_cast<std::size_t>(i)].has_changed = false;
@@ -123,7 +111,7 @@ void BasicAgent<Real>::condense() {
     is_settled = true;
     solve_hosted();
     for (int i = 1; i < node_count(); ++i) {
-      Node<Real>& node = nodes_[static_cast<std::size_t>(i)];
+      Node& node = nodes_[static_cast<std::size_t>(i)];
       const mechanics::ContactState before = node.state;
       follow_state(node);
       is_settled = is_settled && node.state == before;
@@ -132,8 +120,7 @@ void BasicAgent<Real>::condense() {
 }
 
 /// Gauss and Seidel, module by module: exact at once for one alone, and there are five at most.
-template <class Real>
-void BasicAgent<Real>::solve_hosted() {
+void Agent::solve_hosted() {
   constexpr int kPassesMax = 1000;
   constexpr double kLeastMove = 1e-14;
   double move = 1;
@@ -141,7 +128,7 @@ void BasicAgent<Real>::solve_hosted() {
   for (int pass = 0; pass < kPassesMax && move > kLeastMove * size; ++pass) {
     move = 0;
     for (int i = 1; i < node_count(); ++i) {
-      Node<Real>& node = nodes_[static_cast<std::size_t>(i)];
+      Node& node = nodes_[static_cast<std::size_t>(i)];
       node.force = force_on_hosted(i);
       System system(diagonal_block(node, setup_, contact_, node_faces(i)));
       system.factor();
@@ -161,8 +148,7 @@ void BasicAgent<Real>::solve_hosted() {
 
 /// All beams of a planned module emulated here; those to other modules have left their force at
 /// u_p = 0 in planned_force_.
-template <class Real>
-base::Vec6<double> BasicAgent<Real>::force_on_hosted(int node_index) const {
+base::Vec6<double> Agent::force_on_hosted(int node_index) const {
   const int k = planned_.hosted(node_index - 1);
   const base::Vec6<double>& own = nodes_[static_cast<std::size_t>(node_index)].u;
   base::Vec6<double> force = planned_force_[static_cast<std::size_t>(k)];
@@ -178,8 +164,7 @@ base::Vec6<double> BasicAgent<Real>::force_on_hosted(int node_index) const {
   return force;
 }
 
-template <class Real>
-void BasicAgent<Real>::send_remote_down(std::uint8_t label, const base::Vec6<float>& part) {
+void Agent::send_remote_down(std::uint8_t label, const base::Vec6<float>& part) {
   for (int face = 0; face < base::kDirectionCount; ++face) {
     if ((children_ & bit(face)) != 0 && planned_.is_needed_below(face, label & sweep::kIndexMask)) {
       send(face, sweep::vector_message(wire::MessageType::kPlannedDown, label, part));
@@ -187,13 +172,12 @@ void BasicAgent<Real>::send_remote_down(std::uint8_t label, const base::Vec6<flo
   }
 }
 
-template <class Real>
-void BasicAgent<Real>::take_remote_down(std::uint8_t label, const base::Vec6<float>& part) {
+void Agent::take_remote_down(std::uint8_t label, const base::Vec6<float>& part) {
   const int k = label & sweep::kIndexMask;
   if (!planned_.is_from_above(k)) {
     return;
   }
-  Node<Real>& node = planned_node(k);
+  Node& node = planned_node(k);
   const bool is_leading = (label & sweep::kLeading) != 0;
   for (std::size_t j = 0; j < 6; ++j) {
     node.u[j] = static_cast<double>(part[j]) + (is_leading ? 0 : node.u[j]);
@@ -205,33 +189,29 @@ void BasicAgent<Real>::take_remote_down(std::uint8_t label, const base::Vec6<flo
 }
 
 /// Does the present exchange need what hosts send? Of a step it is the second.
-template <class Real>
-bool BasicAgent<Real>::needs_hosts() const {
+bool Agent::needs_hosts() const {
   const bool is_step = order_.operation == wire::Operation::kStep;
   return !is_apart() || (is_step && exchanges_left_ == exchanges_behind_ + 1);
 }
 
-template <class Real>
-bool BasicAgent<Real>::is_waiting_for_hosts() const {
+bool Agent::is_waiting_for_hosts() const {
   const bool is_missing = (planned_here_ & planned_.from_above()) != planned_.from_above();
   return needs_hosts() && (is_missing || (is_apart() && planned_up_awaited_ != 0));
 }
 
 /// Do planned modules stand still in the polynomial of the step under way?
-template <class Real>
-bool BasicAgent<Real>::holds_planned() const {
+bool Agent::holds_planned() const {
   return is_apart() && order_.operation == wire::Operation::kStep &&
          (order_.flags & kHoldPlanned) != 0;
 }
 
 /// In the polynomials a planned module stands still, in those of steps its beams are weaker.
-template <class Real>
-void BasicAgent<Real>::add_beam_apart(int face) {
+void Agent::add_beam_apart(int face) {
   const auto direction = static_cast<base::Direction>(face);
   const Exchanged what = exchanged();
   if (what == Exchanged::kGradient) {
-    base::add_to(gradients_of(0).image, mechanics::end_force(equilibrium::beam_of(setup_, Real{}),
-                                                             direction, nodes_[0].shared, {}));
+    base::add_to(gradients_of(0).image,
+                 mechanics::end_force(setup_.beam_float, direction, nodes_[0].shared, {}));
   } else if (what == Exchanged::kTerm && holds_planned()) {
     const base::Vec6<double> force =
         mechanics::end_force(setup_.beam, direction, base::converted<double>(nodes_[0].shared), {});
@@ -242,9 +222,8 @@ void BasicAgent<Real>::add_beam_apart(int face) {
 }
 
 /// The beams between this module and planned ones, at u.
-template <class Real>
-void BasicAgent<Real>::add_remote_beams() {
-  Node<Real>& node = nodes_[0];
+void Agent::add_remote_beams() {
+  Node& node = nodes_[0];
   for (int k = 0; k < planned_.count(); ++k) {
     const int face = planned_.own_face(k);
     if (face < 0) {

@@ -23,7 +23,7 @@
 /// one colour share a beam, and a lattice needs two colours.
 namespace holdfast::solver {
 
-struct Network {
+struct ReducedNetwork {
   std::size_t node_count = 0;
   std::vector<std::size_t> colour_start;  ///< First node of each colour, then node_count.
   std::vector<std::int32_t> module;       ///< Node -> module.
@@ -59,14 +59,14 @@ struct Network {
 };
 
 /// Under the robot's own weight.
-Network make_network(const model::Robot& robot, host::Team& team);
+ReducedNetwork make_reduced_network(const model::Robot& robot, host::Team& team);
 
 /// Puts another load on the modules, by module.
 void carry(const model::Robot& robot, host::Team& team, std::vector<base::Vec6<double>> load,
-           Network& network);
+           ReducedNetwork& network);
 
 /// Fills in the displacements of modules that are no nodes; those of nodes are given.
-void recover(const model::Robot& robot, const Network& network, host::Team& team,
+void recover(const model::Robot& robot, const ReducedNetwork& network, host::Team& team,
              std::vector<base::Vec6<double>>& displacement);
 
 /// The section's beam stretched to `length` pitches.

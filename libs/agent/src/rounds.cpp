@@ -1,7 +1,5 @@
 // SPDX-FileCopyrightText: The holdfast authors
 // SPDX-License-Identifier: Apache-2.0
-#pragma once
-
 #include "bits.hpp"
 #include "holdfast/agent/agent.hpp"
 #include "holdfast/agent/legal.hpp"
@@ -12,16 +10,14 @@ namespace holdfast::agent {
 
 using wire::MessageType;
 
-template <class Real>
-BasicAgent<Real>::BasicAgent(const Setup& setup, const Identity& identity)
+Agent::Agent(const Setup& setup, const Identity& identity)
     : setup_(setup), identity_(identity) {
   deadline_.fill(kNever);
   has_cell_ = identity.is_anchor;
   nodes_[0].cell = identity.cell;
 }
 
-template <class Real>
-void BasicAgent<Real>::step(const Event& event, Actions& actions) {
+void Agent::step(const Event& event, Actions& actions) {
   begin(event, actions);
   while (is_busy_) {
     go_on();
@@ -29,14 +25,12 @@ void BasicAgent<Real>::step(const Event& event, Actions& actions) {
   finish_step(actions);
 }
 
-template <class Real>
-void BasicAgent<Real>::step_part(const Event& event, Actions& actions) {
+void Agent::step_part(const Event& event, Actions& actions) {
   begin(event, actions);
   finish_step(actions);
 }
 
-template <class Real>
-void BasicAgent<Real>::begin(const Event& event, Actions& actions) {
+void Agent::begin(const Event& event, Actions& actions) {
   now_ = event.now;
   actions.packet_bytes = 0;
   if (event.kind == EventKind::kLineFree) {
@@ -64,14 +58,12 @@ void BasicAgent<Real>::begin(const Event& event, Actions& actions) {
 
 /// Messages only leave something to do; it is done here, a piece at a time, none of which calls
 /// another.
-template <class Real>
-void BasicAgent<Real>::go_on() {
+void Agent::go_on() {
   is_busy_ = exchange() || do_piece() || (kHasAllMethods && do_cluster_piece()) || finish_sweep() ||
              end_stage() || take_next_order();
 }
 
-template <class Real>
-void BasicAgent<Real>::handle(const Event& event) {
+void Agent::handle(const Event& event) {
   const int face = base::index(event.face);
   Link& link = links_[static_cast<std::size_t>(face)];
   switch (event.kind) {
@@ -115,8 +107,7 @@ void BasicAgent<Real>::handle(const Event& event) {
   }
 }
 
-template <class Real>
-void BasicAgent<Real>::finish_step(Actions& actions) {
+void Agent::finish_step(Actions& actions) {
   for (int face = 0; face < base::kDirectionCount; ++face) {
     if ((touched_ & bit(face)) != 0) {
       const Link& link = links_[static_cast<std::size_t>(face)];
@@ -136,8 +127,7 @@ void BasicAgent<Real>::finish_step(Actions& actions) {
   }
 }
 
-template <class Real>
-void BasicAgent<Real>::receive(int face, std::span<const std::uint8_t> packet) {
+void Agent::receive(int face, std::span<const std::uint8_t> packet) {
   Link& link = links_[static_cast<std::size_t>(face)];
   touched_ = static_cast<std::uint8_t>(touched_ | bit(face));
   is_busy_ = true;
@@ -150,8 +140,7 @@ void BasicAgent<Real>::receive(int face, std::span<const std::uint8_t> packet) {
 }
 
 /// A neighbour that is there and does not answer makes every verdict uncertain.
-template <class Real>
-void BasicAgent<Real>::check_link(int face) {
+void Agent::check_link(int face) {
   Link& link = links_[static_cast<std::size_t>(face)];
   if (link.take_restarted()) {
     link.bring_up(static_cast<std::uint16_t>(now_ ^ identity_.id ^ 0x5a5aU), now_);
@@ -163,8 +152,7 @@ void BasicAgent<Real>::check_link(int face) {
   }
 }
 
-template <class Real>
-void BasicAgent<Real>::dispatch(int face, std::span<const std::uint8_t> message) {
+void Agent::dispatch(int face, std::span<const std::uint8_t> message) {
   const auto type = static_cast<MessageType>(message[0]);
   if (type == MessageType::kJoin || type == MessageType::kEcho) {
     wire::Reader in(message);
@@ -218,8 +206,7 @@ void BasicAgent<Real>::dispatch(int face, std::span<const std::uint8_t> message)
 }
 
 /// What goes up and down a tree: the branches', or the clusters'.
-template <class Real>
-void BasicAgent<Real>::dispatch_branch(int face, std::span<const std::uint8_t> message) {
+void Agent::dispatch_branch(int face, std::span<const std::uint8_t> message) {
   const auto type = static_cast<MessageType>(message[0]);
   if (kHasAllMethods && is_clustered_) {
     return type == MessageType::kColumn     ? take_cluster_part(face, message)
@@ -232,8 +219,7 @@ void BasicAgent<Real>::dispatch_branch(int face, std::span<const std::uint8_t> m
 }
 
 /// A neighbour that does not take what it is sent is as good as silent.
-template <class Real>
-void BasicAgent<Real>::send(int face, const wire::Writer& message) {
+void Agent::send(int face, const wire::Writer& message) {
   touched_ = static_cast<std::uint8_t>(touched_ | bit(face));
   if (!links_[static_cast<std::size_t>(face)].send(message.bytes())) {
     silent_faces_ = static_cast<std::uint8_t>(silent_faces_ | bit(face));
@@ -241,8 +227,7 @@ void BasicAgent<Real>::send(int face, const wire::Writer& message) {
   }
 }
 
-template <class Real>
-void BasicAgent<Real>::send_to_children(const wire::Writer& message) {
+void Agent::send_to_children(const wire::Writer& message) {
   for (int face = 0; face < base::kDirectionCount; ++face) {
     if ((children_ & bit(face)) != 0) {
       send(face, message);
@@ -250,8 +235,7 @@ void BasicAgent<Real>::send_to_children(const wire::Writer& message) {
   }
 }
 
-template <class Real>
-std::uint8_t BasicAgent<Real>::used_faces() const {
+std::uint8_t Agent::used_faces() const {
   std::uint8_t faces = 0;
   for (int face = 0; face < base::kDirectionCount; ++face) {
     if (links_[static_cast<std::size_t>(face)].is_used()) {
@@ -263,8 +247,7 @@ std::uint8_t BasicAgent<Real>::used_faces() const {
 
 /// The robot is not what it was when the round began. Until the next one this module takes no part
 /// in anything; it waits a little, as changes come together.
-template <class Real>
-void BasicAgent<Real>::leave_round() {
+void Agent::leave_round() {
   if (round_.epoch > 0 || silent_faces_ != 0) {
     phase_ = Phase::kDiscovery;
     forget_answer();
@@ -278,8 +261,7 @@ void BasicAgent<Real>::leave_round() {
   }
 }
 
-template <class Real>
-void BasicAgent<Real>::start_round() {
+void Agent::start_round() {
   if (!has_cell_) {
     // Others must start; if nobody is left who can, this is the last word.
     restart_at_ = kNever;
@@ -293,8 +275,7 @@ void BasicAgent<Real>::start_round() {
   is_busy_ = true;
 }
 
-template <class Real>
-void BasicAgent<Real>::enter_round(const Round& round) {
+void Agent::enter_round(const Round& round) {
   round_ = round;
   announcements_.begin_anew();
   restart_at_ = kNever;

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The holdfast authors
 // SPDX-License-Identifier: Apache-2.0
-#include "anchors.hpp"
+#include "ground_springs.hpp"
 
 #include <algorithm>
 #include <numeric>
@@ -10,12 +10,12 @@ namespace {
 
 std::size_t at(std::int32_t index) { return static_cast<std::size_t>(index); }
 
-/// Anchors of beams; what was asked last is remembered, as most are alike.
-class BeamAnchors {
+/// Ground springs of beams; what was asked last is remembered, as most are alike.
+class BeamGroundSprings {
  public:
-  explicit BeamAnchors(const model::Material& material) : material_(material) {}
+  explicit BeamGroundSprings(const model::Material& material) : material_(material) {}
 
-  Anchor anchor(std::size_t node, std::size_t direction, std::size_t length) {
+  GroundSpring spring(std::size_t node, std::size_t direction, std::size_t length) {
     if (direction != direction_ || length != length_) {
       spring_ = beam_spring(material_, direction, length);
       direction_ = direction;
@@ -36,30 +36,30 @@ class BeamAnchors {
   Spring spring_;
 };
 
-/// An anchor of a member as its cluster has it.
+/// A ground spring of a member as its cluster has it.
 template <class Real>
-Anchor moved(const Anchor& anchor, const Seat<Real>& seat) {
+GroundSpring moved(const GroundSpring& spring, const Seat<Real>& seat) {
   const Point arm = offset(seat);
   return {
       .node = seat.cluster,
-      .direction = anchor.direction,
-      .length = anchor.length,
-      .reach = anchor.reach + behind(arm, anchor.direction),
-      .middle = {anchor.middle[0] + arm[0], anchor.middle[1] + arm[1], anchor.middle[2] + arm[2]},
-      .stiffness = carried(anchor.stiffness, arm)};
+      .direction = spring.direction,
+      .length = spring.length,
+      .reach = spring.reach + behind(arm, spring.direction),
+      .middle = {spring.middle[0] + arm[0], spring.middle[1] + arm[1], spring.middle[2] + arm[2]},
+      .stiffness = carried(spring.stiffness, arm)};
 }
 
-void add_to(Anchor& sum, const Anchor& anchor) {
-  base::add_to(sum.stiffness, anchor.stiffness);
-  sum.length += anchor.length;
-  sum.reach += anchor.reach;
+void add_to(GroundSpring& sum, const GroundSpring& spring) {
+  base::add_to(sum.stiffness, spring.stiffness);
+  sum.length += spring.length;
+  sum.reach += spring.reach;
   for (std::size_t k = 0; k < 3; ++k) {
-    sum.middle[k] += anchor.middle[k];
+    sum.middle[k] += spring.middle[k];
   }
 }
 
-/// A sum of anchors of one cluster in one direction as a single one.
-void unite(Anchor& sum, double count) {
+/// A sum of ground springs of one cluster in one direction as a single one.
+void unite(GroundSpring& sum, double count) {
   for (double& x : sum.middle) {
     x /= count;
   }
@@ -71,34 +71,35 @@ void unite(Anchor& sum, double count) {
 
 }  // namespace
 
-std::vector<Anchor> finest_anchors(const Network& network, const model::Material& material,
-                                   const GroundStiffness& ground) {
+std::vector<GroundSpring> finest_ground_springs(const ReducedNetwork& network,
+                                                const model::Material& material,
+                                                const GroundStiffness& ground) {
   constexpr std::size_t kDown = base::index(base::Direction::kMinusZ);
-  std::vector<Anchor> anchors;
-  BeamAnchors beams(material);
+  std::vector<GroundSpring> springs;
+  BeamGroundSprings beams(material);
   for (std::size_t node = 0; node < network.node_count; ++node) {
     const Kind& kind = network.kind[node];
     for (std::size_t d = 0; d < 6; ++d) {
       if (kind[d] > 0 && at(network.other[node][d]) >= network.node_count) {
-        anchors.push_back(beams.anchor(node, d, kind[d]));
+        springs.push_back(beams.spring(node, d, kind[d]));
       }
     }
     if (kind[kContactByte] != 0) {
-      anchors.push_back(beams.anchor(node, kDown, 1));
-      anchors.back().stiffness = ground(kind[kContactByte]);
+      springs.push_back(beams.spring(node, kDown, 1));
+      springs.back().stiffness = ground(kind[kContactByte]);
     }
   }
-  return anchors;
+  return springs;
 }
 
 template <class Real>
-std::vector<Anchor> coarse_anchors(const std::vector<Anchor>& fine,
-                                   const std::vector<Seat<Real>>& seat) {
+std::vector<GroundSpring> coarse_ground_springs(const std::vector<GroundSpring>& fine,
+                                                const std::vector<Seat<Real>>& seat) {
   const auto cluster = [&](std::size_t i) { return seat[at(fine[i].node)].cluster; };
   std::vector<std::size_t> order(fine.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::ranges::stable_sort(order, {}, cluster);
-  std::vector<Anchor> coarse;
+  std::vector<GroundSpring> coarse;
   for (auto i = order.begin(); i != order.end();) {
     const std::size_t first = *i;
     coarse.push_back(moved(fine[first], seat[at(fine[first].node)]));
@@ -114,9 +115,9 @@ std::vector<Anchor> coarse_anchors(const std::vector<Anchor>& fine,
   return coarse;
 }
 
-template std::vector<Anchor> coarse_anchors(const std::vector<Anchor>&,
-                                            const std::vector<Seat<float>>&);
-template std::vector<Anchor> coarse_anchors(const std::vector<Anchor>&,
-                                            const std::vector<Seat<double>>&);
+template std::vector<GroundSpring> coarse_ground_springs(const std::vector<GroundSpring>&,
+                                                         const std::vector<Seat<float>>&);
+template std::vector<GroundSpring> coarse_ground_springs(const std::vector<GroundSpring>&,
+                                                         const std::vector<Seat<double>>&);
 
 }  // namespace holdfast::solver

@@ -1,0 +1,177 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <iterator>
+
+#include "holdfast/agent/order.hpp"
+#include "holdfast/agent/wire.hpp"
+
+/// The one table of operations: what each costs, when it exchanges, and its names.
+///
+/// A new operation is one more value of wire::Operation, one row here, and its fields in order.cpp;
+/// the compiler asks for all three.
+namespace holdfast::agent {
+
+/// What a module is busy with; its messages are counted under this.
+enum class Phase : std::uint8_t {
+  kDiscovery,
+  kCoordinates,
+  kElection,
+  kTree,
+  kMass,
+  kSimplified,
+  kEquilibrium,
+  kModel,
+  kOverload,
+  kDone,
+};
+
+/// How many times an order makes all neighbours exchange vectors: `fixed` times, and if
+/// `is_counted` Order::count times more.
+struct Exchanges {
+  std::uint8_t fixed = 0;
+  bool is_counted = false;
+  bool is_behind = false;       ///< The counted ones go on behind the report.
+  std::uint8_t only_with = 0;   ///< None without this flag of the order.
+  std::uint8_t never_with = 0;  ///< None with any of these flags.
+  std::uint8_t twice_with = 0;  ///< With this flag twice as many counted ones, and 2 more.
+};
+
+/// One row of the table.
+struct OperationInfo {
+  wire::Operation operation;
+  const char* name;           ///< As docs/wire.md has it.
+  std::uint8_t order_bytes;   ///< Size of the message down the tree, type and operation included.
+  std::uint8_t report_bytes;  ///< Size of the message up the tree.
+  Phase phase;                ///< What a module is busy with while it works on it.
+  Exchanges exchanges = {};
+  bool is_precise = false;    ///< Digits of forces beyond single precision count.
+  bool is_iteration = false;  ///< It is an iteration of a linear method.
+  const char* text = "";      ///< In words, for people.
+};
+
+// Named initializers would make three lines of each row.
+// clang-format off
+inline constexpr OperationInfo kOperations[] = {
+    // operation, name, bytes down, bytes up, phase, exchanges, precise, iteration, in words
+    {wire::Operation::kPlan, "plan", 12, 13, Phase::kMass, {}, false, false, "planned cells"},
+    {wire::Operation::kHosts, "hosts", 10, 3, Phase::kMass, {}, false, false,
+     "who hosts planned modules"},
+    {wire::Operation::kMass, "mass", 11, 17, Phase::kMass, {}, false, false, "centre of mass"},
+    {wire::Operation::kAngles, "angles", 14, 19, Phase::kSimplified, {}, false, false,
+     "safe angles"},
+    {wire::Operation::kBegin, "begin", 13, 2, Phase::kEquilibrium,
+     {.is_counted = true, .is_behind = true}, false, false, "begin an equilibrium"},
+    {wire::Operation::kHigh, "high", 10, 2, Phase::kEquilibrium, {.fixed = 1}, true, false,
+     "move, exchange displacements"},
+    {wire::Operation::kLow, "low", 3, 17, Phase::kEquilibrium, {.fixed = 1}, true, false,
+     "residual, contact states"},
+    {wire::Operation::kStart, "start", 4, 12, Phase::kEquilibrium,
+     {.fixed = 1, .is_counted = true, .never_with = kWithScalars | kWithBlocks}, false, false,
+     "begin a linear solve"},
+    {wire::Operation::kGradient, "gradient", 11, 12, Phase::kEquilibrium,
+     {.fixed = 1, .is_counted = true}, false, true, "a step of conjugate gradients"},
+    {wire::Operation::kJacobi, "jacobi", 4, 6, Phase::kEquilibrium, {.is_counted = true}, false,
+     true, "steps of Jacobi's method"},
+    {wire::Operation::kSlope, "slope", 11, 22, Phase::kEquilibrium,
+     {.fixed = 1, .only_with = kExchangeFirst}, false, false, "slope of the energy"},
+    {wire::Operation::kHold, "hold", 3, 10, Phase::kEquilibrium, {}, false, false,
+     "release and hold facets"},
+    {wire::Operation::kCorners, "corners", 2, 21, Phase::kModel, {}, false, false,
+     "support corners"},
+    {wire::Operation::kLoads, "loads", 2, 24, Phase::kOverload, {}, false, false,
+     "the worst connection"},
+    {wire::Operation::kVerdict, "verdict", 18, 6, Phase::kOverload, {}, false, false,
+     "know the verdict"},
+    {wire::Operation::kFactor, "factor", 2, 2, Phase::kEquilibrium, {}, false, false,
+     "condense the branches"},
+    {wire::Operation::kStep, "step", 17, 41, Phase::kEquilibrium,
+     {.fixed = 2, .is_counted = true, .is_behind = true, .twice_with = kWithClusters}, true, true,
+     "a step: move, residual, sums"},
+    {wire::Operation::kTreeStep, "tree step", 2, 17, Phase::kEquilibrium, {.fixed = 2}, false,
+     true, "a step: move, residual"},
+    {wire::Operation::kClusters, "clusters", 13, 10, Phase::kEquilibrium,
+     {.fixed = 1, .is_counted = true, .is_behind = true}, false, false,
+     "begin an equilibrium, find rigid clusters"},
+    {wire::Operation::kForget, "forget", 12, 13, Phase::kMass, {}, false, false,
+     "forget a plan that has ended"},
+};
+// clang-format on
+
+static_assert(std::size(kOperations) == wire::kOperationCount);
+static_assert(
+    [] {
+      std::size_t next = 1;
+      for (const OperationInfo& info : kOperations) {
+        if (static_cast<std::size_t>(info.operation) != next++) {
+          return false;
+        }
+      }
+      return true;
+    }(),
+    "a row is missing, or not in its place");
+
+/// The row of an operation.
+constexpr const OperationInfo& info(wire::Operation operation) {
+  return kOperations[static_cast<std::size_t>(operation) - 1];
+}
+
+/// One column of the table, by operation; at 0, which is none, zero. A program that looks up
+/// columns only has no names in it.
+template <class Value>
+constexpr std::array<Value, wire::kOperationCount + 1> column(Value OperationInfo::*member) {
+  std::array<Value, wire::kOperationCount + 1> values{};
+  for (const OperationInfo& row : kOperations) {
+    values[static_cast<std::size_t>(row.operation)] = row.*member;
+  }
+  return values;
+}
+
+namespace columns {
+inline constexpr auto kExchanges = column(&OperationInfo::exchanges);
+inline constexpr auto kPhases = column(&OperationInfo::phase);
+inline constexpr auto kIsPrecise = column(&OperationInfo::is_precise);
+}  // namespace columns
+
+/// How many exchanges of an order go on while its report is on the way up and the next order on its
+/// way down. With clusters a step has two polynomials; the image of the first is needed, and that
+/// of the clusters' part.
+constexpr std::uint16_t exchanges_behind(const Order& order) {
+  const Exchanges& exchanges = columns::kExchanges[static_cast<std::size_t>(order.operation)];
+  if (!exchanges.is_behind) {
+    return 0;
+  }
+  const bool is_twice = (order.flags & exchanges.twice_with) != 0;
+  return static_cast<std::uint16_t>(is_twice ? 2 * order.count + 2 : order.count);
+}
+
+/// How many times an order makes all neighbours exchange vectors. A preconditioner of degree m
+/// shares m more vectors than its first and its last one, which are the same for m = 0. A step
+/// shares its move in two parts and then the terms of its polynomial.
+constexpr std::uint16_t exchange_count(const Order& order) {
+  const Exchanges& exchanges = columns::kExchanges[static_cast<std::size_t>(order.operation)];
+  if ((order.flags & exchanges.only_with) != exchanges.only_with ||
+      (order.flags & exchanges.never_with) != 0) {
+    return 0;
+  }
+  const std::uint16_t counted = exchanges.is_behind    ? exchanges_behind(order)
+                                : exchanges.is_counted ? order.count
+                                                       : std::uint16_t{0};
+  return static_cast<std::uint16_t>(exchanges.fixed + counted);
+}
+
+/// Do digits of forces beyond single precision count?
+constexpr bool is_precise(wire::Operation operation) {
+  return columns::kIsPrecise[static_cast<std::size_t>(operation)];
+}
+
+/// What a module is busy with while it works on an order.
+constexpr Phase phase_of(wire::Operation operation) {
+  return columns::kPhases[static_cast<std::size_t>(operation)];
+}
+
+}  // namespace holdfast::agent

@@ -1,0 +1,33 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#include <type_traits>
+
+#include "holdfast/holdfast.hpp"
+
+namespace holdfast {
+namespace {
+
+/// Objects that are `Width` doubles and nothing else, as rows.
+template <std::size_t Width, class Object>
+Rows rows_of(const std::vector<Object>& objects) {
+  static_assert(sizeof(Object) == Width * sizeof(double) && std::is_standard_layout_v<Object> &&
+                std::is_trivially_copyable_v<Object>);
+  return {.numbers = {reinterpret_cast<const double*>(objects.data()), objects.size() * Width},
+          .width = Width};
+}
+
+}  // namespace
+
+Rows connection_rows(const CheckResult& result) {
+  return rows_of<5>(result.assessment.connections);
+}
+
+Rows displacement_rows(const CheckResult& result) {
+  return rows_of<6>(result.assessment.equilibrium.displacement);
+}
+
+Rows ground_force_rows(const CheckResult& result) {
+  return rows_of<6>(result.assessment.equilibrium.ground_force);
+}
+
+}  // namespace holdfast

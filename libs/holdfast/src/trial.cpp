@@ -1,0 +1,74 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#include "holdfast/trial.hpp"
+
+#include <algorithm>
+#include <iterator>
+
+namespace holdfast {
+namespace {
+
+/// A robot that topples needs no loads; one that is bonded to the ground does not topple.
+verdict::Assessment try_robot(const model::Robot& robot, const CheckOptions& options) {
+  verdict::Assessment look = first_look(robot);
+  return look.is_stable || options.is_bonded ? check(robot, options).assessment : look;
+}
+
+}  // namespace
+
+void add_module(model::RobotSpec& spec, const base::Cell& cell, Role role) {
+  (role == Role::kPlanned ? spec.planned : spec.existing).push_back(cell);
+  if (role == Role::kFixed) {
+    spec.fixed.push_back(cell);
+  }
+}
+
+std::vector<base::Cell> free_cells(const model::RobotSpec& spec) {
+  std::vector<base::Cell> taken = spec.existing;
+  taken.insert(taken.end(), spec.planned.begin(), spec.planned.end());
+  std::ranges::sort(taken);
+  std::vector<base::Cell> beside;
+  for (const base::Cell& cell : taken) {
+    for (const base::Direction direction : base::kDirections) {
+      beside.push_back(base::neighbour(cell, direction));
+    }
+  }
+  std::ranges::sort(beside);
+  const auto repeated = std::ranges::unique(beside);
+  beside.erase(repeated.begin(), repeated.end());
+  std::vector<base::Cell> free;
+  std::ranges::set_difference(beside, taken, std::back_inserter(free));
+  return free;
+}
+
+verdict::Assessment first_look(const model::Robot& robot) {
+  verdict::Assessment assessment;
+  assessment.simplified = verdict::assess_rigid_body(robot);
+  assessment.is_stable = assessment.simplified.is_stable;
+  assessment.verdict =
+      assessment.is_stable ? verdict::Verdict::kUndecided : verdict::Verdict::kUnstable;
+  return assessment;
+}
+
+std::vector<Trial> try_cells(const model::RobotSpec& spec, std::span<const base::Cell> cells,
+                             Role role, const CheckOptions& options) {
+  std::vector<Trial> trials;
+  trials.reserve(cells.size());
+  for (const base::Cell& cell : cells) {
+    model::RobotSpec grown = spec;
+    add_module(grown, cell, role);
+    const auto robot = model::Robot::create(grown, options.thread_count);
+    Trial& trial = trials.emplace_back(Trial{.cell = cell});
+    if (!robot) {
+      continue;
+    }
+    const verdict::Assessment assessment = try_robot(robot.value(), options);
+    trial.is_robot = true;
+    trial.verdict = assessment.verdict;
+    trial.load_ratio_max = assessment.load_ratio_max;
+    trial.margin_mm = assessment.simplified.margin_mm;
+  }
+  return trials;
+}
+
+}  // namespace holdfast

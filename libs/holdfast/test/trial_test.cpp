@@ -1,0 +1,106 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// Where may the next module go? Answers are compared with a check of the grown robot, which is the
+// second way, and for a post and a row with what statics say.
+#include "holdfast/trial.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+namespace holdfast {
+namespace {
+
+using base::Cell;
+using verdict::Verdict;
+
+/// A row of three on the ground and a post of three on its end.
+model::RobotSpec corner() {
+  return {.existing = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {0, 0, 1}, {0, 0, 2}}};
+}
+
+TEST(FreeCells, of_one_module_are_its_six_neighbours) {
+  const std::vector<Cell> expected = {{-1, 0, 0}, {0, -1, 0}, {0, 0, -1},
+                                      {0, 0, 1},  {0, 1, 0},  {1, 0, 0}};
+  EXPECT_EQ(free_cells({.existing = {{0, 0, 0}}}), expected);
+}
+
+TEST(FreeCells, hold_no_module_and_come_once) {
+  model::RobotSpec spec = corner();
+  spec.planned = {{1, 0, 1}};
+  const std::vector<Cell> cells = free_cells(spec);
+  EXPECT_TRUE(std::ranges::is_sorted(cells));
+  EXPECT_EQ(std::ranges::adjacent_find(cells), cells.end());
+  for (const auto* taken : {&spec.existing, &spec.planned}) {
+    for (const Cell& cell : *taken) {
+      EXPECT_EQ(std::ranges::find(cells, cell), cells.end()) << model::text(cell);
+    }
+  }
+}
+
+TEST(Trial, says_what_a_check_of_the_grown_robot_says) {
+  const model::RobotSpec spec = corner();
+  const std::vector<Cell> cells = free_cells(spec);
+  for (const Role role : {Role::kExisting, Role::kPlanned, Role::kFixed}) {
+    const std::vector<Trial> trials = try_cells(spec, cells, role);
+    ASSERT_EQ(trials.size(), cells.size());
+    for (std::size_t i = 0; i < trials.size(); ++i) {
+      model::RobotSpec grown = spec;
+      add_module(grown, cells[i], role);
+      const auto robot = model::Robot::create(grown);
+      EXPECT_EQ(trials[i].cell, cells[i]);
+      ASSERT_EQ(trials[i].is_robot, robot.has_value()) << model::text(cells[i]);
+      if (robot) {
+        const verdict::Assessment assessment = check(robot.value()).assessment;
+        EXPECT_EQ(trials[i].verdict, assessment.verdict) << model::text(cells[i]);
+        EXPECT_EQ(trials[i].margin_mm, assessment.simplified.margin_mm);
+        if (assessment.verdict != Verdict::kUnstable) {
+          EXPECT_EQ(trials[i].load_ratio_max, assessment.load_ratio_max);
+        }
+      }
+    }
+  }
+}
+
+TEST(Trial, of_a_cell_that_is_taken_or_apart_or_below_the_ground_is_no_robot) {
+  const std::vector<Cell> cells = {{0, 0, 0}, {9, 9, 9}, {1, 0, -1}};
+  for (const Trial& trial : try_cells(corner(), cells)) {
+    EXPECT_FALSE(trial.is_robot) << model::text(trial.cell);
+  }
+}
+
+// A post of one module with a row of n beside it at height 1: the centre of mass lies n pitches
+// from the post's axis after the n-th, and beyond the facet's half pitch for every n >= 1 but for
+// the post's own weight: n (n + 1) / 2 pitches over n + 2 modules. That is 1/3 for n = 1, so it
+// stands with a margin of 40 (1/2 - 1/3) mm, and 3/4 for n = 2: it topples by 40 (3/4 - 1/2) mm.
+TEST(Trial, gives_the_margin_of_a_row_on_a_post) {
+  model::RobotSpec spec{.existing = {{0, 0, 0}, {0, 0, 1}}};
+  const Trial first = try_cells(spec, std::vector<Cell>{{1, 0, 1}}).front();
+  EXPECT_EQ(first.verdict, Verdict::kSafe);
+  EXPECT_NEAR(first.margin_mm.value(), 40.0 / 6, 1e-9);
+  EXPECT_TRUE(first.load_ratio_max.has_value());
+  spec.existing.push_back({1, 0, 1});
+  const Trial second = try_cells(spec, std::vector<Cell>{{2, 0, 1}}).front();
+  EXPECT_EQ(second.verdict, Verdict::kUnstable);
+  EXPECT_NEAR(second.margin_mm.value(), -10, 1e-9);
+  EXPECT_FALSE(second.load_ratio_max.has_value()) << "a robot that topples needs no loads";
+}
+
+TEST(Trial, of_a_robot_bonded_to_the_ground_gives_loads_where_it_would_topple) {
+  const model::RobotSpec spec{.existing = {{0, 0, 0}, {0, 0, 1}, {1, 0, 1}}};
+  const Trial trial =
+      try_cells(spec, std::vector<Cell>{{2, 0, 1}}, Role::kPlanned, {.is_bonded = true}).front();
+  EXPECT_EQ(trial.verdict, Verdict::kSafe);
+  EXPECT_TRUE(trial.load_ratio_max.has_value());
+}
+
+TEST(Trial, makes_the_first_robot_of_an_empty_place) {
+  const std::vector<Cell> cells = {{0, 0, 0}, {0, 0, 1}};
+  const std::vector<Trial> trials = try_cells({}, cells, Role::kExisting);
+  EXPECT_TRUE(trials[0].is_robot) << "it stands on the ground";
+  EXPECT_FALSE(trials[1].is_robot) << "nothing holds it";
+}
+
+}  // namespace
+}  // namespace holdfast

@@ -1,0 +1,107 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "holdfast/base/algebra.hpp"
+#include "kernels.hpp"
+
+/// How the ends of a long beam move the modules along it, and take their loads: Hermite's cubics,
+/// which are exact for a beam that is loaded at its ends only [Przemieniecki 1968].
+namespace holdfast::solver {
+
+/// How an end of an unloaded beam moves a point of it, by Hermite's cubics: a displacement u moves
+/// it by `linear` u along the axis and by `cubic` u across, and turns it by cubic_rate (step x u);
+/// a rotation t turns it by `linear` t about the axis and by slope_rate t across, and moves it by
+/// slope (t x step). The step leads from the end to the point.
+struct BeamShape {
+  double linear = 0;
+  double cubic = 0;
+  double slope = 0;
+  double cubic_rate = 0;
+  double slope_rate = 0;
+};
+
+/// The shape at the module `place` pitches from that end of a beam of `length` pitches; mm per
+/// pitch.
+inline BeamShape beam_shape(double pitch, int place, int length) {
+  const double s = static_cast<double>(place) / length;
+  const double span = pitch * length;
+  const double linear = 1 - s;
+  return {.linear = linear,
+          .cubic = 1 - 3 * s * s + 2 * s * s * s,
+          .slope = span * s * linear * linear,
+          .cubic_rate = -6 * s * linear / span,
+          .slope_rate = linear * (1 - 3 * s)};
+}
+
+/// The axis of a direction and the two across, right-handed; the sign of a step.
+struct Axes {
+  explicit Axes(std::size_t direction)
+      : along(direction / 2),
+        next(along == 2 ? 0 : along + 1),
+        last(along == 0 ? 2 : along - 1),
+        sign(direction % 2 == 0 ? 1 : -1) {}
+
+  std::size_t along = 0;
+  std::size_t next = 0;
+  std::size_t last = 0;
+  double sign = 1;
+};
+
+/// Adds to a point's motion what an end of its beam does to it; the direction leads from that end.
+inline void add_motion(const BeamShape& shape, std::size_t direction, const base::Vec6<double>& end,
+                       base::Vec6<double>& u) {
+  const auto [a, j, k, sign] = Axes(direction);
+  const double slope = sign * shape.slope;
+  const double rate = sign * shape.cubic_rate;
+  u[a] += shape.linear * end[a];
+  u[j] += shape.cubic * end[j] + slope * end[k + 3];
+  u[k] += shape.cubic * end[k] - slope * end[j + 3];
+  u[a + 3] += shape.linear * end[a + 3];
+  u[j + 3] += shape.slope_rate * end[j + 3] - rate * end[k];
+  u[k + 3] += shape.slope_rate * end[k + 3] + rate * end[j];
+}
+
+/// Adds to the load of an end what it takes of a force on a point of its beam: the transpose of
+/// add_motion().
+inline void add_share(const BeamShape& shape, std::size_t direction,
+                      const base::Vec6<double>& force, base::Vec6<double>& load) {
+  const auto [a, j, k, sign] = Axes(direction);
+  const double slope = sign * shape.slope;
+  const double rate = sign * shape.cubic_rate;
+  load[a] += shape.linear * force[a];
+  load[j] += shape.cubic * force[j] + rate * force[k + 3];
+  load[k] += shape.cubic * force[k] - rate * force[j + 3];
+  load[a + 3] += shape.linear * force[a + 3];
+  load[j + 3] += shape.slope_rate * force[j + 3] - slope * force[k];
+  load[k + 3] += shape.slope_rate * force[k + 3] + slope * force[j];
+}
+
+/// Shapes of beams by length and place; those of a length that was asked for stay.
+class ShapeTable {
+ public:
+  explicit ShapeTable(double pitch) : pitch_(pitch), shapes_(kBeamLengthMax + 1) {}
+
+  /// By place, from the end on.
+  const std::vector<BeamShape>& of(int length) {
+    std::vector<BeamShape>& shapes = shapes_[static_cast<std::size_t>(length)];
+    for (int place = 0; shapes.size() <= static_cast<std::size_t>(length); ++place) {
+      shapes.push_back(beam_shape(pitch_, place, length));
+    }
+    return shapes;
+  }
+
+  /// Of a length that was asked for before.
+  const std::vector<BeamShape>& known(int length) const {
+    return shapes_[static_cast<std::size_t>(length)];
+  }
+
+ private:
+  double pitch_ = 0;
+  std::vector<std::vector<BeamShape>> shapes_;
+};
+
+}  // namespace holdfast::solver

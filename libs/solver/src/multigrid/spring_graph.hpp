@@ -1,0 +1,35 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "springs.hpp"
+
+namespace holdfast::solver {
+
+/// The cells that a node takes up, from the first to the last.
+struct CellBox {
+  std::array<std::int32_t, 3> low;
+  std::array<std::int32_t, 3> high;
+};
+
+/// A level as the next one is made from it: nodes and the springs between them, in double
+/// precision, without what holds them (ground_springs.hpp). Nodes whose springs are equal share
+/// them: springs[pattern[node] + i] leads to other[start[node] + i].
+struct SpringGraph {
+  std::vector<std::int32_t> order;  ///< Nodes along the Morton curve.
+  std::vector<std::uint64_t> key;   ///< Node -> Morton key of its cell
+  std::vector<Point> place;         ///< mm
+  std::vector<CellBox> box;         ///< Only in double precision.
+  std::vector<bool> is_alone;       ///< Nodes that join no cluster; empty if there are none.
+  std::vector<std::int32_t> start;
+  std::vector<std::int32_t> other;
+  std::vector<std::uint32_t> pattern;
+  std::vector<Spring> springs;
+  unsigned shift = 0;  ///< Cells are 2^(shift/3) modules wide.
+};
+
+}  // namespace holdfast::solver

@@ -1,0 +1,133 @@
+#!/usr/bin/env python3
+# SPDX-FileCopyrightText: The holdfast authors
+# SPDX-License-Identifier: Apache-2.0
+"""documents_test.py HOLDFAST CHECKER REPOSITORY   what the documents show is what the program does.
+
+- every command with an output ("$ build/release/holdfast ..." in an indented block) prints that
+  output; times are not compared, and a line of dots stands for any number of lines
+- every ```json block with a name is a file of that name to these commands
+- the figures are those that tools/draw_figures.py draws
+- the rounds, packets and seconds of the scenarios' tables are those of `holdfast simulate`
+"""
+import json
+import os
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+
+DOCUMENTS = ['README.md', *(f'docs/{name}.md' for name in (
+    'theory', 'solver', 'solver_evidence', 'distributed', 'one_sweep', 'proof', 'page', 'formats'))]
+# These need the firmware's compilers; tests/firmware checks what they show.
+NOT_RUN = './dev firmware'
+
+faults = []
+
+
+def fault(message):
+    faults.append(message)
+
+
+def shown_commands(text):
+    """Command -> the lines it is shown to print."""
+    blocks = re.findall(r'(?:^    .*\n|^\n(?=    ))+', text, re.M)
+    for block in blocks:
+        lines = [line[4:].rstrip() for line in block.rstrip('\n').split('\n')]
+        while lines:
+            line = lines.pop(0)
+            if not line.startswith('$ '):
+                continue
+            command = line[2:]
+            while command.endswith('\\'):
+                command = command[:-1] + lines.pop(0).strip()
+            end = next((i for i, other in enumerate(lines) if other.startswith('$ ')), len(lines))
+            shown, lines = lines[:end], lines[end:]
+            while shown and not shown[-1]:
+                shown.pop()
+            yield command, shown
+
+
+def masked(line):
+    """Without times, and without the sign of what is zero to all digits shown."""
+    return re.sub(r'-(0\.0+)\b', r' \1', re.sub(r'in \d+ us', 'in N us', line.rstrip()))
+
+
+def is_same(shown, printed):
+    if not shown:
+        return not printed
+    if shown[0].strip() == '...':
+        return any(is_same(shown[1:], printed[i:]) for i in range(len(printed) + 1))
+    return bool(printed) and masked(shown[0]) == masked(printed[0]) and is_same(
+        shown[1:], printed[1:])
+
+
+def check_outputs(document, text, folder):
+    for block in re.findall(r'```json\n(.*?)```', text, re.S):
+        name = re.search(r'"name": "([^"]*)"', block)
+        if name:
+            json.loads(block)
+            (folder / f'{name[1].replace(" ", "_")}.json').write_text(block)
+    count = 0
+    for command, shown in shown_commands(text):
+        if NOT_RUN in command:
+            print(f'{document}: not run here: {command}')
+            continue
+        printed = subprocess.run(['bash', '-c', command], cwd=folder, capture_output=True,
+                                 text=True, check=False).stdout.rstrip('\n').split('\n')
+        if not is_same(shown or [''], printed):
+            fault(f'{document}: {command}\n  shown:\n    ' + '\n    '.join(shown) +
+                  '\n  printed:\n    ' + '\n    '.join(printed))
+        count += 1
+    return count
+
+
+def check_figures(repository, folder):
+    subprocess.run([sys.executable, repository / 'tools/draw_figures.py', folder], check=True)
+    for figure in folder.glob('*.svg'):
+        if figure.read_bytes() != (repository / 'docs' / figure.name).read_bytes():
+            fault(f'docs/{figure.name} is not what tools/draw_figures.py draws')
+
+
+def measured(program, repository):
+    """Scenario -> rounds, packets, seconds of the robot's own verdict."""
+    costs = {}
+    for file in sorted((repository / 'scenarios').glob('*.json')):
+        out = subprocess.run([program, 'simulate', file], capture_output=True, text=True,
+                             check=False).stdout
+        cost = re.search(r'cost +([\d.]+) s, (\d+) rounds, (\d+) packets', out)
+        costs[file.stem] = (f'{int(cost[2]):,}', f'{int(cost[3]):,}', f'{float(cost[1]):.1f}')
+    return costs
+
+
+def check_tables(repository, costs):
+    readme = (repository / 'README.md').read_text()
+    distributed = (repository / 'docs/distributed.md').read_text()
+    for name, (rounds, packets, seconds) in costs.items():
+        row = re.search(rf'^\| {name} \|.*\| ([^|]*) / ([^|]*) \| yes \|$', readme, re.M)
+        if not row or row.groups() != (rounds, seconds):
+            fault(f'README.md: {name} takes {rounds} / {seconds}')
+        row = re.search(rf'^\| {name} \|.*\| ([^|]*) \|$', distributed, re.M)
+        if not row or row[1] != f'{rounds}, {packets}, {seconds}':
+            fault(f'docs/distributed.md: {name} takes {rounds}, {packets}, {seconds}')
+
+
+def main():
+    program, checker, repository = (pathlib.Path(word).resolve() for word in sys.argv[1:])
+    with tempfile.TemporaryDirectory() as name:
+        folder = pathlib.Path(name)
+        (folder / 'build/release').mkdir(parents=True)
+        (folder / 'figures').mkdir()
+        check_figures(repository, folder / 'figures')
+        os.symlink(program, folder / 'build/release/holdfast')
+        os.symlink(checker, folder / 'build/release/holdfast-checker')
+        os.symlink(repository / 'scenarios', folder / 'scenarios')
+        count = sum(check_outputs(document, (repository / document).read_text(), folder)
+                    for document in DOCUMENTS if (repository / document).is_file())
+    check_tables(repository, measured(program, repository))
+    print('\n'.join(faults) if faults else f'{count} commands print what is shown')
+    sys.exit(1 if faults else 0)
+
+
+if __name__ == '__main__':
+    main()
