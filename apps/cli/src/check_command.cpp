@@ -257,8 +257,8 @@ class CheckRun {
 
 int run(const Options& options) {
   if (options.files.size() > 1 &&
-      !(options.csv.empty() && options.svg.empty() && options.vtk.empty() &&
-        options.html.empty() && options.certificate.empty())) {
+      !(options.csv.empty() && options.svg.empty() && options.vtk.empty() && options.html.empty() &&
+        options.certificate.empty())) {
     fmt::print(
         stderr,
         "holdfast: --csv, --svg, --vtk, --html and --certificate are for one structure, {} files "

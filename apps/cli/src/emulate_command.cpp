@@ -111,9 +111,8 @@ class EmulateRun {
     const auto pages = emulator::configuration_pages(structure.robot, emulation_.anchor);
     for (std::size_t i = 0; i < pages.size(); ++i) {
       const std::string path = fmt::format("{}/module_{}.bin", options_.pages, i);
-      if (!write_or_complain(path,
-                             std::string_view(reinterpret_cast<const char*>(pages[i].data()),
-                                              pages[i].size()))) {
+      if (!write_or_complain(path, std::string_view(reinterpret_cast<const char*>(pages[i].data()),
+                                                    pages[i].size()))) {
         return kExitBadInput;
       }
     }

@@ -8,8 +8,8 @@
 namespace holdfast::cli {
 
 /// Prints what a robot has worked out, simulated or emulated, and writes the files that the options
-/// `json` and `svg` name, with the `connections` chosen; `is_silent` if the terminal gets nothing but a report asked for with "-".
-/// False if a file cannot be written.
+/// `json` and `svg` name, with the `connections` chosen; `is_silent` if the terminal gets nothing
+/// but a report asked for with "-". False if a file cannot be written.
 template <class Options, class Run>
 bool show_run(const Options& options, bool is_silent, const Structure& structure,
               const CheckResult& exact, const Run& run, const DistributedRun& picture) {

@@ -206,7 +206,7 @@ Reply open_text(std::string_view text) {
   return out;
 }
 
-enum class Output : std::int32_t { kJson, kXml, kSvg, kReportJson, kReportText, kVtu };
+enum class Output : std::int32_t { kJson, kXml, kSvg, kReportJson, kReportText };
 
 std::string written(const Structure& structure, Output output) {
   const CheckResult result = check(structure);
@@ -215,8 +215,6 @@ std::string written(const Structure& structure, Output output) {
       return picture_svg(structure, result);
     case Output::kReportJson:
       return report_json(structure, result);
-    case Output::kVtu:
-      return picture_vtu(structure, result);
     default:
       return fmt::format("{}: {}\n{}", structure.name, verdict::name(result.assessment.verdict),
                          report_text(structure, result));

@@ -10,8 +10,7 @@ namespace holdfast::agent {
 
 using wire::MessageType;
 
-Agent::Agent(const Setup& setup, const Identity& identity)
-    : setup_(setup), identity_(identity) {
+Agent::Agent(const Setup& setup, const Identity& identity) : setup_(setup), identity_(identity) {
   deadline_.fill(kNever);
   has_cell_ = identity.is_anchor;
   nodes_[0].cell = identity.cell;

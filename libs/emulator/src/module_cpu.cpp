@@ -10,8 +10,7 @@
 namespace holdfast::emulator {
 namespace {
 
-constexpr const char* kStep =
-    "_ZN8holdfast5agent5Agent9step_partERKNS0_5EventERNS0_7ActionsE";
+constexpr const char* kStep = "_ZN8holdfast5agent5Agent9step_partERKNS0_5EventERNS0_7ActionsE";
 
 /// agent::Event and agent::Actions as they lie in the module's memory.
 struct EventLayout {

@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "distributed_parts.hpp"
+#include "holdfast/mechanics/connector.hpp"
 
 namespace holdfast {
 namespace {
@@ -115,7 +116,7 @@ verdict::Assessment view_of(const model::Robot& robot, const verdict::Assessment
       view.worst = i;
       view.load_ratio_max = ratio;
     }
-    if (ratio >= 1) {
+    if (mechanics::breaks(ratio)) {
       view.broken.push_back(i);
     }
   }

@@ -157,8 +157,8 @@ void write_picture_vtu(std::ostream& out, const Structure& structure, const Chec
   io::write_vtu(out, structure.robot, result.assessment, options);
 }
 
-void write_connections_csv(std::ostream& out, const Structure& structure,
-                           const CheckResult& result, const io::ReportOptions& options) {
+void write_connections_csv(std::ostream& out, const Structure& structure, const CheckResult& result,
+                           const io::ReportOptions& options) {
   io::write_connections_csv(out, structure.robot, result.assessment, options);
 }
 

@@ -303,7 +303,8 @@ std::string write_report_json(const ReportEntry& entry) {
 }
 
 std::string write_error_json(const base::Error& error, std::string_view name) {
-  const nlohmann::ordered_json report = {{"name", name}, {"error", error.message}, {"where", error.where}};
+  const nlohmann::ordered_json report = {
+      {"name", name}, {"error", error.message}, {"where", error.where}};
   return report.dump(2, ' ', false, nlohmann::json::error_handler_t::replace);
 }
 

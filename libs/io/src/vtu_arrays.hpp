@@ -29,6 +29,7 @@ struct VtuArray {
   std::function<void(std::size_t begin, std::size_t end, std::string& out)> append;
 
   std::size_t tuple_bytes() const { return components * value_bytes; }
+
   std::size_t bytes() const { return tuple_count * tuple_bytes(); }
 };
 

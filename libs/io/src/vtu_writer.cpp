@@ -168,13 +168,12 @@ class Writer {
   /// `of_module` and `of_connection` give the value of a cell for an index.
   template <class OfModule, class OfConnection>
   void announce_cell_array(const char* name, OfModule of_module, OfConnection of_connection) {
-    static_assert(std::is_same_v<decltype(of_module(std::size_t{})),
-                                 decltype(of_connection(std::size_t{}))>);
-    arrays_.announce(make_array(
-        name, module_count_ + connection_count_,
-        [modules = module_count_, of_module, of_connection](std::size_t i) {
-          return i < modules ? of_module(i) : of_connection(i - modules);
-        }));
+    static_assert(
+        std::is_same_v<decltype(of_module(std::size_t{})), decltype(of_connection(std::size_t{}))>);
+    arrays_.announce(make_array(name, module_count_ + connection_count_,
+                                [modules = module_count_, of_module, of_connection](std::size_t i) {
+                                  return i < modules ? of_module(i) : of_connection(i - modules);
+                                }));
   }
 
   /// `at_corner` gets a module and a corner, `at_centre` a module.
@@ -221,8 +220,8 @@ class Writer {
 
   void announce_cells() {
     const std::size_t corners = kCornerCount * module_count_;
-    arrays_.announce(make_array(
-        "connectivity", corners + 2 * connection_count_, [this, corners](std::size_t i) {
+    arrays_.announce(
+        make_array("connectivity", corners + 2 * connection_count_, [this, corners](std::size_t i) {
           if (i < corners) {
             return static_cast<std::int64_t>(i);
           }
@@ -230,12 +229,10 @@ class Writer {
           return static_cast<std::int64_t>(corners) + ((i - corners) % 2 == 0 ? pair.a : pair.b);
         }));
     announce_cell_array(
-        "offsets",
-        [](std::size_t i) { return static_cast<std::int64_t>(kCornerCount * (i + 1)); },
+        "offsets", [](std::size_t i) { return static_cast<std::int64_t>(kCornerCount * (i + 1)); },
         [corners](std::size_t i) { return static_cast<std::int64_t>(corners + 2 * (i + 1)); });
     announce_cell_array(
-        "types", [](std::size_t) { return kVtkHexahedron; },
-        [](std::size_t) { return kVtkLine; });
+        "types", [](std::size_t) { return kVtkHexahedron; }, [](std::size_t) { return kVtkLine; });
   }
 
   base::Vec6<double> displacement(std::size_t module) const {

@@ -94,8 +94,8 @@ TEST(JsonStream, lays_values_out_as_a_tree_would) {
       {"empty", Json::object()},
       {"list", {true, -7, std::numeric_limits<std::uint64_t>::max(), Json::array(), 0.1}},
       {"last", nullptr}};
-  for (const auto& [layout, indent] : {std::pair{JsonStream::Layout::kIndented, 2},
-                                       std::pair{JsonStream::Layout::kCompact, -1}}) {
+  for (const auto& [layout, indent] :
+       {std::pair{JsonStream::Layout::kIndented, 2}, std::pair{JsonStream::Layout::kCompact, -1}}) {
     std::string text;
     JsonStream json(text, layout);
     write_sample(json);
@@ -105,7 +105,7 @@ TEST(JsonStream, lays_values_out_as_a_tree_would) {
 
 TEST(JsonStream, writes_numbers_that_are_read_back_as_they_were) {
   std::mt19937_64 random(17);
-  std::vector<double> numbers = {0,    -0.0, 1,     100,     1e15,  1e16,
+  std::vector<double> numbers = {0,    -0.0, 1,      100,     1e15,    1e16,
                                  1e-4, 1e-5, 5e-324, 1.5e300, 1 / 3.0, 123456789012345678.0};
   for (int i = 0; i < 2000; ++i) {
     numbers.push_back(std::bit_cast<double>(random()));
@@ -193,8 +193,8 @@ TEST(Table, has_a_line_for_each_connection_with_what_it_carries) {
     ASSERT_TRUE(std::getline(table, line));
     const auto [a, b] = model::ends(chain.robot, i);
     const verdict::ConnectionResult& result = chain.assessment.connections[i];
-    EXPECT_TRUE(line.starts_with("0,0," + std::to_string(a.z) + ",0,0," + std::to_string(b.z) +
-                                 ",+z,"))
+    EXPECT_TRUE(
+        line.starts_with("0,0," + std::to_string(a.z) + ",0,0," + std::to_string(b.z) + ",+z,"))
         << line;
     std::istringstream numbers(line.substr(line.find("+z,") + 3));
     for (const double number : {result.load_ratio, result.axial_n, result.bending_nmm,
@@ -223,9 +223,8 @@ TEST(Reason, has_words_and_a_name_whatever_its_code) {
   std::set<std::string> names;
   std::set<std::string> sentences;
   for (int code = 0; code < verdict::kReasonCodeCount; ++code) {
-    const verdict::Reason reason{.code = static_cast<verdict::ReasonCode>(code),
-                                 .numbers = {1, 2, 3, 4, 5},
-                                 .quoted = {}};
+    const verdict::Reason reason{
+        .code = static_cast<verdict::ReasonCode>(code), .numbers = {1, 2, 3, 4, 5}, .quoted = {}};
     names.insert(verdict::name(reason.code));
     sentences.insert(reason_text(chain.robot, reason));
   }
@@ -238,8 +237,7 @@ TEST(Reason, has_words_and_a_name_whatever_its_code) {
 TEST(Reason, is_told_with_its_numbers) {
   using verdict::ReasonCode;
   const Checked chain(long_chain());
-  const auto text = [&](ReasonCode code, std::array<double, 5> numbers,
-                        const char* quoted = "") {
+  const auto text = [&](ReasonCode code, std::array<double, 5> numbers, const char* quoted = "") {
     return reason_text(chain.robot, {.code = code, .numbers = numbers, .quoted = quoted});
   };
   EXPECT_EQ(text(ReasonCode::kTopples, {100, 60, 60, 100, 2.5713}),

@@ -326,10 +326,10 @@ void apply(const model::Robot& robot, const Proof& proof, Assessment& assessment
   }
   const bool is_changed = verdict != std::exchange(assessment.verdict, verdict);
   if (!holds) {
-    assessment.reasons = {
-        {.code = verdict::ReasonCode::kNotProved,
-         .quoted =
-             found.is_proved ? "the robot stands, but not by more than rounding" : found.reason}};
+    assessment.reasons = {{.code = verdict::ReasonCode::kNotProved,
+                           .quoted = found.is_proved
+                                         ? "the robot stands, but not by more than rounding"
+                                         : found.reason}};
     return;
   }
   take_loads(robot, proof, is_changed, assessment);

@@ -381,18 +381,18 @@ void add_contact_remarks(Assessment& assessment) {
     reasons.push_back(reason_of(ReasonCode::kSolutionsAgree, *assessment.several));
   }
   if (assessment.equilibrium.open_but_held_count > 0) {
-    reasons.push_back({.code = ReasonCode::kAmbiguousFeet,
-                       .numbers = {static_cast<double>(assessment.equilibrium.open_but_held_count),
-                                   assessment.load_ratio_range.low,
-                                   assessment.load_ratio_range.high}});
+    reasons.push_back(
+        {.code = ReasonCode::kAmbiguousFeet,
+         .numbers = {static_cast<double>(assessment.equilibrium.open_but_held_count),
+                     assessment.load_ratio_range.low, assessment.load_ratio_range.high}});
   }
   if (assessment.contact_model == ContactModel::kBonded) {
     reasons.push_back({.code = ReasonCode::kBonded});
     return;
   }
   if (assessment.model.is_settled && assessment.model.is_stable != assessment.is_stable) {
-    reasons.push_back({.code = ReasonCode::kModelDisagrees,
-                       .numbers = {assessment.model.is_stable ? 1.0 : 0.0}});
+    reasons.push_back(
+        {.code = ReasonCode::kModelDisagrees, .numbers = {assessment.model.is_stable ? 1.0 : 0.0}});
   }
 }
 

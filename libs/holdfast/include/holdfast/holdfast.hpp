@@ -156,8 +156,8 @@ void write_picture_vtu(std::ostream& out, const Structure& structure, const Chec
                        const io::WriteOptions& options = {});
 
 /// A table of the connections and what each carries.
-void write_connections_csv(std::ostream& out, const Structure& structure,
-                           const CheckResult& result, const io::ReportOptions& options = {});
+void write_connections_csv(std::ostream& out, const Structure& structure, const CheckResult& result,
+                           const io::ReportOptions& options = {});
 
 /// The entry of a JSON report for a file that could not be checked: {"name", "error", "where"}.
 std::string error_json(const base::Error& error, std::string_view name);

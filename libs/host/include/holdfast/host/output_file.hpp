@@ -43,9 +43,9 @@ class OutputFile {
   /// Without finish() nothing was written, but for what went out directly.
   ~OutputFile();
 
-  /// Takes the text; its failures show in finish() at the latest. Can be sought in (tellp, seekp) if
-  /// a file of our own stands behind it; of what is written directly only a file with several names
-  /// can.
+  /// Takes the text; its failures show in finish() at the latest. Can be sought in (tellp, seekp)
+  /// if a file of our own stands behind it; of what is written directly only a file with several
+  /// names can.
   std::ostream& stream();
 
   /// Writes what is left and puts the file in its place. Called once. Errors: a full disk, a closed

@@ -27,15 +27,20 @@ class JsonStream {
       : out_(&out), layout_(layout) {}
 
   void begin_object() { begin('{'); }
+
   void end_object() { end('}'); }
+
   void begin_array() { begin('['); }
+
   void end_array() { end(']'); }
+
   void key(std::string_view name);
 
   void value(std::nullptr_t);
   void value(bool flag);
   void value(double number);  ///< The shortest digits that give it back; null if it is not finite.
   void value(std::string_view text);  ///< What is not UTF-8 becomes U+FFFD.
+
   void value(const char* text) { value(std::string_view(text)); }
 
   template <std::integral Integer>
@@ -76,7 +81,7 @@ class JsonStream {
   std::string* out_;
   Layout layout_;
   int depth_ = 0;
-  bool is_first_ = true;      ///< Nothing stands in the open container yet.
+  bool is_first_ = true;  ///< Nothing stands in the open container yet.
   bool is_after_key_ = false;
 };
 

@@ -21,8 +21,8 @@ namespace holdfast::io {
 /// is not UTF-8 as escapes ("\\n", "\\x1b").
 std::string one_line(std::string_view text);
 
-/// The sentence for a reason, without a full stop: "stable; the worst connection, ...". The robot is
-/// the one that was assessed.
+/// The sentence for a reason, without a full stop: "stable; the worst connection, ...". The robot
+/// is the one that was assessed.
 std::string reason_text(const model::Robot& robot, const verdict::Reason& reason);
 
 /// One checked structure, for a report. Views must outlive the call.
