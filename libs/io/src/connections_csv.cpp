@@ -1,7 +1,10 @@
 // SPDX-FileCopyrightText: The holdfast authors
 // SPDX-License-Identifier: Apache-2.0
+#include <fmt/compile.h>
+
+#include <algorithm>
 #include <array>
-#include <charconv>
+#include <iterator>
 #include <string>
 
 #include "connection_list.hpp"
@@ -20,16 +23,13 @@ constexpr std::size_t kBlockRows = 512;
 /// The shortest digits that give the number back; "nan" and "inf" as they are.
 template <class Number>
 void append(std::string& out, Number number) {
-  std::array<char, 32> digits;
-  const auto [end, fault] = std::to_chars(digits.data(), digits.data() + digits.size(), number);
-  out.append(digits.data(), end);
-  out += ',';
+  fmt::format_to(std::back_inserter(out), FMT_COMPILE("{},"), number);
 }
 
 /// Of a connection the second module lies in a positive direction.
 const char* axis_name(base::Direction direction) {
   constexpr std::array<const char*, 3> kAxes = {"+x,", "+y,", "+z,"};
-  return kAxes[base::index(direction) / 2];
+  return kAxes[static_cast<std::size_t>(base::index(direction) / 2)];
 }
 
 void append_row(std::string& out, const model::Robot& robot, std::size_t connection,

@@ -353,7 +353,7 @@ void write_vtu(std::ostream& out, const model::Robot& robot, const verdict::Asse
   }
   std::ostringstream whole;
   Writer(whole, robot, assessment, options).write();
-  out << whole.view();
+  out << whole.str();
 }
 
 }  // namespace holdfast::io
