@@ -77,13 +77,9 @@ inline std::vector<double> load_ratios(const model::Robot& robot, const Displace
   std::vector<double> ratios;
   ratios.reserve(robot.connections().size());
   for (const model::Connection& pair : robot.connections()) {
-    const auto load = mechanics::connection_load(
-        mechanics::middle_force(beam, pair.direction, u[static_cast<std::size_t>(pair.a)],
-                                u[static_cast<std::size_t>(pair.b)]));
-    ratios.push_back(mechanics::load_ratio(load, material.facet_mm,
-                                           base::is_vertical(pair.direction)
-                                               ? material.strength_vertical_n
-                                               : material.strength_lateral_n));
+    ratios.push_back(mechanics::load_ratio(
+        model::connector(material, base::connector_class(base::kCubic, pair.direction)),
+        mechanics::middle_force(beam, pair.direction, u[base::at(pair.a)], u[base::at(pair.b)])));
   }
   return ratios;
 }

@@ -11,8 +11,8 @@ function(holdfast_same_bits target)
 endfunction()
 
 # holdfast_room(NAME HEADERS ... [SOURCES ...] [LINKS ...] [PRIVATE_LINKS ...])
-# A static library holdfast_NAME, alias holdfast::NAME; without SOURCES only its headers. HEADERS are
-# below include/holdfast/NAME/; that each of them compiles alone is checked by the target
+# A static library holdfast_NAME, alias holdfast::NAME; without SOURCES only its headers. HEADERS
+# are below include/holdfast/NAME/; that each of them compiles alone is checked by the target
 # all_verify_interface_header_sets.
 function(holdfast_room name)
   cmake_parse_arguments(ROOM "" "" "HEADERS;SOURCES;LINKS;PRIVATE_LINKS" ${ARGN})

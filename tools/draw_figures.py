@@ -223,7 +223,258 @@ def element():
     return canvas
 
 
-FIGURES = {'element': element}
+# ---- The hierarchy: a block, an arm that hangs on it, and a leg.
+
+BLOCK = [(x, y) for x in range(8) for y in range(4)]
+RUN = [(x, 3) for x in range(8, 13)] + [(13, 2), (13, 1)]
+HANGING = [(2, 4), (2, 5), (3, 5), (4, 5)]
+CORNERS = [(13, 3), (13, 0)]
+STEP = 22
+
+
+def clusters_of(width):
+    """Nodes by the cell of this width that they lie in; here each is one connected part."""
+    found = {}
+    for x, y in BLOCK + CORNERS:
+        found.setdefault((x // width, y // width), []).append((x, y))
+    return list(found.values())
+
+
+def centre_of(nodes):
+    return tuple(sum(node[axis] for node in nodes) / len(nodes) for axis in (0, 1))
+
+
+def place(origin, node):
+    return origin[0] + STEP * node[0] + STEP / 2, origin[1] + 132 - STEP * node[1] - STEP / 2
+
+
+def draw_robot(canvas, origin):
+    for cells, fill in ((BLOCK + CORNERS, PALE), (RUN, '#fde3cf'), (HANGING, '#d5efe6')):
+        for x, y in cells:
+            left, top = origin[0] + STEP * x, origin[1] + 110 - STEP * y
+            canvas.parts.append(f'<rect x="{left}" y="{top}" width="{STEP}" height="{STEP}" '
+                                f'fill="{fill}" stroke="{GREY}"/>')
+    canvas.line((origin[0] - 6, origin[1] + 132), (origin[0] + 314, origin[1] + 132), width=2)
+
+
+def draw_network(canvas, origin):
+    for x, y in BLOCK:
+        for other in ((x + 1, y), (x, y + 1)):
+            if other in BLOCK:
+                canvas.line(place(origin, (x, y)), place(origin, other), colour=GREY, width=1.5)
+    for a, b in (((7, 3), (13, 3)), ((13, 3), (13, 0))):
+        canvas.line(place(origin, a), place(origin, b), colour=RED, width=3)
+    for node in BLOCK + CORNERS:
+        even = (node[0] + node[1]) % 2 == 0
+        canvas.dot(place(origin, node), 4, INK, INK if even else '#fff')
+    x, y = place(origin, (2, 3))
+    canvas.arrow((x, y - 46), (x, y - 8), colour=GREEN, width=2)
+    canvas.turn((x, y), 24, 130, -80, colour=GREEN, width=1.6)
+    canvas.text((x + 28, y - 30), 'weight and lever of what hung there', 'start', GREEN, 12)
+
+
+def draw_level(canvas, origin, width, pairs):
+    for nodes in clusters_of(width):
+        low = [min(node[axis] for node in nodes) for axis in (0, 1)]
+        high = [max(node[axis] for node in nodes) for axis in (0, 1)]
+        canvas.parts.append(
+            f'<rect x="{origin[0] + STEP * low[0] + 2}" '
+            f'y="{origin[1] + 112 - STEP * high[1]}" '
+            f'width="{STEP * (high[0] - low[0] + 1) - 4}" '
+            f'height="{STEP * (high[1] - low[1] + 1) - 4}" rx="6" '
+            f'fill="{PALE}" stroke="{GREY}"/>')
+    centres = [centre_of(nodes) for nodes in clusters_of(width)]
+    for a in centres:
+        for b in centres:
+            if a < b and pairs(a, b):
+                canvas.line(place(origin, a), place(origin, b), colour=BLUE, width=2.5)
+    for centre in centres:
+        canvas.dot(place(origin, centre), 5)
+
+
+def draw_cycle(canvas, top):
+    canvas.heading((20, top), 'One K-cycle, z = M^-1 r')
+    levels = [top + 46, top + 106, top + 166]
+    for y, name in zip(levels, ('level 0: the network', 'level 1', 'level 2: coarsest')):
+        canvas.text((20, y + 4), name, 'start')
+    canvas.parts.append(f'<rect x="268" y="{top + 76}" width="372" height="118" rx="10" '
+                        f'fill="none" stroke="{BLUE}" stroke-dasharray="5 4"/>')
+    spots = [(212, levels[0], 'relax'), (324, levels[1], 'relax'), (454, levels[2], 'solve'),
+             (584, levels[1], 'relax'), (696, levels[0], 'relax')]
+    for (x0, y0, _), (x1, y1, _) in zip(spots, spots[1:]):
+        down = y1 > y0
+        canvas.arrow((x0 + (24 if down else 44), y0 + (21 if down else 0)),
+                     (x1 - (44 if down else 24), y1 + (0 if down else 21)))
+    notes = ['colours 1, 2', 'colours 1, 2', 'factorized', 'colours 2, 1', 'colours 2, 1']
+    for (x, y, words), note in zip(spots, notes):
+        canvas.box((x - 44, y - 19), (88, 40), f'{words}\n{note}')
+    canvas.text((222, levels[1] - 10), 'forces left', 'middle', GREY, 12)
+    canvas.text((698, levels[1] - 10), 'rigid motions', 'middle', GREY, 12)
+    canvas.text((454, levels[1] - 8), 'twice at most, as steps', 'middle', BLUE, 12)
+    canvas.text((454, levels[1] + 8), 'of conjugate gradients', 'middle', BLUE, 12)
+
+
+def hierarchy():
+    canvas = Canvas(780, 612, 'From modules to the coarsest level, and one cycle')
+    left, right, upper, lower = 24, 424, 52, 218
+    canvas.heading((left, upper - 24), '1  Modules: 45')
+    draw_robot(canvas, (left, upper))
+    canvas.heading((right, upper - 24), '2  Reduced network: 34 nodes, 2 colours')
+    draw_network(canvas, (right, upper))
+    canvas.text((right + 196, upper + 84), 'runs are single', 'start', RED, 12)
+    canvas.text((right + 196, upper + 100), 'longer beams', 'start', RED, 12)
+    canvas.heading((left, lower + 22), '3  Level 1: clusters in cells of 2')
+    draw_level(canvas, (left, lower), 2,
+               lambda a, b: abs(a[0] - b[0]) + abs(a[1] - b[1]) < 2.1 or (a, b) == (
+                   (6.5, 2.5), (13.0, 3.0)) or a[0] == b[0] == 13)
+    canvas.heading((right, lower + 22), '4  Level 2: clusters in cells of 4')
+    draw_level(canvas, (right, lower), 4,
+               lambda a, b: a == (1.5, 1.5) and b == (5.5, 1.5) or a == (5.5, 1.5))
+    for number, words in enumerate(('springs reach', 'from centre', 'to centre')):
+        canvas.text((left + 188, lower + 84 + 16 * number), words, 'start', BLUE, 12)
+    canvas.line((20, 374), (760, 374), colour='#ccc', width=1)
+    draw_cycle(canvas, 402)
+    return canvas
+
+
+# ---- One sweep: an order down the tree, exchanges with neighbours, reports up.
+
+LANES = {'root': 150, 'inner': 390, 'leaf': 630}
+
+
+def draw_lanes(canvas, bottom):
+    for (lane, x), words in zip(LANES.items(), ('root\nwith the conductor', 'a module between\n',
+                                                'a leaf\nno children')):
+        canvas.box((x - 66, 14), (132, 42), words.strip('\n'))
+        canvas.line((x, 56), (x, bottom), colour=GREY, width=1, dash='4 4')
+
+
+def message(canvas, source, target, y, words, colour=INK, drop=14):
+    x0, x1 = LANES[source], LANES[target]
+    side = 5 if x1 > x0 else -5
+    canvas.arrow((x0 + side, y), (x1 - side, y + drop), colour=colour)
+    canvas.text(((x0 + x1) / 2, y - 2 + (0 if drop < 8 else 3)), words, colour=colour, size=12)
+
+
+def exchange(canvas, pair, y, words):
+    a, b = (LANES[name] for name in pair)
+    canvas.arrow((b - 5, y), (a + 5, y), colour=BLUE)
+    canvas.arrow((a + 5, y), (b - 5, y), colour=BLUE)
+    canvas.text(((a + b) / 2, y - 5), words, colour=BLUE, size=12)
+
+
+def work(canvas, lane, y, words, height=20, side=58):
+    canvas.box((LANES[lane] - side, y), (2 * side, height), words, '#fff', GREY)
+
+
+def draw_steps(canvas):
+    message(canvas, 'root', 'inner', 68, 'order: step')
+    work(canvas, 'root', 84, 'u := u + step')
+    message(canvas, 'inner', 'leaf', 90, 'order: step')
+    work(canvas, 'inner', 108, 'u := u + step')
+    work(canvas, 'leaf', 112, 'u := u + step')
+    for y, words in ((176, 'vector: leading digits of u'), (206, 'vector: the other digits')):
+        exchange(canvas, ('root', 'inner'), y, words)
+        exchange(canvas, ('inner', 'leaf'), y, words)
+    for lane in LANES:
+        work(canvas, lane, 222, 'r = f - K(s) u, state s', side=78)
+    message(canvas, 'leaf', 'inner', 258, 'report: sums of r', GREEN)
+    work(canvas, 'inner', 277, 'adds its own')
+    message(canvas, 'inner', 'root', 301, 'report: sums of r', GREEN)
+    work(canvas, 'root', 320, 'makes the next order', side=74)
+    for y, words in ((334, 'vector: first term of M^-1 r'), (392, 'vector: last term of M^-1 r')):
+        exchange(canvas, ('inner', 'leaf'), y, words)
+    exchange(canvas, ('root', 'inner'), 364, 'vector: first term')
+    exchange(canvas, ('root', 'inner'), 418, 'vector: last term')
+    message(canvas, 'root', 'inner', 444, 'order: the next one')
+    message(canvas, 'inner', 'leaf', 476, 'order: the next one')
+
+
+def sweep():
+    canvas = Canvas(800, 520, 'One sweep: an order down, exchanges, reports up')
+    draw_lanes(canvas, 505)
+    draw_steps(canvas)
+    for top, bottom, words in ((66, 132, ('down:', 'depth', 'rounds')),
+                               (164, 246, ('exchange:', '2 rounds')),
+                               (252, 326, ('up:', 'depth', 'rounds')),
+                               (332, 430, ('behind it:', 'm rounds,', 'mostly in', 'idle time'))):
+        canvas.line((714, top), (720, top), (720, bottom), (714, bottom), colour=GREY, width=1)
+        for number, word in enumerate(words):
+            canvas.text((726, (top + bottom) / 2 + 4 + 15 * (number - (len(words) - 1) / 2)), word,
+                        'start', GREY, 11)
+    return canvas
+
+
+# ---- The conductor: from each report to the next order.
+
+STATES = {  # name: centre, what else it may be
+    'plan': (70, 86, 'or forget'), 'hosts': (190, 86, ''), 'mass': (310, 86, ''),
+    'angles': (430, 86, ''), 'begin': (580, 86, 'or clusters'),
+    'factor': (470, 206, ''), 'step': (600, 206, 'or tree step'),
+    'start': (190, 206, ''), 'gradient': (70, 296, ''), 'jacobi': (190, 296, ''),
+    'slope': (70, 386, ''), 'mix': (190, 386, 'order: slope'), 'high': (310, 386, ''),
+    'low': (450, 386, ''), 'corners': (600, 386, ''), 'release': (310, 496, 'order: hold'),
+    'free': (430, 496, 'order: hold'), 'loads': (600, 496, ''), 'verdict': (600, 590, '')}
+FILLS = {**dict.fromkeys(('factor', 'step'), '#d5efe6'),
+         **dict.fromkeys(('start', 'gradient', 'jacobi', 'slope', 'mix', 'high', 'low'), '#fde3cf'),
+         **dict.fromkeys(('corners', 'release', 'free', 'loads', 'verdict'), '#f3f3f3')}
+AGAIN = {'plan': -1, 'gradient': -1, 'slope': -1, 'jacobi': -1, 'step': 1}
+EDGES = [  # corners of the way, colour
+    ((114, 86), (146, 86)), ((234, 86), (266, 86)), ((354, 86), (386, 86)), ((474, 86), (536, 86)),
+    ((310, 66), (310, 44), (580, 44), (580, 66)),
+    ((430, 66), (430, 26), (764, 26), (764, 590), (644, 590)),
+    ((560, 106), (560, 150), (470, 150), (470, 186)), ((600, 106), (600, 186)),
+    ((546, 106), (546, 124), (190, 124), (190, 186)),
+    ((514, 206), (556, 206)), ((580, 226), (580, 250), (470, 250), (470, 226)),
+    ((612, 226), (612, 366)), ((494, 386), (556, 386)),
+    ((420, 366), (420, 251), (212, 251), (212, 226)),
+    ((234, 206), (310, 206), (310, 366)), ((166, 226), (100, 276)), ((180, 226), (180, 276)),
+    ((60, 316), (60, 366)), ((95, 316), (160, 366)),
+    ((114, 308), (130, 308), (130, 340), (280, 340), (280, 366)),
+    ((234, 290), (295, 290), (295, 366)),
+    ((70, 406), (70, 428), (285, 428), (285, 406)), ((234, 386), (266, 386)),
+    ((354, 386), (406, 386)), ((585, 406), (585, 441), (330, 441), (330, 476)),
+    ((310, 476), (310, 406)), ((440, 476), (440, 420), (345, 420), (345, 406)),
+    ((556, 496), (474, 496)), ((310, 516), (310, 540), (580, 540), (580, 516)),
+    ((610, 406), (610, 476)), ((600, 516), (600, 570))]
+RED_EDGES = [((644, 191), (694, 191), (694, 98), (624, 98)),
+             ((470, 366), (470, 286), (722, 286), (722, 86), (624, 86)),
+             ((644, 386), (744, 386), (744, 74), (624, 74))]
+WORDS = [((506, 39), 'a module is fixed', INK), ((690, 21), 'topples', INK),
+         ((516, 145), 'elimination', INK), ((634, 146), 'polynomial', INK),
+         ((300, 119), 'cg, block-jacobi, jacobi', INK), ((525, 264), 'new states', INK),
+         ((635, 320), 'settled', INK), ((525, 381), 'settled', INK),
+         ((365, 246), 'next correction', INK), ((516, 436), 'under law 2', INK),
+         ((292, 462), 'freed', INK), ((516, 490), 'open, held', INK), ((445, 535), 'none', INK),
+         ((662, 184), 'stuck', RED), ((538, 281), 'stuck: next method, law', RED),
+         ((692, 381), 'contradict: law 2', RED)]
+NOTES = ['Green: one sweep a step. Orange: conjugate gradients and Jacobi methods.',
+         'Law 2: the unilateral one, Eqs. (6)-(8).',
+         'Settled: of a robot with a fixed module, loads comes next; behind free, the verdict.',
+         'Stuck: a step without clusters if it had them, else cg; a Jacobi method, the next one.',
+         'From every state: verdict, undecided, with the reason.']
+
+
+def conductor():
+    canvas = Canvas(780, 715, 'What the root orders next')
+    for points in EDGES:
+        canvas.arrow(*points, width=1.3)
+    for points in RED_EDGES:
+        canvas.arrow(*points, width=1.3, colour=RED)
+    for name, side in AGAIN.items():
+        x, y, _ = STATES[name]
+        canvas.turn((x + side * 47, y), 11, 50 if side < 0 else 130, -side * 260, width=1.3)
+    for name, (x, y, note) in STATES.items():
+        canvas.box((x - 44, y - 20), (88, 40), name + (f'\n{note}' if note else ''),
+                   FILLS.get(name, PALE))
+    for at, words, colour in WORDS:
+        canvas.text(at, words, colour=colour, size=11)
+    for number, words in enumerate(NOTES):
+        canvas.text((24, 630 + 17 * number), words, 'start', size=12)
+    return canvas
+
+
+FIGURES = {'element': element, 'hierarchy': hierarchy, 'sweep': sweep, 'conductor': conductor}
 
 
 def main():

@@ -10,6 +10,7 @@
 - every room has a README.md of 10 to 40 lines
 - no tab, no trailing blank, no path of a machine, no TODO without an issue number
 - a link from one document leads to a file that is there, and to a heading that is there
+- what is cited as [Author 1999] has an entry in docs/references.bib
 """
 import pathlib
 import re
@@ -161,9 +162,18 @@ def check_links(root, name, lines):
                 fault(name, number, f'no heading makes #{anchor}')
 
 
+def check_citations(name, lines, known):
+    for number, line in enumerate(lines, 1):
+        for brackets in re.findall(r'\[[A-Z][^\[\]]* (?:19|20)\d\d[^\[\]]*\]', line):
+            for author, year in re.findall(r'([A-Z][a-z]+)[^;\d]*? ((?:19|20)\d\d)', brackets):
+                if author + year not in known:
+                    fault(name, number, f'docs/references.bib has no {author}{year}')
+
+
 def main():
     root = pathlib.Path(sys.argv[1]).resolve()
     links = room_links(root)
+    cited = set(re.findall(r'^@\w+{(\w+),', (root / 'docs/references.bib').read_text(), re.M))
     exported = facade_exports(root)
     for name in tracked_files(root):
         path = root / name
@@ -171,10 +181,13 @@ def main():
             lines = path.read_text().splitlines()
             check_source(name, lines, links, exported)
             check_text(name, lines)
+            check_citations(name, lines, cited)
         elif path.suffix in {'.py', '.sh', '.cmake'} or path.name == 'CMakeLists.txt':
             check_text(name, path.read_text().splitlines())
         elif path.suffix == '.md':
             check_links(root, name, path.read_text().splitlines())
+            if name != 'STYLE.md':
+                check_citations(name, path.read_text().splitlines(), cited)
     check_room_readmes(root)
     print('\n'.join(faults) if faults else 'tidy: no breach')
     sys.exit(1 if faults else 0)

@@ -188,6 +188,15 @@ cmp -s back.json direct.json || fault "conversion to XML and back changes the st
 expect_exit 1 check there.xml
 expect_exit 64 convert "$overload" there.txt
 
+# Version 2 is converted, and refused by name where it cannot be computed yet.
+printf '%s' '{"format": "holdfast-structure", "version": 2, "modules": [[0,0,0]],' \
+  '"obstacles": [{"cells": [[1,0,0]]}]}' >wall.json
+expect_exit 0 convert wall.json wall_again.json
+expect_line wall_again.json '"obstacles"'
+expect_refusal "/obstacles: obstacles cannot be computed with yet" wall.json
+expect_exit 65 convert wall.json wall.xml
+[ ! -e wall.xml ] || fault "a structure that XML has no words for was written as XML"
+
 # Named structures, large ones, bonded supports.
 expect_exit 0 generate cube 3
 expect_line out '"cube 3"'

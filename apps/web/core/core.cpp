@@ -170,13 +170,16 @@ Reply try_places(const Request& request) {
 
 /// Integers: x, y, z and Kind of each module. Numbers: the material. Cells that are no robot yet
 /// can be opened and mended; cells that the page cannot hold as they are, two modules in one, get
-/// the program's error.
+/// the program's error, and so does what cannot be computed with yet.
 Reply open_text(std::string_view text) {
   const auto read = io::read_document(text);
   if (!read) {
     return failure(read.error());
   }
   const io::Document& document = read.value().document;
+  if (const auto error = io::find_unsupported(document)) {
+    return failure(*error);
+  }
   if (has_double_cell(document)) {
     const auto robot = io::make_robot(document);
     HOLDFAST_CHECK(!robot);

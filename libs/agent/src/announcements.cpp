@@ -5,7 +5,7 @@
 namespace holdfast::agent {
 namespace {
 
-/// Can it be told? Neighbours refuse what is outside the lattice (legal.hpp).
+/// Can it be told? Neighbours refuse what is outside the lattice (messages.hpp).
 bool is_legal(const base::Cell& cell) {
   for (const std::int32_t value : {cell.x, cell.y, cell.z}) {
     if (value < -base::kCoordinateMax || value > base::kCoordinateMax) {

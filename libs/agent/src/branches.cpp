@@ -7,11 +7,8 @@ namespace holdfast::agent {
 void Agent::begin_branch() { new (&work_.tree) BranchWork; }
 
 void Agent::take_loop(int face, std::span<const std::uint8_t> message) {
-  wire::Reader in(message);
   std::uint8_t& count = work_.tree.child_cut_count[static_cast<std::size_t>(face)];
-  Cut& cut = work_.tree.child_cuts[static_cast<std::size_t>(face)][count++];
-  cut.cell = in.cell();
-  cut.direction = static_cast<base::Direction>(in.u8());
+  work_.tree.child_cuts[static_cast<std::size_t>(face)][count++] = decoded<Cut>(message);
 }
 
 /// Finds out which loops pass or close here, and tells the parent.
@@ -35,11 +32,7 @@ std::uint8_t Agent::survey_loops() {
     return kManyLoops;
   }
   for (int i = 0; i < tree.branch.open_count() && parent_ >= 0; ++i) {
-    const Cut& cut = tree.branch.cut(tree.branch.open_slot(i));
-    wire::Writer message(wire::MessageType::kLoop);
-    message.cell(cut.cell);
-    message.u8(static_cast<std::uint8_t>(cut.direction));
-    send(parent_, message);
+    send(parent_, encode(tree.branch.cut(tree.branch.open_slot(i))));
   }
   return 0;
 }
@@ -209,18 +202,17 @@ void Agent::send_leaf_columns(const branches::Leaves& leaves, int leaf, int firs
 }
 
 void Agent::take_column(int face, std::span<const std::uint8_t> message) {
-  wire::Reader in(message);
-  const int index = in.u8();
+  const auto in = decoded<LabelledVector>(message);
+  const int index = in.label;
   const int part = index - Branch::kColumnCount;
   BranchWork& tree = work_.tree;
   std::uint8_t& here = tree.columns_here[static_cast<std::size_t>(face)];
   if (part < 0) {
     tree.is_symmetric = tree.is_symmetric && index >= branches::kStiffnessColumns;
-    tree.branch.add_column(index, tree.slot_of[static_cast<std::size_t>(face)],
-                           sweep::read_vector(in));
+    tree.branch.add_column(index, tree.slot_of[static_cast<std::size_t>(face)], in.vector);
     here = static_cast<std::uint8_t>(index + 1);
   } else {
-    tree.branch.add_part(part, sweep::read_vector(in));
+    tree.branch.add_part(part, in.vector);
     here = part + 1 == Branch::kPartCount ? std::uint8_t{6} : here;
   }
 }
@@ -291,12 +283,12 @@ void Agent::send_batch(int column, int count) {
 
 [[gnu::noinline]] void Agent::send_column(int label, const base::Vec6<float>& column) {
   send(parent_,
-       sweep::vector_message(wire::MessageType::kColumn, static_cast<std::uint8_t>(label), column));
+       vector_message(wire::MessageType::kColumn, static_cast<std::uint8_t>(label), column));
 }
 
 void Agent::take_branch_up(int face, std::span<const std::uint8_t> message) {
-  wire::Reader in(message);
-  const int index = in.u8();
+  const auto in = decoded<LabelledVector>(message);
+  const int index = in.label;
   BranchLoad& load = work_.tree.load;
   base::Vec6<double>* into = &load.load;
   if (index > 0) {
@@ -304,7 +296,7 @@ void Agent::take_branch_up(int face, std::span<const std::uint8_t> message) {
         work_.tree.slot_of[static_cast<std::size_t>(face)][static_cast<std::size_t>(index - 1)];
     into = &load.gap[static_cast<std::size_t>(slot)];
   }
-  base::add_to(*into, base::converted<double>(sweep::read_vector(in)));
+  base::add_to(*into, base::converted<double>(in.vector));
 }
 
 /// The residuals here join the loads from below, and all go up.
@@ -376,8 +368,8 @@ void Agent::send_leaf_load(const branches::Leaves& leaves, std::size_t leaf) {
 }
 
 void Agent::send_branch_up(int index, const base::Vec6<float>& vector) {
-  send(parent_, sweep::vector_message(wire::MessageType::kBranchUp,
-                                      static_cast<std::uint8_t>(index), vector));
+  send(parent_,
+       vector_message(wire::MessageType::kBranchUp, static_cast<std::uint8_t>(index), vector));
 }
 
 /// What comes down first; the root has it.
@@ -391,10 +383,10 @@ void Agent::begin_tree_step() {
 }
 
 void Agent::take_branch_down(std::span<const std::uint8_t> message) {
-  wire::Reader in(message);
-  const int index = in.u8();
+  const auto in = decoded<LabelledVector>(message);
+  const int index = in.label;
   BranchWork& tree = work_.tree;
-  const base::Vec6<float> vector = sweep::read_vector(in);
+  const base::Vec6<float> vector = in.vector;
   if (index == 0) {
     nodes_[0].shared = vector;  // The parent's shift.
   } else {
@@ -466,11 +458,11 @@ void Agent::send_branch_down() {
       continue;
     }
     const auto at = static_cast<std::size_t>(face);
-    send(face, sweep::vector_message(wire::MessageType::kBranchDown, 0, nodes_[0].shared));
+    send(face, vector_message(wire::MessageType::kBranchDown, 0, nodes_[0].shared));
     for (std::size_t i = 0; i < tree.child_cut_count[at]; ++i) {
       const auto slot = static_cast<std::size_t>(tree.slot_of[at][i]);
-      send(face, sweep::vector_message(wire::MessageType::kBranchDown,
-                                       static_cast<std::uint8_t>(1 + i), tree.forces[slot]));
+      send(face, vector_message(wire::MessageType::kBranchDown, static_cast<std::uint8_t>(1 + i),
+                                tree.forces[slot]));
     }
   }
   tree.load = {};

@@ -144,25 +144,24 @@ Joint Agent::joint_to_cluster() const {
 
 void Agent::send_parts(const Cluster::Parts& parts) {
   for (int i = 0; i < Branch::kPartCount; ++i) {
-    send(work_.clustered.parent,
-         sweep::vector_message(wire::MessageType::kColumn,
-                               static_cast<std::uint8_t>(Branch::kColumnCount + i),
-                               parts[static_cast<std::size_t>(i)]));
+    send(work_.clustered.parent, vector_message(wire::MessageType::kColumn,
+                                                static_cast<std::uint8_t>(Branch::kColumnCount + i),
+                                                parts[static_cast<std::size_t>(i)]));
   }
 }
 
 void Agent::take_cluster_part(int face, std::span<const std::uint8_t> message) {
-  wire::Reader in(message);
-  const int part = in.u8() - Branch::kColumnCount;
+  const auto in = decoded<LabelledVector>(message);
+  const int part = in.label - Branch::kColumnCount;
   ClusteredSteps& work = work_.clustered;
   if (part < 0 || part >= Branch::kPartCount) {
     return;
   }
   if (order_.operation == wire::Operation::kStep) {
-    work.cluster.add_stiffness(part, sweep::read_vector(in));
+    work.cluster.add_stiffness(part, in.vector);
     return;
   }
-  work.cluster.add_to_link(part, sweep::read_vector(in));
+  work.cluster.add_to_link(part, in.vector);
   if (part + 1 == Branch::kPartCount) {
     work.awaited = static_cast<std::uint8_t>(work.awaited ^ bit(face));
   }
@@ -170,12 +169,12 @@ void Agent::take_cluster_part(int face, std::span<const std::uint8_t> message) {
 
 /// A child's load: all that comes from it.
 void Agent::take_cluster_load(int face, std::span<const std::uint8_t> message) {
-  wire::Reader in(message);
+  const auto in = decoded<LabelledVector>(message);
   ClusteredSteps& work = work_.clustered;
-  if (in.u8() == clusters::kHeld) {
+  if (in.label == clusters::kHeld) {
     work.cluster.hold();
   }
-  work.cluster.add_load(base::converted<double>(sweep::read_vector(in)));
+  work.cluster.add_load(base::converted<double>(in.vector));
   work.awaited = static_cast<std::uint8_t>(work.awaited & ~bit(face));
 }
 
@@ -240,15 +239,15 @@ void Agent::send_cluster_load() {
   const bool is_hidden = work.cluster.is_held() && !work.is_top;
   base::Vec6<double> load;
   work.cluster.find_load_up(joint_to_cluster(), work.is_top, load);
-  send(work.parent, sweep::vector_message(wire::MessageType::kBranchUp,
-                                          is_hidden ? clusters::kHeld : std::uint8_t{0},
-                                          base::converted<float>(load)));
+  send(work.parent,
+       vector_message(wire::MessageType::kBranchUp, is_hidden ? clusters::kHeld : std::uint8_t{0},
+                      base::converted<float>(load)));
 }
 
 void Agent::take_cluster_shift(std::span<const std::uint8_t> message) {
-  wire::Reader in(message);
-  if (in.u8() == 0 && work_.clustered.piece == ClusterPiece::kShift) {
-    nodes_[0].shared = sweep::read_vector(in);
+  const auto in = decoded<LabelledVector>(message);
+  if (in.label == 0 && work_.clustered.piece == ClusterPiece::kShift) {
+    nodes_[0].shared = in.vector;
     work_.clustered.is_shift_here = true;
   }
 }
@@ -268,7 +267,7 @@ bool Agent::shift_cluster() {
   share_term(nodes_[0], steps_of(0));
   for (int face = 0; face < base::kDirectionCount; ++face) {
     if ((work.children & bit(face)) != 0) {
-      send(face, sweep::vector_message(wire::MessageType::kBranchDown, 0, nodes_[0].shared));
+      send(face, vector_message(wire::MessageType::kBranchDown, 0, nodes_[0].shared));
     }
   }
   const auto leaves = branches::leaves_of(planned_);

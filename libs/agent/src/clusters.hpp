@@ -50,6 +50,11 @@ struct Choice {
   static constexpr int kNoFace = 7;
 };
 
+// A cell is at most twice kCoordinateMax from the root, and all numbers have to be whole ones of
+// binary32.
+static_assert(8 * 2 * base::kCoordinateMax + Choice::kNoFace < (1 << 24));
+static_assert(Choice::kNoFace < 8 && base::kDirectionCount <= Choice::kNoFace);
+
 inline base::Vec6<double> encoded(const Choice& choice) {
   return {static_cast<double>(8 * choice.top.x + choice.parent_face),
           static_cast<double>(choice.top.y),

@@ -11,8 +11,8 @@ namespace holdfast::agent {
 
 using wire::Operation;
 
-Order Conductor::order(Step step, Operation operation) {
-  step_ = step;
+Order Conductor::ask(Operation operation) {
+  asked_ = operation;
   return {.operation = operation};
 }
 
@@ -24,22 +24,24 @@ Order Conductor::begin(const Setup& setup, const base::Cell& root, std::uint32_t
   depth_ = depth;
   degree_ = depth < setup.degree_max ? depth : setup.degree_max;
   effort_.method = setup.method;
-  Order first = order(Step::kPlan, Operation::kPlan);
+  Order first = ask(Operation::kPlan);
   first.index = kNoPlanned;
   return first;
 }
 
 Order Conductor::next(const Setup& setup, const Report& report) {
-  switch (step_) {
-    case Step::kPlan:
+  switch (asked_) {
+    case Operation::kPlan:
+    case Operation::kForget:
       return after_plan(report);
-    case Step::kHosts:
+    case Operation::kHosts:
       return after_hosts(report);
-    case Step::kMass:
+    case Operation::kMass:
       return after_mass(setup, report);
-    case Step::kAngles:
+    case Operation::kAngles:
       return after_angles(setup, report);
-    case Step::kBegin:
+    case Operation::kBegin:
+    case Operation::kClusters:
       if (is_one_sweep()) {
         if constexpr (kHasAllMethods) {
           choose_clusters(report);
@@ -47,15 +49,16 @@ Order Conductor::next(const Setup& setup, const Report& report) {
         return first_step();
       }
       break;
-    case Step::kFactor:
+    case Operation::kFactor:
       return tree_step();
-    case Step::kStep:
+    case Operation::kStep:
+    case Operation::kTreeStep:
       return after_step(setup, report);
-    case Step::kCorners:
+    case Operation::kCorners:
       return after_corners(setup, report);
-    case Step::kLoads:
+    case Operation::kLoads:
       return after_loads(report);
-    case Step::kVerdict:
+    case Operation::kVerdict:
       return finish(Verdict::kUndecided, Reason::kNotConverged);
     default:
       break;
@@ -68,28 +71,25 @@ Order Conductor::next(const Setup& setup, const Report& report) {
 
 /// The same for conjugate gradients and the Jacobi methods.
 Order Conductor::next_of_solve(const Setup& setup, const Report& report) {
-  switch (step_) {
-    case Step::kBegin:
+  switch (asked_) {
+    case Operation::kBegin:
       return is_jacobi() ? start_jacobi() : start_solve(false);
-    case Step::kHigh: {
-      Order low = order(Step::kLow, Operation::kLow);
+    case Operation::kHigh: {
+      Order low = ask(Operation::kLow);
       low.flags = is_unilateral_ || is_jacobi() ? kFollowStates : std::uint8_t{0};
       return low;
     }
-    case Step::kLow:
+    case Operation::kLow:
       return judge(setup, report);
-    case Step::kStart:
+    case Operation::kStart:
       return after_start(report);
-    case Step::kGradient:
+    case Operation::kGradient:
       return after_gradient(setup, report);
-    case Step::kJacobi:
+    case Operation::kJacobi:
       return after_jacobi(setup, report);
-    case Step::kSlope:
-      return after_slope(report);
-    case Step::kMix:
-      return after_mix(report);
-    case Step::kRelease:
-    case Step::kFree:
+    case Operation::kSlope:
+      return is_unilateral_ ? after_slope(report) : after_mix(report);
+    case Operation::kHold:
       return after_hold(report);
     default:
       return finish(Verdict::kUndecided, Reason::kNotConverged);
@@ -114,7 +114,7 @@ Order Conductor::after_plan(const Report& report) {
   }
   if ((report.flags & kFound) != 0) {
     // One too many is asked for, too: it may be one that has ended.
-    Order plan = order(Step::kPlan, Operation::kPlan);
+    Order plan = ask(Operation::kPlan);
     plan.index = planned_count_++;
     plan.cell = report.cell;
     return plan;
@@ -123,7 +123,7 @@ Order Conductor::after_plan(const Report& report) {
     return finish(Verdict::kUndecided, (report.flags & kDisputed) != 0 ? Reason::kPlanDisputed
                                                                        : Reason::kPlannedTooMany);
   }
-  Order hosts = order(Step::kHosts, Operation::kHosts);
+  Order hosts = ask(Operation::kHosts);
   hosts.masks = totals_;
   return hosts;
 }
@@ -134,7 +134,7 @@ Order Conductor::forget(const Report& report) {
   }
   planned_count_ = 0;
   totals_ = {};
-  Order forget = order(Step::kPlan, Operation::kForget);
+  Order forget = ask(Operation::kForget);
   forget.cell = report.cell;
   forget.flags = (report.flags & kFulfilled) != 0 ? kIsFulfilled : std::uint8_t{0};
   return forget;
@@ -146,7 +146,7 @@ Order Conductor::after_hosts(const Report& report) {
   if ((report.mask & 0x7fU) != all) {
     return finish(Verdict::kUndecided, Reason::kPlannedDetached);
   }
-  Order mass = order(Step::kMass, Operation::kMass);
+  Order mass = ask(Operation::kMass);
   mass.cell = root_;
   return mass;
 }
@@ -168,7 +168,7 @@ Order Conductor::after_mass(const Setup& setup, const Report& report) {
   if ((report.flags & kSumOverflow) != 0 || !fits_exact_check(setup, report.count)) {
     return finish(Verdict::kUndecided, Reason::kTooLarge);
   }
-  Order angles = order(Step::kAngles, Operation::kAngles);
+  Order angles = ask(Operation::kAngles);
   angles.cell = root_;
   angles.module_count = static_cast<std::int32_t>(report.count);
   angles.cell_sum = report.cell_sum;
@@ -192,18 +192,18 @@ Order Conductor::begin_law(const Setup& setup, bool is_unilateral) {
   seen_count_ = 0;
   contact_steps_max_ = effort_.contact_steps + kContactStepsMax;
   check_at_ = effort_.iterations + 2 * jacobi_span();
-  check_error_ = 1e30;
+  check_error_ = kUnbounded;
   stagnation_count_ = 0;
-  error_ = 1e30;
-  error_best_ = 1e30;
+  error_ = kUnbounded;
+  error_best_ = kUnbounded;
   target_ = is_fixed_ ? kRatioTolerance : kStateTolerance;
   solve_iterations_max_ = 200 + 20 * effort_.module_count;
-  Order begin = order(Step::kBegin, Operation::kBegin);
+  Order begin = ask(Operation::kBegin);
   if (is_one_sweep()) {
     choose_one_sweep(is_unilateral);
     if constexpr (kHasAllMethods) {
       had_clusters_ = false;
-      begin.operation = may_have_clusters() ? Operation::kClusters : Operation::kBegin;
+      begin = ask(may_have_clusters() ? Operation::kClusters : Operation::kBegin);
     }
     const bool starts = effort_.method == Method::kPolynomial && !is_any_remote_;
     begin.count = starts ? step_degree() : std::uint16_t{0};
@@ -221,12 +221,12 @@ Order Conductor::begin_law(const Setup& setup, bool is_unilateral) {
 }
 
 Order Conductor::move(double step, double mix) {
-  Order high = order(Step::kHigh, Operation::kHigh);
+  Order high = ask(Operation::kHigh);
   high.reals = {static_cast<float>(step), static_cast<float>(mix)};
   return high;
 }
 
-/// Reports of kLow: error bound, largest ratio, mixing products, changed facets, their hash.
+/// Reports of kLow: error bound, largest ratio, facets that want another state, the hash of all.
 Order Conductor::judge(const Setup& setup, const Report& report) {
   const auto error = static_cast<double>(report.reals[0]);
   ratio_ = static_cast<double>(report.reals[1]);
@@ -265,7 +265,7 @@ Order Conductor::judge_regularised(const Setup& setup, const Report& report) {
     return begin_law(setup, true);
   }
   ++effort_.contact_steps;
-  error_best_ = 1e30;
+  error_best_ = kUnbounded;
   stagnation_count_ = 0;
   return start_solve(true);
 }
@@ -310,7 +310,7 @@ Order Conductor::start_solve(bool adopts_states) {
   ++effort_.solves;
   has_history_ = has_history_ && !adopts_states;
   solve_iterations_ = 0;
-  Order start = order(Step::kStart, Operation::kStart);
+  Order start = ask(Operation::kStart);
   start.flags = adopts_states ? kAdoptStates : std::uint8_t{0};
   start.count = degree_;
   return start;
@@ -318,7 +318,7 @@ Order Conductor::start_solve(bool adopts_states) {
 
 Order Conductor::after_start(const Report& report) {
   if (is_jacobi()) {
-    Order jacobi = order(Step::kJacobi, Operation::kJacobi);
+    Order jacobi = ask(Operation::kJacobi);
     jacobi.count = batch_;
     return jacobi;
   }
@@ -356,7 +356,7 @@ Order Conductor::next_gradient(double gamma, double delta) {
   if (!(curvature > 0) || !is_number(alpha)) {
     return end_solve();
   }
-  Order gradient = order(Step::kGradient, Operation::kGradient);
+  Order gradient = ask(Operation::kGradient);
   gradient.count = degree_;
   gradient.reals = {static_cast<float>(alpha), static_cast<float>(beta)};
   gamma_ = gamma;
@@ -371,11 +371,11 @@ Order Conductor::end_solve() {
     if (!mixes) {
       return move(1);
     }
-    Order products = order(Step::kMix, Operation::kSlope);
+    Order products = ask(Operation::kSlope);
     products.flags = kMixProducts;
     return products;
   }
-  Order slope = order(Step::kSlope, Operation::kSlope);
+  Order slope = ask(Operation::kSlope);
   slope.flags = kExchangeFirst;
   low_ = 0;
   high_ = 1;
@@ -417,7 +417,7 @@ Order Conductor::after_slope(const Report& report) {
     before = slope;
   }
   ++slope_count_;
-  Order again = order(Step::kSlope, Operation::kSlope);
+  Order again = ask(Operation::kSlope);
   again.reals = {static_cast<float>(low_), static_cast<float>(high_)};
   return slope_count_ > kSlopeCountMax ? move(high_) : again;
 }
@@ -428,8 +428,8 @@ Order Conductor::start_jacobi() {
   ++effort_.solves;
   solve_iterations_ = 0;
   batch_ = is_any_remote_ ? 1 : 8;
-  least_error_ = 1e30;
-  Order start = order(Step::kStart, Operation::kStart);
+  least_error_ = kUnbounded;
+  Order start = ask(Operation::kStart);
   start.flags = effort_.method == Method::kJacobi ? kWithScalars : kWithBlocks;
   return start;
 }
@@ -468,7 +468,7 @@ Order Conductor::after_jacobi(const Setup& setup, const Report& report) {
   }
   const std::uint32_t grown = is_any_remote_ ? 1U : 1U + solve_iterations_ / 8;
   batch_ = static_cast<std::uint16_t>(grown < kJacobiCountMax ? grown : kJacobiCountMax);
-  Order jacobi = order(Step::kJacobi, Operation::kJacobi);
+  Order jacobi = ask(Operation::kJacobi);
   jacobi.count = batch_;
   return jacobi;
 }
@@ -481,9 +481,9 @@ Order Conductor::settled() {
     return decide();
   }
   if (is_fixed_) {
-    return order(Step::kLoads, Operation::kLoads);
+    return ask(Operation::kLoads);
   }
-  return order(Step::kCorners, Operation::kCorners);
+  return ask(Operation::kCorners);
 }
 
 Order Conductor::after_corners(const Setup& setup, const Report& report) {
@@ -492,22 +492,22 @@ Order Conductor::after_corners(const Setup& setup, const Report& report) {
       effort_.method = Method::kConjugateGradients;
       return begin_law(setup, true);
     }
-    return order(Step::kLoads, Operation::kLoads);
+    return ask(Operation::kLoads);
   }
-  Order hold = order(Step::kRelease, Operation::kHold);
+  Order hold = ask(Operation::kHold);
   hold.flags = kReleaseOpen;
   return hold;
 }
 
 Order Conductor::after_hold(const Report& report) {
-  if (step_ == Step::kFree || report.count > 0) {
-    error_best_ = 1e30;
+  if (is_comparing_ || report.count > 0) {
+    error_best_ = kUnbounded;
     stagnation_count_ = 0;
     target_ = kRatioTolerance;
     return move(0);
   }
   open_held_count_ = report.number;
-  return order(Step::kLoads, Operation::kLoads);
+  return ask(Operation::kLoads);
 }
 
 Order Conductor::after_loads(const Report& report) {
@@ -521,7 +521,7 @@ Order Conductor::after_loads(const Report& report) {
     return decide();
   }
   is_comparing_ = true;
-  Order hold = order(Step::kFree, Operation::kHold);
+  Order hold = ask(Operation::kHold);
   hold.flags = kFreeOpen;
   return hold;
 }
@@ -544,7 +544,7 @@ Order Conductor::decide() {
 }
 
 Order Conductor::finish(Verdict verdict, Reason reason) {
-  Order last = order(Step::kVerdict, Operation::kVerdict);
+  Order last = ask(Operation::kVerdict);
   answer_.verdict = verdict;
   answer_.reason = reason;
   last.answer = answer_;

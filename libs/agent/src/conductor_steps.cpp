@@ -84,7 +84,7 @@ void Conductor::choose_clusters(const Report& report) {
 
 Order Conductor::first_step() {
   ++effort_.solves;
-  predicted_ = 1e30;
+  predicted_ = kUnbounded;
   holds_planned_ = false;
   held_planned_ = false;
   const bool is_elimination = !kHasAllMethods || effort_.method == Method::kElimination;
@@ -97,12 +97,12 @@ Order Conductor::first_step() {
   return step;
 }
 
-Order Conductor::factor() { return order(Step::kFactor, Operation::kFactor); }
+Order Conductor::factor() { return ask(Operation::kFactor); }
 
-Order Conductor::tree_step() { return order(Step::kStep, Operation::kTreeStep); }
+Order Conductor::tree_step() { return ask(Operation::kTreeStep); }
 
 Order Conductor::next_step(std::uint8_t flags, const std::array<float, 3>& coefficients) {
-  Order step = order(Step::kStep, Operation::kStep);
+  Order step = ask(Operation::kStep);
   const bool has_clusters = has_clusters_ && !least_residual_;
   step.flags = static_cast<std::uint8_t>(flags | (least_residual_ ? kLeastResidual : 0U) |
                                          (has_clusters ? kWithClusters : 0U) |
@@ -148,9 +148,9 @@ Order Conductor::after_step(const Setup& setup, const Report& report) {
       // Only exact steps are certain to go round in circles: conjugate gradients try first.
       return leave_one_sweep(setup, is_cycle && is_elimination);
     }
-    error_best_ = 1e30;
+    error_best_ = kUnbounded;
     stagnation_count_ = 0;
-    predicted_ = 1e30;
+    predicted_ = kUnbounded;
     holds_planned_ = is_any_remote_ && !has_clusters_;
     return is_elimination ? factor() : jumped_step(setup, report);
   }

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bits.hpp"
 #include "holdfast/agent/agent.hpp"
-#include "holdfast/agent/legal.hpp"
+#include "holdfast/agent/messages.hpp"
 #include "methods.hpp"
 #include "sweep.hpp"
 
@@ -11,7 +11,7 @@
 /// A message that is legal by itself can still be one that no working program sends now: an order
 /// from a child, a column of a loop that nobody has told of, a step before there is an equilibrium.
 /// Taking it would work on memory that belongs to another method. Such a message, and one that
-/// wire::is_legal() refuses, has no effect but two: it is counted, and the neighbour, whose faults
+/// is_legal() refuses, has no effect but two: it is counted, and the neighbour, whose faults
 /// are now known, counts as silent. Leaving it out alone would not do: a sum without it could make
 /// a robot `safe` that is not.
 namespace holdfast::agent {
@@ -123,8 +123,8 @@ bool Agent::is_expected(int face, std::span<const std::uint8_t> message) const {
     case MessageType::kReport:
       return reports && message[1] == static_cast<std::uint8_t>(order_.operation);
     case MessageType::kPlannedDown:
-      return is_parent && (message[1] & sweep::kIndexMask) < planned_.count() &&
-             (kHasAllMethods || message[1] <= sweep::kIndexMask);  // Parts are those of steps.
+      return is_parent && (message[1] & kPlannedIndexMask) < planned_.count() &&
+             (kHasAllMethods || message[1] <= kPlannedIndexMask);  // Parts are those of steps.
     case MessageType::kPlannedUp:
       return is_child && message[1] < planned_.count() &&
              (order_.operation != Operation::kStep || planned_up_awaited_ != 0);

@@ -2,15 +2,22 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "holdfast/agent/order.hpp"
 
+#include "codec.hpp"
+#include "holdfast/agent/operations.hpp"
+#include "holdfast/agent/planned.hpp"
 #include "methods.hpp"
 
 namespace holdfast::agent {
 namespace {
 
+using wire::Codec;
 using wire::MessageType;
 using wire::Operation;
-using wire::Reader;
+using wire::Ruler;
 using wire::Writer;
+
+/// Where the fields of orders and reports begin: behind type and operation.
+constexpr int kOrderAt = 2;
 
 /// The operation is the byte behind the type.
 Operation operation_of(std::span<const std::uint8_t> message) {
@@ -81,336 +88,231 @@ void merge_loads(Report& into, const Report& from) {
   into.number += from.number;
 }
 
-void write_feet(Writer& out, const SafeCorners& feet) {
-  out.u8(static_cast<std::uint8_t>(feet.range));
-  for (const FootCorner& corner : {feet.first, feet.last}) {
-    out.i32(corner.x);
-    out.i32(corner.y);
-  }
+constexpr std::uint8_t kFaces = 0x3f;
+constexpr std::uint8_t kPlanReportFlags =
+    kFound | kTooManyAnnounced | kEnded | kFulfilled | kDisputed;
+
+constexpr void direction_field(auto& codec, base::Direction& direction) {
+  codec.kind(direction, base::kDirections.front(), base::kDirections.back());
 }
 
-SafeCorners read_feet(Reader& in) {
-  SafeCorners feet;
-  feet.range = static_cast<mechanics::SafeRange>(in.u8());
+constexpr void feet_fields(auto& codec, SafeCorners& feet) {
+  codec.kind(feet.range, mechanics::SafeRange::kEmpty, mechanics::SafeRange::kFull);
   for (FootCorner* corner : {&feet.first, &feet.last}) {
-    corner->x = in.i32();
-    corner->y = in.i32();
-  }
-  return feet;
-}
-
-void write_corners(Writer& out, const mechanics::SupportCorners& corners) {
-  out.u8(static_cast<std::uint8_t>(corners.count | (corners.stable ? 4U : 0U)));
-  for (const mechanics::Corner& corner : corners.corners) {
-    out.cell({corner.x, corner.y, corner.z});
+    codec.i32(corner->x);
+    codec.i32(corner->y);
+    codec.require(feet.range != mechanics::SafeRange::kArc || is_good_corner(*corner));
   }
 }
 
-mechanics::SupportCorners read_corners(Reader& in) {
-  const std::uint8_t first = in.u8();
-  mechanics::SupportCorners corners{.stable = (first & 4U) != 0,
-                                    .count = static_cast<std::uint8_t>(first & 3U)};
+/// In place of the number of corners: the robot is held.
+constexpr std::uint8_t kHeld = 4;
+
+constexpr void corner_fields(auto& codec, mechanics::SupportCorners& corners) {
+  std::uint8_t count = corners.stable ? kHeld : corners.count;
+  codec.u8(count, 0, kHeld);
+  codec.require(count != kHeld - 1);
+  corners.stable = count == kHeld;
+  corners.count = corners.stable ? std::uint8_t{0} : count;
   for (mechanics::Corner& corner : corners.corners) {
-    const base::Cell cell = in.cell();
+    base::Cell cell = {corner.x, corner.y, corner.z};
+    codec.half_cells(cell);
     corner = {cell.x, cell.y, cell.z};
   }
-  return corners;
 }
 
-/// Reals that a report carries at its front.
-int real_count(Operation operation) {
-  switch (operation) {
+constexpr void answer_fields(auto& codec, Answer& answer) {
+  codec.kind(answer.verdict, Verdict::kSafe, Verdict::kUndecided);
+  codec.kind(answer.reason, Reason::kNone, Reason::kAmbiguousFeet);
+  codec.real(answer.load_ratio_max);
+  codec.cell(answer.worst_cell);
+  direction_field(codec, answer.worst_direction);
+}
+
+constexpr void real_fields(auto& codec, std::span<float> reals) {
+  for (float& real : reals) {
+    codec.real(real);
+  }
+}
+
+/// The degree of a preconditioner.
+constexpr void degree_field(auto& codec, std::uint16_t& count) {
+  auto degree = static_cast<std::uint8_t>(count);
+  codec.u8(degree);
+  count = degree;
+}
+
+/// What is in an order behind its operation.
+constexpr void fields(auto& codec, Order& order) {
+  switch (order.operation) {
+    case Operation::kPlan:
+      codec.u8(order.index);
+      codec.require(order.index <= kPlannedMax || order.index == kNoPlanned);
+      return codec.cell(order.cell);
+    case Operation::kHosts:
+      for (std::uint8_t& mask : order.masks) {
+        codec.flags(mask, kFaces);
+      }
+      return;
+    case Operation::kMass:
+      return codec.cell(order.cell);
+    case Operation::kAngles:
+      codec.i32(order.module_count);
+      codec.i32(order.cell_sum[0]);
+      return codec.i32(order.cell_sum[1]);
+    case Operation::kBegin:
+    case Operation::kClusters:
+      codec.flags(order.flags, kUnilateralLaw | kOneSweep | kWithSteps);
+      codec.u16(order.count, 0, kDegreeMax);
+      return real_fields(codec, std::span(order.reals).first(2));
+    case Operation::kHigh:
+      return real_fields(codec, std::span(order.reals).first(2));
     case Operation::kLow:
+      return codec.flags(order.flags, kFollowStates);
+    case Operation::kStart:
+      codec.flags(order.flags, kAdoptStates | kWithScalars | kWithBlocks);
+      return degree_field(codec, order.count);
+    case Operation::kGradient:
+      degree_field(codec, order.count);
+      return real_fields(codec, std::span(order.reals).first(2));
+    case Operation::kJacobi:
+      return codec.u16(order.count, 1, kJacobiCountMax);
+    case Operation::kSlope:
+      codec.flags(order.flags, kExchangeFirst | kMixProducts);
+      return real_fields(codec, std::span(order.reals).first(2));
+    case Operation::kHold:
+      return codec.flags(order.flags, kReleaseOpen | kFreeOpen);
+    case Operation::kVerdict:
+      return answer_fields(codec, order.answer);
+    case Operation::kStep:
+      codec.flags(order.flags,
+                  kRestart | kLeastResidual | kKeepStates | kWithClusters | kHoldPlanned);
+      codec.u16(order.count, 0, kDegreeMax);
+      return real_fields(codec, std::span(order.reals).first(3));
+    case Operation::kForget:
+      codec.flags(order.flags, kIsFulfilled);
+      return codec.place(order.cell);
+    case Operation::kCorners:
+    case Operation::kLoads:
+    case Operation::kFactor:
+    case Operation::kTreeStep:
+      return;
+  }
+}
+
+/// Bound on the error, largest load ratio; facets that change, the hash of all states, any tilting.
+constexpr void residual_fields(auto& codec, Report& report) {
+  real_fields(codec, std::span(report.reals).first(2));
+  codec.u16(report.extent);
+  codec.u32(report.number);
+  codec.flags(report.flags, kAnyTilting);
+}
+
+/// What is in a report behind its operation.
+constexpr void fields(auto& codec, Operation operation, Report& report) {
+  switch (operation) {
+    case Operation::kPlan:
+    case Operation::kForget:
+      codec.flags(report.mask, kFaces);
+      codec.flags(report.flags, kPlanReportFlags);
+      return codec.place(report.cell);
+    case Operation::kHosts:
+      return codec.flags(report.mask, (1U << kPlannedMax) - 1 + kAnyRemote);
+    case Operation::kMass:
+      codec.u32(report.count);
+      codec.i32(report.cell_sum[0]);
+      codec.i32(report.cell_sum[1]);
+      codec.flags(report.flags, kAnyFixed | kSumOverflow | kManyLoops);
+      return codec.u16(report.extent);
+    case Operation::kAngles:
+      return feet_fields(codec, report.feet);
+    case Operation::kLow:
+    case Operation::kTreeStep:
+      return residual_fields(codec, report);
+    case Operation::kStep:
+      residual_fields(codec, report);
+      if constexpr (kHasAllMethods) {
+        for (double& product : report.products) {
+          codec.long_real(product);
+        }
+      }
+      return;
     case Operation::kStart:
     case Operation::kGradient:
-    case Operation::kStep:
-    case Operation::kTreeStep:
-      return 2;
-    case Operation::kSlope:
-      return 5;
+      real_fields(codec, std::span(report.reals).first(2));
+      return codec.short_real(report.reals[2]);
     case Operation::kJacobi:
+      return real_fields(codec, std::span(report.reals).first(1));
+    case Operation::kSlope:
+      return real_fields(codec, std::span(report.reals).first(5));
+    case Operation::kHold:
+    case Operation::kClusters:
+      codec.u32(report.count);
+      return codec.u32(report.number);
+    case Operation::kCorners:
+      return corner_fields(codec, report.corners);
     case Operation::kLoads:
-      return 1;
-    default:
-      return 0;
+      real_fields(codec, std::span(report.reals).first(1));
+      codec.cell(report.cell);
+      direction_field(codec, report.direction);
+      codec.u32(report.count);
+      return codec.u32(report.number);
+    case Operation::kVerdict:
+      return codec.u32(report.count);
+    case Operation::kBegin:
+    case Operation::kHigh:
+    case Operation::kFactor:
+      return;
   }
 }
 
-void write_reals(Writer& out, std::span<const float> reals) {
-  for (const float real : reals) {
-    out.real(static_cast<double>(real));
+/// The sizes in the table of operations are those of the fields.
+static_assert([] {
+  for (const OperationInfo& row : kOperations) {
+    Ruler down(kOrderAt);
+    Order order{.operation = row.operation};
+    fields(down, order);
+    Ruler up(kOrderAt);
+    Report report;
+    fields(up, row.operation, report);
+    const bool is_known = kHasAllMethods || row.operation != Operation::kStep;
+    if (down.bytes() != row.order_bytes || (is_known && up.bytes() != row.report_bytes)) {
+      return false;
+    }
   }
-}
+  return true;
+}());
 
 }  // namespace
 
 Writer encode(const Order& order) {
   Writer out(MessageType::kOrder, order.operation);
-  switch (order.operation) {
-    case Operation::kHosts:
-      for (const std::uint8_t mask : order.masks) {
-        out.u8(mask);
-      }
-      break;
-    case Operation::kPlan:
-    case Operation::kForget:
-      out.u8(order.operation == Operation::kPlan ? order.index : order.flags);
-      [[fallthrough]];
-    case Operation::kMass:
-      out.cell(order.cell);
-      break;
-    case Operation::kAngles:
-      out.i32(order.module_count);
-      out.i32(order.cell_sum[0]);
-      out.i32(order.cell_sum[1]);
-      break;
-    case Operation::kJacobi:
-      out.u16(order.count);
-      break;
-    case Operation::kLow:
-    case Operation::kHold:
-      out.u8(order.flags);
-      break;
-    case Operation::kStart:
-      out.u8(order.flags);
-      out.u8(static_cast<std::uint8_t>(order.count));
-      break;
-    case Operation::kBegin:
-    case Operation::kClusters:
-      out.u8(order.flags);
-      out.u16(order.count);
-      out.real(static_cast<double>(order.reals[0]));
-      out.real(static_cast<double>(order.reals[1]));
-      break;
-    case Operation::kStep:
-      out.u8(order.flags);
-      out.u16(order.count);
-      write_reals(out, order.reals);
-      break;
-    case Operation::kSlope:
-      out.u8(order.flags);
-      [[fallthrough]];
-    case Operation::kHigh:
-      out.real(static_cast<double>(order.reals[0]));
-      out.real(static_cast<double>(order.reals[1]));
-      break;
-    case Operation::kGradient:
-      out.u8(static_cast<std::uint8_t>(order.count));
-      out.real(static_cast<double>(order.reals[0]));
-      out.real(static_cast<double>(order.reals[1]));
-      break;
-    case Operation::kVerdict:
-      out.u8(static_cast<std::uint8_t>(order.answer.verdict));
-      out.u8(static_cast<std::uint8_t>(order.answer.reason));
-      out.real(static_cast<double>(order.answer.load_ratio_max));
-      out.cell(order.answer.worst_cell);
-      out.u8(static_cast<std::uint8_t>(order.answer.worst_direction));
-      break;
-    case Operation::kCorners:
-    case Operation::kLoads:
-    case Operation::kFactor:
-    case Operation::kTreeStep:
-      break;
-  }
+  Codec codec(out);
+  Order copy = order;
+  fields(codec, copy);
   return out;
-}
-
-Order decode_order(std::span<const std::uint8_t> message) {
-  Reader in(message, 2);
-  Order order{.operation = operation_of(message)};
-  switch (order.operation) {
-    case Operation::kPlan:
-      order.index = in.u8();
-      order.cell = in.cell();
-      break;
-    case Operation::kHosts:
-      for (std::uint8_t& mask : order.masks) {
-        mask = in.u8();
-      }
-      break;
-    case Operation::kForget:
-      order.flags = in.u8();
-      [[fallthrough]];
-    case Operation::kMass:
-      order.cell = in.cell();
-      break;
-    case Operation::kAngles:
-      order.module_count = in.i32();
-      order.cell_sum = {in.i32(), in.i32()};
-      break;
-    case Operation::kJacobi:
-      order.count = in.u16();
-      break;
-    case Operation::kLow:
-    case Operation::kHold:
-      order.flags = in.u8();
-      break;
-    case Operation::kStart:
-      order.flags = in.u8();
-      order.count = in.u8();
-      break;
-    case Operation::kBegin:
-    case Operation::kClusters:
-      order.flags = in.u8();
-      order.count = in.u16();
-      order.reals = {in.real(), in.real()};
-      break;
-    case Operation::kStep:
-      order.flags = in.u8();
-      order.count = in.u16();
-      order.reals = {in.real(), in.real(), in.real()};
-      break;
-    case Operation::kSlope:
-      order.flags = in.u8();
-      [[fallthrough]];
-    case Operation::kHigh:
-      order.reals = {in.real(), in.real()};
-      break;
-    case Operation::kGradient:
-      order.count = in.u8();
-      order.reals = {in.real(), in.real()};
-      break;
-    case Operation::kVerdict:
-      order.answer.verdict = static_cast<Verdict>(in.u8());
-      order.answer.reason = static_cast<Reason>(in.u8());
-      order.answer.load_ratio_max = in.real();
-      order.answer.worst_cell = in.cell();
-      order.answer.worst_direction = static_cast<base::Direction>(in.u8());
-      break;
-    case Operation::kCorners:
-    case Operation::kLoads:
-    case Operation::kFactor:
-    case Operation::kTreeStep:
-      break;
-  }
-  return order;
 }
 
 Writer encode(Operation operation, const Report& report) {
   Writer out(MessageType::kReport, operation);
-  write_reals(out, std::span(report.reals).first(static_cast<std::size_t>(real_count(operation))));
-  switch (operation) {
-    case Operation::kPlan:
-    case Operation::kForget:
-      out.u8(report.mask);
-      out.u8(report.flags);
-      out.cell(report.cell);
-      break;
-    case Operation::kHosts:
-      out.u8(report.mask);
-      break;
-    case Operation::kMass:
-      out.u32(report.count);
-      out.i32(report.cell_sum[0]);
-      out.i32(report.cell_sum[1]);
-      out.u8(report.flags);
-      out.u16(report.extent);
-      break;
-    case Operation::kAngles:
-      write_feet(out, report.feet);
-      break;
-    case Operation::kStart:
-    case Operation::kGradient:
-      out.short_real(static_cast<double>(report.reals[2]));
-      break;
-    case Operation::kLow:
-    case Operation::kStep:
-    case Operation::kTreeStep:
-      out.u16(report.extent);
-      out.u32(report.number);
-      out.u8(report.flags);
-      if (kHasAllMethods && operation == Operation::kStep) {
-        for (const double product : report.products) {
-          out.long_real(product);
-        }
-      }
-      break;
-    case Operation::kHold:
-    case Operation::kClusters:
-      out.u32(report.count);
-      out.u32(report.number);
-      break;
-    case Operation::kCorners:
-      write_corners(out, report.corners);
-      break;
-    case Operation::kLoads:
-      out.cell(report.cell);
-      out.u8(static_cast<std::uint8_t>(report.direction));
-      out.u32(report.count);
-      out.u32(report.number);
-      break;
-    case Operation::kVerdict:
-      out.u32(report.count);
-      break;
-    default:
-      break;
-  }
+  Codec codec(out);
+  Report copy = report;
+  fields(codec, operation, copy);
   return out;
 }
 
-Report decode_report(std::span<const std::uint8_t> message) {
-  const Operation operation = operation_of(message);
-  Reader in(message, 2);
-  Report report;
-  for (int i = 0; i < real_count(operation); ++i) {
-    report.reals[static_cast<std::size_t>(i)] = in.real();
-  }
-  switch (operation) {
-    case Operation::kPlan:
-    case Operation::kForget:
-      report.mask = in.u8();
-      report.flags = in.u8();
-      report.cell = in.cell();
-      break;
-    case Operation::kHosts:
-      report.mask = in.u8();
-      break;
-    case Operation::kMass:
-      report.count = in.u32();
-      report.cell_sum = {in.i32(), in.i32()};
-      report.flags = in.u8();
-      report.extent = in.u16();
-      break;
-    case Operation::kAngles:
-      report.feet = read_feet(in);
-      break;
-    case Operation::kStart:
-    case Operation::kGradient:
-      report.reals[2] = in.short_real();
-      break;
-    case Operation::kLow:
-    case Operation::kStep:
-    case Operation::kTreeStep:
-      report.extent = in.u16();
-      report.number = in.u32();
-      report.flags = in.u8();
-      if (kHasAllMethods && operation == Operation::kStep) {
-        for (double& product : report.products) {
-          product = in.long_real();
-        }
-      }
-      break;
-    case Operation::kHold:
-    case Operation::kClusters:
-      report.count = in.u32();
-      report.number = in.u32();
-      break;
-    case Operation::kCorners:
-      report.corners = read_corners(in);
-      break;
-    case Operation::kLoads:
-      report.cell = in.cell();
-      report.direction = static_cast<base::Direction>(in.u8());
-      report.count = in.u32();
-      report.number = in.u32();
-      break;
-    case Operation::kVerdict:
-      report.count = in.u32();
-      break;
-    default:
-      break;
-  }
-  return report;
+bool decode(std::span<const std::uint8_t> message, Order& order) {
+  Codec codec(message, kOrderAt);
+  order = {.operation = operation_of(message)};
+  fields(codec, order);
+  return codec.is_legal();
+}
+
+bool decode(std::span<const std::uint8_t> message, Report& report) {
+  Codec codec(message, kOrderAt);
+  report = {};
+  fields(codec, operation_of(message), report);
+  return codec.is_legal();
 }
 
 void merge(Operation operation, Report& into, const Report& from) {

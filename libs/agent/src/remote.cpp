@@ -95,8 +95,8 @@ void Agent::pass_condensed() {
       leading[j] = static_cast<float>(leading_part(u[j]));
       trailing[j] = static_cast<float>(u[j] - leading_part(u[j]));
     }
-    send_remote_down(static_cast<std::uint8_t>(k | sweep::kLeading), leading);
-    send_remote_down(static_cast<std::uint8_t>(k | sweep::kTrailing), trailing);
+    send_remote_down(static_cast<std::uint8_t>(k | kLeadingPart), leading);
+    send_remote_down(static_cast<std::uint8_t>(k | kTrailingPart), trailing);
   }
 }
 
@@ -166,19 +166,19 @@ base::Vec6<double> Agent::force_on_hosted(int node_index) const {
 
 void Agent::send_remote_down(std::uint8_t label, const base::Vec6<float>& part) {
   for (int face = 0; face < base::kDirectionCount; ++face) {
-    if ((children_ & bit(face)) != 0 && planned_.is_needed_below(face, label & sweep::kIndexMask)) {
-      send(face, sweep::vector_message(wire::MessageType::kPlannedDown, label, part));
+    if ((children_ & bit(face)) != 0 && planned_.is_needed_below(face, label & kPlannedIndexMask)) {
+      send(face, vector_message(wire::MessageType::kPlannedDown, label, part));
     }
   }
 }
 
 void Agent::take_remote_down(std::uint8_t label, const base::Vec6<float>& part) {
-  const int k = label & sweep::kIndexMask;
+  const int k = label & kPlannedIndexMask;
   if (!planned_.is_from_above(k)) {
     return;
   }
   Node& node = planned_node(k);
-  const bool is_leading = (label & sweep::kLeading) != 0;
+  const bool is_leading = (label & kLeadingPart) != 0;
   for (std::size_t j = 0; j < 6; ++j) {
     node.u[j] = static_cast<double>(part[j]) + (is_leading ? 0 : node.u[j]);
   }

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bits.hpp"
 #include "holdfast/agent/agent.hpp"
-#include "holdfast/agent/legal.hpp"
+#include "holdfast/agent/messages.hpp"
 #include "methods.hpp"
 #include "watch.hpp"
 
@@ -133,7 +133,7 @@ void Agent::receive(int face, std::span<const std::uint8_t> packet) {
   std::span<const std::uint8_t> stream = link.receive(packet, setup_.timing, now_);
   for (auto message = link.next_message(stream); !message.empty() && link.is_used();
        message = link.next_message(stream)) {
-    wire::is_legal(message) ? dispatch(face, message) : refuse(face);
+    is_legal(message) ? dispatch(face, message) : refuse(face);
   }
   check_link(face);
 }
@@ -153,13 +153,11 @@ void Agent::check_link(int face) {
 
 void Agent::dispatch(int face, std::span<const std::uint8_t> message) {
   const auto type = static_cast<MessageType>(message[0]);
-  if (type == MessageType::kJoin || type == MessageType::kEcho) {
-    wire::Reader in(message);
-    peer_round_[static_cast<std::size_t>(face)] = {.epoch = in.u16(), .starter = in.u32()};
-  }
   if (type == MessageType::kJoin) {
-    take_join(face, message);
-    return;
+    return take_join(face, message);
+  }
+  if (type == MessageType::kEcho) {
+    peer_round_[static_cast<std::size_t>(face)] = decoded<Echo>(message).round;
   }
   // A link delivers in order, so its last join or echo tells to which round this belongs.
   const bool is_ours = peer_round_[static_cast<std::size_t>(face)] == round_;
@@ -174,9 +172,9 @@ void Agent::dispatch(int face, std::span<const std::uint8_t> message) {
     case MessageType::kEcho:
       return take_echo(face, message);
     case MessageType::kAppoint:
-      return take_appointment(message);
+      return take_appointment(decoded<Appointment>(message));
     case MessageType::kMark:
-      return take_mark(message);
+      return take_mark(decoded<Mark>(message));
     case MessageType::kOrder:
       if (is_exchanging_ || is_coarse()) {
         // What goes on behind the last report comes to its end first.

@@ -7,7 +7,12 @@ namespace holdfast::agent {
 
 inline double absolute(double value) { return value < 0 ? -value : value; }
 
-inline bool is_number(double value) { return absolute(value) < 1e30; }
+/// Beyond all errors and ratios that a robot can have: what stands for "no bound is known yet", and
+/// what is not a number any more. Finite, so that the soft arithmetic of a module has no case for
+/// it.
+inline constexpr double kUnbounded = 1e30;
+
+inline bool is_number(double value) { return absolute(value) < kUnbounded; }
 
 /// Newton's method, from above; the standard library's is not freestanding.
 template <class Real>

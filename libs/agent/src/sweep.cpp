@@ -30,7 +30,7 @@ void Agent::start_exchange() {
   const std::uint8_t faces = used_faces();
   for (int face = 0; face < base::kDirectionCount; ++face) {
     if ((faces & bit(face)) != 0) {
-      send(face, sweep::vector_message(wire::MessageType::kVector, tag_, own));
+      send(face, vector_message(wire::MessageType::kVector, tag_, own));
     }
   }
   if (!is_apart()) {
@@ -57,20 +57,19 @@ void Agent::start_planned_exchange() {
 void Agent::send_planned_down(int k) {
   for (int face = 0; face < base::kDirectionCount; ++face) {
     if ((children_ & bit(face)) != 0 && planned_.is_needed_below(face, k)) {
-      send(face,
-           sweep::vector_message(wire::MessageType::kPlannedDown, static_cast<std::uint8_t>(k),
-                                 planned_vector_[static_cast<std::size_t>(k)]));
+      send(face, vector_message(wire::MessageType::kPlannedDown, static_cast<std::uint8_t>(k),
+                                planned_vector_[static_cast<std::size_t>(k)]));
     }
   }
 }
 
 void Agent::take_planned_down(std::span<const std::uint8_t> message) {
-  wire::Reader in(message);
-  const int k = in.u8();
-  if (kHasAllMethods && (k & ~sweep::kIndexMask) != 0) {
-    return take_remote_down(static_cast<std::uint8_t>(k), sweep::read_vector(in));
+  const auto in = decoded<LabelledVector>(message);
+  const int k = in.label;
+  if (kHasAllMethods && (k & ~kPlannedIndexMask) != 0) {
+    return take_remote_down(static_cast<std::uint8_t>(k), in.vector);
   }
-  planned_vector_[static_cast<std::size_t>(k)] = sweep::read_vector(in);
+  planned_vector_[static_cast<std::size_t>(k)] = in.vector;
   planned_here_ = static_cast<std::uint8_t>(planned_here_ | bit(k));
   send_planned_down(k);
 }
@@ -90,17 +89,16 @@ void Agent::send_planned_up() {
         leading[i] = part + 1 < parts ? leading_part(force[i]) : force[i];
         force[i] -= leading[i];
       }
-      send(parent_,
-           sweep::vector_message(wire::MessageType::kPlannedUp, static_cast<std::uint8_t>(k),
-                                 base::converted<float>(leading)));
+      send(parent_, vector_message(wire::MessageType::kPlannedUp, static_cast<std::uint8_t>(k),
+                                   base::converted<float>(leading)));
     }
   }
 }
 
 void Agent::take_planned_up(std::span<const std::uint8_t> message) {
-  wire::Reader in(message);
-  const int k = in.u8();
-  const base::Vec6<float> force = sweep::read_vector(in);
+  const auto in = decoded<LabelledVector>(message);
+  const int k = in.label;
+  const base::Vec6<float> force = in.vector;
   for (std::size_t i = 0; i < 6; ++i) {
     planned_force_[static_cast<std::size_t>(k)][i] += static_cast<double>(force[i]);
   }
@@ -110,10 +108,10 @@ void Agent::take_planned_up(std::span<const std::uint8_t> message) {
 }
 
 void Agent::take_vector(int face, std::span<const std::uint8_t> message) {
-  wire::Reader in(message);
-  const std::uint8_t tag = in.u8();
+  const auto in = decoded<LabelledVector>(message);
+  const std::uint8_t tag = in.label;
   const std::size_t slot = tag & 1U;
-  vectors_[slot][static_cast<std::size_t>(face)] = sweep::read_vector(in);
+  vectors_[slot][static_cast<std::size_t>(face)] = in.vector;
   vectors_here_[slot] = static_cast<std::uint8_t>(vectors_here_[slot] | bit(face));
 }
 

@@ -4,6 +4,7 @@
 
 #include "bits.hpp"
 #include "holdfast/agent/agent.hpp"
+#include "holdfast/agent/messages.hpp"
 #include "methods.hpp"
 
 /// Sweeps: an order goes down the tree, its report comes up, and most of them exchange six reals
@@ -21,29 +22,6 @@ namespace sweep {
 /// A linear solve's exchanges: the preconditioner's terms, then w = A z.
 constexpr bool is_preconditioned(wire::Operation operation) {
   return operation == wire::Operation::kStart || operation == wire::Operation::kGradient;
-}
-
-/// In the label of `planned down`: the index, and for a step which part of a displacement it is.
-inline constexpr std::uint8_t kIndexMask = 0x3f;
-inline constexpr std::uint8_t kLeading = 0x40;
-inline constexpr std::uint8_t kTrailing = 0x80;
-
-inline wire::Writer vector_message(wire::MessageType type, std::uint8_t label,
-                                   const base::Vec6<float>& vector) {
-  wire::Writer message(type);
-  message.u8(label);
-  for (const float value : vector) {
-    message.real(static_cast<double>(value));
-  }
-  return message;
-}
-
-inline base::Vec6<float> read_vector(wire::Reader& in) {
-  base::Vec6<float> vector{};
-  for (float& value : vector) {
-    value = in.real();
-  }
-  return vector;
 }
 
 }  // namespace sweep

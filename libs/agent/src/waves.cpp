@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bits.hpp"
 #include "holdfast/agent/agent.hpp"
+#include "holdfast/agent/messages.hpp"
 #include "methods.hpp"
 
 /// Three waves with echo [Segall 1983], one after the other.
@@ -18,13 +19,6 @@
 /// end of everything: so of all of them one is taken that keeps to the straight line between the
 /// two (test/waves_test.cpp measures how near the centre it is).
 namespace holdfast::agent {
-
-using wire::MessageType;
-using wire::Reader;
-using wire::Writer;
-
-/// Joins and echoes begin with the type and the round.
-inline constexpr std::size_t kRoundBytes = 7;
 
 void Agent::start_wave(std::uint8_t stage) {
   root_cell_ = nodes_[0].cell;
@@ -53,24 +47,18 @@ void Agent::begin_stage(std::uint8_t stage, int parent, std::uint16_t hops) {
     if ((awaited_ & bit(face)) == 0) {
       continue;
     }
-    Writer join(MessageType::kJoin);
-    join.u16(round_.epoch);
-    join.u32(round_.starter);
-    join.u8(stage);
-    join.cell(stage == kFirstStage ? nodes_[0].cell : root_cell_);
-    join.u16(hops);
-    send(face, join);
+    send(face, encode(Join{.round = round_,
+                           .wave = stage,
+                           .cell = stage == kFirstStage ? nodes_[0].cell : root_cell_,
+                           .hops = hops}));
   }
   await_less(-1);
 }
 
 void Agent::take_join(int face, std::span<const std::uint8_t> message) {
-  Reader in(message, kRoundBytes);
-  const Round round = peer_round_[static_cast<std::size_t>(face)];
-  const std::uint8_t stage = in.u8();
-  const base::Cell theirs = in.cell();
+  const auto [round, stage, theirs, theirs_hops] = decoded<Join>(message);
+  peer_round_[static_cast<std::size_t>(face)] = round;
   // 65,535 stands for all that is further: too large (feet.hpp).
-  const std::uint16_t theirs_hops = in.u16();
   const auto hops = static_cast<std::uint16_t>(theirs_hops + (theirs_hops > kExtentMax ? 0 : 1));
   if (is_newer(round, round_)) {
     enter_round(round);
@@ -97,18 +85,16 @@ void Agent::take_join(int face, std::span<const std::uint8_t> message) {
 }
 
 void Agent::take_echo(int face, std::span<const std::uint8_t> message) {
-  Reader in(message, kRoundBytes);
-  if (in.u8() != stage_) {
+  const auto echo = decoded<Echo>(message);
+  if (echo.wave != stage_) {
     return;
   }
-  census_count_ += in.u32();
-  const std::uint16_t hops = in.u16();
-  const std::uint32_t id = in.u32();
-  if (hops > census_hops_ || (hops == census_hops_ && id < census_id_)) {
-    census_hops_ = hops;
-    census_id_ = id;
+  census_count_ += echo.count;
+  if (echo.hops > census_hops_ || (echo.hops == census_hops_ && echo.id < census_id_)) {
+    census_hops_ = echo.hops;
+    census_id_ = echo.id;
   }
-  is_anyone_silent_ = in.u8() != 0 || is_anyone_silent_;
+  is_anyone_silent_ = echo.is_anyone_silent != 0 || is_anyone_silent_;
   children_ = static_cast<std::uint8_t>(children_ | bit(face));
   await_less(face);
 }
@@ -128,15 +114,13 @@ void Agent::await_less(int face) {
     is_stage_over_ = true;
     return;
   }
-  Writer echo(MessageType::kEcho);
-  echo.u16(round_.epoch);
-  echo.u32(round_.starter);
-  echo.u8(stage_);
-  echo.u32(census_count_);
-  echo.u16(census_hops_);
-  echo.u32(census_id_);
-  echo.u8(is_anyone_silent_ ? 1 : 0);
-  send(parent_, echo);
+  send(parent_,
+       encode(Echo{.round = round_,
+                   .wave = stage_,
+                   .count = census_count_,
+                   .hops = census_hops_,
+                   .id = census_id_,
+                   .is_anyone_silent = is_anyone_silent_ ? std::uint8_t{1} : std::uint8_t{0}}));
 }
 
 /// Once the wave has come back to where it started.
@@ -156,36 +140,23 @@ bool Agent::end_stage() {
     has_next_order_ = true;
     return true;
   }
-  Writer appoint(MessageType::kAppoint);
-  appoint.u8(stage_);
-  appoint.u32(census_id_);
-  appoint.u16(static_cast<std::uint16_t>(census_hops_ / 2));
-  take_appointment(appoint.bytes());
+  take_appointment(
+      {.wave = stage_, .id = census_id_, .hops = static_cast<std::uint16_t>(census_hops_ / 2)});
   return true;
 }
 
-void Agent::take_appointment(std::span<const std::uint8_t> message) {
-  Reader in(message);
-  const std::uint8_t stage = in.u8();
-  const std::uint32_t id = in.u32();
-  const std::uint16_t hops = in.u16();
-  if (stage != stage_) {
+void Agent::take_appointment(const Appointment& appointment) {
+  if (appointment.wave != stage_) {
     return;  // Too late: the next wave was here already.
   }
   phase_ = Phase::kElection;
-  if (id == identity_.id) {
-    if (stage == kFirstStage) {
-      start_wave(kFarStage);
-    } else {
-      mark(hops, nodes_[0].cell);
-    }
-    return;
+  if (appointment.id != identity_.id) {
+    send_to_children(encode(appointment));
+  } else if (stage_ == kFirstStage) {
+    start_wave(kFarStage);
+  } else {
+    take_mark({.hops = appointment.hops, .sender = nodes_[0].cell});
   }
-  Writer onward(MessageType::kAppoint);
-  onward.u8(stage);
-  onward.u32(id);
-  onward.u16(hops);
-  send_to_children(onward);
 }
 
 /// One step towards the wave's root: of the neighbours nearer to it the one that is nearest to the
@@ -210,22 +181,14 @@ int Agent::face_towards_root(const base::Cell& end) const {
   return best;
 }
 
-void Agent::take_mark(std::span<const std::uint8_t> message) {
-  Reader in(message);
-  const std::uint16_t hops = in.u16();
-  mark(hops, in.cell());
-}
-
-/// So many hops more to the middle of the way from `end` to the wave's root.
-void Agent::mark(std::uint16_t hops, const base::Cell& end) {
-  if (hops == 0 || parent_ < 0) {
+/// So many hops more to the middle of the way from the sender to the wave's root.
+void Agent::take_mark(const Mark& mark) {
+  if (mark.hops == 0 || parent_ < 0) {
     start_wave(kTreeStage);
     return;
   }
-  Writer onward(MessageType::kMark);
-  onward.u16(static_cast<std::uint16_t>(hops - 1));
-  onward.cell(end);
-  send(face_towards_root(end), onward);
+  send(face_towards_root(mark.sender),
+       encode(Mark{.hops = static_cast<std::uint16_t>(mark.hops - 1), .sender = mark.sender}));
 }
 
 }  // namespace holdfast::agent

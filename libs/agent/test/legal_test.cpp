@@ -2,14 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // What docs/wire.md allows, and that anything else is refused; the golden messages are allowed.
-#include "holdfast/agent/legal.hpp"
-
 #include <gtest/gtest.h>
 
 #include <string>
 #include <string_view>
 
 #include "golden.hpp"
+#include "holdfast/agent/messages.hpp"
 #include "test_setup.hpp"
 
 namespace holdfast::agent {
@@ -20,15 +19,15 @@ using namespace holdfast::agent::test;
 TEST(Legal, all_golden_messages_are) {
   for (const auto& texts : {kGoldenOrders, kGoldenReports}) {
     for (const std::string_view text : texts) {
-      EXPECT_TRUE(wire::is_legal(from_hex(text))) << text;
+      EXPECT_TRUE(is_legal(from_hex(text))) << text;
     }
   }
   for (const GoldenStream& stream : kGoldenTrace) {
     for (const std::string_view text : stream.messages) {
-      EXPECT_TRUE(wire::is_legal(from_hex(text))) << text;
+      EXPECT_TRUE(is_legal(from_hex(text))) << text;
     }
   }
-  EXPECT_TRUE(wire::is_legal(from_hex(kGoldenLoop)));
+  EXPECT_TRUE(is_legal(from_hex(kGoldenLoop)));
 }
 
 /// The values of one byte of a message that are allowed.
@@ -96,27 +95,27 @@ TEST(Legal, bytes_that_name_something_name_what_there_is) {
     auto message = from_hex(limit.message);
     for (unsigned value = 0; value <= 0xff; ++value) {
       message[limit.offset] = static_cast<std::uint8_t>(value);
-      EXPECT_EQ(wire::is_legal(message), limit.allows(value)) << to_hex(message);
+      EXPECT_EQ(is_legal(message), limit.allows(value)) << to_hex(message);
     }
   }
 }
 
 /// kDegreeMax = 0x0fa0 and kJacobiCountMax = 0x1000.
 TEST(Legal, exchanges_are_bounded) {
-  EXPECT_TRUE(wire::is_legal(from_hex("05 11 00 a0 0f 00 00 00 00 00 00 00 00 00 00 00 00")));
-  EXPECT_FALSE(wire::is_legal(from_hex("05 11 00 a1 0f 00 00 00 00 00 00 00 00 00 00 00 00")));
-  EXPECT_TRUE(wire::is_legal(from_hex("05 05 06 a0 0f 00 00 00 3f 00 00 7a 44")));
-  EXPECT_FALSE(wire::is_legal(from_hex("05 05 06 a1 0f 00 00 00 3f 00 00 7a 44")));
-  EXPECT_FALSE(wire::is_legal(from_hex("05 13 06 a1 0f 00 00 00 3f 00 00 7a 44")));
-  EXPECT_TRUE(wire::is_legal(from_hex("05 0a 00 10")));
-  EXPECT_FALSE(wire::is_legal(from_hex("05 0a 01 10")));
-  EXPECT_FALSE(wire::is_legal(from_hex("05 0a 00 00")));
+  EXPECT_TRUE(is_legal(from_hex("05 11 00 a0 0f 00 00 00 00 00 00 00 00 00 00 00 00")));
+  EXPECT_FALSE(is_legal(from_hex("05 11 00 a1 0f 00 00 00 00 00 00 00 00 00 00 00 00")));
+  EXPECT_TRUE(is_legal(from_hex("05 05 06 a0 0f 00 00 00 3f 00 00 7a 44")));
+  EXPECT_FALSE(is_legal(from_hex("05 05 06 a1 0f 00 00 00 3f 00 00 7a 44")));
+  EXPECT_FALSE(is_legal(from_hex("05 13 06 a1 0f 00 00 00 3f 00 00 7a 44")));
+  EXPECT_TRUE(is_legal(from_hex("05 0a 00 10")));
+  EXPECT_FALSE(is_legal(from_hex("05 0a 01 10")));
+  EXPECT_FALSE(is_legal(from_hex("05 0a 00 00")));
 }
 
 /// 4 x 65,534 + 1 = 0x3fff9; sides of cells are odd.
 TEST(Legal, corners_are_those_of_cells_near_enough) {
   const auto angles = [](std::string_view x) {
-    return wire::is_legal(
+    return is_legal(
         from_hex("06 04 01 " + std::string(x) + " 01 00 00 00 01 00 00 00 ff ff ff ff"));
   };
   EXPECT_TRUE(angles("f9 ff 03 00"));
@@ -128,17 +127,16 @@ TEST(Legal, corners_are_those_of_cells_near_enough) {
 }
 
 TEST(Legal, rounds_have_a_number) {
-  EXPECT_FALSE(
-      wire::is_legal(from_hex("01 00 00 0a 00 00 00 01 ff ff ff 02 00 00 00 00 00 00 00")));
-  EXPECT_TRUE(wire::is_legal(from_hex("01 ff ff 0a 00 00 00 01 ff ff ff 02 00 00 00 00 00 00 00")));
+  EXPECT_FALSE(is_legal(from_hex("01 00 00 0a 00 00 00 01 ff ff ff 02 00 00 00 00 00 00 00")));
+  EXPECT_TRUE(is_legal(from_hex("01 ff ff 0a 00 00 00 01 ff ff ff 02 00 00 00 00 00 00 00")));
 }
 
 /// 1,000,000 = 0x0f4240, in 24 bits.
 TEST(Legal, cells_stay_within_the_lattice) {
-  EXPECT_TRUE(wire::is_legal(from_hex("05 03 40 42 0f c0 bd f0 00 00 00")));
-  EXPECT_FALSE(wire::is_legal(from_hex("05 03 41 42 0f c0 bd f0 00 00 00")));
-  EXPECT_FALSE(wire::is_legal(from_hex("05 03 00 00 00 bf bd f0 00 00 00")));
-  EXPECT_FALSE(wire::is_legal(from_hex("05 03 00 00 00 00 00 00 00 00 80")));
+  EXPECT_TRUE(is_legal(from_hex("05 03 40 42 0f c0 bd f0 00 00 00")));
+  EXPECT_FALSE(is_legal(from_hex("05 03 41 42 0f c0 bd f0 00 00 00")));
+  EXPECT_FALSE(is_legal(from_hex("05 03 00 00 00 bf bd f0 00 00 00")));
+  EXPECT_FALSE(is_legal(from_hex("05 03 00 00 00 00 00 00 00 00 80")));
 }
 
 /// -2^23 is 80 00 00. It stands for all plans only in all three places, and is never planned.
@@ -146,10 +144,10 @@ TEST(Legal, all_plans_are_a_cell_of_plans_that_end_only) {
   constexpr std::string_view kAll = " 00 00 80 00 00 80 00 00 80";
   constexpr std::string_view kPart = " 00 00 80 00 00 80 00 00 00";
   for (const std::string_view front : {"05 14 00", "06 14 00 04", "06 01 00 04"}) {
-    EXPECT_TRUE(wire::is_legal(from_hex(std::string(front).append(kAll)))) << front;
-    EXPECT_FALSE(wire::is_legal(from_hex(std::string(front).append(kPart)))) << front;
+    EXPECT_TRUE(is_legal(from_hex(std::string(front).append(kAll)))) << front;
+    EXPECT_FALSE(is_legal(from_hex(std::string(front).append(kPart)))) << front;
   }
-  EXPECT_FALSE(wire::is_legal(from_hex(std::string("05 01 00").append(kAll))));
+  EXPECT_FALSE(is_legal(from_hex(std::string("05 01 00").append(kAll))));
 }
 
 }  // namespace

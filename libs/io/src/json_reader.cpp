@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "holdfast/io/document.hpp"
+#include "json_extension.hpp"
 #include "json_values.hpp"
 #include "text_input.hpp"
 #include "vocabulary.hpp"
@@ -21,6 +22,7 @@ class JsonReader {
 
  private:
   bool read_heading(const Json::object_t& root, const Place& place);
+  bool allows(const Place& place);
   void read_member(const std::string& key, const Json& value, const Place& place);
   void read_material(const Json& value, const Place& place);
   void read_known_answer(const Json& value, const Place& place);
@@ -31,9 +33,10 @@ class JsonReader {
   template <class Entry>
   std::vector<Entry> entries(const Json& value, const Place& place);
   template <class Entry>
-  Entry entry(const Json& value, const Place& place);
+  Entry entry(const Json& value, const Place& place, std::size_t index);
 
   JsonReading reading_;
+  bool is_extended_ = false;  ///< Whether the document says that it is of version 2.
   Step planned_;
   std::vector<Step> later_steps_;
 };
@@ -45,6 +48,7 @@ base::Result<ReadDocument> JsonReader::read(const Json& root) && {
     for (const auto& [key, value] : members) {
       read_member(key, value, top.at(key));
     }
+    check_kinds(reading_);
   }
   std::vector<Step>& steps = reading_.document.steps;
   steps.push_back(std::move(planned_));
@@ -63,25 +67,46 @@ bool JsonReader::read_heading(const Json::object_t& root, const Place& place) {
   const Json& version = value_of("version");
   if (format != kJsonFormatName) {
     reading_.refuse(format, place.at("format"), fmt::format("\"{}\"", kJsonFormatName));
-  } else if (version.is_number() && version.get<double>() > kJsonVersion) {
+  } else if (version.is_number() && version.get<double>() > kJsonVersionMax) {
     reading_.fail({base::ErrorCode::kUnsupported,
-                   fmt::format("found version {}, this program reads version {} only",
-                               version.dump(), kJsonVersion),
+                   fmt::format("found version {}, this program reads versions 1 to {} only",
+                               version.dump(), kJsonVersionMax),
                    place.at("version").pointer()});
-  } else if (version != kJsonVersion) {
-    reading_.refuse(version, place.at("version"), fmt::format("{}", kJsonVersion));
+  } else if (version != 1 && version != kJsonVersionMax) {
+    reading_.refuse(version, place.at("version"), fmt::format("1 or {}", kJsonVersionMax));
   } else if (root.find("modules") == root.end()) {
     reading_.fail(place.at("modules"), "\"modules\" is missing, expected is an array of cells");
+  }
+  is_extended_ = version == kJsonVersionMax;
+  const Json& material = value_of("material");
+  if (is_extended_ && material.contains("gravity_m_s2") && !value_of("gravity_m_s2").is_null()) {
+    reading_.fail(place.at("gravity_m_s2"), "gravity stands here and in the material");
   }
   return !reading_.has_failed();
 }
 
+/// Whether a key that only version 2 has may stand here; a failure if not, as what it says would be
+/// lost.
+bool JsonReader::allows(const Place& place) {
+  if (!is_extended_) {
+    reading_.fail(place, fmt::format("the key {} is one of version 2, the document says version 1",
+                                     excerpt(place.key)));
+  }
+  return is_extended_;
+}
+
 void JsonReader::read_member(const std::string& key, const Json& value, const Place& place) {
   Document& document = reading_.document;
-  if (key == "name") {
+  if (std::ranges::find(kExtensionKeys, key) != kExtensionKeys.end()) {
+    if (allows(place)) {
+      read_extension_member(reading_, key, value, place);
+    }
+  } else if (key == "name") {
     document.name = reading_.string(value, place);
   } else if (key == "description") {
     document.description = reading_.string(value, place);
+  } else if (key == "support_z" && is_extended_ && value.is_null()) {
+    document.extension.has_floor = false;
   } else if (key == "support_z") {
     document.support_z = reading_.integer(value, place, kCoordinateRange);
   } else if (key == "material") {
@@ -100,16 +125,21 @@ void JsonReader::read_member(const std::string& key, const Json& value, const Pl
   } else if (key == "visiblesim") {
     read_visiblesim(value, place);
   } else if (key != "format" && key != "version" && key != "$schema") {
-    reading_.note_unknown_key(place, kTopKeys);
+    reading_.note_unknown_key(place, is_extended_ ? Names(kAllTopKeys) : Names(kTopKeys));
   }
 }
 
 void JsonReader::read_material(const Json& value, const Place& place) {
   for (const auto& [key, member] : reading_.members(value, place)) {
     const Place here = place.at(key);
-    const auto* parameter = std::ranges::find(kMaterialParameters, key, &MaterialParameter::key);
-    if (parameter != kMaterialParameters.end()) {
+    const auto* parameter =
+        std::ranges::find(model::kMaterialParameters, key, &model::MaterialParameter::key);
+    if (parameter != model::kMaterialParameters.end()) {
       reading_.document.material.*parameter->value = reading_.number(member, here);
+    } else if (std::ranges::find(kConnectorKeys, key) != kConnectorKeys.end()) {
+      if (allows(here)) {
+        read_connector_parameter(reading_, key, member, here);
+      }
     } else {
       reading_.note_unknown_key(here, material_keys());
     }
@@ -187,14 +217,14 @@ std::vector<Entry> JsonReader::entries(const Json& value, const Place& place) {
   if (reading_.take_room(array.size(), [&] { return place.pointer(); })) {
     list.reserve(array.size());
     for (std::size_t i = 0; i < array.size() && !reading_.has_failed(); ++i) {
-      list.push_back(entry<Entry>(array[i], place.at(i)));
+      list.push_back(entry<Entry>(array[i], place.at(i), i));
     }
   }
   return list;
 }
 
 template <class Entry>
-Entry JsonReader::entry(const Json& value, const Place& place) {
+Entry JsonReader::entry(const Json& value, const Place& place, std::size_t index) {
   constexpr bool kIsModule = std::is_same_v<Entry, ModuleEntry>;
   Entry entry;
   if (value.is_array()) {
@@ -205,11 +235,18 @@ Entry JsonReader::entry(const Json& value, const Place& place) {
     reading_.refuse(value, place, "a cell [x, y, z] or an object with the key \"cell\"");
     return entry;
   }
+  OwnParameters own{.module = index, .kind = {}, .mass_kg = {}};
   for (const auto& [key, member] : reading_.members(value, place)) {
     const Place here = place.at(key);
     if constexpr (kIsModule) {
       if (key == "fixed") {
         entry.is_fixed = reading_.boolean(member, here);
+        continue;
+      }
+      if (std::ranges::find(kOwnParameterKeys, key) != kOwnParameterKeys.end()) {
+        if (allows(here)) {
+          read_own_parameter(reading_, key, member, here, own);
+        }
         continue;
       }
     }
@@ -221,8 +258,13 @@ Entry JsonReader::entry(const Json& value, const Place& place) {
       entry.attributes =
           reading_.attributes(member, here, kIsModule ? is_module_attribute : is_planned_attribute);
     } else {
-      reading_.note_unknown_key(here, kIsModule ? Names(kModuleKeys) : Names(kPlannedKeys));
+      reading_.note_unknown_key(here, !kIsModule     ? Names(kPlannedKeys)
+                                      : is_extended_ ? Names(kAllModuleKeys)
+                                                     : Names(kModuleKeys));
     }
+  }
+  if (!own.kind.empty() || own.mass_kg) {
+    reading_.document.extension.own.push_back(std::move(own));
   }
   return entry;
 }

@@ -1,99 +1,59 @@
 // SPDX-FileCopyrightText: The holdfast authors
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <optional>
 #include <string>
 #include <type_traits>
 #include <vector>
 
-#include "holdfast/io/document.hpp"
-#include "json_tree.hpp"
+#include "json_text.hpp"
 #include "vocabulary.hpp"
 
 /// The text is put together by hand because a person is to read it: cells side by side, each layer
-/// from a new line. `indent` is always that of the line which the opening bracket stands in.
+/// from a new line.
 namespace holdfast::io {
 namespace {
-
-using Items = std::vector<std::string>;
-
-constexpr std::size_t kColumns = 100;
-
-/// An object or array of a single line may be so long, its key before it.
-constexpr std::size_t kShortMax = 78;
-
-std::string text(const std::string& value) {
-  return Json(value).dump(-1, ' ', false, Json::error_handler_t::replace);
-}
-
-/// The shortest text that reads back as the same number.
-std::string text(double value) { return fmt::format("{}", value); }
-
-std::string text(const base::Cell& cell) {
-  return fmt::format("[{},{},{}]", cell.x, cell.y, cell.z);
-}
-
-std::string text(const Color& color) {
-  return fmt::format("[{},{},{}]", color.red, color.green, color.blue);
-}
-
-std::string member(std::string_view key, const std::string& value) {
-  return fmt::format("\"{}\": {}", key, value);
-}
-
-std::string object(const Items& members) { return fmt::format("{{{}}}", fmt::join(members, ", ")); }
-
-/// An item a line.
-std::string lines(char open, const Items& items, char close, std::size_t indent) {
-  const std::string blanks(indent, ' ');
-  return fmt::format("{}\n{}  {}\n{}{}", open, blanks, fmt::join(items, ",\n  " + blanks), blanks,
-                     close);
-}
-
-/// On a line if it is a short one.
-std::string object(const Items& members, std::size_t indent) {
-  std::string line = object(members);
-  return line.size() <= kShortMax ? line : lines('{', members, '}', indent);
-}
-
-std::string array(const Items& items, std::size_t indent) {
-  return items.empty() ? "[]" : lines('[', items, ']', indent);
-}
 
 Items members_of(const Attributes& attributes) {
   Items members;
   for (const auto& [name, value] : attributes) {
-    members.push_back(member(name, text(value)));
+    members.push_back(member(name, json_text(value)));
   }
   return members;
 }
 
-/// A bare cell if nothing else is known.
+/// A bare cell if nothing else is known; `own` may be nullptr.
 template <class Entry>
-std::string entry_text(const Entry& entry) {
-  Items members = {member("cell", text(entry.cell))};
+std::string entry_text(const Entry& entry, const OwnParameters* own) {
+  Items members = {member("cell", json_text(entry.cell))};
   if constexpr (std::is_same_v<Entry, ModuleEntry>) {
     if (entry.is_fixed) {
       members.push_back(member("fixed", "true"));
     }
   }
+  if (own != nullptr) {
+    add_own_members(members, *own);
+  }
   if (entry.color) {
-    members.push_back(member("color", text(*entry.color)));
+    members.push_back(member("color", json_text(*entry.color)));
   }
   if (!entry.attributes.empty()) {
     members.push_back(member("attributes", object(members_of(entry.attributes))));
   }
-  return members.size() == 1 ? text(entry.cell) : object(members);
+  return members.size() == 1 ? json_text(entry.cell) : object(members);
 }
 
 template <class Entry>
-std::string cell_list(const std::vector<Entry>& entries, std::size_t indent) {
+std::string cell_list(const std::vector<Entry>& entries, std::size_t indent,
+                      const std::vector<OwnParameters>& own = {}) {
   Items rows;
   const Entry* before = nullptr;  // Its row may go on.
+  auto next_own = own.begin();
   for (const Entry& entry : entries) {
-    const std::string item = entry_text(entry);
+    const bool has_own = next_own != own.end() &&
+                         next_own->module == static_cast<std::size_t>(&entry - entries.data());
+    const std::string item = entry_text(entry, has_own ? &*next_own++ : nullptr);
     const bool is_bare = item.front() == '[';
     if (before != nullptr && is_bare && before->cell.z == entry.cell.z &&
         indent + rows.back().size() + item.size() + 5 <= kColumns) {
@@ -108,19 +68,19 @@ std::string cell_list(const std::vector<Entry>& entries, std::size_t indent) {
 }
 
 std::string element_text(const Element& element) {
-  Items members = {member("element", text(element.name))};
+  Items members = {member("element", json_text(element.name))};
   if (!element.attributes.empty()) {
     members.push_back(member("attributes", object(members_of(element.attributes))));
   }
   if (!element.text.empty()) {
-    members.push_back(member("text", text(element.text)));
+    members.push_back(member("text", json_text(element.text)));
   }
   Items children;
   for (const Element& child : element.children) {
     children.push_back(element_text(child));
   }
   if (!children.empty()) {
-    members.push_back(member("children", fmt::format("[{}]", fmt::join(children, ", "))));
+    members.push_back(member("children", row(children)));
   }
   return object(members);
 }
@@ -134,27 +94,31 @@ std::string element_list(const std::vector<Element>& elements, std::size_t inden
 }
 
 /// What differs from the defaults.
-Items material_members(const model::Material& material) {
+Items material_members(const Document& document) {
+  const model::Material& material = document.material;
   const model::Material defaults;
   Items members;
-  for (const MaterialParameter& parameter : kMaterialParameters) {
+  for (const model::MaterialParameter& parameter : model::kMaterialParameters) {
     if (material.*parameter.value != defaults.*parameter.value) {
-      members.push_back(member(parameter.key, text(material.*parameter.value)));
+      members.push_back(member(parameter.key, json_text(material.*parameter.value)));
     }
+  }
+  for (const auto& [key, value] : document.extension.connectors) {
+    members.push_back(member(key, json_text(value)));
   }
   return members;
 }
 
 std::string known_answer_text(const KnownAnswer& answer) {
-  Items members = {member("verdict", text(answer.verdict))};
+  Items members = {member("verdict", json_text(answer.verdict))};
   if (answer.margin_mm) {
-    members.push_back(member("margin_mm", text(*answer.margin_mm)));
+    members.push_back(member("margin_mm", json_text(*answer.margin_mm)));
   }
   if (answer.load_ratio_max) {
-    members.push_back(member("load_ratio_max", text(*answer.load_ratio_max)));
+    members.push_back(member("load_ratio_max", json_text(*answer.load_ratio_max)));
   }
   if (!answer.source.empty()) {
-    members.push_back(member("source", text(answer.source)));
+    members.push_back(member("source", json_text(answer.source)));
   }
   return object(members, 2);
 }
@@ -195,21 +159,30 @@ void add_steps(Items& members, const std::vector<Step>& steps) {
 
 }  // namespace
 
+int json_version(const Document& document) {
+  return document.extension == Extension{} ? 1 : kJsonVersionMax;
+}
+
 std::string write_json(const Document& document) {
+  const Extension& extension = document.extension;
   Items members = {member("format", fmt::format("\"{}\"", kJsonFormatName)),
-                   member("version", fmt::format("{}", kJsonVersion))};
+                   member("version", fmt::format("{}", json_version(document)))};
   if (!document.name.empty()) {
-    members.push_back(member("name", text(document.name)));
+    members.push_back(member("name", json_text(document.name)));
   }
   if (!document.description.empty()) {
-    members.push_back(member("description", text(document.description)));
+    members.push_back(member("description", json_text(document.description)));
   }
-  members.push_back(member("support_z", fmt::format("{}", document.support_z)));
-  if (const Items material = material_members(document.material); !material.empty()) {
+  members.push_back(member("support_z", extension.has_floor ? fmt::format("{}", document.support_z)
+                                                            : std::string("null")));
+  add_setting_members(members, extension);
+  if (const Items material = material_members(document); !material.empty()) {
     members.push_back(member("material", object(material, 2)));
   }
-  members.push_back(member("modules", cell_list(document.modules, 2)));
+  add_kind_members(members, extension);
+  members.push_back(member("modules", cell_list(document.modules, 2, extension.own)));
   add_steps(members, document.steps);
+  add_plan_members(members, extension);
   if (document.known_answer) {
     members.push_back(member("known_answer", known_answer_text(*document.known_answer)));
   }

@@ -31,7 +31,7 @@ void read_parameters(XmlReading& reading, const pugi::xml_node& node) {
   Document& document = reading.document;
   reading.expect_no_content(node);
   document.parameters = reading.attributes(node, is_mechanical_parameter);
-  for (const MaterialParameter& parameter : kMaterialParameters) {
+  for (const model::MaterialParameter& parameter : model::kMaterialParameters) {
     const char* const name = parameter.visiblesim;
     if (const auto attribute = name == nullptr ? pugi::xml_attribute() : node.attribute(name)) {
       document.material.*parameter.value = reading.number(node, attribute);
@@ -59,7 +59,7 @@ void read_known_answer(XmlReading& reading, const pugi::xml_node& node) {
 void read_own_element(XmlReading& reading, const pugi::xml_node& node) {
   Document& document = reading.document;
   std::vector<std::string_view> known = {"name", "description", "computed", kShift};
-  for (const MaterialParameter& parameter : kMaterialParameters) {
+  for (const model::MaterialParameter& parameter : model::kMaterialParameters) {
     if (parameter.visiblesim == nullptr) {
       known.emplace_back(parameter.key);
     }
@@ -73,7 +73,7 @@ void read_own_element(XmlReading& reading, const pugi::xml_node& node) {
   }
   document.name = node.attribute("name").value();
   document.description = node.attribute("description").value();
-  for (const MaterialParameter& parameter : kMaterialParameters) {
+  for (const model::MaterialParameter& parameter : model::kMaterialParameters) {
     const auto attribute = node.attribute(parameter.key);
     if (attribute && parameter.visiblesim == nullptr) {
       document.material.*parameter.value = reading.number(node, attribute);

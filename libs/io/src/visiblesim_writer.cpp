@@ -87,7 +87,7 @@ void add_element(pugi::xml_node parent, const Element& element) {
 void add_parameters(pugi::xml_node parent, const Document& document, const base::Cell& shift) {
   pugi::xml_node node = append(parent, "parameters");
   const model::Material defaults;
-  for (const MaterialParameter& parameter : kMaterialParameters) {
+  for (const model::MaterialParameter& parameter : model::kMaterialParameters) {
     const double value = document.material.*parameter.value;
     const bool is_mass = parameter.value == &model::Material::mass_kg;
     if (parameter.visiblesim != nullptr && (is_mass || value != defaults.*parameter.value)) {
@@ -139,7 +139,7 @@ void add_own_element(pugi::xml_node world, const Document& document, const base:
   add_if_any(node, "name", document.name);
   add_if_any(node, "description", document.description);
   const model::Material defaults;
-  for (const MaterialParameter& parameter : kMaterialParameters) {
+  for (const model::MaterialParameter& parameter : model::kMaterialParameters) {
     const double value = document.material.*parameter.value;
     if (parameter.visiblesim == nullptr && value != defaults.*parameter.value) {
       add(node, parameter.key, value);
@@ -190,6 +190,12 @@ class StringWriter : public pugi::xml_writer {
 }  // namespace
 
 base::Result<base::Cell> visiblesim_shift(const Document& document) {
+  if (json_version(document) > 1) {
+    return base::Error{base::ErrorCode::kUnsupported,
+                       "VisibleSim XML has no words for what only version 2 of holdfast JSON says: "
+                       "write .json",
+                       ""};
+  }
   base::Cell lowest;
   base::Cell highest;
   for_each_cell(document, [&](const base::Cell& cell) {

@@ -8,37 +8,14 @@
 #include <string_view>
 #include <vector>
 
+#include "holdfast/io/extension.hpp"
 #include "holdfast/model/material.hpp"
 
 /// What things are called in files, once for all readers and writers.
 namespace holdfast::io {
 
 inline constexpr std::string_view kJsonFormatName = "holdfast-structure";
-inline constexpr int kJsonVersion = 1;
-
-struct MaterialParameter {
-  const char* key;         ///< In holdfast JSON.
-  const char* visiblesim;  ///< Attribute of <parameters>; nullptr: VisibleSim has no word for it.
-  double model::Material::*value;
-};
-
-/// VisibleSim counts its moments the other way round: its Iy bends lateral beams in the vertical
-/// plane, which is our Ix.
-inline constexpr auto kMaterialParameters = std::to_array<MaterialParameter>({
-    {"elastic_modulus_mpa", "E", &model::Material::elastic_modulus_mpa},
-    {"pitch_mm", "globalL", &model::Material::pitch_mm},
-    {"facet_mm", "a", &model::Material::facet_mm},
-    {"section_area_mm2", "A", &model::Material::section_area_mm2},
-    {"moment_x_mm4", "globalIy", &model::Material::moment_x_mm4},
-    {"moment_y_mm4", "globalIz", &model::Material::moment_y_mm4},
-    {"torsion_mm4", "globalJ", &model::Material::torsion_mm4},
-    {"poisson_ratio", "globalNu", &model::Material::poisson_ratio},
-    {"mass_kg", "globalMass", &model::Material::mass_kg},
-    {"gravity_m_s2", nullptr, &model::Material::gravity_m_s2},
-    {"strength_vertical_n", nullptr, &model::Material::strength_vertical_n},
-    {"strength_lateral_n", nullptr, &model::Material::strength_lateral_n},
-    {"contact_gamma", "globalGamma", &model::Material::contact_gamma},
-});
+inline constexpr int kJsonVersionMax = 2;
 
 /// The attribute of <parameters> that is Document::support_z.
 inline constexpr const char* kSupportParameter = "globalSupportZ";
@@ -59,23 +36,66 @@ constexpr bool is_one_of(std::string_view name, std::initializer_list<std::strin
 /// Attributes of <parameters> that are part of the material or the support level.
 constexpr bool is_mechanical_parameter(std::string_view name) {
   return name == kSupportParameter ||
-         std::ranges::any_of(kMaterialParameters, [&](const MaterialParameter& parameter) {
-           return parameter.visiblesim != nullptr && parameter.visiblesim == name;
-         });
+         std::ranges::any_of(
+             model::kMaterialParameters, [&](const model::MaterialParameter& parameter) {
+               return parameter.visiblesim != nullptr && parameter.visiblesim == name;
+             });
+}
+
+template <std::size_t A, std::size_t B>
+constexpr std::array<std::string_view, A + B> joined(const std::array<std::string_view, A>& a,
+                                                     const std::array<std::string_view, B>& b) {
+  std::array<std::string_view, A + B> all;
+  std::ranges::copy(b, std::ranges::copy(a, all.begin()).out);
+  return all;
 }
 
 // All the names that may stand in one place, those included that only VisibleSim's own reader or
 // its shipped examples have a use for: what is like one of them, but none, is a slip.
 
+inline constexpr auto kModuleKeys =
+    std::to_array<std::string_view>({"cell", "fixed", "color", "attributes"});
 inline constexpr auto kTopKeys = std::to_array<std::string_view>(
     {"$schema", "format", "version", "name", "description", "support_z", "material", "modules",
      "planned", "later_steps", "known_answer", "visiblesim"});
+
+/// Those that only version 2 has, alone and with all others.
+inline constexpr auto kExtensionKeys = std::to_array<std::string_view>(
+    {"lattice", "floor", "gravity_m_s2", "kinds", "obstacles", "loads", "steps"});
+inline constexpr auto kAllTopKeys = joined(kTopKeys, kExtensionKeys);
+inline constexpr auto kOwnParameterKeys = std::to_array<std::string_view>({"kind", "mass_kg"});
+inline constexpr auto kAllModuleKeys = joined(kModuleKeys, kOwnParameterKeys);
+
+/// Parameters of a material that only version 2 has: other limits of connections, other facets.
+inline constexpr auto kConnectorKeys = std::to_array<std::string_view>(
+    {"strength_n", "lever_mm", "shear_strength_n", "torsion_strength_nmm", "friction",
+     "torsion_radius_mm", "gap_limit_mm", "foot_mm"});
+
+/// The parameters in which a kind of modules may differ from the material.
+inline constexpr auto kKindKeys = std::to_array<std::string_view>(
+    {"mass_kg", "strength_vertical_n", "strength_lateral_n", "strength_n", "lever_mm",
+     "shear_strength_n", "torsion_strength_nmm", "friction", "torsion_radius_mm", "gap_limit_mm",
+     "foot_mm"});
+inline constexpr auto kFloorKeys = std::to_array<std::string_view>({"friction"});
+inline constexpr auto kObstacleKeys =
+    std::to_array<std::string_view>({"from", "to", "cells", "hold", "friction"});
+inline constexpr auto kLoadKeys =
+    std::to_array<std::string_view>({"cell", "force_n", "torque_nmm"});
+inline constexpr auto kStepKeys =
+    std::to_array<std::string_view>({"attach", "detach", "move", "release", "connect"});
+inline constexpr auto kMoveKeys = std::to_array<std::string_view>({"from", "to", "carrier"});
+
+/// By LatticeName.
+inline constexpr auto kLatticeNames =
+    std::to_array<std::string_view>({"cubic", "face-centred", "hexagonal", "hexagonal-prism"});
+
+/// By Hold.
+inline constexpr auto kHoldNames = std::to_array<std::string_view>({"contact", "bonded"});
+
 inline constexpr auto kKnownAnswerKeys =
     std::to_array<std::string_view>({"verdict", "margin_mm", "load_ratio_max", "source"});
 inline constexpr auto kVisibleSimKeys =
     std::to_array<std::string_view>({"parameters", "world", "block_list", "scenery", "targets"});
-inline constexpr auto kModuleKeys =
-    std::to_array<std::string_view>({"cell", "fixed", "color", "attributes"});
 inline constexpr auto kPlannedKeys =
     std::to_array<std::string_view>({"cell", "color", "attributes"});
 inline constexpr auto kElementKeys =
@@ -120,7 +140,7 @@ inline const std::vector<std::string_view>& parameter_names() {
   static const std::vector<std::string_view> names = [] {
     std::vector<std::string_view> list(kSolverParameters.begin(), kSolverParameters.end());
     list.emplace_back(kSupportParameter);
-    for (const MaterialParameter& parameter : kMaterialParameters) {
+    for (const model::MaterialParameter& parameter : model::kMaterialParameters) {
       if (parameter.visiblesim != nullptr) {
         list.emplace_back(parameter.visiblesim);
       }
@@ -134,7 +154,7 @@ inline const std::vector<std::string_view>& parameter_names() {
 inline const std::vector<std::string_view>& material_keys() {
   static const std::vector<std::string_view> keys = [] {
     std::vector<std::string_view> list;
-    for (const MaterialParameter& parameter : kMaterialParameters) {
+    for (const model::MaterialParameter& parameter : model::kMaterialParameters) {
       list.emplace_back(parameter.key);
     }
     return list;

@@ -238,9 +238,11 @@ TEST(BadInput, of_another_json_format_is_refused) {
                   "found 'gltf', expected is \"holdfast-structure\""});
   expect_refusal({"{}", "/format", "found null"});
   expect_refusal({"[]", "", "found an array, expected is an object"});
-  expect_refusal({"{\"format\": \"holdfast-structure\"}", "/version", "found null, expected is 1"});
-  expect_refusal({"{\"format\": \"holdfast-structure\", \"version\": 2}", "/version",
-                  "found version 2, this program reads version 1", base::ErrorCode::kUnsupported});
+  expect_refusal(
+      {"{\"format\": \"holdfast-structure\"}", "/version", "found null, expected is 1 or 2"});
+  expect_refusal({"{\"format\": \"holdfast-structure\", \"version\": 3}", "/version",
+                  "found version 3, this program reads versions 1 to 2 only",
+                  base::ErrorCode::kUnsupported});
   expect_refusal({"{\"format\": \"holdfast-structure\", \"version\": 1}", "/modules",
                   "\"modules\" is missing"});
 }

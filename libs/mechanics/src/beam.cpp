@@ -3,6 +3,7 @@
 #include "holdfast/mechanics/beam.hpp"
 
 #include "holdfast/base/double_double.hpp"
+#include "holdfast/mechanics/frame.hpp"
 
 namespace holdfast::mechanics {
 namespace {
@@ -11,24 +12,8 @@ using base::Direction;
 using base::Mat6;
 using base::Vec6;
 
-/// Local axis i is sign[i] times global axis axis[i]; every frame is right-handed.
-struct Frame {
-  std::uint8_t axis[3];
-  std::int8_t sign[3];
-};
-
-constexpr Frame kFrames[base::kDirectionCount] = {
-    {{2, 1, 0}, {1, 1, -1}},   // q at +x: local z = -X
-    {{2, 1, 0}, {1, -1, 1}},   // q at -x: local z = +X
-    {{2, 0, 1}, {1, -1, -1}},  // q at +y: local z = -Y
-    {{2, 0, 1}, {1, 1, 1}},    // q at -y: local z = +Y
-    {{0, 1, 2}, {1, -1, -1}},  // q above: local z = -Z
-    {{0, 1, 2}, {1, 1, 1}},    // q below: local z = +Z
-};
-
-template <class Real>
-Real signed_as(Real value, std::int8_t sign) {
-  return sign < 0 ? -value : value;
+const Frame& frame_of(Direction direction) {
+  return kCubicFrames[static_cast<std::size_t>(base::index(direction))];
 }
 
 template <class Real>
@@ -41,21 +26,6 @@ Vec6<Real> local_end_force(const BeamStiffness<Real>& k, const Vec6<Real>& p, co
           k.couple_y * dy + k.bend_y * (p[3] + q[3] / 2),
           -k.couple_x * dx + k.bend_x * (p[4] + q[4] / 2),
           k.twist * (p[5] - q[5])};
-}
-
-/// Column by column: the force for a unit displacement of one end.
-template <class Real, class Force>
-Mat6<Real> columns_of(Force force) {
-  Mat6<Real> block;
-  for (int column = 0; column < 6; ++column) {
-    Vec6<Real> unit{};
-    unit[static_cast<std::size_t>(column)] = 1;
-    const Vec6<Real> image = force(unit);
-    for (int row = 0; row < 6; ++row) {
-      block.at(row, column) = image[static_cast<std::size_t>(row)];
-    }
-  }
-  return block;
 }
 
 }  // namespace
@@ -77,24 +47,12 @@ BeamStiffness<Real> beam_stiffness(const BeamSection<Real>& section) {
 
 template <class Real>
 Vec6<Real> to_local(Direction direction, const Vec6<Real>& global) {
-  const Frame& frame = kFrames[base::index(direction)];
-  Vec6<Real> local;
-  for (std::size_t i = 0; i < 3; ++i) {
-    local[i] = signed_as(global[frame.axis[i]], frame.sign[i]);
-    local[i + 3] = signed_as(global[frame.axis[i] + 3U], frame.sign[i]);
-  }
-  return local;
+  return to_local(frame_of(direction), global);
 }
 
 template <class Real>
 Vec6<Real> to_global(Direction direction, const Vec6<Real>& local) {
-  const Frame& frame = kFrames[base::index(direction)];
-  Vec6<Real> global;
-  for (std::size_t i = 0; i < 3; ++i) {
-    global[frame.axis[i]] = signed_as(local[i], frame.sign[i]);
-    global[frame.axis[i] + 3U] = signed_as(local[i + 3], frame.sign[i]);
-  }
-  return global;
+  return to_global(frame_of(direction), local);
 }
 
 template <class Real>
@@ -117,13 +75,13 @@ Vec6<Real> middle_force(const BeamStiffness<Real>& beam, Direction direction, co
 
 template <class Real>
 Mat6<Real> block_11(const BeamStiffness<Real>& beam, Direction direction) {
-  return columns_of<Real>(
+  return base::matrix_of<Real>(
       [&](const Vec6<Real>& unit) { return end_force(beam, direction, unit, Vec6<Real>{}); });
 }
 
 template <class Real>
 Mat6<Real> block_12(const BeamStiffness<Real>& beam, Direction direction) {
-  return columns_of<Real>(
+  return base::matrix_of<Real>(
       [&](const Vec6<Real>& unit) { return end_force(beam, direction, Vec6<Real>{}, unit); });
 }
 

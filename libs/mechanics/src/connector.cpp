@@ -5,10 +5,7 @@
 namespace holdfast::mechanics {
 namespace {
 
-template <class Real>
-Real absolute(Real value) {
-  return value < 0 ? -value : value;
-}
+using base::absolute;
 
 template <class Real>
 Real larger(Real a, Real b) {

@@ -7,7 +7,9 @@
 namespace holdfast::mechanics {
 namespace {
 
+using base::absolute;
 using base::Mat6;
+using base::matrix_of;
 using base::Vec6;
 
 // Components of a facet force or displacement.
@@ -17,11 +19,6 @@ constexpr int kFz = 2;
 constexpr int kMx = 3;
 constexpr int kMy = 4;
 constexpr int kMz = 5;
-
-template <class Real>
-Real absolute(Real value) {
-  return value < 0 ? -value : value;
-}
 
 template <class Real>
 std::int8_t sign(Real value) {
@@ -173,21 +170,6 @@ Mat6<Real> unilateral_corrector(const GroundFacet<Real>& facet, ContactState sta
   }
   for (int i = 0; i < 6; ++i) {
     matrix.at(i, i) += facet.gamma;
-  }
-  return matrix;
-}
-
-/// The matrix of a linear map.
-template <class Real, class Map>
-Mat6<Real> matrix_of(Map&& map) {
-  Mat6<Real> matrix;
-  for (int column = 0; column < 6; ++column) {
-    Vec6<Real> unit{};
-    unit[static_cast<std::size_t>(column)] = 1;
-    const Vec6<Real> image = map(unit);
-    for (int row = 0; row < 6; ++row) {
-      matrix.at(row, column) = image[static_cast<std::size_t>(row)];
-    }
   }
   return matrix;
 }

@@ -16,12 +16,12 @@ namespace {
 using base::Vec6;
 
 template <class Real>
-class Connector : public testing::Test {};
+class ConnectorLaw : public testing::Test {};
 
 using Scalars = testing::Types<float, double>;
-TYPED_TEST_SUITE(Connector, Scalars);
+TYPED_TEST_SUITE(ConnectorLaw, Scalars);
 
-TYPED_TEST(Connector, bends_by_the_larger_torque_whatever_its_sign) {
+TYPED_TEST(ConnectorLaw, bends_by_the_larger_torque_whatever_its_sign) {
   const auto load = [](TypeParam mx, TypeParam my) {
     return connection_load(Vec6<TypeParam>{100, 200, -3, mx, my, 500});
   };
@@ -33,29 +33,41 @@ TYPED_TEST(Connector, bends_by_the_larger_torque_whatever_its_sign) {
   EXPECT_EQ(load(7, 4).axial, -3);
 }
 
-TYPED_TEST(Connector, hides_no_torque_that_is_not_a_number) {
+TYPED_TEST(ConnectorLaw, hides_no_torque_that_is_not_a_number) {
   constexpr TypeParam kNan = std::numeric_limits<TypeParam>::quiet_NaN();
   EXPECT_TRUE(std::isnan(connection_load(Vec6<TypeParam>{0, 0, 0, kNan, 4, 0}).bending));
   EXPECT_TRUE(std::isnan(connection_load(Vec6<TypeParam>{0, 0, 0, 4, kNan, 0}).bending));
 }
 
-TYPED_TEST(Connector, ignores_shear_and_torsion) {
+TYPED_TEST(ConnectorLaw, ignores_shear_and_torsion) {
   const auto load = connection_load(Vec6<TypeParam>{100, -200, 0, 0, 0, 500});
   EXPECT_EQ(load_ratio(load, TypeParam{40}, TypeParam{10}), 0);
 }
 
 /// (2 * 80 / 40 + 6) / 8 = 1.25.
-TYPED_TEST(Connector, adds_tension_and_twice_the_bending_over_the_width) {
+TYPED_TEST(ConnectorLaw, adds_tension_and_twice_the_bending_over_the_width) {
   const ConnectionLoad<TypeParam> load = {.axial = 6, .bending = 80};
   EXPECT_EQ(load_ratio(load, TypeParam{40}, TypeParam{8}), TypeParam{1.25});
 }
 
 /// Bending first makes up for the pressure: 2 * 80 / 40 - 4 = 0, 2 * 80 / 40 - 12 = -8.
-TYPED_TEST(Connector, is_relieved_by_compression) {
+TYPED_TEST(ConnectorLaw, is_relieved_by_compression) {
   const ConnectionLoad<TypeParam> balanced = {.axial = -4, .bending = 80};
   const ConnectionLoad<TypeParam> pressed = {.axial = -12, .bending = 80};
   EXPECT_EQ(load_ratio(balanced, TypeParam{40}, TypeParam{8}), 0);
   EXPECT_EQ(load_ratio(pressed, TypeParam{40}, TypeParam{8}), -1);
+}
+
+TYPED_TEST(ConnectorLaw, judges_the_force_in_the_middle_by_the_data_of_a_connector) {
+  const Connector<TypeParam> connector = {.width = 40, .strength = 8};
+  EXPECT_EQ(load_ratio(connector, Vec6<TypeParam>{100, -200, 6, -80, 7, 500}), TypeParam{1.25});
+}
+
+TYPED_TEST(ConnectorLaw, between_two_modules_is_that_of_the_weaker_connector) {
+  const Connector<TypeParam> weak = {.width = 40, .strength = 8};
+  const Connector<TypeParam> strong = {.width = 40, .strength = 9};
+  EXPECT_EQ(&weaker(weak, strong), &weak);
+  EXPECT_EQ(&weaker(strong, weak), &weak);
 }
 
 /// Four modules of weight W at 1/2, 3/2, 5/2, 7/2 pitches: bending 8 W L, so 16 W / Fmax.

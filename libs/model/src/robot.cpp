@@ -159,15 +159,16 @@ std::optional<std::string> find_support_fault(const Robot& robot) {
         "z = {} and none is fixed; the lowest module is {}",
         robot.support_z(), text(lowest->cell));
   }
-  for (std::size_t i = 0; i < robot.modules().size(); ++i) {
-    const std::int32_t below = robot.neighbours()[i][base::index(base::Direction::kMinusZ)];
-    if (robot.modules()[i].support == Support::kGround && below != Robot::kNoNeighbour) {
+  for (const Facet& facet : robot.facets()) {
+    const Cell& cell = robot.modules()[base::at(facet.module)].cell;
+    const std::int32_t below =
+        robot.neighbours()[base::at(facet.module)][base::at(base::index(facet.direction))];
+    if (below != Robot::kNoNeighbour) {
       return fmt::format(
           "the module {} is directly below {}, which rests on the ground at the support level "
           "z = {}; allowed below that level is only what hangs from a fixed module: lower the "
           "support level or fix {}",
-          text(robot.modules()[static_cast<std::size_t>(below)].cell),
-          text(robot.modules()[i].cell), robot.support_z(), text(robot.modules()[i].cell));
+          text(robot.modules()[base::at(below)].cell), text(cell), robot.support_z(), text(cell));
     }
   }
   return std::nullopt;
@@ -233,7 +234,8 @@ void Robot::connect(const CellIndex& index, host::Team& team) {
     std::size_t count = 0;
     for (std::size_t i = begin; i < end; ++i) {
       for (const base::Direction direction : base::kDirections) {
-        const std::int32_t other = index.find(base::neighbour(modules_[i].cell, direction));
+        const std::int32_t other =
+            index.find(base::neighbour(lattice(), modules_[i].cell, direction));
         neighbours_[i][static_cast<std::size_t>(base::index(direction))] = other;
         count += other != kNoNeighbour && base::index(direction) % 2 == 0 ? 1 : 0;
       }
@@ -257,9 +259,11 @@ void Robot::connect(const CellIndex& index, host::Team& team) {
       }
     }
   });
-  for (const Module& module : modules_) {
-    ground_count_ += module.support == Support::kGround ? 1 : 0;
-    fixed_count_ += module.support == Support::kFixed ? 1 : 0;
+  for (std::size_t i = 0; i < modules_.size(); ++i) {
+    if (modules_[i].support == Support::kGround) {
+      facets_.push_back({.module = static_cast<std::int32_t>(i)});
+    }
+    fixed_count_ += modules_[i].support == Support::kFixed ? 1 : 0;
   }
 }
 

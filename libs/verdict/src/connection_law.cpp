@@ -7,9 +7,7 @@
 namespace holdfast::verdict {
 
 ConnectionLaw::ConnectionLaw(const model::Material& material, base::Direction direction)
-    : width_(material.facet_mm),
-      strength_(base::is_vertical(direction) ? material.strength_vertical_n
-                                             : material.strength_lateral_n) {
+    : connector_(model::connector(material, base::connector_class(base::kCubic, direction))) {
   const auto beam = mechanics::beam_stiffness(model::beam_section(material));
   for (std::size_t k = 0; k < 6; ++k) {
     Vec unit{};

@@ -63,7 +63,9 @@ class ConnectionLaw {
     return std::isunordered(x, y) ? x + y : larger;
   }
 
-  double ratio(double axial, double bend) const { return (2 * bend / width_ + axial) / strength_; }
+  double ratio(double axial, double bend) const {
+    return (2 * bend / connector_.width + axial) / connector_.strength;
+  }
 
   Term axial_;
   Term bend_x_;
@@ -73,8 +75,7 @@ class ConnectionLaw {
   Term shear_y_;
   Term couple_x_;
   Term couple_y_;
-  double width_ = 0;     ///< mm
-  double strength_ = 0;  ///< N
+  mechanics::Connector<double> connector_;
 };
 
 /// How the first module of a connection moves as seen by the second, where both move far more than

@@ -63,12 +63,10 @@ std::vector<Point> support_corners(const model::Robot& robot) {
   };
 
   std::map<std::int32_t, Row> rows;
-  for (const model::Module& module : robot.modules()) {
-    if (module.support == model::Support::kGround) {
-      const auto [x, y, z] = module.cell;
-      Row& row = rows.try_emplace(y, Row{x, x}).first->second;
-      row = {std::min(row.first, x), std::max(row.last, x)};
-    }
+  for (const model::Facet& facet : robot.facets()) {
+    const auto [x, y, z] = robot.modules()[base::at(facet.module)].cell;
+    Row& row = rows.try_emplace(y, Row{x, x}).first->second;
+    row = {std::min(row.first, x), std::max(row.last, x)};
   }
   std::vector<Point> corners;
   for (const auto& [y, row] : rows) {

@@ -77,7 +77,7 @@ std::string report_text(const Structure& structure, const CheckResult& exact,
 /// The robot in the colours of its own load ratios.
 std::string picture_svg(const Structure& structure, const DistributedRun& run);
 
-/// The same word for a verdict of the robot.
+/// The word that the exact answer has for a verdict of the robot.
 verdict::Verdict to_verdict(agent::Verdict verdict);
 
 /// "jacobi", "block-jacobi", "cg", and back.

@@ -13,6 +13,7 @@
 #include "holdfast/agent/colour.hpp"
 #include "holdfast/agent/conductor.hpp"
 #include "holdfast/agent/link.hpp"
+#include "holdfast/agent/messages.hpp"
 #include "holdfast/agent/node.hpp"
 #include "holdfast/agent/operations.hpp"
 #include "holdfast/agent/planned.hpp"
@@ -278,11 +279,10 @@ class Agent {
   void begin_stage(std::uint8_t stage, int parent, std::uint16_t hops);
   void take_join(int face, std::span<const std::uint8_t> message);
   void take_echo(int face, std::span<const std::uint8_t> message);
-  void take_appointment(std::span<const std::uint8_t> message);
+  void take_appointment(const Appointment& appointment);
   void await_less(int face);
   bool end_stage();
-  void take_mark(std::span<const std::uint8_t> message);
-  void mark(std::uint16_t hops, const base::Cell& end);
+  void take_mark(const Mark& mark);
   int face_towards_root(const base::Cell& end) const;
 
   // sweep.cpp: orders and reports.

@@ -22,6 +22,34 @@
 /// correction, the last two steps mixed [Anderson 1965]); and the loop ends
 /// by a bound on the error of every load ratio, not by a count.
 ///
+/// What follows a report; where several do, the first that applies.
+///
+///   asked          next
+///   plan, forget   a plan has ended: forget | a cell is planned: plan | too many, disputed:
+///   verdict
+///                  | hosts
+///   hosts          a planned module touches nothing: verdict | mass
+///   mass           modules are missing, too large: verdict | fixed: begin | angles
+///   angles         topples: verdict | begin
+///   begin          elimination: factor | polynomial: step | start; clusters is a begin
+///   factor         tree step
+///   tree step      settled: corners | states have changed: factor | stuck: begin | tree step
+///   step           settled: corners | stuck: begin | step
+///   start          nothing to solve: high | Jacobi: jacobi | gradient
+///   gradient       solved: high, under the unilateral law or to mix two iterates slope | gradient
+///   jacobi         diverges: begin | solved: high | jacobi
+///   slope          found: high | slope
+///   high           low
+///   low            settled: corners | stuck: begin, with the next method or law | start
+///   corners        regularised law, stable: loads | not stable: begin, with the unilateral law
+///                  | unilateral law: hold
+///   hold           facets have changed: high | loads
+///   loads          open feet were held: hold, to compare | verdict
+///   verdict        the same again, while it stands
+///
+/// Where the robot is held there are no corners: settled: loads. Too many iterations, or nothing
+/// safer left: verdict.
+///
 /// Contact. As in the exact solver: first the paper's law (9)-(12) by Newton's method from "all
 /// stuck"; if its states cycle, or the corners contradict the rigid body, the unilateral law by
 /// Newton's method with a line search, then with open feet released.
@@ -40,8 +68,8 @@ struct Effort {
 
 class Conductor {
  public:
-  /// The first order. `root` is the root's own cell, `module_count` how many the wave has counted.
-  /// and how many hops the deepest of them is away.
+  /// The first order. `root` is the root's own cell, `module_count` how many the wave has counted,
+  /// and `depth` how many hops the deepest of them is away.
   Order begin(const Setup& setup, const base::Cell& root, std::uint32_t module_count,
               std::uint16_t depth);
 
@@ -49,7 +77,7 @@ class Conductor {
   Order next(const Setup& setup, const Report& report);
 
   /// After the report to the kVerdict order.
-  bool is_finished() const { return step_ == Step::kVerdict; }
+  bool is_finished() const { return asked_ == wire::Operation::kVerdict; }
 
   const Effort& effort() const { return effort_; }
 
@@ -62,34 +90,12 @@ class Conductor {
     double square = 0;  ///< (p, q) of p - c p_older, or |q|^2
   };
 
-  enum class Step : std::uint8_t {
-    kPlan,  // Or kForget: its report is the same.
-    kHosts,
-    kMass,
-    kAngles,
-    kBegin,
-    kHigh,
-    kLow,
-    kStart,
-    kGradient,
-    kFactor,
-    kStep,
-    kJacobi,
-    kSlope,
-    kMix,
-    kCorners,
-    kRelease,
-    kFree,
-    kLoads,
-    kVerdict,
-  };
-
   static constexpr int kSeenMax = 24;
 
   /// Plans that end in one round, at most; more end as `undecided`.
   static constexpr std::uint8_t kForgottenMax = 200;
 
-  Order order(Step step, wire::Operation operation);
+  Order ask(wire::Operation operation);
   Order next_of_solve(const Setup& setup, const Report& report);
   Order after_plan(const Report& report);
   Order forget(const Report& report);
@@ -148,7 +154,7 @@ class Conductor {
   std::uint32_t jacobi_span() const;
   bool is_jacobi_stuck();
 
-  Step step_ = Step::kPlan;
+  wire::Operation asked_ = wire::Operation::kPlan;  ///< What the next report is about.
   Effort effort_;
   base::Cell root_;
   std::uint32_t census_ = 0;

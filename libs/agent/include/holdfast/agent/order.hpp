@@ -123,8 +123,24 @@ inline constexpr std::uint8_t kAnyTilting = 1;        ///< kLow
 
 wire::Writer encode(const Order& order);
 wire::Writer encode(wire::Operation operation, const Report& report);
-Order decode_order(std::span<const std::uint8_t> message);
-Report decode_report(std::span<const std::uint8_t> message);
+
+/// Reads the order or report that a message holds. False: no program of this version writes it.
+bool decode(std::span<const std::uint8_t> message, Order& order);
+bool decode(std::span<const std::uint8_t> message, Report& report);
+
+/// The order in a message that is legal.
+inline Order decode_order(std::span<const std::uint8_t> message) {
+  Order order;
+  decode(message, order);
+  return order;
+}
+
+/// The report in a message that is legal.
+inline Report decode_report(std::span<const std::uint8_t> message) {
+  Report report;
+  decode(message, report);
+  return report;
+}
 
 /// The larger number; not a number wins, as it must not get lost.
 constexpr float larger(float a, float b) { return b <= a || a != a ? a : b; }

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 
 /// Vectors of six and 6x6 matrices: displacement and force of one module, and one stiffness block.
 namespace holdfast::base {
@@ -26,6 +27,23 @@ struct Mat6 {
   }
 };
 
+/// An index that counts modules, nodes or rows, as the standard containers want it. Not negative.
+constexpr std::size_t at(std::int32_t index) { return static_cast<std::size_t>(index); }
+
+/// The magnitude; NaN of NaN. For any scalar, on a module too.
+template <class Real>
+constexpr Real absolute(Real value) {
+  return value < 0 ? -value : value;
+}
+
+/// The vector with 1 as its component `i`.
+template <class Real>
+constexpr Vec6<Real> unit(int i) {
+  Vec6<Real> vector{};
+  vector[static_cast<std::size_t>(i)] = 1;
+  return vector;
+}
+
 template <class Real>
 constexpr void add_to(Vec6<Real>& sum, const Vec6<Real>& term) {
   for (std::size_t i = 0; i < 6; ++i) {
@@ -40,7 +58,7 @@ constexpr void add_to(Mat6<Real>& sum, const Mat6<Real>& term) {
   }
 }
 
-/// The same numbers in another type, rounded if need be.
+/// The vector with its numbers in another type, rounded if need be.
 template <class To, class From>
 constexpr Vec6<To> converted(const Vec6<From>& vector) {
   Vec6<To> result{};
@@ -69,6 +87,19 @@ constexpr Vec6<Real> multiply(const Mat6<Real>& matrix, const Vec6<Real>& vector
     }
   }
   return product;
+}
+
+/// The matrix of a linear map: column by column its image of a unit vector.
+template <class Real, class Map>
+constexpr Mat6<Real> matrix_of(Map&& map) {
+  Mat6<Real> matrix;
+  for (int column = 0; column < 6; ++column) {
+    const Vec6<Real> image = map(unit<Real>(column));
+    for (int row = 0; row < 6; ++row) {
+      matrix.at(row, column) = image[static_cast<std::size_t>(row)];
+    }
+  }
+  return matrix;
 }
 
 }  // namespace holdfast::base

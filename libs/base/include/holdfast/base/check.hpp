@@ -14,7 +14,7 @@ namespace holdfast::base {
 #define HOLDFAST_CHECK(condition) \
   ((condition) ? static_cast<void>(0) : ::holdfast::base::panic(#condition, __FILE__, __LINE__))
 
-/// In debug builds only.
+/// HOLDFAST_ASSERT checks in debug builds only.
 #ifdef NDEBUG
 #define HOLDFAST_ASSERT(condition) static_cast<void>(0)
 #else

@@ -22,7 +22,7 @@ struct Line {
   std::uint8_t dma_receive;
 };
 
-/// By face: +x right, -x left, +y back, -y front, +z top, -z bottom.
+/// The line of each face: +x right, -x left, +y back, -y front, +z top, -z bottom.
 inline constexpr std::array<Line, 6> kLines = {{
     {0x40004800, 10, 1, 10, 11, 4, 0x17, 0x15},  // USART3
     {0x40004C00, 11, 0, 0, 1, 4, 0x21, 0x16},    // USART4

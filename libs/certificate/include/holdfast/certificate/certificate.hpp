@@ -24,7 +24,7 @@ __extension__ using Integer = __int128;
 /// Displacement and rotation of a module, global frame: ux uy uz, and tx ty tz times half a pitch.
 using Six = std::array<Integer, 6>;
 
-/// By module.
+/// Displacements of all modules, by module.
 using Field = std::vector<Six>;
 
 enum class Law : std::uint8_t {
@@ -82,7 +82,7 @@ inline constexpr int kBitsMax = 64;
 /// Larger numbers could overflow when some are added up.
 inline constexpr int kMagnitudeBitsMax = 116;
 
-/// As text, see docs/formats.md.
+/// The certificate as text, see docs/formats.md.
 std::string write(const Certificate& certificate);
 
 struct Reading {
@@ -115,7 +115,7 @@ struct Residual {
   double rounding = 0;  ///< What is below this is rounding.
 };
 
-/// For those who make certificates: what a field leaves unbalanced, not proved. The fields may
+/// What a field leaves unbalanced, for those who make certificates; not proved. The fields may
 /// change between two calls, all else may not.
 class Residuals {
  public:

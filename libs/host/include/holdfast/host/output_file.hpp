@@ -40,7 +40,7 @@ class OutputFile {
   OutputFile(const OutputFile&) = delete;
   OutputFile& operator=(const OutputFile&) = delete;
 
-  /// Without finish() nothing was written, but for what went out directly.
+  /// Removes the temporary file where finish() was not called; what went out directly stays.
   ~OutputFile();
 
   /// Takes the text; its failures show in finish() at the latest. Can be sought in (tellp, seekp)

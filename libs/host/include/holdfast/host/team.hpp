@@ -18,8 +18,8 @@ namespace holdfast::host {
 
 class Team {
  public:
-  /// At most kThreadCountMax; 0: as many as the machine has cores. One alone if there are fewer
-  /// than kSharedItemMin items to share.
+  /// A team has at most kThreadCountMax threads; 0 means as many as the machine has cores. It is
+  /// one thread alone if there are fewer than kSharedItemMin items to share.
   explicit Team(int thread_count, std::size_t item_count = kSharedItemMin);
   Team(const Team&) = delete;
   Team& operator=(const Team&) = delete;

@@ -11,6 +11,7 @@
 
 #include "holdfast/base/cell.hpp"
 #include "holdfast/base/result.hpp"
+#include "holdfast/io/extension.hpp"
 #include "holdfast/model/robot.hpp"
 
 /// A structure as it stands in a file: what mechanics need, and what a conversion must not lose.
@@ -77,6 +78,7 @@ struct Document {
   std::vector<ModuleEntry> modules;
   std::vector<Step> steps;  ///< The first one is the planned step that is checked.
   std::optional<KnownAnswer> known_answer;
+  Extension extension;  ///< What only version 2 of the JSON format can say.
 
   // VisibleSim's own, without meaning for mechanics.
   Attributes parameters;         ///< Of <parameters>: nofIterations, preconditioner, globalBeta...
@@ -101,8 +103,8 @@ enum class Format : std::uint8_t { kVisibleSimXml, kJson };
 inline constexpr std::size_t kFileBytesMax = std::size_t{1} << 30U;
 inline constexpr int kNestingMax = 64;
 
-/// By the first character that is not white space: '<' for XML, '{' or '[' for JSON; an error for
-/// anything else.
+/// The format by the first character that is not white space: '<' for XML, '{' or '[' for JSON; an
+/// error for anything else.
 base::Result<Format> detect_format(std::string_view text);
 
 /// Reads either format. Error::where is "line 12" or a JSON pointer such as "/modules/3".
@@ -111,18 +113,27 @@ base::Result<ReadDocument> read_document(std::string_view text);
 base::Result<ReadDocument> read_visiblesim(std::string_view text);
 base::Result<ReadDocument> read_json(std::string_view text);
 
+/// The version of the JSON format that a document needs, and is written in: 1 wherever that says it
+/// all, so that older programs read it.
+int json_version(const Document& document);
+
+/// The first thing in a document that this program reads, keeps and writes, but cannot compute with
+/// yet, named by an error with its JSON pointer; none if the whole document can be computed.
+std::optional<base::Error> find_unsupported(const Document& document);
+
 /// What write_visiblesim adds to every cell and to support_z: VisibleSim knows no cell below 0. The
 /// attribute `shift` of <holdfast> says it, and the reader takes it back. Positions in scenery,
-/// targets and attributes stay as they are. Error: the cells reach further than its grid can.
+/// targets and attributes stay as they are. Error: the cells reach further than its grid can, or
+/// the document needs version 2 of the JSON format, which VisibleSim XML cannot follow.
 base::Result<base::Cell> visiblesim_shift(const Document& document);
 
 /// Reading back gives an equal document. Comments and the layout of the text are not kept, and
 /// blocksLine and blockBox are written as single blocks. Where visiblesim_shift is an error, cells
-/// are written as they are.
+/// are written as they are, and what XML has no word for is left out.
 std::string write_visiblesim(const Document& document);
 std::string write_json(const Document& document);
 
-/// The robot with the first step; errors as of model::Robot::create.
+/// The robot with the first step; errors as of find_unsupported() and model::Robot::create.
 base::Result<model::Robot> make_robot(const Document& document);
 
 }  // namespace holdfast::io

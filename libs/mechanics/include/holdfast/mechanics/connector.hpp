@@ -7,6 +7,19 @@
 /// Does a connection hold? Eq. (17) of [Piranda 2021].
 namespace holdfast::mechanics {
 
+/// What holds two modules together: the data of Eq. (17).
+template <class Real>
+struct Connector {
+  Real width = 0;     ///< mm, of the face: twice the lever on which bending opens the connection.
+  Real strength = 0;  ///< N, the tension that it holds.
+};
+
+/// The connection of two modules whose connectors differ holds what the weaker one of them holds.
+template <class Real>
+constexpr const Connector<Real>& weaker(const Connector<Real>& a, const Connector<Real>& b) {
+  return b.strength < a.strength ? b : a;
+}
+
 /// What a connection carries, in its middle.
 template <class Real>
 struct ConnectionLoad {
@@ -14,7 +27,7 @@ struct ConnectionLoad {
   Real bending = 0;  ///< N mm; the larger of |mx| and |my|.
 };
 
-/// From the force in the middle of a connection, Eq. (16), local frame.
+/// What a connection carries, given the force in its middle, Eq. (16), local frame.
 template <class Real>
 ConnectionLoad<Real> connection_load(const base::Vec6<Real>& middle_force);
 
@@ -23,6 +36,12 @@ ConnectionLoad<Real> connection_load(const base::Vec6<Real>& middle_force);
 /// `strength` (N) is the tension that the connector holds.
 template <class Real>
 Real load_ratio(const ConnectionLoad<Real>& load, Real width, Real strength);
+
+/// The load ratio of a connection from the force in its middle, Eq. (16), local frame.
+template <class Real>
+Real load_ratio(const Connector<Real>& connector, const base::Vec6<Real>& middle_force) {
+  return load_ratio(connection_load(middle_force), connector.width, connector.strength);
+}
 
 /// What a module says of a load ratio in its own precision: 1 or more breaks, and so does what is
 /// not a number. A module's numbers have seven digits; on a host, whose rounding is known to be

@@ -68,7 +68,7 @@ template <class Real>
 GroundFacet<Real> ground_facet(const BeamSection<Real>& section, Real facet_width, Real gamma,
                                ContactLaw law);
 
-/// The same from the section's stiffness.
+/// The facet of a beam whose stiffness is known already.
 template <class Real>
 GroundFacet<Real> ground_facet(const BeamStiffness<Real>& beam, Real length, Real facet_width,
                                Real gamma, ContactLaw law);
@@ -106,7 +106,7 @@ template <class Real>
 base::Vec6<Real> symmetric_product(const GroundFacet<Real>& facet, ContactState state, bool is_held,
                                    const base::Vec6<Real>& u);
 
-/// The same as a matrix, global frame at the node.
+/// The matrix that symmetric_product() multiplies with, global frame at the node.
 template <class Real>
 base::Mat6<Real> symmetric_tangent(const GroundFacet<Real>& facet, ContactState state,
                                    bool is_held);

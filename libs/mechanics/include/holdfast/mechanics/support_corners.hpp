@@ -22,7 +22,7 @@ struct Corner {
   friend constexpr bool operator==(const Corner&, const Corner&) = default;
 };
 
-/// At most two corners, or `stable`. The empty set is the neutral element of merge().
+/// A set of at most two corners, or `stable`. The empty one is the neutral element of merge().
 struct SupportCorners {
   bool stable = false;
   std::uint8_t count = 0;  ///< 0, 1 or 2; different corners; 0 when stable.

@@ -20,7 +20,7 @@ class CellIndex {
 
   explicit CellIndex(std::size_t cell_count_max);
 
-  /// For cells from `low` to `high` only.
+  /// An index that has room for cells from `low` to `high` only.
   CellIndex(std::size_t cell_count_max, const base::Cell& low, const base::Cell& high);
 
   /// Adds a cell; returns kNone, or the index under which the cell was added before.

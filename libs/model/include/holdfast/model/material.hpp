@@ -2,10 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <optional>
 #include <string>
 
+#include "holdfast/base/lattice.hpp"
 #include "holdfast/mechanics/beam.hpp"
+#include "holdfast/mechanics/connector.hpp"
 
 namespace holdfast::model {
 
@@ -29,14 +32,52 @@ struct Material {
   friend bool operator==(const Material&, const Material&) = default;
 };
 
+/// What files, forms and messages have to know of one number of a material.
+struct MaterialParameter {
+  const char* key;         ///< In holdfast JSON, with the unit.
+  const char* visiblesim;  ///< Attribute of VisibleSim's <parameters>; nullptr: it has no word.
+  double Material::*value;
+  const char* label;  ///< For people.
+  const char* unit;   ///< For people; empty for a ratio.
+  double lowest = 1e-12;
+  /// Beyond these two, products of parameters leave the range of double or lose all their digits.
+  double highest = 1e12;
+};
+
+/// The parameters in the order in which programs and documents list them. All that reads, writes,
+/// checks or shows a material goes through this table. VisibleSim counts its moments the other way
+/// round: its Iy bends lateral beams in the vertical plane, which is our Ix.
+inline constexpr auto kMaterialParameters = std::to_array<MaterialParameter>({
+    {"elastic_modulus_mpa", "E", &Material::elastic_modulus_mpa, "Elastic modulus E", "MPa"},
+    {"pitch_mm", "globalL", &Material::pitch_mm, "Pitch L", "mm"},
+    {"facet_mm", "a", &Material::facet_mm, "Width of a face a", "mm"},
+    {"section_area_mm2", "A", &Material::section_area_mm2, "Section A", "mm²"},
+    {"moment_x_mm4", "globalIy", &Material::moment_x_mm4, "Moment Ix", "mm⁴"},
+    {"moment_y_mm4", "globalIz", &Material::moment_y_mm4, "Moment Iy", "mm⁴"},
+    {"torsion_mm4", "globalJ", &Material::torsion_mm4, "Torsion J", "mm⁴"},
+    {"poisson_ratio", "globalNu", &Material::poisson_ratio, "Poisson’s ratio", "", -0.99, 0.5},
+    {"mass_kg", "globalMass", &Material::mass_kg, "Mass of a module", "kg"},
+    {"gravity_m_s2", nullptr, &Material::gravity_m_s2, "Gravity", "m/s²"},
+    {"strength_vertical_n", nullptr, &Material::strength_vertical_n, "Strength, vertical", "N"},
+    {"strength_lateral_n", nullptr, &Material::strength_lateral_n, "Strength, lateral", "N"},
+    {"contact_gamma", "globalGamma", &Material::contact_gamma, "Contact gamma", "", 1e-9, 0.1},
+});
+
+static_assert(sizeof(Material) == kMaterialParameters.size() * sizeof(double),
+              "every number of a material has a row");
+
 /// The section of every beam, with Jv from J and nu.
 mechanics::BeamSection<double> beam_section(const Material& material);
 
 /// Weight of one module in N.
 double module_weight_n(const Material& material);
 
-/// By how much an error of the displacements e can change any load ratio, as a share of its energy
-/// norm (e . K e)^(1/2); in (N mm)^(-1/2). See mechanics::load_ratio_squared_per_energy().
+/// What joins two modules of this material, by the class of their direction: Eq. (17) with the
+/// width of a face and the strength of that class.
+mechanics::Connector<double> connector(const Material& material, base::ConnectorClass kind);
+
+/// The most by which an error e of the displacements can change any load ratio, as a share of its
+/// energy norm (e . K e)^(1/2); in (N mm)^(-1/2). See mechanics::load_ratio_squared_per_energy().
 double load_ratio_per_energy_norm(const Material& material);
 
 /// Why a material cannot be computed with (name, value found, values allowed), if it cannot.

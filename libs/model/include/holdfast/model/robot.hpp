@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "holdfast/base/cell.hpp"
+#include "holdfast/base/lattice.hpp"
 #include "holdfast/base/result.hpp"
 #include "holdfast/host/team.hpp"
 #include "holdfast/model/cell_index.hpp"
@@ -34,11 +35,19 @@ struct Module {
   bool is_planned = false;
 };
 
-/// A beam between face neighbours; `b` is the neighbour of `a` in a positive direction.
+/// A connection, that is a beam, between two modules in neighbouring cells; `b` is the neighbour of
+/// `a` in a direction with an even index.
 struct Connection {
   std::int32_t a = 0;  ///< Index of a module.
   std::int32_t b = 0;
   base::Direction direction = base::Direction::kPlusX;
+};
+
+/// A facet with which a module touches the environment: unilaterally, its centre half a pitch from
+/// the module's node, in the frame that mechanics::frame_along() gives for its direction.
+struct Facet {
+  std::int32_t module = 0;  ///< Index.
+  base::Direction direction = base::Direction::kMinusZ;
 };
 
 /// What a robot is made from, in any order.
@@ -63,11 +72,18 @@ class Robot {
   /// Existing modules first, then the planned ones, each in the order of the spec.
   std::span<const Module> modules() const { return modules_; }
 
+  /// The lattice in which the modules' cells and directions count.
+  static constexpr const base::Lattice& lattice() { return base::kCubic; }
+
   /// Module indices by direction, kNoNeighbour where there is none.
   std::span<const Neighbours> neighbours() const { return neighbours_; }
 
-  /// Every pair of face neighbours once, planned modules included.
+  /// Every pair of modules that is connected once, planned modules included: all neighbours are.
   std::span<const Connection> connections() const { return connections_; }
+
+  /// What touches the environment, by ascending module: the lower sides of all modules on the
+  /// support level that are not fixed.
+  std::span<const Facet> facets() const { return facets_; }
 
   const Material& material() const { return material_; }
 
@@ -78,24 +94,24 @@ class Robot {
 
   std::size_t planned_count() const { return planned_count_; }
 
-  std::size_t ground_count() const { return ground_count_; }
+  std::size_t ground_count() const { return facets_.size(); }
 
   std::size_t fixed_count() const { return fixed_count_; }
 
  private:
   explicit Robot(const Material& material) : material_(material), loads_(weight_loads(material)) {}
 
-  /// Finds neighbours and connections, counts supports.
+  /// Finds neighbours, connections and facets, counts fixed modules.
   void connect(const CellIndex& index, host::Team& team);
 
   std::vector<Module> modules_;
   std::vector<Neighbours> neighbours_;
   std::vector<Connection> connections_;
+  std::vector<Facet> facets_;
   Material material_;
   Loads loads_;
   std::int32_t support_z_ = 0;
   std::size_t planned_count_ = 0;
-  std::size_t ground_count_ = 0;
   std::size_t fixed_count_ = 0;
 };
 

@@ -37,7 +37,7 @@ static_assert(offsetof(agent::Setup, facet_mm) == 48 &&
 static_assert(offsetof(Configuration, setup) == 32 && sizeof(Configuration) == 280);
 #endif
 
-/// Of everything but the magic number, the version and the sum itself.
+/// The checksum of everything but the magic number, the version and the sum itself.
 std::uint32_t checksum_of(const Configuration& configuration);
 
 /// Is this a configuration that the program can use?

@@ -47,7 +47,7 @@ class FrameReader {
   /// Takes the next byte.
   Found take(std::uint8_t byte);
 
-  /// Of the frame just found, until the next byte is taken.
+  /// The kind of the frame just found, until the next byte is taken.
   FrameKind kind() const { return static_cast<FrameKind>(body_[0]); }
 
   std::span<const std::uint8_t> payload() const;

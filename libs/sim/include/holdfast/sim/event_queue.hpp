@@ -40,15 +40,15 @@ class EventQueue {
   /// Removes the first event; the queue must not be empty.
   QueuedEvent pop();
 
-  /// After pop(): the event `ahead` places behind it, if it happens at the same time and lies
-  /// nearby, else null. For prefetching.
+  /// The event `ahead` places behind the one that pop() gave last, if it happens at the same time
+  /// and lies nearby, else null. For prefetching.
   const QueuedEvent* peek(std::uint32_t ahead) const;
 
  private:
   static constexpr int kDigitBits = 8;
   static constexpr int kLevelCount = 8;
   static constexpr std::size_t kSlotCount = std::size_t{1} << kDigitBits;
-  /// With this a chunk fills one kibibyte.
+  /// So many events make a chunk one kibibyte.
   static constexpr std::size_t kChunkEvents = 63;
 
   struct Chunk {

@@ -63,8 +63,8 @@ class Simulation {
   Simulation& operator=(Simulation&&) noexcept;
   ~Simulation();
 
-  /// Until nothing can happen any more or a limit is reached. Modules watch over their verdict for
-  /// ever; the run ends when that is all they do and there is nothing that it could find.
+  /// Runs until nothing can happen any more or a limit is reached. Modules watch over their verdict
+  /// for ever; the run ends when that is all they do and there is nothing that it could find.
   void run();
 
   /// Hands about `event_count` events to modules. False: it is over. The first call also starts all
@@ -74,7 +74,7 @@ class Simulation {
   /// So far.
   SimulationResult result() const;
 
-  /// Of an existing module.
+  /// The agent of an existing module.
   const agent::Agent& agent(std::int32_t module) const;
 
   /// Is the module attached and not silenced?

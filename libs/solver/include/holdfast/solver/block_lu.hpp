@@ -31,7 +31,7 @@ class BlockLu {
   /// more than `block_count_max` blocks; each takes 600 bytes in all.
   BlockLu(std::size_t node_count, std::span<const Edge> edges, std::size_t block_count_max);
 
-  /// If true, nothing else may be called.
+  /// Whether the factorization does not fit into memory; if so, nothing else may be called.
   bool is_too_large() const { return is_too_large_; }
 
   /// Blocks below the diagonal of L, fill included.

@@ -45,7 +45,7 @@ struct LoadRange {
   double high = 0;
 };
 
-/// Where the paper's contact law has more than one solution: what it says about the largest load
+/// What the paper's contact law, where it has more than one solution, says about the largest load
 /// ratio, and what the exact law says beside it. A verdict needs all of them on one side of 1.
 struct SeveralSolutions {
   std::size_t found_count = 0;          ///< At least so many; 2 or more.
@@ -68,8 +68,8 @@ struct Assessment {
   bool is_stable =
       false;  ///< By the rigid body, as the ground is flat; bonded supports hold always.
 
-  /// Per connection of the robot; empty if no equilibrium was found, or sought: a large robot that
-  /// topples is known to topple by the rigid body. Not meaningful if unstable.
+  /// One result per connection of the robot; empty if no equilibrium was found, or sought: a large
+  /// robot that topples is known to topple by the rigid body. Not meaningful if unstable.
   std::vector<ConnectionResult> connections;
   std::optional<double> load_ratio_max;  ///< None without connections or if one is not a number.
   /// Index of the connection with load_ratio_max; none if that is below kLoadRatioTie, which is
@@ -84,7 +84,7 @@ struct Assessment {
   double load_ratio_change = 0;
 
   ContactModel contact_model = ContactModel::kNone;
-  /// None if the law that the forces come from has one solution, as far as was found.
+  /// Further solutions; none if the law that the forces come from has one, as far as was found.
   std::optional<SeveralSolutions> several;
   solver::Equilibrium equilibrium;  ///< Displacements, contact states, ground forces.
 };
@@ -98,7 +98,7 @@ inline bool breaks(double load_ratio) { return load_ratio >= 1 - kLoadRatioTie; 
 
 Assessment assess(const model::Robot& robot, const solver::EquilibriumOptions& options = {});
 
-/// The same for an equilibrium that is already there, whoever found it.
+/// Assesses a robot whose equilibrium is already there, whoever found it.
 Assessment assess_equilibrium(const model::Robot& robot, solver::Equilibrium equilibrium);
 
 /// "safe", "overload", "unstable", "undecided".

@@ -28,7 +28,7 @@ struct RigidBody {
   /// polygon, positive inside: the lever with which the weight holds the robot down, or tips it.
   /// None if a fixed module holds the robot.
   std::optional<double> margin_mm;
-  /// That edge: over it the robot topples, or would first. The polygon lies on its left. None if a
+  /// The edge over which the robot topples, or would first. The polygon lies on its left. None if a
   /// fixed module holds the robot.
   std::optional<std::array<PlanPoint, 2>> edge;
   PlanPoint centre_of_mass;

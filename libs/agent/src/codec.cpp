@@ -1,0 +1,93 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#include "codec.hpp"
+
+#include "holdfast/agent/announcements.hpp"
+
+namespace holdfast::agent::wire {
+namespace {
+
+bool is_near(const base::Cell& cell) {
+  for (const std::int32_t coordinate : {cell.x, cell.y, cell.z}) {
+    if (coordinate < -base::kCoordinateMax || coordinate > base::kCoordinateMax) {
+      return false;
+    }
+  }
+  return true;
+}
+
+}  // namespace
+
+void Codec::u8(std::uint8_t& value, std::uint8_t first, std::uint8_t last) {
+  if (out_ != nullptr) {
+    return out_->u8(value);
+  }
+  value = in_.u8();
+  require(value >= first && value <= last);
+}
+
+void Codec::u16(std::uint16_t& value, std::uint16_t first, std::uint16_t last) {
+  if (out_ != nullptr) {
+    return out_->u16(value);
+  }
+  value = in_.u16();
+  require(value >= first && value <= last);
+}
+
+void Codec::flags(std::uint8_t& value, std::uint8_t all) {
+  u8(value);
+  require((value & ~unsigned{all}) == 0);
+}
+
+void Codec::cell(base::Cell& cell) {
+  half_cells(cell);
+  require(is_near(cell));
+}
+
+void Codec::place(base::Cell& cell) {
+  half_cells(cell);
+  require(cell == kEveryCell || is_near(cell));
+}
+
+void Codec::u32(std::uint32_t& value) {
+  if (out_ != nullptr) {
+    return out_->u32(value);
+  }
+  value = in_.u32();
+}
+
+void Codec::i32(std::int32_t& value) {
+  auto bits = static_cast<std::uint32_t>(value);
+  u32(bits);
+  value = static_cast<std::int32_t>(bits);
+}
+
+void Codec::short_real(float& value) {
+  if (out_ != nullptr) {
+    return out_->short_real(static_cast<double>(value));
+  }
+  value = in_.short_real();
+}
+
+void Codec::real(float& value) {
+  if (out_ != nullptr) {
+    return out_->real(static_cast<double>(value));
+  }
+  value = in_.real();
+}
+
+void Codec::long_real(double& value) {
+  if (out_ != nullptr) {
+    return out_->long_real(value);
+  }
+  value = in_.long_real();
+}
+
+void Codec::half_cells(base::Cell& corner) {
+  if (out_ != nullptr) {
+    return out_->cell(corner);
+  }
+  corner = in_.cell();
+}
+
+}  // namespace holdfast::agent::wire

@@ -1,0 +1,95 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// Every parameter of a material is read, written, refused and documented under the names and within
+// the range that model::kMaterialParameters gives it: both formats, the JSON Schema and the table
+// of docs/formats.md.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <sstream>
+#include <string>
+
+#include "document_support.hpp"
+
+namespace holdfast::io {
+namespace {
+
+using model::kMaterialParameters;
+using model::MaterialParameter;
+
+std::string document_text(const std::string& name) {
+  std::ifstream file(std::string(HOLDFAST_DOCUMENT_DIR) + "/" + name);
+  std::ostringstream text;
+  text << file.rdbuf();
+  return text.str();
+}
+
+/// A value within the range that is no default.
+double value_for(const MaterialParameter& parameter) {
+  return std::clamp(0.0125, parameter.lowest, parameter.highest);
+}
+
+TEST(MaterialParameters, have_names_of_their_own) {
+  std::set<std::string> keys;
+  std::set<std::string> labels;
+  for (const MaterialParameter& parameter : kMaterialParameters) {
+    EXPECT_TRUE(keys.insert(parameter.key).second) << parameter.key;
+    EXPECT_TRUE(labels.insert(parameter.label).second) << parameter.label;
+  }
+}
+
+TEST(MaterialParameters, are_the_same_in_json_and_in_visiblesim) {
+  for (const MaterialParameter& parameter : kMaterialParameters) {
+    Document document;
+    document.modules.emplace_back();
+    document.material.*parameter.value = value_for(parameter);
+    const auto from_json = read_json(write_json(document));
+    const auto from_xml = read_visiblesim(write_visiblesim(document));
+    ASSERT_TRUE(from_json && from_xml) << parameter.key;
+    EXPECT_EQ(from_json.value().document.material, document.material) << parameter.key;
+    EXPECT_EQ(from_xml.value().document.material, document.material) << parameter.key;
+    EXPECT_NE(document.material, model::Material{}) << parameter.key;
+  }
+}
+
+TEST(MaterialParameters, have_the_ranges_of_the_schema) {
+  const auto schema = nlohmann::json::parse(document_text("structure.schema.json"));
+  const auto& properties = schema["properties"]["material"]["properties"];
+  EXPECT_EQ(properties.size(), kMaterialParameters.size());
+  for (const MaterialParameter& parameter : kMaterialParameters) {
+    ASSERT_TRUE(properties.contains(parameter.key)) << parameter.key;
+    const auto& entry = properties[parameter.key];
+    const auto& range = entry.contains("$ref") ? schema["definitions"]["positive"] : entry;
+    EXPECT_EQ(entry.value("$ref", "#/definitions/positive"), "#/definitions/positive");
+    EXPECT_EQ(range["type"], "number") << parameter.key;
+    EXPECT_EQ(range["minimum"].get<double>(), parameter.lowest) << parameter.key;
+    EXPECT_EQ(range["maximum"].get<double>(), parameter.highest) << parameter.key;
+  }
+}
+
+/// The row that docs/formats.md has to have; a failure shows it.
+std::string row(const MaterialParameter& parameter) {
+  const std::string visiblesim =
+      parameter.visiblesim == nullptr ? "none" : fmt::format("`{}`", parameter.visiblesim);
+  return fmt::format("| `{}` | {} | {} | {:g} to {:g} | {:.8g} | {} |\n", parameter.key,
+                     parameter.label, parameter.unit, parameter.lowest, parameter.highest,
+                     model::Material{}.*parameter.value, visiblesim);
+}
+
+TEST(MaterialParameters, are_the_rows_of_the_table_in_formats_md) {
+  std::string rows;
+  for (const MaterialParameter& parameter : kMaterialParameters) {
+    rows += row(parameter);
+  }
+  EXPECT_NE(document_text("formats.md").find("|---|---|---|---|---|---|\n" + rows + "\n"),
+            std::string::npos)
+      << rows;
+}
+
+}  // namespace
+}  // namespace holdfast::io
