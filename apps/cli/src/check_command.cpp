@@ -43,7 +43,6 @@ class CheckRun {
   explicit CheckRun(const Options& options) : options_(options) {}
 
   int run() {
-    open_json();
     for (std::size_t i = 0; i < options_.files.size(); ++i) {
       show_progress(i);
       check_file(options_.files[i]);
@@ -158,11 +157,7 @@ class CheckRun {
     }
   }
 
-  /// Reports are written as they come, one object or a list.
   void open_json() {
-    if (options_.json.empty()) {
-      return;
-    }
     auto opened = host::OutputFile::open(options_.json);
     if (!opened) {
       ++bad_count_;
@@ -173,11 +168,17 @@ class CheckRun {
     json_->stream() << (is_many() ? "[\n" : "");
   }
 
+  /// Reports are written as they come, one object or a list.
   template <class Write>
   void add_report(const Write& write) {
+    if (options_.json.empty()) {
+      return;
+    }
+    if (++report_count_ == 1) {
+      open_json();
+    }
     if (json_) {
-      json_->stream() << (report_count_ > 0 ? ",\n" : "");
-      ++report_count_;
+      json_->stream() << (report_count_ > 1 ? ",\n" : "");
       write(json_->stream());
     }
   }
