@@ -113,7 +113,7 @@ Report loads_report(Workspace& ws) {
     own.reals[0] = value;
     own.cell = cell;
     own.direction = direction;
-    own.count = ratio >= 1 ? 1 : 0;
+    own.count = mechanics::breaks(ratio) ? 1 : 0;
     merge(Operation::kLoads, report, own);
     if (cell == ws.tree.cell()) {
       ws.own_load_ratio = larger(ws.own_load_ratio, value);

@@ -63,8 +63,13 @@ base::Result<DistributedRun> simulate(const Structure& structure, const CheckRes
                                       const SimulationProgress& progress = {});
 
 /// check's report with the entry "distributed"; see docs/formats.md.
+void write_report_json(std::ostream& out, const Structure& structure, const CheckResult& exact,
+                       const DistributedRun& run, const io::ReportOptions& options = {});
 std::string report_json(const Structure& structure, const CheckResult& exact,
                         const DistributedRun& run);
+
+/// Writes the keys of the entry "distributed" into the object that is open.
+void write_distributed(io::JsonStream& json, const DistributedRun& run);
 
 /// For people: what the robot found, beside the exact answer, and what it cost by phases.
 std::string report_text(const Structure& structure, const CheckResult& exact,
