@@ -19,10 +19,7 @@ namespace holdfast::agent {
 using wire::MessageType;
 using wire::Operation;
 
-void Agent::refuse(int face) {
-  refused_count_ = static_cast<std::uint8_t>(refused_count_ < 0xff ? refused_count_ + 1 : 0xff);
-  links_[static_cast<std::size_t>(face)].lose();
-}
+void Agent::refuse(int face) { links_[static_cast<std::size_t>(face)].lose(); }
 
 /// Where an order leads; what it must not lead to has been refused before.
 Agent::Course Agent::course_after(const Order& order) const {
@@ -68,7 +65,7 @@ bool Agent::is_in_course(const Order& order) const {
     case Operation::kMass:
       return course == Course::kHosted;
     case Operation::kAngles:
-      return course == Course::kWeighed && fits_exact_check(setup_, order.module_count) &&
+      return course == Course::kWeighed && fits_exact_check(setup_, order.mass) &&
              mass_report().extent <= kExtentMax;
     case Operation::kBegin:
       return is_good_begin(order);

@@ -130,10 +130,14 @@ void Agent::receive(int face, std::span<const std::uint8_t> packet) {
   Link& link = links_[static_cast<std::size_t>(face)];
   touched_ = static_cast<std::uint8_t>(touched_ | bit(face));
   is_busy_ = true;
+  const bool was_used = link.is_used();
   std::span<const std::uint8_t> stream = link.receive(packet, setup_.timing, now_);
   for (auto message = link.next_message(stream); !message.empty() && link.is_used();
        message = link.next_message(stream)) {
     is_legal(message) ? dispatch(face, message) : refuse(face);
+  }
+  if (was_used && link.state() == Link::State::kLost) {
+    refused_count_ = static_cast<std::uint8_t>(refused_count_ < 0xff ? refused_count_ + 1 : 0xff);
   }
   check_link(face);
 }

@@ -210,14 +210,15 @@ Report Agent::mass_report() const {
     Report own{.flags = node.is_fixed ? kAnyFixed : std::uint8_t{0},
                .extent = static_cast<std::uint16_t>(extent < 0xffff ? extent : 0xffff),
                .count = 1,
-               .cell_sum = {away.x, away.y}};
+               .number = 1,
+               .moment = {away.x, away.y, away.z}};
     merge(Operation::kMass, report, own);
   }
   return report;
 }
 
 Report Agent::angles_report() const {
-  const FeetCheck check(setup_, order_.module_count, order_.cell_sum);
+  const FeetCheck check(setup_, order_.mass, order_.moment);
   Report report;
   for (int i = 0; i < node_count(); ++i) {
     const Node& node = nodes_[static_cast<std::size_t>(i)];
@@ -232,7 +233,7 @@ Report Agent::angles_report() const {
 /// Adds what a child has reported.
 void Agent::add_report(Report& into, const Report& theirs) const {
   if (order_.operation == Operation::kAngles) {
-    const FeetCheck check(setup_, order_.module_count, order_.cell_sum);
+    const FeetCheck check(setup_, order_.mass, order_.moment);
     into.feet = check.merge(into.feet, theirs.feet);
   } else {
     merge(order_.operation, into, theirs);

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "holdfast/agent/agent.hpp"     // IWYU pragma: export
+#include "holdfast/agent/listener.hpp"  // IWYU pragma: export
 #include "holdfast/holdfast.hpp"        // IWYU pragma: export
 #include "holdfast/sim/simulation.hpp"  // IWYU pragma: export
 
