@@ -59,9 +59,6 @@ inline constexpr std::array<std::string_view, 20> kGoldenReports = {
     "06 13 1d 00 00 00 02 00 00 00",
     "06 14 00 00 04 01 00 00 fe ff ff 03 00 00"};
 
-/// The cut that opens a loop: from (1, -2, 3) to +y.
-inline constexpr std::string_view kGoldenLoop = "0a 01 00 00 fe ff ff 03 00 00 02";
-
 /// Types 7, 8, 9, 11, 12 and 13, label 5, with the reals 1, -2, 0.5, 0.25, -1, 1.5.
 inline constexpr std::array<std::string_view, 6> kGoldenVectors = {
     "07 05 00 00 80 3f 00 00 00 c0 00 00 00 3f 00 00 80 3e 00 00 80 bf 00 00 c0 3f",
@@ -130,5 +127,8 @@ inline const std::vector<GoldenStream> kGoldenTrace = {
       "06 01 00 00 01 ff ff ff 03 00 00 00 00 00",                 // the first is at (-1, 3, 0)
       "06 01 01 00 00 00 00 00 00 00 00 00 00 00"}},               // it is at my face -x
 };
+
+/// The cut that opens a loop: from (1, -2, 3) to +y.
+inline constexpr std::string_view kGoldenLoop = "0a 01 00 00 fe ff ff 03 00 00 02";
 
 }  // namespace holdfast::agent::test
