@@ -124,6 +124,7 @@ bool Agent::is_waiting() const {
 void Agent::receive(Direction face, std::span<const std::uint8_t> packet) {
   Links& links = ws_.links;
   is_busy_ = true;
+  const bool was_used = links.is_used(face);
   std::span<const std::uint8_t> stream = links.receive(face, packet, clock_);
   for (auto message = links.next_message(face, stream); !message.empty() && links.is_used(face);
        message = links.next_message(face, stream)) {
@@ -133,6 +134,9 @@ void Agent::receive(Direction face, std::span<const std::uint8_t> packet) {
     if (links.take_refusal()) {
       leave_round();
     }
+  }
+  if (was_used) {
+    links.count_if_lost(face);
   }
   notice_change(face);
 }

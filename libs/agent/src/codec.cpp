@@ -3,6 +3,7 @@
 #include "codec.hpp"
 
 #include "holdfast/agent/announcements.hpp"
+#include "holdfast/agent/order.hpp"
 
 namespace holdfast::agent::wire {
 namespace {
@@ -37,6 +38,29 @@ void Codec::u16(std::uint16_t& value, std::uint16_t first, std::uint16_t last) {
 void Codec::flags(std::uint8_t& value, std::uint8_t all) {
   u8(value);
   require((value & ~unsigned{all}) == 0);
+}
+
+void Codec::faces(std::uint8_t& mask) {
+  constexpr std::uint16_t kAll = (1U << base::kDirectionCount) - 1;
+  std::uint16_t wide = mask;
+  u16(wide, 0, kAll);
+  mask = static_cast<std::uint8_t>(wide);
+}
+
+void Codec::moment(std::int64_t& value) {
+  auto low = static_cast<std::uint32_t>(value & 0xffffffff);
+  auto high = static_cast<std::int32_t>(value >> 32);
+  u32(low);
+  i32(high);
+  value = (std::int64_t{high} << 32U) | low;
+  require(value >= -kMomentMost && value <= kMomentMost);
+}
+
+void Codec::moment(std::int32_t& value) {
+  std::int64_t wide = value;
+  moment(wide);
+  value = static_cast<std::int32_t>(wide);
+  require(value == wide);
 }
 
 void Codec::cell(base::Cell& cell) {

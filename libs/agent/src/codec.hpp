@@ -31,6 +31,8 @@ class Codec {
   void u16(std::uint16_t& value, std::uint16_t first = 0, std::uint16_t last = 0xffff);
   /// No other bits than those of `all`.
   void flags(std::uint8_t& value, std::uint8_t all);
+  /// Faces of a module, in 16 bits as some lattices have 12 directions.
+  void faces(std::uint8_t& mask);
   /// The cell of a module, and of a plan: that, or kEveryCell.
   void cell(base::Cell& cell);
   void place(base::Cell& cell);
@@ -42,6 +44,10 @@ class Codec {
     u8(byte, static_cast<std::uint8_t>(first), static_cast<std::uint8_t>(last));
     value = static_cast<Kind>(byte);
   }
+
+  /// A first moment, in 64 bits: at most kMomentMost either way, or what has 32 bits here.
+  void moment(std::int64_t& value);
+  void moment(std::int32_t& value);
 
   // These may be anything.
   void u32(std::uint32_t& value);
@@ -71,6 +77,12 @@ class Ruler {
   constexpr void u16(std::uint16_t&, unsigned = 0, unsigned = 0) { bytes_ += 2; }
 
   constexpr void flags(std::uint8_t&, unsigned) { bytes_ += 1; }
+
+  constexpr void faces(std::uint8_t&) { bytes_ += 2; }
+
+  constexpr void moment(std::int64_t&) { bytes_ += 8; }
+
+  constexpr void moment(std::int32_t&) { bytes_ += 8; }
 
   constexpr void cell(base::Cell&) { bytes_ += kCellBytes; }
 

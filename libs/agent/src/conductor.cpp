@@ -165,13 +165,17 @@ Order Conductor::after_mass(const Setup& setup, const Report& report) {
   if (is_fixed_) {
     return begin_law(setup, false);
   }
-  if ((report.flags & kSumOverflow) != 0 || !fits_exact_check(setup, report.count)) {
+  constexpr std::int64_t kMost = 0x7fffffff;
+  const auto is_large = [](std::int64_t moment) { return moment < -kMost || moment > kMost; };
+  const auto [x, y, z] = report.moment;
+  if ((report.flags & kSumOverflow) != 0 || is_large(x) || is_large(y) ||
+      !fits_exact_check(setup, report.number)) {
     return finish(Verdict::kUndecided, Reason::kTooLarge);
   }
   Order angles = ask(Operation::kAngles);
   angles.cell = root_;
-  angles.module_count = static_cast<std::int32_t>(report.count);
-  angles.cell_sum = report.cell_sum;
+  angles.mass = static_cast<std::int32_t>(report.number);
+  angles.moment = {static_cast<std::int32_t>(x), static_cast<std::int32_t>(y)};
   return angles;
 }
 

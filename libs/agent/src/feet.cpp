@@ -16,17 +16,17 @@ bool is_good_corner(const FootCorner& corner) {
   return true;
 }
 
-bool fits_exact_check(const Setup& setup, std::int64_t module_count) {
-  return module_count > 0 && module_count <= kCheckedCountMax &&
-         setup.facet_numerator <= kFacetPartMax && setup.facet_denominator <= kFacetPartMax;
+bool fits_exact_check(const Setup& setup, std::int64_t mass) {
+  return mass > 0 && mass <= kCheckedMassMax && setup.facet_numerator <= kFacetPartMax &&
+         setup.facet_denominator <= kFacetPartMax;
 }
 
-FeetCheck::FeetCheck(const Setup& setup, std::int32_t module_count,
-                     const std::array<std::int32_t, 2>& cell_sum)
-    : pitch_(2 * std::int64_t{setup.facet_denominator} * module_count),
-      half_width_(std::int64_t{setup.facet_numerator} * module_count),
-      mass_{2 * std::int64_t{setup.facet_denominator} * cell_sum[0],
-            2 * std::int64_t{setup.facet_denominator} * cell_sum[1]} {}
+FeetCheck::FeetCheck(const Setup& setup, std::int32_t mass,
+                     const std::array<std::int32_t, 2>& moment)
+    : pitch_(2 * std::int64_t{setup.facet_denominator} * mass),
+      half_width_(std::int64_t{setup.facet_numerator} * mass),
+      mass_{2 * std::int64_t{setup.facet_denominator} * moment[0],
+            2 * std::int64_t{setup.facet_denominator} * moment[1]} {}
 
 SafeCorners FeetCheck::of_foot(std::int32_t x, std::int32_t y) const {
   const Vector centre = {x * pitch_ - mass_.x, y * pitch_ - mass_.y};

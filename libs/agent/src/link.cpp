@@ -14,7 +14,7 @@ using wire::PacketKind;
 
 constexpr std::uint8_t kNumberMask = 0x3f;
 constexpr std::uint16_t kGreetingChecksum = 0xffff;
-constexpr int kGreetingBytes = 5;
+constexpr int kGreetingBytes = 6;
 
 std::uint8_t header(std::uint8_t top, std::uint8_t number) {
   return static_cast<std::uint8_t>((top << 6U) | (number & kNumberMask));
@@ -98,8 +98,12 @@ void Link::drop_unsent() {
   queued_bytes_ = static_cast<std::uint16_t>(furthest_bytes_ + message_left_);
 }
 
-/// A greeting: my number, the number heard from you (0: none), am I open.
+/// A greeting: my number, the number heard from you (0: none), am I open, what lattice I am of.
 std::span<const std::uint8_t> Link::receive_greeting(std::span<const std::uint8_t> body) {
+  if (body[5] != wire::kCubicLattice) {
+    lose();
+    return {};
+  }
   const auto theirs = static_cast<std::uint16_t>(body[0] | (body[1] << 8U));
   const auto heard = static_cast<std::uint16_t>(body[2] | (body[3] << 8U));
   const bool is_peer_open = body[4] != 0;
@@ -254,6 +258,7 @@ int Link::write_greeting(std::span<std::uint8_t> packet, const LinkTiming& timin
   packet[4] = static_cast<std::uint8_t>(peer_nonce_ & 0xffU);
   packet[5] = static_cast<std::uint8_t>(peer_nonce_ >> 8U);
   packet[6] = state_ == State::kOpen ? 1 : 0;
+  packet[7] = wire::kCubicLattice;
   if (state_ == State::kGreeting) {
     retry_at_ = now + patience(timing);
   }

@@ -40,9 +40,10 @@ void Links::bring_down(Direction face) {
   touched_.add(face);
 }
 
-void Links::refuse(Direction face) {
-  refused_count_ = static_cast<std::uint8_t>(refused_count_ + (refused_count_ < 0xff ? 1 : 0));
-  at(face).lose();
+void Links::count_if_lost(Direction face) {
+  if (at(face).state() == Link::State::kLost && refused_count_ < 0xff) {
+    ++refused_count_;
+  }
 }
 
 std::span<const std::uint8_t> Links::receive(Direction face, std::span<const std::uint8_t> packet,

@@ -24,14 +24,14 @@ Operation operation_of(std::span<const std::uint8_t> message) {
   return static_cast<Operation>(message[1]);
 }
 
-std::int32_t saturating_sum(std::int32_t a, std::int32_t b, std::uint8_t& flags) {
-  const std::int64_t sum = std::int64_t{a} + b;
-  constexpr std::int64_t kMax = 0x7fffffff;
-  if (sum > kMax || sum < -kMax) {
+/// Both are within kMomentMost.
+std::int64_t saturating_sum(std::int64_t a, std::int64_t b, std::uint8_t& flags) {
+  const std::int64_t sum = a + b;
+  if (sum > kMomentMost || sum < -kMomentMost) {
     flags = static_cast<std::uint8_t>(flags | kSumOverflow);
-    return static_cast<std::int32_t>(sum > 0 ? kMax : -kMax);
+    return sum > 0 ? kMomentMost : -kMomentMost;
   }
-  return static_cast<std::int32_t>(sum);
+  return sum;
 }
 
 /// A plan that has ended goes before all others.
@@ -51,8 +51,9 @@ void merge_mass(Report& into, const Report& from) {
   into.count += from.count;
   into.flags = static_cast<std::uint8_t>(into.flags | from.flags);
   into.extent = into.extent < from.extent ? from.extent : into.extent;
-  for (std::size_t i = 0; i < 2; ++i) {
-    into.cell_sum[i] = saturating_sum(into.cell_sum[i], from.cell_sum[i], into.flags);
+  into.number += from.number;
+  for (std::size_t i = 0; i < into.moment.size(); ++i) {
+    into.moment[i] = saturating_sum(into.moment[i], from.moment[i], into.flags);
   }
 }
 
@@ -88,7 +89,6 @@ void merge_loads(Report& into, const Report& from) {
   into.number += from.number;
 }
 
-constexpr std::uint8_t kFaces = 0x3f;
 constexpr std::uint8_t kPlanReportFlags =
     kFound | kTooManyAnnounced | kEnded | kFulfilled | kDisputed;
 
@@ -144,6 +144,7 @@ constexpr void degree_field(auto& codec, std::uint16_t& count) {
 
 /// What is in an order behind its operation.
 constexpr void fields(auto& codec, Order& order) {
+  base::Direction facet = kStandingFacet;
   switch (order.operation) {
     case Operation::kPlan:
       codec.u8(order.index);
@@ -151,15 +152,16 @@ constexpr void fields(auto& codec, Order& order) {
       return codec.cell(order.cell);
     case Operation::kHosts:
       for (std::uint8_t& mask : order.masks) {
-        codec.flags(mask, kFaces);
+        codec.faces(mask);
       }
       return;
     case Operation::kMass:
       return codec.cell(order.cell);
     case Operation::kAngles:
-      codec.i32(order.module_count);
-      codec.i32(order.cell_sum[0]);
-      return codec.i32(order.cell_sum[1]);
+      codec.kind(facet, kStandingFacet, kStandingFacet);
+      codec.i32(order.mass);
+      codec.moment(order.moment[0]);
+      return codec.moment(order.moment[1]);
     case Operation::kBegin:
     case Operation::kClusters:
       codec.flags(order.flags, kUnilateralLaw | kOneSweep | kWithSteps);
@@ -213,15 +215,17 @@ constexpr void fields(auto& codec, Operation operation, Report& report) {
   switch (operation) {
     case Operation::kPlan:
     case Operation::kForget:
-      codec.flags(report.mask, kFaces);
+      codec.faces(report.mask);
       codec.flags(report.flags, kPlanReportFlags);
       return codec.place(report.cell);
     case Operation::kHosts:
       return codec.flags(report.mask, (1U << kPlannedMax) - 1 + kAnyRemote);
     case Operation::kMass:
       codec.u32(report.count);
-      codec.i32(report.cell_sum[0]);
-      codec.i32(report.cell_sum[1]);
+      codec.u32(report.number);
+      for (std::int64_t& moment : report.moment) {
+        codec.moment(moment);
+      }
       codec.flags(report.flags, kAnyFixed | kSumOverflow | kManyLoops);
       return codec.u16(report.extent);
     case Operation::kAngles:

@@ -4,6 +4,7 @@
 
 #include "beams.hpp"
 #include "holdfast/agent/feet.hpp"
+#include "holdfast/mechanics/connector.hpp"
 
 namespace holdfast::agent {
 namespace {
@@ -75,7 +76,7 @@ Report hosts_report(const Workspace& ws) {
 }
 
 Report angles_report(const Workspace& ws, const Order& order) {
-  const FeetCheck check(ws.setup, order.module_count, order.cell_sum);
+  const FeetCheck check(ws.setup, order.mass, order.moment);
   Report report;
   for (int i = 0; i < ws.node_count(); ++i) {
     if (ws.node(i).is_ground) {
@@ -185,7 +186,8 @@ Report mass_report(const Workspace& ws) {
     Report own{.flags = ws.node(i).is_fixed ? kAnyFixed : std::uint8_t{0},
                .extent = static_cast<std::uint16_t>(extent < 0xffff ? extent : 0xffff),
                .count = 1,
-               .cell_sum = {away.x, away.y}};
+               .number = 1,
+               .moment = {away.x, away.y, away.z}};
     merge(Operation::kMass, report, own);
   }
   return report;
@@ -193,7 +195,7 @@ Report mass_report(const Workspace& ws) {
 
 void add_report(const Setup& setup, const Order& order, Report& into, const Report& theirs) {
   if (order.operation == Operation::kAngles) {
-    const FeetCheck check(setup, order.module_count, order.cell_sum);
+    const FeetCheck check(setup, order.mass, order.moment);
     into.feet = check.merge(into.feet, theirs.feet);
   } else {
     merge(order.operation, into, theirs);

@@ -88,7 +88,7 @@ bool Sweep::is_in_course(const Workspace& ws, const Order& order) const {
     case Operation::kMass:
       return course_ == Course::kHosted;
     case Operation::kAngles:
-      return course_ == Course::kWeighed && fits_exact_check(ws.setup, order.module_count) &&
+      return course_ == Course::kWeighed && fits_exact_check(ws.setup, order.mass) &&
              mass_report(ws).extent <= kExtentMax;
     case Operation::kBegin:
       return is_good_begin(order);

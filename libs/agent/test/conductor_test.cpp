@@ -44,7 +44,10 @@ class Drive {
 
   void to_equilibrium(bool is_fixed = true) {
     to_mass();
-    next({.flags = is_fixed ? kAnyFixed : std::uint8_t{0}, .extent = 5, .count = kCensus});
+    next({.flags = is_fixed ? kAnyFixed : std::uint8_t{0},
+          .extent = 5,
+          .count = kCensus,
+          .number = kCensus});
     if (!is_fixed) {
       ASSERT_EQ(order.operation, Operation::kAngles);
       Report stands;
@@ -58,7 +61,7 @@ class Drive {
     next({.flags = kFound});
     next({.mask = 1});
     next({.mask = kAnyRemote | 1});
-    next({.flags = kAnyFixed, .extent = 5, .count = kCensus + 1});
+    next({.flags = kAnyFixed, .extent = 5, .count = kCensus + 1, .number = kCensus + 1});
     ASSERT_EQ(order.operation, Operation::kBegin);
   }
 
@@ -114,10 +117,10 @@ TEST(Conductor, learns_planned_cells_one_by_one) {
   drive.next({.mask = 3});
   EXPECT_EQ(drive.order.operation, Operation::kMass);
   EXPECT_EQ(drive.order.cell, kRoot);
-  drive.next({.extent = 5, .count = kCensus + 2, .cell_sum = {-3, 4}});
+  drive.next({.extent = 5, .count = kCensus + 2, .number = kCensus + 2, .moment = {-3, 4, 9}});
   EXPECT_EQ(drive.order.operation, Operation::kAngles);
-  EXPECT_EQ(drive.order.module_count, static_cast<std::int32_t>(kCensus) + 2);
-  EXPECT_EQ(drive.order.cell_sum, (std::array<std::int32_t, 2>{-3, 4}));
+  EXPECT_EQ(drive.order.mass, static_cast<std::int32_t>(kCensus) + 2);
+  EXPECT_EQ(drive.order.moment, (std::array<std::int32_t, 2>{-3, 4}));
   EXPECT_FALSE(drive.conductor.is_finished());
 }
 
@@ -214,7 +217,8 @@ TEST(Conductor, toppling_is_unstable_and_needs_no_equilibrium) {
   for (const auto range : {mechanics::SafeRange::kEmpty, mechanics::SafeRange::kArc}) {
     Drive drive;
     drive.to_mass();
-    ASSERT_EQ(drive.next({.extent = 5, .count = kCensus}).operation, Operation::kAngles);
+    ASSERT_EQ(drive.next({.extent = 5, .count = kCensus, .number = kCensus}).operation,
+              Operation::kAngles);
     Report topples;
     topples.feet.range = range;
     drive.next(topples);
@@ -233,8 +237,8 @@ TEST(Conductor, a_fixed_robot_skips_the_angles_and_the_corners) {
   EXPECT_EQ(drive.next(drive.low(0, 0.5F)).operation, Operation::kLoads);
 }
 
-/// 65,534 hops, 2^24 modules and sums of cells below 2^31 are exact (feet.hpp); what is more says
-/// so. A row of 131,069 has its ends 65,534 from its middle.
+/// 65,534 hops, 2^24 units of mass and first moments in x and y below 2^31 are exact (feet.hpp);
+/// what is more says so. A row of 131,069 has its ends 65,534 from its middle.
 TEST(Conductor, a_robot_too_large_to_be_counted_is_undecided) {
   constexpr std::uint32_t kRow = 131'069;
   Drive longest(Method::kConjugateGradients, 65'534, kRow);
@@ -242,21 +246,29 @@ TEST(Conductor, a_robot_too_large_to_be_counted_is_undecided) {
   Drive further = longest;
   Drive overflow = longest;
   Drive fine = longest;
-  EXPECT_EQ(longest.next({.extent = 65'534, .count = kRow}).operation, Operation::kAngles);
-  further.next({.extent = 65'535, .count = kRow});
+  EXPECT_EQ(longest.next({.extent = 65'534, .count = kRow, .number = kRow}).operation,
+            Operation::kAngles);
+  further.next({.extent = 65'535, .count = kRow, .number = kRow});
   further.expect_finished(Verdict::kUndecided, Reason::kTooLarge);
-  overflow.next({.flags = kSumOverflow, .extent = 5, .count = kRow});
+  overflow.next({.flags = kSumOverflow, .extent = 5, .count = kRow, .number = kRow});
   overflow.expect_finished(Verdict::kUndecided, Reason::kTooLarge);
+  Drive lopsided = fine;
+  lopsided.next(
+      {.extent = 5, .count = kRow, .number = kRow, .moment = {0, -(std::int64_t{1} << 31)}});
+  lopsided.expect_finished(Verdict::kUndecided, Reason::kTooLarge);
+  Drive high = fine;
+  const Report tower = {.extent = 5, .count = kRow, .number = kRow, .moment = {0, 0, 1LL << 40}};
+  EXPECT_EQ(high.next(tower).operation, Operation::kAngles);
   fine.setup.facet_denominator = kFacetPartMax + 1;
-  fine.next({.extent = 5, .count = kRow});
+  fine.next({.extent = 5, .count = kRow, .number = kRow});
   fine.expect_finished(Verdict::kUndecided, Reason::kTooLarge);
   Drive many(Method::kConjugateGradients, 4, (1U << 24U) + 1);
   many.to_mass();
-  many.next({.extent = 5, .count = (1U << 24U) + 1});
+  many.next({.extent = 5, .count = (1U << 24U) + 1, .number = (1U << 24U) + 1});
   many.expect_finished(Verdict::kUndecided, Reason::kTooLarge);
   Drive deep(Method::kConjugateGradients, 0xffff);
   deep.to_mass();
-  deep.next({.flags = kAnyFixed, .extent = 5, .count = kCensus});
+  deep.next({.flags = kAnyFixed, .extent = 5, .count = kCensus, .number = kCensus});
   deep.expect_finished(Verdict::kUndecided, Reason::kTooLarge);
 }
 
@@ -602,7 +614,10 @@ Drive one_sweep_drive(bool has_many_loops) {
   Drive drive(Method::kElimination);
   drive.to_mass();
   const unsigned flags = kAnyFixed | (has_many_loops ? kManyLoops : 0U);
-  drive.next({.flags = static_cast<std::uint8_t>(flags), .extent = 5, .count = kCensus});
+  drive.next({.flags = static_cast<std::uint8_t>(flags),
+              .extent = 5,
+              .count = kCensus,
+              .number = kCensus});
   EXPECT_EQ(drive.order.operation, Operation::kBegin);
   EXPECT_EQ(drive.order.flags, has_many_loops ? kOneSweep | kWithSteps : kOneSweep);
   return drive;
@@ -675,7 +690,7 @@ TEST(Conductor, minimises_the_energy_over_two_directions) {
 Drive deep_drive(std::uint16_t depth) {
   Drive drive(Method::kElimination, depth);
   drive.to_mass();
-  drive.next({.flags = kAnyFixed | kManyLoops, .extent = 5, .count = kCensus});
+  drive.next({.flags = kAnyFixed | kManyLoops, .extent = 5, .count = kCensus, .number = kCensus});
   return drive;
 }
 

@@ -106,7 +106,7 @@ TEST(Feet, the_largest_numbers_are_exact) {
   setup.facet_denominator = 1'000'000;
   setup.facet_numerator = 999'999;
   constexpr std::int32_t kReach = 65'534;
-  constexpr auto kCount = static_cast<std::int32_t>(kCheckedCountMax);
+  constexpr auto kCount = static_cast<std::int32_t>(kCheckedMassMax);
   ASSERT_TRUE(fits_exact_check(setup, kCount));
   const std::vector<Place> feet = {{kReach, 1}, {-kReach, 1}, {0, -kReach}};
   // kCount x 1.4999995 = 25165815.6114

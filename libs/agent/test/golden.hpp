@@ -15,9 +15,9 @@ namespace holdfast::agent::test {
 /// By operation, from 1.
 inline constexpr std::array<std::string_view, 20> kGoldenOrders = {
     "05 01 02 01 00 00 fe ff ff 03 00 00",
-    "05 02 01 02 04 08 10 20 00 00",
+    "05 02 01 00 02 00 04 00 08 00 10 00 20 00 00 00 00 00",
     "05 03 c0 bd f0 40 42 0f 00 00 00",
-    "05 04 1d 00 00 00 fd ff ff ff 05 00 00 00",
+    "05 04 05 1d 00 00 00 fd ff ff ff ff ff ff ff 05 00 00 00 00 00 00 00",
     "05 05 03 09 00 00 00 00 3f 00 00 7a 44",
     "05 06 00 00 80 3f 00 00 80 3e",
     "05 07 01",
@@ -36,9 +36,10 @@ inline constexpr std::array<std::string_view, 20> kGoldenOrders = {
     "05 14 01 01 00 00 fe ff ff 03 00 00"};
 
 inline constexpr std::array<std::string_view, 20> kGoldenReports = {
-    "06 01 21 01 01 00 00 fe ff ff 03 00 00",
+    "06 01 21 00 01 01 00 00 fe ff ff 03 00 00",
     "06 02 87",
-    "06 03 1d 00 00 00 fd ff ff ff 05 00 00 00 01 2c 01",
+    "06 03 1d 00 00 00 3a 00 00 00 fd ff ff ff ff ff ff ff 05 00 00 00 00 00 00 00 07 00 00 00 00 "
+    "00 00 00 01 2c 01",
     "06 04 01 01 00 00 00 ff ff ff ff 01 ff ff ff 03 00 00 00",
     "06 05",
     "06 06",
@@ -56,10 +57,7 @@ inline constexpr std::array<std::string_view, 20> kGoldenReports = {
     "00 00 00 00 00 00 40 40 00 00 00 00",
     "06 12 00 00 80 3e 00 00 00 3f 03 00 ef cd ab 89 01",
     "06 13 1d 00 00 00 02 00 00 00",
-    "06 14 00 04 01 00 00 fe ff ff 03 00 00"};
-
-/// The cut that opens a loop: from (1, -2, 3) to +y.
-inline constexpr std::string_view kGoldenLoop = "0a 01 00 00 fe ff ff 03 00 00 02";
+    "06 14 00 00 04 01 00 00 fe ff ff 03 00 00"};
 
 /// Types 7, 8, 9, 11, 12 and 13, label 5, with the reals 1, -2, 0.5, 0.25, -1, 1.5.
 inline constexpr std::array<std::string_view, 6> kGoldenVectors = {
@@ -70,9 +68,9 @@ inline constexpr std::array<std::string_view, 6> kGoldenVectors = {
     "0c 05 00 00 80 3f 00 00 00 c0 00 00 00 3f 00 00 80 3e 00 00 80 bf 00 00 c0 3f",
     "0d 05 00 00 80 3f 00 00 00 c0 00 00 00 3f 00 00 80 3e 00 00 80 bf 00 00 c0 3f"};
 
-inline constexpr std::string_view kGoldenHello = "c0 40 34 12 00 00 00 ec 9e";
-inline constexpr std::string_view kGoldenHelloHeard = "c0 40 ef be 34 12 00 c1 9c";
-inline constexpr std::string_view kGoldenHelloOpen = "c0 40 34 12 ef be 01 cf 3f";
+inline constexpr std::string_view kGoldenHello = "c0 40 34 12 00 00 00 00 77 8e";
+inline constexpr std::string_view kGoldenHelloHeard = "c0 40 ef be 34 12 00 00 35 83";
+inline constexpr std::string_view kGoldenHelloOpen = "c0 40 34 12 ef be 01 00 bc 08";
 inline constexpr std::string_view kGoldenData = "00 40 04 02 01 05 0d 3a 9b";
 inline constexpr std::string_view kGoldenAcknowledge = "40 41 4a 72";
 inline constexpr std::string_view kGoldenPing = "80 41 1e 64";
@@ -93,10 +91,11 @@ inline const std::vector<GoldenStream> kGoldenTrace = {
       "02 01 00 0a 00 00 00 02 01 00 00 00 02 00 0a 00 00 00 00",  // echo, wave 2
       "04 00 00 ff ff ff 02 00 00 00 00 00",                       // mark: you are half way
       "02 01 00 0a 00 00 00 03 01 00 00 00 01 00 0a 00 00 00 00",  // echo, wave 3
-      "06 01 00 00 00 00 00 00 00 00 00 00 00",                    // I have announced nothing
-      "06 01 08 00 00 00 00 00 00 00 00 00 00",                    // it is at my face +y
+      "06 01 00 00 00 00 00 00 00 00 00 00 00 00",                 // I have announced nothing
+      "06 01 08 00 00 00 00 00 00 00 00 00 00 00",                 // it is at my face +y
       "06 02 80",                                                  // hosted elsewhere
-      "06 03 01 00 00 00 ff ff ff ff 00 00 00 00 00 01 00",        // one module at (-1, 0)
+      "06 03 01 00 00 00 01 00 00 00 ff ff ff ff ff ff ff ff 00 00 00 00 00 00 00 00 00 00 00 00 "
+      "00 00 00 00 00 01 00",                                      // one module at (-1, 0)
       "06 04 01 fb ff ff ff 01 00 00 00 fd ff ff ff ff ff ff ff",  // its corner is below the centre
       "06 05"}},
     {1,
@@ -107,12 +106,11 @@ inline const std::vector<GoldenStream> kGoldenTrace = {
       "01 01 00 0a 00 00 00 03 00 00 00 02 00 00 00 00 00 00 00",  // join, wave 3: I am the root
       "05 01 ff 00 00 00 00 00 00 00 00 00",                       // what is planned?
       "05 01 00 ff ff ff 03 00 00 00 00 00",                       // planned 0 is at (-1, 3, 0)
-      "05 02 09 00 00 00 00 00 00 00",                             // it touches by -y and +x
+      "05 02 09 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00",     // it touches by -y and +x
       "05 03 00 00 00 02 00 00 00 00 00",                          // count, from (0, 2, 0)
-      "05 04 04 00 00 00 fe ff ff ff 02 00 00 00",                 // four modules, sum (-2, 2)
-      "05 05 00 00 00 17 b7 d1 38 00 00 f0 42",                    // gamma 1e-4, lever 120 mm
-      "05 08 02 00",                                               // start Jacobi, scalars
-      "05 0a 01 00",                                               // one step
+      "05 04 05 04 00 00 00 fe ff ff ff ff ff ff ff 02 00 00 00 00 00 00 00",  // four units
+      "05 05 00 00 00 17 b7 d1 38 00 00 f0 42",  // gamma 1e-4, lever 120 mm
+      "05 08 02 00", "05 0a 01 00",              // start Jacobi with scalars, one step
       "07 01 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00",
       "08 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00"}},
     {1,
@@ -126,8 +124,11 @@ inline const std::vector<GoldenStream> kGoldenTrace = {
       "01 01 00 0a 00 00 00 02 00 00 00 03 00 00 00 00 00 00 00",  // join: I start wave 2
       "03 02 0a 00 00 00 01 00",                                   // appoint 10
       "02 01 00 0a 00 00 00 03 01 00 00 00 01 00 0c 00 00 00 00",  // echo, wave 3
-      "06 01 00 01 ff ff ff 03 00 00 00 00 00",                    // the first is at (-1, 3, 0)
-      "06 01 01 00 00 00 00 00 00 00 00 00 00"}},                  // it is at my face -x
+      "06 01 00 00 01 ff ff ff 03 00 00 00 00 00",                 // the first is at (-1, 3, 0)
+      "06 01 01 00 00 00 00 00 00 00 00 00 00 00"}},               // it is at my face -x
 };
+
+/// The cut that opens a loop: from (1, -2, 3) to +y.
+inline constexpr std::string_view kGoldenLoop = "0a 01 00 00 fe ff ff 03 00 00 02";
 
 }  // namespace holdfast::agent::test

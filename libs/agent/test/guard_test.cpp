@@ -149,8 +149,9 @@ TEST(Guard, planned_cells_come_one_by_one) {
 
 /// Before, each time some planned modules more were emulated, behind the array of six nodes.
 TEST(Guard, hosts_are_decided_once) {
-  expect_refused(row(), {1, "05 02", "05 02 20 00 00 00 00 00 00 00"});
-  expect_refused(row(), {1, "05 03", "05 02 10 00 00 00 00 00 00 00", true});
+  expect_refused(row(), {1, "05 02", "05 02 20 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00"});
+  expect_refused(row(),
+                 {1, "05 03", "05 02 10 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00", true});
 }
 
 /// 3 corners were read behind the array of two, verdict 200 and its reason behind those of names.
@@ -184,7 +185,8 @@ TEST(Guard, feet_are_near_the_root) {
     }
     if (is_order && message[1] == static_cast<int>(wire::Operation::kVerdict)) {
       ++angles_count;
-      return std::vector<Message>{from_hex("05 04 00 00 00 01 00 00 00 00 00 00 00 00")};
+      return std::vector<Message>{
+          from_hex("05 04 05 00 00 00 01 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00")};
     }
     return std::vector<Message>{message};
   });
@@ -211,9 +213,12 @@ TEST(Guard, orders_keep_their_course) {
 
 /// Up and down: orders come from the parent, reports and marks from children.
 TEST(Guard, everybody_has_a_place_in_the_tree) {
-  expect_refused(row(), {0, "06 01", "05 02 00 00 00 00 00 00 00 00", true});
+  expect_refused(row(),
+                 {0, "06 01", "05 02 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00", true});
   expect_refused(row(), {0, "06 01", "04 00 00 00 00 00 00 00 00 00 00 00"});
-  expect_refused(row(), {0, "06 03", "06 03 01 00 00 00 00 00 00 00 00 00 00 00 00 01 00"});
+  expect_refused(row(), {0, "06 03",
+                         "06 03 01 00 00 00 01 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 "
+                         "00 00 00 00 00 00 00 00 00 00 00 01 00"});
 }
 
 /// A third loop of a child was kept nowhere, its column added behind the array of two.
@@ -226,6 +231,29 @@ TEST(Guard, columns_belong_to_loops_that_are_known) {
   constexpr std::string_view kGap =
       "0c 01 00 00 80 3f 00 00 00 c0 00 00 00 3f 00 00 80 3e 00 00 80 bf 00 00 c0 3f";
   expect_refused(row(), {0, "0c", kGap});
+}
+
+/// Module 1 of two says that it is of another lattice.
+TEST(Guard, a_neighbour_of_another_lattice_is_counted_and_makes_the_verdict_uncertain) {
+  const auto setup = table_setup();
+  TestNetwork network(setup, {{.cell = {0, 0, 0}}, {.cell = {1, 0, 0}}});
+  network.divert = [&network](std::size_t from, base::Direction,
+                              std::span<const std::uint8_t> sent) {
+    if (from != 1 || wire::header_of(sent).kind != wire::PacketKind::kHello) {
+      return false;
+    }
+    Message greeting(sent.begin(), sent.end());
+    greeting[7] = 1;
+    const std::uint16_t sum = wire::checksum(std::span(greeting).first(8), 0xffff);
+    greeting[8] = static_cast<std::uint8_t>(sum & 0xffU);
+    greeting[9] = static_cast<std::uint8_t>(sum >> 8U);
+    network.inject(0, base::Direction::kPlusX, greeting);
+    return true;
+  };
+  ASSERT_TRUE(network.run_until(
+      [](const Agent& agent) { return agent.answer().verdict == Verdict::kUndecided; }));
+  EXPECT_EQ(network.agent(0).refused_count(), 1);
+  EXPECT_EQ(network.agent(0).answer().reason, Reason::kNeighbourSilent);
 }
 
 /// 200 scripts of any bytes, the same ones everywhere; tests/fuzz looks for others.

@@ -65,22 +65,25 @@ const Limit kLimits[] = {
     {kGoldenVectors[5], 1, is_within<0, 2>},                                // branch down
     {kGoldenOrders[0], 2, [](unsigned v) { return v <= 5 || v == 0xff; }},  // plan
     {kGoldenOrders[1], 2, is_flags<0x3f>},                                  // hosts, the first ...
-    {kGoldenOrders[1], 9, is_flags<0x3f>},                                  // ... and the last
-    {kGoldenOrders[4], 2, is_flags<7>},                                     // begin
-    {kGoldenOrders[6], 2, is_flags<1>},                                     // low
-    {kGoldenOrders[7], 2, is_flags<7>},                                     // start
-    {kGoldenOrders[10], 2, is_flags<3>},                                    // slope
-    {kGoldenOrders[11], 2, is_flags<3>},                                    // hold
-    {kGoldenOrders[14], 2, is_within<1, 4>},                                // verdict
+    {kGoldenOrders[1], 3, is_within<0, 0>},
+    {kGoldenOrders[3], 2, is_within<5, 5>},   // angles: facet
+    {kGoldenOrders[1], 16, is_flags<0x3f>},   // ... and the last
+    {kGoldenOrders[4], 2, is_flags<7>},       // begin
+    {kGoldenOrders[6], 2, is_flags<1>},       // low
+    {kGoldenOrders[7], 2, is_flags<7>},       // start
+    {kGoldenOrders[10], 2, is_flags<3>},      // slope
+    {kGoldenOrders[11], 2, is_flags<3>},      // hold
+    {kGoldenOrders[14], 2, is_within<1, 4>},  // verdict
     {kGoldenOrders[14], 3, is_within<0, 11>},
     {kGoldenOrders[14], 17, is_face},
     {kGoldenOrders[16], 2, is_flags<31>},    // step
     {kGoldenOrders[18], 2, is_flags<7>},     // clusters
     {kGoldenOrders[19], 2, is_flags<1>},     // forget
     {kGoldenReports[0], 2, is_flags<0x3f>},  // plan
-    {kGoldenReports[0], 3, is_flags<31>},
+    {kGoldenReports[0], 3, is_within<0, 0>},
+    {kGoldenReports[0], 4, is_flags<31>},
     {kGoldenReports[1], 2, is_flags<0x9f>},   // hosts
-    {kGoldenReports[2], 14, is_flags<7>},     // mass
+    {kGoldenReports[2], 34, is_flags<7>},     // mass
     {kGoldenReports[3], 2, is_within<0, 2>},  // angles
     {kGoldenReports[6], 16, is_flags<1>},     // low
     {kGoldenReports[12], 2, [](unsigned v) { return v <= 2 || v == 4; }},
@@ -88,7 +91,7 @@ const Limit kLimits[] = {
     {kGoldenReports[16], 16, is_flags<1>},    // step
     {kGoldenReports[17], 16, is_flags<1>},    // tree step
     {kGoldenReports[19], 2, is_flags<0x3f>},  // forget
-    {kGoldenReports[19], 3, is_flags<31>}};
+    {kGoldenReports[19], 4, is_flags<31>}};
 
 TEST(Legal, bytes_that_name_something_name_what_there_is) {
   for (const Limit& limit : kLimits) {
@@ -143,7 +146,7 @@ TEST(Legal, cells_stay_within_the_lattice) {
 TEST(Legal, all_plans_are_a_cell_of_plans_that_end_only) {
   constexpr std::string_view kAll = " 00 00 80 00 00 80 00 00 80";
   constexpr std::string_view kPart = " 00 00 80 00 00 80 00 00 00";
-  for (const std::string_view front : {"05 14 00", "06 14 00 04", "06 01 00 04"}) {
+  for (const std::string_view front : {"05 14 00", "06 14 00 00 04", "06 01 00 00 04"}) {
     EXPECT_TRUE(is_legal(from_hex(std::string(front).append(kAll)))) << front;
     EXPECT_FALSE(is_legal(from_hex(std::string(front).append(kPart)))) << front;
   }

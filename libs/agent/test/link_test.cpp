@@ -600,7 +600,7 @@ TEST(Link, drops_what_is_sent_on_a_link_that_is_not_used) {
   link.bring_up(5, 0);
   link.bring_down();
   EXPECT_EQ(link.state(), Link::State::kDown);
-  EXPECT_TRUE(link.receive(from_hex("c0 40 34 12 00 00 00 ec 9e"), {}, 0).empty());
+  EXPECT_TRUE(link.receive(from_hex("c0 40 34 12 00 00 00 00 77 8e"), {}, 0).empty());
   EXPECT_FALSE(link.has_packet(0));
   EXPECT_EQ(link.deadline({}, true), kNever);
 }
@@ -609,8 +609,22 @@ TEST(Link, waits_for_an_open_link_before_it_sends_data) {
   Link link;
   link.bring_up(5, 0);
   ASSERT_TRUE(link.send(vector_message(1)));
-  EXPECT_EQ(write(link, 0).size(), std::size_t{9});
+  EXPECT_EQ(write(link, 0).size(), std::size_t{10});
   EXPECT_FALSE(link.has_packet(0));
+}
+
+/// Byte 7 of a greeting says what its sender is; cubes know cubes only.
+TEST(Link, is_lost_to_modules_of_another_lattice) {
+  for (const std::uint8_t lattice : {std::uint8_t{0}, std::uint8_t{1}, std::uint8_t{0xff}}) {
+    Link link;
+    link.bring_up(5, 0);
+    std::vector<std::uint8_t> greeting = {0xc0, 0x40, 0x34, 0x12, 0, 0, 0, lattice};
+    const std::uint16_t sum = wire::checksum(greeting, 0xffff);
+    greeting.push_back(static_cast<std::uint8_t>(sum & 0xffU));
+    greeting.push_back(static_cast<std::uint8_t>(sum >> 8U));
+    EXPECT_TRUE(link.receive(greeting, {}, 0).empty());
+    EXPECT_EQ(link.state() == Link::State::kLost, lattice != 0) << int{lattice};
+  }
 }
 
 /// A copy that is told the time too early behaves like one that is not.

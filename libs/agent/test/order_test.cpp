@@ -48,8 +48,8 @@ Order random_order(Operation operation, base::Rng& rng) {
   for (std::uint8_t& mask : order.masks) {
     mask = static_cast<std::uint8_t>(rng.next());
   }
-  order.module_count = static_cast<std::int32_t>(rng.next());
-  order.cell_sum = {static_cast<std::int32_t>(rng.next()), static_cast<std::int32_t>(rng.next())};
+  order.mass = static_cast<std::int32_t>(rng.next());
+  order.moment = {static_cast<std::int32_t>(rng.next()), static_cast<std::int32_t>(rng.next())};
   order.reals = {exact_real(rng), exact_real(rng), exact_real(rng)};
   order.answer = {.verdict = static_cast<Verdict>(rng.below(5)),
                   .reason = static_cast<Reason>(rng.below(12)),
@@ -77,7 +77,7 @@ Report random_report(Operation operation, base::Rng& rng) {
   report.count = static_cast<std::uint32_t>(rng.next());
   report.number = static_cast<std::uint32_t>(rng.next());
   const auto sum = [&] { return static_cast<std::int32_t>(rng.below(1'000'001)) - 500'000; };
-  report.cell_sum = {sum(), sum()};
+  report.moment = {sum(), sum(), sum()};
   for (float& real : report.reals) {
     real = exact_real(rng);
   }
@@ -161,8 +161,8 @@ TEST(Order, fields_come_back_where_they_were) {
   back = there_and_back(Operation::kHosts, sent);
   EXPECT_EQ(back.masks, sent.masks);
   back = there_and_back(Operation::kAngles, sent);
-  EXPECT_EQ(back.module_count, sent.module_count);
-  EXPECT_EQ(back.cell_sum, sent.cell_sum);
+  EXPECT_EQ(back.mass, sent.mass);
+  EXPECT_EQ(back.moment, sent.moment);
   back = there_and_back(Operation::kSlope, sent);
   EXPECT_EQ(back.flags, sent.flags);
   EXPECT_EQ(back.reals, (std::array<float, 3>{sent.reals[0], sent.reals[1], 0}));
@@ -179,7 +179,7 @@ TEST(Order, fields_come_back_where_they_were) {
   const Report mass = random_report(Operation::kMass, rng);
   const Report mass_back = through_wire(Operation::kMass, mass);
   EXPECT_EQ(mass_back.count, mass.count);
-  EXPECT_EQ(mass_back.cell_sum, mass.cell_sum);
+  EXPECT_EQ(mass_back.moment, mass.moment);
   EXPECT_EQ(mass_back.extent, mass.extent);
   const Report low = random_report(Operation::kLow, rng);
   const Report low_back = through_wire(Operation::kLow, low);
@@ -213,28 +213,27 @@ TEST(Order, merging_is_commutative_and_associative) {
 }
 
 TEST(Order, mass_counts_and_keeps_the_largest_extent) {
-  const Report a = {.extent = 7, .count = 2, .cell_sum = {3, -4}};
-  const Report b = {.flags = kAnyFixed, .extent = 9, .count = 5, .cell_sum = {-10, 1}};
+  const Report a = {.extent = 7, .count = 2, .moment = {3, -4, 8}};
+  const Report b = {.flags = kAnyFixed, .extent = 9, .count = 5, .moment = {-10, 1, -9}};
   const Report sum = merged(Operation::kMass, a, b);
   EXPECT_EQ(sum.count, 7U);
   EXPECT_EQ(sum.extent, 9);
-  EXPECT_EQ(sum.cell_sum, (std::array<std::int32_t, 2>{-7, -3}));
+  EXPECT_EQ(sum.moment, (std::array<std::int64_t, 3>{-7, -3, -1}));
   EXPECT_EQ(sum.flags, kAnyFixed);
 }
 
-TEST(Order, sums_of_cells_that_overflow_say_so_and_stay) {
-  constexpr std::int32_t kMost = std::numeric_limits<std::int32_t>::max();
-  const Report most = {.cell_sum = {kMost, -kMost}};
-  const Report still = merged(Operation::kMass, most, {.cell_sum = {0, 0}});
+TEST(Order, moments_that_overflow_say_so_and_stay) {
+  const Report most = {.moment = {kMomentMost, -kMomentMost}};
+  const Report still = merged(Operation::kMass, most, {.moment = {0, 0}});
   EXPECT_EQ(still.flags, 0);
-  EXPECT_EQ(still.cell_sum, most.cell_sum);
-  const Report over = merged(Operation::kMass, most, {.cell_sum = {1, -1}});
+  EXPECT_EQ(still.moment, most.moment);
+  const Report over = merged(Operation::kMass, most, {.moment = {1, -1}});
   EXPECT_EQ(over.flags, kSumOverflow);
-  EXPECT_EQ(over.cell_sum, most.cell_sum);
+  EXPECT_EQ(over.moment, most.moment);
   // What comes later cannot take it back.
-  const Report later = merged(Operation::kMass, over, {.cell_sum = {-5, 5}});
+  const Report later = merged(Operation::kMass, over, {.moment = {-5, 5}});
   EXPECT_EQ(later.flags, kSumOverflow);
-  EXPECT_EQ(merged(Operation::kMass, {.cell_sum = {-5, 5}}, over).flags, kSumOverflow);
+  EXPECT_EQ(merged(Operation::kMass, {.moment = {-5, 5}}, over).flags, kSumOverflow);
 }
 
 TEST(Order, the_next_planned_cell_is_the_first_of_all) {

@@ -50,7 +50,7 @@ TEST(Wire, orders_are_these_bytes) {
       {.operation = Operation::kPlan, .index = 2, .cell = kCell},
       {.operation = Operation::kHosts, .masks = {1, 2, 4, 8, 16, 32, 0, 0}},
       {.operation = Operation::kMass, .cell = {-1'000'000, 1'000'000, 0}},
-      {.operation = Operation::kAngles, .module_count = 29, .cell_sum = {-3, 5}},
+      {.operation = Operation::kAngles, .mass = 29, .moment = {-3, 5}},
       {.operation = Operation::kBegin,
        .flags = kUnilateralLaw | kOneSweep,
        .count = 9,
@@ -89,7 +89,7 @@ TEST(Wire, reports_are_these_bytes) {
   const std::vector<Report> reports = {
       {.flags = kFound, .mask = 0x21, .cell = kCell},
       {.mask = 0x87},
-      {.flags = kAnyFixed, .extent = 300, .count = 29, .cell_sum = {-3, 5}},
+      {.flags = kAnyFixed, .extent = 300, .count = 29, .number = 58, .moment = {-3, 5, 7}},
       {.feet = feet},
       {},
       {},

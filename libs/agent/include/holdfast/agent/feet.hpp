@@ -19,9 +19,9 @@ namespace holdfast::agent {
 /// reaches further ends as Reason::kTooLarge.
 inline constexpr std::uint16_t kExtentMax = 0xfffe;
 
-/// Modules, and parts of Setup's fraction, of a robot that is checked; others are kTooLarge. With
-/// them no direction is beyond 2^(17 + 20 + 24).
-inline constexpr std::int64_t kCheckedCountMax = std::int64_t{1} << 24U;
+/// Units of mass, and parts of Setup's fraction, of a robot that is checked; others are too large.
+/// With them no direction is beyond 2^(17 + 20 + 24).
+inline constexpr std::int64_t kCheckedMassMax = std::int64_t{1} << 24U;
 inline constexpr std::int32_t kFacetPartMax = std::int32_t{1} << 20;
 
 /// A corner of a foot from the root's centre, in quarters of a cell: 4 x - 1 and 4 x + 1 are the
@@ -44,15 +44,15 @@ struct SafeCorners {
 /// Is that a corner of a robot which is not too large?
 bool is_good_corner(const FootCorner& corner);
 
-/// Can so many modules of this setup be checked without overflow?
-bool fits_exact_check(const Setup& setup, std::int64_t module_count);
+/// Can a robot of this mass, in units, be checked without overflow?
+bool fits_exact_check(const Setup& setup, std::int64_t mass);
 
 /// The centre of mass, and what feet are as seen from it.
 class FeetCheck {
  public:
-  /// `cell_sum` is the sum of x and of y of so many cells, from the root. Only if it fits.
-  FeetCheck(const Setup& setup, std::int32_t module_count,
-            const std::array<std::int32_t, 2>& cell_sum);
+  /// `mass` of the whole robot in units, and its first moments in x and y from the root, in units
+  /// times cells. Only if it fits.
+  FeetCheck(const Setup& setup, std::int32_t mass, const std::array<std::int32_t, 2>& moment);
 
   /// Of one foot, at cell (x, y) from the root.
   SafeCorners of_foot(std::int32_t x, std::int32_t y) const;

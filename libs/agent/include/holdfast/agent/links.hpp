@@ -47,11 +47,14 @@ class Links {
   void bring_up(Direction face, std::uint16_t nonce, Time now);
   void bring_down(Direction face);
 
-  /// The neighbour at `face` has said what a working one would not: it is counted, and its link is
-  /// lost.
-  void refuse(Direction face);
+  /// The neighbour at `face` has said what a working one would not: its link is lost.
+  void refuse(Direction face) { at(face).lose(); }
 
-  /// Refused messages, 255 at most.
+  /// After a packet on a link that was used: counts it if it has lost the link, whether by a
+  /// refused message, by bytes that are none, or by a greeting from another lattice.
+  void count_if_lost(Direction face);
+
+  /// Packets that have lost a link, 255 at most.
   std::uint8_t refused_count() const { return refused_count_; }
 
   /// Takes in a packet; next_message() takes the stream that it returns apart (see Link).

@@ -57,11 +57,11 @@ struct OperationInfo {
 // clang-format off
 inline constexpr OperationInfo kOperations[] = {
     // operation, name, bytes down, bytes up, phase, exchanges, precise, iteration, in words
-    {wire::Operation::kPlan, "plan", 12, 13, Phase::kMass, {}, false, false, "planned cells"},
-    {wire::Operation::kHosts, "hosts", 10, 3, Phase::kMass, {}, false, false,
+    {wire::Operation::kPlan, "plan", 12, 14, Phase::kMass, {}, false, false, "planned cells"},
+    {wire::Operation::kHosts, "hosts", 18, 3, Phase::kMass, {}, false, false,
      "who hosts planned modules"},
-    {wire::Operation::kMass, "mass", 11, 17, Phase::kMass, {}, false, false, "centre of mass"},
-    {wire::Operation::kAngles, "angles", 14, 19, Phase::kSimplified, {}, false, false,
+    {wire::Operation::kMass, "mass", 11, 37, Phase::kMass, {}, false, false, "centre of mass"},
+    {wire::Operation::kAngles, "angles", 23, 19, Phase::kSimplified, {}, false, false,
      "safe angles"},
     {wire::Operation::kBegin, "begin", 13, 2, Phase::kEquilibrium,
      {.is_counted = true, .is_behind = true}, false, false, "begin an equilibrium"},
@@ -96,7 +96,7 @@ inline constexpr OperationInfo kOperations[] = {
     {wire::Operation::kClusters, "clusters", 13, 10, Phase::kEquilibrium,
      {.fixed = 1, .is_counted = true, .is_behind = true}, false, false,
      "begin an equilibrium, find rigid clusters"},
-    {wire::Operation::kForget, "forget", 12, 13, Phase::kMass, {}, false, false,
+    {wire::Operation::kForget, "forget", 12, 14, Phase::kMass, {}, false, false,
      "forget a plan that has ended"},
 };
 // clang-format on

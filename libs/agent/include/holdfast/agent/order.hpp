@@ -64,9 +64,9 @@ struct Order {
   std::uint8_t flags = 0;
   std::uint16_t count = 0;  ///< kJacobi: steps; kStart, kGradient, kBegin, kStep: degree.
   base::Cell cell = {};     ///< kPlan, kForget: of that module; kMass: of the root.
-  std::array<std::uint8_t, 8> masks{};     ///< kHosts
-  std::int32_t module_count = 0;           ///< kAngles
-  std::array<std::int32_t, 2> cell_sum{};  ///< kAngles
+  std::array<std::uint8_t, 8> masks{};   ///< kHosts
+  std::int32_t mass = 0;                 ///< kAngles: of all modules, in units.
+  std::array<std::int32_t, 2> moment{};  ///< kAngles: first moments in x and y, units times cells.
   std::array<float, 3> reals{};
   Answer answer = {};  ///< kVerdict
 };
@@ -91,6 +91,13 @@ inline constexpr std::uint8_t kMixProducts = 2;    ///< kSlope: how to mix the l
 inline constexpr std::uint8_t kReleaseOpen = 1;    ///< kHold
 inline constexpr std::uint8_t kFreeOpen = 2;       ///< kHold: of all open facets, for comparison.
 
+/// Masses are whole numbers of a unit that all modules of a robot agree on; all of them weigh one
+/// unit so far. First moments stay exact, and below this even where a neighbour makes them up.
+inline constexpr std::int64_t kMomentMost = std::int64_t{1} << 62U;
+
+/// The direction of the facets that a robot of cubes stands on.
+inline constexpr base::Direction kStandingFacet = base::Direction::kMinusZ;
+
 /// The load ratio of what has no connection: below every real one, and a number.
 inline constexpr float kNoLoadRatio = -1e20F;
 
@@ -100,7 +107,7 @@ struct Report {
   std::uint16_t extent = 0;
   std::uint32_t count = 0;
   std::uint32_t number = 0;
-  std::array<std::int32_t, 2> cell_sum{};
+  std::array<std::int64_t, 3> moment{};  ///< kMass: first moments, units of mass times cells.
   std::array<float, 5> reals{};
   std::array<double, 3> products{};  ///< kStep
   base::Cell cell = {};

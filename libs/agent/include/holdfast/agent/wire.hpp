@@ -19,6 +19,9 @@ namespace holdfast::agent::wire {
 
 inline constexpr std::uint8_t kVersion = 1;
 
+/// What the modules are, as greetings say it: cubes. Others have other directions and facets.
+inline constexpr std::uint8_t kCubicLattice = 0;
+
 inline constexpr int kHeaderBytes = 2;
 inline constexpr int kChecksumBytes = 2;
 inline constexpr int kPacketBytesMin = 17;   ///< Blinky Blocks version 1
