@@ -5,12 +5,15 @@
 #include <algorithm>
 #include <cstring>
 
+#include "holdfast/base/algebra.hpp"
 #include "holdfast/base/check.hpp"
 #include "holdfast/boards/stm32f0.hpp"
 #include "module_cpu.hpp"
 
 namespace holdfast::emulator {
 namespace {
+
+using base::at;
 
 constexpr Cycles kCyclesPerMicrosecond = kClockHz / 1'000'000;
 /// Within it a module that has nothing else to do has read a frame.
@@ -88,8 +91,6 @@ class EmulatedModules {
   std::int32_t count() const { return static_cast<std::int32_t>(modules_.size()); }
 
  private:
-  static std::size_t at(std::int32_t module) { return static_cast<std::size_t>(module); }
-
   std::int32_t neighbour(std::int32_t module, int face) const;
   void announce();
   void run_slice(Cycles begin);

@@ -93,13 +93,15 @@ std::string element_list(const std::vector<Element>& elements, std::size_t inden
   return array(items, indent);
 }
 
-/// What differs from the defaults.
+/// What differs from the defaults. Gravity stands here or as a vector at the top, not in both.
 Items material_members(const Document& document) {
   const model::Material& material = document.material;
   const model::Material defaults;
   Items members;
   for (const model::MaterialParameter& parameter : model::kMaterialParameters) {
-    if (material.*parameter.value != defaults.*parameter.value) {
+    const bool is_overridden = parameter.value == &model::Material::gravity_m_s2 &&
+                               document.extension.gravity_m_s2.has_value();
+    if (!is_overridden && material.*parameter.value != defaults.*parameter.value) {
       members.push_back(member(parameter.key, json_text(material.*parameter.value)));
     }
   }

@@ -64,7 +64,47 @@ class RandomDocument {
     return document;
   }
 
+  /// The same with what only version 2 of holdfast JSON says.
+  Document make_extended() {
+    Document document = make();
+    Extension& extension = document.extension;
+    extension.lattice = static_cast<LatticeName>(below(4));
+    extension.has_floor = below(2) == 0;
+    document.support_z = extension.has_floor ? document.support_z : 0;
+    extension.floor_friction = maybe(positive());
+    if (below(2) == 0) {
+      extension.gravity_m_s2 = std::array{number(), number(), positive()};
+      document.material.gravity_m_s2 = model::Material{}.gravity_m_s2;
+    }
+    extension.connectors = {{"gap_limit_mm", positive()}, {"friction", positive()}};
+    extension.kinds = {{text() + "a", {{"mass_kg", positive()}}}, {"b", {}}};
+    for (std::size_t i = 0; i < document.modules.size(); i += 1 + below(3)) {
+      extension.own.push_back({i, extension.kinds[below(2)].name, maybe(positive())});
+    }
+    for (std::uint64_t i = below(3); i > 0; --i) {
+      const base::Cell low = cell();
+      extension.obstacles.push_back({low, {1'000'000, low.y, 1'000'000}, {}, Hold::kContact, {}});
+      extension.obstacles.push_back(
+          {{}, {}, {cell(), cell()}, static_cast<Hold>(below(2)), maybe(positive())});
+      extension.payloads.push_back({cell(), {number(), 0, 1}, {0, number(), -1}});
+      extension.plan.push_back({{cell()}, {cell(), cell()}, {}, {}, {}});
+      extension.plan.push_back({{},
+                                {},
+                                {{cell(), cell(), maybe(cell())}},
+                                {{cell(), cell()}},
+                                {{cell(), cell()}, {cell(), cell()}}});
+    }
+    return document;
+  }
+
  private:
+  template <class Value>
+  std::optional<Value> maybe(const Value& value) {
+    return below(2) == 0 ? std::optional(value) : std::nullopt;
+  }
+
+  double positive() { return std::abs(number()) + 1e-9; }
+
   std::uint64_t below(std::uint64_t bound) { return rng_.below(bound); }
 
   std::int32_t coordinate() { return static_cast<std::int32_t>(below(2'000'001)) - 1'000'000; }
@@ -124,6 +164,23 @@ TEST(Conversion, keeps_any_document) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     expect_equal_after_conversion(RandomDocument(seed).make());
   }
+}
+
+TEST(Conversion, keeps_any_document_of_version_2_in_json) {
+  for (std::uint64_t seed = 0; seed < 300; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    const Document document = RandomDocument(seed).make_extended();
+    EXPECT_EQ(json_version(document), 2);
+    EXPECT_EQ(through_json(document), document) << write_json(document);
+    EXPECT_FALSE(visiblesim_shift(document));
+  }
+}
+
+TEST(Conversion, writes_gravity_once) {
+  Document document;
+  document.material.gravity_m_s2 = 1.62;
+  document.extension.gravity_m_s2 = {1, 0, -9};
+  EXPECT_EQ(through_json(document).extension, document.extension);
 }
 
 TEST(Conversion, keeps_an_empty_document) { expect_equal_after_conversion({}); }

@@ -98,7 +98,9 @@ class Parts {
   void join(std::int32_t a, std::int32_t b) {
     a = find(a);
     b = find(b);
-    parent_[static_cast<std::size_t>(std::max(a, b))] = std::min(a, b);
+    if (a != b) {
+      parent_[static_cast<std::size_t>(std::max(a, b))] = std::min(a, b);
+    }
   }
 
  private:
@@ -259,11 +261,16 @@ void Robot::connect(const CellIndex& index, host::Team& team) {
       }
     }
   });
-  for (std::size_t i = 0; i < modules_.size(); ++i) {
+  std::size_t facet_count = 0;
+  for (const Module& module : modules_) {
+    facet_count += module.support == Support::kGround ? 1 : 0;
+    fixed_count_ += module.support == Support::kFixed ? 1 : 0;
+  }
+  facets_.reserve(facet_count);
+  for (std::size_t i = 0; facets_.size() < facet_count; ++i) {
     if (modules_[i].support == Support::kGround) {
       facets_.push_back({.module = static_cast<std::int32_t>(i)});
     }
-    fixed_count_ += modules_[i].support == Support::kFixed ? 1 : 0;
   }
 }
 

@@ -144,7 +144,11 @@ TEST(Robot, rests_on_its_lowest_layer_and_wherever_it_is_fixed) {
   for (std::size_t i = 0; i < std::size(expected); ++i) {
     EXPECT_EQ(robot.value().modules()[i].support, expected[i]) << "module " << i;
   }
-  EXPECT_EQ(robot.value().ground_count(), 2U);
+  ASSERT_EQ(robot.value().ground_count(), 2U);
+  ASSERT_EQ(robot.value().facets().size(), 2U);
+  EXPECT_EQ(robot.value().facets()[0].module, 0);
+  EXPECT_EQ(robot.value().facets()[1].module, 4);
+  EXPECT_EQ(robot.value().facets()[1].direction, base::Direction::kMinusZ);
   EXPECT_EQ(robot.value().fixed_count(), 2U);
   EXPECT_EQ(robot.value().support_z(), 4);
 }

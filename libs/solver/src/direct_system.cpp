@@ -8,11 +8,14 @@
 #include <limits>
 
 #include "beam_forces.hpp"
+#include "holdfast/base/algebra.hpp"
 #include "holdfast/base/check.hpp"
 #include "precise_refinement.hpp"
 
 namespace holdfast::solver {
 namespace {
+
+using base::at;
 
 using base::Mat6;
 using base::Vec6;
@@ -31,8 +34,6 @@ constexpr std::size_t kBlockBytes = 2 * sizeof(Mat6<double>) + 24;
 constexpr std::size_t kNodeBytes = 3 * sizeof(Mat6<double>) + 120;
 constexpr std::size_t kEdgeBytes = sizeof(Mat6<double>) + 64;
 constexpr std::size_t kNoLimit = std::numeric_limits<std::size_t>::max();
-
-std::size_t at(std::int32_t index) { return static_cast<std::size_t>(index); }
 
 /// How many blocks may fill in.
 std::size_t block_count_max(const EquilibriumOptions& options, std::size_t node_count,

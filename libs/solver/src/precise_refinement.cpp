@@ -7,9 +7,12 @@
 #include <limits>
 #include <utility>
 
+#include "holdfast/base/algebra.hpp"
+
 namespace holdfast::solver {
 namespace {
 
+using base::at;
 using base::DoubleDouble;
 
 /// A correction this small beside the displacements is rounding in 106 bits.
@@ -34,8 +37,6 @@ mechanics::BeamSection<DoubleDouble> precise_section(const model::Material& mate
           .moment_y = section.moment_y,
           .torsion = section.torsion};
 }
-
-std::size_t at(std::int32_t index) { return static_cast<std::size_t>(index); }
 
 DoubleDouble dot(const std::vector<PreciseVec>& a, const std::vector<PreciseVec>& b) {
   DoubleDouble sum;

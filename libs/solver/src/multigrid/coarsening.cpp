@@ -8,15 +8,16 @@
 #include <type_traits>
 #include <unordered_map>
 
+#include "holdfast/base/algebra.hpp"
 #include "slivers.hpp"
 #include "weak_springs.hpp"
 
 namespace holdfast::solver {
 namespace {
 
-constexpr std::uint8_t kNoColour = 255;
+using base::at;
 
-std::size_t at(std::int32_t index) { return static_cast<std::size_t>(index); }
+constexpr std::uint8_t kNoColour = 255;
 
 /// The same coordinates for all clusters that look alike: differences lose their last bits. In
 /// double precision they have none to lose: centres lie on a grid.

@@ -7,18 +7,18 @@
 #include <utility>
 
 #include "beam_shapes.hpp"
+#include "holdfast/base/algebra.hpp"
 #include "matrix_blocks.hpp"
 
 namespace holdfast::solver {
 namespace {
 
+using base::at;
 using base::Direction;
 using base::Mat6;
 using base::Vec6;
 using host::Team;
 using model::Robot;
-
-std::size_t at(std::int32_t index) { return static_cast<std::size_t>(index); }
 
 Direction direction_of(std::size_t index) { return static_cast<Direction>(index); }
 

@@ -6,10 +6,12 @@
 #include <cmath>
 #include <numeric>
 
+#include "holdfast/base/algebra.hpp"
+
 namespace holdfast::solver {
 namespace {
 
-std::size_t at(std::int32_t index) { return static_cast<std::size_t>(index); }
+using base::at;
 
 /// Ground springs of beams; what was asked last is remembered, as most are alike.
 class BeamGroundSprings {

@@ -10,11 +10,13 @@
 
 #include "beam_shapes.hpp"
 #include "block_pool.hpp"
+#include "holdfast/base/algebra.hpp"
 #include "matrix_blocks.hpp"
 
 namespace holdfast::solver {
 namespace {
 
+using base::at;
 using base::Direction;
 
 /// A level this small is factorized whatever its shape: it costs nothing.
@@ -35,8 +37,6 @@ constexpr std::size_t kThinDegree = 3;
 /// second block per node.
 constexpr std::size_t kFill = 2;
 constexpr std::size_t kAloneFill = 40;
-
-std::size_t at(std::int32_t index) { return static_cast<std::size_t>(index); }
 
 /// The sum of a node's springs, those to the ground left out.
 Mat spring_sum(const SpringGraph& graph, std::size_t node) {

@@ -6,15 +6,15 @@
 
 #include "beam_shapes.hpp"
 #include "hierarchy.hpp"
+#include "holdfast/base/algebra.hpp"
 #include "level_blocks.hpp"
 #include "matrix_blocks.hpp"
 
 namespace holdfast::solver {
 namespace {
 
+using base::at;
 using base::Direction;
-
-std::size_t at(std::int32_t index) { return static_cast<std::size_t>(index); }
 
 /// How stiff a beam is against what its middle sees. K12 has that but for the share of the shear
 /// force in bending: -k + shear * (length/2)^2.

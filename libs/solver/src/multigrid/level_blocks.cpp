@@ -4,14 +4,14 @@
 
 #include "beam_shapes.hpp"
 #include "block_pool.hpp"
+#include "holdfast/base/algebra.hpp"
 #include "matrix_blocks.hpp"
 
 namespace holdfast::solver {
 namespace {
 
+using base::at;
 using base::Direction;
-
-std::size_t at(std::int32_t index) { return static_cast<std::size_t>(index); }
 
 BeamRow<double> beam_row(const Mat& k12, std::size_t axis) {
   BeamRow<double> row;

@@ -8,10 +8,12 @@
 #include <utility>
 
 #include "../block_kernels.hpp"
+#include "holdfast/base/algebra.hpp"
 
 namespace holdfast::solver {
 namespace {
 
+using base::at;
 using mechanics::ContactLaw;
 using mechanics::ContactState;
 
@@ -59,8 +61,6 @@ constexpr double kSlenderShare = 0.3;
 /// change a load ratio by more than this times the tolerance; the estimate of the energy is low by
 /// a third once in a while.
 constexpr double kThinError = 2;
-
-std::size_t at(std::int32_t index) { return static_cast<std::size_t>(index); }
 
 /// Modules that are not fixed.
 std::size_t free_count(const model::Robot& robot) {

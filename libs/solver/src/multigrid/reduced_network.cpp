@@ -7,17 +7,17 @@
 #include <limits>
 #include <span>
 
+#include "holdfast/base/algebra.hpp"
 #include "kernels.hpp"
 
 namespace holdfast::solver {
 namespace {
 
+using base::at;
 using base::Direction;
 using host::Team;
 using model::Robot;
 using model::Support;
-
-std::size_t at(std::int32_t index) { return static_cast<std::size_t>(index); }
 
 /// The box around some cells.
 struct Extent {

@@ -5,15 +5,17 @@
 #include <algorithm>
 #include <utility>
 
+#include "holdfast/base/algebra.hpp"
+
 namespace holdfast::solver {
 namespace {
+
+using base::at;
 
 constexpr std::int32_t kNone = -1;
 
 /// Of two neighbours that are tied equally, up to rounding, the first one met is taken.
 constexpr double kStronger = 1 + 1e-9;
-
-std::size_t at(std::int32_t index) { return static_cast<std::size_t>(index); }
 
 CellBox united(CellBox a, const CellBox& b) {
   for (std::size_t k = 0; k < 3; ++k) {

@@ -5,13 +5,15 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 
+#include "holdfast/base/algebra.hpp"
+
 namespace holdfast::solver {
 namespace {
 
+using base::at;
+
 /// Chosen on random growth and on slender plates. From 0.0078 on a long bridge is cut lengthwise.
 constexpr double kWeakShare = 0.007;
-
-std::size_t at(std::int32_t index) { return static_cast<std::size_t>(index); }
 
 bool is_positive_definite(const Mat& matrix) {
   const Eigen::Map<const Eigen::Matrix<double, 6, 6>> view(matrix.values.data());
