@@ -23,8 +23,8 @@ int main(int argc, char** argv) {
   }
   const holdfast::verdict::Assessment assessment = holdfast::check(structure.value()).assessment;
   std::cout << holdfast::verdict::name(assessment.verdict) << '\n';
-  for (const std::string& reason : assessment.reasons) {
-    std::cout << "  " << reason << '\n';
+  for (const holdfast::verdict::Reason& reason : assessment.reasons) {
+    std::cout << "  " << holdfast::io::reason_text(structure.value().robot, reason) << '\n';
   }
   return assessment.verdict == holdfast::verdict::Verdict::kSafe ? 0 : 1;
 }

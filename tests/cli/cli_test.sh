@@ -73,7 +73,10 @@ code=0
 [ "$code" -eq 65 ] || fault "the checker takes a structure: $code"
 expect_exit 1 check "$unstable" --certificate none.txt
 expect_line err 'no certificate: the robot topples'
+grep -q older err && fault "an older file where there is none"
 [ -e none.txt ] && fault "a certificate of a robot that topples"
+expect_exit 1 check "$unstable" --certificate proof.txt
+expect_line err 'proof.txt: no certificate: .*; what stands in this file is older'
 expect_exit 64 check "$safe" "$overload" --certificate both.txt
 
 # The robot's own verdict.
@@ -150,6 +153,27 @@ assert report['overload']['broken'] == [[[2, 1, 2], [3, 1, 2]]]
 assert {'a', 'b', 'load_ratio', 'axial_n', 'bending_nmm'} <= set(report['connections'][0])
 assert report['contact_model'] == 'regularised' and report['solver']['iterations'] >= 1
 assert report['solver']['seconds'] > 0 and report['reasons']
+PYTHON
+
+# A choice of connections, and a table of them.
+expect_exit 1 check "$overload" --connections 3 --json three.json --csv three.csv
+expect_exit 1 check "$overload" --connections broken --json broken.json --csv all.csv --quiet
+expect_exit 1 simulate "$overload" --link unit --connections broken --json simulated.json
+expect_exit 64 check "$overload" --connections few
+expect_line err 'all, broken or a count'
+expect_exit 64 check "$overload" --json same.out --csv same.out
+expect_exit 64 check "$safe" "$overload" --csv table.csv
+python3 - <<'PYTHON' || fault "the choice of connections is wrong"
+import csv, json
+three = json.load(open('three.json'))
+broken = json.load(open('broken.json'))
+assert len(three['connections']) == 3 and three['reason_codes'] == ['connections_break']
+assert broken['connections'] == three['connections'][:1]
+assert json.load(open('simulated.json'))['connections'] == broken['connections']
+rows = list(csv.DictReader(open('three.csv')))
+assert [float(r['load_ratio']) for r in rows] == [c['load_ratio'] for c in three['connections']]
+assert [r['breaks'] for r in rows] == ['1', '0', '0'] and rows[0]['direction'] == '+x'
+assert [int(rows[0][key]) for key in ('ax', 'ay', 'az')] == [2, 1, 2]
 PYTHON
 
 # The README's picture is what the README's command makes.
@@ -318,7 +342,7 @@ for arguments in "check $safe" "check $safe --json -" "simulate $safe --link uni
     expect_line err 'cannot be written'
   done
 done
-for arguments in "check $safe --json" "check $safe --svg" "check $safe --vtk" \
+for arguments in "check $safe --json" "check $safe --csv" "check $safe --svg" "check $safe --vtk" \
   "convert $safe" "simulate $safe --link unit --trace" "simulate $safe --link unit --story" \
   "generate cube 3 -o"; do
   case $arguments in

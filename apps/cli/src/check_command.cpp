@@ -21,6 +21,8 @@ using Clock = std::chrono::steady_clock;
 struct Options {
   std::vector<std::string> files;
   std::string json;
+  std::string connections = "all";
+  std::string csv;
   std::string svg;
   std::string vtk;
   std::string html;
@@ -49,9 +51,7 @@ class CheckRun {
       fmt::print("{} files: {} safe, {} overload, {} unstable, {} undecided, {} not readable\n",
                  options_.files.size(), counts_[0], counts_[1], counts_[2], counts_[3], bad_count_);
     }
-    if (!options_.json.empty()) {
-      write_json();
-    }
+    finish_json();
     return exit_code();
   }
 
@@ -71,17 +71,28 @@ class CheckRun {
     if (shows_text()) {
       show(structure.value(), result, file);
     }
-    if (!options_.json.empty()) {
-      reports_.push_back(report_json(structure.value(), result));
+    add_report([&](std::ostream& out) {
+      write_report_json(out, structure.value(), result, report_options(options_.json));
+    });
+    write_files(structure.value(), result);
+  }
+
+  void write_files(const Structure& structure, const CheckResult& result) {
+    if (!options_.csv.empty()) {
+      write(options_.csv, [&](std::ostream& out) {
+        write_connections_csv(out, structure, result, report_options(options_.csv));
+      });
     }
     if (!options_.svg.empty()) {
-      write(options_.svg, picture_svg(structure.value(), result));
+      write(options_.svg, picture_svg(structure, result));
     }
     if (!options_.vtk.empty()) {
-      write(options_.vtk, picture_vtu(structure.value(), result));
+      write(options_.vtk, [&](std::ostream& out) {
+        write_picture_vtu(out, structure, result, report_options(options_.vtk));
+      });
     }
     if (!options_.html.empty()) {
-      write_page(structure.value(), result);
+      write_page(structure, result);
     }
     if (!options_.certificate.empty()) {
       write_certificate(result);
@@ -97,7 +108,7 @@ class CheckRun {
     }
     const std::string ratio = !assessment.load_ratio_max ? "-"
                               : assessment.is_stable
-                                  ? verdict::beside_one(*assessment.load_ratio_max, 4) + " "
+                                  ? io::beside_one(*assessment.load_ratio_max, 4) + " "
                                   : fmt::format("({:.4f})", *assessment.load_ratio_max);
     const std::string margin = assessment.simplified.margin_mm
                                    ? fmt::format("{:9.2f} mm", *assessment.simplified.margin_mm)
@@ -109,13 +120,12 @@ class CheckRun {
   void report_error(const base::Error& error, const std::string& file) {
     ++bad_count_;
     print_error(error, file);
-    if (!options_.json.empty()) {
-      reports_.push_back(error_json(error, file));
-    }
+    add_report([&](std::ostream& out) { out << error_json(error, file); });
   }
 
-  void write(const std::string& path, const std::string& text) {
-    bad_count_ += write_or_complain(path, text) ? 0 : 1;
+  template <class Content>
+  void write(const std::string& path, const Content& content) {
+    bad_count_ += write_or_complain(path, content) ? 0 : 1;
   }
 
   void write_page(const Structure& structure, const CheckResult& result) {
@@ -138,17 +148,65 @@ class CheckRun {
     if (text) {
       write(options_.certificate, text.value());
     } else {
-      print_error(text.error(), options_.certificate);
+      base::Error error = text.error();
+      std::error_code code;
+      if (std::filesystem::is_regular_file(options_.certificate, code)) {
+        error.message += "; what stands in this file is older and not of this robot as it is";
+      }
+      print_error(error, options_.certificate);
     }
   }
 
-  void write_json() {
-    std::string text = is_many() ? "[\n" : "";
-    for (std::size_t i = 0; i < reports_.size(); ++i) {
-      text += (i > 0 ? ",\n" : "") + reports_[i];
+  void open_json() {
+    auto opened = host::OutputFile::open(options_.json);
+    if (!opened) {
+      ++bad_count_;
+      print_error(opened.error(), options_.json);
+      return;
     }
-    text += is_many() ? "\n]\n" : "\n";
-    write(options_.json, text);
+    json_.emplace(std::move(opened).value());
+    json_->stream() << (is_many() ? "[\n" : "");
+  }
+
+  /// Reports are written as they come, one object or a list.
+  template <class Write>
+  void add_report(const Write& write) {
+    if (options_.json.empty()) {
+      return;
+    }
+    if (++report_count_ == 1) {
+      open_json();
+    }
+    if (json_) {
+      json_->stream() << (report_count_ > 1 ? ",\n" : "");
+      write(json_->stream());
+    }
+  }
+
+  void finish_json() {
+    if (!json_) {
+      return;
+    }
+    json_->stream() << (is_many() ? "\n]\n" : "\n");
+    if (const auto error = json_->finish()) {
+      ++bad_count_;
+      print_error(*error, options_.json);
+    }
+  }
+
+  io::ReportOptions report_options(const std::string& path) {
+    io::ReportOptions options;
+    options.thread_count = options_.thread_count;
+    options.connections = *io::find_connection_choice(options_.connections);
+    if (!options_.is_quiet) {
+      options.progress = [this, path](double share) {
+        if (Clock::now() - shown_ >= kProgressInterval) {
+          shown_ = Clock::now();
+          fmt::print(stderr, "holdfast: {}: {:.0f} % written\n", io::one_line(path), 100 * share);
+        }
+      };
+    }
+    return options;
   }
 
   void show_progress(std::size_t done) {
@@ -193,21 +251,24 @@ class CheckRun {
   const Options& options_;
   std::array<std::size_t, 4> counts_{};
   std::size_t bad_count_ = 0;
-  std::vector<std::string> reports_;
+  std::optional<host::OutputFile> json_;
+  std::size_t report_count_ = 0;
   Clock::time_point shown_ = Clock::now();
 };
 
 int run(const Options& options) {
-  if (options.files.size() > 1 && !(options.svg.empty() && options.vtk.empty() &&
-                                    options.html.empty() && options.certificate.empty())) {
+  if (options.files.size() > 1 &&
+      !(options.csv.empty() && options.svg.empty() && options.vtk.empty() && options.html.empty() &&
+        options.certificate.empty())) {
     fmt::print(
         stderr,
-        "holdfast: --svg, --vtk, --html and --certificate are for one structure, {} files are "
-        "given\n",
+        "holdfast: --csv, --svg, --vtk, --html and --certificate are for one structure, {} files "
+        "are given\n",
         options.files.size());
     return kExitUsage;
   }
   if (complain_of_clash(options.files, {{"--json", options.json},
+                                        {"--csv", options.csv},
                                         {"--svg", options.svg},
                                         {"--vtk", options.vtk},
                                         {"--html", options.html},
@@ -229,6 +290,8 @@ Command add_check(CLI::App& app) {
     command->add_option(name, path, help)->type_name("FILE");
   };
   add_output("--json", options->json, "Write the whole report as JSON; - is standard output");
+  add_connections(*command, options->connections);
+  add_output("--csv", options->csv, "Write a table, a line for each connection with its loads");
   add_output("--svg", options->svg, "Draw the structure and its loads");
   add_output("--vtk", options->vtk, "Write a .vtu file for ParaView");
   add_output("--html", options->html, "Write a page to look at in a browser, with the report");

@@ -71,9 +71,24 @@ inline base::Result<Structure> load_with_notes(const std::string& file) {
   return structure;
 }
 
-/// False, and the error is printed, if the file cannot be written. "-" is standard output.
-inline bool write_or_complain(const std::string& path, std::string_view text) {
-  const auto error = write_file(path, text);
+/// The option --connections of commands that write a JSON report.
+inline void add_connections(CLI::App& command, std::string& choice) {
+  command
+      .add_option("--connections", choice,
+                  "Which connections a report lists: all, broken, or the N with the largest load "
+                  "ratios, these first")
+      ->type_name("all|broken|N")
+      ->check([](const std::string& text) {
+        return io::find_connection_choice(text) ? "" : "expected is all, broken or a count";
+      })
+      ->capture_default_str();
+}
+
+/// False, and the error is printed, if the file cannot be written. "-" is standard output. The
+/// content is a text, or a function that writes into a stream.
+template <class Content>
+bool write_or_complain(const std::string& path, const Content& content) {
+  const auto error = write_file(path, content);
   if (error) {
     print_error(*error, path);
   }

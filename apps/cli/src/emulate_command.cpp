@@ -34,6 +34,7 @@ struct Options {
   ChangeOptions changes;
   double time_max_s = 60;
   std::string json;
+  std::string connections = "all";
   std::string svg;
   bool is_quiet = false;
 };
@@ -110,8 +111,8 @@ class EmulateRun {
     const auto pages = emulator::configuration_pages(structure.robot, emulation_.anchor);
     for (std::size_t i = 0; i < pages.size(); ++i) {
       const std::string path = fmt::format("{}/module_{}.bin", options_.pages, i);
-      if (!write_or_complain(path,
-                             {reinterpret_cast<const char*>(pages[i].data()), pages[i].size()})) {
+      if (!write_or_complain(path, std::string_view(reinterpret_cast<const char*>(pages[i].data()),
+                                                    pages[i].size()))) {
         return kExitBadInput;
       }
     }
@@ -218,6 +219,7 @@ Command add_emulate(CLI::App& app) {
       ->capture_default_str();
   command->add_option("--json", options->json, "Write the report; - is standard output")
       ->type_name("FILE");
+  add_connections(*command, options->connections);
   command->add_option("--svg", options->svg, "Draw the robot in the colours that its lamps show")
       ->type_name("FILE");
   command->add_flag("--quiet", options->is_quiet, "Print errors only; the exit code is the answer");

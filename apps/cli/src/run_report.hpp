@@ -8,8 +8,8 @@
 namespace holdfast::cli {
 
 /// Prints what a robot has worked out, simulated or emulated, and writes the files that the options
-/// `json` and `svg` name; `is_silent` if the terminal gets nothing but a report asked for with "-".
-/// False if a file cannot be written.
+/// `json` and `svg` name, with the `connections` chosen; `is_silent` if the terminal gets nothing
+/// but a report asked for with "-". False if a file cannot be written.
 template <class Options, class Run>
 bool show_run(const Options& options, bool is_silent, const Structure& structure,
               const CheckResult& exact, const Run& run, const DistributedRun& picture) {
@@ -19,7 +19,12 @@ bool show_run(const Options& options, bool is_silent, const Structure& structure
   }
   bool is_written = true;
   if (!options.json.empty()) {
-    is_written = write_or_complain(options.json, report_json(structure, exact, run) + "\n");
+    is_written = write_or_complain(options.json, [&](std::ostream& out) {
+      io::ReportOptions report;
+      report.connections = *io::find_connection_choice(options.connections);
+      write_report_json(out, structure, exact, run, report);
+      out << '\n';
+    });
   }
   if (!options.svg.empty()) {
     is_written = write_or_complain(options.svg, picture_svg(structure, picture)) && is_written;

@@ -36,6 +36,7 @@ struct Options {
   std::vector<std::string> detachments;
   ChangeOptions changes;
   std::string json;
+  std::string connections = "all";
   std::string trace;
   std::string story;
   std::string svg;
@@ -275,6 +276,7 @@ Command add_simulate(CLI::App& app) {
   add_change_options(*command, options->changes, "s, or rounds");
   command->add_option("--json", options->json, "Write the report; - is standard output")
       ->type_name("FILE");
+  add_connections(*command, options->connections);
   command->add_option("--trace", options->trace, "Write all packets for ui.perfetto.dev")
       ->type_name("FILE");
   command

@@ -69,13 +69,21 @@ Json stability_json(const verdict::RigidBody& body) {
           {"polygon", polygon}};
 }
 
+Json reasons_json(const model::Robot& robot, const verdict::Assessment& assessment) {
+  Json list = Json::array();
+  for (const verdict::Reason& reason : assessment.reasons) {
+    list.push_back(io::reason_text(robot, reason));
+  }
+  return list;
+}
+
 /// Integers: connections, broken ones; a, b and direction of each connection; indices of the broken
 /// ones. Numbers: five of each connection (ConnectionResult), six displacements of each module.
 Reply assessment_reply(const model::Robot& robot, const verdict::Assessment& assessment,
                        double seconds) {
   Reply out;
   out.text = dump({{"verdict", verdict::name(assessment.verdict)},
-                   {"reasons", assessment.reasons},
+                   {"reasons", reasons_json(robot, assessment)},
                    {"stability", stability_json(assessment.simplified)},
                    {"load_ratio_max", optional_json(assessment.load_ratio_max)},
                    {"worst", optional_json(assessment.worst)},
@@ -177,7 +185,7 @@ Reply open_text(std::string_view text) {
   return out;
 }
 
-enum class Output : std::int32_t { kJson, kXml, kSvg, kReportJson, kReportText, kVtu };
+enum class Output : std::int32_t { kJson, kXml, kSvg, kReportJson, kReportText };
 
 std::string written(const Structure& structure, Output output) {
   const CheckResult result = check(structure);
@@ -186,8 +194,6 @@ std::string written(const Structure& structure, Output output) {
       return picture_svg(structure, result);
     case Output::kReportJson:
       return report_json(structure, result);
-    case Output::kVtu:
-      return picture_vtu(structure, result);
     default:
       return fmt::format("{}: {}\n{}", structure.name, verdict::name(result.assessment.verdict),
                          report_text(structure, result));
@@ -247,32 +253,49 @@ sim::SimulationOptions simulation_options(const RequestHeader& header) {
   return options;
 }
 
+void write_order(io::JsonStream& json, const char* text, bool is_step) {
+  json.begin_object();
+  json.member("text", text);
+  json.member("is_step", is_step);
+  json.end_object();
+}
+
+/// What a report says of a simulation, and what the page needs besides to play it.
+std::string simulation_summary(const DistributedRun& run, bool is_complete) {
+  std::string text;
+  io::JsonStream json(text, io::JsonStream::Layout::kCompact);
+  json.begin_object();
+  write_distributed(json, run);
+  json.member("root", run.result.root);
+  json.member("is_complete", is_complete);
+  json.member("ticks_per_second", run.link.ticks_per_second);
+  json.key("orders");
+  json.begin_array();
+  write_order(json, "", false);  // 0 is no operation.
+  for (const agent::OperationInfo& row : agent::kOperations) {
+    write_order(json, row.text, row.is_iteration);
+  }
+  json.end_array();
+  json.end_object();
+  return text;
+}
+
 /// Integers and numbers: the events, see PacketLog.
 Reply simulate_request(const Request& request) {
-  auto robot = model::Robot::create(spec_of(request));
+  const auto robot = model::Robot::create(spec_of(request));
   if (!robot) {
     return failure(robot.error());
   }
-  const Structure structure{
-      .name = {}, .document = {}, .robot = std::move(robot).value(), .warnings = {}};
   sim::SimulationOptions options = simulation_options(request.header);
   PacketLog log(static_cast<std::size_t>(request.header.options[4]) * 1000);
   options.trace = &log;
-  const CheckResult exact = check(structure);
-  const auto run = simulate(structure, exact, options);
+  const auto run = simulate(robot.value(), check(robot.value()), options);
   if (!run) {
     return failure(run.error());
   }
-  Json summary = Json::parse(report_json(structure, exact, run.value()))["distributed"];
-  summary["root"] = run.value().result.root;
-  summary["is_complete"] = log.is_complete();
-  summary["ticks_per_second"] = options.link.ticks_per_second;
-  Json& orders = summary["orders"] = Json::array();
-  orders.push_back({{"text", ""}, {"is_step", false}});  // 0 is no operation.
-  for (const agent::OperationInfo& row : agent::kOperations) {
-    orders.push_back({{"text", row.text}, {"is_step", row.is_iteration}});
-  }
-  return {.text = dump(summary), .integers = log.take_integers(), .numbers = log.take_numbers()};
+  return {.text = simulation_summary(run.value(), log.is_complete()),
+          .integers = log.take_integers(),
+          .numbers = log.take_numbers()};
 }
 
 }  // namespace

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "holdfast/agent/colour.hpp"
 
+#include "holdfast/mechanics/connector.hpp"
+
 namespace holdfast::agent {
 namespace {
 
@@ -35,8 +37,7 @@ Colour colour_of(Verdict verdict, float own_load_ratio, bool is_fixed, bool is_r
     case Verdict::kOverload:
       break;
   }
-  // What is not a number breaks.
-  if (!(own_load_ratio < 1)) {
+  if (mechanics::breaks(own_load_ratio)) {
     return kRed;
   }
   return is_fixed ? kBlue : ramp(own_load_ratio);

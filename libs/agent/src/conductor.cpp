@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "holdfast/agent/conductor.hpp"
 
+#include "holdfast/mechanics/connector.hpp"
 #include "methods.hpp"
 #include "scalar.hpp"
 #include "tolerances.hpp"
@@ -527,7 +528,7 @@ Order Conductor::after_loads(const Report& report) {
 
 Order Conductor::decide() {
   const auto first = static_cast<double>(answer_.load_ratio_max);
-  const bool breaks = first >= 1;
+  const bool breaks = mechanics::breaks(first);
   const double doubt = error_ > kErrorLeast ? error_ : kErrorLeast;
   if (!is_number(first) || !is_number(ratio_)) {
     return finish(Verdict::kUndecided, Reason::kNotConverged);
@@ -535,7 +536,7 @@ Order Conductor::decide() {
   if (absolute(ratio_ - 1) <= doubt) {
     return finish(Verdict::kUndecided, Reason::kTooClose);
   }
-  if ((ratio_ >= 1) != breaks) {
+  if (mechanics::breaks(ratio_) != breaks) {
     return finish(Verdict::kUndecided, Reason::kAmbiguousFeet);
   }
   return finish(breaks ? Verdict::kOverload : Verdict::kSafe,

@@ -535,7 +535,7 @@ Report Agent::loads_report() {
     own.reals[0] = value;
     own.cell = cell;
     own.direction = direction;
-    own.count = ratio >= 1 ? 1 : 0;
+    own.count = mechanics::breaks(ratio) ? 1 : 0;
     merge(wire::Operation::kLoads, report, own);
     if (cell == nodes_[0].cell) {
       own_ratio_ = larger(own_ratio_, value);

@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "distributed_parts.hpp"
+#include "holdfast/mechanics/connector.hpp"
 
 namespace holdfast {
 namespace {
@@ -15,15 +16,13 @@ namespace {
 /// Events between two calls of the progress function: well below a second.
 constexpr std::uint64_t kSliceEvents = 200'000;
 
-std::string robot_reason(const sim::SimulationResult& result) {
+verdict::Reason robot_reason(const sim::SimulationResult& result) {
   if (result.answer.verdict == agent::Verdict::kNone) {
-    return "the modules came to no verdict";
+    return {.code = verdict::ReasonCode::kNoVerdictOfTheRobot};
   }
-  std::string text = std::string("the robot's own verdict: ") + agent::name(result.answer.reason);
-  if (!result.all_agree) {
-    text += "; not every module knows it";
-  }
-  return text;
+  return {.code = verdict::ReasonCode::kVerdictOfTheRobot,
+          .numbers = {result.all_agree ? 1.0 : 0.0},
+          .quoted = agent::name(result.answer.reason)};
 }
 
 /// The load ratio that the module holds which owns the connection: an existing one knows those of
@@ -117,7 +116,7 @@ verdict::Assessment view_of(const model::Robot& robot, const verdict::Assessment
       view.worst = i;
       view.load_ratio_max = ratio;
     }
-    if (ratio >= 1) {
+    if (mechanics::breaks(ratio)) {
       view.broken.push_back(i);
     }
   }
@@ -166,13 +165,13 @@ std::optional<agent::Method> find_method(std::string_view name_wanted) {
   return std::nullopt;
 }
 
-base::Result<DistributedRun> simulate(const Structure& structure, const CheckResult& exact,
+base::Result<DistributedRun> simulate(const model::Robot& robot, const CheckResult& exact,
                                       const sim::SimulationOptions& options,
                                       const SimulationProgress& progress) {
-  if (const auto fault = sim::find_options_fault(structure.robot, options)) {
+  if (const auto fault = sim::find_options_fault(robot, options)) {
     return base::Error{.code = base::ErrorCode::kBadInput, .message = *fault, .where = {}};
   }
-  sim::Simulation simulation(structure.robot, options);
+  sim::Simulation simulation(robot, options);
   while (simulation.run_for(kSliceEvents)) {
     if (progress && !progress(simulation.result())) {
       break;
@@ -183,8 +182,14 @@ base::Result<DistributedRun> simulate(const Structure& structure, const CheckRes
   const Agents agents{
       .at = [&](std::int32_t i) -> const agent::Agent& { return simulation.agent(i); },
       .count = simulation.agent_count()};
-  run.view = view_of(structure.robot, exact.assessment, agents, run.result);
+  run.view = view_of(robot, exact.assessment, agents, run.result);
   return run;
+}
+
+base::Result<DistributedRun> simulate(const Structure& structure, const CheckResult& exact,
+                                      const sim::SimulationOptions& options,
+                                      const SimulationProgress& progress) {
+  return simulate(structure.robot, exact, options, progress);
 }
 
 std::string picture_svg(const Structure& structure, const DistributedRun& run) {

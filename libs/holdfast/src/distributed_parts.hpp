@@ -4,7 +4,6 @@
 
 #include <functional>
 #include <iterator>
-#include <nlohmann/json.hpp>
 
 #include "holdfast/distributed.hpp"
 

@@ -4,67 +4,53 @@
 
 #include "distributed_parts.hpp"
 #include "holdfast/distributed.hpp"
-#include "holdfast/verdict/beside_one.hpp"
+#include "holdfast/io/beside_one.hpp"
+#include "report_entry.hpp"
 
 namespace holdfast {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 /// All phases but the last, in which nothing is left to do.
 constexpr std::size_t kBusyPhaseCount = sim::kPhaseCount - 1;
-
-Json seconds_json(const sim::LinkModel& link, sim::Time time) {
-  const auto seconds = sim::seconds(link, time);
-  return seconds ? Json(*seconds) : Json();
-}
 
 bool has_load_ratio(const agent::Answer& answer) {
   return answer.verdict == agent::Verdict::kSafe || answer.verdict == agent::Verdict::kOverload;
 }
 
-Json phases_json(const DistributedRun& run) {
-  Json phases = Json::object();
-  for (std::size_t i = 0; i < kBusyPhaseCount; ++i) {
-    const sim::PhaseStatistics& phase = run.result.phases[i];
-    phases[std::string(sim::name(static_cast<agent::Phase>(i)))] = {
-        {"rounds", phase.rounds},
-        {"messages", phase.packets},
-        {"bytes", phase.bytes},
-        {"simulated_s", seconds_json(run.link, phase.time)}};
-  }
-  return phases;
+void write_cell(io::JsonStream& json, const base::Cell& cell) {
+  json.begin_array();
+  json.value(cell.x);
+  json.value(cell.y);
+  json.value(cell.z);
+  json.end_array();
 }
 
-Json distributed_json(const DistributedRun& run) {
-  const sim::SimulationResult& result = run.result;
+/// The two cells of the robot's own worst connection, or null.
+void write_worst(io::JsonStream& json, const sim::SimulationResult& result) {
   const agent::Answer& answer = result.answer;
-  Json at;
-  if (has_load_ratio(answer) && result.effort.module_count > 1) {
-    const base::Cell& a = answer.worst_cell;
-    const base::Cell b = base::neighbour(a, answer.worst_direction);
-    at = Json::array({Json::array({a.x, a.y, a.z}), Json::array({b.x, b.y, b.z})});
+  if (!has_load_ratio(answer) || result.effort.module_count <= 1) {
+    json.value(nullptr);
+    return;
   }
-  return {{"verdict", verdict::name(run.view.verdict)},
-          {"reason", agent::name(answer.reason)},
-          {"load_ratio_max", has_load_ratio(answer) ? Json(answer.load_ratio_max) : Json()},
-          {"at", at},
-          {"load_ratio_error", result.effort.ratio_error},
-          {"method", name(result.effort.method)},
-          {"contact_model", result.effort.is_unilateral ? "unilateral" : "regularised"},
-          {"rounds", result.rounds},
-          {"simulated_s", seconds_json(run.link, result.verdict_time)},
-          {"messages", result.packets},
-          {"bytes", result.bytes},
-          {"messages_busiest_module", result.packets_module_max},
-          {"bytes_busiest_module", result.bytes_module_max},
-          {"iterations", result.effort.iterations},
-          {"bytes_per_module", result.bytes_per_module},
-          {"all_modules_agree", result.all_agree},
-          {"epochs", result.epoch},
-          {"notes", run.notes},
-          {"trace_hash", fmt::format("{:016x}", result.trace_hash)},
-          {"phases", phases_json(run)}};
+  json.begin_array();
+  write_cell(json, answer.worst_cell);
+  write_cell(json, base::neighbour(answer.worst_cell, answer.worst_direction));
+  json.end_array();
+}
+
+void write_phases(io::JsonStream& json, const DistributedRun& run) {
+  json.begin_object();
+  for (std::size_t i = 0; i < kBusyPhaseCount; ++i) {
+    const sim::PhaseStatistics& phase = run.result.phases[i];
+    json.key(sim::name(static_cast<agent::Phase>(i)));
+    json.begin_object();
+    json.member("rounds", phase.rounds);
+    json.member("messages", phase.packets);
+    json.member("bytes", phase.bytes);
+    json.member("simulated_s", sim::seconds(run.link, phase.time));
+    json.end_object();
+  }
+  json.end_object();
 }
 
 std::string time_text(const sim::LinkModel& link, sim::Time time) {
@@ -104,12 +90,12 @@ void write_answer(TextOut out, const Structure& structure, const CheckResult& ex
                   const DistributedRun& run) {
   const agent::Answer& answer = run.result.answer;
   const verdict::Assessment& truth = exact.assessment;
-  for (const std::string& reason : run.view.reasons) {
-    fmt::format_to(out, "  {}\n", reason);
+  for (const verdict::Reason& reason : run.view.reasons) {
+    fmt::format_to(out, "  {}\n", io::reason_text(structure.robot, reason));
   }
   fmt::format_to(out, "\n  exact       {}", verdict::name(truth.verdict));
   if (truth.is_stable && truth.worst) {
-    fmt::format_to(out, ", load ratio {}  {}", verdict::beside_one(*truth.load_ratio_max, 4),
+    fmt::format_to(out, ", load ratio {}  {}", io::beside_one(*truth.load_ratio_max, 4),
                    model::ends_text(structure.robot, *truth.worst));
   }
   fmt::format_to(out, "\n  robot       {}", verdict::name(run.view.verdict));
@@ -117,16 +103,57 @@ void write_answer(TextOut out, const Structure& structure, const CheckResult& ex
     const base::Cell& a = answer.worst_cell;
     const base::Cell b = base::neighbour(a, answer.worst_direction);
     fmt::format_to(out, ", load ratio {}  ({},{},{})-({},{},{})",
-                   verdict::beside_one(answer.load_ratio_max, 4), a.x, a.y, a.z, b.x, b.y, b.z);
+                   io::beside_one(answer.load_ratio_max, 4), a.x, a.y, a.z, b.x, b.y, b.z);
   }
   fmt::format_to(out, "{}\n", run.result.all_agree ? "; all modules agree" : "; NOT all agree");
 }
 
+void write_distributed(io::JsonStream& json, const DistributedRun& run) {
+  const sim::SimulationResult& result = run.result;
+  const agent::Answer& answer = result.answer;
+  json.member("verdict", verdict::name(run.view.verdict));
+  json.member("reason", agent::name(answer.reason));
+  json.member("load_ratio_max",
+              has_load_ratio(answer) ? std::optional<double>(answer.load_ratio_max) : std::nullopt);
+  json.key("at");
+  write_worst(json, result);
+  json.member("load_ratio_error", result.effort.ratio_error);
+  json.member("method", name(result.effort.method));
+  json.member("contact_model", result.effort.is_unilateral ? "unilateral" : "regularised");
+  json.member("rounds", result.rounds);
+  json.member("simulated_s", sim::seconds(run.link, result.verdict_time));
+  json.member("messages", result.packets);
+  json.member("bytes", result.bytes);
+  json.member("messages_busiest_module", result.packets_module_max);
+  json.member("bytes_busiest_module", result.bytes_module_max);
+  json.member("iterations", result.effort.iterations);
+  json.member("bytes_per_module", result.bytes_per_module);
+  json.member("all_modules_agree", result.all_agree);
+  json.member("epochs", result.epoch);
+  json.key("notes");
+  json.begin_array();
+  for (const std::string& note : run.notes) {
+    json.value(note);
+  }
+  json.end_array();
+  json.member("trace_hash", fmt::format("{:016x}", result.trace_hash));
+  json.key("phases");
+  write_phases(json, run);
+}
+
+void write_report_json(std::ostream& out, const Structure& structure, const CheckResult& exact,
+                       const DistributedRun& run, const io::ReportOptions& options) {
+  io::write_report_json(out, entry_of(structure, exact), options, [&](io::JsonStream& json) {
+    json.key("distributed");
+    json.begin_object();
+    write_distributed(json, run);
+    json.end_object();
+  });
+}
+
 std::string report_json(const Structure& structure, const CheckResult& exact,
                         const DistributedRun& run) {
-  Json report = Json::parse(report_json(structure, exact));
-  report["distributed"] = distributed_json(run);
-  return report.dump(2, ' ', false, Json::error_handler_t::replace);
+  return text_of([&](std::ostream& out) { write_report_json(out, structure, exact, run); });
 }
 
 std::string report_text(const Structure& structure, const CheckResult& exact,

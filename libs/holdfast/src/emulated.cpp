@@ -5,11 +5,10 @@
 #include <fmt/format.h>
 
 #include "distributed_parts.hpp"
+#include "report_entry.hpp"
 
 namespace holdfast {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 /// Simulated time between two calls of the progress function, and between two looks whether it is
 /// over.
@@ -24,20 +23,22 @@ double seconds_to_verdict(const EmulatedRun& run) {
   return end > begin ? seconds(end - begin) : 0;
 }
 
-Json firmware_json(const EmulatedRun& run) {
+void write_firmware(io::JsonStream& json, const EmulatedRun& run) {
   const emulator::FirmwareReport& firmware = run.firmware;
-  return {{"flash_bytes", firmware.flash_bytes},
-          {"ram_bytes", firmware.ram_bytes},
-          {"agent_bytes", firmware.agent_bytes},
-          {"stack_bytes_max", firmware.stack_bytes_max},
-          {"steps", firmware.step_count},
-          {"step_cycles_mean", firmware.step_cycles_mean},
-          {"step_cycles_max", firmware.step_cycles_max},
-          {"step_longest", firmware.step_longest},
-          {"steps_unlike_host", firmware.mismatch_count},
-          {"lost_bytes", firmware.lost_bytes},
-          {"planned_s", seconds(firmware.planned_at)},
-          {"verdict_after_s", seconds_to_verdict(run)}};
+  json.begin_object();
+  json.member("flash_bytes", firmware.flash_bytes);
+  json.member("ram_bytes", firmware.ram_bytes);
+  json.member("agent_bytes", firmware.agent_bytes);
+  json.member("stack_bytes_max", firmware.stack_bytes_max);
+  json.member("steps", firmware.step_count);
+  json.member("step_cycles_mean", firmware.step_cycles_mean);
+  json.member("step_cycles_max", firmware.step_cycles_max);
+  json.member("step_longest", firmware.step_longest);
+  json.member("steps_unlike_host", firmware.mismatch_count);
+  json.member("lost_bytes", firmware.lost_bytes);
+  json.member("planned_s", seconds(firmware.planned_at));
+  json.member("verdict_after_s", seconds_to_verdict(run));
+  json.end_object();
 }
 
 }  // namespace
@@ -79,11 +80,21 @@ base::Result<EmulatedRun> emulate(const Structure& structure, const CheckResult&
   return run;
 }
 
+void write_report_json(std::ostream& out, const Structure& structure, const CheckResult& exact,
+                       const EmulatedRun& run, const io::ReportOptions& options) {
+  io::write_report_json(out, entry_of(structure, exact), options, [&](io::JsonStream& json) {
+    json.key("distributed");
+    json.begin_object();
+    write_distributed(json, run.run);
+    json.end_object();
+    json.key("firmware");
+    write_firmware(json, run);
+  });
+}
+
 std::string report_json(const Structure& structure, const CheckResult& exact,
                         const EmulatedRun& run) {
-  Json report = Json::parse(report_json(structure, exact, run.run));
-  report["firmware"] = firmware_json(run);
-  return report.dump(2, ' ', false, Json::error_handler_t::replace);
+  return text_of([&](std::ostream& out) { write_report_json(out, structure, exact, run); });
 }
 
 std::string report_text(const Structure& structure, const CheckResult& exact,

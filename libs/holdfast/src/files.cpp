@@ -60,14 +60,19 @@ base::Result<std::string> read_file(const fs::path& path) {
   return read_stream(stream);
 }
 
-std::optional<base::Error> write_file(const fs::path& path, std::string_view text) {
+std::optional<base::Error> write_file(const fs::path& path,
+                                      const std::function<void(std::ostream&)>& write) {
   auto opened = host::OutputFile::open(path);
   if (!opened) {
     return opened.error();
   }
   host::OutputFile file = std::move(opened).value();
-  file.stream().write(text.data(), static_cast<std::streamsize>(text.size()));
+  write(file.stream());
   return file.finish();
+}
+
+std::optional<base::Error> write_file(const fs::path& path, std::string_view text) {
+  return write_file(path, [&](std::ostream& out) { out << text; });
 }
 
 }  // namespace holdfast

@@ -8,10 +8,10 @@
 #include <chrono>
 
 #include "holdfast/model/families.hpp"
+#include "report_entry.hpp"
 #include "version.hpp"
 
 namespace holdfast {
-namespace {
 
 io::ReportEntry entry_of(const Structure& structure, const CheckResult& result) {
   return {.name = structure.name,
@@ -22,8 +22,6 @@ io::ReportEntry entry_of(const Structure& structure, const CheckResult& result) 
           .proof = result.proof ? &*result.proof : nullptr,
           .proof_seconds = result.proof_seconds};
 }
-
-}  // namespace
 
 std::string_view version() { return kVersion; }
 
@@ -133,6 +131,11 @@ base::Result<std::string> certificate_text(const CheckResult& result) {
   return certificate::write(result.proof->certificate);
 }
 
+void write_report_json(std::ostream& out, const Structure& structure, const CheckResult& result,
+                       const io::ReportOptions& options) {
+  io::write_report_json(out, entry_of(structure, result), options);
+}
+
 std::string report_json(const Structure& structure, const CheckResult& result) {
   return io::write_report_json(entry_of(structure, result));
 }
@@ -146,7 +149,17 @@ std::string picture_svg(const Structure& structure, const CheckResult& result) {
 }
 
 std::string picture_vtu(const Structure& structure, const CheckResult& result) {
-  return io::write_vtu(structure.robot, result.assessment);
+  return text_of([&](std::ostream& out) { write_picture_vtu(out, structure, result); });
+}
+
+void write_picture_vtu(std::ostream& out, const Structure& structure, const CheckResult& result,
+                       const io::WriteOptions& options) {
+  io::write_vtu(out, structure.robot, result.assessment, options);
+}
+
+void write_connections_csv(std::ostream& out, const Structure& structure, const CheckResult& result,
+                           const io::ReportOptions& options) {
+  io::write_connections_csv(out, structure.robot, result.assessment, options);
 }
 
 std::string error_json(const base::Error& error, std::string_view name) {

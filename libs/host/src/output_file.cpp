@@ -51,7 +51,8 @@ int descriptor_number(const fs::path& path) {
 /// Writes into a descriptor and remembers the first failure.
 class DescriptorBuffer : public std::streambuf {
  public:
-  explicit DescriptorBuffer(int descriptor) : descriptor_(descriptor) {
+  DescriptorBuffer(int descriptor, bool is_seekable)
+      : descriptor_(descriptor), is_seekable_(is_seekable) {
     setp(text_.data(), text_.data() + text_.size());
   }
 
@@ -70,6 +71,7 @@ class DescriptorBuffer : public std::streambuf {
 
   int sync() override {
     const char* from = pbase();
+    position_ += pptr() - pbase();
     while (from < pptr() && error_ == 0) {
       const ssize_t written = ::write(descriptor_, from, static_cast<std::size_t>(pptr() - from));
       if (written >= 0) {
@@ -82,9 +84,30 @@ class DescriptorBuffer : public std::streambuf {
     return error_ == 0 ? 0 : -1;
   }
 
+  /// Tells the position; moves go through seekpos().
+  pos_type seekoff(off_type offset, std::ios_base::seekdir from,
+                   std::ios_base::openmode /*which*/) override {
+    const bool tells = offset == 0 && from == std::ios_base::cur;
+    return tells && is_seekable_ ? pos_type(position_ + (pptr() - pbase())) : pos_type(-1);
+  }
+
+  pos_type seekpos(pos_type position, std::ios_base::openmode /*which*/) override {
+    if (!is_seekable_ || sync() != 0) {
+      return pos_type(-1);
+    }
+    if (::lseek(descriptor_, position, SEEK_SET) < 0) {
+      error_ = errno;
+      return pos_type(-1);
+    }
+    position_ = position;
+    return position;
+  }
+
  private:
   int descriptor_;
+  bool is_seekable_;
   int error_ = 0;
+  off_type position_ = 0;  ///< In the file, where the text begins.
   std::array<char, 1U << 16U> text_;
 };
 
@@ -119,11 +142,12 @@ class OutputFile::Writer {
   /// These return the number of an error, 0 for none.
   int open_copy(int descriptor) {
     std::fflush(stdout);
-    return start(::fcntl(descriptor, F_DUPFD_CLOEXEC, 0));
+    return start(::fcntl(descriptor, F_DUPFD_CLOEXEC, 0), false);
   }
 
   int open_directly(const fs::path& target, bool is_file) {
-    return start(::open(target.c_str(), O_WRONLY | O_CLOEXEC | O_NOCTTY | (is_file ? O_TRUNC : 0)));
+    return start(::open(target.c_str(), O_WRONLY | O_CLOEXEC | O_NOCTTY | (is_file ? O_TRUNC : 0)),
+                 is_file);
   }
 
   /// `old` is what stands there already; nullptr for nothing.
@@ -137,7 +161,7 @@ class OutputFile::Writer {
       const int descriptor = ::open(
           name_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, old ? 0600 : 0666);
       if (descriptor >= 0) {
-        return old == nullptr ? start(descriptor) : start_like(descriptor, *old);
+        return old == nullptr ? start(descriptor, true) : start_like(descriptor, *old);
       }
       error = errno;
       forget();
@@ -165,12 +189,12 @@ class OutputFile::Writer {
   }
 
  private:
-  int start(int descriptor) {
+  int start(int descriptor, bool is_seekable) {
     if (descriptor < 0) {
       return errno;
     }
     descriptor_ = descriptor;
-    buffer_ = std::make_unique<DescriptorBuffer>(descriptor);
+    buffer_ = std::make_unique<DescriptorBuffer>(descriptor, is_seekable);
     stream_.rdbuf(buffer_.get());
     return 0;
   }
@@ -179,7 +203,7 @@ class OutputFile::Writer {
   int start_like(int descriptor, const struct stat& old) {
     [[maybe_unused]] const int is_not_owned = ::fchown(descriptor, old.st_uid, old.st_gid);
     const int error = ::fchmod(descriptor, old.st_mode & 07777U) == 0 ? 0 : errno;
-    const int start_error = start(descriptor);
+    const int start_error = start(descriptor, true);
     return error != 0 ? error : start_error;
   }
 

@@ -109,6 +109,25 @@ TEST_F(OutputFileTest, further_names_of_a_file_stay_its_names) {
   EXPECT_EQ(fs::hard_link_count(place("one")), 2U);
 }
 
+/// What is put over the beginning is longer than a buffer behind it.
+TEST_F(OutputFileTest, a_file_can_be_sought_in_but_what_is_written_directly_cannot) {
+  const std::string tail(200'000, 'x');
+  auto file = OutputFile::open(place("file")).value();
+  std::ostream& out = file.stream();
+  out << "1234" << tail;
+  EXPECT_EQ(out.tellp(), std::streamoff{200'004});
+  out.seekp(1);
+  EXPECT_EQ(out.tellp(), std::streamoff{1});
+  out << "ab";
+  out.seekp(200'004);
+  out << "end";
+  EXPECT_EQ(file.finish(), std::nullopt);
+  EXPECT_EQ(text_of(place("file")), "1ab4" + tail + "end");
+
+  auto device = OutputFile::open("/dev/null").value();
+  EXPECT_EQ(device.stream().tellp(), std::streampos(-1));
+}
+
 TEST_F(OutputFileTest, an_unfinished_file_leaves_nothing_and_changes_nothing) {
   put(place("old"), "old");
   {

@@ -1,88 +1,111 @@
 // SPDX-FileCopyrightText: The holdfast authors
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
+#include "connection_list.hpp"
 #include "holdfast/io/report.hpp"
+#include "ordered_blocks.hpp"
 
 namespace holdfast::io {
 namespace {
 
-using Json = nlohmann::ordered_json;
+/// Values of a long array that one thread writes at a time: of connections some 170 KB.
+constexpr std::size_t kBlockValues = 512;
 
-Json to_json(const base::Cell& cell) { return Json::array({cell.x, cell.y, cell.z}); }
-
-Json to_json(const verdict::PlanPoint& point) { return Json::array({point.x, point.y}); }
-
-template <class T>
-Json or_null(const std::optional<T>& value) {
-  return value ? Json(*value) : Json();
+void write_cell(JsonStream& json, const base::Cell& cell) {
+  json.begin_array();
+  json.value(cell.x);
+  json.value(cell.y);
+  json.value(cell.z);
+  json.end_array();
 }
 
-Json ends_json(const model::Robot& robot, std::size_t connection) {
+void write_pair(JsonStream& json, double first, double second) {
+  json.begin_array();
+  json.value(first);
+  json.value(second);
+  json.end_array();
+}
+
+void write_range(JsonStream& json, std::string_view key, const verdict::LoadRange* range) {
+  json.key(key);
+  if (range != nullptr) {
+    write_pair(json, range->low, range->high);
+  } else {
+    json.value(nullptr);
+  }
+}
+
+void write_ends(JsonStream& json, const model::Robot& robot, std::size_t connection) {
   const auto [a, b] = model::ends(robot, connection);
-  return Json::array({to_json(a), to_json(b)});
+  json.begin_array();
+  write_cell(json, a);
+  write_cell(json, b);
+  json.end_array();
 }
 
-Json stability_json(const verdict::Assessment& assessment) {
-  const verdict::RigidBody& body = assessment.simplified;
-  Json edge;
+void write_rigid_body(JsonStream& json, const verdict::RigidBody& body) {
+  json.begin_object();
+  json.member("stable", body.is_stable);
+  json.member("margin_mm", body.margin_mm);
+  json.key("edge_mm");
   if (body.edge) {
-    edge = Json::array({to_json((*body.edge)[0]), to_json((*body.edge)[1])});
+    json.begin_array();
+    for (const verdict::PlanPoint& end : *body.edge) {
+      write_pair(json, end.x, end.y);
+    }
+    json.end_array();
+  } else {
+    json.value(nullptr);
   }
-  return {{"simplified",
-           {{"stable", body.is_stable},
-            {"margin_mm", or_null(body.margin_mm)},
-            {"edge_mm", edge},
-            {"centre_of_mass_mm", to_json(body.centre_of_mass)}}},
-          {"model",
-           {{"stable", assessment.model.is_settled ? Json(assessment.model.is_stable) : Json()},
-            {"settled", assessment.model.is_settled}}},
-          {"stable", assessment.is_stable}};
+  json.key("centre_of_mass_mm");
+  write_pair(json, body.centre_of_mass.x, body.centre_of_mass.y);
+  json.end_object();
 }
 
-Json range_json(const verdict::LoadRange& range) { return Json::array({range.low, range.high}); }
-
-Json overload_json(const model::Robot& robot, const verdict::Assessment& assessment) {
-  Json broken = Json::array();
-  for (const std::size_t connection : assessment.broken) {
-    broken.push_back(ends_json(robot, connection));
-  }
-  Json range;
-  if (assessment.load_ratio_max) {
-    range = range_json(assessment.load_ratio_range);
-  }
-  return {{"meaningful", assessment.is_stable && assessment.load_ratio_max.has_value()},
-          {"load_ratio_max", or_null(assessment.load_ratio_max)},
-          {"load_ratio_range", range},
-          {"at", assessment.worst ? ends_json(robot, *assessment.worst) : Json()},
-          {"broken", broken},
-          {"weight_factor", or_null(assessment.weight_factor)}};
+void write_stability(JsonStream& json, const verdict::Assessment& assessment) {
+  const verdict::ModelStability& model = assessment.model;
+  json.begin_object();
+  json.key("simplified");
+  write_rigid_body(json, assessment.simplified);
+  json.key("model");
+  json.begin_object();
+  json.member("stable", model.is_settled ? std::optional(model.is_stable) : std::nullopt);
+  json.member("settled", model.is_settled);
+  json.end_object();
+  json.member("stable", assessment.is_stable);
+  json.end_object();
 }
 
-Json connections_json(const model::Robot& robot, const verdict::Assessment& assessment) {
-  Json list = Json::array();
-  for (std::size_t i = 0; i < assessment.connections.size(); ++i) {
-    const verdict::ConnectionResult& result = assessment.connections[i];
-    const auto [a, b] = model::ends(robot, i);
-    list.push_back({{"a", to_json(a)},
-                    {"b", to_json(b)},
-                    {"load_ratio", result.load_ratio},
-                    {"axial_n", result.axial_n},
-                    {"bending_nmm", result.bending_nmm},
-                    {"shear_n", result.shear_n},
-                    {"torsion_nmm", result.torsion_nmm}});
-  }
-  return list;
+void write_connection(JsonStream& json, const model::Robot& robot, std::size_t connection,
+                      const verdict::ConnectionResult& result) {
+  const auto [a, b] = model::ends(robot, connection);
+  json.begin_object();
+  json.key("a");
+  write_cell(json, a);
+  json.key("b");
+  write_cell(json, b);
+  json.member("load_ratio", result.load_ratio);
+  json.member("axial_n", result.axial_n);
+  json.member("bending_nmm", result.bending_nmm);
+  json.member("shear_n", result.shear_n);
+  json.member("torsion_nmm", result.torsion_nmm);
+  json.end_object();
 }
 
-Json several_json(const verdict::Assessment& assessment) {
+void write_several(JsonStream& json, const verdict::Assessment& assessment) {
   if (!assessment.several) {
-    return {};
+    json.value(nullptr);
+    return;
   }
   const verdict::SeveralSolutions& several = *assessment.several;
-  return {{"found", several.found_count},
-          {"regularised", range_json(several.regularised)},
-          {"unilateral", several.unilateral ? range_json(*several.unilateral) : Json()}};
+  json.begin_object();
+  json.member("found", several.found_count);
+  write_range(json, "regularised", &several.regularised);
+  write_range(json, "unilateral", several.unilateral ? &*several.unilateral : nullptr);
+  json.end_object();
 }
 
 const char* solver_name(const solver::Equilibrium& equilibrium) {
@@ -94,50 +117,195 @@ const char* solver_name(const solver::Equilibrium& equilibrium) {
              : "conjugate gradients with multigrid in double precision";
 }
 
-Json proof_json(const ReportEntry& entry) {
-  const certificate::Verification& found = entry.proof->verification;
-  return {{"proved", found.is_proved},
-          {"load_ratio_range",
-           found.is_proved ? Json::array({found.ratio_low, found.ratio_high}) : Json()},
-          {"reason", found.is_proved ? Json() : Json(found.reason)},
-          {"solves", entry.proof->solve_count},
-          {"seconds", entry.proof_seconds}};
+void write_solver(JsonStream& json, const ReportEntry& entry) {
+  const solver::Equilibrium& equilibrium = entry.assessment->equilibrium;
+  json.begin_object();
+  json.member("name", solver_name(equilibrium));
+  json.member("iterations", equilibrium.steps);
+  json.member("multigrid_iterations", equilibrium.iteration_count);
+  json.member("seconds", entry.seconds);
+  json.end_object();
 }
+
+void write_proof(JsonStream& json, const ReportEntry& entry) {
+  const certificate::Verification& found = entry.proof->verification;
+  const verdict::LoadRange range{.low = found.ratio_low, .high = found.ratio_high};
+  json.begin_object();
+  json.member("proved", found.is_proved);
+  write_range(json, "load_ratio_range", found.is_proved ? &range : nullptr);
+  json.member("reason", found.is_proved ? std::nullopt : std::optional(found.reason));
+  json.member("solves", entry.proof->solve_count);
+  json.member("seconds", entry.proof_seconds);
+  json.end_object();
+}
+
+/// Writes one report; only a window of its connections is in memory at any time.
+class Writer {
+ public:
+  Writer(std::ostream& out, const ReportEntry& entry, const ReportOptions& options)
+      : out_(out), entry_(entry), options_(options), json_(text_) {}
+
+  void write(const MoreKeys& more) {
+    json_.begin_object();
+    write_head();
+    write_overload();
+    write_connections();
+    write_tail();
+    if (more) {
+      more(json_);
+    }
+    json_.end_object();
+    drain();
+  }
+
+ private:
+  void write_head() {
+    const model::Robot& robot = *entry_.robot;
+    const verdict::Assessment& assessment = *entry_.assessment;
+    json_.member("name", entry_.name);
+    json_.member("verdict", verdict::name(assessment.verdict));
+    write_reasons();
+    json_.key("modules");
+    json_.begin_object();
+    json_.member("existing", robot.modules().size() - robot.planned_count());
+    json_.member("planned", robot.planned_count());
+    json_.member("on_ground", robot.ground_count());
+    json_.member("fixed", robot.fixed_count());
+    json_.end_object();
+    json_.key("stability");
+    write_stability(json_, assessment);
+  }
+
+  void write_reasons() {
+    json_.key("reasons");
+    json_.begin_array();
+    for (const verdict::Reason& reason : entry_.assessment->reasons) {
+      json_.value(reason_text(*entry_.robot, reason));
+    }
+    json_.end_array();
+    json_.key("reason_codes");
+    json_.begin_array();
+    for (const verdict::Reason& reason : entry_.assessment->reasons) {
+      json_.value(verdict::name(reason.code));
+    }
+    json_.end_array();
+  }
+
+  void write_overload() {
+    const model::Robot& robot = *entry_.robot;
+    const verdict::Assessment& assessment = *entry_.assessment;
+    json_.key("overload");
+    json_.begin_object();
+    json_.member("meaningful", assessment.is_stable && assessment.load_ratio_max.has_value());
+    json_.member("load_ratio_max", assessment.load_ratio_max);
+    write_range(json_, "load_ratio_range",
+                assessment.load_ratio_max ? &assessment.load_ratio_range : nullptr);
+    json_.key("at");
+    if (assessment.worst) {
+      write_ends(json_, robot, *assessment.worst);
+    } else {
+      json_.value(nullptr);
+    }
+    json_.key("broken");
+    write_list(
+        assessment.broken.size(),
+        [&](JsonStream& json, std::size_t i) { write_ends(json, robot, assessment.broken[i]); },
+        {});
+    json_.member("weight_factor", assessment.weight_factor);
+    json_.end_object();
+  }
+
+  void write_connections() {
+    const verdict::Assessment& assessment = *entry_.assessment;
+    const ConnectionList list(assessment, options_.connections);
+    json_.key("connections");
+    write_list(
+        list.size(),
+        [&](JsonStream& json, std::size_t i) {
+          write_connection(json, *entry_.robot, list[i], assessment.connections[list[i]]);
+        },
+        options_.progress);
+  }
+
+  /// A long array, made by all threads: write_one(json, i) appends its i-th value.
+  template <class WriteOne>
+  void write_list(std::size_t count, const WriteOne& write_one,
+                  const std::function<void(double)>& progress) {
+    json_.begin_array();
+    drain();
+    std::size_t done = 0;
+    host::Team team(options_.thread_count, count);
+    for_ordered_blocks(
+        team, (count + kBlockValues - 1) / kBlockValues,
+        [&](std::size_t block, std::string& text) {
+          JsonStream part = json_.part(text, block == 0);
+          const std::size_t end = std::min((block + 1) * kBlockValues, count);
+          for (std::size_t i = block * kBlockValues; i < end; ++i) {
+            write_one(part, i);
+          }
+        },
+        [&](const std::string& text) {
+          out_ << text;
+          done = std::min(done + kBlockValues, count);
+          if (progress) {
+            progress(static_cast<double>(done) / static_cast<double>(count));
+          }
+          return out_.good();
+        });
+    if (count > 0) {
+      json_.end_parts();
+    }
+    json_.end_array();
+  }
+
+  void write_tail() {
+    const verdict::Assessment& assessment = *entry_.assessment;
+    json_.member("contact_model", verdict::name(assessment.contact_model));
+    json_.key("several_solutions");
+    write_several(json_, assessment);
+    json_.key("solver");
+    write_solver(json_, entry_);
+    json_.key("warnings");
+    json_.begin_array();
+    for (const std::string& warning : entry_.warnings) {
+      json_.value(warning);
+    }
+    json_.end_array();
+    if (entry_.proof != nullptr) {
+      json_.key("proof");
+      write_proof(json_, entry_);
+    }
+  }
+
+  void drain() {
+    out_ << text_;
+    text_.clear();
+  }
+
+  std::ostream& out_;
+  const ReportEntry& entry_;
+  const ReportOptions& options_;
+  std::string text_;
+  JsonStream json_;
+};
 
 }  // namespace
 
+void write_report_json(std::ostream& out, const ReportEntry& entry, const ReportOptions& options,
+                       const MoreKeys& more) {
+  Writer(out, entry, options).write(more);
+}
+
 std::string write_report_json(const ReportEntry& entry) {
-  const model::Robot& robot = *entry.robot;
-  const verdict::Assessment& assessment = *entry.assessment;
-  Json report = {
-      {"name", entry.name},
-      {"verdict", verdict::name(assessment.verdict)},
-      {"reasons", assessment.reasons},
-      {"modules",
-       {{"existing", robot.modules().size() - robot.planned_count()},
-        {"planned", robot.planned_count()},
-        {"on_ground", robot.ground_count()},
-        {"fixed", robot.fixed_count()}}},
-      {"stability", stability_json(assessment)},
-      {"overload", overload_json(robot, assessment)},
-      {"connections", connections_json(robot, assessment)},
-      {"contact_model", verdict::name(assessment.contact_model)},
-      {"several_solutions", several_json(assessment)},
-      {"solver",
-       {{"name", solver_name(assessment.equilibrium)},
-        {"iterations", assessment.equilibrium.steps},
-        {"multigrid_iterations", assessment.equilibrium.iteration_count},
-        {"seconds", entry.seconds}}},
-      {"warnings", std::vector<std::string>(entry.warnings.begin(), entry.warnings.end())}};
-  if (entry.proof != nullptr) {
-    report["proof"] = proof_json(entry);
-  }
-  return report.dump(2, ' ', false, Json::error_handler_t::replace);
+  std::ostringstream out;
+  write_report_json(out, entry);
+  return std::move(out).str();
 }
 
 std::string write_error_json(const base::Error& error, std::string_view name) {
-  const Json report = {{"name", name}, {"error", error.message}, {"where", error.where}};
-  return report.dump(2, ' ', false, Json::error_handler_t::replace);
+  const nlohmann::ordered_json report = {
+      {"name", name}, {"error", error.message}, {"where", error.where}};
+  return report.dump(2, ' ', false, nlohmann::json::error_handler_t::replace);
 }
 
 }  // namespace holdfast::io

@@ -2,14 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <limits>
-#include <numeric>
 
+#include "connection_list.hpp"
+#include "holdfast/io/beside_one.hpp"
 #include "holdfast/io/report.hpp"
-#include "holdfast/verdict/beside_one.hpp"
 
 namespace holdfast::io {
 namespace {
@@ -47,12 +45,6 @@ void write_stability(Out out, const verdict::Assessment& assessment) {
   }
 }
 
-/// For sorting: what is not a number comes first.
-double rank(const verdict::ConnectionResult& result) {
-  return std::isnan(result.load_ratio) ? std::numeric_limits<double>::infinity()
-                                       : result.load_ratio;
-}
-
 void write_loads(Out out, const model::Robot& robot, const verdict::Assessment& assessment) {
   if (assessment.load_ratio_max && !assessment.worst) {
     const bool is_known = assessment.load_ratio_range.high < verdict::kLoadRatioTie;
@@ -60,26 +52,18 @@ void write_loads(Out out, const model::Robot& robot, const verdict::Assessment& 
                    is_known ? "" : "known to be ");
     return;
   }
-  std::vector<std::size_t> order(assessment.connections.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  const std::size_t count = std::min(kListedCount, order.size());
-  std::partial_sort(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(count), order.end(),
-                    [&](std::size_t a, std::size_t b) {
-                      const double ratio_a = rank(assessment.connections[a]);
-                      const double ratio_b = rank(assessment.connections[b]);
-                      return ratio_a != ratio_b ? ratio_a > ratio_b : a < b;
-                    });
-  for (std::size_t i = 0; i < count; ++i) {
+  const std::vector<std::size_t> order = most_loaded(assessment, kListedCount);
+  for (std::size_t i = 0; i < order.size(); ++i) {
     const verdict::ConnectionResult& result = assessment.connections[order[i]];
     fmt::format_to(out, "  {}  {:>7}  {:<24} {:9.3f} N axial {:9.1f} N mm bending\n",
-                   i == 0 ? "load ratio" : "          ", verdict::beside_one(result.load_ratio, 4),
+                   i == 0 ? "load ratio" : "          ", beside_one(result.load_ratio, 4),
                    model::ends_text(robot, order[i]), result.axial_n, result.bending_nmm);
   }
-  if (count > 0 && !assessment.is_stable) {
+  if (!order.empty() && !assessment.is_stable) {
     fmt::format_to(out, "              (not meaningful: the robot topples)\n");
   } else if (assessment.weight_factor) {
     fmt::format_to(out, "  weight      the first connection breaks at {} times this weight\n",
-                   verdict::beside_one(*assessment.weight_factor, 3));
+                   beside_one(*assessment.weight_factor, 3));
   }
 }
 
@@ -124,8 +108,8 @@ std::string write_report_text(const ReportEntry& entry) {
   const verdict::Assessment& assessment = *entry.assessment;
   std::string text;
   const Out out(text);
-  for (const std::string& reason : assessment.reasons) {
-    fmt::format_to(out, "  {}\n", reason);
+  for (const verdict::Reason& reason : assessment.reasons) {
+    fmt::format_to(out, "  {}\n", reason_text(*entry.robot, reason));
   }
   fmt::format_to(out, "\n");
   write_modules(out, *entry.robot);

@@ -7,6 +7,7 @@
 #include <functional>
 #include <tuple>
 
+#include "holdfast/io/report.hpp"
 #include "svg_parts.hpp"
 
 namespace holdfast::io {
@@ -193,8 +194,8 @@ Headline headline(const Scene& scene) {
       break;
   }
   const bool has_reason = has_loads(scene.robot, assessment) && !assessment.reasons.empty();
-  const std::string reason =
-      has_reason ? assessment.reasons.front() : "stable, but the loads are not known; " + stability;
+  const std::string reason = has_reason ? reason_text(scene.robot, assessment.reasons.front())
+                                        : "stable, but the loads are not known; " + stability;
   return {"UNDECIDED", reason, {.red = 90, .green = 96, .blue = 102}};
 }
 

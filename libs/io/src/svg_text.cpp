@@ -8,7 +8,7 @@
 #include <cmath>
 #include <cstdlib>
 
-#include "holdfast/verdict/beside_one.hpp"
+#include "holdfast/io/beside_one.hpp"
 
 namespace holdfast::io {
 namespace {
@@ -111,7 +111,7 @@ std::string number(double value) {
 std::string ratio_text(double ratio, bool is_broken) {
   std::string text = fmt::format("{:.2f}", ratio);
   if (!is_broken && text == "1.00") {
-    return verdict::beside_one(ratio, 4);
+    return beside_one(ratio, 4);
   }
   return text == "-0.00" ? "0.00" : text;
 }

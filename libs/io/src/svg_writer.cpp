@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "holdfast/io/picture.hpp"
+#include "holdfast/io/report.hpp"
 #include "svg_parts.hpp"
 
 namespace holdfast::io {
@@ -17,9 +18,10 @@ std::string description(const Scene& scene) {
       "Isometric view of a modular robot of {} module{}, {} of them "
       "planned. {}: {}.",
       count, count == 1 ? "" : "s", scene.robot.planned_count(), line.verdict, line.essence);
-  for (const std::string& reason : scene.assessment.reasons) {
-    if (reason != line.essence) {
-      text += fmt::format(" {}.", reason);
+  for (const verdict::Reason& reason : scene.assessment.reasons) {
+    const std::string sentence = reason_text(scene.robot, reason);
+    if (sentence != line.essence) {
+      text += fmt::format(" {}.", sentence);
     }
   }
   return text;

@@ -76,7 +76,7 @@ inline verdict::Assessment without_loads(const model::Robot& robot) {
   verdict::Assessment assessment;
   assessment.simplified = verdict::assess_rigid_body(robot);
   assessment.is_stable = true;
-  assessment.reasons = {"stable, but"};
+  assessment.reasons = {{.code = verdict::ReasonCode::kLoadNotANumber}};
   return assessment;
 }
 

@@ -45,6 +45,7 @@ TEST(Report, as_json_has_the_keys_that_other_tools_rely_on) {
   EXPECT_EQ(report["name"], "test \"robot\"");
   EXPECT_EQ(report["verdict"], "overload");
   EXPECT_EQ(report["reasons"].size(), 1U);
+  EXPECT_EQ(report["reason_codes"], Json::parse(R"(["connections_break"])"));
   EXPECT_EQ(report["modules"],
             Json::parse(R"({"existing":26,"planned":0,"on_ground":0,"fixed":1})"));
   EXPECT_TRUE(report["stability"]["simplified"]["margin_mm"].is_null());

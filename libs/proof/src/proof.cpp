@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "holdfast/proof/proof.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -282,19 +280,17 @@ verdict::Verdict verdict_of(const certificate::Verification& found) {
   return found.ratio_high < limit ? verdict::Verdict::kSafe : verdict::Verdict::kUndecided;
 }
 
-const char* what_is_proved(ContactModel model) {
+verdict::ReasonCode what_is_proved(ContactModel model) {
   switch (model) {
     case ContactModel::kRegularised:
-      return "proved, with the states of all facets, for one solution of the paper's contact law, "
-             "which may have others";
+      return verdict::ReasonCode::kProvedOneSolution;
     case ContactModel::kUnilateral:
-      return "proved, with which facets press, for the exact contact law, whose forces are unique "
-             "then";
+      return verdict::ReasonCode::kProvedForces;
     case ContactModel::kNone:
     case ContactModel::kBonded:
       break;
   }
-  return "proved; the solution is unique";
+  return verdict::ReasonCode::kProvedUnique;
 }
 
 /// Of an assessment that stands the first reason is about the loads, and all others stay true.
@@ -330,14 +326,15 @@ void apply(const model::Robot& robot, const Proof& proof, Assessment& assessment
   }
   const bool is_changed = verdict != std::exchange(assessment.verdict, verdict);
   if (!holds) {
-    assessment.reasons = {fmt::format(
-        "not proved: {}",
-        found.is_proved ? "the robot stands, but not by more than rounding" : found.reason)};
+    assessment.reasons = {{.code = verdict::ReasonCode::kNotProved,
+                           .quoted = found.is_proved
+                                         ? "the robot stands, but not by more than rounding"
+                                         : found.reason}};
     return;
   }
   take_loads(robot, proof, is_changed, assessment);
   assessment.load_ratio_range = {.low = found.ratio_low, .high = found.ratio_high};
-  assessment.reasons.emplace_back(what_is_proved(assessment.contact_model));
+  assessment.reasons.push_back({.code = what_is_proved(assessment.contact_model)});
 }
 
 }  // namespace holdfast::proof

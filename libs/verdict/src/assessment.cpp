@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "holdfast/verdict/assessment.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -12,7 +10,6 @@
 #include "connection_law.hpp"
 #include "holdfast/host/team.hpp"
 #include "holdfast/mechanics/support_corners.hpp"
-#include "holdfast/verdict/beside_one.hpp"
 #include "several_solutions.hpp"
 
 namespace holdfast::verdict {
@@ -172,12 +169,6 @@ bool is_pulled_apart(double ratio_max, const Assessment& assessment) {
   return ratio_max >= kLoadRatioTie && is_known;
 }
 
-/// A number with one digit that is not below it.
-double rounded_up(double number) {
-  const double unit = std::pow(10, std::floor(std::log10(number)));
-  return std::ceil(number / unit) * unit;
-}
-
 /// Sec. III-D for every connection.
 void assess_connections(const model::Robot& robot, const solver::EquilibriumOptions& options,
                         Assessment& assessment) {
@@ -301,107 +292,107 @@ void find_equilibrium(const model::Robot& robot, const solver::EquilibriumOption
   }
 }
 
-std::string toppling_reason(const RigidBody& body) {
+Reason toppling_reason(const RigidBody& body) {
   const auto& [a, b] = *body.edge;
-  const std::string where =
-      fmt::format("the edge ({:.10g}, {:.10g})-({:.10g}, {:.10g}) mm", a.x, a.y, b.x, b.y);
   if (*body.margin_mm == 0) {
-    return fmt::format(
-        "the centre of mass lies exactly over {} of the support polygon: nothing "
-        "to spare",
-        where);
+    return {.code = ReasonCode::kNothingToSpare, .numbers = {a.x, a.y, b.x, b.y}};
   }
-  return fmt::format("it topples over {}: the centre of mass lies {:.2f} mm beyond it", where,
-                     -*body.margin_mm);
+  return {.code = ReasonCode::kTopples, .numbers = {a.x, a.y, b.x, b.y, -*body.margin_mm}};
 }
 
-void decide_stable(const model::Robot& robot, Assessment& assessment) {
-  const Equilibrium& equilibrium = assessment.equilibrium;
-  if (equilibrium.outcome == Outcome::kTooLarge) {
-    assessment.reasons.push_back(
-        fmt::format("stable, but the {} modules are too many for the solver's memory, so the loads "
-                    "are not known",
-                    robot.modules().size()));
-    return;
+/// Why the loads of a stable robot are not known; none if they are.
+std::optional<Reason> find_obstacle(const model::Robot& robot, const Equilibrium& equilibrium) {
+  switch (equilibrium.outcome) {
+    case Outcome::kSettled:
+      return std::nullopt;
+    case Outcome::kTooLarge:
+      return Reason{.code = ReasonCode::kTooManyModules,
+                    .numbers = {static_cast<double>(robot.modules().size())}};
+    case Outcome::kTooSlow:
+      return Reason{.code = ReasonCode::kNoDigitsLeft};
+    case Outcome::kSingular:
+      return Reason{.code = ReasonCode::kSingularStiffness,
+                    .numbers = {static_cast<double>(equilibrium.steps)}};
+    default:
+      return Reason{.code = ReasonCode::kNoEquilibrium,
+                    .numbers = {static_cast<double>(equilibrium.steps)}};
   }
-  if (equilibrium.outcome == Outcome::kTooSlow) {
-    assessment.reasons.emplace_back(
-        "stable, but the loads are not known: the robot is so slender that rounding leaves no "
-        "digits of them, or the solver that would keep some does not fit into the memory allowed");
-    return;
-  }
-  if (equilibrium.outcome != Outcome::kSettled) {
-    assessment.reasons.push_back(fmt::format(
-        "stable, but no equilibrium was found in {} steps of the contact iteration{}",
-        equilibrium.steps,
-        equilibrium.outcome == Outcome::kSingular ? ": the stiffness matrix became singular" : ""));
-    return;
-  }
-  const double ratio = assessment.load_ratio_max.value_or(0);
+}
+
+/// Why the loads do not say whether anything breaks; none if they do.
+std::optional<Reason> find_doubt(const Assessment& assessment) {
   const LoadRange& range = assessment.load_ratio_range;
   const bool is_broken = breaks(range.low);
   if (is_nan(range)) {
-    assessment.reasons.emplace_back(
-        "stable, but the load of a connection is not a number, so the largest is not known");
-  } else if (!std::isfinite(range.low) || !std::isfinite(range.high) ||
-             breaks(range.high) != is_broken) {
-    assessment.reasons.push_back(
-        fmt::format("stable, but the largest load ratio is only known to lie between {:.9g} and "
-                    "{:.9g}",
-                    range.low, range.high));
-  } else if (assessment.several && !do_agree(*assessment.several, is_broken)) {
-    assessment.reasons.push_back("stable, but " + text(*assessment.several) +
-                                 "; they do not agree whether anything breaks");
-  } else if (is_broken) {
+    return Reason{.code = ReasonCode::kLoadNotANumber};
+  }
+  if (!std::isfinite(range.low) || !std::isfinite(range.high) || breaks(range.high) != is_broken) {
+    return Reason{.code = ReasonCode::kLimitInRange, .numbers = {range.low, range.high}};
+  }
+  if (assessment.several && !do_agree(*assessment.several, is_broken)) {
+    return reason_of(ReasonCode::kSolutionsDisagree, *assessment.several);
+  }
+  return std::nullopt;
+}
+
+/// Why a robot is safe in which nothing breaks.
+Reason holding_reason(const Assessment& assessment) {
+  if (assessment.connections.empty()) {
+    return {.code = ReasonCode::kSingleModule};
+  }
+  if (assessment.worst) {
+    return {.code = ReasonCode::kHolds,
+            .numbers = {static_cast<double>(*assessment.worst), *assessment.load_ratio_max}};
+  }
+  const double bound = assessment.load_ratio_range.high;
+  return bound < kLoadRatioTie ? Reason{.code = ReasonCode::kNoTension}
+                               : Reason{.code = ReasonCode::kNoKnownTension, .numbers = {bound}};
+}
+
+Reason breaking_reason(const Assessment& assessment) {
+  return {.code = ReasonCode::kConnectionsBreak,
+          .numbers = {static_cast<double>(assessment.broken.size()),
+                      static_cast<double>(assessment.connections.size()),
+                      static_cast<double>(*assessment.worst), *assessment.load_ratio_max}};
+}
+
+void decide_stable(const model::Robot& robot, Assessment& assessment) {
+  auto obstacle = find_obstacle(robot, assessment.equilibrium);
+  if (!obstacle) {
+    obstacle = find_doubt(assessment);
+  }
+  if (obstacle) {
+    assessment.reasons.push_back(*std::move(obstacle));
+  } else if (breaks(assessment.load_ratio_range.low)) {
     assessment.verdict = Verdict::kOverload;
-    assessment.reasons.push_back(
-        fmt::format("{} of {} connections would break; the worst, {}, carries {} of its strength",
-                    assessment.broken.size(), assessment.connections.size(),
-                    model::ends_text(robot, *assessment.worst), beside_one(ratio, 4)));
-  } else if (assessment.connections.empty()) {
-    assessment.verdict = Verdict::kSafe;
-    assessment.reasons.emplace_back("stable, and a single module has no connection to break");
-  } else if (!assessment.worst) {
-    assessment.verdict = Verdict::kSafe;
-    assessment.reasons.push_back(
-        range.high < kLoadRatioTie
-            ? "stable, and no connection is pulled apart"
-            : fmt::format("stable, and no connection is known to be pulled apart: none carries "
-                          "more than {:.1g} of its strength",
-                          rounded_up(range.high)));
+    assessment.reasons.push_back(breaking_reason(assessment));
   } else {
     assessment.verdict = Verdict::kSafe;
-    assessment.reasons.push_back(
-        fmt::format("stable; the worst connection, {}, carries {} of its strength",
-                    model::ends_text(robot, *assessment.worst), beside_one(ratio, 4)));
+    assessment.reasons.push_back(holding_reason(assessment));
   }
 }
 
 void add_contact_remarks(Assessment& assessment) {
+  std::vector<Reason>& reasons = assessment.reasons;
   if (assessment.contact_model == ContactModel::kUnilateral) {
-    assessment.reasons.emplace_back(
-        "the loads come from exact unilateral contact (Eqs. 6-8): the paper's regularised contact "
-        "(Eqs. 9-12) has no usable answer here");
+    reasons.push_back({.code = ReasonCode::kUnilateralContact});
   }
   if (assessment.several && assessment.verdict != Verdict::kUndecided) {
-    assessment.reasons.push_back(text(*assessment.several) + "; all give this verdict");
+    reasons.push_back(reason_of(ReasonCode::kSolutionsAgree, *assessment.several));
   }
   if (assessment.equilibrium.open_but_held_count > 0) {
-    assessment.reasons.push_back(fmt::format(
-        "{} lifted feet would touch down again if they slid freely, and lift again if "
-        "held; between the two the largest load ratio lies from {} to {}",
-        assessment.equilibrium.open_but_held_count, beside_one(assessment.load_ratio_range.low, 4),
-        beside_one(assessment.load_ratio_range.high, 4)));
+    reasons.push_back(
+        {.code = ReasonCode::kAmbiguousFeet,
+         .numbers = {static_cast<double>(assessment.equilibrium.open_but_held_count),
+                     assessment.load_ratio_range.low, assessment.load_ratio_range.high}});
   }
   if (assessment.contact_model == ContactModel::kBonded) {
-    assessment.reasons.emplace_back(
-        "supports are bonded on request: they can neither lift nor tilt, and nothing topples");
+    reasons.push_back({.code = ReasonCode::kBonded});
     return;
   }
   if (assessment.model.is_settled && assessment.model.is_stable != assessment.is_stable) {
-    assessment.reasons.push_back(
-        fmt::format("the model-based check says {}; on flat ground the rigid body decides",
-                    assessment.model.is_stable ? "stable" : "unstable"));
+    reasons.push_back(
+        {.code = ReasonCode::kModelDisagrees, .numbers = {assessment.model.is_stable ? 1.0 : 0.0}});
   }
 }
 

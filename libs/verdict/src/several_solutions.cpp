@@ -2,15 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "several_solutions.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <vector>
 
 #include "connection_law.hpp"
-#include "holdfast/verdict/beside_one.hpp"
 
 namespace holdfast::verdict {
 namespace {
@@ -63,12 +60,6 @@ bool is_on_side(const LoadRange& range, double error, bool is_broken) {
                    : low < 1 - kLoadRatioTie && high < 1 - kLoadRatioTie;
 }
 
-std::string text(const LoadRange& range) {
-  const std::string low = beside_one(range.low, 4);
-  const std::string high = beside_one(range.high, 4);
-  return low == high ? low : fmt::format("{} to {}", low, high);
-}
-
 }  // namespace
 
 void compare_solutions(const model::Robot& robot, solver::EquilibriumSolver& solver, double gamma,
@@ -102,12 +93,11 @@ bool do_agree(const SeveralSolutions& several, bool is_broken) {
          is_on_side(*several.unilateral, several.error, is_broken);
 }
 
-std::string text(const SeveralSolutions& several) {
-  return fmt::format(
-      "the paper's contact law (Eqs. 9-12) has several solutions here: the largest load ratio is "
-      "{} in the {} that were found, {} by exact unilateral contact (Eqs. 6-8)",
-      text(several.regularised), several.found_count,
-      several.unilateral ? text(*several.unilateral) : "not known");
+Reason reason_of(ReasonCode code, const SeveralSolutions& several) {
+  const LoadRange unilateral = several.unilateral.value_or(kEmpty);
+  return {.code = code,
+          .numbers = {static_cast<double>(several.found_count), several.regularised.low,
+                      several.regularised.high, unilateral.low, unilateral.high}};
 }
 
 }  // namespace holdfast::verdict

@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <string>
-
 #include "holdfast/verdict/assessment.hpp"
 
 /// What to say where the paper's contact law has several solutions (theory.md).
@@ -28,7 +26,8 @@ void compare_solutions(const model::Robot& robot, solver::EquilibriumSolver& sol
 /// not. False if the exact law has no answer.
 bool do_agree(const SeveralSolutions& several, bool is_broken);
 
-/// "the paper's contact law (Eqs. 9-12) has several solutions here: the largest load ratio is ..."
-std::string text(const SeveralSolutions& several);
+/// A reason that tells of them: how many were found, the range of the regularised law's, and of the
+/// exact law's, from infinity down to minus infinity if it has no answer.
+Reason reason_of(ReasonCode code, const SeveralSolutions& several);
 
 }  // namespace holdfast::verdict

@@ -13,7 +13,7 @@
 ///
 ///     holdfast::sim::SimulationOptions options;
 ///     options.link = holdfast::sim::blinky_blocks_v1();
-///     auto run = holdfast::simulate(structure, options);
+///     auto run = holdfast::simulate(structure, holdfast::check(structure), options);
 ///     if (run && run.value().result.answer.verdict == holdfast::agent::Verdict::kSafe) { ... }
 namespace holdfast {
 
@@ -56,14 +56,24 @@ base::Result<ChangedStructure> with_changes(const Structure& structure,
 using SimulationProgress = std::function<bool(const sim::SimulationResult&)>;
 
 /// Simulates the robot's own computation. `exact` gives what the robot does not work out (margin,
-/// support polygon, torques) to the view. Errors: options that do not fit the structure.
+/// support polygon, torques) to the view. Errors: options that do not fit the robot.
+base::Result<DistributedRun> simulate(const model::Robot& robot, const CheckResult& exact,
+                                      const sim::SimulationOptions& options,
+                                      const SimulationProgress& progress = {});
+
+/// Simulates the structure's robot.
 base::Result<DistributedRun> simulate(const Structure& structure, const CheckResult& exact,
                                       const sim::SimulationOptions& options,
                                       const SimulationProgress& progress = {});
 
 /// check's report with the entry "distributed"; see docs/formats.md.
+void write_report_json(std::ostream& out, const Structure& structure, const CheckResult& exact,
+                       const DistributedRun& run, const io::ReportOptions& options = {});
 std::string report_json(const Structure& structure, const CheckResult& exact,
                         const DistributedRun& run);
+
+/// Writes the keys of the entry "distributed" into the object that is open.
+void write_distributed(io::JsonStream& json, const DistributedRun& run);
 
 /// For people: what the robot found, beside the exact answer, and what it cost by phases.
 std::string report_text(const Structure& structure, const CheckResult& exact,

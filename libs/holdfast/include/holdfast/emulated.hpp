@@ -30,6 +30,8 @@ base::Result<EmulatedRun> emulate(const Structure& structure, const CheckResult&
                                   const EmulationProgress& progress = {});
 
 /// simulate's report with the entry "firmware"; see docs/firmware.md.
+void write_report_json(std::ostream& out, const Structure& structure, const CheckResult& exact,
+                       const EmulatedRun& run, const io::ReportOptions& options = {});
 std::string report_json(const Structure& structure, const CheckResult& exact,
                         const EmulatedRun& run);
 

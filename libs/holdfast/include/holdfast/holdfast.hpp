@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <functional>
 #include <optional>
+#include <ostream>
 #include <span>
 #include <string>
 #include <string_view>
@@ -15,13 +16,13 @@
 #include "holdfast/base/result.hpp"         // IWYU pragma: export
 #include "holdfast/host/large_pages.hpp"    // IWYU pragma: export
 #include "holdfast/host/output_file.hpp"    // IWYU pragma: export
+#include "holdfast/io/beside_one.hpp"       // IWYU pragma: export
 #include "holdfast/io/document.hpp"         // IWYU pragma: export
 #include "holdfast/io/picture.hpp"          // IWYU pragma: export
 #include "holdfast/io/report.hpp"           // IWYU pragma: export
 #include "holdfast/model/robot.hpp"         // IWYU pragma: export
 #include "holdfast/proof/proof.hpp"         // IWYU pragma: export
 #include "holdfast/verdict/assessment.hpp"  // IWYU pragma: export
-#include "holdfast/verdict/beside_one.hpp"  // IWYU pragma: export
 
 /// The facade: load a structure or make a robot of cells, check it, show the answer. Everything an
 /// application needs.
@@ -92,6 +93,10 @@ base::Result<std::string> read_file(const std::filesystem::path& path);
 /// Writes a whole file or nothing, as host::OutputFile does; "-" is standard output.
 std::optional<base::Error> write_file(const std::filesystem::path& path, std::string_view text);
 
+/// The same with what `write` puts into the stream, for files that are too large for a text.
+std::optional<base::Error> write_file(const std::filesystem::path& path,
+                                      const std::function<void(std::ostream&)>& write);
+
 /// Reads VisibleSim XML or holdfast JSON and builds the robot with the first planned step.
 base::Result<Structure> load_text(std::string_view text, std::string_view name = {});
 base::Result<Structure> load_file(const std::filesystem::path& path);
@@ -143,6 +148,16 @@ std::string report_json(const Structure& structure, const CheckResult& result);
 std::string report_text(const Structure& structure, const CheckResult& result);
 std::string picture_svg(const Structure& structure, const CheckResult& result);
 std::string picture_vtu(const Structure& structure, const CheckResult& result);
+
+/// The same for large robots, into a stream, in a fixed amount of memory.
+void write_report_json(std::ostream& out, const Structure& structure, const CheckResult& result,
+                       const io::ReportOptions& options = {});
+void write_picture_vtu(std::ostream& out, const Structure& structure, const CheckResult& result,
+                       const io::WriteOptions& options = {});
+
+/// A table of the connections and what each carries.
+void write_connections_csv(std::ostream& out, const Structure& structure, const CheckResult& result,
+                           const io::ReportOptions& options = {});
 
 /// The entry of a JSON report for a file that could not be checked: {"name", "error", "where"}.
 std::string error_json(const base::Error& error, std::string_view name);

@@ -43,7 +43,9 @@ class OutputFile {
   /// Removes the temporary file where finish() was not called; what went out directly stays.
   ~OutputFile();
 
-  /// Takes the text; its failures show in finish() at the latest.
+  /// Takes the text; its failures show in finish() at the latest. Can be sought in (tellp, seekp)
+  /// if a file of our own stands behind it; of what is written directly only a file with several
+  /// names can.
   std::ostream& stream();
 
   /// Writes what is left and puts the file in its place. Called once. Errors: a full disk, a closed

@@ -2,9 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <ostream>
 #include <string>
 #include <string_view>
 
+#include "holdfast/io/write_options.hpp"
 #include "holdfast/verdict/assessment.hpp"
 
 namespace holdfast::io {
@@ -16,9 +18,11 @@ namespace holdfast::io {
 std::string write_svg(const model::Robot& robot, const verdict::Assessment& assessment,
                       std::string_view title);
 
-/// A VTK XML unstructured grid (.vtu, ASCII) for ParaView: one hexahedron per module with load
-/// ratio, displacement and ground force, one line per connection with its forces. Field names and
-/// units are in docs/formats.md.
-std::string write_vtu(const model::Robot& robot, const verdict::Assessment& assessment);
+/// Writes a VTK XML unstructured grid (.vtu, compressed binary) for ParaView: one hexahedron per
+/// module with load ratio, displacement and ground force, one line per connection with its forces.
+/// Field names and units are in docs/formats.md. A stream that can be sought in gets it in a fixed
+/// amount of memory; any other gets it at the end. Ends early if the stream fails.
+void write_vtu(std::ostream& out, const model::Robot& robot, const verdict::Assessment& assessment,
+               const WriteOptions& options = {});
 
 }  // namespace holdfast::io

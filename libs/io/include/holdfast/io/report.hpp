@@ -2,10 +2,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
+#include <functional>
+#include <optional>
+#include <ostream>
 #include <span>
 #include <string>
 #include <string_view>
 
+#include "holdfast/io/json_stream.hpp"
+#include "holdfast/io/write_options.hpp"
 #include "holdfast/proof/proof.hpp"
 #include "holdfast/verdict/assessment.hpp"
 
@@ -14,6 +20,10 @@ namespace holdfast::io {
 /// A text from outside, such as a name, in one line: line feeds, other control characters and what
 /// is not UTF-8 as escapes ("\\n", "\\x1b").
 std::string one_line(std::string_view text);
+
+/// The sentence for a reason, without a full stop: "stable; the worst connection, ...". The robot
+/// is the one that was assessed.
+std::string reason_text(const model::Robot& robot, const verdict::Reason& reason);
 
 /// One checked structure, for a report. Views must outlive the call.
 struct ReportEntry {
@@ -26,7 +36,34 @@ struct ReportEntry {
   double proof_seconds = 0;             ///< What it took beyond that.
 };
 
-/// The JSON report, one object; keys are in docs/formats.md.
+/// Which connections a report or table lists.
+struct ConnectionChoice {
+  enum class Kind : std::uint8_t {
+    kAll,      ///< In the robot's order.
+    kBroken,   ///< Those that break, the largest load ratio first.
+    kLargest,  ///< At most `count`, the largest load ratio first.
+  };
+
+  Kind kind = Kind::kAll;
+  std::size_t count = 0;
+};
+
+/// Reads "all", "broken" or a count.
+std::optional<ConnectionChoice> find_connection_choice(std::string_view text);
+
+struct ReportOptions : WriteOptions {
+  ConnectionChoice connections;
+};
+
+/// Adds keys to the end of a report's object.
+using MoreKeys = std::function<void(JsonStream&)>;
+
+/// Writes the JSON report, one object without a line feed behind it; keys are in docs/formats.md.
+/// Ends early if the stream fails.
+void write_report_json(std::ostream& out, const ReportEntry& entry,
+                       const ReportOptions& options = {}, const MoreKeys& more = {});
+
+/// The same as a text.
 std::string write_report_json(const ReportEntry& entry);
 
 /// The entry of a report for a structure that could not be checked.
@@ -34,5 +71,11 @@ std::string write_error_json(const base::Error& error, std::string_view name);
 
 /// The report for people: several lines, no colour, a line feed at the end.
 std::string write_report_text(const ReportEntry& entry);
+
+/// Writes a table of connections, a line each with values between commas; columns are in
+/// docs/formats.md. Without loads there is the line of names alone.
+void write_connections_csv(std::ostream& out, const model::Robot& robot,
+                           const verdict::Assessment& assessment,
+                           const ReportOptions& options = {});
 
 }  // namespace holdfast::io

@@ -43,6 +43,14 @@ Real load_ratio(const Connector<Real>& connector, const base::Vec6<Real>& middle
   return load_ratio(connection_load(middle_force), connector.width, connector.strength);
 }
 
+/// What a module says of a load ratio in its own precision: 1 or more breaks, and so does what is
+/// not a number. A module's numbers have seven digits; on a host, whose rounding is known to be
+/// smaller, verdict::breaks() decides.
+template <class Real>
+constexpr bool breaks(Real load_ratio) {
+  return !(load_ratio < 1);
+}
+
 /// How far an error e of the displacements can take a load ratio: its square by this times the
 /// error's energy e . K e. The forces in the middle of a beam do not couple, each has an energy of
 /// its own, f^2 / stiffness, and no beam has more energy than the whole robot. So by Cauchy and

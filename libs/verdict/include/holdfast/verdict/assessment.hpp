@@ -4,11 +4,11 @@
 
 #include <cstdint>
 #include <optional>
-#include <string>
 #include <vector>
 
 #include "holdfast/model/robot.hpp"
 #include "holdfast/solver/equilibrium.hpp"
+#include "holdfast/verdict/reason.hpp"
 #include "holdfast/verdict/rigid_body.hpp"
 
 /// Will it hold? The verdict on a robot with its planned step, and everything it rests on.
@@ -61,7 +61,7 @@ struct ModelStability {
 
 struct Assessment {
   Verdict verdict = Verdict::kUndecided;
-  std::vector<std::string> reasons;  ///< One or more sentences.
+  std::vector<Reason> reasons;  ///< One or more; the first decides.
 
   RigidBody simplified;  ///< Sec. III-B.
   ModelStability model;  ///< Sec. III-C.

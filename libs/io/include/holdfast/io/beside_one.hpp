@@ -4,10 +4,10 @@
 
 #include <string>
 
-namespace holdfast::verdict {
+namespace holdfast::io {
 
 /// A number with so many decimals, or with more if it would else read as 1 though it is not: what
-/// holds must not read as what breaks. What lies within kLoadRatioTie of 1 counts as 1.
+/// holds must not read as what breaks. What lies within verdict::kLoadRatioTie of 1 counts as 1.
 std::string beside_one(double number, int decimals);
 
-}  // namespace holdfast::verdict
+}  // namespace holdfast::io

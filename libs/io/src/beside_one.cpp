@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The holdfast authors
 // SPDX-License-Identifier: Apache-2.0
-#include "holdfast/verdict/beside_one.hpp"
+#include "holdfast/io/beside_one.hpp"
 
 #include <fmt/format.h>
 
@@ -8,17 +8,17 @@
 
 #include "holdfast/verdict/assessment.hpp"
 
-namespace holdfast::verdict {
+namespace holdfast::io {
 
 std::string beside_one(double number, int decimals) {
   const std::string one = fmt::format("{:.{}f}", 1.0, decimals);
   std::string text = fmt::format("{:.{}f}", number, decimals);
   // Beyond the tie the tenth decimal differs at the latest.
-  while (std::abs(number - 1) > kLoadRatioTie && text.starts_with(one) &&
+  while (std::abs(number - 1) > verdict::kLoadRatioTie && text.starts_with(one) &&
          text.find_first_not_of("0.", 1) == std::string::npos) {
     text = fmt::format("{:.{}f}", number, ++decimals);
   }
   return text;
 }
 
-}  // namespace holdfast::verdict
+}  // namespace holdfast::io

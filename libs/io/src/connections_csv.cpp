@@ -1,0 +1,77 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/compile.h>
+
+#include <algorithm>
+#include <array>
+#include <iterator>
+#include <string>
+
+#include "connection_list.hpp"
+#include "holdfast/io/report.hpp"
+#include "ordered_blocks.hpp"
+
+namespace holdfast::io {
+namespace {
+
+constexpr std::string_view kNames =
+    "ax,ay,az,bx,by,bz,direction,load_ratio,axial_n,bending_nmm,shear_n,torsion_nmm,breaks\n";
+
+/// Rows that one thread makes at a time, some 60 KB.
+constexpr std::size_t kBlockRows = 512;
+
+/// The shortest digits that give the number back; "nan" and "inf" as they are.
+template <class Number>
+void append(std::string& out, Number number) {
+  fmt::format_to(std::back_inserter(out), FMT_COMPILE("{},"), number);
+}
+
+/// Of a connection the second module lies in a positive direction.
+const char* axis_name(base::Direction direction) {
+  constexpr std::array<const char*, 3> kAxes = {"+x,", "+y,", "+z,"};
+  return kAxes[static_cast<std::size_t>(base::index(direction) / 2)];
+}
+
+void append_row(std::string& out, const model::Robot& robot, std::size_t connection,
+                const verdict::ConnectionResult& result) {
+  const auto [a, b] = model::ends(robot, connection);
+  for (const base::Cell& cell : {a, b}) {
+    append(out, cell.x);
+    append(out, cell.y);
+    append(out, cell.z);
+  }
+  out += axis_name(robot.connections()[connection].direction);
+  for (const double number : {result.load_ratio, result.axial_n, result.bending_nmm, result.shear_n,
+                              result.torsion_nmm}) {
+    append(out, number);
+  }
+  out += verdict::breaks(result.load_ratio) ? "1\n" : "0\n";
+}
+
+}  // namespace
+
+void write_connections_csv(std::ostream& out, const model::Robot& robot,
+                           const verdict::Assessment& assessment, const ReportOptions& options) {
+  const ConnectionList list(assessment, options.connections);
+  out << kNames;
+  std::size_t done = 0;
+  host::Team team(options.thread_count, list.size());
+  for_ordered_blocks(
+      team, (list.size() + kBlockRows - 1) / kBlockRows,
+      [&](std::size_t block, std::string& text) {
+        const std::size_t end = std::min((block + 1) * kBlockRows, list.size());
+        for (std::size_t i = block * kBlockRows; i < end; ++i) {
+          append_row(text, robot, list[i], assessment.connections[list[i]]);
+        }
+      },
+      [&](const std::string& text) {
+        out << text;
+        done = std::min(done + kBlockRows, list.size());
+        if (options.progress) {
+          options.progress(static_cast<double>(done) / static_cast<double>(list.size()));
+        }
+        return out.good();
+      });
+}
+
+}  // namespace holdfast::io

@@ -1,0 +1,151 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "holdfast/io/beside_one.hpp"
+#include "holdfast/io/report.hpp"
+
+// The only place where the reasons for a verdict become words.
+namespace holdfast::io {
+namespace {
+
+using verdict::Reason;
+using verdict::ReasonCode;
+using Numbers = std::array<double, Reason::kNumberMax>;
+
+std::string edge_text(const Numbers& n) {
+  return fmt::format("the edge ({:.10g}, {:.10g})-({:.10g}, {:.10g}) mm", n[0], n[1], n[2], n[3]);
+}
+
+/// A number with one digit that is not below it.
+double rounded_up(double number) {
+  const double unit = std::pow(10, std::floor(std::log10(number)));
+  return std::ceil(number / unit) * unit;
+}
+
+std::string range_text(double low, double high) {
+  const std::string low_text = beside_one(low, 4);
+  const std::string high_text = beside_one(high, 4);
+  return low_text == high_text ? low_text : fmt::format("{} to {}", low_text, high_text);
+}
+
+std::string several_text(const Numbers& n) {
+  const bool has_unilateral = !(n[3] > n[4]);
+  return fmt::format(
+      "the paper's contact law (Eqs. 9-12) has several solutions here: the largest load ratio is "
+      "{} in the {:.0f} that were found, {} by exact unilateral contact (Eqs. 6-8)",
+      range_text(n[1], n[2]), n[0], has_unilateral ? range_text(n[3], n[4]) : "not known");
+}
+
+std::string connection_text(const model::Robot& robot, double index) {
+  return model::ends_text(robot, static_cast<std::size_t>(index));
+}
+
+/// Reasons that have no numbers; empty for all others.
+std::string_view fixed_text(ReasonCode code) {
+  switch (code) {
+    case ReasonCode::kNoDigitsLeft:
+      return "stable, but the loads are not known: the robot is so slender that rounding leaves no "
+             "digits of them, or the solver that would keep some does not fit into the memory "
+             "allowed";
+    case ReasonCode::kLoadNotANumber:
+      return "stable, but the load of a connection is not a number, so the largest is not known";
+    case ReasonCode::kSingleModule:
+      return "stable, and a single module has no connection to break";
+    case ReasonCode::kNoTension:
+      return "stable, and no connection is pulled apart";
+    case ReasonCode::kUnilateralContact:
+      return "the loads come from exact unilateral contact (Eqs. 6-8): the paper's regularised "
+             "contact (Eqs. 9-12) has no usable answer here";
+    case ReasonCode::kBonded:
+      return "supports are bonded on request: they can neither lift nor tilt, and nothing topples";
+    case ReasonCode::kProvedOneSolution:
+      return "proved, with the states of all facets, for one solution of the paper's contact law, "
+             "which may have others";
+    case ReasonCode::kProvedForces:
+      return "proved, with which facets press, for the exact contact law, whose forces are unique "
+             "then";
+    case ReasonCode::kProvedUnique:
+      return "proved; the solution is unique";
+    case ReasonCode::kNoVerdictOfTheRobot:
+      return "the modules came to no verdict";
+    default:
+      return {};
+  }
+}
+
+/// Reasons about loads that are known.
+std::string load_text(const model::Robot& robot, const Reason& reason) {
+  const Numbers& n = reason.numbers;
+  switch (reason.code) {
+    case ReasonCode::kLimitInRange:
+      return fmt::format(
+          "stable, but the largest load ratio is only known to lie between {:.9g} and {:.9g}", n[0],
+          n[1]);
+    case ReasonCode::kSolutionsDisagree:
+      return "stable, but " + several_text(n) + "; they do not agree whether anything breaks";
+    case ReasonCode::kConnectionsBreak:
+      return fmt::format(
+          "{:.0f} of {:.0f} connections would break; the worst, {}, carries {} of its strength",
+          n[0], n[1], connection_text(robot, n[2]), beside_one(n[3], 4));
+    case ReasonCode::kNoKnownTension:
+      return fmt::format(
+          "stable, and no connection is known to be pulled apart: none carries more than {:.1g} of "
+          "its strength",
+          rounded_up(n[0]));
+    case ReasonCode::kHolds:
+      return fmt::format("stable; the worst connection, {}, carries {} of its strength",
+                         connection_text(robot, n[0]), beside_one(n[1], 4));
+    case ReasonCode::kSolutionsAgree:
+      return several_text(n) + "; all give this verdict";
+    case ReasonCode::kAmbiguousFeet:
+      return fmt::format(
+          "{:.0f} lifted feet would touch down again if they slid freely, and lift again if held; "
+          "between the two the largest load ratio lies from {} to {}",
+          n[0], beside_one(n[1], 4), beside_one(n[2], 4));
+    default:
+      return {};
+  }
+}
+
+}  // namespace
+
+std::string reason_text(const model::Robot& robot, const verdict::Reason& reason) {
+  const Numbers& n = reason.numbers;
+  switch (reason.code) {
+    case ReasonCode::kNothingToSpare:
+      return fmt::format(
+          "the centre of mass lies exactly over {} of the support polygon: nothing to spare",
+          edge_text(n));
+    case ReasonCode::kTopples:
+      return fmt::format("it topples over {}: the centre of mass lies {:.2f} mm beyond it",
+                         edge_text(n), n[4]);
+    case ReasonCode::kTooManyModules:
+      return fmt::format(
+          "stable, but the {:.0f} modules are too many for the solver's memory, so the loads are "
+          "not known",
+          n[0]);
+    case ReasonCode::kNoEquilibrium:
+    case ReasonCode::kSingularStiffness:
+      return fmt::format(
+          "stable, but no equilibrium was found in {:.0f} steps of the contact iteration{}", n[0],
+          reason.code == ReasonCode::kSingularStiffness ? ": the stiffness matrix became singular"
+                                                        : "");
+    case ReasonCode::kModelDisagrees:
+      return fmt::format("the model-based check says {}; on flat ground the rigid body decides",
+                         n[0] != 0 ? "stable" : "unstable");
+    case ReasonCode::kNotProved:
+      return "not proved: " + reason.quoted;
+    case ReasonCode::kVerdictOfTheRobot:
+      return fmt::format("the robot's own verdict: {}{}", reason.quoted,
+                         n[0] != 0 ? "" : "; not every module knows it");
+    default:
+      break;
+  }
+  const std::string_view fixed = fixed_text(reason.code);
+  return fixed.empty() ? load_text(robot, reason) : std::string(fixed);
+}
+
+}  // namespace holdfast::io

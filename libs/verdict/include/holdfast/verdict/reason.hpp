@@ -1,0 +1,61 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+
+namespace holdfast::verdict {
+
+/// Why a verdict is what it is. Behind a colon stand the `numbers` of a reason with that code. Of
+/// several solutions they are: how many were found, the lowest and highest of their largest load
+/// ratios, and those of the exact law's, of which the lowest is above the highest if it has none.
+enum class ReasonCode : std::uint8_t {
+  kNothingToSpare,     ///< The mass lies over the edge: x, y of its first end, x, y of its second.
+  kTopples,            ///< The same four, and by how much the mass lies beyond the edge, mm.
+  kTooManyModules,     ///< They do not fit into the memory allowed: how many there are.
+  kNoDigitsLeft,       ///< Rounding leaves no digits of the loads.
+  kNoEquilibrium,      ///< None was found: linear solves.
+  kSingularStiffness,  ///< None was found, as the matrix became singular: linear solves.
+  kLoadNotANumber,     ///< A load ratio is not a number.
+  kLimitInRange,       ///< The load ratio at which connections break lies within: low, high.
+  kSolutionsDisagree,  ///< Five, see below.
+  kConnectionsBreak,   ///< How many, of how many, index of the worst, its load ratio.
+  kSingleModule,       ///< It has no connection.
+  kNoTension,          ///< No connection is pulled apart.
+  kNoKnownTension,     ///< None is known to be: an upper bound of the load ratios.
+  kHolds,              ///< Index of the worst connection, its load ratio.
+  kUnilateralContact,  ///< The loads come from Eqs. (6)-(8).
+  kSolutionsAgree,     ///< Five, see below.
+  kAmbiguousFeet,      ///< How many, lowest and highest of the largest load ratio.
+  kBonded,             ///< Supports are bonded on request.
+  kModelDisagrees,     ///< The model-based check says something else: 1 if it says stable.
+  kProvedOneSolution,  ///< Proved for one solution of the paper's contact law.
+  kProvedForces,       ///< Proved for the exact contact law, whose forces are unique.
+  kProvedUnique,       ///< Proved, and there is no other solution.
+  kNotProved,          ///< `quoted` says why.
+  kNoVerdictOfTheRobot,  ///< The modules came to none.
+  kVerdictOfTheRobot,    ///< `quoted` says why: 1 if every module knows it.
+};
+
+inline constexpr int kReasonCodeCount = static_cast<int>(ReasonCode::kVerdictOfTheRobot) + 1;
+
+/// One reason for a verdict, as data. io::reason_text() makes a sentence of it.
+struct Reason {
+  static constexpr std::size_t kNumberMax = 5;
+
+  ReasonCode code = ReasonCode::kNoEquilibrium;
+  std::array<double, kNumberMax> numbers{};
+  /// What another part of the program says, in its own words: the checker of certificates, or the
+  /// robot. Empty for all other codes.
+  std::string quoted = {};
+
+  friend bool operator==(const Reason&, const Reason&) = default;
+};
+
+/// The word for a code in JSON reports, such as "connections_break".
+const char* name(ReasonCode code);
+
+}  // namespace holdfast::verdict
