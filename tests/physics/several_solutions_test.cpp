@@ -130,7 +130,7 @@ TEST(SeveralSolutions, all_that_are_found_fulfil_the_law) {
       EXPECT_EQ(assessment.several->found_count, equilibrium.others.size() + 1);
       // Feet bear up to 100 N; the solver leaves a millionth of that.
       EXPECT_LT(missing_force(robot, equilibrium.displacement), 1e-3);
-      for (const solver::OtherSolution& other : equilibrium.others) {
+      for (const solver::Solution& other : equilibrium.others) {
         EXPECT_LT(missing_force(robot, other.displacement), 1e-3);
         double apart = 0;
         for (std::size_t i = 0; i < other.displacement.size(); ++i) {

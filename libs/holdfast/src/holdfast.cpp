@@ -110,7 +110,7 @@ CheckResult check(const model::Robot& robot, const CheckOptions& options) {
     result.proof = proof::prove(
         robot, result.assessment,
         {.memory_bytes_max = options.memory_bytes_max, .thread_count = options.thread_count});
-    proof::apply(robot, *result.proof, result.assessment);
+    proof::apply(robot, *result.proof, result.assessment, options.thread_count);
     result.proof_seconds = passed() - result.seconds;
   }
   return result;

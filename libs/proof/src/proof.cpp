@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <utility>
 
 #include "holdfast/base/double_double.hpp"
@@ -19,7 +20,8 @@ using certificate::Law;
 using certificate::Residual;
 using certificate::Residuals;
 using mechanics::ContactState;
-using solver::EquilibriumSolver;
+using solver::LinearOutcome;
+using solver::LinearSystem;
 using verdict::Assessment;
 using verdict::ContactModel;
 using Vec = base::Vec6<double>;
@@ -187,35 +189,44 @@ class Prover {
 
   /// False if a solver gave up.
   bool improve_all(solver::Method method, solver::Precision precision) {
-    EquilibriumSolver solver(robot_, {.memory_bytes_max = options_.memory_bytes_max,
-                                      .method = method,
-                                      .precision = precision,
-                                      .is_bonded = proof_.certificate.law == Law::kBonded,
-                                      .thread_count = options_.thread_count});
-    const bool is_unilateral = proof_.certificate.law == Law::kUnilateral;
-    const solver::ContactOptions contact = {
-        .law = is_unilateral ? mechanics::ContactLaw::kUnilateral
-                             : mechanics::ContactLaw::kRegularised,
-        .gamma = is_unilateral ? kUnilateralGamma : robot_.material().contact_gamma};
-    if (!solver.set_contact(contact, assessment_.equilibrium.contact)) {
+    const std::unique_ptr<LinearSystem> system =
+        solver::make_linear_system(robot_, {.memory_bytes_max = options_.memory_bytes_max,
+                                            .method = method,
+                                            .precision = precision,
+                                            .is_bonded = proof_.certificate.law == Law::kBonded,
+                                            .thread_count = options_.thread_count});
+    if (!system) {
       return false;
     }
+    take_states(*system);
     const Residuals residuals(proof_.certificate);
-    bool is_done = improve(0, kPassMax, residuals, solver);
+    bool is_done = improve(0, kPassMax, residuals, *system);
     // What tilting facets do is needed roughly; seldom once more.
     for (int round = 0; round < 2 && is_done && !proof_.is_proved(); ++round) {
       for (std::size_t field = 1; field < proof_.certificate.fields.size(); ++field) {
-        is_done = is_done && improve(field, 1, residuals, solver);
+        is_done = is_done && improve(field, 1, residuals, *system);
       }
       proof_.verification = certificate::verify(proof_.certificate);
     }
     return is_done;
   }
 
+  /// Puts the facets into the assessment's states; of the unilateral law those that press are held,
+  /// the others are not.
+  void take_states(LinearSystem& system) const {
+    const bool is_unilateral = proof_.certificate.law == Law::kUnilateral;
+    system.set_law({.law = is_unilateral ? mechanics::ContactLaw::kUnilateral
+                                         : mechanics::ContactLaw::kRegularised,
+                    .gamma = is_unilateral ? kUnilateralGamma : robot_.material().contact_gamma});
+    for (std::size_t i = 0; i < system.facets().size(); ++i) {
+      const ContactState& state = assessment_.equilibrium.contact[system.facets()[i].module];
+      system.set_facet(i, state, !is_unilateral || state.pressed);
+    }
+  }
+
   /// Iterative refinement: the residual is that of the certificate's integers, so the digits that
   /// differences of displacements lose are there.
-  bool improve(std::size_t field, int pass_max, const Residuals& residuals,
-               EquilibriumSolver& solver) {
+  bool improve(std::size_t field, int pass_max, const Residuals& residuals, LinearSystem& system) {
     double before = std::numeric_limits<double>::infinity();
     for (int pass = 0; pass < pass_max; ++pass) {
       const Residual left = residuals.of(field);
@@ -223,13 +234,12 @@ class Prover {
         return true;
       }
       before = left.largest;
-      const auto step =
-          solver.respond(force_of(left), field == 0 ? kTolerance : kResponseTolerance);
-      if (!step) {
+      system.set_loads(model::Loads(force_of(left)));
+      if (system.solve(field == 0 ? kTolerance : kResponseTolerance) != LinearOutcome::kSolved) {
         return false;
       }
       ++proof_.solve_count;
-      add(*step, field);
+      add(system.displacement(), field);
     }
     return true;
   }
@@ -294,12 +304,12 @@ verdict::ReasonCode what_is_proved(ContactModel model) {
 }
 
 /// Of an assessment that stands the first reason is about the loads, and all others stay true.
-void take_loads(const model::Robot& robot, const Proof& proof, bool is_changed,
+void take_loads(const model::Robot& robot, const Proof& proof, bool is_changed, int thread_count,
                 Assessment& assessment) {
   assessment.equilibrium.displacement = proof.displacement;
   assessment.equilibrium.displacement_low = proof.displacement_low;
   assessment.equilibrium.alternative = proof.displacement;
-  Assessment fresh = verdict::assess_equilibrium(robot, assessment.equilibrium);
+  Assessment fresh = verdict::assess_equilibrium(robot, assessment.equilibrium, thread_count);
   assessment.connections = std::move(fresh.connections);
   assessment.load_ratio_max = fresh.load_ratio_max;
   assessment.worst = fresh.worst;
@@ -314,7 +324,8 @@ void take_loads(const model::Robot& robot, const Proof& proof, bool is_changed,
 
 }  // namespace
 
-void apply(const model::Robot& robot, const Proof& proof, Assessment& assessment) {
+void apply(const model::Robot& robot, const Proof& proof, Assessment& assessment,
+           int thread_count) {
   const certificate::Verification& found = proof.verification;
   if (assessment.verdict == verdict::Verdict::kUnstable) {
     return;
@@ -332,7 +343,7 @@ void apply(const model::Robot& robot, const Proof& proof, Assessment& assessment
                                          : found.reason}};
     return;
   }
-  take_loads(robot, proof, is_changed, assessment);
+  take_loads(robot, proof, is_changed, thread_count, assessment);
   assessment.load_ratio_range = {.low = found.ratio_low, .high = found.ratio_high};
   assessment.reasons.push_back({.code = what_is_proved(assessment.contact_model)});
 }

@@ -199,24 +199,55 @@ void BlockLu::make_column(std::size_t k) {
 
 void BlockLu::solve(std::span<base::Vec6<double>> x) const {
   HOLDFAST_CHECK(x.size() == position_.size() && !is_singular_);
-  const std::size_t n = position_.size();
-  std::vector<base::Vec6<double>> y(n);
-  for (std::size_t node = 0; node < n; ++node) {
+  std::vector<base::Vec6<double>> y(x.size());
+  for (std::size_t node = 0; node < x.size(); ++node) {
     y[static_cast<std::size_t>(position_[node])] = x[node];
   }
+  substitute(y, 1);
+  for (std::size_t node = 0; node < x.size(); ++node) {
+    x[node] = y[static_cast<std::size_t>(position_[node])];
+  }
+}
+
+void BlockLu::solve_each(std::span<std::vector<base::Vec6<double>>> columns) const {
+  HOLDFAST_CHECK(!is_singular_);
+  const std::size_t count = columns.size();
+  std::vector<base::Vec6<double>> y(count * position_.size());
+  for (std::size_t c = 0; c < count; ++c) {
+    HOLDFAST_CHECK(columns[c].size() == position_.size());
+    for (std::size_t node = 0; node < position_.size(); ++node) {
+      y[count * static_cast<std::size_t>(position_[node]) + c] = columns[c][node];
+    }
+  }
+  substitute(y, count);
+  for (std::size_t c = 0; c < count; ++c) {
+    for (std::size_t node = 0; node < position_.size(); ++node) {
+      columns[c][node] = y[count * static_cast<std::size_t>(position_[node]) + c];
+    }
+  }
+}
+
+/// Forward and backward substitution for `count` right-hand sides, by place, then by side.
+void BlockLu::substitute(std::span<base::Vec6<double>> y, std::size_t count) const {
+  const std::size_t n = position_.size();
   for (std::size_t k = 0; k < n; ++k) {
     for (std::size_t slot = column_start_[k]; slot < column_start_[k + 1]; ++slot) {
-      subtract_product(y[static_cast<std::size_t>(rows_[slot])], lower_[slot], y[k]);
+      const std::size_t row = count * static_cast<std::size_t>(rows_[slot]);
+      for (std::size_t c = 0; c < count; ++c) {
+        subtract_product(y[row + c], lower_[slot], y[count * k + c]);
+      }
     }
   }
   for (std::size_t k = n; k-- > 0;) {
     for (std::size_t slot = column_start_[k]; slot < column_start_[k + 1]; ++slot) {
-      subtract_product(y[k], upper_[slot], y[static_cast<std::size_t>(rows_[slot])]);
+      const std::size_t row = count * static_cast<std::size_t>(rows_[slot]);
+      for (std::size_t c = 0; c < count; ++c) {
+        subtract_product(y[count * k + c], upper_[slot], y[row + c]);
+      }
     }
-    y[k] = multiply(inverse_[k], y[k]);
-  }
-  for (std::size_t node = 0; node < n; ++node) {
-    x[node] = y[static_cast<std::size_t>(position_[node])];
+    for (std::size_t c = 0; c < count; ++c) {
+      y[count * k + c] = multiply(inverse_[k], y[count * k + c]);
+    }
   }
 }
 

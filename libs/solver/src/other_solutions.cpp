@@ -14,8 +14,7 @@
 #include <utility>
 #include <vector>
 
-#include "holdfast/solver/equilibrium.hpp"
-#include "multigrid/multigrid.hpp"
+#include "regularised_contact.hpp"
 
 namespace holdfast::solver {
 namespace {
@@ -24,8 +23,9 @@ namespace {
 /// that had another solution was 1.7.
 constexpr double kSlipRatio = 1;
 
-/// With multigrid each costs a few iterations: no more than this are tried, lightest first.
-constexpr std::size_t kTriedMaxMultigrid = 8;
+/// Where systems are iterated each costs a few iterations: no more than this are tried, lightest
+/// first.
+constexpr std::size_t kTriedMaxIterated = 8;
 
 /// Forces of mirror images differ by the solver's error.
 constexpr double kAlikeShare = 1e-3;
@@ -46,12 +46,12 @@ bool is_alike(const Doubt& a, const Doubt& b) {
 
 /// Facets, by index, that may have a second state; lightest for their sideways force first, and one
 /// only of those that bear the same, as each other's mirror images do.
-std::vector<std::size_t> EquilibriumSolver::doubtful_facets(const Equilibrium& settled) const {
+std::vector<std::size_t> RegularisedContact::doubtful_facets(const Solution& settled) const {
   std::vector<Doubt> doubts;
-  for (std::size_t i = 0; i < facets_.size(); ++i) {
-    const mechanics::ContactState& state = facets_[i].state;
-    const bool is_stuck = state.pressed && state.tilt_x == 0 && state.tilt_y == 0;
-    const Vec force = mechanics::trial_force(ground_, settled.displacement[facets_[i].module]);
+  for (std::size_t i = 0; i < system().facets().size(); ++i) {
+    const FacetState& facet = system().facets()[i];
+    const bool is_stuck = facet.state == mechanics::ContactState{};
+    const Vec force = mechanics::trial_force(system().ground(), settled.displacement[facet.module]);
     const Doubt doubt = {
         .facet = i, .upright_n = std::abs(force[2]), .sideways_n = std::hypot(force[0], force[1])};
     const bool is_new =
@@ -69,45 +69,37 @@ std::vector<std::size_t> EquilibriumSolver::doubtful_facets(const Equilibrium& s
   return indices;
 }
 
-void EquilibriumSolver::seek_others(Equilibrium& settled) {
-  if (settled.outcome != Outcome::kSettled || settled.law != mechanics::ContactLaw::kRegularised ||
-      options_.is_bonded) {
-    return;
-  }
+std::vector<Solution> RegularisedContact::find_others(const Solution& settled) {
   std::vector<std::size_t> doubtful = doubtful_facets(settled);
-  if (doubtful.empty()) {
-    return;
+  if (!system().is_exact() && doubtful.size() > kTriedMaxIterated) {
+    doubtful.resize(kTriedMaxIterated);
   }
   const std::vector<mechanics::ContactState> states = present_states();
-  if (multigrid_ && doubtful.size() > kTriedMaxMultigrid) {
-    doubtful.resize(kTriedMaxMultigrid);
-  }
   std::vector<std::vector<mechanics::ContactState>> known = {states};
+  std::vector<Solution> others;
   for (const std::size_t facet : doubtful) {
     set_states(states);
-    set_facet(facets_[facet], {.pressed = !states[facet].pressed}, true);
-    Equilibrium other;
+    system().set_facet(facet, {.pressed = !states[facet].pressed}, true);
+    Solution other;
     const bool is_found = goes_on_from(facet, other);
-    settled.steps += other.steps;
     const std::vector<mechanics::ContactState> found = present_states();
     if (is_found && std::ranges::find(known, found) == known.end()) {
       known.push_back(found);
-      settled.others.push_back({.displacement = std::move(other.displacement),
-                                .displacement_low = std::move(other.displacement_low),
-                                .alternative = std::move(other.alternative)});
+      others.push_back(std::move(other));
     }
   }
   set_states(states);
+  return others;
 }
 
 /// Newton's method with a facet put into another state. Returns whether it settles without the
 /// facet going back at once.
-bool EquilibriumSolver::goes_on_from(std::size_t facet, Equilibrium& other) {
-  const bool was_pressed = facets_[facet].state.pressed;
-  tolerance_ = loose_tolerance();
-  return solve_for_states(other) && states_at(other.displacement)[facet].pressed == was_pressed &&
-         iterate_regularised(other) == Outcome::kSettled &&
-         (multigrid_ ? finish_multigrid(other) : finish_direct(other));
+bool RegularisedContact::goes_on_from(std::size_t facet, Solution& other) {
+  const bool was_pressed = system().facets()[facet].state.pressed;
+  loosen();
+  return solve_for_states(other) == Outcome::kSettled &&
+         states_at(other.displacement)[facet].pressed == was_pressed &&
+         run(other) == Outcome::kSettled && system().refine(other);
 }
 
 }  // namespace holdfast::solver

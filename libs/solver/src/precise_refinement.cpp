@@ -63,14 +63,13 @@ std::vector<base::Vec6<To>> all_converted(const std::vector<base::Vec6<From>>& v
 
 }  // namespace
 
-PreciseRefinement::PreciseRefinement(const model::Robot& robot,
-                                     const mechanics::GroundFacet<double>& ground,
-                                     std::vector<FacetState> facets)
-    : robot_(robot),
-      beam_(mechanics::beam_stiffness(precise_section(robot.material()))),
-      ground_(mechanics::ground_facet<DoubleDouble>(
-          precise_section(robot.material()), robot.material().facet_mm, ground.gamma, ground.law)),
-      facets_(std::move(facets)) {}
+PreciseRefinement::PreciseRefinement(const LinearSystem& system)
+    : system_(system),
+      robot_(system.robot()),
+      beam_(mechanics::beam_stiffness(precise_section(robot_.material()))),
+      ground_(mechanics::ground_facet<DoubleDouble>(precise_section(robot_.material()),
+                                                    robot_.material().facet_mm,
+                                                    system.ground().gamma, system.ground().law)) {}
 
 bool PreciseRefinement::run(const std::vector<Vec>& displacement, const Solve& solve) {
   displacement_ = all_converted<DoubleDouble>(displacement);
@@ -140,14 +139,14 @@ PreciseRefinement::PreciseVecs PreciseRefinement::product(const PreciseVecs& u) 
     take(a, mechanics::end_force(beam_, connection.direction, u[a], u[b]));
     take(b, mechanics::end_force(beam_, base::opposite(connection.direction), u[b], u[a]));
   }
-  for (const FacetState& facet : facets_) {
+  for (const FacetState& facet : system_.facets()) {
     take(facet.module,
          mechanics::contact_force(ground_, facet.state, facet.is_held, u[facet.module]));
   }
   return force;
 }
 
-/// What the displacements leave of the weight.
+/// What the displacements leave of the loads.
 PreciseRefinement::PreciseVecs PreciseRefinement::residual() const {
   PreciseVecs left = product(displacement_);
   for (std::size_t i = 0; i < left.size(); ++i) {
@@ -155,7 +154,7 @@ PreciseRefinement::PreciseVecs PreciseRefinement::residual() const {
       component = -component;
     }
     if (!is_fixed(i)) {
-      left[i][2] -= model::module_weight_n(robot_.material());
+      base::add_to(left[i], base::converted<DoubleDouble>(system_.loads()[i]));
     }
   }
   return left;
@@ -177,8 +176,8 @@ std::vector<base::Vec6<double>> PreciseRefinement::low() const {
 
 std::vector<mechanics::ContactState> PreciseRefinement::states() const {
   std::vector<mechanics::ContactState> states;
-  states.reserve(facets_.size());
-  for (const FacetState& facet : facets_) {
+  states.reserve(system_.facets().size());
+  for (const FacetState& facet : system_.facets()) {
     states.push_back(mechanics::contact_state(
         ground_, mechanics::trial_force(ground_, displacement_[facet.module])));
   }

@@ -9,7 +9,7 @@
 #include "holdfast/base/double_double.hpp"
 #include "holdfast/mechanics/ground_contact.hpp"
 #include "holdfast/model/robot.hpp"
-#include "holdfast/solver/equilibrium.hpp"
+#include "holdfast/solver/linear_system.hpp"
 
 /// Iterative refinement with residuals and displacements in 106 bits [Wilkinson 1963].
 ///
@@ -33,10 +33,9 @@ class PreciseRefinement {
   /// accuracy finds for them, in place. Fixed modules' loads mean nothing.
   using Solve = std::function<void(std::vector<Vec>& load)>;
 
-  /// Keeps a reference to the robot. Of `ground` only gamma and the law are taken; the numbers of
-  /// the section count as exact.
-  PreciseRefinement(const model::Robot& robot, const mechanics::GroundFacet<double>& ground,
-                    std::vector<FacetState> facets);
+  /// Refines solutions of a system, whose present facets and loads it takes. Keeps a reference to
+  /// it, which is to stay as it is; the numbers of its section count as exact.
+  explicit PreciseRefinement(const LinearSystem& system);
 
   /// Improves the displacements until the corrections are rounding. Returns false if they do not
   /// become so: the solver's error is as large as the displacements, or larger.
@@ -65,10 +64,10 @@ class PreciseRefinement {
   double size_of(const PreciseVecs& motion) const;
   bool is_fixed(std::size_t module) const;
 
+  const LinearSystem& system_;
   const model::Robot& robot_;
   mechanics::BeamStiffness<base::DoubleDouble> beam_;
   mechanics::GroundFacet<base::DoubleDouble> ground_;
-  std::vector<FacetState> facets_;
   PreciseVecs displacement_;
   std::vector<Direction> older_;
 };

@@ -104,10 +104,11 @@ inline Matrix6 unilateral_tangent(const model::Material& m, double gamma,
   return to_facet.transpose() * ((1 - gamma) * condensed + gamma * h) * to_facet;
 }
 
-/// Displacements of all modules under their weight; `contact` gives the tangent of each ground
-/// module. Zero where fixed.
+/// Displacements of all modules under loads; `contact` gives the tangent of each ground module.
+/// Zero where fixed.
 template <class Contact>
-std::vector<base::Vec6<double>> dense_displacement(const model::Robot& robot, Contact contact) {
+std::vector<base::Vec6<double>> dense_displacement(const model::Robot& robot,
+                                                   const model::Loads& loads, Contact contact) {
   const model::Material& m = robot.material();
   const auto modules = robot.modules();
   const auto size = 6 * static_cast<Eigen::Index>(modules.size());
@@ -119,7 +120,7 @@ std::vector<base::Vec6<double>> dense_displacement(const model::Robot& robot, Co
       k.block<6, 6>(row, row).setIdentity();
       continue;
     }
-    f(row + 2) = -m.mass_kg * m.gravity_m_s2;
+    f.segment<6>(row) = Eigen::Map<const Vector6>(loads[p].data());
     if (modules[p].support == model::Support::kGround) {
       k.block<6, 6>(row, row) += contact(p);
     }
@@ -139,6 +140,13 @@ std::vector<base::Vec6<double>> dense_displacement(const model::Robot& robot, Co
     displacement[static_cast<std::size_t>(i / 6)][static_cast<std::size_t>(i % 6)] = u(i);
   }
   return displacement;
+}
+
+/// Displacements of all modules under their weight.
+template <class Contact>
+std::vector<base::Vec6<double>> dense_displacement(const model::Robot& robot, Contact contact) {
+  const double weight_n = robot.material().mass_kg * robot.material().gravity_m_s2;
+  return dense_displacement(robot, model::Loads({0, 0, -weight_n, 0, 0, 0}), contact);
 }
 
 inline double largest(const std::vector<base::Vec6<double>>& vectors) {

@@ -289,7 +289,7 @@ TEST(Multigrid, is_chosen_for_all_but_small_robots) {
 
 TEST(Multigrid, leaves_the_unilateral_law_to_the_direct_solver_where_little_fills_in) {
   const auto method = [](Family name, std::size_t size) {
-    return EquilibriumSolver(family(name, size)).method_for(mechanics::ContactLaw::kUnilateral);
+    return EquilibriumSolver(family(name, size)).prepare(mechanics::ContactLaw::kUnilateral);
   };
   EXPECT_EQ(method(Family::kTower, 100), Method::kDirect);
   EXPECT_EQ(method(Family::kCube, 12), Method::kMultigrid);
@@ -492,6 +492,53 @@ TEST(EquilibriumSolver, finds_digits_where_a_factorization_has_lost_them_all) {
   EXPECT_FALSE(found.displacement_low.empty());
   const double tension = clamped_tension_n(longest, kLongest);
   EXPECT_NEAR(end_tension_n(longest, found), tension, 1e-4 * tension);
+}
+
+/// Without weak springs an open facet resists nothing. Where the robot stands on its other feet
+/// that is no harm, and the answer is what ever weaker springs lead to: 1e-9 of them change no load
+/// ratio by more than multigrid may.
+TEST(Multigrid, does_without_weak_springs_where_the_robot_stands_without_them) {
+  for (const auto& [name, size] : {std::pair{Family::kPortal, 60}, std::pair{Family::kCube, 9}}) {
+    const model::Robot robot = family(name, static_cast<std::size_t>(size));
+    const ContactOptions none = {.law = ContactLaw::kUnilateral, .gamma = 0};
+    const Equilibrium found = EquilibriumSolver(robot, {.method = Method::kMultigrid}).solve(none);
+    ASSERT_EQ(found.outcome, Outcome::kSettled);
+    const Equilibrium weak = EquilibriumSolver(robot, {.method = Method::kDirect})
+                                 .solve({.law = ContactLaw::kUnilateral, .gamma = 1e-9});
+    ASSERT_EQ(weak.outcome, Outcome::kSettled);
+    EXPECT_LE(largest_difference(load_ratios(robot, found.displacement),
+                                 load_ratios(robot, weak.displacement)),
+              kRatioTolerance);
+  }
+}
+
+/// A robot that topples has nothing else to hang on: it must end, and say so.
+TEST(Multigrid, ends_where_a_toppling_robot_has_no_weak_springs) {
+  for (const auto& [name, size] : {std::pair{Family::kArm, 300}, std::pair{Family::kBridge, 30}}) {
+    const model::Robot robot = family(name, static_cast<std::size_t>(size));
+    for (const Precision precision : {Precision::kSingle, Precision::kDouble}) {
+      const Equilibrium found =
+          EquilibriumSolver(robot, {.method = Method::kMultigrid, .precision = precision})
+              .solve({.law = ContactLaw::kUnilateral, .gamma = 0});
+      EXPECT_NE(found.outcome, Outcome::kSettled) << size;
+      EXPECT_FALSE(found.attempts.empty());
+      EXPECT_EQ(found.attempts.back().outcome, found.outcome);
+    }
+  }
+}
+
+/// What single precision did before it gave up stays in the report.
+TEST(EquilibriumSolver, reports_the_attempt_that_failed_beside_the_one_that_did_not) {
+  const model::Robot robot = family(Family::kTower, 7000);
+  const Equilibrium found =
+      EquilibriumSolver(robot, {.method = Method::kMultigrid, .is_bonded = true}).solve({});
+  ASSERT_EQ(found.outcome, Outcome::kSettled);
+  ASSERT_EQ(found.attempts.size(), 2U);
+  EXPECT_EQ(found.attempts[0].outcome, Outcome::kTooSlow);
+  EXPECT_EQ(found.attempts[0].precision, Precision::kSingle);
+  EXPECT_EQ(found.attempts[1].outcome, Outcome::kSettled);
+  EXPECT_EQ(found.attempts[1].precision, Precision::kDouble);
+  EXPECT_EQ(found.attempts[1].iteration_count, found.iteration_count);
 }
 
 }  // namespace

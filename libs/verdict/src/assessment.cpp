@@ -236,7 +236,7 @@ std::span<const double> weak_springs(solver::EquilibriumSolver& solver, bool is_
   if (!is_stable) {
     return kTopplingGammas;
   }
-  return solver.method_for(ContactLaw::kUnilateral) == solver::Method::kMultigrid
+  return solver.prepare(ContactLaw::kUnilateral) == solver::Method::kMultigrid
              ? std::span<const double>(kStableGammasMultigrid)
              : kStableGammas;
 }
@@ -281,11 +281,8 @@ void find_equilibrium(const model::Robot& robot, const solver::EquilibriumOption
     if (agrees(assessment)) {
       return;
     }
-    const int steps = assessment.equilibrium.steps;
-    const int iterations = assessment.equilibrium.iteration_count;
     Equilibrium exact = solver.solve({.law = ContactLaw::kUnilateral, .gamma = gamma});
-    exact.steps += steps;
-    exact.iteration_count += iterations;
+    exact.begin_with(assessment.equilibrium);
     assessment.equilibrium = std::move(exact);
     assessment.model = model_stability(robot, assessment.equilibrium);
     assessment.contact_model = ContactModel::kUnilateral;
@@ -472,12 +469,13 @@ Assessment assess(const model::Robot& robot, const solver::EquilibriumOptions& o
   return assessment;
 }
 
-Assessment assess_equilibrium(const model::Robot& robot, Equilibrium equilibrium) {
+Assessment assess_equilibrium(const model::Robot& robot, Equilibrium equilibrium,
+                              int thread_count) {
   Assessment assessment = begin(robot);
   assessment.equilibrium = std::move(equilibrium);
   assessment.model = model_stability(robot, assessment.equilibrium);
   assessment.contact_model = contact_model(robot, assessment.equilibrium.law);
-  return conclude(robot, std::move(assessment), {});
+  return conclude(robot, std::move(assessment), {.thread_count = thread_count});
 }
 
 const char* name(Verdict verdict) {

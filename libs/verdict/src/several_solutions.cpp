@@ -14,7 +14,7 @@ namespace {
 
 using Displacements = std::vector<base::Vec6<double>>;
 
-/// Largest load ratio; NaN if one is. `low` as of an Equilibrium.
+/// Largest load ratio; NaN if one is. `low` as of a Solution.
 double load_ratio_max(const model::Robot& robot, const Displacements& u, const Displacements& low) {
   const ConnectionLaw laws[] = {{robot.material(), base::Direction::kPlusX},
                                 {robot.material(), base::Direction::kPlusY},
@@ -40,8 +40,7 @@ void widen(LoadRange& range, double ratio) {
 
 /// Takes in what a solution and its alternative say. Beside 106 bits the alternative says something
 /// only if feet are ambiguous.
-template <class Solution>
-void widen(LoadRange& range, const model::Robot& robot, const Solution& solution,
+void widen(LoadRange& range, const model::Robot& robot, const solver::Solution& solution,
            bool is_ambiguous = false) {
   widen(range, load_ratio_max(robot, solution.displacement, solution.displacement_low));
   if (solution.displacement_low.empty() || is_ambiguous) {
@@ -72,7 +71,7 @@ void compare_solutions(const model::Robot& robot, solver::EquilibriumSolver& sol
   several.found_count = settled.others.size() + 1;
   several.regularised = kEmpty;
   widen(several.regularised, robot, settled);
-  for (const solver::OtherSolution& other : settled.others) {
+  for (const solver::Solution& other : settled.others) {
     widen(several.regularised, robot, other);
   }
   const solver::Equilibrium exact =

@@ -6,11 +6,21 @@
 #include <vector>
 
 #include "holdfast/base/algebra.hpp"
+#include "holdfast/mechanics/beam.hpp"
+#include "holdfast/model/material.hpp"
 #include "kernels.hpp"
 
-/// How the ends of a long beam move the modules along it, and take their loads: Hermite's cubics,
-/// which are exact for a beam that is loaded at its ends only [Przemieniecki 1968].
+/// Beams of several pitches: how stiff they are, and how their ends move the modules along them,
+/// and take their loads: by Hermite's cubics, which are exact for a beam that is loaded at its ends
+/// only [Przemieniecki 1968].
 namespace holdfast::solver {
+
+/// The stiffness of a beam of the material's section, `length` pitches long.
+inline mechanics::BeamStiffness<double> long_beam(const model::Material& material, int length) {
+  mechanics::BeamSection<double> section = model::beam_section(material);
+  section.length *= length;
+  return mechanics::beam_stiffness(section);
+}
 
 /// How an end of an unloaded beam moves a point of it, by Hermite's cubics: a displacement u moves
 /// it by `linear` u along the axis and by `cubic` u across, and turns it by cubic_rate (step x u);

@@ -22,11 +22,11 @@ constexpr int kPatience = 50;
 template <class Real>
 ConjugateGradients<Real>::ConjugateGradients(const ReducedNetwork& network,
                                              const model::Material& material, Team& team,
-                                             GroundStiffness ground,
+                                             const GroundTable& ground,
                                              std::span<const std::int32_t> alone)
     : Iteration(network.node_count),
       team_(team),
-      hierarchy_(network, material, team, std::move(ground), alone),
+      hierarchy_(network, material, team, ground, alone),
       cycle_(hierarchy_, team, kSweepCount),
       node_count_(network.node_count),
       q_(6 * node_count_),

@@ -13,11 +13,13 @@ namespace holdfast::solver {
 template <class Real>
 class ConjugateGradients final : public Iteration {
  public:
-  /// Keeps references to the network and the material.
+  /// Keeps references to the network, the material and the table of what facets are.
   ConjugateGradients(const ReducedNetwork& network, const model::Material& material, Team& team,
-                     GroundStiffness ground, std::span<const std::int32_t> alone);
+                     const GroundTable& ground, std::span<const std::int32_t> alone);
 
   bool is_too_slender() const override { return hierarchy_.is_too_slender(); }
+
+  bool is_singular() const override { return hierarchy_.is_singular(); }
 
   void update_contact() override { hierarchy_.update_contact(); }
 

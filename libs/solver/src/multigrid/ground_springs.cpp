@@ -3,6 +3,7 @@
 #include "ground_springs.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
 namespace holdfast::solver {
@@ -58,14 +59,22 @@ void add_to(GroundSpring& sum, const GroundSpring& spring) {
   }
 }
 
-/// A sum of ground springs of one cluster in one direction as a single one.
+bool is_finite(const Mat& matrix) {
+  return std::ranges::all_of(matrix.values, [](double value) { return std::isfinite(value); });
+}
+
+/// Makes a sum of ground springs of one cluster in one direction a single one. What does not resist
+/// some motion at all, like an open facet without weak springs, cannot be lengthened and stays.
 void unite(GroundSpring& sum, double count) {
   for (double& x : sum.middle) {
     x /= count;
   }
   sum.reach /= count;
-  sum.stiffness =
+  const Mat longer =
       stretched(sum.stiffness, sum.middle, sum.direction / 2U, sum.length / count, sum.reach);
+  if (is_finite(longer)) {
+    sum.stiffness = longer;
+  }
   sum.length = sum.reach;
 }
 
@@ -73,7 +82,7 @@ void unite(GroundSpring& sum, double count) {
 
 std::vector<GroundSpring> finest_ground_springs(const ReducedNetwork& network,
                                                 const model::Material& material,
-                                                const GroundStiffness& ground) {
+                                                const GroundTable& ground) {
   constexpr std::size_t kDown = base::index(base::Direction::kMinusZ);
   std::vector<GroundSpring> springs;
   BeamGroundSprings beams(material);
@@ -86,7 +95,7 @@ std::vector<GroundSpring> finest_ground_springs(const ReducedNetwork& network,
     }
     if (kind[kContactByte] != 0) {
       springs.push_back(beams.spring(node, kDown, 1));
-      springs.back().stiffness = ground(kind[kContactByte]);
+      springs.back().stiffness = ground[kind[kContactByte]];
     }
   }
   return springs;

@@ -2,10 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstdint>
-#include <functional>
 #include <vector>
 
+#include "holdfast/mechanics/ground_contact.hpp"
 #include "holdfast/model/material.hpp"
 #include "kernels.hpp"
 #include "reduced_network.hpp"
@@ -25,13 +26,22 @@ struct GroundSpring {
   Mat stiffness = {};  ///< At the node.
 };
 
-/// The stiffness of the ground below a node, by the code in kContactByte.
-using GroundStiffness = std::function<Mat(std::uint8_t code)>;
+/// What a facet adds to K_pp of its node, by the number that kContactByte has for its state. (The
+/// first is not used: stuck facets are beams.)
+using GroundTable = std::array<Mat, 1 + 2 * mechanics::ContactState::kCodeCount>;
+
+/// The number that kContactByte has for a facet's state: 0 for one that is stuck, a beam like any
+/// other, else one for each state, held sideways or not.
+inline std::uint8_t contact_number(const mechanics::ContactState& state, bool is_held_sideways) {
+  const bool is_stuck = state == mechanics::ContactState{} && is_held_sideways;
+  return static_cast<std::uint8_t>(is_stuck ? 0
+                                            : 1 + 2 * state.code() + (is_held_sideways ? 1 : 0));
+}
 
 /// Those of the nodes themselves, ascending by node.
 std::vector<GroundSpring> finest_ground_springs(const ReducedNetwork& network,
                                                 const model::Material& material,
-                                                const GroundStiffness& ground);
+                                                const GroundTable& ground);
 
 /// Those of the next level's clusters, ascending by node: sums over the members, lengthened like
 /// springs. `seat` says where the members sit.

@@ -8,6 +8,7 @@
 #include <unordered_map>
 #include <utility>
 
+#include "beam_shapes.hpp"
 #include "block_pool.hpp"
 #include "matrix_blocks.hpp"
 
@@ -97,6 +98,9 @@ Point place_of(std::uint64_t key, double pitch) {
           pitch * static_cast<double>(gathered(key >> 1U)),
           pitch * static_cast<double>(gathered(key >> 2U))};
 }
+
+/// What inverse_block() makes of a singular matrix; the inverse of no other has a zero there.
+bool is_zero(const Block<float>& inverse) { return inverse.column[0][0] == 0; }
 
 template <class Real>
 void fill_vectors(Level<Real>& level) {
@@ -192,7 +196,7 @@ Mat Hierarchy<Real>::diagonal(const Kind& kind) const {
     }
   }
   if (kind[kContactByte] != 0) {
-    base::add_to(sum, ground_(kind[kContactByte]));
+    base::add_to(sum, ground_[kind[kContactByte]]);
   }
   return sum;
 }
@@ -232,9 +236,8 @@ void Hierarchy<Real>::add_level(const SpringGraph& graph, std::vector<std::size_
   }
   level.inverse.reserve(sums.size());
   for (const Mat& sum : sums) {
-    Mat inverse;
     // A pattern that only nodes on the ground have may be singular alone; its inverse is not used.
-    level.inverse.push_back(invert(sum, inverse) ? block_of<float>(inverse) : Block<float>{});
+    level.inverse.push_back(inverse_block(sum));
     if constexpr (std::is_same_v<Real, float>) {
       level.couplings.blocks.diagonal.push_back(block_of<float>(sum));
     }
@@ -284,6 +287,7 @@ void Hierarchy<Real>::set_ground_springs(std::size_t depth,
     if (type == level.inverse.size()) {
       add_grounded_type(level, node);
     }
+    is_singular_ = is_singular_ || is_zero(level.inverse[type]);
   }
 }
 
@@ -295,12 +299,22 @@ bool Hierarchy<Real>::factor_coarsest() {
   return coarsest_->factor();
 }
 
+/// Only what is on the ground may be held by nothing.
+template <class Real>
+void Hierarchy<Real>::look_for_singular_nodes(const std::vector<GroundSpring>& springs) {
+  const Level<Real>& finest = levels_.front();
+  is_singular_ = std::ranges::any_of(springs, [&](const GroundSpring& spring) {
+    return is_zero(finest.inverse[finest.type[at(spring.node)]]);
+  });
+}
+
 template <class Real>
 void Hierarchy<Real>::update_contact() {
   std::vector<GroundSpring> springs = finest_ground_springs(network_, material_, ground_);
   for (const GroundSpring& spring : springs) {
     set_type(at(spring.node));
   }
+  look_for_singular_nodes(springs);
   point_at_lattice();
   for (std::size_t depth = 1; depth < levels_.size(); ++depth) {
     springs = coarse_ground_springs(springs, levels_[depth - 1].seat);
@@ -333,11 +347,9 @@ void Hierarchy<Real>::try_to_factor(const SpringGraph& graph) {
 
 template <class Real>
 Hierarchy<Real>::Hierarchy(const ReducedNetwork& network, const model::Material& material,
-                           Team& team, GroundStiffness ground, std::span<const std::int32_t> alone)
-    : network_(network),
-      material_(material),
-      ground_(std::move(ground)),
-      alone_count_(alone.size()) {
+                           Team& team, const GroundTable& ground,
+                           std::span<const std::int32_t> alone)
+    : network_(network), material_(material), ground_(ground), alone_count_(alone.size()) {
   make_lattice();
   SpringGraph graph;
   fill_graph(team, graph);
@@ -346,6 +358,7 @@ Hierarchy<Real>::Hierarchy(const ReducedNetwork& network, const model::Material&
     graph.is_alone[at(node)] = true;
   }
   std::vector<GroundSpring> springs = finest_ground_springs(network_, material_, ground_);
+  look_for_singular_nodes(springs);
   while (!coarsest_ &&
          (levels_.size() == 1 || graph.order.size() > kCoarsestCount + alone_count_)) {
     SpringGraph coarse;

@@ -47,9 +47,10 @@ struct Beams<double> {
 template <class Real>
 class Hierarchy {
  public:
-  /// Keeps references to the network and the material. Nodes that are `alone` join no cluster.
+  /// Keeps references to the network, the material and the table of what facets are. Nodes that are
+  /// `alone` join no cluster.
   Hierarchy(const ReducedNetwork& network, const model::Material& material, Team& team,
-            GroundStiffness ground, std::span<const std::int32_t> alone);
+            const GroundTable& ground, std::span<const std::int32_t> alone);
 
   /// Takes over changed contact: the same levels, held in another way.
   void update_contact();
@@ -66,6 +67,9 @@ class Hierarchy {
 
   /// Whether a level was found that is a chain of thousands of clusters.
   bool is_too_slender() const { return is_too_slender_; }
+
+  /// Whether, in the facets' present states, a node or a cluster is held by nothing.
+  bool is_singular() const { return is_singular_; }
 
   /// Factorized coarsest level.
   const BlockLu& coarsest() const { return *coarsest_; }
@@ -97,12 +101,13 @@ class Hierarchy {
   void add_level(const SpringGraph& graph, std::vector<std::size_t> colour_start);
   Held held_nodes(const SpringGraph& graph, const std::vector<GroundSpring>& springs) const;
   void set_ground_springs(std::size_t depth, const std::vector<GroundSpring>& springs);
+  void look_for_singular_nodes(const std::vector<GroundSpring>& springs);
   void try_to_factor(const SpringGraph& graph);
   bool factor_coarsest();
 
   const ReducedNetwork& network_;
   const model::Material& material_;
-  GroundStiffness ground_;
+  const GroundTable& ground_;
   std::size_t alone_count_ = 0;
   std::unordered_map<std::uint64_t, std::uint32_t> type_of_kind_;
   std::vector<Level<Real>> levels_;
@@ -112,6 +117,7 @@ class Hierarchy {
   Beams<Real> beams_;
   std::optional<BlockLu> coarsest_;
   bool is_too_slender_ = false;
+  bool is_singular_ = false;
 };
 
 // In hierarchy_single.cpp and hierarchy_double.cpp.

@@ -4,6 +4,7 @@
 // single precision for the sweeps.
 #include <algorithm>
 
+#include "beam_shapes.hpp"
 #include "hierarchy.hpp"
 #include "level_blocks.hpp"
 #include "matrix_blocks.hpp"
@@ -59,9 +60,9 @@ void Hierarchy<double>::make_beams() {
 
 template <>
 void Hierarchy<double>::add_type(const Kind& kind) {
-  levels_.front().inverse.push_back(block_of<float>(inverse_of(diagonal(kind))));
+  levels_.front().inverse.push_back(inverse_block(diagonal(kind)));
   const std::uint8_t code = kind[kContactByte];
-  beams_.ground.push_back(code == 0 ? Block<double>{} : block_of<double>(ground_(code)));
+  beams_.ground.push_back(code == 0 ? Block<double>{} : block_of<double>(ground_[code]));
 }
 
 template <>
@@ -115,7 +116,7 @@ void Hierarchy<double>::clear_ground(Level<double>& level, std::size_t free_type
 
 template <>
 void Hierarchy<double>::add_grounded_type(Level<double>& level, const HeldNode& node) const {
-  level.inverse.push_back(block_of<float>(inverse_of(node.sum)));
+  level.inverse.push_back(inverse_block(node.sum));
   level.couplings.ground.push_back(block_of<double>(node.ground_sum));
 }
 

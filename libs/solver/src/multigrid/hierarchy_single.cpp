@@ -16,7 +16,7 @@ void Hierarchy<float>::make_beams() {
 template <>
 void Hierarchy<float>::add_type(const Kind& kind) {
   const Mat sum = diagonal(kind);
-  levels_.front().inverse.push_back(block_of<float>(inverse_of(sum)));
+  levels_.front().inverse.push_back(inverse_block(sum));
   beams_.diagonal.push_back(block_of<float>(sum));
   beams_.diagonal_double.push_back(block_of<double>(sum));
 }
@@ -48,7 +48,7 @@ void Hierarchy<float>::clear_ground(Level<float>& level, std::size_t free_type_c
 
 template <>
 void Hierarchy<float>::add_grounded_type(Level<float>& level, const HeldNode& node) const {
-  level.inverse.push_back(block_of<float>(inverse_of(node.sum)));
+  level.inverse.push_back(inverse_block(node.sum));
   level.couplings.blocks.diagonal.push_back(block_of<float>(node.sum));
 }
 

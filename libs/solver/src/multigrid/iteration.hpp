@@ -31,6 +31,9 @@ class Iteration {
   /// Whether the robot is so slender that single precision is not to be trusted.
   virtual bool is_too_slender() const = 0;
 
+  /// Whether in the facets' present states a part of the robot is held by nothing.
+  virtual bool is_singular() const = 0;
+
   /// Takes over changed contact.
   virtual void update_contact() = 0;
 

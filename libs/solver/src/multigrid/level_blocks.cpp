@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "level_blocks.hpp"
 
+#include "beam_shapes.hpp"
 #include "block_pool.hpp"
 #include "matrix_blocks.hpp"
 

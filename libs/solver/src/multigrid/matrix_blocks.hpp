@@ -28,10 +28,17 @@ Block<Real> block_of(const Mat& matrix) {
   return block;
 }
 
+/// The inverse of a matrix that has one, as those of beams have.
 inline Mat inverse_of(const Mat& matrix) {
   Mat inverse;
   HOLDFAST_CHECK(invert(matrix, inverse));
   return inverse;
+}
+
+/// The inverse as a block, or zero if there is none.
+inline Block<float> inverse_block(const Mat& matrix) {
+  Mat inverse;
+  return invert(matrix, inverse) ? block_of<float>(inverse) : Block<float>{};
 }
 
 /// K_pq of the node that sees the spring.

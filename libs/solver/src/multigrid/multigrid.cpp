@@ -12,6 +12,7 @@
 namespace holdfast::solver {
 namespace {
 
+using mechanics::ContactLaw;
 using mechanics::ContactState;
 
 constexpr int kIterationMax = 500;
@@ -42,99 +43,127 @@ constexpr std::size_t kAloneShare = 64;
 constexpr std::size_t kThinCountMax = 2000;
 constexpr double kThinDegree = 3.5;
 
+/// How far a facet's force may be off: so many times what the preconditioner would still change it
+/// by, and such a share of what it would change any facet by.
+constexpr double kCorrectionFactor = 3;
+constexpr double kCorrectionShare = 0.3;
+
+/// Up to so many iterations to the alternative solution the tolerance means what it says.
+constexpr double kBriskIterations = 8;
+
+/// Slender robots, those that need double precision, are solved so much more exactly: most of their
+/// energy is that of a sag that is found first. Without it a bridge of 41,600 is off by 2e-4.
+constexpr double kSlenderShare = 0.3;
+
+/// In a thin robot one beam may have most of the error's energy. So that energy must not be able to
+/// change a load ratio by more than this times the tolerance; the estimate of the energy is low by
+/// a third once in a while.
+constexpr double kThinError = 2;
+
 std::size_t at(std::int32_t index) { return static_cast<std::size_t>(index); }
 
-/// 0 for a facet that is stuck, else which of the twenty contact states it is in.
-std::uint8_t code_of(const ContactState& state, bool is_held, mechanics::ContactLaw law) {
-  const bool holds_sideways = law == mechanics::ContactLaw::kRegularised || is_held;
-  if (state == ContactState{} && holds_sideways) {
-    return 0;
-  }
-  const int shape = state.pressed ? 3 * (state.tilt_x + 1) + (state.tilt_y + 1) : 9;
-  return static_cast<std::uint8_t>(1 + 2 * shape + (holds_sideways ? 1 : 0));
+/// Modules that are not fixed.
+std::size_t free_count(const model::Robot& robot) {
+  return robot.modules().size() - robot.fixed_count();
 }
 
-bool is_held(std::uint8_t code) { return (code - 1) % 2 == 1; }
-
-ContactState state_of(std::uint8_t code) {
-  const int shape = (code - 1) / 2;
-  if (shape == 9) {
-    return {.pressed = false};
-  }
-  return {.pressed = true,
-          .tilt_x = static_cast<std::int8_t>(shape / 3 - 1),
-          .tilt_y = static_cast<std::int8_t>(shape % 3 - 1)};
+bool is_held_sideways(ContactLaw law, bool is_held) {
+  return law == ContactLaw::kRegularised || is_held;
 }
 
 }  // namespace
 
-Multigrid::Multigrid(const model::Robot& robot, MultigridOptions options)
-    : robot_(robot),
+std::unique_ptr<Multigrid> Multigrid::make(const model::Robot& robot,
+                                           const EquilibriumOptions& options) {
+  if (bytes_for(free_count(robot), options.precision) > options.memory_bytes_max) {
+    return nullptr;
+  }
+  return std::make_unique<Multigrid>(robot, options);
+}
+
+Multigrid::Multigrid(const model::Robot& robot, const EquilibriumOptions& options)
+    : LinearSystem(robot),
+      options_(options),
       precision_(options.precision),
       team_(options.thread_count, robot.modules().size()),
       network_(make_reduced_network(robot, team_)),
-      weight_({0, 0, -model::module_weight_n(robot.material()), 0, 0, 0}),
-      facet_of_module_(robot.ground_count() > 0 ? robot.modules().size() : 0, -1),
-      may_yield_(options.may_yield),
-      progress_(std::move(options.progress)) {
+      ground_node_of_facet_(facets().size()) {
   for (std::size_t node = 0; node < network_.node_count; ++node) {
-    const std::int32_t module = network_.module[node];
-    if (robot.modules()[at(module)].support == model::Support::kGround) {
-      facet_of_module_[at(module)] = static_cast<std::int32_t>(facets_.size());
-      facets_.push_back({.node = static_cast<std::int32_t>(node), .state = {}});
+    const std::size_t module = at(network_.module[node]);
+    if (robot.modules()[module].support == model::Support::kGround) {
+      const auto facet = std::ranges::lower_bound(facets(), module, {}, &FacetState::module);
+      const auto index = static_cast<std::size_t>(facet - facets().begin());
+      ground_node_of_facet_[index] = ground_nodes_.size();
+      ground_nodes_.push_back(
+          {.node = static_cast<std::int32_t>(node), .facet = index, .known = *facet});
     }
   }
   alone_ = nodes_alone();
-}
-
-void Multigrid::set_precision(Precision precision) {
-  precision_ = precision;
-  iteration_.reset();
-  reference_ = 0;
-  is_stale_ = true;
-}
-
-/// Whether it is plain from the robot's shape that single precision will not do.
-bool Multigrid::is_too_slender() const {
-  const double length = network_.extent;
-  const auto count = static_cast<double>(robot_.modules().size());
-  const double slenderness_squared = length * length * length / count;
-  return network_.node_count > kTrivialCount &&
-         std::numeric_limits<float>::epsilon() / 2 * slenderness_squared > kRoundingShare;
+  take_loads();
 }
 
 std::size_t Multigrid::bytes_for(std::size_t module_count, Precision precision) {
   return module_count * (precision == Precision::kSingle ? kBytesPerModule : kBytesPerModuleDouble);
 }
 
-void Multigrid::set_law(const mechanics::GroundFacet<double>& facet) {
-  ground_ = facet;
-  for (std::size_t module = 0; module < facet_of_module_.size(); ++module) {
-    if (facet_of_module_[module] >= 0) {
-      set_facet(module, {}, true);
+bool Multigrid::set_precision(Precision precision) {
+  if (bytes_for(free_count(robot()), precision) > options_.memory_bytes_max) {
+    return false;
+  }
+  precision_ = precision;
+  iteration_.reset();
+  reference_ = 0;
+  is_stale_ = true;
+  return true;
+}
+
+/// Whether it is plain from the robot's shape that single precision will not do.
+bool Multigrid::is_too_slender() const {
+  const double length = network_.extent;
+  const auto count = static_cast<double>(robot().modules().size());
+  const double slenderness_squared = length * length * length / count;
+  return network_.node_count > kTrivialCount &&
+         std::numeric_limits<float>::epsilon() / 2 * slenderness_squared > kRoundingShare;
+}
+
+/// If its coarsest level has all facets the hierarchy gets the tangent itself: the finest level as
+/// it is, the others with its upper half on both sides, as springs are moved. Else a stand-in.
+void Multigrid::take_law() {
+  for (int code = 0; code < ContactState::kCodeCount; ++code) {
+    const ContactState state = ContactState::from_code(code);
+    for (const bool is_held : {false, true}) {
+      known_tangents_[at(1 + 2 * code + (is_held ? 1 : 0))] =
+          alone_.empty() ? mechanics::symmetric_tangent(ground(), state, is_held)
+                         : mechanics::contact_tangent(ground(), state, is_held);
     }
+  }
+  for (std::size_t facet = 0; facet < facets().size(); ++facet) {
+    take_facet(facet);
   }
   is_law_new_ = true;
   is_stale_ = true;
 }
 
-void Multigrid::set_facet(std::size_t module, const ContactState& state, bool is_held) {
-  Facet& facet = facets_[at(facet_of_module_[module])];
-  facet.state = state;
-  facet.is_held = is_held;
-  const std::uint8_t code = code_of(state, is_held, ground_.law);
-  if (code == facet.code) {
+std::uint8_t Multigrid::number_of(const FacetState& facet) const {
+  return contact_number(facet.state, is_held_sideways(ground().law, facet.is_held));
+}
+
+void Multigrid::take_facet(std::size_t facet) {
+  Kind& kind = network_.kind[at(ground_nodes_[ground_node_of_facet_[facet]].node)];
+  const std::uint8_t number = number_of(facets()[facet]);
+  if (number == kind[kContactByte]) {
     return;
   }
-  facet.code = code;
-  Kind& kind = network_.kind[at(facet.node)];
-  kind[base::index(base::Direction::kMinusZ)] = code == 0 ? 1 : 0;
-  kind[kContactByte] = code;
+  kind[base::index(base::Direction::kMinusZ)] = number == 0 ? 1 : 0;
+  kind[kContactByte] = number;
   is_stale_ = true;
 }
 
-void Multigrid::set_load(std::vector<Vec> load) {
-  carry(robot_, team_, std::move(load), network_);
+void Multigrid::take_loads() {
+  condensed_.clear();
+  if (network_.is_reduced()) {
+    condensed_ = condense(robot(), network_, team_, loads());
+  }
   if (iteration_) {
     iteration_->x().assign(iteration_->x().size(), 0);
   }
@@ -143,42 +172,42 @@ void Multigrid::set_load(std::vector<Vec> load) {
   is_stale_ = true;
 }
 
-/// If its coarsest level has all facets the hierarchy gets the tangent itself: the finest level as
-/// it is, the others with its upper half on both sides, as springs are carried. Else a stand-in.
-Mat Multigrid::tangent(std::uint8_t code) const {
-  return alone_.empty() ? mechanics::symmetric_tangent(ground_, state_of(code), is_held(code))
-                        : mechanics::contact_tangent(ground_, state_of(code), is_held(code));
+Multigrid::Vec Multigrid::displacement_of(std::int32_t node) const {
+  Vec u;
+  std::copy_n(iteration_->x().begin() + 6 * std::ptrdiff_t{node}, 6, u.begin());
+  return u;
 }
 
-/// On the ground, by the facet of a node.
-Multigrid::Vec Multigrid::force(std::uint8_t code, std::size_t node) const {
-  Vec u;
-  std::copy_n(iteration_->x().begin() + static_cast<std::ptrdiff_t>(6 * node), 6, u.begin());
-  return code == 0 ? mechanics::contact_force(ground_, {}, true, u)
-                   : mechanics::contact_force(ground_, state_of(code), is_held(code), u);
+/// By the ground, on the facet of a node in a state.
+Multigrid::Vec Multigrid::force_on(const FacetState& facet, std::int32_t node) const {
+  return mechanics::contact_force(ground(), facet.state, facet.is_held, displacement_of(node));
+}
+
+/// What the hierarchy takes for the tangent of a facet that is not stuck.
+const Mat& Multigrid::known_tangent(const FacetState& facet) const {
+  return known_tangents_[number_of(facet)];
 }
 
 /// Facets, where they are few: those of a few feet. Which part of a foot presses decides how it
 /// tilts, and a cluster as large as the foot cannot know.
 std::vector<std::int32_t> Multigrid::nodes_alone() const {
   std::vector<std::int32_t> nodes;
-  if (may_yield_ && facets_.size() <= kAloneMax &&
-      kAloneShare * facets_.size() <= network_.node_count) {
-    for (const Facet& facet : facets_) {
-      nodes.push_back(facet.node);
+  if (!options_.is_bonded && ground_nodes_.size() <= kAloneMax &&
+      kAloneShare * ground_nodes_.size() <= network_.node_count) {
+    for (const GroundNode& ground_node : ground_nodes_) {
+      nodes.push_back(ground_node.node);
     }
   }
   return nodes;
 }
 
 std::unique_ptr<Iteration> Multigrid::make_iteration() {
-  const auto ground = [this](std::uint8_t code) { return tangent(code); };
   if (precision_ == Precision::kDouble) {
-    return std::make_unique<ConjugateGradients<double>>(network_, robot_.material(), team_, ground,
-                                                        alone_);
+    return std::make_unique<ConjugateGradients<double>>(network_, robot().material(), team_,
+                                                        known_tangents_, alone_);
   }
-  return std::make_unique<ConjugateGradients<float>>(network_, robot_.material(), team_, ground,
-                                                     alone_);
+  return std::make_unique<ConjugateGradients<float>>(network_, robot().material(), team_,
+                                                     known_tangents_, alone_);
 }
 
 void Multigrid::update_iteration() {
@@ -197,9 +226,9 @@ void Multigrid::update_iteration() {
   if (!x.empty()) {
     iteration_->x() = std::move(x);
   }
-  if (progress_) {
+  if (options_.progress) {
     iteration_->progress = [this](int, double error) {
-      progress_(++told_count_, std::sqrt(std::max(0.0, error) / reference_));
+      options_.progress(++told_count_, std::sqrt(std::max(0.0, error) / reference_));
     };
   }
 }
@@ -207,38 +236,38 @@ void Multigrid::update_iteration() {
 /// What the present displacements leave unbalanced, with the contact's own tangent.
 void Multigrid::compute_residual() {
   std::vector<double>& r = iteration_->r();
-  std::vector<double>& x = iteration_->x();
   team_.share(0, network_.node_count, [&](std::size_t begin, std::size_t end) {
     for (std::size_t node = begin; node < end; ++node) {
-      const Vec& load = network_.load.empty() ? weight_ : network_.load[at(network_.module[node])];
+      const std::size_t module = at(network_.module[node]);
+      const Vec& load = condensed_.empty() ? loads()[module] : condensed_[module];
       std::copy(load.begin(), load.end(), r.begin() + static_cast<std::ptrdiff_t>(6 * node));
     }
   });
   if (reference_ > 0) {
     iteration_->subtract_product();
   }
-  for (const Facet& facet : facets_) {
-    if (facet.code != 0) {
-      const std::size_t i = 6 * at(facet.node);
-      const Vec u = {x[i], x[i + 1], x[i + 2], x[i + 3], x[i + 4], x[i + 5]};
-      const Vec known = base::multiply(tangent(facet.code), u);
-      const Vec true_force = force(facet.code, at(facet.node));
+  for (const GroundNode& ground_node : ground_nodes_) {
+    const FacetState& facet = facets()[ground_node.facet];
+    if (number_of(facet) != 0) {
+      const Vec known = base::multiply(known_tangent(facet), displacement_of(ground_node.node));
+      const Vec true_force = force_on(facet, ground_node.node);
       for (std::size_t k = 0; k < 6; ++k) {
-        r[i + k] -= true_force[k] - known[k];
+        r[6 * at(ground_node.node) + k] -= true_force[k] - known[k];
       }
     }
   }
 }
 
-/// The same if only facets have changed since: x and r have never parted.
+/// Updates the residual where only facets have changed since: x and r have never parted.
 void Multigrid::update_residual() {
   std::vector<double>& r = iteration_->r();
-  for (const Facet& facet : facets_) {
-    if (facet.code != facet.old_code) {
-      const Vec before = force(facet.old_code, at(facet.node));
-      const Vec now = force(facet.code, at(facet.node));
+  for (const GroundNode& ground_node : ground_nodes_) {
+    const FacetState& facet = facets()[ground_node.facet];
+    if (number_of(facet) != number_of(ground_node.known)) {
+      const Vec before = force_on(ground_node.known, ground_node.node);
+      const Vec now = force_on(facet, ground_node.node);
       for (std::size_t k = 0; k < 6; ++k) {
-        r[6 * at(facet.node) + k] += before[k] - now[k];
+        r[6 * at(ground_node.node) + k] += before[k] - now[k];
       }
     }
   }
@@ -247,13 +276,15 @@ void Multigrid::update_residual() {
 /// What the contact's tangent has beyond what the hierarchy knows of it.
 std::vector<NodeTerm> Multigrid::unsymmetric_terms() const {
   std::vector<NodeTerm> terms;
-  for (const Facet& facet : facets_) {
-    if (ground_.law == mechanics::ContactLaw::kRegularised &&
+  for (const GroundNode& ground_node : ground_nodes_) {
+    const FacetState& facet = facets()[ground_node.facet];
+    if (ground().law == ContactLaw::kRegularised &&
         (facet.state.tilt_x != 0 || facet.state.tilt_y != 0)) {
-      const Mat exact = mechanics::contact_tangent(ground_, facet.state, facet.is_held);
-      const Mat minus_known = scaled(tangent(facet.code), -1);
+      const Mat exact = mechanics::contact_tangent(ground(), facet.state, facet.is_held);
+      const Mat minus_known = scaled(known_tangent(facet), -1);
       NodeTerm& term = terms.emplace_back();
-      term = {.node = facet.node, .difference = exact, .transposed_difference = transpose(exact)};
+      term = {
+          .node = ground_node.node, .difference = exact, .transposed_difference = transpose(exact)};
       base::add_to(term.difference, minus_known);
       base::add_to(term.transposed_difference, minus_known);
     }
@@ -261,18 +292,21 @@ std::vector<NodeTerm> Multigrid::unsymmetric_terms() const {
   return terms;
 }
 
-/// Takes up changed facets. What has not changed since the last solution goes on from there. False
-/// if the robot is too slender.
-bool Multigrid::begin() {
-  if (!is_new()) {
-    return true;
+/// Takes up changed facets. What has not changed since the last solution goes on from there.
+LinearOutcome Multigrid::begin() {
+  if (!is_stale_) {
+    return LinearOutcome::kSolved;
   }
   if (precision_ == Precision::kSingle && is_too_slender()) {
-    return false;
+    return LinearOutcome::kTooSlow;
   }
   update_iteration();
+  if (iteration_->is_singular()) {
+    is_residual_known_ = false;
+    return LinearOutcome::kSingular;
+  }
   if (precision_ == Precision::kSingle && iteration_->is_too_slender()) {
-    return false;
+    return LinearOutcome::kTooSlow;
   }
   if (is_residual_known_) {
     update_residual();
@@ -280,17 +314,19 @@ bool Multigrid::begin() {
     compute_residual();
   }
   is_residual_known_ = true;
-  for (Facet& facet : facets_) {
-    facet.old_code = facet.code;
+  for (GroundNode& ground_node : ground_nodes_) {
+    ground_node.known = facets()[ground_node.facet];
   }
   const double error = iteration_->begin();
   if (reference_ == 0) {
     reference_ = error;
   }
   is_stale_ = false;
-  return true;
+  return LinearOutcome::kSolved;
 }
 
+/// Whether bending is that of chains: the network has few nodes, and these few neighbours. A single
+/// beam may then have a large part of the whole error's energy.
 bool Multigrid::is_thin() const {
   if (network_.node_count > kThinCountMax) {
     return false;
@@ -304,38 +340,87 @@ bool Multigrid::is_thin() const {
   return static_cast<double>(ends) <= kThinDegree * static_cast<double>(network_.node_count);
 }
 
-bool Multigrid::solve(double tolerance, int iteration_count_min, double energy_error_max) {
+LinearOutcome Multigrid::solve(double tolerance) {
+  solve_count_ += is_stale_ ? 1 : 0;
+  return improve({.tolerance = tolerance});
+}
+
+/// Goes on from the present displacements.
+LinearOutcome Multigrid::improve(const Target& target) {
   if (network_.node_count == 0) {
-    return true;
+    return LinearOutcome::kSolved;
   }
-  if (!begin()) {
-    return false;
+  const LinearOutcome beginning = begin();
+  if (beginning != LinearOutcome::kSolved) {
+    return beginning;
   }
   const int before = iteration_->iteration_count();
-  energy_error_ = std::min(tolerance * std::sqrt(reference_), energy_error_max);
+  energy_error_ = std::min(target.tolerance * std::sqrt(reference_), target.error_max);
   const Iteration::Goal goal = {.error = energy_error_ * energy_error_,
-                                .iteration_count_min = iteration_count_min,
+                                .iteration_count_min = target.iteration_count_min,
                                 .iteration_count_max = kIterationMax};
   const std::vector<NodeTerm> terms = unsymmetric_terms();
   const auto end = terms.empty() ? iteration_->run(goal) : iteration_->run_unsymmetric(goal, terms);
   last_count_ = iteration_->iteration_count() - before;
   iteration_count_ += last_count_;
   if (end == Iteration::End::kConverged) {
-    return true;
+    return LinearOutcome::kSolved;
   }
   iteration_->x().assign(iteration_->x().size(), 0);  // Nothing to go on from.
   is_residual_known_ = false;
   is_stale_ = true;
-  return false;
+  return LinearOutcome::kTooSlow;
 }
 
-base::Vec6<double> Multigrid::facet_correction(std::size_t module) const {
-  const Facet& facet = facets_[at(facet_of_module_[module])];
-  return iteration_ ? iteration_->correction(at(facet.node)) : Vec{};
+bool Multigrid::refine(Solution& solution) {
+  solution.gamma = ground().gamma;
+  solution.alternative = std::move(solution.displacement);
+  // Where convergence is slow r . M^-1 r misses more of the error.
+  const double pace = std::min(1.0, kBriskIterations / last_count_);
+  const double share = precision_ == Precision::kDouble ? kSlenderShare : 1;
+  Target target = {.tolerance = options_.tolerance * share * pace * pace * pace};
+  // One iteration at least: else the two answers are the same, and say nothing about the error.
+  target.iteration_count_min = 1;
+  if (is_thin()) {
+    target.error_max =
+        kThinError * options_.tolerance / model::load_ratio_per_energy_norm(robot().material());
+  }
+  if (improve(target) != LinearOutcome::kSolved) {
+    return false;
+  }
+  solution.energy_error = energy_error_;
+  solution.displacement = displacement();
+  return true;
+}
+
+std::vector<double> Multigrid::facet_errors() const {
+  std::vector<double> errors(facets().size());
+  for (std::size_t i = 0; i < errors.size() && iteration_; ++i) {
+    const Vec correction = iteration_->correction(at(ground_nodes_[ground_node_of_facet_[i]].node));
+    const Vec force = mechanics::trial_force(ground(), correction);
+    errors[i] =
+        std::abs(force[2]) + std::max(std::abs(force[3]), std::abs(force[4])) / ground().half_width;
+  }
+  if (errors.empty()) {
+    return errors;
+  }
+  const double pace = std::max(1.0, last_count_ / kBriskIterations);
+  const double common = kCorrectionShare * *std::ranges::max_element(errors);
+  for (double& error : errors) {
+    error = kCorrectionFactor * pace * std::max(error, common);
+  }
+  return errors;
+}
+
+LinearReport Multigrid::report() const {
+  return {.method = Method::kMultigrid,
+          .precision = precision_,
+          .solve_count = solve_count_,
+          .iteration_count = iteration_count_};
 }
 
 std::vector<base::Vec6<double>> Multigrid::displacement() {
-  std::vector<Vec> by_module(robot_.modules().size());
+  std::vector<Vec> by_module(robot().modules().size());
   if (iteration_) {
     const std::vector<double>& x = iteration_->x();
     team_.share(0, network_.node_count, [&](std::size_t begin, std::size_t end) {
@@ -345,7 +430,7 @@ std::vector<base::Vec6<double>> Multigrid::displacement() {
       }
     });
   }
-  recover(robot_, network_, team_, by_module);
+  recover(robot(), network_, team_, condensed_, by_module);
   return by_module;
 }
 

@@ -2,119 +2,98 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <functional>
+#include <cstdint>
 #include <limits>
 #include <memory>
-#include <optional>
 #include <vector>
 
+#include "condensation.hpp"
 #include "conjugate_gradients.hpp"
-#include "holdfast/mechanics/ground_contact.hpp"
-#include "holdfast/model/robot.hpp"
-#include "holdfast/solver/precision.hpp"
+#include "holdfast/solver/linear_system.hpp"
 #include "reduced_network.hpp"
 
-/// Displacements of a robot for given contact states, without a factorization: what BlockLu is for
-/// small robots. Elimination by hand (ReducedNetwork), conjugate gradients, multigrid
-/// preconditioner.
 namespace holdfast::solver {
 
-struct MultigridOptions {
-  Precision precision = Precision::kSingle;
-  bool may_yield = true;  ///< Whether facets' states will be other than stuck.
-  int thread_count = 0;   ///< 0: all cores.
-  std::function<void(int iteration, double error)> progress = {};
-};
-
-class Multigrid {
+/// A robot's equations without a factorization: static condensation (ReducedNetwork), conjugate
+/// gradients, multigrid preconditioner.
+class Multigrid final : public LinearSystem {
  public:
-  using Vec = base::Vec6<double>;
+  /// None if it needs more memory than the options allow.
+  static std::unique_ptr<Multigrid> make(const model::Robot& robot,
+                                         const EquilibriumOptions& options);
 
-  /// Keeps a reference to the robot. All facets are stuck until set_facet().
-  Multigrid(const model::Robot& robot, MultigridOptions options);
+  Multigrid(const model::Robot& robot, const EquilibriumOptions& options);
 
   /// A guess of how much memory a robot needs, bytes.
   static std::size_t bytes_for(std::size_t module_count, Precision precision);
 
-  Precision precision() const { return precision_; }
+  /// Starts anew in another precision, with the same network and facets. Returns false, and leaves
+  /// all as it is, if that needs more memory than the options allow.
+  [[nodiscard]] bool set_precision(Precision precision);
 
-  /// Starts anew in another precision, with the same network and facets.
-  void set_precision(Precision precision);
+  [[nodiscard]] LinearOutcome solve(double tolerance) override;
+  std::vector<Vec> displacement() override;
+  [[nodiscard]] bool refine(Solution& solution) override;
 
-  /// Puts all facets back to stuck, under another law.
-  void set_law(const mechanics::GroundFacet<double>& facet);
-  void set_facet(std::size_t module, const mechanics::ContactState& state, bool is_held);
+  bool is_exact() const override { return false; }
 
-  /// Another load than the weight, by module; the displacements begin at zero again.
-  void set_load(std::vector<Vec> load);
-
-  /// Whether anything changed since the last solution; if not, solve() goes on with that system.
-  bool is_new() const { return is_stale_; }
-
-  /// Goes on from the present displacements until the error in the energy norm is `tolerance` times
-  /// that of the first guess, zero, and at most `energy_error_max`. Returns false if it does not
-  /// get there, or the robot is too slender for the precision. As long as errors are more than
-  /// rounding, at least `iteration_count_min` iterations.
-  bool solve(double tolerance, int iteration_count_min = 0,
-             double energy_error_max = std::numeric_limits<double>::infinity());
-
-  /// The error that the last solution was to have in the energy norm, (N mm)^(1/2), by estimate.
-  double energy_error() const { return energy_error_; }
-
-  /// Whether bending is that of chains: the network has few nodes, and these few neighbours. A
-  /// single beam may then have a large part of the whole error's energy.
-  bool is_thin() const;
-
-  /// About what the displacement of a module on the ground is still off by. After solve().
-  Vec facet_correction(std::size_t module) const;
-
-  /// By module.
-  std::vector<Vec> displacement();
-
-  int iteration_count() const { return iteration_count_; }
-
-  /// Of the last solution, for its system.
-  int last_count() const { return last_count_; }
+  /// By the preconditioner, and more where the iteration converges slowly: it then misses more of
+  /// the error.
+  std::vector<double> facet_errors() const override;
+  LinearReport report() const override;
 
  private:
-  struct Facet {
+  /// The node of a facet, by its place in facets().
+  struct GroundNode {
     std::int32_t node = 0;
-    std::uint8_t code = 0;      ///< 0: stuck, a beam like any other.
-    std::uint8_t old_code = 0;  ///< The one that the residual knows.
-    mechanics::ContactState state;
-    bool is_held = true;
+    std::size_t facet = 0;
+    FacetState known;  ///< The state that the residual knows.
   };
 
-  Mat tangent(std::uint8_t code) const;
-  Vec force(std::uint8_t code, std::size_t node) const;
+  /// Until when to iterate: errors in the energy norm.
+  struct Target {
+    double tolerance = 0;  ///< As a share of the error of no displacements at all.
+    double error_max = std::numeric_limits<double>::infinity();
+    int iteration_count_min = 0;  ///< As long as errors are more than rounding.
+  };
+
+  void take_law() override;
+  void take_facet(std::size_t facet) override;
+  void take_loads() override;
+
+  std::uint8_t number_of(const FacetState& facet) const;
+  Vec displacement_of(std::int32_t node) const;
+  Vec force_on(const FacetState& facet, std::int32_t node) const;
+  const Mat& known_tangent(const FacetState& facet) const;
   bool is_too_slender() const;
+  bool is_thin() const;
   std::vector<std::int32_t> nodes_alone() const;
-  bool begin();
+  LinearOutcome begin();
+  LinearOutcome improve(const Target& target);
   std::unique_ptr<Iteration> make_iteration();
   void update_iteration();
   void compute_residual();
   void update_residual();
   std::vector<NodeTerm> unsymmetric_terms() const;
 
-  const model::Robot& robot_;
+  EquilibriumOptions options_;
   Precision precision_;
   Team team_;
   ReducedNetwork network_;
-  mechanics::GroundFacet<double> ground_;
-  Vec weight_{};
-  std::vector<std::int32_t> facet_of_module_;
-  std::vector<Facet> facets_;
-  std::vector<std::int32_t> alone_;  ///< Nodes that join no cluster.
+  std::vector<Vec> condensed_;            ///< Loads by module; empty if the robot's are the nodes'.
+  std::vector<GroundNode> ground_nodes_;  ///< In the network's order.
+  std::vector<std::size_t> ground_node_of_facet_;  ///< By place in facets().
+  std::vector<std::int32_t> alone_;                ///< Nodes that join no cluster.
+  GroundTable known_tangents_;  ///< What the hierarchy takes for the facets' tangents.
   std::unique_ptr<Iteration> iteration_;
   bool is_law_new_ = false;         ///< Everything must be made again.
   bool is_residual_known_ = false;  ///< But for facets that changed.
-  bool may_yield_ = true;
-  std::function<void(int, double)> progress_;
-  bool is_stale_ = true;  ///< Some facet changed since the last solve.
-  double reference_ = 0;  ///< Square of the first error.
-  double energy_error_ = 0;
+  bool is_stale_ = true;            ///< Some facet, the law or the loads changed since solve().
+  double reference_ = 0;            ///< Square of the first error.
+  double energy_error_ = 0;         ///< (N mm)^(1/2), what the last solution was to have.
+  int solve_count_ = 0;
   int iteration_count_ = 0;
-  int last_count_ = 0;
+  int last_count_ = 0;  ///< Iterations of the last solution, for its system.
   int told_count_ = 0;
 };
 

@@ -7,39 +7,17 @@
 #include <limits>
 #include <span>
 
-#include "../block_kernels.hpp"
-#include "beam_shapes.hpp"
-#include "holdfast/base/check.hpp"
 #include "kernels.hpp"
 
 namespace holdfast::solver {
 namespace {
 
 using base::Direction;
-using base::Mat6;
-using base::Vec6;
 using host::Team;
 using model::Robot;
 using model::Support;
 
 std::size_t at(std::int32_t index) { return static_cast<std::size_t>(index); }
-
-Direction direction_of(std::size_t index) { return static_cast<Direction>(index); }
-
-std::array<double, 3> unit_step(std::size_t direction) {
-  std::array<double, 3> step{};
-  step[direction / 2] = direction % 2 == 0 ? 1 : -1;
-  return step;
-}
-
-/// A force at the tip of an arm, as force and torque at its root.
-Vec6<double> moved(Vec6<double> force, std::size_t direction, double length) {
-  const std::array<double, 3> step = unit_step(direction);
-  force[3] += length * (step[1] * force[2] - step[2] * force[1]);
-  force[4] += length * (step[2] * force[0] - step[0] * force[2]);
-  force[5] += length * (step[0] * force[1] - step[1] * force[0]);
-  return force;
-}
 
 /// The box around some cells.
 struct Extent {
@@ -359,194 +337,10 @@ class Builder {
   ReducedNetwork network_;
 };
 
-/// K^-1 as a matrix; the blocks of a beam are regular.
-Mat6<double> inverse_of(const Mat6<double>& block) {
-  Mat6<double> inverse;
-  HOLDFAST_CHECK(invert(block, inverse));
-  return inverse;
-}
-
-/// Block elimination along a run, from its first inner module to its last: the same for all runs of
-/// one direction and length.
-struct RunFactor {
-  std::vector<Mat6<double>> pivot;   ///< Inverse of what is left of K_ii.
-  std::vector<Mat6<double>> factor;  ///< K_i,i-1 times the pivot before.
-  Mat6<double> to_next;              ///< K12 onwards and backwards.
-  Mat6<double> to_last;
-  Vec6<double> weight{};            ///< Of one module.
-  std::vector<Vec6<double>> plain;  ///< How far weights bend it while its ends are held.
-};
-
-RunFactor factorize_run(const mechanics::BeamStiffness<double>& beam, std::size_t direction,
-                        int length) {
-  RunFactor run;
-  run.to_next = mechanics::block_12(beam, direction_of(direction));
-  run.to_last = mechanics::block_12(beam, direction_of(direction ^ 1U));
-  Mat6<double> both = mechanics::block_11(beam, direction_of(direction));
-  base::add_to(both, mechanics::block_11(beam, direction_of(direction ^ 1U)));
-  for (int i = 1; i < length; ++i) {
-    Mat6<double> diagonal = both;
-    run.factor.push_back(i == 1 ? run.to_last : product(run.to_last, run.pivot.back()));
-    if (i > 1) {
-      subtract_product(diagonal, run.factor.back(), run.to_next);
-    }
-    run.pivot.push_back(inverse_of(diagonal));
-  }
-  return run;
-}
-
-/// From the loads of a run's inner modules to how far these bend it while its ends are held.
-void bend(const RunFactor& factor, std::span<Vec6<double>> load) {
-  for (std::size_t i = 1; i < load.size(); ++i) {
-    subtract_product(load[i], factor.factor[i], load[i - 1]);
-  }
-  for (std::size_t i = load.size(); i-- > 0;) {
-    if (i + 1 < load.size()) {
-      subtract_product(load[i], factor.to_next, load[i + 1]);
-    }
-    load[i] = multiply(factor.pivot[i], load[i]);
-  }
-}
-
-/// Of one run. Most carry nothing but themselves, and bend alike.
-void bend_run(const Robot& robot, const ReducedNetwork::Run& run, const RunFactor& factor,
-              std::vector<Vec6<double>>& load) {
-  std::array<std::size_t, kBeamLengthMax> modules{};
-  std::array<Vec6<double>, kBeamLengthMax> own;
-  const std::size_t count = at(run.length) - 1;
-  std::size_t module = at(run.from);
-  bool is_plain = true;
-  for (std::size_t i = 0; i < count; ++i) {
-    module = at(robot.neighbours()[module][run.direction]);
-    modules[i] = module;
-    own[i] = load[module];
-    is_plain = is_plain && own[i] == factor.weight;
-  }
-  if (!is_plain) {
-    bend(factor, std::span(own).first(count));
-  }
-  for (std::size_t i = 0; i < count; ++i) {
-    load[modules[i]] = is_plain ? factor.plain[i] : own[i];
-  }
-}
-
-/// Carries the load of a run's inner modules to its ends.
-void carry_to_ends(const Robot& robot, const ReducedNetwork::Run& run,
-                   const std::vector<BeamShape>& shapes, std::vector<Vec6<double>>& load) {
-  Vec6<double> near{};
-  Vec6<double> far{};
-  std::size_t module = at(run.from);
-  for (int i = 1; i < run.length; ++i) {
-    module = at(robot.neighbours()[module][run.direction]);
-    add_share(shapes[at(i)], run.direction, load[module], near);
-    add_share(shapes[at(run.length - i)], run.direction ^ 1U, load[module], far);
-  }
-  base::add_to(load[at(run.from)], near);
-  base::add_to(load[at(robot.neighbours()[module][run.direction])], far);
-}
-
-/// All runs and hanging modules: from loads to what bends while the ends, or the host, are held.
-void bend_alone(const Robot& robot, Team& team, ReducedNetwork& network) {
-  const auto beam = long_beam(robot.material(), 1);
-  std::array<std::vector<RunFactor>, 6> factors;
-  std::array<Mat6<double>, 6> inverse_11;
-  for (std::size_t d = 0; d < 6; ++d) {
-    inverse_11[d] = inverse_of(mechanics::block_11(beam, direction_of(d)));
-    factors[d].resize(kBeamLengthMax + 1);
-  }
-  for (const ReducedNetwork::Run& run : network.runs) {
-    RunFactor& factor = factors[run.direction][at(run.length)];
-    if (factor.pivot.empty()) {
-      factor = factorize_run(beam, run.direction, run.length);
-      factor.weight = {0, 0, -model::module_weight_n(robot.material()), 0, 0, 0};
-      factor.plain.assign(factor.pivot.size(), factor.weight);
-      bend(factor, factor.plain);
-    }
-  }
-  team.share(0, network.runs.size(), [&](std::size_t begin, std::size_t end) {
-    for (const ReducedNetwork::Run& run : std::span(network.runs).subspan(begin, end - begin)) {
-      bend_run(robot, run, factors[run.direction][at(run.length)], network.load);
-    }
-  });
-  team.share(0, network.hanging.size(), [&](std::size_t begin, std::size_t end) {
-    for (const auto& [module, direction] : std::span(network.hanging).subspan(begin, end - begin)) {
-      network.load[at(module)] = multiply(inverse_11[direction], network.load[at(module)]);
-    }
-  });
-}
-
-void recover_run(const Robot& robot, const ReducedNetwork& network, const ReducedNetwork::Run& run,
-                 const std::vector<BeamShape>& shapes, std::vector<Vec6<double>>& displacement) {
-  std::array<std::size_t, kBeamLengthMax + 1> modules{};
-  modules[0] = at(run.from);
-  const std::size_t length = at(run.length);
-  for (std::size_t i = 1; i <= length; ++i) {
-    modules[i] = at(robot.neighbours()[modules[i - 1]][run.direction]);
-  }
-  const Vec6<double> near = displacement[modules[0]];
-  const Vec6<double> far = displacement[modules[length]];
-  for (std::size_t i = 1; i < length; ++i) {
-    Vec6<double> u = network.load[modules[i]];
-    add_motion(shapes[i], run.direction, near, u);
-    add_motion(shapes[length - i], run.direction ^ 1U, far, u);
-    displacement[modules[i]] = u;
-  }
-}
-
 }  // namespace
 
-mechanics::BeamStiffness<double> long_beam(const model::Material& material, int length) {
-  mechanics::BeamSection<double> section = model::beam_section(material);
-  section.length *= length;
-  return mechanics::beam_stiffness(section);
-}
-
 ReducedNetwork make_reduced_network(const Robot& robot, Team& team) {
-  ReducedNetwork network = Builder(robot, team).build();
-  if (network.is_reduced()) {
-    const Vec6<double> weight = {0, 0, -model::module_weight_n(robot.material()), 0, 0, 0};
-    carry(robot, team, std::vector<Vec6<double>>(robot.modules().size(), weight), network);
-  }
-  return network;
-}
-
-void carry(const Robot& robot, Team& team, std::vector<Vec6<double>> load,
-           ReducedNetwork& network) {
-  network.load = std::move(load);
-  const double pitch = robot.material().pitch_mm;
-  for (const auto& [module, direction] : network.hanging) {
-    const std::size_t host = at(robot.neighbours()[at(module)][direction]);
-    base::add_to(network.load[host], moved(network.load[at(module)], direction ^ 1U, pitch));
-  }
-  ShapeTable shapes(pitch);
-  for (const ReducedNetwork::Run& run : network.runs) {
-    carry_to_ends(robot, run, shapes.of(run.length), network.load);
-  }
-  bend_alone(robot, team, network);
-}
-
-void recover(const Robot& robot, const ReducedNetwork& network, Team& team,
-             std::vector<Vec6<double>>& displacement) {
-  ShapeTable shapes(robot.material().pitch_mm);
-  for (const ReducedNetwork::Run& run : network.runs) {
-    shapes.of(run.length);
-  }
-  team.share(0, network.runs.size(), [&](std::size_t begin, std::size_t end) {
-    for (const ReducedNetwork::Run& run : std::span(network.runs).subspan(begin, end - begin)) {
-      recover_run(robot, network, run, shapes.known(run.length), displacement);
-    }
-  });
-  for (std::size_t i = network.hanging.size(); i-- > 0;) {
-    const auto [module, direction] = network.hanging[i];
-    const std::size_t host = at(robot.neighbours()[at(module)][direction]);
-    Vec6<double>& u = displacement[at(module)];
-    u = displacement[host];  // As one rigid body, from the host to what hangs on it.
-    const auto [a, j, k, sign] = Axes(direction ^ 1U);
-    const double arm = sign * robot.material().pitch_mm;
-    u[j] += arm * u[k + 3];
-    u[k] -= arm * u[j + 3];
-    base::add_to(u, network.load[at(module)]);
-  }
+  return Builder(robot, team).build();
 }
 
 }  // namespace holdfast::solver

@@ -33,9 +33,6 @@ struct ReducedNetwork {
   std::vector<std::uint64_t> key;   ///< Their Morton keys, ascending.
   bool has_long_beams = false;
   std::int32_t extent = 0;  ///< Longest side of the box around the nodes, pitches.
-  /// By module; empty if nothing was eliminated. Of modules that were: not their load, but how far
-  /// it moves them while the ends of their run, or what they hang on, are held.
-  std::vector<base::Vec6<double>> load;
 
   /// A module that hangs on one connection, in the order of elimination.
   struct Hanging {
@@ -58,18 +55,6 @@ struct ReducedNetwork {
   bool is_reduced() const { return !hanging.empty() || !runs.empty(); }
 };
 
-/// Under the robot's own weight.
 ReducedNetwork make_reduced_network(const model::Robot& robot, host::Team& team);
-
-/// Puts another load on the modules, by module.
-void carry(const model::Robot& robot, host::Team& team, std::vector<base::Vec6<double>> load,
-           ReducedNetwork& network);
-
-/// Fills in the displacements of modules that are no nodes; those of nodes are given.
-void recover(const model::Robot& robot, const ReducedNetwork& network, host::Team& team,
-             std::vector<base::Vec6<double>>& displacement);
-
-/// The section's beam stretched to `length` pitches.
-mechanics::BeamStiffness<double> long_beam(const model::Material& material, int length);
 
 }  // namespace holdfast::solver

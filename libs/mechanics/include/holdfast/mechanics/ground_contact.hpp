@@ -51,6 +51,20 @@ struct ContactState {
   std::int8_t tilt_x = 0;  ///< Sign of mx^ while the facet tilts about x, else 0.
   std::int8_t tilt_y = 0;  ///< Sign of my^ while the facet tilts about y, else 0.
 
+  /// How many states there are; code() counts them from 0.
+  static constexpr int kCodeCount = 10;
+
+  /// A number for each state: 0 for a facet that does not press, 5 for one that presses all over.
+  constexpr int code() const { return pressed ? 5 + 3 * tilt_x + tilt_y : 0; }
+
+  /// The state of a code from 0 to kCodeCount - 1.
+  static constexpr ContactState from_code(int code) {
+    return code == 0 ? ContactState{.pressed = false}
+                     : ContactState{.pressed = true,
+                                    .tilt_x = static_cast<std::int8_t>((code - 1) / 3 - 1),
+                                    .tilt_y = static_cast<std::int8_t>((code - 1) % 3 - 1)};
+  }
+
   friend constexpr bool operator==(const ContactState&, const ContactState&) = default;
 };
 

@@ -53,6 +53,10 @@ class BlockLu {
   /// Solves A x = b in place; x holds one vector per node. Needs a successful factor().
   void solve(std::span<base::Vec6<double>> x) const;
 
+  /// Solves A x = b in place for several b, each with one vector per node, to the same bits as one
+  /// after another; reads the factors once.
+  void solve_each(std::span<std::vector<base::Vec6<double>>> columns) const;
+
  private:
   struct Entry {
     std::int32_t column = 0;
@@ -63,6 +67,7 @@ class BlockLu {
   void make_row_lists();
   void allocate();
   void make_column(std::size_t column);
+  void substitute(std::span<base::Vec6<double>> y, std::size_t count) const;
   std::size_t find_slot(std::int32_t column, std::int32_t row) const;
 
   std::vector<Edge> edges_;

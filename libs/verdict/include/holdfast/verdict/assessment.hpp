@@ -96,10 +96,13 @@ inline constexpr double kLoadRatioTie = 1e-9;
 /// Whether a connection with this load ratio breaks.
 inline bool breaks(double load_ratio) { return load_ratio >= 1 - kLoadRatioTie; }
 
+/// Seeks the equilibrium of a robot and says what follows from it.
 Assessment assess(const model::Robot& robot, const solver::EquilibriumOptions& options = {});
 
-/// Assesses a robot whose equilibrium is already there, whoever found it.
-Assessment assess_equilibrium(const model::Robot& robot, solver::Equilibrium equilibrium);
+/// Says what follows from an equilibrium that is already there, whoever found it, on so many
+/// threads; 0: as many as the machine has cores.
+Assessment assess_equilibrium(const model::Robot& robot, solver::Equilibrium equilibrium,
+                              int thread_count = 0);
 
 /// "safe", "overload", "unstable", "undecided".
 const char* name(Verdict verdict);

@@ -1,0 +1,146 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "holdfast/base/algebra.hpp"
+#include "holdfast/mechanics/ground_contact.hpp"
+#include "holdfast/model/loads.hpp"
+#include "holdfast/model/robot.hpp"
+#include "holdfast/solver/options.hpp"
+
+/// A robot's equations of equilibrium for given contact states, K u = f: linear, and solved
+/// directly or by multigrid behind one interface.
+///
+/// K is the sum of all beams (Eqs. 3 and 5) and of what the contact law makes of every facet on the
+/// ground in the state that it is put into; f are the loads. Who seeks the states that belong to
+/// the loads (EquilibriumSolver) changes facets and solves again; who knows them asks for
+/// displacements under as many loads as there are.
+namespace holdfast::solver {
+
+/// A module on the ground, and the contact state that its facet is taken to be in.
+struct FacetState {
+  std::size_t module = 0;
+  mechanics::ContactState state;
+  bool is_held = true;  ///< Against slip and twist; kUnilateral only.
+
+  friend bool operator==(const FacetState&, const FacetState&) = default;
+};
+
+/// Displacements by module, and how good they are. Global frame; mm and rad.
+struct Solution {
+  std::vector<base::Vec6<double>> displacement;
+  /// What is to be added to `displacement` for 106 bits; empty if double precision sufficed.
+  std::vector<base::Vec6<double>> displacement_low;
+  /// A second answer, to see how far the first may be off: before the last step of iterative
+  /// refinement, or at least ten times farther from convergence.
+  std::vector<base::Vec6<double>> alternative;
+  /// The weak springs that hold beside the contact, as in ContactOptions; 0 if they were left out.
+  double gamma = 0;
+  /// The error in the energy norm, (N mm)^(1/2), by multigrid's own estimate.
+  double energy_error = 0;
+};
+
+/// How a linear solution ended.
+enum class LinearOutcome : std::uint8_t {
+  kSolved,
+  kSingular,  ///< A pivot vanished.
+  kTooSlow,   ///< The iteration stands still, or the robot is too slender for the precision.
+};
+
+/// What a linear system has done since it was made.
+struct LinearReport {
+  Method method = Method::kDirect;
+  Precision precision = Precision::kSingle;
+  int solve_count = 0;      ///< Calls of solve(); to go on with the same system counts as none.
+  int iteration_count = 0;  ///< Multigrid's, in all of them together.
+  /// Columns of the factorization made for them: less than one per module and solution, as a change
+  /// of some contact states leaves most of the factorization as it is.
+  std::size_t made_column_count = 0;
+};
+
+/// The equations of one robot, to which it keeps a reference. Begins with the robot's own loads,
+/// and needs a contact law before it can be solved, also where no module is on the ground.
+class LinearSystem {
+ public:
+  using Vec = base::Vec6<double>;
+
+  explicit LinearSystem(const model::Robot& robot);
+  virtual ~LinearSystem() = default;
+  LinearSystem(const LinearSystem&) = delete;
+  LinearSystem& operator=(const LinearSystem&) = delete;
+
+  const model::Robot& robot() const { return robot_; }
+
+  /// The modules on the ground in the robot's order, and their facets' states.
+  std::span<const FacetState> facets() const { return facets_; }
+
+  /// What a facet is by the present law.
+  const mechanics::GroundFacet<double>& ground() const { return ground_; }
+
+  const model::Loads& loads() const { return loads_; }
+
+  /// Takes a contact law, and all facets stuck.
+  void set_law(const ContactOptions& contact);
+
+  /// Puts a facet, by its place in facets(), into a state. Returns whether it was in another one.
+  bool set_facet(std::size_t facet, const mechanics::ContactState& state, bool is_held);
+
+  /// Takes other loads; what solve() goes on from is then no displacements at all.
+  void set_loads(model::Loads loads);
+
+  /// Solves for the present facets and loads. An iteration goes on from the last solution until its
+  /// error in the energy norm is `tolerance` times that of no displacements; a direct solution is
+  /// as exact as it gets.
+  [[nodiscard]] virtual LinearOutcome solve(double tolerance) = 0;
+
+  /// The last solution, by module; fixed modules do not move.
+  virtual std::vector<Vec> displacement() = 0;
+
+  /// Takes a solution whose displacement is that of the last solve() to the last digits that the
+  /// options ask for, and fills in all else. Returns false if there are not so many.
+  [[nodiscard]] virtual bool refine(Solution& solution) = 0;
+
+  /// Displacements by module under each of several loads, for the present facets; none if a
+  /// solution fails. The loads that were set are forgotten.
+  [[nodiscard]] virtual std::optional<std::vector<std::vector<Vec>>> solve_each(
+      std::span<const model::Loads> loads, double tolerance);
+
+  /// Whether solutions are exact but for rounding, whatever the tolerance.
+  virtual bool is_exact() const = 0;
+
+  /// How far every facet's trial force may be off after solve(), N, a torque counted at half a
+  /// facet's width; empty if is_exact().
+  virtual std::vector<double> facet_errors() const = 0;
+
+  virtual LinearReport report() const = 0;
+
+ protected:
+  /// What an implementation does about facets() in other states, another law, other loads.
+  virtual void take_law() = 0;
+  virtual void take_facet(std::size_t facet) = 0;
+  virtual void take_loads() = 0;
+
+  /// Changes the weak springs and nothing else.
+  void set_gamma(double gamma);
+
+ private:
+  const model::Robot& robot_;
+  model::Loads loads_;
+  mechanics::GroundFacet<double> ground_;
+  std::vector<FacetState> facets_;
+};
+
+/// Makes the system that options.method asks for, by size if it is kAutomatic: with a sparse
+/// factorization (block_lu.hpp), or with conjugate gradients and multigrid (docs/solver.md). None
+/// if it needs more memory, or fills in more, than the options allow.
+std::unique_ptr<LinearSystem> make_linear_system(const model::Robot& robot,
+                                                 const EquilibriumOptions& options);
+
+}  // namespace holdfast::solver

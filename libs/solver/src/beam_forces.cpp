@@ -1,0 +1,32 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#include "beam_forces.hpp"
+
+namespace holdfast::solver {
+
+using base::Vec6;
+
+std::vector<Vec6<double>> beam_forces(const model::Robot& robot,
+                                      const mechanics::BeamStiffness<double>& beam,
+                                      const std::vector<Vec6<double>>& displacement) {
+  std::vector<Vec6<double>> force(displacement.size(), Vec6<double>{});
+  for (const model::Connection& connection : robot.connections()) {
+    const auto a = static_cast<std::size_t>(connection.a);
+    const auto b = static_cast<std::size_t>(connection.b);
+    base::add_to(force[a], mechanics::end_force(beam, connection.direction, displacement[a],
+                                                displacement[b]));
+    base::add_to(force[b], mechanics::end_force(beam, base::opposite(connection.direction),
+                                                displacement[b], displacement[a]));
+  }
+  return force;
+}
+
+std::vector<Vec6<double>> sum(std::vector<Vec6<double>> a, double factor,
+                              const std::vector<Vec6<double>>& b) {
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    a[i] = sum(a[i], factor, b[i]);
+  }
+  return a;
+}
+
+}  // namespace holdfast::solver

@@ -1,0 +1,67 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "holdfast/solver/block_lu.hpp"
+#include "holdfast/solver/linear_system.hpp"
+
+namespace holdfast::solver {
+
+/// A robot's equations, factorized (BlockLu): one node per module that is not fixed. What a changed
+/// facet touches is factorized again.
+class DirectSystem final : public LinearSystem {
+ public:
+  /// None if it needs more memory, or fills in more, than the options allow.
+  static std::unique_ptr<DirectSystem> make(const model::Robot& robot,
+                                            const EquilibriumOptions& options);
+
+  [[nodiscard]] LinearOutcome solve(double tolerance) override;
+  std::vector<Vec> displacement() override;
+  [[nodiscard]] bool refine(Solution& solution) override;
+  [[nodiscard]] std::optional<std::vector<std::vector<Vec>>> solve_each(
+      std::span<const model::Loads> loads, double tolerance) override;
+
+  bool is_exact() const override { return true; }
+
+  std::vector<double> facet_errors() const override { return {}; }
+
+  LinearReport report() const override {
+    return {.solve_count = solve_count_, .made_column_count = lu_->made_column_count()};
+  }
+
+ private:
+  DirectSystem(const model::Robot& robot, const EquilibriumOptions& options);
+
+  void take_law() override;
+  void take_facet(std::size_t facet) override;
+
+  void take_loads() override {}
+
+  void order(const EquilibriumOptions& options);
+  void assemble();
+  std::int32_t node_of(std::int32_t module) const;
+  std::vector<Vec> by_module(const std::vector<Vec>& by_node) const;
+  template <class Load>
+  std::vector<Vec> by_node(const Load& load) const;
+  std::vector<Vec> solve_for(const std::vector<Vec>& load) const;
+  void refine_once(Solution& solution) const;
+  bool refine_precisely(Solution& solution);
+  bool refine_without_weak_springs(Solution& solution);
+
+  mechanics::BeamStiffness<double> beam_;
+  bool is_bonded_ = false;
+  bool is_precise_ = false;
+  std::vector<std::int32_t> node_of_module_;  ///< -1 for fixed modules
+  std::vector<base::Mat6<double>> diagonal_;  ///< By node, contact excluded.
+  std::optional<BlockLu> lu_;
+  std::vector<Vec> x_;  ///< The last solution, by node.
+  int solve_count_ = 0;
+};
+
+}  // namespace holdfast::solver

@@ -1,0 +1,63 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#include "holdfast/solver/linear_system.hpp"
+
+#include <utility>
+
+namespace holdfast::solver {
+
+LinearSystem::LinearSystem(const model::Robot& robot) : robot_(robot), loads_(robot.loads()) {
+  const auto modules = robot.modules();
+  for (std::size_t i = 0; i < modules.size(); ++i) {
+    if (modules[i].support == model::Support::kGround) {
+      facets_.push_back({.module = i, .state = {}});
+    }
+  }
+}
+
+void LinearSystem::set_law(const ContactOptions& contact) {
+  const model::Material& material = robot_.material();
+  ground_ = mechanics::ground_facet(model::beam_section(material), material.facet_mm, contact.gamma,
+                                    contact.law);
+  for (FacetState& facet : facets_) {
+    facet = {.module = facet.module, .state = {}};
+  }
+  take_law();
+}
+
+void LinearSystem::set_gamma(double gamma) {
+  ground_.gamma = gamma;
+  take_law();
+}
+
+bool LinearSystem::set_facet(std::size_t facet, const mechanics::ContactState& state,
+                             bool is_held) {
+  FacetState& known = facets_[facet];
+  if (known.state == state && known.is_held == is_held) {
+    return false;
+  }
+  known.state = state;
+  known.is_held = is_held;
+  take_facet(facet);
+  return true;
+}
+
+void LinearSystem::set_loads(model::Loads loads) {
+  loads_ = std::move(loads);
+  take_loads();
+}
+
+std::optional<std::vector<std::vector<base::Vec6<double>>>> LinearSystem::solve_each(
+    std::span<const model::Loads> loads, double tolerance) {
+  std::vector<std::vector<Vec>> displacements;
+  for (const model::Loads& load : loads) {
+    set_loads(load);
+    if (solve(tolerance) != LinearOutcome::kSolved) {
+      return std::nullopt;
+    }
+    displacements.push_back(displacement());
+  }
+  return displacements;
+}
+
+}  // namespace holdfast::solver

@@ -1,0 +1,229 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#include "condensation.hpp"
+
+#include <array>
+#include <span>
+#include <utility>
+
+#include "beam_shapes.hpp"
+#include "matrix_blocks.hpp"
+
+namespace holdfast::solver {
+namespace {
+
+using base::Direction;
+using base::Mat6;
+using base::Vec6;
+using host::Team;
+using model::Robot;
+
+std::size_t at(std::int32_t index) { return static_cast<std::size_t>(index); }
+
+Direction direction_of(std::size_t index) { return static_cast<Direction>(index); }
+
+std::array<double, 3> unit_step(std::size_t direction) {
+  std::array<double, 3> step{};
+  step[direction / 2] = direction % 2 == 0 ? 1 : -1;
+  return step;
+}
+
+/// A force at the tip of an arm, as force and torque at its root.
+Vec6<double> moved(Vec6<double> force, std::size_t direction, double length) {
+  const std::array<double, 3> step = unit_step(direction);
+  force[3] += length * (step[1] * force[2] - step[2] * force[1]);
+  force[4] += length * (step[2] * force[0] - step[0] * force[2]);
+  force[5] += length * (step[0] * force[1] - step[1] * force[0]);
+  return force;
+}
+
+/// Block elimination along a run, from its first inner module to its last: the same for all runs of
+/// one direction and length.
+struct RunFactor {
+  std::vector<Mat6<double>> pivot;   ///< Inverse of what is left of K_ii.
+  std::vector<Mat6<double>> factor;  ///< K_i,i-1 times the pivot before.
+  Mat6<double> to_next;              ///< K12 onwards and backwards.
+  Mat6<double> to_last;
+  Vec6<double> common{};                          ///< The load that most modules carry,
+  std::vector<Vec6<double>> common_displacement;  ///< and what it does to a run that carries it.
+};
+
+RunFactor factorize_run(const mechanics::BeamStiffness<double>& beam, std::size_t direction,
+                        int length) {
+  RunFactor run;
+  run.to_next = mechanics::block_12(beam, direction_of(direction));
+  run.to_last = mechanics::block_12(beam, direction_of(direction ^ 1U));
+  Mat6<double> both = mechanics::block_11(beam, direction_of(direction));
+  base::add_to(both, mechanics::block_11(beam, direction_of(direction ^ 1U)));
+  for (int i = 1; i < length; ++i) {
+    Mat6<double> diagonal = both;
+    run.factor.push_back(i == 1 ? run.to_last : product(run.to_last, run.pivot.back()));
+    if (i > 1) {
+      subtract_product(diagonal, run.factor.back(), run.to_next);
+    }
+    run.pivot.push_back(inverse_of(diagonal));
+  }
+  return run;
+}
+
+/// Turns the loads of a run's inner modules into their displacements while the run's ends are held.
+void apply_flexibility(const RunFactor& factor, std::span<Vec6<double>> load) {
+  for (std::size_t i = 1; i < load.size(); ++i) {
+    subtract_product(load[i], factor.factor[i], load[i - 1]);
+  }
+  for (std::size_t i = load.size(); i-- > 0;) {
+    if (i + 1 < load.size()) {
+      subtract_product(load[i], factor.to_next, load[i + 1]);
+    }
+    load[i] = multiply(factor.pivot[i], load[i]);
+  }
+}
+
+/// Does so for one run, by module. Most runs carry nothing but the common load, and bend alike.
+void apply_flexibility(const Robot& robot, const ReducedNetwork::Run& run, const RunFactor& factor,
+                       std::vector<Vec6<double>>& load) {
+  std::array<std::size_t, kBeamLengthMax> modules{};
+  std::array<Vec6<double>, kBeamLengthMax> own;
+  const std::size_t count = at(run.length) - 1;
+  std::size_t module = at(run.from);
+  bool is_common = true;
+  for (std::size_t i = 0; i < count; ++i) {
+    module = at(robot.neighbours()[module][run.direction]);
+    modules[i] = module;
+    own[i] = load[module];
+    is_common = is_common && own[i] == factor.common;
+  }
+  if (!is_common) {
+    apply_flexibility(factor, std::span(own).first(count));
+  }
+  for (std::size_t i = 0; i < count; ++i) {
+    load[modules[i]] = is_common ? factor.common_displacement[i] : own[i];
+  }
+}
+
+/// Adds what a run's inner modules carry to the loads of its ends.
+void move_loads_to_ends(const Robot& robot, const ReducedNetwork::Run& run,
+                        const std::vector<BeamShape>& shapes, std::vector<Vec6<double>>& load) {
+  Vec6<double> near{};
+  Vec6<double> far{};
+  std::size_t module = at(run.from);
+  for (int i = 1; i < run.length; ++i) {
+    module = at(robot.neighbours()[module][run.direction]);
+    add_share(shapes[at(i)], run.direction, load[module], near);
+    add_share(shapes[at(run.length - i)], run.direction ^ 1U, load[module], far);
+  }
+  base::add_to(load[at(run.from)], near);
+  base::add_to(load[at(robot.neighbours()[module][run.direction])], far);
+}
+
+/// The factors of all runs that a network has, by direction and length.
+using RunFactors = std::array<std::vector<RunFactor>, base::kDirectionCount>;
+
+RunFactors factorize_runs(const ReducedNetwork& network,
+                          const mechanics::BeamStiffness<double>& beam,
+                          const Vec6<double>& common) {
+  RunFactors factors;
+  factors.fill(std::vector<RunFactor>(kBeamLengthMax + 1));
+  for (const ReducedNetwork::Run& run : network.runs) {
+    RunFactor& factor = factors[run.direction][at(run.length)];
+    if (factor.pivot.empty()) {
+      factor = factorize_run(beam, run.direction, run.length);
+      factor.common = common;
+      factor.common_displacement.assign(factor.pivot.size(), common);
+      apply_flexibility(factor, factor.common_displacement);
+    }
+  }
+  return factors;
+}
+
+/// Turns the loads of all eliminated modules into displacements while the ends of their run, or
+/// what they hang on, are held.
+void apply_flexibilities(const Robot& robot, const ReducedNetwork& network, Team& team,
+                         const Vec6<double>& common, std::vector<Vec6<double>>& load) {
+  const auto beam = long_beam(robot.material(), 1);
+  const RunFactors factors = factorize_runs(network, beam, common);
+  std::array<Mat6<double>, base::kDirectionCount> inverse_11;
+  for (std::size_t d = 0; d < inverse_11.size(); ++d) {
+    inverse_11[d] = inverse_of(mechanics::block_11(beam, direction_of(d)));
+  }
+  team.share(0, network.runs.size(), [&](std::size_t begin, std::size_t end) {
+    for (const ReducedNetwork::Run& run : std::span(network.runs).subspan(begin, end - begin)) {
+      apply_flexibility(robot, run, factors[run.direction][at(run.length)], load);
+    }
+  });
+  team.share(0, network.hanging.size(), [&](std::size_t begin, std::size_t end) {
+    for (const auto& [module, direction] : std::span(network.hanging).subspan(begin, end - begin)) {
+      load[at(module)] = multiply(inverse_11[direction], load[at(module)]);
+    }
+  });
+}
+
+/// Moves a run's inner modules with its ends, and by what their loads do.
+void recover_run(const Robot& robot, const ReducedNetwork::Run& run,
+                 const std::vector<BeamShape>& shapes, const std::vector<Vec6<double>>& condensed,
+                 std::vector<Vec6<double>>& displacement) {
+  std::array<std::size_t, kBeamLengthMax + 1> modules{};
+  modules[0] = at(run.from);
+  const std::size_t length = at(run.length);
+  for (std::size_t i = 1; i <= length; ++i) {
+    modules[i] = at(robot.neighbours()[modules[i - 1]][run.direction]);
+  }
+  const Vec6<double> near = displacement[modules[0]];
+  const Vec6<double> far = displacement[modules[length]];
+  for (std::size_t i = 1; i < length; ++i) {
+    Vec6<double> u = condensed[modules[i]];
+    add_motion(shapes[i], run.direction, near, u);
+    add_motion(shapes[length - i], run.direction ^ 1U, far, u);
+    displacement[modules[i]] = u;
+  }
+}
+
+}  // namespace
+
+std::vector<Vec6<double>> condense(const Robot& robot, const ReducedNetwork& network, Team& team,
+                                   const model::Loads& loads) {
+  std::vector<Vec6<double>> load(robot.modules().size());
+  team.share(0, load.size(), [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      load[i] = loads[i];
+    }
+  });
+  const double pitch = robot.material().pitch_mm;
+  for (const auto& [module, direction] : network.hanging) {
+    const std::size_t host = at(robot.neighbours()[at(module)][direction]);
+    base::add_to(load[host], moved(load[at(module)], direction ^ 1U, pitch));
+  }
+  ShapeTable shapes(pitch);
+  for (const ReducedNetwork::Run& run : network.runs) {
+    move_loads_to_ends(robot, run, shapes.of(run.length), load);
+  }
+  const Vec6<double> common = loads.is_uniform() ? loads[0] : Vec6<double>{};
+  apply_flexibilities(robot, network, team, common, load);
+  return load;
+}
+
+void recover(const Robot& robot, const ReducedNetwork& network, Team& team,
+             const std::vector<Vec6<double>>& condensed, std::vector<Vec6<double>>& displacement) {
+  ShapeTable shapes(robot.material().pitch_mm);
+  for (const ReducedNetwork::Run& run : network.runs) {
+    shapes.of(run.length);
+  }
+  team.share(0, network.runs.size(), [&](std::size_t begin, std::size_t end) {
+    for (const ReducedNetwork::Run& run : std::span(network.runs).subspan(begin, end - begin)) {
+      recover_run(robot, run, shapes.known(run.length), condensed, displacement);
+    }
+  });
+  for (std::size_t i = network.hanging.size(); i-- > 0;) {
+    const auto [module, direction] = network.hanging[i];
+    const std::size_t host = at(robot.neighbours()[at(module)][direction]);
+    Vec6<double>& u = displacement[at(module)];
+    u = displacement[host];  // As one rigid body, from the host to what hangs on it.
+    const auto [a, j, k, sign] = Axes(direction ^ 1U);
+    const double arm = sign * robot.material().pitch_mm;
+    u[j] += arm * u[k + 3];
+    u[k] -= arm * u[j + 3];
+    base::add_to(u, condensed[at(module)]);
+  }
+}
+
+}  // namespace holdfast::solver

@@ -1,0 +1,29 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "contact_iteration.hpp"
+
+namespace holdfast::solver {
+
+/// Newton's method for the paper's law: solve, look up the states of the solution, until nothing
+/// changes. Settles in 1 to 5 steps on most robots, and cycles on some.
+class RegularisedContact final : public ContactIteration {
+ public:
+  RegularisedContact(LinearSystem& system, const EquilibriumOptions& options);
+
+  Outcome run(Solution& solution) override;
+
+  /// Further solutions beside `settled`, whose states the system has: feet that hardly press and
+  /// are pulled sideways are put into another state, one at a time, and Newton's method goes on
+  /// from there. Leaves the system in the states it had.
+  std::vector<Solution> find_others(const Solution& settled);
+
+ private:
+  std::vector<std::size_t> doubtful_facets(const Solution& settled) const;
+  bool goes_on_from(std::size_t facet, Solution& other);
+};
+
+}  // namespace holdfast::solver

@@ -1,0 +1,102 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#include "system_choice.hpp"
+
+#include <limits>
+#include <utility>
+
+namespace holdfast::solver {
+namespace {
+
+/// Up to here the direct solver is as fast, and exact.
+constexpr std::size_t kDirectCountMax = 128;
+
+/// The unilateral law takes dozens of steps that change a few facets each, and its weak springs
+/// cost multigrid digits. So up to here the direct solver, which makes only some columns again, is
+/// faster if no more blocks than this fill in per node.
+constexpr std::size_t kUnilateralCountMax = 6000;
+constexpr std::size_t kUnilateralFillMax = 16;
+
+constexpr std::size_t kNoLimit = std::numeric_limits<std::size_t>::max();
+
+}  // namespace
+
+SystemChoice::SystemChoice(const model::Robot& robot, const EquilibriumOptions& options)
+    : robot_(robot), options_(options), has_tried_double_(options.precision == Precision::kDouble) {
+  const bool is_small = options.method == Method::kAutomatic && node_count() <= kDirectCountMax;
+  if (is_small || options.method == Method::kDirect) {
+    make_direct(options.fill_max);
+  } else {
+    multigrid_ = Multigrid::make(robot, options_);
+  }
+}
+
+std::size_t SystemChoice::node_count() const {
+  return robot_.modules().size() - robot_.fixed_count();
+}
+
+LinearSystem* SystemChoice::system() {
+  return direct_ ? static_cast<LinearSystem*>(direct_.get()) : multigrid_.get();
+}
+
+std::unique_ptr<LinearSystem> SystemChoice::take() {
+  return direct_ ? std::unique_ptr<LinearSystem>(std::move(direct_)) : std::move(multigrid_);
+}
+
+/// Returns false, and keeps what there is, if it is too large.
+bool SystemChoice::make_direct(std::size_t fill_max) {
+  EquilibriumOptions options = options_;
+  options.fill_max = fill_max;
+  direct_ = DirectSystem::make(robot_, options);
+  if (direct_) {
+    multigrid_.reset();
+  }
+  return direct_ != nullptr;
+}
+
+void SystemChoice::prepare(mechanics::ContactLaw law) {
+  if (multigrid_ && options_.method == Method::kAutomatic &&
+      law == mechanics::ContactLaw::kUnilateral && node_count() <= kUnilateralCountMax) {
+    make_direct(kUnilateralFillMax);
+  }
+}
+
+bool SystemChoice::try_next() {
+  if (options_.method == Method::kDirect) {
+    return false;
+  }
+  has_tried_direct_ =
+      has_tried_direct_ || direct_ != nullptr || options_.method == Method::kMultigrid;
+  return node_count() <= kUnilateralCountMax ? try_direct() || try_double()
+                                             : try_double() || try_direct();
+}
+
+bool SystemChoice::try_direct() {
+  return !std::exchange(has_tried_direct_, true) && make_direct(kNoLimit);
+}
+
+bool SystemChoice::try_double() {
+  if (std::exchange(has_tried_double_, true)) {
+    return false;
+  }
+  if (multigrid_) {
+    if (!multigrid_->set_precision(Precision::kDouble)) {
+      multigrid_.reset();
+    }
+    return multigrid_ != nullptr;
+  }
+  EquilibriumOptions options = options_;
+  options.precision = Precision::kDouble;
+  multigrid_ = Multigrid::make(robot_, options);
+  if (multigrid_) {
+    direct_.reset();
+  }
+  return multigrid_ != nullptr;
+}
+
+std::unique_ptr<LinearSystem> make_linear_system(const model::Robot& robot,
+                                                 const EquilibriumOptions& options) {
+  return SystemChoice(robot, options).take();
+}
+
+}  // namespace holdfast::solver

@@ -1,0 +1,129 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#include "unilateral_contact.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "beam_forces.hpp"
+
+namespace holdfast::solver {
+namespace {
+
+using base::Vec6;
+using mechanics::ContactState;
+
+/// Halvings of the bracket in the line search, to the resolution of double.
+constexpr int kLineStepMax = 60;
+
+double dot_all(const std::vector<Vec6<double>>& a, const std::vector<Vec6<double>>& b) {
+  double sum = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    sum += base::dot(a[i], b[i]);
+  }
+  return sum;
+}
+
+bool is_open_but_held(const FacetState& facet) { return !facet.state.pressed && facet.is_held; }
+
+}  // namespace
+
+UnilateralContact::UnilateralContact(LinearSystem& system, const EquilibriumOptions& options)
+    : ContactIteration(system, options),
+      beam_(mechanics::beam_stiffness(model::beam_section(system.robot().material()))),
+      was_released_(system.facets().size()) {}
+
+Outcome UnilateralContact::run(Solution& solution) {
+  Outcome outcome = minimise(solution);
+  while (outcome == Outcome::kSettled && update_held()) {
+    outcome = minimise(solution);
+  }
+  return outcome;
+}
+
+/// Newton's method with an exact line search on the convex energy, for the present held facets.
+Outcome UnilateralContact::minimise(Solution& solution) {
+  std::vector<Vec> current;
+  for (int step = 0; step < step_count_max(); ++step) {
+    const Outcome outcome = solve(solution);
+    if (outcome != Outcome::kSettled) {
+      return outcome;
+    }
+    if (!set_states(states_at(solution.displacement))) {
+      if (is_tight_now()) {
+        return Outcome::kSettled;
+      }
+      continue;
+    }
+    if (!current.empty()) {
+      const std::vector<Vec> direction = sum(solution.displacement, -1, current);
+      solution.displacement = sum(current, search_line(current, direction), direction);
+      set_states(states_at(solution.displacement));
+    }
+    current = solution.displacement;
+  }
+  return Outcome::kNotSettled;
+}
+
+/// Where the energy along a line is least: the root of its slope, which never decreases.
+double UnilateralContact::search_line(const std::vector<Vec>& from,
+                                      const std::vector<Vec>& direction) const {
+  const model::Robot& robot = system().robot();
+  const mechanics::GroundFacet<double>& ground = system().ground();
+  double slope = dot_all(beam_forces(robot, beam_, from), direction);
+  for (std::size_t i = 0; i < direction.size(); ++i) {  // A fixed module does not move.
+    slope -= base::dot(system().loads()[i], direction[i]);
+  }
+  const double curvature = dot_all(beam_forces(robot, beam_, direction), direction);
+  const auto slope_at = [&](double length) {
+    double slope_here = slope + length * curvature;
+    for (const FacetState& facet : system().facets()) {
+      const Vec u = sum(from[facet.module], length, direction[facet.module]);
+      const ContactState state =
+          mechanics::contact_state(ground, mechanics::trial_force(ground, u));
+      slope_here += base::dot(mechanics::contact_force(ground, state, facet.is_held, u),
+                              direction[facet.module]);
+    }
+    return slope_here;
+  };
+  if (slope_at(1) <= 0) {
+    return 1;
+  }
+  double low = 0;
+  double high = 1;
+  for (int i = 0; i < kLineStepMax && low < high; ++i) {
+    const double middle = (low + high) / 2;
+    (slope_at(middle) <= 0 ? low : high) = middle;
+  }
+  return high;
+}
+
+/// Releases open facets, holds pressed ones. Returns whether anything changed; a facet changes at
+/// most twice, so this says no in the end.
+bool UnilateralContact::update_held() {
+  bool is_changed = false;
+  for (std::size_t i = 0; i < system().facets().size(); ++i) {
+    const FacetState& facet = system().facets()[i];
+    const bool is_held = facet.state.pressed || (facet.is_held && was_released_[i]);
+    was_released_[i] = was_released_[i] || !is_held;
+    is_changed = system().set_facet(i, facet.state, is_held) || is_changed;
+  }
+  return is_changed;
+}
+
+int UnilateralContact::open_but_held_count() const {
+  return static_cast<int>(std::ranges::count_if(system().facets(), is_open_but_held));
+}
+
+std::vector<Vec6<double>> UnilateralContact::displacement_with_free_facets(
+    const std::vector<Vec>& displacement) {
+  for (std::size_t i = 0; i < system().facets().size(); ++i) {
+    const FacetState& facet = system().facets()[i];
+    system().set_facet(i, facet.state, facet.is_held && facet.state.pressed);
+  }
+  set_states(states_at(displacement));
+  Solution free;
+  return minimise(free) == Outcome::kSettled ? std::move(free.displacement) : std::vector<Vec>{};
+}
+
+}  // namespace holdfast::solver

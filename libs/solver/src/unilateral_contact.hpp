@@ -1,0 +1,36 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "contact_iteration.hpp"
+
+namespace holdfast::solver {
+
+/// Newton's method with an exact line search for the exact law, whose energy is convex for given
+/// held facets; around it the loop that releases open facets and holds pressed ones.
+class UnilateralContact final : public ContactIteration {
+ public:
+  UnilateralContact(LinearSystem& system, const EquilibriumOptions& options);
+
+  Outcome run(Solution& solution) override;
+
+  /// After run(): open facets that are held sideways all the same, as they would close when
+  /// released.
+  int open_but_held_count() const;
+
+  /// The other limit where some facets can neither be held nor free, half open, half closed: the
+  /// displacements with these facets free. Empty if there is no equilibrium then.
+  std::vector<Vec> displacement_with_free_facets(const std::vector<Vec>& displacement);
+
+ private:
+  Outcome minimise(Solution& solution);
+  bool update_held();
+  double search_line(const std::vector<Vec>& from, const std::vector<Vec>& direction) const;
+
+  mechanics::BeamStiffness<double> beam_;
+  std::vector<bool> was_released_;  ///< By facet.
+};
+
+}  // namespace holdfast::solver
