@@ -7,12 +7,12 @@ flash_max=49152  # 48 KB
 ram_max=20992    # 8 KB, and 12.5 KB in which Blinky Blocks' own library keeps its buffers
 
 # Names of ours, the compiler's calls that firmware/src defines, and what is left of libgcc: shifts,
-# products of 64 bits, jump tables, leading zeros, float to integer for the lamp.
+# products of 64 bits, jump tables, leading and trailing zeros, float to integer for the lamp.
 allowed='^(_Z.*8holdfast.*|holdfast_.*|CSWTCH\.[0-9]+|memcpy|memmove|memset|memcmp'
 allowed+='|__aeabi_(d|f)(add|sub|mul|div|cmp(eq|lt|gt|le|ge))'
 allowed+='|__aeabi_(d2f|f2d|i2d|ui2d|d2iz|i2f|ui2f)|__aeabi_u?idiv(mod)?'
 allowed+='|__aeabi_(llsl|llsr|lmul|idiv0|ldiv0|f2iz|f2uiz)|__(ashl|lshr|mul)di3'
-allowed+='|__clzsi2|__fixunssfsi|__fixsfsi|__gnu_thumb1_case_(u|s)(q|h)i)$'
+allowed+='|__c[lt]zsi2|__fixunssfsi|__fixsfsi|__gnu_thumb1_case_(u|s)(q|h)i)$'
 
 bad=$(arm-none-eabi-nm --defined-only --format=just-symbols "$image" |
       grep -Ev -e '^\$[atd]' -e '^\.' | grep -Ev "$allowed" | sort -u || true)

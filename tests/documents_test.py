@@ -1,13 +1,16 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: The holdfast authors
 # SPDX-License-Identifier: Apache-2.0
-"""documents_test.py HOLDFAST CHECKER REPOSITORY   what the documents show is what the program does.
+"""documents_test.py HOLDFAST CHECKER REPOSITORY [--renew]
+The documents show what the program does.
 
 - every command with an output ("$ build/release/holdfast ..." in an indented block) prints that
   output; times are not compared, and a line of dots stands for any number of lines
 - every ```json block with a name is a file of that name to these commands
 - the figures are those that tools/draw_figures.py draws
 - the rounds, packets and seconds of the scenarios' tables are those of `holdfast simulate`
+
+With --renew outputs without dots, tables and figures are written anew; look at the difference.
 """
 import json
 import os
@@ -23,6 +26,7 @@ DOCUMENTS = ['README.md', *(f'docs/{name}.md' for name in (
 NOT_RUN = './dev firmware'
 
 faults = []
+renewals = {}  # Document -> its new text.
 
 
 def fault(message):
@@ -53,6 +57,17 @@ def masked(line):
     return re.sub(r'-(0\.0+)\b', r' \1', re.sub(r'in [\d.]+ (us|ms|s)\b', 'in N s', line.rstrip()))
 
 
+def renewed(text, shown, printed):
+    """The document with a new output; lines that differ in a time alone stay."""
+    if any(line.strip() == '...' for line in shown) or len(shown) != len(printed):
+        return text
+    lines = [old if masked(old) == masked(new) else new for old, new in zip(shown, printed)]
+
+    def block(these):
+        return '\n'.join('    ' + line if line else '' for line in these)
+    return text.replace(block(shown), block(lines))
+
+
 def is_same(shown, printed):
     if not shown:
         return not printed
@@ -78,6 +93,7 @@ def check_outputs(document, text, folder):
         if not is_same(shown or [''], printed):
             fault(f'{document}: {command}\n  shown:\n    ' + '\n    '.join(shown) +
                   '\n  printed:\n    ' + '\n    '.join(printed))
+            renewals[document] = renewed(renewals.get(document, text), shown, printed)
         count += 1
     return count
 
@@ -100,20 +116,30 @@ def measured(program, repository):
     return costs
 
 
+def check_row(repository, document, row, cost):
+    """`row` has the cost as its only group."""
+    text = renewals.get(document, (repository / document).read_text())
+    found = re.search(row, text, re.M)
+    if not found:
+        fault(f'{document}: no row {row}')
+    elif found[1] != cost:
+        fault(f'{document}: {found[0]}\n  it takes {cost}')
+        renewals[document] = text[:found.start(1)] + cost + text[found.end(1):]
+
+
 def check_tables(repository, costs):
-    readme = (repository / 'README.md').read_text()
-    distributed = (repository / 'docs/distributed.md').read_text()
     for name, (rounds, packets, seconds) in costs.items():
-        row = re.search(rf'^\| {name} \|.*\| ([^|]*) / ([^|]*) \| yes \|$', readme, re.M)
-        if not row or row.groups() != (rounds, seconds):
-            fault(f'README.md: {name} takes {rounds} / {seconds}')
-        row = re.search(rf'^\| {name} \|.*\| ([^|]*) \|$', distributed, re.M)
-        if not row or row[1] != f'{rounds}, {packets}, {seconds}':
-            fault(f'docs/distributed.md: {name} takes {rounds}, {packets}, {seconds}')
+        check_row(repository, 'README.md', rf'^\| {name} \|.*\| ([^|]* / [^|]*) \| yes \|$',
+                  f'{rounds} / {seconds}')
+        check_row(repository, 'docs/distributed.md', rf'^\| {name} \|.*\| ([^|]*) \|$',
+                  f'{rounds}, {packets}, {seconds}')
 
 
 def main():
-    program, checker, repository = (pathlib.Path(word).resolve() for word in sys.argv[1:])
+    program, checker, repository = (pathlib.Path(word).resolve() for word in sys.argv[1:4])
+    if '--renew' in sys.argv:
+        subprocess.run([sys.executable, repository / 'tools/draw_figures.py',
+                        repository / 'docs'], check=True)
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
         (folder / 'build/release').mkdir(parents=True)
@@ -125,6 +151,9 @@ def main():
         count = sum(check_outputs(document, (repository / document).read_text(), folder)
                     for document in DOCUMENTS if (repository / document).is_file())
     check_tables(repository, measured(program, repository))
+    if '--renew' in sys.argv:
+        for document, text in renewals.items():
+            (repository / document).write_text(text)
     print('\n'.join(faults) if faults else f'{count} commands print what is shown')
     sys.exit(1 if faults else 0)
 

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <cmath>
 #include <cstdio>
+#include <cstring>
 #include <exception>
 #include <fstream>
 #include <iterator>
@@ -9,8 +10,7 @@
 
 #include "holdfast/certificate/certificate.hpp"
 
-/// holdfast-checker CERTIFICATE: reads what `holdfast check --certificate` has written and proves
-/// it again. Exit: 0 proved, 2 not proved, 64 wrong usage, 65 not readable.
+/// The program's texts and exit codes; all else is the room certificate's.
 namespace {
 
 namespace certificate = holdfast::certificate;
@@ -26,6 +26,16 @@ const char* name(certificate::Law law) {
   }
   return "bonded";
 }
+
+constexpr const char* kUsage = "usage: holdfast-checker CERTIFICATE\n";
+constexpr const char* kHelp =
+    "\n"
+    "Reads what 'holdfast check --certificate FILE' has written and proves it again, in integers "
+    "and\n"
+    "without the code that solved it: that the largest load ratio lies in the range shown, and "
+    "that\n"
+    "the robot stands.\n"
+    "Exit: 0 proved, 2 not proved, 64 wrong usage, 65 not readable.\n";
 
 /// The range with all its digits, so that no rounding narrows it.
 int show(const certificate::Certificate& made) {
@@ -61,8 +71,13 @@ int run(const char* path) {
 
 int main(int argc, char** argv) {
   if (argc != 2) {
-    std::fputs("usage: holdfast-checker CERTIFICATE\n", stderr);
+    std::fputs(kUsage, stderr);
     return 64;
+  }
+  if (std::strcmp(argv[1], "--help") == 0 || std::strcmp(argv[1], "-h") == 0) {
+    std::fputs(kUsage, stdout);
+    std::fputs(kHelp, stdout);
+    return 0;
   }
   try {
     return run(argv[1]);

@@ -1,22 +1,19 @@
 // SPDX-FileCopyrightText: The holdfast authors
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <array>
-#include <chrono>
-#include <cstdlib>
 #include <memory>
 
 #include "commands.hpp"
 #include "file_clash.hpp"
 #include "page.hpp"
+#include "progress.hpp"
 
 namespace holdfast::cli {
 namespace {
 
 using verdict::Verdict;
-using Clock = std::chrono::steady_clock;
 
 struct Options {
   std::vector<std::string> files;
@@ -34,17 +31,17 @@ struct Options {
   double memory_gb = 4;
 };
 
-/// Progress is shown when a run takes longer than this, and then as often.
-constexpr std::chrono::seconds kProgressInterval(1);
-
 /// Goes through the files of one run and keeps count.
 class CheckRun {
  public:
-  explicit CheckRun(const Options& options) : options_(options) {}
+  explicit CheckRun(const Options& options) : options_(options), progress_(options.is_quiet) {}
 
   int run() {
     for (std::size_t i = 0; i < options_.files.size(); ++i) {
-      show_progress(i);
+      if (is_many()) {
+        progress_.show(
+            [&] { return fmt::format("checked {} of {} files", i, options_.files.size()); });
+      }
       check_file(options_.files[i]);
     }
     if (shows_text() && is_many()) {
@@ -61,7 +58,7 @@ class CheckRun {
   bool shows_text() const { return !options_.is_quiet && options_.json != "-"; }
 
   void check_file(const std::string& file) {
-    const auto structure = load_with_notes(file);
+    const auto structure = load_with_notes(file, options_.thread_count);
     if (!structure) {
       report_error(structure.error(), file);
       return;
@@ -200,22 +197,12 @@ class CheckRun {
     options.connections = *io::find_connection_choice(options_.connections);
     if (!options_.is_quiet) {
       options.progress = [this, path](double share) {
-        if (Clock::now() - shown_ >= kProgressInterval) {
-          shown_ = Clock::now();
-          fmt::print(stderr, "holdfast: {}: {:.0f} % written\n", io::one_line(path), 100 * share);
-        }
+        progress_.show([&] {
+          return fmt::format("{}: {:.0f} % written", io::one_line(path), 100 * share);
+        });
       };
     }
     return options;
-  }
-
-  void show_progress(std::size_t done) {
-    const auto now = Clock::now();
-    if (options_.is_quiet || !is_many() || now - shown_ < kProgressInterval) {
-      return;
-    }
-    shown_ = now;
-    fmt::print(stderr, "holdfast: checked {} of {} files\n", done, options_.files.size());
   }
 
   /// With a line per second on what is going on.
@@ -227,11 +214,11 @@ class CheckRun {
         .is_proof_wanted = options_.is_proof_wanted || !options_.certificate.empty()};
     if (!options_.is_quiet) {
       options.progress = [this, &structure, file](int iteration, double error) {
-        if (Clock::now() - shown_ >= kProgressInterval) {
-          shown_ = Clock::now();
-          fmt::print(stderr, "holdfast: {}: {} modules, iteration {}, error {:.1e} of the first\n",
-                     io::one_line(file), structure.robot.modules().size(), iteration, error);
-        }
+        progress_.show([&] {
+          return fmt::format("{}: {} modules, iteration {}, error {:.1e} of the first",
+                             io::one_line(file), structure.robot.modules().size(), iteration,
+                             error);
+        });
       };
     }
     return options;
@@ -241,11 +228,12 @@ class CheckRun {
     if (bad_count_ > 0) {
       return kExitBadInput;
     }
-    if (counts_[static_cast<std::size_t>(Verdict::kOverload)] > 0 ||
-        counts_[static_cast<std::size_t>(Verdict::kUnstable)] > 0) {
-      return kExitUnsafe;
+    for (const Verdict verdict : {Verdict::kOverload, Verdict::kUnstable, Verdict::kUndecided}) {
+      if (counts_[static_cast<std::size_t>(verdict)] > 0) {
+        return cli::exit_code(verdict);
+      }
     }
-    return counts_[static_cast<std::size_t>(Verdict::kUndecided)] > 0 ? kExitUndecided : kExitSafe;
+    return kExitSafe;
   }
 
   const Options& options_;
@@ -253,7 +241,7 @@ class CheckRun {
   std::size_t bad_count_ = 0;
   std::optional<host::OutputFile> json_;
   std::size_t report_count_ = 0;
-  Clock::time_point shown_ = Clock::now();
+  Progress progress_;
 };
 
 int run(const Options& options) {

@@ -54,6 +54,12 @@ inline void print_error(const base::Error& error, const std::string& file) {
   fmt::print(stderr, "holdfast: {}\n", describe(error, file));
 }
 
+/// Prints the error and returns the exit code.
+inline int fail(const base::Error& error, const std::string& file) {
+  print_error(error, file);
+  return kExitBadInput;
+}
+
 /// What a reader noticed. Goes to standard error whatever is asked for: a silent note is a lost
 /// one.
 inline void print_notes(std::span<const std::string> notes, const std::string& file) {
@@ -62,9 +68,9 @@ inline void print_notes(std::span<const std::string> notes, const std::string& f
   }
 }
 
-/// Reads a structure and prints its notes.
-inline base::Result<Structure> load_with_notes(const std::string& file) {
-  auto structure = load_file(file);
+/// Reads a structure and prints its notes. 0 threads: as many as the machine has cores.
+inline base::Result<Structure> load_with_notes(const std::string& file, int thread_count = 0) {
+  auto structure = load_file(file, thread_count);
   if (structure) {
     print_notes(structure.value().warnings, file);
   }

@@ -15,11 +15,6 @@ struct Options {
   std::string to;
 };
 
-int fail(const base::Error& error, const std::string& file) {
-  print_error(error, file);
-  return kExitBadInput;
-}
-
 /// False, and an error, if VisibleSim has no grid for these cells.
 bool note_shift(const io::Document& document, const Options& options) {
   const auto shift = io::visiblesim_shift(document);

@@ -3,23 +3,21 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <memory>
 
 #include "change_options.hpp"
 #include "commands.hpp"
-#include "faults.hpp"
+#include "fault_options.hpp"
 #include "file_clash.hpp"
 #include "holdfast/emulated.hpp"
+#include "own_files.hpp"
+#include "progress.hpp"
 #include "run_report.hpp"
 
 namespace holdfast::cli {
 namespace {
 
-using Clock = std::chrono::steady_clock;
 using emulator::Fault;
-
-constexpr std::chrono::seconds kProgressInterval(1);
 
 struct Options {
   std::string file;
@@ -27,10 +25,11 @@ struct Options {
   std::string image;
   std::string pages;
   std::uint64_t seed = 1;
-  std::vector<std::string> kills;
-  std::vector<std::string> cuts;
-  std::vector<std::string> flips;
-  std::vector<std::string> resets;
+  std::vector<FaultOption<Fault>> faults = {
+      {"kill", Fault::Kind::kKill, false, "A module loses its power at time T (s)"},
+      {"reset", Fault::Kind::kReset, false, "A module starts again"},
+      {"cut", Fault::Kind::kCut, true, "A line fails; FACE is +x, -x, +y, -y, +z or -z"},
+      {"flip", Fault::Kind::kFlip, true, "The next byte that comes in there is damaged"}};
   ChangeOptions changes;
   double time_max_s = 60;
   std::string json;
@@ -39,17 +38,16 @@ struct Options {
   bool is_quiet = false;
 };
 
-/// Beside this program's folder, where ./dev firmware puts it.
+/// What ./dev firmware has built, or what was installed; if neither is there, where the first would
+/// be.
 std::string default_image() {
-  std::error_code error;
-  const auto self = std::filesystem::read_symlink("/proc/self/exe", error);
-  const std::filesystem::path folder = error ? "." : self.parent_path().parent_path();
-  return (folder / "firmware" / "module_stm32f0.elf").string();
+  const std::vector<std::filesystem::path> places = places_of("module_stm32f0.elf", "firmware");
+  return find_file(places).value_or(places[1]).string();
 }
 
 class EmulateRun {
  public:
-  explicit EmulateRun(const Options& options) : options_(options) {}
+  explicit EmulateRun(const Options& options) : options_(options), progress_(options.is_quiet) {}
 
   int run() {
     const std::string inputs[] = {options_.file, image()};
@@ -58,8 +56,7 @@ class EmulateRun {
     }
     const auto structure = load_with_notes(options_.file);
     if (!structure) {
-      print_error(structure.error(), options_.file);
-      return kExitBadInput;
+      return fail(structure.error(), options_.file);
     }
     if (!options_.pages.empty()) {
       return write_pages(structure.value());
@@ -80,8 +77,7 @@ class EmulateRun {
     }
     const auto changed = with_changes(structure, *changes);
     if (!changed) {
-      print_error(changed.error(), options_.file);
-      return kExitBadInput;
+      return fail(changed.error(), options_.file);
     }
     emulation_.tells_planned = false;
     emulation_.announcements = changed.value().announcements;
@@ -97,12 +93,11 @@ class EmulateRun {
   }
 
   int run_with_faults(const Structure& structure) {
-    if (!add_faults("kill", options_.kills, Fault::Kind::kKill, structure) ||
-        !add_faults("reset", options_.resets, Fault::Kind::kReset, structure) ||
-        !add_faults("cut", options_.cuts, Fault::Kind::kCut, structure) ||
-        !add_faults("flip", options_.flips, Fault::Kind::kFlip, structure)) {
+    const auto faults = read_faults(options_.faults, structure, microseconds);
+    if (!faults) {
       return kExitUsage;
     }
+    emulation_.faults.insert(emulation_.faults.end(), faults->begin(), faults->end());
     return emulate_structure(structure);
   }
 
@@ -122,45 +117,25 @@ class EmulateRun {
 
   static sim::Time microseconds(double seconds) { return static_cast<sim::Time>(seconds * 1e6); }
 
-  /// Reads all faults of one kind; says which one is wrong.
-  bool add_faults(const char* name, const std::vector<std::string>& texts, Fault::Kind kind,
-                  const Structure& structure) {
-    const bool has_face = kind == Fault::Kind::kCut || kind == Fault::Kind::kFlip;
-    for (const std::string& text : texts) {
-      const auto place = read_fault_place(text, has_face, structure);
-      if (!place) {
-        fmt::print(stderr, "holdfast: {}\n", fault_usage(name, text, has_face));
-        return false;
-      }
-      emulation_.faults.push_back({.kind = kind,
-                                   .at = microseconds(place->time),
-                                   .module = place->module,
-                                   .face = place->face});
-    }
-    return true;
-  }
-
   int emulate_structure(const Structure& structure) {
     const CheckResult exact = check(structure);
     const auto run =
-        emulate(structure, exact, image(), emulation_,
-                [this](const sim::SimulationResult& result) { return show_progress(result); });
+        emulate(structure, exact, image(), emulation_, [this](const sim::SimulationResult& result) {
+          show_progress(result);
+          return true;
+        });
     if (!run) {
-      print_error(run.error(), options_.file);
-      return kExitBadInput;
+      return fail(run.error(), options_.file);
     }
     return show(structure, exact, run.value()) ? exit_code(run.value().run.view.verdict)
                                                : kExitBadInput;
   }
 
-  bool show_progress(const sim::SimulationResult& result) {
-    const auto now = Clock::now();
-    if (!options_.is_quiet && now - shown_ >= kProgressInterval) {
-      shown_ = now;
-      fmt::print(stderr, "holdfast: {:.2f} s on the robot, {} steps\n",
-                 static_cast<double>(result.time) * 1e-6, result.events);
-    }
-    return true;
+  void show_progress(const sim::SimulationResult& result) {
+    progress_.show([&] {
+      return fmt::format("{:.2f} s on the robot, {} steps", static_cast<double>(result.time) * 1e-6,
+                         result.events);
+    });
   }
 
   /// False if a file cannot be written.
@@ -171,19 +146,8 @@ class EmulateRun {
 
   const Options& options_;
   emulator::EmulationOptions emulation_;
-  Clock::time_point shown_ = Clock::now();
+  Progress progress_;
 };
-
-void add_fault_options(CLI::App& command, Options& options) {
-  const auto add = [&](const char* name, std::vector<std::string>& values, const char* type,
-                       const char* help) {
-    command.add_option(name, values, help)->type_name(type)->allow_extra_args(false);
-  };
-  add("--kill", options.kills, "X,Y,Z@T", "A module loses its power at time T (s)");
-  add("--reset", options.resets, "X,Y,Z@T", "A module starts again");
-  add("--cut", options.cuts, "X,Y,Z:FACE@T", "A line fails; FACE is +x, -x, +y, -y, +z or -z");
-  add("--flip", options.flips, "X,Y,Z:FACE@T", "The next byte that comes in there is damaged");
-}
 
 }  // namespace
 
@@ -211,7 +175,7 @@ Command add_emulate(CLI::App& app) {
   command->add_option("--seed", options->seed, "Of everything random")
       ->type_name("N")
       ->capture_default_str();
-  add_fault_options(*command, *options);
+  add_fault_options(*command, options->faults);
   add_change_options(*command, options->changes, "s");
   command->add_option("--time", options->time_max_s, "Give up after so long (s on the robot)")
       ->type_name("T")

@@ -10,6 +10,8 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "own_files.hpp"
+
 namespace holdfast::cli {
 namespace {
 
@@ -57,23 +59,18 @@ bool replace_once(std::string& text, std::string_view from, std::string_view to)
 }  // namespace
 
 base::Result<std::string> find_page() {
-  std::error_code code;
-  const fs::path program = fs::read_symlink("/proc/self/exe", code);
-  const fs::path folder = program.parent_path();
-  const std::string name = "holdfast.html";
-  std::string places;
-  for (const fs::path& path : {folder / name, folder / ".." / "page" / name,
-                               folder / ".." / "share" / "holdfast" / name}) {
-    const fs::path place = path.lexically_normal();
-    if (fs::is_regular_file(place, code)) {
-      return read_file(place);
-    }
-    places += (places.empty() ? "" : ", ") + place.string();
+  const std::vector<fs::path> places = places_of("holdfast.html", "page");
+  if (const auto place = find_file(places)) {
+    return read_file(*place);
+  }
+  std::string names;
+  for (const fs::path& place : places) {
+    names += (names.empty() ? "" : ", ") + place.string();
   }
   return base::Error{.code = base::ErrorCode::kUnreadable,
                      .message = fmt::format("the page is not built: looked for {}; './dev page' "
                                             "builds it",
-                                            places),
+                                            names),
                      .where = {}};
 }
 

@@ -11,8 +11,8 @@
 /// The page (apps/web) with a structure in it: one HTML file that needs no network.
 namespace holdfast::cli {
 
-/// The built page, which `./dev page` makes: holdfast.html beside the program, in ../page or in
-/// ../share/holdfast. The error says where it was looked for and what to do.
+/// The page, which `./dev page` builds and `cmake --install` installs. The error says where it was
+/// looked for and what to do.
 base::Result<std::string> find_page();
 
 /// The page with the structure, and with a report that is shown at first if there is one. Errors:

@@ -2,24 +2,21 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
-#include <chrono>
 #include <cmath>
 #include <memory>
 #include <optional>
 
 #include "change_options.hpp"
 #include "commands.hpp"
-#include "faults.hpp"
+#include "fault_options.hpp"
 #include "file_clash.hpp"
+#include "progress.hpp"
 #include "run_report.hpp"
 
 namespace holdfast::cli {
 namespace {
 
-using Clock = std::chrono::steady_clock;
 using sim::Fault;
-
-constexpr std::chrono::seconds kProgressInterval(1);
 
 struct Options {
   std::string file;
@@ -31,9 +28,10 @@ struct Options {
   double reordering = 0;
   double corruption = 0;
   double jitter = 0;
-  std::vector<std::string> kills;
-  std::vector<std::string> cuts;
-  std::vector<std::string> detachments;
+  std::vector<FaultOption<Fault>> faults = {
+      {"kill", Fault::Kind::kKill, false, "A module falls silent at time T (s, or rounds)"},
+      {"cut", Fault::Kind::kCut, true, "A link fails; FACE is +x, -x, +y, -y, +z or -z"},
+      {"detach", Fault::Kind::kDetach, false, "A module is taken off"}};
   ChangeOptions changes;
   std::string json;
   std::string connections = "all";
@@ -52,24 +50,6 @@ sim::Time ticks(const sim::LinkModel& link, double time) {
 int usage_error(const std::string& message) {
   fmt::print(stderr, "holdfast: {}\n", message);
   return kExitUsage;
-}
-
-/// Reads all faults of one kind; says which one is wrong.
-bool add_faults(const std::vector<std::string>& texts, Fault::Kind kind, const Structure& structure,
-                sim::SimulationOptions& options) {
-  for (const std::string& text : texts) {
-    const bool has_face = kind == Fault::Kind::kCut;
-    const auto place = read_fault_place(text, has_face, structure);
-    if (!place) {
-      usage_error(fault_usage(sim::name(kind), text, has_face));
-      return false;
-    }
-    options.faults.push_back({.kind = kind,
-                              .at = ticks(options.link, place->time),
-                              .module = place->module,
-                              .face = place->face});
-  }
-  return true;
 }
 
 /// A trace file and its writer, if asked for.
@@ -108,7 +88,7 @@ struct TraceFile {
 
 class SimulateRun {
  public:
-  explicit SimulateRun(const Options& options) : options_(options) {}
+  explicit SimulateRun(const Options& options) : options_(options), progress_(options.is_quiet) {}
 
   int run() {
     const auto link = sim::find_link_model(options_.link);
@@ -126,8 +106,7 @@ class SimulateRun {
     }
     const auto structure = load_with_notes(options_.file);
     if (!structure) {
-      print_error(structure.error(), options_.file);
-      return kExitBadInput;
+      return fail(structure.error(), options_.file);
     }
     return options_.changes.is_empty() ? run_with_faults(structure.value())
                                        : run_with_changes(structure.value());
@@ -142,8 +121,7 @@ class SimulateRun {
     }
     const auto changed = with_changes(structure, *changes);
     if (!changed) {
-      print_error(changed.error(), options_.file);
-      return kExitBadInput;
+      return fail(changed.error(), options_.file);
     }
     simulation_.tells_planned = false;
     simulation_.announcements = changed.value().announcements;
@@ -152,11 +130,12 @@ class SimulateRun {
   }
 
   int run_with_faults(const Structure& structure) {
-    if (!add_faults(options_.kills, Fault::Kind::kKill, structure, simulation_) ||
-        !add_faults(options_.cuts, Fault::Kind::kCut, structure, simulation_) ||
-        !add_faults(options_.detachments, Fault::Kind::kDetach, structure, simulation_)) {
+    const auto faults = read_faults(options_.faults, structure,
+                                    [this](double time) { return ticks(simulation_.link, time); });
+    if (!faults) {
       return kExitUsage;
     }
+    simulation_.faults.insert(simulation_.faults.end(), faults->begin(), faults->end());
     return simulate_structure(structure);
   }
 
@@ -184,13 +163,14 @@ class SimulateRun {
                                        : static_cast<sim::TraceSink*>(story.trace.get());
     const CheckResult exact = check(structure);
     const auto run =
-        simulate(structure, exact, simulation_,
-                 [this](const sim::SimulationResult& result) { return show_progress(result); });
+        simulate(structure, exact, simulation_, [this](const sim::SimulationResult& result) {
+          show_progress(result);
+          return true;
+        });
     simulation_.trace = nullptr;
     const bool is_traced = perfetto.close() && story.close();
     if (!run) {
-      print_error(run.error(), options_.file);
-      return kExitBadInput;
+      return fail(run.error(), options_.file);
     }
     if (!is_traced || !show(structure, exact, run.value())) {
       return kExitBadInput;
@@ -198,16 +178,13 @@ class SimulateRun {
     return exit_code(run.value().view.verdict);
   }
 
-  bool show_progress(const sim::SimulationResult& result) {
-    const auto now = Clock::now();
-    if (!options_.is_quiet && now - shown_ >= kProgressInterval) {
-      shown_ = now;
+  void show_progress(const sim::SimulationResult& result) {
+    progress_.show([&] {
       const auto seconds = sim::seconds(simulation_.link, result.time);
-      fmt::print(stderr, "holdfast: {} events, {}\n", result.events,
-                 seconds ? fmt::format("{:.1f} s on the robot", *seconds)
-                         : fmt::format("round {}", result.time));
-    }
-    return true;
+      return fmt::format("{} events, {}", result.events,
+                         seconds ? fmt::format("{:.1f} s on the robot", *seconds)
+                                 : fmt::format("round {}", result.time));
+    });
   }
 
   /// False if a file cannot be written.
@@ -218,7 +195,7 @@ class SimulateRun {
 
   const Options& options_;
   sim::SimulationOptions simulation_;
-  Clock::time_point shown_ = Clock::now();
+  Progress progress_;
 };
 
 void add_noise_options(CLI::App& command, Options& options) {
@@ -234,16 +211,6 @@ void add_noise_options(CLI::App& command, Options& options) {
   command.add_option("--jitter", options.jitter, "Delays each packet by 0 to T (s, or rounds)")
       ->type_name("T")
       ->check(CLI::Range(0.0, 1e6).description(""));
-}
-
-void add_fault_options(CLI::App& command, Options& options) {
-  const auto add = [&](const char* name, std::vector<std::string>& values, const char* type,
-                       const char* help) {
-    command.add_option(name, values, help)->type_name(type)->allow_extra_args(false);
-  };
-  add("--kill", options.kills, "X,Y,Z@T", "A module falls silent at time T (s, or rounds)");
-  add("--cut", options.cuts, "X,Y,Z:FACE@T", "A link fails; FACE is +x, -x, +y, -y, +z or -z");
-  add("--detach", options.detachments, "X,Y,Z@T", "A module is taken off");
 }
 
 }  // namespace
@@ -272,7 +239,7 @@ Command add_simulate(CLI::App& app) {
       ->type_name("N")
       ->capture_default_str();
   add_noise_options(*command, *options);
-  add_fault_options(*command, *options);
+  add_fault_options(*command, options->faults);
   add_change_options(*command, options->changes, "s, or rounds");
   command->add_option("--json", options->json, "Write the report; - is standard output")
       ->type_name("FILE");

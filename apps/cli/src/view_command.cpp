@@ -17,11 +17,6 @@ struct Options {
   bool stays_closed = false;
 };
 
-int fail(const base::Error& error, const std::string& file) {
-  print_error(error, file);
-  return kExitBadInput;
-}
-
 /// Where nobody minds a file: the user looks at it, or saves it. In a folder of its own that only
 /// the user may enter.
 base::Result<std::string> temporary_path(const std::string& name) {

@@ -9,7 +9,6 @@
 #include <utility>
 #include <vector>
 
-#include "holdfast/agent/listener.hpp"
 #include "holdfast/distributed.hpp"
 
 /// What happens in a simulation, as numbers that the page can play.

@@ -86,23 +86,23 @@ Mat6<double> carried(const Joint& joint, const Mat6<double>& stiffness) {
   return result;
 }
 
-void Cluster::add_to_link(const Mat6<double>& block) { add_block(link_, block); }
+void Cluster::add_to_joint(const Mat6<double>& block) { add_block(joint_, block); }
 
-void Cluster::add_to_link(int part, const Vec6<float>& vector) { add_part(link_, part, vector); }
+void Cluster::add_to_joint(int part, const Vec6<float>& vector) { add_part(joint_, part, vector); }
 
-void Cluster::find_link_up(const Joint& to_parent, Parts& parts) const {
-  parts = parts_of(carried(to_parent, converted(link_)));
+void Cluster::find_joint_up(const Joint& to_parent, Parts& parts) const {
+  parts = parts_of(carried(to_parent, converted(joint_)));
 }
 
-void Cluster::close_link() {
-  System stiffness(converted(link_));
+void Cluster::close_joint() {
+  System stiffness(converted(joint_));
   stiffness.factor();
   for (int column = 0; column < kSize; ++column) {
     Vec6<double> give = unit(column);
     stiffness.solve(give);
     for (int row = column; row < kSize; ++row) {
-      link_.at(row, column) = static_cast<float>(kReach * give[at(row)]);
-      link_.at(column, row) = link_.at(row, column);
+      joint_.at(row, column) = static_cast<float>(kReach * give[at(row)]);
+      joint_.at(column, row) = joint_.at(row, column);
     }
   }
 }
@@ -133,8 +133,8 @@ void Cluster::find_stiffness_up(const Joint& to_parent, bool is_top, Parts& part
     parts = parts_of(carried(to_parent, converted(stiffness_)));
     return;
   }
-  // A held cluster leaves the link alone: S' = T^t F^-1 T.
-  System system = is_held_ ? System(converted(link_)) : in_series(stiffness_, link_);
+  // A held cluster leaves the joint alone: S' = T^t F^-1 T.
+  System system = is_held_ ? System(converted(joint_)) : in_series(stiffness_, joint_);
   if (is_held_) {
     system.factor();
   }
@@ -156,7 +156,7 @@ void Cluster::find_stiffness_up(const Joint& to_parent, bool is_top, Parts& part
 void Cluster::find_load_up(const Joint& to_parent, bool is_top, Vec6<double>& load) const {
   load = is_held_ ? Vec6<double>{} : load_;
   if (is_top && !is_held_ && !is_free()) {
-    in_series(stiffness_, link_).solve(load);
+    in_series(stiffness_, joint_).solve(load);
   }
   to_parent.hand_on(load);
 }
@@ -166,8 +166,8 @@ void Cluster::find_displacement(const Joint& to_parent, bool is_top, Vec6<double
   if (is_top && is_held_) {
     u = {};
   } else if (is_top) {
-    base::add_to(u, base::multiply(converted(link_), load_));
-    in_series(link_, stiffness_).solve(u);
+    base::add_to(u, base::multiply(converted(joint_), load_));
+    in_series(joint_, stiffness_).solve(u);
   }
 }
 

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // The one-sweep methods as the root sees them: from the sums of one step to the coefficients of the
-// next (steps.hpp), and when to stop.
+// next (minimal_residuals.hpp), and when to stop.
 #include "holdfast/agent/conductor.hpp"
 #include "methods.hpp"
 #include "scalar.hpp"
@@ -127,7 +127,7 @@ Order Conductor::restarted_step() {
 }
 
 /// Reports of kStep and kTreeStep: bound on the error, largest ratio, the number of facets whose
-/// state has changed, the hash of all; the products of steps.hpp.
+/// state has changed, the hash of all; the products of minimal_residuals.hpp.
 Order Conductor::after_step(const Setup& setup, const Report& report) {
   ++effort_.iterations;
   ratio_ = static_cast<double>(report.reals[1]);
@@ -224,9 +224,9 @@ Order Conductor::minimised_step(const Report& report) {
 }
 
 /// Other contact states are another K: directions start anew. The full step of a polynomial is
-/// never far too long, with planned modules that are held from now on (remote.hpp). With clusters
-/// M^-1 K has eigenvalues up to Cluster::kReach, so before, what was too long of the last step is
-/// taken back, as if K had not changed.
+/// never far too long, with planned modules that are held from now on (condensed.hpp). With
+/// clusters M^-1 K has eigenvalues up to Cluster::kReach, so before, what was too long of the last
+/// step is taken back, as if K had not changed.
 Order Conductor::jumped_step(const Setup& setup, const Report& report) {
   if (had_clusters_ && effort_.iterations > kClusterStepsMax) {
     return leave_clusters(setup);

@@ -2,10 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-/// Which methods a program has. A module with little flash is built with
-/// HOLDFAST_AGENT_ELIMINATION_ONLY: it has elimination over the tree and nothing to fall back on,
-/// so that a robot with too many loops, or without a state under the regularised law, ends as
-/// `undecided`. All modules of such a robot must be told: Setup::only_elimination.
+/// Does the program have all methods (method.hpp)? What the root does with the others, and their
+/// messages, is left out of a program with elimination only, HOLDFAST_AGENT_ELIMINATION_ONLY.
 namespace holdfast::agent {
 
 #ifdef HOLDFAST_AGENT_ELIMINATION_ONLY

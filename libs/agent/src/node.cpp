@@ -15,12 +15,10 @@ std::size_t at(int row, int column) {
 }
 
 /// Sum of K11 over the beams on `faces`.
-Mat6<double> beam_block(const Setup& setup, std::uint8_t faces) {
+Mat6<double> beam_block(const Setup& setup, base::Faces faces) {
   Mat6<double> block;
-  for (const base::Direction direction : base::kDirections) {
-    if ((faces >> static_cast<unsigned>(base::index(direction))) & 1U) {
-      base::add_to(block, mechanics::block_11(setup.beam, direction));
-    }
+  for (const base::Direction direction : faces) {
+    base::add_to(block, mechanics::block_11(setup.beam, direction));
   }
   return block;
 }
@@ -66,12 +64,12 @@ Gradients gradients_at_rest(const Node& node, const Setup& setup) {
 }
 
 void factor_diagonal(Node& node, const Setup& setup, const ContactSetting& contact,
-                     std::uint8_t faces) {
+                     base::Faces faces) {
   Mat6<double> block = beam_block(setup, faces);
   if (node.is_ground) {
     base::add_to(block, mechanics::symmetric_tangent(contact.facet, node.state, node.is_held));
   }
-  Triangle& factor = node.factor;
+  Triangle factor{};
   for (int row = 0; row < 6; ++row) {
     for (int column = 0; column <= row; ++column) {
       auto sum = static_cast<float>(block.at(row, column));
@@ -81,10 +79,11 @@ void factor_diagonal(Node& node, const Setup& setup, const ContactSetting& conta
       factor[at(row, column)] = row == column ? square_root(sum) : sum / factor[at(column, column)];
     }
   }
+  node.matrix.factor = factor;
 }
 
 Mat6<double> diagonal_block(const Node& node, const Setup& setup, const ContactSetting& contact,
-                            std::uint8_t faces) {
+                            base::Faces faces) {
   Mat6<double> block = beam_block(setup, faces);
   if (node.is_ground) {
     base::add_to(block, mechanics::contact_tangent(contact.facet, node.state, node.is_held));
@@ -93,7 +92,7 @@ Mat6<double> diagonal_block(const Node& node, const Setup& setup, const ContactS
 }
 
 Vec6<float> scalar_diagonal(const Node& node, const Setup& setup, const ContactSetting& contact,
-                            std::uint8_t faces) {
+                            base::Faces faces) {
   const Mat6<double> block = diagonal_block(node, setup, contact, faces);
   Vec6<float> diagonal{};
   for (int i = 0; i < 6; ++i) {
@@ -106,7 +105,7 @@ Vec6<float> solve_diagonal(const Node& node, Vec6<float> vector) {
   if (node.is_fixed) {
     return {};
   }
-  const Triangle& factor = node.factor;
+  const Triangle& factor = node.matrix.factor;
   for (int row = 0; row < 6; ++row) {
     float& value = vector[static_cast<std::size_t>(row)];
     for (int k = 0; k < row; ++k) {

@@ -3,74 +3,84 @@
 #include "holdfast/agent/planned.hpp"
 
 namespace holdfast::agent {
-namespace {
 
-std::uint8_t bit(int i) { return static_cast<std::uint8_t>(1U << static_cast<unsigned>(i)); }
-
-constexpr int kWholeSubtree = -1;
-
-}  // namespace
+using base::Direction;
+using base::Faces;
 
 void Planned::add(const base::Cell& cell, const base::Cell& self) {
   if (count_ == kPlannedMax) {
     return;
   }
-  const auto i = static_cast<std::size_t>(count_++);
+  const std::size_t i = count_++;
   cells_[i] = cell;
-  own_face_[i] = -1;
-  own_mask_[i] = 0;
-  for (const base::Direction face : base::kDirections) {
+  own_touching_[i] = {};
+  for (const Direction face : base::kDirections) {
     if (base::neighbour(self, face) == cell) {
-      own_face_[i] = static_cast<std::int8_t>(base::index(face));
-      own_mask_[i] = bit(base::index(base::opposite(face)));
+      own_touching_[i] = Faces::only(base::opposite(face));
     }
   }
 }
 
-void Planned::add_below(int face, int index, std::uint8_t mask) {
+void Planned::add_below(Direction child, int index, Faces touching) {
   if (index < count_) {
-    below_[static_cast<std::size_t>(face)][static_cast<std::size_t>(index)] = mask;
+    below_[static_cast<std::size_t>(child)][at(index)] = touching;
   }
 }
 
-std::uint8_t Planned::mask(int index) const {
-  const auto i = static_cast<std::size_t>(index);
-  std::uint8_t mask = own_mask_[i];
+Faces Planned::touching(int index) const {
+  Faces faces = own_touching(index);
   for (const auto& child : below_) {
-    mask = static_cast<std::uint8_t>(mask | child[i]);
+    faces |= child[at(index)];
   }
-  return mask;
+  return faces;
 }
 
-/// Are all participants of a group below the child at `face`, or from this module down?
-bool Planned::is_whole(std::uint8_t group, int face) const {
+/// Are all participants of a group from this module down?
+bool Planned::is_whole(std::uint8_t group) const {
   for (int k = 0; k < count_; ++k) {
-    const auto i = static_cast<std::size_t>(k);
-    const std::uint8_t here =
-        face == kWholeSubtree ? mask(k) : below_[static_cast<std::size_t>(face)][i];
-    if (groups_[i] == group && here != totals_[i]) {
+    if (group_of(k) == group && touching(k) != total(k)) {
       return false;
     }
   }
   return true;
 }
 
+/// Are all participants of a group below a child? Of one that touches nothing they are.
+bool Planned::is_whole_below(std::uint8_t group, Direction child) const {
+  for (int k = 0; k < count_; ++k) {
+    if (group_of(k) == group && below_[static_cast<std::size_t>(child)][at(k)] != total(k)) {
+      return false;
+    }
+  }
+  return true;
+}
+
+/// Is any participant of a group below a child?
+bool Planned::is_any_below(std::uint8_t group, Direction child) const {
+  for (int k = 0; k < count_; ++k) {
+    if (group_of(k) == group && !below_[static_cast<std::size_t>(child)][at(k)].is_empty()) {
+      return true;
+    }
+  }
+  return false;
+}
+
 void Planned::decide_hosts(const std::array<std::uint8_t, 8>& totals) {
   hosted_count_ = 0;
-  from_above_ = 0;
-  involved_ = 0;
+  from_above_ = {};
+  involved_ = {};
   is_any_remote_ = false;
   for (int k = 0; k < count_; ++k) {
-    totals_[static_cast<std::size_t>(k)] = totals[static_cast<std::size_t>(k)];
-    groups_[static_cast<std::size_t>(k)] = static_cast<std::uint8_t>(k);
+    totals_[at(k)] = Faces::from_mask(totals[at(k)]);
+    groups_[at(k)] = static_cast<std::uint8_t>(k);
   }
   // A group is named after its first module; names spread until nothing changes.
   for (int pass = 0; pass < count_; ++pass) {
     for (int k = 0; k < count_; ++k) {
-      for (const base::Direction direction : base::kDirections) {
+      for (const Direction direction : base::kDirections) {
         const int other = neighbour_of(k, direction);
         if (other >= 0 && group_of(other) < group_of(k)) {
-          groups_[static_cast<std::size_t>(k)] = group_of(other);
+          groups_[at(k)] = group_of(other);
         }
       }
     }
@@ -80,25 +90,20 @@ void Planned::decide_hosts(const std::array<std::uint8_t, 8>& totals) {
     // What touches nothing is whole below every face, so nobody hosts it.
     bool is_above = false;
     bool is_own_only = true;
-    for (int face = 0; face < base::kDirectionCount; ++face) {
-      is_above = is_above || is_whole(group, face);
-      for (int other = 0; other < count_; ++other) {
-        is_own_only =
-            is_own_only &&
-            !(group_of(other) == group &&
-              below_[static_cast<std::size_t>(face)][static_cast<std::size_t>(other)] != 0);
-      }
+    for (const Direction child : base::kDirections) {
+      is_above = is_above || is_whole_below(group, child);
+      is_own_only = is_own_only && !is_any_below(group, child);
     }
     if (is_above) {
       continue;
     }
-    if (is_whole(group, kWholeSubtree)) {
+    if (is_whole(group)) {
       hosted_[hosted_count_++] = static_cast<std::uint8_t>(k);
-      involved_ = static_cast<std::uint8_t>(involved_ | bit(k));
+      involved_.add(k);
       is_any_remote_ = is_any_remote_ || !is_own_only;
-    } else if (mask(k) != 0) {
-      from_above_ = static_cast<std::uint8_t>(from_above_ | bit(k));
-      involved_ = static_cast<std::uint8_t>(involved_ | bit(k));
+    } else if (!touching(k).is_empty()) {
+      from_above_.add(k);
+      involved_.add(k);
       is_any_remote_ = true;
     }
   }
@@ -106,23 +111,23 @@ void Planned::decide_hosts(const std::array<std::uint8_t, 8>& totals) {
 
 bool Planned::agrees_with(const std::array<std::uint8_t, 8>& totals) const {
   for (int k = 0; k < count_; ++k) {
-    if ((mask(k) & ~unsigned{totals[static_cast<std::size_t>(k)]}) != 0) {
+    if (!(touching(k) - Faces::from_mask(totals[at(k)])).is_empty()) {
       return false;
     }
   }
   return true;
 }
 
-int Planned::at_face(int face) const {
+int Planned::at_face(Direction face) const {
   for (int k = 0; k < count_; ++k) {
-    if (own_face(k) == face) {
+    if (own_face(k).has(face)) {
       return k;
     }
   }
   return -1;
 }
 
-int Planned::neighbour_of(int index, base::Direction direction) const {
+int Planned::neighbour_of(int index, Direction direction) const {
   const base::Cell wanted = base::neighbour(cell(index), direction);
   for (int k = 0; k < count_; ++k) {
     if (cell(k) == wanted) {
@@ -153,9 +158,8 @@ int Planned::slot_of(int index) const {
   return slot;
 }
 
-bool Planned::is_needed_below(int face, int index) const {
-  return (involved_ & bit(index)) != 0 &&
-         below_[static_cast<std::size_t>(face)][static_cast<std::size_t>(index)] != 0;
+bool Planned::is_needed_below(Direction child, int index) const {
+  return involved_.has(index) && !below_[static_cast<std::size_t>(child)][at(index)].is_empty();
 }
 
 }  // namespace holdfast::agent

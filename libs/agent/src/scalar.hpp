@@ -2,6 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <bit>
+#include <cstdint>
+
 /// What the standard library has, but not for freestanding programs.
 namespace holdfast::agent {
 
@@ -26,6 +29,19 @@ Real square_root(Real value) {
     root = next;
   }
   return root;
+}
+
+/// The leading 24 binary digits of a number, which single precision holds exactly. By its bits and
+/// not by a conversion to float and back, which g++ 12 loses when it vectorises straight code; what
+/// converts elsewhere relies on it being compiled without (holdfast_same_bits in
+/// cmake/Rooms.cmake). (Where double is binary32, as on an AVR, all digits are leading ones.)
+template <class Real>
+constexpr Real leading_part(Real value) {
+  if constexpr (sizeof(Real) == sizeof(std::uint32_t)) {
+    return value;
+  } else {
+    return std::bit_cast<Real>(std::bit_cast<std::uint64_t>(value) & ~std::uint64_t{0x1fffffff});
+  }
 }
 
 }  // namespace holdfast::agent

@@ -1,190 +1,278 @@
 // SPDX-FileCopyrightText: The holdfast authors
 // SPDX-License-Identifier: Apache-2.0
-#include "sweep.hpp"
+#include "holdfast/agent/sweep.hpp"
+
+#include "holdfast/agent/feet.hpp"
+#include "holdfast/agent/messages.hpp"
+#include "holdfast/agent/operations.hpp"
+#include "method.hpp"
+#include "survey.hpp"
 
 namespace holdfast::agent {
+namespace {
 
-void Agent::take_order(const Order& order) {
+using wire::MessageType;
+using wire::Operation;
+
+/// Of orders with exchanges. Displacements of a kTreeStep have to be found first, and clusters.
+bool starts_at_once(Operation operation) {
+  return operation != Operation::kTreeStep && operation != Operation::kClusters;
+}
+
+/// Where an order leads; what it must not lead to has been refused before.
+Course course_after(const Order& order, Course course) {
+  switch (order.operation) {
+    case Operation::kPlan:
+    case Operation::kForget:
+      return Course::kPlanned;
+    case Operation::kHosts:
+      return Course::kHosted;
+    case Operation::kMass:
+      return Course::kWeighed;
+    case Operation::kBegin:
+      return (order.flags & kOneSweep) == 0    ? Course::kGradients
+             : (order.flags & kWithSteps) == 0 ? Course::kElimination
+                                               : Course::kSteps;
+    case Operation::kClusters:
+      return Course::kClusters;
+    case Operation::kVerdict:
+      return Course::kAnswered;
+    default:
+      return course;
+  }
+}
+
+}  // namespace
+
+const MethodTable* Sweep::method() const { return method_in(course_); }
+
+PlannedPart Sweep::planned_part(const Workspace& ws) const {
+  const MethodTable* own = method();
+  return own == nullptr ? PlannedPart::kTogether : own->planned_part(ws, order_);
+}
+
+Pending Sweep::pending() const {
+  const MethodTable* own = method();
+  return own == nullptr ? Pending::kNothing : own->pending(state_);
+}
+
+bool Sweep::is_busy(const Workspace& ws) const {
+  return ws.exchange.is_under_way() || pending() == Pending::kBehindReport;
+}
+
+void Sweep::leave(Workspace& ws) {
+  is_under_way_ = false;
+  course_ = Course::kWaves;
+  ws.exchange.leave();
+  ws.reports.await({});
+}
+
+// ---- What may be said now.
+
+bool Sweep::is_in_course(const Workspace& ws, const Order& order) const {
+  if (order.operation == Operation::kVerdict) {  // Said again, it is the same one.
+    return course_ != Course::kAnswered || order.answer == order_.answer;
+  }
+  if (ws.tree.stage() != SpanningTree::Stage::kTree) {
+    return false;
+  }
+  switch (order.operation) {
+    case Operation::kPlan:
+      return order.index == kNoPlanned
+                 ? course_ == Course::kWaves
+                 : course_ == Course::kPlanned && order.index == ws.planned.count();
+    case Operation::kForget:
+      return course_ == Course::kPlanned;
+    case Operation::kHosts:
+      return course_ == Course::kPlanned && ws.planned.agrees_with(order.masks);
+    case Operation::kMass:
+      return course_ == Course::kHosted;
+    case Operation::kAngles:
+      return course_ == Course::kWeighed && fits_exact_check(ws.setup, order.module_count) &&
+             mass_report(ws).extent <= kExtentMax;
+    case Operation::kBegin:
+      return is_good_begin(order);
+    case Operation::kFactor:
+    case Operation::kTreeStep:
+      return course_ == Course::kElimination;
+    case Operation::kCorners:
+    case Operation::kLoads:
+      return course_ >= Course::kElimination && course_ != Course::kAnswered;
+    case Operation::kClusters:
+      return is_good_begin(order) && ws.planned.count() <= kClusterPlannedMax;
+    case Operation::kStep:
+      return course_ == Course::kClusters ||
+             (course_ == Course::kSteps && (order.flags & kWithClusters) == 0);
+    default:
+      return course_ == Course::kGradients;
+  }
+}
+
+/// Of an equilibrium. What elimination knows of the tree lives until another method begins.
+bool Sweep::is_good_begin(const Order& order) const {
+  if (course_ < Course::kWeighed || course_ == Course::kAnswered) {
+    return false;
+  }
+  const Course next = course_after(order, course_);
+  if (next == Course::kElimination) {
+    return course_ <= Course::kElimination && order.count == 0 &&
+           !state_.elimination.has_too_many_loops();
+  }
+  const bool has_steps = (order.flags & kWithSteps) != 0;
+  return method_in(next) != nullptr &&
+         (next == Course::kGradients ? !has_steps && order.count == 0
+                                     : has_steps && (order.flags & kOneSweep) != 0);
+}
+
+bool Sweep::expects(const Workspace& ws, Direction face, Message message) const {
+  const MethodTable* own = method();
+  switch (static_cast<MessageType>(message[0])) {
+    case MessageType::kReport:
+      return ws.reports.awaits(face) && message[1] == static_cast<std::uint8_t>(order_.operation);
+    case MessageType::kPlannedDown: {
+      // Parts are those of condensed modules.
+      const bool is_part = message[1] > kPlannedIndexMask;
+      return ws.tree.is_led_by(face) && (message[1] & kPlannedIndexMask) < ws.planned.count() &&
+             (!is_part || (own != nullptr && own->take_condensed != nullptr));
+    }
+    case MessageType::kPlannedUp:
+      return ws.tree.children().has(face) && message[1] < ws.planned.count() &&
+             (order_.operation != Operation::kStep || ws.planned_exchange.awaits_forces());
+    case MessageType::kVector:
+      return true;
+    default:
+      return own != nullptr && own->expects(state_, ws, order_, face, message);
+  }
+}
+
+// ---- What comes in.
+
+void Sweep::take_order(Workspace& ws, Announcements& announcements, const Order& order) {
   order_ = order;
-  course_ = course_after(order);
-  announcements_.finish_forgetting();
-  is_sweeping_ = true;
-  begin_waiting();
-  reports_awaited_ = children_;
-  exchanges_left_ = exchange_count(order);
-  exchanges_behind_ = exchanges_behind(order);
-  down_awaited_ = 0;
-  send_to_children(encode(order));
-  prepare(order);
-  // Displacements of a kTreeStep have to be found first, and clusters.
-  if (exchanges_left_ > 0 && order.operation != wire::Operation::kTreeStep &&
-      order.operation != wire::Operation::kClusters) {
-    start_exchange();
+  course_ = course_after(order, course_);
+  is_under_way_ = true;
+  announcements.finish_forgetting();
+  ws.reports.await(ws.tree.children());
+  ws.exchange.plan(exchange_count(order), exchanges_behind(order));
+  ws.links.send(ws.tree.children(), encode(order));
+  if (is_survey(order.operation)) {
+    begin_survey(ws, announcements, order);
+  }
+  begin_method(ws, order);
+  if (ws.exchange.left() > 0 && starts_at_once(order.operation)) {
+    ws.start_exchange(planned_part(ws));
   }
 }
 
-void Agent::start_exchange() {
-  is_exchanging_ = true;
-  ++tag_;
-  const base::Vec6<float> own = nodes_[0].shared;
-  const std::uint8_t faces = used_faces();
-  for (int face = 0; face < base::kDirectionCount; ++face) {
-    if ((faces & bit(face)) != 0) {
-      send(face, vector_message(wire::MessageType::kVector, tag_, own));
-    }
+void Sweep::begin_method(Workspace& ws, const Order& order) {
+  const Operation operation = order.operation;
+  // What elimination has learned with kMass it needs in its equilibrium.
+  if (operation == Operation::kMass || operation == Operation::kClusters ||
+      (operation == Operation::kBegin && course_ != Course::kElimination)) {
+    method()->make(state_);
   }
-  if (!is_apart()) {
-    start_planned_exchange();
+  if (!is_survey(operation)) {
+    method()->begin(state_, ws, order);
   }
 }
 
-/// What the planned modules emulated here share, to all that touch them.
-void Agent::start_planned_exchange() {
-  planned_force_ = {};
-  for (int i = 0; i < planned_.hosted_count(); ++i) {
-    planned_vector_[static_cast<std::size_t>(planned_.hosted(i))] =
-        nodes_[static_cast<std::size_t>(1 + i)].shared;
-  }
-  for (int k = 0; k < planned_.count(); ++k) {
-    if (planned_.node_of(k) >= 0) {
-      send_planned_down(k);
-    }
-  }
-}
-
-/// Hands the reals of a planned module, emulated here or come from above, on to children that need
-/// them.
-void Agent::send_planned_down(int k) {
-  for (int face = 0; face < base::kDirectionCount; ++face) {
-    if ((children_ & bit(face)) != 0 && planned_.is_needed_below(face, k)) {
-      send(face, vector_message(wire::MessageType::kPlannedDown, static_cast<std::uint8_t>(k),
-                                planned_vector_[static_cast<std::size_t>(k)]));
-    }
+void Sweep::take(Workspace& ws, Direction face, Message message) {
+  switch (static_cast<MessageType>(message[0])) {
+    case MessageType::kReport:
+      return ws.reports.take(face, message);
+    case MessageType::kVector:
+      return ws.exchange.take(face, message);
+    case MessageType::kPlannedDown:
+      return take_planned_down(ws, message);
+    case MessageType::kPlannedUp:
+      return take_planned_up(ws, message);
+    default:
+      return method()->take(state_, ws, order_, face, message);
   }
 }
 
-void Agent::take_planned_down(std::span<const std::uint8_t> message) {
-  const auto in = decoded<LabelledVector>(message);
-  const int k = in.label;
-  if (kHasAllMethods && (k & ~kPlannedIndexMask) != 0) {
-    return take_remote_down(static_cast<std::uint8_t>(k), in.vector);
-  }
-  planned_vector_[static_cast<std::size_t>(k)] = in.vector;
-  planned_here_ = static_cast<std::uint8_t>(planned_here_ | bit(k));
-  send_planned_down(k);
-}
-
-/// The beams' forces on planned modules from here down, to their hosts above; where digits count,
-/// what single precision leaves over follows in a second message.
-void Agent::send_planned_up() {
-  for (int k = 0; k < planned_.count(); ++k) {
-    if (!planned_.is_from_above(k)) {
-      continue;
-    }
-    base::Vec6<double>& force = planned_force_[static_cast<std::size_t>(k)];
-    const int parts = is_precise(order_.operation) ? 2 : 1;
-    for (int part = 0; part < parts; ++part) {
-      base::Vec6<double> leading = force;
-      for (std::size_t i = 0; i < 6; ++i) {
-        leading[i] = part + 1 < parts ? leading_part(force[i]) : force[i];
-        force[i] -= leading[i];
-      }
-      send(parent_, vector_message(wire::MessageType::kPlannedUp, static_cast<std::uint8_t>(k),
-                                   base::converted<float>(leading)));
-    }
+void Sweep::take_planned_down(Workspace& ws, Message message) {
+  if (message[1] > kPlannedIndexMask) {
+    method()->take_condensed(ws, message);
+  } else {
+    ws.planned_exchange.take_down(ws.links, ws.tree.children(), ws.planned, message);
   }
 }
 
-void Agent::take_planned_up(std::span<const std::uint8_t> message) {
-  const auto in = decoded<LabelledVector>(message);
-  const int k = in.label;
-  const base::Vec6<float> force = in.vector;
-  for (std::size_t i = 0; i < 6; ++i) {
-    planned_force_[static_cast<std::size_t>(k)][i] += static_cast<double>(force[i]);
-  }
-  if (kHasAllMethods && order_.operation == wire::Operation::kStep && --planned_up_awaited_ == 0) {
-    pass_condensed();
+void Sweep::take_planned_up(Workspace& ws, Message message) {
+  if (ws.planned_exchange.take_up(message)) {
+    method()->pass_condensed(ws, order_);
   }
 }
 
-void Agent::take_vector(int face, std::span<const std::uint8_t> message) {
-  const auto in = decoded<LabelledVector>(message);
-  const std::uint8_t tag = in.label;
-  const std::size_t slot = tag & 1U;
-  vectors_[slot][static_cast<std::size_t>(face)] = in.vector;
-  vectors_here_[slot] = static_cast<std::uint8_t>(vectors_here_[slot] | bit(face));
-}
+// ---- What follows.
 
-void Agent::take_report(int face, std::span<const std::uint8_t> message) {
-  auto& stored = reports_[static_cast<std::size_t>(face)];
-  for (std::size_t i = 0; i < message.size(); ++i) {
-    stored[i] = message[i];
+bool Sweep::exchange(Workspace& ws) {
+  if (!ws.exchange.is_under_way()) {
+    return false;
   }
-  reports_awaited_ = static_cast<std::uint8_t>(reports_awaited_ & ~bit(face));
-}
-
-/// The next exchange, if all that it needs is here.
-bool Agent::exchange() {
-  const std::size_t slot = tag_ & 1U;
-  const std::uint8_t faces = used_faces();
+  const PlannedPart part = planned_part(ws);
+  const bool waits_for_hosts =
+      part != PlannedPart::kApart &&
+      (!ws.planned_exchange.is_complete(ws.planned) ||
+       (part == PlannedPart::kCondensed && ws.planned_exchange.awaits_forces()));
   // What children add to planned modules emulated here comes before their reports. It belongs to an
   // order's last exchange.
-  const bool waits_for_children = exchanges_left_ == 1 && exchanges_behind_ == 0;
-  if (!is_exchanging_ || (vectors_here_[slot] & faces) != faces || is_waiting_for_hosts() ||
-      (waits_for_children && reports_awaited_ != 0)) {
+  const bool waits_for_children = ws.exchange.is_last() && !ws.reports.are_here();
+  if (!ws.exchange.is_complete(ws.links.used()) || waits_for_hosts || waits_for_children) {
     return false;
   }
-  exchange_forces();
-  vectors_here_[slot] = 0;
-  planned_here_ = needs_hosts() ? std::uint8_t{0} : planned_here_;
-  is_exchanging_ = false;
-  if (!is_apart()) {
-    send_planned_up();
+  method()->take_exchange(state_, ws, order_);
+  if (part != PlannedPart::kApart) {
+    ws.planned_exchange.end();
   }
-  after_exchange();
-  if (--exchanges_left_ > 0 && !is_coarse()) {
-    start_exchange();
+  if (part == PlannedPart::kTogether) {
+    ws.planned_exchange.send_up(ws.links, ws.tree.parent(), ws.planned,
+                                is_precise(order_.operation));
+  }
+  ws.exchange.end();
+  if (ws.exchange.left() > 0 && pending() != Pending::kBehindReport) {
+    ws.start_exchange(planned_part(ws));
   }
   return true;
 }
 
-bool Agent::take_next_order() {
-  if (!has_next_order_ || is_exchanging_ || is_coarse()) {
-    return false;
-  }
-  has_next_order_ = false;
-  take_order(next_order_);
-  return true;
+bool Sweep::do_piece(Workspace& ws) {
+  const MethodTable* own = method();
+  return own != nullptr && own->do_piece(state_, ws, order_);
 }
 
-/// Reports, if all is done here and below.
-bool Agent::finish_sweep() {
-  const bool is_done_here = exchanges_left_ <= exchanges_behind_;
-  if (!is_sweeping_ || reports_awaited_ != 0 || down_awaited_ != 0 || piece_ != Piece::kNone ||
-      is_clustering() || !is_done_here) {
-    return false;
-  }
-  is_sweeping_ = false;
-  Report report = conclude(order_);
-  for (int face = 0; face < base::kDirectionCount; ++face) {
-    if ((children_ & bit(face)) != 0) {
-      const Report theirs = decode_report(reports_[static_cast<std::size_t>(face)]);
-      add_report(report, theirs);
-      if (order_.operation == wire::Operation::kPlan && order_.index != kNoPlanned) {
-        planned_.add_below(face, order_.index, theirs.mask);
-      }
+bool Sweep::can_finish(const Workspace& ws) const {
+  return is_under_way_ && ws.reports.are_here() && pending() != Pending::kBeforeReport &&
+         ws.exchange.left_before_report() <= 0;
+}
+
+Report Sweep::finish(Workspace& ws, const Announcements& announcements) {
+  is_under_way_ = false;
+  Report sum = own_report(ws, announcements);
+  for (const Direction face : ws.tree.children()) {
+    const Report theirs = decode_report(ws.reports.of(face));
+    add_report(ws.setup, order_, sum, theirs);
+    if (order_.operation == Operation::kPlan && order_.index != kNoPlanned) {
+      ws.planned.add_below(face, order_.index, Faces::from_mask(theirs.mask));
     }
   }
-  if (parent_ >= 0) {
-    send(parent_, encode(order_.operation, report));
-  } else if (order_.operation != wire::Operation::kVerdict) {
-    next_order_ = conductor_.next(setup_, report);
-    has_next_order_ = true;
+  if (!ws.tree.is_root()) {
+    ws.links.send(ws.tree.parent(), encode(order_.operation, sum));
   }
-  if (order_.operation == wire::Operation::kVerdict) {
-    watch_verdict();
+  return sum;
+}
+
+Report Sweep::own_report(Workspace& ws, const Announcements& announcements) {
+  const Operation operation = order_.operation;
+  if (!is_survey(operation)) {
+    return method()->report(state_, ws, order_);
   }
-  return true;
+  Report report = survey_report(ws, announcements, order_);
+  if (operation == Operation::kMass) {
+    report.flags = static_cast<std::uint8_t>(report.flags | state_.elimination.survey_loops(ws));
+  }
+  return report;
 }
 
 }  // namespace holdfast::agent

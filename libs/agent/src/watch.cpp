@@ -1,78 +1,108 @@
 // SPDX-FileCopyrightText: The holdfast authors
 // SPDX-License-Identifier: Apache-2.0
-#include "watch.hpp"
+#include "holdfast/agent/watch.hpp"
 
 namespace holdfast::agent {
+namespace {
 
-Time Agent::watch_time() const {
-  return setup_.timing.ping_after + lost_after(setup_.timing) + 2 * Time{wave_time_};
+/// Silence in a round that no sound neighbour needs: 38 s on Blinky Blocks 1. More than a link's
+/// last retry, with time to spare for several of them one behind the other.
+constexpr Time silence(const LinkTiming& timing) {
+  return 16 * (timing.ping_after + 8 * timing.retransmit_after);
 }
 
-/// Something of this module's round has come, or it has begun.
-void Agent::keep_waiting() {
-  if (answer_.verdict == Verdict::kNone && messages_heard_ < watch::kMessagesMax) {
-    ++messages_heard_;
-    const Time silence = watch::silence(setup_.timing);
-    watch_at_ = now_ + (phase_ <= Phase::kTree ? watch::kWaveSilences * silence
-                                               : silence + watch::kWavesPerSilence * wave_time_);
-  }
+/// Nothing is known of the robot's size before it has a tree: 2.6 minutes on Blinky Blocks 1, in
+/// which waves cross 3,000 modules in a row and come back. A longer robot is `undecided` meanwhile.
+constexpr Time kWaveSilences = 4;
+
+/// An order's way down the tree and back is shorter than the waves' by half, but what it sets off
+/// can take twenty times as long in every module: the condensed stiffness of a branch is 54
+/// messages and a join is one.
+constexpr Time kWavesPerSilence = 32;
+
+/// Rounds that begin one after the other without an end, as when a module starts again and again;
+/// from then on the module is `undecided` until one ends.
+constexpr std::uint8_t kRoundsWithoutEndMax = 16;
+
+/// Messages between two orders, and orders of one round, that set the clock anew: more than a sound
+/// robot ever needs (kDegreeMax vectors twice through each of six faces; kJacobiCountMax steps an
+/// order). A neighbour that talks without end is not waited for without end.
+constexpr std::uint16_t kMessagesMax = 0xffff;
+constexpr std::uint16_t kOrdersMax = 0xffff;
+static_assert(2 * 6 * kDegreeMax < kMessagesMax);
+
+}  // namespace
+
+Time Watch::verdict_time(const LinkTiming& timing) const {
+  return timing.ping_after + lost_after(timing) + 2 * Time{wave_time_};
 }
 
-/// What was true of the robot is so no longer.
-void Agent::forget_answer() {
+void Watch::start(const Clock& clock) { at_ = clock.now + silence(clock.timing); }
+
+void Watch::leave_round(const Clock& clock) {
+  phase_ = Phase::kDiscovery;
+  forget_answer(clock);
+}
+
+void Watch::enter_round(const Clock& clock) {
+  phase_ = Phase::kCoordinates;
+  wave_time_ = static_cast<std::uint32_t>(clock.now);
+  rounds_without_end_ = static_cast<std::uint8_t>(
+      rounds_without_end_ + (rounds_without_end_ < kRoundsWithoutEndMax ? 1 : 0));
+  forget_answer(clock);
+}
+
+void Watch::forget_answer(const Clock& clock) {
   answer_ = {};
   messages_heard_ = 0;
   orders_heard_ = 0;
-  if (rounds_without_end_ == watch::kRoundsWithoutEndMax) {
+  if (rounds_without_end_ == kRoundsWithoutEndMax) {
     answer_ = {.verdict = Verdict::kUndecided, .reason = Reason::kNoAnswer};
   }
-  keep_waiting();
+  keep_waiting(clock);
 }
 
-/// An order has come. One that says the verdict again leaves the phase as it is.
-void Agent::begin_waiting() {
-  if (phase_ <= Phase::kTree) {
-    wave_time_ = static_cast<std::uint32_t>(now_) - wave_time_;
+void Watch::keep_waiting(const Clock& clock) {
+  if (answer_.verdict == Verdict::kNone && messages_heard_ < kMessagesMax) {
+    ++messages_heard_;
+    const Time quiet = silence(clock.timing);
+    at_ = clock.now +
+          (phase_ <= Phase::kTree ? kWaveSilences * quiet : quiet + kWavesPerSilence * wave_time_);
   }
-  const bool is_verdict = order_.operation == wire::Operation::kVerdict;
+}
+
+void Watch::begin_order(wire::Operation operation, const Clock& clock) {
+  if (phase_ <= Phase::kTree) {
+    wave_time_ = static_cast<std::uint32_t>(clock.now) - wave_time_;
+  }
+  const bool is_verdict = operation == wire::Operation::kVerdict;
   if (!is_verdict || phase_ != Phase::kDone) {
-    phase_ = phase_of(order_.operation);
+    phase_ = phase_of(operation);
   }
   if (is_verdict) {
     rounds_without_end_ = 0;
-    watch_at_ = now_ + watch_time();
-  } else if (orders_heard_ < watch::kOrdersMax) {
+    at_ = clock.now + verdict_time(clock.timing);
+  } else if (orders_heard_ < kOrdersMax) {
     ++orders_heard_;
     messages_heard_ = 0;
-    keep_waiting();
+    keep_waiting(clock);
   }
 }
 
-/// The sweep of a verdict is over here.
-void Agent::watch_verdict() {
+void Watch::end_verdict(bool is_watched, bool is_root, const Clock& clock) {
   phase_ = Phase::kDone;
-  touched_ = 0x3f;
-  if (order_.answer.verdict == Verdict::kUndecided || (parent_ < 0 && children_ == 0)) {
-    watch_at_ = kNever;
-  } else if (parent_ < 0) {
-    watch_at_ = now_ + setup_.timing.ping_after;
+  if (!is_watched) {
+    at_ = kNever;
+  } else if (is_root) {
+    at_ = clock.now + clock.timing.ping_after;
   }
 }
 
-/// The clock has run out.
-void Agent::end_watch() {
-  if (phase_ == Phase::kDone && parent_ < 0 && !is_sweeping_) {
-    next_order_ = order_;
-    has_next_order_ = true;
-    is_busy_ = true;
-    watch_at_ = kNever;
-    return;
-  }
-  watch_at_ = kNever;
-  touched_ = 0x3f;
+void Watch::give_up(bool has_cell) {
+  at_ = kNever;
   if (answer_.verdict != Verdict::kUndecided) {
     answer_ = {.verdict = Verdict::kUndecided,
-               .reason = has_cell_ ? Reason::kNoAnswer : Reason::kNoAnchor};
+               .reason = has_cell ? Reason::kNoAnswer : Reason::kNoAnchor};
   }
 }
 

@@ -54,10 +54,10 @@ struct Robot {
     return Direction::kPlusX;
   }
 
-  /// visit(j, direction) for the beams of a module that are part of its cluster's link: those to
+  /// visit(j, direction) for the beams of a module that are part of its cluster's joint: those to
   /// other clusters that are not children of its own.
   template <class Visit>
-  void for_each_link_beam(std::size_t i, Visit visit) const {
+  void for_each_joint_beam(std::size_t i, Visit visit) const {
     for (const Direction direction : base::kDirections) {
       const std::size_t j = find(base::neighbour(cells[i], direction));
       const bool is_out = tops[i] != 0 && j < size() && tops[j] != tops[i];
@@ -136,7 +136,7 @@ std::vector<Vec6<double>> dense_solution(const Robot& robot) {
     right += own.transpose() * Eigen::Map<const Eigen::Vector<double, 6>>(robot.loads[i].data());
     Eigen::MatrixXd apart = own;
     apart.middleCols<6>(place(above)) -= motion(robot.cells[above], robot.cells[i]);
-    robot.for_each_link_beam(i, [&](Direction direction) {
+    robot.for_each_joint_beam(i, [&](Direction direction) {
       const Matrix6 beam = dense(mechanics::block_11(lopsided_beam(), direction));
       matrix += apart.transpose() * (beam / Cluster::kReach) * apart;
     });
@@ -166,15 +166,15 @@ std::vector<Vec6<double>> solution(const Robot& robot) {
   std::vector<Cluster> clusters(robot.size());
   Cluster::Parts parts;
   for (std::size_t i = robot.size(); i-- > 1;) {
-    robot.for_each_link_beam(i, [&](Direction direction) {
-      clusters[i].add_to_link(mechanics::block_11(beam, direction));
+    robot.for_each_joint_beam(i, [&](Direction direction) {
+      clusters[i].add_to_joint(mechanics::block_11(beam, direction));
     });
     if (robot.is_top(i)) {
-      clusters[i].close_link();
+      clusters[i].close_joint();
     } else if (robot.tops[i] != 0) {
-      clusters[i].find_link_up(Joint(beam, robot.to_parent(i)), parts);
+      clusters[i].find_joint_up(Joint(beam, robot.to_parent(i)), parts);
       for (int part = 0; part < Branch::kPartCount; ++part) {
-        clusters[robot.parents[i]].add_to_link(part, parts[static_cast<std::size_t>(part)]);
+        clusters[robot.parents[i]].add_to_joint(part, parts[static_cast<std::size_t>(part)]);
       }
     }
   }

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The holdfast authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// The program of modules with little flash (src/methods.hpp), which has elimination only. What it
+// The program of modules with little flash (src/method.hpp), which has elimination only. What it
 // knows it says as the whole program does; what belongs to other methods is refused.
 #include <gtest/gtest.h>
 

@@ -16,26 +16,20 @@ namespace {
 
 using base::Cell;
 using base::Direction;
+using base::Faces;
 
 /// A module: its cell, and the face of its parent; the first one is the root and has none.
 struct Member {
   Cell cell;
-  int parent_face = -1;
+  Direction parent_face = Direction::kPlusX;
 };
 
-constexpr int face_of(Direction direction) { return base::index(direction); }
+constexpr Direction kPlusX = Direction::kPlusX;
+constexpr Direction kMinusX = Direction::kMinusX;
+constexpr Direction kMinusY = Direction::kMinusY;
 
-constexpr int kPlusX = face_of(Direction::kPlusX);
-constexpr int kMinusX = face_of(Direction::kMinusX);
-constexpr int kMinusY = face_of(Direction::kMinusY);
-
-std::uint8_t bits(std::initializer_list<Direction> faces) {
-  unsigned mask = 0;
-  for (const Direction face : faces) {
-    mask |= 1U << static_cast<unsigned>(face_of(face));
-  }
-  return static_cast<std::uint8_t>(mask);
-}
+/// A set of planned modules, as in messages.
+std::uint8_t indices(const Planned& part) { return part.from_above().bits(); }
 
 /// Members are listed parents first. Afterwards every module knows its part.
 std::vector<Planned> share(const std::vector<Member>& members, const std::vector<Cell>& cells) {
@@ -47,15 +41,15 @@ std::vector<Planned> share(const std::vector<Member>& members, const std::vector
     }
     // All have learned the cell; masks come up, deepest first.
     for (std::size_t i = members.size(); i-- > 1;) {
-      const auto face = static_cast<Direction>(members[i].parent_face);
+      const auto face = members[i].parent_face;
       for (std::size_t parent = 0; parent < i; ++parent) {
         if (members[parent].cell == base::neighbour(members[i].cell, face)) {
-          parts[parent].add_below(base::index(base::opposite(face)), static_cast<int>(k),
-                                  parts[i].mask(static_cast<int>(k)));
+          parts[parent].add_below(base::opposite(face), static_cast<int>(k),
+                                  parts[i].touching(static_cast<int>(k)));
         }
       }
     }
-    totals[k] = parts[0].mask(static_cast<int>(k));
+    totals[k] = parts[0].touching(static_cast<int>(k)).mask();
   }
   for (Planned& part : parts) {
     part.decide_hosts(totals);
@@ -89,15 +83,15 @@ TEST(Planned, a_single_participant_is_the_host) {
   EXPECT_EQ(hosted(parts[2]), List{0});
   EXPECT_EQ(hosted(parts[1]), List{});
   EXPECT_EQ(hosted(parts[0]), List{});
-  EXPECT_EQ(parts[2].own_face(0), face_of(Direction::kPlusZ));
-  EXPECT_EQ(parts[2].at_face(face_of(Direction::kPlusZ)), 0);
+  EXPECT_EQ(parts[2].own_face(0), Faces{Direction::kPlusZ});
+  EXPECT_EQ(parts[2].at_face(Direction::kPlusZ), 0);
   EXPECT_EQ(parts[2].at_face(kPlusX), -1);
-  EXPECT_EQ(parts[1].own_face(0), -1);
-  EXPECT_EQ(parts[2].total(0), bits({Direction::kMinusZ}));
+  EXPECT_TRUE(parts[1].own_face(0).is_empty());
+  EXPECT_EQ(parts[2].total(0), Faces{Direction::kMinusZ});
   for (const Planned& part : parts) {
     EXPECT_EQ(part.count(), 1);
     EXPECT_FALSE(part.is_any_remote());
-    EXPECT_EQ(part.from_above(), 0);
+    EXPECT_EQ(indices(part), 0);
     EXPECT_FALSE(part.is_needed_below(kPlusX, 0));  // The host needs nobody.
   }
 }
@@ -116,9 +110,9 @@ TEST(Planned, the_host_of_two_subtrees_is_their_common_ancestor) {
     EXPECT_TRUE(parts[i].is_from_above(0));
     EXPECT_EQ(parts[i].node_of(0), -1);
   }
-  EXPECT_EQ(parts[0].total(0), bits({Direction::kMinusX, Direction::kPlusX, Direction::kMinusY}));
-  EXPECT_TRUE(parts[1].is_needed_below(face_of(Direction::kPlusY), 0));
-  EXPECT_FALSE(parts[3].is_needed_below(face_of(Direction::kPlusY), 0));  // A leaf.
+  EXPECT_EQ(parts[0].total(0), (Faces{Direction::kMinusX, Direction::kPlusX, Direction::kMinusY}));
+  EXPECT_TRUE(parts[1].is_needed_below(Direction::kPlusY, 0));
+  EXPECT_FALSE(parts[3].is_needed_below(Direction::kPlusY, 0));  // A leaf.
 }
 
 /// Three planned modules bridge the ends of the U. The root touches none of them, but it is the
@@ -126,9 +120,9 @@ TEST(Planned, the_host_of_two_subtrees_is_their_common_ancestor) {
 TEST(Planned, the_host_need_not_touch_what_it_emulates) {
   const auto parts = share(kU, {{-1, 2, 0}, {0, 2, 0}, {1, 2, 0}});
   EXPECT_EQ(hosted(parts[0]), (List{0, 1, 2}));
-  EXPECT_EQ(parts[0].mask(1), 0);
-  EXPECT_EQ(parts[3].from_above(), 1);  // Each end needs what it touches, ...
-  EXPECT_EQ(parts[4].from_above(), 4);
+  EXPECT_TRUE(parts[0].touching(1).is_empty());
+  EXPECT_EQ(indices(parts[3]), 1);  // Each end needs what it touches, ...
+  EXPECT_EQ(indices(parts[4]), 4);
   EXPECT_TRUE(parts[0].is_needed_below(kMinusX, 0));
   EXPECT_FALSE(parts[0].is_needed_below(kMinusX, 2));  // ... and nothing else.
   EXPECT_FALSE(parts[0].is_needed_below(kMinusX, 1));
@@ -142,10 +136,10 @@ TEST(Planned, the_host_is_the_deepest_common_ancestor) {
   EXPECT_EQ(hosted(parts[2]), List{0});
   EXPECT_TRUE(parts[2].is_any_remote());
   EXPECT_EQ(hosted(parts[0]), List{});
-  EXPECT_EQ(parts[0].from_above(), 0);
+  EXPECT_EQ(indices(parts[0]), 0);
   EXPECT_FALSE(parts[0].is_needed_below(kPlusX, 0));
   EXPECT_TRUE(parts[2].is_needed_below(kPlusX, 0));
-  EXPECT_TRUE(parts[2].is_needed_below(face_of(Direction::kPlusY), 0));
+  EXPECT_TRUE(parts[2].is_needed_below(Direction::kPlusY, 0));
   EXPECT_TRUE(parts[4].is_from_above(0));
   EXPECT_TRUE(parts[5].is_from_above(0));
   EXPECT_FALSE(parts[1].is_from_above(0));
@@ -159,7 +153,7 @@ TEST(Planned, every_module_that_hears_of_a_planned_one_has_a_place_for_it) {
   EXPECT_EQ(parts[1].slot_of(1), 1);
   EXPECT_EQ(parts[1].slot_of(3), 2);
   EXPECT_EQ(hosted(parts[2]), List{2});
-  EXPECT_EQ(parts[2].from_above(), 8);
+  EXPECT_EQ(indices(parts[2]), 8);
   EXPECT_EQ(parts[2].slot_of(2), 1);
   EXPECT_EQ(parts[2].slot_of(3), 2);
 }
@@ -167,7 +161,7 @@ TEST(Planned, every_module_that_hears_of_a_planned_one_has_a_place_for_it) {
 TEST(Planned, a_participant_above_the_other_hosts) {
   const auto parts = share(kRow, {{1, 1, 0}, {2, 1, 0}});
   EXPECT_EQ(hosted(parts[1]), (List{0, 1}));
-  EXPECT_EQ(parts[2].from_above(), 2);
+  EXPECT_EQ(indices(parts[2]), 2);
   EXPECT_TRUE(parts[1].is_needed_below(kPlusX, 1));
   EXPECT_FALSE(parts[1].is_needed_below(kPlusX, 0));
   EXPECT_EQ(hosted(parts[0]), List{});
@@ -177,7 +171,7 @@ TEST(Planned, a_group_hangs_together_by_one_foot) {
   const auto parts = share(kRow, {{2, 0, 1}, {2, 0, 2}});
   EXPECT_EQ(hosted(parts[2]), (List{0, 1}));
   EXPECT_FALSE(parts[2].is_any_remote());
-  EXPECT_EQ(parts[2].total(1), 0);
+  EXPECT_TRUE(parts[2].total(1).is_empty());
   EXPECT_EQ(parts[2].neighbour_of(0, Direction::kPlusZ), 1);
   EXPECT_EQ(parts[2].neighbour_of(1, Direction::kMinusZ), 0);
   EXPECT_EQ(parts[2].neighbour_of(1, Direction::kPlusZ), -1);
@@ -199,7 +193,7 @@ TEST(Planned, what_touches_nothing_is_hosted_by_nobody) {
   }
   for (const Planned& part : parts) {
     EXPECT_EQ(part.node_of(1), -1);
-    EXPECT_EQ(part.from_above(), 0);
+    EXPECT_EQ(indices(part), 0);
   }
 }
 
@@ -208,11 +202,11 @@ TEST(Planned, one_too_many_is_not_kept) {
   Planned part;
   for (int i = 0; i <= kPlannedMax; ++i) {
     part.add({1, 1, i}, {0, 0, 0});
-    part.add_below(kPlusX, i, bits({Direction::kMinusX}));
+    part.add_below(kPlusX, i, Faces{Direction::kMinusX});
   }
   EXPECT_EQ(part.count(), kPlannedMax);
   EXPECT_EQ(part.cell(kPlannedMax - 1), (Cell{1, 1, kPlannedMax - 1}));
-  EXPECT_EQ(part.mask(kPlannedMax - 1), bits({Direction::kMinusX}));
+  EXPECT_EQ(part.touching(kPlannedMax - 1), Faces{Direction::kMinusX});
 }
 
 /// As many as there may be, in a pile at the end of the row. Only the first touches the robot, the
@@ -226,7 +220,7 @@ TEST(Planned, as_many_as_there_may_be) {
   }
   const auto parts = share(kRow, pile);
   EXPECT_EQ(hosted(parts[2]), all);
-  EXPECT_EQ(parts[2].at_face(face_of(Direction::kPlusZ)), 0);
+  EXPECT_EQ(parts[2].at_face(Direction::kPlusZ), 0);
 }
 
 TEST(Planned, clear_forgets_everything) {
@@ -234,7 +228,7 @@ TEST(Planned, clear_forgets_everything) {
   parts[2].clear();
   EXPECT_EQ(parts[2].count(), 0);
   EXPECT_EQ(parts[2].hosted_count(), 0);
-  EXPECT_EQ(parts[2].at_face(face_of(Direction::kPlusZ)), -1);
+  EXPECT_EQ(parts[2].at_face(Direction::kPlusZ), -1);
 }
 
 }  // namespace

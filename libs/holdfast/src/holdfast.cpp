@@ -25,13 +25,13 @@ io::ReportEntry entry_of(const Structure& structure, const CheckResult& result) 
 
 std::string_view version() { return kVersion; }
 
-base::Result<Structure> load_text(std::string_view text, std::string_view name) {
+base::Result<Structure> load_text(std::string_view text, std::string_view name, int thread_count) {
   auto read = io::read_document(text);
   if (!read) {
     return read.error();
   }
   auto [document, warnings] = std::move(read).value();
-  auto robot = io::make_robot(document);
+  auto robot = io::make_robot(document, thread_count);
   if (!robot) {
     return robot.error();
   }
@@ -42,12 +42,12 @@ base::Result<Structure> load_text(std::string_view text, std::string_view name) 
                    .warnings = std::move(warnings)};
 }
 
-base::Result<Structure> load_file(const std::filesystem::path& path) {
+base::Result<Structure> load_file(const std::filesystem::path& path, int thread_count) {
   const auto text = read_file(path);
   if (!text) {
     return text.error();
   }
-  return load_text(text.value(), path.stem().string());
+  return load_text(text.value(), path.stem().string(), thread_count);
 }
 
 base::Result<io::Document> generate(std::string_view family, std::size_t size) {

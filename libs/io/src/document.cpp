@@ -86,7 +86,7 @@ std::optional<base::Error> find_unsupported(const Document& document) {
   return std::nullopt;
 }
 
-base::Result<model::Robot> make_robot(const Document& document) {
+base::Result<model::Robot> make_robot(const Document& document, int thread_count) {
   if (auto error = find_unsupported(document)) {
     return *std::move(error);
   }
@@ -103,7 +103,7 @@ base::Result<model::Robot> make_robot(const Document& document) {
       spec.planned.push_back(planned.cell);
     }
   }
-  return model::Robot::create(spec);
+  return model::Robot::create(spec, thread_count);
 }
 
 }  // namespace holdfast::io

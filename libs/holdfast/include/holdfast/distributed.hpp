@@ -6,6 +6,7 @@
 #include <string>
 
 #include "holdfast/agent/agent.hpp"     // IWYU pragma: export
+#include "holdfast/agent/listener.hpp"  // IWYU pragma: export
 #include "holdfast/holdfast.hpp"        // IWYU pragma: export
 #include "holdfast/sim/simulation.hpp"  // IWYU pragma: export
 
@@ -85,7 +86,7 @@ std::string picture_svg(const Structure& structure, const DistributedRun& run);
 /// The word that the exact answer has for a verdict of the robot.
 verdict::Verdict to_verdict(agent::Verdict verdict);
 
-/// "jacobi", "block-jacobi", "cg", and back.
+/// "elimination", "polynomial", "cg", "block-jacobi", "jacobi", and back.
 const char* name(agent::Method method);
 std::optional<agent::Method> find_method(std::string_view name);
 

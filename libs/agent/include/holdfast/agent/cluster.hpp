@@ -11,40 +11,40 @@
 ///
 /// A cluster is a set of near modules that moves as one rigid body. In a tree of modules whose
 /// clusters are subtrees, the module of a cluster nearest to the root is its top. All beams between
-/// a cluster and its parent cluster together are a link, and so this is the elimination of
+/// a cluster and its parent cluster together are a joint, and so this is the elimination of
 /// branch.hpp with other joints: within a cluster nothing gives,
 ///   S' = T^t S T                 h' = T^t h          u = T u_p
-/// and at a top the link does, with F its flexibility there:
+/// and at a top the joint does, with F its flexibility there:
 ///   S' = T^t (1 + S F)^-1 S T    h' = T^t (1 + S F)^-1 h    u = (1 + F S)^-1 (T u_p + F h)
 /// S is what the ground does to everything from here down, h the forces on it, T the motion of the
 /// parent seen here. A cluster with a fixed module stands still: S = infinity.
 ///
 /// Rigid clusters are stiffer than what they stand for, as all that gives are the beams between
-/// them: a row of n beams has become one. So a link is made kReach times as flexible.
+/// them: a row of n beams has become one. So a joint is made kReach times as flexible.
 namespace holdfast::agent {
 
 class Cluster {
  public:
-  /// How many beams in a row one beam of a link stands for. Clusters are 8 modules long where they
+  /// How many beams in a row one beam of a joint stands for. Clusters are 8 modules long where they
   /// are whole; of 2 to 8 all from 4 on are nearly as good.
   static constexpr double kReach = 6;
 
   /// A symmetric matrix in vectors, as Branch has it.
   using Parts = std::array<base::Vec6<float>, Branch::kPartCount>;
 
-  // ---- The link to the parent's cluster, once the clusters are known.
+  // ---- The joint to the parent's cluster, once the clusters are known.
 
   /// A beam to the parent's cluster.
-  void add_to_link(const base::Mat6<double>& block);
+  void add_to_joint(const base::Mat6<double>& block);
 
   /// What a child in the same cluster has found.
-  void add_to_link(int part, const base::Vec6<float>& vector);
+  void add_to_joint(int part, const base::Vec6<float>& vector);
 
-  /// The link as the parent sees it, which is in the same cluster.
-  void find_link_up(const Joint& to_parent, Parts& parts) const;
+  /// The joint as the parent sees it, which is in the same cluster.
+  void find_joint_up(const Joint& to_parent, Parts& parts) const;
 
   /// At the top, when all are added up.
-  void close_link();
+  void close_joint();
 
   // ---- Stiffness and load, for every solve anew.
 
@@ -77,7 +77,7 @@ class Cluster {
 
  private:
   base::Mat6<float> stiffness_{};  // S
-  base::Mat6<float> link_{};       // F, while it is added up its inverse.
+  base::Mat6<float> joint_{};      // F, while it is added up its inverse.
   base::Vec6<double> load_{};      // h
   bool is_held_ = false;
 };

@@ -96,7 +96,6 @@ class Link {
   int write_greeting(std::span<std::uint8_t> packet, const LinkTiming& timing, Time now);
   int packet_chunk(const LinkTiming& timing) const;
   Time patience(const LinkTiming& timing) const;
-  void start_session();
 
   State state_ = State::kDown;
   bool needs_greeting_ = false;

@@ -18,7 +18,7 @@
 /// where it is read (src/codec.hpp): kinds, flags, indices, faces, cells, counts of exchanges.
 /// Reals may be anything, what is not a number included: a method that diverges says so with them.
 /// The limits are those of docs/wire.md. What may be said at a certain time only is the agent's to
-/// know (src/guard.cpp).
+/// know (Agent::expects).
 namespace holdfast::agent {
 
 /// A wave on its way out: take part in a round, and where you are.

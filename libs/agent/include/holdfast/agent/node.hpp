@@ -7,7 +7,7 @@
 
 #include "holdfast/agent/setup.hpp"
 #include "holdfast/base/algebra.hpp"
-#include "holdfast/base/cell.hpp"
+#include "holdfast/base/faces.hpp"
 #include "holdfast/mechanics/ground_contact.hpp"
 
 /// The mechanical state of one module, existing or planned, and what is computed on it alone.
@@ -19,7 +19,7 @@ struct ContactSetting {
   double lever_mm = 0;  ///< The robot's extent: how far a force that is not balanced may reach.
 };
 
-/// Lower triangle of a Cholesky factor, by rows.
+/// A lower triangle, by rows.
 using Triangle = std::array<float, 21>;
 
 /// In the middle of one connection, local frame: what Eq. (17) needs.
@@ -29,21 +29,34 @@ struct MiddleLoad {
   double bending_y_nmm = 0;
 };
 
+/// Six reals of a node, which mean one thing at a time.
+union NodeVector {
+  base::Vec6<float> sent{};  ///< What is exchanged with the neighbours.
+  base::Vec6<float> load;    ///< Of a planned module that is being eliminated: its condensed load.
+  base::Vec6<float> shift;   ///< What an exact solve, by branches or clusters, moves the node by.
+};
+
+/// A node's 6x6 matrix, as its method needs it.
+union NodeMatrix {
+  Triangle factor{};  ///< Cholesky factor of the diagonal block.
+  Triangle
+      stiffness_below;  ///< Elimination, of a planned module: its stiffness up to the diagonal.
+};
+
 /// What every method needs of one module.
 struct Node {
-  base::Cell cell;
   bool is_fixed = false;
   bool is_ground = false;
   bool is_held = true;  ///< Against slip and twist (unilateral law).
   bool was_released = false;
-  bool has_changed = false;        ///< Wanted another state than was in use, at the last step.
+  bool has_changed = false;        ///< Wanted another state than was in use, at the last iteration.
   mechanics::ContactState state;   ///< In use.
   mechanics::ContactState wanted;  ///< That the law prescribes for u.
 
   base::Vec6<double> u{};
   base::Vec6<double> force{};  ///< Of all beams on their module ends, at u.
-  base::Vec6<float> shared{};  ///< What is exchanged with the neighbours.
-  Triangle factor{};           ///< Of the 6x6 diagonal block.
+  NodeVector vector;
+  NodeMatrix matrix;
 };
 
 /// One module's vectors in the Jacobi methods and conjugate gradients, named as in the method:
@@ -72,32 +85,32 @@ struct SearchDirection {
   base::Vec6<double> z;
 };
 
-/// One module's vectors of minimal residuals (src/steps.cpp).
+/// One module's vectors of minimal residuals (src/minimal_residuals.hpp).
 struct Steps {
   base::Vec6<double> w;  ///< What the polynomial leaves of the residual.
   SearchDirection older;
   SearchDirection newer;
 };
 
-/// Back to rest: no displacement, the facet stuck.
+/// Brings a node back to rest: no displacement, the facet stuck.
 void reset(Node& node);
 
-/// The same for its vectors: the residual is the weight.
+/// The vectors of a node at rest: the residual is the weight.
 Gradients gradients_at_rest(const Node& node, const Setup& setup);
 
-/// Factor of the diagonal block: K11 of the beams on `faces` and the facet's symmetric tangent.
+/// Factors the diagonal block: K11 of the beams on `faces` and the facet's symmetric tangent.
 void factor_diagonal(Node& node, const Setup& setup, const ContactSetting& contact,
-                     std::uint8_t faces);
+                     base::Faces faces);
 
-/// The same block with the facet's true tangent.
+/// The diagonal block with the facet's true tangent.
 base::Mat6<double> diagonal_block(const Node& node, const Setup& setup,
-                                  const ContactSetting& contact, std::uint8_t faces);
+                                  const ContactSetting& contact, base::Faces faces);
 
-/// Its scalar diagonal (Eq. 14).
+/// The scalar diagonal of diagonal_block() (Eq. 14).
 base::Vec6<float> scalar_diagonal(const Node& node, const Setup& setup,
-                                  const ContactSetting& contact, std::uint8_t faces);
+                                  const ContactSetting& contact, base::Faces faces);
 
-/// Solves with the factor.
+/// Solves with the factor that factor_diagonal() has left.
 base::Vec6<float> solve_diagonal(const Node& node, base::Vec6<float> vector);
 
 /// Residual at u: weight less beams less facet, in the state in use. Zero on a fixed module.

@@ -5,7 +5,6 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <iterator>
 
 #include "holdfast/agent/order.hpp"
 #include "holdfast/agent/wire.hpp"
@@ -102,7 +101,7 @@ inline constexpr OperationInfo kOperations[] = {
 };
 // clang-format on
 
-static_assert(std::size(kOperations) == wire::kOperationCount);
+static_assert(sizeof(kOperations) / sizeof(kOperations[0]) == wire::kOperationCount);
 static_assert(
     [] {
       std::size_t next = 1;

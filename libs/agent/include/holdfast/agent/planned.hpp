@@ -6,6 +6,7 @@
 #include <cstdint>
 
 #include "holdfast/base/cell.hpp"
+#include "holdfast/base/faces.hpp"
 
 /// The planned modules and who emulates them.
 ///
@@ -22,6 +23,24 @@ inline constexpr int kPlannedMax = 5;
 /// Planned modules in a robot with clusters, at most: the vectors of more leave no memory for them.
 inline constexpr int kClusterPlannedMax = 2;
 
+/// A set of planned modules, by index.
+class PlannedSet {
+ public:
+  void add(int index) { bits_ = static_cast<std::uint8_t>(bits_ | bit(index)); }
+
+  bool has(int index) const { return (bits_ & bit(index)) != 0; }
+
+  bool has_all(PlannedSet others) const { return (others.bits_ & ~unsigned{bits_}) == 0; }
+
+  /// As in messages: bit i stands for index i.
+  std::uint8_t bits() const { return bits_; }
+
+ private:
+  static unsigned bit(int index) { return 1U << static_cast<unsigned>(index); }
+
+  std::uint8_t bits_ = 0;
+};
+
 class Planned {
  public:
   void clear() { *this = Planned(); }
@@ -34,28 +53,31 @@ class Planned {
   /// kPlannedMax cells the later ones are not kept.
   void add(const base::Cell& cell, const base::Cell& self);
 
-  /// Faces of planned module `index` that touch modules in a child's subtree (bit = direction).
-  /// An index of none is ignored.
-  void add_below(int face, int index, std::uint8_t mask);
+  /// Learns which faces of planned module `index` touch modules below the child at `child`. An
+  /// index of none is ignored.
+  void add_below(base::Direction child, int index, base::Faces touching);
 
-  std::uint8_t own_mask(int index) const { return own_mask_[static_cast<std::size_t>(index)]; }
+  /// The face of planned module `index` that touches this module, or none.
+  base::Faces own_touching(int index) const { return own_touching_[at(index)]; }
 
-  /// The same for everything from this module down.
-  std::uint8_t mask(int index) const;
+  /// Faces of planned module `index` that touch modules from this one down.
+  base::Faces touching(int index) const;
 
-  /// All masks are known: find groups and hosts, as if for the first time.
+  /// All faces that touch modules are known, by planned index as in an order's masks: finds groups
+  /// and hosts, as if for the first time.
   void decide_hosts(const std::array<std::uint8_t, 8>& totals);
 
   /// Do these masks say at least what is known from here down?
   bool agrees_with(const std::array<std::uint8_t, 8>& totals) const;
 
-  std::uint8_t total(int index) const { return totals_[static_cast<std::size_t>(index)]; }
+  /// Faces of planned module `index` that touch any module.
+  base::Faces total(int index) const { return totals_[at(index)]; }
 
-  /// The face of this module that touches planned module `index`, or -1.
-  int own_face(int index) const { return own_face_[static_cast<std::size_t>(index)]; }
+  /// The face of this module that touches planned module `index`, or none.
+  base::Faces own_face(int index) const { return own_touching(index).opposite(); }
 
   /// The planned module at a face of this module, or -1.
-  int at_face(int face) const;
+  int at_face(base::Direction face) const;
 
   /// The planned neighbour of planned module `index` in a direction, or -1.
   int neighbour_of(int index, base::Direction direction) const;
@@ -73,12 +95,12 @@ class Planned {
   int slot_of(int index) const;
 
   /// Does this module lie below the host and have participants from itself down?
-  bool is_from_above(int index) const { return (from_above_ >> static_cast<unsigned>(index)) & 1U; }
+  bool is_from_above(int index) const { return from_above_.has(index); }
 
-  std::uint8_t from_above() const { return from_above_; }
+  PlannedSet from_above() const { return from_above_; }
 
-  /// Does the child at `face` need to hear of planned module `index`? False above the host.
-  bool is_needed_below(int face, int index) const;
+  /// Does the child at `child` need to hear of planned module `index`? False above the host.
+  bool is_needed_below(base::Direction child, int index) const;
 
   /// Is any group spread over several modules?
   bool is_any_remote() const { return is_any_remote_; }
@@ -86,20 +108,23 @@ class Planned {
  private:
   std::uint8_t group_of(int index) const { return groups_[static_cast<std::size_t>(index)]; }
 
-  bool is_whole(std::uint8_t group, int face) const;
+  static std::size_t at(int index) { return static_cast<std::size_t>(index); }
+
+  bool is_whole(std::uint8_t group) const;
+  bool is_whole_below(std::uint8_t group, base::Direction child) const;
+  bool is_any_below(std::uint8_t group, base::Direction child) const;
 
   std::uint8_t count_ = 0;
   std::uint8_t hosted_count_ = 0;
-  std::uint8_t from_above_ = 0;
-  std::uint8_t involved_ = 0;  ///< Hosted here, or from above.
+  PlannedSet from_above_;
+  PlannedSet involved_;  ///< Hosted here, or from above.
   bool is_any_remote_ = false;
   std::array<base::Cell, kPlannedMax> cells_{};
   std::array<std::uint8_t, kPlannedMax> groups_{};
-  std::array<std::uint8_t, kPlannedMax> totals_{};
+  std::array<base::Faces, kPlannedMax> totals_{};
   std::array<std::uint8_t, kPlannedMax> hosted_{};
-  std::array<std::int8_t, kPlannedMax> own_face_{};
-  std::array<std::uint8_t, kPlannedMax> own_mask_{};
-  std::array<std::array<std::uint8_t, kPlannedMax>, base::kDirectionCount> below_{};
+  std::array<base::Faces, kPlannedMax> own_touching_{};
+  std::array<std::array<base::Faces, kPlannedMax>, base::kDirectionCount> below_{};  ///< By child.
 };
 
 }  // namespace holdfast::agent

@@ -33,7 +33,7 @@ struct Setup {
   /// kElimination means: or kPolynomial, if the robot has too many loops.
   Method method = Method::kElimination;
   /// Where elimination does not do, the verdict is `undecided`: for robots some of whose modules
-  /// have no other method (src/methods.hpp).
+  /// have no other method (src/method.hpp).
   bool only_elimination = false;
   std::uint32_t iteration_count_max = 4'000'000;
   /// Of the polynomial preconditioner of conjugate gradients. A degree m costs m rounds more and

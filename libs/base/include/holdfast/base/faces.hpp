@@ -28,6 +28,9 @@ class BasicFaces {
     }
   }
 
+  /// Makes the set of one direction.
+  static constexpr BasicFaces only(Direction direction) { return from_mask(bit(direction)); }
+
   /// Makes the set of the lowest `direction_count` directions, those that a lattice has.
   static constexpr BasicFaces all(int direction_count = kDirectionCount) {
     return from_mask(direction_count == kDirectionCountMax

@@ -133,7 +133,8 @@ base::Result<base::Cell> visiblesim_shift(const Document& document);
 std::string write_visiblesim(const Document& document);
 std::string write_json(const Document& document);
 
-/// The robot with the first step; errors as of find_unsupported() and model::Robot::create.
-base::Result<model::Robot> make_robot(const Document& document);
+/// The robot with the first step; errors as of find_unsupported() and model::Robot::create, threads
+/// as of the latter.
+base::Result<model::Robot> make_robot(const Document& document, int thread_count = 0);
 
 }  // namespace holdfast::io

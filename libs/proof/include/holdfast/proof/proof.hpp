@@ -34,7 +34,7 @@ Proof prove(const model::Robot& robot, const verdict::Assessment& assessment,
 
 /// Takes the proof over into the assessment: its loads are then the certificate's, its verdict is
 /// what the range says, and `undecided` where nothing is proved or other solutions do not agree. A
-/// robot that topples is known to from integers alone.
+/// robot that topples is known to from integers alone. 0 threads: all cores.
 void apply(const model::Robot& robot, const Proof& proof, verdict::Assessment& assessment,
            int thread_count = 0);
 

@@ -1,0 +1,89 @@
+# Completions of holdfast for bash, by tools/manual.py from --help.
+_holdfast() {
+  local current=${COMP_WORDS[COMP_CWORD]} previous=${COMP_WORDS[COMP_CWORD - 1]}
+  local words='' files=''
+  COMPREPLY=()
+  if [ "$COMP_CWORD" -eq 1 ]; then
+    mapfile -t COMPREPLY < <(compgen -W "check simulate emulate convert generate view -h --help --version" -- "$current")
+    return
+  fi
+  case ${COMP_WORDS[1]} in
+    check)
+      case $previous in
+        --json) files=1 ;;
+        --svg) files=1 ;;
+        --vtk) files=1 ;;
+        --html) files=1 ;;
+        --certificate) files=1 ;;
+        --threads) : ;;
+        --memory) : ;;
+        *) if [[ $current == -* ]]; then words="-h --help --json --svg --vtk --html --certificate --prove --quiet --bonded --threads --memory"; else files=1; fi ;;
+      esac
+      ;;
+    simulate)
+      case $previous in
+        --method) words="elimination polynomial cg block-jacobi jacobi" ;;
+        --link) words="v1 v2 unit" ;;
+        --seed) : ;;
+        --loss) : ;;
+        --duplicate) : ;;
+        --reorder) : ;;
+        --corrupt) : ;;
+        --jitter) : ;;
+        --kill) : ;;
+        --cut) : ;;
+        --detach) : ;;
+        --plan) : ;;
+        --withdraw) : ;;
+        --attach) : ;;
+        --json) files=1 ;;
+        --trace) files=1 ;;
+        --story) files=1 ;;
+        --svg) files=1 ;;
+        *) if [[ $current == -* ]]; then words="-h --help --method --link --seed --loss --duplicate --reorder --corrupt --jitter --kill --cut --detach --plan --withdraw --attach --json --trace --story --svg --quiet"; else files=1; fi ;;
+      esac
+      ;;
+    emulate)
+      case $previous in
+        --board) words="v2" ;;
+        --image) files=1 ;;
+        --pages) files=1 ;;
+        --seed) : ;;
+        --kill) : ;;
+        --reset) : ;;
+        --cut) : ;;
+        --flip) : ;;
+        --plan) : ;;
+        --withdraw) : ;;
+        --attach) : ;;
+        --time) : ;;
+        --json) files=1 ;;
+        --svg) files=1 ;;
+        *) if [[ $current == -* ]]; then words="-h --help --board --image --pages --seed --kill --reset --cut --flip --plan --withdraw --attach --time --json --svg --quiet"; else files=1; fi ;;
+      esac
+      ;;
+    convert)
+      case $previous in
+        *) if [[ $current == -* ]]; then words="-h --help"; else files=1; fi ;;
+      esac
+      ;;
+    generate)
+      case $previous in
+        -o|--output) files=1 ;;
+        *) if [[ $current == -* ]]; then words="-h --help -o --output"; else words="arm cube tower scaffold shell portal bridge growth"; fi ;;
+      esac
+      ;;
+    view)
+      case $previous in
+        --out) files=1 ;;
+        *) if [[ $current == -* ]]; then words="-h --help --out --no-open"; else files=1; fi ;;
+      esac
+      ;;
+  esac
+  [ -z "$words" ] || mapfile -t COMPREPLY < <(compgen -W "$words" -- "$current")
+  if [ -n "$files" ]; then
+    compopt -o filenames 2>/dev/null
+    mapfile -t COMPREPLY < <(compgen -f -- "$current")
+  fi
+}
+complete -F _holdfast holdfast

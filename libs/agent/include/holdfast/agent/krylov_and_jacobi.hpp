@@ -1,0 +1,68 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <span>
+
+#include "holdfast/agent/order.hpp"
+#include "holdfast/agent/tree_elimination.hpp"
+#include "holdfast/agent/workspace.hpp"
+
+namespace holdfast::agent {
+
+/// Conjugate gradients, and the paper's Jacobi iterations: linear solves for a correction g, from
+/// one residual to the next. The loop that their orders belong to is described in conductor.hpp,
+/// the vectors in node.hpp.
+class KrylovAndJacobi {
+ public:
+  void begin(Workspace& ws, const Order& order);
+
+  /// It has no messages of its own.
+  static bool expects(const Workspace&, const Order&, Direction, std::span<const std::uint8_t>) {
+    return false;
+  }
+
+  static void take(Workspace&, const Order&, Direction, std::span<const std::uint8_t>) {}
+
+  void take_exchange(Workspace& ws, const Order& order);
+
+  static bool do_piece(Workspace&, const Order&) { return false; }
+
+  static Pending pending() { return Pending::kNothing; }
+
+  /// The preconditioner's polynomial has the diagonal blocks of planned modules apart, and only the
+  /// last exchange of a sweep, for w = A z, has their beams in it.
+  static PlannedPart planned_part(const Workspace& ws, const Order& order);
+
+  Report report(Workspace& ws, const Order& order);
+
+ private:
+  Gradients& vectors(int node) { return vectors_[static_cast<std::size_t>(node)]; }
+
+  const Gradients& vectors(int node) const { return vectors_[static_cast<std::size_t>(node)]; }
+
+  void move(Workspace& ws, const Order& order);
+  void start_solve(Workspace& ws, const Order& order);
+  void step_gradient(Workspace& ws, const Order& order);
+  void precondition(Workspace& ws, int node, int degree, bool is_joined);
+  void share_correction(Workspace& ws) const;
+  void find_images(Workspace& ws, const Order& order);
+  void next_terms(Workspace& ws, const Order& order);
+  void step_jacobi(Workspace& ws);
+  void step_jacobi(Workspace& ws, int node, double& error);
+
+  Report residual_report(Workspace& ws, const Order& order);
+  Report product_report(const Workspace& ws) const;
+  Report slope_report(const Workspace& ws, const Order& order) const;
+  Report mix_report(const Workspace& ws) const;
+  static Report hold_report(Workspace& ws, const Order& order);
+
+  std::array<Gradients, 1 + kPlannedMax> vectors_{};
+  float rho_ = 0;           ///< Of the polynomial preconditioner.
+  float jacobi_error_ = 0;  ///< The bound on the error that the last Jacobi iteration has found.
+  bool is_first_step_ = false;  ///< Of a Jacobi method.
+  bool is_scalar_ = false;      ///< Scalar diagonal instead of blocks.
+};
+
+}  // namespace holdfast::agent

@@ -1,0 +1,104 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+
+#include "holdfast/agent/link.hpp"
+#include "holdfast/base/faces.hpp"
+
+/// The six links of a module: who is there, who has fallen silent, and when they have to be looked
+/// after.
+namespace holdfast::agent {
+
+using base::Direction;
+using base::Faces;
+
+/// What a module knows of time in a step.
+struct Clock {
+  const LinkTiming& timing;
+  Time now = 0;
+};
+
+class Links {
+ public:
+  Links() { deadline_.fill(kNever); }
+
+  /// Faces whose link is used: a neighbour is there and answers.
+  Faces used() const;
+
+  /// Faces of neighbours that ought to answer and do not.
+  Faces silent() const { return silent_; }
+
+  bool is_used(Direction face) const { return at(face).is_used(); }
+
+  /// Queues a message on every one of `faces`. A neighbour that does not take what it is sent is as
+  /// good as silent.
+  void send(Faces faces, const wire::Writer& message);
+
+  /// Can a message of so many bytes be queued on the link of `face`?
+  bool has_room(Direction face, int bytes) const { return at(face).has_room(bytes); }
+
+  /// Has a neighbour fallen silent by what was sent since the last call?
+  bool take_refusal();
+
+  void bring_up(Direction face, std::uint16_t nonce, Time now);
+  void bring_down(Direction face);
+
+  /// The neighbour at `face` has said what a working one would not: it is counted, and its link is
+  /// lost.
+  void refuse(Direction face);
+
+  /// Refused messages, 255 at most.
+  std::uint8_t refused_count() const { return refused_count_; }
+
+  /// Takes in a packet; next_message() takes the stream that it returns apart (see Link).
+  std::span<const std::uint8_t> receive(Direction face, std::span<const std::uint8_t> packet,
+                                        const Clock& clock);
+
+  std::span<const std::uint8_t> next_message(Direction face,
+                                             std::span<const std::uint8_t>& stream) {
+    return at(face).next_message(stream);
+  }
+
+  /// Has the neighbour at `face` started again, or just fallen silent? Greets it in the first case
+  /// with `nonce`.
+  bool notice_change(Direction face, std::uint16_t nonce, Time now);
+
+  int write_packet(Direction face, std::span<std::uint8_t> packet, const Clock& clock);
+
+  /// Faces whose link has to be looked after now: hand them to on_time().
+  Faces due(Time now) const;
+  void on_time(Direction face, const Clock& clock, bool is_watched);
+
+  void drop_unsent();
+
+  /// All deadlines are found anew in finish_step(): whether links are watched has changed.
+  void touch_all() { touched_ = Faces::all(); }
+
+  /// At the end of a step: finds out which links have a packet to send, and their deadlines.
+  void finish_step(const Clock& clock, bool is_watched);
+
+  /// Faces on which a packet waits, as finish_step() has found.
+  Faces waiting() const { return waiting_; }
+
+  /// When a link has to be looked after at the latest.
+  Time deadline() const;
+
+ private:
+  Link& at(Direction face) { return links_[static_cast<std::size_t>(face)]; }
+
+  const Link& at(Direction face) const { return links_[static_cast<std::size_t>(face)]; }
+
+  std::array<Link, base::kDirectionCount> links_;
+  std::array<Time, base::kDirectionCount> deadline_{};
+  Faces touched_;  ///< Whose link has changed in this step.
+  Faces waiting_;
+  Faces silent_;
+  bool has_refused_ = false;  ///< A neighbour has not taken a message.
+  std::uint8_t refused_count_ = 0;
+};
+
+}  // namespace holdfast::agent

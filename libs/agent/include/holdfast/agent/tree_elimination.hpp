@@ -1,0 +1,137 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+
+#include "holdfast/agent/branch.hpp"
+#include "holdfast/agent/order.hpp"
+#include "holdfast/agent/workspace.hpp"
+
+namespace holdfast::agent {
+
+struct Leaves;
+
+/// What of a method's work is still to be done on a module, exchanges apart.
+enum class Pending : std::uint8_t {
+  kNothing,
+  kBeforeReport,
+  kBehindReport,  ///< The report may leave; what comes next has to wait.
+};
+
+/// Elimination over the tree as messages; branch.hpp has the algebra.
+///
+///   kMass      with the reports: cuts that are open, so that each module knows its loops
+///   kFactor    with the reports: columns of condensed stiffness, then condensed loads
+///   kTreeStep  with the order: displacements and forces in cuts; with the reports: loads
+///
+/// Planned modules emulated here are leaves of the tree: they hang on this module or on each other.
+///
+/// All is done in pieces, none longer than 5 ms on a Cortex-M0; each makes the factor of 1 + S F
+/// that it needs. Between the residuals of one iteration and the displacements of the next,
+/// Node::vector has the condensed load of a planned module, then its shift.
+class TreeElimination {
+ public:
+  void begin(Workspace& ws, const Order& order);
+
+  bool expects(const Workspace& ws, const Order& order, Direction face,
+               std::span<const std::uint8_t> message) const;
+
+  void take(Workspace& ws, const Order& order, Direction face,
+            std::span<const std::uint8_t> message);
+
+  /// An exchange is complete.
+  void take_exchange(Workspace& ws, const Order& order);
+
+  /// Does the next piece; false if there is none, or if it has to wait.
+  bool do_piece(Workspace& ws, const Order& order);
+
+  Pending pending() const {
+    return piece_ == Piece::kNone && down_awaited_ == 0 ? Pending::kNothing
+                                                        : Pending::kBeforeReport;
+  }
+
+  static PlannedPart planned_part(const Workspace&, const Order&) { return PlannedPart::kTogether; }
+
+  Report report(Workspace& ws, const Order& order);
+
+  /// Finds out which loops pass or close here, and tells the parent; the flags of a report.
+  std::uint8_t survey_loops(Workspace& ws);
+
+  /// Are there more loops here than a Branch can hold?
+  bool has_too_many_loops() const { return has_too_many_; }
+
+ private:
+  /// What comes next, in the order of a kFactor, and from the residuals on of a kTreeStep as well.
+  enum class Piece : std::uint8_t {
+    kNone,
+    kTangents,
+    kLeafColumns,
+    kLoops,
+    kSymmetry,
+    kColumns,
+    kResiduals,
+    kLeafLoads,
+    kCloseLoad,
+    kLoadUp,
+    kGapsUp,
+    kShift,  // Of a kTreeStep, before its exchanges.
+    kForces,
+    kLeafShifts,
+    kMove,
+  };
+
+  void begin_piece(Piece piece, int index = 0);
+
+  // Loops.
+  void take_loop(Direction face, std::span<const std::uint8_t> message);
+
+  // Stiffness.
+  void factor(Workspace& ws);
+  bool do_tangent(Workspace& ws);
+  bool do_leaf_columns(Workspace& ws);
+  bool do_loops(const Workspace& ws);
+  bool do_symmetry(const Workspace& ws);
+  void add_leaf_stiffness(Node& node, int leaf, int row, int column, float value);
+  base::Mat6<float> leaf_stiffness(const Node& node, int leaf) const;
+  void send_leaf_columns(Workspace& ws, const Leaves& leaves, int leaf, int first);
+  bool is_column_ready(const Workspace& ws, int column) const;
+  bool send_columns(Workspace& ws);
+  void send_batch(Workspace& ws, int column, int count) const;
+  void take_column(Direction face, std::span<const std::uint8_t> message);
+
+  // Loads.
+  bool do_load_piece(Workspace& ws);
+  void find_residual_loads(Workspace& ws);
+  void send_leaf_load(Workspace& ws, const Leaves& leaves, int leaf);
+  void send_load_up(Workspace& ws) const;
+  void send_gaps_up(Workspace& ws) const;
+  void take_up(Direction face, std::span<const std::uint8_t> message);
+
+  // Displacements.
+  bool do_shift_piece(Workspace& ws);
+  void find_own_shift(Workspace& ws);
+  void find_leaf_shift(Workspace& ws, const Leaves& leaves, int leaf) const;
+  void send_down(Workspace& ws);
+  void take_down(Workspace& ws, std::span<const std::uint8_t> message);
+
+  Branch branch_;
+  BranchLoad load_;
+  CutForces forces_{};
+  /// By face: the cuts that a child has open, and their slots here.
+  std::array<std::array<Cut, kLoopsMax>, base::kDirectionCount> child_cuts_{};
+  std::array<std::array<std::uint8_t, kLoopsMax>, base::kDirectionCount> slot_of_{};
+  std::array<std::uint8_t, base::kDirectionCount> child_cut_count_{};
+  std::array<std::uint8_t, base::kDirectionCount> columns_here_{};  ///< All before are final.
+  bool has_too_many_ = false;
+  bool is_symmetric_ = false;  ///< S' goes up in parts: no facet below tilts, or it hardly matters.
+  Piece piece_ = Piece::kNone;
+  std::uint8_t piece_index_ = 0;
+  std::uint8_t down_awaited_ = 0;  ///< Messages that must come from the parent before an iteration.
+  /// What holds each planned module here, above its diagonal; NodeMatrix has the rest.
+  std::array<std::array<float, 15>, kPlannedMax> stiffness_above_{};
+};
+
+}  // namespace holdfast::agent

@@ -1,0 +1,66 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "holdfast/agent/exchange.hpp"
+#include "holdfast/agent/links.hpp"
+#include "holdfast/agent/node.hpp"
+#include "holdfast/agent/planned.hpp"
+#include "holdfast/agent/planned_exchange.hpp"
+#include "holdfast/agent/reports.hpp"
+#include "holdfast/agent/setup.hpp"
+#include "holdfast/agent/spanning_tree.hpp"
+
+namespace holdfast::agent {
+
+/// What one module is, apart from what all share.
+struct Identity {
+  std::uint32_t id = 0;    ///< Different for every module.
+  bool is_fixed = false;   ///< Held from outside, does not move.
+  bool is_anchor = false;  ///< Knows `cell` from the start; exactly one module.
+  base::Cell cell = {};    ///< Of the anchor.
+};
+
+/// What the parts of a module's program work on: the module's lines, its place in the tree, the
+/// planned modules that it has to do with, and the mechanics of itself and of those it emulates.
+/// Each part owns its state and is changed through its functions alone; nodes are plain data of the
+/// method in use.
+struct Workspace {
+  Workspace(const Setup& shared, const Identity& identity);
+
+  /// This module, then those it emulates: indices of nodes run to node_count().
+  int node_count() const { return 1 + planned.hosted_count(); }
+
+  Node& node(int index) { return nodes[static_cast<std::size_t>(index)]; }
+
+  const Node& node(int index) const { return nodes[static_cast<std::size_t>(index)]; }
+
+  const base::Cell& cell_of(int node) const {
+    return node == 0 ? tree.cell() : planned.cell(planned.hosted(node - 1));
+  }
+
+  /// Faces on which a node has a beam.
+  Faces faces_of(int node) const;
+
+  /// Starts an exchange: this module's own vector goes out and, if they are part of it, those of
+  /// planned modules emulated here.
+  void start_exchange(PlannedPart part);
+
+  const Setup& setup;
+  Links links;
+  SpanningTree tree;
+  Reports reports;
+  Planned planned;
+  Exchange exchange;
+  PlannedExchange planned_exchange;
+  bool is_fixed;
+  float own_load_ratio = 0;  ///< The largest of this module's own connections.
+  std::array<Node, 1 + kPlannedMax> nodes{};
+  std::array<MiddleLoad, base::kDirectionCount> middle{};  ///< By face of this module.
+  ContactSetting contact;
+};
+
+}  // namespace holdfast::agent

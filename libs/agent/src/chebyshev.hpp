@@ -1,0 +1,24 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+namespace holdfast::agent {
+
+/// The preconditioner of degree m is Chebyshev's iteration [Saad 2003, Alg. 12.1] with the diagonal
+/// blocks, from zero, on the interval [a, 2]. 2 bounds the spectrum of M^-1 A for certain: the
+/// lattice is bipartite, so the spectrum is symmetric about 1. What lies below a is left to the
+/// gradients. With a = c / (m + 1)^2 all above it comes within 1 +- 1 / cosh(sqrt(2 c)) of 1.
+struct Interval {
+  static constexpr double kSpread = 1.75;
+
+  explicit Interval(int degree, double spread = kSpread)
+      : least(degree == 0 ? 2 : spread / ((degree + 1.0) * (degree + 1.0))),
+        centre((2 + least) / 2),
+        half((2 - least) / 2) {}
+
+  double least;
+  double centre;
+  double half;
+};
+
+}  // namespace holdfast::agent

@@ -1,0 +1,108 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#include "holdfast/agent/links.hpp"
+
+namespace holdfast::agent {
+
+Faces Links::used() const {
+  Faces faces;
+  for (const Direction face : base::kDirections) {
+    faces.set(face, is_used(face));
+  }
+  return faces;
+}
+
+void Links::send(Faces faces, const wire::Writer& message) {
+  for (const Direction face : faces) {
+    touched_.add(face);
+    if (!at(face).send(message.bytes())) {
+      silent_.add(face);
+      has_refused_ = true;
+    }
+  }
+}
+
+bool Links::take_refusal() {
+  const bool has_refused = has_refused_;
+  has_refused_ = false;
+  return has_refused;
+}
+
+void Links::bring_up(Direction face, std::uint16_t nonce, Time now) {
+  at(face).bring_up(nonce, now);
+  silent_.remove(face);
+  touched_.add(face);
+}
+
+void Links::bring_down(Direction face) {
+  at(face).bring_down();
+  silent_.remove(face);
+  touched_.add(face);
+}
+
+void Links::refuse(Direction face) {
+  refused_count_ = static_cast<std::uint8_t>(refused_count_ + (refused_count_ < 0xff ? 1 : 0));
+  at(face).lose();
+}
+
+std::span<const std::uint8_t> Links::receive(Direction face, std::span<const std::uint8_t> packet,
+                                             const Clock& clock) {
+  touched_.add(face);
+  return at(face).receive(packet, clock.timing, clock.now);
+}
+
+bool Links::notice_change(Direction face, std::uint16_t nonce, Time now) {
+  Link& link = at(face);
+  const bool has_restarted = link.take_restarted();
+  if (has_restarted) {
+    link.bring_up(nonce, now);
+  }
+  const bool falls_silent = link.state() == Link::State::kLost && !silent_.has(face);
+  if (falls_silent) {
+    silent_.add(face);
+  }
+  return has_restarted || falls_silent;
+}
+
+int Links::write_packet(Direction face, std::span<std::uint8_t> packet, const Clock& clock) {
+  touched_.add(face);
+  return at(face).write_packet(packet, clock.timing, clock.now);
+}
+
+Faces Links::due(Time now) const {
+  Faces faces;
+  for (const Direction face : base::kDirections) {
+    faces.set(face, deadline_[static_cast<std::size_t>(face)] <= now);
+  }
+  return faces;
+}
+
+void Links::on_time(Direction face, const Clock& clock, bool is_watched) {
+  touched_.add(face);
+  at(face).on_time(clock.timing, is_watched, clock.now);
+}
+
+void Links::drop_unsent() {
+  for (Link& link : links_) {
+    link.drop_unsent();
+  }
+  touch_all();
+}
+
+void Links::finish_step(const Clock& clock, bool is_watched) {
+  for (const Direction face : touched_) {
+    waiting_.set(face, at(face).has_packet(clock.now));
+    deadline_[static_cast<std::size_t>(face)] = at(face).deadline(clock.timing, is_watched);
+  }
+  touched_ = {};
+}
+
+Time Links::deadline() const {
+  Time earliest = kNever;
+  for (const Time at : deadline_) {
+    earliest = at < earliest ? at : earliest;
+  }
+  return earliest;
+}
+
+}  // namespace holdfast::agent

@@ -1,0 +1,176 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#include "holdfast/agent/spanning_tree.hpp"
+
+#include "holdfast/agent/feet.hpp"
+
+namespace holdfast::agent {
+namespace {
+
+std::uint8_t number_of(SpanningTree::Stage stage) { return static_cast<std::uint8_t>(stage); }
+
+}  // namespace
+
+void SpanningTree::leave() {
+  stage_ = Stage::kNone;
+  parent_ = {};
+  children_ = {};
+  has_returned_ = false;
+}
+
+void SpanningTree::start_wave(Links& links, const Round& round, Stage stage) {
+  root_cell_ = cell_;
+  begin_stage(links, round, stage, {}, 0);
+}
+
+void SpanningTree::begin_stage(Links& links, const Round& round, Stage stage, Faces parent,
+                               std::uint16_t hops) {
+  stage_ = stage;
+  parent_ = parent;
+  hops_ = hops;
+  nearer_ = parent;
+  children_ = {};
+  has_returned_ = false;
+  census_ = {.count = 1, .hops = hops, .id = id_, .is_anyone_silent = !links.silent().is_empty()};
+  awaited_ = links.used() - parent;
+  links.send(awaited_, encode(Join{.round = round,
+                                   .wave = number_of(stage),
+                                   .cell = stage == Stage::kFirst ? cell_ : root_cell_,
+                                   .hops = hops}));
+  await_less(links, round, {});
+}
+
+bool SpanningTree::take_join(Links& links, Direction face, const Join& join, bool is_in_use) {
+  const auto stage = static_cast<Stage>(join.wave);
+  // 65,535 stands for all that is further: too large (feet.hpp).
+  const auto hops = static_cast<std::uint16_t>(join.hops + (join.hops > kExtentMax ? 0 : 1));
+  const bool is_next = stage > stage_;
+  if (is_next && (static_cast<int>(stage) > static_cast<int>(stage_) + 1 || is_in_use)) {
+    return false;  // A wave has been left out, or the tree is in use.
+  }
+  if (is_next) {
+    if (stage == Stage::kFirst) {
+      cell_ = base::neighbour(join.cell, base::opposite(face));
+      has_cell_ = true;
+    } else {
+      root_cell_ = join.cell;
+    }
+    begin_stage(links, join.round, stage, Faces::only(face), hops);
+  } else if (stage == stage_) {
+    if (hops <= hops_) {
+      nearer_.add(face);
+    }
+    await_less(links, join.round, Faces::only(face));
+  }
+  return true;
+}
+
+void SpanningTree::take_echo(Links& links, Direction face, const Echo& echo) {
+  if (echo.wave != number_of(stage_)) {
+    return;
+  }
+  census_.count += echo.count;
+  if (echo.hops > census_.hops || (echo.hops == census_.hops && echo.id < census_.id)) {
+    census_.hops = echo.hops;
+    census_.id = echo.id;
+  }
+  census_.is_anyone_silent = echo.is_anyone_silent != 0 || census_.is_anyone_silent;
+  children_.add(face);
+  await_less(links, echo.round, Faces::only(face));
+}
+
+/// These neighbours less to wait for; when none is left the wave has come back.
+void SpanningTree::await_less(Links& links, const Round& round, Faces faces) {
+  if (!faces.is_empty() && (awaited_ & faces).is_empty()) {
+    return;
+  }
+  awaited_ -= faces;
+  if (!awaited_.is_empty()) {
+    return;
+  }
+  if (is_root()) {
+    has_returned_ = true;
+  } else {
+    send_echo(links, round);
+  }
+}
+
+void SpanningTree::send_echo(Links& links, const Round& round) const {
+  const std::uint8_t is_anyone_silent = census_.is_anyone_silent ? 1 : 0;
+  links.send(parent_, encode(Echo{.round = round,
+                                  .wave = number_of(stage_),
+                                  .count = census_.count,
+                                  .hops = census_.hops,
+                                  .id = census_.id,
+                                  .is_anyone_silent = is_anyone_silent}));
+}
+
+bool SpanningTree::take_return() {
+  const bool has_returned = has_returned_;
+  has_returned_ = false;
+  return has_returned;
+}
+
+void SpanningTree::appoint(Links& links, const Round& round) {
+  take_appointment(links, round,
+                   {.wave = number_of(stage_),
+                    .id = census_.id,
+                    .hops = static_cast<std::uint16_t>(census_.hops / 2)});
+}
+
+/// One of an earlier stage is late: the next wave was here before it.
+bool SpanningTree::expects_appointment(Direction face, std::span<const std::uint8_t> message,
+                                       bool is_in_use) const {
+  const auto stage = static_cast<Stage>(message[1]);
+  return stage < stage_ || (stage == stage_ && is_led_by(face) && !is_in_use);
+}
+
+bool SpanningTree::expects_mark(Direction face, bool is_in_use) const {
+  return stage_ == Stage::kFar && !nearer_.has(face) && awaited_.is_empty() && !is_in_use;
+}
+
+bool SpanningTree::take_appointment(Links& links, const Round& round,
+                                    const Appointment& appointment) {
+  if (appointment.wave != number_of(stage_)) {
+    return false;
+  }
+  if (appointment.id != id_) {
+    links.send(children_, encode(appointment));
+  } else if (stage_ == Stage::kFirst) {
+    start_wave(links, round, Stage::kFar);
+  } else {
+    take_mark(links, round, {.hops = appointment.hops, .sender = cell_});
+  }
+  return true;
+}
+
+/// One hop towards the wave's root: of the neighbours nearer to it the one that is nearest to the
+/// place half way between it and `end`.
+Faces SpanningTree::towards_root(const base::Cell& end) const {
+  Faces best = parent_;
+  std::int64_t least = ~(std::int64_t{1} << 63U);
+  for (const Direction face : nearer_) {
+    const base::Cell there = base::neighbour(cell_, face);
+    const std::int64_t x = 2 * there.x - root_cell_.x - end.x;
+    const std::int64_t y = 2 * there.y - root_cell_.y - end.y;
+    const std::int64_t z = 2 * there.z - root_cell_.z - end.z;
+    const std::int64_t square = x * x + y * y + z * z;
+    if (square < least) {
+      least = square;
+      best = Faces::only(face);
+    }
+  }
+  return best;
+}
+
+/// So many hops more to the middle of the way from the sender to the wave's root.
+void SpanningTree::take_mark(Links& links, const Round& round, const Mark& mark) {
+  if (mark.hops == 0 || is_root()) {
+    start_wave(links, round, Stage::kTree);
+    return;
+  }
+  const auto hops = static_cast<std::uint16_t>(mark.hops - 1);
+  links.send(towards_root(mark.sender), encode(Mark{.hops = hops, .sender = mark.sender}));
+}
+
+}  // namespace holdfast::agent

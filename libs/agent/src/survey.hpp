@@ -1,0 +1,31 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "holdfast/agent/announcements.hpp"
+#include "holdfast/agent/operations.hpp"
+#include "holdfast/agent/workspace.hpp"
+
+/// The orders before and after an equilibrium: who is there, what is planned, does it topple, what
+/// carries most. None of them exchanges vectors, and no method need be in use.
+namespace holdfast::agent {
+
+/// Is the operation one of these?
+inline bool is_survey(wire::Operation operation) {
+  return phase_of(operation) != Phase::kEquilibrium;
+}
+
+/// The order has come.
+void begin_survey(Workspace& ws, Announcements& announcements, const Order& order);
+
+/// What this module, with the planned ones that it emulates, has to say. Of kLoads
+/// it is noted in Workspace::own_load_ratio as well.
+Report survey_report(Workspace& ws, const Announcements& announcements, const Order& order);
+
+/// Count, supports and extent of the nodes here, from the root's cell.
+Report mass_report(const Workspace& ws);
+
+/// Adds what a child has reported.
+void add_report(const Setup& setup, const Order& order, Report& into, const Report& theirs);
+
+}  // namespace holdfast::agent

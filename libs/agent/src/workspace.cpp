@@ -1,0 +1,38 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#include "holdfast/agent/workspace.hpp"
+
+namespace holdfast::agent {
+
+Workspace::Workspace(const Setup& shared, const Identity& identity)
+    : setup(shared),
+      tree(identity.id, identity.is_anchor, identity.cell),
+      is_fixed(identity.is_fixed) {}
+
+Faces Workspace::faces_of(int node) const {
+  Faces faces = node == 0 ? links.used() : planned.total(planned.hosted(node - 1));
+  for (const Direction face : base::kDirections) {
+    const int other =
+        node == 0 ? planned.at_face(face) : planned.neighbour_of(planned.hosted(node - 1), face);
+    if (other >= 0) {
+      faces.add(face);
+    }
+  }
+  return faces;
+}
+
+void Workspace::start_exchange(PlannedPart part) {
+  exchange.start(links, node(0).vector.sent);
+  if (part != PlannedPart::kTogether) {
+    return;
+  }
+  planned_exchange.clear_forces();
+  for (int k = 0; k < planned.count(); ++k) {
+    const int at = planned.node_of(k);
+    if (at >= 0) {
+      planned_exchange.share(links, tree.children(), planned, k, node(at).vector.sent);
+    }
+  }
+}
+
+}  // namespace holdfast::agent

@@ -1,0 +1,74 @@
+#!/usr/bin/env bash
+# consumer_test.sh BUILD COMPILER   installs BUILD into a folder of its own and moves that; then the
+# installed programs run, and a program is built against the library: by CMake's find_package and by
+# pkg-config, shared and static.
+set -euo pipefail
+build=$1
+compiler=$2
+here=$(cd "$(dirname "$0")" && pwd)
+repository=$here/../..
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+
+fault() {
+  printf 'FAULT: %s\n' "$*"
+  exit 1
+}
+
+# uses_shared yes|no PROGRAM   runs it, and looks which library it has loaded
+uses_shared() {
+  "$2" || fault "$2 fails"
+  local loaded=no
+  ! ldd "$2" | grep -q 'libholdfast\.so' || loaded=yes
+  [ "$1" = "$loaded" ] || fault "$2: loads the shared library: $loaded, expected is $1"
+}
+
+cmake --install "$build" --prefix "$work/first" >/dev/null
+mv "$work/first" "$work/moved"
+prefix=$work/moved
+
+"$prefix/bin/holdfast" check --quiet "$repository/scenarios/arm_breaks_a.json"
+"$prefix/bin/holdfast" check --quiet --certificate "$work/proof" \
+  "$repository/scenarios/arm_breaks_a.json"
+"$prefix/bin/holdfast-checker" "$work/proof" | grep -q '^PROVED'
+if [ -f "$prefix/share/holdfast/holdfast.html" ]; then
+  "$prefix/bin/holdfast" view --out - "$repository/scenarios/arm_breaks_a.json" >"$work/page.html"
+  grep -q arm_breaks_a "$work/page.html" || fault "view does not fill the installed page"
+else
+  echo "consumer: no page is built, so view is not tried"
+fi
+for file in bin/holdfast share/holdfast/structure.schema.json share/man/man1/holdfast.1.gz \
+  share/man/man1/holdfast-checker.1.gz share/bash-completion/completions/holdfast \
+  share/zsh/vendor-completions/_holdfast share/fish/vendor_completions.d/holdfast.fish; do
+  [ -s "$prefix/$file" ] || fault "$file is not installed"
+done
+
+library=$(echo "$prefix"/lib*/libholdfast.so)
+nm -D --defined-only "$library" >"$work/names"
+! grep -Ev ' _Z(N|NK|T.N)8holdfast' "$work/names" || fault "$library exports others' names"
+
+for kind in shared static; do
+  # Who links the shared library needs nothing of what is within.
+  alone=()
+  [ $kind = static ] ||
+    alone=(-DCMAKE_DISABLE_FIND_PACKAGE_fmt=ON -DCMAKE_DISABLE_FIND_PACKAGE_pugixml=ON)
+  cmake -S "$here" -B "$work/$kind" -G Ninja -DCMAKE_PREFIX_PATH="$prefix" -DKIND=$kind \
+    -DCMAKE_CXX_COMPILER="$compiler" ${alone[@]+"${alone[@]}"} >"$work/log" 2>&1 ||
+    { cat "$work/log"; exit 1; }
+  cmake --build "$work/$kind" >"$work/log" || { cat "$work/log"; exit 1; }
+done
+uses_shared yes "$work/shared/consumer"
+uses_shared no "$work/static/consumer"
+
+PKG_CONFIG_PATH=$(dirname "$library")/pkgconfig
+export PKG_CONFIG_PATH
+read -ra flags < <(pkg-config --cflags holdfast)
+"$compiler" -std=c++20 "${flags[@]}" -c "$here/main.cpp" -o "$work/main.o"
+read -ra libraries < <(pkg-config --libs holdfast)
+"$compiler" "$work/main.o" "${libraries[@]}" -o "$work/by_pkg_config"
+LD_LIBRARY_PATH=$(dirname "$library") uses_shared yes "$work/by_pkg_config"
+# The linker takes the shared one where both are there, unless the archive is named.
+read -ra libraries < <(pkg-config --static --libs holdfast | sed 's/-lholdfast/-l:libholdfast.a/')
+"$compiler" "$work/main.o" "${libraries[@]}" -o "$work/by_pkg_config_static"
+uses_shared no "$work/by_pkg_config_static"
+echo "consumer: installed, moved, linked in four ways"

@@ -1,0 +1,298 @@
+#!/usr/bin/env python3
+# SPDX-FileCopyrightText: The holdfast authors
+# SPDX-License-Identifier: Apache-2.0
+"""manual.py PROGRAM CHECKER FOLDER [--check]   writes the man pages of both programs, and of the
+first the completions for bash, zsh and fish, from what their --help says. With --check nothing is
+written; exits 1 if a file in FOLDER is not what would be written."""
+import pathlib
+import re
+import subprocess
+import sys
+
+SECTIONS = {'Positionals': 'ARGUMENTS', 'Options': 'OPTIONS', 'Subcommands': 'COMMANDS'}
+FILE_TYPES = {'FILE', 'FOLDER', 'FROM', 'TO'}
+CHECKER = 'holdfast-checker'
+
+
+class Entry:
+    """A line of a list: an option, an argument or a command."""
+
+    def __init__(self, head, text):
+        self.names = [name for name in head.split()[0].split(',')]
+        self.rest = head.split()[1:]  # What stands behind the names: type, default, REQUIRED, ...
+        self.text = text
+        self.values = []  # All that are allowed, where they are words.
+
+    @property
+    def type(self):
+        """The name of the value, or None for a flag; without its default and range."""
+        kind = [word for word in self.rest if word not in ('REQUIRED', '...')]
+        return re.split('[=:]', kind[0])[0] if kind else None
+
+    @property
+    def shown(self):
+        words = [word for word in self.rest if word != 'REQUIRED']
+        return ' '.join([', '.join(self.names)] + words).replace('INT:INT', 'INT').replace(
+            'FLOAT:FLOAT', 'FLOAT')
+
+    @property
+    def is_repeated(self):
+        return '...' in self.rest
+
+
+class Page:
+    """One --help: what the command does, how it is used, its lists, what stands below them."""
+
+    def __init__(self, text):
+        head, _, tail = text.partition('\nUsage: ')
+        self.summary = head.strip()
+        self.usage, _, tail = tail.partition('\n')
+        self.lists = {}
+        blocks = tail.strip('\n').split('\n\n')
+        while blocks and blocks[0].split(':\n')[0] in SECTIONS:
+            title, _, lines = blocks.pop(0).partition(':\n')
+            self.lists[title] = entries_of(lines)
+        self.footer = '\n\n'.join(blocks)
+
+    def options(self):
+        return self.lists.get('Options', [])
+
+    def arguments(self):
+        return self.lists.get('Positionals', [])
+
+
+def entries_of(lines):
+    """Heads stand in column 2, texts in column 30, on the next line if the head is long."""
+    entries = []
+    for line in lines.split('\n'):
+        if line.startswith(' ' * 10):
+            entries[-1].text = (entries[-1].text + ' ' + line.strip()).strip()
+        else:
+            head, _, text = line.strip().partition('  ')
+            entries.append(Entry(head, text.strip()))
+    return entries
+
+
+def output_of(*command):
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    return done.stdout + done.stderr
+
+
+def ask_values(program, command, entry):
+    """The program names the words that it allows when it is given another."""
+    if entry.type == 'NAME':
+        said = output_of(program, command, entry.names[-1], '?', '-')
+        words = re.search(r'not in \{(.*)\}', said)
+        entry.values = words[1].split(',') if words else []
+
+
+def read_pages(program):
+    pages = {'': Page(output_of(program, '--help'))}
+    for command in pages[''].lists['Subcommands']:
+        page = pages[command.names[0]] = Page(output_of(program, command.names[0], '--help'))
+        for entry in page.options():
+            ask_values(program, command.names[0], entry)
+    families = output_of(program, 'generate', '?', '1')
+    pages['generate'].arguments()[0].values = re.search('there are (.*)', families)[1].split(', ')
+    return pages
+
+
+# Man pages.
+
+def roff(text):
+    text = text.replace('\\', '\\e').replace('-', '\\-')
+    return re.sub(r"^([.'])", r'\\&\1', text, flags=re.MULTILINE)
+
+
+def roff_list(entries):
+    return ''.join(f'.TP\n.B {roff(entry.shown)}\n{roff(entry.text)}\n' for entry in entries)
+
+
+def roff_head(name, version, summary):
+    return (f'.\\" Written by tools/manual.py from what --help says.\n'
+            f'.TH {name.upper()} 1 "" "holdfast {version}" "User Commands"\n'
+            f'.SH NAME\n{name} \\- {roff(summary)}\n')
+
+
+def roff_preformatted(text):
+    return f'.PP\n.nf\n{roff(text)}\n.fi\n' if text else ''
+
+
+def man_page(pages, version):
+    main = pages['']
+    text = roff_head('holdfast', version, 'will a modular robot hold?')
+    text += f'.SH SYNOPSIS\n.B holdfast\nCOMMAND [OPTIONS] ARGUMENTS\n'
+    text += f'.SH DESCRIPTION\n{roff(main.summary)}\n'
+    text += f'.SH OPTIONS\n{roff_list(main.options())}.SH COMMANDS\n'
+    for command in main.lists['Subcommands']:
+        page = pages[command.names[0]]
+        text += f'.SS {roff(page.usage)}\n{roff(page.summary)}.\n'
+        text += roff_list(page.arguments()) + roff_list(page.options())
+        text += roff_preformatted(page.footer)
+    return text + '.SH SEE ALSO\n.BR holdfast\\-checker (1)\n'
+
+
+def checker_page(help_text, version):
+    usage, _, rest = help_text.partition('\n')
+    usage = usage.removeprefix('usage: ')
+    text = roff_head(CHECKER, version, 'prove a certificate of holdfast again')
+    text += f'.SH SYNOPSIS\n{roff(usage)}\n'
+    return text + f'.SH DESCRIPTION\n{roff(rest.strip())}\n.SH SEE ALSO\n.BR holdfast (1)\n'
+
+
+# Completions.
+
+def all_names(entries):
+    return [name for entry in entries for name in entry.names]
+
+
+def bash_completion(pages):
+    commands = [command for command in pages if command]
+    cases = ''
+    for command in commands:
+        page = pages[command]
+        values = ''
+        for entry in page.options():
+            if entry.type:
+                what = (f'words="{" ".join(entry.values)}"' if entry.values else
+                        'files=1' if entry.type in FILE_TYPES else ':')
+                values += f'        {"|".join(entry.names)}) {what} ;;\n'
+        words = ' '.join(all_names(page.options()))
+        first = page.arguments()[0]
+        other = f'words="{" ".join(first.values)}"' if first.values else 'files=1'
+        values += f'        *) if [[ $current == -* ]]; then words="{words}"; else {other}; fi ;;\n'
+        cases += f'    {command})\n      case $previous in\n{values}      esac\n      ;;\n'
+    top = ' '.join(commands + all_names(pages[''].options()))
+    return f'''# Completions of holdfast for bash, by tools/manual.py from --help.
+_holdfast() {{
+  local current=${{COMP_WORDS[COMP_CWORD]}} previous=${{COMP_WORDS[COMP_CWORD - 1]}}
+  local words='' files=''
+  COMPREPLY=()
+  if [ "$COMP_CWORD" -eq 1 ]; then
+    mapfile -t COMPREPLY < <(compgen -W "{top}" -- "$current")
+    return
+  fi
+  case ${{COMP_WORDS[1]}} in
+{cases}  esac
+  [ -z "$words" ] || mapfile -t COMPREPLY < <(compgen -W "$words" -- "$current")
+  if [ -n "$files" ]; then
+    compopt -o filenames 2>/dev/null
+    mapfile -t COMPREPLY < <(compgen -f -- "$current")
+  fi
+}}
+complete -F _holdfast holdfast
+'''
+
+
+def zsh_quoted(text):
+    return re.sub(r'([\[\]:])', r'\\\1', text).replace("'", "'\\''")
+
+
+def zsh_action(entry):
+    if entry.values:
+        return '(' + ' '.join(entry.values) + ')'
+    return '_files' if entry.type in FILE_TYPES or entry.names[0] in FILE_TYPES else ' '
+
+
+def zsh_option(entry):
+    value = f':{entry.type}:{zsh_action(entry)}' if entry.type else ''
+    star = '*' if entry.is_repeated else ''
+    return ''.join(f"        '{star}{name}[{zsh_quoted(entry.text)}]{value}' \\\n"
+                   for name in entry.names)
+
+
+def zsh_argument(entry):
+    star = '*' if entry.is_repeated else ''
+    return f"        '{star}:{entry.names[0]}:{zsh_action(entry)}' \\\n"
+
+
+def zsh_completion(pages):
+    commands = ''
+    cases = ''
+    for command in pages[''].lists['Subcommands']:
+        name = command.names[0]
+        commands += f"        '{name}:{zsh_quoted(command.text)}'\n"
+        lines = ''.join(zsh_option(entry) for entry in pages[name].options())
+        lines += ''.join(zsh_argument(entry) for entry in pages[name].arguments())
+        cases += f'    {name})\n      _arguments \\\n{lines[:-3]}\n      ;;\n'
+    top = ''.join(zsh_option(entry) for entry in pages[''].options())
+    return f'''#compdef holdfast
+# Completions of holdfast for zsh, by tools/manual.py from --help.
+_holdfast() {{
+  local context state state_descr line
+  typeset -A opt_args
+  _arguments -C \\
+{top}        '1:command:->command' \\
+        '*::argument:->argument'
+  case $state in
+  command)
+    local -a commands
+    commands=(
+{commands}    )
+    _describe command commands
+    ;;
+  argument)
+    case $line[1] in
+{cases}    esac
+    ;;
+  esac
+}}
+_holdfast "$@"
+'''
+
+
+def fish_quoted(text):
+    return "'" + text.replace('\\', '\\\\').replace("'", "\\'") + "'"
+
+
+def fish_option(condition, entry):
+    names = ' '.join(f'-l {name[2:]}' if name.startswith('--') else f'-s {name[1:]}'
+                     for name in entry.names)
+    value = ''
+    if entry.values:
+        value = f' -x -a {fish_quoted(" ".join(entry.values))}'
+    elif entry.type:
+        value = ' -r -F' if entry.type in FILE_TYPES else ' -x'
+    return f'complete -c holdfast -n {condition} {names}{value} -d {fish_quoted(entry.text)}\n'
+
+
+def fish_completion(pages):
+    text = ('# Completions of holdfast for fish, by tools/manual.py from --help.\n'
+            'complete -c holdfast -n __fish_use_subcommand -f\n')
+    for entry in pages[''].options():
+        text += fish_option('__fish_use_subcommand', entry)
+    for command in pages[''].lists['Subcommands']:
+        name = command.names[0]
+        text += (f'complete -c holdfast -n __fish_use_subcommand -a {name} '
+                 f'-d {fish_quoted(command.text)}\n')
+        condition = f"'__fish_seen_subcommand_from {name}'"
+        text += ''.join(fish_option(condition, entry) for entry in pages[name].options())
+        words = pages[name].arguments()[0].values
+        if words:
+            text += f'complete -c holdfast -n {condition} -f -a {fish_quoted(" ".join(words))}\n'
+    return text
+
+
+def main():
+    program, checker, folder = sys.argv[1:4]
+    pages = read_pages(program)
+    version = output_of(program, '--version').split()[1]
+    files = {'holdfast.1': man_page(pages, version),
+             f'{CHECKER}.1': checker_page(output_of(checker, '--help'), version),
+             'holdfast.bash': bash_completion(pages),
+             '_holdfast': zsh_completion(pages),
+             'holdfast.fish': fish_completion(pages)}
+    stale = []
+    for name, text in files.items():
+        path = pathlib.Path(folder) / name
+        if '--check' not in sys.argv:
+            path.write_text(text)
+        elif not path.is_file() or path.read_text() != text:
+            stale.append(str(path))
+    if stale:
+        print(f'not what --help says: {", ".join(stale)}; ./dev manual writes them anew')
+    sys.exit(1 if stale else 0)
+
+
+if __name__ == '__main__':
+    main()
