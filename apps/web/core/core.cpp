@@ -282,17 +282,14 @@ std::string simulation_summary(const DistributedRun& run, bool is_complete) {
 
 /// Integers and numbers: the events, see PacketLog.
 Reply simulate_request(const Request& request) {
-  auto robot = model::Robot::create(spec_of(request));
+  const auto robot = model::Robot::create(spec_of(request));
   if (!robot) {
     return failure(robot.error());
   }
-  const Structure structure{
-      .name = {}, .document = {}, .robot = std::move(robot).value(), .warnings = {}};
   sim::SimulationOptions options = simulation_options(request.header);
   PacketLog log(static_cast<std::size_t>(request.header.options[4]) * 1000);
   options.trace = &log;
-  const CheckResult exact = check(structure);
-  const auto run = simulate(structure, exact, options);
+  const auto run = simulate(robot.value(), check(robot.value()), options);
   if (!run) {
     return failure(run.error());
   }

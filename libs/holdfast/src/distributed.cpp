@@ -165,13 +165,13 @@ std::optional<agent::Method> find_method(std::string_view name_wanted) {
   return std::nullopt;
 }
 
-base::Result<DistributedRun> simulate(const Structure& structure, const CheckResult& exact,
+base::Result<DistributedRun> simulate(const model::Robot& robot, const CheckResult& exact,
                                       const sim::SimulationOptions& options,
                                       const SimulationProgress& progress) {
-  if (const auto fault = sim::find_options_fault(structure.robot, options)) {
+  if (const auto fault = sim::find_options_fault(robot, options)) {
     return base::Error{.code = base::ErrorCode::kBadInput, .message = *fault, .where = {}};
   }
-  sim::Simulation simulation(structure.robot, options);
+  sim::Simulation simulation(robot, options);
   while (simulation.run_for(kSliceEvents)) {
     if (progress && !progress(simulation.result())) {
       break;
@@ -182,8 +182,14 @@ base::Result<DistributedRun> simulate(const Structure& structure, const CheckRes
   const Agents agents{
       .at = [&](std::int32_t i) -> const agent::Agent& { return simulation.agent(i); },
       .count = simulation.agent_count()};
-  run.view = view_of(structure.robot, exact.assessment, agents, run.result);
+  run.view = view_of(robot, exact.assessment, agents, run.result);
   return run;
+}
+
+base::Result<DistributedRun> simulate(const Structure& structure, const CheckResult& exact,
+                                      const sim::SimulationOptions& options,
+                                      const SimulationProgress& progress) {
+  return simulate(structure.robot, exact, options, progress);
 }
 
 std::string picture_svg(const Structure& structure, const DistributedRun& run) {

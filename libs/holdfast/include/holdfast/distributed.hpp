@@ -14,7 +14,7 @@
 ///
 ///     holdfast::sim::SimulationOptions options;
 ///     options.link = holdfast::sim::blinky_blocks_v1();
-///     auto run = holdfast::simulate(structure, options);
+///     auto run = holdfast::simulate(structure, holdfast::check(structure), options);
 ///     if (run && run.value().result.answer.verdict == holdfast::agent::Verdict::kSafe) { ... }
 namespace holdfast {
 
@@ -57,7 +57,12 @@ base::Result<ChangedStructure> with_changes(const Structure& structure,
 using SimulationProgress = std::function<bool(const sim::SimulationResult&)>;
 
 /// Simulates the robot's own computation. `exact` gives what the robot does not work out (margin,
-/// support polygon, torques) to the view. Errors: options that do not fit the structure.
+/// support polygon, torques) to the view. Errors: options that do not fit the robot.
+base::Result<DistributedRun> simulate(const model::Robot& robot, const CheckResult& exact,
+                                      const sim::SimulationOptions& options,
+                                      const SimulationProgress& progress = {});
+
+/// Simulates the structure's robot.
 base::Result<DistributedRun> simulate(const Structure& structure, const CheckResult& exact,
                                       const sim::SimulationOptions& options,
                                       const SimulationProgress& progress = {});
