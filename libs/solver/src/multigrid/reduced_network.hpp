@@ -13,7 +13,8 @@
 #include "holdfast/model/robot.hpp"
 #include "vectors.hpp"
 
-/// What is left of a robot when everything is eliminated that can be eliminated by hand.
+/// What is left of a robot when everything is eliminated that can be eliminated by hand: static
+/// condensation of substructures (condensation.hpp).
 ///
 /// Hanging trees carry their own weight only: their load, with its lever, moves to where they hang.
 /// A straight run of modules with two connections each is one longer beam: cubic displacements are
