@@ -50,7 +50,7 @@ def shown_commands(text):
 
 def masked(line):
     """Without times, and without the sign of what is zero to all digits shown."""
-    return re.sub(r'-(0\.0+)\b', r' \1', re.sub(r'in \d+ us', 'in N us', line.rstrip()))
+    return re.sub(r'-(0\.0+)\b', r' \1', re.sub(r'in [\d.]+ (us|ms|s)\b', 'in N s', line.rstrip()))
 
 
 def is_same(shown, printed):

@@ -4,15 +4,18 @@ import { createHash } from 'node:crypto';
 import { readFileSync, readdirSync } from 'node:fs';
 import { deflateRawSync } from 'node:zlib';
 import { defineConfig, type Plugin } from 'vite';
+import { Core } from './src/core/wasm';
 
 const repository = new URL('../../', import.meta.url);
 const coreFile = new URL('build/wasm/holdfast_core.wasm', repository);
 const scenarioFolder = new URL('scenarios/', repository);
 
-/** Modules that are made from files of the repository. */
+/** Modules that are made from files of the repository, and of what the core says. */
 function holdfastFiles(): Plugin {
   const makers: Record<string, () => unknown> = {
     'virtual:core': () => deflateRawSync(readFileSync(coreFile), { level: 9 }).toString('base64'),
+    'virtual:vocabulary': async () =>
+      (await Core.create(await WebAssembly.compile(readFileSync(coreFile)))).vocabulary(),
     'virtual:scenarios': () =>
       Object.fromEntries(
         readdirSync(scenarioFolder)
@@ -26,9 +29,9 @@ function holdfastFiles(): Plugin {
   return {
     name: 'holdfast-files',
     resolveId: (id) => (id in makers ? `\0${id}` : undefined),
-    load: (id) =>
+    load: async (id) =>
       id.startsWith('\0virtual:') && id.slice(1) in makers
-        ? `export default ${JSON.stringify(makers[id.slice(1)]())};`
+        ? `export default ${JSON.stringify(await makers[id.slice(1)]())};`
         : undefined,
   };
 }

@@ -11,7 +11,7 @@ namespace {
 namespace wire = agent::wire;
 using wire::PacketKind;
 
-constexpr std::size_t kNumbers = 64;  ///< Of packets.
+constexpr std::size_t kNumbers = wire::kSequenceCount;
 
 /// Where the checksum of a session starts: docs/wire.md, "Packets".
 std::uint16_t session(std::uint16_t sender, std::uint16_t receiver) {
@@ -41,8 +41,8 @@ int FaultyNeighbour::tamper(sim::Time now, std::int32_t module, base::Direction 
                             std::span<std::uint8_t> packet, int size) {
   constexpr std::size_t kOverhead = wire::kHeaderBytes + wire::kChecksumBytes;
   Stream& out = stream(module, face);
-  const auto kind = static_cast<PacketKind>(packet[0] >> 6U);
-  if (kind == PacketKind::kHello) {
+  const wire::PacketHeader header = wire::header_of(packet);
+  if (header.kind == PacketKind::kHello) {
     const auto number = static_cast<std::uint16_t>(packet[2] | packet[3] << 8U);
     if (number != out.number) {
       out = {};
@@ -50,12 +50,12 @@ int FaultyNeighbour::tamper(sim::Time now, std::int32_t module, base::Direction 
     }
     return size;
   }
-  if (kind != PacketKind::kData || module != options_.module) {
+  if (header.kind != PacketKind::kData || module != options_.module) {
     return size;
   }
   const auto payload =
       packet.subspan(wire::kHeaderBytes, static_cast<std::size_t>(size) - kOverhead);
-  const std::size_t number = packet[0] & (kNumbers - 1);
+  const std::size_t number = header.sequence;
   Sent& sent = out.sent[number];
   if (!std::ranges::equal(sent.original, payload)) {
     sent.original.assign(payload.begin(), payload.end());

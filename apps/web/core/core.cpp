@@ -13,6 +13,7 @@
 #include "holdfast/distributed.hpp"
 #include "packet_log.hpp"
 #include "request.hpp"
+#include "vocabulary.hpp"
 
 #define HOLDFAST_EXPORT(name) extern "C" __attribute__((export_name(#name))) auto name
 
@@ -104,21 +105,8 @@ Reply assessment_reply(const model::Robot& robot, const verdict::Assessment& ass
   return out;
 }
 
-/// The rigid body alone: at once, whatever the size.
-verdict::Assessment first_look(const model::Robot& robot) {
-  verdict::Assessment assessment{.simplified = verdict::assess_rigid_body(robot)};
-  assessment.is_stable = assessment.simplified.is_stable;
-  assessment.verdict =
-      assessment.is_stable ? verdict::Verdict::kUndecided : verdict::Verdict::kUnstable;
-  return assessment;
-}
-
-Structure structure_of(model::Robot robot) {
-  return {.name = {}, .document = {}, .robot = std::move(robot), .warnings = {}};
-}
-
 Reply check_request(const Request& request) {
-  auto robot = model::Robot::create(spec_of(request));
+  const auto robot = model::Robot::create(spec_of(request));
   if (!robot) {
     return failure(robot.error());
   }
@@ -126,41 +114,29 @@ Reply check_request(const Request& request) {
   if (is_first_look) {
     return assessment_reply(robot.value(), first_look(robot.value()), 0);
   }
-  const Structure structure = structure_of(std::move(robot).value());
-  const CheckResult result = check(structure);
-  return assessment_reply(structure.robot, result.assessment, result.seconds);
+  const CheckResult result = check(robot.value());
+  return assessment_reply(robot.value(), result.assessment, result.seconds);
 }
 
-/// The answer that a click would get; a robot that topples needs no loads.
-verdict::Assessment try_robot(model::Robot robot) {
-  verdict::Assessment look = first_look(robot);
-  return look.is_stable ? check(structure_of(std::move(robot))).assessment : look;
-}
-
-/// With one more module of the Kind in options[0] at each place of the tail. Integers: the verdict,
-/// -1 if no module can be there. Numbers: the largest load ratio (-1 if there is none) and the
-/// margin in mm (0 if it is fixed).
+/// With one more module of the Role in options[0] at each place of the tail. Text: a list of
+/// verdicts, null where no module can be. Numbers: the largest load ratio (-1 if there is none) and
+/// the margin in mm (0 if it is fixed).
 Reply try_places(const Request& request) {
   Reply out;
-  const auto kind = static_cast<Kind>(request.header.options[0]);
+  Json verdicts = Json::array();
   const std::span places(reinterpret_cast<const base::Cell*>(request.tail.data()),
                          request.tail.size() / sizeof(base::Cell));
-  const model::RobotSpec spec = spec_of(request);
-  for (const base::Cell& place : places) {
-    model::RobotSpec grown = spec;
-    add(grown, {.cell = place, .kind = kind});
-    auto robot = model::Robot::create(grown);
-    const bool is_robot = robot.has_value();
-    const verdict::Assessment assessment =
-        is_robot ? try_robot(std::move(robot).value()) : verdict::Assessment();
-    out.integers.push_back(is_robot ? static_cast<std::int32_t>(assessment.verdict) : -1);
-    out.numbers.push_back(assessment.load_ratio_max.value_or(-1));
-    out.numbers.push_back(assessment.simplified.margin_mm.value_or(0));
+  const auto role = static_cast<Role>(request.header.options[0]);
+  for (const Trial& trial : try_cells(spec_of(request), places, role)) {
+    verdicts.push_back(trial.is_robot ? Json(verdict::name(trial.verdict)) : Json());
+    out.numbers.push_back(trial.load_ratio_max.value_or(-1));
+    out.numbers.push_back(trial.margin_mm.value_or(0));
   }
+  out.text = dump(verdicts);
   return out;
 }
 
-/// Integers: x, y, z and Kind of each module. Numbers: the material. Cells that are no robot yet
+/// Integers: x, y, z and Role of each module. Numbers: the material. Cells that are no robot yet
 /// can be opened and mended; cells that the page cannot hold as they are, two modules in one, get
 /// the program's error, and so does what cannot be computed with yet.
 Reply open_text(std::string_view text) {
@@ -183,16 +159,16 @@ Reply open_text(std::string_view text) {
                    {"support_z", document.support_z},
                    {"later_steps", document.steps.empty() ? 0 : document.steps.size() - 1},
                    {"warnings", read.value().warnings}});
-  const auto add = [&](const base::Cell& cell, Kind kind) {
+  const auto add = [&](const base::Cell& cell, Role role) {
     out.integers.insert(out.integers.end(),
-                        {cell.x, cell.y, cell.z, static_cast<std::int32_t>(kind)});
+                        {cell.x, cell.y, cell.z, static_cast<std::int32_t>(role)});
   };
   for (const io::ModuleEntry& module : document.modules) {
-    add(module.cell, module.is_fixed ? Kind::kFixed : Kind::kExisting);
+    add(module.cell, module.is_fixed ? Role::kFixed : Role::kExisting);
   }
   if (!document.steps.empty()) {
     for (const io::PlannedEntry& planned : document.steps.front()) {
-      add(planned.cell, Kind::kPlanned);
+      add(planned.cell, Role::kPlanned);
     }
   }
   for (const double number : numbers_of(document.material)) {
@@ -260,14 +236,12 @@ Reply write_document(const Request& request) {
   return {.text = written(structure, output), .integers = {}, .numbers = {}};
 }
 
-/// options: agent::Method, link (0: Blinky Blocks 1, 1: 2, 2: rounds), seed, loss in thousandths,
-/// events that are kept in thousands.
+/// options: method and line as vocabulary_json() gives them, seed, loss in thousandths, events that
+/// are kept in thousands.
 sim::SimulationOptions simulation_options(const RequestHeader& header) {
   sim::SimulationOptions options;
   options.method = static_cast<agent::Method>(header.options[0]);
-  options.link = header.options[1] == 0   ? sim::blinky_blocks_v1()
-                 : header.options[1] == 1 ? sim::blinky_blocks_v2()
-                                          : sim::unit();
+  options.link = link_of(header.options[1]);
   options.seed = static_cast<std::uint64_t>(header.options[2]);
   options.link.loss = header.options[3] / 1000.0;
   return options;
@@ -279,7 +253,8 @@ Reply simulate_request(const Request& request) {
   if (!robot) {
     return failure(robot.error());
   }
-  const Structure structure = structure_of(std::move(robot).value());
+  const Structure structure{
+      .name = {}, .document = {}, .robot = std::move(robot).value(), .warnings = {}};
   sim::SimulationOptions options = simulation_options(request.header);
   PacketLog log(static_cast<std::size_t>(request.header.options[4]) * 1000);
   options.trace = &log;
@@ -310,6 +285,10 @@ HOLDFAST_EXPORT(holdfast_input)(std::size_t size)->std::uint8_t* {
   web::reply = {};
   web::input.resize(size);
   return web::input.data();
+}
+
+HOLDFAST_EXPORT(holdfast_vocabulary)()->void {
+  web::reply = {.text = web::vocabulary_json(), .integers = {}, .numbers = {}};
 }
 
 HOLDFAST_EXPORT(holdfast_open)()->void { web::reply = web::open_text(web::as_text(web::input)); }

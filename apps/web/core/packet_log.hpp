@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "holdfast/agent/listener.hpp"
 #include "holdfast/distributed.hpp"
 
 /// What happens in a simulation, as numbers that the page can play.
@@ -26,7 +27,7 @@ enum class LogEvent : std::int32_t {
 /// it.
 enum class PacketMeaning : std::int32_t { kLink, kWave, kOrder, kReport, kVector, kPlanned };
 
-/// Follows the streams of messages in the packets of every link, to tell what they are.
+/// Listens to every link, to tell what its packets are.
 class PacketLog : public sim::TraceSink {
  public:
   /// What comes after `event_count_max` events is left out; is_complete() tells.
@@ -45,28 +46,12 @@ class PacketLog : public sim::TraceSink {
   bool is_complete() const { return is_complete_; }
 
  private:
-  /// One direction of a link.
-  struct Stream {
-    int number = 0;  ///< Of the greeting; another one begins a new session.
-    int next_sequence = 0;
-    int bytes_left = 0;      ///< Of the message that the next packet goes on with.
-    std::uint8_t first = 0;  ///< Its type, if the next packet tells the operation.
-    PacketMeaning meaning = PacketMeaning::kLink;
-  };
-
-  struct Told {
-    PacketMeaning meaning = PacketMeaning::kLink;
-    std::uint8_t operation = 0;  ///< Of the first order, if there is one.
-  };
-
-  static Told follow(Stream& stream, std::span<const std::uint8_t> packet);
-  static Told read_payload(Stream& stream, std::span<const std::uint8_t> payload);
   void add(LogEvent event, std::array<std::int32_t, 3> values, sim::Time time,
            sim::Time duration = 0);
 
   std::size_t event_count_max_;
   bool is_complete_ = true;
-  std::map<std::pair<std::int32_t, std::int32_t>, Stream> streams_;
+  std::map<std::pair<std::int32_t, std::int32_t>, agent::wire::Listener> listeners_;
   std::vector<std::int32_t> integers_;
   std::vector<double> numbers_;
 };

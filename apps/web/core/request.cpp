@@ -12,21 +12,6 @@ namespace {
 
 using model::Material;
 
-constexpr std::array<double Material::*, kMaterialCount> kMaterialMembers = {
-    &Material::elastic_modulus_mpa,
-    &Material::pitch_mm,
-    &Material::facet_mm,
-    &Material::section_area_mm2,
-    &Material::moment_x_mm4,
-    &Material::moment_y_mm4,
-    &Material::torsion_mm4,
-    &Material::poisson_ratio,
-    &Material::mass_kg,
-    &Material::gravity_m_s2,
-    &Material::strength_vertical_n,
-    &Material::strength_lateral_n,
-    &Material::contact_gamma};
-
 /// What files say about a cell, whether its module exists or is planned.
 std::map<base::Cell, io::ModuleEntry> entries_by_cell(const io::Document& document) {
   std::map<base::Cell, io::ModuleEntry> entries;
@@ -61,7 +46,7 @@ Request read_request(std::span<const std::uint8_t> bytes) {
 Material material_of(const RequestHeader& header) {
   Material material;
   for (std::size_t i = 0; i < kMaterialCount; ++i) {
-    material.*kMaterialMembers[i] = header.material[i];
+    material.*model::kMaterialParameters[i].value = header.material[i];
   }
   return material;
 }
@@ -69,7 +54,7 @@ Material material_of(const RequestHeader& header) {
 std::array<double, kMaterialCount> numbers_of(const Material& material) {
   std::array<double, kMaterialCount> numbers{};
   for (std::size_t i = 0; i < kMaterialCount; ++i) {
-    numbers[i] = material.*kMaterialMembers[i];
+    numbers[i] = material.*model::kMaterialParameters[i].value;
   }
   return numbers;
 }
@@ -78,16 +63,9 @@ model::RobotSpec spec_of(const Request& request) {
   model::RobotSpec spec{.support_z = request.header.support_z,
                         .material = material_of(request.header)};
   for (const PlacedModule& module : request.modules) {
-    add(spec, module);
+    add_module(spec, module.cell, module.role());
   }
   return spec;
-}
-
-void add(model::RobotSpec& spec, const PlacedModule& module) {
-  (module.kind == Kind::kPlanned ? spec.planned : spec.existing).push_back(module.cell);
-  if (module.kind == Kind::kFixed) {
-    spec.fixed.push_back(module.cell);
-  }
 }
 
 bool has_double_cell(const io::Document& document) {
@@ -113,11 +91,11 @@ io::Document edited(const io::Document& base, const Request& request) {
   io::Step step;
   for (const PlacedModule& module : request.modules) {
     io::ModuleEntry& entry = entries[module.cell];
-    if (module.kind == Kind::kPlanned) {
+    if (module.role() == Role::kPlanned) {
       step.push_back({.cell = module.cell, .color = entry.color, .attributes = entry.attributes});
     } else {
       document.modules.push_back({.cell = module.cell,
-                                  .is_fixed = module.kind == Kind::kFixed,
+                                  .is_fixed = module.role() == Role::kFixed,
                                   .color = entry.color,
                                   .attributes = entry.attributes});
     }
@@ -130,6 +108,8 @@ io::Document edited(const io::Document& base, const Request& request) {
   }
   if (!(document == base)) {
     document.known_answer.reset();
+    // By index, of modules that may be others now; what is computed has the material's mass anyway.
+    document.extension.own.clear();
   }
   return document;
 }

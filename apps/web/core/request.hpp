@@ -7,16 +7,13 @@
 #include <span>
 #include <string_view>
 
-#include "holdfast/holdfast.hpp"
+#include "holdfast/trial.hpp"
 
 /// What the page asks, as bytes. src/core/wasm.ts writes them; both sides must agree.
 namespace holdfast::web {
 
 inline constexpr std::size_t kOptionCount = 6;
-inline constexpr std::size_t kMaterialCount = 13;
-
-/// What a module is on the page.
-enum class Kind : std::int32_t { kExisting, kPlanned, kFixed };
+inline constexpr std::size_t kMaterialCount = model::kMaterialParameters.size();
 
 /// Little-endian, this object, then `module_count` PlacedModule, then a tail of bytes whose meaning
 /// depends on the call.
@@ -24,12 +21,14 @@ struct RequestHeader {
   std::int32_t module_count = 0;
   std::int32_t support_z = 0;
   std::array<std::int32_t, kOptionCount> options{};
-  std::array<double, kMaterialCount> material{};  ///< In the order of model::Material.
+  std::array<double, kMaterialCount> material{};  ///< As kMaterialParameters.
 };
 
 struct PlacedModule {
   base::Cell cell;
-  Kind kind = Kind::kExisting;
+  std::int32_t role_index = 0;
+
+  Role role() const { return static_cast<Role>(role_index); }
 };
 
 /// Views into the bytes of a request.
@@ -46,9 +45,6 @@ std::array<double, kMaterialCount> numbers_of(const model::Material& material);
 
 /// What has to be known for mechanics; Robot::create checks it.
 model::RobotSpec spec_of(const Request& request);
-
-/// One more module, as spec_of() adds it: after the others of its kind.
-void add(model::RobotSpec& spec, const PlacedModule& module);
 
 /// Two modules of the robot or of the step that is planned first are in one cell.
 bool has_double_cell(const io::Document& document);

@@ -1,10 +1,11 @@
 // SPDX-FileCopyrightText: The holdfast authors
 // SPDX-License-Identifier: Apache-2.0
 import './style.css';
-import { Kind } from './core/types';
-import { Robot } from './model/robot';
+import { ROLE_NAMES, type Role } from './model/cell';
+import { EditedRobot } from './model/edited_robot';
+import { Workbench, type Tool } from './model/workbench';
 import type { ScaleName } from './view/colours';
-import { App, KIND_NAMES, type Tool } from './ui/app';
+import { App } from './ui/app';
 import { showFaceLegend, showLegend } from './ui/answer_panel';
 import { byId, icon, make, say } from './ui/dom';
 import { listenToFiles, reportOf, take } from './ui/files';
@@ -18,7 +19,7 @@ import { openFirst, showWithoutPicture } from './ui/start';
 
 declare global {
   /** A handle for the browser's console, and for the tests. */
-  var holdfast: { app: App; player: Player; reportOf: typeof reportOf };
+  var holdfast: { bench: Workbench; app: App; player: Player; reportOf: typeof reportOf };
 }
 
 const TOOLS: readonly [tool: Tool, text: string, key: string][] = [
@@ -27,7 +28,6 @@ const TOOLS: readonly [tool: Tool, text: string, key: string][] = [
   ['remove', 'Remove', 'D'],
   ['paint', 'Paint', 'P'],
 ];
-const KIND_TEXTS = ['Existing', 'Planned', 'Fixed'];
 
 function radio(text: string, title: string, action: () => void): HTMLButtonElement {
   const button = make('button', { type: 'button', title }, text);
@@ -52,39 +52,38 @@ function moveInside(group: HTMLElement): void {
   });
 }
 
-function makeTools(app: App): void {
+function makeTools(bench: Workbench): void {
   const icons = { look: 'look', add: 'add', remove: 'remove', paint: 'paint' } as const;
   const tools = TOOLS.map(([tool, text, key]) => {
-    const button = radio('', `${text} (${key})`, () => app.setTool(tool));
+    const button = radio('', `${text} (${key})`, () => bench.setTool(tool));
     button.append(icon(icons[tool]), make('span', {}, text));
     button.setAttribute('aria-label', text);
     return button;
   });
-  const kinds = KIND_TEXTS.map((text, kind) => {
-    const button = radio('', `${text} (${kind + 1})`, () =>
-      app.setTool(app.tool === 'paint' ? 'paint' : 'add', kind as Kind),
-    );
-    button.append(make('span', { className: `swatch ${KIND_NAMES[kind]}` }), make('span', {}, text));
+  const roles = ROLE_NAMES.map((name, role) => {
+    const text = `${name[0].toUpperCase()}${name.slice(1)}`;
+    const button = radio('', `${text} (${role + 1})`, () => bench.setRole(role as Role));
+    button.append(make('span', { className: `swatch ${name}` }), make('span', {}, text));
     return button;
   });
   byId('tools').append(...tools);
-  byId('kinds').append(...kinds);
+  byId('roles').append(...roles);
   moveInside(byId('tools'));
-  moveInside(byId('kinds'));
+  moveInside(byId('roles'));
   const check = (buttons: HTMLButtonElement[], chosen: number) =>
     buttons.forEach((button, i) => {
       button.setAttribute('aria-checked', String(i === chosen));
       button.tabIndex = i === chosen ? 0 : -1;
     });
   const show = () => {
-    check(tools, TOOLS.findIndex(([tool]) => tool === app.tool));
-    check(kinds, app.kind);
-    byId('kinds').classList.toggle('idle', app.tool === 'look' || app.tool === 'remove');
-    byId<HTMLButtonElement>('undo').disabled = !app.history.canUndo;
-    byId<HTMLButtonElement>('redo').disabled = !app.history.canRedo;
+    check(tools, TOOLS.findIndex(([tool]) => tool === bench.tool));
+    check(roles, bench.role);
+    byId('roles').classList.toggle('idle', bench.tool === 'look' || bench.tool === 'remove');
+    byId<HTMLButtonElement>('undo').disabled = !bench.history.canUndo;
+    byId<HTMLButtonElement>('redo').disabled = !bench.history.canRedo;
   };
-  app.robotListeners.push(show);
-  app.toolListeners.push(show);
+  bench.robotListeners.push(show);
+  bench.toolListeners.push(show);
   show();
 }
 
@@ -112,6 +111,7 @@ function makeDialogs(): void {
 }
 
 function makePanel(app: App, keeper: Keeper): void {
+  const { bench } = app;
   showLegend('paper');
   showFaceLegend('paper');
   const scale = byId<HTMLSelectElement>('scale');
@@ -127,20 +127,20 @@ function makePanel(app: App, keeper: Keeper): void {
   faces.onclick = () => {
     const isShown = faces.getAttribute('aria-pressed') !== 'true';
     faces.setAttribute('aria-pressed', String(isShown));
-    app.setShowsFaces(isShown);
+    app.whereNext.show(isShown);
   };
   const name = byId<HTMLInputElement>('name');
   name.oninput = () => {
-    app.robot.name = name.value;
-    app.robot.isEdited = true;
-    showTitle(app);
+    bench.robot.name = name.value;
+    bench.robot.isEdited = true;
+    showTitle(bench);
     keeper.changed();
   };
-  makeMaterial(app);
-  app.robotListeners.push((what) => {
+  makeMaterial(bench);
+  bench.robotListeners.push((what) => {
     if (what === 'robot') {
-      name.value = app.robot.name;
-      showTitle(app);
+      name.value = bench.robot.name;
+      showTitle(bench);
     }
     if (Number(slider.value) > 0) {
       app.straighten();
@@ -148,7 +148,7 @@ function makePanel(app: App, keeper: Keeper): void {
   });
 }
 
-const showTitle = ({ robot }: App) => (document.title = robot.name ? `${robot.name} - holdfast` : 'holdfast');
+const showTitle = ({ robot }: Workbench) => (document.title = robot.name ? `${robot.name} - holdfast` : 'holdfast');
 
 function makeActions(app: App, player: Player): Record<string, () => void> {
   const turn = (angle: number) => {
@@ -164,8 +164,8 @@ function makeActions(app: App, player: Player): Record<string, () => void> {
   const tellDone = (label: string | undefined, word: string) =>
     say(label ? `${word}: ${label}` : 'nothing to undo');
   return {
-    undo: () => tellDone(app.history.undo(), 'undone'),
-    redo: () => tellDone(app.history.redo(), 'done again'),
+    undo: () => tellDone(app.bench.history.undo(), 'undone'),
+    redo: () => tellDone(app.bench.history.redo(), 'done again'),
     f: () => byId('faces').click(),
     h: () => app.see(),
     t: () => app.startTopple(),
@@ -182,19 +182,19 @@ function makeActions(app: App, player: Player): Record<string, () => void> {
 }
 
 function begin(): void {
-  const app = new App();
+  const bench = new Workbench(say);
+  const app = new App(bench);
   const player = new Player(app);
-  globalThis.holdfast = { app, player, reportOf };
-  const keeper = new Keeper(app);
-  makeTools(app);
+  globalThis.holdfast = { bench, app, player, reportOf };
+  const keeper = new Keeper(bench);
+  makeTools(bench);
   makeDialogs();
   makePanel(app, keeper);
   const actions = makeActions(app, player);
   listenToPointer(app);
   listenToKeys(app, actions);
-  listenToFiles(app);
-  app.robotListeners.push(() => player.close());
-  app.robotListeners.push(() => (byId('hint').hidden ||= app.history.canUndo));
+  listenToFiles(bench);
+  bench.robotListeners.push(() => (byId('hint').hidden ||= bench.history.canUndo));
   for (const [id, name] of [['undo', 'undo'], ['redo', 'redo'], ['fit', 'fit']] as const) {
     byId(id).append(icon(name));
   }
@@ -202,16 +202,16 @@ function begin(): void {
   byId('redo').onclick = actions.redo;
   byId('fit').onclick = actions.h;
   byId('help').onclick = actions['?'];
-  byId('gallery-open').onclick = () => openGallery(app, keeper);
-  byId('new').onclick = () => app.history.replace('beginning anew', new Robot());
+  byId('gallery-open').onclick = () => openGallery(bench, keeper);
+  byId('new').onclick = () => bench.history.replace('beginning anew', new EditedRobot());
   byId('save').onclick = () => byId<HTMLDialogElement>('takeaway').showModal();
   for (const button of document.querySelectorAll<HTMLButtonElement>('[data-save]')) {
     button.onclick = () => {
       byId<HTMLDialogElement>('takeaway').close();
-      void take(app, button.dataset.save!);
+      void take(bench, app.stage, button.dataset.save!);
     };
   }
-  void openFirst(app, keeper).then(showReady);
+  void openFirst(bench, keeper).then(showReady);
 }
 
 const showReady = () => document.documentElement.classList.add('ready');

@@ -13,3 +13,9 @@ declare module 'virtual:scenarios' {
   const scenarios: Record<string, object>;
   export default scenarios;
 }
+
+declare module 'virtual:vocabulary' {
+  /** What the core says of itself. */
+  const vocabulary: import('./core/types').Vocabulary;
+  export default vocabulary;
+}

@@ -49,7 +49,7 @@ const onShell = (n) => (...cell) => cell.some((value) => value === 0 || value ==
 async function load(name, modules) {
   const file = JSON.stringify({ format: 'holdfast-structure', version: 1, name, modules: [...modules] });
   return page.evaluate(async ([text, title]) => {
-    const { app } = globalThis.holdfast;
+    const { app, bench } = globalThis.holdfast;
     const begin = performance.now();
     const data = new DataTransfer();
     data.items.add(new File([text], `${title}.json`));
@@ -60,7 +60,7 @@ async function load(name, modules) {
       }
       return performance.now() - begin;
     };
-    const shown = await until(() => app.robot.name === title && app.finding);
+    const shown = await until(() => bench.robot.name === title && app.finding);
     const answered = await Promise.race([
       until(() => app.finding && !app.finding.isFirstLook),
       new Promise((done) => setTimeout(() => done(undefined), 120_000)),
@@ -72,13 +72,13 @@ async function load(name, modules) {
 /** From the click that attaches a module to its answer in the buffers of the next picture. */
 async function edits(count) {
   return page.evaluate(async (times) => {
-    const { app } = globalThis.holdfast;
+    const { app, bench } = globalThis.holdfast;
     const found = [];
-    const place = app.robot.freePlaces().sort((a, b) => b[2] - a[2] || b[0] - a[0])[0];
+    const place = bench.robot.freePlaces().sort((a, b) => b[2] - a[2] || b[0] - a[0])[0];
     for (let i = 0; i < times; ++i) {
       const begin = performance.now();
       performance.clearMarks('shown');
-      app.edit('bench', [place], i % 2 === 0 ? 0 : undefined);
+      bench.edit('bench', [place], i % 2 === 0 ? 0 : undefined);
       // Small robots are there already.
       while (performance.getEntriesByName('shown').length === 0) {
         await new Promise((done) => {

@@ -83,8 +83,8 @@ export const settled = (page) =>
 
 export const verdict = (page) => page.getAttribute('#verdict', 'data-verdict');
 export const figures = (page) => page.innerText('#figures');
-export const count = (page) => page.evaluate(() => globalThis.holdfast.app.robot.count);
-export const kindOf = (page, cell) => page.evaluate((at) => globalThis.holdfast.app.robot.kind(at), cell);
+export const count = (page) => page.evaluate(() => globalThis.holdfast.bench.robot.count);
+export const roleOf = (page, cell) => page.evaluate((at) => globalThis.holdfast.bench.robot.role(at), cell);
 
 /** Where the middle of a cell's face is in the window. */
 export const facePoint = (page, cell, direction, share = 0.5) =>
@@ -107,7 +107,7 @@ export async function clickFace(page, cell, direction) {
 
 /** Attaches one module at the first free place, as a click does. */
 export const attach = (page) =>
-  page.evaluate(() => globalThis.holdfast.app.use([globalThis.holdfast.app.robot.freePlaces()[0]]));
+  page.evaluate(() => globalThis.holdfast.bench.use([globalThis.holdfast.bench.robot.freePlaces()[0]]));
 
 /** A cube of n^3 modules, as a file. */
 export function cube(n) {
@@ -132,7 +132,7 @@ export const message = (page) => page.locator('.message').filter({ hasNotText: /
 export async function openExample(page, name) {
   await page.click('#gallery-open');
   await page.click(`[data-example=${name}]`);
-  await page.waitForFunction((title) => globalThis.holdfast.app.robot.name === title, name);
+  await page.waitForFunction((title) => globalThis.holdfast.bench.robot.name === title, name);
   await settled(page);
 }
 
@@ -163,11 +163,12 @@ export const contrast = (a, b) => {
 /** Moves the pointer over the middle of the canvas: time of each move, and how often it asks about cells. */
 export const pointerMoves = (page) =>
   page.evaluate(() => {
-    const { app } = globalThis.holdfast;
-    const { robot, stage } = app;
+    const { app, bench } = globalThis.holdfast;
+    const { stage } = app;
+    const { robot } = bench;
     const box = stage.canvas.getBoundingClientRect();
     let calls = 0;
-    for (const name of ['cellAt', 'kindAt', 'slot', 'isHidden']) {
+    for (const name of ['cellAt', 'roleAt', 'slot', 'isHidden']) {
       const own = robot[name].bind(robot);
       robot[name] = (...values) => (++calls, own(...values));
     }

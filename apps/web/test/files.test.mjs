@@ -31,7 +31,7 @@ async function takeAway(page, what) {
 test('VisibleSim XML is dropped, changed and taken away as XML and JSON without loss', async () => {
   const page = await openPage(browser);
   await dropFile(page, 'small.xml', XML);
-  await page.waitForFunction(() => globalThis.holdfast.app.robot.name === 'small');
+  await page.waitForFunction(() => globalThis.holdfast.bench.robot.name === 'small');
   await settled(page);
   assert.equal(await verdict(page), 'safe');
   await clickFace(page, [1, 1, 1], [0, -1, 0]);
@@ -42,6 +42,24 @@ test('VisibleSim XML is dropped, changed and taken away as XML and JSON without 
   const json = JSON.parse(await takeAway(page, 'json'));
   assert.equal(json.modules.length, 5);
   assert.deepEqual(json.planned, [[3, 1, 1]]);
+  assert.deepEqual(page.faults, []);
+});
+
+test('a mass of a module’s own, which is the material’s, does not outlive a change of the material', async () => {
+  const page = await openPage(browser);
+  const modules = [[0, 0, 0], [0, 0, 1], { cell: [1, 0, 1], mass_kg: 0.06106 }];
+  const file = { format: 'holdfast-structure', version: 2, name: 'own', modules };
+  await dropFile(page, 'own.json', JSON.stringify(file));
+  await page.waitForFunction(() => globalThis.holdfast.bench.robot.name === 'own');
+  assert.deepEqual(JSON.parse(await takeAway(page, 'json')).modules, modules, 'as it was opened');
+  await page.evaluate(() => {
+    const { bench } = globalThis.holdfast;
+    bench.history.configure('heavier', { material: bench.robot.material.map((old, i) => (i === 8 ? 0.07 : old)) });
+  });
+  await settled(page);
+  const changed = JSON.parse(await takeAway(page, 'json'));
+  assert.deepEqual(changed.material, { mass_kg: 0.07 });
+  assert.deepEqual(changed.modules, [[0, 0, 0], [0, 0, 1], [1, 0, 1]]);
   assert.deepEqual(page.faults, []);
 });
 
@@ -89,7 +107,7 @@ test('a file that is too large is refused before it is read', async () => {
 test('cells that are no robot are said to be none, and undo brings the robot back', async () => {
   const page = await openPage(browser);
   await dropFile(page, 'two.json', '{"format":"holdfast-structure","version":1,"modules":[[0,0,0],[5,0,0]]}');
-  await page.waitForFunction(() => globalThis.holdfast.app.robot.name === 'two');
+  await page.waitForFunction(() => globalThis.holdfast.bench.robot.name === 'two');
   await settled(page);
   assert.equal(await page.innerText('#verdict-word'), 'No answer');
   assert.match(await page.innerText('#verdict-reason'), /connect|pieces|parts/);

@@ -15,7 +15,7 @@ let browser;
 before(async () => (browser = await launch()));
 after(() => browser.close());
 
-const nameOf = (page) => page.evaluate(() => globalThis.holdfast.app.robot.name);
+const nameOf = (page) => page.evaluate(() => globalThis.holdfast.bench.robot.name);
 const messages = (page) => page.innerText('#messages');
 
 test('cells, name and material come back when the page is opened again', async () => {
@@ -32,7 +32,7 @@ test('cells, name and material come back when the page is opened again', async (
   const again = await openPage(browser, { context });
   assert.equal(await count(again), 14);
   assert.equal(await again.inputValue('#name'), 'my own arm');
-  assert.equal(await again.evaluate(() => globalThis.holdfast.app.robot.material[8]), 0.07);
+  assert.equal(await again.evaluate(() => globalThis.holdfast.bench.robot.material[8]), 0.07);
   assert.match(await messages(again), /Back where you left off: my own arm/);
   assert.deepEqual([...page.faults, ...again.faults], []);
   await context.close();
@@ -151,7 +151,7 @@ test('97,336 modules are kept as well', async () => {
   const context = await newContext(browser);
   const page = await openPage(browser, { context });
   await dropFile(page, 'cube_46.json', cube(46));
-  await page.waitForFunction(() => globalThis.holdfast.app.robot.count === 46 ** 3, null, { timeout: 60_000 });
+  await page.waitForFunction(() => globalThis.holdfast.bench.robot.count === 46 ** 3, null, { timeout: 60_000 });
   await settled(page);
   await attach(page);
   await page.close();
@@ -167,7 +167,7 @@ test('what is too large to be kept is said to be, and is asked about', async () 
   await attach(page);
   await page.fill('#name', 'small');
   await dropFile(page, 'cube_3.json', cube(3) + ' '.repeat(5_000_000));
-  await page.waitForFunction(() => globalThis.holdfast.app.robot.count === 27);
+  await page.waitForFunction(() => globalThis.holdfast.bench.robot.count === 27);
   await attach(page);
   await page.waitForSelector('.message >> text=Too large to be kept');
   const [dialog] = await Promise.all([page.waitForEvent('dialog'), page.close({ runBeforeUnload: true })]);

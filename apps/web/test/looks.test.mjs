@@ -31,7 +31,7 @@ for (const colorScheme of ['light', 'dark']) {
     test(`axe finds nothing to object to: ${name}, ${colorScheme}`, async () => {
       const page = await openPage(browser, { colorScheme, viewport });
       await expectAccessible(page, 'first sight');
-      await page.evaluate(() => globalThis.holdfast.app.use([globalThis.holdfast.app.robot.freePlaces()[0]]));
+      await page.evaluate(() => globalThis.holdfast.bench.use([globalThis.holdfast.bench.robot.freePlaces()[0]]));
       await page.click('#faces');
       await expectAccessible(page, 'where next');
       await page.waitForFunction(() => localStorage.length > 0);

@@ -11,10 +11,10 @@ export const pictureFile = path.join(repository, 'docs/page.jpg');
 /** The strong arm with two modules planned at its tip, and the pointer where a third may not go. */
 export async function takePicture(browser, options) {
   const page = await openPage(browser, { viewport: { width: 1160, height: 680 } });
-  await page.click('#kinds button >> text=Planned');
+  await page.click('#roles button >> text=Planned');
   const { x, y } = await facePoint(page, [5, 1, 2], [0, 0, 1]);
   await page.mouse.move(x, y);
-  await page.waitForFunction(() => globalThis.holdfast.app.places.known([5, 1, 3], 1));
+  await page.waitForFunction(() => globalThis.holdfast.app.whereNext.places.known([5, 1, 3], 1));
   await settled(page);
   const picture = await page.screenshot(options);
   await page.close();

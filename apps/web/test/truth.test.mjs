@@ -5,7 +5,7 @@
 // every colour.
 import assert from 'node:assert/strict';
 import { execFileSync, spawnSync } from 'node:child_process';
-import { readdirSync, writeFileSync } from 'node:fs';
+import { readFileSync, readdirSync, writeFileSync } from 'node:fs';
 import path from 'node:path';
 import { after, before, test } from 'node:test';
 import {
@@ -17,31 +17,32 @@ let browser;
 before(async () => (browser = await launch()));
 after(() => browser.close());
 
-const KINDS = ['existing', 'planned', 'fixed'];
+const ROLES = ['existing', 'planned', 'fixed'];
 
 /** For each free place of the robot on the page: what its ghost says and what the click then gives. */
-const ghostsAndClicks = (page, kind) =>
+const ghostsAndClicks = (page, role) =>
   page.evaluate(async (chosen) => {
-    const { app } = globalThis.holdfast;
-    app.setTool('add', chosen);
-    const places = app.robot.freePlaces();
-    await app.places.findAll(app.robot, places, chosen, () => undefined);
-    const ghosts = places.map((place) => app.places.known(place, chosen));
+    const { app, bench } = globalThis.holdfast;
+    const trials = app.whereNext.places;
+    bench.setTool('add', chosen);
+    const places = bench.robot.freePlaces();
+    await trials.findAll(bench.robot, places, chosen, () => undefined);
+    const ghosts = places.map((place) => trials.known(place, chosen));
     const rows = [];
     for (const [i, place] of places.entries()) {
-      app.use([place]);
+      bench.use([place]);
       const { answer, problem } = app.finding;
       const clicked = answer
         ? { verdict: answer.verdict, ratio: answer.load_ratio_max, margin: answer.stability.margin_mm ?? 0 }
         : { verdict: 'none', problem };
-      app.history.undo();
-      const { verdict: number, ratio, marginMm } = ghosts[i];
-      rows.push({ place, ghost: { verdict: ['safe', 'overload', 'unstable', 'undecided'][number] ?? 'none', ratio, margin: marginMm }, clicked });
+      bench.history.undo();
+      const { verdict, ratio, marginMm } = ghosts[i];
+      rows.push({ place, ghost: { verdict: verdict ?? 'none', ratio, margin: marginMm }, clicked });
     }
     return rows;
-  }, kind);
+  }, role);
 
-test('the ghost says what the click gives, for every kind at every free place of all scenarios', async () => {
+test('the ghost says what the click gives, for every role at every free place of all scenarios', async () => {
   const page = await openPage(browser);
   const names = readdirSync(path.join(repository, 'scenarios')).filter((name) => name.endsWith('.json'));
   const counts = [0, 0, 0];
@@ -50,57 +51,70 @@ test('the ghost says what the click gives, for every kind at every free place of
   for (const name of names) {
     await openExample(page, name.replace('.json', ''));
     const planned = new Map();
-    for (const kind of [1, 0, 2]) {
-      for (const { place, ghost, clicked } of await ghostsAndClicks(page, kind)) {
-        const where = `${name} ${place} ${KINDS[kind]}`;
+    for (const role of [1, 0, 2]) {
+      for (const { place, ghost, clicked } of await ghostsAndClicks(page, role)) {
+        const where = `${name} ${place} ${ROLES[role]}`;
         assert.equal(ghost.verdict, clicked.verdict, where);
         if (clicked.verdict === 'safe' || clicked.verdict === 'overload') {
           assert.equal(ghost.ratio, clicked.ratio, where);
           assert.equal(ghost.margin, clicked.margin, where);
         }
         planned.set(String(place), planned.get(String(place)) ?? ghost.verdict);
-        ++counts[kind];
-        unlikePlanned[kind] += ghost.verdict === planned.get(String(place)) ? 0 : 1;
+        ++counts[role];
+        unlikePlanned[role] += ghost.verdict === planned.get(String(place)) ? 0 : 1;
       }
     }
   }
   console.log(`# places ${counts}, of them another verdict than a planned module's ${unlikePlanned}`);
   assert.ok(counts.every((many) => many > 900), `${counts}`);
-  // The kinds do differ: this test would find a ghost that is always planned.
+  // The roles do differ: this test would find a ghost that is always planned.
   assert.ok(unlikePlanned[0] > 20 && unlikePlanned[2] > 100, `${unlikePlanned}`);
   assert.deepEqual(page.faults, []);
 });
 
-test('the ghost under the pointer follows the kind that is chosen', async () => {
+test('the ghost under the pointer follows the role that is chosen', async () => {
   const page = await openPage(browser);
   await openExample(page, 'crane_tips_a');
   // A fixed module holds the crane: a place where a planned one topples it and a fixed one does not.
   const place = await page.evaluate(async () => {
-    const { app } = globalThis.holdfast;
-    const all = app.robot.freePlaces();
+    const { app, bench } = globalThis.holdfast;
+    const { places } = app.whereNext;
+    const all = bench.robot.freePlaces();
     const topples = [];
-    for (const kind of [1, 2]) {
-      await app.places.findAll(app.robot, all, kind, () => undefined);
-      topples.push(all.map((at) => app.places.known(at, kind).verdict === 2));
+    for (const role of [1, 2]) {
+      await places.findAll(bench.robot, all, role, () => undefined);
+      topples.push(all.map((at) => places.known(at, role).verdict === 'unstable'));
     }
     return all.find((_, i) => topples[0][i] && !topples[1][i]);
   });
-  const ghost = (kind) =>
+  const ghost = (role) =>
     page.evaluate(async ([at, chosen]) => {
-      const { app } = globalThis.holdfast;
-      app.setTool('add', chosen);
-      app.preview([at]);
-      while (!app.places.known(at, chosen)) {
+      const { app, bench } = globalThis.holdfast;
+      bench.setTool('add', chosen);
+      app.whereNext.preview([at]);
+      while (!app.whereNext.places.known(at, chosen)) {
         await new Promise((done) => setTimeout(done, 5));
       }
       await new Promise((done) => setTimeout(done, 20));
       const { tints, faces } = app.view.ghosts;
       return { tint: [...tints.slice(0, 3)], hasMark: faces[0] > 0 };
-    }, [place, kind]);
+    }, [place, role]);
   assert.deepEqual(await ghost(1), { tint: [142, 77, 178], hasMark: true }, `${place}, planned: topples`);
   const fixed = await ghost(2);
   assert.notDeepEqual(fixed.tint, [142, 77, 178], `${place}, fixed`);
   assert.equal((await ghost(1)).hasMark, true, 'and back');
+});
+
+test('the form of the material has the parameters, units and defaults of docs/formats.md', async () => {
+  const document = readFileSync(path.join(repository, 'docs/formats.md'), 'utf8');
+  const table = document.split('| key | what | unit | allowed | Table I | in VisibleSim XML |\n')[1].split('\n\n')[0];
+  const rows = table.split('\n').slice(1).map((line) => line.split('|').map((word) => word.trim()));
+  const page = await openPage(browser);
+  const fields = await page.$$eval('#material label', (labels) =>
+    labels.map((label) => [label.firstChild.textContent, label.lastChild.lastChild.textContent, label.querySelector('input').value]),
+  );
+  assert.deepEqual(fields.slice(0, -1), rows.map(([, , what, unit, , value]) => [what, unit, value]));
+  assert.equal(fields.at(-1)[0], 'Ground at z');
 });
 
 /** What the program says of a file that it refuses. */
@@ -139,7 +153,7 @@ test('a link from a page of holdfast view opens the robot of the link', async ()
   execFileSync(program, ['view', scenario('crane_tips_b'), '--no-open', '--out', viewed]);
   const page = await openPage(browser, { file: viewed });
   const modules = await count(page);
-  await page.evaluate(() => globalThis.holdfast.app.edit('one more', [globalThis.holdfast.app.robot.freePlaces()[0]], 0));
+  await page.evaluate(() => globalThis.holdfast.bench.edit('one more', [globalThis.holdfast.bench.robot.freePlaces()[0]], 0));
   await page.click('#save');
   await page.click('[data-save=link]');
   await page.waitForFunction(() => location.hash.startsWith('#s='));
@@ -177,7 +191,7 @@ test('other colours, light or dark: “Where next?” stays', async () => {
   assert.deepEqual(await faceCodes(page), codes, 'dark');
   await page.keyboard.press('3');
   await page.waitForFunction(() => /for one more fixed module/.test(document.getElementById('spoken').textContent));
-  assert.notDeepEqual(await faceCodes(page), codes, 'another kind has other answers');
+  assert.notDeepEqual(await faceCodes(page), codes, 'another role has other answers');
 });
 
 test('another tool leaves the running computation alone, another robot ends it', async () => {
@@ -215,25 +229,24 @@ test('an error is gone with the robot that it was about', async () => {
 
 /** One face in sight for each verdict: where the pointer points at its module and previews its place. */
 function visibleFaces() {
-  const { app } = globalThis.holdfast;
-  const { stage } = app;
+  const { app, bench } = globalThis.holdfast;
+  const { stage, whereNext } = app;
   const box = stage.canvas.getBoundingClientRect();
   const point = (at) => stage.project(stage.controls.target.clone().fromArray(at));
   const sides = [[1, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -1, 0], [0, 0, 1], [0, 0, -1]];
   const best = {};
-  for (let slot = 0; slot < app.robot.count; ++slot) {
-    const cell = app.robot.cellAt(slot);
+  for (let slot = 0; slot < bench.robot.count; ++slot) {
+    const cell = bench.robot.cellAt(slot);
     for (const side of sides) {
       const place = cell.map((value, k) => value + side[k]);
-      const verdict = app.places.known(place, 0)?.verdict ?? -1;
+      const verdict = whereNext.places.known(place, 0)?.verdict;
       const { x, y } = point(cell.map((value, k) => value + side[k] / 2));
       const at = { clientX: x + box.left, clientY: y + box.top, pointerType: 'mouse' };
       stage.canvas.dispatchEvent(new PointerEvent('pointermove', at));
-      const isSeen = verdict >= 0 && String(app.pointedCell) === String(cell) && String(app.previewed[0]) === String(place);
+      const isSeen = verdict && String(app.pointedCell) === String(cell) && String(whereNext.previewed[0]) === String(place);
       // Faces to the front or the right, on which no label stands.
       if (isSeen && side[2] === 0) {
-        const name = ['safe', 'overload', 'unstable', 'undecided'][verdict];
-        best[name] ??= { cell, side };
+        best[verdict] ??= { cell, side };
       }
     }
   }

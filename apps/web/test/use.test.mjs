@@ -48,14 +48,14 @@ test('no key reaches through an open dialog', async () => {
     for (const key of ['d', '3', 'f', 'Control+z', '?']) {
       await page.keyboard.press(key);
     }
-    const state = await page.evaluate(() => [globalThis.holdfast.app.tool, globalThis.holdfast.app.kind]);
+    const state = await page.evaluate(() => [globalThis.holdfast.bench.tool, globalThis.holdfast.bench.role]);
     assert.deepEqual(state, ['add', 0], button);
     assert.equal(await count(page), 14, button);
     assert.equal(await page.getAttribute('#faces', 'aria-pressed'), 'false', button);
     await page.keyboard.press('Escape');
   }
   await page.keyboard.press('d');
-  assert.equal(await page.evaluate(() => globalThis.holdfast.app.tool), 'remove');
+  assert.equal(await page.evaluate(() => globalThis.holdfast.bench.tool), 'remove');
   assert.deepEqual(page.faults, []);
 });
 
@@ -114,7 +114,7 @@ test('with the user’s own colours the chosen tool can be seen', async () => {
   };
   for (const [chosen, other] of [
     ['#tools [aria-checked=true]', '#tools [aria-checked=false]'],
-    ['#kinds [aria-checked=true]', '#kinds [aria-checked=false]'],
+    ['#roles [aria-checked=true]', '#roles [aria-checked=false]'],
     ['#faces', '#fit'],
   ]) {
     const colours = [await ground(chosen), await ground(other)];
@@ -197,7 +197,7 @@ test('a core that has stopped is not used again', async () => {
 
 async function openCube(page, n) {
   await dropFile(page, `cube_${n}.json`, cube(n));
-  await page.waitForFunction((name) => globalThis.holdfast.app.robot.name === name, `cube_${n}`, { timeout: 60_000 });
+  await page.waitForFunction((name) => globalThis.holdfast.bench.robot.name === name, `cube_${n}`, { timeout: 60_000 });
   await settled(page);
 }
 
@@ -222,14 +222,14 @@ test('a fault in drawing does not end the answers', async () => {
 test('what cannot be done was never done: no step, no cell', async () => {
   const page = await openPage(browser);
   const state = () => page.evaluate(() => {
-    const { robot, history } = globalThis.holdfast.app;
+    const { robot, history } = globalThis.holdfast.bench;
     return { cells: [...robot.toData().data.modules], canUndo: history.canUndo, canRedo: history.canRedo };
   });
   await attach(page);
   await page.click('#undo');
   const before = await state();
   assert.deepEqual([before.canUndo, before.canRedo], [false, true]);
-  await page.evaluate(() => globalThis.holdfast.app.edit('a row', [[7, 1, 2], [8, 1, 2], [900_000, 1, 2]], 0));
+  await page.evaluate(() => globalThis.holdfast.bench.edit('a row', [[7, 1, 2], [8, 1, 2], [900_000, 1, 2]], 0));
   assert.match(await page.textContent('#spoken'), /100000 cells/);
   assert.deepEqual(await state(), before);
   assert.deepEqual(page.faults, []);

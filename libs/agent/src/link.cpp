@@ -156,14 +156,14 @@ std::span<const std::uint8_t> Link::receive(std::span<const std::uint8_t> packet
   if (!is_used() || packet.size() < static_cast<std::size_t>(kOverhead)) {
     return {};
   }
-  const auto kind = static_cast<PacketKind>(packet[0] >> 6U);
+  const auto [kind, sequence, version, expected] = wire::header_of(packet);
   const auto body =
       packet.subspan(wire::kHeaderBytes, packet.size() - static_cast<std::size_t>(kOverhead));
   const auto end = packet.size() - wire::kChecksumBytes;
   const auto sum = static_cast<std::uint16_t>(packet[end] | (packet[end + 1] << 8U));
   const bool is_greeting = kind == PacketKind::kHello;
   const std::uint16_t start = is_greeting ? kGreetingChecksum : session(peer_nonce_, nonce_);
-  if (packet[1] >> 6U != wire::kVersion || wire::checksum(packet.first(end), start) != sum) {
+  if (version != wire::kVersion || wire::checksum(packet.first(end), start) != sum) {
     return {};
   }
   if (is_greeting) {
@@ -181,7 +181,7 @@ std::span<const std::uint8_t> Link::receive(std::span<const std::uint8_t> packet
     retry_count_ = 0;
     retry_at_ = kNever;
   }
-  receive_acknowledgement(packet[1] & kNumberMask, timing, now);
+  receive_acknowledgement(expected, timing, now);
   if (known_count_ == 0) {
     retry_count_ = 0;
     retry_at_ = kNever;
@@ -189,7 +189,7 @@ std::span<const std::uint8_t> Link::receive(std::span<const std::uint8_t> packet
   if (kind == PacketKind::kAcknowledge) {
     return {};
   }
-  const bool is_new = kind == PacketKind::kData && (packet[0] & kNumberMask) == receive_number_;
+  const bool is_new = kind == PacketKind::kData && sequence == receive_number_;
   if (!owes_acknowledgement_) {
     owes_acknowledgement_ = true;
     acknowledge_at_ = is_new ? now + timing.acknowledge_after : now;

@@ -10,6 +10,7 @@
 #include <string_view>
 
 #include "holdfast/base/rng.hpp"
+#include "packet_script.hpp"
 #include "tampered_network.hpp"
 
 namespace holdfast::agent {
@@ -244,6 +245,22 @@ TEST(Guard, no_faulty_module_makes_others_do_what_there_is_not) {
   }
   EXPECT_GT(changed, 100);
   EXPECT_GT(refused, 30);
+}
+
+/// 100 scripts for one line, with right checksums and wrong ones; tests/fuzz looks for others.
+TEST(Guard, whatever_a_line_carries_everybody_comes_to_a_verdict) {
+  int changed = 0;
+  for (std::uint64_t seed = 1; seed <= 100; ++seed) {
+    base::Rng rng(seed);
+    std::vector<std::uint8_t> bytes(40 + rng.below(200));
+    for (std::uint8_t& byte : bytes) {
+      byte = static_cast<std::uint8_t>(rng.below(4) == 0 ? rng.next() : rng.below(8));
+    }
+    PacketScript script(bytes);
+    EXPECT_TRUE(script.run()) << "seed " << seed;
+    changed += script.changed_count();
+  }
+  EXPECT_GT(changed, 100);
 }
 
 }  // namespace

@@ -141,6 +141,50 @@ class TamperedNetwork {
   std::uint16_t random_ = 0x4000;
 };
 
+struct ScriptRobot {
+  std::vector<Place> places;
+  std::vector<base::Cell> planned;
+};
+
+inline ScriptRobot script_robot(std::initializer_list<base::Cell> cells,
+                                std::initializer_list<base::Cell> planned) {
+  ScriptRobot robot{.places = {}, .planned = planned};
+  for (const base::Cell& cell : cells) {
+    robot.places.push_back({.cell = cell});
+  }
+  return robot;
+}
+
+/// A row, a ring, two rings, an arch with planned modules between its feet, a wall.
+inline std::vector<ScriptRobot> script_robots() {
+  return {
+      script_robot({{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {3, 0, 0}}, {{4, 0, 0}}),
+      script_robot({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}, {{0, 0, 1}, {0, 0, 2}}),
+      script_robot({{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {0, 1, 0}, {1, 1, 0}, {2, 1, 0}}, {}),
+      script_robot({{0, 0, 0}, {0, 0, 1}, {1, 0, 1}, {2, 0, 1}, {2, 0, 0}}, {{1, 0, 0}, {3, 0, 1}}),
+      script_robot({{0, 0, 0}, {1, 0, 0}, {0, 0, 1}, {1, 0, 1}, {0, 0, 2}, {1, 0, 2}},
+                   {{2, 0, 2}, {2, 0, 1}, {2, 0, 0}})};
+}
+
+/// Does every module know a verdict, and is at rest?
+inline bool is_over(const TestNetwork& network) {
+  return network.now() > 100 && network.is_every([](const Agent& agent) {
+    return agent.phase() == Phase::kDone && agent.answer().verdict != Verdict::kNone;
+  });
+}
+
+/// Does no module say what there is not?
+inline bool are_answers_known(const TestNetwork& network) {
+  return network.is_every([](const Agent& agent) {
+    const Answer& answer = agent.answer();
+    static_cast<void>(agent.colour());
+    return answer.verdict <= Verdict::kUndecided &&
+           static_cast<int>(answer.reason) < kReasonCount &&
+           base::index(answer.worst_direction) < base::kDirectionCount &&
+           agent.phase() <= Phase::kDone && agent.parent() < base::kDirectionCount;
+  });
+}
+
 /// What a faulty module does, from any bytes: the first ones choose robot, method and module; then
 /// each record says how many messages pass before one is changed, and how. No more bytes: no more
 /// faults.
@@ -153,8 +197,8 @@ class FaultScript {
     Setup setup = table_setup();
     setup.method = static_cast<Method>(next() % 5);
     setup.timing.packet_bytes = next() % 2 == 0 ? wire::kPacketBytesMin : wire::kPacketBytesMax;
-    const std::vector<Robot> robots = all_robots();
-    const Robot& robot = robots[next() % robots.size()];
+    const std::vector<ScriptRobot> robots = script_robots();
+    const ScriptRobot& robot = robots[next() % robots.size()];
     const std::size_t faulty = next() % robot.places.size();
     left_ = next();
     TamperedNetwork tampered(
@@ -175,31 +219,6 @@ class FaultScript {
   int refused_count() const { return refused_count_; }
 
  private:
-  struct Robot {
-    std::vector<Place> places;
-    std::vector<base::Cell> planned;
-  };
-
-  static Robot robot_of(std::initializer_list<base::Cell> cells,
-                        std::initializer_list<base::Cell> planned) {
-    Robot robot{.places = {}, .planned = planned};
-    for (const base::Cell& cell : cells) {
-      robot.places.push_back({.cell = cell});
-    }
-    return robot;
-  }
-
-  /// A row, a ring, two rings, an arch with planned modules between its feet, a wall.
-  static std::vector<Robot> all_robots() {
-    return {
-        robot_of({{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {3, 0, 0}}, {{4, 0, 0}}),
-        robot_of({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}, {{0, 0, 1}, {0, 0, 2}}),
-        robot_of({{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {0, 1, 0}, {1, 1, 0}, {2, 1, 0}}, {}),
-        robot_of({{0, 0, 0}, {0, 0, 1}, {1, 0, 1}, {2, 0, 1}, {2, 0, 0}}, {{1, 0, 0}, {3, 0, 1}}),
-        robot_of({{0, 0, 0}, {1, 0, 0}, {0, 0, 1}, {1, 0, 1}, {0, 0, 2}, {1, 0, 2}},
-                 {{2, 0, 2}, {2, 0, 1}, {2, 0, 0}})};
-  }
-
   std::uint8_t next() { return at_ < bytes_.size() ? bytes_[at_++] : std::uint8_t{0}; }
 
   /// Any message of a type and, of orders and reports, an operation.
@@ -254,22 +273,6 @@ class FaultScript {
     }
     left_ = next();
     return result;
-  }
-
-  static bool is_over(const TestNetwork& network) {
-    return network.now() > 100 && network.is_every([](const Agent& agent) {
-      return agent.phase() == Phase::kDone && agent.answer().verdict != Verdict::kNone;
-    });
-  }
-
-  static bool are_answers_known(const TestNetwork& network) {
-    return network.is_every([](const Agent& agent) {
-      const Answer& answer = agent.answer();
-      static_cast<void>(agent.colour());
-      return answer.verdict <= Verdict::kUndecided &&
-             static_cast<int>(answer.reason) < kReasonCount &&
-             base::index(answer.worst_direction) < base::kDirectionCount;
-    });
   }
 
   std::span<const std::uint8_t> bytes_;

@@ -51,12 +51,12 @@ class Structure {
   /// Modules on the ground, ascending.
   const std::vector<std::size_t>& facets() const { return facets_; }
 
-  /// Of a module's link towards a support.
+  /// What link() gives for a module on the ground.
   static constexpr std::size_t kFacet = static_cast<std::size_t>(-1);
   static constexpr std::size_t kFixed = static_cast<std::size_t>(-2);
   static constexpr std::size_t kNone = static_cast<std::size_t>(-3);
 
-  /// By module: the beam towards a support, or kFacet or kFixed where it is one.
+  /// The beam of every module towards a support, or kFacet or kFixed where it is one.
   const std::vector<std::size_t>& link() const { return link_; }
 
   /// Every module after the one that its link leads to.

@@ -12,7 +12,7 @@ namespace {
 constexpr std::string_view kTitle = "holdfast-certificate";
 constexpr std::string_view kLaws[] = {"bonded", "regularised", "unilateral"};
 
-/// By what a module's line ends with: open, pressed, and the signs of its tilts.
+/// What a module's line ends with: open, pressed, and the signs of its tilts.
 constexpr char kSigns[] = {'-', '0', '+'};
 
 struct Named {

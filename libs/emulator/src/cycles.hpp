@@ -23,7 +23,7 @@ struct BlockCost {
   std::uint16_t if_taken = 0;  ///< More of them if the conditional branch at its end is taken.
 };
 
-/// Of a straight piece of Thumb code with at most one branch, at its end.
+/// The cost of a straight piece of Thumb code with at most one branch, at its end.
 BlockCost cost_of(std::span<const std::uint8_t> code);
 
 /// Costs by address, computed once.

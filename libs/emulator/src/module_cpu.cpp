@@ -180,7 +180,7 @@ void ModuleCpu::take_packet(std::span<const std::uint8_t> packet) {
   ++phase.packets;
   steps_.bytes += packet.size();
   phase.bytes += packet.size();
-  if (packet[0] >> 6U == static_cast<unsigned>(agent::wire::PacketKind::kData)) {
+  if (agent::wire::header_of(packet).kind == agent::wire::PacketKind::kData) {
     ++steps_.data_packets;
     steps_.payload_bytes += packet.size() - kOverhead;
   }

@@ -37,7 +37,8 @@ std::vector<base::Cell> free_cells(const model::RobotSpec& spec) {
   const auto repeated = std::ranges::unique(beside);
   beside.erase(repeated.begin(), repeated.end());
   std::vector<base::Cell> free;
-  std::ranges::set_difference(beside, taken, std::back_inserter(free));
+  std::set_difference(beside.begin(), beside.end(), taken.begin(), taken.end(),
+                      std::back_inserter(free));
   return free;
 }
 

@@ -13,7 +13,7 @@ namespace holdfast::io {
 /// Keeps the order of members.
 using Json = nlohmann::ordered_json;
 
-/// Of a longer pointer, messages show the end.
+/// Messages show the end of a longer pointer.
 inline constexpr std::size_t kPointerShownMax = 200;
 
 /// Parses JSON into a tree. Refuses what a parser alone would let pass or choke on: nesting beyond

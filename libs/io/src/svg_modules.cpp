@@ -63,7 +63,7 @@ void append_polygon(const Scene& scene, const VisibleFace& face, Path& path) {
   path.close();
 }
 
-/// Of faces in one colour. Stroked in it too, lest the card shine through between them.
+/// The path of faces in one colour. Stroked in it too, lest the card shine through between them.
 std::string face_path(const Scene& scene, std::span<const PaintedFace> faces) {
   PathElements paths(fmt::format("fill=\"{0}\" stroke=\"{0}\"", hex(faces.front().color)));
   for (const PaintedFace& face : faces) {

@@ -72,7 +72,7 @@ class VisibleSurface {
   /// Whether something is drawn over this point of the picture.
   bool covers(double u, double v) const;
 
-  /// By module, then by side.
+  /// The visible faces, by module, then by side.
   std::vector<VisibleFace> faces() const;
 
   /// Each once; those of existing modules are joined into long lines, those of planned modules are

@@ -46,7 +46,7 @@ template <std::size_t A, std::size_t B>
 constexpr std::array<std::string_view, A + B> joined(const std::array<std::string_view, A>& a,
                                                      const std::array<std::string_view, B>& b) {
   std::array<std::string_view, A + B> all;
-  std::ranges::copy(b, std::ranges::copy(a, all.begin()).out);
+  std::copy(b.begin(), b.end(), std::copy(a.begin(), a.end(), all.begin()));
   return all;
 }
 

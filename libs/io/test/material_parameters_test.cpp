@@ -57,12 +57,15 @@ TEST(MaterialParameters, are_the_same_in_json_and_in_visiblesim) {
   }
 }
 
+/// The schema's other keys are those of version 2 that nothing is computed with yet.
 TEST(MaterialParameters, have_the_ranges_of_the_schema) {
   const auto schema = nlohmann::json::parse(document_text("structure.schema.json"));
   const auto& properties = schema["properties"]["material"]["properties"];
-  EXPECT_EQ(properties.size(), kMaterialParameters.size());
+  const auto& not_yet = schema["then"]["properties"]["material"]["properties"];
+  EXPECT_EQ(properties.size(), kMaterialParameters.size() + not_yet.size());
   for (const MaterialParameter& parameter : kMaterialParameters) {
     ASSERT_TRUE(properties.contains(parameter.key)) << parameter.key;
+    EXPECT_FALSE(not_yet.contains(parameter.key)) << parameter.key;
     const auto& entry = properties[parameter.key];
     const auto& range = entry.contains("$ref") ? schema["definitions"]["positive"] : entry;
     EXPECT_EQ(entry.value("$ref", "#/definitions/positive"), "#/definitions/positive");

@@ -21,7 +21,7 @@ struct Wide {
   std::uint64_t low = 0;
 };
 
-/// By halves of 32 bits.
+/// The product of all 64 bits, made of halves of 32.
 Wide product(std::int64_t a, std::int64_t b) {
   const auto size = [](std::int64_t value) {
     const auto bits = static_cast<std::uint64_t>(value);

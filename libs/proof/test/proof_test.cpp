@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <string>
 
 #include "random_robot.hpp"
 
@@ -181,6 +182,28 @@ TEST(Proof, holds_the_exact_law_without_weak_springs) {
     }
   }
   EXPECT_GT(proved, 100);
+}
+
+/// The checker shares no code with the program, so it names the numbers of a material by itself: as
+/// files do, all of them but E, on which no load ratio depends.
+TEST(Proof, names_the_material_as_files_do) {
+  model::RobotSpec spec = cantilever(3);
+  double factor = 1;
+  for (const model::MaterialParameter& parameter : model::kMaterialParameters) {
+    spec.material.*parameter.value *= factor += 0.01;
+  }
+  const Robot robot = Robot::create(spec).value();
+  const std::string text = certificate::write(prove(robot, verdict::assess(robot)).certificate);
+  for (const model::MaterialParameter& parameter : model::kMaterialParameters) {
+    const std::string name = std::string("\n") + parameter.key + ' ';
+    const std::size_t at = text.find(name);
+    if (parameter.value == &model::Material::elastic_modulus_mpa) {
+      EXPECT_EQ(at, std::string::npos);
+    } else {
+      ASSERT_NE(at, std::string::npos) << parameter.key;
+      EXPECT_EQ(std::stod(text.substr(at + name.size())), spec.material.*parameter.value);
+    }
+  }
 }
 
 TEST(Proof, says_why_there_is_none) {

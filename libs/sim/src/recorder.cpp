@@ -12,7 +12,7 @@ std::size_t index(agent::Phase phase) { return static_cast<std::size_t>(phase); 
 }  // namespace
 
 bool is_data(std::span<const std::uint8_t> packet) {
-  return static_cast<agent::wire::PacketKind>(packet[0] >> 6U) == agent::wire::PacketKind::kData;
+  return agent::wire::header_of(packet).kind == agent::wire::PacketKind::kData;
 }
 
 void Recorder::sent(const PacketTrace& packet, agent::Phase phase, Time line_time) {

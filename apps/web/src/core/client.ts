@@ -1,13 +1,13 @@
 // SPDX-FileCopyrightText: The holdfast authors
 // SPDX-License-Identifier: Apache-2.0
 import CORE from 'virtual:core';
+import type { Role } from '../model/cell';
+import type { RobotData } from '../model/edited_robot';
 import {
   CoreError,
   type Answer,
-  type Kind,
   type OpenedDocument,
   type Output,
-  type RobotData,
   type SimulationChoice,
   type Trace,
   type Trial,
@@ -46,8 +46,8 @@ export class CoreClient {
     return this.call('check', [robot, firstLook]);
   }
 
-  tryPlaces(robot: RobotData, places: Int32Array, kind: Kind): Promise<Trial[]> {
-    return this.call('tryPlaces', [robot, places, kind]);
+  tryPlaces(robot: RobotData, places: Int32Array, role: Role): Promise<Trial[]> {
+    return this.call('tryPlaces', [robot, places, role]);
   }
 
   write(robot: RobotData, output: Output, name: string, base: string): Promise<string> {

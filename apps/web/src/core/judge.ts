@@ -1,11 +1,11 @@
 // SPDX-FileCopyrightText: The holdfast authors
 // SPDX-License-Identifier: Apache-2.0
-import type { Robot } from '../model/robot';
+import type { EditedRobot, RobotData } from '../model/edited_robot';
 import { CoreClient, Cancelled, compiledCore, explain } from './client';
-import { CoreError, type Answer, type RobotData } from './types';
+import { CoreError, type Answer } from './types';
 import { Core } from './wasm';
 
-/** What is known of the robot on the page. `slots` as in Robot.toData(). */
+/** What is known of the robot on the page. `slots` as in EditedRobot.toData(). */
 export interface Finding {
   slots: Int32Array;
   answer?: Answer;
@@ -43,7 +43,7 @@ export class Judge {
     this.startCore();
   }
 
-  ask(robot: Robot): void {
+  ask(robot: EditedRobot): void {
     const task = { ...robot.toData(), version: ++this.version };
     if (this.core && robot.count <= SMALL_COUNT) {
       this.next = undefined;

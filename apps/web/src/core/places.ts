@@ -1,15 +1,14 @@
 // SPDX-FileCopyrightText: The holdfast authors
 // SPDX-License-Identifier: Apache-2.0
-import { cellText, type Robot } from '../model/robot';
+import { cellText, type Cell, type Role } from '../model/cell';
+import type { EditedRobot } from '../model/edited_robot';
 import { CoreClient } from './client';
-import type { Cell, Kind, Trial } from './types';
+import type { Trial } from './types';
 
 /** About so long may a batch of places take. */
 const BATCH_MS = 40;
-/** Robots up to this size are tried at once where the pointer is. */
-export const TRIAL_COUNT_MAX = 1500;
 
-/** Where may the next module of a kind go? Tries free places in the background, batch by batch. */
+/** Where may the next module of a role go? Tries free places in the background, batch by batch. */
 export class Places {
   private readonly client = new CoreClient();
   private trials = new Map<string, Trial>();
@@ -27,24 +26,24 @@ export class Places {
     }
   }
 
-  known(place: Cell, kind: Kind): Trial | undefined {
-    return this.trials.get(keyOf(place, kind));
+  known(place: Cell, role: Role): Trial | undefined {
+    return this.trials.get(keyOf(place, role));
   }
 
   /** The verdict at one place; undefined if the robot has changed meanwhile. */
-  async find(robot: Robot, place: Cell, kind: Kind): Promise<Trial | undefined> {
-    const isCurrent = await this.batch(robot, [place], kind);
-    return isCurrent ? this.known(place, kind) : undefined;
+  async find(robot: EditedRobot, place: Cell, role: Role): Promise<Trial | undefined> {
+    const isCurrent = await this.batch(robot, [place], role);
+    return isCurrent ? this.known(place, role) : undefined;
   }
 
   /** All places; `told` after each batch. False: the robot or the question has changed meanwhile. */
-  async findAll(robot: Robot, places: readonly Cell[], kind: Kind, told: (count: number) => void) {
+  async findAll(robot: EditedRobot, places: readonly Cell[], role: Role, told: (count: number) => void) {
     const search = ++this.searches;
-    const waiting = places.filter((place) => !this.known(place, kind));
+    const waiting = places.filter((place) => !this.known(place, role));
     let size = 4;
     for (let at = 0; at < waiting.length; ) {
       const begun = performance.now();
-      const isCurrent = await this.batch(robot, waiting.slice(at, at + size), kind);
+      const isCurrent = await this.batch(robot, waiting.slice(at, at + size), role);
       if (!isCurrent || search !== this.searches) {
         return false;
       }
@@ -56,14 +55,14 @@ export class Places {
     return true;
   }
 
-  private async batch(robot: Robot, places: readonly Cell[], kind: Kind): Promise<boolean> {
+  private async batch(robot: EditedRobot, places: readonly Cell[], role: Role): Promise<boolean> {
     const { version } = this;
     this.begun = performance.now();
     try {
       const cells = Int32Array.from(places.flat());
-      const trials = await this.client.tryPlaces(robot.toData().data, cells, kind);
+      const trials = await this.client.tryPlaces(robot.toData().data, cells, role);
       if (version === this.version) {
-        places.forEach((place, i) => this.trials.set(keyOf(place, kind), trials[i]));
+        places.forEach((place, i) => this.trials.set(keyOf(place, role), trials[i]));
       }
     } catch {
       return false;
@@ -72,4 +71,4 @@ export class Places {
   }
 }
 
-const keyOf = (place: Cell, kind: Kind) => `${kind} ${cellText(place)}`;
+const keyOf = (place: Cell, role: Role) => `${role} ${cellText(place)}`;

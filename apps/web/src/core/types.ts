@@ -3,24 +3,9 @@
 
 /** What the page and the core exchange. Lengths in mm, forces in N, torques in N mm. */
 
-export const enum Kind {
-  kExisting,
-  kPlanned,
-  kFixed,
-}
-
-export type Cell = readonly [x: number, y: number, z: number];
 export type Point = [x: number, y: number];
 
-export const VERDICTS = ['safe', 'overload', 'unstable', 'undecided'] as const;
-export type Verdict = (typeof VERDICTS)[number];
-
-/** Modules as the core sees them: x, y, z and kind of each; existing ones come first. */
-export interface RobotData {
-  modules: Int32Array;
-  supportZ: number;
-  material: Float64Array;
-}
+export type Verdict = 'safe' | 'overload' | 'unstable' | 'undecided';
 
 export interface Stability {
   stable: boolean;
@@ -53,6 +38,22 @@ export interface Answer {
 export const LOAD_FIELDS = 5;
 export const MOTION_FIELDS = 6;
 
+/** One of several that a user may choose. */
+export interface Choice {
+  value: number;
+  text: string;
+}
+
+/** What the page learns from the core instead of repeating it; asked when the page is built. */
+export interface Vocabulary {
+  /** The numbers that mechanics depend on; `table_i` is that of Table I of [Piranda 2021]. */
+  material: { key: string; label: string; unit: string; table_i: number }[];
+  /** Of the robot's own computation, in their order. */
+  phases: string[];
+  methods: Choice[];
+  links: Choice[];
+}
+
 export interface OpenedDocument {
   name: string;
   description: string;
@@ -63,9 +64,10 @@ export interface OpenedDocument {
   material: Float64Array;
 }
 
+/** What would come of one more module. */
 export interface Trial {
-  /** Index into VERDICTS; -1 where no module can be. */
-  verdict: number;
+  /** Null where no module can be. */
+  verdict: Verdict | null;
   ratio: number;
   marginMm: number;
 }
@@ -79,7 +81,7 @@ export const enum Output {
 }
 
 export interface SimulationChoice {
-  /** An agent::Method. */
+  /** Values of the vocabulary's methods and links. */
   method: number;
   link: number;
   seed: number;

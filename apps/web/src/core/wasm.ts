@@ -1,16 +1,18 @@
 // SPDX-FileCopyrightText: The holdfast authors
 // SPDX-License-Identifier: Apache-2.0
+import type { Role } from '../model/cell';
+import type { RobotData } from '../model/edited_robot';
 import {
   CoreError,
   type Answer,
   type Failure,
-  type Kind,
   type OpenedDocument,
   type Output,
-  type RobotData,
   type SimulationChoice,
   type Trace,
   type Trial,
+  type Verdict,
+  type Vocabulary,
 } from './types';
 
 /**
@@ -19,14 +21,13 @@ import {
  */
 
 const HEADER_INTEGERS = 8;
-const MATERIAL_NUMBERS = 13;
-const HEADER_BYTES = 4 * HEADER_INTEGERS + 8 * MATERIAL_NUMBERS;
 const MODULE_INTEGERS = 4;
 const EVENTS_KEPT_THOUSANDS = 1000;
 
 interface Exports {
   memory: WebAssembly.Memory;
   _initialize(): void;
+  holdfast_vocabulary(): void;
   holdfast_input(size: number): number;
   holdfast_open(): void;
   holdfast_check(): void;
@@ -47,7 +48,7 @@ interface Reply {
   numbers: Float64Array<ArrayBuffer>;
 }
 
-type Call = 'open' | 'check' | 'try_places' | 'write' | 'simulate';
+type Call = 'vocabulary' | 'open' | 'check' | 'try_places' | 'write' | 'simulate';
 
 export class Core {
   private constructor(private readonly exports: Exports) {}
@@ -95,6 +96,10 @@ export class Core {
     return new Core(exports);
   }
 
+  vocabulary(): Vocabulary {
+    return JSON.parse(this.call('vocabulary', new Uint8Array()).text) as Vocabulary;
+  }
+
   /** Reads a file of either format. Throws CoreError. */
   open(text: Uint8Array): OpenedDocument {
     const reply = this.call('open', text);
@@ -117,11 +122,12 @@ export class Core {
     };
   }
 
-  /** What the verdict would be with one more module of a kind, for each place (x, y, z). */
-  tryPlaces(robot: RobotData, places: Int32Array, kind: Kind): Trial[] {
+  /** What the verdict would be with one more module of a role, for each place (x, y, z). */
+  tryPlaces(robot: RobotData, places: Int32Array, role: Role): Trial[] {
     const tail = new Uint8Array(places.buffer, places.byteOffset, places.byteLength);
-    const reply = this.call('try_places', request(robot, [kind], tail));
-    return Array.from(reply.integers, (verdict, i) => ({
+    const reply = this.call('try_places', request(robot, [role], tail));
+    const verdicts = JSON.parse(reply.text) as (Verdict | null)[];
+    return verdicts.map((verdict, i) => ({
       verdict,
       ratio: reply.numbers[2 * i],
       marginMm: reply.numbers[2 * i + 1],
@@ -166,14 +172,15 @@ export class Core {
 
 /** The bytes of core/request.hpp. */
 function request(robot: RobotData, options: number[], tail?: Uint8Array): Uint8Array {
-  const { modules } = robot;
-  const bytes = new Uint8Array(HEADER_BYTES + 4 * modules.length + (tail?.length ?? 0));
+  const { material, modules } = robot;
+  const headerBytes = 4 * HEADER_INTEGERS + 8 * material.length;
+  const bytes = new Uint8Array(headerBytes + 4 * modules.length + (tail?.length ?? 0));
   const header = new Int32Array(bytes.buffer, 0, HEADER_INTEGERS);
   header.set([modules.length / MODULE_INTEGERS, robot.supportZ, ...options]);
-  new Float64Array(bytes.buffer, 4 * HEADER_INTEGERS, MATERIAL_NUMBERS).set(robot.material);
-  new Int32Array(bytes.buffer, HEADER_BYTES, modules.length).set(modules);
+  new Float64Array(bytes.buffer, 4 * HEADER_INTEGERS, material.length).set(material);
+  new Int32Array(bytes.buffer, headerBytes, modules.length).set(modules);
   if (tail) {
-    bytes.set(tail, HEADER_BYTES + 4 * modules.length);
+    bytes.set(tail, headerBytes + 4 * modules.length);
   }
   return bytes;
 }

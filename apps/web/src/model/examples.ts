@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The holdfast authors
 // SPDX-License-Identifier: Apache-2.0
 import SCENARIOS from 'virtual:scenarios';
-import type { Cell } from '../core/types';
+import type { Cell } from './cell';
 
 /** What the gallery offers: the paper's tests in their stages, and shapes that are made here. */
 

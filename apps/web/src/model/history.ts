@@ -1,13 +1,13 @@
 // SPDX-FileCopyrightText: The holdfast authors
 // SPDX-License-Identifier: Apache-2.0
-import type { Kind, Cell } from '../core/types';
-import { Robot, type CellChange, type Settings } from './robot';
+import type { Cell, Role } from './cell';
+import { EditedRobot, type CellChange, type Settings } from './edited_robot';
 
 /** What can be undone: changed cells, changed settings, or another robot in place of this one. */
 type Step = { label: string } & (
   | { what: 'cells'; changes: CellChange[] }
   | { what: 'settings'; before: Settings; after: Settings }
-  | { what: 'robot'; before: Robot; after: Robot }
+  | { what: 'robot'; before: EditedRobot; after: EditedRobot }
 );
 
 export type Change = Step['what'];
@@ -18,14 +18,14 @@ export class History {
   private undone: Step[] = [];
 
   constructor(
-    public robot: Robot,
+    public robot: EditedRobot,
     private readonly changed: (what: Change) => void,
   ) {}
 
-  /** Sets cells to a kind, or empties them; what is so already is left out. */
-  edit(label: string, cells: readonly Cell[], after: Kind | undefined): boolean {
+  /** Sets cells to a role, or empties them; what is so already is left out. */
+  edit(label: string, cells: readonly Cell[], after: Role | undefined): boolean {
     const changes = cells
-      .map((cell) => ({ cell, before: this.robot.kind(cell), after }))
+      .map((cell) => ({ cell, before: this.robot.role(cell), after }))
       .filter(({ before }) => before !== after);
     if (changes.length > 0) {
       this.do({ label, what: 'cells', changes });
@@ -41,7 +41,7 @@ export class History {
   }
 
   /** Puts another robot in place of this one; the empty page at the beginning is not kept. */
-  replace(label: string, after: Robot): void {
+  replace(label: string, after: EditedRobot): void {
     const step: Step = { label, what: 'robot', before: this.robot, after };
     if (this.robot.count === 0 && !this.canUndo && !this.canRedo) {
       this.apply(step, true);

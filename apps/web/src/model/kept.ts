@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: The holdfast authors
 // SPDX-License-Identifier: Apache-2.0
-import { Robot } from './robot';
+import { PARAMETERS } from './material';
+import { EditedRobot } from './edited_robot';
 
 /**
  * Robots that were changed here, in the browser's own storage, each under its own name there: closing
@@ -14,7 +15,6 @@ const TAB = 'holdfast.tab';
 const KEPT_MAX = 8;
 /** In letters; browsers allow about five million for all that a site keeps. */
 const LENGTH_MAX = 4_500_000;
-const MATERIAL_NUMBERS = 13;
 
 export interface KeptRobot {
   id: string;
@@ -57,7 +57,7 @@ export class Kept {
   }
 
   /** False: it is too large. */
-  keep(robot: Robot, origin: string): boolean {
+  keep(robot: EditedRobot, origin: string): boolean {
     const { id, name, supportZ, base } = robot;
     const [material, modules] = [Array.from(robot.material), Array.from(robot.toModules())];
     const entry: KeptRobot = { id, origin, time: Date.now(), name, supportZ, material, modules, base };
@@ -84,8 +84,8 @@ export class Kept {
   }
 
   /** A robot of its own, or, in the tab that has kept it last, the same. */
-  restore(entry: KeptRobot): Robot {
-    const robot = Robot.from(Int32Array.from(entry.modules));
+  restore(entry: KeptRobot): EditedRobot {
+    const robot = EditedRobot.from(Int32Array.from(entry.modules));
     const { name, supportZ, base } = entry;
     Object.assign(robot, { name, supportZ, base, material: Float64Array.from(entry.material) });
     if (entry.id === this.tab.getItem(TAB)) {
@@ -139,7 +139,7 @@ function isKept({ id, origin, time, name, supportZ, material, modules, base }: K
     Number.isFinite(time) &&
     Number.isInteger(supportZ) &&
     material.every(Number.isFinite) &&
-    material.length === MATERIAL_NUMBERS &&
+    material.length === PARAMETERS.length &&
     modules.every((value, i) => Number.isInteger(value) && (i % 4 < 3 || (value >= 0 && value <= 2))) &&
     modules.length % 4 === 0
   );

@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: The holdfast authors
 // SPDX-License-Identifier: Apache-2.0
 import type { Finding } from '../core/judge';
-import { LOAD_FIELDS, type Answer, type Cell } from '../core/types';
-import { DIRECTIONS, cellText, type Robot } from '../model/robot';
-import { Kind } from '../core/types';
+import { LOAD_FIELDS, type Answer } from '../core/types';
+import { DIRECTIONS, ROLE_NAMES, Role, cellText, type Cell } from '../model/cell';
+import type { EditedRobot } from '../model/edited_robot';
 import { FIXED, UNKNOWN, UNSTABLE, brokenColour, css, loadColour, type Rgb, type ScaleName } from '../view/colours';
 import { byId, make } from './dom';
 
@@ -19,13 +19,13 @@ const WORDS = {
 export const formatRatio = (ratio: number) => ratio.toFixed(Math.abs(ratio) < 0.0005 ? 1 : 3);
 
 /** "(2,1,2)-(3,1,2)" */
-export function connectionText(robot: Robot, finding: Finding, index: number): string {
+export function connectionText(robot: EditedRobot, finding: Finding, index: number): string {
   const { connections } = finding.answer!;
   const cell = (end: number) => cellText(robot.cellAt(finding.slots[connections[3 * index + end]]));
   return `${cell(0)}-${cell(1)}`;
 }
 
-export function showFinding(robot: Robot, finding: Finding | undefined): void {
+export function showFinding(robot: EditedRobot, finding: Finding | undefined): void {
   const answer = finding?.answer;
   const section = byId('verdict');
   const [word, meaning, state] = headline(robot, finding);
@@ -40,7 +40,7 @@ export function showFinding(robot: Robot, finding: Finding | undefined): void {
   );
 }
 
-function headline(robot: Robot, finding: Finding | undefined): [string, string, string] {
+function headline(robot: EditedRobot, finding: Finding | undefined): [string, string, string] {
   if (robot.count === 0) {
     return ['Empty', '', 'none'];
   }
@@ -54,7 +54,7 @@ function headline(robot: Robot, finding: Finding | undefined): [string, string, 
   return finding?.problem ? ['No answer', '', 'none'] : ['…', '', 'none'];
 }
 
-function reason(robot: Robot, finding: Finding | undefined): string {
+function reason(robot: EditedRobot, finding: Finding | undefined): string {
   if (robot.count === 0) {
     return 'Click the ground to put down the first module.';
   }
@@ -74,7 +74,7 @@ function formatTime(seconds: number): string {
 
 type Figure = [name: string, value: string, title?: string];
 
-function figures(robot: Robot, finding: Finding | undefined, answer: Answer | undefined): Figure[] {
+function figures(robot: EditedRobot, finding: Finding | undefined, answer: Answer | undefined): Figure[] {
   const list: Figure[] = [];
   if (answer?.load_ratio_max != null && answer.verdict !== 'unstable') {
     const at = answer.worst === null ? '' : `  ${connectionText(robot, finding!, answer.worst)}`;
@@ -96,13 +96,12 @@ function figures(robot: Robot, finding: Finding | undefined, answer: Answer | un
   return list;
 }
 
-function countText(robot: Robot): string {
+function countText(robot: EditedRobot): string {
   const counts = [0, 0, 0];
   for (let slot = 0; slot < robot.count; ++slot) {
-    ++counts[robot.kindAt(slot)];
+    ++counts[robot.roleAt(slot)];
   }
-  const names = ['existing', 'planned', 'fixed'];
-  const parts = counts.map((count, i) => `${count.toLocaleString('en')} ${names[i]}`);
+  const parts = counts.map((count, i) => `${count.toLocaleString('en')} ${ROLE_NAMES[i]}`);
   return parts.filter((_, i) => counts[i] > 0).join(', ') || 'none';
 }
 
@@ -144,11 +143,10 @@ export function showFaceLegend(scale: ScaleName): void {
 }
 
 const SIDES = ['+x', '−x', '+y', '−y', '+z', '−z'];
-const KINDS = ['existing', 'planned', 'fixed'];
 
 /** One line for each connection of a module; the pointed one is marked. */
 export function showDetails(
-  robot: Robot,
+  robot: EditedRobot,
   finding: Finding | undefined,
   cell: Cell | undefined,
   side: number | undefined,
@@ -159,8 +157,8 @@ export function showDetails(
     panel.replaceChildren(make('p', { className: 'quiet' }, 'Point at a module to see its numbers.'));
     return cell ? `${cellText(cell)}: empty` : '';
   }
-  const title = `${cellText(cell)}, ${KINDS[robot.kindAt(slot)]}${
-    cell[2] === robot.supportZ && robot.kindAt(slot) !== Kind.kFixed ? ', on the ground' : ''
+  const title = `${cellText(cell)}, ${ROLE_NAMES[robot.roleAt(slot)]}${
+    cell[2] === robot.supportZ && robot.roleAt(slot) !== Role.kFixed ? ', on the ground' : ''
   }`;
   const rows = finding?.answer?.has_loads ? connectionRows(finding, slot) : [];
   const table = make('table');
@@ -175,7 +173,7 @@ export function showDetails(
         make('th', { scope: 'row' }, SIDES[row.side]),
         ...[formatRatio(row.ratio), `${row.axial.toFixed(2)} N`, `${row.bending.toFixed(0)} N mm`].map((t) => make('td', {}, t)),
       );
-      line.className = row.side === side ? 'pointed' : row.ratio >= 1 - 1e-9 ? 'breaks' : '';
+      line.className = row.side === side ? 'pointed' : row.isBroken ? 'breaks' : '';
       body.append(line);
     }
     table.append(body);
@@ -205,14 +203,14 @@ function sidesOf({ slots }: Finding, answer: Answer): Int32Array {
 }
 
 function connectionRows(finding: Finding, slot: number) {
-  const rows: { side: number; ratio: number; axial: number; bending: number }[] = [];
+  const rows: { side: number; ratio: number; axial: number; bending: number; isBroken: boolean }[] = [];
   const answer = finding.answer!;
   const sides = sidesOf(finding, answer);
   for (let side = 0; side < DIRECTIONS.length; ++side) {
     const i = sides[DIRECTIONS.length * slot + side];
     if (i >= 0) {
       const [ratio, axial, bending] = answer.loads.subarray(LOAD_FIELDS * i, LOAD_FIELDS * i + 3);
-      rows.push({ side, ratio, axial, bending });
+      rows.push({ side, ratio, axial, bending, isBroken: answer.broken.includes(i) });
     }
   }
   return rows;

@@ -2,9 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 import { CoreClient } from '../core/client';
 import { Output, type OpenedDocument } from '../core/types';
+import { EditedRobot } from '../model/edited_robot';
 import { linkFragment, readFragment } from '../model/link';
-import { Robot } from '../model/robot';
-import type { App } from './app';
+import type { Workbench } from '../model/workbench';
+import type { Stage } from '../view/stage';
 import { byId, download, tell } from './dom';
 
 /** Structures in and out: files, links, pictures, reports. Nothing that fails touches the robot. */
@@ -15,8 +16,8 @@ const LINK_LENGTH_MAX = 32_000;
 
 const client = new CoreClient();
 
-export function robotOf(opened: OpenedDocument, text: string, fallbackName: string): Robot {
-  const robot = Robot.from(opened.modules);
+export function robotOf(opened: OpenedDocument, text: string, fallbackName: string): EditedRobot {
+  const robot = EditedRobot.from(opened.modules);
   robot.name = opened.name || fallbackName;
   robot.supportZ = opened.support_z;
   robot.material = opened.material;
@@ -29,7 +30,7 @@ const LATE_MS = 1000;
 
 /** Puts a structure in place of the robot; what was there comes back with undo. */
 export async function openText(
-  app: App,
+  bench: Workbench,
   bytes: Uint8Array,
   name: string,
   origin = name,
@@ -39,7 +40,7 @@ export async function openText(
   try {
     const opened = await client.open(bytes).finally(() => clearTimeout(late));
     const robot = robotOf(opened, new TextDecoder().decode(bytes), name);
-    app.history.replace(`opening ${robot.name || 'a structure'}`, robot);
+    bench.history.replace(`opening ${robot.name || 'a structure'}`, robot);
     const notes = [...opened.warnings];
     if (opened.later_steps > 0) {
       notes.push(`${opened.later_steps} later steps are kept, not shown`);
@@ -56,7 +57,7 @@ export async function openText(
   }
 }
 
-export async function openFile(app: App, file: File): Promise<void> {
+export async function openFile(bench: Workbench, file: File): Promise<void> {
   if (file.size > FILE_BYTES_MAX) {
     const size = (file.size / 2 ** 20).toFixed(0);
     tell(`${file.name}: ${size} MiB, this page reads at most 256; the program holdfast reads more`, true);
@@ -64,7 +65,7 @@ export async function openFile(app: App, file: File): Promise<void> {
   }
   try {
     const bytes = new Uint8Array(await file.arrayBuffer());
-    await openText(app, bytes, file.name.replace(/\.(xml|json)$/i, ''), file.name);
+    await openText(bench, bytes, file.name.replace(/\.(xml|json)$/i, ''), file.name);
   } catch {
     tell(`${file.name}: cannot be read`, true);
   }
@@ -73,19 +74,19 @@ export async function openFile(app: App, file: File): Promise<void> {
 export const BROKEN_LINK = 'the link is broken: it may have been cut; nothing was opened';
 
 /** The structure in the page's address; undefined if there is none. Throws if it is broken. */
-export async function openFragment(app: App): Promise<boolean | undefined> {
+export async function openFragment(bench: Workbench): Promise<boolean | undefined> {
   const bytes = await readFragment(location.hash);
-  return bytes && openText(app, bytes, 'the link');
+  return bytes && openText(bench, bytes, 'the link');
 }
 
-export function listenToFiles(app: App): void {
+export function listenToFiles(bench: Workbench): void {
   const input = byId<HTMLInputElement>('file');
   byId('open').onclick = () => input.click();
   input.onchange = () => {
     const file = input.files?.[0];
     input.value = '';
     if (file) {
-      void openFile(app, file);
+      void openFile(bench, file);
     }
   };
   window.addEventListener('dragover', (event) => {
@@ -100,22 +101,22 @@ export function listenToFiles(app: App): void {
     byId('drop').hidden = true;
     const file = event.dataTransfer?.files[0];
     if (file) {
-      void openFile(app, file);
+      void openFile(bench, file);
     }
   });
-  window.addEventListener('hashchange', () => openFragment(app).catch(() => tell(BROKEN_LINK, true)));
+  window.addEventListener('hashchange', () => openFragment(bench).catch(() => tell(BROKEN_LINK, true)));
 }
 
-function write(app: App, output: Output): Promise<string> {
-  const { robot } = app;
+function write(bench: Workbench, output: Output): Promise<string> {
+  const { robot } = bench;
   return client.write(robot.toData().data, output, robot.name, robot.base);
 }
 
-const fileName = (app: App) => app.robot.name.replace(/[^\w.-]+/g, '_') || 'structure';
+const fileName = (bench: Workbench) => bench.robot.name.replace(/[^\w.-]+/g, '_') || 'structure';
 
-export async function take(app: App, what: string): Promise<void> {
+export async function take(bench: Workbench, stage: Stage, what: string): Promise<void> {
   const save = async (output: Output, ending: string, type: string) =>
-    download(`${fileName(app)}.${ending}`, new Blob([await write(app, output)], { type }));
+    download(`${fileName(bench)}.${ending}`, new Blob([await write(bench, output)], { type }));
   try {
     switch (what) {
       case 'json':
@@ -125,28 +126,28 @@ export async function take(app: App, what: string): Promise<void> {
       case 'svg':
         return await save(Output.kSvg, 'svg', 'image/svg+xml');
       case 'png':
-        return await savePng(app);
+        return await savePng(bench, stage);
       case 'link':
-        return await copyLink(app);
+        return await copyLink(bench);
       default:
-        return await showReport(app);
+        return await showReport(bench);
     }
   } catch (error) {
     tell(error instanceof Error ? error.message : String(error), true);
   }
 }
 
-async function savePng(app: App): Promise<void> {
-  app.stage.render();
-  const blob = await new Promise<Blob | null>((done) => app.stage.canvas.toBlob(done));
+async function savePng(bench: Workbench, stage: Stage): Promise<void> {
+  stage.render();
+  const blob = await new Promise<Blob | null>((done) => stage.canvas.toBlob(done));
   if (!blob) {
     throw new Error('the browser gives no picture');
   }
-  download(`${fileName(app)}.png`, blob);
+  download(`${fileName(bench)}.png`, blob);
 }
 
-async function copyLink(app: App): Promise<void> {
-  const fragment = await linkFragment(await write(app, Output.kJson));
+async function copyLink(bench: Workbench): Promise<void> {
+  const fragment = await linkFragment(await write(bench, Output.kJson));
   if (fragment.length > LINK_LENGTH_MAX) {
     tell(`too large for a link (${fragment.length} letters): save it as a file`, true);
     return;
@@ -166,8 +167,8 @@ export async function reportOf(source: string, name: string, output = Output.kRe
   return client.write(robot.toData().data, output, robot.name, source);
 }
 
-async function showReport(app: App): Promise<void> {
-  byId('report-text').textContent = await write(app, Output.kReportText);
+async function showReport(bench: Workbench): Promise<void> {
+  byId('report-text').textContent = await write(bench, Output.kReportText);
   byId<HTMLDialogElement>('takeaway').close();
   byId<HTMLDialogElement>('report').showModal();
 }

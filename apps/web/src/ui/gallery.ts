@@ -1,12 +1,13 @@
 // SPDX-FileCopyrightText: The holdfast authors
 // SPDX-License-Identifier: Apache-2.0
 import { CoreClient } from '../core/client';
-import { Kind, type Answer } from '../core/types';
+import type { Answer } from '../core/types';
+import { DIRECTIONS, Role, plus } from '../model/cell';
+import type { EditedRobot } from '../model/edited_robot';
 import { GALLERY, type Example } from '../model/examples';
-import { DIRECTIONS, plus, type Robot } from '../model/robot';
+import type { Workbench } from '../model/workbench';
 import { FIXED, UNKNOWN, UNSTABLE, brokenColour, css, loadColour, mix, type Rgb } from '../view/colours';
 import { moduleLoads } from '../view/robot_view';
-import type { App } from './app';
 import { byId, make } from './dom';
 import { openText, robotOf } from './files';
 import { nameOf, whenOf, type Keeper } from './keeper';
@@ -21,20 +22,20 @@ const PICTURE_COUNT_MAX = 2000;
 const client = new CoreClient();
 let isFilled = false;
 
-export function openGallery(app: App, keeper: Keeper): void {
+export function openGallery(bench: Workbench, keeper: Keeper): void {
   const dialog = byId<HTMLDialogElement>('gallery');
   if (!isFilled) {
     isFilled = true;
-    fill(app, dialog);
+    fill(bench, dialog);
   }
   showKept(dialog, keeper);
   dialog.showModal();
 }
 
-function fill(app: App, dialog: HTMLDialogElement): void {
+function fill(bench: Workbench, dialog: HTMLDialogElement): void {
   for (const group of GALLERY) {
     const cards = group.examples.map((example) => {
-      const open = () => void openText(app, new TextEncoder().encode(example.source()), example.name);
+      const open = () => void openText(bench, new TextEncoder().encode(example.source()), example.name);
       const title = example.title.length === 1 ? '' : example.title;
       const made = card(dialog, title, example.text, open);
       made.button.dataset.example = example.name;
@@ -86,12 +87,12 @@ function card(dialog: HTMLDialogElement, title: string, text: string, open: () =
   return { button, picture, verdict };
 }
 
-async function exampleRobot(example: Example): Promise<Robot> {
+async function exampleRobot(example: Example): Promise<EditedRobot> {
   const source = (example.sketch ?? example.source)();
   return robotOf(await client.open(new TextEncoder().encode(source)), source, '');
 }
 
-async function judge(robot: Robot, { picture, verdict }: Card, saysVerdict: boolean): Promise<void> {
+async function judge(robot: EditedRobot, { picture, verdict }: Card, saysVerdict: boolean): Promise<void> {
   const { data, slots } = robot.toData();
   try {
     const answer = await client.check(data);
@@ -106,7 +107,7 @@ async function judge(robot: Robot, { picture, verdict }: Card, saysVerdict: bool
 }
 
 /** An isometric picture, far modules first. */
-function drawSmall(canvas: HTMLCanvasElement, robot: Robot, answer: Answer, slots: Int32Array): void {
+function drawSmall(canvas: HTMLCanvasElement, robot: EditedRobot, answer: Answer, slots: Int32Array): void {
   const context = canvas.getContext('2d')!;
   const loads = answer.has_loads ? moduleLoads({ answer, slots }) : undefined;
   const order = Array.from({ length: robot.count }, (_, slot) => slot)
@@ -128,20 +129,20 @@ function drawSmall(canvas: HTMLCanvasElement, robot: Robot, answer: Answer, slot
   context.lineWidth = 0.05;
   context.lineJoin = 'round';
   for (const slot of order) {
-    const kind = robot.kindAt(slot);
-    let colour: Rgb = kind === Kind.kFixed ? FIXED : UNKNOWN;
+    const role = robot.roleAt(slot);
+    let colour: Rgb = role === Role.kFixed ? FIXED : UNKNOWN;
     if (answer.verdict === 'unstable') {
       colour = UNSTABLE;
-    } else if (loads && kind !== Kind.kFixed) {
+    } else if (loads && role !== Role.kFixed) {
       colour = loads.isBroken[slot] ? brokenColour('paper') : loadColour('paper', loads.ratio[slot]);
     }
-    drawCube(context, project(robot.cellAt(slot)), kind === Kind.kPlanned ? mix(colour, [255, 255, 255], 0.4) : colour);
+    drawCube(context, project(robot.cellAt(slot)), role === Role.kPlanned ? mix(colour, [255, 255, 255], 0.4) : colour);
   }
 }
 
 /** Seen from +x, -y and above, as on the stage. */
 const project = ([x, y, z]: readonly number[]) => [0.866 * (x + y), 0.5 * (x - y) - z];
-const depth = (robot: Robot, slot: number) => {
+const depth = (robot: EditedRobot, slot: number) => {
   const [x, y, z] = robot.cellAt(slot);
   return x - y + z;
 };

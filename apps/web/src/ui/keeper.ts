@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: The holdfast authors
 // SPDX-License-Identifier: Apache-2.0
+import type { EditedRobot } from '../model/edited_robot';
 import { Kept, originOf, type KeptRobot } from '../model/kept';
-import type { Robot } from '../model/robot';
-import type { App } from './app';
+import type { Workbench } from '../model/workbench';
 import { addMessage, make, tell } from './dom';
 import { askedFor } from './start';
 
@@ -14,17 +14,17 @@ const DELAY_PER_MODULE_MS = 0.03;
 export class Keeper {
   private readonly kept = Kept.open();
   /** Changed and not kept yet. */
-  private pending?: Robot;
+  private pending?: EditedRobot;
   private timer = 0;
   private isFull = false;
 
-  constructor(private readonly app: App) {
-    app.robotListeners.push((what) => (what === 'robot' ? this.flush() : this.changed()));
+  constructor(private readonly bench: Workbench) {
+    bench.robotListeners.push((what) => (what === 'robot' ? this.flush() : this.changed()));
     window.addEventListener('pagehide', () => this.flush());
     document.addEventListener('visibilitychange', () => this.flush());
     window.addEventListener('beforeunload', (event) => {
       this.flush();
-      if (app.robot.isEdited && (this.isFull || !this.kept)) {
+      if (bench.robot.isEdited && (this.isFull || !this.kept)) {
         event.preventDefault();
       }
     });
@@ -32,7 +32,7 @@ export class Keeper {
 
   /** The robot on the page is not as it was opened. */
   changed(): void {
-    this.pending = this.app.robot;
+    this.pending = this.bench.robot;
     clearTimeout(this.timer);
     const delay = DELAY_MS + DELAY_PER_MODULE_MS * this.pending.count;
     this.timer = window.setTimeout(() => this.flush(), delay);
@@ -65,13 +65,13 @@ export class Keeper {
     return this.kept?.list() ?? [];
   }
 
-  restore(entry: KeptRobot): Robot {
+  restore(entry: KeptRobot): EditedRobot {
     return this.kept!.restore(entry);
   }
 
   open(entry: KeptRobot): boolean {
     try {
-      this.app.history.replace(`bringing back ${nameOf(entry)}`, this.restore(entry));
+      this.bench.history.replace(`bringing back ${nameOf(entry)}`, this.restore(entry));
       return true;
     } catch (error) {
       tell(error instanceof Error ? error.message : String(error), true);

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The holdfast authors
 // SPDX-License-Identifier: Apache-2.0
-import { Kind, type Cell } from '../core/types';
-import { DIRECTIONS, plus } from '../model/robot';
+import { DIRECTIONS, Role, plus, type Cell } from '../model/cell';
+import type { Workbench } from '../model/workbench';
 import type { App } from './app';
 import { byId, say } from './dom';
 
@@ -50,7 +50,7 @@ export function listenToKeys(app: App, actions: Record<string, () => void>): voi
     if (target.matches(CONTROLS) || event.ctrlKey || event.metaKey || event.altKey) {
       return;
     }
-    if (onStage(app, event) || letter(app, actions, event.key)) {
+    if (onStage(app, event) || letter(app.bench, actions, event.key)) {
       event.preventDefault();
     }
   });
@@ -61,29 +61,32 @@ function onStage(app: App, event: KeyboardEvent): boolean {
   if (document.activeElement !== app.stage.canvas) {
     return false;
   }
+  const { bench } = app;
+  const { cursor } = bench;
   const step = stepOf(app, event.key);
   if (step) {
-    app.moveCursor(app.cursor ? plus(app.cursor, step) : startOf(app));
-    if (event.shiftKey && app.cursor) {
-      app.use([app.cursor]);
-      app.moveCursor(app.cursor);
+    const next = cursor ? plus(cursor, step) : startOf(bench);
+    app.moveCursor(next);
+    if (event.shiftKey) {
+      bench.use([next]);
+      app.moveCursor(next);
     }
     return true;
   }
   if (event.key === 'Enter' || event.key === ' ') {
-    if (app.cursor) {
-      const label = app.tool === 'look' ? 'nothing is done: the tool is look' : '';
-      app.use([app.cursor]);
-      app.moveCursor(app.cursor);
+    if (cursor) {
+      const label = bench.tool === 'look' ? 'nothing is done: the tool is look' : '';
+      bench.use([cursor]);
+      app.moveCursor(cursor);
       say(label);
     } else {
-      app.moveCursor(startOf(app));
+      app.moveCursor(startOf(bench));
     }
     return true;
   }
-  if ((event.key === 'Delete' || event.key === 'Backspace') && app.cursor) {
-    app.edit('removing 1', [app.cursor], undefined);
-    app.moveCursor(app.cursor);
+  if ((event.key === 'Delete' || event.key === 'Backspace') && cursor) {
+    bench.edit('removing 1', [cursor], undefined);
+    app.moveCursor(cursor);
     return true;
   }
   if (event.key === 'Escape') {
@@ -93,8 +96,8 @@ function onStage(app: App, event: KeyboardEvent): boolean {
   return false;
 }
 
-function startOf(app: App): Cell {
-  return app.robot.count > 0 ? app.robot.cellAt(app.robot.count - 1) : [0, 0, app.robot.supportZ];
+function startOf({ robot }: Workbench): Cell {
+  return robot.count > 0 ? robot.cellAt(robot.count - 1) : [0, 0, robot.supportZ];
 }
 
 /** The lattice direction that an arrow means as the robot is seen now. */
@@ -115,16 +118,16 @@ function stepOf(app: App, key: string): Cell | undefined {
   return [right * rx - away * ry, right * ry + away * rx, 0];
 }
 
-function letter(app: App, actions: Record<string, () => void>, key: string): boolean {
-  const kinds: Record<string, Kind> = { 1: Kind.kExisting, 2: Kind.kPlanned, 3: Kind.kFixed };
-  if (key in kinds) {
-    app.setTool(app.tool === 'paint' ? 'paint' : 'add', kinds[key]);
+function letter(bench: Workbench, actions: Record<string, () => void>, key: string): boolean {
+  const roles: Record<string, Role> = { 1: Role.kExisting, 2: Role.kPlanned, 3: Role.kFixed };
+  if (key in roles) {
+    bench.setRole(roles[key]);
     return true;
   }
   const tools = { a: 'add', d: 'remove', p: 'paint', v: 'look' } as const;
   const lower = key.toLowerCase();
   if (lower in tools) {
-    app.setTool(tools[lower as keyof typeof tools]);
+    bench.setTool(tools[lower as keyof typeof tools]);
     return true;
   }
   if (key === '[' || key === ']') {

@@ -1,7 +1,9 @@
 // SPDX-FileCopyrightText: The holdfast authors
 // SPDX-License-Identifier: Apache-2.0
+import VOCABULARY from 'virtual:vocabulary';
 import { CoreClient, Cancelled } from '../core/client';
-import { Kind, LogEvent, type Trace } from '../core/types';
+import { LogEvent, type Choice, type Trace } from '../core/types';
+import { Role } from '../model/cell';
 import { UNKNOWN, UNSTABLE, css, loadColour, brokenColour, mix, type Rgb } from '../view/colours';
 import { Packets } from '../view/packets';
 import { moduleLoads, type ModuleLoads } from '../view/robot_view';
@@ -10,7 +12,7 @@ import { byId, icon, make, say, tell, type IconName } from './dom';
 
 /** Plays what the modules tell each other until every one of them knows the verdict. */
 
-const PHASES = ['discovery', 'coordinates', 'election', 'tree', 'mass', 'simplified', 'equilibrium', 'model', 'overload', 'done'];
+/** By agent::Phase, as the vocabulary's phases. */
 const PHASE_COLOURS: Rgb[] = [
   [150, 156, 164], [86, 156, 196], [70, 120, 190], [64, 148, 140], [120, 160, 90],
   [190, 160, 70], [226, 130, 60], [190, 100, 150], [150, 90, 180], [90, 100, 110],
@@ -58,7 +60,8 @@ export class Player {
 
   constructor(private readonly app: App) {
     app.stage.scene.add(this.packets.points);
-    app.moreMotion = (now) => this.animate(now);
+    app.stage.motions.push((now) => this.animate(now));
+    app.bench.robotListeners.push(() => this.close());
     byId('simulate').onclick = () => void this.run();
     this.button('phase-back', 'phaseBack', () => this.jump(this.phaseStops, -1));
     this.button('step-back', 'stepBack', () => this.jump(this.stops, -1));
@@ -69,6 +72,8 @@ export class Player {
       this.pause();
       this.show((Number((event.target as HTMLInputElement).value) / 10_000) * this.end);
     };
+    offer('method', VOCABULARY.methods);
+    offer('link', VOCABULARY.links);
     const options = SPEEDS.map((speed) =>
       make('option', { value: String(speed), textContent: `${speed} ×`, selected: speed === SPEED_FIRST }),
     );
@@ -115,7 +120,7 @@ export class Player {
     this.close();
     byId('simulate').textContent = 'Stop the simulation';
     const value = (id: string) => Number(byId<HTMLSelectElement>(id).value);
-    const { data, slots } = app.robot.toData();
+    const { data, slots } = app.bench.robot.toData();
     try {
       const choice = { method: value('method'), link: value('link'), seed: 1, lossPerMille: 0 };
       const trace = await this.client.simulate(data, choice);
@@ -134,7 +139,7 @@ export class Player {
     this.slots = slots;
     this.moduleOf = new Int32Array(slots.length);
     slots.forEach((slot, module) => (this.moduleOf[slot] = module));
-    this.agentCount = slots.filter((slot) => app.robot.kindAt(slot) !== Kind.kPlanned).length;
+    this.agentCount = slots.filter((slot) => app.bench.robot.roleAt(slot) !== Role.kPlanned).length;
     const answer = app.finding?.answer;
     this.loads = answer?.has_loads ? moduleLoads({ answer, slots: app.finding!.slots }) : undefined;
     const { times, events } = trace;
@@ -274,7 +279,7 @@ export class Player {
 
   private placePackets(trace: Trace, time: number): void {
     const { events, times } = trace;
-    const { robot } = this.app;
+    const { robot } = this.app.bench;
     this.packets.clear();
     for (let i = this.cursor.next - 1; i >= 0 && times[2 * i] >= time - this.durationMax; --i) {
       const at = EVENT_INTEGERS * i;
@@ -297,7 +302,7 @@ export class Player {
     const phase = Math.max(...moment.phases, 0);
     const time = trace.ticks_per_second > 0 ? `${(this.time / trace.ticks_per_second).toFixed(3)} s` : `round ${Math.floor(this.time)}`;
     const order = moment.order > 0 ? ` · order: ${trace.orders[moment.order].text}` : '';
-    byId('moment').textContent = `${time} · ${PHASES[phase]} · step ${moment.steps} · ${moment.packets} packets · ${knowing} of ${agents} know the verdict${order}`;
+    byId('moment').textContent = `${time} · ${VOCABULARY.phases[phase]} · step ${moment.steps} · ${moment.packets} packets · ${knowing} of ${agents} know the verdict${order}`;
     byId<HTMLInputElement>('time').value = String(Math.round((10_000 * this.time) / Math.max(this.end, 1)));
   }
 
@@ -336,4 +341,9 @@ export class Player {
     byId(id).append(icon(name));
     byId(id).onclick = action;
   }
+}
+
+/** Fills a list to choose from. */
+function offer(id: string, choices: readonly Choice[]): void {
+  byId(id).append(...choices.map(({ value, text }) => make('option', { value: String(value), textContent: text })));
 }

@@ -3,7 +3,7 @@
 import { Output } from '../core/types';
 import { FIRST_EXAMPLE } from '../model/examples';
 import { isLink, readFragment } from '../model/link';
-import type { App } from './app';
+import type { Workbench } from '../model/workbench';
 import { byId, make, tell } from './dom';
 import { BROKEN_LINK, openFragment, openText, reportOf } from './files';
 import type { Keeper } from './keeper';
@@ -32,8 +32,8 @@ export const askedFor = () => (isLink(location.hash) ? location.hash : (readStar
 const encoded = (text: string) => new TextEncoder().encode(text);
 
 /** What was asked for is shown as it is; what was built from it is offered. */
-export async function openFirst(app: App, keeper: Keeper): Promise<void> {
-  const isLinkOpen = await openFragment(app).catch(() => {
+export async function openFirst(bench: Workbench, keeper: Keeper): Promise<void> {
+  const isLinkOpen = await openFragment(bench).catch(() => {
     tell(BROKEN_LINK, true);
     return false;
   });
@@ -41,11 +41,11 @@ export async function openFirst(app: App, keeper: Keeper): Promise<void> {
   if (isLinkOpen) {
     keeper.offer();
   } else if (viewed) {
-    await openText(app, encoded(viewed.structure), viewed.name);
+    await openText(bench, encoded(viewed.structure), viewed.name);
     showReport(viewed);
     keeper.offer();
   } else if (isLinkOpen === false || !keeper.bringBack()) {
-    await openText(app, encoded(FIRST_EXAMPLE.source()), FIRST_EXAMPLE.name);
+    await openText(bench, encoded(FIRST_EXAMPLE.source()), FIRST_EXAMPLE.name);
   }
 }
 

@@ -9,7 +9,7 @@ import {
   Mesh,
   ShaderMaterial,
 } from 'three';
-import { DIRECTIONS } from '../model/robot';
+import { DIRECTIONS } from '../model/cell';
 
 /** All modules in one draw call: a box per module, its place, colour and motion as attributes. */
 

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: The holdfast authors
 // SPDX-License-Identifier: Apache-2.0
 import type { Ray } from 'three';
-import type { Cell } from '../core/types';
-import { DIRECTIONS, type Robot } from '../model/robot';
+import { DIRECTIONS, type Cell } from '../model/cell';
+import type { EditedRobot } from '../model/edited_robot';
 
 /** Where a ray meets the robot or the ground. */
 export interface Hit {
@@ -15,12 +15,12 @@ export interface Hit {
 }
 
 /** Walks through the lattice from cell to cell [Amanatides 1987]: the robot's size costs nothing. */
-export function pick(robot: Robot, ray: Ray): Hit | undefined {
+export function pick(robot: EditedRobot, ray: Ray): Hit | undefined {
   const bounds = robot.bounds();
   return (bounds && walk(robot, ray, bounds.low, bounds.high)) ?? pickGround(robot, ray);
 }
 
-function walk(robot: Robot, ray: Ray, low: Cell, high: Cell): Hit | undefined {
+function walk(robot: EditedRobot, ray: Ray, low: Cell, high: Cell): Hit | undefined {
   const origin = ray.origin.toArray();
   const direction = ray.direction.toArray();
   let enter = 0;
@@ -56,7 +56,7 @@ function walk(robot: Robot, ray: Ray, low: Cell, high: Cell): Hit | undefined {
   return undefined;
 }
 
-function pickGround(robot: Robot, ray: Ray): Hit | undefined {
+function pickGround(robot: EditedRobot, ray: Ray): Hit | undefined {
   const distance = (robot.supportZ - 0.5 - ray.origin.z) / ray.direction.z;
   if (!(distance > 0) || distance > 2000) {
     return undefined;
@@ -68,7 +68,7 @@ function pickGround(robot: Robot, ray: Ray): Hit | undefined {
 }
 
 /** The neighbour whose seam is near the point on the face, if there is one. */
-export function nearSeam(robot: Robot, hit: Hit): number | undefined {
+export function nearSeam(robot: EditedRobot, hit: Hit): number | undefined {
   const SEAM = 0.3;
   let best: number | undefined;
   let reach = SEAM;

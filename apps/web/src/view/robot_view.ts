@@ -2,8 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 import { BoxGeometry, EdgesGeometry, LineBasicMaterial, LineSegments, Mesh, MeshBasicMaterial, Vector3 } from 'three';
 import { mergeGeometries } from 'three/examples/jsm/utils/BufferGeometryUtils.js';
-import { Kind, LOAD_FIELDS, MOTION_FIELDS, type Answer, type Cell } from '../core/types';
-import { DIRECTIONS, PITCH_INDEX, plus, type Robot } from '../model/robot';
+import { LOAD_FIELDS, MOTION_FIELDS, type Answer } from '../core/types';
+import { DIRECTIONS, Role, plus, type Cell } from '../model/cell';
+import type { EditedRobot } from '../model/edited_robot';
 import { FIXED, UNKNOWN, UNSTABLE, brokenColour, loadColour, mix, type Rgb, type ScaleName } from './colours';
 import { ModuleMesh, Pattern } from './modules';
 import type { Stage } from './stage';
@@ -64,7 +65,7 @@ export class RobotView {
   private drawn = new Int32Array(0);
   /** Where in `drawn` each slot is; -1: nowhere. */
   private instances = new Int32Array(0);
-  private robot?: Robot;
+  private robot?: EditedRobot;
   private judged?: Judged;
   private loads?: ModuleLoads;
   private hasFaces = false;
@@ -84,7 +85,7 @@ export class RobotView {
   }
 
   /** Another shape; colours follow with paint(). */
-  show(robot: Robot, judged: Judged | undefined): void {
+  show(robot: EditedRobot, judged: Judged | undefined): void {
     this.robot = robot;
     this.judged = judged;
     this.loads = judged?.answer.has_loads ? moduleLoads(judged) : undefined;
@@ -115,15 +116,15 @@ export class RobotView {
     }
     const isUnstable = judged?.answer.verdict === 'unstable';
     this.drawn.forEach((slot, i) => {
-      const kind = robot.kindAt(slot);
+      const role = robot.roleAt(slot);
       const isBroken = !isUnstable && loads?.isBroken[slot] === 1;
       const own = this.paintOver?.(slot);
-      const colour = own ?? this.colour(kind, loads?.ratio[slot], isBroken, isUnstable);
-      const isPlanned = kind === Kind.kPlanned;
+      const colour = own ?? this.colour(role, loads?.ratio[slot], isBroken, isUnstable);
+      const isPlanned = role === Role.kPlanned;
       this.modules.tints.set(isPlanned && !own ? mix(colour, WHITE, 0.38) : colour, 3 * i);
       this.modules.patterns[i] =
         (isPlanned ? Pattern.kPlanned : 0) +
-        (kind === Kind.kFixed ? Pattern.kFixed : 0) +
+        (role === Role.kFixed ? Pattern.kFixed : 0) +
         (isBroken && !own ? Pattern.kBroken : 0);
     });
     this.pointed.forEach((slot) => this.mark(slot, Pattern.kPointed));
@@ -173,8 +174,8 @@ export class RobotView {
   }
 
   /** Modules that are about to be attached, in the colour of what comes of it; all faces have its mark. */
-  showGhosts(cells: readonly Cell[], kind: Kind, colour: Rgb, code: FaceCode): void {
-    const pattern = { [Kind.kExisting]: 0, [Kind.kPlanned]: Pattern.kPlanned, [Kind.kFixed]: Pattern.kFixed }[kind];
+  showGhosts(cells: readonly Cell[], role: Role, colour: Rgb, code: FaceCode): void {
+    const pattern = { [Role.kExisting]: 0, [Role.kPlanned]: Pattern.kPlanned, [Role.kFixed]: Pattern.kFixed }[role];
     const packed = DIRECTIONS.reduce((sum, _, side) => sum + code * FACE_BASE ** side, 0);
     this.ghosts.reserve(cells.length);
     cells.forEach((cell, i) => {
@@ -236,11 +237,11 @@ export class RobotView {
     }
   }
 
-  private colour(kind: Kind, ratio: number | undefined, isBroken: boolean, isUnstable: boolean): Rgb {
+  private colour(role: Role, ratio: number | undefined, isBroken: boolean, isUnstable: boolean): Rgb {
     if (isUnstable) {
       return UNSTABLE;
     }
-    if (kind === Kind.kFixed) {
+    if (role === Role.kFixed) {
       return FIXED;
     }
     if (ratio === undefined || Number.isNaN(ratio)) {
@@ -258,7 +259,7 @@ export class RobotView {
       turns.fill(0, 0, 3 * this.drawn.length);
       return;
     }
-    const pitch = this.robot!.material[PITCH_INDEX];
+    const pitch = this.robot!.pitchMm;
     const moduleOf = new Int32Array(this.judged!.slots.length);
     this.judged!.slots.forEach((slot, module) => (moduleOf[slot] = module));
     this.drawn.forEach((slot, i) => {
@@ -273,7 +274,7 @@ export class RobotView {
   private drawnPlace(slot: number, module: number): Vector3 {
     const place = new Vector3().fromArray(this.robot!.cellAt(slot));
     const { displacements } = this.judged!.answer;
-    const factor = this.exaggeration / this.robot!.material[PITCH_INDEX];
+    const factor = this.exaggeration / this.robot!.pitchMm;
     return displacements.length > 0
       ? place.addScaledVector(new Vector3().fromArray(displacements, MOTION_FIELDS * module), factor)
       : place;

@@ -13,7 +13,10 @@ import {
   type Ray,
 } from 'three';
 import { OrbitControls } from 'three/examples/jsm/controls/OrbitControls.js';
-import type { Cell } from '../core/types';
+import type { Cell } from '../model/cell';
+
+/** Moves something to where it is at a time; true while it goes on moving. */
+export type Motion = (now: number) => boolean;
 
 /** The one canvas: renderer, camera and its controls. Draws only when something has changed. */
 export class Stage {
@@ -27,9 +30,10 @@ export class Stage {
   private frame = 0;
   /** Nothing is drawn before there is something to see. */
   isReady = false;
-  /** Called before each frame with the time; true asks for another one. */
-  beforeFrame: (now: number) => boolean = () => false;
-  afterFrame: () => void = () => undefined;
+  /** What moves: called before each frame with its time. */
+  readonly motions: Motion[] = [];
+  /** What follows the picture: called after each frame. */
+  readonly followers: (() => void)[] = [];
 
   constructor(
     readonly canvas: HTMLCanvasElement,
@@ -58,10 +62,10 @@ export class Stage {
     }
     this.frame ||= requestAnimationFrame((now) => {
       this.frame = 0;
-      const isMoving = this.beforeFrame(now);
+      const moving = this.motions.filter((motion) => motion(now));
       this.render();
-      this.afterFrame();
-      if (isMoving) {
+      this.followers.forEach((follow) => follow());
+      if (moving.length > 0) {
         this.draw();
       }
     });

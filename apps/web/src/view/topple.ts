@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 import { Matrix4, Vector3 } from 'three';
 import type { Point } from '../core/types';
-import type { Robot } from '../model/robot';
+import type { EditedRobot } from '../model/edited_robot';
 
 /** A robot that turns over an edge of its support polygon until it lies. Lengths in cells. */
 export class Topple {
@@ -12,7 +12,7 @@ export class Topple {
   private readonly acceleration: number;
 
   /** The polygon lies on the left of the edge from a to b, so the robot falls to its right. */
-  constructor(robot: Robot, [a, b]: [Point, Point]) {
+  constructor(robot: EditedRobot, [a, b]: [Point, Point]) {
     const ground = robot.supportZ - 0.5;
     this.origin = new Vector3(a[0], a[1], ground);
     this.axis = new Vector3(b[0] - a[0], b[1] - a[1], 0).normalize();
@@ -40,7 +40,7 @@ export class Topple {
 }
 
 /** The smallest angle at which a corner on the falling side meets the ground. */
-function fallAngle(robot: Robot, origin: Vector3, out: Vector3): number {
+function fallAngle(robot: EditedRobot, origin: Vector3, out: Vector3): number {
   let angle = Math.PI / 2;
   for (let slot = 0; slot < robot.count; ++slot) {
     const [x, y, z] = robot.cellAt(slot);

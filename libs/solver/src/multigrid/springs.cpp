@@ -10,14 +10,6 @@
 namespace holdfast::solver {
 namespace {
 
-/// Chosen on solids, plates, frames and random robots: with 0 plates need twice the iterations,
-/// with 1 solids need half as many again.
-constexpr double kBendShare = 0.6;
-
-/// The clusters' corrections may be a little too small rather than too large; 1 to 1.3 differ
-/// little.
-constexpr double kCorrection = 1.2;
-
 using Mat3 = std::array<std::array<double, 3>, 3>;
 
 Mat3 inverse_of(const Mat3& m) {

@@ -30,6 +30,25 @@ inline constexpr int kCellBytes = 9;
 /// A greeting differs in two bits from data, so that few errors make one of the other.
 enum class PacketKind : std::uint8_t { kData, kAcknowledge, kPing, kHello };
 
+/// The two bytes in front of every packet.
+struct PacketHeader {
+  PacketKind kind = PacketKind::kData;
+  std::uint8_t sequence = 0;  ///< Of a data packet.
+  std::uint8_t version = 0;
+  std::uint8_t expected = 0;  ///< The sequence number that is expected from the other side.
+};
+
+inline constexpr int kSequenceCount = 64;
+
+/// `packet` has two bytes at least.
+constexpr PacketHeader header_of(std::span<const std::uint8_t> packet) {
+  constexpr unsigned kMask = kSequenceCount - 1;
+  return {.kind = static_cast<PacketKind>(packet[0] >> 6U),
+          .sequence = static_cast<std::uint8_t>(packet[0] & kMask),
+          .version = static_cast<std::uint8_t>(packet[1] >> 6U),
+          .expected = static_cast<std::uint8_t>(packet[1] & kMask)};
+}
+
 enum class MessageType : std::uint8_t {
   kJoin = 1,     ///< A wave: take part in a round, and where you are.
   kEcho,         ///< The wave's answer: who is behind me.

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: The holdfast authors
 // SPDX-License-Identifier: Apache-2.0
-import { Kind, type Cell, type RobotData } from '../core/types';
+import { DIRECTIONS, Role, cellText, plus, type Cell } from './cell';
+import { TABLE_I, pitchMm } from './material';
 
 /** Cells are counted from a robot's first one and stay within this distance of it. */
 const REACH = 100_000;
@@ -8,27 +9,15 @@ const SPAN = 2 * REACH;
 /** Between the keys of neighbours. */
 const STRIDES = [1, SPAN, SPAN * SPAN];
 
-/** Table I of [Piranda 2021], in the order of model::Material. */
-export const TABLE_I = Float64Array.of(
-  100, 40, 40, 1600, 40 ** 4 / 12, 40 ** 4 / 12, 2.25 * 20 ** 4, 0.3, 0.06106, 9.81, 11.98, 14.97,
-  1e-4,
-);
-export const PITCH_INDEX = 1;
-
-/** +x, -x, +y, -y, +z, -z, as in base::Direction. */
-export const DIRECTIONS: readonly Cell[] = [
-  [1, 0, 0],
-  [-1, 0, 0],
-  [0, 1, 0],
-  [0, -1, 0],
-  [0, 0, 1],
-  [0, 0, -1],
-];
-
 /** What a robot has beside its cells and its name, and what the answer depends on. */
 export interface Settings {
   supportZ: number;
   material: Float64Array;
+}
+
+/** Modules as the core sees them: x, y, z and role of each; existing ones come first. */
+export interface RobotData extends Settings {
+  modules: Int32Array;
 }
 
 /** Smallest and largest cell, coordinate by coordinate. */
@@ -49,24 +38,20 @@ function widen({ low, high }: Box, cell: Cell): void {
 
 const randomId = () => Array.from(crypto.getRandomValues(new Uint32Array(3)), (value) => value.toString(36)).join('');
 
-export const plus = (a: Cell, b: Cell): Cell => [a[0] + b[0], a[1] + b[1], a[2] + b[2]];
-export const equal = (a: Cell, b: Cell) => a[0] === b[0] && a[1] === b[1] && a[2] === b[2];
-export const cellText = (cell: Cell) => `(${cell.join(',')})`;
-
 /** One cell before and after; undefined where no module is. */
 export interface CellChange {
   cell: Cell;
-  before: Kind | undefined;
-  after: Kind | undefined;
+  before: Role | undefined;
+  after: Role | undefined;
 }
 
 /**
  * The robot that is being edited: modules in slots without gaps, found by their cell in constant
  * time. It may be anything that cells can be; whether it is a robot is for the core to say.
  */
-export class Robot {
+export class EditedRobot {
   private slots = new Map<number, number>();
-  /** x, y, z and kind of each slot. */
+  /** x, y, z and role of each slot. */
   private data = new Int32Array(64);
   private origin?: Cell;
   /** Undefined if there is no module, or if it has to be found again. */
@@ -82,10 +67,14 @@ export class Robot {
   /** The text of the file that it began with, for what the page does not show. */
   base = '';
 
-  static from(modules: Int32Array): Robot {
-    const robot = new Robot();
+  get pitchMm(): number {
+    return pitchMm(this.material);
+  }
+
+  static from(modules: Int32Array): EditedRobot {
+    const robot = new EditedRobot();
     for (let i = 0; i < modules.length; i += 4) {
-      robot.set([modules[i], modules[i + 1], modules[i + 2]], modules[i + 3] as Kind);
+      robot.set([modules[i], modules[i + 1], modules[i + 2]], modules[i + 3] as Role);
     }
     return robot;
   }
@@ -95,9 +84,9 @@ export class Robot {
     return key === undefined ? undefined : this.slots.get(key);
   }
 
-  kind(cell: Cell): Kind | undefined {
+  role(cell: Cell): Role | undefined {
     const slot = this.slot(cell);
-    return slot === undefined ? undefined : (this.data[4 * slot + 3] as Kind);
+    return slot === undefined ? undefined : (this.data[4 * slot + 3] as Role);
   }
 
   has(cell: Cell): boolean {
@@ -108,7 +97,7 @@ export class Robot {
     return [this.data[4 * slot], this.data[4 * slot + 1], this.data[4 * slot + 2]];
   }
 
-  kindAt(slot: number): Kind {
+  roleAt(slot: number): Role {
     return this.data[4 * slot + 3];
   }
 
@@ -118,20 +107,20 @@ export class Robot {
     return STRIDES.every((stride) => this.slots.has(key + stride) && this.slots.has(key - stride));
   }
 
-  set(cell: Cell, kind: Kind | undefined): void {
+  set(cell: Cell, role: Role | undefined): void {
     this.origin ??= cell;
     const key = this.key(cell);
     if (key === undefined) {
       throw new RangeError(`${cellText(cell)} is more than ${REACH} cells from the first module`);
     }
     const slot = this.slots.get(key);
-    if (kind === undefined) {
+    if (role === undefined) {
       this.drop(key, slot);
     } else if (slot !== undefined) {
-      this.data[4 * slot + 3] = kind;
+      this.data[4 * slot + 3] = role;
     } else {
       this.slots.set(key, this.count);
-      this.write(this.count++, cell, kind);
+      this.write(this.count++, cell, role);
       if (this.box) {
         widen(this.box, cell);
       }
@@ -154,13 +143,22 @@ export class Robot {
     return [...places.values()];
   }
 
+  /** Of the centre of mass above the ground, in cells. */
+  massHeight(): number {
+    let sum = 0;
+    for (let slot = 0; slot < this.count; ++slot) {
+      sum += this.data[4 * slot + 2];
+    }
+    return sum / Math.max(this.count, 1) - this.supportZ + 0.5;
+  }
+
   /** For the core, with the slot of each of its modules: existing ones come first. */
   toData(): { data: RobotData; slots: Int32Array } {
     const slots = new Int32Array(this.count);
     let next = 0;
     for (const isPlanned of [false, true]) {
       for (let slot = 0; slot < this.count; ++slot) {
-        if ((this.kindAt(slot) === Kind.kPlanned) === isPlanned) {
+        if ((this.roleAt(slot) === Role.kPlanned) === isPlanned) {
           slots[next++] = slot;
         }
       }
@@ -174,7 +172,7 @@ export class Robot {
     return { data: { modules, supportZ: this.supportZ, material: this.material }, slots };
   }
 
-  /** x, y, z and kind of each module, in the order of its slots. */
+  /** x, y, z and role of each module, in the order of its slots. */
   toModules(): Int32Array {
     return this.data.slice(0, 4 * this.count);
   }
@@ -212,12 +210,12 @@ export class Robot {
     const last = --this.count;
     if (slot !== last) {
       const cell = this.cellAt(last);
-      this.write(slot, cell, this.kindAt(last));
+      this.write(slot, cell, this.roleAt(last));
       this.slots.set(this.key(cell)!, slot);
     }
   }
 
-  private write(slot: number, cell: Cell, kind: Kind): void {
+  private write(slot: number, cell: Cell, role: Role): void {
     if (4 * slot + 4 > this.data.length) {
       const larger = new Int32Array(2 * this.data.length);
       larger.set(this.data);
@@ -226,6 +224,6 @@ export class Robot {
     this.data[4 * slot] = cell[0];
     this.data[4 * slot + 1] = cell[1];
     this.data[4 * slot + 2] = cell[2];
-    this.data[4 * slot + 3] = kind;
+    this.data[4 * slot + 3] = role;
   }
 }

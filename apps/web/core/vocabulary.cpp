@@ -1,0 +1,87 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#include "vocabulary.hpp"
+
+#include <nlohmann/json.hpp>
+
+namespace holdfast::web {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct MethodChoice {
+  agent::Method method;
+  const char* text;
+};
+
+struct LinkChoice {
+  sim::LinkModel (*make)();
+  const char* text;
+};
+
+/// In the order in which they are offered, the first one chosen.
+constexpr MethodChoice kMethods[] = {
+    {agent::Method::kElimination, "elimination"},
+    {agent::Method::kPolynomial, "polynomial"},
+    {agent::Method::kConjugateGradients, "conjugate gradients"},
+    {agent::Method::kBlockJacobi, "block Jacobi"},
+    {agent::Method::kJacobi, "Jacobi (the paper's)"},
+};
+constexpr LinkChoice kLinks[] = {
+    {sim::blinky_blocks_v1, "38,400 baud"},
+    {sim::blinky_blocks_v2, "115,200 baud"},
+    {sim::unit, "rounds"},
+};
+
+Json material_json() {
+  Json list = Json::array();
+  for (const model::MaterialParameter& parameter : model::kMaterialParameters) {
+    list.push_back({{"key", parameter.key},
+                    {"label", parameter.label},
+                    {"unit", parameter.unit},
+                    {"table_i", model::Material{}.*parameter.value}});
+  }
+  return list;
+}
+
+Json phases_json() {
+  Json list = Json::array();
+  for (std::size_t phase = 0; phase < sim::kPhaseCount; ++phase) {
+    list.push_back(sim::name(static_cast<agent::Phase>(phase)));
+  }
+  return list;
+}
+
+Json methods_json() {
+  Json list = Json::array();
+  for (const auto& [method, text] : kMethods) {
+    list.push_back({{"value", static_cast<int>(method)}, {"text", text}});
+  }
+  return list;
+}
+
+Json links_json() {
+  Json list = Json::array();
+  for (const LinkChoice& choice : kLinks) {
+    list.push_back({{"value", list.size()}, {"text", choice.text}});
+  }
+  return list;
+}
+
+}  // namespace
+
+sim::LinkModel link_of(std::int32_t value) {
+  const auto at = static_cast<std::size_t>(value);
+  HOLDFAST_CHECK(at < std::size(kLinks));
+  return kLinks[at].make();
+}
+
+std::string vocabulary_json() {
+  const Json vocabulary = {{"material", material_json()},
+                           {"phases", phases_json()},
+                           {"methods", methods_json()},
+                           {"links", links_json()}};
+  return vocabulary.dump();
+}
+
+}  // namespace holdfast::web

@@ -1,0 +1,13 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+import VOCABULARY from 'virtual:vocabulary';
+
+/** The numbers that mechanics depend on; a material has them in this order. */
+export const PARAMETERS = VOCABULARY.material;
+
+/** Table I of [Piranda 2021], Blinky Blocks. */
+export const TABLE_I = Float64Array.from(PARAMETERS, ({ table_i }) => table_i);
+
+const PITCH = PARAMETERS.findIndex(({ key }) => key === 'pitch_mm');
+
+export const pitchMm = (material: Float64Array) => material[PITCH];

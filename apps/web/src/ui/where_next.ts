@@ -1,0 +1,148 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+import { Places } from '../core/places';
+import type { Trial, Verdict } from '../core/types';
+import { ROLE_NAMES, type Cell, type Role } from '../model/cell';
+import type { Workbench } from '../model/workbench';
+import { UNKNOWN, loadColour, verdictColour, type Rgb } from '../view/colours';
+import { FaceCode, type RobotView } from '../view/robot_view';
+import { byId, say } from './dom';
+
+/** Robots up to this size are tried at once where the pointer is. */
+const TRIAL_COUNT_MAX = 1500;
+
+const CODES: Record<Verdict, FaceCode> = {
+  safe: FaceCode.kSafe,
+  overload: FaceCode.kOverload,
+  unstable: FaceCode.kUnstable,
+  undecided: FaceCode.kUndecided,
+};
+
+const codeOf = ({ verdict }: Trial) => (verdict === null ? FaceCode.kNone : CODES[verdict]);
+
+/** Where the next module may go: tints free faces, and the ghost of what would be attached. */
+export class WhereNext {
+  readonly places = new Places();
+  /** Modules that would be attached. */
+  previewed: readonly Cell[] = [];
+  /** The answer to the robot as it is has come; before that nothing is tried. */
+  knowsLoads = false;
+  private isShown = false;
+  private isTrying = false;
+  /** That of the workbench before its last change. */
+  private role: Role;
+
+  constructor(
+    private readonly bench: Workbench,
+    private readonly view: RobotView,
+  ) {
+    this.role = bench.role;
+    bench.toolListeners.push(() => this.toolChanged());
+  }
+
+  /** Forgets all: the robot has changed. */
+  reset(): void {
+    this.knowsLoads = false;
+    this.places.reset();
+    this.preview([]);
+  }
+
+  show(isShown: boolean): void {
+    this.isShown = isShown;
+    if (!isShown) {
+      this.places.reset();
+    }
+    void this.update();
+  }
+
+  /** Finds out what is not known of free faces. */
+  async update(): Promise<void> {
+    const { robot, role } = this.bench;
+    const button = byId('faces');
+    this.paint();
+    button.textContent = 'Where next?';
+    byId('face-legend').hidden = !this.isShown;
+    if (!this.isShown || !this.knowsLoads) {
+      return;
+    }
+    const places = robot.freePlaces();
+    const isDone = await this.places.findAll(robot, places, role, (count) => {
+      if (this.isShown && this.bench.robot === robot) {
+        button.textContent = `${Math.round((100 * count) / places.length)} %`;
+        this.paint();
+      }
+    });
+    if (isDone && this.isShown) {
+      button.textContent = 'Where next?';
+      const safe = places.filter((place) => this.places.known(place, role)?.verdict === 'safe').length;
+      say(`${safe} of ${places.length} free places are safe for one more ${ROLE_NAMES[role]} module`);
+    }
+  }
+
+  /** Modules that would be attached; coloured when it is known what would come of it. */
+  preview(cells: readonly Cell[]): void {
+    this.previewed = cells;
+    this.showPreview();
+    void this.tryPreviewed();
+  }
+
+  /** Draws what is known of free faces. */
+  paint(): void {
+    const code = (place: Cell) => (this.knowsLoads ? this.faceCode(place) : FaceCode.kWaiting);
+    this.view.showFaces(this.isShown ? code : undefined);
+  }
+
+  /** For who listens: what would come of a module in a free cell, if it is known. */
+  trialText(cell: Cell): string {
+    const { robot, role } = this.bench;
+    const verdict = robot.has(cell) ? undefined : this.places.known(cell, role)?.verdict;
+    return verdict ? `, would be ${verdict}` : '';
+  }
+
+  private toolChanged(): void {
+    const isOtherRole = this.role !== this.bench.role;
+    this.role = this.bench.role;
+    this.preview(this.bench.tool === 'add' ? this.previewed : []);
+    if (isOtherRole) {
+      void this.update();
+    }
+  }
+
+  private showPreview(): void {
+    const [place, ...others] = this.previewed;
+    const { role } = this.bench;
+    const trial = place && others.length === 0 ? this.places.known(place, role) : undefined;
+    const verdict = trial?.verdict;
+    const colour = trial && verdict ? this.colour(verdict, trial.ratio) : UNKNOWN;
+    const code = trial && verdict !== 'safe' ? codeOf(trial) : FaceCode.kNone;
+    this.view.showGhosts(this.previewed, role, colour, code);
+  }
+
+  private colour(verdict: Verdict, ratio: number): Rgb {
+    const { scale } = this.view;
+    return verdict === 'safe' ? loadColour(scale, Math.max(ratio, 0)) : verdictColour(verdict, scale);
+  }
+
+  /** One place at a time, and always where the pointer is now. */
+  private async tryPreviewed(): Promise<void> {
+    const { bench } = this;
+    if (this.isTrying || bench.robot.count === 0 || bench.robot.count > TRIAL_COUNT_MAX) {
+      return;
+    }
+    this.isTrying = true;
+    let isCurrent = true;
+    while (isCurrent && this.previewed.length === 1 && !this.places.known(this.previewed[0], bench.role)) {
+      isCurrent = (await this.places.find(bench.robot, this.previewed[0], bench.role)) !== undefined;
+      this.showPreview();
+    }
+    this.isTrying = false;
+  }
+
+  private faceCode(place: Cell): FaceCode {
+    if (place[2] < this.bench.robot.supportZ) {
+      return FaceCode.kNone;
+    }
+    const trial = this.places.known(place, this.bench.role);
+    return trial ? codeOf(trial) : FaceCode.kWaiting;
+  }
+}

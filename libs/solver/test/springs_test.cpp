@@ -1,0 +1,182 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+// The springs of the multigrid's levels beside their definitions: dense products with T(a), the
+// paper's K12, beam theory for a beam of another length.
+#include "../src/multigrid/springs.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Dense>
+#include <cmath>
+
+#include "../src/multigrid/beam_shapes.hpp"
+#include "../src/multigrid/weak_springs.hpp"
+#include "random_numbers.hpp"
+
+namespace holdfast::solver {
+namespace {
+
+using Dense = Eigen::Matrix<double, 6, 6>;
+
+Dense dense(const Mat& m) { return Eigen::Map<const Dense>(m.values.data()); }
+
+/// T(a) [u, t] = [u + t x a, t].
+Dense carrying(const Point& a) {
+  Dense t = Dense::Identity();
+  t(0, 4) = a[2];
+  t(0, 5) = -a[1];
+  t(1, 5) = a[0];
+  t(1, 3) = -a[2];
+  t(2, 3) = a[1];
+  t(2, 4) = -a[0];
+  return t;
+}
+
+/// A symmetric positive matrix with no other structure.
+Mat random_spring(base::Rng& rng) {
+  Dense a;
+  for (int i = 0; i < 36; ++i) {
+    a(i) = random_number(rng);
+  }
+  Mat result;
+  Eigen::Map<Dense>(result.values.data()) = a * a.transpose() + 0.1 * Dense::Identity();
+  return result;
+}
+
+Point random_point(base::Rng& rng) {
+  return {random_number(rng), 2 + 3 * random_number(rng), -2 * random_number(rng)};
+}
+
+/// Largest difference as a share of the largest entry.
+double difference(const Dense& a, const Dense& b) {
+  return (a - b).cwiseAbs().maxCoeff() / b.cwiseAbs().maxCoeff();
+}
+
+/// A dozen roundings of an entry.
+constexpr double kRounding = 3e-15;
+
+TEST(Springs, a_spring_seen_from_elsewhere_is_the_product_of_its_definition) {
+  base::Rng rng(1);
+  for (int turn = 0; turn < 100; ++turn) {
+    const Mat s = random_spring(rng);
+    const Point a = random_point(rng);
+    EXPECT_LT(difference(dense(times_carry(s, a)), dense(s) * carrying(a)), kRounding);
+    EXPECT_LT(difference(dense(carried(s, a)), carrying(a).transpose() * dense(s) * carrying(a)),
+              kRounding);
+  }
+}
+
+TEST(Springs, carried_there_and_back_a_spring_is_as_before) {
+  base::Rng rng(2);
+  for (int turn = 0; turn < 100; ++turn) {
+    const Mat s = random_spring(rng);
+    const Point a = random_point(rng);
+    const Mat back = carried(carried(s, a), {-a[0], -a[1], -a[2]});
+    // Entries grow by |a|^2 < 20 on the way, so that much more is rounded away.
+    EXPECT_LT(difference(dense(back), dense(s)), 100 * kRounding);
+  }
+}
+
+/// K_pq = -S T(x_p - x_q) is the paper's K12.
+TEST(Springs, a_beams_spring_couples_its_ends_as_k12_does) {
+  const model::Material material;
+  for (std::size_t direction = 0; direction < 6; ++direction) {
+    for (const std::size_t length : {1U, 2U, 7U}) {
+      const Spring spring = beam_spring(material, direction, length);
+      const Mat coupled = times_carry(spring.stiffness, solver::difference({}, spring.partner));
+      const Mat k12 = mechanics::block_12(long_beam(material, static_cast<int>(length)),
+                                          static_cast<base::Direction>(direction));
+      EXPECT_LT(difference(-dense(coupled), dense(k12)), kRounding);
+    }
+  }
+}
+
+/// At its middle a beam of length L gives by L/EA along it, L/GJ about it, L/EI about the axes
+/// across, and by L^3/12EI across: all four are independent there. Lengthened from L to R its
+/// compliance is that of a beam of length R, but that of the bending that shifts the middle,
+/// (R^2 - L^2)/12 of the rotation, only kBendShare is taken, and all is divided by kCorrection.
+TEST(Springs, a_stretched_beam_gives_as_beam_theory_says) {
+  const model::Material material;
+  for (std::size_t direction = 0; direction < 6; ++direction) {
+    const std::size_t axis = direction / 2;
+    for (const auto& [length, reach] : {std::pair{1, 2}, {2, 3}, {3, 11}, {4, 4}}) {
+      const Spring from = beam_spring(material, direction, static_cast<std::size_t>(length));
+      const Spring to = beam_spring(material, direction, static_cast<std::size_t>(reach));
+      const Mat longer = stretched(from.stiffness, from.middle, axis, from.length, to.length);
+      const auto at_middle = [&](const Mat& s) {
+        return carried(s, {-from.middle[0], -from.middle[1], -from.middle[2]});
+      };
+      const auto middle_of = [](const Spring& spring) {
+        return dense(
+            carried(spring.stiffness, {-spring.middle[0], -spring.middle[1], -spring.middle[2]}));
+      };
+      const Dense found = dense(at_middle(longer)).inverse();
+      const Dense shorter = middle_of(from).inverse();
+      Dense expected = middle_of(to).inverse();
+      for (std::size_t across = 0; across < 3; ++across) {
+        if (across != axis) {
+          const auto i = static_cast<Eigen::Index>(across);
+          const double ratio = to.length / from.length;
+          // The shear part alone lengthens in proportion; the rest is bending.
+          const double without_bending = shorter(i, i) * ratio;
+          expected(i, i) = without_bending + kBendShare * (expected(i, i) - without_bending);
+        }
+      }
+      expected /= kCorrection;
+      EXPECT_LT((found - expected).cwiseAbs().maxCoeff() / expected.cwiseAbs().maxCoeff(), 1e-12);
+      for (Eigen::Index i = 0; i < 6; ++i) {
+        EXPECT_NEAR(found(i, i) / expected(i, i), 1, 1e-9) << direction << " " << i;
+      }
+    }
+  }
+}
+
+/// Two bodies at each end of a chain 0 = 1 - 2 = 3, with springs s E between 1 and 2 and E in the
+/// others: the share of the middle one in what holds its bodies is s / (1 + s) at both.
+SpringGraph chain(double s) {
+  Mat unit{};
+  for (std::size_t i = 0; i < 6; ++i) {
+    unit.values[7 * i] = 1;
+  }
+  SpringGraph graph;
+  graph.order = {0, 1, 2, 3};
+  graph.start = {0, 1, 3, 5, 6};
+  graph.other = {1, 0, 2, 1, 3, 2};
+  graph.pattern = {0, 1, 3, 5};
+  for (const double stiffness : {1.0, 1.0, s, s, 1.0, 1.0}) {
+    graph.springs.push_back({.stiffness = scaled(unit, stiffness)});
+  }
+  graph.shift = 3;
+  return graph;
+}
+
+/// Weak is what resists some motion by less than 0.007 of what all springs of the node do.
+TEST(WeakSprings, a_spring_is_weak_below_a_share_of_what_holds_its_nodes) {
+  host::Team team(1);
+  const auto with_share = [](double share) { return chain(share / (1 - share)); };
+  EXPECT_TRUE(weak_springs(with_share(0.00701), team).empty());
+  const std::vector<std::uint8_t> weak = weak_springs(with_share(0.00699), team);
+  EXPECT_EQ(weak, (std::vector<std::uint8_t>{0, 0, 1, 1, 0, 0}));
+}
+
+/// A body that hangs on one spring alone is held by nothing else, so that spring is not weak there,
+/// however weak it is at the other end.
+TEST(WeakSprings, what_hangs_on_one_spring_alone_joins_it) {
+  host::Team team(1);
+  SpringGraph graph = chain(1);
+  graph.springs[0].stiffness = graph.springs[1].stiffness =
+      scaled(graph.springs[1].stiffness, 1e-5);
+  EXPECT_TRUE(weak_springs(graph, team).empty() ||
+              weak_springs(graph, team) == std::vector<std::uint8_t>(6));
+}
+
+/// Between single modules each spring is one beam, and none counts as weak.
+TEST(WeakSprings, on_the_finest_level_none_is_weak) {
+  host::Team team(1);
+  SpringGraph graph = chain(1e-6);
+  graph.shift = 0;
+  EXPECT_TRUE(weak_springs(graph, team).empty());
+}
+
+}  // namespace
+}  // namespace holdfast::solver
