@@ -45,10 +45,6 @@ Contact contact_at(const mechanics::GroundFacet<Real>& facet, const Vec6<double>
   return {converted<double>(contact_force(facet, state, is_held, real)), state};
 }
 
-inline int code_of(ContactState state) {
-  return state.pressed ? 3 * (state.tilt_x + 1) + state.tilt_y + 1 : -1;
-}
-
 inline constexpr std::size_t kStateCount = 10;  // open, closed, four edges, four corners
 
 inline std::vector<ContactState> all_states() {

@@ -4,8 +4,8 @@
 
 #include <vector>
 
-#include "holdfast/solver/equilibrium.hpp"
 #include "holdfast/solver/linear_system.hpp"
+#include "holdfast/solver/outcome.hpp"
 
 namespace holdfast::solver {
 

@@ -18,7 +18,7 @@
 /// digits than u itself. In double it is not for a robot whose soft motions are 1e10 times as large
 /// as the stiff ones that make its load ratios: it is rounding by then. In 106 bits it is.
 ///
-/// Of such robots a factorization in double may have c > 1 in a few directions. So steps are not
+/// A factorization in double of such robots may have c > 1 in a few directions. So steps are not
 /// taken in full: they are made conjugate to all steps before, and leave a residual that is
 /// orthogonal to these, as in full orthogonalization [Saad 1981], which ends after as many steps
 /// more as there are such directions.
@@ -41,7 +41,7 @@ class PreciseRefinement {
   /// become so: the solver's error is as large as the displacements, or larger.
   bool run(const std::vector<Vec>& displacement, const Solve& solve);
 
-  /// By module. The displacement is high + low.
+  /// The displacement, by module, is high + low.
   std::vector<Vec> high() const;
   std::vector<Vec> low() const;
 

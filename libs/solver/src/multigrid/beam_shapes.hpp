@@ -95,7 +95,7 @@ class ShapeTable {
  public:
   explicit ShapeTable(double pitch) : pitch_(pitch), shapes_(kBeamLengthMax + 1) {}
 
-  /// By place, from the end on.
+  /// The shapes of a beam by place, from the end on.
   const std::vector<BeamShape>& of(int length) {
     std::vector<BeamShape>& shapes = shapes_[static_cast<std::size_t>(length)];
     for (int place = 0; shapes.size() <= static_cast<std::size_t>(length); ++place) {
@@ -104,7 +104,7 @@ class ShapeTable {
     return shapes;
   }
 
-  /// Of a length that was asked for before.
+  /// The shapes of a length that was asked for before.
   const std::vector<BeamShape>& known(int length) const {
     return shapes_[static_cast<std::size_t>(length)];
   }

@@ -19,8 +19,8 @@ using base::at;
 
 constexpr std::uint8_t kNoColour = 255;
 
-/// The same coordinates for all clusters that look alike: differences lose their last bits. In
-/// double precision they have none to lose: centres lie on a grid.
+/// Coordinates that are equal for all clusters that look alike: differences lose their last bits.
+/// In double precision they have none to lose: centres lie on a grid.
 template <class Real>
 Point rounded(const Point& point) {
   return {static_cast<double>(static_cast<Real>(point[0])),

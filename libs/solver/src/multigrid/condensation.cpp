@@ -80,7 +80,7 @@ void apply_flexibility(const RunFactor& factor, std::span<Vec6<double>> load) {
 }
 
 /// Does so for one run, by module. Most runs carry nothing but the common load, and bend alike.
-void apply_flexibility(const Robot& robot, const ReducedNetwork::Run& run, const RunFactor& factor,
+void apply_flexibility(const Robot& robot, const Run& run, const RunFactor& factor,
                        std::vector<Vec6<double>>& load) {
   std::array<std::size_t, kBeamLengthMax> modules{};
   std::array<Vec6<double>, kBeamLengthMax> own;
@@ -102,8 +102,8 @@ void apply_flexibility(const Robot& robot, const ReducedNetwork::Run& run, const
 }
 
 /// Adds what a run's inner modules carry to the loads of its ends.
-void move_loads_to_ends(const Robot& robot, const ReducedNetwork::Run& run,
-                        const std::vector<BeamShape>& shapes, std::vector<Vec6<double>>& load) {
+void move_loads_to_ends(const Robot& robot, const Run& run, const std::vector<BeamShape>& shapes,
+                        std::vector<Vec6<double>>& load) {
   Vec6<double> near{};
   Vec6<double> far{};
   std::size_t module = at(run.from);
@@ -124,7 +124,7 @@ RunFactors factorize_runs(const ReducedNetwork& network,
                           const Vec6<double>& common) {
   RunFactors factors;
   factors.fill(std::vector<RunFactor>(kBeamLengthMax + 1));
-  for (const ReducedNetwork::Run& run : network.runs) {
+  for (const Run& run : network.runs) {
     RunFactor& factor = factors[run.direction][at(run.length)];
     if (factor.pivot.empty()) {
       factor = factorize_run(beam, run.direction, run.length);
@@ -147,7 +147,7 @@ void apply_flexibilities(const Robot& robot, const ReducedNetwork& network, Team
     inverse_11[d] = inverse_of(mechanics::block_11(beam, direction_of(d)));
   }
   team.share(0, network.runs.size(), [&](std::size_t begin, std::size_t end) {
-    for (const ReducedNetwork::Run& run : std::span(network.runs).subspan(begin, end - begin)) {
+    for (const Run& run : std::span(network.runs).subspan(begin, end - begin)) {
       apply_flexibility(robot, run, factors[run.direction][at(run.length)], load);
     }
   });
@@ -159,8 +159,8 @@ void apply_flexibilities(const Robot& robot, const ReducedNetwork& network, Team
 }
 
 /// Moves a run's inner modules with its ends, and by what their loads do.
-void recover_run(const Robot& robot, const ReducedNetwork::Run& run,
-                 const std::vector<BeamShape>& shapes, const std::vector<Vec6<double>>& condensed,
+void recover_run(const Robot& robot, const Run& run, const std::vector<BeamShape>& shapes,
+                 const std::vector<Vec6<double>>& condensed,
                  std::vector<Vec6<double>>& displacement) {
   std::array<std::size_t, kBeamLengthMax + 1> modules{};
   modules[0] = at(run.from);
@@ -194,7 +194,7 @@ std::vector<Vec6<double>> condense(const Robot& robot, const ReducedNetwork& net
     base::add_to(load[host], moved(load[at(module)], direction ^ 1U, pitch));
   }
   ShapeTable shapes(pitch);
-  for (const ReducedNetwork::Run& run : network.runs) {
+  for (const Run& run : network.runs) {
     move_loads_to_ends(robot, run, shapes.of(run.length), load);
   }
   const Vec6<double> common = loads.is_uniform() ? loads[0] : Vec6<double>{};
@@ -205,11 +205,11 @@ std::vector<Vec6<double>> condense(const Robot& robot, const ReducedNetwork& net
 void recover(const Robot& robot, const ReducedNetwork& network, Team& team,
              const std::vector<Vec6<double>>& condensed, std::vector<Vec6<double>>& displacement) {
   ShapeTable shapes(robot.material().pitch_mm);
-  for (const ReducedNetwork::Run& run : network.runs) {
+  for (const Run& run : network.runs) {
     shapes.of(run.length);
   }
   team.share(0, network.runs.size(), [&](std::size_t begin, std::size_t end) {
-    for (const ReducedNetwork::Run& run : std::span(network.runs).subspan(begin, end - begin)) {
+    for (const Run& run : std::span(network.runs).subspan(begin, end - begin)) {
       recover_run(robot, run, shapes.known(run.length), condensed, displacement);
     }
   });

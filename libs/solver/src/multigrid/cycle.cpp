@@ -11,7 +11,7 @@ namespace {
 /// One step of the inner iteration is enough if it removes this share of the residual; Notay's.
 constexpr double kEnough = 0.25;
 
-/// Of the coarsest level's solution.
+/// How often the coarsest level's solution is refined.
 template <class Real>
 constexpr int kRefinementCount = std::is_same_v<Real, double> ? 2 : 0;
 
@@ -128,10 +128,10 @@ void Cycle<double>::leave_residual(std::size_t depth) {
   });
 }
 
-/// The same with sweeps in single precision: they begin at zero each time, so what they find is
-/// small and has no digits to lose. What is large, the clusters' motion, and what it leaves of r is
-/// in double precision. There, as in single precision no forces are left only up to its rounding,
-/// all nodes' forces are passed down.
+/// The cycle in double precision with sweeps in single: they begin at zero each time, so what they
+/// find is small and has no digits to lose. What is large, the clusters' motion, and what it leaves
+/// of r is in double precision. There, as in single precision no forces are left only up to its
+/// rounding, all nodes' forces are passed down.
 template <>
 void Cycle<double>::descend(std::size_t depth) {
   Level<double>& level = hierarchy_.levels()[depth];

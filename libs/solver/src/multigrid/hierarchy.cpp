@@ -25,8 +25,8 @@ constexpr std::size_t kCoarsestCount = 48;
 /// The factors of a longer chain of clusters have lost too many digits.
 constexpr std::size_t kChainMax = 3000;
 
-/// The same where facets are kept out of the clusters: there a level more costs more iterations
-/// than digits, portals 5,000 wide take 18 instead of 101.
+/// The longest chain where facets are kept out of the clusters: there a level more costs more
+/// iterations than digits, portals 5,000 wide take 18 instead of 101.
 constexpr std::size_t kChainMaxOnFeet = 4000;
 
 /// Where nodes have more neighbours than this on average, too many blocks fill in.

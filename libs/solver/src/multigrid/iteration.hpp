@@ -56,7 +56,7 @@ class Iteration {
   /// After begin(), or to go on with another goal: improves x.
   virtual End run(const Goal& goal) = 0;
 
-  /// The same for a matrix A that is not symmetric, by full orthogonalization
+  /// Does what run() does for a matrix A that is not symmetric, by full orthogonalization
   /// [Saad 1981]: r is kept orthogonal to all directions so far, as conjugate gradients do by
   /// themselves. (To make r smallest instead, as GMRES does, would need directions in double
   /// precision: r counts every rounding error of a stiff lattice.)

@@ -10,7 +10,7 @@
 /// From matrices to what the kernels read.
 namespace holdfast::solver {
 
-/// Of a table of beams: one entry for each length.
+/// The row of a table of beams: one entry for each length.
 inline constexpr std::size_t kRow = kBeamLengthMax + 1;
 
 /// Which displacement bends with which on a beam along an axis; see lanes.hpp.

@@ -178,7 +178,7 @@ Multigrid::Vec Multigrid::displacement_of(std::int32_t node) const {
   return u;
 }
 
-/// By the ground, on the facet of a node in a state.
+/// The force that the ground takes from a node whose facet is in a state.
 Multigrid::Vec Multigrid::force_on(const FacetState& facet, std::int32_t node) const {
   return mechanics::contact_force(ground(), facet.state, facet.is_held, displacement_of(node));
 }

@@ -37,8 +37,8 @@ class Multigrid final : public LinearSystem {
 
   bool is_exact() const override { return false; }
 
-  /// By the preconditioner, and more where the iteration converges slowly: it then misses more of
-  /// the error.
+  /// Taken from the preconditioner, and more where the iteration converges slowly: it then misses
+  /// more of the error.
   std::vector<double> facet_errors() const override;
   LinearReport report() const override;
 

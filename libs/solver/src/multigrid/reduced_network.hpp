@@ -7,12 +7,14 @@
 #include <cstdint>
 #include <vector>
 
+#include "elimination.hpp"
 #include "holdfast/base/algebra.hpp"
 #include "holdfast/host/team.hpp"
 #include "holdfast/model/robot.hpp"
 #include "vectors.hpp"
 
-/// What is left of a robot when everything is eliminated that can be eliminated by hand.
+/// What is left of a robot when everything is eliminated that can be eliminated by hand: static
+/// condensation of substructures (condensation.hpp).
 ///
 /// Hanging trees carry their own weight only: their load, with its lever, moves to where they hang.
 /// A straight run of modules with two connections each is one longer beam: cubic displacements are
@@ -34,21 +36,7 @@ struct ReducedNetwork {
   bool has_long_beams = false;
   std::int32_t extent = 0;  ///< Longest side of the box around the nodes, pitches.
 
-  /// A module that hangs on one connection, in the order of elimination.
-  struct Hanging {
-    std::int32_t module = 0;
-    std::uint8_t direction = 0;  ///< To what it hangs on.
-  };
-
-  std::vector<Hanging> hanging;
-
-  /// A straight run of modules between two others.
-  struct Run {
-    std::int32_t from = 0;       ///< Module before the first.
-    std::uint8_t direction = 0;  ///< From there onwards.
-    std::int32_t length = 0;     ///< Pitches to the module after the last.
-  };
-
+  std::vector<HangingModule> hanging;  ///< In the order of elimination.
   std::vector<Run> runs;
 
   /// Whether anything was eliminated.

@@ -14,7 +14,7 @@ using base::at;
 
 constexpr std::int32_t kNone = -1;
 
-/// Of two neighbours that are tied equally, up to rounding, the first one met is taken.
+/// The first one met of two neighbours that are tied equally, up to rounding, is taken.
 constexpr double kStronger = 1 + 1e-9;
 
 CellBox united(CellBox a, const CellBox& b) {
@@ -51,8 +51,8 @@ void for_ties(const SpringGraph& fine, const std::vector<std::int32_t>& cluster,
 
 using Ties = std::vector<std::pair<std::int32_t, double>>;
 
-/// By cluster: those neighbours that it would fit into one cell with, and how strongly they are
-/// tied to it.
+/// For each cluster those neighbours that it would fit into one cell with, and how strongly they
+/// are tied to it.
 std::vector<Ties> ties_that_fit(const SpringGraph& fine, std::int32_t width,
                                 const std::vector<std::int32_t>& cluster,
                                 const std::vector<CellBox>& box) {

@@ -106,7 +106,7 @@ Mat times_carry(Mat s, const Point& a) {
   return s;
 }
 
-/// Of what has S T(a) on its right half by now, S being symmetric, the rows of t follow.
+/// The right half is that of S T(a) first; the rows of t follow from it, as S is symmetric.
 Mat carried(const Mat& s, const Point& a) {
   Mat result = s;
   carry_columns(result, a);

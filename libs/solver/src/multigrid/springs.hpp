@@ -33,7 +33,7 @@ struct Spring {
   Mat stiffness = {};          ///< At the node.
 };
 
-/// Of a beam `length` pitches long.
+/// The spring of a beam `length` pitches long.
 Spring beam_spring(const model::Material& material, std::size_t direction, std::size_t length);
 
 /// From the centre of its cluster to a node, mm.

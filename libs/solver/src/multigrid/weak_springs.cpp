@@ -34,7 +34,7 @@ std::vector<std::size_t> examples(const SpringGraph& graph) {
   return nodes;
 }
 
-/// By spring of the level: whether it is weak at its own node.
+/// Whether each spring of the level is weak at its own node.
 std::vector<std::uint8_t> weak_at_node(const SpringGraph& graph, host::Team& team) {
   std::vector<std::uint8_t> is_weak(graph.springs.size());
   const std::vector<std::size_t> nodes = examples(graph);

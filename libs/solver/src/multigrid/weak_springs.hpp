@@ -8,7 +8,8 @@
 #include "holdfast/host/team.hpp"
 #include "spring_graph.hpp"
 
-/// What hangs by a neck must not become one rigid body with what it hangs from.
+/// Strength of connection: what hangs by a neck must not become one rigid body with what it hangs
+/// from.
 ///
 /// A bump that grew on a solid and is held by a few modules has a soft motion of its own. If the
 /// neck lies within one cell, the cluster around it is rigid, and no coarser level knows that

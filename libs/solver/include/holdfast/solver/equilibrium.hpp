@@ -12,8 +12,9 @@
 #include "holdfast/model/robot.hpp"
 #include "holdfast/solver/linear_system.hpp"
 #include "holdfast/solver/options.hpp"
+#include "holdfast/solver/outcome.hpp"
 
-/// Static equilibrium of a whole robot under its weight: Eq. (13) of [Piranda 2021], exactly.
+/// Static equilibrium of a whole robot under its loads: Eq. (13) of [Piranda 2021], exactly.
 ///
 /// Everything is linear but the contact, and that is piecewise linear: a contact state per facet
 /// makes a linear system, its solution prescribes states again, and where the two agree there is
@@ -40,16 +41,6 @@
 namespace holdfast::solver {
 
 class SystemChoice;
-
-/// How the search for an equilibrium ended.
-enum class Outcome : std::uint8_t {
-  kSettled,     ///< States and displacements are consistent.
-  kNotSettled,  ///< The contact iteration cycles or takes too many steps.
-  kSingular,    ///< A pivot vanished.
-  kTooLarge,    ///< The solver does not fit into memory_bytes_max.
-  kNotSought,   ///< The robot topples, and finding out how would take long.
-  kTooSlow,     ///< No solver gets there: a robot too slender for double precision.
-};
 
 /// One method's try at an equilibrium, and how it ended.
 struct Attempt {

@@ -1,0 +1,167 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#include "elimination.hpp"
+
+#include <utility>
+
+#include "kernels.hpp"
+
+namespace holdfast::solver {
+namespace {
+
+using host::Team;
+using model::Robot;
+using model::Support;
+
+using base::at;
+
+class Eliminator {
+ public:
+  Eliminator(const Robot& robot, Team& team)
+      : robot_(robot), team_(team), degree_(robot.modules().size()) {
+    result_.is_gone.assign(robot.modules().size(), 0);
+  }
+
+  Elimination run() {
+    count_connections();
+    take_hanging();
+    take_runs();
+    note_axes();
+    return std::move(result_);
+  }
+
+ private:
+  bool is_free(std::size_t module) const {
+    return robot_.modules()[module].support == Support::kNone;
+  }
+
+  void count_connections() {
+    team_.share(0, degree_.size(), [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        int count = 0;
+        for (const std::int32_t other : robot_.neighbours()[i]) {
+          count += other == Robot::kNoNeighbour ? 0 : 1;
+        }
+        degree_[i] = static_cast<std::uint8_t>(count);
+        result_.is_gone[i] = robot_.modules()[i].support == Support::kFixed ? 1 : 0;
+      }
+    });
+  }
+
+  std::size_t next(std::size_t module, std::size_t direction) const {
+    return at(robot_.neighbours()[module][direction]);
+  }
+
+  bool is_connected(std::size_t module, std::size_t direction) const {
+    const std::int32_t other = robot_.neighbours()[module][direction];
+    return other != Robot::kNoNeighbour && (result_.is_gone[at(other)] == 0 ||
+                                            robot_.modules()[at(other)].support == Support::kFixed);
+  }
+
+  /// Leaves first, until none is left.
+  void take_hanging() {
+    for (std::size_t start = 0; start < degree_.size(); ++start) {
+      std::size_t leaf = start;
+      while (result_.is_gone[leaf] == 0 && is_free(leaf) && degree_[leaf] == 1) {
+        std::size_t direction = 0;
+        while (!is_connected(leaf, direction)) {
+          ++direction;
+        }
+        const std::size_t host = next(leaf, direction);
+        result_.is_gone[leaf] = 1;
+        result_.hanging.push_back({.module = static_cast<std::int32_t>(leaf),
+                                   .direction = static_cast<std::uint8_t>(direction)});
+        --degree_[host];
+        leaf = host;
+      }
+    }
+  }
+
+  /// The axis along which a module only passes forces on, or -1.
+  int axis_of_passage(std::size_t module) const {
+    if (result_.is_gone[module] != 0 || !is_free(module) || degree_[module] != 2) {
+      return -1;
+    }
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      if (is_connected(module, 2 * axis) && is_connected(module, 2 * axis + 1)) {
+        return static_cast<int>(axis);
+      }
+    }
+    return -1;
+  }
+
+  void take_runs() {
+    std::vector<std::int8_t> axis(degree_.size());
+    bool is_any = false;
+    for (std::size_t i = 0; i < axis.size(); ++i) {
+      axis[i] = static_cast<std::int8_t>(axis_of_passage(i));
+      is_any = is_any || axis[i] >= 0;
+    }
+    if (!is_any) {
+      return;
+    }
+    for (std::size_t i = 0; i < axis.size(); ++i) {
+      const bool is_end = axis[i] < 0 && (result_.is_gone[i] == 0 || !is_free(i));
+      for (std::size_t direction = 0; is_end && direction < 6; direction += 2) {
+        if (is_connected(i, direction) &&
+            axis[next(i, direction)] == static_cast<int>(direction / 2)) {
+          take_run(i, direction, axis);
+        }
+      }
+    }
+  }
+
+  /// From an end along +x, +y or +z to the other end, in beams of at most kBeamLengthMax.
+  void take_run(std::size_t from, std::size_t direction, const std::vector<std::int8_t>& axis) {
+    bool is_at_end = false;
+    while (!is_at_end) {
+      std::size_t to = from;
+      int length = 0;
+      do {
+        to = next(to, direction);
+        ++length;
+        is_at_end = axis[to] != static_cast<int>(direction / 2);
+      } while (!is_at_end && length < kBeamLengthMax);
+      if (length > 1) {
+        join(from, direction, length);
+      }
+      from = to;
+    }
+  }
+
+  void join(std::size_t from, std::size_t direction, int length) {
+    result_.runs.push_back({.from = static_cast<std::int32_t>(from),
+                            .direction = static_cast<std::uint8_t>(direction),
+                            .length = length});
+    std::size_t module = from;
+    for (int i = 1; i < length; ++i) {
+      module = next(module, direction);
+      result_.is_gone[module] = 1;
+    }
+  }
+
+  void note_axes() {
+    if (result_.is_empty()) {
+      return;
+    }
+    result_.run_axis.assign(degree_.size(), Elimination::kNoAxis);
+    for (const Run& run : result_.runs) {
+      std::size_t module = at(run.from);
+      for (int i = 1; i < run.length; ++i) {
+        module = next(module, run.direction);
+        result_.run_axis[module] = static_cast<std::uint8_t>(run.direction / 2U);
+      }
+    }
+  }
+
+  const Robot& robot_;
+  Team& team_;
+  std::vector<std::uint8_t> degree_;  ///< Connections that are left.
+  Elimination result_;
+};
+
+}  // namespace
+
+Elimination eliminate(const Robot& robot, Team& team) { return Eliminator(robot, team).run(); }
+
+}  // namespace holdfast::solver

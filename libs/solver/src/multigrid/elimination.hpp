@@ -1,0 +1,42 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "holdfast/host/team.hpp"
+#include "holdfast/model/robot.hpp"
+
+namespace holdfast::solver {
+
+/// A module that hangs on one connection.
+struct HangingModule {
+  std::int32_t module = 0;
+  std::uint8_t direction = 0;  ///< To what it hangs on.
+};
+
+/// A straight run of modules between two others.
+struct Run {
+  std::int32_t from = 0;       ///< Module before the first.
+  std::uint8_t direction = 0;  ///< From there onwards.
+  std::int32_t length = 0;     ///< Pitches to the module after the last.
+};
+
+/// Which modules of a robot need not be nodes: those of hanging trees, and those inside straight
+/// runs, that is, with two connections each that lie opposite.
+struct Elimination {
+  std::vector<std::uint8_t> is_gone;  ///< By module: eliminated, or fixed.
+  /// By module: the axis of the run that it lies in, else kNoAxis; empty if nothing is eliminated.
+  std::vector<std::uint8_t> run_axis;
+  std::vector<HangingModule> hanging;  ///< In the order of elimination.
+  std::vector<Run> runs;
+
+  static constexpr std::uint8_t kNoAxis = 3;
+
+  bool is_empty() const { return hanging.empty() && runs.empty(); }
+};
+
+Elimination eliminate(const model::Robot& robot, host::Team& team);
+
+}  // namespace holdfast::solver
