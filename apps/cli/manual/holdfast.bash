@@ -11,13 +11,15 @@ _holdfast() {
     check)
       case $previous in
         --json) files=1 ;;
+        --connections) : ;;
+        --csv) files=1 ;;
         --svg) files=1 ;;
         --vtk) files=1 ;;
         --html) files=1 ;;
         --certificate) files=1 ;;
         --threads) : ;;
         --memory) : ;;
-        *) if [[ $current == -* ]]; then words="-h --help --json --svg --vtk --html --certificate --prove --quiet --bonded --threads --memory"; else files=1; fi ;;
+        *) if [[ $current == -* ]]; then words="-h --help --json --connections --csv --svg --vtk --html --certificate --prove --quiet --bonded --threads --memory"; else files=1; fi ;;
       esac
       ;;
     simulate)
@@ -37,10 +39,11 @@ _holdfast() {
         --withdraw) : ;;
         --attach) : ;;
         --json) files=1 ;;
+        --connections) : ;;
         --trace) files=1 ;;
         --story) files=1 ;;
         --svg) files=1 ;;
-        *) if [[ $current == -* ]]; then words="-h --help --method --link --seed --loss --duplicate --reorder --corrupt --jitter --kill --cut --detach --plan --withdraw --attach --json --trace --story --svg --quiet"; else files=1; fi ;;
+        *) if [[ $current == -* ]]; then words="-h --help --method --link --seed --loss --duplicate --reorder --corrupt --jitter --kill --cut --detach --plan --withdraw --attach --json --connections --trace --story --svg --quiet"; else files=1; fi ;;
       esac
       ;;
     emulate)
@@ -58,8 +61,9 @@ _holdfast() {
         --attach) : ;;
         --time) : ;;
         --json) files=1 ;;
+        --connections) : ;;
         --svg) files=1 ;;
-        *) if [[ $current == -* ]]; then words="-h --help --board --image --pages --seed --kill --reset --cut --flip --plan --withdraw --attach --time --json --svg --quiet"; else files=1; fi ;;
+        *) if [[ $current == -* ]]; then words="-h --help --board --image --pages --seed --kill --reset --cut --flip --plan --withdraw --attach --time --json --connections --svg --quiet"; else files=1; fi ;;
       esac
       ;;
     convert)

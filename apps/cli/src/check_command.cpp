@@ -197,9 +197,8 @@ class CheckRun {
     options.connections = *io::find_connection_choice(options_.connections);
     if (!options_.is_quiet) {
       options.progress = [this, path](double share) {
-        progress_.show([&] {
-          return fmt::format("{}: {:.0f} % written", io::one_line(path), 100 * share);
-        });
+        progress_.show(
+            [&] { return fmt::format("{}: {:.0f} % written", io::one_line(path), 100 * share); });
       };
     }
     return options;
