@@ -41,9 +41,11 @@ std::vector<Part> parts_of(const GoldenStream& golden, Packet& stream) {
 }
 
 Packet data_packet(int sequence, std::span<const std::uint8_t> payload) {
-  Packet packet = {static_cast<std::uint8_t>(sequence % wire::kSequenceCount), 0x40};
-  packet.insert(packet.end(), payload.begin(), payload.end());
-  packet.insert(packet.end(), wire::kChecksumBytes, 0);
+  constexpr std::size_t kHeaderBytes = 2;
+  Packet packet(kHeaderBytes + payload.size() + wire::kChecksumBytes);
+  packet[0] = static_cast<std::uint8_t>(sequence % wire::kSequenceCount);
+  packet[1] = 0x40;
+  std::ranges::copy(payload, packet.begin() + kHeaderBytes);
   return packet;
 }
 
