@@ -27,7 +27,7 @@ Mat assemble(const hf::model::Robot& robot, PetscInt first, PetscInt last) {
     Mat6<double> diagonal;
     for (const hf::base::Direction direction : hf::base::kDirections) {
       PetscInt column =
-          robot.neighbours()[module][static_cast<std::size_t>(hf::base::index(direction))];
+          robot.connected()[module][static_cast<std::size_t>(hf::base::index(direction))];
       const bool is_ground = direction == hf::base::Direction::kMinusZ &&
                              robot.modules()[module].support == hf::model::Support::kGround;
       if (column >= 0 || is_ground) {

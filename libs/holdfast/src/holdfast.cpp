@@ -90,6 +90,7 @@ base::Result<model::Robot> make_robot(const RobotCells& cells, int thread_count)
   return model::Robot::create({.existing = {cells.existing.begin(), cells.existing.end()},
                                .planned = {cells.planned.begin(), cells.planned.end()},
                                .fixed = {cells.fixed.begin(), cells.fixed.end()},
+                               .released = {cells.released.begin(), cells.released.end()},
                                .support_z = cells.support_z,
                                .material = cells.material},
                               thread_count);

@@ -61,6 +61,15 @@ TEST(Facade, checks_a_robot_made_of_cells_as_it_checks_the_same_of_a_file) {
   EXPECT_EQ(of_cells.equilibrium.displacement, of_file.equilibrium.displacement);
 }
 
+// A foot, an arm of two on it and one beside the foot: with or without its pair to the arm above.
+TEST(Facade, takes_released_pairs_for_not_connected) {
+  const std::array<base::Cell, 4> cells = {{{0, 0, 0}, {0, 0, 1}, {1, 0, 1}, {1, 0, 0}}};
+  const std::array<model::CellPair, 1> released = {{{cells[2], cells[3]}}};
+  const auto robot = make_robot({.existing = cells, .released = released});
+  ASSERT_TRUE(robot) << robot.error().message;
+  EXPECT_EQ(connection_rows(check(robot.value())).count(), 3U);
+}
+
 TEST(Facade, names_the_rule_that_cells_break) {
   const std::array<base::Cell, 2> apart = {{{0, 0, 0}, {2, 0, 0}}};
   const auto robot = make_robot({.existing = apart});

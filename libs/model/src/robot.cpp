@@ -176,6 +176,14 @@ std::optional<std::string> find_support_fault(const Robot& robot) {
   return std::nullopt;
 }
 
+/// The direction of the second cell from the first, if they are neighbours.
+std::optional<base::Direction> direction_between(const CellPair& pair) {
+  const auto* const found = std::ranges::find_if(base::kDirections, [&](base::Direction direction) {
+    return base::neighbour(Robot::lattice(), pair[0], direction) == pair[1];
+  });
+  return found == base::kDirections.end() ? std::nullopt : std::optional(*found);
+}
+
 base::Error bad_input(std::string message) {
   return {.code = base::ErrorCode::kBadInput, .message = std::move(message)};
 }
@@ -188,6 +196,9 @@ base::Result<Robot> Robot::create(const RobotSpec& spec, int thread_count) {
     if (!fault) {
       fault = find_coordinate_fault(*cells);
     }
+  }
+  for (std::size_t i = 0; !fault && i < spec.released.size(); ++i) {
+    fault = find_coordinate_fault(spec.released[i]);
   }
   if (fault) {
     return bad_input(*fault);
@@ -219,8 +230,16 @@ base::Result<Robot> Robot::create(const RobotSpec& spec, int thread_count) {
   }
   host::Team team(thread_count, count);
   robot.connect(index, team);
-  if (fault = find_connection_fault(robot.connections_, robot.modules_, spec.existing.size());
-      !fault) {
+  if (!spec.released.empty()) {
+    fault = robot.release(spec.released, index);
+  }
+  if (!fault) {
+    fault = find_connection_fault(robot.connections_, robot.modules_, spec.existing.size());
+    if (fault && robot.released_count_ > 0) {
+      *fault += fmt::format("; the faces of {} released pairs do not count", robot.released_count_);
+    }
+  }
+  if (!fault) {
     fault = find_support_fault(robot);
   }
   if (fault) {
@@ -230,7 +249,7 @@ base::Result<Robot> Robot::create(const RobotSpec& spec, int thread_count) {
 }
 
 void Robot::connect(const CellIndex& index, host::Team& team) {
-  neighbours_.resize(modules_.size());
+  connected_.resize(modules_.size());
   std::vector<std::size_t> first;  // Connection of every chunk of modules.
   team.map(modules_.size(), first, [&](std::size_t begin, std::size_t end) {
     std::size_t count = 0;
@@ -238,7 +257,7 @@ void Robot::connect(const CellIndex& index, host::Team& team) {
       for (const base::Direction direction : base::kDirections) {
         const std::int32_t other =
             index.find(base::neighbour(lattice(), modules_[i].cell, direction));
-        neighbours_[i][static_cast<std::size_t>(base::index(direction))] = other;
+        connected_[i][static_cast<std::size_t>(base::index(direction))] = other;
         count += other != kNoNeighbour && base::index(direction) % 2 == 0 ? 1 : 0;
       }
     }
@@ -253,9 +272,9 @@ void Robot::connect(const CellIndex& index, host::Team& team) {
     std::size_t next = first[begin / host::Team::kChunk];
     for (std::size_t i = begin; i < end; ++i) {
       for (std::size_t d = 0; d < base::kDirectionCount; d += 2) {
-        if (neighbours_[i][d] != kNoNeighbour) {
+        if (connected_[i][d] != kNoNeighbour) {
           connections_[next++] = {.a = static_cast<std::int32_t>(i),
-                                  .b = neighbours_[i][d],
+                                  .b = connected_[i][d],
                                   .direction = base::kDirections[d]};
         }
       }
@@ -272,6 +291,32 @@ void Robot::connect(const CellIndex& index, host::Team& team) {
       facets_.push_back({.module = static_cast<std::int32_t>(i)});
     }
   }
+}
+
+std::optional<std::string> Robot::release(std::span<const CellPair> pairs, const CellIndex& index) {
+  neighbours_ = connected_;
+  for (const CellPair& pair : pairs) {
+    const auto direction = direction_between(pair);
+    const std::int32_t a = index.find(pair[0]);
+    const std::int32_t b = index.find(pair[1]);
+    if (!direction || a == CellIndex::kNone || b == CellIndex::kNone) {
+      return fmt::format(
+          "the released pair {}-{} is no connection, allowed are two modules in neighbouring cells",
+          text(pair[0]), text(pair[1]));
+    }
+    std::int32_t& there = connected_[base::at(a)][base::at(base::index(*direction))];
+    if (there == kNoNeighbour) {
+      return fmt::format("the pair {}-{} is released twice, allowed is once", text(pair[0]),
+                         text(pair[1]));
+    }
+    there = kNoNeighbour;
+    connected_[base::at(b)][base::at(base::index(base::opposite(*direction)))] = kNoNeighbour;
+  }
+  std::erase_if(connections_, [&](const Connection& pair) {
+    return connected_[base::at(pair.a)][base::at(base::index(pair.direction))] == kNoNeighbour;
+  });
+  released_count_ = pairs.size();
+  return std::nullopt;
 }
 
 std::array<base::Cell, 2> ends(const Robot& robot, std::size_t connection) {

@@ -133,6 +133,54 @@ TEST(Robot, lists_neighbours_by_direction) {
             (Robot::Neighbours{kNone, kNone, kNone, kNone, kNone, 0}));
 }
 
+TEST(Robot, is_connected_to_all_neighbours_but_the_released_ones) {
+  const RobotSpec square = {.existing = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, .planned = {{1, 1, 0}}};
+  const auto whole = Robot::create(square);
+  ASSERT_TRUE(whole.has_value());
+  EXPECT_EQ(whole.value().released_count(), 0U);
+  EXPECT_EQ(whole.value().connected().data(), whole.value().neighbours().data());
+  RobotSpec opened = square;
+  opened.released = {{Cell{1, 1, 0}, Cell{1, 0, 0}}};
+  const auto robot = Robot::create(opened);
+  ASSERT_TRUE(robot.has_value());
+  EXPECT_EQ(robot.value().released_count(), 1U);
+  constexpr std::int32_t kNone = Robot::kNoNeighbour;
+  EXPECT_EQ(robot.value().neighbours()[1], (Robot::Neighbours{kNone, 0, 3, kNone, kNone, kNone}));
+  EXPECT_EQ(robot.value().connected()[1],
+            (Robot::Neighbours{kNone, 0, kNone, kNone, kNone, kNone}));
+  EXPECT_EQ(robot.value().connected()[3],
+            (Robot::Neighbours{kNone, 2, kNone, kNone, kNone, kNone}));
+  std::set<std::pair<Cell, Cell>> expected = pairs_of(whole.value());
+  EXPECT_EQ(expected.erase({Cell{1, 0, 0}, Cell{1, 1, 0}}), 1U);
+  std::set<std::pair<Cell, Cell>> found;
+  for (std::size_t i = 0; i < robot.value().connections().size(); ++i) {
+    const auto [a, b] = ends(robot.value(), i);
+    found.emplace(a, b);
+  }
+  EXPECT_EQ(found, expected);
+}
+
+TEST(Robot, releases_only_connections_and_each_once) {
+  const std::vector<Cell> row = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}};
+  const CellPair first = {row[0], row[1]};
+  expect_error({.existing = row, .released = {{row[0], row[2]}}},
+               {"released pair (0,0,0)-(2,0,0)", "neighbouring cells"});
+  expect_error({.existing = row, .released = {{row[2], {3, 0, 0}}}}, {"pair (2,0,0)-(3,0,0)"});
+  expect_error({.existing = row, .released = {{row[2], {kCoordinateMax + 1, 0, 0}}}},
+               {"outside the lattice"});
+  expect_error({.existing = row, .released = {first, {row[1], row[0]}}},
+               {"(1,0,0)-(0,0,0) is released twice"});
+  expect_error({.existing = row, .released = {first}},
+               {"not connected: 2 of 3 modules", "faces of 1 released pairs do not count"});
+  expect_error({.existing = {row[0]}, .planned = {row[1]}, .released = {first}},
+               {"planned cell (1,0,0)", "released pairs do not count"});
+  // A released neighbour is still in the way.
+  expect_error({.existing = {{0, 0, 0}, {1, 0, 0}, {1, 0, -1}, {0, 0, -1}},
+                .fixed = {{1, 0, 0}},
+                .released = {{Cell{0, 0, 0}, Cell{0, 0, -1}}}},
+               {"(0,0,-1) is directly below (0,0,0)"});
+}
+
 TEST(Robot, rests_on_its_lowest_layer_and_wherever_it_is_fixed) {
   const auto robot = Robot::create({.existing = {{0, 0, 4}, {1, 0, 4}, {1, 0, 5}, {2, 0, 5}},
                                     .planned = {{0, 1, 4}, {3, 0, 5}},

@@ -97,6 +97,9 @@ std::string find_obstacle(const model::Robot& robot, const Assessment& assessmen
   if (!assessment.is_stable) {
     return "the robot topples, which the rigid body decides in integers";
   }
+  if (robot.released_count() > 0) {
+    return "the robot has neighbours that are not connected, and a certificate connects all";
+  }
   if (assessment.equilibrium.outcome != solver::Outcome::kSettled) {
     return "no equilibrium was found";
   }

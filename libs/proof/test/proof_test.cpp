@@ -59,6 +59,22 @@ TEST(Proof, holds_the_closed_form_of_cantilevers) {
   }
 }
 
+/// Nothing is certified of another robot than the one that was asked about.
+TEST(Proof, leaves_a_robot_with_released_pairs_undecided) {
+  const Robot robot = Robot::create({.existing = {{0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}},
+                                     .fixed = {{0, 0, 1}},
+                                     .released = {{base::Cell{0, 1, 1}, base::Cell{0, 0, 1}}}})
+                          .value();
+  Assessment assessment = verdict::assess(robot);
+  EXPECT_EQ(assessment.verdict, Verdict::kSafe);
+  const Proof proof = prove(robot, assessment);
+  EXPECT_FALSE(proof.is_proved());
+  EXPECT_TRUE(proof.certificate.modules.empty());
+  apply(robot, proof, assessment);
+  EXPECT_EQ(assessment.verdict, Verdict::kUndecided);
+  EXPECT_NE(assessment.reasons.front().quoted.find("not connected"), std::string::npos);
+}
+
 TEST(Proof, decides_near_the_limit) {
   // The ratio is known to three roundings; beyond 1e-9 below 1 it counts as 1.
   for (const std::int32_t count : {3, 28, 140, 600}) {

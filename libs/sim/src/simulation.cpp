@@ -21,12 +21,24 @@ std::optional<std::string> find_module_fault(const char* what, std::int32_t modu
   return fmt::format("{} is {}, allowed are existing modules: 0 to {}", what, module, count - 1);
 }
 
+/// The modules' own program takes every neighbour for connected.
+std::optional<std::string> find_release_fault(const model::Robot& robot) {
+  if (robot.released_count() == 0) {
+    return std::nullopt;
+  }
+  return fmt::format(
+      "the robot has {} pairs of neighbours that are not connected, allowed are none: the modules' "
+      "program connects all neighbours",
+      robot.released_count());
+}
+
 }  // namespace
 
 std::optional<std::string> find_options_fault(const model::Robot& robot,
                                               const SimulationOptions& options) {
   const std::size_t count = robot.modules().size() - robot.planned_count();
-  auto found = find_link_fault(options.link);
+  auto found = find_release_fault(robot);
+  found = found ? found : find_link_fault(options.link);
   found = found ? found : find_module_fault("anchor", options.anchor, count);
   found = found ? found : find_module_fault("plan_module", options.plan_module, count);
   for (std::size_t i = 0; !found && i < options.announcements.size(); ++i) {

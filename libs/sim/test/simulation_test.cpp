@@ -163,5 +163,13 @@ TEST(SimulationOptions, are_checked) {
       robot, {.faults = {{.kind = Fault::Kind::kAttach, .at = 9, .module = 0}}}));
 }
 
+TEST(SimulationOptions, refuse_a_robot_whose_neighbours_are_not_all_connected) {
+  model::RobotSpec spec = cube(2);
+  spec.released = {{spec.existing[0], spec.existing[1]}};
+  const auto fault = find_options_fault(make_robot(spec), {});
+  ASSERT_TRUE(fault);
+  EXPECT_NE(fault->find("1 pairs of neighbours that are not connected"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace holdfast::sim

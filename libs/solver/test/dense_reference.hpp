@@ -125,8 +125,7 @@ std::vector<base::Vec6<double>> dense_displacement(const model::Robot& robot,
       k.block<6, 6>(row, row) += contact(p);
     }
     for (const base::Direction direction : base::kDirections) {
-      const std::int32_t q =
-          robot.neighbours()[p][static_cast<std::size_t>(base::index(direction))];
+      const std::int32_t q = robot.connected()[p][static_cast<std::size_t>(base::index(direction))];
       if (q != model::Robot::kNoNeighbour) {
         const Matrix6 r = rotation(direction);
         k.block<6, 6>(row, row) += r * paper_block(m, 1) * r.transpose();

@@ -52,9 +52,10 @@ struct Structure {
 /// at.
 struct RobotCells {
   std::span<const base::Cell> existing;
-  std::span<const base::Cell> planned = {};  ///< Attached in the planned step, all at once.
-  std::span<const base::Cell> fixed = {};    ///< Those of `existing` that are fixed.
-  std::int32_t support_z = 0;                ///< Modules in this layer rest on the ground.
+  std::span<const base::Cell> planned = {};        ///< Attached in the planned step, all at once.
+  std::span<const base::Cell> fixed = {};          ///< Those of `existing` that are fixed.
+  std::span<const model::CellPair> released = {};  ///< Touch without being connected.
+  std::int32_t support_z = 0;                      ///< Modules in this layer rest on the ground.
   model::Material material = {};
 };
 

@@ -88,7 +88,7 @@ void apply_flexibility(const Robot& robot, const Run& run, const RunFactor& fact
   std::size_t module = at(run.from);
   bool is_common = true;
   for (std::size_t i = 0; i < count; ++i) {
-    module = at(robot.neighbours()[module][run.direction]);
+    module = at(robot.connected()[module][run.direction]);
     modules[i] = module;
     own[i] = load[module];
     is_common = is_common && own[i] == factor.common;
@@ -108,12 +108,12 @@ void move_loads_to_ends(const Robot& robot, const Run& run, const std::vector<Be
   Vec6<double> far{};
   std::size_t module = at(run.from);
   for (int i = 1; i < run.length; ++i) {
-    module = at(robot.neighbours()[module][run.direction]);
+    module = at(robot.connected()[module][run.direction]);
     add_share(shapes[at(i)], run.direction, load[module], near);
     add_share(shapes[at(run.length - i)], run.direction ^ 1U, load[module], far);
   }
   base::add_to(load[at(run.from)], near);
-  base::add_to(load[at(robot.neighbours()[module][run.direction])], far);
+  base::add_to(load[at(robot.connected()[module][run.direction])], far);
 }
 
 /// The factors of all runs that a network has, by direction and length.
@@ -166,7 +166,7 @@ void recover_run(const Robot& robot, const Run& run, const std::vector<BeamShape
   modules[0] = at(run.from);
   const std::size_t length = at(run.length);
   for (std::size_t i = 1; i <= length; ++i) {
-    modules[i] = at(robot.neighbours()[modules[i - 1]][run.direction]);
+    modules[i] = at(robot.connected()[modules[i - 1]][run.direction]);
   }
   const Vec6<double> near = displacement[modules[0]];
   const Vec6<double> far = displacement[modules[length]];
@@ -190,7 +190,7 @@ std::vector<Vec6<double>> condense(const Robot& robot, const ReducedNetwork& net
   });
   const double pitch = robot.material().pitch_mm;
   for (const auto& [module, direction] : network.hanging) {
-    const std::size_t host = at(robot.neighbours()[at(module)][direction]);
+    const std::size_t host = at(robot.connected()[at(module)][direction]);
     base::add_to(load[host], moved(load[at(module)], direction ^ 1U, pitch));
   }
   ShapeTable shapes(pitch);
@@ -215,7 +215,7 @@ void recover(const Robot& robot, const ReducedNetwork& network, Team& team,
   });
   for (std::size_t i = network.hanging.size(); i-- > 0;) {
     const auto [module, direction] = network.hanging[i];
-    const std::size_t host = at(robot.neighbours()[at(module)][direction]);
+    const std::size_t host = at(robot.connected()[at(module)][direction]);
     Vec6<double>& u = displacement[at(module)];
     u = displacement[host];  // As one rigid body, from the host to what hangs on it.
     const auto [a, j, k, sign] = Axes(direction ^ 1U);

@@ -39,7 +39,7 @@ class Eliminator {
     team_.share(0, degree_.size(), [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
         int count = 0;
-        for (const std::int32_t other : robot_.neighbours()[i]) {
+        for (const std::int32_t other : robot_.connected()[i]) {
           count += other == Robot::kNoNeighbour ? 0 : 1;
         }
         degree_[i] = static_cast<std::uint8_t>(count);
@@ -49,11 +49,11 @@ class Eliminator {
   }
 
   std::size_t next(std::size_t module, std::size_t direction) const {
-    return at(robot_.neighbours()[module][direction]);
+    return at(robot_.connected()[module][direction]);
   }
 
   bool is_connected(std::size_t module, std::size_t direction) const {
-    const std::int32_t other = robot_.neighbours()[module][direction];
+    const std::int32_t other = robot_.connected()[module][direction];
     return other != Robot::kNoNeighbour && (result_.is_gone[at(other)] == 0 ||
                                             robot_.modules()[at(other)].support == Support::kFixed);
   }

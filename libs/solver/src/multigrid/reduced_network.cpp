@@ -43,7 +43,7 @@ class Builder {
  private:
   /// End of a beam from a module, and its length; kNoNeighbour if there is none.
   std::int32_t far_end(std::size_t module, std::size_t direction, int& length) const {
-    std::int32_t other = robot_.neighbours()[module][direction];
+    std::int32_t other = robot_.connected()[module][direction];
     length = 1;
     if (other == Robot::kNoNeighbour || elimination_.is_empty()) {
       return other;
@@ -53,7 +53,7 @@ class Builder {
       if (elimination_.run_axis[at(other)] != direction / 2) {
         return Robot::kNoNeighbour;  // Hangs here.
       }
-      other = robot_.neighbours()[at(other)][direction];
+      other = robot_.connected()[at(other)][direction];
       ++length;
     }
     return other;

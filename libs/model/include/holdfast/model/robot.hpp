@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -50,12 +51,18 @@ struct Facet {
   base::Direction direction = base::Direction::kMinusZ;
 };
 
+/// Two modules in neighbouring cells, in either order.
+using CellPair = std::array<base::Cell, 2>;
+
 /// What a robot is made from, in any order.
 struct RobotSpec {
   std::vector<base::Cell> existing = {};
   std::vector<base::Cell> planned = {};  ///< Attached in the planned step, all at once.
   std::vector<base::Cell> fixed = {};    ///< Those of `existing` that are fixed.
-  std::int32_t support_z = 0;            ///< Modules in this layer rest on the ground.
+  /// Pairs, existing or planned, that touch without being connected: no force passes. All other
+  /// neighbours are connected.
+  std::vector<CellPair> released = {};
+  std::int32_t support_z = 0;  ///< Modules in this layer rest on the ground.
   Material material = {};
 };
 
@@ -75,11 +82,20 @@ class Robot {
   /// The lattice in which the modules' cells and directions count.
   static constexpr const base::Lattice& lattice() { return base::kCubic; }
 
-  /// Module indices by direction, kNoNeighbour where there is none.
-  std::span<const Neighbours> neighbours() const { return neighbours_; }
+  /// The modules in the cells beside each module, connected to it or not: indices by direction,
+  /// kNoNeighbour where there is none.
+  std::span<const Neighbours> neighbours() const {
+    return neighbours_.empty() ? connected_ : neighbours_;
+  }
 
-  /// Every pair of modules that is connected once, planned modules included: all neighbours are.
+  /// The modules that each module is connected to: its neighbours() less the released ones.
+  std::span<const Neighbours> connected() const { return connected_; }
+
+  /// Every pair of modules that is connected once, planned modules included.
   std::span<const Connection> connections() const { return connections_; }
+
+  /// How many pairs of neighbours are not connected.
+  std::size_t released_count() const { return released_count_; }
 
   /// What touches the environment, by ascending module: the lower sides of all modules on the
   /// support level that are not fixed.
@@ -101,11 +117,15 @@ class Robot {
  private:
   explicit Robot(const Material& material) : material_(material), loads_(weight_loads(material)) {}
 
-  /// Finds neighbours, connections and facets, counts fixed modules.
+  /// Finds neighbours, all of them connected, and facets; counts fixed modules.
   void connect(const CellIndex& index, host::Team& team);
 
+  /// Takes these connections away. Returns what is wrong with the first pair that is none.
+  std::optional<std::string> release(std::span<const CellPair> pairs, const CellIndex& index);
+
   std::vector<Module> modules_;
-  std::vector<Neighbours> neighbours_;
+  std::vector<Neighbours> neighbours_;  ///< Empty if all are connected.
+  std::vector<Neighbours> connected_;
   std::vector<Connection> connections_;
   std::vector<Facet> facets_;
   Material material_;
@@ -113,6 +133,7 @@ class Robot {
   std::int32_t support_z_ = 0;
   std::size_t planned_count_ = 0;
   std::size_t fixed_count_ = 0;
+  std::size_t released_count_ = 0;
 };
 
 /// The two cells of a connection, given by its index; the first has the smaller coordinate.
