@@ -46,14 +46,14 @@ Order Conductor::next(const Setup& setup, const Report& report) {
         if constexpr (kHasAllMethods) {
           choose_clusters(report);
         }
-        return first_step();
+        return first_iteration();
       }
       break;
     case Operation::kFactor:
-      return tree_step();
-    case Operation::kStep:
-    case Operation::kTreeStep:
-      return after_step(setup, report);
+      return tree_iteration();
+    case Operation::kIterate:
+    case Operation::kTreeIterate:
+      return after_iteration(setup, report);
     case Operation::kCorners:
       return after_corners(setup, report);
     case Operation::kLoads:
@@ -194,7 +194,7 @@ Order Conductor::begin_law(const Setup& setup, bool is_unilateral) {
   is_tilting_ = false;
   has_history_ = false;
   seen_count_ = 0;
-  contact_steps_max_ = effort_.contact_steps + kContactStepsMax;
+  contact_iterations_max_ = effort_.contact_iterations + kContactIterationsMax;
   check_at_ = effort_.iterations + 2 * jacobi_span();
   check_error_ = kUnbounded;
   stagnation_count_ = 0;
@@ -210,7 +210,7 @@ Order Conductor::begin_law(const Setup& setup, bool is_unilateral) {
       begin = ask(may_have_clusters() ? Operation::kClusters : Operation::kBegin);
     }
     const bool starts = effort_.method == Method::kPolynomial && !is_any_remote_;
-    begin.count = starts ? step_degree() : std::uint16_t{0};
+    begin.count = starts ? iteration_degree() : std::uint16_t{0};
   }
   const bool has_all = kHasAllMethods && !setup.only_elimination;
   if (!has_all && effort_.method != Method::kElimination) {
@@ -218,15 +218,15 @@ Order Conductor::begin_law(const Setup& setup, bool is_unilateral) {
   }
   begin.flags = static_cast<std::uint8_t>(
       (is_unilateral ? kUnilateralLaw : 0U) | (is_one_sweep() ? kOneSweep : 0U) |
-      (effort_.method == Method::kPolynomial ? kWithSteps : 0U));
+      (effort_.method == Method::kPolynomial ? kWithIterations : 0U));
   begin.reals[0] = static_cast<float>(is_unilateral ? kUnilateralGamma : setup.contact_gamma);
   begin.reals[1] = static_cast<float>(static_cast<double>(extent_ + 1) * setup.section.length);
   return begin;
 }
 
-Order Conductor::move(double step, double mix) {
+Order Conductor::move(double length, double mix) {
   Order high = ask(Operation::kHigh);
-  high.reals = {static_cast<float>(step), static_cast<float>(mix)};
+  high.reals = {static_cast<float>(length), static_cast<float>(mix)};
   return high;
 }
 
@@ -265,10 +265,10 @@ Order Conductor::judge(const Setup& setup, const Report& report) {
 
 /// The linear problem is solved and some facets want another state.
 Order Conductor::judge_regularised(const Setup& setup, const Report& report) {
-  if (was_seen(report.number) || effort_.contact_steps > contact_steps_max_) {
+  if (was_seen(report.number) || effort_.contact_iterations > contact_iterations_max_) {
     return begin_law(setup, true);
   }
-  ++effort_.contact_steps;
+  ++effort_.contact_iterations;
   error_best_ = kUnbounded;
   stagnation_count_ = 0;
   return start_solve(true);
@@ -308,7 +308,7 @@ bool Conductor::was_seen(std::uint32_t hash) {
   return false;
 }
 
-// ---- Conjugate gradients with one reduction a step [Chronopoulos, Gear 1989].
+// ---- Conjugate gradients with one reduction an iteration [Chronopoulos, Gear 1989].
 
 Order Conductor::start_solve(bool adopts_states) {
   ++effort_.solves;
@@ -404,17 +404,17 @@ Order Conductor::after_slope(const Report& report) {
   if (slope_count_ == 0 && slope_at(4) <= enough) {
     return move(1);
   }
-  const double step = (high_ - low_) / 4;
+  const double spacing = (high_ - low_) / 4;
   double before = 0;
   for (std::size_t place = 1; place <= 4; ++place) {
     const double slope = slope_at(place);
-    const double t = low_ + step * static_cast<double>(place);
+    const double t = low_ + spacing * static_cast<double>(place);
     if (slope > 0) {
       if (slope_count_ == kSlopeCountMax) {
         // Between two places the slope is nearly straight by now.
-        return move(t - step + (before < 0 ? step * before / (before - slope) : 0));
+        return move(t - spacing + (before < 0 ? spacing * before / (before - slope) : 0));
       }
-      low_ = t - step;
+      low_ = t - spacing;
       high_ = t;
       break;
     }

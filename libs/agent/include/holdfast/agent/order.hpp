@@ -53,7 +53,8 @@ struct Answer {
 /// In kPlan: no planned module is learned yet.
 inline constexpr std::uint8_t kNoPlanned = 0xff;
 
-/// Exchanges that one order may ask for: the degree of a polynomial, and steps of a Jacobi method.
+/// Exchanges that one order may ask for: the degree of a polynomial, and iterations of a Jacobi
+/// method.
 inline constexpr std::uint16_t kDegreeMax = 4000;
 inline constexpr std::uint16_t kJacobiCountMax = 4096;
 
@@ -62,7 +63,7 @@ struct Order {
   wire::Operation operation{};
   std::uint8_t index = 0;  ///< kPlan: planned index learned, kPlannedMax: one too many, or 0xff.
   std::uint8_t flags = 0;
-  std::uint16_t count = 0;  ///< kJacobi: steps; kStart, kGradient, kBegin, kStep: degree.
+  std::uint16_t count = 0;  ///< kJacobi: iterations; kStart, kGradient, kBegin, kIterate: degree.
   base::Cell cell = {};     ///< kPlan, kForget: of that module; kMass: of the root.
   std::array<std::uint8_t, 8> masks{};   ///< kHosts
   std::int32_t mass = 0;                 ///< kAngles: of all modules, in units.
@@ -72,16 +73,16 @@ struct Order {
 };
 
 /// Flags of orders.
-inline constexpr std::uint8_t kIsFulfilled = 1;    ///< kForget
-inline constexpr std::uint8_t kUnilateralLaw = 1;  ///< kBegin
-inline constexpr std::uint8_t kOneSweep = 2;       ///< kBegin: for kStep or kTreeStep.
-inline constexpr std::uint8_t kWithSteps = 4;      ///< kBegin: for kStep.
-inline constexpr std::uint8_t kFollowStates = 1;   ///< kLow: take over wanted states.
-inline constexpr std::uint8_t kRestart = 1;        ///< kStep: without older directions.
-inline constexpr std::uint8_t kLeastResidual = 2;  ///< kStep: least residual, not least energy.
-inline constexpr std::uint8_t kKeepStates = 4;     ///< kStep: contact states are not looked up.
-inline constexpr std::uint8_t kWithClusters = 8;   ///< kStep: clusters between two polynomials.
-/// kStep: planned modules between others stand still in the polynomial.
+inline constexpr std::uint8_t kIsFulfilled = 1;     ///< kForget
+inline constexpr std::uint8_t kUnilateralLaw = 1;   ///< kBegin
+inline constexpr std::uint8_t kOneSweep = 2;        ///< kBegin: for kIterate or kTreeIterate.
+inline constexpr std::uint8_t kWithIterations = 4;  ///< kBegin: for kIterate.
+inline constexpr std::uint8_t kFollowStates = 1;    ///< kLow: take over wanted states.
+inline constexpr std::uint8_t kRestart = 1;         ///< kIterate: without older directions.
+inline constexpr std::uint8_t kLeastResidual = 2;   ///< kIterate: least residual, not least energy.
+inline constexpr std::uint8_t kKeepStates = 4;      ///< kIterate: contact states are not looked up.
+inline constexpr std::uint8_t kWithClusters = 8;    ///< kIterate: clusters between two polynomials.
+/// kIterate: planned modules between others stand still in the polynomial.
 inline constexpr std::uint8_t kHoldPlanned = 16;
 inline constexpr std::uint8_t kAdoptStates = 1;    ///< kStart
 inline constexpr std::uint8_t kWithScalars = 2;    ///< kStart
@@ -109,7 +110,7 @@ struct Report {
   std::uint32_t number = 0;
   std::array<std::int64_t, 3> moment{};  ///< kMass: first moments, units of mass times cells.
   std::array<float, 5> reals{};
-  std::array<double, 3> products{};  ///< kStep
+  std::array<double, 3> products{};  ///< kIterate
   base::Cell cell = {};
   base::Direction direction = base::Direction::kPlusX;
   SafeCorners feet = {};
