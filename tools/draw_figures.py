@@ -451,7 +451,7 @@ WORDS = [((506, 39), 'a module is fixed', INK), ((690, 21), 'topples', INK),
 NOTES = ['Green: one sweep an iteration. Orange: conjugate gradients and Jacobi methods.',
          'Law 2: the unilateral one, Eqs. (6)-(8).',
          'Settled: of a robot with a fixed module, loads comes next; behind free, the verdict.',
-         'Stuck: an iteration without clusters if it had them, else cg; a Jacobi method, the next one.',
+         'Stuck: begin without clusters if there were any, else cg; a Jacobi method, the next.',
          'From every state: verdict, undecided, with the reason.']
 
 

@@ -80,7 +80,7 @@ bool Conductor::may_have_clusters() const {
 
 /// The report of kClusters: beams between clusters, and those that do not go to the parent.
 void Conductor::choose_clusters(const Report& report) {
-  has_clusters_ = may_have_clusters() && kStrayShare * report.number < report.count;
+  has_clusters_ = may_have_clusters() && kStrayShare * report.stray_count() < report.count;
 }
 
 Order Conductor::first_iteration() {
@@ -132,12 +132,12 @@ Order Conductor::restarted_iteration() {
 /// whose state has changed, the hash of all; the products of minimal_residuals.hpp.
 Order Conductor::after_iteration(const Setup& setup, const Report& report) {
   ++effort_.iterations;
-  ratio_ = static_cast<double>(report.reals[1]);
+  ratio_ = static_cast<double>(report.load_ratio_max());
   is_tilting_ = (report.flags & kAnyTilting) != 0;
   const bool was_accurate = predicted_ < kStateTolerance * (1 + absolute(ratio_));
-  const bool has_jumped = report.extent > 0;
+  const bool has_jumped = report.changed_count() > 0;
   const bool is_elimination = !kHasAllMethods || effort_.method == Method::kElimination;
-  const auto bound = static_cast<double>(report.reals[0]);
+  const auto bound = static_cast<double>(report.error());
   const double error = has_jumped || is_elimination ? bound : iteration_error(setup, report, bound);
   if (!is_number(error) || effort_.iterations > setup.iteration_count_max) {
     return leave_one_sweep(setup, false);
@@ -145,7 +145,7 @@ Order Conductor::after_iteration(const Setup& setup, const Report& report) {
   error_ = error;
   if (has_jumped) {
     ++effort_.contact_iterations;
-    const bool is_cycle = was_accurate && was_seen(report.number);
+    const bool is_cycle = was_accurate && was_seen(report.states_hash());
     if (is_cycle || effort_.contact_iterations > contact_iterations_max_) {
       // Only exact iterations are certain to go round in circles: conjugate gradients try first.
       return leave_one_sweep(setup, is_cycle && is_elimination);

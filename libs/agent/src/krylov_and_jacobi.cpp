@@ -88,8 +88,8 @@ Report KrylovAndJacobi::report(Workspace& ws, const Order& order) {
 
 /// u := u + t g - theta (last move + change of g), and its leading part goes out.
 void KrylovAndJacobi::move(Workspace& ws, const Order& order) {
-  const float length = order.reals[0];
-  const float mix = order.reals[1];
+  const float length = order.length();
+  const float mix = order.mix();
   for (int i = 0; i < ws.node_count(); ++i) {
     Node& node = ws.node(i);
     Gradients& cg = vectors(i);
@@ -129,8 +129,8 @@ void KrylovAndJacobi::start_solve(Workspace& ws, const Order& order) {
 
 /// p := z + beta p, s := w + beta s, g := g + alpha p, r := r - alpha s, z := M^-1 r.
 void KrylovAndJacobi::iterate_gradient(Workspace& ws, const Order& order) {
-  const float alpha = order.reals[0];
-  const float beta = order.reals[1];
+  const float alpha = order.alpha();
+  const float beta = order.beta();
   const int joined = joined_count(ws, planned_part(ws, order));
   for (int i = 0; i < ws.node_count(); ++i) {
     Gradients& cg = vectors(i);
@@ -317,8 +317,8 @@ Report KrylovAndJacobi::product_report(const Workspace& ws) const {
 
 /// The slope of the energy along g, at t = 0 and at four places in (low, high].
 Report KrylovAndJacobi::slope_report(const Workspace& ws, const Order& order) const {
-  const auto low = static_cast<double>(order.reals[0]);
-  const auto high = static_cast<double>(order.reals[1]);
+  const auto low = static_cast<double>(order.low());
+  const auto high = static_cast<double>(order.high());
   std::array<double, 5> sums{};
   for (int i = 0; i < ws.node_count(); ++i) {
     const Node& node = ws.node(i);

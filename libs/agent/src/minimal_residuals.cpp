@@ -43,9 +43,9 @@ void MinimalResiduals::begin() {
 
 void MinimalResiduals::move() {
   ws_.middle = {};
-  const auto c = static_cast<double>(order_.reals[0]);
-  const auto a = static_cast<double>(order_.reals[1]);
-  const auto b = static_cast<double>(order_.reals[2]);
+  const auto c = static_cast<double>(order_.c());
+  const auto a = static_cast<double>(order_.a());
+  const auto b = static_cast<double>(order_.b());
   const bool restarts = (order_.flags & kRestart) != 0;
   for (int i = 0; i < node_count(); ++i) {
     Node& node = ws_.node(i);
