@@ -367,12 +367,12 @@ def work(canvas, lane, y, words, height=20, side=58):
     canvas.box((LANES[lane] - side, y), (2 * side, height), words, '#fff', GREY)
 
 
-def draw_steps(canvas):
-    message(canvas, 'root', 'inner', 68, 'order: step')
-    work(canvas, 'root', 84, 'u := u + step')
-    message(canvas, 'inner', 'leaf', 90, 'order: step')
-    work(canvas, 'inner', 108, 'u := u + step')
-    work(canvas, 'leaf', 112, 'u := u + step')
+def draw_iteration(canvas):
+    message(canvas, 'root', 'inner', 68, 'order: iterate')
+    work(canvas, 'root', 84, 'u := u + correction')
+    message(canvas, 'inner', 'leaf', 90, 'order: iterate')
+    work(canvas, 'inner', 108, 'u := u + correction')
+    work(canvas, 'leaf', 112, 'u := u + correction')
     for y, words in ((176, 'vector: leading digits of u'), (206, 'vector: the other digits')):
         exchange(canvas, ('root', 'inner'), y, words)
         exchange(canvas, ('inner', 'leaf'), y, words)
@@ -393,7 +393,7 @@ def draw_steps(canvas):
 def sweep():
     canvas = Canvas(800, 520, 'One sweep: an order down, exchanges, reports up')
     draw_lanes(canvas, 505)
-    draw_steps(canvas)
+    draw_iteration(canvas)
     for top, bottom, words in ((66, 132, ('down:', 'depth', 'rounds')),
                                (164, 246, ('exchange:', '2 rounds')),
                                (252, 326, ('up:', 'depth', 'rounds')),
@@ -410,15 +410,15 @@ def sweep():
 STATES = {  # name: centre, what else it may be
     'plan': (70, 86, 'or forget'), 'hosts': (190, 86, ''), 'mass': (310, 86, ''),
     'angles': (430, 86, ''), 'begin': (580, 86, 'or clusters'),
-    'factor': (470, 206, ''), 'step': (600, 206, 'or tree step'),
+    'factor': (470, 206, ''), 'iterate': (600, 206, 'or tree iterate'),
     'start': (190, 206, ''), 'gradient': (70, 296, ''), 'jacobi': (190, 296, ''),
     'slope': (70, 386, ''), 'mix': (190, 386, 'order: slope'), 'high': (310, 386, ''),
     'low': (450, 386, ''), 'corners': (600, 386, ''), 'release': (310, 496, 'order: hold'),
     'free': (430, 496, 'order: hold'), 'loads': (600, 496, ''), 'verdict': (600, 590, '')}
-FILLS = {**dict.fromkeys(('factor', 'step'), '#d5efe6'),
+FILLS = {**dict.fromkeys(('factor', 'iterate'), '#d5efe6'),
          **dict.fromkeys(('start', 'gradient', 'jacobi', 'slope', 'mix', 'high', 'low'), '#fde3cf'),
          **dict.fromkeys(('corners', 'release', 'free', 'loads', 'verdict'), '#f3f3f3')}
-AGAIN = {'plan': -1, 'gradient': -1, 'slope': -1, 'jacobi': -1, 'step': 1}
+AGAIN = {'plan': -1, 'gradient': -1, 'slope': -1, 'jacobi': -1, 'iterate': 1}
 EDGES = [  # corners of the way, colour
     ((114, 86), (146, 86)), ((234, 86), (266, 86)), ((354, 86), (386, 86)), ((474, 86), (536, 86)),
     ((310, 66), (310, 44), (580, 44), (580, 66)),
@@ -448,10 +448,10 @@ WORDS = [((506, 39), 'a module is fixed', INK), ((690, 21), 'topples', INK),
          ((292, 462), 'freed', INK), ((516, 490), 'open, held', INK), ((445, 535), 'none', INK),
          ((662, 184), 'stuck', RED), ((538, 281), 'stuck: next method, law', RED),
          ((692, 381), 'contradict: law 2', RED)]
-NOTES = ['Green: one sweep a step. Orange: conjugate gradients and Jacobi methods.',
+NOTES = ['Green: one sweep an iteration. Orange: conjugate gradients and Jacobi methods.',
          'Law 2: the unilateral one, Eqs. (6)-(8).',
          'Settled: of a robot with a fixed module, loads comes next; behind free, the verdict.',
-         'Stuck: a step without clusters if it had them, else cg; a Jacobi method, the next one.',
+         'Stuck: begin without clusters if there were any, else cg; a Jacobi method, the next.',
          'From every state: verdict, undecided, with the reason.']
 
 

@@ -253,10 +253,10 @@ sim::SimulationOptions simulation_options(const RequestHeader& header) {
   return options;
 }
 
-void write_order(io::JsonStream& json, const char* text, bool is_step) {
+void write_order(io::JsonStream& json, const char* text, bool is_iteration) {
   json.begin_object();
   json.member("text", text);
-  json.member("is_step", is_step);
+  json.member("is_iteration", is_iteration);
   json.end_object();
 }
 

@@ -191,14 +191,14 @@ test('the robot finds out by itself, and the trace can be stepped through', asyn
   for (let i = 0; i < 6; ++i) {
     await page.click('#phase-on');
   }
-  assert.match(await moment(), /equilibrium · step 0 /);
+  assert.match(await moment(), /equilibrium · iteration 0 /);
   const orders = [];
-  while (!/equilibrium · step 1 /.test(await moment())) {
+  while (!/equilibrium · iteration 1 /.test(await moment())) {
     await page.click('#step-on');
     orders.push(/order: (.*)$/.exec(await moment())[1]);
     assert.ok(orders.length < 10, orders.join('; '));
   }
-  assert.deepEqual(orders.slice(-2), ['condense the branches', 'a step: move, residual'], orders.join('; '));
+  assert.deepEqual(orders.slice(-2), ['condense the branches', 'an iteration: move, residual'], orders.join('; '));
   const later = await moment();
   await page.click('#step-back');
   await page.click('#step-on');

@@ -10,11 +10,11 @@ namespace {
 
 using wire::MessageType;
 
-Phase phase_of(SpanningTree::Stage stage) {
-  switch (stage) {
-    case SpanningTree::Stage::kFirst:
+Phase phase_of(SpanningTree::Wave wave) {
+  switch (wave) {
+    case SpanningTree::Wave::kFirst:
       return Phase::kCoordinates;
-    case SpanningTree::Stage::kFar:
+    case SpanningTree::Wave::kFar:
       return Phase::kElection;
     default:
       return Phase::kTree;
@@ -117,7 +117,7 @@ void Agent::finish_step(Actions& actions) {
 }
 
 bool Agent::is_waiting() const {
-  return ws_.tree.stage() != SpanningTree::Stage::kNone && phase() != Phase::kDone &&
+  return ws_.tree.wave() != SpanningTree::Wave::kNone && phase() != Phase::kDone &&
          watch_.at() != kNever;
 }
 
@@ -159,7 +159,7 @@ bool Agent::take(Direction face, std::span<const std::uint8_t> message) {
     rounds_.hear(face, decoded<Echo>(message).round);
   }
   const bool is_ours = rounds_.of(face) == rounds_.current();
-  if (!is_ours || rounds_.is_left() || ws_.tree.stage() == SpanningTree::Stage::kNone) {
+  if (!is_ours || rounds_.is_left() || ws_.tree.wave() == SpanningTree::Wave::kNone) {
     return true;
   }
   if (!expects(face, message)) {
@@ -177,7 +177,7 @@ bool Agent::take_join(Direction face, const Join& join) {
   } else if (!(join.round == rounds_.current()) || rounds_.is_left()) {
     return true;
   }
-  const SpanningTree::Stage before = ws_.tree.stage();
+  const SpanningTree::Wave before = ws_.tree.wave();
   if (!ws_.tree.take_join(ws_.links, face, join, sweep_.has_begun())) {
     return false;
   }
@@ -189,11 +189,11 @@ bool Agent::take_join(Direction face, const Join& join) {
 /// What a neighbour may say at this moment.
 ///
 /// A message that is legal by itself can still be one that no working program sends now: an order
-/// from a child, a column of a loop that nobody has told of, a step before there is an equilibrium.
-/// Taking it would work on memory that belongs to another method. Such a message, and one that
-/// is_legal() refuses, has no effect but two: it is counted, and the neighbour, whose faults are
-/// now known, counts as silent. Leaving it out alone would not do: a sum without it could make a
-/// robot `safe` that is not.
+/// from a child, a column of a loop that nobody has told of, an iteration before there is an
+/// equilibrium. Taking it would work on memory that belongs to another method. Such a message, and
+/// one that is_legal() refuses, has no effect but two: it is counted, and the neighbour, whose
+/// faults are now known, counts as silent. Leaving it out alone would not do: a sum without it
+/// could make a robot `safe` that is not.
 bool Agent::expects(Direction face, std::span<const std::uint8_t> message) const {
   switch (static_cast<MessageType>(message[0])) {
     case MessageType::kEcho:
@@ -212,7 +212,7 @@ bool Agent::expects(Direction face, std::span<const std::uint8_t> message) const
 
 void Agent::take_expected(Direction face, std::span<const std::uint8_t> message) {
   const Round& round = rounds_.current();
-  const SpanningTree::Stage before = ws_.tree.stage();
+  const SpanningTree::Wave before = ws_.tree.wave();
   switch (static_cast<MessageType>(message[0])) {
     case MessageType::kEcho:
       return ws_.tree.take_echo(ws_.links, face, decoded<Echo>(message));
@@ -238,7 +238,7 @@ void Agent::take_expected(Direction face, std::span<const std::uint8_t> message)
 /// Messages only leave something to do; it is done here, a piece at a time, none of which calls
 /// another.
 void Agent::go_on() {
-  is_busy_ = sweep_.exchange(ws_) || sweep_.do_piece(ws_) || finish_sweep() || end_stage() ||
+  is_busy_ = sweep_.exchange(ws_) || sweep_.do_piece(ws_) || finish_sweep() || end_wave() ||
              take_next_order();
   if (ws_.links.take_refusal()) {
     leave_round();
@@ -265,7 +265,7 @@ bool Agent::finish_sweep() {
 }
 
 /// Once a wave has come back to where it started.
-bool Agent::end_stage() {
+bool Agent::end_wave() {
   SpanningTree& tree = ws_.tree;
   if (!tree.take_return()) {
     return false;
@@ -275,10 +275,10 @@ bool Agent::end_stage() {
     Order order{.operation = wire::Operation::kVerdict};
     order.answer = {.verdict = Verdict::kUndecided, .reason = Reason::kNeighbourSilent};
     keep_order(order);
-  } else if (tree.stage() == SpanningTree::Stage::kTree) {
+  } else if (tree.wave() == SpanningTree::Wave::kTree) {
     keep_order(conductor_.begin(ws_.setup, tree.cell(), census.count, census.hops));
   } else {
-    const SpanningTree::Stage before = tree.stage();
+    const SpanningTree::Wave before = tree.wave();
     watch_.enter_phase(Phase::kElection);
     tree.appoint(ws_.links, rounds_.current());
     follow_wave(before);
@@ -359,8 +359,8 @@ void Agent::start_round() {
     return;
   }
   enter_round({.epoch = epoch_after(epoch()), .starter = identity_.id});
-  ws_.tree.start_wave(ws_.links, rounds_.current(), SpanningTree::Stage::kFirst);
-  follow_wave(SpanningTree::Stage::kNone);
+  ws_.tree.start_wave(ws_.links, rounds_.current(), SpanningTree::Wave::kFirst);
+  follow_wave(SpanningTree::Wave::kNone);
   is_busy_ = true;
 }
 
@@ -377,9 +377,9 @@ void Agent::enter_round(const Round& round) {
 }
 
 /// A wave has been here: another phase if it was a new one.
-void Agent::follow_wave(SpanningTree::Stage before) {
-  if (ws_.tree.stage() != before) {
-    watch_.enter_phase(phase_of(ws_.tree.stage()));
+void Agent::follow_wave(SpanningTree::Wave before) {
+  if (ws_.tree.wave() != before) {
+    watch_.enter_phase(phase_of(ws_.tree.wave()));
   }
 }
 

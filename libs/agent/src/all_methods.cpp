@@ -14,7 +14,8 @@ constexpr MethodTable condensing(MethodTable method) {
 }
 
 constexpr MethodTable kElimination = table_of<TreeElimination, &MethodState::elimination>();
-constexpr MethodTable kSteps = condensing(table_of<PolynomialSteps, &MethodState::steps>());
+constexpr MethodTable kPolynomial =
+    condensing(table_of<PolynomialIteration, &MethodState::polynomial>());
 constexpr MethodTable kClusters = condensing(table_of<RigidClusters, &MethodState::clusters>());
 constexpr MethodTable kGradients = table_of<KrylovAndJacobi, &MethodState::gradients>();
 
@@ -25,8 +26,8 @@ const MethodTable* method_in(Course course) {
     case Course::kWeighed:
     case Course::kElimination:
       return &kElimination;
-    case Course::kSteps:
-      return &kSteps;
+    case Course::kPolynomial:
+      return &kPolynomial;
     case Course::kClusters:
       return &kClusters;
     case Course::kGradients:

@@ -168,8 +168,8 @@ Which three_from(int first) {
 Joint::Joint(const BeamStiffness<double>& beam, Direction direction)
     : beam_(beam), direction_(direction) {
   const double pitch = 2 * beam.couple_x / beam.shear_x;  // c/s = L/2
-  const base::Cell step = base::neighbour({0, 0, 0}, direction);
-  lever_ = {-pitch * step.x, -pitch * step.y, -pitch * step.z};
+  const base::Cell way = base::neighbour({0, 0, 0}, direction);
+  lever_ = {-pitch * way.x, -pitch * way.y, -pitch * way.z};
   const double x = 1 / (beam.shear_x * beam.bend_x - beam.couple_x * beam.couple_x);
   const double y = 1 / (beam.shear_y * beam.bend_y - beam.couple_y * beam.couple_y);
   straight_ = {beam.bend_x * x,  beam.bend_y * y,  1 / beam.axial,

@@ -8,30 +8,30 @@
 /// Planned modules that touch several others.
 ///
 /// The host of such a module lies above all that it touches, so an exchange with them takes longer
-/// than a round. A step does without the planned module: it is condensed. With the displacements u
-/// of those that it touches its own is known,
+/// than a round. An iteration does without the planned module: it is condensed. With the
+/// displacements u of those that it touches its own is known,
 ///   u_p = K_pp^-1 (f_p - K_pr u),
 /// so no force is left on it, and for the others remains S = K_rr - K_rp K_pp^-1 K_pr: as symmetric
 /// as K. The polynomial cannot wait for the host, so M^-1 is that of another robot.
-/// At first of the robot without the planned module: S is a little stiffer, and the steps are as
-/// many as without it, or a few more. But where the planned module joins parts that bend freely
-/// M^-1 S has eigenvalues of hundreds, and a full step, which every step is before its length is
-/// known, goes so far that contact states change for nothing, again and again. So from the first
-/// change of contact states on (kHoldPlanned; not with clusters, whose steps are damped) the
-/// planned module stands still in M, its beams kHeldShare of what they are. With whole ones S would
-/// be the softer matrix, as K_rp K_pp^-1 K_pr is never negative, and no eigenvalue greater than the
-/// polynomial's own; so none is greater than 1 / kHeldShare times that. What is too stiff in M
-/// then, six displacements for each planned module, are small eigenvalues, which conjugate
-/// gradients find in some more steps. In each step the forces K_pr u go up to the host behind the
-/// order, and u_p comes down: at most one sweep more.
+/// At first of the robot without the planned module: S is a little stiffer, and the iterations are
+/// as many as without it, or a few more. But where the planned module joins parts that bend freely
+/// M^-1 S has eigenvalues of hundreds, and a full correction, which every iteration is before its
+/// length is known, goes so far that contact states change for nothing, again and again. So from
+/// the first change of contact states on (kHoldPlanned; not with clusters, whose iterations are
+/// damped) the planned module stands still in M, its beams kHeldShare of what they are. With whole
+/// ones S would be the softer matrix, as K_rp K_pp^-1 K_pr is never negative, and no eigenvalue
+/// greater than the polynomial's own; so none is greater than 1 / kHeldShare times that. What is
+/// too stiff in M then, six displacements for each planned module, are small eigenvalues, which
+/// conjugate gradients find in some more iterations. In each iteration the forces K_pr u go up to
+/// the host behind the order, and u_p comes down: at most one sweep more.
 ///
 /// Conjugate gradients have u_p among their unknowns. Their polynomial has its diagonal block
 /// apart, and only the last exchange of a sweep, for w = A z, has its beams in it.
 namespace holdfast::agent {
 
 /// How stiff the beams of a planned module are that stands still in the polynomial. Of 58 random
-/// robots whose steps were given up, 12 still are with 0.7, 8 with 0.5, 14 with 0.4, if planned
-/// modules are held from the first step on.
+/// robots whose iterations were given up, 12 still are with 0.7, 8 with 0.5, 14 with 0.4, if
+/// planned modules are held from the first iteration on.
 inline constexpr double kHeldShare = 0.5;
 
 /// Nodes with a part in the polynomial.
@@ -39,7 +39,7 @@ inline int joined_count(const Workspace& ws, PlannedPart part) {
   return part == PlannedPart::kTogether ? ws.node_count() : 1;
 }
 
-/// Behind a step's order: the forces on planned modules at rest go up to their hosts.
+/// Behind an iteration's order: the forces on planned modules at rest go up to their hosts.
 void begin_condensing(Workspace& ws, const Order& order);
 
 /// All forces from below are here: on to the host, or from it down again.

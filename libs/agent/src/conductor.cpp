@@ -46,14 +46,14 @@ Order Conductor::next(const Setup& setup, const Report& report) {
         if constexpr (kHasAllMethods) {
           choose_clusters(report);
         }
-        return first_step();
+        return first_iteration();
       }
       break;
     case Operation::kFactor:
-      return tree_step();
-    case Operation::kStep:
-    case Operation::kTreeStep:
-      return after_step(setup, report);
+      return tree_iteration();
+    case Operation::kIterate:
+    case Operation::kTreeIterate:
+      return after_iteration(setup, report);
     case Operation::kCorners:
       return after_corners(setup, report);
     case Operation::kLoads:
@@ -169,12 +169,12 @@ Order Conductor::after_mass(const Setup& setup, const Report& report) {
   const auto is_large = [](std::int64_t moment) { return moment < -kMost || moment > kMost; };
   const auto [x, y, z] = report.moment;
   if ((report.flags & kSumOverflow) != 0 || is_large(x) || is_large(y) ||
-      !fits_exact_check(setup, report.number)) {
+      !fits_exact_check(setup, report.mass())) {
     return finish(Verdict::kUndecided, Reason::kTooLarge);
   }
   Order angles = ask(Operation::kAngles);
   angles.cell = root_;
-  angles.mass = static_cast<std::int32_t>(report.number);
+  angles.mass = static_cast<std::int32_t>(report.mass());
   angles.moment = {static_cast<std::int32_t>(x), static_cast<std::int32_t>(y)};
   return angles;
 }
@@ -194,7 +194,7 @@ Order Conductor::begin_law(const Setup& setup, bool is_unilateral) {
   is_tilting_ = false;
   has_history_ = false;
   seen_count_ = 0;
-  contact_steps_max_ = effort_.contact_steps + kContactStepsMax;
+  contact_iterations_max_ = effort_.contact_iterations + kContactIterationsMax;
   check_at_ = effort_.iterations + 2 * jacobi_span();
   check_error_ = kUnbounded;
   stagnation_count_ = 0;
@@ -210,7 +210,7 @@ Order Conductor::begin_law(const Setup& setup, bool is_unilateral) {
       begin = ask(may_have_clusters() ? Operation::kClusters : Operation::kBegin);
     }
     const bool starts = effort_.method == Method::kPolynomial && !is_any_remote_;
-    begin.count = starts ? step_degree() : std::uint16_t{0};
+    begin.count = starts ? iteration_degree() : std::uint16_t{0};
   }
   const bool has_all = kHasAllMethods && !setup.only_elimination;
   if (!has_all && effort_.method != Method::kElimination) {
@@ -218,22 +218,22 @@ Order Conductor::begin_law(const Setup& setup, bool is_unilateral) {
   }
   begin.flags = static_cast<std::uint8_t>(
       (is_unilateral ? kUnilateralLaw : 0U) | (is_one_sweep() ? kOneSweep : 0U) |
-      (effort_.method == Method::kPolynomial ? kWithSteps : 0U));
+      (effort_.method == Method::kPolynomial ? kWithIterations : 0U));
   begin.reals[0] = static_cast<float>(is_unilateral ? kUnilateralGamma : setup.contact_gamma);
   begin.reals[1] = static_cast<float>(static_cast<double>(extent_ + 1) * setup.section.length);
   return begin;
 }
 
-Order Conductor::move(double step, double mix) {
+Order Conductor::move(double length, double mix) {
   Order high = ask(Operation::kHigh);
-  high.reals = {static_cast<float>(step), static_cast<float>(mix)};
+  high.reals = {static_cast<float>(length), static_cast<float>(mix)};
   return high;
 }
 
 /// Reports of kLow: error bound, largest ratio, facets that want another state, the hash of all.
 Order Conductor::judge(const Setup& setup, const Report& report) {
-  const auto error = static_cast<double>(report.reals[0]);
-  ratio_ = static_cast<double>(report.reals[1]);
+  const auto error = static_cast<double>(report.error());
+  ratio_ = static_cast<double>(report.load_ratio_max());
   is_tilting_ = (report.flags & kAnyTilting) != 0;
   if (!is_number(error) || effort_.iterations > setup.iteration_count_max) {
     return give_up(setup);
@@ -245,7 +245,7 @@ Order Conductor::judge(const Setup& setup, const Report& report) {
       is_better ? std::uint8_t{0} : static_cast<std::uint8_t>(stagnation_count_ + 1);
   // Contact states first, at the usual tolerance; then the verdict, which may need a better one.
   const bool follows = is_unilateral_ || is_jacobi();
-  const bool is_consistent = follows || report.extent == 0;
+  const bool is_consistent = follows || report.changed_count() == 0;
   target_ = (is_consistent ? kRatioTolerance : kStateTolerance) * (1 + absolute(ratio_));
   if (!is_consistent && (error <= target_ || stagnation_count_ > kStagnationMax)) {
     return judge_regularised(setup, report);
@@ -265,10 +265,10 @@ Order Conductor::judge(const Setup& setup, const Report& report) {
 
 /// The linear problem is solved and some facets want another state.
 Order Conductor::judge_regularised(const Setup& setup, const Report& report) {
-  if (was_seen(report.number) || effort_.contact_steps > contact_steps_max_) {
+  if (was_seen(report.states_hash()) || effort_.contact_iterations > contact_iterations_max_) {
     return begin_law(setup, true);
   }
-  ++effort_.contact_steps;
+  ++effort_.contact_iterations;
   error_best_ = kUnbounded;
   stagnation_count_ = 0;
   return start_solve(true);
@@ -308,7 +308,7 @@ bool Conductor::was_seen(std::uint32_t hash) {
   return false;
 }
 
-// ---- Conjugate gradients with one reduction a step [Chronopoulos, Gear 1989].
+// ---- Conjugate gradients with one reduction an iteration [Chronopoulos, Gear 1989].
 
 Order Conductor::start_solve(bool adopts_states) {
   ++effort_.solves;
@@ -327,28 +327,28 @@ Order Conductor::after_start(const Report& report) {
     return jacobi;
   }
   const double reduction = is_tilting_ && !is_unilateral_ ? kReductionTilting : kReductionLeast;
-  const double least = reduction * static_cast<double>(report.reals[2]);
+  const double least = reduction * static_cast<double>(report.solve_error());
   const double enough = is_tilting_ && !is_unilateral_ ? 0 : 0.3 * target_;
   solve_error_ = least > enough ? least : enough;
   gamma_ = 0;
   alpha_ = 0;
-  const auto gamma = static_cast<double>(report.reals[0]);
+  const auto gamma = static_cast<double>(report.residual_product());
   if (!(gamma > 0) || !is_number(gamma)) {
     return move(0);
   }
-  return next_gradient(gamma, static_cast<double>(report.reals[1]));
+  return next_gradient(gamma, static_cast<double>(report.image_product()));
 }
 
 Order Conductor::after_gradient(const Setup& setup, const Report& report) {
   ++effort_.iterations;
   ++solve_iterations_;
-  const auto gamma = static_cast<double>(report.reals[0]);
-  if (!(static_cast<double>(report.reals[2]) > solve_error_) || !is_number(gamma) ||
+  const auto gamma = static_cast<double>(report.residual_product());
+  if (!(static_cast<double>(report.solve_error()) > solve_error_) || !is_number(gamma) ||
       solve_iterations_ >= solve_iterations_max_ ||
       effort_.iterations > setup.iteration_count_max) {
     return end_solve();
   }
-  return next_gradient(gamma, static_cast<double>(report.reals[1]));
+  return next_gradient(gamma, static_cast<double>(report.image_product()));
 }
 
 /// gamma = (r, z), delta = (z, w): beta = gamma / gamma_old, alpha = gamma / (delta - beta gamma /
@@ -364,7 +364,7 @@ Order Conductor::next_gradient(double gamma, double delta) {
   gradient.count = degree_;
   gradient.reals = {static_cast<float>(alpha), static_cast<float>(beta)};
   gamma_ = gamma;
-  alpha_ = static_cast<double>(gradient.reals[0]);
+  alpha_ = static_cast<double>(gradient.alpha());
   return gradient;
 }
 
@@ -391,7 +391,8 @@ Order Conductor::end_solve() {
 /// Anderson's method of depth one, in the norm of the solve's matrix: the combination of the last
 /// two iterates whose correction is least, moved by its correction.
 Order Conductor::after_mix(const Report& report) {
-  const auto mix = static_cast<double>(report.reals[0]) / static_cast<double>(report.reals[1]);
+  const auto mix =
+      static_cast<double>(report.mix_product()) / static_cast<double>(report.mix_square());
   return move(1, is_number(mix) ? mix : 0);
 }
 
@@ -399,22 +400,22 @@ Order Conductor::after_mix(const Report& report) {
 
 /// A report brings the slope at 0 and at four places in (low, high].
 Order Conductor::after_slope(const Report& report) {
-  const auto slope_at = [&](std::size_t place) { return static_cast<double>(report.reals[place]); };
+  const auto slope_at = [&](std::size_t place) { return static_cast<double>(report.slope(place)); };
   const double enough = kSlopeReduction * absolute(slope_at(0));
   if (slope_count_ == 0 && slope_at(4) <= enough) {
     return move(1);
   }
-  const double step = (high_ - low_) / 4;
+  const double spacing = (high_ - low_) / 4;
   double before = 0;
   for (std::size_t place = 1; place <= 4; ++place) {
     const double slope = slope_at(place);
-    const double t = low_ + step * static_cast<double>(place);
+    const double t = low_ + spacing * static_cast<double>(place);
     if (slope > 0) {
       if (slope_count_ == kSlopeCountMax) {
         // Between two places the slope is nearly straight by now.
-        return move(t - step + (before < 0 ? step * before / (before - slope) : 0));
+        return move(t - spacing + (before < 0 ? spacing * before / (before - slope) : 0));
       }
-      low_ = t - step;
+      low_ = t - spacing;
       high_ = t;
       break;
     }
@@ -460,7 +461,7 @@ bool Conductor::is_jacobi_stuck() {
 Order Conductor::after_jacobi(const Setup& setup, const Report& report) {
   effort_.iterations += batch_;
   solve_iterations_ += batch_;
-  const auto error = static_cast<double>(report.reals[0]);
+  const auto error = static_cast<double>(report.error());
   const bool is_diverging = !is_number(error) || error > 1e6 * (1 + least_error_);
   if (is_diverging || effort_.iterations > setup.iteration_count_max) {
     return give_up(setup);
@@ -510,15 +511,15 @@ Order Conductor::after_hold(const Report& report) {
     target_ = kRatioTolerance;
     return move(0);
   }
-  open_held_count_ = report.number;
+  open_held_count_ = report.open_held_count();
   return ask(Operation::kLoads);
 }
 
 Order Conductor::after_loads(const Report& report) {
-  if (report.number != effort_.module_count) {
+  if (report.module_count() != effort_.module_count) {
     return finish(Verdict::kUndecided, Reason::kNeighbourSilent);
   }
-  answer_.load_ratio_max = report.reals[0];
+  answer_.load_ratio_max = report.worst_load_ratio();
   answer_.worst_cell = report.cell;
   answer_.worst_direction = report.direction;
   if (open_held_count_ == 0) {

@@ -30,8 +30,8 @@ void begin_equilibrium(Workspace& ws, const Order& order) {
                                                        : mechanics::ContactLaw::kRegularised;
   ws.contact.facet =
       mechanics::ground_facet(ws.setup.beam, ws.setup.section.length, ws.setup.facet_mm,
-                              static_cast<double>(order.reals[0]), law);
-  ws.contact.lever_mm = static_cast<double>(order.reals[1]);
+                              static_cast<double>(order.gamma()), law);
+  ws.contact.lever_mm = static_cast<double>(order.lever_mm());
   for (int i = 0; i < ws.node_count(); ++i) {
     reset(ws.node(i));
   }

@@ -20,7 +20,7 @@ void share_low_part(Workspace& ws);
 
 /// Does the order say that contact states stay as they are?
 inline bool keeps_states(const Order& order) {
-  return order.operation == wire::Operation::kStep && (order.flags & kKeepStates) != 0;
+  return order.operation == wire::Operation::kIterate && (order.flags & kKeepStates) != 0;
 }
 
 /// Takes over the contact state that belongs to u.

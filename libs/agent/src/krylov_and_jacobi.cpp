@@ -43,7 +43,7 @@ void KrylovAndJacobi::begin(Workspace& ws, const Order& order) {
     case Operation::kStart:
       return start_solve(ws, order);
     case Operation::kGradient:
-      return step_gradient(ws, order);
+      return iterate_gradient(ws, order);
     case Operation::kJacobi:
     case Operation::kSlope:
       return share_correction(ws);
@@ -59,7 +59,7 @@ void KrylovAndJacobi::take_exchange(Workspace& ws, const Order& order) {
   }
   find_images(ws, order);
   if (order.operation == Operation::kJacobi) {
-    step_jacobi(ws);
+    iterate_jacobi(ws);
   } else if (is_preconditioned(order.operation)) {
     next_terms(ws, order);
   }
@@ -88,8 +88,8 @@ Report KrylovAndJacobi::report(Workspace& ws, const Order& order) {
 
 /// u := u + t g - theta (last move + change of g), and its leading part goes out.
 void KrylovAndJacobi::move(Workspace& ws, const Order& order) {
-  const float length = order.reals[0];
-  const float mix = order.reals[1];
+  const float length = order.length();
+  const float mix = order.mix();
   for (int i = 0; i < ws.node_count(); ++i) {
     Node& node = ws.node(i);
     Gradients& cg = vectors(i);
@@ -104,7 +104,7 @@ void KrylovAndJacobi::move(Workspace& ws, const Order& order) {
 
 void KrylovAndJacobi::start_solve(Workspace& ws, const Order& order) {
   is_scalar_ = (order.flags & kWithScalars) != 0;
-  is_first_step_ = true;
+  is_first_iteration_ = true;
   const int joined = joined_count(ws, planned_part(ws, order));
   for (int i = 0; i < ws.node_count(); ++i) {
     Node& node = ws.node(i);
@@ -128,9 +128,9 @@ void KrylovAndJacobi::start_solve(Workspace& ws, const Order& order) {
 }
 
 /// p := z + beta p, s := w + beta s, g := g + alpha p, r := r - alpha s, z := M^-1 r.
-void KrylovAndJacobi::step_gradient(Workspace& ws, const Order& order) {
-  const float alpha = order.reals[0];
-  const float beta = order.reals[1];
+void KrylovAndJacobi::iterate_gradient(Workspace& ws, const Order& order) {
+  const float alpha = order.alpha();
+  const float beta = order.beta();
   const int joined = joined_count(ws, planned_part(ws, order));
   for (int i = 0; i < ws.node_count(); ++i) {
     Gradients& cg = vectors(i);
@@ -237,18 +237,18 @@ void KrylovAndJacobi::next_terms(Workspace& ws, const Order& order) {
 
 /// One iteration of Eq. (14), written for the correction g: g := g + beta D^-1 r(u + g), with the
 /// facet in the state that the law prescribes at u + g. With u = 0 it is Eq. (14) as printed.
-void KrylovAndJacobi::step_jacobi(Workspace& ws) {
+void KrylovAndJacobi::iterate_jacobi(Workspace& ws) {
   double error = 0;
   for (int i = 0; i < ws.node_count(); ++i) {
     if (!ws.node(i).is_fixed) {
-      step_jacobi(ws, i, error);
+      iterate_jacobi(ws, i, error);
     }
   }
-  is_first_step_ = false;
+  is_first_iteration_ = false;
   jacobi_error_ = static_cast<float>(error);
 }
 
-void KrylovAndJacobi::step_jacobi(Workspace& ws, int index, double& error) {
+void KrylovAndJacobi::iterate_jacobi(Workspace& ws, int index, double& error) {
   Node& node = ws.node(index);
   Gradients& cg = vectors(index);
   base::Vec6<float> rest{};
@@ -258,7 +258,7 @@ void KrylovAndJacobi::step_jacobi(Workspace& ws, int index, double& error) {
     rest[k] = cg.r_start[k] - cg.image[k] - static_cast<float>(here[k] - start[k]);
   }
   const mechanics::ContactState state = state_along(node, ws.contact, cg.g, 1);
-  if (node.is_ground && !is_first_step_ && !(state == node.state)) {
+  if (node.is_ground && !is_first_iteration_ && !(state == node.state)) {
     node.state = state;
     if (is_scalar_) {
       cg.p = scalar_diagonal(node, ws.setup, ws.contact, ws.faces_of(index));
@@ -267,9 +267,10 @@ void KrylovAndJacobi::step_jacobi(Workspace& ws, int index, double& error) {
     }
   }
   error += ratio_error(base::converted<double>(rest), ws.setup, ws.contact);
-  const base::Vec6<float> step = is_scalar_ ? rest : solve_diagonal(node, rest);
+  const base::Vec6<float> correction = is_scalar_ ? rest : solve_diagonal(node, rest);
   for (std::size_t k = 0; k < 6; ++k) {
-    cg.g[k] += static_cast<float>(kJacobiWeight) * (is_scalar_ ? step[k] / cg.p[k] : step[k]);
+    cg.g[k] +=
+        static_cast<float>(kJacobiWeight) * (is_scalar_ ? correction[k] / cg.p[k] : correction[k]);
   }
   node.vector.sent = cg.g;
 }
@@ -316,8 +317,8 @@ Report KrylovAndJacobi::product_report(const Workspace& ws) const {
 
 /// The slope of the energy along g, at t = 0 and at four places in (low, high].
 Report KrylovAndJacobi::slope_report(const Workspace& ws, const Order& order) const {
-  const auto low = static_cast<double>(order.reals[0]);
-  const auto high = static_cast<double>(order.reals[1]);
+  const auto low = static_cast<double>(order.low());
+  const auto high = static_cast<double>(order.high());
   std::array<double, 5> sums{};
   for (int i = 0; i < ws.node_count(); ++i) {
     const Node& node = ws.node(i);

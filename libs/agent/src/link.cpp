@@ -307,9 +307,9 @@ int Link::write_packet(std::span<std::uint8_t> packet, const LinkTiming& timing,
             wire::message_bytes(queue_[wrapped(at)], queue_[wrapped(wrapped(at) + 1)]));
       }
       const int rest = sent_bytes_ - furthest_bytes_;
-      const int step = rest < message_left_ ? rest : message_left_;
-      furthest_bytes_ = static_cast<std::uint16_t>(furthest_bytes_ + step);
-      message_left_ = static_cast<std::uint16_t>(message_left_ - step);
+      const int passed = rest < message_left_ ? rest : message_left_;
+      furthest_bytes_ = static_cast<std::uint16_t>(furthest_bytes_ + passed);
+      message_left_ = static_cast<std::uint16_t>(message_left_ - passed);
     }
     if (retry_at_ == kNever) {
       retry_at_ = now + patience(timing);

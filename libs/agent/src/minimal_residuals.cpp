@@ -11,7 +11,7 @@ namespace holdfast::agent {
 namespace {
 
 /// The lower end of the interval in which the polynomial is good is this over (m + 1)^2.
-constexpr double kStepSpread = 3;
+constexpr double kIterationSpread = 3;
 
 void subtract(base::Vec6<double>& from, const base::Vec6<double>& force, double share = 1) {
   for (std::size_t k = 0; k < 6; ++k) {
@@ -26,7 +26,7 @@ PlannedPart part_in_iteration(const Workspace& ws, const Order& order) {
     return PlannedPart::kTogether;
   }
   const bool is_second =
-      order.operation == wire::Operation::kStep && ws.exchange.left_before_report() == 1;
+      order.operation == wire::Operation::kIterate && ws.exchange.left_before_report() == 1;
   return is_second ? PlannedPart::kCondensed : PlannedPart::kApart;
 }
 
@@ -43,14 +43,14 @@ void MinimalResiduals::begin() {
 
 void MinimalResiduals::move() {
   ws_.middle = {};
-  const auto c = static_cast<double>(order_.reals[0]);
-  const auto a = static_cast<double>(order_.reals[1]);
-  const auto b = static_cast<double>(order_.reals[2]);
+  const auto c = static_cast<double>(order_.c());
+  const auto a = static_cast<double>(order_.a());
+  const auto b = static_cast<double>(order_.b());
   const bool restarts = (order_.flags & kRestart) != 0;
   for (int i = 0; i < node_count(); ++i) {
     Node& node = ws_.node(i);
-    SearchDirection& newer = steps(i).newer;
-    SearchDirection& older = steps(i).older;
+    SearchDirection& newer = vectors_of(i).newer;
+    SearchDirection& older = vectors_of(i).older;
     base::Vec6<double> rest = residual(node, ws_.setup, ws_.contact);
     for (std::size_t k = 0; k < 6; ++k) {
       double correction = newer.p[k] - newer.z[k];
@@ -101,7 +101,7 @@ void MinimalResiduals::find_residual(int index) {
   if (node.has_changed) {
     factor_diagonal(node, ws_.setup, ws_.contact, ws_.faces_of(index));
   }
-  Steps& vectors = steps(index);
+  IterationVectors& vectors = vectors_of(index);
   vectors.w = residual(node, ws_.setup, ws_.contact);
   first_term(index);
   subtract(vectors.newer.q, vectors.w);  // Still the residual.
@@ -109,14 +109,15 @@ void MinimalResiduals::find_residual(int index) {
 
 void MinimalResiduals::start_terms() {
   for (int i = 0; i < node_count(); ++i) {
-    steps(i).w = residual(ws_.node(i), ws_.setup, ws_.contact);
+    vectors_of(i).w = residual(ws_.node(i), ws_.setup, ws_.contact);
     first_term(i);
   }
 }
 
 void MinimalResiduals::first_term(int index) {
-  const Interval interval(order_.count, kStepSpread);
-  base::Vec6<float> term = solve_diagonal(ws_.node(index), base::converted<float>(steps(index).w));
+  const Interval interval(order_.count, kIterationSpread);
+  base::Vec6<float> term =
+      solve_diagonal(ws_.node(index), base::converted<float>(vectors_of(index).w));
   for (float& value : term) {
     value = static_cast<float>(static_cast<double>(value) / interval.centre);
   }
@@ -132,7 +133,7 @@ void MinimalResiduals::first_terms() {
 
 void MinimalResiduals::share_term(int index, const base::Vec6<float>& term) {
   ws_.node(index).vector.sent = term;
-  subtract(steps(index).newer.z, base::converted<double>(term));
+  subtract(vectors_of(index).newer.z, base::converted<double>(term));
 }
 
 void MinimalResiduals::take_term() {
@@ -141,16 +142,16 @@ void MinimalResiduals::take_term() {
   const auto mine = base::converted<double>(ws_.node(0).vector.sent);
   // Planned modules that stand apart stand still in the polynomial; their beams are weaker.
   const bool holds_planned =
-      order_.operation == wire::Operation::kStep && (order_.flags & kHoldPlanned) != 0;
+      order_.operation == wire::Operation::kIterate && (order_.flags & kHoldPlanned) != 0;
   visit_beams(ws_, part, [&](Direction face, const base::Vec6<float>* other, int k) {
     if (other == nullptr) {
       if (holds_planned) {
-        subtract(steps(0).w, mechanics::end_force(beam, face, mine, {}), kHeldShare);
+        subtract(vectors_of(0).w, mechanics::end_force(beam, face, mine, {}), kHeldShare);
       }
       return;
     }
     const auto theirs = base::converted<double>(*other);
-    subtract(steps(0).w, mechanics::end_force(beam, face, mine, theirs));
+    subtract(vectors_of(0).w, mechanics::end_force(beam, face, mine, theirs));
     if (k >= 0) {
       ws_.planned_exchange.add_force(
           k, mechanics::end_force(beam, base::opposite(face), theirs, mine));
@@ -159,7 +160,7 @@ void MinimalResiduals::take_term() {
   if (part == PlannedPart::kTogether) {
     add_planned_beams(ws_);
     for (int i = 1; i < ws_.node_count(); ++i) {
-      subtract(steps(i).w, ws_.planned_exchange.force(ws_.planned.hosted(i - 1)));
+      subtract(vectors_of(i).w, ws_.planned_exchange.force(ws_.planned.hosted(i - 1)));
     }
   }
 }
@@ -172,12 +173,12 @@ void MinimalResiduals::subtract_facets() {
     }
     const base::Vec6<double> facet = mechanics::contact_force(
         ws_.contact.facet, node.state, node.is_held, base::converted<double>(node.vector.sent));
-    subtract(steps(i).w, facet);
+    subtract(vectors_of(i).w, facet);
   }
 }
 
 void MinimalResiduals::next_terms() {
-  const Interval interval(order_.count, kStepSpread);
+  const Interval interval(order_.count, kIterationSpread);
   const double rho = 1 / (2 * interval.centre / interval.half - static_cast<double>(rho_));
   const double keep = rho * static_cast<double>(rho_);
   const double gain = 2 * rho / interval.half;
@@ -187,7 +188,7 @@ void MinimalResiduals::next_terms() {
     if (node.is_fixed) {
       continue;
     }
-    base::Vec6<float> term = solve_diagonal(node, base::converted<float>(steps(i).w));
+    base::Vec6<float> term = solve_diagonal(node, base::converted<float>(vectors_of(i).w));
     for (std::size_t k = 0; k < 6; ++k) {
       term[k] = static_cast<float>(keep * static_cast<double>(node.vector.sent[k]) +
                                    gain * static_cast<double>(term[k]));
@@ -205,7 +206,7 @@ Report MinimalResiduals::report() const {
     if (node.is_fixed) {
       continue;
     }
-    const Steps& vectors = steps(i);
+    const IterationVectors& vectors = vectors_of(i);
     base::Vec6<double> test = vectors.newer.p;
     if (is_residual) {
       test = base::converted<double>(solve_diagonal(node, base::converted<float>(vectors.newer.q)));

@@ -7,23 +7,23 @@
 #include "holdfast/agent/order.hpp"
 #include "holdfast/agent/workspace.hpp"
 
-/// The one-sweep methods: every step costs one sweep, residual and contact states included.
+/// The one-sweep methods: every iteration costs one sweep, residual and contact states included.
 ///
-/// A step moves by a correction of the last residual r, exchanges the new displacements in two
-/// parts, computes the new residual precisely and reports sums of it. While they travel to the root
-/// and the next order comes back, the modules work on M^-1 r: with a polynomial, exchange after
-/// exchange; or with the exact elimination of branch.hpp on the sweep's own way up and down. So
-/// neither waits for the other.
+/// An iteration moves by a correction of the last residual r, exchanges the new displacements in
+/// two parts, computes the new residual precisely and reports sums of it. While they travel to the
+/// root and the next order comes back, the modules work on M^-1 r: with a polynomial, exchange
+/// after exchange; or with the exact elimination of branch.hpp on the sweep's own way up and down.
+/// So neither waits for the other.
 ///
 /// Least energy. K and M^-1 are symmetric, so directions (p, q = K p, z = M^-1 q) need to be made
 /// conjugate to the one before only: conjugate gradients. The twist is the delay: when the sums
-/// of r are known, M^-1 r is there already, so the step is taken in full and minimised afterwards,
-/// as Anderson's method does [Walker, Ni 2011]:
-///   newer    p = d, q = r^ - r, z = d - M^-1 r      what the last step d = M^-1 r^ did
+/// of r are known, M^-1 r is there already, so the iteration is taken in full and minimised
+/// afterwards, as Anderson's method does [Walker, Ni 2011]:
+///   newer    p = d, q = r^ - r, z = d - M^-1 r      what the last iteration d = M^-1 r^ did
 ///            minus c times older                    c = (p, q_older) / (p_older, q_older)
 ///   r^ = r - a q - b q_older,  d = M^-1 r^ = M^-1 r - a z - b z_older      the least energy
 ///   u := u + a p + b p_older + d
-/// M^-1 r is not stored: it is newer.p - newer.z until the step.
+/// M^-1 r is not stored: it is newer.p - newer.z until the iteration.
 /// While a facet tilts K is not symmetric and has no energy. Then |r| is minimised in the norm of
 /// D^-1 (the diagonal blocks), with D^-1 q in the place of p, as in Orthomin(1) [Vinsome 1976;
 /// Greenbaum 1997, ch. 2].
@@ -35,9 +35,10 @@ namespace holdfast::agent {
 /// One module's part in an iteration. The vectors belong to the method that uses it.
 class MinimalResiduals {
  public:
-  /// `steps`: the vectors of every node that takes part; `rho`: the polynomial's coefficient.
-  MinimalResiduals(Workspace& ws, const Order& order, std::span<Steps> steps, float& rho)
-      : ws_(ws), order_(order), steps_(steps), rho_(rho) {}
+  /// `vectors`: those of every node that takes part; `rho`: the polynomial's coefficient.
+  MinimalResiduals(Workspace& ws, const Order& order, std::span<IterationVectors> vectors,
+                   float& rho)
+      : ws_(ws), order_(order), vectors_(vectors), rho_(rho) {}
 
   /// An equilibrium begins: the law of contact, nodes at rest and the factors of their diagonals.
   void begin();
@@ -76,14 +77,14 @@ class MinimalResiduals {
   Report report() const;
 
  private:
-  Steps& steps(int node) const { return steps_[static_cast<std::size_t>(node)]; }
+  IterationVectors& vectors_of(int node) const { return vectors_[static_cast<std::size_t>(node)]; }
 
   void find_residual(int node);
   void first_term(int node);
 
   Workspace& ws_;
   const Order& order_;
-  std::span<Steps> steps_;
+  std::span<IterationVectors> vectors_;
   float& rho_;
 };
 

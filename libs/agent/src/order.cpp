@@ -164,7 +164,7 @@ constexpr void fields(auto& codec, Order& order) {
       return codec.moment(order.moment[1]);
     case Operation::kBegin:
     case Operation::kClusters:
-      codec.flags(order.flags, kUnilateralLaw | kOneSweep | kWithSteps);
+      codec.flags(order.flags, kUnilateralLaw | kOneSweep | kWithIterations);
       codec.u16(order.count, 0, kDegreeMax);
       return real_fields(codec, std::span(order.reals).first(2));
     case Operation::kHigh:
@@ -186,7 +186,7 @@ constexpr void fields(auto& codec, Order& order) {
       return codec.flags(order.flags, kReleaseOpen | kFreeOpen);
     case Operation::kVerdict:
       return answer_fields(codec, order.answer);
-    case Operation::kStep:
+    case Operation::kIterate:
       codec.flags(order.flags,
                   kRestart | kLeastResidual | kKeepStates | kWithClusters | kHoldPlanned);
       codec.u16(order.count, 0, kDegreeMax);
@@ -197,7 +197,7 @@ constexpr void fields(auto& codec, Order& order) {
     case Operation::kCorners:
     case Operation::kLoads:
     case Operation::kFactor:
-    case Operation::kTreeStep:
+    case Operation::kTreeIterate:
       return;
   }
 }
@@ -231,9 +231,9 @@ constexpr void fields(auto& codec, Operation operation, Report& report) {
     case Operation::kAngles:
       return feet_fields(codec, report.feet);
     case Operation::kLow:
-    case Operation::kTreeStep:
+    case Operation::kTreeIterate:
       return residual_fields(codec, report);
-    case Operation::kStep:
+    case Operation::kIterate:
       residual_fields(codec, report);
       if constexpr (kHasAllMethods) {
         for (double& product : report.products) {
@@ -279,7 +279,7 @@ static_assert([] {
     Ruler up(kOrderAt);
     Report report;
     fields(up, row.operation, report);
-    const bool is_known = kHasAllMethods || row.operation != Operation::kStep;
+    const bool is_known = kHasAllMethods || row.operation != Operation::kIterate;
     if (down.bytes() != row.order_bytes || (is_known && up.bytes() != row.report_bytes)) {
       return false;
     }
@@ -330,8 +330,8 @@ void merge(Operation operation, Report& into, const Report& from) {
     case Operation::kMass:
       return merge_mass(into, from);
     case Operation::kLow:
-    case Operation::kStep:
-    case Operation::kTreeStep:
+    case Operation::kIterate:
+    case Operation::kTreeIterate:
       return merge_residual(into, from);
     case Operation::kCorners:
       into.corners = mechanics::merge(into.corners, from.corners);

@@ -65,7 +65,7 @@ bool may_join(const base::Cell& cell, const base::Cell& top) {
 
 /// Does the order's iteration have clusters between two polynomials?
 bool has_clusters(const Order& order) {
-  return order.operation == Operation::kStep && (order.flags & kWithClusters) != 0;
+  return order.operation == Operation::kIterate && (order.flags & kWithClusters) != 0;
 }
 
 }  // namespace
@@ -87,7 +87,7 @@ Pending RigidClusters::pending() const {
 }
 
 void RigidClusters::begin(Workspace& ws, const Order& order) {
-  MinimalResiduals iteration(ws, order, steps_, rho_);
+  MinimalResiduals iteration(ws, order, vectors_, rho_);
   if (order.operation == Operation::kClusters) {
     iteration.begin();
     piece_ = Piece::kChoose;
@@ -117,11 +117,11 @@ void RigidClusters::take(Workspace& ws, const Order& order, Direction face,
 /// Behind the report of an iteration with clusters come the first polynomial and its image, the
 /// clusters' displacements, the second polynomial.
 void RigidClusters::take_exchange(Workspace& ws, const Order& order) {
-  MinimalResiduals iteration(ws, order, steps_, rho_);
+  MinimalResiduals iteration(ws, order, vectors_, rho_);
   const int left = ws.exchange.left();
   const int degree = order.count;
   if (ws.exchange.left_before_report() > 0) {
-    if (order.operation == Operation::kStep) {
+    if (order.operation == Operation::kIterate) {
       return iteration.take_displacements();
     }
     meet_neighbours(ws);
@@ -158,8 +158,8 @@ bool RigidClusters::do_piece(Workspace& ws, const Order& order) {
 }
 
 Report RigidClusters::report(Workspace& ws, const Order& order) {
-  if (order.operation == Operation::kStep) {
-    return MinimalResiduals(ws, order, steps_, rho_).report();
+  if (order.operation == Operation::kIterate) {
+    return MinimalResiduals(ws, order, vectors_, rho_).report();
   }
   return {.count = beam_count_, .number = stray_count_};
 }
@@ -255,7 +255,7 @@ void RigidClusters::take_part(const Order& order, Direction face,
   if (part < 0 || part >= Branch::kPartCount) {
     return;
   }
-  if (order.operation == Operation::kStep) {
+  if (order.operation == Operation::kIterate) {
     cluster_.add_stiffness(part, in.vector);
     return;
   }
@@ -284,7 +284,7 @@ void RigidClusters::add_own(const Workspace& ws, int node_count) {
   const Leaves leaves = leaves_of(ws.planned);
   for (int i = 0; i < node_count; ++i) {
     const Node& node = ws.node(i);
-    base::Vec6<double> load = steps_[static_cast<std::size_t>(i)].w;
+    base::Vec6<double> load = vectors_[static_cast<std::size_t>(i)].w;
     base::Mat6<double> stiffness;
     if (node.is_ground) {
       stiffness = mechanics::symmetric_tangent(ws.contact.facet, node.state, node.is_held);
@@ -311,7 +311,7 @@ bool RigidClusters::send_stiffness(Workspace& ws, const Order& order) {
   if (!awaited_.is_empty()) {
     return false;
   }
-  add_own(ws, MinimalResiduals(ws, order, steps_, rho_).node_count());
+  add_own(ws, MinimalResiduals(ws, order, vectors_, rho_).node_count());
   const bool is_hidden = cluster_.is_held() && !is_top_;
   if (!ws.tree.is_root() && !cluster_.is_free() && !is_hidden) {
     Cluster::Parts parts;
@@ -356,7 +356,7 @@ bool RigidClusters::shift(Workspace& ws, const Order& order) {
   if (!ws.tree.is_root()) {
     cluster_.find_displacement(joint_to_parent(ws), is_top_, own);
   }
-  MinimalResiduals iteration(ws, order, steps_, rho_);
+  MinimalResiduals iteration(ws, order, vectors_, rho_);
   iteration.share_term(0, base::converted<float>(own));
   ws.links.send(children_, vector_message(MessageType::kBranchDown, 0, ws.node(0).vector.sent));
   const Leaves leaves = leaves_of(ws.planned);

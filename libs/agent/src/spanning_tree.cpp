@@ -7,25 +7,25 @@
 namespace holdfast::agent {
 namespace {
 
-std::uint8_t number_of(SpanningTree::Stage stage) { return static_cast<std::uint8_t>(stage); }
+std::uint8_t number_of(SpanningTree::Wave wave) { return static_cast<std::uint8_t>(wave); }
 
 }  // namespace
 
 void SpanningTree::leave() {
-  stage_ = Stage::kNone;
+  wave_ = Wave::kNone;
   parent_ = {};
   children_ = {};
   has_returned_ = false;
 }
 
-void SpanningTree::start_wave(Links& links, const Round& round, Stage stage) {
+void SpanningTree::start_wave(Links& links, const Round& round, Wave wave) {
   root_cell_ = cell_;
-  begin_stage(links, round, stage, {}, 0);
+  begin_wave(links, round, wave, {}, 0);
 }
 
-void SpanningTree::begin_stage(Links& links, const Round& round, Stage stage, Faces parent,
-                               std::uint16_t hops) {
-  stage_ = stage;
+void SpanningTree::begin_wave(Links& links, const Round& round, Wave wave, Faces parent,
+                              std::uint16_t hops) {
+  wave_ = wave;
   parent_ = parent;
   hops_ = hops;
   nearer_ = parent;
@@ -34,29 +34,29 @@ void SpanningTree::begin_stage(Links& links, const Round& round, Stage stage, Fa
   census_ = {.count = 1, .hops = hops, .id = id_, .is_anyone_silent = !links.silent().is_empty()};
   awaited_ = links.used() - parent;
   links.send(awaited_, encode(Join{.round = round,
-                                   .wave = number_of(stage),
-                                   .cell = stage == Stage::kFirst ? cell_ : root_cell_,
+                                   .wave = number_of(wave),
+                                   .cell = wave == Wave::kFirst ? cell_ : root_cell_,
                                    .hops = hops}));
   await_less(links, round, {});
 }
 
 bool SpanningTree::take_join(Links& links, Direction face, const Join& join, bool is_in_use) {
-  const auto stage = static_cast<Stage>(join.wave);
+  const auto wave = static_cast<Wave>(join.wave);
   // 65,535 stands for all that is further: too large (feet.hpp).
   const auto hops = static_cast<std::uint16_t>(join.hops + (join.hops > kExtentMax ? 0 : 1));
-  const bool is_next = stage > stage_;
-  if (is_next && (static_cast<int>(stage) > static_cast<int>(stage_) + 1 || is_in_use)) {
+  const bool is_next = wave > wave_;
+  if (is_next && (static_cast<int>(wave) > static_cast<int>(wave_) + 1 || is_in_use)) {
     return false;  // A wave has been left out, or the tree is in use.
   }
   if (is_next) {
-    if (stage == Stage::kFirst) {
+    if (wave == Wave::kFirst) {
       cell_ = base::neighbour(join.cell, base::opposite(face));
       has_cell_ = true;
     } else {
       root_cell_ = join.cell;
     }
-    begin_stage(links, join.round, stage, Faces::only(face), hops);
-  } else if (stage == stage_) {
+    begin_wave(links, join.round, wave, Faces::only(face), hops);
+  } else if (wave == wave_) {
     if (hops <= hops_) {
       nearer_.add(face);
     }
@@ -66,7 +66,7 @@ bool SpanningTree::take_join(Links& links, Direction face, const Join& join, boo
 }
 
 void SpanningTree::take_echo(Links& links, Direction face, const Echo& echo) {
-  if (echo.wave != number_of(stage_)) {
+  if (echo.wave != number_of(wave_)) {
     return;
   }
   census_.count += echo.count;
@@ -98,7 +98,7 @@ void SpanningTree::await_less(Links& links, const Round& round, Faces faces) {
 void SpanningTree::send_echo(Links& links, const Round& round) const {
   const std::uint8_t is_anyone_silent = census_.is_anyone_silent ? 1 : 0;
   links.send(parent_, encode(Echo{.round = round,
-                                  .wave = number_of(stage_),
+                                  .wave = number_of(wave_),
                                   .count = census_.count,
                                   .hops = census_.hops,
                                   .id = census_.id,
@@ -113,31 +113,31 @@ bool SpanningTree::take_return() {
 
 void SpanningTree::appoint(Links& links, const Round& round) {
   take_appointment(links, round,
-                   {.wave = number_of(stage_),
+                   {.wave = number_of(wave_),
                     .id = census_.id,
                     .hops = static_cast<std::uint16_t>(census_.hops / 2)});
 }
 
-/// One of an earlier stage is late: the next wave was here before it.
+/// One of an earlier wave is late: the next wave was here before it.
 bool SpanningTree::expects_appointment(Direction face, std::span<const std::uint8_t> message,
                                        bool is_in_use) const {
-  const auto stage = static_cast<Stage>(message[1]);
-  return stage < stage_ || (stage == stage_ && is_led_by(face) && !is_in_use);
+  const auto wave = static_cast<Wave>(message[1]);
+  return wave < wave_ || (wave == wave_ && is_led_by(face) && !is_in_use);
 }
 
 bool SpanningTree::expects_mark(Direction face, bool is_in_use) const {
-  return stage_ == Stage::kFar && !nearer_.has(face) && awaited_.is_empty() && !is_in_use;
+  return wave_ == Wave::kFar && !nearer_.has(face) && awaited_.is_empty() && !is_in_use;
 }
 
 bool SpanningTree::take_appointment(Links& links, const Round& round,
                                     const Appointment& appointment) {
-  if (appointment.wave != number_of(stage_)) {
+  if (appointment.wave != number_of(wave_)) {
     return false;
   }
   if (appointment.id != id_) {
     links.send(children_, encode(appointment));
-  } else if (stage_ == Stage::kFirst) {
-    start_wave(links, round, Stage::kFar);
+  } else if (wave_ == Wave::kFirst) {
+    start_wave(links, round, Wave::kFar);
   } else {
     take_mark(links, round, {.hops = appointment.hops, .sender = cell_});
   }
@@ -166,7 +166,7 @@ Faces SpanningTree::towards_root(const base::Cell& end) const {
 /// So many hops more to the middle of the way from the sender to the wave's root.
 void SpanningTree::take_mark(Links& links, const Round& round, const Mark& mark) {
   if (mark.hops == 0 || is_root()) {
-    start_wave(links, round, Stage::kTree);
+    start_wave(links, round, Wave::kTree);
     return;
   }
   const auto hops = static_cast<std::uint16_t>(mark.hops - 1);

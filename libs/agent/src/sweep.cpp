@@ -14,9 +14,9 @@ namespace {
 using wire::MessageType;
 using wire::Operation;
 
-/// Of orders with exchanges. Displacements of a kTreeStep have to be found first, and clusters.
+/// Of orders with exchanges. Displacements of a kTreeIterate have to be found first, and clusters.
 bool starts_at_once(Operation operation) {
-  return operation != Operation::kTreeStep && operation != Operation::kClusters;
+  return operation != Operation::kTreeIterate && operation != Operation::kClusters;
 }
 
 /// Where an order leads; what it must not lead to has been refused before.
@@ -30,9 +30,9 @@ Course course_after(const Order& order, Course course) {
     case Operation::kMass:
       return Course::kWeighed;
     case Operation::kBegin:
-      return (order.flags & kOneSweep) == 0    ? Course::kGradients
-             : (order.flags & kWithSteps) == 0 ? Course::kElimination
-                                               : Course::kSteps;
+      return (order.flags & kOneSweep) == 0         ? Course::kGradients
+             : (order.flags & kWithIterations) == 0 ? Course::kElimination
+                                                    : Course::kPolynomial;
     case Operation::kClusters:
       return Course::kClusters;
     case Operation::kVerdict:
@@ -73,7 +73,7 @@ bool Sweep::is_in_course(const Workspace& ws, const Order& order) const {
   if (order.operation == Operation::kVerdict) {  // Said again, it is the same one.
     return course_ != Course::kAnswered || order.answer == order_.answer;
   }
-  if (ws.tree.stage() != SpanningTree::Stage::kTree) {
+  if (ws.tree.wave() != SpanningTree::Wave::kTree) {
     return false;
   }
   switch (order.operation) {
@@ -93,16 +93,16 @@ bool Sweep::is_in_course(const Workspace& ws, const Order& order) const {
     case Operation::kBegin:
       return is_good_begin(order);
     case Operation::kFactor:
-    case Operation::kTreeStep:
+    case Operation::kTreeIterate:
       return course_ == Course::kElimination;
     case Operation::kCorners:
     case Operation::kLoads:
       return course_ >= Course::kElimination && course_ != Course::kAnswered;
     case Operation::kClusters:
       return is_good_begin(order) && ws.planned.count() <= kClusterPlannedMax;
-    case Operation::kStep:
+    case Operation::kIterate:
       return course_ == Course::kClusters ||
-             (course_ == Course::kSteps && (order.flags & kWithClusters) == 0);
+             (course_ == Course::kPolynomial && (order.flags & kWithClusters) == 0);
     default:
       return course_ == Course::kGradients;
   }
@@ -118,10 +118,10 @@ bool Sweep::is_good_begin(const Order& order) const {
     return course_ <= Course::kElimination && order.count == 0 &&
            !state_.elimination.has_too_many_loops();
   }
-  const bool has_steps = (order.flags & kWithSteps) != 0;
+  const bool has_iterations = (order.flags & kWithIterations) != 0;
   return method_in(next) != nullptr &&
-         (next == Course::kGradients ? !has_steps && order.count == 0
-                                     : has_steps && (order.flags & kOneSweep) != 0);
+         (next == Course::kGradients ? !has_iterations && order.count == 0
+                                     : has_iterations && (order.flags & kOneSweep) != 0);
 }
 
 bool Sweep::expects(const Workspace& ws, Direction face, Message message) const {
@@ -137,7 +137,7 @@ bool Sweep::expects(const Workspace& ws, Direction face, Message message) const 
     }
     case MessageType::kPlannedUp:
       return ws.tree.children().has(face) && message[1] < ws.planned.count() &&
-             (order_.operation != Operation::kStep || ws.planned_exchange.awaits_forces());
+             (order_.operation != Operation::kIterate || ws.planned_exchange.awaits_forces());
     case MessageType::kVector:
       return true;
     default:

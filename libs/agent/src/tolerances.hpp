@@ -28,9 +28,9 @@ inline constexpr double kReductionTilting = 1e-3;
 /// Judgements without progress before a way is given up.
 inline constexpr int kStagnationMax = 8;
 
-inline constexpr std::uint32_t kContactStepsMax = 100;
+inline constexpr std::uint32_t kContactIterationsMax = 100;
 
-/// A full step will do if it brings the slope of the energy down this far; else the line is
+/// A full correction will do if it brings the slope of the energy down this far; else the line is
 /// searched so many times, each to a quarter of the interval.
 inline constexpr double kSlopeReduction = 0.1;
 inline constexpr int kSlopeCountMax = 3;

@@ -51,7 +51,7 @@ void TreeElimination::begin(Workspace& ws, const Order& order) {
     begin_equilibrium(ws, order);
   } else if (order.operation == Operation::kFactor) {
     factor(ws);
-  } else if (order.operation == Operation::kTreeStep) {
+  } else if (order.operation == Operation::kTreeIterate) {
     ws.middle = {};
     // What comes down first; the root has it.
     down_awaited_ = static_cast<std::uint8_t>(ws.tree.is_root() ? 0 : 1 + branch_.open_count());
@@ -67,7 +67,7 @@ bool TreeElimination::expects(const Workspace& ws, const Order& order, Direction
   const int label = message[1];
   const int child_cuts = child_cut_count_[at(face)];
   const bool reports = ws.reports.awaits(face);
-  const bool is_step = order.operation == Operation::kTreeStep;
+  const bool is_iteration = order.operation == Operation::kTreeIterate;
   switch (static_cast<MessageType>(message[0])) {
     case MessageType::kLoop:
       return reports && order.operation == Operation::kMass && child_cuts < kLoopsMax;
@@ -75,9 +75,10 @@ bool TreeElimination::expects(const Workspace& ws, const Order& order, Direction
       return reports && order.operation == Operation::kFactor &&
              Branch::loops_of_column(label) <= child_cuts;
     case MessageType::kBranchUp:
-      return reports && (order.operation == Operation::kFactor || is_step) && label <= child_cuts;
+      return reports && (order.operation == Operation::kFactor || is_iteration) &&
+             label <= child_cuts;
     default:
-      return is_step && down_awaited_ != 0 && ws.tree.parent().has(face) &&
+      return is_iteration && down_awaited_ != 0 && ws.tree.parent().has(face) &&
              label <= branch_.open_count();
   }
 }
@@ -110,7 +111,7 @@ void TreeElimination::take_exchange(Workspace& ws, const Order& /*order*/) {
 }
 
 Report TreeElimination::report(Workspace& ws, const Order& order) {
-  return order.operation == Operation::kTreeStep ? iteration_report(ws) : Report{};
+  return order.operation == Operation::kTreeIterate ? iteration_report(ws) : Report{};
 }
 
 void TreeElimination::begin_piece(Piece piece, int index) {

@@ -10,7 +10,7 @@
 namespace holdfast::agent::wire {
 namespace {
 
-/// Table k: what a byte becomes that k more bytes follow, so that four go in one step [Kounavis,
+/// Table k: what a byte becomes that k more bytes follow, so that four go at once [Kounavis,
 /// Berry 2005].
 using ChecksumTables = std::array<std::array<std::uint16_t, 256>, 4>;
 

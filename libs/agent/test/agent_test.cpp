@@ -147,7 +147,7 @@ std::vector<Place> cube() {
   return places;
 }
 
-/// Faces of connections with two ends: every module but one has a parent that lies one step higher.
+/// Faces of connections with two ends: every module but one has a parent that lies one cell higher.
 void expect_tree(const TestNetwork& network) {
   int root_count = 0;
   for (std::size_t i = 0; i < network.size(); ++i) {

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: The holdfast authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// The root's decisions, step by step, from reports made by hand: no robot and no mechanics. What is
-// expected is the way that conductor.hpp describes.
+// The root's decisions, order by order, from reports made by hand: no robot and no mechanics. What
+// is expected is the way that conductor.hpp describes.
 #include "holdfast/agent/conductor.hpp"
 
 #include <gtest/gtest.h>
@@ -391,24 +391,25 @@ TEST(Conductor, an_error_that_grows_ends_a_jacobi_method) {
   EXPECT_EQ(drive.next().flags, kWithBlocks);
 }
 
-TEST(Conductor, batches_of_jacobi_steps_grow_with_the_work_done) {
+TEST(Conductor, batches_of_jacobi_iterations_grow_with_the_work_done) {
   Drive drive(Method::kBlockJacobi);
   drive.to_equilibrium();
   drive.next();
-  std::uint32_t steps = 0;
+  std::uint32_t iterations = 0;
   for (drive.next(); drive.order.operation == Operation::kJacobi; drive.next({.reals = {1}})) {
     EXPECT_GE(drive.order.count, 1);
-    EXPECT_LE(drive.order.count, 8 + steps / 8);
-    steps += drive.order.count;
-    ASSERT_LT(steps, 100'000U);
+    EXPECT_LE(drive.order.count, 8 + iterations / 8);
+    iterations += drive.order.count;
+    ASSERT_LT(iterations, 100'000U);
   }
   // The error stands still, so the exact residual is asked for.
   EXPECT_EQ(drive.order.operation, Operation::kHigh);
-  EXPECT_EQ(drive.conductor.effort().iterations, steps);
+  EXPECT_EQ(drive.conductor.effort().iterations, iterations);
 }
 
-/// A planned module whose feet are spread over the robot is reached in each step through the tree.
-TEST(Conductor, jacobi_takes_single_steps_when_a_planned_module_is_remote) {
+/// A planned module whose feet are spread over the robot is reached in each iteration through the
+/// tree.
+TEST(Conductor, jacobi_takes_single_iterations_when_a_planned_module_is_remote) {
   Drive drive(Method::kBlockJacobi);
   drive.to_equilibrium_with_a_remote_planned_module();
   drive.next();
@@ -418,14 +419,14 @@ TEST(Conductor, jacobi_takes_single_steps_when_a_planned_module_is_remote) {
 }
 
 /// Nobody has the weight of a condensed module before the first exchange, so nothing is begun.
-TEST(Conductor, with_a_remote_planned_module_the_first_step_only_looks) {
+TEST(Conductor, with_a_remote_planned_module_the_first_iteration_only_looks) {
   Drive drive(Method::kElimination);
   drive.to_equilibrium_with_a_remote_planned_module();
-  EXPECT_EQ(drive.order.flags, kOneSweep | kWithSteps);
+  EXPECT_EQ(drive.order.flags, kOneSweep | kWithIterations);
   EXPECT_EQ(drive.order.count, 0);
-  ASSERT_EQ(drive.next().operation, Operation::kStep);
+  ASSERT_EQ(drive.next().operation, Operation::kIterate);
   EXPECT_EQ(drive.order.flags, kRestart | kKeepStates);
-  ASSERT_EQ(drive.next({.reals = {5, 0.5F}}).operation, Operation::kStep);
+  ASSERT_EQ(drive.next({.reals = {5, 0.5F}}).operation, Operation::kIterate);
   EXPECT_EQ(drive.order.flags, kRestart) << "it has moved nothing, so there is nothing to minimise";
 }
 
@@ -457,7 +458,7 @@ TEST(Conductor, jacobi_stops_at_the_limit_of_iterations) {
 /// gamma = (r, z), delta = (z, w) [Chronopoulos, Gear 1989, CG with one reduction]:
 /// alpha = gamma / delta, then beta = gamma / gamma_old, alpha = gamma / (delta - beta gamma /
 /// alpha_old).
-TEST(Conductor, gradients_take_the_steps_of_the_single_reduction_method) {
+TEST(Conductor, gradients_take_the_iterations_of_the_single_reduction_method) {
   Drive drive;
   drive.to_equilibrium();
   ASSERT_EQ(drive.next().operation, Operation::kStart);
@@ -485,7 +486,7 @@ TEST(Conductor, follows_contact_states_until_they_cycle) {
     EXPECT_EQ(drive.order.flags, kAdoptStates);
     drive.to_judgement();
   }
-  EXPECT_EQ(drive.conductor.effort().contact_steps, 3U);
+  EXPECT_EQ(drive.conductor.effort().contact_iterations, 3U);
   change.number = 12;  // Again.
   drive.next(change);
   EXPECT_EQ(drive.order.operation, Operation::kBegin);
@@ -565,7 +566,7 @@ TEST(Conductor, released_feet_are_solved_for_again) {
 /// A convex energy's slope at 0, 1/4, 1/2, 3/4 and 1.
 Report slopes(const std::array<float, 5>& values) { return {.reals = values}; }
 
-TEST(Conductor, the_line_search_takes_a_good_full_step_and_narrows_a_bad_one) {
+TEST(Conductor, the_line_search_takes_a_good_full_correction_and_narrows_a_bad_one) {
   Drive drive;
   drive.to_equilibrium(false);
   drive.to_judgement();
@@ -603,9 +604,9 @@ TEST(Conductor, the_line_search_takes_a_good_full_step_and_narrows_a_bad_one) {
 
 // ---- One-sweep methods.
 
-/// Of a step: bound on the error; (r, v), (q, v), (q_older, v).
-Report step_report(float bound, const std::array<double, 3>& products = {},
-                   std::uint16_t changed = 0) {
+/// Of an iteration: bound on the error; (r, v), (q, v), (q_older, v).
+Report iteration_report(float bound, const std::array<double, 3>& products = {},
+                        std::uint16_t changed = 0) {
   return {.extent = changed, .reals = {bound, 0.5F}, .products = products};
 }
 
@@ -619,7 +620,7 @@ Drive one_sweep_drive(bool has_many_loops) {
               .count = kCensus,
               .number = kCensus});
   EXPECT_EQ(drive.order.operation, Operation::kBegin);
-  EXPECT_EQ(drive.order.flags, has_many_loops ? kOneSweep | kWithSteps : kOneSweep);
+  EXPECT_EQ(drive.order.flags, has_many_loops ? kOneSweep | kWithIterations : kOneSweep);
   return drive;
 }
 
@@ -627,12 +628,12 @@ TEST(Conductor, few_loops_are_eliminated_many_are_left_to_a_polynomial) {
   Drive tree = one_sweep_drive(false);
   EXPECT_EQ(tree.order.count, 0);
   ASSERT_EQ(tree.next().operation, Operation::kFactor);
-  ASSERT_EQ(tree.next().operation, Operation::kTreeStep);
-  EXPECT_EQ(tree.next(step_report(1e-6F)).operation, Operation::kLoads);
+  ASSERT_EQ(tree.next().operation, Operation::kTreeIterate);
+  EXPECT_EQ(tree.next(iteration_report(1e-6F)).operation, Operation::kLoads);
 
   Drive loops = one_sweep_drive(true);
   EXPECT_EQ(loops.order.count, 6);  // One and a half times the depth of 4.
-  ASSERT_EQ(loops.next().operation, Operation::kStep);
+  ASSERT_EQ(loops.next().operation, Operation::kIterate);
   EXPECT_EQ(loops.order.flags, kRestart);
   EXPECT_EQ(loops.order.count, 6);
 }
@@ -641,23 +642,23 @@ TEST(Conductor, a_change_of_contact_states_is_factored_or_starts_directions_anew
   Drive tree = one_sweep_drive(false);
   tree.next();
   tree.next();
-  EXPECT_EQ(tree.next(step_report(1e-6F, {}, 1)).operation, Operation::kFactor);
-  EXPECT_EQ(tree.conductor.effort().contact_steps, 1U);
+  EXPECT_EQ(tree.next(iteration_report(1e-6F, {}, 1)).operation, Operation::kFactor);
+  EXPECT_EQ(tree.conductor.effort().contact_iterations, 1U);
 
   Drive loops = one_sweep_drive(true);
   loops.next();
-  loops.next(step_report(100, {1, 1, 0}));
+  loops.next(iteration_report(100, {1, 1, 0}));
   ASSERT_EQ(loops.order.flags, 0);
-  loops.next(step_report(1, {1, 1, 0}, 2));
+  loops.next(iteration_report(1, {1, 1, 0}, 2));
   EXPECT_EQ(loops.order.flags, kRestart);
-  EXPECT_EQ(loops.conductor.effort().contact_steps, 1U);
+  EXPECT_EQ(loops.conductor.effort().contact_iterations, 1U);
 }
 
 /// A tilting facet makes the tangent unsymmetric, so that there is no energy.
 TEST(Conductor, minimises_the_residual_while_a_facet_tilts) {
   Drive drive = one_sweep_drive(true);
   drive.next();
-  Report report = step_report(1, {1, 1, 0}, 2);
+  Report report = iteration_report(1, {1, 1, 0}, 2);
   report.flags = kAnyTilting;
   drive.next(report);
   EXPECT_EQ(drive.order.flags, kRestart | kLeastResidual);
@@ -666,19 +667,19 @@ TEST(Conductor, minimises_the_residual_while_a_facet_tilts) {
   EXPECT_EQ(drive.order.flags, kLeastResidual);
 }
 
-/// K = diag(1, 2, 4), u = 0, f = (4, 4, 4), M = 2. The full step p = (2, 2, 2) has q = (2, 4, 8)
-/// and leaves r = (2, 0, -4): (r, p) = -4, (p, q) = 28, so a = -1/7: the energy is least at 6/7 p,
-/// where r^ = (16, 4, -20) / 7. The next p = r^ / 2 = (8, 2, -10) / 7 has q = (8, 4, -40) / 7 and
-/// leaves r = (8, 0, 20) / 7: (r, p) = -136 / 49, (p, q) = 472 / 49, (p, q_older) = -8.
+/// K = diag(1, 2, 4), u = 0, f = (4, 4, 4), M = 2. The full correction p = (2, 2, 2) has q = (2, 4,
+/// 8) and leaves r = (2, 0, -4): (r, p) = -4, (p, q) = 28, so a = -1/7: the energy is least at 6/7
+/// p, where r^ = (16, 4, -20) / 7. The next p = r^ / 2 = (8, 2, -10) / 7 has q = (8, 4, -40) / 7
+/// and leaves r = (8, 0, 20) / 7: (r, p) = -136 / 49, (p, q) = 472 / 49, (p, q_older) = -8.
 TEST(Conductor, minimises_the_energy_over_two_directions) {
   Drive drive = one_sweep_drive(true);
   drive.next();
-  drive.next(step_report(100, {-4, 28, 0}));
-  ASSERT_EQ(drive.order.operation, Operation::kStep);
+  drive.next(iteration_report(100, {-4, 28, 0}));
+  ASSERT_EQ(drive.order.operation, Operation::kIterate);
   EXPECT_FLOAT_EQ(drive.order.reals[0], 0);
   EXPECT_FLOAT_EQ(drive.order.reals[1], -1.F / 7);
   EXPECT_FLOAT_EQ(drive.order.reals[2], 0);
-  drive.next(step_report(100, {-136. / 49, 472. / 49, -8}));
+  drive.next(iteration_report(100, {-136. / 49, 472. / 49, -8}));
   // c = -2/7, (r, p_older) = 8: p - c older = (12, 6, -6) / 7 has (p, q) = 360 / 49 and
   // (r, p) = -24 / 49.
   EXPECT_FLOAT_EQ(drive.order.reals[0], -2.F / 7);
@@ -694,18 +695,18 @@ Drive deep_drive(std::uint16_t depth) {
   return drive;
 }
 
-TEST(Conductor, deep_robots_take_steps_with_clusters) {
+TEST(Conductor, deep_robots_take_iterations_with_clusters) {
   EXPECT_EQ(deep_drive(63).order.operation, Operation::kBegin);
   Drive drive = deep_drive(200);
   ASSERT_EQ(drive.order.operation, Operation::kClusters);
-  EXPECT_EQ(drive.order.count, 300);  // The first step is that of the polynomial.
+  EXPECT_EQ(drive.order.count, 300);  // The first iteration is that of the polynomial.
   drive.next({.count = 100, .number = 49});
-  ASSERT_EQ(drive.order.operation, Operation::kStep);
+  ASSERT_EQ(drive.order.operation, Operation::kIterate);
   EXPECT_EQ(drive.order.flags, kRestart | kWithClusters);
   EXPECT_EQ(drive.order.count, 40);  // A fifth of the depth.
-  drive.next(step_report(100, {1, 1, 0}));
-  EXPECT_EQ(drive.order.flags, kRestart | kWithClusters) << "the step before had another M^-1";
-  drive.next(step_report(100, {1, 1, 0}));
+  drive.next(iteration_report(100, {1, 1, 0}));
+  EXPECT_EQ(drive.order.flags, kRestart | kWithClusters) << "the iteration before had another M^-1";
+  drive.next(iteration_report(100, {1, 1, 0}));
   EXPECT_EQ(drive.order.flags, kWithClusters);
 }
 
@@ -714,18 +715,18 @@ TEST(Conductor, clusters_with_many_stray_beams_are_left_alone) {
   drive.next({.count = 100, .number = 50});
   EXPECT_EQ(drive.order.flags, kRestart);
   EXPECT_EQ(drive.order.count, 300);
-  drive.next(step_report(100, {1, 1, 0}));
+  drive.next(iteration_report(100, {1, 1, 0}));
   EXPECT_EQ(drive.order.flags, 0);
 }
 
-/// Steps are full ones when contact states have changed, but for what was too long.
-TEST(Conductor, takes_back_what_is_too_long_of_a_step_with_clusters) {
+/// Iterations are full ones when contact states have changed, but for what was too long.
+TEST(Conductor, takes_back_what_is_too_long_of_an_iteration_with_clusters) {
   Drive drive = deep_drive(200);
   drive.next({.count = 100});
-  drive.next(step_report(100, {1, 1, 0}));
-  drive.next(step_report(100, {0.5, 1, 0}, 3));
+  drive.next(iteration_report(100, {1, 1, 0}));
+  drive.next(iteration_report(100, {0.5, 1, 0}, 3));
   EXPECT_EQ(drive.order.flags, kRestart | kWithClusters);
-  drive.next(step_report(100, {-0.5, 1, 0}, 3));
+  drive.next(iteration_report(100, {-0.5, 1, 0}, 3));
   EXPECT_EQ(drive.order.flags, kWithClusters);
   EXPECT_EQ(drive.order.reals, (std::array<float, 3>{0, -0.5F, 0}));
 }
@@ -733,13 +734,13 @@ TEST(Conductor, takes_back_what_is_too_long_of_a_step_with_clusters) {
 TEST(Conductor, gives_clusters_up_that_bring_no_progress) {
   Drive drive = deep_drive(200);
   drive.next({.count = 100});
-  int steps = 0;
-  while (drive.order.operation == Operation::kStep && steps < 100) {
+  int iterations = 0;
+  while (drive.order.operation == Operation::kIterate && iterations < 100) {
     EXPECT_NE(drive.order.flags & kWithClusters, 0);
-    drive.next(step_report(100, {0, 1, 0}));
-    ++steps;
+    drive.next(iteration_report(100, {0, 1, 0}));
+    ++iterations;
   }
-  EXPECT_LT(steps, 20);
+  EXPECT_LT(iterations, 20);
   ASSERT_EQ(drive.order.operation, Operation::kBegin);
   drive.next();
   EXPECT_EQ(drive.order.flags, kRestart);
@@ -749,7 +750,7 @@ TEST(Conductor, leaves_a_one_sweep_method_that_brings_no_number) {
   Drive drive = one_sweep_drive(false);
   drive.next();
   drive.next();
-  ASSERT_EQ(drive.next(step_report(kNan)).operation, Operation::kBegin);
+  ASSERT_EQ(drive.next(iteration_report(kNan)).operation, Operation::kBegin);
   EXPECT_EQ(drive.order.flags & kOneSweep, 0);
   EXPECT_EQ(drive.conductor.effort().method, Method::kConjugateGradients);
 }

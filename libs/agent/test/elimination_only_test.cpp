@@ -45,8 +45,8 @@ TEST(EliminationOnly, knows_the_verdict) {
   EXPECT_EQ(outcome.verdict, Verdict::kSafe);
 }
 
-/// 0x40 and 0x80 tell the parts of a displacement apart that steps send. Before, they counted as
-/// index, and six reals were written 64 or 128 places behind an array of five.
+/// 0x40 and 0x80 tell the parts of a displacement apart that iterations send. Before, they counted
+/// as index, and six reals were written 64 or 128 places behind an array of five.
 TEST(EliminationOnly, refuses_parts_of_displacements) {
   for (const std::string_view wrong :
        {"08 40 00 00 80 3f 00 00 00 c0 00 00 00 3f 00 00 80 3e 00 00 80 bf 00 00 c0 3f",
@@ -57,7 +57,7 @@ TEST(EliminationOnly, refuses_parts_of_displacements) {
   }
 }
 
-/// Steps, clusters and gradients it does not have.
+/// Iterations, clusters and gradients it does not have.
 TEST(EliminationOnly, refuses_orders_of_other_methods) {
   for (const std::string_view wrong :
        {"05 11 01 02 00 00 00 00 00 00 00 00 00 00 00 00 00",

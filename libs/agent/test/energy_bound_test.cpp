@@ -29,8 +29,8 @@ struct Process {
     p = r;
   }
 
-  /// One step; the bound on the energy of the error before it.
-  double step() {
+  /// One iteration; the bound on the energy of the error before it.
+  double iterate() {
     Vector q;
     for (std::size_t i = 0; i < kSize; ++i) {
       q[i] = a[i] * p[i];
@@ -88,7 +88,7 @@ TEST(EnergyBound, is_above_the_error_once_the_slowest_mode_has_shown) {
   int checked = 0;
   for (int i = 0; i < 24; ++i) {
     const double error = process.energy_of_error();
-    const double bound = process.step();
+    const double bound = process.iterate();
     EXPECT_GE(process.bound.eigenvalue(), 1e-4 * (1 - 1e-9));
     if (process.bound.eigenvalue() < 1.2e-4 && error > 1e-13) {
       EXPECT_GE(bound, 0.8 * error) << i;
@@ -101,18 +101,18 @@ TEST(EnergyBound, is_above_the_error_once_the_slowest_mode_has_shown) {
 
 TEST(EnergyBound, starts_anew) {
   Process process(slow_modes());
-  const double first = process.step();
-  process.step();
+  const double first = process.iterate();
+  process.iterate();
   process = Process(slow_modes());
   process.bound.restart();
-  EXPECT_EQ(process.step(), first);
+  EXPECT_EQ(process.iterate(), first);
 }
 
 TEST(EnergyBound, is_exact_for_a_single_eigenvalue) {
   Vector a;
   a.fill(0.25);
   Process process(a);
-  EXPECT_NEAR(process.step(), process.energy_at_zero(), 1e-12);
+  EXPECT_NEAR(process.iterate(), process.energy_at_zero(), 1e-12);
   EXPECT_NEAR(process.bound.eigenvalue(), 0.25, 1e-15);
 }
 

@@ -110,7 +110,7 @@ inline const std::vector<GoldenStream> kGoldenTrace = {
       "05 03 00 00 00 02 00 00 00 00 00",                          // count, from (0, 2, 0)
       "05 04 05 04 00 00 00 fe ff ff ff ff ff ff ff 02 00 00 00 00 00 00 00",  // four units
       "05 05 00 00 00 17 b7 d1 38 00 00 f0 42",  // gamma 1e-4, lever 120 mm
-      "05 08 02 00", "05 0a 01 00",              // start Jacobi with scalars, one step
+      "05 08 02 00", "05 0a 01 00",              // start Jacobi with scalars, one iteration
       "07 01 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00",
       "08 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00"}},
     {1,

@@ -53,8 +53,8 @@ bool is_within(unsigned value) {
 
 /// The bytes that name one of several things; the last column is docs/wire.md in other words.
 const Limit kLimits[] = {
-    {kGoldenTrace[0].messages[0], 7, is_within<1, 3>},                         // join: stage
-    {kGoldenTrace[0].messages[2], 7, is_within<1, 3>},                         // echo: stage
+    {kGoldenTrace[0].messages[0], 7, is_within<1, 3>},                         // join: wave
+    {kGoldenTrace[0].messages[2], 7, is_within<1, 3>},                         // echo: wave
     {kGoldenTrace[0].messages[2], 18, is_within<0, 1>},                        // echo: silent
     {kGoldenTrace[0].messages[1], 1, is_within<1, 2>},                         // appoint
     {kGoldenVectors[1], 1, [](unsigned v) { return is_planned(v & 0x3fU); }},  // planned down
@@ -76,7 +76,7 @@ const Limit kLimits[] = {
     {kGoldenOrders[14], 2, is_within<1, 4>},  // verdict
     {kGoldenOrders[14], 3, is_within<0, 11>},
     {kGoldenOrders[14], 17, is_face},
-    {kGoldenOrders[16], 2, is_flags<31>},    // step
+    {kGoldenOrders[16], 2, is_flags<31>},    // iterate
     {kGoldenOrders[18], 2, is_flags<7>},     // clusters
     {kGoldenOrders[19], 2, is_flags<1>},     // forget
     {kGoldenReports[0], 2, is_flags<0x3f>},  // plan
@@ -88,8 +88,8 @@ const Limit kLimits[] = {
     {kGoldenReports[6], 16, is_flags<1>},     // low
     {kGoldenReports[12], 2, [](unsigned v) { return v <= 2 || v == 4; }},
     {kGoldenReports[13], 15, is_face},        // loads
-    {kGoldenReports[16], 16, is_flags<1>},    // step
-    {kGoldenReports[17], 16, is_flags<1>},    // tree step
+    {kGoldenReports[16], 16, is_flags<1>},    // iterate
+    {kGoldenReports[17], 16, is_flags<1>},    // tree iterate
     {kGoldenReports[19], 2, is_flags<0x3f>},  // forget
     {kGoldenReports[19], 4, is_flags<31>}};
 

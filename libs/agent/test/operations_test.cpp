@@ -44,9 +44,9 @@ TEST(Operations, exchange_as_often_as_the_document_says) {
   EXPECT_EQ(counts_of(Operation::kJacobi), (Counts{kDegree, 0}));
   EXPECT_EQ(counts_of(Operation::kSlope, kExchangeFirst, 0), (Counts{1, 0}));
   EXPECT_EQ(counts_of(Operation::kSlope, kMixProducts, 0), Counts{});
-  EXPECT_EQ(counts_of(Operation::kStep), (Counts{2, kDegree}));
-  EXPECT_EQ(counts_of(Operation::kStep, kWithClusters | kRestart), (Counts{2, 2 * kDegree + 2}));
-  EXPECT_EQ(counts_of(Operation::kTreeStep, 0, 0), (Counts{2, 0}));
+  EXPECT_EQ(counts_of(Operation::kIterate), (Counts{2, kDegree}));
+  EXPECT_EQ(counts_of(Operation::kIterate, kWithClusters | kRestart), (Counts{2, 2 * kDegree + 2}));
+  EXPECT_EQ(counts_of(Operation::kTreeIterate, 0, 0), (Counts{2, 0}));
   EXPECT_EQ(counts_of(Operation::kClusters), (Counts{1, kDegree}));
 }
 

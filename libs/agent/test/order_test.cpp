@@ -166,7 +166,7 @@ TEST(Order, fields_come_back_where_they_were) {
   back = there_and_back(Operation::kSlope, sent);
   EXPECT_EQ(back.flags, sent.flags);
   EXPECT_EQ(back.reals, (std::array<float, 3>{sent.reals[0], sent.reals[1], 0}));
-  back = there_and_back(Operation::kStep, sent);
+  back = there_and_back(Operation::kIterate, sent);
   EXPECT_EQ(back.flags, sent.flags);
   EXPECT_EQ(back.count, sent.count);
   EXPECT_EQ(back.reals, sent.reals);

@@ -111,7 +111,7 @@ export interface Trace {
   is_complete: boolean;
   ticks_per_second: number;
   /** What the root can order, by wire::Operation. */
-  orders: { text: string; is_step: boolean }[];
+  orders: { text: string; is_iteration: boolean }[];
   /** LogEvent and three integers for each event. */
   events: Int32Array;
   /** Begin and duration in ticks for each event. */

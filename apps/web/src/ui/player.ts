@@ -30,7 +30,7 @@ interface Moment {
   phases: Int8Array;
   verdicts: Int8Array;
   packets: number;
-  steps: number;
+  iterations: number;
   /** What the root has ordered last. */
   order: number;
 }
@@ -181,7 +181,7 @@ export class Player {
     const time = trace.simulated_s === null ? '' : `${trace.simulated_s.toFixed(2)} s, `;
     const agree = trace.all_modules_agree ? 'all modules agree' : 'not all modules agree';
     const cut = trace.is_complete ? '' : ' Only the first million events are played.';
-    return `The robot's own verdict: ${trace.verdict}${ratio}; ${agree}. ${time}${trace.rounds} rounds, ${trace.messages} packets, ${trace.iterations} steps.${cut}`;
+    return `The robot's own verdict: ${trace.verdict}${ratio}; ${agree}. ${time}${trace.rounds} rounds, ${trace.messages} packets, ${trace.iterations} iterations.${cut}`;
   }
 
   private play(): void {
@@ -255,7 +255,7 @@ export class Player {
   }
 
   private begin(count: number): Moment {
-    return { phases: new Int8Array(count).fill(-1), verdicts: new Int8Array(count), packets: 0, steps: 0, order: 0 };
+    return { phases: new Int8Array(count).fill(-1), verdicts: new Int8Array(count), packets: 0, iterations: 0, order: 0 };
   }
 
   private advance(trace: Trace, time: number): void {
@@ -271,7 +271,7 @@ export class Player {
         moment.verdicts[a] = b;
       } else if (kind === LogEvent.kOrder && a === trace.root && b === this.rootChild) {
         moment.order = c;
-        moment.steps += trace.orders[c].is_step ? 1 : 0;
+        moment.iterations += trace.orders[c].is_iteration ? 1 : 0;
       }
       ++cursor.next;
     }
@@ -302,7 +302,7 @@ export class Player {
     const phase = Math.max(...moment.phases, 0);
     const time = trace.ticks_per_second > 0 ? `${(this.time / trace.ticks_per_second).toFixed(3)} s` : `round ${Math.floor(this.time)}`;
     const order = moment.order > 0 ? ` · order: ${trace.orders[moment.order].text}` : '';
-    byId('moment').textContent = `${time} · ${VOCABULARY.phases[phase]} · step ${moment.steps} · ${moment.packets} packets · ${knowing} of ${agents} know the verdict${order}`;
+    byId('moment').textContent = `${time} · ${VOCABULARY.phases[phase]} · iteration ${moment.iterations} · ${moment.packets} packets · ${knowing} of ${agents} know the verdict${order}`;
     byId<HTMLInputElement>('time').value = String(Math.round((10_000 * this.time) / Math.max(this.end, 1)));
   }
 

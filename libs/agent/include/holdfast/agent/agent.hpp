@@ -94,7 +94,7 @@ struct Event {
 
 struct Actions {
   std::uint8_t send_faces = 0;
-  bool is_unfinished = false;  ///< Of step_part(): there is more to do, hand in kContinue.
+  bool is_unfinished = false;  ///< step_part() has more to do: hand in kContinue.
   Time wake_at = kNever;
   int packet_bytes = 0;  ///< After kLineFree; 0: nothing to send after all.
   std::array<std::uint8_t, wire::kPacketBytesMax> packet;
@@ -107,7 +107,7 @@ class Agent {
 
   void step(const Event& event, Actions& actions);
 
-  /// The same, a piece at a time.
+  /// Handles an event as step() does, a piece at a time.
   void step_part(const Event& event, Actions& actions);
 
   /// The verdict as far as this module knows it; kNone while it is being worked out.
@@ -137,7 +137,7 @@ class Agent {
   int parent() const { return ws_.tree.is_root() ? -1 : base::index(ws_.tree.parent().first()); }
 
   bool is_root() const {
-    return ws_.tree.stage() == SpanningTree::Stage::kTree && ws_.tree.is_root();
+    return ws_.tree.wave() == SpanningTree::Wave::kTree && ws_.tree.is_root();
   }
 
   std::uint16_t depth() const { return ws_.tree.hops(); }
@@ -158,7 +158,7 @@ class Agent {
   /// over a restart hands them in again, kRecall.
   const Announcements& announcements() const { return announcements_; }
 
-  /// Of the root: what was done to find the equilibrium.
+  /// What the root has done to find the equilibrium.
   const Effort& effort() const { return conductor_.effort(); }
 
  private:
@@ -177,7 +177,7 @@ class Agent {
   // A piece of what follows.
   void go_on();
   bool finish_sweep();
-  bool end_stage();
+  bool end_wave();
   bool take_next_order();
   void take_order(const Order& order);
   void keep_order(const Order& order);
@@ -187,7 +187,7 @@ class Agent {
   void abandon_work();
   void start_round();
   void enter_round(const Round& round);
-  void follow_wave(SpanningTree::Stage before);
+  void follow_wave(SpanningTree::Wave before);
 
   /// Does this module wait for others, so that its links are watched?
   bool is_waiting() const;
@@ -195,7 +195,7 @@ class Agent {
   Identity identity_;
   Clock clock_;
   bool is_busy_ = false;         ///< There may be something to go on with.
-  bool has_next_order_ = false;  ///< Of the root, or one that has to wait.
+  bool has_next_order_ = false;  ///< An order of the root, or one that has to wait.
   Rounds rounds_;
   Watch watch_;
   Announcements announcements_;

@@ -92,8 +92,8 @@ class Branch {
   /// behind it column 6 - i.
   static constexpr int kPartCount = 4;
 
-  /// Columns that are made at a time, from one factor of 1 + S F: so that no step of a small
-  /// processor takes long. Those of P' take longest.
+  /// Columns that are made at a time, from one factor of 1 + S F: so that no piece of work of a
+  /// small processor takes long. Those of P' take longest.
   static constexpr int kBatch = 3;
   static constexpr int kGiveBatch = 2;
   using Columns = std::array<base::Vec6<float>, kBatch>;
@@ -160,7 +160,7 @@ class Branch {
   void find_columns_up(const Joint& to_parent, bool is_fixed, int first, int count,
                        Columns& columns) const;
 
-  /// The same for parts `first` and the next of a symmetric S'.
+  /// Takes in parts `first` and the next of a symmetric S'.
   void find_parts_up(const Joint& to_parent, bool is_fixed, int first, Columns& columns) const;
 
   // ---- Loads.
@@ -179,7 +179,7 @@ class Branch {
   void find_displacement(const Joint& to_parent, const BranchLoad& load, const CutForces& forces,
                          base::Vec6<double>& u) const;
 
-  /// The same at the root. Not finite if nothing holds the robot.
+  /// The displacement of the root. Not finite if nothing holds the robot.
   void find_displacement_of_root(const BranchLoad& load, base::Vec6<double>& u) const;
 
   /// Forces in the loops closed here, for the displacement u.
@@ -208,7 +208,7 @@ class Branch {
   std::array<std::array<base::Mat6<float>, kLoopsMax>, kLoopsMax> give_{};
   std::array<Cut, kLoopsMax> cuts_{};
   std::uint8_t count_ = 0;
-  std::uint8_t open_ = 0;  ///< By slot.
+  std::uint8_t open_ = 0;  ///< Open loops, a bit for each slot.
 };
 
 // ---- For branches that no loop passes: planned modules that hang on their host.

@@ -72,7 +72,7 @@ class Cluster {
   /// The displacement instead of the parent's.
   void find_displacement(const Joint& to_parent, bool is_top, base::Vec6<double>& u) const;
 
-  /// The same at the root; zero if nothing holds the robot.
+  /// The motion of the root's cluster; zero if nothing holds the robot.
   void find_displacement_of_root(base::Vec6<double>& u) const;
 
  private:

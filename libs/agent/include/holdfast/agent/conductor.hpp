@@ -19,7 +19,7 @@
 /// solve for a correction. It serves four purposes at once: the correction may be found roughly and
 /// in single precision (iterative refinement); contact states change between solves (Newton); the
 /// unsymmetric tangent of a tilting facet is replaced by a symmetric one in the solve (defect
-/// correction, the last two steps mixed [Anderson 1965]); and the loop ends
+/// correction, the last two iterations mixed [Anderson 1965]); and the loop ends
 /// by a bound on the error of every load ratio, not by a count.
 ///
 /// What follows a report; where several do, the first that applies.
@@ -31,10 +31,10 @@
 ///   hosts          a planned module touches nothing: verdict | mass
 ///   mass           modules are missing, too large: verdict | fixed: begin | angles
 ///   angles         topples: verdict | begin
-///   begin          elimination: factor | polynomial: step | start; clusters is a begin
-///   factor         tree step
-///   tree step      settled: corners | states have changed: factor | stuck: begin | tree step
-///   step           settled: corners | stuck: begin | step
+///   begin          elimination: factor | polynomial: iterate | start; clusters is a begin
+///   factor         tree iterate
+///   tree iterate   settled: corners | states have changed: factor | stuck: begin | tree iterate
+///   iterate        settled: corners | stuck: begin | iterate
 ///   start          nothing to solve: high | Jacobi: jacobi | gradient
 ///   gradient       solved: high, under the unilateral law or to mix two iterates slope | gradient
 ///   jacobi         diverges: begin | solved: high | jacobi
@@ -57,9 +57,9 @@ namespace holdfast::agent {
 
 /// What was done, for reports.
 struct Effort {
-  std::uint32_t iterations = 0;          ///< Of the linear method.
+  std::uint32_t iterations = 0;          ///< Iterations of the linear method.
   std::uint32_t solves = 0;              ///< Corrections started.
-  std::uint32_t contact_steps = 0;       ///< Changes of contact states.
+  std::uint32_t contact_iterations = 0;  ///< Changes of contact states.
   std::uint32_t module_count = 0;        ///< Planned ones included.
   Method method = Method::kElimination;  ///< The last one used.
   bool is_unilateral = false;
@@ -82,7 +82,7 @@ class Conductor {
   const Effort& effort() const { return effort_; }
 
  private:
-  /// The next step of a one-sweep method: u + a (p - c p_older) + b p_older.
+  /// The next iteration of a one-sweep method: u + a (p - c p_older) + b p_older.
   struct Minimum {
     double a = 0;
     double b = 0;
@@ -107,30 +107,30 @@ class Conductor {
   Order after_start(const Report& report);
   Order after_gradient(const Setup& setup, const Report& report);
   Order next_gradient(double gamma, double delta);
-  // conductor_steps.cpp
+  // conductor_iterations.cpp
   void choose_one_sweep(bool is_unilateral);
-  std::uint16_t step_degree() const;
+  std::uint16_t iteration_degree() const;
   std::uint16_t cluster_degree() const;
   bool may_have_clusters() const;
   void choose_clusters(const Report& report);
-  Order first_step();
+  Order first_iteration();
   Order factor();
-  Order tree_step();
-  Order next_step(std::uint8_t flags, const std::array<float, 3>& coefficients);
-  Order restarted_step();
-  Order jumped_step(const Setup& setup, const Report& report);
+  Order tree_iteration();
+  Order next_iteration(std::uint8_t flags, const std::array<float, 3>& coefficients);
+  Order restarted_iteration();
+  Order jumped_iteration(const Setup& setup, const Report& report);
   Order leave_clusters(const Setup& setup);
-  Order minimised_step(const Report& report);
-  Order after_step(const Setup& setup, const Report& report);
+  Order minimised_iteration(const Report& report);
+  Order after_iteration(const Setup& setup, const Report& report);
   Minimum minimum(const Report& report) const;
-  double step_error(const Setup& setup, const Report& report, double bound);
+  double iteration_error(const Setup& setup, const Report& report, double bound);
   Order leave_one_sweep(const Setup& setup, bool is_unilateral);
 
   Order start_jacobi();
   Order after_jacobi(const Setup& setup, const Report& report);
   Order after_slope(const Report& report);
   Order end_solve();
-  Order move(double step, double mix = 0);
+  Order move(double length, double mix = 0);
   Order after_mix(const Report& report);
   Order judge(const Setup& setup, const Report& report);
   Order judge_regularised(const Setup& setup, const Report& report);
@@ -158,12 +158,12 @@ class Conductor {
   Effort effort_;
   base::Cell root_;
   std::uint32_t census_ = 0;
-  std::uint16_t degree_ = 0;  ///< Of the polynomial preconditioner.
+  std::uint16_t degree_ = 0;  ///< Degree of the polynomial preconditioner.
   std::uint8_t planned_count_ = 0;
   std::uint8_t forgotten_count_ = 0;
   std::array<std::uint8_t, 8> totals_{};
   bool is_any_remote_ = false;
-  std::uint32_t contact_steps_max_ = 0;  ///< Under the present law.
+  std::uint32_t contact_iterations_max_ = 0;  ///< Under the present law.
   bool is_fixed_ = false;
   std::uint16_t extent_ = 0;
 
@@ -182,20 +182,20 @@ class Conductor {
   double ratio_ = 0;
   double target_ = 0;
   std::uint8_t stagnation_count_ = 0;
-  bool holds_planned_ = false;  ///< Of one-sweep methods: planned modules stand still in M, ...
-  bool held_planned_ = false;   ///< ... as they did in the last step.
+  bool holds_planned_ = false;  ///< Planned modules stand still in M (one-sweep methods), ...
+  bool held_planned_ = false;   ///< ... as they did in the last iteration.
   std::array<std::uint32_t, kSeenMax> seen_{};
   std::uint8_t seen_count_ = 0;
   // One-sweep methods.
   std::uint16_t depth_ = 0;
   bool has_many_loops_ = false;
-  bool has_clusters_ = false;       ///< Steps are taken with clusters, ...
+  bool has_clusters_ = false;       ///< Iterations are taken with clusters, ...
   bool has_left_clusters_ = false;  ///< They brought nothing: never again.
   bool had_clusters_ = false;       ///< ... as the last one was; ...
   bool has_changed_ = false;        ///< ... not as the one before it: M^-1 is another one.
   bool has_older_ = false;          ///< There is an older direction.
   bool least_residual_ = false;     ///< A facet tilts: no energy to minimise.
-  double predicted_ = 0;            ///< Error expected after the last step.
+  double predicted_ = 0;            ///< Error expected after the last iteration.
   double older_square_ = 0;         ///< (p, q) of the older direction, or |q|^2.
   EnergyBound energy_bound_;
   // Jacobi.

@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-/// How far a conjugate-gradient iterate is from the solution, from two numbers a step.
+/// How far a conjugate-gradient iterate is from the solution, from two numbers an iteration.
 ///
-/// With residuals r_k, rho_k = (r_k, M^-1 r_k), step lengths alpha_k and directions
+/// With residuals r_k, rho_k = (r_k, M^-1 r_k), lengths alpha_k and directions
 /// p_k = M^-1 r_k + beta_k p_k-1, beta_k = rho_k / rho_k-1, the error e of the iterate has
 ///   e K e <= phi_k rho_k / lambda,     phi_k = rho_k / (p_k, M p_k)                     (1)
 /// with the least eigenvalue lambda of M^-1 K [Meurant, Tichy 2019]. phi follows a
@@ -21,8 +21,8 @@ class EnergyBound {
  public:
   void restart() { is_first_ = true; }
 
-  /// A step of length `alpha` from a residual with `rho`, both positive. Returns the bound on e K e
-  /// of the iterate before it; after it e K e is less by alpha rho.
+  /// An iteration of length `alpha` from a residual with `rho`, both positive. Returns the bound on
+  /// e K e of the iterate before it; after it e K e is less by alpha rho.
   double add(double rho, double alpha);
 
   /// The least eigenvalue of M^-1 K that has shown so far.
@@ -30,7 +30,7 @@ class EnergyBound {
 
  private:
   bool is_first_ = true;
-  double rho_ = 0;      ///< Of the step before, ...
+  double rho_ = 0;      ///< rho of the iteration before, ...
   double alpha_ = 0;    ///< ... and its length.
   double phi_ = 1;      ///< Eq. (1)
   double inverse_ = 0;  ///< ||L^-1||^2, by the vector x

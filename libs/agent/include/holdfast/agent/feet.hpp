@@ -54,7 +54,7 @@ class FeetCheck {
   /// times cells. Only if it fits.
   FeetCheck(const Setup& setup, std::int32_t mass, const std::array<std::int32_t, 2>& moment);
 
-  /// Of one foot, at cell (x, y) from the root.
+  /// The safe corners of one foot, at cell (x, y) from the root.
   SafeCorners of_foot(std::int32_t x, std::int32_t y) const;
 
   /// The union.
@@ -67,8 +67,8 @@ class FeetCheck {
   Vector seen(const FootCorner& corner) const;
   Angles angles_of(const SafeCorners& corners) const;
 
-  std::int64_t pitch_;       ///< Of a cell: its parts times the modules.
-  std::int64_t half_width_;  ///< Of a facet.
+  std::int64_t pitch_;       ///< Pitch of cells: its parts times the modules.
+  std::int64_t half_width_;  ///< Half the width of a facet.
   Vector mass_;
 };
 

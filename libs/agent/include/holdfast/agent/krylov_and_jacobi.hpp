@@ -44,13 +44,13 @@ class KrylovAndJacobi {
 
   void move(Workspace& ws, const Order& order);
   void start_solve(Workspace& ws, const Order& order);
-  void step_gradient(Workspace& ws, const Order& order);
+  void iterate_gradient(Workspace& ws, const Order& order);
   void precondition(Workspace& ws, int node, int degree, bool is_joined);
   void share_correction(Workspace& ws) const;
   void find_images(Workspace& ws, const Order& order);
   void next_terms(Workspace& ws, const Order& order);
-  void step_jacobi(Workspace& ws);
-  void step_jacobi(Workspace& ws, int node, double& error);
+  void iterate_jacobi(Workspace& ws);
+  void iterate_jacobi(Workspace& ws, int node, double& error);
 
   Report residual_report(Workspace& ws, const Order& order);
   Report product_report(const Workspace& ws) const;
@@ -59,10 +59,10 @@ class KrylovAndJacobi {
   static Report hold_report(Workspace& ws, const Order& order);
 
   std::array<Gradients, 1 + kPlannedMax> vectors_{};
-  float rho_ = 0;           ///< Of the polynomial preconditioner.
+  float rho_ = 0;           ///< Coefficient of the polynomial preconditioner.
   float jacobi_error_ = 0;  ///< The bound on the error that the last Jacobi iteration has found.
-  bool is_first_step_ = false;  ///< Of a Jacobi method.
-  bool is_scalar_ = false;      ///< Scalar diagonal instead of blocks.
+  bool is_first_iteration_ = false;  ///< The first iteration of a Jacobi method is next.
+  bool is_scalar_ = false;           ///< Scalar diagonal instead of blocks.
 };
 
 }  // namespace holdfast::agent

@@ -29,7 +29,7 @@ struct LinkTiming {
   Time retransmit_after = 50'000;  ///< Longer than two packets and acknowledge_after.
   int retry_count = 4;             ///< At this pace; later ones wait twice as long each, up to 8x.
   int lost_after_retries = 20;     ///< Then the neighbour counts as silent.
-  Time ping_after = 2'000'000;     ///< Of silence, while waiting for the neighbour.
+  Time ping_after = 2'000'000;     ///< Silence that is borne while waiting for the neighbour.
 };
 
 /// How long the first packet that nobody acknowledges is under way before the link is lost.

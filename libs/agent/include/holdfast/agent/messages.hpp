@@ -25,8 +25,9 @@ namespace holdfast::agent {
 struct Join {
   Round round = {};
   std::uint8_t wave = 1;
-  base::Cell cell = {};    ///< Of the sender in the first wave, else of the wave's root.
-  std::uint16_t hops = 0;  ///< Of the sender; beyond kExtentMax stands for all that is further.
+  base::Cell cell = {};  ///< Cell of the sender in the first wave, else of the wave's root.
+  std::uint16_t hops =
+      0;  ///< Hops of the sender; beyond kExtentMax stands for all that is further.
 };
 
 /// A wave on its way back: who is behind the sender.
@@ -34,8 +35,8 @@ struct Echo {
   Round round = {};
   std::uint8_t wave = 1;
   std::uint32_t count = 0;  ///< Modules from the sender down.
-  std::uint16_t hops = 0;   ///< Of the furthest of them.
-  std::uint32_t id = 0;     ///< Of that module; of several the lowest.
+  std::uint16_t hops = 0;   ///< Hops of the furthest of them.
+  std::uint32_t id = 0;     ///< Identity of that module; of several the lowest.
   std::uint8_t is_anyone_silent = 0;
 };
 
@@ -49,10 +50,11 @@ struct Appointment {
 /// On its way to the middle.
 struct Mark {
   std::uint16_t hops = 0;  ///< Still to go.
-  base::Cell sender = {};  ///< Of the module that sent it first.
+  base::Cell sender = {};  ///< Cell of the module that sent it first.
 };
 
-/// In the label of `planned down`: the index, and for a step which part of a displacement it is.
+/// In the label of `planned down`: the index, and for an iteration which part of a displacement it
+/// is.
 inline constexpr std::uint8_t kPlannedIndexMask = 0x3f;
 inline constexpr std::uint8_t kLeadingPart = 0x40;
 inline constexpr std::uint8_t kTrailingPart = 0x80;

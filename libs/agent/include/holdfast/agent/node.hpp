@@ -32,7 +32,7 @@ struct MiddleLoad {
 /// Six reals of a node, which mean one thing at a time.
 union NodeVector {
   base::Vec6<float> sent{};  ///< What is exchanged with the neighbours.
-  base::Vec6<float> load;    ///< Of a planned module that is being eliminated: its condensed load.
+  base::Vec6<float> load;    ///< Condensed load of a planned module that is being eliminated.
   base::Vec6<float> shift;   ///< What an exact solve, by branches or clusters, moves the node by.
 };
 
@@ -54,7 +54,7 @@ struct Node {
   mechanics::ContactState wanted;  ///< That the law prescribes for u.
 
   base::Vec6<double> u{};
-  base::Vec6<double> force{};  ///< Of all beams on their module ends, at u.
+  base::Vec6<double> force{};  ///< Force of all beams on their module ends, at u.
   NodeVector vector;
   NodeMatrix matrix;
 };
@@ -86,7 +86,7 @@ struct SearchDirection {
 };
 
 /// One module's vectors of minimal residuals (src/minimal_residuals.hpp).
-struct Steps {
+struct IterationVectors {
   base::Vec6<double> w;  ///< What the polynomial leaves of the residual.
   SearchDirection older;
   SearchDirection newer;

@@ -73,9 +73,9 @@ inline constexpr OperationInfo kOperations[] = {
      {.fixed = 1, .is_counted = true, .never_with = kWithScalars | kWithBlocks}, false, false,
      "begin a linear solve"},
     {wire::Operation::kGradient, "gradient", 11, 12, Phase::kEquilibrium,
-     {.fixed = 1, .is_counted = true}, false, true, "a step of conjugate gradients"},
+     {.fixed = 1, .is_counted = true}, false, true, "an iteration of conjugate gradients"},
     {wire::Operation::kJacobi, "jacobi", 4, 6, Phase::kEquilibrium, {.is_counted = true}, false,
-     true, "steps of Jacobi's method"},
+     true, "iterations of Jacobi's method"},
     {wire::Operation::kSlope, "slope", 11, 22, Phase::kEquilibrium,
      {.fixed = 1, .only_with = kExchangeFirst}, false, false, "slope of the energy"},
     {wire::Operation::kHold, "hold", 3, 10, Phase::kEquilibrium, {}, false, false,
@@ -88,11 +88,11 @@ inline constexpr OperationInfo kOperations[] = {
      "know the verdict"},
     {wire::Operation::kFactor, "factor", 2, 2, Phase::kEquilibrium, {}, false, false,
      "condense the branches"},
-    {wire::Operation::kStep, "step", 17, 41, Phase::kEquilibrium,
+    {wire::Operation::kIterate, "iterate", 17, 41, Phase::kEquilibrium,
      {.fixed = 2, .is_counted = true, .is_behind = true, .twice_with = kWithClusters}, true, true,
-     "a step: move, residual, sums"},
-    {wire::Operation::kTreeStep, "tree step", 2, 17, Phase::kEquilibrium, {.fixed = 2}, false,
-     true, "a step: move, residual"},
+     "an iteration: move, residual, sums"},
+    {wire::Operation::kTreeIterate, "tree iterate", 2, 17, Phase::kEquilibrium, {.fixed = 2}, false,
+     true, "an iteration: move, residual"},
     {wire::Operation::kClusters, "clusters", 13, 10, Phase::kEquilibrium,
      {.fixed = 1, .is_counted = true, .is_behind = true}, false, false,
      "begin an equilibrium, find rigid clusters"},
@@ -137,8 +137,8 @@ inline constexpr auto kIsPrecise = column(&OperationInfo::is_precise);
 }  // namespace columns
 
 /// How many exchanges of an order go on while its report is on the way up and the next order on its
-/// way down. With clusters a step has two polynomials; the image of the first is needed, and that
-/// of the clusters' part.
+/// way down. With clusters an iteration has two polynomials; the image of the first is needed, and
+/// that of the clusters' part.
 constexpr std::uint16_t exchanges_behind(const Order& order) {
   const Exchanges& exchanges = columns::kExchanges[static_cast<std::size_t>(order.operation)];
   if (!exchanges.is_behind) {
@@ -149,8 +149,8 @@ constexpr std::uint16_t exchanges_behind(const Order& order) {
 }
 
 /// How many times an order makes all neighbours exchange vectors. A preconditioner of degree m
-/// shares m more vectors than its first and its last one, which are the same for m = 0. A step
-/// shares its move in two parts and then the terms of its polynomial.
+/// shares m more vectors than its first and its last one, which are the same for m = 0. An
+/// iteration shares its move in two parts and then the terms of its polynomial.
 constexpr std::uint16_t exchange_count(const Order& order) {
   const Exchanges& exchanges = columns::kExchanges[static_cast<std::size_t>(order.operation)];
   if ((order.flags & exchanges.only_with) != exchanges.only_with ||

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <span>
 
@@ -53,35 +54,64 @@ struct Answer {
 /// In kPlan: no planned module is learned yet.
 inline constexpr std::uint8_t kNoPlanned = 0xff;
 
-/// Exchanges that one order may ask for: the degree of a polynomial, and steps of a Jacobi method.
+/// Exchanges that one order may ask for: the degree of a polynomial, and iterations of a Jacobi
+/// method.
 inline constexpr std::uint16_t kDegreeMax = 4000;
 inline constexpr std::uint16_t kJacobiCountMax = 4096;
 
-/// Fields are used as the operation needs them; see wire.hpp and docs/wire.md.
+/// What the root asks for. Operations share the fields; what the reals are has a name for each
+/// operation. See docs/wire.md.
 struct Order {
   wire::Operation operation{};
   std::uint8_t index = 0;  ///< kPlan: planned index learned, kPlannedMax: one too many, or 0xff.
   std::uint8_t flags = 0;
-  std::uint16_t count = 0;  ///< kJacobi: steps; kStart, kGradient, kBegin, kStep: degree.
+  std::uint16_t count = 0;  ///< kJacobi: iterations; kStart, kGradient, kBegin, kIterate: degree.
   base::Cell cell = {};     ///< kPlan, kForget: of that module; kMass: of the root.
   std::array<std::uint8_t, 8> masks{};   ///< kHosts
   std::int32_t mass = 0;                 ///< kAngles: of all modules, in units.
   std::array<std::int32_t, 2> moment{};  ///< kAngles: first moments in x and y, units times cells.
   std::array<float, 3> reals{};
   Answer answer = {};  ///< kVerdict
+
+  // kBegin, kClusters
+  constexpr float gamma() const { return reals[0]; }  ///< Share of weak springs in open facets.
+
+  constexpr float lever_mm() const { return reals[1]; }  ///< The robot's extent.
+
+  // kHigh: along the correction, less `mix` of the last move and the change of directions
+  constexpr float length() const { return reals[0]; }
+
+  constexpr float mix() const { return reals[1]; }
+
+  // kGradient
+  constexpr float alpha() const { return reals[0]; }
+
+  constexpr float beta() const { return reals[1]; }
+
+  // kSlope: the slope is asked for at four places in (low, high].
+  constexpr float low() const { return reals[0]; }
+
+  constexpr float high() const { return reals[1]; }
+
+  // kIterate: u := u + a (p - c p_older) + b p_older
+  constexpr float c() const { return reals[0]; }
+
+  constexpr float a() const { return reals[1]; }
+
+  constexpr float b() const { return reals[2]; }
 };
 
 /// Flags of orders.
-inline constexpr std::uint8_t kIsFulfilled = 1;    ///< kForget
-inline constexpr std::uint8_t kUnilateralLaw = 1;  ///< kBegin
-inline constexpr std::uint8_t kOneSweep = 2;       ///< kBegin: for kStep or kTreeStep.
-inline constexpr std::uint8_t kWithSteps = 4;      ///< kBegin: for kStep.
-inline constexpr std::uint8_t kFollowStates = 1;   ///< kLow: take over wanted states.
-inline constexpr std::uint8_t kRestart = 1;        ///< kStep: without older directions.
-inline constexpr std::uint8_t kLeastResidual = 2;  ///< kStep: least residual, not least energy.
-inline constexpr std::uint8_t kKeepStates = 4;     ///< kStep: contact states are not looked up.
-inline constexpr std::uint8_t kWithClusters = 8;   ///< kStep: clusters between two polynomials.
-/// kStep: planned modules between others stand still in the polynomial.
+inline constexpr std::uint8_t kIsFulfilled = 1;     ///< kForget
+inline constexpr std::uint8_t kUnilateralLaw = 1;   ///< kBegin
+inline constexpr std::uint8_t kOneSweep = 2;        ///< kBegin: for kIterate or kTreeIterate.
+inline constexpr std::uint8_t kWithIterations = 4;  ///< kBegin: for kIterate.
+inline constexpr std::uint8_t kFollowStates = 1;    ///< kLow: take over wanted states.
+inline constexpr std::uint8_t kRestart = 1;         ///< kIterate: without older directions.
+inline constexpr std::uint8_t kLeastResidual = 2;   ///< kIterate: least residual, not least energy.
+inline constexpr std::uint8_t kKeepStates = 4;      ///< kIterate: contact states are not looked up.
+inline constexpr std::uint8_t kWithClusters = 8;    ///< kIterate: clusters between two polynomials.
+/// kIterate: planned modules between others stand still in the polynomial.
 inline constexpr std::uint8_t kHoldPlanned = 16;
 inline constexpr std::uint8_t kAdoptStates = 1;    ///< kStart
 inline constexpr std::uint8_t kWithScalars = 2;    ///< kStart
@@ -101,6 +131,7 @@ inline constexpr base::Direction kStandingFacet = base::Direction::kMinusZ;
 /// The load ratio of what has no connection: below every real one, and a number.
 inline constexpr float kNoLoadRatio = -1e20F;
 
+/// What comes back, summed up the tree. Operations share the fields; most have a name for each.
 struct Report {
   std::uint8_t flags = 0;
   std::uint8_t mask = 0;
@@ -109,11 +140,48 @@ struct Report {
   std::uint32_t number = 0;
   std::array<std::int64_t, 3> moment{};  ///< kMass: first moments, units of mass times cells.
   std::array<float, 5> reals{};
-  std::array<double, 3> products{};  ///< kStep
+  std::array<double, 3> products{};  ///< kIterate
   base::Cell cell = {};
   base::Direction direction = base::Direction::kPlusX;
   SafeCorners feet = {};
   mechanics::SupportCorners corners = {};
+
+  // kLow, kIterate, kTreeIterate; kJacobi has the first one only.
+  constexpr float error() const { return reals[0]; }  ///< Bound on the error of load ratios.
+
+  constexpr float load_ratio_max() const { return reals[1]; }  ///< The largest of all connections.
+
+  constexpr std::uint16_t changed_count() const { return extent; }  ///< How many facets.
+
+  constexpr std::uint32_t states_hash() const { return number; }  ///< Hash of all contact states.
+
+  // kStart, kGradient
+  constexpr float residual_product() const { return reals[0]; }  ///< (r, z)
+
+  constexpr float image_product() const { return reals[1]; }  ///< (z, w)
+
+  constexpr float solve_error() const { return reals[2]; }  ///< Bound on the error left.
+
+  // kSlope; with kMixProducts (dg, r) and (dg, dr).
+  constexpr float slope(std::size_t place) const { return reals[place]; }
+
+  constexpr float mix_product() const { return reals[0]; }
+
+  constexpr float mix_square() const { return reals[1]; }
+
+  // kMass
+  constexpr std::uint32_t mass() const { return number; }  ///< Units, of all modules.
+
+  // kHold
+  constexpr std::uint32_t open_held_count() const { return number; }  ///< How many facets.
+
+  // kClusters: `count` beams between clusters; these do not lead to the parent cluster.
+  constexpr std::uint32_t stray_count() const { return number; }
+
+  // kLoads
+  constexpr float worst_load_ratio() const { return reals[0]; }
+
+  constexpr std::uint32_t module_count() const { return number; }
 };
 
 /// Flags of reports.

@@ -124,7 +124,8 @@ class Planned {
   std::array<base::Faces, kPlannedMax> totals_{};
   std::array<std::uint8_t, kPlannedMax> hosted_{};
   std::array<base::Faces, kPlannedMax> own_touching_{};
-  std::array<std::array<base::Faces, kPlannedMax>, base::kDirectionCount> below_{};  ///< By child.
+  std::array<std::array<base::Faces, kPlannedMax>, base::kDirectionCount>
+      below_{};  ///< Faces by child.
 };
 
 }  // namespace holdfast::agent

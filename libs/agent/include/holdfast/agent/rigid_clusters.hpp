@@ -26,8 +26,8 @@ namespace holdfast::agent {
 /// beams are added to the joint, as if the parent's cluster were behind them. Where there are many
 /// the root, to which their number is reported, leaves the clusters alone.
 ///
-/// A kStep kWithClusters has two polynomials S of small degree and between them the clusters' exact
-/// solve C, so that M^-1 is symmetric:
+/// An order kIterate kWithClusters has two polynomials S of small degree and between them the
+/// clusters' exact solve C, so that M^-1 is symmetric:
 ///   z := S r,  z := z + C (r - K z),  z := z + S (r - K z)
 /// The loads of C go up the clusters' tree behind the report, with the condensed stiffness, which
 /// may have changed; the displacements come down before the next order.
@@ -55,7 +55,7 @@ class RigidClusters {
   Report report(Workspace& ws, const Order& order);
 
  private:
-  /// What a module does next: in kClusters, then in a kStep.
+  /// What a module does next: in kClusters, then in a kIterate.
   enum class Piece : std::uint8_t { kNone, kChoose, kJoin, kStiffness, kLoad, kShift };
 
   // Which clusters there are.
@@ -74,9 +74,9 @@ class RigidClusters {
   bool send_load(Workspace& ws);
   bool shift(Workspace& ws, const Order& order);
 
-  std::array<Steps, 1 + kClusterPlannedMax> steps_{};
+  std::array<IterationVectors, 1 + kClusterPlannedMax> vectors_{};
   Cluster cluster_;
-  float rho_ = 0;   ///< Of the polynomial.
+  float rho_ = 0;   ///< Coefficient of the polynomial.
   Faces parent_;    ///< In the clusters' tree.
   Faces children_;  ///< In the clusters' tree.
   Faces awaited_;   ///< Children that have something to send.

@@ -12,17 +12,17 @@ namespace holdfast::agent {
 /// How the root finds the equilibrium. A method that diverges or stagnates gives way to the next.
 enum class Method : std::uint8_t {
   kJacobi,              ///< Weighted Jacobi with the scalar diagonal, Eq. (14).
-  kBlockJacobi,         ///< The same with 6x6 diagonal blocks.
+  kBlockJacobi,         ///< Jacobi's method with 6x6 diagonal blocks.
   kConjugateGradients,  ///< Preconditioned with the 6x6 diagonal blocks.
-  kPolynomial,          ///< One sweep a step, with a polynomial of 1.5 times the tree's depth.
-  kElimination,         ///< One sweep a step, exactly over the tree; for robots with few loops.
+  kPolynomial,   ///< One sweep an iteration, with a polynomial of 1.5 times the tree's depth.
+  kElimination,  ///< One sweep an iteration, exactly over the tree; for robots with few loops.
 };
 
 /// What is known before the robot is built, the same for all its modules. N, mm, MPa.
 struct Setup {
   mechanics::BeamSection<double> section;
   double facet_mm = 40;
-  double weight_n = 0;  ///< Of one module.
+  double weight_n = 0;  ///< Weight of one module.
   double strength_vertical_n = 0;
   double strength_lateral_n = 0;
   double contact_gamma = 1e-4;  ///< Eqs. (10)-(12)
@@ -36,8 +36,8 @@ struct Setup {
   /// have no other method (src/method.hpp).
   bool only_elimination = false;
   std::uint32_t iteration_count_max = 4'000'000;
-  /// Of the polynomial preconditioner of conjugate gradients. A degree m costs m rounds more and
-  /// saves about a factor m of sweeps of twice the tree's depth, so the depth is a good degree.
+  /// Degree of the polynomial preconditioner of conjugate gradients. A degree m costs m rounds more
+  /// and saves about a factor m of sweeps of twice the tree's depth, so the depth is a good degree.
   /// This bounds it, as single precision spoils very high ones; 0 leaves the diagonal blocks alone.
   std::uint8_t degree_max = 200;
   LinkTiming timing;

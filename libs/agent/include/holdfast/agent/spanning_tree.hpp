@@ -29,7 +29,7 @@ namespace holdfast::agent {
 class SpanningTree {
  public:
   /// The wave that a module has taken part in last.
-  enum class Stage : std::uint8_t {
+  enum class Wave : std::uint8_t {
     kNone,
     kFirst,  ///< From the starter: coordinates, census.
     kFar,    ///< From the module furthest from the starter.
@@ -50,7 +50,7 @@ class SpanningTree {
 
   // ---- What is known.
 
-  Stage stage() const { return stage_; }
+  Wave wave() const { return wave_; }
 
   /// Is this module the one where the wave has started?
   bool is_root() const { return parent_.is_empty(); }
@@ -82,13 +82,13 @@ class SpanningTree {
   /// A round begins: there is no tree.
   void leave();
 
-  /// Starts the wave of `stage` from this module.
-  void start_wave(Links& links, const Round& round, Stage stage);
+  /// Starts `wave` from this module.
+  void start_wave(Links& links, const Round& round, Wave wave);
 
   /// May the neighbour at `face` lead now, being this module's parent in a wave that is over here?
   bool is_led_by(Direction face) const { return parent_.has(face) && awaited_.is_empty(); }
 
-  /// Of messages of the present round: is this one of `face` to be expected now? `is_in_use`: the
+  /// Is this message of the present round from `face` to be expected now? `is_in_use`: the
   /// root has begun to give orders.
   bool expects_echo(Direction face) const { return awaited_.has(face); }
 
@@ -110,13 +110,13 @@ class SpanningTree {
   void appoint(Links& links, const Round& round);
 
  private:
-  void begin_stage(Links& links, const Round& round, Stage stage, Faces parent, std::uint16_t hops);
+  void begin_wave(Links& links, const Round& round, Wave wave, Faces parent, std::uint16_t hops);
   void await_less(Links& links, const Round& round, Faces faces);
   void send_echo(Links& links, const Round& round) const;
   Faces towards_root(const base::Cell& end) const;
 
   std::uint32_t id_;
-  Stage stage_ = Stage::kNone;
+  Wave wave_ = Wave::kNone;
   bool has_cell_;
   bool has_returned_ = false;
   Faces parent_;

@@ -8,7 +8,7 @@
 #include "holdfast/agent/announcements.hpp"
 #include "holdfast/agent/krylov_and_jacobi.hpp"
 #include "holdfast/agent/order.hpp"
-#include "holdfast/agent/polynomial_steps.hpp"
+#include "holdfast/agent/polynomial_iteration.hpp"
 #include "holdfast/agent/rigid_clusters.hpp"
 #include "holdfast/agent/tree_elimination.hpp"
 #include "holdfast/agent/workspace.hpp"
@@ -23,7 +23,7 @@ union MethodState {
 
   std::uint8_t none;
   TreeElimination elimination;
-  PolynomialSteps steps;
+  PolynomialIteration polynomial;
   RigidClusters clusters;
   KrylovAndJacobi gradients;
 };
@@ -36,7 +36,7 @@ enum class Course : std::uint8_t {
   kHosted,
   kWeighed,
   kElimination,
-  kSteps,
+  kPolynomial,
   kClusters,
   kGradients,
   kAnswered,
@@ -66,10 +66,10 @@ class Sweep {
 
   // ---- What may be said now.
 
-  /// Of an order: may it come next?
+  /// May this order come next?
   bool is_in_course(const Workspace& ws, const Order& order) const;
 
-  /// Of a message of a sweep from the neighbour at `face`, orders apart.
+  /// May this message of a sweep, which is no order, come from the neighbour at `face`?
   bool expects(const Workspace& ws, Direction face, std::span<const std::uint8_t> message) const;
 
   // ---- What comes in.

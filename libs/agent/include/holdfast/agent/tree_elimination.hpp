@@ -25,7 +25,7 @@ enum class Pending : std::uint8_t {
 ///
 ///   kMass      with the reports: cuts that are open, so that each module knows its loops
 ///   kFactor    with the reports: columns of condensed stiffness, then condensed loads
-///   kTreeStep  with the order: displacements and forces in cuts; with the reports: loads
+///   kTreeIterate  with the order: displacements and forces in cuts; with the reports: loads
 ///
 /// Planned modules emulated here are leaves of the tree: they hang on this module or on each other.
 ///
@@ -64,7 +64,8 @@ class TreeElimination {
   bool has_too_many_loops() const { return has_too_many_; }
 
  private:
-  /// What comes next, in the order of a kFactor, and from the residuals on of a kTreeStep as well.
+  /// What comes next, in the order of a kFactor, and from the residuals on of a kTreeIterate as
+  /// well.
   enum class Piece : std::uint8_t {
     kNone,
     kTangents,
@@ -77,7 +78,7 @@ class TreeElimination {
     kCloseLoad,
     kLoadUp,
     kGapsUp,
-    kShift,  // Of a kTreeStep, before its exchanges.
+    kShift,  // Of a kTreeIterate, before its exchanges.
     kForces,
     kLeafShifts,
     kMove,
@@ -120,7 +121,7 @@ class TreeElimination {
   Branch branch_;
   BranchLoad load_;
   CutForces forces_{};
-  /// By face: the cuts that a child has open, and their slots here.
+  /// The cuts that the child at each face has open, and their slots here.
   std::array<std::array<Cut, kLoopsMax>, base::kDirectionCount> child_cuts_{};
   std::array<std::array<std::uint8_t, kLoopsMax>, base::kDirectionCount> slot_of_{};
   std::array<std::uint8_t, base::kDirectionCount> child_cut_count_{};

@@ -73,9 +73,9 @@ class Watch {
   Time at_ = kNever;
   /// How long the waves took; before they are over, when the round began. Modulo 2^32.
   std::uint32_t wave_time_ = 0;
-  /// Of the round since the last order; they set the clock anew.
+  /// Messages of the round since the last order; they set the clock anew.
   std::uint16_t messages_heard_ = 0;
-  std::uint16_t orders_heard_ = 0;  ///< Of the round.
+  std::uint16_t orders_heard_ = 0;  ///< Orders heard in the round.
   std::uint8_t rounds_without_end_ = 0;
   Phase phase_ = Phase::kDiscovery;
   Answer answer_;

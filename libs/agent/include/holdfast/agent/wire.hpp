@@ -27,7 +27,7 @@ inline constexpr int kChecksumBytes = 2;
 inline constexpr int kPacketBytesMin = 17;   ///< Blinky Blocks version 1
 inline constexpr int kPacketBytesMax = 228;  ///< Blinky Blocks version 2
 inline constexpr int kMessageBytesMax = 41;
-inline constexpr int kVectorBytes = 26;  ///< Of the messages with six reals.
+inline constexpr int kVectorBytes = 26;  ///< Size of the messages with six reals.
 inline constexpr int kCellBytes = 9;
 
 /// A greeting differs in two bits from data, so that few errors make one of the other.
@@ -36,7 +36,7 @@ enum class PacketKind : std::uint8_t { kData, kAcknowledge, kPing, kHello };
 /// The two bytes in front of every packet.
 struct PacketHeader {
   PacketKind kind = PacketKind::kData;
-  std::uint8_t sequence = 0;  ///< Of a data packet.
+  std::uint8_t sequence = 0;  ///< Sequence number of a data packet.
   std::uint8_t version = 0;
   std::uint8_t expected = 0;  ///< The sequence number that is expected from the other side.
 };
@@ -71,26 +71,26 @@ enum class MessageType : std::uint8_t {
 /// What an order asks for. Each has a body for the way down and one for the way up; operations.hpp
 /// has all that is known of them.
 enum class Operation : std::uint8_t {
-  kPlan = 1,  ///< Learn one planned cell, find the next.
-  kHosts,     ///< Which faces of planned modules touch; who emulates them.
-  kMass,      ///< Count, centre of mass, supports, extent.
-  kAngles,    ///< Safe angles of the simplified stability check.
-  kBegin,     ///< Start an equilibrium: law, weak spring.
-  kHigh,      ///< Move by a step, exchange the leading part of the displacements.
-  kLow,       ///< Exchange the rest; residual, contact states, loads.
-  kStart,     ///< Start a linear solve for a correction.
-  kGradient,  ///< One step of conjugate gradients.
-  kJacobi,    ///< Some steps of a Jacobi method, in lockstep.
-  kSlope,     ///< Slope of the energy along the correction.
-  kHold,      ///< Release open facets, hold pressed ones.
-  kCorners,   ///< Support corners of the model-based stability check.
-  kLoads,     ///< The worst connection.
-  kVerdict,   ///< The answer, for every module.
-  kFactor,    ///< Condense every branch: stiffness and load.
-  kStep,      ///< One step of the polynomial: move, residual, sums.
-  kTreeStep,  ///< One step of the elimination: move, residual.
-  kClusters,  ///< kBegin, and find rigid clusters.
-  kForget,    ///< A plan has ended; learn from the first one on.
+  kPlan = 1,     ///< Learn one planned cell, find the next.
+  kHosts,        ///< Which faces of planned modules touch; who emulates them.
+  kMass,         ///< Count, centre of mass, supports, extent.
+  kAngles,       ///< Safe angles of the simplified stability check.
+  kBegin,        ///< Start an equilibrium: law, weak spring.
+  kHigh,         ///< Move along the correction, exchange the leading part of the displacements.
+  kLow,          ///< Exchange the rest; residual, contact states, loads.
+  kStart,        ///< Start a linear solve for a correction.
+  kGradient,     ///< One iteration of conjugate gradients.
+  kJacobi,       ///< Some iterations of a Jacobi method, in lockstep.
+  kSlope,        ///< Slope of the energy along the correction.
+  kHold,         ///< Release open facets, hold pressed ones.
+  kCorners,      ///< Support corners of the model-based stability check.
+  kLoads,        ///< The worst connection.
+  kVerdict,      ///< The answer, for every module.
+  kFactor,       ///< Condense every branch: stiffness and load.
+  kIterate,      ///< One iteration of the polynomial: move, residual, sums.
+  kTreeIterate,  ///< One iteration of the elimination: move, residual.
+  kClusters,     ///< kBegin, and find rigid clusters.
+  kForget,       ///< A plan has ended; learn from the first one on.
 };
 inline constexpr int kOperationCount = static_cast<int>(Operation::kForget);  ///< The last one.
 

@@ -21,7 +21,7 @@ struct Identity {
   std::uint32_t id = 0;    ///< Different for every module.
   bool is_fixed = false;   ///< Held from outside, does not move.
   bool is_anchor = false;  ///< Knows `cell` from the start; exactly one module.
-  base::Cell cell = {};    ///< Of the anchor.
+  base::Cell cell = {};    ///< The anchor's cell.
 };
 
 /// What the parts of a module's program work on: the module's lines, its place in the tree, the
@@ -59,7 +59,7 @@ struct Workspace {
   bool is_fixed;
   float own_load_ratio = 0;  ///< The largest of this module's own connections.
   std::array<Node, 1 + kPlannedMax> nodes{};
-  std::array<MiddleLoad, base::kDirectionCount> middle{};  ///< By face of this module.
+  std::array<MiddleLoad, base::kDirectionCount> middle{};  ///< Loads by face of this module.
   ContactSetting contact;
 };
 

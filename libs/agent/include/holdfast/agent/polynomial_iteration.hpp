@@ -13,7 +13,7 @@ namespace holdfast::agent {
 
 /// Minimal residuals with a polynomial as preconditioner: every iteration costs one sweep, residual
 /// and contact states included (src/minimal_residuals.hpp).
-class PolynomialSteps {
+class PolynomialIteration {
  public:
   void begin(Workspace& ws, const Order& order);
 
@@ -35,8 +35,8 @@ class PolynomialSteps {
   Report report(Workspace& ws, const Order& order);
 
  private:
-  std::array<Steps, 1 + kPlannedMax> steps_{};
-  float rho_ = 0;  ///< Of the polynomial.
+  std::array<IterationVectors, 1 + kPlannedMax> vectors_{};
+  float rho_ = 0;  ///< Coefficient of the polynomial.
 };
 
 }  // namespace holdfast::agent

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: The holdfast authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// The one-sweep methods as the root sees them: from the sums of one step to the coefficients of the
-// next (minimal_residuals.hpp), and when to stop.
+// The one-sweep methods as the root sees them: from the sums of one iteration to the coefficients
+// of the next (minimal_residuals.hpp), and when to stop.
 #include "holdfast/agent/conductor.hpp"
 #include "methods.hpp"
 #include "scalar.hpp"
@@ -13,16 +13,16 @@ namespace {
 
 using wire::Operation;
 
-/// Steps without progress before the method is left.
-constexpr int kStepStagnationMax = 40;
+/// Iterations without progress before the method is left.
+constexpr int kIterationStagnationMax = 40;
 constexpr int kEliminationStagnationMax = 6;
 constexpr int kClusterStagnationMax = 12;
 
-/// Steps with clusters before they are given up, those included that change contact states.
-constexpr std::uint32_t kClusterStepsMax = 40;
+/// Iterations with clusters before they are given up, those included that change contact states.
+constexpr std::uint32_t kClusterIterationsMax = 40;
 
-/// A step with clusters was too long if so much of it has to be taken back.
-constexpr double kLongStep = 0.3;
+/// An iteration with clusters was too long if so much of it has to be taken back.
+constexpr double kLongCorrection = 0.3;
 
 /// Clusters are tried from this depth on. Below, a polynomial of 1.5 times the depth is as good.
 constexpr int kClusterDepthMin = 64;
@@ -32,7 +32,8 @@ constexpr int kClusterDepthMin = 64;
 constexpr std::uint32_t kStrayShare = 2;
 
 /// Degree of each of the two polynomials. They have to smooth what clusters 8 modules long do
-/// wrong; a step takes 3 rounds more for each degree, so in deep robots some more cost little.
+/// wrong; an iteration takes 3 rounds more for each degree, so in deep robots some more cost
+/// little.
 constexpr std::uint16_t kClusterDegreeMin = 16;
 constexpr std::uint16_t kClusterDegreeShare = 5;
 
@@ -60,8 +61,8 @@ void Conductor::choose_one_sweep(bool is_unilateral) {
 
 /// While a report and the next order travel there is time for as many exchanges as the tree is
 /// deep: the root must wait for the modules furthest away to start theirs. Half as many more make
-/// a sweep longer by a quarter and save as many steps.
-std::uint16_t Conductor::step_degree() const {
+/// a sweep longer by a quarter and save as many iterations.
+std::uint16_t Conductor::iteration_degree() const {
   const std::uint32_t degree = depth_ + (depth_ + 1U) / 2;
   return static_cast<std::uint16_t>(degree < kDegreeMax ? degree : kDegreeMax);
 }
@@ -79,10 +80,10 @@ bool Conductor::may_have_clusters() const {
 
 /// The report of kClusters: beams between clusters, and those that do not go to the parent.
 void Conductor::choose_clusters(const Report& report) {
-  has_clusters_ = may_have_clusters() && kStrayShare * report.number < report.count;
+  has_clusters_ = may_have_clusters() && kStrayShare * report.stray_count() < report.count;
 }
 
-Order Conductor::first_step() {
+Order Conductor::first_iteration() {
   ++effort_.solves;
   predicted_ = kUnbounded;
   holds_planned_ = false;
@@ -91,68 +92,69 @@ Order Conductor::first_step() {
   if (is_elimination) {
     return factor();
   }
-  Order step = restarted_step();
+  Order iteration = restarted_iteration();
   // Where planned modules are condensed it moves nothing: nobody has their weight yet.
-  step.flags = static_cast<std::uint8_t>(step.flags | (is_any_remote_ ? kKeepStates : 0U));
-  return step;
+  iteration.flags =
+      static_cast<std::uint8_t>(iteration.flags | (is_any_remote_ ? kKeepStates : 0U));
+  return iteration;
 }
 
 Order Conductor::factor() { return ask(Operation::kFactor); }
 
-Order Conductor::tree_step() { return ask(Operation::kTreeStep); }
+Order Conductor::tree_iteration() { return ask(Operation::kTreeIterate); }
 
-Order Conductor::next_step(std::uint8_t flags, const std::array<float, 3>& coefficients) {
-  Order step = ask(Operation::kStep);
+Order Conductor::next_iteration(std::uint8_t flags, const std::array<float, 3>& coefficients) {
+  Order iteration = ask(Operation::kIterate);
   const bool has_clusters = has_clusters_ && !least_residual_;
-  step.flags = static_cast<std::uint8_t>(flags | (least_residual_ ? kLeastResidual : 0U) |
-                                         (has_clusters ? kWithClusters : 0U) |
-                                         (holds_planned_ ? kHoldPlanned : 0U));
-  step.count = has_clusters ? cluster_degree() : step_degree();
-  step.reals = coefficients;
+  iteration.flags = static_cast<std::uint8_t>(flags | (least_residual_ ? kLeastResidual : 0U) |
+                                              (has_clusters ? kWithClusters : 0U) |
+                                              (holds_planned_ ? kHoldPlanned : 0U));
+  iteration.count = has_clusters ? cluster_degree() : iteration_degree();
+  iteration.reals = coefficients;
   has_changed_ = has_clusters != had_clusters_ || holds_planned_ != held_planned_;
   had_clusters_ = has_clusters;
   held_planned_ = holds_planned_;
-  return step;
+  return iteration;
 }
 
 /// While a facet tilts K is not symmetric, and the least residual is safer than the least energy;
 /// not where M^-1 K has eigenvalues that are very small or above 2, as with clusters and with
 /// planned modules that stand still in M: there it makes no progress, and the energy is minimised
 /// as if.
-Order Conductor::restarted_step() {
+Order Conductor::restarted_iteration() {
   has_older_ = false;
   least_residual_ = is_tilting_ && !has_clusters_ && !is_any_remote_;
   energy_bound_.restart();
-  return next_step(kRestart, {});
+  return next_iteration(kRestart, {});
 }
 
-/// Reports of kStep and kTreeStep: bound on the error, largest ratio, the number of facets whose
-/// state has changed, the hash of all; the products of minimal_residuals.hpp.
-Order Conductor::after_step(const Setup& setup, const Report& report) {
+/// Reports of kIterate and kTreeIterate: bound on the error, largest ratio, the number of facets
+/// whose state has changed, the hash of all; the products of minimal_residuals.hpp.
+Order Conductor::after_iteration(const Setup& setup, const Report& report) {
   ++effort_.iterations;
-  ratio_ = static_cast<double>(report.reals[1]);
+  ratio_ = static_cast<double>(report.load_ratio_max());
   is_tilting_ = (report.flags & kAnyTilting) != 0;
   const bool was_accurate = predicted_ < kStateTolerance * (1 + absolute(ratio_));
-  const bool has_jumped = report.extent > 0;
+  const bool has_jumped = report.changed_count() > 0;
   const bool is_elimination = !kHasAllMethods || effort_.method == Method::kElimination;
-  const auto bound = static_cast<double>(report.reals[0]);
-  const double error = has_jumped || is_elimination ? bound : step_error(setup, report, bound);
+  const auto bound = static_cast<double>(report.error());
+  const double error = has_jumped || is_elimination ? bound : iteration_error(setup, report, bound);
   if (!is_number(error) || effort_.iterations > setup.iteration_count_max) {
     return leave_one_sweep(setup, false);
   }
   error_ = error;
   if (has_jumped) {
-    ++effort_.contact_steps;
-    const bool is_cycle = was_accurate && was_seen(report.number);
-    if (is_cycle || effort_.contact_steps > contact_steps_max_) {
-      // Only exact steps are certain to go round in circles: conjugate gradients try first.
+    ++effort_.contact_iterations;
+    const bool is_cycle = was_accurate && was_seen(report.states_hash());
+    if (is_cycle || effort_.contact_iterations > contact_iterations_max_) {
+      // Only exact iterations are certain to go round in circles: conjugate gradients try first.
       return leave_one_sweep(setup, is_cycle && is_elimination);
     }
     error_best_ = kUnbounded;
     stagnation_count_ = 0;
     predicted_ = kUnbounded;
     holds_planned_ = is_any_remote_ && !has_clusters_;
-    return is_elimination ? factor() : jumped_step(setup, report);
+    return is_elimination ? factor() : jumped_iteration(setup, report);
   }
   target_ = kRatioTolerance * (1 + absolute(ratio_));
   const double distance = absolute(ratio_ - 1) / kDoubt;
@@ -163,18 +165,18 @@ Order Conductor::after_step(const Setup& setup, const Report& report) {
   error_best_ = is_better ? error : error_best_;
   stagnation_count_ =
       is_better ? std::uint8_t{0} : static_cast<std::uint8_t>(stagnation_count_ + 1);
-  if (stagnation_count_ > (is_elimination ? kEliminationStagnationMax : kStepStagnationMax)) {
+  if (stagnation_count_ > (is_elimination ? kEliminationStagnationMax : kIterationStagnationMax)) {
     return leave_one_sweep(setup, false);
   }
   if (is_elimination) {
     predicted_ = error;
-    return tree_step();
+    return tree_iteration();
   }
   if (had_clusters_ &&
-      (stagnation_count_ > kClusterStagnationMax || effort_.iterations > kClusterStepsMax)) {
+      (stagnation_count_ > kClusterStagnationMax || effort_.iterations > kClusterIterationsMax)) {
     return leave_clusters(setup);
   }
-  return has_changed_ ? restarted_step() : minimised_step(report);
+  return has_changed_ ? restarted_iteration() : minimised_iteration(report);
 }
 
 /// The least energy, or the least residual, over the last two directions. The residual before was
@@ -189,15 +191,17 @@ Conductor::Minimum Conductor::minimum(const Report& report) const {
   return least;
 }
 
-/// The bound on the error after the step, and `predicted_` for after the next minimisation. While a
-/// facet tilts K is not symmetric and only forces at the robot's full extent bound the error.
-double Conductor::step_error(const Setup& setup, const Report& report, double bound) {
+/// The bound on the error after the iteration, and `predicted_` for after the next minimisation.
+/// While a facet tilts K is not symmetric and only forces at the robot's full extent bound the
+/// error.
+double Conductor::iteration_error(const Setup& setup, const Report& report, double bound) {
   predicted_ = bound;
   if (least_residual_) {
     return bound;
   }
   const Minimum least = minimum(report);
-  // (r^, M^-1 r^) of the residual r^ = r + q before, and the length of conjugate gradients' step.
+  // (r^, M^-1 r^) of the residual r^ = r + q before, and the length of conjugate gradients'
+  // correction.
   const double rho = report.products[0] + report.products[1];
   const double alpha = 1 + least.a;
   if (!(rho > 0) || !(alpha > 0) || !(least.square > 0)) {
@@ -212,34 +216,34 @@ double Conductor::step_error(const Setup& setup, const Report& report, double bo
   return now < bound ? now : bound;
 }
 
-Order Conductor::minimised_step(const Report& report) {
+Order Conductor::minimised_iteration(const Report& report) {
   const Minimum least = minimum(report);
   if (!(least.square > 0) || !is_number(least.a)) {
-    return restarted_step();
+    return restarted_iteration();
   }
   older_square_ = least.square;
   has_older_ = true;
-  return next_step(
+  return next_iteration(
       0, {static_cast<float>(least.c), static_cast<float>(least.a), static_cast<float>(least.b)});
 }
 
-/// Other contact states are another K: directions start anew. The full step of a polynomial is
-/// never far too long, with planned modules that are held from now on (condensed.hpp). With
+/// Other contact states are another K: directions start anew. The full correction of a polynomial
+/// is never far too long, with planned modules that are held from now on (condensed.hpp). With
 /// clusters M^-1 K has eigenvalues up to Cluster::kReach, so before, what was too long of the last
-/// step is taken back, as if K had not changed.
-Order Conductor::jumped_step(const Setup& setup, const Report& report) {
-  if (had_clusters_ && effort_.iterations > kClusterStepsMax) {
+/// iteration is taken back, as if K had not changed.
+Order Conductor::jumped_iteration(const Setup& setup, const Report& report) {
+  if (had_clusters_ && effort_.iterations > kClusterIterationsMax) {
     return leave_clusters(setup);
   }
-  const bool is_long = report.products[0] < -kLongStep * report.products[1];
+  const bool is_long = report.products[0] < -kLongCorrection * report.products[1];
   if (!had_clusters_ || has_changed_ || !is_long) {
-    return restarted_step();
+    return restarted_iteration();
   }
   energy_bound_.restart();
   has_older_ = false;
-  const Order step = minimised_step(report);
+  const Order iteration = minimised_iteration(report);
   has_older_ = false;
-  return step;
+  return iteration;
 }
 
 /// From the beginning, as if there were no clusters.
