@@ -43,7 +43,12 @@ bool take_segments(const std::vector<std::uint8_t>& file, const Elf32_Ehdr& head
   return !image.segments.empty();
 }
 
-void take_symbols(const std::vector<std::uint8_t>& file, const Elf32_Ehdr& header, Image& image) {
+bool lies_in(const std::vector<std::uint8_t>& file, const Elf32_Shdr& section) {
+  return section.sh_offset <= file.size() && file.size() - section.sh_offset >= section.sh_size;
+}
+
+/// False if a table of symbols or of their names lies outside the file.
+bool take_symbols(const std::vector<std::uint8_t>& file, const Elf32_Ehdr& header, Image& image) {
   for (std::size_t i = 0; i < header.e_shnum; ++i) {
     const auto table = value_at<Elf32_Shdr>(file, header.e_shoff + i * sizeof(Elf32_Shdr));
     if (table.sh_type != SHT_SYMTAB) {
@@ -51,6 +56,9 @@ void take_symbols(const std::vector<std::uint8_t>& file, const Elf32_Ehdr& heade
     }
     const auto names =
         value_at<Elf32_Shdr>(file, header.e_shoff + table.sh_link * sizeof(Elf32_Shdr));
+    if (!lies_in(file, table) || !lies_in(file, names)) {
+      return false;
+    }
     for (std::size_t k = 0; k < table.sh_size / sizeof(Elf32_Sym); ++k) {
       const auto symbol = value_at<Elf32_Sym>(file, table.sh_offset + k * sizeof(Elf32_Sym));
       std::string name;
@@ -63,6 +71,7 @@ void take_symbols(const std::vector<std::uint8_t>& file, const Elf32_Ehdr& heade
       image.symbols[name] = is_code ? symbol.st_value & ~1U : symbol.st_value;
     }
   }
+  return true;
 }
 
 }  // namespace
@@ -92,14 +101,16 @@ base::Result<Image> load_image(const std::string& path) {
   const std::vector<std::uint8_t> file{std::istreambuf_iterator<char>(stream), {}};
   const auto header = value_at<Elf32_Ehdr>(file, 0);
   if (std::memcmp(header.e_ident, ELFMAG, SELFMAG) != 0 || header.e_ident[EI_CLASS] != ELFCLASS32 ||
-      header.e_machine != EM_ARM) {
-    return fault("is no ELF file for a 32-bit Arm");
+      header.e_ident[EI_DATA] != ELFDATA2LSB || header.e_machine != EM_ARM) {
+    return fault("is no ELF file for a 32-bit Arm, little-endian");
   }
   Image image;
   if (!take_segments(file, header, image)) {
     return fault("is damaged: a segment lies outside the file");
   }
-  take_symbols(file, header, image);
+  if (!take_symbols(file, header, image)) {
+    return fault("is damaged: a table of symbols lies outside the file");
+  }
   for (const char* name :
        {"holdfast_status", "holdfast_stop", "holdfast_stack_begin", "holdfast_stack_end",
         "holdfast_configuration", "holdfast_vectors", "holdfast_agent_bytes",

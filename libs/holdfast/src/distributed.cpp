@@ -123,6 +123,19 @@ verdict::Assessment view_of(const model::Robot& robot, const verdict::Assessment
   return view;
 }
 
+RefusedMessages refused_by(const model::Robot& robot, const Agents& agents) {
+  RefusedMessages refused;
+  for (std::int32_t i = 0; i < agents.count; ++i) {
+    const int count = agents.at(i).refused_count();
+    refused.count += static_cast<std::uint64_t>(count);
+    if (count > refused.count_of_cell) {
+      refused.count_of_cell = count;
+      refused.cell = robot.modules()[static_cast<std::size_t>(i)].cell;
+    }
+  }
+  return refused;
+}
+
 verdict::Verdict to_verdict(agent::Verdict verdict) {
   switch (verdict) {
     case agent::Verdict::kSafe:
@@ -177,11 +190,13 @@ base::Result<DistributedRun> simulate(const model::Robot& robot, const CheckResu
       break;
     }
   }
-  DistributedRun run{.link = options.link, .result = simulation.result(), .view = {}, .notes = {}};
+  DistributedRun run{
+      .link = options.link, .result = simulation.result(), .refused = {}, .view = {}, .notes = {}};
   run.notes = notes_on(options, exact.assessment, run.result);
   const Agents agents{
       .at = [&](std::int32_t i) -> const agent::Agent& { return simulation.agent(i); },
       .count = simulation.agent_count()};
+  run.refused = refused_by(robot, agents);
   run.view = view_of(robot, exact.assessment, agents, run.result);
   return run;
 }

@@ -20,10 +20,15 @@ struct Agents {
 verdict::Assessment view_of(const model::Robot& robot, const verdict::Assessment& exact,
                             const Agents& agents, const sim::SimulationResult& result);
 
+RefusedMessages refused_by(const model::Robot& robot, const Agents& agents);
+
 using TextOut = std::back_insert_iterator<std::string>;
 
 /// The exact answer and the robot's.
 void write_answer(TextOut out, const Structure& structure, const CheckResult& exact,
                   const DistributedRun& run);
+
+/// How many messages were refused; no line where none was.
+void write_refused(TextOut out, const RefusedMessages& refused);
 
 }  // namespace holdfast

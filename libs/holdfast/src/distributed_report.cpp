@@ -38,6 +38,15 @@ void write_worst(io::JsonStream& json, const sim::SimulationResult& result) {
   json.end_array();
 }
 
+void write_refused_entry(io::JsonStream& json, const RefusedMessages& refused) {
+  json.begin_object();
+  json.member("messages", refused.count);
+  json.key("cell");
+  write_cell(json, refused.cell);
+  json.member("messages_of_cell", refused.count_of_cell);
+  json.end_object();
+}
+
 void write_phases(io::JsonStream& json, const DistributedRun& run) {
   json.begin_object();
   for (std::size_t i = 0; i < kBusyPhaseCount; ++i) {
@@ -73,6 +82,7 @@ void write_cost(TextOut out, const DistributedRun& run) {
                  "  cost        {}{} rounds, {} packets, {} bytes; busiest module {} packets\n",
                  seconds ? fmt::format("{:.3f} s, ", *seconds) : "", result.rounds, result.packets,
                  result.bytes, result.packets_module_max);
+  write_refused(out, run.refused);
   fmt::format_to(out, "  memory      {} bytes in each module\n\n", result.bytes_per_module);
   fmt::format_to(out, "  {:<12} {:>9} {:>10} {:>10} {:>12}\n", "phase", "rounds", "packets",
                  "bytes", "time");
@@ -108,6 +118,14 @@ void write_answer(TextOut out, const Structure& structure, const CheckResult& ex
   fmt::format_to(out, "{}\n", run.result.all_agree ? "; all modules agree" : "; NOT all agree");
 }
 
+void write_refused(TextOut out, const RefusedMessages& refused) {
+  if (refused.count > 0) {
+    const base::Cell& cell = refused.cell;
+    fmt::format_to(out, "  refused     {} messages; most, {}, by ({},{},{})\n", refused.count,
+                   refused.count_of_cell, cell.x, cell.y, cell.z);
+  }
+}
+
 void write_distributed(io::JsonStream& json, const DistributedRun& run) {
   const sim::SimulationResult& result = run.result;
   const agent::Answer& answer = result.answer;
@@ -126,6 +144,10 @@ void write_distributed(io::JsonStream& json, const DistributedRun& run) {
   json.member("bytes", result.bytes);
   json.member("messages_busiest_module", result.packets_module_max);
   json.member("bytes_busiest_module", result.bytes_module_max);
+  if (run.refused.count > 0) {
+    json.key("refused");
+    write_refused_entry(json, run.refused);
+  }
   json.member("iterations", result.effort.iterations);
   json.member("bytes_per_module", result.bytes_per_module);
   json.member("all_modules_agree", result.all_agree);

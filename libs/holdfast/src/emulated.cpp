@@ -70,12 +70,14 @@ base::Result<EmulatedRun> emulate(const Structure& structure, const CheckResult&
   }
   EmulatedRun run{.run = {.link = sim::blinky_blocks_v2(),
                           .result = emulation.result(),
+                          .refused = {},
                           .view = {},
                           .notes = {}},
                   .firmware = emulation.report()};
   const Agents agents{
       .at = [&](std::int32_t i) -> const agent::Agent& { return emulation.shadow(i); },
       .count = emulation.module_count()};
+  run.run.refused = refused_by(structure.robot, agents);
   run.run.view = view_of(structure.robot, exact.assessment, agents, run.run.result);
   return run;
 }
@@ -110,6 +112,7 @@ std::string report_text(const Structure& structure, const CheckResult& exact,
                      : "from the start to the last module's verdict");
   fmt::format_to(out, "  packets     {}, {} bytes; busiest module {} packets\n", result.packets,
                  result.bytes, result.packets_module_max);
+  write_refused(out, run.run.refused);
   fmt::format_to(out, "  image       {} bytes of flash, {} of RAM ({} of them the agent)\n",
                  firmware.flash_bytes, firmware.ram_bytes, firmware.agent_bytes);
   fmt::format_to(out, "  stack       {} bytes at its deepest\n", firmware.stack_bytes_max);

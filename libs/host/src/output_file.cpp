@@ -174,6 +174,9 @@ class OutputFile::Writer {
   int finish() {
     stream_.flush();
     int error = buffer_ ? buffer_->error() : EBADF;
+    if (error == 0 && stream_.fail()) {
+      error = EIO;  // By a move that cannot be made; what came behind it was not written.
+    }
     // Some file systems tell only now that the disk is full.
     if (::close(std::exchange(descriptor_, -1)) != 0 && error == 0) {
       error = errno;

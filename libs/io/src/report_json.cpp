@@ -108,22 +108,71 @@ void write_several(JsonStream& json, const verdict::Assessment& assessment) {
   json.end_object();
 }
 
-const char* solver_name(const solver::Equilibrium& equilibrium) {
-  if (equilibrium.method != solver::Method::kMultigrid) {
+const char* solver_name(solver::Method method, solver::Precision precision) {
+  if (method != solver::Method::kMultigrid) {
     return "sparse direct, 6x6 block LU";
   }
-  return equilibrium.precision == solver::Precision::kSingle
+  return precision == solver::Precision::kSingle
              ? "conjugate gradients with multigrid"
              : "conjugate gradients with multigrid in double precision";
+}
+
+const char* outcome_name(solver::Outcome outcome) {
+  switch (outcome) {
+    case solver::Outcome::kSettled:
+      return "settled";
+    case solver::Outcome::kNotSettled:
+      return "not_settled";
+    case solver::Outcome::kSingular:
+      return "singular";
+    case solver::Outcome::kTooLarge:
+      return "too_large";
+    case solver::Outcome::kNotSought:
+      return "not_sought";
+    case solver::Outcome::kTooSlow:
+      break;
+  }
+  return "too_slow";
+}
+
+/// The contact model of one attempt: without contact that of the whole assessment.
+verdict::ContactModel attempted_model(const verdict::Assessment& assessment,
+                                      const solver::Attempt& attempt) {
+  using verdict::ContactModel;
+  const bool has_contact = assessment.contact_model == ContactModel::kRegularised ||
+                           assessment.contact_model == ContactModel::kUnilateral;
+  if (!has_contact) {
+    return assessment.contact_model;
+  }
+  return attempt.law == mechanics::ContactLaw::kUnilateral ? ContactModel::kUnilateral
+                                                           : ContactModel::kRegularised;
+}
+
+void write_attempts(JsonStream& json, const verdict::Assessment& assessment) {
+  json.begin_array();
+  for (const solver::Attempt& attempt : assessment.equilibrium.attempts) {
+    json.begin_object();
+    json.member("name", solver_name(attempt.method, attempt.precision));
+    json.member("contact_model", verdict::name(attempted_model(assessment, attempt)));
+    json.member("outcome", outcome_name(attempt.outcome));
+    json.member("iterations", attempt.steps);
+    json.member("multigrid_iterations", attempt.iteration_count);
+    json.end_object();
+  }
+  json.end_array();
 }
 
 void write_solver(JsonStream& json, const ReportEntry& entry) {
   const solver::Equilibrium& equilibrium = entry.assessment->equilibrium;
   json.begin_object();
-  json.member("name", solver_name(equilibrium));
+  json.member("name", solver_name(equilibrium.method, equilibrium.precision));
   json.member("iterations", equilibrium.steps);
   json.member("multigrid_iterations", equilibrium.iteration_count);
   json.member("seconds", entry.seconds);
+  if (equilibrium.attempts.size() > 1) {
+    json.key("attempts");
+    write_attempts(json, *entry.assessment);
+  }
   json.end_object();
 }
 

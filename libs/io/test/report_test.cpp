@@ -8,6 +8,8 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "holdfast/model/families.hpp"
+
 namespace holdfast::io {
 namespace {
 
@@ -70,6 +72,55 @@ TEST(Report, as_json_names_the_solver_that_was_used) {
   const Json multigrid = Json::parse(write_report_json(chain.entry()))["solver"];
   EXPECT_EQ(multigrid["name"], "conjugate gradients with multigrid");
   EXPECT_EQ(multigrid["multigrid_iterations"], chain.assessment.equilibrium.iteration_count);
+}
+
+/// The attempts are made up: what the report says of them is what was put in.
+TEST(Report, as_json_lists_attempts_where_there_was_more_than_one) {
+  using solver::Method;
+  using solver::Outcome;
+  Checked chain(long_chain());
+  EXPECT_FALSE(Json::parse(write_report_json(chain.entry()))["solver"].contains("attempts"));
+  chain.assessment.contact_model = verdict::ContactModel::kUnilateral;
+  chain.assessment.equilibrium.attempts = {{.outcome = Outcome::kTooSlow,
+                                            .method = Method::kMultigrid,
+                                            .steps = 2,
+                                            .iteration_count = 7},
+                                           {.outcome = Outcome::kNotSettled,
+                                            .method = Method::kMultigrid,
+                                            .precision = solver::Precision::kDouble,
+                                            .steps = 100,
+                                            .iteration_count = 900},
+                                           {.law = mechanics::ContactLaw::kUnilateral,
+                                            .outcome = Outcome::kSettled,
+                                            .method = Method::kDirect,
+                                            .steps = 5}};
+  EXPECT_EQ(Json::parse(write_report_json(chain.entry()))["solver"]["attempts"], Json::parse(R"([
+    {"name": "conjugate gradients with multigrid", "contact_model": "regularised",
+     "outcome": "too_slow", "iterations": 2, "multigrid_iterations": 7},
+    {"name": "conjugate gradients with multigrid in double precision",
+     "contact_model": "regularised", "outcome": "not_settled", "iterations": 100,
+     "multigrid_iterations": 900},
+    {"name": "sparse direct, 6x6 block LU", "contact_model": "unilateral", "outcome": "settled",
+     "iterations": 5, "multigrid_iterations": 0}])"));
+}
+
+/// A tower for which single precision has no digits left, bonded: there is no contact law to name.
+TEST(Report, as_json_lists_the_attempt_that_failed_beside_the_one_that_did_not) {
+  model::RobotSpec spec;
+  for (const base::Cell& cell : model::family_cells(model::Family::kTower, 7000)) {
+    spec.existing.push_back(cell);
+  }
+  Checked tower(spec);
+  tower.assessment =
+      verdict::assess(tower.robot, {.method = solver::Method::kMultigrid, .is_bonded = true});
+  const Json report = Json::parse(write_report_json(tower.entry()));
+  const Json& attempts = report["solver"]["attempts"];
+  ASSERT_EQ(attempts.size(), 2U);
+  EXPECT_EQ(attempts[0]["outcome"], "too_slow");
+  EXPECT_EQ(attempts[1]["outcome"], "settled");
+  EXPECT_EQ(attempts[1]["name"], report["solver"]["name"]);
+  EXPECT_EQ(attempts[1]["contact_model"], "bonded");
+  EXPECT_EQ(attempts[1]["multigrid_iterations"], report["solver"]["multigrid_iterations"]);
 }
 
 TEST(Report, as_json_keeps_every_digit) {

@@ -18,9 +18,18 @@
 ///     if (run && run.value().result.answer.verdict == holdfast::agent::Verdict::kSafe) { ... }
 namespace holdfast {
 
+/// Messages that modules refused, as no working module would have sent them (docs/wire.md). Each
+/// module counts up to 255.
+struct RefusedMessages {
+  std::uint64_t count = 0;  ///< By all modules.
+  base::Cell cell;          ///< Of the module that refused most, the first of several.
+  int count_of_cell = 0;    ///< By that module.
+};
+
 struct DistributedRun {
   sim::LinkModel link;
   sim::SimulationResult result;
+  RefusedMessages refused;
   /// What the robot knows, in the form of an assessment: its verdict, and its own load ratios where
   /// it has come to know any.
   verdict::Assessment view;

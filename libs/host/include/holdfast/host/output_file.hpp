@@ -45,7 +45,8 @@ class OutputFile {
 
   /// Takes the text; its failures show in finish() at the latest. Can be sought in (tellp, seekp)
   /// if a file of our own stands behind it; of what is written directly only a file with several
-  /// names can.
+  /// names can. Places count from the beginning. After a move that cannot be made the stream takes
+  /// nothing more, and finish() fails.
   std::ostream& stream();
 
   /// Writes what is left and puts the file in its place. Called once. Errors: a full disk, a closed
