@@ -34,8 +34,7 @@ std::vector<base::Cell> free_cells(const model::RobotSpec& spec) {
     }
   }
   std::ranges::sort(beside);
-  const auto repeated = std::ranges::unique(beside);
-  beside.erase(repeated.begin(), repeated.end());
+  beside.erase(std::unique(beside.begin(), beside.end()), beside.end());
   std::vector<base::Cell> free;
   std::set_difference(beside.begin(), beside.end(), taken.begin(), taken.end(),
                       std::back_inserter(free));
