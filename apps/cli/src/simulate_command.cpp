@@ -75,7 +75,7 @@ struct TraceFile {
     return true;
   }
 
-  /// The same. The trace ends here.
+  /// False, and the error is printed, if writing has failed. The trace ends here.
   bool close() {
     trace.reset();
     const auto error = file ? file->finish() : std::nullopt;

@@ -6,7 +6,7 @@
 namespace holdfast::agent {
 namespace {
 
-/// Of the methods that condense planned modules.
+/// A method that condenses planned modules.
 constexpr MethodTable condensing(MethodTable method) {
   method.pass_condensed = pass_condensed;
   method.take_condensed = take_condensed;

@@ -39,7 +39,7 @@ using LoadVisit = void (*)(void* visitor, const base::Cell& cell, Direction dire
 /// every one between planned modules emulated here.
 void visit_loads(const Workspace& ws, LoadVisit visit, void* visitor);
 
-/// The same for any visitor; visit_loads() above is in flash once.
+/// Hands all loads to any visitor; visit_loads() above is in flash once.
 template <class Visit>
 void visit_loads(const Workspace& ws, Visit&& visit) {
   using Visitor = std::remove_reference_t<Visit>;

@@ -69,7 +69,7 @@ Order Conductor::next(const Setup& setup, const Report& report) {
   return finish(Verdict::kUndecided, Reason::kNotConverged);
 }
 
-/// The same for conjugate gradients and the Jacobi methods.
+/// The next order of conjugate gradients and of the Jacobi methods.
 Order Conductor::next_of_solve(const Setup& setup, const Report& report) {
   switch (asked_) {
     case Operation::kBegin:

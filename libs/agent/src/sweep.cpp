@@ -14,7 +14,8 @@ namespace {
 using wire::MessageType;
 using wire::Operation;
 
-/// Of orders with exchanges. Displacements of a kTreeIterate have to be found first, and clusters.
+/// Whether an order with exchanges begins with them: kTreeIterate first finds displacements,
+/// kClusters clusters.
 bool starts_at_once(Operation operation) {
   return operation != Operation::kTreeIterate && operation != Operation::kClusters;
 }
@@ -108,7 +109,8 @@ bool Sweep::is_in_course(const Workspace& ws, const Order& order) const {
   }
 }
 
-/// Of an equilibrium. What elimination knows of the tree lives until another method begins.
+/// Whether an equilibrium may begin by this order. What elimination knows of the tree lives until
+/// another method begins.
 bool Sweep::is_good_begin(const Order& order) const {
   if (course_ < Course::kWeighed || course_ == Course::kAnswered) {
     return false;

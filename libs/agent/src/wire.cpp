@@ -52,7 +52,7 @@ int message_bytes(std::uint8_t type, std::uint8_t second) {
 }
 
 #ifdef HOLDFAST_AGENT_SMALL_CHECKSUM
-/// The same with a table of 32 bytes instead of 2,048: four bits at a time.
+/// The checksum with a table of 32 bytes instead of 2,048: four bits at a time.
 std::uint16_t checksum(std::span<const std::uint8_t> bytes, std::uint16_t start) {
   static constexpr std::array<std::uint16_t, 16> kTable = [] {
     std::array<std::uint16_t, 16> table{};

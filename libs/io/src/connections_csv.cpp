@@ -26,7 +26,7 @@ void append(std::string& out, Number number) {
   fmt::format_to(std::back_inserter(out), FMT_COMPILE("{},"), number);
 }
 
-/// Of a connection the second module lies in a positive direction.
+/// The axis along which the second module of a connection lies, always in its positive direction.
 const char* axis_name(base::Direction direction) {
   constexpr std::array<const char*, 3> kAxes = {"+x,", "+y,", "+z,"};
   return kAxes[static_cast<std::size_t>(base::index(direction) / 2)];

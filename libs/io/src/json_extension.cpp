@@ -258,7 +258,7 @@ void read_steps(JsonReading& reading, const Json& value, const Place& place) {
   });
 }
 
-/// By kExtensionKeys.
+/// The readers of kExtensionKeys, in their order.
 constexpr void (*kReaders[])(JsonReading&, const Json&, const Place&) = {
     read_lattice, read_floor, read_gravity, read_kinds, read_obstacles, read_loads, read_steps};
 static_assert(std::size(kReaders) == kExtensionKeys.size());

@@ -152,7 +152,7 @@ void Reading::warn_of_content() {
   warn_of_targets();
 }
 
-/// Of <parameters>, <world> and <blockList>, which both formats keep whole.
+/// Notes attributes of <parameters>, <world> and <blockList>, which both formats keep whole.
 void Reading::warn_of_attributes() {
   const auto look_at = [&](const Attributes& attributes, const char* kind, Names known) {
     for (const auto& attribute : attributes) {

@@ -85,11 +85,11 @@ inline constexpr auto kStepKeys =
     std::to_array<std::string_view>({"attach", "detach", "move", "release", "connect"});
 inline constexpr auto kMoveKeys = std::to_array<std::string_view>({"from", "to", "carrier"});
 
-/// By LatticeName.
+/// Names of lattices, by LatticeName.
 inline constexpr auto kLatticeNames =
     std::to_array<std::string_view>({"cubic", "face-centred", "hexagonal", "hexagonal-prism"});
 
-/// By Hold.
+/// Names of what an obstacle does, by Hold.
 inline constexpr auto kHoldNames = std::to_array<std::string_view>({"contact", "bonded"});
 
 inline constexpr auto kKnownAnswerKeys =

@@ -16,7 +16,7 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little);
 
-/// Of a block before it is compressed, so that a window of them takes a few megabytes; a multiple
+/// The size of a block before it is compressed: a window of them takes a few megabytes. A multiple
 /// of all tuples, which have 1, 4, 8, 12 or 24 bytes.
 constexpr std::size_t kBlockBytes = 192 * 1024;
 

@@ -26,12 +26,13 @@ using verdict::Assessment;
 using verdict::ContactModel;
 using Vec = base::Vec6<double>;
 
-/// Of a correction by multigrid, as a share of it: as many digits as its single precision gives
-/// cheaply.
+/// The error of a correction by multigrid, as a share of it: as many digits as its single precision
+/// gives cheaply.
 constexpr double kTolerance = 1e-5;
 
-/// Of the response to a tilting facet, which one correction has to bring: a portal of 5,000 needs
-/// 1e-6, else all are sought twice. Most do with 1e-4, which saves a quarter of the time.
+/// The error of the response to a tilting facet, which one correction has to bring: a portal of
+/// 5,000 needs 1e-6, else all are sought twice. Most do with 1e-4, which saves a quarter of the
+/// time.
 constexpr double kResponseTolerance = 1e-6;
 
 /// Corrections at most; each brings five digits, or ten and more with the direct solver.
@@ -42,7 +43,7 @@ constexpr int kPassMax = 8;
 constexpr double kRoundings = 4;
 constexpr double kGain = 0.3;
 
-/// Of all spare bits of a number so many are left for the solution to grow.
+/// So many of all spare bits of a number are left for the solution to grow.
 constexpr int kSpareBits = 6;
 
 Law law_of(ContactModel model) {
@@ -306,7 +307,8 @@ verdict::ReasonCode what_is_proved(ContactModel model) {
   return verdict::ReasonCode::kProvedUnique;
 }
 
-/// Of an assessment that stands the first reason is about the loads, and all others stay true.
+/// Takes the proved loads over. The first reason of an assessment that stands is about the loads,
+/// and all others stay true.
 void take_loads(const model::Robot& robot, const Proof& proof, bool is_changed, int thread_count,
                 Assessment& assessment) {
   assessment.equilibrium.displacement = proof.displacement;

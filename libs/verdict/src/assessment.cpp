@@ -198,7 +198,7 @@ void assess_connections(const model::Robot& robot, const solver::EquilibriumOpti
 /// than about 1e-8, and keep the matrix regular on the way to the answer.
 constexpr double kStableGammas[] = {1e-9};
 
-/// The same for multigrid, whose single precision weaker springs escape: below its own error.
+/// Multigrid tries only this one: weaker springs escape its single precision, below its own error.
 constexpr double kStableGammasMultigrid[] = {1e-6};
 
 /// A toppling robot hangs on its weak springs, and bends elastically while it does: if they are

@@ -10,11 +10,12 @@ namespace holdfast::verdict {
 /// What load ratios may be off by rounding alone, as a share of the largest or of 1.
 inline constexpr double kRounding = 1e-12;
 
-/// By weak springs beside the unilateral contact of a stable robot, in the same terms: so many
-/// times their share of the contact's stiffness. Springs of 1e-6 have moved a load ratio by 6e-4.
+/// What weak springs beside the unilateral contact of a stable robot may move, in the same terms:
+/// so many times their share of the contact's stiffness. Springs of 1e-6 have moved a load ratio by
+/// 6e-4.
 inline constexpr double kWeakSprings = 1e3;
 
-/// By multigrid: what is promised (docs/solver.md).
+/// What multigrid may be off by, as it promises (docs/solver.md).
 inline constexpr double kMultigridError = 1e-4;
 
 /// Sets `assessment.several` from `assessment.equilibrium`, whose `others` are known, and the exact

@@ -94,7 +94,7 @@ base::Result<std::string> read_file(const std::filesystem::path& path);
 /// Writes a whole file or nothing, as host::OutputFile does; "-" is standard output.
 std::optional<base::Error> write_file(const std::filesystem::path& path, std::string_view text);
 
-/// The same with what `write` puts into the stream, for files that are too large for a text.
+/// Writes what `write` puts into the stream, for files that are too large for a text.
 std::optional<base::Error> write_file(const std::filesystem::path& path,
                                       const std::function<void(std::ostream&)>& write);
 
@@ -152,7 +152,7 @@ std::string report_text(const Structure& structure, const CheckResult& result);
 std::string picture_svg(const Structure& structure, const CheckResult& result);
 std::string picture_vtu(const Structure& structure, const CheckResult& result);
 
-/// The same for large robots, into a stream, in a fixed amount of memory.
+/// Writes the JSON report into a stream, in a fixed amount of memory, however large the robot.
 void write_report_json(std::ostream& out, const Structure& structure, const CheckResult& result,
                        const io::ReportOptions& options = {});
 void write_picture_vtu(std::ostream& out, const Structure& structure, const CheckResult& result,

@@ -201,7 +201,8 @@ void Cycle<Real>::solve(std::size_t depth) {
   combine(count, step - gamma * alpha_2 / (rho_1 * rho_2), level.first, alpha_2 / rho_2, level.z);
 }
 
-/// By factors of K; in double precision their error is found spring by spring, and corrected.
+/// Solves the coarsest level by factors of K; in double precision their error is found spring by
+/// spring, and corrected.
 template <class Real>
 void Cycle<Real>::solve_coarsest() {
   Level<Real>& level = hierarchy_.levels().back();

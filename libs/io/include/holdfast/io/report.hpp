@@ -63,7 +63,7 @@ using MoreKeys = std::function<void(JsonStream&)>;
 void write_report_json(std::ostream& out, const ReportEntry& entry,
                        const ReportOptions& options = {}, const MoreKeys& more = {});
 
-/// The same as a text.
+/// The JSON report as a text.
 std::string write_report_json(const ReportEntry& entry);
 
 /// The entry of a report for a structure that could not be checked.
