@@ -1,15 +1,12 @@
 // SPDX-FileCopyrightText: The holdfast authors
 // SPDX-License-Identifier: Apache-2.0
 // host::Team on oneTBB: a parallel_for over chunks, by its static partitioner, in an arena of the
-// wanted size. Linked into a program before the library, it takes the place of our own; see
-// bench/threads.sh.
+// wanted size. See bench/threads.sh and team_without_crew.cpp.
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
-#include <algorithm>
 #include <optional>
-#include <thread>
 
 #include "holdfast/host/team.hpp"
 
@@ -26,18 +23,6 @@ tbb::task_arena& arena(int thread_count) {
 }
 
 }  // namespace
-
-class Team::Crew {};
-
-void Team::Dismiss::operator()(Crew* crew) const { delete crew; }
-
-Team::Crew* Team::call(int /*thread_count*/) { return nullptr; }
-
-Team::Team(int thread_count, std::size_t item_count) {
-  const auto core_count = static_cast<int>(std::thread::hardware_concurrency());
-  thread_count_ = std::clamp(thread_count > 0 ? thread_count : core_count, 1,
-                             item_count < kSharedItemMin ? 1 : kThreadCountMax);
-}
 
 void Team::run(std::size_t chunk_count, Task task, const void* context) {
   arena(thread_count_).execute([&] {

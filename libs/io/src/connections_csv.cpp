@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/compile.h>
 
-#include <algorithm>
 #include <array>
 #include <iterator>
 #include <string>
@@ -54,24 +53,12 @@ void write_connections_csv(std::ostream& out, const model::Robot& robot,
                            const verdict::Assessment& assessment, const ReportOptions& options) {
   const ConnectionList list(assessment, options.connections);
   out << kNames;
-  std::size_t done = 0;
-  host::Team team(options.thread_count, list.size());
-  for_ordered_blocks(
-      team, (list.size() + kBlockRows - 1) / kBlockRows,
-      [&](std::size_t block, std::string& text) {
-        const std::size_t end = std::min((block + 1) * kBlockRows, list.size());
-        for (std::size_t i = block * kBlockRows; i < end; ++i) {
-          append_row(text, robot, list[i], assessment.connections[list[i]]);
-        }
-      },
-      [&](const std::string& text) {
-        out << text;
-        done = std::min(done + kBlockRows, list.size());
-        if (options.progress) {
-          options.progress(static_cast<double>(done) / static_cast<double>(list.size()));
-        }
-        return out.good();
-      });
+  write_items(out, list.size(), kBlockRows, options.thread_count, options.progress,
+              [&](std::size_t begin, std::size_t end, std::string& text) {
+                for (std::size_t i = begin; i < end; ++i) {
+                  append_row(text, robot, list[i], assessment.connections[list[i]]);
+                }
+              });
 }
 
 }  // namespace holdfast::io

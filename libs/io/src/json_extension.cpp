@@ -70,12 +70,22 @@ void for_each_element(JsonReading& reading, const Json& value, const Place& plac
   }
 }
 
-std::vector<Cell> cells(JsonReading& reading, const Json& value, const Place& place) {
-  std::vector<Cell> list;
+/// What read(reading, element, its place) makes of every element of an array.
+template <class Read>
+auto list_of(JsonReading& reading, const Json& value, const Place& place, const Read& read) {
+  std::vector<decltype(read(reading, value, place))> list;
   for_each_element(reading, value, place, [&](const Json& element, const Place& here) {
-    list.push_back(reading.cell(element, here));
+    list.push_back(read(reading, element, here));
   });
   return list;
+}
+
+Cell cell(JsonReading& reading, const Json& value, const Place& place) {
+  return reading.cell(value, place);
+}
+
+std::vector<Cell> cells(JsonReading& reading, const Json& value, const Place& place) {
+  return list_of(reading, value, place, cell);
 }
 
 std::vector<CellPair> pairs(JsonReading& reading, const Json& value, const Place& place) {
@@ -181,9 +191,7 @@ Obstacle obstacle(JsonReading& reading, const Json& value, const Place& place) {
 }
 
 void read_obstacles(JsonReading& reading, const Json& value, const Place& place) {
-  for_each_element(reading, value, place, [&](const Json& element, const Place& here) {
-    reading.document.extension.obstacles.push_back(obstacle(reading, element, here));
-  });
+  reading.document.extension.obstacles = list_of(reading, value, place, obstacle);
 }
 
 Payload payload(JsonReading& reading, const Json& value, const Place& place) {
@@ -205,9 +213,7 @@ Payload payload(JsonReading& reading, const Json& value, const Place& place) {
 }
 
 void read_loads(JsonReading& reading, const Json& value, const Place& place) {
-  for_each_element(reading, value, place, [&](const Json& element, const Place& here) {
-    reading.document.extension.payloads.push_back(payload(reading, element, here));
-  });
+  reading.document.extension.payloads = list_of(reading, value, place, payload);
 }
 
 Move move(JsonReading& reading, const Json& value, const Place& place) {
@@ -238,9 +244,7 @@ PlanStep plan_step(JsonReading& reading, const Json& value, const Place& place) 
     } else if (key == "detach") {
       step.detach = cells(reading, member, here);
     } else if (key == "move") {
-      for_each_element(reading, member, here, [&](const Json& element, const Place& at) {
-        step.moves.push_back(move(reading, element, at));
-      });
+      step.moves = list_of(reading, member, here, move);
     } else if (key == "release") {
       step.release = pairs(reading, member, here);
     } else if (key == "connect") {
@@ -253,9 +257,7 @@ PlanStep plan_step(JsonReading& reading, const Json& value, const Place& place) 
 }
 
 void read_steps(JsonReading& reading, const Json& value, const Place& place) {
-  for_each_element(reading, value, place, [&](const Json& element, const Place& here) {
-    reading.document.extension.plan.push_back(plan_step(reading, element, here));
-  });
+  reading.document.extension.plan = list_of(reading, value, place, plan_step);
 }
 
 /// The readers of kExtensionKeys, in their order.

@@ -3,6 +3,8 @@
 #pragma once
 
 #include <algorithm>
+#include <functional>
+#include <ostream>
 #include <string>
 #include <vector>
 
@@ -34,6 +36,29 @@ bool for_ordered_blocks(host::Team& team, std::size_t count, const Make& make, c
     }
   }
   return true;
+}
+
+/// Writes `count` items, made by `thread_count` threads in blocks of `block_items`:
+/// append(begin, end, text) appends those from `begin` up to `end`. Calls `progress`, if there is
+/// one, with the share that is written. Ends early if the stream fails.
+template <class Append>
+void write_items(std::ostream& out, std::size_t count, std::size_t block_items, int thread_count,
+                 const std::function<void(double)>& progress, const Append& append) {
+  std::size_t done = 0;
+  host::Team team(thread_count, count);
+  for_ordered_blocks(
+      team, (count + block_items - 1) / block_items,
+      [&](std::size_t block, std::string& text) {
+        append(block * block_items, std::min((block + 1) * block_items, count), text);
+      },
+      [&](const std::string& text) {
+        out << text;
+        done = std::min(done + block_items, count);
+        if (progress) {
+          progress(static_cast<double>(done) / static_cast<double>(count));
+        }
+        return out.good();
+      });
 }
 
 }  // namespace holdfast::io

@@ -282,25 +282,13 @@ class Writer {
                   const std::function<void(double)>& progress) {
     json_.begin_array();
     drain();
-    std::size_t done = 0;
-    host::Team team(options_.thread_count, count);
-    for_ordered_blocks(
-        team, (count + kBlockValues - 1) / kBlockValues,
-        [&](std::size_t block, std::string& text) {
-          JsonStream part = json_.part(text, block == 0);
-          const std::size_t end = std::min((block + 1) * kBlockValues, count);
-          for (std::size_t i = block * kBlockValues; i < end; ++i) {
-            write_one(part, i);
-          }
-        },
-        [&](const std::string& text) {
-          out_ << text;
-          done = std::min(done + kBlockValues, count);
-          if (progress) {
-            progress(static_cast<double>(done) / static_cast<double>(count));
-          }
-          return out_.good();
-        });
+    write_items(out_, count, kBlockValues, options_.thread_count, progress,
+                [&](std::size_t begin, std::size_t end, std::string& text) {
+                  JsonStream part = json_.part(text, begin == 0);
+                  for (std::size_t i = begin; i < end; ++i) {
+                    write_one(part, i);
+                  }
+                });
     if (count > 0) {
       json_.end_parts();
     }

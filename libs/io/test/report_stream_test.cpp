@@ -12,6 +12,7 @@
 #include <set>
 #include <sstream>
 
+#include "checked_robot.hpp"
 #include "holdfast/io/report.hpp"
 #include "random_robot.hpp"
 
@@ -20,12 +21,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-struct Checked {
-  model::Robot robot;
-  verdict::Assessment assessment;
-
-  explicit Checked(const model::RobotSpec& spec)
-      : robot(model::Robot::create(spec).value()), assessment(verdict::assess(robot)) {}
+struct Checked : CheckedRobot {
+  using CheckedRobot::CheckedRobot;
 
   ReportEntry entry() const {
     return {.name = "robot", .robot = &robot, .assessment = &assessment, .warnings = {}};
@@ -43,15 +40,6 @@ struct Checked {
     return out.str();
   }
 };
-
-/// Twenty-five modules hanging from a fixed one: five connections carry more than Fmax.
-model::RobotSpec long_chain() {
-  model::RobotSpec spec{.existing = {{0, 0, 50}}, .fixed = {{0, 0, 50}}};
-  for (int i = 1; i <= 25; ++i) {
-    spec.existing.push_back({0, 0, 50 - i});
-  }
-  return spec;
-}
 
 model::RobotSpec cube(std::int32_t size) {
   model::RobotSpec spec;

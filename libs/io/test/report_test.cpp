@@ -8,6 +8,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "checked_robot.hpp"
 #include "holdfast/model/families.hpp"
 
 namespace holdfast::io {
@@ -15,12 +16,8 @@ namespace {
 
 using Json = nlohmann::json;
 
-struct Checked {
-  model::Robot robot;
-  verdict::Assessment assessment;
-
-  explicit Checked(const model::RobotSpec& spec)
-      : robot(model::Robot::create(spec).value()), assessment(verdict::assess(robot)) {}
+struct Checked : CheckedRobot {
+  using CheckedRobot::CheckedRobot;
 
   ReportEntry entry(std::span<const std::string> warnings = {}) const {
     return {.name = "test \"robot\"",
@@ -30,15 +27,6 @@ struct Checked {
             .seconds = 1.5e-4};
   }
 };
-
-/// Twenty-five modules hanging from a fixed one: five connections carry more than Fmax.
-model::RobotSpec long_chain() {
-  model::RobotSpec spec{.existing = {{0, 0, 50}}, .fixed = {{0, 0, 50}}};
-  for (int i = 1; i <= 25; ++i) {
-    spec.existing.push_back({0, 0, 50 - i});
-  }
-  return spec;
-}
 
 TEST(Report, as_json_has_the_keys_that_other_tools_rely_on) {
   const std::vector<std::string> warnings = {"something odd"};

@@ -399,15 +399,7 @@ TYPED_TEST(GroundContact, leaves_the_edge_pressed_over_which_the_weight_lies) {
 /// One code for all that count, compare or tabulate states.
 TEST(ContactState, has_a_code_for_each_state_and_back) {
   std::set<int> codes;
-  std::vector<ContactState> states = {{.pressed = false}};
-  for (const int x : {-1, 0, 1}) {
-    for (const int y : {-1, 0, 1}) {
-      states.push_back({.pressed = true,
-                        .tilt_x = static_cast<std::int8_t>(x),
-                        .tilt_y = static_cast<std::int8_t>(y)});
-    }
-  }
-  for (const ContactState& state : states) {
+  for (const ContactState& state : all_states()) {
     EXPECT_TRUE(codes.insert(state.code()).second);
     EXPECT_EQ(ContactState::from_code(state.code()), state);
   }

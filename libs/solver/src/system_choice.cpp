@@ -23,16 +23,13 @@ constexpr std::size_t kNoLimit = std::numeric_limits<std::size_t>::max();
 
 SystemChoice::SystemChoice(const model::Robot& robot, const EquilibriumOptions& options)
     : robot_(robot), options_(options), has_tried_double_(options.precision == Precision::kDouble) {
-  const bool is_small = options.method == Method::kAutomatic && node_count() <= kDirectCountMax;
+  const bool is_small =
+      options.method == Method::kAutomatic && robot.free_count() <= kDirectCountMax;
   if (is_small || options.method == Method::kDirect) {
     make_direct(options.fill_max);
   } else {
     multigrid_ = Multigrid::make(robot, options_);
   }
-}
-
-std::size_t SystemChoice::node_count() const {
-  return robot_.modules().size() - robot_.fixed_count();
 }
 
 LinearSystem* SystemChoice::system() {
@@ -56,7 +53,7 @@ bool SystemChoice::make_direct(std::size_t fill_max) {
 
 void SystemChoice::prepare(mechanics::ContactLaw law) {
   if (multigrid_ && options_.method == Method::kAutomatic &&
-      law == mechanics::ContactLaw::kUnilateral && node_count() <= kUnilateralCountMax) {
+      law == mechanics::ContactLaw::kUnilateral && robot_.free_count() <= kUnilateralCountMax) {
     make_direct(kUnilateralFillMax);
   }
 }
@@ -67,8 +64,8 @@ bool SystemChoice::try_next() {
   }
   has_tried_direct_ =
       has_tried_direct_ || direct_ != nullptr || options_.method == Method::kMultigrid;
-  return node_count() <= kUnilateralCountMax ? try_direct() || try_double()
-                                             : try_double() || try_direct();
+  return robot_.free_count() <= kUnilateralCountMax ? try_direct() || try_double()
+                                                    : try_double() || try_direct();
 }
 
 bool SystemChoice::try_direct() {

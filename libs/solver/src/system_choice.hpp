@@ -30,7 +30,6 @@ class SystemChoice {
   [[nodiscard]] bool try_next();
 
  private:
-  std::size_t node_count() const;
   bool make_direct(std::size_t fill_max);
   bool try_direct();
   bool try_double();

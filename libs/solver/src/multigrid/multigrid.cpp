@@ -62,11 +62,6 @@ constexpr double kSlenderShare = 0.3;
 /// a third once in a while.
 constexpr double kThinError = 2;
 
-/// Modules that are not fixed.
-std::size_t free_count(const model::Robot& robot) {
-  return robot.modules().size() - robot.fixed_count();
-}
-
 bool is_held_sideways(ContactLaw law, bool is_held) {
   return law == ContactLaw::kRegularised || is_held;
 }
@@ -75,7 +70,7 @@ bool is_held_sideways(ContactLaw law, bool is_held) {
 
 std::unique_ptr<Multigrid> Multigrid::make(const model::Robot& robot,
                                            const EquilibriumOptions& options) {
-  if (bytes_for(free_count(robot), options.precision) > options.memory_bytes_max) {
+  if (bytes_for(robot.free_count(), options.precision) > options.memory_bytes_max) {
     return nullptr;
   }
   return std::make_unique<Multigrid>(robot, options);
@@ -107,7 +102,7 @@ std::size_t Multigrid::bytes_for(std::size_t module_count, Precision precision) 
 }
 
 bool Multigrid::set_precision(Precision precision) {
-  if (bytes_for(free_count(robot()), precision) > options_.memory_bytes_max) {
+  if (bytes_for(robot().free_count(), precision) > options_.memory_bytes_max) {
     return false;
   }
   precision_ = precision;

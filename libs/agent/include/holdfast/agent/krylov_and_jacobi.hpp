@@ -3,10 +3,9 @@
 #pragma once
 
 #include <array>
-#include <span>
 
+#include "holdfast/agent/exchange_method.hpp"
 #include "holdfast/agent/order.hpp"
-#include "holdfast/agent/tree_elimination.hpp"
 #include "holdfast/agent/workspace.hpp"
 
 namespace holdfast::agent {
@@ -14,22 +13,11 @@ namespace holdfast::agent {
 /// Conjugate gradients, and the paper's Jacobi iterations: linear solves for a correction g, from
 /// one residual to the next. The loop that their orders belong to is described in conductor.hpp,
 /// the vectors in node.hpp.
-class KrylovAndJacobi {
+class KrylovAndJacobi : public ExchangeMethod {
  public:
   void begin(Workspace& ws, const Order& order);
 
-  /// It has no messages of its own.
-  static bool expects(const Workspace&, const Order&, Direction, std::span<const std::uint8_t>) {
-    return false;
-  }
-
-  static void take(Workspace&, const Order&, Direction, std::span<const std::uint8_t>) {}
-
   void take_exchange(Workspace& ws, const Order& order);
-
-  static bool do_piece(Workspace&, const Order&) { return false; }
-
-  static Pending pending() { return Pending::kNothing; }
 
   /// The preconditioner's polynomial has the diagonal blocks of planned modules apart, and only the
   /// last exchange of a sweep, for w = A z, has their beams in it.

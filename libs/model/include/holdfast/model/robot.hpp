@@ -114,6 +114,9 @@ class Robot {
 
   std::size_t fixed_count() const { return fixed_count_; }
 
+  /// Modules that can move: all that are not fixed.
+  std::size_t free_count() const { return modules_.size() - fixed_count_; }
+
  private:
   explicit Robot(const Material& material) : material_(material), loads_(weight_loads(material)) {}
 
