@@ -6,7 +6,8 @@
 #include <compare>
 #include <cstdint>
 
-/// Places on the cubic lattice and the six face directions. Unit: one cell; z points up.
+/// Cells of a lattice, and directions; those named are the six of a cubic one. Unit: one cell; z
+/// points up.
 namespace holdfast::base {
 
 /// Cell coordinates may not leave this range; sums over a whole robot then stay exact integers.
@@ -20,7 +21,8 @@ struct Cell {
   friend constexpr auto operator<=>(const Cell&, const Cell&) = default;
 };
 
-/// Face directions. A direction and its opposite differ in the lowest bit only.
+/// Directions to neighbours, by index; a direction and its opposite differ in the lowest bit only.
+/// Named are the six of a cube; other lattices have up to twelve (lattice.hpp).
 enum class Direction : std::uint8_t { kPlusX, kMinusX, kPlusY, kMinusY, kPlusZ, kMinusZ };
 
 inline constexpr int kDirectionCount = 6;

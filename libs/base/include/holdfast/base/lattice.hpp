@@ -14,17 +14,37 @@ namespace holdfast::base {
 /// The connectors of a module: those that join modules one above the other, and all others.
 enum class ConnectorClass : std::uint8_t { kVertical, kLateral };
 
-/// A lattice. The node of a cell (i, j, k), its module's centre, is at pitch (i b1 + j b2 + k b3);
-/// the steps to the neighbours are the same for every cell. Directions come in pairs: that of index
-/// d ^ 1 is the opposite of that of index d, so the first of a pair has an even index. All
-/// neighbours are one pitch apart.
+constexpr std::array<ConnectorClass, 12> all_lateral() {
+  std::array<ConnectorClass, 12> classes{};
+  classes.fill(ConnectorClass::kLateral);
+  return classes;
+}
+
+/// A lattice, as data; another one is another value of this type. Cells are the triples that
+/// VisibleSim and our files use, (x, y, z). Their axial coordinates
+///   (i, j, k) = (x - shear_x (z // 2), y - shear_y (z // 2), z),   // rounds down,
+/// make the steps to the neighbours the same for every cell; the node of a cell, its module's
+/// centre, is at pitch (i b1 + j b2 + k b3). Directions come in pairs: that of index d ^ 1 is the
+/// opposite of that of index d, so the first of a pair has an even index. All neighbours are one
+/// pitch apart.
 struct Lattice {
   static constexpr int kDirectionCountMax = 12;  ///< Of a face-centred lattice.
 
+  using Squares = std::array<double, 3>;
+
   int direction_count = 0;
-  std::array<Cell, kDirectionCountMax> steps{};  ///< To the neighbours, by direction.
+  std::array<Cell, kDirectionCountMax> steps{};  ///< To the neighbours, axial, by direction.
   std::array<ConnectorClass, kDirectionCountMax> connector_class{};  ///< By direction.
-  std::array<std::array<double, 3>, 3> basis{};  ///< b1, b2, b3: global frame, unit: one pitch.
+  /// The squares of the coordinates of b1, b2, b3, none of which is negative: global frame, unit:
+  /// one pitch. Unlike the coordinates themselves they are exact.
+  std::array<Squares, 3> basis_squares{};
+  std::int32_t shear_x = 0;
+  std::int32_t shear_y = 0;
+  /// Index of the direction straight down, (0, 0, -1) in the global frame: that of a neighbour, or
+  /// direction_count where no neighbour lies there, and a floor only is touched.
+  int down = 0;
+
+  friend constexpr bool operator==(const Lattice&, const Lattice&) = default;
 };
 
 /// Cubes: Blinky Blocks, sliding cubes, Smart Blocks. Directions as in Direction.
@@ -34,27 +54,168 @@ inline constexpr Lattice kCubic = {
     .connector_class = {ConnectorClass::kLateral, ConnectorClass::kLateral,
                         ConnectorClass::kLateral, ConnectorClass::kLateral,
                         ConnectorClass::kVertical, ConnectorClass::kVertical},
-    .basis = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}}};
+    .basis_squares = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}},
+    .down = 5};
+
+/// Spheres in a face-centred cubic packing, 3D catoms: four neighbours in the same layer, four
+/// above, four below. None is straight above, so all connections are lateral.
+inline constexpr Lattice kFaceCentred = {
+    .direction_count = 12,
+    .steps = {{{1, 0, 0},
+               {-1, 0, 0},
+               {0, 1, 0},
+               {0, -1, 0},
+               {0, 0, 1},
+               {0, 0, -1},
+               {-1, 0, 1},
+               {1, 0, -1},
+               {0, -1, 1},
+               {0, 1, -1},
+               {-1, -1, 1},
+               {1, 1, -1}}},
+    .connector_class = all_lateral(),
+    .basis_squares = {{{1, 0, 0}, {0, 1, 0}, {0.25, 0.25, 0.5}}},
+    .shear_x = 1,
+    .shear_y = 1,
+    .down = 12};
+
+/// Standing discs, 2D catoms: the plane is x-z; discs of different y are no neighbours.
+inline constexpr Lattice kHexagonal = {
+    .direction_count = 6,
+    .steps = {{{1, 0, 0}, {-1, 0, 0}, {0, 0, 1}, {0, 0, -1}, {-1, 0, 1}, {1, 0, -1}}},
+    .connector_class = all_lateral(),
+    .basis_squares = {{{1, 0, 0}, {0, 1, 0}, {0.25, 0, 0.75}}},
+    .shear_x = 1,
+    .down = 6};
+
+/// Upright hexagonal prisms: Hexanodes, and stacks of them.
+inline constexpr Lattice kHexagonalPrism = {
+    .direction_count = 8,
+    .steps = {{{1, 0, 0},
+               {-1, 0, 0},
+               {0, 1, 0},
+               {0, -1, 0},
+               {-1, 1, 0},
+               {1, -1, 0},
+               {0, 0, 1},
+               {0, 0, -1}}},
+    .connector_class = {ConnectorClass::kLateral, ConnectorClass::kLateral,
+                        ConnectorClass::kLateral, ConnectorClass::kLateral,
+                        ConnectorClass::kLateral, ConnectorClass::kLateral,
+                        ConnectorClass::kVertical, ConnectorClass::kVertical},
+    .basis_squares = {{{1, 0, 0}, {0.25, 0.75, 0}, {0, 0, 1}}},
+    .down = 7};
+
+/// Directions of a lattice to neighbours, by ascending index; or of its facets, that is with the
+/// direction straight down where it is none of those.
+class DirectionRange {
+ public:
+  class Iterator {
+   public:
+    constexpr explicit Iterator(int index) : index_(index) {}
+
+    constexpr Direction operator*() const { return static_cast<Direction>(index_); }
+
+    constexpr Iterator& operator++() {
+      ++index_;
+      return *this;
+    }
+
+    friend constexpr bool operator==(Iterator, Iterator) = default;
+
+   private:
+    int index_;
+  };
+
+  constexpr explicit DirectionRange(int count) : count_(count) {}
+
+  constexpr Iterator begin() const { return Iterator(0); }
+
+  constexpr Iterator end() const { return Iterator(count_); }
+
+  constexpr std::size_t size() const { return static_cast<std::size_t>(count_); }
+
+ private:
+  int count_;
+};
+
+constexpr DirectionRange directions(const Lattice& lattice) {
+  return DirectionRange(lattice.direction_count);
+}
+
+constexpr DirectionRange facet_directions(const Lattice& lattice) {
+  return DirectionRange(lattice.down < lattice.direction_count ? lattice.direction_count
+                                                               : lattice.direction_count + 1);
+}
+
+/// The direction straight down: of a facet, and of a neighbour if the lattice has one there.
+constexpr Direction down(const Lattice& lattice) { return static_cast<Direction>(lattice.down); }
+
+/// Half of a number, rounded down.
+constexpr std::int32_t half_below(std::int32_t value) { return value >> 1; }
+
+constexpr Cell axial_of(const Lattice& lattice, const Cell& cell) {
+  const std::int32_t half = half_below(cell.z);
+  return {cell.x - lattice.shear_x * half, cell.y - lattice.shear_y * half, cell.z};
+}
+
+constexpr Cell cell_of(const Lattice& lattice, const Cell& axial) {
+  const std::int32_t half = half_below(axial.z);
+  return {axial.x + lattice.shear_x * half, axial.y + lattice.shear_y * half, axial.z};
+}
 
 /// The cell next to `cell` in `direction`, one of the lattice.
 constexpr Cell neighbour(const Lattice& lattice, const Cell& cell, Direction direction) {
   const Cell& step = lattice.steps[static_cast<std::size_t>(index(direction))];
-  return {cell.x + step.x, cell.y + step.y, cell.z + step.z};
+  const std::int32_t half = half_below(cell.z + step.z) - half_below(cell.z);
+  return {cell.x + step.x + lattice.shear_x * half, cell.y + step.y + lattice.shear_y * half,
+          cell.z + step.z};
 }
 
 constexpr ConnectorClass connector_class(const Lattice& lattice, Direction direction) {
   return lattice.connector_class[static_cast<std::size_t>(index(direction))];
 }
 
-/// From a node to its neighbour in `direction`, in the global frame: a vector of length one.
-constexpr std::array<double, 3> unit_vector(const Lattice& lattice, Direction direction) {
-  const Cell step = neighbour(lattice, Cell{}, direction);
-  std::array<double, 3> vector{};
-  for (std::size_t i = 0; i < 3; ++i) {
-    vector[i] =
-        step.x * lattice.basis[0][i] + step.y * lattice.basis[1][i] + step.z * lattice.basis[2][i];
+/// The square root of a number from 0 to 1, to the last digit of Real but for rounding: Newton's
+/// iteration.
+template <class Real>
+constexpr Real root(double square) {
+  if (square == 0 || square == 1) {
+    return Real(square);
   }
-  return vector;
+  constexpr int kStepCount = 9;  // From 1 down to 1/8 in three, then twice the digits in each.
+  Real value = 1;
+  for (int step = 0; step < kStepCount; ++step) {
+    value = (value + Real(square) / value) / Real(2);
+  }
+  return value;
+}
+
+/// The node of axial coordinates (i, j, k), in the global frame, in pitches.
+template <class Real = double>
+constexpr std::array<Real, 3> place_of(const Lattice& lattice, const Cell& axial) {
+  std::array<Real, 3> place{};
+  for (std::size_t i = 0; i < 3; ++i) {
+    place[i] = Real(axial.x) * root<Real>(lattice.basis_squares[0][i]) +
+               Real(axial.y) * root<Real>(lattice.basis_squares[1][i]) +
+               Real(axial.z) * root<Real>(lattice.basis_squares[2][i]);
+  }
+  return place;
+}
+
+/// Where the node of a cell is, in the global frame, in pitches; cell (0, 0, 0) is at the origin.
+constexpr std::array<double, 3> node_place(const Lattice& lattice, const Cell& cell) {
+  return place_of(lattice, axial_of(lattice, cell));
+}
+
+/// From a node to its neighbour in `direction`, or through its facet there, in the global frame: a
+/// vector of length one.
+template <class Real = double>
+constexpr std::array<Real, 3> unit_vector(const Lattice& lattice, Direction direction) {
+  if (direction == down(lattice)) {
+    return {Real(0), Real(0), Real(-1)};
+  }
+  return place_of<Real>(lattice, lattice.steps[static_cast<std::size_t>(index(direction))]);
 }
 
 }  // namespace holdfast::base
