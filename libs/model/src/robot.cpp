@@ -329,12 +329,11 @@ double load_ratio_per_energy_norm(const Robot& robot) {
   const auto squared = [](double value) { return value * value; };
   double largest = 0;
   for (const ConnectorLaw& law : robot.connectors()) {
-    const double opens =
-        (beam.axial + bend / squared(law.lever_mm)) / squared(law.strength_n);
+    const double opens = (beam.axial + bend / squared(law.lever_mm)) / squared(law.strength_n);
     const double mu = law.friction.value_or(ConnectorLaw::kUnlimited);
-    const double slips = (beam.axial + shear / squared(mu) +
-                          beam.twist / squared(mu * law.torsion_radius_mm)) /
-                         squared(law.strength_n);
+    const double slips =
+        (beam.axial + shear / squared(mu) + beam.twist / squared(mu * law.torsion_radius_mm)) /
+        squared(law.strength_n);
     largest = std::max({largest, opens, slips, shear / squared(law.shear_strength_n),
                         beam.twist / squared(law.torsion_strength_nmm)});
   }

@@ -71,15 +71,15 @@ ConnectionResult ConnectionLaws::result(const model::Connection& pair, const Vec
 double ConnectionLaws::gap_mm(const model::Connection& pair, const Vecs& high,
                               const Vecs& low) const {
   const Vec force =
-      low.empty() ? beam_.middle_force(pair.direction, high[base::at(pair.a)],
-                                       high[base::at(pair.b)])
-                  : beam_.middle_force(pair.direction, relative_motion(pair, high, low), Vec{});
+      low.empty()
+          ? beam_.middle_force(pair.direction, high[base::at(pair.a)], high[base::at(pair.b)])
+          : beam_.middle_force(pair.direction, relative_motion(pair, high, low), Vec{});
   const mechanics::BeamStiffness<double>& beam = beam_.stiffness();
   const model::ConnectorLaw& law = robot_.connector(pair);
   const double about_x = std::abs(force[3]) / (beam.bend_y / 4);
   const double about_y = std::abs(force[4]) / (beam.bend_x / 4);
-  const double angle = law.bending == model::BendingLaw::kRound ? std::hypot(about_x, about_y)
-                                                                : about_x + about_y;
+  const double angle =
+      law.bending == model::BendingLaw::kRound ? std::hypot(about_x, about_y) : about_x + about_y;
   const double gap = force[2] / beam.axial + angle * law.lever_mm;
   return gap < 0 ? 0 : gap;
 }

@@ -119,7 +119,7 @@ class ConnectionLaws {
   Vec relative_motion(const model::Connection& pair, const Vecs& high, const Vecs& low) const;
 
   const model::Robot& robot_;
-  bool is_plain_ = true;             ///< Cubes with the connectors of Eq. (17).
+  bool is_plain_ = true;              ///< Cubes with the connectors of Eq. (17).
   std::vector<ConnectionLaw> plain_;  ///< Along x, y, z.
   model::LatticeBeam<double> beam_;
   std::vector<std::array<base::DoubleDouble, 3>> steps_;  ///< By direction, pitches.

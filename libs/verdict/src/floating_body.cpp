@@ -103,9 +103,9 @@ RigidBody floating_body(const model::Robot& robot) {
     const PlanPoint& a = body.polygon[i];
     const PlanPoint& b = body.polygon[(i + 1) % count];
     // A single point is an edge without length: over it, nothing is to spare.
-    const double here = count > 1 ? distance(a, b, body.centre_of_mass)
-                                  : -std::hypot(a.x - body.centre_of_mass.x,
-                                                a.y - body.centre_of_mass.y);
+    const double here = count > 1
+                            ? distance(a, b, body.centre_of_mass)
+                            : -std::hypot(a.x - body.centre_of_mass.x, a.y - body.centre_of_mass.y);
     if (here < margin) {
       margin = here;
       body.edge = {a, b};
