@@ -140,10 +140,9 @@ void read_lattice(XmlReading& reading, const pugi::xml_node& blocks, const pugi:
     return;
   }
   const auto size = parse_triple<double>(blocks.attribute("blockSize").value());
-  const auto* const modules =
-      std::ranges::find_if(kSimulatedModules, [&](const SimulatedModules& row) {
-        return size && row.block_size_mm == *size;
-      });
+  const auto* const modules = std::ranges::find_if(
+      kSimulatedModules,
+      [&](const SimulatedModules& row) { return size && row.block_size_mm == *size; });
   if (modules != kSimulatedModules.end()) {
     reading.document.extension.lattice = modules->lattice;
     reading.warn(fmt::format("blocks of the size {} are VisibleSim's {}, so the lattice is taken "
@@ -152,9 +151,10 @@ void read_lattice(XmlReading& reading, const pugi::xml_node& blocks, const pugi:
                              lattice_name(modules->lattice)),
                  where);
   } else if (blocks.find_child([](const auto& child) { return child.attribute(kOrientation); })) {
-    reading.warn("blocks have an orientation, as those of VisibleSim's catoms3D have: if they are, "
-                 "they are read as cubes here, and the lattice face-centred is to be asked for",
-                 where);
+    reading.warn(
+        "blocks have an orientation, as those of VisibleSim's catoms3D have: if they are, "
+        "they are read as cubes here, and the lattice face-centred is to be asked for",
+        where);
   }
 }
 

@@ -147,8 +147,8 @@ void add_modules(pugi::xml_node world, const Document& document, const base::Cel
   }
 }
 
-/// Calls use(cell) for what VisibleSim is shown of an obstacle: all its cells, the one that says the
-/// most first, or of a large box that one only.
+/// Calls use(cell) for what VisibleSim is shown of an obstacle: all its cells, the one that says
+/// the most first, or of a large box that one only.
 template <class Use>
 void for_each_shown(const model::Obstacle& obstacle, const Use& use) {
   if (!obstacle.cells.empty()) {
@@ -302,7 +302,8 @@ base::Result<base::Cell> visiblesim_shift(const Document& document) {
                std::max(highest.z, cell.z)};
   });
   // Every second layer lies as the one below it, whatever the lattice.
-  const std::int32_t up = -lowest.z + (document.extension.lattice == base::kCubic ? 0 : lowest.z & 1);
+  const std::int32_t up =
+      -lowest.z + (document.extension.lattice == base::kCubic ? 0 : lowest.z & 1);
   const base::Cell shift = {-lowest.x, -lowest.y, up};
   const base::Cell end = moved(highest, shift);
   if (std::max({end.x, end.y, end.z, document.support_z + shift.z}) > base::kCoordinateMax) {
