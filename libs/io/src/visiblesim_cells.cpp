@@ -224,9 +224,11 @@ void read_block_list(XmlReading& reading, const pugi::xml_node& list) {
       read_row(reading, child, plane, modules);
     } else if (name == "blockBox") {
       read_box(reading, child);
-    } else if (name == "csg") {
-      reading.fail(child, "<csg> in <blockList> is not supported: write its modules as <block>",
-                   base::ErrorCode::kUnsupported);
+    } else if (name == "csg" || name == "mesh") {
+      reading.fail(
+          child,
+          fmt::format("<{}> in <blockList> is not supported: write its modules as <block>", name),
+          base::ErrorCode::kUnsupported);
     } else {
       reading.warn_of_unknown_child(child, kBlockListElements);
     }

@@ -155,11 +155,8 @@ void for_each_shown(const model::Obstacle& obstacle, const Use& use) {
     std::ranges::for_each(obstacle.cells, use);
     return;
   }
-  const auto& [from, to, cells, touch] = obstacle;
-  const std::int64_t count = (std::int64_t{to.x} - from.x + 1) * (std::int64_t{to.y} - from.y + 1);
-  const bool is_large =
-      count > kBoxCellsMax || count * (std::int64_t{to.z} - from.z + 1) > kBoxCellsMax;
-  const base::Cell last = is_large ? from : to;
+  const base::Cell& from = obstacle.from;
+  const base::Cell last = is_large_box(obstacle) ? from : obstacle.to;
   for (std::int32_t z = from.z; z <= last.z; ++z) {
     for (std::int32_t y = from.y; y <= last.y; ++y) {
       for (std::int32_t x = from.x; x <= last.x; ++x) {
@@ -292,6 +289,15 @@ class StringWriter : public pugi::xml_writer {
 };
 
 }  // namespace
+
+bool is_large_box(const model::Obstacle& obstacle) {
+  const auto& [from, to, cells, touch] = obstacle;
+  const auto count = [](std::int32_t first, std::int32_t last) {
+    return std::int64_t{last} - first + 1;
+  };
+  const std::int64_t layer = count(from.x, to.x) * count(from.y, to.y);
+  return cells.empty() && (layer > kBoxCellsMax || layer * count(from.z, to.z) > kBoxCellsMax);
+}
 
 base::Result<base::Cell> visiblesim_shift(const Document& document) {
   base::Cell lowest;
