@@ -53,21 +53,22 @@ std::vector<Yield> yields_of(const Structure& structure,
   constexpr double kStill = 1e-5;  // Of the fastest; interior point methods leave 1e-7.
   std::vector<Yield> yields;
   for (std::size_t i = 0; i < structure.joints.size() && !velocities.empty(); ++i) {
-    const Opening opening = opening_of(structure, structure.joints[i], velocities);
+    const Joint& joint = structure.joints[i];
+    const Opening opening = opening_of(structure, joint, velocities);
     const double speed = std::max({opening.across, opening.apart, opening.turning});
     if (speed <= kStill) {
       continue;
     }
-    const bool has_friction = structure.joints[i].law.friction.has_value();
+    const bool has_friction = joint.law.friction.has_value();
     // Friction, taken as a constraint, parts what slides.
-    const bool opens = opening.apart > kStill &&
-                       (!has_friction || opening.across <= *structure.joints[i].law.friction *
-                                                               opening.apart * (1 - kStill));
+    const bool opens =
+        opening.apart > kStill &&
+        (!has_friction || opening.across <= *joint.law.friction * opening.apart * (1 - kStill));
     const model::Limit limit = opens                              ? model::Limit::kOpens
                                : has_friction                     ? model::Limit::kSlips
                                : opening.across > opening.turning ? model::Limit::kShears
                                                                   : model::Limit::kTwists;
-    yields.push_back({.joint = i, .limit = limit, .speed = speed});
+    yields.push_back({.joint = i, .a = joint.a, .b = joint.b, .limit = limit, .speed = speed});
   }
   std::ranges::stable_sort(yields, std::greater{}, &Yield::speed);
   return yields;
@@ -93,13 +94,9 @@ class Search {
   }
 
  private:
-  double seconds_left() const {
-    return std::chrono::duration<double>(end_ - Clock::now()).count();
-  }
+  double seconds_left() const { return std::chrono::duration<double>(end_ - Clock::now()).count(); }
 
-  bool is_narrow() const {
-    return result_.high - result_.low <= options_.tolerance * result_.high;
-  }
+  bool is_narrow() const { return result_.high - result_.low <= options_.tolerance * result_.high; }
 
   /// The joints nearest to their limits, and those beside them, are free at first; few joints are
   /// all free.
@@ -124,7 +121,9 @@ class Search {
     free_beside_free();
   }
 
-  bool all_free() const { return std::ranges::all_of(is_free_, [](char free) { return free != 0; }); }
+  bool all_free() const {
+    return std::ranges::all_of(is_free_, [](char free) { return free != 0; });
+  }
 
   bool round_is_useful() {
     const bool is_whole = all_free();
@@ -243,9 +242,9 @@ class Search {
 }  // namespace
 
 LimitLoad limit_load(const Structure& structure, const LimitOptions& options) {
-  const bool is_loaded = std::ranges::any_of(
-      structure.bodies,
-      [](const Body& body) { return !body.is_fixed && body.load != base::Vec6<double>{}; });
+  const bool is_loaded = std::ranges::any_of(structure.bodies, [](const Body& body) {
+    return !body.is_fixed && body.load != base::Vec6<double>{};
+  });
   if (!is_loaded) {
     return {.outcome = LimitLoad::Outcome::kUnbounded, .low = kFactorMax, .mechanism = {}};
   }

@@ -32,10 +32,10 @@ bool rubs(const Joint& joint) { return has_strength(joint) && joint.law.friction
 base::Vec6<double> global_force(const Joint& joint, const base::Vec6<double>& force) {
   base::Vec6<double> global{};
   for (std::size_t i = 0; i < 3; ++i) {
-    global[i] = force[0] * joint.frame[0][i] + force[1] * joint.frame[1][i] -
-                force[2] * joint.frame[2][i];
-    global[i + 3] = force[3] * joint.frame[0][i] + force[4] * joint.frame[1][i] +
-                    force[5] * joint.frame[2][i];
+    global[i] =
+        force[0] * joint.frame[0][i] + force[1] * joint.frame[1][i] - force[2] * joint.frame[2][i];
+    global[i + 3] =
+        force[3] * joint.frame[0][i] + force[4] * joint.frame[1][i] + force[5] * joint.frame[2][i];
   }
   return global;
 }
@@ -207,8 +207,8 @@ void LimitProgram::add_torsion(std::size_t index, const Rows& rows) {
   }
   for (const double sign : {-1.0, 1.0}) {
     add_force(joint, {0, 0, 0, 0, 0, sign});
-    program_.add(rows.friction, -structure_.length_mm /
-                                    (*joint.law.friction * joint.law.torsion_radius_mm));
+    program_.add(rows.friction,
+                 -structure_.length_mm / (*joint.law.friction * joint.law.torsion_radius_mm));
     program_.end_column(0, most);
   }
 }

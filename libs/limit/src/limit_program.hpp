@@ -18,8 +18,8 @@ namespace holdfast::limit {
 struct Part {
   static constexpr int kNone = -1;  ///< The ground, or a body that is left out.
 
-  std::vector<int> group;  ///< By body.
-  std::vector<Vector3> centres;  ///< By group, mm: what moments are about.
+  std::vector<int> group;                 ///< By body.
+  std::vector<Vector3> centres;           ///< By group, mm: what moments are about.
   std::vector<base::Vec6<double>> loads;  ///< By group.
   std::vector<std::size_t> joints;
   double factor_max = kFactorMax;

@@ -50,11 +50,12 @@ std::vector<Vector3> contact_places(const model::Robot& robot, const model::Face
   return corners;
 }
 
-void add_facet(const model::Robot& robot, const model::Facet& facet, Structure& structure) {
+void add_facet(const model::Robot& robot, const model::Facet& facet, bool is_bonded,
+               Structure& structure) {
   const double half = robot.foot_half_width_mm();
   Joint joint = {.a = facet.module,
                  .frame = model::rotation_along<double>(robot.lattice(), facet.direction)};
-  if (!facet.is_bonded()) {
+  if (!is_bonded && !facet.is_bonded()) {
     joint.law.strength_n = 0;
     joint.law.friction = facet.touch.friction;
     if (half > 0 && !facet.touch.friction) {
@@ -75,7 +76,7 @@ base::Vec6<double> joint_force(const Joint& joint, const base::Vec6<double>& for
   const base::Vec6<double> there = moved(force, from, joint.place_mm, 1);
   const Vector3 along = {there[0], there[1], there[2]};
   const Vector3 about = {there[3], there[4], there[5]};
-  return {dot(along, joint.frame[0]),  dot(along, joint.frame[1]), -dot(along, joint.frame[2]),
+  return {dot(along, joint.frame[0]), dot(along, joint.frame[1]), -dot(along, joint.frame[2]),
           dot(about, joint.frame[0]), dot(about, joint.frame[1]), dot(about, joint.frame[2])};
 }
 
@@ -137,7 +138,7 @@ RigidStability assess_rigid(const model::Robot& robot) {
   return assess_rigid(contact_facets(robot), body_load(robot));
 }
 
-Structure structure_of(const model::Robot& robot) {
+Structure structure_of(const model::Robot& robot, bool is_bonded) {
   Structure structure;
   structure.length_mm = robot.material().pitch_mm / 2;
   for (std::size_t module = 0; module < robot.modules().size(); ++module) {
@@ -155,7 +156,7 @@ Structure structure_of(const model::Robot& robot) {
          .law = robot.connector(connection)});
   }
   for (const model::Facet& facet : robot.facets()) {
-    add_facet(robot, facet, structure);
+    add_facet(robot, facet, is_bonded, structure);
   }
   return structure;
 }

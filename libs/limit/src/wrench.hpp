@@ -35,8 +35,7 @@ inline base::Vec6<double> moved(const base::Vec6<double>& force, const Vector3& 
 /// A rigid body's velocity at `to`, given it at `from`.
 inline base::Vec6<double> velocity_at(const base::Vec6<double>& velocity, const Vector3& from,
                                       const Vector3& to) {
-  const Vector3 by_turning =
-      cross({velocity[3], velocity[4], velocity[5]}, difference(to, from));
+  const Vector3 by_turning = cross({velocity[3], velocity[4], velocity[5]}, difference(to, from));
   base::Vec6<double> result = velocity;
   for (std::size_t i = 0; i < 3; ++i) {
     result[i] += by_turning[i];

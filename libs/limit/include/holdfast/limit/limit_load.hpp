@@ -20,7 +20,7 @@ namespace holdfast::limit {
 inline constexpr double kFactorMax = 1e6;
 
 struct LimitOptions {
-  double tolerance = 1e-4;    ///< Of the bracket, as a share of the factor.
+  double tolerance = 1e-4;   ///< Of the bracket, as a share of the factor.
   double seconds_max = 600;  ///< Then the bracket is what it is so far.
   /// Forces of all joints that balance the loads, such as the elastic ones, local frame; they spare
   /// most of the work for large structures. Empty: none are known.
@@ -32,6 +32,8 @@ struct LimitOptions {
 /// A joint that takes part in the collapse, and what it does.
 struct Yield {
   std::size_t joint = 0;  ///< Index.
+  std::int32_t a = 0;     ///< Its bodies.
+  std::int32_t b = Joint::kGround;
   model::Limit limit = model::Limit::kOpens;
   double speed = 0;  ///< mm, of `b` relative to `a`, where the fastest body moves 1 mm.
 };
@@ -53,8 +55,8 @@ struct LimitLoad {
   Outcome outcome = Outcome::kStopped;
   double low = 0;
   double high = kFactorMax;
-  Mechanism mechanism;  ///< Of the upper bound; empty if unbounded or none was found.
-  int program_count = 0;  ///< Linear programs solved.
+  Mechanism mechanism;            ///< Of the upper bound; empty if unbounded or none was found.
+  int program_count = 0;          ///< Linear programs solved.
   std::size_t row_count_max = 0;  ///< Rows of the largest.
 };
 

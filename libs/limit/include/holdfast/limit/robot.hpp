@@ -22,8 +22,9 @@ BodyLoad body_load(const model::Robot& robot);
 
 /// The robot as bodies and joints. Bodies are its modules. Joints are its connections, then what
 /// its facets touch: one joint each, of four corners with friction one for each corner. Bonded
-/// facets hold whatever comes: nothing is known of the connectors on the other side.
-Structure structure_of(const model::Robot& robot);
+/// facets, or all if `is_bonded`, hold whatever comes: nothing is known of the connectors on the
+/// other side.
+Structure structure_of(const model::Robot& robot, bool is_bonded = false);
 
 /// The forces of the structure's joints, given displacements by module and forces of the facets at
 /// their modules' nodes by facet. Of single corners nothing is known: not a number.
