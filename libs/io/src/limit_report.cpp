@@ -16,6 +16,9 @@ using Outcome = limit::LimitLoad::Outcome;
 /// Joints that give way are listed in the text up to here.
 constexpr std::size_t kListedCount = 3;
 
+/// A factor of rounding.
+constexpr double kNoLoad = 1e-9;
+
 void write_cell(JsonStream& json, const model::Robot& robot, std::int32_t module) {
   if (module == limit::Joint::kGround) {
     json.value(nullptr);
@@ -99,6 +102,9 @@ std::string limit_text(const ReportEntry& entry) {
   const limit::LimitLoad& load = *entry.limit;
   if (load.outcome == Outcome::kUnbounded) {
     return "  limit load  none: whatever the factor of all loads, some forces would balance them\n";
+  }
+  if (load.outcome == Outcome::kFound && load.high < kNoLoad) {
+    return "  limit load  none: no forces balance these loads, nor any share of them\n";
   }
   std::string text =
       load.outcome == Outcome::kFound
