@@ -56,7 +56,9 @@ class Tilt {
 
     bool is_none() const { return !std::isfinite(distance); }
 
-    Eigen::Vector2d place() const { return distance * Eigen::Vector2d(std::cos(angle), std::sin(angle)); }
+    Eigen::Vector2d place() const {
+      return distance * Eigen::Vector2d(std::cos(angle), std::sin(angle));
+    }
   };
 
   Vector6d load_of(const Vector3d& weight) const {
