@@ -11,8 +11,8 @@
 namespace holdfast::limit {
 namespace {
 
-/// Speeds below this share of the largest are rounding.
-constexpr double kStill = 1e-6;
+/// Speeds below this share of the largest count as none: what cones of friction leave.
+constexpr double kStill = 1e-4;
 
 Vector3 values(const Vector3d& vector) { return {vector[0], vector[1], vector[2]}; }
 

@@ -45,8 +45,8 @@ struct Joint {
 };
 
 struct Structure {
-  std::vector<Body> bodies;
-  std::vector<Joint> joints;
+  std::vector<Body> bodies = {};
+  std::vector<Joint> joints = {};
   double length_mm = 1;  ///< A typical lever, by which moments are compared with forces.
 };
 
