@@ -39,13 +39,13 @@ void look_at(const base::Lattice& lattice, const std::vector<test::Symmetry>& tu
   const model::RobotSpec spec =
       is_hard ? test::hard_robot(lattice, seed) : test::general_robot(lattice, seed);
   const std::string what = is_hard ? test::name(test::hardness_of(seed)) : "general";
-  const auto note = [&](const char* check, const test::Checked& checked) {
+  const auto note = [&](const char* check, const test::Checked& checked, int turn = 0) {
     Tally& tally = tallies[fmt::format("{:12} {}", what, check)];
     tally.compared_count += checked.is_compared ? 1 : 0;
     if (!checked.fault.empty()) {
       ++tally.fault_count;
-      fmt::print("{}_robot {} ({}): {}: {}\n", is_hard ? "hard" : "general", seed, what, check,
-                 checked.fault);
+      fmt::print("{}_robot {} ({}): {}{}: {}\n", is_hard ? "hard" : "general", seed, what, check,
+                 turn == 0 ? "" : fmt::format(" by {}", turn), checked.fault);
     }
   };
   const auto robot = model::Robot::create(spec);
@@ -60,7 +60,7 @@ void look_at(const base::Lattice& lattice, const std::vector<test::Symmetry>& tu
   for (std::size_t i = 0; i < turns.size() - 1; ++i) {
     const std::size_t turn = 1 + (seed + i) % (turns.size() - 1);
     if (test::may_be_turned(spec, turns[turn])) {
-      note(fmt::format("turned {:2}", turn).c_str(), test::check_turning(spec, turns[turn]));
+      note("turned", test::check_turning(spec, turns[turn]), static_cast<int>(turn));
       break;
     }
   }
@@ -78,17 +78,9 @@ int check_invariants(const base::Lattice& lattice, std::uint64_t first, std::uin
     look_at(lattice, turns, seed, true, tallies);
   }
   int fault_count = 0;
-  std::map<std::string, Tally> sums;  // Over all symmetries.
   for (const auto& [name, tally] : tallies) {
-    Tally& sum = sums[name.substr(0, name.find(" turned ") == std::string::npos
-                                         ? name.size()
-                                         : name.find(" turned ") + 7)];
-    sum.compared_count += tally.compared_count;
-    sum.fault_count += tally.fault_count;
+    fmt::print("{:22} {:6} compared, {} faults\n", name, tally.compared_count, tally.fault_count);
     fault_count += tally.fault_count;
-  }
-  for (const auto& [name, sum] : sums) {
-    fmt::print("{:24} {:6} compared, {} faults\n", name, sum.compared_count, sum.fault_count);
   }
   return fault_count == 0 ? 0 : 1;
 }
@@ -186,8 +178,8 @@ int print_limits(std::string_view name, const base::Lattice& lattice, std::uint6
 
 int print_supports(std::string_view name, const base::Lattice& lattice, std::uint64_t first,
                    std::uint64_t count) {
-  fmt::print("lattice,seed,modules,facets,rigid,margin,settled,stable,open_held,law,verdict,"
-             "reason\n");
+  fmt::print("lattice,seed,modules,facets,rigid,friction_needed,regularised,law,model,open_held,"
+             "verdict,reason\n");
   for (std::uint64_t seed = first; seed < first + count; ++seed) {
     model::RobotSpec spec = test::general_robot(lattice, seed);
     if (spec.obstacles.empty()) {
@@ -199,11 +191,16 @@ int print_supports(std::string_view name, const base::Lattice& lattice, std::uin
     }
     const auto robot = model::Robot::create(spec);
     const Assessment a = verdict::assess(robot.value());
-    fmt::print("{},{},{},{},{},{:.3g},{},{},{},{},{},{}\n", name, seed,
+    const auto& attempts = a.equilibrium.attempts;
+    const bool is_regularised = !attempts.empty() &&
+                                attempts[0].law == mechanics::ContactLaw::kRegularised &&
+                                attempts[0].outcome == solver::Outcome::kSettled;
+    fmt::print("{},{},{},{},{},{:.6g},{},{},{},{},{},{}\n", name, seed,
                robot.value().modules().size(), robot.value().facets().size(),
-               limit::name(a.rigid.answer), a.rigid.margin.value_or(NAN), a.model.is_settled,
-               a.model.is_stable, a.equilibrium.open_but_held_count,
-               verdict::name(a.contact_model), verdict::name(a.verdict),
+               limit::name(a.rigid.answer), a.rigid.friction_needed.value_or(NAN),
+               is_regularised ? "settled" : "not settled", verdict::name(a.contact_model),
+               !a.model.is_settled ? "not settled" : (a.model.is_stable ? "stable" : "falls"),
+               a.equilibrium.open_but_held_count, verdict::name(a.verdict),
                verdict::name(a.reasons.front().code));
   }
   return 0;

@@ -104,27 +104,31 @@ Checked check_answer(const model::Robot& robot, const Assessment& assessment) {
 
 Checked check_doubling(const model::RobotSpec& spec) {
   model::RobotSpec other = spec;
-  other.gravity_m_s2 = spec.gravity_m_s2.value_or(
-      std::array<double, 3>{0, 0, -spec.material.gravity_m_s2});
+  other.gravity_m_s2 =
+      spec.gravity_m_s2.value_or(std::array<double, 3>{0, 0, -spec.material.gravity_m_s2});
   const Assessment once = verdict::assess(model::Robot::create(other).value());
   std::ranges::for_each(*other.gravity_m_s2, [](double& g) { g *= 2; });
   for (model::Payload& payload : other.payloads) {
     std::ranges::for_each(payload.force_n, [](double& f) { f *= 2; });
     std::ranges::for_each(payload.torque_nmm, [](double& m) { m *= 2; });
   }
+  // Or other load ratios would be near 1, where more digits are sought.
+  other.material.strength_vertical_n *= 2;
+  other.material.strength_lateral_n *= 2;
   Assessment twice = verdict::assess(model::Robot::create(other).value());
   for (Vec6<double>& u : twice.equilibrium.displacement) {
     std::ranges::for_each(u, [](double& component) { component /= 2; });
   }
   Checked checked = {.is_compared = true};
-  if (once.is_stable != twice.is_stable) {
-    checked.fault = fmt::format("stable: {}, with doubled loads {}", once.is_stable,
-                                twice.is_stable);
+  if (once.verdict != twice.verdict) {
+    checked.fault =
+        fmt::format("{}, doubled {}", verdict::name(once.verdict), verdict::name(twice.verdict));
   } else if (once.equilibrium.outcome != twice.equilibrium.outcome) {
-    checked.fault = "another outcome with doubled loads";
+    checked.fault = "another outcome when doubled";
   } else if (once.equilibrium.contact != twice.equilibrium.contact ||
-             once.equilibrium.displacement != twice.equilibrium.displacement) {
-    checked.fault = "other displacements or contact states with doubled loads";
+             once.equilibrium.displacement != twice.equilibrium.displacement ||
+             once.load_ratio_max != twice.load_ratio_max) {
+    checked.fault = "other displacements, contact states or load ratios when doubled";
   }
   return checked;
 }

@@ -23,7 +23,7 @@ bool has_loads(const verdict::Assessment& assessment);
 /// There is a reason, nothing is safe by one of two answers only, and supports and loads balance.
 Checked check_answer(const model::Robot& robot, const verdict::Assessment& assessment);
 
-/// Doubled loads double the answer, to the last bit: doubling is exact in binary.
+/// Loads and strengths doubled double the answer, to the last bit: doubling is exact in binary.
 Checked check_doubling(const model::RobotSpec& spec);
 
 /// Strengths just above the largest load do not break, just below it they do not hold.
