@@ -2,10 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Random robots of any lattice with supports anywhere: campaigns behind docs/.
 //   general_bench invariants LATTICE FIRST COUNT   what must hold of every answer; exit 1 if not
-//   general_bench limits LATTICE FIRST COUNT       elastic, brittle and limit factor of each, as CSV
-//   general_bench supports LATTICE FIRST COUNT     model and rigid answer of each, as CSV
-// LATTICE: cubic, face-centred, hexagonal, hexagonal-prism; limits also of floor, which are cubes on
-// a floor as random_robot() grows them. FIRST is the first of COUNT seeds.
+//   general_bench limits LATTICE FIRST COUNT       elastic, brittle and limit factor of each, as
+//   CSV general_bench supports LATTICE FIRST COUNT     model and rigid answer of each, as CSV
+// LATTICE: cubic, face-centred, hexagonal, hexagonal-prism; limits also of floor, which are cubes
+// on a floor as random_robot() grows them. FIRST is the first of COUNT seeds.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -162,8 +162,9 @@ void print_limits(const model::RobotSpec& spec, std::string_view name, std::uint
 
 int print_limits(std::string_view name, const base::Lattice& lattice, std::uint64_t first,
                  std::uint64_t count) {
-  fmt::print("lattice,seed,law,modules,connections,elastic,limit_low,limit_high,outcome,"
-             "brittle_all,stages_all,brittle_one,stages_one\n");
+  fmt::print(
+      "lattice,seed,law,modules,connections,elastic,limit_low,limit_high,outcome,"
+      "brittle_all,stages_all,brittle_one,stages_one\n");
   for (std::uint64_t seed = first; seed < first + count; ++seed) {
     model::RobotSpec spec =
         name == "floor" ? test::random_robot(seed) : test::general_robot(lattice, seed);
@@ -178,8 +179,9 @@ int print_limits(std::string_view name, const base::Lattice& lattice, std::uint6
 
 int print_supports(std::string_view name, const base::Lattice& lattice, std::uint64_t first,
                    std::uint64_t count) {
-  fmt::print("lattice,seed,modules,facets,rigid,friction_needed,regularised,law,model,open_held,"
-             "verdict,reason\n");
+  fmt::print(
+      "lattice,seed,modules,facets,rigid,friction_needed,regularised,law,model,open_held,"
+      "verdict,reason\n");
   for (std::uint64_t seed = first; seed < first + count; ++seed) {
     model::RobotSpec spec = test::general_robot(lattice, seed);
     if (spec.obstacles.empty()) {

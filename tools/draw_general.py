@@ -59,7 +59,8 @@ def show_limits(rows):
         some = [row for row in rows if row['outcome'] == 'found' and lattice in (
             'all', row['lattice'])]
         beyond = sorted(float(row['elastic']) / float(row['limit_high']) - 1 for row in some)
-        above = [row for row in some if float(row['elastic']) > float(row['limit_high']) * (1 + TIE)]
+        above = [row for row in some
+                 if float(row['elastic']) > float(row['limit_high']) * (1 + TIE)]
         stages = [row for row in some if max(float(row['brittle_all']), float(
             row['brittle_one'])) > float(row['limit_high']) * (1 + TIE)]
         line(lattice, len(some), len(above), f'{100 * max(beyond[-1], 0):.2f} %' if some else '',

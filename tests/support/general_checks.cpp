@@ -146,8 +146,8 @@ Checked check_limit(const model::RobotSpec& spec) {
     other.material.strength_lateral_n *= *first.load_ratio_max * share;
     const Verdict found = verdict::assess(model::Robot::create(other).value()).verdict;
     if (found == (share > 1 ? Verdict::kOverload : Verdict::kSafe)) {
-      checked.fault = fmt::format("{} with {} times the strength that it needs",
-                                  verdict::name(found), share);
+      checked.fault =
+          fmt::format("{} with {} times the strength that it needs", verdict::name(found), share);
     }
   }
   return checked;
@@ -235,7 +235,8 @@ Checked check_versions(const model::RobotSpec& spec) {
   const Assessment one = check_text(R"("version": 1)").assessment;
   const Assessment two =
       check_text(R"("version": 2, "lattice": "cubic", "gravity_m_s2": [0, 0, -9.81], "floor": {},
-          "material": {"mass_kg": 0.06106, "foot_mm": 40}, "kinds": {}, "obstacles": [], "loads": [])")
+          "material": {"mass_kg": 0.06106, "foot_mm": 40}, "kinds": {}, "obstacles": [],
+          "loads": [])")
           .assessment;
   Checked checked = {.is_compared = true};
   if (one.verdict != two.verdict || one.reasons != two.reasons ||
