@@ -215,15 +215,38 @@ std::string draw_planned(const Scene& scene) {
 
 }  // namespace
 
+namespace {
+
+/// What a module on the ground touches.
+std::string touch_text(const model::Robot& robot, std::size_t module) {
+  std::size_t obstacle_count = 0;
+  bool is_on_floor = false;
+  const auto facets = std::ranges::equal_range(robot.facets(), static_cast<std::int32_t>(module),
+                                               {}, &model::Facet::module);
+  for (const model::Facet& facet : facets) {
+    const bool is_floor = touches_floor(robot, facet);
+    is_on_floor = is_on_floor || is_floor;
+    obstacle_count += is_floor ? 0 : 1;
+  }
+  std::string text = is_on_floor ? ", on the ground" : "";
+  if (obstacle_count > 0) {
+    text += fmt::format(", touches obstacles with {} side{}", obstacle_count,
+                        obstacle_count == 1 ? "" : "s");
+  }
+  return text;
+}
+
+}  // namespace
+
 std::string module_tooltip(const Scene& scene, std::size_t module) {
-  const auto& [cell, support, is_planned] = scene.robot.modules()[module];
+  const auto& [cell, support, is_planned, kind] = scene.robot.modules()[module];
   const ModulePaint& paint = scene.paints[module];
   std::string text = model::text(cell);
   if (is_planned) {
     text += ", planned";
   }
   if (support != model::Support::kNone) {
-    text += support == model::Support::kFixed ? ", fixed" : ", on the ground";
+    text += support == model::Support::kFixed ? ", fixed" : touch_text(scene.robot, module);
   }
   if (paint.is_loaded && paint.meaning != Meaning::kUnstable) {
     text += fmt::format(", worst connection at {} of its strength",

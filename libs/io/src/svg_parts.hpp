@@ -65,6 +65,14 @@ std::string draw_payloads(const Scene& scene);
 
 bool has_payload_signs(const Scene& scene);
 
+/// The sign of payloads, 20 x 14 px.
+std::string payload_sign(ScreenPoint at);
+
+/// An arrow along gravity, unless that points straight down.
+std::string draw_gravity(const Scene& scene, ScreenPoint from);
+
+inline constexpr const char* kGravityInk = "#4a4f9c";
+
 /// An arrow with a white border.
 std::string arrow(ScreenPoint from, ScreenPoint to, const std::string& color);
 

@@ -71,12 +71,12 @@ std::string draw_axes(const Scene& scene) {
         "y=\"{}\">{}</text>\n",
         path.text(), number(text.x), number(text.y + 4), name);
   }
-  return out + "</g>\n";
+  return out + "</g>\n" + draw_gravity(scene, origin);
 }
 
 std::string write_svg(const model::Robot& robot, const verdict::Assessment& assessment,
-                      std::string_view title) {
-  const Scene scene(robot, assessment);
+                      std::string_view title, std::span<const model::Obstacle> obstacles) {
+  const Scene scene(robot, assessment, obstacles);
   const Legend legend = draw_legend(scene);
   const double height = scene.drawing.bottom + legend.height;
   std::string out = fmt::format(
@@ -90,8 +90,10 @@ std::string write_svg(const model::Robot& robot, const verdict::Assessment& asse
   out += draw_header(scene, title);
   out += draw_ground(scene);
   out += draw_modules(scene);
+  out += draw_facets(scene);
   out += draw_marks(scene);
   out += draw_balance(scene);
+  out += draw_payloads(scene);
   out += draw_labels(scene);
   out += draw_axes(scene);
   out += legend.text;
