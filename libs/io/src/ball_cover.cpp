@@ -31,8 +31,8 @@ BallCover::BallCover(const base::Lattice& lattice) : lattice_(lattice) {
     }
   };
   for_squares({}, [&](std::size_t square, double x, double y) {
-    disc_[square] = length({std::max(x - kSize / 2, 0.0), std::max(y - kSize / 2, 0.0)}) <
-                    kBallRadius;
+    disc_[square] =
+        length({std::max(x - kSize / 2, 0.0), std::max(y - kSize / 2, 0.0)}) < kBallRadius;
   });
   constexpr std::int32_t kSteps = 4;  // Axial coordinates within kReach are smaller.
   for (std::int32_t i = -kSteps; i <= kSteps; ++i) {

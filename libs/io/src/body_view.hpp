@@ -56,6 +56,7 @@ class BodyView {
 
   /// Of a module, and of an obstacle cell, without neighbours.
   std::span<const SeenFace> module_faces() const { return module_faces_; }
+
   std::span<const SeenFace> obstacle_faces() const { return obstacle_faces_; }
 
  private:

@@ -67,10 +67,9 @@ std::vector<Place> corners_on(const HalfSpace& face, const std::vector<HalfSpace
   for (std::size_t i = 0; i < spaces.size(); ++i) {
     for (std::size_t j = i + 1; j < spaces.size(); ++j) {
       const std::optional<Place> point = meeting_point(face, spaces[i], spaces[j]);
-      const bool is_corner =
-          point && std::ranges::all_of(spaces, [&](const HalfSpace& space) {
-            return dot(space.normal, *point) <= space.distance + kTie;
-          });
+      const bool is_corner = point && std::ranges::all_of(spaces, [&](const HalfSpace& space) {
+                               return dot(space.normal, *point) <= space.distance + kTie;
+                             });
       if (is_corner && std::ranges::none_of(
                            corners, [&](const Place& other) { return is_near(other, *point); })) {
         corners.push_back(*point);
@@ -101,9 +100,8 @@ std::vector<ShapeFace> cell_faces(const base::Lattice& lattice, double layer_dep
   const std::vector<HalfSpace> spaces = half_spaces(lattice, layer_depth);
   std::vector<ShapeFace> faces;
   for (const HalfSpace& space : spaces) {
-    ShapeFace face = {.normal = space.normal,
-                      .corners = corners_on(space, spaces),
-                      .direction = space.direction};
+    ShapeFace face = {
+        .normal = space.normal, .corners = corners_on(space, spaces), .direction = space.direction};
     if (face.corners.size() >= 3) {
       sort_around(face.normal, face.corners);
       faces.push_back(std::move(face));

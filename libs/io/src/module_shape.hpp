@@ -14,8 +14,8 @@
 ///
 /// The cell of a lattice is what is nearer to its node than to any other, {p : p . n <= 1/2 for the
 /// unit vectors n to all neighbours}: cube, hexagonal prism, rhombic dodecahedron. Every body lies
-/// inside its cell. So of two bodies the plane halfway between their nodes keeps one on either side,
-/// and the one whose node is nearer to the eye is nowhere behind the other.
+/// inside its cell. So of two bodies the plane halfway between their nodes keeps one on either
+/// side, and the one whose node is nearer to the eye is nowhere behind the other.
 namespace holdfast::io {
 
 /// A point or a vector in pitches.

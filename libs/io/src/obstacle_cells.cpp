@@ -37,10 +37,10 @@ CellBox box_near(const model::Robot& robot) {
 
 /// What two boxes share; `low` is above `high` somewhere if that is nothing.
 CellBox shared(const CellBox& a, const CellBox& b) {
-  return {.low = {std::max(a.low.x, b.low.x), std::max(a.low.y, b.low.y),
-                  std::max(a.low.z, b.low.z)},
-          .high = {std::min(a.high.x, b.high.x), std::min(a.high.y, b.high.y),
-                   std::min(a.high.z, b.high.z)}};
+  return {
+      .low = {std::max(a.low.x, b.low.x), std::max(a.low.y, b.low.y), std::max(a.low.z, b.low.z)},
+      .high = {std::min(a.high.x, b.high.x), std::min(a.high.y, b.high.y),
+               std::min(a.high.z, b.high.z)}};
 }
 
 /// Takes cells, each once, as long as they are not too many.
@@ -61,7 +61,7 @@ class Collector {
     for (std::int32_t z = box.low.z; z <= box.high.z && !near_.are_too_many; ++z) {
       for (std::int32_t y = box.low.y; y <= box.high.y && !near_.are_too_many; ++y) {
         for (std::int32_t x = box.low.x; x <= box.high.x && !near_.are_too_many; ++x) {
-          add({x, y, z}, is_bonded);
+          add(base::Cell{x, y, z}, is_bonded);
         }
       }
     }

@@ -123,14 +123,12 @@ class Painter {
     if (!is_planned && !scene_.is_detailed()) {
       return body;
     }
-    const std::string glass =
-        is_planned ? fmt::format(" opacity=\"{}\" stroke-dasharray=\"{}\"", kGlass,
-                                 number(edge_px_ / 10))
-                   : std::string();
-    const std::string title =
-        scene_.is_detailed()
-            ? fmt::format("<title>{}</title>\n", module_tooltip(scene_, item.index))
-            : std::string();
+    const std::string glass = is_planned ? fmt::format(" opacity=\"{}\" stroke-dasharray=\"{}\"",
+                                                       kGlass, number(edge_px_ / 10))
+                                         : std::string();
+    const std::string title = scene_.is_detailed() ? fmt::format("<title>{}</title>\n",
+                                                                 module_tooltip(scene_, item.index))
+                                                   : std::string();
     return fmt::format("<g class=\"{}module\"{}>{}{}</g>\n", is_planned ? "planned-" : "", glass,
                        title, body);
   }

@@ -44,8 +44,8 @@ bool has_facets(const Scene& scene) {
 
 const mechanics::ContactState* contact_of(const Scene& scene, std::size_t facet) {
   const auto& contact = scene.assessment.equilibrium.contact;
-  const bool is_known = has_loads(scene.robot, scene.assessment) &&
-                        contact.size() == scene.robot.facets().size();
+  const bool is_known =
+      has_loads(scene.robot, scene.assessment) && contact.size() == scene.robot.facets().size();
   return is_known ? &contact[facet] : nullptr;
 }
 
@@ -70,10 +70,9 @@ class FacetPlace {
   FacetPlace(const Scene& scene, const model::Facet& facet)
       : centre_(scene.projection.at(scene.facet_centre(facet.module, facet.direction))) {
     const auto axes = model::rotation_along<double>(scene.robot.lattice(), facet.direction);
-    const double half_width =
-        std::max(kHalfWidthMin,
-                 scene.robot.foot_half_width_mm() / scene.robot.material().pitch_mm) *
-        scene.projection.edge_px;
+    const double half_width = std::max(kHalfWidthMin, scene.robot.foot_half_width_mm() /
+                                                          scene.robot.material().pitch_mm) *
+                              scene.projection.edge_px;
     x_ = half_width * seen_at(axes[0]);
     y_ = half_width * seen_at(axes[1]);
   }
@@ -149,8 +148,9 @@ std::string draw_facets(const Scene& scene) {
   if (!has_facets(scene)) {
     return {};
   }
-  std::string out = "<g class=\"facets\" stroke-width=\"1.3\" stroke-linejoin=\"round\" "
-                    "stroke-linecap=\"round\">\n";
+  std::string out =
+      "<g class=\"facets\" stroke-width=\"1.3\" stroke-linejoin=\"round\" "
+      "stroke-linecap=\"round\">\n";
   for (const FacetLook& look : kLooks) {
     out += draw_state(scene, look);
   }

@@ -190,8 +190,8 @@ void Scene::mark_bodies() {
     if (item.is_obstacle) {
       continue;
     }
-    const ScreenPoint offset =
-        projection.at(LatticePoint(bodies->place_of(item))) - ScreenPoint{drawing.left, drawing.top};
+    const ScreenPoint offset = projection.at(LatticePoint(bodies->place_of(item))) -
+                               ScreenPoint{drawing.left, drawing.top};
     const ScreenPoint centre = (1 / kCoveredSquarePx) * offset;
     const auto first = [&](double middle) {
       return static_cast<std::size_t>(std::max(0.0, std::floor(middle - radius)));
@@ -215,7 +215,8 @@ LatticePoint Scene::floor_point(double x, double y) const {
   const Place origin = base::node_place(robot.lattice(), {0, 0, robot.support_z()});
   const Place right = base::place_of(robot.lattice(), {1, 0, 0});
   const Place back = base::place_of(robot.lattice(), {0, 1, 0});
-  return LatticePoint(sum({origin[0], origin[1], ground_z()}, sum(scaled(x, right), scaled(y, back))));
+  return LatticePoint(
+      sum({origin[0], origin[1], ground_z()}, sum(scaled(x, right), scaled(y, back))));
 }
 
 LatticePoint Scene::facet_centre(std::int32_t module, base::Direction direction) const {

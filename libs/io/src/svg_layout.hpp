@@ -29,7 +29,9 @@ inline constexpr const char* kGroundInk = "#3f6b7d";
 /// A place in pitches, global frame; in a cubic lattice the centre of cell (x, y, z) is at x, y, z.
 struct LatticePoint {
   LatticePoint() = default;
+
   LatticePoint(double an_x, double a_y, double a_z) : x(an_x), y(a_y), z(a_z) {}
+
   explicit LatticePoint(const Place& place) : x(place[0]), y(place[1]), z(place[2]) {}
 
   double x = 0;
@@ -39,7 +41,7 @@ struct LatticePoint {
 
 /// From the lattice to pixels.
 struct Projection {
-  base::Cell lowest;        ///< Whose lower corner is the origin of (u, v); cubic lattices only.
+  base::Cell lowest;      ///< Whose lower corner is the origin of (u, v); cubic lattices only.
   double edge_px = 1;     ///< Length of a cube's edge on the picture.
   ScreenPoint origin_px;  ///< Where vertex (0, 0) lies.
 
@@ -115,7 +117,7 @@ struct Scene {
  private:
   void mark_bodies();
 
-  std::vector<bool> covered_;          ///< By bodies: squares of the drawing, row by row.
+  std::vector<bool> covered_;  ///< By bodies: squares of the drawing, row by row.
   std::size_t covered_row_length_ = 0;
 };
 

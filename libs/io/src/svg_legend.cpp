@@ -142,8 +142,8 @@ std::vector<Entry> entries(const Scene& scene) {
   }
   for (const ObstacleSign& sign : obstacle_signs(scene)) {
     list.push_back(swatch_entry(
-        sign.label, fmt::format("fill=\"{0}\" fill-opacity=\"0.3\" stroke=\"{0}\"",
-                                hex(sign.color))));
+        sign.label,
+        fmt::format("fill=\"{0}\" fill-opacity=\"0.3\" stroke=\"{0}\"", hex(sign.color))));
   }
   for (const FacetSign& sign : facet_signs(scene)) {
     list.push_back(facet_entry(sign));

@@ -11,7 +11,7 @@
 namespace holdfast::io {
 namespace {
 
-constexpr const char* kLoadInk = "#8a1c7c";
+constexpr const char* kLoadInk = "#101418";
 
 /// Loads of less than this share of the largest are rounding.
 constexpr double kNoShare = 1e-9;
@@ -60,19 +60,17 @@ std::vector<PayloadSign> payloads(const Scene& scene) {
 /// A force, from the node on: the strongest is the longest, as far as it lies across the view.
 std::string draw_force(const Scene& scene, const PayloadSign& sign, double force_max) {
   const double size = size_of(sign.force);
-  const ScreenPoint from =
-      scene.projection.at(LatticePoint(base::node_place(scene.robot.lattice(),
-                                                        scene.robot.modules()[sign.module].cell)));
+  const ScreenPoint from = scene.projection.at(LatticePoint(
+      base::node_place(scene.robot.lattice(), scene.robot.modules()[sign.module].cell)));
   if (size <= kNoShare * force_max) {
     return {};
   }
   const ScreenPoint way = seen_at(scaled(1 / size, sign.force));
-  const double reach =
-      std::max(kArrowPxMin, length(way) * (kArrowPxMin + (kArrowPxMax - kArrowPxMin) * size /
-                                                             force_max));
+  const double reach = std::max(
+      kArrowPxMin, length(way) * (kArrowPxMin + (kArrowPxMax - kArrowPxMin) * size / force_max));
   // Along the line of sight there is no way: a point.
-  const ScreenPoint to = length(way) < 0.05 ? from + ScreenPoint{0, kArrowPxMin}
-                                            : from + (reach / length(way)) * way;
+  const ScreenPoint to =
+      length(way) < 0.05 ? from + ScreenPoint{0, kArrowPxMin} : from + (reach / length(way)) * way;
   return arrow(from, to, kLoadInk);
 }
 
@@ -82,9 +80,8 @@ std::string draw_torque(const Scene& scene, const PayloadSign& sign) {
     return {};
   }
   constexpr double kRadius = 9;
-  const ScreenPoint centre =
-      scene.projection.at(LatticePoint(base::node_place(scene.robot.lattice(),
-                                                        scene.robot.modules()[sign.module].cell)));
+  const ScreenPoint centre = scene.projection.at(LatticePoint(
+      base::node_place(scene.robot.lattice(), scene.robot.modules()[sign.module].cell)));
   // Counter-clockwise for the eye if the torque points towards it; the screen's y points down.
   const double turn = nearness(sign.torque) >= 0 ? -1 : 1;
   const ScreenPoint start = centre + ScreenPoint{kRadius, 0};
