@@ -125,13 +125,18 @@ std::string draw_payloads(const Scene& scene) {
   return out + "</g>\n";
 }
 
-std::string draw_gravity(const Scene& scene, ScreenPoint from) {
+bool is_gravity_drawn(const Scene& scene) {
   const Place& gravity = scene.robot.gravity();
-  const double size = size_of(gravity);
-  if (size == 0 || (gravity[0] == 0 && gravity[1] == 0 && gravity[2] < 0)) {
+  return gravity[0] != 0 || gravity[1] != 0 || gravity[2] > 0;
+}
+
+std::string draw_gravity(const Scene& scene, ScreenPoint from) {
+  if (!is_gravity_drawn(scene)) {
     return {};
   }
-  constexpr double kLength = 34;
+  const Place& gravity = scene.robot.gravity();
+  const double size = size_of(gravity);
+  constexpr double kLength = 24;
   const ScreenPoint way = seen_at(scaled(1 / size, gravity));
   const double share = std::max(length(way), 1e-9);
   const ScreenPoint to = from + (std::max(share, 0.4) * kLength / share) * way;

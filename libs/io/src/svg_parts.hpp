@@ -68,7 +68,10 @@ bool has_payload_signs(const Scene& scene);
 /// The sign of payloads, 20 x 14 px.
 std::string payload_sign(ScreenPoint at);
 
-/// An arrow along gravity, unless that points straight down.
+/// Gravity that points straight down is not drawn.
+bool is_gravity_drawn(const Scene& scene);
+
+/// An arrow along gravity, if that is drawn.
 std::string draw_gravity(const Scene& scene, ScreenPoint from);
 
 inline constexpr const char* kGravityInk = "#4a4f9c";
