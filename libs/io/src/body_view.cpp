@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 #include <tuple>
+#include <unordered_map>
 #include <utility>
 
 #include "ball_cover.hpp"
@@ -59,6 +60,47 @@ std::vector<SeenFace> disc_faces() {
   return {rim, front};
 }
 
+/// The nearest and the furthest module that is seen near each place of the picture.
+class Depths {
+ public:
+  void add(const Place& place) {
+    for_squares(place, [&](std::int64_t key) {
+      auto [found, is_new] = depths_.try_emplace(key, nearness(place), nearness(place));
+      auto& [furthest, nearest] = found->second;
+      furthest = std::min(furthest, nearness(place));
+      nearest = std::max(nearest, nearness(place));
+    });
+  }
+
+  Layer layer_of(const Place& place) const {
+    bool is_behind = true;
+    bool is_in_front = true;
+    for_squares(place, [&](std::int64_t key) {
+      if (const auto found = depths_.find(key); found != depths_.end()) {
+        is_behind = is_behind && nearness(place) <= found->second.first;
+        is_in_front = is_in_front && nearness(place) >= found->second.second;
+      }
+    });
+    return is_behind ? Layer::kBehind : is_in_front ? Layer::kInFront : Layer::kAmong;
+  }
+
+ private:
+  /// Squares of an edge's length that a body may cover: none is further seen from its node.
+  template <class Use>
+  static void for_squares(const Place& place, Use use) {
+    const ScreenPoint at = seen_at(place);
+    for (double y = std::floor(at.y - 1); y <= at.y + 1; ++y) {
+      for (double x = std::floor(at.x - 1); x <= at.x + 1; ++x) {
+        use(static_cast<std::int64_t>(y) * kRowLength + static_cast<std::int64_t>(x));
+      }
+    }
+  }
+
+  static constexpr std::int64_t kRowLength = std::int64_t{1} << 32U;
+
+  std::unordered_map<std::int64_t, std::pair<double, double>> depths_;  ///< Only ever asked.
+};
+
 /// An index of the modules that hide what is behind them: planned ones are glass.
 model::CellIndex existing_cells(const model::Robot& robot) {
   const std::size_t count = robot.modules().size() - robot.planned_count();
@@ -101,8 +143,9 @@ BodyView::BodyView(const model::Robot& robot, NearObstacles obstacles)
       obstacle_faces_(seen_cell_faces(robot.lattice())) {
   add_modules();
   add_obstacles();
+  sort_obstacles_into_layers();
   std::ranges::sort(items_, {}, [](const BodyItem& item) {
-    return std::tuple(item.nearness, item.is_obstacle, item.index);
+    return std::tuple(item.layer, item.nearness, item.is_obstacle, item.index);
   });
 }
 
@@ -166,6 +209,23 @@ void BodyView::add_obstacles() {
     if (item.hidden_faces != all_faces(obstacle_faces_)) {
       item.nearness = nearness(place_of(item));
       items_.push_back(item);
+    }
+  }
+}
+
+void BodyView::sort_obstacles_into_layers() {
+  if (obstacles_.cells.empty()) {
+    return;
+  }
+  Depths depths;
+  for (const BodyItem& item : items_) {
+    if (!item.is_obstacle) {
+      depths.add(place_of(item));
+    }
+  }
+  for (BodyItem& item : items_) {
+    if (item.is_obstacle) {
+      item.layer = depths.layer_of(place_of(item));
     }
   }
 }

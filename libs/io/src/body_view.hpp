@@ -29,8 +29,13 @@ std::vector<SeenFace> seen_faces(const base::Lattice& lattice);
 /// The same of the cell of an obstacle.
 std::vector<SeenFace> seen_cell_faces(const base::Lattice& lattice);
 
+/// Obstacles are glass. Those that hide nothing of the robot, and those of which it hides nothing,
+/// are drawn as one pane each; only those among its modules come in between.
+enum class Layer : std::uint8_t { kBehind, kAmong, kInFront };
+
 /// Something that is drawn, and may be seen.
 struct BodyItem {
+  Layer layer = Layer::kAmong;
   double nearness = 0;
   std::uint32_t index = 0;  ///< Of a module, or of an obstacle cell.
   bool is_obstacle = false;
@@ -44,7 +49,7 @@ class BodyView {
 
   const NearObstacles& obstacles() const { return obstacles_; }
 
-  /// Back to front.
+  /// Back to front: obstacles behind, then what is among the modules, then obstacles in front.
   std::span<const BodyItem> items() const { return items_; }
 
   base::Cell cell_of(const BodyItem& item) const;
@@ -62,6 +67,7 @@ class BodyView {
  private:
   void add_modules();
   void add_obstacles();
+  void sort_obstacles_into_layers();
   std::uint16_t faces_hidden_by_neighbours(std::size_t module) const;
 
   const model::Robot& robot_;

@@ -7,9 +7,17 @@
 #include "holdfast/model/cell_index.hpp"
 
 namespace holdfast::io {
+
+bool touches_floor(const model::Robot& robot, const model::Facet& facet) {
+  const base::Cell& cell = robot.modules()[static_cast<std::size_t>(facet.module)].cell;
+  return facet.direction == base::down(robot.lattice()) && robot.has_floor() &&
+         cell.z == robot.support_z();
+}
+
 namespace {
 
-constexpr std::int32_t kReach = 1;  // Cells.
+constexpr std::int32_t kReachOfRobot = 1;  // Cells.
+constexpr std::int32_t kReachOfTouch = 2;
 
 struct CellBox {
   base::Cell low;
@@ -21,6 +29,11 @@ struct CellBox {
   }
 };
 
+CellBox widened(const CellBox& box, std::int32_t reach) {
+  return {.low = {box.low.x - reach, box.low.y - reach, box.low.z - reach},
+          .high = {box.high.x + reach, box.high.y + reach, box.high.z + reach}};
+}
+
 CellBox box_near(const model::Robot& robot) {
   CellBox box = {.low = robot.modules().front().cell, .high = robot.modules().front().cell};
   for (const model::Module& module : robot.modules()) {
@@ -30,9 +43,7 @@ CellBox box_near(const model::Robot& robot) {
     box.high = {std::max(box.high.x, cell.x), std::max(box.high.y, cell.y),
                 std::max(box.high.z, cell.z)};
   }
-  box.low = {box.low.x - kReach, box.low.y - kReach, box.low.z - kReach};
-  box.high = {box.high.x + kReach, box.high.y + kReach, box.high.z + kReach};
-  return box;
+  return widened(box, kReachOfRobot);
 }
 
 /// What two boxes share; `low` is above `high` somewhere if that is nothing.
@@ -67,6 +78,8 @@ class Collector {
     }
   }
 
+  bool is_full() const { return near_.are_too_many; }
+
   NearObstacles take() {
     if (near_.are_too_many) {
       near_.cells.clear();
@@ -79,33 +92,60 @@ class Collector {
   model::CellIndex index_{kObstacleCellsMax};
 };
 
-}  // namespace
-
-bool touches_floor(const model::Robot& robot, const model::Facet& facet) {
-  const base::Cell& cell = robot.modules()[static_cast<std::size_t>(facet.module)].cell;
-  return facet.direction == base::down(robot.lattice()) && robot.has_floor() &&
-         cell.z == robot.support_z();
+/// The obstacle cells that facets touch, not the floor.
+std::vector<ObstacleCell> touched_cells(const model::Robot& robot) {
+  std::vector<ObstacleCell> cells;
+  for (const model::Facet& facet : robot.facets()) {
+    if (!touches_floor(robot, facet)) {
+      const base::Cell& cell = robot.modules()[static_cast<std::size_t>(facet.module)].cell;
+      cells.push_back({.cell = base::neighbour(robot.lattice(), cell, facet.direction),
+                       .is_bonded = facet.is_bonded()});
+    }
+  }
+  return cells;
 }
+
+/// Calls `use` with the parts of an obstacle in a box.
+template <class Use>
+void for_parts(const model::Obstacle& obstacle, const CellBox& box, Use use) {
+  if (obstacle.cells.empty()) {
+    use(shared({.low = obstacle.from, .high = obstacle.to}, box));
+  }
+  for (const base::Cell& cell : obstacle.cells) {
+    if (box.contains(cell)) {
+      use(CellBox{.low = cell, .high = cell});
+    }
+  }
+}
+
+bool occupies(const model::Obstacle& obstacle, const base::Cell& cell) {
+  return obstacle.cells.empty() ? CellBox{.low = obstacle.from, .high = obstacle.to}.contains(cell)
+                                : std::ranges::find(obstacle.cells, cell) != obstacle.cells.end();
+}
+
+}  // namespace
 
 NearObstacles obstacles_near(const model::Robot& robot,
                              std::span<const model::Obstacle> obstacles) {
   Collector collector;
+  const std::vector<ObstacleCell> touched = touched_cells(robot);
+  for (const ObstacleCell& one : touched) {
+    collector.add(one.cell, one.is_bonded);
+  }
   const CellBox near = box_near(robot);
   for (const model::Obstacle& obstacle : obstacles) {
-    const bool is_bonded = obstacle.touch.hold == model::Hold::kBonded;
-    if (obstacle.cells.empty()) {
-      collector.add(shared({.low = obstacle.from, .high = obstacle.to}, near), is_bonded);
-    }
-    for (const base::Cell& cell : obstacle.cells) {
-      if (near.contains(cell)) {
-        collector.add(cell, is_bonded);
+    const auto add = [&](const CellBox& box) {
+      collector.add(box, obstacle.touch.hold == model::Hold::kBonded);
+    };
+    bool is_touched = false;
+    for (const ObstacleCell& one : touched) {
+      if (occupies(obstacle, one.cell) && !collector.is_full()) {
+        is_touched = true;
+        for_parts(obstacle, widened({.low = one.cell, .high = one.cell}, kReachOfTouch), add);
       }
     }
-  }
-  for (const model::Facet& facet : robot.facets()) {
-    if (!touches_floor(robot, facet)) {
-      const base::Cell& cell = robot.modules()[static_cast<std::size_t>(facet.module)].cell;
-      collector.add(base::neighbour(robot.lattice(), cell, facet.direction), facet.is_bonded());
+    if (!is_touched) {
+      for_parts(obstacle, near, add);
     }
   }
   return collector.take();

@@ -94,9 +94,21 @@ class Painter {
     std::string out = fmt::format(
         "<g class=\"modules\" stroke=\"{}\" stroke-width=\"{}\" stroke-linejoin=\"round\">\n", kInk,
         number(width));
+    const BodyItem* last = nullptr;
     for (const BodyItem& item : view_.items()) {
-      out += item.is_obstacle ? draw_obstacle(item) : draw_module(item);
+      // Obstacles without a module in between are one pane of glass.
+      const bool was_pane = last != nullptr && last->is_obstacle;
+      const bool continues = was_pane && item.is_obstacle && item.layer == last->layer;
+      out += was_pane && !continues ? "</g>\n" : "";
+      if (item.is_obstacle) {
+        out += continues ? "" : "<g class=\"obstacles\" opacity=\"0.35\">\n";
+        out += draw_obstacle(item);
+      } else {
+        out += draw_module(item);
+      }
+      last = &item;
     }
+    out += last != nullptr && last->is_obstacle ? "</g>\n" : "";
     return out + "</g>\n";
   }
 
@@ -139,10 +151,9 @@ class Painter {
     for (std::size_t face = 0; face < obstacle_stamps_.size(); ++face) {
       if ((item.hidden_faces >> face & 1U) == 0) {
         const Color color = shaded(obstacle_color(is_bonded), view_.obstacle_faces()[face].normal);
-        out += fmt::format(
-            "<path class=\"obstacle\" fill=\"{0}\" fill-opacity=\"0.3\" stroke=\"{0}\" "
-            "stroke-opacity=\"0.55\" d=\"{1}\"/>\n",
-            hex(color), obstacle_stamps_[face].path_at(centre_of(item)));
+        out += fmt::format("<path class=\"obstacle\" fill=\"{}\" stroke=\"{}\" d=\"{}\"/>\n",
+                           hex(lightened(color, 30)), hex(color),
+                           obstacle_stamps_[face].path_at(centre_of(item)));
       }
     }
     return out;

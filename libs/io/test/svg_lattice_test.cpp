@@ -328,18 +328,28 @@ TEST(SvgLattice, planned_modules_are_glass_in_their_place_of_the_order) {
 }
 
 TEST(SvgLattice, obstacles_show_the_faces_that_no_other_obstacle_hides) {
-  // A floor of 3 x 3 cells below a cube: nine tops, three left and three right sides. A box far
-  // larger is cut off one cell around the robot: the same.
-  for (const std::int32_t reach : {1, 900'000}) {
+  // A floor of 5 x 5 cells below a cube: 25 tops, five left and five right sides. A box far
+  // larger is cut off two cells around what is touched, and has three layers.
+  for (const auto& [reach, count] : {std::pair(2, 25U + 10 + 10), {900'000, 25U + 15 + 15}}) {
     model::RobotSpec spec = {.existing = {{0, 0, 0}}};
     spec.support_z = {};
     spec.obstacles = {{.from = {-reach, -reach, -reach}, .to = {reach, reach, -1}}};
     const Picture picture(write_svg(make(spec), {}, "floor", spec.obstacles));
-    EXPECT_EQ(picture.all("obstacle").size(), 15U);
+    EXPECT_EQ(picture.all("obstacle").size(), count);
     EXPECT_NE(picture.texts("legend").find("obstacle"), std::string::npos);
-    for (const pugi::xml_node& face : picture.all("obstacle")) {
-      EXPECT_LT(face.attribute("fill-opacity").as_double(1), 0.5);
+    for (const pugi::xml_node& pane : picture.all("obstacles")) {
+      EXPECT_LT(pane.attribute("opacity").as_double(1), 0.5);
     }
+  }
+}
+
+TEST(SvgLattice, an_obstacle_that_nothing_touches_is_drawn_beside_the_robot) {
+  // A wall two cells away from a cube is too far, one that leaves a gap of none is not.
+  for (const auto& [x, count] : {std::pair(2, 0U), {1, 3U + 9 + 3}}) {
+    model::RobotSpec spec = {.existing = {{0, 0, 0}}, .fixed = {{0, 0, 0}}};
+    spec.obstacles = {{.from = {x, -50, -50}, .to = {x, 50, 50}}};
+    const Picture picture(write_svg(make(spec), {}, "wall", spec.obstacles));
+    EXPECT_EQ(picture.all("obstacle").size(), count);
   }
 }
 

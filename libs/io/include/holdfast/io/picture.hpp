@@ -22,8 +22,9 @@ namespace holdfast::io {
 std::string write_svg(const model::Robot& robot, const verdict::Assessment& assessment,
                       std::string_view title, std::span<const model::Obstacle> obstacles = {});
 
-/// Writes a VTK XML unstructured grid (.vtu, compressed binary) for ParaView: one hexahedron per
-/// module with load ratio, displacement and ground force, one line per connection with its forces.
+/// Writes a VTK XML unstructured grid (.vtu, compressed binary) for ParaView: one cell per module,
+/// in the shape of its lattice, with load ratio, displacement and ground force, one line per
+/// connection with its forces, one square per facet that touches with its state and force.
 /// Field names and units are in docs/formats.md. A stream that can be sought in gets it in a fixed
 /// amount of memory; any other gets it at the end. Ends early if the stream fails.
 void write_vtu(std::ostream& out, const model::Robot& robot, const verdict::Assessment& assessment,
