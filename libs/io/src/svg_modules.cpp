@@ -221,10 +221,10 @@ namespace {
 std::string touch_text(const model::Robot& robot, std::size_t module) {
   std::size_t obstacle_count = 0;
   bool is_on_floor = false;
-  const auto facets = std::ranges::equal_range(robot.facets(), static_cast<std::int32_t>(module),
-                                               {}, &model::Facet::module);
-  for (const model::Facet& facet : facets) {
-    const bool is_floor = touches_floor(robot, facet);
+  const auto index = static_cast<std::int32_t>(module);
+  auto facet = std::ranges::lower_bound(robot.facets(), index, {}, &model::Facet::module);
+  for (; facet != robot.facets().end() && facet->module == index; ++facet) {
+    const bool is_floor = touches_floor(robot, *facet);
     is_on_floor = is_on_floor || is_floor;
     obstacle_count += is_floor ? 0 : 1;
   }

@@ -238,8 +238,8 @@ TEST_P(EveryLattice, every_module_that_is_seen_is_drawn_once) {
     ++counts[one.cell];
   }
   const View view(drawn, lattice, spec.existing);
-  for (double x = view.edges().low.x; x < view.edges().high.x; x += 0.05) {
-    for (double y = view.edges().low.y; y < view.edges().high.y; y += 0.05) {
+  for (double x = view.edges().low.x; x < view.edges().high.x; x += 0.09) {
+    for (double y = view.edges().low.y; y < view.edges().high.y; y += 0.09) {
       const std::string met = first_met(lattice, spec.existing, {x, y});
       ASSERT_TRUE(met.empty() || counts[met] == 1) << met;
     }
@@ -280,7 +280,7 @@ void add_places(const pugi::xml_node& node, Bounds& bounds) {
 
 TEST_P(EveryLattice, nothing_lies_outside_of_the_picture) {
   const base::Lattice& lattice = GetParam().lattice;
-  for (std::uint32_t seed = 0; seed < 10; ++seed) {
+  for (std::uint32_t seed = 0; seed < 5; ++seed) {
     model::RobotSpec spec = random_lattice_robot(lattice, seed, 5 + 20 * seed, 2);
     spec.obstacles = {{.from = {-500'000, -500'000, -40}, .to = {500'000, 500'000, -1}}};
     spec.payloads = {{.cell = spec.existing.back(), .force_n = {1, 2, -3}, .torque_nmm = {0, 9, 0}},
