@@ -113,6 +113,13 @@ Entry mass_entry() {
           }};
 }
 
+Entry facet_entry(const FacetSign& sign) {
+  return {.label = sign.label, .draw = [attributes = sign.attributes](ScreenPoint at) {
+            return fmt::format("<path {} stroke-width=\"1.3\" d=\"M{} {}l10-5 10 5-10 5z\"/>\n",
+                               attributes, number(at.x - 3), number(at.y + 7));
+          }};
+}
+
 /// Only what occurs in the picture.
 std::vector<Entry> entries(const Scene& scene) {
   std::vector<Entry> list;
@@ -132,6 +139,17 @@ std::vector<Entry> entries(const Scene& scene) {
   if (scene.has_polygon()) {
     list.push_back(polygon_entry());
     list.push_back(mass_entry());
+  }
+  for (const ObstacleSign& sign : obstacle_signs(scene)) {
+    list.push_back(swatch_entry(
+        sign.label,
+        fmt::format("fill=\"{0}\" fill-opacity=\"0.3\" stroke=\"{0}\"", hex(sign.color))));
+  }
+  for (const FacetSign& sign : facet_signs(scene)) {
+    list.push_back(facet_entry(sign));
+  }
+  if (has_payload_signs(scene)) {
+    list.push_back({.label = "payload", .draw = payload_sign});
   }
   return list;
 }
