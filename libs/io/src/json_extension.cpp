@@ -253,7 +253,8 @@ std::string own_place(const OwnParameters& own) {
 
 /// The readers of kExtensionKeys, in their order.
 constexpr void (*kReaders[])(JsonReading&, const Json&, const Place&) = {
-    pass_over, read_floor, read_gravity, read_kinds, read_obstacles, read_loads, read_steps};
+    pass_over,  pass_over,      read_floor, read_gravity,
+    read_kinds, read_obstacles, read_loads, read_steps};
 static_assert(std::size(kReaders) == kExtensionKeys.size());
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "holdfast/io/document.hpp"
+#include "robot_defaults.hpp"
 #include "text_input.hpp"
 #include "vocabulary.hpp"
 
@@ -70,6 +71,7 @@ void apply(const Connectors& connectors, const base::Lattice& lattice, model::Mo
 std::vector<model::ModuleKind> kinds_of(const Document& document) {
   const Extension& extension = document.extension;
   model::ModuleKind plain = model::default_kind(document.material, extension.lattice);
+  apply(robot_connectors(extension.robot), extension.lattice, plain);
   apply(extension.connectors, extension.lattice, plain);
   std::vector<model::ModuleKind> kinds = {plain};
   for (const KindEntry& entry : extension.kinds) {
@@ -157,7 +159,8 @@ base::Result<model::RobotSpec> make_spec(const Document& document) {
   if (auto error = add_own(document, kinds, spec)) {
     return *std::move(error);
   }
-  if (!spec.own_kinds.empty() || extension.connectors != Connectors{}) {
+  if (!spec.own_kinds.empty() || extension.connectors != Connectors{} ||
+      robot_connectors(extension.robot) != Connectors{}) {
     spec.kinds = std::move(kinds);
   }
   return spec;

@@ -257,7 +257,7 @@ void expect_refusal(const std::string& text, std::string_view where, std::string
 
 TEST(Version2, has_keys_that_are_errors_in_version_1) {
   for (const char* key :
-       {"lattice", "floor", "gravity_m_s2", "kinds", "obstacles", "loads", "steps"}) {
+       {"robot", "lattice", "floor", "gravity_m_s2", "kinds", "obstacles", "loads", "steps"}) {
     expect_refusal(document_test::json(R"("modules": [], ")" + std::string(key) + R"(": 0)"),
                    "/" + std::string(key), "is one of version 2, the document says version 1");
   }

@@ -77,7 +77,7 @@ TEST(VisibleSimLattice, is_written_where_it_is_not_cubic_and_read_back) {
 TEST(VisibleSimLattice, that_is_asked_for_must_be_that_of_the_file) {
   const std::string text = world("", kCatoms, R"(<holdfast lattice="hexagonal"/>)");
   const base::Error xml = refused(text, {.lattice = base::kFaceCentred});
-  EXPECT_EQ(xml.where, "line 1");
+  EXPECT_EQ(xml.where, "line 2");  // After the two lines of the blocks.
   EXPECT_TRUE(contains(xml.message, "is 'hexagonal' here, but 'face-centred' is asked for"));
   const auto json = read_json(
       R"({"format": "holdfast-structure", "version": 2, "modules": [], "lattice": "cubic"})",

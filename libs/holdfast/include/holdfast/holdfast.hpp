@@ -12,18 +12,19 @@
 #include <utility>
 #include <vector>
 
-#include "holdfast/base/cell.hpp"           // IWYU pragma: export
-#include "holdfast/base/result.hpp"         // IWYU pragma: export
-#include "holdfast/host/large_pages.hpp"    // IWYU pragma: export
-#include "holdfast/host/output_file.hpp"    // IWYU pragma: export
-#include "holdfast/io/beside_one.hpp"       // IWYU pragma: export
-#include "holdfast/io/document.hpp"         // IWYU pragma: export
-#include "holdfast/io/lattice_names.hpp"    // IWYU pragma: export
-#include "holdfast/io/picture.hpp"          // IWYU pragma: export
-#include "holdfast/io/report.hpp"           // IWYU pragma: export
-#include "holdfast/model/robot.hpp"         // IWYU pragma: export
-#include "holdfast/proof/proof.hpp"         // IWYU pragma: export
-#include "holdfast/verdict/assessment.hpp"  // IWYU pragma: export
+#include "holdfast/base/cell.hpp"              // IWYU pragma: export
+#include "holdfast/base/result.hpp"            // IWYU pragma: export
+#include "holdfast/host/large_pages.hpp"       // IWYU pragma: export
+#include "holdfast/host/output_file.hpp"       // IWYU pragma: export
+#include "holdfast/io/beside_one.hpp"          // IWYU pragma: export
+#include "holdfast/io/document.hpp"            // IWYU pragma: export
+#include "holdfast/io/lattice_names.hpp"       // IWYU pragma: export
+#include "holdfast/io/picture.hpp"             // IWYU pragma: export
+#include "holdfast/io/report.hpp"              // IWYU pragma: export
+#include "holdfast/model/robot.hpp"            // IWYU pragma: export
+#include "holdfast/model/robot_catalogue.hpp"  // IWYU pragma: export
+#include "holdfast/proof/proof.hpp"            // IWYU pragma: export
+#include "holdfast/verdict/assessment.hpp"     // IWYU pragma: export
 
 /// The facade: load a structure or make a robot of cells, check it, show the answer. Everything an
 /// application needs.
