@@ -60,8 +60,7 @@ class PassiveSet {
       step_towards(best);
     }
     remainder_ = load_ + columns_ * shares_;
-    constexpr double kStep = 1e-12;  // Less is rounding.
-    return remainder_.squaredNorm() < before * (1 - kStep);
+    return remainder_.squaredNorm() < before;
   }
 
  private:
