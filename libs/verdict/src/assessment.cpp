@@ -7,8 +7,8 @@
 #include <limits>
 #include <utility>
 
-#include "holdfast/verdict/connection_law.hpp"
 #include "holdfast/host/team.hpp"
+#include "holdfast/verdict/connection_law.hpp"
 #include "several_solutions.hpp"
 #include "stability.hpp"
 
