@@ -64,8 +64,6 @@ limit::RigidStability floor_stability(const model::Robot& robot, const RigidBody
   }
   rigid.tilt_margin_deg = margin > 0 ? std::atan2(margin, height_mm) * 180 / std::numbers::pi : 0;
   if (margin < 0 && body.edge) {
-    const double floor =
-        node_mm(robot, base::at(robot.facets().front().module))[2] - robot.material().pitch_mm / 2;
     const auto& [from, to] = *body.edge;
     const Vector3 axis = {to.x - from.x, to.y - from.y, 0};
     const Vector3 arm = {body.centre_of_mass.x - from.x, body.centre_of_mass.y - from.y, height_mm};
