@@ -176,7 +176,8 @@ std::string report_text(const Structure& structure, const CheckResult& result) {
 }
 
 std::string picture_svg(const Structure& structure, const CheckResult& result) {
-  return io::write_svg(structure.robot, result.assessment, structure.name);
+  return io::write_svg(structure.robot, result.assessment, structure.name,
+                       structure.document.extension.obstacles);
 }
 
 std::string picture_vtu(const Structure& structure, const CheckResult& result) {

@@ -213,7 +213,7 @@ std::string draw_ground(const Scene& scene) {
 
 std::string draw_balance(const Scene& scene) {
   if (!scene.has_polygon()) {
-    return {};
+    return draw_fall(scene);
   }
   // Not wider than a small robot itself.
   const double width = 1.3 * std::clamp(scene.projection.edge_px / 10, 0.4, 1.0);

@@ -208,7 +208,9 @@ void Scene::mark_bodies() {
 }
 
 double Scene::ground_z() const {
-  return base::node_place(robot.lattice(), {0, 0, robot.support_z()})[2] - 0.5;
+  // Where there is a polygon all facets are in its plane.
+  const auto& facet = robot.facets().front();
+  return facet_centre(facet.module, facet.direction).z;
 }
 
 LatticePoint Scene::floor_point(double x, double y) const {
@@ -239,9 +241,9 @@ LatticePoint Scene::centre_of_mass() const {
     sum_of_moments += mass * base::node_place(robot.lattice(), robot.modules()[i].cell)[2];
     sum_of_masses += mass;
   }
-  LatticePoint point = on_ground(assessment.simplified.centre_of_mass);
-  point.z = sum_of_moments / sum_of_masses;
-  return point;
+  const auto& [x, y] = assessment.simplified.centre_of_mass;
+  const double pitch = robot.material().pitch_mm;
+  return {x / pitch, y / pitch, sum_of_moments / sum_of_masses};
 }
 
 bool Scene::covers(ScreenPoint point) const {

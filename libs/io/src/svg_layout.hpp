@@ -83,7 +83,7 @@ struct Scene {
   double card_width = 0;
   Box drawing;  ///< Pixels that the drawing may use.
 
-  /// Of the floor.
+  /// Of the plane of the support polygon, if there is one.
   double ground_z() const;
 
   /// Something rests on the ground, so there is a support polygon.

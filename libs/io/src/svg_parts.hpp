@@ -82,6 +82,13 @@ std::string arrow(ScreenPoint from, ScreenPoint to, const std::string& color);
 /// What the robot hides of its support polygon, the centre of mass, the edge it topples over.
 std::string draw_balance(const Scene& scene);
 
+/// How the robot begins to fall where no polygon says so; null if it does not, or that is not
+/// known.
+const limit::Motion* fall_of(const Scene& scene);
+
+/// That motion: over which edge or about which axis, and where the centre of mass goes.
+std::string draw_fall(const Scene& scene);
+
 /// What labels should not hide: the centre of mass, its foot, the toppling edge and its arrow.
 std::vector<ScreenPoint> balance_signs(const Scene& scene);
 

@@ -463,6 +463,23 @@ TEST(SvgLattice, payloads_and_tilted_gravity_are_arrows) {
   EXPECT_NE(picture.texts("legend").find("payload"), std::string::npos);
 }
 
+TEST(SvgLattice, what_falls_without_a_polygon_shows_over_which_edge) {
+  // A tower of three cubes on a slope of 30 degrees along x, half as wide as would do: it tips over
+  // its +x edge, which goes to the upper right on the picture, to the lower right.
+  model::RobotSpec spec = {.existing = {{0, 0, 0}, {0, 0, 1}, {0, 0, 2}}};
+  spec.gravity_m_s2 = {9.81 / 2, 0, -9.81 * std::sqrt(0.75)};
+  const Picture picture(draw(spec));
+  const auto pivots = polygons(picture.one("pivot").attribute("d").value());
+  ASSERT_EQ(pivots.size(), 1U);
+  const Polygon& edge = pivots.front();
+  ASSERT_EQ(edge.size(), 2U);
+  EXPECT_NEAR((edge[1].y - edge[0].y) / (edge[1].x - edge[0].x), -std::sqrt(1.0 / 3), 1e-3);
+  const pugi::xml_node arrow = picture.one("fall").child("line");
+  EXPECT_GT(arrow.attribute("x2").as_double(), arrow.attribute("x1").as_double() + 10);
+  EXPECT_NE(picture.texts("verdict").find("tips over the edge"), std::string::npos);
+  EXPECT_NE(picture.texts("legend").find("centre of mass"), std::string::npos);
+}
+
 TEST(SvgLattice, a_huge_robot_is_a_picture_of_few_bytes) {
   // 65,000 prisms, each smaller than two pixels: no more than the pixels.
   model::RobotSpec spec = {.existing = box(500, 130, 1)};
