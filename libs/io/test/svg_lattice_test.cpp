@@ -343,6 +343,25 @@ TEST(SvgLattice, obstacles_show_the_faces_that_no_other_obstacle_hides) {
   }
 }
 
+TEST(SvgLattice, an_obstacle_looks_the_same_as_a_box_and_as_a_list) {
+  for (const std::int32_t x : {1, 2}) {  // Touched by the robot, and one cell away from it.
+    model::RobotSpec spec = {.existing = {{0, 0, 0}, {0, 0, 1}, {0, 1, 1}}};
+    spec.lattice = base::kHexagonalPrism;
+    const model::Obstacle wall = {.from = {x, -9, 0}, .to = {x, 9, 7}};
+    model::Obstacle list;
+    for (const Cell& cell : box(1, 19, 8)) {
+      list.cells.push_back({x, cell.y - 9, cell.z});
+    }
+    const auto draw_with = [&](const model::Obstacle& obstacle) {
+      spec.obstacles = {obstacle};
+      return write_svg(make(spec), {}, "", spec.obstacles);
+    };
+    const std::string picture = draw_with(wall);
+    EXPECT_EQ(Picture(picture).all("obstacle").empty(), x == 2);
+    EXPECT_EQ(picture, draw_with(list));
+  }
+}
+
 TEST(SvgLattice, an_obstacle_that_nothing_touches_is_drawn_beside_the_robot) {
   // A wall two cells away from a cube is too far, one that leaves a gap of none is not.
   for (const auto& [x, count] : {std::pair(2, 0U), {1, 3U + 9 + 3}}) {
