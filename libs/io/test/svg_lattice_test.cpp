@@ -380,6 +380,19 @@ TEST(SvgLattice, an_obstacle_that_nothing_touches_is_drawn_beside_the_robot) {
   }
 }
 
+TEST(SvgLattice, a_floor_that_is_touched_is_a_grid_with_the_numbers_of_the_cells) {
+  // With a wall beside it there is no support polygon, but still a floor.
+  model::RobotSpec spec = {.existing = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}}};
+  spec.lattice = base::kHexagonalPrism;
+  spec.obstacles = {{.from = {-1, 0, 0}, .to = {-1, 0, 3}}};
+  EXPECT_NE(draw(spec).find("class=\"coordinates\""), std::string::npos);
+  EXPECT_EQ(draw(spec).find("support-polygon"), std::string::npos);
+  // In the air there is none.
+  spec.support_z = -1;
+  spec.obstacles.front().touch.hold = model::Hold::kBonded;
+  EXPECT_EQ(draw(spec).find("class=\"coordinates\""), std::string::npos);
+}
+
 TEST(SvgLattice, what_facets_touch_is_drawn_even_if_obstacles_are_not_given) {
   model::RobotSpec spec = {.existing = {{0, 0, 0}}};
   spec.lattice = base::kFaceCentred;
