@@ -92,7 +92,7 @@ TEST(Hanging, catoms_carry_what_statics_say) {
     // Solved to about 1e-12 of the largest.
     EXPECT_NEAR(found.axial_n, axial, 1e-8);
     EXPECT_NEAR(found.bending_nmm, bending, 1e-6);
-    EXPECT_NEAR(found.torsion_nmm, std::abs(dot(moment, n)), 1e-6);
+    EXPECT_NEAR(std::abs(found.torsion_nmm), std::abs(dot(moment, n)), 1e-6);
     EXPECT_NEAR(found.shear_n, std::hypot(dot(force, x), dot(force, y)), 1e-8);
     EXPECT_NEAR(found.load_ratio, ratio, 1e-9);
     largest = std::max(largest, ratio);

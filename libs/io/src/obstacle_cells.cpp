@@ -54,6 +54,20 @@ CellBox shared(const CellBox& a, const CellBox& b) {
                std::min(a.high.z, b.high.z)}};
 }
 
+/// Calls `use` with every cell of a box until that returns false.
+template <class Use>
+void for_cells(const CellBox& box, Use use) {
+  for (std::int32_t z = box.low.z; z <= box.high.z; ++z) {
+    for (std::int32_t y = box.low.y; y <= box.high.y; ++y) {
+      for (std::int32_t x = box.low.x; x <= box.high.x; ++x) {
+        if (!use(base::Cell{x, y, z})) {
+          return;
+        }
+      }
+    }
+  }
+}
+
 /// Takes cells, each once, as long as they are not too many.
 class Collector {
  public:
@@ -65,16 +79,6 @@ class Collector {
     const auto index = static_cast<std::int32_t>(near_.cells.size());
     if (index_.insert(cell, index) == model::CellIndex::kNone) {
       near_.cells.push_back({.cell = cell, .is_bonded = is_bonded});
-    }
-  }
-
-  void add(const CellBox& box, bool is_bonded) {
-    for (std::int32_t z = box.low.z; z <= box.high.z && !near_.are_too_many; ++z) {
-      for (std::int32_t y = box.low.y; y <= box.high.y && !near_.are_too_many; ++y) {
-        for (std::int32_t x = box.low.x; x <= box.high.x && !near_.are_too_many; ++x) {
-          add(base::Cell{x, y, z}, is_bonded);
-        }
-      }
     }
   }
 
@@ -105,47 +109,77 @@ std::vector<ObstacleCell> touched_cells(const model::Robot& robot) {
   return cells;
 }
 
-/// Calls `use` with the parts of an obstacle in a box.
-template <class Use>
-void for_parts(const model::Obstacle& obstacle, const CellBox& box, Use use) {
+/// What an obstacle occupies.
+class Occupied {
+ public:
+  explicit Occupied(const model::Obstacle& obstacle)
+      : box_{.low = obstacle.from, .high = obstacle.to}, cells_(obstacle.cells.size()) {
+    for (const base::Cell& cell : obstacle.cells) {
+      cells_.insert(cell, 0);
+    }
+    is_list_ = !obstacle.cells.empty();
+  }
+
+  bool contains(const base::Cell& cell) const {
+    return is_list_ ? cells_.find(cell) != model::CellIndex::kNone : box_.contains(cell);
+  }
+
+  /// Adds what of it lies in a box.
+  void add_to(Collector& collector, const CellBox& box, bool is_bonded) const {
+    const CellBox& part = is_list_ ? box : shared(box, box_);
+    for_cells(part, [&](const base::Cell& cell) {
+      if (contains(cell)) {
+        collector.add(cell, is_bonded);
+      }
+      return !collector.is_full();
+    });
+  }
+
+ private:
+  CellBox box_;
+  model::CellIndex cells_;
+  bool is_list_ = false;
+};
+
+/// Adds an obstacle that nothing touches: of a box its part, of a list the cells near the robot.
+void add_untouched(const model::Obstacle& obstacle, const Occupied& occupied, const CellBox& near,
+                   bool is_bonded, Collector& collector) {
   if (obstacle.cells.empty()) {
-    use(shared({.low = obstacle.from, .high = obstacle.to}, box));
+    occupied.add_to(collector, near, is_bonded);
   }
   for (const base::Cell& cell : obstacle.cells) {
-    if (box.contains(cell)) {
-      use(CellBox{.low = cell, .high = cell});
+    if (near.contains(cell)) {
+      collector.add(cell, is_bonded);
     }
   }
-}
-
-bool occupies(const model::Obstacle& obstacle, const base::Cell& cell) {
-  return obstacle.cells.empty() ? CellBox{.low = obstacle.from, .high = obstacle.to}.contains(cell)
-                                : std::ranges::find(obstacle.cells, cell) != obstacle.cells.end();
 }
 
 }  // namespace
 
 NearObstacles obstacles_near(const model::Robot& robot,
                              std::span<const model::Obstacle> obstacles) {
-  Collector collector;
   const std::vector<ObstacleCell> touched = touched_cells(robot);
+  if (obstacles.empty() && touched.empty()) {
+    return {};
+  }
+  Collector collector;
   for (const ObstacleCell& one : touched) {
     collector.add(one.cell, one.is_bonded);
   }
   const CellBox near = box_near(robot);
   for (const model::Obstacle& obstacle : obstacles) {
-    const auto add = [&](const CellBox& box) {
-      collector.add(box, obstacle.touch.hold == model::Hold::kBonded);
-    };
+    const bool is_bonded = obstacle.touch.hold == model::Hold::kBonded;
+    const Occupied occupied(obstacle);
     bool is_touched = false;
     for (const ObstacleCell& one : touched) {
-      if (occupies(obstacle, one.cell) && !collector.is_full()) {
+      if (occupied.contains(one.cell)) {
         is_touched = true;
-        for_parts(obstacle, widened({.low = one.cell, .high = one.cell}, kReachOfTouch), add);
+        const CellBox around = widened({.low = one.cell, .high = one.cell}, kReachOfTouch);
+        occupied.add_to(collector, around, is_bonded);
       }
     }
     if (!is_touched) {
-      for_parts(obstacle, near, add);
+      add_untouched(obstacle, occupied, near, is_bonded, collector);
     }
   }
   return collector.take();

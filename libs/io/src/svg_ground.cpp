@@ -197,17 +197,19 @@ std::vector<ScreenPoint> balance_signs(const Scene& scene) {
 }
 
 std::string draw_ground(const Scene& scene) {
-  if (!scene.has_polygon()) {
+  if (!scene.has_polygon() && !scene.has_grid()) {
     return {};
   }
   std::string out = "<g class=\"ground\">\n";
   if (scene.has_grid()) {
     out += draw_grid(scene) + draw_numbers(scene);
   }
-  out += fmt::format(
-      "<path class=\"support-polygon\" fill=\"#9cc3d1\" fill-opacity=\"0.55\" "
-      "stroke=\"{}\" stroke-width=\"1.6\" stroke-linejoin=\"round\" d=\"{}\"/>\n",
-      kGroundInk, polygon_path(scene));
+  if (scene.has_polygon()) {
+    out += fmt::format(
+        "<path class=\"support-polygon\" fill=\"#9cc3d1\" fill-opacity=\"0.55\" "
+        "stroke=\"{}\" stroke-width=\"1.6\" stroke-linejoin=\"round\" d=\"{}\"/>\n",
+        kGroundInk, polygon_path(scene));
+  }
   return out + "</g>\n";
 }
 

@@ -213,12 +213,29 @@ double Scene::ground_z() const {
   return facet_centre(facet.module, facet.direction).z;
 }
 
+double Scene::floor_z() const {
+  return base::node_place(robot.lattice(), {0, 0, robot.support_z()})[2] - 0.5;
+}
+
+bool Scene::has_grid() const {
+  if (!robot.has_floor() || plan.first.z < robot.support_z()) {
+    return false;
+  }
+  // Cubes on a floor that a fixed module holds have none.
+  const bool is_general =
+      bodies || assessment.stability_rule == verdict::StabilityRule::kContactForces;
+  return has_polygon() ||
+         (is_general && std::ranges::any_of(robot.facets(), [&](const model::Facet& facet) {
+            return touches_floor(robot, facet);
+          }));
+}
+
 LatticePoint Scene::floor_point(double x, double y) const {
   const Place origin = base::node_place(robot.lattice(), {0, 0, robot.support_z()});
   const Place right = base::place_of(robot.lattice(), {1, 0, 0});
   const Place back = base::place_of(robot.lattice(), {0, 1, 0});
   return LatticePoint(
-      sum({origin[0], origin[1], ground_z()}, sum(scaled(x, right), scaled(y, back))));
+      sum({origin[0], origin[1], floor_z()}, sum(scaled(x, right), scaled(y, back))));
 }
 
 LatticePoint Scene::facet_centre(std::int32_t module, base::Direction direction) const {

@@ -86,13 +86,14 @@ struct Scene {
   /// Of the plane of the support polygon, if there is one.
   double ground_z() const;
 
+  /// Of the floor, if there is one.
+  double floor_z() const;
+
   /// Something rests on the ground, so there is a support polygon.
   bool has_polygon() const { return !assessment.simplified.polygon.empty(); }
 
-  /// The ground is shown as a plane: nothing hangs below it.
-  bool has_grid() const {
-    return has_polygon() && robot.has_floor() && plan.first.z >= robot.support_z();
-  }
+  /// The floor is shown as a plane: something touches it, and nothing hangs below it.
+  bool has_grid() const;
 
   LatticePoint on_ground(verdict::PlanPoint point) const;
 

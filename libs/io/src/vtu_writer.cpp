@@ -12,6 +12,7 @@
 
 #include "holdfast/io/picture.hpp"
 #include "holdfast/model/lattice_beam.hpp"
+#include "holdfast/verdict/connection_law.hpp"
 #include "module_paint.hpp"
 #include "vtu_arrays.hpp"
 #include "vtu_shape.hpp"
@@ -29,6 +30,7 @@ constexpr std::uint8_t kVtkLine = 3;
 constexpr std::uint8_t kVtkQuad = 9;
 constexpr std::int8_t kNotOnGround = -1;
 constexpr std::int8_t kNoDirection = -1;
+constexpr std::int8_t kNoLimit = -1;
 constexpr std::size_t kFacetCornerCount = 4;
 
 /// A facet's corners in its frame, in halves of its width.
@@ -117,6 +119,7 @@ class Writer {
         connection_count_(robot.connections().size()),
         facet_count_(robot.facets().size()),
         shape_(vtu_shape(robot.lattice())),
+        laws_(robot),
         paints_(paint_modules(robot, assessment)),
         is_broken_(connection_count_, false),
         has_loads_(has_loads(robot, assessment)),
@@ -366,6 +369,16 @@ class Writer {
     announce_connection_number("bending_nmm", &verdict::ConnectionResult::bending_nmm);
     announce_connection_number("shear_n", &verdict::ConnectionResult::shear_n);
     announce_connection_number("torsion_nmm", &verdict::ConnectionResult::torsion_nmm);
+    announce_cell_array(
+        "limit", always(kNoLimit),
+        [this](std::size_t i) {
+          return has_loads_ ? static_cast<std::int8_t>(
+                                  laws_.limit(robot_.connections()[i], assessment_.connections[i]))
+                            : kNoLimit;
+        },
+        always(kNoLimit));
+    announce_cell_array(
+        "gap_mm", always(0.0), [this](std::size_t i) { return gap(i); }, always(0.0));
     const auto load = [this](std::size_t i) { return robot_.loads()[i]; };
     announce_cell_array(
         "load_n", [load](std::size_t i) { return first_half(load(i)); }, always(Triple{}),
@@ -373,6 +386,14 @@ class Writer {
     announce_cell_array(
         "load_nmm", [load](std::size_t i) { return second_half(load(i)); }, always(Triple{}),
         always(Triple{}));
+  }
+
+  double gap(std::size_t connection) const {
+    const solver::Equilibrium& equilibrium = assessment_.equilibrium;
+    return has_loads_ && equilibrium.displacement.size() == module_count_
+               ? laws_.gap_mm(robot_.connections()[connection], equilibrium.displacement,
+                              equilibrium.displacement_low)
+               : 0;
   }
 
   base::Vec6<double> ground_force(std::size_t module) const {
@@ -423,6 +444,7 @@ class Writer {
   std::size_t connection_count_;
   std::size_t facet_count_;
   VtuShape shape_;
+  verdict::ConnectionLaws laws_;
   std::vector<model::Rotation<double>> axes_;  ///< Of facets, by direction.
   std::vector<ModulePaint> paints_;
   std::vector<bool> is_broken_;  ///< By connection.

@@ -58,7 +58,7 @@ TEST(Vtu, every_array_has_one_value_per_point_or_cell) {
   };
   expect_count("Points", grid.point_count(), 1);
   expect_count("PointData", grid.point_count(), 1);
-  expect_count("CellData", grid.cell_count(), 20);
+  expect_count("CellData", grid.cell_count(), 22);
   // Every cube has its own points; lines share the centres of modules, which come behind; then
   // every facet has its own.
   const auto connectivity = grid.numbers("connectivity");
@@ -115,6 +115,11 @@ TEST(Vtu, an_arm_carries_what_statics_say) {
   EXPECT_NEAR(grid.numbers("shear_n")[first], 3 * kWeight, 1e-8);
   EXPECT_NEAR(grid.numbers("axial_n")[first], 0, 1e-8);
   EXPECT_NEAR(grid.numbers("torsion_nmm")[first], 0, 1e-8);
+  // The facet's edge opens by the angle M L / E I times half a facet.
+  EXPECT_NEAR(grid.numbers("gap_mm")[first],
+              kWeight * kPitch * 4.5 * kPitch / kBendingStiffness * 20, 1e-8);
+  EXPECT_EQ(grid.numbers("limit")[first], 0);  // It would open.
+  EXPECT_EQ(grid.numbers("limit")[0], -1);
   const double ratio = 9 * kWeight / 14.97;
   const auto ratios = grid.numbers("load_ratio");
   EXPECT_NEAR(ratios[first], ratio, 1e-8);
