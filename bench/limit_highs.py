@@ -3,10 +3,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """limit_highs.py HOLDFAST [COUNT] [SEED]   limit loads beside another solver and formulation.
 
-Makes COUNT random robots (1,000) of all lattices, has HOLDFAST find their limit loads (check --limit)
-and finds them once more with SciPy's HiGHS: six forces per connection as variables and every limit
-as rows, cones by polygons of 32 sides within and around. Both must agree to a millionth, or overlap
-where there are cones. Needs python3-scipy. Exits 1 if any disagree.
+Makes COUNT random robots (1,000) of all lattices, has HOLDFAST find their limit loads (check
+--limit) and finds them once more with SciPy's HiGHS: six forces per connection as variables and
+every limit as rows, cones by polygons of 32 sides within and around. Both must agree to a
+millionth, or overlap where there are cones. Needs python3-scipy. Exits 1 if any disagree.
 """
 import json
 import math
@@ -114,8 +114,9 @@ class Program:
                 moment = np.cross(lever, axes[k])
                 for row in range(3):
                     self.balance.append((6 * module + row, begin + k, sign * axes[k][row]))
-                    self.balance.append((6 * module + 3 + row, begin + k, sign * moment[row] / PITCH))
-                    self.balance.append((6 * module + 3 + row, begin + 3 + k, sign * axes[k][row]))
+                    turning = 6 * module + 3 + row
+                    self.balance.append((turning, begin + k, sign * moment[row] / PITCH))
+                    self.balance.append((turning, begin + 3 + k, sign * axes[k][row]))
         return begin
 
     def limit(self, terms, bound):
