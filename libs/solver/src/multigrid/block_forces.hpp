@@ -94,5 +94,14 @@ inline Wide wide_product(const LatticeView<float>& level, const Six<float>* p, s
   return sum;
 }
 
+/// (K p)_node of a finest level in compressed rows, in double precision.
+inline Wide wide_product(const ClusterView<float>& level, const Six<float>* p, std::size_t node) {
+  Wide sum = multiply(level.diagonal_double[level.type[node]], widened(p[node]));
+  for (std::int32_t e = level.start[node]; e < level.start[node + 1]; ++e) {
+    sum += multiply(level.blocks_double[level.block[e]], widened(p[level.other[e]]));
+  }
+  return sum;
+}
+
 }  // namespace
 }  // namespace holdfast::solver

@@ -79,8 +79,8 @@ inline void add(const Six<float>* rough, Six<double>* z, Range range) {
 
 inline double sum_of(Double dots) { return (dots[0] + dots[1]) + (dots[2] + dots[3]); }
 
-template <class Real>
-double apply(const LatticeView<Real>& level, const Six<Real>* p, double* q, Range range) {
+template <class Real, class View>
+double apply(const View& level, const Six<Real>* p, double* q, Range range) {
   Double dots = {};
   for (std::size_t node = range.begin; node < range.end; ++node) {
     const auto u = load(p[node]);
@@ -172,7 +172,8 @@ constexpr Kernels<Real> kAll = {.restrict_lattice = restrict_to<Real, LatticeVie
                                 .apply_cluster = apply_cluster<Real>,
                                 .dot_same = dot_same<Real>,
                                 .combine = combine<Real>,
-                                .apply = apply<Real>,
+                                .apply_lattice = apply<Real, LatticeView<Real>>,
+                                .apply_finest = apply<Real, ClusterView<Real>>,
                                 .advance = advance<Real>,
                                 .dot = dot<Real>};
 

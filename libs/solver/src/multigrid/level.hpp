@@ -20,9 +20,12 @@ struct Blocks {
 template <class Real>
 struct Couplings;
 
+/// What the finest level has in double precision, too, as the product with K is made in that.
 template <>
 struct Couplings<float> {
   Blocks blocks;
+  std::vector<Block<double>> blocks_double;
+  std::vector<Block<double>> diagonal_double;
 };
 
 /// Springs by edge, and what holds the types from free_type_count on; blocks for the sweeps.
@@ -35,7 +38,8 @@ struct Couplings<double> {
   std::size_t free_type_count = 0;
 };
 
-/// One level of the preconditioner. The finest keeps its springs in ReducedNetwork.
+/// One level of the preconditioner. The finest of cubes on a floor keeps its springs in
+/// ReducedNetwork.
 template <class Real>
 struct Level {
   std::size_t node_count = 0;
@@ -80,7 +84,10 @@ struct Level {
 
 template <>
 inline ClusterView<float> Level<float>::view() const {
-  return block_view();
+  ClusterView<float> view = block_view();
+  view.blocks_double = couplings.blocks_double.data();
+  view.diagonal_double = couplings.diagonal_double.data();
+  return view;
 }
 
 template <>

@@ -39,10 +39,10 @@ std::vector<BeamRow<double>> beam_rows(const ReducedNetwork& network,
   const std::size_t length_max = network.has_long_beams ? kBeamLengthMax : 1;
   std::vector<BeamRow<double>> rows(6 * kRow);
   for (std::size_t length = 1; length <= length_max; ++length) {
-    const auto beam = long_beam(material, static_cast<int>(length));
+    const auto beam = long_beam(material, network.lattice, static_cast<int>(length));
     for (std::size_t d = 0; d < 6; ++d) {
       rows[d * kRow + length] =
-          beam_row(mechanics::block_12(beam, static_cast<Direction>(d)), d / 2);
+          beam_row(beam.block_12(static_cast<Direction>(d)), d / 2);
     }
   }
   return rows;
@@ -57,11 +57,15 @@ std::vector<BeamRow<float>> single(const std::vector<BeamRow<double>>& rows) {
   return result;
 }
 
-void fill_blocks(const SpringGraph& graph, Blocks& blocks) {
+void fill_blocks(const SpringGraph& graph, Blocks& blocks, std::vector<Block<double>>* wide) {
   BlockPool<float> pool;
   std::vector<std::uint32_t> block_of_spring(graph.springs.size());
   for (std::size_t i = 0; i < graph.springs.size(); ++i) {
-    block_of_spring[i] = pool.insert(block_of<float>(coupling(graph.springs[i])));
+    const Mat k_pq = coupling(graph.springs[i]);
+    block_of_spring[i] = pool.insert(block_of<float>(k_pq));
+    if (wide != nullptr && block_of_spring[i] == wide->size()) {
+      wide->push_back(block_of<double>(k_pq));
+    }
   }
   blocks.blocks = pool.take();
   blocks.block.resize(graph.other.size());

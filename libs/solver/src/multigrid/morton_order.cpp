@@ -87,6 +87,7 @@ MortonOrder morton_order(const model::Robot& robot, const std::vector<std::uint8
     }
   }
   radix_sort(order.modules);
+  order.low = low;
   order.extent = extent.longest();
   return order;
 }

@@ -19,6 +19,7 @@ struct KeyedModule {
 /// Modules along the Morton curve, which keeps neighbours near each other.
 struct MortonOrder {
   std::vector<KeyedModule> modules;
+  base::Cell low;           ///< The robot's lowest corner.
   std::int32_t extent = 0;  ///< Longest side of the box around them, pitches.
 };
 

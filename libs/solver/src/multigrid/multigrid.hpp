@@ -47,7 +47,8 @@ class Multigrid final : public LinearSystem {
   struct GroundNode {
     std::int32_t node = 0;
     std::size_t facet = 0;
-    FacetState known;  ///< The state that the residual knows.
+    std::size_t beam = 0;  ///< Its place among the network's ground beams.
+    FacetState known;      ///< The state that the residual knows.
   };
 
   /// Until when to iterate: errors in the energy norm.
@@ -81,7 +82,7 @@ class Multigrid final : public LinearSystem {
   Team team_;
   ReducedNetwork network_;
   std::vector<Vec> condensed_;            ///< Loads by module; empty if the robot's are the nodes'.
-  std::vector<GroundNode> ground_nodes_;  ///< In the network's order.
+  std::vector<GroundNode> ground_nodes_;  ///< In the network's order; a node for each facet.
   std::vector<std::size_t> ground_node_of_facet_;  ///< By place in facets().
   std::vector<std::int32_t> alone_;                ///< Nodes that join no cluster.
   GroundTable known_tangents_;  ///< What the hierarchy takes for the facets' tangents.

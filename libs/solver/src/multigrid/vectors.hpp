@@ -56,7 +56,7 @@ struct Seat {
 using Others = std::array<std::int32_t, 6>;
 
 /// Direction -> pitches that the beam there is long, 0 for none; then, in kContactByte, what the
-/// ground does that is no such beam, 0 for nothing.
+/// ground does that is no such beam, 0 for nothing. Of cubes.
 using Kind = std::array<std::uint8_t, 8>;
 inline constexpr std::size_t kContactByte = 6;
 
