@@ -82,10 +82,9 @@ TEST(Springs, a_beams_spring_couples_its_ends_as_k12_does) {
   const model::Material material;
   for (std::size_t direction = 0; direction < 6; ++direction) {
     for (const std::size_t length : {1U, 2U, 7U}) {
-      const Spring spring = beam_spring(material, direction, length);
+      const Spring spring = beam_spring(base::kCubic, material, direction, length);
       const Mat coupled = times_carry(spring.stiffness, solver::difference({}, spring.partner));
-      const Mat k12 = mechanics::block_12(long_beam(material, static_cast<int>(length)),
-                                          static_cast<base::Direction>(direction));
+      const Mat k12 = long_beam(material, base::kCubic, static_cast<int>(length)).block_12(static_cast<base::Direction>(direction));
       EXPECT_LT(difference(-dense(coupled), dense(k12)), kRounding);
     }
   }
@@ -100,9 +99,9 @@ TEST(Springs, a_stretched_beam_gives_as_beam_theory_says) {
   for (std::size_t direction = 0; direction < 6; ++direction) {
     const std::size_t axis = direction / 2;
     for (const auto& [length, reach] : {std::pair{1, 2}, {2, 3}, {3, 11}, {4, 4}}) {
-      const Spring from = beam_spring(material, direction, static_cast<std::size_t>(length));
-      const Spring to = beam_spring(material, direction, static_cast<std::size_t>(reach));
-      const Mat longer = stretched(from.stiffness, from.middle, axis, from.length, to.length);
+      const Spring from = beam_spring(base::kCubic, material, direction, static_cast<std::size_t>(length));
+      const Spring to = beam_spring(base::kCubic, material, direction, static_cast<std::size_t>(reach));
+      const Mat longer = stretched(from.stiffness, from.middle, from.direction, from.length, to.length);
       const auto at_middle = [&](const Mat& s) {
         return carried(s, {-from.middle[0], -from.middle[1], -from.middle[2]});
       };

@@ -20,6 +20,9 @@ using base::at;
 
 constexpr std::uint8_t kNoColour = 255;
 
+/// Directions whose mean is shorter than this lead everywhere.
+constexpr double kClear = 0.1;
+
 /// Coordinates that are equal for all clusters that look alike: differences lose their last bits.
 /// In double precision they have none to lose: centres lie on a grid.
 template <class Real>
@@ -95,9 +98,9 @@ Point main_axis(const Point& along, const Point& partner) {
 }
 
 /// The mean of the directions in which a cluster's connections with another lead, of length one;
-/// that of the other cluster if they lead everywhere.
-Point mean_direction(const Point& sum, const Point& partner) {
-  const bool is_clear = dot(sum, sum) > 0.01;
+/// that of the other cluster if they lead everywhere. `sum` and `weight` are sums of theirs.
+Point mean_direction(const Point& sum, double weight, const Point& partner) {
+  const bool is_clear = dot(sum, sum) > kClear * kClear * weight * weight;
   const Point& direction = is_clear ? sum : partner;
   const double norm = std::sqrt(dot(direction, direction));
   return {direction[0] / norm, direction[1] / norm, direction[2] / norm};
@@ -390,17 +393,33 @@ class Coarsening {
     return signature;
   }
 
+  /// How much a part counts where means are taken: as cubes' parts are much alike, they count the
+  /// same.
+  double weight(const Part& part) const {
+    if (fine_.is_cubic) {
+      return 1;
+    }
+    const Mat& s = fine_.springs[part.spring].stiffness;
+    return s.at(0, 0) + s.at(1, 1) + s.at(2, 2);
+  }
+
   /// Where a cluster's springs lead; `springs` have their partners.
   void find_directions(const std::vector<Part>& parts, std::span<Spring> springs) const {
+    std::vector<double> weights(springs.size());
     for (const Part& part : parts) {
+      const double share = weight(part);
+      weights[part.target] += share;
       for (std::size_t k = 0; k < 3; ++k) {
         const double component = fine_.springs[part.spring].direction[k];
-        springs[part.target].direction[k] += fine_.is_cubic ? std::abs(component) : component;
+        springs[part.target].direction[k] +=
+            share * (fine_.is_cubic ? std::abs(component) : component);
       }
     }
-    for (Spring& spring : springs) {
-      spring.direction = fine_.is_cubic ? main_axis(spring.direction, spring.partner)
-                                        : mean_direction(spring.direction, spring.partner);
+    for (std::size_t i = 0; i < springs.size(); ++i) {
+      Spring& spring = springs[i];
+      spring.direction = fine_.is_cubic
+                             ? main_axis(spring.direction, spring.partner)
+                             : mean_direction(spring.direction, weights[i], spring.partner);
     }
   }
 
@@ -420,20 +439,21 @@ class Coarsening {
     for (const Part& part : parts) {
       const Spring& fine = fine_.springs[part.spring];
       Spring& spring = springs[part.target];
+      const double share = weight(part);
       base::add_to(spring.stiffness, carried(fine.stiffness, part.offset));
       for (std::size_t k = 0; k < 3; ++k) {
-        spring.middle[k] += part.offset[k] + fine.middle[k];
+        spring.middle[k] += share * (part.offset[k] + fine.middle[k]);
       }
       // Of springs that lead this way and that only the way across counts.
       const Point& way = fine_.is_cubic ? fine.direction : spring.direction;
       const double length = fine.length * std::abs(dot(fine.direction, way));
       Sum& sum = sums[part.target];
-      sum.length += length;
+      sum.length += share * length;
       // Behind a neck the robot is stiffer than the neck, which is as soft as it is long.
-      sum.reach += length + (part.is_weak ? 0
+      sum.reach += share * (length + (part.is_weak ? 0
                                           : behind(part.offset, way) +
-                                                behind(part.far_offset, opposite(way)));
-      sum.weight += 1;
+                                                behind(part.far_offset, opposite(way))));
+      sum.weight += share;
     }
     for (std::size_t i = 0; i < springs.size(); ++i) {
       Spring& spring = springs[i];

@@ -240,10 +240,10 @@ void recover(const Robot& robot, const ReducedNetwork& network, Team& team,
     Vec6<double>& u = displacement[at(module)];
     u = displacement[host];  // As one rigid body, from the host to what hangs on it.
     const Point arm = scaled(ways.unit(direction ^ 1U), robot.material().pitch_mm);
-    for (std::size_t i = 0; i < 3; ++i) {
-      const std::size_t j = (i + 1) % 3;
-      const std::size_t k = (i + 2) % 3;
-      u[i] += u[j + 3] * arm[k] - u[k + 3] * arm[j];
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const std::size_t j = (axis + 1) % 3;
+      const std::size_t k = (axis + 2) % 3;
+      u[axis] += u[j + 3] * arm[k] - u[k + 3] * arm[j];
     }
     base::add_to(u, condensed[at(module)]);
   }

@@ -14,6 +14,7 @@
 #include "block_pool.hpp"
 #include "holdfast/base/algebra.hpp"
 #include "matrix_blocks.hpp"
+#include "morton_order.hpp"
 
 namespace holdfast::solver {
 namespace {
@@ -121,8 +122,8 @@ class Places {
       return {pitch_ * cell.x, pitch_ * cell.y, pitch_ * cell.z};
     }
     const base::Cell axial =
-        base::axial_of(lattice_, {low_.x + cell.x, low_.y + cell.y, low_.z + cell.z});
-    const base::Cell from = base::axial_of(lattice_, low_);
+        axial_of_brick(lattice_, {low_.x + cell.x, low_.y + cell.y, low_.z + cell.z});
+    const base::Cell from = axial_of_brick(lattice_, low_);
     const Point steps = {static_cast<double>(axial.x - from.x),
                          static_cast<double>(axial.y - from.y),
                          static_cast<double>(axial.z - from.z)};

@@ -75,6 +75,21 @@ class Builder {
     return other;
   }
 
+  /// The colour of a module whose neighbours have taken some: the first, which makes two for cubes,
+  /// else the lattice's own if no long beam has brought it there, of which there are four.
+  std::uint8_t free_colour(std::int32_t module, unsigned taken) const {
+    if (robot_.lattice() != base::kCubic) {
+      const std::uint8_t own = colour_of_brick(
+          robot_.lattice(),
+          brick_of(robot_.lattice(),
+                   base::axial_of(robot_.lattice(), robot_.modules()[at(module)].cell)));
+      if ((taken >> own & 1U) == 0) {
+        return own;
+      }
+    }
+    return static_cast<std::uint8_t>(std::countr_one(taken));
+  }
+
   void colour_nodes() {
     constexpr std::uint8_t kNone = 255;
     std::vector<std::uint8_t> colour(robot_.modules().size(), kNone);
@@ -89,15 +104,17 @@ class Builder {
           taken |= 1U << colour[at(other)];
         }
       }
-      const auto free = static_cast<std::uint8_t>(std::countr_one(taken));
+      const std::uint8_t free = free_colour(item.module, taken);
       colour[at(item.module)] = free;
       ++count[free];
     }
     std::array<std::size_t, kColourMax + 1> start{};
     network_.colour_start = {0};
-    for (std::size_t c = 0; c < kColourMax && count[c] > 0; ++c) {
+    for (std::size_t c = 0; c < kColourMax; ++c) {
       start[c + 1] = start[c] + count[c];
-      network_.colour_start.push_back(start[c + 1]);
+      if (count[c] > 0) {
+        network_.colour_start.push_back(start[c + 1]);
+      }
     }
     node_of_.assign(robot_.modules().size(), static_cast<std::int32_t>(network_.node_count));
     network_.module.resize(order_.modules.size());

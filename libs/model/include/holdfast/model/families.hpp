@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "holdfast/base/cell.hpp"
+#include "holdfast/base/lattice.hpp"
 
 /// Named structures in which solvers are compared: a name and a size always mean the same cells, in
 /// the same order. They stand on z = 0.
@@ -23,6 +24,9 @@ enum class Family : std::uint8_t {
   kPortal,    ///< A frame SIZE wide, SIZE/2 high, 4 thick: two legs and a beam.
   kBridge,    ///< A plate SIZE long, 8 wide, 3 thick, on a pier of 8x8x10.
   kGrowth,    ///< SIZE modules grown at random, never below the ground.
+  kBall,       ///< Face-centred: a ball of SIZE layers, its lowest layer on the ground.
+  kSheet,      ///< Hexagonal: one module thick, SIZE wide and SIZE high.
+  kPrismWall,  ///< Hexagonal prisms: SIZE wide, SIZE high, 4 thick.
 };
 
 struct FamilyInfo {
@@ -30,11 +34,15 @@ struct FamilyInfo {
   std::string_view name;
   std::string_view help;  ///< What SIZE means.
   std::size_t size_min = 1;
+  base::Lattice lattice = base::kCubic;
 };
 
 std::span<const FamilyInfo> families();
 
 std::optional<Family> find_family(std::string_view name);
+
+/// The lattice that a family's cells count in.
+const base::Lattice& family_lattice(Family family);
 
 /// Modules of that structure, without making it; for growth and arm the size itself. Saturates at
 /// the largest number there is.
