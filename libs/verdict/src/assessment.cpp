@@ -30,8 +30,8 @@ ModelStability model_stability(const model::Robot& robot, const Equilibrium& equ
   }
   for (std::size_t i = 0; i < robot.facets().size() && !corners.stable; ++i) {
     const model::Module& module = robot.modules()[base::at(robot.facets()[i].module)];
-    corners = mechanics::merge(corners,
-                               mechanics::support_corners(module.cell, equilibrium.contact[i]));
+    corners =
+        mechanics::merge(corners, mechanics::support_corners(module.cell, equilibrium.contact[i]));
   }
   return {.is_stable = corners.stable, .is_settled = true};
 }
