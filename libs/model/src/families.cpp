@@ -136,9 +136,9 @@ Cells growth(std::size_t count) {
   return cells;
 }
 
-/// Calls f(cell) for the modules of a face-centred ball: a layer is 1/sqrt(2) pitches high, and every
-/// other one lies half a pitch aside along x and y. From the ball's centre the squared distance of
-/// a node, times 8, is 2 (X^2 + Y^2) + Z^2 with whole numbers X, Y, Z.
+/// Calls f(cell) for the modules of a face-centred ball: a layer is 1/sqrt(2) pitches high, and
+/// every other one lies half a pitch aside along x and y. From the ball's centre the squared
+/// distance of a node, times 8, is 2 (X^2 + Y^2) + Z^2 with whole numbers X, Y, Z.
 template <class F>
 void for_ball(std::int64_t layers, const F& f) {
   const std::int64_t side = layers / 2 + 1;

@@ -450,9 +450,10 @@ class Coarsening {
       Sum& sum = sums[part.target];
       sum.length += share * length;
       // Behind a neck the robot is stiffer than the neck, which is as soft as it is long.
-      sum.reach += share * (length + (part.is_weak ? 0
-                                          : behind(part.offset, way) +
-                                                behind(part.far_offset, opposite(way))));
+      sum.reach +=
+          share *
+          (length +
+           (part.is_weak ? 0 : behind(part.offset, way) + behind(part.far_offset, opposite(way))));
       sum.weight += share;
     }
     for (std::size_t i = 0; i < springs.size(); ++i) {
@@ -509,8 +510,9 @@ class Coarsening {
       std::vector<std::int32_t> targets;
       for (std::size_t i = begin; i < end; ++i) {
         list_parts(at(examples[i]), parts, targets);
-        add_up(parts, std::span(coarse_.springs)
-                          .subspan(coarse_.pattern[at(examples[i])], targets.size()));
+        add_up(
+            parts,
+            std::span(coarse_.springs).subspan(coarse_.pattern[at(examples[i])], targets.size()));
       }
     });
   }

@@ -139,8 +139,8 @@ void move_loads_to_ends(const Robot& robot, const Ways& ways, const Run& run,
 /// The factors of all runs that a network has, by direction and length.
 using RunFactors = std::array<std::vector<RunFactor>, base::Lattice::kDirectionCountMax>;
 
-RunFactors factorize_runs(const ReducedNetwork& network,
-                          const model::LatticeBeam<double>& beam, const Vec6<double>& common) {
+RunFactors factorize_runs(const ReducedNetwork& network, const model::LatticeBeam<double>& beam,
+                          const Vec6<double>& common) {
   RunFactors factors;
   factors.fill(std::vector<RunFactor>(kBeamLengthMax + 1));
   for (const Run& run : network.runs) {

@@ -159,7 +159,7 @@ class Eliminator {
 
   const Robot& robot_;
   Team& team_;
-  std::size_t axis_count_;  ///< Pairs of opposite directions.
+  std::size_t axis_count_;            ///< Pairs of opposite directions.
   std::vector<std::uint8_t> degree_;  ///< Connections that are left.
   Elimination result_;
 };

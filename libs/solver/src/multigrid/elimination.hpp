@@ -27,8 +27,8 @@ struct Run {
 /// runs, that is, with two connections each that lie opposite.
 struct Elimination {
   std::vector<std::uint8_t> is_gone;  ///< By module: eliminated, or fixed.
-  /// The axis, that is half of a direction, of the run that each module lies in, else kNoAxis; empty
-  /// if nothing is eliminated.
+  /// The axis, that is half of a direction, of the run that each module lies in, else kNoAxis;
+  /// empty if nothing is eliminated.
   std::vector<std::uint8_t> run_axis;
   std::vector<HangingModule> hanging;  ///< In the order of elimination.
   std::vector<Run> runs;

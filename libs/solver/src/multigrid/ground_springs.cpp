@@ -74,8 +74,7 @@ void unite(GroundSpring& sum, double count) {
     x /= count;
   }
   sum.reach /= count;
-  const Mat longer =
-      stretched(sum.stiffness, sum.middle, sum.way, sum.length / count, sum.reach);
+  const Mat longer = stretched(sum.stiffness, sum.middle, sum.way, sum.length / count, sum.reach);
   if (is_finite(longer)) {
     sum.stiffness = longer;
   }

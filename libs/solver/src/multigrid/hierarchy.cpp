@@ -101,8 +101,9 @@ base::Cell cell_of_key(std::uint64_t key) {
           static_cast<std::int32_t>(gathered(key >> 2U))};
 }
 
-/// Where nodes are, mm, counted from the robot's lowest corner. Where a lattice's steps are no whole
-/// numbers of pitches they are rounded to 2^-20 mm, so that places and their differences are exact.
+/// Where nodes are, mm, counted from the robot's lowest corner. Where a lattice's steps are no
+/// whole numbers of pitches they are rounded to 2^-20 mm, so that places and their differences are
+/// exact.
 class Places {
  public:
   Places(const ReducedNetwork& network, double pitch)
@@ -277,8 +278,8 @@ Mat Hierarchy<Real>::diagonal(const Kind& kind) const {
   Mat sum;
   for (std::size_t d = 0; d < 6; ++d) {
     if (kind[d] > 0) {
-      base::add_to(sum, long_beam(material_, network_.lattice, kind[d])
-                            .block_11(static_cast<Direction>(d)));
+      base::add_to(
+          sum, long_beam(material_, network_.lattice, kind[d]).block_11(static_cast<Direction>(d)));
     }
   }
   if (kind[kContactByte] != 0) {
@@ -310,7 +311,8 @@ void Hierarchy<Real>::set_types(const SpringGraph& graph, Level<Real>& level) co
     std::uint32_t& type = type_of_pattern[is_alone ? graph.springs.size() : graph.pattern[node]];
     if (type == kNone) {
       type = static_cast<std::uint32_t>(level.inverse.size());
-      // A pattern that only nodes on the ground have may be singular alone; its inverse is not used.
+      // A pattern that only nodes on the ground have may be singular alone; its inverse is not
+      // used.
       add_type(level, spring_sum(graph, node));
     }
     level.type[node] = type;

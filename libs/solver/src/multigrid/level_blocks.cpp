@@ -41,8 +41,7 @@ std::vector<BeamRow<double>> beam_rows(const ReducedNetwork& network,
   for (std::size_t length = 1; length <= length_max; ++length) {
     const auto beam = long_beam(material, network.lattice, static_cast<int>(length));
     for (std::size_t d = 0; d < 6; ++d) {
-      rows[d * kRow + length] =
-          beam_row(beam.block_12(static_cast<Direction>(d)), d / 2);
+      rows[d * kRow + length] = beam_row(beam.block_12(static_cast<Direction>(d)), d / 2);
     }
   }
   return rows;

@@ -336,9 +336,9 @@ bool Multigrid::is_thin() const {
   }
   std::size_t ends = network_.beams.other.size();
   for (const Kind& kind : network_.cubic.kind) {
-    ends += static_cast<std::size_t>(
-        std::count_if(kind.begin(), kind.begin() + base::kDirectionCount,
-                      [](auto length) { return length > 0; }));
+    ends +=
+        static_cast<std::size_t>(std::count_if(kind.begin(), kind.begin() + base::kDirectionCount,
+                                               [](auto length) { return length > 0; }));
   }
   return static_cast<double>(ends) <= kThinDegree * static_cast<double>(network_.node_count);
 }

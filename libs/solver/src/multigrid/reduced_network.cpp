@@ -237,9 +237,8 @@ class Builder {
         network_.cubic.kind[at(node)][at(direction)] = 1;
       }
     }
-    std::ranges::sort(network_.ground_beams, {}, [](const GroundBeam& beam) {
-      return std::pair(beam.node, beam.direction);
-    });
+    std::ranges::sort(network_.ground_beams, {},
+                      [](const GroundBeam& beam) { return std::pair(beam.node, beam.direction); });
   }
 
   const Robot& robot_;

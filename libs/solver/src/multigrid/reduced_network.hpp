@@ -23,8 +23,8 @@
 /// length, and a load in between moves to the ends by the same cubics [Przemieniecki 1968].
 ///
 /// The rest are the nodes. They are sorted by colour, then along the Morton curve; no two nodes of
-/// one colour share a beam. A cubic lattice needs two colours, a hexagonal one three, a face-centred
-/// one four.
+/// one colour share a beam. A cubic lattice needs two colours, a hexagonal one three, a
+/// face-centred one four.
 namespace holdfast::solver {
 
 /// A beam from a node to what does not move: to a fixed module, or through a facet to what that
@@ -32,15 +32,15 @@ namespace holdfast::solver {
 struct GroundBeam {
   std::int32_t node = 0;
   std::uint8_t direction = 0;
-  std::uint8_t length = 0;   ///< Pitches.
-  std::uint8_t contact = 0;  ///< The number of the facet's state, 0 if it is stuck.
+  std::uint8_t length = 0;        ///< Pitches.
+  std::uint8_t contact = 0;       ///< The number of the facet's state, 0 if it is stuck.
   std::int32_t facet = kNoFacet;  ///< Index in Robot::facets().
 
   static constexpr std::int32_t kNoFacet = -1;
 };
 
-/// What connects the nodes of cubes that touch nothing but a floor: direction by direction, as their
-/// own kernels read it.
+/// What connects the nodes of cubes that touch nothing but a floor: direction by direction, as
+/// their own kernels read it.
 struct CubicBeams {
   std::vector<Others> other;
   std::vector<Kind> kind;  ///< A beam down to the ground or to a fixed module has no other node.
@@ -52,7 +52,7 @@ struct LatticeBeams {
   using Lengths = std::array<std::uint8_t, base::Lattice::kDirectionCountMax>;
 
   std::vector<std::int32_t> start;
-  std::vector<std::int32_t> other;   ///< Of each node by ascending direction.
+  std::vector<std::int32_t> other;  ///< Of each node by ascending direction.
   std::vector<std::uint32_t> kind;  ///< Node -> lengths
   std::vector<Lengths> lengths;
 };

@@ -95,8 +95,7 @@ Mat turned(const Mat& matrix, const Mat3& r) {
 
 /// Columns: an orthonormal basis whose first vector is a unit vector.
 Mat3 basis_along(const Point& unit) {
-  const auto least = std::ranges::min_element(
-      unit, {}, [](double x) { return std::abs(x); });
+  const auto least = std::ranges::min_element(unit, {}, [](double x) { return std::abs(x); });
   Point across{};
   across[static_cast<std::size_t>(least - unit.begin())] = 1;
   const double along = dot(across, unit);
@@ -221,7 +220,8 @@ Mat stretched(const Mat& stiffness, const Point& arm, const Point& direction, do
   const auto along = std::ranges::find_if(direction, [](double x) { return std::abs(x) == 1; });
   Mat spread;
   if (along != direction.end()) {
-    spread = spread_along_axis(c, static_cast<std::size_t>(along - direction.begin()), length, reach);
+    spread =
+        spread_along_axis(c, static_cast<std::size_t>(along - direction.begin()), length, reach);
   } else {
     const Mat3 basis = basis_along(direction);
     spread = turned(spread_along_axis(turned(c, basis), 0, length, reach), transpose(basis));

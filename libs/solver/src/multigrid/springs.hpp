@@ -70,12 +70,12 @@ inline constexpr double kBendShare = 0.6;
 /// little.
 inline constexpr double kCorrection = 1.2;
 
-/// Lengthens a spring along a unit vector, whose middle lies at `arm` from its body, from `length` to
-/// `reach`, as if its compliance were spread evenly along it: each part bends, and what bends away
-/// from the middle shifts it. So the compliance is multiplied by reach/length, after its shear part
-/// gained (reach^2 - length^2)/12 times the rotational one: that makes a beam of one length a beam
-/// of the other exactly. In a solid the neighbours hinder the bending, so only kBendShare of that
-/// is taken, and the stiffness is kCorrection times that.
+/// Lengthens a spring along a unit vector, whose middle lies at `arm` from its body, from `length`
+/// to `reach`, as if its compliance were spread evenly along it: each part bends, and what bends
+/// away from the middle shifts it. So the compliance is multiplied by reach/length, after its shear
+/// part gained (reach^2 - length^2)/12 times the rotational one: that makes a beam of one length a
+/// beam of the other exactly. In a solid the neighbours hinder the bending, so only kBendShare of
+/// that is taken, and the stiffness is kCorrection times that.
 Mat stretched(const Mat& stiffness, const Point& arm, const Point& direction, double length,
               double reach);
 

@@ -16,14 +16,14 @@
 namespace holdfast::model {
 
 enum class Family : std::uint8_t {
-  kArm,       ///< SIZE modules: a foot of 2x3 and one row to +x at z = 2.
-  kCube,      ///< SIZE^3, solid.
-  kTower,     ///< 3x3 modules wide, SIZE high.
-  kScaffold,  ///< Struts one module thick along a grid of 4 cells in a cube of SIZE.
-  kShell,     ///< Four walls and a roof, one module thick, in a cube of SIZE.
-  kPortal,    ///< A frame SIZE wide, SIZE/2 high, 4 thick: two legs and a beam.
-  kBridge,    ///< A plate SIZE long, 8 wide, 3 thick, on a pier of 8x8x10.
-  kGrowth,    ///< SIZE modules grown at random, never below the ground.
+  kArm,        ///< SIZE modules: a foot of 2x3 and one row to +x at z = 2.
+  kCube,       ///< SIZE^3, solid.
+  kTower,      ///< 3x3 modules wide, SIZE high.
+  kScaffold,   ///< Struts one module thick along a grid of 4 cells in a cube of SIZE.
+  kShell,      ///< Four walls and a roof, one module thick, in a cube of SIZE.
+  kPortal,     ///< A frame SIZE wide, SIZE/2 high, 4 thick: two legs and a beam.
+  kBridge,     ///< A plate SIZE long, 8 wide, 3 thick, on a pier of 8x8x10.
+  kGrowth,     ///< SIZE modules grown at random, never below the ground.
   kBall,       ///< Face-centred: a ball of SIZE layers, its lowest layer on the ground.
   kSheet,      ///< Hexagonal: one module thick, SIZE wide and SIZE high.
   kPrismWall,  ///< Hexagonal prisms: SIZE wide, SIZE high, 4 thick.
