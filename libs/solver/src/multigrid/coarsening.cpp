@@ -8,6 +8,7 @@
 #include <span>
 #include <type_traits>
 #include <unordered_map>
+#include <utility>
 
 #include "holdfast/base/algebra.hpp"
 #include "slivers.hpp"
@@ -266,20 +267,20 @@ class Coarsening {
     for (std::size_t c = 0; c < box.size(); ++c) {
       coarse_.box[at(final_[c])] = box[c];
     }
-    level_.member.reserve(member_.size());
-    level_.member_start.reserve(cluster_count_ + 1);
-    level_.member_start.push_back(0);
+    std::vector<std::int32_t> member;
+    std::vector<std::int32_t> member_start = {0};
+    member.reserve(member_.size());
+    member_start.reserve(cluster_count_ + 1);
     for (const std::int32_t c : curve) {
-      for_members(at(c), [&](std::size_t node) {
-        level_.member.push_back(static_cast<std::int32_t>(node));
-      });
-      level_.member_start.push_back(static_cast<std::int32_t>(level_.member.size()));
+      for_members(at(c),
+                  [&](std::size_t node) { member.push_back(static_cast<std::int32_t>(node)); });
+      member_start.push_back(static_cast<std::int32_t>(member.size()));
     }
     for (std::int32_t& c : cluster_) {
       c = final_[at(c)];
     }
-    member_ = level_.member;
-    member_start_ = level_.member_start;
+    level_.member = std::exchange(member_, std::move(member));
+    level_.member_start = std::exchange(member_start_, std::move(member_start));
   }
 
   void place_centres() {

@@ -13,6 +13,7 @@
 #include "beam_shapes.hpp"
 #include "block_pool.hpp"
 #include "holdfast/base/algebra.hpp"
+#include "level_blocks.hpp"
 #include "matrix_blocks.hpp"
 #include "morton_order.hpp"
 
@@ -325,8 +326,13 @@ void Hierarchy<Real>::add_level(const SpringGraph& graph, const std::vector<Grou
   Level<Real>& level = levels_.emplace_back();
   level.node_count = graph.order.size();
   level.colour_start = std::move(colour_start);
-  level.start = graph.start;
-  level.other = graph.other;
+  if (is_finest(level) && !network_.has_long_beams) {
+    level.stencil = make_stencil(network_, material_);
+  }
+  if (std::is_same_v<Real, double> || level.stencil.other.empty()) {
+    level.start = graph.start;
+    level.other = graph.other;
+  }
   couple(graph, level);
   set_types(graph, level);
   fill_vectors(level);

@@ -83,7 +83,9 @@ void Hierarchy<double>::point_at_lattice() {
 
 template <>
 void Hierarchy<double>::couple(const SpringGraph& graph, Level<double>& level) const {
-  fill_blocks(graph, level.couplings.blocks);
+  if (level.stencil.other.empty()) {
+    fill_blocks(graph, level.couplings.blocks);
+  }
   for (const Spring& spring : graph.springs) {
     level.couplings.springs.push_back(
         {.stiffness = block_of<double>(spring.stiffness),

@@ -37,8 +37,10 @@ void Hierarchy<float>::point_at_lattice() {
 
 template <>
 void Hierarchy<float>::couple(const SpringGraph& graph, Level<float>& level) const {
-  fill_blocks(graph, level.couplings.blocks,
-              is_finest(level) ? &level.couplings.blocks_double : nullptr);
+  if (level.stencil.other.empty()) {
+    fill_blocks(graph, level.couplings.blocks,
+                is_finest(level) ? &level.couplings.blocks_double : nullptr);
+  }
 }
 
 template <>

@@ -46,6 +46,14 @@ struct LatticeView<double> {
 template <class Real>
 struct ClusterView;
 
+/// The beams of a finest level whose beams are all one pitch long, by node and direction.
+struct StencilView {
+  const std::int32_t* other = nullptr;  ///< [node * 2 * pair_count + direction]
+  std::size_t pair_count = 0;           ///< Of opposite directions.
+  const PairRow<float>* rows = nullptr;
+  const PairRow<double>* rows_double = nullptr;
+};
+
 /// With blocks of K.
 template <>
 struct ClusterView<float> {
@@ -58,6 +66,7 @@ struct ClusterView<float> {
   const Block<float>* diagonal = nullptr;
   const Block<double>* blocks_double = nullptr;  ///< These two of the finest level only.
   const Block<double>* diagonal_double = nullptr;
+  StencilView stencil = {};  ///< Instead of blocks K_pq, if it has any neighbours.
 };
 
 /// With springs. Both ends of a spring mean the one of the end that comes first.
@@ -76,7 +85,7 @@ struct ClusterView<double> {
 template <class Real>
 struct TransferView {
   const Seat<Real>* seat = nullptr;
-  const std::int32_t* start = nullptr;  ///< Cluster -> its first member in `member`
+  const std::int32_t* start = nullptr;  ///< Of each cluster's members, along the Morton curve.
   const std::int32_t* member = nullptr;
 };
 

@@ -38,6 +38,20 @@ struct Couplings<double> {
   std::size_t free_type_count = 0;
 };
 
+/// The finest level's beams by node and direction, if all are one pitch long.
+struct Stencil {
+  std::vector<std::int32_t> other;
+  std::vector<PairRow<float>> rows;
+  std::vector<PairRow<double>> rows_double;
+
+  StencilView view() const {
+    return {.other = other.empty() ? nullptr : other.data(),
+            .pair_count = rows.size(),
+            .rows = rows.data(),
+            .rows_double = rows_double.data()};
+  }
+};
+
 /// One level of the preconditioner. The finest of cubes on a floor keeps its springs in
 /// ReducedNetwork.
 template <class Real>
@@ -48,11 +62,12 @@ struct Level {
   std::vector<std::int32_t> start;
   std::vector<std::int32_t> other;
   Couplings<Real> couplings;
+  Stencil stencil;
   std::vector<std::uint32_t> type;    ///< Node -> K_pp
   std::vector<Block<float>> inverse;  ///< K_pp^-1
   // To the next level; empty on the coarsest.
   std::vector<Seat<Real>> seat;
-  std::vector<std::int32_t> member_start;
+  std::vector<std::int32_t> member_start;  ///< By cluster, along the Morton curve.
   std::vector<std::int32_t> member;
   // Vectors of the cycle, one node more than there are, which stays zero.
   std::vector<Six<Real>> r;
@@ -74,7 +89,8 @@ struct Level {
             .inverse = inverse.data(),
             .block = couplings.blocks.block.data(),
             .blocks = couplings.blocks.blocks.data(),
-            .diagonal = couplings.blocks.diagonal.data()};
+            .diagonal = couplings.blocks.diagonal.data(),
+            .stencil = stencil.view()};
   }
 
   TransferView<Real> transfer() const {

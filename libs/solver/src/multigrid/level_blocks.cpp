@@ -23,11 +23,35 @@ BeamRow<double> beam_row(const Mat& k12, std::size_t axis) {
   return row;
 }
 
-BeamRow<float> single(const BeamRow<double>& row) {
-  BeamRow<float> result;
+Six<float> single(const Six<double>& six) {
+  Six<float> result;
   for (std::size_t i = 0; i < 6; ++i) {
-    result.direct.v[i] = static_cast<float>(row.direct.v[i]);
-    result.crossed.v[i] = static_cast<float>(row.crossed.v[i]);
+    result.v[i] = static_cast<float>(six.v[i]);
+  }
+  return result;
+}
+
+BeamRow<float> single(const BeamRow<double>& row) {
+  return {.direct = single(row.direct), .crossed = single(row.crossed)};
+}
+
+PairRow<double> pair_row(const Mat& k12) {
+  PairRow<double> row;
+  for (int k = 0; k < 3; ++k) {
+    for (int i = 0; i < 6; ++i) {
+      const int turned = (i + k) % 3;
+      row.direct[k].v[i] = k12.at(i, i < 3 ? turned : turned + 3);
+      row.crossed[k].v[i] = k12.at(i, i < 3 ? turned + 3 : turned);
+    }
+  }
+  return row;
+}
+
+PairRow<float> single(const PairRow<double>& row) {
+  PairRow<float> result;
+  for (std::size_t k = 0; k < 3; ++k) {
+    result.direct[k] = single(row.direct[k]);
+    result.crossed[k] = single(row.crossed[k]);
   }
   return result;
 }
@@ -45,6 +69,29 @@ std::vector<BeamRow<double>> beam_rows(const ReducedNetwork& network,
     }
   }
   return rows;
+}
+
+Stencil make_stencil(const ReducedNetwork& network, const model::Material& material) {
+  Stencil stencil;
+  const auto beam = long_beam(material, network.lattice, 1);
+  const auto direction_count = at(network.lattice.direction_count);
+  for (std::size_t d = 0; d < direction_count; d += 2) {
+    stencil.rows_double.push_back(pair_row(beam.block_12(static_cast<Direction>(d))));
+    stencil.rows.push_back(single(stencil.rows_double.back()));
+  }
+  stencil.other.assign(direction_count * network.node_count,
+                       static_cast<std::int32_t>(network.node_count));
+  const LatticeBeams& beams = network.beams;
+  for (std::size_t node = 0; node < network.node_count; ++node) {
+    const LatticeBeams::Lengths& lengths = beams.lengths[beams.kind[node]];
+    std::size_t next = at(beams.start[node]);
+    for (std::size_t d = 0; d < direction_count; ++d) {
+      if (lengths[d] > 0) {
+        stencil.other[direction_count * node + d] = beams.other[next++];
+      }
+    }
+  }
+  return stencil;
 }
 
 std::vector<BeamRow<float>> single(const std::vector<BeamRow<double>>& rows) {
