@@ -29,8 +29,8 @@ std::vector<base::Cell> free_cells(const model::RobotSpec& spec) {
   std::ranges::sort(taken);
   std::vector<base::Cell> beside;
   for (const base::Cell& cell : taken) {
-    for (const base::Direction direction : base::kDirections) {
-      beside.push_back(base::neighbour(cell, direction));
+    for (const base::Direction direction : base::directions(spec.lattice)) {
+      beside.push_back(base::neighbour(spec.lattice, cell, direction));
     }
   }
   std::ranges::sort(beside);
@@ -38,13 +38,15 @@ std::vector<base::Cell> free_cells(const model::RobotSpec& spec) {
   std::vector<base::Cell> free;
   std::set_difference(beside.begin(), beside.end(), taken.begin(), taken.end(),
                       std::back_inserter(free));
+  const model::ObstacleIndex obstacles(spec.obstacles);
+  std::erase_if(free, [&](const base::Cell& cell) {
+    return obstacles.find(cell) != model::CellIndex::kNone;
+  });
   return free;
 }
 
 verdict::Assessment first_look(const model::Robot& robot) {
-  verdict::Assessment assessment;
-  assessment.simplified = verdict::assess_rigid_body(robot);
-  assessment.is_stable = assessment.simplified.is_stable;
+  verdict::Assessment assessment = verdict::assess_rigidly(robot);
   assessment.verdict =
       assessment.is_stable ? verdict::Verdict::kUndecided : verdict::Verdict::kUnstable;
   return assessment;

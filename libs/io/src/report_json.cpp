@@ -6,6 +6,7 @@
 
 #include "connection_list.hpp"
 #include "holdfast/io/report.hpp"
+#include "holdfast/verdict/connection_law.hpp"
 #include "ordered_blocks.hpp"
 
 namespace holdfast::io {
@@ -65,6 +66,43 @@ void write_rigid_body(JsonStream& json, const verdict::RigidBody& body) {
   json.end_object();
 }
 
+void write_vector(JsonStream& json, std::string_view key, const limit::Vector3& vector) {
+  json.key(key);
+  json.begin_array();
+  for (const double number : vector) {
+    json.value(number);
+  }
+  json.end_array();
+}
+
+void write_motion(JsonStream& json, const limit::Motion& motion) {
+  json.begin_object();
+  json.member("text", limit::text(motion));
+  write_vector(json, "velocity", motion.velocity);
+  write_vector(json, "angular", motion.angular);
+  write_vector(json, "from_mm", motion.from_mm);
+  write_vector(json, "to_mm", motion.to_mm);
+  json.end_object();
+}
+
+void write_rigid(JsonStream& json, const limit::RigidStability& rigid) {
+  using limit::RigidAnswer;
+  json.begin_object();
+  json.member("holds", rigid.answer == RigidAnswer::kUndecided ? std::nullopt
+                                                               : std::optional(rigid.holds()));
+  json.member("answer", limit::name(rigid.answer));
+  json.member("margin", rigid.margin);
+  json.member("friction_needed", rigid.friction_needed);
+  json.member("tilt_margin_deg", rigid.tilt_margin_deg);
+  json.key("motion");
+  if (rigid.motion) {
+    write_motion(json, *rigid.motion);
+  } else {
+    json.value(nullptr);
+  }
+  json.end_object();
+}
+
 void write_stability(JsonStream& json, const verdict::Assessment& assessment) {
   const verdict::ModelStability& model = assessment.model;
   json.begin_object();
@@ -75,12 +113,25 @@ void write_stability(JsonStream& json, const verdict::Assessment& assessment) {
   json.member("stable", model.is_settled ? std::optional(model.is_stable) : std::nullopt);
   json.member("settled", model.is_settled);
   json.end_object();
+  json.key("rigid");
+  write_rigid(json, assessment.rigid);
   json.member("stable", assessment.is_stable);
   json.end_object();
 }
 
-void write_connection(JsonStream& json, const model::Robot& robot, std::size_t connection,
-                      const verdict::ConnectionResult& result) {
+/// The ratio of a limit; none if it is unlimited.
+std::optional<double> ratio_of(const std::array<double, model::kLimitCount>& ratios,
+                               model::Limit limit) {
+  const double ratio = ratios[static_cast<std::size_t>(limit)];
+  return ratio == -model::ConnectorLaw::kUnlimited ? std::nullopt : std::optional(ratio);
+}
+
+void write_connection(JsonStream& json, const model::Robot& robot,
+                      const verdict::ConnectionLaws& laws, std::size_t connection,
+                      const verdict::Assessment& assessment) {
+  const verdict::ConnectionResult& result = assessment.connections[connection];
+  const model::Connection& pair = robot.connections()[connection];
+  const auto ratios = laws.limit_ratios(pair, result);
   const auto [a, b] = model::ends(robot, connection);
   json.begin_object();
   json.key("a");
@@ -92,6 +143,11 @@ void write_connection(JsonStream& json, const model::Robot& robot, std::size_t c
   json.member("bending_nmm", result.bending_nmm);
   json.member("shear_n", result.shear_n);
   json.member("torsion_nmm", result.torsion_nmm);
+  json.member("limit", model::name(laws.limit(pair, result)));
+  json.member("shear_ratio", ratio_of(ratios, model::Limit::kShears));
+  json.member("torsion_ratio", ratio_of(ratios, model::Limit::kTwists));
+  json.member("gap_mm", laws.gap_mm(pair, assessment.equilibrium.displacement,
+                                    assessment.equilibrium.displacement_low));
   json.end_object();
 }
 
@@ -267,11 +323,12 @@ class Writer {
   void write_connections() {
     const verdict::Assessment& assessment = *entry_.assessment;
     const ConnectionList list(assessment, options_.connections);
+    const verdict::ConnectionLaws laws(*entry_.robot);
     json_.key("connections");
     write_list(
         list.size(),
         [&](JsonStream& json, std::size_t i) {
-          write_connection(json, *entry_.robot, list[i], assessment.connections[list[i]]);
+          write_connection(json, *entry_.robot, laws, list[i], assessment);
         },
         options_.progress);
   }
