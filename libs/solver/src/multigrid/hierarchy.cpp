@@ -108,7 +108,10 @@ base::Cell cell_of_key(std::uint64_t key) {
 class Places {
  public:
   Places(const ReducedNetwork& network, double pitch)
-      : lattice_(network.lattice), low_(network.low), pitch_(pitch) {
+      : lattice_(network.lattice),
+        is_cubic_(network.lattice == base::kCubic),
+        low_(network.low),
+        pitch_(pitch) {
     constexpr double kPerMm = 1U << 20U;
     for (std::size_t i = 0; i < 3; ++i) {
       const base::Cell axial = {i == 0 ? 1 : 0, i == 1 ? 1 : 0, i == 2 ? 1 : 0};
@@ -120,7 +123,7 @@ class Places {
   }
 
   Point of(const base::Cell& cell) const {
-    if (lattice_ == base::kCubic) {
+    if (is_cubic_) {
       return {pitch_ * cell.x, pitch_ * cell.y, pitch_ * cell.z};
     }
     const base::Cell axial =
@@ -138,6 +141,7 @@ class Places {
 
  private:
   base::Lattice lattice_;
+  bool is_cubic_;
   base::Cell low_;
   double pitch_;
   std::array<Point, 3> step_{};

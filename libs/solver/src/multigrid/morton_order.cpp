@@ -100,8 +100,10 @@ std::uint8_t colour_of_brick(const base::Lattice& lattice, const base::Cell& bri
 MortonOrder morton_order(const model::Robot& robot, const std::vector<std::uint8_t>& is_gone) {
   const auto modules = robot.modules();
   const base::Lattice& lattice = robot.lattice();
+  const bool is_cubic = lattice == base::kCubic;
   const auto brick = [&](std::size_t module) {
-    return brick_of(lattice, base::axial_of(lattice, modules[module].cell));
+    const base::Cell& cell = modules[module].cell;
+    return is_cubic ? cell : brick_of(lattice, base::axial_of(lattice, cell));
   };
   MortonOrder order;
   base::Cell low = brick(0);

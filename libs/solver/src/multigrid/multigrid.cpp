@@ -385,8 +385,7 @@ bool Multigrid::refine(Solution& solution) {
   // One iteration at least: else the two answers are the same, and say nothing about the error.
   target.iteration_count_min = 1;
   if (is_thin()) {
-    target.error_max =
-        kThinError * options_.tolerance / model::load_ratio_per_energy_norm(robot());
+    target.error_max = kThinError * options_.tolerance / model::load_ratio_per_energy_norm(robot());
   }
   if (improve(target) != LinearOutcome::kSolved) {
     return false;

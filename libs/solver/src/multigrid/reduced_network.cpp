@@ -38,6 +38,7 @@ class Builder {
         team_(team),
         elimination_(eliminate(robot, team)),
         order_(morton_order(robot, elimination_.is_gone)),
+        is_cubic_(robot.lattice() == base::kCubic),
         direction_count_(at(robot.lattice().direction_count)) {
     network_.lattice = robot.lattice();
     network_.is_cubic = is_on_floor_only(robot);
@@ -78,7 +79,7 @@ class Builder {
   /// The colour of a module whose neighbours have taken some: the first, which makes two for cubes,
   /// else the lattice's own if no long beam has brought it there, of which there are four.
   std::uint8_t free_colour(std::int32_t module, unsigned taken) const {
-    if (robot_.lattice() != base::kCubic) {
+    if (!is_cubic_) {
       const std::uint8_t own = colour_of_brick(
           robot_.lattice(),
           brick_of(robot_.lattice(),
@@ -245,6 +246,7 @@ class Builder {
   Team& team_;
   Elimination elimination_;
   MortonOrder order_;
+  bool is_cubic_;  ///< The lattice.
   std::size_t direction_count_;
   std::vector<std::int32_t> node_of_;
   ReducedNetwork network_;
