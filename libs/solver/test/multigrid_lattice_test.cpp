@@ -170,6 +170,15 @@ TEST(MultigridOnALattice, agrees_with_the_direct_solver_with_supports_anywhere) 
   }
 }
 
+TEST(MultigridOnALattice, agrees_with_the_direct_solver_on_facets_that_are_points) {
+  for (const auto& [name, lattice] : kLattices) {
+    SCOPED_TRACE(name);
+    model::RobotSpec spec = random_spec(lattice, 3);
+    spec.foot_mm = 0;
+    expect_agreement(model::Robot::create(spec).value(), {}, Precision::kSingle);
+  }
+}
+
 TEST(MultigridOnALattice, agrees_with_the_direct_solver_under_the_exact_law) {
   for (const auto& [name, lattice] : kLattices) {
     for (std::uint64_t seed = 1; seed <= 8; ++seed) {

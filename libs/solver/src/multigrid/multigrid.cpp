@@ -24,6 +24,11 @@ constexpr int kIterationMax = 500;
 constexpr std::size_t kBytesPerModule = 450;
 constexpr std::size_t kBytesPerModuleDouble = 800;
 
+/// And for each direction that a lattice has beyond six: a ball of 720,000 face-centred modules
+/// takes 540 bytes a module.
+constexpr std::size_t kBytesPerDirection = 25;
+constexpr std::size_t kBytesPerDirectionDouble = 60;
+
 /// A robot of n modules that is N long consists of N / sqrt(n / N) cubes in a row, at most, as if
 /// its modules were in one bar. Rounding moves it by that number squared times what it moves a
 /// cube, and where it so moves it by more than this share of the true motion, single precision is
@@ -70,7 +75,7 @@ bool is_held_sideways(ContactLaw law, bool is_held) {
 
 std::unique_ptr<Multigrid> Multigrid::make(const model::Robot& robot,
                                            const EquilibriumOptions& options) {
-  if (bytes_for(robot.free_count(), options.precision) > options.memory_bytes_max) {
+  if (bytes_for(robot, options.precision) > options.memory_bytes_max) {
     return nullptr;
   }
   return std::make_unique<Multigrid>(robot, options);
@@ -96,12 +101,16 @@ Multigrid::Multigrid(const model::Robot& robot, const EquilibriumOptions& option
   take_loads();
 }
 
-std::size_t Multigrid::bytes_for(std::size_t module_count, Precision precision) {
-  return module_count * (precision == Precision::kSingle ? kBytesPerModule : kBytesPerModuleDouble);
+std::size_t Multigrid::bytes_for(const model::Robot& robot, Precision precision) {
+  const bool is_single = precision == Precision::kSingle;
+  const auto further = at(robot.lattice().direction_count - base::kDirectionCount);
+  return robot.free_count() *
+         ((is_single ? kBytesPerModule : kBytesPerModuleDouble) +
+          further * (is_single ? kBytesPerDirection : kBytesPerDirectionDouble));
 }
 
 bool Multigrid::set_precision(Precision precision) {
-  if (bytes_for(robot().free_count(), precision) > options_.memory_bytes_max) {
+  if (bytes_for(robot(), precision) > options_.memory_bytes_max) {
     return false;
   }
   precision_ = precision;

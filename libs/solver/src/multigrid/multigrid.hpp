@@ -25,7 +25,7 @@ class Multigrid final : public LinearSystem {
   Multigrid(const model::Robot& robot, const EquilibriumOptions& options);
 
   /// A guess of how much memory a robot needs, bytes.
-  static std::size_t bytes_for(std::size_t module_count, Precision precision);
+  static std::size_t bytes_for(const model::Robot& robot, Precision precision);
 
   /// Starts anew in another precision, with the same network and facets. Returns false, and leaves
   /// all as it is, if that needs more memory than the options allow.
