@@ -116,7 +116,8 @@ base::Result<Structure> load_file(const std::filesystem::path& path, int thread_
                                   const io::ReadOptions& options = {});
 
 /// One of the named structures in which solvers are compared: arm, cube, tower, scaffold, shell,
-/// portal, bridge, growth. Errors: no such family, a size that is not allowed.
+/// portal, bridge, growth of cubes, ball, sheet, prism-wall of other lattices. Errors: no such
+/// family, a size that is not allowed.
 base::Result<io::Document> generate(std::string_view family, std::size_t size);
 
 /// Name and meaning of the size of each family, in the order of their list.
