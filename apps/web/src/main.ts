@@ -3,6 +3,7 @@
 import './style.css';
 import { ROLE_NAMES, type Role } from './model/cell';
 import { EditedRobot } from './model/edited_robot';
+import { HOLDS } from './model/surroundings';
 import { Workbench, type Tool } from './model/workbench';
 import type { ScaleName } from './view/colours';
 import { App } from './ui/app';
@@ -16,6 +17,7 @@ import { makeMaterial } from './ui/material';
 import { Player } from './ui/player';
 import { listenToPointer } from './ui/pointer';
 import { openFirst, showWithoutPicture } from './ui/start';
+import { makeSurroundings } from './ui/surroundings';
 
 declare global {
   /** A handle for the browser's console, and for the tests. */
@@ -27,6 +29,8 @@ const TOOLS: readonly [tool: Tool, text: string, key: string][] = [
   ['add', 'Attach', 'A'],
   ['remove', 'Remove', 'D'],
   ['paint', 'Paint', 'P'],
+  ['obstacle', 'Obstacle', 'O'],
+  ['load', 'Load', 'L'],
 ];
 
 function radio(text: string, title: string, action: () => void): HTMLButtonElement {
@@ -53,10 +57,10 @@ function moveInside(group: HTMLElement): void {
 }
 
 function makeTools(bench: Workbench): void {
-  const icons = { look: 'look', add: 'add', remove: 'remove', paint: 'paint' } as const;
   const tools = TOOLS.map(([tool, text, key]) => {
     const button = radio('', `${text} (${key})`, () => bench.setTool(tool));
-    button.append(icon(icons[tool]), make('span', {}, text));
+    // There is room for four names only.
+    button.append(icon(tool), ...(tool === 'obstacle' || tool === 'load' ? [] : [make('span', {}, text)]));
     button.setAttribute('aria-label', text);
     return button;
   });
@@ -67,9 +71,17 @@ function makeTools(bench: Workbench): void {
     return button;
   });
   byId('tools').append(...tools);
+  const holds = HOLDS.map((hold, i) => {
+    const text = `${hold[0].toUpperCase()}${hold.slice(1)}`;
+    const button = radio('', `${text} (${i + 1})`, () => bench.setHold(hold));
+    button.append(make('span', { className: `swatch obstacle ${hold}` }), make('span', {}, text));
+    return button;
+  });
   byId('roles').append(...roles);
-  moveInside(byId('tools'));
-  moveInside(byId('roles'));
+  byId('holds').append(...holds);
+  for (const group of ['tools', 'roles', 'holds']) {
+    moveInside(byId(group));
+  }
   const check = (buttons: HTMLButtonElement[], chosen: number) =>
     buttons.forEach((button, i) => {
       button.setAttribute('aria-checked', String(i === chosen));
@@ -78,7 +90,10 @@ function makeTools(bench: Workbench): void {
   const show = () => {
     check(tools, TOOLS.findIndex(([tool]) => tool === bench.tool));
     check(roles, bench.role);
-    byId('roles').classList.toggle('idle', bench.tool === 'look' || bench.tool === 'remove');
+    check(holds, HOLDS.indexOf(bench.hold));
+    byId('holds').hidden = bench.tool !== 'obstacle';
+    byId('roles').hidden = bench.tool === 'obstacle';
+    byId('roles').classList.toggle('idle', bench.tool !== 'add' && bench.tool !== 'paint');
     byId<HTMLButtonElement>('undo').disabled = !bench.history.canUndo;
     byId<HTMLButtonElement>('redo').disabled = !bench.history.canRedo;
   };
@@ -137,6 +152,7 @@ function makePanel(app: App, keeper: Keeper): void {
     keeper.changed();
   };
   makeMaterial(bench);
+  makeSurroundings(bench);
   bench.robotListeners.push((what) => {
     if (what === 'robot') {
       name.value = bench.robot.name;
@@ -203,7 +219,7 @@ function begin(): void {
   byId('fit').onclick = actions.h;
   byId('help').onclick = actions['?'];
   byId('gallery-open').onclick = () => openGallery(bench, keeper);
-  byId('new').onclick = () => bench.history.replace('beginning anew', new EditedRobot());
+  byId('new').onclick = () => bench.history.replace('beginning anew', new EditedRobot(bench.robot.lattice));
   byId('save').onclick = () => byId<HTMLDialogElement>('takeaway').showModal();
   for (const button of document.querySelectorAll<HTMLButtonElement>('[data-save]')) {
     button.onclick = () => {

@@ -3,6 +3,9 @@
 
 /** What the page and the core exchange. Lengths in mm, forces in N, torques in N mm. */
 
+import type { LatticeTable } from '../model/lattice';
+import type { Surroundings } from '../model/surroundings';
+
 export type Point = [x: number, y: number];
 
 export type Verdict = 'safe' | 'overload' | 'unstable' | 'undecided';
@@ -52,6 +55,7 @@ export interface Vocabulary {
   phases: string[];
   methods: Choice[];
   links: Choice[];
+  lattices: LatticeTable[];
 }
 
 export interface OpenedDocument {
@@ -59,6 +63,8 @@ export interface OpenedDocument {
   description: string;
   support_z: number;
   later_steps: number;
+  /** `{}` for cubes on a floor under their own weight. */
+  surroundings: Surroundings;
   warnings: string[];
   modules: Int32Array;
   material: Float64Array;

@@ -20,7 +20,7 @@ import {
  * host, all of them below: a clock, and a place for the last words of a broken check.
  */
 
-const HEADER_INTEGERS = 8;
+const HEADER_INTEGERS = 10;
 const MODULE_INTEGERS = 4;
 const EVENTS_KEPT_THOUSANDS = 1000;
 
@@ -173,14 +173,19 @@ export class Core {
 /** The bytes of core/request.hpp. */
 function request(robot: RobotData, options: number[], tail?: Uint8Array): Uint8Array {
   const { material, modules } = robot;
+  const more = new TextEncoder().encode(robot.more);
   const headerBytes = 4 * HEADER_INTEGERS + 8 * material.length;
-  const bytes = new Uint8Array(headerBytes + 4 * modules.length + (tail?.length ?? 0));
+  const moreAt = headerBytes + 4 * modules.length;
+  // The tail may be numbers, which begin at a whole word.
+  const tailAt = moreAt + 4 * Math.ceil(more.length / 4);
+  const bytes = new Uint8Array(tailAt + (tail?.length ?? 0));
   const header = new Int32Array(bytes.buffer, 0, HEADER_INTEGERS);
-  header.set([modules.length / MODULE_INTEGERS, robot.supportZ, ...options]);
+  header.set([modules.length / MODULE_INTEGERS, robot.supportZ, more.length, ...options]);
   new Float64Array(bytes.buffer, 4 * HEADER_INTEGERS, material.length).set(material);
   new Int32Array(bytes.buffer, headerBytes, modules.length).set(modules);
+  bytes.set(more, moreAt);
   if (tail) {
-    bytes.set(tail, headerBytes + 4 * modules.length);
+    bytes.set(tail, tailAt);
   }
   return bytes;
 }

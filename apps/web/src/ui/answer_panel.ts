@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 import type { Finding } from '../core/judge';
 import { LOAD_FIELDS, type Answer } from '../core/types';
-import { DIRECTIONS, ROLE_NAMES, Role, cellText, type Cell } from '../model/cell';
+import { ROLE_NAMES, Role, cellText, type Cell } from '../model/cell';
 import type { EditedRobot } from '../model/edited_robot';
 import { FIXED, UNKNOWN, UNSTABLE, brokenColour, css, loadColour, type Rgb, type ScaleName } from '../view/colours';
 import { byId, make } from './dom';
@@ -142,8 +142,6 @@ export function showFaceLegend(scale: ScaleName): void {
   );
 }
 
-const SIDES = ['+x', '−x', '+y', '−y', '+z', '−z'];
-
 /** One line for each connection of a module; the pointed one is marked. */
 export function showDetails(
   robot: EditedRobot,
@@ -160,7 +158,7 @@ export function showDetails(
   const title = `${cellText(cell)}, ${ROLE_NAMES[robot.roleAt(slot)]}${
     cell[2] === robot.supportZ && robot.roleAt(slot) !== Role.kFixed ? ', on the ground' : ''
   }`;
-  const rows = finding?.answer?.has_loads ? connectionRows(finding, slot) : [];
+  const rows = finding?.answer?.has_loads ? connectionRows(robot, finding, slot) : [];
   const table = make('table');
   if (rows.length > 0) {
     const head = make('tr', {}, ...['to', 'load', 'axial', 'bending'].map((t) => make('th', { scope: 'col' }, t)));
@@ -170,7 +168,7 @@ export function showDetails(
       const line = make(
         'tr',
         {},
-        make('th', { scope: 'row' }, SIDES[row.side]),
+        make('th', { scope: 'row' }, robot.lattice.sides[row.side]),
         ...[formatRatio(row.ratio), `${row.axial.toFixed(2)} N`, `${row.bending.toFixed(0)} N mm`].map((t) => make('td', {}, t)),
       );
       line.className = row.side === side ? 'pointed' : row.isBroken ? 'breaks' : '';
@@ -186,28 +184,28 @@ export function showDetails(
 /** The connection at each side of each slot, by index; -1: none. Made once for each answer. */
 const connectionsAt = new WeakMap<Answer, Int32Array>();
 
-function sidesOf({ slots }: Finding, answer: Answer): Int32Array {
+function sidesOf({ slots }: Finding, answer: Answer, directionCount: number): Int32Array {
   const known = connectionsAt.get(answer);
   if (known) {
     return known;
   }
-  const sides = new Int32Array(DIRECTIONS.length * slots.length).fill(-1);
+  const sides = new Int32Array(directionCount * slots.length).fill(-1);
   const { connections } = answer;
   for (let i = 0; 3 * i < connections.length; ++i) {
     const direction = connections[3 * i + 2];
-    sides[DIRECTIONS.length * slots[connections[3 * i]] + direction] = i;
-    sides[DIRECTIONS.length * slots[connections[3 * i + 1]] + (direction ^ 1)] = i;
+    sides[directionCount * slots[connections[3 * i]] + direction] = i;
+    sides[directionCount * slots[connections[3 * i + 1]] + (direction ^ 1)] = i;
   }
   connectionsAt.set(answer, sides);
   return sides;
 }
 
-function connectionRows(finding: Finding, slot: number) {
+function connectionRows({ lattice }: EditedRobot, finding: Finding, slot: number) {
   const rows: { side: number; ratio: number; axial: number; bending: number; isBroken: boolean }[] = [];
   const answer = finding.answer!;
-  const sides = sidesOf(finding, answer);
-  for (let side = 0; side < DIRECTIONS.length; ++side) {
-    const i = sides[DIRECTIONS.length * slot + side];
+  const sides = sidesOf(finding, answer, lattice.directionCount);
+  for (let side = 0; side < lattice.directionCount; ++side) {
+    const i = sides[lattice.directionCount * slot + side];
     if (i >= 0) {
       const [ratio, axial, bending] = answer.loads.subarray(LOAD_FIELDS * i, LOAD_FIELDS * i + 3);
       rows.push({ side, ratio, axial, bending, isBroken: answer.broken.includes(i) });

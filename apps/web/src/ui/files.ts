@@ -3,6 +3,7 @@
 import { CoreClient } from '../core/client';
 import { Output, type OpenedDocument } from '../core/types';
 import { EditedRobot } from '../model/edited_robot';
+import { CUBIC, latticeOf } from '../model/lattice';
 import { linkFragment, readFragment } from '../model/link';
 import type { Workbench } from '../model/workbench';
 import type { Stage } from '../view/stage';
@@ -17,10 +18,12 @@ const LINK_LENGTH_MAX = 32_000;
 const client = new CoreClient();
 
 export function robotOf(opened: OpenedDocument, text: string, fallbackName: string): EditedRobot {
-  const robot = EditedRobot.from(opened.modules);
+  const { lattice, ...surroundings } = opened.surroundings;
+  const robot = EditedRobot.from(opened.modules, latticeOf(lattice ?? CUBIC.name));
   robot.name = opened.name || fallbackName;
   robot.supportZ = opened.support_z;
   robot.material = opened.material;
+  robot.surroundings = surroundings;
   robot.base = text;
   return robot;
 }

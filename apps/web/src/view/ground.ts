@@ -13,6 +13,7 @@ import {
   type Matrix4,
 } from 'three';
 import type { Point, Stability } from '../core/types';
+import type { EditedRobot } from '../model/edited_robot';
 
 /** The ground: a grid, the support polygon, the centre of mass above it, the edge of toppling. */
 
@@ -74,7 +75,8 @@ export class Ground {
   }
 
   /** Where the ground is and how far the grid goes. */
-  place(z: number, middle: Point, reach: number): void {
+  place(z: number, middle: Point, reach: number, isThere = true): void {
+    this.grid.visible = isThere;
     this.group.position.z = z;
     this.grid.position.set(middle[0], middle[1], -0.01);
     this.grid.scale.setScalar(2.2 * reach);
@@ -83,8 +85,10 @@ export class Ground {
     this.grid.material.uniforms.ink.value = this.colours.ink;
   }
 
-  /** Lengths in mm; `height` is that of the centre of mass above the ground, in cells. */
-  show(stability: Stability | undefined, pitch: number, height: number): void {
+  /** The answer of the rigid body. */
+  show(robot: EditedRobot, stability: Stability | undefined): void {
+    const pitch = robot.pitchMm;
+    const height = robot.count > 0 ? robot.centreOfMass()[2] - robot.floorHeight : 0;
     for (const child of [...this.answer.children] as Mesh[]) {
       child.geometry.dispose();
       this.answer.remove(child);

@@ -13,7 +13,7 @@ export class Topple {
 
   /** The polygon lies on the left of the edge from a to b, so the robot falls to its right. */
   constructor(robot: EditedRobot, [a, b]: [Point, Point]) {
-    const ground = robot.supportZ - 0.5;
+    const ground = robot.floorHeight;
     this.origin = new Vector3(a[0], a[1], ground);
     this.axis = new Vector3(b[0] - a[0], b[1] - a[1], 0).normalize();
     const out = new Vector3(this.axis.y, -this.axis.x, 0);
@@ -43,7 +43,7 @@ export class Topple {
 function fallAngle(robot: EditedRobot, origin: Vector3, out: Vector3): number {
   let angle = Math.PI / 2;
   for (let slot = 0; slot < robot.count; ++slot) {
-    const [x, y, z] = robot.cellAt(slot);
+    const [x, y, z] = robot.placeAt(slot);
     const distance =
       (x - origin.x) * out.x + (y - origin.y) * out.y + 0.5 * (Math.abs(out.x) + Math.abs(out.y));
     if (distance > 0.05 && z - 0.5 > origin.z) {
