@@ -77,11 +77,8 @@ function makeTools(bench: Workbench): void {
     button.append(make('span', { className: `swatch obstacle ${hold}` }), make('span', {}, text));
     return button;
   });
-  byId('roles').append(...roles);
-  byId('holds').append(...holds);
-  for (const group of ['tools', 'roles', 'holds']) {
-    moveInside(byId(group));
-  }
+  moveInside(byId('tools'));
+  moveInside(byId('roles'));
   const check = (buttons: HTMLButtonElement[], chosen: number) =>
     buttons.forEach((button, i) => {
       button.setAttribute('aria-checked', String(i === chosen));
@@ -91,9 +88,12 @@ function makeTools(bench: Workbench): void {
     check(tools, TOOLS.findIndex(([tool]) => tool === bench.tool));
     check(roles, bench.role);
     check(holds, HOLDS.indexOf(bench.hold));
-    byId('holds').hidden = bench.tool !== 'obstacle';
-    byId('roles').hidden = bench.tool === 'obstacle';
-    byId('roles').classList.toggle('idle', bench.tool !== 'add' && bench.tool !== 'paint');
+    const offered = bench.tool === 'obstacle' ? holds : roles;
+    if (offered[0].parentElement !== byId('roles')) {
+      byId('roles').replaceChildren(...offered);
+      byId('roles').ariaLabel = bench.tool === 'obstacle' ? 'How an obstacle holds' : 'What is attached or painted';
+    }
+    byId('roles').classList.toggle('idle', !['add', 'paint', 'obstacle'].includes(bench.tool));
     byId<HTMLButtonElement>('undo').disabled = !bench.history.canUndo;
     byId<HTMLButtonElement>('redo').disabled = !bench.history.canRedo;
   };
