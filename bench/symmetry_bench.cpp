@@ -57,7 +57,8 @@ Answer answer(const model::RobotSpec& spec, int turn, Method method) {
         answer.assessment.connections[i].load_ratio;
   }
   for (std::size_t i = 0; i < answer.assessment.equilibrium.contact.size(); ++i) {
-    answer.corner_count[original(robot.value().modules()[i].cell)] =
+    answer.corner_count[original(
+        robot.value().modules()[base::at(robot.value().facets()[i].module)].cell)] =
         corner_count(answer.assessment.equilibrium.contact[i]);
   }
   return answer;

@@ -104,7 +104,9 @@ def check_functions(name, lines):
     start, indent = None, ''
     for number, line in enumerate(lines, 1):
         opened = re.match(r'( {0,2})(?!namespace|class|struct|enum|extern)\S.*\{$', line)
-        if start is None and opened and not line.strip().startswith(('}', '#', '//')):
+        is_data = line.endswith('= {')
+        if (start is None and opened and not is_data
+                and not line.strip().startswith(('}', '#', '//'))):
             start, indent = number, opened[1]
         elif start is not None and line.startswith(indent + '}'):
             if number - start + 1 > FUNCTION_LINES_MAX:

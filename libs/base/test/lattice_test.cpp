@@ -122,8 +122,8 @@ TEST(HexagonalLattice, has_odd_rows_half_a_cell_further) {
 
 TEST(Root, has_all_digits_of_either_type) {
   for (const double square : {0.25, 0.5, 0.75}) {
-    EXPECT_NEAR(root<double>(square), std::sqrt(square), kTolerance);
-    const auto precise = root<DoubleDouble>(square);
+    EXPECT_NEAR(root(square), std::sqrt(square), kTolerance);
+    const auto precise = root(DoubleDouble(square));
     EXPECT_NEAR(static_cast<double>(precise * precise - DoubleDouble(square)), 0, 1e-31);
   }
 }

@@ -38,7 +38,7 @@ base::Result<model::Robot> robot_of(const model::RobotSpec& spec) {
   return make_robot({.existing = spec.existing,
                      .planned = spec.planned,
                      .fixed = spec.fixed,
-                     .support_z = spec.support_z,
+                     .support_z = spec.support_z.value_or(0),
                      .material = spec.material});
 }
 

@@ -34,7 +34,7 @@ Widths widths(const Scene& scene) {
 }
 
 std::string tooltip(const Scene& scene, std::size_t module) {
-  const auto& [cell, support, is_planned] = scene.robot.modules()[module];
+  const auto& [cell, support, is_planned, kind] = scene.robot.modules()[module];
   const ModulePaint& paint = scene.paints[module];
   std::string text = model::text(cell);
   if (is_planned) {

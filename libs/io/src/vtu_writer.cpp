@@ -316,12 +316,14 @@ class Writer {
 
   void announce_ground() {
     const auto none = [](std::size_t) { return Triple{}; };
-    const auto& states = assessment_.equilibrium.contact;
-    const bool is_known = has_loads_ && states.size() == module_count_;
+    const bool is_known =
+        has_loads_ && assessment_.equilibrium.contact.size() == robot_.facets().size();
     announce_cell_array(
         "contact",
-        [this, is_known, &states](std::size_t i) {
-          return is_known ? pressing_corners(robot_.modules()[i].support, states[i]) : kNotOnGround;
+        [this, is_known](std::size_t i) {
+          return is_known ? pressing_corners(robot_.modules()[i].support,
+                                             solver::contact_of(robot_, assessment_.equilibrium, i))
+                          : kNotOnGround;
         },
         [](std::size_t) { return kNotOnGround; });
     announce_cell_array(

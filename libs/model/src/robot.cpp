@@ -5,47 +5,17 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstdlib>
-#include <numeric>
 #include <optional>
 #include <string>
 #include <utility>
 
 #include "holdfast/model/cell_index.hpp"
+#include "robot_faults.hpp"
 
 namespace holdfast::model {
 namespace {
 
 using base::Cell;
-
-std::optional<std::string> find_size_fault(const RobotSpec& spec) {
-  if (spec.existing.empty()) {
-    return "the robot has no existing module, at least one is needed";
-  }
-  if (spec.existing.size() + spec.planned.size() > kModuleCountMax) {
-    return fmt::format("{} modules, allowed are at most {}",
-                       spec.existing.size() + spec.planned.size(), kModuleCountMax);
-  }
-  if (std::abs(static_cast<std::int64_t>(spec.support_z)) > base::kCoordinateMax) {
-    return fmt::format("the support level is {}, allowed is -{} to {}", spec.support_z,
-                       base::kCoordinateMax, base::kCoordinateMax);
-  }
-  return find_material_fault(spec.material);
-}
-
-std::optional<std::string> find_coordinate_fault(std::span<const Cell> cells) {
-  for (const Cell& cell : cells) {
-    for (const std::int64_t coordinate : {cell.x, cell.y, cell.z}) {
-      if (std::abs(coordinate) > base::kCoordinateMax) {
-        return fmt::format(
-            "the cell {} lies outside the lattice, allowed are coordinates from "
-            "-{} to {}",
-            text(cell), base::kCoordinateMax, base::kCoordinateMax);
-      }
-    }
-  }
-  return std::nullopt;
-}
 
 CellIndex index_of(const RobotSpec& spec) {
   Cell low = spec.existing.front();
@@ -79,159 +49,72 @@ std::optional<std::string> find_double_cell(const RobotSpec& spec, CellIndex& in
   return std::nullopt;
 }
 
-/// Which modules hang together [Galler and Fischer 1964].
-class Parts {
- public:
-  explicit Parts(std::size_t count) : parent_(count) {
-    std::iota(parent_.begin(), parent_.end(), 0);
-  }
-
-  /// The smallest member of the part.
-  std::int32_t find(std::int32_t module) {
-    std::int32_t& parent = parent_[static_cast<std::size_t>(module)];
-    while (parent != parent_[static_cast<std::size_t>(parent)]) {
-      parent = parent_[static_cast<std::size_t>(parent)];
-    }
-    return parent;
-  }
-
-  void join(std::int32_t a, std::int32_t b) {
-    a = find(a);
-    b = find(b);
-    if (a != b) {
-      parent_[static_cast<std::size_t>(std::max(a, b))] = std::min(a, b);
-    }
-  }
-
- private:
-  std::vector<std::int32_t> parent_;
-};
-
-std::optional<std::string> find_connection_fault(std::span<const Connection> connections,
-                                                 std::span<const Module> modules,
-                                                 std::size_t existing_count) {
-  Parts parts(modules.size());
-  const auto is_loose = [&](std::size_t i) {
-    return parts.find(static_cast<std::int32_t>(i)) != 0;
-  };
-  const auto first_planned = static_cast<std::int32_t>(existing_count);
-  for (const Connection& pair : connections) {
-    if (pair.a < first_planned && pair.b < first_planned) {
-      parts.join(pair.a, pair.b);
-    }
-  }
-  std::size_t loose_count = 0;
-  std::size_t loose = 0;
-  for (std::size_t i = existing_count; i-- > 0;) {
-    if (is_loose(i)) {
-      loose = i;
-      ++loose_count;
-    }
-  }
-  if (loose_count > 0) {
-    return fmt::format(
-        "the robot is not connected: {} of {} modules, {} among them, share no "
-        "chain of faces with {}",
-        loose_count, existing_count, text(modules[loose].cell), text(modules[0].cell));
-  }
-  for (const Connection& pair : connections) {
-    if (pair.a >= first_planned || pair.b >= first_planned) {
-      parts.join(pair.a, pair.b);
-    }
-  }
-  for (std::size_t i = existing_count; i < modules.size(); ++i) {
-    if (is_loose(i)) {
-      return fmt::format(
-          "the planned cell {} touches neither the robot nor a planned cell that does",
-          text(modules[i].cell));
-    }
-  }
-  return std::nullopt;
-}
-
-std::optional<std::string> find_support_fault(const Robot& robot) {
-  const auto existing = robot.modules().first(robot.modules().size() - robot.planned_count());
-  const bool is_held = std::ranges::any_of(
-      existing, [](const Module& module) { return module.support != Support::kNone; });
-  if (!is_held) {
-    const auto lowest =
-        std::ranges::min_element(existing, {}, [](const Module& module) { return module.cell.z; });
-    return fmt::format(
-        "nothing holds the robot: no existing module lies on the support level "
-        "z = {} and none is fixed; the lowest module is {}",
-        robot.support_z(), text(lowest->cell));
-  }
-  for (const Facet& facet : robot.facets()) {
-    const Cell& cell = robot.modules()[base::at(facet.module)].cell;
-    const std::int32_t below =
-        robot.neighbours()[base::at(facet.module)][base::at(base::index(facet.direction))];
-    if (below != Robot::kNoNeighbour) {
-      return fmt::format(
-          "the module {} is directly below {}, which rests on the ground at the support level "
-          "z = {}; allowed below that level is only what hangs from a fixed module: lower the "
-          "support level or fix {}",
-          text(robot.modules()[base::at(below)].cell), text(cell), robot.support_z(), text(cell));
-    }
-  }
-  return std::nullopt;
-}
-
 /// The direction of the second cell from the first, if they are neighbours.
-std::optional<base::Direction> direction_between(const CellPair& pair) {
-  const auto* const found = std::ranges::find_if(base::kDirections, [&](base::Direction direction) {
-    return base::neighbour(Robot::lattice(), pair[0], direction) == pair[1];
-  });
-  return found == base::kDirections.end() ? std::nullopt : std::optional(*found);
+std::optional<base::Direction> direction_between(const base::Lattice& lattice,
+                                                 const CellPair& pair) {
+  for (const base::Direction direction : base::directions(lattice)) {
+    if (base::neighbour(lattice, pair[0], direction) == pair[1]) {
+      return direction;
+    }
+  }
+  return std::nullopt;
 }
 
 base::Error bad_input(std::string message) {
   return {.code = base::ErrorCode::kBadInput, .message = std::move(message)};
 }
 
+std::array<double, 3> gravity_of(const RobotSpec& spec) {
+  return spec.gravity_m_s2.value_or(std::array<double, 3>{0, 0, -spec.material.gravity_m_s2});
+}
+
+double foot_half_width(const RobotSpec& spec) {
+  const Material& material = spec.material;
+  if (spec.lattice == base::kCubic) {
+    return material.facet_mm / 2;
+  }
+  return spec.foot_mm.value_or(material.pitch_mm / 2) / 2;
+}
+
 }  // namespace
 
+ModuleKind default_kind(const Material& material, const base::Lattice& lattice) {
+  ModuleKind kind{.mass_kg = material.mass_kg};
+  for (const base::Direction direction : base::directions(lattice)) {
+    const auto connector = model::connector(material, base::connector_class(lattice, direction));
+    kind.connectors.push_back({.strength_n = connector.strength, .lever_mm = connector.width / 2});
+  }
+  return kind;
+}
+
+Robot::Robot(const RobotSpec& spec)
+    : lattice_(spec.lattice),
+      neighbours_(lattice_count()),
+      connected_(lattice_count()),
+      material_(spec.material),
+      foot_half_width_mm_(foot_half_width(spec)),
+      gravity_(gravity_of(spec)),
+      loads_(weight_loads(spec.material)),
+      has_floor_(spec.support_z.has_value()),
+      support_z_(spec.support_z.value_or(0)),
+      planned_count_(spec.planned.size()) {}
+
 base::Result<Robot> Robot::create(const RobotSpec& spec, int thread_count) {
-  auto fault = find_size_fault(spec);
-  for (const auto* cells : {&spec.existing, &spec.planned, &spec.fixed}) {
-    if (!fault) {
-      fault = find_coordinate_fault(*cells);
-    }
-  }
-  for (std::size_t i = 0; !fault && i < spec.released.size(); ++i) {
-    fault = find_coordinate_fault(spec.released[i]);
-  }
+  auto fault = find_number_fault(spec);
   if (fault) {
     return bad_input(*fault);
   }
-  const std::size_t count = spec.existing.size() + spec.planned.size();
   CellIndex index = index_of(spec);
   if (fault = find_double_cell(spec, index); fault) {
     return bad_input(*fault);
   }
-
-  Robot robot(spec.material);
-  robot.support_z_ = spec.support_z;
-  robot.planned_count_ = spec.planned.size();
-  robot.modules_.reserve(count);
-  for (const auto* cells : {&spec.existing, &spec.planned}) {
-    for (const Cell& cell : *cells) {
-      robot.modules_.push_back(
-          {.cell = cell,
-           .support = cell.z == spec.support_z ? Support::kGround : Support::kNone,
-           .is_planned = cells == &spec.planned});
-    }
-  }
-  for (const Cell& cell : spec.fixed) {
-    const std::int32_t fixed = index.find(cell);
-    if (fixed == CellIndex::kNone || robot.modules_[static_cast<std::size_t>(fixed)].is_planned) {
-      return bad_input(fmt::format("the fixed cell {} holds no existing module", text(cell)));
-    }
-    robot.modules_[static_cast<std::size_t>(fixed)].support = Support::kFixed;
-  }
-  host::Team team(thread_count, count);
-  robot.connect(index, team);
-  if (!spec.released.empty()) {
-    fault = robot.release(spec.released, index);
+  Robot robot(spec);
+  robot.add_modules(spec);
+  fault = robot.fix(spec.fixed, index);
+  if (!fault) {
+    host::Team team(thread_count, robot.modules_.size());
+    robot.connect(index, team);
+    fault = spec.released.empty() ? std::nullopt : robot.release(spec.released, index);
   }
   if (!fault) {
     fault = find_connection_fault(robot.connections_, robot.modules_, spec.existing.size());
@@ -239,24 +122,47 @@ base::Result<Robot> Robot::create(const RobotSpec& spec, int thread_count) {
       *fault += fmt::format("; the faces of {} released pairs do not count", robot.released_count_);
     }
   }
-  if (!fault) {
-    fault = find_support_fault(robot);
-  }
+  fault = fault ? fault : robot.touch(spec);
+  fault = fault ? fault : robot.take_kinds(spec, index);
+  fault = fault ? fault : robot.take_loads(spec, index);
+  fault = fault ? fault : find_support_fault(robot, spec);
   if (fault) {
     return bad_input(*fault);
   }
   return robot;
 }
 
+void Robot::add_modules(const RobotSpec& spec) {
+  modules_.reserve(spec.existing.size() + spec.planned.size());
+  for (const auto* cells : {&spec.existing, &spec.planned}) {
+    for (const Cell& cell : *cells) {
+      modules_.push_back({.cell = cell, .is_planned = cells == &spec.planned});
+    }
+  }
+}
+
+std::optional<std::string> Robot::fix(std::span<const Cell> cells, const CellIndex& index) {
+  for (const Cell& cell : cells) {
+    const std::int32_t found = index.find(cell);
+    if (found == CellIndex::kNone || modules_[base::at(found)].is_planned) {
+      return fmt::format("the fixed cell {} holds no existing module", text(cell));
+    }
+    Module& module = modules_[base::at(found)];
+    fixed_count_ += module.support == Support::kFixed ? 0 : 1;
+    module.support = Support::kFixed;
+  }
+  return std::nullopt;
+}
+
 void Robot::connect(const CellIndex& index, host::Team& team) {
-  connected_.resize(modules_.size());
+  connected_.resize(modules_.size(), kNoNeighbour);
   std::vector<std::size_t> first;  // Connection of every chunk of modules.
   team.map(modules_.size(), first, [&](std::size_t begin, std::size_t end) {
     std::size_t count = 0;
     for (std::size_t i = begin; i < end; ++i) {
-      for (const base::Direction direction : base::kDirections) {
+      for (const base::Direction direction : base::directions(lattice_)) {
         const std::int32_t other =
-            index.find(base::neighbour(lattice(), modules_[i].cell, direction));
+            index.find(base::neighbour(lattice_, modules_[i].cell, direction));
         connected_[i][static_cast<std::size_t>(base::index(direction))] = other;
         count += other != kNoNeighbour && base::index(direction) % 2 == 0 ? 1 : 0;
       }
@@ -271,32 +177,21 @@ void Robot::connect(const CellIndex& index, host::Team& team) {
   team.share(0, modules_.size(), [&](std::size_t begin, std::size_t end) {
     std::size_t next = first[begin / host::Team::kChunk];
     for (std::size_t i = begin; i < end; ++i) {
-      for (std::size_t d = 0; d < base::kDirectionCount; d += 2) {
+      for (std::size_t d = 0; d < lattice_count(); d += 2) {
         if (connected_[i][d] != kNoNeighbour) {
           connections_[next++] = {.a = static_cast<std::int32_t>(i),
                                   .b = connected_[i][d],
-                                  .direction = base::kDirections[d]};
+                                  .direction = static_cast<base::Direction>(d)};
         }
       }
     }
   });
-  std::size_t facet_count = 0;
-  for (const Module& module : modules_) {
-    facet_count += module.support == Support::kGround ? 1 : 0;
-    fixed_count_ += module.support == Support::kFixed ? 1 : 0;
-  }
-  facets_.reserve(facet_count);
-  for (std::size_t i = 0; facets_.size() < facet_count; ++i) {
-    if (modules_[i].support == Support::kGround) {
-      facets_.push_back({.module = static_cast<std::int32_t>(i)});
-    }
-  }
 }
 
 std::optional<std::string> Robot::release(std::span<const CellPair> pairs, const CellIndex& index) {
   neighbours_ = connected_;
   for (const CellPair& pair : pairs) {
-    const auto direction = direction_between(pair);
+    const auto direction = direction_between(lattice_, pair);
     const std::int32_t a = index.find(pair[0]);
     const std::int32_t b = index.find(pair[1]);
     if (!direction || a == CellIndex::kNone || b == CellIndex::kNone) {
@@ -316,6 +211,140 @@ std::optional<std::string> Robot::release(std::span<const CellPair> pairs, const
     return connected_[base::at(pair.a)][base::at(base::index(pair.direction))] == kNoNeighbour;
   });
   released_count_ = pairs.size();
+  return std::nullopt;
+}
+
+/// All sides of a module that are not fixed, but those that another module is beside.
+std::optional<std::string> Robot::touch(const RobotSpec& spec) {
+  const ObstacleIndex obstacles(spec.obstacles);
+  const auto floor = base::index(base::down(lattice_));
+  for (std::size_t i = 0; i < modules_.size(); ++i) {
+    Module& module = modules_[i];
+    if (!spec.obstacles.empty() && obstacles.find(module.cell) != CellIndex::kNone) {
+      return fmt::format("the module {} is where an obstacle is", text(module.cell));
+    }
+    const bool is_on_floor = has_floor_ && module.cell.z == support_z_;
+    if (module.support == Support::kFixed || (!is_on_floor && spec.obstacles.empty())) {
+      continue;
+    }
+    for (const base::Direction direction : base::facet_directions(lattice_)) {
+      const bool is_floor = is_on_floor && base::index(direction) == floor;
+      const bool is_neighbour = base::index(direction) < lattice_.direction_count;
+      const std::int32_t obstacle =
+          is_neighbour && !spec.obstacles.empty()
+              ? obstacles.find(base::neighbour(lattice_, module.cell, direction))
+              : CellIndex::kNone;
+      const bool is_free =
+          !is_neighbour || neighbours()[i][base::at(base::index(direction))] == kNoNeighbour;
+      if (!is_floor && (obstacle == CellIndex::kNone || !is_free)) {
+        continue;
+      }
+      facets_.push_back({.module = static_cast<std::int32_t>(i),
+                         .direction = direction,
+                         .touch = obstacle == CellIndex::kNone
+                                      ? spec.floor
+                                      : spec.obstacles[base::at(obstacle)].touch});
+      module.support = Support::kGround;
+    }
+  }
+  has_bonded_facets_ = std::ranges::any_of(facets_, &Facet::is_bonded);
+  return std::nullopt;
+}
+
+std::optional<std::string> Robot::take_kinds(const RobotSpec& spec, const CellIndex& index) {
+  kinds_ = spec.kinds;
+  has_default_connectors_ = kinds_.empty();
+  if (kinds_.empty()) {
+    kinds_.push_back(default_kind(material_, lattice_));
+  }
+  mass_ = kinds_.front().mass_kg;
+  for (const OwnKind& own : spec.own_kinds) {
+    const std::int32_t module = index.find(own.cell);
+    if (module == CellIndex::kNone || own.kind >= kinds_.size()) {
+      return fmt::format("the kind {} of {}: there are {} kinds, and {} there", own.kind,
+                         text(own.cell), kinds_.size(),
+                         module == CellIndex::kNone ? "no module" : "a module");
+    }
+    modules_[base::at(module)].kind = own.kind;
+  }
+  for (const ModuleKind& a : kinds_) {
+    for (const ModuleKind& b : kinds_) {
+      for (std::size_t d = 0; d < lattice_count(); ++d) {
+        connectors_.push_back(weaker(a.connectors[d], b.connectors[d ^ 1U]));
+      }
+    }
+  }
+  return std::nullopt;
+}
+
+std::optional<std::string> Robot::take_loads(const RobotSpec& spec, const CellIndex& index) {
+  const auto weight = [&](double mass) {
+    return Loads::Load{mass * gravity_[0], mass * gravity_[1], mass * gravity_[2], 0, 0, 0};
+  };
+  has_payloads_ = !spec.payloads.empty();
+  loads_ = Loads(weight(mass_));
+  if (kinds_.size() == 1 && spec.own_masses.empty() && !has_payloads_) {
+    return std::nullopt;
+  }
+  std::vector<double> masses(modules_.size());
+  std::ranges::transform(modules_, masses.begin(),
+                         [&](const Module& module) { return kinds_[module.kind].mass_kg; });
+  for (const OwnMass& own : spec.own_masses) {
+    const std::int32_t module = index.find(own.cell);
+    if (module == CellIndex::kNone) {
+      return fmt::format("a mass of {} kg in {}: there is no module", own.mass_kg, text(own.cell));
+    }
+    masses[base::at(module)] = own.mass_kg;
+  }
+  mass_ = masses.front();
+  if (std::ranges::all_of(masses, [&](double mass) { return mass == mass_; })) {
+    loads_ = Loads(weight(mass_));
+  } else {
+    masses_ = masses;
+  }
+  if (is_uniform() && !has_payloads_) {
+    return std::nullopt;
+  }
+  std::vector<Loads::Load> loads(masses.size());
+  std::ranges::transform(masses, loads.begin(), weight);
+  for (const Payload& payload : spec.payloads) {
+    const std::int32_t module = index.find(payload.cell);
+    if (module == CellIndex::kNone) {
+      return fmt::format("a load on {}: there is no module", text(payload.cell));
+    }
+    for (std::size_t k = 0; k < 3; ++k) {
+      loads[base::at(module)][k] += payload.force_n[k];
+      loads[base::at(module)][k + 3] += payload.torque_nmm[k];
+    }
+  }
+  loads_ = Loads(std::move(loads));
+  return std::nullopt;
+}
+
+std::optional<std::string> find_beyond_paper(const Robot& robot) {
+  const auto& [x, y, z] = robot.gravity();
+  if (robot.lattice() != base::kCubic) {
+    return "a lattice other than the cubic one";
+  }
+  if (x != 0 || y != 0 || z >= 0) {
+    return "gravity that is not straight down";
+  }
+  if (!robot.is_uniform()) {
+    return "modules of different masses";
+  }
+  if (robot.has_payloads()) {
+    return "loads besides weight";
+  }
+  if (!robot.has_default_connectors()) {
+    return "connectors with other limits than Eq. (17)";
+  }
+  for (const Facet& facet : robot.facets()) {
+    const std::int32_t level = robot.modules()[base::at(facet.module)].cell.z;
+    if (facet.touch != Touch{} || facet.direction != base::down(robot.lattice()) ||
+        !robot.has_floor() || level != robot.support_z()) {
+      return "supports other than a floor without slip";
+    }
+  }
   return std::nullopt;
 }
 

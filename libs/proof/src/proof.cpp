@@ -86,7 +86,7 @@ Certificate certificate_of(const model::Robot& robot, const Assessment& assessme
     copy.cell = {module.cell.x, module.cell.y, module.cell.z};
     copy.is_fixed = module.support == model::Support::kFixed;
     if (module.support == model::Support::kGround && made.law != Law::kBonded) {
-      const ContactState& state = assessment.equilibrium.contact[i];
+      const ContactState state = solver::contact_of(robot, assessment.equilibrium, i);
       copy.state = {.is_pressed = state.pressed, .tilt_x = state.tilt_x, .tilt_y = state.tilt_y};
     }
   }
@@ -97,6 +97,9 @@ Certificate certificate_of(const model::Robot& robot, const Assessment& assessme
 std::string find_obstacle(const model::Robot& robot, const Assessment& assessment) {
   if (!assessment.is_stable) {
     return "the robot topples, which the rigid body decides in integers";
+  }
+  if (const auto beyond = model::find_beyond_paper(robot)) {
+    return "the robot has " + *beyond + ", and certificates know cubes on a floor only";
   }
   if (robot.released_count() > 0) {
     return "the robot has neighbours that are not connected, and a certificate connects all";
@@ -223,7 +226,7 @@ class Prover {
                                          : mechanics::ContactLaw::kRegularised,
                     .gamma = is_unilateral ? kUnilateralGamma : robot_.material().contact_gamma});
     for (std::size_t i = 0; i < system.facets().size(); ++i) {
-      const ContactState& state = assessment_.equilibrium.contact[system.facets()[i].module];
+      const ContactState& state = assessment_.equilibrium.contact[i];
       system.set_facet(i, state, !is_unilateral || state.pressed);
     }
   }

@@ -106,21 +106,18 @@ TEST(Proof, refuses_other_contact_states) {
   const Assessment right = verdict::assess(robot);
   ASSERT_TRUE(prove(robot, right).is_proved());
   int refused = 0;
-  for (std::size_t module = 0; module < robot.modules().size(); ++module) {
-    if (robot.modules()[module].support != model::Support::kGround) {
-      continue;
-    }
+  for (std::size_t facet = 0; facet < robot.facets().size(); ++facet) {
     for (int tilt = -1; tilt < 9; ++tilt) {
       Assessment wrong = right;
-      mechanics::ContactState& state = wrong.equilibrium.contact[module];
+      mechanics::ContactState& state = wrong.equilibrium.contact[facet];
       state = {.pressed = tilt >= 0,
                .tilt_x = static_cast<std::int8_t>(tilt < 0 ? 0 : tilt / 3 - 1),
                .tilt_y = static_cast<std::int8_t>(tilt < 0 ? 0 : tilt % 3 - 1)};
-      if (state == right.equilibrium.contact[module]) {
+      if (state == right.equilibrium.contact[facet]) {
         continue;
       }
       const Proof proof = prove(robot, wrong);
-      EXPECT_FALSE(proof.is_proved()) << module << ' ' << tilt;
+      EXPECT_FALSE(proof.is_proved()) << facet << ' ' << tilt;
       apply(robot, proof, wrong);
       EXPECT_EQ(wrong.verdict, Verdict::kUndecided);
       ++refused;

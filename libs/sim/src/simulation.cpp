@@ -21,8 +21,11 @@ std::optional<std::string> find_module_fault(const char* what, std::int32_t modu
   return fmt::format("{} is {}, allowed are existing modules: 0 to {}", what, module, count - 1);
 }
 
-/// The modules' own program takes every neighbour for connected.
-std::optional<std::string> find_release_fault(const model::Robot& robot) {
+/// The modules' own program knows cubes on a floor, and takes every neighbour for connected.
+std::optional<std::string> find_robot_fault(const model::Robot& robot) {
+  if (const auto beyond = model::find_beyond_paper(robot)) {
+    return "the robot has " + *beyond + ", and the modules' program knows cubes on a floor only";
+  }
   if (robot.released_count() == 0) {
     return std::nullopt;
   }
@@ -37,7 +40,7 @@ std::optional<std::string> find_release_fault(const model::Robot& robot) {
 std::optional<std::string> find_options_fault(const model::Robot& robot,
                                               const SimulationOptions& options) {
   const std::size_t count = robot.modules().size() - robot.planned_count();
-  auto found = find_release_fault(robot);
+  auto found = find_robot_fault(robot);
   found = found ? found : find_link_fault(options.link);
   found = found ? found : find_module_fault("anchor", options.anchor, count);
   found = found ? found : find_module_fault("plan_module", options.plan_module, count);

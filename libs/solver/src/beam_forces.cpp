@@ -7,16 +7,15 @@ namespace holdfast::solver {
 using base::Vec6;
 
 std::vector<Vec6<double>> beam_forces(const model::Robot& robot,
-                                      const mechanics::BeamStiffness<double>& beam,
+                                      const model::LatticeBeam<double>& beam,
                                       const std::vector<Vec6<double>>& displacement) {
   std::vector<Vec6<double>> force(displacement.size(), Vec6<double>{});
   for (const model::Connection& connection : robot.connections()) {
     const auto a = static_cast<std::size_t>(connection.a);
     const auto b = static_cast<std::size_t>(connection.b);
-    base::add_to(force[a], mechanics::end_force(beam, connection.direction, displacement[a],
-                                                displacement[b]));
-    base::add_to(force[b], mechanics::end_force(beam, base::opposite(connection.direction),
-                                                displacement[b], displacement[a]));
+    base::add_to(force[a], beam.end_force(connection.direction, displacement[a], displacement[b]));
+    base::add_to(force[b], beam.end_force(base::opposite(connection.direction), displacement[b],
+                                          displacement[a]));
   }
   return force;
 }

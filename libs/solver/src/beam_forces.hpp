@@ -5,15 +5,15 @@
 #include <vector>
 
 #include "holdfast/base/algebra.hpp"
-#include "holdfast/mechanics/beam.hpp"
+#include "holdfast/model/lattice_beam.hpp"
 #include "holdfast/model/robot.hpp"
 
 namespace holdfast::solver {
 
 /// The forces that a robot's beams take from every module when the modules move by `displacement`,
-/// both by module; `beam` is that of one pitch.
+/// both by module; `beam` are the beams of its lattice.
 std::vector<base::Vec6<double>> beam_forces(const model::Robot& robot,
-                                            const mechanics::BeamStiffness<double>& beam,
+                                            const model::LatticeBeam<double>& beam,
                                             const std::vector<base::Vec6<double>>& displacement);
 
 /// a + factor b

@@ -76,12 +76,12 @@ Outcome ContactIteration::solve_for_states(Solution& solution) {
 bool ContactIteration::are_states_certain(const std::vector<Vec>& displacement) const {
   const std::vector<double> errors = system_.facet_errors();
   for (std::size_t i = 0; i < errors.size(); ++i) {
-    Vec more = mechanics::trial_force(system_.ground(), displacement[system_.facets()[i].module]);
+    const FacetState& facet = system_.facets()[i];
+    Vec more = system_.law().trial_force(facet, displacement[facet.module]);
     Vec less = more;
     more[2] -= errors[i];
     less[2] += errors[i];
-    if (mechanics::contact_state(system_.ground(), more) !=
-        mechanics::contact_state(system_.ground(), less)) {
+    if (system_.law().state_for(facet, more) != system_.law().state_for(facet, less)) {
       return false;
     }
   }
@@ -101,8 +101,7 @@ std::vector<ContactState> ContactIteration::states_at(const std::vector<Vec>& di
   std::vector<ContactState> states;
   states.reserve(system_.facets().size());
   for (const FacetState& facet : system_.facets()) {
-    states.push_back(mechanics::contact_state(
-        system_.ground(), mechanics::trial_force(system_.ground(), displacement[facet.module])));
+    states.push_back(system_.law().state_at(facet, displacement[facet.module]));
   }
   return states;
 }

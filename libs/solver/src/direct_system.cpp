@@ -74,7 +74,6 @@ std::unique_ptr<DirectSystem> DirectSystem::make(const model::Robot& robot,
 
 DirectSystem::DirectSystem(const model::Robot& robot, const EquilibriumOptions& options)
     : LinearSystem(robot),
-      beam_(mechanics::beam_stiffness(model::beam_section(robot.material()))),
       is_bonded_(options.is_bonded),
       is_precise_(options.is_precise),
       node_of_module_(robot.modules().size(), -1) {
@@ -107,12 +106,12 @@ void DirectSystem::order(const EquilibriumOptions& options) {
 
 /// Everything but the contact: K11 of every beam end on the diagonal, K12 off it (Eqs. 3, 5).
 void DirectSystem::assemble() {
-  std::array<Mat6<double>, base::kDirectionCount> k11;
-  std::array<Mat6<double>, base::kDirectionCount> k12;
-  for (const base::Direction direction : base::kDirections) {
+  std::array<Mat6<double>, base::Lattice::kDirectionCountMax> k11;
+  std::array<Mat6<double>, base::Lattice::kDirectionCountMax> k12;
+  for (const base::Direction direction : base::directions(robot().lattice())) {
     const auto i = static_cast<std::size_t>(base::index(direction));
-    k11[i] = mechanics::block_11(beam_, direction);
-    k12[i] = mechanics::block_12(beam_, direction);
+    k11[i] = beam().block_11(direction);
+    k12[i] = beam().block_12(direction);
   }
   std::size_t edge = 0;
   for (const model::Connection& connection : robot().connections()) {
@@ -137,16 +136,30 @@ void DirectSystem::assemble() {
 }
 
 void DirectSystem::take_law() {
-  for (std::size_t i = 0; i < facets().size(); ++i) {
+  for (std::size_t i = 0; i < facets().size(); i = first_facet_after(i)) {
     take_facet(i);
   }
 }
 
+/// The first facet of the next module.
+std::size_t DirectSystem::first_facet_after(std::size_t facet) const {
+  const std::size_t module = facets()[facet].module;
+  while (facet < facets().size() && facets()[facet].module == module) {
+    ++facet;
+  }
+  return facet;
+}
+
 void DirectSystem::take_facet(std::size_t facet) {
-  const FacetState& taken = facets()[facet];
-  const std::size_t node = at(node_of_module_[taken.module]);
+  const std::size_t module = facets()[facet].module;
+  while (facet > 0 && facets()[facet - 1].module == module) {
+    --facet;
+  }
+  const std::size_t node = at(node_of_module_[module]);
   Mat6<double> block = diagonal_[node];
-  base::add_to(block, mechanics::contact_tangent(ground(), taken.state, taken.is_held));
+  for (; facet < facets().size() && facets()[facet].module == module; ++facet) {
+    base::add_to(block, law().tangent(facets()[facet]));
+  }
   lu_->set_diagonal(node, block);
 }
 
@@ -227,11 +240,9 @@ bool DirectSystem::refine(Solution& solution) {
 
 /// Solves for the residual and adds the correction.
 void DirectSystem::refine_once(Solution& solution) const {
-  std::vector<Vec> residual = beam_forces(robot(), beam_, solution.displacement);
+  std::vector<Vec> residual = beam_forces(robot(), beam(), solution.displacement);
   for (const FacetState& facet : facets()) {
-    base::add_to(residual[facet.module],
-                 mechanics::contact_force(ground(), facet.state, facet.is_held,
-                                          solution.displacement[facet.module]));
+    base::add_to(residual[facet.module], law().force(facet, solution.displacement[facet.module]));
   }
   for (std::size_t i = 0; i < residual.size(); ++i) {
     residual[i] = sum(loads()[i], -1, residual[i]);

@@ -45,6 +45,7 @@ class DirectSystem final : public LinearSystem {
 
   void order(const EquilibriumOptions& options);
   void assemble();
+  std::size_t first_facet_after(std::size_t facet) const;
   std::int32_t node_of(std::int32_t module) const;
   std::vector<Vec> by_module(const std::vector<Vec>& by_node) const;
   template <class Load>
@@ -54,7 +55,6 @@ class DirectSystem final : public LinearSystem {
   bool refine_precisely(Solution& solution);
   bool refine_without_weak_springs(Solution& solution);
 
-  mechanics::BeamStiffness<double> beam_;
   bool is_bonded_ = false;
   bool is_precise_ = false;
   std::vector<std::int32_t> node_of_module_;  ///< -1 for fixed modules

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "holdfast/solver/equilibrium.hpp"
 
+#include <algorithm>
 #include <utility>
 
 #include "regularised_contact.hpp"
@@ -12,7 +13,6 @@ namespace holdfast::solver {
 namespace {
 
 using mechanics::ContactLaw;
-using mechanics::ContactState;
 
 /// What a system has done since an earlier report.
 Attempt attempt_since(const LinearReport& before, const LinearReport& now,
@@ -28,16 +28,17 @@ Attempt attempt_since(const LinearReport& before, const LinearReport& now,
 
 /// The contact states, and the forces that go with the displacements.
 void take_contact(const LinearSystem& system, Equilibrium& result) {
-  const std::size_t count = system.robot().modules().size();
-  result.contact.assign(count, ContactState{.pressed = false});
-  result.ground_force.assign(count, {});
+  result.contact.clear();
+  result.facet_force.clear();
+  result.ground_force.assign(system.robot().modules().size(), {});
   for (const FacetState& facet : system.facets()) {
-    result.contact[facet.module] = facet.state;
-    const auto force = mechanics::contact_force(system.ground(), facet.state, facet.is_held,
-                                                result.displacement[facet.module]);
-    for (std::size_t k = 0; k < 6; ++k) {
-      result.ground_force[facet.module][k] = -force[k];
+    auto force = system.law().force(facet, result.displacement[facet.module]);
+    for (double& component : force) {
+      component = -component;
     }
+    result.contact.push_back(facet.state);
+    result.facet_force.push_back(force);
+    base::add_to(result.ground_force[facet.module], force);
   }
 }
 
@@ -75,6 +76,17 @@ void Equilibrium::begin_with(const Equilibrium& earlier) {
   iteration_count += earlier.iteration_count;
 }
 
+mechanics::ContactState contact_of(const model::Robot& robot, const Equilibrium& equilibrium,
+                                   std::size_t module) {
+  const auto facets = robot.facets();
+  const auto facet = std::ranges::lower_bound(facets, static_cast<std::int32_t>(module), {},
+                                              &model::Facet::module);
+  if (facet == facets.end() || base::at(facet->module) != module) {
+    return {.pressed = false};
+  }
+  return equilibrium.contact[static_cast<std::size_t>(facet - facets.begin())];
+}
+
 EquilibriumSolver::EquilibriumSolver(const model::Robot& robot, EquilibriumOptions options)
     : options_(std::move(options)), choice_(std::make_unique<SystemChoice>(robot, options_)) {}
 
@@ -107,7 +119,7 @@ void EquilibriumSolver::attempt(const ContactOptions& contact, Equilibrium& resu
   LinearSystem& system = *choice_->system();
   const LinearReport before = system.report();
   system.set_law(contact);
-  if (options_.is_bonded || system.facets().empty()) {
+  if (options_.is_bonded || std::ranges::all_of(system.facets(), &FacetState::is_bonded)) {
     result.outcome = BondedContact(system, options_).run(result);
     finish(system, result);
   } else if (contact.law == ContactLaw::kRegularised) {

@@ -6,27 +6,34 @@
 
 namespace holdfast::solver {
 
-LinearSystem::LinearSystem(const model::Robot& robot) : robot_(robot), loads_(robot.loads()) {
-  const auto modules = robot.modules();
-  for (std::size_t i = 0; i < modules.size(); ++i) {
-    if (modules[i].support == model::Support::kGround) {
-      facets_.push_back({.module = i, .state = {}});
-    }
+LinearSystem::LinearSystem(const model::Robot& robot)
+    : robot_(robot),
+      beam_(model::beam_section(robot.material()), robot.lattice()),
+      loads_(robot.loads()),
+      law_(beam_, {}) {
+  facets_.reserve(robot.facets().size());
+  for (const model::Facet& facet : robot.facets()) {
+    facets_.push_back({.module = base::at(facet.module),
+                       .direction = facet.direction,
+                       .is_bonded = facet.is_bonded(),
+                       .state = {}});
   }
 }
 
 void LinearSystem::set_law(const ContactOptions& contact) {
   const model::Material& material = robot_.material();
-  ground_ = mechanics::ground_facet(model::beam_section(material), material.facet_mm, contact.gamma,
-                                    contact.law);
+  law_ = {beam_,
+          mechanics::ground_facet(model::beam_section(material), 2 * robot_.foot_half_width_mm(),
+                                  contact.gamma, contact.law)};
   for (FacetState& facet : facets_) {
-    facet = {.module = facet.module, .state = {}};
+    facet.state = {};
+    facet.is_held = true;
   }
   take_law();
 }
 
 void LinearSystem::set_gamma(double gamma) {
-  ground_.gamma = gamma;
+  law_.set_gamma(gamma);
   take_law();
 }
 

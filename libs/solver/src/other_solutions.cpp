@@ -51,7 +51,7 @@ std::vector<std::size_t> RegularisedContact::doubtful_facets(const Solution& set
   for (std::size_t i = 0; i < system().facets().size(); ++i) {
     const FacetState& facet = system().facets()[i];
     const bool is_stuck = facet.state == mechanics::ContactState{};
-    const Vec force = mechanics::trial_force(system().ground(), settled.displacement[facet.module]);
+    const Vec force = system().law().trial_force(facet, settled.displacement[facet.module]);
     const Doubt doubt = {
         .facet = i, .upright_n = std::abs(force[2]), .sideways_n = std::hypot(force[0], force[1])};
     const bool is_new =

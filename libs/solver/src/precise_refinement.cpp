@@ -67,10 +67,10 @@ std::vector<base::Vec6<To>> all_converted(const std::vector<base::Vec6<From>>& v
 PreciseRefinement::PreciseRefinement(const LinearSystem& system)
     : system_(system),
       robot_(system.robot()),
-      beam_(mechanics::beam_stiffness(precise_section(robot_.material()))),
-      ground_(mechanics::ground_facet<DoubleDouble>(precise_section(robot_.material()),
-                                                    robot_.material().facet_mm,
-                                                    system.ground().gamma, system.ground().law)) {}
+      beam_(precise_section(robot_.material()), robot_.lattice()),
+      law_(beam_, mechanics::ground_facet<DoubleDouble>(
+                      precise_section(robot_.material()), 2 * robot_.foot_half_width_mm(),
+                      system.ground().gamma, system.ground().law)) {}
 
 bool PreciseRefinement::run(const std::vector<Vec>& displacement, const Solve& solve) {
   displacement_ = all_converted<DoubleDouble>(displacement);
@@ -137,12 +137,11 @@ PreciseRefinement::PreciseVecs PreciseRefinement::product(const PreciseVecs& u) 
   for (const model::Connection& connection : robot_.connections()) {
     const std::size_t a = at(connection.a);
     const std::size_t b = at(connection.b);
-    take(a, mechanics::end_force(beam_, connection.direction, u[a], u[b]));
-    take(b, mechanics::end_force(beam_, base::opposite(connection.direction), u[b], u[a]));
+    take(a, beam_.end_force(connection.direction, u[a], u[b]));
+    take(b, beam_.end_force(base::opposite(connection.direction), u[b], u[a]));
   }
   for (const FacetState& facet : system_.facets()) {
-    take(facet.module,
-         mechanics::contact_force(ground_, facet.state, facet.is_held, u[facet.module]));
+    take(facet.module, law_.force(facet, u[facet.module]));
   }
   return force;
 }
@@ -179,8 +178,7 @@ std::vector<mechanics::ContactState> PreciseRefinement::states() const {
   std::vector<mechanics::ContactState> states;
   states.reserve(system_.facets().size());
   for (const FacetState& facet : system_.facets()) {
-    states.push_back(mechanics::contact_state(
-        ground_, mechanics::trial_force(ground_, displacement_[facet.module])));
+    states.push_back(law_.state_at(facet, displacement_[facet.module]));
   }
   return states;
 }

@@ -36,6 +36,9 @@ class PreciseRefinement {
   /// Refines solutions of a system, whose present facets and loads it takes. Keeps a reference to
   /// it, which is to stay as it is; the numbers of its section count as exact.
   explicit PreciseRefinement(const LinearSystem& system);
+  PreciseRefinement(const PreciseRefinement&) = delete;
+  PreciseRefinement& operator=(const PreciseRefinement&) = delete;
+  ~PreciseRefinement() = default;
 
   /// Improves the displacements until the corrections are rounding. Returns false if they do not
   /// become so: the solver's error is as large as the displacements, or larger.
@@ -66,8 +69,8 @@ class PreciseRefinement {
 
   const LinearSystem& system_;
   const model::Robot& robot_;
-  mechanics::BeamStiffness<base::DoubleDouble> beam_;
-  mechanics::GroundFacet<base::DoubleDouble> ground_;
+  model::LatticeBeam<base::DoubleDouble> beam_;
+  FacetLaw<base::DoubleDouble> law_;
   PreciseVecs displacement_;
   std::vector<Direction> older_;
 };

@@ -29,9 +29,7 @@ bool is_open_but_held(const FacetState& facet) { return !facet.state.pressed && 
 }  // namespace
 
 UnilateralContact::UnilateralContact(LinearSystem& system, const EquilibriumOptions& options)
-    : ContactIteration(system, options),
-      beam_(mechanics::beam_stiffness(model::beam_section(system.robot().material()))),
-      was_released_(system.facets().size()) {}
+    : ContactIteration(system, options), was_released_(system.facets().size()) {}
 
 Outcome UnilateralContact::run(Solution& solution) {
   Outcome outcome = minimise(solution);
@@ -69,20 +67,17 @@ Outcome UnilateralContact::minimise(Solution& solution) {
 double UnilateralContact::search_line(const std::vector<Vec>& from,
                                       const std::vector<Vec>& direction) const {
   const model::Robot& robot = system().robot();
-  const mechanics::GroundFacet<double>& ground = system().ground();
-  double slope = dot_all(beam_forces(robot, beam_, from), direction);
+  double slope = dot_all(beam_forces(robot, system().beam(), from), direction);
   for (std::size_t i = 0; i < direction.size(); ++i) {  // A fixed module does not move.
     slope -= base::dot(system().loads()[i], direction[i]);
   }
-  const double curvature = dot_all(beam_forces(robot, beam_, direction), direction);
+  const double curvature = dot_all(beam_forces(robot, system().beam(), direction), direction);
   const auto slope_at = [&](double length) {
     double slope_here = slope + length * curvature;
-    for (const FacetState& facet : system().facets()) {
+    for (FacetState facet : system().facets()) {
       const Vec u = sum(from[facet.module], length, direction[facet.module]);
-      const ContactState state =
-          mechanics::contact_state(ground, mechanics::trial_force(ground, u));
-      slope_here += base::dot(mechanics::contact_force(ground, state, facet.is_held, u),
-                              direction[facet.module]);
+      facet.state = system().law().state_at(facet, u);
+      slope_here += base::dot(system().law().force(facet, u), direction[facet.module]);
     }
     return slope_here;
   };

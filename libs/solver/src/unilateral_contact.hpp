@@ -29,7 +29,6 @@ class UnilateralContact final : public ContactIteration {
   bool update_held();
   double search_line(const std::vector<Vec>& from, const std::vector<Vec>& direction) const;
 
-  mechanics::BeamStiffness<double> beam_;
   std::vector<bool> was_released_;  ///< By facet.
 };
 

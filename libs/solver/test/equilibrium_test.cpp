@@ -107,7 +107,7 @@ TEST(Equilibrium, of_a_free_column_settles_on_the_ground_too) {
                   -kTolerance * settlement);
     }
     EXPECT_EQ(result.contact[0], ContactState{});
-    EXPECT_FALSE(result.contact[1].pressed);
+    EXPECT_EQ(result.contact.size(), 1U);
     EXPECT_NEAR(result.ground_force[0][2], n * weight, kTolerance * weight);
     EXPECT_EQ(result.steps, 1);
   }

@@ -25,14 +25,13 @@ ModelStability model_stability(const model::Robot& robot, const Equilibrium& equ
     return {};
   }
   mechanics::SupportCorners corners;
-  for (std::size_t i = 0; i < robot.modules().size() && !corners.stable; ++i) {
-    const model::Module& module = robot.modules()[i];
-    if (module.support == model::Support::kFixed) {
-      corners = mechanics::fixed_support();
-    } else if (module.support == model::Support::kGround) {
-      corners = mechanics::merge(corners,
-                                 mechanics::support_corners(module.cell, equilibrium.contact[i]));
-    }
+  if (robot.fixed_count() > 0) {
+    corners = mechanics::fixed_support();
+  }
+  for (std::size_t i = 0; i < robot.facets().size() && !corners.stable; ++i) {
+    const model::Module& module = robot.modules()[base::at(robot.facets()[i].module)];
+    corners =
+        mechanics::merge(corners, mechanics::support_corners(module.cell, equilibrium.contact[i]));
   }
   return {.is_stable = corners.stable, .is_settled = true};
 }

@@ -68,6 +68,13 @@ bool is_held_sideways(ContactLaw law, bool is_held) {
 
 }  // namespace
 
+bool Multigrid::can_solve(const model::Robot& robot) {
+  const base::Direction down = base::down(robot.lattice());
+  return robot.lattice() == base::kCubic &&
+         std::ranges::all_of(robot.facets(),
+                             [&](const model::Facet& facet) { return facet.direction == down; });
+}
+
 std::unique_ptr<Multigrid> Multigrid::make(const model::Robot& robot,
                                            const EquilibriumOptions& options) {
   if (bytes_for(robot.free_count(), options.precision) > options.memory_bytes_max) {

@@ -24,6 +24,10 @@ class Multigrid final : public LinearSystem {
 
   Multigrid(const model::Robot& robot, const EquilibriumOptions& options);
 
+  /// Whether this is a robot that multigrid can solve: cubes that touch with their lower sides
+  /// only.
+  static bool can_solve(const model::Robot& robot);
+
   /// A guess of how much memory a robot needs, bytes.
   static std::size_t bytes_for(std::size_t module_count, Precision precision);
 

@@ -176,17 +176,17 @@ constexpr ConnectorClass connector_class(const Lattice& lattice, Direction direc
   return lattice.connector_class[static_cast<std::size_t>(index(direction))];
 }
 
-/// The square root of a number from 0 to 1, to the last digit of Real but for rounding: Newton's
-/// iteration.
+/// The square root of a number from 1/16 to 16, or of 0, to the last digit of Real but for
+/// rounding: Newton's iteration.
 template <class Real>
-constexpr Real root(double square) {
-  if (square == 0 || square == 1) {
-    return Real(square);
+constexpr Real root(Real square) {
+  if (square == Real(0) || square == Real(1)) {
+    return square;
   }
-  constexpr int kStepCount = 9;  // From 1 down to 1/8 in three, then twice the digits in each.
+  constexpr int kStepCount = 9;  // Within 1/8 after three, then twice the digits in each.
   Real value = 1;
   for (int step = 0; step < kStepCount; ++step) {
-    value = (value + Real(square) / value) / Real(2);
+    value = (value + square / value) / Real(2);
   }
   return value;
 }
@@ -196,9 +196,9 @@ template <class Real = double>
 constexpr std::array<Real, 3> place_of(const Lattice& lattice, const Cell& axial) {
   std::array<Real, 3> place{};
   for (std::size_t i = 0; i < 3; ++i) {
-    place[i] = Real(axial.x) * root<Real>(lattice.basis_squares[0][i]) +
-               Real(axial.y) * root<Real>(lattice.basis_squares[1][i]) +
-               Real(axial.z) * root<Real>(lattice.basis_squares[2][i]);
+    place[i] = Real(axial.x) * root(Real(lattice.basis_squares[0][i])) +
+               Real(axial.y) * root(Real(lattice.basis_squares[1][i])) +
+               Real(axial.z) * root(Real(lattice.basis_squares[2][i]));
   }
   return place;
 }

@@ -7,6 +7,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "holdfast/base/cell.hpp"
@@ -14,6 +15,8 @@
 #include "holdfast/base/result.hpp"
 #include "holdfast/host/team.hpp"
 #include "holdfast/model/cell_index.hpp"
+#include "holdfast/model/connector_law.hpp"
+#include "holdfast/model/environment.hpp"
 #include "holdfast/model/loads.hpp"
 #include "holdfast/model/material.hpp"
 
@@ -26,14 +29,15 @@ inline constexpr std::size_t kModuleCountMax = 20'000'000;
 /// How a module is held from outside the robot.
 enum class Support : std::uint8_t {
   kNone,
-  kGround,  ///< Rests on the support level through its bottom face, unilaterally.
-  kFixed,   ///< Does not move at all.
+  kGround,  ///< Touches the floor or an obstacle with at least one facet.
+  kFixed,   ///< Does not move at all, and touches nothing.
 };
 
 struct Module {
   base::Cell cell;
   Support support = Support::kNone;
   bool is_planned = false;
+  std::uint16_t kind = 0;  ///< Index in RobotSpec::kinds.
 };
 
 /// A connection, that is a beam, between two modules in neighbouring cells; `b` is the neighbour of
@@ -44,15 +48,49 @@ struct Connection {
   base::Direction direction = base::Direction::kPlusX;
 };
 
-/// A facet with which a module touches the environment: unilaterally, its centre half a pitch from
-/// the module's node, in the frame that mechanics::frame_along() gives for its direction.
+/// A facet with which a module touches the environment, its centre half a pitch from the module's
+/// node, in the frame that mechanics::frame_along() gives for its direction: one of
+/// base::facet_directions().
 struct Facet {
   std::int32_t module = 0;  ///< Index.
   base::Direction direction = base::Direction::kMinusZ;
+  Touch touch = {};
+
+  bool is_bonded() const { return touch.hold == Hold::kBonded; }
 };
 
 /// Two modules in neighbouring cells, in either order.
 using CellPair = std::array<base::Cell, 2>;
+
+/// Modules that are made alike: mass, and what holds them, by direction of their lattice.
+struct ModuleKind {
+  std::string name = {};
+  double mass_kg = 0;
+  std::vector<ConnectorLaw> connectors = {};  ///< As many as the lattice has directions.
+};
+
+/// The modules that Material describes, with the connectors of Eq. (17).
+ModuleKind default_kind(const Material& material, const base::Lattice& lattice);
+
+/// What single modules have that others do not.
+struct OwnMass {
+  base::Cell cell;  ///< Existing or planned.
+  double mass_kg = 0;
+};
+
+struct OwnKind {
+  base::Cell cell;         ///< Existing or planned.
+  std::uint16_t kind = 0;  ///< Index in RobotSpec::kinds.
+};
+
+/// A force and a torque at a module's node besides its weight, global frame.
+struct Payload {
+  base::Cell cell;
+  std::array<double, 3> force_n{};
+  std::array<double, 3> torque_nmm{};
+
+  friend bool operator==(const Payload&, const Payload&) = default;
+};
 
 /// What a robot is made from, in any order.
 struct RobotSpec {
@@ -62,15 +100,55 @@ struct RobotSpec {
   /// Pairs, existing or planned, that touch without being connected: no force passes. All other
   /// neighbours are connected.
   std::vector<CellPair> released = {};
-  std::int32_t support_z = 0;  ///< Modules in this layer rest on the ground.
+  /// Modules in this layer rest on a floor with their lower sides; none: there is no floor.
+  std::optional<std::int32_t> support_z = 0;
   Material material = {};
+
+  base::Lattice lattice = base::kCubic;
+  Touch floor = {};
+  std::vector<Obstacle> obstacles = {};
+  std::optional<std::array<double, 3>> gravity_m_s2 = {};  ///< None: Material's, straight down.
+  /// Width of the facets that touch the environment; none: the face of a cube, half a pitch else. 0
+  /// is a point.
+  std::optional<double> foot_mm = {};
+  std::vector<ModuleKind> kinds = {};    ///< Empty: default_kind() alone, which all modules are of.
+  std::vector<OwnKind> own_kinds = {};   ///< All others are of kind 0.
+  std::vector<OwnMass> own_masses = {};  ///< All others weigh what their kind does.
+  std::vector<Payload> payloads = {};
+};
+
+/// Modules by module and direction: for each module as many entries as its lattice has directions.
+class NeighbourTable {
+ public:
+  explicit NeighbourTable(std::size_t direction_count = base::kDirectionCount)
+      : direction_count_(direction_count) {}
+
+  /// Makes room for so many modules, without neighbours so far.
+  void resize(std::size_t module_count, std::int32_t none) {
+    entries_.resize(module_count * direction_count_, none);
+  }
+
+  std::span<const std::int32_t> operator[](std::size_t module) const {
+    return {entries_.data() + module * direction_count_, direction_count_};
+  }
+
+  std::span<std::int32_t> operator[](std::size_t module) {
+    return {entries_.data() + module * direction_count_, direction_count_};
+  }
+
+  bool empty() const { return entries_.empty(); }
+
+  std::size_t size() const { return entries_.size() / direction_count_; }
+
+ private:
+  std::size_t direction_count_;
+  std::vector<std::int32_t> entries_;
 };
 
 /// A robot that can be computed: connected, supported, no two modules in one cell. Immutable.
 class Robot {
  public:
   static constexpr std::int32_t kNoNeighbour = -1;
-  using Neighbours = std::array<std::int32_t, base::kDirectionCount>;
 
   /// Checks every rule; the error names the cell, what was found and what is allowed. 0 threads:
   /// as many as the machine has cores.
@@ -80,16 +158,16 @@ class Robot {
   std::span<const Module> modules() const { return modules_; }
 
   /// The lattice in which the modules' cells and directions count.
-  static constexpr const base::Lattice& lattice() { return base::kCubic; }
+  const base::Lattice& lattice() const { return lattice_; }
 
   /// The modules in the cells beside each module, connected to it or not: indices by direction,
   /// kNoNeighbour where there is none.
-  std::span<const Neighbours> neighbours() const {
+  const NeighbourTable& neighbours() const {
     return neighbours_.empty() ? connected_ : neighbours_;
   }
 
   /// The modules that each module is connected to: its neighbours() less the released ones.
-  std::span<const Neighbours> connected() const { return connected_; }
+  const NeighbourTable& connected() const { return connected_; }
 
   /// Every pair of modules that is connected once, planned modules included.
   std::span<const Connection> connections() const { return connections_; }
@@ -97,15 +175,46 @@ class Robot {
   /// How many pairs of neighbours are not connected.
   std::size_t released_count() const { return released_count_; }
 
-  /// What touches the environment, by ascending module: the lower sides of all modules on the
-  /// support level that are not fixed.
+  /// What touches the environment, by ascending module, then by ascending direction: the lower
+  /// sides of all modules on the support level, and all sides that an obstacle lies beside, of
+  /// modules that are not fixed. A side has one facet: an obstacle's, where there is a floor too.
   std::span<const Facet> facets() const { return facets_; }
 
   const Material& material() const { return material_; }
 
-  /// What acts on the modules from outside: their weight.
+  /// Half the width of every facet, mm; 0 is a point.
+  double foot_half_width_mm() const { return foot_half_width_mm_; }
+
+  /// What acts on the modules from outside: their weight, and payloads.
   const Loads& loads() const { return loads_; }
 
+  /// m/s^2, global frame.
+  const std::array<double, 3>& gravity() const { return gravity_; }
+
+  /// kg.
+  double mass(std::size_t module) const { return masses_.empty() ? mass_ : masses_[module]; }
+
+  /// Whether all modules weigh the same.
+  bool is_uniform() const { return masses_.empty(); }
+
+  bool has_payloads() const { return has_payloads_; }
+
+  std::span<const ModuleKind> kinds() const { return kinds_; }
+
+  /// When a connection breaks: the weaker of its two modules' connectors.
+  const ConnectorLaw& connector(const Connection& connection) const {
+    const std::size_t a = modules_[static_cast<std::size_t>(connection.a)].kind;
+    const std::size_t b = modules_[static_cast<std::size_t>(connection.b)].kind;
+    const auto direction = static_cast<std::size_t>(base::index(connection.direction));
+    return connectors_[(a * kinds_.size() + b) * lattice_count() + direction];
+  }
+
+  /// Whether Eq. (17) of the material is the law of every connection.
+  bool has_default_connectors() const { return has_default_connectors_; }
+
+  bool has_floor() const { return has_floor_; }
+
+  /// Void without a floor.
   std::int32_t support_z() const { return support_z_; }
 
   std::size_t planned_count() const { return planned_count_; }
@@ -117,27 +226,56 @@ class Robot {
   /// Modules that can move: all that are not fixed.
   std::size_t free_count() const { return modules_.size() - fixed_count_; }
 
- private:
-  explicit Robot(const Material& material) : material_(material), loads_(weight_loads(material)) {}
+  /// Whether there are bonded facets.
+  bool has_bonded_facets() const { return has_bonded_facets_; }
 
-  /// Finds neighbours, all of them connected, and facets; counts fixed modules.
+ private:
+  explicit Robot(const RobotSpec& spec);
+
+  std::size_t lattice_count() const { return static_cast<std::size_t>(lattice_.direction_count); }
+
+  void add_modules(const RobotSpec& spec);
+  std::optional<std::string> fix(std::span<const base::Cell> cells, const CellIndex& index);
+
+  /// Finds neighbours, all of them connected.
   void connect(const CellIndex& index, host::Team& team);
 
   /// Takes these connections away. Returns what is wrong with the first pair that is none.
   std::optional<std::string> release(std::span<const CellPair> pairs, const CellIndex& index);
 
+  /// Finds facets. Returns what is wrong with the first obstacle that is where a module is.
+  std::optional<std::string> touch(const RobotSpec& spec);
+
+  std::optional<std::string> take_kinds(const RobotSpec& spec, const CellIndex& index);
+  std::optional<std::string> take_loads(const RobotSpec& spec, const CellIndex& index);
+
   std::vector<Module> modules_;
-  std::vector<Neighbours> neighbours_;  ///< Empty if all are connected.
-  std::vector<Neighbours> connected_;
+  base::Lattice lattice_;
+  NeighbourTable neighbours_;  ///< Empty if all are connected.
+  NeighbourTable connected_;
   std::vector<Connection> connections_;
   std::vector<Facet> facets_;
   Material material_;
+  double foot_half_width_mm_ = 0;
+  std::array<double, 3> gravity_{};
   Loads loads_;
+  double mass_ = 0;             ///< If all weigh the same.
+  std::vector<double> masses_;  ///< By module; empty if all weigh the same.
+  bool has_payloads_ = false;
+  std::vector<ModuleKind> kinds_;
+  std::vector<ConnectorLaw> connectors_;  ///< By kind of a, kind of b, direction.
+  bool has_default_connectors_ = true;
+  bool has_floor_ = false;
   std::int32_t support_z_ = 0;
   std::size_t planned_count_ = 0;
   std::size_t fixed_count_ = 0;
   std::size_t released_count_ = 0;
+  bool has_bonded_facets_ = false;
 };
+
+/// What of a robot goes beyond [Piranda 2021], that is cubes of one kind on a floor without slip
+/// under their own weight, for parts of the program that know nothing else; none if nothing does.
+std::optional<std::string> find_beyond_paper(const Robot& robot);
 
 /// The two cells of a connection, given by its index; the first has the smaller coordinate.
 std::array<base::Cell, 2> ends(const Robot& robot, std::size_t connection);

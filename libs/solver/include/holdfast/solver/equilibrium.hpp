@@ -61,8 +61,9 @@ struct Equilibrium : Solution {
   mechanics::ContactLaw law = mechanics::ContactLaw::kRegularised;
   /// Further solutions of the same law, as far as seek_others() found any.
   std::vector<Solution> others;
-  std::vector<mechanics::ContactState> contact;  ///< Of ground modules; the rest is not pressed.
-  std::vector<base::Vec6<double>> ground_force;  ///< By the ground on the module at its node.
+  std::vector<mechanics::ContactState> contact;  ///< By facet, in the order of Robot::facets().
+  std::vector<base::Vec6<double>> facet_force;   ///< By facet: on its module, at the node.
+  std::vector<base::Vec6<double>> ground_force;  ///< By module: of all its facets together.
   /// Open facets that are held sideways all the same, as they would close when released: no slip
   /// and no force at once is then impossible, and the truth lies between held and free.
   int open_but_held_count = 0;
@@ -80,6 +81,11 @@ struct Equilibrium : Solution {
   /// Counts as part of this what another search took that came before, with other options.
   void begin_with(const Equilibrium& earlier);
 };
+
+/// The contact state of a module's facet, of a robot whose modules have one each at most; not
+/// pressed if it has none.
+mechanics::ContactState contact_of(const model::Robot& robot, const Equilibrium& equilibrium,
+                                   std::size_t module);
 
 /// Solves one robot, with one law after the other if need be. Everything that does not depend on
 /// the contact is made once. Keeps a reference to the robot.

@@ -11,6 +11,7 @@
 
 #include "holdfast/base/algebra.hpp"
 #include "holdfast/mechanics/ground_contact.hpp"
+#include "holdfast/model/lattice_beam.hpp"
 #include "holdfast/model/loads.hpp"
 #include "holdfast/model/robot.hpp"
 #include "holdfast/solver/options.hpp"
@@ -24,9 +25,12 @@
 /// displacements under as many loads as there are.
 namespace holdfast::solver {
 
-/// A module on the ground, and the contact state that its facet is taken to be in.
+/// A facet of a robot, and the contact state that it is taken to be in. One that is bonded is stuck
+/// and held, whatever the law.
 struct FacetState {
   std::size_t module = 0;
+  base::Direction direction = base::Direction::kMinusZ;
+  bool is_bonded = false;
   mechanics::ContactState state;
   bool is_held = true;  ///< Against slip and twist; kUnilateral only.
 
@@ -54,6 +58,53 @@ enum class LinearOutcome : std::uint8_t {
   kTooSlow,   ///< The iteration stands still, or the robot is too slender for the precision.
 };
 
+/// What facets do to the modules that they belong to, by one law, in the global frame. Keeps a
+/// reference to the beams.
+template <class Real>
+class FacetLaw {
+ public:
+  using Vec = base::Vec6<Real>;
+
+  FacetLaw(const model::LatticeBeam<Real>& beam, const mechanics::GroundFacet<Real>& ground)
+      : beam_(&beam), ground_(ground) {}
+
+  const mechanics::GroundFacet<Real>& ground() const { return ground_; }
+
+  void set_gamma(Real gamma) { ground_.gamma = gamma; }
+
+  /// The trial force on the facet when its module moves by u, local frame.
+  Vec trial_force(const FacetState& facet, const Vec& u) const {
+    return mechanics::trial_force(ground_, beam_->to_local(facet.direction, u));
+  }
+
+  /// The state that the law prescribes for a trial force.
+  mechanics::ContactState state_for(const FacetState& facet, const Vec& trial) const {
+    return facet.is_bonded ? mechanics::ContactState{} : mechanics::contact_state(ground_, trial);
+  }
+
+  /// The state that the law prescribes when its module moves by u.
+  mechanics::ContactState state_at(const FacetState& facet, const Vec& u) const {
+    return state_for(facet, trial_force(facet, u));
+  }
+
+  /// The force that the support takes from the module when it moves by u.
+  Vec force(const FacetState& facet, const Vec& u) const {
+    return beam_->to_global(facet.direction,
+                            mechanics::contact_force(ground_, facet.state, facet.is_held,
+                                                     beam_->to_local(facet.direction, u)));
+  }
+
+  /// The derivative of force().
+  base::Mat6<Real> tangent(const FacetState& facet) const {
+    return beam_->to_global(facet.direction,
+                            mechanics::contact_tangent(ground_, facet.state, facet.is_held));
+  }
+
+ private:
+  const model::LatticeBeam<Real>* beam_;
+  mechanics::GroundFacet<Real> ground_;
+};
+
 /// What a linear system has done since it was made.
 struct LinearReport {
   Method method = Method::kDirect;
@@ -78,11 +129,17 @@ class LinearSystem {
 
   const model::Robot& robot() const { return robot_; }
 
-  /// The modules on the ground in the robot's order, and their facets' states.
+  /// The robot's facets in its order, and their states.
   std::span<const FacetState> facets() const { return facets_; }
 
-  /// What a facet is by the present law.
-  const mechanics::GroundFacet<double>& ground() const { return ground_; }
+  /// The robot's beams.
+  const model::LatticeBeam<double>& beam() const { return beam_; }
+
+  /// What a facet is by the present law, in its own frame.
+  const mechanics::GroundFacet<double>& ground() const { return law_.ground(); }
+
+  /// What facets do to their modules by the present law.
+  const FacetLaw<double>& law() const { return law_; }
 
   const model::Loads& loads() const { return loads_; }
 
@@ -132,8 +189,9 @@ class LinearSystem {
 
  private:
   const model::Robot& robot_;
+  model::LatticeBeam<double> beam_;
   model::Loads loads_;
-  mechanics::GroundFacet<double> ground_;
+  FacetLaw<double> law_;
   std::vector<FacetState> facets_;
 };
 

@@ -1,0 +1,78 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#include "holdfast/model/connector_law.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace holdfast::model {
+namespace {
+
+double bending_moment(BendingLaw law, double mx, double my) {
+  return law == BendingLaw::kRound ? std::hypot(mx, my) : std::max(std::abs(mx), std::abs(my));
+}
+
+std::optional<double> smaller(const std::optional<double>& a, const std::optional<double>& b) {
+  if (a && b) {
+    return std::min(*a, *b);
+  }
+  return a ? a : b;
+}
+
+}  // namespace
+
+const char* name(Limit limit) {
+  static constexpr std::array<const char*, kLimitCount> kNames = {"opens", "slips", "shears",
+                                                                  "twists"};
+  return kNames[static_cast<std::size_t>(limit)];
+}
+
+ConnectorLaw weaker(const ConnectorLaw& a, const ConnectorLaw& b) {
+  return {.strength_n = std::min(a.strength_n, b.strength_n),
+          .lever_mm = std::min(a.lever_mm, b.lever_mm),
+          .bending = std::max(a.bending, b.bending),  // Round is the longer of the two.
+          .shear_strength_n = std::min(a.shear_strength_n, b.shear_strength_n),
+          .torsion_strength_nmm = std::min(a.torsion_strength_nmm, b.torsion_strength_nmm),
+          .friction = smaller(a.friction, b.friction),
+          .torsion_radius_mm = std::min(a.torsion_radius_mm, b.torsion_radius_mm),
+          .gap_limit_mm = std::min(a.gap_limit_mm, b.gap_limit_mm)};
+}
+
+std::array<double, kLimitCount> limit_ratios(const ConnectorLaw& law,
+                                             const base::Vec6<double>& middle_force) {
+  const auto& [fx, fy, axial, mx, my, torsion] = middle_force;
+  const double shear = std::hypot(fx, fy);
+  std::array<double, kLimitCount> ratios;
+  ratios.fill(-ConnectorLaw::kUnlimited);
+  if (std::isfinite(law.strength_n)) {
+    const double moment = bending_moment(law.bending, mx, my);
+    ratios[static_cast<std::size_t>(Limit::kOpens)] =
+        (axial + moment / law.lever_mm) / law.strength_n;
+    if (law.friction) {
+      const double across = shear + std::abs(torsion) / law.torsion_radius_mm;
+      ratios[static_cast<std::size_t>(Limit::kSlips)] =
+          (axial + across / *law.friction) / law.strength_n;
+    }
+  }
+  if (std::isfinite(law.shear_strength_n)) {
+    ratios[static_cast<std::size_t>(Limit::kShears)] = shear / law.shear_strength_n;
+  }
+  if (std::isfinite(law.torsion_strength_nmm)) {
+    ratios[static_cast<std::size_t>(Limit::kTwists)] = std::abs(torsion) / law.torsion_strength_nmm;
+  }
+  return ratios;
+}
+
+LimitRatio load_ratio(const ConnectorLaw& law, const base::Vec6<double>& middle_force) {
+  const auto ratios = limit_ratios(law, middle_force);
+  LimitRatio largest = {.limit = Limit::kOpens, .ratio = ratios[0]};
+  for (std::size_t i = 1; i < ratios.size(); ++i) {
+    // What is not a number must not hide.
+    if (ratios[i] > largest.ratio || std::isnan(ratios[i])) {
+      largest = {.limit = static_cast<Limit>(i), .ratio = ratios[i]};
+    }
+  }
+  return largest;
+}
+
+}  // namespace holdfast::model

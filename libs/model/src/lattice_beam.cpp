@@ -1,0 +1,117 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#include "holdfast/model/lattice_beam.hpp"
+
+#include "holdfast/base/double_double.hpp"
+
+namespace holdfast::model {
+namespace {
+
+using base::Direction;
+using base::Mat6;
+using base::Vec6;
+
+/// All beams have the same law in their own frames; this is the direction whose frame is the global
+/// one, with R = 1.
+constexpr Direction kUpright = Direction::kMinusZ;
+
+}  // namespace
+
+template <class Real>
+Rotation<Real> rotation_along(const base::Lattice& lattice, Direction direction) {
+  const std::array<Real, 3> n = base::unit_vector<Real>(lattice, direction);
+  const Real across = Real(1) - n[2] * n[2];  // Square of the length of e_z - (e_z . n) n.
+  const bool is_vertical = n[0] == Real(0) && n[1] == Real(0);
+  std::array<Real, 3> x = {Real(1), Real(0), Real(0)};
+  if (!is_vertical) {
+    const Real length = base::root(across);
+    x = {-n[2] * n[0] / length, -n[2] * n[1] / length, across / length};
+  }
+  const std::array<Real, 3> z = {-n[0], -n[1], -n[2]};
+  return {x, {z[1] * x[2] - z[2] * x[1], z[2] * x[0] - z[0] * x[2], z[0] * x[1] - z[1] * x[0]}, z};
+}
+
+template <class Real>
+LatticeBeam<Real>::LatticeBeam(const mechanics::BeamSection<Real>& section,
+                               const base::Lattice& lattice)
+    : beam_(mechanics::beam_stiffness(section)), is_cubic_(lattice == base::kCubic) {
+  for (const Direction direction : base::facet_directions(lattice)) {
+    rotations_[static_cast<std::size_t>(base::index(direction))] =
+        rotation_along<Real>(lattice, direction);
+  }
+}
+
+template <class Real>
+Vec6<Real> LatticeBeam<Real>::to_local(Direction direction, const Vec& global) const {
+  if (is_cubic_) {
+    return mechanics::to_local(direction, global);
+  }
+  const Rotation<Real>& axes = rotation(direction);
+  Vec local{};
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      local[i] += axes[i][k] * global[k];
+      local[i + 3] += axes[i][k] * global[k + 3];
+    }
+  }
+  return local;
+}
+
+template <class Real>
+Vec6<Real> LatticeBeam<Real>::to_global(Direction direction, const Vec& local) const {
+  if (is_cubic_) {
+    return mechanics::to_global(direction, local);
+  }
+  const Rotation<Real>& axes = rotation(direction);
+  Vec global{};
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      global[k] += axes[i][k] * local[i];
+      global[k + 3] += axes[i][k] * local[i + 3];
+    }
+  }
+  return global;
+}
+
+template <class Real>
+Mat6<Real> LatticeBeam<Real>::to_global(Direction direction, const Mat6<Real>& local) const {
+  return base::matrix_of<Real>([&](const Vec& unit) {
+    return to_global(direction, base::multiply(local, to_local(direction, unit)));
+  });
+}
+
+template <class Real>
+Vec6<Real> LatticeBeam<Real>::end_force(Direction direction, const Vec& u_p, const Vec& u_q) const {
+  if (is_cubic_) {
+    return mechanics::end_force(beam_, direction, u_p, u_q);
+  }
+  return to_global(direction, mechanics::end_force(beam_, kUpright, to_local(direction, u_p),
+                                                   to_local(direction, u_q)));
+}
+
+template <class Real>
+Vec6<Real> LatticeBeam<Real>::middle_force(Direction direction, const Vec& u_p,
+                                           const Vec& u_q) const {
+  if (is_cubic_) {
+    return mechanics::middle_force(beam_, direction, u_p, u_q);
+  }
+  return mechanics::middle_force(beam_, kUpright, to_local(direction, u_p),
+                                 to_local(direction, u_q));
+}
+
+template <class Real>
+Mat6<Real> LatticeBeam<Real>::block_11(Direction direction) const {
+  return base::matrix_of<Real>([&](const Vec& unit) { return end_force(direction, unit, Vec{}); });
+}
+
+template <class Real>
+Mat6<Real> LatticeBeam<Real>::block_12(Direction direction) const {
+  return base::matrix_of<Real>([&](const Vec& unit) { return end_force(direction, Vec{}, unit); });
+}
+
+template Rotation<double> rotation_along(const base::Lattice&, Direction);
+template Rotation<base::DoubleDouble> rotation_along(const base::Lattice&, Direction);
+template class LatticeBeam<double>;
+template class LatticeBeam<base::DoubleDouble>;
+
+}  // namespace holdfast::model

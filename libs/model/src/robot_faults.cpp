@@ -1,0 +1,319 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#include "robot_faults.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <numeric>
+#include <utility>
+#include <vector>
+
+namespace holdfast::model {
+namespace {
+
+using base::Cell;
+
+/// Beyond this, products with other parameters leave the range of double (as in Material).
+constexpr double kNumberMax = 1e12;
+
+std::optional<std::string> find_size_fault(const RobotSpec& spec) {
+  if (spec.existing.empty()) {
+    return "the robot has no existing module, at least one is needed";
+  }
+  if (spec.existing.size() + spec.planned.size() > kModuleCountMax) {
+    return fmt::format("{} modules, allowed are at most {}",
+                       spec.existing.size() + spec.planned.size(), kModuleCountMax);
+  }
+  if (spec.support_z && std::abs(std::int64_t{*spec.support_z}) > base::kCoordinateMax) {
+    return fmt::format("the support level is {}, allowed is -{} to {}", *spec.support_z,
+                       base::kCoordinateMax, base::kCoordinateMax);
+  }
+  return std::nullopt;
+}
+
+std::optional<std::string> find_coordinate_fault(std::span<const Cell> cells) {
+  for (const Cell& cell : cells) {
+    for (const std::int64_t coordinate : {cell.x, cell.y, cell.z}) {
+      if (std::abs(coordinate) > base::kCoordinateMax) {
+        return fmt::format(
+            "the cell {} lies outside the lattice, allowed are coordinates from "
+            "-{} to {}",
+            text(cell), base::kCoordinateMax, base::kCoordinateMax);
+      }
+    }
+  }
+  return std::nullopt;
+}
+
+std::optional<std::string> find_sheet_fault(const RobotSpec& spec) {
+  if (spec.lattice != base::kHexagonal) {
+    return std::nullopt;
+  }
+  const std::int32_t y = spec.existing.front().y;
+  for (const auto* cells : {&spec.existing, &spec.planned}) {
+    const auto stray = std::ranges::find_if(*cells, [&](const Cell& cell) { return cell.y != y; });
+    if (stray != cells->end()) {
+      return fmt::format(
+          "the cells {} and {} differ in y, allowed in a hexagonal lattice is one sheet of discs",
+          text(spec.existing.front()), text(*stray));
+    }
+  }
+  return std::nullopt;
+}
+
+std::optional<std::string> find_friction_fault(const Touch& touch, std::string_view where) {
+  if (touch.friction && !(*touch.friction >= 0 && *touch.friction <= kNumberMax)) {
+    return fmt::format("the friction of {} is {}, allowed is 0 to {}", where, *touch.friction,
+                       kNumberMax);
+  }
+  return std::nullopt;
+}
+
+std::optional<std::string> find_obstacle_fault(const Obstacle& obstacle) {
+  if (auto fault = find_friction_fault(obstacle.touch, "an obstacle")) {
+    return fault;
+  }
+  if (!obstacle.cells.empty()) {
+    return find_coordinate_fault(obstacle.cells);
+  }
+  const auto& [from, to, cells, touch] = obstacle;
+  if (to.x < from.x || to.y < from.y || to.z < from.z) {
+    return fmt::format("an obstacle reaches from {} to {}, no coordinate may fall", text(from),
+                       text(to));
+  }
+  const std::array<Cell, 2> corners = {from, to};
+  return find_coordinate_fault(corners);
+}
+
+bool is_small(double value) { return std::abs(value) <= kNumberMax; }
+
+std::optional<std::string> find_gravity_fault(const RobotSpec& spec) {
+  if (!spec.gravity_m_s2) {
+    return std::nullopt;
+  }
+  const auto& [x, y, z] = *spec.gravity_m_s2;
+  const double length = std::hypot(x, y, z);
+  if (!is_small(length) || length < 1e-12) {
+    return fmt::format(
+        "gravity is ({}, {}, {}) m/s^2, allowed is a vector that is 1e-12 to {} long: without "
+        "weight there is nothing to hold",
+        x, y, z, kNumberMax);
+  }
+  return std::nullopt;
+}
+
+std::optional<std::string> find_payload_fault(const Payload& payload) {
+  const auto are_small = [](const std::array<double, 3>& vector) {
+    return std::ranges::all_of(vector, is_small);
+  };
+  if (!are_small(payload.force_n) || !are_small(payload.torque_nmm)) {
+    return fmt::format("the load on {} has a number beyond {}", text(payload.cell), kNumberMax);
+  }
+  return std::nullopt;
+}
+
+std::optional<std::string> find_mass_fault(double mass_kg, std::string_view where) {
+  if (!(mass_kg >= 1e-12 && mass_kg <= kNumberMax)) {
+    return fmt::format("the mass of {} is {} kg, allowed is 1e-12 to {}", where, mass_kg,
+                       kNumberMax);
+  }
+  return std::nullopt;
+}
+
+std::optional<std::string> find_law_fault(const ConnectorLaw& law, std::string_view kind) {
+  const auto is_positive = [](double value) { return value >= 1e-12; };  // Or unlimited.
+  const std::pair<std::string_view, double> numbers[] = {
+      {"strength", law.strength_n},
+      {"shear strength", law.shear_strength_n},
+      {"torsion strength", law.torsion_strength_nmm},
+      {"lever", law.lever_mm},
+      {"torsion radius", law.torsion_radius_mm},
+      {"gap limit", law.gap_limit_mm},
+      {"friction", law.friction.value_or(1)}};
+  for (const auto& [name, value] : numbers) {
+    if (!is_positive(value)) {
+      return fmt::format("the {} of a connector of kind '{}' is {}, allowed is 1e-12 and more",
+                         name, kind, value);
+    }
+  }
+  return std::nullopt;
+}
+
+std::optional<std::string> find_kind_fault(const RobotSpec& spec) {
+  for (const ModuleKind& kind : spec.kinds) {
+    if (kind.connectors.size() != static_cast<std::size_t>(spec.lattice.direction_count)) {
+      return fmt::format("the kind '{}' has {} connectors, the lattice has {} directions",
+                         kind.name, kind.connectors.size(), spec.lattice.direction_count);
+    }
+    auto fault = find_mass_fault(kind.mass_kg, fmt::format("kind '{}'", kind.name));
+    for (const ConnectorLaw& law : kind.connectors) {
+      fault = fault ? fault : find_law_fault(law, kind.name);
+    }
+    if (fault) {
+      return fault;
+    }
+  }
+  return std::nullopt;
+}
+
+/// In what only the general case has.
+std::optional<std::string> find_general_fault(const RobotSpec& spec) {
+  auto fault = find_sheet_fault(spec);
+  fault = fault ? fault : find_gravity_fault(spec);
+  fault = fault ? fault : find_friction_fault(spec.floor, "the floor");
+  fault = fault ? fault : find_kind_fault(spec);
+  for (std::size_t i = 0; !fault && i < spec.obstacles.size(); ++i) {
+    fault = find_obstacle_fault(spec.obstacles[i]);
+  }
+  for (std::size_t i = 0; !fault && i < spec.payloads.size(); ++i) {
+    fault = find_payload_fault(spec.payloads[i]);
+  }
+  for (std::size_t i = 0; !fault && i < spec.own_masses.size(); ++i) {
+    fault = find_mass_fault(spec.own_masses[i].mass_kg, text(spec.own_masses[i].cell));
+  }
+  if (!fault && spec.foot_mm && !(*spec.foot_mm >= 0 && *spec.foot_mm <= kNumberMax)) {
+    fault = fmt::format("foot_mm is {}, allowed is 0 to {}", *spec.foot_mm, kNumberMax);
+  }
+  return fault;
+}
+
+/// Which modules hang together [Galler and Fischer 1964].
+class Parts {
+ public:
+  explicit Parts(std::size_t count) : parent_(count) {
+    std::iota(parent_.begin(), parent_.end(), 0);
+  }
+
+  /// The smallest member of the part.
+  std::int32_t find(std::int32_t module) {
+    std::int32_t& parent = parent_[static_cast<std::size_t>(module)];
+    while (parent != parent_[static_cast<std::size_t>(parent)]) {
+      parent = parent_[static_cast<std::size_t>(parent)];
+    }
+    return parent;
+  }
+
+  void join(std::int32_t a, std::int32_t b) {
+    a = find(a);
+    b = find(b);
+    if (a != b) {
+      parent_[static_cast<std::size_t>(std::max(a, b))] = std::min(a, b);
+    }
+  }
+
+ private:
+  std::vector<std::int32_t> parent_;
+};
+
+}  // namespace
+
+std::optional<std::string> find_number_fault(const RobotSpec& spec) {
+  auto fault = find_size_fault(spec);
+  fault = fault ? fault : find_material_fault(spec.material);
+  for (const auto* cells : {&spec.existing, &spec.planned, &spec.fixed}) {
+    fault = fault ? fault : find_coordinate_fault(*cells);
+  }
+  for (std::size_t i = 0; !fault && i < spec.released.size(); ++i) {
+    fault = find_coordinate_fault(spec.released[i]);
+  }
+  return fault ? fault : find_general_fault(spec);
+}
+
+std::optional<std::string> find_connection_fault(std::span<const Connection> connections,
+                                                 std::span<const Module> modules,
+                                                 std::size_t existing_count) {
+  Parts parts(modules.size());
+  const auto is_loose = [&](std::size_t i) {
+    return parts.find(static_cast<std::int32_t>(i)) != 0;
+  };
+  const auto first_planned = static_cast<std::int32_t>(existing_count);
+  for (const Connection& pair : connections) {
+    if (pair.a < first_planned && pair.b < first_planned) {
+      parts.join(pair.a, pair.b);
+    }
+  }
+  std::size_t loose_count = 0;
+  std::size_t loose = 0;
+  for (std::size_t i = existing_count; i-- > 0;) {
+    if (is_loose(i)) {
+      loose = i;
+      ++loose_count;
+    }
+  }
+  if (loose_count > 0) {
+    return fmt::format(
+        "the robot is not connected: {} of {} modules, {} among them, share no "
+        "chain of faces with {}",
+        loose_count, existing_count, text(modules[loose].cell), text(modules[0].cell));
+  }
+  for (const Connection& pair : connections) {
+    if (pair.a >= first_planned || pair.b >= first_planned) {
+      parts.join(pair.a, pair.b);
+    }
+  }
+  for (std::size_t i = existing_count; i < modules.size(); ++i) {
+    if (is_loose(i)) {
+      return fmt::format(
+          "the planned cell {} touches neither the robot nor a planned cell that does",
+          text(modules[i].cell));
+    }
+  }
+  return std::nullopt;
+}
+
+namespace {
+
+/// Nobody may be below what rests on a floor but what hangs from a fixed module.
+std::optional<std::string> find_module_below_floor(const Robot& robot) {
+  const auto floor = base::down(robot.lattice());
+  if (!robot.has_floor() || base::index(floor) >= robot.lattice().direction_count) {
+    return std::nullopt;
+  }
+  for (const Facet& facet : robot.facets()) {
+    const Cell& cell = robot.modules()[base::at(facet.module)].cell;
+    const std::int32_t below =
+        facet.direction == floor && cell.z == robot.support_z()
+            ? robot.neighbours()[base::at(facet.module)][base::at(base::index(floor))]
+            : Robot::kNoNeighbour;
+    if (below != Robot::kNoNeighbour) {
+      return fmt::format(
+          "the module {} is directly below {}, which rests on the ground at the support level "
+          "z = {}; allowed below that level is only what hangs from a fixed module: lower the "
+          "support level or fix {}",
+          text(robot.modules()[base::at(below)].cell), text(cell), robot.support_z(), text(cell));
+    }
+  }
+  return std::nullopt;
+}
+
+/// What would hold a robot that nothing holds.
+std::string missing_support(const Robot& robot, const RobotSpec& spec) {
+  const auto existing = robot.modules().first(robot.modules().size() - robot.planned_count());
+  const auto lowest =
+      std::ranges::min_element(existing, {}, [](const Module& module) { return module.cell.z; });
+  const std::string obstacles = spec.obstacles.empty() ? "" : ", none touches an obstacle";
+  if (!robot.has_floor()) {
+    return fmt::format(
+        "nothing holds the robot: there is no floor (support_z){} and no module is fixed; the "
+        "lowest module is {}",
+        spec.obstacles.empty() ? ", no obstacle" : obstacles, text(lowest->cell));
+  }
+  return fmt::format(
+      "nothing holds the robot: no existing module lies on the support level z = {}{} and none is "
+      "fixed; the lowest module is {}",
+      robot.support_z(), obstacles, text(lowest->cell));
+}
+
+}  // namespace
+
+std::optional<std::string> find_support_fault(const Robot& robot, const RobotSpec& spec) {
+  const auto existing = robot.modules().first(robot.modules().size() - robot.planned_count());
+  const bool is_held = std::ranges::any_of(
+      existing, [](const Module& module) { return module.support != Support::kNone; });
+  return is_held ? find_module_below_floor(robot) : missing_support(robot, spec);
+}
+
+}  // namespace holdfast::model
