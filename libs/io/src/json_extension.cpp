@@ -3,11 +3,13 @@
 #include "json_extension.hpp"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
+#include <iterator>
 #include <optional>
+#include <utility>
 
+#include "json_connectors.hpp"
 #include "text_input.hpp"
 #include "vocabulary.hpp"
 
@@ -15,23 +17,6 @@ namespace holdfast::io {
 namespace {
 
 using base::Cell;
-
-double positive(JsonReading& reading, const Json& value, const Place& place) {
-  const double number = reading.number(value, place);
-  if (!(number > 0)) {
-    reading.refuse(value, place, "a positive number");
-  }
-  return number;
-}
-
-/// A coefficient of friction.
-double friction(JsonReading& reading, const Json& value, const Place& place) {
-  const double number = reading.number(value, place);
-  if (!(number >= 0)) {
-    reading.refuse(value, place, "a number that is not negative");
-  }
-  return number;
-}
 
 std::array<double, 3> vector(JsonReading& reading, const Json& value, const Place& place) {
   const Json::array_t& array = reading.elements(value, place);
@@ -45,17 +30,6 @@ std::array<double, 3> vector(JsonReading& reading, const Json& value, const Plac
     numbers[i] = reading.number(array[i], place.at(i));
   }
   return numbers;
-}
-
-/// The index of a name, an enumerator; 0, and a failure, if it is none of them.
-std::size_t choice(JsonReading& reading, const Json& value, const Place& place, Names names) {
-  const std::string name = reading.string(value, place);
-  const auto found = std::ranges::find(names, name);
-  if (found == names.end()) {
-    reading.refuse(value, place, fmt::format("one of \"{}\"", fmt::join(names, "\", \"")));
-    return 0;
-  }
-  return static_cast<std::size_t>(found - names.begin());
 }
 
 /// Calls take(element, its place) for every element of an array that takes up cells.
@@ -88,8 +62,8 @@ std::vector<Cell> cells(JsonReading& reading, const Json& value, const Place& pl
   return list_of(reading, value, place, cell);
 }
 
-std::vector<CellPair> pairs(JsonReading& reading, const Json& value, const Place& place) {
-  std::vector<CellPair> list;
+std::vector<model::CellPair> pairs(JsonReading& reading, const Json& value, const Place& place) {
+  std::vector<model::CellPair> list;
   for_each_element(reading, value, place, [&](const Json& element, const Place& here) {
     const std::vector<Cell> ends = cells(reading, element, here);
     if (ends.size() == 2) {
@@ -109,16 +83,11 @@ void demand(JsonReading& reading, const Json& value, const Place& place, std::st
   }
 }
 
-void read_lattice(JsonReading& reading, const Json& value, const Place& place) {
-  reading.document.extension.lattice =
-      static_cast<LatticeName>(choice(reading, value, place, kLatticeNames));
-}
-
 void read_floor(JsonReading& reading, const Json& value, const Place& place) {
   for (const auto& [key, member] : reading.members(value, place)) {
     const Place here = place.at(key);
     if (key == "friction") {
-      reading.document.extension.floor_friction = friction(reading, member, here);
+      reading.document.extension.floor_friction = read_not_negative(reading, member, here);
     } else {
       reading.note_unknown_key(here, kFloorKeys);
     }
@@ -129,24 +98,17 @@ void read_floor(JsonReading& reading, const Json& value, const Place& place) {
 void read_gravity(JsonReading& reading, const Json& value, const Place& place) {
   const std::array<double, 3> gravity = vector(reading, value, place);
   Document& document = reading.document;
+  if (!reading.has_failed() && gravity == std::array<double, 3>{}) {
+    reading.fail(place,
+                 "gravity is zero, allowed is a vector: without weight a robot rests on nothing, and "
+                 "there is nothing to hold; where loads are meant to act alone, give a tiny one, "
+                 "such as [0, 0, -1e-9]");
+  }
   if (gravity[0] == 0 && gravity[1] == 0 && gravity[2] < 0) {
     document.material.gravity_m_s2 = -gravity[2];
   } else {
     document.extension.gravity_m_s2 = gravity;
   }
-}
-
-NamedNumbers kind_parameters(JsonReading& reading, const Json& value, const Place& place) {
-  NamedNumbers parameters;
-  for (const auto& [key, member] : reading.members(value, place)) {
-    const Place here = place.at(key);
-    if (std::ranges::find(kKindKeys, key) != kKindKeys.end()) {
-      parameters.emplace_back(key, positive(reading, member, here));
-    } else {
-      reading.note_unknown_key(here, kKindKeys);
-    }
-  }
-  return parameters;
 }
 
 void read_kinds(JsonReading& reading, const Json& value, const Place& place) {
@@ -155,12 +117,18 @@ void read_kinds(JsonReading& reading, const Json& value, const Place& place) {
     if (const auto fault = find_string_fault(name); fault || name.empty()) {
       reading.fail(here, "the name of a kind is empty or no printable text");
     }
-    reading.document.extension.kinds.push_back({name, kind_parameters(reading, member, here)});
+    reading.document.extension.kinds.push_back(read_kind(reading, name, member, here));
   }
 }
 
-Obstacle obstacle(JsonReading& reading, const Json& value, const Place& place) {
-  Obstacle found;
+struct ColoredObstacle {
+  model::Obstacle obstacle;
+  std::optional<Color> color;
+};
+
+ColoredObstacle obstacle(JsonReading& reading, const Json& value, const Place& place) {
+  ColoredObstacle colored;
+  model::Obstacle& found = colored.obstacle;
   bool is_list = false;
   for (const auto& [key, member] : reading.members(value, place)) {
     const Place here = place.at(key);
@@ -172,9 +140,12 @@ Obstacle obstacle(JsonReading& reading, const Json& value, const Place& place) {
       found.cells = cells(reading, member, here);
       is_list = true;
     } else if (key == "hold") {
-      found.hold = static_cast<Hold>(choice(reading, member, here, kHoldNames));
+      found.touch.hold =
+          static_cast<model::Hold>(read_choice(reading, member, here, kHoldNames));
     } else if (key == "friction") {
-      found.friction = friction(reading, member, here);
+      found.touch.friction = read_not_negative(reading, member, here);
+    } else if (key == "color") {
+      colored.color = reading.color(member, here);
     } else {
       reading.note_unknown_key(here, kObstacleKeys);
     }
@@ -187,15 +158,24 @@ Obstacle obstacle(JsonReading& reading, const Json& value, const Place& place) {
   if (found.to.x < found.from.x || found.to.y < found.from.y || found.to.z < found.from.z) {
     reading.fail(place, "no coordinate of \"to\" may be below that of \"from\"");
   }
-  return found;
+  return colored;
 }
 
 void read_obstacles(JsonReading& reading, const Json& value, const Place& place) {
-  reading.document.extension.obstacles = list_of(reading, value, place, obstacle);
+  Extension& extension = reading.document.extension;
+  bool is_colored = false;
+  for (ColoredObstacle& found : list_of(reading, value, place, obstacle)) {
+    extension.obstacles.push_back(std::move(found.obstacle));
+    extension.obstacle_colors.push_back(found.color);
+    is_colored = is_colored || found.color;
+  }
+  if (!is_colored) {
+    extension.obstacle_colors.clear();
+  }
 }
 
-Payload payload(JsonReading& reading, const Json& value, const Place& place) {
-  Payload found;
+model::Payload payload(JsonReading& reading, const Json& value, const Place& place) {
+  model::Payload found;
   demand(reading, value, place, "cell");
   for (const auto& [key, member] : reading.members(value, place)) {
     const Place here = place.at(key);
@@ -260,9 +240,20 @@ void read_steps(JsonReading& reading, const Json& value, const Place& place) {
   reading.document.extension.plan = list_of(reading, value, place, plan_step);
 }
 
+/// For what is read before all else.
+void pass_over(JsonReading& /*reading*/, const Json& /*value*/, const Place& /*place*/) {}
+
+/// The JSON pointer to a module that has parameters of its own.
+std::string own_place(const OwnParameters& own) {
+  const std::string list = own.step == 0   ? "/modules"
+                           : own.step == 1 ? "/planned"
+                                           : fmt::format("/later_steps/{}", own.step - 2);
+  return fmt::format("{}/{}", list, own.module);
+}
+
 /// The readers of kExtensionKeys, in their order.
 constexpr void (*kReaders[])(JsonReading&, const Json&, const Place&) = {
-    read_lattice, read_floor, read_gravity, read_kinds, read_obstacles, read_loads, read_steps};
+    pass_over, read_floor, read_gravity, read_kinds, read_obstacles, read_loads, read_steps};
 static_assert(std::size(kReaders) == kExtensionKeys.size());
 
 }  // namespace
@@ -273,11 +264,6 @@ void read_extension_member(JsonReading& reading, std::string_view key, const Jso
   kReaders[found - kExtensionKeys.begin()](reading, value, place);
 }
 
-void read_connector_parameter(JsonReading& reading, const std::string& key, const Json& value,
-                              const Place& place) {
-  reading.document.extension.connectors.emplace_back(key, positive(reading, value, place));
-}
-
 void read_own_parameter(JsonReading& reading, std::string_view key, const Json& value,
                         const Place& place, OwnParameters& own) {
   if (key == "kind") {
@@ -286,18 +272,60 @@ void read_own_parameter(JsonReading& reading, std::string_view key, const Json& 
       reading.refuse(value, place, "the name of a kind");
     }
   } else {
-    own.mass_kg = positive(reading, value, place);
+    own.mass_kg = read_positive(reading, value, place);
+  }
+}
+
+void read_extension_text(Reading& reading, std::string_view text, const Reading::Where& where) {
+  JsonReading json;
+  json.document.extension = std::move(reading.document.extension);
+  const auto root = parse_json(text);
+  if (!root) {
+    reading.fail({root.error().code, root.error().message, where()});
+    return;
+  }
+  const Place top;
+  for (const auto& [key, value] : json.members(root.value(), top)) {
+    const Place here = top.at(key);
+    if (key == "support_z" && value.is_null()) {
+      json.document.extension.has_floor = false;
+    } else if (key == "material") {
+      for (const auto& [name, member] : json.members(value, here)) {
+        if (is_material_extension(name)) {
+          read_material_extension(json, name, member, here.at(name));
+        } else {
+          json.note_unknown_key(here.at(name), kConnectorKeys);
+        }
+      }
+      expect_one_strength(json, value, here);
+    } else if (std::ranges::find(kExtensionKeys, key) != kExtensionKeys.end()) {
+      read_extension_member(json, key, value, here);
+    } else {
+      json.note_unknown_key(here, kExtensionKeys);
+    }
+  }
+  check_kinds(json);
+  check_pair_lists(json);
+  auto read = std::move(json).finish();
+  if (read) {
+    reading.document.extension = std::move(read).value().document.extension;
+  } else {
+    reading.fail({read.error().code,
+                  fmt::format("{}: {}", read.error().where, read.error().message), where()});
   }
 }
 
 void check_kinds(JsonReading& reading) {
-  const Extension& extension = reading.document.extension;
+  Extension& extension = reading.document.extension;
+  std::ranges::sort(extension.own, {}, [](const OwnParameters& own) {
+    return std::pair(own.step, own.module);
+  });
   for (const OwnParameters& own : extension.own) {
     if (!own.kind.empty() &&
-        std::ranges::find(extension.kinds, own.kind, &ModuleKind::name) == extension.kinds.end()) {
+        std::ranges::find(extension.kinds, own.kind, &KindEntry::name) == extension.kinds.end()) {
       reading.fail({base::ErrorCode::kBadInput,
                     fmt::format("the kind {} is none of those in \"kinds\"", excerpt(own.kind)),
-                    fmt::format("/modules/{}/kind", own.module)});
+                    own_place(own) + "/kind"});
     }
   }
 }

@@ -16,15 +16,16 @@ namespace holdfast::io {
 void read_extension_member(JsonReading& reading, std::string_view key, const Json& value,
                            const Place& place);
 
-/// Reads one of kConnectorKeys, a member of the material.
-void read_connector_parameter(JsonReading& reading, const std::string& key, const Json& value,
-                              const Place& place);
-
 /// Reads one of kOwnParameterKeys, a member of a module.
 void read_own_parameter(JsonReading& reading, std::string_view key, const Json& value,
                         const Place& place, OwnParameters& own);
 
-/// After all members: a failure if a module is of a kind that is none.
+/// Reads the object that extension_text() has written, and checks kinds and lists of numbers; the
+/// lattice, what modules have of their own and obstacles are there already.
+void read_extension_text(Reading& reading, std::string_view text, const Reading::Where& where);
+
+/// After all members: sorts what modules have of their own; a failure if one is of a kind that is
+/// none.
 void check_kinds(JsonReading& reading);
 
 }  // namespace holdfast::io

@@ -1,8 +1,10 @@
 // SPDX-FileCopyrightText: The holdfast authors
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 
+#include "holdfast/io/lattice_names.hpp"
 #include "json_text.hpp"
 #include "vocabulary.hpp"
 
@@ -23,37 +25,49 @@ std::string cells_text(const std::vector<base::Cell>& cells) {
   return row(items);
 }
 
-std::string pairs_text(const std::vector<CellPair>& pairs) {
+std::string pairs_text(const std::vector<model::CellPair>& pairs) {
   Items items;
-  for (const CellPair& pair : pairs) {
+  for (const model::CellPair& pair : pairs) {
     items.push_back(cells_text({pair.begin(), pair.end()}));
   }
   return row(items);
 }
 
-Items members_of(const NamedNumbers& numbers) {
-  Items members;
-  for (const auto& [name, value] : numbers) {
-    members.push_back(member(name, json_text(value)));
-  }
-  return members;
+std::string number_text(double value) {
+  return std::isinf(value) ? std::string("null") : json_text(value);
 }
 
-std::string obstacle_text(const Obstacle& obstacle) {
+std::string parameter_text(const ConnectorParameter& parameter) {
+  Items items;
+  for (std::size_t i = 0; i < parameter.values.size(); ++i) {
+    if (const auto& value = parameter.values[i]) {
+      const std::string text = number_text(*value);
+      items.push_back(parameter.spread == Spread::kClasses ? member(kClassKeys[i], text) : text);
+    }
+  }
+  return parameter.spread == Spread::kClasses ? object(items)
+         : parameter.spread == Spread::kPairs ? row(items)
+                                              : items.front();
+}
+
+std::string obstacle_text(const model::Obstacle& obstacle, const std::optional<Color>& color) {
   Items members;
   if (obstacle.cells.empty()) {
     members = {member("from", json_text(obstacle.from)), member("to", json_text(obstacle.to))};
   } else {
     members = {member("cells", cells_text(obstacle.cells))};
   }
-  members.push_back(member("hold", name_text(kHoldNames[static_cast<std::size_t>(obstacle.hold)])));
-  if (obstacle.friction) {
-    members.push_back(member("friction", json_text(*obstacle.friction)));
+  members.push_back(member("hold", name_text(kHoldNames[static_cast<std::size_t>(obstacle.touch.hold)])));
+  if (obstacle.touch.friction) {
+    members.push_back(member("friction", json_text(*obstacle.touch.friction)));
+  }
+  if (color) {
+    members.push_back(member("color", json_text(*color)));
   }
   return object(members);
 }
 
-std::string payload_text(const Payload& payload) {
+std::string payload_text(const model::Payload& payload) {
   return object({member("cell", json_text(payload.cell)),
                  member("force_n", vector_text(payload.force_n)),
                  member("torque_nmm", vector_text(payload.torque_nmm))});
@@ -96,13 +110,17 @@ void add_list(Items& members, std::string_view key, const List& list, const ToTe
   }
 }
 
-}  // namespace
-
-void add_setting_members(Items& members, const Extension& extension) {
-  if (extension.lattice != LatticeName::kCubic) {
-    members.push_back(
-        member("lattice", name_text(kLatticeNames[static_cast<std::size_t>(extension.lattice)])));
+void add_connector_members(Items& members, const Connectors& connectors) {
+  for (const ConnectorParameter& parameter : connectors.parameters) {
+    members.push_back(member(parameter.key, parameter_text(parameter)));
   }
+  if (connectors.bending) {
+    const auto law = static_cast<std::size_t>(*connectors.bending);
+    members.push_back(member(kBendingKey, name_text(kBendingNames[law])));
+  }
+}
+
+void add_floor_and_gravity(Items& members, const Extension& extension) {
   if (extension.floor_friction) {
     members.push_back(
         member("floor", object({member("friction", json_text(*extension.floor_friction))})));
@@ -112,20 +130,68 @@ void add_setting_members(Items& members, const Extension& extension) {
   }
 }
 
+}  // namespace
+
+void add_setting_members(Items& members, const Extension& extension) {
+  if (extension.lattice != base::kCubic) {
+    members.push_back(member("lattice", name_text(lattice_name(extension.lattice))));
+  }
+  add_floor_and_gravity(members, extension);
+}
+
 void add_kind_members(Items& members, const Extension& extension) {
   Items kinds;
-  for (const ModuleKind& kind : extension.kinds) {
-    kinds.push_back(json_text(kind.name) + ": " + object(members_of(kind.parameters)));
+  for (const KindEntry& kind : extension.kinds) {
+    Items parameters;
+    if (kind.mass_kg) {
+      parameters.push_back(member("mass_kg", json_text(*kind.mass_kg)));
+    }
+    add_connector_members(parameters, kind.connectors);
+    kinds.push_back(json_text(kind.name) + ": " + object(parameters));
   }
   if (!kinds.empty()) {
     members.push_back(member("kinds", lines('{', kinds, '}', 2)));
   }
 }
 
+void add_obstacle_members(Items& members, const Extension& extension) {
+  Items items;
+  for (std::size_t i = 0; i < extension.obstacles.size(); ++i) {
+    const auto& colors = extension.obstacle_colors;
+    items.push_back(
+        obstacle_text(extension.obstacles[i], i < colors.size() ? colors[i] : std::nullopt));
+  }
+  if (!items.empty()) {
+    members.push_back(member("obstacles", array(items, 2)));
+  }
+}
+
 void add_plan_members(Items& members, const Extension& extension) {
-  add_list(members, "obstacles", extension.obstacles, obstacle_text);
   add_list(members, "loads", extension.payloads, payload_text);
   add_list(members, "steps", extension.plan, step_text);
+}
+
+Items material_extension_members(const Extension& extension) {
+  Items members;
+  add_connector_members(members, extension.connectors);
+  if (extension.foot_mm) {
+    members.push_back(member(kFootKey, json_text(*extension.foot_mm)));
+  }
+  return members;
+}
+
+std::string extension_text(const Extension& extension) {
+  Items members;
+  if (!extension.has_floor) {
+    members.push_back(member("support_z", "null"));
+  }
+  add_floor_and_gravity(members, extension);
+  if (const Items material = material_extension_members(extension); !material.empty()) {
+    members.push_back(member("material", object(material)));
+  }
+  add_kind_members(members, extension);
+  add_plan_members(members, extension);
+  return members.empty() ? std::string() : object(members);
 }
 
 void add_own_members(Items& members, const OwnParameters& own) {

@@ -8,6 +8,8 @@
 #include <utility>
 
 #include "holdfast/io/document.hpp"
+#include "holdfast/io/lattice_names.hpp"
+#include "json_connectors.hpp"
 #include "json_extension.hpp"
 #include "json_values.hpp"
 #include "text_input.hpp"
@@ -18,22 +20,26 @@ namespace {
 
 class JsonReader {
  public:
-  base::Result<ReadDocument> read(const Json& root) &&;
+  base::Result<ReadDocument> read(const Json& root, const ReadOptions& options) &&;
 
  private:
-  bool read_heading(const Json::object_t& root, const Place& place);
+  bool read_heading(const Json::object_t& root, const Place& place, const ReadOptions& options);
+  void read_lattice(const Json& value, const Place& place, const ReadOptions& options);
   bool allows(const Place& place);
   void read_member(const std::string& key, const Json& value, const Place& place);
   void read_material(const Json& value, const Place& place);
   void read_known_answer(const Json& value, const Place& place);
   void read_visiblesim(const Json& value, const Place& place);
+  void take_old_obstacles(std::vector<Element>& list, const Place& place);
   std::vector<Element> scenery(const Json& value, const Place& place);
   std::vector<Element> targets(const Json& value, const Place& place);
 
   template <class Entry>
-  std::vector<Entry> entries(const Json& value, const Place& place);
+  std::vector<Entry> entries(const Json& value, const Place& place, std::size_t step);
   template <class Entry>
-  Entry entry(const Json& value, const Place& place, std::size_t index);
+  Entry entry(const Json& value, const Place& place, OwnParameters own);
+
+  Names entry_keys(bool is_module) const;
 
   JsonReading reading_;
   bool is_extended_ = false;  ///< Whether the document says that it is of version 2.
@@ -41,14 +47,15 @@ class JsonReader {
   std::vector<Step> later_steps_;
 };
 
-base::Result<ReadDocument> JsonReader::read(const Json& root) && {
+base::Result<ReadDocument> JsonReader::read(const Json& root, const ReadOptions& options) && {
   const Place top;
   const Json::object_t& members = reading_.members(root, top);
-  if (!reading_.has_failed() && read_heading(members, top)) {
+  if (!reading_.has_failed() && read_heading(members, top, options)) {
     for (const auto& [key, value] : members) {
       read_member(key, value, top.at(key));
     }
     check_kinds(reading_);
+    check_pair_lists(reading_);
   }
   std::vector<Step>& steps = reading_.document.steps;
   steps.push_back(std::move(planned_));
@@ -57,7 +64,8 @@ base::Result<ReadDocument> JsonReader::read(const Json& root) && {
 }
 
 /// What must be there, and in a version that can be read.
-bool JsonReader::read_heading(const Json::object_t& root, const Place& place) {
+bool JsonReader::read_heading(const Json::object_t& root, const Place& place,
+                              const ReadOptions& options) {
   static const Json kNone;
   const auto value_of = [&](const char* key) -> const Json& {
     const auto member = root.find(key);
@@ -82,7 +90,23 @@ bool JsonReader::read_heading(const Json::object_t& root, const Place& place) {
   if (is_extended_ && material.contains("gravity_m_s2") && !value_of("gravity_m_s2").is_null()) {
     reading_.fail(place.at("gravity_m_s2"), "gravity stands here and in the material");
   }
+  if (!reading_.has_failed()) {
+    read_lattice(value_of("lattice"), place.at("lattice"), options);
+  }
   return !reading_.has_failed();
+}
+
+/// Before all that depends on it. The value is null if there is none.
+void JsonReader::read_lattice(const Json& value, const Place& place, const ReadOptions& options) {
+  const auto where = [&] { return place.pointer(); };
+  if (value.is_null() || !is_extended_) {
+    reading_.take_lattice(std::nullopt, options, where);
+    return;
+  }
+  std::vector<std::string_view> names;
+  std::ranges::transform(kNamedLattices, std::back_inserter(names), &NamedLattice::name);
+  const std::string_view name = names[read_choice(reading_, value, place, names)];
+  reading_.take_lattice(name, options, where);
 }
 
 /// Whether a key that only version 2 has may stand here; a failure if not, as what it says would be
@@ -112,13 +136,13 @@ void JsonReader::read_member(const std::string& key, const Json& value, const Pl
   } else if (key == "material") {
     read_material(value, place);
   } else if (key == "modules") {
-    document.modules = entries<ModuleEntry>(value, place);
+    document.modules = entries<ModuleEntry>(value, place, 0);
   } else if (key == "planned") {
-    planned_ = entries<PlannedEntry>(value, place);
+    planned_ = entries<PlannedEntry>(value, place, 1);
   } else if (key == "later_steps") {
     const Json::array_t& steps = reading_.elements(value, place);
     for (std::size_t i = 0; i < steps.size() && !reading_.has_failed(); ++i) {
-      later_steps_.push_back(entries<PlannedEntry>(steps[i], place.at(i)));
+      later_steps_.push_back(entries<PlannedEntry>(steps[i], place.at(i), i + 2));
     }
   } else if (key == "known_answer") {
     read_known_answer(value, place);
@@ -136,14 +160,15 @@ void JsonReader::read_material(const Json& value, const Place& place) {
         std::ranges::find(model::kMaterialParameters, key, &model::MaterialParameter::key);
     if (parameter != model::kMaterialParameters.end()) {
       reading_.document.material.*parameter->value = reading_.number(member, here);
-    } else if (std::ranges::find(kConnectorKeys, key) != kConnectorKeys.end()) {
+    } else if (is_material_extension(key)) {
       if (allows(here)) {
-        read_connector_parameter(reading_, key, member, here);
+        read_material_extension(reading_, key, member, here);
       }
     } else {
-      reading_.note_unknown_key(here, material_keys());
+      reading_.note_unknown_key(here, material_keys(is_extended_));
     }
   }
+  expect_one_strength(reading_, value, place);
 }
 
 void JsonReader::read_known_answer(const Json& value, const Place& place) {
@@ -177,6 +202,10 @@ void JsonReader::read_visiblesim(const Json& value, const Place& place) {
       reading_.read_grid([&] { return here.at("gridSize").pointer(); });
     } else if (key == "block_list") {
       document.block_list = reading_.attributes(member, here, is_free);
+    } else if (key == "obstacle_list") {
+      if (allows(here)) {
+        document.extension.obstacle_list = reading_.attributes(member, here, is_free);
+      }
     } else if (key == "scenery") {
       document.scenery = scenery(member, here);
     } else if (key == "targets") {
@@ -187,8 +216,18 @@ void JsonReader::read_visiblesim(const Json& value, const Place& place) {
   }
 }
 
+/// Before obstacles had a meaning, <obstacleList> was kept as scenery.
+void JsonReader::take_old_obstacles(std::vector<Element>& list, const Place& place) {
+  const auto found = std::ranges::find(list, kObstacleListElement, &Element::name);
+  if (found != list.end() && reading_.document.extension.obstacles.empty()) {
+    reading_.take_obstacles(*found, [&] { return place.pointer(); });
+    list.erase(found);
+  }
+}
+
 std::vector<Element> JsonReader::scenery(const Json& value, const Place& place) {
   std::vector<Element> list = reading_.element_list(value, place, 1);
+  take_old_obstacles(list, place);
   for (const Element& element : list) {
     if (is_structural_element(element.name)) {
       reading_.fail(place, fmt::format("<{}> has keys of its own in this format", element.name));
@@ -210,21 +249,23 @@ std::vector<Element> JsonReader::targets(const Json& value, const Place& place) 
   return list;
 }
 
+/// `step` is that of OwnParameters.
 template <class Entry>
-std::vector<Entry> JsonReader::entries(const Json& value, const Place& place) {
+std::vector<Entry> JsonReader::entries(const Json& value, const Place& place, std::size_t step) {
   std::vector<Entry> list;
   const Json::array_t& array = reading_.elements(value, place);
   if (reading_.take_room(array.size(), [&] { return place.pointer(); })) {
     list.reserve(array.size());
     for (std::size_t i = 0; i < array.size() && !reading_.has_failed(); ++i) {
-      list.push_back(entry<Entry>(array[i], place.at(i), i));
+      list.push_back(entry<Entry>(array[i], place.at(i), {step, i, {}, {}}));
     }
   }
   return list;
 }
 
+/// `own` says which module it is; kept if the entry has parameters of its own.
 template <class Entry>
-Entry JsonReader::entry(const Json& value, const Place& place, std::size_t index) {
+Entry JsonReader::entry(const Json& value, const Place& place, OwnParameters own) {
   constexpr bool kIsModule = std::is_same_v<Entry, ModuleEntry>;
   Entry entry;
   if (value.is_array()) {
@@ -235,18 +276,11 @@ Entry JsonReader::entry(const Json& value, const Place& place, std::size_t index
     reading_.refuse(value, place, "a cell [x, y, z] or an object with the key \"cell\"");
     return entry;
   }
-  OwnParameters own{.module = index, .kind = {}, .mass_kg = {}};
   for (const auto& [key, member] : reading_.members(value, place)) {
     const Place here = place.at(key);
     if constexpr (kIsModule) {
       if (key == "fixed") {
         entry.is_fixed = reading_.boolean(member, here);
-        continue;
-      }
-      if (std::ranges::find(kOwnParameterKeys, key) != kOwnParameterKeys.end()) {
-        if (allows(here)) {
-          read_own_parameter(reading_, key, member, here, own);
-        }
         continue;
       }
     }
@@ -257,10 +291,12 @@ Entry JsonReader::entry(const Json& value, const Place& place, std::size_t index
     } else if (key == "attributes") {
       entry.attributes =
           reading_.attributes(member, here, kIsModule ? is_module_attribute : is_planned_attribute);
+    } else if (std::ranges::find(kOwnParameterKeys, key) != kOwnParameterKeys.end()) {
+      if (allows(here)) {
+        read_own_parameter(reading_, key, member, here, own);
+      }
     } else {
-      reading_.note_unknown_key(here, !kIsModule     ? Names(kPlannedKeys)
-                                      : is_extended_ ? Names(kAllModuleKeys)
-                                                     : Names(kModuleKeys));
+      reading_.note_unknown_key(here, entry_keys(kIsModule));
     }
   }
   if (!own.kind.empty() || own.mass_kg) {
@@ -269,15 +305,22 @@ Entry JsonReader::entry(const Json& value, const Place& place, std::size_t index
   return entry;
 }
 
+Names JsonReader::entry_keys(bool is_module) const {
+  if (is_module) {
+    return is_extended_ ? Names(kAllModuleKeys) : Names(kModuleKeys);
+  }
+  return is_extended_ ? Names(kAllPlannedKeys) : Names(kPlannedKeys);
+}
+
 }  // namespace
 
-base::Result<ReadDocument> read_json(std::string_view text) {
+base::Result<ReadDocument> read_json(std::string_view text, const ReadOptions& options) {
   text = without_bom(text);
   if (auto fault = find_input_fault(text)) {
     return *std::move(fault);
   }
   const auto root = parse_json(text);
-  return root ? JsonReader().read(root.value()) : root.error();
+  return root ? JsonReader().read(root.value(), options) : root.error();
 }
 
 }  // namespace holdfast::io

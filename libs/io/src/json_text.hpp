@@ -47,10 +47,18 @@ std::string array(const Items& items, std::size_t indent);
 std::string lines(char open, const Items& items, char close, std::size_t indent);
 
 /// The members of a structure that only version 2 of the format has, as they follow "support_z",
-/// "modules" and "planned".
+/// "material", its own, and "planned".
 void add_setting_members(Items& members, const Extension& extension);
 void add_kind_members(Items& members, const Extension& extension);
+void add_obstacle_members(Items& members, const Extension& extension);
 void add_plan_members(Items& members, const Extension& extension);
+
+/// Members of the material that only version 2 has.
+Items material_extension_members(const Extension& extension);
+
+/// An object of the members that VisibleSim XML has no words for: all but the lattice, obstacles and
+/// what modules have of their own; empty if there are none.
+std::string extension_text(const Extension& extension);
 
 /// A module's own parameters, as members of it.
 void add_own_members(Items& members, const OwnParameters& own);

@@ -2,7 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <iterator>
 #include <optional>
+#include <span>
 #include <string>
 #include <type_traits>
 #include <vector>
@@ -46,7 +49,7 @@ std::string entry_text(const Entry& entry, const OwnParameters* own) {
 
 template <class Entry>
 std::string cell_list(const std::vector<Entry>& entries, std::size_t indent,
-                      const std::vector<OwnParameters>& own = {}) {
+                      std::span<const OwnParameters> own) {
   Items rows;
   const Entry* before = nullptr;  // Its row may go on.
   auto next_own = own.begin();
@@ -105,9 +108,7 @@ Items material_members(const Document& document) {
       members.push_back(member(parameter.key, json_text(material.*parameter.value)));
     }
   }
-  for (const auto& [key, value] : document.extension.connectors) {
-    members.push_back(member(key, json_text(value)));
-  }
+  std::ranges::move(material_extension_members(document.extension), std::back_inserter(members));
   return members;
 }
 
@@ -140,20 +141,29 @@ Items visiblesim_members(const Document& document) {
   add_attributes("parameters", document.parameters);
   add_attributes("world", document.world);
   add_attributes("block_list", document.block_list);
+  add_attributes("obstacle_list", document.extension.obstacle_list);
   add_elements("scenery", document.scenery);
   add_elements("targets", document.targets);
   return members;
 }
 
+/// What the modules of a step have of their own; step as in OwnParameters.
+std::span<const OwnParameters> own_of(const Extension& extension, std::size_t step) {
+  const auto range = std::ranges::equal_range(extension.own, step, {}, &OwnParameters::step);
+  return {range.begin(), range.end()};
+}
+
 /// "planned" and "later_steps".
-void add_steps(Items& members, const std::vector<Step>& steps) {
+void add_steps(Items& members, const Document& document) {
+  const std::vector<Step>& steps = document.steps;
   if (!steps.empty() && !steps.front().empty()) {
-    members.push_back(member("planned", cell_list(steps.front(), 2)));
+    members.push_back(
+        member("planned", cell_list(steps.front(), 2, own_of(document.extension, 1))));
   }
   if (steps.size() > 1) {
     Items later;
-    for (auto step = steps.begin() + 1; step != steps.end(); ++step) {
-      later.push_back(cell_list(*step, 4));
+    for (std::size_t i = 1; i < steps.size(); ++i) {
+      later.push_back(cell_list(steps[i], 4, own_of(document.extension, i + 1)));
     }
     members.push_back(member("later_steps", array(later, 2)));
   }
@@ -182,8 +192,9 @@ std::string write_json(const Document& document) {
     members.push_back(member("material", object(material, 2)));
   }
   add_kind_members(members, extension);
-  members.push_back(member("modules", cell_list(document.modules, 2, extension.own)));
-  add_steps(members, document.steps);
+  members.push_back(member("modules", cell_list(document.modules, 2, own_of(extension, 0))));
+  add_steps(members, document);
+  add_obstacle_members(members, extension);
   add_plan_members(members, extension);
   if (document.known_answer) {
     members.push_back(member("known_answer", known_answer_text(*document.known_answer)));

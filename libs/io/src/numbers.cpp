@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "numbers.hpp"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <cstdlib>
@@ -61,6 +62,25 @@ std::optional<std::array<Number, 3>> parse_triple(std::string_view text) {
     text.remove_prefix(i < 2 ? comma + 1 : comma);
   }
   return triple;
+}
+
+std::optional<Color> parse_color(std::string_view text) {
+  if (const auto triple = parse_triple<std::int32_t>(text)) {
+    const auto [red, green, blue] = *triple;
+    const bool is_good = std::ranges::all_of(*triple, [](auto n) { return n >= 0 && n <= 255; });
+    return is_good ? std::optional(Color{red, green, blue}) : std::nullopt;
+  }
+  text = trimmed(text);
+  const std::size_t head = text.starts_with('#') ? 1 : text.starts_with("0x") ? 2 : text.size();
+  const std::string_view digits = text.substr(head);
+  std::uint32_t value = 0;
+  const auto [rest, fault] =
+      std::from_chars(digits.data(), digits.data() + digits.size(), value, 16);
+  if (digits.size() != 6 || fault != std::errc() || rest != digits.data() + digits.size()) {
+    return std::nullopt;
+  }
+  return Color{static_cast<int>(value >> 16U), static_cast<int>(value >> 8U & 0xFFU),
+               static_cast<int>(value & 0xFFU)};
 }
 
 template std::optional<std::int32_t> parse_number<std::int32_t>(std::string_view);

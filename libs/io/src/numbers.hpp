@@ -7,6 +7,8 @@
 #include <optional>
 #include <string_view>
 
+#include "holdfast/io/element.hpp"
+
 namespace holdfast::io {
 
 /// Integers from `lowest` to `highest`.
@@ -25,5 +27,11 @@ std::optional<Number> parse_number(std::string_view text);
 /// Three numbers separated by commas.
 template <class Number>
 std::optional<std::array<Number, 3>> parse_triple(std::string_view text);
+
+/// The colour that "r,g,b", "#rrggbb" or "0xrrggbb" is.
+std::optional<Color> parse_color(std::string_view text);
+
+inline constexpr std::string_view kColorsAllowed =
+    "allowed are three integers from 0 to 255, such as 1,2,3, or #010203";
 
 }  // namespace holdfast::io

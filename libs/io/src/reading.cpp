@@ -6,6 +6,7 @@
 
 #include <algorithm>
 
+#include "holdfast/io/lattice_names.hpp"
 #include "text_input.hpp"
 #include "vocabulary.hpp"
 
@@ -88,6 +89,29 @@ void Reading::take_known_answer(KnownAnswer answer, const Where& where) {
   document.known_answer = std::move(answer);
 }
 
+bool Reading::take_lattice(std::optional<std::string_view> named, const ReadOptions& options,
+                           const Where& where) {
+  base::Lattice& lattice = document.extension.lattice;
+  if (named) {
+    const auto found = find_lattice(*named);
+    if (!found) {
+      fail({found.error().code, found.error().message, where()});
+      return true;
+    }
+    lattice = found.value();
+  }
+  if (options.lattice) {
+    if (named && lattice != *options.lattice) {
+      fail({base::ErrorCode::kBadInput,
+            fmt::format("the lattice is {} here, but {} is asked for", excerpt(*named),
+                        excerpt(lattice_name(*options.lattice))),
+            where()});
+    }
+    lattice = *options.lattice;
+  }
+  return named || options.lattice;
+}
+
 void Reading::read_grid(const Where& where) {
   const std::string* const text = find_attribute(document.world, kGridSize);
   if (text == nullptr) {
@@ -141,10 +165,7 @@ void Reading::warn_of_content() {
          nowhere);
   }
   for (const Element& element : document.scenery) {
-    if (element.name == "obstacleList") {
-      warn("obstacles are not supported: <obstacleList> is kept, but nothing rests on them",
-           nowhere);
-    } else if (!is_scenery_element(element.name)) {
+    if (!is_scenery_element(element.name)) {
       note_unknown(fmt::format("the element {}", excerpt(element.name)), element.name,
                    kWorldElements, "kept", nowhere);
     }

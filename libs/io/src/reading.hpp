@@ -58,6 +58,14 @@ class Reading {
   /// Keeps it if its verdict is one.
   void take_known_answer(KnownAnswer answer, const Where& where);
 
+  /// The lattice of the document: `named`, what the file says, or what the options say; a failure if
+  /// these differ, or if there is no lattice of that name. False if neither says anything.
+  bool take_lattice(std::optional<std::string_view> named, const ReadOptions& options,
+                    const Where& where);
+
+  /// Keeps <obstacleList>: obstacles that touch modules, their colours, what else there is.
+  void take_obstacles(const Element& list, const Where& where);
+
   /// Looks for gridSize in document.world.
   void read_grid(const Where& where);
 

@@ -71,6 +71,16 @@ std::string_view fixed_text(ReasonCode code) {
       return "proved; the solution is unique";
     case ReasonCode::kNoVerdictOfTheRobot:
       return "the modules came to no verdict";
+    case ReasonCode::kBalances:
+      return "contact forces that hold it exist, but with nothing to spare: any push moves it";
+    case ReasonCode::kRigidUndecided:
+      return "whether contact forces hold it was not found out";
+    case ReasonCode::kModelFalls:
+      return "the model-based check says unstable, as no facet presses all over and the corners "
+             "that press lie on one line; contact forces of a rigid body that would hold it do "
+             "exist, so it may depend on how the load came, and is not safe";
+    case ReasonCode::kLoadsTogether:
+      return "load ratios and the weight factor are of all loads together, weight and payloads";
     default:
       return {};
   }
@@ -138,6 +148,20 @@ std::string reason_text(const model::Robot& robot, const verdict::Reason& reason
                          n[0] != 0 ? "stable" : "unstable");
     case ReasonCode::kNotProved:
       return "not proved: " + reason.quoted;
+    case ReasonCode::kFalls:
+      return "no contact forces balance the loads: it " +
+             (reason.quoted.empty() ? "moves" : reason.quoted);
+    case ReasonCode::kMaySlip:
+      return fmt::format(
+          "a facet of {} may slip: its sideways force is {} of what presses it, its friction {}; "
+          "other contact forces may hold the robot, so nothing is certain",
+          model::text(robot.modules()[static_cast<std::size_t>(n[0])].cell), beside_one(n[1], 4),
+          n[2]);
+    case ReasonCode::kGapsOpen:
+      return fmt::format(
+          "warning: {:.0f} connections open so far that contacts of power and data part; the worst, "
+          "{}, by {:.3g} mm at its edge where {:.3g} are allowed",
+          n[0], connection_text(robot, n[1]), n[2], n[3]);
     case ReasonCode::kVerdictOfTheRobot:
       return fmt::format("the robot's own verdict: {}{}", reason.quoted,
                          n[0] != 0 ? "" : "; not every module knows it");

@@ -65,6 +65,43 @@ void write_rigid_body(JsonStream& json, const verdict::RigidBody& body) {
   json.end_object();
 }
 
+void write_vector(JsonStream& json, std::string_view key, const limit::Vector3& vector) {
+  json.key(key);
+  json.begin_array();
+  for (const double number : vector) {
+    json.value(number);
+  }
+  json.end_array();
+}
+
+void write_motion(JsonStream& json, const limit::Motion& motion) {
+  json.begin_object();
+  json.member("text", limit::text(motion));
+  write_vector(json, "velocity", motion.velocity);
+  write_vector(json, "angular", motion.angular);
+  write_vector(json, "from_mm", motion.from_mm);
+  write_vector(json, "to_mm", motion.to_mm);
+  json.end_object();
+}
+
+void write_rigid(JsonStream& json, const limit::RigidStability& rigid) {
+  using limit::RigidAnswer;
+  json.begin_object();
+  json.member("holds", rigid.answer == RigidAnswer::kUndecided ? std::nullopt
+                                                               : std::optional(rigid.holds()));
+  json.member("answer", limit::name(rigid.answer));
+  json.member("margin", rigid.margin);
+  json.member("friction_needed", rigid.friction_needed);
+  json.member("tilt_margin_deg", rigid.tilt_margin_deg);
+  json.key("motion");
+  if (rigid.motion) {
+    write_motion(json, *rigid.motion);
+  } else {
+    json.value(nullptr);
+  }
+  json.end_object();
+}
+
 void write_stability(JsonStream& json, const verdict::Assessment& assessment) {
   const verdict::ModelStability& model = assessment.model;
   json.begin_object();
@@ -75,6 +112,8 @@ void write_stability(JsonStream& json, const verdict::Assessment& assessment) {
   json.member("stable", model.is_settled ? std::optional(model.is_stable) : std::nullopt);
   json.member("settled", model.is_settled);
   json.end_object();
+  json.key("rigid");
+  write_rigid(json, assessment.rigid);
   json.member("stable", assessment.is_stable);
   json.end_object();
 }

@@ -23,7 +23,22 @@ void write_modules(Out out, const model::Robot& robot) {
                  robot.ground_count(), robot.fixed_count());
 }
 
-void write_stability(Out out, const verdict::Assessment& assessment) {
+/// What the rigid body says with supports anywhere.
+std::string rigid_text(const limit::RigidStability& rigid) {
+  std::string text = fmt::format(": as a rigid body it {}", limit::name(rigid.answer));
+  if (rigid.motion) {
+    text += ", it " + limit::text(*rigid.motion);
+  }
+  if (rigid.tilt_margin_deg && rigid.holds()) {
+    text += fmt::format(", until gravity tilts by {:.1f} degrees", *rigid.tilt_margin_deg);
+  }
+  if (rigid.friction_needed && *rigid.friction_needed > 0) {
+    text += fmt::format(", with friction of {:.3g} or more", *rigid.friction_needed);
+  }
+  return text;
+}
+
+void write_stability(Out out, const model::Robot& robot, const verdict::Assessment& assessment) {
   const verdict::RigidBody& body = assessment.simplified;
   const char* word = assessment.is_stable ? "stable" : "unstable";
   if (body.margin_mm) {
@@ -32,8 +47,11 @@ void write_stability(Out out, const verdict::Assessment& assessment) {
         out,
         "  stability   {}, margin {:.2f} mm at the edge ({:.10g}, {:.10g})-({:.10g}, {:.10g}) mm",
         word, *body.margin_mm, a.x, a.y, b.x, b.y);
+  } else if (assessment.stability_rule == verdict::StabilityRule::kHeld) {
+    fmt::format_to(out, "  stability   {}, held by a {}", word,
+                   robot.fixed_count() > 0 ? "fixed module" : "bonded support");
   } else {
-    fmt::format_to(out, "  stability   {}, held by a fixed module", word);
+    fmt::format_to(out, "  stability   {}{}", word, rigid_text(assessment.rigid));
   }
   if (!assessment.model.is_settled) {
     fmt::format_to(out, "; the model-based check has no answer\n");
@@ -113,7 +131,7 @@ std::string write_report_text(const ReportEntry& entry) {
   }
   fmt::format_to(out, "\n");
   write_modules(out, *entry.robot);
-  write_stability(out, assessment);
+  write_stability(out, *entry.robot, assessment);
   write_loads(out, *entry.robot, assessment);
   write_solver(out, assessment, entry.seconds);
   if (entry.proof != nullptr) {

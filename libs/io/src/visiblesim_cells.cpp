@@ -29,8 +29,31 @@ bool is_no(std::string_view text) {
   return is_one_of(lower, {"0", "false", "no"});
 }
 
+/// What the attributes of ours say that a module has of its own, if there are any.
+void read_own(XmlReading& reading, const pugi::xml_node& node, OwnParameters own) {
+  const pugi::xml_attribute kind = node.attribute(kOwnKindAttribute);
+  const pugi::xml_attribute mass = node.attribute(kOwnMassAttribute);
+  if (!kind && !mass) {
+    return;
+  }
+  own.kind = kind.value();
+  if (mass) {
+    own.mass_kg = reading.number(node, mass);
+    if (!(*own.mass_kg > 0)) {
+      reading.fail(node, fmt::format("{} of <{}> is {}, allowed is a positive number",
+                                     kOwnMassAttribute, node.name(), excerpt(mass.value())));
+    }
+  }
+  reading.document.extension.own.push_back(std::move(own));
+}
+
 ModuleEntry read_block(XmlReading& reading, const pugi::xml_node& block) {
   reading.expect_no_content(block);
+  if (block.attribute("piston")) {
+    reading.fail(block, fmt::format("<block piston> is a datom: {}", kNoDatoms),
+                 base::ErrorCode::kUnsupported);
+  }
+  read_own(reading, block, {0, reading.document.modules.size(), {}, {}});
   const pugi::xml_attribute fixed = block.attribute("fixed");
   return {.cell = reading.cell(block),
           .is_fixed = fixed && !is_no(fixed.value()),
@@ -43,6 +66,12 @@ PlannedEntry read_cell(XmlReading& reading, const pugi::xml_node& cell) {
   return {.cell = reading.cell(cell),
           .color = reading.color(cell),
           .attributes = reading.attributes(cell, is_planned_attribute)};
+}
+
+/// The orientation of all modules of a row or box, which each of them then has.
+Attributes read_orientation(const pugi::xml_node& node) {
+  const pugi::xml_attribute attribute = node.attribute(kOrientation);
+  return attribute ? Attributes{{kOrientation, attribute.value()}} : Attributes();
 }
 
 /// <blocksLine> or <targetLine>: a row along x, one character per cell. A row without a plane lies
@@ -59,6 +88,7 @@ void read_row(XmlReading& reading, const pugi::xml_node& row, std::int32_t& plan
   const std::int32_t line = coordinate("line", 0);
   plane = coordinate("plane", plane);
   const std::optional<Color> color = reading.color(row);
+  const Attributes orientation = read_orientation(row);
   const char* const text = reading.required(row, "values");
   const std::string_view values = text == nullptr ? "" : text;
   if (values.size() > base::kCoordinateMax + 1U) {
@@ -74,6 +104,7 @@ void read_row(XmlReading& reading, const pugi::xml_node& row, std::int32_t& plan
       Entry& entry = entries.emplace_back();
       entry.cell = {x, line, plane};
       entry.color = color;
+      entry.attributes = orientation;
     } else if (value != '0') {
       reading.warn_at(
           row, fmt::format("in values of <{}>, {} counts as 0", row.name(), excerpt({&value, 1})));
@@ -118,11 +149,23 @@ struct Box {
   }
 };
 
+/// In files with the root <vs>, boxes count in cells, and boxSize is how many.
+bool counts_in_cells(const pugi::xml_node& box) {
+  return box.parent().parent().parent().name() == std::string_view(kRootElement);
+}
+
 std::array<IndexRange, 3> read_box_ranges(XmlReading& reading, const pugi::xml_node& box) {
   constexpr double kFar = std::numeric_limits<double>::infinity();
-  const Lengths pitch = read_lengths(reading, box.parent(), "blockSize", kBlockSize);
+  const bool in_cells = counts_in_cells(box);
+  const Lengths pitch = in_cells ? Lengths{1, 1, 1}
+                                 : read_lengths(reading, box.parent(), "blockSize", kBlockSize);
   const Lengths origin = read_lengths(reading, box, "boxOrigin", {0, 0, 0});
   const Lengths size = read_lengths(reading, box, "boxSize", {kFar, kFar, kFar});
+  if (reading.document.extension.lattice != base::kCubic && !in_cells) {
+    reading.fail(box, "<blockBox> in mm is for cubes only: write its modules as <block>",
+                 base::ErrorCode::kUnsupported);
+    return {};
+  }
   if (!reading.grid()) {
     reading.fail(box, "<blockBox> needs the attribute 'gridSize' of <world>, which is missing");
     return {};
@@ -137,7 +180,8 @@ std::array<IndexRange, 3> read_box_ranges(XmlReading& reading, const pugi::xml_n
                                             reading.grid()->z};
   std::array<IndexRange, 3> ranges;
   for (std::size_t i = 0; i < 3; ++i) {
-    ranges[i] = Box{origin[i], origin[i] + size[i], pitch[i]}.cells(grid[i]);
+    const double end = in_cells ? std::ceil(origin[i] + size[i]) - 1 : origin[i] + size[i];
+    ranges[i] = Box{origin[i], end, pitch[i]}.cells(grid[i]);
   }
   return ranges;
 }
@@ -146,6 +190,7 @@ void read_box(XmlReading& reading, const pugi::xml_node& box) {
   reading.expect_no_content(box);
   reading.expect_attributes(box, kBoxAttributes);
   const std::optional<Color> color = reading.color(box);
+  const Attributes orientation = read_orientation(box);
   const auto [xs, ys, zs] = read_box_ranges(reading, box);
   const std::size_t count = xs.count() * ys.count() * zs.count();
   if (count == 0) {
@@ -160,6 +205,7 @@ void read_box(XmlReading& reading, const pugi::xml_node& box) {
         ModuleEntry& entry = reading.document.modules.emplace_back();
         entry.cell = {x, y, z};
         entry.color = color;
+        entry.attributes = orientation;
       }
     }
   }
@@ -198,6 +244,7 @@ Step read_grid_target(XmlReading& reading, const pugi::xml_node& target) {
   for (const pugi::xml_node& child : target.children()) {
     const std::string_view name = child.name();
     if (name == "cell" && reading.take_room(1, [&] { return reading.line(child); })) {
+      read_own(reading, child, {reading.document.steps.size() + 1, step.size(), {}, {}});
       step.push_back(read_cell(reading, child));
     } else if (name == "targetLine") {
       read_row(reading, child, plane, step);

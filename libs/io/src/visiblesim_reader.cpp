@@ -8,6 +8,8 @@
 #include <vector>
 
 #include "holdfast/io/document.hpp"
+#include "holdfast/io/lattice_names.hpp"
+#include "json_extension.hpp"
 #include "text_input.hpp"
 #include "visiblesim_cells.hpp"
 #include "vocabulary.hpp"
@@ -55,19 +57,28 @@ void read_known_answer(XmlReading& reading, const pugi::xml_node& node) {
   reading.take_known_answer(std::move(answer), [&] { return reading.line(node); });
 }
 
+/// What only version 2 of holdfast JSON says, but for what VisibleSim or <holdfast> has words for.
+void read_extension(XmlReading& reading, const pugi::xml_node& node) {
+  std::string text;
+  for (const pugi::xml_node& child : node.children()) {
+    text += child.value();
+  }
+  read_extension_text(reading, text, [&] { return reading.line(node); });
+}
+
 /// <holdfast>: what our writer adds to the file.
 void read_own_element(XmlReading& reading, const pugi::xml_node& node) {
   Document& document = reading.document;
-  std::vector<std::string_view> known = {"name", "description", "computed", kShift};
+  std::vector<std::string_view> known = {"name", "description", "lattice", "computed", kShift};
   for (const model::MaterialParameter& parameter : model::kMaterialParameters) {
     if (parameter.visiblesim == nullptr) {
       known.emplace_back(parameter.key);
     }
   }
   reading.expect_attributes(node, known);
-  constexpr std::string_view kChildren[] = {"knownAnswer"};
+  constexpr std::string_view kChildren[] = {"knownAnswer", kExtensionElement};
   for (const pugi::xml_node& child : node.children()) {
-    if (child.name() != kChildren[0]) {
+    if (child.name() != kChildren[0] && child.name() != kChildren[1]) {
       reading.warn_of_unknown_child(child, kChildren);
     }
   }
@@ -81,6 +92,9 @@ void read_own_element(XmlReading& reading, const pugi::xml_node& node) {
   }
   if (const auto answer = only_child(reading, node, "knownAnswer")) {
     read_known_answer(reading, answer);
+  }
+  if (const auto extension = only_child(reading, node, kExtensionElement)) {
+    read_extension(reading, extension);
   }
   reading.take_back_shift(node);
 }
@@ -115,12 +129,42 @@ void read_scenery(XmlReading& reading, const pugi::xml_node& world) {
   }
 }
 
-void read_world(XmlReading& reading, const pugi::xml_node& world) {
+/// What the file says, then what it is asked for, then what only blocks of one kind of modules are
+/// as large as.
+void read_lattice(XmlReading& reading, const pugi::xml_node& blocks, const pugi::xml_node& own,
+                  const ReadOptions& options) {
+  const auto where = [&] { return reading.line(own ? own : blocks); };
+  const pugi::xml_attribute named = own.attribute("lattice");
+  if (reading.take_lattice(named ? std::optional<std::string_view>(named.value()) : std::nullopt,
+                           options, where)) {
+    return;
+  }
+  const auto size = parse_triple<double>(blocks.attribute("blockSize").value());
+  const auto* const modules =
+      std::ranges::find_if(kSimulatedModules, [&](const SimulatedModules& row) {
+        return size && row.block_size_mm == *size;
+      });
+  if (modules != kSimulatedModules.end()) {
+    reading.document.extension.lattice = modules->lattice;
+    reading.warn(fmt::format("blocks of the size {} are VisibleSim's {}, so the lattice is taken "
+                             "to be {}",
+                             excerpt(blocks.attribute("blockSize").value()), modules->name,
+                             lattice_name(modules->lattice)),
+                 where);
+  } else if (blocks.find_child([](const auto& child) { return child.attribute(kOrientation); })) {
+    reading.warn("blocks have an orientation, as those of VisibleSim's catoms3D have: if they are, "
+                 "they are read as cubes here, and the lattice face-centred is to be asked for",
+                 where);
+  }
+}
+
+void read_world(XmlReading& reading, const pugi::xml_node& world, const ReadOptions& options) {
   Document& document = reading.document;
   document.world = reading.attributes(world, is_free);
   reading.read_grid([&] { return reading.line(world); });
   const pugi::xml_node blocks = only_child(reading, world, "blockList");
   const pugi::xml_node targets = only_child(reading, world, "targetList");
+  const pugi::xml_node obstacles = only_child(reading, world, kObstacleListElement);
   const pugi::xml_node own = only_child(reading, world, kOwnElement);
   if (!blocks) {
     reading.fail(world, "<world> has no <blockList>, which lists the modules");
@@ -128,7 +172,11 @@ void read_world(XmlReading& reading, const pugi::xml_node& world) {
   if (reading.has_failed()) {
     return;
   }
+  read_lattice(reading, blocks, own, options);
   document.block_list = reading.attributes(blocks, is_free);
+  if (obstacles) {
+    reading.take_obstacles(reading.element(obstacles), [&] { return reading.line(obstacles); });
+  }
   read_block_list(reading, blocks);
   read_targets(reading, targets);
   read_scenery(reading, world);
@@ -138,7 +186,7 @@ void read_world(XmlReading& reading, const pugi::xml_node& world) {
   }
 }
 
-void read_roots(XmlReading& reading, const pugi::xml_document& tree) {
+void read_roots(XmlReading& reading, const pugi::xml_node& tree, const ReadOptions& options) {
   for (const pugi::xml_node& child : tree.children()) {
     if (!is_one_of(child.name(), {"parameters", "world"})) {
       reading.warn_of_unknown_child(child, kRootElements);
@@ -156,12 +204,12 @@ void read_roots(XmlReading& reading, const pugi::xml_document& tree) {
                  [] { return std::string(); });
   }
   read_parameters(reading, parameters);
-  read_world(reading, world);
+  read_world(reading, world, options);
 }
 
 }  // namespace
 
-base::Result<ReadDocument> read_visiblesim(std::string_view text) {
+base::Result<ReadDocument> read_visiblesim(std::string_view text, const ReadOptions& options) {
   text = without_bom(text);
   if (auto fault = find_input_fault(text)) {
     return *std::move(fault);
@@ -170,7 +218,8 @@ base::Result<ReadDocument> read_visiblesim(std::string_view text) {
   pugi::xml_document tree;
   reading.parse(tree);
   if (!reading.has_failed()) {
-    read_roots(reading, tree);
+    const pugi::xml_node root = only_child(reading, tree, kRootElement);
+    read_roots(reading, root ? root : tree, options);
   }
   return std::move(reading).finish();
 }

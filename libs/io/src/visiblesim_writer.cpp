@@ -7,6 +7,8 @@
 #include <pugixml.hpp>
 
 #include "holdfast/io/document.hpp"
+#include "holdfast/io/lattice_names.hpp"
+#include "json_text.hpp"
 #include "reading.hpp"
 #include "vocabulary.hpp"
 
@@ -54,14 +56,43 @@ std::string triple(const base::Cell& cell) {
   return fmt::format("{},{},{}", cell.x, cell.y, cell.z);
 }
 
-/// Calls use(cell) for every cell of the document.
+/// Calls use(cell) for every cell of the document, and both corners of boxes.
 template <class Use>
 void for_each_cell(const Document& document, const Use& use) {
   std::ranges::for_each(document.modules, use, &ModuleEntry::cell);
   for (const Step& step : document.steps) {
     std::ranges::for_each(step, use, &PlannedEntry::cell);
   }
+  for (const model::Obstacle& obstacle : document.extension.obstacles) {
+    std::ranges::for_each(obstacle.cells, use);
+    if (obstacle.cells.empty()) {
+      use(obstacle.from);
+      use(obstacle.to);
+    }
+  }
 }
+
+/// Gives out what modules have of their own, module by module, in the order of the extension.
+class OwnAttributes {
+ public:
+  explicit OwnAttributes(const Extension& extension)
+      : next_(extension.own.begin()), end_(extension.own.end()) {}
+
+  void add_to(pugi::xml_node& node, std::size_t step, std::size_t module) {
+    if (next_ == end_ || next_->step != step || next_->module != module) {
+      return;
+    }
+    add_if_any(node, kOwnKindAttribute, next_->kind);
+    if (next_->mass_kg) {
+      add(node, kOwnMassAttribute, *next_->mass_kg);
+    }
+    ++next_;
+  }
+
+ private:
+  std::vector<OwnParameters>::const_iterator next_;
+  std::vector<OwnParameters>::const_iterator end_;
+};
 
 void add_cell(pugi::xml_node& node, const base::Cell& cell, const std::optional<Color>& color) {
   add(node, "position", triple(cell));
@@ -94,32 +125,96 @@ void add_parameters(pugi::xml_node parent, const Document& document, const base:
       add(node, parameter.visiblesim, value);
     }
   }
-  add(node, kSupportParameter, fmt::format("{}", document.support_z + shift.z));
+  if (document.extension.has_floor) {
+    add(node, kSupportParameter, fmt::format("{}", document.support_z + shift.z));
+  }
   add_all(node, document.parameters);
 }
 
-void add_modules(pugi::xml_node world, const Document& document, const base::Cell& shift) {
+void add_modules(pugi::xml_node world, const Document& document, const base::Cell& shift,
+                 OwnAttributes& own) {
   pugi::xml_node list = append(world, "blockList");
   add_all(list, document.block_list);
-  for (const ModuleEntry& module : document.modules) {
+  for (std::size_t i = 0; i < document.modules.size(); ++i) {
+    const ModuleEntry& module = document.modules[i];
     pugi::xml_node block = append(list, "block");
     add_cell(block, moved(module.cell, shift), module.color);
     if (module.is_fixed) {
       add(block, "fixed", "true");
     }
+    own.add_to(block, 0, i);
     add_all(block, module.attributes);
   }
 }
 
+/// Calls use(cell) for what VisibleSim is shown of an obstacle: all its cells, the one that says the
+/// most first, or of a large box that one only.
+template <class Use>
+void for_each_shown(const model::Obstacle& obstacle, const Use& use) {
+  if (!obstacle.cells.empty()) {
+    std::ranges::for_each(obstacle.cells, use);
+    return;
+  }
+  const auto& [from, to, cells, touch] = obstacle;
+  const std::int64_t count = (std::int64_t{to.x} - from.x + 1) * (std::int64_t{to.y} - from.y + 1);
+  const bool is_large =
+      count > kBoxCellsMax || count * (std::int64_t{to.z} - from.z + 1) > kBoxCellsMax;
+  const base::Cell last = is_large ? from : to;
+  for (std::int32_t z = from.z; z <= last.z; ++z) {
+    for (std::int32_t y = from.y; y <= last.y; ++y) {
+      for (std::int32_t x = from.x; x <= last.x; ++x) {
+        use({x, y, z});
+      }
+    }
+  }
+}
+
+/// What makes an <obstacle> begin a further obstacle.
+void add_touch(pugi::xml_node& node, const model::Obstacle& obstacle, const base::Cell& shift) {
+  add(node, "hold", std::string(kHoldNames[static_cast<std::size_t>(obstacle.touch.hold)]));
+  if (obstacle.touch.friction) {
+    add(node, "friction", *obstacle.touch.friction);
+  }
+  if (obstacle.cells.empty()) {
+    add(node, "to", triple(moved(obstacle.to, shift)));
+  }
+}
+
+void add_obstacles(pugi::xml_node world, const Document& document, const base::Cell& shift) {
+  const Extension& extension = document.extension;
+  if (extension.obstacles.empty() && extension.obstacle_list.empty()) {
+    return;
+  }
+  pugi::xml_node list = append(world, kObstacleListElement);
+  add_all(list, extension.obstacle_list);
+  for (std::size_t i = 0; i < extension.obstacles.size(); ++i) {
+    const model::Obstacle& obstacle = extension.obstacles[i];
+    const bool is_plain = i == 0 && obstacle.touch == model::Touch{} && !obstacle.cells.empty();
+    bool begins = !is_plain;
+    for_each_shown(obstacle, [&](const base::Cell& cell) {
+      pugi::xml_node node = append(list, kObstacleElement);
+      add_cell(node, moved(cell, shift),
+               i < extension.obstacle_colors.size() ? extension.obstacle_colors[i] : std::nullopt);
+      if (begins) {
+        add_touch(node, obstacle, shift);
+      }
+      begins = false;
+    });
+  }
+}
+
 /// At least one target, as users of VisibleSim write it even where nothing is planned.
-void add_targets(pugi::xml_node world, const Document& document, const base::Cell& shift) {
+void add_targets(pugi::xml_node world, const Document& document, const base::Cell& shift,
+                 OwnAttributes& own) {
   pugi::xml_node list = append(world, "targetList");
-  for (const Step& step : document.steps) {
+  for (std::size_t i = 0; i < document.steps.size(); ++i) {
     pugi::xml_node target = append(list, "target");
     add(target, "format", "grid");
-    for (const PlannedEntry& planned : step) {
+    for (std::size_t j = 0; j < document.steps[i].size(); ++j) {
+      const PlannedEntry& planned = document.steps[i][j];
       pugi::xml_node cell = append(target, "cell");
       add_cell(cell, moved(planned.cell, shift), planned.color);
+      own.add_to(cell, i + 1, j);
       add_all(cell, planned.attributes);
     }
   }
@@ -145,6 +240,9 @@ void add_own_element(pugi::xml_node world, const Document& document, const base:
       add(node, parameter.key, value);
     }
   }
+  if (document.extension.lattice != base::kCubic) {
+    add(node, "lattice", std::string(lattice_name(document.extension.lattice)));
+  }
   if (is_grid_computed) {
     add(node, "computed", kGridSize);
   }
@@ -161,6 +259,12 @@ void add_own_element(pugi::xml_node world, const Document& document, const base:
       add(known, "load_ratio_max", *answer->load_ratio_max);
     }
     add_if_any(known, "source", answer->source);
+  }
+  if (const std::string text = extension_text(document.extension); !text.empty()) {
+    pugi::xml_node extension = append(node, kExtensionElement);
+    if (!extension.append_child(pugi::node_pcdata).set_value(text.c_str())) {
+      throw std::bad_alloc();
+    }
   }
   if (!node.first_attribute() && !node.first_child()) {
     world.remove_child(node);
@@ -190,12 +294,6 @@ class StringWriter : public pugi::xml_writer {
 }  // namespace
 
 base::Result<base::Cell> visiblesim_shift(const Document& document) {
-  if (json_version(document) > 1) {
-    return base::Error{base::ErrorCode::kUnsupported,
-                       "VisibleSim XML has no words for what only version 2 of holdfast JSON says: "
-                       "write .json",
-                       ""};
-  }
   base::Cell lowest;
   base::Cell highest;
   for_each_cell(document, [&](const base::Cell& cell) {
@@ -203,7 +301,9 @@ base::Result<base::Cell> visiblesim_shift(const Document& document) {
     highest = {std::max(highest.x, cell.x), std::max(highest.y, cell.y),
                std::max(highest.z, cell.z)};
   });
-  const base::Cell shift = {-lowest.x, -lowest.y, -lowest.z};
+  // Every second layer lies as the one below it, whatever the lattice.
+  const std::int32_t up = -lowest.z + (document.extension.lattice == base::kCubic ? 0 : lowest.z & 1);
+  const base::Cell shift = {-lowest.x, -lowest.y, up};
   const base::Cell end = moved(highest, shift);
   if (std::max({end.x, end.y, end.z, document.support_z + shift.z}) > base::kCoordinateMax) {
     return base::Error{base::ErrorCode::kUnsupported,
@@ -229,8 +329,10 @@ std::string write_visiblesim(const Document& document) {
   for (const Element& element : document.scenery) {
     add_element(world, element);
   }
-  add_modules(world, document, shift);
-  add_targets(world, document, shift);
+  OwnAttributes own(document.extension);
+  add_modules(world, document, shift, own);
+  add_obstacles(world, document, shift);
+  add_targets(world, document, shift, own);
   add_own_element(world, document, shift, is_grid_computed);
   StringWriter writer;
   tree.save(writer, "  ", pugi::format_default, pugi::encoding_utf8);

@@ -17,11 +17,34 @@ namespace holdfast::io {
 inline constexpr std::string_view kJsonFormatName = "holdfast-structure";
 inline constexpr int kJsonVersionMax = 2;
 
+/// The root element of VisibleSim's newer files, around all others.
+inline constexpr const char* kRootElement = "vs";
+
+/// Why a structure of datoms cannot be read.
+inline constexpr const char* kNoDatoms =
+    "datoms sit in a skewed face-centred lattice and change their shape, which this program does "
+    "not know";
+
 /// The attribute of <parameters> that is Document::support_z.
 inline constexpr const char* kSupportParameter = "globalSupportZ";
 
 /// Our own child of <world>, for what VisibleSim has no word for.
 inline constexpr const char* kOwnElement = "holdfast";
+
+/// VisibleSim's element of cells that no module can take; attributes of its children of ours.
+inline constexpr const char* kObstacleListElement = "obstacleList";
+inline constexpr const char* kObstacleElement = "obstacle";
+inline constexpr auto kObstacleAttributes =
+    std::to_array<std::string_view>({"position", "color", "hold", "friction", "to"});
+
+/// How a module is turned in its cell, of VisibleSim's catoms and hexanodes.
+inline constexpr const char* kOrientation = "orientation";
+
+/// Attributes of ours for what a module has of its own, and the child of <holdfast> with what else
+/// only version 2 of holdfast JSON says.
+inline constexpr const char* kOwnKindAttribute = "holdfastKind";
+inline constexpr const char* kOwnMassAttribute = "holdfastMass";
+inline constexpr const char* kExtensionElement = "extension";
 
 /// Its attribute `computed` with this value says that a writer had to make gridSize up.
 inline constexpr const char* kGridSize = "gridSize";
@@ -66,60 +89,69 @@ inline constexpr auto kAllTopKeys = joined(kTopKeys, kExtensionKeys);
 inline constexpr auto kOwnParameterKeys = std::to_array<std::string_view>({"kind", "mass_kg"});
 inline constexpr auto kAllModuleKeys = joined(kModuleKeys, kOwnParameterKeys);
 
-/// Parameters of a material that only version 2 has: other limits of connections, other facets.
+/// Parameters of connections that only version 2 has, of the material and of kinds of modules.
+inline constexpr std::string_view kBendingKey = "bending";
 inline constexpr auto kConnectorKeys = std::to_array<std::string_view>(
     {"strength_n", "lever_mm", "shear_strength_n", "torsion_strength_nmm", "friction",
-     "torsion_radius_mm", "gap_limit_mm", "foot_mm"});
+     "torsion_radius_mm", "gap_limit_mm", kBendingKey});
+
+/// The strengths of Table I, by base::ConnectorClass, and the keys of a value for each class.
+inline constexpr auto kClassStrengthKeys =
+    std::to_array<std::string_view>({"strength_vertical_n", "strength_lateral_n"});
+inline constexpr auto kClassKeys = std::to_array<std::string_view>({"vertical", "lateral"});
+
+/// Width of the facets of modules that are no cubes, of the material.
+inline constexpr std::string_view kFootKey = "foot_mm";
 
 /// The parameters in which a kind of modules may differ from the material.
-inline constexpr auto kKindKeys = std::to_array<std::string_view>(
-    {"mass_kg", "strength_vertical_n", "strength_lateral_n", "strength_n", "lever_mm",
-     "shear_strength_n", "torsion_strength_nmm", "friction", "torsion_radius_mm", "gap_limit_mm",
-     "foot_mm"});
+inline constexpr auto kKindKeys = joined(
+    joined(std::to_array<std::string_view>({"mass_kg"}), kClassStrengthKeys), kConnectorKeys);
+
+/// Names of how bending moments about two axes count together, by model::BendingLaw.
+inline constexpr auto kBendingNames = std::to_array<std::string_view>({"square", "round"});
 inline constexpr auto kFloorKeys = std::to_array<std::string_view>({"friction"});
 inline constexpr auto kObstacleKeys =
-    std::to_array<std::string_view>({"from", "to", "cells", "hold", "friction"});
+    std::to_array<std::string_view>({"from", "to", "cells", "hold", "friction", "color"});
 inline constexpr auto kLoadKeys =
     std::to_array<std::string_view>({"cell", "force_n", "torque_nmm"});
 inline constexpr auto kStepKeys =
     std::to_array<std::string_view>({"attach", "detach", "move", "release", "connect"});
 inline constexpr auto kMoveKeys = std::to_array<std::string_view>({"from", "to", "carrier"});
 
-/// Names of lattices, by LatticeName.
-inline constexpr auto kLatticeNames =
-    std::to_array<std::string_view>({"cubic", "face-centred", "hexagonal", "hexagonal-prism"});
-
-/// Names of what an obstacle does, by Hold.
+/// Names of what an obstacle does, by model::Hold.
 inline constexpr auto kHoldNames = std::to_array<std::string_view>({"contact", "bonded"});
 
 inline constexpr auto kKnownAnswerKeys =
     std::to_array<std::string_view>({"verdict", "margin_mm", "load_ratio_max", "source"});
 inline constexpr auto kVisibleSimKeys =
-    std::to_array<std::string_view>({"parameters", "world", "block_list", "scenery", "targets"});
+    std::to_array<std::string_view>({"parameters", "world", "block_list", "obstacle_list", "scenery", "targets"});
 inline constexpr auto kPlannedKeys =
     std::to_array<std::string_view>({"cell", "color", "attributes"});
+inline constexpr auto kAllPlannedKeys = joined(kPlannedKeys, kOwnParameterKeys);
 inline constexpr auto kElementKeys =
     std::to_array<std::string_view>({"element", "attributes", "text", "children"});
 
 inline constexpr auto kWorldAttributes = std::to_array<std::string_view>(
     {kGridSize, "gridsize", "windowSize", "maxSimulationTime", "separatorPlane"});
 inline constexpr auto kBlockListAttributes = std::to_array<std::string_view>(
-    {"blockSize", "blocksize", "color", "size", "ids", "idseed", "seed", "step", "format"});
+    {"blockSize", "blocksize", "color", "orientation", "size", "ids", "idseed", "seed", "step", "format"});
 inline constexpr auto kBlockAttributes = std::to_array<std::string_view>(
     {"position", "color", "fixed", "centroid", "solver", "stabilityCheck", "id", "master", "leader",
-     "alive", "angle", "orientation", "rotation", "piston", "isTarget", "isWall"});
-inline constexpr auto kCellAttributes = std::to_array<std::string_view>({"position", "color"});
+     "alive", "angle", "orientation", "rotation", "piston", "isTarget", "isWall", kOwnKindAttribute,
+     kOwnMassAttribute});
+inline constexpr auto kCellAttributes = std::to_array<std::string_view>(
+    {"position", "color", kOwnKindAttribute, kOwnMassAttribute});
 inline constexpr auto kRowAttributes =
-    std::to_array<std::string_view>({"line", "plane", "values", "color", "isTarget"});
+    std::to_array<std::string_view>({"line", "plane", "values", "color", kOrientation, "isTarget"});
 inline constexpr auto kBoxAttributes =
-    std::to_array<std::string_view>({"boxOrigin", "boxSize", "color"});
+    std::to_array<std::string_view>({"boxOrigin", "boxSize", "color", kOrientation});
 inline constexpr auto kTargetFormats =
     std::to_array<std::string_view>({"grid", "csg", "relativeGrid", "surface"});
 
 inline constexpr auto kRootElements = std::to_array<std::string_view>(
-    {"parameters", "world", "visuals", "vm", "capabilities", "scenario"});
+    {kRootElement, "parameters", "world", "visuals", "vm", "capabilities", "scenario"});
 inline constexpr auto kWorldElements = std::to_array<std::string_view>(
-    {"blockList", "targetList", kOwnElement, "obstacleList", "camera", "spotlight", "customization",
+    {"blockList", "targetList", kOwnElement, kObstacleListElement, "camera", "spotlight", "customization",
      "capabilities", "targetGrid", "trash", "scenario"});
 inline constexpr auto kBlockListElements =
     std::to_array<std::string_view>({"block", "blocksLine", "blockBox", "csg"});
@@ -150,21 +182,27 @@ inline const std::vector<std::string_view>& parameter_names() {
   return names;
 }
 
-/// All keys of a material.
-inline const std::vector<std::string_view>& material_keys() {
-  static const std::vector<std::string_view> keys = [] {
+/// All keys of a material that version 1 has, and with those of version 2.
+inline const std::vector<std::string_view>& material_keys(bool is_extended) {
+  static const auto list_of = [](bool with_extension) {
     std::vector<std::string_view> list;
     for (const model::MaterialParameter& parameter : model::kMaterialParameters) {
       list.emplace_back(parameter.key);
     }
+    if (with_extension) {
+      list.insert(list.end(), kConnectorKeys.begin(), kConnectorKeys.end());
+      list.push_back(kFootKey);
+    }
     return list;
-  }();
-  return keys;
+  };
+  static const std::vector<std::string_view> keys = list_of(false);
+  static const std::vector<std::string_view> all_keys = list_of(true);
+  return is_extended ? all_keys : keys;
 }
 
 /// Attributes of <cell>, and those of <block>, that have members of their own in a Document.
 constexpr bool is_planned_attribute(std::string_view name) {
-  return is_one_of(name, {"position", "color"});
+  return is_one_of(name, {"position", "color", kOwnKindAttribute, kOwnMassAttribute});
 }
 
 constexpr bool is_module_attribute(std::string_view name) {
@@ -173,12 +211,13 @@ constexpr bool is_module_attribute(std::string_view name) {
 
 /// Attributes of <block> that VisibleSim gives a meaning without one for mechanics.
 constexpr bool is_simulation_attribute(std::string_view name) {
-  return is_one_of(name, {"centroid", "solver", "stabilityCheck", "id", "master"});
+  return is_one_of(name, {"centroid", "solver", "stabilityCheck", "id", "master", kOrientation,
+                          "angle", "rotation"});
 }
 
 /// Children of <world> that are not scenery.
 constexpr bool is_structural_element(std::string_view name) {
-  return is_one_of(name, {"blockList", "targetList", kOwnElement});
+  return is_one_of(name, {"blockList", "targetList", kObstacleListElement, kOwnElement});
 }
 
 /// Children of <world> that may be there without a warning.

@@ -226,11 +226,14 @@ base::Cell XmlReading::cell(const pugi::xml_node& node) {
 }
 
 std::optional<Color> XmlReading::color(const pugi::xml_node& node) {
-  if (!node.attribute("color")) {
-    return std::nullopt;
+  const pugi::xml_attribute attribute = node.attribute("color");
+  const std::optional<Color> color =
+      attribute ? parse_color(attribute.value()) : std::optional<Color>();
+  if (attribute && !color) {
+    fail(node, fmt::format("color of <{}> is {}, {}", node.name(), excerpt(attribute.value()),
+                           kColorsAllowed));
   }
-  const auto [red, green, blue] = triple(node, "color", kColorRange);
-  return Color{red, green, blue};
+  return color;
 }
 
 void XmlReading::take_back_shift(const pugi::xml_node& own) {
@@ -248,9 +251,18 @@ void XmlReading::take_back_shift(const pugi::xml_node& own) {
                        cell.x, cell.y, cell.z, kCoordinateRange.lowest, kCoordinateRange.highest));
     }
   };
-  base::Cell support = {shift_.x, shift_.y, document.support_z};
-  move(support);
-  document.support_z = support.z;
+  if (document.extension.has_floor) {
+    base::Cell support = {shift_.x, shift_.y, document.support_z};
+    move(support);
+    document.support_z = support.z;
+  }
+  for (model::Obstacle& obstacle : document.extension.obstacles) {
+    std::ranges::for_each(obstacle.cells, move);
+    if (obstacle.cells.empty()) {
+      move(obstacle.from);
+      move(obstacle.to);
+    }
+  }
   std::ranges::for_each(document.modules, move, &ModuleEntry::cell);
   for (Step& step : document.steps) {
     std::ranges::for_each(step, move, &PlannedEntry::cell);

@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: The holdfast authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// Version 2 of holdfast JSON: read as docs/formats.md describes it, given back as it is, and
-// refused by name where nothing can be computed with it yet. Documents that version 1 can say are
-// written in version 1.
+// Version 2 of holdfast JSON: read as docs/formats.md describes it, given back as it is, computed as
+// it says, and refused by name where nothing can be computed with it. Documents that version 1 can
+// say are written in version 1.
 #include <gtest/gtest.h>
 
 #include <string>
@@ -15,6 +15,9 @@ namespace {
 
 using base::Cell;
 using document_test::accepted;
+using model::ConnectorLaw;
+
+constexpr double kNoLimit = ConnectorLaw::kUnlimited;
 
 std::string version_2(std::string_view members) {
   return R"({"format": "holdfast-structure", "version": 2, )" + std::string(members) + "}";
@@ -29,10 +32,11 @@ Document read(std::string_view members) {
 constexpr std::string_view kWhole = R"(
   "lattice": "face-centred", "support_z": -2, "floor": {"friction": 0.5},
   "gravity_m_s2": [0, 1, -9.5],
-  "material": {"mass_kg": 0.07, "shear_strength_n": 5, "foot_mm": 20},
+  "material": {"mass_kg": 0.07, "shear_strength_n": 5, "foot_mm": 20, "bending": "round",
+               "strength_n": [1, 2, 3, 4, 5, null], "lever_mm": {"lateral": 6}},
   "modules": [[0,0,0], {"cell": [0,0,1], "kind": "battery", "mass_kg": 0.21, "fixed": true}],
-  "kinds": {"battery": {"mass_kg": 0.2, "strength_lateral_n": 9}, "plain": {}},
-  "planned": [[1,0,1]], "later_steps": [[[1,0,2]]],
+  "kinds": {"battery": {"mass_kg": 0.2, "strength_lateral_n": 9, "friction": null}, "plain": {}},
+  "planned": [{"cell": [1,0,1], "kind": "plain"}], "later_steps": [[[1,0,2]]],
   "obstacles": [{"from": [-1,-3,0], "to": [-1,3,6], "friction": 0},
                 {"cells": [[0,0,-1], [1,0,-1]], "hold": "bonded"}],
   "loads": [{"cell": [0,0,1], "force_n": [0,0,-2], "torque_nmm": [1,2,3]}],
@@ -48,15 +52,27 @@ TEST(Version2, is_read_whole) {
   expected.modules = {{{0, 0, 0}, false, std::nullopt, {}}, {{0, 0, 1}, true, std::nullopt, {}}};
   expected.steps = {{{{1, 0, 1}, std::nullopt, {}}}, {{{1, 0, 2}, std::nullopt, {}}}};
   Extension& extension = expected.extension;
-  extension.lattice = LatticeName::kFaceCentred;
+  extension.lattice = base::kFaceCentred;
   extension.floor_friction = 0.5;
   extension.gravity_m_s2 = {0, 1, -9.5};
-  extension.connectors = {{"shear_strength_n", 5}, {"foot_mm", 20}};
-  extension.kinds = {{"battery", {{"mass_kg", 0.2}, {"strength_lateral_n", 9}}}, {"plain", {}}};
-  extension.own = {{1, "battery", 0.21}};
+  extension.foot_mm = 20;
+  extension.connectors = {.parameters = {{"shear_strength_n", Spread::kAll, {5}},
+                                         {"strength_n", Spread::kPairs, {1, 2, 3, 4, 5, kNoLimit}},
+                                         {"lever_mm", Spread::kClasses, {std::nullopt, 6}}},
+                          .bending = model::BendingLaw::kRound};
+  extension.kinds = {{"battery",
+                      0.2,
+                      {.parameters = {{"strength_lateral_n", Spread::kAll, {9}},
+                                      {"friction", Spread::kAll, {kNoLimit}}},
+                       .bending = {}}},
+                     {"plain", {}, {}}};
+  extension.own = {{0, 1, "battery", 0.21}, {1, 0, "plain", {}}};
   extension.obstacles = {
-      {.from = {-1, -3, 0}, .to = {-1, 3, 6}, .friction = 0.0},
-      {.from = {}, .to = {}, .cells = {{0, 0, -1}, {1, 0, -1}}, .hold = Hold::kBonded}};
+      {.from = {-1, -3, 0}, .to = {-1, 3, 6}, .touch = {.friction = 0.0}},
+      {.from = {},
+       .to = {},
+       .cells = {{0, 0, -1}, {1, 0, -1}},
+       .touch = {.hold = model::Hold::kBonded}}};
   extension.payloads = {{{0, 0, 1}, {0, 0, -2}, {1, 2, 3}}};
   extension.plan.resize(4);
   extension.plan[0].attach = {{1, 0, 1}};
@@ -112,39 +128,90 @@ TEST(Version2, is_written_only_where_version_1_does_not_say_it_all) {
   EXPECT_EQ(json_version(accepted(read_json(version_2(kWhole))).document), 2);
 }
 
-/// Nothing is ever computed with a part of a document left out.
-TEST(Version2, is_refused_by_name_where_it_cannot_be_computed_yet) {
-  struct Case {
-    const char* members;
-    const char* where;
-    const char* what;
-  };
+model::RobotSpec spec_of(std::string_view members) {
+  const auto spec = make_spec(read(members));
+  EXPECT_TRUE(spec) << spec.error().message;
+  return spec ? spec.value() : model::RobotSpec{};
+}
 
-  const Case cases[] = {
-      {R"("lattice": "hexagonal-prism")", "/lattice", "lattices other than the cubic one"},
-      {R"("support_z": null)", "/support_z", "without a floor"},
-      {R"("floor": {"friction": 0.5})", "/floor/friction", "friction"},
-      {R"("gravity_m_s2": [0, 0, 9.81])", "/gravity_m_s2", "not straight down"},
-      {R"("gravity_m_s2": [1, 0, -9])", "/gravity_m_s2", "not straight down"},
-      {R"("material": {"gap_limit_mm": 1})", "/material/gap_limit_mm", "limit of a connection"},
-      {R"("obstacles": [{"from": [5,5,5], "to": [5,5,5]}])", "/obstacles", "obstacles"},
-      {R"("loads": [{"cell": [0,0,0], "force_n": [0,0,-1]}])", "/loads", "loads besides weight"},
-      {R"("steps": [{"attach": [[1,0,0]]}])", "/steps", "a plan of steps"}};
-  for (const Case& test : cases) {
-    SCOPED_TRACE(test.members);
-    const auto robot = make_robot(read(R"("modules": [[0,0,0]], )" + std::string(test.members)));
-    ASSERT_FALSE(robot);
-    EXPECT_EQ(robot.error().code, base::ErrorCode::kUnsupported);
-    EXPECT_EQ(robot.error().where, test.where);
-    EXPECT_NE(robot.error().message.find(test.what), std::string::npos) << robot.error().message;
+/// Nothing is ever computed with a part of a document left out.
+TEST(Version2, is_refused_where_it_plans_steps) {
+  const auto robot = make_robot(read(R"("modules": [[0,0,0]], "steps": [{"attach": [[1,0,0]]}])"));
+  ASSERT_FALSE(robot);
+  EXPECT_EQ(robot.error().code, base::ErrorCode::kUnsupported);
+  EXPECT_EQ(robot.error().where, "/steps");
+  EXPECT_NE(robot.error().message.find("a plan of steps"), std::string::npos);
+}
+
+TEST(Version2, becomes_what_a_robot_is_made_from) {
+  const model::RobotSpec spec = spec_of(R"("lattice": "face-centred", "support_z": null,
+      "floor": {"friction": 0.5}, "gravity_m_s2": [1, 0, -9], "material": {"foot_mm": 0},
+      "modules": [[0,0,0], {"cell": [0,0,1], "fixed": true}], "planned": [[1,0,0]],
+      "obstacles": [{"cells": [[0,0,-1]], "hold": "bonded", "friction": 2}],
+      "loads": [{"cell": [0,0,1], "force_n": [0,0,-2], "torque_nmm": [1,2,3]}])");
+  EXPECT_EQ(spec.lattice, base::kFaceCentred);
+  EXPECT_EQ(spec.support_z, std::nullopt);
+  EXPECT_EQ(spec.floor, (model::Touch{.friction = 0.5}));
+  EXPECT_EQ(spec.gravity_m_s2, (std::array<double, 3>{1, 0, -9}));
+  EXPECT_EQ(spec.foot_mm, 0.0);
+  EXPECT_EQ(spec.existing, (std::vector<Cell>{{0, 0, 0}, {0, 0, 1}}));
+  EXPECT_EQ(spec.fixed, (std::vector<Cell>{{0, 0, 1}}));
+  EXPECT_EQ(spec.planned, (std::vector<Cell>{{1, 0, 0}}));
+  const model::Touch bonded = {.hold = model::Hold::kBonded, .friction = 2.0};
+  EXPECT_EQ(spec.obstacles, (std::vector<model::Obstacle>{{{}, {}, {{0, 0, -1}}, bonded}}));
+  EXPECT_EQ(spec.payloads, (std::vector<model::Payload>{{{0, 0, 1}, {0, 0, -2}, {1, 2, 3}}}));
+  EXPECT_TRUE(spec.kinds.empty());
+  EXPECT_TRUE(spec.own_kinds.empty());
+}
+
+/// Eq. (17) where a file says nothing of connections; its numbers where it does, by kind, by class
+/// and by pair of directions.
+TEST(Version2, has_limits_by_kind_and_direction) {
+  const model::RobotSpec spec = spec_of(R"("material": {"mass_kg": 0.1, "bending": "round",
+        "lever_mm": {"vertical": 3}, "shear_strength_n": [1, 2, null], "friction": 0.25},
+      "kinds": {"weak": {"strength_n": 2, "friction": null, "bending": "square"},
+                "heavy": {"mass_kg": 0.3, "strength_vertical_n": 4}},
+      "modules": [[0,0,0], {"cell": [1,0,0], "kind": "weak"}],
+      "planned": [{"cell": [2,0,0], "kind": "heavy"}])");
+  ASSERT_EQ(spec.kinds.size(), 3U);
+  const ConnectorLaw side = {.strength_n = 14.97,
+                             .lever_mm = 20,
+                             .bending = model::BendingLaw::kRound,
+                             .shear_strength_n = 1,
+                             .friction = 0.25};
+  EXPECT_EQ(spec.kinds[0].mass_kg, 0.1);
+  EXPECT_EQ(spec.kinds[0].connectors[0], side);
+  EXPECT_EQ(spec.kinds[0].connectors[1], side);
+  EXPECT_EQ(spec.kinds[0].connectors[3].shear_strength_n, 2);
+  const ConnectorLaw top = spec.kinds[0].connectors[4];
+  EXPECT_EQ(top.strength_n, 11.98);
+  EXPECT_EQ(top.lever_mm, 3);
+  EXPECT_EQ(top.shear_strength_n, kNoLimit);
+  EXPECT_EQ(top.torsion_strength_nmm, kNoLimit);
+  for (const ConnectorLaw& weak : spec.kinds[1].connectors) {
+    EXPECT_EQ(weak.strength_n, 2);
+    EXPECT_EQ(weak.friction, std::nullopt);
+    EXPECT_EQ(weak.bending, model::BendingLaw::kSquare);
   }
-  const auto kind = make_robot(
-      read(R"("kinds": {"a": {}}, "modules": [[0,0,0], {"cell": [1,0,0], "kind": "a"}])"));
-  ASSERT_FALSE(kind);
-  EXPECT_EQ(kind.error().where, "/modules/1/kind");
-  const auto mass = make_robot(read(R"("modules": [{"cell": [0,0,0], "mass_kg": 1}])"));
-  ASSERT_FALSE(mass);
-  EXPECT_EQ(mass.error().where, "/modules/0/mass_kg");
+  EXPECT_EQ(spec.kinds[1].mass_kg, 0.1);
+  EXPECT_EQ(spec.kinds[2].mass_kg, 0.3);
+  EXPECT_EQ(spec.kinds[2].connectors[5].strength_n, 4);
+  EXPECT_EQ(spec.kinds[2].connectors[0], side);
+  ASSERT_EQ(spec.own_kinds.size(), 2U);
+  EXPECT_EQ(spec.own_kinds[0].cell, (Cell{1, 0, 0}));
+  EXPECT_EQ(spec.own_kinds[0].kind, 1);
+  EXPECT_EQ(spec.own_kinds[1].cell, (Cell{2, 0, 0}));
+  EXPECT_EQ(spec.own_kinds[1].kind, 2);
+}
+
+/// So that a robot all of whose modules weigh the same is computed as such.
+TEST(Version2, has_own_masses_only_where_they_differ) {
+  const model::RobotSpec spec = spec_of(R"("kinds": {"heavy": {"mass_kg": 0.3}}, "modules": [
+      {"cell": [0,0,0], "mass_kg": 0.06106}, {"cell": [1,0,0], "mass_kg": 0.3, "kind": "heavy"},
+      {"cell": [2,0,0], "mass_kg": 0.3}])");
+  ASSERT_EQ(spec.own_masses.size(), 1U);
+  EXPECT_EQ(spec.own_masses[0].cell, (Cell{2, 0, 0}));
+  EXPECT_EQ(spec.own_masses[0].mass_kg, 0.3);
 }
 
 TEST(Version2, is_computed_where_it_says_what_a_cube_on_a_floor_is_anyway) {
@@ -152,12 +219,33 @@ TEST(Version2, is_computed_where_it_says_what_a_cube_on_a_floor_is_anyway) {
       "modules": [{"cell": [0,0,0], "mass_kg": 0.06106}], "gravity_m_s2": [0,0,-1.62])"));
   ASSERT_TRUE(robot) << robot.error().message;
   EXPECT_EQ(robot.value().loads()[0][2], -(0.06106 * 1.62));
+  EXPECT_TRUE(robot.value().is_uniform());
+  EXPECT_TRUE(robot.value().has_default_connectors());
 }
 
-TEST(Version2, has_no_words_in_visiblesim_xml) {
-  const auto shift = visiblesim_shift(read(R"("modules": [[0,0,0]], "support_z": null)"));
-  ASSERT_FALSE(shift);
-  EXPECT_EQ(shift.error().code, base::ErrorCode::kUnsupported);
+/// What only the whole robot shows has no place in the file; the line names the cells.
+TEST(Version2, that_is_no_robot_is_refused_in_one_line_with_the_cells) {
+  struct Case {
+    const char* members;
+    const char* what;
+  };
+
+  const Case cases[] = {
+      {R"("modules": [[0,0,0]], "obstacles": [{"from": [0,0,0], "to": [0,0,3]}])", "(0,0,0)"},
+      {R"("modules": [[0,0,0]], "loads": [{"cell": [0,0,7], "force_n": [0,0,-1]}])", "(0,0,7)"},
+      {R"("modules": [[0,0,0], [0,1,0]], "lattice": "hexagonal")", "(0,1,0)"},
+      {R"("modules": [[0,0,0]], "support_z": null)", "nothing holds the robot"},
+      {R"("modules": [[0,0,0]], "support_z": null, "obstacles": [{"cells": [[5,5,5]]}])",
+       "obstacle"},
+      {R"("modules": [[0,0,0], [1,1,0]], "lattice": "face-centred")", "(1,1,0)"}};
+  for (const Case& test : cases) {
+    SCOPED_TRACE(test.members);
+    const auto robot = make_robot(read(test.members));
+    ASSERT_FALSE(robot);
+    EXPECT_EQ(robot.error().code, base::ErrorCode::kBadInput);
+    EXPECT_NE(robot.error().message.find(test.what), std::string::npos) << robot.error().message;
+    EXPECT_EQ(robot.error().message.find('\n'), std::string::npos);
+  }
 }
 
 void expect_refusal(const std::string& text, std::string_view where, std::string_view message) {
@@ -178,6 +266,8 @@ TEST(Version2, has_keys_that_are_errors_in_version_1) {
                  "/modules/0/mass_kg", "one of version 2");
   expect_refusal(document_test::json(R"("modules": [], "material": {"lever_mm": 1})"),
                  "/material/lever_mm", "one of version 2");
+  expect_refusal(document_test::json(R"("modules": [], "planned": [{"cell": [0,0,0], "kind": "a"}])"),
+                 "/planned/0/kind", "one of version 2");
   expect_refusal(document_test::json(R"("modules": [], "support_z": null)"), "/support_z",
                  "expected is an integer");
 }
@@ -192,12 +282,30 @@ TEST(Version2, says_what_is_wrong_and_what_is_allowed) {
   bad(R"("floor": {"fricton": 1})", "/floor/fricton", "did you mean 'friction'?");
   bad(R"("floor": {"friction": -1})", "/floor/friction", "not negative");
   bad(R"("gravity_m_s2": 9.81)", "/gravity_m_s2", "expected is an array");
+  bad(R"("gravity_m_s2": [0,0,0])", "/gravity_m_s2", "gravity is zero");
   bad(R"("gravity_m_s2": [0,-9.81])", "/gravity_m_s2", "expected are three numbers");
   bad(R"("gravity_m_s2": [0,0,-9], "material": {"gravity_m_s2": 9})", "/gravity_m_s2",
       "here and in the material");
   bad(R"("kinds": {"a": {"mass": 1}})", "/kinds/a/mass", "did you mean 'mass_kg'?");
   bad(R"("kinds": {"a": {"mass_kg": 0}})", "/kinds/a/mass_kg", "expected is a positive number");
   bad(R"("kinds": {"": {}})", "/kinds/", "the name of a kind");
+  bad(R"("kinds": {"a": {"foot_mm": 1}})", "/kinds/a/foot_mm", "is unknown");
+  bad(R"("kinds": {"a": {"friction": -1}})", "/kinds/a/friction", "expected is a positive number");
+  bad(R"("kinds": {"a": {"strength_n": [1, 2]}})", "/kinds/a/strength_n",
+      "found a list of 2, expected is a number for each of the 3 pairs of directions");
+  bad(R"("material": {"lever_mm": [1,2,3]}, "lattice": "hexagonal-prism")", "/material/lever_mm",
+      R"(4 pairs of directions of the lattice "hexagonal-prism")");
+  bad(R"("material": {"lever_mm": {"vertcal": 1}})", "/material/lever_mm/vertcal", "'vertical'");
+  bad(R"("material": {"lever_mm": {}})", "/material/lever_mm", "\"vertical\", \"lateral\"");
+  bad(R"("material": {"lever_mm": "long"})", "/material/lever_mm", "a number, null");
+  bad(R"("material": {"lever_mm": [1, 0, 1]})", "/material/lever_mm/1", "a positive number");
+  bad(R"("material": {"bending": "oval"})", "/material/bending", R"(one of "square", "round")");
+  bad(R"("material": {"foot_mm": -1})", "/material/foot_mm", "not negative");
+  bad(R"("material": {"shear_strength": 1})", "/material/shear_strength", "'shear_strength_n'");
+  bad(R"("material": {"strength_n": 1, "strength_lateral_n": 1})", "/material/strength_n",
+      "allowed is one of the two ways");
+  bad(R"("kinds": {"a": {"strength_n": 1, "strength_vertical_n": 1}})", "/kinds/a/strength_n",
+      "allowed is one of the two ways");
   bad(R"("obstacles": [{"from": [0,0,0]}])", "/obstacles/0", R"(either "from" and "to")");
   bad(R"("obstacles": [{"cells": []}])", "/obstacles/0", "at least one");
   bad(R"("obstacles": [{"cells": [[0,0,0]], "to": [0,0,0]}])", "/obstacles/0", "either");
@@ -211,6 +319,8 @@ TEST(Version2, says_what_is_wrong_and_what_is_allowed) {
   bad(R"("steps": [{"release": [[[0,0,0]]]}])", "/steps/0/release/0", "the two of a connection");
   expect_refusal(version_2(R"("modules": [{"cell": [0,0,0], "kind": "b"}], "kinds": {"a": {}})"),
                  "/modules/0/kind", "the kind 'b' is none of those");
+  expect_refusal(version_2(R"("modules": [], "planned": [[0,0,0], {"cell": [1,0,0], "kind": "b"}])"),
+                 "/planned/1/kind", "the kind 'b' is none of those");
   expect_refusal(version_2(R"("modules": [{"cell": [0,0,0], "knd": "b"}])"), "/modules/0/knd",
                  "is unknown");
 }

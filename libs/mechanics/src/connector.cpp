@@ -29,12 +29,6 @@ Real load_ratio(const ConnectionLoad<Real>& load, Real width, Real strength) {
   return (2 * load.bending / width + load.axial) / strength;
 }
 
-double load_ratio_squared_per_energy(const BeamStiffness<double>& beam, double width,
-                                     double strength) {
-  const double bend = larger(beam.bend_x, beam.bend_y) / 4;
-  return (beam.axial + 4 / (width * width) * bend) / (strength * strength);
-}
-
 template ConnectionLoad<float> connection_load(const base::Vec6<float>&);
 template ConnectionLoad<double> connection_load(const base::Vec6<double>&);
 template float load_ratio(const ConnectionLoad<float>&, float, float);

@@ -8,10 +8,6 @@
 namespace holdfast::model {
 namespace {
 
-double bending_moment(BendingLaw law, double mx, double my) {
-  return law == BendingLaw::kRound ? std::hypot(mx, my) : std::max(std::abs(mx), std::abs(my));
-}
-
 std::optional<double> smaller(const std::optional<double>& a, const std::optional<double>& b) {
   if (a && b) {
     return std::min(*a, *b);
@@ -38,41 +34,62 @@ ConnectorLaw weaker(const ConnectorLaw& a, const ConnectorLaw& b) {
           .gap_limit_mm = std::min(a.gap_limit_mm, b.gap_limit_mm)};
 }
 
+ConnectionForce connection_force(const ConnectorLaw& law, const base::Vec6<double>& middle_force) {
+  return {.axial_n = middle_force[2],
+          .bending_nmm = bending_moment(law, middle_force),
+          .shear_n = std::hypot(middle_force[0], middle_force[1]),
+          .torsion_nmm = middle_force[5]};
+}
+
+double bending_moment(const ConnectorLaw& law, const base::Vec6<double>& middle_force) {
+  const double mx = middle_force[3];
+  const double my = middle_force[4];
+  return law.bending == BendingLaw::kRound ? std::hypot(mx, my)
+                                           : std::max(std::abs(mx), std::abs(my));
+}
+
 std::array<double, kLimitCount> limit_ratios(const ConnectorLaw& law,
-                                             const base::Vec6<double>& middle_force) {
-  const auto& [fx, fy, axial, mx, my, torsion] = middle_force;
-  const double shear = std::hypot(fx, fy);
+                                             const ConnectionForce& force) {
   std::array<double, kLimitCount> ratios;
   ratios.fill(-ConnectorLaw::kUnlimited);
+  const double torsion = std::abs(force.torsion_nmm);
   if (std::isfinite(law.strength_n)) {
-    const double moment = bending_moment(law.bending, mx, my);
     ratios[static_cast<std::size_t>(Limit::kOpens)] =
-        (axial + moment / law.lever_mm) / law.strength_n;
+        (force.axial_n + force.bending_nmm / law.lever_mm) / law.strength_n;
     if (law.friction) {
-      const double across = shear + std::abs(torsion) / law.torsion_radius_mm;
+      const double across = force.shear_n + torsion / law.torsion_radius_mm;
       ratios[static_cast<std::size_t>(Limit::kSlips)] =
-          (axial + across / *law.friction) / law.strength_n;
+          (force.axial_n + across / *law.friction) / law.strength_n;
     }
   }
   if (std::isfinite(law.shear_strength_n)) {
-    ratios[static_cast<std::size_t>(Limit::kShears)] = shear / law.shear_strength_n;
+    ratios[static_cast<std::size_t>(Limit::kShears)] = force.shear_n / law.shear_strength_n;
   }
   if (std::isfinite(law.torsion_strength_nmm)) {
-    ratios[static_cast<std::size_t>(Limit::kTwists)] = std::abs(torsion) / law.torsion_strength_nmm;
+    ratios[static_cast<std::size_t>(Limit::kTwists)] = torsion / law.torsion_strength_nmm;
   }
   return ratios;
 }
 
-LimitRatio load_ratio(const ConnectorLaw& law, const base::Vec6<double>& middle_force) {
-  const auto ratios = limit_ratios(law, middle_force);
-  LimitRatio largest = {.limit = Limit::kOpens, .ratio = ratios[0]};
-  for (std::size_t i = 1; i < ratios.size(); ++i) {
+LimitRatio load_ratio(const ConnectorLaw& law, const ConnectionForce& force) {
+  const auto ratios = limit_ratios(law, force);
+  LimitRatio largest = {.limit = Limit::kOpens, .ratio = -ConnectorLaw::kUnlimited};
+  for (std::size_t i = 0; i < ratios.size(); ++i) {
     // What is not a number must not hide.
     if (ratios[i] > largest.ratio || std::isnan(ratios[i])) {
       largest = {.limit = static_cast<Limit>(i), .ratio = ratios[i]};
     }
   }
-  return largest;
+  return largest.ratio == -ConnectorLaw::kUnlimited ? LimitRatio{} : largest;
+}
+
+std::array<double, kLimitCount> limit_ratios(const ConnectorLaw& law,
+                                             const base::Vec6<double>& middle_force) {
+  return limit_ratios(law, connection_force(law, middle_force));
+}
+
+LimitRatio load_ratio(const ConnectorLaw& law, const base::Vec6<double>& middle_force) {
+  return load_ratio(law, connection_force(law, middle_force));
 }
 
 }  // namespace holdfast::model

@@ -26,13 +26,6 @@ mechanics::Connector<double> connector(const Material& material, base::Connector
                                                               : material.strength_lateral_n};
 }
 
-double load_ratio_per_energy_norm(const Material& material) {
-  const auto weakest = mechanics::weaker(connector(material, base::ConnectorClass::kVertical),
-                                         connector(material, base::ConnectorClass::kLateral));
-  return std::sqrt(mechanics::load_ratio_squared_per_energy(
-      mechanics::beam_stiffness(beam_section(material)), weakest.width, weakest.strength));
-}
-
 std::optional<std::string> find_material_fault(const Material& material) {
   for (const MaterialParameter& parameter : kMaterialParameters) {
     const double value = material.*parameter.value;

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 #include <string>
 #include <utility>
@@ -319,6 +320,24 @@ std::optional<std::string> Robot::take_loads(const RobotSpec& spec, const CellIn
   }
   loads_ = Loads(std::move(loads));
   return std::nullopt;
+}
+
+double load_ratio_per_energy_norm(const Robot& robot) {
+  const auto beam = mechanics::beam_stiffness(beam_section(robot.material()));
+  const double bend = std::max(beam.bend_x, beam.bend_y) / 4;
+  const double shear = std::max(beam.shear_x, beam.shear_y);
+  const auto squared = [](double value) { return value * value; };
+  double largest = 0;
+  for (const ConnectorLaw& law : robot.connectors()) {
+    const double opens = (beam.axial + bend / squared(law.lever_mm)) / squared(law.strength_n);
+    const double mu = law.friction.value_or(ConnectorLaw::kUnlimited);
+    const double slips =
+        (beam.axial + shear / squared(mu) + beam.twist / squared(mu * law.torsion_radius_mm)) /
+        squared(law.strength_n);
+    largest = std::max({largest, opens, slips, shear / squared(law.shear_strength_n),
+                        beam.twist / squared(law.torsion_strength_nmm)});
+  }
+  return std::sqrt(largest);
 }
 
 std::optional<std::string> find_beyond_paper(const Robot& robot) {

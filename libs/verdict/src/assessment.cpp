@@ -9,8 +9,8 @@
 
 #include "connection_law.hpp"
 #include "holdfast/host/team.hpp"
-#include "holdfast/mechanics/support_corners.hpp"
 #include "several_solutions.hpp"
+#include "stability.hpp"
 
 namespace holdfast::verdict {
 namespace {
@@ -18,23 +18,6 @@ namespace {
 using mechanics::ContactLaw;
 using solver::Equilibrium;
 using solver::Outcome;
-
-/// Sec. III-C: merges what every module contributes; the order does not matter.
-ModelStability model_stability(const model::Robot& robot, const Equilibrium& equilibrium) {
-  if (equilibrium.outcome != Outcome::kSettled) {
-    return {};
-  }
-  mechanics::SupportCorners corners;
-  if (robot.fixed_count() > 0) {
-    corners = mechanics::fixed_support();
-  }
-  for (std::size_t i = 0; i < robot.facets().size() && !corners.stable; ++i) {
-    const model::Module& module = robot.modules()[base::at(robot.facets()[i].module)];
-    corners =
-        mechanics::merge(corners, mechanics::support_corners(module.cell, equilibrium.contact[i]));
-  }
-  return {.is_stable = corners.stable, .is_settled = true};
-}
 
 /// Unlike with std::max, a NaN on either side wins: what is not known must not hide.
 double max_or_nan(double a, double b) { return std::isnan(a) || a > b ? a : b; }
@@ -76,23 +59,9 @@ struct Loads {
   }
 };
 
-ConnectionResult connection_result(const model::Robot& robot, const ConnectionLaw& law,
-                                   const Equilibrium& equilibrium, const model::Connection& pair) {
-  if (!equilibrium.displacement_low.empty()) {
-    return law.result(
-        relative_motion(robot, pair, equilibrium.displacement, equilibrium.displacement_low),
-        base::Vec6<double>{});
-  }
-  return law.result(equilibrium.displacement[static_cast<std::size_t>(pair.a)],
-                    equilibrium.displacement[static_cast<std::size_t>(pair.b)]);
-}
-
 /// Every connection's result, and what they say together.
 Loads add_up(const model::Robot& robot, int thread_count, Assessment& assessment) {
-  // Of a connection the second module lies in a positive direction.
-  const ConnectionLaw laws[] = {{robot.material(), base::Direction::kPlusX},
-                                {robot.material(), base::Direction::kPlusY},
-                                {robot.material(), base::Direction::kPlusZ}};
+  const ConnectionLaws laws(robot);
   const auto connections = robot.connections();
   const Equilibrium& equilibrium = assessment.equilibrium;
   const bool has_alternative =
@@ -104,15 +73,13 @@ Loads add_up(const model::Robot& robot, int thread_count, Assessment& assessment
     Loads part;
     for (std::size_t i = begin; i < end; ++i) {
       const model::Connection& pair = connections[i];
-      const ConnectionLaw& law = laws[base::index(pair.direction) / 2];
-      const auto a = static_cast<std::size_t>(pair.a);
-      const auto b = static_cast<std::size_t>(pair.b);
-      assessment.connections[i] = connection_result(robot, law, equilibrium, pair);
+      assessment.connections[i] =
+          laws.result(pair, equilibrium.displacement, equilibrium.displacement_low);
       const double ratio = assessment.connections[i].load_ratio;
       part.add(i, ratio,
-               has_alternative
-                   ? law.load_ratio(equilibrium.alternative[a], equilibrium.alternative[b])
-                   : ratio);
+               has_alternative ? laws.load_ratio(pair, equilibrium.alternative[base::at(pair.a)],
+                                                 equilibrium.alternative[base::at(pair.b)])
+                               : ratio);
     }
     return part;
   });
@@ -151,8 +118,8 @@ double error_margin(const model::Robot& robot, const Equilibrium& equilibrium,
     return margin;  // The answers differ by more than an error.
   }
   if (equilibrium.method == solver::Method::kMultigrid) {
-    const double bound = kEnergyFactor * model::load_ratio_per_energy_norm(robot.material()) *
-                         equilibrium.energy_error;
+    const double bound =
+        kEnergyFactor * model::load_ratio_per_energy_norm(robot) * equilibrium.energy_error;
     return margin + std::max(kMultigridError * tolerance_share * scale,
                              std::min(kMultigridFactor * loads.change, bound));
   }
@@ -193,6 +160,30 @@ void assess_connections(const model::Robot& robot, const solver::EquilibriumOpti
   }
 }
 
+std::optional<OpenGaps> find_open_gaps(const model::Robot& robot, const Equilibrium& equilibrium) {
+  const bool is_limited = std::ranges::any_of(
+      robot.connectors(), [](const auto& law) { return std::isfinite(law.gap_limit_mm); });
+  if (!is_limited) {
+    return std::nullopt;
+  }
+  const ConnectionLaws laws(robot);
+  OpenGaps gaps;
+  double share_max = 0;
+  for (std::size_t i = 0; i < robot.connections().size(); ++i) {
+    const model::Connection& pair = robot.connections()[i];
+    const double limit = robot.connector(pair).gap_limit_mm;
+    const double gap = laws.gap_mm(pair, equilibrium.displacement, equilibrium.displacement_low);
+    gaps.count += gap > limit ? 1 : 0;
+    if (gap / limit > share_max) {
+      share_max = gap / limit;
+      gaps.worst = i;
+      gaps.gap_mm = gap;
+      gaps.limit_mm = limit;
+    }
+  }
+  return gaps.count > 0 ? std::optional(gaps) : std::nullopt;
+}
+
 /// Weak springs beside the unilateral contact of a stable robot: they change no load ratio by more
 /// than about 1e-8, and keep the matrix regular on the way to the answer.
 constexpr double kStableGammas[] = {1e-9};
@@ -220,12 +211,15 @@ constexpr std::size_t kPreciseFillMax = 100;
 /// Whether the model's stability is the rigid body's. A margin of zero is unstable by decision, not
 /// by mechanics: no model need agree with it.
 bool agrees(const Assessment& assessment) {
+  if (assessment.stability_rule == StabilityRule::kContactForces) {
+    return assessment.model.is_settled;  // Each is an answer of its own.
+  }
   return assessment.model.is_settled && (assessment.model.is_stable == assessment.is_stable ||
                                          assessment.simplified.margin_mm == 0);
 }
 
 ContactModel contact_model(const model::Robot& robot, ContactLaw law) {
-  if (robot.ground_count() == 0) {
+  if (std::ranges::all_of(robot.facets(), &model::Facet::is_bonded)) {
     return ContactModel::kNone;
   }
   return law == ContactLaw::kUnilateral ? ContactModel::kUnilateral : ContactModel::kRegularised;
@@ -254,7 +248,8 @@ void find_equilibrium(const model::Robot& robot, const solver::EquilibriumOption
       solver.solve({.law = ContactLaw::kRegularised, .gamma = robot.material().contact_gamma});
   assessment.model = model_stability(robot, assessment.equilibrium);
   assessment.contact_model = contact_model(robot, ContactLaw::kRegularised);
-  if (assessment.equilibrium.outcome == Outcome::kTooLarge || robot.ground_count() == 0) {
+  if (assessment.equilibrium.outcome == Outcome::kTooLarge ||
+      assessment.contact_model == ContactModel::kNone) {
     return;
   }
   if (options.is_bonded) {
@@ -386,7 +381,8 @@ void add_contact_remarks(Assessment& assessment) {
     reasons.push_back({.code = ReasonCode::kBonded});
     return;
   }
-  if (assessment.model.is_settled && assessment.model.is_stable != assessment.is_stable) {
+  if (assessment.stability_rule != StabilityRule::kContactForces && assessment.model.is_settled &&
+      assessment.model.is_stable != assessment.is_stable) {
     reasons.push_back(
         {.code = ReasonCode::kModelDisagrees, .numbers = {assessment.model.is_stable ? 1.0 : 0.0}});
   }
@@ -395,23 +391,85 @@ void add_contact_remarks(Assessment& assessment) {
 Assessment begin(const model::Robot& robot) {
   Assessment assessment;
   assessment.simplified = assess_rigid_body(robot);
-  assessment.is_stable = assessment.simplified.is_stable;
+  assessment.stability_rule = stability_rule(robot);
+  assessment.rigid = rigid_stability(robot, assessment.stability_rule, assessment.simplified);
+  assessment.is_stable = assessment.rigid.holds();
   return assessment;
+}
+
+/// Of the answers with supports anywhere neither is enough to be safe. Without equilibrium the
+/// model has none.
+void heed_model(const model::Robot& robot, Assessment& assessment) {
+  if (!assessment.is_stable) {
+    return;
+  }
+  const auto slip = assessment.equilibrium.outcome == Outcome::kSettled
+                        ? find_slip(robot, assessment.equilibrium)
+                        : std::nullopt;
+  if (assessment.stability_rule == StabilityRule::kContactForces && assessment.model.is_settled &&
+      !assessment.model.is_stable) {
+    assessment.is_stable = false;
+    assessment.verdict = Verdict::kUnstable;
+    assessment.reasons.push_back({.code = ReasonCode::kModelFalls});
+  } else if (slip) {
+    const model::Facet& facet = robot.facets()[slip->facet];
+    assessment.is_stable = false;
+    assessment.reasons.push_back(
+        {.code = ReasonCode::kMaySlip,
+         .numbers = {static_cast<double>(facet.module), slip->ratio, *facet.touch.friction}});
+  }
+}
+
+/// The verdict on a robot that the rigid body does not hold.
+void decide_falling(Assessment& assessment) {
+  using limit::RigidAnswer;
+  const limit::RigidStability& rigid = assessment.rigid;
+  assessment.verdict =
+      rigid.answer == RigidAnswer::kUndecided ? Verdict::kUndecided : Verdict::kUnstable;
+  if (assessment.simplified.edge && assessment.simplified.margin_mm) {
+    assessment.reasons.push_back(toppling_reason(assessment.simplified));
+  } else if (rigid.answer == RigidAnswer::kUndecided) {
+    assessment.reasons.push_back({.code = ReasonCode::kRigidUndecided});
+  } else if (rigid.answer == RigidAnswer::kNothingToSpare) {
+    assessment.reasons.push_back({.code = ReasonCode::kBalances});
+  } else {
+    assessment.reasons.push_back(
+        {.code = ReasonCode::kFalls,
+         .quoted = rigid.motion ? limit::text(*rigid.motion) : std::string()});
+  }
+}
+
+/// What is no reason for the verdict, but belongs to its loads.
+void add_load_remarks(const model::Robot& robot, Assessment& assessment) {
+  if (assessment.gaps) {
+    assessment.reasons.push_back({.code = ReasonCode::kGapsOpen,
+                                  .numbers = {static_cast<double>(assessment.gaps->count),
+                                              static_cast<double>(assessment.gaps->worst),
+                                              assessment.gaps->gap_mm, assessment.gaps->limit_mm}});
+  }
+  if (robot.has_payloads() && assessment.worst) {
+    assessment.reasons.push_back({.code = ReasonCode::kLoadsTogether});
+  }
 }
 
 /// Loads, verdict and reasons, once there is an equilibrium.
 Assessment conclude(const model::Robot& robot, Assessment assessment,
                     const solver::EquilibriumOptions& options) {
+  const bool is_bonded = assessment.contact_model == ContactModel::kBonded;
   if (assessment.equilibrium.outcome == Outcome::kSettled) {
     assess_connections(robot, options, assessment);
+    assessment.gaps = find_open_gaps(robot, assessment.equilibrium);
+  }
+  if (!is_bonded) {
+    heed_model(robot, assessment);
   }
   if (assessment.is_stable) {
     decide_stable(robot, assessment);
-  } else {
-    assessment.verdict = Verdict::kUnstable;
-    assessment.reasons.push_back(toppling_reason(assessment.simplified));
+  } else if (assessment.reasons.empty()) {
+    decide_falling(assessment);
   }
   add_contact_remarks(assessment);
+  add_load_remarks(robot, assessment);
   return assessment;
 }
 

@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "connection_law.hpp"
 
-#include "holdfast/base/double_double.hpp"
-
 namespace holdfast::verdict {
 
 ConnectionLaw::ConnectionLaw(const model::Material& material, base::Direction direction)
@@ -32,24 +30,78 @@ ConnectionLaw::ConnectionLaw(const model::Material& material, base::Direction di
   }
 }
 
-base::Vec6<double> relative_motion(const model::Robot& robot, const model::Connection& pair,
-                                   const std::vector<base::Vec6<double>>& high,
-                                   const std::vector<base::Vec6<double>>& low) {
+ConnectionLaws::ConnectionLaws(const model::Robot& robot)
+    : robot_(robot),
+      is_plain_(robot.lattice() == base::kCubic && robot.has_default_connectors()),
+      beam_(model::beam_section(robot.material()), robot.lattice()) {
+  if (is_plain_) {
+    for (const auto direction :
+         {base::Direction::kPlusX, base::Direction::kPlusY, base::Direction::kPlusZ}) {
+      plain_.emplace_back(robot.material(), direction);
+    }
+  }
+  for (const base::Direction direction : base::directions(robot.lattice())) {
+    steps_.push_back(base::unit_vector<base::DoubleDouble>(robot.lattice(), direction));
+  }
+}
+
+ConnectionResult ConnectionLaws::general_result(const model::Connection& pair, const Vec& p,
+                                                const Vec& q) const {
+  const model::ConnectorLaw& law = robot_.connector(pair);
+  const auto force = model::connection_force(law, beam_.middle_force(pair.direction, p, q));
+  return {.load_ratio = model::load_ratio(law, force).ratio,
+          .axial_n = force.axial_n,
+          .bending_nmm = force.bending_nmm,
+          .shear_n = force.shear_n,
+          .torsion_nmm = force.torsion_nmm};
+}
+
+double ConnectionLaws::load_ratio(const model::Connection& pair, const Vecs& high,
+                                  const Vecs& low) const {
+  return low.empty() ? load_ratio(pair, high[base::at(pair.a)], high[base::at(pair.b)])
+                     : load_ratio(pair, relative_motion(pair, high, low), Vec{});
+}
+
+ConnectionResult ConnectionLaws::result(const model::Connection& pair, const Vecs& high,
+                                        const Vecs& low) const {
+  return low.empty() ? result(pair, high[base::at(pair.a)], high[base::at(pair.b)])
+                     : result(pair, relative_motion(pair, high, low), Vec{});
+}
+
+double ConnectionLaws::gap_mm(const model::Connection& pair, const Vecs& high,
+                              const Vecs& low) const {
+  const Vec force =
+      low.empty()
+          ? beam_.middle_force(pair.direction, high[base::at(pair.a)], high[base::at(pair.b)])
+          : beam_.middle_force(pair.direction, relative_motion(pair, high, low), Vec{});
+  const mechanics::BeamStiffness<double>& beam = beam_.stiffness();
+  const model::ConnectorLaw& law = robot_.connector(pair);
+  const double about_x = std::abs(force[3]) / (beam.bend_y / 4);
+  const double about_y = std::abs(force[4]) / (beam.bend_x / 4);
+  const double angle =
+      law.bending == model::BendingLaw::kRound ? std::hypot(about_x, about_y) : about_x + about_y;
+  const double gap = force[2] / beam.axial + angle * law.lever_mm;
+  return gap < 0 ? 0 : gap;
+}
+
+base::Vec6<double> ConnectionLaws::relative_motion(const model::Connection& pair, const Vecs& high,
+                                                   const Vecs& low) const {
   base::Vec6<base::DoubleDouble> motion;
   base::Vec6<base::DoubleDouble> second;
-  const auto a = static_cast<std::size_t>(pair.a);
-  const auto b = static_cast<std::size_t>(pair.b);
+  const std::size_t a = base::at(pair.a);
+  const std::size_t b = base::at(pair.b);
   for (std::size_t k = 0; k < 6; ++k) {
     second[k] = {high[b][k], low[b][k]};
     motion[k] = base::DoubleDouble(high[a][k], low[a][k]) - second[k];
   }
   // The second turns about itself, and takes the first along on a lever of one pitch backwards.
-  const std::size_t along = static_cast<std::size_t>(base::index(pair.direction)) / 2;
-  const std::size_t next = (along + 1) % 3;
-  const std::size_t last = (along + 2) % 3;
-  const base::DoubleDouble pitch = robot.material().pitch_mm;
-  motion[next] += pitch * second[3 + last];
-  motion[last] -= pitch * second[3 + next];
+  const auto& step = steps_[static_cast<std::size_t>(base::index(pair.direction))];
+  const base::DoubleDouble pitch = robot_.material().pitch_mm;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const std::size_t next = (k + 1) % 3;
+    const std::size_t last = (k + 2) % 3;
+    motion[k] += pitch * (second[3 + next] * step[last] - second[3 + last] * step[next]);
+  }
   return base::converted<double>(motion);
 }
 

@@ -2,12 +2,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <vector>
 
+#include "holdfast/base/double_double.hpp"
 #include "holdfast/mechanics/beam.hpp"
 #include "holdfast/mechanics/connector.hpp"
+#include "holdfast/model/lattice_beam.hpp"
 #include "holdfast/model/material.hpp"
 #include "holdfast/model/robot.hpp"
 #include "holdfast/verdict/assessment.hpp"
@@ -78,10 +81,48 @@ class ConnectionLaw {
   mechanics::Connector<double> connector_;
 };
 
-/// How the first module of a connection moves as seen by the second, where both move far more than
-/// their beam bends: in 106 bits, high + low by module, until what is common to both is gone.
-base::Vec6<double> relative_motion(const model::Robot& robot, const model::Connection& pair,
-                                   const std::vector<base::Vec6<double>>& high,
-                                   const std::vector<base::Vec6<double>>& low);
+/// What the connections of a robot carry, each by its own law. Keeps a reference to the robot.
+class ConnectionLaws {
+ public:
+  using Vec = base::Vec6<double>;
+  using Vecs = std::vector<Vec>;
+
+  explicit ConnectionLaws(const model::Robot& robot);
+
+  double load_ratio(const model::Connection& pair, const Vec& p, const Vec& q) const {
+    return is_plain_ ? plain(pair).load_ratio(p, q) : result(pair, p, q).load_ratio;
+  }
+
+  ConnectionResult result(const model::Connection& pair, const Vec& p, const Vec& q) const {
+    return is_plain_ ? plain(pair).result(p, q) : general_result(pair, p, q);
+  }
+
+  /// The same for all modules' displacements, with what is to be added to them for 106 bits, or
+  /// nothing.
+  double load_ratio(const model::Connection& pair, const Vecs& high, const Vecs& low) const;
+  ConnectionResult result(const model::Connection& pair, const Vecs& high, const Vecs& low) const;
+
+  /// How far the edge of the facet opens, mm; not below 0. The modules are rigid beside their
+  /// connection, whose compliance is that of the beam: N / axial stiffness, and the angles by which
+  /// the beam bends times the lever. At a corner both angles add up if the law is square.
+  double gap_mm(const model::Connection& pair, const Vecs& high, const Vecs& low) const;
+
+ private:
+  const ConnectionLaw& plain(const model::Connection& pair) const {
+    return plain_[static_cast<std::size_t>(base::index(pair.direction)) / 2];
+  }
+
+  ConnectionResult general_result(const model::Connection& pair, const Vec& p, const Vec& q) const;
+
+  /// How the first module moves as seen by the second, where both move far more than their beam
+  /// bends: in 106 bits until what is common to both is gone.
+  Vec relative_motion(const model::Connection& pair, const Vecs& high, const Vecs& low) const;
+
+  const model::Robot& robot_;
+  bool is_plain_ = true;              ///< Cubes with the connectors of Eq. (17).
+  std::vector<ConnectionLaw> plain_;  ///< Along x, y, z.
+  model::LatticeBeam<double> beam_;
+  std::vector<std::array<base::DoubleDouble, 3>> steps_;  ///< By direction, pitches.
+};
 
 }  // namespace holdfast::verdict

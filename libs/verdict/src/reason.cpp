@@ -5,20 +5,38 @@
 namespace holdfast::verdict {
 
 const char* name(ReasonCode code) {
-  static constexpr std::array<const char*, kReasonCodeCount> kNames = {
-      "nothing_to_spare",    "topples",
-      "too_many_modules",    "no_digits_left",
-      "no_equilibrium",      "singular_stiffness",
-      "load_not_a_number",   "limit_in_range",
-      "solutions_disagree",  "connections_break",
-      "single_module",       "no_tension",
-      "no_known_tension",    "holds",
-      "unilateral_contact",  "solutions_agree",
-      "ambiguous_feet",      "bonded",
-      "model_disagrees",     "proved_one_solution",
-      "proved_forces",       "proved_unique",
-      "not_proved",          "no_verdict_of_the_robot",
-      "verdict_of_the_robot"};
+  static constexpr std::array<const char*, kReasonCodeCount> kNames = {"nothing_to_spare",
+                                                                       "topples",
+                                                                       "too_many_modules",
+                                                                       "no_digits_left",
+                                                                       "no_equilibrium",
+                                                                       "singular_stiffness",
+                                                                       "load_not_a_number",
+                                                                       "limit_in_range",
+                                                                       "solutions_disagree",
+                                                                       "connections_break",
+                                                                       "single_module",
+                                                                       "no_tension",
+                                                                       "no_known_tension",
+                                                                       "holds",
+                                                                       "unilateral_contact",
+                                                                       "solutions_agree",
+                                                                       "ambiguous_feet",
+                                                                       "bonded",
+                                                                       "model_disagrees",
+                                                                       "proved_one_solution",
+                                                                       "proved_forces",
+                                                                       "proved_unique",
+                                                                       "not_proved",
+                                                                       "no_verdict_of_the_robot",
+                                                                       "verdict_of_the_robot",
+                                                                       "falls",
+                                                                       "balances",
+                                                                       "rigid_undecided",
+                                                                       "model_falls", 
+                                                                       "may_slip",
+                                                                       "gaps_open",
+                                                                       "loads_together"};
   return kNames[static_cast<std::size_t>(code)];
 }
 

@@ -8,6 +8,7 @@
 #include <map>
 
 #include "exact_sign.hpp"
+#include "floating_body.hpp"
 
 namespace holdfast::verdict {
 namespace {
@@ -112,9 +113,8 @@ EdgeDistance nearest_edge(const std::vector<Point>& hull, const Point& mass, std
   return nearest;
 }
 
-}  // namespace
-
-RigidBody assess_rigid_body(const model::Robot& robot) {
+/// Of cubes that weigh the same.
+RigidBody exact_body(const model::Robot& robot) {
   const model::Material& material = robot.material();
   const Measure measure(material.pitch_mm, material.facet_mm);
   const auto plan_point = [&](const Point& point) {
@@ -150,6 +150,31 @@ RigidBody assess_rigid_body(const model::Robot& robot) {
   body.margin_mm = nearest.distance * half_pitch_mm;
   body.edge = {plan_point(nearest.a), plan_point(nearest.b)};
   return body;
+}
+
+}  // namespace
+
+bool is_on_flat_floor(const model::Robot& robot) {
+  const auto& [x, y, z] = robot.gravity();
+  if (robot.facets().empty() || x != 0 || y != 0 || z >= 0 || robot.has_payloads()) {
+    return false;
+  }
+  const base::Direction down = base::down(robot.lattice());
+  const auto level = [&](const model::Facet& facet) {
+    return robot.modules()[base::at(facet.module)].cell.z;
+  };
+  return std::ranges::all_of(robot.facets(), [&](const model::Facet& facet) {
+    return facet.direction == down && !facet.is_bonded() &&
+           level(facet) == level(robot.facets().front());
+  });
+}
+
+RigidBody assess_rigid_body(const model::Robot& robot) {
+  const bool is_exact = robot.lattice() == base::kCubic && robot.is_uniform();
+  if (is_exact && (robot.facets().empty() || is_on_flat_floor(robot))) {
+    return exact_body(robot);
+  }
+  return floating_body(robot);
 }
 
 }  // namespace holdfast::verdict

@@ -16,15 +16,10 @@ using Displacements = std::vector<base::Vec6<double>>;
 
 /// Largest load ratio; NaN if one is. `low` as of a Solution.
 double load_ratio_max(const model::Robot& robot, const Displacements& u, const Displacements& low) {
-  const ConnectionLaw laws[] = {{robot.material(), base::Direction::kPlusX},
-                                {robot.material(), base::Direction::kPlusY},
-                                {robot.material(), base::Direction::kPlusZ}};
+  const ConnectionLaws laws(robot);
   double largest = -std::numeric_limits<double>::infinity();
   for (const model::Connection& pair : robot.connections()) {
-    const ConnectionLaw& law = laws[base::index(pair.direction) / 2];
-    const double ratio = low.empty() ? law.load_ratio(u[static_cast<std::size_t>(pair.a)],
-                                                      u[static_cast<std::size_t>(pair.b)])
-                                     : law.load_ratio(relative_motion(robot, pair, u, low), {});
+    const double ratio = laws.load_ratio(pair, u, low);
     largest = ratio > largest || std::isnan(ratio) ? ratio : largest;
     if (std::isnan(largest)) {
       break;

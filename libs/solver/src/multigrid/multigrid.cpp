@@ -385,7 +385,7 @@ bool Multigrid::refine(Solution& solution) {
   target.iteration_count_min = 1;
   if (is_thin()) {
     target.error_max =
-        kThinError * options_.tolerance / model::load_ratio_per_energy_norm(robot().material());
+        kThinError * options_.tolerance / model::load_ratio_per_energy_norm(robot());
   }
   if (improve(target) != LinearOutcome::kSolved) {
     return false;

@@ -6,37 +6,16 @@
 #include <optional>
 #include <string>
 #include <string_view>
-#include <utility>
 #include <vector>
 
 #include "holdfast/base/cell.hpp"
 #include "holdfast/base/result.hpp"
+#include "holdfast/io/element.hpp"
 #include "holdfast/io/extension.hpp"
 #include "holdfast/model/robot.hpp"
 
 /// A structure as it stands in a file: what mechanics need, and what a conversion must not lose.
 namespace holdfast::io {
-
-/// Name and value, in the order of the file.
-using Attributes = std::vector<std::pair<std::string, std::string>>;
-
-/// An XML element that mechanics have no use for, kept whole (camera, spotlight, obstacles, csg).
-struct Element {
-  std::string name;
-  Attributes attributes;
-  std::string text;  ///< All of it in one piece, without white space at its ends.
-  std::vector<Element> children;
-
-  friend bool operator==(const Element&, const Element&) = default;
-};
-
-struct Color {
-  int red = 0;  ///< 0 to 255, as the others.
-  int green = 0;
-  int blue = 0;
-
-  friend bool operator==(const Color&, const Color&) = default;
-};
 
 /// One existing module.
 struct ModuleEntry {
@@ -107,34 +86,47 @@ inline constexpr int kNestingMax = 64;
 /// error for anything else.
 base::Result<Format> detect_format(std::string_view text);
 
-/// Reads either format. Error::where is "line 12" or a JSON pointer such as "/modules/3".
-base::Result<ReadDocument> read_document(std::string_view text);
+/// What holds where a file says nothing of it; a file that says otherwise is an error.
+struct ReadOptions {
+  std::optional<base::Lattice> lattice = {};  ///< One of kNamedLattices.
+};
 
-base::Result<ReadDocument> read_visiblesim(std::string_view text);
-base::Result<ReadDocument> read_json(std::string_view text);
+/// Reads either format. Error::where is "line 12" or a JSON pointer such as "/modules/3".
+base::Result<ReadDocument> read_document(std::string_view text, const ReadOptions& options = {});
+
+base::Result<ReadDocument> read_visiblesim(std::string_view text, const ReadOptions& options = {});
+base::Result<ReadDocument> read_json(std::string_view text, const ReadOptions& options = {});
 
 /// The version of the JSON format that a document needs, and is written in: 1 wherever that says it
 /// all, so that older programs read it.
 int json_version(const Document& document);
 
-/// The first thing in a document that this program reads, keeps and writes, but cannot compute with
-/// yet, named by an error with its JSON pointer; none if the whole document can be computed.
+/// What of a document this program reads, keeps and writes, but cannot compute with, by an error
+/// with its JSON pointer: a plan of steps; none if the whole document can be computed.
 std::optional<base::Error> find_unsupported(const Document& document);
 
 /// What write_visiblesim adds to every cell and to support_z: VisibleSim knows no cell below 0. The
 /// attribute `shift` of <holdfast> says it, and the reader takes it back. Positions in scenery,
-/// targets and attributes stay as they are. Error: the cells reach further than its grid can, or
-/// the document needs version 2 of the JSON format, which VisibleSim XML cannot follow.
+/// targets and attributes stay as they are. Layers go up by an even number where they are staggered.
+/// Error: the cells reach further than its grid can.
 base::Result<base::Cell> visiblesim_shift(const Document& document);
+
+/// Boxes of obstacles with more cells than this are one <obstacle> in VisibleSim XML, that of their
+/// first corner, with the other corner in an attribute of ours; all others are one for each cell.
+inline constexpr std::int64_t kBoxCellsMax = 10'000;
 
 /// Reading back gives an equal document. Comments and the layout of the text are not kept, and
 /// blocksLine and blockBox are written as single blocks. Where visiblesim_shift is an error, cells
-/// are written as they are, and what XML has no word for is left out.
+/// are written as they are.
 std::string write_visiblesim(const Document& document);
 std::string write_json(const Document& document);
 
-/// The robot with the first step; errors as of find_unsupported() and model::Robot::create, threads
-/// as of the latter.
+/// What model::Robot::create makes the robot of the document with the first step from. Errors: as
+/// of find_unsupported(); a module is of a kind that the document does not have.
+base::Result<model::RobotSpec> make_spec(const Document& document);
+
+/// The robot with the first step; errors as of make_spec() and model::Robot::create, threads as of
+/// the latter.
 base::Result<model::Robot> make_robot(const Document& document, int thread_count = 0);
 
 }  // namespace holdfast::io

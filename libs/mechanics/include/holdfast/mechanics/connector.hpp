@@ -51,12 +51,4 @@ constexpr bool breaks(Real load_ratio) {
   return !(load_ratio < 1);
 }
 
-/// How far an error e of the displacements can take a load ratio: its square by this times the
-/// error's energy e . K e. The forces in the middle of a beam do not couple, each has an energy of
-/// its own, f^2 / stiffness, and no beam has more energy than the whole robot. So by Cauchy and
-/// Schwarz the worst for (2 m / width + fz) / strength is (axial + (2 / width)^2 bend / 4) /
-/// strength^2, in 1 / (N mm).
-double load_ratio_squared_per_energy(const BeamStiffness<double>& beam, double width,
-                                     double strength);
-
 }  // namespace holdfast::mechanics

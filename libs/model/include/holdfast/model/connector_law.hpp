@@ -53,17 +53,36 @@ struct ConnectorLaw {
 /// The law of a connection of two modules: of every number the one that holds less.
 ConnectorLaw weaker(const ConnectorLaw& a, const ConnectorLaw& b);
 
+/// What a connection carries, given by the numbers of its limits: N axially, M bending, V across, T
+/// torsion; units N and N mm.
+struct ConnectionForce {
+  double axial_n = 0;
+  double bending_nmm = 0;
+  double shear_n = 0;
+  double torsion_nmm = 0;
+};
+
+/// These numbers of a force in the middle, local frame (Eq. 16).
+ConnectionForce connection_force(const ConnectorLaw& law, const base::Vec6<double>& middle_force);
+
+/// M of a force in the middle, local frame.
+double bending_moment(const ConnectorLaw& law, const base::Vec6<double>& middle_force);
+
 /// The ratio of every limit, by Limit, for a force in the middle, local frame (Eq. 16); minus
 /// infinity for a limit that the law does not have.
 std::array<double, kLimitCount> limit_ratios(const ConnectorLaw& law,
                                              const base::Vec6<double>& middle_force);
 
-/// The largest of the ratios, and whose it is.
+/// The largest of the ratios, and whose it is; 0 where nothing is limited.
 struct LimitRatio {
   Limit limit = Limit::kOpens;
   double ratio = 0;
 };
 
 LimitRatio load_ratio(const ConnectorLaw& law, const base::Vec6<double>& middle_force);
+
+/// The same two functions of these numbers.
+std::array<double, kLimitCount> limit_ratios(const ConnectorLaw& law, const ConnectionForce& force);
+LimitRatio load_ratio(const ConnectorLaw& law, const ConnectionForce& force);
 
 }  // namespace holdfast::model

@@ -76,10 +76,6 @@ double module_weight_n(const Material& material);
 /// width of a face and the strength of that class.
 mechanics::Connector<double> connector(const Material& material, base::ConnectorClass kind);
 
-/// The most by which an error e of the displacements can change any load ratio, as a share of its
-/// energy norm (e . K e)^(1/2); in (N mm)^(-1/2). See mechanics::load_ratio_squared_per_energy().
-double load_ratio_per_energy_norm(const Material& material);
-
 /// Why a material cannot be computed with (name, value found, values allowed), if it cannot.
 std::optional<std::string> find_material_fault(const Material& material);
 

@@ -209,6 +209,9 @@ class Robot {
     return connectors_[(a * kinds_.size() + b) * lattice_count() + direction];
   }
 
+  /// The laws of all connections that there can be.
+  std::span<const ConnectorLaw> connectors() const { return connectors_; }
+
   /// Whether Eq. (17) of the material is the law of every connection.
   bool has_default_connectors() const { return has_default_connectors_; }
 
@@ -272,6 +275,12 @@ class Robot {
   std::size_t released_count_ = 0;
   bool has_bonded_facets_ = false;
 };
+
+/// The most by which an error e of the displacements can change any load ratio, as a share of its
+/// energy norm (e . K e)^(1/2); in (N mm)^(-1/2). The forces in the middle of a beam do not couple,
+/// so by Cauchy and Schwarz the square of the share is the sum of stiffness times factor^2 over the
+/// forces that a ratio is made of.
+double load_ratio_per_energy_norm(const Robot& robot);
 
 /// What of a robot goes beyond [Piranda 2021], that is cubes of one kind on a floor without slip
 /// under their own weight, for parts of the program that know nothing else; none if nothing does.

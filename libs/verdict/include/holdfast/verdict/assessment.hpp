@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "holdfast/limit/rigid_stability.hpp"
 #include "holdfast/model/robot.hpp"
 #include "holdfast/solver/equilibrium.hpp"
 #include "holdfast/verdict/reason.hpp"
@@ -29,13 +30,31 @@ enum class ContactModel : std::uint8_t {
   kUnilateral,   ///< Eqs. (6)-(8), exact; used where (9)-(12) have no usable answer.
 };
 
+/// What decides whether a robot keeps standing where it is.
+enum class StabilityRule : std::uint8_t {
+  kHeld,           ///< A fixed module or a bonded facet holds it.
+  kPolygon,        ///< All facets lie in a level plane: the support polygon.
+  kContactForces,  ///< Supports anywhere: contact forces of a rigid body, and the model.
+};
+
 /// What one connection carries, in its middle (Eqs. 16-17).
 struct ConnectionResult {
-  double load_ratio = 0;  ///< (2 bending / a + axial) / Fmax; breaks at 1 or more.
-  double axial_n = 0;     ///< Tension is positive.
+  /// The largest ratio of its limits, see model::ConnectorLaw; Eq. (17) is (2 bending / a + axial)
+  /// / Fmax. Breaks at 1 or more.
+  double load_ratio = 0;
+  double axial_n = 0;  ///< Tension is positive.
   double bending_nmm = 0;
-  double shear_n = 0;      ///< Not part of the criterion.
-  double torsion_nmm = 0;  ///< Not part of the criterion.
+  double shear_n = 0;      ///< Not part of Eq. (17).
+  double torsion_nmm = 0;  ///< Not part of Eq. (17).
+};
+
+/// How far connections open at the edge of the facet beyond what contacts of power and data bear:
+/// no verdict, but a warning.
+struct OpenGaps {
+  std::size_t count = 0;  ///< Connections beyond their limit.
+  std::size_t worst = 0;  ///< The index of the one with the largest share of its limit.
+  double gap_mm = 0;      ///< Its opening,
+  double limit_mm = 0;    ///< and its limit.
 };
 
 /// What the largest load ratio lies between: apart by the solver's error, with a margin, or by feet
@@ -63,10 +82,13 @@ struct Assessment {
   Verdict verdict = Verdict::kUndecided;
   std::vector<Reason> reasons;  ///< One or more; the first decides.
 
-  RigidBody simplified;  ///< Sec. III-B.
-  ModelStability model;  ///< Sec. III-C.
-  bool is_stable =
-      false;  ///< By the rigid body, as the ground is flat; bonded supports hold always.
+  StabilityRule stability_rule = StabilityRule::kPolygon;
+  RigidBody simplified;         ///< Sec. III-B.
+  limit::RigidStability rigid;  ///< The same with supports anywhere, and how it would fall.
+  ModelStability model;         ///< Sec. III-C.
+  /// On a flat floor by the rigid body. With supports elsewhere only if the rigid body holds and
+  /// the model does not say otherwise. Bonded supports hold always.
+  bool is_stable = false;
 
   /// One result per connection of the robot; empty if no equilibrium was found, or sought: a large
   /// robot that topples is known to topple by the rigid body. Not meaningful if unstable.
@@ -77,7 +99,8 @@ struct Assessment {
   /// connection is known to be pulled apart.
   std::optional<std::size_t> worst;
   std::vector<std::size_t> broken;  ///< Indices of connections at 1 or more, worst first.
-  /// The weight could grow by this factor before the first connection breaks; none without `worst`.
+  std::optional<OpenGaps> gaps;     ///< None if no gap is too wide.
+  /// All loads could grow by this factor before the first connection breaks; none without `worst`.
   std::optional<double> weight_factor;
   LoadRange load_ratio_range;  ///< Void where load_ratio_max is.
   /// The most by which any load ratio changed between the last two solutions of the linear system.

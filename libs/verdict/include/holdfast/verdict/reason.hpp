@@ -38,9 +38,16 @@ enum class ReasonCode : std::uint8_t {
   kNotProved,          ///< `quoted` says why.
   kNoVerdictOfTheRobot,  ///< The modules came to none.
   kVerdictOfTheRobot,    ///< `quoted` says why: 1 if every module knows it.
+  kFalls,           ///< No contact forces balance the loads; `quoted` says how it begins to fall.
+  kBalances,        ///< They do, but with nothing to spare.
+  kRigidUndecided,  ///< Whether they do was not found out.
+  kModelFalls,      ///< The model lets it fall, though contact forces exist that would hold it.
+  kMaySlip,         ///< A facet's friction is exceeded: its module, |ft|/|fn|, the coefficient.
+  kGapsOpen,        ///< How many, index of the worst, its gap and its limit, mm.
+  kLoadsTogether,   ///< Ratios are factors of all loads together, payloads too.
 };
 
-inline constexpr int kReasonCodeCount = static_cast<int>(ReasonCode::kVerdictOfTheRobot) + 1;
+inline constexpr int kReasonCodeCount = static_cast<int>(ReasonCode::kLoadsTogether) + 1;
 
 /// One reason for a verdict, as data. io::reason_text() makes a sentence of it.
 struct Reason {

@@ -8,11 +8,12 @@
 
 #include "holdfast/model/robot.hpp"
 
-/// The rigid body on flat ground (Sec. III-B of [Piranda 2021]), decided exactly.
+/// The rigid body on flat ground (Sec. III-B of [Piranda 2021]), decided exactly for cubes.
 ///
-/// All modules weigh the same and sit on a lattice, so the centre of mass is a fraction of two
+/// Cubes that weigh the same sit on a lattice, so the centre of mass is a fraction of two
 /// integers, and every comparison is one of whole numbers times pitch and facet, exact for the two
-/// doubles given: a margin of zero is recognised as zero, whatever the width of the facets.
+/// doubles given: a margin of zero is recognised as zero, whatever the width of the facets. Other
+/// lattices and masses are computed in double, and a margin below kMarginTie pitches is zero.
 namespace holdfast::verdict {
 
 /// A point in plan, mm; the centre of cell (0,0) is at the origin.
@@ -22,20 +23,29 @@ struct PlanPoint {
 };
 
 struct RigidBody {
-  /// More than zero to spare, or held by a fixed module.
+  /// More than zero to spare, or held by a fixed module or a bonded facet.
   bool is_stable = false;
   /// The smallest signed distance from the centre of mass to the line of an edge of the support
   /// polygon, positive inside: the lever with which the weight holds the robot down, or tips it.
-  /// None if a fixed module holds the robot.
+  /// None if the robot is held, or the polygon does not decide.
   std::optional<double> margin_mm;
-  /// The edge over which the robot topples, or would first. The polygon lies on its left. None if a
-  /// fixed module holds the robot.
+  /// The edge over which the robot topples, or would first. The polygon lies on its left. None
+  /// without a margin.
   std::optional<std::array<PlanPoint, 2>> edge;
   PlanPoint centre_of_mass;
   /// Corners of the support polygon, counter-clockwise.
   std::vector<PlanPoint> polygon;
 };
 
+/// Below this share of a pitch a margin that was computed in double counts as zero.
+inline constexpr double kMarginTie = 1e-9;
+
+/// Whether all facets lie in one level plane and can lift, and only weight acts, straight down:
+/// then the support polygon decides.
+bool is_on_flat_floor(const model::Robot& robot);
+
+/// For a robot that is_on_flat_floor() all of it; for any other only the centre of mass, no polygon
+/// and no margin, and `is_stable` if something holds it fast.
 RigidBody assess_rigid_body(const model::Robot& robot);
 
 }  // namespace holdfast::verdict

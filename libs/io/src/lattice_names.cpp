@@ -1,0 +1,49 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#include "holdfast/io/lattice_names.hpp"
+
+#include <fmt/format.h>
+
+#include <string>
+
+#include "text_input.hpp"
+#include "vocabulary.hpp"
+
+namespace holdfast::io {
+namespace {
+
+constexpr std::string_view kUnknownSimulatedModules = "datoms";
+
+std::string all_names() {
+  std::string names;
+  for (const NamedLattice& row : kNamedLattices) {
+    names += fmt::format("{}, ", row.name);
+  }
+  names += "and for VisibleSim's modules";
+  for (const SimulatedModules& row : kSimulatedModules) {
+    names += fmt::format(" {}", row.name);
+  }
+  return names;
+}
+
+}  // namespace
+
+base::Result<base::Lattice> find_lattice(std::string_view name) {
+  const auto* const row = std::ranges::find(kNamedLattices, name, &NamedLattice::name);
+  if (row != kNamedLattices.end()) {
+    return row->lattice;
+  }
+  const auto* const modules = std::ranges::find(kSimulatedModules, name, &SimulatedModules::name);
+  if (modules != kSimulatedModules.end()) {
+    return modules->lattice;
+  }
+  if (name == kUnknownSimulatedModules) {
+    return base::Error{base::ErrorCode::kUnsupported, kNoDatoms, ""};
+  }
+  return base::Error{base::ErrorCode::kBadInput,
+                     fmt::format("the lattice {} is unknown, allowed are {}", excerpt(name),
+                                 all_names()),
+                     ""};
+}
+
+}  // namespace holdfast::io

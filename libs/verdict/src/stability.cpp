@@ -1,0 +1,249 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#include "stability.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "holdfast/mechanics/support_corners.hpp"
+#include "holdfast/model/lattice_beam.hpp"
+
+namespace holdfast::verdict {
+namespace {
+
+using limit::Vector3;
+using solver::Equilibrium;
+
+/// Corners this near to one line, as a share of a pitch, lie on it.
+constexpr double kLineTie = 1e-9;
+
+Vector3 node_mm(const model::Robot& robot, std::size_t module) {
+  Vector3 place = base::node_place(robot.lattice(), robot.modules()[module].cell);
+  for (double& coordinate : place) {
+    coordinate *= robot.material().pitch_mm;
+  }
+  return place;
+}
+
+Vector3 sum(const Vector3& a, double factor, const Vector3& b) {
+  return {a[0] + factor * b[0], a[1] + factor * b[1], a[2] + factor * b[2]};
+}
+
+Vector3 cross(const Vector3& a, const Vector3& b) {
+  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
+
+double length(const Vector3& a) { return std::hypot(a[0], a[1], a[2]); }
+
+limit::ContactFacet contact_facet(const model::Robot& robot, const model::Facet& facet) {
+  limit::ContactFacet contact;
+  contact.frame = model::rotation_along<double>(robot.lattice(), facet.direction);
+  contact.centre_mm =
+      sum(node_mm(robot, base::at(facet.module)), -robot.material().pitch_mm / 2, contact.frame[2]);
+  contact.half_width_mm = robot.foot_half_width_mm();
+  contact.is_bonded = facet.is_bonded();
+  contact.friction = facet.touch.friction;
+  return contact;
+}
+
+Vector3 centre_of_mass(const model::Robot& robot) {
+  Vector3 moment{};
+  double mass = 0;
+  for (std::size_t i = 0; i < robot.modules().size(); ++i) {
+    moment = sum(moment, robot.mass(i), node_mm(robot, i));
+    mass += robot.mass(i);
+  }
+  return {moment[0] / mass, moment[1] / mass, moment[2] / mass};
+}
+
+limit::BodyLoad body_load(const model::Robot& robot) {
+  limit::BodyLoad load;
+  load.centre_of_mass_mm = centre_of_mass(robot);
+  double mass = 0;
+  double inertia = 0;
+  for (std::size_t i = 0; i < robot.modules().size(); ++i) {
+    const Vector3 arm = sum(node_mm(robot, i), -1, load.centre_of_mass_mm);
+    mass += robot.mass(i);
+    inertia += robot.mass(i) * (arm[0] * arm[0] + arm[1] * arm[1] + arm[2] * arm[2]);
+    if (robot.has_payloads()) {
+      Vector3 force{};
+      Vector3 moment{};
+      for (std::size_t k = 0; k < 3; ++k) {
+        force[k] = robot.loads()[i][k] - robot.mass(i) * robot.gravity()[k];
+        moment[k] = robot.loads()[i][k + 3];
+      }
+      load.payload_n = sum(load.payload_n, 1, force);
+      load.payload_nmm = sum(sum(load.payload_nmm, 1, moment), 1, cross(arm, force));
+    }
+  }
+  load.weight_n = sum({}, mass, robot.gravity());
+  load.gyration_mm = std::max(std::sqrt(inertia / mass), robot.material().pitch_mm / 2);
+  return load;
+}
+
+/// Height of the centre of mass over the floor, mm.
+double height_mm(const model::Robot& robot) {
+  double moment = 0;
+  double mass = 0;
+  for (std::size_t i = 0; i < robot.modules().size(); ++i) {
+    moment += robot.mass(i) * node_mm(robot, i)[2];
+    mass += robot.mass(i);
+  }
+  const model::Facet& facet = robot.facets().front();
+  return moment / mass - node_mm(robot, base::at(facet.module))[2] + robot.material().pitch_mm / 2;
+}
+
+/// On a flat floor gravity passes the nearest edge of the polygon first.
+limit::RigidStability floor_stability(const model::Robot& robot, const RigidBody& body) {
+  using limit::RigidAnswer;
+  limit::RigidStability rigid;
+  const double margin = body.margin_mm.value_or(0);
+  rigid.answer = margin > 0    ? RigidAnswer::kHolds
+                 : margin == 0 ? RigidAnswer::kNothingToSpare
+                               : RigidAnswer::kFalls;
+  if (margin > 0) {
+    rigid.friction_needed = 0;
+  }
+  rigid.tilt_margin_deg =
+      margin > 0 ? std::atan2(margin, height_mm(robot)) * 180 / std::numbers::pi : 0;
+  if (margin < 0 && body.edge) {
+    const double floor =
+        node_mm(robot, base::at(robot.facets().front().module))[2] - robot.material().pitch_mm / 2;
+    const auto& [from, to] = *body.edge;
+    const Vector3 axis = {to.x - from.x, to.y - from.y, 0};
+    const Vector3 arm = {body.centre_of_mass.x - from.x, body.centre_of_mass.y - from.y,
+                         height_mm(robot)};
+    limit::Motion motion{.kind = limit::Motion::Kind::kTips,
+                         .angular = axis,
+                         .from_mm = {from.x, from.y, floor},
+                         .to_mm = {to.x, to.y, floor}};
+    motion.velocity = cross(axis, arm);
+    const double scale = motion.velocity[2] > 0 ? -1 : 1;  // It goes down.
+    const double size = std::max(length(motion.velocity), 1e-300);
+    for (std::size_t k = 0; k < 3; ++k) {
+      motion.angular[k] *= scale / size;
+      motion.velocity[k] *= scale / size;
+    }
+    rigid.motion = motion;
+  }
+  return rigid;
+}
+
+/// Whether points lie on one line, or are fewer than three.
+bool are_collinear(const std::vector<Vector3>& points, double tie) {
+  if (points.empty()) {
+    return true;
+  }
+  const auto away = [&](const Vector3& point) { return length(sum(point, -1, points.front())); };
+  const auto farthest = std::ranges::max_element(points, {}, away);
+  const Vector3 line = sum(*farthest, -1, points.front());
+  const double reach = length(line);
+  return reach <= tie || std::ranges::all_of(points, [&](const Vector3& point) {
+           return length(cross(line, sum(point, -1, points.front()))) <= tie * reach;
+         });
+}
+
+/// Appends the corners that press: mx^ < 0 presses the +y' edge, my^ > 0 the +x' edge.
+void add_pressing_corners(const limit::ContactFacet& facet, const mechanics::ContactState& state,
+                          std::vector<Vector3>& corners) {
+  for (int side_x = -1; side_x <= 1; side_x += 2) {
+    for (int side_y = -1; side_y <= 1; side_y += 2) {
+      if (state.pressed && state.tilt_x != side_y && state.tilt_y != -side_x) {
+        corners.push_back(sum(sum(facet.centre_mm, side_x * facet.half_width_mm, facet.frame[0]),
+                              side_y * facet.half_width_mm, facet.frame[1]));
+      }
+    }
+  }
+}
+
+bool holds_by_corners(const model::Robot& robot, const Equilibrium& equilibrium) {
+  std::vector<Vector3> corners;
+  for (std::size_t i = 0; i < robot.facets().size(); ++i) {
+    const mechanics::ContactState& state = equilibrium.contact[i];
+    if (state == mechanics::ContactState{} && robot.foot_half_width_mm() > 0) {
+      return true;
+    }
+    add_pressing_corners(contact_facet(robot, robot.facets()[i]), state, corners);
+  }
+  return !are_collinear(corners, kLineTie * robot.material().pitch_mm);
+}
+
+/// The same on the floor of cubes, in integers.
+bool holds_by_cube_corners(const model::Robot& robot, const Equilibrium& equilibrium) {
+  mechanics::SupportCorners corners;
+  for (std::size_t i = 0; i < robot.facets().size() && !corners.stable; ++i) {
+    const model::Module& module = robot.modules()[base::at(robot.facets()[i].module)];
+    corners =
+        mechanics::merge(corners, mechanics::support_corners(module.cell, equilibrium.contact[i]));
+  }
+  return corners.stable;
+}
+
+}  // namespace
+
+StabilityRule stability_rule(const model::Robot& robot) {
+  if (robot.fixed_count() > 0 || robot.has_bonded_facets()) {
+    return StabilityRule::kHeld;
+  }
+  return is_on_flat_floor(robot) ? StabilityRule::kPolygon : StabilityRule::kContactForces;
+}
+
+limit::RigidStability rigid_stability(const model::Robot& robot, StabilityRule rule,
+                                      const RigidBody& body) {
+  if (rule == StabilityRule::kHeld) {
+    return {.answer = limit::RigidAnswer::kHolds};
+  }
+  if (rule == StabilityRule::kPolygon) {
+    return floor_stability(robot, body);
+  }
+  std::vector<limit::ContactFacet> facets;
+  facets.reserve(robot.facets().size());
+  for (const model::Facet& facet : robot.facets()) {
+    facets.push_back(contact_facet(robot, facet));
+  }
+  return limit::assess_rigid(facets, body_load(robot));
+}
+
+ModelStability model_stability(const model::Robot& robot, const Equilibrium& equilibrium) {
+  if (equilibrium.outcome != solver::Outcome::kSettled) {
+    return {};
+  }
+  if (stability_rule(robot) == StabilityRule::kHeld) {
+    return {.is_stable = true, .is_settled = true};
+  }
+  const bool is_cubes_floor = robot.lattice() == base::kCubic && is_on_flat_floor(robot);
+  return {.is_stable = is_cubes_floor ? holds_by_cube_corners(robot, equilibrium)
+                                      : holds_by_corners(robot, equilibrium),
+          .is_settled = true};
+}
+
+std::optional<Slip> find_slip(const model::Robot& robot, const Equilibrium& equilibrium) {
+  std::optional<Slip> worst;
+  double excess_max = 1;
+  for (std::size_t i = 0; i < robot.facets().size(); ++i) {
+    const model::Facet& facet = robot.facets()[i];
+    if (!facet.touch.friction || facet.is_bonded() || !equilibrium.contact[i].pressed) {
+      continue;
+    }
+    const auto frame = model::rotation_along<double>(robot.lattice(), facet.direction);
+    const base::Vec6<double>& force = equilibrium.facet_force[i];
+    std::array<double, 3> local{};
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      for (std::size_t k = 0; k < 3; ++k) {
+        local[axis] += frame[axis][k] * force[k];
+      }
+    }
+    const double sideways = std::hypot(local[0], local[1]);
+    const double excess = sideways / (std::abs(local[2]) * *facet.touch.friction);
+    if (sideways > 0 && excess > excess_max) {
+      excess_max = excess;
+      worst = {.facet = i, .ratio = sideways / std::abs(local[2])};
+    }
+  }
+  return worst;
+}
+
+}  // namespace holdfast::verdict
