@@ -11,7 +11,8 @@ namespace {
 /// A robot that topples needs no loads; one that is bonded to the ground does not topple.
 verdict::Assessment try_robot(const model::Robot& robot, const CheckOptions& options) {
   verdict::Assessment look = first_look(robot);
-  return look.is_stable || options.is_bonded ? check(robot, options).assessment : look;
+  const bool topples = look.verdict == verdict::Verdict::kUnstable;
+  return topples && !options.is_bonded ? look : check(robot, options).assessment;
 }
 
 }  // namespace
@@ -29,8 +30,8 @@ std::vector<base::Cell> free_cells(const model::RobotSpec& spec) {
   std::ranges::sort(taken);
   std::vector<base::Cell> beside;
   for (const base::Cell& cell : taken) {
-    for (const base::Direction direction : base::kDirections) {
-      beside.push_back(base::neighbour(cell, direction));
+    for (const base::Direction direction : base::directions(spec.lattice)) {
+      beside.push_back(base::neighbour(spec.lattice, cell, direction));
     }
   }
   std::ranges::sort(beside);
@@ -45,8 +46,13 @@ verdict::Assessment first_look(const model::Robot& robot) {
   verdict::Assessment assessment;
   assessment.simplified = verdict::assess_rigid_body(robot);
   assessment.is_stable = assessment.simplified.is_stable;
-  assessment.verdict =
-      assessment.is_stable ? verdict::Verdict::kUndecided : verdict::Verdict::kUnstable;
+  const bool is_held = robot.fixed_count() > 0 || robot.has_bonded_facets();
+  const bool is_flat = verdict::is_on_flat_floor(robot);
+  assessment.stability_rule = is_held   ? verdict::StabilityRule::kHeld
+                              : is_flat ? verdict::StabilityRule::kPolygon
+                                        : verdict::StabilityRule::kContactForces;
+  const bool topples = is_flat && !is_held && !assessment.is_stable;
+  assessment.verdict = topples ? verdict::Verdict::kUnstable : verdict::Verdict::kUndecided;
   return assessment;
 }
 

@@ -114,7 +114,9 @@ export class Judge {
       if (!look) {
         return tell(first);
       }
-      tell({ ...first, isFirstLook: true });
+      if (look.stability.rule !== 'contact-forces') {
+        tell({ ...first, isFirstLook: true });
+      }
     }
     const finding = await this.answer(data, false);
     tell(finding.problem === STOPPED && look ? { answer: { ...look, reasons: [STOPPED] } } : finding);

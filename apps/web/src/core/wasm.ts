@@ -4,6 +4,8 @@ import type { Role } from '../model/cell';
 import type { RobotData } from '../model/edited_robot';
 import {
   CoreError,
+  FACET_FIELDS,
+  LOAD_FIELDS,
   type Answer,
   type Failure,
   type OpenedDocument,
@@ -110,15 +112,20 @@ export class Core {
   /** The verdict; `firstLook`: of the rigid body alone. Throws CoreError. */
   check(robot: RobotData, firstLook: boolean): Answer {
     const reply = this.call('check', request(robot, [firstLook ? 1 : 0]));
-    const [connections, broken] = reply.integers;
-    const head = JSON.parse(reply.text) as Answer;
-    const loads = head.has_loads ? 5 * connections : 0;
+    const { integers, numbers, text } = reply;
+    const [connections, broken, facets] = integers;
+    const head = JSON.parse(text) as Answer;
+    const loads = head.has_loads ? LOAD_FIELDS * connections : 0;
+    const forces = loads + FACET_FIELDS * facets;
+    const brokenAt = 3 + 3 * connections;
     return {
       ...head,
-      connections: reply.integers.subarray(2, 2 + 3 * connections),
-      broken: reply.integers.subarray(2 + 3 * connections, 2 + 3 * connections + broken),
-      loads: reply.numbers.subarray(0, loads),
-      displacements: reply.numbers.subarray(loads),
+      connections: integers.subarray(3, brokenAt),
+      broken: integers.subarray(brokenAt, brokenAt + broken),
+      facets: integers.subarray(brokenAt + broken),
+      loads: numbers.subarray(0, loads),
+      facetForces: numbers.subarray(loads, forces),
+      displacements: numbers.subarray(forces),
     };
   }
 

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 import { Role, cellText, type Cell } from './cell';
 import { CUBIC, type Lattice, type Place } from './lattice';
-import { TABLE_I, gravityMagnitude, massKg, pitchMm } from './material';
-import { NO_SURROUNDINGS, ObstacleIndex, ownLoads, type OwnLoads, type Surroundings, type Vector } from './surroundings';
+import { TABLE_I, gravityMagnitude, pitchMm } from './material';
+import { NO_SURROUNDINGS, ObstacleIndex, ownLoads, textOf, type OwnLoads, type Surroundings, type Vector } from './surroundings';
 
 /** Cells are counted from a robot's first one and stay within this distance of it. */
 const REACH = 100_000;
@@ -209,21 +209,6 @@ export class EditedRobot {
     return [...places.values()];
   }
 
-  /** In pitches. Kinds of modules are taken to weigh what the material says. */
-  centreOfMass(): Place {
-    const { modules } = this.ownLoads;
-    const usual = massKg(this.material);
-    const sums = [0, 0, 0];
-    let total = 0;
-    for (let slot = 0; slot < this.count; ++slot) {
-      const own = modules.size > 0 ? modules.get(String(this.cellAt(slot)))?.mass_kg : undefined;
-      const mass = own ?? usual;
-      this.placeAt(slot).forEach((value, k) => (sums[k] += mass * value));
-      total += mass;
-    }
-    return sums.map((value) => value / Math.max(total, Number.MIN_VALUE)) as unknown as Place;
-  }
-
   /** For the core, with the slot of each of its modules: existing ones come first. */
   toData(): { data: RobotData; slots: Int32Array } {
     const slots = new Int32Array(this.count);
@@ -264,7 +249,7 @@ export class EditedRobot {
 
   private moreText(): string {
     const isPlain = this.lattice === CUBIC && Object.keys(this.more).length === 0;
-    return isPlain ? '' : JSON.stringify({ ...this.more, lattice: this.lattice.name });
+    return isPlain ? '' : textOf({ ...this.more, lattice: this.lattice.name });
   }
 
   private key(cell: Cell): number | undefined {

@@ -59,6 +59,16 @@ export function tidied(surroundings: Surroundings): Surroundings {
   return Object.fromEntries(Object.entries(surroundings).filter(([, value]) => isSaid(value)));
 }
 
+/** What a file has besides: its first members. */
+export function withoutHead(surroundings: Surroundings): Surroundings {
+  const head = ['format', 'version', 'name', 'description'];
+  return tidied(Object.fromEntries(Object.entries(surroundings).filter(([key]) => !head.includes(key))));
+}
+
+/** As a file of the JSON format. */
+export const textOf = (surroundings: Surroundings) =>
+  JSON.stringify({ format: 'holdfast-structure', version: 2, modules: [], ...surroundings });
+
 const isInBox = ({ from, to }: Obstacle, cell: Cell) =>
   from !== undefined && to !== undefined && cell.every((value, k) => value >= from[k] && value <= to[k]);
 

@@ -88,7 +88,7 @@ export class Ground {
   /** The answer of the rigid body. */
   show(robot: EditedRobot, stability: Stability | undefined): void {
     const pitch = robot.pitchMm;
-    const height = robot.count > 0 ? robot.centreOfMass()[2] - robot.floorHeight : 0;
+    const height = stability ? stability.centre_of_mass[2] / pitch - robot.floorHeight : 0;
     for (const child of [...this.answer.children] as Mesh[]) {
       child.geometry.dispose();
       this.answer.remove(child);
@@ -104,7 +104,7 @@ export class Ground {
     polygon.forEach((a, i) => {
       this.add(band(a, polygon[(i + 1) % polygon.length], 0.035), this.material(colours.outline), 0.002);
     });
-    const mass = scaled(stability.centre_of_mass);
+    const mass = scaled([stability.centre_of_mass[0], stability.centre_of_mass[1]]);
     if (stability.edge) {
       const [a, b] = stability.edge.map(scaled) as [Point, Point];
       this.add(band(a, b, stability.stable ? 0.06 : 0.1), this.material(colours.warn), 0.004);

@@ -18,6 +18,7 @@
 #include "holdfast/host/output_file.hpp"    // IWYU pragma: export
 #include "holdfast/io/beside_one.hpp"       // IWYU pragma: export
 #include "holdfast/io/document.hpp"         // IWYU pragma: export
+#include "holdfast/io/lattice_names.hpp"    // IWYU pragma: export
 #include "holdfast/io/picture.hpp"          // IWYU pragma: export
 #include "holdfast/io/report.hpp"           // IWYU pragma: export
 #include "holdfast/model/robot.hpp"         // IWYU pragma: export
