@@ -165,6 +165,7 @@ Reply assessment_reply(const model::Robot& robot, const verdict::Assessment& ass
                    {"weight_factor", optional_json(assessment.weight_factor)},
                    {"contact_model", verdict::name(assessment.contact_model)},
                    {"solves", assessment.equilibrium.steps},
+                   {"facet_half_mm", robot.foot_half_width_mm()},
                    {"has_loads", !assessment.connections.empty()},
                    {"seconds", seconds}});
   const auto connections = robot.connections();

@@ -46,6 +46,8 @@ export interface Answer {
   weight_factor: number | null;
   contact_model: string;
   solves: number;
+  /** Half the width of all facets. */
+  facet_half_mm: number;
   has_loads: boolean;
   seconds: number;
   /** Indices of two modules and a direction for each connection. */

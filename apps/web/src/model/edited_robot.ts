@@ -247,9 +247,13 @@ export class EditedRobot {
     return this.box;
   }
 
+  /** Cubes on a floor without slip under their own weight. */
+  get isPlain(): boolean {
+    return this.lattice === CUBIC && Object.keys(this.more).length === 0;
+  }
+
   private moreText(): string {
-    const isPlain = this.lattice === CUBIC && Object.keys(this.more).length === 0;
-    return isPlain ? '' : textOf({ ...this.more, lattice: this.lattice.name });
+    return this.isPlain ? '' : textOf({ ...this.more, lattice: this.lattice.name });
   }
 
   private key(cell: Cell): number | undefined {

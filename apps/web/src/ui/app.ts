@@ -6,11 +6,12 @@ import { equal, type Cell } from '../model/cell';
 import type { Change } from '../model/history';
 import type { Workbench } from '../model/workbench';
 import type { ScaleName } from '../view/colours';
+import { FacetView } from '../view/facets';
 import { Ground } from '../view/ground';
 import { ObstacleView } from '../view/obstacles';
 import { RobotView } from '../view/robot_view';
 import { Stage } from '../view/stage';
-import { showDetails, showFaceLegend, showFinding, showLegend } from './answer_panel';
+import { showDetails, showFaceLegend, showFacetLegend, showFinding, showLegend } from './answer_panel';
 import { byId, clearErrors, say } from './dom';
 import { placeLabels } from './labels';
 import { followTheme, setTheme } from './theme';
@@ -36,6 +37,7 @@ export class App {
   finding?: Finding;
   private readonly ground = new Ground();
   private readonly obstacles = new ObstacleView();
+  private readonly facets = new FacetView();
   private readonly toppling = new Toppling(this.stage, this.ground);
   private readonly judge = new Judge((finding) => this.found(finding));
   private lateShow = 0;
@@ -46,7 +48,7 @@ export class App {
   constructor(readonly bench: Workbench) {
     this.whereNext = new WhereNext(bench, this.view);
     bench.robotListeners.push((what) => this.changed(what));
-    this.stage.scene.add(this.ground.group, this.obstacles.group);
+    this.stage.scene.add(this.ground.group, this.obstacles.group, this.facets.mesh);
     this.stage.followers.push(() =>
       placeLabels(this.stage, this.view, bench.robot, this.toppling.isRunning ? undefined : this.finding),
     );
@@ -179,6 +181,8 @@ export class App {
     this.ground.place(robot.floorHeight, middle, reach, robot.hasFloor);
     this.ground.show(robot, finding?.answer?.stability);
     this.obstacles.show(robot);
+    this.facets.show(robot, judged);
+    showFacetLegend(robot, finding);
     this.whereNext.paint();
     this.stage.draw();
   }

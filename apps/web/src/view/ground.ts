@@ -12,6 +12,7 @@ import {
   Vector3,
   type Matrix4,
 } from 'three';
+import { mergeGeometries } from 'three/examples/jsm/utils/BufferGeometryUtils.js';
 import type { Point, Stability } from '../core/types';
 import type { EditedRobot } from '../model/edited_robot';
 
@@ -48,6 +49,8 @@ export interface GroundColours {
 }
 
 const SYMBOL_SEGMENTS = 32;
+/** Of gravity, in cells. */
+const ARROW_LENGTH = 1.6;
 
 export class Ground {
   readonly group = new Group();
@@ -94,9 +97,19 @@ export class Ground {
       this.answer.remove(child);
     }
     this.ball = this.post = undefined;
-    if (!stability || stability.polygon.length < 3) {
+    if (!stability) {
       return;
     }
+    const [x, y] = stability.centre_of_mass;
+    if (stability.polygon.length >= 3) {
+      this.showPolygon(stability, pitch);
+    }
+    if (stability.polygon.length >= 3 || stability.rule === 'contact-forces') {
+      this.showMass([x / pitch, y / pitch], height, robot);
+    }
+  }
+
+  private showPolygon(stability: Stability, pitch: number): void {
     const scaled = ([x, y]: Point): Point => [x / pitch, y / pitch];
     const polygon = stability.polygon.map(scaled);
     const { colours } = this;
@@ -112,7 +125,6 @@ export class Ground {
     }
     this.add(ring(mass, 0.2, 0.26), this.material(colours.mass), 0.006);
     this.add(ring(mass, 0, 0.08), this.material(colours.mass), 0.006);
-    this.showMass(mass, height);
   }
 
   /** The centre of mass moves with the robot; undefined: back to where it stands. */
@@ -129,12 +141,20 @@ export class Ground {
     }
   }
 
-  /** Seen through the modules around it. */
-  private showMass([x, y]: Point, height: number): void {
+  /** Seen through the modules around it, with a post straight down, or an arrow where gravity goes elsewhere. */
+  private showMass([x, y]: Point, height: number, robot: EditedRobot): void {
     const { mass } = this.colours;
-    const post = this.add(band([0, 0], [height, 0], 0.02), this.material(mass, 0.8, true), 0);
-    post.position.set(x, y, 0);
-    post.rotation.set(0, -Math.PI / 2, 0);
+    const pull = new Vector3(...robot.gravity);
+    const isDown = pull.x === 0 && pull.y === 0 && pull.z <= 0 && robot.hasFloor;
+    const shape = isDown ? band([0, 0], [height, 0], 0.02) : arrow(ARROW_LENGTH);
+    const post = this.add(shape, this.material(mass, 0.8, true), 0);
+    post.position.set(x, y, isDown ? 0 : height);
+    if (isDown) {
+      post.rotation.set(0, -Math.PI / 2, 0);
+    } else {
+      post.visible = pull.length() > 0;
+      post.quaternion.setFromUnitVectors(new Vector3(1, 0, 0), pull.normalize());
+    }
     const ball = this.add(ring([0, 0], 0, 0.09), this.material(mass, 0.9, true), 0);
     ball.position.copy(this.ballPlace.set(x, y, height));
     ball.onBeforeRender = (_renderer, _scene, camera) => {
@@ -188,6 +208,16 @@ function flat(points: Point[], index: number[]): BufferGeometry {
 /** A convex polygon. */
 function fan(points: Point[]): BufferGeometry {
   return flat(points, points.slice(2).flatMap((_, i) => [0, i + 1, i + 2]));
+}
+
+/** From the origin along x: two crossed blades with points, seen from every side. */
+function arrow(length: number): BufferGeometry {
+  const blade = (turn: number) => {
+    const outline: Point[] = [[0, 0.03], [0, -0.03], [length, -0.03], [length, 0.03]];
+    const head: Point[] = [[length, 0.16], [length, -0.16], [length + 0.35, 0]];
+    return [fan(outline), fan(head)].map((part) => part.rotateX(turn));
+  };
+  return mergeGeometries([...blade(0), ...blade(Math.PI / 2)]);
 }
 
 function band(a: Point, b: Point, half: number): BufferGeometry {

@@ -4,8 +4,14 @@ import { Matrix4, Vector3 } from 'three';
 import type { Point } from '../core/types';
 import type { EditedRobot } from '../model/edited_robot';
 
+/** How a robot that falls is shown: from 0 seconds on, until it lies still. */
+export interface Motion {
+  isOver(seconds: number): boolean;
+  matrix(seconds: number): Matrix4;
+}
+
 /** A robot that turns over an edge of its support polygon until it lies. Lengths in cells. */
-export class Topple {
+export class Topple implements Motion {
   private readonly origin: Vector3;
   private readonly axis: Vector3;
   private readonly angleMax: number;
@@ -21,7 +27,6 @@ export class Topple {
     this.acceleration = 2.6;
   }
 
-  /** From 0 at the beginning; false when it lies still. */
   isOver(seconds: number): boolean {
     return seconds > Math.sqrt((2 * this.angleMax) / this.acceleration) + 1.1;
   }
