@@ -227,7 +227,7 @@ function begin(): void {
       void take(bench, app.stage, button.dataset.save!);
     };
   }
-  void openFirst(bench, keeper).then(showReady);
+  void openFirst(app, keeper).then(showReady);
 }
 
 const showReady = () => document.documentElement.classList.add('ready');

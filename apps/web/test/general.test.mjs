@@ -4,10 +4,12 @@
 // Any module, any support, any load: lattices as tables, building with them, obstacles, slopes, loads.
 // Expected values are those of statics.
 import assert from 'node:assert/strict';
-import { readFileSync } from 'node:fs';
+import { readFileSync, writeFileSync } from 'node:fs';
+import path from 'node:path';
 import { after, before, test } from 'node:test';
 import {
-  clickFace, count, dropFile, figures, launch, message, newContext, openExample, openPage, settled, verdict,
+  clickFace, count, dropFile, figures, launch, message, newContext, openExample, openPage, pageFile, settled, temporaryFolder,
+  verdict,
 } from './browser.mjs';
 
 let browser;
@@ -262,8 +264,8 @@ test('obstacles are placed, removed, taken back and saved; boxes fall apart arou
 test('a cube on a slope slides where friction is less than its tangent', async () => {
   const page = await openPage(browser);
   await begin(page, 'cubic', [[0, 0, 0]]);
-  await page.getByLabel('Friction of the floor').fill('0.5');
-  await page.getByLabel('Friction of the floor').press('Enter');
+  await page.getByLabel('Floor’s friction').fill('0.5');
+  await page.getByLabel('Floor’s friction').press('Enter');
   for (const [angle, holds] of [[20, true], [26, true], [27, false], [40, false]]) {
     await page.getByLabel('Slope').fill(String(angle));
     await page.getByLabel('Slope').press('Enter');
@@ -339,8 +341,8 @@ test('a load is put on a module and counts as statics say; removing the module t
   assert.ok(Math.abs((await ratio()) - (4 + WEIGHT) / 11.98) < 6e-4, 'force and weight pull at it');
   await page.evaluate(() => globalThis.holdfast.app.point([0, 0, 2]));
   assert.match(await page.textContent('#details'), /force \(0, 0, -4\) N/);
-  await page.getByLabel('Mass of the module').fill('0.5');
-  await page.getByLabel('Mass of the module').press('Enter');
+  await page.getByLabel('Own mass').fill('0.5');
+  await page.getByLabel('Own mass').press('Enter');
   await clickFace(page, [0, 0, 2], [1, 0, 0]);
   assert.ok(Math.abs((await ratio()) - (4 + 0.5 * 9.81) / 11.98) < 6e-4, 'and a mass of its own');
   const saved = await savedJson(page);
@@ -456,3 +458,38 @@ for (const name of ['catom_pyramid', 'disc_arch', 'prism_wall', 'slope', 'slot']
     assert.deepEqual(page.faults, []);
   });
 }
+
+test('the collapse that the program has found is shown as a motion, and belongs to that robot alone', async () => {
+  const folder = temporaryFolder();
+  const file = path.join(folder, 'collapse.html');
+  const modules = [{ cell: [0, 0, 0], fixed: true }, [1, 0, 0], [2, 0, 0]];
+  const structure = JSON.stringify({ format: 'holdfast-structure', version: 1, name: 'collapse', support_z: -5, modules });
+  // The connection of the last two opens: the last one turns about the lower edge of the face between them.
+  const velocities = [[0, 0, 0, 0, 0, 0], [0, 0, 0, 0, 0, 0], [0.5, 0, -0.5, 0, 0.025, 0]];
+  const limit = { factor: 12.5, yields: [{ a: [1, 0, 0], b: [2, 0, 0], limit: 'opens' }], velocities };
+  const start = JSON.stringify({ structure, name: 'collapse', limit });
+  writeFileSync(file, readFileSync(pageFile, 'utf8').replace('id="holdfast-start">null<', () => `id="holdfast-start">${start}<`));
+  const page = await openPage(browser, { file });
+  assert.match(await page.innerText('#limit'), /No forces balance more than 12\.50 times these loads/);
+  await page.click('#collapse');
+  const moved = await page.evaluate(async () => {
+    const { app, bench } = globalThis.holdfast;
+    let most = 0;
+    const { view } = app;
+    const at = view.instances[bench.robot.slot([2, 0, 0])];
+    const motion = [...view.modules.motions.slice(3 * at, 3 * at + 3)];
+    const still = [...view.modules.motions.slice(0, 3 * at)];
+    while (app.stage.motions.some((move) => move(performance.now()))) {
+      most = Math.max(most, view.exaggeration);
+      await new Promise((done) => setTimeout(done, 50));
+    }
+    return { motion, still, most, after: view.exaggeration };
+  });
+  // In cells of 40 mm: as far as the program says, then magnified until the fastest goes one cell.
+  assert.deepEqual(moved.motion.map((value) => Math.round(value * 40 * 1e6) / 1e6), [0.5, 0, -0.5]);
+  assert.ok(moved.still.every((value) => value === 0));
+  assert.ok(moved.most > 35 && moved.most <= 40 && moved.after === 0, JSON.stringify(moved));
+  await page.evaluate(() => globalThis.holdfast.bench.edit('another', [[3, 0, 0]], 0));
+  assert.equal(await page.isVisible('#limit'), false, 'nothing is known of another robot');
+  assert.deepEqual(page.faults, []);
+});

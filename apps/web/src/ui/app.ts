@@ -8,6 +8,7 @@ import type { Workbench } from '../model/workbench';
 import type { ScaleName } from '../view/colours';
 import { FacetView } from '../view/facets';
 import { Ground } from '../view/ground';
+import { LoadView } from '../view/loads';
 import { ObstacleView } from '../view/obstacles';
 import { RobotView } from '../view/robot_view';
 import { Stage } from '../view/stage';
@@ -38,6 +39,7 @@ export class App {
   private readonly ground = new Ground();
   private readonly obstacles = new ObstacleView();
   private readonly facets = new FacetView();
+  private readonly loads = new LoadView();
   private readonly toppling = new Toppling(this.stage, this.ground);
   private readonly judge = new Judge((finding) => this.found(finding));
   private lateShow = 0;
@@ -48,6 +50,7 @@ export class App {
   constructor(readonly bench: Workbench) {
     this.whereNext = new WhereNext(bench, this.view);
     bench.robotListeners.push((what) => this.changed(what));
+    this.stage.robot.add(this.loads.group);
     this.stage.scene.add(this.ground.group, this.obstacles.group, this.facets.mesh);
     this.stage.followers.push(() =>
       placeLabels(this.stage, this.view, bench.robot, this.toppling.isRunning ? undefined : this.finding),
@@ -181,6 +184,7 @@ export class App {
     this.ground.place(robot.floorHeight, middle, reach, robot.hasFloor);
     this.ground.show(robot, finding?.answer?.stability);
     this.obstacles.show(robot);
+    this.loads.show(robot);
     this.facets.show(robot, judged);
     showFacetLegend(robot, finding);
     this.whereNext.paint();
@@ -208,7 +212,7 @@ export class App {
   }
 
   private setTheme(): void {
-    setTheme(this.view, this.ground, this.obstacles);
+    setTheme(this.view, this.ground, [this.obstacles, this.loads]);
     this.showRobot();
   }
 }

@@ -113,7 +113,7 @@ function gravityFields(bench: Workbench): (() => void)[] {
       set: (value = 0) => setSlope({ angle: value }),
     }),
     addField(place, {
-      label: 'Downhill, from +x to +y',
+      label: 'Downhill from +x',
       unit: '°',
       get: () => {
         const { angle, downhill } = slopeOf(bench.robot.gravity);
@@ -143,7 +143,7 @@ function supportFields(bench: Workbench): (() => void)[] {
   return [
     () => (floor.checked = bench.robot.hasFloor),
     addField(place, {
-      label: 'Friction of the floor',
+      label: 'Floor’s friction',
       unit: '',
       otherwise: 'no slip',
       get: () => bench.robot.surroundings.floor?.friction,
@@ -152,7 +152,7 @@ function supportFields(bench: Workbench): (() => void)[] {
       ),
     }),
     addField(place, {
-      label: 'Friction of new obstacles',
+      label: 'Obstacles’ friction',
       unit: '',
       otherwise: 'no slip',
       get: () => bench.friction,
@@ -166,7 +166,7 @@ function burdenFields(bench: Workbench): (() => void)[] {
   const change = (part: Partial<typeof bench.burden>) => bench.setBurden({ ...bench.burden, ...part });
   const shows = [
     addField(place, {
-      label: 'Mass of the module',
+      label: 'Own mass',
       unit: 'kg',
       otherwise: 'as all',
       get: () => bench.burden.mass,

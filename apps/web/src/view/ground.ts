@@ -12,9 +12,9 @@ import {
   Vector3,
   type Matrix4,
 } from 'three';
-import { mergeGeometries } from 'three/examples/jsm/utils/BufferGeometryUtils.js';
 import type { Point, Stability } from '../core/types';
 import type { EditedRobot } from '../model/edited_robot';
+import { arrow } from './arrow';
 
 /** The ground: a grid, the support polygon, the centre of mass above it, the edge of toppling. */
 
@@ -208,16 +208,6 @@ function flat(points: Point[], index: number[]): BufferGeometry {
 /** A convex polygon. */
 function fan(points: Point[]): BufferGeometry {
   return flat(points, points.slice(2).flatMap((_, i) => [0, i + 1, i + 2]));
-}
-
-/** From the origin along x: two crossed blades with points, seen from every side. */
-function arrow(length: number): BufferGeometry {
-  const blade = (turn: number) => {
-    const outline: Point[] = [[0, 0.03], [0, -0.03], [length, -0.03], [length, 0.03]];
-    const head: Point[] = [[length, 0.16], [length, -0.16], [length + 0.35, 0]];
-    return [fan(outline), fan(head)].map((part) => part.rotateX(turn));
-  };
-  return mergeGeometries([...blade(0), ...blade(Math.PI / 2)]);
 }
 
 function band(a: Point, b: Point, half: number): BufferGeometry {

@@ -87,6 +87,7 @@ export class RobotView {
   private judged?: Judged;
   private loads?: ModuleLoads;
   private hasFaces = false;
+  private mechanism?: Float64Array;
   scale: ScaleName = 'paper';
   /** Colours of modules that have their own, by slot; the trace player's. */
   paintOver?: (slot: number) => Rgb | undefined;
@@ -278,25 +279,41 @@ export class RobotView {
     return isBroken ? brokenColour(this.scale) : loadColour(this.scale, ratio);
   }
 
+  /** Velocities of a collapse in place of displacements, six for each slot, and modules that give way. */
+  showMechanism(mechanism: Float64Array | undefined, yielding: readonly number[]): void {
+    const isYielding = new Set(yielding);
+    this.mechanism = mechanism;
+    this.paintOver = mechanism && ((slot) => (isYielding.has(slot) ? brokenColour(this.scale) : undefined));
+    this.placeMotions();
+    this.modules.update(this.drawn.length, 'motion', 'turn');
+    this.paint();
+  }
+
   /** Displacements in cells. */
   private placeMotions(): void {
     const { motions, turns } = this.modules;
+    if (this.mechanism) {
+      const { mechanism } = this;
+      this.drawn.forEach((slot, i) => this.setMotion(i, mechanism, MOTION_FIELDS * slot));
+      return;
+    }
     const displacements = this.judged?.answer.displacements;
     if (!displacements?.length || this.judged?.answer.verdict === 'unstable') {
       motions.fill(0, 0, 3 * this.drawn.length);
       turns.fill(0, 0, 3 * this.drawn.length);
       return;
     }
-    const pitch = this.robot!.pitchMm;
     const moduleOf = new Int32Array(this.judged!.slots.length);
     this.judged!.slots.forEach((slot, module) => (moduleOf[slot] = module));
-    this.drawn.forEach((slot, i) => {
-      const at = MOTION_FIELDS * moduleOf[slot];
-      for (let k = 0; k < 3; ++k) {
-        motions[3 * i + k] = displacements[at + k] / pitch;
-        turns[3 * i + k] = displacements[at + 3 + k];
-      }
-    });
+    this.drawn.forEach((slot, i) => this.setMotion(i, displacements, MOTION_FIELDS * moduleOf[slot]));
+  }
+
+  private setMotion(instance: number, numbers: Float64Array, at: number): void {
+    const pitch = this.robot!.pitchMm;
+    for (let k = 0; k < 3; ++k) {
+      this.modules.motions[3 * instance + k] = numbers[at + k] / pitch;
+      this.modules.turns[3 * instance + k] = numbers[at + 3 + k];
+    }
   }
 
   private drawnPlace(slot: number, module: number): Vector3 {
