@@ -188,14 +188,36 @@ cmp -s back.json direct.json || fault "conversion to XML and back changes the st
 expect_exit 1 check there.xml
 expect_exit 64 convert "$overload" there.txt
 
-# Version 2 is converted, and refused by name where it cannot be computed yet.
+# Version 2 is converted there and back, and refused by name where it cannot be computed yet.
 printf '%s' '{"format": "holdfast-structure", "version": 2, "modules": [[0,0,0]],' \
-  '"obstacles": [{"cells": [[1,0,0]]}]}' >wall.json
+  '"obstacles": [{"cells": [[1,0,0]]}, {"from": [-1,0,0], "to": [-1,2,0], "hold": "bonded"}],' \
+  '"loads": [{"cell": [0,0,0], "force_n": [0,0,-1]}]}' >wall.json
+expect_exit 0 convert wall.json wall.xml
+expect_line wall.xml '<obstacle position="2,0,0" */>'
+expect_exit 0 convert wall.xml wall_back.json
 expect_exit 0 convert wall.json wall_again.json
-expect_line wall_again.json '"obstacles"'
-expect_refusal "/obstacles: obstacles cannot be computed with yet" wall.json
-expect_exit 65 convert wall.json wall.xml
-[ ! -e wall.xml ] || fault "a structure that XML has no words for was written as XML"
+cmp -s wall_back.json wall_again.json || fault "conversion to XML and back changes obstacles"
+printf '%s' '{"format": "holdfast-structure", "version": 2, "modules": [[0,0,0]],' \
+  '"steps": [{"attach": [[1,0,0]]}]}' >plan.json
+expect_refusal "/steps: a plan of steps cannot be computed yet" plan.json
+printf '%s' '{"format": "holdfast-structure", "version": 2, "modules": [[0,0,0]],' \
+  '"obstacles": [{"from": [-1000,0,2], "to": [1000,100,2]}]}' >ceiling.json
+expect_exit 0 convert ceiling.json ceiling.xml
+expect_line err 'large obstacles VisibleSim is shown the first corner only'
+
+# VisibleSim does not say which modules its files are for.
+printf '%s' '<world><blockList><block position="0,0,0" orientation="1"/>' \
+  '<block position="0,0,1" orientation="2"/></blockList></world>' >catoms.xml
+expect_exit 0 convert catoms.xml catoms.json
+expect_line err 'note: .* orientation'
+expect_exit 0 convert --lattice catoms3D catoms.xml catoms.json
+expect_line catoms.json '"lattice": "face-centred"'
+expect_exit 64 convert --lattice fcc catoms.xml catoms.json
+expect_line err 'allowed are cubic, face-centred'
+expect_exit 64 check --lattice datoms catoms.xml
+expect_line err 'skewed'
+expect_exit 65 check --lattice hexagonal catoms.json
+expect_line err "/lattice: the lattice is 'face-centred' here"
 
 # Named structures, large ones, bonded supports.
 expect_exit 0 generate cube 3

@@ -16,6 +16,7 @@ namespace {
 using verdict::Verdict;
 
 struct Options {
+  io::ReadOptions reading;
   std::vector<std::string> files;
   std::string json;
   std::string connections = "all";
@@ -58,7 +59,7 @@ class CheckRun {
   bool shows_text() const { return !options_.is_quiet && options_.json != "-"; }
 
   void check_file(const std::string& file) {
-    const auto structure = load_with_notes(file, options_.thread_count);
+    const auto structure = load_with_notes(file, options_.reading, options_.thread_count);
     if (!structure) {
       report_error(structure.error(), file);
       return;
@@ -273,6 +274,7 @@ Command add_check(CLI::App& app) {
       "check", "Say whether a structure holds with its planned modules attached");
   add_required(*command, "FILE", options->files,
                "Structures, VisibleSim XML or holdfast JSON; - is standard input");
+  add_reading(*command, options->reading);
   const auto add_output = [&](const char* name, std::string& path, const char* help) {
     command->add_option(name, path, help)->type_name("FILE");
   };

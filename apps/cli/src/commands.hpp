@@ -68,9 +68,26 @@ inline void print_notes(std::span<const std::string> notes, const std::string& f
   }
 }
 
+/// The option of commands that read structures, for what a file leaves open.
+inline void add_reading(CLI::App& command, io::ReadOptions& options) {
+  command
+      .add_option_function<std::string>(
+          "--lattice",
+          [&options](const std::string& name) { options.lattice = io::find_lattice(name).value(); },
+          "Lattice of files that do not say it, such as VisibleSim's: cubic, face-centred, "
+          "hexagonal, hexagonal-prism, or VisibleSim's name of the modules, such as catoms3D")
+      ->type_name("NAME")
+      ->check([](const std::string& name) {
+        const auto found = io::find_lattice(name);
+        return found ? std::string() : found.error().message;
+      });
+}
+
 /// Reads a structure and prints its notes. 0 threads: as many as the machine has cores.
-inline base::Result<Structure> load_with_notes(const std::string& file, int thread_count = 0) {
-  auto structure = load_file(file, thread_count);
+inline base::Result<Structure> load_with_notes(const std::string& file,
+                                               const io::ReadOptions& options = {},
+                                               int thread_count = 0) {
+  auto structure = load_file(file, thread_count, options);
   if (structure) {
     print_notes(structure.value().warnings, file);
   }

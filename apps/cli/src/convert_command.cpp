@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <memory>
 
 #include "commands.hpp"
@@ -11,9 +12,22 @@ namespace holdfast::cli {
 namespace {
 
 struct Options {
+  io::ReadOptions reading;
   std::string from;
   std::string to;
 };
+
+/// Notes obstacles of which VisibleSim is shown a corner only.
+void note_large_boxes(const io::Document& document, const Options& options) {
+  const auto count = std::ranges::count_if(document.extension.obstacles, io::is_large_box);
+  if (count > 0) {
+    const std::string note = fmt::format(
+        "of {} large obstacles VisibleSim is shown the first corner only; holdfast reads all of "
+        "them back",
+        count);
+    print_notes({&note, 1}, options.to);
+  }
+}
 
 /// False, and an error, if VisibleSim has no grid for these cells.
 bool note_shift(const io::Document& document, const Options& options) {
@@ -48,7 +62,7 @@ int run(const Options& options) {
   if (!text) {
     return fail(text.error(), options.from);
   }
-  const auto read = io::read_document(text.value());
+  const auto read = io::read_document(text.value(), options.reading);
   if (!read) {
     return fail(read.error(), options.from);
   }
@@ -56,6 +70,9 @@ int run(const Options& options) {
   const io::Document& document = read.value().document;
   if (!to_json && !note_shift(document, options)) {
     return kExitBadInput;
+  }
+  if (!to_json) {
+    note_large_boxes(document, options);
   }
   const auto error =
       write_file(options.to, to_json ? io::write_json(document) : io::write_visiblesim(document));
@@ -71,9 +88,10 @@ Command add_convert(CLI::App& app) {
   add_required(*command, "FROM", options->from,
                "Structure to read, either format; - is standard input");
   add_required(*command, "TO", options->to, "File to write; .xml or .json says the format");
+  add_reading(*command, options->reading);
   command->footer(
-      "Kept are modules, planned steps, parameters, colours and all of VisibleSim's own "
-      "attributes;\nnot kept are comments and the layout of the text.\n"
+      "Kept are modules, steps, parameters, obstacles, loads, colours and all of VisibleSim's own\n"
+      "attributes; not kept are comments and the layout of the text.\n"
       "Exit: 0 written, 64 wrong usage, 65 bad input or not writable.");
   return {command, [options] { return run(*options); }};
 }

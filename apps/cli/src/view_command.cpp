@@ -12,6 +12,7 @@ namespace holdfast::cli {
 namespace {
 
 struct Options {
+  io::ReadOptions reading;
   std::string file;
   std::string out;
   bool stays_closed = false;
@@ -54,7 +55,7 @@ int run(const Options& options) {
   if (complain_of_clash({&options.file, 1}, {{"--out", options.out}})) {
     return kExitUsage;
   }
-  const auto structure = load_with_notes(options.file);
+  const auto structure = load_with_notes(options.file, options.reading);
   if (!structure) {
     return fail(structure.error(), options.file);
   }
@@ -82,6 +83,7 @@ Command add_view(CLI::App& app) {
       app.add_subcommand("view", "Open a structure in the browser, to look at and to change");
   add_required(*command, "FILE", options->file,
                "Structure, VisibleSim XML or holdfast JSON; - is standard input");
+  add_reading(*command, options->reading);
   command
       ->add_option("--out", options->out,
                    "Write the page there, not into a temporary file; - is standard output")

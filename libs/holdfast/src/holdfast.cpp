@@ -25,8 +25,9 @@ io::ReportEntry entry_of(const Structure& structure, const CheckResult& result) 
 
 std::string_view version() { return kVersion; }
 
-base::Result<Structure> load_text(std::string_view text, std::string_view name, int thread_count) {
-  auto read = io::read_document(text);
+base::Result<Structure> load_text(std::string_view text, std::string_view name, int thread_count,
+                                  const io::ReadOptions& options) {
+  auto read = io::read_document(text, options);
   if (!read) {
     return read.error();
   }
@@ -42,12 +43,13 @@ base::Result<Structure> load_text(std::string_view text, std::string_view name, 
                    .warnings = std::move(warnings)};
 }
 
-base::Result<Structure> load_file(const std::filesystem::path& path, int thread_count) {
+base::Result<Structure> load_file(const std::filesystem::path& path, int thread_count,
+                                  const io::ReadOptions& options) {
   const auto text = read_file(path);
   if (!text) {
     return text.error();
   }
-  return load_text(text.value(), path.stem().string(), thread_count);
+  return load_text(text.value(), path.stem().string(), thread_count, options);
 }
 
 base::Result<io::Document> generate(std::string_view family, std::size_t size) {

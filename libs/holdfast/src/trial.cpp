@@ -39,20 +39,18 @@ std::vector<base::Cell> free_cells(const model::RobotSpec& spec) {
   std::vector<base::Cell> free;
   std::set_difference(beside.begin(), beside.end(), taken.begin(), taken.end(),
                       std::back_inserter(free));
+  const model::ObstacleIndex obstacles(spec.obstacles);
+  std::erase_if(free, [&](const base::Cell& cell) {
+    return obstacles.find(cell) != model::CellIndex::kNone;
+  });
   return free;
 }
 
 verdict::Assessment first_look(const model::Robot& robot) {
-  verdict::Assessment assessment;
-  assessment.simplified = verdict::assess_rigid_body(robot);
-  assessment.is_stable = assessment.simplified.is_stable;
-  const bool is_held = robot.fixed_count() > 0 || robot.has_bonded_facets();
-  const bool is_flat = verdict::is_on_flat_floor(robot);
-  assessment.stability_rule = is_held   ? verdict::StabilityRule::kHeld
-                              : is_flat ? verdict::StabilityRule::kPolygon
-                                        : verdict::StabilityRule::kContactForces;
-  const bool topples = is_flat && !is_held && !assessment.is_stable;
-  assessment.verdict = topples ? verdict::Verdict::kUnstable : verdict::Verdict::kUndecided;
+  verdict::Assessment assessment = verdict::assess_rigidly(robot);
+  const bool is_open =
+      assessment.is_stable || assessment.rigid.answer == limit::RigidAnswer::kUndecided;
+  assessment.verdict = is_open ? verdict::Verdict::kUndecided : verdict::Verdict::kUnstable;
   return assessment;
 }
 

@@ -5,6 +5,7 @@
 #include <array>
 #include <iterator>
 #include <string>
+#include <utility>
 
 #include "connection_list.hpp"
 #include "holdfast/io/report.hpp"
@@ -25,10 +26,19 @@ void append(std::string& out, Number number) {
   fmt::format_to(std::back_inserter(out), FMT_COMPILE("{},"), number);
 }
 
-/// The axis along which the second module of a connection lies, always in its positive direction.
-const char* axis_name(base::Direction direction) {
-  constexpr std::array<const char*, 3> kAxes = {"+x,", "+y,", "+z,"};
-  return kAxes[static_cast<std::size_t>(base::index(direction) / 2)];
+/// The step that leads to the second module, in axial coordinates: "+x" and so on along one of
+/// them, as between cubes; else "-x+z" and the like.
+std::string step_name(const base::Lattice& lattice, base::Direction direction) {
+  const base::Cell& step = lattice.steps[static_cast<std::size_t>(base::index(direction))];
+  std::string name;
+  for (const auto& [coordinate, letter] :
+       {std::pair{step.x, 'x'}, std::pair{step.y, 'y'}, std::pair{step.z, 'z'}}) {
+    if (coordinate != 0) {
+      name += coordinate > 0 ? '+' : '-';
+      name += letter;
+    }
+  }
+  return name;
 }
 
 void append_row(std::string& out, const model::Robot& robot, std::size_t connection,
@@ -39,7 +49,8 @@ void append_row(std::string& out, const model::Robot& robot, std::size_t connect
     append(out, cell.y);
     append(out, cell.z);
   }
-  out += axis_name(robot.connections()[connection].direction);
+  out += step_name(robot.lattice(), robot.connections()[connection].direction);
+  out += ',';
   for (const double number : {result.load_ratio, result.axial_n, result.bending_nmm, result.shear_n,
                               result.torsion_nmm}) {
     append(out, number);

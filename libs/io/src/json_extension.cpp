@@ -99,10 +99,11 @@ void read_gravity(JsonReading& reading, const Json& value, const Place& place) {
   const std::array<double, 3> gravity = vector(reading, value, place);
   Document& document = reading.document;
   if (!reading.has_failed() && gravity == std::array<double, 3>{}) {
-    reading.fail(place,
-                 "gravity is zero, allowed is a vector: without weight a robot rests on nothing, and "
-                 "there is nothing to hold; where loads are meant to act alone, give a tiny one, "
-                 "such as [0, 0, -1e-9]");
+    reading.fail(
+        place,
+        "gravity is zero, allowed is a vector: without weight a robot rests on nothing, and "
+        "there is nothing to hold; where loads are meant to act alone, give a tiny one, "
+        "such as [0, 0, -1e-9]");
   }
   if (gravity[0] == 0 && gravity[1] == 0 && gravity[2] < 0) {
     document.material.gravity_m_s2 = -gravity[2];
@@ -140,8 +141,7 @@ ColoredObstacle obstacle(JsonReading& reading, const Json& value, const Place& p
       found.cells = cells(reading, member, here);
       is_list = true;
     } else if (key == "hold") {
-      found.touch.hold =
-          static_cast<model::Hold>(read_choice(reading, member, here, kHoldNames));
+      found.touch.hold = static_cast<model::Hold>(read_choice(reading, member, here, kHoldNames));
     } else if (key == "friction") {
       found.touch.friction = read_not_negative(reading, member, here);
     } else if (key == "color") {
@@ -317,9 +317,8 @@ void read_extension_text(Reading& reading, std::string_view text, const Reading:
 
 void check_kinds(JsonReading& reading) {
   Extension& extension = reading.document.extension;
-  std::ranges::sort(extension.own, {}, [](const OwnParameters& own) {
-    return std::pair(own.step, own.module);
-  });
+  std::ranges::sort(extension.own, {},
+                    [](const OwnParameters& own) { return std::pair(own.step, own.module); });
   for (const OwnParameters& own : extension.own) {
     if (!own.kind.empty() &&
         std::ranges::find(extension.kinds, own.kind, &KindEntry::name) == extension.kinds.end()) {

@@ -57,7 +57,8 @@ std::string obstacle_text(const model::Obstacle& obstacle, const std::optional<C
   } else {
     members = {member("cells", cells_text(obstacle.cells))};
   }
-  members.push_back(member("hold", name_text(kHoldNames[static_cast<std::size_t>(obstacle.touch.hold)])));
+  members.push_back(
+      member("hold", name_text(kHoldNames[static_cast<std::size_t>(obstacle.touch.hold)])));
   if (obstacle.touch.friction) {
     members.push_back(member("friction", json_text(*obstacle.touch.friction)));
   }

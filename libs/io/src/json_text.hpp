@@ -56,8 +56,8 @@ void add_plan_members(Items& members, const Extension& extension);
 /// Members of the material that only version 2 has.
 Items material_extension_members(const Extension& extension);
 
-/// An object of the members that VisibleSim XML has no words for: all but the lattice, obstacles and
-/// what modules have of their own; empty if there are none.
+/// An object of the members that VisibleSim XML has no words for: all but the lattice, obstacles
+/// and what modules have of their own; empty if there are none.
 std::string extension_text(const Extension& extension);
 
 /// A module's own parameters, as members of it.

@@ -40,10 +40,9 @@ base::Result<base::Lattice> find_lattice(std::string_view name) {
   if (name == kUnknownSimulatedModules) {
     return base::Error{base::ErrorCode::kUnsupported, kNoDatoms, ""};
   }
-  return base::Error{base::ErrorCode::kBadInput,
-                     fmt::format("the lattice {} is unknown, allowed are {}", excerpt(name),
-                                 all_names()),
-                     ""};
+  return base::Error{
+      base::ErrorCode::kBadInput,
+      fmt::format("the lattice {} is unknown, allowed are {}", excerpt(name), all_names()), ""};
 }
 
 }  // namespace holdfast::io

@@ -3,8 +3,8 @@
 //
 // VisibleSim's <obstacleList>: an <obstacle position color> for each cell. What it has no words for
 // is in attributes of ours. An <obstacle> with one of them begins an obstacle that goes on with all
-// those behind it that have none; so does one of another colour. `to` makes the first cell a corner of a
-// box, and those behind it that lie in the box are there for VisibleSim only.
+// those behind it that have none; so does one of another colour. `to` makes the first cell a corner
+// of a box, and those behind it that lie in the box are there for VisibleSim only.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -70,10 +70,10 @@ class ObstacleListReader {
     }
     const base::Cell cell = read_cell("position", *position);
     const std::string* const color_text = find_attribute(attributes, "color");
-    const std::optional<Color> color = color_text == nullptr ? std::nullopt : read_color(*color_text);
-    const bool begins = std::ranges::any_of(kBeginning, [&](const char* name) {
-      return find_attribute(attributes, name) != nullptr;
-    });
+    const std::optional<Color> color =
+        color_text == nullptr ? std::nullopt : read_color(*color_text);
+    const bool begins = std::ranges::any_of(
+        kBeginning, [&](const char* name) { return find_attribute(attributes, name) != nullptr; });
     if (begins || extension_.obstacles.empty() || extension_.obstacle_colors.back() != color ||
         (is_box_ && !holds(extension_.obstacles.back(), cell))) {
       begin(cell, attributes);
@@ -108,9 +108,10 @@ class ObstacleListReader {
     const auto triple = parse_triple<std::int32_t>(text);
     const auto is_good = [](auto value) { return kCoordinateRange.contains(value); };
     if (!triple || !std::ranges::all_of(*triple, is_good)) {
-      refuse(fmt::format("{} of <obstacle> is {}, allowed are three integers from {} to {}, such "
-                         "as 1,2,3",
-                         name, excerpt(text), kCoordinateRange.lowest, kCoordinateRange.highest));
+      refuse(
+          fmt::format("{} of <obstacle> is {}, allowed are three integers from {} to {}, such "
+                      "as 1,2,3",
+                      name, excerpt(text), kCoordinateRange.lowest, kCoordinateRange.highest));
       return {};
     }
     return {(*triple)[0], (*triple)[1], (*triple)[2]};

@@ -58,8 +58,8 @@ class Reading {
   /// Keeps it if its verdict is one.
   void take_known_answer(KnownAnswer answer, const Where& where);
 
-  /// The lattice of the document: `named`, what the file says, or what the options say; a failure if
-  /// these differ, or if there is no lattice of that name. False if neither says anything.
+  /// The lattice of the document: `named`, what the file says, or what the options say; a failure
+  /// if these differ, or if there is no lattice of that name. False if neither says anything.
   bool take_lattice(std::optional<std::string_view> named, const ReadOptions& options,
                     const Where& where);
 

@@ -159,7 +159,8 @@ std::string reason_text(const model::Robot& robot, const verdict::Reason& reason
           n[2]);
     case ReasonCode::kGapsOpen:
       return fmt::format(
-          "warning: {:.0f} connections open so far that contacts of power and data part; the worst, "
+          "warning: {:.0f} connections open so far that contacts of power and data part; the "
+          "worst, "
           "{}, by {:.3g} mm at its edge where {:.3g} are allowed",
           n[0], connection_text(robot, n[1]), n[2], n[3]);
     case ReasonCode::kVerdictOfTheRobot:

@@ -6,6 +6,7 @@
 
 #include "connection_list.hpp"
 #include "holdfast/io/report.hpp"
+#include "holdfast/verdict/connection_law.hpp"
 #include "ordered_blocks.hpp"
 
 namespace holdfast::io {
@@ -118,8 +119,19 @@ void write_stability(JsonStream& json, const verdict::Assessment& assessment) {
   json.end_object();
 }
 
-void write_connection(JsonStream& json, const model::Robot& robot, std::size_t connection,
-                      const verdict::ConnectionResult& result) {
+/// The ratio of a limit; none if it is unlimited.
+std::optional<double> ratio_of(const std::array<double, model::kLimitCount>& ratios,
+                               model::Limit limit) {
+  const double ratio = ratios[static_cast<std::size_t>(limit)];
+  return ratio == -model::ConnectorLaw::kUnlimited ? std::nullopt : std::optional(ratio);
+}
+
+void write_connection(JsonStream& json, const model::Robot& robot,
+                      const verdict::ConnectionLaws& laws, std::size_t connection,
+                      const verdict::Assessment& assessment) {
+  const verdict::ConnectionResult& result = assessment.connections[connection];
+  const model::Connection& pair = robot.connections()[connection];
+  const auto ratios = laws.limit_ratios(pair, result);
   const auto [a, b] = model::ends(robot, connection);
   json.begin_object();
   json.key("a");
@@ -131,6 +143,11 @@ void write_connection(JsonStream& json, const model::Robot& robot, std::size_t c
   json.member("bending_nmm", result.bending_nmm);
   json.member("shear_n", result.shear_n);
   json.member("torsion_nmm", result.torsion_nmm);
+  json.member("limit", model::name(laws.limit(pair, result)));
+  json.member("shear_ratio", ratio_of(ratios, model::Limit::kShears));
+  json.member("torsion_ratio", ratio_of(ratios, model::Limit::kTwists));
+  json.member("gap_mm", laws.gap_mm(pair, assessment.equilibrium.displacement,
+                                    assessment.equilibrium.displacement_low));
   json.end_object();
 }
 
@@ -306,11 +323,12 @@ class Writer {
   void write_connections() {
     const verdict::Assessment& assessment = *entry_.assessment;
     const ConnectionList list(assessment, options_.connections);
+    const verdict::ConnectionLaws laws(*entry_.robot);
     json_.key("connections");
     write_list(
         list.size(),
         [&](JsonStream& json, std::size_t i) {
-          write_connection(json, *entry_.robot, list[i], assessment.connections[list[i]]);
+          write_connection(json, *entry_.robot, laws, list[i], assessment);
         },
         options_.progress);
   }

@@ -46,10 +46,10 @@ void set(ConnectorLaw& law, std::string_view key, double value, base::ConnectorC
 /// What a parameter says for a direction; none if nothing.
 std::optional<double> value_for(const ConnectorParameter& parameter, std::size_t direction,
                                 base::ConnectorClass direction_class) {
-  const std::size_t index = parameter.spread == Spread::kAll       ? 0
-                            : parameter.spread == Spread::kClasses ? static_cast<std::size_t>(
-                                                                         direction_class)
-                                                                   : direction / 2;
+  const std::size_t index = parameter.spread == Spread::kAll ? 0
+                            : parameter.spread == Spread::kClasses
+                                ? static_cast<std::size_t>(direction_class)
+                                : direction / 2;
   return index < parameter.values.size() ? parameter.values[index] : std::nullopt;
 }
 
@@ -86,8 +86,8 @@ const base::Cell* find_cell(const Document& document, const OwnParameters& own) 
   if (own.step == 0 && own.module < document.modules.size()) {
     return &document.modules[own.module].cell;
   }
-  const bool is_planned = own.step == 1 && !document.steps.empty() &&
-                          own.module < document.steps.front().size();
+  const bool is_planned =
+      own.step == 1 && !document.steps.empty() && own.module < document.steps.front().size();
   return is_planned ? &document.steps.front()[own.module].cell : nullptr;
 }
 

@@ -157,8 +157,8 @@ bool counts_in_cells(const pugi::xml_node& box) {
 std::array<IndexRange, 3> read_box_ranges(XmlReading& reading, const pugi::xml_node& box) {
   constexpr double kFar = std::numeric_limits<double>::infinity();
   const bool in_cells = counts_in_cells(box);
-  const Lengths pitch = in_cells ? Lengths{1, 1, 1}
-                                 : read_lengths(reading, box.parent(), "blockSize", kBlockSize);
+  const Lengths pitch =
+      in_cells ? Lengths{1, 1, 1} : read_lengths(reading, box.parent(), "blockSize", kBlockSize);
   const Lengths origin = read_lengths(reading, box, "boxOrigin", {0, 0, 0});
   const Lengths size = read_lengths(reading, box, "boxSize", {kFar, kFar, kFar});
   if (reading.document.extension.lattice != base::kCubic && !in_cells) {
@@ -224,9 +224,11 @@ void read_block_list(XmlReading& reading, const pugi::xml_node& list) {
       read_row(reading, child, plane, modules);
     } else if (name == "blockBox") {
       read_box(reading, child);
-    } else if (name == "csg") {
-      reading.fail(child, "<csg> in <blockList> is not supported: write its modules as <block>",
-                   base::ErrorCode::kUnsupported);
+    } else if (name == "csg" || name == "mesh") {
+      reading.fail(
+          child,
+          fmt::format("<{}> in <blockList> is not supported: write its modules as <block>", name),
+          base::ErrorCode::kUnsupported);
     } else {
       reading.warn_of_unknown_child(child, kBlockListElements);
     }

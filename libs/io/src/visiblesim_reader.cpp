@@ -58,12 +58,14 @@ void read_known_answer(XmlReading& reading, const pugi::xml_node& node) {
 }
 
 /// What only version 2 of holdfast JSON says, but for what VisibleSim or <holdfast> has words for.
+/// The element may be missing.
 void read_extension(XmlReading& reading, const pugi::xml_node& node) {
-  std::string text;
+  std::string text = node ? "" : "{}";
   for (const pugi::xml_node& child : node.children()) {
     text += child.value();
   }
-  read_extension_text(reading, text, [&] { return reading.line(node); });
+  read_extension_text(reading, text,
+                      [&] { return node ? reading.line(node) : std::string(kOwnElement); });
 }
 
 /// <holdfast>: what our writer adds to the file.
@@ -93,7 +95,8 @@ void read_own_element(XmlReading& reading, const pugi::xml_node& node) {
   if (const auto answer = only_child(reading, node, "knownAnswer")) {
     read_known_answer(reading, answer);
   }
-  if (const auto extension = only_child(reading, node, kExtensionElement)) {
+  if (const auto extension = only_child(reading, node, kExtensionElement);
+      extension || !document.extension.own.empty()) {
     read_extension(reading, extension);
   }
   reading.take_back_shift(node);
@@ -140,10 +143,9 @@ void read_lattice(XmlReading& reading, const pugi::xml_node& blocks, const pugi:
     return;
   }
   const auto size = parse_triple<double>(blocks.attribute("blockSize").value());
-  const auto* const modules =
-      std::ranges::find_if(kSimulatedModules, [&](const SimulatedModules& row) {
-        return size && row.block_size_mm == *size;
-      });
+  const auto* const modules = std::ranges::find_if(
+      kSimulatedModules,
+      [&](const SimulatedModules& row) { return size && row.block_size_mm == *size; });
   if (modules != kSimulatedModules.end()) {
     reading.document.extension.lattice = modules->lattice;
     reading.warn(fmt::format("blocks of the size {} are VisibleSim's {}, so the lattice is taken "
@@ -152,9 +154,10 @@ void read_lattice(XmlReading& reading, const pugi::xml_node& blocks, const pugi:
                              lattice_name(modules->lattice)),
                  where);
   } else if (blocks.find_child([](const auto& child) { return child.attribute(kOrientation); })) {
-    reading.warn("blocks have an orientation, as those of VisibleSim's catoms3D have: if they are, "
-                 "they are read as cubes here, and the lattice face-centred is to be asked for",
-                 where);
+    reading.warn(
+        "blocks have an orientation, as VisibleSim's catoms3D have, but are read as cubes: if "
+        "they are catoms, ask for the lattice face-centred (--lattice catoms3D)",
+        where);
   }
 }
 

@@ -147,19 +147,16 @@ void add_modules(pugi::xml_node world, const Document& document, const base::Cel
   }
 }
 
-/// Calls use(cell) for what VisibleSim is shown of an obstacle: all its cells, the one that says the
-/// most first, or of a large box that one only.
+/// Calls use(cell) for what VisibleSim is shown of an obstacle: all its cells, the one that says
+/// the most first, or of a large box that one only.
 template <class Use>
 void for_each_shown(const model::Obstacle& obstacle, const Use& use) {
   if (!obstacle.cells.empty()) {
     std::ranges::for_each(obstacle.cells, use);
     return;
   }
-  const auto& [from, to, cells, touch] = obstacle;
-  const std::int64_t count = (std::int64_t{to.x} - from.x + 1) * (std::int64_t{to.y} - from.y + 1);
-  const bool is_large =
-      count > kBoxCellsMax || count * (std::int64_t{to.z} - from.z + 1) > kBoxCellsMax;
-  const base::Cell last = is_large ? from : to;
+  const base::Cell& from = obstacle.from;
+  const base::Cell last = is_large_box(obstacle) ? from : obstacle.to;
   for (std::int32_t z = from.z; z <= last.z; ++z) {
     for (std::int32_t y = from.y; y <= last.y; ++y) {
       for (std::int32_t x = from.x; x <= last.x; ++x) {
@@ -293,6 +290,15 @@ class StringWriter : public pugi::xml_writer {
 
 }  // namespace
 
+bool is_large_box(const model::Obstacle& obstacle) {
+  const auto& [from, to, cells, touch] = obstacle;
+  const auto count = [](std::int32_t first, std::int32_t last) {
+    return std::int64_t{last} - first + 1;
+  };
+  const std::int64_t layer = count(from.x, to.x) * count(from.y, to.y);
+  return cells.empty() && (layer > kBoxCellsMax || layer * count(from.z, to.z) > kBoxCellsMax);
+}
+
 base::Result<base::Cell> visiblesim_shift(const Document& document) {
   base::Cell lowest;
   base::Cell highest;
@@ -302,7 +308,8 @@ base::Result<base::Cell> visiblesim_shift(const Document& document) {
                std::max(highest.z, cell.z)};
   });
   // Every second layer lies as the one below it, whatever the lattice.
-  const std::int32_t up = -lowest.z + (document.extension.lattice == base::kCubic ? 0 : lowest.z & 1);
+  const std::int32_t up =
+      -lowest.z + (document.extension.lattice == base::kCubic ? 0 : lowest.z & 1);
   const base::Cell shift = {-lowest.x, -lowest.y, up};
   const base::Cell end = moved(highest, shift);
   if (std::max({end.x, end.y, end.z, document.support_z + shift.z}) > base::kCoordinateMax) {

@@ -123,8 +123,8 @@ inline constexpr auto kHoldNames = std::to_array<std::string_view>({"contact", "
 
 inline constexpr auto kKnownAnswerKeys =
     std::to_array<std::string_view>({"verdict", "margin_mm", "load_ratio_max", "source"});
-inline constexpr auto kVisibleSimKeys =
-    std::to_array<std::string_view>({"parameters", "world", "block_list", "obstacle_list", "scenery", "targets"});
+inline constexpr auto kVisibleSimKeys = std::to_array<std::string_view>(
+    {"parameters", "world", "block_list", "obstacle_list", "scenery", "targets"});
 inline constexpr auto kPlannedKeys =
     std::to_array<std::string_view>({"cell", "color", "attributes"});
 inline constexpr auto kAllPlannedKeys = joined(kPlannedKeys, kOwnParameterKeys);
@@ -133,14 +133,15 @@ inline constexpr auto kElementKeys =
 
 inline constexpr auto kWorldAttributes = std::to_array<std::string_view>(
     {kGridSize, "gridsize", "windowSize", "maxSimulationTime", "separatorPlane"});
-inline constexpr auto kBlockListAttributes = std::to_array<std::string_view>(
-    {"blockSize", "blocksize", "color", "orientation", "size", "ids", "idseed", "seed", "step", "format"});
+inline constexpr auto kBlockListAttributes =
+    std::to_array<std::string_view>({"blockSize", "blocksize", "color", "orientation", "size",
+                                     "ids", "idseed", "seed", "step", "format"});
 inline constexpr auto kBlockAttributes = std::to_array<std::string_view>(
     {"position", "color", "fixed", "centroid", "solver", "stabilityCheck", "id", "master", "leader",
      "alive", "angle", "orientation", "rotation", "piston", "isTarget", "isWall", kOwnKindAttribute,
      kOwnMassAttribute});
-inline constexpr auto kCellAttributes = std::to_array<std::string_view>(
-    {"position", "color", kOwnKindAttribute, kOwnMassAttribute});
+inline constexpr auto kCellAttributes =
+    std::to_array<std::string_view>({"position", "color", kOwnKindAttribute, kOwnMassAttribute});
 inline constexpr auto kRowAttributes =
     std::to_array<std::string_view>({"line", "plane", "values", "color", kOrientation, "isTarget"});
 inline constexpr auto kBoxAttributes =
@@ -151,10 +152,10 @@ inline constexpr auto kTargetFormats =
 inline constexpr auto kRootElements = std::to_array<std::string_view>(
     {kRootElement, "parameters", "world", "visuals", "vm", "capabilities", "scenario"});
 inline constexpr auto kWorldElements = std::to_array<std::string_view>(
-    {"blockList", "targetList", kOwnElement, kObstacleListElement, "camera", "spotlight", "customization",
-     "capabilities", "targetGrid", "trash", "scenario"});
+    {"blockList", "targetList", kOwnElement, kObstacleListElement, "camera", "spotlight",
+     "customization", "capabilities", "targetGrid", "trash", "scenario"});
 inline constexpr auto kBlockListElements =
-    std::to_array<std::string_view>({"block", "blocksLine", "blockBox", "csg"});
+    std::to_array<std::string_view>({"block", "blocksLine", "blockBox", "csg", "mesh"});
 inline constexpr auto kTargetElements =
     std::to_array<std::string_view>({"cell", "targetLine", "csg", "method"});
 

@@ -88,7 +88,7 @@ TEST(BadInput, beyond_the_size_limit_is_refused) {
       static_cast<char*>(std::calloc(kFileBytesMax + 1, 1)), std::free);
   ASSERT_TRUE(bytes);
   for (const auto& read : {read_json, read_visiblesim}) {
-    const auto result = read({bytes.get(), kFileBytesMax + 1});
+    const auto result = read({bytes.get(), kFileBytesMax + 1}, {});
     ASSERT_FALSE(result);
     EXPECT_EQ(result.error().code, base::ErrorCode::kUnreadable);
     EXPECT_NE(result.error().message.find("1073741825 bytes"), std::string::npos);

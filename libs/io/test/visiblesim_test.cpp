@@ -253,12 +253,10 @@ TEST(VisibleSim, scenery_is_kept_with_everything_in_it) {
   EXPECT_TRUE(result.warnings.empty());
 }
 
-TEST(VisibleSim, obstacles_and_unknown_elements_are_kept_and_warned_of) {
-  const std::string text = world("", "<obstacleList/><weather/>");
-  EXPECT_EQ(read(text).document.scenery.size(), 2U);
-  const std::string warnings = warning_of(text);
-  EXPECT_TRUE(contains(warnings, "obstacles are not supported"));
-  EXPECT_TRUE(contains(warnings, "'weather' is unknown"));
+TEST(VisibleSim, unknown_elements_are_kept_and_warned_of) {
+  const std::string text = world("", "<weather/>");
+  EXPECT_EQ(read(text).document.scenery.size(), 1U);
+  EXPECT_TRUE(contains(warning_of(text), "'weather' is unknown"));
 }
 
 TEST(VisibleSim, unknown_attributes_are_kept_and_warned_of_once_per_name) {
@@ -309,14 +307,14 @@ TEST(VisibleSim, knows_every_name_of_visiblesim) {
       "ids=\"MANUAL\" idseed=\"1\" seed=\"1\" step=\"1\" format=\"1\">"
       "<block position=\"0,0,0\" color=\"1,1,1\" fixed=\"1\" centroid=\"1\" solver=\"1\" "
       "stabilityCheck=\"1\" id=\"1\" master=\"1\" leader=\"1\" alive=\"1\" angle=\"1\" "
-      "orientation=\"1\" rotation=\"1\" piston=\"1\" isTarget=\"1\" isWall=\"1\"/>"
+      "orientation=\"1\" rotation=\"1\" isTarget=\"1\" isWall=\"1\"/>"
       "<blocksLine line=\"1\" plane=\"0\" values=\"10\" color=\"1,1,1\" isTarget=\"1\"/>"
       "<blockBox boxOrigin=\"2,2,2\" boxSize=\"1,1,1\" color=\"1,1,1\"/></blockList>"
       "<targetList><target format=\"grid\"><cell position=\"3,3,3\" color=\"1,1,1\"/>"
       "<targetLine line=\"4\" plane=\"4\" values=\"1\"/></target><target format=\"csg\"/>"
       "<target format=\"relativeGrid\"/><target format=\"surface\"/></targetList></world>";
   const ReadDocument result = read(text);
-  EXPECT_EQ(result.document.modules.front().attributes.size(), 13U);
+  EXPECT_EQ(result.document.modules.front().attributes.size(), 12U);
   EXPECT_FALSE(contains(warning_of(text), "did you mean"));
 }
 

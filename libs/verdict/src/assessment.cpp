@@ -7,7 +7,7 @@
 #include <limits>
 #include <utility>
 
-#include "connection_law.hpp"
+#include "holdfast/verdict/connection_law.hpp"
 #include "holdfast/host/team.hpp"
 #include "several_solutions.hpp"
 #include "stability.hpp"
@@ -388,15 +388,6 @@ void add_contact_remarks(Assessment& assessment) {
   }
 }
 
-Assessment begin(const model::Robot& robot) {
-  Assessment assessment;
-  assessment.simplified = assess_rigid_body(robot);
-  assessment.stability_rule = stability_rule(robot);
-  assessment.rigid = rigid_stability(robot, assessment.stability_rule, assessment.simplified);
-  assessment.is_stable = assessment.rigid.holds();
-  return assessment;
-}
-
 /// Of the answers with supports anywhere neither is enough to be safe. Without equilibrium the
 /// model has none.
 void heed_model(const model::Robot& robot, Assessment& assessment) {
@@ -474,7 +465,7 @@ Assessment conclude(const model::Robot& robot, Assessment assessment,
 }
 
 Assessment assess_once(const model::Robot& robot, const solver::EquilibriumOptions& options) {
-  Assessment assessment = begin(robot);
+  Assessment assessment = assess_rigidly(robot);
   assessment.is_stable = assessment.is_stable || options.is_bonded;
   find_equilibrium(robot, options, assessment);
   return conclude(robot, std::move(assessment), options);
@@ -510,6 +501,15 @@ std::vector<solver::EquilibriumOptions> finer_options(const solver::EquilibriumO
 
 }  // namespace
 
+Assessment assess_rigidly(const model::Robot& robot) {
+  Assessment assessment;
+  assessment.simplified = assess_rigid_body(robot);
+  assessment.stability_rule = stability_rule(robot);
+  assessment.rigid = rigid_stability(robot, assessment.stability_rule, assessment.simplified);
+  assessment.is_stable = assessment.rigid.holds();
+  return assessment;
+}
+
 Assessment assess(const model::Robot& robot, const solver::EquilibriumOptions& options) {
   Assessment assessment = assess_once(robot, options);
   if (!is_near_limit(assessment)) {
@@ -528,7 +528,7 @@ Assessment assess(const model::Robot& robot, const solver::EquilibriumOptions& o
 
 Assessment assess_equilibrium(const model::Robot& robot, Equilibrium equilibrium,
                               int thread_count) {
-  Assessment assessment = begin(robot);
+  Assessment assessment = assess_rigidly(robot);
   assessment.equilibrium = std::move(equilibrium);
   assessment.model = model_stability(robot, assessment.equilibrium);
   assessment.contact_model = contact_model(robot, assessment.equilibrium.law);

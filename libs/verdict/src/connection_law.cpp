@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The holdfast authors
 // SPDX-License-Identifier: Apache-2.0
-#include "connection_law.hpp"
+#include "holdfast/verdict/connection_law.hpp"
 
 namespace holdfast::verdict {
 

@@ -33,7 +33,7 @@ const char* name(ReasonCode code) {
                                                                        "falls",
                                                                        "balances",
                                                                        "rigid_undecided",
-                                                                       "model_falls", 
+                                                                       "model_falls",
                                                                        "may_slip",
                                                                        "gaps_open",
                                                                        "loads_together"};

@@ -7,7 +7,7 @@
 #include <limits>
 #include <vector>
 
-#include "connection_law.hpp"
+#include "holdfast/verdict/connection_law.hpp"
 
 namespace holdfast::verdict {
 namespace {

@@ -114,9 +114,7 @@ export class Judge {
       if (!look) {
         return tell(first);
       }
-      if (look.stability.rule !== 'contact-forces') {
-        tell({ ...first, isFirstLook: true });
-      }
+      tell({ ...first, isFirstLook: true });
     }
     const finding = await this.answer(data, false);
     tell(finding.problem === STOPPED && look ? { answer: { ...look, reasons: [STOPPED] } } : finding);

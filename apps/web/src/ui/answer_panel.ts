@@ -50,8 +50,10 @@ function headline(robot: EditedRobot, finding: Finding | undefined): [string, st
     return ['Stable', 'loads to come', 'undecided'];
   }
   if (finding?.answer) {
-    const [word, meaning] = WORDS[finding.answer.verdict];
-    return [word, meaning, finding.answer.verdict];
+    const { verdict, stability } = finding.answer;
+    const [word, meaning] = WORDS[verdict];
+    const falls = verdict === 'unstable' && stability.rule === 'contact-forces';
+    return [word, falls ? 'it falls' : meaning, verdict];
   }
   return finding?.problem ? ['No answer', '', 'none'] : ['…', '', 'none'];
 }
@@ -61,9 +63,12 @@ function reason(robot: EditedRobot, finding: Finding | undefined): string {
     return 'Click the ground to put down the first module.';
   }
   if (finding?.isFirstLook) {
-    return finding.answer!.stability.stable
-      ? 'The centre of mass is above the support polygon.'
-      : 'The centre of mass is not above the support polygon.';
+    const { stable, rule } = finding.answer!.stability;
+    const [yes, no] =
+      rule === 'contact-forces'
+        ? ['Contact forces can hold it.', 'No contact forces balance the loads, or nothing is to spare.']
+        : ['The centre of mass is above the support polygon.', 'The centre of mass is not above the support polygon.'];
+    return stable ? yes : no;
   }
   const sentences = finding?.answer?.reasons.map((text) => `${text[0].toUpperCase()}${text.slice(1)}.`);
   return finding?.problem ?? sentences?.join(' ') ?? '';

@@ -17,14 +17,14 @@ export const enum FacetState {
   kBonded,
 }
 
-/** By FacetState; colours as libs/io draws them. */
+/** By FacetState; colours nearly as libs/io draws them, but seen on dark ground too. */
 export const FACET_LOOKS: readonly { text: string; colour: Rgb; isFilled: boolean }[] = [
   { text: 'touches', colour: [106, 113, 120], isFilled: false },
   { text: 'presses', colour: [23, 112, 143], isFilled: true },
   { text: 'tilts', colour: [194, 106, 0], isFilled: false },
   { text: 'slips', colour: [176, 48, 106], isFilled: true },
-  { text: 'open', colour: [107, 10, 20], isFilled: false },
-  { text: 'bonded', colour: [47, 99, 165], isFilled: true },
+  { text: 'open', colour: [200, 51, 63], isFilled: false },
+  { text: 'bonded', colour: [58, 112, 182], isFilled: true },
 ];
 
 /** As ContactState::code(). */

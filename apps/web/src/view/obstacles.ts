@@ -46,7 +46,7 @@ export class ObstacleView {
       depthWrite: false,
     }),
   );
-  private readonly edges = new LineSegments(new BufferGeometry(), new LineBasicMaterial({ transparent: true, opacity: 0.45 }));
+  private readonly edges = new LineSegments(new BufferGeometry(), new LineBasicMaterial({ transparent: true, opacity: 0.3 }));
   private shown?: { obstacles: readonly Obstacle[]; lattice: Lattice; key: string };
 
   constructor() {

@@ -100,10 +100,11 @@ std::optional<base::Error> write_file(const std::filesystem::path& path,
                                       const std::function<void(std::ostream&)>& write);
 
 /// Reads VisibleSim XML or holdfast JSON and builds the robot with the first planned step. 0
-/// threads: as many as the machine has cores.
+/// threads: as many as the machine has cores. The options say what a file leaves open.
 base::Result<Structure> load_text(std::string_view text, std::string_view name = {},
-                                  int thread_count = 0);
-base::Result<Structure> load_file(const std::filesystem::path& path, int thread_count = 0);
+                                  int thread_count = 0, const io::ReadOptions& options = {});
+base::Result<Structure> load_file(const std::filesystem::path& path, int thread_count = 0,
+                                  const io::ReadOptions& options = {});
 
 /// One of the named structures in which solvers are compared: arm, cube, tower, scaffold, shell,
 /// portal, bridge, growth. Errors: no such family, a size that is not allowed.

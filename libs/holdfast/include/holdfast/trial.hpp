@@ -27,8 +27,8 @@ void add_module(model::RobotSpec& spec, const base::Cell& cell, Role role);
 /// Below the ground there are such cells as well: try_cells() tells where a module can be.
 std::vector<base::Cell> free_cells(const model::RobotSpec& spec);
 
-/// What the rigid body alone says, at once and whatever the size: `unstable` for a robot on a flat
-/// floor that topples, else `undecided`, as no load is known.
+/// What the rigid body alone says, at once and whatever the size: `unstable` for a robot that
+/// topples, else `undecided`, as no load is known.
 verdict::Assessment first_look(const model::Robot& robot);
 
 /// What a robot becomes with one more module.

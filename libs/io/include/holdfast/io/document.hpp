@@ -107,13 +107,14 @@ std::optional<base::Error> find_unsupported(const Document& document);
 
 /// What write_visiblesim adds to every cell and to support_z: VisibleSim knows no cell below 0. The
 /// attribute `shift` of <holdfast> says it, and the reader takes it back. Positions in scenery,
-/// targets and attributes stay as they are. Layers go up by an even number where they are staggered.
-/// Error: the cells reach further than its grid can.
+/// targets and attributes stay as they are. Layers go up by an even number where they are
+/// staggered. Error: the cells reach further than its grid can.
 base::Result<base::Cell> visiblesim_shift(const Document& document);
 
 /// Boxes of obstacles with more cells than this are one <obstacle> in VisibleSim XML, that of their
 /// first corner, with the other corner in an attribute of ours; all others are one for each cell.
 inline constexpr std::int64_t kBoxCellsMax = 10'000;
+bool is_large_box(const model::Obstacle& obstacle);
 
 /// Reading back gives an equal document. Comments and the layout of the text are not kept, and
 /// blocksLine and blockBox are written as single blocks. Where visiblesim_shift is an error, cells

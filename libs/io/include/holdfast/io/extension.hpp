@@ -87,9 +87,9 @@ struct PlanStep {
 
 /// The members of a document that only version 2 has; as it is by default, version 1 says it all.
 struct Extension {
-  base::Lattice lattice = base::kCubic;  ///< One of kNamedLattices.
-  bool has_floor = true;                 ///< Else Document::support_z means nothing.
-  std::optional<double> floor_friction;  ///< None: no slip.
+  base::Lattice lattice = base::kCubic;               ///< One of kNamedLattices.
+  bool has_floor = true;                              ///< Else Document::support_z means nothing.
+  std::optional<double> floor_friction;               ///< None: no slip.
   std::optional<std::array<double, 3>> gravity_m_s2;  ///< None: Material::gravity_m_s2, downwards.
   Connectors connectors;                              ///< Of all modules.
   std::optional<double> foot_mm;  ///< Width of the facets of modules that are no cubes.

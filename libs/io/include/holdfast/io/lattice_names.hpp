@@ -34,14 +34,15 @@ constexpr std::string_view lattice_name(const base::Lattice& lattice) {
 struct SimulatedModules {
   std::string_view name;
   base::Lattice lattice;
-  /// <blockList blockSize> of its examples, mm, if no other kind has the same; else zeros.
+  /// <blockList blockSize> of its examples, mm, if it is not cubic and no other kind has the same;
+  /// else zeros.
   std::array<double, 3> block_size_mm = {};
 };
 
 inline constexpr auto kSimulatedModules =
     std::to_array<SimulatedModules>({{"blinkyBlocks", base::kCubic},
                                      {"slidingCubes", base::kCubic},
-                                     {"smartBlocks", base::kCubic, {25, 25, 11}},
+                                     {"smartBlocks", base::kCubic},
                                      {"catoms3D", base::kFaceCentred},
                                      {"catoms2D", base::kHexagonal, {1, 5, 1}},
                                      {"hexanodes", base::kHexagonalPrism, {50, 50, 12.5}}});

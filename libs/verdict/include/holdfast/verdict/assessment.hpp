@@ -119,6 +119,9 @@ inline constexpr double kLoadRatioTie = 1e-9;
 /// Whether a connection with this load ratio breaks.
 inline bool breaks(double load_ratio) { return load_ratio >= 1 - kLoadRatioTie; }
 
+/// What the rigid body says of a robot, and nothing else: no verdict, no reasons.
+Assessment assess_rigidly(const model::Robot& robot);
+
 /// Seeks the equilibrium of a robot and says what follows from it.
 Assessment assess(const model::Robot& robot, const solver::EquilibriumOptions& options = {});
 

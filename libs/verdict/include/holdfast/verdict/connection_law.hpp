@@ -102,6 +102,16 @@ class ConnectionLaws {
   double load_ratio(const model::Connection& pair, const Vecs& high, const Vecs& low) const;
   ConnectionResult result(const model::Connection& pair, const Vecs& high, const Vecs& low) const;
 
+  /// The limit that a connection's load ratio is of, and the ratios of all its limits.
+  model::Limit limit(const model::Connection& pair, const ConnectionResult& result) const {
+    return model::load_ratio(robot_.connector(pair), force_of(result)).limit;
+  }
+
+  std::array<double, model::kLimitCount> limit_ratios(const model::Connection& pair,
+                                                      const ConnectionResult& result) const {
+    return model::limit_ratios(robot_.connector(pair), force_of(result));
+  }
+
   /// How far the edge of the facet opens, mm; not below 0. The modules are rigid beside their
   /// connection, whose compliance is that of the beam: N / axial stiffness, and the angles by which
   /// the beam bends times the lever. At a corner both angles add up if the law is square.
@@ -110,6 +120,13 @@ class ConnectionLaws {
  private:
   const ConnectionLaw& plain(const model::Connection& pair) const {
     return plain_[static_cast<std::size_t>(base::index(pair.direction)) / 2];
+  }
+
+  static model::ConnectionForce force_of(const ConnectionResult& result) {
+    return {.axial_n = result.axial_n,
+            .bending_nmm = result.bending_nmm,
+            .shear_n = result.shear_n,
+            .torsion_nmm = result.torsion_nmm};
   }
 
   ConnectionResult general_result(const model::Connection& pair, const Vec& p, const Vec& q) const;

@@ -1,0 +1,254 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#include "general_robot.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <set>
+
+#include "holdfast/base/rng.hpp"
+#include "holdfast/model/lattice_beam.hpp"
+
+namespace holdfast::test {
+namespace {
+
+using base::Cell;
+using base::Direction;
+using Matrix = std::array<std::array<double, 3>, 3>;
+using Vector = std::array<double, 3>;
+
+constexpr double kTie = 1e-9;
+
+double dot(const Vector& a, const Vector& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+
+Vector times(const Matrix& matrix, const Vector& vector) {
+  return {dot(matrix[0], vector), dot(matrix[1], vector), dot(matrix[2], vector)};
+}
+
+Direction any_direction(const base::Lattice& lattice, base::Rng& rng) {
+  return static_cast<Direction>(rng.below(static_cast<std::uint64_t>(lattice.direction_count)));
+}
+
+double between(double low, double high, base::Rng& rng) {
+  return low + (high - low) * static_cast<double>(rng.below(1000)) / 1000;
+}
+
+std::vector<Cell> grown(const base::Lattice& lattice, std::size_t count, base::Rng& rng) {
+  std::vector<Cell> cells = {{0, 0, 0}};
+  std::set<Cell> taken = {cells.front()};
+  while (cells.size() < count) {
+    const Cell& from = cells[rng.below(cells.size())];
+    const Cell next = base::neighbour(lattice, from, any_direction(lattice, rng));
+    if (taken.insert(next).second) {
+      cells.push_back(next);
+    }
+  }
+  return cells;
+}
+
+/// Free cells beside the robot, each an obstacle of its own kind.
+std::vector<model::Obstacle> obstacles_beside(const base::Lattice& lattice,
+                                              const std::vector<Cell>& cells, base::Rng& rng) {
+  const std::set<Cell> taken(cells.begin(), cells.end());
+  std::set<Cell> chosen;
+  std::vector<model::Obstacle> obstacles;
+  const std::size_t count = 1 + rng.below(6);
+  const bool may_be_bonded = rng.below(3) == 0;
+  for (int attempt = 0; attempt < 100 && obstacles.size() < count; ++attempt) {
+    const Cell& from = cells[rng.below(cells.size())];
+    const Cell next = base::neighbour(lattice, from, any_direction(lattice, rng));
+    if (taken.contains(next) || !chosen.insert(next).second) {
+      continue;
+    }
+    const bool is_bonded = may_be_bonded && rng.below(2) == 0;
+    obstacles.push_back(
+        {.from = {},
+         .to = {},
+         .cells = {next},
+         .touch = {.hold = is_bonded ? model::Hold::kBonded : model::Hold::kContact}});
+  }
+  return obstacles;
+}
+
+Matrix basis_of(const base::Lattice& lattice) {
+  Matrix columns{};
+  for (int i = 0; i < 3; ++i) {
+    const Cell axial = {i == 0 ? 1 : 0, i == 1 ? 1 : 0, i == 2 ? 1 : 0};
+    const auto place = base::place_of(lattice, axial);
+    for (std::size_t k = 0; k < 3; ++k) {
+      columns[k][static_cast<std::size_t>(i)] = place[k];
+    }
+  }
+  return columns;
+}
+
+Matrix product(const Matrix& a, const Matrix& b) {
+  Matrix c{};
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t j = 0; j < 3; ++j) {
+      for (std::size_t k = 0; k < 3; ++k) {
+        c[i][j] += a[i][k] * b[k][j];
+      }
+    }
+  }
+  return c;
+}
+
+double determinant(const Matrix& m) {
+  return m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1]) -
+         m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0]) +
+         m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0]);
+}
+
+Matrix inverse(const Matrix& m) {
+  const double d = determinant(m);
+  Matrix result{};
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t j = 0; j < 3; ++j) {
+      const std::size_t a = (j + 1) % 3;
+      const std::size_t b = (j + 2) % 3;
+      const std::size_t c = (i + 1) % 3;
+      const std::size_t e = (i + 2) % 3;
+      result[i][j] = (m[a][c] * m[b][e] - m[a][e] * m[b][c]) / d;
+    }
+  }
+  return result;
+}
+
+bool is_orthogonal(const Matrix& m) {
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t j = 0; j < 3; ++j) {
+      if (std::abs(dot(m[i], m[j]) - (i == j ? 1 : 0)) > kTie) {
+        return false;
+      }
+    }
+  }
+  return true;
+}
+
+}  // namespace
+
+model::RobotSpec general_robot(const base::Lattice& lattice, std::uint64_t seed) {
+  base::Rng rng(seed);
+  model::RobotSpec spec;
+  spec.lattice = lattice;
+  spec.support_z = std::nullopt;
+  spec.existing = grown(lattice, 2 + rng.below(23), rng);
+  spec.obstacles = obstacles_beside(lattice, spec.existing, rng);
+  if (rng.below(5) == 0 || spec.obstacles.empty()) {
+    spec.fixed = {spec.existing[rng.below(spec.existing.size())]};
+  }
+  if (rng.below(2) == 0) {
+    spec.gravity_m_s2 = {between(-4, 4, rng), between(-4, 4, rng), between(-12, -8, rng)};
+  }
+  for (const Cell& cell : spec.existing) {
+    if (rng.below(4) == 0) {
+      spec.own_masses.push_back({cell, between(0.02, 0.2, rng)});
+    }
+    if (rng.below(12) == 0) {
+      spec.payloads.push_back({cell,
+                               {between(-1, 1, rng), between(-1, 1, rng), between(-1, 1, rng)},
+                               {between(-9, 9, rng), between(-9, 9, rng), between(-9, 9, rng)}});
+    }
+  }
+  return spec;
+}
+
+Cell Symmetry::operator()(const base::Lattice& lattice, const Cell& cell) const {
+  const Cell from = base::axial_of(lattice, cell);
+  const auto row = [&](std::size_t i) {
+    return axial[i][0] * from.x + axial[i][1] * from.y + axial[i][2] * from.z;
+  };
+  return base::cell_of(lattice, {row(0), row(1), row(2)});
+}
+
+base::Vec6<double> Symmetry::operator()(const base::Vec6<double>& vector) const {
+  const double sign = is_mirror ? -1 : 1;
+  const Vector moved = times(matrix, {vector[0], vector[1], vector[2]});
+  const Vector rotated = times(matrix, {vector[3], vector[4], vector[5]});
+  return {moved[0], moved[1], moved[2], sign * rotated[0], sign * rotated[1], sign * rotated[2]};
+}
+
+/// Integer matrices with small entries that are orthogonal in the global frame and take neighbours
+/// to neighbours.
+std::vector<Symmetry> symmetries(const base::Lattice& lattice) {
+  const Matrix basis = basis_of(lattice);
+  const Matrix back = inverse(basis);
+  std::set<Cell> steps;
+  for (const Direction direction : base::directions(lattice)) {
+    steps.insert(lattice.steps[static_cast<std::size_t>(base::index(direction))]);
+  }
+  std::vector<Symmetry> found;
+  for (int code = 0; code < 19683; ++code) {  // 3^9
+    Symmetry symmetry;
+    Matrix axial{};
+    int rest = code;
+    for (std::size_t i = 0; i < 9; ++i, rest /= 3) {
+      symmetry.axial[i / 3][i % 3] = rest % 3 - 1;
+      axial[i / 3][i % 3] = rest % 3 - 1;
+    }
+    symmetry.matrix = product(product(basis, axial), back);
+    const auto is_step = [&](const Cell& step) {
+      const auto row = [&](std::size_t i) {
+        return symmetry.axial[i][0] * step.x + symmetry.axial[i][1] * step.y +
+               symmetry.axial[i][2] * step.z;
+      };
+      return steps.contains({row(0), row(1), row(2)});
+    };
+    if (!is_orthogonal(symmetry.matrix) || !std::ranges::all_of(steps, is_step)) {
+      continue;
+    }
+    symmetry.is_mirror = determinant(symmetry.matrix) < 0;
+    const bool is_identity =
+        std::abs(symmetry.matrix[0][0] + symmetry.matrix[1][1] + symmetry.matrix[2][2] - 3) < kTie;
+    found.insert(is_identity ? found.begin() : found.end(), symmetry);
+  }
+  return found;
+}
+
+model::RobotSpec turned(const model::RobotSpec& spec, const Symmetry& symmetry) {
+  model::RobotSpec result = spec;
+  const auto turn = [&](Cell& cell) { cell = symmetry(spec.lattice, cell); };
+  for (auto* cells : {&result.existing, &result.planned, &result.fixed}) {
+    std::ranges::for_each(*cells, turn);
+  }
+  for (model::Obstacle& obstacle : result.obstacles) {
+    std::ranges::for_each(obstacle.cells, turn);
+  }
+  for (model::OwnMass& own : result.own_masses) {
+    turn(own.cell);
+  }
+  const Vector gravity = spec.gravity_m_s2.value_or(Vector{0, 0, -spec.material.gravity_m_s2});
+  result.gravity_m_s2 = times(symmetry.matrix, gravity);
+  for (model::Payload& payload : result.payloads) {
+    turn(payload.cell);
+    payload.force_n = times(symmetry.matrix, payload.force_n);
+    payload.torque_nmm = times(symmetry.matrix, payload.torque_nmm);
+    if (symmetry.is_mirror) {
+      std::ranges::for_each(payload.torque_nmm, [](double& component) { component = -component; });
+    }
+  }
+  return result;
+}
+
+bool keeps_frames(const base::Lattice& lattice, const Symmetry& symmetry) {
+  for (const Direction direction : base::directions(lattice)) {
+    const auto frame = model::rotation_along<double>(lattice, direction);
+    const Cell step = lattice.steps[static_cast<std::size_t>(base::index(direction))];
+    const Cell image = base::axial_of(lattice, symmetry(lattice, base::cell_of(lattice, step)));
+    for (const Direction other : base::directions(lattice)) {
+      if (lattice.steps[static_cast<std::size_t>(base::index(other))] != image) {
+        continue;
+      }
+      const auto there = model::rotation_along<double>(lattice, other);
+      const Vector x = times(symmetry.matrix, frame[0]);
+      if (std::abs(dot(x, there[0])) > kTie && std::abs(dot(x, there[1])) > kTie) {
+        return false;
+      }
+    }
+  }
+  return true;
+}
+
+}  // namespace holdfast::test

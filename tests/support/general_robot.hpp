@@ -1,0 +1,47 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "holdfast/model/robot.hpp"
+
+/// Random robots of any lattice, with supports, masses and loads of every kind, and the symmetries
+/// of a lattice to turn them by.
+namespace holdfast::test {
+
+/// The lattices that there are.
+inline constexpr std::array<base::Lattice, 4> kLattices = {base::kCubic, base::kFaceCentred,
+                                                           base::kHexagonal, base::kHexagonalPrism};
+
+/// A connected robot of 2 to 24 modules that grew at random, the same for a seed everywhere. It
+/// touches obstacles in neighbouring cells, which hold by contact or are bonded; some have a fixed
+/// module, other masses, payloads, gravity that is not straight down. Without a floor, so that it
+/// can be turned.
+model::RobotSpec general_robot(const base::Lattice& lattice, std::uint64_t seed);
+
+/// A turn or mirror image that maps a lattice onto itself.
+struct Symmetry {
+  std::array<std::array<std::int32_t, 3>, 3> axial{};  ///< Rows: axial coordinates of the image.
+  std::array<std::array<double, 3>, 3> matrix{};       ///< Rows: the same in the global frame.
+  bool is_mirror = false;
+
+  base::Cell operator()(const base::Lattice& lattice, const base::Cell& cell) const;
+
+  /// A force or displacement: of a mirror image the rotations turn round.
+  base::Vec6<double> operator()(const base::Vec6<double>& vector) const;
+};
+
+/// All of them, the identity first: 48 of a cubic or face-centred lattice, 24 of hexagonal ones.
+std::vector<Symmetry> symmetries(const base::Lattice& lattice);
+
+/// The robot with its supports and loads turned.
+model::RobotSpec turned(const model::RobotSpec& spec, const Symmetry& symmetry);
+
+/// Whether the frames of all directions of a lattice, which know what is up, turn to such frames:
+/// up to quarter turns about the direction, so that facets stay squares.
+bool keeps_frames(const base::Lattice& lattice, const Symmetry& symmetry);
+
+}  // namespace holdfast::test
