@@ -132,7 +132,8 @@ Json reasons_json(const model::Robot& robot, const verdict::Assessment& assessme
 /// Integers: module, direction, whether it is bonded, and the code of its contact state, -1 if that
 /// is not known. Numbers: with what force it presses, the force along it that acts on the module,
 /// and the coefficient of friction, -1 without slip.
-void add_facets(const model::Robot& robot, const solver::Equilibrium& equilibrium, Reply& out) {
+void add_facets(const model::Robot& robot, const verdict::Assessment& assessment, Reply& out) {
+  const auto& equilibrium = assessment.equilibrium;
   const auto facets = robot.facets();
   const bool is_known = equilibrium.facet_force.size() == facets.size();
   for (std::size_t i = 0; i < facets.size(); ++i) {
@@ -151,9 +152,20 @@ void add_facets(const model::Robot& robot, const solver::Equilibrium& equilibriu
   }
 }
 
+/// The limit that each connection's load ratio is of; nothing where all of them open.
+void add_limits(const model::Robot& robot, const verdict::Assessment& assessment, Reply& out) {
+  if (robot.has_default_connectors()) {
+    return;
+  }
+  for (const model::Limit limit : connection_limits(robot, assessment)) {
+    out.integers.push_back(static_cast<std::int32_t>(limit));
+  }
+}
+
 /// Integers: connections, broken ones, facets; a, b and direction of each connection; indices of
-/// the broken ones; four of each facet. Numbers: five of each connection (ConnectionResult), five
-/// of each facet, six displacements of each module.
+/// the broken ones; four of each facet; limits of the connections, if they have any but one.
+/// Numbers: five of each connection (ConnectionResult), five of each facet, six displacements of
+/// each module.
 Reply assessment_reply(const model::Robot& robot, const verdict::Assessment& assessment,
                        double seconds) {
   Reply out;
@@ -182,7 +194,8 @@ Reply assessment_reply(const model::Robot& robot, const verdict::Assessment& ass
     out.numbers.insert(out.numbers.end(), {result.load_ratio, result.axial_n, result.bending_nmm,
                                            result.shear_n, result.torsion_nmm});
   }
-  add_facets(robot, assessment.equilibrium, out);
+  add_facets(robot, assessment, out);
+  add_limits(robot, assessment, out);
   for (const auto& displacement : assessment.equilibrium.displacement) {
     for (int i = 0; i < 6; ++i) {
       out.numbers.push_back(displacement[static_cast<std::size_t>(i)]);

@@ -68,6 +68,14 @@ Json links_json() {
   return list;
 }
 
+Json limits_json() {
+  Json list = Json::array();
+  for (int limit = 0; limit < model::kLimitCount; ++limit) {
+    list.push_back(model::name(static_cast<model::Limit>(limit)));
+  }
+  return list;
+}
+
 /// As base::Lattice, by io::kNamedLattices.
 Json lattices_json() {
   Json list = Json::array();
@@ -99,11 +107,9 @@ sim::LinkModel link_of(std::int32_t value) {
 }
 
 std::string vocabulary_json() {
-  const Json vocabulary = {{"material", material_json()},
-                           {"phases", phases_json()},
-                           {"methods", methods_json()},
-                           {"links", links_json()},
-                           {"lattices", lattices_json()}};
+  const Json vocabulary = {{"material", material_json()}, {"phases", phases_json()},
+                           {"methods", methods_json()},   {"links", links_json()},
+                           {"limits", limits_json()},     {"lattices", lattices_json()}};
   return vocabulary.dump();
 }
 

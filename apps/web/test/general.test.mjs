@@ -427,6 +427,21 @@ test('what cannot be is said in words, and the robot stays', async () => {
   }
 });
 
+test('the limit that a connection is near is named: latches shear before they open', async () => {
+  const page = await openPage(browser);
+  // Shear is one weight, which 1 N may hold; it opens at w L / 2 over a lever of 20 mm.
+  await open(page, 'latch', {
+    material: { shear_strength_n: 1 },
+    support_z: null,
+    modules: [{ cell: [0, 0, 0], fixed: true }, [1, 0, 0]],
+  });
+  const ratio = Number(/Largest load\s+([\d.]+)/.exec(await figures(page))[1]);
+  assert.ok(Math.abs(ratio - WEIGHT) < 6e-4, `${ratio}`);
+  await page.evaluate(() => globalThis.holdfast.app.point([1, 0, 0]));
+  assert.match(await page.textContent('#details'), /0\.599 shears/);
+  assert.deepEqual(page.faults, []);
+});
+
 test('facets show what they do, each for itself', async () => {
   const page = await openPage(browser);
   // A beam on two contacts, its end beyond the second one; a wall holds nothing where nothing leans on it.

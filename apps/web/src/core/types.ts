@@ -57,6 +57,8 @@ export interface Answer {
   loads: Float64Array;
   /** Module, direction, whether it is bonded, and ContactState::code() or -1, of each facet that touches something. */
   facets: Int32Array;
+  /** Index of the limit that each connection's load ratio is of; empty where all of them open. */
+  limits: Int32Array;
   /** With what force a facet presses, the force along it on its module, the friction or -1. */
   facetForces: Float64Array;
   /** Three lengths and three angles for each module; empty if not known. */
@@ -82,6 +84,8 @@ export interface Vocabulary {
   phases: string[];
   methods: Choice[];
   links: Choice[];
+  /** Which limit of a connection may be reached. */
+  limits: string[];
   lattices: LatticeTable[];
 }
 

@@ -5,6 +5,7 @@ import type { RobotData } from '../model/edited_robot';
 import {
   CoreError,
   FACET_FIELDS,
+  FACET_INTEGERS,
   LOAD_FIELDS,
   type Answer,
   type Failure,
@@ -118,11 +119,13 @@ export class Core {
     const loads = head.has_loads ? LOAD_FIELDS * connections : 0;
     const forces = loads + FACET_FIELDS * facets;
     const brokenAt = 3 + 3 * connections;
+    const facetsAt = brokenAt + broken;
     return {
       ...head,
       connections: integers.subarray(3, brokenAt),
-      broken: integers.subarray(brokenAt, brokenAt + broken),
-      facets: integers.subarray(brokenAt + broken),
+      broken: integers.subarray(brokenAt, facetsAt),
+      facets: integers.subarray(facetsAt, facetsAt + FACET_INTEGERS * facets),
+      limits: integers.subarray(facetsAt + FACET_INTEGERS * facets),
       loads: numbers.subarray(0, loads),
       facetForces: numbers.subarray(loads, forces),
       displacements: numbers.subarray(forces),

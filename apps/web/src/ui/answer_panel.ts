@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: The holdfast authors
 // SPDX-License-Identifier: Apache-2.0
+import VOCABULARY from 'virtual:vocabulary';
 import type { Finding } from '../core/judge';
 import { FACET_INTEGERS, LOAD_FIELDS, type Answer } from '../core/types';
 import { ROLE_NAMES, Role, cellText, type Cell } from '../model/cell';
@@ -218,7 +219,7 @@ export function showDetails(
         'tr',
         {},
         make('th', { scope: 'row' }, robot.lattice.sides[row.side]),
-        ...[formatRatio(row.ratio), `${row.axial.toFixed(2)} N`, `${row.bending.toFixed(0)} N mm`].map((t) => make('td', {}, t)),
+        ...[formatRatio(row.ratio) + row.limit, `${row.axial.toFixed(2)} N`, `${row.bending.toFixed(0)} N mm`].map((t) => make('td', {}, t)),
       );
       line.className = row.side === side ? 'pointed' : row.isBroken ? 'breaks' : '';
       body.append(line);
@@ -294,14 +295,15 @@ function sidesOf({ slots }: Finding, answer: Answer, directionCount: number): In
 }
 
 function connectionRows({ lattice }: EditedRobot, finding: Finding, slot: number) {
-  const rows: { side: number; ratio: number; axial: number; bending: number; isBroken: boolean }[] = [];
+  const rows: { side: number; ratio: number; limit: string; axial: number; bending: number; isBroken: boolean }[] = [];
   const answer = finding.answer!;
   const sides = sidesOf(finding, answer, lattice.directionCount);
   for (let side = 0; side < lattice.directionCount; ++side) {
     const i = sides[lattice.directionCount * slot + side];
     if (i >= 0) {
       const [ratio, axial, bending] = answer.loads.subarray(LOAD_FIELDS * i, LOAD_FIELDS * i + 3);
-      rows.push({ side, ratio, axial, bending, isBroken: answer.broken.includes(i) });
+      const limit = answer.limits.length > 0 ? ` ${VOCABULARY.limits[answer.limits[i]]}` : '';
+      rows.push({ side, ratio, limit, axial, bending, isBroken: answer.broken.includes(i) });
     }
   }
   return rows;
