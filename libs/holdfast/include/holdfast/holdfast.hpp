@@ -146,6 +146,11 @@ struct Rows {
 /// torsional moment (N mm). No rows where no equilibrium is known.
 Rows connection_rows(const CheckResult& result);
 
+/// Which limit every connection's load ratio is of, in the order of Robot::connections(). Empty
+/// where no equilibrium is known.
+std::vector<model::Limit> connection_limits(const model::Robot& robot,
+                                            const verdict::Assessment& assessment);
+
 /// How far every module moves, in the order of Robot::modules(): along x, y, z in mm, about x, y, z
 /// in rad. No rows where no equilibrium is known.
 Rows displacement_rows(const CheckResult& result);
