@@ -150,8 +150,8 @@ Items visiblesim_members(const Document& document) {
 
 /// What the modules of a step have of their own; step as in OwnParameters.
 std::span<const OwnParameters> own_of(const Extension& extension, std::size_t step) {
-  const auto range = std::ranges::equal_range(extension.own, step, {}, &OwnParameters::step);
-  return {range.begin(), range.end()};
+  return {std::ranges::lower_bound(extension.own, step, {}, &OwnParameters::step),
+          std::ranges::upper_bound(extension.own, step, {}, &OwnParameters::step)};
 }
 
 /// "planned" and "later_steps".
