@@ -100,6 +100,7 @@ void read_own_element(XmlReading& reading, const pugi::xml_node& node) {
       extension || !document.extension.own.empty()) {
     read_extension(reading, extension);
   }
+  document.support_z = document.extension.has_floor ? document.support_z : 0;
   reading.take_back_shift(node);
 }
 

@@ -3,8 +3,11 @@
 //
 // "robot" in a file takes the figures of the catalogue for what the file does not say; what the
 // catalogue does not know the file must say. Expected values are those of the catalogue's sources.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <fstream>
+#include <sstream>
 #include <string>
 
 #include "document_support.hpp"
@@ -15,6 +18,13 @@ namespace holdfast::io {
 namespace {
 
 using document_test::accepted;
+
+std::string document_text(const std::string& name) {
+  std::ifstream file(std::string(HOLDFAST_DOCUMENT_DIR) + "/" + name);
+  std::ostringstream text;
+  text << file.rdbuf();
+  return text.str();
+}
 
 std::string file(std::string_view members) {
   return R"({"format": "holdfast-structure", "version": 2, "modules": [[0,0,0], [0,0,1]], )" +
@@ -115,6 +125,26 @@ TEST(RobotDefaults, are_those_of_the_robot_that_is_asked_for) {
                                {.robot = "rofi"}))
           .document;
   EXPECT_EQ(xml.material.mass_kg, 0.35);
+}
+
+/// So that the page for people and the schema for editors say what the program has.
+TEST(RobotDefaults, are_documented_with_every_source) {
+  const std::string page = document_text("robots.md");
+  const std::string schema = document_text("structure.schema.json");
+  for (const model::CatalogueRobot& robot : model::robot_catalogue()) {
+    EXPECT_NE(page.find(fmt::format("## `{}`: {}\n\nLattice `{}`.", robot.name, robot.title,
+                                    lattice_name(robot.lattice))),
+              std::string::npos)
+        << robot.name;
+    EXPECT_NE(page.find(robot.note), std::string::npos) << robot.note;
+    EXPECT_NE(schema.find(fmt::format("\"{}\"", robot.name)), std::string::npos) << robot.name;
+    for (const model::RobotFigure& figure : robot.figures) {
+      const std::string value = figure.value ? fmt::format("{}", *figure.value) : "-";
+      const std::string row = fmt::format("| `{}` | {} | {} | {} |\n", figure.key, value,
+                                          model::name(figure.certainty), figure.source);
+      EXPECT_NE(page.find(row), std::string::npos) << robot.name << ": " << row;
+    }
+  }
 }
 
 TEST(RobotDefaults, say_what_is_wrong) {

@@ -40,12 +40,14 @@ CatalogueRobot rofi() {
       base::kCubic,
       "A universal module fills two cells, so that each cell here is half of it; its own joints "
       "are taken to be as strong as its connectors.",
-      {{"pitch_mm", 100, Certainty::kDerived, "places of connectors in that model"},
+      {{"pitch_mm", 100, Certainty::kDerived,
+        "places of connectors in the simulation model of paradise-fi/RoFI"},
        {"mass_kg", 0.35, Certainty::kDerived, kMassSource},
        {"strength_vertical_n", 110, Certainty::kProjectPage, kRofiPage},
        {"strength_lateral_n", 110, Certainty::kProjectPage, kRofiPage},
        {"shear_strength_n", 50, Certainty::kProjectPage, kRofiPage},
-       {"lever_mm", 25, Certainty::kDerived, "radius of the connector, 50 mm wide: its page"}}};
+       {"lever_mm", 25, Certainty::kDerived,
+        "radius of the connector, which is 50 mm wide: its page"}}};
 }
 
 CatalogueRobot smores_ep() {

@@ -38,6 +38,13 @@
 ///     auto robot = holdfast::make_robot({.existing = cells, .planned = next});
 ///     if (robot) { ... holdfast::check(robot.value()) ... }
 ///
+/// Cubes on a floor are made of their cells alone. Other lattices, obstacles, masses, loads,
+/// gravity and limits of connections are members of model::RobotSpec, of which
+/// model::Robot::create makes a robot as well:
+///
+///     holdfast::model::RobotSpec shelf{.existing = cells, .support_z = {}, .obstacles = wall};
+///     auto robot = holdfast::model::Robot::create(shelf);
+///
 /// What an application may name of the rooms below is what is exported here, and by trial.hpp,
 /// distributed.hpp and emulated.hpp. No function throws or prints. Units: N, mm, kg, s. Frame:
 /// global, z up, one cell = one pitch.
