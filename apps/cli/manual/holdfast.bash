@@ -10,6 +10,7 @@ _holdfast() {
   case ${COMP_WORDS[1]} in
     check)
       case $previous in
+        --lattice) : ;;
         --json) files=1 ;;
         --connections) : ;;
         --csv) files=1 ;;
@@ -17,9 +18,10 @@ _holdfast() {
         --vtk) files=1 ;;
         --html) files=1 ;;
         --certificate) files=1 ;;
+        --limit-seconds) : ;;
         --threads) : ;;
         --memory) : ;;
-        *) if [[ $current == -* ]]; then words="-h --help --json --connections --csv --svg --vtk --html --certificate --prove --quiet --bonded --threads --memory"; else files=1; fi ;;
+        *) if [[ $current == -* ]]; then words="-h --help --lattice --json --connections --csv --svg --vtk --html --certificate --prove --limit --limit-seconds --quiet --bonded --threads --memory"; else files=1; fi ;;
       esac
       ;;
     simulate)
@@ -68,7 +70,8 @@ _holdfast() {
       ;;
     convert)
       case $previous in
-        *) if [[ $current == -* ]]; then words="-h --help"; else files=1; fi ;;
+        --lattice) : ;;
+        *) if [[ $current == -* ]]; then words="-h --help --lattice"; else files=1; fi ;;
       esac
       ;;
     generate)
@@ -79,8 +82,9 @@ _holdfast() {
       ;;
     view)
       case $previous in
+        --lattice) : ;;
         --out) files=1 ;;
-        *) if [[ $current == -* ]]; then words="-h --help --out --no-open"; else files=1; fi ;;
+        *) if [[ $current == -* ]]; then words="-h --help --lattice --out --no-open"; else files=1; fi ;;
       esac
       ;;
   esac

@@ -8,6 +8,7 @@
 #include "connection_list.hpp"
 #include "holdfast/io/beside_one.hpp"
 #include "holdfast/io/report.hpp"
+#include "limit_report.hpp"
 
 namespace holdfast::io {
 namespace {
@@ -136,6 +137,9 @@ std::string write_report_text(const ReportEntry& entry) {
   write_solver(out, assessment, entry.seconds);
   if (entry.proof != nullptr) {
     write_proof(out, entry);
+  }
+  if (entry.limit != nullptr) {
+    text += limit_text(entry);
   }
   for (const std::string& warning : entry.warnings) {
     fmt::format_to(out, "  note        {}\n", warning);

@@ -21,6 +21,7 @@
 #include "holdfast/io/lattice_names.hpp"    // IWYU pragma: export
 #include "holdfast/io/picture.hpp"          // IWYU pragma: export
 #include "holdfast/io/report.hpp"           // IWYU pragma: export
+#include "holdfast/limit/limit_load.hpp"    // IWYU pragma: export
 #include "holdfast/model/robot.hpp"         // IWYU pragma: export
 #include "holdfast/proof/proof.hpp"         // IWYU pragma: export
 #include "holdfast/verdict/assessment.hpp"  // IWYU pragma: export
@@ -74,6 +75,11 @@ struct CheckOptions {
   std::size_t memory_bytes_max = solver::EquilibriumOptions{}.memory_bytes_max;
   /// Proves the largest load ratio; a verdict that is not proved becomes `undecided`.
   bool is_proof_wanted = false;
+  /// Seeks the limit load: the largest factor of all loads that any forces could balance.
+  bool is_limit_wanted = false;
+  double limit_seconds_max = limit::LimitOptions{}.seconds_max;
+  /// Called while the limit load is sought, with what it is known to lie between.
+  std::function<void(double low, double high)> limit_progress = {};
   /// Called while a large robot is solved, with the share of the first error that is left.
   std::function<void(int iteration, double error)> progress = {};
 };
@@ -83,6 +89,8 @@ struct CheckResult {
   double seconds = 0;  ///< From the robot in memory to the verdict.
   std::optional<proof::Proof> proof = {};
   double proof_seconds = 0;  ///< Beyond `seconds`.
+  std::optional<limit::LimitLoad> limit = {};
+  double limit_seconds = 0;  ///< Beyond both.
 };
 
 /// The library's version, "major.minor.patch".
