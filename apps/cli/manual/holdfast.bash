@@ -4,12 +4,13 @@ _holdfast() {
   local words='' files=''
   COMPREPLY=()
   if [ "$COMP_CWORD" -eq 1 ]; then
-    mapfile -t COMPREPLY < <(compgen -W "check simulate emulate convert generate view -h --help --version" -- "$current")
+    mapfile -t COMPREPLY < <(compgen -W "check simulate emulate convert generate robots view -h --help --version" -- "$current")
     return
   fi
   case ${COMP_WORDS[1]} in
     check)
       case $previous in
+        --robot) : ;;
         --lattice) : ;;
         --json) files=1 ;;
         --connections) : ;;
@@ -22,6 +23,7 @@ _holdfast() {
         --threads) : ;;
         --memory) : ;;
         *) if [[ $current == -* ]]; then words="-h --help --lattice --json --connections --csv --svg --vtk --html --certificate --prove --limit --limit-seconds --quiet --bonded --threads --memory"; else files=1; fi ;;
+        *) if [[ $current == -* ]]; then words="-h --help --robot --lattice --json --connections --csv --svg --vtk --html --certificate --prove --quiet --bonded --threads --memory"; else files=1; fi ;;
       esac
       ;;
     simulate)
@@ -72,6 +74,9 @@ _holdfast() {
       case $previous in
         --lattice) : ;;
         *) if [[ $current == -* ]]; then words="-h --help --lattice"; else files=1; fi ;;
+        --robot) : ;;
+        --lattice) : ;;
+        *) if [[ $current == -* ]]; then words="-h --help --robot --lattice"; else files=1; fi ;;
       esac
       ;;
     generate)
@@ -80,11 +85,21 @@ _holdfast() {
         *) if [[ $current == -* ]]; then words="-h --help -o --output"; else words="arm cube tower scaffold shell portal bridge growth"; fi ;;
       esac
       ;;
+    robots)
+      case $previous in
+        --json) files=1 ;;
+        *) if [[ $current == -* ]]; then words="-h --help --json"; else files=1; fi ;;
+      esac
+      ;;
     view)
       case $previous in
         --lattice) : ;;
         --out) files=1 ;;
         *) if [[ $current == -* ]]; then words="-h --help --lattice --out --no-open"; else files=1; fi ;;
+        --robot) : ;;
+        --lattice) : ;;
+        --out) files=1 ;;
+        *) if [[ $current == -* ]]; then words="-h --help --robot --lattice --out --no-open"; else files=1; fi ;;
       esac
       ;;
   esac

@@ -33,10 +33,10 @@ bool is_no(std::string_view text) {
 void read_own(XmlReading& reading, const pugi::xml_node& node, OwnParameters own) {
   const pugi::xml_attribute kind = node.attribute(kOwnKindAttribute);
   const pugi::xml_attribute mass = node.attribute(kOwnMassAttribute);
-  if (!kind && !mass) {
+  own.kind = kind.value();
+  if (own.kind.empty() && !mass) {
     return;
   }
-  own.kind = kind.value();
   if (mass) {
     own.mass_kg = reading.number(node, mass);
     if (!(*own.mass_kg > 0)) {

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "holdfast/limit/robot.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "holdfast/model/lattice_beam.hpp"
@@ -79,6 +81,63 @@ base::Vec6<double> joint_force(const Joint& joint, const base::Vec6<double>& for
 }
 
 }  // namespace
+
+std::vector<ContactFacet> contact_facets(const model::Robot& robot) {
+  std::vector<ContactFacet> facets;
+  for (const model::Facet& facet : robot.facets()) {
+    facets.push_back({.centre_mm = middle_mm(robot, facet.module, facet.direction),
+                      .frame = model::rotation_along<double>(robot.lattice(), facet.direction),
+                      .half_width_mm = robot.foot_half_width_mm(),
+                      .is_bonded = facet.is_bonded(),
+                      .friction = facet.touch.friction});
+  }
+  return facets;
+}
+
+BodyLoad body_load(const model::Robot& robot) {
+  BodyLoad load;
+  double mass = 0;
+  const std::size_t count = robot.modules().size();
+  const base::NodePlaces places(robot.lattice(), robot.material().pitch_mm);
+  for (std::size_t module = 0; module < count; ++module) {
+    const Vector3 node = places(robot.modules()[module].cell);
+    mass += robot.mass(module);
+    for (std::size_t i = 0; i < 3; ++i) {
+      load.centre_of_mass_mm[i] += robot.mass(module) * node[i];
+    }
+  }
+  for (std::size_t i = 0; i < 3; ++i) {
+    load.centre_of_mass_mm[i] = mass > 0 ? load.centre_of_mass_mm[i] / mass : 0;
+    load.weight_n[i] = mass * robot.gravity()[i];
+  }
+  double inertia = 0;
+  for (std::size_t module = 0; module < count; ++module) {
+    const Vector3 node = places(robot.modules()[module].cell);
+    const Vector3 arm = difference(node, load.centre_of_mass_mm);
+    inertia += robot.mass(module) * dot(arm, arm);
+    if (robot.has_payloads()) {
+      base::Vec6<double> payload = robot.loads()[module];
+      for (std::size_t i = 0; i < 3; ++i) {
+        payload[i] -= robot.mass(module) * robot.gravity()[i];
+      }
+      const base::Vec6<double> there = moved(payload, node, load.centre_of_mass_mm, 1);
+      for (std::size_t i = 0; i < 3; ++i) {
+        load.payload_n[i] += there[i];
+        load.payload_nmm[i] += there[i + 3];
+      }
+    }
+  }
+  const double least = robot.material().pitch_mm / 2;
+  load.gyration_mm = mass > 0 ? std::max(least, std::sqrt(inertia / mass)) : least;
+  return load;
+}
+
+RigidStability assess_rigid(const model::Robot& robot) {
+  if (robot.fixed_count() > 0) {
+    return {.answer = RigidAnswer::kHolds};
+  }
+  return assess_rigid(contact_facets(robot), body_load(robot));
+}
 
 Structure structure_of(const model::Robot& robot, bool is_bonded) {
   Structure structure;

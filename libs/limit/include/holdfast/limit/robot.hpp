@@ -6,10 +6,20 @@
 #include <vector>
 
 #include "holdfast/limit/limit_load.hpp"
+#include "holdfast/limit/rigid_stability.hpp"
 #include "holdfast/model/robot.hpp"
 
-/// A robot as a structure of rigid bodies and joints.
+/// A robot as what the programs of this room are about: one rigid body on contacts, or a structure
+/// of rigid bodies and joints.
 namespace holdfast::limit {
+
+/// Does the robot, as one rigid body, stay on what it touches? A fixed module or a bonded facet
+/// holds it whatever the load is.
+RigidStability assess_rigid(const model::Robot& robot);
+
+/// The robot's facets, and its load as one body.
+std::vector<ContactFacet> contact_facets(const model::Robot& robot);
+BodyLoad body_load(const model::Robot& robot);
 
 /// The robot as bodies and joints. Bodies are its modules. Joints are its connections, then what
 /// its facets touch: one joint each, of four corners with friction one for each corner. Bonded
