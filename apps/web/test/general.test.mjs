@@ -4,12 +4,13 @@
 // Any module, any support, any load: lattices as tables, building with them, obstacles, slopes, loads.
 // Expected values are those of statics.
 import assert from 'node:assert/strict';
+import { execFileSync } from 'node:child_process';
 import { readFileSync, writeFileSync } from 'node:fs';
 import path from 'node:path';
 import { after, before, test } from 'node:test';
 import {
-  clickFace, count, dropFile, figures, launch, message, newContext, openExample, openPage, pageFile, settled, temporaryFolder,
-  verdict,
+  clickFace, count, dropFile, figures, launch, message, newContext, openExample, openPage, pageFile, program, settled,
+  temporaryFolder, verdict,
 } from './browser.mjs';
 
 let browser;
@@ -510,5 +511,25 @@ test('the collapse that the program has found is shown as a motion, and belongs 
   assert.ok(moved.most > 35 && moved.most <= 40 && moved.after === 0, JSON.stringify(moved));
   await page.evaluate(() => globalThis.holdfast.bench.edit('another', [[3, 0, 0]], 0));
   assert.equal(await page.isVisible('#limit'), false, 'nothing is known of another robot');
+  assert.deepEqual(page.faults, []);
+});
+
+test('holdfast check --limit --html hands the page what it has found', async () => {
+  const folder = temporaryFolder();
+  const [file, out] = ['hung.json', 'hung.html'].map((name) => path.join(folder, name));
+  // A module hangs from a fixed one: 11.98 N hold so many of its weights, then it opens and falls.
+  const modules = [{ cell: [0, 0, 3], fixed: true }, [0, 0, 2]];
+  writeFileSync(file, JSON.stringify({ format: 'holdfast-structure', version: 1, name: 'hung', modules }));
+  execFileSync(program, ['check', '--quiet', '--limit', file, '--html', out]);
+  const page = await openPage(browser, { file: out });
+  await page.click('#report .close');
+  const factor = Number(/more than ([\d.]+) times/.exec(await page.innerText('#limit'))[1]);
+  assert.ok(Math.abs(factor - 11.98 / WEIGHT) < 0.01, `${factor}`);
+  await page.click('#collapse');
+  const down = await page.evaluate(() => {
+    const { app: { view }, bench: { robot } } = globalThis.holdfast;
+    return view.modules.motions[3 * view.instances[robot.slot([0, 0, 2])] + 2];
+  });
+  assert.ok(down < 0, `it falls: ${down}`);
   assert.deepEqual(page.faults, []);
 });
