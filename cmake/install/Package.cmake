@@ -29,7 +29,8 @@ endmacro()
 
 set(version ${PROJECT_VERSION}-${CPACK_DEBIAN_PACKAGE_RELEASE})
 set(library libholdfast${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
-set(needed "${library} (= ${version}), libfmt-dev, libpugixml-dev, libdeflate-dev")
+string(CONCAT needed "${library} (= ${version}), libfmt-dev, libpugixml-dev, libdeflate-dev, "
+       "coinor-libclp-dev")
 if(HOLDFAST_UNICORN)
   string(APPEND needed ", libunicorn-dev")
 endif()

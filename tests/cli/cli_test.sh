@@ -179,6 +179,10 @@ PYTHON
 # The README's picture is what the README's command makes.
 cmp -s picture.svg "$repository/docs/arm_breaks_b.svg" ||
   fault "docs/arm_breaks_b.svg is out of date"
+expect_exit 1 check "$repository/examples/catoms_hang.json" --svg catoms.svg --vtk catoms.vtu
+cmp -s catoms.svg "$repository/docs/catoms_hang.svg" ||
+  fault "docs/catoms_hang.svg is out of date"
+expect_line catoms.vtu '</VTKFile>'
 
 # Conversion there and back keeps everything.
 expect_exit 0 convert "$overload" there.xml

@@ -19,8 +19,10 @@ _holdfast() {
         --vtk) files=1 ;;
         --html) files=1 ;;
         --certificate) files=1 ;;
+        --limit-seconds) : ;;
         --threads) : ;;
         --memory) : ;;
+        *) if [[ $current == -* ]]; then words="-h --help --lattice --json --connections --csv --svg --vtk --html --certificate --prove --limit --limit-seconds --quiet --bonded --threads --memory"; else files=1; fi ;;
         *) if [[ $current == -* ]]; then words="-h --help --robot --lattice --json --connections --csv --svg --vtk --html --certificate --prove --quiet --bonded --threads --memory"; else files=1; fi ;;
       esac
       ;;
@@ -70,6 +72,8 @@ _holdfast() {
       ;;
     convert)
       case $previous in
+        --lattice) : ;;
+        *) if [[ $current == -* ]]; then words="-h --help --lattice"; else files=1; fi ;;
         --robot) : ;;
         --lattice) : ;;
         *) if [[ $current == -* ]]; then words="-h --help --robot --lattice"; else files=1; fi ;;
@@ -89,6 +93,9 @@ _holdfast() {
       ;;
     view)
       case $previous in
+        --lattice) : ;;
+        --out) files=1 ;;
+        *) if [[ $current == -* ]]; then words="-h --help --lattice --out --no-open"; else files=1; fi ;;
         --robot) : ;;
         --lattice) : ;;
         --out) files=1 ;;

@@ -14,6 +14,8 @@ complete -c holdfast -n '__fish_seen_subcommand_from check' -l vtk -r -F -d 'Wri
 complete -c holdfast -n '__fish_seen_subcommand_from check' -l html -r -F -d 'Write a page to look at in a browser, with the report'
 complete -c holdfast -n '__fish_seen_subcommand_from check' -l certificate -r -F -d 'Write the proof for holdfast-checker; implies --prove'
 complete -c holdfast -n '__fish_seen_subcommand_from check' -l prove -d 'Prove the largest load ratio; a verdict that is not proved is undecided'
+complete -c holdfast -n '__fish_seen_subcommand_from check' -l limit -d 'Seek the limit load: the largest factor that any forces could balance'
+complete -c holdfast -n '__fish_seen_subcommand_from check' -l limit-seconds -x -d 'Most time for the limit load, s; then the report says what it lies between'
 complete -c holdfast -n '__fish_seen_subcommand_from check' -l quiet -d 'Print errors only; the exit code is the answer'
 complete -c holdfast -n '__fish_seen_subcommand_from check' -l bonded -d 'Let the ground hold like a module below would: no lifting, no tilting'
 complete -c holdfast -n '__fish_seen_subcommand_from check' -l threads -x -d 'For large robots; 0: all cores'

@@ -28,6 +28,8 @@ struct Options {
   bool is_quiet = false;
   bool is_bonded = false;
   bool is_proof_wanted = false;
+  bool is_limit_wanted = false;
+  double limit_seconds = limit::LimitOptions{}.seconds_max;
   int thread_count = 0;
   double memory_gb = 4;
 };
@@ -211,13 +213,20 @@ class CheckRun {
         .is_bonded = options_.is_bonded,
         .thread_count = options_.thread_count,
         .memory_bytes_max = static_cast<std::size_t>(options_.memory_gb * 1073741824.0),
-        .is_proof_wanted = options_.is_proof_wanted || !options_.certificate.empty()};
+        .is_proof_wanted = options_.is_proof_wanted || !options_.certificate.empty(),
+        .is_limit_wanted = options_.is_limit_wanted,
+        .limit_seconds_max = options_.limit_seconds};
     if (!options_.is_quiet) {
       options.progress = [this, &structure, file](int iteration, double error) {
         progress_.show([&] {
           return fmt::format("{}: {} modules, iteration {}, error {:.1e} of the first",
                              io::one_line(file), structure.robot.modules().size(), iteration,
                              error);
+        });
+      };
+      options.limit_progress = [this, file](double low, double high) {
+        progress_.show([&] {
+          return fmt::format("{}: limit load from {:.4g} to {:.4g}", io::one_line(file), low, high);
         });
       };
     }
@@ -288,6 +297,13 @@ Command add_check(CLI::App& app) {
              "Write the proof for holdfast-checker; implies --prove");
   command->add_flag("--prove", options->is_proof_wanted,
                     "Prove the largest load ratio; a verdict that is not proved is undecided");
+  command->add_flag("--limit", options->is_limit_wanted,
+                    "Seek the limit load: the largest factor that any forces could balance");
+  command
+      ->add_option("--limit-seconds", options->limit_seconds,
+                   "Most time for the limit load, s; then the report says what it lies between")
+      ->check(CLI::Range(0.0, 1e6))
+      ->capture_default_str();
   command->add_flag("--quiet", options->is_quiet, "Print errors only; the exit code is the answer");
   command->add_flag("--bonded", options->is_bonded,
                     "Let the ground hold like a module below would: no lifting, no tilting");

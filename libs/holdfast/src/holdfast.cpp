@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <chrono>
 
+#include "holdfast/limit/robot.hpp"
 #include "holdfast/model/families.hpp"
 #include "report_entry.hpp"
 #include "version.hpp"
@@ -20,7 +21,9 @@ io::ReportEntry entry_of(const Structure& structure, const CheckResult& result) 
           .warnings = structure.warnings,
           .seconds = result.seconds,
           .proof = result.proof ? &*result.proof : nullptr,
-          .proof_seconds = result.proof_seconds};
+          .proof_seconds = result.proof_seconds,
+          .limit = result.limit ? &*result.limit : nullptr,
+          .limit_seconds = result.limit_seconds};
 }
 
 std::string_view version() { return kVersion; }
@@ -73,6 +76,7 @@ base::Result<io::Document> generate(std::string_view family, std::size_t size) {
   io::Document document;
   document.name = fmt::format("{} {}", family, size);
   document.description = found->help;
+  document.extension.lattice = found->lattice;
   document.modules.reserve(count);
   for (const base::Cell& cell : model::family_cells(found->family, size)) {
     document.modules.emplace_back().cell = cell;
@@ -98,6 +102,26 @@ base::Result<model::Robot> make_robot(const RobotCells& cells, int thread_count)
                               thread_count);
 }
 
+namespace {
+
+/// With the elastic forces as a start, where they are known and in equilibrium.
+limit::LimitLoad find_limit(const model::Robot& robot, const verdict::Assessment& assessment,
+                            const CheckOptions& options) {
+  const limit::Structure structure = limit::structure_of(robot, options.is_bonded);
+  const solver::Equilibrium& equilibrium = assessment.equilibrium;
+  std::vector<base::Vec6<double>> forces;
+  if (assessment.is_stable && !options.is_bonded && !equilibrium.displacement.empty() &&
+      equilibrium.outcome == solver::Outcome::kSettled) {
+    forces =
+        limit::known_forces(robot, structure, equilibrium.displacement, equilibrium.facet_force);
+  }
+  return limit::limit_load(structure, {.seconds_max = options.limit_seconds_max,
+                                       .known_forces = forces,
+                                       .progress = options.limit_progress});
+}
+
+}  // namespace
+
 CheckResult check(const model::Robot& robot, const CheckOptions& options) {
   const auto start = std::chrono::steady_clock::now();
   const auto passed = [&] {
@@ -115,6 +139,11 @@ CheckResult check(const model::Robot& robot, const CheckOptions& options) {
         {.memory_bytes_max = options.memory_bytes_max, .thread_count = options.thread_count});
     proof::apply(robot, *result.proof, result.assessment, options.thread_count);
     result.proof_seconds = passed() - result.seconds;
+  }
+  if (options.is_limit_wanted) {
+    const double before = passed();
+    result.limit = find_limit(robot, result.assessment, options);
+    result.limit_seconds = passed() - before;
   }
   return result;
 }
@@ -148,7 +177,8 @@ std::string report_text(const Structure& structure, const CheckResult& result) {
 }
 
 std::string picture_svg(const Structure& structure, const CheckResult& result) {
-  return io::write_svg(structure.robot, result.assessment, structure.name);
+  return io::write_svg(structure.robot, result.assessment, structure.name,
+                       structure.document.extension.obstacles);
 }
 
 std::string picture_vtu(const Structure& structure, const CheckResult& result) {

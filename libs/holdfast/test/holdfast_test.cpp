@@ -10,6 +10,9 @@
 #include <array>
 #include <filesystem>
 #include <fstream>
+#include <string>
+#include <tuple>
+#include <vector>
 
 namespace holdfast {
 namespace {
@@ -44,6 +47,22 @@ TEST(Facade, goes_from_text_to_a_verdict_and_its_reports) {
             std::string::npos);
   EXPECT_NE(picture_svg(structure.value(), result).find("</svg>"), std::string::npos);
   EXPECT_NE(picture_vtu(structure.value(), result).find("</VTKFile>"), std::string::npos);
+}
+
+TEST(Facade, names_the_limit_that_a_connection_is_near) {
+  // The weight of one module, 0.599 N, shears; it opens at w L / (2 lever) = 0.599 N of 14.97 N.
+  for (const auto& [shear_n, limit, ratio] :
+       {std::tuple(1.0, model::Limit::kShears, 0.06106 * 9.81),
+        std::tuple(100.0, model::Limit::kOpens, 0.06106 * 9.81 / 14.97)}) {
+    const auto structure = load_text(
+        R"({"format": "holdfast-structure", "version": 2, "support_z": null,
+            "material": {"shear_strength_n": )" +
+        std::to_string(shear_n) + R"(}, "modules": [{"cell": [0,0,0], "fixed": true}, [1,0,0]]})");
+    ASSERT_TRUE(structure) << structure.error().message;
+    const verdict::Assessment assessment = check(structure.value()).assessment;
+    EXPECT_EQ(connection_limits(structure.value().robot, assessment), std::vector{limit});
+    EXPECT_NEAR(assessment.load_ratio_max.value_or(-1), ratio, 1e-9);
+  }
 }
 
 TEST(Facade, checks_a_robot_made_of_cells_as_it_checks_the_same_of_a_file) {

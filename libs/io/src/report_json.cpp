@@ -7,6 +7,7 @@
 #include "connection_list.hpp"
 #include "holdfast/io/report.hpp"
 #include "holdfast/verdict/connection_law.hpp"
+#include "limit_report.hpp"
 #include "ordered_blocks.hpp"
 
 namespace holdfast::io {
@@ -368,6 +369,9 @@ class Writer {
     if (entry_.proof != nullptr) {
       json_.key("proof");
       write_proof(json_, entry_);
+    }
+    if (entry_.limit != nullptr) {
+      write_limit(json_, entry_);
     }
   }
 

@@ -12,8 +12,10 @@ namespace {
 
 /// What is left of a load that can be balanced, as a share of it: rounding of a few thousand sums.
 constexpr double kRemainderTie = 1e-10;
-/// Generators are added until none shortens the remainder by more than this share of the load.
-constexpr double kOpposedTie = 1e-12;
+/// Generators are added until none is opposed to the remainder by more than this share of it, or by
+/// more than the rounding of the load.
+constexpr double kOpposedTie = 1e-9;
+constexpr double kRounding = 1e-15;
 constexpr int kGeneratorMax = 2000;
 constexpr int kExitStepMax = 100;
 
@@ -145,11 +147,11 @@ ContactCone::Reduced ContactCone::most_opposed(const Reduced& remainder, double&
 }
 
 ContactCone::Remainder ContactCone::remainder(const Vector6d& load) const {
-  const double tie = kOpposedTie * load.norm();
   PassiveSet passive(basis_.transpose() * load);
   for (int i = 0; i < kGeneratorMax; ++i) {
     double product = 0;
     const Reduced push = most_opposed(passive.remainder(), product);
+    const double tie = kOpposedTie * passive.remainder().norm() + kRounding * load.norm();
     if (product >= -tie || !passive.add(push)) {
       return {.wrench = basis_ * passive.remainder()};
     }

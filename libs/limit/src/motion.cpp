@@ -11,16 +11,16 @@
 namespace holdfast::limit {
 namespace {
 
-/// Speeds below this share of the largest are rounding.
-constexpr double kStill = 1e-6;
+/// Speeds below this share of the largest count as none: what cones of friction leave.
+constexpr double kStill = 1e-4;
 
 Vector3 values(const Vector3d& vector) { return {vector[0], vector[1], vector[2]}; }
 
 /// The two points farthest apart along the axis of turning.
 void set_edge(Motion& motion, const std::vector<Vector3d>& still, const Vector3d& axis,
               const Vector3d& centre) {
-  const auto [low, high] = std::ranges::minmax(
-      still, {}, [&](const Vector3d& place) { return axis.dot(place); });
+  const auto [low, high] =
+      std::ranges::minmax(still, {}, [&](const Vector3d& place) { return axis.dot(place); });
   motion.from_mm = values(low + centre);
   motion.to_mm = values(high + centre);
 }

@@ -71,7 +71,7 @@ std::optional<double> find_friction_needed(const std::vector<ContactPoint>& poin
     (holds(middle) ? high : low) = middle;
   }
   // Between two planes the least friction holds if they are pressed apart without limit.
-  constexpr double kFrictionTie = 1e-6;
+  constexpr double kFrictionTie = 1e-5;
   return high < kFrictionTie ? 0 : high;
 }
 

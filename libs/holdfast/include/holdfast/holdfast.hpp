@@ -21,6 +21,7 @@
 #include "holdfast/io/lattice_names.hpp"       // IWYU pragma: export
 #include "holdfast/io/picture.hpp"             // IWYU pragma: export
 #include "holdfast/io/report.hpp"              // IWYU pragma: export
+#include "holdfast/limit/limit_load.hpp"       // IWYU pragma: export
 #include "holdfast/model/robot.hpp"            // IWYU pragma: export
 #include "holdfast/model/robot_catalogue.hpp"  // IWYU pragma: export
 #include "holdfast/proof/proof.hpp"            // IWYU pragma: export
@@ -82,6 +83,11 @@ struct CheckOptions {
   std::size_t memory_bytes_max = solver::EquilibriumOptions{}.memory_bytes_max;
   /// Proves the largest load ratio; a verdict that is not proved becomes `undecided`.
   bool is_proof_wanted = false;
+  /// Seeks the limit load: the largest factor of all loads that any forces could balance.
+  bool is_limit_wanted = false;
+  double limit_seconds_max = limit::LimitOptions{}.seconds_max;
+  /// Called while the limit load is sought, with what it is known to lie between.
+  std::function<void(double low, double high)> limit_progress = {};
   /// Called while a large robot is solved, with the share of the first error that is left.
   std::function<void(int iteration, double error)> progress = {};
 };
@@ -91,6 +97,8 @@ struct CheckResult {
   double seconds = 0;  ///< From the robot in memory to the verdict.
   std::optional<proof::Proof> proof = {};
   double proof_seconds = 0;  ///< Beyond `seconds`.
+  std::optional<limit::LimitLoad> limit = {};
+  double limit_seconds = 0;  ///< Beyond both.
 };
 
 /// The library's version, "major.minor.patch".
@@ -115,7 +123,8 @@ base::Result<Structure> load_file(const std::filesystem::path& path, int thread_
                                   const io::ReadOptions& options = {});
 
 /// One of the named structures in which solvers are compared: arm, cube, tower, scaffold, shell,
-/// portal, bridge, growth. Errors: no such family, a size that is not allowed.
+/// portal, bridge, growth of cubes, ball, sheet, prism-wall of other lattices. Errors: no such
+/// family, a size that is not allowed.
 base::Result<io::Document> generate(std::string_view family, std::size_t size);
 
 /// Name and meaning of the size of each family, in the order of their list.
@@ -143,6 +152,11 @@ struct Rows {
 /// verdict::ConnectionResult: load ratio, axial force (N), bending moment (N mm), shear force (N),
 /// torsional moment (N mm). No rows where no equilibrium is known.
 Rows connection_rows(const CheckResult& result);
+
+/// Which limit every connection's load ratio is of, in the order of Robot::connections(). Empty
+/// where no equilibrium is known.
+std::vector<model::Limit> connection_limits(const model::Robot& robot,
+                                            const verdict::Assessment& assessment);
 
 /// How far every module moves, in the order of Robot::modules(): along x, y, z in mm, about x, y, z
 /// in rad. No rows where no equilibrium is known.

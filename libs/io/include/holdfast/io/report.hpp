@@ -12,6 +12,7 @@
 
 #include "holdfast/io/json_stream.hpp"
 #include "holdfast/io/write_options.hpp"
+#include "holdfast/limit/limit_load.hpp"
 #include "holdfast/proof/proof.hpp"
 #include "holdfast/verdict/assessment.hpp"
 
@@ -31,9 +32,11 @@ struct ReportEntry {
   const model::Robot* robot = nullptr;
   const verdict::Assessment* assessment = nullptr;
   std::span<const std::string> warnings;
-  double seconds = 0;                   ///< From the robot in memory to the verdict.
-  const proof::Proof* proof = nullptr;  ///< If one was asked for.
-  double proof_seconds = 0;             ///< What it took beyond that.
+  double seconds = 0;                       ///< From the robot in memory to the verdict.
+  const proof::Proof* proof = nullptr;      ///< If one was asked for.
+  double proof_seconds = 0;                 ///< What it took beyond that.
+  const limit::LimitLoad* limit = nullptr;  ///< If it was asked for.
+  double limit_seconds = 0;                 ///< What it took beyond both.
 };
 
 /// Which connections a report or table lists.

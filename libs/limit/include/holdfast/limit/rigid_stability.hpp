@@ -10,10 +10,10 @@
 
 /// Does a rigid body stay where it is, held by contacts that can only push, wherever they are?
 ///
-/// The contacts' forces are a convex cone of wrenches: at every corner of a facet a push, and across
-/// it any force (no slip) or one within the cone of friction. The body stays if this cone holds
-/// minus the load, with something to spare on every side. Friction cones are taken as they are, not
-/// as pyramids. Derivation: docs/limit.md.
+/// The contacts' forces are a convex cone of wrenches: at every corner of a facet a push, and
+/// across it any force (no slip) or one within the cone of friction. The body stays if this cone
+/// holds minus the load, with something to spare on every side. Friction cones are taken as they
+/// are, not as pyramids. Derivation: docs/limit.md.
 namespace holdfast::limit {
 
 using Vector3 = std::array<double, 3>;
@@ -23,8 +23,8 @@ struct ContactFacet {
   Vector3 centre_mm{};
   /// x', y' along the facet, z' into the body, each of length one.
   std::array<Vector3, 3> frame{};
-  double half_width_mm = 0;            ///< 0 is a point.
-  bool is_bonded = false;              ///< Holds whatever the load is.
+  double half_width_mm = 0;             ///< 0 is a point.
+  bool is_bonded = false;               ///< Holds whatever the load is.
   std::optional<double> friction = {};  ///< Coefficient, 0 or more. None: no slip.
 };
 
@@ -33,7 +33,7 @@ struct BodyLoad {
   Vector3 weight_n{};
   Vector3 centre_of_mass_mm{};
   Vector3 payload_n{};
-  Vector3 payload_nmm{};  ///< Moment about the centre of mass.
+  Vector3 payload_nmm{};   ///< Moment about the centre of mass.
   double gyration_mm = 1;  ///< Radius that moments are compared with forces by; more than 0.
 };
 

@@ -1,0 +1,194 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#include "holdfast/limit/robot.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "holdfast/model/lattice_beam.hpp"
+#include "wrench.hpp"
+
+namespace holdfast::limit {
+namespace {
+
+Vector3 node_mm(const model::Robot& robot, std::size_t module) {
+  Vector3 node = base::node_place(robot.lattice(), robot.modules()[module].cell);
+  for (double& coordinate : node) {
+    coordinate *= robot.material().pitch_mm;
+  }
+  return node;
+}
+
+/// Half a pitch from the node of a module.
+Vector3 middle_mm(const model::Robot& robot, std::int32_t module, base::Direction direction) {
+  const Vector3 along = base::unit_vector(robot.lattice(), direction);
+  Vector3 place = node_mm(robot, base::at(module));
+  for (std::size_t i = 0; i < 3; ++i) {
+    place[i] += along[i] * robot.material().pitch_mm / 2;
+  }
+  return place;
+}
+
+/// A facet's centre for a point, else its four corners.
+std::vector<Vector3> contact_places(const model::Robot& robot, const model::Facet& facet) {
+  const Vector3 centre = middle_mm(robot, facet.module, facet.direction);
+  const double half = robot.foot_half_width_mm();
+  if (!facet.touch.friction || half == 0) {
+    return {centre};
+  }
+  const auto frame = model::rotation_along<double>(robot.lattice(), facet.direction);
+  std::vector<Vector3> corners;
+  for (const double x : {-half, half}) {
+    for (const double y : {-half, half}) {
+      corners.push_back(centre);
+      for (std::size_t i = 0; i < 3; ++i) {
+        corners.back()[i] += x * frame[0][i] + y * frame[1][i];
+      }
+    }
+  }
+  return corners;
+}
+
+void add_facet(const model::Robot& robot, const model::Facet& facet, bool is_bonded,
+               Structure& structure) {
+  const double half = robot.foot_half_width_mm();
+  Joint joint = {.a = facet.module,
+                 .frame = model::rotation_along<double>(robot.lattice(), facet.direction)};
+  if (!is_bonded && !facet.is_bonded()) {
+    joint.law.strength_n = 0;
+    joint.law.friction = facet.touch.friction;
+    if (half > 0 && !facet.touch.friction) {
+      joint.law.lever_mm = half;
+    } else {
+      joint.carries = kCarriesForce;
+    }
+  }
+  for (const Vector3& place : contact_places(robot, facet)) {
+    joint.place_mm = place;
+    structure.joints.push_back(joint);
+  }
+}
+
+/// A force on a body at `from`, global frame, as a joint's at its place.
+base::Vec6<double> joint_force(const Joint& joint, const base::Vec6<double>& force,
+                               const Vector3& from) {
+  const base::Vec6<double> there = moved(force, from, joint.place_mm, 1);
+  const Vector3 along = {there[0], there[1], there[2]};
+  const Vector3 about = {there[3], there[4], there[5]};
+  return {dot(along, joint.frame[0]), dot(along, joint.frame[1]), -dot(along, joint.frame[2]),
+          dot(about, joint.frame[0]), dot(about, joint.frame[1]), dot(about, joint.frame[2])};
+}
+
+}  // namespace
+
+std::vector<ContactFacet> contact_facets(const model::Robot& robot) {
+  std::vector<ContactFacet> facets;
+  for (const model::Facet& facet : robot.facets()) {
+    facets.push_back({.centre_mm = middle_mm(robot, facet.module, facet.direction),
+                      .frame = model::rotation_along<double>(robot.lattice(), facet.direction),
+                      .half_width_mm = robot.foot_half_width_mm(),
+                      .is_bonded = facet.is_bonded(),
+                      .friction = facet.touch.friction});
+  }
+  return facets;
+}
+
+BodyLoad body_load(const model::Robot& robot) {
+  BodyLoad load;
+  double mass = 0;
+  const std::size_t count = robot.modules().size();
+  const base::NodePlaces places(robot.lattice(), robot.material().pitch_mm);
+  for (std::size_t module = 0; module < count; ++module) {
+    const Vector3 node = places(robot.modules()[module].cell);
+    mass += robot.mass(module);
+    for (std::size_t i = 0; i < 3; ++i) {
+      load.centre_of_mass_mm[i] += robot.mass(module) * node[i];
+    }
+  }
+  for (std::size_t i = 0; i < 3; ++i) {
+    load.centre_of_mass_mm[i] = mass > 0 ? load.centre_of_mass_mm[i] / mass : 0;
+    load.weight_n[i] = mass * robot.gravity()[i];
+  }
+  double inertia = 0;
+  for (std::size_t module = 0; module < count; ++module) {
+    const Vector3 node = places(robot.modules()[module].cell);
+    const Vector3 arm = difference(node, load.centre_of_mass_mm);
+    inertia += robot.mass(module) * dot(arm, arm);
+    if (robot.has_payloads()) {
+      base::Vec6<double> payload = robot.loads()[module];
+      for (std::size_t i = 0; i < 3; ++i) {
+        payload[i] -= robot.mass(module) * robot.gravity()[i];
+      }
+      const base::Vec6<double> there = moved(payload, node, load.centre_of_mass_mm, 1);
+      for (std::size_t i = 0; i < 3; ++i) {
+        load.payload_n[i] += there[i];
+        load.payload_nmm[i] += there[i + 3];
+      }
+    }
+  }
+  const double least = robot.material().pitch_mm / 2;
+  load.gyration_mm = mass > 0 ? std::max(least, std::sqrt(inertia / mass)) : least;
+  return load;
+}
+
+RigidStability assess_rigid(const model::Robot& robot) {
+  if (robot.fixed_count() > 0) {
+    return {.answer = RigidAnswer::kHolds};
+  }
+  return assess_rigid(contact_facets(robot), body_load(robot));
+}
+
+Structure structure_of(const model::Robot& robot, bool is_bonded) {
+  Structure structure;
+  structure.length_mm = robot.material().pitch_mm / 2;
+  for (std::size_t module = 0; module < robot.modules().size(); ++module) {
+    structure.bodies.push_back(
+        {.centre_mm = node_mm(robot, module),
+         .load = robot.loads()[module],
+         .is_fixed = robot.modules()[module].support == model::Support::kFixed});
+  }
+  for (const model::Connection& connection : robot.connections()) {
+    structure.joints.push_back(
+        {.a = connection.a,
+         .b = connection.b,
+         .place_mm = middle_mm(robot, connection.a, connection.direction),
+         .frame = model::rotation_along<double>(robot.lattice(), connection.direction),
+         .law = robot.connector(connection)});
+  }
+  for (const model::Facet& facet : robot.facets()) {
+    add_facet(robot, facet, is_bonded, structure);
+  }
+  return structure;
+}
+
+std::vector<base::Vec6<double>> known_forces(const model::Robot& robot, const Structure& structure,
+                                             std::span<const base::Vec6<double>> displacement,
+                                             std::span<const base::Vec6<double>> facet_force) {
+  const model::LatticeBeam<double> beam(model::beam_section(robot.material()), robot.lattice());
+  std::vector<base::Vec6<double>> forces;
+  forces.reserve(structure.joints.size());
+  for (const model::Connection& connection : robot.connections()) {
+    base::Vec6<double> force =
+        beam.end_force(connection.direction, displacement[base::at(connection.a)],
+                       displacement[base::at(connection.b)]);
+    for (double& component : force) {
+      component = -component;  // Of the beam on the module.
+    }
+    const Joint& joint = structure.joints[forces.size()];
+    forces.push_back(joint_force(joint, force, structure.bodies[base::at(joint.a)].centre_mm));
+  }
+  for (std::size_t i = 0; i < robot.facets().size(); ++i) {
+    const std::size_t count = contact_places(robot, robot.facets()[i]).size();
+    const Joint& joint = structure.joints[forces.size()];
+    base::Vec6<double> force =
+        joint_force(joint, facet_force[i], structure.bodies[base::at(joint.a)].centre_mm);
+    if (count > 1) {
+      force.fill(std::numeric_limits<double>::quiet_NaN());
+    }
+    forces.insert(forces.end(), count, force);
+  }
+  return forces;
+}
+
+}  // namespace holdfast::limit
