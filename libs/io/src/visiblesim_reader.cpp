@@ -156,7 +156,9 @@ void read_lattice(XmlReading& reading, const pugi::xml_node& blocks, const pugi:
                              excerpt(blocks.attribute("blockSize").value()), modules->name,
                              lattice_name(modules->lattice)),
                  where);
-  } else if (blocks.find_child([](const auto& child) { return child.attribute(kOrientation); })) {
+  } else if (blocks.find_child([](const pugi::xml_node& child) {
+               return child.first_attribute().next_attribute() && child.attribute(kOrientation);
+             })) {
     reading.warn(
         "blocks have an orientation, as VisibleSim's catoms3D have, but are read as cubes: if "
         "they are catoms, ask for the lattice face-centred (--lattice catoms3D)",
