@@ -85,7 +85,7 @@ std::optional<double> solve(const model::Robot& robot, cholmod_common& common, D
 }
 
 int run_cholmod(const std::string& family, std::size_t size, const char* path) {
-  const auto robot = model::Robot::create({.existing = cells(family, size)}).value();
+  const auto robot = model::Robot::create(spec_of(family, size)).value();
   cholmod_common common;
   cholmod_l_start(&common);
   Displacement u(robot.modules().size());

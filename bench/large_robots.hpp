@@ -13,6 +13,7 @@
 
 #include "holdfast/mechanics/connector.hpp"
 #include "holdfast/model/families.hpp"
+#include "holdfast/model/lattice_beam.hpp"
 #include "holdfast/model/robot.hpp"
 
 /// What the programs of `./dev bench solver` share. Each solves one structure in a process of its
@@ -21,10 +22,13 @@ namespace holdfast::bench {
 
 using Displacement = std::vector<base::Vec6<double>>;
 
-inline std::vector<base::Cell> cells(const std::string& family, std::size_t size) {
+/// A structure of a family, in its lattice.
+inline model::RobotSpec spec_of(const std::string& family, std::size_t size) {
   const auto found = model::find_family(family);
   HOLDFAST_CHECK(found.has_value());
-  return model::family_cells(*found, size);
+  model::RobotSpec spec{.existing = model::family_cells(*found, size)};
+  spec.lattice = model::family_lattice(*found);
+  return spec;
 }
 
 using Clock = std::chrono::steady_clock;
@@ -73,13 +77,13 @@ inline void print_run(std::size_t count, const Timing& timing, int iterations) {
 
 inline std::vector<double> load_ratios(const model::Robot& robot, const Displacement& u) {
   const model::Material& material = robot.material();
-  const auto beam = mechanics::beam_stiffness(model::beam_section(material));
+  const model::LatticeBeam<double> beam(model::beam_section(material), robot.lattice());
   std::vector<double> ratios;
   ratios.reserve(robot.connections().size());
   for (const model::Connection& pair : robot.connections()) {
     ratios.push_back(mechanics::load_ratio(
-        model::connector(material, base::connector_class(base::kCubic, pair.direction)),
-        mechanics::middle_force(beam, pair.direction, u[base::at(pair.a)], u[base::at(pair.b)])));
+        model::connector(material, base::connector_class(robot.lattice(), pair.direction)),
+        beam.middle_force(pair.direction, u[base::at(pair.a)], u[base::at(pair.b)])));
   }
   return ratios;
 }

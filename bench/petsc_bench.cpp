@@ -5,6 +5,10 @@
 // prints: modules seconds-of-the-fastest-of-several MB-of-all-ranks iterations
 #include <petscksp.h>
 
+#include <algorithm>
+#include <array>
+#include <span>
+
 #include "large_robots.hpp"
 
 namespace {
@@ -12,29 +16,37 @@ namespace {
 namespace hf = holdfast;
 using hf::base::Mat6;
 
+/// The facets of a module.
+std::span<const hf::model::Facet> facets_of(const hf::model::Robot& robot, PetscInt module) {
+  const auto range =
+      std::ranges::equal_range(robot.facets(), module, {}, &hf::model::Facet::module);
+  return {range.begin(), range.end()};
+}
+
 /// Rows of the modules from `first` to before `last`.
 Mat assemble(const hf::model::Robot& robot, PetscInt first, PetscInt last) {
-  const auto beam = hf::mechanics::beam_stiffness(hf::model::beam_section(robot.material()));
+  const hf::model::LatticeBeam<double> beam(hf::model::beam_section(robot.material()),
+                                            robot.lattice());
   const auto n = static_cast<PetscInt>(robot.modules().size());
   Mat matrix = nullptr;
-  MatCreateAIJ(PETSC_COMM_WORLD, 6 * (last - first), 6 * (last - first), 6 * n, 6 * n, 42, nullptr,
-               36, nullptr, &matrix);
+  MatCreateAIJ(PETSC_COMM_WORLD, 6 * (last - first), 6 * (last - first), 6 * n, 6 * n,
+               6 * (robot.lattice().direction_count + 1), nullptr,
+               6 * robot.lattice().direction_count, nullptr, &matrix);
   MatSetBlockSize(matrix, 6);
-  // Two thirds of each block are zero: without them every method here is faster.
+  // Two thirds of each block of cubes are zero: without them every method here is faster.
   MatSetOption(matrix, MAT_IGNORE_ZERO_ENTRIES, PETSC_TRUE);
   for (PetscInt row = first; row < last; ++row) {
     const auto module = static_cast<std::size_t>(row);
     Mat6<double> diagonal;
-    for (const hf::base::Direction direction : hf::base::kDirections) {
+    for (const hf::model::Facet& facet : facets_of(robot, row)) {
+      hf::base::add_to(diagonal, beam.block_11(facet.direction));
+    }
+    for (const hf::base::Direction direction : hf::base::directions(robot.lattice())) {
       PetscInt column =
           robot.connected()[module][static_cast<std::size_t>(hf::base::index(direction))];
-      const bool is_ground = direction == hf::base::Direction::kMinusZ &&
-                             robot.modules()[module].support == hf::model::Support::kGround;
-      if (column >= 0 || is_ground) {
-        hf::base::add_to(diagonal, hf::mechanics::block_11(beam, direction));
-      }
       if (column >= 0) {
-        const Mat6<double> block = hf::mechanics::block_12(beam, direction);
+        hf::base::add_to(diagonal, beam.block_11(direction));
+        const Mat6<double> block = beam.block_12(direction);
         double by_rows[36];
         for (int i = 0; i < 36; ++i) {
           by_rows[i] = block.at(i / 6, i % 6);
@@ -69,7 +81,8 @@ void attach_rigid_motions(const hf::model::Robot& robot, PetscInt first, PetscIn
     for (PetscInt row = first; row < last; ++row) {
       double* u = values + 6 * (row - first);
       const hf::base::Cell& cell = robot.modules()[static_cast<std::size_t>(row)].cell;
-      const double place[3] = {pitch * cell.x, pitch * cell.y, pitch * cell.z};
+      const std::array<double, 3> steps = hf::base::node_place(robot.lattice(), cell);
+      const double place[3] = {pitch * steps[0], pitch * steps[1], pitch * steps[2]};
       u[k] = 1;
       if (k >= 3) {
         const int i = k - 3;
@@ -153,7 +166,7 @@ Run solve(const hf::model::Robot& robot, PetscInt first, PetscInt last) {
 }
 
 int run(const char* family, std::size_t size, const char* path) {
-  const auto robot = hf::model::Robot::create({.existing = hf::bench::cells(family, size)}).value();
+  const auto robot = hf::model::Robot::create(hf::bench::spec_of(family, size)).value();
   PetscMPIInt rank = 0;
   PetscMPIInt ranks = 1;
   MPI_Comm_rank(PETSC_COMM_WORLD, &rank);

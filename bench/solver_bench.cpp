@@ -19,7 +19,7 @@ namespace {
 
 int run_holdfast(const std::string& family, std::size_t size, bool is_bonded, int thread_count,
                  const char* path) {
-  model::RobotSpec spec{.existing = cells(family, size)};
+  const model::RobotSpec spec = spec_of(family, size);
   verdict::Assessment assessment;
   const Timing timing = fastest([&] {
     assessment = {};
@@ -39,7 +39,7 @@ int run_holdfast(const std::string& family, std::size_t size, bool is_bonded, in
 }
 
 int make_reference(const std::string& family, std::size_t size, const char* path) {
-  const auto robot = model::Robot::create({.existing = cells(family, size)}).value();
+  const auto robot = model::Robot::create(spec_of(family, size)).value();
   solver::EquilibriumSolver solver(robot, {.is_bonded = true, .tolerance = 1e-10});
   const solver::Equilibrium result = solver.solve({});
   if (result.outcome != solver::Outcome::kSettled) {
@@ -50,7 +50,7 @@ int make_reference(const std::string& family, std::size_t size, const char* path
 }
 
 int compare(const std::string& family, std::size_t size, const char* path, const char* reference) {
-  const auto robot = model::Robot::create({.existing = cells(family, size)}).value();
+  const auto robot = model::Robot::create(spec_of(family, size)).value();
   const auto found = load_ratios(robot, read_displacement(path, robot.modules().size()));
   const auto exact = load_ratios(robot, read_displacement(reference, robot.modules().size()));
   double scale = 1;
@@ -88,7 +88,7 @@ int measure_bandwidth() {
 
 /// What iterations cost without all that comes before and after them: many less a few.
 int measure_iteration(const std::string& family, std::size_t size, int thread_count) {
-  const auto robot = model::Robot::create({.existing = cells(family, size)}).value();
+  const auto robot = model::Robot::create(spec_of(family, size)).value();
   double seconds[2];
   int iterations[2];
   for (int k = 0; k < 2; ++k) {

@@ -169,6 +169,25 @@ constexpr auto lower_bound(Range&& range, const Value& value, Compare compare = 
                           });
 }
 
+template <class Range, class Value, class Compare = holdfast_detail::Less,
+          class Projection = holdfast_detail::Identity>
+constexpr auto upper_bound(Range&& range, const Value& value, Compare compare = {},
+                           Projection projection = {}) {
+  return std::upper_bound(std::begin(range), std::end(range), value,
+                          [&](const Value& wanted, const auto& element) {
+                            return std::invoke(compare, wanted, std::invoke(projection, element));
+                          });
+}
+
+template <class Range, class Value, class Compare = holdfast_detail::Less,
+          class Projection = holdfast_detail::Identity>
+constexpr auto equal_range(Range&& range, const Value& value, Compare compare = {},
+                           Projection projection = {}) {
+  const auto first = lower_bound(range, value, compare, projection);
+  return holdfast_detail::Rest<decltype(std::begin(range))>{
+      first, upper_bound(range, value, compare, projection)};
+}
+
 template <class Range, class Compare = holdfast_detail::Less,
           class Projection = holdfast_detail::Identity>
 constexpr auto min_element(Range&& range, Compare compare = {}, Projection projection = {}) {
@@ -181,6 +200,15 @@ template <class Range, class Compare = holdfast_detail::Less,
 constexpr auto max_element(Range&& range, Compare compare = {}, Projection projection = {}) {
   return std::max_element(std::begin(range), std::end(range),
                           holdfast_detail::by(compare, projection));
+}
+
+/// As values: a result of std::minmax_element is of places.
+template <class Range, class Compare = holdfast_detail::Less,
+          class Projection = holdfast_detail::Identity>
+constexpr auto minmax(Range&& range, Compare compare = {}, Projection projection = {}) {
+  const auto [low, high] = std::minmax_element(std::begin(range), std::end(range),
+                                               holdfast_detail::by(compare, projection));
+  return std::pair(*low, *high);
 }
 
 template <class Range>
@@ -205,7 +233,9 @@ constexpr void replace_if(Range&& range, Predicate predicate, const Value& value
 
 template <class Range, class Output, class Function>
 constexpr auto transform(Range&& range, Output output, Function function) {
-  return std::transform(std::begin(range), std::end(range), output, function);
+  return std::transform(
+      std::begin(range), std::end(range), output,
+      [&](auto&& element) -> decltype(auto) { return std::invoke(function, element); });
 }
 
 }  // namespace std::ranges

@@ -179,6 +179,10 @@ PYTHON
 # The README's picture is what the README's command makes.
 cmp -s picture.svg "$repository/docs/arm_breaks_b.svg" ||
   fault "docs/arm_breaks_b.svg is out of date"
+expect_exit 1 check "$repository/examples/catoms_hang.json" --svg catoms.svg --vtk catoms.vtu
+cmp -s catoms.svg "$repository/docs/catoms_hang.svg" ||
+  fault "docs/catoms_hang.svg is out of date"
+expect_line catoms.vtu '</VTKFile>'
 
 # Conversion there and back keeps everything.
 expect_exit 0 convert "$overload" there.xml
@@ -218,6 +222,19 @@ expect_exit 64 check --lattice datoms catoms.xml
 expect_line err 'skewed'
 expect_exit 65 check --lattice hexagonal catoms.json
 expect_line err "/lattice: the lattice is 'face-centred' here"
+
+# Robots that have been built.
+expect_exit 0 robots
+expect_line out '^rofi .* 110$'
+expect_exit 0 robots rofi
+expect_line out 'shear_strength_n +50  project page: '
+expect_exit 0 robots --json robots.json
+expect_line robots.json '"certainty": "not found"'
+expect_exit 64 robots roffi
+expect_line err 'none of the catalogue'
+expect_exit 0 check --robot rofi "$safe"
+expect_exit 65 check --robot smores-ep wall.json
+expect_line err '/material: of the robot smores-ep no mass_kg is published'
 
 # Named structures, large ones, bonded supports.
 expect_exit 0 generate cube 3

@@ -4,12 +4,14 @@ _holdfast() {
   local words='' files=''
   COMPREPLY=()
   if [ "$COMP_CWORD" -eq 1 ]; then
-    mapfile -t COMPREPLY < <(compgen -W "check simulate emulate convert generate view -h --help --version" -- "$current")
+    mapfile -t COMPREPLY < <(compgen -W "check simulate emulate convert generate robots view -h --help --version" -- "$current")
     return
   fi
   case ${COMP_WORDS[1]} in
     check)
       case $previous in
+        --robot) : ;;
+        --lattice) : ;;
         --json) files=1 ;;
         --connections) : ;;
         --csv) files=1 ;;
@@ -17,9 +19,11 @@ _holdfast() {
         --vtk) files=1 ;;
         --html) files=1 ;;
         --certificate) files=1 ;;
+        --limit-seconds) : ;;
         --threads) : ;;
         --memory) : ;;
-        *) if [[ $current == -* ]]; then words="-h --help --json --connections --csv --svg --vtk --html --certificate --prove --quiet --bonded --threads --memory"; else files=1; fi ;;
+        *) if [[ $current == -* ]]; then words="-h --help --lattice --json --connections --csv --svg --vtk --html --certificate --prove --limit --limit-seconds --quiet --bonded --threads --memory"; else files=1; fi ;;
+        *) if [[ $current == -* ]]; then words="-h --help --robot --lattice --json --connections --csv --svg --vtk --html --certificate --prove --quiet --bonded --threads --memory"; else files=1; fi ;;
       esac
       ;;
     simulate)
@@ -68,7 +72,11 @@ _holdfast() {
       ;;
     convert)
       case $previous in
-        *) if [[ $current == -* ]]; then words="-h --help"; else files=1; fi ;;
+        --lattice) : ;;
+        *) if [[ $current == -* ]]; then words="-h --help --lattice"; else files=1; fi ;;
+        --robot) : ;;
+        --lattice) : ;;
+        *) if [[ $current == -* ]]; then words="-h --help --robot --lattice"; else files=1; fi ;;
       esac
       ;;
     generate)
@@ -77,10 +85,21 @@ _holdfast() {
         *) if [[ $current == -* ]]; then words="-h --help -o --output"; else words="arm cube tower scaffold shell portal bridge growth"; fi ;;
       esac
       ;;
+    robots)
+      case $previous in
+        --json) files=1 ;;
+        *) if [[ $current == -* ]]; then words="-h --help --json"; else files=1; fi ;;
+      esac
+      ;;
     view)
       case $previous in
+        --lattice) : ;;
         --out) files=1 ;;
-        *) if [[ $current == -* ]]; then words="-h --help --out --no-open"; else files=1; fi ;;
+        *) if [[ $current == -* ]]; then words="-h --help --lattice --out --no-open"; else files=1; fi ;;
+        --robot) : ;;
+        --lattice) : ;;
+        --out) files=1 ;;
+        *) if [[ $current == -* ]]; then words="-h --help --robot --lattice --out --no-open"; else files=1; fi ;;
       esac
       ;;
   esac

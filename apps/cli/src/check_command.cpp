@@ -133,8 +133,8 @@ class CheckRun {
     const std::string report =
         fmt::format("{}: {}\n{}", io::one_line(structure.name),
                     verdict::name(result.assessment.verdict), report_text(structure, result));
-    const auto filled =
-        page ? fill_page(page.value(), structure, report) : base::Result<std::string>(page.error());
+    const auto filled = page ? fill_page(page.value(), structure, report, result.limit)
+                             : base::Result<std::string>(page.error());
     if (!filled) {
       ++bad_count_;
       print_error(filled.error(), options_.html);

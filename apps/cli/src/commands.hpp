@@ -33,6 +33,7 @@ Command add_check(CLI::App& app);
 Command add_convert(CLI::App& app);
 Command add_emulate(CLI::App& app);
 Command add_generate(CLI::App& app);
+Command add_robots(CLI::App& app);
 Command add_simulate(CLI::App& app);
 Command add_view(CLI::App& app);
 
@@ -68,8 +69,12 @@ inline void print_notes(std::span<const std::string> notes, const std::string& f
   }
 }
 
-/// The option of commands that read structures, for what a file leaves open.
+/// The options of commands that read structures, for what a file leaves open.
 inline void add_reading(CLI::App& command, io::ReadOptions& options) {
+  command
+      .add_option("--robot", options.robot,
+                  "Robot of files that do not say it, from the list that holdfast robots shows")
+      ->type_name("NAME");
   command
       .add_option_function<std::string>(
           "--lattice",

@@ -43,7 +43,7 @@ Command add_generate(CLI::App& app) {
       ->type_name("FILE");
   std::string footer = "Families:\n";
   for (const auto& [name, help] : family_list()) {
-    footer += fmt::format("  {:<10}{}\n", name, help);
+    footer += fmt::format("  {:<12}{}\n", name, help);
   }
   command->footer(footer + "All stand on z = 0. Exit: 0 written, 64 wrong usage, 65 not writable.");
   return {command, [options] { return run(*options); }};

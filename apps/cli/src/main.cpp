@@ -26,9 +26,9 @@ int run(int argc, char** argv) {
   app.set_version_flag("--version", "holdfast " + std::string(holdfast::version()));
   app.require_subcommand(1);
   app.footer("holdfast COMMAND --help says more about a command.");
-  const cli::Command commands[] = {cli::add_check(app),    cli::add_simulate(app),
-                                   cli::add_emulate(app),  cli::add_convert(app),
-                                   cli::add_generate(app), cli::add_view(app)};
+  const cli::Command commands[] = {
+      cli::add_check(app),    cli::add_simulate(app), cli::add_emulate(app), cli::add_convert(app),
+      cli::add_generate(app), cli::add_robots(app),   cli::add_view(app)};
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -53,7 +53,57 @@ Json optional_json(const std::optional<Number>& number) {
   return number ? Json(*number) : Json();
 }
 
-Json stability_json(const verdict::RigidBody& body) {
+Json vector_json(const std::array<double, 3>& vector) {
+  return Json::array({vector[0], vector[1], vector[2]});
+}
+
+/// Of all modules, mm.
+std::array<double, 3> centre_of_mass(const model::Robot& robot) {
+  std::array<double, 3> centre{};
+  double mass = 0;
+  for (std::size_t i = 0; i < robot.modules().size(); ++i) {
+    const auto node = base::node_place(robot.lattice(), robot.modules()[i].cell);
+    mass += robot.mass(i);
+    for (std::size_t k = 0; k < 3; ++k) {
+      centre[k] += robot.mass(i) * robot.material().pitch_mm * node[k];
+    }
+  }
+  for (double& coordinate : centre) {
+    coordinate /= mass;
+  }
+  return centre;
+}
+
+const char* name(verdict::StabilityRule rule) {
+  switch (rule) {
+    case verdict::StabilityRule::kHeld:
+      return "held";
+    case verdict::StabilityRule::kPolygon:
+      return "polygon";
+    case verdict::StabilityRule::kContactForces:
+      break;
+  }
+  return "contact-forces";
+}
+
+Json motion_json(const std::optional<limit::Motion>& motion) {
+  if (!motion) {
+    return {};
+  }
+  return {{"text", limit::text(*motion)},
+          {"velocity", vector_json(motion->velocity)},
+          {"angular", vector_json(motion->angular)}};
+}
+
+Json rigid_json(const limit::RigidStability& rigid) {
+  return {{"answer", limit::name(rigid.answer)},
+          {"friction_needed", optional_json(rigid.friction_needed)},
+          {"tilt_margin_deg", optional_json(rigid.tilt_margin_deg)},
+          {"motion", motion_json(rigid.motion)}};
+}
+
+Json stability_json(const model::Robot& robot, const verdict::Assessment& assessment) {
+  const verdict::RigidBody& body = assessment.simplified;
   Json polygon = Json::array();
   for (const verdict::PlanPoint& corner : body.polygon) {
     polygon.push_back(point_json(corner));
@@ -62,11 +112,13 @@ Json stability_json(const verdict::RigidBody& body) {
   if (body.edge) {
     edge = Json::array({point_json((*body.edge)[0]), point_json((*body.edge)[1])});
   }
-  return {{"stable", body.is_stable},
-          {"margin_mm", optional_json(body.margin_mm)},
-          {"edge", edge},
-          {"centre_of_mass", point_json(body.centre_of_mass)},
-          {"polygon", polygon}};
+  auto centre = centre_of_mass(robot);
+  centre[0] = body.centre_of_mass.x;
+  centre[1] = body.centre_of_mass.y;
+  return {{"rule", name(assessment.stability_rule)},    {"stable", assessment.is_stable},
+          {"margin_mm", optional_json(body.margin_mm)}, {"edge", edge},
+          {"centre_of_mass", vector_json(centre)},      {"polygon", polygon},
+          {"rigid", rigid_json(assessment.rigid)}};
 }
 
 Json reasons_json(const model::Robot& robot, const verdict::Assessment& assessment) {
@@ -77,24 +129,61 @@ Json reasons_json(const model::Robot& robot, const verdict::Assessment& assessme
   return list;
 }
 
-/// Integers: connections, broken ones; a, b and direction of each connection; indices of the broken
-/// ones. Numbers: five of each connection (ConnectionResult), six displacements of each module.
+/// Integers: module, direction, whether it is bonded, and the code of its contact state, -1 if that
+/// is not known. Numbers: with what force it presses, the force along it that acts on the module,
+/// and the coefficient of friction, -1 without slip.
+void add_facets(const model::Robot& robot, const verdict::Assessment& assessment, Reply& out) {
+  const auto& equilibrium = assessment.equilibrium;
+  const auto facets = robot.facets();
+  const bool is_known = equilibrium.facet_force.size() == facets.size();
+  for (std::size_t i = 0; i < facets.size(); ++i) {
+    const model::Facet& facet = facets[i];
+    const std::int32_t state = is_known ? equilibrium.contact[i].code() : -1;
+    out.integers.insert(out.integers.end(), {facet.module, base::index(facet.direction),
+                                             facet.is_bonded() ? 1 : 0, state});
+    const base::Vec6<double> force = is_known ? equilibrium.facet_force[i] : base::Vec6<double>{};
+    const auto normal = base::unit_vector(robot.lattice(), facet.direction);
+    const double along = force[0] * normal[0] + force[1] * normal[1] + force[2] * normal[2];
+    out.numbers.push_back(-along);
+    for (std::size_t k = 0; k < 3; ++k) {
+      out.numbers.push_back(force[k] - along * normal[k]);
+    }
+    out.numbers.push_back(facet.touch.friction.value_or(-1));
+  }
+}
+
+/// The limit that each connection's load ratio is of; nothing where all of them open.
+void add_limits(const model::Robot& robot, const verdict::Assessment& assessment, Reply& out) {
+  if (robot.has_default_connectors()) {
+    return;
+  }
+  for (const model::Limit limit : connection_limits(robot, assessment)) {
+    out.integers.push_back(static_cast<std::int32_t>(limit));
+  }
+}
+
+/// Integers: connections, broken ones, facets; a, b and direction of each connection; indices of
+/// the broken ones; four of each facet; limits of the connections, if they have any but one.
+/// Numbers: five of each connection (ConnectionResult), five of each facet, six displacements of
+/// each module.
 Reply assessment_reply(const model::Robot& robot, const verdict::Assessment& assessment,
                        double seconds) {
   Reply out;
   out.text = dump({{"verdict", verdict::name(assessment.verdict)},
                    {"reasons", reasons_json(robot, assessment)},
-                   {"stability", stability_json(assessment.simplified)},
+                   {"stability", stability_json(robot, assessment)},
                    {"load_ratio_max", optional_json(assessment.load_ratio_max)},
                    {"worst", optional_json(assessment.worst)},
                    {"weight_factor", optional_json(assessment.weight_factor)},
                    {"contact_model", verdict::name(assessment.contact_model)},
                    {"solves", assessment.equilibrium.steps},
+                   {"facet_half_mm", robot.foot_half_width_mm()},
                    {"has_loads", !assessment.connections.empty()},
                    {"seconds", seconds}});
   const auto connections = robot.connections();
   out.integers = {static_cast<std::int32_t>(connections.size()),
-                  static_cast<std::int32_t>(assessment.broken.size())};
+                  static_cast<std::int32_t>(assessment.broken.size()),
+                  static_cast<std::int32_t>(robot.facets().size())};
   for (const model::Connection& pair : connections) {
     out.integers.insert(out.integers.end(), {pair.a, pair.b, base::index(pair.direction)});
   }
@@ -105,6 +194,8 @@ Reply assessment_reply(const model::Robot& robot, const verdict::Assessment& ass
     out.numbers.insert(out.numbers.end(), {result.load_ratio, result.axial_n, result.bending_nmm,
                                            result.shear_n, result.torsion_nmm});
   }
+  add_facets(robot, assessment, out);
+  add_limits(robot, assessment, out);
   for (const auto& displacement : assessment.equilibrium.displacement) {
     for (int i = 0; i < 6; ++i) {
       out.numbers.push_back(displacement[static_cast<std::size_t>(i)]);
@@ -113,8 +204,13 @@ Reply assessment_reply(const model::Robot& robot, const verdict::Assessment& ass
   return out;
 }
 
+base::Result<model::Robot> robot_of(const Request& request) {
+  const auto spec = spec_of(request);
+  return spec ? model::Robot::create(spec.value()) : base::Result<model::Robot>(spec.error());
+}
+
 Reply check_request(const Request& request) {
-  const auto robot = model::Robot::create(spec_of(request));
+  const auto robot = robot_of(request);
   if (!robot) {
     return failure(robot.error());
   }
@@ -135,7 +231,11 @@ Reply try_places(const Request& request) {
   const std::span places(reinterpret_cast<const base::Cell*>(request.tail.data()),
                          request.tail.size() / sizeof(base::Cell));
   const auto role = static_cast<Role>(request.header.options[0]);
-  for (const Trial& trial : try_cells(spec_of(request), places, role)) {
+  const auto spec = spec_of(request);
+  if (!spec) {
+    return failure(spec.error());
+  }
+  for (const Trial& trial : try_cells(spec.value(), places, role)) {
     verdicts.push_back(trial.is_robot ? Json(verdict::name(trial.verdict)) : Json());
     out.numbers.push_back(trial.load_ratio_max.value_or(-1));
     out.numbers.push_back(trial.margin_mm.value_or(0));
@@ -165,6 +265,7 @@ Reply open_text(std::string_view text) {
   out.text = dump({{"name", document.name},
                    {"description", document.description},
                    {"support_z", document.support_z},
+                   {"more", more_of(document)},
                    {"later_steps", document.steps.empty() ? 0 : document.steps.size() - 1},
                    {"warnings", read.value().warnings}});
   const auto add = [&](const base::Cell& cell, Role role) {
@@ -212,7 +313,11 @@ base::Result<io::Document> document_of(const Request& request) {
     }
     base = std::move(read).value().document;
   }
-  io::Document document = edited(base, request);
+  auto changed = edited(base, request);
+  if (!changed) {
+    return changed.error();
+  }
+  io::Document document = std::move(changed).value();
   document.name = tail.substr(0, name_size);
   return document;
 }
@@ -282,7 +387,7 @@ std::string simulation_summary(const DistributedRun& run, bool is_complete) {
 
 /// Integers and numbers: the events, see PacketLog.
 Reply simulate_request(const Request& request) {
-  const auto robot = model::Robot::create(spec_of(request));
+  const auto robot = robot_of(request);
   if (!robot) {
     return failure(robot.error());
   }

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cstring>
 #include <map>
+#include <optional>
+#include <utility>
 #include <vector>
 
 namespace holdfast::web {
@@ -29,6 +31,60 @@ std::map<base::Cell, io::ModuleEntry> entries_by_cell(const io::Document& docume
   return entries;
 }
 
+/// What modules have of their own, by cell; existing ones and those that are planned first.
+std::map<base::Cell, io::OwnParameters> own_by_cell(const io::Document& document) {
+  std::map<base::Cell, io::OwnParameters> own;
+  for (const io::OwnParameters& one : document.extension.own) {
+    if (one.step == 0) {
+      own[document.modules[one.module].cell] = one;
+    } else if (one.step == 1) {
+      own[document.steps.front()[one.module].cell] = one;
+    }
+  }
+  return own;
+}
+
+/// Gives modules of a document what they have of their own, which `own` says by cell.
+void take_own(const std::map<base::Cell, io::OwnParameters>& own, io::Document& document) {
+  const auto add = [&](const base::Cell& cell, std::size_t step, std::size_t module) {
+    const auto found = own.find(cell);
+    if (found != own.end()) {
+      io::OwnParameters one = found->second;
+      one.step = step;
+      one.module = module;
+      document.extension.own.push_back(std::move(one));
+    }
+  };
+  document.extension.own.clear();
+  for (std::size_t i = 0; i < document.modules.size() && !own.empty(); ++i) {
+    add(document.modules[i].cell, 0, i);
+  }
+  if (!document.steps.empty() && !own.empty()) {
+    const io::Step& step = document.steps.front();
+    for (std::size_t i = 0; i < step.size(); ++i) {
+      add(step[i].cell, 1, i);
+    }
+  }
+}
+
+/// Takes what the request says beyond cells and material.
+std::optional<base::Error> take_more(std::string_view more, io::Document& document) {
+  io::Attributes obstacle_list = std::move(document.extension.obstacle_list);
+  document.extension = {};
+  if (more.empty()) {
+    return std::nullopt;
+  }
+  auto read = io::read_json(more);
+  if (!read) {
+    return read.error();
+  }
+  const io::Document& general = read.value().document;
+  document.extension = general.extension;
+  document.extension.obstacle_list = std::move(obstacle_list);
+  take_own(own_by_cell(general), document);
+  return std::nullopt;
+}
+
 }  // namespace
 
 Request read_request(std::span<const std::uint8_t> bytes) {
@@ -39,7 +95,12 @@ Request read_request(std::span<const std::uint8_t> bytes) {
   HOLDFAST_CHECK((bytes.size() - sizeof(RequestHeader)) / sizeof(PlacedModule) >= count);
   const std::uint8_t* const modules = bytes.data() + sizeof(RequestHeader);
   request.modules = {reinterpret_cast<const PlacedModule*>(modules), count};
-  request.tail = bytes.subspan(sizeof(RequestHeader) + count * sizeof(PlacedModule));
+  const auto more_size = static_cast<std::size_t>(request.header.more_size);
+  const std::size_t more_at = sizeof(RequestHeader) + count * sizeof(PlacedModule);
+  const std::size_t tail_at = more_at + (more_size + 3) / 4 * 4;
+  HOLDFAST_CHECK(bytes.size() >= tail_at);
+  request.more = {reinterpret_cast<const char*>(bytes.data()) + more_at, more_size};
+  request.tail = bytes.subspan(tail_at);
   return request;
 }
 
@@ -59,7 +120,12 @@ std::array<double, kMaterialCount> numbers_of(const Material& material) {
   return numbers;
 }
 
-model::RobotSpec spec_of(const Request& request) {
+base::Result<model::RobotSpec> spec_of(const Request& request) {
+  if (!request.more.empty()) {
+    const auto document = edited({}, request);
+    return document ? io::make_spec(document.value())
+                    : base::Result<model::RobotSpec>(document.error());
+  }
   model::RobotSpec spec{.support_z = request.header.support_z,
                         .material = material_of(request.header)};
   for (const PlacedModule& module : request.modules) {
@@ -82,7 +148,7 @@ bool has_double_cell(const io::Document& document) {
   return std::adjacent_find(cells.begin(), cells.end()) != cells.end();
 }
 
-io::Document edited(const io::Document& base, const Request& request) {
+base::Result<io::Document> edited(const io::Document& base, const Request& request) {
   std::map<base::Cell, io::ModuleEntry> entries = entries_by_cell(base);
   io::Document document = base;
   document.support_z = request.header.support_z;
@@ -106,12 +172,24 @@ io::Document edited(const io::Document& base, const Request& request) {
   } else {
     document.steps.clear();
   }
+  if (const auto error = take_more(request.more, document)) {
+    return *error;
+  }
   if (!(document == base)) {
     document.known_answer.reset();
-    // By index, of modules that may be others now; what is computed has the material's mass anyway.
-    document.extension.own.clear();
   }
   return document;
+}
+
+std::string more_of(const io::Document& document) {
+  io::Document general;
+  general.extension = document.extension;
+  const auto own = own_by_cell(document);
+  for (const auto& [cell, one] : own) {
+    general.modules.push_back({.cell = cell, .is_fixed = false, .color = {}, .attributes = {}});
+  }
+  take_own(own, general);
+  return io::write_json(general);
 }
 
 }  // namespace holdfast::web

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <span>
+#include <string>
 #include <string_view>
 
 #include "holdfast/trial.hpp"
@@ -12,14 +13,15 @@
 /// What the page asks, as bytes. src/core/wasm.ts writes them; both sides must agree.
 namespace holdfast::web {
 
-inline constexpr std::size_t kOptionCount = 6;
+inline constexpr std::size_t kOptionCount = 7;
 inline constexpr std::size_t kMaterialCount = model::kMaterialParameters.size();
 
-/// Little-endian, this object, then `module_count` PlacedModule, then a tail of bytes whose meaning
-/// depends on the call.
+/// Little-endian, this object, then `module_count` PlacedModule, then `more_size` bytes of text and
+/// up to three more to a whole word, then a tail of bytes whose meaning depends on the call.
 struct RequestHeader {
   std::int32_t module_count = 0;
-  std::int32_t support_z = 0;
+  std::int32_t support_z = 0;  ///< Void without a floor.
+  std::int32_t more_size = 0;
   std::array<std::int32_t, kOptionCount> options{};
   std::array<double, kMaterialCount> material{};  ///< As kMaterialParameters.
 };
@@ -35,6 +37,9 @@ struct PlacedModule {
 struct Request {
   RequestHeader header;
   std::span<const PlacedModule> modules;
+  /// What a structure says beyond cells and material, as holdfast JSON whose modules are those that
+  /// have something of their own; empty for cubes on a floor under their own weight.
+  std::string_view more;
   std::span<const std::uint8_t> tail;
 };
 
@@ -43,14 +48,18 @@ Request read_request(std::span<const std::uint8_t> bytes);
 model::Material material_of(const RequestHeader& header);
 std::array<double, kMaterialCount> numbers_of(const model::Material& material);
 
-/// What has to be known for mechanics; Robot::create checks it.
-model::RobotSpec spec_of(const Request& request);
+/// What has to be known for mechanics; Robot::create checks it. Errors: as of io::read_json and
+/// io::make_spec.
+base::Result<model::RobotSpec> spec_of(const Request& request);
 
 /// Two modules of the robot or of the step that is planned first are in one cell.
 bool has_double_cell(const io::Document& document);
 
 /// The document that the page's modules are when everything else is as in `base`: what a file said
-/// about a module, its colour and attributes, stays with its cell.
-io::Document edited(const io::Document& base, const Request& request);
+/// about a module, its colour and attributes, stays with its cell. Errors: as of io::read_json.
+base::Result<io::Document> edited(const io::Document& base, const Request& request);
+
+/// The text for Request::more of a document that was opened.
+std::string more_of(const io::Document& document);
 
 }  // namespace holdfast::web

@@ -68,6 +68,36 @@ Json links_json() {
   return list;
 }
 
+Json limits_json() {
+  Json list = Json::array();
+  for (int limit = 0; limit < model::kLimitCount; ++limit) {
+    list.push_back(model::name(static_cast<model::Limit>(limit)));
+  }
+  return list;
+}
+
+/// As base::Lattice, by io::kNamedLattices.
+Json lattices_json() {
+  Json list = Json::array();
+  for (const auto& [name, lattice] : io::kNamedLattices) {
+    Json steps = Json::array();
+    for (const base::Direction direction : base::directions(lattice)) {
+      const base::Cell& step = lattice.steps[static_cast<std::size_t>(base::index(direction))];
+      steps.push_back(Json::array({step.x, step.y, step.z}));
+    }
+    Json basis = Json::array();
+    for (const base::Cell& axis : {base::Cell{1, 0, 0}, base::Cell{0, 1, 0}, base::Cell{0, 0, 1}}) {
+      basis.push_back(base::place_of(lattice, axis));
+    }
+    list.push_back({{"name", std::string(name)},
+                    {"steps", steps},
+                    {"basis", basis},
+                    {"shear", Json::array({lattice.shear_x, lattice.shear_y})},
+                    {"down", lattice.down}});
+  }
+  return list;
+}
+
 }  // namespace
 
 sim::LinkModel link_of(std::int32_t value) {
@@ -77,10 +107,9 @@ sim::LinkModel link_of(std::int32_t value) {
 }
 
 std::string vocabulary_json() {
-  const Json vocabulary = {{"material", material_json()},
-                           {"phases", phases_json()},
-                           {"methods", methods_json()},
-                           {"links", links_json()}};
+  const Json vocabulary = {{"material", material_json()}, {"phases", phases_json()},
+                           {"methods", methods_json()},   {"links", links_json()},
+                           {"limits", limits_json()},     {"lattices", lattices_json()}};
   return vocabulary.dump();
 }
 

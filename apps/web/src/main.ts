@@ -3,6 +3,7 @@
 import './style.css';
 import { ROLE_NAMES, type Role } from './model/cell';
 import { EditedRobot } from './model/edited_robot';
+import { HOLDS } from './model/surroundings';
 import { Workbench, type Tool } from './model/workbench';
 import type { ScaleName } from './view/colours';
 import { App } from './ui/app';
@@ -16,6 +17,7 @@ import { makeMaterial } from './ui/material';
 import { Player } from './ui/player';
 import { listenToPointer } from './ui/pointer';
 import { openFirst, showWithoutPicture } from './ui/start';
+import { makeSurroundings } from './ui/surroundings';
 
 declare global {
   /** A handle for the browser's console, and for the tests. */
@@ -27,6 +29,8 @@ const TOOLS: readonly [tool: Tool, text: string, key: string][] = [
   ['add', 'Attach', 'A'],
   ['remove', 'Remove', 'D'],
   ['paint', 'Paint', 'P'],
+  ['obstacle', 'Obstacle', 'O'],
+  ['load', 'Load', 'L'],
 ];
 
 function radio(text: string, title: string, action: () => void): HTMLButtonElement {
@@ -53,10 +57,10 @@ function moveInside(group: HTMLElement): void {
 }
 
 function makeTools(bench: Workbench): void {
-  const icons = { look: 'look', add: 'add', remove: 'remove', paint: 'paint' } as const;
   const tools = TOOLS.map(([tool, text, key]) => {
     const button = radio('', `${text} (${key})`, () => bench.setTool(tool));
-    button.append(icon(icons[tool]), make('span', {}, text));
+    // There is room for four names only.
+    button.append(icon(tool), ...(tool === 'obstacle' || tool === 'load' ? [] : [make('span', {}, text)]));
     button.setAttribute('aria-label', text);
     return button;
   });
@@ -67,7 +71,12 @@ function makeTools(bench: Workbench): void {
     return button;
   });
   byId('tools').append(...tools);
-  byId('roles').append(...roles);
+  const holds = HOLDS.map((hold, i) => {
+    const text = `${hold[0].toUpperCase()}${hold.slice(1)}`;
+    const button = radio('', `${text} (${i + 1})`, () => bench.setHold(hold));
+    button.append(make('span', { className: `swatch obstacle ${hold}` }), make('span', {}, text));
+    return button;
+  });
   moveInside(byId('tools'));
   moveInside(byId('roles'));
   const check = (buttons: HTMLButtonElement[], chosen: number) =>
@@ -78,7 +87,13 @@ function makeTools(bench: Workbench): void {
   const show = () => {
     check(tools, TOOLS.findIndex(([tool]) => tool === bench.tool));
     check(roles, bench.role);
-    byId('roles').classList.toggle('idle', bench.tool === 'look' || bench.tool === 'remove');
+    check(holds, HOLDS.indexOf(bench.hold));
+    const offered = bench.tool === 'obstacle' ? holds : roles;
+    if (offered[0].parentElement !== byId('roles')) {
+      byId('roles').replaceChildren(...offered);
+      byId('roles').ariaLabel = bench.tool === 'obstacle' ? 'How an obstacle holds' : 'What is attached or painted';
+    }
+    byId('roles').classList.toggle('idle', !['add', 'paint', 'obstacle'].includes(bench.tool));
     byId<HTMLButtonElement>('undo').disabled = !bench.history.canUndo;
     byId<HTMLButtonElement>('redo').disabled = !bench.history.canRedo;
   };
@@ -137,6 +152,7 @@ function makePanel(app: App, keeper: Keeper): void {
     keeper.changed();
   };
   makeMaterial(bench);
+  makeSurroundings(bench);
   bench.robotListeners.push((what) => {
     if (what === 'robot') {
       name.value = bench.robot.name;
@@ -203,7 +219,7 @@ function begin(): void {
   byId('fit').onclick = actions.h;
   byId('help').onclick = actions['?'];
   byId('gallery-open').onclick = () => openGallery(bench, keeper);
-  byId('new').onclick = () => bench.history.replace('beginning anew', new EditedRobot());
+  byId('new').onclick = () => bench.history.replace('beginning anew', new EditedRobot(bench.robot.lattice));
   byId('save').onclick = () => byId<HTMLDialogElement>('takeaway').showModal();
   for (const button of document.querySelectorAll<HTMLButtonElement>('[data-save]')) {
     button.onclick = () => {
@@ -211,7 +227,7 @@ function begin(): void {
       void take(bench, app.stage, button.dataset.save!);
     };
   }
-  void openFirst(bench, keeper).then(showReady);
+  void openFirst(app, keeper).then(showReady);
 }
 
 const showReady = () => document.documentElement.classList.add('ready');

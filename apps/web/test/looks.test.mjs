@@ -39,6 +39,16 @@ for (const colorScheme of ['light', 'dark']) {
       await page.click('#simulate');
       await page.waitForSelector('#player:not([hidden])');
       await expectAccessible(page, 'the player and the material');
+      await page.evaluate(() => {
+        const { bench } = globalThis.holdfast;
+        bench.setLattice('face-centred');
+        bench.surround('a wall', { obstacles: [{ from: [8, 0, 0], to: [8, 2, 2], hold: 'bonded' }] });
+        bench.setTool('load');
+      });
+      await settled(page);
+      await expectAccessible(page, 'spheres, an obstacle, the form of loads');
+      await page.click('#tools button[aria-label=Obstacle]');
+      await expectAccessible(page, 'the choice of how an obstacle holds');
       for (const [button, dialog] of [['#gallery-open', '#gallery'], ['#save', '#takeaway'], ['#help', '#keys']]) {
         await page.click(button);
         await expectAccessible(page, dialog);

@@ -175,7 +175,7 @@ test('a link from a page of holdfast view opens the robot of the link', async ()
 const faceCodes = (page) =>
   page.evaluate(() => {
     const { view } = globalThis.holdfast.app;
-    return [...view.modules.faces.slice(0, view.drawn.length)];
+    return [...view.modules.faces.slice(0, 2 * view.drawn.length)];
   });
 
 test('other colours, light or dark: “Where next?” stays', async () => {

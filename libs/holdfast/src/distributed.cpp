@@ -208,7 +208,8 @@ base::Result<DistributedRun> simulate(const Structure& structure, const CheckRes
 }
 
 std::string picture_svg(const Structure& structure, const DistributedRun& run) {
-  return io::write_svg(structure.robot, run.view, structure.name);
+  return io::write_svg(structure.robot, run.view, structure.name,
+                       structure.document.extension.obstacles);
 }
 
 }  // namespace holdfast

@@ -76,6 +76,7 @@ base::Result<io::Document> generate(std::string_view family, std::size_t size) {
   io::Document document;
   document.name = fmt::format("{} {}", family, size);
   document.description = found->help;
+  document.extension.lattice = found->lattice;
   document.modules.reserve(count);
   for (const base::Cell& cell : model::family_cells(found->family, size)) {
     document.modules.emplace_back().cell = cell;
@@ -176,7 +177,8 @@ std::string report_text(const Structure& structure, const CheckResult& result) {
 }
 
 std::string picture_svg(const Structure& structure, const CheckResult& result) {
-  return io::write_svg(structure.robot, result.assessment, structure.name);
+  return io::write_svg(structure.robot, result.assessment, structure.name,
+                       structure.document.extension.obstacles);
 }
 
 std::string picture_vtu(const Structure& structure, const CheckResult& result) {

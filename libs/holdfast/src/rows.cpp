@@ -3,6 +3,7 @@
 #include <type_traits>
 
 #include "holdfast/holdfast.hpp"
+#include "holdfast/verdict/connection_law.hpp"
 
 namespace holdfast {
 namespace {
@@ -20,6 +21,16 @@ Rows rows_of(const std::vector<Object>& objects) {
 
 Rows connection_rows(const CheckResult& result) {
   return rows_of<5>(result.assessment.connections);
+}
+
+std::vector<model::Limit> connection_limits(const model::Robot& robot,
+                                            const verdict::Assessment& assessment) {
+  const verdict::ConnectionLaws laws(robot);
+  std::vector<model::Limit> limits;
+  for (std::size_t i = 0; i < assessment.connections.size(); ++i) {
+    limits.push_back(laws.limit(robot.connections()[i], assessment.connections[i]));
+  }
+  return limits;
 }
 
 Rows displacement_rows(const CheckResult& result) {

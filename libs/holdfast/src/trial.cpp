@@ -11,7 +11,8 @@ namespace {
 /// A robot that topples needs no loads; one that is bonded to the ground does not topple.
 verdict::Assessment try_robot(const model::Robot& robot, const CheckOptions& options) {
   verdict::Assessment look = first_look(robot);
-  return look.is_stable || options.is_bonded ? check(robot, options).assessment : look;
+  const bool topples = look.verdict == verdict::Verdict::kUnstable;
+  return topples && !options.is_bonded ? look : check(robot, options).assessment;
 }
 
 }  // namespace
@@ -47,8 +48,9 @@ std::vector<base::Cell> free_cells(const model::RobotSpec& spec) {
 
 verdict::Assessment first_look(const model::Robot& robot) {
   verdict::Assessment assessment = verdict::assess_rigidly(robot);
-  assessment.verdict =
-      assessment.is_stable ? verdict::Verdict::kUndecided : verdict::Verdict::kUnstable;
+  const bool is_open =
+      assessment.is_stable || assessment.rigid.answer == limit::RigidAnswer::kUndecided;
+  assessment.verdict = is_open ? verdict::Verdict::kUndecided : verdict::Verdict::kUnstable;
   return assessment;
 }
 

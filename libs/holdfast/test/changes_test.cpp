@@ -102,5 +102,16 @@ TEST(WithChanges, are_what_the_robot_goes_through) {
   EXPECT_NEAR(*run.value().view.load_ratio_max, *exact.assessment.load_ratio_max, 0.01);
 }
 
+/// A module's own mass would go to the module that comes to stand in its place in the list.
+TEST(Changes, are_for_modules_of_one_kind) {
+  const auto structure = load_text(R"({"format": "holdfast-structure", "version": 2,
+      "modules": [[0,0,0]], "planned": [[1,0,0], {"cell": [2,0,0], "mass_kg": 0.2}]})");
+  ASSERT_TRUE(structure);
+  const auto changed =
+      with_changes(structure.value(), {{.kind = Kind::kWithdraw, .at = 1, .cell = {1, 0, 0}}});
+  ASSERT_FALSE(changed);
+  EXPECT_EQ(changed.error().code, base::ErrorCode::kUnsupported);
+}
+
 }  // namespace
 }  // namespace holdfast

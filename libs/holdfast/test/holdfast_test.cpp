@@ -10,6 +10,9 @@
 #include <array>
 #include <filesystem>
 #include <fstream>
+#include <string>
+#include <tuple>
+#include <vector>
 
 namespace holdfast {
 namespace {
@@ -46,6 +49,22 @@ TEST(Facade, goes_from_text_to_a_verdict_and_its_reports) {
   EXPECT_NE(picture_vtu(structure.value(), result).find("</VTKFile>"), std::string::npos);
 }
 
+TEST(Facade, names_the_limit_that_a_connection_is_near) {
+  // The weight of one module, 0.599 N, shears; it opens at w L / (2 lever) = 0.599 N of 14.97 N.
+  for (const auto& [shear_n, limit, ratio] :
+       {std::tuple(1.0, model::Limit::kShears, 0.06106 * 9.81),
+        std::tuple(100.0, model::Limit::kOpens, 0.06106 * 9.81 / 14.97)}) {
+    const auto structure = load_text(
+        R"({"format": "holdfast-structure", "version": 2, "support_z": null,
+            "material": {"shear_strength_n": )" +
+        std::to_string(shear_n) + R"(}, "modules": [{"cell": [0,0,0], "fixed": true}, [1,0,0]]})");
+    ASSERT_TRUE(structure) << structure.error().message;
+    const verdict::Assessment assessment = check(structure.value()).assessment;
+    EXPECT_EQ(connection_limits(structure.value().robot, assessment), std::vector{limit});
+    EXPECT_NEAR(assessment.load_ratio_max.value_or(-1), ratio, 1e-9);
+  }
+}
+
 TEST(Facade, checks_a_robot_made_of_cells_as_it_checks_the_same_of_a_file) {
   const std::array<base::Cell, 2> existing = {{{0, 0, 0}, {0, 0, 1}}};
   const std::array<base::Cell, 1> planned = {{{1, 0, 1}}};
@@ -62,6 +81,36 @@ TEST(Facade, checks_a_robot_made_of_cells_as_it_checks_the_same_of_a_file) {
 }
 
 // A foot, an arm of two on it and one beside the foot: with or without its pair to the arm above.
+/// Three cubes in a row, the first one bonded to a wall, the second one heavier, a load on the
+/// third: statics say what bends the first connection, 20 mm from the second node and 60 mm from
+/// the third.
+TEST(Facade, checks_a_robot_with_a_wall_masses_and_loads_as_it_checks_the_same_of_a_file) {
+  const model::RobotSpec spec{.existing = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}},
+                              .support_z = {},
+                              .obstacles = {{.from = {-1, -1, -1},
+                                             .to = {-1, 1, 1},
+                                             .touch = {.hold = model::Hold::kBonded}}},
+                              .gravity_m_s2 = std::array<double, 3>{0, 1, -9},
+                              .own_masses = {{.cell = {1, 0, 0}, .mass_kg = 0.13}},
+                              .payloads = {{.cell = {2, 0, 0}, .force_n = {0.5, 0, -2}}}};
+  const auto robot = model::Robot::create(spec);
+  ASSERT_TRUE(robot) << robot.error().message;
+  const CheckResult result = check(robot.value());
+  const double bending_nmm = 0.13 * 9 * 20 + (0.06106 * 9 + 2) * 60;
+  const double load_ratio = (0.5 + bending_nmm / 20) / 14.97;
+  ASSERT_TRUE(result.assessment.load_ratio_max);
+  EXPECT_NEAR(*result.assessment.load_ratio_max, load_ratio, 1e-9);
+  EXPECT_EQ(result.assessment.verdict, verdict::Verdict::kSafe);
+
+  const auto structure = load_text(R"({"format": "holdfast-structure", "version": 2,
+      "support_z": null, "gravity_m_s2": [0, 1, -9],
+      "modules": [[0,0,0], {"cell": [1,0,0], "mass_kg": 0.13}, [2,0,0]],
+      "obstacles": [{"from": [-1,-1,-1], "to": [-1,1,1], "hold": "bonded"}],
+      "loads": [{"cell": [2,0,0], "force_n": [0.5,0,-2]}]})");
+  ASSERT_TRUE(structure) << structure.error().message;
+  EXPECT_EQ(check(structure.value()).assessment.load_ratio_max, result.assessment.load_ratio_max);
+}
+
 TEST(Facade, takes_released_pairs_for_not_connected) {
   const std::array<base::Cell, 4> cells = {{{0, 0, 0}, {0, 0, 1}, {1, 0, 1}, {1, 0, 0}}};
   const std::array<model::CellPair, 1> released = {{{cells[2], cells[3]}}};

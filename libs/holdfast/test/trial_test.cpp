@@ -39,8 +39,7 @@ TEST(FreeCells, hold_no_module_and_come_once) {
   }
 }
 
-TEST(Trial, says_what_a_check_of_the_grown_robot_says) {
-  const model::RobotSpec spec = corner();
+void expect_checks_of_grown_robots(const model::RobotSpec& spec) {
   const std::vector<Cell> cells = free_cells(spec);
   for (const Role role : {Role::kExisting, Role::kPlanned, Role::kFixed}) {
     const std::vector<Trial> trials = try_cells(spec, cells, role);
@@ -60,6 +59,21 @@ TEST(Trial, says_what_a_check_of_the_grown_robot_says) {
         }
       }
     }
+  }
+}
+
+TEST(Trial, says_what_a_check_of_the_grown_robot_says) { expect_checks_of_grown_robots(corner()); }
+
+TEST(Trial, says_so_in_every_lattice_with_supports_anywhere) {
+  for (const base::Lattice& lattice :
+       {base::kCubic, base::kFaceCentred, base::kHexagonal, base::kHexagonalPrism}) {
+    model::RobotSpec spec = corner();
+    spec.lattice = lattice;
+    spec.gravity_m_s2 = {2, 0, -9};
+    spec.floor.friction = 0.6;
+    spec.obstacles = {{.from = {}, .to = {}, .cells = {{3, 0, 0}, {3, 0, 2}}, .touch = {}}};
+    spec.payloads = {{.cell = {0, 0, 2}, .force_n = {0.2, 0, -0.3}, .torque_nmm = {}}};
+    expect_checks_of_grown_robots(spec);
   }
 }
 

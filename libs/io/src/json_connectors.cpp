@@ -70,17 +70,15 @@ void read_connector_parameter(JsonReading& reading, const std::string& key, cons
   }
 }
 
-void check_pair_lists_of(JsonReading& reading, const Connectors& connectors,
-                         const std::string& place) {
+void check_pair_lists_of(JsonReading& reading, const Connectors& connectors, const Place& place) {
   const base::Lattice& lattice = reading.document.extension.lattice;
   const auto pair_count = static_cast<std::size_t>(lattice.direction_count / 2);
   for (const ConnectorParameter& parameter : connectors.parameters) {
     if (parameter.spread == Spread::kPairs && parameter.values.size() != pair_count) {
-      reading.fail({base::ErrorCode::kBadInput,
-                    fmt::format("found a list of {}, expected is a number for each of the {} pairs "
-                                "of directions of the lattice \"{}\"",
-                                parameter.values.size(), pair_count, lattice_name(lattice)),
-                    place + "/" + parameter.key});
+      reading.fail(place.at(parameter.key),
+                   fmt::format("found a list of {}, expected is a number for each of the {} pairs "
+                               "of directions of the lattice \"{}\"",
+                               parameter.values.size(), pair_count, lattice_name(lattice)));
     }
   }
 }
@@ -158,9 +156,11 @@ void expect_one_strength(JsonReading& reading, const Json& value, const Place& p
 
 void check_pair_lists(JsonReading& reading) {
   const Extension& extension = reading.document.extension;
-  check_pair_lists_of(reading, extension.connectors, "/material");
+  const Place top;
+  check_pair_lists_of(reading, extension.connectors, top.at("material"));
+  const Place kinds = top.at("kinds");
   for (const KindEntry& kind : extension.kinds) {
-    check_pair_lists_of(reading, kind.connectors, "/kinds/" + pointer_token(kind.name));
+    check_pair_lists_of(reading, kind.connectors, kinds.at(kind.name));
   }
 }
 

@@ -253,7 +253,8 @@ std::string own_place(const OwnParameters& own) {
 
 /// The readers of kExtensionKeys, in their order.
 constexpr void (*kReaders[])(JsonReading&, const Json&, const Place&) = {
-    pass_over, read_floor, read_gravity, read_kinds, read_obstacles, read_loads, read_steps};
+    pass_over,  pass_over,      read_floor, read_gravity,
+    read_kinds, read_obstacles, read_loads, read_steps};
 static_assert(std::size(kReaders) == kExtensionKeys.size());
 
 }  // namespace
@@ -278,6 +279,7 @@ void read_own_parameter(JsonReading& reading, std::string_view key, const Json& 
 
 void read_extension_text(Reading& reading, std::string_view text, const Reading::Where& where) {
   JsonReading json;
+  json.document.material = reading.document.material;
   json.document.extension = std::move(reading.document.extension);
   const auto root = parse_json(text);
   if (!root) {
@@ -308,7 +310,12 @@ void read_extension_text(Reading& reading, std::string_view text, const Reading:
   check_pair_lists(json);
   auto read = std::move(json).finish();
   if (read) {
-    reading.document.extension = std::move(read).value().document.extension;
+    ReadDocument found = std::move(read).value();
+    reading.document.material = found.document.material;
+    reading.document.extension = std::move(found.document.extension);
+    for (std::string& warning : found.warnings) {
+      reading.warn(std::move(warning), where);
+    }
   } else {
     reading.fail({read.error().code,
                   fmt::format("{}: {}", read.error().where, read.error().message), where()});

@@ -133,8 +133,12 @@ void add_floor_and_gravity(Items& members, const Extension& extension) {
 
 }  // namespace
 
-void add_setting_members(Items& members, const Extension& extension) {
-  if (extension.lattice != base::kCubic) {
+void add_setting_members(Items& members, const Extension& extension,
+                         const base::Lattice& default_lattice) {
+  if (!extension.robot.empty()) {
+    members.push_back(member("robot", json_text(extension.robot)));
+  }
+  if (extension.lattice != default_lattice) {
     members.push_back(member("lattice", name_text(lattice_name(extension.lattice))));
   }
   add_floor_and_gravity(members, extension);

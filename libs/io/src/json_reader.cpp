@@ -24,6 +24,7 @@ class JsonReader {
 
  private:
   bool read_heading(const Json::object_t& root, const Place& place, const ReadOptions& options);
+  void read_robot(const Json& value, const Place& place, const ReadOptions& options);
   void read_lattice(const Json& value, const Place& place, const ReadOptions& options);
   bool allows(const Place& place);
   void read_member(const std::string& key, const Json& value, const Place& place);
@@ -54,6 +55,7 @@ base::Result<ReadDocument> JsonReader::read(const Json& root, const ReadOptions&
     for (const auto& [key, value] : members) {
       read_member(key, value, top.at(key));
     }
+    reading_.complete_material([&] { return top.at("material").pointer(); });
     check_kinds(reading_);
     check_pair_lists(reading_);
   }
@@ -91,9 +93,20 @@ bool JsonReader::read_heading(const Json::object_t& root, const Place& place,
     reading_.fail(place.at("gravity_m_s2"), "gravity stands here and in the material");
   }
   if (!reading_.has_failed()) {
+    read_robot(value_of("robot"), place.at("robot"), options);
     read_lattice(value_of("lattice"), place.at("lattice"), options);
   }
   return !reading_.has_failed();
+}
+
+/// As read_lattice(), and before it.
+void JsonReader::read_robot(const Json& value, const Place& place, const ReadOptions& options) {
+  const bool is_named = is_extended_ && !value.is_null();
+  const std::string name = is_named ? reading_.string(value, place) : "";
+  if (is_named && name.empty()) {
+    reading_.refuse(value, place, "the name of a robot");
+  }
+  reading_.take_robot(name, options, [&] { return place.pointer(); });
 }
 
 /// Before all that depends on it. The value is null if there is none.

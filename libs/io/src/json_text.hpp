@@ -48,7 +48,8 @@ std::string lines(char open, const Items& items, char close, std::size_t indent)
 
 /// The members of a structure that only version 2 of the format has, as they follow "support_z",
 /// "material", its own, and "planned".
-void add_setting_members(Items& members, const Extension& extension);
+void add_setting_members(Items& members, const Extension& extension,
+                         const base::Lattice& default_lattice);
 void add_kind_members(Items& members, const Extension& extension);
 void add_obstacle_members(Items& members, const Extension& extension);
 void add_plan_members(Items& members, const Extension& extension);

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "json_text.hpp"
+#include "robot_defaults.hpp"
 #include "vocabulary.hpp"
 
 /// The text is put together by hand because a person is to read it: cells side by side, each layer
@@ -99,7 +100,7 @@ std::string element_list(const std::vector<Element>& elements, std::size_t inden
 /// What differs from the defaults. Gravity stands here or as a vector at the top, not in both.
 Items material_members(const Document& document) {
   const model::Material& material = document.material;
-  const model::Material defaults;
+  const model::Material defaults = default_material(document);
   Items members;
   for (const model::MaterialParameter& parameter : model::kMaterialParameters) {
     const bool is_overridden = parameter.value == &model::Material::gravity_m_s2 &&
@@ -150,7 +151,10 @@ Items visiblesim_members(const Document& document) {
 /// What the modules of a step have of their own; step as in OwnParameters.
 std::span<const OwnParameters> own_of(const Extension& extension, std::size_t step) {
   const auto range = std::ranges::equal_range(extension.own, step, {}, &OwnParameters::step);
-  return {range.begin(), range.end()};
+  // As a place and a count: Emscripten's span takes no iterators of a vector.
+  return std::span(extension.own)
+      .subspan(static_cast<std::size_t>(range.begin() - extension.own.begin()),
+               static_cast<std::size_t>(range.end() - range.begin()));
 }
 
 /// "planned" and "later_steps".
@@ -187,7 +191,7 @@ std::string write_json(const Document& document) {
   }
   members.push_back(member("support_z", extension.has_floor ? fmt::format("{}", document.support_z)
                                                             : std::string("null")));
-  add_setting_members(members, extension);
+  add_setting_members(members, extension, default_lattice(extension.robot));
   if (const Items material = material_members(document); !material.empty()) {
     members.push_back(member("material", object(material, 2)));
   }

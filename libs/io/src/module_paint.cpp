@@ -128,6 +128,13 @@ Color shaded(Color color, Side side) {
   return mix(color, kBlack, 22, 100);
 }
 
+Color shaded(Color color, const Place& normal) {
+  // Towards white where positive, in percent; linear, with the values of a cube's three sides.
+  const auto percent =
+      static_cast<int>(std::lround(14 * normal[2] + 4 * normal[1] - 22 * normal[0]));
+  return percent > 0 ? lightened(color, percent) : mix(color, kBlack, -percent, 100);
+}
+
 std::string hex(Color color) {
   return fmt::format("#{:02x}{:02x}{:02x}", color.red, color.green, color.blue);
 }

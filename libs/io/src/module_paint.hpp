@@ -8,6 +8,7 @@
 
 #include "holdfast/io/document.hpp"
 #include "holdfast/verdict/assessment.hpp"
+#include "module_shape.hpp"
 #include "visible_surface.hpp"
 
 /// What colour a module has, and what it says: as in Fig. 6 of [Piranda 2021].
@@ -44,6 +45,9 @@ Color lightened(Color color, int percent);
 
 /// A face by its direction: light falls from above and from the left.
 Color shaded(Color color, Side side);
+
+/// The same of a face with any normal; those of a cube look as by their side.
+Color shaded(Color color, const Place& normal);
 
 /// "#rrggbb".
 std::string hex(Color color);

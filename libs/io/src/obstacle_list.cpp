@@ -63,6 +63,9 @@ class ObstacleListReader {
             attribute.first, kObstacleAttributes, "ignored", where_);
       }
     }
+    if (!element.text.empty() || !element.children.empty()) {
+      reading_.warn("the content of <obstacle> is ignored", where_);
+    }
     const std::string* const position = find_attribute(attributes, "position");
     if (position == nullptr) {
       refuse("<obstacle> has no attribute 'position'");

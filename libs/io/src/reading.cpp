@@ -3,10 +3,14 @@
 #include "reading.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
+#include <iterator>
 
 #include "holdfast/io/lattice_names.hpp"
+#include "holdfast/model/robot_catalogue.hpp"
+#include "robot_defaults.hpp"
 #include "text_input.hpp"
 #include "vocabulary.hpp"
 
@@ -87,6 +91,45 @@ void Reading::take_known_answer(KnownAnswer answer, const Where& where) {
           where()});
   }
   document.known_answer = std::move(answer);
+}
+
+void Reading::take_robot(const std::string& named, const ReadOptions& options, const Where& where) {
+  if (!named.empty() && !options.robot.empty() && named != options.robot) {
+    fail({base::ErrorCode::kBadInput,
+          fmt::format("the robot is {} here, but {} is asked for", excerpt(named),
+                      excerpt(options.robot)),
+          where()});
+  }
+  const std::string& name = named.empty() ? options.robot : named;
+  if (name.empty()) {
+    return;
+  }
+  const model::CatalogueRobot* const robot = model::find_robot(name);
+  if (robot == nullptr) {
+    std::vector<std::string_view> names;
+    std::ranges::transform(model::robot_catalogue(), std::back_inserter(names),
+                           &model::CatalogueRobot::name);
+    fail({base::ErrorCode::kBadInput,
+          fmt::format("the robot {} is none of the catalogue, which has {}", excerpt(name),
+                      fmt::join(names, ", ")),
+          where()});
+    return;
+  }
+  document.extension.robot = name;
+  document.extension.lattice = robot->lattice;
+  document.material = first_material(name);
+}
+
+void Reading::complete_material(const Where& where) {
+  const std::vector<std::string> missing = missing_keys(document.material);
+  if (!missing.empty()) {
+    fail({base::ErrorCode::kBadInput,
+          fmt::format("of the robot {} no {} is published: the structure must say it in its "
+                      "material",
+                      document.extension.robot, fmt::join(missing, ", ")),
+          where()});
+  }
+  model::fill_section(document.material);
 }
 
 bool Reading::take_lattice(std::optional<std::string_view> named, const ReadOptions& options,

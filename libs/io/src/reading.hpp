@@ -58,6 +58,14 @@ class Reading {
   /// Keeps it if its verdict is one.
   void take_known_answer(KnownAnswer answer, const Where& where);
 
+  /// The robot of the catalogue that the document names, or else the options: its figures become
+  /// the material and the lattice; a failure if these differ, or if there is no robot of that name.
+  /// Before anything of the material, and take_lattice().
+  void take_robot(const std::string& named, const ReadOptions& options, const Where& where);
+
+  /// After all of the material: what of the robot is not known must have been said.
+  void complete_material(const Where& where);
+
   /// The lattice of the document: `named`, what the file says, or what the options say; a failure
   /// if these differ, or if there is no lattice of that name. False if neither says anything.
   bool take_lattice(std::optional<std::string_view> named, const ReadOptions& options,

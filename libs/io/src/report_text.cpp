@@ -41,7 +41,8 @@ std::string rigid_text(const limit::RigidStability& rigid) {
 
 void write_stability(Out out, const model::Robot& robot, const verdict::Assessment& assessment) {
   const verdict::RigidBody& body = assessment.simplified;
-  const char* word = assessment.is_stable ? "stable" : "unstable";
+  const bool is_doubtful = assessment.verdict == verdict::Verdict::kUndecided;
+  const char* word = assessment.is_stable ? "stable" : is_doubtful ? "not certain" : "unstable";
   if (body.margin_mm) {
     const auto& [a, b] = *body.edge;
     fmt::format_to(
@@ -79,10 +80,12 @@ void write_loads(Out out, const model::Robot& robot, const verdict::Assessment& 
                    model::ends_text(robot, order[i]), result.axial_n, result.bending_nmm);
   }
   if (!order.empty() && !assessment.is_stable) {
-    fmt::format_to(out, "              (not meaningful: the robot topples)\n");
+    fmt::format_to(out, "              (not meaningful: the robot {})\n",
+                   assessment.verdict == verdict::Verdict::kUndecided ? "may move" : "topples");
   } else if (assessment.weight_factor) {
-    fmt::format_to(out, "  weight      the first connection breaks at {} times this weight\n",
-                   beside_one(*assessment.weight_factor, 3));
+    fmt::format_to(out, "  weight      the first connection breaks at {} times {}\n",
+                   beside_one(*assessment.weight_factor, 3),
+                   robot.has_payloads() ? "these loads" : "this weight");
   }
 }
 

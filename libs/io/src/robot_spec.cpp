@@ -6,6 +6,8 @@
 #include <cmath>
 
 #include "holdfast/io/document.hpp"
+#include "json_values.hpp"
+#include "robot_defaults.hpp"
 #include "text_input.hpp"
 #include "vocabulary.hpp"
 
@@ -66,10 +68,46 @@ void apply(const Connectors& connectors, const base::Lattice& lattice, model::Mo
   }
 }
 
+// What model::Robot allows; beyond it, products with other numbers leave the range of double.
+constexpr double kNumberMin = 1e-12;
+constexpr double kNumberMax = 1e12;
+
+std::optional<base::Error> find_fault(const Connectors& connectors, const Place& place) {
+  for (const ConnectorParameter& parameter : connectors.parameters) {
+    for (const std::optional<double>& value : parameter.values) {
+      if (!(value.value_or(1) >= kNumberMin)) {
+        return base::Error{base::ErrorCode::kBadInput,
+                           fmt::format("found {}, allowed is {} and more", *value, kNumberMin),
+                           place.at(parameter.key).pointer()};
+      }
+    }
+  }
+  return std::nullopt;
+}
+
+/// Before the robot is made, which does not know the file's names and places.
+std::optional<base::Error> find_fault(const Extension& extension) {
+  const Place top;
+  auto fault = find_fault(extension.connectors, top.at("material"));
+  const Place kinds = top.at("kinds");
+  for (const KindEntry& kind : extension.kinds) {
+    const Place place = kinds.at(kind.name);
+    const double mass = kind.mass_kg.value_or(1);
+    if (!fault && !(mass >= kNumberMin && mass <= kNumberMax)) {
+      fault = {base::ErrorCode::kBadInput,
+               fmt::format("found {}, allowed is {} to {}", mass, kNumberMin, kNumberMax),
+               place.at("mass_kg").pointer()};
+    }
+    fault = fault ? fault : find_fault(kind.connectors, place);
+  }
+  return fault;
+}
+
 /// All modules without a kind of their own first, then the document's kinds in their order.
 std::vector<model::ModuleKind> kinds_of(const Document& document) {
   const Extension& extension = document.extension;
   model::ModuleKind plain = model::default_kind(document.material, extension.lattice);
+  apply(robot_connectors(extension.robot), extension.lattice, plain);
   apply(extension.connectors, extension.lattice, plain);
   std::vector<model::ModuleKind> kinds = {plain};
   for (const KindEntry& entry : extension.kinds) {
@@ -133,6 +171,9 @@ base::Result<model::RobotSpec> make_spec(const Document& document) {
     return *std::move(error);
   }
   const Extension& extension = document.extension;
+  if (auto error = find_fault(extension)) {
+    return *std::move(error);
+  }
   model::RobotSpec spec{.material = document.material,
                         .lattice = extension.lattice,
                         .floor = {.friction = extension.floor_friction},
@@ -157,7 +198,8 @@ base::Result<model::RobotSpec> make_spec(const Document& document) {
   if (auto error = add_own(document, kinds, spec)) {
     return *std::move(error);
   }
-  if (!spec.own_kinds.empty() || extension.connectors != Connectors{}) {
+  if (!spec.own_kinds.empty() || extension.connectors != Connectors{} ||
+      robot_connectors(extension.robot) != Connectors{}) {
     spec.kinds = std::move(kinds);
   }
   return spec;

@@ -30,19 +30,18 @@ std::int32_t first_multiple(std::int32_t from, std::int32_t step) {
 
 std::string draw_grid(const Scene& scene) {
   const auto& [first, last] = scene.plan;
-  const double z = scene.ground_z();
   const std::int32_t step = step_for(scene.projection.edge_px, kGridPxMin);
   Path path;
-  const auto add_line = [&](LatticePoint from, LatticePoint to) {
-    path.move_to(scene.projection.at(from));
-    path.line_to(scene.projection.at(to));
+  const auto add_line = [&](ScreenPoint from, ScreenPoint to) {
+    path.move_to(scene.projection.at(scene.floor_point(from.x, from.y)));
+    path.line_to(scene.projection.at(scene.floor_point(to.x, to.y)));
   };
   // Lines run between cells, half a cell below the multiples of the step.
   for (std::int32_t x = first_multiple(first.x - 1, step); x <= last.x + 2; x += step) {
-    add_line({x - 0.5, first.y - 1.5, z}, {x - 0.5, last.y + 1.5, z});
+    add_line({x - 0.5, first.y - 1.5}, {x - 0.5, last.y + 1.5});
   }
   for (std::int32_t y = first_multiple(first.y - 1, step); y <= last.y + 2; y += step) {
-    add_line({first.x - 1.5, y - 0.5, z}, {last.x + 1.5, y - 0.5, z});
+    add_line({first.x - 1.5, y - 0.5}, {last.x + 1.5, y - 0.5});
   }
   return fmt::format("<path fill=\"none\" stroke=\"#d8dee0\" stroke-width=\"0.8\" d=\"{}\"/>\n",
                      path.text());
@@ -50,19 +49,18 @@ std::string draw_grid(const Scene& scene) {
 
 std::string draw_numbers(const Scene& scene) {
   const auto& [first, last] = scene.plan;
-  const double z = scene.ground_z();
   const std::int32_t step = step_for(scene.projection.edge_px, kNumberPxMin);
   std::string out = fmt::format("<g class=\"coordinates\" font-size=\"11\" fill=\"#8a9299\">\n");
-  const auto add = [&](LatticePoint at, double dx, const char* anchor, const std::string& text) {
-    const ScreenPoint point = scene.projection.at(at) + ScreenPoint{dx, 11};
+  const auto add = [&](double x, double y, double dx, const char* anchor, std::int32_t value) {
+    const ScreenPoint point = scene.projection.at(scene.floor_point(x, y)) + ScreenPoint{dx, 11};
     out += fmt::format("<text x=\"{}\" y=\"{}\" text-anchor=\"{}\">{}</text>\n", number(point.x),
-                       number(point.y), anchor, text);
+                       number(point.y), anchor, value);
   };
   for (std::int32_t x = first_multiple(first.x, step); x <= last.x; x += step) {
-    add({static_cast<double>(x), first.y - 1.5, z}, -4, "end", std::to_string(x));
+    add(x, first.y - 1.5, -4, "end", x);
   }
   for (std::int32_t y = first_multiple(first.y, step); y <= last.y; y += step) {
-    add({last.x + 1.5, static_cast<double>(y), z}, 4, "start", std::to_string(y));
+    add(last.x + 1.5, y, 4, "start", y);
   }
   return out + "</g>\n";
 }
@@ -110,22 +108,6 @@ Toppling toppling(const Scene& scene) {
           .to = {from.x + reach * dy / edge_length, from.y - reach * dx / edge_length, from.z}};
 }
 
-std::string arrow(ScreenPoint from, ScreenPoint to, const std::string& color) {
-  const ScreenPoint along = (1 / length(to - from)) * (to - from);
-  const ScreenPoint across = {-along.y, along.x};
-  const ScreenPoint neck = to - 11 * along;
-  Path head;
-  head.move_to(to);
-  head.line_to(neck + 5.5 * across);
-  head.line_to(neck - 5.5 * across);
-  head.close();
-  const std::string shaft = fmt::format("stroke=\"{}\" stroke-width=\"3\"", color);
-  return line(from, neck, "stroke=\"#fff\" stroke-width=\"6\" stroke-linecap=\"round\"") +
-         fmt::format("<path fill=\"{0}\" stroke=\"#fff\" stroke-width=\"1.5\" d=\"{1}\"/>\n", color,
-                     head.text()) +
-         line(from, neck, shaft);
-}
-
 std::string draw_toppling(const Scene& scene) {
   const verdict::RigidBody& body = scene.assessment.simplified;
   const std::string color = hex(kUnstableColor);
@@ -161,6 +143,22 @@ std::string draw_mass(const Scene& scene) {
 }
 
 }  // namespace
+
+std::string arrow(ScreenPoint from, ScreenPoint to, const std::string& color) {
+  const ScreenPoint along = (1 / length(to - from)) * (to - from);
+  const ScreenPoint across = {-along.y, along.x};
+  const ScreenPoint neck = to - 11 * along;
+  Path head;
+  head.move_to(to);
+  head.line_to(neck + 5.5 * across);
+  head.line_to(neck - 5.5 * across);
+  head.close();
+  const std::string shaft = fmt::format("stroke=\"{}\" stroke-width=\"3\"", color);
+  return line(from, neck, "stroke=\"#fff\" stroke-width=\"6\" stroke-linecap=\"round\"") +
+         fmt::format("<path fill=\"{0}\" stroke=\"#fff\" stroke-width=\"1.5\" d=\"{1}\"/>\n", color,
+                     head.text()) +
+         line(from, neck, shaft);
+}
 
 std::string mass_symbol(ScreenPoint centre, double radius) {
   const std::string x = number(centre.x);
@@ -199,23 +197,25 @@ std::vector<ScreenPoint> balance_signs(const Scene& scene) {
 }
 
 std::string draw_ground(const Scene& scene) {
-  if (!scene.has_polygon()) {
+  if (!scene.has_polygon() && !scene.has_grid()) {
     return {};
   }
   std::string out = "<g class=\"ground\">\n";
   if (scene.has_grid()) {
     out += draw_grid(scene) + draw_numbers(scene);
   }
-  out += fmt::format(
-      "<path class=\"support-polygon\" fill=\"#9cc3d1\" fill-opacity=\"0.55\" "
-      "stroke=\"{}\" stroke-width=\"1.6\" stroke-linejoin=\"round\" d=\"{}\"/>\n",
-      kGroundInk, polygon_path(scene));
+  if (scene.has_polygon()) {
+    out += fmt::format(
+        "<path class=\"support-polygon\" fill=\"#9cc3d1\" fill-opacity=\"0.55\" "
+        "stroke=\"{}\" stroke-width=\"1.6\" stroke-linejoin=\"round\" d=\"{}\"/>\n",
+        kGroundInk, polygon_path(scene));
+  }
   return out + "</g>\n";
 }
 
 std::string draw_balance(const Scene& scene) {
   if (!scene.has_polygon()) {
-    return {};
+    return draw_fall(scene);
   }
   // Not wider than a small robot itself.
   const double width = 1.3 * std::clamp(scene.projection.edge_px / 10, 0.4, 1.0);

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "body_view.hpp"
 #include "holdfast/verdict/assessment.hpp"
 #include "module_paint.hpp"
 #include "svg_text.hpp"
@@ -25,8 +26,14 @@ inline constexpr const char* kInkSoft = "#6a7178";
 inline constexpr const char* kCardFill = "#fdfdfb";
 inline constexpr const char* kGroundInk = "#3f6b7d";
 
-/// A place in lattice coordinates: the centre of cell (x, y, z) is at x, y, z.
+/// A place in pitches, global frame; in a cubic lattice the centre of cell (x, y, z) is at x, y, z.
 struct LatticePoint {
+  LatticePoint() = default;
+
+  LatticePoint(double an_x, double a_y, double a_z) : x(an_x), y(a_y), z(a_z) {}
+
+  explicit LatticePoint(const Place& place) : x(place[0]), y(place[1]), z(place[2]) {}
+
   double x = 0;
   double y = 0;
   double z = 0;
@@ -34,7 +41,7 @@ struct LatticePoint {
 
 /// From the lattice to pixels.
 struct Projection {
-  base::Cell lowest;
+  base::Cell lowest;      ///< Whose lower corner is the origin of (u, v); cubic lattices only.
   double edge_px = 1;     ///< Length of a cube's edge on the picture.
   ScreenPoint origin_px;  ///< Where vertex (0, 0) lies.
 
@@ -53,7 +60,7 @@ struct Box {
   double bottom = 0;
 };
 
-/// Cells from and to, both included, in plan.
+/// The smallest and the largest coordinates of all modules' cells.
 struct PlanRange {
   base::Cell first;
   base::Cell last;
@@ -61,27 +68,41 @@ struct PlanRange {
 
 /// Everything that is drawn, and where.
 struct Scene {
-  Scene(const model::Robot& a_robot, const verdict::Assessment& an_assessment);
+  Scene(const model::Robot& a_robot, const verdict::Assessment& an_assessment,
+        std::span<const model::Obstacle> obstacles = {});
 
   const model::Robot& robot;
   const verdict::Assessment& assessment;
   std::vector<ModulePaint> paints;
-  VisibleSurface existing;            ///< Without planned modules.
-  std::optional<VisibleSurface> all;  ///< With them; none if there are none.
+  /// Cubes without obstacles are drawn as what is seen of their faces; all else as bodies.
+  std::optional<BodyView> bodies;
+  std::optional<VisibleSurface> existing;  ///< Without planned modules; none if there are bodies.
+  std::optional<VisibleSurface> all;       ///< With them; none if there are none, or bodies.
   PlanRange plan;
   Projection projection;
   double card_width = 0;
   Box drawing;  ///< Pixels that the drawing may use.
 
-  double ground_z() const { return robot.support_z() - 0.5; }
+  /// Of the plane of the support polygon, if there is one.
+  double ground_z() const;
+
+  /// Of the floor, if there is one.
+  double floor_z() const;
 
   /// Something rests on the ground, so there is a support polygon.
   bool has_polygon() const { return !assessment.simplified.polygon.empty(); }
 
-  /// The ground is shown as a plane: nothing hangs below it.
-  bool has_grid() const { return has_polygon() && projection.lowest.z >= robot.support_z(); }
+  /// The floor is shown as a plane: something touches it, and nothing hangs below it.
+  bool has_grid() const;
 
   LatticePoint on_ground(verdict::PlanPoint point) const;
+
+  /// The point of the floor under the centre of cell (x, y) of the layer that rests on it, or
+  /// between such centres.
+  LatticePoint floor_point(double x, double y) const;
+
+  /// The centre of a facet, or of that between two modules: half a pitch from a node.
+  LatticePoint facet_centre(std::int32_t module, base::Direction direction) const;
 
   /// The centre of mass, lattice coordinates.
   LatticePoint centre_of_mass() const;
@@ -93,6 +114,12 @@ struct Scene {
   double covered_share(const Box& box) const;
 
   bool is_detailed() const { return robot.modules().size() <= kDetailedCountMax; }
+
+ private:
+  void mark_bodies();
+
+  std::vector<bool> covered_;  ///< By bodies: squares of the drawing, row by row.
+  std::size_t covered_row_length_ = 0;
 };
 
 }  // namespace holdfast::io

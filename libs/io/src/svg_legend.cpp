@@ -22,9 +22,19 @@ constexpr double kBarWidth = 240;
 constexpr double kBarHeight = 12;
 constexpr double kRowHeight = 23;
 
-std::string stability_text(const verdict::RigidBody& body) {
-  return body.margin_mm ? "stability margin " + millimetres(*body.margin_mm)
-                        : "held by a fixed module";
+std::string stability_text(const Scene& scene) {
+  const verdict::Assessment& assessment = scene.assessment;
+  if (assessment.simplified.margin_mm) {
+    return "stability margin " + millimetres(*assessment.simplified.margin_mm);
+  }
+  if (assessment.stability_rule == verdict::StabilityRule::kContactForces) {
+    const auto& tilt = assessment.rigid.tilt_margin_deg;
+    return tilt ? fmt::format("stands until gravity tilts by {:.1f}\u00b0", *tilt)
+                : "contact forces hold it";
+  }
+  return scene.robot.fixed_count() > 0 || !scene.robot.has_bonded_facets()
+             ? "held by a fixed module"
+             : "held by a bonded support";
 }
 
 std::string load_text(const Scene& scene) {
@@ -45,8 +55,14 @@ std::string load_text(const Scene& scene) {
                      ratio_text(*assessment.load_ratio_max, !assessment.broken.empty()));
 }
 
-std::string toppling_text(const verdict::RigidBody& body) {
-  if (body.margin_mm.value_or(0) == 0) {
+std::string toppling_text(const Scene& scene) {
+  const verdict::RigidBody& body = scene.assessment.simplified;
+  if (!body.margin_mm) {
+    return scene.assessment.reasons.empty()
+               ? "it falls"
+               : reason_text(scene.robot, scene.assessment.reasons.front());
+  }
+  if (*body.margin_mm == 0) {
     return "the centre of mass lies on the edge of the support polygon, nothing to spare";
   }
   return "topples: the centre of mass lies " + millimetres(*body.margin_mm) +
@@ -113,6 +129,13 @@ Entry mass_entry() {
           }};
 }
 
+Entry facet_entry(const FacetSign& sign) {
+  return {.label = sign.label, .draw = [attributes = sign.attributes](ScreenPoint at) {
+            return fmt::format("<path {} stroke-width=\"1.3\" d=\"M{} {}l10-5 10 5-10 5z\"/>\n",
+                               attributes, number(at.x - 3), number(at.y + 7));
+          }};
+}
+
 /// Only what occurs in the picture.
 std::vector<Entry> entries(const Scene& scene) {
   std::vector<Entry> list;
@@ -131,7 +154,20 @@ std::vector<Entry> entries(const Scene& scene) {
   }
   if (scene.has_polygon()) {
     list.push_back(polygon_entry());
+  }
+  if (scene.has_polygon() || fall_of(scene) != nullptr) {
     list.push_back(mass_entry());
+  }
+  for (const ObstacleSign& sign : obstacle_signs(scene)) {
+    list.push_back(swatch_entry(
+        sign.label,
+        fmt::format("fill=\"{0}\" fill-opacity=\"0.3\" stroke=\"{0}\"", hex(sign.color))));
+  }
+  for (const FacetSign& sign : facet_signs(scene)) {
+    list.push_back(facet_entry(sign));
+  }
+  if (has_payload_signs(scene)) {
+    list.push_back({.label = "payload", .draw = payload_sign});
   }
   return list;
 }
@@ -181,7 +217,7 @@ double draw_entries(const std::vector<Entry>& list, ScreenPoint start, double ri
 
 Headline headline(const Scene& scene) {
   const verdict::Assessment& assessment = scene.assessment;
-  const std::string stability = stability_text(assessment.simplified);
+  const std::string stability = stability_text(scene);
   switch (assessment.verdict) {
     case Verdict::kSafe:
       return {"SAFE", load_text(scene) + "; " + stability, {.red = 30, .green = 122, .blue = 58}};
@@ -189,7 +225,7 @@ Headline headline(const Scene& scene) {
       return {
           "OVERLOAD", load_text(scene) + "; " + stability, {.red = 165, .green = 15, .blue = 29}};
     case Verdict::kUnstable:
-      return {"UNSTABLE", toppling_text(assessment.simplified), kUnstableColor};
+      return {"UNSTABLE", toppling_text(scene), kUnstableColor};
     case Verdict::kUndecided:
       break;
   }

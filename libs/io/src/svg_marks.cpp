@@ -6,7 +6,9 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
+#include "holdfast/model/lattice_beam.hpp"
 #include "svg_parts.hpp"
 
 namespace holdfast::io {
@@ -15,26 +17,64 @@ namespace {
 constexpr double kLabelHeight = 25;
 constexpr double kLabelFont = 16;
 
-/// The middle of the face that a connection crosses, and its corners.
+/// The face that a connection crosses.
 struct SharedFace {
   ScreenPoint centre;
-  std::array<ScreenPoint, 4> corners;
+  std::vector<ScreenPoint> corners;
 };
 
-SharedFace shared_face(const Scene& scene, std::size_t connection) {
-  const base::Cell cell = model::ends(scene.robot, connection)[0];
-  const int axis = base::index(scene.robot.connections()[connection].direction) / 2;
-  const auto at = [&](double along, double first, double second) {
-    std::array<double, 3> offset{};
-    offset[static_cast<std::size_t>(axis)] = along;
-    offset[static_cast<std::size_t>((axis + 1) % 3)] = first;
-    offset[static_cast<std::size_t>((axis + 2) % 3)] = second;
-    return scene.projection.at(
-        LatticePoint{cell.x + offset[0], cell.y + offset[1], cell.z + offset[2]});
+/// Of cubes, whose connection runs along an axis.
+std::vector<Place> square_across(std::size_t axis) {
+  const auto corner = [&](double first, double second) {
+    Place place{};
+    place[(axis + 1) % 3] = first;
+    place[(axis + 2) % 3] = second;
+    return place;
   };
-  return {
-      .centre = at(0.5, 0, 0),
-      .corners = {at(0.5, -0.5, -0.5), at(0.5, 0.5, -0.5), at(0.5, 0.5, 0.5), at(0.5, -0.5, 0.5)}};
+  return {corner(-0.5, -0.5), corner(0.5, -0.5), corner(0.5, 0.5), corner(-0.5, 0.5)};
+}
+
+/// Of balls and discs, which share a point or a line: a circle around it.
+std::vector<Place> circle_across(const base::Lattice& lattice, base::Direction direction) {
+  constexpr int kCorners = 16;
+  constexpr double kRadius = 0.28;
+  const auto axes = model::rotation_along<double>(lattice, direction);
+  std::vector<Place> corners;
+  for (int i = 0; i < kCorners; ++i) {
+    const double angle = 2 * std::numbers::pi * i / kCorners;
+    corners.push_back(sum(scaled(kRadius * std::cos(angle), axes[0]),
+                          scaled(kRadius * std::sin(angle), axes[1])));
+  }
+  return corners;
+}
+
+/// The corners of a connection's face as seen from its middle.
+std::vector<Place> face_across(const base::Lattice& lattice, base::Direction direction) {
+  if (lattice == base::kCubic) {
+    return square_across(static_cast<std::size_t>(base::index(direction)) / 2);
+  }
+  if (body_of(lattice) == Body::kCell) {
+    const Place middle = scaled(-0.5, base::unit_vector(lattice, direction));
+    for (ShapeFace& face : cell_faces(lattice)) {
+      if (face.direction == direction) {
+        std::ranges::transform(face.corners, face.corners.begin(),
+                               [&](const Place& corner) { return sum(corner, middle); });
+        return face.corners;
+      }
+    }
+  }
+  return circle_across(lattice, direction);
+}
+
+SharedFace shared_face(const Scene& scene, std::size_t connection) {
+  const model::Connection& pair = scene.robot.connections()[connection];
+  const LatticePoint middle = scene.facet_centre(pair.a, pair.direction);
+  SharedFace face = {.centre = scene.projection.at(middle), .corners = {}};
+  for (const Place& corner : face_across(scene.robot.lattice(), pair.direction)) {
+    face.corners.push_back(scene.projection.at(
+        LatticePoint{middle.x + corner[0], middle.y + corner[1], middle.z + corner[2]}));
+  }
+  return face;
 }
 
 std::string face_path(const SharedFace& face) {

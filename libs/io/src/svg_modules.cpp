@@ -11,10 +11,6 @@
 namespace holdfast::io {
 namespace {
 
-/// Opacity of planned modules, and how much lighter they are, in percent.
-constexpr const char* kGlass = "0.7";
-constexpr int kGlassLightness = 34;
-
 /// Below this size the outlines of single modules would only darken the picture.
 constexpr double kInnerLinePxMin = 2.5;
 
@@ -31,23 +27,6 @@ Widths widths(const Scene& scene) {
   const double factor = scene.is_detailed() ? 1 : 0.6;
   return {.inner = std::clamp(edge * 0.02, 0.25, 0.9) * factor,
           .outline = std::clamp(edge * 0.036, 0.5, 1.7) * factor};
-}
-
-std::string tooltip(const Scene& scene, std::size_t module) {
-  const auto& [cell, support, is_planned, kind] = scene.robot.modules()[module];
-  const ModulePaint& paint = scene.paints[module];
-  std::string text = model::text(cell);
-  if (is_planned) {
-    text += ", planned";
-  }
-  if (support != model::Support::kNone) {
-    text += support == model::Support::kFixed ? ", fixed" : ", on the ground";
-  }
-  if (paint.is_loaded && paint.meaning != Meaning::kUnstable) {
-    text += fmt::format(", worst connection at {} of its strength",
-                        ratio_text(paint.worst_ratio, paint.meaning == Meaning::kBroken));
-  }
-  return text;
 }
 
 struct PaintedFace {
@@ -135,7 +114,7 @@ std::string fill(const Scene& scene, std::vector<PaintedFace> faces) {
   };
   for_each_run(faces, share_module, [&](std::span<const PaintedFace> module) {
     out += fmt::format("<g class=\"module\"><title>{}</title>\n",
-                       tooltip(scene, module.front().face.module));
+                       module_tooltip(scene, module.front().face.module));
     draw_colors(module);
     out += "</g>\n";
   });
@@ -201,8 +180,8 @@ std::string draw_existing(const Scene& scene) {
   const auto [inner, outline] = widths(scene);
   std::string out =
       fmt::format("<g class=\"modules\" stroke-width=\"0.4\" stroke-linejoin=\"round\">\n{}</g>\n",
-                  fill_of(scene, scene.existing, false));
-  const auto edges = scene.existing.edges();
+                  fill_of(scene, *scene.existing, false));
+  const auto edges = scene.existing->edges();
   out += fmt::format(
       "<g class=\"outlines\" fill=\"none\" stroke=\"{}\" stroke-linecap=\"round\">\n", kInk);
   // Under glass there are none.
@@ -236,7 +215,50 @@ std::string draw_planned(const Scene& scene) {
 
 }  // namespace
 
+namespace {
+
+/// What a module on the ground touches.
+std::string touch_text(const model::Robot& robot, std::size_t module) {
+  std::size_t obstacle_count = 0;
+  bool is_on_floor = false;
+  const auto index = static_cast<std::int32_t>(module);
+  auto facet = std::ranges::lower_bound(robot.facets(), index, {}, &model::Facet::module);
+  for (; facet != robot.facets().end() && facet->module == index; ++facet) {
+    const bool is_floor = touches_floor(robot, *facet);
+    is_on_floor = is_on_floor || is_floor;
+    obstacle_count += is_floor ? 0 : 1;
+  }
+  std::string text = is_on_floor ? ", on the ground" : "";
+  if (obstacle_count > 0) {
+    text += fmt::format(", touches obstacles with {} side{}", obstacle_count,
+                        obstacle_count == 1 ? "" : "s");
+  }
+  return text;
+}
+
+}  // namespace
+
+std::string module_tooltip(const Scene& scene, std::size_t module) {
+  const auto& [cell, support, is_planned, kind] = scene.robot.modules()[module];
+  const ModulePaint& paint = scene.paints[module];
+  std::string text = model::text(cell);
+  if (is_planned) {
+    text += ", planned";
+  }
+  if (support != model::Support::kNone) {
+    text += support == model::Support::kFixed ? ", fixed" : touch_text(scene.robot, module);
+  }
+  if (paint.is_loaded && paint.meaning != Meaning::kUnstable) {
+    text += fmt::format(", worst connection at {} of its strength",
+                        ratio_text(paint.worst_ratio, paint.meaning == Meaning::kBroken));
+  }
+  return text;
+}
+
 std::string draw_modules(const Scene& scene) {
+  if (scene.bodies) {
+    return draw_bodies(scene);
+  }
   std::string out = draw_existing(scene);
   if (scene.all) {
     out += draw_planned(scene);

@@ -31,8 +31,63 @@ std::string draw_ground(const Scene& scene);
 
 std::string draw_modules(const Scene& scene);
 
+/// Opacity of planned modules, and how much lighter they are, in percent.
+inline constexpr const char* kGlass = "0.7";
+inline constexpr int kGlassLightness = 34;
+
+/// What a module's tooltip says.
+std::string module_tooltip(const Scene& scene, std::size_t module);
+
+/// The modules and obstacles of a scene with bodies.
+std::string draw_bodies(const Scene& scene);
+
+/// How obstacles look that are in the picture.
+struct ObstacleSign {
+  std::string label;
+  Color color;
+};
+
+std::vector<ObstacleSign> obstacle_signs(const Scene& scene);
+
+/// The facets that touch something, by state, where it is more than cubes on a floor.
+std::string draw_facets(const Scene& scene);
+
+/// How facets look that are in the picture.
+struct FacetSign {
+  std::string label;
+  std::string attributes;  ///< Of a path.
+};
+
+std::vector<FacetSign> facet_signs(const Scene& scene);
+
+/// Forces and torques on modules besides their weight.
+std::string draw_payloads(const Scene& scene);
+
+bool has_payload_signs(const Scene& scene);
+
+/// The sign of payloads, 20 x 14 px.
+std::string payload_sign(ScreenPoint at);
+
+/// Gravity that points straight down is not drawn.
+bool is_gravity_drawn(const Scene& scene);
+
+/// An arrow along gravity, if that is drawn.
+std::string draw_gravity(const Scene& scene, ScreenPoint from);
+
+inline constexpr const char* kGravityInk = "#4a4f9c";
+
+/// An arrow with a white border.
+std::string arrow(ScreenPoint from, ScreenPoint to, const std::string& color);
+
 /// What the robot hides of its support polygon, the centre of mass, the edge it topples over.
 std::string draw_balance(const Scene& scene);
+
+/// How the robot begins to fall where no polygon says so; null if it does not, or that is not
+/// known.
+const limit::Motion* fall_of(const Scene& scene);
+
+/// That motion: over which edge or about which axis, and where the centre of mass goes.
+std::string draw_fall(const Scene& scene);
 
 /// What labels should not hide: the centre of mass, its foot, the toppling edge and its arrow.
 std::vector<ScreenPoint> balance_signs(const Scene& scene);

@@ -32,7 +32,7 @@ std::string description(const Scene& scene) {
 std::string draw_axes(const Scene& scene) {
   constexpr double kLength = 22;
   constexpr double kHalfWidth = 40;
-  constexpr double kHalfHeight = 34;
+  const double half_height = is_gravity_drawn(scene) ? 56 : 34;  // It may point anywhere.
 
   struct Axis {
     const char* name;
@@ -44,12 +44,12 @@ std::string draw_axes(const Scene& scene) {
   const Box& area = scene.drawing;
   const double right = area.right - kHalfWidth - 10;
   const double left = area.left + kHalfWidth + 4;
-  const double bottom = area.bottom - kHalfHeight - 4;
-  const double top = area.top + kHalfHeight + 6;
+  const double bottom = area.bottom - half_height - 4;
+  const double top = area.top + half_height + 6;
   const ScreenPoint corners[] = {{left, bottom}, {right, bottom}, {left, top}, {right, top}};
   const ScreenPoint centre = *std::ranges::min_element(corners, {}, [&](ScreenPoint corner) {
-    return scene.covered_share({corner.x - kHalfWidth, corner.y - kHalfHeight,
-                                corner.x + kHalfWidth, corner.y + kHalfHeight});
+    return scene.covered_share({corner.x - kHalfWidth, corner.y - half_height,
+                                corner.x + kHalfWidth, corner.y + half_height});
   });
   const ScreenPoint origin = centre + ScreenPoint{-10, 8};
   std::string out = fmt::format(
@@ -71,12 +71,12 @@ std::string draw_axes(const Scene& scene) {
         "y=\"{}\">{}</text>\n",
         path.text(), number(text.x), number(text.y + 4), name);
   }
-  return out + "</g>\n";
+  return out + "</g>\n" + draw_gravity(scene, origin);
 }
 
 std::string write_svg(const model::Robot& robot, const verdict::Assessment& assessment,
-                      std::string_view title) {
-  const Scene scene(robot, assessment);
+                      std::string_view title, std::span<const model::Obstacle> obstacles) {
+  const Scene scene(robot, assessment, obstacles);
   const Legend legend = draw_legend(scene);
   const double height = scene.drawing.bottom + legend.height;
   std::string out = fmt::format(
@@ -90,8 +90,10 @@ std::string write_svg(const model::Robot& robot, const verdict::Assessment& asse
   out += draw_header(scene, title);
   out += draw_ground(scene);
   out += draw_modules(scene);
+  out += draw_facets(scene);
   out += draw_marks(scene);
   out += draw_balance(scene);
+  out += draw_payloads(scene);
   out += draw_labels(scene);
   out += draw_axes(scene);
   out += legend.text;

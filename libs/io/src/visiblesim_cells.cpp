@@ -29,14 +29,22 @@ bool is_no(std::string_view text) {
   return is_one_of(lower, {"0", "false", "no"});
 }
 
+/// Most modules have nothing else, and looking for what is not there takes time.
+bool has_more_than_position(const pugi::xml_node& node) {
+  return node.first_attribute().next_attribute();
+}
+
 /// What the attributes of ours say that a module has of its own, if there are any.
 void read_own(XmlReading& reading, const pugi::xml_node& node, OwnParameters own) {
-  const pugi::xml_attribute kind = node.attribute(kOwnKindAttribute);
-  const pugi::xml_attribute mass = node.attribute(kOwnMassAttribute);
-  if (!kind && !mass) {
+  if (!has_more_than_position(node)) {
     return;
   }
+  const pugi::xml_attribute kind = node.attribute(kOwnKindAttribute);
+  const pugi::xml_attribute mass = node.attribute(kOwnMassAttribute);
   own.kind = kind.value();
+  if (own.kind.empty() && !mass) {
+    return;
+  }
   if (mass) {
     own.mass_kg = reading.number(node, mass);
     if (!(*own.mass_kg > 0)) {
@@ -49,7 +57,7 @@ void read_own(XmlReading& reading, const pugi::xml_node& node, OwnParameters own
 
 ModuleEntry read_block(XmlReading& reading, const pugi::xml_node& block) {
   reading.expect_no_content(block);
-  if (block.attribute("piston")) {
+  if (has_more_than_position(block) && block.attribute("piston")) {
     reading.fail(block, fmt::format("<block piston> is a datom: {}", kNoDatoms),
                  base::ErrorCode::kUnsupported);
   }

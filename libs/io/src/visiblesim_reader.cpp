@@ -71,7 +71,8 @@ void read_extension(XmlReading& reading, const pugi::xml_node& node) {
 /// <holdfast>: what our writer adds to the file.
 void read_own_element(XmlReading& reading, const pugi::xml_node& node) {
   Document& document = reading.document;
-  std::vector<std::string_view> known = {"name", "description", "lattice", "computed", kShift};
+  std::vector<std::string_view> known = {"name",    "description", "robot",
+                                         "lattice", "computed",    kShift};
   for (const model::MaterialParameter& parameter : model::kMaterialParameters) {
     if (parameter.visiblesim == nullptr) {
       known.emplace_back(parameter.key);
@@ -99,6 +100,7 @@ void read_own_element(XmlReading& reading, const pugi::xml_node& node) {
       extension || !document.extension.own.empty()) {
     read_extension(reading, extension);
   }
+  document.support_z = document.extension.has_floor ? document.support_z : 0;
   reading.take_back_shift(node);
 }
 
@@ -132,14 +134,15 @@ void read_scenery(XmlReading& reading, const pugi::xml_node& world) {
   }
 }
 
-/// What the file says, then what it is asked for, then what only blocks of one kind of modules are
-/// as large as.
+/// What the file says, then what it is asked for, then the robot's, then what only blocks of one
+/// kind of modules are as large as.
 void read_lattice(XmlReading& reading, const pugi::xml_node& blocks, const pugi::xml_node& own,
                   const ReadOptions& options) {
   const auto where = [&] { return reading.line(own ? own : blocks); };
   const pugi::xml_attribute named = own.attribute("lattice");
   if (reading.take_lattice(named ? std::optional<std::string_view>(named.value()) : std::nullopt,
-                           options, where)) {
+                           options, where) ||
+      !reading.document.extension.robot.empty()) {
     return;
   }
   const auto size = parse_triple<double>(blocks.attribute("blockSize").value());
@@ -153,7 +156,9 @@ void read_lattice(XmlReading& reading, const pugi::xml_node& blocks, const pugi:
                              excerpt(blocks.attribute("blockSize").value()), modules->name,
                              lattice_name(modules->lattice)),
                  where);
-  } else if (blocks.find_child([](const auto& child) { return child.attribute(kOrientation); })) {
+  } else if (blocks.find_child([](const pugi::xml_node& child) {
+               return child.first_attribute().next_attribute() && child.attribute(kOrientation);
+             })) {
     reading.warn(
         "blocks have an orientation, as VisibleSim's catoms3D have, but are read as cubes: if "
         "they are catoms, ask for the lattice face-centred (--lattice catoms3D)",
@@ -202,12 +207,16 @@ void read_roots(XmlReading& reading, const pugi::xml_node& tree, const ReadOptio
                   "no element <world>, expected is a VisibleSim configuration", ""});
     return;
   }
-  if (!parameters) {
+  if (!parameters && options.robot.empty() && !world.child(kOwnElement).attribute("robot")) {
     reading.warn("there is no element <parameters>: mass and material are those of Blinky Blocks",
                  [] { return std::string(); });
   }
+  const pugi::xml_node own = world.child(kOwnElement);
+  const auto where = [&] { return reading.line(own ? own : world); };
+  reading.take_robot(own.attribute("robot").value(), options, where);
   read_parameters(reading, parameters);
   read_world(reading, world, options);
+  reading.complete_material(where);
 }
 
 }  // namespace

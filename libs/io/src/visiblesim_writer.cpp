@@ -10,6 +10,7 @@
 #include "holdfast/io/lattice_names.hpp"
 #include "json_text.hpp"
 #include "reading.hpp"
+#include "robot_defaults.hpp"
 #include "vocabulary.hpp"
 
 namespace holdfast::io {
@@ -117,7 +118,7 @@ void add_element(pugi::xml_node parent, const Element& element) {
 /// Mass and support level always, as users of VisibleSim do; the rest if it is not the default.
 void add_parameters(pugi::xml_node parent, const Document& document, const base::Cell& shift) {
   pugi::xml_node node = append(parent, "parameters");
-  const model::Material defaults;
+  const model::Material defaults = default_material(document);
   for (const model::MaterialParameter& parameter : model::kMaterialParameters) {
     const double value = document.material.*parameter.value;
     const bool is_mass = parameter.value == &model::Material::mass_kg;
@@ -230,14 +231,15 @@ void add_own_element(pugi::xml_node world, const Document& document, const base:
   pugi::xml_node node = append(world, kOwnElement);
   add_if_any(node, "name", document.name);
   add_if_any(node, "description", document.description);
-  const model::Material defaults;
+  const model::Material defaults = default_material(document);
   for (const model::MaterialParameter& parameter : model::kMaterialParameters) {
     const double value = document.material.*parameter.value;
     if (parameter.visiblesim == nullptr && value != defaults.*parameter.value) {
       add(node, parameter.key, value);
     }
   }
-  if (document.extension.lattice != base::kCubic) {
+  add_if_any(node, "robot", document.extension.robot);
+  if (document.extension.lattice != default_lattice(document.extension.robot)) {
     add(node, "lattice", std::string(lattice_name(document.extension.lattice)));
   }
   if (is_grid_computed) {

@@ -84,7 +84,7 @@ inline constexpr auto kTopKeys = std::to_array<std::string_view>(
 
 /// Those that only version 2 has, alone and with all others.
 inline constexpr auto kExtensionKeys = std::to_array<std::string_view>(
-    {"lattice", "floor", "gravity_m_s2", "kinds", "obstacles", "loads", "steps"});
+    {"robot", "lattice", "floor", "gravity_m_s2", "kinds", "obstacles", "loads", "steps"});
 inline constexpr auto kAllTopKeys = joined(kTopKeys, kExtensionKeys);
 inline constexpr auto kOwnParameterKeys = std::to_array<std::string_view>({"kind", "mass_kg"});
 inline constexpr auto kAllModuleKeys = joined(kModuleKeys, kOwnParameterKeys);

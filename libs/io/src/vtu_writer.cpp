@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
@@ -10,31 +11,34 @@
 #include <type_traits>
 
 #include "holdfast/io/picture.hpp"
+#include "holdfast/model/lattice_beam.hpp"
+#include "holdfast/verdict/connection_law.hpp"
 #include "module_paint.hpp"
 #include "vtu_arrays.hpp"
+#include "vtu_shape.hpp"
 
-// Cells are the modules in the robot's order, then the connections in theirs. Points are eight
-// corners of each module, then the centre of each, between which the connections run. What is not
-// known is written as 0, and has_loads says so.
+// Cells are the modules in the robot's order, then the connections and the facets in theirs. Points
+// are those of the shape of each module, then the centre of each, between which the connections
+// run, then the four corners of each facet. What is not known is written as 0, and has_loads says
+// so.
 namespace holdfast::io {
 namespace {
 
-using Triple = std::array<double, 3>;
+using Triple = Place;
 
-constexpr std::size_t kCornerCount = 8;
 constexpr std::uint8_t kVtkLine = 3;
-constexpr std::uint8_t kVtkHexahedron = 12;
+constexpr std::uint8_t kVtkQuad = 9;
 constexpr std::int8_t kNotOnGround = -1;
+constexpr std::int8_t kNoDirection = -1;
+constexpr std::int8_t kNoLimit = -1;
+constexpr std::size_t kFacetCornerCount = 4;
 
-/// The corners of a cube in VTK's order, as fractions of the pitch.
-constexpr std::array<Triple, kCornerCount> kCorners = {{{-0.5, -0.5, -0.5},
-                                                        {0.5, -0.5, -0.5},
-                                                        {0.5, 0.5, -0.5},
-                                                        {-0.5, 0.5, -0.5},
-                                                        {-0.5, -0.5, 0.5},
-                                                        {0.5, -0.5, 0.5},
-                                                        {0.5, 0.5, 0.5},
-                                                        {-0.5, 0.5, 0.5}}};
+/// A facet's corners in its frame, in halves of its width.
+constexpr std::array<std::array<double, 2>, kFacetCornerCount> kFacetCorners = {
+    {{-1, -1}, {1, -1}, {1, 1}, {-1, 1}}};
+
+/// What a cell of the file stands for.
+enum class CellKind : std::uint8_t { kModule, kConnection, kFacet };
 
 /// What is not finite is written as 0, and what is is rounded to 32 bits, more than nine digits:
 /// fewer bits take less room and time.
@@ -89,26 +93,12 @@ VtuArray make_array(const char* name, std::size_t count, OfTuple of_tuple) {
           }};
 }
 
-Triple scaled(double factor, const Triple& a) {
-  return {factor * a[0], factor * a[1], factor * a[2]};
-}
-
-Triple sum(const Triple& a, const Triple& b) { return {a[0] + b[0], a[1] + b[1], a[2] + b[2]}; }
-
-Triple cross(const Triple& a, const Triple& b) {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
-
 Triple first_half(const base::Vec6<double>& vector) { return {vector[0], vector[1], vector[2]}; }
 
 Triple second_half(const base::Vec6<double>& vector) { return {vector[3], vector[4], vector[5]}; }
 
-/// -1 on modules that do not rest on the ground, else how many corners press: 0 (open), 1, 2 (an
-/// edge) or 4 (closed).
-std::int8_t pressing_corners(model::Support support, const mechanics::ContactState& state) {
-  if (support != model::Support::kGround) {
-    return kNotOnGround;
-  }
+/// How many corners of a facet press: 0 (open), 1, 2 (an edge) or 4 (closed).
+std::int8_t pressing_corners(const mechanics::ContactState& state) {
   if (!state.pressed) {
     return 0;
   }
@@ -127,12 +117,18 @@ class Writer {
         assessment_(assessment),
         module_count_(robot.modules().size()),
         connection_count_(robot.connections().size()),
+        facet_count_(robot.facets().size()),
+        shape_(vtu_shape(robot.lattice())),
+        laws_(robot),
         paints_(paint_modules(robot, assessment)),
         is_broken_(connection_count_, false),
         has_loads_(has_loads(robot, assessment)),
         arrays_(out, options) {
     for (const std::size_t connection : assessment.broken) {
       is_broken_[connection] = true;
+    }
+    for (const base::Direction direction : base::facet_directions(robot.lattice())) {
+      axes_.push_back(model::rotation_along<double>(robot.lattice(), direction));
     }
   }
 
@@ -143,7 +139,7 @@ class Writer {
          << VtuArrays::compressor() << ">\n<UnstructuredGrid>\n";
     write_field_data();
     out_ << fmt::format("<Piece NumberOfPoints=\"{}\" NumberOfCells=\"{}\">\n", point_count(),
-                        module_count_ + connection_count_);
+                        module_count_ + connection_count_ + facet_count_);
     out_ << "<Points>\n";
     announce_points();
     out_ << "</Points>\n<Cells>\n";
@@ -160,33 +156,59 @@ class Writer {
   }
 
  private:
-  /// Lines run between the centres of modules; without lines there are corners only.
+  /// Lines run between the centres of modules; without lines there are no centres.
+  std::size_t centre_count() const { return connection_count_ > 0 ? module_count_ : 0; }
+
+  std::size_t corner_count() const { return shape_.points.size() * module_count_; }
+
   std::size_t point_count() const {
-    return kCornerCount * module_count_ + (connection_count_ > 0 ? module_count_ : 0);
+    return corner_count() + centre_count() + kFacetCornerCount * facet_count_;
   }
 
-  /// `of_module` and `of_connection` give the value of a cell for an index.
-  template <class OfModule, class OfConnection>
-  void announce_cell_array(const char* name, OfModule of_module, OfConnection of_connection) {
-    static_assert(
-        std::is_same_v<decltype(of_module(std::size_t{})), decltype(of_connection(std::size_t{}))>);
-    arrays_.announce(make_array(name, module_count_ + connection_count_,
-                                [modules = module_count_, of_module, of_connection](std::size_t i) {
-                                  return i < modules ? of_module(i) : of_connection(i - modules);
+  /// `of_module`, `of_connection` and `of_facet` give the value of a cell for an index.
+  template <class OfModule, class OfConnection, class OfFacet>
+  void announce_cell_array(const char* name, OfModule of_module, OfConnection of_connection,
+                           OfFacet of_facet) {
+    using Value = decltype(of_module(std::size_t{}));
+    static_assert(std::is_same_v<Value, decltype(of_connection(std::size_t{}))> &&
+                  std::is_same_v<Value, decltype(of_facet(std::size_t{}))>);
+    arrays_.announce(make_array(name, module_count_ + connection_count_ + facet_count_,
+                                [this, of_module, of_connection, of_facet](std::size_t i) {
+                                  if (i < module_count_) {
+                                    return of_module(i);
+                                  }
+                                  return i < module_count_ + connection_count_
+                                             ? of_connection(i - module_count_)
+                                             : of_facet(i - module_count_ - connection_count_);
                                 }));
   }
 
-  /// `at_corner` gets a module and a corner, `at_centre` a module.
-  template <class AtCorner, class AtCentre>
-  void announce_point_array(const char* name, AtCorner at_corner, AtCentre at_centre) {
+  /// `of_point` gets a module and a point of it, from its node, mm.
+  template <class OfPoint>
+  void announce_point_array(const char* name, OfPoint of_point) {
     const double pitch = robot_.material().pitch_mm;
-    arrays_.announce(make_array(
-        name, point_count(),
-        [pitch, corners = kCornerCount * module_count_, at_corner, at_centre](std::size_t i) {
-          return i < corners
-                     ? at_corner(i / kCornerCount, scaled(pitch, kCorners[i % kCornerCount]))
-                     : at_centre(i - corners);
-        }));
+    arrays_.announce(make_array(name, point_count(), [this, pitch, of_point](std::size_t i) {
+      const std::size_t per_module = shape_.points.size();
+      if (i < corner_count()) {
+        return of_point(i / per_module, scaled(pitch, shape_.points[i % per_module]));
+      }
+      if (i < corner_count() + centre_count()) {
+        return of_point(i - corner_count(), Triple{});
+      }
+      const std::size_t place = i - corner_count() - centre_count();
+      const model::Facet& facet = robot_.facets()[place / kFacetCornerCount];
+      return of_point(static_cast<std::size_t>(facet.module),
+                      facet_corner(facet, kFacetCorners[place % kFacetCornerCount]));
+    }));
+  }
+
+  Triple facet_corner(const model::Facet& facet, const std::array<double, 2>& corner) const {
+    const auto& axes = axes_[static_cast<std::size_t>(base::index(facet.direction))];
+    const double half_width = robot_.foot_half_width_mm();
+    const Triple middle = scaled(robot_.material().pitch_mm / 2,
+                                 base::unit_vector(robot_.lattice(), facet.direction));
+    return sum(middle, sum(scaled(corner[0] * half_width, axes[0]),
+                           scaled(corner[1] * half_width, axes[1])));
   }
 
   /// Strings are written as character codes with a zero at the end.
@@ -200,39 +222,54 @@ class Writer {
     out_ << fmt::format(
         "0\n</Array>\n<DataArray type=\"Float64\" Name=\"load_ratio_max\" NumberOfTuples=\"1\" "
         "format=\"ascii\">\n{:.9g}\n</DataArray>\n<DataArray type=\"UInt8\" Name=\"has_loads\" "
-        "NumberOfTuples=\"1\" format=\"ascii\">\n{}\n</DataArray>\n</FieldData>\n",
-        std::isfinite(largest) ? largest + 0.0 : 0.0, flag(has_loads_));
+        "NumberOfTuples=\"1\" format=\"ascii\">\n{}\n</DataArray>\n<DataArray type=\"Float64\" "
+        "Name=\"gravity_m_s2\" NumberOfComponents=\"3\" NumberOfTuples=\"1\" "
+        "format=\"ascii\">\n{:.9g} {:.9g} {:.9g}\n</DataArray>\n</FieldData>\n",
+        std::isfinite(largest) ? largest + 0.0 : 0.0, flag(has_loads_), robot_.gravity()[0] + 0.0,
+        robot_.gravity()[1] + 0.0, robot_.gravity()[2] + 0.0);
   }
 
   Triple centre(std::size_t module) const {
-    const base::Cell& cell = robot_.modules()[module].cell;
-    return scaled(
-        robot_.material().pitch_mm,
-        {static_cast<double>(cell.x), static_cast<double>(cell.y), static_cast<double>(cell.z)});
+    return scaled(robot_.material().pitch_mm,
+                  base::node_place(robot_.lattice(), robot_.modules()[module].cell));
   }
 
   void announce_points() {
-    announce_point_array(
-        "Points",
-        [this](std::size_t module, const Triple& corner) { return sum(centre(module), corner); },
-        [this](std::size_t module) { return centre(module); });
+    announce_point_array("Points", [this](std::size_t module, const Triple& point) {
+      return sum(centre(module), point);
+    });
+  }
+
+  /// Connections share the centres; all other cells have their points one behind the other.
+  std::int64_t point_at(std::size_t i) const {
+    const std::size_t corners = corner_count();
+    if (i < corners) {
+      return static_cast<std::int64_t>(i);
+    }
+    if (i < corners + 2 * connection_count_) {
+      const model::Connection& pair = robot_.connections()[(i - corners) / 2];
+      return static_cast<std::int64_t>(corners) + ((i - corners) % 2 == 0 ? pair.a : pair.b);
+    }
+    return static_cast<std::int64_t>(i - 2 * connection_count_ + centre_count());
   }
 
   void announce_cells() {
-    const std::size_t corners = kCornerCount * module_count_;
-    arrays_.announce(
-        make_array("connectivity", corners + 2 * connection_count_, [this, corners](std::size_t i) {
-          if (i < corners) {
-            return static_cast<std::int64_t>(i);
-          }
-          const model::Connection& pair = robot_.connections()[(i - corners) / 2];
-          return static_cast<std::int64_t>(corners) + ((i - corners) % 2 == 0 ? pair.a : pair.b);
-        }));
+    const std::size_t corners = corner_count();
+    arrays_.announce(make_array("connectivity",
+                                corners + 2 * connection_count_ + kFacetCornerCount * facet_count_,
+                                [this](std::size_t i) { return point_at(i); }));
+    const auto offset = [](std::size_t before, std::size_t each, std::size_t i) {
+      return static_cast<std::int64_t>(before + each * (i + 1));
+    };
     announce_cell_array(
-        "offsets", [](std::size_t i) { return static_cast<std::int64_t>(kCornerCount * (i + 1)); },
-        [corners](std::size_t i) { return static_cast<std::int64_t>(corners + 2 * (i + 1)); });
+        "offsets", [=, each = shape_.points.size()](std::size_t i) { return offset(0, each, i); },
+        [=](std::size_t i) { return offset(corners, 2, i); },
+        [=, before = corners + 2 * connection_count_](std::size_t i) {
+          return offset(before, kFacetCornerCount, i);
+        });
     announce_cell_array(
-        "types", [](std::size_t) { return kVtkHexahedron; }, [](std::size_t) { return kVtkLine; });
+        "types", [type = shape_.type](std::size_t) { return type; },
+        [](std::size_t) { return kVtkLine; }, [](std::size_t) { return kVtkQuad; });
   }
 
   base::Vec6<double> displacement(std::size_t module) const {
@@ -240,41 +277,62 @@ class Writer {
     return has_loads_ && all.size() == module_count_ ? all[module] : base::Vec6<double>{};
   }
 
-  /// Modules move as rigid bodies: u + theta x r.
+  /// Modules move as rigid bodies, their facets with them: u + theta x r.
   void announce_displacement() {
-    announce_point_array(
-        "displacement_mm",
-        [this](std::size_t module, const Triple& corner) {
-          const base::Vec6<double> u = displacement(module);
-          return sum(first_half(u), cross(second_half(u), corner));
-        },
-        [this](std::size_t module) { return first_half(displacement(module)); });
+    announce_point_array("displacement_mm", [this](std::size_t module, const Triple& point) {
+      const base::Vec6<double> u = displacement(module);
+      return sum(first_half(u), cross(second_half(u), point));
+    });
   }
 
-  /// A yes or no per module, and per connection whether it is so at either end.
+  std::size_t module_of(std::size_t facet) const {
+    return static_cast<std::size_t>(robot_.facets()[facet].module);
+  }
+
+  /// A yes or no per module, per connection whether it is so at either end, per facet of its
+  /// module.
   template <class Fact>
   void announce_fact(const char* name, Fact fact) {
+    const auto of_module = [this, fact](std::size_t i) { return flag(fact(robot_.modules()[i])); };
     announce_cell_array(
-        name, [this, fact](std::size_t i) { return flag(fact(robot_.modules()[i])); },
+        name, of_module,
         [this, fact](std::size_t i) {
           const auto& [a, b, direction] = robot_.connections()[i];
           return flag(fact(robot_.modules()[static_cast<std::size_t>(a)]) ||
                       fact(robot_.modules()[static_cast<std::size_t>(b)]));
-        });
+        },
+        [this, of_module](std::size_t i) { return of_module(module_of(i)); });
+  }
+
+  /// A value that says the same of all cells of a kind.
+  template <class Value>
+  static auto always(Value value) {
+    return [value](std::size_t) { return value; };
   }
 
   void announce_facts() {
-    announce_cell_array(
-        "kind", [](std::size_t) { return flag(false); }, [](std::size_t) { return flag(true); });
+    const auto number = [](CellKind kind) { return always(static_cast<std::uint8_t>(kind)); };
+    announce_cell_array("kind", number(CellKind::kModule), number(CellKind::kConnection),
+                        number(CellKind::kFacet));
     const auto index = [](std::size_t i) { return static_cast<std::int32_t>(i); };
-    announce_cell_array("index", index, index);
+    announce_cell_array("index", index, index, index);
     const auto lattice = [this](std::size_t module) {
       const base::Cell& cell = robot_.modules()[module].cell;
       return std::array<std::int32_t, 3>{cell.x, cell.y, cell.z};
     };
-    announce_cell_array("cell", lattice, [this, lattice](std::size_t i) {
-      return lattice(static_cast<std::size_t>(robot_.connections()[i].a));
-    });
+    announce_cell_array(
+        "cell", lattice,
+        [this, lattice](std::size_t i) {
+          return lattice(static_cast<std::size_t>(robot_.connections()[i].a));
+        },
+        [this, lattice](std::size_t i) { return lattice(module_of(i)); });
+    const auto direction = [](base::Direction of) {
+      return static_cast<std::int8_t>(base::index(of));
+    };
+    announce_cell_array(
+        "direction", always(kNoDirection),
+        [this, direction](std::size_t i) { return direction(robot_.connections()[i].direction); },
+        [this, direction](std::size_t i) { return direction(robot_.facets()[i].direction); });
     announce_fact("planned", [](const model::Module& module) { return module.is_planned; });
     announce_fact("fixed", [](const model::Module& module) {
       return module.support == model::Support::kFixed;
@@ -284,29 +342,58 @@ class Writer {
         [this](std::size_t i) {
           return flag(robot_.modules()[i].support == model::Support::kGround);
         },
-        [](std::size_t) { return flag(false); });
+        always(flag(false)), always(flag(true)));
+    announce_cell_array("bonded", always(flag(false)), always(flag(false)),
+                        [this](std::size_t i) { return flag(robot_.facets()[i].is_bonded()); });
   }
 
-  /// A number per connection; modules have none, which is 0.
+  /// A number per connection; modules and facets have none, which is 0.
   void announce_connection_number(const char* name, double verdict::ConnectionResult::*member) {
     announce_cell_array(
-        name, [](std::size_t) { return 0.0; },
+        name, always(0.0),
         [this, member](std::size_t i) {
           return has_loads_ ? assessment_.connections[i].*member : 0.0;
-        });
+        },
+        always(0.0));
   }
 
   void announce_loads() {
     announce_cell_array(
         "load_ratio", [this](std::size_t i) { return paints_[i].worst_ratio; },
-        [this](std::size_t i) { return has_loads_ ? assessment_.connections[i].load_ratio : 0.0; });
+        [this](std::size_t i) { return has_loads_ ? assessment_.connections[i].load_ratio : 0.0; },
+        always(0.0));
     announce_cell_array(
-        "broken", [](std::size_t) { return flag(false); },
-        [this](std::size_t i) { return flag(is_broken_[i]); });
+        "broken", always(flag(false)), [this](std::size_t i) { return flag(is_broken_[i]); },
+        always(flag(false)));
     announce_connection_number("axial_n", &verdict::ConnectionResult::axial_n);
     announce_connection_number("bending_nmm", &verdict::ConnectionResult::bending_nmm);
     announce_connection_number("shear_n", &verdict::ConnectionResult::shear_n);
     announce_connection_number("torsion_nmm", &verdict::ConnectionResult::torsion_nmm);
+    announce_cell_array(
+        "limit", always(kNoLimit),
+        [this](std::size_t i) {
+          return has_loads_ ? static_cast<std::int8_t>(
+                                  laws_.limit(robot_.connections()[i], assessment_.connections[i]))
+                            : kNoLimit;
+        },
+        always(kNoLimit));
+    announce_cell_array(
+        "gap_mm", always(0.0), [this](std::size_t i) { return gap(i); }, always(0.0));
+    const auto load = [this](std::size_t i) { return robot_.loads()[i]; };
+    announce_cell_array(
+        "load_n", [load](std::size_t i) { return first_half(load(i)); }, always(Triple{}),
+        always(Triple{}));
+    announce_cell_array(
+        "load_nmm", [load](std::size_t i) { return second_half(load(i)); }, always(Triple{}),
+        always(Triple{}));
+  }
+
+  double gap(std::size_t connection) const {
+    const solver::Equilibrium& equilibrium = assessment_.equilibrium;
+    return has_loads_ && equilibrium.displacement.size() == module_count_
+               ? laws_.gap_mm(robot_.connections()[connection], equilibrium.displacement,
+                              equilibrium.displacement_low)
+               : 0;
   }
 
   base::Vec6<double> ground_force(std::size_t module) const {
@@ -314,24 +401,40 @@ class Writer {
     return has_loads_ && all.size() == module_count_ ? all[module] : base::Vec6<double>{};
   }
 
+  base::Vec6<double> facet_force(std::size_t facet) const {
+    const auto& all = assessment_.equilibrium.facet_force;
+    return has_loads_ && all.size() == facet_count_ ? all[facet] : base::Vec6<double>{};
+  }
+
+  std::int8_t contact(std::size_t facet) const {
+    const auto& states = assessment_.equilibrium.contact;
+    const bool is_known = has_loads_ && states.size() == facet_count_;
+    return is_known ? pressing_corners(states[facet]) : kNotOnGround;
+  }
+
+  /// Of a module's facets the one that presses with most corners.
+  std::vector<std::int8_t> contact_by_module() const {
+    std::vector<std::int8_t> most(module_count_, kNotOnGround);
+    for (std::size_t facet = 0; facet < facet_count_; ++facet) {
+      std::int8_t& corners = most[module_of(facet)];
+      corners = std::max(corners, contact(facet));
+    }
+    return most;
+  }
+
   void announce_ground() {
-    const auto none = [](std::size_t) { return Triple{}; };
-    const bool is_known =
-        has_loads_ && assessment_.equilibrium.contact.size() == robot_.facets().size();
     announce_cell_array(
-        "contact",
-        [this, is_known](std::size_t i) {
-          return is_known ? pressing_corners(robot_.modules()[i].support,
-                                             solver::contact_of(robot_, assessment_.equilibrium, i))
-                          : kNotOnGround;
-        },
-        [](std::size_t) { return kNotOnGround; });
+        "contact", [most = contact_by_module()](std::size_t i) { return most[i]; },
+        always(kNotOnGround), [this](std::size_t i) { return contact(i); });
     announce_cell_array(
-        "ground_force_n", [this](std::size_t i) { return first_half(ground_force(i)); }, none);
+        "ground_force_n", [this](std::size_t i) { return first_half(ground_force(i)); },
+        always(Triple{}), [this](std::size_t i) { return first_half(facet_force(i)); });
     announce_cell_array(
-        "ground_torque_nmm", [this](std::size_t i) { return second_half(ground_force(i)); }, none);
-    announce_cell_array(
-        "rotation_rad", [this](std::size_t i) { return second_half(displacement(i)); }, none);
+        "ground_torque_nmm", [this](std::size_t i) { return second_half(ground_force(i)); },
+        always(Triple{}), [this](std::size_t i) { return second_half(facet_force(i)); });
+    const auto rotation = [this](std::size_t i) { return second_half(displacement(i)); };
+    announce_cell_array("rotation_rad", rotation, always(Triple{}),
+                        [this, rotation](std::size_t i) { return rotation(module_of(i)); });
   }
 
   std::ostream& out_;
@@ -339,6 +442,10 @@ class Writer {
   const verdict::Assessment& assessment_;
   std::size_t module_count_;
   std::size_t connection_count_;
+  std::size_t facet_count_;
+  VtuShape shape_;
+  verdict::ConnectionLaws laws_;
+  std::vector<model::Rotation<double>> axes_;  ///< Of facets, by direction.
   std::vector<ModulePaint> paints_;
   std::vector<bool> is_broken_;  ///< By connection.
   bool has_loads_ = false;

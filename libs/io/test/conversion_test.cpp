@@ -12,6 +12,7 @@
 #include "document_support.hpp"
 #include "holdfast/base/rng.hpp"
 #include "holdfast/io/lattice_names.hpp"
+#include "holdfast/model/robot_catalogue.hpp"
 
 namespace holdfast::io {
 namespace {
@@ -69,6 +70,10 @@ class RandomDocument {
   Document make_extended() {
     Document document = make();
     Extension& extension = document.extension;
+    if (below(2) == 0) {
+      const auto robots = model::robot_catalogue();
+      extension.robot = robots[below(robots.size())].name;
+    }
     extension.lattice = kNamedLattices[below(kNamedLattices.size())].lattice;
     extension.has_floor = below(2) == 0;
     document.support_z = extension.has_floor ? document.support_z : 0;

@@ -222,6 +222,18 @@ TEST(Version2, is_computed_where_it_says_what_a_cube_on_a_floor_is_anyway) {
   EXPECT_TRUE(robot.value().has_default_connectors());
 }
 
+/// Beyond this, products with other numbers leave the range of double.
+TEST(Version2, has_no_numbers_that_cannot_be_computed_with) {
+  const auto refused = [](std::string_view members, std::string_view where) {
+    const auto spec = make_spec(read(R"("modules": [[0,0,0]], )" + std::string(members)));
+    ASSERT_FALSE(spec) << members;
+    EXPECT_EQ(spec.error().where, where);
+  };
+  refused(R"("material": {"lever_mm": {"lateral": 1e-13}})", "/material/lever_mm");
+  refused(R"("kinds": {"a b": {"friction": 1e-300}})", "/kinds/a b/friction");
+  refused(R"("kinds": {"a": {"mass_kg": 1e13}})", "/kinds/a/mass_kg");
+}
+
 /// What only the whole robot shows has no place in the file; the line names the cells.
 TEST(Version2, that_is_no_robot_is_refused_in_one_line_with_the_cells) {
   struct Case {
@@ -257,7 +269,7 @@ void expect_refusal(const std::string& text, std::string_view where, std::string
 
 TEST(Version2, has_keys_that_are_errors_in_version_1) {
   for (const char* key :
-       {"lattice", "floor", "gravity_m_s2", "kinds", "obstacles", "loads", "steps"}) {
+       {"robot", "lattice", "floor", "gravity_m_s2", "kinds", "obstacles", "loads", "steps"}) {
     expect_refusal(document_test::json(R"("modules": [], ")" + std::string(key) + R"(": 0)"),
                    "/" + std::string(key), "is one of version 2, the document says version 1");
   }

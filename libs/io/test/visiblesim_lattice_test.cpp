@@ -77,7 +77,7 @@ TEST(VisibleSimLattice, is_written_where_it_is_not_cubic_and_read_back) {
 TEST(VisibleSimLattice, that_is_asked_for_must_be_that_of_the_file) {
   const std::string text = world("", kCatoms, R"(<holdfast lattice="hexagonal"/>)");
   const base::Error xml = refused(text, {.lattice = base::kFaceCentred});
-  EXPECT_EQ(xml.where, "line 1");
+  EXPECT_EQ(xml.where, "line 2");  // After the two lines of the blocks.
   EXPECT_TRUE(contains(xml.message, "is 'hexagonal' here, but 'face-centred' is asked for"));
   const auto json = read_json(
       R"({"format": "holdfast-structure", "version": 2, "modules": [], "lattice": "cubic"})",
@@ -250,6 +250,20 @@ TEST(VisibleSimExtension, holds_what_only_version_2_says) {
   EXPECT_EQ(document.extension.kinds.size(), 1U);
   EXPECT_EQ(document.extension.own, (std::vector<OwnParameters>{{0, 0, "battery", 0.3}}));
   EXPECT_TRUE(document.modules[0].attributes.empty());
+
+  EXPECT_TRUE(contains(
+      all(accepted(read_visiblesim(world(
+                       "", "", R"(<holdfast><extension>{"weather": 1}</extension></holdfast>)")))
+              .warnings),
+      "'weather' is unknown"));
+  const Document moon =
+      accepted(read_visiblesim(
+                   R"(<parameters globalSupportZ="3"/><world><blockList/><holdfast><extension>
+                      {"gravity_m_s2": [0, 0, -1.62], "support_z": null}</extension></holdfast>
+                      </world>)"))
+          .document;
+  EXPECT_EQ(moon.material.gravity_m_s2, 1.62);
+  EXPECT_EQ(moon.support_z, 0) << "there is no floor";
 
   const auto bad = [](std::string_view blocks, std::string_view text, std::string_view message) {
     const base::Error error = refused(

@@ -1,21 +1,14 @@
 // SPDX-FileCopyrightText: The holdfast authors
 // SPDX-License-Identifier: Apache-2.0
-#include <fmt/format.h>
 #include <gtest/gtest.h>
-#ifndef __EMSCRIPTEN__
-#include <zlib.h>
-#endif
 
 #include <array>
 #include <cmath>
-#include <cstring>
 #include <limits>
-#include <pugixml.hpp>
-#include <sstream>
 #include <streambuf>
 
-#include "picture_support.hpp"
 #include "random_robot.hpp"
+#include "vtu_support.hpp"
 
 namespace holdfast::io::picture_test {
 namespace {
@@ -24,168 +17,16 @@ constexpr double kWeight = 0.06106 * 9.81;                                      
 constexpr double kPitch = 40;                                                       // mm
 constexpr double kBendingStiffness = 100 * kPitch * kPitch * kPitch * kPitch / 12;  // E I, N mm^2
 
-/// A little-endian number at a place of a text.
-template <class Number>
-Number number_at(std::string_view bytes, std::size_t place) {
-  Number number{};
-  std::memcpy(&number, bytes.substr(place).data(), sizeof number);
-  return number;
-}
-
-/// The bytes of one array of the appended data, which begins at `data`, by VTK's description of it:
-/// counts of 64 bits (blocks, their size, that of the last one or 0, compressed sizes), then blocks
-/// in zlib's format; without a compressor the size and the bytes.
-std::string array_bytes(std::string_view data, bool is_compressed) {
-  const auto count = [&](std::size_t i) { return number_at<std::uint64_t>(data, 8 * i); };
-  if (!is_compressed) {
-    return std::string(data.substr(8, count(0)));
-  }
-  std::string all;
-#ifndef __EMSCRIPTEN__
-  std::string_view blocks = data.substr(8 * (3 + count(0)));
-  for (std::size_t i = 0; i < count(0); ++i) {
-    const bool is_part = i + 1 == count(0) && count(2) > 0;
-    std::string block(is_part ? count(2) : count(1), '\0');
-    uLongf size = block.size();
-    EXPECT_EQ(uncompress(reinterpret_cast<Bytef*>(block.data()), &size,
-                         reinterpret_cast<const Bytef*>(blocks.data()), count(3 + i)),
-              Z_OK);
-    EXPECT_EQ(size, block.size());
-    all += block;
-    blocks.remove_prefix(count(3 + i));
-  }
-#endif
-  return all;
-}
-
-template <class Number>
-void append_numbers(std::string_view bytes, std::vector<double>& values) {
-  for (std::size_t i = 0; i < bytes.size(); i += sizeof(Number)) {
-    values.push_back(static_cast<double>(number_at<Number>(bytes, i)));
-  }
-}
-
-std::string text_of(const model::Robot& robot, const verdict::Assessment& assessment,
-                    const WriteOptions& options = {}) {
-  std::ostringstream out;
-  write_vtu(out, robot, assessment, options);
-  return out.str();
-}
-
-/// A file read by hand, with a decompressor that is not the writer's.
-class Grid {
- public:
-  Grid(const model::Robot& robot, const verdict::Assessment& assessment)
-      : Grid(text_of(robot, assessment)) {}
-
-  explicit Grid(std::string text) : text_(std::move(text)) {
-    constexpr std::string_view kBegin = "<AppendedData encoding=\"raw\">\n_";
-    constexpr std::string_view kEnd = "\n</AppendedData>\n</VTKFile>\n";
-    const std::size_t begin = text_.find(kBegin);
-    EXPECT_TRUE(begin != std::string::npos && text_.ends_with(kEnd));
-    data_at_ = begin + kBegin.size();
-    const std::string head = text_.substr(0, begin) + "</VTKFile>";
-    const auto result = document_.load_string(head.c_str());
-    EXPECT_TRUE(result) << result.description();
-    const pugi::xml_node file = document_.child("VTKFile");
-    EXPECT_EQ(file.attribute("header_type").value(), std::string_view("UInt64"));
-    compressor_ = file.attribute("compressor").value();
-    EXPECT_EQ(compressor_, kCompressor);
-    grid_ = file.child("UnstructuredGrid");
-  }
-
-  std::size_t point_count() const {
-    return grid_.child("Piece").attribute("NumberOfPoints").as_ullong();
-  }
-
-  std::size_t cell_count() const {
-    return grid_.child("Piece").attribute("NumberOfCells").as_ullong();
-  }
-
-  /// All numbers of an array anywhere in the file.
-  std::vector<double> numbers(const std::string& name) const {
-    const pugi::xml_node array =
-        document_.select_node(fmt::format("//*[@Name='{}']", name).c_str()).node();
-    EXPECT_TRUE(array) << name;
-    const bool is_appended = array.attribute("format").value() == std::string_view("appended");
-    return is_appended ? appended_numbers(array) : listed_numbers(array);
-  }
-
-  std::array<double, 3> triple(const std::string& name, std::size_t index) const {
-    const auto all = numbers(name);
-    return {all.at(3 * index), all.at(3 * index + 1), all.at(3 * index + 2)};
-  }
-
-  std::string verdict() const {
-    std::string word;
-    for (const double code : numbers("verdict")) {
-      word += code == 0 ? '\0' : static_cast<char>(code);
-    }
-    return word;
-  }
-
-  const pugi::xml_node& grid() const { return grid_; }
-
- private:
-#ifdef __EMSCRIPTEN__
-  static constexpr std::string_view kCompressor;
-#else
-  static constexpr std::string_view kCompressor = "vtkZLibDataCompressor";
-#endif
-
-  static std::vector<double> listed_numbers(const pugi::xml_node& array) {
-    std::istringstream stream(array.child_value());
-    std::vector<double> values;
-    for (double value = 0; stream >> value;) {
-      values.push_back(value);
-    }
-    EXPECT_TRUE(stream.eof()) << "something is not a number";
-    return values;
-  }
-
-  std::vector<double> appended_numbers(const pugi::xml_node& array) const {
-    const std::size_t offset = array.attribute("offset").as_ullong();
-    const std::string bytes =
-        array_bytes(std::string_view(text_).substr(data_at_ + offset), !compressor_.empty());
-    const std::string_view type = array.attribute("type").value();
-    std::vector<double> values;
-    if (type == "Float64") {
-      append_numbers<double>(bytes, values);
-    } else if (type == "Int64") {
-      append_numbers<std::int64_t>(bytes, values);
-    } else if (type == "Int32") {
-      append_numbers<std::int32_t>(bytes, values);
-    } else if (type == "Int8") {
-      append_numbers<std::int8_t>(bytes, values);
-    } else {
-      EXPECT_EQ(type, "UInt8");
-      append_numbers<std::uint8_t>(bytes, values);
-    }
-    return values;
-  }
-
-  std::string text_;
-  std::size_t data_at_ = 0;
-  std::string_view compressor_;
-  pugi::xml_document document_;
-  pugi::xml_node grid_;
-};
-
-Grid write(const model::RobotSpec& spec) {
-  const model::Robot robot = make(spec);
-  return {robot, verdict::assess(robot)};
-}
-
-TEST(Vtu, a_module_is_a_cube_and_a_connection_a_line) {
+TEST(Vtu, a_module_is_a_cube_a_connection_a_line_and_a_facet_a_square) {
   model::RobotSpec spec;
   spec.existing = {{0, 0, 0}, {1, 0, 0}, {1, 0, 1}};
   const Grid grid = write(spec);
-  EXPECT_EQ(grid.cell_count(), 3U + 2U);
-  EXPECT_EQ(grid.point_count(), 3U * 8U + 3U);
-  EXPECT_EQ(grid.numbers("types"), (std::vector<double>{12, 12, 12, 3, 3}));
-  EXPECT_EQ(grid.numbers("offsets"), (std::vector<double>{8, 16, 24, 26, 28}));
-  EXPECT_EQ(grid.numbers("kind"), (std::vector<double>{0, 0, 0, 1, 1}));
-  EXPECT_EQ(grid.numbers("index"), (std::vector<double>{0, 1, 2, 0, 1}));
+  EXPECT_EQ(grid.cell_count(), 3U + 2U + 2U);
+  EXPECT_EQ(grid.point_count(), 3U * 8U + 3U + 2U * 4U);
+  EXPECT_EQ(grid.numbers("types"), (std::vector<double>{12, 12, 12, 3, 3, 9, 9}));
+  EXPECT_EQ(grid.numbers("offsets"), (std::vector<double>{8, 16, 24, 26, 28, 32, 36}));
+  EXPECT_EQ(grid.numbers("kind"), (std::vector<double>{0, 0, 0, 1, 1, 2, 2}));
+  EXPECT_EQ(grid.numbers("index"), (std::vector<double>{0, 1, 2, 0, 1, 0, 1}));
   // The line of the second connection runs from (1,0,0) up to (1,0,1).
   const auto connectivity = grid.numbers("connectivity");
   const auto end = [&](std::size_t i) {
@@ -193,6 +34,13 @@ TEST(Vtu, a_module_is_a_cube_and_a_connection_a_line) {
   };
   EXPECT_EQ(end(26), (std::array<double, 3>{40, 0, 0}));
   EXPECT_EQ(end(27), (std::array<double, 3>{40, 0, 40}));
+  // The second facet is the lower side of (1,0,0): the paper's cubes touch with all of it.
+  for (std::size_t corner = 0; corner < 4; ++corner) {
+    const auto [x, y, z] = end(32 + corner);
+    EXPECT_EQ(std::abs(x - 40), 20);
+    EXPECT_EQ(std::abs(y), 20);
+    EXPECT_EQ(z, -20);
+  }
 }
 
 TEST(Vtu, every_array_has_one_value_per_point_or_cell) {
@@ -210,18 +58,27 @@ TEST(Vtu, every_array_has_one_value_per_point_or_cell) {
   };
   expect_count("Points", grid.point_count(), 1);
   expect_count("PointData", grid.point_count(), 1);
-  expect_count("CellData", grid.cell_count(), 16);
-  // Every cube has its own points; lines share the centres of modules, which come behind.
+  expect_count("CellData", grid.cell_count(), 22);
+  // Every cube has its own points; lines share the centres of modules, which come behind; then
+  // every facet has its own.
   const auto connectivity = grid.numbers("connectivity");
   const auto offsets = grid.numbers("offsets");
   ASSERT_EQ(static_cast<double>(connectivity.size()), offsets.back());
-  const std::size_t corners = grid.point_count() / 9 * 8;
+  const auto kind = grid.numbers("kind");
+  const auto count_of = [&](double one) {
+    return static_cast<std::size_t>(std::ranges::count(kind, one));
+  };
+  const std::size_t corners = 8 * count_of(0);
+  const std::size_t ends = corners + 2 * count_of(1);
+  EXPECT_EQ(grid.point_count(), corners + count_of(0) + 4 * count_of(2));
   for (std::size_t i = 0; i < connectivity.size(); ++i) {
     if (i < corners) {
       EXPECT_EQ(connectivity[i], static_cast<double>(i));
-    } else {
+    } else if (i < ends) {
       EXPECT_GE(connectivity[i], static_cast<double>(corners));
-      EXPECT_LT(connectivity[i], static_cast<double>(grid.point_count()));
+      EXPECT_LT(connectivity[i], static_cast<double>(corners + count_of(0)));
+    } else {
+      EXPECT_EQ(connectivity[i], static_cast<double>(corners + count_of(0) + i - ends));
     }
   }
 }
@@ -258,6 +115,11 @@ TEST(Vtu, an_arm_carries_what_statics_say) {
   EXPECT_NEAR(grid.numbers("shear_n")[first], 3 * kWeight, 1e-8);
   EXPECT_NEAR(grid.numbers("axial_n")[first], 0, 1e-8);
   EXPECT_NEAR(grid.numbers("torsion_nmm")[first], 0, 1e-8);
+  // The facet's edge opens by the angle M L / E I times half a facet.
+  EXPECT_NEAR(grid.numbers("gap_mm")[first],
+              kWeight * kPitch * 4.5 * kPitch / kBendingStiffness * 20, 1e-8);
+  EXPECT_EQ(grid.numbers("limit")[first], 0);  // It would open.
+  EXPECT_EQ(grid.numbers("limit")[0], -1);
   const double ratio = 9 * kWeight / 14.97;
   const auto ratios = grid.numbers("load_ratio");
   EXPECT_NEAR(ratios[first], ratio, 1e-8);
@@ -325,22 +187,27 @@ TEST(Vtu, the_ground_carries_the_weight) {
     ASSERT_EQ(assessment.connections.size(), robot.connections().size());
     const Grid grid(robot, assessment);
     const auto forces = grid.numbers("ground_force_n");
-    double sum = 0;
-    for (std::size_t i = 2; i < forces.size(); i += 3) {
-      sum += forces[i];
-    }
+    const auto kind = grid.numbers("kind");
     const double weight = kWeight * static_cast<double>(robot.modules().size());
-    EXPECT_NEAR(sum, weight, 1e-6 * weight) << seed;  // Nine digits each.
+    for (const double one : {0.0, 2.0}) {  // On modules, and on their facets.
+      double sum = 0;
+      for (std::size_t i = 0; i < kind.size(); ++i) {
+        sum += kind[i] == one ? forces[3 * i + 2] : 0;
+      }
+      EXPECT_NEAR(sum, weight, 1e-6 * weight) << seed;  // Nine digits each.
+    }
   }
 }
 
 TEST(Vtu, supports_and_plans_are_marked) {
   model::RobotSpec spec = arm(1);
   spec.planned = {{2, 0, 1}};
-  const Grid grid = write(spec);  // (0,0,0), (0,0,1), (1,0,1), (2,0,1); three connections.
-  EXPECT_EQ(grid.numbers("on_ground"), (std::vector<double>{1, 0, 0, 0, 0, 0, 0}));
-  EXPECT_EQ(grid.numbers("fixed"), (std::vector<double>{0, 1, 0, 0, 1, 1, 0}));
-  EXPECT_EQ(grid.numbers("planned"), (std::vector<double>{0, 0, 0, 1, 0, 0, 1}));
+  // (0,0,0), (0,0,1), (1,0,1), (2,0,1); three connections; one facet.
+  const Grid grid = write(spec);
+  EXPECT_EQ(grid.numbers("on_ground"), (std::vector<double>{1, 0, 0, 0, 0, 0, 0, 1}));
+  EXPECT_EQ(grid.numbers("fixed"), (std::vector<double>{0, 1, 0, 0, 1, 1, 0, 0}));
+  EXPECT_EQ(grid.numbers("planned"), (std::vector<double>{0, 0, 0, 1, 0, 0, 1, 0}));
+  EXPECT_EQ(grid.numbers("bonded"), (std::vector<double>{0, 0, 0, 0, 0, 0, 0, 0}));
   EXPECT_EQ(grid.triple("cell", 3), (std::array<double, 3>{2, 0, 1}));
 }
 
@@ -365,7 +232,7 @@ TEST(Vtu, the_contact_is_the_number_of_pressing_corners) {
                                     {.pressed = true, .tilt_x = 1, .tilt_y = 1},
                                     {.pressed = false, .tilt_x = 1}};
   const auto contact = Grid(robot, assessment).numbers("contact");
-  EXPECT_EQ(contact, (std::vector<double>{4, 2, 1, 0, -1, -1, -1, -1, -1}));
+  EXPECT_EQ(contact, (std::vector<double>{4, 2, 1, 0, -1, -1, -1, -1, -1, 4, 2, 1, 0}));
 }
 
 TEST(Vtu, what_is_not_known_is_zero_and_marked) {
@@ -373,8 +240,8 @@ TEST(Vtu, what_is_not_known_is_zero_and_marked) {
   const verdict::Assessment nothing;
   const Grid grid(robot, nothing);
   EXPECT_EQ(grid.numbers("has_loads"), std::vector<double>{0});
-  EXPECT_EQ(grid.numbers("load_ratio"), (std::vector<double>{0, 0, 0}));
-  EXPECT_EQ(grid.numbers("contact"), (std::vector<double>{-1, -1, -1}));
+  EXPECT_EQ(grid.numbers("load_ratio"), (std::vector<double>{0, 0, 0, 0, 0}));
+  EXPECT_EQ(grid.numbers("contact"), (std::vector<double>{-1, -1, -1, -1, -1}));
   EXPECT_EQ(grid.verdict(), std::string("undecided") + '\0');
 
   verdict::Assessment spoiled = verdict::assess(robot);
@@ -382,15 +249,15 @@ TEST(Vtu, what_is_not_known_is_zero_and_marked) {
   spoiled.connections[0].axial_n = -std::numeric_limits<double>::infinity();
   spoiled.connections[0].shear_n = -0.0;
   const Grid finite(robot, spoiled);
-  EXPECT_EQ(finite.numbers("load_ratio"), (std::vector<double>{0, 0, 0}));
-  EXPECT_EQ(finite.numbers("axial_n"), (std::vector<double>{0, 0, 0}));
+  EXPECT_EQ(finite.numbers("load_ratio"), (std::vector<double>{0, 0, 0, 0, 0}));
+  EXPECT_EQ(finite.numbers("axial_n"), (std::vector<double>{0, 0, 0, 0, 0}));
   EXPECT_FALSE(std::signbit(finite.numbers("shear_n")[2]));
 }
 
 TEST(Vtu, a_single_module_has_no_lines) {
   const Grid grid = write({.existing = {{0, 0, 0}}});
-  EXPECT_EQ(grid.cell_count(), 1U);
-  EXPECT_EQ(grid.point_count(), 8U);
+  EXPECT_EQ(grid.numbers("types"), (std::vector<double>{12, 9}));
+  EXPECT_EQ(grid.point_count(), 8U + 4U);
   EXPECT_EQ(grid.numbers("has_loads"), std::vector<double>{1});
   EXPECT_NEAR(grid.triple("ground_force_n", 0)[2], kWeight, 1e-8);
 }

@@ -15,7 +15,7 @@ constexpr double kRemainderTie = 1e-10;
 /// Generators are added until none is opposed to the remainder by more than this share of it, or by
 /// more than the rounding of the load.
 constexpr double kOpposedTie = 1e-9;
-constexpr double kRounding = 1e-14;
+constexpr double kRounding = 1e-15;
 constexpr int kGeneratorMax = 2000;
 constexpr int kExitStepMax = 100;
 
@@ -60,8 +60,7 @@ class PassiveSet {
       step_towards(best);
     }
     remainder_ = load_ + columns_ * shares_;
-    constexpr double kStep = 1e-12;  // Less is rounding.
-    return remainder_.squaredNorm() < before * (1 - kStep);
+    return remainder_.squaredNorm() < before;
   }
 
  private:

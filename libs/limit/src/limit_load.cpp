@@ -87,7 +87,8 @@ class Search {
 
   LimitLoad run() {
     constexpr int kRoundMax = 40;
-    for (int round = 0; round < kRoundMax && round_is_useful(); ++round) {
+    for (int round = 0; round < kRoundMax && result_.low < kFactorMax && round_is_useful();
+         ++round) {
     }
     finish();
     return std::move(result_);
@@ -113,6 +114,9 @@ class Search {
       if (std::isfinite(ratios_[i])) {
         largest = std::max(largest, ratios_[i]);
       }
+    }
+    if (std::ranges::all_of(ratios_, [](double ratio) { return std::isfinite(ratio); })) {
+      result_.low = largest > 0 ? std::min(1 / largest, kFactorMax) : kFactorMax;
     }
     constexpr double kNearLargest = 0.8;
     for (std::size_t i = 0; i < count; ++i) {
@@ -220,7 +224,7 @@ class Search {
   void finish() {
     if (result_.low >= kFactorMax * (1 - options_.tolerance)) {
       result_.outcome = LimitLoad::Outcome::kUnbounded;
-    } else if (is_narrow() && result_.program_count > 0) {
+    } else if (is_narrow()) {
       result_.outcome = LimitLoad::Outcome::kFound;
     }
     if (result_.outcome != LimitLoad::Outcome::kUnbounded) {

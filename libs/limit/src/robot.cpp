@@ -98,8 +98,9 @@ BodyLoad body_load(const model::Robot& robot) {
   BodyLoad load;
   double mass = 0;
   const std::size_t count = robot.modules().size();
+  const base::NodePlaces places(robot.lattice(), robot.material().pitch_mm);
   for (std::size_t module = 0; module < count; ++module) {
-    const Vector3 node = node_mm(robot, module);
+    const Vector3 node = places(robot.modules()[module].cell);
     mass += robot.mass(module);
     for (std::size_t i = 0; i < 3; ++i) {
       load.centre_of_mass_mm[i] += robot.mass(module) * node[i];
@@ -111,7 +112,7 @@ BodyLoad body_load(const model::Robot& robot) {
   }
   double inertia = 0;
   for (std::size_t module = 0; module < count; ++module) {
-    const Vector3 node = node_mm(robot, module);
+    const Vector3 node = places(robot.modules()[module].cell);
     const Vector3 arm = difference(node, load.centre_of_mass_mm);
     inertia += robot.mass(module) * dot(arm, arm);
     if (robot.has_payloads()) {

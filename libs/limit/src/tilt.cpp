@@ -137,6 +137,8 @@ class Tilt {
   /// Whether no line between two rays can be nearer than the nearest, as the set is convex.
   bool is_closed(const Hit& a, const Hit& b) const {
     constexpr double kTie = 1e-9;
+    // Cones of friction have no edges; how much nearer they may be than what was found.
+    constexpr double kCurved = 1e-4;
     if (a.is_none() || b.is_none()) {
       return a.is_none() && b.is_none();
     }
@@ -144,7 +146,7 @@ class Tilt {
     const Eigen::Vector2d chord = b.place() - from;
     const double length = chord.norm();
     const double line = std::abs(from.x() * chord.y() - from.y() * chord.x());
-    if (length == 0 || line >= nearest_ * length * (1 - kTie)) {
+    if (length == 0 || line >= nearest_ * length * (1 - kCurved)) {
       return true;
     }
     // Both on one line.

@@ -10,8 +10,6 @@
 #include <numbers>
 #include <vector>
 
-#include "holdfast/limit/robot.hpp"
-
 namespace holdfast::limit {
 namespace {
 
@@ -174,17 +172,6 @@ TEST(RigidStability, FacetsWithinTheHullChangeNothing) {
   const RigidStability b = assess_rigid(all, load);
   EXPECT_NEAR(*a.margin, *b.margin, 1e-9);
   EXPECT_NEAR(*a.tilt_margin_deg, *b.tilt_margin_deg, 1e-7);
-}
-
-TEST(RigidStability, ARobotStandsOnWhatItTouches) {
-  // Three cubes in a row at a height of 1, on a table below the first.
-  const auto robot = model::Robot::create({.existing = {{0, 0, 1}, {1, 0, 1}, {2, 0, 1}},
-                                           .support_z = std::nullopt,
-                                           .obstacles = {{.from = {0, 0, 0}, .to = {0, 0, 0}}}});
-  ASSERT_TRUE(robot);
-  const RigidStability found = assess_rigid(robot.value());
-  EXPECT_EQ(found.answer, RigidAnswer::kFalls);
-  EXPECT_EQ(text(*found.motion), "tips over the edge from (20, -20, 20) to (20, 20, 20)");
 }
 
 }  // namespace

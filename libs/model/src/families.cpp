@@ -20,8 +20,10 @@ using Cells = std::vector<Cell>;
 
 constexpr std::int32_t kScaffoldStep = 4;
 constexpr std::int32_t kPortalThickness = 4;
+constexpr std::int32_t kWallThickness = 4;
+constexpr std::size_t kBallLayersMax = 1000;  ///< Beyond there are more modules than is allowed.
 
-constexpr std::array<FamilyInfo, 8> kFamilies = {{
+constexpr std::array<FamilyInfo, 11> kFamilies = {{
     {Family::kArm, "arm", "SIZE modules, a foot of 6 and one row to +x", 6},
     {Family::kCube, "cube", "SIZE x SIZE x SIZE, solid", 1},
     {Family::kTower, "tower", "3 x 3 modules, SIZE high", 1},
@@ -30,6 +32,10 @@ constexpr std::array<FamilyInfo, 8> kFamilies = {{
     {Family::kPortal, "portal", "a frame SIZE wide, SIZE/2 high, 4 thick", 8},
     {Family::kBridge, "bridge", "a plate SIZE long, 8 wide, 3 thick, on a pier", 8},
     {Family::kGrowth, "growth", "SIZE modules grown at random", 1},
+    {Family::kBall, "ball", "face-centred, a ball of SIZE layers", 1, base::kFaceCentred},
+    {Family::kSheet, "sheet", "hexagonal, SIZE wide and SIZE high, one thick", 1, base::kHexagonal},
+    {Family::kPrismWall, "prism-wall", "hexagonal prisms, SIZE wide, SIZE high, 4 thick", 1,
+     base::kHexagonalPrism},
 }};
 
 /// The cells of a box for which `is_in` holds; z changes slowest, x fastest.
@@ -130,6 +136,45 @@ Cells growth(std::size_t count) {
   return cells;
 }
 
+/// Calls f(cell) for the modules of a face-centred ball: a layer is 1/sqrt(2) pitches high, and
+/// every other one lies half a pitch aside along x and y. From the ball's centre the squared
+/// distance of a node, times 8, is 2 (X^2 + Y^2) + Z^2 with whole numbers X, Y, Z.
+template <class F>
+void for_ball(std::int64_t layers, const F& f) {
+  const std::int64_t side = layers / 2 + 1;
+  for (std::int64_t z = 0; z < layers; ++z) {
+    const std::int64_t height = 2 * z - (layers - 1);
+    const std::int64_t aside = z % 2;
+    for (std::int64_t y = -side; y <= side; ++y) {
+      const std::int64_t across = 2 * y + aside;
+      for (std::int64_t x = -side; x <= side; ++x) {
+        const std::int64_t along = 2 * x + aside;
+        if (2 * (along * along + across * across) + height * height <= layers * layers) {
+          f(Cell{static_cast<std::int32_t>(x), static_cast<std::int32_t>(y),
+                 static_cast<std::int32_t>(z)});
+        }
+      }
+    }
+  }
+}
+
+/// A wall of prisms along +x: rows lie at 60 degrees, so that every other one begins a module back.
+Cells prism_wall(std::int32_t size) {
+  Cells cells;
+  for (std::int32_t z = 0; z < size; ++z) {
+    for (std::int32_t y = 0; y < kWallThickness; ++y) {
+      add_box(cells, {-(y / 2), y, z}, {size - y / 2, y + 1, z + 1}, kAll);
+    }
+  }
+  return cells;
+}
+
+Cells ball(std::int32_t size) {
+  Cells cells;
+  for_ball(size, [&](const Cell& cell) { cells.push_back(cell); });
+  return cells;
+}
+
 /// a * b, or the largest number.
 std::size_t times(std::size_t a, std::size_t b) {
   std::size_t product = 0;
@@ -143,6 +188,11 @@ std::span<const FamilyInfo> families() { return kFamilies; }
 std::optional<Family> find_family(std::string_view name) {
   const auto* found = std::ranges::find(kFamilies, name, &FamilyInfo::name);
   return found == kFamilies.end() ? std::nullopt : std::optional(found->family);
+}
+
+const base::Lattice& family_lattice(Family family) {
+  const auto* found = std::ranges::find(kFamilies, family, &FamilyInfo::family);
+  return found->lattice;
 }
 
 std::size_t family_count(Family family, std::size_t size) {
@@ -164,6 +214,18 @@ std::size_t family_count(Family family, std::size_t size) {
       return kPortalThickness * (4 * size + 8 * (size / 2 - std::min<std::size_t>(4, size / 2)));
     case Family::kBridge:
       return 640 + 24 * size;
+    case Family::kBall: {
+      if (size > kBallLayersMax) {
+        return ~std::size_t{0};
+      }
+      std::size_t count = 0;
+      for_ball(static_cast<std::int64_t>(size), [&](const Cell&) { ++count; });
+      return count;
+    }
+    case Family::kSheet:
+      return times(size, size);
+    case Family::kPrismWall:
+      return times(kWallThickness, times(size, size));
     case Family::kArm:
     case Family::kGrowth:
       break;
@@ -183,6 +245,13 @@ Cells family_cells(Family family, std::size_t wanted) {
       return bridge(size);
     case Family::kGrowth:
       return growth(wanted);
+    case Family::kBall:
+      return ball(size);
+    case Family::kPrismWall:
+      return prism_wall(size);
+    case Family::kSheet:
+      add_box(cells, {0, 0, 0}, {size, 1, size}, kAll);
+      break;
     case Family::kCube:
       add_box(cells, {0, 0, 0}, {size, size, size}, kAll);
       break;

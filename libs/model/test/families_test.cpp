@@ -23,7 +23,7 @@ TEST(Families, are_robots_without_double_cells_and_as_many_as_the_formula_says) 
       }
       const std::vector<Cell> cells = family_cells(info.family, size);
       EXPECT_EQ(cells.size(), family_count(info.family, size)) << info.name << ' ' << size;
-      const auto robot = Robot::create({.existing = cells});
+      const auto robot = Robot::create({.existing = cells, .lattice = info.lattice});
       EXPECT_TRUE(robot.has_value())
           << info.name << ' ' << size << ' ' << (robot ? "" : robot.error().message);
     }

@@ -25,7 +25,7 @@ SystemChoice::SystemChoice(const model::Robot& robot, const EquilibriumOptions& 
     : robot_(robot), options_(options), has_tried_double_(options.precision == Precision::kDouble) {
   const bool is_small =
       options.method == Method::kAutomatic && robot.free_count() <= kDirectCountMax;
-  if (is_small || options.method == Method::kDirect || !Multigrid::can_solve(robot)) {
+  if (is_small || options.method == Method::kDirect) {
     make_direct(options.fill_max);
   } else {
     multigrid_ = Multigrid::make(robot, options_);
@@ -73,7 +73,7 @@ bool SystemChoice::try_direct() {
 }
 
 bool SystemChoice::try_double() {
-  if (std::exchange(has_tried_double_, true) || !Multigrid::can_solve(robot_)) {
+  if (std::exchange(has_tried_double_, true)) {
     return false;
   }
   if (multigrid_) {

@@ -111,5 +111,32 @@ TEST(BeamShapes, between_moved_ends_modules_lie_where_a_chain_of_beams_has_them)
   }
 }
 
+/// In any direction by vectors, as along the axes by components; and the share is the transpose in
+/// oblique directions, too.
+TEST(BeamShapes, are_the_same_along_any_unit_vector) {
+  base::Rng rng(5);
+  const BeamShape shape = beam_shape(40, 2, 5);
+  for (std::size_t direction = 0; direction < 6; ++direction) {
+    const std::array<double, 3> n =
+        base::unit_vector(base::kCubic, static_cast<base::Direction>(direction));
+    const Vec6<double> end = random_six(rng);
+    Vec6<double> by_components{};
+    Vec6<double> by_vectors{};
+    add_motion(shape, direction, end, by_components);
+    add_motion(shape, n, end, by_vectors);
+    EXPECT_LT((dense(by_vectors) - dense(by_components)).norm(), 1e-13 * 200);
+  }
+  for (const base::Direction direction : base::directions(base::kFaceCentred)) {
+    const std::array<double, 3> n = base::unit_vector(base::kFaceCentred, direction);
+    const Vec6<double> end = random_six(rng);
+    const Vec6<double> force = random_six(rng);
+    Vec6<double> motion{};
+    Vec6<double> load{};
+    add_motion(shape, n, end, motion);
+    add_share(shape, n, force, load);
+    EXPECT_NEAR(dot(force, motion), dot(load, end), 1e-13 * 200);
+  }
+}
+
 }  // namespace
 }  // namespace holdfast::solver

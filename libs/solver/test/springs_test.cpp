@@ -82,10 +82,10 @@ TEST(Springs, a_beams_spring_couples_its_ends_as_k12_does) {
   const model::Material material;
   for (std::size_t direction = 0; direction < 6; ++direction) {
     for (const std::size_t length : {1U, 2U, 7U}) {
-      const Spring spring = beam_spring(material, direction, length);
+      const Spring spring = beam_spring(base::kCubic, material, direction, length);
       const Mat coupled = times_carry(spring.stiffness, solver::difference({}, spring.partner));
-      const Mat k12 = mechanics::block_12(long_beam(material, static_cast<int>(length)),
-                                          static_cast<base::Direction>(direction));
+      const Mat k12 = long_beam(material, base::kCubic, static_cast<int>(length))
+                          .block_12(static_cast<base::Direction>(direction));
       EXPECT_LT(difference(-dense(coupled), dense(k12)), kRounding);
     }
   }
@@ -100,9 +100,12 @@ TEST(Springs, a_stretched_beam_gives_as_beam_theory_says) {
   for (std::size_t direction = 0; direction < 6; ++direction) {
     const std::size_t axis = direction / 2;
     for (const auto& [length, reach] : {std::pair{1, 2}, {2, 3}, {3, 11}, {4, 4}}) {
-      const Spring from = beam_spring(material, direction, static_cast<std::size_t>(length));
-      const Spring to = beam_spring(material, direction, static_cast<std::size_t>(reach));
-      const Mat longer = stretched(from.stiffness, from.middle, axis, from.length, to.length);
+      const Spring from =
+          beam_spring(base::kCubic, material, direction, static_cast<std::size_t>(length));
+      const Spring to =
+          beam_spring(base::kCubic, material, direction, static_cast<std::size_t>(reach));
+      const Mat longer =
+          stretched(from.stiffness, from.middle, from.direction, from.length, to.length);
       const auto at_middle = [&](const Mat& s) {
         return carried(s, {-from.middle[0], -from.middle[1], -from.middle[2]});
       };
@@ -127,6 +130,33 @@ TEST(Springs, a_stretched_beam_gives_as_beam_theory_says) {
       for (Eigen::Index i = 0; i < 6; ++i) {
         EXPECT_NEAR(found(i, i) / expected(i, i), 1, 1e-9) << direction << " " << i;
       }
+    }
+  }
+}
+
+/// The same, whatever the direction: what does not depend on the frame, the traces of the
+/// compliance's quarters and what it gives along and about the beam, is that of a cube's beam of
+/// equal stiffness both ways.
+TEST(Springs, a_beam_stretches_alike_in_every_direction_of_every_lattice) {
+  const model::Material material;
+  const auto compliance = [&](const base::Lattice& lattice, std::size_t direction) {
+    const Spring from = beam_spring(lattice, material, direction, 1);
+    const Spring to = beam_spring(lattice, material, direction, 3);
+    const Mat longer =
+        stretched(from.stiffness, from.middle, from.direction, from.length, to.length);
+    const Dense at_middle =
+        dense(carried(longer, {-from.middle[0], -from.middle[1], -from.middle[2]})).inverse();
+    const Eigen::Map<const Eigen::Vector3d> n(from.direction.data());
+    const Eigen::Matrix3d shifts = at_middle.topLeftCorner<3, 3>();
+    const Eigen::Matrix3d turns = at_middle.bottomRightCorner<3, 3>();
+    return Eigen::Vector4d(shifts.trace(), n.dot(shifts * n), turns.trace(), n.dot(turns * n));
+  };
+  const Eigen::Vector4d expected = compliance(base::kCubic, 0);
+  for (const base::Lattice& lattice :
+       {base::kFaceCentred, base::kHexagonal, base::kHexagonalPrism}) {
+    for (const base::Direction direction : base::directions(lattice)) {
+      const Eigen::Vector4d found = compliance(lattice, base::at(base::index(direction)));
+      EXPECT_LT((found.array() / expected.array() - 1).abs().maxCoeff(), 1e-9);
     }
   }
 }

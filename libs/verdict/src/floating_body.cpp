@@ -50,33 +50,27 @@ std::vector<PlanPoint> convex_hull(std::vector<PlanPoint> points, double tie) {
   return hull;
 }
 
-PlanPoint plan_place(const model::Robot& robot, std::size_t module) {
-  const auto place = base::node_place(robot.lattice(), robot.modules()[module].cell);
-  const double pitch = robot.material().pitch_mm;
-  return {pitch * place[0], pitch * place[1]};
-}
-
-PlanPoint centre_of_mass(const model::Robot& robot) {
+PlanPoint centre_of_mass(const model::Robot& robot, const base::NodePlaces& node_mm) {
   PlanPoint sum;
   double mass = 0;
   for (std::size_t i = 0; i < robot.modules().size(); ++i) {
-    const PlanPoint place = plan_place(robot, i);
-    sum.x += robot.mass(i) * place.x;
-    sum.y += robot.mass(i) * place.y;
+    const auto place = node_mm(robot.modules()[i].cell);
+    sum.x += robot.mass(i) * place[0];
+    sum.y += robot.mass(i) * place[1];
     mass += robot.mass(i);
   }
   return {sum.x / mass, sum.y / mass};
 }
 
 /// The frame of a floor's facets is the global one.
-std::vector<PlanPoint> facet_corners(const model::Robot& robot) {
+std::vector<PlanPoint> facet_corners(const model::Robot& robot, const base::NodePlaces& node_mm) {
   const double b = robot.foot_half_width_mm();
   std::vector<PlanPoint> corners;
   for (const model::Facet& facet : robot.facets()) {
-    const PlanPoint centre = plan_place(robot, base::at(facet.module));
+    const auto centre = node_mm(robot.modules()[base::at(facet.module)].cell);
     for (const double x : {-b, b}) {
       for (const double y : {-b, b}) {
-        corners.push_back({centre.x + x, centre.y + y});
+        corners.push_back({centre[0] + x, centre[1] + y});
       }
     }
   }
@@ -87,13 +81,14 @@ std::vector<PlanPoint> facet_corners(const model::Robot& robot) {
 
 RigidBody floating_body(const model::Robot& robot) {
   RigidBody body;
-  body.centre_of_mass = centre_of_mass(robot);
+  const base::NodePlaces node_mm(robot.lattice(), robot.material().pitch_mm);
+  body.centre_of_mass = centre_of_mass(robot, node_mm);
   body.is_stable = robot.fixed_count() > 0 || robot.has_bonded_facets();
   if (!is_on_flat_floor(robot)) {
     return body;
   }
   const double tie = kMarginTie * robot.material().pitch_mm;
-  body.polygon = convex_hull(facet_corners(robot), tie);
+  body.polygon = convex_hull(facet_corners(robot, node_mm), tie);
   if (body.is_stable) {
     return body;
   }

@@ -8,6 +8,7 @@
 #include <numbers>
 #include <vector>
 
+#include "holdfast/limit/robot.hpp"
 #include "holdfast/mechanics/support_corners.hpp"
 #include "holdfast/model/lattice_beam.hpp"
 
@@ -20,14 +21,6 @@ using solver::Equilibrium;
 /// Corners this near to one line, as a share of a pitch, lie on it.
 constexpr double kLineTie = 1e-9;
 
-Vector3 node_mm(const model::Robot& robot, std::size_t module) {
-  Vector3 place = base::node_place(robot.lattice(), robot.modules()[module].cell);
-  for (double& coordinate : place) {
-    coordinate *= robot.material().pitch_mm;
-  }
-  return place;
-}
-
 Vector3 sum(const Vector3& a, double factor, const Vector3& b) {
   return {a[0] + factor * b[0], a[1] + factor * b[1], a[2] + factor * b[2]};
 }
@@ -38,68 +31,30 @@ Vector3 cross(const Vector3& a, const Vector3& b) {
 
 double length(const Vector3& a) { return std::hypot(a[0], a[1], a[2]); }
 
-limit::ContactFacet contact_facet(const model::Robot& robot, const model::Facet& facet) {
-  limit::ContactFacet contact;
-  contact.frame = model::rotation_along<double>(robot.lattice(), facet.direction);
-  contact.centre_mm =
-      sum(node_mm(robot, base::at(facet.module)), -robot.material().pitch_mm / 2, contact.frame[2]);
-  contact.half_width_mm = robot.foot_half_width_mm();
-  contact.is_bonded = facet.is_bonded();
-  contact.friction = facet.touch.friction;
-  return contact;
-}
+struct Heights {
+  double floor_mm = 0;
+  double centre_of_mass_mm = 0;  ///< Above the floor.
+};
 
-Vector3 centre_of_mass(const model::Robot& robot) {
-  Vector3 moment{};
-  double mass = 0;
-  for (std::size_t i = 0; i < robot.modules().size(); ++i) {
-    moment = sum(moment, robot.mass(i), node_mm(robot, i));
-    mass += robot.mass(i);
-  }
-  return {moment[0] / mass, moment[1] / mass, moment[2] / mass};
-}
-
-limit::BodyLoad body_load(const model::Robot& robot) {
-  limit::BodyLoad load;
-  load.centre_of_mass_mm = centre_of_mass(robot);
-  double mass = 0;
-  double inertia = 0;
-  for (std::size_t i = 0; i < robot.modules().size(); ++i) {
-    const Vector3 arm = sum(node_mm(robot, i), -1, load.centre_of_mass_mm);
-    mass += robot.mass(i);
-    inertia += robot.mass(i) * (arm[0] * arm[0] + arm[1] * arm[1] + arm[2] * arm[2]);
-    if (robot.has_payloads()) {
-      Vector3 force{};
-      Vector3 moment{};
-      for (std::size_t k = 0; k < 3; ++k) {
-        force[k] = robot.loads()[i][k] - robot.mass(i) * robot.gravity()[k];
-        moment[k] = robot.loads()[i][k + 3];
-      }
-      load.payload_n = sum(load.payload_n, 1, force);
-      load.payload_nmm = sum(sum(load.payload_nmm, 1, moment), 1, cross(arm, force));
-    }
-  }
-  load.weight_n = sum({}, mass, robot.gravity());
-  load.gyration_mm = std::max(std::sqrt(inertia / mass), robot.material().pitch_mm / 2);
-  return load;
-}
-
-/// Height of the centre of mass over the floor, mm.
-double height_mm(const model::Robot& robot) {
+Heights heights(const model::Robot& robot) {
+  const base::NodePlaces node_mm(robot.lattice(), robot.material().pitch_mm);
   double moment = 0;
   double mass = 0;
   for (std::size_t i = 0; i < robot.modules().size(); ++i) {
-    moment += robot.mass(i) * node_mm(robot, i)[2];
+    moment += robot.mass(i) * node_mm(robot.modules()[i].cell)[2];
     mass += robot.mass(i);
   }
   const model::Facet& facet = robot.facets().front();
-  return moment / mass - node_mm(robot, base::at(facet.module))[2] + robot.material().pitch_mm / 2;
+  const double floor_mm =
+      node_mm(robot.modules()[base::at(facet.module)].cell)[2] - robot.material().pitch_mm / 2;
+  return {.floor_mm = floor_mm, .centre_of_mass_mm = moment / mass - floor_mm};
 }
 
 /// On a flat floor gravity passes the nearest edge of the polygon first.
 limit::RigidStability floor_stability(const model::Robot& robot, const RigidBody& body) {
   using limit::RigidAnswer;
   limit::RigidStability rigid;
+  const auto [floor_mm, height_mm] = heights(robot);
   const double margin = body.margin_mm.value_or(0);
   rigid.answer = margin > 0    ? RigidAnswer::kHolds
                  : margin == 0 ? RigidAnswer::kNothingToSpare
@@ -107,19 +62,15 @@ limit::RigidStability floor_stability(const model::Robot& robot, const RigidBody
   if (margin > 0) {
     rigid.friction_needed = 0;
   }
-  rigid.tilt_margin_deg =
-      margin > 0 ? std::atan2(margin, height_mm(robot)) * 180 / std::numbers::pi : 0;
+  rigid.tilt_margin_deg = margin > 0 ? std::atan2(margin, height_mm) * 180 / std::numbers::pi : 0;
   if (margin < 0 && body.edge) {
-    const double floor =
-        node_mm(robot, base::at(robot.facets().front().module))[2] - robot.material().pitch_mm / 2;
     const auto& [from, to] = *body.edge;
     const Vector3 axis = {to.x - from.x, to.y - from.y, 0};
-    const Vector3 arm = {body.centre_of_mass.x - from.x, body.centre_of_mass.y - from.y,
-                         height_mm(robot)};
+    const Vector3 arm = {body.centre_of_mass.x - from.x, body.centre_of_mass.y - from.y, height_mm};
     limit::Motion motion{.kind = limit::Motion::Kind::kTips,
                          .angular = axis,
-                         .from_mm = {from.x, from.y, floor},
-                         .to_mm = {to.x, to.y, floor}};
+                         .from_mm = {from.x, from.y, floor_mm},
+                         .to_mm = {to.x, to.y, floor_mm}};
     motion.velocity = cross(axis, arm);
     const double scale = motion.velocity[2] > 0 ? -1 : 1;  // It goes down.
     const double size = std::max(length(motion.velocity), 1e-300);
@@ -160,13 +111,14 @@ void add_pressing_corners(const limit::ContactFacet& facet, const mechanics::Con
 }
 
 bool holds_by_corners(const model::Robot& robot, const Equilibrium& equilibrium) {
+  const std::vector<limit::ContactFacet> facets = limit::contact_facets(robot);
   std::vector<Vector3> corners;
-  for (std::size_t i = 0; i < robot.facets().size(); ++i) {
+  for (std::size_t i = 0; i < facets.size(); ++i) {
     const mechanics::ContactState& state = equilibrium.contact[i];
     if (state == mechanics::ContactState{} && robot.foot_half_width_mm() > 0) {
       return true;
     }
-    add_pressing_corners(contact_facet(robot, robot.facets()[i]), state, corners);
+    add_pressing_corners(facets[i], state, corners);
   }
   return !are_collinear(corners, kLineTie * robot.material().pitch_mm);
 }
@@ -199,12 +151,7 @@ limit::RigidStability rigid_stability(const model::Robot& robot, StabilityRule r
   if (rule == StabilityRule::kPolygon) {
     return floor_stability(robot, body);
   }
-  std::vector<limit::ContactFacet> facets;
-  facets.reserve(robot.facets().size());
-  for (const model::Facet& facet : robot.facets()) {
-    facets.push_back(contact_facet(robot, facet));
-  }
-  return limit::assess_rigid(facets, body_load(robot));
+  return limit::assess_rigid(robot);
 }
 
 ModelStability model_stability(const model::Robot& robot, const Equilibrium& equilibrium) {

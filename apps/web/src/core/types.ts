@@ -3,16 +3,38 @@
 
 /** What the page and the core exchange. Lengths in mm, forces in N, torques in N mm. */
 
+import type { LatticeTable } from '../model/lattice';
+
 export type Point = [x: number, y: number];
 
 export type Verdict = 'safe' | 'overload' | 'unstable' | 'undecided';
 
+export type Point3 = [x: number, y: number, z: number];
+
+/** How a rigid body begins to fall: velocity of the centre of mass and angular velocity, in mm and rad. */
+export interface FallMotion {
+  text: string;
+  velocity: Point3;
+  angular: Point3;
+}
+
+/** With supports anywhere: are there contact forces that hold it? */
+export interface RigidAnswer {
+  answer: 'holds' | 'nothing to spare' | 'falls' | 'undecided';
+  friction_needed: number | null;
+  tilt_margin_deg: number | null;
+  motion: FallMotion | null;
+}
+
 export interface Stability {
+  /** What decides. */
+  rule: 'held' | 'polygon' | 'contact-forces';
   stable: boolean;
   margin_mm: number | null;
   edge: [Point, Point] | null;
-  centre_of_mass: Point;
+  centre_of_mass: Point3;
   polygon: Point[];
+  rigid: RigidAnswer;
 }
 
 export interface Answer {
@@ -24,6 +46,8 @@ export interface Answer {
   weight_factor: number | null;
   contact_model: string;
   solves: number;
+  /** Half the width of all facets. */
+  facet_half_mm: number;
   has_loads: boolean;
   seconds: number;
   /** Indices of two modules and a direction for each connection. */
@@ -31,12 +55,20 @@ export interface Answer {
   broken: Int32Array;
   /** Load ratio, axial force, bending torque, shear force, torsion torque for each connection. */
   loads: Float64Array;
+  /** Module, direction, whether it is bonded, and ContactState::code() or -1, of each facet that touches something. */
+  facets: Int32Array;
+  /** Index of the limit that each connection's load ratio is of; empty where all of them open. */
+  limits: Int32Array;
+  /** With what force a facet presses, the force along it on its module, the friction or -1. */
+  facetForces: Float64Array;
   /** Three lengths and three angles for each module; empty if not known. */
   displacements: Float64Array;
 }
 
 export const LOAD_FIELDS = 5;
 export const MOTION_FIELDS = 6;
+export const FACET_INTEGERS = 4;
+export const FACET_FIELDS = 5;
 
 /** One of several that a user may choose. */
 export interface Choice {
@@ -52,6 +84,9 @@ export interface Vocabulary {
   phases: string[];
   methods: Choice[];
   links: Choice[];
+  /** Which limit of a connection may be reached. */
+  limits: string[];
+  lattices: LatticeTable[];
 }
 
 export interface OpenedDocument {
@@ -59,6 +94,8 @@ export interface OpenedDocument {
   description: string;
   support_z: number;
   later_steps: number;
+  /** JSON of what it says beyond cells and material. */
+  more: string;
   warnings: string[];
   modules: Int32Array;
   material: Float64Array;

@@ -4,6 +4,9 @@ import type { Role } from '../model/cell';
 import type { RobotData } from '../model/edited_robot';
 import {
   CoreError,
+  FACET_FIELDS,
+  FACET_INTEGERS,
+  LOAD_FIELDS,
   type Answer,
   type Failure,
   type OpenedDocument,
@@ -20,7 +23,7 @@ import {
  * host, all of them below: a clock, and a place for the last words of a broken check.
  */
 
-const HEADER_INTEGERS = 8;
+const HEADER_INTEGERS = 10;
 const MODULE_INTEGERS = 4;
 const EVENTS_KEPT_THOUSANDS = 1000;
 
@@ -110,15 +113,22 @@ export class Core {
   /** The verdict; `firstLook`: of the rigid body alone. Throws CoreError. */
   check(robot: RobotData, firstLook: boolean): Answer {
     const reply = this.call('check', request(robot, [firstLook ? 1 : 0]));
-    const [connections, broken] = reply.integers;
-    const head = JSON.parse(reply.text) as Answer;
-    const loads = head.has_loads ? 5 * connections : 0;
+    const { integers, numbers, text } = reply;
+    const [connections, broken, facets] = integers;
+    const head = JSON.parse(text) as Answer;
+    const loads = head.has_loads ? LOAD_FIELDS * connections : 0;
+    const forces = loads + FACET_FIELDS * facets;
+    const brokenAt = 3 + 3 * connections;
+    const facetsAt = brokenAt + broken;
     return {
       ...head,
-      connections: reply.integers.subarray(2, 2 + 3 * connections),
-      broken: reply.integers.subarray(2 + 3 * connections, 2 + 3 * connections + broken),
-      loads: reply.numbers.subarray(0, loads),
-      displacements: reply.numbers.subarray(loads),
+      connections: integers.subarray(3, brokenAt),
+      broken: integers.subarray(brokenAt, facetsAt),
+      facets: integers.subarray(facetsAt, facetsAt + FACET_INTEGERS * facets),
+      limits: integers.subarray(facetsAt + FACET_INTEGERS * facets),
+      loads: numbers.subarray(0, loads),
+      facetForces: numbers.subarray(loads, forces),
+      displacements: numbers.subarray(forces),
     };
   }
 
@@ -173,14 +183,19 @@ export class Core {
 /** The bytes of core/request.hpp. */
 function request(robot: RobotData, options: number[], tail?: Uint8Array): Uint8Array {
   const { material, modules } = robot;
+  const more = new TextEncoder().encode(robot.more);
   const headerBytes = 4 * HEADER_INTEGERS + 8 * material.length;
-  const bytes = new Uint8Array(headerBytes + 4 * modules.length + (tail?.length ?? 0));
+  const moreAt = headerBytes + 4 * modules.length;
+  // The tail may be numbers, which begin at a whole word.
+  const tailAt = moreAt + 4 * Math.ceil(more.length / 4);
+  const bytes = new Uint8Array(tailAt + (tail?.length ?? 0));
   const header = new Int32Array(bytes.buffer, 0, HEADER_INTEGERS);
-  header.set([modules.length / MODULE_INTEGERS, robot.supportZ, ...options]);
+  header.set([modules.length / MODULE_INTEGERS, robot.supportZ, more.length, ...options]);
   new Float64Array(bytes.buffer, 4 * HEADER_INTEGERS, material.length).set(material);
   new Int32Array(bytes.buffer, headerBytes, modules.length).set(modules);
+  bytes.set(more, moreAt);
   if (tail) {
-    bytes.set(tail, headerBytes + 4 * modules.length);
+    bytes.set(tail, tailAt);
   }
   return bytes;
 }

@@ -15,16 +15,6 @@ export const ROLE_NAMES = ['existing', 'planned', 'fixed'] as const;
 
 export type Cell = readonly [x: number, y: number, z: number];
 
-/** +x, -x, +y, -y, +z, -z, as in base::Direction. */
-export const DIRECTIONS: readonly Cell[] = [
-  [1, 0, 0],
-  [-1, 0, 0],
-  [0, 1, 0],
-  [0, -1, 0],
-  [0, 0, 1],
-  [0, 0, -1],
-];
-
 export const plus = (a: Cell, b: Cell): Cell => [a[0] + b[0], a[1] + b[1], a[2] + b[2]];
 export const equal = (a: Cell, b: Cell) => a[0] === b[0] && a[1] === b[1] && a[2] === b[2];
 export const cellText = (cell: Cell) => `(${cell.join(',')})`;

@@ -1,38 +1,47 @@
 // SPDX-FileCopyrightText: The holdfast authors
 // SPDX-License-Identifier: Apache-2.0
-import { DIRECTIONS, Role, cellText, plus, type Cell } from './cell';
-import { TABLE_I, pitchMm } from './material';
+import { Role, cellText, type Cell } from './cell';
+import { CUBIC, type Lattice, type Place } from './lattice';
+import { TABLE_I, gravityMagnitude, pitchMm } from './material';
+import { NO_SURROUNDINGS, ObstacleIndex, ownLoads, textOf, type OwnLoads, type Surroundings, type Vector } from './surroundings';
 
 /** Cells are counted from a robot's first one and stay within this distance of it. */
 const REACH = 100_000;
 const SPAN = 2 * REACH;
-/** Between the keys of neighbours. */
-const STRIDES = [1, SPAN, SPAN * SPAN];
+
+/** Between the keys of cells that are an axial step apart. */
+const strideOf = ([i, j, k]: Cell) => (i * SPAN + j) * SPAN + k;
 
 /** What a robot has beside its cells and its name, and what the answer depends on. */
 export interface Settings {
+  /** Void without a floor. */
   supportZ: number;
   material: Float64Array;
+  surroundings: Surroundings;
 }
 
 /** Modules as the core sees them: x, y, z and role of each; existing ones come first. */
-export interface RobotData extends Settings {
+export interface RobotData {
   modules: Int32Array;
+  supportZ: number;
+  material: Float64Array;
+  /** Surroundings as JSON, with the lattice; '' for cubes on a floor under their own weight. */
+  more: string;
 }
 
-/** Smallest and largest cell, coordinate by coordinate. */
+/** Smallest and largest coordinates of nodes, in pitches. */
 export interface Box {
   low: [number, number, number];
   high: [number, number, number];
 }
 
-const isAtBorder = ({ low, high }: Box, cell: Cell) =>
-  cell.some((value, k) => value === low[k] || value === high[k]);
+const isAtBorder = ({ low, high }: Box, place: Place) =>
+  place.some((value, k) => value === low[k] || value === high[k]);
 
-function widen({ low, high }: Box, cell: Cell): void {
+export function widen({ low, high }: Box, place: Place): void {
   for (let k = 0; k < 3; ++k) {
-    low[k] = Math.min(low[k], cell[k]);
-    high[k] = Math.max(high[k], cell[k]);
+    low[k] = Math.min(low[k], place[k]);
+    high[k] = Math.max(high[k], place[k]);
   }
 }
 
@@ -53,6 +62,7 @@ export class EditedRobot {
   private slots = new Map<number, number>();
   /** x, y, z and role of each slot. */
   private data = new Int32Array(64);
+  /** Axial. */
   private origin?: Cell;
   /** Undefined if there is no module, or if it has to be found again. */
   private box?: Box;
@@ -64,15 +74,56 @@ export class EditedRobot {
   name = '';
   supportZ = 0;
   material: Float64Array = TABLE_I;
+  private more = NO_SURROUNDINGS;
+  private index?: ObstacleIndex;
+  private own?: OwnLoads;
+  /** Between the keys of a module and of those that hide it. */
+  private readonly coverStrides: readonly number[];
   /** The text of the file that it began with, for what the page does not show. */
   base = '';
+
+  constructor(readonly lattice: Lattice = CUBIC) {
+    this.coverStrides = lattice.coverSteps.map(strideOf);
+  }
 
   get pitchMm(): number {
     return pitchMm(this.material);
   }
 
-  static from(modules: Int32Array): EditedRobot {
-    const robot = new EditedRobot();
+  get surroundings(): Surroundings {
+    return this.more;
+  }
+
+  set surroundings(surroundings: Surroundings) {
+    this.more = surroundings;
+    this.index = this.own = undefined;
+  }
+
+  get hasFloor(): boolean {
+    return this.more.support_z !== null;
+  }
+
+  /** m/s^2 */
+  get gravity(): Vector {
+    return this.more.gravity_m_s2 ?? [0, 0, -gravityMagnitude(this.material)];
+  }
+
+  get obstacles(): ObstacleIndex {
+    return (this.index ??= new ObstacleIndex(this.more.obstacles ?? []));
+  }
+
+  /** By the text of a cell. */
+  get ownLoads(): OwnLoads {
+    return (this.own ??= ownLoads(this.more));
+  }
+
+  /** The height of the floor, in pitches. */
+  get floorHeight(): number {
+    return this.supportZ * this.lattice.layerHeight - 0.5;
+  }
+
+  static from(modules: Int32Array, lattice = CUBIC): EditedRobot {
+    const robot = new EditedRobot(lattice);
     for (let i = 0; i < modules.length; i += 4) {
       robot.set([modules[i], modules[i + 1], modules[i + 2]], modules[i + 3] as Role);
     }
@@ -93,6 +144,13 @@ export class EditedRobot {
     return this.slot(cell) !== undefined;
   }
 
+  /** The same cells, and all else, in another lattice. */
+  inLattice(lattice: Lattice): EditedRobot {
+    const robot = EditedRobot.from(this.toModules(), lattice);
+    const { name, supportZ, material, surroundings, base } = this;
+    return Object.assign(robot, { name, supportZ, material, surroundings, base, isEdited: true });
+  }
+
   cellAt(slot: number): Cell {
     return [this.data[4 * slot], this.data[4 * slot + 1], this.data[4 * slot + 2]];
   }
@@ -101,14 +159,24 @@ export class EditedRobot {
     return this.data[4 * slot + 3];
   }
 
-  /** A module with six neighbours, which nobody sees. */
+  /** Where its node is. */
+  placeAt(slot: number): Place {
+    return this.lattice.place(this.cellAt(slot));
+  }
+
+  /** A module with all neighbours, which nobody sees. */
   isHidden(slot: number): boolean {
     const key = this.key(this.cellAt(slot))!;
-    return STRIDES.every((stride) => this.slots.has(key + stride) && this.slots.has(key - stride));
+    return this.coverStrides.length > 0 && this.coverStrides.every((stride) => this.slots.has(key + stride));
+  }
+
+  /** Neither a module nor an obstacle is there, nor the floor. */
+  isFree(cell: Cell): boolean {
+    return !this.has(cell) && !this.obstacles.has(cell) && !(this.hasFloor && cell[2] < this.supportZ);
   }
 
   set(cell: Cell, role: Role | undefined): void {
-    this.origin ??= cell;
+    this.origin ??= this.lattice.axial(cell);
     const key = this.key(cell);
     if (key === undefined) {
       throw new RangeError(`${cellText(cell)} is more than ${REACH} cells from the first module`);
@@ -122,34 +190,23 @@ export class EditedRobot {
       this.slots.set(key, this.count);
       this.write(this.count++, cell, role);
       if (this.box) {
-        widen(this.box, cell);
+        widen(this.box, this.lattice.place(cell));
       }
     }
   }
 
-  /** Free cells at its faces, on the support level or above. */
+  /** Free cells at its faces. */
   freePlaces(): Cell[] {
     const places = new Map<number, Cell>();
     for (let slot = 0; slot < this.count; ++slot) {
-      const cell = this.cellAt(slot);
-      for (const direction of DIRECTIONS) {
-        const place = plus(cell, direction);
+      for (const place of this.lattice.neighbours(this.cellAt(slot))) {
         const key = this.key(place);
-        if (key !== undefined && place[2] >= this.supportZ && !this.slots.has(key)) {
+        if (key !== undefined && this.isFree(place)) {
           places.set(key, place);
         }
       }
     }
     return [...places.values()];
-  }
-
-  /** Of the centre of mass above the ground, in cells. */
-  massHeight(): number {
-    let sum = 0;
-    for (let slot = 0; slot < this.count; ++slot) {
-      sum += this.data[4 * slot + 2];
-    }
-    return sum / Math.max(this.count, 1) - this.supportZ + 0.5;
   }
 
   /** For the core, with the slot of each of its modules: existing ones come first. */
@@ -169,7 +226,8 @@ export class EditedRobot {
         modules[4 * i + k] = this.data[4 * slot + k];
       }
     });
-    return { data: { modules, supportZ: this.supportZ, material: this.material }, slots };
+    const { supportZ, material } = this;
+    return { data: { modules, supportZ, material, more: this.moreText() }, slots };
   }
 
   /** x, y, z and role of each module, in the order of its slots. */
@@ -177,23 +235,33 @@ export class EditedRobot {
     return this.data.slice(0, 4 * this.count);
   }
 
-  /** Smallest and largest cell; undefined if there is none. Kept, and found again only after a removal there. */
+  /** Of all nodes; undefined if there is none. Kept, and found again only after a removal there. */
   bounds(): Readonly<Box> | undefined {
     if (!this.box && this.count > 0) {
-      const first = this.cellAt(0);
+      const first = this.placeAt(0);
       this.box = { low: [...first], high: [...first] };
       for (let slot = 1; slot < this.count; ++slot) {
-        widen(this.box, this.cellAt(slot));
+        widen(this.box, this.placeAt(slot));
       }
     }
     return this.box;
   }
 
-  private key([x, y, z]: Cell): number | undefined {
-    const [ox, oy, oz] = this.origin ?? [x, y, z];
-    const dx = x - ox + REACH;
-    const dy = y - oy + REACH;
-    const dz = z - oz + REACH;
+  /** Cubes on a floor without slip under their own weight. */
+  get isPlain(): boolean {
+    return this.lattice === CUBIC && Object.keys(this.more).length === 0;
+  }
+
+  private moreText(): string {
+    return this.isPlain ? '' : textOf({ ...this.more, lattice: this.lattice.name });
+  }
+
+  private key(cell: Cell): number | undefined {
+    const [i, j, k] = this.lattice.axial(cell);
+    const [oi, oj, ok] = this.origin ?? [i, j, k];
+    const dx = i - oi + REACH;
+    const dy = j - oj + REACH;
+    const dz = k - ok + REACH;
     // One cell is left free on every side, so that strides stay in the lattice.
     const isNear = Math.min(dx, dy, dz) > 0 && Math.max(dx, dy, dz) < SPAN - 1;
     return isNear ? (dx * SPAN + dy) * SPAN + dz : undefined;
@@ -204,7 +272,7 @@ export class EditedRobot {
       return;
     }
     this.slots.delete(key);
-    if (this.box && isAtBorder(this.box, this.cellAt(slot))) {
+    if (this.box && isAtBorder(this.box, this.placeAt(slot))) {
       this.box = undefined;
     }
     const last = --this.count;

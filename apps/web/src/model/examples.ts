@@ -121,11 +121,73 @@ const MADE: Example[] = [
   },
 ];
 
+const version2 = (name: string, lattice: string, modules: Iterable<Cell>, more: object = {}) =>
+  structure(name, modules, { version: 2, lattice, ...more });
+
+/** What the paper calls the general case. */
+const GENERAL: Example[] = [
+  {
+    name: 'catom_pyramid',
+    title: 'A pyramid of catoms',
+    text: 'Spheres with twelve neighbours, four on four; take one out below.',
+    source: () =>
+      version2(
+        'catom_pyramid',
+        'face-centred',
+        cells([5, 5, 5], (x, y, z) => Math.min(x, y) >= z >> 1 && Math.max(x, y) < 5 - ((z + 1) >> 1)),
+      ),
+  },
+  {
+    name: 'disc_arch',
+    title: 'An arch of discs',
+    text: 'Catoms that stand in a plane; friction holds its feet apart, or does not.',
+    source: () =>
+      version2(
+        'disc_arch',
+        'hexagonal',
+        cells([9, 1, 6], (x, _y, z) => (z > 3 && x > 1 && x < 7) || (z < 4 && ((x > 0 && x < 3) || (x > 5 && x < 8)))),
+        { floor: { friction: 0.3 } },
+      ),
+  },
+  {
+    name: 'prism_wall',
+    title: 'Prisms on a wall',
+    text: 'A bracket of hexagonal prisms, bonded to a wall, with a weight at its end.',
+    source: () =>
+      version2('prism_wall', 'hexagonal-prism', cells([4, 2, 2], (x, y, z) => y + z === 0 || x === 0), {
+        support_z: null,
+        obstacles: [{ from: [-1, 0, -1], to: [-1, 2, 2], hold: 'bonded' }],
+        loads: [{ cell: [3, 0, 0], force_n: [0, 0, -1] }],
+      }),
+  },
+  {
+    name: 'slope',
+    title: 'On a slope',
+    text: 'A tower on a ground of 15 degrees that holds by friction: make it steeper.',
+    source: () =>
+      version2('slope', 'cubic', [...cells([2, 2, 1]), [0, 0, 1], [0, 0, 2]], {
+        floor: { friction: 0.5 },
+        gravity_m_s2: [2.53901466, 0, -9.47573286],
+      }),
+  },
+  {
+    name: 'slot',
+    title: 'Clamped in a slot',
+    text: 'An arm that only leans on two obstacles, below and above its end.',
+    source: () =>
+      version2('slot', 'cubic', cells([5, 1, 1]), {
+        support_z: null,
+        obstacles: [{ cells: [[1, 0, -1], [0, 0, 1]] }],
+      }),
+  },
+];
+
 export const GALLERY: ExampleGroup[] = [
   ...TESTS.map(([prefix, title]) => ({
     title,
     examples: ['a', 'b', 'c'].map((stage) => scenario(`${prefix}_${stage}`)),
   })),
+  { title: 'Other modules, other supports', examples: GENERAL },
   { title: 'More to try', examples: MADE },
 ];
 

@@ -2,11 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 import type { Cell, Role } from './cell';
 import { EditedRobot, type CellChange, type Settings } from './edited_robot';
+import { withoutModules } from './surroundings';
 
-/** What can be undone: changed cells, changed settings, or another robot in place of this one. */
+/** What can be undone: changed cells with what goes with them, changed settings, or another robot in place of this one. */
 type Step = { label: string } & (
-  | { what: 'cells'; changes: CellChange[] }
-  | { what: 'settings'; before: Settings; after: Settings }
+  | { what: 'cells' | 'settings'; changes: CellChange[]; before: Settings; after: Settings }
   | { what: 'robot'; before: EditedRobot; after: EditedRobot }
 );
 
@@ -22,22 +22,30 @@ export class History {
     private readonly changed: (what: Change) => void,
   ) {}
 
-  /** Sets cells to a role, or empties them; what is so already is left out. */
-  edit(label: string, cells: readonly Cell[], after: Role | undefined): boolean {
+  /**
+   * Sets cells to a role, or empties them, and settings, all in one step; what is so already is left out.
+   * What a removed module had of its own goes with it.
+   */
+  edit(label: string, cells: readonly Cell[], role: Role | undefined, settings: Partial<Settings> = {}): boolean {
     const changes = cells
-      .map((cell) => ({ cell, before: this.robot.role(cell), after }))
-      .filter(({ before }) => before !== after);
-    if (changes.length > 0) {
-      this.do({ label, what: 'cells', changes });
+      .map((cell) => ({ cell, before: this.robot.role(cell), after: role }))
+      .filter(({ before, after }) => before !== after);
+    const { supportZ, material, surroundings } = this.robot;
+    const before = { supportZ, material, surroundings };
+    const after = { ...before, ...settings };
+    if (role === undefined && changes.length > 0) {
+      after.surroundings = withoutModules(after.surroundings, changes.map(({ cell }) => cell));
     }
-    return changes.length > 0;
+    const isOther = (Object.keys(before) as (keyof Settings)[]).some((key) => before[key] !== after[key]);
+    if (changes.length > 0 || isOther) {
+      this.do({ label, what: changes.length > 0 ? 'cells' : 'settings', changes, before, after });
+    }
+    return changes.length > 0 || isOther;
   }
 
-  /** Gives the robot another material or another ground. */
-  configure(label: string, change: Partial<Settings>): void {
-    const { supportZ, material } = this.robot;
-    const before = { supportZ, material };
-    this.do({ label, what: 'settings', before, after: { ...before, ...change } });
+  /** Gives the robot another material, another ground, other surroundings. */
+  configure(label: string, settings: Partial<Settings>): void {
+    this.edit(label, [], undefined, settings);
   }
 
   /** Puts another robot in place of this one; the empty page at the beginning is not kept. */
@@ -92,10 +100,12 @@ export class History {
       this.robot = isForward ? step.after : step.before;
       return;
     }
-    if (step.what === 'settings') {
-      Object.assign(this.robot, isForward ? step.after : step.before);
-    } else {
-      this.setCells(step.changes, isForward);
+    this.setCells(step.changes, isForward);
+    const settings = isForward ? step.after : step.before;
+    for (const key of Object.keys(settings) as (keyof Settings)[]) {
+      if (this.robot[key] !== settings[key]) {
+        Object.assign(this.robot, { [key]: settings[key] });
+      }
     }
     this.robot.isEdited = true;
   }

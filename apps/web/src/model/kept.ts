@@ -1,7 +1,9 @@
 // SPDX-FileCopyrightText: The holdfast authors
 // SPDX-License-Identifier: Apache-2.0
-import { PARAMETERS } from './material';
 import { EditedRobot } from './edited_robot';
+import { CUBIC, latticeOf } from './lattice';
+import { PARAMETERS } from './material';
+import { NO_SURROUNDINGS, type Surroundings } from './surroundings';
 
 /**
  * Robots that were changed here, in the browser's own storage, each under its own name there: closing
@@ -27,6 +29,9 @@ export interface KeptRobot {
   material: number[];
   modules: number[];
   base: string;
+  /** Undefined in entries of pages that knew cubes on a floor only. */
+  lattice?: string;
+  surroundings?: Surroundings;
 }
 
 /** What a page is asked to show, a file or a link, in short; '' if nothing. FNV-1a in two halves. */
@@ -58,9 +63,13 @@ export class Kept {
 
   /** False: it is too large. */
   keep(robot: EditedRobot, origin: string): boolean {
-    const { id, name, supportZ, base } = robot;
+    const { id, name, supportZ, base, surroundings } = robot;
+    const lattice = robot.lattice.name;
     const [material, modules] = [Array.from(robot.material), Array.from(robot.toModules())];
-    const entry: KeptRobot = { id, origin, time: Date.now(), name, supportZ, material, modules, base };
+    const entry: KeptRobot = {
+      ...{ id, origin, time: Date.now(), name, supportZ, material, modules, base },
+      ...{ lattice, surroundings },
+    };
     const text = `${entry.time} ${JSON.stringify(entry)}`;
     const isKept = text.length <= LENGTH_MAX && this.write(PREFIX + id, text);
     if (isKept) {
@@ -85,9 +94,10 @@ export class Kept {
 
   /** A robot of its own, or, in the tab that has kept it last, the same. */
   restore(entry: KeptRobot): EditedRobot {
-    const robot = EditedRobot.from(Int32Array.from(entry.modules));
-    const { name, supportZ, base } = entry;
-    Object.assign(robot, { name, supportZ, base, material: Float64Array.from(entry.material) });
+    const lattice = entry.lattice === undefined ? CUBIC : latticeOf(entry.lattice);
+    const robot = EditedRobot.from(Int32Array.from(entry.modules), lattice);
+    const { name, supportZ, base, surroundings = NO_SURROUNDINGS } = entry;
+    Object.assign(robot, { name, supportZ, base, surroundings, material: Float64Array.from(entry.material) });
     if (entry.id === this.tab.getItem(TAB)) {
       robot.id = entry.id;
     }
@@ -133,7 +143,8 @@ function read(text: string): KeptRobot | undefined {
   }
 }
 
-function isKept({ id, origin, time, name, supportZ, material, modules, base }: KeptRobot): boolean {
+function isKept(entry: KeptRobot): boolean {
+  const { id, origin, time, name, supportZ, material, modules, base, lattice, surroundings } = entry;
   return (
     [id, origin, name, base].every((text) => typeof text === 'string') &&
     Number.isFinite(time) &&
@@ -141,6 +152,8 @@ function isKept({ id, origin, time, name, supportZ, material, modules, base }: K
     material.every(Number.isFinite) &&
     material.length === PARAMETERS.length &&
     modules.every((value, i) => Number.isInteger(value) && (i % 4 < 3 || (value >= 0 && value <= 2))) &&
-    modules.length % 4 === 0
+    modules.length % 4 === 0 &&
+    (lattice === undefined || latticeOf(lattice) !== undefined) &&
+    (surroundings === undefined || (typeof surroundings === 'object' && surroundings !== null))
   );
 }

@@ -8,6 +8,9 @@ export const PARAMETERS = VOCABULARY.material;
 /** Table I of [Piranda 2021], Blinky Blocks. */
 export const TABLE_I = Float64Array.from(PARAMETERS, ({ table_i }) => table_i);
 
-const PITCH = PARAMETERS.findIndex(({ key }) => key === 'pitch_mm');
+const indexOf = (wanted: string) => PARAMETERS.findIndex(({ key }) => key === wanted);
+const [PITCH, GRAVITY] = ['pitch_mm', 'gravity_m_s2'].map(indexOf);
 
 export const pitchMm = (material: Float64Array) => material[PITCH];
+/** m/s^2 */
+export const gravityMagnitude = (material: Float64Array) => material[GRAVITY];

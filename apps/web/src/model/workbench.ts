@@ -3,8 +3,12 @@
 import { ROLE_NAMES, Role, type Cell } from './cell';
 import { History, type Change } from './history';
 import { EditedRobot } from './edited_robot';
+import { latticeOf } from './lattice';
+import {
+  isNothing, tidied, withBurden, withObstacles, withoutObstacle, type Burden, type Hold, type Obstacle, type Surroundings,
+} from './surroundings';
 
-export type Tool = 'look' | 'add' | 'remove' | 'paint';
+export type Tool = 'look' | 'add' | 'remove' | 'paint' | 'obstacle' | 'load';
 
 /** No more modules than this in one row. */
 export const ROW_MAX = 100;
@@ -15,6 +19,12 @@ export class Workbench {
   tool: Tool = 'add';
   /** Of the modules that are attached or painted. */
   role = Role.kExisting;
+  /** Of the obstacles that are placed. */
+  hold: Hold = 'contact';
+  /** Undefined: no slip. */
+  friction?: number;
+  /** What is put on modules. */
+  burden: Burden = { force: [0, 0, -2], torque: [0, 0, 0] };
   /** Where the keyboard is. */
   cursor?: Cell;
   /** Called after every change of the robot. */
@@ -40,11 +50,35 @@ export class Workbench {
     this.setTool(this.tool === 'paint' ? 'paint' : 'add', role);
   }
 
+  setHold(hold: Hold): void {
+    this.hold = hold;
+    this.setTool('obstacle');
+  }
+
+  setBurden(burden: Burden): void {
+    this.burden = burden;
+    this.setTool('load');
+  }
+
+  /** Puts the same cells, as an undoable step, into another lattice. */
+  setLattice(name: string): void {
+    const lattice = latticeOf(name);
+    if (lattice && lattice !== this.robot.lattice) {
+      this.history.replace(`another lattice: ${lattice.title}`, this.robot.inLattice(lattice));
+    }
+  }
+
+  /** Changes some of what surrounds the robot. */
+  surround(label: string, change: Surroundings): void {
+    performance.mark('edit');
+    this.history.configure(label, { surroundings: tidied({ ...this.robot.surroundings, ...change }) });
+  }
+
   /** Sets cells to a role, or empties them. */
-  edit(label: string, cells: readonly Cell[], role: Role | undefined): void {
+  edit(label: string, cells: readonly Cell[], role: Role | undefined, surroundings?: Surroundings): void {
     performance.mark('edit');
     try {
-      this.history.edit(label, cells, role);
+      this.history.edit(label, cells, role, surroundings && { surroundings });
     } catch (error) {
       this.refuse(error instanceof Error ? error.message : String(error));
     }
@@ -54,11 +88,39 @@ export class Workbench {
   use(cells: readonly Cell[]): void {
     const role = ROLE_NAMES[this.role];
     if (this.tool === 'add') {
-      this.edit(`attaching ${cells.length}`, cells.filter((cell) => !this.robot.has(cell)), this.role);
+      const free = cells.filter((cell) => !this.robot.has(cell) && !this.robot.obstacles.has(cell));
+      this.edit(`attaching ${cells.length}`, free, this.role);
     } else if (this.tool === 'remove') {
-      this.edit(`removing ${cells.length}`, cells, undefined);
+      this.remove(cells);
+    } else if (this.tool === 'obstacle') {
+      this.block(cells.filter((cell) => !this.robot.has(cell) && !this.robot.obstacles.has(cell)));
+    } else if (this.tool === 'load') {
+      this.load(cells.filter((cell) => this.robot.has(cell)));
     } else if (this.tool === 'paint') {
       this.edit(`painting ${cells.length} ${role}`, cells.filter((cell) => this.robot.has(cell)), this.role);
     }
+  }
+
+  /** Modules and obstacles. */
+  remove(cells: readonly Cell[]): void {
+    const { surroundings, obstacles } = this.robot;
+    const blocked = cells.filter((cell) => obstacles.has(cell));
+    const left = blocked.reduce((list: readonly Obstacle[], cell) => withoutObstacle(list, cell), obstacles.obstacles);
+    const change = blocked.length > 0 ? tidied({ ...surroundings, obstacles: left }) : undefined;
+    this.edit(`removing ${cells.length}`, cells.filter((cell) => this.robot.has(cell)), undefined, change);
+  }
+
+  private block(cells: readonly Cell[]): void {
+    if (cells.length > 0) {
+      const { obstacles } = this.robot.obstacles;
+      const list = withObstacles(obstacles, cells, this.hold, this.friction);
+      this.surround(`placing ${cells.length === 1 ? 'an obstacle' : `${cells.length} obstacles`}`, { obstacles: list });
+    }
+  }
+
+  private load(cells: readonly Cell[]): void {
+    const { burden } = this;
+    const label = `${isNothing(burden) ? 'taking the load off' : 'loading'} ${cells.length}`;
+    this.history.configure(label, { surroundings: withBurden(this.robot.surroundings, cells, burden) });
   }
 }

@@ -1,10 +1,13 @@
 // SPDX-FileCopyrightText: The holdfast authors
 // SPDX-License-Identifier: Apache-2.0
+import VOCABULARY from 'virtual:vocabulary';
 import type { Finding } from '../core/judge';
-import { LOAD_FIELDS, type Answer } from '../core/types';
-import { DIRECTIONS, ROLE_NAMES, Role, cellText, type Cell } from '../model/cell';
+import { FACET_INTEGERS, LOAD_FIELDS, type Answer } from '../core/types';
+import { ROLE_NAMES, Role, cellText, type Cell } from '../model/cell';
 import type { EditedRobot } from '../model/edited_robot';
+import { holdOf, obstacleText, type Vector } from '../model/surroundings';
 import { FIXED, UNKNOWN, UNSTABLE, brokenColour, css, loadColour, type Rgb, type ScaleName } from '../view/colours';
+import { FACET_LOOKS, FacetState, facetAt, facetCount } from '../view/facets';
 import { byId, make } from './dom';
 
 /** The answer in words and numbers, the legend, and what is under the pointer. */
@@ -48,8 +51,10 @@ function headline(robot: EditedRobot, finding: Finding | undefined): [string, st
     return ['Stable', 'loads to come', 'undecided'];
   }
   if (finding?.answer) {
-    const [word, meaning] = WORDS[finding.answer.verdict];
-    return [word, meaning, finding.answer.verdict];
+    const { verdict, stability } = finding.answer;
+    const [word, meaning] = WORDS[verdict];
+    const falls = verdict === 'unstable' && stability.rule === 'contact-forces';
+    return [word, falls ? 'it falls' : meaning, verdict];
   }
   return finding?.problem ? ['No answer', '', 'none'] : ['…', '', 'none'];
 }
@@ -59,9 +64,12 @@ function reason(robot: EditedRobot, finding: Finding | undefined): string {
     return 'Click the ground to put down the first module.';
   }
   if (finding?.isFirstLook) {
-    return finding.answer!.stability.stable
-      ? 'The centre of mass is above the support polygon.'
-      : 'The centre of mass is not above the support polygon.';
+    const { stable, rule } = finding.answer!.stability;
+    const [yes, no] =
+      rule === 'contact-forces'
+        ? ['Contact forces can hold it.', 'No contact forces balance the loads, or nothing is to spare.']
+        : ['The centre of mass is above the support polygon.', 'The centre of mass is not above the support polygon.'];
+    return stable ? yes : no;
   }
   const sentences = finding?.answer?.reasons.map((text) => `${text[0].toUpperCase()}${text.slice(1)}.`);
   return finding?.problem ?? sentences?.join(' ') ?? '';
@@ -85,13 +93,30 @@ function figures(robot: EditedRobot, finding: Finding | undefined, answer: Answe
     list.push(['First break at', text]);
   }
   if (answer) {
-    const { margin_mm: margin } = answer.stability;
-    const text = margin === null ? 'held by a fixed module' : `${margin.toFixed(2)} mm`;
-    list.push(['Margin', text, 'from the centre of mass to the nearest edge of the support polygon']);
+    list.push(...stabilityFigures(robot, answer));
   }
   list.push(['Modules', countText(robot)]);
   if (answer?.has_loads) {
     list.push(['Contact', answer.contact_model], ['Solved in', formatTime(answer.seconds)]);
+  }
+  return list;
+}
+
+function stabilityFigures(robot: EditedRobot, { stability }: Answer): Figure[] {
+  const { margin_mm: margin, rule, rigid } = stability;
+  const list: Figure[] = [];
+  if (rule !== 'contact-forces') {
+    const held = robot.obstacles.obstacles.some((one) => holdOf(one) === 'bonded') ? 'held fast' : 'held by a fixed module';
+    const text = margin === null ? held : `${margin.toFixed(2)} mm`;
+    list.push(['Margin', text, 'from the centre of mass to the nearest edge of the support polygon']);
+  } else {
+    list.push(['Rigid body', rigid.answer, 'whether contact forces can hold it as one rigid body']);
+  }
+  if (rigid.tilt_margin_deg !== null && !robot.isPlain) {
+    list.push(['Tilt to spare', `${rigid.tilt_margin_deg.toFixed(2)}°`, 'by which gravity may turn, in any direction']);
+  }
+  if (rigid.friction_needed !== null && rule === 'contact-forces') {
+    list.push(['Friction needed', rigid.friction_needed.toFixed(3), 'the smallest coefficient that would do']);
   }
   return list;
 }
@@ -126,6 +151,24 @@ export function showLegend(scale: ScaleName): void {
   byId('legend').replaceChildren(bar, ticks, list);
 }
 
+/** How many facets do what, and what they look like. */
+export function showFacetLegend(robot: EditedRobot, finding: Finding | undefined): void {
+  const answer = finding?.answer;
+  const counts = FACET_LOOKS.map(() => 0);
+  for (let i = 0; answer && !robot.isPlain && i < facetCount(answer); ++i) {
+    ++counts[facetAt(answer, i).state];
+  }
+  const entries = FACET_LOOKS.flatMap(({ text, colour, isFilled }, state) => {
+    const swatch = make('span', { className: `swatch facet ${text}` });
+    swatch.style.borderColor = css(colour);
+    swatch.style.backgroundColor = isFilled ? css(colour) : 'transparent';
+    return counts[state] > 0 ? [make('li', {}, swatch, `${text} (${counts[state]})`)] : [];
+  });
+  const list = byId('facet-legend');
+  list.hidden = entries.length === 0;
+  list.replaceChildren(make('li', {}, 'Facets that touch:'), ...entries);
+}
+
 /** What free faces say, with the marks that the shader draws. */
 export function showFaceLegend(scale: ScaleName): void {
   const entry = (mark: string, colour: Rgb, text: string) => {
@@ -142,8 +185,6 @@ export function showFaceLegend(scale: ScaleName): void {
   );
 }
 
-const SIDES = ['+x', '−x', '+y', '−y', '+z', '−z'];
-
 /** One line for each connection of a module; the pointed one is marked. */
 export function showDetails(
   robot: EditedRobot,
@@ -153,14 +194,21 @@ export function showDetails(
 ): string {
   const panel = byId('details');
   const slot = cell && robot.slot(cell);
+  const obstacle = cell && robot.obstacles.find(cell);
+  if (cell && obstacle !== undefined) {
+    const text = obstacleText(cell, robot.obstacles.obstacles[obstacle]);
+    panel.replaceChildren(make('p', { className: 'cell' }, text));
+    return text;
+  }
   if (!cell || slot === undefined) {
     panel.replaceChildren(make('p', { className: 'quiet' }, 'Point at a module to see its numbers.'));
     return cell ? `${cellText(cell)}: empty` : '';
   }
   const title = `${cellText(cell)}, ${ROLE_NAMES[robot.roleAt(slot)]}${
-    cell[2] === robot.supportZ && robot.roleAt(slot) !== Role.kFixed ? ', on the ground' : ''
+    robot.hasFloor && cell[2] === robot.supportZ && robot.roleAt(slot) !== Role.kFixed ? ', on the ground' : ''
   }`;
-  const rows = finding?.answer?.has_loads ? connectionRows(finding, slot) : [];
+  const more = [...ownTexts(robot, cell), ...facetTexts(robot, finding, slot)];
+  const rows = finding?.answer?.has_loads ? connectionRows(robot, finding, slot) : [];
   const table = make('table');
   if (rows.length > 0) {
     const head = make('tr', {}, ...['to', 'load', 'axial', 'bending'].map((t) => make('th', { scope: 'col' }, t)));
@@ -170,47 +218,92 @@ export function showDetails(
       const line = make(
         'tr',
         {},
-        make('th', { scope: 'row' }, SIDES[row.side]),
-        ...[formatRatio(row.ratio), `${row.axial.toFixed(2)} N`, `${row.bending.toFixed(0)} N mm`].map((t) => make('td', {}, t)),
+        make('th', { scope: 'row' }, robot.lattice.sides[row.side]),
+        ...[formatRatio(row.ratio) + row.limit, `${row.axial.toFixed(2)} N`, `${row.bending.toFixed(0)} N mm`].map((t) => make('td', {}, t)),
       );
       line.className = row.side === side ? 'pointed' : row.isBroken ? 'breaks' : '';
       body.append(line);
     }
     table.append(body);
   }
-  panel.replaceChildren(make('p', { className: 'cell' }, title), ...(rows.length > 0 ? [table] : []));
+  const notes = more.map((text) => make('p', { className: 'quiet' }, text));
+  panel.replaceChildren(make('p', { className: 'cell' }, title), ...notes, ...(rows.length > 0 ? [table] : []));
   const worst = rows.length > 0 ? `, largest load ${formatRatio(Math.max(...rows.map((r) => r.ratio)))}` : '';
-  return title + worst;
+  return [title, ...more].join('; ') + worst;
+}
+
+/** What was put on a module. */
+function ownTexts({ ownLoads }: EditedRobot, cell: Cell): string[] {
+  const key = String(cell);
+  const own = ownLoads.modules.get(key);
+  const load = ownLoads.loads.get(key);
+  const vector = (name: string, value: Vector | undefined, unit: string) =>
+    value?.some((one) => one !== 0) ? [`${name} (${value.join(', ')}) ${unit}`] : [];
+  return [
+    ...(own?.kind === undefined ? [] : [own.kind]),
+    ...(own?.mass_kg === undefined ? [] : [`mass ${own.mass_kg} kg`]),
+    ...vector('force', load?.force_n, 'N'),
+    ...vector('torque', load?.torque_nmm, 'N mm'),
+  ];
+}
+
+/** Facets by slot. Made once for each answer. */
+const facetsAt = new WeakMap<Answer, Map<number, number[]>>();
+
+function facetsOf({ slots }: Finding, answer: Answer): Map<number, number[]> {
+  const known = facetsAt.get(answer) ?? new Map<number, number[]>();
+  for (let i = 0; !facetsAt.has(answer) && i < facetCount(answer); ++i) {
+    const slot = slots[answer.facets[FACET_INTEGERS * i]];
+    known.set(slot, [...(known.get(slot) ?? []), i]);
+  }
+  facetsAt.set(answer, known);
+  return known;
+}
+
+/** What the facets of a module do. */
+function facetTexts(robot: EditedRobot, finding: Finding | undefined, slot: number): string[] {
+  const answer = finding?.answer;
+  if (!answer || robot.isPlain) {
+    return [];
+  }
+  return (facetsOf(finding, answer).get(slot) ?? []).map((i) => {
+    const { direction, state, push, slide } = facetAt(answer, i);
+    const isIdle = state === FacetState.kUnknown || state === FacetState.kOpen;
+    const force = isIdle ? '' : push < 0 ? `, pulled with ${(-push).toFixed(2)} N` : `, pressed with ${push.toFixed(2)} N`;
+    const friction = slide === undefined ? '' : `, ${(100 * slide).toFixed(0)} % of its friction`;
+    return `facet ${robot.lattice.sides[direction]} ${FACET_LOOKS[state].text}${force}${friction}`;
+  });
 }
 
 /** The connection at each side of each slot, by index; -1: none. Made once for each answer. */
 const connectionsAt = new WeakMap<Answer, Int32Array>();
 
-function sidesOf({ slots }: Finding, answer: Answer): Int32Array {
+function sidesOf({ slots }: Finding, answer: Answer, directionCount: number): Int32Array {
   const known = connectionsAt.get(answer);
   if (known) {
     return known;
   }
-  const sides = new Int32Array(DIRECTIONS.length * slots.length).fill(-1);
+  const sides = new Int32Array(directionCount * slots.length).fill(-1);
   const { connections } = answer;
   for (let i = 0; 3 * i < connections.length; ++i) {
     const direction = connections[3 * i + 2];
-    sides[DIRECTIONS.length * slots[connections[3 * i]] + direction] = i;
-    sides[DIRECTIONS.length * slots[connections[3 * i + 1]] + (direction ^ 1)] = i;
+    sides[directionCount * slots[connections[3 * i]] + direction] = i;
+    sides[directionCount * slots[connections[3 * i + 1]] + (direction ^ 1)] = i;
   }
   connectionsAt.set(answer, sides);
   return sides;
 }
 
-function connectionRows(finding: Finding, slot: number) {
-  const rows: { side: number; ratio: number; axial: number; bending: number; isBroken: boolean }[] = [];
+function connectionRows({ lattice }: EditedRobot, finding: Finding, slot: number) {
+  const rows: { side: number; ratio: number; limit: string; axial: number; bending: number; isBroken: boolean }[] = [];
   const answer = finding.answer!;
-  const sides = sidesOf(finding, answer);
-  for (let side = 0; side < DIRECTIONS.length; ++side) {
-    const i = sides[DIRECTIONS.length * slot + side];
+  const sides = sidesOf(finding, answer, lattice.directionCount);
+  for (let side = 0; side < lattice.directionCount; ++side) {
+    const i = sides[lattice.directionCount * slot + side];
     if (i >= 0) {
       const [ratio, axial, bending] = answer.loads.subarray(LOAD_FIELDS * i, LOAD_FIELDS * i + 3);
-      rows.push({ side, ratio, axial, bending, isBroken: answer.broken.includes(i) });
+      const limit = answer.limits.length > 0 ? ` ${VOCABULARY.limits[answer.limits[i]]}` : '';
+      rows.push({ side, ratio, limit, axial, bending, isBroken: answer.broken.includes(i) });
     }
   }
   return rows;

@@ -2,14 +2,17 @@
 // SPDX-License-Identifier: Apache-2.0
 import { Judge, type Finding } from '../core/judge';
 import { MOTION_FIELDS } from '../core/types';
-import { DIRECTIONS, plus, type Cell } from '../model/cell';
+import { equal, type Cell } from '../model/cell';
 import type { Change } from '../model/history';
 import type { Workbench } from '../model/workbench';
 import type { ScaleName } from '../view/colours';
+import { FacetView } from '../view/facets';
 import { Ground } from '../view/ground';
+import { LoadView } from '../view/loads';
+import { ObstacleView } from '../view/obstacles';
 import { RobotView } from '../view/robot_view';
 import { Stage } from '../view/stage';
-import { showDetails, showFaceLegend, showFinding, showLegend } from './answer_panel';
+import { showDetails, showFaceLegend, showFacetLegend, showFinding, showLegend } from './answer_panel';
 import { byId, clearErrors, say } from './dom';
 import { placeLabels } from './labels';
 import { followTheme, setTheme } from './theme';
@@ -34,6 +37,9 @@ export class App {
   readonly whereNext: WhereNext;
   finding?: Finding;
   private readonly ground = new Ground();
+  private readonly obstacles = new ObstacleView();
+  private readonly facets = new FacetView();
+  private readonly loads = new LoadView();
   private readonly toppling = new Toppling(this.stage, this.ground);
   private readonly judge = new Judge((finding) => this.found(finding));
   private lateShow = 0;
@@ -44,7 +50,8 @@ export class App {
   constructor(readonly bench: Workbench) {
     this.whereNext = new WhereNext(bench, this.view);
     bench.robotListeners.push((what) => this.changed(what));
-    this.stage.scene.add(this.ground.group);
+    this.stage.robot.add(this.loads.group);
+    this.stage.scene.add(this.ground.group, this.obstacles.group, this.facets.mesh);
     this.stage.followers.push(() =>
       placeLabels(this.stage, this.view, bench.robot, this.toppling.isRunning ? undefined : this.finding),
     );
@@ -64,13 +71,14 @@ export class App {
   }
 
   see(keepsSide = false): void {
-    const bounds = this.bench.robot.bounds() ?? { low: [-2, -2, 0] as Cell, high: [2, 2, 1] as Cell };
-    this.stage.fit(bounds.low, bounds.high, keepsSide);
+    const { low, high } = this.bench.robot.bounds() ?? { low: [-2, -2, 0], high: [2, 2, 1] };
+    this.stage.fit(low, high, keepsSide);
   }
 
   /** What is under the pointer; `side` is a connection's. */
   point(cell: Cell | undefined, side?: number): void {
-    const isSame = String(cell) === String(this.pointedCell) && side === this.pointedSide;
+    const { pointedCell } = this;
+    const isSame = (cell && pointedCell ? equal(cell, pointedCell) : cell === pointedCell) && side === this.pointedSide;
     if (!isSame) {
       this.pointedCell = cell;
       this.pointedSide = side;
@@ -173,8 +181,12 @@ export class App {
       (bounds.low[1] + bounds.high[1]) / 2,
     ];
     const reach = Math.max(bounds.high[0] - bounds.low[0], bounds.high[1] - bounds.low[1]) + 10;
-    this.ground.place(robot.supportZ - 0.5, middle, reach);
-    this.ground.show(finding?.answer?.stability, robot.pitchMm, robot.massHeight());
+    this.ground.place(robot.floorHeight, middle, reach, robot.hasFloor);
+    this.ground.show(robot, finding?.answer?.stability);
+    this.obstacles.show(robot);
+    this.loads.show(robot);
+    this.facets.show(robot, judged);
+    showFacetLegend(robot, finding);
     this.whereNext.paint();
     this.stage.draw();
   }
@@ -183,8 +195,8 @@ export class App {
     const { view, pointedCell, pointedSide } = this;
     const { robot } = this.bench;
     const slot = pointedCell && robot.slot(pointedCell);
-    const side = pointedSide === undefined ? undefined : DIRECTIONS[pointedSide];
-    const other = slot !== undefined && side ? robot.slot(plus(pointedCell!, side)) : undefined;
+    const isSeam = slot !== undefined && pointedSide !== undefined;
+    const other = isSeam ? robot.slot(robot.lattice.neighbour(pointedCell!, pointedSide)) : undefined;
     view.point([slot, other].filter((one) => one !== undefined));
     showDetails(robot, this.finding, pointedCell, pointedSide);
   }
@@ -200,7 +212,7 @@ export class App {
   }
 
   private setTheme(): void {
-    setTheme(this.view, this.ground);
+    setTheme(this.view, this.ground, [this.obstacles, this.loads]);
     this.showRobot();
   }
 }

@@ -72,6 +72,8 @@ const ICONS = {
   add: 'M10 4v12M4 10h12',
   remove: 'M4 10h12',
   paint: 'M4 16l1-4 8-8 3 3-8 8-4 1zM11.500 5.500l3 3',
+  obstacle: 'M3 6h14v9H3zM3 10.500h14M10 6v4.500M6.500 10.500V15M13.500 10.500V15',
+  load: 'M10 3v9M6.500 8.500L10 12l3.500-3.500M4 16h12',
   play: 'M6 4l10 6-10 6z',
   pause: 'M6 4v12M14 4v12',
   stepOn: 'M5 4l7 6-7 6zM15 4v12',

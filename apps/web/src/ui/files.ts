@@ -3,7 +3,9 @@
 import { CoreClient } from '../core/client';
 import { Output, type OpenedDocument } from '../core/types';
 import { EditedRobot } from '../model/edited_robot';
+import { CUBIC, latticeOf } from '../model/lattice';
 import { linkFragment, readFragment } from '../model/link';
+import { withoutHead, type Surroundings } from '../model/surroundings';
 import type { Workbench } from '../model/workbench';
 import type { Stage } from '../view/stage';
 import { byId, download, tell } from './dom';
@@ -17,10 +19,12 @@ const LINK_LENGTH_MAX = 32_000;
 const client = new CoreClient();
 
 export function robotOf(opened: OpenedDocument, text: string, fallbackName: string): EditedRobot {
-  const robot = EditedRobot.from(opened.modules);
+  const { lattice, ...surroundings } = JSON.parse(opened.more) as Surroundings;
+  const robot = EditedRobot.from(opened.modules, latticeOf(lattice ?? CUBIC.name));
   robot.name = opened.name || fallbackName;
   robot.supportZ = opened.support_z;
   robot.material = opened.material;
+  robot.surroundings = withoutHead(surroundings);
   robot.base = text;
   return robot;
 }

@@ -2,11 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 import { CoreClient } from '../core/client';
 import type { Answer } from '../core/types';
-import { DIRECTIONS, Role, plus } from '../model/cell';
+import { Role } from '../model/cell';
 import type { EditedRobot } from '../model/edited_robot';
 import { GALLERY, type Example } from '../model/examples';
+import { dot, type Lattice, type Place } from '../model/lattice';
 import type { Workbench } from '../model/workbench';
 import { FIXED, UNKNOWN, UNSTABLE, brokenColour, css, loadColour, mix, type Rgb } from '../view/colours';
+import { cellFaces } from '../view/polyhedron';
 import { moduleLoads } from '../view/robot_view';
 import { byId, make } from './dom';
 import { openText, robotOf } from './files';
@@ -110,11 +112,14 @@ async function judge(robot: EditedRobot, { picture, verdict }: Card, saysVerdict
 function drawSmall(canvas: HTMLCanvasElement, robot: EditedRobot, answer: Answer, slots: Int32Array): void {
   const context = canvas.getContext('2d')!;
   const loads = answer.has_loads ? moduleLoads({ answer, slots }) : undefined;
+  const { lattice } = robot;
+  const seen = lattice.units.flatMap((unit, side) => (dot(unit, EYE) > 0 && side < lattice.directionCount ? [side] : []));
+  const isSeen = (slot: number) => seen.some((side) => !robot.has(lattice.neighbour(robot.cellAt(slot), side)));
   const order = Array.from({ length: robot.count }, (_, slot) => slot)
-    .filter((slot) => [0, 3, 4].some((side) => !robot.has(plus(robot.cellAt(slot), DIRECTIONS[side]))))
-    .sort((a, b) => depth(robot, a) - depth(robot, b));
+    .filter((slot) => lattice.shape !== 'cube' || isSeen(slot))
+    .sort((a, b) => dot(robot.placeAt(a), EYE) - dot(robot.placeAt(b), EYE));
   const points = order.flatMap((slot) => {
-    const [u, v] = project(robot.cellAt(slot));
+    const [u, v] = project(robot.placeAt(slot));
     return [
       [u - 0.87, v - 1],
       [u + 0.87, v + 1],
@@ -128,6 +133,7 @@ function drawSmall(canvas: HTMLCanvasElement, robot: EditedRobot, answer: Answer
   context.translate(-(left + right) / 2, -(top + bottom) / 2);
   context.lineWidth = 0.05;
   context.lineJoin = 'round';
+  const draw = cellDrawer(context, lattice);
   for (const slot of order) {
     const role = robot.roleAt(slot);
     let colour: Rgb = role === Role.kFixed ? FIXED : UNKNOWN;
@@ -136,29 +142,49 @@ function drawSmall(canvas: HTMLCanvasElement, robot: EditedRobot, answer: Answer
     } else if (loads && role !== Role.kFixed) {
       colour = loads.isBroken[slot] ? brokenColour('paper') : loadColour('paper', loads.ratio[slot]);
     }
-    drawCube(context, project(robot.cellAt(slot)), role === Role.kPlanned ? mix(colour, [255, 255, 255], 0.4) : colour);
+    draw(robot.placeAt(slot), role === Role.kPlanned ? mix(colour, [255, 255, 255], 0.4) : colour);
   }
 }
 
 /** Seen from +x, -y and above, as on the stage. */
-const project = ([x, y, z]: readonly number[]) => [0.866 * (x + y), 0.5 * (x - y) - z];
-const depth = (robot: EditedRobot, slot: number) => {
-  const [x, y, z] = robot.cellAt(slot);
-  return x - y + z;
-};
+const EYE: Place = [1, -1, 1];
+const project = ([x, y, z]: Place): [number, number] => [0.866 * (x + y), 0.5 * (x - y) - z];
 
-function drawCube(context: CanvasRenderingContext2D, [u, v]: number[], colour: Rgb): void {
-  const face = (points: number[][], shade: Rgb) => {
-    context.beginPath();
-    points.forEach(([x, y]) => context.lineTo(u + x, v + y));
-    context.closePath();
-    context.fillStyle = css(shade);
-    context.strokeStyle = css(mix(colour, [0, 0, 0], 0.45));
-    context.fill();
-    context.stroke();
+const WHITE: Rgb = [255, 255, 255];
+const BLACK: Rgb = [0, 0, 0];
+
+/** Lighter above, darker to the right. */
+function shaded(colour: Rgb, [x, y, z]: Place): Rgb {
+  return z > 0.5 ? mix(colour, WHITE, 0.16) : mix(colour, BLACK, 0.06 + 0.08 * (x + y + 1));
+}
+
+/** Draws a module at a place: a circle for what is round, else the sides of its cell that are seen. */
+function cellDrawer(context: CanvasRenderingContext2D, lattice: Lattice): (place: Place, colour: Rgb) => void {
+  const isRound = lattice.shape === 'sphere';
+  const faces = cellFaces(lattice)
+    .map((corners, wall) => ({ corners, normal: lattice.walls[wall].normal }))
+    .filter(({ normal }) => dot(normal, EYE) > 0);
+  return (place, colour) => {
+    const [u, v] = project(place);
+    context.strokeStyle = css(mix(colour, BLACK, 0.45));
+    const paint = (shade: Rgb) => {
+      context.closePath();
+      context.fillStyle = css(shade);
+      context.fill();
+      context.stroke();
+    };
+    if (isRound) {
+      context.beginPath();
+      context.arc(u, v, 0.61, 0, 2 * Math.PI);
+      paint(colour);
+      return;
+    }
+    for (const { corners, normal } of faces) {
+      context.beginPath();
+      for (const [x, y] of corners.map(project)) {
+        context.lineTo(u + x, v + y);
+      }
+      paint(shaded(colour, normal));
+    }
   };
-  const [w, h] = [0.866, 0.5];
-  face([[-w, -h], [0, -1], [w, -h], [0, 0]], mix(colour, [255, 255, 255], 0.16));
-  face([[-w, -h], [0, 0], [0, 1], [-w, h]], mix(colour, [0, 0, 0], 0.06));
-  face([[w, -h], [0, 0], [0, 1], [w, h]], mix(colour, [0, 0, 0], 0.22));
 }

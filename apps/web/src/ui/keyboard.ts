@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: The holdfast authors
 // SPDX-License-Identifier: Apache-2.0
-import { DIRECTIONS, Role, plus, type Cell } from '../model/cell';
+import { Role, plus, type Cell } from '../model/cell';
+import { HOLDS } from '../model/surroundings';
 import type { Workbench } from '../model/workbench';
 import type { App } from './app';
 import { byId, say } from './dom';
@@ -8,7 +9,8 @@ import { byId, say } from './dom';
 /** Every key and what it does; the help shows the same list. */
 export const KEYS: readonly [keys: string, text: string][] = [
   ['A  D  P  V', 'tools: attach, remove, paint, look only'],
-  ['1  2  3', 'what is attached or painted: existing, planned, fixed'],
+  ['O  L', 'tools: obstacles, loads'],
+  ['1  2  3', 'what is attached or painted: existing, planned, fixed; an obstacle: 1 contact, 2 bonded'],
   ['← → ↑ ↓', 'move the cursor; page up and page down: higher, lower'],
   ['Enter', 'use the tool at the cursor; Shift with an arrow: draw a row'],
   ['Ctrl Z  Ctrl Y', 'undo, redo'],
@@ -85,7 +87,7 @@ function onStage(app: App, event: KeyboardEvent): boolean {
     return true;
   }
   if ((event.key === 'Delete' || event.key === 'Backspace') && cursor) {
-    bench.edit('removing 1', [cursor], undefined);
+    bench.remove([cursor]);
     app.moveCursor(cursor);
     return true;
   }
@@ -100,10 +102,10 @@ function startOf({ robot }: Workbench): Cell {
   return robot.count > 0 ? robot.cellAt(robot.count - 1) : [0, 0, robot.supportZ];
 }
 
-/** The lattice direction that an arrow means as the robot is seen now. */
+/** The step between cells that an arrow means as the robot is seen now. */
 function stepOf(app: App, key: string): Cell | undefined {
   if (key === 'PageUp' || key === 'PageDown') {
-    return DIRECTIONS[key === 'PageUp' ? 4 : 5];
+    return [0, 0, key === 'PageUp' ? 1 : -1];
   }
   const arrow = ARROWS[key];
   if (!arrow) {
@@ -120,11 +122,15 @@ function stepOf(app: App, key: string): Cell | undefined {
 
 function letter(bench: Workbench, actions: Record<string, () => void>, key: string): boolean {
   const roles: Record<string, Role> = { 1: Role.kExisting, 2: Role.kPlanned, 3: Role.kFixed };
+  if (bench.tool === 'obstacle' && (key === '1' || key === '2')) {
+    bench.setHold(HOLDS[Number(key) - 1]);
+    return true;
+  }
   if (key in roles) {
     bench.setRole(roles[key]);
     return true;
   }
-  const tools = { a: 'add', d: 'remove', p: 'paint', v: 'look' } as const;
+  const tools = { a: 'add', d: 'remove', p: 'paint', v: 'look', o: 'obstacle', l: 'load' } as const;
   const lower = key.toLowerCase();
   if (lower in tools) {
     bench.setTool(tools[lower as keyof typeof tools]);

@@ -285,8 +285,8 @@ export class Player {
       const at = EVENT_INTEGERS * i;
       const share = (time - times[2 * i]) / Math.max(times[2 * i + 1], 1);
       if (events[at] === LogEvent.kPacket && share <= 1) {
-        const from = robot.cellAt(this.slots[events[at + 1]]);
-        const to = robot.cellAt(this.slots[events[at + 2]]);
+        const from = robot.placeAt(this.slots[events[at + 1]]);
+        const to = robot.placeAt(this.slots[events[at + 2]]);
         const [x, y, z] = from.map((value, k) => value + (to[k] - value) * (0.15 + 0.7 * share));
         this.packets.add(x, y, z, MEANING_COLOURS[events[at + 3]]);
       }

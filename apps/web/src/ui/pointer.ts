@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The holdfast authors
 // SPDX-License-Identifier: Apache-2.0
-import { DIRECTIONS, plus, type Cell } from '../model/cell';
+import type { Cell } from '../model/cell';
 import type { EditedRobot } from '../model/edited_robot';
 import { ROW_MAX } from '../model/workbench';
 import { alongAxis, nearSeam, pick, type Hit } from '../view/pick';
@@ -45,7 +45,7 @@ export function listenToPointer(app: App): void {
         return;
       }
       const hit = pick(app.bench.robot, app.stage.ray(event.clientX, event.clientY));
-      const isOnRobot = hit !== undefined && !hit.isGround && app.bench.tool !== 'look' && !isBent(app);
+      const isOnRobot = hit !== undefined && hit.what !== 'ground' && app.bench.tool !== 'look' && !isBent(app);
       const turns = event.altKey || event.ctrlKey || event.metaKey || event.shiftKey;
       gesture = { hit, x: event.clientX, y: event.clientY, draws: false, isClick: true, cells: [], timer: 0 };
       if (isOnRobot && !turns) {
@@ -53,7 +53,7 @@ export function listenToPointer(app: App): void {
           gesture!.draws = true;
           gesture!.cells = cellsOf(app, hit);
           controls.enabled = false;
-          app.whereNext.preview(app.bench.tool === 'add' ? gesture!.cells : []);
+          preview(app, gesture!.cells);
         };
         if (event.pointerType === 'touch') {
           gesture.timer = window.setTimeout(begin, LONG_PRESS_MS);
@@ -96,7 +96,7 @@ export function listenToPointer(app: App): void {
       app.whereNext.preview([]);
     }
     if (event.pointerType === 'touch' && ended?.isClick) {
-      app.point(ended.hit?.isGround ? undefined : ended.hit?.cell, ended.hit && nearSeam(app.bench.robot, ended.hit));
+      app.point(ended.hit?.what === 'ground' ? undefined : ended.hit?.cell, ended.hit && nearSeam(app.bench.robot, ended.hit));
     }
   });
 
@@ -122,39 +122,53 @@ const isBent = (app: App) => app.view.exaggeration > 0;
 
 function hover(app: App, x: number, y: number): void {
   const hit = pick(app.bench.robot, app.stage.ray(x, y));
-  const isModule = hit !== undefined && !hit.isGround;
-  app.point(isModule ? hit.cell : undefined, isModule ? nearSeam(app.bench.robot, hit) : undefined);
-  app.stage.canvas.style.cursor = isModule && app.bench.tool !== 'look' ? 'pointer' : 'grab';
-  app.whereNext.preview(app.bench.tool === 'add' && !isBent(app) ? cellsOf(app, hit) : []);
+  const isModule = hit?.what === 'module';
+  const isThere = hit !== undefined && hit.what !== 'ground';
+  app.point(isThere ? hit.cell : undefined, isModule ? nearSeam(app.bench.robot, hit) : undefined);
+  app.stage.canvas.style.cursor = isThere && app.bench.tool !== 'look' ? 'pointer' : 'grab';
+  preview(app, isBent(app) ? [] : cellsOf(app, hit));
+}
+
+/** Ghosts of what would be placed, by the tools that place something. */
+function preview(app: App, cells: readonly Cell[]): void {
+  const { tool } = app.bench;
+  app.whereNext.preview(tool === 'add' || tool === 'obstacle' ? cells : []);
 }
 
 /** What a click there would change. */
 function cellsOf(app: App, hit: Hit | undefined): Cell[] {
-  if (!hit || app.bench.tool === 'look') {
+  const { robot, tool } = app.bench;
+  if (!hit || tool === 'look') {
     return [];
   }
-  if (app.bench.tool !== 'add') {
-    return hit.isGround ? [] : [hit.cell];
+  if (tool !== 'add' && tool !== 'obstacle') {
+    const isMeant = hit.what === 'module' || (hit.what === 'obstacle' && tool === 'remove');
+    return isMeant ? [hit.cell] : [];
   }
-  const cell = hit.isGround ? hit.cell : plus(hit.cell, DIRECTIONS[hit.face]);
-  return mayBe(app.bench.robot, cell, !hit.isGround || touches(app.bench.robot, cell)) ? [cell] : [];
+  const cell = hit.what === 'ground' ? hit.cell : robot.lattice.neighbour(hit.cell, hit.face);
+  return mayBe(app, cell) ? [cell] : [];
 }
 
 const touches = (robot: EditedRobot, cell: Cell) =>
-  robot.count === 0 || DIRECTIONS.some((direction) => robot.has(plus(cell, direction)));
+  robot.count === 0 || robot.lattice.neighbours(cell).some((other) => robot.has(other));
 
-const mayBe = (robot: EditedRobot, cell: Cell, touchesRobot: boolean) =>
-  touchesRobot && cell[2] >= robot.supportZ && !robot.has(cell);
+/** Modules touch the robot; obstacles may stand anywhere. */
+const mayBe = ({ bench: { robot, tool } }: App, cell: Cell) =>
+  robot.isFree(cell) && (tool === 'obstacle' || touches(robot, cell));
 
 /** A row of new modules, or more modules for a stroke. */
 function draw(app: App, gesture: Gesture, x: number, y: number): void {
   const ray = app.stage.ray(x, y);
   const { cell, face } = gesture.hit!;
-  if (app.bench.tool === 'add') {
-    const count = Math.min(Math.max(1, Math.round(alongAxis(cell, face, ray))), ROW_MAX);
+  const { robot, tool } = app.bench;
+  if (tool === 'add' || tool === 'obstacle') {
+    const { lattice } = robot;
+    const along = Math.round(alongAxis(lattice.place(cell), lattice.units[face], ray));
+    const count = Math.min(Math.max(1, along), ROW_MAX);
     const row: Cell[] = [];
-    for (let at = plus(cell, DIRECTIONS[face]); row.length < count; at = plus(at, DIRECTIONS[face])) {
-      if (!mayBe(app.bench.robot, at, true)) {
+    // From a module on: the first one touches the robot, and each the one before it.
+    for (let at = lattice.neighbour(cell, face); row.length < count; at = lattice.neighbour(at, face)) {
+      if (!robot.isFree(at) || (row.length === 0 && !mayBe(app, at))) {
         break;
       }
       row.push(at);
@@ -163,9 +177,9 @@ function draw(app: App, gesture: Gesture, x: number, y: number): void {
     app.whereNext.preview(row);
     return;
   }
-  const hit = pick(app.bench.robot, ray);
-  if (hit && !hit.isGround && !gesture.cells.some((other) => String(other) === String(hit.cell))) {
+  const hit = pick(robot, ray);
+  if (hit && hit.what !== 'ground' && !gesture.cells.some((other) => String(other) === String(hit.cell))) {
     gesture.cells.push(hit.cell);
-    app.view.point(gesture.cells.map((one) => app.bench.robot.slot(one)!));
+    app.view.point(gesture.cells.map((one) => robot.slot(one)).filter((slot) => slot !== undefined));
   }
 }

@@ -3,7 +3,8 @@
 import { Output } from '../core/types';
 import { FIRST_EXAMPLE } from '../model/examples';
 import { isLink, readFragment } from '../model/link';
-import type { Workbench } from '../model/workbench';
+import type { App } from './app';
+import { Collapse, type LimitLoad } from './collapse';
 import { byId, make, tell } from './dom';
 import { BROKEN_LINK, openFragment, openText, reportOf } from './files';
 import type { Keeper } from './keeper';
@@ -17,6 +18,8 @@ export interface Start {
   name: string;
   /** The native report, for people, if the page is that of `holdfast check --html`. */
   report?: string;
+  /** If the program was asked for it. */
+  limit?: LimitLoad;
 }
 
 let start: Start | null | undefined;
@@ -32,7 +35,8 @@ export const askedFor = () => (isLink(location.hash) ? location.hash : (readStar
 const encoded = (text: string) => new TextEncoder().encode(text);
 
 /** What was asked for is shown as it is; what was built from it is offered. */
-export async function openFirst(bench: Workbench, keeper: Keeper): Promise<void> {
+export async function openFirst(app: App, keeper: Keeper): Promise<void> {
+  const { bench } = app;
   const isLinkOpen = await openFragment(bench).catch(() => {
     tell(BROKEN_LINK, true);
     return false;
@@ -43,6 +47,9 @@ export async function openFirst(bench: Workbench, keeper: Keeper): Promise<void>
   } else if (viewed) {
     await openText(bench, encoded(viewed.structure), viewed.name);
     showReport(viewed);
+    if (viewed.limit) {
+      new Collapse(app, bench.robot, viewed.limit);
+    }
     keeper.offer();
   } else if (isLinkOpen === false || !keeper.bringBack()) {
     await openText(bench, encoded(FIRST_EXAMPLE.source()), FIRST_EXAMPLE.name);

@@ -14,7 +14,7 @@ export function followTheme(apply: () => void): void {
   apply();
 }
 
-export function setTheme(view: RobotView, ground: Ground): void {
+export function setTheme(view: RobotView, ground: Ground, drawn: readonly { setInk(ink: number): void }[]): void {
   const isDark = DARK.matches;
   const ink: Rgb = isDark ? [236, 238, 240] : [28, 32, 38];
   const { scale } = view;
@@ -26,6 +26,7 @@ export function setTheme(view: RobotView, ground: Ground): void {
     mix(UNKNOWN, isDark ? [0, 0, 0] : [255, 255, 255], 0.6),
   ];
   view.setTheme(ink, codes);
+  drawn.forEach((one) => one.setInk(hex(ink)));
   ground.colours = {
     ink: isDark ? [0.62, 0.66, 0.7] : [0.36, 0.41, 0.46],
     polygon: isDark ? 0x2f6178 : 0x9cc3d1,

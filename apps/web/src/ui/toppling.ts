@@ -4,11 +4,12 @@ import type { Answer } from '../core/types';
 import type { EditedRobot } from '../model/edited_robot';
 import type { Ground } from '../view/ground';
 import type { Stage } from '../view/stage';
-import { Topple } from '../view/topple';
+import { Fall } from '../view/fall';
+import { Topple, type Motion } from '../view/topple';
 
-/** Lets the robot fall over its edge, and puts it upright again. */
+/** Lets the robot fall, over its edge or as its rigid body begins to, and puts it upright again. */
 export class Toppling {
-  private running?: { motion: Topple; begun: number };
+  private running?: { motion: Motion; begun: number };
 
   constructor(
     private readonly stage: Stage,
@@ -22,10 +23,8 @@ export class Toppling {
   }
 
   start(robot: EditedRobot, answer: Answer): void {
-    const { edge } = answer.stability;
-    if (topples(answer) && edge) {
-      const scaled = edge.map(([x, y]) => [x / robot.pitchMm, y / robot.pitchMm]) as typeof edge;
-      this.running = { motion: new Topple(robot, scaled), begun: performance.now() };
+    if (topples(answer)) {
+      this.running = { motion: motionOf(robot, answer), begun: performance.now() };
       this.stage.draw();
     }
   }
@@ -56,5 +55,12 @@ export class Toppling {
   }
 }
 
-/** It falls over an edge that is known. */
-export const topples = ({ verdict, stability }: Answer) => verdict === 'unstable' && stability.edge !== null;
+/** It is known how it falls. */
+export const topples = ({ verdict, stability }: Answer) =>
+  verdict === 'unstable' && (stability.edge !== null || stability.rigid.motion !== null);
+
+function motionOf(robot: EditedRobot, { stability }: Answer): Motion {
+  const { edge } = stability;
+  const scaled = edge?.map(([x, y]) => [x / robot.pitchMm, y / robot.pitchMm]) as typeof edge;
+  return scaled ? new Topple(robot, scaled) : new Fall(robot, stability);
+}

@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 import { Places } from '../core/places';
 import type { Trial, Verdict } from '../core/types';
-import { ROLE_NAMES, type Cell, type Role } from '../model/cell';
+import { ROLE_NAMES, Role, type Cell } from '../model/cell';
 import type { Workbench } from '../model/workbench';
-import { UNKNOWN, loadColour, verdictColour, type Rgb } from '../view/colours';
+import { OBSTACLE, UNKNOWN, loadColour, verdictColour, type Rgb } from '../view/colours';
 import { FaceCode, type RobotView } from '../view/robot_view';
 import { byId, say } from './dom';
 
@@ -102,13 +102,18 @@ export class WhereNext {
   private toolChanged(): void {
     const isOtherRole = this.role !== this.bench.role;
     this.role = this.bench.role;
-    this.preview(this.bench.tool === 'add' ? this.previewed : []);
+    this.preview(this.bench.tool === 'add' || this.bench.tool === 'obstacle' ? this.previewed : []);
     if (isOtherRole) {
       void this.update();
     }
   }
 
   private showPreview(): void {
+    if (this.bench.tool === 'obstacle') {
+      const colour = OBSTACLE[this.bench.hold];
+      this.view.showGhosts(this.previewed, Role.kExisting, colour, FaceCode.kNone);
+      return;
+    }
     const [place, ...others] = this.previewed;
     const { role } = this.bench;
     const trial = place && others.length === 0 ? this.places.known(place, role) : undefined;
@@ -126,7 +131,7 @@ export class WhereNext {
   /** One place at a time, and always where the pointer is now. */
   private async tryPreviewed(): Promise<void> {
     const { bench } = this;
-    if (this.isTrying || bench.robot.count === 0 || bench.robot.count > TRIAL_COUNT_MAX) {
+    if (this.isTrying || bench.tool !== 'add' || bench.robot.count === 0 || bench.robot.count > TRIAL_COUNT_MAX) {
       return;
     }
     this.isTrying = true;
@@ -139,7 +144,7 @@ export class WhereNext {
   }
 
   private faceCode(place: Cell): FaceCode {
-    if (place[2] < this.bench.robot.supportZ) {
+    if (!this.bench.robot.isFree(place)) {
       return FaceCode.kNone;
     }
     const trial = this.places.known(place, this.bench.role);

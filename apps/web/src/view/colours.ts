@@ -37,6 +37,8 @@ const SCALES: Record<ScaleName, Scale> = {
 export const FIXED: Rgb = [58, 123, 200];
 export const UNSTABLE: Rgb = [142, 77, 178];
 export const UNKNOWN: Rgb = [165, 170, 176];
+/** By how they hold. */
+export const OBSTACLE: Record<'contact' | 'bonded', Rgb> = { contact: [120, 126, 134], bonded: FIXED };
 
 export function mix(a: Rgb, b: Rgb, share: number): Rgb {
   const channel = (i: 0 | 1 | 2) => Math.round(a[i] + (b[i] - a[i]) * share);

@@ -13,6 +13,8 @@ import {
   type Matrix4,
 } from 'three';
 import type { Point, Stability } from '../core/types';
+import type { EditedRobot } from '../model/edited_robot';
+import { arrow } from './arrow';
 
 /** The ground: a grid, the support polygon, the centre of mass above it, the edge of toppling. */
 
@@ -47,6 +49,8 @@ export interface GroundColours {
 }
 
 const SYMBOL_SEGMENTS = 32;
+/** Of gravity, in cells. */
+const ARROW_LENGTH = 1.6;
 
 export class Ground {
   readonly group = new Group();
@@ -74,7 +78,8 @@ export class Ground {
   }
 
   /** Where the ground is and how far the grid goes. */
-  place(z: number, middle: Point, reach: number): void {
+  place(z: number, middle: Point, reach: number, isThere = true): void {
+    this.grid.visible = isThere;
     this.group.position.z = z;
     this.grid.position.set(middle[0], middle[1], -0.01);
     this.grid.scale.setScalar(2.2 * reach);
@@ -83,16 +88,28 @@ export class Ground {
     this.grid.material.uniforms.ink.value = this.colours.ink;
   }
 
-  /** Lengths in mm; `height` is that of the centre of mass above the ground, in cells. */
-  show(stability: Stability | undefined, pitch: number, height: number): void {
+  /** The answer of the rigid body. */
+  show(robot: EditedRobot, stability: Stability | undefined): void {
+    const pitch = robot.pitchMm;
+    const height = stability ? stability.centre_of_mass[2] / pitch - robot.floorHeight : 0;
     for (const child of [...this.answer.children] as Mesh[]) {
       child.geometry.dispose();
       this.answer.remove(child);
     }
     this.ball = this.post = undefined;
-    if (!stability || stability.polygon.length < 3) {
+    if (!stability) {
       return;
     }
+    const [x, y] = stability.centre_of_mass;
+    if (stability.polygon.length >= 3) {
+      this.showPolygon(stability, pitch);
+    }
+    if (stability.polygon.length >= 3 || stability.rule === 'contact-forces') {
+      this.showMass([x / pitch, y / pitch], height, robot);
+    }
+  }
+
+  private showPolygon(stability: Stability, pitch: number): void {
     const scaled = ([x, y]: Point): Point => [x / pitch, y / pitch];
     const polygon = stability.polygon.map(scaled);
     const { colours } = this;
@@ -100,7 +117,7 @@ export class Ground {
     polygon.forEach((a, i) => {
       this.add(band(a, polygon[(i + 1) % polygon.length], 0.035), this.material(colours.outline), 0.002);
     });
-    const mass = scaled(stability.centre_of_mass);
+    const mass = scaled([stability.centre_of_mass[0], stability.centre_of_mass[1]]);
     if (stability.edge) {
       const [a, b] = stability.edge.map(scaled) as [Point, Point];
       this.add(band(a, b, stability.stable ? 0.06 : 0.1), this.material(colours.warn), 0.004);
@@ -108,7 +125,6 @@ export class Ground {
     }
     this.add(ring(mass, 0.2, 0.26), this.material(colours.mass), 0.006);
     this.add(ring(mass, 0, 0.08), this.material(colours.mass), 0.006);
-    this.showMass(mass, height);
   }
 
   /** The centre of mass moves with the robot; undefined: back to where it stands. */
@@ -125,12 +141,20 @@ export class Ground {
     }
   }
 
-  /** Seen through the modules around it. */
-  private showMass([x, y]: Point, height: number): void {
+  /** Seen through the modules around it, with a post straight down, or an arrow where gravity goes elsewhere. */
+  private showMass([x, y]: Point, height: number, robot: EditedRobot): void {
     const { mass } = this.colours;
-    const post = this.add(band([0, 0], [height, 0], 0.02), this.material(mass, 0.8, true), 0);
-    post.position.set(x, y, 0);
-    post.rotation.set(0, -Math.PI / 2, 0);
+    const pull = new Vector3(...robot.gravity);
+    const isDown = pull.x === 0 && pull.y === 0 && pull.z <= 0 && robot.hasFloor;
+    const shape = isDown ? band([0, 0], [height, 0], 0.02) : arrow(ARROW_LENGTH);
+    const post = this.add(shape, this.material(mass, 0.8, true), 0);
+    post.position.set(x, y, isDown ? 0 : height);
+    if (isDown) {
+      post.rotation.set(0, -Math.PI / 2, 0);
+    } else {
+      post.visible = pull.length() > 0;
+      post.quaternion.setFromUnitVectors(new Vector3(1, 0, 0), pull.normalize());
+    }
     const ball = this.add(ring([0, 0], 0, 0.09), this.material(mass, 0.9, true), 0);
     ball.position.copy(this.ballPlace.set(x, y, height));
     ball.onBeforeRender = (_renderer, _scene, camera) => {

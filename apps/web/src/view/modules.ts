@@ -1,17 +1,16 @@
 // SPDX-FileCopyrightText: The holdfast authors
 // SPDX-License-Identifier: Apache-2.0
 import {
-  BoxGeometry,
-  BufferAttribute,
   DynamicDrawUsage,
   InstancedBufferAttribute,
   InstancedBufferGeometry,
   Mesh,
   ShaderMaterial,
 } from 'three';
-import { DIRECTIONS } from '../model/cell';
+import { CUBIC, type Lattice, type Shape } from '../model/lattice';
+import { shapeGeometry } from './shapes';
 
-/** All modules in one draw call: a box per module, its place, colour and motion as attributes. */
+/** All modules in one draw call: a shape per module, its place, colour and motion as attributes. */
 
 /** Patterns of a module, as bits. */
 export const enum Pattern {
@@ -21,21 +20,15 @@ export const enum Pattern {
   kPointed = 8,
 }
 
-const VERTEX = `
-attribute vec3 place;
-attribute vec3 tint;
-attribute float pattern;
-attribute vec3 motion;
-attribute vec3 turn;
-attribute float faces;
-attribute float side;
-uniform float exaggeration;
-varying vec3 vTint;
-varying vec2 vUv;
-varying vec3 vNormal;
-flat varying float vPattern;
-flat varying float vCode;
+/** By shape: what a shader is told to draw. */
+const DEFINES: Record<Shape, Record<string, string>> = {
+  cube: {},
+  prism: { HEXAGON: '' },
+  disc: {},
+  sphere: { SPHERE: '' },
+};
 
+const COMMON = `
 vec3 rotated(vec3 v, vec3 w) {
   float angle = length(w);
   if (angle < 1e-5) return v;
@@ -43,15 +36,58 @@ vec3 rotated(vec3 v, vec3 w) {
   return v * cos(angle) + cross(axis, v) * sin(angle) + axis * dot(axis, v) * (1.0 - cos(angle));
 }
 
+// The code of a direction's face, three bits of six in each number.
+float codeOf(vec2 packed, float side) {
+  float six = side < 5.5 ? packed.x : side < 11.5 ? packed.y : 0.0;
+  return mod(floor((six + 0.5) / exp2(3.0 * mod(side + 0.5, 6.0) - 1.5)), 8.0);
+}`;
+
+const VERTEX = `
+attribute vec3 place;
+attribute vec3 tint;
+attribute float pattern;
+attribute vec3 motion;
+attribute vec3 turn;
+attribute vec2 faces;
+uniform float exaggeration;
+varying vec3 vTint;
+flat varying float vPattern;
+#ifdef SPHERE
+varying vec3 vCentre;
+varying vec3 vAt;
+flat varying vec3 vTurn;
+flat varying vec2 vFaces;
+#else
+attribute float side;
+attribute vec4 face;
+varying vec4 vFace;
+varying vec3 vNormal;
+flat varying float vCode;
+#endif
+${COMMON}
+
 void main() {
   vec3 w = turn * exaggeration;
-  vec3 at = place + rotated(position, w) + motion * exaggeration;
   vTint = tint;
-  vUv = uv;
-  vNormal = mat3(modelMatrix) * rotated(normal, w);
   vPattern = pattern;
-  vCode = mod(floor((faces + 0.5) / exp2(3.0 * side)), 8.0);
+#ifdef SPHERE
+  // A square across the line of sight, as large as the sphere is seen.
+  vCentre = (modelViewMatrix * vec4(place + motion * exaggeration, 1.0)).xyz;
+  float square = dot(vCentre, vCentre);
+  vec3 right = normalize(cross(vCentre, vec3(0.0, 1.0, 0.0)));
+  vec3 up = normalize(cross(right, vCentre));
+  float size = 1.02 * sqrt(square / max(square - 0.25, 0.01));
+  vAt = vCentre + size * (position.x * right + position.y * up);
+  vTurn = w;
+  vFaces = faces;
+  gl_Position = projectionMatrix * vec4(vAt, 1.0);
+#else
+  vec3 at = place + rotated(position, w) + motion * exaggeration;
+  vFace = face;
+  vNormal = mat3(modelMatrix) * rotated(normal, w);
+  vCode = codeOf(faces, side);
   gl_Position = projectionMatrix * modelViewMatrix * vec4(at, 1.0);
+#endif
 }`;
 
 const FRAGMENT = `
@@ -59,18 +95,28 @@ uniform vec3 codes[6];
 uniform vec3 pointed;
 uniform float opacity;
 varying vec3 vTint;
-varying vec2 vUv;
-varying vec3 vNormal;
 flat varying float vPattern;
+#ifdef SPHERE
+uniform mat4 modelMatrix;
+uniform mat4 projectionMatrix;
+uniform vec3 units[12];
+varying vec3 vCentre;
+varying vec3 vAt;
+flat varying vec3 vTurn;
+flat varying vec2 vFaces;
+#else
+varying vec4 vFace;
+varying vec3 vNormal;
 flat varying float vCode;
+#endif
+${COMMON}
 
 float stroke(float across, float width, float pixel) {
   return 1.0 - smoothstep(width, width + pixel, abs(across));
 }
 
 // What a face says without its colour: a cross breaks, a stroke topples, a ring is not certain.
-float markOf(float code, vec2 uv, float pixel) {
-  vec2 at = uv - 0.5;
+float markOf(float code, vec2 at, float pixel) {
   float isInside = 1.0 - smoothstep(0.27, 0.27 + pixel, max(abs(at.x), abs(at.y)));
   float rising = stroke((at.x - at.y) * 0.7071, 0.055, pixel);
   float falling = stroke((at.x + at.y) * 0.7071, 0.055, pixel);
@@ -82,43 +128,149 @@ float markOf(float code, vec2 uv, float pixel) {
 
 bool has(float bit) { return mod(floor((vPattern + 0.5) / bit), 2.0) > 0.5; }
 
-void main() {
-  vec3 n = normalize(vNormal);
+// A point of a face: where it is from the middle, its distance from the border and along it, how far the
+// border is from the middle, and how much of all that is one pixel.
+struct Spot {
+  vec3 n;
+  vec2 at;
+  float border;
+  float along;
+  float reach;
+  float pixel;
+  float code;
+};
+
+#ifdef SPHERE
+
+Spot spotOn(vec3 n, vec3 body, float pixel) {
+  float best = -2.0;
+  float next = -2.0;
+  int side = 0;
+  int other = 0;
+  for (int i = 0; i < 12; ++i) {
+    float share = dot(units[i], body);
+    if (share > best) {
+      next = best;
+      other = side;
+      best = share;
+      side = i;
+    } else if (share > next) {
+      next = share;
+      other = i;
+    }
+  }
+  vec3 middle = units[side];
+  vec3 across = normalize(cross(middle, abs(middle.z) > 0.9 ? vec3(1.0, 0.0, 0.0) : vec3(0.0, 0.0, 1.0)));
+  vec3 beside = normalize(cross(middle, units[other]));
+  Spot spot;
+  spot.n = n;
+  spot.at = 0.5 * vec2(dot(body, across), dot(body, cross(across, middle)));
+  spot.border = 0.5 * (best - next) / distance(middle, units[other]);
+  spot.along = 0.5 * dot(body, beside);
+  spot.reach = 0.25;
+  spot.pixel = pixel;
+  spot.code = codeOf(vFaces, float(side));
+  return spot;
+}
+
+#else
+
+Spot spotOfFace() {
+  vec2 at = vFace.xy;
+  vec2 inner = vFace.zw - abs(at);
+  Spot spot;
+  spot.n = normalize(vNormal);
+  spot.at = at;
+  spot.border = min(inner.x, inner.y);
+  spot.along = 0.5 + (inner.x < inner.y ? at.y : at.x);
+  spot.reach = min(vFace.z, vFace.w);
+  spot.pixel = max(fwidth(at.x), fwidth(at.y));
+  spot.code = vCode;
+  if (vFace.w < 0.0) {
+    spot.reach = vFace.z;
+#ifdef HEXAGON
+    vec3 halves = vec3(at.x, dot(at, vec2(0.5, 0.8660254)), dot(at, vec2(0.5, -0.8660254)));
+    float most = max(abs(halves.x), max(abs(halves.y), abs(halves.z)));
+    spot.border = vFace.z - most;
+    spot.along = most == abs(halves.x) ? at.y : most == abs(halves.y) ? halves.z : halves.y;
+#else
+    spot.border = vFace.z - length(at);
+    spot.along = 0.5 * atan(at.y, at.x);
+#endif
+  }
+  return spot;
+}
+
+#endif
+
+vec3 colourOf(Spot spot) {
+  vec3 n = spot.n;
+  float pixel = spot.pixel;
+  // What is drawn on a face fits the smaller ones too.
+  float scale = 0.5 / spot.reach;
+  vec2 at = spot.at * scale;
+  float inward = spot.border * scale;
+  float fine = pixel * scale;
   float top = max(n.z, 0.0);
   float light = 0.86 + 0.06 * n.x - 0.08 * n.y - 0.10 * max(-n.z, 0.0);
   vec3 colour = mix(vTint * light, mix(vTint, vec3(1.0), 0.14), top);
-  vec2 inner = min(vUv, 1.0 - vUv);
-  float border = min(inner.x, inner.y);
-  float pixel = max(fwidth(vUv.x), fwidth(vUv.y));
   vec3 rimColour = colour * 0.55;
+#ifdef SPHERE
+  float width = has(1.0) ? 0.024 : 0.008;
+#else
   float width = has(1.0) ? 0.035 : 0.014;
-  float along = inner.x < inner.y ? vUv.y : vUv.x;
-  float wave = abs(fract(along * 5.0) - 0.5);
+#endif
+  float wave = abs(fract(spot.along * 5.0) - 0.5);
   float dash = has(1.0) ? smoothstep(0.25 - 2.5 * pixel, 0.25 + 2.5 * pixel, wave) : 1.0;
   if (has(4.0)) {
-    float stripe = abs(fract((vUv.x + vUv.y) * 3.0) - 0.5);
-    float fade = clamp(0.5 / (pixel * 12.0), 0.0, 1.0);
+    float stripe = abs(fract((at.x + at.y + 1.0) * 3.0) - 0.5);
+    float fade = clamp(0.5 / (fine * 12.0), 0.0, 1.0);
     colour = mix(colour, mix(colour, vec3(1.0), 0.5), fade * smoothstep(0.36, 0.40, stripe));
   }
   if (has(2.0)) {
-    float ring = smoothstep(0.0, pixel, border - 0.24) - smoothstep(0.0, pixel, border - 0.30);
+    float ring = smoothstep(0.0, fine, inward - 0.24) - smoothstep(0.0, fine, inward - 0.30);
     colour = mix(colour, vec3(1.0), 0.85 * ring);
   }
-  if (vCode > 0.5) {
-    float inset = smoothstep(0.0, pixel, border - 0.13);
-    vec3 code = codes[int(vCode + 0.5) - 1] * (0.35 + 0.65 * mix(light, 1.1, top));
+  if (spot.code > 0.5) {
+    float inset = smoothstep(0.0, fine, inward - 0.13);
+    vec3 code = codes[int(spot.code + 0.5) - 1] * (0.35 + 0.65 * mix(light, 1.1, top));
     colour = mix(colour, code, inset);
     float isDark = step(dot(code, vec3(0.2126, 0.7152, 0.0722)), 0.45);
-    colour = mix(colour, vec3(isDark), markOf(vCode, vUv, pixel));
+    colour = mix(colour, vec3(isDark), markOf(spot.code, at, fine));
   }
   float visible = clamp(1.5 * width / pixel, 0.25, 1.0);
-  float edge = 1.0 - smoothstep(width, width + pixel, border);
+  float edge = 1.0 - smoothstep(width, width + pixel, spot.border);
   colour = mix(colour, rimColour, edge * dash * visible);
   if (has(8.0)) {
-    float rim = 1.0 - smoothstep(0.06, 0.06 + pixel, border);
+    float rim = 1.0 - smoothstep(0.06, 0.06 + pixel, spot.border);
     colour = mix(mix(colour, vec3(1.0), 0.18), pointed, rim);
   }
-  gl_FragColor = vec4(colour, opacity);
+  return colour;
+}
+
+void main() {
+#ifdef SPHERE
+  vec3 sight = normalize(vAt);
+  float nearest = dot(sight, vCentre);
+  float miss = length(vCentre - sight * nearest);
+  float soft = max(fwidth(miss), 1e-5);
+  vec3 hit = sight * (nearest - sqrt(max(0.25 - miss * miss, 0.0)));
+  vec3 n = (hit - vCentre) * 2.0;
+  vec3 world = n * mat3(viewMatrix);
+  vec3 body = rotated(world * mat3(modelMatrix), -vTurn);
+  float slant = max(-dot(n, sight), 0.15);
+  vec3 colour = colourOf(spotOn(world, body, soft / slant));
+  // Round: darker towards the outline, which is a line of its own.
+  colour *= 0.7 + 0.3 * smoothstep(0.0, 0.75, -dot(n, sight));
+  colour = mix(colour, colour * 0.55, smoothstep(-soft, 0.0, miss - 0.488));
+  float cover = clamp((0.5 - miss) / soft + 0.5, 0.0, 1.0);
+  if (cover <= 0.0) discard;
+  vec4 at = projectionMatrix * vec4(hit, 1.0);
+  gl_FragDepth = 0.5 * at.z / at.w + 0.5;
+  gl_FragColor = vec4(colour, opacity * cover);
+#else
+  gl_FragColor = vec4(colourOf(spotOfFace()), opacity);
+#endif
 }`;
 
 export class ModuleMesh {
@@ -131,21 +283,65 @@ export class ModuleMesh {
   turns = new Float32Array(0);
   faces = new Float32Array(0);
 
+  private lattice = CUBIC;
+  private readonly uniforms = {
+    exaggeration: { value: 0 },
+    opacity: { value: 1 },
+    codes: { value: new Float32Array(18) },
+    pointed: { value: [0, 0, 0] },
+    units: { value: new Float32Array(36) },
+  };
+  /** Kept: with the last material of its kind the renderer drops the program, and compiles it anew. */
+  private readonly materials = new Map<Shape, ShaderMaterial>();
+
   constructor(opacity = 1) {
-    const material = new ShaderMaterial({
-      transparent: opacity < 1,
-      vertexShader: VERTEX,
-      fragmentShader: FRAGMENT,
-      uniforms: {
-        exaggeration: { value: 0 },
-        opacity: { value: opacity },
-        codes: { value: new Float32Array(18) },
-        pointed: { value: [0, 0, 0] },
-      },
-    });
-    this.mesh = new Mesh(new InstancedBufferGeometry(), material);
+    this.uniforms.opacity.value = opacity;
+    this.mesh = new Mesh(new InstancedBufferGeometry(), this.material());
     this.mesh.frustumCulled = false;
     this.reserve(64);
+  }
+
+  set exaggeration(factor: number) {
+    this.uniforms.exaggeration.value = factor;
+  }
+
+  get exaggeration(): number {
+    return this.uniforms.exaggeration.value;
+  }
+
+  /** Colours from 0 to 1: the rim of what is pointed at, and by FaceCode but the first. */
+  setColours(pointed: number[], codes: number[]): void {
+    this.uniforms.pointed.value = pointed;
+    this.uniforms.codes.value.set(codes);
+  }
+
+  /** Modules of another lattice; what is in the arrays is lost. */
+  setLattice(lattice: Lattice): void {
+    if (lattice !== this.lattice) {
+      this.lattice = lattice;
+      this.uniforms.units.value.set(lattice.units.slice(0, 12).flat());
+      this.mesh.material = this.material();
+      this.capacity = 0;
+      this.reserve(64);
+    }
+  }
+
+  private material(): ShaderMaterial {
+    const { shape } = this.lattice;
+    const opacity = this.uniforms.opacity.value;
+    const material =
+      this.materials.get(shape) ??
+      new ShaderMaterial({
+        transparent: opacity < 1,
+        // The outline of a sphere is drawn by its shader, and smoothed so.
+        alphaToCoverage: shape === 'sphere' && opacity === 1,
+        defines: DEFINES[shape],
+        vertexShader: VERTEX,
+        fragmentShader: FRAGMENT,
+        uniforms: this.uniforms,
+      });
+    this.materials.set(shape, material);
+    return material;
   }
 
   /** Room for so many instances; what is in the arrays is lost if they grow. */
@@ -159,14 +355,13 @@ export class ModuleMesh {
     this.patterns = new Float32Array(this.capacity);
     this.motions = new Float32Array(3 * this.capacity);
     this.turns = new Float32Array(3 * this.capacity);
-    this.faces = new Float32Array(this.capacity);
+    this.faces = new Float32Array(2 * this.capacity);
     const geometry = new InstancedBufferGeometry();
-    const box = new BoxGeometry();
-    geometry.index = box.index;
-    geometry.setAttribute('position', box.attributes.position);
-    geometry.setAttribute('normal', box.attributes.normal);
-    geometry.setAttribute('uv', box.attributes.uv);
-    geometry.setAttribute('side', sidesOf(box));
+    const shape = shapeGeometry(this.lattice);
+    geometry.index = shape.index;
+    for (const name of ['position', 'normal', 'face', 'side'].filter((one) => shape.hasAttribute(one))) {
+      geometry.setAttribute(name, shape.getAttribute(name));
+    }
     const add = (name: string, array: Float32Array | Uint8Array, size: number) => {
       const attribute = new InstancedBufferAttribute(array, size, array instanceof Uint8Array);
       geometry.setAttribute(name, attribute.setUsage(DynamicDrawUsage));
@@ -176,7 +371,7 @@ export class ModuleMesh {
     add('pattern', this.patterns, 1);
     add('motion', this.motions, 3);
     add('turn', this.turns, 3);
-    add('faces', this.faces, 1);
+    add('faces', this.faces, 2);
     this.mesh.geometry.dispose();
     this.mesh.geometry = geometry;
   }
@@ -198,15 +393,4 @@ export class ModuleMesh {
       attribute.needsUpdate = true;
     }
   }
-}
-
-/** The direction of each vertex's face, as in base::Direction. */
-function sidesOf(box: BoxGeometry): BufferAttribute {
-  const normals = box.attributes.normal;
-  const sides = new Float32Array(normals.count);
-  for (let i = 0; i < normals.count; ++i) {
-    const normal = [normals.getX(i), normals.getY(i), normals.getZ(i)];
-    sides[i] = DIRECTIONS.findIndex((direction) => direction.every((v, k) => v === normal[k]));
-  }
-  return new BufferAttribute(sides, 1);
 }

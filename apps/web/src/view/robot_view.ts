@@ -1,12 +1,16 @@
 // SPDX-FileCopyrightText: The holdfast authors
 // SPDX-License-Identifier: Apache-2.0
-import { BoxGeometry, EdgesGeometry, LineBasicMaterial, LineSegments, Mesh, MeshBasicMaterial, Vector3 } from 'three';
+import {
+  BoxGeometry, type BufferGeometry, LineBasicMaterial, LineSegments, Mesh, MeshBasicMaterial, TorusGeometry, Vector3,
+} from 'three';
 import { mergeGeometries } from 'three/examples/jsm/utils/BufferGeometryUtils.js';
 import { LOAD_FIELDS, MOTION_FIELDS, type Answer } from '../core/types';
-import { DIRECTIONS, Role, plus, type Cell } from '../model/cell';
+import { Role, type Cell } from '../model/cell';
 import type { EditedRobot } from '../model/edited_robot';
+import { CUBIC, type Lattice } from '../model/lattice';
 import { FIXED, UNKNOWN, UNSTABLE, brokenColour, loadColour, mix, type Rgb, type ScaleName } from './colours';
 import { ModuleMesh, Pattern } from './modules';
+import { cellEdges } from './polyhedron';
 import type { Stage } from './stage';
 
 /** An answer and the slots that its modules had when it was asked for. */
@@ -25,8 +29,21 @@ export const enum FaceCode {
   kWaiting,
 }
 
+/** In cells. */
+const CURSOR_SIZE = 1.07;
 const WHITE: Rgb = [255, 255, 255];
 const FACE_BASE = 8;
+/** Codes of so many faces stand in one number. */
+const FACES_PER_NUMBER = 6;
+
+/** The two numbers of a module's faces, from the code of each direction. */
+function packed(lattice: Lattice, codeOf: (direction: number) => FaceCode): [number, number] {
+  const numbers: [number, number] = [0, 0];
+  for (let side = 0; side < lattice.directionCount; ++side) {
+    numbers[Math.floor(side / FACES_PER_NUMBER)] += codeOf(side) * FACE_BASE ** (side % FACES_PER_NUMBER);
+  }
+  return numbers;
+}
 
 /** The load of each module: the largest ratio of its connections, and whether one breaks. */
 export interface ModuleLoads {
@@ -56,12 +73,13 @@ export function moduleLoads(judged: Judged): ModuleLoads {
 export class RobotView {
   private readonly modules = new ModuleMesh();
   private readonly ghosts = new ModuleMesh(0.72);
+  private lattice = CUBIC;
   private readonly cursor = new LineSegments(
-    new EdgesGeometry(new BoxGeometry(1.07, 1.07, 1.07)),
+    cellEdges(CUBIC, CURSOR_SIZE),
     new LineBasicMaterial({ depthTest: false, transparent: true }),
   );
-  private readonly collar = new Mesh(collarGeometry(), new MeshBasicMaterial());
-  /** Slots that are drawn; modules with six neighbours are not. */
+  private readonly collar = new Mesh(collarGeometry(CUBIC), new MeshBasicMaterial());
+  /** Slots that are drawn; hidden modules are not. */
   private drawn = new Int32Array(0);
   /** Where in `drawn` each slot is; -1: nowhere. */
   private instances = new Int32Array(0);
@@ -69,6 +87,7 @@ export class RobotView {
   private judged?: Judged;
   private loads?: ModuleLoads;
   private hasFaces = false;
+  private mechanism?: Float64Array;
   scale: ScaleName = 'paper';
   /** Colours of modules that have their own, by slot; the trace player's. */
   paintOver?: (slot: number) => Rgb | undefined;
@@ -86,6 +105,7 @@ export class RobotView {
 
   /** Another shape; colours follow with paint(). */
   show(robot: EditedRobot, judged: Judged | undefined): void {
+    this.setLattice(robot.lattice);
     this.robot = robot;
     this.judged = judged;
     this.loads = judged?.answer.has_loads ? moduleLoads(judged) : undefined;
@@ -99,8 +119,8 @@ export class RobotView {
     this.instances = new Int32Array(robot.count).fill(-1);
     drawn.forEach((slot, i) => (this.instances[slot] = i));
     this.modules.reserve(drawn.length);
-    drawn.forEach((slot, i) => this.modules.places.set(robot.cellAt(slot), 3 * i));
-    this.modules.faces.fill(0, 0, drawn.length);
+    drawn.forEach((slot, i) => this.modules.places.set(robot.placeAt(slot), 3 * i));
+    this.modules.faces.fill(0, 0, 2 * drawn.length);
     this.hasFaces = false;
     this.placeMotions();
     this.modules.update(drawn.length, 'place', 'faces', 'motion', 'turn');
@@ -159,15 +179,11 @@ export class RobotView {
     this.hasFaces = codeOf !== undefined;
     this.drawn.forEach((slot, i) => {
       const cell = robot.cellAt(slot);
-      let packed = 0;
-      if (codeOf) {
-        DIRECTIONS.forEach((direction, side) => {
-          const place = plus(cell, direction);
-          const code = robot.has(place) ? FaceCode.kNone : codeOf(place);
-          packed += code * FACE_BASE ** side;
-        });
-      }
-      this.modules.faces[i] = packed;
+      const code = (side: number) => {
+        const place = robot.lattice.neighbour(cell, side);
+        return !codeOf || robot.has(place) ? FaceCode.kNone : codeOf(place);
+      };
+      this.modules.faces.set(codeOf ? packed(robot.lattice, code) : [0, 0], 2 * i);
     });
     this.modules.update(this.drawn.length, 'faces');
     this.stage.draw();
@@ -176,13 +192,13 @@ export class RobotView {
   /** Modules that are about to be attached, in the colour of what comes of it; all faces have its mark. */
   showGhosts(cells: readonly Cell[], role: Role, colour: Rgb, code: FaceCode): void {
     const pattern = { [Role.kExisting]: 0, [Role.kPlanned]: Pattern.kPlanned, [Role.kFixed]: Pattern.kFixed }[role];
-    const packed = DIRECTIONS.reduce((sum, _, side) => sum + code * FACE_BASE ** side, 0);
+    const faces = packed(this.lattice, () => code);
     this.ghosts.reserve(cells.length);
     cells.forEach((cell, i) => {
-      this.ghosts.places.set(cell, 3 * i);
+      this.ghosts.places.set(this.lattice.place(cell), 3 * i);
       this.ghosts.tints.set(colour, 3 * i);
       this.ghosts.patterns[i] = pattern;
-      this.ghosts.faces[i] = packed;
+      this.ghosts.faces.set(faces, 2 * i);
     });
     this.ghosts.update(cells.length, 'place', 'tint', 'pattern', 'faces');
     this.stage.draw();
@@ -190,26 +206,25 @@ export class RobotView {
 
   showCursor(cell: Cell | undefined): void {
     this.cursor.visible = cell !== undefined;
-    this.cursor.position.fromArray(cell ?? [0, 0, 0]);
+    this.cursor.position.fromArray(this.lattice.place(cell ?? [0, 0, 0]));
     this.stage.draw();
   }
 
   /** How much displacements are magnified. */
   set exaggeration(factor: number) {
-    this.modules.mesh.material.uniforms.exaggeration.value = factor;
+    this.modules.exaggeration = factor;
     this.markWorst();
     this.stage.draw();
   }
 
   get exaggeration(): number {
-    return this.modules.mesh.material.uniforms.exaggeration.value as number;
+    return this.modules.exaggeration;
   }
 
   setTheme(ink: Rgb, codes: Rgb[]): void {
     const unit = (colour: Rgb) => colour.map((value) => value / 255);
-    for (const { mesh } of [this.modules, this.ghosts]) {
-      mesh.material.uniforms.pointed.value = unit(ink);
-      (mesh.material.uniforms.codes.value as Float32Array).set(codes.flatMap(unit));
+    for (const mesh of [this.modules, this.ghosts]) {
+      mesh.setColours(unit(ink), codes.flatMap(unit));
     }
     const [red, green, blue] = unit(ink);
     this.cursor.material.color.setRGB(red, green, blue, 'srgb');
@@ -228,6 +243,20 @@ export class RobotView {
   get worst(): number | undefined {
     const answer = this.judged?.answer;
     return answer && answer.verdict !== 'unstable' ? (answer.worst ?? undefined) : undefined;
+  }
+
+  private setLattice(lattice: Lattice): void {
+    if (lattice === this.lattice) {
+      return;
+    }
+    this.lattice = lattice;
+    this.modules.setLattice(lattice);
+    this.ghosts.setLattice(lattice);
+    this.ghosts.update(0);
+    this.cursor.geometry.dispose();
+    this.cursor.geometry = cellEdges(lattice, CURSOR_SIZE);
+    this.collar.geometry.dispose();
+    this.collar.geometry = collarGeometry(lattice);
   }
 
   private mark(slot: number, by: number): void {
@@ -250,29 +279,45 @@ export class RobotView {
     return isBroken ? brokenColour(this.scale) : loadColour(this.scale, ratio);
   }
 
+  /** Velocities of a collapse in place of displacements, six for each slot, and modules that give way. */
+  showMechanism(mechanism: Float64Array | undefined, yielding: readonly number[]): void {
+    const isYielding = new Set(yielding);
+    this.mechanism = mechanism;
+    this.paintOver = mechanism && ((slot) => (isYielding.has(slot) ? brokenColour(this.scale) : undefined));
+    this.placeMotions();
+    this.modules.update(this.drawn.length, 'motion', 'turn');
+    this.paint();
+  }
+
   /** Displacements in cells. */
   private placeMotions(): void {
     const { motions, turns } = this.modules;
+    if (this.mechanism) {
+      const { mechanism } = this;
+      this.drawn.forEach((slot, i) => this.setMotion(i, mechanism, MOTION_FIELDS * slot));
+      return;
+    }
     const displacements = this.judged?.answer.displacements;
     if (!displacements?.length || this.judged?.answer.verdict === 'unstable') {
       motions.fill(0, 0, 3 * this.drawn.length);
       turns.fill(0, 0, 3 * this.drawn.length);
       return;
     }
-    const pitch = this.robot!.pitchMm;
     const moduleOf = new Int32Array(this.judged!.slots.length);
     this.judged!.slots.forEach((slot, module) => (moduleOf[slot] = module));
-    this.drawn.forEach((slot, i) => {
-      const at = MOTION_FIELDS * moduleOf[slot];
-      for (let k = 0; k < 3; ++k) {
-        motions[3 * i + k] = displacements[at + k] / pitch;
-        turns[3 * i + k] = displacements[at + 3 + k];
-      }
-    });
+    this.drawn.forEach((slot, i) => this.setMotion(i, displacements, MOTION_FIELDS * moduleOf[slot]));
+  }
+
+  private setMotion(instance: number, numbers: Float64Array, at: number): void {
+    const pitch = this.robot!.pitchMm;
+    for (let k = 0; k < 3; ++k) {
+      this.modules.motions[3 * instance + k] = numbers[at + k] / pitch;
+      this.modules.turns[3 * instance + k] = numbers[at + 3 + k];
+    }
   }
 
   private drawnPlace(slot: number, module: number): Vector3 {
-    const place = new Vector3().fromArray(this.robot!.cellAt(slot));
+    const place = new Vector3().fromArray(this.robot!.placeAt(slot));
     const { displacements } = this.judged!.answer;
     const factor = this.exaggeration / this.robot!.pitchMm;
     return displacements.length > 0
@@ -284,18 +329,18 @@ export class RobotView {
     const { worst } = this;
     this.collar.visible = worst !== undefined && !this.paintOver;
     if (worst !== undefined) {
-      const direction = DIRECTIONS[this.judged!.answer.connections[3 * worst + 2]];
+      const direction = this.lattice.units[this.judged!.answer.connections[3 * worst + 2]];
       this.collar.position.copy(this.connectionPoint(worst));
-      this.collar.quaternion.setFromUnitVectors(
-        new Vector3(0, 0, 1),
-        new Vector3().fromArray(direction.map(Math.abs)),
-      );
+      this.collar.quaternion.setFromUnitVectors(new Vector3(0, 0, 1), new Vector3().fromArray(direction));
     }
   }
 }
 
-/** Four bars around the face between two modules, which lies in the plane z = 0. */
-function collarGeometry() {
+/** Around the face between two modules, which lies in the plane z = 0: four bars, or a ring. */
+function collarGeometry({ shape }: Lattice): BufferGeometry {
+  if (shape !== 'cube') {
+    return new TorusGeometry(shape === 'prism' ? 0.62 : 0.3, 0.05, 8, 32);
+  }
   const bars = [-1, 1].flatMap((side) => {
     const along = new BoxGeometry(1.16, 0.07, 0.12);
     const across = new BoxGeometry(0.07, 1.16, 0.12);

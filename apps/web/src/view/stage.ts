@@ -13,7 +13,7 @@ import {
   type Ray,
 } from 'three';
 import { OrbitControls } from 'three/examples/jsm/controls/OrbitControls.js';
-import type { Cell } from '../model/cell';
+import type { Place } from '../model/lattice';
 
 /** Moves something to where it is at a time; true while it goes on moving. */
 export type Motion = (now: number) => boolean;
@@ -100,8 +100,8 @@ export class Stage {
       : { x: ((at.x + 1) / 2) * clientWidth, y: ((1 - at.y) / 2) * clientHeight };
   }
 
-  /** Looks at a box of cells from the front right, from the same side if `keepsSide`. */
-  fit(low: Cell, high: Cell, keepsSide = false): void {
+  /** Looks at a box of nodes from the front right, from the same side if `keepsSide`. */
+  fit(low: Place, high: Place, keepsSide = false): void {
     const middle = new Vector3().fromArray(low.map((value, k) => (value + high[k]) / 2));
     const radius = 0.5 * Math.hypot(...low.map((value, k) => high[k] - value + 1.6));
     const half = (this.camera.fov * Math.PI) / 360;

@@ -4,8 +4,14 @@ import { Matrix4, Vector3 } from 'three';
 import type { Point } from '../core/types';
 import type { EditedRobot } from '../model/edited_robot';
 
+/** How a robot that falls is shown: from 0 seconds on, until it lies still. */
+export interface Motion {
+  isOver(seconds: number): boolean;
+  matrix(seconds: number): Matrix4;
+}
+
 /** A robot that turns over an edge of its support polygon until it lies. Lengths in cells. */
-export class Topple {
+export class Topple implements Motion {
   private readonly origin: Vector3;
   private readonly axis: Vector3;
   private readonly angleMax: number;
@@ -13,7 +19,7 @@ export class Topple {
 
   /** The polygon lies on the left of the edge from a to b, so the robot falls to its right. */
   constructor(robot: EditedRobot, [a, b]: [Point, Point]) {
-    const ground = robot.supportZ - 0.5;
+    const ground = robot.floorHeight;
     this.origin = new Vector3(a[0], a[1], ground);
     this.axis = new Vector3(b[0] - a[0], b[1] - a[1], 0).normalize();
     const out = new Vector3(this.axis.y, -this.axis.x, 0);
@@ -21,7 +27,6 @@ export class Topple {
     this.acceleration = 2.6;
   }
 
-  /** From 0 at the beginning; false when it lies still. */
   isOver(seconds: number): boolean {
     return seconds > Math.sqrt((2 * this.angleMax) / this.acceleration) + 1.1;
   }
@@ -43,7 +48,7 @@ export class Topple {
 function fallAngle(robot: EditedRobot, origin: Vector3, out: Vector3): number {
   let angle = Math.PI / 2;
   for (let slot = 0; slot < robot.count; ++slot) {
-    const [x, y, z] = robot.cellAt(slot);
+    const [x, y, z] = robot.placeAt(slot);
     const distance =
       (x - origin.x) * out.x + (y - origin.y) * out.y + 0.5 * (Math.abs(out.x) + Math.abs(out.y));
     if (distance > 0.05 && z - 0.5 > origin.z) {

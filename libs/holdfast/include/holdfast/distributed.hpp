@@ -58,7 +58,8 @@ struct ChangedStructure {
 
 /// What becomes of a structure: with the modules that are attached, behind all others, and the
 /// plans that are neither fulfilled nor withdrawn then. The first module of the file is told of
-/// plans. Errors: a module is attached to an occupied cell; what there is in the end is no robot.
+/// plans. Errors: a module is attached to an occupied cell; what there is in the end is no robot;
+/// the robot goes beyond [Piranda 2021], see model::find_beyond_paper().
 base::Result<ChangedStructure> with_changes(const Structure& structure,
                                             std::vector<Change> changes);
 

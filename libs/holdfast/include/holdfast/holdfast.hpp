@@ -12,19 +12,20 @@
 #include <utility>
 #include <vector>
 
-#include "holdfast/base/cell.hpp"           // IWYU pragma: export
-#include "holdfast/base/result.hpp"         // IWYU pragma: export
-#include "holdfast/host/large_pages.hpp"    // IWYU pragma: export
-#include "holdfast/host/output_file.hpp"    // IWYU pragma: export
-#include "holdfast/io/beside_one.hpp"       // IWYU pragma: export
-#include "holdfast/io/document.hpp"         // IWYU pragma: export
-#include "holdfast/io/lattice_names.hpp"    // IWYU pragma: export
-#include "holdfast/io/picture.hpp"          // IWYU pragma: export
-#include "holdfast/io/report.hpp"           // IWYU pragma: export
-#include "holdfast/limit/limit_load.hpp"    // IWYU pragma: export
-#include "holdfast/model/robot.hpp"         // IWYU pragma: export
-#include "holdfast/proof/proof.hpp"         // IWYU pragma: export
-#include "holdfast/verdict/assessment.hpp"  // IWYU pragma: export
+#include "holdfast/base/cell.hpp"              // IWYU pragma: export
+#include "holdfast/base/result.hpp"            // IWYU pragma: export
+#include "holdfast/host/large_pages.hpp"       // IWYU pragma: export
+#include "holdfast/host/output_file.hpp"       // IWYU pragma: export
+#include "holdfast/io/beside_one.hpp"          // IWYU pragma: export
+#include "holdfast/io/document.hpp"            // IWYU pragma: export
+#include "holdfast/io/lattice_names.hpp"       // IWYU pragma: export
+#include "holdfast/io/picture.hpp"             // IWYU pragma: export
+#include "holdfast/io/report.hpp"              // IWYU pragma: export
+#include "holdfast/limit/limit_load.hpp"       // IWYU pragma: export
+#include "holdfast/model/robot.hpp"            // IWYU pragma: export
+#include "holdfast/model/robot_catalogue.hpp"  // IWYU pragma: export
+#include "holdfast/proof/proof.hpp"            // IWYU pragma: export
+#include "holdfast/verdict/assessment.hpp"     // IWYU pragma: export
 
 /// The facade: load a structure or make a robot of cells, check it, show the answer. Everything an
 /// application needs.
@@ -36,6 +37,13 @@
 ///
 ///     auto robot = holdfast::make_robot({.existing = cells, .planned = next});
 ///     if (robot) { ... holdfast::check(robot.value()) ... }
+///
+/// Cubes on a floor are made of their cells alone. Other lattices, obstacles, masses, loads,
+/// gravity and limits of connections are members of model::RobotSpec, of which
+/// model::Robot::create makes a robot as well:
+///
+///     holdfast::model::RobotSpec shelf{.existing = cells, .support_z = {}, .obstacles = wall};
+///     auto robot = holdfast::model::Robot::create(shelf);
 ///
 /// What an application may name of the rooms below is what is exported here, and by trial.hpp,
 /// distributed.hpp and emulated.hpp. No function throws or prints. Units: N, mm, kg, s. Frame:
@@ -115,7 +123,8 @@ base::Result<Structure> load_file(const std::filesystem::path& path, int thread_
                                   const io::ReadOptions& options = {});
 
 /// One of the named structures in which solvers are compared: arm, cube, tower, scaffold, shell,
-/// portal, bridge, growth. Errors: no such family, a size that is not allowed.
+/// portal, bridge, growth of cubes, ball, sheet, prism-wall of other lattices. Errors: no such
+/// family, a size that is not allowed.
 base::Result<io::Document> generate(std::string_view family, std::size_t size);
 
 /// Name and meaning of the size of each family, in the order of their list.
@@ -143,6 +152,11 @@ struct Rows {
 /// verdict::ConnectionResult: load ratio, axial force (N), bending moment (N mm), shear force (N),
 /// torsional moment (N mm). No rows where no equilibrium is known.
 Rows connection_rows(const CheckResult& result);
+
+/// Which limit every connection's load ratio is of, in the order of Robot::connections(). Empty
+/// where no equilibrium is known.
+std::vector<model::Limit> connection_limits(const model::Robot& robot,
+                                            const verdict::Assessment& assessment);
 
 /// How far every module moves, in the order of Robot::modules(): along x, y, z in mm, about x, y, z
 /// in rad. No rows where no equilibrium is known.

@@ -7,7 +7,8 @@
 #include <span>
 #include <vector>
 
-#include "holdfast/holdfast.hpp"  // IWYU pragma: export
+#include "holdfast/holdfast.hpp"               // IWYU pragma: export
+#include "holdfast/limit/rigid_stability.hpp"  // IWYU pragma: export
 
 /// The facade's trials: where may the next module go?
 ///

@@ -2,11 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <vector>
 
 #include "holdfast/base/algebra.hpp"
-#include "holdfast/mechanics/beam.hpp"
+#include "holdfast/model/lattice_beam.hpp"
 #include "holdfast/model/material.hpp"
 #include "kernels.hpp"
 
@@ -15,11 +16,12 @@
 /// only [Przemieniecki 1968].
 namespace holdfast::solver {
 
-/// The stiffness of a beam of the material's section, `length` pitches long.
-inline mechanics::BeamStiffness<double> long_beam(const model::Material& material, int length) {
+/// Beams of the material's section, `length` pitches long, in the directions of a lattice.
+inline model::LatticeBeam<double> long_beam(const model::Material& material,
+                                            const base::Lattice& lattice, int length) {
   mechanics::BeamSection<double> section = model::beam_section(material);
   section.length *= length;
-  return mechanics::beam_stiffness(section);
+  return {section, lattice};
 }
 
 /// How an end of an unloaded beam moves a point of it, by Hermite's cubics: a displacement u moves
@@ -88,6 +90,39 @@ inline void add_share(const BeamShape& shape, std::size_t direction,
   load[a + 3] += shape.linear * force[a + 3];
   load[j + 3] += shape.slope_rate * force[j + 3] - slope * force[k];
   load[k + 3] += shape.slope_rate * force[k + 3] + slope * force[j];
+}
+
+/// What add_motion() does, for a beam along any unit vector n:
+///   u gains across(u_end) + slope (t_end x n),   t gains about(t_end) + cubic_rate (n x u_end),
+/// where each part of a vector along n and across it counts by its own factor.
+inline void add_motion(const BeamShape& shape, const std::array<double, 3>& n,
+                       const base::Vec6<double>& end, base::Vec6<double>& u) {
+  const double along = n[0] * end[0] + n[1] * end[1] + n[2] * end[2];
+  const double about = n[0] * end[3] + n[1] * end[4] + n[2] * end[5];
+  for (std::size_t i = 0; i < 3; ++i) {
+    const std::size_t j = (i + 1) % 3;
+    const std::size_t k = (i + 2) % 3;
+    u[i] += shape.cubic * end[i] + (shape.linear - shape.cubic) * along * n[i] +
+            shape.slope * (end[j + 3] * n[k] - end[k + 3] * n[j]);
+    u[i + 3] += shape.slope_rate * end[i + 3] + (shape.linear - shape.slope_rate) * about * n[i] +
+                shape.cubic_rate * (n[j] * end[k] - n[k] * end[j]);
+  }
+}
+
+/// The transpose of it.
+inline void add_share(const BeamShape& shape, const std::array<double, 3>& n,
+                      const base::Vec6<double>& force, base::Vec6<double>& load) {
+  const double along = n[0] * force[0] + n[1] * force[1] + n[2] * force[2];
+  const double about = n[0] * force[3] + n[1] * force[4] + n[2] * force[5];
+  for (std::size_t i = 0; i < 3; ++i) {
+    const std::size_t j = (i + 1) % 3;
+    const std::size_t k = (i + 2) % 3;
+    load[i] += shape.cubic * force[i] + (shape.linear - shape.cubic) * along * n[i] +
+               shape.cubic_rate * (force[j + 3] * n[k] - force[k + 3] * n[j]);
+    load[i + 3] += shape.slope_rate * force[i + 3] +
+                   (shape.linear - shape.slope_rate) * about * n[i] +
+                   shape.slope * (n[j] * force[k] - n[k] * force[j]);
+  }
 }
 
 /// Shapes of beams by length and place; those of a length that was asked for stay.

@@ -30,10 +30,22 @@ inline Single neighbour_sum(const LatticeView<float>& level, const Six<float>* z
   return axis_sum<0>(level, z, p) + axis_sum<1>(level, z, p) + axis_sum<2>(level, z, p);
 }
 
+inline Single stencil_sum(const StencilView& stencil, const Six<float>* z, std::size_t p) {
+  Single sum = {};
+  const std::int32_t* other = stencil.other + 2 * stencil.pair_count * p;
+  for (std::size_t k = 0; k < stencil.pair_count; ++k) {
+    sum += pair_product(stencil.rows[k], load(z[other[2 * k]]), load(z[other[2 * k + 1]]));
+  }
+  return sum;
+}
+
 inline Single neighbour_sum(const ClusterView<float>& level, const Six<float>* z, std::size_t p) {
+  if (level.stencil.other != nullptr) {
+    return stencil_sum(level.stencil, z, p);
+  }
   Single sum = {};
   for (std::int32_t e = level.start[p]; e < level.start[p + 1]; ++e) {
-    sum += multiply(level.blocks[level.block[e]], load(z[level.other[e]]));
+    sum += multiply(level.blocks[level.block[e]], z[level.other[e]]);
   }
   return sum;
 }
@@ -42,7 +54,7 @@ inline Single neighbour_sum(const ClusterView<float>& level, const Six<float>* z
 template <class View>
 inline Single unbalanced(const View& level, const Six<float>* r, const Six<float>* z,
                          std::size_t p) {
-  const Single own = multiply(level.diagonal[level.type[p]], load(z[p]));
+  const Single own = multiply(level.diagonal[level.type[p]], z[p]);
   return load(r[p]) - own - neighbour_sum(level, z, p);
 }
 
@@ -54,7 +66,7 @@ inline Single balanced(const View& level, const Six<float>* r, const Six<float>*
 
 /// (K z)_p
 inline Single product(const ClusterView<float>& level, const Six<float>* z, std::size_t p) {
-  return multiply(level.diagonal[level.type[p]], load(z[p])) + neighbour_sum(level, z, p);
+  return multiply(level.diagonal[level.type[p]], z[p]) + neighbour_sum(level, z, p);
 }
 
 inline Wide widened(const Six<float>& six) {
@@ -90,6 +102,23 @@ inline Wide wide_product(const LatticeView<float>& level, const Six<float>* p, s
     const Double factors = {factor, factor, factor, factor};
     sum.low += load_double(diagonal.column[k]) * factors;
     sum.high += load_double(diagonal.column[k] + 4) * factors;
+  }
+  return sum;
+}
+
+/// (K p)_node of a finest level in compressed rows, in double precision.
+inline Wide wide_product(const ClusterView<float>& level, const Six<float>* p, std::size_t node) {
+  Wide sum = multiply(level.diagonal_double[level.type[node]], widened(p[node]));
+  if (level.stencil.other != nullptr) {
+    const std::int32_t* other = level.stencil.other + 2 * level.stencil.pair_count * node;
+    for (std::size_t k = 0; k < level.stencil.pair_count; ++k) {
+      sum += pair_product(level.stencil.rows_double[k], widened(p[other[2 * k]]),
+                          widened(p[other[2 * k + 1]]));
+    }
+    return sum;
+  }
+  for (std::int32_t e = level.start[node]; e < level.start[node + 1]; ++e) {
+    sum += multiply(level.blocks_double[level.block[e]], widened(p[level.other[e]]));
   }
   return sum;
 }

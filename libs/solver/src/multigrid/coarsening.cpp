@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <span>
 #include <type_traits>
 #include <unordered_map>
+#include <utility>
 
 #include "holdfast/base/algebra.hpp"
 #include "slivers.hpp"
@@ -18,6 +20,9 @@ namespace {
 using base::at;
 
 constexpr std::uint8_t kNoColour = 255;
+
+/// Directions whose mean is shorter than this lead everywhere.
+constexpr double kClear = 0.1;
 
 /// Coordinates that are equal for all clusters that look alike: differences lose their last bits.
 /// In double precision they have none to lose: centres lie on a grid.
@@ -82,6 +87,26 @@ struct SignatureHash {
   std::size_t operator()(const Signature& signature) const { return signature.a; }
 };
 
+Point opposite(const Point& point) { return {-point[0], -point[1], -point[2]}; }
+
+/// The axis along which most of a cluster's connections with another lead. United slivers may meet
+/// around a corner, and both ends must find the same axis.
+Point main_axis(const Point& along, const Point& partner) {
+  const auto axis = static_cast<std::size_t>(std::ranges::max_element(along) - along.begin());
+  Point direction{};
+  direction[axis] = partner[axis] < 0 ? -1 : 1;
+  return direction;
+}
+
+/// The mean of the directions in which a cluster's connections with another lead, of length one;
+/// that of the other cluster if they lead everywhere. `sum` and `weight` are sums of theirs.
+Point mean_direction(const Point& sum, double weight, const Point& partner) {
+  const bool is_clear = dot(sum, sum) > kClear * kClear * weight * weight;
+  const Point& direction = is_clear ? sum : partner;
+  const double norm = std::sqrt(dot(direction, direction));
+  return {direction[0] / norm, direction[1] / norm, direction[2] / norm};
+}
+
 template <class Real>
 class Coarsening {
  public:
@@ -99,6 +124,7 @@ class Coarsening {
     }
     find_clusters(shift);
     coarse_.shift = fine_.shift + shift;
+    coarse_.is_cubic = fine_.is_cubic;
     if (!fine_.box.empty()) {
       cluster_count_ = unite_slivers(fine_, coarse_.shift, cluster_, cluster_count_, coarse_.box);
     }
@@ -241,20 +267,20 @@ class Coarsening {
     for (std::size_t c = 0; c < box.size(); ++c) {
       coarse_.box[at(final_[c])] = box[c];
     }
-    level_.member.reserve(member_.size());
-    level_.member_start.reserve(cluster_count_ + 1);
-    level_.member_start.push_back(0);
+    std::vector<std::int32_t> member;
+    std::vector<std::int32_t> member_start = {0};
+    member.reserve(member_.size());
+    member_start.reserve(cluster_count_ + 1);
     for (const std::int32_t c : curve) {
-      for_members(at(c), [&](std::size_t node) {
-        level_.member.push_back(static_cast<std::int32_t>(node));
-      });
-      level_.member_start.push_back(static_cast<std::int32_t>(level_.member.size()));
+      for_members(at(c),
+                  [&](std::size_t node) { member.push_back(static_cast<std::int32_t>(node)); });
+      member_start.push_back(static_cast<std::int32_t>(member.size()));
     }
     for (std::int32_t& c : cluster_) {
       c = final_[at(c)];
     }
-    member_ = level_.member;
-    member_start_ = level_.member_start;
+    level_.member = std::exchange(member_, std::move(member));
+    level_.member_start = std::exchange(member_start_, std::move(member_start));
   }
 
   void place_centres() {
@@ -368,49 +394,76 @@ class Coarsening {
     return signature;
   }
 
-  /// In which direction most of a cluster's connections with another lead. United slivers may meet
-  /// around a corner, and both ends must find the same axis.
-  static std::uint8_t main_direction(const std::array<int, 3>& along, const Point& partner) {
-    const auto axis = std::ranges::max_element(along) - along.begin();
-    const bool is_down = partner[static_cast<std::size_t>(axis)] < 0;
-    return static_cast<std::uint8_t>(2 * axis + (is_down ? 1 : 0));
+  /// How much a part counts where means are taken: as cubes' parts are much alike, they count the
+  /// same.
+  double weight(const Part& part) const {
+    if (fine_.is_cubic) {
+      return 1;
+    }
+    const Mat& s = fine_.springs[part.spring].stiffness;
+    return s.at(0, 0) + s.at(1, 1) + s.at(2, 2);
+  }
+
+  /// Where a cluster's springs lead; `springs` have their partners.
+  void find_directions(const std::vector<Part>& parts, std::span<Spring> springs) const {
+    std::vector<double> weights(springs.size());
+    for (const Part& part : parts) {
+      const double share = weight(part);
+      weights[part.target] += share;
+      for (std::size_t k = 0; k < 3; ++k) {
+        const double component = fine_.springs[part.spring].direction[k];
+        springs[part.target].direction[k] +=
+            share * (fine_.is_cubic ? std::abs(component) : component);
+      }
+    }
+    for (std::size_t i = 0; i < springs.size(); ++i) {
+      Spring& spring = springs[i];
+      spring.direction = fine_.is_cubic
+                             ? main_axis(spring.direction, spring.partner)
+                             : mean_direction(spring.direction, weights[i], spring.partner);
+    }
   }
 
   /// A pure function of the parts, so it does not matter which of many equal clusters is taken.
-  void add_up(const std::vector<Part>& parts, Spring* springs, std::size_t count) const {
+  void add_up(const std::vector<Part>& parts, std::span<Spring> springs) const {
     struct Sum {
       double length = 0;
       double reach = 0;
       double weight = 0;
-      std::array<int, 3> along = {};  ///< How many lead along each axis.
     };
 
-    std::vector<Sum> sums(count);
+    for (const Part& part : parts) {
+      springs[part.target].partner = part.partner;
+    }
+    find_directions(parts, springs);
+    std::vector<Sum> sums(springs.size());
     for (const Part& part : parts) {
       const Spring& fine = fine_.springs[part.spring];
       Spring& spring = springs[part.target];
-      spring.partner = part.partner;
+      const double share = weight(part);
       base::add_to(spring.stiffness, carried(fine.stiffness, part.offset));
       for (std::size_t k = 0; k < 3; ++k) {
-        spring.middle[k] += part.offset[k] + fine.middle[k];
+        spring.middle[k] += share * (part.offset[k] + fine.middle[k]);
       }
+      // Of springs that lead this way and that only the way across counts.
+      const Point& way = fine_.is_cubic ? fine.direction : spring.direction;
+      const double length = fine.length * std::abs(dot(fine.direction, way));
       Sum& sum = sums[part.target];
-      sum.length += fine.length;
-      ++sum.along[fine.direction / 2U];
+      sum.length += share * length;
       // Behind a neck the robot is stiffer than the neck, which is as soft as it is long.
-      sum.reach += fine.length + (part.is_weak ? 0
-                                               : behind(part.offset, fine.direction) +
-                                                     behind(part.far_offset, fine.direction ^ 1U));
-      sum.weight += 1;
+      sum.reach +=
+          share *
+          (length +
+           (part.is_weak ? 0 : behind(part.offset, way) + behind(part.far_offset, opposite(way))));
+      sum.weight += share;
     }
-    for (std::size_t i = 0; i < count; ++i) {
+    for (std::size_t i = 0; i < springs.size(); ++i) {
       Spring& spring = springs[i];
       for (double& x : spring.middle) {
         x /= sums[i].weight;
       }
       spring.length = sums[i].reach / sums[i].weight;
-      spring.direction = main_direction(sums[i].along, spring.partner);
-      spring.stiffness = stretched(spring.stiffness, spring.middle, spring.direction / 2U,
+      spring.stiffness = stretched(spring.stiffness, spring.middle, spring.direction,
                                    sums[i].length / sums[i].weight, spring.length);
     }
   }
@@ -458,7 +511,9 @@ class Coarsening {
       std::vector<std::int32_t> targets;
       for (std::size_t i = begin; i < end; ++i) {
         list_parts(at(examples[i]), parts, targets);
-        add_up(parts, coarse_.springs.data() + coarse_.pattern[at(examples[i])], targets.size());
+        add_up(
+            parts,
+            std::span(coarse_.springs).subspan(coarse_.pattern[at(examples[i])], targets.size()));
       }
     });
   }

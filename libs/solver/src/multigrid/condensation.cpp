@@ -22,15 +22,36 @@ using model::Robot;
 
 Direction direction_of(std::size_t index) { return static_cast<Direction>(index); }
 
-std::array<double, 3> unit_step(std::size_t direction) {
-  std::array<double, 3> step{};
-  step[direction / 2] = direction % 2 == 0 ? 1 : -1;
-  return step;
-}
+/// The directions in which a robot's beams lead. Along the axes, as in cubes, fewer numbers round.
+class Ways {
+ public:
+  explicit Ways(const base::Lattice& lattice) : is_cubic_(lattice == base::kCubic) {
+    for (const Direction direction : base::directions(lattice)) {
+      unit_[at(base::index(direction))] = base::unit_vector(lattice, direction);
+    }
+  }
+
+  const std::array<double, 3>& unit(std::size_t direction) const { return unit_[direction]; }
+
+  void add_motion(const BeamShape& shape, std::size_t direction, const Vec6<double>& end,
+                  Vec6<double>& u) const {
+    is_cubic_ ? solver::add_motion(shape, direction, end, u)
+              : solver::add_motion(shape, unit_[direction], end, u);
+  }
+
+  void add_share(const BeamShape& shape, std::size_t direction, const Vec6<double>& force,
+                 Vec6<double>& load) const {
+    is_cubic_ ? solver::add_share(shape, direction, force, load)
+              : solver::add_share(shape, unit_[direction], force, load);
+  }
+
+ private:
+  bool is_cubic_;
+  std::array<std::array<double, 3>, base::Lattice::kDirectionCountMax> unit_{};
+};
 
 /// A force at the tip of an arm, as force and torque at its root.
-Vec6<double> moved(Vec6<double> force, std::size_t direction, double length) {
-  const std::array<double, 3> step = unit_step(direction);
+Vec6<double> moved(Vec6<double> force, const std::array<double, 3>& step, double length) {
   force[3] += length * (step[1] * force[2] - step[2] * force[1]);
   force[4] += length * (step[2] * force[0] - step[0] * force[2]);
   force[5] += length * (step[0] * force[1] - step[1] * force[0]);
@@ -48,13 +69,12 @@ struct RunFactor {
   std::vector<Vec6<double>> common_displacement;  ///< and what it does to a run that carries it.
 };
 
-RunFactor factorize_run(const mechanics::BeamStiffness<double>& beam, std::size_t direction,
-                        int length) {
+RunFactor factorize_run(const model::LatticeBeam<double>& beam, std::size_t direction, int length) {
   RunFactor run;
-  run.to_next = mechanics::block_12(beam, direction_of(direction));
-  run.to_last = mechanics::block_12(beam, direction_of(direction ^ 1U));
-  Mat6<double> both = mechanics::block_11(beam, direction_of(direction));
-  base::add_to(both, mechanics::block_11(beam, direction_of(direction ^ 1U)));
+  run.to_next = beam.block_12(direction_of(direction));
+  run.to_last = beam.block_12(direction_of(direction ^ 1U));
+  Mat6<double> both = beam.block_11(direction_of(direction));
+  base::add_to(both, beam.block_11(direction_of(direction ^ 1U)));
   for (int i = 1; i < length; ++i) {
     Mat6<double> diagonal = both;
     run.factor.push_back(i == 1 ? run.to_last : product(run.to_last, run.pivot.back()));
@@ -102,25 +122,24 @@ void apply_flexibility(const Robot& robot, const Run& run, const RunFactor& fact
 }
 
 /// Adds what a run's inner modules carry to the loads of its ends.
-void move_loads_to_ends(const Robot& robot, const Run& run, const std::vector<BeamShape>& shapes,
-                        std::vector<Vec6<double>>& load) {
+void move_loads_to_ends(const Robot& robot, const Ways& ways, const Run& run,
+                        const std::vector<BeamShape>& shapes, std::vector<Vec6<double>>& load) {
   Vec6<double> near{};
   Vec6<double> far{};
   std::size_t module = at(run.from);
   for (int i = 1; i < run.length; ++i) {
     module = at(robot.connected()[module][run.direction]);
-    add_share(shapes[at(i)], run.direction, load[module], near);
-    add_share(shapes[at(run.length - i)], run.direction ^ 1U, load[module], far);
+    ways.add_share(shapes[at(i)], run.direction, load[module], near);
+    ways.add_share(shapes[at(run.length - i)], run.direction ^ 1U, load[module], far);
   }
   base::add_to(load[at(run.from)], near);
   base::add_to(load[at(robot.connected()[module][run.direction])], far);
 }
 
 /// The factors of all runs that a network has, by direction and length.
-using RunFactors = std::array<std::vector<RunFactor>, base::kDirectionCount>;
+using RunFactors = std::array<std::vector<RunFactor>, base::Lattice::kDirectionCountMax>;
 
-RunFactors factorize_runs(const ReducedNetwork& network,
-                          const mechanics::BeamStiffness<double>& beam,
+RunFactors factorize_runs(const ReducedNetwork& network, const model::LatticeBeam<double>& beam,
                           const Vec6<double>& common) {
   RunFactors factors;
   factors.fill(std::vector<RunFactor>(kBeamLengthMax + 1));
@@ -140,11 +159,11 @@ RunFactors factorize_runs(const ReducedNetwork& network,
 /// what they hang on, are held.
 void apply_flexibilities(const Robot& robot, const ReducedNetwork& network, Team& team,
                          const Vec6<double>& common, std::vector<Vec6<double>>& load) {
-  const auto beam = long_beam(robot.material(), 1);
+  const auto beam = long_beam(robot.material(), robot.lattice(), 1);
   const RunFactors factors = factorize_runs(network, beam, common);
-  std::array<Mat6<double>, base::kDirectionCount> inverse_11;
+  std::vector<Mat6<double>> inverse_11(at(robot.lattice().direction_count));
   for (std::size_t d = 0; d < inverse_11.size(); ++d) {
-    inverse_11[d] = inverse_of(mechanics::block_11(beam, direction_of(d)));
+    inverse_11[d] = inverse_of(beam.block_11(direction_of(d)));
   }
   team.share(0, network.runs.size(), [&](std::size_t begin, std::size_t end) {
     for (const Run& run : std::span(network.runs).subspan(begin, end - begin)) {
@@ -159,8 +178,8 @@ void apply_flexibilities(const Robot& robot, const ReducedNetwork& network, Team
 }
 
 /// Moves a run's inner modules with its ends, and by what their loads do.
-void recover_run(const Robot& robot, const Run& run, const std::vector<BeamShape>& shapes,
-                 const std::vector<Vec6<double>>& condensed,
+void recover_run(const Robot& robot, const Ways& ways, const Run& run,
+                 const std::vector<BeamShape>& shapes, const std::vector<Vec6<double>>& condensed,
                  std::vector<Vec6<double>>& displacement) {
   std::array<std::size_t, kBeamLengthMax + 1> modules{};
   modules[0] = at(run.from);
@@ -172,8 +191,8 @@ void recover_run(const Robot& robot, const Run& run, const std::vector<BeamShape
   const Vec6<double> far = displacement[modules[length]];
   for (std::size_t i = 1; i < length; ++i) {
     Vec6<double> u = condensed[modules[i]];
-    add_motion(shapes[i], run.direction, near, u);
-    add_motion(shapes[length - i], run.direction ^ 1U, far, u);
+    ways.add_motion(shapes[i], run.direction, near, u);
+    ways.add_motion(shapes[length - i], run.direction ^ 1U, far, u);
     displacement[modules[i]] = u;
   }
 }
@@ -189,13 +208,14 @@ std::vector<Vec6<double>> condense(const Robot& robot, const ReducedNetwork& net
     }
   });
   const double pitch = robot.material().pitch_mm;
+  const Ways ways(robot.lattice());
   for (const auto& [module, direction] : network.hanging) {
     const std::size_t host = at(robot.connected()[at(module)][direction]);
-    base::add_to(load[host], moved(load[at(module)], direction ^ 1U, pitch));
+    base::add_to(load[host], moved(load[at(module)], ways.unit(direction ^ 1U), pitch));
   }
   ShapeTable shapes(pitch);
   for (const Run& run : network.runs) {
-    move_loads_to_ends(robot, run, shapes.of(run.length), load);
+    move_loads_to_ends(robot, ways, run, shapes.of(run.length), load);
   }
   const Vec6<double> common = loads.is_uniform() ? loads[0] : Vec6<double>{};
   apply_flexibilities(robot, network, team, common, load);
@@ -205,12 +225,13 @@ std::vector<Vec6<double>> condense(const Robot& robot, const ReducedNetwork& net
 void recover(const Robot& robot, const ReducedNetwork& network, Team& team,
              const std::vector<Vec6<double>>& condensed, std::vector<Vec6<double>>& displacement) {
   ShapeTable shapes(robot.material().pitch_mm);
+  const Ways ways(robot.lattice());
   for (const Run& run : network.runs) {
     shapes.of(run.length);
   }
   team.share(0, network.runs.size(), [&](std::size_t begin, std::size_t end) {
     for (const Run& run : std::span(network.runs).subspan(begin, end - begin)) {
-      recover_run(robot, run, shapes.known(run.length), condensed, displacement);
+      recover_run(robot, ways, run, shapes.known(run.length), condensed, displacement);
     }
   });
   for (std::size_t i = network.hanging.size(); i-- > 0;) {
@@ -218,10 +239,12 @@ void recover(const Robot& robot, const ReducedNetwork& network, Team& team,
     const std::size_t host = at(robot.connected()[at(module)][direction]);
     Vec6<double>& u = displacement[at(module)];
     u = displacement[host];  // As one rigid body, from the host to what hangs on it.
-    const auto [a, j, k, sign] = Axes(direction ^ 1U);
-    const double arm = sign * robot.material().pitch_mm;
-    u[j] += arm * u[k + 3];
-    u[k] -= arm * u[j + 3];
+    const Point arm = scaled(ways.unit(direction ^ 1U), robot.material().pitch_mm);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const std::size_t j = (axis + 1) % 3;
+      const std::size_t k = (axis + 2) % 3;
+      u[axis] += u[j + 3] * arm[k] - u[k + 3] * arm[j];
+    }
     base::add_to(u, condensed[at(module)]);
   }
 }

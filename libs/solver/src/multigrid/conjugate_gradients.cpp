@@ -44,7 +44,7 @@ void ConjugateGradients<Real>::subtract_product() {
       }
     });
     team_.share(0, node_count_, [&](std::size_t begin, std::size_t end) {
-      kernels<Real>().apply(hierarchy_.lattice(), p_.data(), q_.data(), {begin, end});
+      hierarchy_.apply(p_.data(), q_.data(), {begin, end});
       for (std::size_t i = 6 * begin; i < 6 * end; ++i) {
         r_[i] -= q_[i];
       }
@@ -99,7 +99,7 @@ base::Vec6<double> ConjugateGradients<Real>::correction(std::size_t node) {
 template <class Real>
 double ConjugateGradients<Real>::multiply() {
   return team_.sum(node_count_, [&](std::size_t begin, std::size_t end) {
-    return kernels<Real>().apply(hierarchy_.lattice(), p_.data(), q_.data(), {begin, end});
+    return hierarchy_.apply(p_.data(), q_.data(), {begin, end});
   });
 }
 

@@ -40,7 +40,7 @@ void Cycle<Real>::relax_colour(std::size_t depth, std::size_t colour, bool is_fi
                 const Range range{begin, end};
                 if (is_first) {
                   sweeps().relax_first(level.type.data(), level.inverse.data(), r, z, range);
-                } else if (depth == 0) {
+                } else if (hierarchy_.is_cubic(depth)) {
                   sweeps().relax_lattice(hierarchy_.block_lattice(), r, z, range);
                 } else {
                   sweeps().relax_cluster(level.block_view(), r, z, range);
@@ -83,7 +83,7 @@ void Cycle<Real>::pass_down(std::size_t depth, std::size_t settled) {
   const Kernels<Real>& kernel = kernels<Real>();
   team_.share(0, coarse.node_count, [&](std::size_t begin, std::size_t end) {
     const Range range{begin, end};
-    if (depth == 0) {
+    if (hierarchy_.is_cubic(depth)) {
       kernel.restrict_lattice(hierarchy_.lattice(), level.transfer(), settled, level.r.data(), z,
                               coarse.r.data(), range);
     } else {
@@ -118,7 +118,7 @@ void Cycle<double>::leave_residual(std::size_t depth) {
   Level<double>& level = hierarchy_.levels()[depth];
   team_.share(0, level.node_count, [&](std::size_t begin, std::size_t end) {
     const Range range{begin, end};
-    if (depth == 0) {
+    if (hierarchy_.is_cubic(depth)) {
       rounding().leave_lattice(hierarchy_.lattice(), level.r.data(), level.z.data(),
                                level.rough_r.data(), range);
     } else {

@@ -18,7 +18,10 @@ using base::at;
 class Eliminator {
  public:
   Eliminator(const Robot& robot, Team& team)
-      : robot_(robot), team_(team), degree_(robot.modules().size()) {
+      : robot_(robot),
+        team_(team),
+        axis_count_(at(robot.lattice().direction_count) / 2),
+        degree_(robot.modules().size()) {
     result_.is_gone.assign(robot.modules().size(), 0);
   }
 
@@ -82,7 +85,7 @@ class Eliminator {
     if (result_.is_gone[module] != 0 || !is_free(module) || degree_[module] != 2) {
       return -1;
     }
-    for (std::size_t axis = 0; axis < 3; ++axis) {
+    for (std::size_t axis = 0; axis < axis_count_; ++axis) {
       if (is_connected(module, 2 * axis) && is_connected(module, 2 * axis + 1)) {
         return static_cast<int>(axis);
       }
@@ -102,7 +105,7 @@ class Eliminator {
     }
     for (std::size_t i = 0; i < axis.size(); ++i) {
       const bool is_end = axis[i] < 0 && (result_.is_gone[i] == 0 || !is_free(i));
-      for (std::size_t direction = 0; is_end && direction < 6; direction += 2) {
+      for (std::size_t direction = 0; is_end && direction < 2 * axis_count_; direction += 2) {
         if (is_connected(i, direction) &&
             axis[next(i, direction)] == static_cast<int>(direction / 2)) {
           take_run(i, direction, axis);
@@ -111,7 +114,7 @@ class Eliminator {
     }
   }
 
-  /// From an end along +x, +y or +z to the other end, in beams of at most kBeamLengthMax.
+  /// From an end in a direction of even index to the other end, in beams of at most kBeamLengthMax.
   void take_run(std::size_t from, std::size_t direction, const std::vector<std::int8_t>& axis) {
     bool is_at_end = false;
     while (!is_at_end) {
@@ -156,6 +159,7 @@ class Eliminator {
 
   const Robot& robot_;
   Team& team_;
+  std::size_t axis_count_;            ///< Pairs of opposite directions.
   std::vector<std::uint8_t> degree_;  ///< Connections that are left.
   Elimination result_;
 };

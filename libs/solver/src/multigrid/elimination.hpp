@@ -27,12 +27,13 @@ struct Run {
 /// runs, that is, with two connections each that lie opposite.
 struct Elimination {
   std::vector<std::uint8_t> is_gone;  ///< By module: eliminated, or fixed.
-  /// The axis of the run that each module lies in, else kNoAxis; empty if nothing is eliminated.
+  /// The axis, that is half of a direction, of the run that each module lies in, else kNoAxis;
+  /// empty if nothing is eliminated.
   std::vector<std::uint8_t> run_axis;
   std::vector<HangingModule> hanging;  ///< In the order of elimination.
   std::vector<Run> runs;
 
-  static constexpr std::uint8_t kNoAxis = 3;
+  static constexpr std::uint8_t kNoAxis = 255;
 
   bool is_empty() const { return hanging.empty() && runs.empty(); }
 };

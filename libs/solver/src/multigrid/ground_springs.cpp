@@ -16,16 +16,17 @@ using base::at;
 /// Ground springs of beams; what was asked last is remembered, as most are alike.
 class BeamGroundSprings {
  public:
-  explicit BeamGroundSprings(const model::Material& material) : material_(material) {}
+  BeamGroundSprings(const base::Lattice& lattice, const model::Material& material)
+      : lattice_(lattice), material_(material) {}
 
-  GroundSpring spring(std::size_t node, std::size_t direction, std::size_t length) {
-    if (direction != direction_ || length != length_) {
-      spring_ = beam_spring(material_, direction, length);
-      direction_ = direction;
-      length_ = length;
+  GroundSpring spring(const GroundBeam& beam) {
+    if (beam.direction != last_.direction || beam.length != last_.length) {
+      spring_ = beam_spring(lattice_, material_, beam.direction, beam.length);
+      last_ = beam;
     }
-    return {.node = static_cast<std::int32_t>(node),
-            .direction = spring_.direction,
+    return {.node = beam.node,
+            .direction = beam.direction,
+            .way = spring_.direction,
             .length = spring_.length,
             .reach = spring_.length,
             .middle = spring_.middle,
@@ -33,9 +34,9 @@ class BeamGroundSprings {
   }
 
  private:
+  const base::Lattice& lattice_;
   const model::Material& material_;
-  std::size_t direction_ = base::kDirectionCount;  ///< None yet.
-  std::size_t length_ = 0;
+  GroundBeam last_;  ///< None yet: of no length.
   Spring spring_;
 };
 
@@ -46,8 +47,9 @@ GroundSpring moved(const GroundSpring& spring, const Seat<Real>& seat) {
   return {
       .node = seat.cluster,
       .direction = spring.direction,
+      .way = spring.way,
       .length = spring.length,
-      .reach = spring.reach + behind(arm, spring.direction),
+      .reach = spring.reach + behind(arm, spring.way),
       .middle = {spring.middle[0] + arm[0], spring.middle[1] + arm[1], spring.middle[2] + arm[2]},
       .stiffness = carried(spring.stiffness, arm)};
 }
@@ -72,8 +74,7 @@ void unite(GroundSpring& sum, double count) {
     x /= count;
   }
   sum.reach /= count;
-  const Mat longer =
-      stretched(sum.stiffness, sum.middle, sum.direction / 2U, sum.length / count, sum.reach);
+  const Mat longer = stretched(sum.stiffness, sum.middle, sum.way, sum.length / count, sum.reach);
   if (is_finite(longer)) {
     sum.stiffness = longer;
   }
@@ -85,19 +86,13 @@ void unite(GroundSpring& sum, double count) {
 std::vector<GroundSpring> finest_ground_springs(const ReducedNetwork& network,
                                                 const model::Material& material,
                                                 const GroundTable& ground) {
-  constexpr std::size_t kDown = base::index(base::Direction::kMinusZ);
   std::vector<GroundSpring> springs;
-  BeamGroundSprings beams(material);
-  for (std::size_t node = 0; node < network.node_count; ++node) {
-    const Kind& kind = network.kind[node];
-    for (std::size_t d = 0; d < 6; ++d) {
-      if (kind[d] > 0 && at(network.other[node][d]) >= network.node_count) {
-        springs.push_back(beams.spring(node, d, kind[d]));
-      }
-    }
-    if (kind[kContactByte] != 0) {
-      springs.push_back(beams.spring(node, kDown, 1));
-      springs.back().stiffness = ground[kind[kContactByte]];
+  springs.reserve(network.ground_beams.size());
+  BeamGroundSprings beams(network.lattice, material);
+  for (const GroundBeam& beam : network.ground_beams) {
+    springs.push_back(beams.spring(beam));
+    if (beam.contact != 0) {
+      springs.back().stiffness = ground[beam.direction][beam.contact];
     }
   }
   return springs;

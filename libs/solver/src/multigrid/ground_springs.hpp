@@ -19,18 +19,20 @@ namespace holdfast::solver {
 /// A spring to something that does not move: the ground, a fixed module.
 struct GroundSpring {
   std::int32_t node = 0;
-  std::uint8_t direction = 0;
-  double length = 0;  ///< mm
-  double reach = 0;   ///< From the ground to the cluster's centre, mm.
+  std::uint8_t direction = 0;  ///< Of the lattice.
+  Point way = {};              ///< Unit vector in that direction.
+  double length = 0;           ///< mm
+  double reach = 0;            ///< From the ground to the cluster's centre, mm.
   Point middle = {};
   Mat stiffness = {};  ///< At the node.
 };
 
-/// What a facet adds to K_pp of its node, by the number that kContactByte has for its state. (The
-/// first is not used: stuck facets are beams.)
-using GroundTable = std::array<Mat, 1 + 2 * mechanics::ContactState::kCodeCount>;
+/// What a facet adds to K_pp of its node, by direction and by the number of its state. (The first
+/// is not used: stuck facets are beams.)
+using GroundTable = std::array<std::array<Mat, 1 + 2 * mechanics::ContactState::kCodeCount>,
+                               base::Lattice::kDirectionCountMax + 1>;
 
-/// The number that kContactByte has for a facet's state: 0 for one that is stuck, a beam like any
+/// The number of a facet's state: 0 for one that is stuck, a beam like any
 /// other, else one for each state, held sideways or not.
 inline std::uint8_t contact_number(const mechanics::ContactState& state, bool is_held_sideways) {
   const bool is_stuck = state == mechanics::ContactState{} && is_held_sideways;

@@ -3,7 +3,9 @@
 #include "hierarchy.hpp"
 
 #include <algorithm>
+#include <array>
 #include <bit>
+#include <cmath>
 #include <type_traits>
 #include <unordered_map>
 #include <utility>
@@ -11,7 +13,9 @@
 #include "beam_shapes.hpp"
 #include "block_pool.hpp"
 #include "holdfast/base/algebra.hpp"
+#include "level_blocks.hpp"
 #include "matrix_blocks.hpp"
+#include "morton_order.hpp"
 
 namespace holdfast::solver {
 namespace {
@@ -92,12 +96,56 @@ std::uint64_t gathered(std::uint64_t key) {
   return (key | key >> 32U) & 0x1fffffU;
 }
 
-/// Cells from Morton keys, as positions.
-Point place_of(std::uint64_t key, double pitch) {
-  return {pitch * static_cast<double>(gathered(key)),
-          pitch * static_cast<double>(gathered(key >> 1U)),
-          pitch * static_cast<double>(gathered(key >> 2U))};
+/// Cells from Morton keys, counted from the robot's lowest corner.
+base::Cell cell_of_key(std::uint64_t key) {
+  return {static_cast<std::int32_t>(gathered(key)), static_cast<std::int32_t>(gathered(key >> 1U)),
+          static_cast<std::int32_t>(gathered(key >> 2U))};
 }
+
+/// Where nodes are, mm, counted from the robot's lowest corner. Where a lattice's steps are no
+/// whole numbers of pitches they are rounded to 2^-20 mm, so that places and their differences are
+/// exact.
+class Places {
+ public:
+  Places(const ReducedNetwork& network, double pitch)
+      : lattice_(network.lattice),
+        is_cubic_(network.lattice == base::kCubic),
+        low_(network.low),
+        pitch_(pitch) {
+    constexpr double kPerMm = 1U << 20U;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const base::Cell axial = {i == 0 ? 1 : 0, i == 1 ? 1 : 0, i == 2 ? 1 : 0};
+      for (std::size_t k = 0; k < 3; ++k) {
+        const double step = pitch * base::place_of(lattice_, axial)[k];
+        step_[i][k] = std::nearbyint(step * kPerMm) / kPerMm;
+      }
+    }
+  }
+
+  Point of(const base::Cell& cell) const {
+    if (is_cubic_) {
+      return {pitch_ * cell.x, pitch_ * cell.y, pitch_ * cell.z};
+    }
+    const base::Cell axial =
+        axial_of_brick(lattice_, {low_.x + cell.x, low_.y + cell.y, low_.z + cell.z});
+    const base::Cell from = axial_of_brick(lattice_, low_);
+    const Point steps = {static_cast<double>(axial.x - from.x),
+                         static_cast<double>(axial.y - from.y),
+                         static_cast<double>(axial.z - from.z)};
+    Point place{};
+    for (std::size_t k = 0; k < 3; ++k) {
+      place[k] = steps[0] * step_[0][k] + steps[1] * step_[1][k] + steps[2] * step_[2][k];
+    }
+    return place;
+  }
+
+ private:
+  base::Lattice lattice_;
+  bool is_cubic_;
+  base::Cell low_;
+  double pitch_;
+  std::array<Point, 3> step_{};
+};
 
 /// What inverse_block() makes of a singular matrix; the inverse of no other has a zero there.
 bool is_zero(const Block<float>& inverse) { return inverse.column[0][0] == 0; }
@@ -114,28 +162,34 @@ void fill_vectors(Level<Real>& level) {
 
 }  // namespace
 
-/// The finest level: nodes of the same kind with partners on the same sides share their springs.
+/// Keys, and places from the robot's lowest corner on.
 template <class Real>
-void Hierarchy<Real>::fill_graph(Team& team, SpringGraph& graph) const {
+void Hierarchy<Real>::place_nodes(Team& team, SpringGraph& graph) const {
   const std::size_t count = network_.node_count;
   graph.order = network_.order;
   graph.key.resize(count);
   graph.place.resize(count);
   graph.box.resize(std::is_same_v<Real, double> ? count : 0);
+  const Places places(network_, material_.pitch_mm);
   team.share(0, count, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const std::size_t node = at(network_.order[i]);
+      const base::Cell cell = cell_of_key(network_.key[i]);
       graph.key[node] = network_.key[i];
-      graph.place[node] = place_of(network_.key[i], material_.pitch_mm);
+      graph.place[node] = places.of(cell);
       if constexpr (std::is_same_v<Real, double>) {
-        const Point cell = place_of(network_.key[i], 1);
-        graph.box[node].low = {static_cast<std::int32_t>(cell[0]),
-                               static_cast<std::int32_t>(cell[1]),
-                               static_cast<std::int32_t>(cell[2])};
+        graph.box[node].low = {cell.x, cell.y, cell.z};
         graph.box[node].high = graph.box[node].low;
       }
     }
   });
+}
+
+/// The springs of cubes: nodes of the same kind with partners on the same sides share them.
+template <class Real>
+void Hierarchy<Real>::connect_cubes(SpringGraph& graph) const {
+  const std::size_t count = network_.node_count;
+  const CubicBeams& cubic = network_.cubic;
   graph.start.resize(count + 1);
   graph.other.reserve(6 * count);
   graph.pattern.resize(count);
@@ -144,10 +198,10 @@ void Hierarchy<Real>::fill_graph(Team& team, SpringGraph& graph) const {
   for (std::size_t node = 0; node < count; ++node) {
     Kind kind{};
     for (std::size_t d = 0; d < 6; ++d) {
-      const std::size_t length = network_.kind[node][d];
-      if (length > 0 && at(network_.other[node][d]) < count) {
+      const std::size_t length = cubic.kind[node][d];
+      if (length > 0 && at(cubic.other[node][d]) < count) {
         kind[d] = static_cast<std::uint8_t>(length);
-        graph.other.push_back(network_.other[node][d]);
+        graph.other.push_back(cubic.other[node][d]);
       }
     }
     graph.start[node + 1] = static_cast<std::int32_t>(graph.other.size());
@@ -161,9 +215,41 @@ void Hierarchy<Real>::fill_graph(Team& team, SpringGraph& graph) const {
     graph.pattern[node] = found->second;
     for (std::size_t d = 0; is_new && d < 6; ++d) {
       if (kind[d] > 0) {
-        graph.springs.push_back(beam_spring(material_, d, kind[d]));
+        graph.springs.push_back(beam_spring(network_.lattice, material_, d, kind[d]));
       }
     }
+  }
+}
+
+/// The springs of all other robots: the same for all nodes of one kind.
+template <class Real>
+void Hierarchy<Real>::connect_nodes(SpringGraph& graph) const {
+  const LatticeBeams& beams = network_.beams;
+  graph.start = beams.start;
+  graph.other = beams.other;
+  std::vector<std::uint32_t> pattern_of_kind;
+  for (const LatticeBeams::Lengths& lengths : beams.lengths) {
+    pattern_of_kind.push_back(static_cast<std::uint32_t>(graph.springs.size()));
+    for (std::size_t d = 0; d < lengths.size(); ++d) {
+      if (lengths[d] > 0) {
+        graph.springs.push_back(beam_spring(network_.lattice, material_, d, lengths[d]));
+      }
+    }
+  }
+  graph.pattern.reserve(beams.kind.size());
+  for (const std::uint32_t kind : beams.kind) {
+    graph.pattern.push_back(pattern_of_kind[kind]);
+  }
+}
+
+template <class Real>
+void Hierarchy<Real>::fill_graph(Team& team, SpringGraph& graph) const {
+  place_nodes(team, graph);
+  graph.is_cubic = network_.lattice == base::kCubic;
+  if (network_.is_cubic) {
+    connect_cubes(graph);
+  } else {
+    connect_nodes(graph);
   }
 }
 
@@ -176,7 +262,7 @@ void Hierarchy<Real>::make_lattice() {
   level.type.resize(network_.node_count);
   fill_vectors(level);
   for (std::size_t node = 0; node < network_.node_count; ++node) {
-    if (node > 0 && network_.kind[node] == network_.kind[node - 1]) {
+    if (node > 0 && network_.cubic.kind[node] == network_.cubic.kind[node - 1]) {
       level.type[node] = level.type[node - 1];
     } else {
       set_type(node);
@@ -185,66 +271,81 @@ void Hierarchy<Real>::make_lattice() {
   point_at_lattice();
 }
 
+/// What the facets of cubes on a floor add to K_pp.
+template <class Real>
+const Mat& Hierarchy<Real>::floor_tangent(std::uint8_t contact) const {
+  return ground_[base::index(base::down(base::kCubic))][contact];
+}
+
 /// K_pp of a node on the finest level.
 template <class Real>
 Mat Hierarchy<Real>::diagonal(const Kind& kind) const {
   Mat sum;
   for (std::size_t d = 0; d < 6; ++d) {
     if (kind[d] > 0) {
-      base::add_to(sum,
-                   mechanics::block_11(long_beam(material_, kind[d]), static_cast<Direction>(d)));
+      base::add_to(
+          sum, long_beam(material_, network_.lattice, kind[d]).block_11(static_cast<Direction>(d)));
     }
   }
   if (kind[kContactByte] != 0) {
-    base::add_to(sum, ground_[kind[kContactByte]]);
+    base::add_to(sum, floor_tangent(kind[kContactByte]));
   }
   return sum;
 }
 
 template <class Real>
 void Hierarchy<Real>::set_type(std::size_t node) {
-  const auto kind = std::bit_cast<std::uint64_t>(network_.kind[node]);
+  const auto kind = std::bit_cast<std::uint64_t>(network_.cubic.kind[node]);
   const auto [found, is_new] =
       type_of_kind_.try_emplace(kind, static_cast<std::uint32_t>(type_of_kind_.size()));
   levels_.front().type[node] = found->second;
   if (is_new) {
-    add_type(network_.kind[node]);
+    add_type(network_.cubic.kind[node]);
   }
 }
 
+/// K_pp by the nodes' springs, those to the ground left out.
 template <class Real>
-void Hierarchy<Real>::add_level(const SpringGraph& graph, std::vector<std::size_t> colour_start) {
-  Level<Real>& level = levels_.emplace_back();
-  level.node_count = graph.order.size();
-  level.colour_start = std::move(colour_start);
-  level.start = graph.start;
-  level.other = graph.other;
-  couple(graph, level);
+void Hierarchy<Real>::set_types(const SpringGraph& graph, Level<Real>& level) const {
   level.type.resize(level.node_count);
   constexpr std::uint32_t kNone = 0xffffffffU;
   // The last is for nodes without springs, whose pattern is that of the next one, too.
   std::vector<std::uint32_t> type_of_pattern(graph.springs.size() + 1, kNone);
-  std::vector<Mat> sums;
   for (std::size_t node = 0; node < level.node_count; ++node) {
     const bool is_alone = graph.start[node] == graph.start[node + 1];
     std::uint32_t& type = type_of_pattern[is_alone ? graph.springs.size() : graph.pattern[node]];
     if (type == kNone) {
-      type = static_cast<std::uint32_t>(sums.size());
-      sums.push_back(spring_sum(graph, node));
+      type = static_cast<std::uint32_t>(level.inverse.size());
+      // A pattern that only nodes on the ground have may be singular alone; its inverse is not
+      // used.
+      add_type(level, spring_sum(graph, node));
     }
     level.type[node] = type;
   }
-  level.inverse.reserve(sums.size());
-  for (const Mat& sum : sums) {
-    // A pattern that only nodes on the ground have may be singular alone; its inverse is not used.
-    level.inverse.push_back(inverse_block(sum));
-    if constexpr (std::is_same_v<Real, float>) {
-      level.couplings.blocks.diagonal.push_back(block_of<float>(sum));
-    }
+}
+
+template <class Real>
+void Hierarchy<Real>::add_level(const SpringGraph& graph, const std::vector<GroundSpring>& springs,
+                                std::vector<std::size_t> colour_start) {
+  Level<Real>& level = levels_.emplace_back();
+  level.node_count = graph.order.size();
+  level.colour_start = std::move(colour_start);
+  if (is_finest(level) && !network_.has_long_beams) {
+    level.stencil = make_stencil(network_, material_);
   }
+  if (std::is_same_v<Real, double> || level.stencil.other.empty()) {
+    level.start = graph.start;
+    level.other = graph.other;
+  }
+  couple(graph, level);
+  set_types(graph, level);
   fill_vectors(level);
-  level.first.assign(level.node_count + 1, {});
-  level.first_image.assign(level.node_count + 1, {});
+  if (!is_finest(level)) {
+    level.first.assign(level.node_count + 1, {});
+    level.first_image.assign(level.node_count + 1, {});
+  }
+  held_.push_back(held_nodes(graph, springs));
+  set_ground_springs(levels_.size() - 1, springs);
 }
 
 /// Takes note of the nodes of the newest level that have ground springs.
@@ -267,9 +368,10 @@ template <class Real>
 void Hierarchy<Real>::set_ground_springs(std::size_t depth,
                                          const std::vector<GroundSpring>& springs) {
   Level<Real>& level = levels_[depth];
-  Held& held = held_[depth - 1];
+  Held& held = held_[depth];
   clear_ground(level, held.free_type_count);
   BlockPool<Real> pool;
+  BlockPool<double> finest_pool;
   auto spring = springs.begin();
   for (HeldNode& node : held.nodes) {
     node.ground_sum = {};
@@ -278,11 +380,13 @@ void Hierarchy<Real>::set_ground_springs(std::size_t depth,
     }
     node.sum = node.spring_sum;
     base::add_to(node.sum, node.ground_sum);
-    // Only K_pp counts in single precision; in double, what is on the ground must be known by
-    // itself.
-    const std::size_t type = std::is_same_v<Real, float>
-                                 ? held.free_type_count + pool.insert(block_of<Real>(node.sum))
-                                 : level.inverse.size();
+    // Only K_pp counts in single precision, on the finest level in double as well; in double, what
+    // is on the ground must be known by itself.
+    std::size_t type = level.inverse.size();
+    if (std::is_same_v<Real, float>) {
+      type = held.free_type_count + (depth == 0 ? finest_pool.insert(block_of<double>(node.sum))
+                                                : pool.insert(block_of<Real>(node.sum)));
+    }
     level.type[node.node] = static_cast<std::uint32_t>(type);
     if (type == level.inverse.size()) {
       add_grounded_type(level, node);
@@ -311,11 +415,16 @@ void Hierarchy<Real>::look_for_singular_nodes(const std::vector<GroundSpring>& s
 template <class Real>
 void Hierarchy<Real>::update_contact() {
   std::vector<GroundSpring> springs = finest_ground_springs(network_, material_, ground_);
-  for (const GroundSpring& spring : springs) {
-    set_type(at(spring.node));
+  if (network_.is_cubic) {
+    for (const GroundSpring& spring : springs) {
+      set_type(at(spring.node));
+    }
+    look_for_singular_nodes(springs);
+    point_at_lattice();
+  } else {
+    is_singular_ = false;
+    set_ground_springs(0, springs);
   }
-  look_for_singular_nodes(springs);
-  point_at_lattice();
   for (std::size_t depth = 1; depth < levels_.size(); ++depth) {
     springs = coarse_ground_springs(springs, levels_[depth - 1].seat);
     set_ground_springs(depth, springs);
@@ -350,7 +459,6 @@ Hierarchy<Real>::Hierarchy(const ReducedNetwork& network, const model::Material&
                            Team& team, const GroundTable& ground,
                            std::span<const std::int32_t> alone)
     : network_(network), material_(material), ground_(ground), alone_count_(alone.size()) {
-  make_lattice();
   SpringGraph graph;
   fill_graph(team, graph);
   graph.is_alone.assign(alone.empty() ? 0 : network_.node_count, false);
@@ -358,7 +466,13 @@ Hierarchy<Real>::Hierarchy(const ReducedNetwork& network, const model::Material&
     graph.is_alone[at(node)] = true;
   }
   std::vector<GroundSpring> springs = finest_ground_springs(network_, material_, ground_);
-  look_for_singular_nodes(springs);
+  if (network_.is_cubic) {
+    make_lattice();
+    held_.emplace_back();
+    look_for_singular_nodes(springs);
+  } else {
+    add_level(graph, springs, network_.colour_start);
+  }
   while (!coarsest_ &&
          (levels_.size() == 1 || graph.order.size() > kCoarsestCount + alone_count_)) {
     SpringGraph coarse;
@@ -368,9 +482,7 @@ Hierarchy<Real>::Hierarchy(const ReducedNetwork& network, const model::Material&
     }
     graph = std::move(coarse);
     springs = coarse_ground_springs(springs, levels_.back().seat);
-    add_level(graph, std::move(colour_start));
-    held_.push_back(held_nodes(graph, springs));
-    set_ground_springs(levels_.size() - 1, springs);
+    add_level(graph, springs, std::move(colour_start));
     try_to_factor(graph);
   }
 }

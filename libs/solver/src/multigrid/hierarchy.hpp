@@ -25,7 +25,8 @@
 /// corrections are too small [Braess 1995].
 namespace holdfast::solver {
 
-/// The finest level's beams, and what its types of nodes have besides an inverse.
+/// The finest level's beams of cubes on a floor, and what its types of nodes have besides an
+/// inverse.
 template <class Real>
 struct Beams;
 
@@ -56,6 +57,15 @@ class Hierarchy {
   void update_contact();
 
   std::vector<Level<Real>>& levels() { return levels_; }
+
+  /// Whether a level has the kernels of cubes on a floor; only the finest may.
+  bool is_cubic(std::size_t depth) const { return depth == 0 && network_.is_cubic; }
+
+  /// q = K p on the finest level, in double precision; returns p . q.
+  double apply(const Six<Real>* p, double* q, const Range& range) const {
+    return network_.is_cubic ? kernels<Real>().apply_lattice(lattice_, p, q, range)
+                             : kernels<Real>().apply_finest(levels_.front().view(), p, q, range);
+  }
 
   const LatticeView<Real>& lattice() const { return lattice_; }
 
@@ -88,17 +98,26 @@ class Hierarchy {
     std::vector<HeldNode> nodes;
   };
 
+  bool is_finest(const Level<Real>& level) const { return &level == levels_.data(); }
+
   void make_lattice();
   void make_beams();
   void point_at_lattice();
   void set_type(std::size_t node);
+  const Mat& floor_tangent(std::uint8_t contact) const;
   void fill_graph(Team& team, SpringGraph& graph) const;
+  void place_nodes(Team& team, SpringGraph& graph) const;
+  void connect_cubes(SpringGraph& graph) const;
+  void connect_nodes(SpringGraph& graph) const;
+  void add_level(const SpringGraph& graph, const std::vector<GroundSpring>& springs,
+                 std::vector<std::size_t> colour_start);
   Mat diagonal(const Kind& kind) const;
   void add_type(const Kind& kind);
   void couple(const SpringGraph& graph, Level<Real>& level) const;
   void clear_ground(Level<Real>& level, std::size_t free_type_count) const;
   void add_grounded_type(Level<Real>& level, const HeldNode& node) const;
-  void add_level(const SpringGraph& graph, std::vector<std::size_t> colour_start);
+  void add_type(Level<Real>& level, const Mat& sum) const;
+  void set_types(const SpringGraph& graph, Level<Real>& level) const;
   Held held_nodes(const SpringGraph& graph, const std::vector<GroundSpring>& springs) const;
   void set_ground_springs(std::size_t depth, const std::vector<GroundSpring>& springs);
   void look_for_singular_nodes(const std::vector<GroundSpring>& springs);
@@ -111,7 +130,7 @@ class Hierarchy {
   std::size_t alone_count_ = 0;
   std::unordered_map<std::uint64_t, std::uint32_t> type_of_kind_;
   std::vector<Level<Real>> levels_;
-  std::vector<Held> held_;  ///< By level, from the second on.
+  std::vector<Held> held_;  ///< By level; not filled in where is_cubic().
   LatticeView<Real> lattice_;
   LatticeView<float> block_lattice_;
   Beams<Real> beams_;
@@ -133,6 +152,10 @@ template <>
 void Hierarchy<float>::clear_ground(Level<float>& level, std::size_t free_type_count) const;
 template <>
 void Hierarchy<float>::add_grounded_type(Level<float>& level, const HeldNode& node) const;
+template <>
+void Hierarchy<float>::add_type(Level<float>& level, const Mat& sum) const;
+template <>
+void Hierarchy<double>::add_type(Level<double>& level, const Mat& sum) const;
 template <>
 void Hierarchy<double>::make_beams();
 template <>

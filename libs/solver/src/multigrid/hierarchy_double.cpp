@@ -49,10 +49,10 @@ void Hierarchy<double>::make_beams() {
   beams_.rows = single(beam_rows(network_, material_));
   beams_.springs.resize(3 * kRow);
   for (std::size_t length = 1; length < kRow; ++length) {
-    const auto beam = long_beam(material_, static_cast<int>(length));
+    const auto beam = long_beam(material_, network_.lattice, static_cast<int>(length));
     for (std::size_t axis = 0; axis < 3; ++axis) {
       beams_.springs[axis * kRow + length] =
-          middle_spring(mechanics::block_12(beam, static_cast<Direction>(2 * axis)), axis,
+          middle_spring(beam.block_12(static_cast<Direction>(2 * axis)), axis,
                         material_.pitch_mm * static_cast<double>(length));
     }
   }
@@ -61,20 +61,21 @@ void Hierarchy<double>::make_beams() {
 template <>
 void Hierarchy<double>::add_type(const Kind& kind) {
   levels_.front().inverse.push_back(inverse_block(diagonal(kind)));
-  const std::uint8_t code = kind[kContactByte];
-  beams_.ground.push_back(code == 0 ? Block<double>{} : block_of<double>(ground_[code]));
+  const std::uint8_t contact = kind[kContactByte];
+  beams_.ground.push_back(contact == 0 ? Block<double>{}
+                                       : block_of<double>(floor_tangent(contact)));
 }
 
 template <>
 void Hierarchy<double>::point_at_lattice() {
   const Level<double>& level = levels_.front();
-  lattice_ = {.other = network_.other.data(),
-              .kind = network_.kind.data(),
+  lattice_ = {.other = network_.cubic.other.data(),
+              .kind = network_.cubic.kind.data(),
               .type = level.type.data(),
               .springs = beams_.springs.data(),
               .ground = beams_.ground.data()};
-  block_lattice_ = {.other = network_.other.data(),
-                    .kind = network_.has_long_beams ? network_.kind.data() : nullptr,
+  block_lattice_ = {.other = network_.cubic.other.data(),
+                    .kind = network_.has_long_beams ? network_.cubic.kind.data() : nullptr,
                     .type = level.type.data(),
                     .inverse = level.inverse.data(),
                     .beams = beams_.rows.data()};
@@ -82,7 +83,9 @@ void Hierarchy<double>::point_at_lattice() {
 
 template <>
 void Hierarchy<double>::couple(const SpringGraph& graph, Level<double>& level) const {
-  fill_blocks(graph, level.couplings.blocks);
+  if (level.stencil.other.empty()) {
+    fill_blocks(graph, level.couplings.blocks);
+  }
   for (const Spring& spring : graph.springs) {
     level.couplings.springs.push_back(
         {.stiffness = block_of<double>(spring.stiffness),
@@ -116,8 +119,13 @@ void Hierarchy<double>::clear_ground(Level<double>& level, std::size_t free_type
 
 template <>
 void Hierarchy<double>::add_grounded_type(Level<double>& level, const HeldNode& node) const {
-  level.inverse.push_back(inverse_block(node.sum));
+  add_type(level, node.sum);
   level.couplings.ground.push_back(block_of<double>(node.ground_sum));
+}
+
+template <>
+void Hierarchy<double>::add_type(Level<double>& level, const Mat& sum) const {
+  level.inverse.push_back(inverse_block(sum));
 }
 
 }  // namespace holdfast::solver

@@ -24,8 +24,8 @@ void Hierarchy<float>::add_type(const Kind& kind) {
 template <>
 void Hierarchy<float>::point_at_lattice() {
   const Level<float>& level = levels_.front();
-  lattice_ = {.other = network_.other.data(),
-              .kind = network_.has_long_beams ? network_.kind.data() : nullptr,
+  lattice_ = {.other = network_.cubic.other.data(),
+              .kind = network_.has_long_beams ? network_.cubic.kind.data() : nullptr,
               .type = level.type.data(),
               .inverse = level.inverse.data(),
               .beams = beams_.rows.data(),
@@ -37,19 +37,31 @@ void Hierarchy<float>::point_at_lattice() {
 
 template <>
 void Hierarchy<float>::couple(const SpringGraph& graph, Level<float>& level) const {
-  fill_blocks(graph, level.couplings.blocks);
+  if (level.stencil.other.empty()) {
+    fill_blocks(graph, level.couplings.blocks,
+                is_finest(level) ? &level.couplings.blocks_double : nullptr);
+  }
 }
 
 template <>
 void Hierarchy<float>::clear_ground(Level<float>& level, std::size_t free_type_count) const {
   level.inverse.resize(free_type_count);
   level.couplings.blocks.diagonal.resize(free_type_count);
+  level.couplings.diagonal_double.resize(is_finest(level) ? free_type_count : 0);
 }
 
 template <>
 void Hierarchy<float>::add_grounded_type(Level<float>& level, const HeldNode& node) const {
-  level.inverse.push_back(inverse_block(node.sum));
-  level.couplings.blocks.diagonal.push_back(block_of<float>(node.sum));
+  add_type(level, node.sum);
+}
+
+template <>
+void Hierarchy<float>::add_type(Level<float>& level, const Mat& sum) const {
+  level.inverse.push_back(inverse_block(sum));
+  level.couplings.blocks.diagonal.push_back(block_of<float>(sum));
+  if (is_finest(level)) {
+    level.couplings.diagonal_double.push_back(block_of<double>(sum));
+  }
 }
 
 }  // namespace holdfast::solver

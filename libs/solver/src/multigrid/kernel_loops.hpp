@@ -26,15 +26,15 @@ void relax(const View& level, const Six<float>* r, Six<float>* z, Range range) {
 template <class Real, class View>
 void restrict_to(const View& level, const TransferView<Real>& transfer, std::size_t settled,
                  const Six<Real>* r, const Six<float>* z, Six<Real>* coarse, Range clusters) {
-  for (std::size_t c = clusters.begin; c < clusters.end; ++c) {
+  for (std::size_t k = clusters.begin; k < clusters.end; ++k) {
     decltype(load(r[0])) sum = {};
-    for (std::int32_t i = transfer.start[c]; i < transfer.start[c + 1]; ++i) {
+    for (std::int32_t i = transfer.start[k]; i < transfer.start[k + 1]; ++i) {
       const auto p = static_cast<std::size_t>(transfer.member[i]);
       if (p < settled) {
         sum += force_moved(transfer.seat[p].offset, unbalanced(level, r, z, p));
       }
     }
-    store(coarse[c], sum);
+    store(coarse[transfer.seat[transfer.member[transfer.start[k]]].cluster], sum);
   }
 }
 
@@ -79,8 +79,8 @@ inline void add(const Six<float>* rough, Six<double>* z, Range range) {
 
 inline double sum_of(Double dots) { return (dots[0] + dots[1]) + (dots[2] + dots[3]); }
 
-template <class Real>
-double apply(const LatticeView<Real>& level, const Six<Real>* p, double* q, Range range) {
+template <class Real, class View>
+double apply(const View& level, const Six<Real>* p, double* q, Range range) {
   Double dots = {};
   for (std::size_t node = range.begin; node < range.end; ++node) {
     const auto u = load(p[node]);
@@ -172,7 +172,8 @@ constexpr Kernels<Real> kAll = {.restrict_lattice = restrict_to<Real, LatticeVie
                                 .apply_cluster = apply_cluster<Real>,
                                 .dot_same = dot_same<Real>,
                                 .combine = combine<Real>,
-                                .apply = apply<Real>,
+                                .apply_lattice = apply<Real, LatticeView<Real>>,
+                                .apply_finest = apply<Real, ClusterView<Real>>,
                                 .advance = advance<Real>,
                                 .dot = dot<Real>};
 

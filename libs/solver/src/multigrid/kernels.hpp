@@ -15,7 +15,7 @@ namespace holdfast::solver {
 /// Longest beam, pitches; longer straight runs keep nodes in between.
 inline constexpr int kBeamLengthMax = 32;
 
-/// A robot's nodes and beams as the kernels see them.
+/// The nodes and beams of cubes on a floor as the kernels see them.
 template <class Real>
 struct LatticeView;
 
@@ -42,9 +42,17 @@ struct LatticeView<double> {
   const Block<double>* ground = nullptr;  ///< What kContactByte stands for.
 };
 
-/// A coarse level in compressed rows; equal ones are stored once.
+/// A coarse level, or the finest of other robots, in compressed rows; equal blocks are stored once.
 template <class Real>
 struct ClusterView;
+
+/// The beams of a finest level whose beams are all one pitch long, by node and direction.
+struct StencilView {
+  const std::int32_t* other = nullptr;  ///< [node * 2 * pair_count + direction]
+  std::size_t pair_count = 0;           ///< Of opposite directions.
+  const PairRow<float>* rows = nullptr;
+  const PairRow<double>* rows_double = nullptr;
+};
 
 /// With blocks of K.
 template <>
@@ -56,6 +64,9 @@ struct ClusterView<float> {
   const std::uint32_t* block = nullptr;
   const Block<float>* blocks = nullptr;
   const Block<float>* diagonal = nullptr;
+  const Block<double>* blocks_double = nullptr;  ///< These two of the finest level only.
+  const Block<double>* diagonal_double = nullptr;
+  StencilView stencil = {};  ///< Instead of blocks K_pq, if it has any neighbours.
 };
 
 /// With springs. Both ends of a spring mean the one of the end that comes first.
@@ -74,7 +85,7 @@ struct ClusterView<double> {
 template <class Real>
 struct TransferView {
   const Seat<Real>* seat = nullptr;
-  const std::int32_t* start = nullptr;  ///< Cluster -> its first member in `member`
+  const std::int32_t* start = nullptr;  ///< Of each cluster's members, along the Morton curve.
   const std::int32_t* member = nullptr;
 };
 
@@ -130,7 +141,8 @@ struct Kernels {
   /// y = factor x + other y
   void (*combine)(Real factor, const Vector* x, Real other, Vector* y, Range);
   /// q = K p in double precision; returns p . q.
-  double (*apply)(const Lattice&, const Vector* p, double* q, Range);
+  double (*apply_lattice)(const Lattice&, const Vector* p, double* q, Range);
+  double (*apply_finest)(const Cluster&, const Vector* p, double* q, Range);
   /// x += step p, r -= step q, and r rounded; returns the sum of the squared forces left, torques
   /// left out.
   double (*advance)(double step, const Vector* p, const double* q, double* x, double* r,

@@ -156,6 +156,82 @@ inline Single multiply(const Block<float>& block, Single x) {
   return a + b + c;
 }
 
+/// Number i + kTurn of each three at place i, cyclically; the halves swapped if need be.
+template <int kTurn>
+inline Single turned(Single a) {
+  if constexpr (kTurn == 0) {
+    return a;
+  } else if constexpr (kTurn == 1) {
+    return __builtin_shufflevector(a, a, 1, 2, 0, 4, 5, 3, 6, 7);
+  } else {
+    return __builtin_shufflevector(a, a, 2, 0, 1, 5, 3, 4, 6, 7);
+  }
+}
+
+template <int kTurn>
+inline Single turned_swapped(Single a) {
+  if constexpr (kTurn == 0) {
+    return __builtin_shufflevector(a, a, 3, 4, 5, 0, 1, 2, 6, 7);
+  } else if constexpr (kTurn == 1) {
+    return __builtin_shufflevector(a, a, 4, 5, 3, 1, 2, 0, 6, 7);
+  } else {
+    return __builtin_shufflevector(a, a, 5, 3, 4, 2, 0, 1, 6, 7);
+  }
+}
+
+template <int kTurn>
+inline Wide turned(const Wide& a) {
+  if constexpr (kTurn == 0) {
+    return a;
+  } else if constexpr (kTurn == 1) {
+    return {__builtin_shufflevector(a.low, a.high, 1, 2, 0, 4),
+            __builtin_shufflevector(a.low, a.high, 5, 3, 6, 7)};
+  } else {
+    return {__builtin_shufflevector(a.low, a.high, 2, 0, 1, 5),
+            __builtin_shufflevector(a.low, a.high, 3, 4, 6, 7)};
+  }
+}
+
+template <int kTurn>
+inline Wide turned_swapped(const Wide& a) {
+  if constexpr (kTurn == 0) {
+    return {__builtin_shufflevector(a.low, a.high, 3, 4, 5, 0),
+            __builtin_shufflevector(a.low, a.high, 1, 2, 6, 7)};
+  } else if constexpr (kTurn == 1) {
+    return {__builtin_shufflevector(a.low, a.high, 4, 5, 3, 1),
+            __builtin_shufflevector(a.low, a.high, 2, 0, 6, 7)};
+  } else {
+    return {__builtin_shufflevector(a.low, a.high, 5, 3, 4, 2),
+            __builtin_shufflevector(a.low, a.high, 0, 1, 6, 7)};
+  }
+}
+
+/// What two opposite neighbours contribute.
+template <class Real, class Lanes>
+inline Lanes pair_product(const PairRow<Real>& row, const Lanes& plus, const Lanes& minus) {
+  const Lanes sum = plus + minus;
+  const Lanes difference = plus - minus;
+  return ((load(row.direct[0]) * turned<0>(sum) +
+           load(row.crossed[0]) * turned_swapped<0>(difference)) +
+          (load(row.direct[1]) * turned<1>(sum) +
+           load(row.crossed[1]) * turned_swapped<1>(difference))) +
+         (load(row.direct[2]) * turned<2>(sum) +
+          load(row.crossed[2]) * turned_swapped<2>(difference));
+}
+
+inline Single repeated(float x) { return Single{x, x, x, x, x, x, x, x}; }
+
+/// The same bits, for an x in memory, from where numbers are repeated for nothing.
+inline Single multiply(const Block<float>& block, const Six<float>& x) {
+  const Single a =
+      load(block.column[0]) * repeated(x.v[0]) + load(block.column[1]) * repeated(x.v[1]);
+  const Single b =
+      load(block.column[2]) * repeated(x.v[2]) + load(block.column[3]) * repeated(x.v[3]);
+  const Single c =
+      load(block.column[4]) * repeated(x.v[4]) + load(block.column[5]) * repeated(x.v[5]);
+  return a + b + c;
+}
+
 template <int kColumn>
 inline Wide column_product(const Block<double>& block, const Wide& x) {
   const Double factor = broadcast<kColumn>(x);

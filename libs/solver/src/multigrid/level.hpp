@@ -20,9 +20,12 @@ struct Blocks {
 template <class Real>
 struct Couplings;
 
+/// What the finest level has in double precision, too, as the product with K is made in that.
 template <>
 struct Couplings<float> {
   Blocks blocks;
+  std::vector<Block<double>> blocks_double;
+  std::vector<Block<double>> diagonal_double;
 };
 
 /// Springs by edge, and what holds the types from free_type_count on; blocks for the sweeps.
@@ -35,7 +38,22 @@ struct Couplings<double> {
   std::size_t free_type_count = 0;
 };
 
-/// One level of the preconditioner. The finest keeps its springs in ReducedNetwork.
+/// The finest level's beams by node and direction, if all are one pitch long.
+struct Stencil {
+  std::vector<std::int32_t> other;
+  std::vector<PairRow<float>> rows;
+  std::vector<PairRow<double>> rows_double;
+
+  StencilView view() const {
+    return {.other = other.empty() ? nullptr : other.data(),
+            .pair_count = rows.size(),
+            .rows = rows.data(),
+            .rows_double = rows_double.data()};
+  }
+};
+
+/// One level of the preconditioner. The finest of cubes on a floor keeps its springs in
+/// ReducedNetwork.
 template <class Real>
 struct Level {
   std::size_t node_count = 0;
@@ -44,11 +62,12 @@ struct Level {
   std::vector<std::int32_t> start;
   std::vector<std::int32_t> other;
   Couplings<Real> couplings;
+  Stencil stencil;
   std::vector<std::uint32_t> type;    ///< Node -> K_pp
   std::vector<Block<float>> inverse;  ///< K_pp^-1
   // To the next level; empty on the coarsest.
   std::vector<Seat<Real>> seat;
-  std::vector<std::int32_t> member_start;
+  std::vector<std::int32_t> member_start;  ///< By cluster, along the Morton curve.
   std::vector<std::int32_t> member;
   // Vectors of the cycle, one node more than there are, which stays zero.
   std::vector<Six<Real>> r;
@@ -70,7 +89,8 @@ struct Level {
             .inverse = inverse.data(),
             .block = couplings.blocks.block.data(),
             .blocks = couplings.blocks.blocks.data(),
-            .diagonal = couplings.blocks.diagonal.data()};
+            .diagonal = couplings.blocks.diagonal.data(),
+            .stencil = stencil.view()};
   }
 
   TransferView<Real> transfer() const {
@@ -80,7 +100,10 @@ struct Level {
 
 template <>
 inline ClusterView<float> Level<float>::view() const {
-  return block_view();
+  ClusterView<float> view = block_view();
+  view.blocks_double = couplings.blocks_double.data();
+  view.diagonal_double = couplings.diagonal_double.data();
+  return view;
 }
 
 template <>

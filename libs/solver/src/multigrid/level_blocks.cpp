@@ -23,11 +23,35 @@ BeamRow<double> beam_row(const Mat& k12, std::size_t axis) {
   return row;
 }
 
-BeamRow<float> single(const BeamRow<double>& row) {
-  BeamRow<float> result;
+Six<float> single(const Six<double>& six) {
+  Six<float> result;
   for (std::size_t i = 0; i < 6; ++i) {
-    result.direct.v[i] = static_cast<float>(row.direct.v[i]);
-    result.crossed.v[i] = static_cast<float>(row.crossed.v[i]);
+    result.v[i] = static_cast<float>(six.v[i]);
+  }
+  return result;
+}
+
+BeamRow<float> single(const BeamRow<double>& row) {
+  return {.direct = single(row.direct), .crossed = single(row.crossed)};
+}
+
+PairRow<double> pair_row(const Mat& k12) {
+  PairRow<double> row;
+  for (int k = 0; k < 3; ++k) {
+    for (int i = 0; i < 6; ++i) {
+      const int turned = (i + k) % 3;
+      row.direct[k].v[i] = k12.at(i, i < 3 ? turned : turned + 3);
+      row.crossed[k].v[i] = k12.at(i, i < 3 ? turned + 3 : turned);
+    }
+  }
+  return row;
+}
+
+PairRow<float> single(const PairRow<double>& row) {
+  PairRow<float> result;
+  for (std::size_t k = 0; k < 3; ++k) {
+    result.direct[k] = single(row.direct[k]);
+    result.crossed[k] = single(row.crossed[k]);
   }
   return result;
 }
@@ -39,13 +63,35 @@ std::vector<BeamRow<double>> beam_rows(const ReducedNetwork& network,
   const std::size_t length_max = network.has_long_beams ? kBeamLengthMax : 1;
   std::vector<BeamRow<double>> rows(6 * kRow);
   for (std::size_t length = 1; length <= length_max; ++length) {
-    const auto beam = long_beam(material, static_cast<int>(length));
+    const auto beam = long_beam(material, network.lattice, static_cast<int>(length));
     for (std::size_t d = 0; d < 6; ++d) {
-      rows[d * kRow + length] =
-          beam_row(mechanics::block_12(beam, static_cast<Direction>(d)), d / 2);
+      rows[d * kRow + length] = beam_row(beam.block_12(static_cast<Direction>(d)), d / 2);
     }
   }
   return rows;
+}
+
+Stencil make_stencil(const ReducedNetwork& network, const model::Material& material) {
+  Stencil stencil;
+  const auto beam = long_beam(material, network.lattice, 1);
+  const auto direction_count = at(network.lattice.direction_count);
+  for (std::size_t d = 0; d < direction_count; d += 2) {
+    stencil.rows_double.push_back(pair_row(beam.block_12(static_cast<Direction>(d))));
+    stencil.rows.push_back(single(stencil.rows_double.back()));
+  }
+  stencil.other.assign(direction_count * network.node_count,
+                       static_cast<std::int32_t>(network.node_count));
+  const LatticeBeams& beams = network.beams;
+  for (std::size_t node = 0; node < network.node_count; ++node) {
+    const LatticeBeams::Lengths& lengths = beams.lengths[beams.kind[node]];
+    std::size_t next = at(beams.start[node]);
+    for (std::size_t d = 0; d < direction_count; ++d) {
+      if (lengths[d] > 0) {
+        stencil.other[direction_count * node + d] = beams.other[next++];
+      }
+    }
+  }
+  return stencil;
 }
 
 std::vector<BeamRow<float>> single(const std::vector<BeamRow<double>>& rows) {
@@ -57,11 +103,15 @@ std::vector<BeamRow<float>> single(const std::vector<BeamRow<double>>& rows) {
   return result;
 }
 
-void fill_blocks(const SpringGraph& graph, Blocks& blocks) {
+void fill_blocks(const SpringGraph& graph, Blocks& blocks, std::vector<Block<double>>* wide) {
   BlockPool<float> pool;
   std::vector<std::uint32_t> block_of_spring(graph.springs.size());
   for (std::size_t i = 0; i < graph.springs.size(); ++i) {
-    block_of_spring[i] = pool.insert(block_of<float>(coupling(graph.springs[i])));
+    const Mat k_pq = coupling(graph.springs[i]);
+    block_of_spring[i] = pool.insert(block_of<float>(k_pq));
+    if (wide != nullptr && block_of_spring[i] == wide->size()) {
+      wide->push_back(block_of<double>(k_pq));
+    }
   }
   blocks.blocks = pool.take();
   blocks.block.resize(graph.other.size());

@@ -16,9 +16,14 @@ namespace holdfast::solver {
 std::vector<BeamRow<double>> beam_rows(const ReducedNetwork& network,
                                        const model::Material& material);
 
+/// The beams of a network that has none but short ones.
+Stencil make_stencil(const ReducedNetwork& network, const model::Material& material);
+
 std::vector<BeamRow<float>> single(const std::vector<BeamRow<double>>& rows);
 
-/// K_pq for every edge.
-void fill_blocks(const SpringGraph& graph, Blocks& blocks);
+/// K_pq for every edge; if asked for in double precision as well, of a level on which no two
+/// different ones are equal in single precision.
+void fill_blocks(const SpringGraph& graph, Blocks& blocks,
+                 std::vector<Block<double>>* wide = nullptr);
 
 }  // namespace holdfast::solver

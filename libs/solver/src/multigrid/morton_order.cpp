@@ -28,6 +28,19 @@ struct Extent {
   }
 };
 
+/// Whether a basis vector leans over by half a step along x or y.
+bool leans(const base::Lattice& lattice, std::size_t basis, std::size_t axis) {
+  return lattice.basis_squares[basis][axis] == 0.25;
+}
+
+/// How far aside a row and a layer of axial coordinates lie.
+base::Cell aside(const base::Lattice& lattice, std::int32_t row, std::int32_t layer) {
+  const std::int32_t half_row = base::half_below(row);
+  const std::int32_t half_layer = base::half_below(layer);
+  return {(leans(lattice, 1, 0) ? half_row : 0) + (leans(lattice, 2, 0) ? half_layer : 0),
+          leans(lattice, 2, 1) ? half_layer : 0, 0};
+}
+
 /// Spreads the low 21 bits to every third place.
 std::uint64_t spread(std::uint64_t value) {
   value = (value | value << 32U) & 0x1f00000000ffffU;
@@ -66,19 +79,43 @@ void radix_sort(std::vector<KeyedModule>& items) {
 
 }  // namespace
 
+base::Cell brick_of(const base::Lattice& lattice, const base::Cell& axial) {
+  const base::Cell shift = aside(lattice, axial.y, axial.z);
+  return {axial.x + shift.x, axial.y + shift.y, axial.z};
+}
+
+base::Cell axial_of_brick(const base::Lattice& lattice, const base::Cell& brick) {
+  const std::int32_t row = brick.y - aside(lattice, 0, brick.z).y;
+  return {brick.x - aside(lattice, row, brick.z).x, row, brick.z};
+}
+
+std::uint8_t colour_of_brick(const base::Lattice& lattice, const base::Cell& brick) {
+  const bool does_row_lean = leans(lattice, 1, 0);
+  const bool does_layer_lean = leans(lattice, 2, 0) || leans(lattice, 2, 1);
+  const std::int32_t leaning = (does_row_lean ? brick.y : 0) + (does_layer_lean ? brick.z : 0);
+  const std::int32_t upright = brick.x + brick.y + brick.z - leaning;
+  return static_cast<std::uint8_t>((upright & 1) + 2 * (leaning & 1));
+}
+
 MortonOrder morton_order(const model::Robot& robot, const std::vector<std::uint8_t>& is_gone) {
   const auto modules = robot.modules();
+  const base::Lattice& lattice = robot.lattice();
+  const bool is_cubic = lattice == base::kCubic;
+  const auto brick = [&](std::size_t module) {
+    const base::Cell& cell = modules[module].cell;
+    return is_cubic ? cell : brick_of(lattice, base::axial_of(lattice, cell));
+  };
   MortonOrder order;
-  base::Cell low = modules[0].cell;
-  for (const model::Module& module : modules) {
-    low = {std::min(low.x, module.cell.x), std::min(low.y, module.cell.y),
-           std::min(low.z, module.cell.z)};
+  base::Cell low = brick(0);
+  for (std::size_t i = 1; i < modules.size(); ++i) {
+    const base::Cell cell = brick(i);
+    low = {std::min(low.x, cell.x), std::min(low.y, cell.y), std::min(low.z, cell.z)};
   }
   order.modules.reserve(modules.size());
   Extent extent;
   for (std::size_t i = 0; i < modules.size(); ++i) {
     if (is_gone[i] == 0) {
-      const base::Cell& cell = modules[i].cell;
+      const base::Cell cell = brick(i);
       extent.add(cell);
       order.modules.push_back({.key = spread(static_cast<std::uint64_t>(cell.x - low.x)) |
                                       spread(static_cast<std::uint64_t>(cell.y - low.y)) << 1U |
@@ -87,6 +124,7 @@ MortonOrder morton_order(const model::Robot& robot, const std::vector<std::uint8
     }
   }
   radix_sort(order.modules);
+  order.low = low;
   order.extent = extent.longest();
   return order;
 }

@@ -9,8 +9,18 @@
 
 namespace holdfast::solver {
 
-/// A module, and the Morton key of its cell from the robot's lowest corner on: the bits of x, y and
-/// z in turns, from the lowest.
+/// The rows, columns and layers of a lattice as bricks are laid: every other row or layer that
+/// leans over by half a step lies half a brick aside. So a box of bricks is a box in space, but for
+/// its rough sides, while one of axial cells leans. In a cubic lattice both are the same.
+base::Cell brick_of(const base::Lattice& lattice, const base::Cell& axial);
+base::Cell axial_of_brick(const base::Lattice& lattice, const base::Cell& brick);
+
+/// A colour, below 4, that no neighbour has: bricks of one row alternate, and so do rows or layers
+/// that lean over. In a cubic lattice, where none do, there are two.
+std::uint8_t colour_of_brick(const base::Lattice& lattice, const base::Cell& brick);
+
+/// A module, and the Morton key of its brick from the robot's lowest corner on: the bits of x, y
+/// and z in turns, from the lowest.
 struct KeyedModule {
   std::uint64_t key = 0;
   std::int32_t module = 0;
@@ -19,7 +29,8 @@ struct KeyedModule {
 /// Modules along the Morton curve, which keeps neighbours near each other.
 struct MortonOrder {
   std::vector<KeyedModule> modules;
-  std::int32_t extent = 0;  ///< Longest side of the box around them, pitches.
+  base::Cell low;           ///< The robot's lowest corner, in bricks.
+  std::int32_t extent = 0;  ///< Longest side of the box around them, bricks.
 };
 
 /// Sorts the modules that are not `is_gone`.

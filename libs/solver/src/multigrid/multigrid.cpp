@@ -24,6 +24,11 @@ constexpr int kIterationMax = 500;
 constexpr std::size_t kBytesPerModule = 450;
 constexpr std::size_t kBytesPerModuleDouble = 800;
 
+/// And for each direction that a lattice has beyond six: a ball of 720,000 face-centred modules
+/// takes 540 bytes a module.
+constexpr std::size_t kBytesPerDirection = 25;
+constexpr std::size_t kBytesPerDirectionDouble = 60;
+
 /// A robot of n modules that is N long consists of N / sqrt(n / N) cubes in a row, at most, as if
 /// its modules were in one bar. Rounding moves it by that number squared times what it moves a
 /// cube, and where it so moves it by more than this share of the true motion, single precision is
@@ -68,16 +73,9 @@ bool is_held_sideways(ContactLaw law, bool is_held) {
 
 }  // namespace
 
-bool Multigrid::can_solve(const model::Robot& robot) {
-  const base::Direction down = base::down(robot.lattice());
-  return robot.lattice() == base::kCubic &&
-         std::ranges::all_of(robot.facets(),
-                             [&](const model::Facet& facet) { return facet.direction == down; });
-}
-
 std::unique_ptr<Multigrid> Multigrid::make(const model::Robot& robot,
                                            const EquilibriumOptions& options) {
-  if (bytes_for(robot.free_count(), options.precision) > options.memory_bytes_max) {
+  if (bytes_for(robot, options.precision) > options.memory_bytes_max) {
     return nullptr;
   }
   return std::make_unique<Multigrid>(robot, options);
@@ -90,26 +88,29 @@ Multigrid::Multigrid(const model::Robot& robot, const EquilibriumOptions& option
       team_(options.thread_count, robot.modules().size()),
       network_(make_reduced_network(robot, team_)),
       ground_node_of_facet_(facets().size()) {
-  for (std::size_t node = 0; node < network_.node_count; ++node) {
-    const std::size_t module = at(network_.module[node]);
-    if (robot.modules()[module].support == model::Support::kGround) {
-      const auto facet = std::ranges::lower_bound(facets(), module, {}, &FacetState::module);
-      const auto index = static_cast<std::size_t>(facet - facets().begin());
-      ground_node_of_facet_[index] = ground_nodes_.size();
+  for (std::size_t i = 0; i < network_.ground_beams.size(); ++i) {
+    const GroundBeam& beam = network_.ground_beams[i];
+    if (beam.facet != GroundBeam::kNoFacet) {
+      const std::size_t facet = at(beam.facet);
+      ground_node_of_facet_[facet] = ground_nodes_.size();
       ground_nodes_.push_back(
-          {.node = static_cast<std::int32_t>(node), .facet = index, .known = *facet});
+          {.node = beam.node, .facet = facet, .beam = i, .known = facets()[facet]});
     }
   }
   alone_ = nodes_alone();
   take_loads();
 }
 
-std::size_t Multigrid::bytes_for(std::size_t module_count, Precision precision) {
-  return module_count * (precision == Precision::kSingle ? kBytesPerModule : kBytesPerModuleDouble);
+std::size_t Multigrid::bytes_for(const model::Robot& robot, Precision precision) {
+  const bool is_single = precision == Precision::kSingle;
+  const auto further = at(robot.lattice().direction_count - base::kDirectionCount);
+  return robot.free_count() *
+         ((is_single ? kBytesPerModule : kBytesPerModuleDouble) +
+          further * (is_single ? kBytesPerDirection : kBytesPerDirectionDouble));
 }
 
 bool Multigrid::set_precision(Precision precision) {
-  if (bytes_for(robot().free_count(), precision) > options_.memory_bytes_max) {
+  if (bytes_for(robot(), precision) > options_.memory_bytes_max) {
     return false;
   }
   precision_ = precision;
@@ -134,9 +135,12 @@ void Multigrid::take_law() {
   for (int code = 0; code < ContactState::kCodeCount; ++code) {
     const ContactState state = ContactState::from_code(code);
     for (const bool is_held : {false, true}) {
-      known_tangents_[at(1 + 2 * code + (is_held ? 1 : 0))] =
-          alone_.empty() ? mechanics::symmetric_tangent(ground(), state, is_held)
-                         : mechanics::contact_tangent(ground(), state, is_held);
+      const Mat tangent = alone_.empty() ? mechanics::symmetric_tangent(ground(), state, is_held)
+                                         : mechanics::contact_tangent(ground(), state, is_held);
+      for (const base::Direction direction : base::facet_directions(robot().lattice())) {
+        known_tangents_[at(base::index(direction))][at(1 + 2 * code + (is_held ? 1 : 0))] =
+            beam().to_global(direction, tangent);
+      }
     }
   }
   for (std::size_t facet = 0; facet < facets().size(); ++facet) {
@@ -151,13 +155,17 @@ std::uint8_t Multigrid::number_of(const FacetState& facet) const {
 }
 
 void Multigrid::take_facet(std::size_t facet) {
-  Kind& kind = network_.kind[at(ground_nodes_[ground_node_of_facet_[facet]].node)];
-  const std::uint8_t number = number_of(facets()[facet]);
-  if (number == kind[kContactByte]) {
+  GroundBeam& beam = network_.ground_beams[ground_nodes_[ground_node_of_facet_[facet]].beam];
+  const std::uint8_t contact = number_of(facets()[facet]);
+  if (contact == beam.contact) {
     return;
   }
-  kind[base::index(base::Direction::kMinusZ)] = number == 0 ? 1 : 0;
-  kind[kContactByte] = number;
+  beam.contact = contact;
+  if (network_.is_cubic) {
+    Kind& kind = network_.cubic.kind[at(beam.node)];
+    kind[beam.direction] = contact == 0 ? 1 : 0;
+    kind[kContactByte] = contact;
+  }
   is_stale_ = true;
 }
 
@@ -182,12 +190,12 @@ Multigrid::Vec Multigrid::displacement_of(std::int32_t node) const {
 
 /// The force that the ground takes from a node whose facet is in a state.
 Multigrid::Vec Multigrid::force_on(const FacetState& facet, std::int32_t node) const {
-  return mechanics::contact_force(ground(), facet.state, facet.is_held, displacement_of(node));
+  return law().force(facet, displacement_of(node));
 }
 
 /// What the hierarchy takes for the tangent of a facet that is not stuck.
 const Mat& Multigrid::known_tangent(const FacetState& facet) const {
-  return known_tangents_[number_of(facet)];
+  return known_tangents_[at(base::index(facet.direction))][number_of(facet)];
 }
 
 /// Facets, where they are few: those of a few feet. Which part of a foot presses decides how it
@@ -197,7 +205,9 @@ std::vector<std::int32_t> Multigrid::nodes_alone() const {
   if (!options_.is_bonded && ground_nodes_.size() <= kAloneMax &&
       kAloneShare * ground_nodes_.size() <= network_.node_count) {
     for (const GroundNode& ground_node : ground_nodes_) {
-      nodes.push_back(ground_node.node);
+      if (nodes.empty() || nodes.back() != ground_node.node) {
+        nodes.push_back(ground_node.node);
+      }
     }
   }
   return nodes;
@@ -282,7 +292,7 @@ std::vector<NodeTerm> Multigrid::unsymmetric_terms() const {
     const FacetState& facet = facets()[ground_node.facet];
     if (ground().law == ContactLaw::kRegularised &&
         (facet.state.tilt_x != 0 || facet.state.tilt_y != 0)) {
-      const Mat exact = mechanics::contact_tangent(ground(), facet.state, facet.is_held);
+      const Mat exact = law().tangent(facet);
       const Mat minus_known = scaled(known_tangent(facet), -1);
       NodeTerm& term = terms.emplace_back();
       term = {
@@ -333,11 +343,11 @@ bool Multigrid::is_thin() const {
   if (network_.node_count > kThinCountMax) {
     return false;
   }
-  std::size_t ends = 0;
-  for (std::size_t node = 0; node < network_.node_count; ++node) {
-    ends += static_cast<std::size_t>(std::count_if(
-        network_.kind[node].begin(), network_.kind[node].begin() + base::kDirectionCount,
-        [](auto length) { return length > 0; }));
+  std::size_t ends = network_.beams.other.size();
+  for (const Kind& kind : network_.cubic.kind) {
+    ends +=
+        static_cast<std::size_t>(std::count_if(kind.begin(), kind.begin() + base::kDirectionCount,
+                                               [](auto length) { return length > 0; }));
   }
   return static_cast<double>(ends) <= kThinDegree * static_cast<double>(network_.node_count);
 }
@@ -384,8 +394,7 @@ bool Multigrid::refine(Solution& solution) {
   // One iteration at least: else the two answers are the same, and say nothing about the error.
   target.iteration_count_min = 1;
   if (is_thin()) {
-    target.error_max =
-        kThinError * options_.tolerance / model::load_ratio_per_energy_norm(robot());
+    target.error_max = kThinError * options_.tolerance / model::load_ratio_per_energy_norm(robot());
   }
   if (improve(target) != LinearOutcome::kSolved) {
     return false;
@@ -399,7 +408,7 @@ std::vector<double> Multigrid::facet_errors() const {
   std::vector<double> errors(facets().size());
   for (std::size_t i = 0; i < errors.size() && iteration_; ++i) {
     const Vec correction = iteration_->correction(at(ground_nodes_[ground_node_of_facet_[i]].node));
-    const Vec force = mechanics::trial_force(ground(), correction);
+    const Vec force = law().trial_force(facets()[i], correction);
     errors[i] =
         std::abs(force[2]) + std::max(std::abs(force[3]), std::abs(force[4])) / ground().half_width;
   }

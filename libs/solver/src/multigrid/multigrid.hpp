@@ -24,12 +24,8 @@ class Multigrid final : public LinearSystem {
 
   Multigrid(const model::Robot& robot, const EquilibriumOptions& options);
 
-  /// Whether this is a robot that multigrid can solve: cubes that touch with their lower sides
-  /// only.
-  static bool can_solve(const model::Robot& robot);
-
   /// A guess of how much memory a robot needs, bytes.
-  static std::size_t bytes_for(std::size_t module_count, Precision precision);
+  static std::size_t bytes_for(const model::Robot& robot, Precision precision);
 
   /// Starts anew in another precision, with the same network and facets. Returns false, and leaves
   /// all as it is, if that needs more memory than the options allow.
@@ -51,7 +47,8 @@ class Multigrid final : public LinearSystem {
   struct GroundNode {
     std::int32_t node = 0;
     std::size_t facet = 0;
-    FacetState known;  ///< The state that the residual knows.
+    std::size_t beam = 0;  ///< Its place among the network's ground beams.
+    FacetState known;      ///< The state that the residual knows.
   };
 
   /// Until when to iterate: errors in the energy norm.
@@ -85,7 +82,7 @@ class Multigrid final : public LinearSystem {
   Team team_;
   ReducedNetwork network_;
   std::vector<Vec> condensed_;            ///< Loads by module; empty if the robot's are the nodes'.
-  std::vector<GroundNode> ground_nodes_;  ///< In the network's order.
+  std::vector<GroundNode> ground_nodes_;  ///< In the network's order; a node for each facet.
   std::vector<std::size_t> ground_node_of_facet_;  ///< By place in facets().
   std::vector<std::int32_t> alone_;                ///< Nodes that join no cluster.
   GroundTable known_tangents_;  ///< What the hierarchy takes for the facets' tangents.

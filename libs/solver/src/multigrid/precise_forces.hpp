@@ -77,7 +77,8 @@ inline Wide unbalanced(const View& level, const Six<double>* r, const Six<Real>*
   return load(r[p]) - product(level, z, p);
 }
 
-inline Wide wide_product(const LatticeView<double>& level, const Six<double>* p, std::size_t node) {
+template <class View>
+inline Wide wide_product(const View& level, const Six<double>* p, std::size_t node) {
   return product(level, p, node);
 }
 

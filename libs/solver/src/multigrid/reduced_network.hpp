@@ -9,6 +9,7 @@
 
 #include "elimination.hpp"
 #include "holdfast/base/algebra.hpp"
+#include "holdfast/base/lattice.hpp"
 #include "holdfast/host/team.hpp"
 #include "holdfast/model/robot.hpp"
 #include "vectors.hpp"
@@ -22,17 +23,52 @@
 /// length, and a load in between moves to the ends by the same cubics [Przemieniecki 1968].
 ///
 /// The rest are the nodes. They are sorted by colour, then along the Morton curve; no two nodes of
-/// one colour share a beam, and a lattice needs two colours.
+/// one colour share a beam. A cubic lattice needs two colours, a hexagonal one three, a
+/// face-centred one four.
 namespace holdfast::solver {
 
+/// A beam from a node to what does not move: to a fixed module, or through a facet to what that
+/// touches.
+struct GroundBeam {
+  std::int32_t node = 0;
+  std::uint8_t direction = 0;
+  std::uint8_t length = 0;        ///< Pitches.
+  std::uint8_t contact = 0;       ///< The number of the facet's state, 0 if it is stuck.
+  std::int32_t facet = kNoFacet;  ///< Index in Robot::facets().
+
+  static constexpr std::int32_t kNoFacet = -1;
+};
+
+/// What connects the nodes of cubes that touch nothing but a floor: direction by direction, as
+/// their own kernels read it.
+struct CubicBeams {
+  std::vector<Others> other;
+  std::vector<Kind> kind;  ///< A beam down to the ground or to a fixed module has no other node.
+};
+
+/// What connects the nodes of all other robots: in compressed rows.
+struct LatticeBeams {
+  /// Direction -> pitches that the beam there is long, 0 for none.
+  using Lengths = std::array<std::uint8_t, base::Lattice::kDirectionCountMax>;
+
+  std::vector<std::int32_t> start;
+  std::vector<std::int32_t> other;  ///< Of each node by ascending direction.
+  std::vector<std::uint32_t> kind;  ///< Node -> lengths
+  std::vector<Lengths> lengths;
+};
+
 struct ReducedNetwork {
+  base::Lattice lattice;
+  bool is_cubic = false;  ///< Whether `cubic` describes it, else `beams`.
   std::size_t node_count = 0;
   std::vector<std::size_t> colour_start;  ///< First node of each colour, then node_count.
   std::vector<std::int32_t> module;       ///< Node -> module.
-  std::vector<Others> other;
-  std::vector<Kind> kind;  ///< A beam down to the ground or to a fixed module has no other node.
-  std::vector<std::int32_t> order;  ///< Nodes along the Morton curve.
-  std::vector<std::uint64_t> key;   ///< Their Morton keys, ascending.
+  CubicBeams cubic;
+  LatticeBeams beams;
+  std::vector<GroundBeam> ground_beams;  ///< By node, then by direction.
+  std::vector<std::int32_t> order;       ///< Nodes along the Morton curve.
+  std::vector<std::uint64_t> key;        ///< Their Morton keys, ascending.
+  base::Cell low;                        ///< The robot's lowest corner, where keys count from.
   bool has_long_beams = false;
   std::int32_t extent = 0;  ///< Longest side of the box around the nodes, pitches.
 

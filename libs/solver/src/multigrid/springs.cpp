@@ -3,6 +3,7 @@
 #include "springs.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "../block_kernels.hpp"
 #include "beam_shapes.hpp"
@@ -70,63 +71,59 @@ void carry_columns(Mat& s, const Point& a) {
   }
 }
 
-Point along(std::size_t direction, double length) {
-  Point point{};
-  point[direction / 2] = direction % 2 == 0 ? length : -length;
-  return point;
-}
-
-}  // namespace
-
-Spring beam_spring(const model::Material& material, std::size_t direction, std::size_t length) {
-  const double mm = material.pitch_mm * static_cast<double>(length);
-  return {.direction = static_cast<std::uint8_t>(direction),
-          .length = mm,
-          .middle = along(direction, mm / 2),
-          .partner = along(direction, mm),
-          .stiffness = mechanics::block_11(long_beam(material, static_cast<int>(length)),
-                                           static_cast<base::Direction>(direction))};
-}
-
-double behind(const Point& offset, std::size_t direction) {
-  const double step = offset[direction / 2];
-  return std::max(0.0, direction % 2 == 0 ? step : -step);
-}
-
-Mat scaled(Mat matrix, double factor) {
-  for (double& value : matrix.values) {
-    value *= factor;
+/// The columns of t and the rows below: one of four 3x3 blocks times r, and from the left.
+Mat turned(const Mat& matrix, const Mat3& r) {
+  Mat half;  // matrix r
+  for (std::size_t column = 0; column < 6; ++column) {
+    const double* const from = matrix.values.data() + 18 * (column / 3);
+    for (std::size_t row = 0; row < 6; ++row) {
+      half.values[6 * column + row] = from[row] * r[0][column % 3] +
+                                      from[6 + row] * r[1][column % 3] +
+                                      from[12 + row] * r[2][column % 3];
+    }
   }
-  return matrix;
-}
-
-/// S T(a): the columns of t gain those of u times -[a]x.
-Mat times_carry(Mat s, const Point& a) {
-  carry_columns(s, a);
-  return s;
-}
-
-/// The right half is that of S T(a) first; the rows of t follow from it, as S is symmetric.
-Mat carried(const Mat& s, const Point& a) {
-  Mat result = s;
-  carry_columns(result, a);
-  double* const v = result.values.data();
-  for (std::size_t i = 18; i < 36; i += 6) {
-    v[i + 3] += v[i + 2] * a[1] - v[i + 1] * a[2];
-    v[i + 4] += v[i] * a[2] - v[i + 2] * a[0];
-    v[i + 5] += v[i + 1] * a[0] - v[i] * a[1];
-  }
-  for (std::size_t i = 0; i < 3; ++i) {
-    for (std::size_t j = 0; j < 3; ++j) {
-      v[6 * i + 3 + j] = v[6 * (3 + j) + i];
+  Mat result;  // r^T half
+  for (std::size_t column = 0; column < 6; ++column) {
+    for (std::size_t row = 0; row < 6; ++row) {
+      const double* const from = half.values.data() + 6 * column + 3 * (row / 3);
+      result.values[6 * column + row] =
+          from[0] * r[0][row % 3] + from[1] * r[1][row % 3] + from[2] * r[2][row % 3];
     }
   }
   return result;
 }
 
-Mat stretched(const Mat& stiffness, const Point& arm, std::size_t axis, double length,
-              double reach) {
-  const Mat c = carried(stiffness, {-arm[0], -arm[1], -arm[2]});
+/// Columns: an orthonormal basis whose first vector is a unit vector.
+Mat3 basis_along(const Point& unit) {
+  const auto least = std::ranges::min_element(unit, {}, [](double x) { return std::abs(x); });
+  Point across{};
+  across[static_cast<std::size_t>(least - unit.begin())] = 1;
+  const double along = dot(across, unit);
+  const double norm = std::sqrt(1 - along * along);
+  for (std::size_t i = 0; i < 3; ++i) {
+    across[i] = (across[i] - along * unit[i]) / norm;
+  }
+  Mat3 basis;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const std::size_t j = (i + 1) % 3;
+    const std::size_t k = (i + 2) % 3;
+    basis[i] = {unit[i], across[i], unit[j] * across[k] - unit[k] * across[j]};
+  }
+  return basis;
+}
+
+Mat3 transpose(const Mat3& m) {
+  Mat3 result;
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t j = 0; j < 3; ++j) {
+      result[i][j] = m[j][i];
+    }
+  }
+  return result;
+}
+
+/// Lengthens a spring at its middle along an axis, as stretched() says but for the factor.
+Mat spread_along_axis(const Mat& c, std::size_t axis, double length, double reach) {
   const Mat3 rotation = rotational_compliance(c);
   const std::size_t i = (axis + 1) % 3;
   const std::size_t j = (axis + 2) % 3;
@@ -160,7 +157,76 @@ Mat stretched(const Mat& stiffness, const Point& arm, std::size_t axis, double l
       target[row] -= column_0[row] * t0 + column_1[row] * t1;
     }
   }
-  return carried(scaled(reduced, kCorrection * length / reach), arm);
+  return reduced;
+}
+
+}  // namespace
+
+Spring beam_spring(const base::Lattice& lattice, const model::Material& material,
+                   std::size_t direction, std::size_t length) {
+  const double mm = material.pitch_mm * static_cast<double>(length);
+  const Point unit = base::unit_vector(lattice, static_cast<base::Direction>(direction));
+  return {.direction = unit,
+          .length = mm,
+          .middle = scaled(unit, mm / 2),
+          .partner = scaled(unit, mm),
+          .stiffness = long_beam(material, lattice, static_cast<int>(length))
+                           .block_11(static_cast<base::Direction>(direction))};
+}
+
+double behind(const Point& offset, const Point& direction) {
+  return std::max(0.0, dot(offset, direction));
+}
+
+Point scaled(const Point& point, double factor) {
+  return {factor * point[0], factor * point[1], factor * point[2]};
+}
+
+Mat scaled(Mat matrix, double factor) {
+  for (double& value : matrix.values) {
+    value *= factor;
+  }
+  return matrix;
+}
+
+/// S T(a): the columns of t gain those of u times -[a]x.
+Mat times_carry(Mat s, const Point& a) {
+  carry_columns(s, a);
+  return s;
+}
+
+/// The right half is that of S T(a) first; the rows of t follow from it, as S is symmetric.
+Mat carried(const Mat& s, const Point& a) {
+  Mat result = s;
+  carry_columns(result, a);
+  double* const v = result.values.data();
+  for (std::size_t i = 18; i < 36; i += 6) {
+    v[i + 3] += v[i + 2] * a[1] - v[i + 1] * a[2];
+    v[i + 4] += v[i] * a[2] - v[i + 2] * a[0];
+    v[i + 5] += v[i + 1] * a[0] - v[i] * a[1];
+  }
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t j = 0; j < 3; ++j) {
+      v[6 * i + 3 + j] = v[6 * (3 + j) + i];
+    }
+  }
+  return result;
+}
+
+/// Along an axis of the global frame nothing is turned.
+Mat stretched(const Mat& stiffness, const Point& arm, const Point& direction, double length,
+              double reach) {
+  const Mat c = carried(stiffness, {-arm[0], -arm[1], -arm[2]});
+  const auto along = std::ranges::find_if(direction, [](double x) { return std::abs(x) == 1; });
+  Mat spread;
+  if (along != direction.end()) {
+    spread =
+        spread_along_axis(c, static_cast<std::size_t>(along - direction.begin()), length, reach);
+  } else {
+    const Mat3 basis = basis_along(direction);
+    spread = turned(spread_along_axis(turned(c, basis), 0, length, reach), transpose(basis));
+  }
+  return carried(scaled(spread, kCorrection * length / reach), arm);
 }
 
 }  // namespace holdfast::solver

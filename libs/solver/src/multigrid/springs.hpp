@@ -7,6 +7,7 @@
 #include <cstdint>
 
 #include "holdfast/base/algebra.hpp"
+#include "holdfast/base/lattice.hpp"
 #include "holdfast/model/material.hpp"
 #include "vectors.hpp"
 
@@ -24,17 +25,22 @@ inline Point difference(const Point& a, const Point& b) {
   return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
 }
 
+inline double dot(const Point& a, const Point& b) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
 /// A spring as its node sees it.
 struct Spring {
-  std::uint8_t direction = 0;  ///< In which its partner lies.
-  double length = 0;           ///< mm
-  Point middle = {};           ///< From the node.
-  Point partner = {};          ///< From the node.
-  Mat stiffness = {};          ///< At the node.
+  Point direction = {};  ///< Unit vector, to its partner.
+  double length = 0;     ///< mm, in that direction.
+  Point middle = {};     ///< From the node.
+  Point partner = {};    ///< From the node.
+  Mat stiffness = {};    ///< At the node.
 };
 
 /// The spring of a beam `length` pitches long.
-Spring beam_spring(const model::Material& material, std::size_t direction, std::size_t length);
+Spring beam_spring(const base::Lattice& lattice, const model::Material& material,
+                   std::size_t direction, std::size_t length);
 
 /// From the centre of its cluster to a node, mm.
 template <class Real>
@@ -44,9 +50,11 @@ Point offset(const Seat<Real>& seat) {
 }
 
 /// Distance from a node back to the centre of its cluster, against a direction.
-double behind(const Point& offset, std::size_t direction);
+double behind(const Point& offset, const Point& direction);
 
 Mat scaled(Mat matrix, double factor);
+
+Point scaled(const Point& point, double factor);
 
 /// S T(a).
 Mat times_carry(Mat s, const Point& a);
@@ -62,13 +70,13 @@ inline constexpr double kBendShare = 0.6;
 /// little.
 inline constexpr double kCorrection = 1.2;
 
-/// Lengthens a spring along `axis`, whose middle lies at `arm` from its body, from `length` to
-/// `reach`, as if its compliance were spread evenly along it: each part bends, and what bends away
-/// from the middle shifts it. So the compliance is multiplied by reach/length, after its shear part
-/// gained (reach^2 - length^2)/12 times the rotational one: that makes a beam of one length a beam
-/// of the other exactly. In a solid the neighbours hinder the bending, so only kBendShare of that
-/// is taken, and the stiffness is kCorrection times that.
-Mat stretched(const Mat& stiffness, const Point& arm, std::size_t axis, double length,
+/// Lengthens a spring along a unit vector, whose middle lies at `arm` from its body, from `length`
+/// to `reach`, as if its compliance were spread evenly along it: each part bends, and what bends
+/// away from the middle shifts it. So the compliance is multiplied by reach/length, after its shear
+/// part gained (reach^2 - length^2)/12 times the rotational one: that makes a beam of one length a
+/// beam of the other exactly. In a solid the neighbours hinder the bending, so only kBendShare of
+/// that is taken, and the stiffness is kCorrection times that.
+Mat stretched(const Mat& stiffness, const Point& arm, const Point& direction, double length,
               double reach);
 
 }  // namespace holdfast::solver

@@ -31,6 +31,18 @@ struct BeamRow {
   Six<Real> crossed;
 };
 
+/// K12 of a pair of opposite directions, +d and -d. What couples displacements with displacements
+/// and rotations with rotations is the same in both, what couples the two changes its sign. So with
+/// the generalised diagonals of the 3x3 quarters of K12
+///   K12 u_+ + K12' u_- = sum of direct_k * turn_k(u_+ + u_-) + crossed_k * turn_k(swap(u_+ -
+///   u_-)),
+/// where turn_k takes number i + k (of each three, cyclically) to place i.
+template <class Real>
+struct PairRow {
+  Six<Real> direct[3];
+  Six<Real> crossed[3];
+};
+
 /// A beam as its middle sees it.
 struct MiddleSpring {
   Six<double> stiffness;
@@ -56,7 +68,7 @@ struct Seat {
 using Others = std::array<std::int32_t, 6>;
 
 /// Direction -> pitches that the beam there is long, 0 for none; then, in kContactByte, what the
-/// ground does that is no such beam, 0 for nothing.
+/// ground does that is no such beam, 0 for nothing. Of cubes.
 using Kind = std::array<std::uint8_t, 8>;
 inline constexpr std::size_t kContactByte = 6;
 

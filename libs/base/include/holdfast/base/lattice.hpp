@@ -208,6 +208,32 @@ constexpr std::array<double, 3> node_place(const Lattice& lattice, const Cell& c
   return place_of(lattice, axial_of(lattice, cell));
 }
 
+/// node_place() for very many cells, with the roots taken once, in another unit of length.
+class NodePlaces {
+ public:
+  constexpr NodePlaces(const Lattice& lattice, double pitch)
+      : shear_{.shear_x = lattice.shear_x, .shear_y = lattice.shear_y} {
+    for (std::size_t i = 0; i < 3; ++i) {
+      for (std::size_t k = 0; k < 3; ++k) {
+        basis_[i][k] = pitch * root(lattice.basis_squares[i][k]);
+      }
+    }
+  }
+
+  constexpr std::array<double, 3> operator()(const Cell& cell) const {
+    const Cell axial = axial_of(shear_, cell);
+    std::array<double, 3> place{};
+    for (std::size_t k = 0; k < 3; ++k) {
+      place[k] = axial.x * basis_[0][k] + axial.y * basis_[1][k] + axial.z * basis_[2][k];
+    }
+    return place;
+  }
+
+ private:
+  Lattice shear_;  ///< Nothing but its shear.
+  std::array<std::array<double, 3>, 3> basis_{};
+};
+
 /// From a node to its neighbour in `direction`, or through its facet there, in the global frame: a
 /// vector of length one.
 template <class Real = double>

@@ -89,6 +89,7 @@ base::Result<Format> detect_format(std::string_view text);
 /// What holds where a file says nothing of it; a file that says otherwise is an error.
 struct ReadOptions {
   std::optional<base::Lattice> lattice = {};  ///< One of kNamedLattices.
+  std::string robot = {};  ///< One of model::robot_catalogue(); empty: Table I of the paper.
 };
 
 /// Reads either format. Error::where is "line 12" or a JSON pointer such as "/modules/3".

@@ -87,6 +87,8 @@ struct PlanStep {
 
 /// The members of a document that only version 2 has; as it is by default, version 1 says it all.
 struct Extension {
+  std::string
+      robot;  ///< One of model::robot_catalogue(), whose figures are the defaults, or empty.
   base::Lattice lattice = base::kCubic;               ///< One of kNamedLattices.
   bool has_floor = true;                              ///< Else Document::support_z means nothing.
   std::optional<double> floor_friction;               ///< None: no slip.

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <ostream>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -14,12 +15,16 @@ namespace holdfast::io {
 /// An SVG of the robot in isometric view: every module coloured by its worst connection as in
 /// Fig. 6 of [Piranda 2021] (green to orange safe, red broken, purple unstable, blue fixed, planned
 /// ones dashed), the failing connection marked, the support polygon and the centre of mass, a
-/// legend. Self-contained; `title` is shown and escaped.
+/// legend. Modules look like those of their lattice: cubes, prisms, standing discs, balls. Of the
+/// obstacles, which are those that the robot was made with, what is near is drawn translucent; the
+/// facets that touch say what they do; payloads, and gravity that does not point straight down, are
+/// arrows. Self-contained; `title` is shown and escaped.
 std::string write_svg(const model::Robot& robot, const verdict::Assessment& assessment,
-                      std::string_view title);
+                      std::string_view title, std::span<const model::Obstacle> obstacles = {});
 
-/// Writes a VTK XML unstructured grid (.vtu, compressed binary) for ParaView: one hexahedron per
-/// module with load ratio, displacement and ground force, one line per connection with its forces.
+/// Writes a VTK XML unstructured grid (.vtu, compressed binary) for ParaView: one cell per module,
+/// in the shape of its lattice, with load ratio, displacement and ground force, one line per
+/// connection with its forces, one square per facet that touches with its state and force.
 /// Field names and units are in docs/formats.md. A stream that can be sought in gets it in a fixed
 /// amount of memory; any other gets it at the end. Ends early if the stream fails.
 void write_vtu(std::ostream& out, const model::Robot& robot, const verdict::Assessment& assessment,

@@ -16,12 +16,13 @@
 /// docs/limit.md.
 namespace holdfast::limit {
 
-/// Factors beyond this are not told apart from none.
-inline constexpr double kFactorMax = 1e6;
+/// Factors beyond this are not told apart from none: known forces have about six digits.
+inline constexpr double kFactorMax = 1e5;
 
 struct LimitOptions {
-  double tolerance = 1e-4;   ///< Of the bracket, as a share of the factor.
-  double seconds_max = 600;  ///< Then the bracket is what it is so far.
+  double tolerance = 1e-4;  ///< Of the bracket, as a share of the factor.
+  /// Then the bracket is what it is so far. Clp's interior point method ends what it has begun.
+  double seconds_max = 600;
   /// Forces of all joints that balance the loads, such as the elastic ones, local frame; they spare
   /// most of the work for large structures. Empty: none are known.
   std::span<const base::Vec6<double>> known_forces = {};

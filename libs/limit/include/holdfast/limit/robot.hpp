@@ -9,7 +9,8 @@
 #include "holdfast/limit/rigid_stability.hpp"
 #include "holdfast/model/robot.hpp"
 
-/// A robot as what the programs of this room are about.
+/// A robot as what the programs of this room are about: one rigid body on contacts, or a structure
+/// of rigid bodies and joints.
 namespace holdfast::limit {
 
 /// Does the robot, as one rigid body, stay on what it touches? A fixed module or a bonded facet

@@ -9,20 +9,24 @@
 #include <vector>
 
 #include "holdfast/base/cell.hpp"
+#include "holdfast/base/lattice.hpp"
 
 /// Named structures in which solvers are compared: a name and a size always mean the same cells, in
 /// the same order. They stand on z = 0.
 namespace holdfast::model {
 
 enum class Family : std::uint8_t {
-  kArm,       ///< SIZE modules: a foot of 2x3 and one row to +x at z = 2.
-  kCube,      ///< SIZE^3, solid.
-  kTower,     ///< 3x3 modules wide, SIZE high.
-  kScaffold,  ///< Struts one module thick along a grid of 4 cells in a cube of SIZE.
-  kShell,     ///< Four walls and a roof, one module thick, in a cube of SIZE.
-  kPortal,    ///< A frame SIZE wide, SIZE/2 high, 4 thick: two legs and a beam.
-  kBridge,    ///< A plate SIZE long, 8 wide, 3 thick, on a pier of 8x8x10.
-  kGrowth,    ///< SIZE modules grown at random, never below the ground.
+  kArm,        ///< SIZE modules: a foot of 2x3 and one row to +x at z = 2.
+  kCube,       ///< SIZE^3, solid.
+  kTower,      ///< 3x3 modules wide, SIZE high.
+  kScaffold,   ///< Struts one module thick along a grid of 4 cells in a cube of SIZE.
+  kShell,      ///< Four walls and a roof, one module thick, in a cube of SIZE.
+  kPortal,     ///< A frame SIZE wide, SIZE/2 high, 4 thick: two legs and a beam.
+  kBridge,     ///< A plate SIZE long, 8 wide, 3 thick, on a pier of 8x8x10.
+  kGrowth,     ///< SIZE modules grown at random, never below the ground.
+  kBall,       ///< Face-centred: a ball of SIZE layers, its lowest layer on the ground.
+  kSheet,      ///< Hexagonal: one module thick, SIZE wide and SIZE high.
+  kPrismWall,  ///< Hexagonal prisms: SIZE wide, SIZE high, 4 thick.
 };
 
 struct FamilyInfo {
@@ -30,11 +34,15 @@ struct FamilyInfo {
   std::string_view name;
   std::string_view help;  ///< What SIZE means.
   std::size_t size_min = 1;
+  base::Lattice lattice = base::kCubic;
 };
 
 std::span<const FamilyInfo> families();
 
 std::optional<Family> find_family(std::string_view name);
+
+/// The lattice that a family's cells count in.
+const base::Lattice& family_lattice(Family family);
 
 /// Modules of that structure, without making it; for growth and arm the size itself. Saturates at
 /// the largest number there is.

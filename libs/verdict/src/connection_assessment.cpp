@@ -1,0 +1,189 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#include "connection_assessment.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <utility>
+#include <vector>
+
+#include "holdfast/host/team.hpp"
+#include "holdfast/verdict/connection_law.hpp"
+#include "several_solutions.hpp"
+
+namespace holdfast::verdict {
+namespace {
+
+using mechanics::ContactLaw;
+using solver::Equilibrium;
+
+/// Unlike with std::max, a NaN on either side wins: what is not known must not hide.
+double max_or_nan(double a, double b) { return std::isnan(a) || a > b ? a : b; }
+
+bool is_nan(const LoadRange& range) { return std::isnan(range.low) || std::isnan(range.high); }
+
+/// What some connections in a row say together.
+struct Loads {
+  LoadRange range = {.low = -std::numeric_limits<double>::infinity(),
+                     .high = -std::numeric_limits<double>::infinity()};
+  double ratio_max = -std::numeric_limits<double>::infinity();
+  double change = 0;  ///< The most by which the two answers differ, of any connection.
+  std::size_t worst = 0;
+  std::vector<std::size_t> broken;
+
+  void add(std::size_t connection, double ratio, double other_ratio) {
+    const double low = ratio < other_ratio ? ratio : other_ratio;
+    const double high = ratio < other_ratio ? other_ratio : ratio;
+    range = {.low = max_or_nan(range.low, low), .high = max_or_nan(range.high, high)};
+    change = high - low > change ? high - low : change;
+    if (ratio > ratio_max) {
+      ratio_max = ratio;
+      worst = connection;
+    }
+    if (breaks(ratio)) {
+      broken.push_back(connection);
+    }
+  }
+
+  void add(const Loads& next) {
+    range = {.low = max_or_nan(range.low, next.range.low),
+             .high = max_or_nan(range.high, next.range.high)};
+    change = std::max(change, next.change);
+    if (next.ratio_max > ratio_max) {
+      ratio_max = next.ratio_max;
+      worst = next.worst;
+    }
+    broken.insert(broken.end(), next.broken.begin(), next.broken.end());
+  }
+};
+
+/// Every connection's result, and what they say together.
+Loads add_up(const model::Robot& robot, int thread_count, Assessment& assessment) {
+  const ConnectionLaws laws(robot);
+  const auto connections = robot.connections();
+  const Equilibrium& equilibrium = assessment.equilibrium;
+  const bool has_alternative =
+      equilibrium.displacement_low.empty() || equilibrium.open_but_held_count > 0;
+  assessment.connections.resize(connections.size());
+  host::Team team(thread_count, connections.size());
+  std::vector<Loads> parts;
+  team.map(connections.size(), parts, [&](std::size_t begin, std::size_t end) {
+    Loads part;
+    for (std::size_t i = begin; i < end; ++i) {
+      const model::Connection& pair = connections[i];
+      assessment.connections[i] =
+          laws.result(pair, equilibrium.displacement, equilibrium.displacement_low);
+      const double ratio = assessment.connections[i].load_ratio;
+      part.add(i, ratio,
+               has_alternative ? laws.load_ratio(pair, equilibrium.alternative[base::at(pair.a)],
+                                                 equilibrium.alternative[base::at(pair.b)])
+                               : ratio);
+    }
+    return part;
+  });
+  Loads all;
+  for (const Loads& part : parts) {
+    all.add(part);
+  }
+  return all;
+}
+
+/// Two answers of multigrid differ by less than the error of the better one, once in a while, and
+/// the error's energy is estimated too low. So of any connection the margin takes the largest
+/// difference so many times, or what the energy so many times could do to a load ratio, whichever
+/// is less; and never less than what is promised (docs/solver.md).
+constexpr double kMultigridFactor = 10;
+constexpr double kEnergyFactor = 3;
+
+/// Refinements in double that find nothing but rounding differ by less than their error now and
+/// then.
+constexpr double kDirectFactor = 10;
+
+/// How far the largest load ratio may be from the truth, if multigrid's tolerance is so many times
+/// the usual one.
+double error_margin(const model::Robot& robot, const Equilibrium& equilibrium,
+                    double tolerance_share, const Loads& loads) {
+  const double scale = std::max(1.0, loads.ratio_max);
+  double margin = kRounding * scale;
+  if (equilibrium.law == ContactLaw::kUnilateral && equilibrium.gamma > 0) {
+    margin += kWeakSprings * equilibrium.gamma * scale;
+  }
+  if (equilibrium.open_but_held_count > 0) {
+    return margin;  // The answers differ by more than an error.
+  }
+  if (equilibrium.method == solver::Method::kMultigrid) {
+    const double bound =
+        kEnergyFactor * model::load_ratio_per_energy_norm(robot) * equilibrium.energy_error;
+    return margin + std::max(kMultigridError * tolerance_share * scale,
+                             std::min(kMultigridFactor * loads.change, bound));
+  }
+  return margin + kDirectFactor * loads.change;
+}
+
+/// Nothing is said of a load below its own uncertainty: then it may as well be compression. Between
+/// the answers of ambiguous feet, which lie far apart, each is as good as the other.
+bool is_pulled_apart(double ratio_max, const Assessment& assessment) {
+  const LoadRange& range = assessment.load_ratio_range;
+  const bool is_known = breaks(ratio_max) || assessment.equilibrium.open_but_held_count > 0 ||
+                        ratio_max > range.high - range.low;
+  return ratio_max >= kLoadRatioTie && is_known;
+}
+
+}  // namespace
+
+double tolerance_share(const solver::EquilibriumOptions& options) {
+  return options.tolerance / solver::EquilibriumOptions{}.tolerance;
+}
+
+/// Sec. III-D for every connection.
+void assess_connections(const model::Robot& robot, const solver::EquilibriumOptions& options,
+                        Assessment& assessment) {
+  if (robot.connections().empty()) {
+    return;
+  }
+  Loads loads = add_up(robot, options.thread_count, assessment);
+  assessment.load_ratio_change = loads.change;
+  const double margin =
+      error_margin(robot, assessment.equilibrium, tolerance_share(options), loads);
+  assessment.load_ratio_range = {.low = loads.range.low - margin,
+                                 .high = loads.range.high + margin};
+  assessment.broken = std::move(loads.broken);
+  std::ranges::stable_sort(assessment.broken, std::greater<>(),
+                           [&](std::size_t i) { return assessment.connections[i].load_ratio; });
+  if (is_nan(loads.range)) {
+    return;
+  }
+  assessment.load_ratio_max = loads.ratio_max;
+  if (is_pulled_apart(loads.ratio_max, assessment)) {
+    assessment.worst = loads.worst;
+    assessment.weight_factor = 1 / loads.ratio_max;
+  }
+}
+
+std::optional<OpenGaps> find_open_gaps(const model::Robot& robot, const Equilibrium& equilibrium) {
+  const bool is_limited = std::ranges::any_of(
+      robot.connectors(), [](const auto& law) { return std::isfinite(law.gap_limit_mm); });
+  if (!is_limited) {
+    return std::nullopt;
+  }
+  const ConnectionLaws laws(robot);
+  OpenGaps gaps;
+  double share_max = 0;
+  for (std::size_t i = 0; i < robot.connections().size(); ++i) {
+    const model::Connection& pair = robot.connections()[i];
+    const double limit = robot.connector(pair).gap_limit_mm;
+    const double gap = laws.gap_mm(pair, equilibrium.displacement, equilibrium.displacement_low);
+    gaps.count += gap > limit ? 1 : 0;
+    if (gap / limit > share_max) {
+      share_max = gap / limit;
+      gaps.worst = i;
+      gaps.gap_mm = gap;
+      gaps.limit_mm = limit;
+    }
+  }
+  return gaps.count > 0 ? std::optional(gaps) : std::nullopt;
+}
+
+}  // namespace holdfast::verdict

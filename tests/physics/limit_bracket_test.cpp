@@ -1,0 +1,124 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+// lambda_elastic <= lambda_limit, as the elastic forces are one distribution that balances: on the
+// reference structures and on random robots with random laws; and what topples holds no share.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <random>
+#include <string>
+
+#include "holdfast/holdfast.hpp"
+#include "random_robot.hpp"
+#include "reference.hpp"
+
+namespace holdfast {
+namespace {
+
+/// Of the bracket: the elastic factor has the solver's error, and counts from below.
+constexpr double kTolerance = 1e-6;
+
+/// The factor up to which no connection breaks; none where none is pulled apart.
+void expect_bracket(const CheckResult& result, const std::string& name) {
+  ASSERT_TRUE(result.limit) << name;
+  EXPECT_NE(result.limit->outcome, limit::LimitLoad::Outcome::kStopped) << name;
+  const verdict::Assessment& assessment = result.assessment;
+  if (assessment.is_stable && assessment.weight_factor) {
+    const double factor = std::min(*assessment.weight_factor, limit::kFactorMax);
+    EXPECT_GE(result.limit->high, factor * (1 - kTolerance)) << name;
+  }
+}
+
+TEST(LimitBracket, HoldsOnTheGeneralReferences) {
+  std::ifstream file(HOLDFAST_GENERAL_FILE);
+  int count = 0;
+  for (std::string line; std::getline(file, line); ++count) {
+    const nlohmann::json json = nlohmann::json::parse(line);
+    const auto structure = load_text(json["structure"].dump());
+    ASSERT_TRUE(structure) << structure.error().message;
+    const CheckResult result = check(structure.value(), {.is_limit_wanted = true});
+    expect_bracket(result, structure.value().name);
+    // Connections that only carry their share of the load hold a millionth of it, if the body does.
+    EXPECT_EQ(result.limit->low > 1e-6, json["expected"]["holds_no_slip"].get<bool>())
+        << structure.value().name;
+  }
+  EXPECT_EQ(count, 100);
+}
+
+TEST(LimitBracket, HoldsOnThePublishedReferences) {
+  for (const test::Reference& reference : test::read_references(HOLDFAST_REFERENCE_FILE)) {
+    const auto robot = model::Robot::create(reference.spec);
+    ASSERT_TRUE(robot);
+    const CheckResult result = check(robot.value(), {.is_limit_wanted = true});
+    expect_bracket(result, reference.name);
+    if (!reference.is_tie) {
+      EXPECT_EQ(result.limit->low > 1e-6, reference.margin_mm > 0) << reference.name;
+    }
+  }
+}
+
+/// Limits of all kinds, strong and weak.
+model::ConnectorLaw random_law(std::mt19937_64& random) {
+  const auto between = [&](double low, double high) {
+    return std::uniform_real_distribution(low, high)(random);
+  };
+  model::ConnectorLaw law = {.strength_n = between(2, 20), .lever_mm = between(8, 20)};
+  if (random() % 2 == 0) {
+    law.shear_strength_n = between(1, 10);
+  }
+  if (random() % 2 == 0) {
+    law.torsion_strength_nmm = between(20, 200);
+  }
+  if (random() % 3 == 0) {
+    law.bending = model::BendingLaw::kRound;
+  }
+  if (random() % 4 == 0) {
+    law.friction = between(0.2, 2);
+    law.torsion_radius_mm = between(5, 20);
+  }
+  return law;
+}
+
+TEST(LimitBracket, HoldsOnRandomRobotsWithRandomLaws) {
+  for (std::uint64_t seed = 0; seed < 60; ++seed) {
+    std::mt19937_64 random(seed);
+    model::RobotSpec spec = test::random_robot(seed);
+    spec.kinds = {model::default_kind(spec.material, spec.lattice)};
+    spec.kinds[0].connectors.assign(6, random_law(random));
+    const auto robot = model::Robot::create(spec);
+    ASSERT_TRUE(robot);
+    expect_bracket(check(robot.value(), {.is_limit_wanted = true}), "seed " + std::to_string(seed));
+  }
+}
+
+// More than 400 joints: free are those near their limits, the bounds come from parts of the robot.
+// A small arm at a solid block breaks at its root, wherever the block goes on to.
+TEST(LimitBracket, ALargeRobotBreaksWhereItsArmDoes) {
+  std::vector<base::Cell> cells;
+  for (int z = 0; z < 6; ++z) {
+    for (int y = 0; y < 6; ++y) {
+      for (int x = 0; x < 6; ++x) {
+        cells.push_back({x, y, z});
+      }
+    }
+  }
+  constexpr int kArm = 5;
+  for (int i = 0; i < kArm; ++i) {
+    cells.push_back({6 + i, 2, 5});
+  }
+  const auto robot = make_robot({.existing = cells});
+  ASSERT_TRUE(robot);
+  const CheckResult result = check(robot.value(), {.is_limit_wanted = true});
+  const model::Material material;
+  const double moment = model::module_weight_n(material) * 40 * kArm * kArm / 2;
+  EXPECT_NEAR(result.limit->low, material.strength_lateral_n * 20 / moment, 1e-4);
+  EXPECT_LT(result.limit->row_count_max, 6 * cells.size() / 4);
+  ASSERT_FALSE(result.limit->mechanism.yields.empty());
+  EXPECT_EQ(model::ends_text(robot.value(), result.limit->mechanism.yields[0].joint),
+            "(5,2,5)-(6,2,5)");
+}
+
+}  // namespace
+}  // namespace holdfast
