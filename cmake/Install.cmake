@@ -20,7 +20,7 @@ foreach(kind static shared)
   target_compile_features(${library} INTERFACE cxx_std_20)
   target_include_directories(${library} INTERFACE $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
   target_link_libraries(${library} PRIVATE fmt::fmt pugixml::pugixml Threads::Threads
-                        deflate Clp CoinUtils)
+                        deflate ${CMAKE_DL_LIBS})
   if(HOLDFAST_UNICORN)
     target_link_libraries(${library} PRIVATE unicorn)
   endif()

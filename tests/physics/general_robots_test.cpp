@@ -77,6 +77,36 @@ TEST_P(GeneralRobots, that_are_hard_have_the_same_answer_when_all_is_turned) {
   }
 }
 
+/// Walls that carry by shear alone press with rounding: its sign must not decide.
+TEST(RobotsBetweenWalls, have_the_same_answer_when_their_pressure_is_rounding) {
+  struct Case {
+    base::Lattice lattice;
+    std::uint64_t seed;
+    std::size_t turn;
+  };
+
+  for (const auto& [lattice, seed, turn] :
+       {Case{base::kCubic, 624, 14}, Case{base::kCubic, 1342, 27}, Case{base::kCubic, 1621, 24},
+        Case{base::kHexagonalPrism, 813, 9}}) {
+    SCOPED_TRACE(::testing::Message() << "general_robot " << seed << " turned by " << turn);
+    const test::Checked checked =
+        test::check_turning(test::general_robot(lattice, seed), test::symmetries(lattice)[turn]);
+    EXPECT_EQ(checked.fault, "");
+  }
+}
+
+/// By the paper's law the weak springs of open facets pull; then the exact law is asked, too.
+TEST(RobotsWithOpenFacets, are_judged_by_both_laws) {
+  for (const std::uint64_t seed : {268, 587}) {
+    SCOPED_TRACE(::testing::Message() << "general_robot " << seed);
+    const auto robot = model::Robot::create(test::general_robot(base::kCubic, seed));
+    const Assessment assessment = verdict::assess(robot.value());
+    ASSERT_EQ(assessment.contact_model, verdict::ContactModel::kRegularised);
+    ASSERT_TRUE(assessment.several && assessment.several->unilateral);
+    EXPECT_GT(assessment.several->unilateral->high, assessment.several->regularised.high);
+  }
+}
+
 TEST(Symmetries, are_as_many_as_of_the_polyhedra) {
   EXPECT_EQ(test::symmetries(base::kCubic).size(), 48U);
   EXPECT_EQ(test::symmetries(base::kFaceCentred).size(), 48U);

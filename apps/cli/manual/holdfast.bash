@@ -22,8 +22,7 @@ _holdfast() {
         --limit-seconds) : ;;
         --threads) : ;;
         --memory) : ;;
-        *) if [[ $current == -* ]]; then words="-h --help --lattice --json --connections --csv --svg --vtk --html --certificate --prove --limit --limit-seconds --quiet --bonded --threads --memory"; else files=1; fi ;;
-        *) if [[ $current == -* ]]; then words="-h --help --robot --lattice --json --connections --csv --svg --vtk --html --certificate --prove --quiet --bonded --threads --memory"; else files=1; fi ;;
+        *) if [[ $current == -* ]]; then words="-h --help --robot --lattice --json --connections --csv --svg --vtk --html --certificate --prove --limit --limit-seconds --quiet --bonded --threads --memory"; else files=1; fi ;;
       esac
       ;;
     simulate)
@@ -72,8 +71,6 @@ _holdfast() {
       ;;
     convert)
       case $previous in
-        --lattice) : ;;
-        *) if [[ $current == -* ]]; then words="-h --help --lattice"; else files=1; fi ;;
         --robot) : ;;
         --lattice) : ;;
         *) if [[ $current == -* ]]; then words="-h --help --robot --lattice"; else files=1; fi ;;
@@ -82,7 +79,7 @@ _holdfast() {
     generate)
       case $previous in
         -o|--output) files=1 ;;
-        *) if [[ $current == -* ]]; then words="-h --help -o --output"; else words="arm cube tower scaffold shell portal bridge growth"; fi ;;
+        *) if [[ $current == -* ]]; then words="-h --help -o --output"; else words="arm cube tower scaffold shell portal bridge growth ball sheet prism-wall"; fi ;;
       esac
       ;;
     robots)
@@ -93,9 +90,6 @@ _holdfast() {
       ;;
     view)
       case $previous in
-        --lattice) : ;;
-        --out) files=1 ;;
-        *) if [[ $current == -* ]]; then words="-h --help --lattice --out --no-open"; else files=1; fi ;;
         --robot) : ;;
         --lattice) : ;;
         --out) files=1 ;;

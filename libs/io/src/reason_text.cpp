@@ -33,6 +33,12 @@ std::string range_text(double low, double high) {
 
 std::string several_text(const Numbers& n) {
   const bool has_unilateral = !(n[3] > n[4]);
+  if (n[0] < 2) {
+    return fmt::format(
+        "open facets still pull a little by the paper's contact law (Eqs. 9-12): the largest load "
+        "ratio is {} by it, {} by exact unilateral contact (Eqs. 6-8)",
+        range_text(n[1], n[2]), has_unilateral ? range_text(n[3], n[4]) : "not known");
+  }
   return fmt::format(
       "the paper's contact law (Eqs. 9-12) has several solutions here: the largest load ratio is "
       "{} in the {:.0f} that were found, {} by exact unilateral contact (Eqs. 6-8)",
@@ -109,7 +115,7 @@ std::string load_text(const model::Robot& robot, const Reason& reason) {
       return fmt::format("stable; the worst connection, {}, carries {} of its strength",
                          connection_text(robot, n[0]), beside_one(n[1], 4));
     case ReasonCode::kSolutionsAgree:
-      return several_text(n) + "; all give this verdict";
+      return several_text(n) + (n[0] < 2 ? "; both give this verdict" : "; all give this verdict");
     case ReasonCode::kAmbiguousFeet:
       return fmt::format(
           "{:.0f} lifted feet would touch down again if they slid freely, and lift again if held; "

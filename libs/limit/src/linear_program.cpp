@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <coin/ClpSimplex.hpp>
-#include <coin/ClpSolve.hpp>
+#include <memory>
+
+#include "clp.hpp"
+#include "holdfast/limit/limit_load.hpp"
 
 namespace holdfast::limit {
 namespace {
@@ -14,17 +16,10 @@ namespace {
 /// Rows up to which the simplex method is faster: about where it takes a second.
 constexpr int kSimplexRowMax = 900;
 
-ClpSimplex load(const LinearProgram& program, double seconds_max) {
-  ClpSimplex model;
-  model.setLogLevel(0);
-  model.setOptimizationDirection(-1);
-  model.setMaximumSeconds(std::max(seconds_max, 0.01));
-  model.loadProblem(program.column_count(), program.row_count(), program.starts.data(),
-                    program.rows.data(), program.values.data(), program.lower.data(),
-                    program.upper.data(), program.cost.data(), program.right_side.data(),
-                    program.right_side.data());
-  return model;
-}
+/// Clp's own numbers for them (ClpSolve.hpp).
+enum class Method : int { kDual = 0, kBarrier = 3, kBarrierWithoutCrossover = 4 };
+constexpr int kPresolveOn = 0;
+constexpr int kPresolveOff = 1;
 
 /// How far a solution is from fulfilling both the program and its dual, in its own units: Clp's
 /// interior point method has been seen to call optimal what is not.
@@ -62,22 +57,30 @@ double fault_of(const LinearProgram& program, const LinearSolution& solution) {
   return std::max(fault, std::abs(dual_value - solution.value) / (1 + std::abs(solution.value)));
 }
 
-LinearSolution solve_by(ClpSolve::SolveType method, const LinearProgram& program,
+LinearSolution solve_by(const Clp& clp, Method method, const LinearProgram& program,
                         double seconds_max) {
-  ClpSimplex model = load(program, seconds_max);
-  ClpSolve how;
-  how.setSolveType(method);
-  how.setPresolveType(method == ClpSolve::useDual ? ClpSolve::presolveOn : ClpSolve::presolveOff);
-  model.initialSolve(how);
+  const std::unique_ptr<Clp_Simplex, void (*)(Clp_Simplex*)> model(clp.new_model(),
+                                                                   clp.delete_model);
+  const std::unique_ptr<Clp_Solve, void (*)(Clp_Solve*)> how(clp.new_options(), clp.delete_options);
+  clp.set_log_level(model.get(), 0);
+  clp.set_direction(model.get(), -1);
+  clp.set_maximum_seconds(model.get(), std::max(seconds_max, 0.01));
+  clp.load_problem(model.get(), program.column_count(), program.row_count(), program.starts.data(),
+                   program.rows.data(), program.values.data(), program.lower.data(),
+                   program.upper.data(), program.cost.data(), program.right_side.data(),
+                   program.right_side.data());
+  clp.set_solve_type(how.get(), static_cast<int>(method), -1);
+  clp.set_presolve_type(how.get(), method == Method::kDual ? kPresolveOn : kPresolveOff, -1);
+  clp.solve(model.get(), how.get());
   LinearSolution solution;
-  solution.value = model.getObjValue();
-  const double* x = model.getColSolution();
-  const double* prices = model.getRowPrice();
+  solution.value = clp.value(model.get());
+  const double* x = clp.columns(model.get());
+  const double* prices = clp.prices(model.get());
   solution.x.assign(x, x + program.column_count());
   solution.prices.assign(prices, prices + program.row_count());
   constexpr double kFaultMax = 1e-6;
   constexpr int kOptimal = 0;
-  if (model.status() == kOptimal && fault_of(program, solution) <= kFaultMax) {
+  if (clp.status(model.get()) == kOptimal && fault_of(program, solution) <= kFaultMax) {
     solution.is_optimal = true;
   }
   return solution;
@@ -86,16 +89,22 @@ LinearSolution solve_by(ClpSolve::SolveType method, const LinearProgram& program
 }  // namespace
 
 LinearSolution solve(const LinearProgram& program, double seconds_max) {
+  const Clp* const clp = find_clp();
+  if (clp == nullptr) {
+    return {};
+  }
   const bool is_small = program.row_count() <= kSimplexRowMax;
   const auto start = std::chrono::steady_clock::now();
-  LinearSolution solution =
-      solve_by(is_small ? ClpSolve::useDual : ClpSolve::useBarrierNoCross, program, seconds_max);
+  LinearSolution solution = solve_by(
+      *clp, is_small ? Method::kDual : Method::kBarrierWithoutCrossover, program, seconds_max);
   const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
   if (!solution.is_optimal && taken.count() < seconds_max) {
-    solution = solve_by(is_small ? ClpSolve::useBarrier : ClpSolve::useDual, program,
+    solution = solve_by(*clp, is_small ? Method::kBarrier : Method::kDual, program,
                         seconds_max - taken.count());
   }
   return solution;
 }
+
+bool has_solver() { return find_clp() != nullptr; }
 
 }  // namespace holdfast::limit

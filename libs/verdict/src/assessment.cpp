@@ -69,6 +69,14 @@ std::span<const double> weak_springs(solver::EquilibriumSolver& solver, bool is_
              : kStableGammas;
 }
 
+/// Whether weak springs of open facets, part of the paper's law, may carry part of the load where
+/// supports are anywhere: on a floor all that they can do is pull down.
+bool has_pulling_facets(const model::Robot& robot, const Assessment& assessment) {
+  return !is_on_flat_floor(robot) &&
+         std::ranges::any_of(assessment.equilibrium.contact,
+                             [](const mechanics::ContactState& state) { return !state.pressed; });
+}
+
 /// The paper's contact law first; the exact one where it has no answer or one that contradicts the
 /// rigid body, which is certain on flat ground, and beside it where the paper's has several.
 void find_equilibrium(const model::Robot& robot, const solver::EquilibriumOptions& options,
@@ -97,7 +105,7 @@ void find_equilibrium(const model::Robot& robot, const solver::EquilibriumOption
   }
   if (is_settled) {
     solver.seek_others(assessment.equilibrium);
-    if (assessment.equilibrium.others.empty()) {
+    if (assessment.equilibrium.others.empty() && !has_pulling_facets(robot, assessment)) {
       return;
     }
   }

@@ -77,9 +77,20 @@ class FacetLaw {
     return mechanics::trial_force(ground_, beam_->to_local(facet.direction, u));
   }
 
-  /// The state that the law prescribes for a trial force.
+  /// The state that the law prescribes for a trial force. A facet that presses with no more than
+  /// the rounding of what else acts on it does not press: its sign depends on how the robot lies.
   mechanics::ContactState state_for(const FacetState& facet, const Vec& trial) const {
-    return facet.is_bonded ? mechanics::ContactState{} : mechanics::contact_state(ground_, trial);
+    if (facet.is_bonded) {
+      return {};
+    }
+    const Real sideways = base::absolute(trial[0]) + base::absolute(trial[1]);
+    const Real torque =
+        base::absolute(trial[3]) + base::absolute(trial[4]) + base::absolute(trial[5]);
+    const bool is_rounding =
+        base::absolute(trial[2]) < Real(kPressureTie) * (sideways + torque / ground_.lever);
+    return is_rounding && ground_.law == mechanics::ContactLaw::kRegularised
+               ? mechanics::ContactState{.pressed = false}
+               : mechanics::contact_state(ground_, trial);
   }
 
   /// The state that the law prescribes when its module moves by u.
@@ -101,6 +112,9 @@ class FacetLaw {
   }
 
  private:
+  /// A pressure below this share of what else acts on the facet is rounding.
+  static constexpr double kPressureTie = 1e-9;
+
   const model::LatticeBeam<Real>* beam_;
   mechanics::GroundFacet<Real> ground_;
 };

@@ -64,10 +64,11 @@ struct LoadRange {
   double high = 0;
 };
 
-/// What the paper's contact law, where it has more than one solution, says about the largest load
-/// ratio, and what the exact law says beside it. A verdict needs all of them on one side of 1.
+/// What the paper's contact law, where it has more than one solution, or where open facets may
+/// pull, says about the largest load ratio, and what the exact law says beside it. A verdict needs
+/// all of them on one side of 1.
 struct SeveralSolutions {
-  std::size_t found_count = 0;          ///< At least so many; 2 or more.
+  std::size_t found_count = 0;          ///< At least so many; 1 where open facets may pull.
   LoadRange regularised;                ///< Over all solutions found.
   std::optional<LoadRange> unilateral;  ///< None if no equilibrium was found.
   double error = 0;                     ///< By which each of these may be off.
