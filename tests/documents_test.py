@@ -148,6 +148,7 @@ def main():
         os.symlink(program, folder / 'build/release/holdfast')
         os.symlink(checker, folder / 'build/release/holdfast-checker')
         os.symlink(repository / 'scenarios', folder / 'scenarios')
+        os.symlink(repository / 'examples', folder / 'examples')
         count = sum(check_outputs(document, (repository / document).read_text(), folder)
                     for document in DOCUMENTS if (repository / document).is_file())
     check_tables(repository, measured(program, repository))
