@@ -46,10 +46,10 @@ Vec6<Real> at_node(const GroundFacet<Real>& facet, Vec6<Real> force) {
 
 template <class Real>
 ContactState regularised_state(const GroundFacet<Real>& facet, const Vec6<Real>& trial) {
-  if (-trial[kFz] <= 0) {
+  const Real limit = -trial[kFz] * facet.half_width;
+  if (limit <= 0) {
     return {.pressed = false};
   }
-  const Real limit = -trial[kFz] * facet.half_width;
   ContactState state;
   state.tilt_x = absolute(trial[kMx]) >= limit ? sign(trial[kMx]) : std::int8_t{0};
   state.tilt_y = absolute(trial[kMy]) >= limit ? sign(trial[kMy]) : std::int8_t{0};
@@ -206,10 +206,6 @@ Vec6<Real> trial_force(const GroundFacet<Real>& facet, const Vec6<Real>& u) {
 
 template <class Real>
 ContactState contact_state(const GroundFacet<Real>& facet, const Vec6<Real>& trial) {
-  if (facet.half_width == 0) {  // A point: no torque tilts it one way rather than the other.
-    return trial[kFz] < 0 ? ContactState{.pressed = true, .tilt_x = 1, .tilt_y = 1}
-                          : ContactState{.pressed = false};
-  }
   return is_regularised(facet) ? regularised_state(facet, trial) : unilateral_state(facet, trial);
 }
 

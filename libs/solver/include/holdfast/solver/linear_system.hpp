@@ -88,9 +88,14 @@ class FacetLaw {
         base::absolute(trial[3]) + base::absolute(trial[4]) + base::absolute(trial[5]);
     const bool is_rounding =
         base::absolute(trial[2]) < Real(kPressureTie) * (sideways + torque / ground_.lever);
-    return is_rounding && ground_.law == mechanics::ContactLaw::kRegularised
-               ? mechanics::ContactState{.pressed = false}
-               : mechanics::contact_state(ground_, trial);
+    if (is_rounding && ground_.law == mechanics::ContactLaw::kRegularised) {
+      return {.pressed = false};
+    }
+    if (ground_.half_width == Real(0)) {  // A point: no torque tilts it this way rather than that.
+      return trial[2] < Real(0) ? mechanics::ContactState{.tilt_x = 1, .tilt_y = 1}
+                                : mechanics::ContactState{.pressed = false};
+    }
+    return mechanics::contact_state(ground_, trial);
   }
 
   /// The state that the law prescribes when its module moves by u.
