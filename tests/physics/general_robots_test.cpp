@@ -97,7 +97,7 @@ TEST(RobotsBetweenWalls, have_the_same_answer_when_their_pressure_is_rounding) {
 
 /// By the paper's law the weak springs of open facets pull; then the exact law is asked, too.
 TEST(RobotsWithOpenFacets, are_judged_by_both_laws) {
-  for (const std::uint64_t seed : {268, 587}) {
+  for (const std::uint64_t seed : {std::uint64_t{268}, std::uint64_t{587}}) {
     SCOPED_TRACE(::testing::Message() << "general_robot " << seed);
     const auto robot = model::Robot::create(test::general_robot(base::kCubic, seed));
     const Assessment assessment = verdict::assess(robot.value());

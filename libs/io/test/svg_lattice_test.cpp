@@ -308,7 +308,7 @@ TEST_P(EveryLattice, nothing_lies_outside_of_the_picture) {
 
 std::string name_of(const testing::TestParamInfo<NamedLattice>& info) {
   std::string name = info.param.name;
-  std::ranges::replace(name, '-', '_');
+  std::replace(name.begin(), name.end(), '-', '_');
   return name;
 }
 
