@@ -53,12 +53,12 @@ std::string imbalance(const model::Robot& robot, const Assessment& assessment) {
 /// The same law in all directions, and one that knows no axes.
 void take_round_law(model::RobotSpec& spec) {
   model::ModuleKind kind = model::default_kind(spec.material, spec.lattice);
-  std::ranges::fill(kind.connectors,
-                    model::ConnectorLaw{.strength_n = 12,
-                                        .lever_mm = spec.material.pitch_mm / 2,
-                                        .bending = model::BendingLaw::kRound,
-                                        .friction = 0.4,
-                                        .torsion_radius_mm = spec.material.pitch_mm / 3});
+  std::fill(kind.connectors.begin(), kind.connectors.end(),
+            model::ConnectorLaw{.strength_n = 12,
+                                .lever_mm = spec.material.pitch_mm / 2,
+                                .bending = model::BendingLaw::kRound,
+                                .friction = 0.4,
+                                .torsion_radius_mm = spec.material.pitch_mm / 3});
   spec.kinds = {kind};
   spec.own_kinds.clear();
 }

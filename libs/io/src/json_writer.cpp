@@ -150,11 +150,12 @@ Items visiblesim_members(const Document& document) {
 
 /// What the modules of a step have of their own; step as in OwnParameters.
 std::span<const OwnParameters> own_of(const Extension& extension, std::size_t step) {
-  const auto range = std::ranges::equal_range(extension.own, step, {}, &OwnParameters::step);
+  const auto first = std::ranges::lower_bound(extension.own, step, {}, &OwnParameters::step);
+  const auto last = std::ranges::upper_bound(extension.own, step, {}, &OwnParameters::step);
   // As a place and a count: Emscripten's span takes no iterators of a vector.
   return std::span(extension.own)
-      .subspan(static_cast<std::size_t>(range.begin() - extension.own.begin()),
-               static_cast<std::size_t>(range.end() - range.begin()));
+      .subspan(static_cast<std::size_t>(first - extension.own.begin()),
+               static_cast<std::size_t>(last - first));
 }
 
 /// "planned" and "later_steps".
