@@ -439,7 +439,8 @@ TEST(SvgLattice, a_facet_that_tilts_has_its_pressed_edge_thick) {
   // mx^ < 0 tips over the +y edge, my^ > 0 over the +x edge (mechanics/ground_contact.hpp). On the
   // picture +y is up to the right, +x down to the right.
   const auto pressed = [](const mechanics::ContactState& state) {
-    const auto paths = standing_prism(state).one("facets").children("path");
+    const auto picture = standing_prism(state);
+    const auto paths = picture.one("facets").children("path");
     Polygon square;
     std::vector<Polygon> thick;
     for (const pugi::xml_node& path : paths) {
