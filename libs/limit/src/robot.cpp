@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "holdfast/model/lattice_beam.hpp"
+#include "holdfast/model/mass.hpp"
 #include "wrench.hpp"
 
 namespace holdfast::limit {
@@ -96,22 +97,14 @@ std::vector<ContactFacet> contact_facets(const model::Robot& robot) {
 
 BodyLoad body_load(const model::Robot& robot) {
   BodyLoad load;
-  double mass = 0;
-  const std::size_t count = robot.modules().size();
-  const base::NodePlaces places(robot.lattice(), robot.material().pitch_mm);
-  for (std::size_t module = 0; module < count; ++module) {
-    const Vector3 node = places(robot.modules()[module].cell);
-    mass += robot.mass(module);
-    for (std::size_t i = 0; i < 3; ++i) {
-      load.centre_of_mass_mm[i] += robot.mass(module) * node[i];
-    }
-  }
+  const model::Mass mass = model::mass_of(robot);
+  load.centre_of_mass_mm = mass.centre_mm;
   for (std::size_t i = 0; i < 3; ++i) {
-    load.centre_of_mass_mm[i] = mass > 0 ? load.centre_of_mass_mm[i] / mass : 0;
-    load.weight_n[i] = mass * robot.gravity()[i];
+    load.weight_n[i] = mass.kg * robot.gravity()[i];
   }
+  const base::NodePlaces places(robot.lattice(), robot.material().pitch_mm);
   double inertia = 0;
-  for (std::size_t module = 0; module < count; ++module) {
+  for (std::size_t module = 0; module < robot.modules().size(); ++module) {
     const Vector3 node = places(robot.modules()[module].cell);
     const Vector3 arm = difference(node, load.centre_of_mass_mm);
     inertia += robot.mass(module) * dot(arm, arm);
@@ -128,7 +121,7 @@ BodyLoad body_load(const model::Robot& robot) {
     }
   }
   const double least = robot.material().pitch_mm / 2;
-  load.gyration_mm = mass > 0 ? std::max(least, std::sqrt(inertia / mass)) : least;
+  load.gyration_mm = std::max(least, std::sqrt(inertia / mass.kg));
   return load;
 }
 

@@ -16,6 +16,7 @@
 #include "holdfast/model/lattice_beam.hpp"
 #include "holdfast/solver/equilibrium.hpp"
 #include "random_numbers.hpp"
+#include "ratio_difference.hpp"
 
 namespace holdfast::solver {
 namespace {
@@ -124,16 +125,6 @@ std::vector<double> load_ratios(const model::Robot& robot, const std::vector<Vec
     ratios.push_back((force[2] + std::max(std::abs(force[3]), std::abs(force[4])) / 20) / 12);
   }
   return ratios;
-}
-
-double largest_difference(const std::vector<double>& a, const std::vector<double>& b) {
-  double scale = 1;
-  double difference = 0;
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    scale = std::max(scale, std::abs(a[i]));
-    difference = std::max(difference, std::abs(a[i] - b[i]));
-  }
-  return difference / scale;
 }
 
 /// Multigrid settles where the direct solver does, in the same states, and agrees. Returns whether

@@ -13,6 +13,7 @@
 #include "holdfast/model/families.hpp"
 #include "holdfast/solver/equilibrium.hpp"
 #include "random_robot.hpp"
+#include "ratio_difference.hpp"
 
 namespace holdfast::solver {
 namespace {
@@ -38,16 +39,6 @@ std::vector<double> load_ratios(const model::Robot& robot, const std::vector<Vec
                                                : material.strength_lateral_n));
   }
   return ratios;
-}
-
-double largest_difference(const std::vector<double>& a, const std::vector<double>& b) {
-  double scale = 1;
-  double difference = 0;
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    scale = std::max(scale, std::abs(a[i]));
-    difference = std::max(difference, std::abs(a[i] - b[i]));
-  }
-  return difference / scale;
 }
 
 model::Robot family(Family family, std::size_t size) {

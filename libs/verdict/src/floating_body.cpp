@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "holdfast/model/robot.hpp"
+#include "holdfast/model/mass.hpp"
 
 namespace holdfast::verdict {
 namespace {
@@ -50,18 +50,6 @@ std::vector<PlanPoint> convex_hull(std::vector<PlanPoint> points, double tie) {
   return hull;
 }
 
-PlanPoint centre_of_mass(const model::Robot& robot, const base::NodePlaces& node_mm) {
-  PlanPoint sum;
-  double mass = 0;
-  for (std::size_t i = 0; i < robot.modules().size(); ++i) {
-    const auto place = node_mm(robot.modules()[i].cell);
-    sum.x += robot.mass(i) * place[0];
-    sum.y += robot.mass(i) * place[1];
-    mass += robot.mass(i);
-  }
-  return {sum.x / mass, sum.y / mass};
-}
-
 /// The frame of a floor's facets is the global one.
 std::vector<PlanPoint> facet_corners(const model::Robot& robot, const base::NodePlaces& node_mm) {
   const double b = robot.foot_half_width_mm();
@@ -81,13 +69,14 @@ std::vector<PlanPoint> facet_corners(const model::Robot& robot, const base::Node
 
 RigidBody floating_body(const model::Robot& robot) {
   RigidBody body;
-  const base::NodePlaces node_mm(robot.lattice(), robot.material().pitch_mm);
-  body.centre_of_mass = centre_of_mass(robot, node_mm);
+  const model::Mass mass = model::mass_of(robot);
+  body.centre_of_mass = {mass.centre_mm[0], mass.centre_mm[1]};
   body.is_stable = robot.fixed_count() > 0 || robot.has_bonded_facets();
   if (!is_on_flat_floor(robot)) {
     return body;
   }
   const double tie = kMarginTie * robot.material().pitch_mm;
+  const base::NodePlaces node_mm(robot.lattice(), robot.material().pitch_mm);
   body.polygon = convex_hull(facet_corners(robot, node_mm), tie);
   if (body.is_stable) {
     return body;

@@ -3,7 +3,6 @@
 #include "stability.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numbers>
 #include <vector>
@@ -11,6 +10,7 @@
 #include "holdfast/limit/robot.hpp"
 #include "holdfast/mechanics/support_corners.hpp"
 #include "holdfast/model/lattice_beam.hpp"
+#include "holdfast/model/mass.hpp"
 
 namespace holdfast::verdict {
 namespace {
@@ -38,16 +38,10 @@ struct Heights {
 
 Heights heights(const model::Robot& robot) {
   const base::NodePlaces node_mm(robot.lattice(), robot.material().pitch_mm);
-  double moment = 0;
-  double mass = 0;
-  for (std::size_t i = 0; i < robot.modules().size(); ++i) {
-    moment += robot.mass(i) * node_mm(robot.modules()[i].cell)[2];
-    mass += robot.mass(i);
-  }
   const model::Facet& facet = robot.facets().front();
   const double floor_mm =
       node_mm(robot.modules()[base::at(facet.module)].cell)[2] - robot.material().pitch_mm / 2;
-  return {.floor_mm = floor_mm, .centre_of_mass_mm = moment / mass - floor_mm};
+  return {.floor_mm = floor_mm, .centre_of_mass_mm = model::mass_of(robot).centre_mm[2] - floor_mm};
 }
 
 /// On a flat floor gravity passes the nearest edge of the polygon first.
@@ -168,6 +162,7 @@ ModelStability model_stability(const model::Robot& robot, const Equilibrium& equ
 }
 
 std::optional<Slip> find_slip(const model::Robot& robot, const Equilibrium& equilibrium) {
+  const model::LatticeBeam<double> beam(model::beam_section(robot.material()), robot.lattice());
   std::optional<Slip> worst;
   double excess_max = 1;
   for (std::size_t i = 0; i < robot.facets().size(); ++i) {
@@ -175,14 +170,7 @@ std::optional<Slip> find_slip(const model::Robot& robot, const Equilibrium& equi
     if (!facet.touch.friction || facet.is_bonded() || !equilibrium.contact[i].pressed) {
       continue;
     }
-    const auto frame = model::rotation_along<double>(robot.lattice(), facet.direction);
-    const base::Vec6<double>& force = equilibrium.facet_force[i];
-    std::array<double, 3> local{};
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      for (std::size_t k = 0; k < 3; ++k) {
-        local[axis] += frame[axis][k] * force[k];
-      }
-    }
+    const auto local = beam.to_local(facet.direction, equilibrium.facet_force[i]);
     const double sideways = std::hypot(local[0], local[1]);
     const double excess = sideways / (std::abs(local[2]) * *facet.touch.friction);
     if (sideways > 0 && excess > excess_max) {

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstddef>
+#include <utility>
 #include <vector>
 
 #include "holdfast/base/algebra.hpp"
@@ -77,21 +78,6 @@ inline void add_motion(const BeamShape& shape, std::size_t direction, const base
   u[k + 3] += shape.slope_rate * end[k + 3] + rate * end[j];
 }
 
-/// Adds to the load of an end what it takes of a force on a point of its beam: the transpose of
-/// add_motion().
-inline void add_share(const BeamShape& shape, std::size_t direction,
-                      const base::Vec6<double>& force, base::Vec6<double>& load) {
-  const auto [a, j, k, sign] = Axes(direction);
-  const double slope = sign * shape.slope;
-  const double rate = sign * shape.cubic_rate;
-  load[a] += shape.linear * force[a];
-  load[j] += shape.cubic * force[j] + rate * force[k + 3];
-  load[k] += shape.cubic * force[k] - rate * force[j + 3];
-  load[a + 3] += shape.linear * force[a + 3];
-  load[j + 3] += shape.slope_rate * force[j + 3] - slope * force[k];
-  load[k + 3] += shape.slope_rate * force[k + 3] + slope * force[j];
-}
-
 /// What add_motion() does, for a beam along any unit vector n:
 ///   u gains across(u_end) + slope (t_end x n),   t gains about(t_end) + cubic_rate (n x u_end),
 /// where each part of a vector along n and across it counts by its own factor.
@@ -109,20 +95,13 @@ inline void add_motion(const BeamShape& shape, const std::array<double, 3>& n,
   }
 }
 
-/// The transpose of it.
-inline void add_share(const BeamShape& shape, const std::array<double, 3>& n,
-                      const base::Vec6<double>& force, base::Vec6<double>& load) {
-  const double along = n[0] * force[0] + n[1] * force[1] + n[2] * force[2];
-  const double about = n[0] * force[3] + n[1] * force[4] + n[2] * force[5];
-  for (std::size_t i = 0; i < 3; ++i) {
-    const std::size_t j = (i + 1) % 3;
-    const std::size_t k = (i + 2) % 3;
-    load[i] += shape.cubic * force[i] + (shape.linear - shape.cubic) * along * n[i] +
-               shape.cubic_rate * (force[j + 3] * n[k] - force[k + 3] * n[j]);
-    load[i + 3] += shape.slope_rate * force[i + 3] +
-                   (shape.linear - shape.slope_rate) * about * n[i] +
-                   shape.slope * (n[j] * force[k] - n[k] * force[j]);
-  }
+/// Adds to the load of an end what it takes of a force on a point of its beam: the transpose of
+/// add_motion(), in which the two parts that couple displacements with rotations change places.
+template <class Along>
+void add_share(BeamShape shape, const Along& along, const base::Vec6<double>& force,
+               base::Vec6<double>& load) {
+  std::swap(shape.slope, shape.cubic_rate);
+  add_motion(shape, along, force, load);
 }
 
 /// Shapes of beams by length and place; those of a length that was asked for stay.

@@ -1,0 +1,20 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+
+#include "holdfast/model/robot.hpp"
+
+namespace holdfast::model {
+
+/// Where a robot's mass is, global frame; the node of cell (0, 0, 0) is at the origin.
+struct Mass {
+  double kg = 0;
+  std::array<double, 3> centre_mm{};
+};
+
+/// The mass of all modules, planned ones too.
+Mass mass_of(const Robot& robot);
+
+}  // namespace holdfast::model

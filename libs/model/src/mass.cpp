@@ -1,0 +1,23 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#include "holdfast/model/mass.hpp"
+
+namespace holdfast::model {
+
+Mass mass_of(const Robot& robot) {
+  const base::NodePlaces node_mm(robot.lattice(), robot.material().pitch_mm);
+  Mass mass;
+  for (std::size_t i = 0; i < robot.modules().size(); ++i) {
+    const auto node = node_mm(robot.modules()[i].cell);
+    for (std::size_t k = 0; k < 3; ++k) {
+      mass.centre_mm[k] += robot.mass(i) * node[k];
+    }
+    mass.kg += robot.mass(i);
+  }
+  for (double& coordinate : mass.centre_mm) {
+    coordinate /= mass.kg;
+  }
+  return mass;
+}
+
+}  // namespace holdfast::model
