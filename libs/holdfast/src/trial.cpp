@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <iterator>
 
+#include "holdfast/plan/judgement.hpp"
+
 namespace holdfast {
 namespace {
 
@@ -46,13 +48,7 @@ std::vector<base::Cell> free_cells(const model::RobotSpec& spec) {
   return free;
 }
 
-verdict::Assessment first_look(const model::Robot& robot) {
-  verdict::Assessment assessment = verdict::assess_rigidly(robot);
-  const bool is_open =
-      assessment.is_stable || assessment.rigid.answer == limit::RigidAnswer::kUndecided;
-  assessment.verdict = is_open ? verdict::Verdict::kUndecided : verdict::Verdict::kUnstable;
-  return assessment;
-}
+verdict::Assessment first_look(const model::Robot& robot) { return plan::first_look(robot); }
 
 std::vector<Trial> try_cells(const model::RobotSpec& spec, std::span<const base::Cell> cells,
                              Role role, const CheckOptions& options) {

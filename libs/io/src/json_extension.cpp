@@ -196,8 +196,8 @@ void read_loads(JsonReading& reading, const Json& value, const Place& place) {
   reading.document.extension.payloads = list_of(reading, value, place, payload);
 }
 
-Move move(JsonReading& reading, const Json& value, const Place& place) {
-  Move found;
+model::Move move(JsonReading& reading, const Json& value, const Place& place) {
+  model::Move found;
   demand(reading, value, place, "from");
   demand(reading, value, place, "to");
   for (const auto& [key, member] : reading.members(value, place)) {
@@ -215,8 +215,8 @@ Move move(JsonReading& reading, const Json& value, const Place& place) {
   return found;
 }
 
-PlanStep plan_step(JsonReading& reading, const Json& value, const Place& place) {
-  PlanStep step;
+model::Step plan_step(JsonReading& reading, const Json& value, const Place& place) {
+  model::Step step;
   for (const auto& [key, member] : reading.members(value, place)) {
     const Place here = place.at(key);
     if (key == "attach") {

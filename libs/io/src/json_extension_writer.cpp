@@ -74,7 +74,7 @@ std::string payload_text(const model::Payload& payload) {
                  member("torque_nmm", vector_text(payload.torque_nmm))});
 }
 
-std::string move_text(const Move& move) {
+std::string move_text(const model::Move& move) {
   Items members = {member("from", json_text(move.from)), member("to", json_text(move.to))};
   if (move.carrier) {
     members.push_back(member("carrier", json_text(*move.carrier)));
@@ -82,7 +82,7 @@ std::string move_text(const Move& move) {
   return object(members);
 }
 
-std::string step_text(const PlanStep& step) {
+std::string step_text(const model::Step& step) {
   Items members;
   const auto add = [&](std::string_view key, const auto& list, const auto& to_text) {
     if (!list.empty()) {
@@ -91,7 +91,7 @@ std::string step_text(const PlanStep& step) {
   };
   add("attach", step.attach, cells_text);
   add("detach", step.detach, cells_text);
-  add("move", step.moves, [](const std::vector<Move>& moves) {
+  add("move", step.moves, [](const std::vector<model::Move>& moves) {
     Items items;
     std::ranges::transform(moves, std::back_inserter(items), move_text);
     return row(items);

@@ -13,6 +13,7 @@
 #include "holdfast/base/lattice.hpp"
 #include "holdfast/io/element.hpp"
 #include "holdfast/model/robot.hpp"
+#include "holdfast/model/step.hpp"
 
 /// What a structure can say from version 2 of the JSON format on: other lattices than the cubic
 /// one, other environments than a floor, other loads than weight, several kinds of modules, plans
@@ -65,26 +66,6 @@ struct OwnParameters {
   friend bool operator==(const OwnParameters&, const OwnParameters&) = default;
 };
 
-/// A module that goes from one cell to another.
-struct Move {
-  base::Cell from;
-  base::Cell to;
-  std::optional<base::Cell> carrier;  ///< The module that carries it on its way.
-
-  friend bool operator==(const Move&, const Move&) = default;
-};
-
-/// A step of a plan: all of it happens together.
-struct PlanStep {
-  std::vector<base::Cell> attach;
-  std::vector<base::Cell> detach;
-  std::vector<Move> moves;
-  std::vector<model::CellPair> release;
-  std::vector<model::CellPair> connect;
-
-  friend bool operator==(const PlanStep&, const PlanStep&) = default;
-};
-
 /// The members of a document that only version 2 has; as it is by default, version 1 says it all.
 struct Extension {
   std::string
@@ -101,7 +82,7 @@ struct Extension {
   std::vector<std::optional<Color>> obstacle_colors;  ///< By obstacle; empty if none has one.
   Attributes obstacle_list;                           ///< Of VisibleSim's <obstacleList>.
   std::vector<model::Payload> payloads;
-  std::vector<PlanStep> plan;
+  std::vector<model::Step> plan;
 
   friend bool operator==(const Extension&, const Extension&) = default;
 };

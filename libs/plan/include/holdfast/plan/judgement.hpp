@@ -1,0 +1,35 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+
+#include "holdfast/model/robot.hpp"
+#include "holdfast/solver/options.hpp"
+#include "holdfast/verdict/assessment.hpp"
+
+/// What a planner asks of one robot on the way.
+namespace holdfast::plan {
+
+struct Judgement {
+  verdict::Verdict verdict = verdict::Verdict::kUndecided;
+  /// None for a robot that topples, which needs no loads, and where no load is known.
+  std::optional<double> load_ratio_max = {};
+  /// As of verdict::RigidBody: in mm, negative for a robot that topples, none for one that is
+  /// held.
+  std::optional<double> margin_mm = {};
+
+  bool is_safe() const { return verdict == verdict::Verdict::kSafe; }
+
+  friend bool operator==(const Judgement&, const Judgement&) = default;
+};
+
+/// What the rigid body alone says, at once and whatever the size: `unstable` for a robot that
+/// topples, else `undecided`, as no load is known.
+verdict::Assessment first_look(const model::Robot& robot);
+
+/// The verdict of verdict::assess(). A robot that topples is not solved, unless its supports are
+/// bonded by the options.
+Judgement judge(const model::Robot& robot, const solver::EquilibriumOptions& options = {});
+
+}  // namespace holdfast::plan
