@@ -182,6 +182,7 @@ base::Result<RobotOrder> find_robot_order(const OrderTask& task, const RobotOrde
                             {.group_size = task.group_size,
                              .seed = options.seed,
                              .seconds_max = options.seconds_max,
+                             .state_count_max = options.state_count_max,
                              .progress = options.progress});
   take_extremes(result);
   if (result.order.closure) {

@@ -401,6 +401,12 @@ Order find_order(GrowingStructure& structure, std::span<const ElementSet> starts
   const std::vector<ElementSet> begins(starts.begin(), starts.end());
   Explorer explorers[] = {{structure, knowledge, options, Sense::kGrowing, begins, {whole}},
                           {structure, knowledge, options, Sense::kShrinking, {whole}, begins}};
+  if (!knowledge.judge(whole).is_safe()) {
+    explorers[1].explore(0, options.seed);
+    Order order{.outcome = OrderOutcome::kNone, .state_count = knowledge.state_count()};
+    order.closure = explorers[1].closure();
+    return order;
+  }
   std::size_t budget =
       std::max(kFirstBudgetMin, kFirstBudgetPerElement * structure.element_count());
   for (std::size_t round = 0; !knowledge.is_spent() || round == 0; ++round, budget *= 2) {

@@ -32,6 +32,7 @@ struct RobotOrderOptions {
   /// Of OrderOptions all but the group size, which is the task's.
   std::uint64_t seed = 0;
   double seconds_max = std::numeric_limits<double>::infinity();
+  std::size_t state_count_max = std::numeric_limits<std::size_t>::max();
   std::function<void(std::size_t states, std::size_t grown, std::size_t shrunk)> progress = {};
   /// 0: as many as the machine has cores. The result does not depend on it.
   int thread_count = 0;
@@ -45,7 +46,7 @@ struct OrderCertificate {
 };
 
 struct RobotOrder {
-  Order order;  ///< Elements are the modules of the target's `existing`, by index.
+  Order order = {};  ///< Elements are the modules of the target's `existing`, by index.
   std::optional<OrderCertificate> certificate = {};  ///< Of OrderOutcome::kNone.
   /// The largest load ratio of all states on the way; none if no load is known.
   std::optional<double> load_ratio_max = {};
