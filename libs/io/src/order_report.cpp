@@ -48,7 +48,8 @@ Items way_items(const OrderReport& report) {
     const auto& group = i == 0 ? none : order.steps[step];
     items.push_back(object(
         {member(report.is_reversed ? "detach" : "attach", cells_text(cells_of(report, group))),
-         member("load_ratio_max", number_text(order.judgements[k].load_ratio_max)),
+         member(order.judgements[k].is_bound ? "load_ratio_bound" : "load_ratio_max",
+                number_text(order.judgements[k].load_ratio_max)),
          member("margin_mm", number_text(order.judgements[k].margin_mm))}));
   }
   return items;
@@ -124,6 +125,7 @@ std::string order_json(const OrderReport& report) {
                 member("steps", fmt::format("{}", order.steps.size())),
                 member("states", fmt::format("{}", order.state_count)),
                 member("load_ratio_max", number_text(report.result.load_ratio_max)),
+                member("load_ratio_bound", number_text(report.result.load_ratio_bound)),
                 member("margin_min_mm", number_text(report.result.margin_min_mm)),
                 member("seconds", json_text(report.seconds)),
                 member("start", cells_text(cells_of(report, order.start.elements()))),
@@ -149,7 +151,10 @@ std::string order_text(const OrderReport& report) {
                                  order.steps.size(), order.steps.size() == 1 ? "" : "s",
                                  report.is_reversed ? "left behind" : "on the way");
   if (report.result.load_ratio_max) {
-    text += fmt::format("  load ratio  {:.4g} at most on the way\n", *report.result.load_ratio_max);
+    text += fmt::format(
+        "  load ratio  {:.4g} is the largest of the states that were solved, no state exceeds "
+        "{:.4g}\n",
+        *report.result.load_ratio_max, *report.result.load_ratio_bound);
   }
   if (report.result.margin_min_mm) {
     text +=

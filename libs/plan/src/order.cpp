@@ -149,11 +149,17 @@ base::Result<Setting> make_setting(const OrderTask& task, int thread_count) {
                  .core = std::move(core)};
 }
 
+void raise(std::optional<double>& largest, double value) {
+  largest = std::max(largest.value_or(value), value);
+}
+
 void take_extremes(RobotOrder& result) {
   for (const Judgement& judged : result.order.judgements) {
     if (judged.load_ratio_max) {
-      result.load_ratio_max =
-          std::max(result.load_ratio_max.value_or(*judged.load_ratio_max), *judged.load_ratio_max);
+      raise(result.load_ratio_bound, *judged.load_ratio_max);
+    }
+    if (judged.load_ratio_max && !judged.is_bound) {
+      raise(result.load_ratio_max, *judged.load_ratio_max);
     }
     if (judged.margin_mm) {
       result.margin_min_mm =

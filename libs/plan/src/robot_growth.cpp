@@ -291,33 +291,88 @@ Judgement RobotGrowth::judge(const ElementSet& state) {
               : Judgement{.verdict = verdict::Verdict::kUnstable};
 }
 
+Judgement judgement_of(const verdict::Assessment& assessment) {
+  return {.verdict = assessment.verdict,
+          .load_ratio_max = assessment.load_ratio_max,
+          .margin_mm = assessment.simplified.margin_mm};
+}
+
+/// Judges states one after another until one is not safe: those that can be certified so by what is
+/// known of the last that was solved, all others solved.
+std::vector<Judgement> RobotGrowth::judge_piece(ElementSet state, Sense sense,
+                                                std::span<const Element> run) const {
+  const bool can_certify = sense == Sense::kGrowing;
+  EnergyBound bound(target_);
+  std::optional<Balance> balance;
+  if (balance_ && can_certify) {
+    balance.emplace(target_);
+    for (const Element element : state.elements()) {
+      balance->add(element);
+    }
+  }
+  const double pitch_mm = target_.material().pitch_mm;
+  std::vector<Judgement> judgements;
+  bool has_bound = false;
+  for (const Element element : run) {
+    state = changed(std::move(state), sense, {&element, 1});
+    if (balance) {
+      balance->add(element);
+    }
+    const bool stands = !balance || balance->margin() > Balance::kMarginDoubt;
+    const auto ratio = has_bound && stands ? bound.add(element) : std::nullopt;
+    if (ratio) {
+      judgements.push_back({.verdict = verdict::Verdict::kSafe, .load_ratio_max = ratio});
+      judgements.back().is_bound = true;
+      if (balance) {
+        judgements.back().margin_mm = balance->margin() * pitch_mm;
+      }
+      continue;
+    }
+    const auto part = robot(state);
+    verdict::Assessment assessment;
+    if (part) {
+      assessment = first_look(part.value());
+      if (assessment.verdict != verdict::Verdict::kUnstable) {
+        assessment = verdict::assess(part.value(), {.thread_count = 1});
+      }
+    }
+    judgements.push_back(judgement_of(assessment));
+    if (!judgements.back().is_safe()) {
+      break;
+    }
+    const bool is_decided_here =
+        assessment.stability_rule != verdict::StabilityRule::kPolygon || balance.has_value();
+    has_bound = can_certify && is_decided_here && bound.begin(state.elements(), assessment);
+  }
+  return judgements;
+}
+
 std::vector<Judgement> RobotGrowth::judge_run(const ElementSet& state, Sense sense,
                                               std::span<const Element> run) {
   if (run.size() == 1) {
     return GrowingStructure::judge_run(state, sense, run);
   }
+  const std::size_t length = std::max(kPieceMin, (run.size() - 1) / kPieceCountMax + 1);
+  const std::size_t count = (run.size() - 1) / length + 1;
+  std::vector<ElementSet> begins = {state};
+  for (std::size_t i = 1; i < count; ++i) {
+    begins.push_back(changed(begins.back(), sense, run.subspan((i - 1) * length, length)));
+  }
+  std::vector<std::vector<Judgement>> pieces(count);
+  // The loop is shared by chunks of items: one for each piece.
   host::Team team(thread_count_);
-  std::vector<Judgement> judgements;
-  ElementSet next = state;
-  while (judgements.size() < run.size() && (judgements.empty() || judgements.back().is_safe())) {
-    const std::size_t begin = judgements.size();
-    const std::size_t count = std::min<std::size_t>(8, run.size() - begin);
-    std::vector<ElementSet> states;
-    for (std::size_t i = 0; i < count; ++i) {
-      states.push_back(next = changed(std::move(next), sense, {&run[begin + i], 1}));
+  team.share(0, count * host::Team::kChunk, [&](std::size_t first, std::size_t last) {
+    for (std::size_t i = first / host::Team::kChunk; i * host::Team::kChunk < last; ++i) {
+      const auto part = run.subspan(i * length, std::min(length, run.size() - i * length));
+      pieces[i] = judge_piece(begins[i], sense, part);
     }
-    std::vector<Judgement> some(count);
-    // One chunk of the team for each.
-    team.share(0, count * host::Team::kChunk, [&](std::size_t first, std::size_t last) {
-      for (std::size_t i = first / host::Team::kChunk; i * host::Team::kChunk < last; ++i) {
-        const auto part = robot(states[i]);
-        some[i] = part ? plan::judge(part.value(), {.thread_count = 1})
-                       : Judgement{.verdict = verdict::Verdict::kUnstable};
-      }
-    });
-    const auto unsafe =
-        std::ranges::find_if(some, [](const Judgement& judged) { return !judged.is_safe(); });
-    judgements.insert(judgements.end(), some.begin(), unsafe == some.end() ? unsafe : unsafe + 1);
+  });
+  std::vector<Judgement> judgements;
+  for (const std::vector<Judgement>& piece : pieces) {
+    judgements.insert(judgements.end(), piece.begin(), piece.end());
+    if (!judgements.back().is_safe()) {
+      break;
+    }
   }
   return judgements;
 }

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "balance.hpp"
+#include "energy_bound.hpp"
 #include "holdfast/model/robot.hpp"
 #include "holdfast/plan/order_search.hpp"
 #include "holdfast/plan/reach.hpp"
@@ -36,7 +37,7 @@ class RobotGrowth final : public GrowingStructure {
 
   Judgement judge(const ElementSet& state) override;
 
-  /// On all threads.
+  /// On all threads. Growing, most states are certified by an EnergyBound instead of solved.
   std::vector<Judgement> judge_run(const ElementSet& state, Sense sense,
                                    std::span<const Element> run) override;
 
@@ -46,7 +47,12 @@ class RobotGrowth final : public GrowingStructure {
   base::Result<model::Robot> robot(const ElementSet& state) const;
 
  private:
-  static constexpr std::size_t kRunLength = 64;
+  /// Longer runs cost no less for each state, and are in vain beyond the first unsafe one.
+  static constexpr std::size_t kRunLength = 256;
+  /// Pieces of a run, each of which begins with a state that is solved: at least so long, and no
+  /// more of them than that, whatever the number of threads, so that the same states are solved.
+  static constexpr std::size_t kPieceMin = 8;
+  static constexpr std::size_t kPieceCountMax = 8;
 
   /// What decides between candidates: lower first.
   using Rank = std::pair<std::int64_t, Element>;
@@ -60,6 +66,8 @@ class RobotGrowth final : public GrowingStructure {
   std::vector<Element> removable(const ElementSet& state) const;
   std::vector<Element> reachable(std::vector<Element> list, const ElementSet& state,
                                  Sense sense) const;
+  std::vector<Judgement> judge_piece(ElementSet state, Sense sense,
+                                     std::span<const Element> run) const;
   void put_toppling_last(std::vector<Element>& list, Sense sense);
 
   const model::RobotSpec& spec_;
@@ -76,6 +84,9 @@ class RobotGrowth final : public GrowingStructure {
   std::set<Rank> frontier_;         ///< Modules beside the state, not in it.
   std::optional<Balance> balance_;  ///< On a flat floor.
 };
+
+/// A solved robot, judged.
+Judgement judgement_of(const verdict::Assessment& assessment);
 
 /// What remains of a spec if only these of its modules are there.
 model::RobotSpec part_of(const model::RobotSpec& spec, const ElementSet& modules);

@@ -9,11 +9,13 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <iostream>
 #include <map>
 #include <set>
 
 #include "holdfast/base/lattice.hpp"
 #include "holdfast/base/rng.hpp"
+#include "holdfast/model/families.hpp"
 #include "holdfast/verdict/assessment.hpp"
 
 namespace holdfast::plan {
@@ -198,6 +200,76 @@ TEST(RobotOrder, is_found_just_where_a_walk_through_all_parts_finds_one) {
   }
   EXPECT_GT(found_count, 400);
   EXPECT_GT(none_count, 300);
+}
+
+model::RobotSpec family_spec(const char* name, std::size_t size) {
+  const model::Family family = model::find_family(name).value();
+  return {.existing = model::family_cells(family, size), .lattice = model::family_lattice(family)};
+}
+
+/// Checks every state of an order by itself: it is safe, its load ratio is what the order says or
+/// no more than its bound, its margin is the order's. Returns how many had a bound.
+int expect_safe_all_the_way(const OrderTask& task, const Order& order) {
+  model::RobotSpec part = task.target;
+  part.existing.clear();
+  for (const Element element : order.start.elements()) {
+    part.existing.push_back(task.target.existing[static_cast<std::size_t>(element)]);
+  }
+  int bound_count = 0;
+  for (std::size_t i = 0; i < order.judgements.size(); ++i) {
+    for (const Element element : i == 0 ? Group{} : order.steps[i - 1]) {
+      part.existing.push_back(task.target.existing[static_cast<std::size_t>(element)]);
+    }
+    const verdict::Assessment assessment =
+        verdict::assess(model::Robot::create(part).value(), {.thread_count = 1});
+    const Judgement& judged = order.judgements[i];
+    EXPECT_EQ(assessment.verdict, verdict::Verdict::kSafe) << i;
+    const double ratio = assessment.load_ratio_max.value_or(0);
+    if (judged.is_bound) {
+      ++bound_count;
+      EXPECT_LE(ratio, *judged.load_ratio_max) << i;
+    } else {
+      EXPECT_NEAR(ratio, judged.load_ratio_max.value_or(0), 1e-4) << i;
+    }
+    EXPECT_EQ(judged.margin_mm.has_value(), assessment.simplified.margin_mm.has_value());
+    if (judged.margin_mm && assessment.simplified.margin_mm) {
+      EXPECT_NEAR(*judged.margin_mm, *assessment.simplified.margin_mm, 1e-9) << i;
+    }
+  }
+  return bound_count;
+}
+
+TEST(RobotOrder, is_safe_all_the_way_where_states_are_certified_without_being_solved) {
+  // Strengths as they are, and so that the whole is just held.
+  for (const auto& [family, size] :
+       std::vector<std::pair<const char*, std::size_t>>{{"cube", 5},
+                                                        {"tower", 12},
+                                                        {"shell", 6},
+                                                        {"scaffold", 9},
+                                                        {"growth", 60},
+                                                        {"ball", 6},
+                                                        {"prism-wall", 8},
+                                                        {"sheet", 8},
+                                                        {"portal", 12}}) {
+    for (const double share : {0.0, 0.9}) {
+      OrderTask task{.target = family_spec(family, size)};
+      const auto whole = verdict::assess(model::Robot::create(task.target).value());
+      if (share > 0 && whole.load_ratio_max.value_or(0) > 1e-3) {
+        task.target.material.strength_vertical_n *= *whole.load_ratio_max / share;
+        task.target.material.strength_lateral_n *= *whole.load_ratio_max / share;
+      }
+      const auto result = find_robot_order(task, {.state_count_max = 4000});
+      ASSERT_TRUE(result) << result.error().message;
+      const Order& order = result.value().order;
+      if (order.outcome == OrderOutcome::kFound) {
+        const int bound_count = expect_safe_all_the_way(task, order);
+        std::cout << family << ' ' << share << ": " << bound_count << " of "
+                  << order.judgements.size() << '\n';
+      } else {
+        std::cout << family << ' ' << share << ": no order\n";
+      }
+    }
+  }
 }
 
 }  // namespace
