@@ -36,6 +36,7 @@ Command add_generate(CLI::App& app);
 Command add_order(CLI::App& app);
 Command add_robots(CLI::App& app);
 Command add_simulate(CLI::App& app);
+Command add_steps(CLI::App& app);
 Command add_view(CLI::App& app);
 
 /// The verdict in capitals, coloured on a terminal, padded to the longest.

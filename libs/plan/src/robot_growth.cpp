@@ -331,10 +331,7 @@ std::vector<Judgement> RobotGrowth::judge_piece(ElementSet state, Sense sense,
     const auto part = robot(state);
     verdict::Assessment assessment;
     if (part) {
-      assessment = first_look(part.value());
-      if (assessment.verdict != verdict::Verdict::kUnstable) {
-        assessment = verdict::assess(part.value(), {.thread_count = 1});
-      }
+      assessment = assess(part.value(), {.thread_count = 1});
     }
     judgements.push_back(judgement_of(assessment));
     if (!judgements.back().is_safe()) {
