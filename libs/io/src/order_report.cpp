@@ -138,7 +138,7 @@ std::string order_json(const OrderReport& report) {
 std::string order_text(const OrderReport& report) {
   const plan::Order& order = report.result.order;
   const std::string examined =
-      fmt::format("  examined    {} state{} in {:.3g} s\n", order.state_count,
+      fmt::format("  examined    {} state{} in {:.2f} s\n", order.state_count,
                   order.state_count == 1 ? "" : "s", report.seconds);
   if (order.outcome == OrderOutcome::kNotFound) {
     return "NOT FOUND   no order found in the time given; there may be one\n" + examined;

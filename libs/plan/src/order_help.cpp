@@ -16,6 +16,9 @@ using base::Cell;
 /// Pairs are tried only of so few cells.
 constexpr std::size_t kPairedCellsMax = 60;
 
+/// Runs of modules that would help are sought up to this length.
+constexpr std::size_t kRunMax = 40;
+
 class HelpSearch {
  public:
   HelpSearch(const OrderTask& task, const HelpOptions& options) : task_(task), options_(options) {
@@ -28,7 +31,7 @@ class HelpSearch {
  private:
   bool is_free(const Cell& cell) const;
   void list_cells();
-  std::vector<std::vector<Cell>> pillars() const;
+  std::vector<std::vector<Cell>> runs() const;
   std::optional<Help> try_all(const std::vector<Help>& helps) const;
   bool serves(const Help& help) const;
   bool has_order(const OrderTask& task) const;
@@ -76,21 +79,27 @@ void HelpSearch::list_cells() {
   std::ranges::sort(below_, {}, by_layer);
 }
 
-/// Free cells straight below a module down to the floor, two or more.
-std::vector<std::vector<Cell>> HelpSearch::pillars() const {
-  std::vector<std::vector<Cell>> list;
-  for (const Cell& top : below_) {
-    std::vector<Cell> pillar;
-    for (Cell cell = top; task_.target.support_z && is_free(cell);
-         cell = base::neighbour(task_.target.lattice, cell, base::down(task_.target.lattice))) {
-      pillar.push_back(cell);
-    }
-    if (pillar.size() > 1 && pillar.back().z == task_.target.support_z) {
-      list.push_back(std::move(pillar));
+/// Straight runs of two or more free cells from a module of the target to another, or to the floor.
+std::vector<std::vector<Cell>> HelpSearch::runs() const {
+  std::set<std::vector<Cell>> found;
+  const base::Lattice& lattice = task_.target.lattice;
+  for (const Cell& module : task_.target.existing) {
+    for (const base::Direction direction : base::directions(lattice)) {
+      std::vector<Cell> run;
+      Cell cell = base::neighbour(lattice, module, direction);
+      while (is_free(cell) && run.size() < kRunMax) {
+        run.push_back(cell);
+        cell = base::neighbour(lattice, cell, direction);
+      }
+      const bool is_on_floor =
+          !run.empty() && run.back().z == task_.target.support_z && cell.z < run.back().z;
+      if (run.size() > 1 && (is_on_floor || taken_.contains(cell))) {
+        std::ranges::sort(run);
+        found.insert(std::move(run));
+      }
     }
   }
-  std::ranges::stable_sort(list, {}, &std::vector<Cell>::size);
-  return list;
+  return {found.begin(), found.end()};
 }
 
 bool HelpSearch::has_order(const OrderTask& task) const {
@@ -141,8 +150,8 @@ std::optional<Help> HelpSearch::run() {
       helps.push_back({.supports = {}, .temporary = {beside_[k], beside_[i]}});
     }
   }
-  for (std::vector<Cell>& pillar : pillars()) {
-    helps.push_back({.supports = {}, .temporary = std::move(pillar)});
+  for (std::vector<Cell>& run : runs()) {
+    helps.push_back({.supports = {}, .temporary = std::move(run)});
   }
   std::ranges::stable_sort(
       helps, {}, [](const Help& help) { return help.supports.size() + help.temporary.size(); });

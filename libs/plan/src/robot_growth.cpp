@@ -154,8 +154,8 @@ void RobotGrowth::move_to(const ElementSet& state) {
   }
 }
 
-/// Modules without which the others would not hang together: cut vertices, by the depth-first
-/// search of [Tarjan 1972] without recursion.
+/// Modules without which the others would not hang together: cut vertices, by Tarjan's depth-first
+/// search without recursion.
 std::vector<bool> RobotGrowth::are_needed(const ElementSet& state) const {
   struct Visit {
     Element module;

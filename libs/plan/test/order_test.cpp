@@ -9,9 +9,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <iostream>
 #include <map>
 #include <set>
+#include <string>
 
 #include "holdfast/base/lattice.hpp"
 #include "holdfast/base/rng.hpp"
@@ -240,7 +240,10 @@ int expect_safe_all_the_way(const OrderTask& task, const Order& order) {
 }
 
 TEST(RobotOrder, is_safe_all_the_way_where_states_are_certified_without_being_solved) {
-  // Strengths as they are, and so that the whole is just held.
+  // Strengths as they are, and so that the whole is just held. In solid robots that stand with all
+  // their feet most states need no solution.
+  const std::set<std::string> solid = {"cube", "tower", "prism-wall"};
+  int certified_count = 0;
   for (const auto& [family, size] :
        std::vector<std::pair<const char*, std::size_t>>{{"cube", 5},
                                                         {"tower", 12},
@@ -248,9 +251,9 @@ TEST(RobotOrder, is_safe_all_the_way_where_states_are_certified_without_being_so
                                                         {"scaffold", 9},
                                                         {"growth", 60},
                                                         {"ball", 6},
-                                                        {"prism-wall", 8},
+                                                        {"prism-wall", 6},
                                                         {"sheet", 8},
-                                                        {"portal", 12}}) {
+                                                        {"portal", 8}}) {
     for (const double share : {0.0, 0.9}) {
       OrderTask task{.target = family_spec(family, size)};
       const auto whole = verdict::assess(model::Robot::create(task.target).value());
@@ -261,15 +264,18 @@ TEST(RobotOrder, is_safe_all_the_way_where_states_are_certified_without_being_so
       const auto result = find_robot_order(task, {.state_count_max = 4000});
       ASSERT_TRUE(result) << result.error().message;
       const Order& order = result.value().order;
-      if (order.outcome == OrderOutcome::kFound) {
-        const int bound_count = expect_safe_all_the_way(task, order);
-        std::cout << family << ' ' << share << ": " << bound_count << " of "
-                  << order.judgements.size() << '\n';
-      } else {
-        std::cout << family << ' ' << share << ": no order\n";
+      if (order.outcome != OrderOutcome::kFound) {
+        EXPECT_GT(share, 0) << family;
+        continue;
+      }
+      const int bound_count = expect_safe_all_the_way(task, order);
+      certified_count += bound_count;
+      if (share == 0 && solid.contains(family)) {
+        EXPECT_GT(2 * bound_count, static_cast<int>(order.judgements.size())) << family;
       }
     }
   }
+  EXPECT_GT(certified_count, 500);
 }
 
 }  // namespace

@@ -23,10 +23,10 @@ struct HelpOptions {
   int thread_count = 0;
 };
 
-/// Tries single obstacles below modules, single modules beside the target, pillars of modules from
-/// the floor to the target and pairs of modules beside it, those of fewest cells first; the first
-/// one that serves, or none if nothing did in the time given. With temporary modules all of the
-/// target is built first and then they are detached, each state on the way safe.
+/// Tries single obstacles below modules, single modules beside the target, pairs of them, and
+/// straight runs of modules from the target to itself or to the floor, those of fewest cells first;
+/// the first one that serves, or none if nothing did in the time given. With temporary modules all
+/// of the target is built first and then they are detached, each state on the way safe.
 std::optional<Help> find_help(const OrderTask& task, const HelpOptions& options = {});
 
 }  // namespace holdfast::plan
