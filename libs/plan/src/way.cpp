@@ -104,6 +104,9 @@ base::Result<Group> WayFinder::find(std::span<const std::size_t> moves) const {
   draft.translation = difference(base::axial_of(lattice, draft.group.to.front()),
                                  base::axial_of(lattice, draft.group.from.front()));
   std::optional<std::string> fault;
+  if (draft.translation == Cell{}) {
+    fault = way_text(draft.group) + ": it is there already";
+  }
   for (const Cell& cell : draft.group.to) {
     if (!fault && !is_free(cell, draft)) {
       fault = fmt::format("{}: {} is occupied", way_text(draft.group), text(cell));
