@@ -185,7 +185,9 @@ std::optional<Cell> WayFinder::turn_about(const Cell& carrier, const Draft& draf
   const Cell centre = base::axial_of(robot_.lattice(), carrier);
   for (const Cell& arrival : draft.group.to) {
     const Cell first = difference(base::axial_of(robot_.lattice(), arrival), centre);
-    if (is_step(first) && is_step(difference(draft.translation, first))) {
+    const Cell second = difference(draft.translation, first);
+    if (first != second && is_step(first) &&
+        is_step(second)) {  // Else it goes through the carrier.
       return first;
     }
   }
