@@ -170,7 +170,8 @@ bool is_on_flat_floor(const model::Robot& robot) {
 }
 
 RigidBody assess_rigid_body(const model::Robot& robot) {
-  const bool is_exact = robot.lattice() == base::kCubic && robot.is_uniform();
+  const bool is_exact =
+      robot.lattice() == base::kCubic && robot.is_uniform() && robot.carried().empty();
   if (is_exact && (robot.facets().empty() || is_on_flat_floor(robot))) {
     return exact_body(robot);
   }

@@ -28,6 +28,11 @@ struct Judgement {
 /// topples, else `undecided`, as no load is known.
 verdict::Assessment first_look(const model::Robot& robot);
 
+/// verdict::assess(), but that a robot that topples is not solved, unless its supports are bonded
+/// by the options.
+verdict::Assessment assess(const model::Robot& robot,
+                           const solver::EquilibriumOptions& options = {});
+
 /// The verdict of verdict::assess(). A robot that topples is not solved, unless its supports are
 /// bonded by the options.
 Judgement judge(const model::Robot& robot, const solver::EquilibriumOptions& options = {});
