@@ -304,7 +304,7 @@ base::Result<Document> order_steps(const Document& target, const plan::Order& or
   gather_modules(document);
   std::vector<model::Step>& plan = document.extension.plan;
   std::vector<base::Cell> attached;
-  for (const plan::Group& group : order.steps) {
+  for (const plan::Batch& group : order.steps) {
     model::Step& step = plan.emplace_back();
     for (const plan::Element element : group) {
       const base::Cell& cell = spec.value().existing[static_cast<std::size_t>(element)];

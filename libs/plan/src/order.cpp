@@ -233,7 +233,7 @@ base::Result<CertificateCheck> verify(const OrderCertificate& certificate, int t
     }
   }
   for (const ElementSet& state : closure.states) {
-    for (const Group& group : successors(growth, state, closure.sense, task.group_size)) {
+    for (const Batch& group : successors(growth, state, closure.sense, task.group_size)) {
       const ElementSet next = changed(state, closure.sense, group);
       if (!look_at(next)) {
         return leaves(next);

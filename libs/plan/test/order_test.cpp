@@ -145,7 +145,7 @@ void expect_order(const Walk& walk, const Order& order) {
   std::size_t mask = mask_of(order.start);
   EXPECT_TRUE(walk.is_start(mask));
   EXPECT_TRUE(walk.is_safe(mask));
-  for (const Group& group : order.steps) {
+  for (const Batch& group : order.steps) {
     std::size_t next = mask;
     for (const Element element : group) {
       next |= std::size_t{1} << element;
@@ -217,7 +217,7 @@ int expect_safe_all_the_way(const OrderTask& task, const Order& order) {
   }
   int bound_count = 0;
   for (std::size_t i = 0; i < order.judgements.size(); ++i) {
-    for (const Element element : i == 0 ? Group{} : order.steps[i - 1]) {
+    for (const Element element : i == 0 ? Batch{} : order.steps[i - 1]) {
       part.existing.push_back(task.target.existing[static_cast<std::size_t>(element)]);
     }
     const verdict::Assessment assessment =
