@@ -246,7 +246,7 @@ Reply try_places(const Request& request) {
 
 /// Integers: x, y, z and Role of each module. Numbers: the material. Cells that are no robot yet
 /// can be opened and mended; cells that the page cannot hold as they are, two modules in one, get
-/// the program's error, and so does what cannot be computed with yet.
+/// the program's error.
 Reply open_text(std::string_view text) {
   const auto read = io::read_document(text);
   if (!read) {
@@ -263,7 +263,8 @@ Reply open_text(std::string_view text) {
                    {"description", document.description},
                    {"support_z", document.support_z},
                    {"more", more_of(document)},
-                   {"later_steps", document.steps.empty() ? 0 : document.steps.size() - 1},
+                   {"later_steps", document.extension.plan.size() +
+                                       (document.steps.empty() ? 0 : document.steps.size() - 1)},
                    {"warnings", read.value().warnings}});
   const auto add = [&](const base::Cell& cell, Role role) {
     out.integers.insert(out.integers.end(),

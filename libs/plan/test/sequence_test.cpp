@@ -114,6 +114,23 @@ TEST(Sequence, is_stage_by_stage_what_checks_say) {
   EXPECT_GT(step_count, 250);
 }
 
+/// Steps of every kind, on a bridge of two posts.
+TEST(Sequence, is_so_for_steps_of_every_kind) {
+  const model::RobotSpec start{
+      .existing = {{0, 0, 0}, {0, 0, 1}, {1, 0, 1}, {2, 0, 1}, {2, 0, 0}, {1, 0, 2}}};
+  const model::CellPair pair = {Cell{1, 0, 1}, Cell{2, 0, 1}};
+  std::vector<model::Step> steps = {{.attach = {{0, 0, 2}, {0, 0, 3}}},
+                                    {.release = {pair}},
+                                    {.detach = {{0, 0, 3}}, .connect = {pair}},
+                                    test::move({1, 0, 2}, {2, 0, 2}),
+                                    {.attach = {{3, 0, 1}}, .release = {pair}},
+                                    {.detach = {{1, 0, 1}}},
+                                    {.attach = {{1, 0, 1}}},
+                                    {}};
+  steps[3].attach = {{1, 0, 0}};
+  compare(start, steps);
+}
+
 TEST(Sequence, is_so_in_every_lattice_and_on_every_support) {
   std::size_t step_count = 0;
   for (const base::Lattice& lattice : holdfast::test::kLattices) {
