@@ -162,8 +162,9 @@ test('what is built is recorded, judged and saved as steps that the program acce
   await open(page, file('post', { modules: [[0, 0, 0], [1, 0, 0], [0, 0, 1]] }));
   await page.click('#record');
   await clickFace(page, [0, 0, 1], [0, 0, 1]);
-  await clickFace(page, [0, 0, 2], [0, 0, 1]);
-  await clickFace(page, [0, 0, 3], [0, 0, 1]);
+  for (const cell of [[0, 0, 3], [0, 0, 4]]) {
+    await page.evaluate((at) => globalThis.holdfast.bench.use([at]), cell);
+  }
   assert.match(await page.textContent('#sequence-text'), /Recording: 3 steps/);
   await page.click('#undo');
   assert.match(await page.textContent('#sequence-text'), /Recording: 2 steps/, 'what is undone is no step');

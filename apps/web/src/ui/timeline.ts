@@ -84,7 +84,7 @@ export class Timeline {
     if (!this.recorder) {
       this.buildOn();
       this.recorder = new Recorder(bench.robot);
-      this.showRecording();
+      this.changed();
       return;
     }
     const { recorder } = this;
@@ -121,7 +121,7 @@ export class Timeline {
     this.forget();
     clearTimeout(this.timer);
     const hasSteps = (robot.surroundings.steps?.length ?? 0) + robot.laterSteps > 0;
-    byId('save-steps').hidden = !hasSteps;
+    byId('save-steps').hidden = !hasSteps || this.recorder !== undefined;
     byId('judge-steps').hidden = hasSteps || this.recorder !== undefined || !hasPlanned(robot);
     if (hasSteps && !this.recorder) {
       this.timer = window.setTimeout(() => void this.judge(), DELAY_MS);
@@ -298,7 +298,7 @@ export class Timeline {
     if (!report || !judged) {
       return 'The robot before the first step.';
     }
-    const what = `Step ${this.stepIndex} of 0 to ${judged.texts.length - 1}, ${STAGES[this.stage]}: ${report.verdict}`;
+    const what = `Step ${this.stepIndex} (of 0 to ${judged.texts.length - 1}), ${STAGES[this.stage]}: ${report.verdict}`;
     return `${what}. It does: ${judged.texts[this.stepIndex]}.`;
   }
 
