@@ -520,5 +520,44 @@ expect_line out '<title>arm_breaks_a - holdfast</title>'
 expect_exit 65 view missing.json --no-open
 expect_exit 65 view "$safe" --no-open --out /nowhere/page.html
 
+# Sequences of steps: exit codes, keys that other tools rely on, what cannot be done.
+walk=$scenarios/plan/walk_over_beam.json
+expect_exit 0 steps "$walk" --json steps.json --svg steps.svg --html steps.html --vtk steps.pvd
+expect_line out '^SAFE +walk over a beam$'
+expect_line out '6 of 6 steps safe in all stages; largest load ratio 0\.7500, smallest margin \+12\.00 mm'
+expect_line steps.json '"first_unsafe": null'
+python3 - <<'END' || fault "the report of steps is not as documented"
+import json
+report = json.load(open('steps.json'))
+assert report['seconds'] >= 0 and len(report['steps']) == 6
+for step in report['steps']:
+    assert list(step['stages']) == ['release', 'shift', 'connect']
+    assert all(stage['verdict'] == 'safe' for stage in step['stages'].values())
+END
+expect_line steps.svg '^</svg>$'
+expect_line steps.html '^</html>$'
+expect_line steps.pvd 'timestep="6" part="0" file="steps_6\.vtu"'
+[ -s steps_0.vtu ] || fault "no .vtu file of the start"
+expect_exit 0 steps "$walk" --quiet
+[ -s out ] && fault "--quiet prints: $(cat out)"
+plan() { printf '{"format": "holdfast-structure", "version": 2, "modules": %s, "steps": %s}' "$1" "$2"; }
+plan '[[0,0,0],[0,0,1],[1,0,1]]' '[{"attach": [[2,0,1]]}, {"attach": [[3,0,1]]}]' >tips.json
+expect_exit 1 steps tips.json --json -
+expect_line out '"step": 0,'
+expect_line out '"stage": "connect"'
+expect_exit 1 steps tips.json --until-unsafe
+expect_line out 'first unsafe: step 0 \(/steps/0\), connect'
+plan '[[0,0,0],[0,0,1]]' '[{"move": [{"from": [5,0,0], "to": [6,0,0]}]}]' >empty.json
+expect_exit 65 steps empty.json
+expect_line err '^holdfast: empty.json: /steps/0: step 0, release: no module can move from \(5,0,0\)'
+[ "$(wc -l <err)" -eq 1 ] || fault "not one line: $(cat err)"
+json '"modules": [[0,0,0]]' >still.json
+expect_exit 65 steps still.json
+expect_line err 'the structure has no steps'
+expect_exit 0 steps "$safe"
+expect_exit 0 check "$walk"
+expect_line err 'note: 6 steps are read; the robot before them is judged, holdfast steps judges all'
+expect_exit 64 steps "$walk" --svg "$walk"
+
 [ "$faults" -eq 0 ] || exit 1
 echo "cli: all as expected"

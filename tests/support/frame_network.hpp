@@ -36,7 +36,7 @@ inline plan::SpringNetwork network_of(const Frame& frame) {
 /// The bars one after another.
 inline std::vector<std::int32_t> bars_of(const plan::Order& order) {
   std::vector<std::int32_t> bars;
-  for (const plan::Group& group : order.steps) {
+  for (const plan::Batch& group : order.steps) {
     bars.insert(bars.end(), group.begin(), group.end());
   }
   return bars;

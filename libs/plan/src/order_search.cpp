@@ -86,7 +86,7 @@ class Explorer {
   /// After kReached: the root, and the groups from it to the goal.
   const ElementSet& root() const { return root_; }
 
-  std::vector<Group> way() const;
+  std::vector<Batch> way() const;
 
   /// After kExhausted.
   Closure closure() const;
@@ -95,9 +95,9 @@ class Explorer {
   /// A state on the present way: what led to it, and what can come next. Groups of one stand in
   /// `singles`; when none of them is left all others are in `groups`.
   struct Frame {
-    Group group;
+    Batch group;
     std::vector<Element> singles;
-    std::vector<Group> groups = {};
+    std::vector<Batch> groups = {};
     std::size_t next = 0;
     bool has_groups = false;
   };
@@ -113,7 +113,7 @@ class Explorer {
   bool advance();
   bool take_group();
   std::vector<Element> propose();
-  void enter(Group group);
+  void enter(Batch group);
   void leave();
   void note(const ElementSet& state);
 
@@ -139,7 +139,7 @@ void Explorer::note(const ElementSet& state) {
 }
 
 /// Goes on to a state that is safe.
-void Explorer::enter(Group group) {
+void Explorer::enter(Batch group) {
   state_ = changed(std::move(state_), sense_, group);
   note(state_);
   frames_.push_back(
@@ -228,13 +228,13 @@ bool Explorer::take_group() {
   if (!frames_.back().has_groups) {
     Frame& frame = frames_.back();
     frame.groups = successors(structure_, state_, sense_, options_.group_size, seed_);
-    std::erase_if(frame.groups, [](const Group& group) { return group.size() == 1; });
+    std::erase_if(frame.groups, [](const Batch& group) { return group.size() == 1; });
     frame.has_groups = true;
     frame.next = 0;
   }
   Frame& frame = frames_.back();
   while (frame.next < frame.groups.size()) {
-    Group group = frame.groups[frame.next++];
+    Batch group = frame.groups[frame.next++];
     const ElementSet state = changed(state_, sense_, group);
     if (!is_hopeless(state) && knowledge_.judge(state).is_safe()) {
       enter(std::move(group));
@@ -286,8 +286,8 @@ Explorer::Answer Explorer::explore(std::size_t budget, std::uint64_t seed) {
   return Answer::kExhausted;
 }
 
-std::vector<Group> Explorer::way() const {
-  std::vector<Group> groups;
+std::vector<Batch> Explorer::way() const {
+  std::vector<Batch> groups;
   for (std::size_t i = 1; i < frames_.size(); ++i) {
     groups.push_back(frames_[i].group);
   }
@@ -304,7 +304,7 @@ Closure Explorer::closure() const {
   };
   std::ranges::for_each(roots_, block);
   for (const ElementSet& state : dead_in_order_) {
-    for (const Group& group : successors(structure_, state, sense_, options_.group_size)) {
+    for (const Batch& group : successors(structure_, state, sense_, options_.group_size)) {
       block(changed(state, sense_, group));
     }
   }
@@ -323,14 +323,14 @@ Order order_found(const Explorer& explorer, Sense sense, const ElementSet& whole
   if (sense == Sense::kShrinking) {
     std::ranges::reverse(order.steps);
     order.start = whole;
-    for (Group& group : order.steps) {
+    for (Batch& group : order.steps) {
       order.start = changed(std::move(order.start), Sense::kShrinking, group);
       std::ranges::reverse(group);
     }
   }
   ElementSet state = order.start;
   order.judgements.push_back(knowledge.judge(state));
-  for (const Group& group : order.steps) {
+  for (const Batch& group : order.steps) {
     state = changed(std::move(state), Sense::kGrowing, group);
     order.judgements.push_back(knowledge.judge(state));
   }
@@ -341,8 +341,8 @@ Order order_found(const Explorer& explorer, Sense sense, const ElementSet& whole
 /// these and yet another element make: a set depends not on the order in which it was made, so the
 /// first one will do.
 void add_groups(GrowingStructure& structure, const ElementSet& state, Sense sense,
-                const OrderOptions& options, const Group& before, States& seen,
-                std::vector<Group>& groups) {
+                const OrderOptions& options, const Batch& before, States& seen,
+                std::vector<Batch>& groups) {
   const std::size_t begin = groups.size();
   for (const Element element : structure.candidates(state, sense, options.seed)) {
     if (seen.insert(changed(state, sense, {&element, 1})).second) {
@@ -352,7 +352,7 @@ void add_groups(GrowingStructure& structure, const ElementSet& state, Sense sens
   }
   const std::size_t end = groups.size();
   for (std::size_t i = begin; before.size() + 1 < options.group_size && i < end; ++i) {
-    const Group group = groups[i];
+    const Batch group = groups[i];
     add_groups(structure, changed(state, sense, {&group.back(), 1}), sense, options, group, seen,
                groups);
   }
@@ -381,13 +381,13 @@ ElementSet changed(ElementSet state, Sense sense, std::span<const Element> eleme
   return state;
 }
 
-std::vector<Group> successors(GrowingStructure& structure, const ElementSet& state, Sense sense,
+std::vector<Batch> successors(GrowingStructure& structure, const ElementSet& state, Sense sense,
                               std::size_t group_size, std::uint64_t seed) {
   States seen;
-  std::vector<Group> groups;
+  std::vector<Batch> groups;
   const OrderOptions options{.group_size = group_size, .seed = seed};
   add_groups(structure, state, sense, options, {}, seen, groups);
-  std::ranges::stable_sort(groups, {}, &Group::size);
+  std::ranges::stable_sort(groups, {}, &Batch::size);
   return groups;
 }
 
@@ -401,6 +401,12 @@ Order find_order(GrowingStructure& structure, std::span<const ElementSet> starts
   const std::vector<ElementSet> begins(starts.begin(), starts.end());
   Explorer explorers[] = {{structure, knowledge, options, Sense::kGrowing, begins, {whole}},
                           {structure, knowledge, options, Sense::kShrinking, {whole}, begins}};
+  if (!knowledge.judge(whole).is_safe()) {
+    explorers[1].explore(0, options.seed);
+    Order order{.outcome = OrderOutcome::kNone, .state_count = knowledge.state_count()};
+    order.closure = explorers[1].closure();
+    return order;
+  }
   std::size_t budget =
       std::max(kFirstBudgetMin, kFirstBudgetPerElement * structure.element_count());
   for (std::size_t round = 0; !knowledge.is_spent() || round == 0; ++round, budget *= 2) {

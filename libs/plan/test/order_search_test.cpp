@@ -84,7 +84,7 @@ bool has_order(const RandomStructure& structure, std::size_t group_size) {
 void expect_order(const RandomStructure& structure, const Order& order, std::size_t group_size) {
   std::size_t mask = mask_of(order.start);
   EXPECT_EQ(mask, 1U);
-  for (const Group& group : order.steps) {
+  for (const Batch& group : order.steps) {
     EXPECT_LE(group.size(), group_size);
     for (const Element element : group) {
       EXPECT_EQ(mask >> element & 1U, 0U);

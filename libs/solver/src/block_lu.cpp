@@ -9,6 +9,7 @@
 #include "block_kernels.hpp"
 #include "holdfast/base/check.hpp"
 #include "holdfast/solver/block_pattern.hpp"
+#include "lane_substitution.hpp"
 
 namespace holdfast::solver {
 BlockLu::BlockLu(std::size_t node_count, std::span<const Edge> edges, std::size_t block_count_max)
@@ -195,6 +196,56 @@ void BlockLu::substitute(std::span<base::Vec6<double>> y, std::size_t count) con
       y[count * k + c] = multiply(inverse_[k], y[count * k + c]);
     }
   }
+}
+
+void BlockLu::solve_lanes(std::span<LaneBlock> y) const {
+  HOLDFAST_CHECK(y.size() == position_.size() && !is_singular_);
+  lane_substitution()({.place_count = position_.size(),
+                       .column_start = column_start_.data(),
+                       .rows = rows_.data(),
+                       .lower = lower_.data(),
+                       .upper = upper_.data(),
+                       .inverse = inverse_.data()},
+                      y.data());
+}
+
+void BlockLu::forward(std::size_t node, std::vector<std::int32_t>& places,
+                      std::vector<base::Mat6<double>>& blocks) const {
+  places.clear();
+  for (std::int32_t k = position_[node]; k >= 0; k = parent_[static_cast<std::size_t>(k)]) {
+    places.push_back(k);
+  }
+  blocks.assign(places.size(), {});
+  for (int i = 0; i < 6; ++i) {
+    blocks.front().at(i, i) = 1;
+  }
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    const auto k = static_cast<std::size_t>(places[i]);
+    std::size_t target = i;  // Rows of a column ascend on the same way up.
+    for (std::size_t slot = column_start_[k]; slot < column_start_[k + 1]; ++slot) {
+      while (places[target] != rows_[slot]) {
+        ++target;
+      }
+      subtract_product(blocks[target], lower_[slot], blocks[i]);
+    }
+  }
+}
+
+base::Mat6<double> BlockLu::symmetric_product(std::span<const std::int32_t> places_a,
+                                              std::span<const base::Mat6<double>> a,
+                                              std::span<const std::int32_t> places_b,
+                                              std::span<const base::Mat6<double>> b) const {
+  // Two ways up the tree have their ends in common, and nothing else.
+  base::Mat6<double> sum;
+  std::size_t i = places_a.size();
+  std::size_t j = places_b.size();
+  while (i > 0 && j > 0 && places_a[i - 1] == places_b[j - 1]) {
+    --i;
+    --j;
+    const auto k = static_cast<std::size_t>(places_a[i]);
+    base::add_to(sum, product(transpose(a[i]), product(inverse_[k], b[j])));
+  }
+  return sum;
 }
 
 }  // namespace holdfast::solver

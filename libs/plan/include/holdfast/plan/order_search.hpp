@@ -73,7 +73,7 @@ enum class OrderOutcome : std::uint8_t {
 };
 
 /// Elements that are added or removed together.
-using Group = std::vector<Element>;
+using Batch = std::vector<Element>;
 
 /// A cut between start and whole: safe states that no step leaves. All safe states at that end are
 /// in it, and so is every safe state that one step leads to; the other end is not. For
@@ -88,7 +88,7 @@ struct Closure {
 struct Order {
   OrderOutcome outcome = OrderOutcome::kNotFound;
   ElementSet start = {};                   ///< The start that the order begins with.
-  std::vector<Group> steps = {};           ///< From the start to the whole.
+  std::vector<Batch> steps = {};           ///< From the start to the whole.
   std::vector<Judgement> judgements = {};  ///< Of the start and of the state after each step.
   std::size_t state_count = 0;             ///< Judged in all.
   std::optional<Closure> closure = {};     ///< Of kNone.
@@ -99,7 +99,7 @@ Order find_order(GrowingStructure& structure, std::span<const ElementSet> starts
                  const OrderOptions& options = {});
 
 /// Every state that one step leads to from `state`, each once: groups of one first.
-std::vector<Group> successors(GrowingStructure& structure, const ElementSet& state, Sense sense,
+std::vector<Batch> successors(GrowingStructure& structure, const ElementSet& state, Sense sense,
                               std::size_t group_size, std::uint64_t seed = 0);
 
 /// The state with the elements added, or without them.
