@@ -141,6 +141,8 @@ base::Result<StageJudgement> judge_scene(const Scene& scene,
   return *std::move(judged);
 }
 
+}  // namespace
+
 base::Result<StageJudgement> judge_stage(const RobotState& before, const model::Step& step,
                                          const Transition& transition, Stage stage,
                                          const solver::EquilibriumOptions& options) {
@@ -165,6 +167,8 @@ base::Result<StageJudgement> judge_stage(const RobotState& before, const model::
   judged->waypoint_count = stage == Stage::kShift ? transition.waypoint_count() : 0;
   return *std::move(judged);
 }
+
+namespace {
 
 /// Whether nothing lets go in the first stage: it is then the last stage of the step before.
 bool is_unchanged(const RobotState& before, const model::Step& step, const Transition& transition) {
