@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "move_judge.hpp"
 
-#include <algorithm>
-
 namespace holdfast::plan {
 
 MoveJudge::MoveJudge(const MoveTask& task, const MoveOptions& options)
@@ -33,12 +31,7 @@ bool MoveJudge::is_stage_safe(const RobotState& before, const model::Step& step,
     const auto judged = judge_stage(before, step, transition, stage, options_.solver);
     return judged && judged.value().is_safe();
   }
-  const auto scenes = find_scenes(before, step, transition, stage);
-  return scenes && std::ranges::all_of(scenes.value(), [&](const Scene& scene) {
-           return std::ranges::all_of(scene.pieces, [&](const model::RobotSpec& piece) {
-             return bool(model::Robot::create(piece, options_.solver.thread_count));
-           });
-         });
+  return bool(find_scenes(before, step, transition, stage));
 }
 
 bool MoveJudge::is_over() const {

@@ -96,45 +96,62 @@ class Search {
         judge_(task, options),
         exact_(problem.space, problem.rule, judge_, options.seed) {}
 
+  /// A first plan along the surface, then the exact search for a shorter one; and where neither
+  /// finds any, more of both in turns.
   MovePlan run() {
-    plan_.length_min = problem_.space.distance(problem_.space.start());
-    if (!settle(exact_.run(options_.exact_count_max))) {
-      walk();
+    const ShapeSpace& space = problem_.space;
+    if (space.start() == space.target()) {
+      keep({}, 0);
+    } else {
+      seek();
     }
-    plan_.length_min = std::max(plan_.length_min, exact_.length_min());
     plan_.state_count = judge_.count();
-    plan_.is_shortest = plan_.outcome == MoveOutcome::kFound &&
-                        plan_.steps.size() == static_cast<std::size_t>(plan_.length_min);
+    plan_.is_shortest = plan_.outcome == MoveOutcome::kFound && length() <= plan_.length_min;
     return std::move(plan_);
   }
 
   std::vector<Shape> shapes() const { return exact_.shapes(); }
 
  private:
-  /// Whether the exact search has an answer.
-  bool settle(SearchOutcome outcome) {
-    if (outcome == SearchOutcome::kExhausted) {
-      plan_.outcome = MoveOutcome::kNone;
-      return true;
+  void seek() {
+    walk(0);
+    std::size_t count = options_.exact_count_max / problem_.space.start().size();
+    for (std::uint64_t attempt = 1; !search(count) && !judge_.is_over(); ++attempt) {
+      count = walk(attempt);
     }
-    keep(exact_.moves(), exact_.distance());
-    return outcome == SearchOutcome::kFound;
+    plan_.length_min = exact_.length_min();
+    if (plan_.outcome == MoveOutcome::kFound) {
+      plan_.length_min = std::min(plan_.length_min, length());
+    }
   }
 
-  /// Attempts along the surface and more of the exact search, in turns.
-  void walk() {
-    for (std::uint64_t attempt = 0; !judge_.is_over(); ++attempt) {
-      const std::size_t before = judge_.count();
-      SurfacePlanner planner(problem_.space, problem_.rule, judge_, options_.seed, attempt);
-      planner.run();
-      keep(planner.moves(), planner.distance());
-      const std::size_t spent = judge_.count() - before;
-      if (plan_.outcome == MoveOutcome::kFound ||
-          settle(exact_.run(judge_.count() + std::max<std::size_t>(spent, 100)))) {
-        return;
-      }
-    }
+  /// One attempt along the surface. Returns how many moves it has judged.
+  std::size_t walk(std::uint64_t attempt) {
+    const std::size_t before = judge_.count();
+    SurfacePlanner planner(problem_.space, problem_.rule, judge_, options_.seed, attempt);
+    planner.run();
+    keep(planner.moves(), planner.distance());
+    return judge_.count() - before;
   }
+
+  /// So many moves of the exact search, and a few. Whether there is an answer.
+  bool search(std::size_t count) {
+    constexpr std::size_t kFew = 100;
+    const bool is_found = plan_.outcome == MoveOutcome::kFound;
+    const auto outcome = exact_.run(judge_.count() + count + kFew,
+                                    is_found ? length() : std::numeric_limits<int>::max());
+    if (outcome == SearchOutcome::kFound) {
+      distance_ = std::numeric_limits<int>::max();
+    }
+    if (outcome == SearchOutcome::kExhausted) {
+      plan_.outcome = MoveOutcome::kNone;
+    } else {
+      keep(exact_.moves(), exact_.distance());
+    }
+    return plan_.outcome != MoveOutcome::kNotFound;
+  }
+
+  int length() const { return static_cast<int>(plan_.steps.size()); }
 
   void keep(const std::vector<model::Move>& moves, int distance) {
     if (distance >= distance_) {

@@ -14,8 +14,11 @@ ShapeSearch::ShapeSearch(const ShapeSpace& space, const MoveRule& rule, MoveJudg
   enter({.shape = space.start(), .move = {}}, distance_);
 }
 
-SearchOutcome ShapeSearch::run(std::size_t count_max) {
+SearchOutcome ShapeSearch::run(std::size_t count_max, int length) {
   while (distance_ > 0 && !open_.empty()) {
+    if (open_.top().length >= length) {
+      return SearchOutcome::kNoShorter;
+    }
     if (judge_.count() >= count_max || judge_.is_over()) {
       return SearchOutcome::kStopped;
     }

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <limits>
 #include <queue>
 #include <unordered_map>
 #include <vector>
@@ -15,6 +16,7 @@ namespace holdfast::plan {
 enum class SearchOutcome : std::uint8_t {
   kFound,
   kExhausted,  ///< Every safe shape has been seen.
+  kNoShorter,  ///< No plan has fewer moves than the one that is known.
   kStopped,
 };
 
@@ -25,8 +27,9 @@ class ShapeSearch {
   /// Keeps references.
   ShapeSearch(const ShapeSpace& space, const MoveRule& rule, MoveJudge& judge, std::uint64_t seed);
 
-  /// Goes on until the target is found, so many moves in all are judged, or the judge says stop.
-  SearchOutcome run(std::size_t count_max);
+  /// Goes on until the target is found, so many moves in all are judged, or the judge says stop; or
+  /// until no plan can have fewer moves than `length`, that of one that is known.
+  SearchOutcome run(std::size_t count_max, int length = std::numeric_limits<int>::max());
 
   /// The moves to the target, or to the shape that is nearest to it, of all shapes seen.
   std::vector<model::Move> moves() const;

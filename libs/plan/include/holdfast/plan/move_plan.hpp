@@ -36,8 +36,9 @@ struct MoveOptions {
   /// The search stops after this time, or so many judged moves, without an answer.
   double seconds_max = std::numeric_limits<double>::infinity();
   std::size_t state_count_max = std::numeric_limits<std::size_t>::max();
-  /// So many moves at most are judged in search of a shortest plan before any plan is sought.
-  std::size_t exact_count_max = 20'000;
+  /// So many moves, divided by the number of modules that are not fixed, are judged in search of a
+  /// shorter plan than the first that is found.
+  std::size_t exact_count_max = 40'000;
   solver::EquilibriumOptions solver = {};  ///< Of each check. The result depends on no threads.
   /// Asked between moves; true ends the search as time does.
   std::function<bool()> is_interrupted = {};
