@@ -8,7 +8,8 @@ same with `final`.
     python3 bench/pathfinder.py HOLDFAST FOLDER [--seconds S] [--keep FOLDER]
 
 Cells are read as cubes: of order 3 with z upwards, of order 2 standing, second coordinate upwards,
-and no module leaves the plane. Static modules are fixed, and the final shape has them where the
+and no module leaves the plane. Where modules touch by edges only they are rhombic dodecahedra, read
+as balls in a face-centred lattice. Static modules are fixed, and the final shape has them where the
 initial one has them; without any the lowest modules stand on a floor. Colours are kinds where both
 shapes have the same ones. Prints a table in Markdown, and of each pair that cannot be read why.
 """
@@ -42,13 +43,18 @@ def final_of(path):
     return path.with_name(path.name.replace('initial', 'final'))
 
 
-def is_connected(cells):
+CUBE_SIDES = [(1, 0, 0), (-1, 0, 0), (0, 1, 0), (0, -1, 0), (0, 0, 1), (0, 0, -1)]
+BALL_SIDES = [(a, b, 0) for a in (1, -1) for b in (1, -1)]
+BALL_SIDES += [(a, 0, c) for a in (1, -1) for c in (1, -1)]
+BALL_SIDES += [(0, b, c) for b in (1, -1) for c in (1, -1)]
+
+
+def is_connected(cells, sides):
     left, queue = set(cells), [next(iter(cells))]
     left.discard(queue[0])
     while queue:
         x, y, z = queue.pop()
-        for cell in ((x + 1, y, z), (x - 1, y, z), (x, y + 1, z), (x, y - 1, z), (x, y, z + 1),
-                     (x, y, z - 1)):
+        for cell in ((x + a, y + b, z + c) for a, b, c in sides):
             if cell in left:
                 left.discard(cell)
                 queue.append(cell)
@@ -62,19 +68,29 @@ def read_pair(path):
     final, _ = read(final_of(path))
     static = {cell: module for cell, module in initial.items() if module[0]}
     final = {**static, **{cell: (cell in static, module[1]) for cell, module in final.items()}}
-    for modules in (initial, final):
-        if not is_connected(modules):
-            raise ValueError('modules touch by edges only: no cubes (rhombic dodecahedra)')
     if len(initial) != len(final):
         raise ValueError(f'{len(initial)} modules at first, {len(final)} at last')
-    return initial, final, is_flat
+    lattice = 'cubic'
+    if not all(is_connected(modules, CUBE_SIDES) for modules in (initial, final)):
+        if not all(is_connected(modules, BALL_SIDES) for modules in (initial, final)):
+            raise ValueError('the modules are in pieces')
+        lattice = 'face-centred'
+        initial, final = to_balls(initial), to_balls(final)
+    return initial, final, is_flat, lattice
+
+
+def to_balls(modules):
+    """From coordinates with an even sum to those of a face-centred lattice whose layers are square:
+    along (1, 1, 0), (1, -1, 0) and (1, 0, 1), every second layer shifted back."""
+    return {((x + y - z) // 2 + z // 2, (x - y - z) // 2 + z // 2, z): module
+            for (x, y, z), module in modules.items()}
 
 
 def mobile_colors(modules):
     return collections.Counter(color for is_static, color in modules.values() if not is_static)
 
 
-def write(path, modules, kinds):
+def write(path, modules, kinds, lattice):
     has_fixed = any(is_static for is_static, _ in modules.values())
     entries = []
     for cell, (is_static, color) in sorted(modules.items()):
@@ -84,7 +100,7 @@ def write(path, modules, kinds):
         elif kinds:
             entry['kind'] = kinds[color]
         entries.append(entry)
-    structure = {'format': 'holdfast-structure', 'version': 2,
+    structure = {'format': 'holdfast-structure', 'version': 2, 'lattice': lattice,
                  'support_z': None if has_fixed else min(cell[2] for cell in modules),
                  'kinds': {kind: {} for kind in kinds.values()}, 'modules': entries}
     path.write_text(json.dumps(structure))
@@ -119,14 +135,14 @@ def seconds_text(plan):
 
 
 def compare(arguments, path, name):
-    initial, final, is_flat = read_pair(path)
+    initial, final, is_flat, lattice = read_pair(path)
     kinds = {}
     if mobile_colors(initial) == mobile_colors(final):
         kinds = {color: f'color-{i}' for i, color in enumerate(sorted(mobile_colors(initial)))}
     kinds = kinds if len(kinds) > 1 else {}
     files = [arguments.keep / f'{name}_initial.json', arguments.keep / f'{name}_final.json']
-    write(files[0], initial, kinds)
-    write(files[1], final, kinds)
+    write(files[0], initial, kinds, lattice)
+    write(files[1], final, kinds, lattice)
     options = ['--seconds', str(arguments.seconds), '--within', box(initial, final, is_flat)]
     options += ['--pivot'] if arguments.pivot else []
     free = move(arguments.program, files, [*options, '--geometry-only'])

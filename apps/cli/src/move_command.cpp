@@ -227,14 +227,14 @@ Command add_move(CLI::App& app) {
       ->add_option("-o,--output", options->steps,
                    "Write FROM with the moves as its steps; - is standard output. If the shape is "
                    "not found: those to the nearest one")
-      ->type_name("STEPS.json");
+      ->type_name("FILE");
   command->add_option("--json", options->json, "Write a JSON report; - is standard output")
       ->type_name("FILE");
   command
       ->add_option("--verify", options->verified,
                    "Seek nothing, but replay the certificate in a JSON report of the same FROM, TO "
                    "and ways to go")
-      ->type_name("REPORT.json");
+      ->type_name("FILE");
   add_reading(*command, options->reading);
   command->footer(
       "A module slides along its neighbours or turns around a corner, while all others stay in "

@@ -8,6 +8,7 @@
 #include <iterator>
 #include <nlohmann/json.hpp>
 
+#include "holdfast/io/beside_one.hpp"
 #include "json_text.hpp"
 #include "json_values.hpp"
 
@@ -190,7 +191,8 @@ std::string move_text(const MoveReport& report) {
                                                     stages.all, stages.all - stages.safe);
   }
   if (load_ratio_of(plan)) {
-    text += fmt::format("  load ratio  {:.4g} at most on the way\n", *load_ratio_of(plan));
+    text +=
+        fmt::format("  load ratio  {} at most on the way\n", beside_one(*load_ratio_of(plan), 4));
   }
   if (margin_of(plan)) {
     text += fmt::format("  margin      {:.4g} mm at least on the way\n", *margin_of(plan));

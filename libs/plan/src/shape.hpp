@@ -63,7 +63,7 @@ class ShapeSpace {
 };
 
 /// The least sum of costs of an assignment of rows to columns, of a square matrix by rows
-/// [Kuhn 1955; Jonker & Volgenant 1987], in O(n^3).
+/// [Kuhn 1955], by shortest augmenting paths [Jonker 1987], in O(n^3).
 int assignment_cost(std::span<const int> costs, std::size_t count);
 
 }  // namespace holdfast::plan

@@ -20,8 +20,9 @@ enum class SearchOutcome : std::uint8_t {
   kStopped,
 };
 
-/// A* over shapes with ShapeSpace::distance(). A move is judged only when its end is the most
-/// promising, so that hardly more are judged than lie on the way.
+/// A* [Hart 1968] over shapes with ShapeSpace::distance() as the bound of what is left. A move is
+/// judged only when its end is the most promising, so that hardly more are judged than lie on the
+/// way.
 class ShapeSearch {
  public:
   /// Keeps references.

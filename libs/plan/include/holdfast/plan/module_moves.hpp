@@ -27,7 +27,7 @@ struct CellBox {
 struct MoveRule {
   /// Cubes that turn about an edge of a neighbour instead of sliding along it, and so need the
   /// cells that they sweep; cubic lattice only. A quarter turn leads to the next cell beside two
-  /// modules in a row, half a turn around the corner of one ([Feshbach & Sung 2021]).
+  /// modules in a row, half a turn around the corner of one ([Feshbach 2021]).
   bool pivots = false;
   /// No module goes below; none: there is nothing that bars it.
   std::optional<std::int32_t> floor_z = {};
