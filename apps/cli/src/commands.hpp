@@ -34,6 +34,8 @@ Command add_convert(CLI::App& app);
 Command add_emulate(CLI::App& app);
 Command add_generate(CLI::App& app);
 Command add_move(CLI::App& app);
+Command add_next(CLI::App& app);
+Command add_order(CLI::App& app);
 Command add_robots(CLI::App& app);
 Command add_simulate(CLI::App& app);
 Command add_steps(CLI::App& app);

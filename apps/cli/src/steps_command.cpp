@@ -4,6 +4,7 @@
 
 #include "commands.hpp"
 #include "file_clash.hpp"
+#include "holdfast/order.hpp"
 #include "holdfast/steps.hpp"
 #include "progress.hpp"
 
@@ -16,6 +17,7 @@ struct Options {
   std::string json;
   bool is_quiet = false;
   bool ends_when_unsafe = false;
+  bool is_certificate = false;
   int thread_count = 0;
 };
 
@@ -30,7 +32,29 @@ bool write_files(const Options& options, const StepsFile& file, const StepsResul
   return is_written;
 }
 
+/// Replays the certificate of an order that does not exist.
+int run_certificate(const Options& options) {
+  const auto text = read_file(options.file);
+  if (!text) {
+    return fail(text.error(), options.file);
+  }
+  const auto check = verify_order_certificate(text.value(), options.thread_count);
+  if (!check) {
+    return fail(check.error(), options.file);
+  }
+  if (!options.is_quiet) {
+    fmt::print(
+        "PROVED      there is no safe order: {} states replayed, and {} just beyond, none of "
+        "which is safe\n",
+        check.value().state_count, check.value().blocked_count);
+  }
+  return kExitSafe;
+}
+
 int run(const Options& options) {
+  if (options.is_certificate) {
+    return run_certificate(options);
+  }
   const std::vector<std::string> inputs = {options.file};
   if (complain_of_clash(inputs, {{"--json", options.json}})) {
     return kExitUsage;
@@ -77,6 +101,10 @@ Command add_steps(CLI::App& app) {
       ->type_name("FILE");
   command->add_flag("--until-unsafe", options->ends_when_unsafe,
                     "Leave out the steps behind the first unsafe one");
+  command
+      ->add_flag("--verify", options->is_certificate,
+                 "FILE is a certificate that there is no order, of holdfast order: replay it")
+      ->excludes("--json");
   command->add_flag("--quiet", options->is_quiet, "Print errors only; the exit code is the answer");
   command->add_option("--threads", options->thread_count, "0: all cores; the answer is the same")
       ->check(CLI::Range(0, 64));

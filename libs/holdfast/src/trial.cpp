@@ -5,16 +5,45 @@
 #include <algorithm>
 #include <iterator>
 
-#include "holdfast/plan/judgement.hpp"
+#include "holdfast/base/check.hpp"
+#include "holdfast/plan/candidates.hpp"
 
 namespace holdfast {
 namespace {
 
-/// A robot that topples needs no loads; one that is bonded to the ground does not topple.
-verdict::Assessment try_robot(const model::Robot& robot, const CheckOptions& options) {
-  verdict::Assessment look = first_look(robot);
-  const bool topples = look.verdict == verdict::Verdict::kUnstable;
-  return topples && !options.is_bonded ? look : check(robot, options).assessment;
+plan::CandidateOptions candidate_options(const CheckOptions& options) {
+  return {.equilibrium = {.memory_bytes_max = options.memory_bytes_max,
+                          .is_bonded = options.is_bonded,
+                          .thread_count = options.thread_count,
+                          .progress = options.progress}};
+}
+
+Trial trial_of(const plan::Candidate& candidate) {
+  return {.cell = candidate.cell,
+          .is_robot = candidate.is_robot,
+          .verdict = candidate.judgement.verdict,
+          .load_ratio_max = candidate.judgement.load_ratio_max,
+          .margin_mm = candidate.judgement.margin_mm};
+}
+
+std::vector<Trial> trials_of(const std::vector<plan::Candidate>& candidates) {
+  std::vector<Trial> trials;
+  trials.reserve(candidates.size());
+  std::ranges::transform(candidates, std::back_inserter(trials), trial_of);
+  return trials;
+}
+
+/// By a check of the robot with a fixed module there.
+Trial try_fixed(model::RobotSpec spec, const base::Cell& cell, const CheckOptions& options) {
+  add_module(spec, cell, Role::kFixed);
+  const auto robot = model::Robot::create(spec, options.thread_count);
+  if (!robot) {
+    return {.cell = cell};
+  }
+  return trial_of(
+      {.cell = cell,
+       .is_robot = true,
+       .judgement = plan::judge(robot.value(), candidate_options(options).equilibrium)});
 }
 
 }  // namespace
@@ -26,49 +55,40 @@ void add_module(model::RobotSpec& spec, const base::Cell& cell, Role role) {
   }
 }
 
-std::vector<base::Cell> free_cells(const model::RobotSpec& spec) {
-  std::vector<base::Cell> taken = spec.existing;
-  taken.insert(taken.end(), spec.planned.begin(), spec.planned.end());
-  std::ranges::sort(taken);
-  std::vector<base::Cell> beside;
-  for (const base::Cell& cell : taken) {
-    for (const base::Direction direction : base::directions(spec.lattice)) {
-      beside.push_back(base::neighbour(spec.lattice, cell, direction));
-    }
-  }
-  std::ranges::sort(beside);
-  beside.erase(std::unique(beside.begin(), beside.end()), beside.end());
-  std::vector<base::Cell> free;
-  std::set_difference(beside.begin(), beside.end(), taken.begin(), taken.end(),
-                      std::back_inserter(free));
-  const model::ObstacleIndex obstacles(spec.obstacles);
-  std::erase_if(free, [&](const base::Cell& cell) {
-    return obstacles.find(cell) != model::CellIndex::kNone;
-  });
-  return free;
-}
+std::vector<base::Cell> free_cells(const model::RobotSpec& spec) { return plan::free_cells(spec); }
 
 verdict::Assessment first_look(const model::Robot& robot) { return plan::first_look(robot); }
 
 std::vector<Trial> try_cells(const model::RobotSpec& spec, std::span<const base::Cell> cells,
                              Role role, const CheckOptions& options) {
-  std::vector<Trial> trials;
-  trials.reserve(cells.size());
-  for (const base::Cell& cell : cells) {
-    model::RobotSpec grown = spec;
-    add_module(grown, cell, role);
-    const auto robot = model::Robot::create(grown, options.thread_count);
-    Trial& trial = trials.emplace_back(Trial{.cell = cell});
-    if (!robot) {
-      continue;
+  if (role == Role::kFixed) {
+    std::vector<Trial> trials;
+    for (const base::Cell& cell : cells) {
+      trials.push_back(try_fixed(spec, cell, options));
     }
-    const verdict::Assessment assessment = try_robot(robot.value(), options);
-    trial.is_robot = true;
-    trial.verdict = assessment.verdict;
-    trial.load_ratio_max = assessment.load_ratio_max;
-    trial.margin_mm = assessment.simplified.margin_mm;
+    return trials;
   }
-  return trials;
+  plan::CandidateOptions how = candidate_options(options);
+  how.is_planned = role == Role::kPlanned;
+  return trials_of(plan::judge_candidates(spec, cells, how).candidates);
+}
+
+std::size_t NextResult::count(verdict::Verdict verdict) const {
+  return static_cast<std::size_t>(std::ranges::count(candidates, verdict, &Trial::verdict));
+}
+
+NextResult find_next(const Structure& structure, const NextOptions& options) {
+  const auto spec = io::make_spec(structure.document);
+  HOLDFAST_CHECK(spec.has_value());  // The structure's robot was made of it.
+  plan::CandidateOptions how = candidate_options(options.check);
+  how.progress = options.progress;
+  plan::CandidateReport report =
+      plan::judge_candidates(spec.value(), plan::free_cells(spec.value()), how);
+  plan::sort_candidates(report.candidates);
+  return {.candidates = trials_of(report.candidates),
+          .check_count = report.check_count,
+          .preparation_seconds = report.preparation_seconds,
+          .seconds = report.seconds};
 }
 
 }  // namespace holdfast

@@ -136,7 +136,7 @@ class Painter {
       return body;
     }
     const std::string glass = is_planned ? fmt::format(" opacity=\"{}\" stroke-dasharray=\"{}\"",
-                                                       kGlass, number(edge_px_ / 10))
+                                                       scene_.glass(), number(edge_px_ / 10))
                                          : std::string();
     const std::string title = scene_.is_detailed() ? fmt::format("<title>{}</title>\n",
                                                                  module_tooltip(scene_, item.index))

@@ -74,6 +74,7 @@ struct Scene {
   const model::Robot& robot;
   const verdict::Assessment& assessment;
   std::vector<ModulePaint> paints;
+  std::size_t ghost_count = 0;  ///< The last modules are none, but places where one may go.
   /// Cubes without obstacles are drawn as what is seen of their faces; all else as bodies.
   std::optional<BodyView> bodies;
   std::optional<VisibleSurface> existing;  ///< Without planned modules; none if there are bodies.
@@ -112,6 +113,11 @@ struct Scene {
 
   /// How much of a box the robot covers, 0 to 1, from samples.
   double covered_share(const Box& box) const;
+
+  /// Opacity of planned modules, or of ghosts, through which the robot has to be seen.
+  const char* glass() const { return ghost_count > 0 ? "0.3" : "0.7"; }
+
+  bool is_ghost(std::size_t module) const { return module + ghost_count >= robot.modules().size(); }
 
   bool is_detailed() const { return robot.modules().size() <= kDetailedCountMax; }
 

@@ -107,11 +107,10 @@ bool has_meaning(const Scene& scene, Meaning meaning) {
                              [&](const ModulePaint& paint) { return paint.meaning == meaning; });
 }
 
-Entry planned_entry() {
-  return swatch_entry("planned module",
-                      fmt::format("fill=\"#b9bfc4\" fill-opacity=\"0.35\" stroke=\"{}\" "
-                                  "stroke-width=\"1.3\" stroke-dasharray=\"2.8 2.2\"",
-                                  kInk));
+Entry planned_entry(const char* label) {
+  return swatch_entry(label, fmt::format("fill=\"#b9bfc4\" fill-opacity=\"0.35\" stroke=\"{}\" "
+                                         "stroke-width=\"1.3\" stroke-dasharray=\"2.8 2.2\"",
+                                         kInk));
 }
 
 Entry polygon_entry() {
@@ -149,8 +148,11 @@ std::vector<Entry> entries(const Scene& scene) {
       list.push_back(color_entry(label, color));
     }
   }
-  if (scene.robot.planned_count() > 0) {
-    list.push_back(planned_entry());
+  if (scene.robot.planned_count() > scene.ghost_count) {
+    list.push_back(planned_entry("planned module"));
+  }
+  if (scene.ghost_count > 0) {
+    list.push_back(planned_entry("place for the next module"));
   }
   if (scene.has_polygon()) {
     list.push_back(polygon_entry());

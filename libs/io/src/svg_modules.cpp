@@ -201,7 +201,7 @@ std::string draw_planned(const Scene& scene) {
   std::string out = fmt::format(
       "<g class=\"planned\" opacity=\"{}\" stroke-width=\"0.4\" stroke-linejoin=\"round\">\n{}"
       "</g>\n",
-      kGlass, fill_of(scene, *scene.all, true));
+      scene.glass(), fill_of(scene, *scene.all, true));
   const auto edges = scene.all->edges();
   out += fmt::format(
       "<g class=\"planned-outlines\" fill=\"none\" stroke=\"{}\" stroke-dasharray=\"{}\">\n", kInk,
@@ -243,7 +243,7 @@ std::string module_tooltip(const Scene& scene, std::size_t module) {
   const ModulePaint& paint = scene.paints[module];
   std::string text = model::text(cell);
   if (is_planned) {
-    text += ", planned";
+    text += scene.is_ghost(module) ? ", place for the next module" : ", planned";
   }
   if (support != model::Support::kNone) {
     text += support == model::Support::kFixed ? ", fixed" : touch_text(scene.robot, module);

@@ -24,6 +24,9 @@ inline constexpr double kNoLoad = 0.005;
 
 Headline headline(const Scene& scene);
 
+/// The whole picture.
+std::string draw_card(const Scene& scene, std::string_view title);
+
 std::string draw_header(const Scene& scene, std::string_view title);
 
 /// Grid, coordinates and support polygon, below the robot.
@@ -31,8 +34,7 @@ std::string draw_ground(const Scene& scene);
 
 std::string draw_modules(const Scene& scene);
 
-/// Opacity of planned modules, and how much lighter they are, in percent.
-inline constexpr const char* kGlass = "0.7";
+/// How much lighter planned modules are, in percent.
 inline constexpr int kGlassLightness = 34;
 
 /// What a module's tooltip says.

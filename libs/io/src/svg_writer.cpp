@@ -13,11 +13,15 @@ namespace {
 
 std::string description(const Scene& scene) {
   const Headline line = headline(scene);
-  const std::size_t count = scene.robot.modules().size();
+  const std::size_t count = scene.robot.modules().size() - scene.ghost_count;
   std::string text = fmt::format(
       "Isometric view of a modular robot of {} module{}, {} of them "
       "planned. {}: {}.",
-      count, count == 1 ? "" : "s", scene.robot.planned_count(), line.verdict, line.essence);
+      count, count == 1 ? "" : "s", scene.robot.planned_count() - scene.ghost_count, line.verdict,
+      line.essence);
+  if (scene.ghost_count > 0) {
+    text += fmt::format(" {} places where a module may go.", scene.ghost_count);
+  }
   for (const verdict::Reason& reason : scene.assessment.reasons) {
     const std::string sentence = reason_text(scene.robot, reason);
     if (sentence != line.essence) {
@@ -74,9 +78,7 @@ std::string draw_axes(const Scene& scene) {
   return out + "</g>\n" + draw_gravity(scene, origin);
 }
 
-std::string write_svg(const model::Robot& robot, const verdict::Assessment& assessment,
-                      std::string_view title, std::span<const model::Obstacle> obstacles) {
-  const Scene scene(robot, assessment, obstacles);
+std::string draw_card(const Scene& scene, std::string_view title) {
   const Legend legend = draw_legend(scene);
   const double height = scene.drawing.bottom + legend.height;
   std::string out = fmt::format(
@@ -98,6 +100,11 @@ std::string write_svg(const model::Robot& robot, const verdict::Assessment& asse
   out += draw_axes(scene);
   out += legend.text;
   return out + "</svg>\n";
+}
+
+std::string write_svg(const model::Robot& robot, const verdict::Assessment& assessment,
+                      std::string_view title, std::span<const model::Obstacle> obstacles) {
+  return draw_card(Scene(robot, assessment, obstacles), title);
 }
 
 }  // namespace holdfast::io

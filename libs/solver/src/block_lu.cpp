@@ -2,84 +2,31 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "holdfast/solver/block_lu.hpp"
 
-#include <Eigen/OrderingMethods>
-#include <Eigen/SparseCore>
 #include <algorithm>
+#include <optional>
+#include <utility>
 
 #include "block_kernels.hpp"
 #include "holdfast/base/check.hpp"
+#include "holdfast/solver/block_pattern.hpp"
+#include "lane_substitution.hpp"
 
 namespace holdfast::solver {
-namespace {
-
-/// Approximate minimum degree on the graph of nodes. Returns node -> place.
-std::vector<std::int32_t> elimination_order(std::size_t node_count, std::span<const Edge> edges) {
-  const auto n = static_cast<Eigen::Index>(node_count);
-  std::vector<Eigen::Triplet<double, int>> entries;
-  entries.reserve(2 * edges.size() + node_count);
-  for (const Edge& edge : edges) {
-    entries.emplace_back(edge.a, edge.b, 1.0);
-    entries.emplace_back(edge.b, edge.a, 1.0);
-  }
-  for (int i = 0; i < static_cast<int>(node_count); ++i) {
-    entries.emplace_back(i, i, 1.0);
-  }
-  Eigen::SparseMatrix<double, Eigen::ColMajor, int> pattern(n, n);
-  pattern.setFromTriplets(entries.begin(), entries.end());
-  Eigen::PermutationMatrix<Eigen::Dynamic, Eigen::Dynamic, int> order;
-  Eigen::AMDOrdering<int> amd;
-  amd(pattern, order);
-  std::vector<std::int32_t> place(node_count);
-  for (std::size_t i = 0; i < node_count; ++i) {
-    place[static_cast<std::size_t>(order.indices()[static_cast<Eigen::Index>(i)])] =
-        static_cast<std::int32_t>(i);
-  }
-  return place;
-}
-
-}  // namespace
-
 BlockLu::BlockLu(std::size_t node_count, std::span<const Edge> edges, std::size_t block_count_max)
-    : edges_(edges.begin(), edges.end()), is_too_large_(edges.size() > block_count_max) {
+    : edges_(edges.begin(), edges.end()) {
+  std::optional<BlockPattern> pattern = block_pattern(node_count, edges, block_count_max);
+  is_too_large_ = !pattern;
   if (is_too_large_) {
-    return;  // Before anything fills in.
+    return;
   }
-  position_ = elimination_order(node_count, edges);
-  for (Edge& edge : edges_) {
-    edge = {position_[static_cast<std::size_t>(edge.a)],
-            position_[static_cast<std::size_t>(edge.b)]};
-  }
-  analyse(block_count_max);
-}
-
-/// The rows of a column of L: those of A, and those of its children in the elimination tree.
-void BlockLu::analyse(std::size_t block_count_max) {
-  const std::size_t n = position_.size();
-  std::vector<std::vector<std::int32_t>> below(n);
-  column_edges_.resize(n);
+  position_ = std::move(pattern->position);
+  parent_ = std::move(pattern->parent);
+  column_start_ = std::move(pattern->column_start);
+  rows_ = std::move(pattern->rows);
+  column_edges_.resize(node_count);
   for (std::size_t e = 0; e < edges_.size(); ++e) {
-    const auto [low, high] = std::minmax(edges_[e].a, edges_[e].b);
-    below[static_cast<std::size_t>(low)].push_back(high);
-    column_edges_[static_cast<std::size_t>(low)].push_back(e);
-  }
-  parent_.assign(n, -1);
-  column_start_.assign(n + 1, 0);
-  for (std::size_t k = 0; k < n; ++k) {
-    std::vector<std::int32_t>& rows = below[k];
-    std::ranges::sort(rows);
-    rows.erase(std::unique(rows.begin(), rows.end()), rows.end());
-    column_start_[k + 1] = column_start_[k] + rows.size();
-    if (column_start_[k + 1] > block_count_max) {
-      is_too_large_ = true;
-      return;
-    }
-    rows_.insert(rows_.end(), rows.begin(), rows.end());
-    if (!rows.empty()) {
-      parent_[k] = rows.front();
-      std::vector<std::int32_t>& up = below[static_cast<std::size_t>(rows.front())];
-      up.insert(up.end(), rows.begin() + 1, rows.end());
-    }
-    rows = {};
+    edges_[e] = {position_[base::at(edges_[e].a)], position_[base::at(edges_[e].b)]};
+    column_edges_[base::at(std::min(edges_[e].a, edges_[e].b))].push_back(e);
   }
   make_row_lists();
 }
@@ -249,6 +196,56 @@ void BlockLu::substitute(std::span<base::Vec6<double>> y, std::size_t count) con
       y[count * k + c] = multiply(inverse_[k], y[count * k + c]);
     }
   }
+}
+
+void BlockLu::solve_lanes(std::span<LaneBlock> y) const {
+  HOLDFAST_CHECK(y.size() == position_.size() && !is_singular_);
+  lane_substitution()({.place_count = position_.size(),
+                       .column_start = column_start_.data(),
+                       .rows = rows_.data(),
+                       .lower = lower_.data(),
+                       .upper = upper_.data(),
+                       .inverse = inverse_.data()},
+                      y.data());
+}
+
+void BlockLu::forward(std::size_t node, std::vector<std::int32_t>& places,
+                      std::vector<base::Mat6<double>>& blocks) const {
+  places.clear();
+  for (std::int32_t k = position_[node]; k >= 0; k = parent_[static_cast<std::size_t>(k)]) {
+    places.push_back(k);
+  }
+  blocks.assign(places.size(), {});
+  for (int i = 0; i < 6; ++i) {
+    blocks.front().at(i, i) = 1;
+  }
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    const auto k = static_cast<std::size_t>(places[i]);
+    std::size_t target = i;  // Rows of a column ascend on the same way up.
+    for (std::size_t slot = column_start_[k]; slot < column_start_[k + 1]; ++slot) {
+      while (places[target] != rows_[slot]) {
+        ++target;
+      }
+      subtract_product(blocks[target], lower_[slot], blocks[i]);
+    }
+  }
+}
+
+base::Mat6<double> BlockLu::symmetric_product(std::span<const std::int32_t> places_a,
+                                              std::span<const base::Mat6<double>> a,
+                                              std::span<const std::int32_t> places_b,
+                                              std::span<const base::Mat6<double>> b) const {
+  // Two ways up the tree have their ends in common, and nothing else.
+  base::Mat6<double> sum;
+  std::size_t i = places_a.size();
+  std::size_t j = places_b.size();
+  while (i > 0 && j > 0 && places_a[i - 1] == places_b[j - 1]) {
+    --i;
+    --j;
+    const auto k = static_cast<std::size_t>(places_a[i]);
+    base::add_to(sum, product(transpose(a[i]), product(inverse_[k], b[j])));
+  }
+  return sum;
 }
 
 }  // namespace holdfast::solver

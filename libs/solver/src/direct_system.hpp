@@ -31,6 +31,12 @@ class DirectSystem final : public LinearSystem {
 
   std::vector<double> facet_errors() const override { return {}; }
 
+  /// The factors, one node per module that is not fixed, as of the last solve().
+  const BlockLu& factors() const { return *lu_; }
+
+  /// A module's node; -1 if it is fixed.
+  std::int32_t node_of(std::int32_t module) const;
+
   LinearReport report() const override {
     return {.solve_count = solve_count_, .made_column_count = lu_->made_column_count()};
   }
@@ -46,7 +52,6 @@ class DirectSystem final : public LinearSystem {
   void order(const EquilibriumOptions& options);
   void assemble();
   std::size_t first_facet_after(std::size_t facet) const;
-  std::int32_t node_of(std::int32_t module) const;
   std::vector<Vec> by_module(const std::vector<Vec>& by_node) const;
   template <class Load>
   std::vector<Vec> by_node(const Load& load) const;

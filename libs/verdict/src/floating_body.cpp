@@ -5,8 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
-#include "holdfast/model/mass.hpp"
+#include "holdfast/base/lattice.hpp"
 
 namespace holdfast::verdict {
 namespace {
@@ -51,33 +52,65 @@ std::vector<PlanPoint> convex_hull(std::vector<PlanPoint> points, double tie) {
 }
 
 /// The frame of a floor's facets is the global one.
-std::vector<PlanPoint> facet_corners(const model::Robot& robot, const base::NodePlaces& node_mm) {
-  const double b = robot.foot_half_width_mm();
-  std::vector<PlanPoint> corners;
-  for (const model::Facet& facet : robot.facets()) {
-    const auto centre = node_mm(robot.modules()[base::at(facet.module)].cell);
-    for (const double x : {-b, b}) {
-      for (const double y : {-b, b}) {
-        corners.push_back({centre[0] + x, centre[1] + y});
-      }
+void add_corners(const std::array<double, 3>& centre, double half_width,
+                 std::vector<PlanPoint>& corners) {
+  for (const double x : {-half_width, half_width}) {
+    for (const double y : {-half_width, half_width}) {
+      corners.push_back({centre[0] + x, centre[1] + y});
     }
   }
-  return corners;
 }
 
 }  // namespace
 
-RigidBody floating_body(const model::Robot& robot) {
+FloatingBody body_of(const model::Robot& robot) {
+  FloatingBody body{.is_held = robot.fixed_count() > 0 || robot.has_bonded_facets(),
+                    .is_flat = is_on_flat_floor(robot),
+                    .foot_half_width_mm = robot.foot_half_width_mm(),
+                    .tie_mm = kMarginTie * robot.material().pitch_mm};
+  const base::NodePlaces node_mm(robot.lattice(), robot.material().pitch_mm);
+  for (std::size_t i = 0; i < robot.modules().size(); ++i) {
+    add_module(body, node_mm(robot.modules()[i].cell), robot.mass(i), false);
+  }
+  for (const model::CarriedMass& carried : robot.carried()) {
+    std::array<double, 3> place = node_mm(carried.carrier);
+    for (std::size_t k = 0; k < 3; ++k) {
+      place[k] += carried.offset_mm[k];
+    }
+    add_module(body, place, carried.mass_kg, false);
+  }
+  if (body.is_flat) {
+    std::vector<PlanPoint> corners;
+    for (const model::Facet& facet : robot.facets()) {
+      add_corners(node_mm(robot.modules()[base::at(facet.module)].cell), body.foot_half_width_mm,
+                  corners);
+    }
+    body.polygon = convex_hull(std::move(corners), body.tie_mm);
+  }
+  return body;
+}
+
+void add_module(FloatingBody& body, const std::array<double, 3>& node_mm, double mass_kg,
+                bool is_on_floor) {
+  for (std::size_t k = 0; k < 3; ++k) {
+    body.moment_kgmm[k] += mass_kg * node_mm[k];
+  }
+  body.kg += mass_kg;
+  if (is_on_floor) {
+    body.is_flat = true;
+    add_corners(node_mm, body.foot_half_width_mm, body.polygon);
+    body.polygon = convex_hull(std::move(body.polygon), body.tie_mm);
+  }
+}
+
+RigidBody floating_body(const FloatingBody& given) {
   RigidBody body;
-  const model::Mass mass = model::mass_of(robot);
-  body.centre_of_mass = {mass.centre_mm[0], mass.centre_mm[1]};
-  body.is_stable = robot.fixed_count() > 0 || robot.has_bonded_facets();
-  if (!is_on_flat_floor(robot)) {
+  body.centre_of_mass = {given.moment_kgmm[0] / given.kg, given.moment_kgmm[1] / given.kg};
+  body.is_stable = given.is_held;
+  if (!given.is_flat) {
     return body;
   }
-  const double tie = kMarginTie * robot.material().pitch_mm;
-  const base::NodePlaces node_mm(robot.lattice(), robot.material().pitch_mm);
-  body.polygon = convex_hull(facet_corners(robot, node_mm), tie);
+  body.polygon = given.polygon;
   if (body.is_stable) {
     return body;
   }
@@ -95,7 +128,7 @@ RigidBody floating_body(const model::Robot& robot) {
       body.edge = {a, b};
     }
   }
-  body.margin_mm = std::abs(margin) <= tie ? 0 : margin;
+  body.margin_mm = std::abs(margin) <= given.tie_mm ? 0 : margin;
   body.is_stable = *body.margin_mm > 0;
   return body;
 }

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <utility>
 
 #include "exact_sign.hpp"
 #include "floating_body.hpp"
@@ -113,43 +114,64 @@ EdgeDistance nearest_edge(const std::vector<Point>& hull, const Point& mass, std
   return nearest;
 }
 
-/// Of cubes that weigh the same.
-RigidBody exact_body(const model::Robot& robot) {
-  const model::Material& material = robot.material();
-  const Measure measure(material.pitch_mm, material.facet_mm);
-  const auto plan_point = [&](const Point& point) {
+/// Cubes that weigh the same.
+struct Cubes {
+  Measure measure;
+  double pitch_mm = 0;
+  double facet_mm = 0;
+  bool is_fixed = false;
+  std::int64_t count = 0;
+  Point mass = {};               ///< Times count, in half pitches: whole numbers.
+  std::vector<Point> hull = {};  ///< Of the feet.
+
+  PlanPoint plan_point(const Point& point) const {
     const auto length = [&](const Length& part) {
-      return (static_cast<double>(part.pitches) * material.pitch_mm +
-              static_cast<double>(part.facets) * material.facet_mm) /
+      return (static_cast<double>(part.pitches) * pitch_mm +
+              static_cast<double>(part.facets) * facet_mm) /
              2;
     };
-    return PlanPoint{length(point.x), length(point.y)};
-  };
-  // Times count, the centre of mass is a whole number of half pitches.
-  const auto count = static_cast<std::int64_t>(robot.modules().size());
-  Point mass;
-  for (const model::Module& module : robot.modules()) {
-    mass.x.pitches += 2 * std::int64_t{module.cell.x};
-    mass.y.pitches += 2 * std::int64_t{module.cell.y};
+    return {length(point.x), length(point.y)};
   }
-  const std::vector<Point> hull = convex_hull(support_corners(robot), measure);
+};
 
-  RigidBody body;
-  const double half_pitch_mm = material.pitch_mm / 2 / static_cast<double>(count);
-  body.centre_of_mass = {static_cast<double>(mass.x.pitches) * half_pitch_mm,
-                         static_cast<double>(mass.y.pitches) * half_pitch_mm};
-  for (const Point& point : hull) {
-    body.polygon.push_back(plan_point(point));
+Cubes cubes_of(const model::Robot& robot) {
+  const model::Material& material = robot.material();
+  Cubes cubes{.measure = Measure(material.pitch_mm, material.facet_mm),
+              .pitch_mm = material.pitch_mm,
+              .facet_mm = material.facet_mm,
+              .is_fixed = robot.fixed_count() > 0,
+              .count = static_cast<std::int64_t>(robot.modules().size())};
+  for (const model::Module& module : robot.modules()) {
+    cubes.mass.x.pitches += 2 * std::int64_t{module.cell.x};
+    cubes.mass.y.pitches += 2 * std::int64_t{module.cell.y};
   }
-  if (robot.fixed_count() > 0) {
+  cubes.hull = convex_hull(support_corners(robot), cubes.measure);
+  return cubes;
+}
+
+RigidBody exact_body(const Cubes& cubes) {
+  RigidBody body;
+  const double half_pitch_mm = cubes.pitch_mm / 2 / static_cast<double>(cubes.count);
+  body.centre_of_mass = {static_cast<double>(cubes.mass.x.pitches) * half_pitch_mm,
+                         static_cast<double>(cubes.mass.y.pitches) * half_pitch_mm};
+  for (const Point& point : cubes.hull) {
+    body.polygon.push_back(cubes.plan_point(point));
+  }
+  if (cubes.is_fixed) {
     body.is_stable = true;
     return body;
   }
-  body.is_stable = contains_strictly(hull, mass, count, measure);
-  const EdgeDistance nearest = nearest_edge(hull, mass, count, measure);
+  body.is_stable = contains_strictly(cubes.hull, cubes.mass, cubes.count, cubes.measure);
+  const EdgeDistance nearest = nearest_edge(cubes.hull, cubes.mass, cubes.count, cubes.measure);
   body.margin_mm = nearest.distance * half_pitch_mm;
-  body.edge = {plan_point(nearest.a), plan_point(nearest.b)};
+  body.edge = {cubes.plan_point(nearest.a), cubes.plan_point(nearest.b)};
   return body;
+}
+
+/// Whether exact_body() decides.
+bool is_exact(const model::Robot& robot) {
+  return robot.lattice() == base::kCubic && robot.is_uniform() && robot.carried().empty() &&
+         (robot.facets().empty() || is_on_flat_floor(robot));
 }
 
 }  // namespace
@@ -170,12 +192,51 @@ bool is_on_flat_floor(const model::Robot& robot) {
 }
 
 RigidBody assess_rigid_body(const model::Robot& robot) {
-  const bool is_exact =
-      robot.lattice() == base::kCubic && robot.is_uniform() && robot.carried().empty();
-  if (is_exact && (robot.facets().empty() || is_on_flat_floor(robot))) {
-    return exact_body(robot);
+  return is_exact(robot) ? exact_body(cubes_of(robot)) : floating_body(body_of(robot));
+}
+
+struct GrowingRigidBody::Exact {
+  Cubes cubes;
+};
+
+struct GrowingRigidBody::Floating {
+  FloatingBody body;
+  base::NodePlaces node_mm;
+  double mass_kg = 0;
+};
+
+GrowingRigidBody::GrowingRigidBody(const model::Robot& robot, double mass_kg) {
+  if (is_exact(robot) && robot.mass(0) == mass_kg) {
+    exact_ = std::make_unique<Exact>(Exact{cubes_of(robot)});
+  } else {
+    floating_ = std::make_unique<Floating>(
+        Floating{.body = body_of(robot),
+                 .node_mm = base::NodePlaces(robot.lattice(), robot.material().pitch_mm),
+                 .mass_kg = mass_kg});
   }
-  return floating_body(robot);
+}
+
+GrowingRigidBody::~GrowingRigidBody() = default;
+
+RigidBody GrowingRigidBody::with(const base::Cell& cell, bool is_on_floor) const {
+  if (floating_) {
+    FloatingBody body = floating_->body;
+    add_module(body, floating_->node_mm(cell), floating_->mass_kg, is_on_floor);
+    return floating_body(body);
+  }
+  Cubes cubes = exact_->cubes;
+  cubes.mass.x.pitches += 2 * std::int64_t{cell.x};
+  cubes.mass.y.pitches += 2 * std::int64_t{cell.y};
+  ++cubes.count;
+  if (is_on_floor) {
+    for (const std::int64_t x : {-1, 1}) {
+      for (const std::int64_t y : {-1, 1}) {
+        cubes.hull.push_back({{2 * std::int64_t{cell.x}, x}, {2 * std::int64_t{cell.y}, y}});
+      }
+    }
+    cubes.hull = convex_hull(std::move(cubes.hull), cubes.measure);
+  }
+  return exact_body(cubes);
 }
 
 }  // namespace holdfast::verdict

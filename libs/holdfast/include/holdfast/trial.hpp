@@ -2,15 +2,24 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <optional>
+#include <ostream>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "holdfast/holdfast.hpp"               // IWYU pragma: export
 #include "holdfast/limit/rigid_stability.hpp"  // IWYU pragma: export
 
 /// The facade's trials: where may the next module go?
+///
+///     const holdfast::NextResult next = holdfast::find_next(structure);
+///     if (next.count(holdfast::verdict::Verdict::kSafe) > 0) { ... next.candidates[0].cell ... }
+///
+/// The same for cells that a program names:
 ///
 ///     const holdfast::model::RobotSpec spec{.existing = cells};
 ///     for (const holdfast::Trial& trial : holdfast::try_cells(spec, holdfast::free_cells(spec))) {
@@ -46,9 +55,47 @@ struct Trial {
   std::optional<double> margin_mm = {};
 };
 
-/// Checks the robot with one more module, at each of the cells in turn. The verdict is that of
-/// check(), the work that of one check for every place where the robot would stand.
+/// Judges the robot with one more module, of kind 0, at each of the cells in turn. The verdict is
+/// that of check(); most take far less than a check (plan/candidates.hpp). Those with a fixed
+/// module take a check each.
 std::vector<Trial> try_cells(const model::RobotSpec& spec, std::span<const base::Cell> cells,
                              Role role = Role::kPlanned, const CheckOptions& options = {});
+
+/// How to look for places, where the defaults do not do.
+struct NextOptions {
+  CheckOptions check = {};
+  /// Called now and then with how many places are judged, of how many.
+  std::function<void(std::size_t done, std::size_t count)> progress = {};
+};
+
+/// Where the next module may go.
+struct NextResult {
+  /// All free cells beside the robot where a module can be, best first: the safe by ascending load
+  /// ratio, then those undecided, overloaded and unstable, these by descending margin.
+  std::vector<Trial> candidates;
+  std::size_t check_count = 0;     ///< So many took a check of their own.
+  double preparation_seconds = 0;  ///< Spent on the robot as it is.
+  double seconds = 0;              ///< In all.
+
+  std::size_t count(verdict::Verdict verdict) const;
+};
+
+/// Judges every free cell beside a structure with its planned modules attached.
+NextResult find_next(const Structure& structure, const NextOptions& options = {});
+
+/// At most so many candidates, the first ones; 0: all.
+struct NextReportOptions {
+  std::size_t count_max = 0;
+};
+
+/// Writes them as JSON, keys as in docs/formats.md, or as a table for people.
+void write_next_json(std::ostream& out, const Structure& structure, const NextResult& result,
+                     const NextReportOptions& options = {});
+std::string next_text(const Structure& structure, const NextResult& result,
+                      const NextReportOptions& options = {});
+
+/// The structure as picture_svg() draws it, with a ghost in every place, in its verdict's colour.
+std::string next_svg(const Structure& structure, const CheckResult& checked,
+                     const NextResult& result, const NextReportOptions& options = {});
 
 }  // namespace holdfast

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <ostream>
 #include <span>
 #include <string>
@@ -21,6 +22,18 @@ namespace holdfast::io {
 /// arrows. Self-contained; `title` is shown and escaped.
 std::string write_svg(const model::Robot& robot, const verdict::Assessment& assessment,
                       std::string_view title, std::span<const model::Obstacle> obstacles = {});
+
+/// A place where a module may go, and what the robot becomes with one there.
+struct Ghost {
+  verdict::Verdict verdict = verdict::Verdict::kUndecided;
+  std::optional<double> load_ratio_max = {};
+};
+
+/// The same picture of a robot with ghosts: its last modules, planned ones, which are not there.
+/// They are glass in the colours of their verdicts. `assessment` is that of the robot without them.
+std::string write_svg_with_ghosts(const model::Robot& robot, std::span<const Ghost> ghosts,
+                                  const verdict::Assessment& assessment, std::string_view title,
+                                  std::span<const model::Obstacle> obstacles = {});
 
 /// Writes a VTK XML unstructured grid (.vtu, compressed binary) for ParaView: one cell per module,
 /// in the shape of its lattice, with load ratio, displacement and ground force, one line per

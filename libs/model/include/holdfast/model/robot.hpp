@@ -221,10 +221,15 @@ class Robot {
 
   /// When a connection breaks: the weaker of its two modules' connectors.
   const ConnectorLaw& connector(const Connection& connection) const {
-    const std::size_t a = modules_[static_cast<std::size_t>(connection.a)].kind;
-    const std::size_t b = modules_[static_cast<std::size_t>(connection.b)].kind;
-    const auto direction = static_cast<std::size_t>(base::index(connection.direction));
-    return connectors_[(a * kinds_.size() + b) * lattice_count() + direction];
+    return connector(modules_[static_cast<std::size_t>(connection.a)].kind,
+                     modules_[static_cast<std::size_t>(connection.b)].kind, connection.direction);
+  }
+
+  /// The same for modules of two kinds, given by index, the second beside the first in `direction`.
+  const ConnectorLaw& connector(std::size_t kind_a, std::size_t kind_b,
+                                base::Direction direction) const {
+    return connectors_[(kind_a * kinds_.size() + kind_b) * lattice_count() +
+                       static_cast<std::size_t>(base::index(direction))];
   }
 
   /// The laws of all connections that there can be.

@@ -24,14 +24,14 @@ struct Move {
 /// and what moves lets go; then detached modules are gone and moved ones on their way; then these
 /// are connected where they arrive, and new modules are attached. See plan/stages.hpp.
 struct Step {
-  std::vector<base::Cell> attach;
-  std::vector<base::Cell> detach;
-  std::vector<Move> moves;
-  std::vector<CellPair> release;
-  std::vector<CellPair> connect;
-  std::vector<OwnKind> own_kinds;   ///< Of attached modules; all others are of kind 0.
-  std::vector<OwnMass> own_masses;  ///< All others weigh what their kind does.
-  std::vector<Payload> payloads;    ///< On attached modules.
+  std::vector<base::Cell> attach = {};
+  std::vector<base::Cell> detach = {};
+  std::vector<Move> moves = {};
+  std::vector<CellPair> release = {};
+  std::vector<CellPair> connect = {};
+  std::vector<OwnKind> own_kinds = {};   ///< Of attached modules; all others are of kind 0.
+  std::vector<OwnMass> own_masses = {};  ///< All others weigh what their kind does.
+  std::vector<Payload> payloads = {};    ///< On attached modules.
 
   friend bool operator==(const Step&, const Step&) = default;
 };

@@ -18,6 +18,8 @@ struct Judgement {
   /// As of verdict::RigidBody: in mm, negative for a robot that topples, none for one that is
   /// held.
   std::optional<double> margin_mm = {};
+  /// `load_ratio_max` is not the largest load ratio, but proved to be no less than that.
+  bool is_bound = false;
 
   bool is_safe() const { return verdict == verdict::Verdict::kSafe; }
 

@@ -7,14 +7,10 @@
 #include <vector>
 
 #include "holdfast/base/algebra.hpp"
+#include "holdfast/solver/block_pattern.hpp"
+#include "holdfast/solver/lanes.hpp"
 
 namespace holdfast::solver {
-
-/// One pair of coupled nodes, each pair once, never a node with itself.
-struct Edge {
-  std::int32_t a = 0;
-  std::int32_t b = 0;
-};
 
 /// Sparse direct solver for matrices of 6x6 blocks: A = (I + L) D (I + U'), D block-diagonal.
 ///
@@ -57,13 +53,32 @@ class BlockLu {
   /// after another; reads the factors once.
   void solve_each(std::span<std::vector<base::Vec6<double>>> columns) const;
 
+  std::size_t node_count() const { return position_.size(); }
+
+  /// Where a node stands in the order of elimination.
+  std::size_t place(std::size_t node) const { return static_cast<std::size_t>(position_[node]); }
+
+  /// Solves A x = b in place for kLaneCount b, by place; to the same bits as one after another.
+  void solve_lanes(std::span<LaneBlock> y) const;
+
+  /// The forward substitution of six right-hand sides, the unit vectors of one node: (I + L)^-1,
+  /// where it is not zero, on the node's way up the elimination tree.
+  void forward(std::size_t node, std::vector<std::int32_t>& places,
+               std::vector<base::Mat6<double>>& blocks) const;
+
+  /// Of a symmetric A = (I + L) D (I + L'): the block of A^-1 for two nodes, a' D^-1 b of what
+  /// forward() makes of each.
+  base::Mat6<double> symmetric_product(std::span<const std::int32_t> places_a,
+                                       std::span<const base::Mat6<double>> a,
+                                       std::span<const std::int32_t> places_b,
+                                       std::span<const base::Mat6<double>> b) const;
+
  private:
   struct Entry {
     std::int32_t column = 0;
     std::size_t slot = 0;  ///< Position of this row in the column's list.
   };
 
-  void analyse(std::size_t block_count_max);
   void make_row_lists();
   void allocate();
   void make_column(std::size_t column);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -47,5 +48,26 @@ bool is_on_flat_floor(const model::Robot& robot);
 /// For a robot that is_on_flat_floor() all of it; for any other only the centre of mass, no polygon
 /// and no margin, and `is_stable` if something holds it fast.
 RigidBody assess_rigid_body(const model::Robot& robot);
+
+/// What assess_rigid_body() says of a robot with one more module, again and again, without looking
+/// at the robot again: to the same digits if its mass is exact, else but for rounding. For robots
+/// without facets or on a flat floor.
+class GrowingRigidBody {
+ public:
+  /// The new module weighs `mass_kg`.
+  GrowingRigidBody(const model::Robot& robot, double mass_kg);
+  ~GrowingRigidBody();
+
+  /// With a module in a cell, which rests on the floor with its lower side or does not.
+  RigidBody with(const base::Cell& cell, bool is_on_floor) const;
+
+ private:
+  struct Exact;
+  struct Floating;
+
+  // One of the two.
+  std::unique_ptr<const Exact> exact_;
+  std::unique_ptr<const Floating> floating_;
+};
 
 }  // namespace holdfast::verdict

@@ -1,0 +1,116 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <memory>
+
+#include "commands.hpp"
+#include "file_clash.hpp"
+#include "holdfast/trial.hpp"
+#include "progress.hpp"
+
+namespace holdfast::cli {
+namespace {
+
+using verdict::Verdict;
+
+struct Options {
+  io::ReadOptions reading;
+  std::string file;
+  std::string json;
+  std::string svg;
+  NextReportOptions report;
+  bool is_quiet = false;
+  bool is_bonded = false;
+  int thread_count = 0;
+  double memory_gb = 4;
+};
+
+int exit_code_of(const NextResult& result) {
+  if (result.count(Verdict::kSafe) > 0) {
+    return kExitSafe;
+  }
+  return result.count(Verdict::kUndecided) > 0 ? kExitUndecided : kExitUnsafe;
+}
+
+bool write_files(const Options& options, const Structure& structure, const NextResult& result,
+                 const CheckOptions& check_options) {
+  bool is_written = true;
+  if (!options.json.empty()) {
+    is_written = write_or_complain(options.json, [&](std::ostream& out) {
+      write_next_json(out, structure, result, options.report);
+    });
+  }
+  if (!options.svg.empty()) {
+    const std::string picture =
+        next_svg(structure, check(structure, check_options), result, options.report);
+    is_written = write_or_complain(options.svg, picture) && is_written;
+  }
+  return is_written;
+}
+
+int run(const Options& options) {
+  if (complain_of_clash({&options.file, 1}, {{"--json", options.json}, {"--svg", options.svg}})) {
+    return kExitUsage;
+  }
+  const auto structure = load_with_notes(options.file, options.reading, options.thread_count);
+  if (!structure) {
+    return fail(structure.error(), options.file);
+  }
+  Progress progress(options.is_quiet);
+  const CheckOptions check_options = {
+      .is_bonded = options.is_bonded,
+      .thread_count = options.thread_count,
+      .memory_bytes_max = static_cast<std::size_t>(options.memory_gb * 1073741824.0)};
+  const NextResult result =
+      find_next(structure.value(),
+                {.check = check_options, .progress = [&](std::size_t done, std::size_t count) {
+                   progress.show([&] {
+                     return fmt::format("{}: {} of {} places judged", io::one_line(options.file),
+                                        done, count);
+                   });
+                 }});
+  if (!options.is_quiet && options.json != "-" && options.svg != "-") {
+    fmt::print("{}", next_text(structure.value(), result, options.report));
+  }
+  if (!write_files(options, structure.value(), result, check_options)) {
+    return kExitBadInput;
+  }
+  return exit_code_of(result);
+}
+
+}  // namespace
+
+Command add_next(CLI::App& app) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command =
+      app.add_subcommand("next", "Say where the next module may go: every free cell, judged");
+  add_required(*command, "FILE", options->file,
+               "Structure, VisibleSim XML or holdfast JSON; - is standard input");
+  add_reading(*command, options->reading);
+  command->add_option("--json", options->json, "Write the places as JSON; - is standard output")
+      ->type_name("FILE");
+  command->add_option("--svg", options->svg, "Draw the structure and a ghost in every place")
+      ->type_name("FILE");
+  command
+      ->add_option("--limit", options->report.count_max,
+                   "List the best N places only; 0: all of them")
+      ->type_name("N")
+      ->check(CLI::Range(0, 1'000'000'000))
+      ->capture_default_str();
+  command->add_flag("--quiet", options->is_quiet, "Print errors only; the exit code is the answer");
+  command->add_flag("--bonded", options->is_bonded,
+                    "Let the ground hold like a module below would: no lifting, no tilting");
+  command->add_option("--threads", options->thread_count, "0: all cores")->check(CLI::Range(0, 64));
+  command->add_option("--memory", options->memory_gb, "Most memory for the solver, GB")
+      ->check(CLI::Range(0.01, 1024.0))
+      ->capture_default_str();
+  command->footer(
+      "Places are listed best first: the safe by ascending load ratio, then undecided, overload\n"
+      "and unstable ones. Verdicts are those of holdfast check with a planned module there.\n"
+      "Exit: 0 a place is safe, 1 none is, 2 none is known to be, as some are undecided, 64 wrong\n"
+      "usage, 65 bad input or not writable, 70 out of memory.");
+  return {command, [options] { return run(*options); }};
+}
+
+}  // namespace holdfast::cli

@@ -1,0 +1,109 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "holdfast/trial.hpp"
+
+namespace holdfast {
+namespace {
+
+using verdict::Verdict;
+
+std::span<const Trial> listed(const NextResult& result, const NextReportOptions& options) {
+  const std::span<const Trial> all = result.candidates;
+  return options.count_max == 0 ? all : all.first(std::min(all.size(), options.count_max));
+}
+
+void write_candidate(io::JsonStream& json, const Trial& trial) {
+  json.begin_object();
+  json.key("cell");
+  json.begin_array();
+  for (const std::int32_t coordinate : {trial.cell.x, trial.cell.y, trial.cell.z}) {
+    json.value(coordinate);
+  }
+  json.end_array();
+  json.member("verdict", verdict::name(trial.verdict));
+  json.member("load_ratio_max", trial.load_ratio_max);
+  json.member("margin_mm", trial.margin_mm);
+  json.end_object();
+}
+
+}  // namespace
+
+void write_next_json(std::ostream& out, const Structure& structure, const NextResult& result,
+                     const NextReportOptions& options) {
+  std::string text;
+  io::JsonStream json(text);
+  json.begin_object();
+  json.member("name", std::string_view(structure.name));
+  json.member("modules", structure.robot.modules().size());
+  json.key("counts");
+  json.begin_object();
+  for (const Verdict verdict :
+       {Verdict::kSafe, Verdict::kUndecided, Verdict::kOverload, Verdict::kUnstable}) {
+    json.member(verdict::name(verdict), result.count(verdict));
+  }
+  json.end_object();
+  json.key("candidates");
+  json.begin_array();
+  for (const Trial& trial : listed(result, options)) {
+    write_candidate(json, trial);
+    out << text;
+    text.clear();
+  }
+  json.end_array();
+  json.member("checks", result.check_count);
+  json.member("preparation_seconds", result.preparation_seconds);
+  json.member("seconds", result.seconds);
+  json.end_object();
+  out << text << "\n";
+}
+
+std::string next_text(const Structure& structure, const NextResult& result,
+                      const NextReportOptions& options) {
+  std::string text = fmt::format(
+      "{}: {} modules, {} places for the next: {} safe, {} undecided, {} overload, {} unstable\n",
+      io::one_line(structure.name), structure.robot.modules().size(), result.candidates.size(),
+      result.count(Verdict::kSafe), result.count(Verdict::kUndecided),
+      result.count(Verdict::kOverload), result.count(Verdict::kUnstable));
+  const auto list = listed(result, options);
+  if (!list.empty()) {
+    text += fmt::format("  {:<10} {:>10} {:>12}  {}\n", "verdict", "load ratio", "margin", "cell");
+  }
+  for (const Trial& trial : list) {
+    const std::string ratio =
+        trial.load_ratio_max ? io::beside_one(*trial.load_ratio_max, 4) : std::string("-");
+    const std::string margin =
+        trial.margin_mm ? fmt::format("{:.2f} mm", *trial.margin_mm) : std::string("-");
+    text += fmt::format("  {:<10} {:>10} {:>12}  {}\n", verdict::name(trial.verdict), ratio, margin,
+                        model::text(trial.cell));
+  }
+  if (list.size() < result.candidates.size()) {
+    text += fmt::format("  ... and {} more\n", result.candidates.size() - list.size());
+  }
+  return text;
+}
+
+std::string next_svg(const Structure& structure, const CheckResult& checked,
+                     const NextResult& result, const NextReportOptions& options) {
+  const auto spec = io::make_spec(structure.document);
+  if (!spec) {
+    return picture_svg(structure, checked);
+  }
+  model::RobotSpec grown = spec.value();
+  std::vector<io::Ghost> ghosts;
+  for (const Trial& trial : listed(result, options)) {
+    grown.planned.push_back(trial.cell);
+    ghosts.push_back({.verdict = trial.verdict, .load_ratio_max = trial.load_ratio_max});
+  }
+  const auto robot = model::Robot::create(grown);
+  if (!robot) {
+    return picture_svg(structure, checked);  // Each of them can be there, but not all together.
+  }
+  return io::write_svg_with_ghosts(robot.value(), ghosts, checked.assessment, structure.name,
+                                   structure.document.extension.obstacles);
+}
+
+}  // namespace holdfast

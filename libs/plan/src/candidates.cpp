@@ -1,0 +1,133 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#include "holdfast/plan/candidates.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <iterator>
+#include <optional>
+#include <tuple>
+
+#include "candidate_judge.hpp"
+
+namespace holdfast::plan {
+namespace {
+
+using verdict::Verdict;
+
+class Stopwatch {
+ public:
+  double seconds() const {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+  }
+
+ private:
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+/// So many are judged between two calls of the progress.
+constexpr std::size_t kStride = 1024;
+
+/// By a check of the grown robot.
+Candidate check_candidate(model::RobotSpec spec, const base::Cell& cell,
+                          const CandidateOptions& options) {
+  (options.is_planned ? spec.planned : spec.existing).push_back(cell);
+  Candidate candidate{.cell = cell};
+  const auto robot = model::Robot::create(spec, options.equilibrium.thread_count);
+  if (robot) {
+    candidate.is_robot = true;
+    candidate.judgement = judge(robot.value(), options.equilibrium);
+  }
+  return candidate;
+}
+
+int rank_of(Verdict verdict) {
+  switch (verdict) {
+    case Verdict::kSafe:
+      return 0;
+    case Verdict::kUndecided:
+      return 1;
+    case Verdict::kOverload:
+      return 2;
+    case Verdict::kUnstable:
+      break;
+  }
+  return 3;
+}
+
+/// What is compared, to nine digits behind the point: mirror images differ in rounding.
+double rounded(std::optional<double> value, double otherwise) {
+  constexpr double kDigits = 1e9;
+  return std::round(value.value_or(otherwise) * kDigits) / kDigits;
+}
+
+auto key_of(const Candidate& candidate) {
+  const Judgement& judgement = candidate.judgement;
+  return std::tuple(rank_of(judgement.verdict), rounded(judgement.load_ratio_max, 0),
+                    -rounded(judgement.margin_mm, 0), candidate.cell);
+}
+
+}  // namespace
+
+std::vector<base::Cell> free_cells(const model::RobotSpec& spec) {
+  std::vector<base::Cell> taken = spec.existing;
+  taken.insert(taken.end(), spec.planned.begin(), spec.planned.end());
+  std::ranges::sort(taken);
+  std::vector<base::Cell> beside;
+  for (const base::Cell& cell : taken) {
+    for (const base::Direction direction : base::directions(spec.lattice)) {
+      beside.push_back(base::neighbour(spec.lattice, cell, direction));
+    }
+  }
+  std::ranges::sort(beside);
+  beside.erase(std::unique(beside.begin(), beside.end()), beside.end());
+  std::vector<base::Cell> free;
+  std::set_difference(beside.begin(), beside.end(), taken.begin(), taken.end(),
+                      std::back_inserter(free));
+  const model::ObstacleIndex obstacles(spec.obstacles);
+  std::erase_if(free, [&](const base::Cell& cell) {
+    return obstacles.find(cell) != model::CellIndex::kNone;
+  });
+  return free;
+}
+
+CandidateReport judge_candidates(const model::RobotSpec& spec, std::span<const base::Cell> cells,
+                                 const CandidateOptions& options) {
+  const Stopwatch watch;
+  CandidateReport report;
+  const auto tell = [&](std::size_t done) {
+    if (options.progress) {
+      options.progress(done, cells.size());
+    }
+  };
+  std::vector<std::optional<Candidate>> judged(cells.size());
+  if (!options.is_by_checks) {
+    if (const auto judge = CandidateJudge::make(spec, options)) {
+      report.preparation_seconds = watch.seconds();
+      for (std::size_t first = 0; first < cells.size(); first += kStride) {
+        const std::size_t count = std::min(kStride, cells.size() - first);
+        judge->judge(cells.subspan(first, count), std::span(judged).subspan(first, count));
+        tell(first + count);
+      }
+    }
+  }
+  const auto known = static_cast<std::size_t>(std::ranges::count_if(
+      judged, [](const std::optional<Candidate>& candidate) { return candidate.has_value(); }));
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    if (!judged[i]) {
+      judged[i] = check_candidate(spec, cells[i], options);
+      tell(known + ++report.check_count);
+    }
+    report.candidates.push_back(*judged[i]);
+  }
+  report.seconds = watch.seconds();
+  return report;
+}
+
+void sort_candidates(std::vector<Candidate>& candidates) {
+  std::erase_if(candidates, [](const Candidate& candidate) { return !candidate.is_robot; });
+  std::ranges::sort(candidates, {}, key_of);
+}
+
+}  // namespace holdfast::plan

@@ -1,0 +1,457 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#include "grown_contact.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "dense.hpp"
+#include "holdfast/verdict/rigid_body.hpp"
+
+namespace holdfast::plan {
+namespace {
+
+using base::Mat6;
+using base::Vec6;
+using mechanics::ContactState;
+using solver::FacetState;
+
+/// Steps of Newton's path, as many as the solver's.
+constexpr std::size_t kStepCountMax = 100;
+
+/// Trial forces nearer than this share to another state may be looked up otherwise by a check,
+/// which rounds otherwise.
+constexpr double kStateShare = 1e-8;
+constexpr double kStateRounding = 1e-12;
+
+/// By which a facet's sideways force may be off where only its size decides.
+constexpr double kForceShare = 1e-6;
+
+void add_scaled(Vec6<double>& sum, double factor, const Vec6<double>& term) {
+  for (std::size_t k = 0; k < 6; ++k) {
+    sum[k] += factor * term[k];
+  }
+}
+
+Vec6<double> scaled(const Vec6<double>& a, const Vec6<double>& b) {
+  Vec6<double> product{};
+  for (std::size_t k = 0; k < 6; ++k) {
+    product[k] = a[k] * b[k];
+  }
+  return product;
+}
+
+}  // namespace
+
+/// The unknowns are t of every host, if the new node is more than a load, and the forces a on the
+/// rows of facets that yield; the outputs are what these depend on, the hosts' displacements y and
+/// the yielding facets' motions w, both linear in the unknowns s:
+///   outputs = known + G s,   t = q - C y,   a = -(corrector - 1) H w.
+class GrownContact::System {
+ public:
+  System(const GrownContact& contact, const Site& site, const NewNode& node, ReachCache& reaches,
+         const FacetInfluence* facets, const States& states)
+      : contact_(contact), site_(site), node_(node), facets_(facets) {
+    for (std::size_t i = 0; facets != nullptr && i < contact.influence_.facets().size(); ++i) {
+      if (states[i] != ContactState{}) {
+        add_facet(i, states[i]);
+      }
+    }
+    if (node.is_load()) {
+      known_.push_back({.module = site.links.front().host, .load = node.load(0)});
+    } else {
+      take_hosts(reaches);
+    }
+  }
+
+  /// False if it is singular.
+  [[nodiscard]] bool solve() {
+    const std::size_t size = host_unknowns() + rows_.size();
+    values_.assign(size, 0);
+    if (size == 0) {
+      return true;
+    }
+    DenseSystem system(size);
+    for (std::size_t column = 0; column < size; ++column) {
+      const std::vector<double> image = unknowns_of(outputs_of(column));
+      for (std::size_t row = 0; row < size; ++row) {
+        system.at(row, column) = (row == column ? 1 : 0) - image[row];
+      }
+    }
+    std::vector<double> right = unknowns_of(known_outputs());
+    for (std::size_t i = 0; i < host_unknowns(); ++i) {
+      right[i] += node_.load(i / 6)[i % 6];
+    }
+    if (!system.factor()) {
+      return false;
+    }
+    system.solve(right);
+    values_ = std::move(right);
+    return true;
+  }
+
+  Step step() const {
+    Step step;
+    for (std::size_t h = 0; h < site_.links.size(); ++h) {
+      Vec load = node_.load(h);
+      for (std::size_t k = 0; !node_.is_load() && k < 6; ++k) {
+        load[k] = values_[6 * h + k];
+      }
+      step.host_loads.push_back(load);
+    }
+    for (std::size_t r = 0; r < rows_.size(); ++r) {
+      const auto [place, component] = rows_[r];
+      const std::size_t facet = yielding_[place].facet;
+      PointLoad load{.module = contact_.influence_.facets()[facet].module};
+      add_scaled(load.load, values_[host_unknowns() + r], facets_->row(facet, component));
+      step.facet_loads.push_back(load);
+    }
+    if (facets_ != nullptr) {
+      take_motions(step);
+    }
+    return step;
+  }
+
+ private:
+  struct Yielding {
+    std::size_t facet = 0;
+    Mat6<double> matrix;  ///< (corrector - 1) H
+  };
+
+  struct Row {
+    std::size_t place = 0;  ///< Among those that yield.
+    std::size_t component = 0;
+  };
+
+  /// By host, then by yielding facet.
+  using Outputs = std::vector<Vec>;
+
+  std::size_t host_unknowns() const { return node_.is_load() ? 0 : 6 * site_.links.size(); }
+
+  std::size_t host_outputs() const { return host_unknowns() / 6; }
+
+  void add_facet(std::size_t facet, const ContactState& state) {
+    const auto& ground = contact_.influence_.law().ground();
+    Yielding yielding{.facet = facet, .matrix = mechanics::corrector(ground, state, true)};
+    for (int row = 0; row < 6; ++row) {
+      yielding.matrix.at(row, row) -= 1;
+      bool is_changed = false;
+      for (int column = 0; column < 6; ++column) {
+        yielding.matrix.at(row, column) *= ground.stiffness[static_cast<std::size_t>(column)];
+        is_changed = is_changed || yielding.matrix.at(row, column) != 0;
+      }
+      if (is_changed) {
+        rows_.push_back({.place = yielding_.size(), .component = static_cast<std::size_t>(row)});
+      }
+    }
+    yielding_.push_back(yielding);
+  }
+
+  void take_hosts(ReachCache& reaches) {
+    const std::size_t count = site_.links.size();
+    std::vector<const solver::Influence::Reach*> host_reaches;
+    for (const Link& link : site_.links) {
+      auto found = reaches.find(link.host);
+      if (found == reaches.end()) {
+        found = reaches.emplace(link.host, contact_.influence_.reach(link.host)).first;
+      }
+      host_reaches.push_back(&found->second);
+    }
+    between_hosts_.resize(count * count);
+    stiffness_.resize(count * count);
+    for (std::size_t i = 0; i < count; ++i) {
+      for (std::size_t j = 0; j < count; ++j) {
+        between_hosts_[i * count + j] =
+            contact_.influence_.between(*host_reaches[i], *host_reaches[j]);
+        stiffness_[i * count + j] = node_.stiffness(i, j);
+      }
+    }
+  }
+
+  /// Outputs without any unknown force.
+  Outputs known_outputs() const {
+    const auto& displacement = contact_.influence_.displacement();
+    Outputs outputs;
+    for (std::size_t h = 0; h < host_outputs(); ++h) {
+      outputs.push_back(displacement[site_.links[h].host]);
+    }
+    for (const Yielding& yielding : yielding_) {
+      outputs.push_back(known_motion(yielding.facet));
+    }
+    return outputs;
+  }
+
+  /// w of a facet without any unknown force.
+  Vec known_motion(std::size_t facet) const {
+    const std::size_t module = contact_.influence_.facets()[facet].module;
+    Vec w = facets_->motion(facet, contact_.influence_.displacement()[module]);
+    for (const PointLoad& known : known_) {
+      add_host_load(w, facet, known.module, known.load);
+    }
+    return w;
+  }
+
+  void add_host_load(Vec& w, std::size_t facet, std::size_t host, const Vec& load) const {
+    for (std::size_t i = 0; i < 6; ++i) {
+      w[i] += base::dot(facets_->displacement(host, facet, i), load);
+    }
+  }
+
+  /// Outputs of one unit of one unknown.
+  Outputs outputs_of(std::size_t unknown) const {
+    Outputs outputs(host_outputs() + yielding_.size());
+    if (unknown < host_unknowns()) {
+      const std::size_t host = unknown / 6;
+      const Vec unit = base::unit<double>(static_cast<int>(unknown % 6));
+      for (std::size_t h = 0; h < host_outputs(); ++h) {
+        outputs[h] = base::multiply(between_hosts_[h * host_outputs() + host], unit);
+      }
+      for (std::size_t i = 0; i < yielding_.size(); ++i) {
+        add_host_load(outputs[host_outputs() + i], yielding_[i].facet, site_.links[host].host,
+                      unit);
+      }
+      return outputs;
+    }
+    const auto [place, component] = rows_[unknown - host_unknowns()];
+    const std::size_t facet = yielding_[place].facet;
+    for (std::size_t h = 0; h < host_outputs(); ++h) {
+      outputs[h] = facets_->displacement(site_.links[h].host, facet, component);
+    }
+    for (std::size_t i = 0; i < yielding_.size(); ++i) {
+      outputs[host_outputs() + i] = base::multiply(facets_->between(yielding_[i].facet, facet),
+                                                   base::unit<double>(static_cast<int>(component)));
+    }
+    return outputs;
+  }
+
+  /// -C y and -(corrector - 1) H w.
+  std::vector<double> unknowns_of(const Outputs& outputs) const {
+    std::vector<double> unknowns(host_unknowns() + rows_.size());
+    for (std::size_t i = 0; i < host_outputs(); ++i) {
+      for (std::size_t j = 0; j < host_outputs(); ++j) {
+        const Vec force = base::multiply(stiffness_[i * host_outputs() + j], outputs[j]);
+        for (std::size_t k = 0; k < 6; ++k) {
+          unknowns[6 * i + k] -= force[k];
+        }
+      }
+    }
+    for (std::size_t r = 0; r < rows_.size(); ++r) {
+      const auto [place, component] = rows_[r];
+      const Vec& w = outputs[host_outputs() + place];
+      for (int k = 0; k < 6; ++k) {
+        unknowns[host_unknowns() + r] -=
+            yielding_[place].matrix.at(static_cast<int>(component), k) *
+            w[static_cast<std::size_t>(k)];
+      }
+    }
+    return unknowns;
+  }
+
+  void take_motions(Step& step) const {
+    for (std::size_t i = 0; i < contact_.influence_.facets().size(); ++i) {
+      Vec w = known_motion(i);
+      for (std::size_t h = 0; h < host_outputs(); ++h) {
+        add_host_load(w, i, site_.links[h].host, step.host_loads[h]);
+      }
+      for (std::size_t r = 0; r < rows_.size(); ++r) {
+        const auto [place, component] = rows_[r];
+        const Mat6<double>& between = facets_->between(i, yielding_[place].facet);
+        for (std::size_t k = 0; k < 6; ++k) {
+          w[k] += between.values[6 * component + k] * values_[host_unknowns() + r];
+        }
+      }
+      step.motions.push_back(w);
+    }
+    if (site_.is_on_floor) {
+      step.motions.push_back(contact_.own_motion(node_.displacement(host_displacements())));
+    }
+  }
+
+  std::vector<Vec> host_displacements() const {
+    Outputs y = known_outputs();
+    y.resize(host_outputs());
+    for (std::size_t i = 0; i < values_.size(); ++i) {
+      const Outputs part = outputs_of(i);
+      for (std::size_t h = 0; h < y.size(); ++h) {
+        add_scaled(y[h], values_[i], part[h]);
+      }
+    }
+    return y;
+  }
+
+  const GrownContact& contact_;
+  const Site& site_;
+  const NewNode& node_;
+  const FacetInfluence* facets_;
+  std::vector<PointLoad> known_;
+  std::vector<Yielding> yielding_;
+  std::vector<Row> rows_;
+  std::vector<Mat6<double>> between_hosts_;
+  std::vector<Mat6<double>> stiffness_;
+  std::vector<double> values_;
+};
+
+GrownContact::GrownContact(const model::Robot& robot, const model::Touch& floor,
+                           const solver::Influence& influence, bool is_bonded)
+    : robot_(robot),
+      influence_(influence),
+      is_bonded_(is_bonded),
+      is_on_flat_floor_(robot.facets().empty() || verdict::is_on_flat_floor(robot)),
+      is_held_(robot.fixed_count() > 0 || robot.has_bonded_facets()),
+      floor_(floor) {
+  const double mass = robot.kinds().front().mass_kg;
+  double total = mass;
+  for (std::size_t i = 0; i < robot.modules().size(); ++i) {
+    total += robot.mass(i);
+  }
+  for (std::size_t k = 0; k < 3; ++k) {
+    load_[k] = mass * robot.gravity()[k];
+    scale_n_ += total * std::abs(robot.gravity()[k]);
+  }
+}
+
+FacetState GrownContact::own_facet(const ContactState& state) const {
+  return {.module = 0,
+          .direction = base::down(robot_.lattice()),
+          .is_bonded = floor_.hold == model::Hold::kBonded,
+          .state = state};
+}
+
+NewNode GrownContact::make_node(const Site& site, const ContactState& own) const {
+  const FacetState facet = own_facet(own);
+  return {influence_, site, load_, site.is_on_floor ? &facet : nullptr};
+}
+
+Vec6<double> GrownContact::own_motion(const Vec& u) const {
+  Vec w = influence_.law().trial_force(own_facet({}), u);
+  for (std::size_t k = 0; k < 6; ++k) {
+    w[k] /= influence_.law().ground().stiffness[k];
+  }
+  return w;
+}
+
+std::optional<GrownContact::Step> GrownContact::solve(const Site& site, const NewNode& node,
+                                                      ReachCache& reaches,
+                                                      const FacetInfluence* facets,
+                                                      const States& states) const {
+  System system(*this, site, node, reaches, facets, states);
+  return system.solve() ? std::optional(system.step()) : std::nullopt;
+}
+
+/// The state for a trial force; none if the next digits could change it.
+std::optional<ContactState> GrownContact::certain_state(const FacetState& facet,
+                                                        const Vec& trial) const {
+  const auto& ground = influence_.law().ground();
+  double force = 0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    force += std::abs(trial[k]) + std::abs(trial[k + 3]) / ground.lever;
+  }
+  const double error = kStateShare * force + kStateRounding * scale_n_;
+  Vec more = trial;
+  Vec less = trial;
+  more[2] -= error;
+  less[2] += error;
+  const ContactState state = influence_.law().state_for(facet, more);
+  return state == influence_.law().state_for(facet, less) ? std::optional(state) : std::nullopt;
+}
+
+std::optional<GrownContact::States> GrownContact::next_states(const Step& step) const {
+  States states;
+  for (std::size_t i = 0; i < step.motions.size(); ++i) {
+    const bool is_own = i == influence_.facets().size();
+    const FacetState facet = is_own ? own_facet({}) : influence_.facets()[i];
+    const auto state =
+        certain_state(facet, scaled(influence_.law().ground().stiffness, step.motions[i]));
+    if (!state) {
+      return std::nullopt;
+    }
+    states.push_back(*state);
+  }
+  return states;
+}
+
+/// Whether a facet in the state of `facet` slips.
+void GrownContact::look_at(const FacetState& facet, std::optional<double> friction,
+                           const Vec& trial, Footing& footing) const {
+  if (!friction || facet.is_bonded || !facet.state.pressed) {
+    return;
+  }
+  const Vec force = base::multiply(
+      mechanics::corrector(influence_.law().ground(), facet.state, facet.is_held), trial);
+  const double sideways = std::hypot(force[0], force[1]);
+  const double allowed = std::abs(force[2]) * *friction;
+  const double doubt = kForceShare * allowed + kStateRounding * scale_n_;
+  footing.is_slipping = footing.is_slipping || sideways > allowed + doubt;
+  footing.is_certain = footing.is_certain && std::abs(sideways - allowed) > doubt;
+}
+
+/// Whether the check would end here as well: it looks for further solutions where a facet that is
+/// not stuck is pulled sideways by more than it presses, for the exact law's answer where open
+/// facets may pull, and at the corners where no facet presses all over.
+Footing GrownContact::footing_of(const States& states, const Step& step) const {
+  Footing footing;
+  bool is_any_stuck = false;
+  for (std::size_t i = 0; i < states.size(); ++i) {
+    const bool is_own = i == influence_.facets().size();
+    FacetState facet = is_own ? own_facet({}) : influence_.facets()[i];
+    facet.state = states[i];
+    const Vec trial = scaled(influence_.law().ground().stiffness, step.motions[i]);
+    const bool is_stuck = states[i] == ContactState{};
+    const bool is_doubtful =
+        !is_stuck && std::hypot(trial[0], trial[1]) > (1 - kForceShare) * std::abs(trial[2]);
+    const bool may_pull = !is_on_flat_floor_ && !states[i].pressed;
+    footing.is_certain = footing.is_certain && !is_doubtful && !may_pull;
+    is_any_stuck = is_any_stuck || is_stuck;
+    look_at(facet, is_own ? floor_.friction : robot_.facets()[i].touch.friction, trial, footing);
+  }
+  const bool is_standing = is_held_ || (is_any_stuck && robot_.foot_half_width_mm() > 0);
+  footing.is_certain = footing.is_certain && is_standing;
+  return footing;
+}
+
+Grown GrownContact::grown(const Site& site, NewNode node, Step step, const Footing& footing) const {
+  std::vector<PointLoad> loads = std::move(step.facet_loads);
+  for (std::size_t h = 0; h < site.links.size(); ++h) {
+    loads.push_back({.module = site.links[h].host, .load = step.host_loads[h]});
+  }
+  return {.loads = std::move(loads), .node = std::move(node), .footing = footing};
+}
+
+std::optional<Grown> GrownContact::stuck(const Site& site, ReachCache& reaches) const {
+  NewNode node = make_node(site, {});
+  auto step = solve(site, node, reaches, nullptr, {});
+  if (!step) {
+    return std::nullopt;
+  }
+  return grown(site, std::move(node), *std::move(step), {});
+}
+
+std::optional<Grown> GrownContact::settle(const Site& site, ReachCache& reaches,
+                                          const FacetInfluence& facets) const {
+  const std::size_t count = influence_.facets().size() + (site.is_on_floor ? 1 : 0);
+  States states(count);
+  std::vector<States> seen;
+  for (std::size_t i = 0; i < kStepCountMax; ++i) {
+    NewNode node = make_node(site, site.is_on_floor ? states.back() : ContactState{});
+    auto step = solve(site, node, reaches, &facets, states);
+    auto next = step ? next_states(*step) : std::nullopt;
+    if (!next) {
+      return std::nullopt;
+    }
+    if (*next == states) {
+      const Footing footing = footing_of(states, *step);
+      Grown result = grown(site, std::move(node), *std::move(step), footing);
+      result.is_settled = true;
+      return result;
+    }
+    if (std::ranges::find(seen, *next) != seen.end()) {
+      return std::nullopt;
+    }
+    seen.push_back(*next);
+    states = *std::move(next);
+  }
+  return std::nullopt;
+}
+
+}  // namespace holdfast::plan

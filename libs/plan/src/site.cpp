@@ -1,0 +1,92 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#include "site.hpp"
+
+#include <algorithm>
+#include <cstdlib>
+
+namespace holdfast::plan {
+namespace {
+
+using base::Cell;
+using model::CellIndex;
+
+model::CellIndex index_of(const model::Robot& robot) {
+  Cell low = robot.modules().front().cell;
+  Cell high = low;
+  for (const model::Module& module : robot.modules()) {
+    low = {std::min(low.x, module.cell.x), std::min(low.y, module.cell.y),
+           std::min(low.z, module.cell.z)};
+    high = {std::max(high.x, module.cell.x), std::max(high.y, module.cell.y),
+            std::max(high.z, module.cell.z)};
+  }
+  CellIndex index(robot.modules().size(), low, high);
+  for (std::size_t i = 0; i < robot.modules().size(); ++i) {
+    index.insert(robot.modules()[i].cell, static_cast<std::int32_t>(i));
+  }
+  return index;
+}
+
+/// Far enough from the lattice's ends that a neighbour's neighbour is inside.
+bool is_well_inside(const Cell& cell) {
+  constexpr std::int32_t kInside = base::kCoordinateMax - 2;
+  return std::max({std::abs(cell.x), std::abs(cell.y), std::abs(cell.z)}) <= kInside;
+}
+
+}  // namespace
+
+SiteFinder::SiteFinder(const model::Robot& robot, const model::RobotSpec& spec)
+    : robot_(robot), spec_(spec), index_(index_of(robot)), obstacles_(spec.obstacles) {}
+
+Site SiteFinder::find(const Cell& cell) const {
+  Site site{.cell = cell};
+  if (!is_well_inside(cell)) {
+    return site;
+  }
+  const base::Lattice& lattice = robot_.lattice();
+  const bool is_taken = index_.find(cell) != CellIndex::kNone ||
+                        (!spec_.obstacles.empty() && obstacles_.find(cell) != CellIndex::kNone);
+  for (const base::Direction direction : base::directions(lattice)) {
+    const std::int32_t host = index_.find(base::neighbour(lattice, cell, direction));
+    if (host != CellIndex::kNone) {
+      site.links.push_back({.host = base::at(host), .direction = base::opposite(direction)});
+    }
+  }
+  if (is_taken || site.links.empty() || is_below_floor(cell)) {
+    site.kind = Site::Kind::kImpossible;
+    return site;
+  }
+  site.is_on_floor = robot_.has_floor() && cell.z == robot_.support_z();
+  site.kind = touches_obstacle(cell) ? Site::Kind::kUnknown : Site::Kind::kOpen;
+  return site;
+}
+
+bool SiteFinder::touches_obstacle(const Cell& cell) const {
+  if (spec_.obstacles.empty()) {
+    return false;
+  }
+  for (const base::Direction direction : base::directions(robot_.lattice())) {
+    if (obstacles_.find(base::neighbour(robot_.lattice(), cell, direction)) != CellIndex::kNone) {
+      return true;
+    }
+  }
+  return false;
+}
+
+/// Whether the cell is right below a module that rests on the floor, or on the floor with a module
+/// right below.
+bool SiteFinder::is_below_floor(const Cell& cell) const {
+  const base::Lattice& lattice = robot_.lattice();
+  const base::Direction down = base::down(lattice);
+  if (!robot_.has_floor() || base::index(down) >= lattice.direction_count) {
+    return false;
+  }
+  const std::int32_t above = index_.find(base::neighbour(lattice, cell, base::opposite(down)));
+  const bool is_below = cell.z == robot_.support_z() - 1 && above != CellIndex::kNone &&
+                        robot_.modules()[base::at(above)].support != model::Support::kFixed;
+  const bool is_above = cell.z == robot_.support_z() &&
+                        index_.find(base::neighbour(lattice, cell, down)) != CellIndex::kNone;
+  return is_below || is_above;
+}
+
+}  // namespace holdfast::plan

@@ -1,0 +1,231 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// Every candidate against a check of the grown robot, which is the second method: random robots of
+// all lattices on floors and with fixed modules, towers and frames near their limit, large ones
+// that the checks solve by multigrid. Where checks iterate they are good for 1e-4 of the largest
+// load ratio or of 1 (docs/solver.md); small ones are direct, so 1e-6 is rounding's room.
+#include "holdfast/plan/candidates.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "general_robot.hpp"
+#include "hard_robot.hpp"
+#include "holdfast/model/families.hpp"
+#include "random_robot.hpp"
+#include "standing_robot.hpp"
+
+namespace holdfast::plan {
+namespace {
+
+using base::Cell;
+using model::RobotSpec;
+using verdict::Verdict;
+
+struct Compared {
+  std::size_t count = 0;
+  std::size_t check_count = 0;
+  std::size_t verdict_count[4] = {};
+};
+
+void expect_same(const Candidate& fast, const Candidate& full, double tolerance,
+                 const std::string& what) {
+  ASSERT_EQ(fast.is_robot, full.is_robot) << what;
+  if (!full.is_robot) {
+    return;
+  }
+  const Judgement& a = fast.judgement;
+  const Judgement& b = full.judgement;
+  EXPECT_EQ(a.verdict, b.verdict) << what << a.load_ratio_max.value_or(-9) << " "
+                                  << b.load_ratio_max.value_or(-9);
+  ASSERT_EQ(a.margin_mm.has_value(), b.margin_mm.has_value()) << what;
+  EXPECT_NEAR(a.margin_mm.value_or(0), b.margin_mm.value_or(0), 1e-9) << what;
+  ASSERT_EQ(a.load_ratio_max.has_value(), b.load_ratio_max.has_value()) << what;
+  if (b.load_ratio_max) {
+    const double scale = std::max(1.0, std::abs(*b.load_ratio_max));
+    EXPECT_NEAR(*a.load_ratio_max, *b.load_ratio_max, tolerance * scale) << what;
+  }
+}
+
+/// Of all candidates, or every so many of them.
+Compared compare(const RobotSpec& spec, const std::string& name, std::size_t stride = 1,
+                 CandidateOptions options = {}) {
+  std::vector<Cell> cells;
+  const std::vector<Cell> all = free_cells(spec);
+  for (std::size_t i = 0; i < all.size(); i += stride) {
+    cells.push_back(all[i]);
+  }
+  const CandidateReport fast = judge_candidates(spec, cells, options);
+  options.is_by_checks = true;
+  const CandidateReport full = judge_candidates(spec, cells, options);
+  const bool is_iterated = spec.existing.size() + spec.planned.size() >= 128;
+  Compared compared{.count = cells.size(), .check_count = fast.check_count};
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    EXPECT_EQ(fast.candidates[i].cell, cells[i]);
+    expect_same(fast.candidates[i], full.candidates[i], is_iterated ? 1e-4 : 1e-7,
+                name + " at " + model::text(cells[i]) + ": ");
+    const Candidate& candidate = full.candidates[i];
+    if (candidate.is_robot) {
+      ++compared.verdict_count[static_cast<std::size_t>(candidate.judgement.verdict)];
+    }
+  }
+  return compared;
+}
+
+void add(Compared& sum, const Compared& more) {
+  sum.count += more.count;
+  sum.check_count += more.check_count;
+  for (std::size_t i = 0; i < 4; ++i) {
+    sum.verdict_count[i] += more.verdict_count[i];
+  }
+}
+
+TEST(Candidates, of_random_cubes_on_a_floor_are_judged_as_checks_judge_them) {
+  Compared sum;
+  for (std::uint64_t seed = 0; seed < 120; ++seed) {
+    add(sum, compare(test::random_robot(seed), "random_robot " + std::to_string(seed)));
+  }
+  EXPECT_GT(sum.verdict_count[0], sum.count / 8);
+  EXPECT_GT(sum.verdict_count[1], 0U);
+  EXPECT_GT(sum.verdict_count[2], 0U);
+  EXPECT_LT(sum.check_count, sum.count / 10);
+}
+
+TEST(Candidates, are_judged_so_in_every_lattice_with_supports_and_loads_of_every_kind) {
+  for (const base::Lattice& lattice : test::kLattices) {
+    for (std::uint64_t seed = 0; seed < 20; ++seed) {
+      compare(test::general_robot(lattice, seed), "general_robot " + std::to_string(seed));
+      compare(test::hard_robot(lattice, seed), "hard_robot " + std::to_string(seed));
+    }
+  }
+}
+
+/// Frees a general robot of all supports and stands it on a floor in its lowest layer.
+RobotSpec on_floor(RobotSpec spec) {
+  spec.obstacles.clear();
+  spec.payloads.clear();
+  spec.gravity_m_s2 = {};
+  spec.fixed.clear();
+  spec.support_z = std::ranges::min(spec.existing, {}, &Cell::z).z;
+  return spec;
+}
+
+TEST(Candidates, on_the_floor_of_every_lattice_seldom_need_a_check) {
+  for (const base::Lattice& lattice : test::kLattices) {
+    Compared sum;
+    for (std::uint64_t seed = 0; seed < 30; ++seed) {
+      add(sum,
+          compare(on_floor(test::general_robot(lattice, seed)), "floor " + std::to_string(seed)));
+    }
+    EXPECT_GT(sum.verdict_count[0], 0U);
+    EXPECT_LT(sum.check_count, sum.count / 3);
+  }
+}
+
+TEST(Candidates, of_robots_on_feet_follow_the_contact_states_of_the_check) {
+  Compared sum;
+  for (std::uint64_t seed = 0; seed < 12; ++seed) {
+    add(sum, compare(test::standing_robot(seed), "standing_robot " + std::to_string(seed), 7));
+  }
+  EXPECT_LT(sum.check_count, sum.count / 2);
+}
+
+/// A family whose strength is such that its candidates lie on both sides of the limit.
+RobotSpec near_limit(model::Family family, std::size_t size) {
+  RobotSpec spec{.existing = model::family_cells(family, size)};
+  const verdict::Assessment assessment =
+      verdict::assess(model::Robot::create(spec).value(), {.method = solver::Method::kDirect});
+  const double factor = *assessment.load_ratio_max / 0.98;
+  spec.material.strength_vertical_n *= factor;
+  spec.material.strength_lateral_n *= factor;
+  return spec;
+}
+
+TEST(Candidates, of_robots_near_their_limit_fall_on_both_sides_of_it) {
+  const Compared portal = compare(near_limit(model::Family::kPortal, 14), "portal", 5);
+  const Compared arm = compare(near_limit(model::Family::kArm, 9), "arm");
+  const Compared bridge = compare(near_limit(model::Family::kBridge, 11), "bridge", 11);
+  for (const Compared& each : {portal, arm, bridge}) {
+    EXPECT_GT(each.verdict_count[0], 0U);
+    EXPECT_GT(each.verdict_count[1] + each.verdict_count[2], 0U);
+  }
+}
+
+TEST(Candidates, of_robots_bonded_to_the_ground_need_no_stability) {
+  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+    compare(test::random_robot(seed), "bonded " + std::to_string(seed), 1,
+            {.equilibrium = {.is_bonded = true}});
+  }
+}
+
+TEST(Candidates, of_other_kinds_of_modules_and_connectors) {
+  for (std::uint64_t seed = 0; seed < 12; ++seed) {
+    RobotSpec spec = test::random_robot(seed);
+    spec.floor.friction = 0.3;
+    model::ModuleKind light = model::default_kind(spec.material, spec.lattice);
+    model::ModuleKind heavy = light;
+    light.mass_kg /= 2;
+    heavy.mass_kg *= 3;
+    for (model::ConnectorLaw& law : heavy.connectors) {
+      law.strength_n *= 2;
+      law.shear_strength_n = 3;
+      law.friction = 0.4;
+      law.torsion_radius_mm = 12;
+    }
+    spec.kinds = {light, heavy};
+    spec.own_kinds = {{.cell = spec.existing.front(), .kind = 1},
+                      {.cell = spec.existing.back(), .kind = 1}};
+    compare(spec, "kinds " + std::to_string(seed));
+  }
+}
+
+TEST(Candidates, have_the_same_bits_for_any_number_of_threads) {
+  const RobotSpec spec{.existing = model::family_cells(model::Family::kTower, 40)};
+  const std::vector<Cell> cells = free_cells(spec);
+  ASSERT_GT(cells.size(), 450U);
+  const CandidateReport one = judge_candidates(spec, cells, {.equilibrium = {.thread_count = 1}});
+  const CandidateReport four = judge_candidates(spec, cells, {.equilibrium = {.thread_count = 4}});
+  EXPECT_EQ(one.check_count, 0U);
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    EXPECT_EQ(one.candidates[i].judgement, four.candidates[i].judgement);
+  }
+}
+
+TEST(Candidates, of_a_turned_robot_are_the_turned_ones) {
+  const RobotSpec spec = test::standing_robot(5);
+  const std::vector<Cell> cells = free_cells(spec);
+  const CandidateReport report = judge_candidates(spec, cells);
+  for (int turn = 1; turn < test::kTurnCount; turn += 3) {
+    std::vector<Cell> images = cells;
+    for (Cell& cell : images) {
+      cell = test::turned(cell, turn);
+    }
+    const CandidateReport turned = judge_candidates(test::turned(spec, turn, 1), images);
+    for (std::size_t i = 0; i < cells.size(); ++i) {
+      expect_same(turned.candidates[i], report.candidates[i], 1e-4, model::text(cells[i]));
+    }
+  }
+}
+
+TEST(Candidates, are_sorted_safe_first_and_by_load_ratio) {
+  const RobotSpec spec{.existing = model::family_cells(model::Family::kArm, 9)};
+  CandidateReport report = judge_candidates(spec, free_cells(spec));
+  sort_candidates(report.candidates);
+  ASSERT_FALSE(report.candidates.empty());
+  double last = -1e9;
+  for (const Candidate& candidate : report.candidates) {
+    ASSERT_TRUE(candidate.is_robot);
+    if (candidate.judgement.is_safe()) {
+      EXPECT_GE(*candidate.judgement.load_ratio_max, last - 1e-8);
+      last = *candidate.judgement.load_ratio_max;
+    } else {
+      last = 1e9;  // No safe one comes behind another.
+    }
+  }
+}
+
+}  // namespace
+}  // namespace holdfast::plan

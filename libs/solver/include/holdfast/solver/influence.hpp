@@ -1,0 +1,75 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "holdfast/base/algebra.hpp"
+#include "holdfast/model/robot.hpp"
+#include "holdfast/solver/lanes.hpp"
+#include "holdfast/solver/linear_system.hpp"
+#include "holdfast/solver/options.hpp"
+
+/// What loads on single modules do to a robot, for who asks very often: K of the robot with all its
+/// facets stuck, factorized once. That K is symmetric. What differs from it (facets in other
+/// states, more beams) is a change of low rank, for which K^-1 between a few modules suffices.
+namespace holdfast::solver {
+
+class DirectSystem;
+
+/// Keeps a reference to the robot. Its const members may be called by several threads at once.
+class Influence {
+ public:
+  using Vec = base::Vec6<double>;
+
+  /// Part of K^-1 for a unit of force or torque on each component of one module: the forward half
+  /// of the solution, where it is not zero.
+  struct Reach {
+    std::vector<std::int32_t> places;  ///< In the order of elimination, ascending.
+    std::vector<base::Mat6<double>> blocks;
+  };
+
+  /// None if the factorization needs more memory, or fills in more, than the options allow, or
+  /// double precision does not suffice for the robot.
+  static std::unique_ptr<Influence> make(const model::Robot& robot,
+                                         const EquilibriumOptions& options);
+  ~Influence();
+
+  /// The facets, all stuck, and what the paper's law makes of them.
+  std::span<const FacetState> facets() const;
+  const FacetLaw<double>& law() const;
+  const model::LatticeBeam<double>& beam() const;
+
+  /// Displacements by module under the robot's own loads, refined.
+  const std::vector<Vec>& displacement() const { return displacement_; }
+
+  /// The same before refinement: as far off as what solve() gives.
+  const std::vector<Vec>& rough_displacement() const { return rough_; }
+
+  Reach reach(std::size_t module) const;
+
+  /// The block of K^-1 for two modules: the displacements of the first for unit loads on the
+  /// second, by column. The reach of a fixed module is empty, and this zero.
+  base::Mat6<double> between(const Reach& first, const Reach& second) const;
+
+  /// Slots that solve() takes: slot(module) for every module, and one more.
+  std::size_t slot_count() const;
+
+  /// Where a module stands among the slots. Fixed modules share the last one.
+  std::size_t slot(std::size_t module) const { return slots_[module]; }
+
+  /// From loads to displacements, in place; what stands in the last slot is not looked at.
+  void solve(std::span<LaneBlock> by_slot) const;
+
+ private:
+  Influence();
+
+  std::unique_ptr<DirectSystem> system_;
+  std::vector<std::size_t> slots_;
+  std::vector<Vec> displacement_;
+  std::vector<Vec> rough_;
+};
+
+}  // namespace holdfast::solver
