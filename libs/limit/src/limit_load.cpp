@@ -7,7 +7,7 @@
 #include <cmath>
 #include <limits>
 
-#include "limit_program.hpp"
+#include "interior_point.hpp"
 #include "wrench.hpp"
 
 namespace holdfast::limit {
@@ -74,7 +74,47 @@ std::vector<Yield> yields_of(const Structure& structure,
   return yields;
 }
 
-/// Narrows the bracket: pyramids become finer and more joints free, until both bounds meet.
+/// Of every body that is not left out, from those of the groups; the largest is 1 mm. Empty if there
+/// is none.
+std::vector<base::Vec6<double>> velocities_of(const Structure& structure, const Part& part,
+                                              const Eigen::VectorXd& of_groups) {
+  std::vector<base::Vec6<double>> velocities(structure.bodies.size());
+  if (of_groups.size() == 0) {
+    return {};
+  }
+  double power = 0;
+  double largest = 0;
+  for (std::size_t body = 0; body < velocities.size(); ++body) {
+    if (part.group[body] == Part::kNone) {
+      continue;
+    }
+    const auto group = base::at(part.group[body]);
+    base::Vec6<double> velocity;
+    for (std::size_t i = 0; i < 6; ++i) {
+      velocity[i] =
+          of_groups[static_cast<Eigen::Index>(6 * group + i)] / (i < 3 ? 1 : structure.length_mm);
+    }
+    velocities[body] =
+        velocity_at(velocity, part.centres[group], structure.bodies[body].centre_mm);
+    power += base::dot(velocities[body], structure.bodies[body].load);
+    for (std::size_t i = 0; i < 6; ++i) {
+      largest =
+          std::max(largest, std::abs(velocities[body][i]) * (i < 3 ? 1 : structure.length_mm));
+    }
+  }
+  constexpr double kNone = 1e-9;  // Of one over the unit of loads: no price but rounding.
+  if (largest < kNone) {
+    return {};
+  }
+  for (base::Vec6<double>& velocity : velocities) {
+    for (double& component : velocity) {
+      component /= power < 0 ? -largest : largest;  // Loads do work.
+    }
+  }
+  return velocities;
+}
+
+/// Narrows the bracket: more joints become free, until both bounds meet.
 class Search {
  public:
   Search(const Structure& structure, const LimitOptions& options)
@@ -97,7 +137,10 @@ class Search {
  private:
   double seconds_left() const { return std::chrono::duration<double>(end_ - Clock::now()).count(); }
 
-  bool is_narrow() const { return result_.high - result_.low <= options_.tolerance * result_.high; }
+  bool is_narrow() const {
+    constexpr double kNothing = 1e-9;
+    return result_.high - result_.low <= std::max(options_.tolerance * result_.high, kNothing);
+  }
 
   /// The joints nearest to their limits, and those beside them, are free at first; few joints are
   /// all free.
@@ -132,43 +175,35 @@ class Search {
   bool round_is_useful() {
     const bool is_whole = all_free();
     const Part upper = is_whole ? whole(structure_) : with_rigid_groups(structure_, is_free_);
-    LimitProgram around(structure_, upper, Side::kAround, directions_);
-    const bool is_solved = solve(around);
-    if (is_solved && around.factor() < result_.high) {
-      result_.high = around.factor();
-      mechanism_ = around.velocities();
+    const ProgramBounds around = solve(upper, is_whole ? kFactorMax : 2 * kFactorMax);
+    if (around.high < result_.high) {
+      result_.high = around.high;
+      mechanism_ = velocities_of(structure_, upper, around.velocities);
     }
-    if (is_whole && !around.has_cones()) {
-      result_.low = is_solved ? result_.high : result_.low;
+    if (is_whole) {
+      result_.low = std::max(result_.low, around.low);
       return false;
     }
-    const Part lower =
-        is_whole ? upper : with_known_forces(structure_, is_free_, options_.known_forces);
-    LimitProgram within(structure_, lower, Side::kWithin, directions_);
-    if (solve(within)) {
-      result_.low = std::min(result_.high, std::max(result_.low, within.factor()));
-      within.refine(directions_);
-    }
-    if (is_solved) {
-      around.refine(directions_);
-    }
+    const Part lower = with_known_forces(structure_, is_free_, options_.known_forces);
+    result_.low = std::max(result_.low, solve(lower, kFactorMax).low);
     if (options_.progress) {
       options_.progress(result_.low, result_.high);
     }
-    if (is_narrow() || seconds_left() <= 0 || (is_whole && !is_solved)) {
+    if (is_narrow() || seconds_left() <= 0) {
       return false;
     }
-    if (!is_whole) {
-      free_more();
-    }
+    free_more();
     return true;
   }
 
-  bool solve(LimitProgram& program) {
+  ProgramBounds solve(const Part& part, double low_enough) {
+    const ConeProgram program(structure_, part);
     ++result_.program_count;
     result_.row_count_max =
-        std::max(result_.row_count_max, static_cast<std::size_t>(program.row_count()));
-    return program.solve(seconds_left());
+        std::max(result_.row_count_max, static_cast<std::size_t>(program.loads.size()));
+    // A tenth of what is asked for, as both sides of the bracket take their share.
+    return maximise_factor(program, options_.tolerance / 10, low_enough,
+                           [&] { return seconds_left() <= 0; });
   }
 
   /// Frees the joints that their known forces would break at the upper bound, and those beside what
@@ -238,7 +273,6 @@ class Search {
   Clock::time_point end_;
   std::vector<char> is_free_;   ///< By joint.
   std::vector<double> ratios_;  ///< By joint, of the known forces; empty if all are free.
-  std::map<std::size_t, JointDirections> directions_;
   std::vector<base::Vec6<double>> mechanism_;  ///< Velocities at the upper bound.
   LimitLoad result_;
 };

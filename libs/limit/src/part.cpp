@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "limit_program.hpp"
+#include "cone_program.hpp"
 #include "wrench.hpp"
 
 namespace holdfast::limit {

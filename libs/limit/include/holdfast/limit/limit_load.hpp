@@ -61,10 +61,6 @@ struct LimitLoad {
   std::size_t row_count_max = 0;  ///< Rows of the largest.
 };
 
-/// Whether there is a solver for linear programs on this machine, Clp; without one limit_load()
-/// finds what needs none, and stops.
-bool has_solver();
-
 LimitLoad limit_load(const Structure& structure, const LimitOptions& options = {});
 
 /// The load ratio of a joint under a force, of its law; a contact that is pulled has none.
