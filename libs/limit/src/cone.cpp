@@ -62,7 +62,7 @@ double longest_step(const ConePart& u, const ConePart& d, double most) {
   const double b = u[0] * d[0] - u.tail<2>().dot(d.tail<2>());
   const double c = square(u);
   const double root = b * b - a * c;
-  if ((a >= 0 && b >= 0) || (a > 0 && root <= 0)) {
+  if (a >= 0 && b >= 0) {
     return most;
   }
   return std::min(most, c / (-b + std::sqrt(std::max(root, 0.0))));

@@ -113,6 +113,7 @@ bool KktSystem::factor(const VectorXd& s, const VectorXd& z) {
     const ConePart primal = s.segment(row, size);
     const ConePart dual = z.segment(row, size);
     if (!(inside(primal) > 0 && inside(dual) > 0)) {
+      if (getenv("LIMIT_TRACE")) fprintf(stderr, "outside %zu size %ld: %.17g %.17g: %g %g %g; %g %g %g\n", i, size, inside(primal), inside(dual), primal[0],primal[size-2 > 0 ? 1:0], primal[size-1],dual[0],dual[size-2>0?1:0],dual[size-1]);
       return false;
     }
     scalings_[i] = Scaling(primal, dual);
