@@ -157,7 +157,7 @@ bool KktSystem::factor(const VectorXd& s, const VectorXd& z) {
 /// of very different lengths, the longest first. Directions without limit are given a stiffness
 /// that later steps of the refinement take back.
 void KktSystem::make_compliances() {
-  static const double softness = env("LIMIT_RHO", 1e-8);
+  static const double softness = env("LIMIT_RHO", 1e-6);
   using Stack = Eigen::Matrix<double, Eigen::Dynamic, 6, 0, 21, 6>;
   for (std::size_t j = 0; j < program_.joints.size(); ++j) {
     const JointPart& joint = program_.joints[j];
@@ -183,18 +183,17 @@ void KktSystem::make_compliances() {
   }
 }
 
-/// Adds the solution for a right side, to rounding and the stiffness of what has no limit.
-void KktSystem::add(KktVector& sum, const KktVector& right_side) const {
-  VectorXd force = VectorXd::Zero(right_side.x.size());
-  const VectorXd pressed = inverse_scaled(inverse_scaled(right_side.z));
-  force = right_side.x + transposed_times(VectorXd::Zero(right_side.y.size()), pressed);
-  const double load_force = force[force.size() - 1];
-  VectorXd g = -right_side.y;
+/// What solves  H x + A'y = b.x,  A x = b.y  with H = G' W^-2 G, but for the stiffness of what has no
+/// limit, and rounding; x and y in one vector.
+VectorXd KktSystem::approximate(const VectorXd& b) const {
+  VectorXd u = b;
+  auto force = u.head(force_count());
+  auto g = u.tail(program_.loads.size());
+  g = -g;
   for (Index j = 0; j < joint_count(); ++j) {
     const JointPart& joint = program_.joints[static_cast<std::size_t>(j)];
     const Block& root = roots_[static_cast<std::size_t>(j)];
-    const Eigen::Matrix<double, 6, 1> moved =
-        root.transpose() * (root * force.segment<6>(6 * j));
+    const Eigen::Matrix<double, 6, 1> moved = root.transpose() * (root * force.segment<6>(6 * j));
     if (joint.a != Part::kNone) {
       g.segment<6>(6 * joint.a) += joint.on_a * moved;
     }
@@ -203,7 +202,7 @@ void KktSystem::add(KktVector& sum, const KktVector& right_side) const {
     }
   }
   cholesky_.solve(g);
-  const double factor = (load_force - program_.loads.dot(g)) / border_;
+  const double factor = (force[force.size() - 1] - program_.loads.dot(g)) / border_;
   g += factor * loads_solved_;
   for (Index j = 0; j < joint_count(); ++j) {
     const JointPart& joint = program_.joints[static_cast<std::size_t>(j)];
@@ -218,45 +217,73 @@ void KktSystem::add(KktVector& sum, const KktVector& right_side) const {
     one = root.transpose() * (root * one).eval();
   }
   force[force.size() - 1] = factor;
-  sum.x += force;
-  sum.y += g;
-  sum.z += inverse_scaled(inverse_scaled(rows_times(force) - right_side.z));
+  return u;
 }
 
-KktVector KktSystem::residual(const KktVector& right_side, const KktVector& v) const {
-  return {.x = right_side.x - transposed_times(v.y, v.z),
-          .y = right_side.y - balance(v.x),
-          .z = right_side.z - rows_times(v.x) + scaled(scaled(v.z))};
+VectorXd KktSystem::applied(const VectorXd& u) const {
+  VectorXd result(u.size());
+  const VectorXd x = u.head(force_count());
+  result.head(force_count()) = transposed_times(
+      u.tail(program_.loads.size()), inverse_scaled(inverse_scaled(rows_times(x))));
+  result.tail(program_.loads.size()) = balance(x);
+  return result;
 }
 
+/// By generalized minimal residuals [Saad 1986], with the approximate solution as preconditioner.
 KktVector KktSystem::solve(const KktVector& right_side) {
-  KktVector result = {.x = VectorXd::Zero(right_side.x.size()),
-                      .y = VectorXd::Zero(right_side.y.size()),
-                      .z = VectorXd::Zero(right_side.z.size())};
-  KktVector rest = right_side;
-  const auto size_of = [](const KktVector& v) {
-    return std::max({v.x.lpNorm<Eigen::Infinity>(), v.y.lpNorm<Eigen::Infinity>(),
-                     v.z.lpNorm<Eigen::Infinity>()});
-  };
-  const double wanted = 1e-13 * size_of(right_side);
-  double before = size_of(right_side);
-  static const int kmax = static_cast<int>(env("LIMIT_REFINE", 4));
-  for (int i = 0; i <= kmax; ++i) {
-    KktVector better = result;
-    add(better, rest);
-    KktVector left = residual(right_side, better);
-    const double size = size_of(left);
-    if (!(size < before)) {
+  VectorXd b(right_side.x.size() + right_side.y.size());
+  const VectorXd pressed = inverse_scaled(inverse_scaled(right_side.z));
+  b << right_side.x + transposed_times(VectorXd::Zero(right_side.y.size()), pressed), right_side.y;
+  VectorXd u = VectorXd::Zero(b.size());
+  VectorXd rest = b;
+  static const int kmax = static_cast<int>(env("LIMIT_REFINE", 12));
+  static const double ktol = env("LIMIT_KTOL", 1e-14);
+  const double wanted = ktol * b.norm();
+  std::vector<VectorXd> basis;
+  std::vector<VectorXd> steps;
+  for (int round = 0; round < 2; ++round) {
+    const double norm = rest.norm();
+    if (!(norm > wanted)) {
       break;
     }
-    result = std::move(better);
-    rest = std::move(left);
-    before = size;
-    if (size <= wanted) {
+    basis = {rest / norm};
+    steps.clear();
+    Eigen::MatrixXd hessenberg = Eigen::MatrixXd::Zero(kmax + 1, kmax);
+    VectorXd weights;
+    Eigen::Index count = 0;
+    while (count < kmax) {
+      steps.push_back(approximate(basis.back()));
+      VectorXd next = applied(steps.back());
+      for (std::size_t i = 0; i < basis.size(); ++i) {
+        hessenberg(static_cast<Index>(i), count) = basis[i].dot(next);
+        next -= hessenberg(static_cast<Index>(i), count) * basis[i];
+      }
+      const double length = next.norm();
+      hessenberg(count + 1, count) = length;
+      ++count;
+      ++solve_count_;
+      const auto corner = hessenberg.topLeftCorner(count + 1, count);
+      const VectorXd unit = norm * VectorXd::Unit(count + 1, 0);
+      weights = corner.colPivHouseholderQr().solve(unit);
+      if (!((corner * weights - unit).norm() > wanted) || !(length > 0)) {
+        break;
+      }
+      basis.push_back(next / length);
+    }
+    VectorXd better = u;
+    for (Index i = 0; i < count; ++i) {
+      better += weights[i] * steps[static_cast<std::size_t>(i)];
+    }
+    const VectorXd left = b - applied(better);
+    if (!(left.norm() < norm)) {
       break;
     }
+    u = better;
+    rest = left;
   }
-  fault_ = before / size_of(right_side);
+  fault_ = rest.norm() / b.norm();
+  KktVector result = {.x = u.head(right_side.x.size()), .y = u.tail(right_side.y.size()), .z = {}};
+  result.z = inverse_scaled(inverse_scaled(rows_times(result.x) - right_side.z));
   return result;
 }
 

@@ -60,8 +60,8 @@ class KktSystem {
   Eigen::Index joint_count() const { return static_cast<Eigen::Index>(program_.joints.size()); }
 
   void make_compliances();
-  void add(KktVector& sum, const KktVector& right_side) const;
-  KktVector residual(const KktVector& right_side, const KktVector& v) const;
+  Eigen::VectorXd approximate(const Eigen::VectorXd& b) const;
+  Eigen::VectorXd applied(const Eigen::VectorXd& u) const;
 
   const ConeProgram& program_;
   std::vector<ConeProgram::Cone> cones_;
@@ -77,6 +77,8 @@ class KktSystem {
   double bound_scale_ = 1;
   double border_ = 0;
   double fault_ = 0;
+ public:
+  int solve_count_ = 0;
 };
 
 }  // namespace holdfast::limit

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <cstdlib>
 #include <limits>
 
 #include "interior_point.hpp"
@@ -147,7 +148,7 @@ class Search {
   void set_known_forces() {
     const std::size_t count = structure_.joints.size();
     is_free_.assign(count, 1);
-    constexpr std::size_t kFewJoints = 400;
+    const std::size_t kFewJoints = getenv("LIMIT_FEW") ? static_cast<std::size_t>(atof(getenv("LIMIT_FEW"))) : 400;
     if (options_.known_forces.size() != count || count <= kFewJoints) {
       return;
     }
