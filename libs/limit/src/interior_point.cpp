@@ -34,9 +34,9 @@ class InteriorPoint {
       bound();
       bounds_.iteration_count = i;
       if (getenv("LIMIT_TRACE")) {
-        fprintf(stderr, "%3d mu %.2e tau %.2e kap %.2e r1 %.1e r2 %.1e r3 %.1e r4 %.1e lam %.9g low %.9g high %.9g step %.3f kkt %.1e %d\n",
+        fprintf(stderr, "%3d mu %.2e tau %.2e kap %.2e r1 %.1e r2 %.1e r3 %.1e r4 %.1e lam %.9g low %.9g high %.9g step %.3f kkt %.1e\n",
                 i, mu(), tau_, kappa_, rest_.x.lpNorm<Eigen::Infinity>() / tau_, rest_.y.lpNorm<Eigen::Infinity>() / tau_,
-                rest_.z.lpNorm<Eigen::Infinity>() / tau_, rest_value_ / tau_, factor(), bounds_.low, bounds_.high, step_, system_.fault(), system_.solve_count_);
+                rest_.z.lpNorm<Eigen::Infinity>() / tau_, rest_value_ / tau_, factor(), bounds_.low, bounds_.high, step_, system_.fault());
       }
       if (bounds_.high - bounds_.low <= std::max(tolerance * bounds_.high, 1e-10) || bounds_.low >= low_enough ||
           is_over() || !advance()) {

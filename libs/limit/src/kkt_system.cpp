@@ -157,7 +157,7 @@ bool KktSystem::factor(const VectorXd& s, const VectorXd& z) {
 /// of very different lengths, the longest first. Directions without limit are given a stiffness
 /// that later steps of the refinement take back.
 void KktSystem::make_compliances() {
-  static const double softness = env("LIMIT_RHO", 1e-6);
+  static const double softness = env("LIMIT_RHO", 1e-8);
   using Stack = Eigen::Matrix<double, Eigen::Dynamic, 6, 0, 21, 6>;
   for (std::size_t j = 0; j < program_.joints.size(); ++j) {
     const JointPart& joint = program_.joints[j];
@@ -183,13 +183,11 @@ void KktSystem::make_compliances() {
   }
 }
 
-/// What solves  H x + A'y = b.x,  A x = b.y  with H = G' W^-2 G, but for the stiffness of what has no
-/// limit, and rounding; x and y in one vector.
-VectorXd KktSystem::approximate(const VectorXd& b) const {
-  VectorXd u = b;
-  auto force = u.head(force_count());
-  auto g = u.tail(program_.loads.size());
-  g = -g;
+/// Adds to forces and velocities what solves  H x + A'y = rest.x,  A x = rest.y  with H = G' W^-2 G,
+/// but for the stiffness of what has no limit, and rounding.
+void KktSystem::improve(KktVector& solution, const KktVector& rest) const {
+  VectorXd force = rest.x;
+  VectorXd g = -rest.y;
   for (Index j = 0; j < joint_count(); ++j) {
     const JointPart& joint = program_.joints[static_cast<std::size_t>(j)];
     const Block& root = roots_[static_cast<std::size_t>(j)];
@@ -217,73 +215,47 @@ VectorXd KktSystem::approximate(const VectorXd& b) const {
     one = root.transpose() * (root * one).eval();
   }
   force[force.size() - 1] = factor;
-  return u;
+  solution.x += force;
+  solution.y += g;
 }
 
-VectorXd KktSystem::applied(const VectorXd& u) const {
-  VectorXd result(u.size());
-  const VectorXd x = u.head(force_count());
-  result.head(force_count()) = transposed_times(
-      u.tail(program_.loads.size()), inverse_scaled(inverse_scaled(rows_times(x))));
-  result.tail(program_.loads.size()) = balance(x);
-  return result;
-}
-
-/// By generalized minimal residuals [Saad 1986], with the approximate solution as preconditioner.
-KktVector KktSystem::solve(const KktVector& right_side) {
-  VectorXd b(right_side.x.size() + right_side.y.size());
-  const VectorXd pressed = inverse_scaled(inverse_scaled(right_side.z));
-  b << right_side.x + transposed_times(VectorXd::Zero(right_side.y.size()), pressed), right_side.y;
-  VectorXd u = VectorXd::Zero(b.size());
-  VectorXd rest = b;
-  static const int kmax = static_cast<int>(env("LIMIT_REFINE", 12));
-  static const double ktol = env("LIMIT_KTOL", 1e-14);
-  const double wanted = ktol * b.norm();
-  std::vector<VectorXd> basis;
-  std::vector<VectorXd> steps;
-  for (int round = 0; round < 2; ++round) {
-    const double norm = rest.norm();
-    if (!(norm > wanted)) {
+/// Iterative refinement; the prices follow from the forces.
+KktVector KktSystem::solve(const KktVector& right_side) const {
+  const auto with_prices = [&](KktVector v) {
+    v.z = inverse_scaled(inverse_scaled(rows_times(v.x) - right_side.z));
+    return v;
+  };
+  const auto left_by = [&](const KktVector& v) {
+    return KktVector{.x = right_side.x - transposed_times(v.y, v.z),
+                     .y = right_side.y - balance(v.x),
+                     .z = {}};
+  };
+  const auto size_of = [](const KktVector& v) {
+    return std::max(v.x.lpNorm<Eigen::Infinity>(), v.y.lpNorm<Eigen::Infinity>());
+  };
+  KktVector result = with_prices({.x = VectorXd::Zero(right_side.x.size()),
+                                  .y = VectorXd::Zero(right_side.y.size()),
+                                  .z = {}});
+  KktVector rest = left_by(result);
+  constexpr int kStepMax = 8;
+  for (int i = 0; i < kStepMax; ++i) {
+    const double size = size_of(rest);
+    KktVector better = result;
+    improve(better, rest);
+    better = with_prices(std::move(better));
+    KktVector left = left_by(better);
+    constexpr double kLittle = 0.9;
+    if (!(size_of(left) < kLittle * size)) {
       break;
     }
-    basis = {rest / norm};
-    steps.clear();
-    Eigen::MatrixXd hessenberg = Eigen::MatrixXd::Zero(kmax + 1, kmax);
-    VectorXd weights;
-    Eigen::Index count = 0;
-    while (count < kmax) {
-      steps.push_back(approximate(basis.back()));
-      VectorXd next = applied(steps.back());
-      for (std::size_t i = 0; i < basis.size(); ++i) {
-        hessenberg(static_cast<Index>(i), count) = basis[i].dot(next);
-        next -= hessenberg(static_cast<Index>(i), count) * basis[i];
-      }
-      const double length = next.norm();
-      hessenberg(count + 1, count) = length;
-      ++count;
-      ++solve_count_;
-      const auto corner = hessenberg.topLeftCorner(count + 1, count);
-      const VectorXd unit = norm * VectorXd::Unit(count + 1, 0);
-      weights = corner.colPivHouseholderQr().solve(unit);
-      if (!((corner * weights - unit).norm() > wanted) || !(length > 0)) {
-        break;
-      }
-      basis.push_back(next / length);
-    }
-    VectorXd better = u;
-    for (Index i = 0; i < count; ++i) {
-      better += weights[i] * steps[static_cast<std::size_t>(i)];
-    }
-    const VectorXd left = b - applied(better);
-    if (!(left.norm() < norm)) {
+    result = std::move(better);
+    rest = std::move(left);
+    constexpr double kEnough = 1e-15;
+    if (size_of(rest) <= kEnough) {
       break;
     }
-    u = better;
-    rest = left;
   }
-  fault_ = rest.norm() / b.norm();
-  KktVector result = {.x = u.head(right_side.x.size()), .y = u.tail(right_side.y.size()), .z = {}};
-  result.z = inverse_scaled(inverse_scaled(rows_times(result.x) - right_side.z));
+  fault_ = size_of(rest);
   return result;
 }
 

@@ -41,7 +41,7 @@ class KktSystem {
 
   /// False: rounding has left the cones.
   bool factor(const Eigen::VectorXd& s, const Eigen::VectorXd& z);
-  KktVector solve(const KktVector& right_side);
+  KktVector solve(const KktVector& right_side) const;
 
   double fault() const { return fault_; }
 
@@ -60,8 +60,7 @@ class KktSystem {
   Eigen::Index joint_count() const { return static_cast<Eigen::Index>(program_.joints.size()); }
 
   void make_compliances();
-  Eigen::VectorXd approximate(const Eigen::VectorXd& b) const;
-  Eigen::VectorXd applied(const Eigen::VectorXd& u) const;
+  void improve(KktVector& solution, const KktVector& rest) const;
 
   const ConeProgram& program_;
   std::vector<ConeProgram::Cone> cones_;
@@ -76,9 +75,7 @@ class KktSystem {
   Eigen::VectorXd loads_solved_;
   double bound_scale_ = 1;
   double border_ = 0;
-  double fault_ = 0;
- public:
-  int solve_count_ = 0;
+  mutable double fault_ = 0;
 };
 
 }  // namespace holdfast::limit
