@@ -15,6 +15,9 @@ namespace {
 
 using Eigen::VectorXd;
 
+/// A factor of rounding.
+constexpr double kNothing = 1e-10;
+
 /// The embedding:  A'y + G'z + c tau = 0,  A x = 0,  s + G x = h tau,  kappa + c'x + h'z = 0
 /// with x = (f, lambda), c = (0, -1), s and z in the cones, tau and kappa not negative.
 class InteriorPoint {
@@ -38,11 +41,15 @@ class InteriorPoint {
                 i, mu(), tau_, kappa_, rest_.x.lpNorm<Eigen::Infinity>() / tau_, rest_.y.lpNorm<Eigen::Infinity>() / tau_,
                 rest_.z.lpNorm<Eigen::Infinity>() / tau_, rest_value_ / tau_, factor(), bounds_.low, bounds_.high, step_, system_.fault());
       }
-      if (bounds_.high - bounds_.low <= std::max(tolerance * bounds_.high, 1e-10) || bounds_.low >= low_enough ||
+      if (bounds_.high - bounds_.low <= std::max(tolerance * bounds_.high, kNothing) || bounds_.low >= low_enough ||
           is_over() || !advance()) {
         break;
       }
     }
+    if (bounds_.low > bounds_.high + std::max(tolerance * bounds_.high, kNothing)) {
+      return {.iteration_count = bounds_.iteration_count};  // Rounding has spoilt them.
+    }
+    bounds_.low = std::min(bounds_.low, bounds_.high);
     return std::move(bounds_);
   }
 
@@ -71,19 +78,21 @@ class InteriorPoint {
     const double primal_fault =
         std::max(rest_.y.lpNorm<Eigen::Infinity>(), outside.maxCoeff()) / f_max;
     const double dual_fault = rest_.x.lpNorm<Eigen::Infinity>() / z_max;
-    if (primal_fault <= kFaultMax) {
-      const double loss =
-          (point_.y.cwiseAbs().dot(rest_.y.cwiseAbs()) + outside.dot(system_.heads(point_.z))) /
-          (tau_ * tau_);
-      bounds_.low = std::max(bounds_.low, factor() - loss);
+    const double value = system_.right_side().dot(point_.z) / tau_;
+    const double high_loss = point_.x.cwiseAbs().dot(rest_.x.cwiseAbs()) / (tau_ * tau_);
+    const double low_loss =
+        (point_.y.cwiseAbs().dot(rest_.y.cwiseAbs()) + outside.dot(system_.heads(point_.z))) /
+        (tau_ * tau_);
+    // What is left is priced rightly where both are near the solution.
+    constexpr double kNear = 0.1;
+    const bool is_near = std::abs(value - factor()) <= kNear * value;
+    constexpr double kFaultMaxFar = 1e-9;
+    if (primal_fault <= (is_near ? kFaultMax : kFaultMaxFar)) {
+      bounds_.low = std::max(bounds_.low, factor() - low_loss);
     }
-    if (dual_fault <= kFaultMax) {
-      const double loss = point_.x.cwiseAbs().dot(rest_.x.cwiseAbs()) / (tau_ * tau_);
-      const double value = system_.right_side().dot(point_.z) / tau_ + loss;
-      if (value < bounds_.high) {
-        bounds_.high = value;
-        bounds_.velocities = point_.y / tau_;
-      }
+    if (dual_fault <= (is_near ? kFaultMax : kFaultMaxFar) && value + high_loss < bounds_.high) {
+      bounds_.high = value + high_loss;
+      bounds_.velocities = point_.y / tau_;
     }
   }
 
