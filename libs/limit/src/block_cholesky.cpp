@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <limits>
 
 #include "nested_dissection.hpp"
@@ -15,8 +14,8 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 
-/// Of a pivot's first value: less is rounding.
-const double kNothing = getenv("LIMIT_NOTHING") ? atof(getenv("LIMIT_NOTHING")) : 1e-15;
+/// Of a pivot's first value: less is rounding, and a pivot is never less.
+constexpr double kNothing = 1e-15;
 
 /// Factors the first `width` columns of the lower triangle of a symmetric matrix; the rest of it
 /// becomes what is left. `first_value` by column, before anything was eliminated.

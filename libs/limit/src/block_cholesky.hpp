@@ -17,7 +17,7 @@ using Block = Eigen::Matrix<double, 6, 6>;
 /// together from one dense matrix, their front, which makes the most of the machine. The nodes'
 /// places give the order: halves of the structure first, what lies between them last [George 1973].
 ///
-/// A pivot that is nothing but rounding counts as immovable: the solution is 0 there.
+/// A pivot that is nothing but rounding is taken as that rounding, so callers check the residual.
 class BlockCholesky {
  public:
   using Edge = std::pair<int, int>;
@@ -39,8 +39,8 @@ class BlockCholesky {
   struct Front {
     int first = 0;
     int last = 0;
-    std::vector<int> rows = {};  ///< Below, ascending.
-    std::size_t zeros = 0;   ///< Blocks in its columns that L does not have.
+    std::vector<int> rows = {};   ///< Below, ascending.
+    std::size_t zeros = 0;        ///< Blocks in its columns that L does not have.
     std::vector<int> edges = {};  ///< Whose blocks are in its columns.
     std::vector<int> children = {};
     Eigen::MatrixXd columns = {};  ///< Of L.

@@ -32,8 +32,8 @@ class JointRows {
       : law_(joint.law), strength_(joint.law.strength_n / force_n), length_(length_mm) {
     const bool carries_axial = (joint.carries & kCarriesAxial) != 0;
     const bool is_on_ice = rubs(joint) && *law_.friction == 0;
-    carries_ << across(joint, is_on_ice), across(joint, is_on_ice), carries_axial,
-        bends(joint), bends(joint), turns(joint, is_on_ice);
+    carries_ << across(joint, is_on_ice), across(joint, is_on_ice), carries_axial, bends(joint),
+        bends(joint), turns(joint, is_on_ice);
     if (has_strength(joint) && carries_axial) {
       add_opening(bends(joint));
     }
@@ -140,8 +140,7 @@ Block wrenches(const Joint& joint, const JointRows& rows, const Vector3& about, 
     }
     base::Vec6<double> force = base::unit<double>(static_cast<int>(component));
     force[static_cast<std::size_t>(component)] = component < 3 ? 1 : length;
-    const base::Vec6<double> there =
-        moved(global_force(joint, force), joint.place_mm, about, sign);
+    const base::Vec6<double> there = moved(global_force(joint, force), joint.place_mm, about, sign);
     for (Eigen::Index i = 0; i < 6; ++i) {
       result(i, component) = there[static_cast<std::size_t>(i)] / (i < 3 ? 1 : length);
     }

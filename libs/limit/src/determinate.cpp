@@ -98,8 +98,7 @@ std::vector<Wrench> determinate_forces(const Structure& structure,
     const Vector3& centre = structure.bodies[body].centre_mm;
     base::add_to(borne[body], structure.bodies[body].load);
     const double sign = end_of(structure, joint.a) == body ? -1 : 1;
-    const Wrench force =
-        local_force(joint.frame, moved(borne[body], centre, joint.place_mm, sign));
+    const Wrench force = local_force(joint.frame, moved(borne[body], centre, joint.place_mm, sign));
     if (!is_carried(joint, force, structure.length_mm)) {
       return {};
     }

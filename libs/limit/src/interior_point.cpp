@@ -4,9 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
-#include <cstdlib>
-#include <map>
 
 #include "kkt_system.hpp"
 
@@ -36,13 +33,8 @@ class InteriorPoint {
       find_residuals();
       bound();
       bounds_.iteration_count = i;
-      if (getenv("LIMIT_TRACE")) {
-        fprintf(stderr, "%3d mu %.2e tau %.2e kap %.2e r1 %.1e r2 %.1e r3 %.1e r4 %.1e lam %.9g low %.9g high %.9g step %.3f kkt %.1e\n",
-                i, mu(), tau_, kappa_, rest_.x.lpNorm<Eigen::Infinity>() / tau_, rest_.y.lpNorm<Eigen::Infinity>() / tau_,
-                rest_.z.lpNorm<Eigen::Infinity>() / tau_, rest_value_ / tau_, factor(), bounds_.low, bounds_.high, step_, system_.fault());
-      }
-      if (bounds_.high - bounds_.low <= std::max(tolerance * bounds_.high, kNothing) || bounds_.low >= low_enough ||
-          is_over() || !advance()) {
+      if (bounds_.high - bounds_.low <= std::max(tolerance * bounds_.high, kNothing) ||
+          bounds_.low >= low_enough || is_over() || !advance()) {
         break;
       }
     }
@@ -147,8 +139,8 @@ class InteriorPoint {
   }
 
   double step_length(double most) const {
-    double step = std::min(system_.step(s_, direction_s_, most),
-                           system_.step(point_.z, direction_.z, most));
+    double step =
+        std::min(system_.step(s_, direction_s_, most), system_.step(point_.z, direction_.z, most));
     if (direction_tau_ < 0) {
       step = std::min(step, -tau_ / direction_tau_);
     }

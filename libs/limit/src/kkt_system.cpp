@@ -5,8 +5,6 @@
 #include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
-#include <cstdlib>
 #include <map>
 
 namespace holdfast::limit {
@@ -16,10 +14,14 @@ using Eigen::Index;
 using Eigen::VectorXd;
 using JointPart = ConeProgram::JointPart;
 
-double env(const char* name, double value) {
-  const char* const text = getenv(name);
-  return text != nullptr ? atof(text) : value;
-}
+/// The compliance that directions without limit are given, in units of the program: less leaves the
+/// refinement less to do, until rounding takes over; on 10,000 modules 1e-12 did best of 1e-4 to
+/// it.
+constexpr double kSoftness = 1e-12;
+/// The stiffness that every motion is given, likewise.
+constexpr double kLeastStiffness = 1e-12;
+/// Of the row of the factor's bound, so that it is about as long as others.
+constexpr double kBoundScale = 1 / kFactorMax;
 
 /// Pairs of groups that joints couple, and which of them each joint is in.
 std::vector<BlockCholesky::Edge> edges_of(const ConeProgram& program,
@@ -31,8 +33,7 @@ std::vector<BlockCholesky::Edge> edges_of(const ConeProgram& program,
       edge_of_joint.push_back(0);
       continue;
     }
-    const auto [at, is_new] =
-        found.try_emplace(std::minmax(joint.a, joint.b), edges.size());
+    const auto [at, is_new] = found.try_emplace(std::minmax(joint.a, joint.b), edges.size());
     if (is_new) {
       edges.push_back(at->first);
     }
@@ -49,9 +50,7 @@ KktSystem::KktSystem(const ConeProgram& program)
       h_(program.h.size() + 1),
       edges_(edges_of(program, edge_of_joint_)),
       cholesky_(program.places, edges_) {
-  static const double capscale = env("LIMIT_CAP", 1e5);
-  bound_scale_ = 1 / capscale;
-  h_ << program.h, program.factor_max * bound_scale_;
+  h_ << program.h, program.factor_max * kBoundScale;
   cones_.push_back({.row = program.h.size(), .size = 1});
   centre_.resize(h_.size());
   for (const auto& [row, size] : cones_) {
@@ -59,10 +58,6 @@ KktSystem::KktSystem(const ConeProgram& program)
   }
   scalings_.resize(cones_.size());
   roots_.resize(program.joints.size());
-  if (getenv("LIMIT_TRACE")) {
-    fprintf(stderr, "groups %zu joints %zu cones %zu work %.2e\n", program.places.size(),
-            program.joints.size(), cones_.size(), cholesky_.work());
-  }
 }
 
 VectorXd KktSystem::balance(const VectorXd& x) const {
@@ -82,7 +77,7 @@ VectorXd KktSystem::balance(const VectorXd& x) const {
 
 VectorXd KktSystem::rows_times(const VectorXd& x) const {
   VectorXd result(h_.size());
-  result[h_.size() - 1] = bound_scale_ * x[x.size() - 1];
+  result[h_.size() - 1] = kBoundScale * x[x.size() - 1];
   for (Index j = 0; j < joint_count(); ++j) {
     const JointPart& joint = program_.joints[static_cast<std::size_t>(j)];
     result.segment(joint.row, joint.rows.rows()) = joint.rows * x.segment<6>(6 * j);
@@ -92,7 +87,7 @@ VectorXd KktSystem::rows_times(const VectorXd& x) const {
 
 VectorXd KktSystem::transposed_times(const VectorXd& y, const VectorXd& z) const {
   VectorXd result(force_count());
-  result[result.size() - 1] = program_.loads.dot(y) + bound_scale_ * z[z.size() - 1];
+  result[result.size() - 1] = program_.loads.dot(y) + kBoundScale * z[z.size() - 1];
   for (Index j = 0; j < joint_count(); ++j) {
     const JointPart& joint = program_.joints[static_cast<std::size_t>(j)];
     auto one = result.segment<6>(6 * j);
@@ -113,7 +108,6 @@ bool KktSystem::factor(const VectorXd& s, const VectorXd& z) {
     const ConePart primal = s.segment(row, size);
     const ConePart dual = z.segment(row, size);
     if (!(inside(primal) > 0 && inside(dual) > 0)) {
-      if (getenv("LIMIT_TRACE")) fprintf(stderr, "outside %zu size %ld: %.17g %.17g: %g %g %g; %g %g %g\n", i, size, inside(primal), inside(dual), primal[0],primal[size-2 > 0 ? 1:0], primal[size-1],dual[0],dual[size-2>0?1:0],dual[size-1]);
       return false;
     }
     scalings_[i] = Scaling(primal, dual);
@@ -141,15 +135,14 @@ bool KktSystem::factor(const VectorXd& s, const VectorXd& z) {
       }
     }
   }
-  static const double delta = env("LIMIT_DELTA", 1e-12);
   for (Block& block : diagonal) {
-    block.diagonal().array() += delta;
+    block.diagonal().array() += kLeastStiffness;
   }
   cholesky_.factor(diagonal, coupling);
   loads_solved_ = program_.loads;
   cholesky_.solve(loads_solved_);
   const double eta = scalings_.back().times(ConePart::Ones(1))[0];
-  border_ = bound_scale_ * bound_scale_ / (eta * eta) + program_.loads.dot(loads_solved_);
+  border_ = kBoundScale * kBoundScale / (eta * eta) + program_.loads.dot(loads_solved_);
   return true;
 }
 
@@ -157,7 +150,6 @@ bool KktSystem::factor(const VectorXd& s, const VectorXd& z) {
 /// of very different lengths, the longest first. Directions without limit are given a stiffness
 /// that later steps of the refinement take back.
 void KktSystem::make_compliances() {
-  static const double softness = env("LIMIT_RHO", 1e-8);
   using Stack = Eigen::Matrix<double, Eigen::Dynamic, 6, 0, 21, 6>;
   for (std::size_t j = 0; j < program_.joints.size(); ++j) {
     const JointPart& joint = program_.joints[j];
@@ -168,7 +160,7 @@ void KktSystem::make_compliances() {
       const ConeRows rows = joint.rows.middleRows(row - joint.row, size);
       stack.middleRows(row - joint.row, size) = scalings_[i].root_times(rows);
     }
-    stack.bottomRows<6>() = std::sqrt(softness) * Block::Identity();
+    stack.bottomRows<6>() = std::sqrt(kSoftness) * Block::Identity();
     Eigen::Array<int, Eigen::Dynamic, 1, 0, 21, 1> order(count + 6);
     Eigen::Array<double, Eigen::Dynamic, 1, 0, 21, 1> length = stack.rowwise().squaredNorm();
     for (int i = 0; i < static_cast<int>(count) + 6; ++i) {
@@ -179,12 +171,13 @@ void KktSystem::make_compliances() {
     const Stack sorted = stack(order, Eigen::all);
     const Eigen::ColPivHouseholderQR<Stack> qr(sorted);
     const Block permuted = qr.colsPermutation().transpose() * Block::Identity();
-    roots_[j] = qr.matrixQR().topRows<6>().triangularView<Eigen::Upper>().transpose().solve(permuted);
+    roots_[j] =
+        qr.matrixQR().topRows<6>().triangularView<Eigen::Upper>().transpose().solve(permuted);
   }
 }
 
-/// Adds to forces and velocities what solves  H x + A'y = rest.x,  A x = rest.y  with H = G' W^-2 G,
-/// but for the stiffness of what has no limit, and rounding.
+/// Adds to forces and velocities what solves  H x + A'y = rest.x,  A x = rest.y  with H = G' W^-2
+/// G, but for the stiffness of what has no limit, and rounding.
 void KktSystem::improve(KktVector& solution, const KktVector& rest) const {
   VectorXd force = rest.x;
   VectorXd g = -rest.y;
@@ -226,9 +219,8 @@ KktVector KktSystem::solve(const KktVector& right_side) const {
     return v;
   };
   const auto left_by = [&](const KktVector& v) {
-    return KktVector{.x = right_side.x - transposed_times(v.y, v.z),
-                     .y = right_side.y - balance(v.x),
-                     .z = {}};
+    return KktVector{
+        .x = right_side.x - transposed_times(v.y, v.z), .y = right_side.y - balance(v.x), .z = {}};
   };
   const auto size_of = [](const KktVector& v) {
     return std::max(v.x.lpNorm<Eigen::Infinity>(), v.y.lpNorm<Eigen::Infinity>());
@@ -255,7 +247,6 @@ KktVector KktSystem::solve(const KktVector& right_side) const {
       break;
     }
   }
-  fault_ = size_of(rest);
   return result;
 }
 

@@ -43,8 +43,6 @@ class KktSystem {
   bool factor(const Eigen::VectorXd& s, const Eigen::VectorXd& z);
   KktVector solve(const KktVector& right_side) const;
 
-  double fault() const { return fault_; }
-
   // By cone:
   Eigen::VectorXd scaled(const Eigen::VectorXd& u) const;          ///< W u
   Eigen::VectorXd inverse_scaled(const Eigen::VectorXd& u) const;  ///< W^-1 u
@@ -73,9 +71,7 @@ class KktSystem {
   Eigen::VectorXd lambda_;
   std::vector<Block> roots_;  ///< By joint: its compliance is inverse to root' root.
   Eigen::VectorXd loads_solved_;
-  double bound_scale_ = 1;
   double border_ = 0;
-  mutable double fault_ = 0;
 };
 
 }  // namespace holdfast::limit

@@ -75,8 +75,8 @@ std::vector<Yield> yields_of(const Structure& structure,
   return yields;
 }
 
-/// Of every body that is not left out, from those of the groups; the largest is 1 mm. Empty if there
-/// is none.
+/// Of every body that is not left out, from those of the groups; the largest is 1 mm. Empty if
+/// there is none.
 std::vector<base::Vec6<double>> velocities_of(const Structure& structure, const Part& part,
                                               const Eigen::VectorXd& of_groups) {
   std::vector<base::Vec6<double>> velocities(structure.bodies.size());
@@ -95,8 +95,7 @@ std::vector<base::Vec6<double>> velocities_of(const Structure& structure, const 
       velocity[i] =
           of_groups[static_cast<Eigen::Index>(6 * group + i)] / (i < 3 ? 1 : structure.length_mm);
     }
-    velocities[body] =
-        velocity_at(velocity, part.centres[group], structure.bodies[body].centre_mm);
+    velocities[body] = velocity_at(velocity, part.centres[group], structure.bodies[body].centre_mm);
     power += base::dot(velocities[body], structure.bodies[body].load);
     for (std::size_t i = 0; i < 6; ++i) {
       largest =
@@ -158,8 +157,8 @@ class Search {
     return result_.high - result_.low <= std::max(options_.tolerance * result_.high, kNothing);
   }
 
-  /// What known forces prove. The joints nearest to their limits, and those beside them, are free at
-  /// first; all are if that is no great work.
+  /// What known forces prove. The joints nearest to their limits, and those beside them, are free
+  /// at first; all are if that is no great work.
   void set_known_forces() {
     const std::size_t count = structure_.joints.size();
     is_free_.assign(count, 1);
@@ -186,8 +185,7 @@ class Search {
 
   std::vector<double> determinate_ratios() const {
     std::vector<double> ratios;
-    for (const base::Vec6<double>& force :
-         determinate_forces(structure_, options_.known_forces)) {
+    for (const base::Vec6<double>& force : determinate_forces(structure_, options_.known_forces)) {
       ratios.push_back(joint_ratio(structure_.joints[ratios.size()], force));
     }
     return ratios;

@@ -50,7 +50,7 @@ void anchor(const Structure& structure, Part& part) {
   const std::size_t ground = structure.bodies.size();
   const auto end_of = [&](std::int32_t body) {
     return body == Joint::kGround || part.group[base::at(body)] == Part::kNone ? ground
-                                                                              : base::at(body);
+                                                                               : base::at(body);
   };
   Sets sets(ground + 1);
   for (const std::size_t joint : part.joints) {

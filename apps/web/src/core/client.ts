@@ -6,6 +6,7 @@ import type { RobotData } from '../model/edited_robot';
 import {
   CoreError,
   type Answer,
+  type LimitLoad,
   type OpenedDocument,
   type Output,
   type SimulationChoice,
@@ -44,6 +45,10 @@ export class CoreClient {
 
   check(robot: RobotData, firstLook = false): Promise<Answer> {
     return this.call('check', [robot, firstLook]);
+  }
+
+  limit(robot: RobotData, secondsMax: number): Promise<LimitLoad | null> {
+    return this.call('limit', [robot, secondsMax]);
   }
 
   tryPlaces(robot: RobotData, places: Int32Array, role: Role): Promise<Trial[]> {

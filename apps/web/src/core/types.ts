@@ -3,6 +3,7 @@
 
 /** What the page and the core exchange. Lengths in mm, forces in N, torques in N mm. */
 
+import type { Cell } from '../model/cell';
 import type { LatticeTable } from '../model/lattice';
 
 export type Point = [x: number, y: number];
@@ -35,6 +36,16 @@ export interface Stability {
   centre_of_mass: Point3;
   polygon: Point[];
   rigid: RigidAnswer;
+}
+
+/** The largest factor of all loads that any forces could balance, and how the robot collapses beyond it. */
+export interface LimitLoad {
+  /** Null: whatever the factor of all loads, some forces balance them. */
+  factor: number | null;
+  /** Connections that give way, as two cells, null for a support; fastest first. */
+  yields: { a: Cell | null; b: Cell | null; limit: string }[];
+  /** By module in the program's order: velocity and angular velocity, the largest of 1 mm; may be empty. */
+  velocities: number[][];
 }
 
 export interface Answer {
