@@ -15,11 +15,15 @@ using Eigen::VectorXd;
 /// A factor of rounding.
 constexpr double kNothing = 1e-10;
 
+bool is_closed(const ProgramBounds& bounds, double tolerance) {
+  return bounds.high - bounds.low <= std::max(tolerance * bounds.high, kNothing);
+}
+
 /// The embedding:  A'y + G'z + c tau = 0,  A x = 0,  s + G x = h tau,  kappa + c'x + h'z = 0
 /// with x = (f, lambda), c = (0, -1), s and z in the cones, tau and kappa not negative.
 class InteriorPoint {
  public:
-  explicit InteriorPoint(const ConeProgram& program) : program_(program), system_(program) {
+  InteriorPoint(const ConeProgram& program, double softness) : system_(program, softness) {
     const VectorXd centre = system_.centre();
     point_ = {.x = VectorXd::Zero(system_.force_count()),
               .y = VectorXd::Zero(program.loads.size()),
@@ -33,8 +37,7 @@ class InteriorPoint {
       find_residuals();
       bound();
       bounds_.iteration_count = i;
-      if (bounds_.high - bounds_.low <= std::max(tolerance * bounds_.high, kNothing) ||
-          bounds_.low >= low_enough || is_over() || !advance()) {
+      if (is_closed(bounds_, tolerance) || bounds_.low >= low_enough || is_over() || !advance()) {
         break;
       }
     }
@@ -150,7 +153,6 @@ class InteriorPoint {
     return step;
   }
 
-  const ConeProgram& program_;
   KktSystem system_;
   KktVector point_;
   VectorXd s_;
@@ -171,7 +173,21 @@ class InteriorPoint {
 
 ProgramBounds maximise_factor(const ConeProgram& program, double tolerance, double low_enough,
                               const std::function<bool()>& is_over) {
-  return InteriorPoint(program).run(tolerance, low_enough, is_over);
+  ProgramBounds best;
+  // What has no limit is given so little; where rounding wins too early, more.
+  for (const double softness : {1e-12, 1e-8, 1e-10}) {
+    ProgramBounds bounds = InteriorPoint(program, softness).run(tolerance, low_enough, is_over);
+    best.low = std::max(best.low, bounds.low);
+    if (bounds.high < best.high) {
+      best.high = bounds.high;
+      best.velocities = std::move(bounds.velocities);
+    }
+    best.iteration_count += bounds.iteration_count;
+    if (is_closed(best, tolerance) || best.low >= low_enough || is_over()) {
+      break;
+    }
+  }
+  return best;
 }
 
 }  // namespace holdfast::limit

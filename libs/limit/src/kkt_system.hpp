@@ -24,7 +24,9 @@ struct KktVector {
 /// the loads: the stiffness of a frame of which each joint's compliance is G' W^-2 G.
 class KktSystem {
  public:
-  explicit KktSystem(const ConeProgram& program);
+  /// `softness` is the compliance that directions without limit are given, in units of the program;
+  /// the refinement takes it back.
+  KktSystem(const ConeProgram& program, double softness);
 
   Eigen::Index force_count() const { return 6 * joint_count() + 1; }
 
@@ -61,6 +63,7 @@ class KktSystem {
   void improve(KktVector& solution, const KktVector& rest) const;
 
   const ConeProgram& program_;
+  double softness_;
   std::vector<ConeProgram::Cone> cones_;
   Eigen::VectorXd h_;
   Eigen::VectorXd centre_;
