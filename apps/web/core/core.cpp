@@ -230,6 +230,18 @@ Reply check_request(const Request& request) {
   return assessment_reply(robot.value(), result.assessment, result.seconds);
 }
 
+/// Text: what io::collapse_json says; null also if it is not found within options[0] seconds.
+Reply limit_request(const Request& request) {
+  const auto robot = robot_of(request);
+  if (!robot) {
+    return failure(robot.error());
+  }
+  const CheckResult result =
+      check(robot.value(), {.is_limit_wanted = true,
+                            .limit_seconds_max = static_cast<double>(request.header.options[0])});
+  return {.text = io::collapse_json(robot.value(), *result.limit), .integers = {}, .numbers = {}};
+}
+
 /// With one more module of the Role in options[0] at each place of the tail. Text: a list of
 /// verdicts, null where no module can be. Numbers: the largest load ratio (-1 if there is none) and
 /// the margin in mm (0 if it is fixed).
@@ -513,6 +525,10 @@ HOLDFAST_EXPORT(holdfast_open)()->void { web::reply = web::open_text(web::as_tex
 
 HOLDFAST_EXPORT(holdfast_check)()->void {
   web::reply = web::check_request(web::read_request(web::input));
+}
+
+HOLDFAST_EXPORT(holdfast_limit)()->void {
+  web::reply = web::limit_request(web::read_request(web::input));
 }
 
 HOLDFAST_EXPORT(holdfast_try_places)()->void {

@@ -7,6 +7,7 @@ import {
   CoreError,
   type Answer,
   type JudgedSteps,
+  type LimitLoad,
   type OpenedDocument,
   type Output,
   type SimulationChoice,
@@ -46,6 +47,10 @@ export class CoreClient {
 
   check(robot: RobotData, firstLook = false): Promise<Answer> {
     return this.call('check', [robot, firstLook]);
+  }
+
+  limit(robot: RobotData, secondsMax: number): Promise<LimitLoad | null> {
+    return this.call('limit', [robot, secondsMax]);
   }
 
   tryPlaces(robot: RobotData, places: Int32Array, role: Role): Promise<Trial[]> {
