@@ -40,7 +40,9 @@ std::string certificate_text(const plan::MovePlan& plan) {
   }
   return lines(
       '{',
-      {member("reason", json_text(std::string("exhausted"))), member("shapes", array(shapes, 4))},
+      {member("reason", json_text(std::string("exhausted"))),
+       member("end", json_text(std::string(plan.certificate->is_backward ? "target" : "start"))),
+       member("shapes", array(shapes, 4))},
       '}', 2);
 }
 
@@ -101,8 +103,12 @@ std::string proof_words(const plan::MoveCertificate& certificate) {
     return fmt::format("  proof       the target itself is not safe: {}\n",
                        verdict::name(certificate.target->verdict));
   }
-  return fmt::format("  proof       {} can be reached, and no move leads out of them\n",
-                     counted(certificate.shapes.size(), "shape"));
+  const bool is_backward = certificate.is_backward;
+  return fmt::format("  proof       {} {}, and no {}move leads {} them\n",
+                     counted(certificate.shapes.size(), "shape"),
+                     is_backward ? "lead to the target" : "can be reached",
+                     certificate.task.ignores_mechanics ? "" : "safe ",
+                     is_backward ? "into" : "out of");
 }
 
 std::optional<base::Error> find_plan(const Document& document, const char* which) {
@@ -229,6 +235,7 @@ base::Result<plan::MoveCertificate> read_move_certificate(std::string_view text,
   if (!shapes.is_array()) {
     return no_certificate("a report with a certificate", "/certificate");
   }
+  certificate.is_backward = at(value, "end") == "target";
   for (const Json& entry : shapes) {
     auto shape = read_shape(entry);
     if (!shape) {

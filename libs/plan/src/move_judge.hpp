@@ -38,6 +38,11 @@ class MoveJudge {
   std::unordered_set<Shape, ShapeHash> unsafe_;  ///< Even when all is connected.
 };
 
+/// The move that takes another one back.
+inline model::Move back(const model::Move& move) {
+  return {.from = move.to, .to = move.from, .carrier = move.carrier};
+}
+
 /// One move as a step.
 inline model::Step step_of(const model::Move& move) {
   model::Step step;

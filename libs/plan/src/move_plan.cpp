@@ -91,10 +91,13 @@ Judgement judge_spec(const model::RobotSpec& spec, const MoveOptions& options) {
 class Search {
  public:
   Search(const MoveTask& task, const MoveOptions& options, const Problem& problem)
-      : options_(options),
+      : task_(task),
+        options_(options),
         problem_(problem),
+        reversed_(problem.space.reversed()),
         judge_(task, options),
-        exact_(problem.space, problem.rule, judge_, options.seed) {}
+        forth_(problem.space, problem.rule, judge_, options.seed, End::kStart),
+        back_(reversed_, problem.rule, judge_, options.seed, End::kTarget) {}
 
   /// A first plan along the surface, then the exact search for a shorter one; and where neither
   /// finds any, more of both in turns.
@@ -110,8 +113,6 @@ class Search {
     return std::move(plan_);
   }
 
-  std::vector<Shape> shapes() const { return exact_.shapes(); }
-
  private:
   void seek() {
     walk(0);
@@ -119,7 +120,7 @@ class Search {
     for (std::uint64_t attempt = 1; !search(count) && !judge_.is_over(); ++attempt) {
       count = walk(attempt);
     }
-    plan_.length_min = exact_.length_min();
+    plan_.length_min = std::max(forth_.length_min(), back_.length_min());
     if (plan_.outcome == MoveOutcome::kFound) {
       plan_.length_min = std::min(plan_.length_min, length());
     }
@@ -134,21 +135,33 @@ class Search {
     return judge_.count() - before;
   }
 
-  /// So many moves of the exact search, and a few. Whether there is an answer.
+  /// So many moves of the exact search, and a few; where no plan is known some from the target
+  /// backwards too, which proves at once that one that nothing leads to cannot be reached. Whether
+  /// there is an answer.
   bool search(std::size_t count) {
     constexpr std::size_t kFew = 100;
-    const bool is_found = plan_.outcome == MoveOutcome::kFound;
-    const auto outcome = exact_.run(judge_.count() + count + kFew,
-                                    is_found ? length() : std::numeric_limits<int>::max());
-    if (outcome == SearchOutcome::kFound) {
-      distance_ = std::numeric_limits<int>::max();
-    }
-    if (outcome == SearchOutcome::kExhausted) {
-      plan_.outcome = MoveOutcome::kNone;
-    } else {
-      keep(exact_.moves(), exact_.distance());
+    constexpr std::size_t kBackwardShare = 4;
+    const bool is_known = plan_.outcome == MoveOutcome::kFound;
+    settle(forth_, End::kStart,
+           forth_.run(judge_.count() + count + kFew,
+                      is_known ? length() : std::numeric_limits<int>::max()));
+    if (plan_.outcome == MoveOutcome::kNotFound) {
+      settle(back_, End::kTarget, back_.run(judge_.count() + count / kBackwardShare + kFew));
     }
     return plan_.outcome != MoveOutcome::kNotFound;
+  }
+
+  void settle(const ShapeSearch& search, End end, SearchOutcome outcome) {
+    if (outcome == SearchOutcome::kExhausted) {
+      plan_ = {.outcome = MoveOutcome::kNone};
+      plan_.certificate = MoveCertificate{
+          .task = task_, .shapes = search.shapes(), .is_backward = end == End::kTarget};
+    } else if (outcome == SearchOutcome::kFound) {
+      distance_ = std::numeric_limits<int>::max();
+      keep(search.moves(), 0);
+    } else if (end == End::kStart) {
+      keep(search.moves(), search.distance());
+    }
   }
 
   int length() const { return static_cast<int>(plan_.steps.size()); }
@@ -165,10 +178,13 @@ class Search {
     }
   }
 
+  const MoveTask& task_;
   const MoveOptions& options_;
   const Problem& problem_;
+  ShapeSpace reversed_;
   MoveJudge judge_;
-  ShapeSearch exact_;
+  ShapeSearch forth_;
+  ShapeSearch back_;
   MovePlan plan_;
   int distance_ = std::numeric_limits<int>::max();
 };
@@ -192,6 +208,40 @@ std::optional<base::Error> judge_plan(const MoveTask& task, const MoveOptions& o
   HOLDFAST_CHECK(task.ignores_mechanics || judged.value().verdict() == verdict::Verdict::kSafe);
   plan.judgement = std::move(judged).value();
   return std::nullopt;
+}
+
+/// Makes every move across the border of a certificate's shapes anew.
+base::Result<MoveCertificateCheck> replay(const MoveCertificate& certificate,
+                                          const Problem& problem, const MoveOptions& options) {
+  const bool is_backward = certificate.is_backward;
+  const ShapeSpace space = is_backward ? problem.space.reversed() : problem.space;
+  const std::set<Shape> inside(certificate.shapes.begin(), certificate.shapes.end());
+  if (!inside.contains(space.start()) || inside.contains(space.target())) {
+    return bad_input("of start and target the wrong one is among the shapes");
+  }
+  MoveJudge judge(certificate.task, options);
+  MoveCertificateCheck check{.shape_count = inside.size()};
+  for (const Shape& shape : inside) {
+    const RobotState robot = space.state_of(shape);
+    for (const std::int32_t module : loose_modules(robot)) {
+      for (const model::Move& move : moves_of(robot, module, problem.rule)) {
+        const Shape next = space.after(shape, move.from, move.to);
+        if (inside.contains(next)) {
+          continue;
+        }
+        const model::Move made = is_backward ? back(move) : move;
+        if (is_backward ? judge.is_safe(space.state_of(next), made, shape)
+                        : judge.is_safe(robot, made, next)) {
+          return bad_input(
+              fmt::format("the module {} can go to {} safely, across the border of "
+                          "the shapes",
+                          model::text(made.from), model::text(made.to)));
+        }
+        ++check.unsafe_count;
+      }
+    }
+  }
+  return check;
 }
 
 }  // namespace
@@ -224,11 +274,7 @@ base::Result<MovePlan> find_moves(const MoveTask& task, const MoveOptions& optio
       return unsafe_target(task, target);
     }
   }
-  Search search(task, options, problem.value());
-  MovePlan plan = search.run();
-  if (plan.outcome == MoveOutcome::kNone) {
-    plan.certificate = MoveCertificate{.task = task, .shapes = search.shapes()};
-  }
+  MovePlan plan = Search(task, options, problem.value()).run();
   if (auto error = judge_plan(task, options, plan)) {
     return *std::move(error);
   }
@@ -249,30 +295,7 @@ base::Result<MoveCertificateCheck> verify(const MoveCertificate& certificate,
     }
     return MoveCertificateCheck{.unsafe_count = 1};
   }
-  const ShapeSpace& space = problem.value().space;
-  const std::set<Shape> inside(certificate.shapes.begin(), certificate.shapes.end());
-  if (!inside.contains(space.start()) || inside.contains(space.target())) {
-    return bad_input("the shapes have not the start among them, or have the target");
-  }
-  MoveJudge judge(task, more);
-  MoveCertificateCheck check{.shape_count = inside.size()};
-  for (const Shape& shape : inside) {
-    const RobotState robot = space.state_of(shape);
-    for (const std::int32_t module : loose_modules(robot)) {
-      for (const model::Move& move : moves_of(robot, module, problem.value().rule)) {
-        const Shape next = space.after(shape, move.from, move.to);
-        if (inside.contains(next)) {
-          continue;
-        }
-        if (judge.is_safe(robot, move, next)) {
-          return bad_input(fmt::format("the module {} can go to {} safely, which leads out",
-                                       model::text(move.from), model::text(move.to)));
-        }
-        ++check.unsafe_count;
-      }
-    }
-  }
-  return check;
+  return replay(certificate, problem.value(), more);
 }
 
 }  // namespace holdfast::plan

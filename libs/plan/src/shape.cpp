@@ -21,6 +21,10 @@ using base::Cell;
 /// More moves than there are in any plan.
 constexpr int kNever = 1'000'000;
 
+/// Of more modules alike than this, each that is misplaced counts as one move: an assignment takes
+/// as long as their cube.
+constexpr std::size_t kAssignedMax = 60;
+
 /// What makes modules alike.
 using Alike = std::tuple<std::uint16_t, double, std::array<double, 3>, std::array<double, 3>>;
 
@@ -122,6 +126,12 @@ std::vector<Cell> translations(const base::Lattice& lattice) {
   return {found.begin(), found.end()};
 }
 
+/// How many of these cells, ascending, are none of the others.
+int misplaced(std::span<const Cell> cells, std::span<const Cell> others) {
+  return static_cast<int>(std::ranges::count_if(
+      cells, [&](const Cell& cell) { return !std::ranges::binary_search(others, cell); }));
+}
+
 int along(const Cell& direction, const Cell& way) {
   return direction.x * way.x + direction.y * way.y + direction.z * way.z;
 }
@@ -169,6 +179,13 @@ base::Result<ShapeSpace> ShapeSpace::create(const RobotState& start, const Robot
     space.class_begin_.push_back(space.start_.size());
   }
   space.gains_ = gains_of(start.lattice());
+  return space;
+}
+
+ShapeSpace ShapeSpace::reversed() const {
+  ShapeSpace space = *this;
+  space.robot_.move(start_, target_);
+  std::swap(space.start_, space.target_);
   return space;
 }
 
@@ -232,6 +249,10 @@ int ShapeSpace::distance(const Shape& shape) const {
   for (std::size_t i = 0; i + 1 < class_begin_.size(); ++i) {
     const std::size_t begin = class_begin_[i];
     const std::size_t count = class_begin_[i + 1] - begin;
+    if (count > kAssignedMax) {
+      total += misplaced({shape.data() + begin, count}, {target_.data() + begin, count});
+      continue;
+    }
     std::vector<int> costs(count * count);
     for (std::size_t row = 0; row < count; ++row) {
       for (std::size_t column = 0; column < count; ++column) {

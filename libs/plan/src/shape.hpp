@@ -30,6 +30,9 @@ class ShapeSpace {
   /// different fixed modules.
   static base::Result<ShapeSpace> create(const RobotState& start, const RobotState& target);
 
+  /// The way back: start and target have changed places.
+  ShapeSpace reversed() const;
+
   const Shape& start() const { return start_; }
 
   const Shape& target() const { return target_; }
@@ -39,8 +42,9 @@ class ShapeSpace {
   /// The shape after a module has moved.
   Shape after(const Shape& shape, const base::Cell& from, const base::Cell& to) const;
 
-  /// A lower bound of the number of moves to the target: the cheapest assignment of modules to
-  /// cells of the target, each as if it were alone. No move changes it by more than 1.
+  /// A lower bound of the number of moves to the target, 0 only there: the cheapest assignment of
+  /// modules to cells of the target, each as if it were alone; of very many modules that are alike
+  /// the number of those that are misplaced. No move changes it by more than 1.
   int distance(const Shape& shape) const;
 
   /// The cells of the class that the module in a cell of the shape belongs to: in the shape, or in

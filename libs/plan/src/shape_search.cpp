@@ -8,8 +8,13 @@
 namespace holdfast::plan {
 
 ShapeSearch::ShapeSearch(const ShapeSpace& space, const MoveRule& rule, MoveJudge& judge,
-                         std::uint64_t seed)
-    : space_(space), rule_(rule), judge_(judge), rng_(seed), is_random_(seed != 0) {
+                         std::uint64_t seed, End end)
+    : space_(space),
+      rule_(rule),
+      judge_(judge),
+      rng_(seed),
+      is_backward_(end == End::kTarget),
+      is_random_(seed != 0) {
   distance_ = space.distance(space.start());
   enter({.shape = space.start(), .move = {}}, distance_);
 }
@@ -33,7 +38,7 @@ void ShapeSearch::try_next() {
   open_.pop();
   const Node& parent = nodes_[next.parent];
   Shape shape = space_.after(parent.shape, next.move.from, next.move.to);
-  if (known_.contains(shape) || !judge_.is_safe(space_.state_of(parent.shape), next.move, shape)) {
+  if (known_.contains(shape) || !is_safe(parent.shape, next.move, shape)) {
     return;
   }
   enter({.shape = std::move(shape),
@@ -41,6 +46,11 @@ void ShapeSearch::try_next() {
          .move = next.move,
          .depth = parent.depth + 1},
         next.distance);
+}
+
+bool ShapeSearch::is_safe(const Shape& from, const model::Move& move, const Shape& to) {
+  return is_backward_ ? judge_.is_safe(space_.state_of(to), back(move), from)
+                      : judge_.is_safe(space_.state_of(from), move, to);
 }
 
 void ShapeSearch::enter(Node node, int distance) {
@@ -72,9 +82,11 @@ void ShapeSearch::enter(Node node, int distance) {
 std::vector<model::Move> ShapeSearch::moves() const {
   std::vector<model::Move> moves;
   for (std::size_t i = nearest_; i != 0; i = nodes_[i].parent) {
-    moves.push_back(nodes_[i].move);
+    moves.push_back(is_backward_ ? back(nodes_[i].move) : nodes_[i].move);
   }
-  std::ranges::reverse(moves);
+  if (!is_backward_) {
+    std::ranges::reverse(moves);
+  }
   return moves;
 }
 

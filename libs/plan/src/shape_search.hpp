@@ -20,19 +20,27 @@ enum class SearchOutcome : std::uint8_t {
   kStopped,
 };
 
+/// From which end a search begins.
+enum class End : std::uint8_t {
+  kStart,
+  kTarget,  ///< Backwards: to shapes from which a move leads to one that is known.
+};
+
 /// A* [Hart 1968] over shapes with ShapeSpace::distance() as the bound of what is left. A move is
 /// judged only when its end is the most promising, so that hardly more are judged than lie on the
 /// way.
 class ShapeSearch {
  public:
-  /// Keeps references.
-  ShapeSearch(const ShapeSpace& space, const MoveRule& rule, MoveJudge& judge, std::uint64_t seed);
+  /// Keeps references. The space's start is the end to begin with, its target the other one.
+  ShapeSearch(const ShapeSpace& space, const MoveRule& rule, MoveJudge& judge, std::uint64_t seed,
+              End end);
 
-  /// Goes on until the target is found, so many moves in all are judged, or the judge says stop; or
-  /// until no plan can have fewer moves than `length`, that of one that is known.
+  /// Goes on until the other end is found, so many moves in all are judged, or the judge says stop;
+  /// or until no plan can have fewer moves than `length`, that of one that is known.
   SearchOutcome run(std::size_t count_max, int length = std::numeric_limits<int>::max());
 
-  /// The moves to the target, or to the shape that is nearest to it, of all shapes seen.
+  /// From the start to the target if it is found. Else, and void backwards, to the shape that is
+  /// nearest to it, of all shapes seen.
   std::vector<model::Move> moves() const;
 
   /// The distance of that shape.
@@ -72,6 +80,7 @@ class ShapeSearch {
     }
   };
 
+  bool is_safe(const Shape& from, const model::Move& move, const Shape& to);
   void enter(Node node, int distance);
   void try_next();
 
@@ -84,7 +93,8 @@ class ShapeSearch {
   std::priority_queue<Candidate, std::vector<Candidate>, IsWorse> open_;
   std::size_t nearest_ = 0;
   int distance_ = 0;
-  bool is_random_ = false;
+  bool is_backward_;
+  bool is_random_;
   std::uint64_t rank_ = 0;
 };
 

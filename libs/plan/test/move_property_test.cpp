@@ -67,7 +67,25 @@ MoveTask task_of(const World& world, const Cells& start, const Cells& target) {
 struct Tally {
   int found = 0;
   int none = 0;
+  int backward = 0;  ///< Certificates that begin at the target.
 };
+
+/// All parts of the search in turns, with little patience each.
+void compare_in_turns(const MoveTask& task, const std::optional<int>& truth, Tally& tally) {
+  const auto plan = find_moves(task, {.exact_count_max = 0});
+  ASSERT_EQ(plan.value().outcome, truth ? MoveOutcome::kFound : MoveOutcome::kNone);
+  const auto length = static_cast<int>(plan.value().steps.size());
+  if (truth) {
+    EXPECT_GE(length, *truth);
+    EXPECT_LE(plan.value().length_min, *truth);
+    EXPECT_TRUE(!plan.value().is_shortest || length == *truth);
+    return;
+  }
+  const MoveCertificate& certificate = *plan.value().certificate;
+  const auto check = verify(certificate);
+  EXPECT_TRUE(check) << check.error().message;
+  tally.backward += certificate.is_backward ? 1 : 0;
+}
 
 void compare(std::uint64_t seed, Tally& tally) {
   SCOPED_TRACE("seed " + std::to_string(seed));
@@ -83,6 +101,7 @@ void compare(std::uint64_t seed, Tally& tally) {
   const auto truth = brute_force::shortest(world, start, target);
   const auto plan = find_moves(task_of(world, start, target));
   ASSERT_EQ(bool(plan), true) << plan.error().message;
+  compare_in_turns(task_of(world, start, target), truth, tally);
   if (!truth) {
     ++tally.none;
     ASSERT_EQ(plan.value().outcome, MoveOutcome::kNone);
@@ -105,6 +124,7 @@ TEST(MoveProperty, plans_exist_and_are_short_as_by_brute_force) {
   }
   RecordProperty("found", tally.found);
   RecordProperty("none", tally.none);
+  RecordProperty("backward", tally.backward);
   EXPECT_GT(tally.found, static_cast<int>(case_count) / 8);
   EXPECT_GT(tally.none, static_cast<int>(case_count) / 8);
 }

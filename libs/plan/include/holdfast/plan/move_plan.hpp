@@ -61,10 +61,11 @@ struct MoveCertificate {
   MoveTask task;
   /// Not safe: nothing more is to be proved, and `shapes` is empty.
   std::optional<Judgement> target = {};
-  /// All shapes that can be reached safely, each as the cells of all modules that are not fixed,
-  /// those alike together: the start is one of them, the target is none, and no safe step leads
-  /// out.
+  /// Shapes, each as the cells of all modules that are not fixed, those alike together: the start
+  /// is one of them, the target is none, and no safe step leads out.
   std::vector<std::vector<base::Cell>> shapes = {};
+  /// The other way round: the target is one of them, the start is none, and no safe step leads in.
+  bool is_backward = false;
 };
 
 struct MovePlan {
