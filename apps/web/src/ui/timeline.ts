@@ -11,7 +11,7 @@ import type { App } from './app';
 import { formatRatio } from './answer_panel';
 import { drawBands } from './bands';
 import { byId, icon, say, tell, type IconName } from './dom';
-import { take } from './files';
+import { openText, take } from './files';
 
 /** Steps in time: judges every stage of a robot's sequence, plays it, records another. */
 
@@ -20,6 +20,9 @@ const STAGE_MS = 550;
 const WHOLE_MS = 60_000;
 /** A changed robot is judged anew when nothing has changed for so long. */
 const DELAY_MS = 300;
+
+/** An order is sought for so long. */
+const ORDER_SECONDS = 10;
 
 const NO_SLOTS = new Int32Array(0);
 
@@ -35,6 +38,10 @@ export class Timeline {
   /** When the stage that is played has begun. */
   private begun = 0;
   private timer = 0;
+  /** What was asked for is played as soon as it is judged. */
+  private isToPlay = false;
+  /** Of what the core was asked; only the last question's answer is wanted. */
+  private question = 0;
 
   constructor(private readonly app: App) {
     app.bench.robotListeners.push(() => this.changed());
@@ -45,6 +52,7 @@ export class Timeline {
     byId('first-unsafe').onclick = () => this.toFirstUnsafe();
     byId('record').onclick = () => this.record();
     byId('build-on').onclick = () => this.buildOn();
+    byId('order').onclick = () => void this.findOrder();
     byId('judge-steps').onclick = () => void this.judge();
     byId('sequence-stop').onclick = () => this.client.cancel();
     byId('save-steps').onclick = () => void take(app.bench, app.stage, 'json');
@@ -120,7 +128,8 @@ export class Timeline {
     this.showRecording();
     this.forget();
     clearTimeout(this.timer);
-    const hasSteps = (robot.surroundings.steps?.length ?? 0) + robot.laterSteps > 0;
+    const { hasSteps } = this;
+    byId('order').hidden = robot.count === 0 || this.recorder !== undefined;
     byId('save-steps').hidden = !hasSteps || this.recorder !== undefined;
     byId('judge-steps').hidden = hasSteps || this.recorder !== undefined || !hasPlanned(robot);
     if (hasSteps && !this.recorder) {
@@ -128,9 +137,17 @@ export class Timeline {
     }
   }
 
+  private get hasSteps(): boolean {
+    const { surroundings, laterSteps } = this.app.bench.robot;
+    return (surroundings.steps?.length ?? 0) + laterSteps > 0;
+  }
+
   private forget(): void {
+    ++this.question;
     this.client.cancel();
     this.pause();
+    this.isToPlay = false;
+    byId<HTMLButtonElement>('order').disabled = false;
     this.judged = this.sequence = this.at = this.loads = undefined;
     this.app.bench.closed = '';
     byId('sequence').hidden = true;
@@ -141,21 +158,13 @@ export class Timeline {
 
   private async judge(): Promise<void> {
     const { robot } = this.app.bench;
-    const text = byId('sequence-text');
     byId('judge-steps').hidden = true;
-    byId('sequence-progress').hidden = false;
-    text.textContent = 'Judging every stage …';
-    try {
-      const judged = await this.client.judgeSteps(robot.toData(true).data, robot.name, robot.base);
-      if (this.app.bench.robot === robot) {
-        this.open(robot, judged);
-      }
-    } catch (error) {
-      const reason = error instanceof Error ? error.message : String(error);
-      text.textContent = error instanceof Cancelled ? 'Stopped: the steps are not judged.' : reason;
-      byId('judge-steps').hidden = false;
+    const judged = await this.wait('Judging every stage …', () =>
+      this.client.judgeSteps(robot.toData(true).data, robot.name, robot.base),
+    );
+    if (judged) {
+      this.open(robot, judged);
     }
-    byId('sequence-progress').hidden = true;
   }
 
   private open(robot: EditedRobot, judged: JudgedSteps): void {
@@ -167,6 +176,53 @@ export class Timeline {
     byId('sequence-text').textContent = summary(judged);
     this.showPlace();
     say(summary(judged));
+    if (this.isToPlay) {
+      this.isToPlay = false;
+      this.toggle();
+    }
+  }
+
+  /** Seeks an order for the modules that are there, and shows the robot grow by it. */
+  private async findOrder(): Promise<void> {
+    const { bench } = this.app;
+    const { robot } = bench;
+    this.buildOn();
+    this.forget();
+    const found = await this.wait(`Seeking an order, for ${ORDER_SECONDS} s at most …`, () =>
+      this.client.findOrder(robot.toData(true).data, ORDER_SECONDS, robot.name, robot.base),
+    );
+    if (found?.structure) {
+      this.isToPlay = await openText(bench, new TextEncoder().encode(found.structure), robot.name);
+    } else if (found) {
+      byId('sequence-text').textContent = found.text;
+      say(found.text);
+    }
+  }
+
+  /** Says that the core is busy, and in the end why it has no answer. */
+  private async wait<Value>(doing: string, ask: () => Promise<Value>): Promise<Value | undefined> {
+    const question = ++this.question;
+    let text = doing;
+    let answer: Value | undefined;
+    const show = (isBusy: boolean) => {
+      byId('sequence-progress').hidden = !isBusy;
+      byId<HTMLButtonElement>('order').disabled = isBusy;
+      byId('sequence-text').textContent = text;
+    };
+    show(true);
+    try {
+      answer = await ask();
+      text = '';
+    } catch (error) {
+      const reason = error instanceof Error ? error.message : String(error);
+      text = error instanceof Cancelled ? 'Stopped.' : reason;
+    }
+    if (question !== this.question) {
+      return undefined;
+    }
+    show(false);
+    byId('judge-steps').hidden = answer !== undefined || !(this.hasSteps || hasPlanned(this.app.bench.robot));
+    return answer;
   }
 
   private step(by: 1 | -1): void {
