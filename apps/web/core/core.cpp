@@ -379,6 +379,9 @@ Reply judge_steps_request(const Request& request) {
           .numbers = {}};
 }
 
+/// Where there is no order, help is sought for so long.
+constexpr double kHelpSeconds = 3;
+
 /// An order for the modules of the document, sought for options[0] seconds. Text: the outcome, the
 /// report in words, and the structure with the steps as a file, empty if none was found.
 Reply order_request(const Request& request) {
@@ -387,9 +390,10 @@ Reply order_request(const Request& request) {
     return failure(document.error());
   }
   document.value().extension.plan.clear();
-  const auto report = seek_order(
-      document.value(),
-      {.seconds_max = static_cast<double>(request.header.options[0]), .thread_count = 1});
+  const auto report =
+      seek_order(document.value(), {.seconds_max = static_cast<double>(request.header.options[0]),
+                                    .help_seconds_max = kHelpSeconds,
+                                    .thread_count = 1});
   if (!report) {
     return failure(report.error());
   }

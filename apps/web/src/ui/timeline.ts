@@ -1,9 +1,8 @@
 // SPDX-FileCopyrightText: The holdfast authors
 // SPDX-License-Identifier: Apache-2.0
 import { CoreClient, Cancelled } from '../core/client';
-import type { Finding } from '../core/judge';
-import type { Answer, JudgedSteps, StageLoads, StageReport } from '../core/types';
-import { Role, cellText, equal, type Cell } from '../model/cell';
+import type { JudgedSteps, StageLoads, StageReport } from '../core/types';
+import { Role } from '../model/cell';
 import type { EditedRobot } from '../model/edited_robot';
 import { Recorder } from '../model/recorder';
 import { STAGES, Sequence } from '../model/sequence';
@@ -12,6 +11,7 @@ import { formatRatio } from './answer_panel';
 import { drawBands } from './bands';
 import { byId, icon, say, tell, type IconName } from './dom';
 import { openText, take } from './files';
+import { findingOf } from './stage_finding';
 
 /** Steps in time: judges every stage of a robot's sequence, plays it, records another. */
 
@@ -23,8 +23,6 @@ const DELAY_MS = 300;
 
 /** An order is sought for so long. */
 const ORDER_SECONDS = 10;
-
-const NO_SLOTS = new Int32Array(0);
 
 export class Timeline {
   private readonly client = new CoreClient();
@@ -396,58 +394,3 @@ function summary({ report, texts }: JudgedSteps): string {
   const first = report.first_unsafe ? `; first unsafe: step ${report.first_unsafe.step}, ${report.first_unsafe.stage}` : '';
   return `${safe} of ${texts.length} steps safe in every stage${ratio}${margin}${first}.`;
 }
-
-/** What the panel shows of a stage: its verdict, and the loads as far as they are known. */
-function findingOf(robot: EditedRobot, report: StageReport, loads: StageLoads | undefined): Finding {
-  const cells = loads?.cells ?? NO_SLOTS;
-  const slots = Int32Array.from({ length: cells.length / 3 }, (_, i) => {
-    const cell: Cell = [cells[3 * i], cells[3 * i + 1], cells[3 * i + 2]];
-    const slot = robot.slot(cell);
-    if (slot === undefined) {
-      throw new Error(`the core has a module in ${cellText(cell)}, the page has none`);
-    }
-    return slot;
-  });
-  const answer: Answer = {
-    verdict: report.verdict,
-    reasons: report.reasons,
-    stability: loads?.stabilities[0] ?? unknownStability(report),
-    load_ratio_max: report.load_ratio_max,
-    worst: loads ? worstOf(robot, report, loads, slots) : null,
-    weight_factor: null,
-    contact_model: loads?.contact_model ?? '',
-    solves: 0,
-    facet_half_mm: 0,
-    has_loads: (loads?.loads.length ?? 0) > 0,
-    seconds: 0,
-    connections: loads?.connections ?? NO_SLOTS,
-    broken: loads?.broken ?? NO_SLOTS,
-    loads: loads?.loads ?? new Float64Array(0),
-    facets: NO_SLOTS,
-    limits: NO_SLOTS,
-    facetForces: new Float64Array(0),
-    displacements: new Float64Array(0),
-  };
-  return { answer, slots };
-}
-
-/** The connection that the report names; null if it is one to what moves. */
-function worstOf(robot: EditedRobot, { at }: StageReport, { connections }: StageLoads, slots: Int32Array): number | null {
-  for (let i = 0; at && 3 * i < connections.length; ++i) {
-    const [a, b] = [0, 1].map((end) => robot.cellAt(slots[connections[3 * i + end]]));
-    if ((equal(a, at[0]) && equal(b, at[1])) || (equal(a, at[1]) && equal(b, at[0]))) {
-      return i;
-    }
-  }
-  return null;
-}
-
-const unknownStability = ({ verdict, margin_mm }: StageReport): Answer['stability'] => ({
-  rule: 'polygon',
-  stable: verdict !== 'unstable',
-  margin_mm,
-  edge: null,
-  centre_of_mass: [0, 0, 0],
-  polygon: [],
-  rigid: { answer: 'undecided', friction_needed: null, tilt_margin_deg: null, motion: null },
-});
