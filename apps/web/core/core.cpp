@@ -15,7 +15,6 @@
 
 #include "holdfast/distributed.hpp"
 #include "holdfast/order.hpp"
-#include "holdfast/plan/judgement.hpp"
 #include "holdfast/steps.hpp"
 #include "packet_log.hpp"
 #include "request.hpp"
