@@ -34,8 +34,10 @@ Command add_convert(CLI::App& app);
 Command add_emulate(CLI::App& app);
 Command add_generate(CLI::App& app);
 Command add_next(CLI::App& app);
+Command add_order(CLI::App& app);
 Command add_robots(CLI::App& app);
 Command add_simulate(CLI::App& app);
+Command add_steps(CLI::App& app);
 Command add_view(CLI::App& app);
 
 /// The verdict in capitals, coloured on a terminal, padded to the longest.

@@ -253,9 +253,6 @@ Reply open_text(std::string_view text) {
     return failure(read.error());
   }
   const io::Document& document = read.value().document;
-  if (const auto error = io::find_unsupported(document)) {
-    return failure(*error);
-  }
   if (has_double_cell(document)) {
     const auto robot = io::make_robot(document);
     HOLDFAST_CHECK(!robot);

@@ -203,10 +203,6 @@ void Reading::warn_of_content() {
       warn_of_entry(*this, planned, kCellAttributes);
     }
   }
-  if (document.steps.size() > 1) {
-    warn(fmt::format("{} steps are read, only the first one is checked", document.steps.size()),
-         nowhere);
-  }
   for (const Element& element : document.scenery) {
     if (!is_scenery_element(element.name)) {
       note_unknown(fmt::format("the element {}", excerpt(element.name)), element.name,

@@ -45,8 +45,10 @@ std::string several_text(const Numbers& n) {
       range_text(n[1], n[2]), n[0], has_unilateral ? range_text(n[3], n[4]) : "not known");
 }
 
-std::string connection_text(const model::Robot& robot, double index) {
-  return model::ends_text(robot, static_cast<std::size_t>(index));
+using Cells = std::span<const base::Cell>;
+
+std::string connection_text(Cells ends) {
+  return model::text(ends[0]) + "-" + model::text(ends[1]);
 }
 
 /// Reasons that have no numbers; empty for all others.
@@ -93,7 +95,7 @@ std::string_view fixed_text(ReasonCode code) {
 }
 
 /// Reasons about loads that are known.
-std::string load_text(const model::Robot& robot, const Reason& reason) {
+std::string load_text(const Reason& reason, Cells cells) {
   const Numbers& n = reason.numbers;
   switch (reason.code) {
     case ReasonCode::kLimitInRange:
@@ -105,7 +107,7 @@ std::string load_text(const model::Robot& robot, const Reason& reason) {
     case ReasonCode::kConnectionsBreak:
       return fmt::format(
           "{:.0f} of {:.0f} connections would break; the worst, {}, carries {} of its strength",
-          n[0], n[1], connection_text(robot, n[2]), beside_one(n[3], 4));
+          n[0], n[1], connection_text(cells), beside_one(n[3], 4));
     case ReasonCode::kNoKnownTension:
       return fmt::format(
           "stable, and no connection is known to be pulled apart: none carries more than {:.1g} of "
@@ -113,7 +115,7 @@ std::string load_text(const model::Robot& robot, const Reason& reason) {
           rounded_up(n[0]));
     case ReasonCode::kHolds:
       return fmt::format("stable; the worst connection, {}, carries {} of its strength",
-                         connection_text(robot, n[0]), beside_one(n[1], 4));
+                         connection_text(cells), beside_one(n[1], 4));
     case ReasonCode::kSolutionsAgree:
       return several_text(n) + (n[0] < 2 ? "; both give this verdict" : "; all give this verdict");
     case ReasonCode::kAmbiguousFeet:
@@ -129,6 +131,10 @@ std::string load_text(const model::Robot& robot, const Reason& reason) {
 }  // namespace
 
 std::string reason_text(const model::Robot& robot, const verdict::Reason& reason) {
+  return reason_text(reason, verdict::cells_of(robot, reason));
+}
+
+std::string reason_text(const verdict::Reason& reason, std::span<const base::Cell> cells) {
   const Numbers& n = reason.numbers;
   switch (reason.code) {
     case ReasonCode::kNothingToSpare:
@@ -161,14 +167,25 @@ std::string reason_text(const model::Robot& robot, const verdict::Reason& reason
       return fmt::format(
           "a facet of {} may slip: its sideways force is {} of what presses it, its friction {}; "
           "other contact forces may hold the robot, so nothing is certain",
-          model::text(robot.modules()[static_cast<std::size_t>(n[0])].cell), beside_one(n[1], 4),
-          n[2]);
+          model::text(cells[0]), beside_one(n[1], 4), n[2]);
     case ReasonCode::kGapsOpen:
       return fmt::format(
           "warning: {:.0f} connections open so far that contacts of power and data part; the "
           "worst, "
           "{}, by {:.3g} mm at its edge where {:.3g} are allowed",
-          n[0], connection_text(robot, n[1]), n[2], n[3]);
+          n[0], connection_text(cells), n[2], n[3]);
+    case ReasonCode::kCarrierBreaks:
+      return fmt::format(
+          "the connection by which {} carries the module from {} would break: it carries {} of its "
+          "strength",
+          model::text(cells[0]), model::text(cells[1]), beside_one(n[0], 4));
+    case ReasonCode::kCarrierHolds:
+      return fmt::format(
+          "the worst connection, by which {} carries the module from {}, carries {} of its "
+          "strength",
+          model::text(cells[0]), model::text(cells[1]), beside_one(n[0], 4));
+    case ReasonCode::kInPieces:
+      return fmt::format("the robot is in {:.0f} pieces, each judged by itself", n[0]);
     case ReasonCode::kVerdictOfTheRobot:
       return fmt::format("the robot's own verdict: {}{}", reason.quoted,
                          n[0] != 0 ? "" : "; not every module knows it");
@@ -176,7 +193,7 @@ std::string reason_text(const model::Robot& robot, const verdict::Reason& reason
       break;
   }
   const std::string_view fixed = fixed_text(reason.code);
-  return fixed.empty() ? load_text(robot, reason) : std::string(fixed);
+  return fixed.empty() ? load_text(reason, cells) : std::string(fixed);
 }
 
 }  // namespace holdfast::io

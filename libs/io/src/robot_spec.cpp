@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "holdfast/io/document.hpp"
 #include "json_values.hpp"
@@ -119,23 +120,35 @@ std::vector<model::ModuleKind> kinds_of(const Document& document) {
   return kinds;
 }
 
-/// The cell of a module with parameters of its own; none if nothing is checked of its step.
+/// What modules have of their own, for those of one step of the document, or of step 0, which
+/// exist.
+struct OwnLists {
+  std::vector<model::OwnKind>& kinds;
+  std::vector<model::OwnMass>& masses;
+};
+
+/// The cell of a module with parameters of its own; none if the document has no such module.
 const base::Cell* find_cell(const Document& document, const OwnParameters& own) {
-  if (own.step == 0 && own.module < document.modules.size()) {
-    return &document.modules[own.module].cell;
+  if (own.step == 0) {
+    return own.module < document.modules.size() ? &document.modules[own.module].cell : nullptr;
   }
-  const bool is_planned =
-      own.step == 1 && !document.steps.empty() && own.module < document.steps.front().size();
-  return is_planned ? &document.steps.front()[own.module].cell : nullptr;
+  if (own.step > document.steps.size()) {
+    return nullptr;
+  }
+  const Step& step = document.steps[own.step - 1];
+  return own.module < step.size() ? &step[own.module].cell : nullptr;
 }
 
-/// Gives modules their own kinds and masses. A mass that is that of the kind says nothing.
+/// Gives modules their own kinds and masses; `lists(step)` are those of a step, or none. A mass
+/// that is that of the kind says nothing.
+template <class Lists>
 std::optional<base::Error> add_own(const Document& document,
                                    const std::vector<model::ModuleKind>& kinds,
-                                   model::RobotSpec& spec) {
+                                   const Lists& lists) {
   for (const OwnParameters& own : document.extension.own) {
     const base::Cell* const cell = find_cell(document, own);
-    if (cell == nullptr) {
+    const std::optional<OwnLists> list = lists(own.step);
+    if (cell == nullptr || !list) {
       continue;
     }
     const auto kind = std::ranges::find(kinds, own.kind, &model::ModuleKind::name);
@@ -146,41 +159,24 @@ std::optional<base::Error> add_own(const Document& document,
                          "/kinds"};
     }
     if (kind != kinds.begin()) {
-      spec.own_kinds.push_back({*cell, static_cast<std::uint16_t>(kind - kinds.begin())});
+      list->kinds.push_back({*cell, static_cast<std::uint16_t>(kind - kinds.begin())});
     }
     if (own.mass_kg && *own.mass_kg != kind->mass_kg) {
-      spec.own_masses.push_back({*cell, *own.mass_kg});
+      list->masses.push_back({*cell, *own.mass_kg});
     }
   }
   return std::nullopt;
 }
 
-}  // namespace
-
-std::optional<base::Error> find_unsupported(const Document& document) {
-  if (document.extension.plan.empty()) {
-    return std::nullopt;
-  }
-  return base::Error{base::ErrorCode::kUnsupported,
-                     "a plan of steps cannot be computed yet: only the step in \"planned\" can",
-                     "/steps"};
-}
-
-base::Result<model::RobotSpec> make_spec(const Document& document) {
-  if (auto error = find_unsupported(document)) {
-    return *std::move(error);
-  }
+/// Existing modules and all around them, without what single modules have of their own.
+model::RobotSpec start_of(const Document& document) {
   const Extension& extension = document.extension;
-  if (auto error = find_fault(extension)) {
-    return *std::move(error);
-  }
   model::RobotSpec spec{.material = document.material,
                         .lattice = extension.lattice,
                         .floor = {.friction = extension.floor_friction},
                         .obstacles = extension.obstacles,
                         .gravity_m_s2 = extension.gravity_m_s2,
-                        .foot_mm = extension.foot_mm,
-                        .payloads = extension.payloads};
+                        .foot_mm = extension.foot_mm};
   spec.support_z = extension.has_floor ? std::optional(document.support_z) : std::nullopt;
   spec.existing.reserve(document.modules.size());
   for (const ModuleEntry& module : document.modules) {
@@ -189,20 +185,108 @@ base::Result<model::RobotSpec> make_spec(const Document& document) {
       spec.fixed.push_back(module.cell);
     }
   }
+  return spec;
+}
+
+/// Whether default_kind() is not all that there is.
+bool has_kinds(const Document& document) {
+  return document.extension.connectors != Connectors{} ||
+         robot_connectors(document.extension.robot) != Connectors{};
+}
+
+std::vector<model::Step> steps_of(const Document& document) {
+  std::vector<model::Step> steps;
+  for (const Step& planned : document.steps) {
+    model::Step& step = steps.emplace_back();
+    for (const PlannedEntry& entry : planned) {
+      step.attach.push_back(entry.cell);
+    }
+  }
+  const std::vector<model::Step>& plan = document.extension.plan;
+  steps.insert(steps.end(), plan.begin(), plan.end());
+  return steps;
+}
+
+/// Puts loads on existing modules, and those on others into the steps that attach them.
+void add_payloads(const Document& document, Sequence& sequence) {
+  if (document.extension.payloads.empty()) {
+    return;
+  }
+  const std::set<base::Cell> existing(sequence.start.existing.begin(),
+                                      sequence.start.existing.end());
+  for (const model::Payload& payload : document.extension.payloads) {
+    const auto attaching =
+        existing.contains(payload.cell)
+            ? sequence.steps.end()
+            : std::ranges::find_if(sequence.steps, [&](const model::Step& step) {
+                return std::ranges::find(step.attach, payload.cell) != step.attach.end();
+              });
+    (attaching == sequence.steps.end() ? sequence.start.payloads : attaching->payloads)
+        .push_back(payload);
+  }
+}
+
+}  // namespace
+
+base::Result<model::RobotSpec> make_spec(const Document& document) {
+  if (auto error = find_fault(document.extension)) {
+    return *std::move(error);
+  }
+  model::RobotSpec spec = start_of(document);
+  spec.payloads = document.extension.payloads;
   if (!document.steps.empty()) {
     for (const PlannedEntry& planned : document.steps.front()) {
       spec.planned.push_back(planned.cell);
     }
   }
   std::vector<model::ModuleKind> kinds = kinds_of(document);
-  if (auto error = add_own(document, kinds, spec)) {
+  const auto lists = [&](std::size_t step) {
+    return step <= 1 ? std::optional(OwnLists{spec.own_kinds, spec.own_masses}) : std::nullopt;
+  };
+  if (auto error = add_own(document, kinds, lists)) {
     return *std::move(error);
   }
-  if (!spec.own_kinds.empty() || extension.connectors != Connectors{} ||
-      robot_connectors(extension.robot) != Connectors{}) {
+  if (!spec.own_kinds.empty() || has_kinds(document)) {
     spec.kinds = std::move(kinds);
   }
   return spec;
+}
+
+std::size_t step_count(const Document& document) {
+  return document.steps.size() + document.extension.plan.size();
+}
+
+std::string step_pointer(const Document& document, std::size_t step) {
+  if (step >= document.steps.size()) {
+    return fmt::format("/steps/{}", step - document.steps.size());
+  }
+  return step == 0 ? "/planned" : fmt::format("/later_steps/{}", step - 1);
+}
+
+base::Result<Sequence> make_sequence(const Document& document) {
+  if (auto error = find_fault(document.extension)) {
+    return *std::move(error);
+  }
+  Sequence sequence{.start = start_of(document), .steps = steps_of(document)};
+  add_payloads(document, sequence);
+  std::vector<model::ModuleKind> kinds = kinds_of(document);
+  const auto lists = [&](std::size_t step) {
+    model::RobotSpec& start = sequence.start;
+    return step == 0 ? std::optional(OwnLists{start.own_kinds, start.own_masses})
+                     : std::optional(OwnLists{sequence.steps[step - 1].own_kinds,
+                                              sequence.steps[step - 1].own_masses});
+  };
+  if (auto error = add_own(document, kinds, lists)) {
+    return *std::move(error);
+  }
+  const bool is_any_special = !sequence.start.own_kinds.empty() ||
+                              std::ranges::any_of(sequence.steps, [](const model::Step& step) {
+                                return !step.own_kinds.empty();
+                              });
+  if (is_any_special || has_kinds(document)) {
+    sequence.start.kinds = std::move(kinds);
+  }
+  return sequence;
 }
 
 base::Result<model::Robot> make_robot(const Document& document, int thread_count) {

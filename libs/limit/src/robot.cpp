@@ -81,6 +81,27 @@ base::Vec6<double> joint_force(const Joint& joint, const base::Vec6<double>& for
           dot(about, joint.frame[0]), dot(about, joint.frame[1]), dot(about, joint.frame[2])};
 }
 
+/// Takes the weight of a carried mass, which is part of the load's, out of its payload. Returns the
+/// square of the mass's distance to the centre of mass.
+double add_carried(const model::Robot& robot, const model::CarriedMass& carried, BodyLoad& load) {
+  const base::NodePlaces places(robot.lattice(), robot.material().pitch_mm);
+  Vector3 place = places(carried.carrier);
+  base::Vec6<double> weight{};
+  for (std::size_t i = 0; i < 3; ++i) {
+    place[i] += carried.offset_mm[i];
+    weight[i] = carried.mass_kg * robot.gravity()[i];
+  }
+  if (robot.has_payloads()) {
+    const base::Vec6<double> there = moved(weight, place, load.centre_of_mass_mm, -1);
+    for (std::size_t i = 0; i < 3; ++i) {
+      load.payload_n[i] += there[i];
+      load.payload_nmm[i] += there[i + 3];
+    }
+  }
+  const Vector3 arm = difference(place, load.centre_of_mass_mm);
+  return dot(arm, arm);
+}
+
 }  // namespace
 
 std::vector<ContactFacet> contact_facets(const model::Robot& robot) {
@@ -119,6 +140,9 @@ BodyLoad body_load(const model::Robot& robot) {
         load.payload_nmm[i] += there[i + 3];
       }
     }
+  }
+  for (const model::CarriedMass& carried : robot.carried()) {
+    inertia += carried.mass_kg * add_carried(robot, carried, load);
   }
   const double least = robot.material().pitch_mm / 2;
   load.gyration_mm = std::max(least, std::sqrt(inertia / mass.kg));

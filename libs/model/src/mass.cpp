@@ -14,6 +14,13 @@ Mass mass_of(const Robot& robot) {
     }
     mass.kg += robot.mass(i);
   }
+  for (const CarriedMass& carried : robot.carried()) {
+    const auto node = node_mm(carried.carrier);
+    for (std::size_t k = 0; k < 3; ++k) {
+      mass.centre_mm[k] += carried.mass_kg * (node[k] + carried.offset_mm[k]);
+    }
+    mass.kg += carried.mass_kg;
+  }
   for (double& coordinate : mass.centre_mm) {
     coordinate /= mass.kg;
   }

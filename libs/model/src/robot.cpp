@@ -77,6 +77,15 @@ double foot_half_width(const RobotSpec& spec) {
   return spec.foot_mm.value_or(material.pitch_mm / 2) / 2;
 }
 
+/// Weight, and its moment about the carrier's node.
+Loads::Load carried_load(const CarriedMass& carried, const std::array<double, 3>& gravity) {
+  const auto& [x, y, z] = carried.offset_mm;
+  const double fx = carried.mass_kg * gravity[0];
+  const double fy = carried.mass_kg * gravity[1];
+  const double fz = carried.mass_kg * gravity[2];
+  return {fx, fy, fz, y * fz - z * fy, z * fx - x * fz, x * fy - y * fx};
+}
+
 }  // namespace
 
 ModuleKind default_kind(const Material& material, const base::Lattice& lattice) {
@@ -283,8 +292,10 @@ std::optional<std::string> Robot::take_loads(const RobotSpec& spec, const CellIn
     return Loads::Load{mass * gravity_[0], mass * gravity_[1], mass * gravity_[2], 0, 0, 0};
   };
   has_payloads_ = !spec.payloads.empty();
+  carried_ = spec.carried;
+  const bool is_weight_alone = !has_payloads_ && carried_.empty();
   loads_ = Loads(weight(mass_));
-  if (kinds_.size() == 1 && spec.own_masses.empty() && !has_payloads_) {
+  if (kinds_.size() == 1 && spec.own_masses.empty() && is_weight_alone) {
     return std::nullopt;
   }
   std::vector<double> masses(modules_.size());
@@ -303,7 +314,7 @@ std::optional<std::string> Robot::take_loads(const RobotSpec& spec, const CellIn
   } else {
     masses_ = masses;
   }
-  if (is_uniform() && !has_payloads_) {
+  if (is_uniform() && is_weight_alone) {
     return std::nullopt;
   }
   std::vector<Loads::Load> loads(masses.size());
@@ -317,6 +328,13 @@ std::optional<std::string> Robot::take_loads(const RobotSpec& spec, const CellIn
       loads[base::at(module)][k] += payload.force_n[k];
       loads[base::at(module)][k + 3] += payload.torque_nmm[k];
     }
+  }
+  for (const CarriedMass& carried : carried_) {
+    const std::int32_t module = index.find(carried.carrier);
+    if (module == CellIndex::kNone) {
+      return fmt::format("a carried mass on {}: there is no module", text(carried.carrier));
+    }
+    base::add_to(loads[base::at(module)], carried_load(carried, gravity_));
   }
   loads_ = Loads(std::move(loads));
   return std::nullopt;
@@ -348,7 +366,7 @@ std::optional<std::string> find_beyond_paper(const Robot& robot) {
   if (x != 0 || y != 0 || z >= 0) {
     return "gravity that is not straight down";
   }
-  if (!robot.is_uniform()) {
+  if (!robot.is_uniform() || !robot.carried().empty()) {
     return "modules of different masses";
   }
   if (robot.has_payloads()) {

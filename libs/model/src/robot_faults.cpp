@@ -174,6 +174,10 @@ std::optional<std::string> find_general_fault(const RobotSpec& spec) {
   for (std::size_t i = 0; !fault && i < spec.own_masses.size(); ++i) {
     fault = find_mass_fault(spec.own_masses[i].mass_kg, text(spec.own_masses[i].cell));
   }
+  for (std::size_t i = 0; !fault && i < spec.carried.size(); ++i) {
+    fault = find_mass_fault(spec.carried[i].mass_kg,
+                            "what " + text(spec.carried[i].carrier) + " carries");
+  }
   if (!fault && spec.foot_mm && !(*spec.foot_mm >= 0 && *spec.foot_mm <= kNumberMax)) {
     fault = fmt::format("foot_mm is {}, allowed is 0 to {}", *spec.foot_mm, kNumberMax);
   }

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "holdfast/plan/judgement.hpp"
 
+#include <utility>
+
 namespace holdfast::plan {
 
 verdict::Assessment first_look(const model::Robot& robot) {
@@ -12,11 +14,17 @@ verdict::Assessment first_look(const model::Robot& robot) {
   return assessment;
 }
 
-Judgement judge(const model::Robot& robot, const solver::EquilibriumOptions& options) {
-  verdict::Assessment assessment = first_look(robot);
-  if (assessment.verdict != verdict::Verdict::kUnstable || options.is_bonded) {
-    assessment = verdict::assess(robot, options);
+verdict::Assessment assess(const model::Robot& robot, const solver::EquilibriumOptions& options) {
+  if (options.is_bonded || first_look(robot).verdict != verdict::Verdict::kUnstable) {
+    return verdict::assess(robot, options);
   }
+  solver::Equilibrium none;
+  none.outcome = solver::Outcome::kNotSought;
+  return verdict::assess_equilibrium(robot, std::move(none), options.thread_count);
+}
+
+Judgement judge(const model::Robot& robot, const solver::EquilibriumOptions& options) {
+  const verdict::Assessment assessment = assess(robot, options);
   return {.verdict = assessment.verdict,
           .load_ratio_max = assessment.load_ratio_max,
           .margin_mm = assessment.simplified.margin_mm};

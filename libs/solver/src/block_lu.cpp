@@ -2,85 +2,31 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "holdfast/solver/block_lu.hpp"
 
-#include <Eigen/OrderingMethods>
-#include <Eigen/SparseCore>
 #include <algorithm>
+#include <optional>
+#include <utility>
 
 #include "block_kernels.hpp"
 #include "holdfast/base/check.hpp"
+#include "holdfast/solver/block_pattern.hpp"
 #include "lane_substitution.hpp"
 
 namespace holdfast::solver {
-namespace {
-
-/// Approximate minimum degree on the graph of nodes. Returns node -> place.
-std::vector<std::int32_t> elimination_order(std::size_t node_count, std::span<const Edge> edges) {
-  const auto n = static_cast<Eigen::Index>(node_count);
-  std::vector<Eigen::Triplet<double, int>> entries;
-  entries.reserve(2 * edges.size() + node_count);
-  for (const Edge& edge : edges) {
-    entries.emplace_back(edge.a, edge.b, 1.0);
-    entries.emplace_back(edge.b, edge.a, 1.0);
-  }
-  for (int i = 0; i < static_cast<int>(node_count); ++i) {
-    entries.emplace_back(i, i, 1.0);
-  }
-  Eigen::SparseMatrix<double, Eigen::ColMajor, int> pattern(n, n);
-  pattern.setFromTriplets(entries.begin(), entries.end());
-  Eigen::PermutationMatrix<Eigen::Dynamic, Eigen::Dynamic, int> order;
-  Eigen::AMDOrdering<int> amd;
-  amd(pattern, order);
-  std::vector<std::int32_t> place(node_count);
-  for (std::size_t i = 0; i < node_count; ++i) {
-    place[static_cast<std::size_t>(order.indices()[static_cast<Eigen::Index>(i)])] =
-        static_cast<std::int32_t>(i);
-  }
-  return place;
-}
-
-}  // namespace
-
 BlockLu::BlockLu(std::size_t node_count, std::span<const Edge> edges, std::size_t block_count_max)
-    : edges_(edges.begin(), edges.end()), is_too_large_(edges.size() > block_count_max) {
+    : edges_(edges.begin(), edges.end()) {
+  std::optional<BlockPattern> pattern = block_pattern(node_count, edges, block_count_max);
+  is_too_large_ = !pattern;
   if (is_too_large_) {
-    return;  // Before anything fills in.
+    return;
   }
-  position_ = elimination_order(node_count, edges);
-  for (Edge& edge : edges_) {
-    edge = {position_[static_cast<std::size_t>(edge.a)],
-            position_[static_cast<std::size_t>(edge.b)]};
-  }
-  analyse(block_count_max);
-}
-
-/// The rows of a column of L: those of A, and those of its children in the elimination tree.
-void BlockLu::analyse(std::size_t block_count_max) {
-  const std::size_t n = position_.size();
-  std::vector<std::vector<std::int32_t>> below(n);
-  column_edges_.resize(n);
+  position_ = std::move(pattern->position);
+  parent_ = std::move(pattern->parent);
+  column_start_ = std::move(pattern->column_start);
+  rows_ = std::move(pattern->rows);
+  column_edges_.resize(node_count);
   for (std::size_t e = 0; e < edges_.size(); ++e) {
-    const auto [low, high] = std::minmax(edges_[e].a, edges_[e].b);
-    below[static_cast<std::size_t>(low)].push_back(high);
-    column_edges_[static_cast<std::size_t>(low)].push_back(e);
-  }
-  parent_.assign(n, -1);
-  column_start_.assign(n + 1, 0);
-  for (std::size_t k = 0; k < n; ++k) {
-    std::vector<std::int32_t>& rows = below[k];
-    std::ranges::sort(rows);
-    rows.erase(std::unique(rows.begin(), rows.end()), rows.end());
-    column_start_[k + 1] = column_start_[k] + rows.size();
-    if (column_start_[k + 1] > block_count_max) {
-      is_too_large_ = true;
-      return;
-    }
-    rows_.insert(rows_.end(), rows.begin(), rows.end());
-    if (!rows.empty()) {
-      parent_[k] = rows.front();
-      std::vector<std::int32_t>& up = below[static_cast<std::size_t>(rows.front())];
-      up.insert(up.end(), rows.begin() + 1, rows.end());
-    }
-    rows = {};
+    edges_[e] = {position_[base::at(edges_[e].a)], position_[base::at(edges_[e].b)]};
+    column_edges_[base::at(std::min(edges_[e].a, edges_[e].b))].push_back(e);
   }
   make_row_lists();
 }

@@ -211,6 +211,23 @@ TEST(MultigridOnALattice, takes_few_iterations_whatever_the_size) {
   }
 }
 
+/// A ball that rests on a few of its modules, all of which press, is as easy in contact as bonded:
+/// its feet must not stay out of the clusters, as those of portals do.
+TEST(MultigridOnALattice, takes_no_more_iterations_for_a_ball_that_rests_than_for_a_bonded_one) {
+  const model::RobotSpec spec = {.existing = model::family_cells(model::Family::kBall, 72),
+                                 .lattice = base::kFaceCentred};
+  const model::Robot robot = model::Robot::create(spec).value();
+  const auto solved = [&](bool is_bonded) {
+    return EquilibriumSolver(robot, {.method = Method::kMultigrid, .is_bonded = is_bonded})
+        .solve({});
+  };
+  const Equilibrium resting = solved(false);
+  EXPECT_EQ(resting.outcome, Outcome::kSettled);
+  EXPECT_TRUE(
+      std::ranges::all_of(resting.contact, [](const auto& state) { return state.pressed; }));
+  EXPECT_LE(resting.iteration_count, solved(true).iteration_count + 1);
+}
+
 /// A symmetry of a lattice about a vertical axis: of its axial coordinates, and of vectors.
 struct Turn {
   Lattice lattice;

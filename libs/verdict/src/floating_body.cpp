@@ -72,6 +72,13 @@ FloatingBody body_of(const model::Robot& robot) {
   for (std::size_t i = 0; i < robot.modules().size(); ++i) {
     add_module(body, node_mm(robot.modules()[i].cell), robot.mass(i), false);
   }
+  for (const model::CarriedMass& carried : robot.carried()) {
+    std::array<double, 3> place = node_mm(carried.carrier);
+    for (std::size_t k = 0; k < 3; ++k) {
+      place[k] += carried.offset_mm[k];
+    }
+    add_module(body, place, carried.mass_kg, false);
+  }
   if (body.is_flat) {
     std::vector<PlanPoint> corners;
     for (const model::Facet& facet : robot.facets()) {

@@ -4,6 +4,25 @@
 
 namespace holdfast::verdict {
 
+std::vector<base::Cell> cells_of(const model::Robot& robot, const Reason& reason) {
+  const auto ends = [&](double connection) {
+    const auto [a, b] = model::ends(robot, static_cast<std::size_t>(connection));
+    return std::vector<base::Cell>{a, b};
+  };
+  switch (reason.code) {
+    case ReasonCode::kConnectionsBreak:
+      return ends(reason.numbers[2]);
+    case ReasonCode::kHolds:
+      return ends(reason.numbers[0]);
+    case ReasonCode::kGapsOpen:
+      return ends(reason.numbers[1]);
+    case ReasonCode::kMaySlip:
+      return {robot.modules()[static_cast<std::size_t>(reason.numbers[0])].cell};
+    default:
+      return {};
+  }
+}
+
 const char* name(ReasonCode code) {
   static constexpr std::array<const char*, kReasonCodeCount> kNames = {"nothing_to_spare",
                                                                        "topples",
@@ -36,7 +55,10 @@ const char* name(ReasonCode code) {
                                                                        "model_falls",
                                                                        "may_slip",
                                                                        "gaps_open",
-                                                                       "loads_together"};
+                                                                       "loads_together",
+                                                                       "carrier_breaks",
+                                                                       "carrier_holds",
+                                                                       "in_pieces"};
   return kNames[static_cast<std::size_t>(code)];
 }
 

@@ -170,7 +170,7 @@ RigidBody exact_body(const Cubes& cubes) {
 
 /// Whether exact_body() decides.
 bool is_exact(const model::Robot& robot) {
-  return robot.lattice() == base::kCubic && robot.is_uniform() &&
+  return robot.lattice() == base::kCubic && robot.is_uniform() && robot.carried().empty() &&
          (robot.facets().empty() || is_on_flat_floor(robot));
 }
 

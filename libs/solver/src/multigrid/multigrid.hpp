@@ -68,6 +68,7 @@ class Multigrid final : public LinearSystem {
   const Mat& known_tangent(const FacetState& facet) const;
   bool is_too_slender() const;
   bool is_thin() const;
+  bool is_wide_on_feet() const;
   std::vector<std::int32_t> nodes_alone() const;
   LinearOutcome begin();
   LinearOutcome improve(const Target& target);

@@ -102,10 +102,6 @@ base::Result<ReadDocument> read_json(std::string_view text, const ReadOptions& o
 /// all, so that older programs read it.
 int json_version(const Document& document);
 
-/// What of a document this program reads, keeps and writes, but cannot compute with, by an error
-/// with its JSON pointer: a plan of steps; none if the whole document can be computed.
-std::optional<base::Error> find_unsupported(const Document& document);
-
 /// What write_visiblesim adds to every cell and to support_z: VisibleSim knows no cell below 0. The
 /// attribute `shift` of <holdfast> says it, and the reader takes it back. Positions in scenery,
 /// targets and attributes stay as they are. Layers go up by an even number where they are
@@ -123,9 +119,27 @@ bool is_large_box(const model::Obstacle& obstacle);
 std::string write_visiblesim(const Document& document);
 std::string write_json(const Document& document);
 
-/// What model::Robot::create makes the robot of the document with the first step from. Errors: as
-/// of find_unsupported(); a module is of a kind that the document does not have.
+/// What model::Robot::create makes the robot of the document with the first step from, without its
+/// plan. Errors: a number that is not allowed; a module is of a kind that the document does not
+/// have.
 base::Result<model::RobotSpec> make_spec(const Document& document);
+
+/// A robot and what happens to it.
+struct Sequence {
+  model::RobotSpec start;  ///< The existing modules.
+  /// Document::steps, each as a step that attaches its modules, then the plan. A load on a cell
+  /// where no module is at first belongs to the first step that attaches one there.
+  std::vector<model::Step> steps;
+};
+
+/// The number of steps of make_sequence().
+std::size_t step_count(const Document& document);
+
+/// Where a step of make_sequence(), by its number, stands in the document: a JSON pointer.
+std::string step_pointer(const Document& document, std::size_t step);
+
+/// Errors: as of make_spec().
+base::Result<Sequence> make_sequence(const Document& document);
 
 /// The robot with the first step; errors as of make_spec() and model::Robot::create, threads as of
 /// the latter.

@@ -17,8 +17,7 @@
 
 /// What a structure can say from version 2 of the JSON format on: other lattices than the cubic
 /// one, other environments than a floor, other loads than weight, several kinds of modules, plans
-/// of steps. It is read, kept and written; find_unsupported() in document.hpp says what of it
-/// cannot be computed with.
+/// of steps.
 namespace holdfast::io {
 
 /// How far one value of a connector parameter reaches.

@@ -26,6 +26,9 @@ std::string one_line(std::string_view text);
 /// is the one that was assessed.
 std::string reason_text(const model::Robot& robot, const verdict::Reason& reason);
 
+/// The same with the cells that verdict::cells_of() has found.
+std::string reason_text(const verdict::Reason& reason, std::span<const base::Cell> cells);
+
 /// One checked structure, for a report. Views must outlive the call.
 struct ReportEntry {
   std::string_view name;

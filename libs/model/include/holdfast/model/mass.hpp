@@ -14,7 +14,7 @@ struct Mass {
   std::array<double, 3> centre_mm{};
 };
 
-/// The mass of all modules, planned ones too.
+/// The mass of all modules, planned ones too, and of what they carry.
 Mass mass_of(const Robot& robot);
 
 }  // namespace holdfast::model

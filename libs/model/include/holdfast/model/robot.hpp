@@ -76,11 +76,15 @@ ModuleKind default_kind(const Material& material, const base::Lattice& lattice);
 struct OwnMass {
   base::Cell cell;  ///< Existing or planned.
   double mass_kg = 0;
+
+  friend bool operator==(const OwnMass&, const OwnMass&) = default;
 };
 
 struct OwnKind {
   base::Cell cell;         ///< Existing or planned.
   std::uint16_t kind = 0;  ///< Index in RobotSpec::kinds.
+
+  friend bool operator==(const OwnKind&, const OwnKind&) = default;
 };
 
 /// A force and a torque at a module's node besides its weight, global frame.
@@ -90,6 +94,16 @@ struct Payload {
   std::array<double, 3> torque_nmm{};
 
   friend bool operator==(const Payload&, const Payload&) = default;
+};
+
+/// A mass that a module carries, rigidly joined to it: a module on its way from one cell to
+/// another.
+struct CarriedMass {
+  base::Cell carrier;  ///< Existing or planned.
+  double mass_kg = 0;
+  std::array<double, 3> offset_mm{};  ///< Of its centre from the carrier's node, global frame.
+
+  friend bool operator==(const CarriedMass&, const CarriedMass&) = default;
 };
 
 /// What a robot is made from, in any order.
@@ -115,6 +129,7 @@ struct RobotSpec {
   std::vector<OwnKind> own_kinds = {};   ///< All others are of kind 0.
   std::vector<OwnMass> own_masses = {};  ///< All others weigh what their kind does.
   std::vector<Payload> payloads = {};
+  std::vector<CarriedMass> carried = {};
 };
 
 /// Modules by module and direction: for each module as many entries as its lattice has directions.
@@ -185,7 +200,7 @@ class Robot {
   /// Half the width of every facet, mm; 0 is a point.
   double foot_half_width_mm() const { return foot_half_width_mm_; }
 
-  /// What acts on the modules from outside: their weight, and payloads.
+  /// What acts on the modules from outside: their weight, what they carry, and payloads.
   const Loads& loads() const { return loads_; }
 
   /// m/s^2, global frame.
@@ -198,6 +213,9 @@ class Robot {
   bool is_uniform() const { return masses_.empty(); }
 
   bool has_payloads() const { return has_payloads_; }
+
+  /// Masses besides the modules' own.
+  std::span<const CarriedMass> carried() const { return carried_; }
 
   std::span<const ModuleKind> kinds() const { return kinds_; }
 
@@ -270,6 +288,7 @@ class Robot {
   double mass_ = 0;             ///< If all weigh the same.
   std::vector<double> masses_;  ///< By module; empty if all weigh the same.
   bool has_payloads_ = false;
+  std::vector<CarriedMass> carried_;
   std::vector<ModuleKind> kinds_;
   std::vector<ConnectorLaw> connectors_;  ///< By kind of a, kind of b, direction.
   bool has_default_connectors_ = true;

@@ -20,15 +20,18 @@ struct Move {
   friend bool operator==(const Move&, const Move&) = default;
 };
 
-/// A step of a plan: all of it happens together, in three stages. First what is listed in
-/// `release`, detached or moved lets go; then the moved modules are on their way; then they are
-/// connected where they arrive, and new modules are attached.
+/// A step of a plan: all of it happens together, in three stages. First what is listed in `release`
+/// and what moves lets go; then detached modules are gone and moved ones on their way; then these
+/// are connected where they arrive, and new modules are attached. See plan/stages.hpp.
 struct Step {
-  std::vector<base::Cell> attach;
-  std::vector<base::Cell> detach;
-  std::vector<Move> moves;
-  std::vector<CellPair> release;
-  std::vector<CellPair> connect;
+  std::vector<base::Cell> attach = {};
+  std::vector<base::Cell> detach = {};
+  std::vector<Move> moves = {};
+  std::vector<CellPair> release = {};
+  std::vector<CellPair> connect = {};
+  std::vector<OwnKind> own_kinds = {};   ///< Of attached modules; all others are of kind 0.
+  std::vector<OwnMass> own_masses = {};  ///< All others weigh what their kind does.
+  std::vector<Payload> payloads = {};    ///< On attached modules.
 
   friend bool operator==(const Step&, const Step&) = default;
 };

@@ -18,6 +18,8 @@ struct Judgement {
   /// As of verdict::RigidBody: in mm, negative for a robot that topples, none for one that is
   /// held.
   std::optional<double> margin_mm = {};
+  /// `load_ratio_max` is not the largest load ratio, but proved to be no less than that.
+  bool is_bound = false;
 
   bool is_safe() const { return verdict == verdict::Verdict::kSafe; }
 
@@ -27,6 +29,11 @@ struct Judgement {
 /// What the rigid body alone says, at once and whatever the size: `unstable` for a robot that
 /// topples, else `undecided`, as no load is known.
 verdict::Assessment first_look(const model::Robot& robot);
+
+/// verdict::assess(), but that a robot that topples is not solved, unless its supports are bonded
+/// by the options.
+verdict::Assessment assess(const model::Robot& robot,
+                           const solver::EquilibriumOptions& options = {});
 
 /// The verdict of verdict::assess(). A robot that topples is not solved, unless its supports are
 /// bonded by the options.

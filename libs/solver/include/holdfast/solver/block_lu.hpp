@@ -7,15 +7,10 @@
 #include <vector>
 
 #include "holdfast/base/algebra.hpp"
+#include "holdfast/solver/block_pattern.hpp"
 #include "holdfast/solver/lanes.hpp"
 
 namespace holdfast::solver {
-
-/// One pair of coupled nodes, each pair once, never a node with itself.
-struct Edge {
-  std::int32_t a = 0;
-  std::int32_t b = 0;
-};
 
 /// Sparse direct solver for matrices of 6x6 blocks: A = (I + L) D (I + U'), D block-diagonal.
 ///
@@ -84,7 +79,6 @@ class BlockLu {
     std::size_t slot = 0;  ///< Position of this row in the column's list.
   };
 
-  void analyse(std::size_t block_count_max);
   void make_row_lists();
   void allocate();
   void make_column(std::size_t column);

@@ -6,6 +6,9 @@
 #include <cstddef>
 #include <cstdint>
 #include <string>
+#include <vector>
+
+#include "holdfast/model/robot.hpp"
 
 namespace holdfast::verdict {
 
@@ -45,9 +48,12 @@ enum class ReasonCode : std::uint8_t {
   kMaySlip,         ///< A facet's friction is exceeded: its module, |ft|/|fn|, the coefficient.
   kGapsOpen,        ///< How many, index of the worst, its gap and its limit, mm.
   kLoadsTogether,   ///< Ratios are factors of all loads together, payloads too.
+  kCarrierBreaks,  ///< The connection by which a moved module hangs on its carrier: its load ratio.
+  kCarrierHolds,   ///< It is the worst of all: its load ratio.
+  kInPieces,       ///< The robot is, each of which is judged by itself: how many.
 };
 
-inline constexpr int kReasonCodeCount = static_cast<int>(ReasonCode::kLoadsTogether) + 1;
+inline constexpr int kReasonCodeCount = static_cast<int>(ReasonCode::kInPieces) + 1;
 
 /// One reason for a verdict, as data. io::reason_text() makes a sentence of it.
 struct Reason {
@@ -61,6 +67,10 @@ struct Reason {
 
   friend bool operator==(const Reason&, const Reason&) = default;
 };
+
+/// The cells of a robot that the indices of a reason mean: both ends of a connection, a module, or
+/// none.
+std::vector<base::Cell> cells_of(const model::Robot& robot, const Reason& reason);
 
 /// The word for a code in JSON reports, such as "connections_break".
 const char* name(ReasonCode code);

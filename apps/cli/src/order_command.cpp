@@ -1,0 +1,251 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <array>
+#include <charconv>
+#include <memory>
+
+#include "commands.hpp"
+#include "file_clash.hpp"
+#include "holdfast/order.hpp"
+#include "progress.hpp"
+
+namespace holdfast::cli {
+namespace {
+
+struct Options {
+  io::ReadOptions reading;
+  std::string target;
+  std::string start;
+  std::string reach = "free";
+  std::string source;
+  std::size_t group_size = 1;
+  bool is_reversed = false;
+  std::uint64_t seed = 0;
+  double seconds = 300;
+  double help_seconds = 10;
+  int thread_count = 0;
+  bool is_quiet = false;
+  std::string steps;
+  std::string json;
+  std::string certificate;
+};
+
+/// The cell that "X,Y,Z" says; none if it is no cell.
+std::optional<base::Cell> cell_of(const std::string& text) {
+  std::array<std::int32_t, 3> triple{};
+  const char* next = text.data();
+  const char* const end = text.data() + text.size();
+  for (std::size_t i = 0; i < 3; ++i) {
+    const auto read = std::from_chars(next, end, triple[i]);
+    const bool is_last = i == 2;
+    if (read.ec != std::errc{} ||
+        (is_last ? read.ptr != end : read.ptr == end || *read.ptr != ',')) {
+      return std::nullopt;
+    }
+    next = is_last ? read.ptr : read.ptr + 1;
+  }
+  return base::Cell{triple[0], triple[1], triple[2]};
+}
+
+/// All cells of a document that is to be the start.
+base::Result<std::vector<base::Cell>> start_cells(const Options& options,
+                                                  const io::Document& target) {
+  const auto text = read_file(options.start);
+  if (!text) {
+    return text.error();
+  }
+  const auto read = io::read_document(text.value(), options.reading);
+  if (!read) {
+    return read.error();
+  }
+  if (read.value().document.extension.lattice != target.extension.lattice) {
+    return base::Error{base::ErrorCode::kBadInput, "its lattice is not that of the target", {}};
+  }
+  std::vector<base::Cell> cells;
+  for (const io::ModuleEntry& module : read.value().document.modules) {
+    cells.push_back(module.cell);
+  }
+  return cells;
+}
+
+OrderRequest request_of(const Options& options, Progress& progress) {
+  OrderRequest request{.group_size = options.group_size,
+                       .is_reversed = options.is_reversed,
+                       .seed = options.seed,
+                       .seconds_max = options.seconds,
+                       .help_seconds_max = options.help_seconds,
+                       .thread_count = options.thread_count};
+  request.rule.reach = options.reach == "line"      ? plan::Reach::kLine
+                       : options.reach == "surface" ? plan::Reach::kSurface
+                                                    : plan::Reach::kFree;
+  if (!options.source.empty()) {
+    request.rule.source = cell_of(options.source);
+  }
+  request.progress = [&progress](std::size_t states, std::size_t here, std::size_t furthest) {
+    progress.show([&] {
+      return fmt::format("{} states examined, now at {} modules, got as far as {}", states, here,
+                         furthest);
+    });
+  };
+  return request;
+}
+
+int exit_code_of(plan::OrderOutcome outcome) {
+  switch (outcome) {
+    case plan::OrderOutcome::kFound:
+      return kExitSafe;
+    case plan::OrderOutcome::kNone:
+      return kExitUnsafe;
+    case plan::OrderOutcome::kNotFound:
+      break;
+  }
+  return kExitUndecided;
+}
+
+/// Writes what is asked for; the exit code is that of a file that cannot be written, or the
+/// answer's.
+int show(const Options& options, const io::OrderReport& report) {
+  const plan::OrderOutcome outcome = report.result.order.outcome;
+  if (!options.steps.empty() && outcome == plan::OrderOutcome::kFound) {
+    const auto steps = io::order_steps(report.target, report.result.order, report.is_reversed);
+    if (!steps) {
+      return fail(steps.error(), options.target);
+    }
+    if (!write_or_complain(options.steps, io::write_json(steps.value()))) {
+      return kExitBadInput;
+    }
+  }
+  if (!options.certificate.empty() && report.result.certificate &&
+      !write_or_complain(options.certificate,
+                         io::write_order_certificate(report.target, *report.result.certificate))) {
+    return kExitBadInput;
+  }
+  if (!options.json.empty() && !write_or_complain(options.json, io::order_json(report))) {
+    return kExitBadInput;
+  }
+  const auto is_stdout = [](const std::string& path) { return path == "-"; };
+  if (!options.is_quiet && !is_stdout(options.json) && !is_stdout(options.steps) &&
+      !is_stdout(options.certificate)) {
+    fmt::print("{}", io::order_text(report));
+  }
+  return exit_code_of(outcome);
+}
+
+int run(const Options& options) {
+  const std::array<std::string, 2> inputs = {options.target, options.start};
+  if (complain_of_clash({inputs.data(), options.start.empty() ? 1U : 2U},
+                        {{"--output", options.steps},
+                         {"--json", options.json},
+                         {"--certificate", options.certificate}})) {
+    return kExitUsage;
+  }
+  if ((options.reach == "surface") != !options.source.empty()) {
+    fmt::print(stderr, "holdfast: --reach surface and --source CELL belong together\n");
+    return kExitUsage;
+  }
+  const auto text = read_file(options.target);
+  if (!text) {
+    return fail(text.error(), options.target);
+  }
+  const auto read = io::read_document(text.value(), options.reading);
+  if (!read) {
+    return fail(read.error(), options.target);
+  }
+  print_notes(read.value().warnings, options.target);
+  Progress progress(options.is_quiet);
+  OrderRequest request = request_of(options, progress);
+  if (!options.start.empty()) {
+    auto cells = start_cells(options, read.value().document);
+    if (!cells) {
+      return fail(cells.error(), options.start);
+    }
+    request.start = std::move(cells).value();
+  }
+  const auto report = seek_order(read.value().document, request);
+  return report ? show(options, report.value()) : fail(report.error(), options.target);
+}
+
+void add_ways(CLI::App& command, Options& options) {
+  command
+      .add_option(
+          "--reach", options.reach,
+          "How a module gets to its cell: free, any cell; line, a straight way in; surface, "
+          "sliding along the robot from --source")
+      ->type_name("free|line|surface")
+      ->check(CLI::IsMember({"free", "line", "surface"}))
+      ->capture_default_str();
+  command.add_option("--source", options.source, "Where modules come from along the surface")
+      ->type_name("X,Y,Z")
+      ->check([](const std::string& text) {
+        return cell_of(text) ? "" : "expected is a cell, such as 3,0,0";
+      });
+  command.add_option("--group", options.group_size, "Attach up to so many modules at once")
+      ->type_name("K")
+      ->check(CLI::Range(1, 16))
+      ->capture_default_str();
+  command.add_flag("--reverse", options.is_reversed,
+                   "Take the robot apart, from the target to the start");
+}
+
+void add_limits(CLI::App& command, Options& options) {
+  command
+      .add_option("--seed", options.seed,
+                  "Another seed tries candidates in another order; the same one finds the same")
+      ->type_name("N");
+  command.add_option("--seconds", options.seconds, "Give up after this time")
+      ->type_name("S")
+      ->check(CLI::Range(0.0, 1e6))
+      ->capture_default_str();
+  command
+      .add_option("--help-seconds", options.help_seconds,
+                  "Where there is no order, seek the least help that would do for this time")
+      ->type_name("S")
+      ->check(CLI::Range(0.0, 1e6))
+      ->capture_default_str();
+  command
+      .add_option("--threads", options.thread_count,
+                  "Threads; 0: as many as the machine has cores. The answer does not depend on it")
+      ->type_name("N")
+      ->check(CLI::Range(0, 64));
+  command.add_flag("-q,--quiet", options.is_quiet, "No progress and no text, only the exit code");
+}
+
+}  // namespace
+
+Command add_order(CLI::App& app) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command = app.add_subcommand(
+      "order", "Find an order in which modules can be attached, or detached, safe all the way");
+  add_required(*command, "TARGET", options->target,
+               "Structure to build, planned modules included; - is standard input");
+  command
+      ->add_option(
+          "--from", options->start,
+          "Structure to begin with, a part of TARGET; else the fixed modules, or one module "
+          "that the search chooses")
+      ->type_name("START");
+  add_ways(*command, *options);
+  add_limits(*command, *options);
+  command
+      ->add_option("-o,--output", options->steps,
+                   "Write the order as a structure with steps; - is standard output")
+      ->type_name("STEPS.json");
+  command->add_option("--json", options->json, "Write a JSON report; - is standard output")
+      ->type_name("FILE");
+  command
+      ->add_option("--certificate", options->certificate,
+                   "Where there is no order, write what proves it; holdfast steps --verify replays "
+                   "it")
+      ->type_name("FILE");
+  add_reading(*command, options->reading);
+  command->footer(
+      "Every state on the way is checked as holdfast check does it; one that is undecided is not\n"
+      "safe. Exit: 0 found, 1 there is none, 2 not found in the time given, 64 wrong usage, 65 "
+      "bad\n"
+      "input or not writable.");
+  return {command, [options] { return run(*options); }};
+}
+
+}  // namespace holdfast::cli

@@ -1,0 +1,122 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#include <memory>
+
+#include "commands.hpp"
+#include "file_clash.hpp"
+#include "holdfast/order.hpp"
+#include "holdfast/steps.hpp"
+#include "progress.hpp"
+
+namespace holdfast::cli {
+namespace {
+
+struct Options {
+  io::ReadOptions reading;
+  std::string file;
+  std::string json;
+  bool is_quiet = false;
+  bool ends_when_unsafe = false;
+  bool is_certificate = false;
+  int thread_count = 0;
+};
+
+bool write_files(const Options& options, const StepsFile& file, const StepsResult& result) {
+  bool is_written = true;
+  if (!options.json.empty()) {
+    is_written = write_or_complain(options.json, [&](std::ostream& out) {
+      write_steps_json(out, file, result);
+      out << '\n';
+    });
+  }
+  return is_written;
+}
+
+/// Replays the certificate of an order that does not exist.
+int run_certificate(const Options& options) {
+  const auto text = read_file(options.file);
+  if (!text) {
+    return fail(text.error(), options.file);
+  }
+  const auto check = verify_order_certificate(text.value(), options.thread_count);
+  if (!check) {
+    return fail(check.error(), options.file);
+  }
+  if (!options.is_quiet) {
+    fmt::print(
+        "PROVED      there is no safe order: {} states replayed, and {} just beyond, none of "
+        "which is safe\n",
+        check.value().state_count, check.value().blocked_count);
+  }
+  return kExitSafe;
+}
+
+int run(const Options& options) {
+  if (options.is_certificate) {
+    return run_certificate(options);
+  }
+  const std::vector<std::string> inputs = {options.file};
+  if (complain_of_clash(inputs, {{"--json", options.json}})) {
+    return kExitUsage;
+  }
+  const auto file = load_steps(options.file, options.reading);
+  if (!file) {
+    return fail(file.error(), options.file);
+  }
+  print_notes(file.value().warnings, options.file);
+  Progress progress(options.is_quiet);
+  const std::size_t count = io::step_count(file.value().document);
+  const auto result =
+      judge_steps(file.value(), {.thread_count = options.thread_count,
+                                 .ends_when_unsafe = options.ends_when_unsafe,
+                                 .progress = [&](std::size_t judged) {
+                                   progress.show([&] {
+                                     return fmt::format("{}: {} of {} steps",
+                                                        io::one_line(options.file), judged, count);
+                                   });
+                                 }});
+  if (!result) {
+    return fail(result.error(), options.file);
+  }
+  const verdict::Verdict verdict = result.value().judgement.verdict();
+  if (!options.is_quiet && options.json != "-") {
+    fmt::print("{} {}\n{}", banner(verdict), io::one_line(file.value().name),
+               steps_text(file.value(), result.value()));
+  }
+  return write_files(options, file.value(), result.value()) ? exit_code(verdict) : kExitBadInput;
+}
+
+}  // namespace
+
+Command add_steps(CLI::App& app) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command = app.add_subcommand(
+      "steps",
+      "Say whether every stage of every step of a sequence is safe: release, shift, connect");
+  add_required(*command, "FILE", options->file,
+               "A structure with steps, VisibleSim XML or holdfast JSON; - is standard input");
+  add_reading(*command, options->reading);
+  command
+      ->add_option("--json", options->json, "Write the whole report as JSON; - is standard output")
+      ->type_name("FILE");
+  command->add_flag("--until-unsafe", options->ends_when_unsafe,
+                    "Leave out the steps behind the first unsafe one");
+  command
+      ->add_flag("--verify", options->is_certificate,
+                 "FILE is a certificate that there is no order, of holdfast order: replay it")
+      ->excludes("--json");
+  command->add_flag("--quiet", options->is_quiet, "Print errors only; the exit code is the answer");
+  command->add_option("--threads", options->thread_count, "0: all cores; the answer is the same")
+      ->check(CLI::Range(0, 64));
+  command->footer(
+      "Steps count from 0: those of \"planned\", \"later_steps\" or VisibleSim's targets first, "
+      "then\n"
+      "those of \"steps\". In each the robot is judged after letting go (release), at every "
+      "waypoint\n"
+      "of what moves (shift), and when all is connected again (connect).\n"
+      "Exit: 0 all safe, 1 any unsafe, 2 any undecided, 64 wrong usage, 65 bad input\n"
+      "or not writable, 70 out of memory.");
+  return {command, [options] { return run(*options); }};
+}
+
+}  // namespace holdfast::cli

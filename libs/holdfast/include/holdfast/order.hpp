@@ -1,0 +1,45 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include "holdfast/holdfast.hpp"              // IWYU pragma: export
+#include "holdfast/io/order_certificate.hpp"  // IWYU pragma: export
+#include "holdfast/io/order_report.hpp"       // IWYU pragma: export
+#include "holdfast/plan/order.hpp"            // IWYU pragma: export
+#include "holdfast/plan/order_help.hpp"       // IWYU pragma: export
+
+/// The facade's orders: how can a robot be built, module by module, so that it is safe all the way?
+///
+///     const auto answer = holdfast::seek_order(document, {.start = first_cells});
+///     if (answer && answer.value().result.order.outcome == plan::OrderOutcome::kFound) { ... }
+namespace holdfast {
+
+struct OrderRequest {
+  std::vector<base::Cell> start = {};  ///< As of plan::OrderTask.
+  plan::ReachRule rule = {};
+  std::size_t group_size = 1;
+  bool is_reversed = false;  ///< Taken apart, from the target to the start.
+  std::uint64_t seed = 0;
+  double seconds_max = std::numeric_limits<double>::infinity();
+  double help_seconds_max = 0;  ///< Where there is no order: time to seek help; 0: none is sought.
+  int thread_count = 0;         ///< 0: as many as the machine has cores; decides nothing.
+  std::function<void(std::size_t states, std::size_t grown, std::size_t shrunk)> progress = {};
+};
+
+/// Seeks an order for all modules of a document, existing or planned. Errors: as of
+/// io::make_spec() and plan::find_robot_order().
+base::Result<io::OrderReport> seek_order(const io::Document& target, const OrderRequest& request);
+
+/// Replays the certificate in a text, see plan::verify().
+base::Result<plan::CertificateCheck> verify_order_certificate(std::string_view text,
+                                                              int thread_count = 0);
+
+}  // namespace holdfast

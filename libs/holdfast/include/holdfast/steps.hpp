@@ -1,0 +1,53 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "holdfast/holdfast.hpp"
+#include "holdfast/io/steps_report.hpp"  // IWYU pragma: export
+#include "holdfast/plan/sequence.hpp"    // IWYU pragma: export
+
+/// Sequences of steps: is every stage of each safe?
+///
+///     auto plan = holdfast::load_steps("plan.json");
+///     if (!plan) { ... plan.error().message ... }
+///     auto result = holdfast::judge_steps(plan.value());
+///     if (!result) { ... a step that cannot be done ... }
+///     if (!result.value().judgement.first_unsafe) { ... }
+namespace holdfast {
+
+/// A structure whose steps can be judged.
+struct StepsFile {
+  std::string name;  ///< The document's, or the file's without folder and ending.
+  io::Document document;
+  std::vector<std::string> warnings;
+};
+
+/// Reads VisibleSim XML or holdfast JSON. Errors: as of read_document(); there is no step.
+base::Result<StepsFile> load_steps(const std::filesystem::path& path,
+                                   const io::ReadOptions& options = {});
+
+struct StepsOptions {
+  int thread_count = 0;  ///< 0: as many as the machine has cores. The result does not depend on it.
+  std::size_t memory_bytes_max = solver::EquilibriumOptions{}.memory_bytes_max;  ///< Per thread.
+  bool ends_when_unsafe = false;  ///< Steps behind the first unsafe one are left out.
+  std::function<void(std::size_t judged_count)> progress = {};  ///< Called between steps.
+};
+
+struct StepsResult {
+  plan::SequenceJudgement judgement;
+  double seconds = 0;
+};
+
+/// Judges every stage of every step, planned steps of VisibleSim and of version 1 first. Errors: a
+/// step cannot be done; Error::where is its JSON pointer, the message names step and stage.
+base::Result<StepsResult> judge_steps(const StepsFile& file, const StepsOptions& options = {});
+
+void write_steps_json(std::ostream& out, const StepsFile& file, const StepsResult& result);
+std::string steps_text(const StepsFile& file, const StepsResult& result);
+
+}  // namespace holdfast

@@ -1,0 +1,49 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#include "holdfast/order.hpp"
+
+#include <chrono>
+#include <utility>
+
+namespace holdfast {
+
+base::Result<io::OrderReport> seek_order(const io::Document& target, const OrderRequest& request) {
+  auto spec = io::order_target(target);
+  if (!spec) {
+    return spec.error();
+  }
+  io::OrderReport report{.target = target,
+                         .task = {.target = std::move(spec).value(),
+                                  .start = request.start,
+                                  .rule = request.rule,
+                                  .group_size = request.group_size},
+                         .is_reversed = request.is_reversed};
+  const auto begin = std::chrono::steady_clock::now();
+  auto result = plan::find_robot_order(report.task, {.seed = request.seed,
+                                                     .seconds_max = request.seconds_max,
+                                                     .progress = request.progress,
+                                                     .thread_count = request.thread_count});
+  if (!result) {
+    return result.error();
+  }
+  const std::chrono::duration<double> passed = std::chrono::steady_clock::now() - begin;
+  report.result = std::move(result).value();
+  report.seconds = passed.count();
+  report.is_help_sought = request.help_seconds_max > 0 && report.result.certificate.has_value();
+  if (report.is_help_sought) {
+    report.help = plan::find_help(report.task, {.seconds_max = request.help_seconds_max,
+                                                .thread_count = request.thread_count});
+  }
+  return report;
+}
+
+base::Result<plan::CertificateCheck> verify_order_certificate(std::string_view text,
+                                                              int thread_count) {
+  const auto certificate = io::read_order_certificate(text);
+  if (!certificate) {
+    return certificate.error();
+  }
+  return plan::verify(certificate.value(), thread_count);
+}
+
+}  // namespace holdfast

@@ -1,0 +1,35 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "holdfast/base/result.hpp"
+#include "holdfast/io/document.hpp"
+#include "holdfast/plan/order.hpp"
+
+/// The file that proves that there is no order; see docs/formats.md. And the file of steps of one
+/// that there is.
+namespace holdfast::io {
+
+/// The task's target: all modules of a document, planned ones as well, exist. Errors: as of
+/// make_spec().
+base::Result<model::RobotSpec> order_target(const Document& document);
+
+/// The certificate of a task whose target is the document's.
+std::string write_order_certificate(const Document& target,
+                                    const plan::OrderCertificate& certificate);
+
+base::Result<plan::OrderCertificate> read_order_certificate(std::string_view text);
+
+/// Whether a text says that it is a certificate of an order.
+bool is_order_certificate(std::string_view text);
+
+/// A structure whose modules are those of the order's start and whose steps attach all others, or
+/// where the robot is taken apart one whose modules are the target's and whose steps detach them.
+/// Errors: a step would have to attach a module with a kind, a mass or a load of its own.
+base::Result<Document> order_steps(const Document& target, const plan::Order& order,
+                                   bool is_reversed);
+
+}  // namespace holdfast::io

@@ -1,0 +1,37 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <ostream>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "holdfast/io/document.hpp"
+#include "holdfast/plan/sequence.hpp"
+
+/// What is said of a sequence of steps.
+namespace holdfast::io {
+
+/// A judged sequence, for a report. Views must outlive the call.
+struct StepsEntry {
+  std::string_view name;
+  const Document* document = nullptr;
+  const plan::SequenceJudgement* judgement = nullptr;
+  std::span<const std::string> warnings;
+  double seconds = 0;  ///< From the document in memory to the verdict.
+};
+
+/// The JSON report, one object without a line feed behind it; keys are in docs/formats.md.
+void write_steps_json(std::ostream& out, const StepsEntry& entry);
+
+/// What a step does, in a few words: "moves (1,0,1) to (2,0,1), attaches 3 modules".
+std::string step_text(const Document& document, std::size_t step);
+
+/// The report for people: a line for every step if there are few, else for those that are not safe
+/// and those with the largest load or the smallest margin; then the sum of all. No colour, a line
+/// feed at the end.
+std::string write_steps_text(const StepsEntry& entry);
+
+}  // namespace holdfast::io

@@ -1,0 +1,166 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#include "holdfast/io/order_report.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <iterator>
+#include <vector>
+
+#include "holdfast/io/order_certificate.hpp"
+#include "json_text.hpp"
+
+namespace holdfast::io {
+namespace {
+
+using plan::OrderOutcome;
+
+std::string number_text(const std::optional<double>& value) {
+  return value ? json_text(*value) : std::string("null");
+}
+
+std::string cells_text(const std::vector<base::Cell>& cells) {
+  Items items;
+  std::ranges::transform(cells, std::back_inserter(items),
+                         [](const base::Cell& cell) { return json_text(cell); });
+  return row(items);
+}
+
+std::vector<base::Cell> cells_of(const OrderReport& report,
+                                 const std::vector<plan::Element>& elements) {
+  std::vector<base::Cell> cells;
+  for (const plan::Element element : elements) {
+    cells.push_back(report.task.target.existing[static_cast<std::size_t>(element)]);
+  }
+  return cells;
+}
+
+/// Every state on the way, in its order, with what led to it.
+Items way_items(const OrderReport& report) {
+  const plan::Order& order = report.result.order;
+  const std::size_t count = order.steps.size();
+  Items items;
+  for (std::size_t i = 0; i < order.judgements.size(); ++i) {
+    const std::size_t k = report.is_reversed ? count - i : i;
+    const std::size_t step = report.is_reversed ? k : k - 1;
+    const std::vector<plan::Element> none;
+    const auto& group = i == 0 ? none : order.steps[step];
+    items.push_back(object(
+        {member(report.is_reversed ? "detach" : "attach", cells_text(cells_of(report, group))),
+         member(order.judgements[k].is_bound ? "load_ratio_bound" : "load_ratio_max",
+                number_text(order.judgements[k].load_ratio_max)),
+         member("margin_mm", number_text(order.judgements[k].margin_mm))}));
+  }
+  return items;
+}
+
+std::string help_text(const OrderReport& report) {
+  if (!report.help) {
+    return "null";
+  }
+  return object({member("supports", cells_text(report.help->supports)),
+                 member("temporary", cells_text(report.help->temporary))});
+}
+
+std::string words(const std::vector<base::Cell>& cells) {
+  std::vector<std::string> names;
+  std::ranges::transform(cells, std::back_inserter(names), &model::text);
+  return fmt::format("{}", fmt::join(names, " "));
+}
+
+std::string help_words(const OrderReport& report) {
+  if (!report.is_help_sought) {
+    return "";
+  }
+  if (!report.help) {
+    return "  help        no single support and no few temporary modules found that would do\n";
+  }
+  const bool is_support = !report.help->supports.empty();
+  return fmt::format("  help        {}: {}\n",
+                     is_support ? "with a support in this cell there is an order"
+                                : "with these modules, attached on the way and detached at the "
+                                  "end, there is an order",
+                     words(is_support ? report.help->supports : report.help->temporary));
+}
+
+std::string none_words(const OrderReport& report) {
+  const plan::Closure& closure = report.result.certificate->closure;
+  const bool is_growing = closure.sense == plan::Sense::kGrowing;
+  if (closure.states.empty()) {
+    return fmt::format("  proof       {} is not safe: {}\n",
+                       is_growing ? "no start" : "the target itself",
+                       verdict::name(closure.blocked.front().second.verdict));
+  }
+  return fmt::format(
+      "  proof       {} safe state{} can be reached from {}, and all {} states that one step more "
+      "leads to are not safe\n",
+      closure.states.size(), closure.states.size() == 1 ? "" : "s",
+      is_growing ? "the start" : "the target, backwards,", closure.blocked.size());
+}
+
+}  // namespace
+
+const char* name(OrderOutcome outcome) {
+  switch (outcome) {
+    case OrderOutcome::kFound:
+      return "found";
+    case OrderOutcome::kNone:
+      return "none";
+    case OrderOutcome::kNotFound:
+      break;
+  }
+  return "not-found";
+}
+
+std::string order_json(const OrderReport& report) {
+  const plan::Order& order = report.result.order;
+  std::string certificate = "null";
+  if (report.result.certificate) {
+    certificate = write_order_certificate(report.target, *report.result.certificate);
+    certificate.pop_back();
+  }
+  return lines('{',
+               {member("result", json_text(std::string(name(order.outcome)))),
+                member("steps", fmt::format("{}", order.steps.size())),
+                member("states", fmt::format("{}", order.state_count)),
+                member("load_ratio_max", number_text(report.result.load_ratio_max)),
+                member("load_ratio_bound", number_text(report.result.load_ratio_bound)),
+                member("margin_min_mm", number_text(report.result.margin_min_mm)),
+                member("seconds", json_text(report.seconds)),
+                member("start", cells_text(cells_of(report, order.start.elements()))),
+                member("way", array(way_items(report), 2)), member("help", help_text(report)),
+                member("certificate", certificate)},
+               '}', 0) +
+         "\n";
+}
+
+std::string order_text(const OrderReport& report) {
+  const plan::Order& order = report.result.order;
+  const std::string examined =
+      fmt::format("  examined    {} state{} in {:.2f} s\n", order.state_count,
+                  order.state_count == 1 ? "" : "s", report.seconds);
+  if (order.outcome == OrderOutcome::kNotFound) {
+    return "NOT FOUND   no order found in the time given; there may be one\n" + examined;
+  }
+  if (order.outcome == OrderOutcome::kNone) {
+    return "NONE        there is no safe order\n" + none_words(report) + help_words(report) +
+           examined;
+  }
+  std::string text = fmt::format("FOUND       {} step{}, every state {} is safe\n",
+                                 order.steps.size(), order.steps.size() == 1 ? "" : "s",
+                                 report.is_reversed ? "left behind" : "on the way");
+  if (report.result.load_ratio_max) {
+    text += fmt::format(
+        "  load ratio  {:.4g} is the largest of the states that were solved, no state exceeds "
+        "{:.4g}\n",
+        *report.result.load_ratio_max, *report.result.load_ratio_bound);
+  }
+  if (report.result.margin_min_mm) {
+    text +=
+        fmt::format("  margin      {:.4g} mm at least on the way\n", *report.result.margin_min_mm);
+  }
+  return text + examined;
+}
+
+}  // namespace holdfast::io

@@ -1,0 +1,87 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "holdfast/plan/spring_network.hpp"
+#include "holdfast/solver/growing_factor.hpp"
+
+namespace holdfast::plan {
+
+/// How much work a GrowingNetwork has done.
+struct GrowingWork {
+  std::int64_t solution_count = 0;       ///< Solutions, refinements included.
+  std::int64_t refinement_count = 0;     ///< Of these, those that mended a residual.
+  std::int64_t factorization_count = 0;  ///< Factorizations anew, as the residual stayed.
+};
+
+/// The part of a network that is there, in equilibrium, while elements come and go one by one.
+///
+/// Every displacement it gives is checked: the residual of all equations, of the sum of loads, is
+/// at most kResidualMax, by refinement and at last by factorizing anew.
+class GrowingNetwork {
+ public:
+  /// Of the sum of all loads' magnitudes; rounding leaves about 1e-12.
+  static constexpr double kResidualMax = 1e-10;
+
+  /// Nothing is there at first. The network must outlive this.
+  explicit GrowingNetwork(const SpringNetwork& network);
+
+  const SpringNetwork& network() const { return *network_; }
+
+  bool has_element(std::size_t element) const { return has_element_[element] != 0; }
+
+  std::size_t element_count() const { return element_count_; }
+
+  /// Whether the node is the ground or an element that is there touches it.
+  bool has_node(std::int32_t node) const {
+    return node == kGround || factor_.is_present(base::at(node));
+  }
+
+  /// Whether the element could be added: at least one of its ends is there.
+  bool can_be_added(std::size_t element) const;
+
+  /// Each returns false, and changes nothing, if something then hung on nothing, as far as the
+  /// factorization sees it: whoever removes looks first.
+  [[nodiscard]] bool add(std::size_t element);
+  [[nodiscard]] bool remove(std::size_t element);
+
+  /// Takes back the last add() or remove(); once.
+  void undo();
+
+  /// Starts anew with these elements. Returns false if not all are held.
+  [[nodiscard]] bool assign(std::span<const std::size_t> elements);
+
+  /// By node, zero where there is none: mm and rad. Solved when first asked after a change. Empty
+  /// if the equations cannot be solved to kResidualMax.
+  const std::vector<base::Vec6<double>>& displacements();
+
+  /// The largest translation of a node, in mm, infinite if the equations cannot be solved.
+  double translation_max();
+
+  const GrowingWork& work() const { return work_; }
+
+ private:
+  void load(std::size_t element, double sign);
+  double make_residual(const std::vector<base::Vec6<double>>& u);
+  bool refine();
+
+  const SpringNetwork* network_;
+  solver::GrowingFactor factor_;
+  std::vector<std::uint8_t> has_element_;
+  std::vector<base::Vec6<double>> loads_;     ///< by node
+  std::vector<base::Vec6<double>> solution_;  ///< by node
+  std::vector<base::Vec6<double>> residual_;  ///< by node
+  double arm_mm_ = 0;                         ///< the longest lever: what moments are measured by
+  double load_sum_n_ = 0;
+  std::size_t element_count_ = 0;
+  std::size_t last_element_ = 0;
+  int last_sign_ = 0;
+  bool is_solved_ = false;
+  GrowingWork work_;
+};
+
+}  // namespace holdfast::plan

@@ -1,0 +1,74 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "holdfast/base/cell.hpp"
+#include "holdfast/base/result.hpp"
+#include "holdfast/model/robot.hpp"
+#include "holdfast/plan/order_search.hpp"
+#include "holdfast/plan/reach.hpp"
+
+/// An order in which the modules of a robot can be attached, or taken apart, so that it is safe all
+/// the way; or a certificate that there is none.
+namespace holdfast::plan {
+
+/// From what to what, and how.
+struct OrderTask {
+  model::RobotSpec target;  ///< All modules exist: none is planned.
+  /// The modules that are there at first, all of the target. Empty: all fixed modules, or where
+  /// none is fixed any single module that is supported and safe.
+  std::vector<base::Cell> start = {};
+  ReachRule rule = {};
+  std::size_t group_size = 1;
+};
+
+struct RobotOrderOptions {
+  /// Of OrderOptions all but the group size, which is the task's.
+  std::uint64_t seed = 0;
+  double seconds_max = std::numeric_limits<double>::infinity();
+  std::size_t state_count_max = std::numeric_limits<std::size_t>::max();
+  std::function<void(std::size_t states, std::size_t grown, std::size_t shrunk)> progress = {};
+  /// 0: as many as the machine has cores. The result does not depend on it.
+  int thread_count = 0;
+};
+
+/// Proves that a task cannot be done: a cut between start and target, see Closure. Elements are the
+/// modules of `task.target.existing`, by index.
+struct OrderCertificate {
+  OrderTask task;
+  Closure closure;
+};
+
+struct RobotOrder {
+  Order order = {};  ///< Elements are the modules of the target's `existing`, by index.
+  std::optional<OrderCertificate> certificate = {};  ///< Of OrderOutcome::kNone.
+  /// The largest load ratio of all states on the way that were solved; none if no load is known.
+  std::optional<double> load_ratio_max = {};
+  /// What no state on the way exceeds: most are certified by a bound instead of being solved.
+  std::optional<double> load_ratio_bound = {};
+  /// The smallest margin on the way; none where none is known.
+  std::optional<double> margin_min_mm = {};
+};
+
+/// Errors: the target or the start is no robot, the start has modules that the target has not or is
+/// not safe; a source is missing or is taken.
+base::Result<RobotOrder> find_robot_order(const OrderTask& task,
+                                          const RobotOrderOptions& options = {});
+
+/// What has been replayed of a certificate.
+struct CertificateCheck {
+  std::size_t state_count = 0;    ///< States inside the cut.
+  std::size_t blocked_count = 0;  ///< States just beyond, judged anew, none of which is safe.
+};
+
+/// Replays a certificate: every state inside is left by every step there is, and each of them leads
+/// inside or to a state that is judged anew and is not safe. Errors: what is not so.
+base::Result<CertificateCheck> verify(const OrderCertificate& certificate, int thread_count = 0);
+
+}  // namespace holdfast::plan

@@ -1,0 +1,108 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "holdfast/plan/element_set.hpp"
+#include "holdfast/plan/judgement.hpp"
+
+/// In which order can a structure be built, or taken apart, so that every state on the way is safe?
+///
+/// States are sets of elements. The search knows nothing of mechanics or geometry: what may come
+/// next and what is safe is asked of a GrowingStructure, so that robots of modules, printed frames
+/// of bars and whatever else grows share it. It goes from both ends in turns, from the start by
+/// adding and from the whole by removing, depth first, the most promising element first; a state
+/// from which every way on is blocked is remembered and never entered again. As sets only grow (or
+/// only shrink) along a way, an end from which nothing is left to enter proves that there is no
+/// order (Closure).
+namespace holdfast::plan {
+
+enum class Sense : std::uint8_t { kGrowing, kShrinking };
+
+/// A structure whose elements are added or removed one by one.
+class GrowingStructure {
+ public:
+  virtual ~GrowingStructure() = default;
+
+  /// The whole has the elements 0 to element_count() - 1.
+  virtual std::size_t element_count() const = 0;
+
+  /// Every element that can be added to the state (or removed from it) as far as geometry goes,
+  /// the most promising first. What is not named is taken for impossible, so proofs rest on it. The
+  /// list depends on the arguments alone; a seed other than 0 disturbs its order.
+  virtual std::vector<Element> candidates(const ElementSet& state, Sense sense,
+                                          std::uint64_t seed) = 0;
+
+  /// Whether the state is safe; depends on the set alone.
+  virtual Judgement judge(const ElementSet& state) = 0;
+
+  /// Judges the states that arise when the elements of `run` are added to `state` (or removed from
+  /// it) one after another, up to and including the first one that is not safe. What a structure
+  /// overrides if it can judge many states on a way for less than each alone.
+  virtual std::vector<Judgement> judge_run(const ElementSet& state, Sense sense,
+                                           std::span<const Element> run);
+
+  /// So many states at most are judged in one run.
+  virtual std::size_t run_length_max() const { return 1; }
+};
+
+struct OrderOptions {
+  /// So many elements at most are added, or removed, at once; only the state after it must be safe.
+  std::size_t group_size = 1;
+  /// The same seed finds the same order. Others try candidates in other orders.
+  std::uint64_t seed = 0;
+  /// The search stops after this time, or so many judged states, without an answer.
+  double seconds_max = std::numeric_limits<double>::infinity();
+  std::size_t state_count_max = std::numeric_limits<std::size_t>::max();
+  /// Called now and then with the number of states judged so far, and how many elements the largest
+  /// state reached from the start has, and how many the smallest reached from the whole.
+  std::function<void(std::size_t states, std::size_t grown, std::size_t shrunk)> progress = {};
+};
+
+enum class OrderOutcome : std::uint8_t {
+  kFound,
+  kNone,      ///< There is no order; the closure proves it.
+  kNotFound,  ///< Time or states ran out.
+};
+
+/// Elements that are added or removed together.
+using Batch = std::vector<Element>;
+
+/// A cut between start and whole: safe states that no step leaves. All safe states at that end are
+/// in it, and so is every safe state that one step leads to; the other end is not. For
+/// Sense::kGrowing the end is the start, or all starts; for kShrinking the whole.
+struct Closure {
+  Sense sense = Sense::kGrowing;
+  std::vector<ElementSet> states = {};
+  /// States just beyond, none of which is safe, and why not; those at the end itself first.
+  std::vector<std::pair<ElementSet, Judgement>> blocked = {};
+};
+
+struct Order {
+  OrderOutcome outcome = OrderOutcome::kNotFound;
+  ElementSet start = {};                   ///< The start that the order begins with.
+  std::vector<Batch> steps = {};           ///< From the start to the whole.
+  std::vector<Judgement> judgements = {};  ///< Of the start and of the state after each step.
+  std::size_t state_count = 0;             ///< Judged in all.
+  std::optional<Closure> closure = {};     ///< Of kNone.
+};
+
+/// Seeks an order from one of the starts, none of which contains another, to the whole.
+Order find_order(GrowingStructure& structure, std::span<const ElementSet> starts,
+                 const OrderOptions& options = {});
+
+/// Every state that one step leads to from `state`, each once: groups of one first.
+std::vector<Batch> successors(GrowingStructure& structure, const ElementSet& state, Sense sense,
+                              std::size_t group_size, std::uint64_t seed = 0);
+
+/// The state with the elements added, or without them.
+ElementSet changed(ElementSet state, Sense sense, std::span<const Element> elements);
+
+}  // namespace holdfast::plan

@@ -1,0 +1,104 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#include "balance.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "holdfast/base/lattice.hpp"
+
+namespace holdfast::plan {
+
+Balance::Balance(const model::Robot& target)
+    : has_facet_(target.modules().size()),
+      standing_(target.modules().size()),
+      half_width_(target.foot_half_width_mm() / target.material().pitch_mm) {
+  for (std::size_t i = 0; i < target.modules().size(); ++i) {
+    const auto place = base::place_of(target.lattice(),
+                                      base::axial_of(target.lattice(), target.modules()[i].cell));
+    places_.push_back({place[0], place[1]});
+    masses_.push_back(target.mass(i));
+  }
+  for (const model::Facet& facet : target.facets()) {
+    has_facet_[base::at(facet.module)] = true;
+  }
+}
+
+void Balance::change(Element module, int by) {
+  const std::size_t i = base::at(module);
+  mass_ += by * masses_[i];
+  moment_.x += by * masses_[i] * places_[i].x;
+  moment_.y += by * masses_[i] * places_[i].y;
+  if (has_facet_[i]) {
+    standing_[i] += by;
+    is_hull_stale_ = true;
+  }
+}
+
+/// Andrew's monotone chain, counter-clockwise.
+std::vector<Balance::Point> Balance::hull_of(Element extra, int by) const {
+  std::vector<Point> points;
+  for (std::size_t i = 0; i < standing_.size(); ++i) {
+    if (standing_[i] + (static_cast<Element>(i) == extra ? by : 0) > 0) {
+      for (const double side : {-half_width_, half_width_}) {
+        points.push_back({places_[i].x + side, places_[i].y - half_width_});
+        points.push_back({places_[i].x + side, places_[i].y + half_width_});
+      }
+    }
+  }
+  std::ranges::sort(
+      points, [](const Point& a, const Point& b) { return a.x != b.x ? a.x < b.x : a.y < b.y; });
+  const auto turn = [](const Point& a, const Point& b, const Point& c) {
+    return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
+  };
+  std::vector<Point> hull;
+  for (int pass = 0; pass < 2 && !points.empty(); ++pass) {
+    const std::size_t start = hull.size();
+    for (const Point& point : points) {
+      while (hull.size() >= start + 2 && turn(hull[hull.size() - 2], hull.back(), point) <= 0) {
+        hull.pop_back();
+      }
+      hull.push_back(point);
+    }
+    hull.pop_back();
+    std::ranges::reverse(points);
+  }
+  return hull;
+}
+
+double Balance::margin_of(const std::vector<Point>& hull, double mass, double x, double y) const {
+  if (hull.empty()) {
+    return -std::numeric_limits<double>::infinity();
+  }
+  double margin = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < hull.size(); ++i) {
+    const Point& a = hull[i];
+    const Point& b = hull[(i + 1) % hull.size()];
+    const double length = std::hypot(b.x - a.x, b.y - a.y);
+    const double across = (b.x - a.x) * (y / mass - a.y) - (b.y - a.y) * (x / mass - a.x);
+    margin = std::min(margin, across / length);
+  }
+  return margin;
+}
+
+double Balance::margin() {
+  if (is_hull_stale_) {
+    hull_ = hull_of(-1, 0);
+    is_hull_stale_ = false;
+  }
+  return margin_of(hull_, mass_, moment_.x, moment_.y);
+}
+
+double Balance::margin_changed(Element module, int by) {
+  const std::size_t i = base::at(module);
+  const double mass = mass_ + by * masses_[i];
+  const double x = moment_.x + by * masses_[i] * places_[i].x;
+  const double y = moment_.y + by * masses_[i] * places_[i].y;
+  if (has_facet_[i]) {
+    return margin_of(hull_of(module, by), mass, x, y);
+  }
+  margin();
+  return margin_of(hull_, mass, x, y);
+}
+
+}  // namespace holdfast::plan

@@ -1,0 +1,60 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <limits>
+#include <vector>
+
+#include "holdfast/model/robot.hpp"
+#include "holdfast/plan/element_set.hpp"
+
+namespace holdfast::plan {
+
+/// Centre of mass and support polygon of a robot on a flat floor that grows and shrinks: the
+/// margin after every change, in the time of a look at the polygon's edges. In double: a margin
+/// within kMarginDoubt of zero decides nothing.
+class Balance {
+ public:
+  /// In pitches; sums over a million modules round by less.
+  static constexpr double kMarginDoubt = 1e-6;
+
+  /// Of no module of `target` so far, which must be on a flat floor.
+  explicit Balance(const model::Robot& target);
+
+  void add(Element module) { change(module, 1); }
+
+  void remove(Element module) { change(module, -1); }
+
+  /// Distance of the centre of mass from the nearest edge of the support polygon, in pitches,
+  /// negative outside; minus infinity without support.
+  double margin();
+
+  /// The margin with one more module, or with one less.
+  double margin_with(Element module) { return margin_changed(module, 1); }
+
+  double margin_without(Element module) { return margin_changed(module, -1); }
+
+ private:
+  struct Point {
+    double x = 0;
+    double y = 0;
+  };
+
+  void change(Element module, int by);
+  double margin_changed(Element module, int by);
+  double margin_of(const std::vector<Point>& hull, double mass, double x, double y) const;
+  std::vector<Point> hull_of(Element extra, int by) const;
+
+  std::vector<Point> places_;    ///< By module, pitches.
+  std::vector<double> masses_;   ///< By module, kg.
+  std::vector<bool> has_facet_;  ///< By module.
+  std::vector<int> standing_;    ///< Whether a module with a facet is there; 0 or 1.
+  double half_width_ = 0;        ///< Of a facet, pitches.
+  double mass_ = 0;
+  Point moment_;
+  std::vector<Point> hull_;
+  bool is_hull_stale_ = true;
+};
+
+}  // namespace holdfast::plan

@@ -1,0 +1,167 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#include "holdfast/plan/order_help.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <set>
+
+#include "holdfast/base/lattice.hpp"
+
+namespace holdfast::plan {
+namespace {
+
+using base::Cell;
+
+/// Pairs are tried only of so few cells.
+constexpr std::size_t kPairedCellsMax = 60;
+
+/// Runs of modules that would help are sought up to this length.
+constexpr std::size_t kRunMax = 40;
+
+class HelpSearch {
+ public:
+  HelpSearch(const OrderTask& task, const HelpOptions& options) : task_(task), options_(options) {
+    taken_.insert(task.target.existing.begin(), task.target.existing.end());
+    list_cells();
+  }
+
+  std::optional<Help> run();
+
+ private:
+  bool is_free(const Cell& cell) const;
+  void list_cells();
+  std::vector<std::vector<Cell>> runs() const;
+  std::optional<Help> try_all(const std::vector<Help>& helps) const;
+  bool serves(const Help& help) const;
+  bool has_order(const OrderTask& task) const;
+  bool is_late() const;
+
+  const OrderTask& task_;
+  const HelpOptions& options_;
+  std::set<Cell> taken_;
+  std::vector<Cell> beside_;  ///< Free cells beside the target, ascending by layer.
+  std::vector<Cell> below_;   ///< Those straight below a module, where the lattice has any.
+  std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
+};
+
+bool HelpSearch::is_late() const {
+  const std::chrono::duration<double> passed = std::chrono::steady_clock::now() - begin_;
+  return passed.count() >= options_.seconds_max;
+}
+
+bool HelpSearch::is_free(const Cell& cell) const {
+  const model::ObstacleIndex obstacles(task_.target.obstacles);
+  return !taken_.contains(cell) && obstacles.find(cell) == model::CellIndex::kNone &&
+         (!task_.target.support_z || cell.z >= *task_.target.support_z) &&
+         task_.rule.source != cell;
+}
+
+void HelpSearch::list_cells() {
+  std::set<Cell> beside;
+  const base::Lattice& lattice = task_.target.lattice;
+  for (const Cell& module : task_.target.existing) {
+    for (const base::Direction direction : base::directions(lattice)) {
+      const Cell cell = base::neighbour(lattice, module, direction);
+      if (!is_free(cell)) {
+        continue;
+      }
+      if (beside.insert(cell).second) {
+        beside_.push_back(cell);
+      }
+      if (direction == base::down(lattice)) {
+        below_.push_back(cell);
+      }
+    }
+  }
+  const auto by_layer = [](const Cell& cell) { return std::array{cell.z, cell.x, cell.y}; };
+  std::ranges::sort(beside_, {}, by_layer);
+  std::ranges::sort(below_, {}, by_layer);
+}
+
+/// Straight runs of two or more free cells from a module of the target to another, or to the floor.
+std::vector<std::vector<Cell>> HelpSearch::runs() const {
+  std::set<std::vector<Cell>> found;
+  const base::Lattice& lattice = task_.target.lattice;
+  for (const Cell& module : task_.target.existing) {
+    for (const base::Direction direction : base::directions(lattice)) {
+      std::vector<Cell> run;
+      Cell cell = base::neighbour(lattice, module, direction);
+      while (is_free(cell) && run.size() < kRunMax) {
+        run.push_back(cell);
+        cell = base::neighbour(lattice, cell, direction);
+      }
+      const bool is_on_floor =
+          !run.empty() && run.back().z == task_.target.support_z && cell.z < run.back().z;
+      if (run.size() > 1 && (is_on_floor || taken_.contains(cell))) {
+        std::ranges::sort(run);
+        found.insert(std::move(run));
+      }
+    }
+  }
+  return {found.begin(), found.end()};
+}
+
+bool HelpSearch::has_order(const OrderTask& task) const {
+  const auto found = find_robot_order(
+      task, {.state_count_max = options_.state_count_max, .thread_count = options_.thread_count});
+  return found && found.value().order.outcome == OrderOutcome::kFound;
+}
+
+bool HelpSearch::serves(const Help& help) const {
+  OrderTask helped = task_;
+  for (const Cell& cell : help.supports) {
+    helped.target.obstacles.push_back({.from = cell, .to = cell});
+  }
+  helped.target.existing.insert(helped.target.existing.end(), help.temporary.begin(),
+                                help.temporary.end());
+  if (!has_order(helped)) {
+    return false;
+  }
+  if (help.temporary.empty()) {
+    return true;
+  }
+  helped.start = task_.target.existing;
+  return has_order(helped);
+}
+
+std::optional<Help> HelpSearch::try_all(const std::vector<Help>& helps) const {
+  for (const Help& help : helps) {
+    if (is_late()) {
+      return std::nullopt;
+    }
+    if (serves(help)) {
+      return help;
+    }
+  }
+  return std::nullopt;
+}
+
+std::optional<Help> HelpSearch::run() {
+  std::vector<Help> helps;
+  for (const Cell& cell : below_) {
+    helps.push_back({.supports = {cell}, .temporary = {}});
+  }
+  for (const Cell& cell : beside_) {
+    helps.push_back({.supports = {}, .temporary = {cell}});
+  }
+  for (std::size_t i = 0; beside_.size() <= kPairedCellsMax && i < beside_.size(); ++i) {
+    for (std::size_t k = 0; k < i; ++k) {
+      helps.push_back({.supports = {}, .temporary = {beside_[k], beside_[i]}});
+    }
+  }
+  for (std::vector<Cell>& run : runs()) {
+    helps.push_back({.supports = {}, .temporary = std::move(run)});
+  }
+  std::ranges::stable_sort(
+      helps, {}, [](const Help& help) { return help.supports.size() + help.temporary.size(); });
+  return try_all(helps);
+}
+
+}  // namespace
+
+std::optional<Help> find_help(const OrderTask& task, const HelpOptions& options) {
+  return HelpSearch(task, options).run();
+}
+
+}  // namespace holdfast::plan

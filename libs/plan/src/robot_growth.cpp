@@ -1,0 +1,377 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#include "robot_growth.hpp"
+
+#include <algorithm>
+#include <limits>
+
+#include "holdfast/base/rng.hpp"
+#include "holdfast/host/team.hpp"
+#include "holdfast/verdict/rigid_body.hpp"
+
+namespace holdfast::plan {
+namespace {
+
+/// A seed moves candidates by up to so many steps.
+constexpr std::uint64_t kDisturbance = 4;
+
+/// Steps from the nearest of `sources`, through connections of the target.
+std::vector<std::int64_t> distances_from(const model::Robot& target,
+                                         std::vector<std::size_t> sources) {
+  std::vector<std::int64_t> distance(target.modules().size(),
+                                     std::numeric_limits<std::int32_t>::max());
+  for (const std::size_t source : sources) {
+    distance[source] = 0;
+  }
+  for (std::size_t i = 0; i < sources.size(); ++i) {
+    for (const std::int32_t other : target.connected()[sources[i]]) {
+      if (other != model::Robot::kNoNeighbour &&
+          distance[base::at(other)] > distance[sources[i]] + 1) {
+        distance[base::at(other)] = distance[sources[i]] + 1;
+        sources.push_back(base::at(other));
+      }
+    }
+  }
+  return distance;
+}
+
+std::vector<std::size_t> supports_and(const model::Robot& target, const ElementSet& core) {
+  std::vector<std::size_t> sources;
+  for (std::size_t i = 0; i < target.modules().size(); ++i) {
+    if (target.modules()[i].support != model::Support::kNone ||
+        core.contains(static_cast<Element>(i))) {
+      sources.push_back(i);
+    }
+  }
+  return sources;
+}
+
+}  // namespace
+
+model::RobotSpec part_of(const model::RobotSpec& spec, const ElementSet& modules) {
+  model::RobotSpec part = spec;
+  part.existing.clear();
+  for (const Element element : modules.elements()) {
+    part.existing.push_back(spec.existing[base::at(element)]);
+  }
+  if (spec.fixed.empty() && spec.released.empty() && spec.own_kinds.empty() &&
+      spec.own_masses.empty() && spec.payloads.empty()) {
+    return part;
+  }
+  std::vector<base::Cell> there = part.existing;
+  std::ranges::sort(there);
+  const auto is_absent = [&](const base::Cell& cell) {
+    return !std::ranges::binary_search(there, cell);
+  };
+  std::erase_if(part.fixed, is_absent);
+  std::erase_if(part.released, [&](const model::CellPair& pair) {
+    return is_absent(pair[0]) || is_absent(pair[1]);
+  });
+  const auto is_of_absent = [&](const auto& own) { return is_absent(own.cell); };
+  std::erase_if(part.own_kinds, is_of_absent);
+  std::erase_if(part.own_masses, is_of_absent);
+  std::erase_if(part.payloads, is_of_absent);
+  return part;
+}
+
+RobotGrowth::RobotGrowth(const model::RobotSpec& spec, const model::Robot& target,
+                         const ElementSet& core, ReachRule rule, int thread_count)
+    : spec_(spec),
+      target_(target),
+      core_(core),
+      rule_(rule),
+      reach_(spec, rule),
+      thread_count_(thread_count),
+      distance_(distances_from(target, supports_and(target, core))),
+      state_(spec.existing.size()),
+      beside_count_(spec.existing.size()) {
+  if (verdict::is_on_flat_floor(target) && target.fixed_count() == 0) {
+    balance_.emplace(target);
+  }
+}
+
+RobotGrowth::Rank RobotGrowth::rank(Element element) const {
+  std::int64_t steps = distance_[base::at(element)];
+  if (seed_ != 0) {
+    base::Rng rng(seed_ + 0x9e3779b97f4a7c15U * (static_cast<std::uint64_t>(element) + 1));
+    steps += static_cast<std::int64_t>(rng.below(kDisturbance + 1));
+  }
+  return {steps, element};
+}
+
+void RobotGrowth::set_seed(std::uint64_t seed) {
+  if (seed == seed_) {
+    return;
+  }
+  std::vector<Element> elements;
+  for (const Rank& rank : frontier_) {
+    elements.push_back(rank.second);
+  }
+  seed_ = seed;
+  frontier_.clear();
+  for (const Element element : elements) {
+    frontier_.insert(rank(element));
+  }
+}
+
+void RobotGrowth::add(Element element) {
+  state_.insert(element);
+  frontier_.erase(rank(element));
+  for (const std::int32_t other : target_.connected()[base::at(element)]) {
+    if (other != model::Robot::kNoNeighbour && ++beside_count_[base::at(other)] == 1 &&
+        !state_.contains(other)) {
+      frontier_.insert(rank(other));
+    }
+  }
+  if (balance_) {
+    balance_->add(element);
+  }
+}
+
+void RobotGrowth::remove(Element element) {
+  state_.erase(element);
+  if (beside_count_[base::at(element)] > 0) {
+    frontier_.insert(rank(element));
+  }
+  for (const std::int32_t other : target_.connected()[base::at(element)]) {
+    if (other != model::Robot::kNoNeighbour && --beside_count_[base::at(other)] == 0) {
+      frontier_.erase(rank(other));
+    }
+  }
+  if (balance_) {
+    balance_->remove(element);
+  }
+}
+
+/// Changes what has changed since the last state.
+void RobotGrowth::move_to(const ElementSet& state) {
+  for (std::size_t word = 0; word < state.words().size(); ++word) {
+    for (std::uint64_t bits = state.words()[word] ^ state_.words()[word]; bits != 0;
+         bits &= bits - 1) {
+      const Element element = static_cast<Element>(64 * word) + __builtin_ctzll(bits);
+      state.contains(element) ? add(element) : remove(element);
+    }
+  }
+}
+
+/// Modules without which the others would not hang together: cut vertices, by Tarjan's depth-first
+/// search without recursion.
+std::vector<bool> RobotGrowth::are_needed(const ElementSet& state) const {
+  struct Visit {
+    Element module;
+    Element parent;
+    std::size_t next = 0;
+  };
+
+  std::vector<bool> needed(element_count());
+  std::vector<std::int32_t> order(element_count(), -1);
+  std::vector<std::int32_t> low(element_count());
+  const Element root = state.elements().front();
+  std::vector<Visit> stack = {{.module = root, .parent = -1}};
+  std::int32_t visited = 0;
+  int root_child_count = 0;
+  order[base::at(root)] = low[base::at(root)] = visited++;
+  while (!stack.empty()) {
+    Visit& top = stack.back();
+    const auto neighbours = target_.connected()[base::at(top.module)];
+    std::int32_t& low_here = low[base::at(top.module)];
+    if (top.next < neighbours.size()) {
+      const std::int32_t other = neighbours[top.next++];
+      if (other == model::Robot::kNoNeighbour || !state.contains(other) || other == top.parent) {
+        continue;
+      }
+      if (order[base::at(other)] >= 0) {
+        low_here = std::min(low_here, order[base::at(other)]);
+        continue;
+      }
+      order[base::at(other)] = low[base::at(other)] = visited++;
+      root_child_count += top.module == root ? 1 : 0;
+      stack.push_back({.module = other, .parent = top.module});
+      continue;
+    }
+    const Visit done = top;
+    stack.pop_back();
+    if (done.parent >= 0) {
+      std::int32_t& low_parent = low[base::at(done.parent)];
+      low_parent = std::min(low_parent, low[base::at(done.module)]);
+      if (done.parent != root && low[base::at(done.module)] >= order[base::at(done.parent)]) {
+        needed[base::at(done.parent)] = true;
+      }
+    }
+  }
+  needed[base::at(root)] = root_child_count > 1;
+  return needed;
+}
+
+/// Modules that leave a connected robot with a support behind.
+std::vector<Element> RobotGrowth::removable(const ElementSet& state) const {
+  std::vector<Element> list;
+  if (state.size() < 2) {
+    return list;
+  }
+  const std::vector<bool> needed = are_needed(state);
+  const auto is_support = [&](Element element) {
+    return target_.modules()[base::at(element)].support != model::Support::kNone;
+  };
+  const std::vector<Element> elements = state.elements();
+  const auto support_count = std::ranges::count_if(elements, is_support);
+  for (const Element element : elements) {
+    const bool is_last_support = is_support(element) && support_count == 1;
+    if (!core_.contains(element) && !needed[base::at(element)] && !is_last_support) {
+      list.push_back(element);
+    }
+  }
+  std::ranges::sort(list, [&](Element a, Element b) { return rank(a) > rank(b); });
+  return list;
+}
+
+/// Those that can get to their cells, or come away from them.
+std::vector<Element> RobotGrowth::reachable(std::vector<Element> list, const ElementSet& state,
+                                            Sense sense) const {
+  if (rule_.reach == Reach::kFree) {
+    return list;
+  }
+  std::vector<bool> can;
+  if (sense == Sense::kGrowing) {
+    std::vector<base::Cell> cells;
+    for (const Element element : list) {
+      cells.push_back(spec_.existing[base::at(element)]);
+    }
+    can = reach_.can_reach_each(state, cells);
+  } else {
+    for (const Element element : list) {
+      can.push_back(reach_.can_reach(changed(state, Sense::kShrinking, {&element, 1}),
+                                     spec_.existing[base::at(element)]));
+    }
+  }
+  std::vector<Element> kept;
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    if (can[i]) {
+      kept.push_back(list[i]);
+    }
+  }
+  return kept;
+}
+
+void RobotGrowth::put_toppling_last(std::vector<Element>& list, Sense sense) {
+  if (!balance_) {
+    return;
+  }
+  std::ranges::stable_partition(list, [&](Element element) {
+    return (sense == Sense::kGrowing ? balance_->margin_with(element)
+                                     : balance_->margin_without(element)) > 0;
+  });
+}
+
+std::vector<Element> RobotGrowth::candidates(const ElementSet& state, Sense sense,
+                                             std::uint64_t seed) {
+  set_seed(seed);
+  move_to(state);
+  std::vector<Element> list;
+  if (sense == Sense::kShrinking) {
+    list = removable(state);
+  } else {
+    for (const Rank& rank : frontier_) {
+      list.push_back(rank.second);
+    }
+  }
+  list = reachable(std::move(list), state, sense);
+  put_toppling_last(list, sense);
+  return list;
+}
+
+base::Result<model::Robot> RobotGrowth::robot(const ElementSet& state) const {
+  return model::Robot::create(part_of(spec_, state), 1);
+}
+
+Judgement RobotGrowth::judge(const ElementSet& state) {
+  const auto part = robot(state);
+  // A set of modules that is no robot, such as a start that is not connected, is not safe.
+  return part ? plan::judge(part.value(), {.thread_count = thread_count_})
+              : Judgement{.verdict = verdict::Verdict::kUnstable};
+}
+
+Judgement judgement_of(const verdict::Assessment& assessment) {
+  return {.verdict = assessment.verdict,
+          .load_ratio_max = assessment.load_ratio_max,
+          .margin_mm = assessment.simplified.margin_mm};
+}
+
+/// Judges states one after another until one is not safe: those that can be certified so by what is
+/// known of the last that was solved, all others solved.
+std::vector<Judgement> RobotGrowth::judge_piece(ElementSet state, Sense sense,
+                                                std::span<const Element> run) const {
+  const bool can_certify = sense == Sense::kGrowing;
+  EnergyBound bound(target_);
+  std::optional<Balance> balance;
+  if (balance_ && can_certify) {
+    balance.emplace(target_);
+    for (const Element element : state.elements()) {
+      balance->add(element);
+    }
+  }
+  const double pitch_mm = target_.material().pitch_mm;
+  std::vector<Judgement> judgements;
+  bool has_bound = false;
+  for (const Element element : run) {
+    state = changed(std::move(state), sense, {&element, 1});
+    if (balance) {
+      balance->add(element);
+    }
+    const bool stands = !balance || balance->margin() > Balance::kMarginDoubt;
+    const auto ratio = has_bound && stands ? bound.add(element) : std::nullopt;
+    if (ratio) {
+      judgements.push_back({.verdict = verdict::Verdict::kSafe, .load_ratio_max = ratio});
+      judgements.back().is_bound = true;
+      if (balance) {
+        judgements.back().margin_mm = balance->margin() * pitch_mm;
+      }
+      continue;
+    }
+    const auto part = robot(state);
+    verdict::Assessment assessment;
+    if (part) {
+      assessment = assess(part.value(), {.thread_count = 1});
+    }
+    judgements.push_back(judgement_of(assessment));
+    if (!judgements.back().is_safe()) {
+      break;
+    }
+    const bool is_decided_here =
+        assessment.stability_rule != verdict::StabilityRule::kPolygon || balance.has_value();
+    has_bound = can_certify && is_decided_here && bound.begin(state.elements(), assessment);
+  }
+  return judgements;
+}
+
+std::vector<Judgement> RobotGrowth::judge_run(const ElementSet& state, Sense sense,
+                                              std::span<const Element> run) {
+  if (run.size() == 1) {
+    return GrowingStructure::judge_run(state, sense, run);
+  }
+  const std::size_t length = std::max(kPieceMin, (run.size() - 1) / kPieceCountMax + 1);
+  const std::size_t count = (run.size() - 1) / length + 1;
+  std::vector<ElementSet> begins = {state};
+  for (std::size_t i = 1; i < count; ++i) {
+    begins.push_back(changed(begins.back(), sense, run.subspan((i - 1) * length, length)));
+  }
+  std::vector<std::vector<Judgement>> pieces(count);
+  // The loop is shared by chunks of items: one for each piece.
+  host::Team team(thread_count_);
+  team.share(0, count * host::Team::kChunk, [&](std::size_t first, std::size_t last) {
+    for (std::size_t i = first / host::Team::kChunk; i * host::Team::kChunk < last; ++i) {
+      const auto part = run.subspan(i * length, std::min(length, run.size() - i * length));
+      pieces[i] = judge_piece(begins[i], sense, part);
+    }
+  });
+  std::vector<Judgement> judgements;
+  for (const std::vector<Judgement>& piece : pieces) {
+    judgements.insert(judgements.end(), piece.begin(), piece.end());
+    if (!judgements.back().is_safe()) {
+      break;
+    }
+  }
+  return judgements;
+}
+
+}  // namespace holdfast::plan

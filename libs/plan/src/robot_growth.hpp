@@ -1,0 +1,94 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <set>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "balance.hpp"
+#include "energy_bound.hpp"
+#include "holdfast/model/robot.hpp"
+#include "holdfast/plan/order_search.hpp"
+#include "holdfast/plan/reach.hpp"
+#include "holdfast/solver/options.hpp"
+
+namespace holdfast::plan {
+
+/// A robot that grows module by module; element i is the target's module i. Every state is a robot
+/// of its own, connected and supported, and judged as such.
+class RobotGrowth final : public GrowingStructure {
+ public:
+  /// `target` is the robot of `spec`, all of whose modules exist. Modules of `core` are in all
+  /// states. Keeps references to all three.
+  RobotGrowth(const model::RobotSpec& spec, const model::Robot& target, const ElementSet& core,
+              ReachRule rule, int thread_count);
+
+  std::size_t element_count() const override { return spec_.existing.size(); }
+
+  /// Growing: modules nearest to a support or to the core first, by steps in the target. Shrinking:
+  /// the farthest first. On a flat floor those without which the robot would topple, or with which
+  /// it would, come last.
+  std::vector<Element> candidates(const ElementSet& state, Sense sense,
+                                  std::uint64_t seed) override;
+
+  Judgement judge(const ElementSet& state) override;
+
+  /// On all threads. Growing, most states are certified by an EnergyBound instead of solved.
+  std::vector<Judgement> judge_run(const ElementSet& state, Sense sense,
+                                   std::span<const Element> run) override;
+
+  std::size_t run_length_max() const override { return kRunLength; }
+
+  /// The robot of a state.
+  base::Result<model::Robot> robot(const ElementSet& state) const;
+
+ private:
+  /// Longer runs cost no less for each state, and are in vain beyond the first unsafe one.
+  static constexpr std::size_t kRunLength = 256;
+  /// Pieces of a run, each of which begins with a state that is solved: at least so long, and no
+  /// more of them than that, whatever the number of threads, so that the same states are solved.
+  static constexpr std::size_t kPieceMin = 8;
+  static constexpr std::size_t kPieceCountMax = 8;
+
+  /// What decides between candidates: lower first.
+  using Rank = std::pair<std::int64_t, Element>;
+
+  Rank rank(Element element) const;
+  void set_seed(std::uint64_t seed);
+  void move_to(const ElementSet& state);
+  void add(Element element);
+  void remove(Element element);
+  std::vector<bool> are_needed(const ElementSet& state) const;
+  std::vector<Element> removable(const ElementSet& state) const;
+  std::vector<Element> reachable(std::vector<Element> list, const ElementSet& state,
+                                 Sense sense) const;
+  std::vector<Judgement> judge_piece(ElementSet state, Sense sense,
+                                     std::span<const Element> run) const;
+  void put_toppling_last(std::vector<Element>& list, Sense sense);
+
+  const model::RobotSpec& spec_;
+  const model::Robot& target_;
+  const ElementSet& core_;
+  ReachRule rule_;
+  ReachFinder reach_;
+  int thread_count_;
+  std::vector<std::int64_t> distance_;  ///< By module: steps from a support or the core.
+  std::uint64_t seed_ = 0;
+  // What follows the state that was asked for last.
+  ElementSet state_;
+  std::vector<int> beside_count_;   ///< By module: how many of its neighbours are there.
+  std::set<Rank> frontier_;         ///< Modules beside the state, not in it.
+  std::optional<Balance> balance_;  ///< On a flat floor.
+};
+
+/// A solved robot, judged.
+Judgement judgement_of(const verdict::Assessment& assessment);
+
+/// What remains of a spec if only these of its modules are there.
+model::RobotSpec part_of(const model::RobotSpec& spec, const ElementSet& modules);
+
+}  // namespace holdfast::plan

@@ -1,0 +1,203 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#include "holdfast/plan/robot_state.hpp"
+
+#include <algorithm>
+#include <numeric>
+#include <utility>
+
+namespace holdfast::plan {
+namespace {
+
+using base::Cell;
+
+/// The spec without its modules.
+model::RobotSpec surroundings_of(const model::RobotSpec& spec) {
+  return {.support_z = spec.support_z,
+          .material = spec.material,
+          .lattice = spec.lattice,
+          .floor = spec.floor,
+          .obstacles = spec.obstacles,
+          .gravity_m_s2 = spec.gravity_m_s2,
+          .foot_mm = spec.foot_mm,
+          .kinds = spec.kinds};
+}
+
+}  // namespace
+
+void add_payload(const model::Payload& payload, ModuleState& module) {
+  if (!module.payload) {
+    module.payload = payload;
+    return;
+  }
+  for (std::size_t k = 0; k < 3; ++k) {
+    module.payload->force_n[k] += payload.force_n[k];
+    module.payload->torque_nmm[k] += payload.torque_nmm[k];
+  }
+}
+
+model::CellPair ordered(const model::CellPair& pair) {
+  return pair[0] < pair[1] ? pair : model::CellPair{pair[1], pair[0]};
+}
+
+std::optional<base::Direction> direction_between(const base::Lattice& lattice, const Cell& a,
+                                                 const Cell& b) {
+  for (const base::Direction direction : base::directions(lattice)) {
+    if (base::neighbour(lattice, a, direction) == b) {
+      return direction;
+    }
+  }
+  return std::nullopt;
+}
+
+std::size_t RobotState::CellHash::operator()(const Cell& cell) const {
+  std::uint64_t key = static_cast<std::uint32_t>(cell.x);
+  key = key * 0x9e3779b97f4a7c15U + static_cast<std::uint32_t>(cell.y);
+  key = key * 0x9e3779b97f4a7c15U + static_cast<std::uint32_t>(cell.z);
+  key ^= key >> 29U;
+  key *= 0xbf58476d1ce4e5b9U;
+  return static_cast<std::size_t>(key ^ (key >> 32U));
+}
+
+RobotState::Surroundings::Surroundings(const model::RobotSpec& whole)
+    : spec(surroundings_of(whole)), kinds(whole.kinds), obstacles(spec.obstacles) {
+  if (kinds.empty()) {
+    kinds.push_back(model::default_kind(spec.material, spec.lattice));
+  }
+}
+
+RobotState::RobotState(const model::RobotSpec& spec)
+    : around_(std::make_shared<const Surroundings>(spec)) {
+  for (const auto* cells : {&spec.existing, &spec.planned}) {
+    for (const Cell& cell : *cells) {
+      add({.cell = cell});
+    }
+  }
+  const auto at_cell = [&](const Cell& cell) -> ModuleState& {
+    return modules_[static_cast<std::size_t>(index_.at(cell))];
+  };
+  for (const Cell& cell : spec.fixed) {
+    at_cell(cell).is_fixed = true;
+  }
+  for (const model::OwnKind& own : spec.own_kinds) {
+    at_cell(own.cell).kind = own.kind;
+  }
+  for (const model::OwnMass& own : spec.own_masses) {
+    at_cell(own.cell).own_mass_kg = own.mass_kg;
+  }
+  for (const model::Payload& payload : spec.payloads) {
+    add_payload(payload, at_cell(payload.cell));
+  }
+  for (const model::CellPair& pair : spec.released) {
+    release(pair);
+  }
+}
+
+std::array<double, 3> RobotState::gravity() const {
+  return surroundings().gravity_m_s2.value_or(
+      std::array<double, 3>{0, 0, -surroundings().material.gravity_m_s2});
+}
+
+bool RobotState::are_connected(const Cell& a, const Cell& b) const {
+  return find(a) != kNone && find(b) != kNone && direction_between(lattice(), a, b) &&
+         !released_.contains(ordered({a, b}));
+}
+
+void RobotState::add(const ModuleState& added) {
+  auto next = static_cast<std::int32_t>(modules_.size());
+  if (free_.empty()) {
+    modules_.push_back(added);
+  } else {
+    next = free_.back();
+    free_.pop_back();
+    modules_[static_cast<std::size_t>(next)] = added;
+  }
+  modules_[static_cast<std::size_t>(next)].is_there = true;
+  index_[added.cell] = next;
+}
+
+void RobotState::remove(const Cell& cell) {
+  const auto found = index_.find(cell);
+  modules_[static_cast<std::size_t>(found->second)].is_there = false;
+  free_.push_back(found->second);
+  index_.erase(found);
+  std::erase_if(released_, [&](const auto& pair) { return pair[0] == cell || pair[1] == cell; });
+}
+
+void RobotState::release(const model::CellPair& pair) { released_.insert(ordered(pair)); }
+
+void RobotState::connect(const model::CellPair& pair) { released_.erase(ordered(pair)); }
+
+void RobotState::move(std::span<const Cell> from, std::span<const Cell> to) {
+  const auto place_of = [&](const Cell& cell) { return std::ranges::find(from, cell); };
+  std::set<model::CellPair> released;
+  for (const model::CellPair& pair : released_) {
+    const auto a = place_of(pair[0]);
+    const auto b = place_of(pair[1]);
+    if (a != from.end() && b != from.end()) {
+      released.insert(ordered({to[static_cast<std::size_t>(a - from.begin())],
+                               to[static_cast<std::size_t>(b - from.begin())]}));
+    } else if (a == from.end() && b == from.end()) {
+      released.insert(pair);
+    }
+  }
+  released_ = std::move(released);
+  std::vector<std::int32_t> moved;
+  for (const Cell& cell : from) {
+    moved.push_back(index_.at(cell));
+    index_.erase(cell);
+  }
+  for (std::size_t i = 0; i < moved.size(); ++i) {
+    modules_[static_cast<std::size_t>(moved[i])].cell = to[i];
+    index_[to[i]] = moved[i];
+  }
+}
+
+model::RobotSpec RobotState::spec(std::span<const std::int32_t> modules,
+                                  std::span<const model::CellPair> more) const {
+  model::RobotSpec spec = surroundings();
+  spec.existing.reserve(modules.size());
+  for (const std::int32_t index : modules) {
+    const ModuleState& found = module(index);
+    spec.existing.push_back(found.cell);
+    if (found.is_fixed) {
+      spec.fixed.push_back(found.cell);
+    }
+    if (found.kind != 0) {
+      spec.own_kinds.push_back({found.cell, found.kind});
+    }
+    if (found.own_mass_kg) {
+      spec.own_masses.push_back({found.cell, *found.own_mass_kg});
+    }
+    if (found.payload) {
+      spec.payloads.push_back(*found.payload);
+      spec.payloads.back().cell = found.cell;
+    }
+  }
+  if (released_.empty() && more.empty()) {
+    return spec;
+  }
+  std::set<model::CellPair> released = released_;
+  for (const model::CellPair& pair : more) {
+    released.insert(ordered(pair));
+  }
+  const std::set<Cell> cells(spec.existing.begin(), spec.existing.end());
+  for (const model::CellPair& pair : released) {
+    if (cells.contains(pair[0]) && cells.contains(pair[1])) {
+      spec.released.push_back(pair);
+    }
+  }
+  return spec;
+}
+
+model::RobotSpec RobotState::spec() const {
+  std::vector<std::int32_t> all;
+  for (std::size_t i = 0; i < modules_.size(); ++i) {
+    if (modules_[i].is_there) {
+      all.push_back(static_cast<std::int32_t>(i));
+    }
+  }
+  return spec(all);
+}
+
+}  // namespace holdfast::plan

@@ -1,0 +1,164 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// Structures made of random tables: any element may come next, and which states are safe is drawn
+// by lot. Whether there is an order is then a question of paths in the graph of all sets, answered
+// beside the search by walking through all of them.
+#include "holdfast/plan/order_search.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "holdfast/base/rng.hpp"
+
+namespace holdfast::plan {
+namespace {
+
+constexpr std::size_t kCount = 7;
+
+std::size_t mask_of(const ElementSet& set) {
+  return set.words().empty() ? 0 : static_cast<std::size_t>(set.words().front());
+}
+
+class RandomStructure final : public GrowingStructure {
+ public:
+  RandomStructure(std::uint64_t seed, std::uint64_t safe_of_ten) {
+    base::Rng rng(seed);
+    for (std::size_t mask = 0; mask < (1U << kCount); ++mask) {
+      safe_.push_back(rng.below(10) < safe_of_ten);
+    }
+    safe_.back() = true;
+  }
+
+  std::size_t element_count() const override { return kCount; }
+
+  std::vector<Element> candidates(const ElementSet& state, Sense sense,
+                                  std::uint64_t /*seed*/) override {
+    std::vector<Element> list;
+    for (Element element = 0; element < static_cast<Element>(kCount); ++element) {
+      if (state.contains(element) == (sense == Sense::kShrinking)) {
+        list.push_back(element);
+      }
+    }
+    return list;
+  }
+
+  Judgement judge(const ElementSet& state) override {
+    return {.verdict =
+                is_safe(mask_of(state)) ? verdict::Verdict::kSafe : verdict::Verdict::kOverload};
+  }
+
+  bool is_safe(std::size_t mask) const { return safe_[mask]; }
+
+ private:
+  std::vector<bool> safe_;
+};
+
+ElementSet set_of(std::size_t mask) {
+  ElementSet set(kCount);
+  for (std::size_t i = 0; i < kCount; ++i) {
+    if ((mask >> i & 1U) != 0) {
+      set.insert(static_cast<Element>(i));
+    }
+  }
+  return set;
+}
+
+/// Whether safe sets, each with up to `group_size` elements more than the one before, lead from
+/// {0} to all.
+bool has_order(const RandomStructure& structure, std::size_t group_size) {
+  std::vector<bool> reached(1U << kCount);
+  reached[1] = structure.is_safe(1);
+  for (std::size_t mask = 1; mask < reached.size(); ++mask) {
+    for (std::size_t before = 0; before < mask; ++before) {
+      const std::size_t added = mask & ~before;
+      const bool is_step = (before & ~mask) == 0 &&
+                           static_cast<std::size_t>(__builtin_popcountll(added)) <= group_size;
+      reached[mask] = reached[mask] || (is_step && reached[before] && structure.is_safe(mask));
+    }
+  }
+  return reached.back();
+}
+
+void expect_order(const RandomStructure& structure, const Order& order, std::size_t group_size) {
+  std::size_t mask = mask_of(order.start);
+  EXPECT_EQ(mask, 1U);
+  for (const Batch& group : order.steps) {
+    EXPECT_LE(group.size(), group_size);
+    for (const Element element : group) {
+      EXPECT_EQ(mask >> element & 1U, 0U);
+      mask |= std::size_t{1} << element;
+    }
+    EXPECT_TRUE(structure.is_safe(mask));
+  }
+  EXPECT_EQ(mask, (1U << kCount) - 1);
+  EXPECT_EQ(order.judgements.size(), order.steps.size() + 1);
+}
+
+/// Every set that a step leads to from one of the closure's is one of them, or is not safe; and one
+/// end is in it and the other is not.
+void expect_cut(const RandomStructure& structure, const Closure& closure, std::size_t group_size) {
+  std::vector<bool> inside(1U << kCount);
+  for (const ElementSet& state : closure.states) {
+    inside[mask_of(state)] = true;
+  }
+  const bool is_growing = closure.sense == Sense::kGrowing;
+  const std::size_t near = is_growing ? 1 : inside.size() - 1;
+  const std::size_t far = is_growing ? inside.size() - 1 : 1;
+  EXPECT_TRUE(inside[near] || !structure.is_safe(near));
+  EXPECT_FALSE(inside[far]);
+  for (std::size_t from = 0; from < inside.size(); ++from) {
+    for (std::size_t to = 0; inside[from] && to < inside.size(); ++to) {
+      const std::size_t small = is_growing ? from : to;
+      const std::size_t large = is_growing ? to : from;
+      const auto count = static_cast<std::size_t>(__builtin_popcountll(large & ~small));
+      if ((small & ~large) == 0 && count > 0 && count <= group_size) {
+        EXPECT_TRUE(inside[to] || !structure.is_safe(to));
+      }
+    }
+  }
+}
+
+TEST(OrderSearch, finds_an_order_or_a_cut_as_a_walk_through_all_sets_says) {
+  int found_count = 0;
+  int none_count = 0;
+  for (std::uint64_t seed = 0; seed < 300; ++seed) {
+    for (const std::size_t group_size : {1, 2, 3}) {
+      RandomStructure structure(seed, 2 + seed % 5);
+      const ElementSet start = set_of(1);
+      const Order order =
+          find_order(structure, {&start, 1}, {.group_size = group_size, .seed = seed % 3});
+      ASSERT_EQ(order.outcome == OrderOutcome::kFound, has_order(structure, group_size))
+          << "seed " << seed << ", groups of " << group_size;
+      if (order.outcome == OrderOutcome::kFound) {
+        expect_order(structure, order, group_size);
+        ++found_count;
+      } else {
+        ASSERT_EQ(order.outcome, OrderOutcome::kNone);
+        expect_cut(structure, *order.closure, group_size);
+        ++none_count;
+      }
+    }
+  }
+  EXPECT_GT(found_count, 100);
+  EXPECT_GT(none_count, 100);
+}
+
+TEST(OrderSearch, says_so_when_states_run_out) {
+  RandomStructure structure(1, 10);
+  const ElementSet start = set_of(1);
+  const Order order = find_order(structure, {&start, 1}, {.state_count_max = 2});
+  EXPECT_EQ(order.outcome, OrderOutcome::kNotFound);
+}
+
+TEST(OrderSearch, has_nothing_to_do_where_the_start_is_the_whole) {
+  RandomStructure structure(1, 10);
+  const ElementSet start = set_of((1U << kCount) - 1);
+  const Order order = find_order(structure, {&start, 1});
+  EXPECT_EQ(order.outcome, OrderOutcome::kFound);
+  EXPECT_TRUE(order.steps.empty());
+}
+
+}  // namespace
+}  // namespace holdfast::plan

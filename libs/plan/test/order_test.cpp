@@ -1,0 +1,282 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// Random small robots of weak modules: whether an order exists is a question of paths in the graph
+// of all connected parts, each of them checked by verdict::assess and walked through here, with
+// geometry written a second time. Certificates are replayed by the same walk.
+#include "holdfast/plan/order.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <map>
+#include <set>
+#include <string>
+
+#include "holdfast/base/lattice.hpp"
+#include "holdfast/base/rng.hpp"
+#include "holdfast/model/families.hpp"
+#include "holdfast/verdict/assessment.hpp"
+
+namespace holdfast::plan {
+namespace {
+
+using base::Cell;
+using Cells = std::vector<Cell>;
+
+/// Up to nine cubes grown at random from the floor, mostly upwards, with connectors so weak that
+/// about half of all parts break or topple.
+model::RobotSpec random_target(std::uint64_t seed) {
+  base::Rng rng(seed);
+  std::set<Cell> cells = {{0, 0, 0}};
+  const std::size_t count = 3 + rng.below(7);
+  while (cells.size() < count) {
+    auto from = cells.begin();
+    std::advance(from, static_cast<std::ptrdiff_t>(rng.below(cells.size())));
+    const Cell next = base::neighbour(*from, base::kDirections[rng.below(base::kDirectionCount)]);
+    if (next.z >= 0 && (next.z > 0 || rng.below(3) == 0)) {
+      cells.insert(next);
+    }
+  }
+  model::RobotSpec spec{.existing = {cells.begin(), cells.end()}};
+  const double weakness = 0.03 * static_cast<double>(1 + rng.below(20));
+  spec.material.strength_vertical_n *= weakness;
+  spec.material.strength_lateral_n *= weakness;
+  return spec;
+}
+
+bool is_beside(const Cells& cells, const Cell& cell) {
+  return std::ranges::any_of(base::kDirections, [&](base::Direction direction) {
+    return std::ranges::count(cells, base::neighbour(cell, direction)) > 0;
+  });
+}
+
+Cells cells_of(const model::RobotSpec& spec, std::size_t mask) {
+  Cells cells;
+  for (std::size_t i = 0; i < spec.existing.size(); ++i) {
+    if ((mask >> i & 1U) != 0) {
+      cells.push_back(spec.existing[i]);
+    }
+  }
+  return cells;
+}
+
+/// Whether a cube can come in from far away on a straight line, through cells that are above ground
+/// and empty.
+bool has_line(const Cells& cells, const Cell& cell) {
+  return std::ranges::any_of(base::kDirections, [&](base::Direction direction) {
+    Cell next = cell;
+    for (int step = 0; step < 20; ++step) {
+      next = base::neighbour(next, direction);
+      if (next.z < 0 || std::ranges::count(cells, next) > 0) {
+        return false;
+      }
+    }
+    return true;
+  });
+}
+
+/// All sets of a target's modules, as bits, and which of them can be passed on the way.
+class Walk {
+ public:
+  explicit Walk(const OrderTask& task) : task_(task), safe_(size()) {
+    for (std::size_t mask = 1; mask < size(); ++mask) {
+      model::RobotSpec part = task.target;
+      part.existing = cells_of(task.target, mask);
+      const auto robot = model::Robot::create(part);
+      safe_[mask] = robot && verdict::assess(robot.value()).verdict == verdict::Verdict::kSafe;
+    }
+  }
+
+  std::size_t size() const { return std::size_t{1} << task_.target.existing.size(); }
+
+  bool is_safe(std::size_t mask) const { return safe_[mask]; }
+
+  /// Whether these modules can be added in some order, one beside those that are there.
+  bool is_step(std::size_t from, std::size_t to) const {
+    const std::size_t added = to & ~from;
+    if ((from & ~to) != 0 || added == 0 ||
+        static_cast<std::size_t>(__builtin_popcountll(added)) > task_.group_size) {
+      return false;
+    }
+    for (std::size_t i = 0; i < task_.target.existing.size(); ++i) {
+      const std::size_t bit = std::size_t{1} << i;
+      const Cells there = cells_of(task_.target, from);
+      const Cell& cell = task_.target.existing[i];
+      if ((added & bit) != 0 && is_beside(there, cell) &&
+          (task_.rule.reach == Reach::kFree || has_line(there, cell)) &&
+          (added == bit || is_step(from | bit, to))) {
+        return true;
+      }
+    }
+    return false;
+  }
+
+  bool is_start(std::size_t mask) const {
+    if (task_.start.empty()) {
+      return __builtin_popcountll(mask) == 1;
+    }
+    Cells cells = cells_of(task_.target, mask);
+    Cells start = task_.start;
+    std::ranges::sort(cells);
+    std::ranges::sort(start);
+    return cells == start;
+  }
+
+  bool has_order() const {
+    std::vector<bool> reached(size());
+    for (std::size_t mask = 1; mask < size(); ++mask) {
+      reached[mask] = is_safe(mask) && is_start(mask);
+      for (std::size_t from = 1; from < mask && is_safe(mask) && !reached[mask]; ++from) {
+        reached[mask] = reached[from] && is_step(from, mask);
+      }
+    }
+    return reached.back();
+  }
+
+ private:
+  const OrderTask& task_;
+  std::vector<bool> safe_;
+};
+
+std::size_t mask_of(const ElementSet& set) { return set.words().front(); }
+
+void expect_order(const Walk& walk, const Order& order) {
+  std::size_t mask = mask_of(order.start);
+  EXPECT_TRUE(walk.is_start(mask));
+  EXPECT_TRUE(walk.is_safe(mask));
+  for (const Batch& group : order.steps) {
+    std::size_t next = mask;
+    for (const Element element : group) {
+      next |= std::size_t{1} << element;
+    }
+    EXPECT_TRUE(walk.is_step(mask, next));
+    EXPECT_TRUE(walk.is_safe(next));
+    mask = next;
+  }
+  EXPECT_EQ(mask, walk.size() - 1);
+}
+
+void expect_cut(const Walk& walk, const Closure& closure) {
+  std::vector<bool> inside(walk.size());
+  for (const ElementSet& state : closure.states) {
+    inside[mask_of(state)] = true;
+  }
+  const bool is_growing = closure.sense == Sense::kGrowing;
+  for (std::size_t mask = 1; mask < walk.size(); ++mask) {
+    const bool is_whole = mask == walk.size() - 1;
+    const bool is_near = is_growing ? walk.is_start(mask) : is_whole;
+    const bool is_far = is_growing ? is_whole : walk.is_start(mask);
+    EXPECT_TRUE(inside[mask] || !is_near || !walk.is_safe(mask));
+    EXPECT_FALSE(inside[mask] && is_far);
+    for (std::size_t other = 1; inside[mask] && other < walk.size(); ++other) {
+      const bool is_step = is_growing ? walk.is_step(mask, other) : walk.is_step(other, mask);
+      EXPECT_TRUE(!is_step || inside[other] || !walk.is_safe(other));
+    }
+  }
+}
+
+TEST(RobotOrder, is_found_just_where_a_walk_through_all_parts_finds_one) {
+  int found_count = 0;
+  int none_count = 0;
+  for (std::uint64_t seed = 0; seed < 2000; ++seed) {
+    OrderTask task{.target = random_target(seed)};
+    task.group_size = 1 + seed % 5 / 4;
+    task.rule.reach = seed % 3 == 2 ? Reach::kLine : Reach::kFree;
+    const auto result = find_robot_order(task);
+    ASSERT_TRUE(result) << result.error().message;
+    const Walk walk(task);
+    ASSERT_EQ(result.value().order.outcome == OrderOutcome::kFound, walk.has_order())
+        << "seed " << seed;
+    if (walk.has_order()) {
+      expect_order(walk, result.value().order);
+      ++found_count;
+      continue;
+    }
+    ASSERT_EQ(result.value().order.outcome, OrderOutcome::kNone);
+    expect_cut(walk, result.value().certificate->closure);
+    EXPECT_TRUE(verify(*result.value().certificate));
+    ++none_count;
+  }
+  EXPECT_GT(found_count, 400);
+  EXPECT_GT(none_count, 300);
+}
+
+model::RobotSpec family_spec(const char* name, std::size_t size) {
+  const model::Family family = model::find_family(name).value();
+  return {.existing = model::family_cells(family, size), .lattice = model::family_lattice(family)};
+}
+
+/// Checks every state of an order by itself: it is safe, its load ratio is what the order says or
+/// no more than its bound, its margin is the order's. Returns how many had a bound.
+int expect_safe_all_the_way(const OrderTask& task, const Order& order) {
+  model::RobotSpec part = task.target;
+  part.existing.clear();
+  for (const Element element : order.start.elements()) {
+    part.existing.push_back(task.target.existing[static_cast<std::size_t>(element)]);
+  }
+  int bound_count = 0;
+  for (std::size_t i = 0; i < order.judgements.size(); ++i) {
+    for (const Element element : i == 0 ? Batch{} : order.steps[i - 1]) {
+      part.existing.push_back(task.target.existing[static_cast<std::size_t>(element)]);
+    }
+    const verdict::Assessment assessment =
+        verdict::assess(model::Robot::create(part).value(), {.thread_count = 1});
+    const Judgement& judged = order.judgements[i];
+    EXPECT_EQ(assessment.verdict, verdict::Verdict::kSafe) << i;
+    const double ratio = assessment.load_ratio_max.value_or(0);
+    if (judged.is_bound) {
+      ++bound_count;
+      EXPECT_LE(ratio, *judged.load_ratio_max) << i;
+    } else {
+      EXPECT_NEAR(ratio, judged.load_ratio_max.value_or(0), 1e-4) << i;
+    }
+    EXPECT_EQ(judged.margin_mm.has_value(), assessment.simplified.margin_mm.has_value());
+    if (judged.margin_mm && assessment.simplified.margin_mm) {
+      EXPECT_NEAR(*judged.margin_mm, *assessment.simplified.margin_mm, 1e-9) << i;
+    }
+  }
+  return bound_count;
+}
+
+TEST(RobotOrder, is_safe_all_the_way_where_states_are_certified_without_being_solved) {
+  // Strengths as they are, and so that the whole is just held. In solid robots that stand with all
+  // their feet most states need no solution.
+  const std::set<std::string> solid = {"cube", "tower", "prism-wall"};
+  int certified_count = 0;
+  for (const auto& [family, size] :
+       std::vector<std::pair<const char*, std::size_t>>{{"cube", 5},
+                                                        {"tower", 12},
+                                                        {"shell", 6},
+                                                        {"scaffold", 9},
+                                                        {"growth", 60},
+                                                        {"ball", 6},
+                                                        {"prism-wall", 6},
+                                                        {"sheet", 8},
+                                                        {"portal", 8}}) {
+    for (const double share : {0.0, 0.9}) {
+      OrderTask task{.target = family_spec(family, size)};
+      const auto whole = verdict::assess(model::Robot::create(task.target).value());
+      if (share > 0 && whole.load_ratio_max.value_or(0) > 1e-3) {
+        task.target.material.strength_vertical_n *= *whole.load_ratio_max / share;
+        task.target.material.strength_lateral_n *= *whole.load_ratio_max / share;
+      }
+      const auto result = find_robot_order(task, {.state_count_max = 4000});
+      ASSERT_TRUE(result) << result.error().message;
+      const Order& order = result.value().order;
+      if (order.outcome != OrderOutcome::kFound) {
+        EXPECT_GT(share, 0) << family;
+        continue;
+      }
+      const int bound_count = expect_safe_all_the_way(task, order);
+      certified_count += bound_count;
+      if (share == 0 && solid.contains(family)) {
+        EXPECT_GT(2 * bound_count, static_cast<int>(order.judgements.size())) << family;
+      }
+    }
+  }
+  EXPECT_GT(certified_count, 500);
+}
+
+}  // namespace
+}  // namespace holdfast::plan

@@ -1,0 +1,178 @@
+#!/usr/bin/env python3
+# SPDX-FileCopyrightText: The holdfast authors
+# SPDX-License-Identifier: Apache-2.0
+"""order_test.py HOLDFAST REPOSITORY   orders as users seek them.
+
+- the shapes of scenarios/plan have the answers of their table; `holdfast steps` finds every order
+  that is found safe, forwards and backwards
+- certificates are replayed by a second program, this one: geometry written anew, and what lies just
+  beyond the cut checked file by file with `holdfast check`; with a state taken out they fail
+- bad input is one clear line
+"""
+import json
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+
+faults = []
+
+
+def expect(is_so, message):
+    if not is_so:
+        faults.append(message)
+
+
+def run(program, *arguments):
+    return subprocess.run([program, *map(str, arguments)], capture_output=True, text=True)
+
+
+def table(repository):
+    """(name, options) -> result, as scenarios/plan/README.md has it."""
+    text = (repository / 'scenarios/plan/README.md').read_text()
+    rows = re.findall(r'^\| `(\w+)` \| `?([^|`]*?)`? \| (found|none) \|', text, re.M)
+    return [(name, options.split(), result) for name, options, result in rows]
+
+
+def neighbours(cell):
+    x, y, z = cell
+    return [(x + 1, y, z), (x - 1, y, z), (x, y + 1, z), (x, y - 1, z), (x, y, z + 1),
+            (x, y, z - 1)]
+
+
+def is_connected(cells):
+    cells = set(cells)
+    seen = {next(iter(cells))}
+    queue = list(seen)
+    while queue:
+        for other in neighbours(queue.pop()):
+            if other in cells and other not in seen:
+                seen.add(other)
+                queue.append(other)
+    return seen == cells
+
+
+def steps_from(state, cells, is_growing, group):
+    """All sets that one step leads to, of cubes that can get anywhere."""
+    found, last = set(), {state}
+    for _ in range(group):
+        grown = set()
+        for before in last:
+            for cell in cells:
+                if is_growing and cell not in before and any(n in before for n in neighbours(cell)):
+                    grown.add(before | {cell})
+                if not is_growing and cell in before and len(before) > 1:
+                    rest = before - {cell}
+                    if is_connected(rest) and any(z == 0 for _, _, z in rest):
+                        grown.add(rest)
+        found |= grown
+        last = grown
+    return found
+
+
+def replay(program, certificate, folder):
+    """Whether the cut is one: all steps from inside lead inside or to what check finds not safe."""
+    target = certificate['target']
+    cells = [tuple(cell) for cell in target['modules']]
+    states = {frozenset(c for c, bit in zip(cells, text) if bit == '1')
+              for text in certificate['states']}
+    is_growing = certificate['sense'] == 'attach'
+    whole = frozenset(cells)
+    start = frozenset(map(tuple, certificate['start']))
+    starts = {start} if start else {frozenset([c]) for c in cells if c[2] == 0}
+    near, far = (starts, {whole}) if is_growing else ({whole}, starts)
+    if states & far:
+        return False
+    beyond = near - states
+    for state in states:
+        beyond |= steps_from(state, cells, is_growing, certificate['group']) - states
+    files = []
+    for i, state in enumerate(beyond):
+        structure = {**target, 'modules': [list(cell) for cell in state]}
+        structure.pop('known_answer', None)
+        files.append(folder / f'beyond_{i}.json')
+        files[-1].write_text(json.dumps(structure))
+    if not files:
+        return True
+    checked = json.loads(run(program, 'check', *files, '--json', '-').stdout)
+    entries = checked if isinstance(checked, list) else [checked]
+    return len(entries) == len(files) and all(e['verdict'] != 'safe' for e in entries)
+
+
+def check_found(program, file, options, folder):
+    for way in ([], ['--reverse']):
+        steps = folder / 'steps.json'
+        run(program, 'order', file, *options, *way, '-q', '-o', steps)
+        judged = run(program, 'steps', steps, '--quiet')
+        expect(judged.returncode == 0, f'{file.name} {way}: steps says {judged.returncode} '
+               f'{judged.stderr}')
+    one, two = (run(program, 'order', file, *options, '--threads', n, '-q', '-o', '-').stdout
+                for n in (1, 3))
+    expect(one == two, f'{file.name}: the order depends on the number of threads')
+
+
+def check_none(program, file, options, folder):
+    path = folder / 'certificate.json'
+    run(program, 'order', file, *options, '-q', '--help-seconds', 0, '--certificate', path)
+    certificate = json.loads(path.read_text())
+    verified = run(program, 'steps', '--verify', path)
+    expect(verified.returncode == 0, f'{file.name}: {verified.stderr}')
+    expect(replay(program, certificate, folder), f'{file.name}: the cut is none')
+    if certificate['states']:
+        certificate['states'].pop(0)
+        path.write_text(json.dumps(certificate))
+        expect(run(program, 'steps', '--verify', path).returncode == 65,
+               f'{file.name}: a state is missing and nobody sees it')
+        expect(not replay(program, certificate, folder), f'{file.name}: the replay sees nothing')
+
+
+def check_bad_input(program, repository, folder):
+    balance = repository / 'scenarios/plan/balance.json'
+    cube = repository / 'scenarios/plan/core.json'
+    cases = [
+        (65, 'the target has none', [balance, '--from', cube]),
+        (65, 'not safe', [cube, '--from', folder / 'arm.json']),
+        (65, 'is taken by a module of the start',
+         [balance, '--from', folder / 'foot.json', '--reach', 'surface', '--source', '0,0,0']),
+        (64, 'belong together', [balance, '--reach', 'surface']),
+        (64, 'belong together', [balance, '--source', '0,0,0']),
+        (64, 'expected is a cell', [balance, '--reach', 'surface', '--source', '1,2']),
+        (64, '--seconds', [balance, '--seconds', 'soon']),
+        (64, '--seed', [balance, '--seed', 'x']),
+        (64, '--seed', [balance, '--seed', '-1']),
+        (64, '--group', [balance, '--group', '0']),
+        (64, '--reach', [balance, '--reach', 'air']),
+        (65, 'nothing.json', [folder / 'nothing.json']),
+    ]
+    frame = json.loads(cube.read_text())
+    # A row of three on the edge of a cube's layer hangs over nothing: it topples.
+    (folder / 'arm.json').write_text(json.dumps(
+        {**frame, 'modules': [[0, 0, 0], [0, 0, 1], [1, 0, 1], [2, 0, 1]]}))
+    (folder / 'foot.json').write_text(json.dumps({**frame, 'modules': [[0, 0, 0]]}))
+    for code, words, arguments in cases:
+        done = run(program, 'order', *arguments)
+        expect(done.returncode == code and words in done.stderr,
+               f'{arguments[1:]}: {done.returncode}, {done.stderr}')
+
+
+def main():
+    program, repository = sys.argv[1], pathlib.Path(sys.argv[2])
+    rows = table(repository)
+    expect(len(rows) >= 6, 'scenarios/plan/README.md has no table')
+    with tempfile.TemporaryDirectory() as name:
+        folder = pathlib.Path(name)
+        for scenario, options, result in rows:
+            file = repository / f'scenarios/plan/{scenario}.json'
+            done = run(program, 'order', file, *options, '--help-seconds', 0, '--json', '-')
+            report = json.loads(done.stdout)
+            expect(report['result'] == result, f'{scenario} {options}: {report["result"]}')
+            expect(done.returncode == (0 if result == 'found' else 1), f'{scenario}: exit code')
+            (check_found if result == 'found' else check_none)(program, file, options, folder)
+        check_bad_input(program, repository, folder)
+    print('\n'.join(faults) if faults else f'order: {len(rows)} rows, no fault')
+    return 1 if faults else 0
+
+
+if __name__ == '__main__':
+    sys.exit(main())
