@@ -109,7 +109,7 @@ RobotSpec on_floor(RobotSpec spec) {
   spec.payloads.clear();
   spec.gravity_m_s2 = {};
   spec.fixed.clear();
-  spec.support_z = std::ranges::min(spec.existing, {}, &Cell::z).z;
+  spec.support_z = std::ranges::min_element(spec.existing, {}, &Cell::z)->z;
   return spec;
 }
 
