@@ -204,7 +204,7 @@ cmp -s back.json direct.json || fault "conversion to XML and back changes the st
 expect_exit 1 check there.xml
 expect_exit 64 convert "$overload" there.txt
 
-# Version 2 is converted there and back, and refused by name where it cannot be computed yet.
+# Version 2 is converted there and back; of a plan of steps the robot before them is checked.
 printf '%s' '{"format": "holdfast-structure", "version": 2, "modules": [[0,0,0]],' \
   '"obstacles": [{"cells": [[1,0,0]]}, {"from": [-1,0,0], "to": [-1,2,0], "hold": "bonded"}],' \
   '"loads": [{"cell": [0,0,0], "force_n": [0,0,-1]}]}' >wall.json
@@ -215,7 +215,8 @@ expect_exit 0 convert wall.json wall_again.json
 cmp -s wall_back.json wall_again.json || fault "conversion to XML and back changes obstacles"
 printf '%s' '{"format": "holdfast-structure", "version": 2, "modules": [[0,0,0]],' \
   '"steps": [{"attach": [[1,0,0]]}]}' >plan.json
-expect_refusal "/steps: a plan of steps cannot be computed yet" plan.json
+expect_exit 0 check plan.json
+expect_line err 'plan.json: note: 1 steps are read; the robot before them is judged'
 printf '%s' '{"format": "holdfast-structure", "version": 2, "modules": [[0,0,0]],' \
   '"obstacles": [{"from": [-1000,0,2], "to": [1000,100,2]}]}' >ceiling.json
 expect_exit 0 convert ceiling.json ceiling.xml
@@ -531,6 +532,45 @@ expect_line out '<title>arm_breaks_a - holdfast</title>'
 [ ! -e ./- ] || fault "a file called -"
 expect_exit 65 view missing.json --no-open
 expect_exit 65 view "$safe" --no-open --out /nowhere/page.html
+
+# Sequences of steps: exit codes, keys that other tools rely on, what cannot be done.
+walk=$scenarios/plan/walk_over_beam.json
+expect_exit 0 steps "$walk" --json steps.json --svg steps.svg --html steps.html --vtk steps.pvd
+expect_line out '^SAFE +walk over a beam$'
+expect_line out '6 of 6 steps safe in all stages; largest load ratio 0\.7500, smallest margin \+12\.00 mm'
+expect_line steps.json '"first_unsafe": null'
+python3 - <<'END' || fault "the report of steps is not as documented"
+import json
+report = json.load(open('steps.json'))
+assert report['seconds'] >= 0 and len(report['steps']) == 6
+for step in report['steps']:
+    assert list(step['stages']) == ['release', 'shift', 'connect']
+    assert all(stage['verdict'] == 'safe' for stage in step['stages'].values())
+END
+expect_line steps.svg '^</svg>$'
+expect_line steps.html '^</html>$'
+expect_line steps.pvd 'timestep="6" part="0" file="steps_6\.vtu"'
+[ -s steps_0.vtu ] || fault "no .vtu file of the start"
+expect_exit 0 steps "$walk" --quiet
+[ -s out ] && fault "--quiet prints: $(cat out)"
+plan() { printf '{"format": "holdfast-structure", "version": 2, "modules": %s, "steps": %s}' "$1" "$2"; }
+plan '[[0,0,0],[0,0,1],[1,0,1]]' '[{"attach": [[2,0,1]]}, {"attach": [[3,0,1]]}]' >tips.json
+expect_exit 1 steps tips.json --json -
+expect_line out '"step": 0,'
+expect_line out '"stage": "connect"'
+expect_exit 1 steps tips.json --until-unsafe
+expect_line out 'first unsafe: step 0 \(/steps/0\), connect'
+plan '[[0,0,0],[0,0,1]]' '[{"move": [{"from": [5,0,0], "to": [6,0,0]}]}]' >empty.json
+expect_exit 65 steps empty.json
+expect_line err '^holdfast: empty.json: /steps/0: step 0, release: no module can move from \(5,0,0\)'
+[ "$(wc -l <err)" -eq 1 ] || fault "not one line: $(cat err)"
+json '"modules": [[0,0,0]]' >still.json
+expect_exit 65 steps still.json
+expect_line err 'the structure has no steps'
+expect_exit 0 steps "$safe"
+expect_exit 0 check "$walk"
+expect_line err 'note: 6 steps are read; the robot before them is judged, holdfast steps judges all'
+expect_exit 64 steps "$walk" --svg "$walk"
 
 [ "$faults" -eq 0 ] || exit 1
 echo "cli: all as expected"

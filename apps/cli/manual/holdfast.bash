@@ -30,9 +30,13 @@ _holdfast() {
         --robot) : ;;
         --lattice) : ;;
         --json) files=1 ;;
+        --svg) files=1 ;;
+        --html) files=1 ;;
+        --vtk) files=1 ;;
+        --until-unsafe) : ;;
         --verify) : ;;
         --threads) : ;;
-        *) if [[ $current == -* ]]; then words="-h --help --robot --lattice --json --until-unsafe --verify --quiet --threads"; else files=1; fi ;;
+        *) if [[ $current == -* ]]; then words="-h --help --robot --lattice --json --svg --html --vtk --until-unsafe --verify --quiet --threads"; else files=1; fi ;;
       esac
       ;;
     next)
@@ -49,7 +53,7 @@ _holdfast() {
       ;;
     order)
       case $previous in
-        --from) : ;;
+        --from) files=1 ;;
         --reach) : ;;
         --source) : ;;
         --group) : ;;
@@ -57,7 +61,7 @@ _holdfast() {
         --seconds) : ;;
         --help-seconds) : ;;
         --threads) : ;;
-        -o|--output) : ;;
+        -o|--output) files=1 ;;
         --json) files=1 ;;
         --certificate) files=1 ;;
         --robot) : ;;

@@ -15,11 +15,37 @@ struct Options {
   io::ReadOptions reading;
   std::string file;
   std::string json;
+  std::string svg;
+  std::string html;
+  std::string vtk;
   bool is_quiet = false;
   bool ends_when_unsafe = false;
   bool is_certificate = false;
   int thread_count = 0;
 };
+
+StepsOptions judging(const Options& options, const StepsFile& file, Progress& progress,
+                     const char* verb) {
+  return {.thread_count = options.thread_count,
+          .ends_when_unsafe = options.ends_when_unsafe,
+          .progress = [&options, &progress, verb,
+                       count = io::step_count(file.document)](std::size_t done) {
+            progress.show([&] {
+              return fmt::format("{}: {} of {} steps {}", io::one_line(options.file), done, count,
+                                 verb);
+            });
+          }};
+}
+
+bool write_series(const Options& options, const StepsFile& file, const StepsResult& result) {
+  Progress progress(options.is_quiet);
+  const auto error =
+      write_steps_vtk(options.vtk, file, result, judging(options, file, progress, "written"));
+  if (error) {
+    print_error(*error, options.vtk);
+  }
+  return !error;
+}
 
 bool write_files(const Options& options, const StepsFile& file, const StepsResult& result) {
   bool is_written = true;
@@ -29,7 +55,13 @@ bool write_files(const Options& options, const StepsFile& file, const StepsResul
       out << '\n';
     });
   }
-  return is_written;
+  if (!options.svg.empty()) {
+    is_written = write_or_complain(options.svg, steps_svg(file, result)) && is_written;
+  }
+  if (!options.html.empty()) {
+    is_written = write_or_complain(options.html, steps_html(file, result)) && is_written;
+  }
+  return is_written && (options.vtk.empty() || write_series(options, file, result));
 }
 
 /// Replays the certificate of an order that does not exist.
@@ -56,7 +88,10 @@ int run(const Options& options) {
     return run_certificate(options);
   }
   const std::vector<std::string> inputs = {options.file};
-  if (complain_of_clash(inputs, {{"--json", options.json}})) {
+  if (complain_of_clash(inputs, {{"--json", options.json},
+                                 {"--svg", options.svg},
+                                 {"--html", options.html},
+                                 {"--vtk", options.vtk}})) {
     return kExitUsage;
   }
   const auto file = load_steps(options.file, options.reading);
@@ -65,16 +100,7 @@ int run(const Options& options) {
   }
   print_notes(file.value().warnings, options.file);
   Progress progress(options.is_quiet);
-  const std::size_t count = io::step_count(file.value().document);
-  const auto result =
-      judge_steps(file.value(), {.thread_count = options.thread_count,
-                                 .ends_when_unsafe = options.ends_when_unsafe,
-                                 .progress = [&](std::size_t judged) {
-                                   progress.show([&] {
-                                     return fmt::format("{}: {} of {} steps",
-                                                        io::one_line(options.file), judged, count);
-                                   });
-                                 }});
+  const auto result = judge_steps(file.value(), judging(options, file.value(), progress, "judged"));
   if (!result) {
     return fail(result.error(), options.file);
   }
@@ -96,15 +122,24 @@ Command add_steps(CLI::App& app) {
   add_required(*command, "FILE", options->file,
                "A structure with steps, VisibleSim XML or holdfast JSON; - is standard input");
   add_reading(*command, options->reading);
-  command
-      ->add_option("--json", options->json, "Write the whole report as JSON; - is standard output")
-      ->type_name("FILE");
+  const auto add_output = [&](const char* name, std::string& path, const char* help) {
+    command->add_option(name, path, help)->type_name("FILE");
+  };
+  add_output("--json", options->json, "Write the whole report as JSON; - is standard output");
+  add_output("--svg", options->svg, "Draw verdicts, load ratio and margin along the sequence");
+  add_output("--html", options->html, "Write a page with that picture and the report");
+  add_output("--vtk", options->vtk,
+             "Write a .pvd file for ParaView, and a .vtu file beside it for every step");
   command->add_flag("--until-unsafe", options->ends_when_unsafe,
                     "Leave out the steps behind the first unsafe one");
   command
       ->add_flag("--verify", options->is_certificate,
                  "FILE is a certificate that there is no order, of holdfast order: replay it")
-      ->excludes("--json");
+      ->excludes("--json")
+      ->excludes("--svg")
+      ->excludes("--html")
+      ->excludes("--vtk")
+      ->excludes("--until-unsafe");
   command->add_flag("--quiet", options->is_quiet, "Print errors only; the exit code is the answer");
   command->add_option("--threads", options->thread_count, "0: all cores; the answer is the same")
       ->check(CLI::Range(0, 64));

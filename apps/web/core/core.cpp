@@ -6,13 +6,19 @@
 // numbers, valid until the next call. src/core/wasm.ts is the other side.
 #include <fmt/format.h>
 
+#include <cstring>
 #include <nlohmann/json.hpp>
+#include <optional>
+#include <sstream>
 #include <string>
 #include <vector>
 
 #include "holdfast/distributed.hpp"
+#include "holdfast/plan/judgement.hpp"
+#include "holdfast/steps.hpp"
 #include "packet_log.hpp"
 #include "request.hpp"
+#include "sequence_view.hpp"
 #include "vocabulary.hpp"
 
 #define HOLDFAST_EXPORT(name) extern "C" __attribute__((export_name(#name))) auto name
@@ -31,6 +37,8 @@ struct Reply {
 // One program, one caller, one call at a time.
 std::vector<std::uint8_t> input;  // NOLINT(cppcoreguidelines-avoid-non-const-global-variables)
 Reply reply;                      // NOLINT(cppcoreguidelines-avoid-non-const-global-variables)
+/// That was judged last.
+std::optional<SequenceView> sequence;  // NOLINT(cppcoreguidelines-avoid-non-const-global-variables)
 
 std::string dump(const Json& json) {
   return json.dump(-1, ' ', false, Json::error_handler_t::replace);
@@ -246,7 +254,7 @@ Reply try_places(const Request& request) {
 
 /// Integers: x, y, z and Role of each module. Numbers: the material. Cells that are no robot yet
 /// can be opened and mended; cells that the page cannot hold as they are, two modules in one, get
-/// the program's error, and so does what cannot be computed with yet.
+/// the program's error.
 Reply open_text(std::string_view text) {
   const auto read = io::read_document(text);
   if (!read) {
@@ -263,7 +271,8 @@ Reply open_text(std::string_view text) {
                    {"description", document.description},
                    {"support_z", document.support_z},
                    {"more", more_of(document)},
-                   {"later_steps", document.steps.empty() ? 0 : document.steps.size() - 1},
+                   {"later_steps", document.extension.plan.size() +
+                                       (document.steps.empty() ? 0 : document.steps.size() - 1)},
                    {"warnings", read.value().warnings}});
   const auto add = [&](const base::Cell& cell, Role role) {
     out.integers.insert(out.integers.end(),
@@ -342,6 +351,90 @@ Reply write_document(const Request& request) {
                             .robot = std::move(robot).value(),
                             .warnings = {}};
   return {.text = written(structure, output), .integers = {}, .numbers = {}};
+}
+
+/// Text: what each step does in words, and the report of holdfast steps --json. Integers: see
+/// SequenceView::transitions().
+Reply judge_steps_request(const Request& request) {
+  sequence.reset();
+  auto document = document_of(request);
+  if (!document) {
+    return failure(document.error());
+  }
+  const std::string name = document.value().name;
+  const StepsFile file{.name = name, .document = std::move(document).value(), .warnings = {}};
+  const auto result = judge_steps(file);
+  if (!result) {
+    return failure(result.error());
+  }
+  sequence.emplace(io::make_sequence(file.document).value());
+  Json texts = Json::array();
+  for (std::size_t step = 0; step < io::step_count(file.document); ++step) {
+    texts.push_back(io::step_text(file.document, step));
+  }
+  std::ostringstream report;
+  write_steps_json(report, file, result.value());
+  return {.text = fmt::format("{{\"texts\":{},\"report\":{}}}", dump(texts), report.str()),
+          .integers = sequence->transitions(),
+          .numbers = {}};
+}
+
+/// Adds the modules and loads of a piece to a stage_reply().
+void add_piece(const model::Robot& robot, const verdict::Assessment& assessment, Reply& cells,
+               Reply& loads) {
+  const auto offset = static_cast<std::int32_t>(cells.integers.size() / 3);
+  for (const model::Module& module : robot.modules()) {
+    cells.integers.insert(cells.integers.end(), {module.cell.x, module.cell.y, module.cell.z});
+  }
+  std::vector<std::int32_t> is_broken(assessment.connections.size());
+  for (const std::size_t broken : assessment.broken) {
+    is_broken[broken] = 1;
+  }
+  for (std::size_t i = 0; i < assessment.connections.size(); ++i) {
+    const model::Connection& pair = robot.connections()[i];
+    const verdict::ConnectionResult& result = assessment.connections[i];
+    loads.integers.insert(loads.integers.end(), {pair.a + offset, pair.b + offset,
+                                                 base::index(pair.direction), is_broken[i]});
+    loads.numbers.insert(loads.numbers.end(),
+                         {result.load_ratio, result.axial_n, result.bending_nmm, result.shear_n,
+                          result.torsion_nmm});
+  }
+}
+
+/// A scene of the sequence that was judged last. The bytes are step, stage and waypoint, four of
+/// each. Text: list of stabilities of its pieces and the contact model. Integers: modules; x, y, z
+/// of each; a, b, direction and whether it is broken of each connection. Numbers: five of each
+/// connection.
+Reply stage_reply(std::span<const std::uint8_t> bytes) {
+  std::array<std::int32_t, 3> place{};
+  HOLDFAST_CHECK(sequence.has_value() && bytes.size() == sizeof(place));
+  std::memcpy(place.data(), bytes.data(), sizeof(place));
+  const auto scene =
+      sequence->scene(static_cast<std::size_t>(place[0]), static_cast<plan::Stage>(place[1]),
+                      static_cast<std::size_t>(place[2]));
+  if (!scene) {
+    return failure(scene.error());
+  }
+  Reply cells;
+  Reply loads;
+  Json stabilities = Json::array();
+  Json contact_model;
+  for (const model::RobotSpec& spec : scene.value().pieces) {
+    const auto robot = model::Robot::create(spec);
+    if (!robot) {
+      return failure(robot.error());
+    }
+    const verdict::Assessment assessment = plan::assess(robot.value());
+    stabilities.push_back(stability_json(robot.value(), assessment));
+    contact_model = verdict::name(assessment.contact_model);
+    add_piece(robot.value(), assessment, cells, loads);
+  }
+  loads.text = dump({{"stabilities", stabilities}, {"contact_model", contact_model}});
+  cells.integers.insert(cells.integers.begin(),
+                        static_cast<std::int32_t>(cells.integers.size() / 3));
+  cells.integers.insert(cells.integers.end(), loads.integers.begin(), loads.integers.end());
+  loads.integers = std::move(cells.integers);
+  return loads;
 }
 
 /// options: method and line as vocabulary_json() gives them, seed, loss in thousandths, events that
@@ -429,6 +522,12 @@ HOLDFAST_EXPORT(holdfast_try_places)()->void {
 HOLDFAST_EXPORT(holdfast_write)()->void {
   web::reply = web::write_document(web::read_request(web::input));
 }
+
+HOLDFAST_EXPORT(holdfast_judge_steps)()->void {
+  web::reply = web::judge_steps_request(web::read_request(web::input));
+}
+
+HOLDFAST_EXPORT(holdfast_stage)()->void { web::reply = web::stage_reply(web::input); }
 
 HOLDFAST_EXPORT(holdfast_simulate)()->void {
   web::reply = web::simulate_request(web::read_request(web::input));

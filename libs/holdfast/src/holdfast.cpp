@@ -37,7 +37,7 @@ base::Result<Structure> load_text(std::string_view text, std::string_view name, 
   auto [document, warnings] = std::move(read).value();
   if (document.steps.size() > 1 || !document.extension.plan.empty()) {
     warnings.push_back(fmt::format(
-        "{} steps are read; {} is judged here, holdfast steps judges all", io::step_count(document),
+        "{} steps are read; {} is judged, holdfast steps judges all", io::step_count(document),
         document.steps.empty() ? "the robot before them" : "the robot after the first"));
   }
   auto robot = io::make_robot(document, thread_count);

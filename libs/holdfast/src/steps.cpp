@@ -2,7 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "holdfast/steps.hpp"
 
+#include <fmt/format.h>
+
 #include <chrono>
+#include <span>
 #include <utility>
 
 namespace holdfast {
@@ -64,6 +67,91 @@ base::Result<StepsResult> judge_steps(const StepsFile& file, const StepsOptions&
 
 void write_steps_json(std::ostream& out, const StepsFile& file, const StepsResult& result) {
   io::write_steps_json(out, entry_of(file, result));
+}
+
+std::string steps_svg(const StepsFile& file, const StepsResult& result) {
+  return io::write_steps_svg(entry_of(file, result));
+}
+
+std::string steps_html(const StepsFile& file, const StepsResult& result) {
+  return io::write_steps_html(entry_of(file, result));
+}
+
+namespace {
+
+/// Writes one state after another, and remembers what belongs into the .pvd file.
+class Series {
+ public:
+  Series(std::filesystem::path path, const StepsOptions& options)
+      : path_(std::move(path)), options_(options) {}
+
+  /// The robots of one time.
+  std::optional<base::Error> add(std::span<const model::RobotSpec> pieces) {
+    for (std::size_t part = 0; part < pieces.size(); ++part) {
+      const auto robot = model::Robot::create(pieces[part], options_.thread_count);
+      if (!robot) {
+        return robot.error();
+      }
+      std::string name = path_.stem().string() + "_" + std::to_string(time_);
+      name += (pieces.size() > 1 ? "_" + std::to_string(part) : "") + ".vtu";
+      const CheckResult checked = check(
+          robot.value(),
+          {.thread_count = options_.thread_count, .memory_bytes_max = options_.memory_bytes_max});
+      const auto error = write_file(path_.parent_path() / name, [&](std::ostream& out) {
+        io::write_vtu(out, robot.value(), checked.assessment);
+      });
+      if (error) {
+        return error;
+      }
+      entries_ += fmt::format("    <DataSet timestep=\"{}\" part=\"{}\" file=\"{}\"/>\n", time_,
+                              part, name);
+    }
+    ++time_;
+    return std::nullopt;
+  }
+
+  std::optional<base::Error> finish() const {
+    return write_file(path_,
+                      "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" "
+                      "version=\"1.0\">\n  <Collection>\n" +
+                          entries_ + "  </Collection>\n</VTKFile>\n");
+  }
+
+ private:
+  std::filesystem::path path_;
+  const StepsOptions& options_;
+  std::size_t time_ = 0;
+  std::string entries_;
+};
+
+}  // namespace
+
+std::optional<base::Error> write_steps_vtk(const std::filesystem::path& path, const StepsFile& file,
+                                           const StepsResult& result, const StepsOptions& options) {
+  const auto sequence = io::make_sequence(file.document);
+  if (!sequence) {
+    return sequence.error();
+  }
+  plan::RobotState robot(sequence.value().start);
+  Series series(path, options);
+  const std::vector<model::RobotSpec> start = {sequence.value().start};
+  auto error = series.add(start);
+  for (std::size_t i = 0; i < result.judgement.steps.size() && !error; ++i) {
+    const model::Step& step = sequence.value().steps[i];
+    const auto transition = plan::find_transition(robot, step);
+    const auto scenes =
+        transition ? plan::find_scenes(robot, step, transition.value(), plan::Stage::kConnect)
+                   : base::Result<std::vector<plan::Scene>>(transition.error());
+    if (!scenes) {
+      return scenes.error();
+    }
+    error = series.add(scenes.value().front().pieces);
+    plan::apply(step, transition.value(), robot);
+    if (options.progress) {
+      options.progress(i + 1);
+    }
+  }
+  return error ? error : series.finish();
 }
 
 std::string steps_text(const StepsFile& file, const StepsResult& result) {

@@ -207,7 +207,7 @@ void leave_out(Document& document, const std::vector<base::Cell>& cells) {
 }
 
 /// Why a module of the target cannot be attached by a step.
-std::optional<base::Error> find_untold(const Document& target, const model::RobotSpec& spec,
+std::optional<base::Error> find_untold(const model::RobotSpec& spec,
                                        const std::vector<base::Cell>& attached) {
   const auto is_attached = [&](const base::Cell& cell) {
     return std::ranges::binary_search(attached, cell);
@@ -228,11 +228,6 @@ std::optional<base::Error> find_untold(const Document& target, const model::Robo
   for (const model::OwnMass& own : spec.own_masses) {
     if (is_attached(own.cell)) {
       return refuse(own.cell, "a mass");
-    }
-  }
-  for (const model::Payload& payload : target.extension.payloads) {
-    if (is_attached(payload.cell)) {
-      return refuse(payload.cell, "a load");
     }
   }
   return std::nullopt;
@@ -317,13 +312,10 @@ base::Result<Document> order_steps(const Document& target, const plan::Order& or
     return document;
   }
   std::ranges::sort(attached);
-  if (auto fault = find_untold(target, spec.value(), attached)) {
+  if (auto fault = find_untold(spec.value(), attached)) {
     return *std::move(fault);
   }
   leave_out(document, attached);
-  std::erase_if(document.extension.payloads, [&](const model::Payload& payload) {
-    return std::ranges::binary_search(attached, payload.cell);
-  });
   return document;
 }
 

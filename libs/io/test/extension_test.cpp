@@ -133,13 +133,25 @@ model::RobotSpec spec_of(std::string_view members) {
   return spec ? spec.value() : model::RobotSpec{};
 }
 
-/// Nothing is ever computed with a part of a document left out.
-TEST(Version2, is_refused_where_it_plans_steps) {
-  const auto robot = make_robot(read(R"("modules": [[0,0,0]], "steps": [{"attach": [[1,0,0]]}])"));
-  ASSERT_FALSE(robot);
-  EXPECT_EQ(robot.error().code, base::ErrorCode::kUnsupported);
-  EXPECT_EQ(robot.error().where, "/steps");
-  EXPECT_NE(robot.error().message.find("a plan of steps"), std::string::npos);
+TEST(Version2, makes_steps_of_what_is_planned_and_of_the_plan) {
+  const Document document = read(R"("kinds": {"heavy": {"mass_kg": 0.5}}, "modules": [[0,0,0]],
+      "planned": [[1,0,0]], "later_steps": [[{"cell": [2,0,0], "kind": "heavy", "mass_kg": 0.6}]],
+      "loads": [{"cell": [2,0,0], "force_n": [0,0,-1]}], "steps": [{"detach": [[2,0,0]]}])");
+  ASSERT_EQ(step_count(document), 3);
+  EXPECT_EQ(step_pointer(document, 0), "/planned");
+  EXPECT_EQ(step_pointer(document, 1), "/later_steps/0");
+  EXPECT_EQ(step_pointer(document, 2), "/steps/0");
+  const Sequence sequence = make_sequence(document).value();
+  EXPECT_EQ(sequence.start.existing, (std::vector<Cell>{{0, 0, 0}}));
+  EXPECT_TRUE(sequence.start.planned.empty());
+  EXPECT_TRUE(sequence.start.payloads.empty());
+  ASSERT_EQ(sequence.steps.size(), 3);
+  EXPECT_EQ(sequence.steps[0].attach, (std::vector<Cell>{{1, 0, 0}}));
+  EXPECT_EQ(sequence.steps[1].own_kinds, (std::vector<model::OwnKind>{{{2, 0, 0}, 1}}));
+  EXPECT_EQ(sequence.steps[1].own_masses, (std::vector<model::OwnMass>{{{2, 0, 0}, 0.6}}));
+  EXPECT_EQ(sequence.steps[1].payloads.size(), 1);
+  EXPECT_EQ(sequence.steps[2].detach, (std::vector<Cell>{{2, 0, 0}}));
+  EXPECT_EQ(sequence.start.kinds.size(), 2);
 }
 
 TEST(Version2, becomes_what_a_robot_is_made_from) {

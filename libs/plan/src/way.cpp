@@ -104,6 +104,9 @@ base::Result<Group> WayFinder::find(std::span<const std::size_t> moves) const {
   draft.translation = difference(base::axial_of(lattice, draft.group.to.front()),
                                  base::axial_of(lattice, draft.group.from.front()));
   std::optional<std::string> fault;
+  if (draft.translation == Cell{}) {
+    fault = way_text(draft.group) + ": it is there already";
+  }
   for (const Cell& cell : draft.group.to) {
     if (!fault && !is_free(cell, draft)) {
       fault = fmt::format("{}: {} is occupied", way_text(draft.group), text(cell));
@@ -182,7 +185,9 @@ std::optional<Cell> WayFinder::turn_about(const Cell& carrier, const Draft& draf
   const Cell centre = base::axial_of(robot_.lattice(), carrier);
   for (const Cell& arrival : draft.group.to) {
     const Cell first = difference(base::axial_of(robot_.lattice(), arrival), centre);
-    if (is_step(first) && is_step(difference(draft.translation, first))) {
+    const Cell second = difference(draft.translation, first);
+    if (first != second && is_step(first) &&
+        is_step(second)) {  // Else it goes through the carrier.
       return first;
     }
   }

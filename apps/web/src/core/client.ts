@@ -6,9 +6,11 @@ import type { RobotData } from '../model/edited_robot';
 import {
   CoreError,
   type Answer,
+  type JudgedSteps,
   type OpenedDocument,
   type Output,
   type SimulationChoice,
+  type StageLoads,
   type Trace,
   type Trial,
 } from './types';
@@ -56,6 +58,15 @@ export class CoreClient {
 
   simulate(robot: RobotData, choice: SimulationChoice): Promise<Trace> {
     return this.call('simulate', [robot, choice]);
+  }
+
+  judgeSteps(robot: RobotData, name: string, base: string): Promise<JudgedSteps> {
+    return this.call('judgeSteps', [robot, name, base]);
+  }
+
+  /** Of the steps that this core has judged last. */
+  stage(step: number, stage: number, waypoint: number): Promise<StageLoads> {
+    return this.call('stage', [step, stage, waypoint]);
   }
 
   /** Gives up all calls, whatever the core is at. */

@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -49,5 +50,14 @@ base::Result<StepsResult> judge_steps(const StepsFile& file, const StepsOptions&
 
 void write_steps_json(std::ostream& out, const StepsFile& file, const StepsResult& result);
 std::string steps_text(const StepsFile& file, const StepsResult& result);
+std::string steps_svg(const StepsFile& file, const StepsResult& result);
+std::string steps_html(const StepsFile& file, const StepsResult& result);
+
+/// Writes a series for ParaView: `path`, a .pvd file, and beside it a .vtu file for the start and
+/// for the robot after each step that was judged, or for each of its pieces. Error: one cannot be
+/// written.
+std::optional<base::Error> write_steps_vtk(const std::filesystem::path& path, const StepsFile& file,
+                                           const StepsResult& result,
+                                           const StepsOptions& options = {});
 
 }  // namespace holdfast

@@ -34,4 +34,11 @@ std::string step_text(const Document& document, std::size_t step);
 /// feed at the end.
 std::string write_steps_text(const StepsEntry& entry);
 
+/// A picture of the sequence: the verdicts of each stage as a band, load ratio and margin below, by
+/// step; of long sequences some steps together, by their worst. Self-contained.
+std::string write_steps_svg(const StepsEntry& entry);
+
+/// A page with the picture and the report for people. Self-contained, without scripts.
+std::string write_steps_html(const StepsEntry& entry);
+
 }  // namespace holdfast::io

@@ -15,7 +15,7 @@ namespace holdfast::model {
 struct Move {
   base::Cell from;
   base::Cell to;
-  std::optional<base::Cell> carrier;  ///< The module that carries it on its way.
+  std::optional<base::Cell> carrier = {};  ///< The module that carries it on its way.
 
   friend bool operator==(const Move&, const Move&) = default;
 };

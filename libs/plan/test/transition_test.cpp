@@ -1,0 +1,152 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// Which moves of cubes there are follows from cells alone: a slide by one cell needs two modules
+// side by side, one beside each of its ends on the same side; a turn goes to a cell across an edge,
+// with a module in one of the two cells between and nothing in the other.
+#include "holdfast/plan/transition.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdlib>
+
+#include "moves.hpp"
+#include "random_robot.hpp"
+
+namespace holdfast::plan {
+namespace {
+
+using base::Cell;
+
+Cell plus(const Cell& a, const Cell& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
+
+bool can_slide(const RobotState& robot, const Cell& from, const Cell& to) {
+  const auto is_there = [&](const Cell& cell) {
+    return cell != from && robot.find(cell) != RobotState::kNone;
+  };
+  for (const base::Direction side : base::kDirections) {
+    if (is_there(base::neighbour(from, side)) && is_there(base::neighbour(to, side))) {
+      return true;
+    }
+  }
+  return false;
+}
+
+bool can_turn(const RobotState& robot, const Cell& from, const Cell& to) {
+  std::size_t there_count = 0;
+  for (const base::Direction side : base::kDirections) {
+    const Cell between = base::neighbour(from, side);
+    const bool is_beside =
+        std::abs(between.x - to.x) + std::abs(between.y - to.y) + std::abs(between.z - to.z) == 1;
+    there_count += is_beside && robot.find(between) != RobotState::kNone ? 1 : 0;
+  }
+  return there_count == 1;
+}
+
+bool is_expected(const RobotState& robot, const Cell& from, const Cell& to) {
+  if (robot.find(to) != RobotState::kNone) {
+    return false;
+  }
+  const Cell way = plus(to, {-from.x, -from.y, -from.z});
+  const int length = std::abs(way.x) + std::abs(way.y) + std::abs(way.z);
+  const bool is_straight = std::abs(way.x) == 2 || std::abs(way.y) == 2 || std::abs(way.z) == 2;
+  return length == 1 ? can_slide(robot, from, to) : is_straight ? false : can_turn(robot, from, to);
+}
+
+TEST(Transition, finds_every_move_of_a_cube_that_there_is) {
+  std::size_t found_count = 0;
+  for (std::uint64_t seed = 0; seed < 40; ++seed) {
+    model::RobotSpec spec = holdfast::test::random_robot(seed, 3, 20);
+    spec.planned.clear();
+    spec.fixed.clear();
+    const RobotState robot(spec);
+    for (const ModuleState& module : robot.modules()) {
+      for (const Cell& to : test::cells_near(robot.lattice(), module.cell)) {
+        const bool is_found = find_transition(robot, test::move(module.cell, to)).has_value();
+        EXPECT_EQ(is_found, to != module.cell && is_expected(robot, module.cell, to))
+            << seed << model::text(module.cell) << model::text(to);
+        found_count += is_found ? 1 : 0;
+      }
+    }
+  }
+  EXPECT_GT(found_count, 500);
+}
+
+TEST(Transition, leaves_the_state_that_it_says) {
+  RobotState robot(model::RobotSpec{.existing = {{0, 0, 0}, {1, 0, 0}, {0, 0, 1}},
+                                    .own_masses = {{{0, 0, 1}, 0.5}},
+                                    .payloads = {{.cell = {0, 0, 1}, .force_n = {0, 0, -3}}}});
+  model::Step step = test::move({0, 0, 1}, {1, 0, 1});
+  step.attach = {{2, 0, 0}};
+  apply(step, find_transition(robot, step).value(), robot);
+  const model::RobotSpec spec = robot.spec();
+  EXPECT_EQ(spec.existing, (std::vector<Cell>{{0, 0, 0}, {1, 0, 0}, {1, 0, 1}, {2, 0, 0}}));
+  ASSERT_EQ(spec.own_masses.size(), 1);
+  EXPECT_EQ(spec.own_masses[0].cell, (Cell{1, 0, 1}));
+  ASSERT_EQ(spec.payloads.size(), 1);
+  EXPECT_EQ(spec.payloads[0].cell, (Cell{1, 0, 1}));
+}
+
+TEST(Transition, keeps_what_is_released_until_it_is_connected) {
+  RobotState robot(model::RobotSpec{.existing = {{0, 0, 0}, {1, 0, 0}}});
+  const auto go = [&](const model::Step& step) {
+    const auto transition = find_transition(robot, step);
+    ASSERT_TRUE(transition) << transition.error().message;
+    apply(step, transition.value(), robot);
+  };
+  const model::CellPair pair = {Cell{1, 0, 0}, Cell{0, 0, 0}};
+  go({.release = {pair}});
+  EXPECT_FALSE(robot.are_connected(pair[0], pair[1]));
+  go({.attach = {{1, 0, 1}}});
+  EXPECT_FALSE(robot.are_connected(pair[0], pair[1]));
+  go({.connect = {pair}});
+  EXPECT_TRUE(robot.are_connected(pair[0], pair[1]));
+}
+
+/// Of a robot of four modules, one of them fixed, and an obstacle.
+std::string fault_of(const model::Step& step) {
+  const RobotState robot(model::RobotSpec{
+      .existing = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {1, 0, 1}},
+      .fixed = {{0, 0, 0}},
+      .obstacles = {{.from = {2, 0, 1}, .to = {2, 0, 1}, .cells = {}, .touch = {}}}});
+  const auto found = find_transition(robot, step);
+  return found ? "none" : found.error().message;
+}
+
+TEST(Transition, says_what_cannot_be_done_and_in_which_stage) {
+  const auto carried = [](const Cell& from, const Cell& to, const Cell& carrier) {
+    return model::Step{.moves = {{.from = from, .to = to, .carrier = carrier}}};
+  };
+  const std::pair<model::Step, std::string> cases[] = {
+      {test::move({5, 5, 5}, {5, 5, 6}),
+       "release: no module can move from (5,5,5) to (5,5,6): no "},
+      {test::move({0, 0, 0}, {0, 0, 1}),
+       "release: no module can move from (0,0,0) to (0,0,1): that"},
+      {{.detach = {{7, 0, 0}}}, "release: no module can be detached at (7,0,0): none is there"},
+      {{.detach = {{2, 0, 0}, {2, 0, 0}}}, "release: no module can be detached at (2,0,0): it is "},
+      {{.release = {{Cell{0, 0, 0}, Cell{2, 0, 0}}}},
+       "release: (0,0,0)-(2,0,0) cannot be released"},
+      {test::move({1, 0, 1}, {1, 0, 0}),
+       "shift: (1,0,1) cannot go to (1,0,0): (1,0,0) is occupied"},
+      {test::move({1, 0, 1}, {2, 0, 1}),
+       "shift: (1,0,1) cannot go to (2,0,1): (2,0,1) is occupied"},
+      {test::move({1, 0, 1}, {1, 0, 1}),
+       "shift: (1,0,1) cannot go to (1,0,1): it is there already"},
+      {test::move({1, 0, 1}, {1, 0, 2}), "shift: (1,0,1) cannot go to (1,0,2): no module carries"},
+      {test::move({1, 0, 1}, {5, 0, 1}), "shift: (1,0,1) cannot go to (5,0,1): there is no slide"},
+      {carried({1, 0, 1}, {0, 0, 1}, {9, 0, 0}),
+       "shift: (1,0,1) cannot go to (0,0,1): the carrier"},
+      {carried({1, 0, 1}, {1, 0, -1}, {1, 0, 0}),
+       "shift: (1,0,1) cannot go to (1,0,-1): that is out of reach of its carrier (1,0,0)"},
+      {{.attach = {{1, 0, 0}}}, "connect: no module can be attached at (1,0,0): a module is there"},
+      {{.attach = {{2, 0, 1}}}, "connect: no module can be attached at (2,0,1): an obstacle is"},
+      {{.connect = {{Cell{0, 0, 0}, Cell{1, 0, 0}}}},
+       "connect: (0,0,0)-(1,0,0) cannot be connected"}};
+  for (const auto& [step, message] : cases) {
+    EXPECT_EQ(fault_of(step).substr(0, message.size()), message);
+  }
+}
+
+}  // namespace
+}  // namespace holdfast::plan
