@@ -213,6 +213,15 @@ test('where there is no order, that is said', async () => {
   assert.deepEqual(page.faults, []);
 });
 
+test('holdfast view opens the page with the sequence', async () => {
+  const out = path.join(temporaryFolder(), 'view.html');
+  execFileSync(program, ['view', path.join(repository, 'scenarios/plan/walk_over_beam.json'), '--no-open', '--out', out]);
+  const page = await openPage(browser, { file: out });
+  await page.waitForFunction(() => globalThis.holdfast.timeline.judged);
+  assert.match(await page.textContent('#sequence-text'), /6 of 6 steps safe in every stage; largest load 0.750; smallest margin 12.00 mm/);
+  assert.deepEqual(page.faults, []);
+});
+
 test('a step that cannot be done is named, with its stage', async () => {
   const page = await openPage(browser);
   await open(page, file('bad', { modules: [[0, 0, 0]], steps: [{ attach: [[0, 0, 1]] }, { detach: [[5, 5, 5]] }] }));

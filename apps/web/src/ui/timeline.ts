@@ -5,7 +5,7 @@ import type { JudgedSteps, StageLoads, StageReport } from '../core/types';
 import { Role } from '../model/cell';
 import type { EditedRobot } from '../model/edited_robot';
 import { Recorder } from '../model/recorder';
-import { STAGES, Sequence } from '../model/sequence';
+import { STAGES, Sequence, type StageRobot } from '../model/sequence';
 import type { App } from './app';
 import { formatRatio } from './answer_panel';
 import { drawBands } from './bands';
@@ -251,7 +251,10 @@ export class Timeline {
     this.app.bench.closed = 'a stage of the steps is shown: “Back to building” ends that';
     this.exhibit(this.isMoving ? 0 : (this.report!.waypoint ?? 0));
     this.showPlace();
-    void this.findLoads(at);
+    // A core that is behind is asked again where the playing ends.
+    if (!this.isPlaying || !this.client.isBusy) {
+      void this.findLoads(at);
+    }
   }
 
   private get stage(): number {
@@ -273,8 +276,12 @@ export class Timeline {
     return isShift && !matchMedia('(prefers-reduced-motion: reduce)').matches;
   }
 
+  private robotAt(waypoint: number): StageRobot {
+    return this.sequence!.robotAt(this.stepIndex, STAGES[this.stage], waypoint);
+  }
+
   private exhibit(waypoint: number): void {
-    const robot = this.sequence!.robotAt(this.stepIndex, STAGES[this.stage], waypoint);
+    const robot = this.robotAt(waypoint);
     this.app.setExhibit({ robot, finding: findingOf(robot, this.report!, this.loads) });
   }
 
@@ -308,7 +315,7 @@ export class Timeline {
     }
     if (now - this.begun < this.stageMs) {
       if (this.isMoving && this.sequence!.waypointCount(this.stepIndex) > 0) {
-        this.exhibit(this.waypointNow(now));
+        this.app.moveExhibit(this.robotAt(this.waypointNow(now)));
       }
     } else if (this.at + 1 < this.stageCount) {
       this.show(this.at + 1);
@@ -320,10 +327,14 @@ export class Timeline {
   }
 
   private pause(): void {
-    const wasMoving = this.isPlaying && this.at !== undefined && this.isMoving;
+    const wasPlaying = this.isPlaying;
+    const wasMoving = wasPlaying && this.at !== undefined && this.isMoving;
     this.isPlaying = false;
     if (wasMoving) {
       this.exhibit(this.report!.waypoint ?? 0);
+    }
+    if (wasPlaying && this.at !== undefined && !this.loads) {
+      void this.findLoads(this.at);
     }
     this.showPlaying();
   }
