@@ -22,7 +22,7 @@ import tempfile
 
 DOCUMENTS = ['README.md', *(f'docs/{name}.md' for name in (
     'theory', 'solver', 'solver_evidence', 'distributed', 'one_sweep', 'proof', 'page', 'formats',
-    'plan'))]
+    'plan', 'move'))]
 # These need the firmware's compilers; tests/firmware checks what they show.
 NOT_RUN = './dev firmware'
 

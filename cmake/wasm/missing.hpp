@@ -179,6 +179,11 @@ constexpr auto upper_bound(Range&& range, const Value& value, Compare compare = 
                           });
 }
 
+template <class Range, class Value, class Compare = holdfast_detail::Less>
+constexpr bool binary_search(Range&& range, const Value& value, Compare compare = {}) {
+  return std::binary_search(std::begin(range), std::end(range), value, compare);
+}
+
 template <class Range, class Value, class Compare = holdfast_detail::Less,
           class Projection = holdfast_detail::Identity>
 constexpr auto equal_range(Range&& range, const Value& value, Compare compare = {},
@@ -224,6 +229,18 @@ constexpr auto copy(Range&& range, Output output) {
 template <class Range, class Output>
 constexpr auto move(Range&& range, Output output) {
   return std::move(std::begin(range), std::end(range), output);
+}
+
+template <class Range, class Value>
+constexpr void fill(Range&& range, const Value& value) {
+  std::fill(std::begin(range), std::end(range), value);
+}
+
+template <class Range, class Predicate>
+constexpr auto stable_partition(Range&& range, Predicate predicate) {
+  const auto last = std::end(range);
+  return holdfast_detail::Rest<decltype(std::begin(range))>{
+      std::stable_partition(std::begin(range), last, predicate), last};
 }
 
 template <class Range, class Predicate, class Value>

@@ -4,7 +4,7 @@ _holdfast() {
   local words='' files=''
   COMPREPLY=()
   if [ "$COMP_CWORD" -eq 1 ]; then
-    mapfile -t COMPREPLY < <(compgen -W "check steps next order simulate emulate convert generate robots view -h --help --version" -- "$current")
+    mapfile -t COMPREPLY < <(compgen -W "check steps next order move simulate emulate convert generate robots view -h --help --version" -- "$current")
     return
   fi
   case ${COMP_WORDS[1]} in
@@ -53,7 +53,7 @@ _holdfast() {
       ;;
     order)
       case $previous in
-        --from) : ;;
+        --from) files=1 ;;
         --reach) : ;;
         --source) : ;;
         --group) : ;;
@@ -61,12 +61,26 @@ _holdfast() {
         --seconds) : ;;
         --help-seconds) : ;;
         --threads) : ;;
-        -o|--output) : ;;
+        -o|--output) files=1 ;;
         --json) files=1 ;;
         --certificate) files=1 ;;
         --robot) : ;;
         --lattice) : ;;
         *) if [[ $current == -* ]]; then words="-h --help --from --reach --source --group --reverse --seed --seconds --help-seconds --threads -q --quiet -o --output --json --certificate --robot --lattice"; else files=1; fi ;;
+      esac
+      ;;
+    move)
+      case $previous in
+        --within) : ;;
+        --seed) : ;;
+        --seconds) : ;;
+        --threads) : ;;
+        -o|--output) files=1 ;;
+        --json) files=1 ;;
+        --verify) files=1 ;;
+        --robot) : ;;
+        --lattice) : ;;
+        *) if [[ $current == -* ]]; then words="-h --help --pivot --within --geometry-only --seed --seconds --threads -q --quiet -o --output --json --verify --robot --lattice"; else files=1; fi ;;
       esac
       ;;
     simulate)

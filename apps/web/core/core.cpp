@@ -6,13 +6,19 @@
 // numbers, valid until the next call. src/core/wasm.ts is the other side.
 #include <fmt/format.h>
 
+#include <cstring>
 #include <nlohmann/json.hpp>
+#include <optional>
+#include <sstream>
 #include <string>
 #include <vector>
 
 #include "holdfast/distributed.hpp"
+#include "holdfast/plan/judgement.hpp"
+#include "holdfast/steps.hpp"
 #include "packet_log.hpp"
 #include "request.hpp"
+#include "sequence_view.hpp"
 #include "vocabulary.hpp"
 
 #define HOLDFAST_EXPORT(name) extern "C" __attribute__((export_name(#name))) auto name
@@ -31,6 +37,8 @@ struct Reply {
 // One program, one caller, one call at a time.
 std::vector<std::uint8_t> input;  // NOLINT(cppcoreguidelines-avoid-non-const-global-variables)
 Reply reply;                      // NOLINT(cppcoreguidelines-avoid-non-const-global-variables)
+/// That was judged last.
+std::optional<SequenceView> sequence;  // NOLINT(cppcoreguidelines-avoid-non-const-global-variables)
 
 std::string dump(const Json& json) {
   return json.dump(-1, ' ', false, Json::error_handler_t::replace);
@@ -222,6 +230,18 @@ Reply check_request(const Request& request) {
   return assessment_reply(robot.value(), result.assessment, result.seconds);
 }
 
+/// Text: what io::collapse_json says; null also if it is not found within options[0] seconds.
+Reply limit_request(const Request& request) {
+  const auto robot = robot_of(request);
+  if (!robot) {
+    return failure(robot.error());
+  }
+  const CheckResult result =
+      check(robot.value(), {.is_limit_wanted = true,
+                            .limit_seconds_max = static_cast<double>(request.header.options[0])});
+  return {.text = io::collapse_json(robot.value(), *result.limit), .integers = {}, .numbers = {}};
+}
+
 /// With one more module of the Role in options[0] at each place of the tail. Text: a list of
 /// verdicts, null where no module can be. Numbers: the largest load ratio (-1 if there is none) and
 /// the margin in mm (0 if it is fixed).
@@ -345,6 +365,90 @@ Reply write_document(const Request& request) {
   return {.text = written(structure, output), .integers = {}, .numbers = {}};
 }
 
+/// Text: what each step does in words, and the report of holdfast steps --json. Integers: see
+/// SequenceView::transitions().
+Reply judge_steps_request(const Request& request) {
+  sequence.reset();
+  auto document = document_of(request);
+  if (!document) {
+    return failure(document.error());
+  }
+  const std::string name = document.value().name;
+  const StepsFile file{.name = name, .document = std::move(document).value(), .warnings = {}};
+  const auto result = judge_steps(file);
+  if (!result) {
+    return failure(result.error());
+  }
+  sequence.emplace(io::make_sequence(file.document).value());
+  Json texts = Json::array();
+  for (std::size_t step = 0; step < io::step_count(file.document); ++step) {
+    texts.push_back(io::step_text(file.document, step));
+  }
+  std::ostringstream report;
+  write_steps_json(report, file, result.value());
+  return {.text = fmt::format("{{\"texts\":{},\"report\":{}}}", dump(texts), report.str()),
+          .integers = sequence->transitions(),
+          .numbers = {}};
+}
+
+/// Adds the modules and loads of a piece to a stage_reply().
+void add_piece(const model::Robot& robot, const verdict::Assessment& assessment, Reply& cells,
+               Reply& loads) {
+  const auto offset = static_cast<std::int32_t>(cells.integers.size() / 3);
+  for (const model::Module& module : robot.modules()) {
+    cells.integers.insert(cells.integers.end(), {module.cell.x, module.cell.y, module.cell.z});
+  }
+  std::vector<std::int32_t> is_broken(assessment.connections.size());
+  for (const std::size_t broken : assessment.broken) {
+    is_broken[broken] = 1;
+  }
+  for (std::size_t i = 0; i < assessment.connections.size(); ++i) {
+    const model::Connection& pair = robot.connections()[i];
+    const verdict::ConnectionResult& result = assessment.connections[i];
+    loads.integers.insert(loads.integers.end(), {pair.a + offset, pair.b + offset,
+                                                 base::index(pair.direction), is_broken[i]});
+    loads.numbers.insert(loads.numbers.end(),
+                         {result.load_ratio, result.axial_n, result.bending_nmm, result.shear_n,
+                          result.torsion_nmm});
+  }
+}
+
+/// A scene of the sequence that was judged last. The bytes are step, stage and waypoint, four of
+/// each. Text: list of stabilities of its pieces and the contact model. Integers: modules; x, y, z
+/// of each; a, b, direction and whether it is broken of each connection. Numbers: five of each
+/// connection.
+Reply stage_reply(std::span<const std::uint8_t> bytes) {
+  std::array<std::int32_t, 3> place{};
+  HOLDFAST_CHECK(sequence.has_value() && bytes.size() == sizeof(place));
+  std::memcpy(place.data(), bytes.data(), sizeof(place));
+  const auto scene =
+      sequence->scene(static_cast<std::size_t>(place[0]), static_cast<plan::Stage>(place[1]),
+                      static_cast<std::size_t>(place[2]));
+  if (!scene) {
+    return failure(scene.error());
+  }
+  Reply cells;
+  Reply loads;
+  Json stabilities = Json::array();
+  Json contact_model;
+  for (const model::RobotSpec& spec : scene.value().pieces) {
+    const auto robot = model::Robot::create(spec);
+    if (!robot) {
+      return failure(robot.error());
+    }
+    const verdict::Assessment assessment = plan::assess(robot.value());
+    stabilities.push_back(stability_json(robot.value(), assessment));
+    contact_model = verdict::name(assessment.contact_model);
+    add_piece(robot.value(), assessment, cells, loads);
+  }
+  loads.text = dump({{"stabilities", stabilities}, {"contact_model", contact_model}});
+  cells.integers.insert(cells.integers.begin(),
+                        static_cast<std::int32_t>(cells.integers.size() / 3));
+  cells.integers.insert(cells.integers.end(), loads.integers.begin(), loads.integers.end());
+  loads.integers = std::move(cells.integers);
+  return loads;
+}
+
 /// options: method and line as vocabulary_json() gives them, seed, loss in thousandths, events that
 /// are kept in thousands.
 sim::SimulationOptions simulation_options(const RequestHeader& header) {
@@ -423,6 +527,10 @@ HOLDFAST_EXPORT(holdfast_check)()->void {
   web::reply = web::check_request(web::read_request(web::input));
 }
 
+HOLDFAST_EXPORT(holdfast_limit)()->void {
+  web::reply = web::limit_request(web::read_request(web::input));
+}
+
 HOLDFAST_EXPORT(holdfast_try_places)()->void {
   web::reply = web::try_places(web::read_request(web::input));
 }
@@ -430,6 +538,12 @@ HOLDFAST_EXPORT(holdfast_try_places)()->void {
 HOLDFAST_EXPORT(holdfast_write)()->void {
   web::reply = web::write_document(web::read_request(web::input));
 }
+
+HOLDFAST_EXPORT(holdfast_judge_steps)()->void {
+  web::reply = web::judge_steps_request(web::read_request(web::input));
+}
+
+HOLDFAST_EXPORT(holdfast_stage)()->void { web::reply = web::stage_reply(web::input); }
 
 HOLDFAST_EXPORT(holdfast_simulate)()->void {
   web::reply = web::simulate_request(web::read_request(web::input));

@@ -10,6 +10,7 @@ import { App } from './ui/app';
 import { showFaceLegend, showLegend } from './ui/answer_panel';
 import { byId, icon, make, say } from './ui/dom';
 import { listenToFiles, reportOf, take } from './ui/files';
+import { Collapse } from './ui/collapse';
 import { openGallery } from './ui/gallery';
 import { Keeper } from './ui/keeper';
 import { KEYS, listenToKeys } from './ui/keyboard';
@@ -18,10 +19,11 @@ import { Player } from './ui/player';
 import { listenToPointer } from './ui/pointer';
 import { openFirst, showWithoutPicture } from './ui/start';
 import { makeSurroundings } from './ui/surroundings';
+import { Timeline } from './ui/timeline';
 
 declare global {
   /** A handle for the browser's console, and for the tests. */
-  var holdfast: { bench: Workbench; app: App; player: Player; reportOf: typeof reportOf };
+  var holdfast: { bench: Workbench; app: App; player: Player; timeline: Timeline; reportOf: typeof reportOf };
 }
 
 const TOOLS: readonly [tool: Tool, text: string, key: string][] = [
@@ -166,7 +168,7 @@ function makePanel(app: App, keeper: Keeper): void {
 
 const showTitle = ({ robot }: Workbench) => (document.title = robot.name ? `${robot.name} - holdfast` : 'holdfast');
 
-function makeActions(app: App, player: Player): Record<string, () => void> {
+function makeActions(app: App, player: Player, timeline: Timeline): Record<string, () => void> {
   const turn = (angle: number) => {
     const { camera, controls } = app.stage;
     camera.position.sub(controls.target).applyAxisAngle(camera.up, angle).add(controls.target);
@@ -193,6 +195,9 @@ function makeActions(app: App, player: Player): Record<string, () => void> {
     k: () => player.toggle(),
     ',': () => player.step(-1),
     '.': () => player.step(1),
+    s: () => timeline.toggle(),
+    u: () => timeline.toFirstUnsafe(),
+    r: () => timeline.record(),
     '?': () => byId<HTMLDialogElement>('keys').showModal(),
   };
 }
@@ -201,12 +206,13 @@ function begin(): void {
   const bench = new Workbench(say);
   const app = new App(bench);
   const player = new Player(app);
-  globalThis.holdfast = { bench, app, player, reportOf };
+  const timeline = new Timeline(app);
+  globalThis.holdfast = { bench, app, player, timeline, reportOf };
   const keeper = new Keeper(bench);
   makeTools(bench);
   makeDialogs();
   makePanel(app, keeper);
-  const actions = makeActions(app, player);
+  const actions = makeActions(app, player, timeline);
   listenToPointer(app);
   listenToKeys(app, actions);
   listenToFiles(bench);
@@ -227,7 +233,7 @@ function begin(): void {
       void take(bench, app.stage, button.dataset.save!);
     };
   }
-  void openFirst(app, keeper).then(showReady);
+  void openFirst(app, keeper, new Collapse(app)).then(showReady);
 }
 
 const showReady = () => document.documentElement.classList.add('ready');

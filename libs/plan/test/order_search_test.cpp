@@ -124,7 +124,7 @@ TEST(OrderSearch, finds_an_order_or_a_cut_as_a_walk_through_all_sets_says) {
   int found_count = 0;
   int none_count = 0;
   for (std::uint64_t seed = 0; seed < 300; ++seed) {
-    for (const std::size_t group_size : {1, 2, 3}) {
+    for (std::size_t group_size = 1; group_size <= 3; ++group_size) {
       RandomStructure structure(seed, 2 + seed % 5);
       const ElementSet start = set_of(1);
       const Order order =

@@ -6,9 +6,12 @@ import type { RobotData } from '../model/edited_robot';
 import {
   CoreError,
   type Answer,
+  type JudgedSteps,
+  type LimitLoad,
   type OpenedDocument,
   type Output,
   type SimulationChoice,
+  type StageLoads,
   type Trace,
   type Trial,
 } from './types';
@@ -46,6 +49,10 @@ export class CoreClient {
     return this.call('check', [robot, firstLook]);
   }
 
+  limit(robot: RobotData, secondsMax: number): Promise<LimitLoad | null> {
+    return this.call('limit', [robot, secondsMax]);
+  }
+
   tryPlaces(robot: RobotData, places: Int32Array, role: Role): Promise<Trial[]> {
     return this.call('tryPlaces', [robot, places, role]);
   }
@@ -56,6 +63,15 @@ export class CoreClient {
 
   simulate(robot: RobotData, choice: SimulationChoice): Promise<Trace> {
     return this.call('simulate', [robot, choice]);
+  }
+
+  judgeSteps(robot: RobotData, name: string, base: string): Promise<JudgedSteps> {
+    return this.call('judgeSteps', [robot, name, base]);
+  }
+
+  /** Of the steps that this core has judged last. */
+  stage(step: number, stage: number, waypoint: number): Promise<StageLoads> {
+    return this.call('stage', [step, stage, waypoint]);
   }
 
   /** Gives up all calls, whatever the core is at. */

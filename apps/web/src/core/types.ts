@@ -3,7 +3,9 @@
 
 /** What the page and the core exchange. Lengths in mm, forces in N, torques in N mm. */
 
+import type { Cell } from '../model/cell';
 import type { LatticeTable } from '../model/lattice';
+import type { StageName } from '../model/sequence';
 
 export type Point = [x: number, y: number];
 
@@ -35,6 +37,16 @@ export interface Stability {
   centre_of_mass: Point3;
   polygon: Point[];
   rigid: RigidAnswer;
+}
+
+/** The largest factor of all loads that any forces could balance, and how the robot collapses beyond it. */
+export interface LimitLoad {
+  /** Null: whatever the factor of all loads, some forces balance them. */
+  factor: number | null;
+  /** Connections that give way, as two cells, null for a support; fastest first. */
+  yields: { a: Cell | null; b: Cell | null; limit: string }[];
+  /** By module in the program's order: velocity and angular velocity, the largest of 1 mm; may be empty. */
+  velocities: number[][];
 }
 
 export interface Answer {
@@ -107,6 +119,53 @@ export interface Trial {
   verdict: Verdict | null;
   ratio: number;
   marginMm: number;
+}
+
+/** What is said of a stage of a step; as holdfast steps --json. */
+export interface StageReport {
+  verdict: Verdict;
+  reasons: string[];
+  load_ratio_max: number | null;
+  margin_mm: number | null;
+  at: [Cell, Cell] | null;
+  /** In the shift, if something moves: where it is at its worst. */
+  waypoint?: number;
+}
+
+export interface StageId {
+  step: number;
+  stage: StageName;
+}
+
+export interface StepsReport {
+  verdict: Verdict;
+  first_unsafe: StageId | null;
+  first_undecided: StageId | null;
+  load_ratio_max: number | null;
+  margin_min_mm: number | null;
+  steps: { where: string; stages: Record<StageName, StageReport> }[];
+  seconds: number;
+}
+
+export interface JudgedSteps {
+  report: StepsReport;
+  /** What each step does. */
+  texts: string[];
+  /** For Sequence. */
+  transitions: Int32Array;
+}
+
+/** Loads in a stage: those of its modules that are in their places. */
+export interface StageLoads {
+  /** Of each piece. */
+  stabilities: Stability[];
+  contact_model: string;
+  /** x, y, z of each module. */
+  cells: Int32Array;
+  /** As in Answer. */
+  connections: Int32Array;
+  broken: Int32Array;
+  loads: Float64Array;
 }
 
 export const enum Output {

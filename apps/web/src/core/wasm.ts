@@ -9,9 +9,12 @@ import {
   LOAD_FIELDS,
   type Answer,
   type Failure,
+  type JudgedSteps,
+  type LimitLoad,
   type OpenedDocument,
   type Output,
   type SimulationChoice,
+  type StageLoads,
   type Trace,
   type Trial,
   type Verdict,
@@ -26,6 +29,8 @@ import {
 const HEADER_INTEGERS = 10;
 const MODULE_INTEGERS = 4;
 const EVENTS_KEPT_THOUSANDS = 1000;
+/** Of each connection in a stage. */
+const STAGE_INTEGERS = 4;
 
 interface Exports {
   memory: WebAssembly.Memory;
@@ -34,9 +39,12 @@ interface Exports {
   holdfast_input(size: number): number;
   holdfast_open(): void;
   holdfast_check(): void;
+  holdfast_limit(): void;
   holdfast_try_places(): void;
   holdfast_write(): void;
   holdfast_simulate(): void;
+  holdfast_judge_steps(): void;
+  holdfast_stage(): void;
   holdfast_text(): number;
   holdfast_text_size(): number;
   holdfast_integers(): number;
@@ -51,7 +59,8 @@ interface Reply {
   numbers: Float64Array<ArrayBuffer>;
 }
 
-type Call = 'vocabulary' | 'open' | 'check' | 'try_places' | 'write' | 'simulate';
+type Call =
+  'vocabulary' | 'open' | 'check' | 'limit' | 'try_places' | 'write' | 'simulate' | 'judge_steps' | 'stage';
 
 export class Core {
   private constructor(private readonly exports: Exports) {}
@@ -132,6 +141,11 @@ export class Core {
     };
   }
 
+  /** The limit load; null if it is not found in time. Throws CoreError. */
+  limit(robot: RobotData, secondsMax: number): LimitLoad | null {
+    return JSON.parse(this.call('limit', request(robot, [secondsMax])).text) as LimitLoad | null;
+  }
+
   /** What the verdict would be with one more module of a role, for each place (x, y, z). */
   tryPlaces(robot: RobotData, places: Int32Array, role: Role): Trial[] {
     const tail = new Uint8Array(places.buffer, places.byteOffset, places.byteLength);
@@ -146,10 +160,29 @@ export class Core {
 
   /** A document, picture or report; `base` is the text of the file it began with. */
   write(robot: RobotData, output: Output, name: string, base: string): string {
-    const encoder = new TextEncoder();
-    const nameBytes = encoder.encode(name);
-    const tail = encoder.encode(name + base);
-    return this.call('write', request(robot, [output, nameBytes.length], tail)).text;
+    return this.call('write', documentRequest(robot, output, name, base)).text;
+  }
+
+  /** Judges every stage of every step of a document as write() makes it, and remembers them. Throws CoreError. */
+  judgeSteps(robot: RobotData, name: string, base: string): JudgedSteps {
+    const { text, integers } = this.call('judge_steps', documentRequest(robot, 0, name, base));
+    return { ...(JSON.parse(text) as Pick<JudgedSteps, 'report' | 'texts'>), transitions: integers };
+  }
+
+  /** The loads in a stage of the steps that were judged last. */
+  stage(step: number, stage: number, waypoint: number): StageLoads {
+    const { text, integers, numbers } = this.call('stage', new Uint8Array(Int32Array.of(step, stage, waypoint).buffer));
+    const connectionsAt = 1 + 3 * integers[0];
+    const rows = (integers.length - connectionsAt) / STAGE_INTEGERS;
+    const row = (i: number) => integers.subarray(connectionsAt + STAGE_INTEGERS * i, connectionsAt + STAGE_INTEGERS * (i + 1));
+    const all = Array.from({ length: rows }, (_, i) => row(i));
+    return {
+      ...(JSON.parse(text) as Pick<StageLoads, 'stabilities' | 'contact_model'>),
+      cells: integers.slice(1, connectionsAt),
+      connections: Int32Array.from(all.flatMap((one) => [...one.subarray(0, 3)])),
+      broken: Int32Array.from(all.flatMap((one, i) => (one[3] ? [i] : []))),
+      loads: numbers,
+    };
   }
 
   simulate(robot: RobotData, choice: SimulationChoice): Trace {
@@ -178,6 +211,12 @@ export class Core {
     }
     return reply;
   }
+}
+
+/** A request about a document; `base` is the text of the file it began with. */
+function documentRequest(robot: RobotData, option: number, name: string, base: string): Uint8Array {
+  const encoder = new TextEncoder();
+  return request(robot, [option, encoder.encode(name).length], encoder.encode(name + base));
 }
 
 /** The bytes of core/request.hpp. */

@@ -81,6 +81,8 @@ export class EditedRobot {
   private readonly coverStrides: readonly number[];
   /** The text of the file that it began with, for what the page does not show. */
   base = '';
+  /** How many steps that file has behind the planned modules, beside those of its surroundings. */
+  laterSteps = 0;
 
   constructor(readonly lattice: Lattice = CUBIC) {
     this.coverStrides = lattice.coverSteps.map(strideOf);
@@ -147,8 +149,25 @@ export class EditedRobot {
   /** The same cells, and all else, in another lattice. */
   inLattice(lattice: Lattice): EditedRobot {
     const robot = EditedRobot.from(this.toModules(), lattice);
-    const { name, supportZ, material, surroundings, base } = this;
-    return Object.assign(robot, { name, supportZ, material, surroundings, base, isEdited: true });
+    robot.takeSettings(this);
+    const { name, base, laterSteps } = this;
+    return Object.assign(robot, { name, base, laterSteps, isEdited: true });
+  }
+
+  /** What is there before the first step. */
+  withoutPlanned(): EditedRobot {
+    const robot = new EditedRobot(this.lattice);
+    robot.takeSettings(this);
+    for (let slot = 0; slot < this.count; ++slot) {
+      if (this.roleAt(slot) !== Role.kPlanned) {
+        robot.set(this.cellAt(slot), this.roleAt(slot));
+      }
+    }
+    return robot;
+  }
+
+  takeSettings({ supportZ, material, surroundings }: Settings): void {
+    Object.assign(this, { supportZ, material, surroundings });
   }
 
   cellAt(slot: number): Cell {
@@ -209,8 +228,8 @@ export class EditedRobot {
     return [...places.values()];
   }
 
-  /** For the core, with the slot of each of its modules: existing ones come first. */
-  toData(): { data: RobotData; slots: Int32Array } {
+  /** For the core, with the slot of each of its modules: existing ones come first. Most calls need no steps. */
+  toData(hasSteps = false): { data: RobotData; slots: Int32Array } {
     const slots = new Int32Array(this.count);
     let next = 0;
     for (const isPlanned of [false, true]) {
@@ -227,7 +246,7 @@ export class EditedRobot {
       }
     });
     const { supportZ, material } = this;
-    return { data: { modules, supportZ, material, more: this.moreText() }, slots };
+    return { data: { modules, supportZ, material, more: this.moreText(hasSteps) }, slots };
   }
 
   /** x, y, z and role of each module, in the order of its slots. */
@@ -249,11 +268,13 @@ export class EditedRobot {
 
   /** Cubes on a floor without slip under their own weight. */
   get isPlain(): boolean {
-    return this.lattice === CUBIC && Object.keys(this.more).length === 0;
+    return this.lattice === CUBIC && Object.keys(this.more).every((key) => key === 'steps');
   }
 
-  private moreText(): string {
-    return this.isPlain ? '' : textOf({ ...this.more, lattice: this.lattice.name });
+  private moreText(hasSteps: boolean): string {
+    const { steps, ...more } = this.more;
+    const isPlain = this.isPlain && (!hasSteps || steps === undefined);
+    return isPlain ? '' : textOf({ ...(hasSteps ? this.more : more), lattice: this.lattice.name });
   }
 
   private key(cell: Cell): number | undefined {

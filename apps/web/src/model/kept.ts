@@ -32,6 +32,7 @@ export interface KeptRobot {
   /** Undefined in entries of pages that knew cubes on a floor only. */
   lattice?: string;
   surroundings?: Surroundings;
+  laterSteps?: number;
 }
 
 /** What a page is asked to show, a file or a link, in short; '' if nothing. FNV-1a in two halves. */
@@ -63,12 +64,12 @@ export class Kept {
 
   /** False: it is too large. */
   keep(robot: EditedRobot, origin: string): boolean {
-    const { id, name, supportZ, base, surroundings } = robot;
+    const { id, name, supportZ, base, surroundings, laterSteps } = robot;
     const lattice = robot.lattice.name;
     const [material, modules] = [Array.from(robot.material), Array.from(robot.toModules())];
     const entry: KeptRobot = {
       ...{ id, origin, time: Date.now(), name, supportZ, material, modules, base },
-      ...{ lattice, surroundings },
+      ...{ lattice, surroundings, laterSteps },
     };
     const text = `${entry.time} ${JSON.stringify(entry)}`;
     const isKept = text.length <= LENGTH_MAX && this.write(PREFIX + id, text);
@@ -96,8 +97,9 @@ export class Kept {
   restore(entry: KeptRobot): EditedRobot {
     const lattice = entry.lattice === undefined ? CUBIC : latticeOf(entry.lattice);
     const robot = EditedRobot.from(Int32Array.from(entry.modules), lattice);
-    const { name, supportZ, base, surroundings = NO_SURROUNDINGS } = entry;
-    Object.assign(robot, { name, supportZ, base, surroundings, material: Float64Array.from(entry.material) });
+    const { name, supportZ, base, surroundings = NO_SURROUNDINGS, laterSteps = 0 } = entry;
+    const material = Float64Array.from(entry.material);
+    Object.assign(robot, { name, supportZ, base, surroundings, laterSteps, material });
     if (entry.id === this.tab.getItem(TAB)) {
       robot.id = entry.id;
     }
@@ -144,7 +146,7 @@ function read(text: string): KeptRobot | undefined {
 }
 
 function isKept(entry: KeptRobot): boolean {
-  const { id, origin, time, name, supportZ, material, modules, base, lattice, surroundings } = entry;
+  const { id, origin, time, name, supportZ, material, modules, base, lattice, surroundings, laterSteps } = entry;
   return (
     [id, origin, name, base].every((text) => typeof text === 'string') &&
     Number.isFinite(time) &&
@@ -153,6 +155,7 @@ function isKept(entry: KeptRobot): boolean {
     material.length === PARAMETERS.length &&
     modules.every((value, i) => Number.isInteger(value) && (i % 4 < 3 || (value >= 0 && value <= 2))) &&
     modules.length % 4 === 0 &&
+    (laterSteps === undefined || Number.isInteger(laterSteps)) &&
     (lattice === undefined || latticeOf(lattice) !== undefined) &&
     (surroundings === undefined || (typeof surroundings === 'object' && surroundings !== null))
   );

@@ -36,6 +36,12 @@ export interface OwnModule {
   kind?: string;
 }
 
+/** A step of a sequence; only what the page itself writes is named. */
+export interface StepEntry {
+  attach?: readonly Cell[];
+  detach?: readonly Cell[];
+}
+
 export interface Surroundings {
   lattice?: LatticeName;
   /** Null: there is no floor. */
@@ -46,6 +52,7 @@ export interface Surroundings {
   loads?: readonly Load[];
   /** Only modules that have something of their own. */
   modules?: readonly OwnModule[];
+  steps?: readonly StepEntry[];
 }
 
 export const NO_SURROUNDINGS: Surroundings = {};

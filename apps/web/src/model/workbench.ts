@@ -27,6 +27,8 @@ export class Workbench {
   burden: Burden = { force: [0, 0, -2], torque: [0, 0, 0] };
   /** Where the keyboard is. */
   cursor?: Cell;
+  /** Why nothing can be built now; '' if it can. */
+  closed = '';
   /** Called after every change of the robot. */
   readonly robotListeners: ((what: Change) => void)[] = [];
   /** Called after every choice of a tool, or of what it attaches. */
@@ -86,6 +88,10 @@ export class Workbench {
 
   /** Uses the tool on cells. */
   use(cells: readonly Cell[]): void {
+    if (this.closed !== '') {
+      this.refuse(this.closed);
+      return;
+    }
     const role = ROLE_NAMES[this.role];
     if (this.tool === 'add') {
       const free = cells.filter((cell) => !this.robot.has(cell) && !this.robot.obstacles.has(cell));
@@ -103,6 +109,10 @@ export class Workbench {
 
   /** Modules and obstacles. */
   remove(cells: readonly Cell[]): void {
+    if (this.closed !== '') {
+      this.refuse(this.closed);
+      return;
+    }
     const { surroundings, obstacles } = this.robot;
     const blocked = cells.filter((cell) => obstacles.has(cell));
     const left = blocked.reduce((list: readonly Obstacle[], cell) => withoutObstacle(list, cell), obstacles.obstacles);

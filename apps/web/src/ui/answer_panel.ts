@@ -97,7 +97,10 @@ function figures(robot: EditedRobot, finding: Finding | undefined, answer: Answe
   }
   list.push(['Modules', countText(robot)]);
   if (answer?.has_loads) {
-    list.push(['Contact', answer.contact_model], ['Solved in', formatTime(answer.seconds)]);
+    list.push(['Contact', answer.contact_model]);
+  }
+  if (answer?.has_loads && answer.seconds > 0) {
+    list.push(['Solved in', formatTime(answer.seconds)]);
   }
   return list;
 }

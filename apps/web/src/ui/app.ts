@@ -3,6 +3,7 @@
 import { Judge, type Finding } from '../core/judge';
 import { MOTION_FIELDS } from '../core/types';
 import { equal, type Cell } from '../model/cell';
+import type { EditedRobot } from '../model/edited_robot';
 import type { Change } from '../model/history';
 import type { Workbench } from '../model/workbench';
 import type { ScaleName } from '../view/colours';
@@ -30,12 +31,20 @@ function coveredByTools(): number {
   return getComputedStyle(tools).position === 'absolute' ? tools.offsetHeight : 0;
 }
 
+/** What is shown in place of the robot that is built: a moment of a sequence. */
+export interface Exhibit {
+  robot: EditedRobot;
+  finding: Finding;
+}
+
 /** The picture of what is on the workbench, and the answer to it. */
 export class App {
   readonly stage = new Stage(byId<HTMLCanvasElement>('canvas'), coveredByTools);
   readonly view = new RobotView(this.stage);
   readonly whereNext: WhereNext;
+  /** Of the robot that is built. */
   finding?: Finding;
+  private exhibit?: Exhibit;
   private readonly ground = new Ground();
   private readonly obstacles = new ObstacleView();
   private readonly facets = new FacetView();
@@ -53,9 +62,31 @@ export class App {
     this.stage.robot.add(this.loads.group);
     this.stage.scene.add(this.ground.group, this.obstacles.group, this.facets.mesh);
     this.stage.followers.push(() =>
-      placeLabels(this.stage, this.view, bench.robot, this.toppling.isRunning ? undefined : this.finding),
+      placeLabels(this.stage, this.view, this.robot, this.toppling.isRunning ? undefined : this.shown),
     );
     followTheme(() => this.setTheme());
+  }
+
+  /** The robot in the picture. */
+  get robot(): EditedRobot {
+    return this.exhibit?.robot ?? this.bench.robot;
+  }
+
+  get isExhibiting(): boolean {
+    return this.exhibit !== undefined;
+  }
+
+  /** Shows something else than what is built, until that changes; undefined: what is built. */
+  setExhibit(exhibit: Exhibit | undefined): void {
+    if (exhibit || this.exhibit) {
+      this.toppling.stop();
+      this.exhibit = exhibit;
+      this.view.point([]);
+      this.whereNext.preview([]);
+      byId('topple').hidden = exhibit !== undefined || !this.canTopple;
+      this.showRobot();
+      this.showPointed();
+    }
   }
 
   setScale(scale: ScaleName): void {
@@ -71,7 +102,7 @@ export class App {
   }
 
   see(keepsSide = false): void {
-    const { low, high } = this.bench.robot.bounds() ?? { low: [-2, -2, 0], high: [2, 2, 1] };
+    const { low, high } = this.robot.bounds() ?? { low: [-2, -2, 0], high: [2, 2, 1] };
     this.stage.fit(low, high, keepsSide);
   }
 
@@ -91,7 +122,7 @@ export class App {
     this.view.showCursor(cell);
     this.point(cell);
     if (cell) {
-      say(showDetails(this.bench.robot, this.finding, cell, undefined) + this.whereNext.trialText(cell));
+      say(showDetails(this.robot, this.shown, cell, undefined) + this.whereNext.trialText(cell));
     }
   }
 
@@ -109,7 +140,7 @@ export class App {
   }
 
   startTopple(): void {
-    if (this.finding?.answer) {
+    if (this.finding?.answer && !this.exhibit) {
       this.toppling.start(this.bench.robot, this.finding.answer);
     }
   }
@@ -123,6 +154,7 @@ export class App {
   private changed(what: Change): void {
     const { robot, history } = this.bench;
     this.toppling.stop();
+    this.exhibit = undefined;
     this.view.point([]);
     this.pointedCell = undefined;
     this.whereNext.reset();
@@ -162,16 +194,23 @@ export class App {
     const { wasUnstable } = this;
     const answer = this.finding?.answer;
     this.wasUnstable = answer?.verdict === 'unstable';
-    const canTopple = answer !== undefined && topples(answer);
-    byId('topple').hidden = !canTopple;
-    if (canTopple && !wasUnstable && !matchMedia('(prefers-reduced-motion: reduce)').matches) {
+    byId('topple').hidden = !this.canTopple || this.exhibit !== undefined;
+    if (this.canTopple && !wasUnstable && !matchMedia('(prefers-reduced-motion: reduce)').matches) {
       this.startTopple();
     }
   }
 
+  /** Of the robot in the picture. */
+  private get shown(): Finding | undefined {
+    return this.exhibit ? this.exhibit.finding : this.finding;
+  }
+
+  private get canTopple(): boolean {
+    return this.finding?.answer !== undefined && topples(this.finding.answer);
+  }
+
   private showRobot(): void {
-    const { finding } = this;
-    const { robot } = this.bench;
+    const { robot, shown: finding } = this;
     const judged = finding?.answer && { answer: finding.answer, slots: finding.slots };
     this.view.show(robot, judged);
     showFinding(robot, finding);
@@ -187,18 +226,19 @@ export class App {
     this.loads.show(robot);
     this.facets.show(robot, judged);
     showFacetLegend(robot, finding);
-    this.whereNext.paint();
+    if (!this.exhibit) {
+      this.whereNext.paint();
+    }
     this.stage.draw();
   }
 
   private showPointed(): void {
-    const { view, pointedCell, pointedSide } = this;
-    const { robot } = this.bench;
+    const { view, robot, pointedCell, pointedSide } = this;
     const slot = pointedCell && robot.slot(pointedCell);
     const isSeam = slot !== undefined && pointedSide !== undefined;
     const other = isSeam ? robot.slot(robot.lattice.neighbour(pointedCell!, pointedSide)) : undefined;
     view.point([slot, other].filter((one) => one !== undefined));
-    showDetails(robot, this.finding, pointedCell, pointedSide);
+    showDetails(robot, this.shown, pointedCell, pointedSide);
   }
 
   /** Draws the largest displacement as DRAWN_CELLS_MAX. */

@@ -26,6 +26,7 @@ export function robotOf(opened: OpenedDocument, text: string, fallbackName: stri
   robot.material = opened.material;
   robot.surroundings = withoutHead(surroundings);
   robot.base = text;
+  robot.laterSteps = opened.later_steps;
   return robot;
 }
 
@@ -45,10 +46,7 @@ export async function openText(
     const opened = await client.open(bytes).finally(() => clearTimeout(late));
     const robot = robotOf(opened, new TextDecoder().decode(bytes), name);
     bench.history.replace(`opening ${robot.name || 'a structure'}`, robot);
-    const notes = [...opened.warnings];
-    if (opened.later_steps > 0) {
-      notes.push(`${opened.later_steps} later steps are kept, not shown`);
-    }
+    const notes = opened.warnings;
     if (notes.length > 0) {
       tell(`${origin}: ${notes.slice(0, 3).join('; ')}${notes.length > 3 ? '; …' : ''}`);
     }
@@ -113,7 +111,7 @@ export function listenToFiles(bench: Workbench): void {
 
 function write(bench: Workbench, output: Output): Promise<string> {
   const { robot } = bench;
-  return client.write(robot.toData().data, output, robot.name, robot.base);
+  return client.write(robot.toData(true).data, output, robot.name, robot.base);
 }
 
 const fileName = (bench: Workbench) => bench.robot.name.replace(/[^\w.-]+/g, '_') || 'structure';
@@ -168,7 +166,7 @@ async function copyLink(bench: Workbench): Promise<void> {
 /** A report of a structure file, by the same calls as everything on the page. */
 export async function reportOf(source: string, name: string, output = Output.kReportJson): Promise<string> {
   const robot = robotOf(await client.open(new TextEncoder().encode(source)), source, name);
-  return client.write(robot.toData().data, output, robot.name, source);
+  return client.write(robot.toData(true).data, output, robot.name, source);
 }
 
 async function showReport(bench: Workbench): Promise<void> {

@@ -20,6 +20,7 @@ export const KEYS: readonly [keys: string, text: string][] = [
   ['H', 'see all'],
   ['T', 'let it topple, if it does'],
   ['K  ,  .', 'the robot’s own computation: play or pause, step back, step on'],
+  ['S  U  R', 'steps: play or pause, to the first unsafe stage, record'],
   ['Esc', 'put the cursor away'],
   ['?', 'this page'],
 ];

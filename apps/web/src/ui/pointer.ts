@@ -44,8 +44,8 @@ export function listenToPointer(app: App): void {
         app.whereNext.preview([]);
         return;
       }
-      const hit = pick(app.bench.robot, app.stage.ray(event.clientX, event.clientY));
-      const isOnRobot = hit !== undefined && hit.what !== 'ground' && app.bench.tool !== 'look' && !isBent(app);
+      const hit = pick(app.robot, app.stage.ray(event.clientX, event.clientY));
+      const isOnRobot = hit !== undefined && hit.what !== 'ground' && app.bench.tool !== 'look' && !app.isExhibiting && !isBent(app);
       const turns = event.altKey || event.ctrlKey || event.metaKey || event.shiftKey;
       gesture = { hit, x: event.clientX, y: event.clientY, draws: false, isClick: true, cells: [], timer: 0 };
       if (isOnRobot && !turns) {
@@ -96,7 +96,7 @@ export function listenToPointer(app: App): void {
       app.whereNext.preview([]);
     }
     if (event.pointerType === 'touch' && ended?.isClick) {
-      app.point(ended.hit?.what === 'ground' ? undefined : ended.hit?.cell, ended.hit && nearSeam(app.bench.robot, ended.hit));
+      app.point(ended.hit?.what === 'ground' ? undefined : ended.hit?.cell, ended.hit && nearSeam(app.robot, ended.hit));
     }
   });
 
@@ -121,11 +121,11 @@ export function listenToPointer(app: App): void {
 const isBent = (app: App) => app.view.exaggeration > 0;
 
 function hover(app: App, x: number, y: number): void {
-  const hit = pick(app.bench.robot, app.stage.ray(x, y));
+  const hit = pick(app.robot, app.stage.ray(x, y));
   const isModule = hit?.what === 'module';
   const isThere = hit !== undefined && hit.what !== 'ground';
-  app.point(isThere ? hit.cell : undefined, isModule ? nearSeam(app.bench.robot, hit) : undefined);
-  app.stage.canvas.style.cursor = isThere && app.bench.tool !== 'look' ? 'pointer' : 'grab';
+  app.point(isThere ? hit.cell : undefined, isModule ? nearSeam(app.robot, hit) : undefined);
+  app.stage.canvas.style.cursor = isThere && app.bench.tool !== 'look' && !app.isExhibiting ? 'pointer' : 'grab';
   preview(app, isBent(app) ? [] : cellsOf(app, hit));
 }
 
@@ -138,7 +138,7 @@ function preview(app: App, cells: readonly Cell[]): void {
 /** What a click there would change. */
 function cellsOf(app: App, hit: Hit | undefined): Cell[] {
   const { robot, tool } = app.bench;
-  if (!hit || tool === 'look') {
+  if (!hit || tool === 'look' || app.isExhibiting) {
     return [];
   }
   if (tool !== 'add' && tool !== 'obstacle') {

@@ -1,0 +1,397 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+import { CoreClient, Cancelled } from '../core/client';
+import type { Finding } from '../core/judge';
+import type { Answer, JudgedSteps, StageLoads, StageReport } from '../core/types';
+import { Role, cellText, equal, type Cell } from '../model/cell';
+import type { EditedRobot } from '../model/edited_robot';
+import { Recorder } from '../model/recorder';
+import { STAGES, Sequence } from '../model/sequence';
+import type { App } from './app';
+import { formatRatio } from './answer_panel';
+import { drawBands } from './bands';
+import { byId, icon, say, tell, type IconName } from './dom';
+import { take } from './files';
+
+/** Steps in time: judges every stage of a robot's sequence, plays it, records another. */
+
+/** A stage is shown for so long, and less if there are many. */
+const STAGE_MS = 550;
+const WHOLE_MS = 60_000;
+/** A changed robot is judged anew when nothing has changed for so long. */
+const DELAY_MS = 300;
+
+const NO_SLOTS = new Int32Array(0);
+
+export class Timeline {
+  private readonly client = new CoreClient();
+  private judged?: JudgedSteps;
+  private sequence?: Sequence;
+  private recorder?: Recorder;
+  /** Which stage of which step is shown: three for each step; undefined: what is built. */
+  private at?: number;
+  private loads?: StageLoads;
+  private isPlaying = false;
+  /** When the stage that is played has begun. */
+  private begun = 0;
+  private timer = 0;
+
+  constructor(private readonly app: App) {
+    app.bench.robotListeners.push(() => this.changed());
+    app.stage.motions.push((now) => this.animate(now));
+    this.button('stage-back', 'stepBack', () => this.step(-1));
+    this.button('stages-play', 'play', () => this.toggle());
+    this.button('stage-on', 'stepOn', () => this.step(1));
+    byId('first-unsafe').onclick = () => this.toFirstUnsafe();
+    byId('record').onclick = () => this.record();
+    byId('build-on').onclick = () => this.buildOn();
+    byId('judge-steps').onclick = () => void this.judge();
+    byId('sequence-stop').onclick = () => this.client.cancel();
+    byId('save-steps').onclick = () => void take(app.bench, app.stage, 'json');
+    byId<HTMLInputElement>('stage-slider').oninput = (event) => {
+      this.pause();
+      this.show(Number((event.target as HTMLInputElement).value));
+    };
+    byId('bands').onclick = (event) => this.pointAt(event);
+    matchMedia('(prefers-color-scheme: dark)').addEventListener('change', () => this.drawBands());
+    byId('scale').addEventListener('change', () => this.drawBands());
+  }
+
+  toggle(): void {
+    if (this.isPlaying) {
+      this.pause();
+    } else if (this.sequence) {
+      const isAtEnd = this.at === undefined || this.at === this.stageCount - 1;
+      this.isPlaying = true;
+      this.showPlaying();
+      this.show(isAtEnd ? 0 : this.at!);
+      this.app.stage.draw();
+    }
+  }
+
+  toFirstUnsafe(): void {
+    const first = this.judged?.report.first_unsafe;
+    if (first) {
+      this.pause();
+      this.show(STAGES.length * first.step + STAGES.indexOf(first.stage));
+      say(byId('stage-text').textContent ?? '');
+    }
+  }
+
+  /** Begins to record, or ends it: the robot is then as it was at first, with the steps. */
+  record(): void {
+    const { bench } = this.app;
+    if (!this.recorder) {
+      this.buildOn();
+      this.recorder = new Recorder(bench.robot);
+      this.changed();
+      return;
+    }
+    const { recorder } = this;
+    this.recorder = undefined;
+    if (recorder.steps.length > 0) {
+      const count = recorder.steps.length;
+      bench.history.replace(`recording ${count} ${count === 1 ? 'step' : 'steps'}`, recorder.result(bench.robot));
+    }
+    this.showRecording();
+    this.changed();
+  }
+
+  /** The robot that is built is in the picture again. */
+  private buildOn(): void {
+    this.pause();
+    this.at = undefined;
+    this.app.bench.closed = '';
+    this.app.setExhibit(undefined);
+    this.showPlace();
+  }
+
+  private get stageCount(): number {
+    return STAGES.length * (this.sequence?.stepCount ?? 0);
+  }
+
+  /** The robot is another one: what was judged is not its own any more. */
+  private changed(): void {
+    const { robot } = this.app.bench;
+    this.recorder?.follow(robot);
+    if (this.recorder && this.recorder.start.lattice !== robot.lattice) {
+      this.recorder = undefined;
+    }
+    this.showRecording();
+    this.forget();
+    clearTimeout(this.timer);
+    const hasSteps = (robot.surroundings.steps?.length ?? 0) + robot.laterSteps > 0;
+    byId('save-steps').hidden = !hasSteps || this.recorder !== undefined;
+    byId('judge-steps').hidden = hasSteps || this.recorder !== undefined || !hasPlanned(robot);
+    if (hasSteps && !this.recorder) {
+      this.timer = window.setTimeout(() => void this.judge(), DELAY_MS);
+    }
+  }
+
+  private forget(): void {
+    this.client.cancel();
+    this.pause();
+    this.judged = this.sequence = this.at = this.loads = undefined;
+    this.app.bench.closed = '';
+    byId('sequence').hidden = true;
+    byId('build-on').hidden = true;
+    byId('sequence-progress').hidden = true;
+    byId('sequence-text').textContent = this.recorder ? recordingText(this.recorder) : '';
+  }
+
+  private async judge(): Promise<void> {
+    const { robot } = this.app.bench;
+    const text = byId('sequence-text');
+    byId('judge-steps').hidden = true;
+    byId('sequence-progress').hidden = false;
+    text.textContent = 'Judging every stage …';
+    try {
+      const judged = await this.client.judgeSteps(robot.toData(true).data, robot.name, robot.base);
+      if (this.app.bench.robot === robot) {
+        this.open(robot, judged);
+      }
+    } catch (error) {
+      const reason = error instanceof Error ? error.message : String(error);
+      text.textContent = error instanceof Cancelled ? 'Stopped: the steps are not judged.' : reason;
+      byId('judge-steps').hidden = false;
+    }
+    byId('sequence-progress').hidden = true;
+  }
+
+  private open(robot: EditedRobot, judged: JudgedSteps): void {
+    this.judged = judged;
+    this.sequence = new Sequence(robot, judged.transitions);
+    byId('sequence').hidden = this.stageCount === 0;
+    byId<HTMLInputElement>('stage-slider').max = String(this.stageCount - 1);
+    byId('first-unsafe').hidden = judged.report.first_unsafe === null;
+    byId('sequence-text').textContent = summary(judged);
+    this.showPlace();
+    say(summary(judged));
+  }
+
+  private step(by: 1 | -1): void {
+    this.pause();
+    const next = this.at === undefined ? (by > 0 ? 0 : this.stageCount - 1) : this.at + by;
+    this.show(Math.min(Math.max(next, 0), this.stageCount - 1));
+    say(byId('stage-text').textContent ?? '');
+  }
+
+  /** A click on the bands. */
+  private pointAt({ offsetX, offsetY }: MouseEvent): void {
+    const { clientWidth, clientHeight } = byId('bands');
+    const part = (share: number, count: number) => Math.min(Math.max(Math.floor(share * count), 0), count - 1);
+    const step = part(offsetX / clientWidth, this.sequence?.stepCount ?? 1);
+    this.pause();
+    this.show(STAGES.length * step + part(offsetY / clientHeight, STAGES.length));
+  }
+
+  /** A stage, at the waypoint where it is at its worst. */
+  private show(at: number): void {
+    const { sequence, judged } = this;
+    if (!sequence || !judged) {
+      return;
+    }
+    this.at = at;
+    this.begun = performance.now();
+    this.loads = undefined;
+    this.app.bench.closed = 'a stage of the steps is shown: “Back to building” ends that';
+    this.exhibit(this.isMoving ? 0 : (this.report!.waypoint ?? 0));
+    this.showPlace();
+    void this.findLoads(at);
+  }
+
+  private get stage(): number {
+    return this.at! % STAGES.length;
+  }
+
+  private get stepIndex(): number {
+    return Math.floor(this.at! / STAGES.length);
+  }
+
+  /** Of the stage that is shown. */
+  private get report(): StageReport | undefined {
+    return this.at === undefined ? undefined : this.judged?.report.steps[this.stepIndex].stages[STAGES[this.stage]];
+  }
+
+  /** Modules are seen on their way, unless the user wants no motion. */
+  private get isMoving(): boolean {
+    const isShift = this.isPlaying && STAGES[this.stage] === 'shift';
+    return isShift && !matchMedia('(prefers-reduced-motion: reduce)').matches;
+  }
+
+  private exhibit(waypoint: number): void {
+    const robot = this.sequence!.robotAt(this.stepIndex, STAGES[this.stage], waypoint);
+    this.app.setExhibit({ robot, finding: findingOf(robot, this.report!, this.loads) });
+  }
+
+  /** Colours come when the core has found the loads; meanwhile modules are grey. */
+  private async findLoads(at: number): Promise<void> {
+    try {
+      const loads = await this.client.stage(this.stepIndex, this.stage, this.report?.waypoint ?? 0);
+      if (this.at === at) {
+        this.loads = loads;
+        this.exhibit(this.isMoving ? this.waypointNow(performance.now()) : (this.report!.waypoint ?? 0));
+      }
+    } catch (error) {
+      if (!(error instanceof Cancelled)) {
+        tell(error instanceof Error ? error.message : String(error), true);
+      }
+    }
+  }
+
+  private get stageMs(): number {
+    return Math.min(STAGE_MS, WHOLE_MS / this.stageCount);
+  }
+
+  private waypointNow(now: number): number {
+    const last = Math.max(this.sequence!.waypointCount(this.stepIndex) - 1, 0);
+    return last * Math.min(Math.max((now - this.begun) / this.stageMs, 0), 1);
+  }
+
+  private animate(now: number): boolean {
+    if (!this.isPlaying || this.at === undefined) {
+      return false;
+    }
+    if (now - this.begun < this.stageMs) {
+      if (this.isMoving && this.sequence!.waypointCount(this.stepIndex) > 0) {
+        this.exhibit(this.waypointNow(now));
+      }
+    } else if (this.at + 1 < this.stageCount) {
+      this.show(this.at + 1);
+    } else {
+      this.pause();
+      say(byId('sequence-text').textContent ?? '');
+    }
+    return this.isPlaying;
+  }
+
+  private pause(): void {
+    const wasMoving = this.isPlaying && this.at !== undefined && this.isMoving;
+    this.isPlaying = false;
+    if (wasMoving) {
+      this.exhibit(this.report!.waypoint ?? 0);
+    }
+    this.showPlaying();
+  }
+
+  private showPlaying(): void {
+    const button = byId('stages-play');
+    button.replaceChildren(icon(this.isPlaying ? 'pause' : 'play'));
+    button.setAttribute('aria-label', this.isPlaying ? 'Pause the steps' : 'Play the steps');
+  }
+
+  /** Where in the sequence the picture is. */
+  private showPlace(): void {
+    byId('build-on').hidden = this.at === undefined;
+    byId<HTMLButtonElement>('stage-back').disabled = this.at === 0;
+    byId<HTMLButtonElement>('stage-on').disabled = this.at === this.stageCount - 1;
+    const text = this.placeText();
+    byId('stage-text').textContent = text;
+    const slider = byId<HTMLInputElement>('stage-slider');
+    slider.value = String(this.at ?? 0);
+    slider.setAttribute('aria-valuetext', text);
+    this.drawBands();
+  }
+
+  private placeText(): string {
+    const { report, judged } = this;
+    if (!report || !judged) {
+      return 'The robot before the first step.';
+    }
+    const what = `Step ${this.stepIndex} (of 0 to ${judged.texts.length - 1}), ${STAGES[this.stage]}: ${report.verdict}`;
+    return `${what}. It does: ${judged.texts[this.stepIndex]}.`;
+  }
+
+  private drawBands(): void {
+    if (this.judged) {
+      const ink = getComputedStyle(document.body).color;
+      drawBands(byId<HTMLCanvasElement>('bands'), this.judged.report, this.at, this.app.view.scale, ink);
+    }
+  }
+
+  private showRecording(): void {
+    const { recorder } = this;
+    const button = byId('record');
+    button.setAttribute('aria-pressed', String(recorder !== undefined));
+    button.textContent = recorder ? 'End the recording' : 'Record steps';
+    if (recorder) {
+      byId('sequence-text').textContent = recordingText(recorder);
+    }
+  }
+
+  private button(id: string, name: IconName, action: () => void): void {
+    byId(id).append(icon(name));
+    byId(id).onclick = action;
+  }
+}
+
+const recordingText = ({ steps }: Recorder) =>
+  `Recording: ${steps.length} ${steps.length === 1 ? 'step' : 'steps'}. Every change of the modules is one.`;
+
+function hasPlanned(robot: EditedRobot): boolean {
+  return Array.from({ length: robot.count }, (_, slot) => robot.roleAt(slot)).includes(Role.kPlanned);
+}
+
+function summary({ report, texts }: JudgedSteps): string {
+  const isSafe = ({ stages }: (typeof report.steps)[number]) => STAGES.every((stage) => stages[stage].verdict === 'safe');
+  const safe = report.steps.filter(isSafe).length;
+  const ratio = report.load_ratio_max === null ? '' : `; largest load ${formatRatio(report.load_ratio_max)}`;
+  const margin = report.margin_min_mm === null ? '' : `; smallest margin ${report.margin_min_mm.toFixed(2)} mm`;
+  const first = report.first_unsafe ? `; first unsafe: step ${report.first_unsafe.step}, ${report.first_unsafe.stage}` : '';
+  return `${safe} of ${texts.length} steps safe in every stage${ratio}${margin}${first}.`;
+}
+
+/** What the panel shows of a stage: its verdict, and the loads as far as they are known. */
+function findingOf(robot: EditedRobot, report: StageReport, loads: StageLoads | undefined): Finding {
+  const cells = loads?.cells ?? NO_SLOTS;
+  const slots = Int32Array.from({ length: cells.length / 3 }, (_, i) => {
+    const cell: Cell = [cells[3 * i], cells[3 * i + 1], cells[3 * i + 2]];
+    const slot = robot.slot(cell);
+    if (slot === undefined) {
+      throw new Error(`the core has a module in ${cellText(cell)}, the page has none`);
+    }
+    return slot;
+  });
+  const answer: Answer = {
+    verdict: report.verdict,
+    reasons: report.reasons,
+    stability: loads?.stabilities[0] ?? unknownStability(report),
+    load_ratio_max: report.load_ratio_max,
+    worst: loads ? worstOf(robot, report, loads, slots) : null,
+    weight_factor: null,
+    contact_model: loads?.contact_model ?? '',
+    solves: 0,
+    facet_half_mm: 0,
+    has_loads: (loads?.loads.length ?? 0) > 0,
+    seconds: 0,
+    connections: loads?.connections ?? NO_SLOTS,
+    broken: loads?.broken ?? NO_SLOTS,
+    loads: loads?.loads ?? new Float64Array(0),
+    facets: NO_SLOTS,
+    limits: NO_SLOTS,
+    facetForces: new Float64Array(0),
+    displacements: new Float64Array(0),
+  };
+  return { answer, slots };
+}
+
+/** The connection that the report names; null if it is one to what moves. */
+function worstOf(robot: EditedRobot, { at }: StageReport, { connections }: StageLoads, slots: Int32Array): number | null {
+  for (let i = 0; at && 3 * i < connections.length; ++i) {
+    const [a, b] = [0, 1].map((end) => robot.cellAt(slots[connections[3 * i + end]]));
+    if ((equal(a, at[0]) && equal(b, at[1])) || (equal(a, at[1]) && equal(b, at[0]))) {
+      return i;
+    }
+  }
+  return null;
+}
+
+const unknownStability = ({ verdict, margin_mm }: StageReport): Answer['stability'] => ({
+  rule: 'polygon',
+  stable: verdict !== 'unstable',
+  margin_mm,
+  edge: null,
+  centre_of_mass: [0, 0, 0],
+  polygon: [],
+  rigid: { answer: 'undecided', friction_needed: null, tilt_margin_deg: null, motion: null },
+});
