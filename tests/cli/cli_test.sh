@@ -54,6 +54,18 @@ expect_exit 1 check "$safe" "$overload" "$unstable"
 expect_line out '^3 files: 1 safe, 1 overload, 1 unstable, 0 undecided, 0 not readable$'
 "$program" check - <"$safe" >out || fault "standard input is not read"
 
+# Where the next module may go: 0 if a place is safe, 1 if none is.
+expect_exit 0 next "$safe" --json next.json --svg next.svg --limit 3
+expect_line out '^arm_breaks_a: 11 modules, 37 places for the next: 36 safe'
+expect_line next.json '"candidates"'
+expect_line next.svg 'place for the next module'
+expect_exit 0 next "$safe" --json - --quiet
+expect_line out '"seconds"'
+expect_exit 0 generate arm 29 -o long.json
+expect_exit 1 next long.json --quiet
+expect_exit 64 next "$safe" --json same --svg same
+expect_exit 65 next missing.json
+
 # Proofs: arm_breaks_b carries 1.200397996 (tests/reference), arm_breaks_a 0.6402122645.
 checker=$(dirname "$program")/holdfast-checker
 expect_exit 0 check --prove "$safe"

@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "holdfast/distributed.hpp"
-#include "holdfast/plan/judgement.hpp"
+#include "holdfast/order.hpp"
 #include "holdfast/steps.hpp"
 #include "packet_log.hpp"
 #include "request.hpp"
@@ -391,6 +391,40 @@ Reply judge_steps_request(const Request& request) {
           .numbers = {}};
 }
 
+/// Where there is no order, help is sought for so long.
+constexpr double kHelpSeconds = 3;
+
+/// An order for the modules of the document, sought for options[0] seconds. Text: the outcome, the
+/// report in words, and the structure with the steps as a file, empty if none was found.
+Reply order_request(const Request& request) {
+  auto document = document_of(request);
+  if (!document) {
+    return failure(document.error());
+  }
+  document.value().extension.plan.clear();
+  const auto report =
+      seek_order(document.value(), {.seconds_max = static_cast<double>(request.header.options[0]),
+                                    .help_seconds_max = kHelpSeconds,
+                                    .thread_count = 1});
+  if (!report) {
+    return failure(report.error());
+  }
+  const plan::Order& order = report.value().result.order;
+  std::string structure;
+  if (order.outcome == plan::OrderOutcome::kFound) {
+    const auto steps = io::order_steps(report.value().target, order, false);
+    if (!steps) {
+      return failure(steps.error());
+    }
+    structure = io::write_json(steps.value());
+  }
+  return {.text = dump({{"outcome", io::name(order.outcome)},
+                        {"text", io::order_text(report.value())},
+                        {"structure", structure}}),
+          .integers = {},
+          .numbers = {}};
+}
+
 /// Adds the modules and loads of a piece to a stage_reply().
 void add_piece(const model::Robot& robot, const verdict::Assessment& assessment, Reply& cells,
                Reply& loads) {
@@ -541,6 +575,10 @@ HOLDFAST_EXPORT(holdfast_write)()->void {
 
 HOLDFAST_EXPORT(holdfast_judge_steps)()->void {
   web::reply = web::judge_steps_request(web::read_request(web::input));
+}
+
+HOLDFAST_EXPORT(holdfast_find_order)()->void {
+  web::reply = web::order_request(web::read_request(web::input));
 }
 
 HOLDFAST_EXPORT(holdfast_stage)()->void { web::reply = web::stage_reply(web::input); }

@@ -182,6 +182,46 @@ test('what is built is recorded, judged and saved as steps that the program acce
   assert.deepEqual(page.faults, []);
 });
 
+test('an order is found that the program finds too, and the robot grows by it', async () => {
+  const page = await openPage(browser);
+  const place = path.join(temporaryFolder(), 'order.json');
+  const target = path.join(repository, 'scenarios/plan/balance.json');
+  execFileSync(program, ['order', '--quiet', target, '--output', place]);
+  const expected = JSON.parse(readFileSync(place, 'utf8'));
+  await open(page, readFileSync(target, 'utf8'));
+  await page.click('#order');
+  await page.waitForFunction(() => globalThis.holdfast.timeline.judged);
+  const [modules, steps] = await page.evaluate(() => {
+    const { robot } = globalThis.holdfast.bench;
+    return [robot.count, robot.surroundings.steps];
+  });
+  assert.equal(modules, expected.modules.length);
+  assert.deepEqual(steps, expected.steps);
+  assert.equal(await page.evaluate(() => globalThis.holdfast.timeline.judged.report.verdict), 'safe');
+  await page.waitForFunction(() => !globalThis.holdfast.timeline.isPlaying);
+  assert.equal((await drawn(page)).length, expected.modules.length + expected.steps.length, 'it has grown to the end');
+  assert.deepEqual(page.faults, []);
+});
+
+test('where there is no order, that is said', async () => {
+  const page = await openPage(browser);
+  await open(page, readFileSync(path.join(repository, 'scenarios/plan/pair.json'), 'utf8'));
+  const before = await count(page);
+  await page.click('#order');
+  await page.waitForFunction(() => /none|no order/i.test(document.getElementById('sequence-text').textContent));
+  assert.equal(await count(page), before);
+  assert.deepEqual(page.faults, []);
+});
+
+test('holdfast view opens the page with the sequence', async () => {
+  const out = path.join(temporaryFolder(), 'view.html');
+  execFileSync(program, ['view', path.join(repository, 'scenarios/plan/walk_over_beam.json'), '--no-open', '--out', out]);
+  const page = await openPage(browser, { file: out });
+  await page.waitForFunction(() => globalThis.holdfast.timeline.judged);
+  assert.match(await page.textContent('#sequence-text'), /6 of 6 steps safe in every stage; largest load 0.750; smallest margin 12.00 mm/);
+  assert.deepEqual(page.faults, []);
+});
+
 test('a step that cannot be done is named, with its stage', async () => {
   const page = await openPage(browser);
   await open(page, file('bad', { modules: [[0, 0, 0]], steps: [{ attach: [[0, 0, 1]] }, { detach: [[5, 5, 5]] }] }));

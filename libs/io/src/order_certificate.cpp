@@ -236,6 +236,12 @@ std::optional<base::Error> find_untold(const model::RobotSpec& spec,
 }  // namespace
 
 base::Result<model::RobotSpec> order_target(const Document& document) {
+  if (!document.extension.plan.empty() || document.steps.size() > 1) {
+    return base::Error{base::ErrorCode::kBadInput,
+                       "the target has steps of its own: an order is sought for modules that exist "
+                       "or are planned at once, without \"steps\" and \"later_steps\"",
+                       document.extension.plan.empty() ? "/later_steps" : "/steps"};
+  }
   auto spec = make_spec(document);
   if (spec) {
     model::RobotSpec target = std::move(spec).value();

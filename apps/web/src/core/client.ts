@@ -6,6 +6,7 @@ import type { RobotData } from '../model/edited_robot';
 import {
   CoreError,
   type Answer,
+  type FoundOrder,
   type JudgedSteps,
   type LimitLoad,
   type OpenedDocument,
@@ -67,6 +68,10 @@ export class CoreClient {
 
   judgeSteps(robot: RobotData, name: string, base: string): Promise<JudgedSteps> {
     return this.call('judgeSteps', [robot, name, base]);
+  }
+
+  findOrder(robot: RobotData, seconds: number, name: string, base: string): Promise<FoundOrder> {
+    return this.call('findOrder', [robot, seconds, name, base]);
   }
 
   /** Of the steps that this core has judged last. */

@@ -147,6 +147,13 @@ export interface StepsReport {
   seconds: number;
 }
 
+/** What came of a search for an order; `structure` is a file, '' unless one was found. */
+export interface FoundOrder {
+  outcome: 'found' | 'none' | 'not-found';
+  text: string;
+  structure: string;
+}
+
 export interface JudgedSteps {
   report: StepsReport;
   /** What each step does. */

@@ -9,6 +9,7 @@ import {
   LOAD_FIELDS,
   type Answer,
   type Failure,
+  type FoundOrder,
   type JudgedSteps,
   type LimitLoad,
   type OpenedDocument,
@@ -44,6 +45,7 @@ interface Exports {
   holdfast_write(): void;
   holdfast_simulate(): void;
   holdfast_judge_steps(): void;
+  holdfast_find_order(): void;
   holdfast_stage(): void;
   holdfast_text(): number;
   holdfast_text_size(): number;
@@ -60,7 +62,8 @@ interface Reply {
 }
 
 type Call =
-  'vocabulary' | 'open' | 'check' | 'limit' | 'try_places' | 'write' | 'simulate' | 'judge_steps' | 'stage';
+  | 'vocabulary' | 'open' | 'check' | 'limit' | 'try_places' | 'write' | 'simulate' | 'judge_steps' | 'find_order'
+  | 'stage';
 
 export class Core {
   private constructor(private readonly exports: Exports) {}
@@ -167,6 +170,11 @@ export class Core {
   judgeSteps(robot: RobotData, name: string, base: string): JudgedSteps {
     const { text, integers } = this.call('judge_steps', documentRequest(robot, 0, name, base));
     return { ...(JSON.parse(text) as Pick<JudgedSteps, 'report' | 'texts'>), transitions: integers };
+  }
+
+  /** In which order can the modules be attached, so that it is safe all the way? Throws CoreError. */
+  findOrder(robot: RobotData, seconds: number, name: string, base: string): FoundOrder {
+    return JSON.parse(this.call('find_order', documentRequest(robot, seconds, name, base)).text) as FoundOrder;
   }
 
   /** The loads in a stage of the steps that were judged last. */

@@ -89,6 +89,15 @@ export class App {
     }
   }
 
+  /** Another moment of what is shown, its modules in the same slots: only the picture changes. */
+  moveExhibit(robot: EditedRobot): void {
+    if (this.exhibit) {
+      const { finding } = this.exhibit;
+      this.exhibit = { robot, finding };
+      this.view.show(robot, finding.answer && { answer: finding.answer, slots: finding.slots });
+    }
+  }
+
   setScale(scale: ScaleName): void {
     this.view.scale = scale;
     showLegend(scale);

@@ -1,17 +1,17 @@
 // SPDX-FileCopyrightText: The holdfast authors
 // SPDX-License-Identifier: Apache-2.0
 import { CoreClient, Cancelled } from '../core/client';
-import type { Finding } from '../core/judge';
-import type { Answer, JudgedSteps, StageLoads, StageReport } from '../core/types';
-import { Role, cellText, equal, type Cell } from '../model/cell';
+import type { JudgedSteps, StageLoads, StageReport } from '../core/types';
+import { Role } from '../model/cell';
 import type { EditedRobot } from '../model/edited_robot';
 import { Recorder } from '../model/recorder';
-import { STAGES, Sequence } from '../model/sequence';
+import { STAGES, Sequence, type StageRobot } from '../model/sequence';
 import type { App } from './app';
 import { formatRatio } from './answer_panel';
 import { drawBands } from './bands';
 import { byId, icon, say, tell, type IconName } from './dom';
-import { take } from './files';
+import { openText, take } from './files';
+import { findingOf } from './stage_finding';
 
 /** Steps in time: judges every stage of a robot's sequence, plays it, records another. */
 
@@ -21,7 +21,8 @@ const WHOLE_MS = 60_000;
 /** A changed robot is judged anew when nothing has changed for so long. */
 const DELAY_MS = 300;
 
-const NO_SLOTS = new Int32Array(0);
+/** An order is sought for so long. */
+const ORDER_SECONDS = 10;
 
 export class Timeline {
   private readonly client = new CoreClient();
@@ -35,6 +36,10 @@ export class Timeline {
   /** When the stage that is played has begun. */
   private begun = 0;
   private timer = 0;
+  /** What was asked for is played as soon as it is judged. */
+  private isToPlay = false;
+  /** Of what the core was asked; only the last question's answer is wanted. */
+  private question = 0;
 
   constructor(private readonly app: App) {
     app.bench.robotListeners.push(() => this.changed());
@@ -45,6 +50,7 @@ export class Timeline {
     byId('first-unsafe').onclick = () => this.toFirstUnsafe();
     byId('record').onclick = () => this.record();
     byId('build-on').onclick = () => this.buildOn();
+    byId('order').onclick = () => void this.findOrder();
     byId('judge-steps').onclick = () => void this.judge();
     byId('sequence-stop').onclick = () => this.client.cancel();
     byId('save-steps').onclick = () => void take(app.bench, app.stage, 'json');
@@ -120,7 +126,8 @@ export class Timeline {
     this.showRecording();
     this.forget();
     clearTimeout(this.timer);
-    const hasSteps = (robot.surroundings.steps?.length ?? 0) + robot.laterSteps > 0;
+    const { hasSteps } = this;
+    byId('order').hidden = robot.count === 0 || this.recorder !== undefined;
     byId('save-steps').hidden = !hasSteps || this.recorder !== undefined;
     byId('judge-steps').hidden = hasSteps || this.recorder !== undefined || !hasPlanned(robot);
     if (hasSteps && !this.recorder) {
@@ -128,9 +135,17 @@ export class Timeline {
     }
   }
 
+  private get hasSteps(): boolean {
+    const { surroundings, laterSteps } = this.app.bench.robot;
+    return (surroundings.steps?.length ?? 0) + laterSteps > 0;
+  }
+
   private forget(): void {
+    ++this.question;
     this.client.cancel();
     this.pause();
+    this.isToPlay = false;
+    byId<HTMLButtonElement>('order').disabled = false;
     this.judged = this.sequence = this.at = this.loads = undefined;
     this.app.bench.closed = '';
     byId('sequence').hidden = true;
@@ -141,21 +156,13 @@ export class Timeline {
 
   private async judge(): Promise<void> {
     const { robot } = this.app.bench;
-    const text = byId('sequence-text');
     byId('judge-steps').hidden = true;
-    byId('sequence-progress').hidden = false;
-    text.textContent = 'Judging every stage …';
-    try {
-      const judged = await this.client.judgeSteps(robot.toData(true).data, robot.name, robot.base);
-      if (this.app.bench.robot === robot) {
-        this.open(robot, judged);
-      }
-    } catch (error) {
-      const reason = error instanceof Error ? error.message : String(error);
-      text.textContent = error instanceof Cancelled ? 'Stopped: the steps are not judged.' : reason;
-      byId('judge-steps').hidden = false;
+    const judged = await this.wait('Judging every stage …', () =>
+      this.client.judgeSteps(robot.toData(true).data, robot.name, robot.base),
+    );
+    if (judged) {
+      this.open(robot, judged);
     }
-    byId('sequence-progress').hidden = true;
   }
 
   private open(robot: EditedRobot, judged: JudgedSteps): void {
@@ -167,6 +174,53 @@ export class Timeline {
     byId('sequence-text').textContent = summary(judged);
     this.showPlace();
     say(summary(judged));
+    if (this.isToPlay) {
+      this.isToPlay = false;
+      this.toggle();
+    }
+  }
+
+  /** Seeks an order for the modules that are there, and shows the robot grow by it. */
+  private async findOrder(): Promise<void> {
+    const { bench } = this.app;
+    const { robot } = bench;
+    this.buildOn();
+    this.forget();
+    const found = await this.wait(`Seeking an order, for ${ORDER_SECONDS} s at most …`, () =>
+      this.client.findOrder(robot.toData(true).data, ORDER_SECONDS, robot.name, robot.base),
+    );
+    if (found?.structure) {
+      this.isToPlay = await openText(bench, new TextEncoder().encode(found.structure), robot.name);
+    } else if (found) {
+      byId('sequence-text').textContent = found.text;
+      say(found.text);
+    }
+  }
+
+  /** Says that the core is busy, and in the end why it has no answer. */
+  private async wait<Value>(doing: string, ask: () => Promise<Value>): Promise<Value | undefined> {
+    const question = ++this.question;
+    let text = doing;
+    let answer: Value | undefined;
+    const show = (isBusy: boolean) => {
+      byId('sequence-progress').hidden = !isBusy;
+      byId<HTMLButtonElement>('order').disabled = isBusy;
+      byId('sequence-text').textContent = text;
+    };
+    show(true);
+    try {
+      answer = await ask();
+      text = '';
+    } catch (error) {
+      const reason = error instanceof Error ? error.message : String(error);
+      text = error instanceof Cancelled ? 'Stopped.' : reason;
+    }
+    if (question !== this.question) {
+      return undefined;
+    }
+    show(false);
+    byId('judge-steps').hidden = answer !== undefined || !(this.hasSteps || hasPlanned(this.app.bench.robot));
+    return answer;
   }
 
   private step(by: 1 | -1): void {
@@ -197,7 +251,10 @@ export class Timeline {
     this.app.bench.closed = 'a stage of the steps is shown: “Back to building” ends that';
     this.exhibit(this.isMoving ? 0 : (this.report!.waypoint ?? 0));
     this.showPlace();
-    void this.findLoads(at);
+    // A core that is behind is asked again where the playing ends.
+    if (!this.isPlaying || !this.client.isBusy) {
+      void this.findLoads(at);
+    }
   }
 
   private get stage(): number {
@@ -219,8 +276,12 @@ export class Timeline {
     return isShift && !matchMedia('(prefers-reduced-motion: reduce)').matches;
   }
 
+  private robotAt(waypoint: number): StageRobot {
+    return this.sequence!.robotAt(this.stepIndex, STAGES[this.stage], waypoint);
+  }
+
   private exhibit(waypoint: number): void {
-    const robot = this.sequence!.robotAt(this.stepIndex, STAGES[this.stage], waypoint);
+    const robot = this.robotAt(waypoint);
     this.app.setExhibit({ robot, finding: findingOf(robot, this.report!, this.loads) });
   }
 
@@ -254,7 +315,7 @@ export class Timeline {
     }
     if (now - this.begun < this.stageMs) {
       if (this.isMoving && this.sequence!.waypointCount(this.stepIndex) > 0) {
-        this.exhibit(this.waypointNow(now));
+        this.app.moveExhibit(this.robotAt(this.waypointNow(now)));
       }
     } else if (this.at + 1 < this.stageCount) {
       this.show(this.at + 1);
@@ -266,10 +327,14 @@ export class Timeline {
   }
 
   private pause(): void {
-    const wasMoving = this.isPlaying && this.at !== undefined && this.isMoving;
+    const wasPlaying = this.isPlaying;
+    const wasMoving = wasPlaying && this.at !== undefined && this.isMoving;
     this.isPlaying = false;
     if (wasMoving) {
       this.exhibit(this.report!.waypoint ?? 0);
+    }
+    if (wasPlaying && this.at !== undefined && !this.loads) {
+      void this.findLoads(this.at);
     }
     this.showPlaying();
   }
@@ -340,58 +405,3 @@ function summary({ report, texts }: JudgedSteps): string {
   const first = report.first_unsafe ? `; first unsafe: step ${report.first_unsafe.step}, ${report.first_unsafe.stage}` : '';
   return `${safe} of ${texts.length} steps safe in every stage${ratio}${margin}${first}.`;
 }
-
-/** What the panel shows of a stage: its verdict, and the loads as far as they are known. */
-function findingOf(robot: EditedRobot, report: StageReport, loads: StageLoads | undefined): Finding {
-  const cells = loads?.cells ?? NO_SLOTS;
-  const slots = Int32Array.from({ length: cells.length / 3 }, (_, i) => {
-    const cell: Cell = [cells[3 * i], cells[3 * i + 1], cells[3 * i + 2]];
-    const slot = robot.slot(cell);
-    if (slot === undefined) {
-      throw new Error(`the core has a module in ${cellText(cell)}, the page has none`);
-    }
-    return slot;
-  });
-  const answer: Answer = {
-    verdict: report.verdict,
-    reasons: report.reasons,
-    stability: loads?.stabilities[0] ?? unknownStability(report),
-    load_ratio_max: report.load_ratio_max,
-    worst: loads ? worstOf(robot, report, loads, slots) : null,
-    weight_factor: null,
-    contact_model: loads?.contact_model ?? '',
-    solves: 0,
-    facet_half_mm: 0,
-    has_loads: (loads?.loads.length ?? 0) > 0,
-    seconds: 0,
-    connections: loads?.connections ?? NO_SLOTS,
-    broken: loads?.broken ?? NO_SLOTS,
-    loads: loads?.loads ?? new Float64Array(0),
-    facets: NO_SLOTS,
-    limits: NO_SLOTS,
-    facetForces: new Float64Array(0),
-    displacements: new Float64Array(0),
-  };
-  return { answer, slots };
-}
-
-/** The connection that the report names; null if it is one to what moves. */
-function worstOf(robot: EditedRobot, { at }: StageReport, { connections }: StageLoads, slots: Int32Array): number | null {
-  for (let i = 0; at && 3 * i < connections.length; ++i) {
-    const [a, b] = [0, 1].map((end) => robot.cellAt(slots[connections[3 * i + end]]));
-    if ((equal(a, at[0]) && equal(b, at[1])) || (equal(a, at[1]) && equal(b, at[0]))) {
-      return i;
-    }
-  }
-  return null;
-}
-
-const unknownStability = ({ verdict, margin_mm }: StageReport): Answer['stability'] => ({
-  rule: 'polygon',
-  stable: verdict !== 'unstable',
-  margin_mm,
-  edge: null,
-  centre_of_mass: [0, 0, 0],
-  polygon: [],
-  rigid: { answer: 'undecided', friction_needed: null, tilt_margin_deg: null, motion: null },
-});

@@ -14,7 +14,7 @@
 namespace holdfast::io {
 
 /// The task's target: all modules of a document, planned ones as well, exist. Errors: as of
-/// make_spec().
+/// make_spec(); the document has further steps.
 base::Result<model::RobotSpec> order_target(const Document& document);
 
 /// The certificate of a task whose target is the document's.
