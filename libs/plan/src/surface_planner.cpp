@@ -116,8 +116,8 @@ SurfacePlanner::Frame SurfacePlanner::make_frame(Shape shape, std::vector<model:
     rank[cell] = {-layer.at(cell), is_random_ ? rng_.next() : 0};
   }
   std::ranges::stable_sort(frame.movers, {}, [&](const Cell& cell) { return rank.at(cell); });
-  const auto strays = std::ranges::stable_partition(frame.movers, is_stray);
-  frame.stray_count = frame.movers.size() - strays.size();
+  const auto end = std::stable_partition(frame.movers.begin(), frame.movers.end(), is_stray);
+  frame.stray_count = static_cast<std::size_t>(end - frame.movers.begin());
   return frame;
 }
 
