@@ -78,10 +78,11 @@ StageJudgement judgement_of(const model::Robot& robot, const verdict::Assessment
 void add_hanging(const Hanging& hanging, StageJudgement& judged) {
   const bool breaks = verdict::breaks(hanging.load_ratio);
   const bool is_worst = hanging.load_ratio > judged.load_ratio_max.value_or(0);
-  const StageReason reason = {.reason = {.code = breaks ? verdict::ReasonCode::kCarrierBreaks
-                                                        : verdict::ReasonCode::kCarrierHolds,
-                                         .numbers = {hanging.load_ratio}},
-                              .cells = {hanging.carrier, hanging.module}};
+  StageReason reason;
+  reason.reason.code =
+      breaks ? verdict::ReasonCode::kCarrierBreaks : verdict::ReasonCode::kCarrierHolds;
+  reason.reason.numbers = {hanging.load_ratio};
+  reason.cells = {hanging.carrier, hanging.module};
   if (breaks && severity(judged.verdict) < severity(Verdict::kOverload)) {
     judged.verdict = Verdict::kOverload;
     judged.reasons.insert(judged.reasons.begin(), reason);
