@@ -30,10 +30,11 @@ base::Result<io::MoveReport> seek_moves(const io::Document& start, const io::Doc
     return task.error();
   }
   const auto begin = std::chrono::steady_clock::now();
-  plan::MoveOptions options{.seed = request.seed,
-                            .seconds_max = request.seconds_max,
-                            .is_interrupted = request.is_interrupted,
-                            .progress = request.progress};
+  plan::MoveOptions options;
+  options.seed = request.seed;
+  options.seconds_max = request.seconds_max;
+  options.is_interrupted = request.is_interrupted;
+  options.progress = request.progress;
   options.solver.thread_count = request.thread_count;
   auto plan = plan::find_moves(task.value(), options);
   if (!plan) {

@@ -48,8 +48,9 @@ base::Result<StepsResult> judge_steps(const StepsFile& file, const StepsOptions&
   if (!sequence) {
     return sequence.error();
   }
-  plan::SequenceOptions more{.ends_when_unsafe = options.ends_when_unsafe,
-                             .progress = options.progress};
+  plan::SequenceOptions more;
+  more.ends_when_unsafe = options.ends_when_unsafe;
+  more.progress = options.progress;
   more.solver.thread_count = options.thread_count;
   more.solver.memory_bytes_max = options.memory_bytes_max;
   auto judged = plan::judge_sequence(sequence.value().start, sequence.value().steps, more);
