@@ -5,7 +5,8 @@
 # Our solver and its peers on the same structures, in turn.
 #
 # FOLDER holds the programs. Each run is a process of its own; ours runs between the peers, and of
-# its runs the median counts. Prints a table and writes FOLDER/solver.csv.
+# its runs the median counts. HOLDFAST_CLOCK=processor: seconds of the processor, of all threads.
+# Prints a table and writes FOLDER/solver.csv.
 # Without structures: the three of the published comparison. With "scale" instead: 10^4 to 10^6
 # modules of every family, ours alone, and the plots of docs/.
 set -euo pipefail

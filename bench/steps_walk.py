@@ -6,13 +6,13 @@
     bench/steps_walk.py walk.json [STEPS] [--shape portal|bush]
     time holdfast steps walk.json --quiet
 
-The robot has 221 modules: with `portal` a slab of 10 x 10, two towers of 2 x 2 x 10 on it and a beam
-of 40 modules over them; with `bush` a slab of 8 x 8 with towers and arms that the walker loads. The
-walker goes to the free place beside it that it was at the longest time ago, by slides and convex
-turns."""
+The robot has 221 modules: with `portal` a slab of 10 x 10, two towers of 2 x 2 x 10 on it and a
+beam of 40 modules over them; with `bush` a slab of 8 x 8 with towers and arms that the walker
+loads. The walker goes to the free place beside it that it was at the longest time ago, by slides
+and convex turns."""
 
+import argparse
 import json
-import sys
 
 DIRECTIONS = [(1, 0, 0), (-1, 0, 0), (0, 1, 0), (0, -1, 0), (0, 0, 1), (0, 0, -1)]
 
@@ -58,20 +58,22 @@ def places(cells, at):
 
 
 def main():
-    arguments = [a for a in sys.argv[1:] if not a.startswith('--')]
-    path = arguments[0]
-    count = int(arguments[1]) if len(arguments) > 1 else 26000
-    cells = bush() if '--shape' in sys.argv and sys.argv[-1] == 'bush' else portal()
+    parser = argparse.ArgumentParser()
+    parser.add_argument('path')
+    parser.add_argument('count', type=int, nargs='?', default=26000)
+    parser.add_argument('--shape', choices=['portal', 'bush'], default='portal')
+    options = parser.parse_args()
+    cells = bush() if options.shape == 'bush' else portal()
     at = (0, 0, 1)
     modules = sorted(cells) + [at]
     seen = {at: 0}
     steps = []
-    for step in range(1, count + 1):
+    for step in range(1, options.count + 1):
         to = min(places(cells, at), key=lambda cell: (seen.get(cell, 0), cell))
         steps.append({'move': [{'from': at, 'to': to}]})
         seen[to] = step
         at = to
-    with open(path, 'w') as file:
+    with open(options.path, 'w') as file:
         json.dump({'format': 'holdfast-structure', 'version': 2, 'name': 'walk', 'modules': modules,
                    'steps': steps}, file)
     print(f'{len(modules)} modules, {len(steps)} steps, {len(seen)} places')

@@ -10,7 +10,7 @@ import subprocess
 import sys
 
 SECTIONS = {'Positionals': 'ARGUMENTS', 'Options': 'OPTIONS', 'Subcommands': 'COMMANDS'}
-FILE_TYPES = {'FILE', 'FOLDER', 'FROM', 'TO'}
+FILE_TYPES = {'FILE', 'FOLDER', 'FROM', 'START', 'STEPS.json', 'TARGET', 'TO'}
 CHECKER = 'holdfast-checker'
 
 

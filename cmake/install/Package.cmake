@@ -29,8 +29,7 @@ endmacro()
 
 set(version ${PROJECT_VERSION}-${CPACK_DEBIAN_PACKAGE_RELEASE})
 set(library libholdfast${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
-string(CONCAT needed "${library} (= ${version}), libfmt-dev, libpugixml-dev, libdeflate-dev, "
-       "coinor-libclp-dev")
+set(needed "${library} (= ${version}), libfmt-dev, libpugixml-dev, libdeflate-dev")
 if(HOLDFAST_UNICORN)
   string(APPEND needed ", libunicorn-dev")
 endif()
@@ -40,10 +39,7 @@ holdfast_package(development libholdfast-dev libdevel
                  "will a modular robot hold? (headers and static library)" "${needed}")
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_SUGGESTS xdg-utils)
-# Opened when it is needed, so not seen by shlibdeps.
-set(CPACK_DEBIAN_PROGRAM_PACKAGE_RECOMMENDS coinor-libclp1)
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_SHLIBDEPS ON)
-set(CPACK_DEBIAN_LIBRARY_PACKAGE_RECOMMENDS coinor-libclp1)
 file(WRITE ${CMAKE_CURRENT_BINARY_DIR}/shlibs
      "libholdfast ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR} ${library} (>= ${version})\n")
 file(WRITE ${CMAKE_CURRENT_BINARY_DIR}/triggers "activate-noawait ldconfig\n")

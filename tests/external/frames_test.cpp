@@ -108,9 +108,8 @@ TEST(PrintedFrames, that_sag_when_done_have_no_order) {
   EXPECT_EQ(order.closure->blocked.front().first.size(), frame.bars.size());
 }
 
-// The whole of this one sags by 1.08 mm, but the study leaves it out. No order exists: of the sets
-// of bars that can be taken off the whole one by one, none is such that one bar more can go and
-// what remains is connected and stiff enough. Each of these statements is looked at again.
+// The whole of this one sags by 1.08 mm, but no order leads there: the states that can be reached
+// from one end are closed, as whatever leads out of them is too soft. Looked at again here.
 TEST(PrintedFrames, have_no_order_if_a_closed_set_of_states_says_so) {
   const test::Frame frame = read_frames().at("robarch_tree");
   EXPECT_LT(test::translation_max(whole(frame)), kLimit);

@@ -93,20 +93,22 @@ TEST(LimitBracket, HoldsOnRandomRobotsWithRandomLaws) {
   }
 }
 
-// More than 400 joints: free are those near their limits, the bounds come from parts of the robot.
-// A small arm at a solid block breaks at its root, wherever the block goes on to.
+// Too solid to be factored as a whole: free are the joints near their limits, the bounds come from
+// parts of the robot. A small arm at a solid block breaks at its root, wherever the block goes on
+// to.
 TEST(LimitBracket, ALargeRobotBreaksWhereItsArmDoes) {
   std::vector<base::Cell> cells;
-  for (int z = 0; z < 6; ++z) {
-    for (int y = 0; y < 6; ++y) {
-      for (int x = 0; x < 6; ++x) {
+  constexpr int kSide = 16;
+  for (int z = 0; z < kSide; ++z) {
+    for (int y = 0; y < kSide; ++y) {
+      for (int x = 0; x < kSide; ++x) {
         cells.push_back({x, y, z});
       }
     }
   }
   constexpr int kArm = 5;
   for (int i = 0; i < kArm; ++i) {
-    cells.push_back({6 + i, 2, 5});
+    cells.push_back({kSide + i, 2, 5});
   }
   const auto robot = make_robot({.existing = cells});
   ASSERT_TRUE(robot);
@@ -117,7 +119,7 @@ TEST(LimitBracket, ALargeRobotBreaksWhereItsArmDoes) {
   EXPECT_LT(result.limit->row_count_max, 6 * cells.size() / 4);
   ASSERT_FALSE(result.limit->mechanism.yields.empty());
   EXPECT_EQ(model::ends_text(robot.value(), result.limit->mechanism.yields[0].joint),
-            "(5,2,5)-(6,2,5)");
+            "(15,2,5)-(16,2,5)");
 }
 
 }  // namespace

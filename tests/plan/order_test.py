@@ -144,6 +144,7 @@ def check_bad_input(program, repository, folder):
         (64, '--group', [balance, '--group', '0']),
         (64, '--reach', [balance, '--reach', 'air']),
         (65, 'nothing.json', [folder / 'nothing.json']),
+        (65, 'has steps of its own', [repository / 'scenarios/plan/walk_over_beam.json']),
     ]
     frame = json.loads(cube.read_text())
     # A row of three on the edge of a cube's layer hangs over nothing: it topples.

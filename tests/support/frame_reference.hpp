@@ -13,7 +13,7 @@
 #include <vector>
 
 /// A second way to a frame of bars under its weight: the 12x12 matrix of a beam as textbooks have
-/// it [Przemieniecki 1968, ch. 5], turned by the bar's axes, assembled scalar by scalar and
+/// it [Przemieniecki 1968], turned by the bar's axes, assembled scalar by scalar and
 /// factorized from nothing by Eigen for every set of bars. Shares no code with holdfast.
 namespace holdfast::test {
 

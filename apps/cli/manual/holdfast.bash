@@ -4,7 +4,7 @@ _holdfast() {
   local words='' files=''
   COMPREPLY=()
   if [ "$COMP_CWORD" -eq 1 ]; then
-    mapfile -t COMPREPLY < <(compgen -W "check simulate emulate convert generate robots view -h --help --version" -- "$current")
+    mapfile -t COMPREPLY < <(compgen -W "check steps next order move simulate emulate convert generate robots view -h --help --version" -- "$current")
     return
   fi
   case ${COMP_WORDS[1]} in
@@ -23,6 +23,64 @@ _holdfast() {
         --threads) : ;;
         --memory) : ;;
         *) if [[ $current == -* ]]; then words="-h --help --robot --lattice --json --connections --csv --svg --vtk --html --certificate --prove --limit --limit-seconds --quiet --bonded --threads --memory"; else files=1; fi ;;
+      esac
+      ;;
+    steps)
+      case $previous in
+        --robot) : ;;
+        --lattice) : ;;
+        --json) files=1 ;;
+        --svg) files=1 ;;
+        --html) files=1 ;;
+        --vtk) files=1 ;;
+        --until-unsafe) : ;;
+        --verify) : ;;
+        --threads) : ;;
+        *) if [[ $current == -* ]]; then words="-h --help --robot --lattice --json --svg --html --vtk --until-unsafe --verify --quiet --threads"; else files=1; fi ;;
+      esac
+      ;;
+    next)
+      case $previous in
+        --robot) : ;;
+        --lattice) : ;;
+        --json) files=1 ;;
+        --svg) files=1 ;;
+        --limit) : ;;
+        --threads) : ;;
+        --memory) : ;;
+        *) if [[ $current == -* ]]; then words="-h --help --robot --lattice --json --svg --limit --quiet --bonded --threads --memory"; else files=1; fi ;;
+      esac
+      ;;
+    order)
+      case $previous in
+        --from) files=1 ;;
+        --reach) : ;;
+        --source) : ;;
+        --group) : ;;
+        --seed) : ;;
+        --seconds) : ;;
+        --help-seconds) : ;;
+        --threads) : ;;
+        -o|--output) files=1 ;;
+        --json) files=1 ;;
+        --certificate) files=1 ;;
+        --robot) : ;;
+        --lattice) : ;;
+        *) if [[ $current == -* ]]; then words="-h --help --from --reach --source --group --reverse --seed --seconds --help-seconds --threads -q --quiet -o --output --json --certificate --robot --lattice"; else files=1; fi ;;
+      esac
+      ;;
+    move)
+      case $previous in
+        --within) : ;;
+        --seed) : ;;
+        --seconds) : ;;
+        --threads) : ;;
+        -o|--output) files=1 ;;
+        --json) files=1 ;;
+        --verify) files=1 ;;
+        --robot) : ;;
+        --lattice) : ;;
+        *) if [[ $current == -* ]]; then words="-h --help --pivot --within --geometry-only --seed --seconds --threads -q --quiet -o --output --json --verify --robot --lattice"; else files=1; fi ;;
       esac
       ;;
     simulate)

@@ -264,10 +264,6 @@ int run(const Options& options) {
         options.files.size());
     return kExitUsage;
   }
-  if (options.is_limit_wanted && !limit::has_solver()) {
-    fmt::print(stderr, "holdfast: --limit needs Clp, libClp.so.1 (Debian: coinor-libclp1)\n");
-    return kExitUsage;
-  }
   if (complain_of_clash(options.files, {{"--json", options.json},
                                         {"--csv", options.csv},
                                         {"--svg", options.svg},

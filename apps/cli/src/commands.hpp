@@ -33,6 +33,7 @@ Command add_check(CLI::App& app);
 Command add_convert(CLI::App& app);
 Command add_emulate(CLI::App& app);
 Command add_generate(CLI::App& app);
+Command add_move(CLI::App& app);
 Command add_next(CLI::App& app);
 Command add_order(CLI::App& app);
 Command add_robots(CLI::App& app);

@@ -27,9 +27,9 @@ int run(int argc, char** argv) {
   app.require_subcommand(1);
   app.footer("holdfast COMMAND --help says more about a command.");
   const cli::Command commands[] = {
-      cli::add_check(app),    cli::add_steps(app),   cli::add_next(app),    cli::add_order(app),
-      cli::add_simulate(app), cli::add_emulate(app), cli::add_convert(app), cli::add_generate(app),
-      cli::add_robots(app),   cli::add_view(app)};
+      cli::add_check(app),    cli::add_steps(app),    cli::add_next(app),    cli::add_order(app),
+      cli::add_move(app),     cli::add_simulate(app), cli::add_emulate(app), cli::add_convert(app),
+      cli::add_generate(app), cli::add_robots(app),   cli::add_view(app)};
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

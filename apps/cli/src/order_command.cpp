@@ -193,7 +193,8 @@ void add_limits(CLI::App& command, Options& options) {
   command
       .add_option("--seed", options.seed,
                   "Another seed tries candidates in another order; the same one finds the same")
-      ->type_name("N");
+      ->type_name("N")
+      ->check(CLI::NonNegativeNumber);
   command.add_option("--seconds", options.seconds, "Give up after this time")
       ->type_name("S")
       ->check(CLI::Range(0.0, 1e6))

@@ -48,33 +48,6 @@ std::string escaped(std::string_view text) {
   return out;
 }
 
-nlohmann::ordered_json cell_json(const model::Robot& robot, std::int32_t module) {
-  if (module == limit::Joint::kGround) {
-    return nullptr;
-  }
-  const base::Cell& cell = robot.modules()[base::at(module)].cell;
-  return {cell.x, cell.y, cell.z};
-}
-
-/// What the page shows of a limit load, which it cannot seek itself; null if none was found.
-nlohmann::ordered_json limit_json(const model::Robot& robot, const limit::LimitLoad& load) {
-  using Outcome = limit::LimitLoad::Outcome;
-  if (load.outcome == Outcome::kStopped) {
-    return nullptr;
-  }
-  nlohmann::ordered_json yields = nlohmann::ordered_json::array();
-  for (const limit::Yield& yield : load.mechanism.yields) {
-    yields.push_back({{"a", cell_json(robot, yield.a)},
-                      {"b", cell_json(robot, yield.b)},
-                      {"limit", model::name(yield.limit)}});
-  }
-  nlohmann::ordered_json factor;
-  if (load.outcome == Outcome::kFound) {
-    factor = load.low;
-  }
-  return {{"factor", factor}, {"yields", yields}, {"velocities", load.mechanism.velocities}};
-}
-
 bool replace_once(std::string& text, std::string_view from, std::string_view to) {
   const std::size_t at = text.find(from);
   if (at != std::string::npos) {
@@ -110,7 +83,7 @@ base::Result<std::string> fill_page(std::string_view page, const Structure& stru
     start["report"] = *report;
   }
   if (limit) {
-    start["limit"] = limit_json(structure.robot, *limit);
+    start["limit"] = nlohmann::ordered_json::parse(io::collapse_json(structure.robot, *limit));
   }
   std::string filled(page);
   const std::string text = report.value_or("");

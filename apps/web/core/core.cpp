@@ -15,7 +15,6 @@
 
 #include "holdfast/distributed.hpp"
 #include "holdfast/order.hpp"
-#include "holdfast/plan/judgement.hpp"
 #include "holdfast/steps.hpp"
 #include "packet_log.hpp"
 #include "request.hpp"
@@ -231,6 +230,18 @@ Reply check_request(const Request& request) {
   return assessment_reply(robot.value(), result.assessment, result.seconds);
 }
 
+/// Text: what io::collapse_json says; null also if it is not found within options[0] seconds.
+Reply limit_request(const Request& request) {
+  const auto robot = robot_of(request);
+  if (!robot) {
+    return failure(robot.error());
+  }
+  const CheckResult result =
+      check(robot.value(), {.is_limit_wanted = true,
+                            .limit_seconds_max = static_cast<double>(request.header.options[0])});
+  return {.text = io::collapse_json(robot.value(), *result.limit), .integers = {}, .numbers = {}};
+}
+
 /// With one more module of the Role in options[0] at each place of the tail. Text: a list of
 /// verdicts, null where no module can be. Numbers: the largest load ratio (-1 if there is none) and
 /// the margin in mm (0 if it is fixed).
@@ -255,7 +266,7 @@ Reply try_places(const Request& request) {
 
 /// Integers: x, y, z and Role of each module. Numbers: the material. Cells that are no robot yet
 /// can be opened and mended; cells that the page cannot hold as they are, two modules in one, get
-/// the program's error, and so does what cannot be computed with yet.
+/// the program's error.
 Reply open_text(std::string_view text) {
   const auto read = io::read_document(text);
   if (!read) {
@@ -272,7 +283,8 @@ Reply open_text(std::string_view text) {
                    {"description", document.description},
                    {"support_z", document.support_z},
                    {"more", more_of(document)},
-                   {"later_steps", document.steps.empty() ? 0 : document.steps.size() - 1},
+                   {"later_steps", document.extension.plan.size() +
+                                       (document.steps.empty() ? 0 : document.steps.size() - 1)},
                    {"warnings", read.value().warnings}});
   const auto add = [&](const base::Cell& cell, Role role) {
     out.integers.insert(out.integers.end(),
@@ -548,6 +560,10 @@ HOLDFAST_EXPORT(holdfast_open)()->void { web::reply = web::open_text(web::as_tex
 
 HOLDFAST_EXPORT(holdfast_check)()->void {
   web::reply = web::check_request(web::read_request(web::input));
+}
+
+HOLDFAST_EXPORT(holdfast_limit)()->void {
+  web::reply = web::limit_request(web::read_request(web::input));
 }
 
 HOLDFAST_EXPORT(holdfast_try_places)()->void {

@@ -10,6 +10,7 @@ import { App } from './ui/app';
 import { showFaceLegend, showLegend } from './ui/answer_panel';
 import { byId, icon, make, say } from './ui/dom';
 import { listenToFiles, reportOf, take } from './ui/files';
+import { Collapse } from './ui/collapse';
 import { openGallery } from './ui/gallery';
 import { Keeper } from './ui/keeper';
 import { KEYS, listenToKeys } from './ui/keyboard';
@@ -232,7 +233,7 @@ function begin(): void {
       void take(bench, app.stage, button.dataset.save!);
     };
   }
-  void openFirst(app, keeper).then(showReady);
+  void openFirst(app, keeper, new Collapse(app)).then(showReady);
 }
 
 const showReady = () => document.documentElement.classList.add('ready');

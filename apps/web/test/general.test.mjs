@@ -510,7 +510,24 @@ test('the collapse that the program has found is shown as a motion, and belongs 
   assert.ok(moved.still.every((value) => value === 0));
   assert.ok(moved.most > 35 && moved.most <= 40 && moved.after === 0, JSON.stringify(moved));
   await page.evaluate(() => globalThis.holdfast.bench.edit('another', [[3, 0, 0]], 0));
-  assert.equal(await page.isVisible('#limit'), false, 'nothing is known of another robot');
+  assert.equal(await page.isVisible('#limit-text'), false, 'nothing is known of another robot');
+  assert.ok(await page.isVisible('#find-limit'));
+  assert.deepEqual(page.faults, []);
+});
+
+test('the page finds the limit load itself, and the collapse', async () => {
+  const file = path.join(temporaryFolder(), 'hung.html');
+  // As below: 11.98 N hold so many weights of the module that hangs from a fixed one.
+  const modules = [{ cell: [0, 0, 3], fixed: true }, [0, 0, 2]];
+  const structure = JSON.stringify({ format: 'holdfast-structure', version: 1, name: 'hung', modules });
+  const start = JSON.stringify({ structure, name: 'hung' });
+  writeFileSync(file, readFileSync(pageFile, 'utf8').replace('id="holdfast-start">null<', () => `id="holdfast-start">${start}<`));
+  const page = await openPage(browser, { file });
+  await page.click('#find-limit');
+  await page.waitForSelector('#limit-text:not([hidden])');
+  const factor = Number(/more than ([\d.]+) times/.exec(await page.innerText('#limit-text'))[1]);
+  assert.ok(Math.abs(factor - 11.98 / WEIGHT) < 0.01, `${factor}`);
+  assert.ok(await page.isVisible('#collapse'));
   assert.deepEqual(page.faults, []);
 });
 

@@ -49,6 +49,17 @@ TEST(Facade, goes_from_text_to_a_verdict_and_its_reports) {
   EXPECT_NE(picture_vtu(structure.value(), result).find("</VTKFile>"), std::string::npos);
 }
 
+TEST(Facade, says_how_many_steps_a_check_leaves_out) {
+  const auto loaded = load_text(R"({"format": "holdfast-structure", "version": 2,
+      "modules": [[0,0,0]], "planned": [[1,0,0]], "steps": [{"attach": [[2,0,0]]}]})");
+  ASSERT_TRUE(loaded);
+  EXPECT_EQ(loaded.value().robot.planned_count(), 1);
+  EXPECT_EQ(
+      loaded.value().warnings,
+      std::vector<std::string>{
+          "2 steps are read; the robot after the first is judged, holdfast steps judges all"});
+}
+
 TEST(Facade, names_the_limit_that_a_connection_is_near) {
   // The weight of one module, 0.599 N, shears; it opens at w L / (2 lever) = 0.599 N of 14.97 N.
   for (const auto& [shear_n, limit, ratio] :

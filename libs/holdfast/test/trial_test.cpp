@@ -8,6 +8,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <nlohmann/json.hpp>
+#include <sstream>
 
 namespace holdfast {
 namespace {
@@ -109,6 +111,64 @@ TEST(Trial, of_a_robot_bonded_to_the_ground_gives_loads_where_it_would_topple) {
       try_cells(spec, std::vector<Cell>{{2, 0, 1}}, Role::kPlanned, {.is_bonded = true}).front();
   EXPECT_EQ(trial.verdict, Verdict::kSafe);
   EXPECT_TRUE(trial.load_ratio_max.has_value());
+}
+
+/// A post with a row of one beside it: on its far end a module topples it, as above.
+Structure post() {
+  return load_text(R"({"format": "holdfast-structure", "version": 1, "name": "post",
+                       "modules": [[0,0,0], [0,0,1], [1,0,1]]})")
+      .value();
+}
+
+TEST(Next, lists_every_free_cell_once_safe_ones_first) {
+  const Structure structure = post();
+  const NextResult result = find_next(structure);
+  std::vector<Cell> cells;
+  for (const Trial& trial : result.candidates) {
+    EXPECT_TRUE(trial.is_robot);
+    cells.push_back(trial.cell);
+  }
+  // All free cells but the one below the floor.
+  EXPECT_EQ(cells.size(), free_cells(io::make_spec(structure.document).value()).size() - 1);
+  EXPECT_TRUE(std::ranges::is_sorted(result.candidates, {}, [](const Trial& trial) {
+    return trial.verdict == Verdict::kSafe ? 0 : 1;
+  }));
+  const auto far = std::ranges::find(result.candidates, Cell{2, 0, 1}, &Trial::cell);
+  ASSERT_NE(far, result.candidates.end());
+  EXPECT_EQ(far->verdict, Verdict::kUnstable);
+  EXPECT_NEAR(far->margin_mm.value(), -10, 1e-9);
+}
+
+TEST(Next, writes_the_keys_that_other_tools_rely_on) {
+  const Structure structure = post();
+  const NextResult result = find_next(structure);
+  std::ostringstream out;
+  write_next_json(out, structure, result, {.count_max = 2});
+  const auto json = nlohmann::json::parse(out.str());
+  ASSERT_EQ(json["candidates"].size(), 2U);
+  EXPECT_EQ(json["counts"]["safe"], result.count(Verdict::kSafe));
+  EXPECT_GE(json["seconds"], json["preparation_seconds"]);
+  for (const auto& candidate : json["candidates"]) {
+    EXPECT_EQ(candidate["cell"].size(), 3U);
+    EXPECT_EQ(candidate["verdict"], "safe");
+    EXPECT_TRUE(candidate["load_ratio_max"].is_number());
+    EXPECT_TRUE(candidate["margin_mm"].is_number());
+  }
+  EXPECT_NE(next_text(structure, result, {.count_max = 2}).find("more"), std::string::npos);
+}
+
+TEST(Next, draws_a_ghost_for_every_place_and_the_robot_as_it_is) {
+  const Structure structure = post();
+  const NextResult result = find_next(structure);
+  const std::string picture = next_svg(structure, check(structure), result);
+  std::size_t ghost_count = 0;
+  for (std::size_t at = 0; (at = picture.find(", place for the next module", at)) != picture.npos;
+       ++at) {
+    ++ghost_count;
+  }
+  EXPECT_GT(ghost_count, 0U);
+  EXPECT_LE(ghost_count, result.candidates.size());
+  EXPECT_NE(picture.find("a modular robot of 3 modules, 0 of them planned"), std::string::npos);
 }
 
 TEST(Trial, makes_the_first_robot_of_an_empty_place) {

@@ -7,6 +7,7 @@
 #include <algorithm>
 
 #include "holdfast/io/beside_one.hpp"
+#include "holdfast/io/collapse.hpp"
 
 namespace holdfast::io {
 namespace {
@@ -32,9 +33,7 @@ void write_cell(JsonStream& json, const model::Robot& robot, std::int32_t module
   json.end_array();
 }
 
-void write_mechanism(JsonStream& json, const model::Robot& robot,
-                     const limit::Mechanism& mechanism) {
-  json.begin_object();
+void write_yields(JsonStream& json, const model::Robot& robot, const limit::Mechanism& mechanism) {
   json.key("yields");
   json.begin_array();
   for (const limit::Yield& yield : mechanism.yields) {
@@ -48,6 +47,9 @@ void write_mechanism(JsonStream& json, const model::Robot& robot,
     json.end_object();
   }
   json.end_array();
+}
+
+void write_velocities(JsonStream& json, const limit::Mechanism& mechanism) {
   json.key("velocities");
   json.begin_array();
   for (const base::Vec6<double>& velocity : mechanism.velocities) {
@@ -58,7 +60,6 @@ void write_mechanism(JsonStream& json, const model::Robot& robot,
     json.end_array();
   }
   json.end_array();
-  json.end_object();
 }
 
 /// The two modules, or the module and what it touches.
@@ -70,6 +71,21 @@ std::string place_text(const model::Robot& robot, const limit::Yield& yield) {
 }
 
 }  // namespace
+
+std::string collapse_json(const model::Robot& robot, const limit::LimitLoad& load) {
+  std::string text;
+  JsonStream json(text, JsonStream::Layout::kCompact);
+  if (load.outcome == Outcome::kStopped) {
+    json.value(nullptr);
+    return text;
+  }
+  json.begin_object();
+  json.member("factor", load.outcome == Outcome::kFound ? std::optional(load.low) : std::nullopt);
+  write_yields(json, robot, load.mechanism);
+  write_velocities(json, load.mechanism);
+  json.end_object();
+  return text;
+}
 
 void write_limit(JsonStream& json, const ReportEntry& entry) {
   const limit::LimitLoad& load = *entry.limit;
@@ -91,7 +107,10 @@ void write_limit(JsonStream& json, const ReportEntry& entry) {
   if (load.mechanism.velocities.empty()) {
     json.value(nullptr);
   } else {
-    write_mechanism(json, *entry.robot, load.mechanism);
+    json.begin_object();
+    write_yields(json, *entry.robot, load.mechanism);
+    write_velocities(json, load.mechanism);
+    json.end_object();
   }
   json.member("programs", load.program_count);
   json.member("seconds", entry.limit_seconds);

@@ -207,7 +207,7 @@ void leave_out(Document& document, const std::vector<base::Cell>& cells) {
 }
 
 /// Why a module of the target cannot be attached by a step.
-std::optional<base::Error> find_untold(const Document& target, const model::RobotSpec& spec,
+std::optional<base::Error> find_untold(const model::RobotSpec& spec,
                                        const std::vector<base::Cell>& attached) {
   const auto is_attached = [&](const base::Cell& cell) {
     return std::ranges::binary_search(attached, cell);
@@ -230,17 +230,18 @@ std::optional<base::Error> find_untold(const Document& target, const model::Robo
       return refuse(own.cell, "a mass");
     }
   }
-  for (const model::Payload& payload : target.extension.payloads) {
-    if (is_attached(payload.cell)) {
-      return refuse(payload.cell, "a load");
-    }
-  }
   return std::nullopt;
 }
 
 }  // namespace
 
 base::Result<model::RobotSpec> order_target(const Document& document) {
+  if (!document.extension.plan.empty() || document.steps.size() > 1) {
+    return base::Error{base::ErrorCode::kBadInput,
+                       "the target has steps of its own: an order is sought for modules that exist "
+                       "or are planned at once, without \"steps\" and \"later_steps\"",
+                       document.extension.plan.empty() ? "/later_steps" : "/steps"};
+  }
   auto spec = make_spec(document);
   if (spec) {
     model::RobotSpec target = std::move(spec).value();
@@ -317,13 +318,10 @@ base::Result<Document> order_steps(const Document& target, const plan::Order& or
     return document;
   }
   std::ranges::sort(attached);
-  if (auto fault = find_untold(target, spec.value(), attached)) {
+  if (auto fault = find_untold(spec.value(), attached)) {
     return *std::move(fault);
   }
   leave_out(document, attached);
-  std::erase_if(document.extension.payloads, [&](const model::Payload& payload) {
-    return std::ranges::binary_search(attached, payload.cell);
-  });
   return document;
 }
 

@@ -141,7 +141,12 @@ std::string order_text(const OrderReport& report) {
       fmt::format("  examined    {} state{} in {:.2f} s\n", order.state_count,
                   order.state_count == 1 ? "" : "s", report.seconds);
   if (order.outcome == OrderOutcome::kNotFound) {
-    return "NOT FOUND   no order found in the time given; there may be one\n" + examined;
+    const std::string why =
+        order.undecided_count == 0
+            ? "no order found in the time given; there may be one\n"
+            : fmt::format("every order leads through states that are undecided, {} at one end\n",
+                          order.undecided_count);
+    return "NOT FOUND   " + why + examined;
   }
   if (order.outcome == OrderOutcome::kNone) {
     return "NONE        there is no safe order\n" + none_words(report) + help_words(report) +

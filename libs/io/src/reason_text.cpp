@@ -15,8 +15,15 @@ using verdict::Reason;
 using verdict::ReasonCode;
 using Numbers = std::array<double, Reason::kNumberMax>;
 
+using Cells = std::span<const base::Cell>;
+
 std::string edge_text(const Numbers& n) {
   return fmt::format("the edge ({:.10g}, {:.10g})-({:.10g}, {:.10g}) mm", n[0], n[1], n[2], n[3]);
+}
+
+/// Which modules carry and are carried only the stage of a step knows.
+std::string carrier_text(Cells cells, std::size_t index) {
+  return index < cells.size() ? model::text(cells[index]) : "a cell";
 }
 
 /// A number with one digit that is not below it.
@@ -44,8 +51,6 @@ std::string several_text(const Numbers& n) {
       "{} in the {:.0f} that were found, {} by exact unilateral contact (Eqs. 6-8)",
       range_text(n[1], n[2]), n[0], has_unilateral ? range_text(n[3], n[4]) : "not known");
 }
-
-using Cells = std::span<const base::Cell>;
 
 std::string connection_text(Cells ends) {
   return model::text(ends[0]) + "-" + model::text(ends[1]);
@@ -178,12 +183,12 @@ std::string reason_text(const verdict::Reason& reason, std::span<const base::Cel
       return fmt::format(
           "the connection by which {} carries the module from {} would break: it carries {} of its "
           "strength",
-          model::text(cells[0]), model::text(cells[1]), beside_one(n[0], 4));
+          carrier_text(cells, 0), carrier_text(cells, 1), beside_one(n[0], 4));
     case ReasonCode::kCarrierHolds:
       return fmt::format(
           "the worst connection, by which {} carries the module from {}, carries {} of its "
           "strength",
-          model::text(cells[0]), model::text(cells[1]), beside_one(n[0], 4));
+          carrier_text(cells, 0), carrier_text(cells, 1), beside_one(n[0], 4));
     case ReasonCode::kInPieces:
       return fmt::format("the robot is in {:.0f} pieces, each judged by itself", n[0]);
     case ReasonCode::kVerdictOfTheRobot:

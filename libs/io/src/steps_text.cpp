@@ -34,7 +34,7 @@ std::string numbers_text(const StageJudgement& stage) {
   const std::string ratio = stage.load_ratio_max ? beside_one(*stage.load_ratio_max, 4) : "-";
   const std::string margin =
       stage.margin_mm ? fmt::format("{:+.2f}", *stage.margin_mm) : std::string("-");
-  return fmt::format("{:>9} {:>9}", ratio, margin);
+  return fmt::format("{:>7} {:>8}", ratio, margin);
 }
 
 std::string line_text(const StepsEntry& entry, std::size_t index) {
@@ -122,8 +122,8 @@ std::string step_text(const Document& document, std::size_t step) {
 std::string write_steps_text(const StepsEntry& entry) {
   const plan::SequenceJudgement& judged = *entry.judgement;
   const std::set<std::size_t> listed = listed_steps(judged);
-  std::string text = fmt::format("  {:>5}  {:<28}  {:<28}  {:<28}  {}\n", "step", "release",
-                                 "shift", "connect", "what it does");
+  std::string text = fmt::format("  {:>5}  {:<25}  {:<25}  {:<25}  {}\n", "step",
+                                 "release: load, margin mm", "shift", "connect", "what it does");
   for (const std::size_t step : listed) {
     text += line_text(entry, step);
   }

@@ -4,32 +4,12 @@
 #include <cmath>
 #include <numeric>
 
-#include "limit_program.hpp"
+#include "cone_program.hpp"
+#include "sets.hpp"
 #include "wrench.hpp"
 
 namespace holdfast::limit {
 namespace {
-
-/// Sets of bodies that hang together.
-class Sets {
- public:
-  explicit Sets(std::size_t count) : parent_(count) {
-    std::iota(parent_.begin(), parent_.end(), std::size_t{0});
-  }
-
-  std::size_t find(std::size_t item) {
-    while (parent_[item] != item) {
-      parent_[item] = parent_[parent_[item]];
-      item = parent_[item];
-    }
-    return item;
-  }
-
-  void join(std::size_t a, std::size_t b) { parent_[find(a)] = find(b); }
-
- private:
-  std::vector<std::size_t> parent_;
-};
 
 /// What the free joints have to balance on each body: minus their known forces. That is the load
 /// and the known forces of the other joints but for what the solver left over, which nothing in a
@@ -62,6 +42,33 @@ std::vector<base::Vec6<double>> loads_on_free(const Structure& structure, const 
     }
   }
   return of_free;
+}
+
+/// Leaves out one body of everything that hangs on no ground by its free joints: what they balance
+/// there follows from the others, as what they balance in all is nothing.
+void anchor(const Structure& structure, Part& part) {
+  const std::size_t ground = structure.bodies.size();
+  const auto end_of = [&](std::int32_t body) {
+    return body == Joint::kGround || part.group[base::at(body)] == Part::kNone ? ground
+                                                                               : base::at(body);
+  };
+  Sets sets(ground + 1);
+  for (const std::size_t joint : part.joints) {
+    sets.join(end_of(structure.joints[joint].a), end_of(structure.joints[joint].b));
+  }
+  std::vector<Vector3> centres;
+  for (std::size_t body = 0; body < ground; ++body) {
+    if (part.group[body] == Part::kNone) {
+      continue;
+    }
+    if (sets.join(body, ground)) {
+      part.group[body] = Part::kNone;
+      continue;
+    }
+    part.group[body] = static_cast<int>(centres.size());
+    centres.push_back(structure.bodies[body].centre_mm);
+  }
+  part.centres = std::move(centres);
 }
 
 }  // namespace
@@ -101,6 +108,7 @@ Part with_known_forces(const Structure& structure, const std::vector<char>& is_f
       }
     }
   }
+  anchor(structure, part);
   part.loads = loads_on_free(structure, part, is_free, known_forces);
   return part;
 }

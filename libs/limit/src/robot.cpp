@@ -74,11 +74,7 @@ void add_facet(const model::Robot& robot, const model::Facet& facet, bool is_bon
 /// A force on a body at `from`, global frame, as a joint's at its place.
 base::Vec6<double> joint_force(const Joint& joint, const base::Vec6<double>& force,
                                const Vector3& from) {
-  const base::Vec6<double> there = moved(force, from, joint.place_mm, 1);
-  const Vector3 along = {there[0], there[1], there[2]};
-  const Vector3 about = {there[3], there[4], there[5]};
-  return {dot(along, joint.frame[0]), dot(along, joint.frame[1]), -dot(along, joint.frame[2]),
-          dot(about, joint.frame[0]), dot(about, joint.frame[1]), dot(about, joint.frame[2])};
+  return local_force(joint.frame, moved(force, from, joint.place_mm, 1));
 }
 
 /// Takes the weight of a carried mass, which is part of the load's, out of its payload. Returns the

@@ -32,6 +32,15 @@ inline base::Vec6<double> moved(const base::Vec6<double>& force, const Vector3& 
   return result;
 }
 
+/// A force with its moment, global frame, as a joint's with this frame: [fx fy N mx my T].
+inline base::Vec6<double> local_force(const std::array<Vector3, 3>& frame,
+                                      const base::Vec6<double>& force) {
+  const Vector3 along = {force[0], force[1], force[2]};
+  const Vector3 about = {force[3], force[4], force[5]};
+  return {dot(along, frame[0]), dot(along, frame[1]), -dot(along, frame[2]),
+          dot(about, frame[0]), dot(about, frame[1]), dot(about, frame[2])};
+}
+
 /// A rigid body's velocity at `to`, given it at `from`.
 inline base::Vec6<double> velocity_at(const base::Vec6<double>& velocity, const Vector3& from,
                                       const Vector3& to) {

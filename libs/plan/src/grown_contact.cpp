@@ -386,9 +386,8 @@ void GrownContact::look_at(const FacetState& facet, std::optional<double> fricti
   footing.is_certain = footing.is_certain && std::abs(sideways - allowed) > doubt;
 }
 
-/// Whether the check would end here as well: it looks for further solutions where a facet that is
-/// not stuck is pulled sideways by more than it presses, for the exact law's answer where open
-/// facets may pull, and at the corners where no facet presses all over.
+/// Whether the check would end here as well, but for further solutions: it looks for the exact
+/// law's answer where open facets may pull, and at the corners where no facet presses all over.
 Footing GrownContact::footing_of(const States& states, const Step& step) const {
   Footing footing;
   bool is_any_stuck = false;
@@ -398,16 +397,41 @@ Footing GrownContact::footing_of(const States& states, const Step& step) const {
     facet.state = states[i];
     const Vec trial = scaled(influence_.law().ground().stiffness, step.motions[i]);
     const bool is_stuck = states[i] == ContactState{};
-    const bool is_doubtful =
-        !is_stuck && std::hypot(trial[0], trial[1]) > (1 - kForceShare) * std::abs(trial[2]);
     const bool may_pull = !is_on_flat_floor_ && !states[i].pressed;
-    footing.is_certain = footing.is_certain && !is_doubtful && !may_pull;
+    footing.is_certain = footing.is_certain && !may_pull;
     is_any_stuck = is_any_stuck || is_stuck;
     look_at(facet, is_own ? floor_.friction : robot_.facets()[i].touch.friction, trial, footing);
   }
   const bool is_standing = is_held_ || (is_any_stuck && robot_.foot_half_width_mm() > 0);
   footing.is_certain = footing.is_certain && is_standing;
   return footing;
+}
+
+/// As solver/src/other_solutions.cpp: a facet that is not stuck and is pulled sideways by more than
+/// it presses may have a second state. If it comes back at once when it is put there, it has not.
+bool GrownContact::may_have_others(const Site& site, const States& states, const Step& step,
+                                   ReachCache& reaches, const FacetInfluence& facets) const {
+  for (std::size_t i = 0; i < states.size(); ++i) {
+    const bool is_own = i == influence_.facets().size();
+    const FacetState facet = is_own ? own_facet({}) : influence_.facets()[i];
+    const Vec& stiffness = influence_.law().ground().stiffness;
+    const Vec trial = scaled(stiffness, step.motions[i]);
+    const bool is_doubtful =
+        std::hypot(trial[0], trial[1]) > (1 - kForceShare) * std::abs(trial[2]);
+    if (facet.is_bonded || states[i] == ContactState{} || !is_doubtful) {
+      continue;
+    }
+    States other = states;
+    other[i] = {.pressed = !states[i].pressed};
+    const NewNode node = make_node(site, site.is_on_floor ? other.back() : ContactState{});
+    const auto next = solve(site, node, reaches, &facets, other);
+    const auto state =
+        next ? certain_state(facet, scaled(stiffness, next->motions[i])) : std::nullopt;
+    if (!state || state->pressed == other[i].pressed) {
+      return true;
+    }
+  }
+  return false;
 }
 
 Grown GrownContact::grown(const Site& site, NewNode node, Step step, const Footing& footing) const {
@@ -440,7 +464,9 @@ std::optional<Grown> GrownContact::settle(const Site& site, ReachCache& reaches,
       return std::nullopt;
     }
     if (*next == states) {
-      const Footing footing = footing_of(states, *step);
+      Footing footing = footing_of(states, *step);
+      footing.is_certain =
+          footing.is_certain && !may_have_others(site, states, *step, reaches, facets);
       Grown result = grown(site, std::move(node), *std::move(step), footing);
       result.is_settled = true;
       return result;

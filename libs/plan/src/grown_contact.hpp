@@ -84,6 +84,8 @@ class GrownContact {
   void look_at(const solver::FacetState& facet, std::optional<double> friction, const Vec& trial,
                Footing& footing) const;
   Footing footing_of(const States& states, const Step& step) const;
+  bool may_have_others(const Site& site, const States& states, const Step& step,
+                       ReachCache& reaches, const FacetInfluence& facets) const;
   solver::FacetState own_facet(const mechanics::ContactState& state) const;
   Vec own_motion(const Vec& u) const;
   NewNode make_node(const Site& site, const mechanics::ContactState& own) const;

@@ -219,12 +219,16 @@ base::Result<CertificateCheck> verify(const OrderCertificate& certificate, int t
     }
   }
   const auto look_at = [&](const ElementSet& state) {
-    return inside.contains(state) || !beyond.insert(state).second || !growth.judge(state).is_safe();
+    if (inside.contains(state) || !beyond.insert(state).second) {
+      return true;
+    }
+    const Judgement judged = growth.judge(state);
+    return !judged.is_safe() && judged.verdict != verdict::Verdict::kUndecided;
   };
   const auto leaves = [](const ElementSet& state) {
     return bad_input(
-        fmt::format("a state of {} modules outside the cut is safe: the certificate "
-                    "proves nothing",
+        fmt::format("a state of {} modules outside the cut is safe, or undecided: the "
+                    "certificate proves nothing",
                     state.size()));
   };
   for (const ElementSet& state : near) {

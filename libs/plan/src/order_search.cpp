@@ -3,6 +3,7 @@
 #include "holdfast/plan/order_search.hpp"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <unordered_map>
 #include <unordered_set>
@@ -337,6 +338,21 @@ Order order_found(const Explorer& explorer, Sense sense, const ElementSet& whole
   return order;
 }
 
+/// What an end says from which nothing is left to enter. An undecided state may be safe in truth,
+/// so one just beyond leaves the question open.
+Order order_closed(Closure closure, const Knowledge& knowledge) {
+  const auto undecided_count = std::ranges::count_if(closure.blocked, [](const auto& blocked) {
+    return blocked.second.verdict == verdict::Verdict::kUndecided;
+  });
+  Order order{.state_count = knowledge.state_count(),
+              .undecided_count = static_cast<std::size_t>(undecided_count)};
+  if (undecided_count == 0) {
+    order.outcome = OrderOutcome::kNone;
+    order.closure = std::move(closure);
+  }
+  return order;
+}
+
 /// Appends what `before` and one element more make of its state, if it was not seen, and then what
 /// these and yet another element make: a set depends not on the order in which it was made, so the
 /// first one will do.
@@ -403,12 +419,11 @@ Order find_order(GrowingStructure& structure, std::span<const ElementSet> starts
                           {structure, knowledge, options, Sense::kShrinking, {whole}, begins}};
   if (!knowledge.judge(whole).is_safe()) {
     explorers[1].explore(0, options.seed);
-    Order order{.outcome = OrderOutcome::kNone, .state_count = knowledge.state_count()};
-    order.closure = explorers[1].closure();
-    return order;
+    return order_closed(explorers[1].closure(), knowledge);
   }
   std::size_t budget =
       std::max(kFirstBudgetMin, kFirstBudgetPerElement * structure.element_count());
+  std::array<bool, 2> is_closed{};
   for (std::size_t round = 0; !knowledge.is_spent() || round == 0; ++round, budget *= 2) {
     for (const Sense sense : {Sense::kGrowing, Sense::kShrinking}) {
       Explorer& explorer = explorers[sense == Sense::kGrowing ? 0 : 1];
@@ -419,9 +434,11 @@ Order find_order(GrowingStructure& structure, std::span<const ElementSet> starts
         return order;
       }
       if (answer == Explorer::Answer::kExhausted) {
-        Order order{.outcome = OrderOutcome::kNone, .state_count = knowledge.state_count()};
-        order.closure = explorer.closure();
-        return order;
+        Order order = order_closed(explorer.closure(), knowledge);
+        is_closed[sense == Sense::kGrowing ? 0 : 1] = true;
+        if (order.outcome == OrderOutcome::kNone || (is_closed[0] && is_closed[1])) {
+          return order;
+        }
       }
     }
   }

@@ -257,7 +257,7 @@ void RobotGrowth::put_toppling_last(std::vector<Element>& list, Sense sense) {
   if (!balance_) {
     return;
   }
-  std::ranges::stable_partition(list, [&](Element element) {
+  std::stable_partition(list.begin(), list.end(), [&](Element element) {
     return (sense == Sense::kGrowing ? balance_->margin_with(element)
                                      : balance_->margin_without(element)) > 0;
   });

@@ -214,6 +214,12 @@ Verdict SequenceJudgement::verdict() const {
   return first_undecided ? Verdict::kUndecided : Verdict::kSafe;
 }
 
+base::Result<StageJudgement> judge_stage(const RobotState& before, const model::Step& step,
+                                         const Transition& transition, Stage stage,
+                                         const solver::EquilibriumOptions& options) {
+  return StageJudge(options).judge_stage(before, step, transition, stage);
+}
+
 base::Result<StepJudgement> judge_step(const RobotState& before, const model::Step& step,
                                        const solver::EquilibriumOptions& options) {
   const auto transition = find_transition(before, step);

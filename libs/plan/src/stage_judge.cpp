@@ -78,10 +78,11 @@ StageJudgement judgement_of(const model::Robot& robot, const verdict::Assessment
 void add_hanging(const Hanging& hanging, StageJudgement& judged) {
   const bool breaks = verdict::breaks(hanging.load_ratio);
   const bool is_worst = hanging.load_ratio > judged.load_ratio_max.value_or(0);
-  const StageReason reason = {.reason = {.code = breaks ? verdict::ReasonCode::kCarrierBreaks
-                                                        : verdict::ReasonCode::kCarrierHolds,
-                                         .numbers = {hanging.load_ratio}},
-                              .cells = {hanging.carrier, hanging.module}};
+  StageReason reason;
+  reason.reason.code =
+      breaks ? verdict::ReasonCode::kCarrierBreaks : verdict::ReasonCode::kCarrierHolds;
+  reason.reason.numbers = {hanging.load_ratio};
+  reason.cells = {hanging.carrier, hanging.module};
   if (breaks && severity(judged.verdict) < severity(Verdict::kOverload)) {
     judged.verdict = Verdict::kOverload;
     judged.reasons.insert(judged.reasons.begin(), reason);
@@ -94,11 +95,21 @@ void add_hanging(const Hanging& hanging, StageJudgement& judged) {
   judged.load_ratio_max = larger(judged.load_ratio_max, hanging.load_ratio);
 }
 
-/// Whether nothing lets go in the first stage: it is then the last stage of the step before.
-bool is_unchanged(const RobotState& before, const model::Step& step, const Transition& transition) {
-  return step.release.empty() && std::ranges::all_of(transition.groups, [&](const Group& group) {
-           return let_go(before, group).empty();
-         });
+/// Whether a stage finds the robot as the stage before it has left it, the first one as the step
+/// before.
+bool is_unchanged(const RobotState& before, const model::Step& step, const Transition& transition,
+                  Stage stage) {
+  switch (stage) {
+    case Stage::kRelease:
+      return step.release.empty() &&
+             std::ranges::all_of(transition.groups,
+                                 [&](const Group& group) { return let_go(before, group).empty(); });
+    case Stage::kShift:
+      return transition.left.empty();
+    case Stage::kConnect:
+      break;
+  }
+  return transition.groups.empty() && step.attach.empty() && step.connect.empty();
 }
 
 /// Whether a check of the robot would end here as well, with this equilibrium of the regularised
@@ -241,8 +252,9 @@ base::Result<StepJudgement> StageJudge::judge(const RobotState& before, const mo
   for (int i = 0; i < kStageCount; ++i) {
     StageJudgement& here = judged.stages[static_cast<std::size_t>(i)];
     const auto stage = static_cast<Stage>(i);
-    if (stage == Stage::kRelease && known != nullptr && is_unchanged(before, step, transition)) {
+    if (known != nullptr && is_unchanged(before, step, transition, stage)) {
       here = *known;
+      known = &here;
       continue;
     }
     auto found = judge_stage(before, step, transition, stage);
@@ -250,6 +262,7 @@ base::Result<StepJudgement> StageJudge::judge(const RobotState& before, const mo
       return found.error();
     }
     here = std::move(found).value();
+    known = &here;
   }
   return judged;
 }

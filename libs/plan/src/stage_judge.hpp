@@ -29,9 +29,10 @@ class StageJudge {
                                     const Transition& transition, const StageJudgement* known,
                                     bool shares_core);
 
- private:
   base::Result<StageJudgement> judge_stage(const RobotState& before, const model::Step& step,
                                            const Transition& transition, Stage stage);
+
+ private:
   base::Result<StageJudgement> judge_scene(const Scene& scene);
   base::Result<StageJudgement> judge_piece(const model::RobotSpec& spec);
   std::optional<verdict::Assessment> assess_by_core(const model::Robot& robot);

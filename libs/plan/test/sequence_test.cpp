@@ -104,27 +104,44 @@ void compare(const model::RobotSpec& start, const std::vector<model::Step>& step
 
 TEST(Sequence, is_stage_by_stage_what_checks_say) {
   std::size_t step_count = 0;
-  for (std::uint64_t seed = 0; seed < 40; ++seed) {
+  for (std::uint64_t seed = 0; seed < 20; ++seed) {
     model::RobotSpec start = holdfast::test::random_robot(seed, 4, 14);
     start.planned.clear();
     const auto steps = random_steps(start, seed, 14);
     compare(start, steps);
     step_count += steps.size();
   }
-  EXPECT_GT(step_count, 250);
+  EXPECT_GT(step_count, 120);
+}
+
+/// Steps of every kind, on a bridge of two posts.
+TEST(Sequence, is_so_for_steps_of_every_kind) {
+  const model::RobotSpec start{
+      .existing = {{0, 0, 0}, {0, 0, 1}, {1, 0, 1}, {2, 0, 1}, {2, 0, 0}, {1, 0, 2}}};
+  const model::CellPair pair = {Cell{1, 0, 1}, Cell{2, 0, 1}};
+  std::vector<model::Step> steps = {{.attach = {{0, 0, 2}, {0, 0, 3}}},
+                                    {.release = {pair}},
+                                    {.detach = {{0, 0, 3}}, .connect = {pair}},
+                                    test::move({1, 0, 2}, {2, 0, 2}),
+                                    {.attach = {{3, 0, 1}}, .release = {pair}},
+                                    {.detach = {{1, 0, 1}}},
+                                    {.attach = {{1, 0, 1}}},
+                                    {}};
+  steps[3].attach = {{1, 0, 0}};
+  compare(start, steps);
 }
 
 TEST(Sequence, is_so_in_every_lattice_and_on_every_support) {
   std::size_t step_count = 0;
   for (const base::Lattice& lattice : holdfast::test::kLattices) {
-    for (std::uint64_t seed = 0; seed < 8; ++seed) {
+    for (std::uint64_t seed = 0; seed < 4; ++seed) {
       const model::RobotSpec start = holdfast::test::general_robot(lattice, seed);
       const auto steps = random_steps(start, seed, 6);
       compare(start, steps);
       step_count += steps.size();
     }
   }
-  EXPECT_GT(step_count, 80);
+  EXPECT_GT(step_count, 40);
 }
 
 model::Step turned(const model::Step& step, const base::Lattice& lattice,

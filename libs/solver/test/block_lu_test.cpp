@@ -324,5 +324,72 @@ TEST(BlockLu, has_nothing_to_do_without_nodes) {
   EXPECT_EQ(lu.lower_block_count(), 0U);
 }
 
+/// Symmetric, diagonal blocks dominate.
+BlockLu symmetric_lattice(base::Rng& rng, std::size_t node_count, std::span<const Edge> edges) {
+  BlockLu lu(node_count, edges, kUnlimited);
+  for (std::size_t e = 0; e < edges.size(); ++e) {
+    lu.set_edge(e, random_block(rng, 0));
+  }
+  for (std::size_t node = 0; node < node_count; ++node) {
+    Mat6<double> block = random_block(rng, 20);
+    for (int i = 0; i < 6; ++i) {
+      for (int k = 0; k < i; ++k) {
+        block.at(i, k) = block.at(k, i);
+      }
+    }
+    lu.set_diagonal(node, block);
+  }
+  return lu;
+}
+
+TEST(BlockLu, solves_lanes_to_the_bits_of_one_after_another) {
+  base::Rng rng(5);
+  const std::vector<Edge> edges = lattice(3, 3, 4);
+  BlockLu lu = symmetric_lattice(rng, 36, edges);
+  ASSERT_TRUE(lu.factor());
+  std::vector<LaneBlock> lanes(36);
+  std::vector<std::vector<Vec6<double>>> columns(kLaneCount, std::vector<Vec6<double>>(36));
+  for (std::size_t lane = 0; lane < kLaneCount; ++lane) {
+    for (std::size_t k = 0; k < 6; ++k) {
+      const std::size_t node = (7 * lane + 3) % 36;  // One load each: most of it stays zero.
+      columns[lane][node][k] = random_signed(rng);
+      lanes[lu.place(node)].values[k][lane] = columns[lane][node][k];
+    }
+    lu.solve(columns[lane]);
+  }
+  lu.solve_lanes(lanes);
+  for (std::size_t node = 0; node < 36; ++node) {
+    for (std::size_t lane = 0; lane < kLaneCount; ++lane) {
+      for (std::size_t k = 0; k < 6; ++k) {
+        EXPECT_EQ(lanes[lu.place(node)].values[k][lane], columns[lane][node][k]);
+      }
+    }
+  }
+}
+
+TEST(BlockLu, gives_blocks_of_the_inverse_of_a_symmetric_matrix) {
+  base::Rng rng(6);
+  const std::vector<Edge> edges = lattice(3, 3, 3);
+  BlockLu lu = symmetric_lattice(rng, 27, edges);
+  ASSERT_TRUE(lu.factor());
+  for (const auto& [a, b] : {std::pair<std::size_t, std::size_t>{0, 26}, {13, 13}, {4, 5}}) {
+    std::vector<std::int32_t> places_a;
+    std::vector<std::int32_t> places_b;
+    std::vector<Mat6<double>> half_a;
+    std::vector<Mat6<double>> half_b;
+    lu.forward(a, places_a, half_a);
+    lu.forward(b, places_b, half_b);
+    const Mat6<double> block = lu.symmetric_product(places_a, half_a, places_b, half_b);
+    for (int column = 0; column < 6; ++column) {
+      std::vector<Vec6<double>> x(27);
+      x[b] = base::unit<double>(column);
+      lu.solve(x);
+      for (int row = 0; row < 6; ++row) {
+        EXPECT_NEAR(block.at(row, column), x[a][static_cast<std::size_t>(row)], kTolerance);
+      }
+    }
+  }
+}
+
 }  // namespace
 }  // namespace holdfast::solver

@@ -320,5 +320,28 @@ TEST(RigidBody, has_the_margin_of_any_facet_to_the_last_digits) {
   EXPECT_NEAR(*assess(wide).margin_mm, 5e11, 1e-3);
 }
 
+TEST(GrowingRigidBody, is_that_of_the_grown_robot_to_the_last_digit) {
+  for (std::uint64_t seed = 0; seed < 40; ++seed) {
+    const model::RobotSpec spec = test::random_robot(seed);
+    const auto robot = model::Robot::create(spec).value();
+    const GrowingRigidBody growing(robot, robot.mass(0));
+    for (const model::Module& module : robot.modules()) {
+      for (const base::Direction direction : base::directions(robot.lattice())) {
+        model::RobotSpec grown = spec;
+        grown.planned.push_back(base::neighbour(robot.lattice(), module.cell, direction));
+        const auto other = model::Robot::create(grown);
+        if (!other) {
+          continue;
+        }
+        const RigidBody expected = assess_rigid_body(other.value());
+        const base::Cell& cell = grown.planned.back();
+        const RigidBody body = growing.with(cell, cell.z == robot.support_z());
+        EXPECT_EQ(body.is_stable, expected.is_stable);
+        EXPECT_EQ(body.margin_mm, expected.margin_mm);
+      }
+    }
+  }
+}
+
 }  // namespace
 }  // namespace holdfast::verdict

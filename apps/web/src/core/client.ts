@@ -8,6 +8,7 @@ import {
   type Answer,
   type FoundOrder,
   type JudgedSteps,
+  type LimitLoad,
   type OpenedDocument,
   type Output,
   type SimulationChoice,
@@ -47,6 +48,10 @@ export class CoreClient {
 
   check(robot: RobotData, firstLook = false): Promise<Answer> {
     return this.call('check', [robot, firstLook]);
+  }
+
+  limit(robot: RobotData, secondsMax: number): Promise<LimitLoad | null> {
+    return this.call('limit', [robot, secondsMax]);
   }
 
   tryPlaces(robot: RobotData, places: Int32Array, role: Role): Promise<Trial[]> {

@@ -39,6 +39,16 @@ export interface Stability {
   rigid: RigidAnswer;
 }
 
+/** The largest factor of all loads that any forces could balance, and how the robot collapses beyond it. */
+export interface LimitLoad {
+  /** Null: whatever the factor of all loads, some forces balance them. */
+  factor: number | null;
+  /** Connections that give way, as two cells, null for a support; fastest first. */
+  yields: { a: Cell | null; b: Cell | null; limit: string }[];
+  /** By module in the program's order: velocity and angular velocity, the largest of 1 mm; may be empty. */
+  velocities: number[][];
+}
+
 export interface Answer {
   verdict: Verdict;
   reasons: string[];

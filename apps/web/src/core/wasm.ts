@@ -11,6 +11,7 @@ import {
   type Failure,
   type FoundOrder,
   type JudgedSteps,
+  type LimitLoad,
   type OpenedDocument,
   type Output,
   type SimulationChoice,
@@ -39,6 +40,7 @@ interface Exports {
   holdfast_input(size: number): number;
   holdfast_open(): void;
   holdfast_check(): void;
+  holdfast_limit(): void;
   holdfast_try_places(): void;
   holdfast_write(): void;
   holdfast_simulate(): void;
@@ -59,7 +61,9 @@ interface Reply {
   numbers: Float64Array<ArrayBuffer>;
 }
 
-type Call = 'vocabulary' | 'open' | 'check' | 'try_places' | 'write' | 'simulate' | 'judge_steps' | 'find_order' | 'stage';
+type Call =
+  | 'vocabulary' | 'open' | 'check' | 'limit' | 'try_places' | 'write' | 'simulate' | 'judge_steps' | 'find_order'
+  | 'stage';
 
 export class Core {
   private constructor(private readonly exports: Exports) {}
@@ -138,6 +142,11 @@ export class Core {
       facetForces: numbers.subarray(loads, forces),
       displacements: numbers.subarray(forces),
     };
+  }
+
+  /** The limit load; null if it is not found in time. Throws CoreError. */
+  limit(robot: RobotData, secondsMax: number): LimitLoad | null {
+    return JSON.parse(this.call('limit', request(robot, [secondsMax])).text) as LimitLoad | null;
   }
 
   /** What the verdict would be with one more module of a role, for each place (x, y, z). */

@@ -7,7 +7,7 @@ import { Core } from './wasm';
 
 export interface WorkerCall {
   id: number;
-  name: 'open' | 'check' | 'tryPlaces' | 'write' | 'simulate' | 'judgeSteps' | 'findOrder' | 'stage';
+  name: 'open' | 'check' | 'limit' | 'tryPlaces' | 'write' | 'simulate' | 'judgeSteps' | 'findOrder' | 'stage';
   values: unknown[];
 }
 

@@ -1,68 +1,83 @@
 // SPDX-FileCopyrightText: The holdfast authors
 // SPDX-License-Identifier: Apache-2.0
-import type { Cell } from '../model/cell';
+import { Cancelled, CoreClient } from '../core/client';
+import type { LimitLoad } from '../core/types';
 import type { EditedRobot } from '../model/edited_robot';
 import type { App } from './app';
 import { byId } from './dom';
 
-/**
- * The limit load that holdfast check --limit has found, and how the robot collapses beyond it. The page has
- * no linear programs, so it knows them only for the robot that the program has put into it.
- */
-
-export interface LimitLoad {
-  /** Null: whatever the factor of all loads, some forces balance them. */
-  factor: number | null;
-  /** Connections that give way, as two cells, null for a support; fastest first. */
-  yields: { a: Cell | null; b: Cell | null; limit: string }[];
-  /** By module in the program's order: velocity and angular velocity, the largest of 1 mm; may be empty. */
-  velocities: number[][];
-}
+/** The limit load, found on demand or by holdfast check --limit, and the collapse beyond it as a motion. */
 
 /** Of one way there, in seconds; then it stays for a moment and goes back. */
 const WAY_SECONDS = 1.6;
 const STAY_SECONDS = 0.9;
 
+/** Then the page says that it has not found it. */
+const FIND_SECONDS_MAX = 60;
+
 export class Collapse {
+  private readonly client = new CoreClient();
+  private shown?: { robot: EditedRobot; limit: LimitLoad };
   private running?: { begun: number; exaggeration: number };
 
-  constructor(
-    private readonly app: App,
-    private readonly robot: EditedRobot,
-    private readonly limit: LimitLoad,
-  ) {
-    const { factor, velocities } = limit;
-    byId('limit').hidden = false;
-    byId('limit-text').textContent =
-      factor === null
-        ? 'Whatever the factor of all loads, some forces would balance them.'
-        : `No forces balance more than ${factor.toPrecision(4)} times these loads.`;
-    const button = byId('collapse');
-    button.hidden = velocities.length === 0;
-    button.onclick = () => this.start();
+  constructor(private readonly app: App) {
+    byId('find-limit').onclick = () => void this.find();
+    byId('collapse').onclick = () => this.start();
     app.stage.motions.push((now) => this.move(now));
-    app.bench.robotListeners.push(() => this.changed());
+    app.bench.robotListeners.push(() => this.forget());
+  }
+
+  show(limit: LimitLoad | null): void {
+    byId('find-limit').hidden = limit !== null;
+    byId('limit-text').hidden = false;
+    byId('limit-text').textContent =
+      limit === null
+        ? 'Not found within a minute; holdfast check --limit may find it.'
+        : limit.factor === null
+          ? 'Whatever the factor of all loads, some forces would balance them.'
+          : `No forces balance more than ${limit.factor.toPrecision(4)} times these loads.`;
+    byId('collapse').hidden = limit === null || limit.velocities.length === 0;
+    this.shown = limit ? { robot: this.app.bench.robot, limit } : undefined;
+  }
+
+  private async find(): Promise<void> {
+    const button = byId<HTMLButtonElement>('find-limit');
+    button.disabled = true;
+    try {
+      this.show(await this.client.limit(this.app.bench.robot.toData().data, FIND_SECONDS_MAX));
+    } catch (error) {
+      if (!(error instanceof Cancelled)) {
+        byId('limit-text').hidden = false;
+        byId('limit-text').textContent = error instanceof Error ? error.message : String(error);
+      }
+    } finally {
+      button.disabled = false;
+    }
   }
 
   start(): void {
     const { finding, view, stage } = this.app;
-    if (!finding || this.running) {
+    if (!finding || this.running || !this.shown) {
       return;
     }
-    const motions = new Float64Array(6 * this.robot.count);
-    finding.slots.forEach((slot, module) => motions.set(this.limit.velocities[module], 6 * slot));
-    const cells = this.limit.yields.flatMap(({ a, b }) => [a, b]).filter((cell) => cell !== null);
-    const slots = cells.map((cell) => this.robot.slot(cell)).filter((slot) => slot !== undefined);
+    const { robot, limit } = this.shown;
+    const motions = new Float64Array(6 * robot.count);
+    finding.slots.forEach((slot, module) => motions.set(limit.velocities[module], 6 * slot));
+    const cells = limit.yields.flatMap(({ a, b }) => [a, b]).filter((cell) => cell !== null);
+    const slots = cells.map((cell) => robot.slot(cell)).filter((slot) => slot !== undefined);
     this.running = { begun: performance.now(), exaggeration: view.exaggeration };
     view.showMechanism(motions, slots);
     stage.draw();
   }
 
   /** Another robot, or the same with a change: nothing is known of it. */
-  private changed(): void {
+  private forget(): void {
     this.stop();
-    const isSame = this.app.bench.robot === this.robot && !this.robot.isEdited;
-    byId('limit').hidden = !isSame;
+    this.client.cancel();
+    this.shown = undefined;
+    byId('limit-text').hidden = true;
+    byId('collapse').hidden = true;
+    byId('find-limit').hidden = false;
   }
 
   private stop(): void {
@@ -75,7 +90,7 @@ export class Collapse {
   }
 
   private move(now: number): boolean {
-    if (!this.running) {
+    if (!this.running || !this.shown) {
       return false;
     }
     const seconds = Math.max(now - this.running.begun, 0) / 1000;
@@ -86,7 +101,7 @@ export class Collapse {
     }
     const share = Math.min(seconds, whole - seconds, WAY_SECONDS) / WAY_SECONDS;
     // The fastest module moves by one cell.
-    this.app.view.exaggeration = this.robot.pitchMm * 0.5 * (1 - Math.cos(Math.PI * share));
+    this.app.view.exaggeration = this.shown.robot.pitchMm * 0.5 * (1 - Math.cos(Math.PI * share));
     return true;
   }
 }

@@ -1,10 +1,10 @@
 // SPDX-FileCopyrightText: The holdfast authors
 // SPDX-License-Identifier: Apache-2.0
-import { Output } from '../core/types';
+import { Output, type LimitLoad } from '../core/types';
 import { FIRST_EXAMPLE } from '../model/examples';
 import { isLink, readFragment } from '../model/link';
 import type { App } from './app';
-import { Collapse, type LimitLoad } from './collapse';
+import type { Collapse } from './collapse';
 import { byId, make, tell } from './dom';
 import { BROKEN_LINK, openFragment, openText, reportOf } from './files';
 import type { Keeper } from './keeper';
@@ -19,7 +19,7 @@ export interface Start {
   /** The native report, for people, if the page is that of `holdfast check --html`. */
   report?: string;
   /** If the program was asked for it. */
-  limit?: LimitLoad;
+  limit?: LimitLoad | null;
 }
 
 let start: Start | null | undefined;
@@ -35,8 +35,7 @@ export const askedFor = () => (isLink(location.hash) ? location.hash : (readStar
 const encoded = (text: string) => new TextEncoder().encode(text);
 
 /** What was asked for is shown as it is; what was built from it is offered. */
-export async function openFirst(app: App, keeper: Keeper): Promise<void> {
-  const { bench } = app;
+export async function openFirst({ bench }: App, keeper: Keeper, collapse: Collapse): Promise<void> {
   const isLinkOpen = await openFragment(bench).catch(() => {
     tell(BROKEN_LINK, true);
     return false;
@@ -48,7 +47,7 @@ export async function openFirst(app: App, keeper: Keeper): Promise<void> {
     await openText(bench, encoded(viewed.structure), viewed.name);
     showReport(viewed);
     if (viewed.limit) {
-      new Collapse(app, bench.robot, viewed.limit);
+      collapse.show(viewed.limit);
     }
     keeper.offer();
   } else if (isLinkOpen === false || !keeper.bringBack()) {

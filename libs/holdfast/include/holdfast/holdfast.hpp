@@ -17,6 +17,7 @@
 #include "holdfast/host/large_pages.hpp"       // IWYU pragma: export
 #include "holdfast/host/output_file.hpp"       // IWYU pragma: export
 #include "holdfast/io/beside_one.hpp"          // IWYU pragma: export
+#include "holdfast/io/collapse.hpp"            // IWYU pragma: export
 #include "holdfast/io/document.hpp"            // IWYU pragma: export
 #include "holdfast/io/lattice_names.hpp"       // IWYU pragma: export
 #include "holdfast/io/picture.hpp"             // IWYU pragma: export

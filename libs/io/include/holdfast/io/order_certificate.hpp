@@ -14,7 +14,7 @@
 namespace holdfast::io {
 
 /// The task's target: all modules of a document, planned ones as well, exist. Errors: as of
-/// make_spec().
+/// make_spec(); the document has further steps.
 base::Result<model::RobotSpec> order_target(const Document& document);
 
 /// The certificate of a task whose target is the document's.
@@ -28,7 +28,7 @@ bool is_order_certificate(std::string_view text);
 
 /// A structure whose modules are those of the order's start and whose steps attach all others, or
 /// where the robot is taken apart one whose modules are the target's and whose steps detach them.
-/// Errors: a step would have to attach a module with a kind, a mass or a load of its own.
+/// Errors: a step would have to attach a module with a kind or a mass of its own.
 base::Result<Document> order_steps(const Document& target, const plan::Order& order,
                                    bool is_reversed);
 

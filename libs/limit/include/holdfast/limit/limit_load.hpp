@@ -11,22 +11,21 @@
 #include "holdfast/limit/structure.hpp"
 
 /// The limit load: the largest factor of all loads that any distribution of forces balances within
-/// the limits of all joints; the static theorem of limit analysis. A linear program, solved by Clp.
-/// Cones of friction, shear and round bending are pyramids within and around them. Derivation:
-/// docs/limit.md.
+/// the limits of all joints; the static theorem of limit analysis. A second-order cone program,
+/// solved by an interior-point method. Derivation: docs/limit.md.
 namespace holdfast::limit {
 
 /// Factors beyond this are not told apart from none: known forces have about six digits.
 inline constexpr double kFactorMax = 1e5;
 
 struct LimitOptions {
-  double tolerance = 1e-4;  ///< Of the bracket, as a share of the factor.
-  /// Then the bracket is what it is so far. Clp's interior point method ends what it has begun.
+  double tolerance = 1e-6;  ///< Of the bracket, as a share of the factor.
+  /// Then the bracket is what it is so far; an iteration that has begun is ended.
   double seconds_max = 600;
   /// Forces of all joints that balance the loads, such as the elastic ones, local frame; they spare
   /// most of the work for large structures. Empty: none are known.
   std::span<const base::Vec6<double>> known_forces = {};
-  /// Called between linear programs with the bracket so far.
+  /// Called between programs with the bracket so far.
   std::function<void(double low, double high)> progress = {};
 };
 
@@ -57,13 +56,9 @@ struct LimitLoad {
   double low = 0;
   double high = kFactorMax;
   Mechanism mechanism;            ///< Of the upper bound; empty if unbounded or none was found.
-  int program_count = 0;          ///< Linear programs solved.
+  int program_count = 0;          ///< Programs solved.
   std::size_t row_count_max = 0;  ///< Rows of the largest.
 };
-
-/// Whether there is a solver for linear programs on this machine, Clp; without one limit_load()
-/// finds what needs none, and stops.
-bool has_solver();
 
 LimitLoad limit_load(const Structure& structure, const LimitOptions& options = {});
 

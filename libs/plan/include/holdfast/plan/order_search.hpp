@@ -69,7 +69,7 @@ struct OrderOptions {
 enum class OrderOutcome : std::uint8_t {
   kFound,
   kNone,      ///< There is no order; the closure proves it.
-  kNotFound,  ///< Time or states ran out.
+  kNotFound,  ///< Time or states ran out, or undecided states are in the way.
 };
 
 /// Elements that are added or removed together.
@@ -91,7 +91,10 @@ struct Order {
   std::vector<Batch> steps = {};           ///< From the start to the whole.
   std::vector<Judgement> judgements = {};  ///< Of the start and of the state after each step.
   std::size_t state_count = 0;             ///< Judged in all.
-  std::optional<Closure> closure = {};     ///< Of kNone.
+  /// Of kNotFound before time ran out: as many undecided states are all that could be entered next,
+  /// so that nothing is proved.
+  std::size_t undecided_count = 0;
+  std::optional<Closure> closure = {};  ///< Of kNone.
 };
 
 /// Seeks an order from one of the starts, none of which contains another, to the whole.

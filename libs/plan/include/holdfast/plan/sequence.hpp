@@ -69,6 +69,12 @@ struct SequenceJudgement {
   verdict::Verdict verdict() const;
 };
 
+/// Judges one stage of a step on a robot, and of its transition. Errors: as of find_scenes(), or of
+/// model::Robot::create(), each beginning with the stage.
+base::Result<StageJudgement> judge_stage(const RobotState& before, const model::Step& step,
+                                         const Transition& transition, Stage stage,
+                                         const solver::EquilibriumOptions& options = {});
+
 /// Judges one step, see Stage. Errors: as of find_transition() and find_scenes(), or of
 /// model::Robot::create(), each beginning with its stage.
 base::Result<StepJudgement> judge_step(const RobotState& before, const model::Step& step,

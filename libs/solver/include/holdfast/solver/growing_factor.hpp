@@ -30,7 +30,7 @@ struct LowRankTerm {
 /// Order and pattern of L are those of the matrix with all terms that may ever come, chosen once.
 /// A node is in the matrix as long as a term touches it; one that is not has no rows. A term
 /// changes only the columns on the way from its first node to the root of the elimination tree
-/// [Davis & Hager 2005], block by block as in method C1 of [Gill 1974]: with p = W_k of the term
+/// [Davis 1999], block by block as in method C1 of [Gill 1974]: with p = W_k of the term
 /// W S W', along that way
 ///     D_k' = D_k + p S p',  B = S p' D_k'^-1,  W_i -= L_ik p,  L_ik += W_i B,  S -= B p S,
 /// two products of 6x6 blocks per block of L. Where a term brings its node in, S becomes zero: what

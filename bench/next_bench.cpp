@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The holdfast authors
 // SPDX-License-Identifier: Apache-2.0
 // Where may the next module go: candidates a second, beside a check of each.
-//   candidate_bench [FAMILY SIZE [LOAD]]...
+//   next_bench [FAMILY SIZE [LOAD]]...
 // LOAD: strengths are such that this is the largest load ratio before the next module; 0 leaves
 // them. Without arguments: the families of docs/next.md. Checks are made of every so many
 // candidates, and what differs from them is counted.

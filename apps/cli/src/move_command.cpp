@@ -1,0 +1,251 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <csignal>
+#include <memory>
+
+#include "commands.hpp"
+#include "file_clash.hpp"
+#include "holdfast/move.hpp"
+#include "progress.hpp"
+
+namespace holdfast::cli {
+namespace {
+
+struct Options {
+  io::ReadOptions reading;
+  std::string start;
+  std::string target;
+  bool pivots = false;
+  bool ignores_mechanics = false;
+  std::string within;
+  std::uint64_t seed = 0;
+  double seconds = 300;
+  int thread_count = 0;
+  bool is_quiet = false;
+  std::string steps;
+  std::string json;
+  std::string verified;
+};
+
+volatile std::sig_atomic_t is_interrupted = 0;
+
+/// While it lives the first SIGINT or SIGTERM is only noted; the next one does what it always does.
+class Interruption {
+ public:
+  Interruption() {
+    struct sigaction action {};
+
+    action.sa_handler = [](int signal) {
+      is_interrupted = 1;
+      ::sigaction(signal, &before_[signal == SIGINT ? 0 : 1], nullptr);
+    };
+    ::sigaction(SIGINT, &action, &before_[0]);
+    ::sigaction(SIGTERM, &action, &before_[1]);
+  }
+
+  Interruption(const Interruption&) = delete;
+  Interruption& operator=(const Interruption&) = delete;
+
+  ~Interruption() {
+    ::sigaction(SIGINT, before_.data(), nullptr);
+    ::sigaction(SIGTERM, &before_[1], nullptr);
+  }
+
+ private:
+  static inline std::array<struct sigaction, 2> before_{};
+};
+
+/// The box that "X,Y,Z:X,Y,Z" says, by its two corners in any order; none if it is no box.
+std::optional<plan::CellBox> box_of(const std::string& text) {
+  std::array<std::int32_t, 6> numbers{};
+  const std::string_view separators = ",,:,,";
+  const char* next = text.data();
+  const char* const end = text.data() + text.size();
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    const auto read = std::from_chars(next, end, numbers[i]);
+    const bool is_last = i == separators.size();
+    if (read.ec != std::errc{} ||
+        (is_last ? read.ptr != end : read.ptr == end || *read.ptr != separators[i])) {
+      return std::nullopt;
+    }
+    next = is_last ? read.ptr : read.ptr + 1;
+  }
+  const auto [ax, ay, az, bx, by, bz] = numbers;
+  return plan::CellBox{.low = {std::min(ax, bx), std::min(ay, by), std::min(az, bz)},
+                       .high = {std::max(ax, bx), std::max(ay, by), std::max(az, bz)}};
+}
+
+int exit_code_of(plan::MoveOutcome outcome) {
+  switch (outcome) {
+    case plan::MoveOutcome::kFound:
+      return kExitSafe;
+    case plan::MoveOutcome::kNone:
+      return kExitUnsafe;
+    case plan::MoveOutcome::kNotFound:
+      break;
+  }
+  return kExitUndecided;
+}
+
+/// Writes what is asked for; the exit code is that of a file that cannot be written, or the
+/// answer's.
+int show(const Options& options, const io::MoveReport& report) {
+  if (!options.steps.empty() && !report.plan.steps.empty() &&
+      !write_or_complain(options.steps, io::write_json(io::move_steps(report)))) {
+    return kExitBadInput;
+  }
+  if (!options.json.empty() && !write_or_complain(options.json, io::move_json(report))) {
+    return kExitBadInput;
+  }
+  if (!options.is_quiet && options.json != "-" && options.steps != "-") {
+    fmt::print("{}", io::move_text(report));
+  }
+  return exit_code_of(report.plan.outcome);
+}
+
+int verify(const Options& options, const MoveRequest& request, const io::Document& start,
+           const io::Document& target) {
+  const auto text = read_file(options.verified);
+  if (!text) {
+    return fail(text.error(), options.verified);
+  }
+  const auto check = verify_moves(start, target, request, text.value());
+  if (!check) {
+    return fail(check.error(), options.verified);
+  }
+  if (!options.is_quiet) {
+    fmt::print("PROVED      {} shapes inside, {} moves out of them judged anew, none safe\n",
+               check.value().shape_count, check.value().unsafe_count);
+  }
+  return kExitSafe;
+}
+
+base::Result<io::Document> read(const std::string& file, const io::ReadOptions& options) {
+  const auto text = read_file(file);
+  if (!text) {
+    return text.error();
+  }
+  auto found = io::read_document(text.value(), options);
+  if (!found) {
+    return found.error();
+  }
+  print_notes(found.value().warnings, file);
+  return std::move(found).value().document;
+}
+
+MoveRequest request_of(const Options& options, Progress& progress) {
+  MoveRequest request{.pivots = options.pivots,
+                      .ignores_mechanics = options.ignores_mechanics,
+                      .seed = options.seed,
+                      .seconds_max = options.seconds,
+                      .thread_count = options.thread_count,
+                      .is_interrupted = [] { return is_interrupted != 0; }};
+  if (!options.within.empty()) {
+    request.within = box_of(options.within);
+  }
+  request.progress = [&progress](std::size_t states, int distance) {
+    progress.show([&] {
+      return fmt::format("{} moves examined, the nearest shape is {} or more moves away", states,
+                         distance);
+    });
+  };
+  return request;
+}
+
+int run(const Options& options) {
+  const std::array<std::string, 3> inputs = {options.start, options.target, options.verified};
+  if (complain_of_clash({inputs.data(), options.verified.empty() ? 2U : 3U},
+                        {{"--output", options.steps}, {"--json", options.json}})) {
+    return kExitUsage;
+  }
+  const auto start = read(options.start, options.reading);
+  if (!start) {
+    return fail(start.error(), options.start);
+  }
+  const auto target = read(options.target, options.reading);
+  if (!target) {
+    return fail(target.error(), options.target);
+  }
+  Progress progress(options.is_quiet);
+  const MoveRequest request = request_of(options, progress);
+  if (!options.verified.empty()) {
+    return verify(options, request, start.value(), target.value());
+  }
+  const Interruption interruption;
+  const auto report = seek_moves(start.value(), target.value(), request);
+  return report ? show(options, report.value())
+                : fail(report.error(), options.start + " " + options.target);
+}
+
+void add_ways(CLI::App& command, Options& options) {
+  command.add_flag("--pivot", options.pivots,
+                   "Cubes turn about edges, and need the cells that they sweep on their way");
+  command
+      .add_option("--within", options.within,
+                  "No module leaves the box of cells with these corners")
+      ->type_name("X,Y,Z:X,Y,Z")
+      ->check([](const std::string& text) {
+        return box_of(text) ? "" : "expected are two cells, such as 0,0,0:9,9,9";
+      });
+  command.add_flag("--geometry-only", options.ignores_mechanics,
+                   "Seek moves that need not be safe, and judge their stages afterwards");
+}
+
+void add_limits(CLI::App& command, Options& options) {
+  command
+      .add_option("--seed", options.seed,
+                  "Another seed tries moves in another order; the same one finds the same")
+      ->type_name("N")
+      ->check(CLI::NonNegativeNumber);
+  command.add_option("--seconds", options.seconds, "Give up after this time")
+      ->type_name("S")
+      ->check(CLI::Range(0.0, 1e6))
+      ->capture_default_str();
+  command
+      .add_option("--threads", options.thread_count,
+                  "Threads; 0: as many as the machine has cores. The answer does not depend on it")
+      ->type_name("N")
+      ->check(CLI::Range(0, 64));
+  command.add_flag("-q,--quiet", options.is_quiet, "No progress and no text, only the exit code");
+}
+
+}  // namespace
+
+Command add_move(CLI::App& app) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command = app.add_subcommand(
+      "move", "Find moves of single modules from one shape to another, safe at every stage");
+  add_required(*command, "FROM", options->start, "The robot as it stands; - is standard input");
+  add_required(*command, "TO", options->target, "The same modules in the shape that is wanted");
+  add_ways(*command, *options);
+  add_limits(*command, *options);
+  command
+      ->add_option("-o,--output", options->steps,
+                   "Write FROM with the moves as its steps; - is standard output. If the shape is "
+                   "not found: those to the nearest one")
+      ->type_name("FILE");
+  command->add_option("--json", options->json, "Write a JSON report; - is standard output")
+      ->type_name("FILE");
+  command
+      ->add_option("--verify", options->verified,
+                   "Seek nothing, but replay the certificate in a JSON report of the same FROM, TO "
+                   "and ways to go")
+      ->type_name("FILE");
+  add_reading(*command, options->reading);
+  command->footer(
+      "A module slides along its neighbours or turns around a corner, while all others stay in "
+      "one\n"
+      "piece; every stage is checked as holdfast steps does it, and what is undecided is not "
+      "safe.\n"
+      "The first interrupt ends the search and leaves what it has. Exit: 0 found, 1 there is "
+      "none,\n"
+      "2 not found in the time given, 64 wrong usage, 65 bad input or not writable.");
+  return {command, [options] { return run(*options); }};
+}
+
+}  // namespace holdfast::cli

@@ -1,0 +1,47 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <optional>
+#include <string_view>
+
+#include "holdfast/holdfast.hpp"
+#include "holdfast/io/move_report.hpp"  // IWYU pragma: export
+#include "holdfast/plan/move_plan.hpp"  // IWYU pragma: export
+
+/// The facade's moves: how does a robot get from one shape to another, safe at every stage?
+///
+///     const auto report = holdfast::seek_moves(from, to, {.seconds_max = 60});
+///     if (report && report.value().plan.outcome == plan::MoveOutcome::kFound) {
+///       ... report.value().plan.steps ...
+///     }
+namespace holdfast {
+
+/// How modules may go and how long a plan is sought.
+struct MoveRequest {
+  bool pivots = false;  ///< As of plan::MoveTask, all three.
+  std::optional<plan::CellBox> within = {};
+  bool ignores_mechanics = false;
+  std::uint64_t seed = 0;
+  double seconds_max = std::numeric_limits<double>::infinity();
+  int thread_count = 0;  ///< 0: as many as the machine has cores; decides nothing.
+  /// As of plan::MoveOptions, both.
+  std::function<bool()> is_interrupted = {};
+  std::function<void(std::size_t states, int distance)> progress = {};
+};
+
+/// Seeks moves from the shape of one document to that of another. Errors: as of io::move_task() and
+/// plan::find_moves().
+base::Result<io::MoveReport> seek_moves(const io::Document& start, const io::Document& target,
+                                        const MoveRequest& request = {});
+
+/// Replays the certificate in a report for the same documents and the same request.
+base::Result<plan::MoveCertificateCheck> verify_moves(const io::Document& start,
+                                                      const io::Document& target,
+                                                      const MoveRequest& request,
+                                                      std::string_view report);
+
+}  // namespace holdfast

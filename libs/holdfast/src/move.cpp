@@ -1,0 +1,65 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#include "holdfast/move.hpp"
+
+#include <chrono>
+#include <utility>
+
+namespace holdfast {
+namespace {
+
+base::Result<plan::MoveTask> task_of(const io::Document& start, const io::Document& target,
+                                     const MoveRequest& request) {
+  auto task = io::move_task(start, target);
+  if (!task) {
+    return task.error();
+  }
+  plan::MoveTask made = std::move(task).value();
+  made.pivots = request.pivots;
+  made.within = request.within;
+  made.ignores_mechanics = request.ignores_mechanics;
+  return made;
+}
+
+}  // namespace
+
+base::Result<io::MoveReport> seek_moves(const io::Document& start, const io::Document& target,
+                                        const MoveRequest& request) {
+  auto task = task_of(start, target, request);
+  if (!task) {
+    return task.error();
+  }
+  const auto begin = std::chrono::steady_clock::now();
+  plan::MoveOptions options{.seed = request.seed,
+                            .seconds_max = request.seconds_max,
+                            .is_interrupted = request.is_interrupted,
+                            .progress = request.progress};
+  options.solver.thread_count = request.thread_count;
+  auto plan = plan::find_moves(task.value(), options);
+  if (!plan) {
+    return plan.error();
+  }
+  io::MoveReport report{
+      .start = start, .task = std::move(task).value(), .plan = std::move(plan).value()};
+  report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  return report;
+}
+
+base::Result<plan::MoveCertificateCheck> verify_moves(const io::Document& start,
+                                                      const io::Document& target,
+                                                      const MoveRequest& request,
+                                                      std::string_view report) {
+  const auto task = task_of(start, target, request);
+  if (!task) {
+    return task.error();
+  }
+  const auto certificate = io::read_move_certificate(report, task.value());
+  if (!certificate) {
+    return certificate.error();
+  }
+  solver::EquilibriumOptions options;
+  options.thread_count = request.thread_count;
+  return plan::verify(certificate.value(), options);
+}
+
+}  // namespace holdfast

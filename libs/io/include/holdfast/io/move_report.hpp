@@ -1,0 +1,40 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "holdfast/base/result.hpp"
+#include "holdfast/io/document.hpp"
+#include "holdfast/plan/move_plan.hpp"
+
+/// What came of a search for moves from one shape to another, for programs and for people.
+namespace holdfast::io {
+
+struct MoveReport {
+  Document start;
+  plan::MoveTask task;
+  plan::MovePlan plan = {};
+  double seconds = 0;
+};
+
+/// The robot and where it is to go: existing modules of both. Errors: as of make_spec(); one of
+/// them has planned modules or steps of its own.
+base::Result<plan::MoveTask> move_task(const Document& start, const Document& target);
+
+/// See docs/formats.md.
+std::string move_json(const MoveReport& report);
+
+/// Lines for people; a line feed at the end.
+std::string move_text(const MoveReport& report);
+
+/// The start with the steps that were found.
+Document move_steps(const MoveReport& report);
+
+/// The certificate in a report that move_json() has written, for the same task. Errors: no such
+/// report, or one without a certificate.
+base::Result<plan::MoveCertificate> read_move_certificate(std::string_view text,
+                                                          const plan::MoveTask& task);
+
+}  // namespace holdfast::io

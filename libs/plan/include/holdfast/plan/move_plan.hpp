@@ -1,0 +1,98 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <optional>
+#include <vector>
+
+#include "holdfast/base/result.hpp"
+#include "holdfast/plan/module_moves.hpp"
+#include "holdfast/plan/sequence.hpp"
+
+/// How does a robot get from one shape to another, module by module, safe at every stage?
+///
+/// States are shapes: where modules are, no matter which of those that are alike. A step moves one
+/// module, without which all others are still in one piece, by a slide or around a convex corner
+/// (Group), and is taken only if release, shift and connect are judged `safe`.
+namespace holdfast::plan {
+
+struct MoveTask {
+  model::RobotSpec start;
+  model::RobotSpec target;  ///< Modules alike are interchangeable.
+  bool pivots = false;      ///< As of MoveRule.
+  std::optional<CellBox> within = {};
+  /// Steps need not be safe: neither strength nor balance is judged, but that something holds the
+  /// robot.
+  bool ignores_mechanics = false;
+};
+
+struct MoveOptions {
+  /// The same seed finds the same plan. Others try moves in other orders.
+  std::uint64_t seed = 0;
+  /// The search stops after this time, or so many judged moves, without an answer.
+  double seconds_max = std::numeric_limits<double>::infinity();
+  std::size_t state_count_max = std::numeric_limits<std::size_t>::max();
+  /// So many moves, divided by the number of modules that are not fixed, are judged in search of a
+  /// shorter plan than the first that is found.
+  std::size_t exact_count_max = 40'000;
+  solver::EquilibriumOptions solver = {};  ///< Of each check. The result depends on no threads.
+  /// Asked between moves; true ends the search as time does.
+  std::function<bool()> is_interrupted = {};
+  /// Called between moves with the number of those judged, and the least number of moves from the
+  /// nearest shape so far to the target.
+  std::function<void(std::size_t states, int distance)> progress = {};
+};
+
+enum class MoveOutcome : std::uint8_t {
+  kFound,
+  kNone,      ///< There is no plan: the target is not safe, or all shapes are exhausted.
+  kNotFound,  ///< Time or states ran out, or it was interrupted.
+};
+
+/// "found", "none", "not-found".
+const char* name(MoveOutcome outcome);
+
+/// Proves that there is no plan.
+struct MoveCertificate {
+  MoveTask task;
+  /// Not safe: nothing more is to be proved, and `shapes` is empty.
+  std::optional<Judgement> target = {};
+  /// Shapes, each as the cells of all modules that are not fixed, those alike together: the start
+  /// is one of them, the target is none, and no safe step leads out.
+  std::vector<std::vector<base::Cell>> shapes = {};
+  /// The other way round: the target is one of them, the start is none, and no safe step leads in.
+  bool is_backward = false;
+};
+
+struct MovePlan {
+  MoveOutcome outcome = MoveOutcome::kNotFound;
+  /// To the target, or if it is not found to the nearest shape that was reached.
+  std::vector<model::Step> steps = {};
+  bool is_shortest = false;     ///< No plan has fewer steps.
+  int length_min = 0;           ///< No plan has fewer steps than this.
+  std::size_t state_count = 0;  ///< Moves judged, that is shapes beside others.
+  /// Of the steps, judged anew as one sequence; none if there is no step.
+  std::optional<SequenceJudgement> judgement = {};
+  std::optional<MoveCertificate> certificate = {};  ///< Of kNone.
+};
+
+/// Errors: start or target is no robot, the start is not safe; shapes of different robots or in
+/// different surroundings; pivoting modules that are no cubes; a module outside the box.
+base::Result<MovePlan> find_moves(const MoveTask& task, const MoveOptions& options = {});
+
+/// What has been replayed of a certificate.
+struct MoveCertificateCheck {
+  std::size_t shape_count = 0;   ///< Shapes inside.
+  std::size_t unsafe_count = 0;  ///< Moves that lead out, judged anew, none of which is safe.
+};
+
+/// Replays a certificate: every move from every shape leads to another of them or is judged anew
+/// and not safe. Errors: what is not so.
+base::Result<MoveCertificateCheck> verify(const MoveCertificate& certificate,
+                                          const solver::EquilibriumOptions& options = {});
+
+}  // namespace holdfast::plan

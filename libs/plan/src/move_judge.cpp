@@ -1,0 +1,49 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#include "move_judge.hpp"
+
+namespace holdfast::plan {
+
+MoveJudge::MoveJudge(const MoveTask& task, const MoveOptions& options)
+    : task_(task), options_(options) {}
+
+bool MoveJudge::is_safe(const RobotState& before, const model::Move& move, const Shape& after) {
+  if (unsafe_.contains(after)) {
+    return false;
+  }
+  ++count_;
+  const model::Step step = step_of(move);
+  const auto transition = find_transition(before, step);
+  if (!transition) {
+    return false;
+  }
+  if (!is_stage_safe(before, step, transition.value(), Stage::kConnect)) {
+    unsafe_.insert(after);
+    return false;
+  }
+  return is_stage_safe(before, step, transition.value(), Stage::kRelease) &&
+         is_stage_safe(before, step, transition.value(), Stage::kShift);
+}
+
+bool MoveJudge::is_stage_safe(const RobotState& before, const model::Step& step,
+                              const Transition& transition, Stage stage) const {
+  if (!task_.ignores_mechanics) {
+    const auto judged = judge_stage(before, step, transition, stage, options_.solver);
+    return judged && judged.value().is_safe();
+  }
+  return bool(find_scenes(before, step, transition, stage));
+}
+
+bool MoveJudge::is_over() const {
+  const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - start_;
+  return count_ >= options_.state_count_max || spent.count() >= options_.seconds_max ||
+         (options_.is_interrupted && options_.is_interrupted());
+}
+
+void MoveJudge::report(int distance) const {
+  if (options_.progress) {
+    options_.progress(count_, distance);
+  }
+}
+
+}  // namespace holdfast::plan

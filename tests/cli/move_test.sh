@@ -1,0 +1,99 @@
+#!/usr/bin/env bash
+# move_test.sh PROGRAM REPOSITORY   holdfast move as its users run it: answers, files, interrupts,
+# bad input.
+set -euo pipefail
+program=$1
+scenarios=$2/scenarios/plan
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+cd "$work"
+faults=0
+
+fault() {
+  printf 'FAULT: %s\n' "$*"
+  faults=$((faults + 1))
+}
+
+# expect_exit CODE ARGUMENTS...   output in out, errors in err
+expect_exit() {
+  local expected=$1 code=0
+  shift
+  "$program" "$@" >out 2>err </dev/null || code=$?
+  [ "$code" -eq "$expected" ] || fault "exit $code, expected $expected: $*: $(head -c 300 err)"
+}
+
+expect_line() { grep -Eq -- "$2" "$1" || fault "no line '$2' in $1: $(head -c 400 "$1")"; }
+
+# expect_refusal CODE TEXT ARGUMENTS...   one clear line that says TEXT
+expect_refusal() {
+  local text=$2
+  expect_exit "$1" move "${@:3}"
+  [ "$(wc -l <err)" -eq 1 ] || fault "not one line: ${*:3}: $(head -c 600 err)"
+  grep -Eq -- "$text" err || fault "'$text' is not said: $(cat err)"
+}
+
+# shape FILE CELLS   a structure of these cells on a floor
+shape() { printf '{"format": "holdfast-structure", "version": 1, "modules": [%s]}' "$2" >"$1"; }
+
+from=$scenarios/around_arm_from.json
+to=$scenarios/around_arm_to.json
+plane=--within=-9,0,-9:9,0,9
+
+# A plan, which holdfast steps finds safe; and the shorter one of geometry alone, which is not.
+expect_exit 0 move "$from" "$to" "$plane" -o safe.json --json report.json
+expect_line out '^FOUND +9 steps, and no plan has fewer$'
+expect_line report.json '"certificate": null'
+expect_exit 0 steps safe.json
+expect_exit 0 move "$from" "$to" "$plane" --geometry-only -o short.json
+expect_line out '^FOUND +8 steps'
+expect_line out '4 of them not safe'
+expect_exit 1 steps short.json
+
+# A row cannot go on in its own layer: proved, and proved again.
+shape row.json '[0,0,0],[1,0,0],[2,0,0]'
+shape next.json '[1,0,0],[2,0,0],[3,0,0]'
+shape tower.json '[0,0,0],[0,0,1],[0,0,2]'
+layer=--within=0,0,0:3,0,0
+expect_exit 1 move row.json next.json $layer --json none.json
+expect_line out '^NONE'
+expect_line none.json '"reason": "exhausted"'
+expect_exit 0 move row.json next.json $layer --verify none.json
+expect_line out '^PROVED'
+expect_refusal 65 'across the border' row.json next.json --verify none.json
+expect_refusal 65 'a report with a certificate' "$from" "$to" --verify report.json
+
+# Time that is over at once, and an interrupt: what there is so far is left.
+expect_exit 2 move row.json tower.json --seconds 0
+expect_line out '^NOT FOUND'
+# slab X   two rows of twenty cells, the first at x = X
+slab() { for i in $(seq 0 19); do printf '[%d,%d,0],[%d,%d,0],' "$1" "$i" $(($1 + 1)) "$i"; done; }
+shape here.json "$(slab 0)[0,20,0]"
+shape far.json "$(slab 100)[100,20,0]"
+"$program" move here.json far.json -o part.json -q &
+process=$!
+sleep 3
+kill -INT "$process"
+code=0
+wait "$process" || code=$?
+[ "$code" -eq 2 ] || fault "exit $code of an interrupted search"
+expect_exit 0 steps part.json
+
+# Bad input.
+shape less.json '[0,0,0],[1,0,0]'
+shape parts.json '[0,0,0],[1,0,0],[5,0,0]'
+shape tips.json '[0,0,0],[0,0,1],[1,0,1],[2,0,1]'
+shape four.json '[0,0,0],[1,0,0],[2,0,0],[3,0,0]'
+expect_refusal 65 'has 3 modules and its target 2' row.json less.json
+expect_refusal 65 'the target: ' row.json parts.json
+expect_refusal 65 'the robot is unstable before any step' tips.json four.json
+expect_refusal 65 'missing.json' row.json missing.json
+expect_exit 1 move four.json tips.json
+expect_line out 'the target itself is not safe: unstable'
+expect_exit 64 move row.json tower.json --seconds -1
+expect_exit 64 move row.json tower.json --seconds never
+expect_exit 64 move row.json tower.json --seed -1
+expect_exit 64 move row.json tower.json --within 1,2,3
+expect_exit 64 move row.json tower.json -o row.json
+
+[ "$faults" -eq 0 ] || exit 1
+echo "move: all as expected"
