@@ -401,11 +401,12 @@ Reply order_request(const Request& request) {
   if (!document) {
     return failure(document.error());
   }
-  document.value().extension.plan.clear();
+  io::Document target = std::move(document).value();
+  target.extension.plan.clear();
   const auto report =
-      seek_order(document.value(), {.seconds_max = static_cast<double>(request.header.options[0]),
-                                    .help_seconds_max = kHelpSeconds,
-                                    .thread_count = 1});
+      seek_order(target, {.seconds_max = static_cast<double>(request.header.options[0]),
+                          .help_seconds_max = kHelpSeconds,
+                          .thread_count = 1});
   if (!report) {
     return failure(report.error());
   }
