@@ -19,6 +19,9 @@ after(() => browser.close());
 
 const ROLES = ['existing', 'planned', 'fixed'];
 
+/** A ghost's load ratio is a change of the robot's own (docs/next.md), the click's is found anew. */
+const GHOST_TIE = 1e-7;
+
 /** For each free place of the robot on the page: what its ghost says and what the click then gives. */
 const ghostsAndClicks = (page, role) =>
   page.evaluate(async (chosen) => {
@@ -56,7 +59,7 @@ test('the ghost says what the click gives, for every role at every free place of
         const where = `${name} ${place} ${ROLES[role]}`;
         assert.equal(ghost.verdict, clicked.verdict, where);
         if (clicked.verdict === 'safe' || clicked.verdict === 'overload') {
-          assert.equal(ghost.ratio, clicked.ratio, where);
+          assert.ok(Math.abs(ghost.ratio - clicked.ratio) <= GHOST_TIE, `${where}: ${ghost.ratio}, ${clicked.ratio}`);
           assert.equal(ghost.margin, clicked.margin, where);
         }
         planned.set(String(place), planned.get(String(place)) ?? ghost.verdict);

@@ -92,6 +92,9 @@ std::string headline(const MoveReport& report) {
     case MoveOutcome::kNotFound:
       break;
   }
+  if (plan.undecided_count > 0 && plan.steps.empty()) {
+    return "NOT FOUND   what leads there is undecided, so there may be a plan\n";
+  }
   return fmt::format(
       "NOT FOUND   no plan found so far; there may be one. {} lead to the nearest "
       "shape\n",

@@ -108,9 +108,7 @@ class CoreResponse::Grown {
     if (!match() || !add_loads() || !add_beams()) {
       return std::nullopt;
     }
-    for (std::size_t i = 0; i < robot_.facets().size(); ++i) {
-      states_.push_back(state_of_core(i));
-    }
+    states_.assign(robot_.facets().size(), ContactState{});
     std::set<std::vector<int>> seen;
     for (int step = 0; step < kStepMax; ++step) {
       if (!solve_for_states()) {

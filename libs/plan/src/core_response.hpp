@@ -24,8 +24,9 @@ namespace holdfast::plan {
 ///
 /// where u_0 and U_i are the core's displacements, p_i are loads beyond the core's own, f_m those
 /// of new modules, and S is the stiffness that is new: beams to new modules, their feet, and the
-/// change of tangent of feet in other states than the core's. States are sought as by Newton's
-/// method from the core's on. The core never changes, so nothing depends on what was asked before.
+/// change of tangent of feet in other states than the core's. States are sought by Newton's
+/// method from all stuck, as a check does, or another solution may be found than the check's. The
+/// core never changes, so nothing depends on what was asked before.
 class CoreResponse {
  public:
   using Vec = base::Vec6<double>;

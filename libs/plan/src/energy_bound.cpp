@@ -219,7 +219,7 @@ bool EnergyBound::begin(const std::vector<Element>& elements, const verdict::Ass
   facets_.clear();
   energy_ = 0;
   change_ratio_ = 0;
-  solved_error_ = solved.equilibrium.energy_error;
+  solved_error_ = verdict::kEnergyFactor * solved.equilibrium.energy_error;
   solved_ratio_ = solved.load_ratio_max ? std::max(0.0, solved.load_ratio_range.high) : 0.0;
   std::vector<std::size_t> queue;
   for (std::size_t i = 0; i < elements.size(); ++i) {
@@ -283,7 +283,7 @@ std::optional<double> EnergyBound::add(Element element) {
   carry(module);
   const double radius = (std::sqrt(std::max(0.0, energy_)) + solved_error_) / 2;
   const double bound = solved_ratio_ + change_ratio_ + ratio_per_norm_ * radius;
-  if (!(bound < kRatioMax) || !(radius < room())) {
+  if (!(bound < kRatioMax) || !(radius + solved_error_ / 2 < room())) {
     return std::nullopt;
   }
   return bound;

@@ -17,21 +17,27 @@ bool MoveJudge::is_safe(const RobotState& before, const model::Move& move, const
   if (!transition) {
     return false;
   }
-  if (!is_stage_safe(before, step, transition.value(), Stage::kConnect)) {
-    unsafe_.insert(after);
-    return false;
+  for (const Stage stage : {Stage::kConnect, Stage::kRelease, Stage::kShift}) {
+    const verdict::Verdict verdict = judge(before, step, transition.value(), stage);
+    if (verdict != verdict::Verdict::kSafe) {
+      undecided_count_ += verdict == verdict::Verdict::kUndecided ? 1 : 0;
+      if (stage == Stage::kConnect) {
+        unsafe_.insert(after);
+      }
+      return false;
+    }
   }
-  return is_stage_safe(before, step, transition.value(), Stage::kRelease) &&
-         is_stage_safe(before, step, transition.value(), Stage::kShift);
+  return true;
 }
 
-bool MoveJudge::is_stage_safe(const RobotState& before, const model::Step& step,
-                              const Transition& transition, Stage stage) const {
-  if (!task_.ignores_mechanics) {
-    const auto judged = judge_stage(before, step, transition, stage, options_.solver);
-    return judged && judged.value().is_safe();
+verdict::Verdict MoveJudge::judge(const RobotState& before, const model::Step& step,
+                                  const Transition& transition, Stage stage) const {
+  if (task_.ignores_mechanics) {
+    return find_scenes(before, step, transition, stage) ? verdict::Verdict::kSafe
+                                                        : verdict::Verdict::kUnstable;
   }
-  return bool(find_scenes(before, step, transition, stage));
+  const auto judged = judge_stage(before, step, transition, stage, options_.solver);
+  return judged ? judged.value().verdict : verdict::Verdict::kUnstable;
 }
 
 bool MoveJudge::is_over() const {

@@ -24,17 +24,23 @@ class MoveJudge {
 
   std::size_t count() const { return count_; }
 
+  /// How many moves were not safe because a stage was undecided: they may be safe in truth, so
+  /// that nothing is proved by their being barred.
+  std::size_t undecided_count() const { return undecided_count_; }
+
   /// Tells who asked for it how far the nearest shape is.
   void report(int distance) const;
 
  private:
-  bool is_stage_safe(const RobotState& before, const model::Step& step,
-                     const Transition& transition, Stage stage) const;
+  /// Unstable if the stage cannot be.
+  verdict::Verdict judge(const RobotState& before, const model::Step& step,
+                         const Transition& transition, Stage stage) const;
 
   const MoveTask& task_;
   const MoveOptions& options_;
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
   std::size_t count_ = 0;
+  std::size_t undecided_count_ = 0;
   std::unordered_set<Shape, ShapeHash> unsafe_;  ///< Even when all is connected.
 };
 

@@ -117,10 +117,14 @@ class Search {
   void seek() {
     walk(0);
     std::size_t count = options_.exact_count_max / problem_.space.start().size();
-    for (std::uint64_t attempt = 1; !search(count) && !judge_.is_over(); ++attempt) {
+    for (std::uint64_t attempt = 1; !search(count) && !is_exhausted_ && !judge_.is_over();
+         ++attempt) {
       count = walk(attempt);
     }
-    plan_.length_min = std::max(forth_.length_min(), back_.length_min());
+    plan_.undecided_count = judge_.undecided_count();
+    plan_.length_min = plan_.undecided_count == 0
+                           ? std::max(forth_.length_min(), back_.length_min())
+                           : problem_.space.distance(problem_.space.start());
     if (plan_.outcome == MoveOutcome::kFound) {
       plan_.length_min = std::min(plan_.length_min, length());
     }
@@ -152,7 +156,9 @@ class Search {
   }
 
   void settle(const ShapeSearch& search, End end, SearchOutcome outcome) {
-    if (outcome == SearchOutcome::kExhausted) {
+    if (outcome == SearchOutcome::kExhausted && judge_.undecided_count() > 0) {
+      is_exhausted_ = true;
+    } else if (outcome == SearchOutcome::kExhausted) {
       plan_ = {.outcome = MoveOutcome::kNone};
       plan_.certificate = MoveCertificate{
           .task = task_, .shapes = search.shapes(), .is_backward = end == End::kTarget};
@@ -187,10 +193,16 @@ class Search {
   ShapeSearch back_;
   MovePlan plan_;
   int distance_ = std::numeric_limits<int>::max();
+  bool is_exhausted_ = false;  ///< Nothing is left to try but undecided moves.
 };
 
 MovePlan unsafe_target(const MoveTask& task, const Judgement& judgement) {
-  MovePlan plan{.outcome = MoveOutcome::kNone};
+  MovePlan plan;
+  if (judgement.verdict == verdict::Verdict::kUndecided) {
+    plan.undecided_count = 1;
+    return plan;
+  }
+  plan.outcome = MoveOutcome::kNone;
   plan.certificate = MoveCertificate{.task = task, .target = judgement};
   return plan;
 }
@@ -236,6 +248,10 @@ base::Result<MoveCertificateCheck> replay(const MoveCertificate& certificate,
               fmt::format("the module {} can go to {} safely, across the border of "
                           "the shapes",
                           model::text(made.from), model::text(made.to)));
+        }
+        if (judge.undecided_count() > 0) {
+          return bad_input(fmt::format("whether the module {} can go to {} safely is undecided",
+                                       model::text(made.from), model::text(made.to)));
         }
         ++check.unsafe_count;
       }
@@ -290,8 +306,9 @@ base::Result<MoveCertificateCheck> verify(const MoveCertificate& certificate,
   }
   const MoveOptions more{.solver = options};
   if (certificate.target) {
-    if (judge_spec(task.target, more).is_safe()) {
-      return bad_input("the target is safe");
+    const Judgement target = judge_spec(task.target, more);
+    if (target.is_safe() || target.verdict == verdict::Verdict::kUndecided) {
+      return bad_input(fmt::format("the target is {}", verdict::name(target.verdict)));
     }
     return MoveCertificateCheck{.unsafe_count = 1};
   }

@@ -47,6 +47,21 @@ TEST(MovePlan, a_module_slides_along_a_row_and_turns_around_its_end) {
   EXPECT_EQ(plan.judgement->verdict(), verdict::Verdict::kSafe);
 }
 
+TEST(MovePlan, an_undecided_target_proves_nothing) {
+  // It stands by the rigid body, and by the elastic solution its feet may slip.
+  MoveTask task = task_of({{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {0, 0, 1}, {1, 0, 1}, {2, 0, 1}},
+                          {{0, 0, 0}, {2, 0, 0}, {0, 0, 1}, {1, 0, 1}, {2, 0, 1}, {2, 0, 2}});
+  task.start.floor.friction = 0.01;
+  task.target.floor.friction = 0.01;
+  const MovePlan plan = plan_of(task);
+  EXPECT_EQ(plan.outcome, MoveOutcome::kNotFound);
+  EXPECT_EQ(plan.undecided_count, 1U);
+  EXPECT_FALSE(plan.certificate);
+  const MoveCertificate certificate{.task = task,
+                                    .target = Judgement{.verdict = verdict::Verdict::kUndecided}};
+  EXPECT_FALSE(verify(certificate));
+}
+
 TEST(MovePlan, the_same_shape_needs_no_step) {
   const MovePlan plan = plan_of(task_of({{0, 0, 0}, {0, 0, 1}}, {{0, 0, 1}, {0, 0, 0}}));
   EXPECT_EQ(plan.outcome, MoveOutcome::kFound);

@@ -236,6 +236,42 @@ TEST(Sequence, has_the_same_bits_with_any_number_of_threads) {
   }
 }
 
+TEST(Sequence, finds_the_solution_that_a_check_finds) {
+  // Newton's method from all stuck cycles on the first of these robots, so that a check answers by
+  // the exact law; from the states of the feet without the walker it settles on a lesser load.
+  model::RobotSpec spec{.existing = {{0, 0, 2},
+                                     {1, 0, 1},
+                                     {1, 0, 2},
+                                     {1, 0, 3},
+                                     {1, 1, 3},
+                                     {2, 0, 1},
+                                     {2, 0, 2},
+                                     {2, 1, 1},
+                                     {3, -1, 2},
+                                     {3, 0, 0},
+                                     {3, 0, 1},
+                                     {3, 0, 2},
+                                     {4, -1, 2},
+                                     {4, 0, 0},
+                                     {4, 0, 1},
+                                     {5, -1, 0},
+                                     {5, 0, 0},
+                                     {5, 0, 1},
+                                     {5, 0, 2}}};
+  spec.material.strength_vertical_n = 5.397700430814525;
+  spec.material.strength_lateral_n = 6.744872742011138;
+  const verdict::Assessment checked = verdict::assess(model::Robot::create(spec).value());
+  EXPECT_EQ(checked.verdict, Verdict::kOverload);
+  EXPECT_EQ(checked.contact_model, verdict::ContactModel::kUnilateral);
+  const model::Step there = test::move({5, 0, 2}, {6, 0, 1});
+  const model::Step back = test::move({6, 0, 1}, {5, 0, 2});
+  const std::vector<model::Step> steps = {there, back, there, back};
+  const SequenceJudgement judged = judge_sequence(spec, steps).value();
+  EXPECT_EQ(judged.steps[0].stages[0].verdict, Verdict::kOverload);
+  EXPECT_EQ(judged.steps[1].stages[2].verdict, Verdict::kOverload);
+  EXPECT_NEAR(*judged.steps[1].stages[2].load_ratio_max, *checked.load_ratio_max, 1e-9);
+}
+
 TEST(Sequence, names_the_first_unsafe_stage_and_can_end_there) {
   // A module goes out on an arm of three on a post; it topples when the centre of mass leaves the
   // foot. With n = 8 modules, of which the post of 4 is at 0: 40 (1 + 2 + 3) + x < 20 n at x = -80.

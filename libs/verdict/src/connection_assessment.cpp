@@ -95,7 +95,6 @@ Loads add_up(const model::Robot& robot, int thread_count, Assessment& assessment
 /// difference so many times, or what the energy so many times could do to a load ratio, whichever
 /// is less; and never less than what is promised (docs/solver.md).
 constexpr double kMultigridFactor = 10;
-constexpr double kEnergyFactor = 3;
 
 /// Refinements in double that find nothing but rounding differ by less than their error now and
 /// then.

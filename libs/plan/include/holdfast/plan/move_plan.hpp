@@ -75,6 +75,9 @@ struct MovePlan {
   bool is_shortest = false;     ///< No plan has fewer steps.
   int length_min = 0;           ///< No plan has fewer steps than this.
   std::size_t state_count = 0;  ///< Moves judged, that is shapes beside others.
+  /// Moves, or the target, that were not taken because they are undecided: where there are any,
+  /// `none` and the shortest plan are not proved.
+  std::size_t undecided_count = 0;
   /// Of the steps, judged anew as one sequence; none if there is no step.
   std::optional<SequenceJudgement> judgement = {};
   std::optional<MoveCertificate> certificate = {};  ///< Of kNone.

@@ -117,6 +117,9 @@ struct Assessment {
 /// this counts as no load. Rounding moves ratios by about 1e-13.
 inline constexpr double kLoadRatioTie = 1e-9;
 
+/// The estimate of an error's energy norm, Equilibrium::energy_error, counts so many times.
+inline constexpr double kEnergyFactor = 3;
+
 /// Whether a connection with this load ratio breaks.
 inline bool breaks(double load_ratio) { return load_ratio >= 1 - kLoadRatioTie; }
 
