@@ -10,6 +10,7 @@
 
 #include "holdfast/holdfast.hpp"
 #include "holdfast/mechanics/ground_contact.hpp"
+#include "holdfast/model/families.hpp"
 #include "holdfast/solver/block_lu.hpp"
 
 namespace {
@@ -115,6 +116,19 @@ void verdict_from_cells(benchmark::State& state) {
   }
 }
 
+/// A full check from cells on one thread, as a library: robots of about a hundred modules.
+void check_of_family(benchmark::State& state, const char* name) {
+  const auto family = hf::model::find_family(name);
+  const hf::model::RobotSpec spec{
+      .existing = hf::model::family_cells(*family, static_cast<std::size_t>(state.range(0))),
+      .lattice = hf::model::family_lattice(*family)};
+  for (auto _ : state) {
+    const auto robot = hf::model::Robot::create(spec, 1);
+    benchmark::DoNotOptimize(hf::verdict::assess(robot.value(), {.thread_count = 1}));
+  }
+  state.counters["modules"] = static_cast<double>(spec.existing.size());
+}
+
 void linear_holdfast(benchmark::State& state) {
   const Blocks blocks = assemble(robot_of(state));
   for (auto _ : state) {
@@ -178,6 +192,11 @@ void shapes(benchmark::internal::Benchmark* bench) {
 
 BENCHMARK(verdict_from_cells)->Unit(benchmark::kMicrosecond);
 BENCHMARK(verdict)->Apply(shapes);
+BENCHMARK_CAPTURE(check_of_family, tower, "tower")->Arg(11)->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(check_of_family, cube, "cube")->Arg(5)->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(check_of_family, growth, "growth")->Arg(100)->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(check_of_family, portal, "portal")->Arg(7)->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(check_of_family, arm, "arm")->Arg(100)->Unit(benchmark::kMicrosecond);
 BENCHMARK(linear_holdfast)->Apply(shapes);
 BENCHMARK(linear_eigen)->Apply(shapes);
 BENCHMARK(linear_cholmod)->Apply(shapes);

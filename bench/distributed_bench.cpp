@@ -2,13 +2,17 @@
 // SPDX-License-Identifier: Apache-2.0
 // The robot's own computation, measured:
 //   distributed_bench cases FILE...       rounds, packets and V1 seconds of each method, a table
-//   distributed_bench random FROM TO      random robots against the exact answer, quiet links
+//   distributed_bench random FROM TO [METHOD]   random robots against the exact answer, quiet links
+//   distributed_bench general FROM TO     cubes on walls and ceilings, with loads of their own
+//   distributed_bench general FROM TO planned   the same with one to three modules planned
 //   distributed_bench noisy FROM TO       the same with loss, duplication, jitter, bit errors
 //   distributed_bench faults FROM TO      a random module dies or a random link fails
 //   distributed_bench stale FROM TO       the same after a safe verdict, then an unsafe plan
 //   distributed_bench liars FROM TO       a random module hangs, or changes what it sends
 //   distributed_bench watching FILE...    packets that watching over the verdict costs, a table
 //   distributed_bench plans FROM TO       plans told, carried out and withdrawn at any time
+//   distributed_bench storms FROM TO      deaths, cuts, restarts and plans, several at once
+//   distributed_bench mishaps FROM TO     short runs of one kind of fault each, at every moment
 //   distributed_bench growth              rounds against the length of a fixed arm, each method
 //   distributed_bench sweeps METHOD FILE...   sweeps of the equilibrium, a CSV
 //   distributed_bench throughput          events per second and memory of large robots
@@ -22,10 +26,13 @@
 #include <vector>
 
 #include "campaign.hpp"
+#include "general_robot.hpp"
 #include "holdfast/base/rng.hpp"
 #include "holdfast/distributed.hpp"
+#include "mishap_campaign.hpp"
 #include "plan_campaign.hpp"
 #include "random_robot.hpp"
+#include "storm_campaign.hpp"
 #include "watch_campaign.hpp"
 
 namespace {
@@ -81,6 +88,8 @@ struct Tally {
   int fallen_back = 0;  ///< To conjugate gradients, under the regularised law.
   double ratio_error = 0;
   std::vector<double> sweeps;  ///< Of those that needed an equilibrium.
+  std::vector<double> rounds;  ///< And all rounds and kilobytes of these.
+  std::vector<double> kilobytes;
 
   void add(const test::Comparison& comparison, std::uint64_t seed) {
     ++count;
@@ -92,6 +101,8 @@ struct Tally {
     ratio_error = std::max(ratio_error, comparison.ratio_error());
     if (comparison.sweeps() > 0) {
       sweeps.push_back(comparison.sweeps());
+      rounds.push_back(static_cast<double>(comparison.result.rounds));
+      kilobytes.push_back(static_cast<double>(comparison.result.bytes) / 1000);
     }
     if (comparison.is_wrong() || comparison.is_undecided() || !comparison.result.all_agree ||
         comparison.ratio_error() > 1) {
@@ -100,27 +111,63 @@ struct Tally {
   }
 };
 
-int run_random(std::uint64_t from, std::uint64_t to, bool is_noisy) {
+void print_shares(const char* what, std::vector<double>& values) {
+  std::ranges::sort(values);
+  const auto share = [&](double part) {
+    const auto last = static_cast<double>(values.size()) - 1;
+    return values.empty() ? 0 : values[static_cast<std::size_t>(part * last)];
+  };
+  fmt::print("  {}: median {:.0f}, 90 % {:.0f}, 99 % {:.0f}, most {:.0f}\n", what, share(0.5),
+             share(0.9), share(0.99), share(1));
+}
+
+int run_random(std::uint64_t from, std::uint64_t to, bool is_noisy, Method method) {
   Tally tally;
   for (std::uint64_t seed = from; seed < to; ++seed) {
-    sim::SimulationOptions options{.seed = seed};
+    sim::SimulationOptions options{.seed = seed, .method = method};
     if (is_noisy) {
       options.link = test::noisy_rounds();
     }
     tally.add(test::compare(make_robot(test::random_robot(seed)), options), seed);
   }
-  std::ranges::sort(tally.sweeps);
-  const auto share = [&](double part) {
-    const auto last = static_cast<double>(tally.sweeps.size()) - 1;
-    return tally.sweeps.empty() ? 0 : tally.sweeps[static_cast<std::size_t>(part * last)];
-  };
   fmt::print(
       "{} robots: {} wrong, {} undecided, {} not agreed; {} to conjugate gradients; largest error "
-      "{:.4f} of what is allowed; sweeps of {}: median {:.0f}, 90 % {:.0f}, 99 % {:.0f}, most "
-      "{:.0f}\n",
+      "{:.4f} of what is allowed; of {} with an equilibrium:\n",
       tally.count, tally.wrong, tally.undecided, tally.disagreeing, tally.fallen_back,
-      tally.ratio_error, tally.sweeps.size(), share(0.5), share(0.9), share(0.99), share(1));
+      tally.ratio_error, tally.sweeps.size());
+  print_shares("sweeps", tally.sweeps);
+  print_shares("rounds", tally.rounds);
+  print_shares("kB", tally.kilobytes);
   return tally.wrong + tally.undecided;
+}
+
+/// Robots that the exact solver does not decide are counted apart.
+int run_general(std::uint64_t from, std::uint64_t to, bool is_planned) {
+  Tally tally;
+  int both_undecided = 0;
+  int decided_alone = 0;
+  int wrong_safe = 0;
+  for (std::uint64_t seed = from; seed < to; ++seed) {
+    const auto robot = model::Robot::create(test::with_last_planned(
+        test::general_robot(base::kCubic, seed), is_planned ? 1 + seed % 3 : 0));
+    if (!robot) {
+      continue;  // Nothing else of it is held.
+    }
+    const test::Comparison comparison = test::compare(robot.value(), {.seed = seed});
+    if (comparison.exact == verdict::Verdict::kUndecided) {
+      (comparison.is_undecided() ? both_undecided : decided_alone) += 1;
+      continue;
+    }
+    wrong_safe += comparison.is_wrong() && comparison.robot == agent::Verdict::kSafe ? 1 : 0;
+    tally.add(comparison, seed);
+  }
+  fmt::print(
+      "{} robots: {} wrong, {} of them safe, {} undecided, {} not agreed; largest error {:.4f} of "
+      "what is allowed; not decided by the exact solver {}, by the robot either {}\n",
+      tally.count, tally.wrong, wrong_safe, tally.undecided, tally.disagreeing, tally.ratio_error,
+      both_undecided + decided_alone, both_undecided);
+  print_shares("sweeps", tally.sweeps);
+  return tally.wrong;
 }
 
 int run_faults(std::uint64_t from, std::uint64_t to) {
@@ -251,6 +298,53 @@ int run_watching(std::span<char*> files) {
   return 0;
 }
 
+int run_storms(std::uint64_t from, std::uint64_t to) {
+  test::StormTally tally;
+  for (std::uint64_t seed = from; seed < to; ++seed) {
+    const int before = tally.faults();
+    test::run_storm(seed, tally);
+    if (tally.faults() > before) {
+      fmt::print(stderr, "seed {}\n", seed);
+    }
+  }
+  fmt::print(
+      "| runs | wrong safe | nothing said | nothing broken | of these wrong | undecided | "
+      "divided | latest, in first rounds |\n|---|---|---|---|---|---|---|---|\n"
+      "| {} | {} | {} | {} | {} | {} | {} | {:.2f} |\n",
+      tally.runs, tally.wrong_safe, tally.silent, tally.whole_runs, tally.wrong, tally.undecided,
+      tally.divided, tally.latest);
+  return tally.faults();
+}
+
+/// So many runs, the kinds in turns.
+int run_mishaps(std::uint64_t from, std::uint64_t to) {
+  std::array<test::MishapTally, test::kMishapCount> tallies;
+  for (std::uint64_t run = from; run < to; ++run) {
+    const auto what = static_cast<test::Mishap>(run % test::kMishapCount);
+    test::MishapTally& tally = tallies[run % test::kMishapCount];
+    const int before = tally.faults();
+    test::run_mishap(what, run / test::kMishapCount, tally);
+    if (tally.faults() > before) {
+      fmt::print(stderr, "mishaps {} {}\n", run, run + 1);
+    }
+  }
+  int faults = 0;
+  fmt::print(
+      "| what | runs | wrong safe | old safe | nothing said | divided | late | messages changed | "
+      "whole in the end | of these wrong | undecided | slowest, in fresh starts | longest old "
+      "safe, "
+      "in silence times |\n|---|---|---|---|---|---|---|---|---|---|---|---|---|\n");
+  for (std::size_t i = 0; i < tallies.size(); ++i) {
+    const test::MishapTally& tally = tallies[i];
+    fmt::print("| {} | {} | {} | {} | {} | {} | {} | {} | {} | {} | {} | {:.2f} | {:.2f} |\n",
+               test::name(static_cast<test::Mishap>(i)), tally.runs, tally.wrong_safe,
+               tally.old_safe, tally.silent, tally.divided, tally.late, tally.changed,
+               tally.whole_runs, tally.wrong, tally.undecided, tally.slowest, tally.longest);
+    faults += tally.faults();
+  }
+  return faults;
+}
+
 int run_plans(std::uint64_t from, std::uint64_t to) {
   int faults = 0;
   fmt::print(
@@ -349,8 +443,9 @@ int run_throughput() {
 
 int usage() {
   fmt::print(stderr,
-             "usage: distributed_bench cases FILE... | random FROM TO | noisy FROM TO | "
-             "faults FROM TO | stale FROM TO | liars FROM TO | plans FROM TO | watching FILE... | "
+             "usage: distributed_bench cases FILE... | random FROM TO [METHOD] | noisy FROM TO | "
+             "faults FROM TO | stale FROM TO | liars FROM TO | plans FROM TO | storms FROM TO | "
+             "mishaps FROM TO | watching FILE... | "
              "growth | sweeps METHOD FILE... | throughput\n");
   return 64;
 }
@@ -372,17 +467,29 @@ int main(int argc, char** argv) {
   if (what == "growth" || what == "throughput") {
     return what == "growth" ? run_growth() : run_throughput();
   }
-  constexpr std::string_view kCampaigns[] = {"random", "noisy", "faults",
-                                             "stale",  "liars", "plans"};
-  if (argc != 4 || std::ranges::find(kCampaigns, what) == std::end(kCampaigns)) {
+  constexpr std::string_view kCampaigns[] = {"random", "noisy", "faults", "stale",
+                                             "liars",  "plans", "storms", "mishaps"};
+  const bool is_planned = argc == 5 && std::string_view(argv[4]) == "planned";
+  if (what == "general" && (argc == 4 || is_planned)) {
+    return run_general(std::strtoull(arguments[2], nullptr, 10),
+                       std::strtoull(arguments[3], nullptr, 10), is_planned) == 0
+               ? 0
+               : 1;
+  }
+  const std::optional<Method> method =
+      argc == 5 && what == "random" ? find_method(arguments[4]) : Method::kElimination;
+  if ((argc != 4 && what != "random") || !method ||
+      std::ranges::find(kCampaigns, what) == std::end(kCampaigns)) {
     return usage();
   }
   const std::uint64_t from = std::strtoull(arguments[2], nullptr, 10);
   const std::uint64_t to = std::strtoull(arguments[3], nullptr, 10);
-  const int faults = what == "faults"  ? run_faults(from, to)
-                     : what == "stale" ? run_stale(from, to)
-                     : what == "liars" ? run_liars(from, to)
-                     : what == "plans" ? run_plans(from, to)
-                                       : run_random(from, to, what == "noisy");
+  const int faults = what == "faults"    ? run_faults(from, to)
+                     : what == "stale"   ? run_stale(from, to)
+                     : what == "liars"   ? run_liars(from, to)
+                     : what == "plans"   ? run_plans(from, to)
+                     : what == "storms"  ? run_storms(from, to)
+                     : what == "mishaps" ? run_mishaps(from, to)
+                                         : run_random(from, to, what == "noisy", *method);
   return faults == 0 ? 0 : 1;
 }

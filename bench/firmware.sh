@@ -1,10 +1,11 @@
 #!/usr/bin/env bash
-# firmware.sh HOLDFAST   every scenario as firmware on emulated modules: the table of the README.
-# Seconds are simulated, from the plan (or the start) to the last module's verdict. Beside them what
-# version 1 takes with the published method: iterations x 110.5 ms [Piranda 2021].
+# firmware.sh HOLDFAST [BOARD]   every scenario as firmware on emulated modules: the table of the
+# README, or with v1 on the lines of Blinky Blocks 1. Seconds are simulated, from the plan (or the
+# start) to the last module's verdict. Beside them what version 1 takes with the published method:
+# iterations x 110.5 ms [Piranda 2021].
 set -euo pipefail
 holdfast=$1
-python3 - "$holdfast" <<'PYTHON'
+python3 - "$holdfast" "${2:-v2}" <<'PYTHON'
 import json, pathlib, subprocess, sys
 
 # Preset iterations of the published experiments, by the scenario's structure.
@@ -20,7 +21,8 @@ print('| scenario | modules | verdict | firmware: s | longest step: ms | mean st
 print('|---|---|---|---|---|---|---|---|---|')
 image = None
 for path in sorted(pathlib.Path('scenarios').glob('*.json')):
-    run = subprocess.run([sys.argv[1], 'emulate', str(path), '--quiet', '--json', '-'],
+    run = subprocess.run([sys.argv[1], 'emulate', str(path), '--board', sys.argv[2], '--quiet',
+                          '--json', '-'],
                          capture_output=True, text=True, check=False)
     report = json.loads(run.stdout)
     image, robot = report['firmware'], report['distributed']

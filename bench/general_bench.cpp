@@ -95,6 +95,19 @@ struct Breaking {
   int stage_count = 0;
 };
 
+/// The largest load ratio by every solution that the verdict heeds. Where facets are open, and by
+/// the paper's law pull by their weak springs, that is the exact law's as well.
+double ratio_heeded(const Assessment& assessment) {
+  double ratio = *assessment.load_ratio_max;
+  if (assessment.several) {
+    ratio = std::max(ratio, assessment.several->regularised.high);
+    if (assessment.several->unilateral) {
+      ratio = std::max(ratio, assessment.several->unilateral->high);
+    }
+  }
+  return ratio;
+}
+
 constexpr double kNoLoad = 1e-6;  ///< Load ratios below are none: the rest holds any load.
 constexpr double kTie = 1e-9;
 
@@ -106,7 +119,8 @@ Breaking break_all(model::RobotSpec spec, bool is_one_by_one) {
       break;  // Falls, or nothing is known of its loads.
     }
     const double ratio = *assessment.load_ratio_max;
-    const double factor = ratio < kNoLoad ? limit::kFactorMax : 1 / ratio;
+    const double heeded = ratio_heeded(assessment);
+    const double factor = heeded < kNoLoad ? limit::kFactorMax : 1 / heeded;
     breaking.first = breaking.stage_count == 0 ? factor : breaking.first;
     breaking.highest = std::max(breaking.highest, factor);
     ++breaking.stage_count;

@@ -6,7 +6,7 @@ include(CMakePackageConfigHelpers)
 # One library of all rooms but the firmware's, twice of the same objects. In 0.x every minor version
 # may change the interface, so it is part of the shared library's name.
 get_property(rooms GLOBAL PROPERTY HOLDFAST_ROOMS)
-list(REMOVE_ITEM rooms boards softfloat)
+list(REMOVE_ITEM rooms boards cluster softfloat)
 foreach(kind static shared)
   set(library holdfast_${kind})
   string(TOUPPER ${kind} KIND)

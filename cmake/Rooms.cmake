@@ -36,8 +36,8 @@ function(holdfast_room name)
     target_include_directories(${target} PRIVATE src)
     target_link_libraries(${target} PRIVATE ${ROOM_PRIVATE_LINKS})
     holdfast_same_bits(${target})
-    if(HOLDFAST_INSTALL)
-      # The shared library is made of the same objects. Nobody replaces functions within it.
+    if(HOLDFAST_INSTALL OR HOLDFAST_BUILD_PYTHON)
+      # Shared libraries are made of the same objects. Nobody replaces functions within it.
       set_target_properties(${target} PROPERTIES POSITION_INDEPENDENT_CODE ON)
       target_compile_options(${target} PRIVATE
         $<$<CXX_COMPILER_ID:GNU>:-fno-semantic-interposition>)

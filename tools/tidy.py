@@ -23,7 +23,9 @@ FILE_LINES_MAX = 800
 FUNCTION_LINES_MAX = 70
 COLUMNS_MAX = 100
 FREESTANDING = {'base', 'boards', 'mechanics', 'agent', 'module'}
-FACADE_HEADERS = {'holdfast', 'distributed', 'emulated', 'move', 'order', 'steps', 'trial'}
+APPLICATIONS = ('apps/', 'examples/', 'python/')
+FACADE_HEADERS = {'holdfast', 'distributed', 'emulated', 'move', 'order', 'simulated_next',
+                  'simulated_stages', 'simulated_steps', 'steps', 'trial'}
 HOSTED_HEADERS = {'string', 'vector', 'map', 'set', 'memory', 'iostream', 'fstream', 'variant',
                   'cstdio', 'cstdlib', 'functional', 'stdexcept'}
 # base is freestanding but for what says in its first lines that it is for hosts.
@@ -66,7 +68,7 @@ def facade_exports(root):
 
 
 def check_named_rooms(name, lines, links, exported):
-    if not name.startswith(('apps/', 'examples/')) or name.startswith('apps/checker/'):
+    if not name.startswith(APPLICATIONS) or name.startswith(('apps/checker/', 'apps/cluster/')):
         return
     for number, line in enumerate(lines, 1):
         for room in re.findall(r'(?<![\w:])(?:holdfast::|hf::)?(\w+)::', line.split('//')[0]):
@@ -78,7 +80,7 @@ def check_named_rooms(name, lines, links, exported):
 def check_includes(name, lines, links):
     match = re.match(r'libs/(\w+)/(include|src)/', name)
     allowed = links[match[1]] if match else None
-    if name.startswith('apps/') or name.startswith('examples/'):
+    if name.startswith(APPLICATIONS):
         allowed = None
     for number, line in enumerate(lines, 1):
         include = re.match(r'#include ["<]holdfast/(\w+)[/.]', line)
@@ -89,7 +91,10 @@ def check_includes(name, lines, links):
         if name.startswith('apps/checker/'):
             if include and include[1] != 'certificate':
                 fault(name, number, 'the checker includes only certificate')
-        elif (include and name.startswith(('apps/', 'examples/'))
+        elif name.startswith('apps/cluster/'):
+            if include and include[1] != 'cluster':
+                fault(name, number, 'holdfast-mpi includes only cluster')
+        elif (include and name.startswith(APPLICATIONS)
                 and include[1] not in FACADE_HEADERS):
             fault(name, number, 'applications include only the facade, holdfast/holdfast.hpp, '
                                 'trial.hpp, distributed.hpp and emulated.hpp')

@@ -1,4 +1,5 @@
-# Debian packages of what is installed: holdfast (the programs), libholdfast0.1 and libholdfast-dev.
+# Debian packages of what is installed: holdfast (the programs), libholdfast0.1, libholdfast-dev
+# and, if it is built, python3-holdfast.
 # cpack -G DEB, or ./dev package.
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
@@ -37,6 +38,19 @@ holdfast_package(program holdfast science "will a modular robot hold? (programs)
 holdfast_package(library ${library} libs "will a modular robot hold? (shared library)")
 holdfast_package(development libholdfast-dev libdevel
                  "will a modular robot hold? (headers and static library)" "${needed}")
+if(HOLDFAST_BUILD_PYTHON)
+  list(APPEND CPACK_COMPONENTS_ALL python)
+  # The extension is for this version of Python alone.
+  math(EXPR minor "${Python_VERSION_MINOR} + 1")
+  set(this ${Python_VERSION_MAJOR}.${Python_VERSION_MINOR})
+  set(next ${Python_VERSION_MAJOR}.${minor})
+  holdfast_package(python python3-holdfast python "will a modular robot hold? (Python package)"
+    "python3 (>= ${this}), python3 (<< ${next}), python3-numpy (>= 1:1.24)")
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_SHLIBDEPS ON)
+  # Pictures; the page in notebooks is the program's.
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_SUGGESTS
+      "python3-matplotlib, python3-pil, python3-vtk9, holdfast")
+endif()
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_SUGGESTS xdg-utils)
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_SHLIBDEPS ON)

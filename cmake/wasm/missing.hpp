@@ -78,6 +78,13 @@ constexpr void stable_sort(Range&& range, Compare compare = {}, Projection proje
   std::stable_sort(std::begin(range), std::end(range), holdfast_detail::by(compare, projection));
 }
 
+template <class Range, class Compare = holdfast_detail::Less,
+          class Projection = holdfast_detail::Identity>
+constexpr bool is_sorted(Range&& range, Compare compare = {}, Projection projection = {}) {
+  return std::is_sorted(std::begin(range), std::end(range),
+                        holdfast_detail::by(compare, projection));
+}
+
 template <class Range>
 constexpr auto unique(Range&& range) {
   const auto last = std::end(range);
@@ -224,6 +231,11 @@ constexpr auto min(Range&& range) {
 template <class Range, class Output>
 constexpr auto copy(Range&& range, Output output) {
   return std::copy(std::begin(range), std::end(range), output);
+}
+
+template <class Range, class Output, class Predicate>
+constexpr auto copy_if(Range&& range, Output output, Predicate predicate) {
+  return std::copy_if(std::begin(range), std::end(range), output, predicate);
 }
 
 template <class Range, class Output>

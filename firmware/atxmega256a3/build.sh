@@ -11,7 +11,8 @@ ram_max=16384
 headers=$(echo /usr/include/newlib/c++/*/ | tr ' ' '\n' | tail -1)
 flags=(--target=avr -mmcu=atxmega256a3 -std=c++20 -Os -DNDEBUG -ffreestanding -fno-exceptions
        -fno-rtti -ffp-contract=off -ffunction-sections -fdata-sections -nostdinc++
-       -DHOLDFAST_AGENT_ELIMINATION_ONLY -DHOLDFAST_AGENT_SMALL_CHECKSUM
+       -DHOLDFAST_AGENT_ONE_SWEEP_ONLY -DHOLDFAST_AGENT_STARTS_AFRESH
+       -DHOLDFAST_AGENT_SMALL_CHECKSUM -DHOLDFAST_AGENT_FLOOR_ONLY
        -isystem "$headers" -isystem "${headers}arm-none-eabi/thumb/v6-m/nofp"
        -isystem /usr/lib/avr/include)
 for room in base mechanics agent module; do
@@ -20,10 +21,9 @@ done
 mkdir -p "$out"
 objects=()
 for source in "$rooms"/{mechanics,agent,module}/src/*.cpp "$here/main.cpp"; do
-  # elimination_only.cpp is in its place.
-  [ "$(basename "$source")" != all_methods.cpp ] || continue
   object=$out/$(basename "$(dirname "$(dirname "$source")")")_$(basename "$source" .cpp).o
-  if [ "$source" -nt "$object" ]; then
+  if [ "$source" -nt "$object" ] || [ -n "$(find "$rooms"/{base,mechanics,agent,module} \
+      -name '*.hpp' -newer "$object" -print -quit)" ]; then
     clang++-14 "${flags[@]}" -c "$source" -o "$object"
   fi
   objects+=("$object")

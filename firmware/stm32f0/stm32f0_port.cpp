@@ -8,7 +8,6 @@
 namespace holdfast::stm32f0 {
 namespace {
 
-using boards::stm32f0::kBaudDivisor;
 using boards::stm32f0::kClockHz;
 using boards::stm32f0::kLines;
 using boards::stm32f0::Line;
@@ -118,7 +117,7 @@ Stm32f0Port::Stm32f0Port() {
     in.CMAR = address(faces_[face].ring.data());
     in.CNDTR = kRingBytes;
     in.CCR = kMemoryIncrement | kCircular | kEnable;
-    uart.BRR = kBaudDivisor;
+    uart.BRR = boards::stm32f0::baud_divisor(boards::stm32f0::kBaud);
     uart.CR3 = 1U << 6U | 1U << 7U | 1U << 12U;  // DMA both ways, no stop at an overrun
     uart.CR1 = 1U << 0U | 1U << 2U | 1U << 3U;   // Enable, receive, send
   }

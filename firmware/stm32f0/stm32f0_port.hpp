@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "holdfast/boards/stm32f0.hpp"
 #include "holdfast/module/serial_port.hpp"
 
 namespace holdfast::stm32f0 {
@@ -20,9 +21,9 @@ class Stm32f0Port final : public module::SerialPort {
   void show(const agent::Colour& colour) override;
 
  private:
-  /// 44 ms of bytes. A line on which more comes in during one step loses some, and the links repeat
-  /// them.
-  static constexpr std::size_t kRingBytes = 512;
+  /// 44 ms of bytes, or 67 of version 1's. A line on which more comes in during one step loses
+  /// some, and the links repeat them.
+  static constexpr std::size_t kRingBytes = boards::stm32f0::kBaud < 115'200 ? 256 : 512;
 
   bool read(int face, std::uint8_t& byte) override;
   std::span<std::uint8_t, module::kFrameBytesMax> buffer(int face) override;

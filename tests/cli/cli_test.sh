@@ -142,6 +142,12 @@ expect_line err 'one is there'
 expect_exit 65 simulate "$safe" --plan 9,9,9@1
 expect_line err 'touches neither'
 expect_exit 64 simulate "$safe" --loss 1.5
+expect_exit 0 simulate "$safe" --next --link unit --json faces.json --svg faces.svg
+expect_line faces.json '"undecided": 0'
+expect_exit 64 simulate "$safe" --next --kill 2,1,1@0.5
+expect_exit 64 simulate "$safe" --next --steps
+expect_exit 64 simulate "$safe" --next --stages
+expect_exit 64 simulate "$safe" --steps --stages
 expect_exit 64 simulate "$safe" --method magic
 expect_exit 65 simulate nowhere.json
 

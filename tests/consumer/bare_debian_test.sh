@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # bare_debian_test.sh PACKAGES   as root: makes a bare Debian 12 in a temporary folder, installs the
-# packages there and uses them: the programs first, then, with a compiler, the library.
+# packages there and uses them: the programs first, then the Python package, then, with a compiler,
+# the library.
 set -euo pipefail
 packages=$(cd "$1" && pwd)
 here=$(cd "$(dirname "$0")" && pwd)
@@ -31,6 +32,15 @@ inside 'holdfast check --quiet --certificate /tmp/proof /tmp/arm_breaks_a.json
         holdfast-checker /tmp/proof
         holdfast view --out - /tmp/arm_breaks_a.json >/tmp/page.html
         grep -q arm_breaks_a /tmp/page.html'
+
+install '/tmp/python3-holdfast_*.deb'
+inside 'cd / && python3 -c "
+import holdfast
+r = holdfast.Robot([[0,0,0],[0,0,1],[1,0,1]], planned=[[2,0,1]]).check()
+assert r.verdict.name in (\"SAFE\", \"OVERLOAD\", \"UNSTABLE\", \"UNDECIDED\")
+assert r.connections[\"load_ratio\"].max() > 0
+assert holdfast.load(\"/tmp/arm_breaks_a.json\").check().verdict is holdfast.Verdict.SAFE
+print(\"Python:\", repr(r))"'
 
 install '/tmp/*.deb' g++ cmake ninja-build pkg-config
 for kind in shared static; do

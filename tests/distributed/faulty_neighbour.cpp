@@ -144,7 +144,7 @@ void FaultyNeighbour::spoil(Bytes& message) {
 }
 
 FaultyNeighbour::Bytes FaultyNeighbour::random_message() {
-  constexpr auto kTypes = static_cast<std::uint64_t>(wire::MessageType::kBranchDown);
+  constexpr auto kTypes = static_cast<std::uint64_t>(wire::MessageType::kNews);
   Bytes message(2);
   message[0] = static_cast<std::uint8_t>(1 + rng_.below(kTypes));
   message[1] = static_cast<std::uint8_t>(1 + rng_.below(wire::kOperationCount));

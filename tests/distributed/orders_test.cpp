@@ -12,6 +12,7 @@
 #include <set>
 #include <sstream>
 
+#include "general_robot.hpp"
 #include "holdfast/agent/operations.hpp"
 #include "holdfast/agent/wire.hpp"
 #include "holdfast/holdfast.hpp"
@@ -136,8 +137,20 @@ void watch_random_robots(Pairs& pairs) {
     if (is_exact || seed < 40) {
       watch(robot, agent::Method::kElimination, pairs);
       watch(robot, agent::Method::kConjugateGradients, pairs);
+      watch(robot, agent::Method::kFronts, pairs);
     }
   }
+}
+
+/// A module on a beam goes on by a cell.
+void watch_step(const model::Robot& robot, Pairs& pairs) {
+  using Kind = agent::StepWord::Kind;
+  OrderWatch orders(pairs);
+  sim::SimulationOptions options{.trace = &orders};
+  options.step = {{.kind = Kind::kMove, .face = 5, .first = 0, .cell = {0, 0, 3}},
+                  {.kind = Kind::kCarry, .mask = 3, .cell = {0, 0, 2}},
+                  {.kind = Kind::kCarry, .mask = 6, .cell = {1, 0, 2}}};
+  sim::Simulation(robot, options).run();
 }
 
 TEST(Orders, follow_each_other_as_the_document_says) {
@@ -152,6 +165,10 @@ TEST(Orders, follow_each_other_as_the_document_says) {
     }
   }
   watch_random_robots(seen);
+  for (std::uint64_t seed = 0; seed < 12; ++seed) {
+    const auto robot = model::Robot::create(test::general_robot(base::kCubic, seed));
+    watch(robot.value(), agent::Method::kElimination, seen);
+  }
   const std::filesystem::path folder = HOLDFAST_SCENARIO_DIR;
   const Structure arm = load_file(folder / "arm_tips_a.json").value();
   const Structure crane = load_file(folder / "crane_tips_a.json").value();
@@ -160,11 +177,27 @@ TEST(Orders, follow_each_other_as_the_document_says) {
   // Plans that are withdrawn later; a tree so deep that there are clusters.
   watch(arm.robot, agent::Method::kElimination, seen,
         {{.at = 2000, .module = 1, .cell = agent::kEveryCell, .is_withdrawal = true}});
+  // Plans that are renewed verdicts: by elimination, by iterations, and told of twice.
+  watch(arm.robot, agent::Method::kElimination, seen,
+        {{.at = 2000, .module = 1, .cell = {5, 1, 3}},
+         {.at = 4000, .module = 1, .cell = {5, 1, 3}, .is_withdrawal = true}});
+  const auto cube = model::family_cells(model::Family::kCube, 3);
+  watch(
+      model::Robot::create({.existing = cube}).value(), agent::Method::kElimination, seen,
+      {{.at = 2000, .module = 1, .cell = {0, 0, 3}}, {.at = 2000, .module = 1, .cell = {2, 2, 3}}});
+  watch_step(load_file(folder / "plan" / "walk_over_beam.json").value().robot, seen);
+  // Free faces: whatever would be followed by the verdict is followed by these.
+  const model::Robot judging = model::Robot::create({.existing = cube}).value();
+  OrderWatch orders(seen);
+  sim::Simulation(judging, {.judges_faces = true, .trace = &orders}).run();
   const auto tower = model::family_cells(*model::find_family("tower"), 135);
   watch(model::Robot::create({.existing = tower}).value(), agent::Method::kElimination, seen);
 
   for (const auto& [before, after] : seen) {
-    EXPECT_TRUE(table.contains({before, after}) || after == "verdict") << before << ", " << after;
+    // In a stage of a step that order is in the place of a verdict.
+    EXPECT_TRUE(table.contains({before, after}) || after == "verdict" || after == "stage" ||
+                after == "shape")
+        << before << ", " << after;
   }
   // Not all are seen: a solve that ends before it begins and feet without a state are rare.
   std::size_t shown = 0;

@@ -53,6 +53,34 @@ TEST(Watch, a_module_that_hangs_after_the_verdict_makes_all_others_undecided) {
   }
 }
 
+/// The module that it comes to waits for it to take its place; the others are at the far end, and
+/// hear the root say its verdict again. Nobody shows it longer than it takes to lose a link.
+TEST(Watch, a_module_that_comes_and_hangs_ends_the_verdict) {
+  constexpr sim::Time kComes = 30'000'000;
+  model::RobotSpec spec;
+  for (int x = 0; x < 8; ++x) {
+    spec.existing.push_back({x, 0, 0});
+  }
+  const auto robot = model::Robot::create(spec);
+  ASSERT_TRUE(robot);
+  const sim::LinkModel link = sim::blinky_blocks_v2();
+  const agent::LinkTiming timing = sim::link_timing(link);
+  const sim::Time silence = timing.ping_after + agent::lost_after(timing);
+  for (const sim::Time until : {kComes - 1, kComes + silence}) {
+    FaultyNeighbour newcomer(robot.value(), {.module = 7});
+    sim::SimulationOptions options{.link = link, .time_max = until, .watch_for = 10 * silence};
+    options.faults = {{.kind = sim::Fault::Kind::kAttach, .at = kComes, .module = 7}};
+    options.tamper = [&](sim::Time now, std::int32_t module, base::Direction face,
+                         std::span<std::uint8_t> packet,
+                         int size) { return newcomer.tamper(now, module, face, packet, size); };
+    sim::Simulation simulation(robot.value(), options);
+    simulation.run();
+    for (std::int32_t i = 0; i < 7; ++i) {
+      EXPECT_EQ(simulation.agent(i).answer().verdict == agent::Verdict::kSafe, until < kComes) << i;
+    }
+  }
+}
+
 TEST(Watch, a_module_that_hangs_at_any_time_leaves_nobody_waiting) {
   base::Rng rng(7);
   for (std::uint64_t seed = 0; seed < 60; ++seed) {

@@ -29,7 +29,11 @@ TEST_P(GeneralRobots, are_answered_with_reasons_and_balance) {
     const test::Checked checked = test::check_answer(robot.value(), assessment);
     EXPECT_EQ(checked.fault, "") << "general_robot " << seed;
     settled_count += checked.is_compared ? 1 : 0;
-    undecided_count += assessment.verdict == verdict::Verdict::kUndecided ? 1 : 0;
+    // Where two contact laws disagree is mechanics, not a search that gave up.
+    const bool are_laws_at_odds =
+        assessment.reasons.front().code == verdict::ReasonCode::kStatesDisagree;
+    const bool is_undecided = assessment.verdict == verdict::Verdict::kUndecided;
+    undecided_count += is_undecided && !are_laws_at_odds ? 1 : 0;
   }
   // The generator must reach robots that stand, or the test above says little.
   EXPECT_GT(settled_count, 15);
@@ -95,9 +99,10 @@ TEST(RobotsBetweenWalls, have_the_same_answer_when_their_pressure_is_rounding) {
   }
 }
 
-/// By the paper's law the weak springs of open facets pull; then the exact law is asked, too.
+/// By the paper's law the weak springs of open facets pull, of tilted ones (305) bend back; then
+/// the exact law is asked, too.
 TEST(RobotsWithOpenFacets, are_judged_by_both_laws) {
-  for (const std::uint64_t seed : {std::uint64_t{268}, std::uint64_t{587}}) {
+  for (const std::uint64_t seed : {std::uint64_t{268}, std::uint64_t{587}, std::uint64_t{305}}) {
     SCOPED_TRACE(::testing::Message() << "general_robot " << seed);
     const auto robot = model::Robot::create(test::general_robot(base::kCubic, seed));
     const Assessment assessment = verdict::assess(robot.value());
@@ -105,6 +110,26 @@ TEST(RobotsWithOpenFacets, are_judged_by_both_laws) {
     ASSERT_TRUE(assessment.several && assessment.several->unilateral);
     EXPECT_GT(assessment.several->unilateral->high, assessment.several->regularised.high);
   }
+}
+
+verdict::Verdict verdict_of(std::vector<base::Cell> modules, std::vector<base::Cell> obstacle) {
+  model::RobotSpec spec = {.existing = std::move(modules)};
+  spec.support_z = {};
+  spec.obstacles.resize(1);
+  spec.obstacles[0].cells = std::move(obstacle);
+  const auto robot = model::Robot::create(spec);
+  return verdict::assess(robot.value()).verdict;
+}
+
+/// Newton's method for the paper's law settles on neither, and the exact law holds them. All their
+/// states were tried by a program of its own, tools/contact_states.py (docs/supports.md).
+TEST(RobotsOnWalls, are_not_safe_where_the_papers_law_lets_them_fall) {
+  using verdict::Verdict;
+  // A foot and a wall beside the middle one: one set of states is consistent, and falls.
+  EXPECT_EQ(verdict_of({{0, 0, 0}, {1, 0, 0}, {2, 0, 0}}, {{0, 0, -1}, {1, -1, 0}}),
+            Verdict::kUndecided);
+  // A hook: none is consistent.
+  EXPECT_EQ(verdict_of({{0, 0, 0}, {0, 0, 1}, {1, 0, 1}}, {{0, 0, -1}, {2, 0, 1}}), Verdict::kSafe);
 }
 
 TEST(Symmetries, are_as_many_as_of_the_polyhedra) {

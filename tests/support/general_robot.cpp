@@ -155,6 +155,17 @@ model::RobotSpec general_robot(const base::Lattice& lattice, std::uint64_t seed)
   return spec;
 }
 
+model::RobotSpec with_last_planned(model::RobotSpec spec, std::size_t count) {
+  for (std::size_t k = 0; k < count && spec.existing.size() > 2; ++k) {
+    if (!spec.fixed.empty() && spec.fixed.front() == spec.existing.back()) {
+      break;
+    }
+    spec.planned.push_back(spec.existing.back());
+    spec.existing.pop_back();
+  }
+  return spec;
+}
+
 Cell Symmetry::operator()(const base::Lattice& lattice, const Cell& cell) const {
   const Cell from = base::axial_of(lattice, cell);
   const auto row = [&](std::size_t i) {

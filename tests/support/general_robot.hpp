@@ -22,6 +22,10 @@ inline constexpr std::array<base::Lattice, 4> kLattices = {base::kCubic, base::k
 /// can be turned.
 model::RobotSpec general_robot(const base::Lattice& lattice, std::uint64_t seed);
 
+/// The robot with its last `count` modules planned, as far as one that is not fixed and two more
+/// are left. It may be that nothing holds what is left.
+model::RobotSpec with_last_planned(model::RobotSpec spec, std::size_t count);
+
 /// A turn or mirror image that maps a lattice onto itself.
 struct Symmetry {
   std::array<std::array<std::int32_t, 3>, 3> axial{};  ///< Rows: axial coordinates of the image.

@@ -85,7 +85,7 @@ _holdfast() {
       ;;
     simulate)
       case $previous in
-        --method) words="elimination polynomial cg block-jacobi jacobi" ;;
+        --method) words="elimination fronts polynomial cg block-jacobi jacobi" ;;
         --link) words="v1 v2 unit" ;;
         --seed) : ;;
         --loss) : ;;
@@ -104,12 +104,12 @@ _holdfast() {
         --trace) files=1 ;;
         --story) files=1 ;;
         --svg) files=1 ;;
-        *) if [[ $current == -* ]]; then words="-h --help --method --link --seed --loss --duplicate --reorder --corrupt --jitter --kill --cut --detach --plan --withdraw --attach --json --connections --trace --story --svg --quiet"; else files=1; fi ;;
+        *) if [[ $current == -* ]]; then words="-h --help --method --link --seed --loss --duplicate --reorder --corrupt --jitter --kill --cut --detach --plan --withdraw --attach --steps --stages --next --json --connections --trace --story --svg --quiet"; else files=1; fi ;;
       esac
       ;;
     emulate)
       case $previous in
-        --board) words="v2" ;;
+        --board) words="v2 v1" ;;
         --image) files=1 ;;
         --pages) files=1 ;;
         --seed) : ;;

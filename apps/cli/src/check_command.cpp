@@ -61,20 +61,24 @@ class CheckRun {
   bool shows_text() const { return !options_.is_quiet && options_.json != "-"; }
 
   void check_file(const std::string& file) {
-    const auto structure = load_with_notes(file, options_.reading, options_.thread_count);
-    if (!structure) {
-      report_error(structure.error(), file);
+    auto loaded = load_with_notes(file, options_.reading, options_.thread_count);
+    if (!loaded) {
+      report_error(loaded.error(), file);
       return;
     }
-    const CheckResult result = check(structure.value(), check_options(structure.value(), file));
+    Structure structure = std::move(loaded).value();
+    if (options_.html.empty()) {  // All else needs the robot only.
+      structure.document.modules = std::vector<io::ModuleEntry>();
+    }
+    const CheckResult result = check(structure, check_options(structure, file));
     ++counts_[static_cast<std::size_t>(result.assessment.verdict)];
     if (shows_text()) {
-      show(structure.value(), result, file);
+      show(structure, result, file);
     }
     add_report([&](std::ostream& out) {
-      write_report_json(out, structure.value(), result, report_options(options_.json));
+      write_report_json(out, structure, result, report_options(options_.json));
     });
-    write_files(structure.value(), result);
+    write_files(structure, result);
   }
 
   void write_files(const Structure& structure, const CheckResult& result) {

@@ -11,6 +11,7 @@
 #include <string_view>
 
 #include "holdfast/holdfast.hpp"
+#include "holdfast/trial.hpp"
 
 /// The commands of the program. Each adds itself to the app and returns what to run if it is used;
 /// that returns the exit code.
@@ -46,6 +47,9 @@ std::string banner(verdict::Verdict verdict);
 
 /// What the program ends with when the robot has worked out this verdict.
 int exit_code(verdict::Verdict verdict);
+
+/// What the program ends with when it was asked where the next module may go.
+int exit_code_of(const NextResult& result);
 
 /// A file, or files, that must be given. The help shows no type beside the name.
 template <class Value>

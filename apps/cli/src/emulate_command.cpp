@@ -40,8 +40,9 @@ struct Options {
 
 /// What ./dev firmware has built, or what was installed; if neither is there, where the first would
 /// be.
-std::string default_image() {
-  const std::vector<std::filesystem::path> places = places_of("module_stm32f0.elf", "firmware");
+std::string default_image(const std::string& board) {
+  const std::string folder = board == "v1" ? "firmware/v1" : "firmware";
+  const std::vector<std::filesystem::path> places = places_of("module_stm32f0.elf", folder);
   return find_file(places).value_or(places[1]).string();
 }
 
@@ -58,6 +59,7 @@ class EmulateRun {
     if (!structure) {
       return fail(structure.error(), options_.file);
     }
+    emulation_.link = options_.board == "v1" ? sim::blinky_blocks_v1() : sim::blinky_blocks_v2();
     if (!options_.pages.empty()) {
       return write_pages(structure.value());
     }
@@ -68,7 +70,9 @@ class EmulateRun {
   }
 
  private:
-  std::string image() const { return options_.image.empty() ? default_image() : options_.image; }
+  std::string image() const {
+    return options_.image.empty() ? default_image(options_.board) : options_.image;
+  }
 
   int run_with_changes(const Structure& structure) {
     const auto changes = read_changes(options_.changes, microseconds);
@@ -103,7 +107,7 @@ class EmulateRun {
 
   /// Every module's page, as module_0.bin and so on.
   int write_pages(const Structure& structure) const {
-    const auto pages = emulator::configuration_pages(structure.robot, emulation_.anchor);
+    const auto pages = emulator::configuration_pages(structure.robot, emulation_);
     for (std::size_t i = 0; i < pages.size(); ++i) {
       const std::string path = fmt::format("{}/module_{}.bin", options_.pages, i);
       if (!write_or_complain(path, std::string_view(reinterpret_cast<const char*>(pages[i].data()),
@@ -159,9 +163,12 @@ Command add_emulate(CLI::App& app) {
                          "microcontroller for every module");
   add_required(*command, "FILE", options->file,
                "Structure, VisibleSim XML or holdfast JSON; - is standard input");
-  command->add_option("--board", options->board, "Blinky Blocks v2 (STM32F091, 115,200 baud)")
+  command
+      ->add_option("--board", options->board,
+                   "Lines and memory of Blinky Blocks v2 (115,200 baud) or v1 (38,400), both with "
+                   "v2's processor, an STM32F091")
       ->type_name("NAME")
-      ->check(CLI::IsMember({"v2"}).description(""))
+      ->check(CLI::IsMember({"v2", "v1"}).description(""))
       ->capture_default_str();
   command
       ->add_option("--image", options->image,

@@ -26,13 +26,6 @@ struct Options {
   double memory_gb = 4;
 };
 
-int exit_code_of(const NextResult& result) {
-  if (result.count(Verdict::kSafe) > 0) {
-    return kExitSafe;
-  }
-  return result.count(Verdict::kUndecided) > 0 ? kExitUndecided : kExitUnsafe;
-}
-
 bool write_files(const Options& options, const Structure& structure, const NextResult& result,
                  const CheckOptions& check_options) {
   bool is_written = true;
@@ -80,6 +73,13 @@ int run(const Options& options) {
 }
 
 }  // namespace
+
+int exit_code_of(const NextResult& result) {
+  if (result.count(Verdict::kSafe) > 0) {
+    return kExitSafe;
+  }
+  return result.count(Verdict::kUndecided) > 0 ? kExitUndecided : kExitUnsafe;
+}
 
 Command add_next(CLI::App& app) {
   auto options = std::make_shared<Options>();

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <optional>
@@ -10,6 +11,9 @@
 #include "commands.hpp"
 #include "fault_options.hpp"
 #include "file_clash.hpp"
+#include "holdfast/simulated_next.hpp"
+#include "holdfast/simulated_stages.hpp"
+#include "holdfast/simulated_steps.hpp"
 #include "progress.hpp"
 #include "run_report.hpp"
 
@@ -38,6 +42,9 @@ struct Options {
   std::string trace;
   std::string story;
   std::string svg;
+  bool takes_steps = false;
+  bool judges_stages = false;
+  bool asks_next = false;
   bool is_quiet = false;
 };
 
@@ -104,6 +111,12 @@ class SimulateRun {
                                                 {"--svg", options_.svg}})) {
       return kExitUsage;
     }
+    if (options_.takes_steps || options_.judges_stages) {
+      return run_steps();
+    }
+    if (options_.asks_next) {
+      return run_next();
+    }
     const auto structure = load_with_notes(options_.file);
     if (!structure) {
       return fail(structure.error(), options_.file);
@@ -113,6 +126,110 @@ class SimulateRun {
   }
 
  private:
+  /// Is anything asked for that happens to the robot on its way, or tells of it?
+  bool has_happenings() const {
+    const bool has_faults = std::ranges::any_of(
+        options_.faults, [](const auto& fault) { return !fault.texts.empty(); });
+    return has_faults || !options_.changes.is_empty() || !options_.trace.empty() ||
+           !options_.story.empty();
+  }
+
+  int run_next() {
+    if (has_happenings()) {
+      return usage_error(
+          "--next goes with none of --kill, --cut, --detach, --plan, --withdraw, --attach, "
+          "--trace, --story");
+    }
+    const auto structure = load_with_notes(options_.file);
+    if (!structure) {
+      return fail(structure.error(), options_.file);
+    }
+    const auto simulated = simulate_next(
+        structure.value(),
+        {.simulation = simulation_, .progress = [this](std::size_t done, std::size_t count) {
+           progress_.show([&] { return fmt::format("{} of {} cells planned", done, count); });
+         }});
+    if (!simulated) {
+      return fail(simulated.error(), options_.file);
+    }
+    if (!options_.is_quiet && options_.json != "-") {
+      fmt::print("{}", simulated_next_text(structure.value(), simulated.value()));
+    }
+    return write_next(structure.value(), simulated.value()) ? exit_code_of(simulated.value().next)
+                                                            : kExitBadInput;
+  }
+
+  /// False if a file cannot be written.
+  bool write_next(const Structure& structure, const SimulatedNext& simulated) const {
+    bool is_written = true;
+    if (!options_.json.empty()) {
+      is_written = write_or_complain(options_.json, [&](std::ostream& out) {
+        write_simulated_next_json(out, structure, simulated);
+      });
+    }
+    if (!options_.svg.empty()) {
+      const std::string picture = next_svg(structure, check(structure), simulated.next);
+      is_written = write_or_complain(options_.svg, picture) && is_written;
+    }
+    return is_written;
+  }
+
+  int run_steps() {
+    if (options_.takes_steps && options_.judges_stages) {
+      return usage_error("--steps and --stages do not go together");
+    }
+    if (options_.asks_next || has_happenings() || !options_.svg.empty()) {
+      return usage_error(
+          "--steps and --stages go with none of --kill, --cut, --detach, --plan, --withdraw, "
+          "--attach, --trace, --story, --svg, --next");
+    }
+    const auto file = load_steps(options_.file);
+    if (!file) {
+      return fail(file.error(), options_.file);
+    }
+    return options_.judges_stages ? run_stages(file.value()) : run_kept(file.value());
+  }
+
+  int run_stages(const StepsFile& file) {
+    const auto stages = simulate_stages(file, simulation_, [this](std::size_t step) {
+      progress_.show([&] { return fmt::format("step {}", step); });
+    });
+    if (!stages) {
+      return fail(stages.error(), options_.file);
+    }
+    const verdict::Verdict verdict = stages.value().verdict();
+    if (!options_.is_quiet && options_.json != "-") {
+      fmt::print("{} {}\n{}", banner(verdict), io::one_line(file.name),
+                 simulated_stages_text(file, stages.value()));
+    }
+    const bool is_written =
+        options_.json.empty() || write_or_complain(options_.json, [&](std::ostream& out) {
+          write_simulated_stages_json(out, file, stages.value());
+          out << '\n';
+        });
+    return is_written ? exit_code(verdict) : kExitBadInput;
+  }
+
+  int run_kept(const StepsFile& file) {
+    const auto steps = simulate_steps(file, simulation_, [this](std::size_t step) {
+      progress_.show([&] { return fmt::format("step {}", step); });
+    });
+    if (!steps) {
+      return fail(steps.error(), options_.file);
+    }
+    const verdict::Verdict worst = worst_verdict(steps.value());
+    if (!options_.is_quiet && options_.json != "-") {
+      fmt::print("{} {}\n{}", banner(worst), io::one_line(file.name),
+                 simulated_steps_text(file, steps.value()));
+    }
+    const bool is_written =
+        options_.json.empty() || write_or_complain(options_.json, [&](std::ostream& out) {
+          write_simulated_steps_json(out, file, steps.value());
+          out << '\n';
+        });
+    return is_written ? exit_code(worst) : kExitBadInput;
+  }
+
   int run_with_changes(const Structure& structure) {
     const auto changes = read_changes(
         options_.changes, [this](double time) { return ticks(simulation_.link, time); });
@@ -222,11 +339,13 @@ Command add_simulate(CLI::App& app) {
   add_required(*command, "FILE", options->file,
                "Structure, VisibleSim XML or holdfast JSON; - is standard input");
   command
-      ->add_option("--method", options->method,
-                   "elimination (polynomial if the robot has many loops), polynomial, cg, "
-                   "block-jacobi, jacobi (the paper's)")
+      ->add_option(
+          "--method", options->method,
+          "elimination (polynomial if the robot has many loops), fronts (the same in few sweeps, "
+          "modules with more memory), polynomial, cg, "
+          "block-jacobi, jacobi (the paper's)")
       ->type_name("NAME")
-      ->check(CLI::IsMember({"elimination", "polynomial", "cg", "block-jacobi", "jacobi"})
+      ->check(CLI::IsMember({"elimination", "fronts", "polynomial", "cg", "block-jacobi", "jacobi"})
                   .description(""))
       ->capture_default_str();
   command
@@ -241,6 +360,13 @@ Command add_simulate(CLI::App& app) {
   add_noise_options(*command, *options);
   add_fault_options(*command, options->faults);
   add_change_options(*command, options->changes, "s, or rounds");
+  command->add_flag("--steps", options->takes_steps,
+                    "Take the file's steps: plan, judge, attach, one after the other");
+  command->add_flag("--stages", options->judges_stages,
+                    "Take the file's steps: the robot judges release, shift and connect of each");
+  command->add_flag("--next", options->asks_next,
+                    "Let the robot judge all its free faces together, then what that leaves "
+                    "undecided one by one");
   command->add_option("--json", options->json, "Write the report; - is standard output")
       ->type_name("FILE");
   add_connections(*command, options->connections);
@@ -255,7 +381,11 @@ Command add_simulate(CLI::App& app) {
   command->footer(
       "The exact answer stands beside the robot's own: with --plan, --withdraw and --attach that "
       "for\n"
-      "the robot and what is planned in the end.\n"
+      "the robot and what is planned in the end. With --steps it stands there for every step, and\n"
+      "beside what the robot takes from what it keeps what it takes from nothing; with --stages "
+      "it\n"
+      "stands there for every stage, and the exit code is that of the first unsafe one.\n"
+      "With --next the exit code is that of holdfast next, by what the robot says.\n"
       "Exit, by the robot's verdict: 0 safe, 1 overload or unstable, 2 undecided, 64 wrong usage,\n"
       "65 bad input.");
   return {command, [options] { return SimulateRun(*options).run(); }};

@@ -6,6 +6,7 @@
 // numbers, valid until the next call. src/core/wasm.ts is the other side.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstring>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -39,6 +40,15 @@ std::vector<std::uint8_t> input;  // NOLINT(cppcoreguidelines-avoid-non-const-gl
 Reply reply;                      // NOLINT(cppcoreguidelines-avoid-non-const-global-variables)
 /// That was judged last.
 std::optional<SequenceView> sequence;  // NOLINT(cppcoreguidelines-avoid-non-const-global-variables)
+
+/// Of the robot and role that were tried last.
+struct KeptTrials {
+  std::vector<std::uint8_t> asked;  ///< The request without its cells.
+  CellTrials trials;
+};
+
+std::optional<KeptTrials>
+    kept_trials;  // NOLINT(cppcoreguidelines-avoid-non-const-global-variables)
 
 std::string dump(const Json& json) {
   return json.dump(-1, ' ', false, Json::error_handler_t::replace);
@@ -242,20 +252,36 @@ Reply limit_request(const Request& request) {
   return {.text = io::collapse_json(robot.value(), *result.limit), .integers = {}, .numbers = {}};
 }
 
+/// What was prepared for the same robot and role, or else anew.
+base::Result<CellTrials*> trials_for(const Request& request) {
+  const auto size = static_cast<std::size_t>(request.tail.data() - input.data());
+  const std::span asked = std::span(input).first(size);
+  if (!kept_trials || !std::ranges::equal(kept_trials->asked, asked)) {
+    kept_trials.reset();
+    auto spec = spec_of(request);
+    if (!spec) {
+      return spec.error();
+    }
+    const auto role = static_cast<Role>(request.header.options[0]);
+    kept_trials.emplace(KeptTrials{.asked = {asked.begin(), asked.end()},
+                                   .trials = CellTrials(std::move(spec).value(), role)});
+  }
+  return &kept_trials->trials;
+}
+
 /// With one more module of the Role in options[0] at each place of the tail. Text: a list of
 /// verdicts, null where no module can be. Numbers: the largest load ratio (-1 if there is none) and
 /// the margin in mm (0 if it is fixed).
 Reply try_places(const Request& request) {
+  const auto trials = trials_for(request);
+  if (!trials) {
+    return failure(trials.error());
+  }
   Reply out;
   Json verdicts = Json::array();
   const std::span places(reinterpret_cast<const base::Cell*>(request.tail.data()),
                          request.tail.size() / sizeof(base::Cell));
-  const auto role = static_cast<Role>(request.header.options[0]);
-  const auto spec = spec_of(request);
-  if (!spec) {
-    return failure(spec.error());
-  }
-  for (const Trial& trial : try_cells(spec.value(), places, role)) {
+  for (const Trial& trial : trials.value()->at(places)) {
     verdicts.push_back(trial.is_robot ? Json(verdict::name(trial.verdict)) : Json());
     out.numbers.push_back(trial.load_ratio_max.value_or(-1));
     out.numbers.push_back(trial.margin_mm.value_or(0));

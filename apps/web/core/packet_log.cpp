@@ -13,14 +13,18 @@ PacketMeaning meaning_of(wire::MessageType type) {
     case wire::MessageType::kEcho:
     case wire::MessageType::kAppoint:
     case wire::MessageType::kMark:
+    case wire::MessageType::kAdopt:
       return PacketMeaning::kWave;
     case wire::MessageType::kOrder:
     case wire::MessageType::kBranchDown:
+    case wire::MessageType::kFrontDown:
       return PacketMeaning::kOrder;
     case wire::MessageType::kReport:
     case wire::MessageType::kLoop:
     case wire::MessageType::kColumn:
     case wire::MessageType::kBranchUp:
+    case wire::MessageType::kFrontUp:
+    case wire::MessageType::kNews:
       return PacketMeaning::kReport;
     case wire::MessageType::kVector:
       return PacketMeaning::kVector;

@@ -112,6 +112,33 @@ for (const [name, cells] of Object.entries(EDITED)) {
   line(`edit, ${name}, ${modules.length} modules`, ms(await edits(16)));
 }
 
+/** From the click on "Where next?" until every free face has its answer. */
+async function whereNext() {
+  return page.evaluate(async () => {
+    const { app, bench } = globalThis.holdfast;
+    const button = document.getElementById('faces');
+    const begin = performance.now();
+    button.click();
+    const places = bench.robot.freePlaces();
+    while (places.some((place) => !app.whereNext.places.known(place, bench.role))) {
+      await new Promise((done) => setTimeout(done, 4));
+    }
+    const seconds = (performance.now() - begin) / 1000;
+    button.click();
+    return { count: places.length, seconds };
+  });
+}
+const ASKED = {
+  cube_1000: EDITED.cube_1000,
+  tower_9999: box([3, 3, 1111]),
+  plate_10000: box([100, 100, 1]),
+};
+for (const [name, cells] of Object.entries(ASKED)) {
+  await load(name, [...cells]);
+  const { count, seconds } = await whereNext();
+  line(`where next, ${name}`, `${count} free places in ${seconds.toFixed(2)} s`);
+}
+
 await load('cube_97336', box([46, 46, 46]));
 const { found: moves } = await pointerMoves(page);
 line('a move of the pointer, cube_97336', ms(moves.map((move) => move.ms)));
@@ -129,9 +156,7 @@ for (const [name, size] of [['slab_50000', [200, 125, 2]], ['slab_100000', [250,
       stage.camera.position.applyAxisAngle(stage.camera.up, 0.02);
       const begin = performance.now();
       stage.controls.update();
-      stage.beforeFrame(begin);
-      stage.render();
-      stage.afterFrame();
+      stage.drawFrame(begin);
       script.push(performance.now() - begin);
     }
     return { calls: stage.drawCalls, script: script.slice(2) };

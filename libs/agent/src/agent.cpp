@@ -4,6 +4,7 @@
 
 #include "beams.hpp"
 #include "holdfast/agent/messages.hpp"
+#include "methods.hpp"
 
 namespace holdfast::agent {
 namespace {
@@ -23,8 +24,8 @@ Phase phase_of(SpanningTree::Wave wave) {
 
 }  // namespace
 
-Agent::Agent(const Setup& setup, const Identity& identity)
-    : identity_(identity), clock_{.timing = setup.timing}, ws_(setup, identity) {}
+Agent::Agent(const Setup& setup, const Identity& identity, const LentMemory* lent)
+    : identity_(identity), clock_{.timing = setup.timing}, ws_(setup, identity, lent) {}
 
 // ---- An event comes in.
 
@@ -74,22 +75,30 @@ void Agent::handle(const Event& event) {
       break;
     case EventKind::kLinkUp:
       ws_.links.bring_up(event.face, event.random, clock_.now);
-      leave_round();
+      forget_packet(event.face);
+      kKeepsAnswers&& can_keep() ? welcome(event.face) : leave_round();
       break;
     case EventKind::kLinkDown:
       ws_.links.bring_down(event.face);
+      forget_packet(event.face);
       leave_round();
       break;
     case EventKind::kPlan:
       announcements_.plan(event.cell);
-      leave_round();
+      kKeepsAnswers ? change({.cell = event.cell}) : leave_round();
       break;
     case EventKind::kWithdraw:
       announcements_.withdraw(event.cell);
-      leave_round();
+      if (event.cell == kEveryCell && ws_.stages() != nullptr) {
+        ws_.stages()->forget_told(false);
+      }
+      kKeepsAnswers ? change({.flags = kIsEnded, .cell = event.cell}) : leave_round();
       break;
     case EventKind::kRecall:
       announcements_.recall(event.cell, event.told);
+      break;
+    case EventKind::kStep:
+      kJudgesStages ? tell_step(event) : void();
       break;
     case EventKind::kReceive:
       receive(event.face, event.bytes);
@@ -121,13 +130,44 @@ bool Agent::is_waiting() const {
          watch_.at() != kNever;
 }
 
+bool Agent::is_only_watching(Time wake_at) const {
+  const bool is_done = phase() == Phase::kDone;
+  const Faces silent = ws_.links.silent();
+  if (silent.is_empty() || (is_done && wake_at == watch_at())) {
+    return is_done && wake_at == watch_at();
+  }
+  return wake_at == ws_.links.deadline(silent) &&
+         ws_.links.deadline(Faces::all() - silent) == kNever && !rounds_.is_left() &&
+         (is_done || watch_at() == kNever);
+}
+
 void Agent::receive(Direction face, std::span<const std::uint8_t> packet) {
   Links& links = ws_.links;
+  was_used_ = links.is_used(face);
+  packet_face_ = face;
+  packet_rest_ = links.receive(face, packet, clock_);
+  is_receiving_ = true;
+  receive_rest();
+}
+
+/// Messages of the packet, up to one that sets off work.
+bool Agent::receive_rest() {
+  if (!is_receiving_) {
+    return false;
+  }
+  Links& links = ws_.links;
+  const Direction face = packet_face_;
   is_busy_ = true;
-  const bool was_used = links.is_used(face);
-  std::span<const std::uint8_t> stream = links.receive(face, packet, clock_);
-  for (auto message = links.next_message(face, stream); !message.empty() && links.is_used(face);
-       message = links.next_message(face, stream)) {
+  while (!sweep_.is_working()) {
+    const auto message = links.next_message(face, packet_rest_);
+    if (message.empty() || !links.is_used(face)) {
+      is_receiving_ = false;
+      if (was_used_) {
+        links.count_if_lost(face);
+      }
+      notice_change(face);
+      return true;
+    }
     if (!is_legal(message) || !take(face, message)) {
       links.refuse(face);
     }
@@ -135,25 +175,29 @@ void Agent::receive(Direction face, std::span<const std::uint8_t> packet) {
       leave_round();
     }
   }
-  if (was_used) {
-    links.count_if_lost(face);
-  }
-  notice_change(face);
+  return true;
 }
 
 /// A neighbour that is there and does not answer makes every verdict uncertain.
 void Agent::notice_change(Direction face) {
   const auto nonce = static_cast<std::uint16_t>(clock_.now ^ identity_.id ^ 0x5a5aU);
   if (ws_.links.notice_change(face, nonce, clock_.now)) {
+    forget_packet(face);
     leave_round();
   }
 }
+
+/// What is left of a packet belongs to a link that is no more.
+void Agent::forget_packet(Direction face) { is_receiving_ = is_receiving_ && packet_face_ != face; }
 
 /// False: no working neighbour sends this message now.
 bool Agent::take(Direction face, std::span<const std::uint8_t> message) {
   const auto type = static_cast<MessageType>(message[0]);
   if (type == MessageType::kJoin) {
     return take_join(face, decoded<Join>(message));
+  }
+  if (kKeepsAnswers && type == MessageType::kAdopt) {
+    return take_adoption(face, decoded<Adoption>(message));
   }
   if (type == MessageType::kEcho) {
     rounds_.hear(face, decoded<Echo>(message).round);
@@ -172,15 +216,29 @@ bool Agent::take(Direction face, std::span<const std::uint8_t> message) {
 
 bool Agent::take_join(Direction face, const Join& join) {
   rounds_.hear(face, join.round);
+  if (kKeepsAnswers && is_of_newcomer(join)) {
+    decline(face, join);
+    return true;
+  }
   if (is_newer(join.round, rounds_.current())) {
-    enter_round(join.round);
+    if (kJudgesStages && join.stage != 0) {
+      if (!enter_stage(join)) {
+        return true;
+      }
+    } else {
+      enter_round(join.round);
+    }
   } else if (!(join.round == rounds_.current()) || rounds_.is_left()) {
     return true;
+  }
+  if (kJudgesStages && static_cast<Stage>(join.stage) != ws_.stage()) {
+    return false;
   }
   const SpanningTree::Wave before = ws_.tree.wave();
   if (!ws_.tree.take_join(ws_.links, face, join, sweep_.has_begun())) {
     return false;
   }
+  welcomed_.remove(face);  // A newcomer that has taken its place elsewhere.
   watch_.keep_waiting(clock_);
   follow_wave(before);
   return true;
@@ -197,7 +255,10 @@ bool Agent::take_join(Direction face, const Join& join) {
 bool Agent::expects(Direction face, std::span<const std::uint8_t> message) const {
   switch (static_cast<MessageType>(message[0])) {
     case MessageType::kEcho:
-      return ws_.tree.expects_echo(face);
+      return ws_.tree.expects_echo(face) || welcomed_.has(face);
+    case MessageType::kNews:
+      return ws_.setup.keeps_answers && ws_.tree.wave() == SpanningTree::Wave::kTree &&
+             (ws_.tree.children().has(face) || is_newcomer());
     case MessageType::kAppoint:
       return ws_.tree.expects_appointment(face, message, sweep_.has_begun());
     case MessageType::kMark:
@@ -215,7 +276,15 @@ void Agent::take_expected(Direction face, std::span<const std::uint8_t> message)
   const SpanningTree::Wave before = ws_.tree.wave();
   switch (static_cast<MessageType>(message[0])) {
     case MessageType::kEcho:
-      return ws_.tree.take_echo(ws_.links, face, decoded<Echo>(message));
+      return kKeepsAnswers && welcomed_.has(face)
+                 ? take_newcomer(face, decoded<Echo>(message))
+                 : ws_.tree.take_echo(ws_.links, face, decoded<Echo>(message));
+    case MessageType::kNews:
+      return kKeepsAnswers ? take_news(face, decoded<News>(message)) : void();
+    case MessageType::kVector:
+      return kKeepsAnswers && is_newcomer()
+                 ? take_motion(face, decoded<LabelledVector>(message).vector)
+                 : sweep_.take(ws_, face, message);
     case MessageType::kAppoint:
       if (ws_.tree.take_appointment(ws_.links, round, decoded<Appointment>(message))) {
         watch_.enter_phase(Phase::kElection);
@@ -238,8 +307,8 @@ void Agent::take_expected(Direction face, std::span<const std::uint8_t> message)
 /// Messages only leave something to do; it is done here, a piece at a time, none of which calls
 /// another.
 void Agent::go_on() {
-  is_busy_ = sweep_.exchange(ws_) || sweep_.do_piece(ws_) || finish_sweep() || end_wave() ||
-             take_next_order();
+  is_busy_ = sweep_.work(ws_, announcements_) || receive_rest() || sweep_.exchange(ws_) ||
+             sweep_.do_piece(ws_) || finish_sweep() || end_wave() || take_next_order();
   if (ws_.links.take_refusal()) {
     leave_round();
   }
@@ -247,19 +316,25 @@ void Agent::go_on() {
 
 /// Reports, if all is done here and below; the root finds its next order.
 bool Agent::finish_sweep() {
-  if (!sweep_.can_finish(ws_)) {
-    return false;
+  if (!sweep_.take_end()) {
+    return sweep_.begin_report(ws_);
   }
-  const Report sum = sweep_.finish(ws_, announcements_);
   const Order& order = sweep_.order();
   const bool is_root = ws_.tree.is_root();
   if (order.operation == wire::Operation::kVerdict) {
     const bool is_alone = is_root && ws_.tree.children().is_empty();
     const bool is_watched = order.answer.verdict != Verdict::kUndecided && !is_alone;
-    watch_.end_verdict(is_watched, is_root, clock_);
+    if (!is_withdrawn()) {
+      watch_.end_verdict(is_watched, is_root, clock_);
+    }
     ws_.links.touch_all();
   } else if (is_root) {
-    keep_order(conductor_.next(ws_.setup, sum));
+    if (kJudgesStages && ws_.stages() != nullptr && go_on_in_stages(sweep_.sum())) {
+      return true;
+    }
+    go_on_with(kKeepsAnswers && order.operation == wire::Operation::kRenew
+                   ? conductor_.after_renew(ws_.setup, sweep_.sum(), ws_.planned)
+                   : conductor_.next(ws_.setup, sweep_.sum()));
   }
   return true;
 }
@@ -271,12 +346,17 @@ bool Agent::end_wave() {
     return false;
   }
   const SpanningTree::Census& census = tree.census();
+  if (kJudgesStages && ws_.stages() != nullptr && find_pieces()) {
+    return true;
+  }
   if (census.is_anyone_silent) {
     Order order{.operation = wire::Operation::kVerdict};
     order.answer = {.verdict = Verdict::kUndecided, .reason = Reason::kNeighbourSilent};
     keep_order(order);
   } else if (tree.wave() == SpanningTree::Wave::kTree) {
-    keep_order(conductor_.begin(ws_.setup, tree.cell(), census.count, census.hops));
+    keep_order(conductor_.begin(ws_.setup, tree.cell(), census.count, census.hops,
+                                {.has_fronts = ws_.front_memory() != nullptr,
+                                 .judges_faces = ws_.free_faces() != nullptr}));
   } else {
     const SpanningTree::Wave before = tree.wave();
     watch_.enter_phase(Phase::kElection);
@@ -287,7 +367,7 @@ bool Agent::end_wave() {
 }
 
 bool Agent::take_next_order() {
-  if (!has_next_order_ || sweep_.is_busy(ws_)) {
+  if (!has_next_order_ || sweep_.is_busy(ws_) || sweep_.is_under_way()) {
     return false;
   }
   has_next_order_ = false;
@@ -301,9 +381,22 @@ void Agent::keep_order(const Order& order) {
 }
 
 void Agent::take_order(const Order& order) {
-  watch_.begin_order(order.operation, clock_);
+  const bool is_renewal = order.operation == wire::Operation::kRenew;
+  if (is_renewal && !welcomed_.is_empty()) {
+    return leave_round();
+  }
+  if (is_renewal) {
+    standing_ = Standing::kStands;
+  } else if (standing_ == Standing::kContradicted) {
+    return leave_round();  // The news has not reached the root, or its answer not this module.
+  } else if (is_withdrawn()) {
+    standing_ = Standing::kContradicted;
+  }
+  if (!is_withdrawn()) {
+    watch_.begin_order(order.operation, clock_);
+  }
   sweep_.take_order(ws_, announcements_, order);
-  if (order.operation == wire::Operation::kVerdict) {
+  if (order.operation == wire::Operation::kVerdict && !is_withdrawn()) {
     watch_.set_answer(order.answer);
   }
 }
@@ -331,6 +424,12 @@ bool Agent::find_load_ratio(const base::Cell& cell, Direction direction, float& 
   return is_found;
 }
 
+FreeFace Agent::free_face(Direction direction) const {
+  const bool is_decided =
+      answer().verdict != Verdict::kNone && answer().verdict != Verdict::kUndecided;
+  return is_decided && ws_.free_faces() != nullptr ? ws_.free_faces()->face(direction) : FreeFace{};
+}
+
 // ---- Rounds.
 
 /// The robot is not what it was when the round began. Until the next one this module takes no part
@@ -344,12 +443,17 @@ void Agent::leave_round() {
 }
 
 void Agent::abandon_work() {
+  if (kJudgesFaces && ws_.free_faces() != nullptr) {
+    ws_.free_faces()->forget();
+  }
   sweep_.leave(ws_);
   ws_.tree.take_return();
   has_next_order_ = false;
+  standing_ = Standing::kStands;
+  welcomed_ = {};
 }
 
-void Agent::start_round() {
+void Agent::start_round(Stage stage) {
   if (!has_cell()) {
     // Others must start; if nobody is left who can, this is the last word.
     rounds_.leave_until(kNever);
@@ -358,17 +462,20 @@ void Agent::start_round() {
     }
     return;
   }
-  enter_round({.epoch = epoch_after(epoch()), .starter = identity_.id});
+  enter_round({.epoch = epoch_after(epoch()), .starter = identity_.id}, stage);
   ws_.tree.start_wave(ws_.links, rounds_.current(), SpanningTree::Wave::kFirst);
   follow_wave(SpanningTree::Wave::kNone);
   is_busy_ = true;
 }
 
-void Agent::enter_round(const Round& round) {
+void Agent::enter_round(const Round& round, Stage stage) {
   rounds_.enter(round);
+  if (kJudgesStages && ws_.stages() != nullptr) {
+    hide_links(round, stage);
+  }
   announcements_.begin_anew();
   abandon_work();
-  ws_.tree.leave();
+  ws_.tree.leave(static_cast<std::uint8_t>(stage));
   ws_.exchange.enter();
   ws_.planned_exchange.enter();
   ws_.planned.clear();

@@ -62,9 +62,18 @@ void add_forces(Workspace& ws, PlannedPart part) {
 }
 
 void visit_loads(const Workspace& ws, LoadVisit visit, void* visitor) {
+  const base::Cell& cell = ws.tree.cell();
+  const bool is_gone = ws.is_gone(cell);
   for (const Direction direction : ws.faces_of(0)) {
-    visit(visitor, ws.tree.cell(), direction,
-          ratio_of(ws.setup, ws.middle[static_cast<std::size_t>(direction)], direction));
+    if (!is_gone && !ws.is_gone(base::neighbour(cell, direction))) {
+      visit(visitor, cell, direction,
+            ratio_of(ws.setup, ws.middle[static_cast<std::size_t>(direction)], direction));
+    }
+  }
+  if (ws.stage() == Stage::kShift) {
+    ws.stages()->visit_hanging(cell, ws.setup, [&](Direction direction, double ratio) {
+      visit(visitor, cell, direction, ratio);
+    });
   }
   for (int i = 1; i < ws.node_count(); ++i) {
     for (const Direction direction : base::kDirections) {

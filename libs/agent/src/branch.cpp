@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "holdfast/agent/branch.hpp"
 
+#include "holdfast/agent/system.hpp"
 #include "holdfast/base/check.hpp"
 #include "scalar.hpp"
-#include "system.hpp"
 
 namespace holdfast::agent {
 namespace {

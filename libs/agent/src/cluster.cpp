@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "holdfast/agent/cluster.hpp"
 
+#include "holdfast/agent/system.hpp"
 #include "scalar.hpp"
-#include "system.hpp"
 
 namespace holdfast::agent {
 namespace {

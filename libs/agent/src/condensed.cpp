@@ -3,12 +3,19 @@
 #include "condensed.hpp"
 
 #include "displacements.hpp"
+#include "holdfast/agent/condensing.hpp"
 #include "holdfast/agent/messages.hpp"
+#include "leaves.hpp"
 #include "scalar.hpp"
-#include "system.hpp"
 
 namespace holdfast::agent {
 namespace {
+
+/// One, and another to see that nothing moves any more; many only where planned modules form a
+/// ring.
+constexpr int kPassesMax = 1000;
+constexpr double kLeastMove = 1e-14;
+constexpr int kStateRoundsMax = 20;
 
 /// All beams of a planned module emulated here; those to other modules have left their force at
 /// u_p = 0 in the planned exchange.
@@ -28,79 +35,12 @@ base::Vec6<double> force_on_hosted(const Workspace& ws, int node) {
   return force;
 }
 
-/// Gauss and Seidel, module by module: exact at once for one alone, and there are five at most.
-void solve_hosted(Workspace& ws) {
-  constexpr int kPassesMax = 1000;
-  constexpr double kLeastMove = 1e-14;
-  double move = 1;
-  double size = 0;
-  for (int pass = 0; pass < kPassesMax && move > kLeastMove * size; ++pass) {
-    move = 0;
-    for (int i = 1; i < ws.node_count(); ++i) {
-      Node& node = ws.node(i);
-      node.force = force_on_hosted(ws, i);
-      System system(diagonal_block(node, ws.setup, ws.contact, ws.faces_of(i)));
-      system.factor();
-      base::Vec6<double> change = residual(node, ws.setup, ws.contact);
-      system.solve(change);
-      for (std::size_t j = 0; j < 6; ++j) {
-        node.u[j] += change[j];
-        move = absolute(change[j]) > move ? absolute(change[j]) : move;
-        size = absolute(node.u[j]) > size ? absolute(node.u[j]) : size;
-      }
-    }
-  }
-  for (int i = 1; i < ws.node_count(); ++i) {
-    ws.node(i).force = force_on_hosted(ws, i);
-  }
-}
-
-/// u_p of all planned modules emulated here, in the contact states that belong to it.
-void condense(Workspace& ws, const Order& order) {
-  constexpr int kStateRounds = 20;
-  for (int i = 1; i < ws.node_count(); ++i) {
-    ws.node(i).has_changed = false;
-  }
-  bool is_settled = ws.node_count() == 1;
-  for (int round = 0; round < kStateRounds && !is_settled; ++round) {
-    is_settled = true;
-    solve_hosted(ws);
-    for (int i = 1; i < ws.node_count(); ++i) {
-      Node& node = ws.node(i);
-      const mechanics::ContactState before = node.state;
-      follow_state(node, ws.contact, keeps_states(order));
-      is_settled = is_settled && node.state == before;
-    }
-  }
-}
-
 void send_part(Workspace& ws, int label, const base::Vec6<float>& part) {
   PlannedExchange::send_down(ws.links, ws.tree.children(), ws.planned,
                              static_cast<std::uint8_t>(label), part);
 }
 
-}  // namespace
-
-void begin_condensing(Workspace& ws, const Order& order) {
-  ws.planned_exchange.clear_forces();
-  int awaited = 0;
-  for (int k = 0; k < ws.planned.count(); ++k) {
-    for (const Direction face : ws.planned.own_touching(k)) {
-      ws.planned_exchange.add_force(k, mechanics::end_force(ws.setup.beam, face, {}, ws.node(0).u));
-    }
-    for (const Direction child : ws.tree.children()) {
-      awaited += ws.planned.is_needed_below(child, k) ? 2 : 0;
-    }
-  }
-  ws.planned_exchange.await_forces(awaited);
-  if (awaited == 0) {
-    pass_condensed(ws, order);
-  }
-}
-
-void pass_condensed(Workspace& ws, const Order& order) {
-  ws.planned_exchange.send_up(ws.links, ws.tree.parent(), ws.planned, true);
-  condense(ws, order);
+void send_condensed(Workspace& ws) {
   for (int i = 1; i < ws.node_count(); ++i) {
     const int k = ws.planned.hosted(i - 1);
     const base::Vec6<double>& u = ws.node(i).u;
@@ -113,6 +53,190 @@ void pass_condensed(Workspace& ws, const Order& order) {
     send_part(ws, k | kLeadingPart, leading);
     send_part(ws, k | kTrailingPart, trailing);
   }
+}
+
+System& factor_of(std::span<IterationMemory> memory, int node) {
+  return memory[static_cast<std::size_t>(node)].factor;
+}
+
+/// What the parent of a leaf feels of its displacement.
+base::Vec6<double> force_on_parent(const Workspace& ws, Direction to_parent,
+                                   const base::Vec6<double>& leaf) {
+  return mechanics::end_force(ws.setup.beam, base::opposite(to_parent), {}, leaf);
+}
+
+}  // namespace
+
+// ---- The host's solve.
+
+void Condensing::start(Workspace& ws) {
+  ws.planned_exchange.send_up(ws.links, ws.tree.parent(), ws.planned, true);
+  for (int i = 1; i < ws.node_count(); ++i) {
+    ws.node(i).has_changed = false;
+  }
+  round_ = 0;
+  begin_piece(ws.node_count() > 1 ? Piece::kBlocks : Piece::kSend, 0);
+}
+
+void Condensing::begin_piece(Piece piece, int index) {
+  piece_ = piece;
+  index_ = static_cast<std::uint8_t>(index);
+}
+
+bool Condensing::do_piece(Workspace& ws, const Order& order, std::span<IterationMemory> memory,
+                          int number) {
+  if (number == 0) {
+    start(ws);
+  }
+  const Leaves leaves = group_trees(ws.planned);
+  const int last = leaves.count - 1;
+  switch (piece_) {
+    case Piece::kBlocks:
+      form_half(ws, memory);
+      index_ < 2 * last + 1 ? begin_piece(Piece::kBlocks, index_ + 1)
+                            : begin_piece(Piece::kFactor, last);
+      return true;
+    case Piece::kFactor:
+      factor(leaves, memory);
+      return true;
+    case Piece::kEliminate:
+      eliminate(ws, leaves, memory, 0);
+      begin_piece(Piece::kEliminateRest, index_);
+      return true;
+    case Piece::kEliminateRest:
+      eliminate(ws, leaves, memory, 3);
+      begin_piece(Piece::kFactor, index_ - 1);
+      return true;
+    case Piece::kResiduals: {
+      // Until the displacements are found a node's force is its load.
+      Node& node = ws.node(1 + index_);
+      node.force = force_on_hosted(ws, 1 + index_);
+      node.force = residual(node, ws.setup, ws.contact);
+      index_ < last ? begin_piece(Piece::kResiduals, index_ + 1) : begin_piece(Piece::kLoads, last);
+      return true;
+    }
+    case Piece::kLoads:
+      hand_load_on(ws, leaves, memory);
+      index_ > 0 ? begin_piece(Piece::kLoads, index_ - 1) : begin_piece(Piece::kShifts, 0);
+      return true;
+    case Piece::kShifts:
+      shift(ws, leaves, memory);
+      return true;
+    case Piece::kStates:
+      follow(ws, order);
+      return true;
+    case Piece::kSend:
+      send_condensed(ws);
+      return false;
+  }
+  return false;
+}
+
+/// Three columns of what holds a node.
+void Condensing::form_half(const Workspace& ws, std::span<IterationMemory> memory) const {
+  const int index = 1 + index_ / 2;
+  const int first = 3 * (index_ % 2);
+  System& into = factor_of(memory, index);
+  into = first == 0 ? System() : into;
+  for (int column = first; column < first + 3; ++column) {
+    const base::Vec6<double> image =
+        diagonal_column(ws.node(index), ws.setup, ws.contact, ws.faces_of(index), column);
+    for (int row = 0; row < 6; ++row) {
+      into.at(row, column) = image[static_cast<std::size_t>(row)];
+    }
+  }
+}
+
+void Condensing::factor(const Leaves& leaves, std::span<IterationMemory> memory) {
+  factor_of(memory, leaves.node[index_]).factor();
+  if (index_ > 0) {
+    begin_piece(leaves.parent[index_] > 0 ? Piece::kEliminate : Piece::kFactor,
+                leaves.parent[index_] > 0 ? index_ : index_ - 1);
+    return;
+  }
+  pass_ = 0;
+  move_ = 0;
+  size_ = 0;
+  is_settled_ = true;
+  begin_piece(Piece::kResiduals, 0);
+}
+
+/// Three columns of K_pc S_c^-1 K_cp, which the parent has too much.
+void Condensing::eliminate(const Workspace& ws, const Leaves& leaves,
+                           std::span<IterationMemory> memory, int first) const {
+  const Direction to_parent = leaves.to_parent[index_];
+  System& into = factor_of(memory, leaves.parent[index_]);
+  for (int column = first; column < first + 3; ++column) {
+    base::Vec6<double> unit{};
+    unit[static_cast<std::size_t>(column)] = 1;
+    base::Vec6<double> give = mechanics::end_force(ws.setup.beam, to_parent, {}, unit);
+    factor_of(memory, leaves.node[index_]).solve(give);
+    const base::Vec6<double> force = force_on_parent(ws, to_parent, give);
+    for (int row = 0; row < 6; ++row) {
+      into.at(row, column) -= force[static_cast<std::size_t>(row)];
+    }
+  }
+}
+
+void Condensing::hand_load_on(Workspace& ws, const Leaves& leaves,
+                              std::span<IterationMemory> memory) const {
+  const int parent = leaves.parent[index_];
+  if (parent > 0) {
+    base::Vec6<double> give = ws.node(leaves.node[index_]).force;
+    factor_of(memory, leaves.node[index_]).solve(give);
+    const base::Vec6<double> force = force_on_parent(ws, leaves.to_parent[index_], give);
+    ws.node(parent).force = base::sum_of(ws.node(parent).force, -1.0, force);
+  }
+}
+
+/// How far a node moves, which is left in its force for those that hang on it.
+void Condensing::shift(Workspace& ws, const Leaves& leaves, std::span<IterationMemory> memory) {
+  Node& node = ws.node(leaves.node[index_]);
+  const int parent = leaves.parent[index_];
+  if (parent > 0) {
+    const base::Vec6<double> force =
+        mechanics::end_force(ws.setup.beam, leaves.to_parent[index_], {}, ws.node(parent).force);
+    node.force = base::sum_of(node.force, -1.0, force);
+  }
+  factor_of(memory, leaves.node[index_]).solve(node.force);
+  for (std::size_t k = 0; k < 6; ++k) {
+    node.u[k] += node.force[k];
+    move_ = absolute(node.force[k]) > move_ ? absolute(node.force[k]) : move_;
+    size_ = absolute(node.u[k]) > size_ ? absolute(node.u[k]) : size_;
+  }
+  if (++index_ == leaves.count) {
+    ++pass_;
+    const bool is_over = pass_ == kPassesMax || !(move_ > kLeastMove * size_);
+    move_ = 0;
+    begin_piece(is_over ? Piece::kStates : Piece::kResiduals, 0);
+  }
+}
+
+void Condensing::follow(Workspace& ws, const Order& order) {
+  const int index = 1 + index_;
+  Node& node = ws.node(index);
+  node.force = force_on_hosted(ws, index);
+  is_settled_ = !follow_state(node, ws.contact, keeps_states(order)) && is_settled_;
+  if (++index_ + 1 == ws.node_count()) {
+    ++round_;
+    begin_piece(is_settled_ || round_ == kStateRoundsMax ? Piece::kSend : Piece::kBlocks, 0);
+  }
+}
+
+// ---- Around it.
+
+void begin_condensing(Workspace& ws) {
+  ws.planned_exchange.clear_forces();
+  int awaited = 0;
+  for (int k = 0; k < ws.planned.count(); ++k) {
+    for (const Direction face : ws.planned.own_touching(k)) {
+      ws.planned_exchange.add_force(k, mechanics::end_force(ws.setup.beam, face, {}, ws.node(0).u));
+    }
+    for (const Direction child : ws.tree.children()) {
+      awaited += ws.planned.is_needed_below(child, k) ? 2 : 0;
+    }
+  }
+  ws.planned_exchange.await_forces(awaited);
 }
 
 void take_condensed(Workspace& ws, std::span<const std::uint8_t> message) {

@@ -39,11 +39,9 @@ inline int joined_count(const Workspace& ws, PlannedPart part) {
   return part == PlannedPart::kTogether ? ws.node_count() : 1;
 }
 
-/// Behind an iteration's order: the forces on planned modules at rest go up to their hosts.
-void begin_condensing(Workspace& ws, const Order& order);
-
-/// All forces from below are here: on to the host, or from it down again.
-void pass_condensed(Workspace& ws, const Order& order);
+/// Behind an iteration's order: the forces on planned modules at rest begin to go up to their
+/// hosts.
+void begin_condensing(Workspace& ws);
 
 /// A part of a planned module's displacement has come from its host.
 void take_condensed(Workspace& ws, std::span<const std::uint8_t> message);

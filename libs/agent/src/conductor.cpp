@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "holdfast/agent/conductor.hpp"
 
+#include "holdfast/agent/occupied_cells.hpp"
 #include "holdfast/mechanics/connector.hpp"
 #include "methods.hpp"
 #include "scalar.hpp"
@@ -17,13 +18,20 @@ Order Conductor::ask(Operation operation) {
 }
 
 Order Conductor::begin(const Setup& setup, const base::Cell& root, std::uint32_t module_count,
-                       std::uint16_t depth) {
+                       std::uint16_t depth, const Lent& lent) {
   *this = Conductor();
   root_ = root;
   census_ = module_count;
   depth_ = depth;
+  wave_depth_ = depth;
   degree_ = depth < setup.degree_max ? depth : setup.degree_max;
   effort_.method = setup.method;
+  judges_faces_ = kJudgesFaces && lent.judges_faces;
+  has_left_clusters_ = setup.only_one_sweep;
+  if constexpr (kHasAllMethods) {
+    may_have_fronts_ = lent.has_fronts && setup.method == Method::kFronts;
+    effort_.method = has_fronts() ? Method::kElimination : effort_.method;
+  }
   Order first = ask(Operation::kPlan);
   first.index = kNoPlanned;
   return first;
@@ -43,23 +51,31 @@ Order Conductor::next(const Setup& setup, const Report& report) {
     case Operation::kBegin:
     case Operation::kClusters:
       if (is_one_sweep()) {
-        if constexpr (kHasAllMethods) {
-          choose_clusters(report);
-        }
+        choose_clusters(report);
         return first_iteration();
       }
       break;
     case Operation::kFactor:
       return tree_iteration();
+    case Operation::kResume:
+    case Operation::kClose:
+      if constexpr (kKeepsAnswers) {
+        return asked_ == Operation::kResume ? after_resume(report) : after_close(setup, report);
+      }
+      break;
     case Operation::kIterate:
     case Operation::kTreeIterate:
       return after_iteration(setup, report);
     case Operation::kCorners:
       return after_corners(setup, report);
     case Operation::kLoads:
-      return after_loads(report);
+      return after_loads(setup, report);
     case Operation::kVerdict:
       return finish(Verdict::kUndecided, Reason::kNotConverged);
+    case Operation::kShape:
+      return kJudgesFaces ? after_shape(report) : say_answer();
+    case Operation::kNext:
+      return say_answer();
     default:
       break;
   }
@@ -92,8 +108,9 @@ Order Conductor::next_of_solve(const Setup& setup, const Report& report) {
     case Operation::kHold:
       return after_hold(report);
     default:
-      return finish(Verdict::kUndecided, Reason::kNotConverged);
+      break;
   }
+  return finish(Verdict::kUndecided, Reason::kNotConverged);
 }
 
 // ---- Planned modules, mass, rigid body.
@@ -122,6 +139,9 @@ Order Conductor::after_plan(const Report& report) {
   if ((report.flags & (kTooManyAnnounced | kDisputed)) != 0) {
     return finish(Verdict::kUndecided, (report.flags & kDisputed) != 0 ? Reason::kPlanDisputed
                                                                        : Reason::kPlannedTooMany);
+  }
+  if (kJudgesStages && (report.flags & kStepTold) != 0) {
+    return ask_word(kNoWord, {.number = bits_of({.kind = StepWord::Kind::kAttach})});
   }
   Order hosts = ask(Operation::kHosts);
   hosts.masks = totals_;
@@ -152,17 +172,21 @@ Order Conductor::after_hosts(const Report& report) {
 }
 
 Order Conductor::after_mass(const Setup& setup, const Report& report) {
+  if (kJudgesStages && is_resumed_) {
+    return resume_stage(setup, report);
+  }
   if (report.count != census_ + planned_count_) {
     return finish(Verdict::kUndecided, Reason::kNeighbourSilent);
   }
   effort_.module_count = report.count;
   is_fixed_ = (report.flags & kAnyFixed) != 0;
+  is_uneven_ = (report.flags & kUneven) != 0;
   extent_ = report.extent;
   has_many_loops_ = (report.flags & kManyLoops) != 0;
   if (extent_ > kExtentMax || depth_ > kExtentMax) {
     return finish(Verdict::kUndecided, Reason::kTooLarge);
   }
-  if (is_fixed_) {
+  if (is_fixed_ || is_uneven()) {
     return begin_law(setup, false);
   }
   constexpr std::int64_t kMost = 0x7fffffff;
@@ -189,6 +213,10 @@ Order Conductor::after_angles(const Setup& setup, const Report& report) {
 // ---- Equilibrium: the outer loop.
 
 Order Conductor::begin_law(const Setup& setup, bool is_unilateral) {
+  const bool is_renewed =
+      asked_ == Operation::kRenew || (kJudgesStages && is_resumed_ && asked_ == Operation::kMass);
+  has_motion_ = has_motion_ && is_renewed;
+  has_factors_ = has_factors_ && is_renewed;
   is_unilateral_ = is_unilateral;
   effort_.is_unilateral = is_unilateral;
   is_tilting_ = false;
@@ -201,28 +229,33 @@ Order Conductor::begin_law(const Setup& setup, bool is_unilateral) {
   error_ = kUnbounded;
   error_best_ = kUnbounded;
   target_ = is_fixed_ ? kRatioTolerance : kStateTolerance;
+  kept_states_ = false;
   solve_iterations_max_ = 200 + 20 * effort_.module_count;
   Order begin = ask(Operation::kBegin);
   if (is_one_sweep()) {
     choose_one_sweep(is_unilateral);
-    if constexpr (kHasAllMethods) {
-      had_clusters_ = false;
-      begin = ask(may_have_clusters() ? Operation::kClusters : Operation::kBegin);
-    }
+    had_clusters_ = false;
+    begin = ask(may_have_clusters() ? Operation::kClusters : Operation::kBegin);
     const bool starts = effort_.method == Method::kPolynomial && !is_any_remote_;
     begin.count = starts ? iteration_degree() : std::uint16_t{0};
   }
-  const bool has_all = kHasAllMethods && !setup.only_elimination;
-  if (!has_all && effort_.method != Method::kElimination) {
+  const bool has_all = kHasAllMethods && !setup.only_one_sweep;
+  if (!has_all && !is_one_sweep()) {
     return finish(Verdict::kUndecided, Reason::kNotConverged);
   }
   begin.flags = static_cast<std::uint8_t>(
       (is_unilateral ? kUnilateralLaw : 0U) | (is_one_sweep() ? kOneSweep : 0U) |
-      (effort_.method == Method::kPolynomial ? kWithIterations : 0U));
-  begin.reals[0] = static_cast<float>(is_unilateral ? kUnilateralGamma : setup.contact_gamma);
+      (effort_.method == Method::kPolynomial ? kWithIterations : 0U) |
+      (has_fronts() ? kWithFronts : 0U));
+  const double unilateral_gamma =
+      kHasSurroundings && is_toppling_ ? kTopplingGamma : kUnilateralGamma;
+  begin.reals[0] = static_cast<float>(is_unilateral ? unilateral_gamma : setup.contact_gamma);
   begin.reals[1] = static_cast<float>(static_cast<double>(extent_ + 1) * setup.section.length);
   return begin;
 }
+
+/// How good load ratios must be before contact states are told away from a level floor.
+double Conductor::uneven_target() const { return kUnevenTolerance * (1 + absolute(ratio_)); }
 
 Order Conductor::move(double length, double mix) {
   Order high = ask(Operation::kHigh);
@@ -235,6 +268,7 @@ Order Conductor::judge(const Setup& setup, const Report& report) {
   const auto error = static_cast<double>(report.error());
   ratio_ = static_cast<double>(report.load_ratio_max());
   is_tilting_ = (report.flags & kAnyTilting) != 0;
+  may_pull_ = (report.flags & kMayPull) != 0;
   if (!is_number(error) || effort_.iterations > setup.iteration_count_max) {
     return give_up(setup);
   }
@@ -247,7 +281,11 @@ Order Conductor::judge(const Setup& setup, const Report& report) {
   const bool follows = is_unilateral_ || is_jacobi();
   const bool is_consistent = follows || report.changed_count() == 0;
   target_ = (is_consistent ? kRatioTolerance : kStateTolerance) * (1 + absolute(ratio_));
-  if (!is_consistent && (error <= target_ || stagnation_count_ > kStagnationMax)) {
+  if (is_uneven()) {
+    target_ = uneven_target();
+  }
+  const bool is_told = error <= target_ || (stagnation_count_ > kStagnationMax && !is_uneven());
+  if (!is_consistent && is_told) {
     return judge_regularised(setup, report);
   }
   if (is_consistent && error <= target_) {
@@ -288,6 +326,11 @@ Order Conductor::give_up(const Setup& setup) {
     return begin_law(setup, false);
   }
   if (!is_unilateral_) {
+    has_given_up_ = true;
+    return begin_law(setup, true);
+  }
+  if (is_uneven() && !is_fixed_ && !is_second_ && !is_toppling_) {
+    is_toppling_ = true;
     return begin_law(setup, true);
   }
   const bool is_settled_but_close = error_ <= kRatioTolerance;
@@ -482,22 +525,26 @@ Order Conductor::after_jacobi(const Setup& setup, const Report& report) {
 
 Order Conductor::settled() {
   effort_.ratio_error = static_cast<float>(error_);
+  has_motion_ = is_one_sweep() && !is_unilateral_;
+  has_factors_ = has_motion_ && effort_.method == Method::kElimination;
   if (is_comparing_) {
     return decide();
   }
-  if (is_fixed_) {
+  if (is_fixed_ && !is_uneven()) {
     return ask(Operation::kLoads);
   }
-  return ask(Operation::kCorners);
+  return ask(kKeepsAnswers && is_resumed_ && !is_unilateral_ ? Operation::kClose
+                                                             : Operation::kCorners);
 }
 
 Order Conductor::after_corners(const Setup& setup, const Report& report) {
+  is_standing_ = report.corners.stable;
   if (!is_unilateral_) {
-    if (!report.corners.stable) {
-      effort_.method = Method::kConjugateGradients;
-      return begin_law(setup, true);
+    if (is_standing_) {
+      return ask(Operation::kLoads);
     }
-    return ask(Operation::kLoads);
+    // On a level floor the rigid body stands, so the corners are wrong; else they decide.
+    return is_uneven() ? finish(Verdict::kUnstable, Reason::kTopples) : begin_unilateral(setup);
   }
   Order hold = ask(Operation::kHold);
   hold.flags = kReleaseOpen;
@@ -508,23 +555,46 @@ Order Conductor::after_hold(const Report& report) {
   if (is_comparing_ || report.count > 0) {
     error_best_ = kUnbounded;
     stagnation_count_ = 0;
-    target_ = kRatioTolerance;
-    return move(0);
+    target_ = is_uneven() ? kUnevenTolerance : kRatioTolerance;
+    return has_fronts() ? factor() : move(0);
   }
   open_held_count_ = report.open_held_count();
+  if (kHasSurroundings && is_second_) {
+    const Order verdict = decide();
+    const bool is_final = open_held_count_ == 0 || answer_.verdict == Verdict::kUndecided;
+    return is_final ? verdict : free_open_feet();
+  }
+  if (is_uneven() && !is_standing_) {
+    return finish(Verdict::kUnstable, Reason::kTopples);
+  }
+  if (kHasSurroundings && is_toppling_) {
+    return finish(Verdict::kUndecided, Reason::kNotConverged);
+  }
   return ask(Operation::kLoads);
 }
 
-Order Conductor::after_loads(const Report& report) {
+/// The law that has an answer for every robot.
+Order Conductor::begin_unilateral(const Setup& setup) {
+  effort_.method = may_have_fronts_ ? Method::kFronts : Method::kConjugateGradients;
+  return begin_law(setup, true);
+}
+
+/// A verdict by weak springs that may pull is given only if the law without them agrees.
+Order Conductor::after_loads(const Setup& setup, const Report& report) {
   if (report.module_count() != effort_.module_count) {
     return finish(Verdict::kUndecided, Reason::kNeighbourSilent);
   }
   answer_.load_ratio_max = report.worst_load_ratio();
   answer_.worst_cell = report.cell;
   answer_.worst_direction = report.direction;
-  if (open_held_count_ == 0) {
-    return decide();
+  if (may_pull() && !is_unilateral_) {
+    is_second_ = true;
+    return begin_unilateral(setup);
   }
+  return open_held_count_ == 0 ? decide() : free_open_feet();
+}
+
+Order Conductor::free_open_feet() {
   is_comparing_ = true;
   Order hold = ask(Operation::kHold);
   hold.flags = kFreeOpen;
@@ -535,7 +605,8 @@ Order Conductor::decide() {
   const auto first = static_cast<double>(answer_.load_ratio_max);
   const bool breaks = mechanics::breaks(first);
   const double doubt = error_ > kErrorLeast ? error_ : kErrorLeast;
-  if (!is_number(first) || !is_number(ratio_)) {
+  // Away from a level floor the robot may fall by the law that was given up.
+  if (!is_number(first) || !is_number(ratio_) || (is_uneven() && has_given_up_)) {
     return finish(Verdict::kUndecided, Reason::kNotConverged);
   }
   if (absolute(ratio_ - 1) <= doubt) {
@@ -549,9 +620,37 @@ Order Conductor::decide() {
 }
 
 Order Conductor::finish(Verdict verdict, Reason reason) {
-  Order last = ask(Operation::kVerdict);
   answer_.verdict = verdict;
   answer_.reason = reason;
+  const bool judges = kJudgesFaces && judges_faces_ && !has_judged_ && planned_count_ == 0 &&
+                      verdict != Verdict::kUndecided;
+  return judges ? ask(Operation::kShape) : say_answer();
+}
+
+/// Every free face is judged before the verdict is said, once for every robot.
+Order Conductor::after_shape(const Report& report) {
+  has_judged_ = true;
+  if (!OccupiedCells::fits(report.cell, report.far_cell()) || report.count > 0xffffU) {
+    return say_answer();
+  }
+  Order next = ask(Operation::kNext);
+  const bool has_forces = answer_.verdict != Verdict::kUnstable;
+  next.flags =
+      static_cast<std::uint8_t>((is_fixed_ ? kIsHeld : 0U) | (has_forces ? kHasForces : 0U) |
+                                (is_unilateral_ ? kIsUnilateral : 0U));
+  next.cell = report.cell;
+  next.set_far_cell(report.far_cell());
+  next.count = static_cast<std::uint16_t>(report.count);
+  const double doubt = error_ > kErrorLeast ? error_ : kErrorLeast;
+  // The only foot of a robot that stands presses all over, whatever it carries.
+  const bool is_one_foot = report.count == 1 && report.facet_margin() > 0;
+  next.reals = {static_cast<float>(has_forces ? doubt + kFaceTolerance : 0), report.ratio_below(),
+                is_one_foot ? kNoFacetMargin : report.facet_margin()};
+  return next;
+}
+
+Order Conductor::say_answer() {
+  Order last = ask(Operation::kVerdict);
   last.answer = answer_;
   return last;
 }

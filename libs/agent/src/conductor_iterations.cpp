@@ -18,6 +18,19 @@ constexpr int kIterationStagnationMax = 40;
 constexpr int kEliminationStagnationMax = 6;
 constexpr int kClusterStagnationMax = 12;
 
+/// Larger robots with many loops begin with the polynomial and take fronts if that makes no
+/// progress: a cube of 5 takes 6 sweeps with it, and its fronts are the largest there are.
+constexpr std::uint32_t kFrontModulesMax = 80;
+
+/// Changes of contact states that elimination takes, two sweeps each, until fronts solve contact in
+/// one go. Where Newton's method settles it takes five at most, but for one robot in hundreds.
+constexpr std::uint32_t kChangesBeforeFronts = 3;
+
+/// Changes of contact states that elimination and the polynomial take from states that are kept,
+/// before they begin from rest: a start that is worse than none can go round in circles.
+constexpr std::uint32_t kChangesFromKept = 3;
+constexpr std::uint32_t kIterationChangesFromKept = 5;
+
 /// Iterations with clusters before they are given up, those included that change contact states.
 constexpr std::uint32_t kClusterIterationsMax = 40;
 
@@ -50,12 +63,25 @@ double ratio_per_energy_root(const Setup& setup) {
 
 }  // namespace
 
-/// The unilateral law needs a line search, which conjugate gradients have.
+bool Conductor::has_fronts() const { return kHasAllMethods && effort_.method == Method::kFronts; }
+
+bool Conductor::is_exact() const { return effort_.method == Method::kElimination || has_fronts(); }
+
+/// The unilateral law needs a line search, which conjugate gradients have, and at the root the
+/// method with fronts.
 void Conductor::choose_one_sweep(bool is_unilateral) {
+  const bool has_memory = kHasAllMethods && may_have_fronts_;
   if (is_unilateral) {
-    effort_.method = Method::kConjugateGradients;
+    effort_.method = has_memory ? Method::kFronts : Method::kConjugateGradients;
   } else if (has_many_loops_ || is_any_remote_) {
-    effort_.method = Method::kPolynomial;
+    const bool is_small = effort_.module_count <= kFrontModulesMax;
+    if (!has_memory || !(is_small || has_fronts())) {
+      effort_.method = Method::kPolynomial;
+    } else {
+      effort_.method = Method::kFronts;
+    }
+  } else if (has_memory && effort_.method == Method::kElimination) {
+    contact_iterations_max_ = effort_.contact_iterations + kChangesBeforeFronts;
   }
 }
 
@@ -73,8 +99,12 @@ std::uint16_t Conductor::cluster_degree() const {
   return bounded < kClusterDegreeMin ? kClusterDegreeMin : bounded;
 }
 
+bool Conductor::has_clusters() const { return kHasAllMethods && has_clusters_; }
+
+bool Conductor::had_clusters() const { return kHasAllMethods && had_clusters_; }
+
 bool Conductor::may_have_clusters() const {
-  return effort_.method == Method::kPolynomial && depth_ >= kClusterDepthMin &&
+  return kHasAllMethods && effort_.method == Method::kPolynomial && depth_ >= kClusterDepthMin &&
          planned_count_ <= kClusterPlannedMax && !has_left_clusters_;
 }
 
@@ -88,8 +118,7 @@ Order Conductor::first_iteration() {
   predicted_ = kUnbounded;
   holds_planned_ = false;
   held_planned_ = false;
-  const bool is_elimination = !kHasAllMethods || effort_.method == Method::kElimination;
-  if (is_elimination) {
+  if (is_exact()) {
     return factor();
   }
   Order iteration = restarted_iteration();
@@ -105,14 +134,16 @@ Order Conductor::tree_iteration() { return ask(Operation::kTreeIterate); }
 
 Order Conductor::next_iteration(std::uint8_t flags, const std::array<float, 3>& coefficients) {
   Order iteration = ask(Operation::kIterate);
-  const bool has_clusters = has_clusters_ && !least_residual_;
+  const bool takes_clusters = has_clusters() && !least_residual_;
   iteration.flags = static_cast<std::uint8_t>(flags | (least_residual_ ? kLeastResidual : 0U) |
-                                              (has_clusters ? kWithClusters : 0U) |
+                                              (takes_clusters ? kWithClusters : 0U) |
                                               (holds_planned_ ? kHoldPlanned : 0U));
-  iteration.count = has_clusters ? cluster_degree() : iteration_degree();
+  kept_states_ = is_uneven() && !(error_ <= uneven_target());
+  iteration.flags = static_cast<std::uint8_t>(iteration.flags | (kept_states_ ? kKeepStates : 0U));
+  iteration.count = takes_clusters ? cluster_degree() : iteration_degree();
   iteration.reals = coefficients;
-  has_changed_ = has_clusters != had_clusters_ || holds_planned_ != held_planned_;
-  had_clusters_ = has_clusters;
+  has_changed_ = takes_clusters != had_clusters() || holds_planned_ != held_planned_;
+  had_clusters_ = takes_clusters;
   held_planned_ = holds_planned_;
   return iteration;
 }
@@ -123,7 +154,7 @@ Order Conductor::next_iteration(std::uint8_t flags, const std::array<float, 3>& 
 /// as if.
 Order Conductor::restarted_iteration() {
   has_older_ = false;
-  least_residual_ = is_tilting_ && !has_clusters_ && !is_any_remote_;
+  least_residual_ = is_tilting_ && !has_clusters() && !is_any_remote_;
   energy_bound_.restart();
   return next_iteration(kRestart, {});
 }
@@ -134,18 +165,33 @@ Order Conductor::after_iteration(const Setup& setup, const Report& report) {
   ++effort_.iterations;
   ratio_ = static_cast<double>(report.load_ratio_max());
   is_tilting_ = (report.flags & kAnyTilting) != 0;
+  may_pull_ = (report.flags & kMayPull) != 0;
   const bool was_accurate = predicted_ < kStateTolerance * (1 + absolute(ratio_));
   const bool has_jumped = report.changed_count() > 0;
-  const bool is_elimination = !kHasAllMethods || effort_.method == Method::kElimination;
+  if constexpr (kHasAllMethods) {
+    // Where others want to let go as well there may yet be a state.
+    const bool has_no_room = (report.flags & kNoRoom) != 0;
+    if (has_no_room || ((report.flags & kNoState) != 0 && report.changed_count() == 0)) {
+      return leave_fronts(setup, has_no_room);
+    }
+  }
+  const bool is_elimination = is_exact();
   const auto bound = static_cast<double>(report.error());
   const double error = has_jumped || is_elimination ? bound : iteration_error(setup, report, bound);
   if (!is_number(error) || effort_.iterations > setup.iteration_count_max) {
     return leave_one_sweep(setup, false);
   }
   error_ = error;
-  if (has_jumped) {
+  const bool is_rough = is_uneven() && error > uneven_target();
+  if (has_jumped && !(is_rough && is_elimination)) {
     ++effort_.contact_iterations;
-    const bool is_cycle = was_accurate && was_seen(report.states_hash());
+    if (kKeepsAnswers && has_motion_ &&
+        effort_.contact_iterations >
+            (is_elimination ? kChangesFromKept : kIterationChangesFromKept)) {
+      return begin_law(setup, false);
+    }
+    // With fronts a facet that has changed is never asked again.
+    const bool is_cycle = !has_fronts() && was_accurate && was_seen(report.states_hash());
     if (is_cycle || effort_.contact_iterations > contact_iterations_max_) {
       // Only exact iterations are certain to go round in circles: conjugate gradients try first.
       return leave_one_sweep(setup, is_cycle && is_elimination);
@@ -153,12 +199,12 @@ Order Conductor::after_iteration(const Setup& setup, const Report& report) {
     error_best_ = kUnbounded;
     stagnation_count_ = 0;
     predicted_ = kUnbounded;
-    holds_planned_ = is_any_remote_ && !has_clusters_;
+    holds_planned_ = is_any_remote_ && !has_clusters();
     return is_elimination ? factor() : jumped_iteration(setup, report);
   }
-  target_ = kRatioTolerance * (1 + absolute(ratio_));
+  target_ = is_uneven() ? uneven_target() : kRatioTolerance * (1 + absolute(ratio_));
   const double distance = absolute(ratio_ - 1) / kDoubt;
-  if (error <= target_ && (error <= distance || error <= kErrorLeast)) {
+  if (error <= target_ && !kept_states_ && (error <= distance || error <= kErrorLeast)) {
     return settled();
   }
   const bool is_better = error < 0.7 * error_best_;
@@ -172,7 +218,7 @@ Order Conductor::after_iteration(const Setup& setup, const Report& report) {
     predicted_ = error;
     return tree_iteration();
   }
-  if (had_clusters_ &&
+  if (had_clusters() &&
       (stagnation_count_ > kClusterStagnationMax || effort_.iterations > kClusterIterationsMax)) {
     return leave_clusters(setup);
   }
@@ -232,11 +278,11 @@ Order Conductor::minimised_iteration(const Report& report) {
 /// clusters M^-1 K has eigenvalues up to Cluster::kReach, so before, what was too long of the last
 /// iteration is taken back, as if K had not changed.
 Order Conductor::jumped_iteration(const Setup& setup, const Report& report) {
-  if (had_clusters_ && effort_.iterations > kClusterIterationsMax) {
+  if (had_clusters() && effort_.iterations > kClusterIterationsMax) {
     return leave_clusters(setup);
   }
   const bool is_long = report.products[0] < -kLongCorrection * report.products[1];
-  if (!had_clusters_ || has_changed_ || !is_long) {
+  if (!had_clusters() || has_changed_ || !is_long) {
     return restarted_iteration();
   }
   energy_bound_.restart();
@@ -252,8 +298,20 @@ Order Conductor::leave_clusters(const Setup& setup) {
   return begin_law(setup, false);
 }
 
+/// Fronts that find no room anywhere, or no contact state: the next safer method, the next law.
+Order Conductor::leave_fronts(const Setup& setup, bool has_no_room) {
+  if (has_no_room) {
+    may_have_fronts_ = false;
+    effort_.method = Method::kPolynomial;
+    return begin_law(setup, is_unilateral_);
+  }
+  return is_unilateral_ ? leave_one_sweep(setup, true) : begin_law(setup, true);
+}
+
+/// With memory for fronts elimination gives way to them, and they to conjugate gradients.
 Order Conductor::leave_one_sweep(const Setup& setup, bool is_unilateral) {
-  effort_.method = Method::kConjugateGradients;
+  may_have_fronts_ = may_have_fronts_ && !has_fronts();
+  effort_.method = may_have_fronts_ ? Method::kFronts : Method::kConjugateGradients;
   return begin_law(setup, is_unilateral);
 }
 

@@ -3,7 +3,9 @@
 #include "displacements.hpp"
 
 #include "beams.hpp"
+#include "facets.hpp"
 #include "scalar.hpp"
+#include "stage_load.hpp"
 
 namespace holdfast::agent {
 namespace {
@@ -13,7 +15,14 @@ int code_of(const mechanics::ContactState& state) {
   return !state.pressed ? 0 : 5 + 3 * state.tilt_x + state.tilt_y;
 }
 
-/// Spreads cells and states over 32 bits, so that sums over the robot tell sets of states apart.
+/// The width of the facets that touch something.
+double foot_width(const Workspace& ws) {
+  const Environment* environment = ws.environment();
+  return environment != nullptr ? environment->foot_width_mm : ws.setup.facet_mm;
+}
+
+}  // namespace
+
 std::uint32_t hash_of(const base::Cell& cell, int code) {
   std::uint32_t hash = 0x9e3779b9U;
   for (const std::int32_t value : {cell.x, cell.y, cell.z, std::int32_t{code}}) {
@@ -23,16 +32,17 @@ std::uint32_t hash_of(const base::Cell& cell, int code) {
   return hash;
 }
 
-}  // namespace
-
 void begin_equilibrium(Workspace& ws, const Order& order) {
-  const auto law = (order.flags & kUnilateralLaw) != 0 ? mechanics::ContactLaw::kUnilateral
-                                                       : mechanics::ContactLaw::kRegularised;
-  ws.contact.facet =
-      mechanics::ground_facet(ws.setup.beam, ws.setup.section.length, ws.setup.facet_mm,
-                              static_cast<double>(order.gamma()), law);
+  const bool is_unilateral =
+      order.operation != wire::Operation::kResume && (order.flags & kUnilateralLaw) != 0;
+  const auto law =
+      is_unilateral ? mechanics::ContactLaw::kUnilateral : mechanics::ContactLaw::kRegularised;
+  ws.contact.facet = mechanics::ground_facet(ws.setup.beam, ws.setup.section.length, foot_width(ws),
+                                             static_cast<double>(order.gamma()), law);
   ws.contact.lever_mm = static_cast<double>(order.lever_mm());
-  for (int i = 0; i < ws.node_count(); ++i) {
+  const bool keeps =
+      order.operation == wire::Operation::kResume && (order.flags & kKeepsMotion) != 0;
+  for (int i = 0; i < ws.node_count() && !keeps; ++i) {
     reset(ws.node(i));
   }
 }
@@ -55,17 +65,25 @@ void share_low_part(Workspace& ws) {
   }
 }
 
-void follow_state(Node& node, const ContactSetting& contact, bool is_kept) {
-  node.wanted = is_kept ? node.state : state_along(node, contact, {}, 0);
-  if (node.is_ground && !(node.wanted == node.state)) {
-    node.state = node.wanted;
-    node.has_changed = true;
+bool follow_state(Node& node, const ContactSetting& contact, bool is_kept) {
+  if (is_kept) {
+    node.wanted = node.state;
+    return false;
   }
+  if (!look_up_states(node, contact, {}, 0)) {
+    return false;
+  }
+  take_states(node);
+  node.has_changed = true;
+  return true;
 }
 
 void report_facet(Report& report, const base::Cell& cell, const Node& node) {
   if (!node.is_ground) {
     return;
+  }
+  if (const Surroundings* surroundings = surroundings_of(node); surroundings != nullptr) {
+    return surrounded::report_facets(*surroundings, cell, report);
   }
   report.number += hash_of(cell, code_of(node.wanted));
   if (node.state.tilt_x != 0 || node.state.tilt_y != 0) {
@@ -73,17 +91,35 @@ void report_facet(Report& report, const base::Cell& cell, const Node& node) {
   }
 }
 
-Report iteration_report(const Workspace& ws) {
-  Report report;
+bool iteration_report(const Workspace& ws, int piece, Report& report) {
+  if (piece > 0) {
+    report.reals[1] = largest_load_ratio(ws);
+    return false;
+  }
   double error = 0;
   for (int i = 0; i < ws.node_count(); ++i) {
     const Node& node = ws.node(i);
     report.extent = static_cast<std::uint16_t>(report.extent + (node.has_changed ? 1 : 0));
     report_facet(report, ws.cell_of(i), node);
-    error += ratio_error(residual(node, ws.setup, ws.contact), ws.setup, ws.contact);
+    error += ratio_error(residual(ws, i), ws.setup, ws.contact);
   }
-  report.reals = {static_cast<float>(error), largest_load_ratio(ws)};
-  return report;
+  report.reals[0] = static_cast<float>(error);
+  return true;
+}
+
+void hold_facets(Workspace& ws, const Order& order, Report& report) {
+  for (int i = 0; i < ws.node_count(); ++i) {
+    Node& node = ws.node(i);
+    if (!node.is_ground) {
+      continue;
+    }
+    const bool frees = (order.flags & kFreeOpen) != 0;
+    if (Surroundings* surroundings = surroundings_of(node); surroundings != nullptr) {
+      surrounded::hold_facets(*surroundings, frees, report);
+    } else {
+      hold_facet(node, frees, report);
+    }
+  }
 }
 
 }  // namespace holdfast::agent

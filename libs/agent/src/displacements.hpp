@@ -23,14 +23,36 @@ inline bool keeps_states(const Order& order) {
   return order.operation == wire::Operation::kIterate && (order.flags & kKeepStates) != 0;
 }
 
-/// Takes over the contact state that belongs to u.
-void follow_state(Node& node, const ContactSetting& contact, bool is_kept);
+/// Takes over the contact states that belong to u, unless they are kept. True: some are others.
+bool follow_state(Node& node, const ContactSetting& contact, bool is_kept);
 
-/// The hash of the state that a node's facet wants, and whether it tilts in the one in use.
+/// Spreads cells and contact states over 32 bits, so that sums over the robot tell sets of states
+/// apart.
+std::uint32_t hash_of(const base::Cell& cell, int code);
+
+/// The hash of the states that a node's facets want, and whether any tilts in those in use.
 void report_facet(Report& report, const base::Cell& cell, const Node& node);
 
 /// What every iteration of the one-sweep methods reports: the bound on the error of load ratios
-/// that the residual means, the largest of them, and the facets.
-Report iteration_report(const Workspace& ws);
+/// that the residual means, the facets, and in a second piece the largest load ratio.
+bool iteration_report(const Workspace& ws, int piece, Report& report);
+
+/// One facet's part in a kHold; `Facet` is a node with its facet on the floor, or one of several.
+template <class Facet>
+void hold_facet(Facet& facet, bool frees, Report& report) {
+  if (!facet.state.pressed && facet.is_held && (frees || !facet.was_released)) {
+    facet.is_held = false;
+    facet.was_released = true;
+    ++report.count;
+  } else if (facet.state.pressed && !facet.is_held && !frees) {
+    facet.is_held = true;
+    ++report.count;
+  }
+  report.number += !facet.state.pressed && facet.is_held ? 1U : 0U;
+}
+
+/// A kHold: releases open facets and holds pressed ones (count: how many changed); number: open but
+/// held.
+void hold_facets(Workspace& ws, const Order& order, Report& report);
 
 }  // namespace holdfast::agent

@@ -6,6 +6,8 @@
 #include "chebyshev.hpp"
 #include "condensed.hpp"
 #include "displacements.hpp"
+#include "facets.hpp"
+#include "stage_load.hpp"
 
 namespace holdfast::agent {
 namespace {
@@ -28,61 +30,78 @@ PlannedPart KrylovAndJacobi::planned_part(const Workspace& ws, const Order& orde
              : PlannedPart::kTogether;
 }
 
-void KrylovAndJacobi::begin(Workspace& ws, const Order& order) {
+bool KrylovAndJacobi::begin(Workspace& ws, const Order& order, int piece) {
   switch (order.operation) {
     case Operation::kBegin:
       begin_equilibrium(ws, order);
       for (int i = 0; i < ws.node_count(); ++i) {
         vectors(i) = gradients_at_rest(ws.node(i), ws.setup);
+        if (const base::Vec6<double>* hung = hung_on(ws, i); hung != nullptr) {
+          base::add_to(vectors(i).r, base::converted<float>(*hung));
+          vectors(i).r_start = vectors(i).r;
+        }
       }
-      break;
+      return false;
     case Operation::kHigh:
-      return move(ws, order);
+      move(ws, order);
+      return false;
     case Operation::kLow:
-      return share_low_part(ws);
+      share_low_part(ws);
+      return false;
     case Operation::kStart:
-      return start_solve(ws, order);
+      start_solve(ws, order, piece % 4, piece / 4);
+      return piece + 1 < 4 * ws.node_count();
     case Operation::kGradient:
-      return iterate_gradient(ws, order);
+      iterate_gradient(ws, order, piece);
+      return piece + 1 < ws.node_count();
     case Operation::kJacobi:
     case Operation::kSlope:
-      return share_correction(ws);
+      share_correction(ws);
+      return false;
     default:
-      break;
+      return false;
   }
 }
 
-void KrylovAndJacobi::take_exchange(Workspace& ws, const Order& order) {
+bool KrylovAndJacobi::take_exchange(Workspace& ws, const Order& order, int piece) {
   if (order.operation == Operation::kHigh || order.operation == Operation::kLow) {
     add_forces(ws, PlannedPart::kTogether);
-    return;
+    return false;
   }
-  find_images(ws, order);
+  if (piece == 0) {
+    find_images(ws, order);
+    return is_preconditioned(order.operation) || order.operation == Operation::kJacobi;
+  }
   if (order.operation == Operation::kJacobi) {
     iterate_jacobi(ws);
-  } else if (is_preconditioned(order.operation)) {
-    next_terms(ws, order);
+    return false;
   }
+  next_term(ws, order, piece - 1);
+  return piece < joined_count(ws, planned_part(ws, order));
 }
 
-Report KrylovAndJacobi::report(Workspace& ws, const Order& order) {
+bool KrylovAndJacobi::report(Workspace& ws, const Order& order, int piece, Report& sum) {
   switch (order.operation) {
     case Operation::kLow:
-      return residual_report(ws, order);
+      return report_residual(ws, order, piece, sum);
     case Operation::kStart:
     case Operation::kGradient:
-      return product_report(ws);
-    case Operation::kJacobi: {
-      Report report;
-      report.reals[0] = jacobi_error_;
-      return report;
-    }
+      report_products(ws, sum);
+      return false;
+    case Operation::kJacobi:
+      sum.reals[0] = jacobi_error_;
+      return false;
     case Operation::kSlope:
-      return (order.flags & kMixProducts) != 0 ? mix_report(ws) : slope_report(ws, order);
+      if ((order.flags & kMixProducts) == 0) {
+        return report_slopes(ws, order, piece, sum);
+      }
+      report_mix(ws, sum);
+      return false;
     case Operation::kHold:
-      return hold_report(ws, order);
+      hold_facets(ws, order, sum);
+      return false;
     default:
-      return {};
+      return false;
   }
 }
 
@@ -102,16 +121,28 @@ void KrylovAndJacobi::move(Workspace& ws, const Order& order) {
   ws.middle = {};
 }
 
-void KrylovAndJacobi::start_solve(Workspace& ws, const Order& order) {
+/// In four parts for each node.
+void KrylovAndJacobi::start_solve(Workspace& ws, const Order& order, int part, int index) {
   is_scalar_ = (order.flags & kWithScalars) != 0;
   is_first_iteration_ = true;
-  const int joined = joined_count(ws, planned_part(ws, order));
-  for (int i = 0; i < ws.node_count(); ++i) {
-    Node& node = ws.node(i);
-    Gradients& cg = vectors(i);
+  Node& node = ws.node(index);
+  Gradients& cg = vectors(index);
+  if (part == 2) {
+    factor_diagonal(node, 0);
+    return;
+  }
+  if (part == 3) {
+    factor_diagonal(node, 1);
+    precondition(ws, index, order.count, index < joined_count(ws, planned_part(ws, order)));
+    if (is_scalar_) {
+      cg.p = scalar_diagonal(node, ws.setup, ws.contact, ws.faces_of(index));
+    }
+    return;
+  }
+  if (part == 0) {
     if ((order.flags & kAdoptStates) != 0) {
-      node.state = node.wanted;
-      cg.r = base::converted<float>(residual(node, ws.setup, ws.contact));
+      take_states(node);
+      cg.r = base::converted<float>(residual(ws, index));
     }
     cg.r_before = cg.r_start;
     cg.r_start = cg.r;
@@ -119,29 +150,20 @@ void KrylovAndJacobi::start_solve(Workspace& ws, const Order& order) {
     cg.g = {};
     cg.p = {};
     cg.s = {};
-    factor_diagonal(node, ws.setup, ws.contact, ws.faces_of(i));
-    precondition(ws, i, order.count, i < joined);
-    if (is_scalar_) {
-      cg.p = scalar_diagonal(node, ws.setup, ws.contact, ws.faces_of(i));
-    }
   }
+  form_diagonal(node, ws.setup, ws.contact, ws.faces_of(index), part);
 }
 
 /// p := z + beta p, s := w + beta s, g := g + alpha p, r := r - alpha s, z := M^-1 r.
-void KrylovAndJacobi::iterate_gradient(Workspace& ws, const Order& order) {
+void KrylovAndJacobi::iterate_gradient(Workspace& ws, const Order& order, int index) {
   const float alpha = order.alpha();
   const float beta = order.beta();
-  const int joined = joined_count(ws, planned_part(ws, order));
-  for (int i = 0; i < ws.node_count(); ++i) {
-    Gradients& cg = vectors(i);
-    for (std::size_t k = 0; k < 6; ++k) {
-      cg.p[k] = cg.z[k] + beta * cg.p[k];
-      cg.s[k] = cg.w[k] + beta * cg.s[k];
-      cg.g[k] += alpha * cg.p[k];
-      cg.r[k] -= alpha * cg.s[k];
-    }
-    precondition(ws, i, order.count, i < joined);
-  }
+  Gradients& cg = vectors(index);
+  cg.p = base::sum_of(cg.z, beta, cg.p);
+  cg.s = base::sum_of(cg.w, beta, cg.s);
+  cg.g = base::sum_of(cg.g, alpha, cg.p);
+  cg.r = base::sum_of(cg.r, -alpha, cg.s);
+  precondition(ws, index, order.count, index < joined_count(ws, planned_part(ws, order)));
 }
 
 /// The first term of the preconditioner: z = M^-1 r, scaled; w holds what is left of r.
@@ -196,43 +218,33 @@ void KrylovAndJacobi::find_images(Workspace& ws, const Order& order) {
 }
 
 /// The next term of the preconditioner, and after the last one w = A z.
-void KrylovAndJacobi::next_terms(Workspace& ws, const Order& order) {
+void KrylovAndJacobi::next_term(Workspace& ws, const Order& order, int index) {
   const Interval interval(order.count);
   const double sigma = interval.half > 0 ? interval.centre / interval.half : 1;
   const double rho = 1 / (2 * sigma - static_cast<double>(rho_));
   const auto keep = static_cast<float>(rho * static_cast<double>(rho_));
   const auto gain = static_cast<float>(interval.half > 0 ? 2 * rho / interval.half : 0);
   const bool is_last = ws.exchange.left() == 1;
-  const int joined = joined_count(ws, planned_part(ws, order));
-  for (int i = 0; i < joined; ++i) {
-    Node& node = ws.node(i);
-    Gradients& cg = vectors(i);
-    if (node.is_fixed) {
-      cg.w = {};
-      continue;
-    }
-    if (node.is_ground) {
-      base::add_to(cg.image, base::converted<float>(mechanics::symmetric_product(
-                                 ws.contact.facet, node.state, node.is_held,
-                                 base::converted<double>(node.vector.sent))));
-    }
-    for (std::size_t k = 0; k < 6; ++k) {
-      cg.w[k] -= cg.image[k];
-    }
-    if (is_last) {
-      for (std::size_t k = 0; k < 6; ++k) {
-        cg.w[k] = cg.r[k] - cg.w[k];
-      }
-      continue;
-    }
-    base::Vec6<float> term = solve_diagonal(node, cg.w);
-    for (std::size_t k = 0; k < 6; ++k) {
-      term[k] = keep * node.vector.sent[k] + gain * term[k];
-    }
-    node.vector.sent = term;
-    base::add_to(cg.z, term);
+  Node& node = ws.node(index);
+  Gradients& cg = vectors(index);
+  if (index + 1 == joined_count(ws, planned_part(ws, order))) {
+    rho_ = static_cast<float>(rho);
   }
-  rho_ = static_cast<float>(rho);
+  if (node.is_fixed) {
+    cg.w = {};
+    return;
+  }
+  if (node.is_ground) {
+    base::add_to(cg.image, base::converted<float>(symmetric_facet_product(
+                               node, ws.contact, base::converted<double>(node.vector.sent))));
+  }
+  cg.w = base::sum_of(cg.w, -1.0F, cg.image);
+  if (is_last) {
+    cg.w = base::sum_of(cg.r, -1.0F, cg.w);
+    return;
+  }
+  node.vector.sent = base::combination(keep, node.vector.sent, gain, solve_diagonal(node, cg.w));
+  base::add_to(cg.z, node.vector.sent);
 }
 
 /// One iteration of Eq. (14), written for the correction g: g := g + beta D^-1 r(u + g), with the
@@ -257,13 +269,15 @@ void KrylovAndJacobi::iterate_jacobi(Workspace& ws, int index, double& error) {
   for (std::size_t k = 0; k < 6; ++k) {
     rest[k] = cg.r_start[k] - cg.image[k] - static_cast<float>(here[k] - start[k]);
   }
-  const mechanics::ContactState state = state_along(node, ws.contact, cg.g, 1);
-  if (node.is_ground && !is_first_iteration_ && !(state == node.state)) {
-    node.state = state;
+  if (look_up_states(node, ws.contact, cg.g, 1) && !is_first_iteration_) {
+    take_states(node);
     if (is_scalar_) {
       cg.p = scalar_diagonal(node, ws.setup, ws.contact, ws.faces_of(index));
     } else {
-      factor_diagonal(node, ws.setup, ws.contact, ws.faces_of(index));
+      form_diagonal(node, ws.setup, ws.contact, ws.faces_of(index), 0);
+      form_diagonal(node, ws.setup, ws.contact, ws.faces_of(index), 1);
+      factor_diagonal(node, 0);
+      factor_diagonal(node, 1);
     }
   }
   error += ratio_error(base::converted<double>(rest), ws.setup, ws.contact);
@@ -275,80 +289,73 @@ void KrylovAndJacobi::iterate_jacobi(Workspace& ws, int index, double& error) {
   node.vector.sent = cg.g;
 }
 
-/// Error bound, largest load ratio, facets that want another state, their hash.
-Report KrylovAndJacobi::residual_report(Workspace& ws, const Order& order) {
-  Report report;
-  for (int i = 0; i < ws.node_count(); ++i) {
-    Node& node = ws.node(i);
-    node.wanted = state_along(node, ws.contact, vectors(i).g, 0);
-    if (node.is_ground && !(node.wanted == node.state)) {
-      ++report.extent;
-      if ((order.flags & kFollowStates) != 0) {
-        node.state = node.wanted;
-      }
-    }
-    report_facet(report, ws.cell_of(i), node);
-    const base::Vec6<double> rest = residual(node, ws.setup, ws.contact);
-    report.reals[0] += static_cast<float>(ratio_error(rest, ws.setup, ws.contact));
-    vectors(i).r = base::converted<float>(rest);
+/// Error bound, facets that want another state, their hash, node by node; largest load ratio.
+bool KrylovAndJacobi::report_residual(Workspace& ws, const Order& order, int piece,
+                                      Report& report) {
+  if (piece == ws.node_count()) {
+    report.reals[1] = largest_load_ratio(ws);
+    return false;
   }
-  report.reals[1] = largest_load_ratio(ws);
-  return report;
+  Node& node = ws.node(piece);
+  if (look_up_states(node, ws.contact, vectors(piece).g, 0)) {
+    ++report.extent;
+    if ((order.flags & kFollowStates) != 0) {
+      take_states(node);
+    }
+  }
+  report_facet(report, ws.cell_of(piece), node);
+  const base::Vec6<double> rest = residual(ws, piece);
+  report.reals[0] += static_cast<float>(ratio_error(rest, ws.setup, ws.contact));
+  vectors(piece).r = base::converted<float>(rest);
+  return true;
 }
 
 /// (r, z), (z, w), and the bound on the error that r means.
-Report KrylovAndJacobi::product_report(const Workspace& ws) const {
-  float residual_product = 0;
-  float image_product = 0;
+void KrylovAndJacobi::report_products(const Workspace& ws, Report& report) const {
   double error = 0;
   for (int i = 0; i < ws.node_count(); ++i) {
     const Gradients& cg = vectors(i);
-    residual_product += base::dot(cg.r, cg.z);
-    image_product += base::dot(cg.z, cg.w);
+    report.reals[0] += base::dot(cg.r, cg.z);
+    report.reals[1] += base::dot(cg.z, cg.w);
     error +=
         ws.node(i).is_fixed ? 0 : ratio_error(base::converted<double>(cg.r), ws.setup, ws.contact);
   }
-  Report report;
-  report.reals[0] = residual_product;
-  report.reals[1] = image_product;
   report.reals[2] = static_cast<float>(error);
-  return report;
 }
 
 /// The slope of the energy along g, at t = 0 and at four places in (low, high].
-Report KrylovAndJacobi::slope_report(const Workspace& ws, const Order& order) const {
-  const auto low = static_cast<double>(order.low());
-  const auto high = static_cast<double>(order.high());
-  std::array<double, 5> sums{};
-  for (int i = 0; i < ws.node_count(); ++i) {
-    const Node& node = ws.node(i);
-    const Gradients& cg = vectors(i);
-    if (node.is_fixed) {
-      continue;
-    }
+bool KrylovAndJacobi::report_slopes(const Workspace& ws, const Order& order, int piece,
+                                    Report& report) {
+  const int index = piece / kSlopePlaces;
+  const int place = piece % kSlopePlaces;
+  double& sum = slopes_[static_cast<std::size_t>(place)];
+  sum = index == 0 ? 0 : sum;
+  const Node& node = ws.node(index);
+  const Gradients& cg = vectors(index);
+  if (!node.is_fixed) {
     // Node by node the sum is small near the equilibrium, so its digits are good.
-    for (int place = 0; place <= 4; ++place) {
-      const double t = place == 0 ? 0 : low + (high - low) * place / 4;
-      base::Vec6<double> rest = facet_force_along(node, ws.contact, cg.g, t);
-      rest[2] += ws.setup.weight_n;
-      double slope = 0;
-      for (std::size_t k = 0; k < 6; ++k) {
-        rest[k] += node.force[k] + t * static_cast<double>(cg.image[k]);
-        slope += rest[k] * static_cast<double>(cg.g[k]);
-      }
-      sums[static_cast<std::size_t>(place)] += slope;
+    const auto low = static_cast<double>(order.low());
+    const auto high = static_cast<double>(order.high());
+    const double t = place == 0 ? 0 : low + (high - low) * place / (kSlopePlaces - 1);
+    base::Vec6<double> rest = facet_force_along(node, ws.contact, cg.g, t);
+    base::Vec6<double> load = load_of(node, ws.setup);
+    if (const base::Vec6<double>* hung = hung_on(ws, index); hung != nullptr) {
+      base::add_to(load, *hung);
     }
+    double slope = 0;
+    for (std::size_t k = 0; k < 6; ++k) {
+      rest[k] -= load[k];
+      rest[k] += node.force[k] + t * static_cast<double>(cg.image[k]);
+      slope += rest[k] * static_cast<double>(cg.g[k]);
+    }
+    sum += slope;
   }
-  Report report;
-  for (std::size_t i = 0; i < sums.size(); ++i) {
-    report.reals[i] = static_cast<float>(sums[i]);
-  }
-  return report;
+  report.reals[static_cast<std::size_t>(place)] = static_cast<float>(sum);
+  return piece + 1 < kSlopePlaces * ws.node_count();
 }
 
 /// (dg, r) and (dg, dr), d: the change since the solve before.
-Report KrylovAndJacobi::mix_report(const Workspace& ws) const {
-  Report report;
+void KrylovAndJacobi::report_mix(const Workspace& ws, Report& report) const {
   for (int i = 0; i < ws.node_count(); ++i) {
     const Gradients& cg = vectors(i);
     for (std::size_t k = 0; k < 6; ++k) {
@@ -357,29 +364,6 @@ Report KrylovAndJacobi::mix_report(const Workspace& ws) const {
       report.reals[1] += change * (cg.r_start[k] - cg.r_before[k]);
     }
   }
-  return report;
-}
-
-/// Releases open facets and holds pressed ones (count: how many changed); number: open but held.
-Report KrylovAndJacobi::hold_report(Workspace& ws, const Order& order) {
-  Report report;
-  for (int i = 0; i < ws.node_count(); ++i) {
-    Node& node = ws.node(i);
-    if (!node.is_ground) {
-      continue;
-    }
-    const bool frees = (order.flags & kFreeOpen) != 0;
-    if (!node.state.pressed && node.is_held && (frees || !node.was_released)) {
-      node.is_held = false;
-      node.was_released = true;
-      ++report.count;
-    } else if (node.state.pressed && !node.is_held && !frees) {
-      node.is_held = true;
-      ++report.count;
-    }
-    report.number += !node.state.pressed && node.is_held ? 1U : 0U;
-  }
-  return report;
 }
 
 }  // namespace holdfast::agent

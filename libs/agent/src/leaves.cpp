@@ -3,8 +3,9 @@
 #include "leaves.hpp"
 
 namespace holdfast::agent {
+namespace {
 
-Leaves leaves_of(const Planned& planned) {
+Leaves trees_of(const Planned& planned, bool has_host) {
   Leaves leaves;
   PlannedSet placed;
   const auto place = [&](int node, int parent, base::Direction to_parent) {
@@ -14,12 +15,17 @@ Leaves leaves_of(const Planned& planned) {
     leaves.to_parent[i] = to_parent;
     placed.add(planned.hosted(node - 1));
   };
-  for (int i = 0; i < planned.hosted_count(); ++i) {
+  for (int i = 0; i < planned.hosted_count() && has_host; ++i) {
     for (const base::Direction to_host : planned.own_touching(planned.hosted(i))) {
       place(1 + i, 0, to_host);
     }
   }
-  for (int next = 0; next < leaves.count; ++next) {
+  for (int next = 0; next < planned.hosted_count(); ++next) {
+    for (int i = 0; i < planned.hosted_count() && next == leaves.count; ++i) {
+      if (!placed.has(planned.hosted(i))) {
+        place(1 + i, 0, base::Direction::kPlusX);
+      }
+    }
     const int at = leaves.node[static_cast<std::size_t>(next)];
     for (const base::Direction direction : base::kDirections) {
       const int other = planned.neighbour_of(planned.hosted(at - 1), direction);
@@ -31,6 +37,12 @@ Leaves leaves_of(const Planned& planned) {
   }
   return leaves;
 }
+
+}  // namespace
+
+Leaves leaves_of(const Planned& planned) { return trees_of(planned, true); }
+
+Leaves group_trees(const Planned& planned) { return trees_of(planned, false); }
 
 int leaf_connections(const Planned& planned) {
   int ends = 0;

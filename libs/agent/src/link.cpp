@@ -6,6 +6,7 @@
 #include <cstring>
 
 #include "holdfast/base/check.hpp"
+#include "methods.hpp"
 
 namespace holdfast::agent {
 namespace {
@@ -29,11 +30,6 @@ std::uint16_t session(std::uint16_t sender, std::uint16_t receiver) {
     parity ^= parity >> half;
   }
   return static_cast<std::uint16_t>(mixed ^ (parity & 1U));
-}
-
-std::uint16_t wrapped(int position) {
-  return static_cast<std::uint16_t>(position < Link::kQueueBytes ? position
-                                                                 : position - Link::kQueueBytes);
 }
 
 int finish(std::span<std::uint8_t> packet, int size, std::uint16_t start) {
@@ -60,9 +56,21 @@ Time lost_after(const LinkTiming& timing) {
   return sum;
 }
 
+// Constants where no queue is ever lent.
+
+std::uint8_t* Link::queue() { return kHasAllMethods && lent_ != nullptr ? lent_ : queue_.data(); }
+
+int Link::capacity() const { return kHasAllMethods && lent_ != nullptr ? kLentBytes : kQueueBytes; }
+
+std::uint16_t Link::wrapped(int position) const {
+  return static_cast<std::uint16_t>(position < capacity() ? position : position - capacity());
+}
+
 void Link::bring_up(std::uint16_t nonce, Time now) {
   const std::uint16_t last = nonce_;
+  std::uint8_t* const lent = lent_;
   *this = Link();
+  lent_ = lent;
   state_ = State::kGreeting;
   nonce_ = nonce;
   while (nonce_ == 0 || nonce_ == last) {
@@ -74,22 +82,30 @@ void Link::bring_up(std::uint16_t nonce, Time now) {
 
 void Link::bring_down() {
   const std::uint16_t last = nonce_;
+  std::uint8_t* const lent = lent_;
   *this = Link();
+  lent_ = lent;
   nonce_ = last;
+}
+
+void Link::lose() {
+  state_ = State::kLost;
+  retry_at_ = kNever;
+  needs_greeting_ = false;
 }
 
 bool Link::send(std::span<const std::uint8_t> message) {
   if (!is_used()) {
     return true;
   }
-  if (queued_bytes_ + message.size() > static_cast<std::size_t>(kQueueBytes)) {
+  if (queued_bytes_ + message.size() > static_cast<std::size_t>(capacity())) {
     return false;
   }
   const std::size_t tail = wrapped(head_ + queued_bytes_);
-  const std::size_t room = kQueueBytes - tail;
+  const std::size_t room = static_cast<std::size_t>(capacity()) - tail;
   const std::size_t first = message.size() < room ? message.size() : room;
-  std::memcpy(queue_.data() + tail, message.data(), first);
-  std::memcpy(queue_.data(), message.data() + first, message.size() - first);
+  std::memcpy(queue() + tail, message.data(), first);
+  std::memcpy(queue(), message.data() + first, message.size() - first);
   queued_bytes_ = static_cast<std::uint16_t>(queued_bytes_ + message.size());
   return true;
 }
@@ -157,7 +173,7 @@ void Link::receive_acknowledgement(std::uint8_t next, const LinkTiming& timing, 
 std::span<const std::uint8_t> Link::receive(std::span<const std::uint8_t> packet,
                                             const LinkTiming& timing, Time now) {
   constexpr int kOverhead = wire::kHeaderBytes + wire::kChecksumBytes;
-  if (!is_used() || packet.size() < static_cast<std::size_t>(kOverhead)) {
+  if (!(is_used() || is_calling()) || packet.size() < static_cast<std::size_t>(kOverhead)) {
     return {};
   }
   const auto [kind, sequence, version, expected] = wire::header_of(packet);
@@ -168,6 +184,10 @@ std::span<const std::uint8_t> Link::receive(std::span<const std::uint8_t> packet
   const bool is_greeting = kind == PacketKind::kHello;
   const std::uint16_t start = is_greeting ? kGreetingChecksum : session(peer_nonce_, nonce_);
   if (version != wire::kVersion || wire::checksum(packet.first(end), start) != sum) {
+    return {};
+  }
+  if (is_calling()) {
+    is_restarted_ = is_greeting && body.size() == kGreetingBytes;
     return {};
   }
   if (is_greeting) {
@@ -198,6 +218,12 @@ std::span<const std::uint8_t> Link::receive(std::span<const std::uint8_t> packet
     owes_acknowledgement_ = true;
     acknowledge_at_ = is_new ? now + timing.acknowledge_after : now;
   }
+  if constexpr (kHasAllMethods) {
+    const bool is_full = static_cast<int>(packet.size()) == timing.packet_bytes;
+    if (lent_ != nullptr && is_new && is_full && sequence % 2 != 0) {
+      acknowledge_at_ = now;
+    }
+  }
   if (!is_new) {
     return {};
   }
@@ -220,7 +246,7 @@ std::span<const std::uint8_t> Link::next_message(std::span<const std::uint8_t>& 
     if (message_bytes_ == 2) {
       message_size_ = static_cast<std::uint8_t>(wire::message_bytes(message_[0], message_[1]));
       if (message_size_ < 2) {
-        state_ = State::kLost;
+        lose();
         stream = {};
         return {};
       }
@@ -241,7 +267,7 @@ bool Link::take_restarted() {
 
 bool Link::has_packet(Time now) const {
   if (!is_used()) {
-    return false;
+    return is_calling() && needs_greeting_;
   }
   const bool has_data =
       state_ == State::kOpen && sent_count_ < kWindow && sent_bytes_ < queued_bytes_;
@@ -289,11 +315,10 @@ int Link::write_packet(std::span<std::uint8_t> packet, const LinkTiming& timing,
     kind = PacketKind::kData;
     const int chunk = packet_chunk(timing);
     const int cursor = wrapped(head_ + sent_bytes_);
-    const int room = kQueueBytes - cursor;
+    const int room = capacity() - cursor;
     const auto first = static_cast<std::size_t>(chunk < room ? chunk : room);
-    std::memcpy(packet.data() + size, queue_.data() + cursor, first);
-    std::memcpy(packet.data() + size + first, queue_.data(),
-                static_cast<std::size_t>(chunk) - first);
+    std::memcpy(packet.data() + size, queue() + cursor, first);
+    std::memcpy(packet.data() + size + first, queue(), static_cast<std::size_t>(chunk) - first);
     size += chunk;
     number = static_cast<std::uint8_t>((send_number_ + sent_count_) & kNumberMask);
     chunk_bytes_[sent_count_++] = static_cast<std::uint8_t>(chunk);
@@ -304,7 +329,7 @@ int Link::write_packet(std::span<std::uint8_t> packet, const LinkTiming& timing,
       if (message_left_ == 0) {
         const auto at = static_cast<int>(head_) + furthest_bytes_;
         message_left_ = static_cast<std::uint16_t>(
-            wire::message_bytes(queue_[wrapped(at)], queue_[wrapped(wrapped(at) + 1)]));
+            wire::message_bytes(queue()[wrapped(at)], queue()[wrapped(wrapped(at) + 1)]));
       }
       const int rest = sent_bytes_ - furthest_bytes_;
       const int passed = rest < message_left_ ? rest : message_left_;
@@ -329,12 +354,18 @@ int Link::write_packet(std::span<std::uint8_t> packet, const LinkTiming& timing,
 Time Link::patience(const LinkTiming& timing) const { return patience_of(timing, retry_count_); }
 
 void Link::on_time(const LinkTiming& timing, bool is_watched, Time now) {
+  if (is_calling() && now >= retry_at_) {
+    needs_greeting_ = true;
+    retry_at_ = now + timing.ping_after;
+  }
   if (!is_used()) {
     return;
   }
   if (now >= retry_at_) {
     if (++retry_count_ > timing.lost_after_retries) {
       state_ = State::kLost;
+      retry_at_ = now + timing.ping_after;
+      needs_greeting_ = false;
       return;
     }
     retry_at_ = kNever;
@@ -355,7 +386,7 @@ void Link::on_time(const LinkTiming& timing, bool is_watched, Time now) {
 
 Time Link::deadline(const LinkTiming& timing, bool is_watched) const {
   if (!is_used()) {
-    return kNever;
+    return is_calling() ? retry_at_ : kNever;
   }
   Time at = retry_at_;
   if (owes_acknowledgement_ && acknowledge_at_ < at) {

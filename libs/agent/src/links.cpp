@@ -2,9 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "holdfast/agent/links.hpp"
 
+#include <cstddef>
+
 namespace holdfast::agent {
 
-Faces Links::used() const {
+Faces Links::working() const {
   Faces faces;
   for (const Direction face : base::kDirections) {
     faces.set(face, is_used(face));
@@ -19,6 +21,12 @@ void Links::send(Faces faces, const wire::Writer& message) {
       silent_.add(face);
       has_refused_ = true;
     }
+  }
+}
+
+void Links::lend(std::uint8_t* queues) {
+  for (const Direction face : base::kDirections) {
+    at(face).lend(queues + static_cast<std::ptrdiff_t>(face) * Link::kLentBytes);
   }
 }
 
@@ -57,6 +65,7 @@ bool Links::notice_change(Direction face, std::uint16_t nonce, Time now) {
   const bool has_restarted = link.take_restarted();
   if (has_restarted) {
     link.bring_up(nonce, now);
+    silent_.remove(face);
   }
   const bool falls_silent = link.state() == Link::State::kLost && !silent_.has(face);
   if (falls_silent) {
@@ -98,9 +107,10 @@ void Links::finish_step(const Clock& clock, bool is_watched) {
   touched_ = {};
 }
 
-Time Links::deadline() const {
+Time Links::deadline(Faces faces) const {
   Time earliest = kNever;
-  for (const Time at : deadline_) {
+  for (const Direction face : faces) {
+    const Time at = deadline_[static_cast<std::size_t>(face)];
     earliest = at < earliest ? at : earliest;
   }
   return earliest;

@@ -4,8 +4,11 @@
 
 #include "codec.hpp"
 #include "holdfast/agent/branch.hpp"
+#include "holdfast/agent/occupied_cells.hpp"
 #include "holdfast/agent/order.hpp"
 #include "holdfast/agent/planned.hpp"
+#include "holdfast/agent/stages.hpp"
+#include "methods.hpp"
 
 namespace holdfast::agent {
 namespace {
@@ -27,7 +30,10 @@ constexpr void round_fields(auto& codec, Round& round) {
 
 constexpr void fields(auto& codec, Join& join) {
   round_fields(codec, join.round);
-  codec.u8(join.wave, 1, kWaves);
+  auto number = static_cast<std::uint8_t>(join.wave + kWaves * join.stage);
+  codec.u8(number, 1, kJudgesStages ? kWaves * (1 + kStageCount) : kWaves);
+  join.wave = static_cast<std::uint8_t>((number + kWaves - 1) % kWaves + 1);
+  join.stage = static_cast<std::uint8_t>((number + kWaves - 1) / kWaves - 1);
   codec.cell(join.cell);
   codec.u16(join.hops);
 }
@@ -58,6 +64,21 @@ constexpr void fields(auto& codec, Cut& cut) {
   codec.require(base::index(cut.direction) % 2 == 0);
 }
 
+constexpr void fields(auto& codec, Adoption& adoption) {
+  round_fields(codec, adoption.round);
+  codec.cell(adoption.sender);
+  codec.cell(adoption.root);
+  codec.u16(adoption.hops);
+  codec.u32(adoption.wave_time);
+  codec.real(adoption.load_ratio);
+}
+
+constexpr void fields(auto& codec, News& news) {
+  codec.flags(news.flags, kIsFulfilled | kIsEnded | kIsGrown);
+  codec.u16(news.hops);
+  codec.place(news.cell);
+}
+
 /// The largest label.
 constexpr std::uint8_t label_last(MessageType type) {
   switch (type) {
@@ -68,6 +89,8 @@ constexpr std::uint8_t label_last(MessageType type) {
       return kLoopsMax;
     case MessageType::kPlannedUp:
       return kPlannedMax - 1;
+    case MessageType::kReach:
+      return kReachLabelLast;
     default:
       return 0xff;
   }
@@ -112,6 +135,7 @@ constexpr int bytes_of(Message message) {
 }
 
 static_assert(bytes_of(LabelledVector{}) == wire::kVectorBytes);
+static_assert(kFieldsAt + 1 + OccupiedCells::kPartBytes == wire::kVectorBytes);
 
 }  // namespace
 
@@ -145,6 +169,18 @@ bool is_legal(std::span<const std::uint8_t> message) {
     case MessageType::kBranchUp:
     case MessageType::kBranchDown:
       return is_legal_as(LabelledVector{.type = type});
+    case MessageType::kFrontUp:
+    case MessageType::kFrontDown:
+      return kHasAllMethods;
+    case MessageType::kAdopt:
+      return kKeepsAnswers && is_legal_as(Adoption{});
+    case MessageType::kNews:
+      return kKeepsAnswers && is_legal_as(News{});
+    case MessageType::kCellsUp:
+    case MessageType::kCellsDown:
+      return kJudgesFaces && message[1] < OccupiedCells::kPartsMax;
+    case MessageType::kReach:
+      return kJudgesFaces && is_legal_as(LabelledVector{.type = type});
   }
   return false;
 }
@@ -161,7 +197,20 @@ Writer encode(const Mark& mark) { return written(MessageType::kMark, mark); }
 
 Writer encode(const Cut& cut) { return written(MessageType::kLoop, cut); }
 
+Writer encode(const Adoption& adoption) { return written(MessageType::kAdopt, adoption); }
+
+Writer encode(const News& news) { return written(MessageType::kNews, news); }
+
 Writer encode(const LabelledVector& labelled) { return written(labelled.type, labelled); }
+
+Writer part_message(MessageType type, std::uint8_t index, std::span<const std::uint8_t> bits) {
+  Writer out(type);
+  out.u8(index);
+  for (const std::uint8_t byte : bits) {
+    out.u8(byte);
+  }
+  return out;
+}
 
 bool decode(std::span<const std::uint8_t> message, Join& join) { return read(message, join); }
 
@@ -174,6 +223,12 @@ bool decode(std::span<const std::uint8_t> message, Appointment& appointment) {
 bool decode(std::span<const std::uint8_t> message, Mark& mark) { return read(message, mark); }
 
 bool decode(std::span<const std::uint8_t> message, Cut& cut) { return read(message, cut); }
+
+bool decode(std::span<const std::uint8_t> message, Adoption& adoption) {
+  return read(message, adoption);
+}
+
+bool decode(std::span<const std::uint8_t> message, News& news) { return read(message, news); }
 
 bool decode(std::span<const std::uint8_t> message, LabelledVector& labelled) {
   labelled.type = static_cast<MessageType>(message[0]);

@@ -9,12 +9,7 @@
 #include "holdfast/agent/sweep.hpp"
 
 /// The methods that find an equilibrium, as the sweeps see them: the same few functions of each.
-///
-/// Which methods a program has is decided by what it is linked with. all_methods.cpp names them
-/// all. A module with little flash has elimination_only.cpp in its place: elimination over the tree
-/// and nothing to fall back on, so that a robot with too many loops, or without a state under the
-/// regularised law, ends as `undecided`. All modules of such a robot must be told:
-/// Setup::only_elimination.
+/// Which of them a program has methods.hpp says.
 namespace holdfast::agent {
 
 /// A message's bytes, its type first.
@@ -24,8 +19,11 @@ struct MethodTable {
   /// Begins a life in memory that another method may have used.
   void (*make)(MethodState& state);
 
+  // In pieces, numbered from 0, of 5 ms of a Cortex-M0 at most; false after the last one. No
+  // message comes in between.
+
   /// One of the method's orders has come.
-  void (*begin)(MethodState& state, Workspace& ws, const Order& order);
+  bool (*begin)(MethodState& state, Workspace& ws, const Order& order, int piece);
 
   /// Would a working neighbour send this message of the method's own now?
   bool (*expects)(const MethodState& state, const Workspace& ws, const Order& order, Direction face,
@@ -34,7 +32,11 @@ struct MethodTable {
                Message message);
 
   /// All vectors of the exchange under way are here.
-  void (*take_exchange)(MethodState& state, Workspace& ws, const Order& order);
+  bool (*take_exchange)(MethodState& state, Workspace& ws, const Order& order, int piece);
+
+  /// All forces on planned modules that are to be condensed (condensed.hpp) are here. Null where
+  /// none ever is.
+  bool (*condense)(MethodState& state, Workspace& ws, const Order& order, int piece);
 
   /// Does the next piece of work apart from exchanges, 5 ms of a Cortex-M0 at most; false if there
   /// is none, or if it has to wait.
@@ -45,13 +47,8 @@ struct MethodTable {
   /// one that starts next.
   PlannedPart (*planned_part)(const Workspace& ws, const Order& order);
 
-  /// The sweep is over here: what this module reports.
-  Report (*report)(MethodState& state, Workspace& ws, const Order& order);
-
-  /// What comes and goes between hosts and condensed planned modules (condensed.hpp); null where
-  /// none is ever condensed.
-  void (*pass_condensed)(Workspace& ws, const Order& order);
-  void (*take_condensed)(Workspace& ws, Message message);
+  /// The sweep is over here: what this module reports, in pieces as well.
+  bool (*report)(MethodState& state, Workspace& ws, const Order& order, int piece, Report& sum);
 };
 
 /// The functions of one class, whose object is a member of the state.
@@ -59,24 +56,23 @@ template <class Own, Own MethodState::*kOwn>
 constexpr MethodTable table_of() {
   return {
       .make = [](MethodState& state) { new (&(state.*kOwn)) Own; },
-      .begin = [](MethodState& state, Workspace& ws,
-                  const Order& order) { (state.*kOwn).begin(ws, order); },
+      .begin = [](MethodState& state, Workspace& ws, const Order& order,
+                  int piece) { return (state.*kOwn).begin(ws, order, piece); },
       .expects = [](const MethodState& state, const Workspace& ws, const Order& order,
                     Direction face,
                     Message message) { return (state.*kOwn).expects(ws, order, face, message); },
       .take = [](MethodState& state, Workspace& ws, const Order& order, Direction face,
                  Message message) { (state.*kOwn).take(ws, order, face, message); },
-      .take_exchange = [](MethodState& state, Workspace& ws,
-                          const Order& order) { (state.*kOwn).take_exchange(ws, order); },
+      .take_exchange = [](MethodState& state, Workspace& ws, const Order& order,
+                          int piece) { return (state.*kOwn).take_exchange(ws, order, piece); },
+      .condense = nullptr,
       .do_piece = [](MethodState& state, Workspace& ws,
                      const Order& order) { return (state.*kOwn).do_piece(ws, order); },
       .pending = [](const MethodState& state) { return (state.*kOwn).pending(); },
       .planned_part = [](const Workspace& ws,
                          const Order& order) { return Own::planned_part(ws, order); },
-      .report = [](MethodState& state, Workspace& ws,
-                   const Order& order) { return (state.*kOwn).report(ws, order); },
-      .pass_condensed = nullptr,
-      .take_condensed = nullptr,
+      .report = [](MethodState& state, Workspace& ws, const Order& order, int piece,
+                   Report& sum) { return (state.*kOwn).report(ws, order, piece, sum); },
   };
 }
 

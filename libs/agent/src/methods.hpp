@@ -2,14 +2,27 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-/// Does the program have all methods (method.hpp)? What the root does with the others, and their
-/// messages, is left out of a program with elimination only, HOLDFAST_AGENT_ELIMINATION_ONLY.
+/// Does the program have all methods (method.hpp)? One with HOLDFAST_AGENT_ONE_SWEEP_ONLY, for
+/// modules with little flash, has elimination and the polynomial: what takes one sweep an iteration
+/// and needs no more memory or code than they do. All modules of such a robot must be told,
+/// Setup::only_one_sweep. What the root does with other methods, and their messages, is left out.
 namespace holdfast::agent {
 
-#ifdef HOLDFAST_AGENT_ELIMINATION_ONLY
+#ifdef HOLDFAST_AGENT_ONE_SWEEP_ONLY
 inline constexpr bool kHasAllMethods = false;
 #else
 inline constexpr bool kHasAllMethods = true;
 #endif
+
+/// Can a verdict be renewed from what is kept (conductor_renewal.cpp)? It takes 6 KB of flash, and
+/// is left out with HOLDFAST_AGENT_STARTS_AFRESH: every change is a new round then.
+#ifdef HOLDFAST_AGENT_STARTS_AFRESH
+inline constexpr bool kKeepsAnswers = false;
+#else
+inline constexpr bool kKeepsAnswers = true;
+#endif
+
+/// Can free faces be judged (free_faces.hpp)? Left out together with the above.
+inline constexpr bool kJudgesFaces = kKeepsAnswers;
 
 }  // namespace holdfast::agent

@@ -6,6 +6,8 @@
 #include "chebyshev.hpp"
 #include "condensed.hpp"
 #include "displacements.hpp"
+#include "facets.hpp"
+#include "stage_load.hpp"
 
 namespace holdfast::agent {
 namespace {
@@ -34,84 +36,113 @@ int MinimalResiduals::node_count() const {
   return joined_count(ws_, part_in_iteration(ws_, order_));
 }
 
-void MinimalResiduals::begin() {
-  begin_equilibrium(ws_, order_);
-  for (int i = 0; i < node_count(); ++i) {
-    factor_diagonal(ws_.node(i), ws_.setup, ws_.contact, ws_.faces_of(i));
+bool MinimalResiduals::begin(int piece) {
+  const int count = node_count();
+  // By nothing, from what is kept; planned modules that stand apart have no exchange for it.
+  const bool moves = order_.operation == wire::Operation::kResume && ws_.exchange.left() > 0;
+  const bool starts = order_.operation == wire::Operation::kBegin && order_.count > 0;
+  if (piece == 0) {
+    begin_equilibrium(ws_, order_);
+    return true;
   }
+  const int index = (piece - 1) % count;
+  const int part = (piece - 1) / count;
+  if (part < 2) {
+    form_diagonal(ws_.node(index), ws_.setup, ws_.contact, ws_.faces_of(index), part);
+  } else if (part < 4) {
+    factor_diagonal(ws_.node(index), part - 2);
+  } else if (moves) {
+    return move(index);
+  } else {
+    start_term(index);
+  }
+  return piece < (moves || starts ? 5 : 4) * count;
 }
 
-void MinimalResiduals::move() {
+bool MinimalResiduals::move(int piece) {
+  move_node(piece);
+  if (piece + 1 < node_count()) {
+    return true;
+  }
   ws_.middle = {};
+  if (ws_.planned.is_any_remote()) {
+    begin_condensing(ws_);
+  }
+  return false;
+}
+
+void MinimalResiduals::move_node(int index) {
   const auto c = static_cast<double>(order_.c());
   const auto a = static_cast<double>(order_.a());
   const auto b = static_cast<double>(order_.b());
   const bool restarts = (order_.flags & kRestart) != 0;
-  for (int i = 0; i < node_count(); ++i) {
-    Node& node = ws_.node(i);
-    SearchDirection& newer = vectors_of(i).newer;
-    SearchDirection& older = vectors_of(i).older;
-    base::Vec6<double> rest = residual(node, ws_.setup, ws_.contact);
-    for (std::size_t k = 0; k < 6; ++k) {
-      double correction = newer.p[k] - newer.z[k];
-      double known = 0;
-      if (!restarts) {
-        newer.p[k] -= c * older.p[k];
-        newer.q[k] -= c * older.q[k];
-        newer.z[k] -= c * older.z[k];
-        known = a * newer.p[k] + b * older.p[k];
-        correction -= a * newer.z[k] + b * older.z[k];
-        rest[k] -= a * newer.q[k] + b * older.q[k];
-      }
-      node.u[k] += known + correction;
-      older.p[k] = restarts ? 0 : newer.p[k];
-      older.q[k] = restarts ? 0 : newer.q[k];
-      older.z[k] = restarts ? 0 : newer.z[k];
-      newer.p[k] = correction;
-      newer.q[k] = rest[k];
-      newer.z[k] = correction;
-    }
-    share_high_part(node);
+  Node& node = ws_.node(index);
+  SearchDirection& newer = vectors_of(index).newer;
+  SearchDirection& older = vectors_of(index).older;
+  base::Vec6<double> rest = residual(ws_, index);
+  base::Vec6<double> correction = newer.p;
+  subtract(correction, newer.z);
+  base::Vec6<double> move = correction;
+  if (!restarts) {
+    subtract(newer.p, older.p, c);
+    subtract(newer.q, older.q, c);
+    subtract(newer.z, older.z, c);
+    subtract(correction, base::combination(a, newer.z, b, older.z));
+    subtract(rest, base::combination(a, newer.q, b, older.q));
+    move = base::combination(a, newer.p, b, older.p);
+    base::add_to(move, correction);
   }
-  if (ws_.planned.is_any_remote()) {
-    begin_condensing(ws_, order_);
-  }
+  base::add_to(node.u, move);
+  older = restarts ? SearchDirection{} : newer;
+  newer = {.p = correction, .q = rest, .z = correction};
+  share_high_part(node);
 }
 
-void MinimalResiduals::take_displacements() {
+bool MinimalResiduals::take_displacements(int piece) {
   const PlannedPart part = part_in_iteration(ws_, order_);
-  add_forces(ws_, part);
-  if (ws_.exchange.left_before_report() == 2) {
-    share_low_part(ws_);
-    return;
+  if (piece == 0) {
+    add_forces(ws_, part);
+    if (ws_.exchange.left_before_report() == 2) {
+      share_low_part(ws_);
+      return false;
+    }
+    if (part != PlannedPart::kTogether) {
+      add_condensed_beams(ws_);
+    }
+    return true;
   }
   // The forces at the new place are complete: contact states, then what the move has done.
-  if (part != PlannedPart::kTogether) {
-    add_condensed_beams(ws_);
+  const int index = (piece - 1) % node_count();
+  const int stage = (piece - 1) / node_count();
+  Node& node = ws_.node(index);
+  if (stage == 0) {
+    node.has_changed = false;
+    follow_state(node, ws_.contact, keeps_states(order_));
+  } else if (stage == 5) {
+    find_residual(index);
+  } else if (node.has_changed) {
+    stage > 2 ? factor_diagonal(node, stage - 3)
+              : form_diagonal(node, ws_.setup, ws_.contact, ws_.faces_of(index), stage - 1);
   }
-  for (int i = 0; i < node_count(); ++i) {
-    find_residual(i);
-  }
+  return piece < 6 * node_count();
 }
 
 void MinimalResiduals::find_residual(int index) {
-  Node& node = ws_.node(index);
-  node.has_changed = false;
-  follow_state(node, ws_.contact, keeps_states(order_));
-  if (node.has_changed) {
-    factor_diagonal(node, ws_.setup, ws_.contact, ws_.faces_of(index));
-  }
   IterationVectors& vectors = vectors_of(index);
-  vectors.w = residual(node, ws_.setup, ws_.contact);
+  vectors.w = residual(ws_, index);
   first_term(index);
   subtract(vectors.newer.q, vectors.w);  // Still the residual.
 }
 
 void MinimalResiduals::start_terms() {
   for (int i = 0; i < node_count(); ++i) {
-    vectors_of(i).w = residual(ws_.node(i), ws_.setup, ws_.contact);
-    first_term(i);
+    start_term(i);
   }
+}
+
+void MinimalResiduals::start_term(int index) {
+  vectors_of(index).w = residual(ws_, index);
+  first_term(index);
 }
 
 void MinimalResiduals::first_term(int index) {
@@ -136,7 +167,16 @@ void MinimalResiduals::share_term(int index, const base::Vec6<float>& term) {
   subtract(vectors_of(index).newer.z, base::converted<double>(term));
 }
 
-void MinimalResiduals::take_term() {
+bool MinimalResiduals::take_term(int piece) {
+  if (piece == 0) {
+    subtract_beams();
+    return true;
+  }
+  next_term(piece - 1);
+  return piece < node_count();
+}
+
+void MinimalResiduals::subtract_beams() {
   const PlannedPart part = part_in_iteration(ws_, order_);
   const mechanics::BeamStiffness<double>& beam = ws_.setup.beam;
   const auto mine = base::converted<double>(ws_.node(0).vector.sent);
@@ -167,55 +207,56 @@ void MinimalResiduals::take_term() {
 
 void MinimalResiduals::subtract_facets() {
   for (int i = 0; i < node_count(); ++i) {
-    const Node& node = ws_.node(i);
-    if (!node.is_ground) {
-      continue;
-    }
-    const base::Vec6<double> facet = mechanics::contact_force(
-        ws_.contact.facet, node.state, node.is_held, base::converted<double>(node.vector.sent));
-    subtract(vectors_of(i).w, facet);
+    subtract_facet(i);
   }
 }
 
-void MinimalResiduals::next_terms() {
+void MinimalResiduals::subtract_facet(int index) {
+  const Node& node = ws_.node(index);
+  if (node.is_ground) {
+    subtract(vectors_of(index).w,
+             facet_force(node, ws_.contact, base::converted<double>(node.vector.sent)));
+  }
+}
+
+void MinimalResiduals::next_term(int index) {
   const Interval interval(order_.count, kIterationSpread);
   const double rho = 1 / (2 * interval.centre / interval.half - static_cast<double>(rho_));
   const double keep = rho * static_cast<double>(rho_);
   const double gain = 2 * rho / interval.half;
-  subtract_facets();
-  for (int i = 0; i < node_count(); ++i) {
-    const Node& node = ws_.node(i);
-    if (node.is_fixed) {
-      continue;
-    }
-    base::Vec6<float> term = solve_diagonal(node, base::converted<float>(vectors_of(i).w));
-    for (std::size_t k = 0; k < 6; ++k) {
-      term[k] = static_cast<float>(keep * static_cast<double>(node.vector.sent[k]) +
-                                   gain * static_cast<double>(term[k]));
-    }
-    share_term(i, term);
+  subtract_facet(index);
+  const Node& node = ws_.node(index);
+  if (!node.is_fixed) {
+    const base::Vec6<float> step =
+        solve_diagonal(node, base::converted<float>(vectors_of(index).w));
+    const base::Vec6<double> term = base::combination(
+        keep, base::converted<double>(node.vector.sent), gain, base::converted<double>(step));
+    share_term(index, base::converted<float>(term));
   }
-  rho_ = static_cast<float>(rho);
+  if (index + 1 == node_count()) {
+    rho_ = static_cast<float>(rho);
+  }
 }
 
-Report MinimalResiduals::report() const {
-  Report report = iteration_report(ws_);
-  const bool is_residual = (order_.flags & kLeastResidual) != 0;
-  for (int i = 0; i < node_count(); ++i) {
-    const Node& node = ws_.node(i);
-    if (node.is_fixed) {
-      continue;
-    }
-    const IterationVectors& vectors = vectors_of(i);
+bool MinimalResiduals::report(int piece, Report& report) const {
+  constexpr int kLoadPieces = 2;
+  if (piece < kLoadPieces) {
+    iteration_report(ws_, piece, report);
+    return true;
+  }
+  const int index = piece - kLoadPieces;
+  const Node& node = ws_.node(index);
+  if (!node.is_fixed) {
+    const IterationVectors& vectors = vectors_of(index);
     base::Vec6<double> test = vectors.newer.p;
-    if (is_residual) {
+    if ((order_.flags & kLeastResidual) != 0) {
       test = base::converted<double>(solve_diagonal(node, base::converted<float>(vectors.newer.q)));
     }
-    report.products[0] += base::dot(residual(node, ws_.setup, ws_.contact), test);
+    report.products[0] += base::dot(residual(ws_, index), test);
     report.products[1] += base::dot(vectors.newer.q, test);
     report.products[2] += base::dot(vectors.older.q, test);
   }
-  return report;
+  return index + 1 < node_count();
 }
 
 }  // namespace holdfast::agent

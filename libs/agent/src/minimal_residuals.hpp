@@ -35,29 +35,32 @@ namespace holdfast::agent {
 /// One module's part in an iteration. The vectors belong to the method that uses it.
 class MinimalResiduals {
  public:
-  /// `vectors`: those of every node that takes part; `rho`: the polynomial's coefficient.
-  MinimalResiduals(Workspace& ws, const Order& order, std::span<IterationVectors> vectors,
-                   float& rho)
-      : ws_(ws), order_(order), vectors_(vectors), rho_(rho) {}
+  /// `memory`: of every node that takes part; `rho`: the polynomial's coefficient.
+  MinimalResiduals(Workspace& ws, const Order& order, std::span<IterationMemory> memory, float& rho)
+      : ws_(ws), order_(order), memory_(memory), rho_(rho) {}
 
-  /// An equilibrium begins: the law of contact, nodes at rest and the factors of their diagonals.
-  void begin();
+  // In pieces, numbered from 0; false after the last one.
+
+  /// An equilibrium begins: the law of contact, nodes at rest and the factors of their diagonals;
+  /// if a kBegin asks for terms, the first ones of the polynomial.
+  bool begin(int piece);
 
   /// The move that the order asks for.
-  void move();
+  bool move(int piece);
 
   /// Displacements have been exchanged: forces, in the end contact states and residuals, and the
   /// polynomial's first terms.
-  void take_displacements();
+  bool take_displacements(int piece);
+
+  /// A term has been exchanged: what the beams make of it comes off what is left of the residual.
+  /// Then the next term.
+  bool take_term(int piece);
 
   /// All of the residual is left: the polynomial's first terms.
   void start_terms();
 
-  /// A term has been exchanged: what the beams make of it comes off what is left of the residual.
-  void take_term();
-
-  /// The next term.
-  void next_terms();
+  /// What the beams make of a term comes off what is left of the residual.
+  void subtract_beams();
 
   /// The facets' forces of the last term come off what is left of the residual; those of the beams
   /// are off already.
@@ -74,17 +77,23 @@ class MinimalResiduals {
 
   /// What every iteration reports, and the products with v = p for the least energy, v = D^-1 q for
   /// the least residual: (r, v), (q, v), (q_older, v).
-  Report report() const;
+  bool report(int piece, Report& report) const;
 
  private:
-  IterationVectors& vectors_of(int node) const { return vectors_[static_cast<std::size_t>(node)]; }
+  IterationVectors& vectors_of(int node) const {
+    return memory_[static_cast<std::size_t>(node)].vectors;
+  }
 
+  void move_node(int node);
   void find_residual(int node);
+  void start_term(int node);
   void first_term(int node);
+  void next_term(int node);
+  void subtract_facet(int node);
 
   Workspace& ws_;
   const Order& order_;
-  std::span<IterationVectors> vectors_;
+  std::span<IterationMemory> memory_;
   float& rho_;
 };
 

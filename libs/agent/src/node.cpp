@@ -2,26 +2,28 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "holdfast/agent/node.hpp"
 
+#include "facets.hpp"
 #include "scalar.hpp"
 
 namespace holdfast::agent {
 namespace {
 
-using base::Mat6;
 using base::Vec6;
 
 std::size_t at(int row, int column) {
   return static_cast<std::size_t>(row * (row + 1) / 2 + column);
 }
 
-/// Sum of K11 over the beams on `faces`.
-Mat6<double> beam_block(const Setup& setup, base::Faces faces) {
-  Mat6<double> block;
+/// The forces of all beams on `faces` for a displacement of the node alone.
+Vec6<double> beam_forces(const Setup& setup, base::Faces faces, const Vec6<double>& u) {
+  Vec6<double> force{};
   for (const base::Direction direction : faces) {
-    base::add_to(block, mechanics::block_11(setup.beam, direction));
+    base::add_to(force, mechanics::end_force(setup.beam, direction, u, {}));
   }
-  return block;
+  return force;
 }
+
+}  // namespace
 
 Vec6<double> position_along(const Node& node, const Vec6<float>& g, double t) {
   Vec6<double> u = node.u;
@@ -30,8 +32,6 @@ Vec6<double> position_along(const Node& node, const Vec6<float>& g, double t) {
   }
   return u;
 }
-
-}  // namespace
 
 void prepare(Setup& setup) {
   setup.beam = mechanics::beam_stiffness(setup.section);
@@ -48,55 +48,74 @@ void prepare(Setup& setup) {
 void reset(Node& node) {
   node.is_held = true;
   node.was_released = false;
+  node.is_kept = false;
   node.state = {.pressed = node.is_ground};
   node.wanted = node.state;
   node.u = {};
   node.force = {};
+  if (Surroundings* surroundings = surroundings_of(node); surroundings != nullptr) {
+    reset(*surroundings);
+  }
+}
+
+Vec6<double> load_of(const Node& node, const Setup& setup) {
+  const Surroundings* surroundings = surroundings_of(node);
+  return surroundings != nullptr ? surroundings->load : Vec6<double>{0, 0, -setup.weight_n};
 }
 
 Gradients gradients_at_rest(const Node& node, const Setup& setup) {
   Gradients rest{};
   if (!node.is_fixed) {
-    rest.r[2] = static_cast<float>(-setup.weight_n);
+    rest.r = base::converted<float>(load_of(node, setup));
   }
   rest.r_start = rest.r;
   return rest;
 }
 
-void factor_diagonal(Node& node, const Setup& setup, const ContactSetting& contact,
-                     base::Faces faces) {
-  Mat6<double> block = beam_block(setup, faces);
-  if (node.is_ground) {
-    base::add_to(block, mechanics::symmetric_tangent(contact.facet, node.state, node.is_held));
+void form_diagonal(Node& node, const Setup& setup, const ContactSetting& contact, base::Faces faces,
+                   int half) {
+  for (int column = 3 * half; column < 3 * half + 3; ++column) {
+    const auto unit = base::unit<double>(column);
+    Vec6<double> image = beam_forces(setup, faces, unit);
+    if (node.is_ground) {
+      base::add_to(image, symmetric_facet_product(node, contact, unit));
+    }
+    for (int row = column; row < 6; ++row) {
+      node.matrix.factor[at(row, column)] =
+          static_cast<float>(image[static_cast<std::size_t>(row)]);
+    }
   }
-  Triangle factor{};
-  for (int row = 0; row < 6; ++row) {
+}
+
+void factor_diagonal(Node& node, int half) {
+  Triangle& factor = node.matrix.factor;
+  for (int row = 3 * half; row < 3 * half + 3; ++row) {
     for (int column = 0; column <= row; ++column) {
-      auto sum = static_cast<float>(block.at(row, column));
+      float sum = factor[at(row, column)];
       for (int k = 0; k < column; ++k) {
         sum -= factor[at(row, k)] * factor[at(column, k)];
       }
       factor[at(row, column)] = row == column ? square_root(sum) : sum / factor[at(column, column)];
     }
   }
-  node.matrix.factor = factor;
 }
 
-Mat6<double> diagonal_block(const Node& node, const Setup& setup, const ContactSetting& contact,
-                            base::Faces faces) {
-  Mat6<double> block = beam_block(setup, faces);
+Vec6<double> diagonal_column(const Node& node, const Setup& setup, const ContactSetting& contact,
+                             base::Faces faces, int column) {
+  const auto unit = base::unit<double>(column);
+  Vec6<double> image = beam_forces(setup, faces, unit);
   if (node.is_ground) {
-    base::add_to(block, mechanics::contact_tangent(contact.facet, node.state, node.is_held));
+    base::add_to(image, facet_force(node, contact, unit));
   }
-  return block;
+  return image;
 }
 
 Vec6<float> scalar_diagonal(const Node& node, const Setup& setup, const ContactSetting& contact,
                             base::Faces faces) {
-  const Mat6<double> block = diagonal_block(node, setup, contact, faces);
   Vec6<float> diagonal{};
   for (int i = 0; i < 6; ++i) {
-    diagonal[static_cast<std::size_t>(i)] = static_cast<float>(block.at(i, i));
+    const auto row = static_cast<std::size_t>(i);
+    diagonal[row] = static_cast<float>(diagonal_column(node, setup, contact, faces, i)[row]);
   }
   return diagonal;
 }
@@ -128,10 +147,10 @@ Vec6<double> residual(const Node& node, const Setup& setup, const ContactSetting
   if (node.is_fixed) {
     return rest;
   }
-  rest[2] = -setup.weight_n;
+  rest = load_of(node, setup);
   Vec6<double> facet{};
   if (node.is_ground) {
-    facet = mechanics::contact_force(contact.facet, node.state, node.is_held, node.u);
+    facet = facet_force(node, contact, node.u);
   }
   for (std::size_t i = 0; i < 6; ++i) {
     rest[i] -= node.force[i] + facet[i];
@@ -153,8 +172,12 @@ Vec6<double> facet_force_along(const Node& node, const ContactSetting& contact,
   if (!node.is_ground) {
     return {};
   }
-  return mechanics::contact_force(contact.facet, state_along(node, contact, g, t), node.is_held,
-                                  position_along(node, g, t));
+  const Vec6<double> u = position_along(node, g, t);
+  const Surroundings* surroundings = surroundings_of(node);
+  if (surroundings != nullptr) {
+    return surrounded::prescribed_force(*surroundings, contact, u);
+  }
+  return mechanics::contact_force(contact.facet, state_along(node, contact, g, t), node.is_held, u);
 }
 
 double ratio_error(const Vec6<double>& residual, const Setup& setup,

@@ -2,9 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "holdfast/agent/order.hpp"
 
+#include <tuple>
+
 #include "codec.hpp"
 #include "holdfast/agent/operations.hpp"
 #include "holdfast/agent/planned.hpp"
+#include "holdfast/agent/stages.hpp"
 #include "methods.hpp"
 
 namespace holdfast::agent {
@@ -57,6 +60,17 @@ void merge_mass(Report& into, const Report& from) {
   }
 }
 
+/// Of the cells that are planned besides, the first one.
+void merge_renewal(Report& into, const Report& from) {
+  const auto has_more = [](const Report& report) { return (report.flags & kMoreAnnounced) != 0; };
+  const bool is_first = has_more(from) == has_more(into) && from.cell < into.cell;
+  if ((has_more(from) && !has_more(into)) || is_first) {
+    into.cell = from.cell;
+  }
+  into.mask = static_cast<std::uint8_t>(into.mask | from.mask);
+  merge_mass(into, from);
+}
+
 /// How many want another state, the hash of all, whether any tilts.
 void merge_facets(Report& into, const Report& from) {
   const std::uint32_t changed = std::uint32_t{into.extent} + from.extent;
@@ -68,12 +82,26 @@ void merge_facets(Report& into, const Report& from) {
 void merge_residual(Report& into, const Report& from) {
   into.reals[0] += from.reals[0];
   into.reals[1] = larger(into.reals[1], from.reals[1]);
-  if constexpr (kHasAllMethods) {
-    for (std::size_t i = 0; i < into.products.size(); ++i) {
-      into.products[i] += from.products[i];
-    }
+  for (std::size_t i = 0; i < into.products.size(); ++i) {
+    into.products[i] += from.products[i];
   }
   merge_facets(into, from);
+}
+
+/// The box of both; supports are added up, labels modulo 2.
+void merge_shape(Report& into, const Report& from) {
+  base::Cell far = into.far_cell();
+  const base::Cell their_far = from.far_cell();
+  for (const auto axis : {&base::Cell::x, &base::Cell::y, &base::Cell::z}) {
+    into.cell.*axis = from.cell.*axis < into.cell.*axis ? from.cell.*axis : into.cell.*axis;
+    far.*axis = far.*axis < their_far.*axis ? their_far.*axis : far.*axis;
+  }
+  into.set_far_cell(far);
+  into.count += from.count;
+  into.moment[0] ^= from.moment[0];
+  into.reals[0] = larger(into.reals[0], from.reals[0]);
+  into.reals[1] = -larger(-into.reals[1], -from.reals[1]);
+  into.mask = into.mask < from.mask ? into.mask : from.mask;
 }
 
 void merge_loads(Report& into, const Report& from) {
@@ -89,8 +117,25 @@ void merge_loads(Report& into, const Report& from) {
   into.number += from.number;
 }
 
+/// Of two words the least that was found; two that differ are disputed.
+void merge_word(Report& into, const Report& from) {
+  const auto is_found = [](const Report& report) { return (report.flags & kFound) != 0; };
+  const auto order = [&](const Report& report) {
+    return std::tuple(!is_found(report), report.cell, report.number, report.extent);
+  };
+  const bool differs = is_found(into) && is_found(from) && order(into) != order(from);
+  if (order(from) < order(into)) {
+    into.cell = from.cell;
+    into.number = from.number;
+    into.extent = from.extent;
+  }
+  into.mask = into.mask < from.mask ? from.mask : into.mask;
+  into.flags = static_cast<std::uint8_t>(into.flags | from.flags | (differs ? kDisputed : 0U));
+  into.count += from.count;
+}
+
 constexpr std::uint8_t kPlanReportFlags =
-    kFound | kTooManyAnnounced | kEnded | kFulfilled | kDisputed;
+    kFound | kTooManyAnnounced | kEnded | kFulfilled | kDisputed | (kJudgesStages ? kStepTold : 0);
 
 constexpr void direction_field(auto& codec, base::Direction& direction) {
   codec.kind(direction, base::kDirections.front(), base::kDirections.back());
@@ -123,7 +168,10 @@ constexpr void corner_fields(auto& codec, mechanics::SupportCorners& corners) {
 
 constexpr void answer_fields(auto& codec, Answer& answer) {
   codec.kind(answer.verdict, Verdict::kSafe, Verdict::kUndecided);
-  codec.kind(answer.reason, Reason::kNone, Reason::kAmbiguousFeet);
+  codec.kind(answer.reason, Reason::kNone,
+             kJudgesStages ? Reason::kStepUnclear : Reason::kAmbiguousFeet);
+  codec.require(is_reasoned(answer) && answer.reason != Reason::kNoAnswer &&
+                answer.reason != Reason::kNoAnchor);
   codec.real(answer.load_ratio_max);
   codec.cell(answer.worst_cell);
   direction_field(codec, answer.worst_direction);
@@ -142,6 +190,67 @@ constexpr void degree_field(auto& codec, std::uint16_t& count) {
   count = degree;
 }
 
+constexpr std::uint8_t kClusterFlags = kUnilateralLaw | kOneSweep | kWithIterations;
+constexpr std::uint8_t kBeginFlags = kClusterFlags | (kHasAllMethods ? kWithFronts : 0);
+
+constexpr std::uint8_t kRenewFlags =
+    kIsFulfilled | kIsEnded | kIsGrown | kIsUnchanged | kKeepsFactors;
+constexpr std::uint8_t kResumeFlags =
+    kKeepsFactors | kOneSweep | kWithIterations | kKeepsMotion | kRests | kStandsApart;
+
+constexpr void resume_fields(auto& codec, Order& order) {
+  codec.flags(order.flags, kResumeFlags);
+  codec.u16(order.count, 0, kDegreeMax);
+  real_fields(codec, std::span(order.reals).first(2));
+  codec.i32(order.mass);
+  codec.i32(order.moment[0]);
+  codec.i32(order.moment[1]);
+  for (std::size_t k = 0; k < kPlannedMax; ++k) {
+    codec.flags(order.masks[k], base::Faces::all().mask());
+  }
+}
+
+constexpr void word_fields(auto& codec, Order& order) {
+  codec.u8(order.index);
+  codec.require(order.index < kWordCountMax || order.index == kNoWord);
+  codec.u16(order.count, 0, kWordCountMax);
+  codec.require(order.index == kNoWord || order.index < order.count);
+  codec.cell(order.cell);
+  codec.i32(order.mass);
+  codec.require(is_word(static_cast<std::uint32_t>(order.mass)));
+}
+
+constexpr void step_fields(auto& codec, Order& order) {
+  if (order.operation == Operation::kWord) {
+    return word_fields(codec, order);
+  }
+  codec.u8(order.index, 0, kStageCount);
+  codec.u8(order.flags, 0, kStageCount);
+  codec.u16(order.count, 0, kSceneMax - 1);
+  answer_fields(codec, order.answer);
+}
+
+/// Of kShape and kNext, which some programs do not know.
+constexpr void face_fields(auto& codec, Order& order) {
+  codec.require(kJudgesFaces);
+  if (!kJudgesFaces || order.operation == Operation::kShape) {
+    return;
+  }
+  codec.flags(order.flags, kIsHeld | kHasForces | kIsUnilateral);
+  codec.cell(order.cell);
+  base::Cell far = order.far_cell();
+  codec.cell(far);
+  order.set_far_cell(far);
+  codec.u16(order.count);
+  real_fields(codec, std::span(order.reals).first(3));
+}
+
+constexpr void mask_fields(auto& codec, std::span<std::uint8_t> masks) {
+  for (std::uint8_t& mask : masks) {
+    codec.faces(mask);
+  }
+}
+
 /// What is in an order behind its operation.
 constexpr void fields(auto& codec, Order& order) {
   base::Direction facet = kStandingFacet;
@@ -151,10 +260,7 @@ constexpr void fields(auto& codec, Order& order) {
       codec.require(order.index <= kPlannedMax || order.index == kNoPlanned);
       return codec.cell(order.cell);
     case Operation::kHosts:
-      for (std::uint8_t& mask : order.masks) {
-        codec.faces(mask);
-      }
-      return;
+      return mask_fields(codec, order.masks);
     case Operation::kMass:
       return codec.cell(order.cell);
     case Operation::kAngles:
@@ -164,7 +270,7 @@ constexpr void fields(auto& codec, Order& order) {
       return codec.moment(order.moment[1]);
     case Operation::kBegin:
     case Operation::kClusters:
-      codec.flags(order.flags, kUnilateralLaw | kOneSweep | kWithIterations);
+      codec.flags(order.flags, order.operation == Operation::kBegin ? kBeginFlags : kClusterFlags);
       codec.u16(order.count, 0, kDegreeMax);
       return real_fields(codec, std::span(order.reals).first(2));
     case Operation::kHigh:
@@ -194,20 +300,89 @@ constexpr void fields(auto& codec, Order& order) {
     case Operation::kForget:
       codec.flags(order.flags, kIsFulfilled);
       return codec.place(order.cell);
+    case Operation::kRenew:
+      codec.require(kKeepsAnswers);
+      codec.flags(order.flags, kRenewFlags);
+      return codec.place(order.cell);
+    case Operation::kResume:
+      codec.require(kKeepsAnswers);
+      return kKeepsAnswers ? resume_fields(codec, order) : void();
+    case Operation::kWord:
+    case Operation::kStage:
+      codec.require(kJudgesStages);
+      return kJudgesStages ? step_fields(codec, order) : void();
+    case Operation::kShape:
+    case Operation::kNext:
+      return face_fields(codec, order);
     case Operation::kCorners:
     case Operation::kLoads:
     case Operation::kFactor:
     case Operation::kTreeIterate:
+    case Operation::kClose:
       return;
   }
 }
 
+constexpr std::uint8_t kHostedFlags = (1U << kPlannedMax) - 1 + kAnyRemote;
+constexpr std::uint8_t kRenewalFlags =
+    kAnyFixed | kSumOverflow | kManyLoops | kMoreAnnounced | kAtOdds | kNewLoop;
+constexpr std::uint8_t kFrontFlags = kHasAllMethods ? kNoRoom | kNoState : 0;
+
 /// Bound on the error, largest load ratio; facets that change, the hash of all states, any tilting.
-constexpr void residual_fields(auto& codec, Report& report) {
+constexpr void residual_fields(auto& codec, Report& report, std::uint8_t more_flags = 0) {
   real_fields(codec, std::span(report.reals).first(2));
   codec.u16(report.extent);
   codec.u32(report.number);
-  codec.flags(report.flags, kAnyTilting);
+  codec.flags(report.flags, kAnyTilting | kMayPull | more_flags);
+}
+
+/// The worst connection.
+constexpr void worst_fields(auto& codec, Report& report) {
+  real_fields(codec, std::span(report.reals).first(1));
+  codec.cell(report.cell);
+  direction_field(codec, report.direction);
+}
+
+constexpr void resumption_fields(auto& codec, Report& report) {
+  codec.flags(report.mask, kHostedFlags);
+  feet_fields(codec, report.feet);
+}
+
+constexpr void closing_fields(auto& codec, Report& report) {
+  corner_fields(codec, report.corners);
+  worst_fields(codec, report);
+}
+
+constexpr void renewal_fields(auto& codec, Report& report) {
+  codec.faces(report.mask);
+  codec.flags(report.flags, kRenewalFlags);
+  codec.u16(report.extent);
+  codec.u32(report.count);
+  codec.u32(report.number);
+  codec.moment(report.moment[0]);
+  codec.moment(report.moment[1]);
+  codec.place(report.cell);
+}
+
+constexpr void word_report_fields(auto& codec, Report& report) {
+  codec.flags(report.flags, kFound | kDenied | kSplit | kDisputed);
+  codec.u8(report.mask, 0, kStageCount);
+  codec.u32(report.count);
+  codec.u16(report.extent);
+  codec.u32(report.number);
+  codec.cell(report.cell);
+  codec.require((report.flags & kFound) == 0 || is_word(report.number));
+}
+
+constexpr void shape_fields(auto& codec, Report& report) {
+  codec.cell(report.cell);
+  base::Cell far = report.far_cell();
+  codec.cell(far);
+  report.set_far_cell(far);
+  codec.u32(report.count);
+  codec.moment(report.moment[0]);
+  real_fields(codec, std::span(report.reals).first(2));
+  codec.u8(report.mask);
 }
 
 /// What is in a report behind its operation.
@@ -219,26 +394,29 @@ constexpr void fields(auto& codec, Operation operation, Report& report) {
       codec.flags(report.flags, kPlanReportFlags);
       return codec.place(report.cell);
     case Operation::kHosts:
-      return codec.flags(report.mask, (1U << kPlannedMax) - 1 + kAnyRemote);
+      return codec.flags(report.mask, kHostedFlags);
     case Operation::kMass:
       codec.u32(report.count);
       codec.u32(report.number);
       for (std::int64_t& moment : report.moment) {
         codec.moment(moment);
       }
-      codec.flags(report.flags, kAnyFixed | kSumOverflow | kManyLoops);
+      codec.flags(report.flags, kAnyFixed | kSumOverflow | kManyLoops | kUneven);
       return codec.u16(report.extent);
     case Operation::kAngles:
       return feet_fields(codec, report.feet);
+    case Operation::kRenew:
+      return kKeepsAnswers ? renewal_fields(codec, report) : void();
+    case Operation::kResume:
+      return kKeepsAnswers ? resumption_fields(codec, report) : void();
     case Operation::kLow:
-    case Operation::kTreeIterate:
       return residual_fields(codec, report);
+    case Operation::kTreeIterate:
+      return residual_fields(codec, report, kFrontFlags);
     case Operation::kIterate:
       residual_fields(codec, report);
-      if constexpr (kHasAllMethods) {
-        for (double& product : report.products) {
-          codec.long_real(product);
-        }
+      for (double& product : report.products) {
+        codec.long_real(product);
       }
       return;
     case Operation::kStart:
@@ -251,17 +429,25 @@ constexpr void fields(auto& codec, Operation operation, Report& report) {
       return real_fields(codec, std::span(report.reals).first(5));
     case Operation::kHold:
     case Operation::kClusters:
+    case Operation::kNext:
       codec.u32(report.count);
       return codec.u32(report.number);
+    case Operation::kShape:
+      return kJudgesFaces ? shape_fields(codec, report) : void();
     case Operation::kCorners:
       return corner_fields(codec, report.corners);
+    case Operation::kClose:
+      return kKeepsAnswers ? closing_fields(codec, report) : void();
     case Operation::kLoads:
-      real_fields(codec, std::span(report.reals).first(1));
-      codec.cell(report.cell);
-      direction_field(codec, report.direction);
+      worst_fields(codec, report);
       codec.u32(report.count);
       return codec.u32(report.number);
     case Operation::kVerdict:
+      return codec.u32(report.count);
+    case Operation::kWord:
+      return kJudgesStages ? word_report_fields(codec, report) : void();
+    case Operation::kStage:
+      codec.flags(report.flags, kNewLinks);
       return codec.u32(report.count);
     case Operation::kBegin:
     case Operation::kHigh:
@@ -279,8 +465,8 @@ static_assert([] {
     Ruler up(kOrderAt);
     Report report;
     fields(up, row.operation, report);
-    const bool is_known = kHasAllMethods || row.operation != Operation::kIterate;
-    if (down.bytes() != row.order_bytes || (is_known && up.bytes() != row.report_bytes)) {
+    const bool is_known = kKeepsAnswers || row.operation < Operation::kRenew;
+    if (is_known && (down.bytes() != row.order_bytes || up.bytes() != row.report_bytes)) {
       return false;
     }
   }
@@ -325,19 +511,32 @@ void merge(Operation operation, Report& into, const Report& from) {
     case Operation::kForget:
       return merge_plan(into, from);
     case Operation::kHosts:
+    case Operation::kResume:
       into.mask = static_cast<std::uint8_t>(into.mask | from.mask);
       return;
     case Operation::kMass:
       return merge_mass(into, from);
+    case Operation::kRenew:
+      return kKeepsAnswers ? merge_renewal(into, from) : void();
     case Operation::kLow:
     case Operation::kIterate:
     case Operation::kTreeIterate:
       return merge_residual(into, from);
+    case Operation::kClose:
+      into.corners = mechanics::merge(into.corners, from.corners);
+      return merge_loads(into, from);
     case Operation::kCorners:
       into.corners = mechanics::merge(into.corners, from.corners);
       return;
     case Operation::kLoads:
       return merge_loads(into, from);
+    case Operation::kWord:
+      return kJudgesStages ? merge_word(into, from) : void();
+    case Operation::kStage:
+      into.flags = static_cast<std::uint8_t>(into.flags | from.flags);
+      break;
+    case Operation::kShape:
+      return kJudgesFaces ? merge_shape(into, from) : void();
     default:
       break;
   }
@@ -378,7 +577,9 @@ const char* name(Reason reason) {
                                     "the largest load ratio cannot be told from 1",
                                     "the verdict depends on feet that are neither held nor free",
                                     "no answer in time",
-                                    "no module that knows its cell was heard"};
+                                    "no module that knows its cell was heard",
+                                    "the robot would be in pieces",
+                                    "the step as it was told does not fit the robot"};
   return kNames[static_cast<std::size_t>(reason)];
 }
 

@@ -11,6 +11,7 @@ void Planned::add(const base::Cell& cell, const base::Cell& self) {
   if (count_ == kPlannedMax) {
     return;
   }
+  forget_hosts();
   const std::size_t i = count_++;
   cells_[i] = cell;
   own_touching_[i] = {};
@@ -19,6 +20,38 @@ void Planned::add(const base::Cell& cell, const base::Cell& self) {
       own_touching_[i] = Faces::only(base::opposite(face));
     }
   }
+}
+
+int Planned::find(const base::Cell& cell) const {
+  for (int k = 0; k < count_; ++k) {
+    if (cells_[at(k)] == cell) {
+      return k;
+    }
+  }
+  return -1;
+}
+
+void Planned::remove(int index) {
+  forget_hosts();
+  --count_;
+  for (int k = index; k < count_; ++k) {
+    cells_[at(k)] = cells_[at(k + 1)];
+    own_touching_[at(k)] = own_touching_[at(k + 1)];
+    for (auto& child : below_) {
+      child[at(k)] = child[at(k + 1)];
+    }
+  }
+  own_touching_[at(count_)] = {};
+  for (auto& child : below_) {
+    child[at(count_)] = {};
+  }
+}
+
+void Planned::forget_hosts() {
+  hosted_count_ = 0;
+  from_above_ = {};
+  involved_ = {};
+  is_any_remote_ = false;
 }
 
 void Planned::add_below(Direction child, int index, Faces touching) {
@@ -66,10 +99,7 @@ bool Planned::is_any_below(std::uint8_t group, Direction child) const {
 }
 
 void Planned::decide_hosts(const std::array<std::uint8_t, 8>& totals) {
-  hosted_count_ = 0;
-  from_above_ = {};
-  involved_ = {};
-  is_any_remote_ = false;
+  forget_hosts();
   for (int k = 0; k < count_; ++k) {
     totals_[at(k)] = Faces::from_mask(totals[at(k)]);
     groups_[at(k)] = static_cast<std::uint8_t>(k);

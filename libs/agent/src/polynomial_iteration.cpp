@@ -10,32 +10,21 @@ PlannedPart PolynomialIteration::planned_part(const Workspace& ws, const Order& 
   return part_in_iteration(ws, order);
 }
 
-void PolynomialIteration::begin(Workspace& ws, const Order& order) {
-  MinimalResiduals iteration(ws, order, vectors_, rho_);
-  if (order.operation == wire::Operation::kIterate) {
-    iteration.move();
-    return;
-  }
-  iteration.begin();
-  if (order.count > 0) {
-    iteration.start_terms();
-  }
+bool PolynomialIteration::begin(Workspace& ws, const Order& order, int piece) {
+  MinimalResiduals iteration(ws, order, memory_, rho_);
+  return order.operation == wire::Operation::kIterate ? iteration.move(piece)
+                                                      : iteration.begin(piece);
 }
 
-void PolynomialIteration::take_exchange(Workspace& ws, const Order& order) {
-  MinimalResiduals iteration(ws, order, vectors_, rho_);
-  if (ws.exchange.left_before_report() > 0) {
-    iteration.take_displacements();
-  } else {
-    iteration.take_term();
-    iteration.next_terms();
-  }
+bool PolynomialIteration::take_exchange(Workspace& ws, const Order& order, int piece) {
+  MinimalResiduals iteration(ws, order, memory_, rho_);
+  return ws.exchange.left_before_report() > 0 ? iteration.take_displacements(piece)
+                                              : iteration.take_term(piece);
 }
 
-Report PolynomialIteration::report(Workspace& ws, const Order& order) {
-  return order.operation == wire::Operation::kIterate
-             ? MinimalResiduals(ws, order, vectors_, rho_).report()
-             : Report{};
+bool PolynomialIteration::report(Workspace& ws, const Order& order, int piece, Report& sum) {
+  return order.operation == wire::Operation::kIterate &&
+         MinimalResiduals(ws, order, memory_, rho_).report(piece, sum);
 }
 
 }  // namespace holdfast::agent

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "holdfast/agent/rigid_clusters.hpp"
 
+#include "facets.hpp"
 #include "holdfast/agent/messages.hpp"
 #include "leaves.hpp"
 #include "minimal_residuals.hpp"
@@ -86,20 +87,19 @@ Pending RigidClusters::pending() const {
   }
 }
 
-void RigidClusters::begin(Workspace& ws, const Order& order) {
-  MinimalResiduals iteration(ws, order, vectors_, rho_);
+bool RigidClusters::begin(Workspace& ws, const Order& order, int piece) {
+  MinimalResiduals iteration(ws, order, memory_, rho_);
   if (order.operation == Operation::kClusters) {
-    iteration.begin();
     piece_ = Piece::kChoose;
-    return;
+    return iteration.begin(piece);
   }
-  iteration.move();
-  if (has_clusters(order)) {
+  if (piece == 0 && has_clusters(order)) {
     // Children add theirs as they come.
     cluster_.clear();
     awaited_ = children_;
     is_shift_here_ = ws.tree.is_root();
   }
+  return iteration.move(piece);
 }
 
 void RigidClusters::take(Workspace& ws, const Order& order, Direction face,
@@ -116,27 +116,29 @@ void RigidClusters::take(Workspace& ws, const Order& order, Direction face,
 
 /// Behind the report of an iteration with clusters come the first polynomial and its image, the
 /// clusters' displacements, the second polynomial.
-void RigidClusters::take_exchange(Workspace& ws, const Order& order) {
-  MinimalResiduals iteration(ws, order, vectors_, rho_);
+bool RigidClusters::take_exchange(Workspace& ws, const Order& order, int piece) {
+  MinimalResiduals iteration(ws, order, memory_, rho_);
   const int left = ws.exchange.left();
   const int degree = order.count;
   if (ws.exchange.left_before_report() > 0) {
     if (order.operation == Operation::kIterate) {
-      return iteration.take_displacements();
+      return iteration.take_displacements(piece);
     }
     meet_neighbours(ws);
-    return iteration.start_terms();
+    iteration.start_terms();
+    return false;
   }
-  iteration.take_term();
   if (!has_clusters(order) || left > degree + 2 || left <= degree) {
-    return iteration.next_terms();
+    return iteration.take_term(piece);
   }
+  iteration.subtract_beams();
   iteration.subtract_facets();
   if (left == degree + 2) {
     piece_ = Piece::kStiffness;
   } else {
     iteration.first_terms();
   }
+  return false;
 }
 
 bool RigidClusters::do_piece(Workspace& ws, const Order& order) {
@@ -157,11 +159,13 @@ bool RigidClusters::do_piece(Workspace& ws, const Order& order) {
   return false;
 }
 
-Report RigidClusters::report(Workspace& ws, const Order& order) {
+bool RigidClusters::report(Workspace& ws, const Order& order, int piece, Report& sum) {
   if (order.operation == Operation::kIterate) {
-    return MinimalResiduals(ws, order, vectors_, rho_).report();
+    return MinimalResiduals(ws, order, memory_, rho_).report(piece, sum);
   }
-  return {.count = beam_count_, .number = stray_count_};
+  sum.count = beam_count_;
+  sum.number = stray_count_;
+  return false;
 }
 
 // ---- Which clusters there are.
@@ -284,10 +288,10 @@ void RigidClusters::add_own(const Workspace& ws, int node_count) {
   const Leaves leaves = leaves_of(ws.planned);
   for (int i = 0; i < node_count; ++i) {
     const Node& node = ws.node(i);
-    base::Vec6<double> load = vectors_[static_cast<std::size_t>(i)].w;
+    base::Vec6<double> load = memory_[static_cast<std::size_t>(i)].vectors.w;
     base::Mat6<double> stiffness;
     if (node.is_ground) {
-      stiffness = mechanics::symmetric_tangent(ws.contact.facet, node.state, node.is_held);
+      stiffness = symmetric_facet_tangent(node, ws.contact);
     }
     // From leaf to leaf to this module.
     int at = i;
@@ -311,7 +315,7 @@ bool RigidClusters::send_stiffness(Workspace& ws, const Order& order) {
   if (!awaited_.is_empty()) {
     return false;
   }
-  add_own(ws, MinimalResiduals(ws, order, vectors_, rho_).node_count());
+  add_own(ws, MinimalResiduals(ws, order, memory_, rho_).node_count());
   const bool is_hidden = cluster_.is_held() && !is_top_;
   if (!ws.tree.is_root() && !cluster_.is_free() && !is_hidden) {
     Cluster::Parts parts;
@@ -356,7 +360,7 @@ bool RigidClusters::shift(Workspace& ws, const Order& order) {
   if (!ws.tree.is_root()) {
     cluster_.find_displacement(joint_to_parent(ws), is_top_, own);
   }
-  MinimalResiduals iteration(ws, order, vectors_, rho_);
+  MinimalResiduals iteration(ws, order, memory_, rho_);
   iteration.share_term(0, base::converted<float>(own));
   ws.links.send(children_, vector_message(MessageType::kBranchDown, 0, ws.node(0).vector.sent));
   const Leaves leaves = leaves_of(ws.planned);

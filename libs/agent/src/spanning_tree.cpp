@@ -9,9 +9,15 @@ namespace {
 
 std::uint8_t number_of(SpanningTree::Wave wave) { return static_cast<std::uint8_t>(wave); }
 
+/// One more; 65,535 stands for all that is further: too large (feet.hpp).
+std::uint16_t hops_beyond(std::uint16_t hops) {
+  return static_cast<std::uint16_t>(hops + (hops > kExtentMax ? 0 : 1));
+}
+
 }  // namespace
 
-void SpanningTree::leave() {
+void SpanningTree::leave(std::uint8_t stage) {
+  stage_ = stage;
   wave_ = Wave::kNone;
   parent_ = {};
   children_ = {};
@@ -35,6 +41,7 @@ void SpanningTree::begin_wave(Links& links, const Round& round, Wave wave, Faces
   awaited_ = links.used() - parent;
   links.send(awaited_, encode(Join{.round = round,
                                    .wave = number_of(wave),
+                                   .stage = stage_,
                                    .cell = wave == Wave::kFirst ? cell_ : root_cell_,
                                    .hops = hops}));
   await_less(links, round, {});
@@ -42,8 +49,7 @@ void SpanningTree::begin_wave(Links& links, const Round& round, Wave wave, Faces
 
 bool SpanningTree::take_join(Links& links, Direction face, const Join& join, bool is_in_use) {
   const auto wave = static_cast<Wave>(join.wave);
-  // 65,535 stands for all that is further: too large (feet.hpp).
-  const auto hops = static_cast<std::uint16_t>(join.hops + (join.hops > kExtentMax ? 0 : 1));
+  const std::uint16_t hops = hops_beyond(join.hops);
   const bool is_next = wave > wave_;
   if (is_next && (static_cast<int>(wave) > static_cast<int>(wave_) + 1 || is_in_use)) {
     return false;  // A wave has been left out, or the tree is in use.
@@ -63,6 +69,20 @@ bool SpanningTree::take_join(Links& links, Direction face, const Join& join, boo
     await_less(links, join.round, Faces::only(face));
   }
   return true;
+}
+
+void SpanningTree::adopt(Links& links, Direction face, const Adoption& adoption) {
+  cell_ = base::neighbour(adoption.sender, base::opposite(face));
+  has_cell_ = true;
+  root_cell_ = adoption.root;
+  begin_wave(links, adoption.round, Wave::kTree, Faces::only(face), hops_beyond(adoption.hops));
+}
+
+void SpanningTree::take_adoption(Links& links, Direction face, const Adoption& adoption) {
+  if (hops_beyond(adoption.hops) <= hops_) {
+    nearer_.add(face);
+  }
+  await_less(links, adoption.round, Faces::only(face));
 }
 
 void SpanningTree::take_echo(Links& links, Direction face, const Echo& echo) {

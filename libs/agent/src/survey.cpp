@@ -3,8 +3,10 @@
 #include "survey.hpp"
 
 #include "beams.hpp"
+#include "facets.hpp"
 #include "holdfast/agent/feet.hpp"
 #include "holdfast/mechanics/connector.hpp"
+#include "methods.hpp"
 
 namespace holdfast::agent {
 namespace {
@@ -20,13 +22,61 @@ base::Cell from_root(const Workspace& ws, int node) {
 /// All planned modules have their hosts: nodes for those emulated here.
 void prepare_nodes(Workspace& ws) {
   for (int i = 0; i < ws.node_count(); ++i) {
-    Node& node = ws.node(i);
-    if (i == 0) {
-      node.is_fixed = ws.is_fixed;
-    } else {
-      node = {};
+    if (i > 0) {
+      ws.node(i) = {};
     }
-    node.is_ground = !node.is_fixed && ws.cell_of(i).z == ws.setup.support_z;
+    prepare_node(ws, i);
+  }
+}
+
+/// What is to be said of announcements when one plan has changed; what else would need a new
+/// learning of all plans is at odds with it.
+void report_announcements(const Workspace& ws, const Announcements& announcements,
+                          const Order& order, Report& report) {
+  for (int i = 0; i < announcements.count(); ++i) {
+    const Told told = announcements.told(i);
+    const base::Cell& cell = announcements.cell(i);
+    const bool is_plain = told == Told::kPlan || told == Told::kKnownPlan;
+    if (is_plain && cell != kEveryCell && ws.planned.find(cell) < 0) {
+      merge(Operation::kRenew, report, {.flags = kMoreAnnounced, .cell = cell});
+    } else if (told != Told::kCarriedWithdrawal && (!is_plain || cell == kEveryCell)) {
+      report.flags = static_cast<std::uint8_t>(report.flags | kAtOdds);
+    }
+  }
+  const bool is_new = is_new_plan(order);
+  const bool is_taken = is_new && order.cell == ws.tree.cell();
+  // Nobody above a module that has come knows what planned modules it touches besides.
+  bool is_touched = false;
+  for (int k = 0; k < ws.planned.count(); ++k) {
+    is_touched = is_touched || !ws.planned.own_touching(k).is_empty();
+  }
+  const bool has_come = (order.flags & kIsGrown) != 0 && order.cell == ws.tree.cell();
+  report.flags = static_cast<std::uint8_t>(report.flags |
+                                           (is_taken || (has_come && is_touched) ? kAtOdds : 0U));
+}
+
+Report renewal_report(const Workspace& ws, const Announcements& announcements, const Order& order) {
+  Report report = mass_report(ws);
+  report_announcements(ws, announcements, order, report);
+  const int newest = ws.planned.count() - 1;
+  if (newest >= 0 && ws.planned.cell(newest) == order.cell) {
+    report.mask = ws.planned.own_touching(newest).mask();
+  }
+  return report;
+}
+
+/// One plan more or less, the same in every module.
+[[maybe_unused]] void renew(Workspace& ws, Announcements& announcements, const Order& order) {
+  ws.planned.forget_hosts();
+  ws.exchange.enter();  // A module that has come counts exchanges from here on.
+  if ((order.flags & kIsEnded) != 0) {
+    announcements.forget(order.cell, (order.flags & kIsFulfilled) != 0);
+    const int index = ws.planned.find(order.cell);
+    if (index >= 0) {
+      ws.planned.remove(index);
+    }
+  } else if (is_new_plan(order)) {
+    ws.planned.add(order.cell, ws.tree.cell());
   }
 }
 
@@ -47,11 +97,51 @@ Report announcement_report(const Order& order, bool has_last, const Announcement
   return report;
 }
 
+/// Was this module told of a step that has not been learned yet?
+[[maybe_unused]] bool is_step_told(const Workspace& ws) {
+  return ws.stages() != nullptr && ws.stage() == Stage::kNone && ws.stages()->has_told();
+}
+
+/// Where this module is for planned ones: one that leaves touches none.
+base::Cell touching_cell(const Workspace& ws) {
+  return ws.is_gone(ws.tree.cell()) ? kEveryCell : ws.tree.cell();
+}
+
+/// The order has come that says what was judged, or teaches a word.
+[[maybe_unused]] void take_stage_order(Workspace& ws, const Order& order) {
+  if (order.operation == Operation::kStage) {
+    if (order.flags != 0) {
+      ws.stages()->note(static_cast<Stage>(order.flags), order.answer);
+    }
+    ws.stages()->enter(static_cast<Stage>(order.index), static_cast<std::uint8_t>(order.count));
+  } else if (order.index != kNoWord) {
+    ws.stages()->learn(order.index, static_cast<std::uint8_t>(order.count),
+                       word_of(static_cast<std::uint32_t>(order.mass), order.cell));
+  }
+}
+
+Report stage_report(const Workspace& ws, const Order& order) {
+  const base::Cell& cell = ws.tree.cell();
+  if (order.operation == Operation::kWord) {
+    const bool is_standing = !ws.is_fixed && cell.z == ws.setup.support_z;
+    return ws.stages()->report(order.index, {.cell = cell,
+                                             .used = ws.links.used(),
+                                             .is_fixed = ws.is_fixed,
+                                             .is_standing = is_standing});
+  }
+  const Faces working = ws.links.working();
+  const bool is_changed = (ws.links.hidden() & working) != (ws.stages()->hidden(cell) & working);
+  return {.flags = is_changed ? kNewLinks : std::uint8_t{0}, .count = 1};
+}
+
 /// What touches the planned module just learned, and the next announced cell after it; or a plan
 /// that has ended: it is withdrawn, or this module sits in its cell.
 Report plan_report(const Workspace& ws, const Announcements& announcements, const Order& order) {
   Report report;
   const bool has_last = order.operation == Operation::kPlan && order.index != kNoPlanned;
+  if (ws.stage() == Stage::kRelease || ws.stage() == Stage::kShift) {
+    return report;
+  }
   if (has_last && order.index < ws.planned.count()) {
     report.mask = ws.planned.own_touching(order.index).mask();
   }
@@ -60,6 +150,14 @@ Report plan_report(const Workspace& ws, const Announcements& announcements, cons
   }
   for (int i = 0; i < announcements.count(); ++i) {
     merge(Operation::kPlan, report, announcement_report(order, has_last, announcements, i));
+  }
+  if constexpr (kJudgesStages) {
+    Report planned{.flags = kFound};
+    if (ws.stage() == Stage::kConnect &&
+        ws.stages()->find_planned(has_last, order.cell, planned.cell)) {
+      merge(Operation::kPlan, report, planned);
+    }
+    report.flags = static_cast<std::uint8_t>(report.flags | (is_step_told(ws) ? kStepTold : 0U));
   }
   return report;
 }
@@ -87,6 +185,21 @@ Report angles_report(const Workspace& ws, const Order& order) {
   return report;
 }
 
+/// Masses in half units: half way between two cells first moments are whole numbers, too.
+void weigh_in_stage(const Workspace& ws, int node, Report& report) {
+  const StageMass mine = node == 0 ? ws.stages()->mass(ws.tree.cell()) : StageMass{};
+  report.number = static_cast<std::uint32_t>(mine.mass);
+  for (std::size_t k = 0; k < report.moment.size(); ++k) {
+    report.moment[k] = mine.mass * report.moment[k] + mine.moment[k];
+  }
+}
+
+/// Does the node alone keep the robot from toppling?
+bool is_held(const Node& node) {
+  const Surroundings* surroundings = surroundings_of(node);
+  return node.is_fixed || (surroundings != nullptr && is_any_bonded(*surroundings));
+}
+
 Report corners_report(const Workspace& ws) {
   Report report;
   for (int i = 0; i < ws.node_count(); ++i) {
@@ -95,7 +208,9 @@ Report corners_report(const Workspace& ws) {
     if (node.is_fixed) {
       own.corners = mechanics::fixed_support();
     } else if (node.is_ground) {
-      own.corners = mechanics::support_corners(ws.cell_of(i), node.state);
+      const Surroundings* surroundings = surroundings_of(node);
+      own.corners = surroundings != nullptr ? support_corners(*surroundings, ws.cell_of(i))
+                                            : mechanics::support_corners(ws.cell_of(i), node.state);
     }
     merge(Operation::kCorners, report, own);
   }
@@ -125,17 +240,71 @@ Report loads_report(Workspace& ws) {
 
 }  // namespace
 
+void prepare_node(Workspace& ws, int index) {
+  Node& node = ws.node(index);
+  node.is_fixed = index == 0 && ws.is_fixed;
+  node.is_ground = !node.is_fixed && ws.cell_of(index).z == ws.setup.support_z;
+#ifndef HOLDFAST_AGENT_FLOOR_ONLY
+  if (const Environment* environment = ws.environment(); environment != nullptr) {
+    Surroundings& surroundings = ws.lent->surroundings[index];
+    surroundings = {.environment = environment};
+    environment->describe(environment->map, ws.cell_of(index), surroundings);
+    surroundings.facet_count = node.is_fixed ? std::uint8_t{0} : surroundings.facet_count;
+    node.is_ground = surroundings.facet_count > 0;
+    node.surroundings = &surroundings;
+  }
+#endif
+  if (index == 0 && ws.stage() != Stage::kNone) {
+    node.is_ground = node.is_ground && !ws.is_gone(ws.tree.cell());
+    ws.stages()->hang(ws.tree.cell(), ws.setup);
+  }
+}
+
+base::Vec6<double> stiff_motion(const Workspace& ws, const base::Cell& cell) {
+  base::Vec6<double> u = ws.node(0).u;
+  const base::Cell& own = ws.tree.cell();
+  const double pitch = ws.setup.section.length;
+  const double x = pitch * (cell.x - own.x);
+  const double y = pitch * (cell.y - own.y);
+  const double z = pitch * (cell.z - own.z);
+  u[0] += u[4] * z - u[5] * y;
+  u[1] += u[5] * x - u[3] * z;
+  u[2] += u[3] * y - u[4] * x;
+  return u;
+}
+
+void resume_survey(Workspace& ws, Announcements& announcements, const Order& order) {
+  announcements.settle();
+  ws.planned.decide_hosts(order.masks);
+  prepare_nodes(ws);
+  for (int i = 1; i < ws.node_count(); ++i) {
+    reset(ws.node(i));
+    if ((order.flags & kKeepsMotion) != 0) {
+      ws.node(i).u = stiff_motion(ws, ws.cell_of(i));
+    }
+  }
+}
+
+Report resume_report(const Workspace& ws, const Order& order) {
+  Report report = (order.flags & kRests) != 0 ? angles_report(ws, order) : Report{};
+  report.mask = hosts_report(ws).mask;
+  return report;
+}
+
 void begin_survey(Workspace& ws, Announcements& announcements, const Order& order) {
   switch (order.operation) {
     case Operation::kPlan:
       if (order.index == kNoPlanned) {
         ws.planned.clear();
       } else {
-        ws.planned.add(order.cell, ws.tree.cell());
+        ws.planned.add(order.cell, touching_cell(ws));
       }
       break;
     case Operation::kForget:
       ws.planned.clear();
+      if (order.cell == kEveryCell && ws.stages() != nullptr) {
+        ws.stages()->forget_told(true);
+      }
       announcements.forget(order.cell, (order.flags & kIsFulfilled) != 0);
       break;
     case Operation::kHosts:
@@ -145,6 +314,17 @@ void begin_survey(Workspace& ws, Announcements& announcements, const Order& orde
       break;
     case Operation::kMass:
       ws.tree.set_root_cell(order.cell);
+      break;
+    case Operation::kRenew:
+      if constexpr (kKeepsAnswers) {
+        renew(ws, announcements, order);
+      }
+      break;
+    case Operation::kWord:
+    case Operation::kStage:
+      if constexpr (kJudgesStages) {
+        take_stage_order(ws, order);
+      }
       break;
     case Operation::kVerdict:
       if (order.answer.reason == Reason::kPlannedTooMany ||
@@ -166,12 +346,25 @@ Report survey_report(Workspace& ws, const Announcements& announcements, const Or
       return hosts_report(ws);
     case Operation::kMass:
       return mass_report(ws);
+    case Operation::kRenew:
+      return kKeepsAnswers ? renewal_report(ws, announcements, order) : Report{};
+    case Operation::kWord:
+    case Operation::kStage:
+      return kJudgesStages ? stage_report(ws, order) : Report{};
     case Operation::kAngles:
       return angles_report(ws, order);
     case Operation::kCorners:
       return corners_report(ws);
     case Operation::kLoads:
       return loads_report(ws);
+    case Operation::kClose: {
+      if constexpr (!kKeepsAnswers) {
+        return {};
+      }
+      Report report = loads_report(ws);
+      report.corners = corners_report(ws).corners;
+      return report;
+    }
     default:
       return {.count = 1};
   }
@@ -179,25 +372,39 @@ Report survey_report(Workspace& ws, const Announcements& announcements, const Or
 
 Report mass_report(const Workspace& ws) {
   Report report;
+  const Environment* environment = ws.environment();
   for (int i = 0; i < ws.node_count(); ++i) {
     const base::Cell away = from_root(ws, i);
     const auto size = [](std::int32_t value) { return value < 0 ? -value : value; };
     const std::int32_t extent = size(away.x) + size(away.y) + size(away.z);
-    Report own{.flags = ws.node(i).is_fixed ? kAnyFixed : std::uint8_t{0},
+    Report own{.flags = is_held(ws.node(i)) ? kAnyFixed : std::uint8_t{0},
                .extent = static_cast<std::uint16_t>(extent < 0xffff ? extent : 0xffff),
                .count = 1,
                .number = 1,
                .moment = {away.x, away.y, away.z}};
+    if (environment != nullptr) {
+      const std::int32_t mass = surroundings_of(ws.node(i))->mass;
+      own.number = static_cast<std::uint32_t>(mass);
+      for (std::int64_t& moment : own.moment) {
+        moment *= mass;
+      }
+      own.flags = static_cast<std::uint8_t>(own.flags | (environment->is_level ? 0U : kUneven));
+    }
+    if (ws.stage() != Stage::kNone) {
+      weigh_in_stage(ws, i, own);
+    }
     merge(Operation::kMass, report, own);
   }
   return report;
 }
 
 void add_report(const Setup& setup, const Order& order, Report& into, const Report& theirs) {
-  if (order.operation == Operation::kAngles) {
+  const bool is_resumed = order.operation == Operation::kResume && (order.flags & kRests) != 0;
+  if (is_resumed || order.operation == Operation::kAngles) {
     const FeetCheck check(setup, order.mass, order.moment);
     into.feet = check.merge(into.feet, theirs.feet);
-  } else {
+  }
+  if (order.operation != Operation::kAngles) {
     merge(order.operation, into, theirs);
   }
 }

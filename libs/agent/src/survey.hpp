@@ -15,12 +15,25 @@ inline bool is_survey(wire::Operation operation) {
   return phase_of(operation) != Phase::kEquilibrium;
 }
 
+/// What a node is, by its place.
+void prepare_node(Workspace& ws, int index);
+
+/// How a module in `cell` moves that is joined stiffly to this one.
+base::Vec6<double> stiff_motion(const Workspace& ws, const base::Cell& cell);
+
 /// The order has come.
 void begin_survey(Workspace& ws, Announcements& announcements, const Order& order);
 
 /// What this module, with the planned ones that it emulates, has to say. Of kLoads
 /// it is noted in Workspace::own_load_ratio as well.
 Report survey_report(Workspace& ws, const Announcements& announcements, const Order& order);
+
+/// A kResume has come: who emulates planned modules. Those go on from the motion of this one, as if
+/// they were stiff, if the order says so.
+void resume_survey(Workspace& ws, Announcements& announcements, const Order& order);
+
+/// What a kResume says besides its method: as kHosts and kAngles.
+Report resume_report(const Workspace& ws, const Order& order);
 
 /// Count, supports and extent of the nodes here, from the root's cell.
 Report mass_report(const Workspace& ws);

@@ -2,10 +2,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "holdfast/agent/sweep.hpp"
 
+#include "condensed.hpp"
 #include "holdfast/agent/feet.hpp"
+#include "holdfast/agent/free_faces.hpp"
 #include "holdfast/agent/messages.hpp"
 #include "holdfast/agent/operations.hpp"
+#include "holdfast/mechanics/connector.hpp"
 #include "method.hpp"
+#include "methods.hpp"
 #include "survey.hpp"
 
 namespace holdfast::agent {
@@ -20,18 +24,38 @@ bool starts_at_once(Operation operation) {
   return operation != Operation::kTreeIterate && operation != Operation::kClusters;
 }
 
+// Constants in a program without fronts.
+
+bool makes_fronts(Course course) { return kHasAllMethods && course == Course::kFronts; }
+
+/// Are planned modules condensed behind this order?
+bool condenses(const Workspace& ws, const Order& order) {
+  return order.operation == Operation::kIterate && ws.planned.is_any_remote();
+}
+
+bool has_fronts(const Order& begin) { return kHasAllMethods && (begin.flags & kWithFronts) != 0; }
+
+/// Constant in a program that does not judge free faces.
+bool judges_faces(const Workspace& ws) { return kJudgesFaces && ws.free_faces() != nullptr; }
+
 /// Where an order leads; what it must not lead to has been refused before.
 Course course_after(const Order& order, Course course) {
   switch (order.operation) {
     case Operation::kPlan:
     case Operation::kForget:
       return Course::kPlanned;
+    case Operation::kStage:
+      return Course::kStaged;
     case Operation::kHosts:
       return Course::kHosted;
     case Operation::kMass:
+    case Operation::kRenew:
       return Course::kWeighed;
+    case Operation::kResume:
+      return (order.flags & kWithIterations) == 0 ? Course::kElimination : Course::kPolynomial;
     case Operation::kBegin:
       return (order.flags & kOneSweep) == 0         ? Course::kGradients
+             : has_fronts(order)                    ? Course::kFronts
              : (order.flags & kWithIterations) == 0 ? Course::kElimination
                                                     : Course::kPolynomial;
     case Operation::kClusters:
@@ -61,8 +85,18 @@ bool Sweep::is_busy(const Workspace& ws) const {
   return ws.exchange.is_under_way() || pending() == Pending::kBehindReport;
 }
 
+void Sweep::adopt(Workspace& ws) {
+  course_ = Course::kWeighed;
+  method()->make(state_);
+  has_tree_ = true;
+  prepare_node(ws, 0);
+  reset(ws.node(0));
+}
+
 void Sweep::leave(Workspace& ws) {
   is_under_way_ = false;
+  has_ended_ = false;
+  work_ = Work::kNone;
   course_ = Course::kWaves;
   ws.exchange.leave();
   ws.reports.await({});
@@ -72,7 +106,8 @@ void Sweep::leave(Workspace& ws) {
 
 bool Sweep::is_in_course(const Workspace& ws, const Order& order) const {
   if (order.operation == Operation::kVerdict) {  // Said again, it is the same one.
-    return course_ != Course::kAnswered || order.answer == order_.answer;
+    return course_ == Course::kAnswered ? order.answer == order_.answer
+                                        : is_good_answer(ws, order.answer);
   }
   if (ws.tree.wave() != SpanningTree::Wave::kTree) {
     return false;
@@ -80,38 +115,81 @@ bool Sweep::is_in_course(const Workspace& ws, const Order& order) const {
   switch (order.operation) {
     case Operation::kPlan:
       return order.index == kNoPlanned
-                 ? course_ == Course::kWaves
+                 ? course_ == Course::kWaves || (kJudgesStages && course_ == Course::kStaged)
                  : course_ == Course::kPlanned && order.index == ws.planned.count();
     case Operation::kForget:
       return course_ == Course::kPlanned;
+    case Operation::kWord:
+      return ws.stages() != nullptr && course_ == Course::kPlanned &&
+             order.index == (order.count == 0 ? kNoWord : ws.stages()->learned_count());
+    case Operation::kStage:
+      return ws.stages() != nullptr && course_ != Course::kWaves && course_ != Course::kAnswered &&
+             ws.stages()->total() > 0 && ws.stages()->learned_count() == ws.stages()->total();
     case Operation::kHosts:
       return course_ == Course::kPlanned && ws.planned.agrees_with(order.masks);
     case Operation::kMass:
-      return course_ == Course::kHosted;
+      return course_ == Course::kHosted || (kJudgesStages && course_ == Course::kStaged);
     case Operation::kAngles:
       return course_ == Course::kWeighed && fits_exact_check(ws.setup, order.mass) &&
              mass_report(ws).extent <= kExtentMax;
+    case Operation::kRenew:
+      return kKeepsAnswers && ws.setup.keeps_answers &&
+             (course_ == Course::kAnswered || course_ == Course::kWeighed) &&
+             (has_tree_ || (order.flags & kKeepsFactors) == 0);
+    case Operation::kResume:
+      return kKeepsAnswers && ws.setup.keeps_answers && is_good_resume(ws, order);
     case Operation::kBegin:
-      return is_good_begin(order);
+      return is_good_begin(ws, order);
     case Operation::kFactor:
     case Operation::kTreeIterate:
-      return course_ == Course::kElimination;
+      return course_ == Course::kElimination || makes_fronts(course_);
     case Operation::kCorners:
     case Operation::kLoads:
+    case Operation::kClose:
       return course_ >= Course::kElimination && course_ != Course::kAnswered;
+    case Operation::kShape:
+      return judges_faces(ws) && course_ >= Course::kWeighed && course_ != Course::kAnswered &&
+             ws.planned.count() == 0;
+    case Operation::kNext:
+      return judges_faces(ws) && course_ != Course::kAnswered &&
+             ws.free_faces()->is_good_next(ws, order);
     case Operation::kClusters:
-      return is_good_begin(order) && ws.planned.count() <= kClusterPlannedMax;
+      return is_good_begin(ws, order) && ws.planned.count() <= kClusterPlannedMax;
     case Operation::kIterate:
       return course_ == Course::kClusters ||
              (course_ == Course::kPolynomial && (order.flags & kWithClusters) == 0);
     default:
-      return course_ == Course::kGradients;
+      return course_ == Course::kGradients ||
+             (order.operation == Operation::kHold && makes_fronts(course_));
+  }
+}
+
+/// Whether this can be the verdict now: none is found before what decides it, but for one that is
+/// said again, as the robot's shape is the same or a module has come, and that on all stages of a
+/// step together, which this module knows, too; and no robot is safe whose connection here breaks.
+bool Sweep::is_good_answer(const Workspace& ws, const Answer& answer) const {
+  const bool is_overall = kJudgesStages && course_ == Course::kStaged && ws.stages() != nullptr &&
+                          answer == ws.stages()->overall();
+  if (is_overall) {
+    return true;
+  }
+  const bool is_judged =
+      course_ >= Course::kElimination || (is_renewed_ && course_ == Course::kWeighed);
+  switch (answer.verdict) {
+    case Verdict::kSafe:
+      return is_judged && !mechanics::breaks(static_cast<double>(ws.own_load_ratio));
+    case Verdict::kOverload:
+      return is_judged;
+    case Verdict::kUnstable:
+      return course_ >= Course::kWeighed;
+    default:
+      return true;
   }
 }
 
 /// Whether an equilibrium may begin by this order. What elimination knows of the tree lives until
 /// another method begins.
-bool Sweep::is_good_begin(const Order& order) const {
+bool Sweep::is_good_begin(const Workspace& ws, const Order& order) const {
   if (course_ < Course::kWeighed || course_ == Course::kAnswered) {
     return false;
   }
@@ -120,10 +198,21 @@ bool Sweep::is_good_begin(const Order& order) const {
     return course_ <= Course::kElimination && order.count == 0 &&
            !state_.elimination.has_too_many_loops();
   }
+  if (makes_fronts(next)) {
+    return method_in(next) != nullptr && ws.front_memory() != nullptr && order.count == 0;
+  }
   const bool has_iterations = (order.flags & kWithIterations) != 0;
   return method_in(next) != nullptr &&
          (next == Course::kGradients ? !has_iterations && order.count == 0
                                      : has_iterations && (order.flags & kOneSweep) != 0);
+}
+
+bool Sweep::is_good_resume(const Workspace& ws, const Order& order) const {
+  const bool is_weighed = (order.flags & kRests) == 0 || fits_exact_check(ws.setup, order.mass);
+  const bool is_possible = (order.flags & kWithIterations) != 0 ||
+                           (order.count == 0 && !state_.elimination.has_too_many_loops());
+  return course_ == Course::kWeighed && ws.planned.agrees_with(order.masks) && is_weighed &&
+         is_possible && (order.flags & kOneSweep) != 0;
 }
 
 bool Sweep::expects(const Workspace& ws, Direction face, Message message) const {
@@ -135,13 +224,17 @@ bool Sweep::expects(const Workspace& ws, Direction face, Message message) const 
       // Parts are those of condensed modules.
       const bool is_part = message[1] > kPlannedIndexMask;
       return ws.tree.is_led_by(face) && (message[1] & kPlannedIndexMask) < ws.planned.count() &&
-             (!is_part || (own != nullptr && own->take_condensed != nullptr));
+             (!is_part || (own != nullptr && own->condense != nullptr));
     }
     case MessageType::kPlannedUp:
       return ws.tree.children().has(face) && message[1] < ws.planned.count() &&
              (order_.operation != Operation::kIterate || ws.planned_exchange.awaits_forces());
     case MessageType::kVector:
       return true;
+    case MessageType::kCellsUp:
+    case MessageType::kCellsDown:
+    case MessageType::kReach:
+      return judges_faces(ws) && ws.free_faces()->expects(ws, face, message);
     default:
       return own != nullptr && own->expects(state_, ws, order_, face, message);
   }
@@ -151,6 +244,9 @@ bool Sweep::expects(const Workspace& ws, Direction face, Message message) const 
 
 void Sweep::take_order(Workspace& ws, Announcements& announcements, const Order& order) {
   order_ = order;
+  if (order.operation != Operation::kShape && order.operation != Operation::kNext) {
+    is_renewed_ = order.operation == Operation::kRenew;
+  }
   course_ = course_after(order, course_);
   is_under_way_ = true;
   announcements.finish_forgetting();
@@ -159,22 +255,91 @@ void Sweep::take_order(Workspace& ws, Announcements& announcements, const Order&
   ws.links.send(ws.tree.children(), encode(order));
   if (is_survey(order.operation)) {
     begin_survey(ws, announcements, order);
+  } else if (kKeepsAnswers && order.operation == Operation::kResume) {
+    resume_survey(ws, announcements, order);
+  }
+  if (judges_faces(ws)) {
+    begin_faces(ws, order);
   }
   begin_method(ws, order);
-  if (ws.exchange.left() > 0 && starts_at_once(order.operation)) {
-    ws.start_exchange(planned_part(ws));
+}
+
+/// What is known of free faces begins, ends, or is added to by the verdict on a single plan.
+void Sweep::begin_faces(Workspace& ws, const Order& order) {
+  FreeFaces& faces = *ws.free_faces();
+  const bool is_grown =
+      order.operation == Operation::kRenew && (order.flags & (kIsGrown | kIsFulfilled)) != 0;
+  if (order.operation == Operation::kShape || is_grown) {
+    faces.forget();
+  } else if (order.operation == Operation::kNext) {
+    faces.begin_next(ws, order);
+  } else if (order.operation == Operation::kVerdict && ws.planned.count() == 1) {
+    faces.note(ws.planned.own_face(0), order.answer);
   }
 }
 
 void Sweep::begin_method(Workspace& ws, const Order& order) {
   const Operation operation = order.operation;
   // What elimination has learned with kMass it needs in its equilibrium.
-  if (operation == Operation::kMass || operation == Operation::kClusters ||
-      (operation == Operation::kBegin && course_ != Course::kElimination)) {
+  const bool is_begin = operation == Operation::kBegin || operation == Operation::kResume;
+  const bool is_renewed = operation == Operation::kRenew && (order.flags & kKeepsFactors) == 0;
+  if (operation == Operation::kMass || is_renewed || operation == Operation::kClusters ||
+      (is_begin && course_ != Course::kElimination)) {
+    has_tree_ = course_ == Course::kWeighed;
     method()->make(state_);
   }
-  if (!is_survey(operation)) {
-    method()->begin(state_, ws, order);
+  begin_work(Work::kBegin);
+  if (is_survey(operation)) {
+    end_work(ws);
+  }
+}
+
+void Sweep::begin_work(Work work) {
+  work_ = work;
+  piece_ = 0;
+}
+
+bool Sweep::work(Workspace& ws, const Announcements& announcements) {
+  bool has_more = false;
+  switch (work_) {
+    case Work::kNone:
+      return false;
+    case Work::kReport:
+      has_more = report(ws, announcements);
+      break;
+    case Work::kSum:
+      add_up(ws);
+      break;
+    case Work::kBegin:
+      has_more = method()->begin(state_, ws, order_, piece_);
+      break;
+    case Work::kExchange:
+      has_more = method()->take_exchange(state_, ws, order_, piece_);
+      break;
+    case Work::kBeginCondense:
+    case Work::kCondense:
+      has_more = method()->condense(state_, ws, order_, piece_);
+  }
+  piece_ = piece_ < 0xff ? static_cast<std::uint8_t>(piece_ + 1) : piece_;
+  if (!has_more) {
+    end_work(ws);
+  }
+  return true;
+}
+
+void Sweep::end_work(Workspace& ws) {
+  const Work ended = work_;
+  work_ = Work::kNone;
+  if (ended == Work::kReport) {
+    begin_work(Work::kSum);
+  } else if (ended == Work::kExchange) {
+    end_exchange(ws);
+  } else if (ended == Work::kBegin && condenses(ws, order_) &&
+             !ws.planned_exchange.awaits_forces()) {
+    begin_work(Work::kBeginCondense);
+  } else if (ended <= Work::kBeginCondense && ws.exchange.left() > 0 &&
+             starts_at_once(order_.operation)) {
+    ws.start_exchange(planned_part(ws));
   }
 }
 
@@ -188,6 +353,10 @@ void Sweep::take(Workspace& ws, Direction face, Message message) {
       return take_planned_down(ws, message);
     case MessageType::kPlannedUp:
       return take_planned_up(ws, message);
+    case MessageType::kCellsUp:
+    case MessageType::kCellsDown:
+    case MessageType::kReach:
+      return kJudgesFaces ? ws.free_faces()->take(ws, face, message) : void();
     default:
       return method()->take(state_, ws, order_, face, message);
   }
@@ -195,15 +364,15 @@ void Sweep::take(Workspace& ws, Direction face, Message message) {
 
 void Sweep::take_planned_down(Workspace& ws, Message message) {
   if (message[1] > kPlannedIndexMask) {
-    method()->take_condensed(ws, message);
+    take_condensed(ws, message);
   } else {
     ws.planned_exchange.take_down(ws.links, ws.tree.children(), ws.planned, message);
   }
 }
 
 void Sweep::take_planned_up(Workspace& ws, Message message) {
-  if (ws.planned_exchange.take_up(message)) {
-    method()->pass_condensed(ws, order_);
+  if (ws.planned_exchange.take_up(message) && !makes_fronts(course_)) {
+    begin_work(Work::kCondense);
   }
 }
 
@@ -215,66 +384,108 @@ bool Sweep::exchange(Workspace& ws) {
   }
   const PlannedPart part = planned_part(ws);
   const bool waits_for_hosts =
-      part != PlannedPart::kApart &&
-      (!ws.planned_exchange.is_complete(ws.planned) ||
-       (part == PlannedPart::kCondensed && ws.planned_exchange.awaits_forces()));
+      part != PlannedPart::kApart && (!ws.planned_exchange.is_complete(ws.planned) ||
+                                      ((part == PlannedPart::kCondensed || makes_fronts(course_)) &&
+                                       ws.planned_exchange.awaits_forces()));
   // What children add to planned modules emulated here comes before their reports. It belongs to an
   // order's last exchange.
   const bool waits_for_children = ws.exchange.is_last() && !ws.reports.are_here();
   if (!ws.exchange.is_complete(ws.links.used()) || waits_for_hosts || waits_for_children) {
     return false;
   }
-  method()->take_exchange(state_, ws, order_);
+  begin_work(Work::kExchange);
+  return true;
+}
+
+void Sweep::end_exchange(Workspace& ws) {
+  const PlannedPart part = planned_part(ws);
   if (part != PlannedPart::kApart) {
     ws.planned_exchange.end();
   }
   if (part == PlannedPart::kTogether) {
     ws.planned_exchange.send_up(ws.links, ws.tree.parent(), ws.planned,
-                                is_precise(order_.operation));
+                                is_precise(order_.operation) || makes_fronts(course_));
   }
   ws.exchange.end();
   if (ws.exchange.left() > 0 && pending() != Pending::kBehindReport) {
     ws.start_exchange(planned_part(ws));
   }
-  return true;
 }
 
 bool Sweep::do_piece(Workspace& ws) {
+  if (judges_faces(ws) && ws.free_faces()->do_piece(ws)) {
+    return true;
+  }
   const MethodTable* own = method();
   return own != nullptr && own->do_piece(state_, ws, order_);
 }
 
-bool Sweep::can_finish(const Workspace& ws) const {
-  return is_under_way_ && ws.reports.are_here() && pending() != Pending::kBeforeReport &&
-         ws.exchange.left_before_report() <= 0;
+bool Sweep::begin_report(const Workspace& ws) {
+  if (!is_under_way_ || !ws.reports.are_here() || pending() == Pending::kBeforeReport ||
+      ws.exchange.left_before_report() > 0 || (judges_faces(ws) && !ws.free_faces()->is_done())) {
+    return false;
+  }
+  sum_ = {};
+  begin_work(Work::kReport);
+  return true;
 }
 
-Report Sweep::finish(Workspace& ws, const Announcements& announcements) {
+/// A piece of what this module reports.
+bool Sweep::report(Workspace& ws, const Announcements& announcements) {
+  const Operation operation = order_.operation;
+  if (kKeepsAnswers && operation == Operation::kResume) {
+    sum_ = resume_report(ws, order_);
+    return false;
+  }
+  if (kJudgesFaces && operation == Operation::kShape) {
+    sum_ = ws.free_faces()->shape_report(ws);
+    return false;
+  }
+  if (kJudgesFaces && operation == Operation::kNext) {
+    sum_ = ws.free_faces()->next_report();
+    return false;
+  }
+  if (!is_survey(operation)) {
+    return method()->report(state_, ws, order_, piece_, sum_);
+  }
+  sum_ = survey_report(ws, announcements, order_);
+  if (kKeepsAnswers && operation == Operation::kRenew && (order_.flags & kKeepsFactors) != 0) {
+    sum_.flags = static_cast<std::uint8_t>(sum_.flags |
+                                           (state_.elimination.has_new_loop(ws) ? kNewLoop : 0U));
+  } else if (operation == Operation::kMass || operation == Operation::kRenew) {
+    sum_.flags = static_cast<std::uint8_t>(sum_.flags | state_.elimination.survey_loops(ws));
+  }
+  return false;
+}
+
+void Sweep::add_up(Workspace& ws) {
   is_under_way_ = false;
-  Report sum = own_report(ws, announcements);
+  has_ended_ = true;
   for (const Direction face : ws.tree.children()) {
     const Report theirs = decode_report(ws.reports.of(face));
-    add_report(ws.setup, order_, sum, theirs);
+    add_report(ws.setup, order_, sum_, theirs);
     if (order_.operation == Operation::kPlan && order_.index != kNoPlanned) {
       ws.planned.add_below(face, order_.index, Faces::from_mask(theirs.mask));
     }
+    if (order_.operation == Operation::kRenew && is_new_plan(order_)) {
+      ws.planned.add_below(face, ws.planned.count() - 1, Faces::from_mask(theirs.mask));
+    }
+    if (kJudgesFaces && order_.operation == Operation::kShape) {
+      ws.free_faces()->take_shape(face, theirs);
+    }
+  }
+  if (kJudgesFaces && order_.operation == Operation::kShape) {
+    ws.free_faces()->take_shape_here(sum_);
   }
   if (!ws.tree.is_root()) {
-    ws.links.send(ws.tree.parent(), encode(order_.operation, sum));
+    ws.links.send(ws.tree.parent(), encode(order_.operation, sum_));
   }
-  return sum;
 }
 
-Report Sweep::own_report(Workspace& ws, const Announcements& announcements) {
-  const Operation operation = order_.operation;
-  if (!is_survey(operation)) {
-    return method()->report(state_, ws, order_);
-  }
-  Report report = survey_report(ws, announcements, order_);
-  if (operation == Operation::kMass) {
-    report.flags = static_cast<std::uint8_t>(report.flags | state_.elimination.survey_loops(ws));
-  }
-  return report;
+bool Sweep::take_end() {
+  const bool has_ended = has_ended_;
+  has_ended_ = false;
+  return has_ended;
 }
 
 }  // namespace holdfast::agent

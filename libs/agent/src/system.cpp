@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The holdfast authors
 // SPDX-License-Identifier: Apache-2.0
-#include "system.hpp"
+#include "holdfast/agent/system.hpp"
 
 #include "scalar.hpp"
 

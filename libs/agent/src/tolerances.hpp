@@ -14,11 +14,19 @@ inline constexpr double kRatioTolerance = 4e-3;
 /// Contact states are told at this accuracy while they still change.
 inline constexpr double kStateTolerance = 2e-2;
 
+/// Where supports are anywhere, facets that carry by shear alone do not press but for rounding, and
+/// whether they do decides what carries: contact states are told at this accuracy.
+inline constexpr double kUnevenTolerance = 1e-7;
+
 /// A verdict needs the largest ratio this many times its error bound away from 1.
 inline constexpr double kDoubt = 3;
 
 /// The best bound that is tried for: below, the arithmetic itself is in doubt.
 inline constexpr double kErrorLeast = 2e-8;
+
+/// What the load ratio of a candidate at a free face has to be away from 1, besides the error bound
+/// of the robot's own: single precision of what a way of a thousand modules carries.
+inline constexpr double kFaceTolerance = 1e-5;
 
 /// How much smaller the error bound becomes in one linear solve, at most. Single precision rarely
 /// gives more than five digits in one go; a tilting facet's stand-in tangent deserves fewer.
@@ -37,5 +45,9 @@ inline constexpr int kSlopeCountMax = 3;
 
 /// The weak springs of the unilateral law, as in the exact solver (verdict/assessment.cpp).
 inline constexpr double kUnilateralGamma = 1e-9;
+
+/// Those of a robot that seems to hang on them, as in the exact solver; it is never `safe` by
+/// these.
+inline constexpr double kTopplingGamma = 1e-4;
 
 }  // namespace holdfast::agent

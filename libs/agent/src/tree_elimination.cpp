@@ -4,8 +4,10 @@
 
 #include "beams.hpp"
 #include "displacements.hpp"
+#include "facets.hpp"
 #include "holdfast/agent/messages.hpp"
 #include "leaves.hpp"
+#include "stage_load.hpp"
 
 namespace holdfast::agent {
 namespace {
@@ -46,11 +48,25 @@ Joint joint_to_parent(const Workspace& ws) { return {ws.setup.beam, ws.tree.pare
 
 }  // namespace
 
-void TreeElimination::begin(Workspace& ws, const Order& order) {
+bool TreeElimination::begin(Workspace& ws, const Order& order, int /*piece*/) {
   if (order.operation == Operation::kBegin) {
     begin_equilibrium(ws, order);
   } else if (order.operation == Operation::kFactor) {
     factor(ws);
+  } else if (order.operation == Operation::kResume) {
+    // The loads are those of the displacements that are kept, which are shared first.
+    begin_equilibrium(ws, order);
+    ws.middle = {};
+    for (int i = 0; i < ws.node_count(); ++i) {
+      share_high_part(ws.node(i));
+    }
+    if ((order.flags & kKeepsFactors) == 0) {
+      factor(ws);
+    } else {
+      load_ = {};
+      stiffness_above_ = {};  // Planned modules here touch no ground.
+      begin_piece(Piece::kResiduals);
+    }
   } else if (order.operation == Operation::kTreeIterate) {
     ws.middle = {};
     // What comes down first; the root has it.
@@ -59,6 +75,7 @@ void TreeElimination::begin(Workspace& ws, const Order& order) {
       begin_piece(Piece::kShift);
     }
   }
+  return false;
 }
 
 /// Only what a child's loops, or this module's own, account for.
@@ -68,15 +85,16 @@ bool TreeElimination::expects(const Workspace& ws, const Order& order, Direction
   const int child_cuts = child_cut_count_[at(face)];
   const bool reports = ws.reports.awaits(face);
   const bool is_iteration = order.operation == Operation::kTreeIterate;
+  const bool is_factor =
+      order.operation == Operation::kFactor || order.operation == Operation::kResume;
   switch (static_cast<MessageType>(message[0])) {
     case MessageType::kLoop:
-      return reports && order.operation == Operation::kMass && child_cuts < kLoopsMax;
+      return reports && child_cuts < kLoopsMax &&
+             (order.operation == Operation::kMass || order.operation == Operation::kRenew);
     case MessageType::kColumn:
-      return reports && order.operation == Operation::kFactor &&
-             Branch::loops_of_column(label) <= child_cuts;
+      return reports && is_factor && Branch::loops_of_column(label) <= child_cuts;
     case MessageType::kBranchUp:
-      return reports && (order.operation == Operation::kFactor || is_iteration) &&
-             label <= child_cuts;
+      return reports && (is_factor || is_iteration) && label <= child_cuts;
     default:
       return is_iteration && down_awaited_ != 0 && ws.tree.parent().has(face) &&
              label <= branch_.open_count();
@@ -98,20 +116,26 @@ void TreeElimination::take(Workspace& ws, const Order& /*order*/, Direction face
 }
 
 /// Displacements in two parts; then contact states follow, and residuals are here.
-void TreeElimination::take_exchange(Workspace& ws, const Order& /*order*/) {
+bool TreeElimination::take_exchange(Workspace& ws, const Order& /*order*/, int /*piece*/) {
   add_forces(ws, PlannedPart::kTogether);
   if (ws.exchange.left() == 2) {
     share_low_part(ws);
-    return;
+    return false;
   }
   for (int i = 0; i < ws.node_count(); ++i) {
-    ws.node(i).has_changed = false;
-    follow_state(ws.node(i), ws.contact, false);
+    Node& node = ws.node(i);
+    node.has_changed = false;
+    if (surroundings_of(node) != nullptr) {
+      node.has_changed = look_up_states(node, ws.contact, {}, 0);  // The next kFactor takes them.
+    } else {
+      follow_state(node, ws.contact, false);
+    }
   }
+  return false;
 }
 
-Report TreeElimination::report(Workspace& ws, const Order& order) {
-  return order.operation == Operation::kTreeIterate ? iteration_report(ws) : Report{};
+bool TreeElimination::report(Workspace& ws, const Order& order, int piece, Report& sum) {
+  return order.operation == Operation::kTreeIterate && iteration_report(ws, piece, sum);
 }
 
 void TreeElimination::begin_piece(Piece piece, int index) {
@@ -171,6 +195,15 @@ std::uint8_t TreeElimination::survey_loops(Workspace& ws) {
   return 0;
 }
 
+bool TreeElimination::has_new_loop(const Workspace& ws) const {
+  for (const Direction face : cut_faces(ws)) {
+    if (branch_.find(cut_at(ws.tree.cell(), face)) < 0) {
+      return true;
+    }
+  }
+  return false;
+}
+
 void TreeElimination::take_loop(Direction face, std::span<const std::uint8_t> message) {
   decode(message, child_cuts_[at(face)][child_cut_count_[at(face)]++]);
 }
@@ -187,8 +220,10 @@ void TreeElimination::factor(Workspace& ws) {
   for (int i = 0; i < ws.node_count(); ++i) {
     Node& node = ws.node(i);
     node.matrix.stiffness_below = {};
-    const bool tilts = node.is_ground && (node.state.tilt_x != 0 || node.state.tilt_y != 0);
-    is_symmetric_ = is_symmetric_ && !tilts;
+    if (surroundings_of(node) != nullptr) {
+      take_states(node);
+    }
+    is_symmetric_ = is_symmetric_ && !is_any_tilting(node);
   }
   for (const Direction face : cut_faces(ws)) {
     branch_.add_end(branch_.find(cut_at(ws.tree.cell(), face)), is_upper(face), ws.setup.beam);
@@ -206,8 +241,7 @@ bool TreeElimination::do_tangent(Workspace& ws) {
   if (!node.is_ground) {
     return true;
   }
-  const base::Mat6<double> tangent =
-      mechanics::contact_tangent(ws.contact.facet, node.state, node.is_held);
+  const base::Mat6<double> tangent = facet_tangent(node, ws.contact);
   if (index == 0) {
     branch_.add_stiffness(tangent);
     return true;
@@ -404,9 +438,9 @@ bool TreeElimination::do_load_piece(Workspace& ws) {
 }
 
 void TreeElimination::find_residual_loads(Workspace& ws) {
-  base::add_to(load_.load, residual(ws.node(0), ws.setup, ws.contact));
+  base::add_to(load_.load, residual(ws, 0));
   for (int i = 1; i < ws.node_count(); ++i) {
-    ws.node(i).vector.load = base::converted<float>(residual(ws.node(i), ws.setup, ws.contact));
+    ws.node(i).vector.load = base::converted<float>(residual(ws, i));
   }
 }
 

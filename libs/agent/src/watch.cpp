@@ -52,6 +52,11 @@ void Watch::enter_round(const Clock& clock) {
   forget_answer(clock);
 }
 
+void Watch::withdraw(const Clock& clock) {
+  phase_ = Phase::kMass;
+  forget_answer(clock);
+}
+
 void Watch::forget_answer(const Clock& clock) {
   answer_ = {};
   messages_heard_ = 0;
@@ -74,6 +79,9 @@ void Watch::keep_waiting(const Clock& clock) {
 void Watch::begin_order(wire::Operation operation, const Clock& clock) {
   if (phase_ <= Phase::kTree) {
     wave_time_ = static_cast<std::uint32_t>(clock.now) - wave_time_;
+  }
+  if (operation == wire::Operation::kRenew) {
+    withdraw(clock);
   }
   const bool is_verdict = operation == wire::Operation::kVerdict;
   if (!is_verdict || phase_ != Phase::kDone) {

@@ -31,8 +31,8 @@ constexpr ChecksumTables checksum_tables() {
 [[maybe_unused]] constexpr ChecksumTables kChecksumTables = checksum_tables();
 
 /// Sizes by type, without orders and reports.
-constexpr std::array<std::uint8_t, 14> kMessageBytes = {0,  19, 19, 8,  12, 0,  0,
-                                                        26, 26, 26, 11, 26, 26, 26};
+constexpr std::array<std::uint8_t, 21> kMessageBytes = {0,  19, 19, 8,  12, 0,  0,  26, 26, 26, 11,
+                                                        26, 26, 26, 26, 26, 35, 13, 26, 26, 26};
 
 constexpr auto kOrderBytes = column(&OperationInfo::order_bytes);
 constexpr auto kReportBytes = column(&OperationInfo::report_bytes);

@@ -2,12 +2,25 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "holdfast/agent/workspace.hpp"
 
+#include "holdfast/agent/free_faces.hpp"
+#include "methods.hpp"
+
 namespace holdfast::agent {
 
-Workspace::Workspace(const Setup& shared, const Identity& identity)
+Workspace::Workspace(const Setup& shared, const Identity& identity, const LentMemory* lent_memory)
     : setup(shared),
       tree(identity.id, identity.is_anchor, identity.cell),
-      is_fixed(identity.is_fixed) {}
+      lent(lent_memory),
+      is_fixed(identity.is_fixed) {
+  if constexpr (kHasAllMethods) {
+    if (front_memory() != nullptr) {
+      links.lend(front_memory()->queues.data());
+    }
+  }
+  if (kJudgesFaces && free_faces() != nullptr) {
+    free_faces()->forget();
+  }
+}
 
 Faces Workspace::faces_of(int node) const {
   Faces faces = node == 0 ? links.used() : planned.total(planned.hosted(node - 1));

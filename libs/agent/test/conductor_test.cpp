@@ -28,7 +28,7 @@ class Drive {
   explicit Drive(Method method = Method::kConjugateGradients, std::uint16_t depth = 4,
                  std::uint32_t census = kCensus) {
     setup.method = method;
-    order = conductor.begin(setup, kRoot, census, depth);
+    order = conductor.begin(setup, kRoot, census, depth, {.has_fronts = method == Method::kFronts});
   }
 
   const Order& next(const Report& report = {}) {
@@ -636,6 +636,42 @@ TEST(Conductor, few_loops_are_eliminated_many_are_left_to_a_polynomial) {
   ASSERT_EQ(loops.next().operation, Operation::kIterate);
   EXPECT_EQ(loops.order.flags, kRestart);
   EXPECT_EQ(loops.order.count, 6);
+}
+
+/// Up to the report of the first iteration with fronts.
+Drive fronts_drive() {
+  Drive drive(Method::kFronts);
+  drive.to_mass();
+  drive.next({.flags = kAnyFixed | kManyLoops, .extent = 5, .count = kCensus, .number = kCensus});
+  EXPECT_EQ(drive.order.operation, Operation::kBegin);
+  EXPECT_EQ(drive.order.flags, kOneSweep | kWithFronts);
+  EXPECT_EQ(drive.next().operation, Operation::kFactor);
+  EXPECT_EQ(drive.next().operation, Operation::kTreeIterate);
+  return drive;
+}
+
+TEST(Conductor, fronts_without_room_give_way_to_the_polynomial) {
+  Drive drive = fronts_drive();
+  Report report = iteration_report(1);
+  report.flags = kNoRoom;
+  ASSERT_EQ(drive.next(report).operation, Operation::kBegin);
+  EXPECT_EQ(drive.order.flags, kOneSweep | kWithIterations);
+}
+
+/// While others want to let go there may yet be a state; then the other law, then another method.
+TEST(Conductor, fronts_without_a_contact_state_take_the_unilateral_law) {
+  Drive drive = fronts_drive();
+  Report report = iteration_report(1, {}, 2);
+  report.flags = kNoState;
+  ASSERT_EQ(drive.next(report).operation, Operation::kFactor);
+  drive.next();
+  report.extent = 0;
+  ASSERT_EQ(drive.next(report).operation, Operation::kBegin);
+  EXPECT_EQ(drive.order.flags, kUnilateralLaw | kOneSweep | kWithFronts);
+  drive.next();
+  drive.next();
+  ASSERT_EQ(drive.next(report).operation, Operation::kBegin);
+  EXPECT_EQ(drive.order.flags, kUnilateralLaw);
 }
 
 TEST(Conductor, a_change_of_contact_states_is_factored_or_starts_directions_anew) {

@@ -13,7 +13,7 @@
 namespace holdfast::agent::test {
 
 /// By operation, from 1.
-inline constexpr std::array<std::string_view, 20> kGoldenOrders = {
+inline constexpr std::array<std::string_view, 27> kGoldenOrders = {
     "05 01 02 01 00 00 fe ff ff 03 00 00",
     "05 02 01 00 02 00 04 00 08 00 10 00 20 00 00 00 00 00",
     "05 03 c0 bd f0 40 42 0f 00 00 00",
@@ -33,9 +33,17 @@ inline constexpr std::array<std::string_view, 20> kGoldenOrders = {
     "05 11 03 2c 01 00 00 80 3e 00 00 00 bf 00 00 80 be",
     "05 12",
     "05 13 06 03 00 00 00 00 3f 00 00 7a 44",
-    "05 14 01 01 00 00 fe ff ff 03 00 00"};
+    "05 14 01 01 00 00 fe ff ff 03 00 00",
+    "05 15 47 01 00 00 fe ff ff 03 00 00",
+    "05 16 5a 00 00 00 00 00 3f 00 00 7a 44 1d 00 00 00 fd ff ff ff 05 00 00 00 01 02 04 08 10",
+    "05 17",
+    "05 18 01 04 00 01 00 00 fe ff ff 03 00 00 4a 51 00 00",
+    "05 19 03 02 00 00 02 02 00 00 c0 3f 01 00 00 fe ff ff 03 00 00 05",
+    "05 1a",
+    "05 1b 03 01 00 00 fe ff ff 03 00 00 04 00 00 05 00 00 06 00 00 02 00 00 00 80 3e "
+    "00 00 00 3f 00 00 00 40"};
 
-inline constexpr std::array<std::string_view, 20> kGoldenReports = {
+inline constexpr std::array<std::string_view, 27> kGoldenReports = {
     "06 01 21 00 01 01 00 00 fe ff ff 03 00 00",
     "06 02 87",
     "06 03 1d 00 00 00 3a 00 00 00 fd ff ff ff ff ff ff ff 05 00 00 00 00 00 00 00 07 00 00 00 00 "
@@ -57,16 +65,34 @@ inline constexpr std::array<std::string_view, 20> kGoldenReports = {
     "00 00 00 00 00 00 40 40 00 00 00 00",
     "06 12 00 00 80 3e 00 00 00 3f 03 00 ef cd ab 89 01",
     "06 13 1d 00 00 00 02 00 00 00",
-    "06 14 00 00 04 01 00 00 fe ff ff 03 00 00"};
+    "06 14 00 00 04 01 00 00 fe ff ff 03 00 00",
+    "06 15 21 00 09 2c 01 1d 00 00 00 3a 00 00 00 fd ff ff ff ff ff ff ff 05 00 00 00 00 00 00 00 "
+    "01 00 00 fe ff ff 03 00 00",
+    "06 16 87 01 01 00 00 00 ff ff ff ff 01 ff ff ff 03 00 00 00",
+    "06 17 02 01 00 00 ff ff ff 00 00 00 fd ff ff 01 00 00 00 00 00 00 00 c0 3f 01 00 00 fe ff ff "
+    "03 00 00 04",
+    "06 18 01 00 02 00 00 00 04 00 4a 51 00 00 01 00 00 fe ff ff 03 00 00",
+    "06 19 01 1d 00 00 00",
+    "06 1a 01 00 00 fe ff ff 03 00 00 04 00 00 05 00 00 06 00 00 02 00 00 00 05 00 00 00 00 00 00 "
+    "00 00 00 c0 3f 00 00 00 40 03",
+    "06 1b 1d 00 00 00 02 00 00 00"};
 
-/// Types 7, 8, 9, 11, 12 and 13, label 5, with the reals 1, -2, 0.5, 0.25, -1, 1.5.
-inline constexpr std::array<std::string_view, 6> kGoldenVectors = {
+/// Types 7, 8, 9, 11 to 15 and 20, label 5, with the reals 1, -2, 0.5, 0.25, -1, 1.5.
+inline constexpr std::array<std::string_view, 9> kGoldenVectors = {
     "07 05 00 00 80 3f 00 00 00 c0 00 00 00 3f 00 00 80 3e 00 00 80 bf 00 00 c0 3f",
     "08 05 00 00 80 3f 00 00 00 c0 00 00 00 3f 00 00 80 3e 00 00 80 bf 00 00 c0 3f",
     "09 05 00 00 80 3f 00 00 00 c0 00 00 00 3f 00 00 80 3e 00 00 80 bf 00 00 c0 3f",
     "0b 05 00 00 80 3f 00 00 00 c0 00 00 00 3f 00 00 80 3e 00 00 80 bf 00 00 c0 3f",
     "0c 05 00 00 80 3f 00 00 00 c0 00 00 00 3f 00 00 80 3e 00 00 80 bf 00 00 c0 3f",
-    "0d 05 00 00 80 3f 00 00 00 c0 00 00 00 3f 00 00 80 3e 00 00 80 bf 00 00 c0 3f"};
+    "0d 05 00 00 80 3f 00 00 00 c0 00 00 00 3f 00 00 80 3e 00 00 80 bf 00 00 c0 3f",
+    "0e 05 00 00 80 3f 00 00 00 c0 00 00 00 3f 00 00 80 3e 00 00 80 bf 00 00 c0 3f",
+    "0f 05 00 00 80 3f 00 00 00 c0 00 00 00 3f 00 00 80 3e 00 00 80 bf 00 00 c0 3f",
+    "14 05 00 00 80 3f 00 00 00 c0 00 00 00 3f 00 00 80 3e 00 00 80 bf 00 00 c0 3f"};
+
+/// Types 18 and 19: part 5, in which every eighth cell is occupied, and four more at the end.
+inline constexpr std::array<std::string_view, 2> kGoldenParts = {
+    "12 05 01 01 01 01 01 01 01 01 01 01 01 01 01 01 01 01 01 01 01 01 01 01 01 f1",
+    "13 05 01 01 01 01 01 01 01 01 01 01 01 01 01 01 01 01 01 01 01 01 01 01 01 f1"};
 
 inline constexpr std::string_view kGoldenHello = "c0 40 34 12 00 00 00 00 77 8e";
 inline constexpr std::string_view kGoldenHelloHeard = "c0 40 ef be 34 12 00 00 35 83";
@@ -127,6 +153,14 @@ inline const std::vector<GoldenStream> kGoldenTrace = {
       "06 01 00 00 01 ff ff ff 03 00 00 00 00 00",                 // the first is at (-1, 3, 0)
       "06 01 01 00 00 00 00 00 00 00 00 00 00 00"}},               // it is at my face -x
 };
+
+/// Round 5 of module 10, sender (1, -2, 3), root (-1000000, 1000000, 0), 7 hops, 258, ratio 1.5.
+inline constexpr std::string_view kGoldenAdoption =
+    "10 05 00 0a 00 00 00 01 00 00 fe ff ff 03 00 00 c0 bd f0 40 42 0f 00 00 00 07 00 02 01 00 00 "
+    "00 00 c0 3f";
+
+/// A plan is fulfilled 7 hops away, at (1, -2, 3).
+inline constexpr std::string_view kGoldenNews = "11 07 07 00 01 00 00 fe ff ff 03 00 00";
 
 /// The cut that opens a loop: from (1, -2, 3) to +y.
 inline constexpr std::string_view kGoldenLoop = "0a 01 00 00 fe ff ff 03 00 00 02";

@@ -211,6 +211,20 @@ TEST(Guard, orders_keep_their_course) {
                  Method::kConjugateGradients);
 }
 
+/// Four modules in a row are safe, so it is true by chance; but nobody can know it yet, or the
+/// reason is that of another verdict.
+TEST(Guard, a_verdict_comes_with_its_reason_and_not_before) {
+  constexpr std::string_view kRest = " 00 00 00 3f 00 00 00 00 00 00 00 00 00 00";
+  for (const std::string_view answer : {"01 01", "02 02", "03 03"}) {
+    const std::string early = "05 0f " + std::string(answer) + std::string(kRest);
+    expect_refused(row(), {1, "05 03", early, true});
+  }
+  for (const std::string_view answer : {"01 04", "01 02", "02 01", "04 01", "04 00"}) {
+    const std::string mixed = "05 0f " + std::string(answer) + std::string(kRest);
+    expect_refused(row(), {1, "05 0f", mixed, true});
+  }
+}
+
 /// Up and down: orders come from the parent, reports and marks from children.
 TEST(Guard, everybody_has_a_place_in_the_tree) {
   expect_refused(row(),

@@ -53,7 +53,7 @@ bool is_within(unsigned value) {
 
 /// The bytes that name one of several things; the last column is docs/wire.md in other words.
 const Limit kLimits[] = {
-    {kGoldenTrace[0].messages[0], 7, is_within<1, 3>},                         // join: wave
+    {kGoldenTrace[0].messages[0], 7, is_within<1, 12>},                        // join: wave
     {kGoldenTrace[0].messages[2], 7, is_within<1, 3>},                         // echo: wave
     {kGoldenTrace[0].messages[2], 18, is_within<0, 1>},                        // echo: silent
     {kGoldenTrace[0].messages[1], 1, is_within<1, 2>},                         // appoint
@@ -68,30 +68,42 @@ const Limit kLimits[] = {
     {kGoldenOrders[1], 3, is_within<0, 0>},
     {kGoldenOrders[3], 2, is_within<5, 5>},   // angles: facet
     {kGoldenOrders[1], 16, is_flags<0x3f>},   // ... and the last
-    {kGoldenOrders[4], 2, is_flags<7>},       // begin
+    {kGoldenOrders[4], 2, is_flags<15>},      // begin
     {kGoldenOrders[6], 2, is_flags<1>},       // low
     {kGoldenOrders[7], 2, is_flags<7>},       // start
     {kGoldenOrders[10], 2, is_flags<3>},      // slope
     {kGoldenOrders[11], 2, is_flags<3>},      // hold
-    {kGoldenOrders[14], 2, is_within<1, 4>},  // verdict
-    {kGoldenOrders[14], 3, is_within<0, 11>},
+    {kGoldenOrders[14], 2, is_within<2, 2>},  // verdict: overload, as the reason says
+    {kGoldenOrders[14], 3, is_within<2, 2>},  // and the reason: breaks
     {kGoldenOrders[14], 17, is_face},
     {kGoldenOrders[16], 2, is_flags<31>},    // iterate
     {kGoldenOrders[18], 2, is_flags<7>},     // clusters
     {kGoldenOrders[19], 2, is_flags<1>},     // forget
     {kGoldenReports[0], 2, is_flags<0x3f>},  // plan
     {kGoldenReports[0], 3, is_within<0, 0>},
-    {kGoldenReports[0], 4, is_flags<31>},
+    {kGoldenReports[0], 4, is_flags<63>},
     {kGoldenReports[1], 2, is_flags<0x9f>},   // hosts
-    {kGoldenReports[2], 34, is_flags<7>},     // mass
+    {kGoldenReports[2], 34, is_flags<15>},    // mass
     {kGoldenReports[3], 2, is_within<0, 2>},  // angles
-    {kGoldenReports[6], 16, is_flags<1>},     // low
+    {kGoldenReports[6], 16, is_flags<9>},     // low
     {kGoldenReports[12], 2, [](unsigned v) { return v <= 2 || v == 4; }},
     {kGoldenReports[13], 15, is_face},        // loads
-    {kGoldenReports[16], 16, is_flags<1>},    // iterate
-    {kGoldenReports[17], 16, is_flags<1>},    // tree iterate
+    {kGoldenReports[16], 16, is_flags<9>},    // iterate
+    {kGoldenReports[17], 16, is_flags<15>},   // tree iterate
     {kGoldenReports[19], 2, is_flags<0x3f>},  // forget
-    {kGoldenReports[19], 4, is_flags<31>}};
+    {kGoldenReports[19], 4, is_flags<63>},
+    {kGoldenOrders[23], 2, [](unsigned v) { return v <= 3 || v == 0xff; }},  // word 1 of 4
+    {kGoldenOrders[23], 3, is_within<2, 16>},
+    {kGoldenOrders[24], 2, is_within<0, 3>},  // stage
+    {kGoldenOrders[24], 3, is_within<0, 3>},
+    {kGoldenOrders[24], 4, is_within<0, 199>},
+    {kGoldenReports[23], 2, is_flags<23>},  // word
+    {kGoldenReports[23], 3, is_within<0, 3>},
+    {kGoldenReports[24], 2, is_flags<1>},     // stage
+    {kGoldenOrders[26], 2, is_flags<7>},      // next
+    {kGoldenVectors[8], 1, is_within<0, 6>},  // reach
+    {kGoldenParts[0], 1, is_within<0, 42>},   // cells up
+    {kGoldenParts[1], 1, is_within<0, 42>}};  // cells down
 
 TEST(Legal, bytes_that_name_something_name_what_there_is) {
   for (const Limit& limit : kLimits) {
@@ -99,6 +111,21 @@ TEST(Legal, bytes_that_name_something_name_what_there_is) {
     for (unsigned value = 0; value <= 0xff; ++value) {
       message[limit.offset] = static_cast<std::uint8_t>(value);
       EXPECT_EQ(is_legal(message), limit.allows(value)) << to_hex(message);
+    }
+  }
+}
+
+/// Safe, overload and unstable have one reason each, undecided has the others that are told.
+TEST(Legal, verdicts_have_a_reason_of_theirs) {
+  auto message = from_hex(kGoldenOrders[14]);
+  for (unsigned verdict = 0; verdict <= 5; ++verdict) {
+    for (unsigned reason = 0; reason <= 0x20; ++reason) {
+      message[2] = static_cast<std::uint8_t>(verdict);
+      message[3] = static_cast<std::uint8_t>(reason);
+      const bool is_sure = 1 <= verdict && verdict <= 3 && reason == verdict;
+      const bool is_told = (4 <= reason && reason <= 11) || reason == 14 || reason == 15;
+      const bool is_undecided = verdict == 4 && is_told;
+      EXPECT_EQ(is_legal(message), is_sure || is_undecided) << to_hex(message);
     }
   }
 }

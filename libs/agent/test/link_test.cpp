@@ -683,9 +683,46 @@ TEST(Link, an_acknowledgement_waits_for_data_to_ride_on) {
   EXPECT_EQ(a.deadline(timing, false), timing.acknowledge_after);  // It does not send again.
 }
 
+/// Both may have been cut off from each other for long; nobody but they can find out that the line
+/// carries again.
+TEST(Link, greets_a_silent_neighbour_until_it_is_heard_again) {
+  const LinkTiming timing;
+  Link a;
+  Link b;
+  open(a, b);
+  ASSERT_TRUE(a.send(vector_message(1)));
+  Time now = 0;
+  count_packets_to_silence(a, now, timing);
+  Bytes greeting;
+  for (int i = 0; i < 3; ++i) {
+    EXPECT_FALSE(a.has_packet(now));
+    EXPECT_EQ(a.deadline(timing, false), now + timing.ping_after);
+    now += timing.ping_after;
+    a.on_time(timing, false, now);
+    greeting = write(a, now);
+    EXPECT_EQ(greeting.size(), std::size_t{10});
+  }
+  take(b, greeting, now);
+  EXPECT_FALSE(a.take_restarted());
+  take(a, write(b, now), now);
+  EXPECT_TRUE(a.take_restarted());
+}
+
+TEST(Link, does_not_greet_a_neighbour_that_has_said_what_it_must_not) {
+  const LinkTiming timing;
+  Link a;
+  Link b;
+  open(a, b);
+  ASSERT_TRUE(a.send(vector_message(1)));
+  write(a, 0);
+  a.lose();
+  EXPECT_FALSE(a.has_packet(0));
+  EXPECT_EQ(a.deadline(timing, true), kNever);
+}
+
 /// Checksums are right, but what they guard is no message.
 TEST(Link, garbage_in_the_stream_makes_it_lost) {
-  for (const char* garbage : {"00 00", "0e 00", "ff ff", "05 00", "05 15", "06 ff"}) {
+  for (const char* garbage : {"00 00", "15 00", "ff ff", "05 00", "05 7f", "06 ff"}) {
     Link link;
     const Bytes bytes = from_hex(garbage);
     std::span<const std::uint8_t> stream = bytes;

@@ -48,13 +48,16 @@ TEST(Operations, exchange_as_often_as_the_document_says) {
   EXPECT_EQ(counts_of(Operation::kIterate, kWithClusters | kRestart), (Counts{2, 2 * kDegree + 2}));
   EXPECT_EQ(counts_of(Operation::kTreeIterate, 0, 0), (Counts{2, 0}));
   EXPECT_EQ(counts_of(Operation::kClusters), (Counts{1, kDegree}));
+  EXPECT_EQ(counts_of(Operation::kResume), (Counts{2, kDegree}));
+  EXPECT_EQ(counts_of(Operation::kResume, kStandsApart, 0), Counts{});
 }
 
 TEST(Operations, exchange_nothing_where_the_document_has_a_dash) {
   for (const Operation operation :
        {Operation::kPlan, Operation::kHosts, Operation::kMass, Operation::kAngles, Operation::kHold,
         Operation::kCorners, Operation::kLoads, Operation::kVerdict, Operation::kFactor,
-        Operation::kForget}) {
+        Operation::kForget, Operation::kRenew, Operation::kClose, Operation::kWord,
+        Operation::kStage, Operation::kShape, Operation::kNext}) {
     EXPECT_EQ(counts_of(operation, 0xff), Counts{}) << info(operation).name;
   }
 }

@@ -14,6 +14,7 @@
 #include <set>
 #include <string>
 
+#include "holdfast/agent/step_word.hpp"
 #include "holdfast/base/rng.hpp"
 #include "test_setup.hpp"
 
@@ -39,6 +40,16 @@ base::Cell random_cell(base::Rng& rng) {
   return {coordinate(), coordinate(), coordinate()};
 }
 
+/// A module that moves, any way.
+std::int32_t random_word(base::Rng& rng) {
+  const auto direction = [&] { return static_cast<std::uint8_t>(rng.below(6)); };
+  return static_cast<std::int32_t>(bits_of({.kind = StepWord::Kind::kMove,
+                                            .group = static_cast<std::uint8_t>(rng.below(4)),
+                                            .face = direction(),
+                                            .first = direction(),
+                                            .second = direction()}));
+}
+
 Order random_order(Operation operation, base::Rng& rng) {
   Order order{.operation = operation};
   order.index = static_cast<std::uint8_t>(rng.next());
@@ -50,12 +61,24 @@ Order random_order(Operation operation, base::Rng& rng) {
   }
   order.mass = static_cast<std::int32_t>(rng.next());
   order.moment = {static_cast<std::int32_t>(rng.next()), static_cast<std::int32_t>(rng.next())};
+  if (operation == Operation::kNext) {
+    order.set_far_cell(random_cell(rng));
+  }
   order.reals = {exact_real(rng), exact_real(rng), exact_real(rng)};
   order.answer = {.verdict = static_cast<Verdict>(rng.below(5)),
                   .reason = static_cast<Reason>(rng.below(12)),
                   .load_ratio_max = exact_real(rng),
                   .worst_cell = random_cell(rng),
                   .worst_direction = static_cast<base::Direction>(rng.below(6))};
+  if (operation == Operation::kWord) {
+    order.count = static_cast<std::uint16_t>(1 + rng.below(kWordCountMax));
+    order.index = static_cast<std::uint8_t>(rng.below(order.count));
+    order.mass = random_word(rng);
+  } else if (operation == Operation::kStage) {
+    order.index = static_cast<std::uint8_t>(rng.below(4));
+    order.flags = static_cast<std::uint8_t>(rng.below(4));
+    order.count = static_cast<std::uint16_t>(rng.below(kSceneMax));
+  }
   return order;
 }
 
@@ -87,8 +110,17 @@ Report random_report(Operation operation, base::Rng& rng) {
   if (operation == Operation::kStart || operation == Operation::kGradient) {
     report.reals[2] = static_cast<float>(rng.below(16)) / 8;  // Seven digits of fraction hold it.
   }
+  if (operation == Operation::kWord) {
+    report.mask = static_cast<std::uint8_t>(rng.below(4));
+    report.number = static_cast<std::uint32_t>(random_word(rng));
+  } else if (operation == Operation::kStage) {
+    report.flags = static_cast<std::uint8_t>(rng.below(2));
+  }
   const bool has_cell = !is_learning || (report.flags & (kFound | kEnded)) != 0;
   report.cell = has_cell ? random_cell(rng) : base::Cell{};
+  if (operation == Operation::kShape) {
+    report.set_far_cell(random_cell(rng));
+  }
   report.direction = static_cast<base::Direction>(rng.below(6));
   if (rng.below(4) != 0) {
     report.feet = feet_check().of_foot(sum(), sum());
@@ -113,6 +145,9 @@ Report merged(Operation operation, Report into, const Report& from) {
   if (operation == Operation::kAngles) {
     into.feet = feet_check().merge(into.feet, from.feet);
     return into;
+  }
+  if (operation == Operation::kResume) {
+    into.feet = feet_check().merge(into.feet, from.feet);
   }
   merge(operation, into, from);
   return into;
@@ -188,7 +223,8 @@ TEST(Order, fields_come_back_where_they_were) {
   EXPECT_EQ(low_back.extent, low.extent);
 }
 
-/// Corner sets are left out of associativity: of many corners on a line any two may be kept.
+/// Corner sets are left out of associativity: of many corners on a line any two may be kept. What
+/// kClose has besides is merged as that of kLoads.
 TEST(Order, merging_is_commutative_and_associative) {
   base::Rng rng(4);
   for (int i = 1; i <= wire::kOperationCount; ++i) {
@@ -199,7 +235,7 @@ TEST(Order, merging_is_commutative_and_associative) {
       const Report c = through_wire(operation, random_report(operation, rng));
       const Report left = merged(operation, merged(operation, a, b), c);
       const Report right = merged(operation, a, merged(operation, b, c));
-      if (operation == Operation::kCorners) {
+      if (operation == Operation::kCorners || operation == Operation::kClose) {
         EXPECT_EQ(left.corners.stable, right.corners.stable);
         EXPECT_EQ(left.corners.count, right.corners.count);
         continue;
@@ -325,10 +361,10 @@ TEST(Order, every_verdict_and_reason_has_a_name_of_its_own) {
   }
   EXPECT_EQ(names.size(), 5U);
   names.clear();
-  for (int i = 0; i <= static_cast<int>(Reason::kNoAnchor); ++i) {
+  for (int i = 0; i < kReasonCount; ++i) {
     names.insert(name(static_cast<Reason>(i)));
   }
-  EXPECT_EQ(names.size(), 14U);
+  EXPECT_EQ(names.size(), static_cast<std::size_t>(kReasonCount));
 }
 
 }  // namespace

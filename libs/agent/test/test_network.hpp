@@ -6,6 +6,7 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <optional>
 #include <span>
 #include <utility>
@@ -95,6 +96,22 @@ class TestNetwork {
     }
   }
 
+  /// A module comes; its neighbours feel it.
+  void attach(const Place& place) {
+    places_.push_back(place);
+    agents_.emplace_back();
+    actions_.emplace_back();
+    start(size() - 1);
+    for (const base::Direction face : base::kDirections) {
+      const int other = neighbour(size() - 1, face);
+      if (other >= 0) {
+        Event up = event(EventKind::kLinkUp, base::opposite(face));
+        up.random = ++link_up_count_;
+        step(static_cast<std::size_t>(other), up);
+      }
+    }
+  }
+
   /// Opens a connection and closes it again; both ends feel it.
   void reconnect(std::size_t i, base::Direction face) {
     const auto other = static_cast<std::size_t>(neighbour(i, face));
@@ -148,15 +165,20 @@ class TestNetwork {
   void tick() {
     ++now_;
     for (const Flight& flight : std::exchange(in_flight_, {})) {
+      // The packet before, which may not be read to its end, stays where it is.
+      Inbox& inbox = inboxes_[flight.to];
+      inbox.last = 1 - inbox.last;
+      Flight& kept = inbox.packets[inbox.last];
+      kept = flight;
       Event receive = event(EventKind::kReceive, flight.face);
-      receive.bytes = std::span(flight.bytes).first(flight.size);
+      receive.bytes = std::span(kept.bytes).first(flight.size);
       step(flight.to, receive);
     }
     for (std::size_t i = 0; i < agents_.size(); ++i) {
       if (actions_[i].wake_at <= now_) {
         step(i, event(EventKind::kTime));
       }
-      if (actions_[i].is_unfinished) {
+      for (int piece = 0; piece < kPiecesATick && actions_[i].is_unfinished; ++piece) {
         step(i, event(EventKind::kContinue));
         unfinished_count_ += actions_[i].is_unfinished ? 1 : 0;
       }
@@ -167,6 +189,9 @@ class TestNetwork {
       }
     }
   }
+
+  /// Is there something that a module has not done yet?
+  bool is_unfinished(std::size_t i) const { return actions_[i].is_unfinished; }
 
   /// How often a module had still more to do after a piece.
   int unfinished_count() const { return unfinished_count_; }
@@ -195,6 +220,14 @@ class TestNetwork {
     base::Direction face = base::Direction::kPlusX;
     std::size_t size = 0;
     std::array<std::uint8_t, wire::kPacketBytesMax> bytes;
+  };
+
+  /// Pieces of work that fit between two ticks; an exchange ends in some more.
+  static constexpr int kPiecesATick = 4;
+
+  struct Inbox {
+    std::array<Flight, 2> packets;
+    std::size_t last = 0;
   };
 
   int find(const base::Cell& cell) const {
@@ -249,6 +282,7 @@ class TestNetwork {
   std::vector<std::optional<Agent>> agents_;
   std::vector<Actions> actions_;
   std::vector<Flight> in_flight_;
+  std::map<std::size_t, Inbox> inboxes_;
   std::uint16_t link_up_count_ = 0;
   Time now_ = 0;
   int unfinished_count_ = 0;

@@ -40,6 +40,9 @@ std::string report_text(Operation operation, const Report& report) {
 
 constexpr base::Cell kCell = {1, -2, 3};
 
+/// Group 1 turns a corner, +x and then down, and keeps the link below.
+constexpr std::int32_t kWordBits = 2 + 8 * 1 + 64 * 5 + 512 * 0 + 4096 * 5;
+
 TEST(Wire, orders_are_these_bytes) {
   const Answer answer = {.verdict = Verdict::kOverload,
                          .reason = Reason::kBreaks,
@@ -75,7 +78,27 @@ TEST(Wire, orders_are_these_bytes) {
        .flags = kOneSweep | kWithIterations,
        .count = 3,
        .reals = {0.5F, 1000}},
-      {.operation = Operation::kForget, .flags = kIsFulfilled, .cell = kCell}};
+      {.operation = Operation::kForget, .flags = kIsFulfilled, .cell = kCell},
+      {.operation = Operation::kRenew,
+       .flags = kIsFulfilled | kIsEnded | kIsGrown | kKeepsFactors,
+       .cell = kCell},
+      {.operation = Operation::kResume,
+       .flags = kOneSweep | kKeepsMotion | kRests | kKeepsFactors,
+       .masks = {1, 2, 4, 8, 16},
+       .mass = 29,
+       .moment = {-3, 5},
+       .reals = {0.5F, 1000}},
+      {.operation = Operation::kClose},
+      {.operation = Operation::kWord, .index = 1, .count = 4, .cell = kCell, .mass = kWordBits},
+      {.operation = Operation::kStage, .index = 3, .flags = 2, .answer = answer},
+      {.operation = Operation::kShape},
+      {.operation = Operation::kNext,
+       .flags = kIsHeld | kHasForces,
+       .count = 2,
+       .cell = kCell,
+       .mass = 4,
+       .moment = {5, 6},
+       .reals = {0.25F, 0.5F, 2}}};
   ASSERT_EQ(orders.size(), kGoldenOrders.size());
   for (std::size_t i = 0; i < orders.size(); ++i) {
     EXPECT_EQ(order_text(orders[i]), kGoldenOrders[i]);
@@ -114,7 +137,20 @@ TEST(Wire, reports_are_these_bytes) {
        .products = {1 + 0x1p-30, -0.25, 3}},
       {.flags = kAnyTilting, .extent = 3, .number = 0x89abcdef, .reals = {0.25F, 0.5F}},
       {.count = 29, .number = 2},
-      {.flags = kEnded, .cell = kCell}};
+      {.flags = kEnded, .cell = kCell},
+      {.flags = kAnyFixed | kMoreAnnounced,
+       .mask = 0x21,
+       .extent = 300,
+       .count = 29,
+       .number = 58,
+       .moment = {-3, 5, 0},
+       .cell = kCell},
+      {.mask = 0x87, .feet = feet},
+      {.reals = {1.5F}, .cell = kCell, .direction = base::Direction::kPlusZ, .corners = corners},
+      {.flags = kFound, .extent = 4, .count = 2, .number = kWordBits, .cell = kCell},
+      {.flags = kNewLinks, .count = 29},
+      {.mask = 3, .count = 2, .number = 4, .moment = {5, 5, 6}, .reals = {1.5F, 2}, .cell = kCell},
+      {.count = 29, .number = 2}};
   ASSERT_EQ(reports.size(), kGoldenReports.size());
   for (std::size_t i = 0; i < reports.size(); ++i) {
     EXPECT_EQ(report_text(static_cast<Operation>(i + 1), reports[i]), kGoldenReports[i]);
@@ -122,9 +158,10 @@ TEST(Wire, reports_are_these_bytes) {
 }
 
 TEST(Wire, vectors_are_a_label_and_six_reals) {
-  constexpr std::array kTypes = {MessageType::kVector,    MessageType::kPlannedDown,
-                                 MessageType::kPlannedUp, MessageType::kColumn,
-                                 MessageType::kBranchUp,  MessageType::kBranchDown};
+  constexpr std::array kTypes = {
+      MessageType::kVector,  MessageType::kPlannedDown, MessageType::kPlannedUp,
+      MessageType::kColumn,  MessageType::kBranchUp,    MessageType::kBranchDown,
+      MessageType::kFrontUp, MessageType::kFrontDown,   MessageType::kReach};
   for (std::size_t i = 0; i < kTypes.size(); ++i) {
     Writer out(kTypes[i]);
     out.u8(5);
@@ -133,6 +170,29 @@ TEST(Wire, vectors_are_a_label_and_six_reals) {
     }
     EXPECT_EQ(to_hex(out.bytes()), kGoldenVectors[i]);
   }
+}
+
+TEST(Wire, parts_of_cells_are_an_index_and_bits) {
+  std::array<std::uint8_t, OccupiedCells::kPartBytes> bits{};
+  bits.fill(1);
+  bits.back() = 0xf1;
+  EXPECT_EQ(to_hex(part_message(MessageType::kCellsUp, 5, bits).bytes()), kGoldenParts[0]);
+  EXPECT_EQ(to_hex(part_message(MessageType::kCellsDown, 5, bits).bytes()), kGoldenParts[1]);
+}
+
+TEST(Wire, a_module_that_comes_is_told_its_place) {
+  const Adoption adoption = {.round = {.epoch = 5, .starter = 10},
+                             .sender = kCell,
+                             .root = {-1000000, 1000000, 0},
+                             .hops = 7,
+                             .wave_time = 258,
+                             .load_ratio = 1.5F};
+  EXPECT_EQ(to_hex(encode(adoption).bytes()), kGoldenAdoption);
+}
+
+TEST(Wire, news_are_a_plan_or_a_module) {
+  const News news = {.flags = kIsFulfilled | kIsEnded | kIsGrown, .hops = 7, .cell = kCell};
+  EXPECT_EQ(to_hex(encode(news).bytes()), kGoldenNews);
 }
 
 TEST(Wire, a_loop_is_named_by_its_cut) {
@@ -233,7 +293,10 @@ std::map<std::pair<int, int>, std::size_t> golden_sizes() {
   std::for_each(kGoldenOrders.begin(), kGoldenOrders.end(), note);
   std::for_each(kGoldenReports.begin(), kGoldenReports.end(), note);
   std::for_each(kGoldenVectors.begin(), kGoldenVectors.end(), note);
+  std::for_each(kGoldenParts.begin(), kGoldenParts.end(), note);
   note(kGoldenLoop);
+  note(kGoldenAdoption);
+  note(kGoldenNews);
   for (const GoldenStream& stream : kGoldenTrace) {
     std::for_each(stream.messages.begin(), stream.messages.end(), note);
   }
@@ -242,7 +305,7 @@ std::map<std::pair<int, int>, std::size_t> golden_sizes() {
 
 TEST(Wire, sizes_are_those_of_the_golden_messages_and_there_are_no_others) {
   const auto sizes = golden_sizes();
-  EXPECT_EQ(sizes.size(), 11 + 2 * std::size_t{wire::kOperationCount});
+  EXPECT_EQ(sizes.size(), 18 + 2 * std::size_t{wire::kOperationCount});
   int largest = 0;
   for (int type = 0; type < 256; ++type) {
     for (int second = 0; second < 256; ++second) {
@@ -367,11 +430,13 @@ TEST(Wire, the_document_shows_every_golden_line) {
   std::for_each(kGoldenOrders.begin(), kGoldenOrders.end(), expect_shown);
   std::for_each(kGoldenReports.begin(), kGoldenReports.end(), expect_shown);
   std::for_each(kGoldenVectors.begin(), kGoldenVectors.end(), expect_shown);
+  std::for_each(kGoldenParts.begin(), kGoldenParts.end(), expect_shown);
   for (const GoldenStream& stream : kGoldenTrace) {
     std::for_each(stream.messages.begin(), stream.messages.end(), expect_shown);
   }
-  for (const std::string_view line : {kGoldenHello, kGoldenHelloHeard, kGoldenHelloOpen,
-                                      kGoldenData, kGoldenAcknowledge, kGoldenPing}) {
+  for (const std::string_view line :
+       {kGoldenHello, kGoldenHelloHeard, kGoldenHelloOpen, kGoldenData, kGoldenAcknowledge,
+        kGoldenPing, kGoldenAdoption, kGoldenNews}) {
     expect_shown(line);
   }
 }

@@ -22,7 +22,13 @@ constexpr Time kReadTime = 10'000;
 /// is missed after 250 ms.
 constexpr Time kNoticeTime = 300'000;
 
-constexpr Cycles kByteCycles = Cycles{10} * boards::stm32f0::kBaudDivisor;
+/// Ten bits on a line.
+constexpr Cycles byte_cycles(std::uint32_t baud) {
+  return Cycles{10} * boards::stm32f0::baud_divisor(baud);
+}
+
+/// On the fastest line there is.
+constexpr Cycles kSliceCycles = byte_cycles(boards::stm32f0::kBaud);
 
 Cycles cycles(Time time) { return time * kCyclesPerMicrosecond; }
 
@@ -38,18 +44,20 @@ int face_of(int usart) {
 }
 
 /// What the modules of a robot know, the same as the simulator's agents.
-std::vector<module::Configuration> configurations(const model::Robot& robot, std::int32_t anchor) {
+std::vector<module::Configuration> configurations(const model::Robot& robot,
+                                                  const EmulationOptions& options) {
   sim::SimulationOptions simulation;
-  simulation.link = sim::blinky_blocks_v2();
+  simulation.link = options.link;
   module::Configuration configuration;
   configuration.setup = sim::make_setup(robot, simulation);
-  configuration.setup.only_elimination = true;
+  configuration.setup.only_one_sweep = true;
+  configuration.setup.keeps_answers = false;  // Left out of the images.
   std::vector<module::Configuration> all;
   for (std::size_t i = 0; i < robot.modules().size() - robot.planned_count(); ++i) {
     const model::Module& module = robot.modules()[i];
     configuration.identity = {.id = static_cast<std::uint32_t>(i + 1),
                               .is_fixed = module.support == model::Support::kFixed,
-                              .is_anchor = i == static_cast<std::size_t>(anchor),
+                              .is_anchor = i == static_cast<std::size_t>(options.anchor),
                               .cell = module.cell};
     configuration.checksum = module::checksum_of(configuration);
     all.push_back(configuration);
@@ -121,7 +129,7 @@ EmulatedModules::EmulatedModules(const Image& image, const model::Robot& robot,
       costs_(Processor::kFlashBegin, Processor::kFlashBytes) {
   const std::size_t count = robot.modules().size() - robot.planned_count();
   base::Rng rng(options.seed);
-  for (const module::Configuration& configuration : configurations(robot, options.anchor)) {
+  for (const module::Configuration& configuration : configurations(robot, options)) {
     const std::uint64_t seed = rng.next();
     const Cycles start = cycles(rng.below(options.start_spread + 1));
     modules_.push_back(std::make_unique<ModuleCpu>(image, costs_, configuration, seed, start));
@@ -153,6 +161,7 @@ void EmulatedModules::announce() {
         {.at = options_.plan_at, .module = options_.plan_module, .cell = robot_.modules()[i].cell});
   }
   std::ranges::stable_sort(all, {}, &sim::Announcement::at);
+  const Cycles on_line = byte_cycles(static_cast<std::uint32_t>(options_.link.bit_rate));
   Cycles time = 0;
   for (const sim::Announcement& announcement : all) {
     int face = 0;
@@ -161,9 +170,9 @@ void EmulatedModules::announce() {
     }
     time = std::max(time, cycles(announcement.at));
     for (const std::uint8_t byte : frame_of(announcement)) {
-      time += kByteCycles;
+      time += on_line;
       modules_[at(announcement.module)]->arrive(
-          usart_of(face), {.time = time, .byte_cycles = kByteCycles, .byte = byte});
+          usart_of(face), {.time = time, .byte_cycles = on_line, .byte = byte});
     }
   }
   planned_at_ = time / kCyclesPerMicrosecond;
@@ -191,7 +200,7 @@ bool EmulatedModules::run_for(Time duration) {
 
 /// Nothing that is sent from `begin` on arrives within a byte's time.
 void EmulatedModules::run_slice(Cycles begin) {
-  const Cycles end = begin + kByteCycles;
+  const Cycles end = begin + kSliceCycles;
   for (const auto& module : modules_) {
     module->run(end);
   }
@@ -350,9 +359,9 @@ FirmwareReport EmulatedModules::report() const {
 }
 
 std::vector<std::vector<std::uint8_t>> configuration_pages(const model::Robot& robot,
-                                                           std::int32_t anchor) {
+                                                           const EmulationOptions& options) {
   std::vector<std::vector<std::uint8_t>> pages;
-  for (const module::Configuration& configuration : configurations(robot, anchor)) {
+  for (const module::Configuration& configuration : configurations(robot, options)) {
     pages.emplace_back(sizeof(configuration));
     std::memcpy(pages.back().data(), &configuration, sizeof(configuration));
   }
@@ -361,6 +370,9 @@ std::vector<std::vector<std::uint8_t>> configuration_pages(const model::Robot& r
 
 std::optional<std::string> find_options_fault(const model::Robot& robot,
                                               const EmulationOptions& options) {
+  if (options.link.bit_rate == 0) {
+    return "link.bit_rate is 0; an emulated board has lines with one";
+  }
   sim::SimulationOptions same;
   same.anchor = options.anchor;
   same.plan_module = options.plan_module;
@@ -376,7 +388,8 @@ std::optional<std::string> find_options_fault(const model::Robot& robot,
                            .module = fault.module,
                            .face = fault.face});
   }
-  return sim::find_options_fault(robot, same);
+  const auto fault = sim::find_floor_fault(robot);
+  return fault ? fault : sim::find_options_fault(robot, same);
 }
 
 Emulation::Emulation(const Image& image, const model::Robot& robot,

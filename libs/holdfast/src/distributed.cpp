@@ -14,7 +14,7 @@ namespace holdfast {
 namespace {
 
 /// Events between two calls of the progress function: well below a second.
-constexpr std::uint64_t kSliceEvents = 200'000;
+constexpr std::uint64_t kSliceEvents = 20'000;
 
 verdict::Reason robot_reason(const sim::SimulationResult& result) {
   if (result.answer.verdict == agent::Verdict::kNone) {
@@ -161,6 +161,8 @@ const char* name(agent::Method method) {
       return "cg";
     case agent::Method::kPolynomial:
       return "polynomial";
+    case agent::Method::kFronts:
+      return "fronts";
     case agent::Method::kElimination:
       break;
   }
@@ -170,12 +172,22 @@ const char* name(agent::Method method) {
 std::optional<agent::Method> find_method(std::string_view name_wanted) {
   for (const agent::Method method :
        {agent::Method::kJacobi, agent::Method::kBlockJacobi, agent::Method::kConjugateGradients,
-        agent::Method::kPolynomial, agent::Method::kElimination}) {
+        agent::Method::kPolynomial, agent::Method::kFronts, agent::Method::kElimination}) {
     if (name_wanted == name(method)) {
       return method;
     }
   }
   return std::nullopt;
+}
+
+DistributedRun describe_run(const model::Robot& robot, const CheckResult& exact,
+                            const sim::SimulationOptions& options, const Agents& agents,
+                            const sim::SimulationResult& result) {
+  return {.link = options.link,
+          .result = result,
+          .refused = refused_by(robot, agents),
+          .view = view_of(robot, exact.assessment, agents, result),
+          .notes = notes_on(options, exact.assessment, result)};
 }
 
 base::Result<DistributedRun> simulate(const model::Robot& robot, const CheckResult& exact,
@@ -190,15 +202,10 @@ base::Result<DistributedRun> simulate(const model::Robot& robot, const CheckResu
       break;
     }
   }
-  DistributedRun run{
-      .link = options.link, .result = simulation.result(), .refused = {}, .view = {}, .notes = {}};
-  run.notes = notes_on(options, exact.assessment, run.result);
   const Agents agents{
       .at = [&](std::int32_t i) -> const agent::Agent& { return simulation.agent(i); },
       .count = simulation.agent_count()};
-  run.refused = refused_by(robot, agents);
-  run.view = view_of(robot, exact.assessment, agents, run.result);
-  return run;
+  return describe_run(robot, exact, options, agents, simulation.result());
 }
 
 base::Result<DistributedRun> simulate(const Structure& structure, const CheckResult& exact,

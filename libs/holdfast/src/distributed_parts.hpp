@@ -2,19 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <functional>
 #include <iterator>
 
 #include "holdfast/distributed.hpp"
 
 /// What simulated and emulated robots have in common.
 namespace holdfast {
-
-/// The agents of a robot, wherever they are.
-struct Agents {
-  std::function<const agent::Agent&(std::int32_t)> at;
-  std::int32_t count = 0;
-};
 
 /// What the robot knows, in the form of an assessment.
 verdict::Assessment view_of(const model::Robot& robot, const verdict::Assessment& exact,

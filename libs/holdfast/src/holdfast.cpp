@@ -5,8 +5,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
+#include <thread>
 
+#include "holdfast/host/team.hpp"
 #include "holdfast/limit/robot.hpp"
 #include "holdfast/model/families.hpp"
 #include "report_entry.hpp"
@@ -28,6 +31,19 @@ io::ReportEntry entry_of(const Structure& structure, const CheckResult& result) 
 
 std::string_view version() { return kVersion; }
 
+base::Result<Structure> make_structure(io::Document document, std::string_view name,
+                                       int thread_count) {
+  auto robot = io::make_robot(document, thread_count);
+  if (!robot) {
+    return robot.error();
+  }
+  std::string title = document.name.empty() ? std::string(name) : document.name;
+  return Structure{.name = std::move(title),
+                   .document = std::move(document),
+                   .robot = std::move(robot).value(),
+                   .warnings = {}};
+}
+
 base::Result<Structure> load_text(std::string_view text, std::string_view name, int thread_count,
                                   const io::ReadOptions& options) {
   auto read = io::read_document(text, options);
@@ -40,15 +56,13 @@ base::Result<Structure> load_text(std::string_view text, std::string_view name, 
         "{} steps are read; {} is judged, holdfast steps judges all", io::step_count(document),
         document.steps.empty() ? "the robot before them" : "the robot after the first"));
   }
-  auto robot = io::make_robot(document, thread_count);
-  if (!robot) {
-    return robot.error();
+  auto made = make_structure(std::move(document), name, thread_count);
+  if (made) {
+    Structure structure = std::move(made).value();
+    structure.warnings = std::move(warnings);
+    return structure;
   }
-  std::string title = document.name.empty() ? std::string(name) : document.name;
-  return Structure{.name = std::move(title),
-                   .document = std::move(document),
-                   .robot = std::move(robot).value(),
-                   .warnings = std::move(warnings)};
+  return made;
 }
 
 base::Result<Structure> load_file(const std::filesystem::path& path, int thread_count,
@@ -121,6 +135,7 @@ limit::LimitLoad find_limit(const model::Robot& robot, const verdict::Assessment
         limit::known_forces(robot, structure, equilibrium.displacement, equilibrium.facet_force);
   }
   return limit::limit_load(structure, {.seconds_max = options.limit_seconds_max,
+                                       .thread_count = options.thread_count,
                                        .known_forces = forces,
                                        .progress = options.limit_progress});
 }
@@ -155,6 +170,34 @@ CheckResult check(const model::Robot& robot, const CheckOptions& options) {
 
 CheckResult check(const Structure& structure, const CheckOptions& options) {
   return check(structure.robot, options);
+}
+
+std::vector<CheckResult> check_many(std::span<const model::Robot* const> robots,
+                                    const CheckOptions& options,
+                                    const std::function<void(std::size_t done)>& progress) {
+  constexpr std::size_t kChunk = host::Team::kChunk;  // A robot is as much as a chunk of nodes.
+  const std::size_t count = robots.size();
+  const bool is_shared = count >= host::Team::kSharedChunkMin;
+  CheckOptions one = options;
+  one.thread_count = is_shared ? 1 : options.thread_count;
+  std::vector<CheckResult> results(count);
+  std::atomic<std::size_t> done = 0;
+  const std::thread::id caller = std::this_thread::get_id();
+  host::Team team(is_shared ? options.thread_count : 1, count * kChunk);
+  team.share(0, count * kChunk, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin / kChunk; i < end / kChunk; ++i) {
+      host::ask_whether_to_go_on();
+      results[i] = check(*robots[i], one);
+      ++done;
+      if (progress && std::this_thread::get_id() == caller) {
+        progress(done);
+      }
+    }
+  });
+  if (progress && count > 0) {
+    progress(count);
+  }
+  return results;
 }
 
 base::Result<std::string> certificate_text(const CheckResult& result) {
@@ -192,7 +235,8 @@ std::string picture_vtu(const Structure& structure, const CheckResult& result) {
 
 void write_picture_vtu(std::ostream& out, const Structure& structure, const CheckResult& result,
                        const io::WriteOptions& options) {
-  io::write_vtu(out, structure.robot, result.assessment, options);
+  io::write_vtu(out, structure.robot, result.assessment, options,
+                structure.document.extension.obstacles);
 }
 
 void write_connections_csv(std::ostream& out, const Structure& structure, const CheckResult& result,

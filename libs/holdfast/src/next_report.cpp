@@ -32,11 +32,8 @@ void write_candidate(io::JsonStream& json, const Trial& trial) {
 
 }  // namespace
 
-void write_next_json(std::ostream& out, const Structure& structure, const NextResult& result,
-                     const NextReportOptions& options) {
-  std::string text;
-  io::JsonStream json(text);
-  json.begin_object();
+void write_next_members(io::JsonStream& json, const Structure& structure, const NextResult& result,
+                        const NextReportOptions& options) {
   json.member("name", std::string_view(structure.name));
   json.member("modules", structure.robot.modules().size());
   json.key("counts");
@@ -50,13 +47,19 @@ void write_next_json(std::ostream& out, const Structure& structure, const NextRe
   json.begin_array();
   for (const Trial& trial : listed(result, options)) {
     write_candidate(json, trial);
-    out << text;
-    text.clear();
   }
   json.end_array();
   json.member("checks", result.check_count);
   json.member("preparation_seconds", result.preparation_seconds);
   json.member("seconds", result.seconds);
+}
+
+void write_next_json(std::ostream& out, const Structure& structure, const NextResult& result,
+                     const NextReportOptions& options) {
+  std::string text;
+  io::JsonStream json(text);
+  json.begin_object();
+  write_next_members(json, structure, result, options);
   json.end_object();
   out << text << "\n";
 }

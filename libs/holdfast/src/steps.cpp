@@ -99,7 +99,7 @@ class Series {
           robot.value(),
           {.thread_count = options_.thread_count, .memory_bytes_max = options_.memory_bytes_max});
       const auto error = write_file(path_.parent_path() / name, [&](std::ostream& out) {
-        io::write_vtu(out, robot.value(), checked.assessment);
+        io::write_vtu(out, robot.value(), checked.assessment, {}, pieces[part].obstacles);
       });
       if (error) {
         return error;

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <iterator>
+#include <optional>
+#include <utility>
 
 #include "holdfast/base/check.hpp"
 #include "holdfast/plan/candidates.hpp"
@@ -59,18 +61,44 @@ std::vector<base::Cell> free_cells(const model::RobotSpec& spec) { return plan::
 
 verdict::Assessment first_look(const model::Robot& robot) { return plan::first_look(robot); }
 
-std::vector<Trial> try_cells(const model::RobotSpec& spec, std::span<const base::Cell> cells,
-                             Role role, const CheckOptions& options) {
+struct CellTrials::Parts {
+  model::RobotSpec spec;  ///< Of fixed modules only; else the search has it.
+  Role role;
+  CheckOptions options;
+  std::optional<plan::CandidateSearch> search;
+};
+
+CellTrials::CellTrials(model::RobotSpec spec, Role role, const CheckOptions& options)
+    : parts_(std::make_unique<Parts>()) {
+  parts_->role = role;
+  parts_->options = options;
   if (role == Role::kFixed) {
-    std::vector<Trial> trials;
-    for (const base::Cell& cell : cells) {
-      trials.push_back(try_fixed(spec, cell, options));
-    }
-    return trials;
+    parts_->spec = std::move(spec);
+    return;
   }
   plan::CandidateOptions how = candidate_options(options);
   how.is_planned = role == Role::kPlanned;
-  return trials_of(plan::judge_candidates(spec, cells, how).candidates);
+  parts_->search.emplace(std::move(spec), std::move(how));
+}
+
+CellTrials::~CellTrials() = default;
+CellTrials::CellTrials(CellTrials&&) noexcept = default;
+CellTrials& CellTrials::operator=(CellTrials&&) noexcept = default;
+
+std::vector<Trial> CellTrials::at(std::span<const base::Cell> cells) {
+  if (parts_->search) {
+    return trials_of(parts_->search->judge(cells).candidates);
+  }
+  std::vector<Trial> trials;
+  for (const base::Cell& cell : cells) {
+    trials.push_back(try_fixed(parts_->spec, cell, parts_->options));
+  }
+  return trials;
+}
+
+std::vector<Trial> try_cells(const model::RobotSpec& spec, std::span<const base::Cell> cells,
+                             Role role, const CheckOptions& options) {
+  return CellTrials(spec, role, options).at(cells);
 }
 
 std::size_t NextResult::count(verdict::Verdict verdict) const {

@@ -22,17 +22,34 @@ namespace {
 constexpr std::chrono::microseconds kSpinTime{100};
 constexpr int kSpinCount = 256;  ///< Turns between two looks at the clock.
 
+/// Who has somebody to ask whether to go on sleeps no longer than this: nobody would wake it.
+constexpr std::chrono::microseconds kNap{200};
+
+/// Chunks that are taken at once at most where somebody is asked before each.
+constexpr std::size_t kAskedChunkMax = 64;
+
+/// Thrown in threads whose loop has failed in another one, which nobody hears of.
+struct GivenUp {};
+
+/// False if it is still that value after some time.
 template <class Value>
-void wait_while(const std::atomic<Value>& variable, Value value) {
+bool spin_while(const std::atomic<Value>& variable, Value value) {
   const auto end = std::chrono::steady_clock::now() + kSpinTime;
   do {
     for (int spin = 0; spin < kSpinCount; ++spin) {
       if (variable.load(std::memory_order_acquire) != value) {
-        return;
+        return true;
       }
     }
   } while (std::chrono::steady_clock::now() < end);
-  variable.wait(value, std::memory_order_acquire);
+  return false;
+}
+
+template <class Value>
+void wait_while(const std::atomic<Value>& variable, Value value) {
+  if (!spin_while(variable, value)) {
+    variable.wait(value, std::memory_order_acquire);
+  }
 }
 
 /// Asked once: the answer is read from files.
@@ -92,6 +109,8 @@ class Team::Crew {
   void work_on_ranges(int thread);
   bool work_on(Range& range) noexcept;
   void do_task(std::size_t begin, std::size_t end) noexcept;
+  void wait_for_others();
+  void note_failure() noexcept;
 
   const int process_ = process_number().load();
   std::vector<std::thread> threads_;
@@ -100,6 +119,7 @@ class Team::Crew {
   const void* context_ = nullptr;
   std::atomic<std::uint32_t> round_{0};
   std::atomic<std::size_t> unfinished_{0};  ///< Chunks.
+  std::atomic<std::size_t> taken_max_{0};   ///< Chunks at a time.
   std::atomic<bool> has_failed_{false};
   std::exception_ptr failure_;  ///< The first thing thrown in this loop, once it is over.
   std::atomic<bool> is_over_{false};
@@ -129,6 +149,7 @@ void Team::Crew::run(std::size_t chunk_count, Task task, const void* context) {
   task_ = task;
   context_ = context;
   unfinished_.store(chunk_count, std::memory_order_relaxed);
+  taken_max_.store(is_interruptible() ? kAskedChunkMax : chunk_count, std::memory_order_relaxed);
   const auto count = static_cast<std::size_t>(thread_count());
   for (std::size_t thread = 0; thread < count; ++thread) {
     ranges_[thread].chunks.store(
@@ -138,10 +159,7 @@ void Team::Crew::run(std::size_t chunk_count, Task task, const void* context) {
   round_.fetch_add(1, std::memory_order_release);
   round_.notify_all();
   work_on_ranges(0);
-  for (std::size_t left = unfinished_.load(std::memory_order_acquire); left > 0;
-       left = unfinished_.load(std::memory_order_acquire)) {
-    wait_while(unfinished_, left);
-  }
+  wait_for_others();
   if (has_failed_.load(std::memory_order_acquire)) {
     has_failed_.store(false, std::memory_order_relaxed);
     std::rethrow_exception(std::exchange(failure_, nullptr));
@@ -151,11 +169,36 @@ void Team::Crew::run(std::size_t chunk_count, Task task, const void* context) {
 /// What is thrown in a task, such as std::bad_alloc, waits for the end of the loop: the others are
 /// not left behind, and the thread that called is the one that hears of it.
 void Team::Crew::do_task(std::size_t begin, std::size_t end) noexcept {
+  if (has_failed_.load(std::memory_order_acquire)) {
+    return;
+  }
   try {
+    ask_whether_to_go_on();
     task_(context_, begin, end);
   } catch (...) {
-    if (!has_failed_.exchange(true, std::memory_order_acq_rel)) {
-      failure_ = std::current_exception();
+    note_failure();
+  }
+}
+
+/// In a handler of what was thrown.
+void Team::Crew::note_failure() noexcept {
+  if (!has_failed_.exchange(true, std::memory_order_acq_rel)) {
+    failure_ = std::current_exception();
+  }
+}
+
+void Team::Crew::wait_for_others() {
+  for (std::size_t left = unfinished_.load(std::memory_order_acquire); left > 0;
+       left = unfinished_.load(std::memory_order_acquire)) {
+    if (!is_interruptible()) {
+      wait_while(unfinished_, left);
+    } else if (!spin_while(unfinished_, left)) {
+      try {
+        ask_whether_to_go_on();
+      } catch (...) {
+        note_failure();
+      }
+      std::this_thread::sleep_for(kNap);
     }
   }
 }
@@ -169,7 +212,7 @@ bool Team::Crew::work_on(Range& range) noexcept {
   std::size_t taken = 0;
   do {
     begin = first_of(seen);
-    taken = (last_of(seen) - begin + 1) / 2;
+    taken = std::min((last_of(seen) - begin + 1) / 2, taken_max_.load(std::memory_order_relaxed));
     if (taken == 0) {
       return false;
     }
@@ -192,6 +235,11 @@ void Team::Crew::work_on_ranges(int thread) {
 }
 
 void Team::Crew::serve(int thread) {
+  const Interruptible interruptible([this] {
+    if (has_failed_.load(std::memory_order_relaxed)) {
+      throw GivenUp{};
+    }
+  });
   std::uint32_t seen = 0;
   while (!is_over_.load()) {
     wait_while(round_, seen);

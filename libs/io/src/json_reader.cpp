@@ -7,6 +7,7 @@
 #include <type_traits>
 #include <utility>
 
+#include "holdfast/host/interruption.hpp"
 #include "holdfast/io/document.hpp"
 #include "holdfast/io/lattice_names.hpp"
 #include "json_connectors.hpp"
@@ -270,6 +271,7 @@ std::vector<Entry> JsonReader::entries(const Json& value, const Place& place, st
   if (reading_.take_room(array.size(), [&] { return place.pointer(); })) {
     list.reserve(array.size());
     for (std::size_t i = 0; i < array.size() && !reading_.has_failed(); ++i) {
+      host::ask_whether_to_go_on();
       list.push_back(entry<Entry>(array[i], place.at(i), {step, i, {}, {}}));
     }
   }

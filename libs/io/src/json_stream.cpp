@@ -7,6 +7,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "holdfast/host/interruption.hpp"
+
 namespace holdfast::io {
 namespace {
 
@@ -41,6 +43,7 @@ void JsonStream::begin_value() {
 }
 
 void JsonStream::begin(char bracket) {
+  host::ask_whether_to_go_on();
   begin_value();
   *out_ += bracket;
   ++depth_;

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "holdfast/host/interruption.hpp"
 #include "holdfast/io/document.hpp"
 #include "reading.hpp"
 #include "text_input.hpp"
@@ -116,7 +117,10 @@ class TreeBuilder {
   }
 
   bool start_array(std::size_t /*count*/) {
-    open_.push_back(&put(Json::array()));
+    host::ask_whether_to_go_on();
+    Json& array = put(Json::array());
+    array.get_ref<Json::array_t&>().reserve(3);  // Most are cells.
+    open_.push_back(&array);
     return true;
   }
 

@@ -160,6 +160,12 @@ void Reading::read_grid(const Where& where) {
   if (text == nullptr) {
     return;
   }
+  if (parse_triple<std::int32_t>(*text + ",1")) {
+    warn(
+        fmt::format("gridSize '{}' has two numbers, not three; no cell is compared with it", *text),
+        where);
+    return;
+  }
   const auto size = parse_triple<std::int32_t>(*text);
   if (!size || !std::ranges::all_of(*size, [](auto n) { return kGridRange.contains(n); })) {
     fail({base::ErrorCode::kBadInput,

@@ -92,6 +92,9 @@ std::string_view fixed_text(ReasonCode code) {
       return "the model-based check says unstable, as no facet presses all over and the corners "
              "that press lie on one line; contact forces of a rigid body that would hold it do "
              "exist, so it may depend on how the load came, and is not safe";
+    case ReasonCode::kStatesDisagree:
+      return "the exact contact law holds it, but by the paper's, whose search for contact states "
+             "does not end here, there are states in which it falls";
     case ReasonCode::kLoadsTogether:
       return "load ratios and the weight factor are of all loads together, weight and payloads";
     default:

@@ -40,8 +40,8 @@ void write_range(JsonStream& json, std::string_view key, const verdict::LoadRang
   }
 }
 
-void write_ends(JsonStream& json, const model::Robot& robot, std::size_t connection) {
-  const auto [a, b] = model::ends(robot, connection);
+void write_ends(JsonStream& json, const std::array<base::Cell, 2>& ends) {
+  const auto& [a, b] = ends;
   json.begin_array();
   write_cell(json, a);
   write_cell(json, b);
@@ -273,10 +273,18 @@ class Writer {
     write_reasons();
     json_.key("modules");
     json_.begin_object();
-    json_.member("existing", robot.modules().size() - robot.planned_count());
-    json_.member("planned", robot.planned_count());
-    json_.member("on_ground", robot.ground_count());
-    json_.member("fixed", robot.fixed_count());
+    const WholeRobot whole =
+        entry_.whole != nullptr
+            ? *entry_.whole
+            : WholeRobot{.existing_count = robot.modules().size() - robot.planned_count(),
+                         .planned_count = robot.planned_count(),
+                         .facet_count = robot.ground_count(),
+                         .fixed_count = robot.fixed_count(),
+                         .broken = {}};
+    json_.member("existing", whole.existing_count);
+    json_.member("planned", whole.planned_count);
+    json_.member("on_ground", whole.facet_count);
+    json_.member("fixed", whole.fixed_count);
     json_.end_object();
     json_.key("stability");
     write_stability(json_, assessment);
@@ -307,23 +315,29 @@ class Writer {
     write_range(json_, "load_ratio_range",
                 assessment.load_ratio_max ? &assessment.load_ratio_range : nullptr);
     json_.key("at");
-    if (assessment.worst) {
-      write_ends(json_, robot, *assessment.worst);
+    if (assessment.worst && assessment.whole) {
+      write_ends(json_, assessment.whole->worst);
+    } else if (assessment.worst) {
+      write_ends(json_, model::ends(robot, *assessment.worst));
     } else {
       json_.value(nullptr);
     }
     json_.key("broken");
-    write_list(
-        assessment.broken.size(),
-        [&](JsonStream& json, std::size_t i) { write_ends(json, robot, assessment.broken[i]); },
-        {});
+    write_list(entry_.whole != nullptr ? entry_.whole->broken.size() : assessment.broken.size(),
+               [&](JsonStream& json, std::size_t i) {
+                 write_ends(json, entry_.whole != nullptr
+                                      ? entry_.whole->broken[i]
+                                      : model::ends(robot, assessment.broken[i]));
+               },
+               {});
     json_.member("weight_factor", assessment.weight_factor);
     json_.end_object();
   }
 
   void write_connections() {
     const verdict::Assessment& assessment = *entry_.assessment;
-    const ConnectionList list(assessment, options_.connections);
+    constexpr ConnectionChoice kNone{.kind = ConnectionChoice::Kind::kLargest, .count = 0};
+    const ConnectionList list(assessment, entry_.whole != nullptr ? kNone : options_.connections);
     const verdict::ConnectionLaws laws(*entry_.robot);
     json_.key("connections");
     write_list(

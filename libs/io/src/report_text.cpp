@@ -34,7 +34,8 @@ std::string rigid_text(const limit::RigidStability& rigid) {
     text += fmt::format(", until gravity tilts by {:.1f} degrees", *rigid.tilt_margin_deg);
   }
   if (rigid.friction_needed && *rigid.friction_needed > 0) {
-    text += fmt::format(", with friction of {:.3g} or more", *rigid.friction_needed);
+    text += fmt::format(", with friction of {:.3g} or more at the best pressing",
+                        *rigid.friction_needed);
   }
   return text;
 }

@@ -38,6 +38,11 @@ std::string_view VtuArrays::compressor() {
 }
 
 void VtuArrays::announce(VtuArray array) {
+  if (is_list_) {
+    out_ << fmt::format("<PDataArray type=\"{}\" Name=\"{}\" NumberOfComponents=\"{}\"/>\n",
+                        array.type, array.name, array.components);
+    return;
+  }
   out_ << fmt::format(
       "<DataArray type=\"{}\" Name=\"{}\" NumberOfComponents=\"{}\" format=\"appended\" offset=",
       array.type, array.name, array.components);

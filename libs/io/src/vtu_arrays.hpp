@@ -43,6 +43,9 @@ class VtuArrays {
   /// The attribute of <VTKFile> that says how arrays are compressed; empty if they are not.
   static std::string_view compressor();
 
+  /// From now on announce() only says what an array is, in the element <PDataArray>.
+  void list_only() { is_list_ = true; }
+
   /// Writes the element <DataArray>.
   void announce(VtuArray array);
 
@@ -69,6 +72,7 @@ class VtuArrays {
   host::Team team_;
   std::vector<Announced> arrays_;
   std::vector<Patch> patches_;
+  bool is_list_ = false;
   std::size_t bytes_all_ = 0;
   std::size_t bytes_done_ = 0;
 };

@@ -7,6 +7,7 @@
 #include <bit>
 #include <cmath>
 #include <cstring>
+#include <span>
 #include <sstream>
 #include <type_traits>
 
@@ -14,12 +15,14 @@
 #include "holdfast/model/lattice_beam.hpp"
 #include "holdfast/verdict/connection_law.hpp"
 #include "module_paint.hpp"
+#include "obstacle_cells.hpp"
 #include "vtu_arrays.hpp"
 #include "vtu_shape.hpp"
 
-// Cells are the modules in the robot's order, then the connections and the facets in theirs. Points
-// are those of the shape of each module, then the centre of each, between which the connections
-// run, then the four corners of each facet. What is not known is written as 0, and has_loads says
+// Cells are the modules in the robot's order, then the connections and the facets in theirs, then
+// the cells of obstacles. Points are those of the shape of each module, then the centre of each,
+// between which the connections run, then the four corners of each facet, then those of the shape
+// of each obstacle cell, which is a module's. What is not known is written as 0, and has_loads says
 // so.
 namespace holdfast::io {
 namespace {
@@ -38,7 +41,7 @@ constexpr std::array<std::array<double, 2>, kFacetCornerCount> kFacetCorners = {
     {{-1, -1}, {1, -1}, {1, 1}, {-1, 1}}};
 
 /// What a cell of the file stands for.
-enum class CellKind : std::uint8_t { kModule, kConnection, kFacet };
+enum class CellKind : std::uint8_t { kModule, kConnection, kFacet, kObstacle };
 
 /// What is not finite is written as 0, and what is is rounded to 32 bits, more than nine digits:
 /// fewer bits take less room and time.
@@ -110,14 +113,18 @@ std::uint8_t flag(bool is_so) { return is_so ? 1 : 0; }
 
 class Writer {
  public:
-  Writer(std::ostream& out, const model::Robot& robot, const verdict::Assessment& assessment,
-         const WriteOptions& options)
+  /// The modules from `shown_count` on are not shown, but for their connections to those before.
+  Writer(std::ostream& out, const model::Robot& robot, std::size_t shown_count,
+         const verdict::Assessment& assessment, const WriteOptions& options,
+         std::span<const model::Obstacle> obstacles)
       : out_(out),
         robot_(robot),
         assessment_(assessment),
         module_count_(robot.modules().size()),
+        shown_count_(shown_count),
         connection_count_(robot.connections().size()),
         facet_count_(robot.facets().size()),
+        obstacles_(obstacles_near(robot, obstacles).cells),
         shape_(vtu_shape(robot.lattice())),
         laws_(robot),
         paints_(paint_modules(robot, assessment)),
@@ -139,7 +146,7 @@ class Writer {
          << VtuArrays::compressor() << ">\n<UnstructuredGrid>\n";
     write_field_data();
     out_ << fmt::format("<Piece NumberOfPoints=\"{}\" NumberOfCells=\"{}\">\n", point_count(),
-                        module_count_ + connection_count_ + facet_count_);
+                        cell_count());
     out_ << "<Points>\n";
     announce_points();
     out_ << "</Points>\n<Cells>\n";
@@ -155,40 +162,96 @@ class Writer {
     out_ << "</VTKFile>\n";
   }
 
+  /// Writes the file that says which arrays all pieces have, and which files these are.
+  void write_index(std::span<const std::string> pieces) {
+    arrays_.list_only();
+    out_ << "<?xml version=\"1.0\"?>\n"
+            "<VTKFile type=\"PUnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" "
+            "header_type=\"UInt64\">\n<PUnstructuredGrid GhostLevel=\"0\">\n";
+    write_field_data();
+    out_ << "<PPoints>\n";
+    announce_points();
+    out_ << "</PPoints>\n<PPointData Vectors=\"displacement_mm\">\n";
+    announce_displacement();
+    out_ << "</PPointData>\n<PCellData Scalars=\"load_ratio\">\n";
+    announce_facts();
+    announce_loads();
+    announce_ground();
+    out_ << "</PCellData>\n";
+    for (const std::string& piece : pieces) {
+      out_ << fmt::format("<Piece Source=\"{}\"/>\n", piece);
+    }
+    out_ << "</PUnstructuredGrid>\n</VTKFile>\n";
+  }
+
  private:
+  /// A value that says the same of all cells of a kind.
+  template <class Value>
+  static auto always(Value value) {
+    return [value](std::size_t) { return value; };
+  }
+
   /// Lines run between the centres of modules; without lines there are no centres.
   std::size_t centre_count() const { return connection_count_ > 0 ? module_count_ : 0; }
 
-  std::size_t corner_count() const { return shape_.points.size() * module_count_; }
+  std::size_t corner_count() const { return shape_.points.size() * shown_count_; }
 
-  std::size_t point_count() const {
+  /// Points of modules, their centres, facets.
+  std::size_t robot_point_count() const {
     return corner_count() + centre_count() + kFacetCornerCount * facet_count_;
   }
 
-  /// `of_module`, `of_connection` and `of_facet` give the value of a cell for an index.
+  std::size_t point_count() const {
+    return robot_point_count() + shape_.points.size() * obstacles_.size();
+  }
+
+  std::size_t cell_count() const {
+    return shown_count_ + connection_count_ + facet_count_ + obstacles_.size();
+  }
+
+  /// The functions give the value of a cell for the index of a module, a connection, a facet, an
+  /// obstacle cell.
+  template <class OfModule, class OfConnection, class OfFacet, class OfObstacle>
+  void announce_cell_array(const char* name, OfModule of_module, OfConnection of_connection,
+                           OfFacet of_facet, OfObstacle of_obstacle) {
+    using Value = decltype(of_module(std::size_t{}));
+    static_assert(std::is_same_v<Value, decltype(of_connection(std::size_t{}))> &&
+                  std::is_same_v<Value, decltype(of_facet(std::size_t{}))> &&
+                  std::is_same_v<Value, decltype(of_obstacle(std::size_t{}))>);
+    arrays_.announce(make_array(
+        name, cell_count(), [this, of_module, of_connection, of_facet, of_obstacle](std::size_t i) {
+          if (i < shown_count_) {
+            return of_module(i);
+          }
+          i -= shown_count_;
+          if (i < connection_count_) {
+            return of_connection(i);
+          }
+          i -= connection_count_;
+          return i < facet_count_ ? of_facet(i) : of_obstacle(i - facet_count_);
+        }));
+  }
+
+  /// An array in which obstacles have nothing, which is 0.
   template <class OfModule, class OfConnection, class OfFacet>
   void announce_cell_array(const char* name, OfModule of_module, OfConnection of_connection,
                            OfFacet of_facet) {
-    using Value = decltype(of_module(std::size_t{}));
-    static_assert(std::is_same_v<Value, decltype(of_connection(std::size_t{}))> &&
-                  std::is_same_v<Value, decltype(of_facet(std::size_t{}))>);
-    arrays_.announce(make_array(name, module_count_ + connection_count_ + facet_count_,
-                                [this, of_module, of_connection, of_facet](std::size_t i) {
-                                  if (i < module_count_) {
-                                    return of_module(i);
-                                  }
-                                  return i < module_count_ + connection_count_
-                                             ? of_connection(i - module_count_)
-                                             : of_facet(i - module_count_ - connection_count_);
-                                }));
+    announce_cell_array(name, of_module, of_connection, of_facet,
+                        always(decltype(of_module(std::size_t{})){}));
   }
 
-  /// `of_point` gets a module and a point of it, from its node, mm.
-  template <class OfPoint>
-  void announce_point_array(const char* name, OfPoint of_point) {
+  /// `of_point` gets a module and a point of it, from its node, mm; `of_obstacle` a cell and the
+  /// same.
+  template <class OfPoint, class OfObstacle>
+  void announce_point_array(const char* name, OfPoint of_point, OfObstacle of_obstacle) {
     const double pitch = robot_.material().pitch_mm;
-    arrays_.announce(make_array(name, point_count(), [this, pitch, of_point](std::size_t i) {
+    const auto of_any = [this, pitch, of_point, of_obstacle](std::size_t i) {
       const std::size_t per_module = shape_.points.size();
+      if (i >= robot_point_count()) {
+        i -= robot_point_count();
+        return of_obstacle(obstacles_[i / per_module].cell,
+                           scaled(pitch, shape_.points[i % per_module]));
+      }
       if (i < corner_count()) {
         return of_point(i / per_module, scaled(pitch, shape_.points[i % per_module]));
       }
@@ -199,7 +262,8 @@ class Writer {
       const model::Facet& facet = robot_.facets()[place / kFacetCornerCount];
       return of_point(static_cast<std::size_t>(facet.module),
                       facet_corner(facet, kFacetCorners[place % kFacetCornerCount]));
-    }));
+    };
+    arrays_.announce(make_array(name, point_count(), of_any));
   }
 
   Triple facet_corner(const model::Facet& facet, const std::array<double, 2>& corner) const {
@@ -229,15 +293,20 @@ class Writer {
         robot_.gravity()[1] + 0.0, robot_.gravity()[2] + 0.0);
   }
 
-  Triple centre(std::size_t module) const {
-    return scaled(robot_.material().pitch_mm,
-                  base::node_place(robot_.lattice(), robot_.modules()[module].cell));
+  Triple centre(const base::Cell& cell) const {
+    return scaled(robot_.material().pitch_mm, base::node_place(robot_.lattice(), cell));
   }
 
   void announce_points() {
-    announce_point_array("Points", [this](std::size_t module, const Triple& point) {
-      return sum(centre(module), point);
-    });
+    const auto beside = [this](const base::Cell& cell, const Triple& point) {
+      return sum(centre(cell), point);
+    };
+    announce_point_array(
+        "Points",
+        [this, beside](std::size_t module, const Triple& point) {
+          return beside(robot_.modules()[module].cell, point);
+        },
+        beside);
   }
 
   /// Connections share the centres; all other cells have their points one behind the other.
@@ -256,7 +325,7 @@ class Writer {
   void announce_cells() {
     const std::size_t corners = corner_count();
     arrays_.announce(make_array("connectivity",
-                                corners + 2 * connection_count_ + kFacetCornerCount * facet_count_,
+                                point_count() - centre_count() + 2 * connection_count_,
                                 [this](std::size_t i) { return point_at(i); }));
     const auto offset = [](std::size_t before, std::size_t each, std::size_t i) {
       return static_cast<std::int64_t>(before + each * (i + 1));
@@ -266,10 +335,12 @@ class Writer {
         [=](std::size_t i) { return offset(corners, 2, i); },
         [=, before = corners + 2 * connection_count_](std::size_t i) {
           return offset(before, kFacetCornerCount, i);
-        });
-    announce_cell_array(
-        "types", [type = shape_.type](std::size_t) { return type; },
-        [](std::size_t) { return kVtkLine; }, [](std::size_t) { return kVtkQuad; });
+        },
+        [=, each = shape_.points.size(),
+         before = corners + 2 * connection_count_ + kFacetCornerCount * facet_count_](
+            std::size_t i) { return offset(before, each, i); });
+    announce_cell_array("types", always(shape_.type), always(kVtkLine), always(kVtkQuad),
+                        always(shape_.type));
   }
 
   base::Vec6<double> displacement(std::size_t module) const {
@@ -279,10 +350,13 @@ class Writer {
 
   /// Modules move as rigid bodies, their facets with them: u + theta x r.
   void announce_displacement() {
-    announce_point_array("displacement_mm", [this](std::size_t module, const Triple& point) {
-      const base::Vec6<double> u = displacement(module);
-      return sum(first_half(u), cross(second_half(u), point));
-    });
+    announce_point_array(
+        "displacement_mm",
+        [this](std::size_t module, const Triple& point) {
+          const base::Vec6<double> u = displacement(module);
+          return sum(first_half(u), cross(second_half(u), point));
+        },
+        [](const base::Cell&, const Triple&) { return Triple{}; });
   }
 
   std::size_t module_of(std::size_t facet) const {
@@ -304,35 +378,33 @@ class Writer {
         [this, of_module](std::size_t i) { return of_module(module_of(i)); });
   }
 
-  /// A value that says the same of all cells of a kind.
-  template <class Value>
-  static auto always(Value value) {
-    return [value](std::size_t) { return value; };
-  }
-
   void announce_facts() {
     const auto number = [](CellKind kind) { return always(static_cast<std::uint8_t>(kind)); };
     announce_cell_array("kind", number(CellKind::kModule), number(CellKind::kConnection),
-                        number(CellKind::kFacet));
+                        number(CellKind::kFacet), number(CellKind::kObstacle));
     const auto index = [](std::size_t i) { return static_cast<std::int32_t>(i); };
-    announce_cell_array("index", index, index, index);
-    const auto lattice = [this](std::size_t module) {
-      const base::Cell& cell = robot_.modules()[module].cell;
+    announce_cell_array("index", index, index, index, index);
+    const auto numbers = [](const base::Cell& cell) {
       return std::array<std::int32_t, 3>{cell.x, cell.y, cell.z};
+    };
+    const auto lattice = [this, numbers](std::size_t module) {
+      return numbers(robot_.modules()[module].cell);
     };
     announce_cell_array(
         "cell", lattice,
         [this, lattice](std::size_t i) {
           return lattice(static_cast<std::size_t>(robot_.connections()[i].a));
         },
-        [this, lattice](std::size_t i) { return lattice(module_of(i)); });
+        [this, lattice](std::size_t i) { return lattice(module_of(i)); },
+        [this, numbers](std::size_t i) { return numbers(obstacles_[i].cell); });
     const auto direction = [](base::Direction of) {
       return static_cast<std::int8_t>(base::index(of));
     };
     announce_cell_array(
         "direction", always(kNoDirection),
         [this, direction](std::size_t i) { return direction(robot_.connections()[i].direction); },
-        [this, direction](std::size_t i) { return direction(robot_.facets()[i].direction); });
+        [this, direction](std::size_t i) { return direction(robot_.facets()[i].direction); },
+        always(kNoDirection));
     announce_fact("planned", [](const model::Module& module) { return module.is_planned; });
     announce_fact("fixed", [](const model::Module& module) {
       return module.support == model::Support::kFixed;
@@ -343,8 +415,10 @@ class Writer {
           return flag(robot_.modules()[i].support == model::Support::kGround);
         },
         always(flag(false)), always(flag(true)));
-    announce_cell_array("bonded", always(flag(false)), always(flag(false)),
-                        [this](std::size_t i) { return flag(robot_.facets()[i].is_bonded()); });
+    announce_cell_array(
+        "bonded", always(flag(false)), always(flag(false)),
+        [this](std::size_t i) { return flag(robot_.facets()[i].is_bonded()); },
+        [this](std::size_t i) { return flag(obstacles_[i].is_bonded); });
   }
 
   /// A number per connection; modules and facets have none, which is 0.
@@ -376,7 +450,7 @@ class Writer {
                                   laws_.limit(robot_.connections()[i], assessment_.connections[i]))
                             : kNoLimit;
         },
-        always(kNoLimit));
+        always(kNoLimit), always(kNoLimit));
     announce_cell_array(
         "gap_mm", always(0.0), [this](std::size_t i) { return gap(i); }, always(0.0));
     const auto load = [this](std::size_t i) { return robot_.loads()[i]; };
@@ -425,7 +499,7 @@ class Writer {
   void announce_ground() {
     announce_cell_array(
         "contact", [most = contact_by_module()](std::size_t i) { return most[i]; },
-        always(kNotOnGround), [this](std::size_t i) { return contact(i); });
+        always(kNotOnGround), [this](std::size_t i) { return contact(i); }, always(kNotOnGround));
     announce_cell_array(
         "ground_force_n", [this](std::size_t i) { return first_half(ground_force(i)); },
         always(Triple{}), [this](std::size_t i) { return first_half(facet_force(i)); });
@@ -441,8 +515,10 @@ class Writer {
   const model::Robot& robot_;
   const verdict::Assessment& assessment_;
   std::size_t module_count_;
+  std::size_t shown_count_;
   std::size_t connection_count_;
   std::size_t facet_count_;
+  std::vector<ObstacleCell> obstacles_;
   VtuShape shape_;
   verdict::ConnectionLaws laws_;
   std::vector<model::Rotation<double>> axes_;  ///< Of facets, by direction.
@@ -455,14 +531,27 @@ class Writer {
 }  // namespace
 
 void write_vtu(std::ostream& out, const model::Robot& robot, const verdict::Assessment& assessment,
-               const WriteOptions& options) {
+               const WriteOptions& options, std::span<const model::Obstacle> obstacles) {
+  const auto write = [&](std::ostream& into) {
+    Writer(into, robot, robot.modules().size(), assessment, options, obstacles).write();
+  };
   if (out.tellp() >= 0) {
-    Writer(out, robot, assessment, options).write();
+    write(out);
     return;
   }
   std::ostringstream whole;
-  Writer(whole, robot, assessment, options).write();
+  write(whole);
   out << whole.str();
+}
+
+void write_vtu_piece(std::ostream& out, const model::Robot& part, std::size_t own_count,
+                     const verdict::Assessment& assessment, const WriteOptions& options) {
+  Writer(out, part, own_count, assessment, options, {}).write();
+}
+
+void write_pvtu(std::ostream& out, const model::Robot& part, const verdict::Assessment& assessment,
+                std::span<const std::string> pieces) {
+  Writer(out, part, 0, assessment, {}, {}).write_index(pieces);
 }
 
 }  // namespace holdfast::io

@@ -274,7 +274,7 @@ TEST(BadInput, that_visiblesim_could_not_hold_is_refused) {
                     "/visiblesim/" + std::string(where), ""});
   };
   bad(R"("world": {"grid size": "1"})", "world/grid size");
-  bad(R"("world": {"gridSize": "1,1"})", "world/gridSize");
+  bad(R"("world": {"gridSize": "1"})", "world/gridSize");
   bad(R"("world": {"": "1"})", "world/");
   bad(R"("world": {"a": 1})", "world/a");
   bad(R"("parameters": {"globalMass": "1"})", "parameters/globalMass");

@@ -5,6 +5,7 @@
 // hand from the rules in docs/formats.md.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <string>
 
 #include "document_support.hpp"
@@ -137,6 +138,17 @@ TEST(VisibleSim, negative_coordinates_are_read_with_a_warning) {
   ASSERT_EQ(result.warnings.size(), 1U);
   EXPECT_TRUE(contains(result.warnings[0], "(-1,0,0)"));
   EXPECT_TRUE(contains(result.warnings[0], "outside gridSize"));
+}
+
+TEST(VisibleSim, a_grid_of_two_numbers_is_kept_and_heeded_by_nobody) {
+  const ReadDocument result = read(
+      "<world gridSize=\"2,2\"><blockList><block position=\"0,0,0\"/>"
+      "<block position=\"0,0,1\"/></blockList></world>");
+  EXPECT_EQ(result.document.modules.size(), 2U);
+  EXPECT_TRUE(std::ranges::any_of(result.warnings, [](const std::string& warning) {
+    return contains(warning, "gridSize '2,2' has two numbers");
+  }));
+  EXPECT_TRUE(contains(write_visiblesim(result.document), "gridSize=\"2,2\""));
 }
 
 TEST(VisibleSim, fixed_is_what_is_not_denied) {

@@ -167,6 +167,42 @@ TEST(VtuLattice, every_cell_of_the_file_has_its_points_whatever_the_lattice) {
   }
 }
 
+TEST(VtuLattice, obstacles_are_cells_of_a_kind_of_their_own) {
+  for (const auto& [name, lattice] : kLattices) {
+    SCOPED_TRACE(name);
+    model::RobotSpec spec = {.existing = {{0, 0, 0}}};
+    spec.lattice = lattice;
+    spec.support_z = {};
+    const base::Direction direction = *base::directions(lattice).begin();
+    const base::Cell beside = base::neighbour(lattice, {0, 0, 0}, direction);
+    spec.obstacles = {{.from = beside, .to = beside, .touch = {.hold = model::Hold::kBonded}}};
+    const model::Robot robot = make(spec);
+    std::ostringstream out;
+    write_vtu(out, robot, verdict::Assessment{}, {}, spec.obstacles);
+    const Grid grid(out.str());
+    ASSERT_EQ(grid.numbers("kind"), (std::vector<double>{0, 2, 3}));  // Module, facet, obstacle.
+    EXPECT_EQ(grid.numbers("bonded"), (std::vector<double>{0, 1, 1}));
+    EXPECT_EQ(grid.numbers("types").front(), grid.numbers("types").back());
+    EXPECT_EQ(grid.triple("cell", 2),
+              (Place{static_cast<double>(beside.x), static_cast<double>(beside.y),
+                     static_cast<double>(beside.z)}));
+    // It looks like the module, one pitch away.
+    const auto offsets = grid.numbers("offsets");
+    const auto connectivity = grid.numbers("connectivity");
+    const Place way = base::unit_vector(lattice, direction);
+    const auto count = static_cast<std::size_t>(offsets.front());
+    ASSERT_EQ(connectivity.size(), 2 * count + 4);
+    ASSERT_EQ(offsets.back(), static_cast<double>(connectivity.size()));
+    for (std::size_t i = 0; i < count; ++i) {
+      const auto point = static_cast<std::size_t>(connectivity[count + 4 + i]);
+      const Place step = difference(grid.triple("Points", point), grid.triple("Points", i));
+      for (std::size_t k = 0; k < 3; ++k) {
+        EXPECT_NEAR(step[k], kPitch * way[k], kTolerance);
+      }
+    }
+  }
+}
+
 TEST(VtuLattice, facets_are_squares_half_a_pitch_from_their_node) {
   for (const auto& [name, lattice] : kLattices) {
     model::RobotSpec spec = {.existing = {{0, 0, 0}}};

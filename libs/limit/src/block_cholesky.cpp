@@ -3,9 +3,9 @@
 #include "block_cholesky.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 
+#include "for_each.hpp"
+#include "holdfast/host/interruption.hpp"
 #include "nested_dissection.hpp"
 
 namespace holdfast::limit {
@@ -14,46 +14,13 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 
-/// Of a pivot's first value: less is rounding, and a pivot is never less.
-constexpr double kNothing = 1e-15;
-
-/// Factors the first `width` columns of the lower triangle of a symmetric matrix; the rest of it
-/// becomes what is left. `first_value` by column, before anything was eliminated.
-void eliminate(MatrixXd& dense, Index width, const Eigen::VectorXd& first_value) {
-  constexpr Index kPanel = 48;
-  const Index height = dense.rows();
-  for (Index begin = 0; begin < width; begin += kPanel) {
-    const Index count = std::min(kPanel, width - begin);
-    for (Index k = begin; k < begin + count; ++k) {
-      const double pivot = dense(k, k);
-      const double root = std::sqrt(std::max(pivot, kNothing * first_value[k]));
-      const Index below = begin + count - k - 1;
-      dense(k, k) = root;
-      dense.col(k).segment(k + 1, below) /= root;
-      for (Index j = k + 1; j < begin + count; ++j) {
-        dense.col(j).segment(j, begin + count - j) -=
-            dense(j, k) * dense.col(k).segment(j, begin + count - j);
-      }
-    }
-    const Index end = begin + count;
-    if (end == height) {
-      break;
-    }
-    auto under = dense.block(end, begin, height - end, count);
-    dense.block(begin, begin, count, count)
-        .triangularView<Eigen::Lower>()
-        .transpose()
-        .solveInPlace<Eigen::OnTheRight>(under);
-    dense.bottomRightCorner(height - end, height - end)
-        .selfadjointView<Eigen::Lower>()
-        .rankUpdate(under, -1);
-  }
-}
-
 }  // namespace
 
-BlockCholesky::BlockCholesky(std::span<const Eigen::Vector3d> places, std::span<const Edge> edges)
-    : place_(places.size()), node_(nested_dissection(places, edges)) {
+BlockCholesky::BlockCholesky(std::span<const Eigen::Vector3d> places, std::span<const Edge> edges,
+                             int thread_count)
+    : place_(places.size()),
+      node_(nested_dissection(places, edges)),
+      team_(thread_count, places.size()) {
   for (std::size_t i = 0; i < node_.size(); ++i) {
     place_[static_cast<std::size_t>(node_[i])] = static_cast<int>(i);
   }
@@ -63,6 +30,13 @@ BlockCholesky::BlockCholesky(std::span<const Eigen::Vector3d> places, std::span<
 /// Blocks that are stored as zeros when the next column, with so many rows below, joins.
 std::size_t BlockCholesky::Front::zeros_by(std::size_t row_count) const {
   return first == last ? 0 : static_cast<std::size_t>(last - first) * (row_count + 1 - rows.size());
+}
+
+int BlockCholesky::Front::seat(int row) const {
+  if (row < last) {
+    return row - first;
+  }
+  return last - first + static_cast<int>(std::ranges::lower_bound(rows, row) - rows.begin());
 }
 
 bool BlockCholesky::Front::may_join(int column, std::size_t row_count) const {
@@ -108,36 +82,71 @@ void BlockCholesky::make_fronts(std::span<const Edge> edges) {
       up.insert(up.end(), rows.begin() + 1, rows.end());
     }
   }
-  for (std::size_t i = 0; i < fronts_.size(); ++i) {
-    const Front& front = fronts_[i];
-    if (!front.rows.empty()) {
-      const int parent = front_of[static_cast<std::size_t>(front.rows.front())];
-      fronts_[static_cast<std::size_t>(parent)].children.push_back(static_cast<int>(i));
-    }
-    work_ += static_cast<double>(front.width()) * front.height() * front.height();
-  }
+  link_fronts(front_of);
+  make_branches();
   left_.resize(fronts_.size());
-  local_.resize(n);
 }
 
-void BlockCholesky::gather(Front& front, std::span<const Block> diagonal,
+void BlockCholesky::link_fronts(const std::vector<int>& front_of) {
+  for (std::size_t i = 0; i < fronts_.size(); ++i) {
+    Front& front = fronts_[i];
+    if (!front.rows.empty()) {
+      front.parent = front_of[static_cast<std::size_t>(front.rows.front())];
+      Front& parent = fronts_[static_cast<std::size_t>(front.parent)];
+      parent.children.push_back(static_cast<int>(i));
+      for (const int row : front.rows) {
+        front.seats.push_back(parent.seat(row));
+      }
+    }
+    work_ += front.work();
+  }
+}
+
+/// Threads take a branch each, the largest subtrees that are small beside the whole, and then share
+/// the fronts of the stem.
+void BlockCholesky::make_branches() {
+  constexpr double kShareMax = 1.0 / 32;
+  std::vector<double> work(fronts_.size(), 0);
+  std::vector<std::size_t> branch(fronts_.size());
+  for (std::size_t i = 0; i < fronts_.size(); ++i) {
+    work[i] += fronts_[i].work();
+    if (fronts_[i].parent >= 0) {
+      work[static_cast<std::size_t>(fronts_[i].parent)] += work[i];
+    }
+  }
+  for (std::size_t i = fronts_.size(); i-- > 0;) {  // Parents come first.
+    const int parent = fronts_[i].parent;
+    const bool is_branch = work[i] <= kShareMax * work_;
+    const bool is_above =
+        is_branch && parent >= 0 && work[static_cast<std::size_t>(parent)] <= kShareMax * work_;
+    if (is_above) {
+      branch[i] = branch[static_cast<std::size_t>(parent)];
+      branches_[branch[i]].push_back(i);
+    } else if (is_branch) {
+      branch[i] = branches_.size();
+      branches_.push_back({i});
+    } else {
+      stem_.push_back(i);
+    }
+  }
+  std::ranges::reverse(stem_);
+  for (std::vector<std::size_t>& fronts : branches_) {
+    std::ranges::reverse(fronts);
+  }
+}
+
+void BlockCholesky::gather(const Front& front, std::span<const Block> diagonal,
                            std::span<const Block> coupling, MatrixXd& dense) {
   dense.setZero(front.height(), front.height());
   for (int column = front.first; column < front.last; ++column) {
-    local_[static_cast<std::size_t>(column)] = 6 * (column - front.first);
-  }
-  for (std::size_t i = 0; i < front.rows.size(); ++i) {
-    local_[static_cast<std::size_t>(front.rows[i])] = front.width() + 6 * static_cast<int>(i);
-  }
-  for (int column = front.first; column < front.last; ++column) {
-    const int at = local_[static_cast<std::size_t>(column)];
+    const int at = 6 * (column - front.first);
     dense.block<6, 6>(at, at) =
         diagonal[static_cast<std::size_t>(node_[static_cast<std::size_t>(column)])];
   }
   for (const int e : front.edges) {
     const auto& [a, b] = edges_[static_cast<std::size_t>(e)];
-    const int at_a = local_[static_cast<std::size_t>(a)];
-    const int at_b = local_[static_cast<std::size_t>(b)];
+    const int at_a = 6 * front.seat(a);
+    const int at_b = 6 * front.seat(b);
     const Block& block = coupling[static_cast<std::size_t>(e)];
     if (a > b) {
       dense.block<6, 6>(at_a, at_b) += block;
@@ -146,12 +155,11 @@ void BlockCholesky::gather(Front& front, std::span<const Block> diagonal,
     }
   }
   for (const int child : front.children) {
-    const std::vector<int>& rows = fronts_[static_cast<std::size_t>(child)].rows;
+    const std::vector<int>& seats = fronts_[static_cast<std::size_t>(child)].seats;
     MatrixXd& left = left_[static_cast<std::size_t>(child)];
-    for (std::size_t j = 0; j < rows.size(); ++j) {
-      for (std::size_t i = j; i < rows.size(); ++i) {
-        dense.block<6, 6>(local_[static_cast<std::size_t>(rows[i])],
-                          local_[static_cast<std::size_t>(rows[j])]) +=
+    for (std::size_t j = 0; j < seats.size(); ++j) {
+      for (std::size_t i = j; i < seats.size(); ++i) {
+        dense.block<6, 6>(6 * seats[i], 6 * seats[j]) +=
             left.block<6, 6>(6 * static_cast<Index>(i), 6 * static_cast<Index>(j));
       }
     }
@@ -160,53 +168,93 @@ void BlockCholesky::gather(Front& front, std::span<const Block> diagonal,
 }
 
 void BlockCholesky::factor(std::span<const Block> diagonal, std::span<const Block> coupling) {
-  MatrixXd dense;
-  Eigen::VectorXd first_value;
-  for (std::size_t i = 0; i < fronts_.size(); ++i) {
-    Front& front = fronts_[i];
-    gather(front, diagonal, coupling, dense);
-    const Index width = front.width();
-    first_value.resize(width);
-    for (int column = front.first; column < front.last; ++column) {
-      first_value.segment<6>(6 * (column - front.first)) =
-          diagonal[static_cast<std::size_t>(node_[static_cast<std::size_t>(column)])].diagonal();
+  for_each(team_, branches_.size(), [&](std::size_t branch) {
+    Workspace work;
+    host::Team alone(1);
+    for (const std::size_t front : branches_[branch]) {
+      factor(front, diagonal, coupling, work, alone);
     }
-    eliminate(dense, width, first_value);
-    front.columns = dense.leftCols(width);
-    const Index rest = dense.rows() - width;
-    left_[i] = dense.bottomRightCorner(rest, rest);
+  });
+  Workspace work;
+  for (const std::size_t front : stem_) {
+    factor(front, diagonal, coupling, work, team_);
   }
 }
 
-void BlockCholesky::solve(Eigen::Ref<MatrixXd> x) const {
-  MatrixXd ordered(x.rows(), x.cols());
-  for (std::size_t i = 0; i < node_.size(); ++i) {
-    ordered.middleRows<6>(6 * static_cast<Index>(i)) = x.middleRows<6>(6 * node_[i]);
+void BlockCholesky::factor(std::size_t index, std::span<const Block> diagonal,
+                           std::span<const Block> coupling, Workspace& work, host::Team& team) {
+  host::ask_whether_to_go_on();
+  Front& front = fronts_[index];
+  gather(front, diagonal, coupling, work.dense);
+  const Index width = front.width();
+  work.first_value.resize(width);
+  for (int column = front.first; column < front.last; ++column) {
+    work.first_value.segment<6>(6 * (column - front.first)) =
+        diagonal[static_cast<std::size_t>(node_[static_cast<std::size_t>(column)])].diagonal();
   }
-  MatrixXd below;
-  for (const Front& front : fronts_) {
-    const Index width = front.width();
-    auto top = ordered.middleRows(6 * front.first, width);
-    front.columns.topRows(width).triangularView<Eigen::Lower>().solveInPlace(top);
-    below.noalias() = front.columns.bottomRows(front.columns.rows() - width) * top;
-    for (std::size_t i = 0; i < front.rows.size(); ++i) {
-      ordered.middleRows<6>(6 * front.rows[i]) -= below.middleRows<6>(6 * static_cast<Index>(i));
+  work.elimination.run(work.dense, width, work.first_value, team);
+  front.columns = work.dense.leftCols(width);
+  const Index rest = work.dense.rows() - width;
+  left_[index] = work.dense.bottomRightCorner(rest, rest);
+}
+
+void BlockCholesky::solve(Eigen::VectorXd& x) {
+  Eigen::VectorXd ordered(x.size());
+  for (std::size_t i = 0; i < node_.size(); ++i) {
+    ordered.segment<6>(6 * static_cast<Index>(i)) = x.segment<6>(6 * node_[i]);
+  }
+  for_each(team_, branches_.size(), [&](std::size_t branch) {
+    for (const std::size_t front : branches_[branch]) {
+      substitute_forward(fronts_[front], ordered);
+    }
+  });
+  for (const std::size_t front : stem_) {
+    substitute_forward(fronts_[front], ordered);
+  }
+  for (auto front = stem_.rbegin(); front != stem_.rend(); ++front) {
+    substitute_back(fronts_[*front], ordered);
+  }
+  for_each(team_, branches_.size(), [&](std::size_t branch) {
+    const std::vector<std::size_t>& fronts = branches_[branch];
+    for (auto front = fronts.rbegin(); front != fronts.rend(); ++front) {
+      substitute_back(fronts_[*front], ordered);
+    }
+  });
+  for (std::size_t i = 0; i < node_.size(); ++i) {
+    x.segment<6>(6 * node_[i]) = ordered.segment<6>(6 * static_cast<Index>(i));
+  }
+}
+
+/// Rows of its own in x, and what is handed to its parent's, by way of those of its children.
+void BlockCholesky::substitute_forward(Front& front, Eigen::VectorXd& x) {
+  const Index width = front.width();
+  auto top = x.segment(6 * front.first, width);
+  front.handed.setZero(front.height() - width);
+  for (const int child_index : front.children) {
+    const Front& child = fronts_[static_cast<std::size_t>(child_index)];
+    for (std::size_t i = 0; i < child.seats.size(); ++i) {
+      const Index seat = 6 * child.seats[i];
+      const auto part = child.handed.segment<6>(6 * static_cast<Index>(i));
+      if (seat < width) {
+        top.segment<6>(seat) += part;
+      } else {
+        front.handed.segment<6>(seat - width) += part;
+      }
     }
   }
-  for (auto at = fronts_.rbegin(); at != fronts_.rend(); ++at) {
-    const Front& front = *at;
-    const Index width = front.width();
-    below.resize(front.columns.rows() - width, x.cols());
-    for (std::size_t i = 0; i < front.rows.size(); ++i) {
-      below.middleRows<6>(6 * static_cast<Index>(i)) = ordered.middleRows<6>(6 * front.rows[i]);
-    }
-    auto top = ordered.middleRows(6 * front.first, width);
-    top.noalias() -= front.columns.bottomRows(below.rows()).transpose() * below;
-    front.columns.topRows(width).triangularView<Eigen::Lower>().transpose().solveInPlace(top);
+  front.columns.topRows(width).triangularView<Eigen::Lower>().solveInPlace(top);
+  front.handed.noalias() -= front.columns.bottomRows(front.handed.size()) * top;
+}
+
+void BlockCholesky::substitute_back(const Front& front, Eigen::VectorXd& x) const {
+  const Index width = front.width();
+  Eigen::VectorXd below(front.height() - width);
+  for (std::size_t i = 0; i < front.rows.size(); ++i) {
+    below.segment<6>(6 * static_cast<Index>(i)) = x.segment<6>(6 * front.rows[i]);
   }
-  for (std::size_t i = 0; i < node_.size(); ++i) {
-    x.middleRows<6>(6 * node_[i]) = ordered.middleRows<6>(6 * static_cast<Index>(i));
-  }
+  auto top = x.segment(6 * front.first, width);
+  top.noalias() -= front.columns.bottomRows(below.size()).transpose() * below;
+  front.columns.topRows(width).triangularView<Eigen::Lower>().transpose().solveInPlace(top);
 }
 
 }  // namespace holdfast::limit

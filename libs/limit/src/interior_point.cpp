@@ -23,7 +23,8 @@ bool is_closed(const ProgramBounds& bounds, double tolerance) {
 /// with x = (f, lambda), c = (0, -1), s and z in the cones, tau and kappa not negative.
 class InteriorPoint {
  public:
-  InteriorPoint(const ConeProgram& program, double softness) : system_(program, softness) {
+  InteriorPoint(const ConeProgram& program, double softness, int thread_count)
+      : system_(program, softness, thread_count) {
     const VectorXd centre = system_.centre();
     point_ = {.x = VectorXd::Zero(system_.force_count()),
               .y = VectorXd::Zero(program.loads.size()),
@@ -171,19 +172,20 @@ class InteriorPoint {
 
 }  // namespace
 
-ProgramBounds maximise_factor(const ConeProgram& program, double tolerance, double low_enough,
+ProgramBounds maximise_factor(const ConeProgram& program, const ProgramOptions& options,
                               const std::function<bool()>& is_over) {
   ProgramBounds best;
   // What has no limit is given so little; where rounding wins too early, more.
   for (const double softness : {1e-12, 1e-8, 1e-10}) {
-    ProgramBounds bounds = InteriorPoint(program, softness).run(tolerance, low_enough, is_over);
+    ProgramBounds bounds = InteriorPoint(program, softness, options.thread_count)
+                               .run(options.tolerance, options.low_enough, is_over);
     best.low = std::max(best.low, bounds.low);
     if (bounds.high < best.high) {
       best.high = bounds.high;
       best.velocities = std::move(bounds.velocities);
     }
     best.iteration_count += bounds.iteration_count;
-    if (is_closed(best, tolerance) || best.low >= low_enough || is_over()) {
+    if (is_closed(best, options.tolerance) || best.low >= options.low_enough || is_over()) {
       break;
     }
   }

@@ -5,6 +5,7 @@
 #include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 
 namespace holdfast::limit {
@@ -40,13 +41,13 @@ std::vector<BlockCholesky::Edge> edges_of(const ConeProgram& program,
 
 }  // namespace
 
-KktSystem::KktSystem(const ConeProgram& program, double softness)
+KktSystem::KktSystem(const ConeProgram& program, double softness, int thread_count)
     : program_(program),
       softness_(softness),
       cones_(program.cones),
       h_(program.h.size() + 1),
       edges_(edges_of(program, edge_of_joint_)),
-      cholesky_(program.places, edges_) {
+      cholesky_(program.places, edges_, thread_count) {
   h_ << program.h, program.factor_max * kBoundScale;
   cones_.push_back({.row = program.h.size(), .size = 1});
   centre_.resize(h_.size());
@@ -175,7 +176,7 @@ void KktSystem::make_compliances() {
 
 /// Adds to forces and velocities what solves  H x + A'y = rest.x,  A x = rest.y  with H = G' W^-2
 /// G, but for the stiffness of what has no limit, and rounding.
-void KktSystem::improve(KktVector& solution, const KktVector& rest) const {
+void KktSystem::improve(KktVector& solution, const KktVector& rest) {
   VectorXd force = rest.x;
   VectorXd g = -rest.y;
   for (Index j = 0; j < joint_count(); ++j) {
@@ -210,7 +211,7 @@ void KktSystem::improve(KktVector& solution, const KktVector& rest) const {
 }
 
 /// Iterative refinement; the prices follow from the forces.
-KktVector KktSystem::solve(const KktVector& right_side) const {
+KktVector KktSystem::solve(const KktVector& right_side) {
   const auto with_prices = [&](KktVector v) {
     v.z = inverse_scaled(inverse_scaled(rows_times(v.x) - right_side.z));
     return v;
@@ -227,24 +228,30 @@ KktVector KktSystem::solve(const KktVector& right_side) const {
                                   .z = {}});
   KktVector rest = left_by(result);
   constexpr int kStepMax = 8;
-  for (int i = 0; i < kStepMax; ++i) {
+  constexpr double kEnough = 1e-12;
+  const double enough = std::max(kEnough * size_of(rest), std::numeric_limits<double>::min());
+  for (int i = 0; i < kStepMax && size_of(rest) > enough; ++i) {
     const double size = size_of(rest);
     KktVector better = result;
     improve(better, rest);
     better = with_prices(std::move(better));
     KktVector left = left_by(better);
-    constexpr double kLittle = 0.9;
-    if (!(size_of(left) < kLittle * size)) {
+    if (!(size_of(left) < size)) {
       break;
     }
     result = std::move(better);
     rest = std::move(left);
-    constexpr double kEnough = 1e-15;
-    if (size_of(rest) <= kEnough) {
+    constexpr double kLittle = 0.1;  // What more there is to gain is rounding.
+    if (size_of(rest) > kLittle * size) {
       break;
     }
   }
   return result;
+}
+
+double factor_work(const ConeProgram& program) {
+  std::vector<std::size_t> edge_of_joint;
+  return BlockCholesky(program.places, edges_of(program, edge_of_joint), 1).work();
 }
 
 VectorXd KktSystem::scaled(const VectorXd& u) const {

@@ -26,7 +26,7 @@ class KktSystem {
  public:
   /// `softness` is the compliance that directions without limit are given, in units of the program;
   /// the refinement takes it back.
-  KktSystem(const ConeProgram& program, double softness);
+  KktSystem(const ConeProgram& program, double softness, int thread_count);
 
   Eigen::Index force_count() const { return 6 * joint_count() + 1; }
 
@@ -43,7 +43,7 @@ class KktSystem {
 
   /// False: rounding has left the cones.
   bool factor(const Eigen::VectorXd& s, const Eigen::VectorXd& z);
-  KktVector solve(const KktVector& right_side) const;
+  KktVector solve(const KktVector& right_side);
 
   // By cone:
   Eigen::VectorXd scaled(const Eigen::VectorXd& u) const;          ///< W u
@@ -60,7 +60,7 @@ class KktSystem {
   Eigen::Index joint_count() const { return static_cast<Eigen::Index>(program_.joints.size()); }
 
   void make_compliances();
-  void improve(KktVector& solution, const KktVector& rest) const;
+  void improve(KktVector& solution, const KktVector& rest);
 
   const ConeProgram& program_;
   double softness_;
@@ -76,5 +76,8 @@ class KktSystem {
   Eigen::VectorXd loads_solved_;
   double border_ = 0;
 };
+
+/// Multiplications that factoring a program's matrix takes, about.
+double factor_work(const ConeProgram& program);
 
 }  // namespace holdfast::limit

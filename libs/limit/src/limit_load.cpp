@@ -9,6 +9,7 @@
 
 #include "determinate.hpp"
 #include "interior_point.hpp"
+#include "kkt_system.hpp"
 #include "wrench.hpp"
 
 namespace holdfast::limit {
@@ -114,21 +115,6 @@ std::vector<base::Vec6<double>> velocities_of(const Structure& structure, const 
   return velocities;
 }
 
-/// Multiplications that one factorization of the whole takes, about.
-double factor_work(const Structure& structure) {
-  std::vector<Eigen::Vector3d> places;
-  for (const Body& body : structure.bodies) {
-    places.emplace_back(body.centre_mm[0], body.centre_mm[1], body.centre_mm[2]);
-  }
-  std::vector<BlockCholesky::Edge> edges;
-  for (const Joint& joint : structure.joints) {
-    if (joint.b != Joint::kGround) {
-      edges.emplace_back(joint.a, joint.b);
-    }
-  }
-  return BlockCholesky(places, edges).work();
-}
-
 /// Narrows the bracket: more joints become free, until both bounds meet.
 class Search {
  public:
@@ -169,7 +155,8 @@ class Search {
       ratios_.push_back(joint_ratio(structure_.joints[ratios_.size()], force));
     }
     result_.low = std::max(factor_of(ratios_), factor_of(determinate_ratios()));
-    if (factor_work(structure_) <= kWorkMax) {
+    whole_work_ = factor_work(ConeProgram(structure_, whole(structure_)));
+    if (whole_work_ <= kWorkMax) {
       return;
     }
     double largest = 0;
@@ -200,16 +187,35 @@ class Search {
     return 1 / std::max(1 / kFactorMax, *std::ranges::max_element(ratios));
   }
 
-  /// About two seconds; chosen by trying both on robots of 10,000 modules.
+  /// Less than a second; chosen by trying both on robots of 10,000 modules.
   static constexpr double kWorkMax = 1e10;
 
   bool all_free() const {
     return std::ranges::all_of(is_free_, [](char free) { return free != 0; });
   }
 
+  /// Parts whose work is no longer small beside that of the whole are not worth their rounds.
+  bool is_part_small(const Part& upper, const Part& lower) const {
+    constexpr double kShareMax = 0.1;
+    return factor_work(ConeProgram(structure_, upper)) +
+               factor_work(ConeProgram(structure_, lower)) <=
+           kShareMax * whole_work_;
+  }
+
   bool round_is_useful() {
+    Part upper;
+    Part lower;
+    if (!all_free()) {
+      upper = with_rigid_groups(structure_, is_free_);
+      lower = with_known_forces(structure_, is_free_, options_.known_forces);
+      if (!is_part_small(upper, lower)) {
+        is_free_.assign(is_free_.size(), 1);
+      }
+    }
     const bool is_whole = all_free();
-    const Part upper = is_whole ? whole(structure_) : with_rigid_groups(structure_, is_free_);
+    if (is_whole) {
+      upper = whole(structure_);
+    }
     const ProgramBounds around = solve(upper, is_whole ? kFactorMax : 2 * kFactorMax);
     if (around.high < result_.high) {
       result_.high = around.high;
@@ -219,7 +225,6 @@ class Search {
       result_.low = std::max(result_.low, around.low);
       return false;
     }
-    const Part lower = with_known_forces(structure_, is_free_, options_.known_forces);
     result_.low = std::max(result_.low, solve(lower, kFactorMax).low);
     if (options_.progress) {
       options_.progress(result_.low, result_.high);
@@ -237,7 +242,10 @@ class Search {
     result_.row_count_max =
         std::max(result_.row_count_max, static_cast<std::size_t>(program.loads.size()));
     // A tenth of what is asked for, as both sides of the bracket take their share.
-    return maximise_factor(program, options_.tolerance / 10, low_enough,
+    return maximise_factor(program,
+                           {.tolerance = options_.tolerance / 10,
+                            .low_enough = low_enough,
+                            .thread_count = options_.thread_count},
                            [&] { return seconds_left() <= 0; });
   }
 
@@ -250,11 +258,6 @@ class Search {
     }
     if (!free_near(is_near)) {
       free_beside_free();
-    }
-    constexpr double kMost = 0.6;  // Beyond this all are as quickly done.
-    if (static_cast<double>(std::ranges::count(is_free_, 1)) >
-        kMost * static_cast<double>(is_free_.size())) {
-      is_free_.assign(is_free_.size(), 1);
     }
   }
 
@@ -309,6 +312,7 @@ class Search {
   std::vector<char> is_free_;   ///< By joint.
   std::vector<double> ratios_;  ///< By joint, of the known forces; empty if all are free.
   std::vector<base::Vec6<double>> mechanism_;  ///< Velocities at the upper bound.
+  double whole_work_ = 0;                      ///< Of factoring the whole once.
   LimitLoad result_;
 };
 

@@ -13,6 +13,9 @@ namespace {
 
 /// Speeds below this share of the largest count as none: what cones of friction leave.
 constexpr double kStill = 1e-4;
+/// What turns by less than this share of its speed, about an axis fifty radii of gyration away or
+/// more, slides in words; where something rests it tips all the same.
+constexpr double kSlowTurn = 0.02;
 
 Vector3 values(const Vector3d& vector) { return {vector[0], vector[1], vector[2]}; }
 
@@ -54,7 +57,7 @@ Motion motion_of(const Vector6d& remainder, const std::vector<ContactPoint>& poi
   const Vector3d velocity = remainder.head<3>() / scale;
   const Vector3d angular = remainder.tail<3>() / (scale * gyration_mm);
   Motion motion = {.velocity = values(velocity), .angular = values(angular)};
-  const bool is_turning = angular.norm() * gyration_mm > kStill;
+  const double turning = angular.norm() * gyration_mm;
   std::vector<Vector3d> still;
   Vector3d sliding = velocity;
   bool is_touching = false;
@@ -69,19 +72,19 @@ Motion motion_of(const Vector6d& remainder, const std::vector<ContactPoint>& poi
       is_touching = true;
     }
   }
-  if (!is_turning) {
-    motion.kind = is_touching ? Motion::Kind::kSlides : Motion::Kind::kLeaves;
-    if (is_touching && sliding.norm() > kStill) {
-      motion.velocity = values(sliding.normalized());
-    }
-  } else if (!still.empty()) {
+  if (turning > kStill && !still.empty()) {
     motion.kind = Motion::Kind::kTips;
     set_edge(motion, still, angular, centre);
-  } else {
+  } else if (turning > kSlowTurn) {
     motion.kind = Motion::Kind::kTurns;
     const Vector3d axis = angular.cross(velocity) / angular.squaredNorm();
     motion.from_mm = values(axis + centre);
     motion.to_mm = motion.from_mm;
+  } else {
+    motion.kind = is_touching ? Motion::Kind::kSlides : Motion::Kind::kLeaves;
+    if (is_touching && sliding.norm() > kStill) {
+      motion.velocity = values(sliding.normalized());
+    }
   }
   return motion;
 }

@@ -131,6 +131,19 @@ TEST(RigidStability, OnIceAMomentTurnsIt) {
   EXPECT_EQ(text(*found.motion), "turns about the axis through (0, 0, 20) along +z");
 }
 
+// On ice, 1 N and a moment of 1 N times a share of the radius of gyration, 20 mm: the axis of
+// turning is 20 mm over that share away.
+TEST(RigidStability, WhatHardlyTurnsSlidesInWords) {
+  BodyLoad load = weight_at({0, 0, 20});
+  const std::vector<ContactFacet> facets = {floor_at(0, 0, 0.0)};
+  load.payload_n = {1, 0, 0};
+  load.payload_nmm = {0, 0, 20 * 0.01};
+  EXPECT_EQ(text(*assess_rigid(facets, load).motion), "slides along +x");
+  load.payload_nmm = {0, 0, 20 * 0.5};
+  EXPECT_EQ(text(*assess_rigid(facets, load).motion),
+            "turns about the axis through (0, 40, 20) along +z");
+}
+
 // A payload that holds down: 10 N of weight and 10 N that stay vertical, on feet 20 mm from the
 // axis. Weight turned by an angle a tips it where 10 h sin a = 20 (10 cos a + 10).
 TEST(RigidStability, APayloadDoesNotTurnWithGravity) {

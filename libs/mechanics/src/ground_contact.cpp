@@ -18,7 +18,6 @@ constexpr int kFy = 1;
 constexpr int kFz = 2;
 constexpr int kMx = 3;
 constexpr int kMy = 4;
-constexpr int kMz = 5;
 
 template <class Real>
 std::int8_t sign(Real value) {
@@ -59,38 +58,42 @@ ContactState regularised_state(const GroundFacet<Real>& facet, const Vec6<Real>&
 /// The cone problem in forces: trial = [f0 f1 f2] = k s with f1 = mx^/l, f2 = my^/l.
 template <class Real>
 struct ConeProblem {
-  Real k0, k1, k2;  // N/mm
-  Real f0, a1, a2;  // f0 = k0 s0, a = |k s|
+  Real f0;                // f0 = k0 s0
+  std::array<Real, 2> a;  // |f1|, |f2|
+  Real corner_pressure;   // Pressure p while standing on one corner.
 
-  ConeProblem(const GroundFacet<Real>& facet, const Vec6<Real>& trial)
-      : k0(facet.stiffness[kFz]),
-        k1(facet.stiffness[kMx] / (facet.half_width * facet.half_width)),
-        k2(facet.stiffness[kMy] / (facet.half_width * facet.half_width)),
-        f0(trial[kFz]),
-        a1(absolute(trial[kMx]) / facet.half_width),
-        a2(absolute(trial[kMy]) / facet.half_width) {}
-
-  /// Pressure p while standing on one corner.
-  Real corner_pressure() const { return (k0 * (a1 / k1 + a2 / k2) - f0) / (1 + k0 / k1 + k0 / k2); }
+  ConeProblem(const GroundFacet<Real>& facet, const Vec6<Real>& trial) : f0(trial[kFz]) {
+    const Real k0 = facet.stiffness[kFz];
+    Real sum = 0;
+    Real share = 1;
+    for (std::size_t i = 0; i < 2; ++i) {
+      const Real k = facet.stiffness[kMx + i] / (facet.half_width * facet.half_width);
+      a[i] = absolute(trial[kMx + i]) / facet.half_width;
+      sum += a[i] / k;
+      share += k0 / k;
+    }
+    corner_pressure = (k0 * sum - f0) / share;
+  }
 };
 
 template <class Real>
 ContactState unilateral_state(const GroundFacet<Real>& facet, const Vec6<Real>& trial) {
   const ConeProblem<Real> cone(facet, trial);
-  if (cone.a1 <= -cone.f0 && cone.a2 <= -cone.f0) {
+  const auto [a1, a2] = cone.a;
+  if (a1 <= -cone.f0 && a2 <= -cone.f0) {
     return {.pressed = cone.f0 < 0};
   }
-  const Real p = cone.corner_pressure();
+  const Real p = cone.corner_pressure;
   if (p <= 0) {
     return {.pressed = false};
   }
   // p of the corner is a weighted mean of an edge's pressure and the other torque's force, so a
   // torque that does not exceed it does not tilt; if neither exceeded it the facet were closed.
   ContactState state;
-  if (cone.a1 > p || cone.a1 >= cone.a2) {
+  if (a1 > p || a1 >= a2) {
     state.tilt_x = sign(trial[kMx]);
   }
-  if (cone.a2 > p || cone.a2 > cone.a1) {
+  if (a2 > p || a2 > a1) {
     state.tilt_y = sign(trial[kMy]);
   }
   return state;
@@ -119,59 +122,40 @@ Vec6<Real> regularised_force(const GroundFacet<Real>& facet, ContactState state,
   return force;
 }
 
-/// The pressed part of the cone law: p is linear in the trial force, fz = -p, m^ = sign p l.
-/// Components that do not tilt keep their trial value.
+/// The cone law. Pressed, p is linear in the trial force, fz = -p, m^ = sign p l where the facet
+/// tilts; of all other components the facet holds the trial value, or nothing.
 template <class Real>
-Mat6<Real> pressed_corrector(const GroundFacet<Real>& facet, ContactState state) {
-  Mat6<Real> matrix;
-  for (int i = 0; i < 6; ++i) {
-    matrix.at(i, i) = 1;
-  }
+Vec6<Real> unilateral_force(const GroundFacet<Real>& facet, ContactState state, bool is_held,
+                            const Vec6<Real>& trial) {
+  const Real keep = 1 - facet.gamma;
   const Real l = facet.half_width;
   const Real k0 = facet.stiffness[kFz];
-  const int rows[2] = {kMx, kMy};
-  const std::int8_t tilts[2] = {state.tilt_x, state.tilt_y};
-  Real share = 1;
-  for (int i = 0; i < 2; ++i) {
-    share += tilts[i] != 0 ? k0 * l * l / facet.stiffness[static_cast<std::size_t>(rows[i])] : 0;
-  }
+  const std::array<std::int8_t, 6> tilts = {0, 0, 0, state.tilt_x, state.tilt_y, 0};
   // p = (sum over tilts of k0/k |m^|/l - fz) / share, with k = stiffness / l^2.
-  Vec6<Real> pressure{};
-  pressure[kFz] = -1 / share;
-  for (int i = 0; i < 2; ++i) {
-    if (tilts[i] != 0) {
-      const auto row = static_cast<std::size_t>(rows[i]);
-      pressure[row] = static_cast<Real>(tilts[i]) * k0 * l / facet.stiffness[row] / share;
-    }
+  Real share = 1;
+  for (std::size_t i = kMx; i <= kMy; ++i) {
+    share += tilts[i] != 0 ? k0 * l * l / facet.stiffness[i] : 0;
   }
-  for (int column = 0; column < 6; ++column) {
-    const Real p = pressure[static_cast<std::size_t>(column)];
-    matrix.at(kFz, column) = -p;
-    for (int i = 0; i < 2; ++i) {
-      if (tilts[i] != 0) {
-        matrix.at(rows[i], column) = static_cast<Real>(tilts[i]) * l * p;
+  Vec6<Real> force{};
+  for (std::size_t row = 0; row < 6; ++row) {
+    const bool is_sideways = row < kFz || row > kMy;
+    const bool is_held_here = is_sideways ? is_held : state.pressed;
+    const bool follows = state.pressed && (row == kFz || tilts[row] != 0);
+    if (!follows) {
+      force[row] += ((is_held_here ? keep : Real{0}) + facet.gamma) * trial[row];
+      continue;
+    }
+    const Real lever = row == kFz ? Real{-1} : static_cast<Real>(tilts[row]) * l;
+    for (std::size_t i = kFz; i <= kMy; ++i) {
+      Real pressure = -1 / share;
+      if (i != kFz) {
+        pressure = static_cast<Real>(tilts[i]) * k0 * l / facet.stiffness[i] / share;
       }
+      const Real entry = lever * pressure * keep;
+      force[row] += (i == row ? entry + facet.gamma : entry) * trial[i];
     }
   }
-  return matrix;
-}
-
-template <class Real>
-Mat6<Real> unilateral_corrector(const GroundFacet<Real>& facet, ContactState state, bool is_held) {
-  Mat6<Real> matrix;
-  if (state.pressed) {
-    matrix = pressed_corrector(facet, state);
-  }
-  for (const int sideways : {kFx, kFy, kMz}) {
-    matrix.at(sideways, sideways) = is_held ? Real{1} : Real{0};
-  }
-  for (Real& value : matrix.values) {
-    value *= 1 - facet.gamma;
-  }
-  for (int i = 0; i < 6; ++i) {
-    matrix.at(i, i) += facet.gamma;
-  }
-  return matrix;
+  return force;
 }
 
 }  // namespace
@@ -214,7 +198,7 @@ template <class Real>
 Vec6<Real> corrected(const GroundFacet<Real>& facet, ContactState state, bool is_held,
                      const Vec6<Real>& trial) {
   return is_regularised(facet) ? regularised_force(facet, state, trial)
-                               : multiply(unilateral_corrector(facet, state, is_held), trial);
+                               : unilateral_force(facet, state, is_held, trial);
 }
 
 template <class Real>
@@ -240,30 +224,32 @@ Mat6<Real> contact_tangent(const GroundFacet<Real>& facet, ContactState state, b
 template <class Real>
 Vec6<Real> symmetric_product(const GroundFacet<Real>& facet, ContactState state, bool is_held,
                              const Vec6<Real>& u) {
-  const bool is_unilateral = facet.law == ContactLaw::kUnilateral;
+  const bool is_unilateral = !is_regularised(facet);
   const Real gamma = facet.gamma;
   const Vec6<Real> trial = trial_force(facet, u);
   const bool holds_sideways = is_unilateral ? is_held : state.pressed;
   Vec6<Real> force = trial;
-  for (const int i : {kFx, kFy, kMz}) {
-    force[static_cast<std::size_t>(i)] *= holds_sideways ? Real{1} : gamma;
-  }
-  for (const int i : {kFz, kMx, kMy}) {
-    force[static_cast<std::size_t>(i)] *= state.pressed ? Real{1} : gamma;
+  for (std::size_t i = 0; i < 6; ++i) {
+    const bool is_sideways = i < kFz || i > kMy;
+    force[i] *= (is_sideways ? holds_sideways : state.pressed) ? Real{1} : gamma;
   }
   if (state.pressed && (state.tilt_x != 0 || state.tilt_y != 0)) {
-    const Real ex = -static_cast<Real>(state.tilt_x) * facet.half_width;
-    const Real ey = -static_cast<Real>(state.tilt_y) * facet.half_width;
+    const std::array<Real, 2> tilts = {static_cast<Real>(state.tilt_x),
+                                       static_cast<Real>(state.tilt_y)};
     const Real k0 = facet.stiffness[kFz];
-    Real kappa = k0;
-    if (is_unilateral) {
-      kappa = (1 - gamma) * k0 /
-              (1 + k0 * ex * ex / facet.stiffness[kMx] + k0 * ey * ey / facet.stiffness[kMy]);
+    Real give = 1;
+    Real lift = u[kFz];
+    for (std::size_t i = 0; i < 2; ++i) {
+      const Real e = -tilts[i] * facet.half_width;
+      give += k0 * e * e / facet.stiffness[kMx + i];
+      lift += e * u[kMx + i];
     }
-    const Real pressed = kappa * (u[2] + ex * u[3] + ey * u[4]);
+    const Real pressed = (is_unilateral ? (1 - gamma) * k0 / give : k0) * lift;
     force[kFz] = pressed + (is_unilateral ? gamma * trial[kFz] : Real{0});
-    force[kMx] = (state.tilt_x != 0 ? gamma : Real{1}) * trial[kMx] + ex * pressed;
-    force[kMy] = (state.tilt_y != 0 ? gamma : Real{1}) * trial[kMy] + ey * pressed;
+    for (std::size_t i = 0; i < 2; ++i) {
+      const Real e = -tilts[i] * facet.half_width;
+      force[kMx + i] = (tilts[i] != 0 ? gamma : Real{1}) * trial[kMx + i] + e * pressed;
+    }
   }
   return at_node(facet, force);
 }

@@ -15,6 +15,29 @@ std::optional<double> smaller(const std::optional<double>& a, const std::optiona
   return a ? a : b;
 }
 
+/// Of newtons, whose squares neither overflow nor vanish: std::hypot, which sees to that, takes
+/// ten times as long.
+double length(double x, double y) { return std::sqrt(x * x + y * y); }
+
+/// Calls `visit` with each limit that a connection has, and its load ratio.
+template <class Visit>
+void for_each_limit(const ConnectorLaw& law, const ConnectionForce& force, const Visit& visit) {
+  const double torsion = std::abs(force.torsion_nmm);
+  if (std::isfinite(law.strength_n)) {
+    visit(Limit::kOpens, (force.axial_n + force.bending_nmm / law.lever_mm) / law.strength_n);
+    if (law.friction) {
+      const double across = force.shear_n + torsion / law.torsion_radius_mm;
+      visit(Limit::kSlips, (force.axial_n + across / *law.friction) / law.strength_n);
+    }
+  }
+  if (std::isfinite(law.shear_strength_n)) {
+    visit(Limit::kShears, force.shear_n / law.shear_strength_n);
+  }
+  if (std::isfinite(law.torsion_strength_nmm)) {
+    visit(Limit::kTwists, torsion / law.torsion_strength_nmm);
+  }
+}
+
 }  // namespace
 
 const char* name(Limit limit) {
@@ -37,49 +60,34 @@ ConnectorLaw weaker(const ConnectorLaw& a, const ConnectorLaw& b) {
 ConnectionForce connection_force(const ConnectorLaw& law, const base::Vec6<double>& middle_force) {
   return {.axial_n = middle_force[2],
           .bending_nmm = bending_moment(law, middle_force),
-          .shear_n = std::hypot(middle_force[0], middle_force[1]),
+          .shear_n = length(middle_force[0], middle_force[1]),
           .torsion_nmm = middle_force[5]};
 }
 
 double bending_moment(const ConnectorLaw& law, const base::Vec6<double>& middle_force) {
   const double mx = middle_force[3];
   const double my = middle_force[4];
-  return law.bending == BendingLaw::kRound ? std::hypot(mx, my)
-                                           : std::max(std::abs(mx), std::abs(my));
+  return law.bending == BendingLaw::kRound ? length(mx, my) : std::max(std::abs(mx), std::abs(my));
 }
 
 std::array<double, kLimitCount> limit_ratios(const ConnectorLaw& law,
                                              const ConnectionForce& force) {
   std::array<double, kLimitCount> ratios;
   ratios.fill(-ConnectorLaw::kUnlimited);
-  const double torsion = std::abs(force.torsion_nmm);
-  if (std::isfinite(law.strength_n)) {
-    ratios[static_cast<std::size_t>(Limit::kOpens)] =
-        (force.axial_n + force.bending_nmm / law.lever_mm) / law.strength_n;
-    if (law.friction) {
-      const double across = force.shear_n + torsion / law.torsion_radius_mm;
-      ratios[static_cast<std::size_t>(Limit::kSlips)] =
-          (force.axial_n + across / *law.friction) / law.strength_n;
-    }
-  }
-  if (std::isfinite(law.shear_strength_n)) {
-    ratios[static_cast<std::size_t>(Limit::kShears)] = force.shear_n / law.shear_strength_n;
-  }
-  if (std::isfinite(law.torsion_strength_nmm)) {
-    ratios[static_cast<std::size_t>(Limit::kTwists)] = torsion / law.torsion_strength_nmm;
-  }
+  for_each_limit(law, force, [&ratios](Limit limit, double ratio) {
+    ratios[static_cast<std::size_t>(limit)] = ratio;
+  });
   return ratios;
 }
 
 LimitRatio load_ratio(const ConnectorLaw& law, const ConnectionForce& force) {
-  const auto ratios = limit_ratios(law, force);
   LimitRatio largest = {.limit = Limit::kOpens, .ratio = -ConnectorLaw::kUnlimited};
-  for (std::size_t i = 0; i < ratios.size(); ++i) {
+  for_each_limit(law, force, [&largest](Limit limit, double ratio) {
     // What is not a number must not hide.
-    if (ratios[i] > largest.ratio || std::isnan(ratios[i])) {
-      largest = {.limit = static_cast<Limit>(i), .ratio = ratios[i]};
+    if (ratio > largest.ratio || std::isnan(ratio)) {
+      largest = {.limit = limit, .ratio = ratio};
     }
-  }
+  });
   return largest.ratio == -ConnectorLaw::kUnlimited ? LimitRatio{} : largest;
 }
 

@@ -21,6 +21,8 @@ using Cells = std::vector<Cell>;
 constexpr std::int32_t kScaffoldStep = 4;
 constexpr std::int32_t kPortalThickness = 4;
 constexpr std::int32_t kWallThickness = 4;
+constexpr std::int32_t kPierWidth = 8;
+constexpr std::int32_t kPierHeight = 10;
 constexpr std::size_t kBallLayersMax = 1000;  ///< Beyond there are more modules than is allowed.
 
 constexpr std::array<FamilyInfo, 11> kFamilies = {{
@@ -37,36 +39,6 @@ constexpr std::array<FamilyInfo, 11> kFamilies = {{
     {Family::kPrismWall, "prism-wall", "hexagonal prisms, SIZE wide, SIZE high, 4 thick", 1,
      base::kHexagonalPrism},
 }};
-
-/// The cells of a box for which `is_in` holds; z changes slowest, x fastest.
-template <class IsIn>
-void add_box(Cells& cells, const Cell& low, const Cell& high, const IsIn& is_in) {
-  for (std::int32_t z = low.z; z < high.z; ++z) {
-    for (std::int32_t y = low.y; y < high.y; ++y) {
-      for (std::int32_t x = low.x; x < high.x; ++x) {
-        if (is_in(x, y, z)) {
-          cells.push_back({x, y, z});
-        }
-      }
-    }
-  }
-}
-
-constexpr auto kAll = [](std::int32_t, std::int32_t, std::int32_t) { return true; };
-
-Cells arm(std::int32_t count) {
-  Cells cells;
-  add_box(cells, {1, 1, 0}, {3, 2, 3}, kAll);
-  add_box(cells, {3, 1, 2}, {count - 3, 2, 3}, kAll);
-  return cells;
-}
-
-Cells bridge(std::int32_t length) {
-  Cells cells;
-  add_box(cells, {0, 0, 0}, {8, 8, 10}, kAll);
-  add_box(cells, {0, 0, 10}, {length, 8, 13}, kAll);
-  return cells;
-}
 
 /// A whole number in [0, bound) as CPython's random.Random.randrange draws it: as many of the upper
 /// bits of the next Mersenne Twister word as `bound` has, again until it is below.
@@ -163,7 +135,9 @@ Cells prism_wall(std::int32_t size) {
   Cells cells;
   for (std::int32_t z = 0; z < size; ++z) {
     for (std::int32_t y = 0; y < kWallThickness; ++y) {
-      add_box(cells, {-(y / 2), y, z}, {size - y / 2, y + 1, z + 1}, kAll);
+      for (std::int32_t x = -(y / 2); x < size - y / 2; ++x) {
+        cells.push_back({x, y, z});
+      }
     }
   }
   return cells;
@@ -233,47 +207,70 @@ std::size_t family_count(Family family, std::size_t size) {
   return size;
 }
 
+std::optional<CellBox> family_box(Family family, std::size_t wanted) {
+  const auto size = static_cast<std::int32_t>(wanted);
+  switch (family) {
+    case Family::kArm:
+      return CellBox{{1, 1, 0}, {std::max(3, size - 3), 2, 3}};
+    case Family::kCube:
+    case Family::kScaffold:
+    case Family::kShell:
+      return CellBox{{0, 0, 0}, {size, size, size}};
+    case Family::kTower:
+      return CellBox{{0, 0, 0}, {3, 3, size}};
+    case Family::kPortal:
+      return CellBox{{0, 0, 0}, {size, kPortalThickness, size / 2}};
+    case Family::kBridge:
+      return CellBox{{0, 0, 0}, {std::max(size, kPierWidth), kPierWidth, kPierHeight + 3}};
+    case Family::kSheet:
+      return CellBox{{0, 0, 0}, {size, 1, size}};
+    case Family::kGrowth:
+    case Family::kBall:
+    case Family::kPrismWall:
+      break;
+  }
+  return std::nullopt;
+}
+
+bool family_has(Family family, std::size_t wanted, const Cell& cell) {
+  const auto size = static_cast<std::int32_t>(wanted);
+  const auto [x, y, z] = cell;
+  switch (family) {
+    case Family::kArm:
+      return x < 3 || z == 2;
+    case Family::kScaffold:
+      return (x % kScaffoldStep == 0) + (y % kScaffoldStep == 0) + (z % kScaffoldStep == 0) >= 2;
+    case Family::kShell:
+      return x == 0 || x == size - 1 || y == 0 || y == size - 1 || z == size - 1;
+    case Family::kPortal:
+      return x < kPortalThickness || x >= size - kPortalThickness ||
+             z >= size / 2 - kPortalThickness;
+    case Family::kBridge:
+      return z < kPierHeight ? x < kPierWidth : x < size;
+    default:
+      return true;
+  }
+}
+
 Cells family_cells(Family family, std::size_t wanted) {
   HOLDFAST_CHECK(wanted > 0 && family_count(family, wanted) <= kModuleCountMax);
   const auto size = static_cast<std::int32_t>(wanted);
+  const std::optional<CellBox> box = family_box(family, wanted);
+  if (!box) {
+    return family == Family::kGrowth ? growth(wanted)
+           : family == Family::kBall ? ball(size)
+                                     : prism_wall(size);
+  }
   Cells cells;
   cells.reserve(family_count(family, wanted));
-  switch (family) {
-    case Family::kArm:
-      return arm(size);
-    case Family::kBridge:
-      return bridge(size);
-    case Family::kGrowth:
-      return growth(wanted);
-    case Family::kBall:
-      return ball(size);
-    case Family::kPrismWall:
-      return prism_wall(size);
-    case Family::kSheet:
-      add_box(cells, {0, 0, 0}, {size, 1, size}, kAll);
-      break;
-    case Family::kCube:
-      add_box(cells, {0, 0, 0}, {size, size, size}, kAll);
-      break;
-    case Family::kTower:
-      add_box(cells, {0, 0, 0}, {3, 3, size}, kAll);
-      break;
-    case Family::kScaffold:
-      add_box(cells, {0, 0, 0}, {size, size, size}, [](auto x, auto y, auto z) {
-        return (x % kScaffoldStep == 0) + (y % kScaffoldStep == 0) + (z % kScaffoldStep == 0) >= 2;
-      });
-      break;
-    case Family::kShell:
-      add_box(cells, {0, 0, 0}, {size, size, size}, [size](auto x, auto y, auto z) {
-        return x == 0 || x == size - 1 || y == 0 || y == size - 1 || z == size - 1;
-      });
-      break;
-    case Family::kPortal:
-      add_box(cells, {0, 0, 0}, {size, kPortalThickness, size / 2}, [size](auto x, auto, auto z) {
-        return x < kPortalThickness || x >= size - kPortalThickness ||
-               z >= size / 2 - kPortalThickness;
-      });
-      break;
+  for (std::int32_t z = box->low.z; z < box->high.z; ++z) {
+    for (std::int32_t y = box->low.y; y < box->high.y; ++y) {
+      for (std::int32_t x = box->low.x; x < box->high.x; ++x) {
+        if (family_has(family, wanted, {x, y, z})) {
+          cells.push_back({x, y, z});
+        }
+      }
+    }
   }
   return cells;
 }

@@ -31,6 +31,21 @@ Rotation<Real> rotation_along(const base::Lattice& lattice, Direction direction)
   return {x, {z[1] * x[2] - z[2] * x[1], z[2] * x[0] - z[0] * x[2], z[0] * x[1] - z[1] * x[0]}, z};
 }
 
+namespace {
+
+template <class Real>
+Vec6<Real> rotated(const Rotation<Real>& axes, const Vec6<Real>& global) {
+  Vec6<Real> local;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const std::array<Real, 3>& axis = axes[i];
+    local[i] = axis[0] * global[0] + axis[1] * global[1] + axis[2] * global[2];
+    local[i + 3] = axis[0] * global[3] + axis[1] * global[4] + axis[2] * global[5];
+  }
+  return local;
+}
+
+}  // namespace
+
 template <class Real>
 LatticeBeam<Real>::LatticeBeam(const mechanics::BeamSection<Real>& section,
                                const base::Lattice& lattice)
@@ -43,18 +58,7 @@ LatticeBeam<Real>::LatticeBeam(const mechanics::BeamSection<Real>& section,
 
 template <class Real>
 Vec6<Real> LatticeBeam<Real>::to_local(Direction direction, const Vec& global) const {
-  if (is_cubic_) {
-    return mechanics::to_local(direction, global);
-  }
-  const Rotation<Real>& axes = rotation(direction);
-  Vec local{};
-  for (std::size_t i = 0; i < 3; ++i) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      local[i] += axes[i][k] * global[k];
-      local[i + 3] += axes[i][k] * global[k + 3];
-    }
-  }
-  return local;
+  return is_cubic_ ? mechanics::to_local(direction, global) : rotated(rotation(direction), global);
 }
 
 template <class Real>
@@ -85,8 +89,9 @@ Vec6<Real> LatticeBeam<Real>::end_force(Direction direction, const Vec& u_p, con
   if (is_cubic_) {
     return mechanics::end_force(beam_, direction, u_p, u_q);
   }
-  return to_global(direction, mechanics::end_force(beam_, kUpright, to_local(direction, u_p),
-                                                   to_local(direction, u_q)));
+  const Rotation<Real>& axes = rotation(direction);
+  return to_global(direction,
+                   mechanics::end_force(beam_, kUpright, rotated(axes, u_p), rotated(axes, u_q)));
 }
 
 template <class Real>
@@ -95,8 +100,8 @@ Vec6<Real> LatticeBeam<Real>::middle_force(Direction direction, const Vec& u_p,
   if (is_cubic_) {
     return mechanics::middle_force(beam_, direction, u_p, u_q);
   }
-  return mechanics::middle_force(beam_, kUpright, to_local(direction, u_p),
-                                 to_local(direction, u_q));
+  const Rotation<Real>& axes = rotation(direction);
+  return mechanics::middle_force(beam_, kUpright, rotated(axes, u_p), rotated(axes, u_q));
 }
 
 template <class Real>

@@ -4,10 +4,12 @@
 
 namespace holdfast::model {
 
-Mass mass_of(const Robot& robot) {
+Mass mass_of(const Robot& robot, const RobotPart* part) {
   const base::NodePlaces node_mm(robot.lattice(), robot.material().pitch_mm);
   Mass mass;
-  for (std::size_t i = 0; i < robot.modules().size(); ++i) {
+  host::Ranks* const ranks = part == nullptr ? nullptr : part->ranks;
+  const std::size_t count = part == nullptr ? robot.modules().size() : part->own_count;
+  for (std::size_t i = 0; i < count; ++i) {
     const auto node = node_mm(robot.modules()[i].cell);
     for (std::size_t k = 0; k < 3; ++k) {
       mass.centre_mm[k] += robot.mass(i) * node[k];
@@ -21,8 +23,9 @@ Mass mass_of(const Robot& robot) {
     }
     mass.kg += carried.mass_kg;
   }
+  mass.kg = host::sum(ranks, mass.kg);
   for (double& coordinate : mass.centre_mm) {
-    coordinate /= mass.kg;
+    coordinate = host::sum(ranks, coordinate) / mass.kg;
   }
   return mass;
 }

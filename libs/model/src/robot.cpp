@@ -110,36 +110,56 @@ Robot::Robot(const RobotSpec& spec)
       planned_count_(spec.planned.size()) {}
 
 base::Result<Robot> Robot::create(const RobotSpec& spec, int thread_count) {
-  auto fault = find_number_fault(spec);
-  if (fault) {
-    return bad_input(*fault);
-  }
-  CellIndex index = index_of(spec);
-  if (fault = find_double_cell(spec, index); fault) {
+  if (auto fault = find_number_fault(spec)) {
     return bad_input(*fault);
   }
   Robot robot(spec);
-  robot.add_modules(spec);
-  fault = robot.fix(spec.fixed, index);
-  if (!fault) {
-    host::Team team(thread_count, robot.modules_.size());
-    robot.connect(index, team);
-    fault = spec.released.empty() ? std::nullopt : robot.release(spec.released, index);
-  }
-  if (!fault) {
-    fault = find_connection_fault(robot.connections_, robot.modules_, spec.existing.size());
-    if (fault && robot.released_count_ > 0) {
-      *fault += fmt::format("; the faces of {} released pairs do not count", robot.released_count_);
-    }
-  }
-  fault = fault ? fault : robot.touch(spec);
-  fault = fault ? fault : robot.take_kinds(spec, index);
-  fault = fault ? fault : robot.take_loads(spec, index);
+  auto fault = robot.take(spec, thread_count, Extent::kWhole);
   fault = fault ? fault : find_support_fault(robot, spec);
   if (fault) {
     return bad_input(*fault);
   }
   return robot;
+}
+
+base::Result<Robot> Robot::create_part(const RobotSpec& spec, std::size_t own_count,
+                                       int thread_count) {
+  if (auto fault = find_number_fault(spec)) {
+    return bad_input(*fault);
+  }
+  Robot robot(spec);
+  if (auto fault = robot.take(spec, thread_count, Extent::kPart)) {
+    return bad_input(*fault);
+  }
+  std::erase_if(robot.facets_,
+                [&](const Facet& facet) { return base::at(facet.module) >= own_count; });
+  std::erase_if(robot.connections_,
+                [&](const ConnectionCode& pair) { return pair.a() >= own_count; });
+  robot.has_bonded_facets_ = std::ranges::any_of(robot.facets_, &Facet::is_bonded);
+  return robot;
+}
+
+std::optional<std::string> Robot::take(const RobotSpec& spec, int thread_count, Extent extent) {
+  CellIndex index = index_of(spec);
+  if (auto fault = find_double_cell(spec, index)) {
+    return fault;
+  }
+  add_modules(spec);
+  auto fault = fix(spec.fixed, index);
+  if (!fault) {
+    host::Team team(thread_count, modules_.size());
+    connect(index, team);
+    fault = spec.released.empty() ? std::nullopt : release(spec.released, index);
+  }
+  if (!fault && extent == Extent::kWhole) {
+    fault = find_connection_fault(connections(), modules_, spec.existing.size());
+    if (fault && released_count_ > 0) {
+      *fault += fmt::format("; the faces of {} released pairs do not count", released_count_);
+    }
+  }
+  fault = fault ? fault : touch(spec);
+  fault = fault ? fault : take_kinds(spec, index);
+  return fault ? fault : take_loads(spec, index);
 }
 
 void Robot::add_modules(const RobotSpec& spec) {
@@ -189,9 +209,7 @@ void Robot::connect(const CellIndex& index, host::Team& team) {
     for (std::size_t i = begin; i < end; ++i) {
       for (std::size_t d = 0; d < lattice_count(); d += 2) {
         if (connected_[i][d] != kNoNeighbour) {
-          connections_[next++] = {.a = static_cast<std::int32_t>(i),
-                                  .b = connected_[i][d],
-                                  .direction = static_cast<base::Direction>(d)};
+          connections_[next++] = {i, d};
         }
       }
     }
@@ -217,8 +235,8 @@ std::optional<std::string> Robot::release(std::span<const CellPair> pairs, const
     there = kNoNeighbour;
     connected_[base::at(b)][base::at(base::index(base::opposite(*direction)))] = kNoNeighbour;
   }
-  std::erase_if(connections_, [&](const Connection& pair) {
-    return connected_[base::at(pair.a)][base::at(base::index(pair.direction))] == kNoNeighbour;
+  std::erase_if(connections_, [&](const ConnectionCode& pair) {
+    return connected_[pair.a()][pair.direction()] == kNoNeighbour;
   });
   released_count_ = pairs.size();
   return std::nullopt;
@@ -386,7 +404,7 @@ std::optional<std::string> find_beyond_paper(const Robot& robot) {
 }
 
 std::array<base::Cell, 2> ends(const Robot& robot, std::size_t connection) {
-  const Connection& pair = robot.connections()[connection];
+  const Connection pair = robot.connections()[connection];
   return {robot.modules()[static_cast<std::size_t>(pair.a)].cell,
           robot.modules()[static_cast<std::size_t>(pair.b)].cell};
 }

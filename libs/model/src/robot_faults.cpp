@@ -226,7 +226,7 @@ std::optional<std::string> find_number_fault(const RobotSpec& spec) {
   return fault ? fault : find_general_fault(spec);
 }
 
-std::optional<std::string> find_connection_fault(std::span<const Connection> connections,
+std::optional<std::string> find_connection_fault(const Connections& connections,
                                                  std::span<const Module> modules,
                                                  std::size_t existing_count) {
   Parts parts(modules.size());

@@ -16,7 +16,7 @@ namespace holdfast::model {
 std::optional<std::string> find_number_fault(const RobotSpec& spec);
 
 /// In what hangs together: existing modules among each other, then planned ones with them.
-std::optional<std::string> find_connection_fault(std::span<const Connection> connections,
+std::optional<std::string> find_connection_fault(const Connections& connections,
                                                  std::span<const Module> modules,
                                                  std::size_t existing_count);
 

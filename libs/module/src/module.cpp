@@ -42,6 +42,7 @@ void Module::run_once() {
   watch_neighbours();
   if (actions_.is_unfinished) {
     step(EventKind::kContinue);
+    port_.stay_connected();
   } else {
     take_incoming();
   }

@@ -29,23 +29,26 @@ void Balance::change(Element module, int by) {
   mass_ += by * masses_[i];
   moment_.x += by * masses_[i] * places_[i].x;
   moment_.y += by * masses_[i] * places_[i].y;
-  if (has_facet_[i]) {
-    standing_[i] += by;
+  if (!has_facet_[i]) {
+    return;
+  }
+  standing_[i] += by;
+  if (by > 0 && !is_hull_stale_) {
+    hull_ = hull_with(i);
+  } else {
     is_hull_stale_ = true;
   }
 }
 
-/// Andrew's monotone chain, counter-clockwise.
-std::vector<Balance::Point> Balance::hull_of(Element extra, int by) const {
-  std::vector<Point> points;
-  for (std::size_t i = 0; i < standing_.size(); ++i) {
-    if (standing_[i] + (static_cast<Element>(i) == extra ? by : 0) > 0) {
-      for (const double side : {-half_width_, half_width_}) {
-        points.push_back({places_[i].x + side, places_[i].y - half_width_});
-        points.push_back({places_[i].x + side, places_[i].y + half_width_});
-      }
-    }
+void Balance::put_corners(std::size_t module, std::vector<Point>& points) const {
+  for (const double side : {-half_width_, half_width_}) {
+    points.push_back({places_[module].x + side, places_[module].y - half_width_});
+    points.push_back({places_[module].x + side, places_[module].y + half_width_});
   }
+}
+
+/// Andrew's monotone chain, counter-clockwise.
+std::vector<Balance::Point> Balance::hull_around(std::vector<Point> points) {
   std::ranges::sort(
       points, [](const Point& a, const Point& b) { return a.x != b.x ? a.x < b.x : a.y < b.y; });
   const auto turn = [](const Point& a, const Point& b, const Point& c) {
@@ -66,6 +69,24 @@ std::vector<Balance::Point> Balance::hull_of(Element extra, int by) const {
   return hull;
 }
 
+/// The hull of what stands, but for one module.
+std::vector<Balance::Point> Balance::hull_without(std::size_t module) const {
+  std::vector<Point> points;
+  for (std::size_t i = 0; i < standing_.size(); ++i) {
+    if (standing_[i] > 0 && i != module) {
+      put_corners(i, points);
+    }
+  }
+  return hull_around(std::move(points));
+}
+
+/// That of one more; the present hull stands for all others.
+std::vector<Balance::Point> Balance::hull_with(std::size_t module) const {
+  std::vector<Point> points = hull_;
+  put_corners(module, points);
+  return hull_around(std::move(points));
+}
+
 double Balance::margin_of(const std::vector<Point>& hull, double mass, double x, double y) const {
   if (hull.empty()) {
     return -std::numeric_limits<double>::infinity();
@@ -83,22 +104,30 @@ double Balance::margin_of(const std::vector<Point>& hull, double mass, double x,
 
 double Balance::margin() {
   if (is_hull_stale_) {
-    hull_ = hull_of(-1, 0);
+    hull_ = hull_without(places_.size());
     is_hull_stale_ = false;
   }
   return margin_of(hull_, mass_, moment_.x, moment_.y);
 }
 
-double Balance::margin_changed(Element module, int by) {
+bool Balance::stands_with(Element module) {
   const std::size_t i = base::at(module);
-  const double mass = mass_ + by * masses_[i];
-  const double x = moment_.x + by * masses_[i] * places_[i].x;
-  const double y = moment_.y + by * masses_[i] * places_[i].y;
-  if (has_facet_[i]) {
-    return margin_of(hull_of(module, by), mass, x, y);
-  }
+  const double mass = mass_ + masses_[i];
+  const double x = moment_.x + masses_[i] * places_[i].x;
+  const double y = moment_.y + masses_[i] * places_[i].y;
   margin();
-  return margin_of(hull_, mass, x, y);
+  return margin_of(hull_, mass, x, y) > 0 ||
+         (has_facet_[i] && margin_of(hull_with(i), mass, x, y) > 0);
+}
+
+bool Balance::stands_without(Element module) {
+  const std::size_t i = base::at(module);
+  const double mass = mass_ - masses_[i];
+  const double x = moment_.x - masses_[i] * places_[i].x;
+  const double y = moment_.y - masses_[i] * places_[i].y;
+  margin();
+  return margin_of(hull_, mass, x, y) > 0 &&
+         (!has_facet_[i] || margin_of(hull_without(i), mass, x, y) > 0);
 }
 
 }  // namespace holdfast::plan

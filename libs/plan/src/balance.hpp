@@ -30,10 +30,10 @@ class Balance {
   /// negative outside; minus infinity without support.
   double margin();
 
-  /// The margin with one more module, or with one less.
-  double margin_with(Element module) { return margin_changed(module, 1); }
+  /// Whether the margin is positive with one more module, or with one less.
+  bool stands_with(Element module);
 
-  double margin_without(Element module) { return margin_changed(module, -1); }
+  bool stands_without(Element module);
 
  private:
   struct Point {
@@ -42,9 +42,11 @@ class Balance {
   };
 
   void change(Element module, int by);
-  double margin_changed(Element module, int by);
   double margin_of(const std::vector<Point>& hull, double mass, double x, double y) const;
-  std::vector<Point> hull_of(Element extra, int by) const;
+  void put_corners(std::size_t module, std::vector<Point>& points) const;
+  static std::vector<Point> hull_around(std::vector<Point> points);
+  std::vector<Point> hull_with(std::size_t module) const;
+  std::vector<Point> hull_without(std::size_t module) const;
 
   std::vector<Point> places_;    ///< By module, pitches.
   std::vector<double> masses_;   ///< By module, kg.

@@ -14,6 +14,7 @@
 #include "holdfast/solver/influence.hpp"
 #include "holdfast/verdict/rigid_body.hpp"
 #include "lane_ratios.hpp"
+#include "ratio_screen.hpp"
 #include "site.hpp"
 
 namespace holdfast::plan {
@@ -25,11 +26,13 @@ class CandidateJudge {
   static std::unique_ptr<CandidateJudge> make(const model::RobotSpec& spec,
                                               const CandidateOptions& options);
 
-  /// Leaves out those that need a check.
-  void judge(std::span<const base::Cell> cells, std::span<std::optional<Candidate>> judged) const;
+  /// Leaves out those that need a check. The bits of a judgement do not depend on the other cells.
+  /// Returns how many took a whole solution.
+  std::size_t judge(std::span<const base::Cell> cells,
+                    std::span<std::optional<Candidate>> judged) const;
 
  private:
-  /// A stable candidate on its way through solution and loads.
+  /// A stable candidate on its way through loads.
   struct Waiting {
     Site site;
     Grown grown;
@@ -39,17 +42,29 @@ class CandidateJudge {
 
   CandidateJudge(const model::RobotSpec& spec, const CandidateOptions& options, model::Robot robot);
   bool prepare();
-  void judge_part(std::span<const base::Cell> cells,
-                  std::span<std::optional<Candidate>> judged) const;
+  bool may_screen() const;
+  void find_inverse();
+  bool make_screen();
+  void sharpen_screen();
+  void soften(double target);
   bool is_stuck() const;
   bool has_host_for(const Site& site) const;
   const FacetInfluence* facets() const;
-  std::optional<Grown> settled(const Site& site, ReachCache& reaches) const;
-  void judge_together(std::span<Waiting> waiting, ReachCache& reaches) const;
-  void look_again(std::span<Waiting> waiting, ReachCache& reaches) const;
+
+  std::optional<Waiting> look_at(const base::Cell& cell, std::optional<Candidate>& judged) const;
+  std::optional<Grown> settled(const Site& site) const;
+  bool sticks(const Waiting& waiting) const;
+  std::optional<double> screened(Waiting& waiting) const;
+  std::optional<double> bounded(const Waiting& waiting) const;
+  LoadChange change_of(const Grown& grown, std::vector<PointLoad>& loads) const;
+  void judge_together(std::span<Waiting> lanes, std::vector<Waiting>& again) const;
+  void judge_fully(std::vector<Waiting> waiting) const;
   void conclude(const Waiting& waiting, double ratio) const;
-  double new_ratio(const Waiting& waiting, std::size_t lane,
-                   std::span<const solver::LaneBlock> more) const;
+
+  std::vector<PointLoad> loads_of(const Grown& grown) const;
+  double new_ratio(const Site& site, std::span<const base::Vec6<double>> hosts,
+                   const base::Vec6<double>& own) const;
+  std::vector<base::Vec6<double>> host_displacements(const Grown& grown) const;
   std::vector<base::Vec6<double>> host_displacements(const Waiting& waiting, std::size_t lane,
                                                      std::span<const solver::LaneBlock> more) const;
   base::Vec6<double> displacement(std::size_t module, std::size_t lane,
@@ -58,15 +73,23 @@ class CandidateJudge {
   const model::RobotSpec& spec_;
   const CandidateOptions& options_;
   model::Robot robot_;
-  SiteFinder sites_;
+  SiteFinder finder_;
   verdict::GrowingRigidBody rigid_;
   bool is_held_ = false;
-  bool begins_stuck_ = true;  ///< All facets of the robot without candidates are stuck.
+  bool begins_stuck_ = true;        ///< All facets of the robot without candidates are stuck.
+  std::vector<Site> sites_;         ///< Where a module can be, by ascending cell.
+  std::vector<std::size_t> hosts_;  ///< Of all sites, each once.
   std::unique_ptr<solver::Influence> influence_;
   std::optional<GrownContact> contact_;
   std::optional<LaneRatios> ratios_;
   mutable std::once_flag facets_made_;
   mutable std::unique_ptr<FacetInfluence> facets_;
+
+  // What the screen goes by; none if the robot without candidates is not certain.
+  std::optional<Grown> alone_;
+  const FacetInfluence* screen_facets_ = nullptr;  ///< None: energies alone tell that they stick.
+  std::optional<RatioScreen> screen_;
+  std::unique_ptr<const solver::InverseStiffness> softened_;  ///< See soften().
 };
 
 }  // namespace holdfast::plan

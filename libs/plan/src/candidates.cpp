@@ -8,6 +8,7 @@
 #include <iterator>
 #include <optional>
 #include <tuple>
+#include <utility>
 
 #include "candidate_judge.hpp"
 
@@ -92,37 +93,53 @@ std::vector<base::Cell> free_cells(const model::RobotSpec& spec) {
   return free;
 }
 
-CandidateReport judge_candidates(const model::RobotSpec& spec, std::span<const base::Cell> cells,
-                                 const CandidateOptions& options) {
+CandidateSearch::CandidateSearch(model::RobotSpec spec, CandidateOptions options)
+    : spec_(std::move(spec)), options_(std::move(options)) {}
+
+CandidateSearch::~CandidateSearch() = default;
+
+const CandidateJudge* CandidateSearch::judge_for(std::size_t cell_count) {
+  if (!is_prepared_ && !options_.is_by_checks && cell_count >= kWorthPreparing) {
+    is_prepared_ = true;
+    judge_ = CandidateJudge::make(spec_, options_);
+  }
+  return judge_.get();
+}
+
+CandidateReport CandidateSearch::judge(std::span<const base::Cell> cells) {
   const Stopwatch watch;
   CandidateReport report;
   const auto tell = [&](std::size_t done) {
-    if (options.progress) {
-      options.progress(done, cells.size());
+    if (options_.progress) {
+      options_.progress(done, cells.size());
     }
   };
   std::vector<std::optional<Candidate>> judged(cells.size());
-  if (!options.is_by_checks) {
-    if (const auto judge = CandidateJudge::make(spec, options)) {
-      report.preparation_seconds = watch.seconds();
-      for (std::size_t first = 0; first < cells.size(); first += kStride) {
-        const std::size_t count = std::min(kStride, cells.size() - first);
-        judge->judge(cells.subspan(first, count), std::span(judged).subspan(first, count));
-        tell(first + count);
-      }
+  if (const CandidateJudge* const judge = judge_for(cells.size())) {
+    report.preparation_seconds = watch.seconds();
+    for (std::size_t first = 0; first < cells.size(); first += kStride) {
+      const std::size_t count = std::min(kStride, cells.size() - first);
+      report.solution_count +=
+          judge->judge(cells.subspan(first, count), std::span(judged).subspan(first, count));
+      tell(first + count);
     }
   }
   const auto known = static_cast<std::size_t>(std::ranges::count_if(
       judged, [](const std::optional<Candidate>& candidate) { return candidate.has_value(); }));
   for (std::size_t i = 0; i < cells.size(); ++i) {
     if (!judged[i]) {
-      judged[i] = check_candidate(spec, cells[i], options);
+      judged[i] = check_candidate(spec_, cells[i], options_);
       tell(known + ++report.check_count);
     }
     report.candidates.push_back(*judged[i]);
   }
   report.seconds = watch.seconds();
   return report;
+}
+
+CandidateReport judge_candidates(const model::RobotSpec& spec, std::span<const base::Cell> cells,
+                                 const CandidateOptions& options) {
+  return CandidateSearch(spec, options).judge(cells);
 }
 
 void sort_candidates(std::vector<Candidate>& candidates) {

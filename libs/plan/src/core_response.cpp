@@ -429,7 +429,6 @@ class CoreResponse::Grown {
     found.displacement = std::move(displacement_);
     found.alternative = std::move(alternative_);
     found.contact = states_;
-    found.ground_force.assign(core_of_.size(), Vec{});
     for (std::size_t i = 0; i < states_.size(); ++i) {
       const FacetState facet = facet_state(i, states_[i]);
       Vec force = whole_.system_->law().force(facet, found.displacement[facet.module]);
@@ -437,7 +436,6 @@ class CoreResponse::Grown {
         component = -component;
       }
       found.facet_force.push_back(force);
-      base::add_to(found.ground_force[facet.module], force);
     }
     return found;
   }

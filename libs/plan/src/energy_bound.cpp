@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "carried_force.hpp"
 #include "holdfast/base/lattice.hpp"
 #include "holdfast/mechanics/ground_contact.hpp"
 #include "holdfast/model/connector_law.hpp"
@@ -20,21 +21,6 @@ using mechanics::ContactState;
 /// A bound this near to 1 is not trusted: multigrid's load ratios are within 1e-4.
 constexpr double kRatioMax = 1 - 1e-3;
 
-std::array<double, 3> cross(const double* a, const double* b) {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
-
-/// What a force and a torque at `from` are at a node that lies at `to`, relative to `from`; or how
-/// a node there moves if it follows a rotation at `from`.
-Vec6<double> force_at(const Vec6<double>& force, const Vec6<double>& to) {
-  const auto moment = cross(to.data(), force.data());
-  Vec6<double> moved = force;
-  for (std::size_t i = 0; i < 3; ++i) {
-    moved[i + 3] -= moment[i];
-  }
-  return moved;
-}
-
 bool is_plain(const model::Robot& target) {
   return std::ranges::none_of(
       target.facets(), [](const model::Facet& facet) { return facet.touch.friction.has_value(); });
@@ -42,14 +28,17 @@ bool is_plain(const model::Robot& target) {
 
 }  // namespace
 
-EnergyBound::EnergyBound(const model::Robot& target)
+EnergyBound::EnergyBound(const model::Robot& target, const LocalAdjoints& adjoints)
     : target_(target),
+      adjoints_(adjoints),
+      local_(target),
       beam_(model::beam_section(target.material()), target.lattice()),
       ratio_per_norm_(model::load_ratio_per_energy_norm(target)),
       nodes_(target.modules().size()),
-      room_(target.facets().size()) {
-  const auto& k = beam_.stiffness();
-  stiffness_ = {k.shear_x, k.shear_y, k.axial, k.bend_y / 4, k.bend_x / 4, k.twist};
+      u_(target.modules().size()),
+      room_(target.facets().size()),
+      nearby_(target.facets().size()) {
+  stiffness_ = middle_stiffness(beam_);
   const double b = target.foot_half_width_mm();
   facet_per_norm_x_ = std::sqrt(stiffness_[3] + stiffness_[2] * b * b);
   facet_per_norm_y_ = std::sqrt(stiffness_[4] + stiffness_[2] * b * b);
@@ -80,79 +69,103 @@ double EnergyBound::energy_of(const Vec& force) const {
   return energy;
 }
 
-/// The load ratio of a force in the middle of the beam between two modules; `direction` from a.
-double EnergyBound::ratio_of(std::size_t a, std::size_t b, int direction, const Vec& force) const {
-  const bool is_first = direction % 2 == 0;
-  const model::Connection pair = {
-      .a = static_cast<std::int32_t>(is_first ? a : b),
-      .b = static_cast<std::int32_t>(is_first ? b : a),
-      .direction = static_cast<base::Direction>(is_first ? direction : direction ^ 1)};
-  const auto ratios = model::limit_ratios(target_.connector(pair), force);
-  return *std::ranges::max_element(ratios);
-}
-
 /// What a module carries, in the middle of its beam or facet in a direction, local frame.
-EnergyBound::Vec EnergyBound::middle(std::size_t module, int direction) const {
-  const Vec at_node = force_at(nodes_[module].carried, places_[module]);
-  Vec force = beam_.to_local(static_cast<base::Direction>(direction), at_node);
-  const double lever = target_.material().pitch_mm / 2;
-  force[3] -= force[1] * lever;
-  force[4] += force[0] * lever;
-  return force;
+EnergyBound::Vec EnergyBound::middle(const Vec& carried, std::size_t module, int direction) const {
+  const Vec at_node = force_at(carried, places_[module]);
+  return force_in_middle(beam_, static_cast<base::Direction>(direction), at_node,
+                         target_.material().pitch_mm);
 }
 
-/// Finds the parent: the neighbour that is nearest to a support, straight below if that is one.
+/// How far a way down through this neighbour leads aside within two steps, squared, in mm^2.
+double EnergyBound::lean(std::size_t module, std::size_t neighbour) const {
+  const Node& next = nodes_[neighbour];
+  const Vec& below = places_[next.way_count == 0 ? neighbour : base::at(next.ways.front().to)];
+  const double x = below[0] - places_[module][0];
+  const double y = below[1] - places_[module][1];
+  return x * x + y * y;
+}
+
+/// Finds the ways down: to neighbours that are nearest to a support. The first one is the parent:
+/// that through which the way leads down most nearly straight, as a weight that is carried aside
+/// costs much.
 void EnergyBound::hang(std::size_t module) {
   Node& node = nodes_[module];
   const int straight = base::index(base::down(target_.lattice()));
-  std::int32_t best = std::numeric_limits<std::int32_t>::max();
+  std::int32_t depth_min = std::numeric_limits<std::int32_t>::max();
+  double lean_min = 0;
   for (const base::Direction direction : base::directions(target_.lattice())) {
     const int d = base::index(direction);
     const std::int32_t other = target_.connected()[module][base::at(d)];
-    if (other == model::Robot::kNoNeighbour || !nodes_[base::at(other)].is_there) {
+    if (other == model::Robot::kNoNeighbour || !nodes_[base::at(other)].is_there ||
+        nodes_[base::at(other)].depth > depth_min) {
       continue;
     }
-    const std::int32_t depth = nodes_[base::at(other)].depth;
-    if (depth < best || (depth == best && d == straight)) {
-      best = depth;
-      node.parent = other;
-      node.down = d;
+    if (nodes_[base::at(other)].depth < depth_min) {
+      depth_min = nodes_[base::at(other)].depth;
+      node.way_count = 0;
+    }
+    const double aside = lean(module, base::at(other));
+    const bool is_best =
+        node.way_count == 0 || aside < lean_min || (aside == lean_min && d == straight);
+    if (node.way_count < kWayMax) {
+      node.ways[node.way_count++] = {.to = other, .direction = d};
+    } else if (is_best) {
+      node.ways.back() = {.to = other, .direction = d};
+    }
+    if (is_best) {
+      lean_min = aside;
+      std::swap(node.ways.front(), node.ways[node.way_count - 1]);
     }
   }
-  node.depth = has_root(module) ? 0 : best + 1;
+  node.depth = has_root(module) ? 0 : depth_min + 1;
 }
 
-/// Follows its parent rigidly.
+/// Moves until it is in balance, all others staying where they are.
 void EnergyBound::take_place(std::size_t module) {
+  local_.insert(module);
+  u_[module] = base::multiply(local_.stiffness(module).inverse, local_.pull(module, u_));
+}
+
+/// Adds what the gaps of its beams mean as long as no load goes through these.
+void EnergyBound::open_gaps(std::size_t module) {
   Node& node = nodes_[module];
-  const Node& host = nodes_[base::at(node.parent)];
-  Vec way = places_[module];
-  for (std::size_t i = 0; i < 3; ++i) {
-    way[i] -= places_[base::at(node.parent)][i];
-  }
-  node.u = host.u;
-  const auto turned = cross(host.u.data() + 3, way.data());
-  for (std::size_t i = 0; i < 3; ++i) {
-    node.u[i] += turned[i];
+  node.gaps = gaps_.size();
+  gaps_.resize(gaps_.size() + base::directions(target_.lattice()).size());
+  for (const base::Direction direction : base::directions(target_.lattice())) {
+    const int d = base::index(direction);
+    const std::int32_t other = local_.neighbour(module, d);
+    if (other == model::Robot::kNoNeighbour) {
+      continue;
+    }
+    nodes_[base::at(other)].is_host = true;
+    const Vec force = beam_.middle_force(direction, u_[module], u_[base::at(other)]);
+    gaps_[node.gaps + base::at(d)] = force;
+    const double energy = energy_of(force);
+    energy_ += energy;
+    const auto end = node.ways.begin() + static_cast<std::ptrdiff_t>(node.way_count);
+    const auto way =
+        std::find_if(node.ways.begin(), end, [&](const Way& each) { return each.direction == d; });
+    if (way != end) {
+      way->energy = energy;
+    } else {
+      change_ratio_ =
+          std::max(change_ratio_, connection_ratio(target_, module, base::at(other), d, force) / 2);
+    }
   }
 }
 
-/// Adds the energy of the gaps to all neighbours but the parent; returns the largest half of a load
-/// ratio that h w makes there.
-double EnergyBound::close_loops(std::size_t module) {
-  double largest = 0;
-  for (const base::Direction direction : base::directions(target_.lattice())) {
-    const int d = base::index(direction);
-    const std::int32_t other = target_.connected()[module][base::at(d)];
-    if (other == model::Robot::kNoNeighbour || other == nodes_[module].parent ||
-        !nodes_[base::at(other)].is_there) {
-      continue;
-    }
-    const Vec force = beam_.middle_force(direction, nodes_[module].u, nodes_[base::at(other)].u);
-    energy_ += energy_of(force);
-    largest = std::max(largest, ratio_of(module, base::at(other), d, force) / 2);
-  }
-  return largest;
+/// h w of a beam in a direction; nothing beyond what it was when the robot was solved if that knew
+/// the module.
+EnergyBound::Vec EnergyBound::gap(const Node& node, int direction) const {
+  return node.is_new ? gaps_[node.gaps + base::at(direction)] : Vec{};
+}
+
+/// The force on a stuck facet whose module moves by u, in the facet's middle.
+EnergyBound::Vec EnergyBound::trial_force(const model::Facet& facet, const Vec& u) const {
+  const auto law = mechanics::ground_facet<double>(beam_.stiffness(), target_.material().pitch_mm,
+                                                   2 * target_.foot_half_width_mm(), 0,
+                                                   mechanics::ContactLaw::kRegularised);
+  return mechanics::trial_force(law, beam_.to_local(facet.direction, u));
 }
 
 /// What |s - h w| / 2 may be before the facet tilts.
@@ -160,13 +173,9 @@ void EnergyBound::look_at_facet(std::size_t index) {
   const model::Facet& facet = target_.facets()[index];
   const std::size_t module = base::at(facet.module);
   Node& node = nodes_[module];
-  const double pitch = target_.material().pitch_mm;
-  const auto law =
-      mechanics::ground_facet<double>(beam_.stiffness(), pitch, 2 * target_.foot_half_width_mm(), 0,
-                                      mechanics::ContactLaw::kRegularised);
-  const Vec moved = mechanics::trial_force(law, beam_.to_local(facet.direction, node.u));
+  const Vec moved = trial_force(facet, u_[module]);
   const bool is_first = index == first_facet_[module];
-  Vec change = is_first ? middle(module, base::index(facet.direction)) : Vec{};
+  Vec change = is_first ? middle(node.carried, module, base::index(facet.direction)) : Vec{};
   for (std::size_t i = 0; node.is_new && i < 6; ++i) {
     change[i] -= moved[i];
   }
@@ -182,27 +191,104 @@ void EnergyBound::look_at_facet(std::size_t index) {
                           (limit - std::abs(moved[4] + change[4] / 2)) / facet_per_norm_y_);
 }
 
-/// Hands a module's load on to its support.
+/// Takes a part of a module's load down one of its ways.
+void EnergyBound::carry_down(std::size_t module, Way& way, const Vec& load) {
+  base::add_to(way.carried, load);
+  const Vec force = middle(way.carried, module, way.direction);
+  const Vec moved = gap(nodes_[module], way.direction);
+  Vec lack = force;
+  Vec sum = force;
+  for (std::size_t i = 0; i < 6; ++i) {
+    lack[i] -= moved[i];
+    sum[i] += moved[i];
+  }
+  const double energy = energy_of(lack);
+  energy_ += energy - way.energy;
+  way.energy = energy;
+  change_ratio_ = std::max(
+      change_ratio_, connection_ratio(target_, module, base::at(way.to), way.direction, sum) / 2);
+}
+
+/// The way that leads nearest to below a place.
+std::size_t EnergyBound::nearest_way(const Node& node, const Vec& place) const {
+  const auto aside = [&](const Way& way) {
+    const Vec& to = places_[base::at(way.to)];
+    return (to[0] - place[0]) * (to[0] - place[0]) + (to[1] - place[1]) * (to[1] - place[1]);
+  };
+  std::size_t best = 0;
+  for (std::size_t i = 1; i < node.way_count; ++i) {
+    best = aside(node.ways[i]) < aside(node.ways[best]) ? i : best;
+  }
+  return best;
+}
+
+/// Hands a module's load on to supports: through all ways down at once, which meet again below
+/// where they can, and so on.
 void EnergyBound::carry(std::size_t from) {
   const Vec minus = {-places_[from][0], -places_[from][1], -places_[from][2], 0, 0, 0};
-  const Vec load = force_at(target_.loads()[from], minus);
-  for (std::size_t module = from;; module = base::at(nodes_[module].parent)) {
-    Node& node = nodes_[module];
-    for (std::size_t i = 0; i < 6; ++i) {
-      node.carried[i] += load[i];
-    }
-    if (has_root(module)) {
-      if (first_facet_[module] < first_facet_[module + 1]) {
-        look_at_facet(first_facet_[module]);
+  std::vector<std::pair<std::size_t, Vec>> parts = {{from, force_at(target_.loads()[from], minus)}};
+  std::vector<std::pair<std::size_t, Vec>> next;
+  for (; !parts.empty(); std::swap(parts, next)) {
+    next.clear();
+    for (const auto& [module, load] : parts) {
+      Node& node = nodes_[module];
+      carrying_.push_back(module);
+      if (has_root(module)) {
+        base::add_to(node.carried, load);
+        if (first_facet_[module] < first_facet_[module + 1]) {
+          look_at_facet(first_facet_[module]);
+        }
+        continue;
       }
-      return;
+      const bool is_split = parts.size() == 1;
+      const std::size_t begin = is_split ? 0 : nearest_way(node, places_[from]);
+      const std::size_t end = is_split ? node.way_count : begin + 1;
+      Vec share = load;
+      for (double& component : share) {
+        component /= static_cast<double>(end - begin);
+      }
+      for (std::size_t i = begin; i < end; ++i) {
+        const std::size_t to = base::at(node.ways[i].to);
+        carry_down(module, node.ways[i], share);
+        const auto found = std::ranges::find(next, to, &std::pair<std::size_t, Vec>::first);
+        if (found == next.end()) {
+          next.emplace_back(to, share);
+        } else {
+          base::add_to(found->second, share);
+        }
+      }
     }
-    const Vec force = middle(module, node.down);
-    const double energy = energy_of(force);
-    energy_ += energy - node.energy;
-    node.energy = energy;
-    change_ratio_ =
-        std::max(change_ratio_, ratio_of(module, base::at(node.parent), node.down, force) / 2);
+  }
+}
+
+/// Forgets what is known of facets in whose patch, or beside it, modules have come or gone since
+/// the robot was solved last.
+void EnergyBound::forget_nearby(const std::vector<Element>& elements) {
+  std::vector<bool> is_there(nodes_.size());
+  for (const Element element : elements) {
+    is_there[base::at(element)] = true;
+  }
+  std::vector<bool> is_changed(nodes_.size());
+  for (std::size_t i = 0; i < nodes_.size(); ++i) {
+    if (is_there[i] == (nodes_[i].is_there && !nodes_[i].is_new)) {
+      continue;
+    }
+    is_changed[i] = true;
+    for (const std::int32_t other : target_.connected()[i]) {
+      if (other != model::Robot::kNoNeighbour) {
+        is_changed[base::at(other)] = true;
+      }
+    }
+  }
+  forget_nearby(is_changed);
+}
+
+void EnergyBound::forget_nearby(const std::vector<bool>& is_changed) {
+  for (std::optional<LocalAdjoint>& nearby : nearby_) {
+    if (nearby &&
+        std::ranges::any_of(nearby->patch, [&](std::size_t i) { return is_changed[i]; })) {
+      nearby.reset();
+    }
   }
 }
 
@@ -215,18 +301,23 @@ bool EnergyBound::begin(const std::vector<Element>& elements, const verdict::Ass
       solved.contact_model == verdict::ContactModel::kUnilateral || !is_plain(target_)) {
     return false;
   }
+  forget_nearby(elements);
   std::ranges::fill(nodes_, Node{});
   facets_.clear();
+  new_.clear();
+  gaps_.clear();
+  carrying_.clear();
   energy_ = 0;
   change_ratio_ = 0;
   solved_error_ = verdict::kEnergyFactor * solved.equilibrium.energy_error;
   solved_ratio_ = solved.load_ratio_max ? std::max(0.0, solved.load_ratio_range.high) : 0.0;
+  local_.assign(elements);
   std::vector<std::size_t> queue;
   for (std::size_t i = 0; i < elements.size(); ++i) {
     Node& node = nodes_[base::at(elements[i])];
     node.is_there = true;
     node.depth = std::numeric_limits<std::int32_t>::max() - 1;
-    node.u = solved.equilibrium.displacement[i];
+    u_[base::at(elements[i])] = solved.equilibrium.displacement[i];
     if (has_root(base::at(elements[i]))) {
       node.depth = 0;
       queue.push_back(base::at(elements[i]));
@@ -242,11 +333,13 @@ bool EnergyBound::begin(const std::vector<Element>& elements, const verdict::Ass
       }
     }
   }
-  for (const Element element : elements) {
-    const std::size_t module = base::at(element);
+  for (const std::size_t module : queue) {
     if (!has_root(module)) {
       hang(module);
     }
+  }
+  for (const Element element : elements) {
+    const std::size_t module = base::at(element);
     for (std::size_t facet = first_facet_[module]; facet < first_facet_[module + 1]; ++facet) {
       facets_.push_back(facet);
       look_at_facet(facet);
@@ -255,12 +348,85 @@ bool EnergyBound::begin(const std::vector<Element>& elements, const verdict::Ass
   return true;
 }
 
-double EnergyBound::room() const {
-  double room = std::numeric_limits<double>::infinity();
-  for (const std::size_t facet : facets_) {
-    room = std::min(room, room_[facet]);
+/// The inner product of an adjoint's forces, for fz and two torques, with s - h w; the last number
+/// is how far any combination may be off, over the largest of its factors.
+std::array<double, 4> EnergyBound::product_with(const LocalAdjoint& nearby) const {
+  std::array<double, 4> sum{};
+  const auto add = [&](const LocalAdjoint::Way& adjoint, const Vec& carried, std::size_t module,
+                       int direction) {
+    Vec force = middle(carried, module, direction);
+    for (std::size_t k = 0; k < 6; ++k) {
+      force[k] /= std::sqrt(stiffness_[k]);
+    }
+    for (std::size_t k = 0; k < 3; ++k) {
+      sum[k] += base::dot(adjoint.force[k], force);
+    }
+  };
+  for (std::size_t i = 0; i < nearby.region.size(); ++i) {
+    const std::size_t module = nearby.region[i];
+    const Node& node = nodes_[module];
+    const LocalAdjoint::Way& adjoint = nearby.forces->ways[i];
+    if (adjoint.down < 0) {
+      if (node.energy > 0) {
+        add(adjoint, node.carried, module,
+            base::index(target_.facets()[first_facet_[module]].direction));
+      }
+      continue;
+    }
+    for (std::size_t k = 0; k < node.way_count; ++k) {
+      if (node.ways[k].direction == adjoint.down && node.ways[k].energy > 0) {
+        add(adjoint, node.ways[k].carried, module, adjoint.down);
+      }
+    }
+    // The neighbour may hand its loads on the other way.
+    const Node& below = nodes_[base::at(target_.connected()[module][base::at(adjoint.down)])];
+    for (std::size_t k = 0; k < below.way_count; ++k) {
+      if (below.ways[k].to == static_cast<std::int32_t>(module)) {
+        for (const Vec& force : adjoint.force) {
+          sum[3] += std::sqrt(base::dot(force, force) * below.ways[k].energy);
+        }
+      }
+    }
   }
-  return room;
+  return sum;
+}
+
+/// Whether a facet that was there when the robot was solved stays pressed all over, as far as the
+/// modules near it show, if |s - h w| / 2 is no more than `radius`.
+bool EnergyBound::is_pressed_nearby(std::size_t index, double radius) {
+  const model::Facet& facet = target_.facets()[index];
+  const Node& node = nodes_[base::at(facet.module)];
+  if (node.is_new) {
+    return false;
+  }
+  std::optional<LocalAdjoint>& nearby = nearby_[index];
+  if (!nearby) {
+    nearby = adjoints_.find(facet, [&](std::size_t module) {
+      return nodes_[module].is_there && !nodes_[module].is_new;
+    });
+  }
+  if (nearby->forces->ways.empty() ||
+      std::ranges::any_of(nearby->patch, [&](std::size_t i) { return nodes_[i].is_host; })) {
+    return false;
+  }
+  const Vec force = trial_force(facet, u_[base::at(facet.module)]);
+  const double b = target_.foot_half_width_mm();
+  const std::array<double, 4> product = product_with(*nearby);
+  const auto holds = [&](double torque, double mx, double my, double lack_per_norm) {
+    const double slack = -force[2] * b - std::abs(torque) - lack_per_norm * solved_error_;
+    return std::ranges::all_of(std::array{1.0, -1.0}, [&](double sign) {
+      const double shared = std::abs(b * product[0] + sign * (mx * product[1] + my * product[2])) +
+                            std::max(b, 1.0) * product[3];
+      return nearby->forces->norm({b, sign * mx, sign * my}) * radius + shared / 2 < slack;
+    });
+  };
+  return holds(force[3], 1, 0, facet_per_norm_x_) && holds(force[4], 0, 1, facet_per_norm_y_);
+}
+
+bool EnergyBound::are_pressed(double radius) {
+  return std::ranges::all_of(facets_, [&](std::size_t facet) {
+    return radius < room_[facet] || is_pressed_nearby(facet, radius);
+  });
 }
 
 std::optional<double> EnergyBound::add(Element element) {
@@ -273,20 +439,61 @@ std::optional<double> EnergyBound::add(Element element) {
   node.is_there = true;
   node.is_new = true;
   take_place(module);
-  change_ratio_ = std::max(change_ratio_, close_loops(module));
+  open_gaps(module);
   for (std::size_t facet = first_facet_[module]; facet < first_facet_[module + 1]; ++facet) {
     facets_.push_back(facet);
     if (facet > first_facet_[module]) {
       look_at_facet(facet);
     }
   }
+  new_.push_back(module);
   carry(module);
+  return bound();
+}
+
+/// That of the largest load ratio, if every facet is pressed all over.
+std::optional<double> EnergyBound::bound() {
   const double radius = (std::sqrt(std::max(0.0, energy_)) + solved_error_) / 2;
-  const double bound = solved_ratio_ + change_ratio_ + ratio_per_norm_ * radius;
-  if (!(bound < kRatioMax) || !(radius + solved_error_ / 2 < room())) {
+  const double ratio = solved_ratio_ + change_ratio_ + ratio_per_norm_ * radius;
+  if (!(ratio < kRatioMax) || !are_pressed(radius + solved_error_ / 2)) {
     return std::nullopt;
   }
-  return bound;
+  return ratio;
+}
+
+std::optional<double> EnergyBound::improve(const std::vector<Vec>& displacement,
+                                           double energy_error, double load_ratio) {
+  std::vector<bool> is_changed(nodes_.size());
+  for (const std::size_t module : new_) {
+    nodes_[module].is_new = false;
+    is_changed[module] = true;
+    for (const std::int32_t other : target_.connected()[module]) {
+      if (other != model::Robot::kNoNeighbour) {
+        nodes_[base::at(other)].is_host = false;
+        is_changed[base::at(other)] = true;
+      }
+    }
+  }
+  forget_nearby(is_changed);
+  for (const std::size_t module : carrying_) {
+    Node& node = nodes_[module];
+    node.carried = {};
+    node.energy = 0;
+    for (Way& way : node.ways) {
+      way.carried = {};
+      way.energy = 0;
+    }
+  }
+  new_.clear();
+  gaps_.clear();
+  carrying_.clear();
+  u_ = displacement;
+  energy_ = 0;
+  change_ratio_ = 0;
+  solved_error_ = energy_error;
+  solved_ratio_ = load_ratio;
+  std::ranges::for_each(facets_, [&](std::size_t facet) { look_at_facet(facet); });
+  return bound();
 }
 
 }  // namespace holdfast::plan

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <optional>
 #include <vector>
 
@@ -9,6 +10,8 @@
 #include "holdfast/model/robot.hpp"
 #include "holdfast/plan/element_set.hpp"
 #include "holdfast/verdict/assessment.hpp"
+#include "local_adjoint.hpp"
+#include "local_balance.hpp"
 
 namespace holdfast::plan {
 
@@ -16,8 +19,9 @@ namespace holdfast::plan {
 ///
 /// Let u be the displacements of the solved robot, and s the forces of its springs, in the middle
 /// of each beam and facet six that know nothing of each other, with stiffness h. A module that is
-/// attached moves as its neighbour does, rigidly, and its load goes down a tree of beams to a
-/// support: so there are displacements u with gaps w, and forces s that balance all loads. By
+/// attached moves until it is in balance with its neighbours, which stay, and its load goes down
+/// through beams to a support: so there are displacements u with gaps w, and forces s that balance
+/// all loads. By
 /// [Prager 1947] the exact forces s* lie on the sphere whose diameter joins s and h w:
 ///   |s* - (s + h w) / 2| = |s - h w| / 2,      |x|^2 = sum x_i^2 / h_i.
 /// A load ratio c is convex and homogeneous, so with r = load_ratio_per_energy_norm()
@@ -29,8 +33,8 @@ namespace holdfast::plan {
 /// down.
 class EnergyBound {
  public:
-  /// Keeps a reference to the whole robot.
-  explicit EnergyBound(const model::Robot& target);
+  /// Keeps references to the whole robot and to what is known of its facets.
+  EnergyBound(const model::Robot& target, const LocalAdjoints& adjoints);
 
   /// Begins with a solved robot, whose modules are `elements` of the target, in that order. False
   /// if nothing can be built on it: it is not safe, a facet tilts or is open, or the polygon does
@@ -41,32 +45,61 @@ class EnergyBound {
   /// ratio, or none if the robot may be unsafe; it is then to be solved.
   std::optional<double> add(Element module);
 
+  /// Goes on from better displacements of the robot that is there now, all of whose facets are
+  /// stuck, by module of the target. They are off by `energy_error` in the energy norm at most, and
+  /// no load ratio exceeds `load_ratio`. Returns as add() does.
+  std::optional<double> improve(const std::vector<base::Vec6<double>>& displacement,
+                                double energy_error, double load_ratio);
+
  private:
   using Vec = base::Vec6<double>;
 
-  struct Node {
-    bool is_there = false;
-    bool is_new = false;       ///< Attached since the robot was solved.
-    std::int32_t parent = -1;  ///< Towards the support; -1 at one.
-    int down = 0;              ///< Direction to the parent.
-    std::int32_t depth = 0;
-    Vec u{};            ///< Displacement.
+  /// So many ways down from a module at most.
+  static constexpr std::size_t kWayMax = 4;
+
+  /// A beam to a module that is nearer to a support.
+  struct Way {
+    std::int32_t to = -1;
+    int direction = 0;
     Vec carried{};      ///< New loads that it hands on, about the origin; global frame.
-    double energy = 0;  ///< Of what its beam to the parent, or its facet, lacks; twice.
+    double energy = 0;  ///< Of s - h w, but for what it was when the robot was solved; twice.
   };
 
+  struct Node {
+    bool is_there = false;
+    bool is_new = false;   ///< Attached since the robot was solved.
+    bool is_host = false;  ///< A module has been attached beside it since.
+    std::int32_t depth = 0;
+    std::size_t gaps = 0;  ///< If new: where those of its beams begin in gaps_, by direction.
+    std::array<Way, kWayMax> ways{};  ///< Towards the support, the parent first.
+    std::size_t way_count = 0;        ///< 0 at a support.
+    Vec carried{};                    ///< New loads that its support bears, as in Way.
+    double energy = 0;                ///< Of what its facet lacks; twice.
+  };
+
+  void forget_nearby(const std::vector<Element>& elements);
+  void forget_nearby(const std::vector<bool>& is_changed);
+  std::optional<double> bound();
   bool has_root(std::size_t module) const;
+  double lean(std::size_t module, std::size_t neighbour) const;
   void hang(std::size_t module);
   void take_place(std::size_t module);
-  double close_loops(std::size_t module);
+  void open_gaps(std::size_t module);
+  Vec gap(const Node& node, int direction) const;
   void carry(std::size_t from);
-  Vec middle(std::size_t module, int direction) const;
+  std::size_t nearest_way(const Node& node, const Vec& place) const;
+  void carry_down(std::size_t module, Way& way, const Vec& load);
+  Vec middle(const Vec& carried, std::size_t module, int direction) const;
   double energy_of(const Vec& force) const;
-  double ratio_of(std::size_t a, std::size_t b, int direction, const Vec& force) const;
   void look_at_facet(std::size_t facet);
-  double room() const;
+  Vec trial_force(const model::Facet& facet, const Vec& u) const;
+  std::array<double, 4> product_with(const LocalAdjoint& nearby) const;
+  bool is_pressed_nearby(std::size_t facet, double radius);
+  bool are_pressed(double radius);
 
   const model::Robot& target_;
+  const LocalAdjoints& adjoints_;
+  LocalBalance local_;
   model::LatticeBeam<double> beam_;
   Vec stiffness_{};  ///< Of the springs in the middle, h.
   double ratio_per_norm_ = 0;
@@ -75,8 +108,13 @@ class EnergyBound {
   std::vector<base::Vec6<double>> places_;  ///< Nodes, mm; the last three are 0.
   std::vector<std::size_t> first_facet_;    ///< By module; facets of module i begin there.
   std::vector<Node> nodes_;
-  std::vector<std::size_t> facets_;  ///< There, by index in the target.
-  std::vector<double> room_;         ///< By facet of the target: what |s - h w| / 2 may be.
+  std::vector<Vec> u_;                 ///< Displacements, by module.
+  std::vector<Vec> gaps_;              ///< h w of beams of new modules to those there before them.
+  std::vector<std::size_t> new_;       ///< Attached since the robot was solved.
+  std::vector<std::size_t> carrying_;  ///< Hand on something of their loads; some repeated.
+  std::vector<std::size_t> facets_;    ///< There, by index in the target.
+  std::vector<double> room_;           ///< By facet of the target: what |s - h w| / 2 may be.
+  std::vector<std::optional<LocalAdjoint>> nearby_;  ///< By facet, as far as asked for.
   double solved_ratio_ = 0;
   double solved_error_ = 0;
   double energy_ = 0;        ///< |s - h w|^2

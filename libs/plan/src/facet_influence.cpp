@@ -80,4 +80,14 @@ Vec6<double> FacetInfluence::motion(std::size_t facet, const Vec& u) const {
   return w;
 }
 
+Vec6<double> FacetInfluence::load(std::size_t facet, const Vec& forces) const {
+  Vec load{};
+  for (std::size_t i = 0; i < 6; ++i) {
+    for (std::size_t k = 0; k < 6; ++k) {
+      load[k] += forces[i] * rows_[facet][i][k];
+    }
+  }
+  return load;
+}
+
 }  // namespace holdfast::plan

@@ -25,7 +25,10 @@ class FacetInfluence {
   /// w of a facet when its module moves by u.
   Vec motion(std::size_t facet, const Vec& u) const;
 
-  /// The force and torque on the module of a unit of component `i` on the facet's centre.
+  /// The force and torque on the module of forces on a facet's centre.
+  Vec load(std::size_t facet, const Vec& forces) const;
+
+  /// The same of a unit of component `i`.
   const Vec& row(std::size_t facet, std::size_t i) const { return rows_[facet][i]; }
 
   /// The displacement of a module for a unit of component `i` on a facet: K^-1 row(facet, i).

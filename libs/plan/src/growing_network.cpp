@@ -66,12 +66,16 @@ void GrowingNetwork::load(std::size_t e, double sign) {
     for (std::size_t i = 0; i < 6; ++i) {
       loads_[at(node)][i] += sign * load[i];
     }
-    load_sum_n_ += sign * std::hypot(load[0], load[1], load[2]);
   };
   put(element.spring.a, element.load_a);
   put(element.spring.b, element.load_b);
   has_element_[e] = sign > 0 ? 1 : 0;
   element_count_ = sign > 0 ? element_count_ + 1 : element_count_ - 1;
+  is_solved_ = false;
+}
+
+void GrowingNetwork::add_load(std::size_t node, const Vec6<double>& load) {
+  base::add_to(loads_[node], load);
   is_solved_ = false;
 }
 
@@ -111,7 +115,6 @@ void GrowingNetwork::undo() {
 bool GrowingNetwork::assign(std::span<const std::size_t> elements) {
   std::ranges::fill(has_element_, std::uint8_t{0});
   std::ranges::fill(loads_, Vec6<double>{});
-  load_sum_n_ = 0;
   element_count_ = 0;
   is_solved_ = false;
   last_sign_ = 0;
@@ -146,6 +149,10 @@ double GrowingNetwork::make_residual(const std::vector<Vec6<double>>& u) {
       base::add_to(residual_[at(spring.a)], base::multiply(spring.lever, force));
     }
   }
+  double load_sum = 0;
+  for (const Vec6<double>& load : loads_) {
+    load_sum += std::hypot(load[0], load[1], load[2]);
+  }
   double largest = 0;
   for (const Vec6<double>& r : residual_) {
     for (std::size_t i = 0; i < 6; ++i) {
@@ -153,7 +160,7 @@ double GrowingNetwork::make_residual(const std::vector<Vec6<double>>& u) {
       largest = size <= largest ? largest : size;  // NaN is largest.
     }
   }
-  return load_sum_n_ > 0 ? largest / load_sum_n_ : 0;
+  return load_sum > 0 ? largest / load_sum : 0;
 }
 
 /// Newton's method on linear equations: what the residual alone would move, twice at most.

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "dense.hpp"
@@ -34,6 +35,14 @@ void add_scaled(Vec6<double>& sum, double factor, const Vec6<double>& term) {
   }
 }
 
+std::vector<base::Direction> directions_of(const Site& site) {
+  std::vector<base::Direction> directions;
+  for (const Link& link : site.links) {
+    directions.push_back(link.direction);
+  }
+  return directions;
+}
+
 Vec6<double> scaled(const Vec6<double>& a, const Vec6<double>& b) {
   Vec6<double> product{};
   for (std::size_t k = 0; k < 6; ++k) {
@@ -50,7 +59,7 @@ Vec6<double> scaled(const Vec6<double>& a, const Vec6<double>& b) {
 ///   outputs = known + G s,   t = q - C y,   a = -(corrector - 1) H w.
 class GrownContact::System {
  public:
-  System(const GrownContact& contact, const Site& site, const NewNode& node, ReachCache& reaches,
+  System(const GrownContact& contact, const Site& site, const NewNode& node,
          const FacetInfluence* facets, const States& states)
       : contact_(contact), site_(site), node_(node), facets_(facets) {
     for (std::size_t i = 0; facets != nullptr && i < contact.influence_.facets().size(); ++i) {
@@ -58,10 +67,10 @@ class GrownContact::System {
         add_facet(i, states[i]);
       }
     }
-    if (node.is_load()) {
+    if (!node.is_load()) {
+      take_hosts();
+    } else if (!site.links.empty()) {
       known_.push_back({.module = site.links.front().host, .load = node.load(0)});
-    } else {
-      take_hosts(reaches);
     }
   }
 
@@ -100,12 +109,12 @@ class GrownContact::System {
       }
       step.host_loads.push_back(load);
     }
+    if (!rows_.empty()) {
+      step.facet_forces.resize(contact_.influence_.facets().size());
+    }
     for (std::size_t r = 0; r < rows_.size(); ++r) {
       const auto [place, component] = rows_[r];
-      const std::size_t facet = yielding_[place].facet;
-      PointLoad load{.module = contact_.influence_.facets()[facet].module};
-      add_scaled(load.load, values_[host_unknowns() + r], facets_->row(facet, component));
-      step.facet_loads.push_back(load);
+      step.facet_forces[yielding_[place].facet][component] = values_[host_unknowns() + r];
     }
     if (facets_ != nullptr) {
       take_motions(step);
@@ -148,23 +157,13 @@ class GrownContact::System {
     yielding_.push_back(yielding);
   }
 
-  void take_hosts(ReachCache& reaches) {
+  void take_hosts() {
     const std::size_t count = site_.links.size();
-    std::vector<const solver::Influence::Reach*> host_reaches;
-    for (const Link& link : site_.links) {
-      auto found = reaches.find(link.host);
-      if (found == reaches.end()) {
-        found = reaches.emplace(link.host, contact_.influence_.reach(link.host)).first;
-      }
-      host_reaches.push_back(&found->second);
-    }
-    between_hosts_.resize(count * count);
-    stiffness_.resize(count * count);
     for (std::size_t i = 0; i < count; ++i) {
       for (std::size_t j = 0; j < count; ++j) {
-        between_hosts_[i * count + j] =
-            contact_.influence_.between(*host_reaches[i], *host_reaches[j]);
-        stiffness_[i * count + j] = node_.stiffness(i, j);
+        between_hosts_.push_back(
+            contact_.influence_.inverse().between(site_.links[i].host, site_.links[j].host));
+        stiffness_.push_back(node_.stiffness(i, j));
       }
     }
   }
@@ -293,7 +292,8 @@ class GrownContact::System {
 };
 
 GrownContact::GrownContact(const model::Robot& robot, const model::Touch& floor,
-                           const solver::Influence& influence, bool is_bonded)
+                           const solver::Influence& influence, bool is_bonded,
+                           std::span<const Site> sites)
     : robot_(robot),
       influence_(influence),
       is_bonded_(is_bonded),
@@ -309,6 +309,21 @@ GrownContact::GrownContact(const model::Robot& robot, const model::Touch& floor,
     load_[k] = mass * robot.gravity()[k];
     scale_n_ += total * std::abs(robot.gravity()[k]);
   }
+  for (const Site& site : sites) {
+    const std::vector<base::Direction> directions = directions_of(site);
+    for (int code = 0; site.is_on_floor && code < ContactState::kCodeCount; ++code) {
+      const FacetState facet = own_facet(ContactState::from_code(code));
+      nodes_.try_emplace(std::pair(directions, code), influence_, site, load_, &facet);
+    }
+    if (!site.is_on_floor) {
+      nodes_.try_emplace(std::pair(directions, -1), influence_, site, load_, nullptr);
+    }
+  }
+  nodes_.try_emplace(std::pair(std::vector<base::Direction>{}, -1));
+  for (std::size_t i = 0; i < influence.facets().size(); ++i) {
+    by_root_.emplace_back(stuck_energy_root(i), i);
+  }
+  std::ranges::sort(by_root_);
 }
 
 FacetState GrownContact::own_facet(const ContactState& state) const {
@@ -318,9 +333,8 @@ FacetState GrownContact::own_facet(const ContactState& state) const {
           .state = state};
 }
 
-NewNode GrownContact::make_node(const Site& site, const ContactState& own) const {
-  const FacetState facet = own_facet(own);
-  return {influence_, site, load_, site.is_on_floor ? &facet : nullptr};
+const NewNode& GrownContact::node(const Site& site, const ContactState& own) const {
+  return nodes_.at({directions_of(site), site.is_on_floor ? own.code() : -1});
 }
 
 Vec6<double> GrownContact::own_motion(const Vec& u) const {
@@ -332,10 +346,9 @@ Vec6<double> GrownContact::own_motion(const Vec& u) const {
 }
 
 std::optional<GrownContact::Step> GrownContact::solve(const Site& site, const NewNode& node,
-                                                      ReachCache& reaches,
                                                       const FacetInfluence* facets,
                                                       const States& states) const {
-  System system(*this, site, node, reaches, facets, states);
+  System system(*this, site, node, facets, states);
   return system.solve() ? std::optional(system.step()) : std::nullopt;
 }
 
@@ -410,7 +423,7 @@ Footing GrownContact::footing_of(const States& states, const Step& step) const {
 /// As solver/src/other_solutions.cpp: a facet that is not stuck and is pulled sideways by more than
 /// it presses may have a second state. If it comes back at once when it is put there, it has not.
 bool GrownContact::may_have_others(const Site& site, const States& states, const Step& step,
-                                   ReachCache& reaches, const FacetInfluence& facets) const {
+                                   const FacetInfluence& facets) const {
   for (std::size_t i = 0; i < states.size(); ++i) {
     const bool is_own = i == influence_.facets().size();
     const FacetState facet = is_own ? own_facet({}) : influence_.facets()[i];
@@ -423,8 +436,8 @@ bool GrownContact::may_have_others(const Site& site, const States& states, const
     }
     States other = states;
     other[i] = {.pressed = !states[i].pressed};
-    const NewNode node = make_node(site, site.is_on_floor ? other.back() : ContactState{});
-    const auto next = solve(site, node, reaches, &facets, other);
+    const NewNode& own = node(site, site.is_on_floor ? other.back() : ContactState{});
+    const auto next = solve(site, own, &facets, other);
     const auto state =
         next ? certain_state(facet, scaled(stiffness, next->motions[i])) : std::nullopt;
     if (!state || state->pressed == other[i].pressed) {
@@ -434,40 +447,116 @@ bool GrownContact::may_have_others(const Site& site, const States& states, const
   return false;
 }
 
-Grown GrownContact::grown(const Site& site, NewNode node, Step step, const Footing& footing) const {
-  std::vector<PointLoad> loads = std::move(step.facet_loads);
+Grown GrownContact::grown(const Site& site, const NewNode& node, Step step,
+                          const Footing& footing) const {
+  Grown grown{.facet_forces = std::move(step.facet_forces), .node = &node, .footing = footing};
   for (std::size_t h = 0; h < site.links.size(); ++h) {
-    loads.push_back({.module = site.links[h].host, .load = step.host_loads[h]});
+    grown.host_loads.push_back({.module = site.links[h].host, .load = step.host_loads[h]});
   }
-  return {.loads = std::move(loads), .node = std::move(node), .footing = footing};
+  return grown;
 }
 
-std::optional<Grown> GrownContact::stuck(const Site& site, ReachCache& reaches) const {
-  NewNode node = make_node(site, {});
-  auto step = solve(site, node, reaches, nullptr, {});
+std::optional<Grown> GrownContact::stuck(const Site& site) const {
+  const NewNode& own = node(site, {});
+  auto step = solve(site, own, nullptr, {});
   if (!step) {
     return std::nullopt;
   }
-  return grown(site, std::move(node), *std::move(step), {});
+  return grown(site, own, *std::move(step), {});
 }
 
-std::optional<Grown> GrownContact::settle(const Site& site, ReachCache& reaches,
-                                          const FacetInfluence& facets) const {
+/// The largest root of the energy of a change under which a facet surely sticks, and does not slip;
+/// not more than 0 if it need not. A spring of stiffness H with the energy e bears at most the root
+/// of H e; where a torque reaches the edge a facet tilts, where forces sideways reach their limit
+/// it slips.
+double GrownContact::stuck_energy_root(std::size_t facet) const {
+  constexpr double kRoom = 0.999;
+  const FacetState& state = influence_.facets()[facet];
+  if (is_bonded_ || state.is_bonded) {
+    return std::numeric_limits<double>::infinity();
+  }
+  const auto& ground = influence_.law().ground();
+  const auto rise = [&](std::size_t i) { return std::sqrt(ground.stiffness[i]); };
+  const Vec trial = influence_.law().trial_force(state, influence_.displacement()[state.module]);
+  double root = std::numeric_limits<double>::infinity();
+  for (const std::size_t k : {std::size_t{3}, std::size_t{4}}) {
+    root = std::min(root, (-trial[2] * ground.half_width - std::abs(trial[k])) /
+                              (rise(2) * ground.half_width + rise(k)));
+  }
+  if (const auto friction = robot_.facets()[facet].touch.friction) {
+    root = std::min(root, (-trial[2] * *friction - std::hypot(trial[0], trial[1])) /
+                              (rise(2) * *friction + std::hypot(rise(0), rise(1))));
+  }
+  return kRoom * root;
+}
+
+Footing GrownContact::footing_if_stuck(const Site& site, const Vec& new_module,
+                                       std::span<const PointLoad> host_loads, double energy_root,
+                                       const FacetInfluence* facets) const {
+  Footing footing;
+  for (const auto& [root, place] : by_root_) {
+    if (energy_root < root) {
+      break;  // And so for all that follow.
+    }
+    if (facets == nullptr) {
+      return {.is_certain = false};
+    }
+    const FacetState& facet = influence_.facets()[place];
+    Vec motion = facets->motion(place, influence_.displacement()[facet.module]);
+    for (const PointLoad& host : host_loads) {
+      for (std::size_t i = 0; i < 6; ++i) {
+        motion[i] += base::dot(facets->displacement(host.module, place, i), host.load);
+      }
+    }
+    look_if_stuck(facet, robot_.facets()[place].touch.friction,
+                  scaled(influence_.law().ground().stiffness, motion), footing);
+  }
+  look_at_own(site, new_module, footing);
+  return footing;
+}
+
+/// Whether a facet is so far from tilting and lifting that certain_state() says that it is stuck.
+bool GrownContact::sticks_by_far(const Vec& trial) const {
+  constexpr double kRoom = 1e-3;  // Far more than certain_state()'s doubts.
+  const auto& ground = influence_.law().ground();
+  const double pressure = -trial[2];
+  const double sideways = std::abs(trial[0]) + std::abs(trial[1]);
+  const double torque = std::max(std::abs(trial[3]), std::abs(trial[4]));
+  return pressure > kRoom * kRoom * scale_n_ && pressure > kRoom * sideways &&
+         pressure * ground.lever > kRoom * std::abs(trial[5]) &&
+         pressure * ground.lever > kRoom * torque &&
+         (1 - kRoom) * pressure * ground.half_width > torque;
+}
+
+void GrownContact::look_if_stuck(const FacetState& facet, std::optional<double> friction,
+                                 const Vec& trial, Footing& footing) const {
+  footing.is_certain =
+      footing.is_certain && (sticks_by_far(trial) || certain_state(facet, trial) == ContactState{});
+  look_at(facet, friction, trial, footing);
+}
+
+void GrownContact::look_at_own(const Site& site, const Vec& new_module, Footing& footing) const {
+  if (!is_bonded_ && site.is_on_floor) {
+    const FacetState facet = own_facet({});
+    look_if_stuck(facet, floor_.friction, influence_.law().trial_force(facet, new_module), footing);
+  }
+}
+
+std::optional<Grown> GrownContact::settle(const Site& site, const FacetInfluence& facets) const {
   const std::size_t count = influence_.facets().size() + (site.is_on_floor ? 1 : 0);
   States states(count);
   std::vector<States> seen;
   for (std::size_t i = 0; i < kStepCountMax; ++i) {
-    NewNode node = make_node(site, site.is_on_floor ? states.back() : ContactState{});
-    auto step = solve(site, node, reaches, &facets, states);
+    const NewNode& own = node(site, site.is_on_floor ? states.back() : ContactState{});
+    auto step = solve(site, own, &facets, states);
     auto next = step ? next_states(*step) : std::nullopt;
     if (!next) {
       return std::nullopt;
     }
     if (*next == states) {
       Footing footing = footing_of(states, *step);
-      footing.is_certain =
-          footing.is_certain && !may_have_others(site, states, *step, reaches, facets);
-      Grown result = grown(site, std::move(node), *std::move(step), footing);
+      footing.is_certain = footing.is_certain && !may_have_others(site, states, *step, facets);
+      Grown result = grown(site, own, *std::move(step), footing);
       result.is_settled = true;
       return result;
     }

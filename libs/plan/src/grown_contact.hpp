@@ -6,21 +6,17 @@
 #include <map>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "facet_influence.hpp"
 #include "holdfast/model/robot.hpp"
 #include "holdfast/solver/influence.hpp"
 #include "new_node.hpp"
+#include "responses.hpp"
 #include "site.hpp"
 
 namespace holdfast::plan {
-
-/// What the robot without the new module has to bear so that it moves as the grown one does.
-struct PointLoad {
-  std::size_t module = 0;
-  base::Vec6<double> load{};
-};
 
 /// What the facets of a grown robot say besides the loads.
 struct Footing {
@@ -28,16 +24,16 @@ struct Footing {
   bool is_slipping = false;
 };
 
-/// A grown robot in equilibrium with its contact states.
+/// A grown robot in equilibrium with its contact states: what the robot without the new module has
+/// to bear so that it moves as the grown one does.
 struct Grown {
-  std::vector<PointLoad> loads;
-  NewNode node;  ///< With its facet in the state found.
-  Footing footing;
+  std::vector<PointLoad> host_loads = {};  ///< By link.
+  /// By facet, in its own frame, what differs from the force of one that sticks. Empty if all do.
+  std::vector<base::Vec6<double>> facet_forces = {};
+  const NewNode* node = nullptr;  ///< With its facet in the state found.
+  Footing footing = {};
   bool is_settled = false;  ///< By the path; else all facets were taken to be stuck.
 };
-
-/// The half of K^-1 of modules that were asked for.
-using ReachCache = std::map<std::size_t, solver::Influence::Reach>;
 
 /// Follows, for one site after another, the path of the check over contact states: from all facets
 /// stuck to those that the solution prescribes, until nothing changes. Every step is a small system
@@ -47,11 +43,19 @@ class GrownContact {
  public:
   using Vec = base::Vec6<double>;
 
+  /// For new modules at these sites.
   GrownContact(const model::Robot& robot, const model::Touch& floor,
-               const solver::Influence& influence, bool is_bonded);
+               const solver::Influence& influence, bool is_bonded, std::span<const Site> sites);
 
   /// The loads while all facets are stuck.
-  std::optional<Grown> stuck(const Site& site, ReachCache& reaches) const;
+  std::optional<Grown> stuck(const Site& site) const;
+
+  /// What all facets say as long as they stick, when the new one's module moves so: under loads on
+  /// its hosts whose energy (LoadChange) has such a root. Certain only if they do. Without `facets`
+  /// only the energy can tell.
+  Footing footing_if_stuck(const Site& site, const Vec& new_module,
+                           std::span<const PointLoad> host_loads, double energy_root,
+                           const FacetInfluence* facets) const;
 
   /// What facets that move with the modules' `displacement(module)` and the new one say; certain
   /// only if all of them are stuck.
@@ -60,9 +64,8 @@ class GrownContact {
                            const Displacement& displacement) const;
 
   /// The loads in the contact states where the path ends; none if it does not end, or not for
-  /// certain as that of a check.
-  std::optional<Grown> settle(const Site& site, ReachCache& reaches,
-                              const FacetInfluence& facets) const;
+  /// certain as that of a check. A site without links: the robot without a new module.
+  std::optional<Grown> settle(const Site& site, const FacetInfluence& facets) const;
 
  private:
   using States = std::vector<mechanics::ContactState>;
@@ -71,25 +74,30 @@ class GrownContact {
   struct Step {
     std::vector<Vec> host_loads;
     std::vector<Vec> motions;  ///< w by facet; of the new module's own behind the others.
-    std::vector<PointLoad> facet_loads;
+    std::vector<Vec> facet_forces;
   };
 
   class System;
 
-  std::optional<Step> solve(const Site& site, const NewNode& node, ReachCache& reaches,
-                            const FacetInfluence* facets, const States& states) const;
+  std::optional<Step> solve(const Site& site, const NewNode& node, const FacetInfluence* facets,
+                            const States& states) const;
   std::optional<mechanics::ContactState> certain_state(const solver::FacetState& facet,
                                                        const Vec& trial) const;
+  bool sticks_by_far(const Vec& trial) const;
   std::optional<States> next_states(const Step& step) const;
+  void look_at_own(const Site& site, const Vec& new_module, Footing& footing) const;
+  void look_if_stuck(const solver::FacetState& facet, std::optional<double> friction,
+                     const Vec& trial, Footing& footing) const;
+  double stuck_energy_root(std::size_t facet) const;
   void look_at(const solver::FacetState& facet, std::optional<double> friction, const Vec& trial,
                Footing& footing) const;
   Footing footing_of(const States& states, const Step& step) const;
   bool may_have_others(const Site& site, const States& states, const Step& step,
-                       ReachCache& reaches, const FacetInfluence& facets) const;
+                       const FacetInfluence& facets) const;
   solver::FacetState own_facet(const mechanics::ContactState& state) const;
   Vec own_motion(const Vec& u) const;
-  NewNode make_node(const Site& site, const mechanics::ContactState& own) const;
-  Grown grown(const Site& site, NewNode node, Step step, const Footing& footing) const;
+  const NewNode& node(const Site& site, const mechanics::ContactState& own) const;
+  Grown grown(const Site& site, const NewNode& node, Step step, const Footing& footing) const;
 
   const model::Robot& robot_;
   const solver::Influence& influence_;
@@ -99,26 +107,22 @@ class GrownContact {
   model::Touch floor_;
   Vec load_{};          ///< Of the new module.
   double scale_n_ = 0;  ///< All loads together.
+  /// The roots of the energy of a change up to which facets surely stick, and the facets.
+  std::vector<std::pair<double, std::size_t>> by_root_;
+  /// By directions of the links and the code of the own facet's state, -1 without one.
+  std::map<std::pair<std::vector<base::Direction>, int>, NewNode> nodes_;
 };
 
 template <class Displacement>
 Footing GrownContact::footing_if_stuck(const Site& site, const Vec& new_module,
                                        const Displacement& displacement) const {
-  Footing footing;
-  const auto look = [&](const solver::FacetState& facet, std::optional<double> friction,
-                        const Vec& u) {
-    const Vec trial = influence_.law().trial_force(facet, u);
-    footing.is_certain =
-        footing.is_certain && certain_state(facet, trial) == mechanics::ContactState{};
-    look_at(facet, friction, trial, footing);
-  };
+  Footing footing = {};
   for (std::size_t i = 0; !is_bonded_ && i < influence_.facets().size(); ++i) {
     const solver::FacetState& facet = influence_.facets()[i];
-    look(facet, robot_.facets()[i].touch.friction, displacement(facet.module));
+    look_if_stuck(facet, robot_.facets()[i].touch.friction,
+                  influence_.law().trial_force(facet, displacement(facet.module)), footing);
   }
-  if (!is_bonded_ && site.is_on_floor) {
-    look(own_facet({}), floor_.friction, new_module);
-  }
+  look_at_own(site, new_module, footing);
   return footing;
 }
 

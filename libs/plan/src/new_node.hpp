@@ -22,12 +22,15 @@ class NewNode {
   using Vec = base::Vec6<double>;
   using Mat = base::Mat6<double>;
 
+  /// No new module at all.
+  NewNode() = default;
+
   /// With its own facet on the floor, if it has one, in a state.
   NewNode(const solver::Influence& influence, const Site& site, const Vec& load,
           const solver::FacetState* own);
 
   /// Whether it is nothing but a load.
-  bool is_load() const { return coupling_.size() == 1 && !has_facet_; }
+  bool is_load() const { return coupling_.size() <= 1 && !has_facet_; }
 
   std::size_t host_count() const { return coupling_.size(); }
 

@@ -48,10 +48,12 @@ class Knowledge {
 
   std::size_t state_count() const { return judgements_.size(); }
 
-  bool is_spent() const {
+  bool is_late() const {
     const std::chrono::duration<double> passed = Clock::now() - begin_;
-    return passed.count() >= options_.seconds_max || state_count() >= options_.state_count_max;
+    return passed.count() >= options_.seconds_max;
   }
+
+  bool is_spent() const { return is_late() || state_count() >= options_.state_count_max; }
 
  private:
   using Clock = std::chrono::steady_clock;
@@ -94,12 +96,14 @@ class Explorer {
 
  private:
   /// A state on the present way: what led to it, and what can come next. Groups of one stand in
-  /// `singles`; when none of them is left all others are in `groups`.
+  /// `singles`, once something else than the first of them is asked for; when none of them is left
+  /// all others are in `groups`.
   struct Frame {
     Batch group;
-    std::vector<Element> singles;
+    std::vector<Element> singles = {};
     std::vector<Batch> groups = {};
     std::size_t next = 0;
+    bool has_singles = false;
     bool has_groups = false;
   };
 
@@ -114,6 +118,7 @@ class Explorer {
   bool advance();
   bool take_group();
   std::vector<Element> propose();
+  std::optional<Element> next_single(const std::function<bool(Element)>& is_open);
   void enter(Batch group);
   void leave();
   void note(const ElementSet& state);
@@ -143,8 +148,7 @@ void Explorer::note(const ElementSet& state) {
 void Explorer::enter(Batch group) {
   state_ = changed(std::move(state_), sense_, group);
   note(state_);
-  frames_.push_back(
-      {.group = std::move(group), .singles = structure_.candidates(state_, sense_, seed_)});
+  frames_.push_back({.group = std::move(group)});
 }
 
 /// Goes back from a state from which no way is left.
@@ -159,22 +163,15 @@ void Explorer::leave() {
 /// The next elements to try one after another: from the present state the first candidate that is
 /// not known to lead nowhere, then always the most promising one, up to a state that is known.
 std::vector<Element> Explorer::propose() {
-  Frame& frame = frames_.back();
   std::vector<Element> run;
   ElementSet state = state_;
-  const std::vector<Element>* candidates = &frame.singles;
-  std::vector<Element> later;
-  std::size_t next = frame.next;
   while (run.size() < run_length_) {
     const auto is_open = [&](Element element) {
       return !is_hopeless(changed(state, sense_, {&element, 1}));
     };
-    const auto found = std::find_if(candidates->begin() + static_cast<std::ptrdiff_t>(next),
-                                    candidates->end(), is_open);
-    if (run.empty()) {
-      frame.next = static_cast<std::size_t>(found - candidates->begin());
-    }
-    if (found == candidates->end()) {
+    const auto found = run.empty() ? next_single(is_open)
+                                   : structure_.first_candidate(state, sense_, seed_, is_open);
+    if (!found) {
       break;
     }
     state = changed(std::move(state), sense_, {&*found, 1});
@@ -183,14 +180,24 @@ std::vector<Element> Explorer::propose() {
       break;
     }
     run.push_back(*found);
-    if (is_known || goals_.contains(state) || run.size() == run_length_) {
+    if (is_known || goals_.contains(state)) {
       break;
     }
-    later = structure_.candidates(state, sense_, seed_);
-    candidates = &later;
-    next = 0;
   }
   return run;
+}
+
+/// The next candidate of the present state that is open, where the frame then stands.
+std::optional<Element> Explorer::next_single(const std::function<bool(Element)>& is_open) {
+  Frame& frame = frames_.back();
+  if (!frame.has_singles) {
+    frame.singles = structure_.candidates(state_, sense_, seed_);
+    frame.has_singles = true;
+  }
+  const auto found = std::find_if(frame.singles.begin() + static_cast<std::ptrdiff_t>(frame.next),
+                                  frame.singles.end(), is_open);
+  frame.next = static_cast<std::size_t>(found - frame.singles.begin());
+  return found == frame.singles.end() ? std::nullopt : std::optional(*found);
 }
 
 /// Tries one run of single elements. False if no single element is left here.
@@ -205,7 +212,8 @@ bool Explorer::advance() {
     enter({run.front()});
     return true;
   }
-  const std::vector<Judgement> judgements = structure_.judge_run(state_, sense_, run);
+  const std::vector<Judgement> judgements =
+      structure_.judge_run(state_, sense_, run, [&] { return knowledge_.is_late(); });
   for (std::size_t i = 0; i < judgements.size(); ++i) {
     knowledge_.learn(changed(state_, sense_, {&run[i], 1}), judgements[i]);
     if (!judgements[i].is_safe()) {
@@ -376,14 +384,23 @@ void add_groups(GrowingStructure& structure, const ElementSet& state, Sense sens
 
 }  // namespace
 
+std::optional<Element> GrowingStructure::first_candidate(
+    const ElementSet& state, Sense sense, std::uint64_t seed,
+    const std::function<bool(Element)>& is_open) {
+  const std::vector<Element> list = candidates(state, sense, seed);
+  const auto found = std::ranges::find_if(list, is_open);
+  return found == list.end() ? std::nullopt : std::optional(*found);
+}
+
 std::vector<Judgement> GrowingStructure::judge_run(const ElementSet& state, Sense sense,
-                                                   std::span<const Element> run) {
+                                                   std::span<const Element> run,
+                                                   const std::function<bool()>& is_late) {
   std::vector<Judgement> judgements;
   ElementSet next = state;
   for (const Element element : run) {
     next = changed(std::move(next), sense, {&element, 1});
     judgements.push_back(judge(next));
-    if (!judgements.back().is_safe()) {
+    if (!judgements.back().is_safe() || is_late()) {
       break;
     }
   }

@@ -82,9 +82,16 @@ RobotGrowth::RobotGrowth(const model::RobotSpec& spec, const model::Robot& targe
       rule_(rule),
       reach_(spec, rule),
       thread_count_(thread_count),
+      growing_(target),
+      adjoints_(target),
+      bounds_(kPieceCountMax, EnergyBound(target, adjoints_)),
+      is_bonded_(std::ranges::all_of(target.facets(), &model::Facet::is_bonded)),
       distance_(distances_from(target, supports_and(target, core))),
       state_(spec.existing.size()),
       beside_count_(spec.existing.size()) {
+  for (std::size_t i = 0; i < kPieceCountMax; ++i) {
+    followed_.emplace_back(spec, target);
+  }
   if (verdict::is_on_flat_floor(target) && target.fixed_count() == 0) {
     balance_.emplace(target);
   }
@@ -258,8 +265,8 @@ void RobotGrowth::put_toppling_last(std::vector<Element>& list, Sense sense) {
     return;
   }
   std::stable_partition(list.begin(), list.end(), [&](Element element) {
-    return (sense == Sense::kGrowing ? balance_->margin_with(element)
-                                     : balance_->margin_without(element)) > 0;
+    return sense == Sense::kGrowing ? balance_->stands_with(element)
+                                    : balance_->stands_without(element);
   });
 }
 
@@ -280,11 +287,80 @@ std::vector<Element> RobotGrowth::candidates(const ElementSet& state, Sense sens
   return list;
 }
 
+std::optional<Element> RobotGrowth::first_candidate(const ElementSet& state, Sense sense,
+                                                    std::uint64_t seed,
+                                                    const std::function<bool(Element)>& is_open) {
+  if (sense == Sense::kShrinking || rule_.reach != Reach::kFree) {
+    return GrowingStructure::first_candidate(state, sense, seed, is_open);
+  }
+  set_seed(seed);
+  move_to(state);
+  std::optional<Element> toppling;
+  for (const Rank& rank : frontier_) {
+    if (!is_open(rank.second)) {
+      continue;
+    }
+    if (!balance_ || balance_->stands_with(rank.second)) {
+      return rank.second;
+    }
+    toppling = toppling.value_or(rank.second);
+  }
+  return toppling;
+}
+
 base::Result<model::Robot> RobotGrowth::robot(const ElementSet& state) const {
   return model::Robot::create(part_of(spec_, state), 1);
 }
 
+/// A state of modules that hang together, safe as the growing factorization shows.
+std::optional<verdict::Assessment> RobotGrowth::assess_by_factors(const ElementSet& state) {
+  if (!growing_.is_thin() || !(balance_ || is_bonded_)) {
+    return std::nullopt;
+  }
+  std::optional<double> margin_mm;
+  if (balance_) {
+    move_to(state);
+    margin_mm = balance_->margin() * target_.material().pitch_mm;
+    if (!(balance_->margin() > Balance::kMarginDoubt)) {
+      return std::nullopt;
+    }
+  }
+  auto assessment = growing_.assess_safe(state);
+  if (assessment) {
+    assessment->simplified.margin_mm = margin_mm;
+    assessment->stability_rule =
+        balance_ ? verdict::StabilityRule::kPolygon : verdict::StabilityRule::kHeld;
+  }
+  return assessment;
+}
+
+bool RobotGrowth::is_connected(const ElementSet& state) const {
+  std::vector<Element> reached;
+  std::vector<bool> is_reached(element_count());
+  const auto reach = [&](Element element) {
+    if (state.contains(element) && !is_reached[base::at(element)]) {
+      is_reached[base::at(element)] = true;
+      reached.push_back(element);
+    }
+  };
+  if (state.size() > 0) {
+    reach(state.elements().front());
+  }
+  for (std::size_t i = 0; i < reached.size(); ++i) {
+    for (const std::int32_t other : target_.connected()[base::at(reached[i])]) {
+      if (other != model::Robot::kNoNeighbour) {
+        reach(other);
+      }
+    }
+  }
+  return reached.size() == state.size();
+}
+
 Judgement RobotGrowth::judge(const ElementSet& state) {
+  const auto assessment = is_connected(state) ? assess_by_factors(state) : std::nullopt;
+  if (assessment) {
+    return judgement_of(*assessment);
+  }
   const auto part = robot(state);
   // A set of modules that is no robot, such as a start that is not connected, is not safe.
   return part ? plan::judge(part.value(), {.thread_count = thread_count_})
@@ -297,12 +373,32 @@ Judgement judgement_of(const verdict::Assessment& assessment) {
           .margin_mm = assessment.simplified.margin_mm};
 }
 
+verdict::Assessment RobotGrowth::assess_alone(const ElementSet& state) const {
+  const auto part = robot(state);
+  return part ? assess(part.value(), {.thread_count = 1}) : verdict::Assessment{};
+}
+
+/// A bound of the load ratio of the state that both tools have come to, by solutions that follow
+/// the robot.
+std::optional<double> RobotGrowth::bound_by_following(const Tools& tools) {
+  auto known = tools.followed->solve();
+  for (int i = 0; known; ++i) {
+    const auto ratio =
+        tools.bound.improve(tools.followed->displacement(), known->energy_error, known->load_ratio);
+    if (ratio || i == kImprovementMax) {
+      return ratio;
+    }
+    known = tools.followed->improve();
+  }
+  return std::nullopt;
+}
+
 /// Judges states one after another until one is not safe: those that can be certified so by what is
 /// known of the last that was solved, all others solved.
 std::vector<Judgement> RobotGrowth::judge_piece(ElementSet state, Sense sense,
-                                                std::span<const Element> run) const {
+                                                std::span<const Element> run,
+                                                const Tools& tools) const {
   const bool can_certify = sense == Sense::kGrowing;
-  EnergyBound bound(target_);
   std::optional<Balance> balance;
   if (balance_ && can_certify) {
     balance.emplace(target_);
@@ -313,14 +409,34 @@ std::vector<Judgement> RobotGrowth::judge_piece(ElementSet state, Sense sense,
   const double pitch_mm = target_.material().pitch_mm;
   std::vector<Judgement> judgements;
   bool has_bound = false;
+  bool is_followed = false;
   for (const Element element : run) {
+    if (!judgements.empty() && tools.is_late()) {
+      break;
+    }
     state = changed(std::move(state), sense, {&element, 1});
     if (balance) {
       balance->add(element);
     }
     const bool stands = !balance || balance->margin() > Balance::kMarginDoubt;
-    const auto ratio = has_bound && stands ? bound.add(element) : std::nullopt;
-    if (ratio) {
+    auto ratio = has_bound ? tools.bound.add(element) : std::nullopt;
+    is_followed =
+        is_followed && target_.modules()[base::at(element)].support != model::Support::kFixed;
+    if (is_followed) {
+      tools.followed->add(element);
+    }
+    bool by_following = false;
+    if (is_followed && stands && !ratio && tools.followed->worth().can_pay()) {
+      ratio = bound_by_following(tools);
+      by_following = ratio.has_value();
+      if (!ratio) {
+        tools.followed->worth().end(tools.followed->iteration_count());
+      }
+    }
+    if (ratio && stands) {
+      if (is_followed) {
+        tools.followed->worth().certify(by_following);
+      }
       judgements.push_back({.verdict = verdict::Verdict::kSafe, .load_ratio_max = ratio});
       judgements.back().is_bound = true;
       if (balance) {
@@ -328,26 +444,35 @@ std::vector<Judgement> RobotGrowth::judge_piece(ElementSet state, Sense sense,
       }
       continue;
     }
-    const auto part = robot(state);
-    verdict::Assessment assessment;
-    if (part) {
-      assessment = assess(part.value(), {.thread_count = 1});
-    }
+    const verdict::Assessment assessment = tools.assess(state);
     judgements.push_back(judgement_of(assessment));
     if (!judgements.back().is_safe()) {
       break;
     }
     const bool is_decided_here =
         assessment.stability_rule != verdict::StabilityRule::kPolygon || balance.has_value();
-    has_bound = can_certify && is_decided_here && bound.begin(state.elements(), assessment);
+    has_bound = can_certify && is_decided_here && tools.bound.begin(state.elements(), assessment);
+    is_followed = has_bound && tools.followed != nullptr && state.size() >= kFollowedMin &&
+                  tools.followed->worth().begin(assessment.equilibrium.iteration_count);
+    if (is_followed) {
+      tools.followed->begin(state, assessment);
+    }
   }
   return judgements;
 }
 
 std::vector<Judgement> RobotGrowth::judge_run(const ElementSet& state, Sense sense,
-                                              std::span<const Element> run) {
-  if (run.size() == 1) {
-    return GrowingStructure::judge_run(state, sense, run);
+                                              std::span<const Element> run,
+                                              const std::function<bool()>& is_late) {
+  if (run.size() == 1 || (growing_.is_thin() && sense == Sense::kShrinking)) {
+    return GrowingStructure::judge_run(state, sense, run, is_late);
+  }
+  if (growing_.is_thin()) {
+    const Assess assess = [this](const ElementSet& next) {
+      const auto assessment = assess_by_factors(next);
+      return assessment ? *assessment : assess_alone(next);
+    };
+    return judge_piece(state, sense, run, {bounds_.front(), nullptr, assess, is_late});
   }
   const std::size_t length = std::max(kPieceMin, (run.size() - 1) / kPieceCountMax + 1);
   const std::size_t count = (run.size() - 1) / length + 1;
@@ -355,19 +480,23 @@ std::vector<Judgement> RobotGrowth::judge_run(const ElementSet& state, Sense sen
   for (std::size_t i = 1; i < count; ++i) {
     begins.push_back(changed(begins.back(), sense, run.subspan((i - 1) * length, length)));
   }
+  const auto part = [&](std::size_t i) {
+    return run.subspan(i * length, std::min(length, run.size() - i * length));
+  };
+  const Assess assess = [this](const ElementSet& next) { return assess_alone(next); };
   std::vector<std::vector<Judgement>> pieces(count);
   // The loop is shared by chunks of items: one for each piece.
   host::Team team(thread_count_);
   team.share(0, count * host::Team::kChunk, [&](std::size_t first, std::size_t last) {
     for (std::size_t i = first / host::Team::kChunk; i * host::Team::kChunk < last; ++i) {
-      const auto part = run.subspan(i * length, std::min(length, run.size() - i * length));
-      pieces[i] = judge_piece(begins[i], sense, part);
+      pieces[i] =
+          judge_piece(begins[i], sense, part(i), {bounds_[i], &followed_[i], assess, is_late});
     }
   });
   std::vector<Judgement> judgements;
-  for (const std::vector<Judgement>& piece : pieces) {
-    judgements.insert(judgements.end(), piece.begin(), piece.end());
-    if (!judgements.back().is_safe()) {
+  for (std::size_t i = 0; i < count; ++i) {
+    judgements.insert(judgements.end(), pieces[i].begin(), pieces[i].end());
+    if (pieces[i].size() < part(i).size() || !judgements.back().is_safe()) {
       break;
     }
   }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <set>
 #include <span>
@@ -11,7 +12,9 @@
 
 #include "balance.hpp"
 #include "energy_bound.hpp"
+#include "followed_robot.hpp"
 #include "holdfast/model/robot.hpp"
+#include "holdfast/plan/growing_robot.hpp"
 #include "holdfast/plan/order_search.hpp"
 #include "holdfast/plan/reach.hpp"
 #include "holdfast/solver/options.hpp"
@@ -35,11 +38,16 @@ class RobotGrowth final : public GrowingStructure {
   std::vector<Element> candidates(const ElementSet& state, Sense sense,
                                   std::uint64_t seed) override;
 
+  std::optional<Element> first_candidate(const ElementSet& state, Sense sense, std::uint64_t seed,
+                                         const std::function<bool(Element)>& is_open) override;
+
   Judgement judge(const ElementSet& state) override;
 
-  /// On all threads. Growing, most states are certified by an EnergyBound instead of solved.
+  /// Growing, most states are certified by an EnergyBound instead of solved. What is solved is so
+  /// by factors that grow if the target is thin, else on all threads from nothing.
   std::vector<Judgement> judge_run(const ElementSet& state, Sense sense,
-                                   std::span<const Element> run) override;
+                                   std::span<const Element> run,
+                                   const std::function<bool()>& is_late) override;
 
   std::size_t run_length_max() const override { return kRunLength; }
 
@@ -47,27 +55,46 @@ class RobotGrowth final : public GrowingStructure {
   base::Result<model::Robot> robot(const ElementSet& state) const;
 
  private:
-  /// Longer runs cost no less for each state, and are in vain beyond the first unsafe one.
-  static constexpr std::size_t kRunLength = 256;
+  /// Longer runs cost little less for each state, and are in vain beyond the first unsafe one.
+  static constexpr std::size_t kRunLength = 512;
   /// Pieces of a run, each of which begins with a state that is solved: at least so long, and no
   /// more of them than that, whatever the number of threads, so that the same states are solved.
   static constexpr std::size_t kPieceMin = 8;
   static constexpr std::size_t kPieceCountMax = 8;
 
+  /// In robots of fewer modules a solution from nothing costs no more than one that follows.
+  static constexpr std::size_t kFollowedMin = 256;
+  /// Each costs another solution that follows.
+  static constexpr int kImprovementMax = 2;
+
   /// What decides between candidates: lower first.
   using Rank = std::pair<std::int64_t, Element>;
+
+  using Assess = std::function<verdict::Assessment(const ElementSet&)>;
+
+  /// What a piece of a run is judged with.
+  struct Tools {
+    EnergyBound& bound;
+    FollowedRobot* followed = nullptr;  ///< None where factors grow with the robot.
+    const Assess& assess;
+    const std::function<bool()>& is_late;
+  };
 
   Rank rank(Element element) const;
   void set_seed(std::uint64_t seed);
   void move_to(const ElementSet& state);
   void add(Element element);
   void remove(Element element);
+  std::optional<verdict::Assessment> assess_by_factors(const ElementSet& state);
+  verdict::Assessment assess_alone(const ElementSet& state) const;
+  bool is_connected(const ElementSet& state) const;
   std::vector<bool> are_needed(const ElementSet& state) const;
   std::vector<Element> removable(const ElementSet& state) const;
   std::vector<Element> reachable(std::vector<Element> list, const ElementSet& state,
                                  Sense sense) const;
-  std::vector<Judgement> judge_piece(ElementSet state, Sense sense,
-                                     std::span<const Element> run) const;
+  std::vector<Judgement> judge_piece(ElementSet state, Sense sense, std::span<const Element> run,
+                                     const Tools& tools) const;
+  static std::optional<double> bound_by_following(const Tools& tools);
   void put_toppling_last(std::vector<Element>& list, Sense sense);
 
   const model::RobotSpec& spec_;
@@ -76,7 +103,12 @@ class RobotGrowth final : public GrowingStructure {
   ReachRule rule_;
   ReachFinder reach_;
   int thread_count_;
-  std::vector<std::int64_t> distance_;  ///< By module: steps from a support or the core.
+  GrowingRobot growing_;
+  LocalAdjoints adjoints_;
+  std::vector<EnergyBound> bounds_;      ///< By piece of a run.
+  std::vector<FollowedRobot> followed_;  ///< The same.
+  bool is_bonded_;                       ///< All supports are, so that nothing topples.
+  std::vector<std::int64_t> distance_;   ///< By module: steps from a support or the core.
   std::uint64_t seed_ = 0;
   // What follows the state that was asked for last.
   ElementSet state_;

@@ -40,6 +40,14 @@ Vec6<double> end_force(const BarSection& s, double length, const Vector3& d,
 
 }  // namespace
 
+Mat6<double> rigid_lever(const Vector3& arm_mm) {
+  return base::matrix_of<double>([&](const Vec6<double>& f) {
+    const Vector3 moment = cross(arm_mm, {f[0], f[1], f[2]});
+    return Vec6<double>{
+        -f[0], -f[1], -f[2], -f[3] - moment[0], -f[4] - moment[1], -f[5] - moment[2]};
+  });
+}
+
 LoadedSpring uniform_bar(const BarEnd& a, const BarEnd& b, const BarSection& section) {
   if (b.node == kGround && a.node != kGround) {
     return uniform_bar(b, a, section);
@@ -55,12 +63,7 @@ LoadedSpring uniform_bar(const BarEnd& a, const BarEnd& b, const BarSection& sec
   element.spring.b = b.node;
   element.spring.stiffness = base::matrix_of<double>(
       [&](const Vec6<double>& motion) { return end_force(section, length, d, motion); });
-  // A force at b is that force at a, and its moment about a.
-  element.spring.lever = base::matrix_of<double>([&](const Vec6<double>& f) {
-    const Vector3 moment = cross(arm, {f[0], f[1], f[2]});
-    return Vec6<double>{
-        -f[0], -f[1], -f[2], -f[3] - moment[0], -f[4] - moment[1], -f[5] - moment[2]};
-  });
+  element.spring.lever = rigid_lever(arm);
   const Vector3 moment = cross(d, section.weight_n_per_mm);
   for (std::size_t i = 0; i < 3; ++i) {
     element.load_a[i] = element.load_b[i] = section.weight_n_per_mm[i] * length / 2;

@@ -97,8 +97,8 @@ TEST(Candidates, of_random_cubes_on_a_floor_are_judged_as_checks_judge_them) {
 TEST(Candidates, are_judged_so_in_every_lattice_with_supports_and_loads_of_every_kind) {
   for (const base::Lattice& lattice : test::kLattices) {
     for (std::uint64_t seed = 0; seed < test::kHardnessCount; ++seed) {
-      compare(test::general_robot(lattice, seed), "general_robot " + std::to_string(seed));
-      compare(test::hard_robot(lattice, seed), "hard_robot " + std::to_string(seed));
+      compare(test::general_robot(lattice, seed), "general_robot " + std::to_string(seed), 5);
+      compare(test::hard_robot(lattice, seed), "hard_robot " + std::to_string(seed), 5);
     }
   }
 }
@@ -191,6 +191,27 @@ TEST(Candidates, have_the_same_bits_for_any_number_of_threads) {
   EXPECT_EQ(one.check_count, 0U);
   for (std::size_t i = 0; i < cells.size(); ++i) {
     EXPECT_EQ(one.candidates[i].judgement, four.candidates[i].judgement);
+  }
+}
+
+TEST(Candidates, come_out_the_same_in_batches_and_few_prepare_nothing) {
+  const RobotSpec spec{.existing = model::family_cells(model::Family::kTower, 40)};
+  const std::vector<Cell> cells = free_cells(spec);
+  const CandidateReport all = judge_candidates(spec, cells);
+  CandidateSearch search(spec);
+  const CandidateReport few = search.judge(std::span(cells).first(3));
+  EXPECT_EQ(few.check_count, 3U);
+  for (std::size_t i = 0; i < 3; ++i) {
+    expect_same(all.candidates[i], few.candidates[i], 1e-4, model::text(cells[i]));
+  }
+  for (std::size_t first = 0; first < cells.size();) {
+    const std::size_t count = std::min<std::size_t>(first == 0 ? 50 : 5, cells.size() - first);
+    const CandidateReport batch = search.judge(std::span(cells).subspan(first, count));
+    EXPECT_EQ(batch.check_count, 0U);
+    for (std::size_t i = 0; i < count; ++i) {
+      EXPECT_EQ(batch.candidates[i].judgement, all.candidates[first + i].judgement);
+    }
+    first += count;
   }
 }
 

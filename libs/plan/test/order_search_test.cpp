@@ -9,6 +9,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <chrono>
+#include <thread>
 
 #include "holdfast/base/rng.hpp"
 
@@ -194,6 +196,38 @@ TEST(OrderSearch, has_nothing_to_do_where_the_start_is_the_whole) {
   const Order order = find_order(structure, {&start, 1});
   EXPECT_EQ(order.outcome, OrderOutcome::kFound);
   EXPECT_TRUE(order.steps.empty());
+}
+
+/// A row, each state of which takes 10 ms to judge, in runs of 64.
+class SlowRow final : public GrowingStructure {
+ public:
+  std::size_t element_count() const override { return 1000; }
+
+  std::vector<Element> candidates(const ElementSet& state, Sense sense,
+                                  std::uint64_t /*seed*/) override {
+    const std::size_t next = sense == Sense::kGrowing ? state.size() : state.size() - 1;
+    return {static_cast<Element>(next)};
+  }
+
+  Judgement judge(const ElementSet& /*state*/) override {
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    return {.verdict = verdict::Verdict::kSafe};
+  }
+
+  std::size_t run_length_max() const override { return 64; }
+};
+
+TEST(OrderSearch, ends_within_its_time_also_in_the_middle_of_a_run) {
+  SlowRow row;
+  ElementSet start(row.element_count());
+  start.insert(0);
+  const auto begin = std::chrono::steady_clock::now();
+  const Order order = find_order(row, {&start, 1}, {.seconds_max = 0.3});
+  const std::chrono::duration<double> passed = std::chrono::steady_clock::now() - begin;
+  EXPECT_EQ(order.outcome, OrderOutcome::kNotFound);
+  // A run that has begun would take 0.64 s more on top; a busy machine oversleeps, too.
+  EXPECT_LT(order.state_count, 33U);
+  EXPECT_LT(passed.count(), 0.6);
 }
 
 }  // namespace

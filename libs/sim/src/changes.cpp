@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <memory>
+#include <utility>
 
 #include "engine.hpp"
 #include "holdfast/base/check.hpp"
@@ -38,6 +39,9 @@ bool has_noise(const LinkModel& link) {
 }  // namespace
 
 bool starts_attached(const SimulationOptions& options, std::int32_t module) {
+  if (std::ranges::find(options.absent, module) != options.absent.end()) {
+    return false;
+  }
   const Fault* first = nullptr;
   for (const Fault& fault : options.faults) {
     const bool is_change = fault.kind == Fault::Kind::kAttach || fault.kind == Fault::Kind::kDetach;
@@ -54,6 +58,10 @@ Engine::Engine(const model::Robot& robot, SimulationOptions options)
       setup_(make_setup(robot, options_)),
       noise_(options_.link),
       is_noisy_(has_noise(options_.link)),
+      lent_(robot, robot.modules().size() - robot.planned_count(),
+            {.has_fronts = options_.method == agent::Method::kFronts && !needs_environment(robot),
+             .has_stages = !options_.step.empty(),
+             .judges_faces = options_.judges_faces}),
       pool_(options_.link.packet_bytes),
       recorder_(options_.trace) {
   for (std::size_t size = 0; size < line_times_.size(); ++size) {
@@ -66,7 +74,7 @@ Engine::Engine(const model::Robot& robot, SimulationOptions options)
   // A seed of its own for each module: consecutive seeds of the whole do not overlap.
   const std::uint64_t base = base::Rng(options_.seed).next();
   for (std::size_t i = 0; i < count; ++i) {
-    agents_.emplace_back(setup_, identity_of(robot, i, options_.anchor));
+    agents_.emplace_back(setup_, identity_of(robot, i, options_.anchor), lent_.memory_of(i));
     Port& port = ports_[i];
     port.rng = base::Rng(base::Rng(base + i).next());
     port.random = static_cast<std::uint16_t>(port.rng.next());
@@ -76,6 +84,9 @@ Engine::Engine(const model::Robot& robot, SimulationOptions options)
     if (fault.kind == Fault::Kind::kAttach) {
       ports_[at(fault.module)].is_attached = starts_attached(options_, fault.module);
     }
+  }
+  for (const std::int32_t module : options_.absent) {
+    ports_[at(module)].is_attached = false;
   }
   for (std::size_t i = 0; i < options_.faults.size(); ++i) {
     push(options_.faults[i].at, {.kind = Kind::kFault, .item = static_cast<std::uint32_t>(i)});
@@ -108,7 +119,20 @@ void Engine::boot() {
         announce({.at = 0, .module = module, .cell = robot_.modules()[i].cell});
       }
     }
+    if (module == options_.plan_module) {
+      tell_step();
+    }
     start(module);
+  }
+}
+
+void Engine::tell_step() {
+  for (std::size_t i = 0; i < options_.step.size(); ++i) {
+    agent::Event event = event_of(agent::EventKind::kStep);
+    event.word = options_.step[i];
+    event.index = static_cast<std::uint8_t>(i);
+    event.total = static_cast<std::uint8_t>(options_.step.size());
+    hand_in(options_.plan_module, event);
   }
 }
 
@@ -117,7 +141,7 @@ void Engine::start(std::int32_t module) {
   hand_in(module, event_of(agent::EventKind::kStart));
   for (const base::Direction face : base::kDirections) {
     const std::int32_t other = neighbour(module, face);
-    if (other >= 0 && ports_[at(other)].is_attached) {
+    if (other >= 0 && ports_[at(other)].is_attached && !ports_[at(module)].open_faces.has(face)) {
       link_up(module, face);
     }
   }
@@ -133,15 +157,21 @@ void Engine::link_up(std::int32_t module, base::Direction face) {
   hand_in(module, event);
 }
 
+void Engine::happen(const Fault& fault) {
+  is_over_ = false;
+  make_fault(fault);
+}
+
+void Engine::happen(const Announcement& announcement) {
+  is_over_ = false;
+  announce(announcement);
+}
+
 void Engine::make_fault(const Fault& fault) {
   if (recorder_.trace() != nullptr) {
     recorder_.trace()->fault_happened(fault);
   }
   Port& port = ports_[at(fault.module)];
-  const auto cut = [&](std::int32_t module, base::Direction face) {
-    Port& end = ports_[at(module)];
-    end.cut_faces = static_cast<std::uint8_t>(end.cut_faces | (1U << static_cast<unsigned>(face)));
-  };
   switch (fault.kind) {
     case Fault::Kind::kKill:
       break_at_ = now_;
@@ -149,9 +179,17 @@ void Engine::make_fault(const Fault& fault) {
       silence(fault.module);
       break;
     case Fault::Kind::kCut:
+    case Fault::Kind::kMend:
+    case Fault::Kind::kUnplug:
+    case Fault::Kind::kPlug:
+      make_link_fault(fault);
+      break;
+    case Fault::Kind::kReset:
       break_at_ = now_;
-      cut(fault.module, fault.face);
-      cut(neighbour(fault.module, fault.face), base::opposite(fault.face));
+      if (port.is_attached) {
+        silence(fault.module);
+        begin_anew(fault.module);
+      }
       break;
     case Fault::Kind::kDetach:
       detach(fault.module);
@@ -159,6 +197,39 @@ void Engine::make_fault(const Fault& fault) {
     case Fault::Kind::kAttach:
       attach(fault.module);
       break;
+  }
+}
+
+/// To both ends of a link.
+void Engine::make_link_fault(const Fault& fault) {
+  const std::int32_t other = neighbour(fault.module, fault.face);
+  const bool is_silent = fault.kind == Fault::Kind::kCut || fault.kind == Fault::Kind::kMend;
+  break_at_ = is_silent ? now_ : break_at_;
+  const bool was_open = ports_[at(fault.module)].open_faces.has(fault.face);
+  for (const auto& [module, face] :
+       {std::pair{fault.module, fault.face}, std::pair{other, base::opposite(fault.face)}}) {
+    Port& end = ports_[at(module)];
+    if (is_silent) {
+      end.cut_faces.set(face, fault.kind == Fault::Kind::kCut);
+    } else {
+      end.open_faces.set(face, fault.kind == Fault::Kind::kUnplug);
+    }
+  }
+  const bool is_open = ports_[at(fault.module)].open_faces.has(fault.face);
+  if (was_open == is_open || !ports_[at(fault.module)].is_attached ||
+      !ports_[at(other)].is_attached) {
+    return;
+  }
+  for (const auto& [module, face] :
+       {std::pair{fault.module, fault.face}, std::pair{other, base::opposite(fault.face)}}) {
+    if (!ports_[at(module)].takes_part()) {
+      continue;
+    }
+    if (is_open) {
+      hand_in(module, event_of(agent::EventKind::kLinkDown, face));
+    } else {
+      link_up(module, face);
+    }
   }
 }
 
@@ -182,33 +253,40 @@ void Engine::detach(std::int32_t module) {
   }
   port.is_attached = false;
   silence(module);
-  for (const base::Direction face : base::kDirections) {
-    const std::int32_t other = neighbour(module, face);
-    if (other >= 0 && ports_[at(other)].takes_part()) {
-      hand_in(other, event_of(agent::EventKind::kLinkDown, base::opposite(face)));
-    }
+  tell_neighbours(module, agent::EventKind::kLinkDown);
+}
+
+void Engine::attach(std::int32_t module) {
+  if (!ports_[at(module)].is_attached) {
+    begin_anew(module);
+    tell_neighbours(module, agent::EventKind::kLinkUp);
   }
 }
 
-/// A new module comes to the place: everything begins anew but what concerns lines and the queue.
-void Engine::attach(std::int32_t module) {
-  Port& port = ports_[at(module)];
-  if (port.is_attached) {
-    return;
-  }
+/// A new agent starts at the place: everything begins anew but what concerns lines and the queue.
+void Engine::begin_anew(std::int32_t module) {
   agent::Agent* place = &agents_[at(module)];
   std::destroy_at(place);
-  std::construct_at(place, setup_, identity_of(robot_, at(module), options_.anchor));
-  port.epoch = 0;
-  port.phase = agent::Phase::kDiscovery;
-  port.verdict = agent::Verdict::kNone;
+  std::construct_at(place, setup_, identity_of(robot_, at(module), options_.anchor),
+                    lent_.memory_of(at(module)));
+  Port& port = ports_[at(module)];
+  port.seen = {};
   port.is_attached = true;
   port.is_silenced = false;
   start(module);
+}
+
+/// What happens to a module at all its faces is sensed on the other side.
+void Engine::tell_neighbours(std::int32_t module, agent::EventKind kind) {
   for (const base::Direction face : base::kDirections) {
     const std::int32_t other = neighbour(module, face);
-    if (other >= 0 && ports_[at(other)].takes_part()) {
+    if (other < 0 || !ports_[at(other)].takes_part() || ports_[at(module)].open_faces.has(face)) {
+      continue;
+    }
+    if (kind == agent::EventKind::kLinkUp) {
       link_up(other, base::opposite(face));
+    } else {
+      hand_in(other, event_of(kind, base::opposite(face)));
     }
   }
 }

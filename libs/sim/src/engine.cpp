@@ -33,7 +33,10 @@ bool Engine::run_for(std::uint64_t event_count) {
     boot();
   }
   while (!is_over_ && recorder_.event_count() < stop) {
-    const Time next = queue_.is_empty() ? agent::kNever : queue_.next_time();
+    // Where nothing is watched the queue is left alone, so that more may happen before its next
+    // event.
+    const bool is_over = work_count_ == 0 && options_.watch_for == 0 && break_at_ == agent::kNever;
+    const Time next = queue_.is_empty() || is_over ? agent::kNever : queue_.next_time();
     is_quiet_ = next == agent::kNever || is_at_rest(next);
     if (is_quiet_ || next > options_.time_max) {
       finish();
@@ -174,45 +177,15 @@ void Engine::step(std::int32_t module) {
     wake_at = port.clock.global(wake_at);
   }
   const agent::Agent& agent = agents_[at(module)];
-  set_wake(port, wake_at,
-           agent.phase() == agent::Phase::kDone && actions_.wake_at == agent.watch_at());
-  observe(module);
+  set_wake(port, wake_at, agent.is_only_watching(actions_.wake_at));
+  recorder_.observe(now_, module, agent, port.seen);
 }
 
 void Engine::set_wake(Port& port, Time wake_at, bool is_watching) {
   work_count_ -= port.has_work() ? 1 : 0;
-  port.wake_at = wake_at;
+  port.timer.wake_at = wake_at;
   port.is_watching = is_watching;
   work_count_ += port.has_work() ? 1 : 0;
-}
-
-/// Notes what has changed for others to know.
-void Engine::observe(std::int32_t module) {
-  const agent::Agent& agent = agents_[at(module)];
-  Port& port = ports_[at(module)];
-  if (agent.epoch() == port.epoch && agent.phase() == port.phase &&
-      agent.answer().verdict == port.verdict) {
-    return;
-  }
-  TraceSink* trace = recorder_.trace();
-  if (agent.epoch() != port.epoch && trace != nullptr) {
-    trace->joined(now_, module, agent.epoch());
-  }
-  if (agent.phase() != port.phase && trace != nullptr) {
-    trace->phase_changed(now_, module, agent.phase());
-  }
-  if (agent.answer().verdict != port.verdict) {
-    if (agent.answer().verdict != agent::Verdict::kNone) {
-      recorder_.verdict_known(now_);
-    }
-    if (trace != nullptr) {
-      trace->verdict_known(now_, module, agent.answer());
-    }
-  }
-  port.epoch = agent.epoch();
-  port.phase = agent.phase();
-  port.verdict = agent.answer().verdict;
-  recorder_.reached(now_, port.epoch, port.phase);
 }
 
 /// After a step: send, or compute first.
@@ -275,28 +248,19 @@ Engine::Happening Engine::take_waiting(std::int32_t module) {
   return waiting_[place].what;
 }
 
-bool Engine::is_due(std::int32_t module) const { return ports_[at(module)].wake_at <= now_; }
+bool Engine::is_due(std::int32_t module) const { return ports_[at(module)].timer.is_due(now_); }
 
 /// Sees to it that an event is in the queue when the agent wants to wake, or earlier.
 void Engine::arm_timer(std::int32_t module) {
-  Port& port = ports_[at(module)];
-  if (port.wake_at >= port.timer_at) {
-    return;
+  const Time time = ports_[at(module)].timer.arm(now_);
+  if (time != agent::kNever) {
+    push(time, {.kind = Kind::kTimer, .module = module});
   }
-  const Time time = std::max(port.wake_at, now_);
-  push(time, {.kind = Kind::kTimer, .module = module});
-  port.timer_later_at = port.timer_at;
-  port.timer_at = time;
 }
 
 void Engine::take_timer(std::int32_t module) {
   Port& port = ports_[at(module)];
-  if (now_ != port.timer_at) {
-    return;
-  }
-  port.timer_at = port.timer_later_at;
-  port.timer_later_at = agent::kNever;
-  if (!port.takes_part()) {
+  if (!port.timer.take_call(now_) || !port.takes_part()) {
     return;
   }
   if (is_due(module)) {

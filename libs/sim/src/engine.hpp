@@ -4,14 +4,16 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <vector>
 
+#include "environment_map.hpp"
 #include "holdfast/sim/event_queue.hpp"
+#include "holdfast/sim/recorder.hpp"
 #include "holdfast/sim/simulation.hpp"
 #include "noise.hpp"
 #include "packet_pool.hpp"
 #include "port.hpp"
-#include "recorder.hpp"
 
 namespace holdfast::sim {
 
@@ -23,6 +25,9 @@ class Engine {
 
   /// False: it is over.
   bool run_for(std::uint64_t event_count);
+
+  void happen(const Fault& fault);
+  void happen(const Announcement& announcement);
 
   SimulationResult result() const;
 
@@ -81,7 +86,6 @@ class Engine {
   void serve(const Happening& what);
   void hand_in(std::int32_t module, const agent::Event& event);
   void step(std::int32_t module);
-  void observe(std::int32_t module);
   void settle(std::int32_t module);
   void arm_timer(std::int32_t module);
   void take_timer(std::int32_t module);
@@ -103,12 +107,16 @@ class Engine {
 
   // changes.cpp: starting, faults.
   void boot();
+  void tell_step();
   void start(std::int32_t module);
   void link_up(std::int32_t module, base::Direction face);
   void make_fault(const Fault& fault);
+  void make_link_fault(const Fault& fault);
+  void tell_neighbours(std::int32_t module, agent::EventKind kind);
   void silence(std::int32_t module);
   void detach(std::int32_t module);
   void attach(std::int32_t module);
+  void begin_anew(std::int32_t module);
   void announce(const Announcement& announcement);
   std::int32_t neighbour(std::int32_t module, base::Direction face) const;
 
@@ -123,6 +131,7 @@ class Engine {
   std::array<Time, agent::wire::kPacketBytesMax + 1> line_times_{};  ///< By packet size.
 
   std::vector<agent::Agent> agents_;
+  LentStore lent_;
   std::vector<Port> ports_;
   EventQueue queue_;
   PacketPool pool_;

@@ -69,7 +69,7 @@ void Engine::transmit(std::int32_t module, int face, std::span<const std::uint8_
                           .to = neighbour(module, direction),
                           .face = direction,
                           .bytes = packet};
-  recorder_.sent(trace, port.phase, duration);
+  recorder_.sent(trace, port.seen.phase, duration);
   HOLDFAST_CHECK(trace.to >= 0);
   if (is_noisy_ && noise_.is_lost(port.rng)) {
     recorder_.lost(trace);
@@ -110,7 +110,7 @@ void Engine::launch(std::int32_t module, int face, const PacketTag& tag,
 
 void Engine::arrive(const Happening& what) {
   const Port& port = ports_[at(what.module)];
-  const bool is_cut = ((port.cut_faces >> static_cast<unsigned>(what.face)) & 1U) != 0;
+  const bool is_cut = (port.cut_faces | port.open_faces).has(what.face);
   if (is_cut || !port.takes_part()) {
     drop(what);
   } else {

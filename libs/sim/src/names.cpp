@@ -39,6 +39,14 @@ std::string_view name(Fault::Kind kind) {
       return "cut";
     case Fault::Kind::kDetach:
       return "detach";
+    case Fault::Kind::kReset:
+      return "reset";
+    case Fault::Kind::kMend:
+      return "mend";
+    case Fault::Kind::kUnplug:
+      return "unplug";
+    case Fault::Kind::kPlug:
+      return "plug";
     case Fault::Kind::kAttach:
       break;
   }

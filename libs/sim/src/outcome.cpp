@@ -14,33 +14,43 @@ bool is_same(const agent::Answer& a, const agent::Answer& b) {
          a.worst_cell == b.worst_cell && a.worst_direction == b.worst_direction;
 }
 
+void Outcome::add(std::int32_t module, const ModuleOutcome& outcome) {
+  if (outcome.bytes_sent > result_.bytes_module_max) {
+    result_.bytes_module_max = outcome.bytes_sent;
+    result_.packets_module_max = outcome.packets_sent;
+  }
+  if (!outcome.takes_part) {
+    return;
+  }
+  const agent::Answer& answer = outcome.agent.answer();
+  if (is_empty_) {
+    result_.answer = answer;
+  }
+  is_empty_ = false;
+  agree_ = agree_ && answer.verdict != agent::Verdict::kNone && is_same(answer, result_.answer);
+  if (result_.root < 0 && outcome.agent.is_root() && outcome.agent.epoch() == result_.epoch) {
+    result_.root = module;
+    result_.effort = outcome.agent.effort();
+  }
+}
+
+SimulationResult Outcome::result() const {
+  SimulationResult result = result_;
+  result.all_agree = agree_ && !is_empty_;
+  return result;
+}
+
 SimulationResult Engine::result() const {
-  SimulationResult result = recorder_.result();
-  result.is_quiet = is_quiet_;
-  result.all_agree = true;
-  bool is_first = true;
+  Outcome outcome(recorder_.result());
   for (std::size_t i = 0; i < agents_.size(); ++i) {
     const Port& port = ports_[i];
-    if (port.bytes_sent > result.bytes_module_max) {
-      result.bytes_module_max = port.bytes_sent;
-      result.packets_module_max = port.packets_sent;
-    }
-    if (!port.takes_part()) {
-      continue;
-    }
-    const agent::Answer& answer = agents_[i].answer();
-    if (is_first) {
-      result.answer = answer;
-    }
-    is_first = false;
-    result.all_agree = result.all_agree && answer.verdict != agent::Verdict::kNone &&
-                       is_same(answer, result.answer);
-    if (result.root < 0 && agents_[i].is_root() && agents_[i].epoch() == result.epoch) {
-      result.root = static_cast<std::int32_t>(i);
-      result.effort = agents_[i].effort();
-    }
+    outcome.add(static_cast<std::int32_t>(i), {.agent = agents_[i],
+                                               .takes_part = port.takes_part(),
+                                               .packets_sent = port.packets_sent,
+                                               .bytes_sent = port.bytes_sent});
   }
-  result.all_agree = result.all_agree && !is_first;
+  SimulationResult result = outcome.result();
+  result.is_quiet = is_quiet_;
   return result;
 }
 

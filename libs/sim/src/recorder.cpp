@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The holdfast authors
 // SPDX-License-Identifier: Apache-2.0
-#include "recorder.hpp"
+#include "holdfast/sim/recorder.hpp"
 
 namespace holdfast::sim {
 namespace {
@@ -52,6 +52,26 @@ void Recorder::lost(const PacketTrace& packet) {
   }
 }
 
+void Recorder::note_change(Time now, std::int32_t module, const agent::Agent& agent, Seen& seen) {
+  if (agent.epoch() != seen.epoch && trace_ != nullptr) {
+    trace_->joined(now, module, agent.epoch());
+  }
+  if (agent.phase() != seen.phase && trace_ != nullptr) {
+    trace_->phase_changed(now, module, agent.phase());
+  }
+  if (agent.answer().verdict != seen.verdict) {
+    if (agent.answer().verdict != agent::Verdict::kNone) {
+      result_.verdict_time = now;
+    }
+    if (trace_ != nullptr) {
+      trace_->verdict_known(now, module, agent.answer());
+    }
+  }
+  seen = {.epoch = agent.epoch(), .phase = agent.phase(), .verdict = agent.answer().verdict};
+  reached(now, seen.epoch, seen.phase);
+}
+
+/// A module is in this phase of this epoch from now on.
 void Recorder::reached(Time time, std::uint16_t epoch, agent::Phase phase) {
   const bool is_same = epoch == result_.epoch;
   const bool is_newer = agent::is_newer({.epoch = epoch}, {.epoch = result_.epoch});

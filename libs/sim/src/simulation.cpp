@@ -4,10 +4,10 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
-#include <numeric>
+#include <algorithm>
 
 #include "engine.hpp"
+#include "environment_map.hpp"
 #include "holdfast/base/check.hpp"
 
 namespace holdfast::sim {
@@ -21,10 +21,10 @@ std::optional<std::string> find_module_fault(const char* what, std::int32_t modu
   return fmt::format("{} is {}, allowed are existing modules: 0 to {}", what, module, count - 1);
 }
 
-/// The modules' own program knows cubes on a floor, and takes every neighbour for connected.
+/// The modules' own program knows cubes, and takes every neighbour for connected.
 std::optional<std::string> find_robot_fault(const model::Robot& robot) {
-  if (const auto beyond = model::find_beyond_paper(robot)) {
-    return "the robot has " + *beyond + ", and the modules' program knows cubes on a floor only";
+  if (const auto unknown = find_unknown_to_modules(robot)) {
+    return "the robot has " + *unknown + ", which the modules' program does not know";
   }
   if (robot.released_count() == 0) {
     return std::nullopt;
@@ -35,27 +35,57 @@ std::optional<std::string> find_robot_fault(const model::Robot& robot) {
       robot.released_count());
 }
 
+/// What is in a cell where the robot has no module is known of a floor only.
+std::optional<std::string> find_place_fault(const model::Robot& robot,
+                                            const Announcement& announcement) {
+  const auto is_there = [&](const model::Module& module) {
+    return module.cell == announcement.cell;
+  };
+  if (announcement.is_withdrawal || !needs_environment(robot) ||
+      std::ranges::any_of(robot.modules(), is_there)) {
+    return std::nullopt;
+  }
+  return fmt::format(
+      "a module is planned at {}, allowed are cells of the robot's modules, as it has more than a "
+      "floor",
+      model::text(announcement.cell));
+}
+
 }  // namespace
 
 std::optional<std::string> find_options_fault(const model::Robot& robot,
                                               const SimulationOptions& options) {
   const std::size_t count = robot.modules().size() - robot.planned_count();
   auto found = find_robot_fault(robot);
+  if (!found && (!options.step.empty() || options.judges_faces)) {
+    found = find_floor_fault(robot);
+  }
+  if (!found && !options.step.empty() && options.judges_faces) {
+    found = "the options ask for stages of a step and for free faces, allowed is one of them";
+  }
   found = found ? found : find_link_fault(options.link);
   found = found ? found : find_module_fault("anchor", options.anchor, count);
   found = found ? found : find_module_fault("plan_module", options.plan_module, count);
+  if (!found && options.step.size() > agent::kWordCountMax) {
+    found = fmt::format("the step has {} words, allowed are {}: modules keep no more",
+                        options.step.size(), agent::kWordCountMax);
+  }
   for (std::size_t i = 0; !found && i < options.announcements.size(); ++i) {
     found = find_module_fault("module of an announcement", options.announcements[i].module, count);
+    found = found ? found : find_place_fault(robot, options.announcements[i]);
+  }
+  for (std::size_t i = 0; !found && i < options.absent.size(); ++i) {
+    found = find_module_fault("module that is absent", options.absent[i], count);
   }
   for (std::size_t i = 0; !found && i < options.faults.size(); ++i) {
     const Fault& fault = options.faults[i];
     found = find_module_fault("module of a fault", fault.module, count);
-    if (!found && fault.kind == Fault::Kind::kCut) {
+    if (!found && is_of_link(fault.kind)) {
       const auto& neighbours = robot.neighbours()[static_cast<std::size_t>(fault.module)];
       const std::int32_t other = neighbours[static_cast<std::size_t>(base::index(fault.face))];
       if (other < 0 || static_cast<std::size_t>(other) >= count) {
-        found = fmt::format("module {} has no link to cut at face {}", fault.module,
-                            base::index(fault.face));
+        found = fmt::format("module {} has no link to {} at face {}", fault.module,
+                            name(fault.kind), base::index(fault.face));
       }
     }
   }
@@ -66,13 +96,16 @@ std::optional<std::string> find_options_fault(const model::Robot& robot,
   return found;
 }
 
+std::optional<std::string> find_floor_fault(const model::Robot& robot) {
+  if (const auto beyond = model::find_beyond_paper(robot)) {
+    return "the robot has " + *beyond + ", and these modules know cubes on a floor only";
+  }
+  return std::nullopt;
+}
+
 agent::Setup make_setup(const model::Robot& robot, const SimulationOptions& options) {
-  // Facet and pitch as a ratio of whole numbers: rounded to this part, then reduced.
-  constexpr std::int32_t kParts = 4096;
   const model::Material& material = robot.material();
-  const double parts = std::round(material.facet_mm / material.pitch_mm * kParts);
-  const auto numerator = static_cast<std::int32_t>(parts < 1 ? 1 : parts);
-  const std::int32_t divisor = std::gcd(numerator, kParts);
+  const FootParts foot = foot_parts(robot);
   agent::Setup setup;
   setup.section = model::beam_section(material);
   setup.facet_mm = material.facet_mm;
@@ -80,11 +113,12 @@ agent::Setup make_setup(const model::Robot& robot, const SimulationOptions& opti
   setup.strength_vertical_n = material.strength_vertical_n;
   setup.strength_lateral_n = material.strength_lateral_n;
   setup.contact_gamma = material.contact_gamma;
-  setup.facet_numerator = numerator / divisor;
-  setup.facet_denominator = kParts / divisor;
+  setup.facet_numerator = foot.numerator;
+  setup.facet_denominator = foot.denominator;
   setup.support_z = robot.support_z();
   setup.method = options.method;
   setup.degree_max = options.degree_max;
+  setup.keeps_answers = options.keeps_answers && !needs_environment(robot);
   setup.timing = link_timing(options.link);
   agent::prepare(setup);
   return setup;
@@ -107,6 +141,10 @@ void Simulation::run() {
 }
 
 bool Simulation::run_for(std::uint64_t event_count) { return engine_->run_for(event_count); }
+
+void Simulation::happen(const Fault& fault) { engine_->happen(fault); }
+
+void Simulation::happen(const Announcement& announcement) { engine_->happen(announcement); }
 
 SimulationResult Simulation::result() const { return engine_->result(); }
 

@@ -33,13 +33,23 @@ std::string text(const Fault& fault) {
       return fmt::format("loses its link at {}", face_name(fault.face));
     case Fault::Kind::kDetach:
       return "is taken off";
+    case Fault::Kind::kReset:
+      return "starts again";
+    case Fault::Kind::kMend:
+      return fmt::format("has its link at {} again", face_name(fault.face));
+    case Fault::Kind::kUnplug:
+      return fmt::format("is parted from its neighbour at {}", face_name(fault.face));
+    case Fault::Kind::kPlug:
+      return fmt::format("is connected at {} again", face_name(fault.face));
     case Fault::Kind::kAttach:
       break;
   }
   return "is put on";
 }
 
-std::string text(const agent::Answer& answer) {
+}  // namespace
+
+std::string describe(const agent::Answer& answer) {
   if (answer.verdict == agent::Verdict::kNone) {
     return "does not know the verdict any more";
   }
@@ -51,8 +61,6 @@ std::string text(const agent::Answer& answer) {
   }
   return line;
 }
-
-}  // namespace
 
 struct StoryTrace::Writer {
   std::ostream& out;
@@ -115,7 +123,7 @@ void StoryTrace::phase_changed(Time time, std::int32_t module, agent::Phase phas
 }
 
 void StoryTrace::verdict_known(Time time, std::int32_t module, const agent::Answer& answer) {
-  writer_->tell(time, module, text(answer));
+  writer_->tell(time, module, describe(answer));
 }
 
 void StoryTrace::fault_happened(const Fault& fault) {

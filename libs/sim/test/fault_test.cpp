@@ -104,6 +104,60 @@ TEST(Fault, list_may_take_a_module_off_and_put_it_on_again) {
   }
 }
 
+/// Nobody is told, and long after the link is lost only its two ends can notice that it carries.
+TEST(Fault, of_a_link_ends_when_it_carries_again) {
+  model::RobotSpec spec = cube(2);
+  spec.existing.push_back({2, 0, 1});
+  const model::Robot robot = make_robot(spec);
+  for (const Time gap : {Time{1}, Time{300}, Time{100'000}}) {
+    Simulation simulation(
+        robot,
+        {.faults = {{.kind = Kind::kCut, .at = 60, .module = 8, .face = base::Direction::kMinusX},
+                    {.kind = Kind::kMend,
+                     .at = 60 + gap,
+                     .module = 8,
+                     .face = base::Direction::kMinusX}}});
+    simulation.run();
+    expect_verdict(simulation, agent::Verdict::kSafe);
+    EXPECT_TRUE(simulation.result().all_agree) << gap;
+    EXPECT_EQ(simulation.result().effort.module_count, 9U);
+  }
+}
+
+TEST(Fault, of_a_connection_opened_and_closed_again_leads_to_both_verdicts) {
+  model::RobotSpec spec = cube(2);
+  spec.existing.push_back({2, 0, 1});
+  const model::Robot robot = make_robot(spec);
+  const Fault open{.kind = Kind::kUnplug, .at = 60, .module = 8, .face = base::Direction::kMinusX};
+  Fault close = open;
+  close.kind = Kind::kPlug;
+  close.at = 500;
+  for (const bool is_closed : {false, true}) {
+    Simulation simulation(robot,
+                          {.faults = is_closed ? std::vector{open, close} : std::vector{open}});
+    simulation.run();
+    EXPECT_EQ(simulation.agent(0).answer().verdict, agent::Verdict::kSafe);
+    EXPECT_EQ(simulation.result().all_agree, is_closed);
+  }
+}
+
+/// As after a power failure: its neighbours are there all the time, and have not noticed.
+TEST(Fault, of_a_module_that_starts_again_leads_to_the_verdict_with_it) {
+  const model::Robot robot = make_robot(cube(2));
+  for (const agent::Method method : {agent::Method::kElimination, agent::Method::kFronts}) {
+    for (const Time at : {Time{5}, Time{60}, Time{5000}}) {
+      Simulation simulation(robot, {.method = method,
+                                    .faults = {{.kind = Kind::kKill, .at = 20'000, .module = 3},
+                                               {.kind = Kind::kReset, .at = at, .module = 7},
+                                               {.kind = Kind::kReset, .at = 40'000, .module = 3}}});
+      simulation.run();
+      expect_verdict(simulation, agent::Verdict::kSafe);
+      EXPECT_TRUE(simulation.result().all_agree) << at;
+      EXPECT_TRUE(simulation.is_alive(3));
+    }
+  }
+}
+
 TEST(Fault, list_works_with_busy_modules_and_bad_lines) {
   const model::Robot robot = make_robot(cube(2));
   LinkModel link = blinky_blocks_v1();

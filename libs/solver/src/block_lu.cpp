@@ -3,17 +3,22 @@
 #include "holdfast/solver/block_lu.hpp"
 
 #include <algorithm>
+#include <atomic>
+#include <map>
 #include <optional>
 #include <utility>
 
 #include "block_kernels.hpp"
+#include "column_pipeline.hpp"
+#include "factor_kernels.hpp"
 #include "holdfast/base/check.hpp"
+#include "holdfast/host/team.hpp"
 #include "holdfast/solver/block_pattern.hpp"
-#include "lane_substitution.hpp"
 
 namespace holdfast::solver {
-BlockLu::BlockLu(std::size_t node_count, std::span<const Edge> edges, std::size_t block_count_max)
-    : edges_(edges.begin(), edges.end()) {
+BlockLu::BlockLu(std::size_t node_count, std::span<const Edge> edges, std::size_t block_count_max,
+                 Symmetry symmetry)
+    : edges_(edges.begin(), edges.end()), symmetry_(symmetry) {
   std::optional<BlockPattern> pattern = block_pattern(node_count, edges, block_count_max);
   is_too_large_ = !pattern;
   if (is_too_large_) {
@@ -57,11 +62,9 @@ void BlockLu::allocate() {
   const std::size_t n = position_.size();
   diagonal_.resize(n);
   inverse_.resize(n);
-  lower_.resize(rows_.size());
-  upper_.resize(rows_.size());
+  blocks_.resize(symmetry_ == Symmetry::kSymmetric ? rows_.size() : 2 * rows_.size());
   edge_lower_.resize(edges_.size());
   is_stale_.assign(n, true);
-  slot_of_row_.resize(n);
   edge_slot_.resize(edges_.size());
   for (std::size_t e = 0; e < edges_.size(); ++e) {
     const auto [low, high] = std::minmax(edges_[e].a, edges_[e].b);
@@ -92,56 +95,120 @@ void BlockLu::set_diagonal(std::size_t node, const base::Mat6<double>& block) {
   is_stale_[place] = true;
 }
 
-bool BlockLu::factor() {
-  is_singular_ = false;
-  for (std::size_t k = 0; k < position_.size() && !is_singular_; ++k) {
+std::size_t BlockLu::factor_product_count() const {
+  std::size_t count = 0;
+  for (std::size_t k = 0; k < position_.size(); ++k) {
+    const std::size_t rows = column_start_[k + 1] - column_start_[k];
+    count += rows * (rows + 1) / 2;
+  }
+  return symmetry_ == Symmetry::kSymmetric ? count : 2 * count;
+}
+
+BlockLu BlockLu::without_values() const {
+  BlockLu lu(0, {}, 0, symmetry_);
+  lu.edges_ = edges_;
+  lu.position_ = position_;
+  lu.parent_ = parent_;
+  lu.column_start_ = column_start_;
+  lu.rows_ = rows_;
+  lu.row_start_ = row_start_;
+  lu.row_entries_ = row_entries_;
+  lu.column_edges_ = column_edges_;
+  return lu;
+}
+
+bool BlockLu::factor(int thread_count) {
+  std::vector<std::size_t> columns;
+  for (std::size_t k = 0; k < position_.size(); ++k) {
     if (is_stale_[k]) {
-      make_column(k);
-      ++made_column_count_;
+      columns.push_back(k);
       if (parent_[k] >= 0) {
         is_stale_[static_cast<std::size_t>(parent_[k])] = true;
       }
     }
   }
+  const bool is_whole = columns.size() == position_.size();
+  ColumnPipeline pipeline(columns.size(), factor_product_count(), is_whole ? thread_count : 1);
+  // Where columns are shared all of them are made: the turn is the column.
+  const auto wait_for = [&](std::int32_t column) { return pipeline.wait_for(base::at(column)); };
+  std::atomic<std::size_t> made_count{0};
+  is_singular_ = !pipeline.run<Scratch>([&](std::size_t turn, Scratch& scratch) {
+    made_count.fetch_add(1, std::memory_order_relaxed);
+    return make_column(columns[turn], scratch, wait_for);
+  });
+  made_column_count_ += made_count.load();
   if (!is_singular_) {
     is_stale_.assign(is_stale_.size(), false);
   }
   return !is_singular_;
 }
 
-/// Column k of L and row k of U: A minus what the columns to the left contribute.
-void BlockLu::make_column(std::size_t k) {
+/// Column k of L and row k of U: A minus what the columns to the left contribute. Where A is
+/// symmetric, U is D L'. Returns false if the pivot is singular.
+template <class WaitFor>
+bool BlockLu::make_column(std::size_t k, Scratch& scratch, const WaitFor& wait_for) {
+  scratch.slot_of_row.resize(position_.size());
   const std::size_t begin = column_start_[k];
   const std::size_t end = column_start_[k + 1];
+  base::Mat6<double>* const lower = blocks_.data();
+  base::Mat6<double>* const upper = symmetry_ == Symmetry::kNone ? lower + rows_.size() : nullptr;
   for (std::size_t slot = begin; slot < end; ++slot) {
-    lower_[slot] = {};
-    upper_[slot] = {};
-    slot_of_row_[static_cast<std::size_t>(rows_[slot])] = slot;
+    lower[slot] = {};
+    scratch.slot_of_row[static_cast<std::size_t>(rows_[slot])] = slot;
+  }
+  for (std::size_t slot = begin; upper != nullptr && slot < end; ++slot) {
+    upper[slot] = {};
   }
   for (const std::size_t edge : column_edges_[k]) {
-    lower_[edge_slot_[edge]] = edge_lower_[edge];
-    upper_[edge_slot_[edge]] = transpose(edge_lower_[edge]);
-  }
-  base::Mat6<double> pivot = diagonal_[k];
-  for (std::size_t entry = row_start_[k]; entry < row_start_[k + 1]; ++entry) {
-    const auto [left, slot_k] = row_entries_[entry];
-    const base::Mat6<double>& l_kj = lower_[slot_k];
-    const base::Mat6<double>& u_jk = upper_[slot_k];
-    subtract_product(pivot, l_kj, u_jk);
-    const std::size_t left_end = column_start_[static_cast<std::size_t>(left) + 1];
-    for (std::size_t slot = slot_k + 1; slot < left_end; ++slot) {
-      const std::size_t target = slot_of_row_[static_cast<std::size_t>(rows_[slot])];
-      subtract_product(lower_[target], lower_[slot], u_jk);
-      subtract_product(upper_[target], l_kj, upper_[slot]);
+    lower[edge_slot_[edge]] = edge_lower_[edge];
+    if (upper != nullptr) {
+      upper[edge_slot_[edge]] = transpose(edge_lower_[edge]);
     }
   }
-  if (!invert(pivot, inverse_[k])) {
-    is_singular_ = true;
-    return;
+  base::Mat6<double> pivot = diagonal_[k];
+  if (!subtract_left(k, pivot, wait_for, scratch) || !invert(pivot, inverse_[k])) {
+    return false;
   }
-  for (std::size_t slot = begin; slot < end; ++slot) {
-    lower_[slot] = product(lower_[slot], inverse_[k]);
+  if (upper != nullptr) {
+    factor_kernels().multiply_each(lower + begin, lower + end, inverse_[k]);
   }
+  return true;
+}
+
+/// Returns false if a column to the left is not made.
+template <class WaitFor>
+bool BlockLu::subtract_left(std::size_t k, base::Mat6<double>& pivot, const WaitFor& wait_for,
+                            const Scratch& scratch) {
+  const FactorKernels& kernels = factor_kernels();
+  base::Mat6<double>* const lower = blocks_.data();
+  for (std::size_t entry = row_start_[k]; entry < row_start_[k + 1]; ++entry) {
+    const auto [left, slot_k] = row_entries_[entry];
+    if (!wait_for(left)) {
+      return false;
+    }
+    const std::size_t last = column_start_[static_cast<std::size_t>(left) + 1];
+    if (symmetry_ == Symmetry::kSymmetric) {
+      kernels.update_symmetric({.rows = rows_.data(),
+                                .slot_of_row = scratch.slot_of_row.data(),
+                                .lower = lower,
+                                .pivot = &pivot,
+                                .inverse = &inverse_[base::at(left)],
+                                .source = slot_k,
+                                .first = slot_k + 1,
+                                .last = last});
+      continue;
+    }
+    base::Mat6<double>* const upper = lower + rows_.size();
+    kernels.subtract_product(pivot, lower[slot_k], upper[slot_k]);
+    kernels.update_column({.rows = rows_.data(),
+                           .slot_of_row = scratch.slot_of_row.data(),
+                           .lower = lower,
+                           .upper = upper,
+                           .source = slot_k,
+                           .first = slot_k + 1,
+                           .last = last});
+  }
+  return true;
 }
 
 void BlockLu::solve(std::span<base::Vec6<double>> x) const {
@@ -174,78 +241,109 @@ void BlockLu::solve_each(std::span<std::vector<base::Vec6<double>>> columns) con
   }
 }
 
+FactorView BlockLu::view() const {
+  return {.place_count = position_.size(),
+          .column_start = column_start_.data(),
+          .rows = rows_.data(),
+          .lower = blocks_.data(),
+          .upper = symmetry_ == Symmetry::kNone ? blocks_.data() + rows_.size() : nullptr,
+          .inverse = inverse_.data()};
+}
+
 /// Forward and backward substitution for `count` right-hand sides, by place, then by side.
 void BlockLu::substitute(std::span<base::Vec6<double>> y, std::size_t count) const {
-  const std::size_t n = position_.size();
-  for (std::size_t k = 0; k < n; ++k) {
-    for (std::size_t slot = column_start_[k]; slot < column_start_[k + 1]; ++slot) {
-      const std::size_t row = count * static_cast<std::size_t>(rows_[slot]);
-      for (std::size_t c = 0; c < count; ++c) {
-        subtract_product(y[row + c], lower_[slot], y[count * k + c]);
-      }
-    }
-  }
-  for (std::size_t k = n; k-- > 0;) {
-    for (std::size_t slot = column_start_[k]; slot < column_start_[k + 1]; ++slot) {
-      const std::size_t row = count * static_cast<std::size_t>(rows_[slot]);
-      for (std::size_t c = 0; c < count; ++c) {
-        subtract_product(y[count * k + c], upper_[slot], y[row + c]);
-      }
-    }
-    for (std::size_t c = 0; c < count; ++c) {
-      y[count * k + c] = multiply(inverse_[k], y[count * k + c]);
-    }
-  }
+  factor_kernels().substitute(view(), y.data(), count);
 }
 
 void BlockLu::solve_lanes(std::span<LaneBlock> y) const {
-  HOLDFAST_CHECK(y.size() == position_.size() && !is_singular_);
-  lane_substitution()({.place_count = position_.size(),
-                       .column_start = column_start_.data(),
-                       .rows = rows_.data(),
-                       .lower = lower_.data(),
-                       .upper = upper_.data(),
-                       .inverse = inverse_.data()},
-                      y.data());
+  HOLDFAST_CHECK(y.size() == position_.size() && symmetry_ == Symmetry::kSymmetric &&
+                 !is_singular_);
+  factor_kernels().substitute_lanes(view(), y.data());
 }
 
-void BlockLu::forward(std::size_t node, std::vector<std::int32_t>& places,
-                      std::vector<base::Mat6<double>>& blocks) const {
-  places.clear();
-  for (std::int32_t k = position_[node]; k >= 0; k = parent_[static_cast<std::size_t>(k)]) {
-    places.push_back(k);
+BlockLu::Way BlockLu::way_up(std::int32_t node) const {
+  Way way;
+  for (std::int32_t k = position_[base::at(node)]; k >= 0; k = parent_[base::at(k)]) {
+    way.places.push_back(k);
   }
-  blocks.assign(places.size(), {});
+  way.blocks.resize(way.places.size());
   for (int i = 0; i < 6; ++i) {
-    blocks.front().at(i, i) = 1;
+    way.blocks.front().at(i, i) = 1;
   }
-  for (std::size_t i = 0; i < places.size(); ++i) {
-    const auto k = static_cast<std::size_t>(places[i]);
+  for (std::size_t i = 0; i < way.places.size(); ++i) {
+    const auto k = static_cast<std::size_t>(way.places[i]);
+    const base::Mat6<double> divided = product(inverse_[k], way.blocks[i]);
     std::size_t target = i;  // Rows of a column ascend on the same way up.
     for (std::size_t slot = column_start_[k]; slot < column_start_[k + 1]; ++slot) {
-      while (places[target] != rows_[slot]) {
+      while (way.places[target] != rows_[slot]) {
         ++target;
       }
-      subtract_product(blocks[target], lower_[slot], blocks[i]);
+      factor_kernels().subtract_product(way.blocks[target], blocks_[slot], divided);
     }
   }
+  return way;
 }
 
-base::Mat6<double> BlockLu::symmetric_product(std::span<const std::int32_t> places_a,
-                                              std::span<const base::Mat6<double>> a,
-                                              std::span<const std::int32_t> places_b,
-                                              std::span<const base::Mat6<double>> b) const {
-  // Two ways up the tree have their ends in common, and nothing else.
-  base::Mat6<double> sum;
-  std::size_t i = places_a.size();
-  std::size_t j = places_b.size();
-  while (i > 0 && j > 0 && places_a[i - 1] == places_b[j - 1]) {
+/// a' D^-1 b. Two ways up the tree have their ends in common, and nothing else.
+base::Mat6<double> BlockLu::product_of(const Way& a, const Way& b) const {
+  base::Mat6<double> negative;
+  std::size_t i = a.places.size();
+  std::size_t j = b.places.size();
+  while (i > 0 && j > 0 && a.places[i - 1] == b.places[j - 1]) {
     --i;
     --j;
-    const auto k = static_cast<std::size_t>(places_a[i]);
-    base::add_to(sum, product(transpose(a[i]), product(inverse_[k], b[j])));
+    base::Mat6<double> divided;
+    factor_kernels().subtract_product(divided, inverse_[base::at(a.places[i])], b.blocks[j]);
+    factor_kernels().subtract_product(negative, transpose(a.blocks[i]), divided);
   }
-  return sum;
+  return negative;  // Of a negative.
+}
+
+std::vector<base::Mat6<double>> BlockLu::inverse_blocks(std::span<const Edge> nodes,
+                                                        int thread_count) const {
+  HOLDFAST_CHECK(symmetry_ == Symmetry::kSymmetric && !is_singular_);
+  std::vector<base::Mat6<double>> blocks(nodes.size());
+  constexpr std::size_t kChunk = host::Team::kChunk;
+  constexpr std::size_t kGroup = 16;  // Counts as a chunk of a team's work.
+  const std::size_t group_count = (nodes.size() + kGroup - 1) / kGroup;
+  host::Team team(thread_count, group_count * kChunk);
+  team.share(0, group_count * kChunk, [&](std::size_t begin, std::size_t end) {
+    const std::size_t first = begin / kChunk * kGroup;
+    const std::size_t last = std::min((end + kChunk - 1) / kChunk * kGroup, nodes.size());
+    find_inverse_blocks(nodes.subspan(first, last - first),
+                        std::span(blocks).subspan(first, last - first));
+  });
+  return blocks;
+}
+
+std::size_t BlockLu::way_product_count(std::span<const std::size_t> nodes) const {
+  std::vector<std::size_t> counts(position_.size());  // By place, for a way from there.
+  for (std::size_t k = position_.size(); k-- > 0;) {
+    const std::size_t above = parent_[k] >= 0 ? counts[base::at(parent_[k])] : 0;
+    counts[k] = above + column_start_[k + 1] - column_start_[k] + 1;
+  }
+  std::size_t count = 0;
+  for (const std::size_t node : nodes) {
+    count += counts[base::at(position_[node])];
+  }
+  return count;
+}
+
+void BlockLu::find_inverse_blocks(std::span<const Edge> nodes,
+                                  std::span<base::Mat6<double>> blocks) const {
+  constexpr std::size_t kWayCountMax = 256;  // Kept at once: a way takes up to a column per node.
+  std::map<std::int32_t, Way> ways;
+  const auto way_of = [&](std::int32_t node) -> const Way& {
+    const auto found = ways.find(node);
+    return found != ways.end() ? found->second : ways.emplace(node, way_up(node)).first->second;
+  };
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    if (ways.size() + 2 > kWayCountMax) {
+      ways.clear();
+    }
+    const Way& first = way_of(nodes[i].a);
+    blocks[i] = product_of(first, way_of(nodes[i].b));
+  }
 }
 
 }  // namespace holdfast::solver

@@ -26,6 +26,13 @@ double tight_tolerance(const EquilibriumOptions& options) {
   return kAlternativeFactor * options.tolerance;
 }
 
+/// What a journal keeps of a facet: its state's code, and whether it is held sideways.
+constexpr int kHeld = 16;
+
+std::uint8_t journal_number(const FacetState& facet) {
+  return static_cast<std::uint8_t>(facet.state.code() + (facet.is_held ? kHeld : 0));
+}
+
 Outcome outcome_of(LinearOutcome linear) {
   switch (linear) {
     case LinearOutcome::kSolved:
@@ -57,6 +64,7 @@ bool ContactIteration::is_tight_now() {
 Outcome ContactIteration::solve(Solution& solution) {
   const LinearOutcome outcome = system_.solve(tolerance_);
   if (outcome == LinearOutcome::kSolved) {
+    solution.displacement = std::vector<Vec>();  // Before the next ones take memory.
     solution.displacement = system_.displacement();
   }
   return outcome_of(outcome);
@@ -75,17 +83,16 @@ Outcome ContactIteration::solve_for_states(Solution& solution) {
 /// Whether every facet's state is that of the exact solution.
 bool ContactIteration::are_states_certain(const std::vector<Vec>& displacement) const {
   const std::vector<double> errors = system_.facet_errors();
-  for (std::size_t i = 0; i < errors.size(); ++i) {
+  bool is_certain = true;
+  for (std::size_t i = 0; is_certain && i < errors.size(); ++i) {
     const FacetState& facet = system_.facets()[i];
     Vec more = system_.law().trial_force(facet, displacement[facet.module]);
     Vec less = more;
     more[2] -= errors[i];
     less[2] += errors[i];
-    if (system_.law().state_for(facet, more) != system_.law().state_for(facet, less)) {
-      return false;
-    }
+    is_certain = system_.law().state_for(facet, more) == system_.law().state_for(facet, less);
   }
-  return true;
+  return host::all(ranks(), is_certain);
 }
 
 std::vector<ContactState> ContactIteration::present_states() const {
@@ -111,7 +118,30 @@ bool ContactIteration::set_states(const std::vector<ContactState>& states) {
   for (std::size_t i = 0; i < states.size(); ++i) {
     is_changed = system_.set_facet(i, states[i], system_.facets()[i].is_held) || is_changed;
   }
+  is_changed = host::any(ranks(), is_changed);
+  if (is_changed && has_journal_) {
+    tell_journal();
+  }
   return is_changed;
+}
+
+void ContactIteration::go_on(const ContactOptions& contact) {
+  if (options_.journal == nullptr) {
+    return;
+  }
+  const std::vector<std::uint8_t> numbers = options_.journal->begin(contact.law, contact.gamma);
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    system_.set_facet(i, ContactState::from_code(numbers[i] % kHeld), numbers[i] >= kHeld);
+  }
+  has_journal_ = true;
+}
+
+void ContactIteration::tell_journal() const {
+  std::vector<std::uint8_t> numbers;
+  for (const FacetState& facet : system_.facets()) {
+    numbers.push_back(journal_number(facet));
+  }
+  options_.journal->keep(numbers);
 }
 
 BondedContact::BondedContact(LinearSystem& system, const EquilibriumOptions& options)

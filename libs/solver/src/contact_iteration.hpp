@@ -22,6 +22,10 @@ class ContactIteration {
   /// displacements.
   virtual Outcome run(Solution& solution) = 0;
 
+  /// Takes over the states that an earlier run's same search has come to, and from now on tells the
+  /// journal of those of this one. Without a journal does nothing.
+  void go_on(const ContactOptions& contact);
+
  protected:
   /// Keeps references.
   ContactIteration(LinearSystem& system, const EquilibriumOptions& options);
@@ -31,6 +35,14 @@ class ContactIteration {
   const LinearSystem& system() const { return system_; }
 
   int step_count_max() const { return options_.step_count_max; }
+
+  /// Who has the other parts of the robot; null: nobody.
+  host::Ranks* ranks() const { return options_.ranks(); }
+
+  /// Of the robot's modules those that are not copies of other ranks'.
+  std::size_t own_count() const {
+    return options_.part == nullptr ? system_.robot().modules().size() : options_.part->own_count;
+  }
 
   /// Displacements for the present states.
   Outcome solve(Solution& solution);
@@ -55,11 +67,13 @@ class ContactIteration {
   bool is_tight_now();
 
  private:
+  void tell_journal() const;
   bool are_states_certain(const std::vector<Vec>& displacement) const;
 
   LinearSystem& system_;
   const EquilibriumOptions& options_;
   double tolerance_ = 0;  ///< Allowed of the system at present.
+  bool has_journal_ = false;
 };
 
 /// A linear problem: nothing can lift or tilt.

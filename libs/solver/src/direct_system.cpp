@@ -63,8 +63,9 @@ bool is_refined(const Solution& solution) {
 }  // namespace
 
 std::unique_ptr<DirectSystem> DirectSystem::make(const model::Robot& robot,
-                                                 const EquilibriumOptions& options) {
-  std::unique_ptr<DirectSystem> system(new DirectSystem(robot, options));
+                                                 const EquilibriumOptions& options,
+                                                 Symmetry symmetry) {
+  std::unique_ptr<DirectSystem> system(new DirectSystem(robot, options, symmetry));
   if (system->lu_->is_too_large()) {
     return nullptr;
   }
@@ -72,10 +73,12 @@ std::unique_ptr<DirectSystem> DirectSystem::make(const model::Robot& robot,
   return system;
 }
 
-DirectSystem::DirectSystem(const model::Robot& robot, const EquilibriumOptions& options)
+DirectSystem::DirectSystem(const model::Robot& robot, const EquilibriumOptions& options,
+                           Symmetry symmetry)
     : LinearSystem(robot),
       is_bonded_(options.is_bonded),
       is_precise_(options.is_precise),
+      thread_count_(options.thread_count),
       node_of_module_(robot.modules().size(), -1) {
   std::int32_t next = 0;
   for (std::size_t i = 0; i < node_of_module_.size(); ++i) {
@@ -84,7 +87,7 @@ DirectSystem::DirectSystem(const model::Robot& robot, const EquilibriumOptions& 
     }
   }
   diagonal_.resize(at(next));
-  order(options);
+  order(options, symmetry);
 }
 
 std::int32_t DirectSystem::node_of(std::int32_t module) const {
@@ -92,7 +95,7 @@ std::int32_t DirectSystem::node_of(std::int32_t module) const {
 }
 
 /// Finds the order of elimination and what fills in.
-void DirectSystem::order(const EquilibriumOptions& options) {
+void DirectSystem::order(const EquilibriumOptions& options, Symmetry symmetry) {
   std::vector<Edge> edges;
   edges.reserve(robot().connections().size());
   for (const model::Connection& connection : robot().connections()) {
@@ -101,11 +104,22 @@ void DirectSystem::order(const EquilibriumOptions& options) {
       edges.push_back(edge);
     }
   }
-  lu_.emplace(diagonal_.size(), edges, block_count_max(options, diagonal_.size(), edges.size()));
+  lu_.emplace(diagonal_.size(), edges, block_count_max(options, diagonal_.size(), edges.size()),
+              symmetry);
 }
 
-/// Everything but the contact: K11 of every beam end on the diagonal, K12 off it (Eqs. 3, 5).
+/// Everything but the contact.
 void DirectSystem::assemble() {
+  diagonal_ = set_connections(*lu_, {});
+  for (std::size_t node = 0; node < diagonal_.size(); ++node) {
+    lu_->set_diagonal(node, diagonal_[node]);
+  }
+}
+
+/// K12 of every beam off the diagonal; returns K11 of all their ends, which stand on it (Eqs. 3,
+/// 5). Without factors they are 1.
+std::vector<Mat6<double>> DirectSystem::set_connections(BlockLu& lu,
+                                                        std::span<const double> factors) const {
   std::array<Mat6<double>, base::Lattice::kDirectionCountMax> k11;
   std::array<Mat6<double>, base::Lattice::kDirectionCountMax> k12;
   for (const base::Direction direction : base::directions(robot().lattice())) {
@@ -113,26 +127,45 @@ void DirectSystem::assemble() {
     k11[i] = beam().block_11(direction);
     k12[i] = beam().block_12(direction);
   }
+  std::vector<Mat6<double>> diagonal(lu.node_count());
   std::size_t edge = 0;
-  for (const model::Connection& connection : robot().connections()) {
+  for (std::size_t i = 0; i < robot().connections().size(); ++i) {
+    const model::Connection& connection = robot().connections()[i];
     const std::int32_t a = node_of(connection.a);
     const std::int32_t b = node_of(connection.b);
     const auto direction = static_cast<std::size_t>(base::index(connection.direction));
     const auto opposite =
         static_cast<std::size_t>(base::index(base::opposite(connection.direction)));
+    const auto part = [&](Mat6<double> block) {
+      for (double& value : block.values) {
+        value = factors.empty() ? value : factors[i] * value;
+      }
+      return block;
+    };
     if (a >= 0) {
-      base::add_to(diagonal_[at(a)], k11[direction]);
+      base::add_to(diagonal[at(a)], part(k11[direction]));
     }
     if (b >= 0) {
-      base::add_to(diagonal_[at(b)], k11[opposite]);
+      base::add_to(diagonal[at(b)], part(k11[opposite]));
     }
     if (a >= 0 && b >= 0) {
-      lu_->set_edge(edge++, k12[direction]);
+      lu.set_edge(edge++, part(k12[direction]));
     }
   }
-  for (std::size_t node = 0; node < diagonal_.size(); ++node) {
-    lu_->set_diagonal(node, diagonal_[node]);
+  return diagonal;
+}
+
+BlockLu DirectSystem::factors_of(std::span<const double> connection_factors) const {
+  BlockLu lu = lu_->without_values();
+  std::vector<Mat6<double>> diagonal = set_connections(lu, connection_factors);
+  for (std::size_t i = 0; i < facets().size(); i = first_facet_after(i)) {
+    Mat6<double>& block = diagonal[at(node_of_module_[facets()[i].module])];
+    block = with_facets(block, i);
   }
+  for (std::size_t node = 0; node < diagonal.size(); ++node) {
+    lu.set_diagonal(node, diagonal[node]);
+  }
+  return lu;
 }
 
 void DirectSystem::take_law() {
@@ -156,11 +189,15 @@ void DirectSystem::take_facet(std::size_t facet) {
     --facet;
   }
   const std::size_t node = at(node_of_module_[module]);
-  Mat6<double> block = diagonal_[node];
-  for (; facet < facets().size() && facets()[facet].module == module; ++facet) {
-    base::add_to(block, law().tangent(facets()[facet]));
+  lu_->set_diagonal(node, with_facets(diagonal_[node], facet));
+}
+
+/// A block of the diagonal and what all facets of a module add to it.
+Mat6<double> DirectSystem::with_facets(Mat6<double> block, std::size_t first_facet) const {
+  for (std::size_t i = first_facet; i < first_facet_after(first_facet); ++i) {
+    base::add_to(block, law().tangent(facets()[i]));
   }
-  lu_->set_diagonal(node, block);
+  return block;
 }
 
 /// From one vector per node to one per module; fixed modules get zero.
@@ -188,7 +225,7 @@ std::vector<Vec6<double>> DirectSystem::by_node(const Load& load) const {
 
 LinearOutcome DirectSystem::solve(double /*tolerance*/) {
   ++solve_count_;
-  if (!lu_->factor()) {
+  if (!lu_->factor(thread_count_)) {
     return LinearOutcome::kSingular;
   }
   x_ = by_node(loads());
@@ -200,7 +237,7 @@ std::vector<Vec6<double>> DirectSystem::displacement() { return by_module(x_); }
 
 std::optional<std::vector<std::vector<Vec6<double>>>> DirectSystem::solve_each(
     std::span<const model::Loads> loads, double /*tolerance*/) {
-  if (!lu_->factor()) {
+  if (!lu_->factor(thread_count_)) {
     return std::nullopt;
   }
   std::vector<std::vector<Vec>> columns;
@@ -275,13 +312,13 @@ bool DirectSystem::refine_without_weak_springs(Solution& solution) {
   const double gamma = ground().gamma;
   const std::vector<Vec> displacement = solution.displacement;
   set_gamma(0);
-  if (lu_->factor() && refine_precisely(solution)) {
+  if (lu_->factor(thread_count_) && refine_precisely(solution)) {
     solution.gamma = 0;
     return true;
   }
   solution.displacement = displacement;
   set_gamma(gamma);
-  HOLDFAST_CHECK(lu_->factor());  // As it was before.
+  HOLDFAST_CHECK(lu_->factor(thread_count_));  // As it was before.
   return false;
 }
 

@@ -17,9 +17,11 @@ namespace holdfast::solver {
 /// facet touches is factorized again.
 class DirectSystem final : public LinearSystem {
  public:
-  /// None if it needs more memory, or fills in more, than the options allow.
+  /// None if it needs more memory, or fills in more, than the options allow. Symmetric if all
+  /// facets stay stuck.
   static std::unique_ptr<DirectSystem> make(const model::Robot& robot,
-                                            const EquilibriumOptions& options);
+                                            const EquilibriumOptions& options,
+                                            Symmetry symmetry = Symmetry::kNone);
 
   [[nodiscard]] LinearOutcome solve(double tolerance) override;
   std::vector<Vec> displacement() override;
@@ -34,6 +36,9 @@ class DirectSystem final : public LinearSystem {
   /// The factors, one node per module that is not fixed, as of the last solve().
   const BlockLu& factors() const { return *lu_; }
 
+  /// The same of K with every connection's stiffness times a factor of its own; not factorized.
+  BlockLu factors_of(std::span<const double> connection_factors) const;
+
   /// A module's node; -1 if it is fixed.
   std::int32_t node_of(std::int32_t module) const;
 
@@ -42,15 +47,18 @@ class DirectSystem final : public LinearSystem {
   }
 
  private:
-  DirectSystem(const model::Robot& robot, const EquilibriumOptions& options);
+  DirectSystem(const model::Robot& robot, const EquilibriumOptions& options, Symmetry symmetry);
 
   void take_law() override;
   void take_facet(std::size_t facet) override;
 
   void take_loads() override {}
 
-  void order(const EquilibriumOptions& options);
+  void order(const EquilibriumOptions& options, Symmetry symmetry);
   void assemble();
+  std::vector<base::Mat6<double>> set_connections(BlockLu& lu,
+                                                  std::span<const double> factors) const;
+  base::Mat6<double> with_facets(base::Mat6<double> block, std::size_t first_facet) const;
   std::size_t first_facet_after(std::size_t facet) const;
   std::vector<Vec> by_module(const std::vector<Vec>& by_node) const;
   template <class Load>
@@ -62,6 +70,7 @@ class DirectSystem final : public LinearSystem {
 
   bool is_bonded_ = false;
   bool is_precise_ = false;
+  int thread_count_ = 1;
   std::vector<std::int32_t> node_of_module_;  ///< -1 for fixed modules
   std::vector<base::Mat6<double>> diagonal_;  ///< By node, contact excluded.
   std::optional<BlockLu> lu_;

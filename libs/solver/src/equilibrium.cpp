@@ -30,7 +30,6 @@ Attempt attempt_since(const LinearReport& before, const LinearReport& now,
 void take_contact(const LinearSystem& system, Equilibrium& result) {
   result.contact.clear();
   result.facet_force.clear();
-  result.ground_force.assign(system.robot().modules().size(), {});
   for (const FacetState& facet : system.facets()) {
     auto force = system.law().force(facet, result.displacement[facet.module]);
     for (double& component : force) {
@@ -38,7 +37,6 @@ void take_contact(const LinearSystem& system, Equilibrium& result) {
     }
     result.contact.push_back(facet.state);
     result.facet_force.push_back(force);
-    base::add_to(result.ground_force[facet.module], force);
   }
 }
 
@@ -87,6 +85,15 @@ mechanics::ContactState contact_of(const model::Robot& robot, const Equilibrium&
   return equilibrium.contact[static_cast<std::size_t>(facet - facets.begin())];
 }
 
+std::vector<base::Vec6<double>> ground_forces(const model::Robot& robot,
+                                              const Equilibrium& equilibrium) {
+  std::vector<base::Vec6<double>> forces(robot.modules().size());
+  for (std::size_t i = 0; i < equilibrium.facet_force.size(); ++i) {
+    base::add_to(forces[base::at(robot.facets()[i].module)], equilibrium.facet_force[i]);
+  }
+  return forces;
+}
+
 EquilibriumSolver::EquilibriumSolver(const model::Robot& robot, EquilibriumOptions options)
     : options_(std::move(options)), choice_(std::make_unique<SystemChoice>(robot, options_)) {}
 
@@ -119,14 +126,18 @@ void EquilibriumSolver::attempt(const ContactOptions& contact, Equilibrium& resu
   LinearSystem& system = *choice_->system();
   const LinearReport before = system.report();
   system.set_law(contact);
-  if (options_.is_bonded || std::ranges::all_of(system.facets(), &FacetState::is_bonded)) {
+  const bool is_all_bonded = std::ranges::all_of(system.facets(), &FacetState::is_bonded);
+  if (options_.is_bonded || host::all(options_.ranks(), is_all_bonded)) {
     result.outcome = BondedContact(system, options_).run(result);
     finish(system, result);
   } else if (contact.law == ContactLaw::kRegularised) {
-    result.outcome = RegularisedContact(system, options_).run(result);
+    RegularisedContact search(system, options_);
+    search.go_on(contact);
+    result.outcome = search.run(result);
     finish(system, result);
   } else {
     UnilateralContact search(system, options_);
+    search.go_on(contact);
     result.outcome = search.run(result);
     finish(system, result);
     compare_with_free_facets(search, result);
@@ -149,6 +160,33 @@ void EquilibriumSolver::seek_others(Equilibrium& settled) {
   const int solve_count = system.report().solve_count;
   settled.others = RegularisedContact(system, options_).find_others(settled);
   settled.steps += system.report().solve_count - solve_count;
+}
+
+std::vector<Equilibrium> EquilibriumSolver::seek_settled(const ContactOptions& contact) {
+  constexpr std::size_t kFacetCountMax = 8;
+  choice_->prepare(contact.law);
+  LinearSystem* const system = choice_->system();
+  if (system == nullptr || !system->is_exact() || system->facets().size() > kFacetCountMax) {
+    return {};
+  }
+  system->set_law(contact);
+  std::vector<Equilibrium> all;
+  const auto take = [&](Solution solution) {
+    Equilibrium& one = all.emplace_back();
+    static_cast<Solution&>(one) = std::move(solution);
+    one.outcome = Outcome::kSettled;
+    take_contact(*system, one);
+  };
+  constexpr std::size_t kFacetCountTried = 3;
+  constexpr std::size_t kModuleCountTried = 128;
+  RegularisedContact contact_search(*system, options_);
+  if (system->facets().size() <= kFacetCountTried &&
+      system->robot().modules().size() <= kModuleCountTried) {
+    contact_search.try_all_states(take);
+  } else {
+    contact_search.find_from_elsewhere(take);
+  }
+  return all;
 }
 
 }  // namespace holdfast::solver

@@ -54,6 +54,11 @@ void LinearSystem::set_loads(model::Loads loads) {
   take_loads();
 }
 
+void LinearSystem::change_loads(model::Loads loads) {
+  loads_ = std::move(loads);
+  take_changed_loads();
+}
+
 std::optional<std::vector<std::vector<base::Vec6<double>>>> LinearSystem::solve_each(
     std::span<const model::Loads> loads, double tolerance) {
   std::vector<std::vector<Vec>> displacements;

@@ -11,6 +11,7 @@
 // sheared by more than its gap. So only these are tried, one at a time.
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 #include <vector>
 
@@ -31,7 +32,8 @@ constexpr std::size_t kTriedMaxIterated = 8;
 constexpr double kAlikeShare = 1e-3;
 
 struct Doubt {
-  std::size_t facet = 0;
+  std::size_t facet = 0;  ///< Of its rank.
+  std::size_t rank = 0;
   double upright_n = 0;
   double sideways_n = 0;
 };
@@ -42,29 +44,49 @@ bool is_alike(const Doubt& a, const Doubt& b) {
          std::abs(a.upright_n - b.upright_n) <= margin;
 }
 
+/// The first of those that are alike.
+std::vector<Doubt> unlike_ones(const std::vector<Doubt>& all) {
+  std::vector<Doubt> unlike;
+  for (const Doubt& doubt : all) {
+    if (std::ranges::none_of(unlike, [&](const Doubt& other) { return is_alike(doubt, other); })) {
+      unlike.push_back(doubt);
+    }
+  }
+  return unlike;
+}
+
+/// Stands for a facet of another rank.
+constexpr std::size_t kElsewhere = std::numeric_limits<std::size_t>::max();
+
 }  // namespace
 
 /// Facets, by index, that may have a second state; lightest for their sideways force first, and one
 /// only of those that bear the same, as each other's mirror images do.
 std::vector<std::size_t> RegularisedContact::doubtful_facets(const Solution& settled) const {
+  const std::size_t here = ranks() == nullptr ? 0 : base::at(ranks()->rank());
   std::vector<Doubt> doubts;
   for (std::size_t i = 0; i < system().facets().size(); ++i) {
     const FacetState& facet = system().facets()[i];
     const bool is_stuck = facet.state == mechanics::ContactState{};
     const Vec force = system().law().trial_force(facet, settled.displacement[facet.module]);
-    const Doubt doubt = {
-        .facet = i, .upright_n = std::abs(force[2]), .sideways_n = std::hypot(force[0], force[1])};
+    const Doubt doubt = {.facet = i,
+                         .rank = here,
+                         .upright_n = std::abs(force[2]),
+                         .sideways_n = std::hypot(force[0], force[1])};
     const bool is_new =
         std::ranges::none_of(doubts, [&](const Doubt& other) { return is_alike(doubt, other); });
     if (!is_stuck && doubt.sideways_n > kSlipRatio * doubt.upright_n && is_new) {
       doubts.push_back(doubt);
     }
   }
+  if (ranks() != nullptr) {
+    doubts = unlike_ones(host::gather<Doubt>(*ranks(), doubts));
+  }
   std::ranges::sort(doubts, {},
                     [](const Doubt& doubt) { return doubt.upright_n / doubt.sideways_n; });
   std::vector<std::size_t> indices;
   for (const Doubt& doubt : doubts) {
-    indices.push_back(doubt.facet);
+    indices.push_back(doubt.rank == here ? doubt.facet : kElsewhere);
   }
   return indices;
 }
@@ -79,11 +101,15 @@ std::vector<Solution> RegularisedContact::find_others(const Solution& settled) {
   std::vector<Solution> others;
   for (const std::size_t facet : doubtful) {
     set_states(states);
-    system().set_facet(facet, {.pressed = !states[facet].pressed}, true);
+    if (facet != kElsewhere) {
+      system().set_facet(facet, {.pressed = !states[facet].pressed}, true);
+    }
     Solution other;
     const bool is_found = goes_on_from(facet, other);
     const std::vector<mechanics::ContactState> found = present_states();
-    if (is_found && std::ranges::find(known, found) == known.end()) {
+    const bool is_new = std::ranges::none_of(
+        known, [&](const auto& one) { return host::all(ranks(), one == found); });
+    if (is_found && is_new) {
       known.push_back(found);
       others.push_back(std::move(other));
     }
@@ -92,14 +118,62 @@ std::vector<Solution> RegularisedContact::find_others(const Solution& settled) {
   return others;
 }
 
+void RegularisedContact::find_from_elsewhere(const std::function<void(Solution)>& take) {
+  constexpr mechanics::ContactState kStuck;
+  constexpr mechanics::ContactState kOpen{.pressed = false};
+  const std::size_t count = system().facets().size();
+  std::vector<std::vector<mechanics::ContactState>> known;
+  for (std::size_t i = 0; i < 2 * count; ++i) {
+    const bool is_one_open = i < count;
+    std::vector<mechanics::ContactState> states(count, is_one_open ? kStuck : kOpen);
+    states[i % count] = is_one_open ? kOpen : kStuck;
+    set_states(states);
+    loosen();
+    Solution solution;
+    if (run(solution) == Outcome::kSettled && system().refine(solution) &&
+        std::ranges::find(known, present_states()) == known.end()) {
+      known.push_back(present_states());
+      take(std::move(solution));
+    }
+  }
+}
+
+void RegularisedContact::try_all_states(const std::function<void(Solution)>& take) {
+  std::vector<int> codes(system().facets().size(), 0);
+  const auto next = [&codes] {
+    for (int& code : codes) {
+      if (++code < mechanics::ContactState::kCodeCount) {
+        return true;
+      }
+      code = 0;
+    }
+    return false;
+  };
+  do {
+    std::vector<mechanics::ContactState> states;
+    for (const int code : codes) {
+      states.push_back(mechanics::ContactState::from_code(code));
+    }
+    set_states(states);
+    Solution solution;
+    if (solve(solution) == Outcome::kSettled && states_at(solution.displacement) == states &&
+        system().refine(solution)) {
+      take(std::move(solution));
+    }
+  } while (next());
+}
+
 /// Newton's method with a facet put into another state. Returns whether it settles without the
 /// facet going back at once.
 bool RegularisedContact::goes_on_from(std::size_t facet, Solution& other) {
-  const bool was_pressed = system().facets()[facet].state.pressed;
+  const bool is_here = facet != kElsewhere;
+  const bool was_pressed = is_here && system().facets()[facet].state.pressed;
   loosen();
-  return solve_for_states(other) == Outcome::kSettled &&
-         states_at(other.displacement)[facet].pressed == was_pressed &&
-         run(other) == Outcome::kSettled && system().refine(other);
+  if (solve_for_states(other) != Outcome::kSettled) {
+    return false;
+  }
+  const bool stays = !is_here || states_at(other.displacement)[facet].pressed == was_pressed;
+  return host::all(ranks(), stays) && run(other) == Outcome::kSettled && system().refine(other);
 }
 
 }  // namespace holdfast::solver

@@ -3,7 +3,9 @@
 #include "regularised_contact.hpp"
 
 #include <cstdint>
+#include <cstring>
 #include <set>
+#include <utility>
 
 namespace holdfast::solver {
 namespace {
@@ -18,6 +20,18 @@ std::vector<std::int8_t> codes_of(const std::vector<ContactState>& states) {
     codes.push_back(static_cast<std::int8_t>(state.code()));
   }
   return codes;
+}
+
+/// Something short that stands for all ranks' states; equal by chance once in 2^64.
+std::vector<std::int8_t> codes_of_all(host::Ranks& ranks, const std::vector<std::int8_t>& codes) {
+  std::uint64_t hash = 0x243f6a8885a308d3U;
+  for (const std::int8_t code : codes) {
+    hash = (hash ^ static_cast<std::uint8_t>(code)) * 0x9e3779b97f4a7c15U;
+    hash ^= hash >> 32U;
+  }
+  std::vector<std::int8_t> mine(sizeof hash);
+  std::memcpy(mine.data(), &hash, sizeof hash);
+  return host::gather<std::int8_t>(ranks, mine);
 }
 
 }  // namespace
@@ -39,7 +53,11 @@ Outcome RegularisedContact::run(Solution& solution) {
       }
       continue;
     }
-    if (!seen.insert(codes_of(states)).second) {
+    std::vector<std::int8_t> codes = codes_of(states);
+    if (ranks() != nullptr) {
+      codes = codes_of_all(*ranks(), codes);
+    }
+    if (!seen.insert(std::move(codes)).second) {
       return Outcome::kNotSettled;
     }
     loosen();

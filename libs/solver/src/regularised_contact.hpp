@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <functional>
 #include <vector>
 
 #include "contact_iteration.hpp"
@@ -20,6 +21,14 @@ class RegularisedContact final : public ContactIteration {
   /// are pulled sideways are put into another state, one at a time, and Newton's method goes on
   /// from there. Leaves the system in the states it had.
   std::vector<Solution> find_others(const Solution& settled);
+
+  /// Seeks solutions by Newton's method from all facets stuck but one, and from all open but one.
+  /// Calls `take` for each, once, while the system has its states.
+  void find_from_elsewhere(const std::function<void(Solution)>& take);
+
+  /// Tries all states of all facets, ten each. Calls `take` for each solution, while the system has
+  /// its states.
+  void try_all_states(const std::function<void(Solution)>& take);
 
  private:
   std::vector<std::size_t> doubtful_facets(const Solution& settled) const;

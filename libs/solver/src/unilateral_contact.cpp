@@ -68,7 +68,7 @@ double UnilateralContact::search_line(const std::vector<Vec>& from,
                                       const std::vector<Vec>& direction) const {
   const model::Robot& robot = system().robot();
   double slope = dot_all(beam_forces(robot, system().beam(), from), direction);
-  for (std::size_t i = 0; i < direction.size(); ++i) {  // A fixed module does not move.
+  for (std::size_t i = 0; i < own_count(); ++i) {  // A fixed module does not move.
     slope -= base::dot(system().loads()[i], direction[i]);
   }
   const double curvature = dot_all(beam_forces(robot, system().beam(), direction), direction);
@@ -79,7 +79,7 @@ double UnilateralContact::search_line(const std::vector<Vec>& from,
       facet.state = system().law().state_at(facet, u);
       slope_here += base::dot(system().law().force(facet, u), direction[facet.module]);
     }
-    return slope_here;
+    return host::sum(ranks(), slope_here);
   };
   if (slope_at(1) <= 0) {
     return 1;
@@ -103,11 +103,12 @@ bool UnilateralContact::update_held() {
     was_released_[i] = was_released_[i] || !is_held;
     is_changed = system().set_facet(i, facet.state, is_held) || is_changed;
   }
-  return is_changed;
+  return host::any(ranks(), is_changed);
 }
 
 int UnilateralContact::open_but_held_count() const {
-  return static_cast<int>(std::ranges::count_if(system().facets(), is_open_but_held));
+  const auto count = std::ranges::count_if(system().facets(), is_open_but_held);
+  return static_cast<int>(host::total(ranks(), static_cast<std::size_t>(count)));
 }
 
 std::vector<Vec6<double>> UnilateralContact::displacement_with_free_facets(

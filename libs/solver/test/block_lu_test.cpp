@@ -12,6 +12,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <utility>
 
 #include "holdfast/base/rng.hpp"
@@ -325,8 +326,9 @@ TEST(BlockLu, has_nothing_to_do_without_nodes) {
 }
 
 /// Symmetric, diagonal blocks dominate.
-BlockLu symmetric_lattice(base::Rng& rng, std::size_t node_count, std::span<const Edge> edges) {
-  BlockLu lu(node_count, edges, kUnlimited);
+BlockLu symmetric_lattice(base::Rng& rng, std::size_t node_count, std::span<const Edge> edges,
+                          Symmetry symmetry = Symmetry::kSymmetric) {
+  BlockLu lu(node_count, edges, kUnlimited, symmetry);
   for (std::size_t e = 0; e < edges.size(); ++e) {
     lu.set_edge(e, random_block(rng, 0));
   }
@@ -367,26 +369,104 @@ TEST(BlockLu, solves_lanes_to_the_bits_of_one_after_another) {
   }
 }
 
+/// Against solutions for unit vectors.
 TEST(BlockLu, gives_blocks_of_the_inverse_of_a_symmetric_matrix) {
   base::Rng rng(6);
   const std::vector<Edge> edges = lattice(3, 3, 3);
   BlockLu lu = symmetric_lattice(rng, 27, edges);
   ASSERT_TRUE(lu.factor());
-  for (const auto& [a, b] : {std::pair<std::size_t, std::size_t>{0, 26}, {13, 13}, {4, 5}}) {
-    std::vector<std::int32_t> places_a;
-    std::vector<std::int32_t> places_b;
-    std::vector<Mat6<double>> half_a;
-    std::vector<Mat6<double>> half_b;
-    lu.forward(a, places_a, half_a);
-    lu.forward(b, places_b, half_b);
-    const Mat6<double> block = lu.symmetric_product(places_a, half_a, places_b, half_b);
+  const auto expect_block = [&](const Mat6<double>& block, const Edge& nodes) {
     for (int column = 0; column < 6; ++column) {
       std::vector<Vec6<double>> x(27);
-      x[b] = base::unit<double>(column);
+      x[base::at(nodes.b)] = base::unit<double>(column);
       lu.solve(x);
       for (int row = 0; row < 6; ++row) {
-        EXPECT_NEAR(block.at(row, column), x[a][static_cast<std::size_t>(row)], kTolerance);
+        EXPECT_NEAR(block.at(row, column), x[base::at(nodes.a)][static_cast<std::size_t>(row)],
+                    kTolerance);
       }
+    }
+  };
+  const std::vector<Edge> any = {{0, 26}, {13, 13}, {4, 5}, {26, 0}};
+  const std::vector<Mat6<double>> blocks = lu.inverse_blocks(any);
+  for (std::size_t i = 0; i < any.size(); ++i) {
+    expect_block(blocks[i], any[i]);
+  }
+  const std::vector<std::size_t> asked = {4, 13, 14, 5, 26};
+  const SelectedInverse inverse = lu.selected_inverse(asked);
+  for (const Edge& edge : {Edge{4, 4}, {26, 26}, {4, 5}, {5, 4}, {14, 13}, {13, 4}, {5, 14}}) {
+    expect_block(inverse.block(base::at(edge.a), base::at(edge.b)), edge);
+  }
+  // Pairs that are not coupled, and one that is.
+  std::vector<std::size_t> corners = {0, 2, 6, 8, 18, 20, 24, 26, 1};
+  const std::vector<Edge> pairs = {{0, 26}, {2, 24}, {18, 8}, {6, 20}, {26, 24}, {0, 1}};
+  const SelectedInverse more = lu.selected_inverse(corners, pairs);
+  for (const Edge& edge : pairs) {
+    expect_block(more.block(base::at(edge.a), base::at(edge.b)), edge);
+    expect_block(more.block(base::at(edge.b), base::at(edge.a)), {edge.b, edge.a});
+  }
+  for (const std::size_t node : corners) {
+    const auto place = static_cast<std::int32_t>(node);
+    expect_block(more.block(node, node), {place, place});
+  }
+}
+
+/// Large enough for columns to be shared.
+TEST(BlockLu, makes_columns_to_the_same_bits_on_any_number_of_threads) {
+  constexpr std::size_t kCount = 7 * 7 * 10;
+  const std::vector<Edge> edges = lattice(7, 7, 10);
+  base::Rng rng(8);
+  base::Rng same(8);
+  BlockLu one = symmetric_lattice(rng, kCount, edges);
+  BlockLu several = symmetric_lattice(same, kCount, edges);
+  ASSERT_GT(one.factor_product_count(), 100000U);
+  ASSERT_TRUE(one.factor(1));
+  ASSERT_TRUE(several.factor(3));
+  std::vector<Vec6<double>> x(kCount);
+  x[7] = {1, 2, 3, 4, 5, 6};
+  std::vector<Vec6<double>> y = x;
+  one.solve(x);
+  several.solve(y);
+  EXPECT_EQ(x, y);
+  std::vector<std::size_t> nodes(kCount);
+  std::iota(nodes.begin(), nodes.end(), 0U);
+  const std::vector<Edge> pairs = {{0, 489}, {3, 300}};
+  const SelectedInverse by_one = one.selected_inverse(nodes, pairs, 1);
+  const SelectedInverse by_several = several.selected_inverse(nodes, pairs, 3);
+  for (const Edge& edge : edges) {
+    EXPECT_EQ(by_one.block(base::at(edge.a), base::at(edge.b)).values,
+              by_several.block(base::at(edge.a), base::at(edge.b)).values);
+  }
+  for (const Edge& edge : pairs) {
+    EXPECT_EQ(by_one.block(base::at(edge.a), base::at(edge.b)).values,
+              by_several.block(base::at(edge.a), base::at(edge.b)).values);
+  }
+}
+
+TEST(BlockLu, says_on_several_threads_that_a_matrix_is_singular) {
+  constexpr std::size_t kCount = 7 * 7 * 10;
+  base::Rng rng(8);
+  BlockLu lu = symmetric_lattice(rng, kCount, lattice(7, 7, 10));
+  lu.set_diagonal(200, Mat6<double>{{std::numeric_limits<double>::quiet_NaN()}});
+  EXPECT_FALSE(lu.factor(3));
+}
+
+/// The same numbers by another order of the same sums.
+TEST(BlockLu, factors_what_is_known_to_be_symmetric_alike) {
+  base::Rng rng(6);
+  base::Rng same(6);
+  const std::vector<Edge> edges = lattice(4, 3, 5);
+  BlockLu symmetric = symmetric_lattice(rng, 60, edges);
+  BlockLu general = symmetric_lattice(same, 60, edges, Symmetry::kNone);
+  ASSERT_TRUE(symmetric.factor());
+  ASSERT_TRUE(general.factor());
+  std::vector<Vec6<double>> x(60);
+  x[7] = {1, 2, 3, 4, 5, 6};
+  std::vector<Vec6<double>> y = x;
+  symmetric.solve(x);
+  general.solve(y);
+  for (std::size_t node = 0; node < 60; ++node) {
+    for (std::size_t k = 0; k < 6; ++k) {
+      EXPECT_NEAR(x[node][k], y[node][k], kTolerance);
     }
   }
 }

@@ -42,6 +42,7 @@ class Preconditioner {
 
   /// M^-1 r.
   std::vector<Six<Real>> operator()(const std::vector<Six<Real>>& r) {
+    hierarchy_.take_vectors();
     hierarchy_.levels()[0].r = r;
     cycle_.run();
     return hierarchy_.levels()[0].z;

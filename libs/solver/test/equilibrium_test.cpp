@@ -55,8 +55,9 @@ Material lopsided() {
 }
 
 Equilibrium settle(const Robot& robot, const ContactOptions& contact = {}) {
-  const Equilibrium result = EquilibriumSolver(robot).solve(contact);
+  Equilibrium result = EquilibriumSolver(robot).solve(contact);
   EXPECT_EQ(result.outcome, Outcome::kSettled);
+  result.ground_force = ground_forces(robot, result);
   return result;
 }
 

@@ -53,8 +53,8 @@ bool agrees(const Assessment& assessment) {
                                          assessment.simplified.margin_mm == 0);
 }
 
-ContactModel contact_model(const model::Robot& robot, ContactLaw law) {
-  if (std::ranges::all_of(robot.facets(), &model::Facet::is_bonded)) {
+ContactModel contact_model(const model::Robot& robot, ContactLaw law, host::Ranks* ranks) {
+  if (host::all(ranks, std::ranges::all_of(robot.facets(), &model::Facet::is_bonded))) {
     return ContactModel::kNone;
   }
   return law == ContactLaw::kUnilateral ? ContactModel::kUnilateral : ContactModel::kRegularised;
@@ -69,12 +69,31 @@ std::span<const double> weak_springs(solver::EquilibriumSolver& solver, bool is_
              : kStableGammas;
 }
 
-/// Whether weak springs of open facets, part of the paper's law, may carry part of the load where
-/// supports are anywhere: on a floor all that they can do is pull down.
-bool has_pulling_facets(const model::Robot& robot, const Assessment& assessment) {
-  return !is_on_flat_floor(robot) &&
-         std::ranges::any_of(assessment.equilibrium.contact,
-                             [](const mechanics::ContactState& state) { return !state.pressed; });
+/// Whether weak springs of open or tilted facets, part of the paper's law, may carry part of the
+/// load where supports are anywhere: on a floor all that they can do is pull down.
+bool has_pulling_facets(const model::Robot& robot, const Assessment& assessment,
+                        const model::RobotPart* part) {
+  constexpr mechanics::ContactState kStuck;
+  const auto& contact = assessment.equilibrium.contact;
+  const bool is_any_not_stuck =
+      std::ranges::any_of(contact, [&](const auto& state) { return state != kStuck; });
+  return !is_on_flat_floor(robot, part) &&
+         host::any(part == nullptr ? nullptr : part->ranks, is_any_not_stuck);
+}
+
+/// Whether the paper's law, of which Newton's method found no solution, has one that falls. With
+/// supports anywhere its answer counts beside the exact law's.
+bool falls_by_other_states(const model::Robot& robot, solver::EquilibriumSolver& solver,
+                           const model::RobotPart* part, const Assessment& assessment) {
+  if (assessment.stability_rule != StabilityRule::kContactForces || !assessment.model.is_settled ||
+      !assessment.model.is_stable) {
+    return false;
+  }
+  const auto found = solver.seek_settled(
+      {.law = ContactLaw::kRegularised, .gamma = robot.material().contact_gamma});
+  return std::ranges::any_of(found, [&](const Equilibrium& equilibrium) {
+    return !model_stability(robot, equilibrium, part).is_stable;
+  });
 }
 
 /// The paper's contact law first; the exact one where it has no answer or one that contradicts the
@@ -89,8 +108,8 @@ void find_equilibrium(const model::Robot& robot, const solver::EquilibriumOption
   solver::EquilibriumSolver solver(robot, options);
   assessment.equilibrium =
       solver.solve({.law = ContactLaw::kRegularised, .gamma = robot.material().contact_gamma});
-  assessment.model = model_stability(robot, assessment.equilibrium);
-  assessment.contact_model = contact_model(robot, ContactLaw::kRegularised);
+  assessment.model = model_stability(robot, assessment.equilibrium, options.part);
+  assessment.contact_model = contact_model(robot, ContactLaw::kRegularised, options.ranks());
   if (assessment.equilibrium.outcome == Outcome::kTooLarge ||
       assessment.contact_model == ContactModel::kNone) {
     return;
@@ -105,40 +124,55 @@ void find_equilibrium(const model::Robot& robot, const solver::EquilibriumOption
   }
   if (is_settled) {
     solver.seek_others(assessment.equilibrium);
-    if (assessment.equilibrium.others.empty() && !has_pulling_facets(robot, assessment)) {
+    if (assessment.equilibrium.others.empty() &&
+        !has_pulling_facets(robot, assessment, options.part)) {
       return;
     }
   }
   const std::span<const double> gammas = weak_springs(solver, assessment.is_stable);
   if (is_settled) {
-    compare_solutions(robot, solver, gammas.front(), tolerance_share(options), assessment);
+    compare_solutions(robot, solver, gammas.front(), options, assessment);
     return;
   }
   for (const double gamma : gammas) {
     if (agrees(assessment)) {
-      return;
+      break;
     }
     Equilibrium exact = solver.solve({.law = ContactLaw::kUnilateral, .gamma = gamma});
     exact.begin_with(assessment.equilibrium);
     assessment.equilibrium = std::move(exact);
-    assessment.model = model_stability(robot, assessment.equilibrium);
+    assessment.model = model_stability(robot, assessment.equilibrium, options.part);
     assessment.contact_model = ContactModel::kUnilateral;
+  }
+  assessment.model.falls_otherwise = falls_by_other_states(robot, solver, options.part, assessment);
+}
+
+/// What the displacements say of every connection and of every module.
+void assess_rows(const model::Robot& robot, const solver::EquilibriumOptions& options,
+                 Assessment& assessment) {
+  Equilibrium& equilibrium = assessment.equilibrium;
+  if (equilibrium.outcome == Outcome::kSettled) {
+    assess_connections(robot, options, assessment);
+  }
+  if (!equilibrium.displacement.empty() &&
+      equilibrium.facet_force.size() == robot.facets().size()) {
+    equilibrium.ground_force = solver::ground_forces(robot, equilibrium);
   }
 }
 
 /// Loads, verdict and reasons, once there is an equilibrium.
 Assessment conclude(const model::Robot& robot, Assessment assessment,
                     const solver::EquilibriumOptions& options) {
+  assess_rows(robot, options, assessment);
   if (assessment.equilibrium.outcome == Outcome::kSettled) {
-    assess_connections(robot, options, assessment);
-    assessment.gaps = find_open_gaps(robot, assessment.equilibrium);
+    assessment.gaps = find_open_gaps(robot, assessment.equilibrium, options.ranks());
   }
-  decide(robot, assessment);
+  decide(robot, options.part, assessment);
   return assessment;
 }
 
 Assessment assess_once(const model::Robot& robot, const solver::EquilibriumOptions& options) {
-  Assessment assessment = assess_rigidly(robot);
+  Assessment assessment = assess_rigidly(robot, options.part);
   assessment.is_stable = assessment.is_stable || options.is_bonded;
   find_equilibrium(robot, options, assessment);
   return conclude(robot, std::move(assessment), options);
@@ -174,11 +208,11 @@ std::vector<solver::EquilibriumOptions> finer_options(const solver::EquilibriumO
 
 }  // namespace
 
-Assessment assess_rigidly(const model::Robot& robot) {
+Assessment assess_rigidly(const model::Robot& robot, const model::RobotPart* part) {
   Assessment assessment;
-  assessment.simplified = assess_rigid_body(robot);
-  assessment.stability_rule = stability_rule(robot);
-  assessment.rigid = rigid_stability(robot, assessment.stability_rule, assessment.simplified);
+  assessment.simplified = assess_rigid_body(robot, part);
+  assessment.stability_rule = stability_rule(robot, part);
+  assessment.rigid = rigid_stability(robot, assessment.stability_rule, assessment.simplified, part);
   assessment.is_stable = assessment.rigid.holds();
   return assessment;
 }
@@ -188,6 +222,9 @@ Assessment assess(const model::Robot& robot, const solver::EquilibriumOptions& o
   if (!is_near_limit(assessment)) {
     return assessment;
   }
+  // Their memory is needed elsewhere, and they can be had again.
+  assessment.connections = std::vector<ConnectionResult>();
+  assessment.equilibrium.ground_force = std::vector<base::Vec6<double>>();
   for (const solver::EquilibriumOptions& finer : finer_options(options)) {
     Assessment next = assess_once(robot, finer);
     // Solutions that were found once are there, whether or not they are found again.
@@ -196,6 +233,7 @@ Assessment assess(const model::Robot& robot, const solver::EquilibriumOptions& o
       return next;
     }
   }
+  assess_rows(robot, options, assessment);
   return assessment;
 }
 
@@ -203,8 +241,8 @@ Assessment assess_equilibrium(const model::Robot& robot, Equilibrium equilibrium
                               int thread_count) {
   Assessment assessment = assess_rigidly(robot);
   assessment.equilibrium = std::move(equilibrium);
-  assessment.model = model_stability(robot, assessment.equilibrium);
-  assessment.contact_model = contact_model(robot, assessment.equilibrium.law);
+  assessment.model = model_stability(robot, assessment.equilibrium, nullptr);
+  assessment.contact_model = contact_model(robot, assessment.equilibrium.law, nullptr);
   return conclude(robot, std::move(assessment), {.thread_count = thread_count});
 }
 

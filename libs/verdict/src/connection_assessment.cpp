@@ -6,6 +6,7 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -90,6 +91,45 @@ Loads add_up(const model::Robot& robot, int thread_count, Assessment& assessment
   return all;
 }
 
+/// What one rank's connections say, for all others.
+struct RankLoads {
+  LoadRange range;
+  double ratio_max = 0;
+  double change = 0;
+  std::size_t worst = 0;
+  std::array<base::Cell, 2> worst_ends = {};
+  std::size_t connection_count = 0;
+  std::size_t broken_count = 0;
+};
+
+/// Takes in what all ranks' connections say together; which are broken stays each rank's own.
+WholeLoads add_ranks(const model::Robot& robot, host::Ranks& ranks, Loads& loads) {
+  const std::size_t count = robot.connections().size();
+  const RankLoads mine = {
+      .range = loads.range,
+      .ratio_max = loads.ratio_max,
+      .change = loads.change,
+      .worst = loads.worst,
+      .worst_ends = count > 0 ? model::ends(robot, loads.worst) : std::array<base::Cell, 2>{},
+      .connection_count = count,
+      .broken_count = loads.broken.size()};
+  WholeLoads whole;
+  loads.ratio_max = -std::numeric_limits<double>::infinity();
+  for (const RankLoads& one : host::gather(ranks, std::span<const RankLoads>(&mine, 1))) {
+    loads.range = {.low = max_or_nan(loads.range.low, one.range.low),
+                   .high = max_or_nan(loads.range.high, one.range.high)};
+    loads.change = std::max(loads.change, one.change);
+    if (one.ratio_max > loads.ratio_max) {
+      loads.ratio_max = one.ratio_max;
+      loads.worst = one.worst;
+      whole.worst = one.worst_ends;
+    }
+    whole.connection_count += one.connection_count;
+    whole.broken_count += one.broken_count;
+  }
+  return whole;
+}
+
 /// Two answers of multigrid differ by less than the error of the better one, once in a while, and
 /// the error's energy is estimated too low. So of any connection the margin takes the largest
 /// difference so many times, or what the energy so many times could do to a load ratio, whichever
@@ -130,6 +170,21 @@ bool is_pulled_apart(double ratio_max, const Assessment& assessment) {
   return ratio_max >= kLoadRatioTie && is_known;
 }
 
+/// Of all ranks' gaps.
+OpenGaps widest_of_all(host::Ranks& ranks, const OpenGaps& mine) {
+  OpenGaps widest = mine;
+  widest.count = 0;
+  for (const OpenGaps& one : host::gather(ranks, std::span<const OpenGaps>(&mine, 1))) {
+    const std::size_t count = widest.count + one.count;
+    const bool is_wider =
+        one.limit_mm > 0 &&
+        (widest.limit_mm == 0 || one.gap_mm / one.limit_mm > widest.gap_mm / widest.limit_mm);
+    widest = is_wider ? one : widest;
+    widest.count = count;
+  }
+  return widest;
+}
+
 }  // namespace
 
 double tolerance_share(const solver::EquilibriumOptions& options) {
@@ -139,10 +194,13 @@ double tolerance_share(const solver::EquilibriumOptions& options) {
 /// Sec. III-D for every connection.
 void assess_connections(const model::Robot& robot, const solver::EquilibriumOptions& options,
                         Assessment& assessment) {
-  if (robot.connections().empty()) {
+  if (host::all(options.ranks(), robot.connections().empty())) {
     return;
   }
   Loads loads = add_up(robot, options.thread_count, assessment);
+  if (options.part != nullptr) {
+    assessment.whole = add_ranks(robot, *options.ranks(), loads);
+  }
   assessment.load_ratio_change = loads.change;
   const double margin =
       error_margin(robot, assessment.equilibrium, tolerance_share(options), loads);
@@ -161,7 +219,8 @@ void assess_connections(const model::Robot& robot, const solver::EquilibriumOpti
   }
 }
 
-std::optional<OpenGaps> find_open_gaps(const model::Robot& robot, const Equilibrium& equilibrium) {
+std::optional<OpenGaps> find_open_gaps(const model::Robot& robot, const Equilibrium& equilibrium,
+                                       host::Ranks* ranks) {
   const bool is_limited = std::ranges::any_of(
       robot.connectors(), [](const auto& law) { return std::isfinite(law.gap_limit_mm); });
   if (!is_limited) {
@@ -180,7 +239,11 @@ std::optional<OpenGaps> find_open_gaps(const model::Robot& robot, const Equilibr
       gaps.worst = i;
       gaps.gap_mm = gap;
       gaps.limit_mm = limit;
+      gaps.ends = model::ends(robot, i);
     }
+  }
+  if (ranks != nullptr) {
+    gaps = widest_of_all(*ranks, gaps);
   }
   return gaps.count > 0 ? std::optional(gaps) : std::nullopt;
 }

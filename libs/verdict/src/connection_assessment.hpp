@@ -19,6 +19,6 @@ void assess_connections(const model::Robot& robot, const solver::EquilibriumOpti
 
 /// The gaps that are too wide; none if no connection has a limit, or none is exceeded.
 std::optional<OpenGaps> find_open_gaps(const model::Robot& robot,
-                                       const solver::Equilibrium& equilibrium);
+                                       const solver::Equilibrium& equilibrium, host::Ranks* ranks);
 
 }  // namespace holdfast::verdict

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <optional>
+#include <span>
 #include <utility>
 
 #include "several_solutions.hpp"
@@ -24,13 +25,13 @@ Reason toppling_reason(const RigidBody& body) {
 }
 
 /// Why the loads of a stable robot are not known; none if they are.
-std::optional<Reason> find_obstacle(const model::Robot& robot, const Equilibrium& equilibrium) {
+std::optional<Reason> find_obstacle(std::size_t module_count, const Equilibrium& equilibrium) {
   switch (equilibrium.outcome) {
     case Outcome::kSettled:
       return std::nullopt;
     case Outcome::kTooLarge:
       return Reason{.code = ReasonCode::kTooManyModules,
-                    .numbers = {static_cast<double>(robot.modules().size())}};
+                    .numbers = {static_cast<double>(module_count)}};
     case Outcome::kTooSlow:
       return Reason{.code = ReasonCode::kNoDigitsLeft};
     case Outcome::kSingular:
@@ -58,14 +59,27 @@ std::optional<Reason> find_doubt(const Assessment& assessment) {
   return std::nullopt;
 }
 
+std::size_t connection_count(const Assessment& assessment) {
+  return assessment.whole ? assessment.whole->connection_count : assessment.connections.size();
+}
+
+/// The ends of the worst connection, where its index is another rank's.
+std::vector<base::Cell> worst_cells(const Assessment& assessment) {
+  if (!assessment.whole) {
+    return {};
+  }
+  return {assessment.whole->worst.begin(), assessment.whole->worst.end()};
+}
+
 /// Why a robot is safe in which nothing breaks.
 Reason holding_reason(const Assessment& assessment) {
-  if (assessment.connections.empty()) {
+  if (connection_count(assessment) == 0) {
     return {.code = ReasonCode::kSingleModule};
   }
   if (assessment.worst) {
     return {.code = ReasonCode::kHolds,
-            .numbers = {static_cast<double>(*assessment.worst), *assessment.load_ratio_max}};
+            .numbers = {static_cast<double>(*assessment.worst), *assessment.load_ratio_max},
+            .cells = worst_cells(assessment)};
   }
   const double bound = assessment.load_ratio_range.high;
   return bound < kLoadRatioTie ? Reason{.code = ReasonCode::kNoTension}
@@ -74,13 +88,18 @@ Reason holding_reason(const Assessment& assessment) {
 
 Reason breaking_reason(const Assessment& assessment) {
   return {.code = ReasonCode::kConnectionsBreak,
-          .numbers = {static_cast<double>(assessment.broken.size()),
-                      static_cast<double>(assessment.connections.size()),
-                      static_cast<double>(*assessment.worst), *assessment.load_ratio_max}};
+          .numbers = {static_cast<double>(assessment.whole ? assessment.whole->broken_count
+                                                           : assessment.broken.size()),
+                      static_cast<double>(connection_count(assessment)),
+                      static_cast<double>(*assessment.worst), *assessment.load_ratio_max},
+          .cells = worst_cells(assessment)};
 }
 
-void decide_stable(const model::Robot& robot, Assessment& assessment) {
-  auto obstacle = find_obstacle(robot, assessment.equilibrium);
+void decide_stable(const model::Robot& robot, const model::RobotPart* part,
+                   Assessment& assessment) {
+  const std::size_t count =
+      part == nullptr ? robot.modules().size() : host::total(part->ranks, part->own_count);
+  auto obstacle = find_obstacle(count, assessment.equilibrium);
   if (!obstacle) {
     obstacle = find_doubt(assessment);
   }
@@ -120,26 +139,40 @@ void add_contact_remarks(Assessment& assessment) {
   }
 }
 
+/// The cell of a slipping module, which may be another rank's.
+std::vector<base::Cell> slip_cells(const model::Robot& robot, const model::RobotPart* part,
+                                   const Slip& slip) {
+  if (part == nullptr) {
+    return {};
+  }
+  const base::Cell mine =
+      part->ranks->rank() == slip.rank ? robot.modules()[slip.module].cell : base::Cell{};
+  return {host::gather(*part->ranks, std::span<const base::Cell>(&mine, 1))[base::at(slip.rank)]};
+}
+
 /// Of the answers with supports anywhere neither is enough to be safe. Without equilibrium the
 /// model has none.
-void heed_model(const model::Robot& robot, Assessment& assessment) {
+void heed_model(const model::Robot& robot, const model::RobotPart* part, Assessment& assessment) {
   if (!assessment.is_stable) {
     return;
   }
   const auto slip = assessment.equilibrium.outcome == Outcome::kSettled
-                        ? find_slip(robot, assessment.equilibrium)
+                        ? find_slip(robot, assessment.equilibrium, part)
                         : std::nullopt;
   if (assessment.stability_rule == StabilityRule::kContactForces && assessment.model.is_settled &&
       !assessment.model.is_stable) {
     assessment.is_stable = false;
     assessment.verdict = Verdict::kUnstable;
     assessment.reasons.push_back({.code = ReasonCode::kModelFalls});
+  } else if (assessment.model.falls_otherwise && !breaks(assessment.load_ratio_range.low)) {
+    assessment.is_stable = false;
+    assessment.reasons.push_back({.code = ReasonCode::kStatesDisagree});
   } else if (slip) {
-    const model::Facet& facet = robot.facets()[slip->facet];
     assessment.is_stable = false;
     assessment.reasons.push_back(
         {.code = ReasonCode::kMaySlip,
-         .numbers = {static_cast<double>(facet.module), slip->ratio, *facet.touch.friction}});
+         .numbers = {static_cast<double>(slip->module), slip->ratio, slip->friction},
+         .cells = slip_cells(robot, part, *slip)});
   }
 }
 
@@ -162,32 +195,44 @@ void decide_falling(Assessment& assessment) {
   }
 }
 
+/// The ends of the connection that opens most, where its index is another rank's.
+std::vector<base::Cell> gap_cells(const OpenGaps& gaps, const model::RobotPart* part) {
+  if (part == nullptr) {
+    return {};
+  }
+  return {gaps.ends.begin(), gaps.ends.end()};
+}
+
 /// What is no reason for the verdict, but belongs to its loads.
-void add_load_remarks(const model::Robot& robot, Assessment& assessment) {
+void add_load_remarks(const model::Robot& robot, const model::RobotPart* part,
+                      Assessment& assessment) {
   if (assessment.gaps) {
     assessment.reasons.push_back({.code = ReasonCode::kGapsOpen,
                                   .numbers = {static_cast<double>(assessment.gaps->count),
                                               static_cast<double>(assessment.gaps->worst),
-                                              assessment.gaps->gap_mm, assessment.gaps->limit_mm}});
+                                              assessment.gaps->gap_mm, assessment.gaps->limit_mm},
+                                  .cells = gap_cells(*assessment.gaps, part)});
   }
-  if (robot.has_payloads() && assessment.worst) {
+  const bool has_payloads =
+      host::any(part == nullptr ? nullptr : part->ranks, robot.has_payloads());
+  if (has_payloads && assessment.worst) {
     assessment.reasons.push_back({.code = ReasonCode::kLoadsTogether});
   }
 }
 
 }  // namespace
 
-void decide(const model::Robot& robot, Assessment& assessment) {
+void decide(const model::Robot& robot, const model::RobotPart* part, Assessment& assessment) {
   if (assessment.contact_model != ContactModel::kBonded) {
-    heed_model(robot, assessment);
+    heed_model(robot, part, assessment);
   }
   if (assessment.is_stable) {
-    decide_stable(robot, assessment);
+    decide_stable(robot, part, assessment);
   } else if (assessment.reasons.empty()) {
     decide_falling(assessment);
   }
   add_contact_remarks(assessment);
-  add_load_remarks(robot, assessment);
+  add_load_remarks(robot, part, assessment);
 }
 
 }  // namespace holdfast::verdict

@@ -63,13 +63,16 @@ void add_corners(const std::array<double, 3>& centre, double half_width,
 
 }  // namespace
 
-FloatingBody body_of(const model::Robot& robot) {
-  FloatingBody body{.is_held = robot.fixed_count() > 0 || robot.has_bonded_facets(),
-                    .is_flat = is_on_flat_floor(robot),
+FloatingBody body_of(const model::Robot& robot, const model::RobotPart* part) {
+  host::Ranks* const ranks = part == nullptr ? nullptr : part->ranks;
+  const std::size_t count = part == nullptr ? robot.modules().size() : part->own_count;
+  FloatingBody body{.is_held = host::any(ranks, robot.fixed_count() > 0) ||
+                               host::any(ranks, robot.has_bonded_facets()),
+                    .is_flat = is_on_flat_floor(robot, part),
                     .foot_half_width_mm = robot.foot_half_width_mm(),
                     .tie_mm = kMarginTie * robot.material().pitch_mm};
   const base::NodePlaces node_mm(robot.lattice(), robot.material().pitch_mm);
-  for (std::size_t i = 0; i < robot.modules().size(); ++i) {
+  for (std::size_t i = 0; i < count; ++i) {
     add_module(body, node_mm(robot.modules()[i].cell), robot.mass(i), false);
   }
   for (const model::CarriedMass& carried : robot.carried()) {
@@ -79,6 +82,10 @@ FloatingBody body_of(const model::Robot& robot) {
     }
     add_module(body, place, carried.mass_kg, false);
   }
+  body.kg = host::sum(ranks, body.kg);
+  for (double& moment : body.moment_kgmm) {
+    moment = host::sum(ranks, moment);
+  }
   if (body.is_flat) {
     std::vector<PlanPoint> corners;
     for (const model::Facet& facet : robot.facets()) {
@@ -86,6 +93,9 @@ FloatingBody body_of(const model::Robot& robot) {
                   corners);
     }
     body.polygon = convex_hull(std::move(corners), body.tie_mm);
+    if (ranks != nullptr) {
+      body.polygon = convex_hull(host::gather<PlanPoint>(*ranks, body.polygon), body.tie_mm);
+    }
   }
   return body;
 }

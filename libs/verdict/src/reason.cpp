@@ -9,6 +9,9 @@ std::vector<base::Cell> cells_of(const model::Robot& robot, const Reason& reason
     const auto [a, b] = model::ends(robot, static_cast<std::size_t>(connection));
     return std::vector<base::Cell>{a, b};
   };
+  if (!reason.cells.empty()) {
+    return reason.cells;
+  }
   switch (reason.code) {
     case ReasonCode::kConnectionsBreak:
       return ends(reason.numbers[2]);
@@ -58,7 +61,8 @@ const char* name(ReasonCode code) {
                                                                        "loads_together",
                                                                        "carrier_breaks",
                                                                        "carrier_holds",
-                                                                       "in_pieces"};
+                                                                       "in_pieces",
+                                                                       "states_disagree"};
   return kNames[static_cast<std::size_t>(code)];
 }
 

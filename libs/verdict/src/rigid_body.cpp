@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <span>
 #include <utility>
 
 #include "exact_sign.hpp"
@@ -56,19 +57,35 @@ std::vector<Point> convex_hull(std::vector<Point> points, const Measure& measure
   return hull;
 }
 
+/// Feet in a row along x: the first and the last.
+struct Row {
+  std::int32_t y = 0;
+  std::int32_t first = 0;
+  std::int32_t last = 0;
+};
+
+void add_row(const Row& more, std::map<std::int32_t, Row>& rows) {
+  Row& row = rows.try_emplace(more.y, more).first->second;
+  row.first = std::min(row.first, more.first);
+  row.last = std::max(row.last, more.last);
+}
+
 /// Corners of the feet, as far as they can be corners of the polygon: of every row along x those at
 /// its two ends.
-std::vector<Point> support_corners(const model::Robot& robot) {
-  struct Row {
-    std::int32_t first;
-    std::int32_t last;
-  };
-
+std::vector<Point> support_corners(const model::Robot& robot, host::Ranks* ranks) {
   std::map<std::int32_t, Row> rows;
   for (const model::Facet& facet : robot.facets()) {
     const auto [x, y, z] = robot.modules()[base::at(facet.module)].cell;
-    Row& row = rows.try_emplace(y, Row{x, x}).first->second;
-    row = {std::min(row.first, x), std::max(row.last, x)};
+    add_row({.y = y, .first = x, .last = x}, rows);
+  }
+  if (ranks != nullptr) {
+    std::vector<Row> mine;
+    for (const auto& [y, row] : rows) {
+      mine.push_back(row);
+    }
+    for (const Row& row : host::gather<Row>(*ranks, mine)) {
+      add_row(row, rows);
+    }
   }
   std::vector<Point> corners;
   for (const auto& [y, row] : rows) {
@@ -134,18 +151,47 @@ struct Cubes {
   }
 };
 
-Cubes cubes_of(const model::Robot& robot) {
+/// Twice the sums of the modules' coordinates, and how many there are; of all ranks' modules.
+struct CubeSums {
+  std::int64_t x = 0;
+  std::int64_t y = 0;
+  std::int64_t count = 0;
+};
+
+CubeSums cube_sums(const model::Robot& robot, const model::RobotPart* part) {
+  const std::size_t count = part == nullptr ? robot.modules().size() : part->own_count;
+  CubeSums mine{.count = static_cast<std::int64_t>(count)};
+  for (const model::Module& module : robot.modules().first(count)) {
+    mine.x += 2 * std::int64_t{module.cell.x};
+    mine.y += 2 * std::int64_t{module.cell.y};
+  }
+  if (part == nullptr) {
+    return mine;
+  }
+  CubeSums all;
+  for (const CubeSums& one : host::gather(*part->ranks, std::span<const CubeSums>(&mine, 1))) {
+    all.x += one.x;
+    all.y += one.y;
+    all.count += one.count;
+  }
+  return all;
+}
+
+host::Ranks* ranks_of(const model::RobotPart* part) {
+  return part == nullptr ? nullptr : part->ranks;
+}
+
+Cubes cubes_of(const model::Robot& robot, const model::RobotPart* part = nullptr) {
+  const CubeSums sums = cube_sums(robot, part);
   const model::Material& material = robot.material();
   Cubes cubes{.measure = Measure(material.pitch_mm, material.facet_mm),
               .pitch_mm = material.pitch_mm,
               .facet_mm = material.facet_mm,
-              .is_fixed = robot.fixed_count() > 0,
-              .count = static_cast<std::int64_t>(robot.modules().size())};
-  for (const model::Module& module : robot.modules()) {
-    cubes.mass.x.pitches += 2 * std::int64_t{module.cell.x};
-    cubes.mass.y.pitches += 2 * std::int64_t{module.cell.y};
-  }
-  cubes.hull = convex_hull(support_corners(robot), cubes.measure);
+              .is_fixed = host::any(ranks_of(part), robot.fixed_count() > 0),
+              .count = sums.count};
+  cubes.mass.x.pitches = sums.x;
+  cubes.mass.y.pitches = sums.y;
+  cubes.hull = convex_hull(support_corners(robot, ranks_of(part)), cubes.measure);
   return cubes;
 }
 
@@ -169,30 +215,41 @@ RigidBody exact_body(const Cubes& cubes) {
 }
 
 /// Whether exact_body() decides.
-bool is_exact(const model::Robot& robot) {
-  return robot.lattice() == base::kCubic && robot.is_uniform() && robot.carried().empty() &&
-         (robot.facets().empty() || is_on_flat_floor(robot));
+bool is_exact(const model::Robot& robot, const model::RobotPart* part = nullptr) {
+  host::Ranks* const ranks = ranks_of(part);
+  const double mass_max = host::max(ranks, robot.mass(0));  // All ranks ask.
+  const bool is_alike = robot.is_uniform() && robot.mass(0) == mass_max;
+  const bool is_plain = robot.lattice() == base::kCubic && is_alike && robot.carried().empty();
+  const bool has_facets = host::any(ranks, !robot.facets().empty());
+  return host::all(ranks, is_plain) && (!has_facets || is_on_flat_floor(robot, part));
 }
 
 }  // namespace
 
-bool is_on_flat_floor(const model::Robot& robot) {
+bool is_on_flat_floor(const model::Robot& robot, const model::RobotPart* part) {
+  host::Ranks* const ranks = ranks_of(part);
   const auto& [x, y, z] = robot.gravity();
-  if (robot.facets().empty() || x != 0 || y != 0 || z >= 0 || robot.has_payloads()) {
+  const bool has_facets = host::any(ranks, !robot.facets().empty());
+  const bool has_payloads = host::any(ranks, robot.has_payloads());
+  if (!has_facets || x != 0 || y != 0 || z >= 0 || has_payloads) {
     return false;
   }
   const base::Direction down = base::down(robot.lattice());
   const auto level = [&](const model::Facet& facet) {
     return robot.modules()[base::at(facet.module)].cell.z;
   };
-  return std::ranges::all_of(robot.facets(), [&](const model::Facet& facet) {
-    return facet.direction == down && !facet.is_bonded() &&
-           level(facet) == level(robot.facets().front());
-  });
+  const auto first = robot.facets().empty() ? std::numeric_limits<std::int32_t>::min()
+                                            : level(robot.facets().front());
+  const double highest = host::max(ranks, first);
+  return host::all(ranks, std::ranges::all_of(robot.facets(), [&](const model::Facet& facet) {
+                     return facet.direction == down && !facet.is_bonded() &&
+                            level(facet) == highest;
+                   }));
 }
 
-RigidBody assess_rigid_body(const model::Robot& robot) {
-  return is_exact(robot) ? exact_body(cubes_of(robot)) : floating_body(body_of(robot));
+RigidBody assess_rigid_body(const model::Robot& robot, const model::RobotPart* part) {
+  return is_exact(robot, part) ? exact_body(cubes_of(robot, part))
+                               : floating_body(body_of(robot, part));
 }
 
 struct GrowingRigidBody::Exact {

@@ -7,6 +7,7 @@
 #include <limits>
 #include <vector>
 
+#include "connection_assessment.hpp"
 #include "holdfast/verdict/connection_law.hpp"
 
 namespace holdfast::verdict {
@@ -14,8 +15,9 @@ namespace {
 
 using Displacements = std::vector<base::Vec6<double>>;
 
-/// Largest load ratio; NaN if one is. `low` as of a Solution.
-double load_ratio_max(const model::Robot& robot, const Displacements& u, const Displacements& low) {
+/// Largest load ratio, of all ranks' parts; NaN if one is. `low` as of a Solution.
+double load_ratio_max(const model::Robot& robot, host::Ranks* ranks, const Displacements& u,
+                      const Displacements& low) {
   const ConnectionLaws laws(robot);
   double largest = -std::numeric_limits<double>::infinity();
   for (const model::Connection& pair : robot.connections()) {
@@ -25,7 +27,10 @@ double load_ratio_max(const model::Robot& robot, const Displacements& u, const D
       break;
     }
   }
-  return largest;
+  if (host::any(ranks, std::isnan(largest))) {
+    return std::numeric_limits<double>::quiet_NaN();
+  }
+  return host::max(ranks, largest);
 }
 
 void widen(LoadRange& range, double ratio) {
@@ -35,11 +40,11 @@ void widen(LoadRange& range, double ratio) {
 
 /// Takes in what a solution and its alternative say. Beside 106 bits the alternative says something
 /// only if feet are ambiguous.
-void widen(LoadRange& range, const model::Robot& robot, const solver::Solution& solution,
-           bool is_ambiguous = false) {
-  widen(range, load_ratio_max(robot, solution.displacement, solution.displacement_low));
+void widen(LoadRange& range, const model::Robot& robot, host::Ranks* ranks,
+           const solver::Solution& solution, bool is_ambiguous = false) {
+  widen(range, load_ratio_max(robot, ranks, solution.displacement, solution.displacement_low));
   if (solution.displacement_low.empty() || is_ambiguous) {
-    widen(range, load_ratio_max(robot, solution.alternative, {}));
+    widen(range, load_ratio_max(robot, ranks, solution.alternative, {}));
   }
 }
 
@@ -57,28 +62,29 @@ bool is_on_side(const LoadRange& range, double error, bool is_broken) {
 }  // namespace
 
 void compare_solutions(const model::Robot& robot, solver::EquilibriumSolver& solver, double gamma,
-                       double tolerance_share, Assessment& assessment) {
-  if (robot.connections().empty()) {
+                       const solver::EquilibriumOptions& options, Assessment& assessment) {
+  host::Ranks* const ranks = options.ranks();
+  if (host::all(ranks, robot.connections().empty())) {
     return;
   }
   solver::Equilibrium& settled = assessment.equilibrium;
   SeveralSolutions& several = assessment.several.emplace();
   several.found_count = settled.others.size() + 1;
   several.regularised = kEmpty;
-  widen(several.regularised, robot, settled);
+  widen(several.regularised, robot, ranks, settled);
   for (const solver::Solution& other : settled.others) {
-    widen(several.regularised, robot, other);
+    widen(several.regularised, robot, ranks, other);
   }
   const solver::Equilibrium exact =
       solver.solve({.law = mechanics::ContactLaw::kUnilateral, .gamma = gamma});
   settled.steps += exact.steps;
   settled.iteration_count += exact.iteration_count;
   if (exact.outcome == solver::Outcome::kSettled) {
-    widen(several.unilateral.emplace(kEmpty), robot, exact, exact.open_but_held_count > 0);
+    widen(several.unilateral.emplace(kEmpty), robot, ranks, exact, exact.open_but_held_count > 0);
   }
   const bool is_multigrid =
       settled.method == solver::Method::kMultigrid || exact.method == solver::Method::kMultigrid;
-  const double share = is_multigrid ? kMultigridError * tolerance_share : kRounding;
+  const double share = is_multigrid ? kMultigridError * tolerance_share(options) : kRounding;
   several.error = std::max(1.0, several.regularised.high) * (share + kWeakSprings * exact.gamma);
 }
 

@@ -21,7 +21,7 @@ inline constexpr double kMultigridError = 1e-4;
 /// Sets `assessment.several` from `assessment.equilibrium`, whose `others` are known, and the exact
 /// law's answer, with weak springs of `gamma`, if multigrid's tolerance is so many times the usual.
 void compare_solutions(const model::Robot& robot, solver::EquilibriumSolver& solver, double gamma,
-                       double tolerance_share, Assessment& assessment);
+                       const solver::EquilibriumOptions& options, Assessment& assessment);
 
 /// Whether all of them, the exact law's among them, break something if `is_broken`, and nothing if
 /// not. False if the exact law has no answer.

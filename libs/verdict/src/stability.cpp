@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
+#include <span>
 #include <vector>
 
 #include "holdfast/limit/robot.hpp"
@@ -36,19 +38,29 @@ struct Heights {
   double centre_of_mass_mm = 0;  ///< Above the floor.
 };
 
-Heights heights(const model::Robot& robot) {
+host::Ranks* ranks_of(const model::RobotPart* part) {
+  return part == nullptr ? nullptr : part->ranks;
+}
+
+Heights heights(const model::Robot& robot, const model::RobotPart* part) {
   const base::NodePlaces node_mm(robot.lattice(), robot.material().pitch_mm);
-  const model::Facet& facet = robot.facets().front();
-  const double floor_mm =
-      node_mm(robot.modules()[base::at(facet.module)].cell)[2] - robot.material().pitch_mm / 2;
-  return {.floor_mm = floor_mm, .centre_of_mass_mm = model::mass_of(robot).centre_mm[2] - floor_mm};
+  double floor_mm = -std::numeric_limits<double>::infinity();
+  if (!robot.facets().empty()) {
+    const model::Facet& facet = robot.facets().front();
+    floor_mm =
+        node_mm(robot.modules()[base::at(facet.module)].cell)[2] - robot.material().pitch_mm / 2;
+  }
+  floor_mm = host::max(ranks_of(part), floor_mm);
+  return {.floor_mm = floor_mm,
+          .centre_of_mass_mm = model::mass_of(robot, part).centre_mm[2] - floor_mm};
 }
 
 /// On a flat floor gravity passes the nearest edge of the polygon first.
-limit::RigidStability floor_stability(const model::Robot& robot, const RigidBody& body) {
+limit::RigidStability floor_stability(const model::Robot& robot, const RigidBody& body,
+                                      const model::RobotPart* part) {
   using limit::RigidAnswer;
   limit::RigidStability rigid;
-  const auto [floor_mm, height_mm] = heights(robot);
+  const auto [floor_mm, height_mm] = heights(robot, part);
   const double margin = body.margin_mm.value_or(0);
   rigid.answer = margin > 0    ? RigidAnswer::kHolds
                  : margin == 0 ? RigidAnswer::kNothingToSpare
@@ -104,66 +116,89 @@ void add_pressing_corners(const limit::ContactFacet& facet, const mechanics::Con
   }
 }
 
-bool holds_by_corners(const model::Robot& robot, const Equilibrium& equilibrium) {
+bool holds_by_corners(const model::Robot& robot, const Equilibrium& equilibrium,
+                      const model::RobotPart* part) {
   const std::vector<limit::ContactFacet> facets = limit::contact_facets(robot);
   std::vector<Vector3> corners;
-  for (std::size_t i = 0; i < facets.size(); ++i) {
+  bool is_any_flat = false;
+  for (std::size_t i = 0; !is_any_flat && i < facets.size(); ++i) {
     const mechanics::ContactState& state = equilibrium.contact[i];
-    if (state == mechanics::ContactState{} && robot.foot_half_width_mm() > 0) {
-      return true;
-    }
+    is_any_flat = state == mechanics::ContactState{} && robot.foot_half_width_mm() > 0;
     add_pressing_corners(facets[i], state, corners);
+  }
+  if (host::any(ranks_of(part), is_any_flat)) {
+    return true;
+  }
+  if (part != nullptr) {
+    corners = host::gather<Vector3>(*part->ranks, corners);
   }
   return !are_collinear(corners, kLineTie * robot.material().pitch_mm);
 }
 
 /// The same on the floor of cubes, in integers.
-bool holds_by_cube_corners(const model::Robot& robot, const Equilibrium& equilibrium) {
+bool holds_by_cube_corners(const model::Robot& robot, const Equilibrium& equilibrium,
+                           const model::RobotPart* part) {
   mechanics::SupportCorners corners;
   for (std::size_t i = 0; i < robot.facets().size() && !corners.stable; ++i) {
     const model::Module& module = robot.modules()[base::at(robot.facets()[i].module)];
     corners =
         mechanics::merge(corners, mechanics::support_corners(module.cell, equilibrium.contact[i]));
   }
+  if (part != nullptr) {
+    const auto all =
+        host::gather(*part->ranks, std::span<const mechanics::SupportCorners>(&corners, 1));
+    corners = {};
+    for (const mechanics::SupportCorners& one : all) {
+      corners = mechanics::merge(corners, one);
+    }
+  }
   return corners.stable;
 }
 
+/// A slip, and by how many times its friction it is too much.
+struct RankedSlip {
+  double excess = 1;
+  Slip slip;
+};
+
 }  // namespace
 
-StabilityRule stability_rule(const model::Robot& robot) {
-  if (robot.fixed_count() > 0 || robot.has_bonded_facets()) {
+StabilityRule stability_rule(const model::Robot& robot, const model::RobotPart* part) {
+  if (host::any(ranks_of(part), robot.fixed_count() > 0 || robot.has_bonded_facets())) {
     return StabilityRule::kHeld;
   }
-  return is_on_flat_floor(robot) ? StabilityRule::kPolygon : StabilityRule::kContactForces;
+  return is_on_flat_floor(robot, part) ? StabilityRule::kPolygon : StabilityRule::kContactForces;
 }
 
 limit::RigidStability rigid_stability(const model::Robot& robot, StabilityRule rule,
-                                      const RigidBody& body) {
+                                      const RigidBody& body, const model::RobotPart* part) {
   if (rule == StabilityRule::kHeld) {
     return {.answer = limit::RigidAnswer::kHolds};
   }
   if (rule == StabilityRule::kPolygon) {
-    return floor_stability(robot, body);
+    return floor_stability(robot, body, part);
   }
-  return limit::assess_rigid(robot);
+  return limit::assess_rigid(robot, part);
 }
 
-ModelStability model_stability(const model::Robot& robot, const Equilibrium& equilibrium) {
+ModelStability model_stability(const model::Robot& robot, const Equilibrium& equilibrium,
+                               const model::RobotPart* part) {
   if (equilibrium.outcome != solver::Outcome::kSettled) {
     return {};
   }
-  if (stability_rule(robot) == StabilityRule::kHeld) {
+  if (stability_rule(robot, part) == StabilityRule::kHeld) {
     return {.is_stable = true, .is_settled = true};
   }
-  const bool is_cubes_floor = robot.lattice() == base::kCubic && is_on_flat_floor(robot);
-  return {.is_stable = is_cubes_floor ? holds_by_cube_corners(robot, equilibrium)
-                                      : holds_by_corners(robot, equilibrium),
+  const bool is_cubes_floor = robot.lattice() == base::kCubic && is_on_flat_floor(robot, part);
+  return {.is_stable = is_cubes_floor ? holds_by_cube_corners(robot, equilibrium, part)
+                                      : holds_by_corners(robot, equilibrium, part),
           .is_settled = true};
 }
 
-std::optional<Slip> find_slip(const model::Robot& robot, const Equilibrium& equilibrium) {
+std::optional<Slip> find_slip(const model::Robot& robot, const Equilibrium& equilibrium,
+                              const model::RobotPart* part) {
   const model::LatticeBeam<double> beam(model::beam_section(robot.material()), robot.lattice());
-  std::optional<Slip> worst;
+  Slip worst;
   double excess_max = 1;
   for (std::size_t i = 0; i < robot.facets().size(); ++i) {
     const model::Facet& facet = robot.facets()[i];
@@ -175,10 +210,22 @@ std::optional<Slip> find_slip(const model::Robot& robot, const Equilibrium& equi
     const double excess = sideways / (std::abs(local[2]) * *facet.touch.friction);
     if (sideways > 0 && excess > excess_max) {
       excess_max = excess;
-      worst = {.facet = i, .ratio = sideways / std::abs(local[2])};
+      worst = {.module = base::at(facet.module),
+               .friction = *facet.touch.friction,
+               .ratio = sideways / std::abs(local[2])};
     }
   }
-  return worst;
+  if (part != nullptr) {
+    worst.rank = part->ranks->rank();
+    for (const auto& [excess, slip] :
+         host::gather<RankedSlip>(*part->ranks, std::vector<RankedSlip>{{excess_max, worst}})) {
+      if (excess > excess_max || (excess == excess_max && slip.rank < worst.rank)) {
+        excess_max = excess;
+        worst = slip;
+      }
+    }
+  }
+  return excess_max > 1 ? std::optional(worst) : std::nullopt;
 }
 
 }  // namespace holdfast::verdict

@@ -119,7 +119,7 @@ function stabilityFigures(robot: EditedRobot, { stability }: Answer): Figure[] {
     list.push(['Tilt to spare', `${rigid.tilt_margin_deg.toFixed(2)}°`, 'by which gravity may turn, in any direction']);
   }
   if (rigid.friction_needed !== null && rule === 'contact-forces') {
-    list.push(['Friction needed', rigid.friction_needed.toFixed(3), 'the smallest coefficient that would do']);
+    list.push(['Friction needed', rigid.friction_needed.toFixed(3), 'of a rigid body, at the best pressing; the elastic forces may take more']);
   }
   return list;
 }

@@ -62,13 +62,18 @@ export class Stage {
     }
     this.frame ||= requestAnimationFrame((now) => {
       this.frame = 0;
-      const moving = this.motions.filter((motion) => motion(now));
-      this.render();
-      this.followers.forEach((follow) => follow());
-      if (moving.length > 0) {
-        this.draw();
-      }
+      this.drawFrame(now);
     });
+  }
+
+  /** What a frame does: motions go on, all is drawn, and what follows the camera comes after. */
+  drawFrame(now: number): void {
+    const moving = this.motions.filter((motion) => motion(now));
+    this.render();
+    this.followers.forEach((follow) => follow());
+    if (moving.length > 0) {
+      this.draw();
+    }
   }
 
   /** Draws now, without waiting for a frame. */

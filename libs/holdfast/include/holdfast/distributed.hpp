@@ -63,6 +63,17 @@ struct ChangedStructure {
 base::Result<ChangedStructure> with_changes(const Structure& structure,
                                             std::vector<Change> changes);
 
+/// The agents of a robot, by the index of their modules, wherever they run.
+struct Agents {
+  std::function<const agent::Agent&(std::int32_t)> at;
+  std::int32_t count = 0;
+};
+
+/// What a robot has come to whose agents were run elsewhere, with these options.
+DistributedRun describe_run(const model::Robot& robot, const CheckResult& exact,
+                            const sim::SimulationOptions& options, const Agents& agents,
+                            const sim::SimulationResult& result);
+
 /// Called now and then during a long simulation; false ends it.
 using SimulationProgress = std::function<bool(const sim::SimulationResult&)>;
 

@@ -14,6 +14,7 @@
 
 #include "holdfast/base/cell.hpp"              // IWYU pragma: export
 #include "holdfast/base/result.hpp"            // IWYU pragma: export
+#include "holdfast/host/interruption.hpp"      // IWYU pragma: export
 #include "holdfast/host/large_pages.hpp"       // IWYU pragma: export
 #include "holdfast/host/output_file.hpp"       // IWYU pragma: export
 #include "holdfast/io/beside_one.hpp"          // IWYU pragma: export
@@ -47,8 +48,9 @@
 ///     auto robot = holdfast::model::Robot::create(shelf);
 ///
 /// What an application may name of the rooms below is what is exported here, and by trial.hpp,
-/// distributed.hpp and emulated.hpp. No function throws or prints. Units: N, mm, kg, s. Frame:
-/// global, z up, one cell = one pitch.
+/// distributed.hpp and emulated.hpp. No function throws or prints; what a caller's own callbacks
+/// throw, such as that of host::Interruptible, passes through, and ends the work. Units: N, mm, kg,
+/// s. Frame: global, z up, one cell = one pitch.
 namespace holdfast {
 
 /// A structure that can be checked: what the file says and the robot that it means.
@@ -123,6 +125,11 @@ base::Result<Structure> load_text(std::string_view text, std::string_view name =
 base::Result<Structure> load_file(const std::filesystem::path& path, int thread_count = 0,
                                   const io::ReadOptions& options = {});
 
+/// Builds the robot of a document with its first planned step, as load_text() does of what it has
+/// read. `name` is for a document without one. Errors: as of io::make_robot.
+base::Result<Structure> make_structure(io::Document document, std::string_view name = {},
+                                       int thread_count = 0);
+
 /// One of the named structures in which solvers are compared: arm, cube, tower, scaffold, shell,
 /// portal, bridge, growth of cubes, ball, sheet, prism-wall of other lattices. Errors: no such
 /// family, a size that is not allowed.
@@ -135,6 +142,13 @@ CheckResult check(const model::Robot& robot, const CheckOptions& options = {});
 
 /// Checks the structure's robot.
 CheckResult check(const Structure& structure, const CheckOptions& options = {});
+
+/// Checks many robots, in their order, several at a time, each as check() does on one thread. A few
+/// are checked one after the other on all threads. `progress` is called from this thread, now and
+/// then and at the end, with how many are done.
+std::vector<CheckResult> check_many(std::span<const model::Robot* const> robots,
+                                    const CheckOptions& options = {},
+                                    const std::function<void(std::size_t done)>& progress = {});
 
 /// Numbers in rows of `width`, one row behind the other without gaps: a view of what is owned by
 /// the result that it was taken of.

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <ostream>
 #include <span>
@@ -55,9 +56,27 @@ struct Trial {
   std::optional<double> margin_mm = {};
 };
 
-/// Judges the robot with one more module, of kind 0, at each of the cells in turn. The verdict is
-/// that of check(); most take far less than a check (plan/candidates.hpp). Those with a fixed
-/// module take a check each.
+/// Tries cells of one robot, as often as it is asked: what was prepared for the first eight cells
+/// or more serves all that follow.
+class CellTrials {
+ public:
+  explicit CellTrials(model::RobotSpec spec, Role role = Role::kPlanned,
+                      const CheckOptions& options = {});
+  ~CellTrials();
+  CellTrials(CellTrials&&) noexcept;
+  CellTrials& operator=(CellTrials&&) noexcept;
+
+  /// Judges the robot with one more module, of kind 0, at each of the cells in turn. The verdict is
+  /// that of check(); most take far less than a check (plan/candidates.hpp). Those with a fixed
+  /// module take a check each.
+  std::vector<Trial> at(std::span<const base::Cell> cells);
+
+ private:
+  struct Parts;
+  std::unique_ptr<Parts> parts_;
+};
+
+/// All cells in one batch of CellTrials.
 std::vector<Trial> try_cells(const model::RobotSpec& spec, std::span<const base::Cell> cells,
                              Role role = Role::kPlanned, const CheckOptions& options = {});
 
@@ -91,6 +110,11 @@ struct NextReportOptions {
 /// Writes them as JSON, keys as in docs/formats.md, or as a table for people.
 void write_next_json(std::ostream& out, const Structure& structure, const NextResult& result,
                      const NextReportOptions& options = {});
+
+/// Writes the keys of write_next_json() into the object that is open.
+void write_next_members(io::JsonStream& json, const Structure& structure, const NextResult& result,
+                        const NextReportOptions& options = {});
+
 std::string next_text(const Structure& structure, const NextResult& result,
                       const NextReportOptions& options = {});
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <map>
 #include <span>
 #include <type_traits>
 #include <unordered_map>
@@ -115,8 +116,8 @@ class Coarsening {
 
   bool run(std::vector<std::size_t>& colour_start) {
     unsigned shift = 3;
-    const std::size_t count = fine_.order.size();
-    while (shift < 63 && 5 * count_cells(shift) > 2 * count) {
+    const std::size_t count = host::total(fine_.ranks, fine_.own_count());
+    while (shift < 63 && 5 * host::total(fine_.ranks, count_cells(shift)) > 2 * count) {
       shift += 3;
     }
     if constexpr (std::is_same_v<Real, float>) {
@@ -128,7 +129,7 @@ class Coarsening {
     if (!fine_.box.empty()) {
       cluster_count_ = unite_slivers(fine_, coarse_.shift, cluster_, cluster_count_, coarse_.box);
     }
-    if (!has_merged() && !is_weak_.empty()) {
+    if (!has_merged() && host::any(fine_.ranks, !is_weak_.empty())) {
       is_weak_.clear();
       find_clusters(shift);
     }
@@ -139,6 +140,7 @@ class Coarsening {
     colour(colour_start);
     renumber(shift);
     place_centres();
+    follow_copies();
     seat_members();
     make_springs();
     leave_alone();
@@ -147,12 +149,20 @@ class Coarsening {
 
  private:
   /// Enough for a level of its own.
-  bool has_merged() const { return 10 * cluster_count_ <= 9 * fine_.order.size(); }
+  bool has_merged() const {
+    return 10 * host::total(fine_.ranks, cluster_count_) <=
+           9 * host::total(fine_.ranks, fine_.own_count());
+  }
+
+  /// Nodes along the curve, without copies.
+  std::span<const std::int32_t> own_order() const {
+    return std::span(fine_.order).first(fine_.own_count());
+  }
 
   std::size_t count_cells(unsigned shift) const {
     std::size_t count = 0;
     std::uint64_t last = ~std::uint64_t{0};
-    for (const std::int32_t node : fine_.order) {
+    for (const std::int32_t node : own_order()) {
       const std::uint64_t cell = fine_.key[at(node)] >> shift;
       count += cell != last ? 1 : 0;
       last = cell;
@@ -168,7 +178,7 @@ class Coarsening {
     cluster_.assign(fine_.order.size(), -1);
     std::vector<std::int32_t> open;
     std::int32_t count = 0;
-    for (const std::int32_t first : fine_.order) {
+    for (const std::int32_t first : own_order()) {
       if (cluster_[at(first)] >= 0) {
         continue;
       }
@@ -180,8 +190,8 @@ class Coarsening {
         open.pop_back();
         for (std::size_t e = at(fine_.start[node]); e < at(fine_.start[node + 1]); ++e) {
           const std::int32_t other = fine_.other[e];
-          if (cluster_[at(other)] < 0 && fine_.key[at(other)] >> shift == cell && !is_weak(e) &&
-              !is_alone(at(other))) {
+          if (cluster_[at(other)] < 0 && !fine_.is_copy(other) &&
+              fine_.key[at(other)] >> shift == cell && !is_weak(e) && !is_alone(at(other))) {
             cluster_[at(other)] = count;
             open.push_back(other);
           }
@@ -204,15 +214,15 @@ class Coarsening {
   /// Members by cluster, clusters as yet along the Morton curve.
   void gather_members() {
     std::vector<std::int32_t> next(cluster_count_ + 1, 0);
-    for (const std::int32_t c : cluster_) {
-      ++next[at(c) + 1];
+    for (const std::int32_t node : own_order()) {
+      ++next[at(cluster_[at(node)]) + 1];
     }
     for (std::size_t c = 0; c < cluster_count_; ++c) {
       next[c + 1] += next[c];
     }
     member_start_ = next;
-    member_.resize(cluster_.size());
-    for (const std::int32_t node : fine_.order) {
+    member_.resize(fine_.own_count());
+    for (const std::int32_t node : own_order()) {
       member_[at(next[at(cluster_[at(node)])]++)] = node;
     }
   }
@@ -224,6 +234,54 @@ class Coarsening {
     }
   }
 
+  /// Where neighbours of two ranks have one colour, the one of the higher rank takes another. Two
+  /// of them may then take the same again, and after a few rounds they keep it: they are relaxed at
+  /// the same time.
+  void part_from_other_ranks(std::vector<std::uint8_t>& colours) {
+    constexpr int kRoundMax = 8;
+    if (fine_.ranks == nullptr) {
+      return;
+    }
+    std::vector<std::int32_t> rank(fine_.order.size(), fine_.ranks->rank());
+    for (const host::Copy& copy : fine_.copies) {
+      rank[at(copy.place)] = copy.original.rank;
+    }
+    std::vector<std::uint8_t> seen(fine_.order.size());
+    bool is_any_changed = true;
+    for (int round = 0; is_any_changed && round < kRoundMax; ++round) {
+      is_any_changed = false;
+      for (std::size_t node = 0; node < fine_.own_count(); ++node) {
+        seen[node] = colours[at(cluster_[node])];
+      }
+      level_.halo->update(seen.data(), sizeof(std::uint8_t));
+      for (std::size_t c = 0; c < cluster_count_; ++c) {
+        std::uint64_t taken = 0;
+        bool is_shared = false;
+        for_members(c, [&](std::size_t node) {
+          for_neighbours(node, [&](std::int32_t other) {
+            const bool is_other_cluster = fine_.is_copy(other) || at(cluster_[at(other)]) != c;
+            const std::uint8_t used =
+                fine_.is_copy(other) ? seen[at(other)] : colours[at(cluster_[at(other)])];
+            taken |= is_other_cluster ? std::uint64_t{1} << used : 0;
+            is_shared = is_shared || (used == colours[c] && rank[at(other)] < fine_.ranks->rank());
+          });
+        });
+        if (is_shared) {
+          colours[c] = static_cast<std::uint8_t>(std::min(std::countr_one(taken), 63));
+          is_any_changed = true;
+        }
+      }
+      is_any_changed = host::any(fine_.ranks, is_any_changed);
+    }
+  }
+
+  /// The colour of a cluster's cell on a chessboard: on a cubic lattice these suit all ranks.
+  int parity(std::size_t cluster) const {
+    const std::uint64_t cell =
+        fine_.key[at(member_[at(member_start_[cluster])])] >> (coarse_.shift - fine_.shift);
+    return static_cast<int>((cell ^ cell >> 1U ^ cell >> 2U) & 1U);
+  }
+
   /// First fit along the curve: two colours on a lattice.
   void colour(std::vector<std::size_t>& colour_start) {
     std::vector<std::uint8_t> colours(cluster_count_, kNoColour);
@@ -232,19 +290,26 @@ class Coarsening {
       std::uint64_t taken = 0;
       for_members(c, [&](std::size_t node) {
         for_neighbours(node, [&](std::int32_t other) {
-          const std::uint8_t used = colours[at(cluster_[at(other)])];
-          taken |= used == kNoColour ? 0 : std::uint64_t{1} << used;
+          if (!fine_.is_copy(other)) {
+            const std::uint8_t used = colours[at(cluster_[at(other)])];
+            taken |= used == kNoColour ? 0 : std::uint64_t{1} << used;
+          }
         });
       });
       // A 64th colour may be shared by neighbours: the sweep is then not quite Gauss-Seidel.
-      colours[c] = static_cast<std::uint8_t>(std::min(std::countr_one(taken), 63));
-      ++count[colours[c]];
+      const int free = std::min(std::countr_one(taken), 63);
+      const int preferred = fine_.ranks == nullptr ? free : parity(c);
+      colours[c] = static_cast<std::uint8_t>((taken >> preferred & 1U) == 0 ? preferred : free);
+    }
+    part_from_other_ranks(colours);
+    for (const std::uint8_t colour : colours) {
+      ++count[colour];
     }
     colour_start = {0};
     std::array<std::int32_t, 64> next{};
     for (std::size_t k = 0; k < 64; ++k) {
       next[k] = static_cast<std::int32_t>(colour_start.back());
-      if (count[k] > 0) {
+      if (host::any(fine_.ranks, count[k] > 0)) {  // All ranks have the same colours.
         colour_start.push_back(colour_start.back() + count[k]);
       }
     }
@@ -276,8 +341,8 @@ class Coarsening {
                   [&](std::size_t node) { member.push_back(static_cast<std::int32_t>(node)); });
       member_start.push_back(static_cast<std::int32_t>(member.size()));
     }
-    for (std::int32_t& c : cluster_) {
-      c = final_[at(c)];
+    for (const std::int32_t node : own_order()) {
+      cluster_[at(node)] = final_[at(cluster_[at(node)])];
     }
     level_.member = std::exchange(member_, std::move(member));
     level_.member_start = std::exchange(member_start_, std::move(member_start));
@@ -300,9 +365,45 @@ class Coarsening {
     });
   }
 
+  /// Clusters that other ranks' nodes have joined, as far as this one has copies of these.
+  void follow_copies() {
+    coarse_.ranks = fine_.ranks;
+    if (fine_.ranks == nullptr) {
+      return;
+    }
+
+    struct Joined {
+      std::int32_t cluster = 0;
+      Point centre = {};
+    };
+
+    std::vector<Joined> joined(fine_.order.size());
+    for (std::size_t node = 0; node < fine_.own_count(); ++node) {
+      joined[node] = {.cluster = cluster_[node], .centre = coarse_.place[at(cluster_[node])]};
+    }
+    level_.halo->update(joined.data(), sizeof(Joined));
+    std::map<host::Original, std::int32_t> known;
+    for (const host::Copy& copy : fine_.copies) {
+      const Joined& there = joined[at(copy.place)];
+      const host::Original original = {.rank = copy.original.rank, .index = there.cluster};
+      const auto [found, is_new] =
+          known.try_emplace(original, static_cast<std::int32_t>(coarse_.place.size()));
+      if (is_new) {
+        coarse_.copies.push_back({.original = original, .place = found->second});
+        coarse_.order.push_back(found->second);
+        coarse_.place.push_back(there.centre);
+        coarse_.key.push_back(0);  // Nobody asks.
+      }
+      cluster_[at(copy.place)] = found->second;
+    }
+    if (!coarse_.box.empty()) {
+      coarse_.box.resize(coarse_.place.size());
+    }
+  }
+
   /// What was alone stays alone.
   void leave_alone() {
-    coarse_.is_alone.assign(fine_.is_alone.empty() ? 0 : cluster_count_, false);
+    coarse_.is_alone.assign(fine_.is_alone.empty() ? 0 : coarse_.order.size(), false);
     for (std::size_t node = 0; node < fine_.is_alone.size(); ++node) {
       if (fine_.is_alone[node]) {
         coarse_.is_alone[at(cluster_[node])] = true;
@@ -470,7 +571,7 @@ class Coarsening {
 
   void make_springs() {
     std::vector<Signature> signatures(cluster_count_);
-    coarse_.start.assign(cluster_count_ + 1, 0);
+    coarse_.start.assign(coarse_.order.size() + 1, 0);
     std::vector<std::vector<std::int32_t>> others((cluster_count_ + Team::kChunk - 1) /
                                                   Team::kChunk);
     team_.share(0, cluster_count_, [&](std::size_t begin, std::size_t end) {
@@ -482,7 +583,7 @@ class Coarsening {
         part.insert(part.end(), targets.begin(), targets.end());
       }
     });
-    for (std::size_t c = 0; c < cluster_count_; ++c) {
+    for (std::size_t c = 0; c + 1 < coarse_.start.size(); ++c) {
       coarse_.start[c + 1] += coarse_.start[c];
     }
     coarse_.other.reserve(at(coarse_.start[cluster_count_]));
@@ -493,7 +594,7 @@ class Coarsening {
   }
 
   void find_patterns(const std::vector<Signature>& signatures) {
-    coarse_.pattern.resize(cluster_count_);
+    coarse_.pattern.resize(coarse_.order.size());
     std::unordered_map<Signature, std::uint32_t, SignatureHash> known;
     std::vector<std::int32_t> examples;
     std::uint32_t spring_count = 0;

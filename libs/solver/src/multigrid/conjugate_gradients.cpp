@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "conjugate_gradients.hpp"
 
+#include <algorithm>
+#include <type_traits>
 #include <utility>
 
 namespace holdfast::solver {
@@ -24,17 +26,27 @@ ConjugateGradients<Real>::ConjugateGradients(const ReducedNetwork& network,
                                              const model::Material& material, Team& team,
                                              const GroundTable& ground,
                                              std::span<const std::int32_t> alone)
-    : Iteration(network.node_count),
-      team_(team),
+    : team_(team),
       hierarchy_(network, material, team, ground, alone),
       cycle_(hierarchy_, team, kSweepCount),
-      node_count_(network.node_count),
-      q_(6 * node_count_),
-      p_(node_count_ + 1) {}
+      node_count_(network.own_count),
+      place_count_(network.node_count),
+      p_(place_count_ + 1) {
+  x_.resize(6 * place_count_);
+  r_.resize(6 * place_count_);
+}
+
+template <class Real>
+void ConjugateGradients<Real>::rest() {
+  q_ = std::vector<double>();
+  older_ = std::vector<Direction>();
+  hierarchy_.drop_vectors();
+}
 
 /// x is taken apart into two directions: 48 bits in single precision, all in double.
 template <class Real>
 void ConjugateGradients<Real>::subtract_product() {
+  q_.resize(6 * node_count_);
   for (const bool is_rest : {false, true}) {
     team_.share(0, node_count_, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = 6 * begin; i < 6 * end; ++i) {
@@ -43,6 +55,7 @@ void ConjugateGradients<Real>::subtract_product() {
             is_rest ? static_cast<Real>(x_[i] - static_cast<double>(upper)) : upper;
       }
     });
+    update_copies(p_);
     team_.share(0, node_count_, [&](std::size_t begin, std::size_t end) {
       hierarchy_.apply(p_.data(), q_.data(), {begin, end});
       for (std::size_t i = 6 * begin; i < 6 * end; ++i) {
@@ -65,9 +78,9 @@ void ConjugateGradients<Real>::round_residual() {
 template <class Real>
 double ConjugateGradients<Real>::dot_with_z(const std::vector<double>& a) {
   const std::vector<Six<Real>>& z = hierarchy_.levels().front().z;
-  return team_.sum(node_count_, [&](std::size_t begin, std::size_t end) {
+  return sum(team_.sum(node_count_, [&](std::size_t begin, std::size_t end) {
     return kernels<Real>().dot(a.data(), z.data(), {begin, end});
-  });
+  }));
 }
 
 /// z = M^-1 r; returns r . z.
@@ -80,6 +93,7 @@ double ConjugateGradients<Real>::precondition() {
 template <class Real>
 double ConjugateGradients<Real>::begin() {
   older_ = {};
+  hierarchy_.take_vectors();
   round_residual();
   error_ = precondition();
   p_ = hierarchy_.levels().front().z;
@@ -98,9 +112,12 @@ base::Vec6<double> ConjugateGradients<Real>::correction(std::size_t node) {
 /// q = K p; returns p . q.
 template <class Real>
 double ConjugateGradients<Real>::multiply() {
-  return team_.sum(node_count_, [&](std::size_t begin, std::size_t end) {
+  q_.resize(6 * node_count_);
+  hierarchy_.take_vectors();
+  update_copies(p_);
+  return sum(team_.sum(node_count_, [&](std::size_t begin, std::size_t end) {
     return hierarchy_.apply(p_.data(), q_.data(), {begin, end});
-  });
+  }));
 }
 
 /// x += step p, r -= step q
@@ -140,6 +157,9 @@ void ConjugateGradients<Real>::tell() const {
 // x, r, q: displacement, residual, K p;  p, z: direction, preconditioned residual
 template <class Real>
 Iteration::End ConjugateGradients<Real>::run(const Goal& goal) {
+  if (hierarchy_.ranks(0) != nullptr) {
+    return run_by_ranks(goal);
+  }
   const std::vector<Six<Real>>& z = hierarchy_.levels().front().z;
   for (int iteration = 0; !is_reached(goal, iteration); ++iteration) {
     if (is_stuck(goal, iteration)) {
@@ -160,6 +180,92 @@ Iteration::End ConjugateGradients<Real>::run(const Goal& goal) {
     tell();
   }
   return error_ >= 0 ? End::kConverged : End::kBroken;
+}
+
+/// q = K p, of a p that is taken apart like that of subtract_product().
+template <class Real>
+void ConjugateGradients<Real>::multiply(const double* p, double* q) {
+  q_.resize(6 * node_count_);
+  hierarchy_.take_vectors();
+  std::fill_n(q, 6 * node_count_, 0.0);
+  for (const bool is_rest : {false, true}) {
+    if (is_rest && std::is_same_v<Real, double>) {
+      break;
+    }
+    for (std::size_t i = 0; i < 6 * node_count_; ++i) {
+      const auto upper = static_cast<Real>(p[i]);
+      p_[i / 6].v[i % 6] = is_rest ? static_cast<Real>(p[i] - static_cast<double>(upper)) : upper;
+    }
+    update_copies(p_);
+    team_.share(0, node_count_, [&](std::size_t begin, std::size_t end) {
+      hierarchy_.apply(p_.data(), q_.data(), {begin, end});
+      for (std::size_t i = 6 * begin; i < 6 * end; ++i) {
+        q[i] += q_[i];
+      }
+    });
+  }
+}
+
+/// The same by the method that the ranks have: K d = r, x += d. Its estimate of the error is that
+/// of its preconditioner; where that is not the cycle it goes on until the cycle agrees.
+template <class Real>
+Iteration::End ConjugateGradients<Real>::run_by_ranks(const Goal& goal) {
+  constexpr int kRoundMax = 5;
+  Goal aim = goal;
+  bool is_known = true;  // z is that of r.
+  int before = 0;
+  bool is_given_up = false;
+  host::KrylovTask task;
+  task.multiply = [&](const double* p, double* q) { multiply(p, q); };
+  task.precondition = [&](const double* r, double* z) {
+    if (!std::exchange(is_known, false)) {
+      std::vector<Six<Real>>& finest = hierarchy_.levels().front().r;
+      for (std::size_t i = 0; i < 6 * node_count_; ++i) {
+        finest[i / 6].v[i % 6] = static_cast<Real>(r[i]);
+      }
+      cycle_.run();
+    }
+    for (std::size_t i = 0; i < 6 * node_count_; ++i) {
+      z[i] = static_cast<double>(hierarchy_.levels().front().z[i / 6].v[i % 6]);
+    }
+  };
+  task.is_reached = [&](int iteration, double error) {
+    error_ = error;
+    if (iteration > before) {
+      before = iteration;
+      ++iteration_count_;
+      tell();
+    }
+    is_given_up = !is_reached(aim, iteration) && is_stuck(aim, iteration);
+    return is_given_up || is_reached(aim, iteration);
+  };
+  for (int round = 0; round < kRoundMax && !is_reached(goal, round); ++round) {
+    const std::vector<double> b(r_.begin(),
+                                r_.begin() + static_cast<std::ptrdiff_t>(6 * node_count_));
+    std::vector<double> d(b.size());
+    before = 0;
+    const bool is_own = hierarchy_.ranks(0)->solve(task, b, d);
+    std::vector<double> image(d.size());
+    multiply(d.data(), image.data());
+    for (std::size_t i = 0; i < d.size(); ++i) {
+      x_[i] += d[i];
+      r_[i] -= image[i];
+    }
+    if (is_given_up) {
+      return End::kTooSlow;
+    }
+    if (is_own) {
+      break;
+    }
+    round_residual();
+    error_ = precondition();
+    is_known = true;
+    aim.error *= goal.error / std::max(2 * error_, goal.error);
+  }
+  if (!(error_ >= 0)) {
+    return End::kBroken;
+  }
+  return error_ <= goal.error ? End::kConverged : End::kTooSlow;
 }
 
 template class ConjugateGradients<float>;

@@ -28,6 +28,7 @@ class ConjugateGradients final : public Iteration {
   End run(const Goal& goal) override;
   End run_unsymmetric(const Goal& goal, std::span<const NodeTerm> terms) override;
   base::Vec6<double> correction(std::size_t node) override;
+  void rest() override;
 
  private:
   /// One that A made unsymmetric runs remember.
@@ -39,6 +40,13 @@ class ConjugateGradients final : public Iteration {
 
   bool is_reached(const Goal& goal, int iteration) const;
   bool is_stuck(const Goal& goal, int iteration);
+
+  double sum(double mine) { return host::sum(hierarchy_.ranks(0), mine); }
+
+  void update_copies(std::vector<Six<Real>>& items) { hierarchy_.update_copies(0, items); }
+
+  End run_by_ranks(const Goal& goal);
+  void multiply(const double* p, double* q);
   double precondition();
   double multiply();
   void advance(double step);
@@ -51,8 +59,9 @@ class ConjugateGradients final : public Iteration {
   Team& team_;
   Hierarchy<Real> hierarchy_;
   Cycle<Real> cycle_;
-  std::size_t node_count_;
-  std::vector<double> q_;
+  std::size_t node_count_;   ///< Of a part of a robot this rank's own.
+  std::size_t place_count_;  ///< With copies of others'.
+  std::vector<double> q_;    ///< Empty at rest.
   std::vector<Six<Real>> p_;
   std::vector<Direction> older_;
   double error_ = 0;

@@ -70,27 +70,64 @@ void Cycle<Real>::relax(std::size_t depth, Order order, Start start) {
   for (int sweep = 0; sweep < sweep_count_; ++sweep) {
     for (std::size_t i = 0; i < colour_count; ++i) {
       relax_colour(depth, colour_at(i), start == Start::kZero && sweep == 0 && i == 0);
+      hierarchy_.update_copies(depth, swept_z(level));
     }
   }
+}
+
+/// Where the forces on a coarse level's clusters go: those of this rank's, if it is gathered.
+template <class Real>
+typename Cycle<Real>::Vector& Cycle<Real>::passed_down(std::size_t depth) {
+  Level<Real>& coarse = hierarchy_.levels()[depth];
+  return coarse.gathering.is_empty() ? coarse.r : coarse.part;
+}
+
+/// If the level is gathered: the forces on all ranks' clusters.
+template <class Real>
+void Cycle<Real>::gather_forces(std::size_t depth) {
+  Level<Real>& coarse = hierarchy_.levels()[depth];
+  if (!coarse.gathering.is_empty()) {
+    const std::vector<Six<Real>> all =
+        host::gather<Six<Real>>(*hierarchy_.ranks(depth - 1), coarse.part);
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      coarse.r[static_cast<std::size_t>(coarse.gathering.node[i])] = all[i];
+    }
+  }
+}
+
+/// How the clusters move that this rank's nodes belong to.
+template <class Real>
+const typename Cycle<Real>::Vector& Cycle<Real>::passed_up(std::size_t depth) {
+  Level<Real>& coarse = hierarchy_.levels()[depth];
+  const Gathering& gathering = coarse.gathering;
+  if (gathering.is_empty()) {
+    return coarse.z;
+  }
+  for (std::size_t i = 0; i < gathering.own_count; ++i) {
+    coarse.part[i] = coarse.z[static_cast<std::size_t>(gathering.node[gathering.first + i])];
+  }
+  return coarse.part;
 }
 
 /// The forces that the sweeps left at the members become those of the clusters.
 template <class Real>
 void Cycle<Real>::pass_down(std::size_t depth, std::size_t settled) {
   Level<Real>& level = hierarchy_.levels()[depth];
-  Level<Real>& coarse = hierarchy_.levels()[depth + 1];
+  const std::size_t cluster_count = level.member_start.size() - 1;
+  Vector& forces = passed_down(depth + 1);
   const Six<float>* z = swept_z(level).data();
   const Kernels<Real>& kernel = kernels<Real>();
-  team_.share(0, coarse.node_count, [&](std::size_t begin, std::size_t end) {
+  team_.share(0, cluster_count, [&](std::size_t begin, std::size_t end) {
     const Range range{begin, end};
     if (hierarchy_.is_cubic(depth)) {
       kernel.restrict_lattice(hierarchy_.lattice(), level.transfer(), settled, level.r.data(), z,
-                              coarse.r.data(), range);
+                              forces.data(), range);
     } else {
       kernel.restrict_cluster(level.view(), level.transfer(), settled, level.r.data(), z,
-                              coarse.r.data(), range);
+                              forces.data(), range);
     }
   });
+  gather_forces(depth + 1);
 }
 
 /// z = M^-1 r on this level and all below.
@@ -104,10 +141,11 @@ void Cycle<float>::descend(std::size_t depth) {
     const std::size_t settled = level.colour_start[level.colour_start.size() - 2];
     pass_down(depth, settled);
     solve(depth + 1);
-    const Level<float>& coarse = hierarchy_.levels()[depth + 1];
+    const Vector& motion = passed_up(depth + 1);
     team_.share(0, settled, [&](std::size_t begin, std::size_t end) {
-      kernels<float>().prolong(level.transfer(), coarse.z.data(), level.z.data(), {begin, end});
+      kernels<float>().prolong(level.transfer(), motion.data(), level.z.data(), {begin, end});
     });
+    hierarchy_.update_copies(depth, level.z);
   }
   relax(depth, Order::kBackward, Start::kPresent);
 }
@@ -142,11 +180,12 @@ void Cycle<double>::descend(std::size_t depth) {
   if (depth + 1 < hierarchy_.levels().size()) {
     pass_down(depth, level.node_count);
     solve(depth + 1);
-    const Level<double>& coarse = hierarchy_.levels()[depth + 1];
+    const Vector& motion = passed_up(depth + 1);
     team_.share(0, level.node_count, [&](std::size_t begin, std::size_t end) {
-      rounding().prolong(level.transfer(), coarse.z.data(), level.rough_z.data(), level.z.data(),
+      rounding().prolong(level.transfer(), motion.data(), level.rough_z.data(), level.z.data(),
                          {begin, end});
     });
+    hierarchy_.update_copies(depth, level.z);
   } else {
     std::fill(level.z.begin(), level.z.end(), Six<double>{});
     add_rough(depth);
@@ -163,6 +202,7 @@ void Cycle<double>::add_rough(std::size_t depth) {
   team_.share(0, level.node_count, [&](std::size_t begin, std::size_t end) {
     rounding().add(level.rough_z.data(), level.z.data(), {begin, end});
   });
+  hierarchy_.update_copies(depth, level.z);
 }
 
 /// K z = r on a coarse level, about: Algorithm 3.2 of [Notay 2008].
@@ -175,24 +215,24 @@ void Cycle<Real>::solve(std::size_t depth) {
   Level<Real>& level = hierarchy_.levels()[depth];
   const std::size_t count = level.node_count;
   descend(depth);
-  const double before = dot(count, level.r, level.r);
-  const double alpha_1 = dot(count, level.z, level.r);
-  const double rho_1 = apply(level, level.first_image);
+  const double before = dot(depth, level.r, level.r);
+  const double alpha_1 = dot(depth, level.z, level.r);
+  const double rho_1 = apply(depth, level.first_image);
   const double step = alpha_1 / rho_1;
   if (!is_credible(step)) {
     return;
   }
   combine(count, -step, level.first_image, 1, level.r);
-  if (dot(count, level.r, level.r) <= kEnough * kEnough * before) {
+  if (dot(depth, level.r, level.r) <= kEnough * kEnough * before) {
     combine(count, step, level.z, 0, level.z);
     return;
   }
   std::swap(level.first, level.z);
   descend(depth);
-  const double gamma = dot(count, level.z, level.first_image);
-  const double alpha_2 = dot(count, level.z, level.r);
+  const double gamma = dot(depth, level.z, level.first_image);
+  const double alpha_2 = dot(depth, level.z, level.r);
   // Its image is needed for one number only; first_image is not needed any more.
-  const double beta = apply(level, level.first_image);
+  const double beta = apply(depth, level.first_image);
   const double rho_2 = beta - gamma * gamma / rho_1;
   if (!is_credible(alpha_2 / rho_2)) {
     combine(count, step, level.first, 0, level.z);
@@ -209,7 +249,7 @@ void Cycle<Real>::solve_coarsest() {
   std::fill(level.z.begin(), level.z.end(), Six<Real>{});
   add_coarsest(level.r, level.z);
   for (int step = 0; step < kRefinementCount<Real>; ++step) {
-    apply(level, level.first_image);
+    apply(hierarchy_.levels().size() - 1, level.first_image);
     combine(level.node_count, 1, level.r, -1, level.first_image);
     add_coarsest(level.first_image, level.z);
   }
@@ -235,17 +275,21 @@ void Cycle<Real>::add_coarsest(const Vector& r, Vector& z) {
 
 /// image = K z; returns z . image.
 template <class Real>
-double Cycle<Real>::apply(Level<Real>& level, Vector& image) {
-  return team_.sum(level.node_count, [&](std::size_t begin, std::size_t end) {
+double Cycle<Real>::apply(std::size_t depth, Vector& image) {
+  Level<Real>& level = hierarchy_.levels()[depth];
+  const double product = team_.sum(level.node_count, [&](std::size_t begin, std::size_t end) {
     return kernels<Real>().apply_cluster(level.view(), level.z.data(), image.data(), {begin, end});
   });
+  return host::sum(hierarchy_.ranks(depth), product);
 }
 
 template <class Real>
-double Cycle<Real>::dot(std::size_t count, const Vector& a, const Vector& b) {
-  return team_.sum(count, [&](std::size_t begin, std::size_t end) {
+double Cycle<Real>::dot(std::size_t depth, const Vector& a, const Vector& b) {
+  const std::size_t count = hierarchy_.levels()[depth].node_count;
+  const double product = team_.sum(count, [&](std::size_t begin, std::size_t end) {
     return kernels<Real>().dot_same(a.data(), b.data(), {begin, end});
   });
+  return host::sum(hierarchy_.ranks(depth), product);
 }
 
 /// y = factor x + other y

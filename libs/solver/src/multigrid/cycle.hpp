@@ -17,7 +17,7 @@ class Cycle {
   Cycle(Hierarchy<Real>& hierarchy, Team& team, int sweep_count)
       : hierarchy_(hierarchy), team_(team), sweep_count_(sweep_count) {}
 
-  /// From the finest level's r to its z.
+  /// From the finest level's r to its z, in the hierarchy's vectors, which must be there.
   void run() { descend(0); }
 
  private:
@@ -34,8 +34,11 @@ class Cycle {
   void pass_down(std::size_t depth, std::size_t settled);
   void leave_residual(std::size_t depth);
   void add_rough(std::size_t depth);
-  double apply(Level<Real>& level, Vector& image);
-  double dot(std::size_t count, const Vector& a, const Vector& b);
+  double apply(std::size_t depth, Vector& image);
+  double dot(std::size_t depth, const Vector& a, const Vector& b);
+  Vector& passed_down(std::size_t depth);
+  void gather_forces(std::size_t depth);
+  const Vector& passed_up(std::size_t depth);
   void combine(std::size_t count, double factor, const Vector& x, double other, Vector& y);
 
   Hierarchy<Real>& hierarchy_;

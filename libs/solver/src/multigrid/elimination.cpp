@@ -2,8 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "elimination.hpp"
 
+#include <algorithm>
 #include <utility>
 
+#include "holdfast/base/lattice.hpp"
+#include "holdfast/solver/passages.hpp"
 #include "kernels.hpp"
 
 namespace holdfast::solver {
@@ -17,18 +20,36 @@ using base::at;
 
 class Eliminator {
  public:
-  Eliminator(const Robot& robot, Team& team)
+  Eliminator(const Robot& robot, Team& team, const model::RobotPart* part)
       : robot_(robot),
         team_(team),
+        part_(part),
         axis_count_(at(robot.lattice().direction_count) / 2),
+        is_at_border_(part == nullptr ? 0 : robot.modules().size()),
         degree_(robot.modules().size()) {
     result_.is_gone.assign(robot.modules().size(), 0);
+    for (std::size_t i = part == nullptr ? robot.modules().size() : part->own_count;
+         i < robot.modules().size(); ++i) {
+      is_at_border_[i] = true;
+      for (const std::int32_t other : robot.connected()[i]) {
+        if (other != Robot::kNoNeighbour) {
+          is_at_border_[at(other)] = true;
+        }
+      }
+    }
+  }
+
+  /// By module; nothing else is done.
+  std::vector<std::int8_t> passages() {
+    count_connections();
+    take_hanging();
+    return axes_of_passage();
   }
 
   Elimination run() {
     count_connections();
     take_hanging();
-    take_runs();
+    take_runs(axes_of_passage());
     note_axes();
     return std::move(result_);
   }
@@ -36,6 +57,10 @@ class Eliminator {
  private:
   bool is_free(std::size_t module) const {
     return robot_.modules()[module].support == Support::kNone;
+  }
+
+  bool is_at_border(std::size_t module) const {
+    return !is_at_border_.empty() && is_at_border_[module];
   }
 
   void count_connections() {
@@ -65,7 +90,8 @@ class Eliminator {
   void take_hanging() {
     for (std::size_t start = 0; start < degree_.size(); ++start) {
       std::size_t leaf = start;
-      while (result_.is_gone[leaf] == 0 && is_free(leaf) && degree_[leaf] == 1) {
+      while (result_.is_gone[leaf] == 0 && is_free(leaf) && degree_[leaf] == 1 &&
+             !is_at_border(leaf)) {
         std::size_t direction = 0;
         while (!is_connected(leaf, direction)) {
           ++direction;
@@ -87,30 +113,65 @@ class Eliminator {
     }
     for (std::size_t axis = 0; axis < axis_count_; ++axis) {
       if (is_connected(module, 2 * axis) && is_connected(module, 2 * axis + 1)) {
-        return static_cast<int>(axis);
+        return is_cut(module, axis) ? -1 : static_cast<int>(axis);
       }
     }
     return -1;
   }
 
-  void take_runs() {
-    std::vector<std::int8_t> axis(degree_.size());
-    bool is_any = false;
-    for (std::size_t i = 0; i < axis.size(); ++i) {
-      axis[i] = static_cast<std::int8_t>(axis_of_passage(i));
-      is_any = is_any || axis[i] >= 0;
+  /// Where beams end in the middle of long runs. Ranks see their own ends of these only, so with
+  /// them it depends on the place alone.
+  bool is_cut(std::size_t module, std::size_t axis) const {
+    if (part_ == nullptr) {
+      return false;
     }
-    if (!is_any) {
+    const base::Lattice& lattice = robot_.lattice();
+    const base::Cell step = lattice.steps[2 * axis];
+    const base::Cell cell = base::axial_of(lattice, robot_.modules()[module].cell);
+    const std::int32_t place = step.x != 0 ? cell.x : step.y != 0 ? cell.y : cell.z;
+    return place % kBeamLengthMax == 0;
+  }
+
+  std::vector<std::int8_t> axes_of_passage() const {
+    std::vector<std::int8_t> axis(degree_.size(), -1);
+    const std::size_t own_count = part_ == nullptr ? axis.size() : part_->own_count;
+    for (std::size_t i = 0; i < own_count; ++i) {
+      axis[i] = static_cast<std::int8_t>(axis_of_passage(i));
+    }
+    if (part_ != nullptr) {
+      part_->ranks->make_halo(own_count, part_->copies)->update(axis.data(), sizeof(std::int8_t));
+    }
+    return axis;
+  }
+
+  /// Whether a run goes on to an end that is here. It does, but between copies that are here for
+  /// another run's sake.
+  bool is_whole(std::size_t from, std::size_t direction,
+                const std::vector<std::int8_t>& axis) const {
+    std::int32_t module = robot_.connected()[from][direction];
+    while (module != Robot::kNoNeighbour && axis[at(module)] == static_cast<int>(direction / 2)) {
+      module = robot_.connected()[at(module)][direction];
+    }
+    return module != Robot::kNoNeighbour;
+  }
+
+  void take_runs(const std::vector<std::int8_t>& axis) {
+    if (std::ranges::all_of(axis, [](std::int8_t one) { return one < 0; })) {
       return;
     }
     for (std::size_t i = 0; i < axis.size(); ++i) {
       const bool is_end = axis[i] < 0 && (result_.is_gone[i] == 0 || !is_free(i));
       for (std::size_t direction = 0; is_end && direction < 2 * axis_count_; direction += 2) {
         if (is_connected(i, direction) &&
-            axis[next(i, direction)] == static_cast<int>(direction / 2)) {
+            axis[next(i, direction)] == static_cast<int>(direction / 2) &&
+            (part_ == nullptr || is_whole(i, direction, axis))) {
           take_run(i, direction, axis);
         }
       }
+    }
+    // No rank has nodes there.
+    for (std::size_t i = part_ == nullptr ? axis.size() : part_->own_count; i < axis.size(); ++i) {
+      result_.is_gone[i] = axis[i] >= 0 ? 1 : result_.is_gone[i];
     }
   }
 
@@ -159,13 +220,22 @@ class Eliminator {
 
   const Robot& robot_;
   Team& team_;
+  const model::RobotPart* part_;
   std::size_t axis_count_;            ///< Pairs of opposite directions.
+  std::vector<bool> is_at_border_;    ///< To another rank's part; empty if there is none.
   std::vector<std::uint8_t> degree_;  ///< Connections that are left.
   Elimination result_;
 };
 
 }  // namespace
 
-Elimination eliminate(const Robot& robot, Team& team) { return Eliminator(robot, team).run(); }
+std::vector<std::int8_t> passage_axes(const Robot& robot, const model::RobotPart& part) {
+  Team team(1);
+  return Eliminator(robot, team, &part).passages();
+}
+
+Elimination eliminate(const Robot& robot, Team& team, const model::RobotPart* part) {
+  return Eliminator(robot, team, part).run();
+}
 
 }  // namespace holdfast::solver

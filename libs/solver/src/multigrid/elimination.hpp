@@ -7,6 +7,7 @@
 
 #include "holdfast/host/team.hpp"
 #include "holdfast/model/robot.hpp"
+#include "holdfast/model/robot_part.hpp"
 
 namespace holdfast::solver {
 
@@ -38,6 +39,9 @@ struct Elimination {
   bool is_empty() const { return hanging.empty() && runs.empty(); }
 };
 
-Elimination eliminate(const model::Robot& robot, host::Team& team);
+/// Of a part of a robot runs are eliminated across ranks, by all that have some of their modules,
+/// as far as all of these are here (passages.hpp); hanging trees within one rank only.
+Elimination eliminate(const model::Robot& robot, host::Team& team,
+                      const model::RobotPart* part = nullptr);
 
 }  // namespace holdfast::solver

@@ -44,9 +44,9 @@ template <class Real>
 void ConjugateGradients<Real>::turn_away_from_older() {
   p_ = hierarchy_.levels().front().z;
   for (const Direction& old : older_) {
-    const double product = team_.sum(node_count_, [&](std::size_t begin, std::size_t end) {
+    const double product = sum(team_.sum(node_count_, [&](std::size_t begin, std::size_t end) {
       return kernels<Real>().dot(old.image.data(), p_.data(), {begin, end});
-    });
+    }));
     const auto turn = static_cast<Real>(-product / old.curvature);
     team_.share(0, node_count_, [&](std::size_t begin, std::size_t end) {
       kernels<Real>().combine(turn, old.p.data(), 1, p_.data(), {begin, end});
@@ -58,7 +58,9 @@ void ConjugateGradients<Real>::turn_away_from_older() {
 template <class Real>
 double ConjugateGradients<Real>::remember_direction(std::span<const NodeTerm> terms) {
   const double symmetric_part = multiply();
-  if (older_.size() >= std::max(kMemoryMin, kMemoryBytes / (kNodeBytes<Real> * node_count_))) {
+  const auto node_count_max =
+      static_cast<std::size_t>(host::max(hierarchy_.ranks(0), static_cast<double>(node_count_)));
+  if (older_.size() >= std::max(kMemoryMin, kMemoryBytes / (kNodeBytes<Real> * node_count_max))) {
     std::rotate(older_.begin(), older_.begin() + 1, older_.end());
   } else {
     older_.emplace_back();
@@ -67,7 +69,7 @@ double ConjugateGradients<Real>::remember_direction(std::span<const NodeTerm> te
   newest.p = p_;
   newest.image = q_;
   add_terms(terms, &NodeTerm::transposed_difference, p_, newest.image);
-  newest.curvature = symmetric_part + add_terms(terms, &NodeTerm::difference, p_, q_);
+  newest.curvature = symmetric_part + sum(add_terms(terms, &NodeTerm::difference, p_, q_));
   return newest.curvature;
 }
 
@@ -89,9 +91,9 @@ Iteration::End ConjugateGradients<Real>::run_unsymmetric(const Goal& goal,
     }
     before = error_;
     // r . z but for rounding, which must not add up.
-    const double force = team_.sum(node_count_, [&](std::size_t begin, std::size_t end) {
+    const double force = sum(team_.sum(node_count_, [&](std::size_t begin, std::size_t end) {
       return kernels<Real>().dot(r_.data(), p_.data(), {begin, end});
-    });
+    }));
     advance(force / curvature);
     error_ = precondition();
     tell();

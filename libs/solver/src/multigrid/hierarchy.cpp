@@ -6,12 +6,15 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <iterator>
+#include <limits>
 #include <type_traits>
 #include <unordered_map>
 #include <utility>
 
 #include "beam_shapes.hpp"
 #include "block_pool.hpp"
+#include "gathered_graph.hpp"
 #include "holdfast/base/algebra.hpp"
 #include "level_blocks.hpp"
 #include "matrix_blocks.hpp"
@@ -150,16 +153,6 @@ class Places {
 /// What inverse_block() makes of a singular matrix; the inverse of no other has a zero there.
 bool is_zero(const Block<float>& inverse) { return inverse.column[0][0] == 0; }
 
-template <class Real>
-void fill_vectors(Level<Real>& level) {
-  level.r.assign(level.node_count + 1, {});
-  level.z.assign(level.node_count + 1, {});
-  if constexpr (std::is_same_v<Real, double>) {
-    level.rough_r.assign(level.node_count + 1, {});
-    level.rough_z.assign(level.node_count + 1, {});
-  }
-}
-
 }  // namespace
 
 /// Keys, and places from the robot's lowest corner on.
@@ -167,6 +160,8 @@ template <class Real>
 void Hierarchy<Real>::place_nodes(Team& team, SpringGraph& graph) const {
   const std::size_t count = network_.node_count;
   graph.order = network_.order;
+  graph.copies = network_.copies;
+  graph.ranks = network_.ranks;
   graph.key.resize(count);
   graph.place.resize(count);
   graph.box.resize(std::is_same_v<Real, double> ? count : 0);
@@ -227,6 +222,20 @@ void Hierarchy<Real>::connect_nodes(SpringGraph& graph) const {
   const LatticeBeams& beams = network_.beams;
   graph.start = beams.start;
   graph.other = beams.other;
+  if (!network_.has_long_beams) {
+    const auto none = static_cast<std::int32_t>(network_.node_count);
+    const auto direction_count = at(network_.lattice.direction_count);
+    graph.start.reserve(network_.node_count + 1);
+    graph.other.reserve(beams.end_count);
+    graph.start.push_back(0);
+    for (std::size_t node = 0; node < network_.node_count; ++node) {
+      const auto others =
+          std::span(beams.by_direction).subspan(direction_count * node, direction_count);
+      std::copy_if(others.begin(), others.end(), std::back_inserter(graph.other),
+                   [&](std::int32_t other) { return other != none; });
+      graph.start.push_back(static_cast<std::int32_t>(graph.other.size()));
+    }
+  }
   std::vector<std::uint32_t> pattern_of_kind;
   for (const LatticeBeams::Lengths& lengths : beams.lengths) {
     pattern_of_kind.push_back(static_cast<std::uint32_t>(graph.springs.size()));
@@ -257,11 +266,11 @@ template <class Real>
 void Hierarchy<Real>::make_lattice() {
   make_beams();
   Level<Real>& level = levels_.emplace_back();
-  level.node_count = network_.node_count;
+  level.node_count = network_.own_count;
+  level.place_count = network_.node_count;
   level.colour_start = network_.colour_start;
   level.type.resize(network_.node_count);
-  fill_vectors(level);
-  for (std::size_t node = 0; node < network_.node_count; ++node) {
+  for (std::size_t node = 0; node < network_.own_count; ++node) {
     if (node > 0 && network_.cubic.kind[node] == network_.cubic.kind[node - 1]) {
       level.type[node] = level.type[node - 1];
     } else {
@@ -328,24 +337,41 @@ template <class Real>
 void Hierarchy<Real>::add_level(const SpringGraph& graph, const std::vector<GroundSpring>& springs,
                                 std::vector<std::size_t> colour_start) {
   Level<Real>& level = levels_.emplace_back();
-  level.node_count = graph.order.size();
+  level.node_count = graph.own_count();
+  level.place_count = graph.order.size();
   level.colour_start = std::move(colour_start);
   if (is_finest(level) && !network_.has_long_beams) {
     level.stencil = make_stencil(network_, material_);
   }
-  if (std::is_same_v<Real, double> || level.stencil.other.empty()) {
+  if (std::is_same_v<Real, double> || level.stencil.other == nullptr) {
     level.start = graph.start;
     level.other = graph.other;
   }
   couple(graph, level);
   set_types(graph, level);
-  fill_vectors(level);
-  if (!is_finest(level)) {
-    level.first.assign(level.node_count + 1, {});
-    level.first_image.assign(level.node_count + 1, {});
-  }
   held_.push_back(held_nodes(graph, springs));
   set_ground_springs(levels_.size() - 1, springs);
+}
+
+/// Takes note of whose copies a level of a part of a robot has.
+template <class Real>
+void Hierarchy<Real>::share(const SpringGraph& graph, Level<Real>& level) const {
+  if (graph.ranks != nullptr) {
+    level.halo = graph.ranks->make_halo(graph.own_count(), graph.copies);
+  }
+}
+
+/// Makes a level whole at all ranks. What it hangs on stays in parts.
+template <class Real>
+void Hierarchy<Real>::gather(SpringGraph& graph, std::vector<GroundSpring>& springs,
+                             std::vector<std::size_t>& colour_start) {
+  Gathering gathering;
+  graph = gathered_graph(graph, gathering, colour_start);
+  springs = gathered_springs(springs, gathering, *network_.ranks);
+  gathered_depth_ = levels_.size();
+  add_level(graph, springs, std::move(colour_start));
+  levels_.back().part.resize(gathering.own_count);
+  levels_.back().gathering = std::move(gathering);
 }
 
 /// Takes note of the nodes of the newest level that have ground springs.
@@ -412,6 +438,10 @@ void Hierarchy<Real>::look_for_singular_nodes(const std::vector<GroundSpring>& s
   });
 }
 
+/// Levels of so many nodes are gathered: that costs a few messages and, at each rank, what a tenth
+/// of a million modules' cycle does. Less, and levels of a few nodes a rank wait for messages.
+constexpr std::size_t kGatheredCount = 6000;
+
 template <class Real>
 void Hierarchy<Real>::update_contact() {
   std::vector<GroundSpring> springs = finest_ground_springs(network_, material_, ground_);
@@ -427,8 +457,13 @@ void Hierarchy<Real>::update_contact() {
   }
   for (std::size_t depth = 1; depth < levels_.size(); ++depth) {
     springs = coarse_ground_springs(springs, levels_[depth - 1].seat);
+    const Gathering& gathering = levels_[depth].gathering;
+    if (!gathering.is_empty()) {
+      springs = gathered_springs(springs, gathering, *network_.ranks);
+    }
     set_ground_springs(depth, springs);
   }
+  is_singular_ = host::any(network_.ranks, is_singular_);
   if (coarsest_ && !factor_coarsest()) {
     coarsest_.reset();
   }
@@ -444,7 +479,7 @@ void Hierarchy<Real>::try_to_factor(const SpringGraph& graph) {
     is_too_slender_ = true;
     return;
   }
-  if (is_small || (is_thin && count < network_.node_count / 4)) {
+  if (is_small || (is_thin && count < network_.all_count / 4)) {
     const std::size_t fill_max =
         alone_count_ == 0 ? kFill * count : 2 * kFill * count + kAloneFill * alone_count_;
     coarsest_ = unheld_matrix(graph, is_small ? count * count : fill_max);
@@ -458,7 +493,11 @@ template <class Real>
 Hierarchy<Real>::Hierarchy(const ReducedNetwork& network, const model::Material& material,
                            Team& team, const GroundTable& ground,
                            std::span<const std::int32_t> alone)
-    : network_(network), material_(material), ground_(ground), alone_count_(alone.size()) {
+    : network_(network),
+      material_(material),
+      ground_(ground),
+      alone_count_(host::total(network.ranks, alone.size())),
+      gathered_depth_(network.ranks == nullptr ? 0 : std::numeric_limits<std::size_t>::max()) {
   SpringGraph graph;
   fill_graph(team, graph);
   graph.is_alone.assign(alone.empty() ? 0 : network_.node_count, false);
@@ -473,8 +512,9 @@ Hierarchy<Real>::Hierarchy(const ReducedNetwork& network, const model::Material&
   } else {
     add_level(graph, springs, network_.colour_start);
   }
-  while (!coarsest_ &&
-         (levels_.size() == 1 || graph.order.size() > kCoarsestCount + alone_count_)) {
+  share(graph, levels_.front());
+  while (!coarsest_ && (levels_.size() == 1 || graph.ranks != nullptr ||
+                        graph.order.size() > kCoarsestCount + alone_count_)) {
     SpringGraph coarse;
     std::vector<std::size_t> colour_start;
     if (!coarsen(graph, levels_.back(), team, coarse, colour_start)) {
@@ -482,8 +522,47 @@ Hierarchy<Real>::Hierarchy(const ReducedNetwork& network, const model::Material&
     }
     graph = std::move(coarse);
     springs = coarse_ground_springs(springs, levels_.back().seat);
-    add_level(graph, springs, std::move(colour_start));
-    try_to_factor(graph);
+    const bool is_part = graph.ranks != nullptr;
+    if (is_part && host::total(graph.ranks, graph.own_count()) <= kGatheredCount) {
+      gather(graph, springs, colour_start);
+    } else {
+      add_level(graph, springs, std::move(colour_start));
+      share(graph, levels_.back());
+    }
+    if (graph.ranks == nullptr) {
+      try_to_factor(graph);
+    }
+  }
+  is_singular_ = host::any(network_.ranks, is_singular_);
+}
+
+template <class Real>
+void Hierarchy<Real>::take_vectors() {
+  for (Level<Real>& level : levels_) {
+    const std::size_t size = level.place_count + 1;
+    level.r.resize(size);
+    level.z.resize(size);
+    if (std::is_same_v<Real, double>) {
+      level.rough_r.resize(size);
+      level.rough_z.resize(size);
+    }
+    if (!is_finest(level)) {
+      level.first.resize(size);
+      level.first_image.resize(size);
+    }
+  }
+}
+
+template <class Real>
+void Hierarchy<Real>::drop_vectors() {
+  for (Level<Real>& level : levels_) {
+    level.rough_r = std::vector<Six<float>>();
+    level.rough_z = std::vector<Six<float>>();
+    if (!is_finest(level)) {
+      for (auto* vector : {&level.r, &level.z, &level.first, &level.first_image}) {
+        *vector = std::vector<Six<Real>>();
+      }
+    }
   }
 }
 

@@ -58,8 +58,27 @@ class Hierarchy {
 
   std::vector<Level<Real>>& levels() { return levels_; }
 
+  /// Takes the memory of all vectors that a cycle needs, unless they have it.
+  void take_vectors();
+
+  /// Gives back the memory of all vectors but the finest level's r and z.
+  void drop_vectors();
+
   /// Whether a level has the kernels of cubes on a floor; only the finest may.
   bool is_cubic(std::size_t depth) const { return depth == 0 && network_.is_cubic; }
+
+  /// Who shares the levels before gathered_depth(), each with a part; null: nobody.
+  host::Ranks* ranks(std::size_t depth) const {
+    return depth < gathered_depth_ ? network_.ranks : nullptr;
+  }
+
+  /// Gives copies on a level what their originals have.
+  template <class Item>
+  void update_copies(std::size_t depth, std::vector<Item>& items) {
+    if (levels_[depth].halo != nullptr) {
+      levels_[depth].halo->update(items.data(), sizeof(Item));
+    }
+  }
 
   /// q = K p on the finest level, in double precision; returns p . q.
   double apply(const Six<Real>* p, double* q, const Range& range) const {
@@ -109,6 +128,9 @@ class Hierarchy {
   void place_nodes(Team& team, SpringGraph& graph) const;
   void connect_cubes(SpringGraph& graph) const;
   void connect_nodes(SpringGraph& graph) const;
+  void share(const SpringGraph& graph, Level<Real>& level) const;
+  void gather(SpringGraph& graph, std::vector<GroundSpring>& springs,
+              std::vector<std::size_t>& colour_start);
   void add_level(const SpringGraph& graph, const std::vector<GroundSpring>& springs,
                  std::vector<std::size_t> colour_start);
   Mat diagonal(const Kind& kind) const;
@@ -127,7 +149,8 @@ class Hierarchy {
   const ReducedNetwork& network_;
   const model::Material& material_;
   const GroundTable& ground_;
-  std::size_t alone_count_ = 0;
+  std::size_t alone_count_ = 0;     ///< Of all ranks.
+  std::size_t gathered_depth_ = 0;  ///< From here on levels are whole.
   std::unordered_map<std::uint64_t, std::uint32_t> type_of_kind_;
   std::vector<Level<Real>> levels_;
   std::vector<Held> held_;  ///< By level; not filled in where is_cubic().

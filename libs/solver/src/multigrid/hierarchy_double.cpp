@@ -83,7 +83,7 @@ void Hierarchy<double>::point_at_lattice() {
 
 template <>
 void Hierarchy<double>::couple(const SpringGraph& graph, Level<double>& level) const {
-  if (level.stencil.other.empty()) {
+  if (level.stencil.other == nullptr) {
     fill_blocks(graph, level.couplings.blocks);
   }
   for (const Spring& spring : graph.springs) {
@@ -98,7 +98,11 @@ void Hierarchy<double>::couple(const SpringGraph& graph, Level<double>& level) c
   for (std::size_t node = 0; node < level.node_count; ++node) {
     for (std::size_t e = at(graph.start[node]); e < at(graph.start[node + 1]); ++e) {
       const std::size_t other = at(graph.other[e]);
-      if (node < other) {
+      if (graph.is_copy(graph.other[e])) {
+        // Its rank has its own idea of the spring: false loads of a rounding, which a
+        // preconditioner may have.
+        level.couplings.spring[e] = spring_at(node, e);
+      } else if (node < other) {
         const auto begin = graph.other.begin() + graph.start[other];
         const auto end = graph.other.begin() + graph.start[other + 1];
         const auto back = std::find(begin, end, static_cast<std::int32_t>(node));

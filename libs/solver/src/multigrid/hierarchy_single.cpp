@@ -37,7 +37,7 @@ void Hierarchy<float>::point_at_lattice() {
 
 template <>
 void Hierarchy<float>::couple(const SpringGraph& graph, Level<float>& level) const {
-  if (level.stencil.other.empty()) {
+  if (level.stencil.other == nullptr) {
     fill_blocks(graph, level.couplings.blocks,
                 is_finest(level) ? &level.couplings.blocks_double : nullptr);
   }

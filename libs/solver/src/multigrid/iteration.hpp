@@ -65,14 +65,16 @@ class Iteration {
   /// M^-1 r at a node: about what x is still off by there. After begin() or run().
   virtual base::Vec6<double> correction(std::size_t node) = 0;
 
+  /// Gives back the memory that run() works in. The next call that needs it takes it again; x, r
+  /// and correction() stay.
+  virtual void rest() = 0;
+
   int iteration_count() const { return iteration_count_; }
 
   /// Called once per iteration with the estimated error; may be empty.
   std::function<void(int, double)> progress;
 
  protected:
-  explicit Iteration(std::size_t node_count) : x_(6 * node_count), r_(6 * node_count) {}
-
   std::vector<double> x_;
   std::vector<double> r_;
   int iteration_count_ = 0;

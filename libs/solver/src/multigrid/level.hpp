@@ -3,8 +3,10 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <vector>
 
+#include "holdfast/host/ranks.hpp"
 #include "kernels.hpp"
 
 namespace holdfast::solver {
@@ -40,23 +42,36 @@ struct Couplings<double> {
 
 /// The finest level's beams by node and direction, if all are one pitch long.
 struct Stencil {
-  std::vector<std::int32_t> other;
+  const std::int32_t* other = nullptr;  ///< The network's; null if there is no stencil.
   std::vector<PairRow<float>> rows;
   std::vector<PairRow<double>> rows_double;
 
   StencilView view() const {
-    return {.other = other.empty() ? nullptr : other.data(),
+    return {.other = other,
             .pair_count = rows.size(),
             .rows = rows.data(),
             .rows_double = rows_double.data()};
   }
 };
 
+/// How a level that all ranks have whole, and compute alike, hangs together with the one below, of
+/// which each has a part.
+struct Gathering {
+  std::vector<std::int32_t> node;  ///< Of all ranks' clusters, in the order of the ranks.
+  std::size_t first = 0;           ///< This rank's first cluster among all.
+  std::size_t own_count = 0;       ///< How many it has.
+
+  bool is_empty() const { return node.empty(); }
+};
+
 /// One level of the preconditioner. The finest of cubes on a floor keeps its springs in
 /// ReducedNetwork.
 template <class Real>
 struct Level {
-  std::size_t node_count = 0;
+  std::size_t node_count = 0;        ///< Of a part of a robot this rank's own.
+  std::size_t place_count = 0;       ///< With the copies of other ranks', which come after them.
+  std::unique_ptr<host::Halo> halo;  ///< Keeps these up to date; null if there are none.
+  Gathering gathering;               ///< If all ranks have all of this level.
   std::vector<std::size_t> colour_start;
   // Compressed rows.
   std::vector<std::int32_t> start;
@@ -69,11 +84,12 @@ struct Level {
   std::vector<Seat<Real>> seat;
   std::vector<std::int32_t> member_start;  ///< By cluster, along the Morton curve.
   std::vector<std::int32_t> member;
-  // Vectors of the cycle, one node more than there are, which stays zero.
+  // Vectors of the cycle, one node more than there are places, which stays zero.
   std::vector<Six<Real>> r;
   std::vector<Six<Real>> z;
   std::vector<Six<Real>> first;        ///< First direction of the inner iteration, coarse levels.
   std::vector<Six<Real>> first_image;  ///< K times it.
+  std::vector<Six<Real>> part;         ///< Of a gathered level: this rank's part of r, then of z.
 
   // What the sweeps see of r and z, in double precision, where r and z are not that themselves.
   std::vector<Six<float>> rough_r;

@@ -79,18 +79,7 @@ Stencil make_stencil(const ReducedNetwork& network, const model::Material& mater
     stencil.rows_double.push_back(pair_row(beam.block_12(static_cast<Direction>(d))));
     stencil.rows.push_back(single(stencil.rows_double.back()));
   }
-  stencil.other.assign(direction_count * network.node_count,
-                       static_cast<std::int32_t>(network.node_count));
-  const LatticeBeams& beams = network.beams;
-  for (std::size_t node = 0; node < network.node_count; ++node) {
-    const LatticeBeams::Lengths& lengths = beams.lengths[beams.kind[node]];
-    std::size_t next = at(beams.start[node]);
-    for (std::size_t d = 0; d < direction_count; ++d) {
-      if (lengths[d] > 0) {
-        stencil.other[direction_count * node + d] = beams.other[next++];
-      }
-    }
-  }
+  stencil.other = network.beams.by_direction.data();
   return stencil;
 }
 

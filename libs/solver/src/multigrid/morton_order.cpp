@@ -6,8 +6,15 @@
 #include <array>
 #include <limits>
 
+#include "holdfast/solver/morton_key.hpp"
+
 namespace holdfast::solver {
 namespace {
+
+/// The least of all ranks' numbers.
+std::int32_t lowest(host::Ranks* ranks, std::int32_t mine) {
+  return static_cast<std::int32_t>(-host::max(ranks, -static_cast<double>(mine)));
+}
 
 /// The box around some cells.
 struct Extent {
@@ -21,6 +28,15 @@ struct Extent {
   void add(const base::Cell& cell) {
     low = {std::min(low.x, cell.x), std::min(low.y, cell.y), std::min(low.z, cell.z)};
     high = {std::max(high.x, cell.x), std::max(high.y, cell.y), std::max(high.z, cell.z)};
+  }
+
+  /// The box around all ranks' boxes.
+  void add_all(host::Ranks& ranks) {
+    low = {lowest(&ranks, low.x), lowest(&ranks, low.y), lowest(&ranks, low.z)};
+    const auto highest = [&](std::int32_t mine) {
+      return static_cast<std::int32_t>(ranks.max(mine));
+    };
+    high = {highest(high.x), highest(high.y), highest(high.z)};
   }
 
   std::int32_t longest() const {
@@ -97,7 +113,18 @@ std::uint8_t colour_of_brick(const base::Lattice& lattice, const base::Cell& bri
   return static_cast<std::uint8_t>((upright & 1) + 2 * (leaning & 1));
 }
 
-MortonOrder morton_order(const model::Robot& robot, const std::vector<std::uint8_t>& is_gone) {
+base::Cell brick_of_cell(const base::Lattice& lattice, const base::Cell& cell) {
+  return lattice == base::kCubic ? cell : brick_of(lattice, base::axial_of(lattice, cell));
+}
+
+std::uint64_t morton_key(const base::Cell& brick, const base::Cell& low) {
+  return spread(static_cast<std::uint64_t>(brick.x - low.x)) |
+         spread(static_cast<std::uint64_t>(brick.y - low.y)) << 1U |
+         spread(static_cast<std::uint64_t>(brick.z - low.z)) << 2U;
+}
+
+MortonOrder morton_order(const model::Robot& robot, const std::vector<std::uint8_t>& is_gone,
+                         const model::RobotPart* part) {
   const auto modules = robot.modules();
   const base::Lattice& lattice = robot.lattice();
   const bool is_cubic = lattice == base::kCubic;
@@ -111,19 +138,25 @@ MortonOrder morton_order(const model::Robot& robot, const std::vector<std::uint8
     const base::Cell cell = brick(i);
     low = {std::min(low.x, cell.x), std::min(low.y, cell.y), std::min(low.z, cell.z)};
   }
+  host::Ranks* const ranks = part == nullptr ? nullptr : part->ranks;
+  low = {lowest(ranks, low.x), lowest(ranks, low.y), lowest(ranks, low.z)};
   order.modules.reserve(modules.size());
   Extent extent;
   for (std::size_t i = 0; i < modules.size(); ++i) {
     if (is_gone[i] == 0) {
       const base::Cell cell = brick(i);
       extent.add(cell);
-      order.modules.push_back({.key = spread(static_cast<std::uint64_t>(cell.x - low.x)) |
-                                      spread(static_cast<std::uint64_t>(cell.y - low.y)) << 1U |
-                                      spread(static_cast<std::uint64_t>(cell.z - low.z)) << 2U,
-                               .module = static_cast<std::int32_t>(i)});
+      order.modules.push_back(
+          {.key = morton_key(cell, low), .module = static_cast<std::int32_t>(i)});
     }
   }
   radix_sort(order.modules);
+  if (part != nullptr) {
+    std::stable_partition(order.modules.begin(), order.modules.end(), [&](const KeyedModule& item) {
+      return base::at(item.module) < part->own_count;
+    });
+    extent.add_all(*ranks);
+  }
   order.low = low;
   order.extent = extent.longest();
   return order;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "holdfast/model/robot.hpp"
+#include "holdfast/model/robot_part.hpp"
 
 namespace holdfast::solver {
 
@@ -33,7 +34,9 @@ struct MortonOrder {
   std::int32_t extent = 0;  ///< Longest side of the box around them, bricks.
 };
 
-/// Sorts the modules that are not `is_gone`.
-MortonOrder morton_order(const model::Robot& robot, const std::vector<std::uint8_t>& is_gone);
+/// Sorts the modules that are not `is_gone`. Of a part of a robot its own modules come first, then
+/// the copies; keys count from the whole robot's corner, and the extent is the whole's.
+MortonOrder morton_order(const model::Robot& robot, const std::vector<std::uint8_t>& is_gone,
+                         const model::RobotPart* part = nullptr);
 
 }  // namespace holdfast::solver

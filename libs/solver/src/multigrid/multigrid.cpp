@@ -19,9 +19,9 @@ using mechanics::ContactState;
 
 constexpr int kIterationMax = 500;
 
-/// Memory per module: measured 330 to 400 bytes on solids and on random growth, in double precision
-/// 500 to 700 on slender robots.
-constexpr std::size_t kBytesPerModule = 450;
+/// Memory per module: measured 380 to 420 bytes on solids, in double precision 500 to 700 on
+/// slender robots.
+constexpr std::size_t kBytesPerModule = 420;
 constexpr std::size_t kBytesPerModuleDouble = 800;
 
 /// And for each direction that a lattice has beyond six: a ball of 720,000 face-centred modules
@@ -81,7 +81,7 @@ bool is_held_sideways(ContactLaw law, bool is_held) {
 
 std::unique_ptr<Multigrid> Multigrid::make(const model::Robot& robot,
                                            const EquilibriumOptions& options) {
-  if (bytes_for(robot, options.precision) > options.memory_bytes_max) {
+  if (host::any(options.ranks(), bytes_for(robot, options.precision) > options.memory_bytes_max)) {
     return nullptr;
   }
   return std::make_unique<Multigrid>(robot, options);
@@ -92,7 +92,7 @@ Multigrid::Multigrid(const model::Robot& robot, const EquilibriumOptions& option
       options_(options),
       precision_(options.precision),
       team_(options.thread_count, robot.modules().size()),
-      network_(make_reduced_network(robot, team_)),
+      network_(make_reduced_network(robot, team_, options.part)),
       ground_node_of_facet_(facets().size()) {
   for (std::size_t i = 0; i < network_.ground_beams.size(); ++i) {
     const GroundBeam& beam = network_.ground_beams[i];
@@ -116,7 +116,7 @@ std::size_t Multigrid::bytes_for(const model::Robot& robot, Precision precision)
 }
 
 bool Multigrid::set_precision(Precision precision) {
-  if (bytes_for(robot(), precision) > options_.memory_bytes_max) {
+  if (host::any(ranks(), bytes_for(robot(), precision) > options_.memory_bytes_max)) {
     return false;
   }
   precision_ = precision;
@@ -129,20 +129,23 @@ bool Multigrid::set_precision(Precision precision) {
 /// Whether it is plain from the robot's shape that single precision will not do.
 bool Multigrid::is_too_slender() const {
   const double length = network_.extent;
-  const auto count = static_cast<double>(robot().modules().size());
+  const auto count = static_cast<double>(options_.part == nullptr
+                                             ? robot().modules().size()
+                                             : host::total(ranks(), options_.part->own_count));
   const double slenderness_squared = length * length * length / count;
-  return network_.node_count > kTrivialCount &&
+  return network_.all_count > kTrivialCount &&
          std::numeric_limits<float>::epsilon() / 2 * slenderness_squared > kRoundingShare;
 }
 
 /// If its coarsest level has all facets the hierarchy gets the tangent itself: the finest level as
 /// it is, the others with its upper half on both sides, as springs are moved. Else a stand-in.
 void Multigrid::take_law() {
+  const bool is_any_alone = host::any(ranks(), !alone_.empty());
   for (int code = 0; code < ContactState::kCodeCount; ++code) {
     const ContactState state = ContactState::from_code(code);
     for (const bool is_held : {false, true}) {
-      const Mat tangent = alone_.empty() ? mechanics::symmetric_tangent(ground(), state, is_held)
-                                         : mechanics::contact_tangent(ground(), state, is_held);
+      const Mat tangent = is_any_alone ? mechanics::contact_tangent(ground(), state, is_held)
+                                       : mechanics::symmetric_tangent(ground(), state, is_held);
       for (const base::Direction direction : base::facet_directions(robot().lattice())) {
         known_tangents_[at(base::index(direction))][at(1 + 2 * code + (is_held ? 1 : 0))] =
             beam().to_global(direction, tangent);
@@ -172,19 +175,24 @@ void Multigrid::take_facet(std::size_t facet) {
     kind[beam.direction] = contact == 0 ? 1 : 0;
     kind[kContactByte] = contact;
   }
+  is_contact_new_ = true;
   is_stale_ = true;
 }
 
 void Multigrid::take_loads() {
+  take_changed_loads();
+  if (iteration_) {
+    iteration_->x().assign(iteration_->x().size(), 0);
+  }
+  reference_ = 0;
+}
+
+void Multigrid::take_changed_loads() {
   condensed_.clear();
   if (network_.is_reduced()) {
     condensed_ = condense(robot(), network_, team_, loads());
   }
-  if (iteration_) {
-    iteration_->x().assign(iteration_->x().size(), 0);
-  }
   is_residual_known_ = false;
-  reference_ = 0;
   is_stale_ = true;
 }
 
@@ -206,8 +214,8 @@ const Mat& Multigrid::known_tangent(const FacetState& facet) const {
 
 /// Whether the robot is much wider than its feet are together.
 bool Multigrid::is_wide_on_feet() const {
-  const auto feet = static_cast<double>(ground_nodes_.size());
-  return !network_.is_cubic && static_cast<double>(network_.node_count) >
+  const auto feet = static_cast<double>(host::total(ranks(), ground_nodes_.size()));
+  return !network_.is_cubic && static_cast<double>(network_.all_count) >
                                    kWidthMax * feet * static_cast<double>(network_.extent);
 }
 
@@ -215,8 +223,9 @@ bool Multigrid::is_wide_on_feet() const {
 /// tilts, and a cluster as large as the foot cannot know.
 std::vector<std::int32_t> Multigrid::nodes_alone() const {
   std::vector<std::int32_t> nodes;
-  if (!options_.is_bonded && ground_nodes_.size() <= kAloneMax &&
-      kAloneShare * ground_nodes_.size() <= network_.node_count && !is_wide_on_feet()) {
+  const std::size_t count = host::total(ranks(), ground_nodes_.size());
+  if (!options_.is_bonded && count <= kAloneMax && kAloneShare * count <= network_.all_count &&
+      !is_wide_on_feet()) {
     for (const GroundNode& ground_node : ground_nodes_) {
       if (nodes.empty() || nodes.back() != ground_node.node) {
         nodes.push_back(ground_node.node);
@@ -237,7 +246,10 @@ std::unique_ptr<Iteration> Multigrid::make_iteration() {
 
 void Multigrid::update_iteration() {
   if (iteration_ && !is_law_new_) {
-    iteration_->update_contact();
+    if (host::any(ranks(), is_contact_new_)) {
+      iteration_->update_contact();
+      is_contact_new_ = false;
+    }
     return;
   }
   std::vector<double> x;
@@ -247,6 +259,7 @@ void Multigrid::update_iteration() {
   iteration_.reset();
   iteration_ = make_iteration();
   is_law_new_ = false;
+  is_contact_new_ = false;
   is_residual_known_ = false;
   if (!x.empty()) {
     iteration_->x() = std::move(x);
@@ -261,7 +274,7 @@ void Multigrid::update_iteration() {
 /// What the present displacements leave unbalanced, with the contact's own tangent.
 void Multigrid::compute_residual() {
   std::vector<double>& r = iteration_->r();
-  team_.share(0, network_.node_count, [&](std::size_t begin, std::size_t end) {
+  team_.share(0, network_.own_count, [&](std::size_t begin, std::size_t end) {
     for (std::size_t node = begin; node < end; ++node) {
       const std::size_t module = at(network_.module[node]);
       const Vec& load = condensed_.empty() ? loads()[module] : condensed_[module];
@@ -319,10 +332,16 @@ std::vector<NodeTerm> Multigrid::unsymmetric_terms() const {
 
 /// Takes up changed facets. What has not changed since the last solution goes on from there.
 LinearOutcome Multigrid::begin() {
+  is_stale_ = host::any(ranks(), is_stale_);
   if (!is_stale_) {
     return LinearOutcome::kSolved;
   }
   if (precision_ == Precision::kSingle && is_too_slender()) {
+    return LinearOutcome::kTooSlow;
+  }
+  if (precision_ == Precision::kDouble && ranks() != nullptr && !network_.is_cubic) {
+    // The ends of a beam between two ranks would not agree to the last digit
+    // (hierarchy_double.cpp).
     return LinearOutcome::kTooSlow;
   }
   update_iteration();
@@ -353,26 +372,29 @@ LinearOutcome Multigrid::begin() {
 /// Whether bending is that of chains: the network has few nodes, and these few neighbours. A single
 /// beam may then have a large part of the whole error's energy.
 bool Multigrid::is_thin() const {
-  if (network_.node_count > kThinCountMax) {
+  if (network_.all_count > kThinCountMax) {
     return false;
   }
-  std::size_t ends = network_.beams.other.size();
-  for (const Kind& kind : network_.cubic.kind) {
+  std::size_t ends = network_.beams.end_count;
+  for (std::size_t node = 0; network_.is_cubic && node < network_.own_count; ++node) {
+    const Kind& kind = network_.cubic.kind[node];
     ends +=
         static_cast<std::size_t>(std::count_if(kind.begin(), kind.begin() + base::kDirectionCount,
                                                [](auto length) { return length > 0; }));
   }
-  return static_cast<double>(ends) <= kThinDegree * static_cast<double>(network_.node_count);
+  return static_cast<double>(host::total(ranks(), ends)) <=
+         kThinDegree * static_cast<double>(network_.all_count);
 }
 
 LinearOutcome Multigrid::solve(double tolerance) {
+  is_stale_ = host::any(ranks(), is_stale_);
   solve_count_ += is_stale_ ? 1 : 0;
   return improve({.tolerance = tolerance});
 }
 
 /// Goes on from the present displacements.
 LinearOutcome Multigrid::improve(const Target& target) {
-  if (network_.node_count == 0) {
+  if (network_.all_count == 0) {
     return LinearOutcome::kSolved;
   }
   const LinearOutcome beginning = begin();
@@ -385,7 +407,8 @@ LinearOutcome Multigrid::improve(const Target& target) {
                                 .iteration_count_min = target.iteration_count_min,
                                 .iteration_count_max = kIterationMax};
   const std::vector<NodeTerm> terms = unsymmetric_terms();
-  const auto end = terms.empty() ? iteration_->run(goal) : iteration_->run_unsymmetric(goal, terms);
+  const auto end = host::all(ranks(), terms.empty()) ? iteration_->run(goal)
+                                                     : iteration_->run_unsymmetric(goal, terms);
   last_count_ = iteration_->iteration_count() - before;
   iteration_count_ += last_count_;
   if (end == Iteration::End::kConverged) {
@@ -413,6 +436,9 @@ bool Multigrid::refine(Solution& solution) {
     return false;
   }
   solution.energy_error = energy_error_;
+  if (iteration_) {
+    iteration_->rest();  // Most robots need no further solution.
+  }
   solution.displacement = displacement();
   return true;
 }
@@ -425,11 +451,9 @@ std::vector<double> Multigrid::facet_errors() const {
     errors[i] =
         std::abs(force[2]) + std::max(std::abs(force[3]), std::abs(force[4])) / ground().half_width;
   }
-  if (errors.empty()) {
-    return errors;
-  }
   const double pace = std::max(1.0, last_count_ / kBriskIterations);
-  const double common = kCorrectionShare * *std::ranges::max_element(errors);
+  const double largest = errors.empty() ? 0 : *std::ranges::max_element(errors);
+  const double common = kCorrectionShare * host::max(ranks(), largest);
   for (double& error : errors) {
     error = kCorrectionFactor * pace * std::max(error, common);
   }
@@ -446,6 +470,11 @@ LinearReport Multigrid::report() const {
 std::vector<base::Vec6<double>> Multigrid::displacement() {
   std::vector<Vec> by_module(robot().modules().size());
   if (iteration_) {
+    if (options_.part != nullptr) {
+      ranks()
+          ->make_halo(network_.own_count, network_.copies)
+          ->update(iteration_->x().data(), 6 * sizeof(double));
+    }
     const std::vector<double>& x = iteration_->x();
     team_.share(0, network_.node_count, [&](std::size_t begin, std::size_t end) {
       for (std::size_t node = begin; node < end; ++node) {

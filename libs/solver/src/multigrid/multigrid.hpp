@@ -61,11 +61,15 @@ class Multigrid final : public LinearSystem {
   void take_law() override;
   void take_facet(std::size_t facet) override;
   void take_loads() override;
+  void take_changed_loads() override;
 
   std::uint8_t number_of(const FacetState& facet) const;
   Vec displacement_of(std::int32_t node) const;
   Vec force_on(const FacetState& facet, std::int32_t node) const;
   const Mat& known_tangent(const FacetState& facet) const;
+
+  host::Ranks* ranks() const { return options_.ranks(); }
+
   bool is_too_slender() const;
   bool is_thin() const;
   bool is_wide_on_feet() const;
@@ -89,6 +93,7 @@ class Multigrid final : public LinearSystem {
   GroundTable known_tangents_;  ///< What the hierarchy takes for the facets' tangents.
   std::unique_ptr<Iteration> iteration_;
   bool is_law_new_ = false;         ///< Everything must be made again.
+  bool is_contact_new_ = false;     ///< The iteration does not know all facets' states.
   bool is_residual_known_ = false;  ///< But for facets that changed.
   bool is_stale_ = true;            ///< Some facet, the law or the loads changed since solve().
   double reference_ = 0;            ///< Square of the first error.

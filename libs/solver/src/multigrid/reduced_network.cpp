@@ -33,16 +33,23 @@ bool is_on_floor_only(const Robot& robot) {
 /// Builds a network of the modules that an elimination leaves.
 class Builder {
  public:
-  Builder(const Robot& robot, Team& team)
+  Builder(const Robot& robot, Team& team, const model::RobotPart* part)
       : robot_(robot),
         team_(team),
-        elimination_(eliminate(robot, team)),
-        order_(morton_order(robot, elimination_.is_gone)),
+        part_(part),
+        elimination_(eliminate(robot, team, part)),
+        order_(morton_order(robot, elimination_.is_gone, part)),
         is_cubic_(robot.lattice() == base::kCubic),
         direction_count_(at(robot.lattice().direction_count)) {
     network_.lattice = robot.lattice();
-    network_.is_cubic = is_on_floor_only(robot);
+    network_.ranks = part == nullptr ? nullptr : part->ranks;
+    network_.is_cubic = host::all(network_.ranks, is_on_floor_only(robot));
     network_.node_count = order_.modules.size();
+    network_.own_count =
+        static_cast<std::size_t>(std::ranges::count_if(order_.modules, [&](const auto& item) {
+          return part == nullptr || at(item.module) < part->own_count;
+        }));
+    network_.all_count = host::total(network_.ranks, network_.own_count);
     network_.low = order_.low;
     network_.extent = order_.extent;
     network_.has_long_beams = !elimination_.runs.empty();
@@ -52,6 +59,7 @@ class Builder {
     colour_nodes();
     connect();
     hold();
+    copy();
     network_.hanging = std::move(elimination_.hanging);
     network_.runs = std::move(elimination_.runs);
     return std::move(network_);
@@ -79,7 +87,7 @@ class Builder {
   /// The colour of a module whose neighbours have taken some: the first, which makes two for cubes,
   /// else the lattice's own if no long beam has brought it there, of which there are four.
   std::uint8_t free_colour(std::int32_t module, unsigned taken) const {
-    if (!is_cubic_) {
+    if (!is_cubic_ || part_ != nullptr) {
       const std::uint8_t own = colour_of_brick(
           robot_.lattice(),
           brick_of(robot_.lattice(),
@@ -91,38 +99,89 @@ class Builder {
     return static_cast<std::uint8_t>(std::countr_one(taken));
   }
 
-  void colour_nodes() {
-    constexpr std::uint8_t kNone = 255;
-    std::vector<std::uint8_t> colour(robot_.modules().size(), kNone);
-    constexpr std::size_t kColourMax = base::Lattice::kDirectionCountMax + 1;
-    std::array<std::size_t, kColourMax> count{};
-    for (const KeyedModule& item : order_.modules) {
-      unsigned taken = 0;
-      for (std::size_t direction = 0; direction < direction_count_; ++direction) {
-        int length = 0;
-        const std::int32_t other = far_end(at(item.module), direction, length);
-        if (other != Robot::kNoNeighbour && colour[at(other)] != kNone) {
-          taken |= 1U << colour[at(other)];
+  /// The colours of the modules that a module's beams lead to.
+  unsigned colours_around(std::int32_t module, const std::vector<std::uint8_t>& colour) const {
+    unsigned taken = 0;
+    for (std::size_t direction = 0; direction < direction_count_; ++direction) {
+      int length = 0;
+      const std::int32_t other = far_end(at(module), direction, length);
+      if (other != Robot::kNoNeighbour && colour[at(other)] != kNoColour) {
+        taken |= 1U << colour[at(other)];
+      }
+    }
+    return taken;
+  }
+
+  /// Whether a copy of a lower rank's module at the end of a module's beam has its colour.
+  bool is_shared(std::int32_t module, const std::vector<std::uint8_t>& colour,
+                 const std::vector<std::int32_t>& rank) const {
+    bool is_any = false;
+    for (std::size_t direction = 0; direction < direction_count_; ++direction) {
+      int length = 0;
+      const std::int32_t other = far_end(at(module), direction, length);
+      is_any = is_any || (other != Robot::kNoNeighbour && rank[at(other)] < part_->ranks->rank() &&
+                          colour[at(other)] == colour[at(module)]);
+    }
+    return is_any;
+  }
+
+  /// As Coarsening does: neighbours of two ranks are to have two colours.
+  void part_from_other_ranks(std::vector<std::uint8_t>& colour) const {
+    constexpr int kRoundMax = 8;
+    if (part_ == nullptr) {
+      return;
+    }
+    std::vector<std::int32_t> rank(colour.size(), part_->ranks->rank());
+    for (const host::Copy& copy : part_->copies) {
+      rank[at(copy.place)] = copy.original.rank;
+    }
+    const auto halo = part_->ranks->make_halo(part_->own_count, part_->copies);
+    bool is_any_changed = true;
+    for (int round = 0; is_any_changed && round < kRoundMax; ++round) {
+      is_any_changed = false;
+      halo->update(colour.data(), sizeof(std::uint8_t));
+      for (std::size_t i = 0; i < network_.own_count; ++i) {
+        const std::int32_t module = order_.modules[i].module;
+        if (is_shared(module, colour, rank)) {
+          colour[at(module)] =
+              static_cast<std::uint8_t>(std::countr_one(colours_around(module, colour)));
+          is_any_changed = true;
         }
       }
-      const std::uint8_t free = free_colour(item.module, taken);
-      colour[at(item.module)] = free;
-      ++count[free];
+      is_any_changed = host::any(network_.ranks, is_any_changed);
+    }
+    std::fill(colour.begin() + static_cast<std::ptrdiff_t>(part_->own_count), colour.end(),
+              kNoColour);
+  }
+
+  void colour_nodes() {
+    std::vector<std::uint8_t> colour(robot_.modules().size(), kNoColour);
+    for (std::size_t i = 0; i < network_.own_count; ++i) {
+      const std::int32_t module = order_.modules[i].module;
+      colour[at(module)] = free_colour(module, colours_around(module, colour));
+    }
+    part_from_other_ranks(colour);
+    constexpr std::size_t kColourMax = base::Lattice::kDirectionCountMax + 1;
+    std::array<std::size_t, kColourMax> count{};
+    for (std::size_t i = 0; i < network_.own_count; ++i) {
+      ++count[colour[at(order_.modules[i].module)]];
     }
     std::array<std::size_t, kColourMax + 1> start{};
     network_.colour_start = {0};
     for (std::size_t c = 0; c < kColourMax; ++c) {
       start[c + 1] = start[c] + count[c];
-      if (count[c] > 0) {
+      if (host::any(network_.ranks, count[c] > 0)) {  // All ranks have the same colours.
         network_.colour_start.push_back(start[c + 1]);
       }
     }
+    std::size_t next_copy = network_.own_count;
     node_of_.assign(robot_.modules().size(), static_cast<std::int32_t>(network_.node_count));
     network_.module.resize(order_.modules.size());
     network_.order.reserve(order_.modules.size());
     network_.key.reserve(order_.modules.size());
     for (const KeyedModule& item : order_.modules) {
-      const std::size_t node = start[colour[at(item.module)]]++;
+      const std::uint8_t own = colour[at(item.module)];
+      const std::size_t node = own == kNoColour ? next_copy++ : start[own]++;
       node_of_[at(item.module)] = static_cast<std::int32_t>(node);
       network_.module[node] = item.module;
       network_.order.push_back(static_cast<std::int32_t>(node));
@@ -140,8 +199,10 @@ class Builder {
           connect_cube(node);
         }
       });
-    } else {
+    } else if (network_.has_long_beams) {
       connect_rows();
+    } else {
+      connect_by_direction();
     }
   }
 
@@ -168,6 +229,26 @@ class Builder {
     network_.cubic.kind[node] = kind;
   }
 
+  void connect_by_direction() {
+    const std::size_t count = network_.node_count;
+    LatticeBeams& beams = network_.beams;
+    beams.by_direction.assign(direction_count_ * count, static_cast<std::int32_t>(count));
+    std::vector<LatticeBeams::Lengths> lengths(count);
+    team_.share(0, count, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t node = begin; node < end; ++node) {
+        for_beams(node, [&](std::size_t direction, std::uint8_t length, std::int32_t other) {
+          beams.by_direction[direction_count_ * node + direction] = other;
+          lengths[node][direction] = at(other) < count ? length : std::uint8_t{0};
+        });
+      }
+    });
+    const auto own_rows =
+        std::span(beams.by_direction).first(direction_count_ * network_.own_count);
+    beams.end_count = own_rows.size() - static_cast<std::size_t>(std::ranges::count(
+                                            own_rows, static_cast<std::int32_t>(count)));
+    find_kinds(lengths);
+  }
+
   void connect_rows() {
     const std::size_t count = network_.node_count;
     LatticeBeams& beams = network_.beams;
@@ -191,6 +272,7 @@ class Builder {
     for (const std::vector<std::int32_t>& part : others) {
       beams.other.insert(beams.other.end(), part.begin(), part.end());
     }
+    beams.end_count = at(beams.start[network_.own_count]);
     find_kinds(lengths);
   }
 
@@ -213,10 +295,28 @@ class Builder {
     }
   }
 
+  /// Whose copies those nodes are that are not this rank's own.
+  void copy() {
+    if (part_ == nullptr) {
+      return;
+    }
+    std::vector<std::int32_t> node_there = node_of_;
+    part_->ranks->make_halo(part_->own_count, part_->copies)
+        ->update(node_there.data(), sizeof(std::int32_t));
+    for (const host::Copy& module : part_->copies) {
+      const auto place = at(module.place);
+      if (at(node_of_[place]) < network_.node_count) {  // Fixed modules are none.
+        network_.copies.push_back(
+            {.original = {.rank = module.original.rank, .index = node_there[place]},
+             .place = node_of_[place]});
+      }
+    }
+  }
+
   /// Beams to fixed modules, and all facets, stuck as yet.
   void hold() {
     if (robot_.fixed_count() > 0) {
-      for (std::size_t node = 0; node < network_.node_count; ++node) {
+      for (std::size_t node = 0; node < network_.own_count; ++node) {
         for_beams(node, [&](std::size_t direction, std::uint8_t length, std::int32_t other) {
           if (at(other) == network_.node_count) {
             network_.ground_beams.push_back({.node = static_cast<std::int32_t>(node),
@@ -242,8 +342,11 @@ class Builder {
                       [](const GroundBeam& beam) { return std::pair(beam.node, beam.direction); });
   }
 
+  static constexpr std::uint8_t kNoColour = 255;
+
   const Robot& robot_;
   Team& team_;
+  const model::RobotPart* part_;
   Elimination elimination_;
   MortonOrder order_;
   bool is_cubic_;  ///< The lattice.
@@ -254,8 +357,8 @@ class Builder {
 
 }  // namespace
 
-ReducedNetwork make_reduced_network(const Robot& robot, Team& team) {
-  return Builder(robot, team).build();
+ReducedNetwork make_reduced_network(const Robot& robot, Team& team, const model::RobotPart* part) {
+  return Builder(robot, team, part).build();
 }
 
 }  // namespace holdfast::solver

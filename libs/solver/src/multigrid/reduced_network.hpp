@@ -46,27 +46,36 @@ struct CubicBeams {
   std::vector<Kind> kind;  ///< A beam down to the ground or to a fixed module has no other node.
 };
 
-/// What connects the nodes of all other robots: in compressed rows.
+/// What connects the nodes of all other robots: by direction if all beams are one pitch long, else
+/// in compressed rows.
 struct LatticeBeams {
   /// Direction -> pitches that the beam there is long, 0 for none.
   using Lengths = std::array<std::uint8_t, base::Lattice::kDirectionCountMax>;
 
+  std::vector<std::int32_t> by_direction;  ///< By node, as many as directions; node_count for none.
   std::vector<std::int32_t> start;
   std::vector<std::int32_t> other;  ///< Of each node by ascending direction.
+  std::size_t end_count = 0;        ///< Two for each beam between own nodes, one to a copy.
   std::vector<std::uint32_t> kind;  ///< Node -> lengths
   std::vector<Lengths> lengths;
 };
 
+///
+/// Of a part of a robot the nodes are this rank's own, and after them the copies of other ranks'.
 struct ReducedNetwork {
   base::Lattice lattice;
   bool is_cubic = false;  ///< Whether `cubic` describes it, else `beams`.
   std::size_t node_count = 0;
-  std::vector<std::size_t> colour_start;  ///< First node of each colour, then node_count.
+  std::size_t own_count = 0;              ///< node_count where there are no copies.
+  std::size_t all_count = 0;              ///< All ranks' own ones together.
+  std::vector<host::Copy> copies;         ///< By node.
+  host::Ranks* ranks = nullptr;           ///< Who owns the originals.
+  std::vector<std::size_t> colour_start;  ///< First node of each colour, then own_count.
   std::vector<std::int32_t> module;       ///< Node -> module.
   CubicBeams cubic;
   LatticeBeams beams;
   std::vector<GroundBeam> ground_beams;  ///< By node, then by direction.
-  std::vector<std::int32_t> order;       ///< Nodes along the Morton curve.
+  std::vector<std::int32_t> order;       ///< Nodes along the Morton curve; copies after them.
   std::vector<std::uint64_t> key;        ///< Their Morton keys, ascending.
   base::Cell low;                        ///< The robot's lowest corner, where keys count from.
   bool has_long_beams = false;
@@ -79,6 +88,7 @@ struct ReducedNetwork {
   bool is_reduced() const { return !hanging.empty() || !runs.empty(); }
 };
 
-ReducedNetwork make_reduced_network(const model::Robot& robot, host::Team& team);
+ReducedNetwork make_reduced_network(const model::Robot& robot, host::Team& team,
+                                    const model::RobotPart* part = nullptr);
 
 }  // namespace holdfast::solver

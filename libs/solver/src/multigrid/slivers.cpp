@@ -37,9 +37,12 @@ bool fits(const CellBox& box, std::int32_t width) {
 /// Calls f(c, d, strength) for every spring between two clusters, once for each of them.
 template <class F>
 void for_ties(const SpringGraph& fine, const std::vector<std::int32_t>& cluster, const F& f) {
-  for (std::size_t node = 0; node < cluster.size(); ++node) {
+  for (std::size_t node = 0; node < fine.own_count(); ++node) {
     const std::size_t start = at(fine.start[node]);
     for (std::size_t e = start; e < at(fine.start[node + 1]); ++e) {
+      if (fine.is_copy(fine.other[e])) {
+        continue;
+      }
       const std::int32_t to = cluster[at(fine.other[e])];
       if (to != cluster[node]) {
         const Mat& s = fine.springs[fine.pattern[node] + e - start].stiffness;
@@ -77,7 +80,7 @@ std::size_t unite_slivers(const SpringGraph& fine, unsigned shift,
   std::vector<CellBox> old(count);
   std::vector<bool> is_met(count);
   std::vector<bool> is_alone(count);
-  for (std::size_t node = 0; node < cluster.size(); ++node) {
+  for (std::size_t node = 0; node < fine.own_count(); ++node) {
     const std::size_t c = at(cluster[node]);
     is_alone[c] = !fine.is_alone.empty() && fine.is_alone[node];
     old[c] = is_met[c] ? united(old[c], part[node]) : part[node];
@@ -106,8 +109,8 @@ std::size_t unite_slivers(const SpringGraph& fine, unsigned shift,
       box.back() = united(box.back(), old[at(partner)]);
     }
   }
-  for (std::int32_t& c : cluster) {
-    c = number[at(c)];
+  for (std::size_t node = 0; node < fine.own_count(); ++node) {
+    cluster[node] = number[at(cluster[node])];
   }
   return box.size();
 }

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "holdfast/host/ranks.hpp"
 #include "springs.hpp"
 
 namespace holdfast::solver {
@@ -19,18 +20,28 @@ struct CellBox {
 /// A level as the next one is made from it: nodes and the springs between them, in double
 /// precision, without what holds them (ground_springs.hpp). Nodes whose springs are equal share
 /// them: springs[pattern[node] + i] leads to other[start[node] + i].
+///
+/// Of a part of a robot the nodes are this rank's own, and after them the copies of other ranks'
+/// that springs lead to. What springs copies have is not known here.
 struct SpringGraph {
-  std::vector<std::int32_t> order;  ///< Nodes along the Morton curve.
-  std::vector<std::uint64_t> key;   ///< Node -> Morton key of its cell
-  std::vector<Point> place;         ///< mm
-  std::vector<CellBox> box;         ///< Only in double precision.
-  std::vector<bool> is_alone;       ///< Nodes that join no cluster; empty if there are none.
+  std::vector<std::int32_t> order;  ///< Nodes along the Morton curve; copies after them.
+  std::vector<host::Copy> copies;
+  host::Ranks* ranks = nullptr;    ///< Who has the other parts; null: this is the whole.
+  std::vector<std::uint64_t> key;  ///< Node -> Morton key of its cell
+  std::vector<Point> place;        ///< mm
+  std::vector<CellBox> box;        ///< Only in double precision.
+  std::vector<bool> is_alone;      ///< Nodes that join no cluster; empty if there are none.
   std::vector<std::int32_t> start;
   std::vector<std::int32_t> other;
   std::vector<std::uint32_t> pattern;
   std::vector<Spring> springs;
   unsigned shift = 0;     ///< Cells are 2^(shift/3) modules wide.
   bool is_cubic = false;  ///< All springs are along the axes, however coarse the level.
+
+  /// Nodes that are no copies.
+  std::size_t own_count() const { return order.size() - copies.size(); }
+
+  bool is_copy(std::int32_t node) const { return static_cast<std::size_t>(node) >= own_count(); }
 };
 
 }  // namespace holdfast::solver

@@ -24,7 +24,7 @@ bool is_positive_definite(const Mat& matrix) {
 std::vector<std::size_t> examples(const SpringGraph& graph) {
   std::vector<bool> is_met(graph.springs.size());
   std::vector<std::size_t> nodes;
-  for (std::size_t node = 0; node < graph.order.size(); ++node) {
+  for (std::size_t node = 0; node < graph.own_count(); ++node) {
     const std::size_t pattern = graph.pattern[node];
     if (graph.start[node + 1] > graph.start[node] && !is_met[pattern]) {
       is_met[pattern] = true;
@@ -80,8 +80,11 @@ std::vector<std::uint8_t> weak_springs(const SpringGraph& graph, host::Team& tea
     return graph.pattern[node] + edge - at(graph.start[node]);
   };
   std::vector<std::uint8_t> edges(graph.other.size());
-  for (std::size_t p = 0; p < graph.order.size(); ++p) {
+  for (std::size_t p = 0; p < graph.own_count(); ++p) {
     for (std::size_t e = at(graph.start[p]); e < at(graph.start[p + 1]); ++e) {
+      if (graph.is_copy(graph.other[e])) {
+        continue;
+      }
       const std::size_t q = at(graph.other[e]);
       edges[e] = is_weak[spring(p, e)] == 1 && is_weak[spring(q, edge_back(graph, p, q))] == 1;
     }

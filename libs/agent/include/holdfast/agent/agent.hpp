@@ -9,6 +9,7 @@
 #include "holdfast/agent/announcements.hpp"
 #include "holdfast/agent/colour.hpp"
 #include "holdfast/agent/conductor.hpp"
+#include "holdfast/agent/free_faces.hpp"
 #include "holdfast/agent/rounds.hpp"
 #include "holdfast/agent/setup.hpp"
 #include "holdfast/agent/sweep.hpp"
@@ -31,7 +32,11 @@
 ///   several: it is one plan. A plan ends when a module sits in its cell.
 /// - kWithdraw: the plan of `cell` is withdrawn, or with kEveryCell all plans; to any one module.
 /// - kRecall: after a restart, what announcements() held before: `cell` and `told`.
-/// - kReceive: `bytes` came in on `face`, one packet.
+/// - kStep: the module is told `word`, number `index` of the `total` words of a step
+///   (step_word.hpp); the others may be told to other modules. All plans withdrawn end it.
+/// - kReceive: `bytes` came in on `face`, one packet. With step_part() they stay where they are
+///   until nothing is unfinished: messages behind one that sets off work are taken when it is
+///   done.
 /// - kLineFree: the line of `face` can take a packet, actions.packet.
 /// - kTime: actions.wake_at has come. It may lie in the past, when an acknowledgement waits for its
 ///   line; handing in kTime again before that line was free brings nothing.
@@ -52,10 +57,13 @@
 /// Its root then conducts the computation by orders down and reports up the tree. Every link is
 /// made reliable (link.hpp). When a module is attached or removed, or a neighbour falls silent, the
 /// work so far is void: the module that notices starts a new round with a higher epoch, and what
-/// belongs to an older one is ignored. A silent neighbour is still part of the structure, so the
-/// verdict is then `undecided`, never `safe`. Nobody waits for ever: a clock of its own ends every
-/// wait of a module as `undecided`, and the root says its verdict again and again, so that a module
-/// that is cut off from it does not keep an old one (watch.hpp).
+/// belongs to an older one is ignored. Once there is a verdict, a plan that begins or ends and a
+/// module that comes do not void all: the tree stands, and the next verdict starts from the
+/// displacements of the last one (Setup::keeps_answers). Whatever does not fit starts a round. A
+/// silent neighbour is still part of the structure, so the verdict is then `undecided`, never
+/// `safe`. Nobody waits for ever: a clock of its own ends every wait of a module as `undecided`,
+/// and the root says its verdict again and again, so that a module that is cut off from it does not
+/// keep an old one (watch.hpp).
 ///
 /// LIMITS. At most kPlannedMax planned modules in the whole robot, and kAnnouncedMax plans and
 /// withdrawals told to one module; more end as `undecided`, as does everything else that the
@@ -67,7 +75,7 @@
 /// most. Not re-entrant: one step at a time.
 namespace holdfast::agent {
 
-inline constexpr std::size_t kAgentBytesMax = 8192;
+inline constexpr std::size_t kAgentBytesMax = 8448;
 
 enum class EventKind : std::uint8_t {
   kStart,
@@ -80,6 +88,7 @@ enum class EventKind : std::uint8_t {
   kContinue,  ///< Only after step_part().
   kWithdraw,
   kRecall,
+  kStep,
 };
 
 struct Event {
@@ -90,6 +99,9 @@ struct Event {
   std::uint16_t random = 0;                  ///< kLinkUp
   base::Cell cell = {};                      ///< kPlan, kWithdraw, kRecall
   std::span<const std::uint8_t> bytes = {};  ///< kReceive
+  StepWord word = {};                        ///< kStep
+  std::uint8_t index = 0;                    ///< kStep: of the word, ...
+  std::uint8_t total = 0;                    ///< ... and how many there are.
 };
 
 struct Actions {
@@ -102,8 +114,8 @@ struct Actions {
 
 class Agent {
  public:
-  /// Keeps a reference to the setup.
-  Agent(const Setup& setup, const Identity& identity);
+  /// Keeps references to the setup, and to what memory is lent.
+  Agent(const Setup& setup, const Identity& identity, const LentMemory* lent = nullptr);
 
   void step(const Event& event, Actions& actions);
 
@@ -120,6 +132,10 @@ class Agent {
   Colour colour() const {
     return colour_of(answer().verdict, own_load_ratio(), ws_.is_fixed, is_root());
   }
+
+  /// Would one more module at this face be safe? kNone where that is not known, as it is without a
+  /// verdict (free_faces.hpp).
+  FreeFace free_face(base::Direction direction) const;
 
   /// The load ratio of one connection of this module, or of a planned module that it emulates, at
   /// the last residual; false if it has none there.
@@ -150,6 +166,10 @@ class Agent {
   /// if there is nothing to wait for.
   Time watch_at() const { return watch_.at(); }
 
+  /// Actions::wake_at having been `wake_at`: is all that this module waits for to watch over its
+  /// verdict, and to greet neighbours that are silent?
+  bool is_only_watching(Time wake_at) const;
+
   /// For how long a verdict stands that the root does not say again. W being the time that the
   /// waves of the last round took here: ping_after + lost_after(timing) + 2 W.
   Time watch_time() const { return watch_.verdict_time(clock_.timing); }
@@ -158,10 +178,23 @@ class Agent {
   /// over a restart hands them in again, kRecall.
   const Announcements& announcements() const { return announcements_; }
 
+  /// The step that the robot was told of, with the verdict on each of its stages; null without the
+  /// memory for it.
+  const Stages* stages() const { return ws_.stages(); }
+
   /// What the root has done to find the equilibrium.
   const Effort& effort() const { return conductor_.effort(); }
 
  private:
+  /// What became of the verdict here.
+  enum class Standing : std::uint8_t {
+    kStands,
+    kWithdrawn,     ///< Something has changed, and the root's kRenew is still to come.
+    kContradicted,  ///< Since then the root has said its verdict again.
+  };
+
+  bool is_withdrawn() const { return standing_ != Standing::kStands; }
+
   // An event comes in.
   void begin(const Event& event, Actions& actions);
   void handle(const Event& event);
@@ -169,9 +202,12 @@ class Agent {
   void receive(Direction face, std::span<const std::uint8_t> packet);
   bool take(Direction face, std::span<const std::uint8_t> message);
   bool take_join(Direction face, const Join& join);
+  bool take_adoption(Direction face, const Adoption& adoption);
   bool expects(Direction face, std::span<const std::uint8_t> message) const;
   void take_expected(Direction face, std::span<const std::uint8_t> message);
+  bool receive_rest();
   void notice_change(Direction face);
+  void forget_packet(Direction face);
   void run_out();
 
   // A piece of what follows.
@@ -182,26 +218,55 @@ class Agent {
   void take_order(const Order& order);
   void keep_order(const Order& order);
 
+  // After a verdict: what has changed is told to the root, and all else stands (agent_changes.cpp).
+  bool can_keep() const;
+
+  bool is_newcomer() const { return is_withdrawn() && !sweep_.has_answered(); }
+
+  void change(const News& news);
+  void withdraw();
+  void tell(const News& news);
+  void take_news(Direction face, const News& news);
+  void welcome(Direction face);
+  bool is_of_newcomer(const Join& join) const;
+  void decline(Direction face, const Join& join);
+  void take_motion(Direction face, const base::Vec6<float>& motion);
+  void take_newcomer(Direction face, const Echo& echo);
+  void go_on_with(const Order& order);
+
   // Rounds.
   void leave_round();
   void abandon_work();
-  void start_round();
-  void enter_round(const Round& round);
+  void start_round(Stage stage = Stage::kNone);
+  void enter_round(const Round& round, Stage stage = Stage::kNone);
+
+  // A step in stages (agent_stages.cpp).
+  void tell_step(const Event& event);
+  bool find_pieces();
+  bool go_on_in_stages(const Report& sum);
+  void hide_links(const Round& round, Stage stage);
+  bool enter_stage(const Join& join);
   void follow_wave(SpanningTree::Wave before);
 
   /// Does this module wait for others, so that its links are watched?
   bool is_waiting() const;
 
   Identity identity_;
-  Clock clock_;
-  bool is_busy_ = false;         ///< There may be something to go on with.
+  bool is_busy_ = false;       ///< There may be something to go on with.
+  bool is_receiving_ = false;  ///< A packet has messages that are not taken yet.
+  bool was_used_ = false;      ///< Was its link used when the packet came?
+  Direction packet_face_ = Direction::kPlusX;
   bool has_next_order_ = false;  ///< An order of the root, or one that has to wait.
+  Standing standing_ = Standing::kStands;
+  Faces welcomed_;  ///< A neighbour that has come, and not taken its place yet.
+  Clock clock_;
   Rounds rounds_;
   Watch watch_;
   Announcements announcements_;
   Workspace ws_;
   Sweep sweep_;
   Order next_order_;
+  std::span<const std::uint8_t> packet_rest_;
   Conductor conductor_;
 };
 

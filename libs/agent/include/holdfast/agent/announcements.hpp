@@ -78,6 +78,9 @@ class Announcements {
 
   Told told(int i) const { return i < count_ ? told_[static_cast<std::size_t>(i)] : lost_; }
 
+  /// Is anything told of this cell in it?
+  bool has(const base::Cell& cell) const { return find(cell) >= 0; }
+
   /// Plans in it.
   int plan_count() const;
 

@@ -6,9 +6,12 @@
 #include <cstdint>
 
 #include "holdfast/agent/energy_bound.hpp"
+#include "holdfast/agent/messages.hpp"
 #include "holdfast/agent/order.hpp"
 #include "holdfast/agent/planned.hpp"
 #include "holdfast/agent/setup.hpp"
+#include "holdfast/agent/stages.hpp"
+#include "holdfast/agent/surroundings.hpp"
 
 /// What the root of the tree does: from each report to the next order, until the verdict.
 ///
@@ -45,7 +48,12 @@
 ///                  | unilateral law: hold
 ///   hold           facets have changed: high | loads
 ///   loads          open feet were held: hold, to compare | verdict
-///   verdict        the same again, while it stands
+///   verdict        the same again, while it stands | a plan or a module has come: renew
+///   word           another word: word | all are known: stage | they make no plan: verdict
+///   stage          other connections are off: a new round | plan | all are judged: verdict
+///   renew          another plan: renew | the same shape as before: verdict | resume | a new round
+///   resume         topples, a planned module touches nothing: verdict | elimination: tree iterate
+///                  | iterate
 ///
 /// Where the robot is held there are no corners: settled: loads. Too many iterations, or nothing
 /// safer left: verdict.
@@ -66,15 +74,41 @@ struct Effort {
   float ratio_error = 0;  ///< Bound at the end.
 };
 
+/// What modules have been lent memory for (LentMemory).
+struct Lent {
+  bool has_fronts = false;
+  bool judges_faces = false;
+};
+
 class Conductor {
  public:
   /// The first order. `root` is the root's own cell, `module_count` how many the wave has counted,
   /// and `depth` how many hops the deepest of them is away.
   Order begin(const Setup& setup, const base::Cell& root, std::uint32_t module_count,
-              std::uint16_t depth);
+              std::uint16_t depth, const Lent& lent = {});
 
   /// The next order, given what the last one has brought.
   Order next(const Setup& setup, const Report& report);
+
+  /// Can the verdict's successor begin from what the robot keeps?
+  bool can_renew(const Setup& setup) const;
+
+  /// The first order after a change of what the verdict was about.
+  Order renew(const Setup& setup, const News& news, const Planned& planned);
+
+  /// The next order, given what kRenew has brought; kNone if only a new round can go on.
+  Order after_renew(const Setup& setup, const Report& report, const Planned& planned);
+
+  /// In place of the verdict: the next scene of the stage that is judged, or the next stage.
+  Order end_scene(const Stages& stages, const Answer& answer);
+
+  /// The next order, given what kWord or kStage has brought; kNone if the stage needs a round of
+  /// its own, as other connections are off in it.
+  Order after_stage(const Setup& setup, const Report& report, const Stages& stages,
+                    const Lent& lent);
+
+  /// Modules that the waves of the round have counted.
+  std::uint32_t census() const { return census_; }
 
   /// After the report to the kVerdict order.
   bool is_finished() const { return asked_ == wire::Operation::kVerdict; }
@@ -99,6 +133,12 @@ class Conductor {
   Order next_of_solve(const Setup& setup, const Report& report);
   Order after_plan(const Report& report);
   Order forget(const Report& report);
+  Order renew_plan(const Setup& setup, std::uint8_t flags, const base::Cell& cell,
+                   const Planned& planned);
+  bool weigh(const Setup& setup, const Report& report, const Planned& planned);
+  Order resume(const Setup& setup, const Planned& planned);
+  Order after_resume(const Report& report);
+  Order after_close(const Setup& setup, const Report& report);
   Order after_hosts(const Report& report);
   Order after_mass(const Setup& setup, const Report& report);
   Order after_angles(const Setup& setup, const Report& report);
@@ -112,6 +152,8 @@ class Conductor {
   std::uint16_t iteration_degree() const;
   std::uint16_t cluster_degree() const;
   bool may_have_clusters() const;
+  bool has_clusters() const;
+  bool had_clusters() const;
   void choose_clusters(const Report& report);
   Order first_iteration();
   Order factor();
@@ -124,6 +166,7 @@ class Conductor {
   Order after_iteration(const Setup& setup, const Report& report);
   Minimum minimum(const Report& report) const;
   double iteration_error(const Setup& setup, const Report& report, double bound);
+  Order leave_fronts(const Setup& setup, bool has_no_room);
   Order leave_one_sweep(const Setup& setup, bool is_unilateral);
 
   Order start_jacobi();
@@ -138,17 +181,37 @@ class Conductor {
   Order settled();
   Order after_corners(const Setup& setup, const Report& report);
   Order after_hold(const Report& report);
-  Order after_loads(const Report& report);
+  Order after_loads(const Setup& setup, const Report& report);
+  Order free_open_feet();
+  Order begin_unilateral(const Setup& setup);
+  double uneven_target() const;
+
+  // Never in a program that knows a floor only.
+  bool is_uneven() const { return kHasSurroundings && is_uneven_; }
+
+  bool may_pull() const { return kHasSurroundings && may_pull_; }
+
   Order decide();
   Order finish(Verdict verdict, Reason reason);
+  Order after_shape(const Report& report);
+  Order say_answer();
+
+  // conductor_stages.cpp
+  Order ask_word(std::uint8_t index, const Report& found);
+  Order after_word(const Report& report, const Stages& stages);
+  bool can_resume_stage(const Setup& setup) const;
+  Order resume_stage(const Setup& setup, const Report& report);
 
   bool is_jacobi() const {
     return effort_.method == Method::kJacobi || effort_.method == Method::kBlockJacobi;
   }
 
-  bool is_one_sweep() const {
-    return effort_.method == Method::kPolynomial || effort_.method == Method::kElimination;
-  }
+  bool is_one_sweep() const { return effort_.method == Method::kPolynomial || is_exact(); }
+
+  bool has_fronts() const;
+
+  /// Does an iteration solve the linear problem but for rounding?
+  bool is_exact() const;
 
   bool was_seen(std::uint32_t hash);
   std::uint32_t jacobi_span() const;
@@ -165,13 +228,27 @@ class Conductor {
   bool is_any_remote_ = false;
   std::uint32_t contact_iterations_max_ = 0;  ///< Under the present law.
   bool is_fixed_ = false;
+  bool is_uneven_ = false;  ///< The rigid body alone does not say whether it topples.
   std::uint16_t extent_ = 0;
+  // From one verdict to the next.
+  bool has_motion_ = false;   ///< Displacements and contact states are those of the verdict, ...
+  bool has_factors_ = false;  ///< ... and elimination's factors; nothing new has stiffness.
+  bool is_resumed_ = false;   ///< This verdict has started from the last one.
+  std::uint16_t wave_depth_ = 0;  ///< Of the tree when the waves had made it.
+  bool is_same_shape_ = false;    ///< All that has changed is that planned modules are there now.
+  bool has_given_up_ = false;     ///< The regularised law may have a state: no method came to it.
+  std::int32_t mass_ = 0;         ///< Of all modules, planned ones included, ...
+  std::array<std::int32_t, 2> moment_{};  ///< ... and their first moments from the root.
 
   // Equilibrium.
   bool is_unilateral_ = false;
   bool is_tilting_ = false;
   bool has_history_ = false;   ///< The last solve was for the same contact states.
   bool is_comparing_ = false;  ///< Open feet freed, to see whether the verdict stays.
+  bool may_pull_ = false;      ///< Weak springs away from a level floor may carry.
+  bool is_standing_ = false;   ///< By the corners that press.
+  bool is_toppling_ = false;   ///< It is only asked whether the robot hangs on weak springs.
+  bool is_second_ = false;     ///< The unilateral law is asked as well, as they may.
   double gamma_ = 0;           ///< (r, z) of conjugate gradients.
   double alpha_ = 0;
   double solve_error_ = 0;  ///< A solve ends when its residual's bound is below.
@@ -184,11 +261,13 @@ class Conductor {
   std::uint8_t stagnation_count_ = 0;
   bool holds_planned_ = false;  ///< Planned modules stand still in M (one-sweep methods), ...
   bool held_planned_ = false;   ///< ... as they did in the last iteration.
+  bool kept_states_ = false;    ///< The last iteration was not good enough to tell contact states.
   std::array<std::uint32_t, kSeenMax> seen_{};
   std::uint8_t seen_count_ = 0;
   // One-sweep methods.
   std::uint16_t depth_ = 0;
   bool has_many_loops_ = false;
+  bool may_have_fronts_ = false;    ///< There is memory, and they have not failed.
   bool has_clusters_ = false;       ///< Iterations are taken with clusters, ...
   bool has_left_clusters_ = false;  ///< They brought nothing: never again.
   bool had_clusters_ = false;       ///< ... as the last one was; ...
@@ -208,6 +287,8 @@ class Conductor {
   double high_ = 0;
   std::uint8_t slope_count_ = 0;
   // The end.
+  bool judges_faces_ = false;  ///< There is memory to judge free faces, ...
+  bool has_judged_ = false;    ///< ... and those of the robot as it is have been.
   std::uint32_t open_held_count_ = 0;
   Answer answer_;
 };

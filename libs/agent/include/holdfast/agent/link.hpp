@@ -13,9 +13,11 @@
 ///
 /// Both ends greet each other with fresh random numbers (a session); the checksum of every later
 /// packet starts from them, so that packets of an earlier session, or of another neighbour, fail
-/// it. Packets carry a 6-bit sequence number and acknowledge what has come the other way; at most
-/// kWindow of them are under way, and all are sent again when no acknowledgement comes in time
-/// (go-back-N). An acknowledgement waits a little for data to ride on.
+/// it. A neighbour that has fallen silent is greeted every `ping_after`, so that both sides find
+/// each other when it comes back. Packets carry a 6-bit sequence number and acknowledge what has
+/// come the other way; at most kWindow of them are under way, and all are sent again when no
+/// acknowledgement comes in time (go-back-N). An acknowledgement waits a little for data to ride
+/// on.
 namespace holdfast::agent {
 
 /// In the port's unit, for instance microseconds; only differences and order matter.
@@ -42,6 +44,8 @@ class Link {
   static constexpr int kWindow = 4;
   /// Bytes that can wait to be sent or acknowledged: a whole sweep of the largest messages.
   static constexpr int kQueueBytes = 320;
+  /// The same where a longer queue is lent: a window of the largest packets and more.
+  static constexpr int kLentBytes = 1024;
 
   /// A neighbour is there. `nonce` should differ each time. 0 and the last one are never used, the
   /// next number is; if it is that of a session before this object was made, which the neighbour
@@ -50,8 +54,12 @@ class Link {
 
   void bring_down();
 
-  /// The neighbour has said what it must not: it counts as silent.
-  void lose() { state_ = State::kLost; }
+  /// A longer queue, kLentBytes; while the link is down. Who has one has long streams, and
+  /// acknowledges every second packet that is full at once.
+  void lend(std::uint8_t* queue) { lent_ = queue; }
+
+  /// The neighbour has said what it must not: it counts as silent, and is not listened to any more.
+  void lose();
 
   State state() const { return state_; }
 
@@ -62,6 +70,9 @@ class Link {
 
   /// Can a message of so many bytes be queued?
   bool has_room(int bytes) const { return queued_bytes_ + bytes <= kQueueBytes; }
+
+  /// The same for a long stream, which may use a queue that is lent.
+  bool has_long_room(int bytes) const { return queued_bytes_ + bytes <= capacity(); }
 
   /// Forgets queued messages of which no byte has been sent.
   void drop_unsent();
@@ -75,7 +86,8 @@ class Link {
   /// the next call. Empty: more is needed. Bytes that are no message make the link lost.
   std::span<const std::uint8_t> next_message(std::span<const std::uint8_t>& stream);
 
-  /// The neighbour has greeted with another number: it has started again. Says so once.
+  /// The neighbour has greeted with another number: it has started again; or it was silent, and is
+  /// heard again. Says so once.
   bool take_restarted();
 
   /// Is there a packet to send now?
@@ -94,8 +106,14 @@ class Link {
   std::span<const std::uint8_t> receive_greeting(std::span<const std::uint8_t> body);
   void receive_acknowledgement(std::uint8_t next, const LinkTiming& timing, Time now);
   int write_greeting(std::span<std::uint8_t> packet, const LinkTiming& timing, Time now);
+  std::uint8_t* queue();
+  int capacity() const;
+  std::uint16_t wrapped(int position) const;
   int packet_chunk(const LinkTiming& timing) const;
   Time patience(const LinkTiming& timing) const;
+
+  /// Is a neighbour greeted that has fallen silent?
+  bool is_calling() const { return state_ == State::kLost && retry_at_ != kNever; }
 
   State state_ = State::kDown;
   bool needs_greeting_ = false;
@@ -116,11 +134,12 @@ class Link {
   std::uint8_t known_count_ = 0;  ///< Packets whose size is fixed as they have been sent before.
   std::uint8_t send_number_ = 0;  ///< Sequence number of the packet at head.
   std::uint8_t retry_count_ = 0;
-  Time retry_at_ = kNever;
+  std::uint8_t receive_number_ = 0;  // Beside them, as there is room.
+  bool owes_acknowledgement_ = false;
+  Time retry_at_ = kNever;        ///< On a lost link: of the next greeting.
+  std::uint8_t* lent_ = nullptr;  ///< Not owned; in place of queue_.
 
   // Receiving.
-  std::uint8_t receive_number_ = 0;
-  bool owes_acknowledgement_ = false;
   Time acknowledge_at_ = kNever;
   Time heard_at_ = 0;
   std::array<std::uint8_t, wire::kMessageBytesMax> message_{};

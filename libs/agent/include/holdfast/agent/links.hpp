@@ -26,8 +26,17 @@ class Links {
  public:
   Links() { deadline_.fill(kNever); }
 
-  /// Faces whose link is used: a neighbour is there and answers.
-  Faces used() const;
+  /// Faces whose link is used: a neighbour is there and answers, and it is not hidden.
+  Faces used() const { return working() - hidden_; }
+
+  /// The same with hidden ones.
+  Faces working() const;
+
+  /// Links that have no part in the round, though they work: their connections are off in the stage
+  /// that is judged.
+  Faces hidden() const { return hidden_; }
+
+  void hide(Faces faces) { hidden_ = faces; }
 
   /// Faces of neighbours that ought to answer and do not.
   Faces silent() const { return silent_; }
@@ -40,6 +49,11 @@ class Links {
 
   /// Can a message of so many bytes be queued on the link of `face`?
   bool has_room(Direction face, int bytes) const { return at(face).has_room(bytes); }
+
+  bool has_long_room(Direction face, int bytes) const { return at(face).has_long_room(bytes); }
+
+  /// Lends every link a longer queue, `face` times Link::kLentBytes from here.
+  void lend(std::uint8_t* queues);
 
   /// Has a neighbour fallen silent by what was sent since the last call?
   bool take_refusal();
@@ -88,7 +102,7 @@ class Links {
   Faces waiting() const { return waiting_; }
 
   /// When a link has to be looked after at the latest.
-  Time deadline() const;
+  Time deadline(Faces faces = Faces::all()) const;
 
  private:
   Link& at(Direction face) { return links_[static_cast<std::size_t>(face)]; }
@@ -100,6 +114,7 @@ class Links {
   Faces touched_;  ///< Whose link has changed in this step.
   Faces waiting_;
   Faces silent_;
+  Faces hidden_;
   bool has_refused_ = false;  ///< A neighbour has not taken a message.
   std::uint8_t refused_count_ = 0;
 };

@@ -25,7 +25,8 @@ namespace holdfast::agent {
 struct Join {
   Round round = {};
   std::uint8_t wave = 1;
-  base::Cell cell = {};  ///< Cell of the sender in the first wave, else of the wave's root.
+  std::uint8_t stage = 0;  ///< Of a step that is judged in this round, or 0.
+  base::Cell cell = {};    ///< Cell of the sender in the first wave, else of the wave's root.
   std::uint16_t hops =
       0;  ///< Hops of the sender; beyond kExtentMax stands for all that is further.
 };
@@ -53,11 +54,33 @@ struct Mark {
   base::Cell sender = {};  ///< Cell of the module that sent it first.
 };
 
+/// To a neighbour that has come after a verdict: your place in the tree that stands. What moves it
+/// follows as six reals, `vector`.
+struct Adoption {
+  Round round = {};
+  base::Cell sender = {};
+  base::Cell root = {};
+  std::uint16_t hops = 0;       ///< Of the sender.
+  std::uint32_t wave_time = 0;  ///< How long the waves took (watch.hpp).
+  float load_ratio = 0;         ///< Of the connection, if it was planned.
+};
+
+/// What has changed after a verdict.
+struct News {
+  std::uint8_t flags = 0;  ///< kIsFulfilled, kIsEnded, kIsGrown; none: a cell is planned.
+  std::uint16_t hops = 0;  ///< With kIsGrown: of the module that has come.
+  base::Cell cell = {};
+};
+
 /// In the label of `planned down`: the index, and for an iteration which part of a displacement it
 /// is.
 inline constexpr std::uint8_t kPlannedIndexMask = 0x3f;
 inline constexpr std::uint8_t kLeadingPart = 0x40;
 inline constexpr std::uint8_t kTrailingPart = 0x80;
+
+/// In the label of `reach`: those below are parts of a LoadWay, this is what is outside of a
+/// subtree.
+inline constexpr std::uint8_t kReachLabelLast = 6;
 
 /// Six reals and what they are: an exchange's tag, a planned index, a column, a loop.
 struct LabelledVector {
@@ -75,6 +98,8 @@ wire::Writer encode(const Echo& echo);
 wire::Writer encode(const Appointment& appointment);
 wire::Writer encode(const Mark& mark);
 wire::Writer encode(const Cut& cut);
+wire::Writer encode(const Adoption& adoption);
+wire::Writer encode(const News& news);
 wire::Writer encode(const LabelledVector& labelled);
 
 /// Reads a message of this type. False: no program of this version writes it.
@@ -83,12 +108,18 @@ bool decode(std::span<const std::uint8_t> message, Echo& echo);
 bool decode(std::span<const std::uint8_t> message, Appointment& appointment);
 bool decode(std::span<const std::uint8_t> message, Mark& mark);
 bool decode(std::span<const std::uint8_t> message, Cut& cut);
+bool decode(std::span<const std::uint8_t> message, Adoption& adoption);
+bool decode(std::span<const std::uint8_t> message, News& news);
 bool decode(std::span<const std::uint8_t> message, LabelledVector& labelled);
 
 inline wire::Writer vector_message(wire::MessageType type, std::uint8_t label,
                                    const base::Vec6<float>& vector) {
   return encode(LabelledVector{.type = type, .label = label, .vector = vector});
 }
+
+/// A part of the occupied cells (occupied_cells.hpp): its index and its bits.
+wire::Writer part_message(wire::MessageType type, std::uint8_t index,
+                          std::span<const std::uint8_t> bits);
 
 /// A message that is legal, as a value.
 template <class Message>

@@ -6,6 +6,8 @@
 #include <cstdint>
 
 #include "holdfast/agent/setup.hpp"
+#include "holdfast/agent/surroundings.hpp"
+#include "holdfast/agent/system.hpp"
 #include "holdfast/base/algebra.hpp"
 #include "holdfast/base/faces.hpp"
 #include "holdfast/mechanics/ground_contact.hpp"
@@ -49,14 +51,19 @@ struct Node {
   bool is_ground = false;
   bool is_held = true;  ///< Against slip and twist (unilateral law).
   bool was_released = false;
-  bool has_changed = false;        ///< Wanted another state than was in use, at the last iteration.
+  bool has_changed = false;  ///< Wanted another state than was in use, at the last iteration.
+  bool is_kept = false;      ///< With fronts: its facet has not held all over, and is the root's.
   mechanics::ContactState state;   ///< In use.
   mechanics::ContactState wanted;  ///< That the law prescribes for u.
+  NodeVector vector;
+  NodeMatrix matrix;
+#ifndef HOLDFAST_AGENT_FLOOR_ONLY
+  /// Lent; null: a floor only. Else the facets have states of their own, and those above are void.
+  Surroundings* surroundings = nullptr;
+#endif
 
   base::Vec6<double> u{};
   base::Vec6<double> force{};  ///< Force of all beams on their module ends, at u.
-  NodeVector vector;
-  NodeMatrix matrix;
 };
 
 /// One module's vectors in the Jacobi methods and conjugate gradients, named as in the method:
@@ -92,35 +99,52 @@ struct IterationVectors {
   SearchDirection newer;
 };
 
+/// What a method with minimal residuals keeps of a node: its vectors, or, of a planned module that
+/// is condensed, the factor of what holds it.
+union IterationMemory {
+  IterationVectors vectors{};
+  System factor;
+};
+
 /// Brings a node back to rest: no displacement, the facet stuck.
 void reset(Node& node);
 
-/// The vectors of a node at rest: the residual is the weight.
+/// What acts on a node from outside but facets: its weight, or what its surroundings say.
+base::Vec6<double> load_of(const Node& node, const Setup& setup);
+
+/// The vectors of a node at rest: the residual is the load.
 Gradients gradients_at_rest(const Node& node, const Setup& setup);
 
-/// Factors the diagonal block: K11 of the beams on `faces` and the facet's symmetric tangent.
-void factor_diagonal(Node& node, const Setup& setup, const ContactSetting& contact,
-                     base::Faces faces);
+/// Three columns of the diagonal block into Node::matrix, the first or (half 1) the last ones: K11
+/// of the beams on `faces` and the facet's symmetric tangent.
+void form_diagonal(Node& node, const Setup& setup, const ContactSetting& contact, base::Faces faces,
+                   int half);
 
-/// The diagonal block with the facet's true tangent.
-base::Mat6<double> diagonal_block(const Node& node, const Setup& setup,
-                                  const ContactSetting& contact, base::Faces faces);
+/// Factors what form_diagonal() has left, three rows of it.
+void factor_diagonal(Node& node, int half);
 
-/// The scalar diagonal of diagonal_block() (Eq. 14).
+/// A column of the diagonal block with the facet's true tangent.
+base::Vec6<double> diagonal_column(const Node& node, const Setup& setup,
+                                   const ContactSetting& contact, base::Faces faces, int column);
+
+/// The scalar diagonal of that block (Eq. 14).
 base::Vec6<float> scalar_diagonal(const Node& node, const Setup& setup,
                                   const ContactSetting& contact, base::Faces faces);
 
 /// Solves with the factor that factor_diagonal() has left.
 base::Vec6<float> solve_diagonal(const Node& node, base::Vec6<float> vector);
 
-/// Residual at u: weight less beams less facet, in the state in use. Zero on a fixed module.
+/// Residual at u: load less beams less facets, in the states in use. Zero on a fixed module.
 base::Vec6<double> residual(const Node& node, const Setup& setup, const ContactSetting& contact);
 
-/// The force of the facet at u + t g, in the state that the law prescribes there.
+/// u + t g.
+base::Vec6<double> position_along(const Node& node, const base::Vec6<float>& g, double t);
+
+/// The force of the facets at u + t g, in the states that the law prescribes there.
 base::Vec6<double> facet_force_along(const Node& node, const ContactSetting& contact,
                                      const base::Vec6<float>& g, double t);
 
-/// The state that the law prescribes at u + t g.
+/// The state that the law prescribes at u + t g for the facet of a node without surroundings.
 mechanics::ContactState state_along(const Node& node, const ContactSetting& contact,
                                     const base::Vec6<float>& g, double t);
 

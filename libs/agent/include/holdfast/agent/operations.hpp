@@ -98,6 +98,21 @@ inline constexpr OperationInfo kOperations[] = {
      "begin an equilibrium, find rigid clusters"},
     {wire::Operation::kForget, "forget", 12, 14, Phase::kMass, {}, false, false,
      "forget a plan that has ended"},
+    {wire::Operation::kRenew, "renew", 12, 40, Phase::kMass, {}, false, false,
+     "a change after the verdict"},
+    {wire::Operation::kResume, "resume", 30, 20, Phase::kEquilibrium,
+     {.fixed = 2, .is_counted = true, .is_behind = true, .never_with = kStandsApart}, true, false,
+     "hosts, safe angles, an equilibrium from what is kept"},
+    {wire::Operation::kClose, "close", 2, 35, Phase::kModel, {}, false, false,
+     "support corners, the worst connection"},
+    {wire::Operation::kWord, "word", 18, 23, Phase::kMass, {}, false, false,
+     "words of a step"},
+    {wire::Operation::kStage, "stage", 22, 7, Phase::kMass, {}, false, false,
+     "the next stage of a step"},
+    {wire::Operation::kShape, "shape", 2, 41, Phase::kOverload, {}, false, false,
+     "box, supports, the largest load ratio"},
+    {wire::Operation::kNext, "next", 35, 10, Phase::kOverload, {}, false, false,
+     "where the next module may go"},
 };
 // clang-format on
 

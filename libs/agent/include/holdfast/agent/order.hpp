@@ -34,8 +34,10 @@ enum class Reason : std::uint8_t {
   kAmbiguousFeet,    ///< The verdict depends on feet that are neither held nor free.
   kNoAnswer,         ///< The computation has stopped, or the root is no longer heard.
   kNoAnchor,         ///< Nobody has said where this module is.
+  kInPieces,         ///< In a stage of a step the robot would be in pieces.
+  kStepUnclear,      ///< The words of a step are missing, contradict each other, or do not fit.
 };
-inline constexpr int kReasonCount = 14;
+inline constexpr int kReasonCount = 16;
 
 const char* name(Verdict verdict);
 const char* name(Reason reason);
@@ -51,6 +53,21 @@ struct Answer {
   friend constexpr bool operator==(const Answer&, const Answer&) = default;
 };
 
+/// Does the reason belong to the verdict? One changed byte of an answer makes it another one that
+/// does not.
+constexpr bool is_reasoned(const Answer& answer) {
+  switch (answer.verdict) {
+    case Verdict::kSafe:
+      return answer.reason == Reason::kHolds;
+    case Verdict::kOverload:
+      return answer.reason == Reason::kBreaks;
+    case Verdict::kUnstable:
+      return answer.reason == Reason::kTopples;
+    default:
+      return answer.reason >= Reason::kNeighbourSilent;
+  }
+}
+
 /// In kPlan: no planned module is learned yet.
 inline constexpr std::uint8_t kNoPlanned = 0xff;
 
@@ -63,17 +80,20 @@ inline constexpr std::uint16_t kJacobiCountMax = 4096;
 /// operation. See docs/wire.md.
 struct Order {
   wire::Operation operation{};
-  std::uint8_t index = 0;  ///< kPlan: planned index learned, kPlannedMax: one too many, or 0xff.
+  /// kPlan: planned index learned, kPlannedMax: one too many, or 0xff. kWord: of the word learned,
+  /// or kNoWord. kStage: the stage that is judged next, or 0.
+  std::uint8_t index = 0;
   std::uint8_t flags = 0;
-  std::uint16_t count = 0;  ///< kJacobi: iterations; kStart, kGradient, kBegin, kIterate: degree.
-  base::Cell cell = {};     ///< kPlan, kForget: of that module; kMass: of the root.
-  std::array<std::uint8_t, 8> masks{};   ///< kHosts
-  std::int32_t mass = 0;                 ///< kAngles: of all modules, in units.
-  std::array<std::int32_t, 2> moment{};  ///< kAngles: first moments in x and y, units times cells.
+  /// kJacobi: iterations; kStart, kGradient, kBegin, kIterate: degree; kWord: words; kStage: scene.
+  std::uint16_t count = 0;
+  base::Cell cell = {};  ///< kPlan, kForget, kRenew, kWord: of that module; kMass: of the root.
+  std::array<std::uint8_t, 8> masks{};  ///< kHosts, kResume
+  std::int32_t mass = 0;  ///< kAngles, kResume: of all modules, in units; kWord: bits_of() a word.
+  std::array<std::int32_t, 2> moment{};  ///< The same: first moments in x and y, units times cells.
   std::array<float, 3> reals{};
-  Answer answer = {};  ///< kVerdict
+  Answer answer = {};  ///< kVerdict; kStage: of the stage that was judged.
 
-  // kBegin, kClusters
+  // kBegin, kClusters, kResume
   constexpr float gamma() const { return reals[0]; }  ///< Share of weak springs in open facets.
 
   constexpr float lever_mm() const { return reals[1]; }  ///< The robot's extent.
@@ -99,13 +119,36 @@ struct Order {
   constexpr float a() const { return reals[1]; }
 
   constexpr float b() const { return reals[2]; }
+
+  // kNext; `count` supports.
+  constexpr float ratio_error() const { return reals[0]; }  ///< Bound on that of load ratios.
+
+  constexpr float ratio_now() const { return reals[1]; }  ///< The largest load ratio.
+
+  constexpr float facet_margin() const { return reals[2]; }  ///< As Report::facet_margin().
+
+  constexpr base::Cell far_cell() const { return {mass, moment[0], moment[1]}; }
+
+  constexpr void set_far_cell(const base::Cell& far) {  ///< The box is from cell to this one.
+    mass = far.x;
+    moment = {far.y, far.z};
+  }
 };
 
 /// Flags of orders.
-inline constexpr std::uint8_t kIsFulfilled = 1;     ///< kForget
+inline constexpr std::uint8_t kIsFulfilled = 1;  ///< kForget, kRenew
+inline constexpr std::uint8_t kIsEnded = 2;      ///< kRenew: the plan of cell; else a new one, ...
+inline constexpr std::uint8_t kIsGrown = 4;      ///< ... or a module has come to cell, ...
+inline constexpr std::uint8_t kIsUnchanged = 8;  ///< ... or nothing more is to be learned.
+inline constexpr std::uint8_t kKeepsMotion = 8;  ///< kResume: displacements, contact states.
+inline constexpr std::uint8_t kRests = 16;       ///< kResume: safe angles are asked for.
+/// kResume: planned modules between others, which no exchange reaches yet.
+inline constexpr std::uint8_t kStandsApart = 32;
+inline constexpr std::uint8_t kKeepsFactors = 64;   ///< kRenew, kResume: those of elimination.
 inline constexpr std::uint8_t kUnilateralLaw = 1;   ///< kBegin
 inline constexpr std::uint8_t kOneSweep = 2;        ///< kBegin: for kIterate or kTreeIterate.
 inline constexpr std::uint8_t kWithIterations = 4;  ///< kBegin: for kIterate.
+inline constexpr std::uint8_t kWithFronts = 8;      ///< kBegin: elimination with fronts.
 inline constexpr std::uint8_t kFollowStates = 1;    ///< kLow: take over wanted states.
 inline constexpr std::uint8_t kRestart = 1;         ///< kIterate: without older directions.
 inline constexpr std::uint8_t kLeastResidual = 2;   ///< kIterate: least residual, not least energy.
@@ -120,6 +163,14 @@ inline constexpr std::uint8_t kExchangeFirst = 1;  ///< kSlope
 inline constexpr std::uint8_t kMixProducts = 2;    ///< kSlope: how to mix the last two iterates.
 inline constexpr std::uint8_t kReleaseOpen = 1;    ///< kHold
 inline constexpr std::uint8_t kFreeOpen = 2;       ///< kHold: of all open facets, for comparison.
+inline constexpr std::uint8_t kIsHeld = 1;         ///< kNext: a module is fixed, nothing topples.
+inline constexpr std::uint8_t kHasForces = 2;      ///< kNext: there is an equilibrium, ...
+inline constexpr std::uint8_t kIsUnilateral = 4;   ///< ... by the unilateral law.
+
+/// Does a kRenew tell of one plan more?
+constexpr bool is_new_plan(const Order& renew) {
+  return (renew.flags & (kIsEnded | kIsGrown | kIsUnchanged)) == 0;
+}
 
 /// Masses are whole numbers of a unit that all modules of a robot agree on; all of them weigh one
 /// unit so far. First moments stay exact, and below this even where a neighbour makes them up.
@@ -131,6 +182,9 @@ inline constexpr base::Direction kStandingFacet = base::Direction::kMinusZ;
 /// The load ratio of what has no connection: below every real one, and a number.
 inline constexpr float kNoLoadRatio = -1e20F;
 
+/// The least pressure at the facets of a robot without feet that could let go.
+inline constexpr float kNoFacetMargin = 1e20F;
+
 /// What comes back, summed up the tree. Operations share the fields; most have a name for each.
 struct Report {
   std::uint8_t flags = 0;
@@ -138,7 +192,8 @@ struct Report {
   std::uint16_t extent = 0;
   std::uint32_t count = 0;
   std::uint32_t number = 0;
-  std::array<std::int64_t, 3> moment{};  ///< kMass: first moments, units of mass times cells.
+  std::array<std::int64_t, 3>
+      moment{};  ///< kMass, kRenew: first moments, units of mass times cells.
   std::array<float, 5> reals{};
   std::array<double, 3> products{};  ///< kIterate
   base::Cell cell = {};
@@ -169,7 +224,7 @@ struct Report {
 
   constexpr float mix_square() const { return reals[1]; }
 
-  // kMass
+  // kMass, kRenew
   constexpr std::uint32_t mass() const { return number; }  ///< Units, of all modules.
 
   // kHold
@@ -177,6 +232,30 @@ struct Report {
 
   // kClusters: `count` beams between clusters; these do not lead to the parent cluster.
   constexpr std::uint32_t stray_count() const { return number; }
+
+  // kShape: `count` supports.
+  constexpr std::int64_t cut_label() const { return moment[0]; }  ///< Sum modulo 2, free_faces.hpp.
+
+  constexpr base::Cell far_cell() const {  ///< The box is from cell to this one.
+    return {static_cast<std::int32_t>(number), static_cast<std::int32_t>(moment[1]),
+            static_cast<std::int32_t>(moment[2])};
+  }
+
+  constexpr void set_far_cell(const base::Cell& far) {
+    number = static_cast<std::uint32_t>(far.x);
+    moment[1] = far.y;
+    moment[2] = far.z;
+  }
+
+  constexpr float ratio_below() const { return reals[0]; }  ///< The largest load ratio.
+
+  /// The least pressure at an edge of a facet, in N; negative if one does not press all over.
+  constexpr float facet_margin() const { return reals[1]; }
+
+  constexpr std::uint8_t support_hops() const { return mask; }  ///< To the nearest one.
+
+  // kNext: `count` free faces are decided.
+  constexpr std::uint32_t undecided_count() const { return number; }  ///< Free faces that are not.
 
   // kLoads
   constexpr float worst_load_ratio() const { return reals[0]; }
@@ -190,11 +269,24 @@ inline constexpr std::uint8_t kAnyRemote = 0x80;      ///< kHosts
 inline constexpr std::uint8_t kAnyFixed = 1;          ///< kMass
 inline constexpr std::uint8_t kSumOverflow = 2;       ///< kMass
 inline constexpr std::uint8_t kManyLoops = 4;         ///< kMass: more than a Branch can hold.
+inline constexpr std::uint8_t kUneven = 8;            ///< kMass: kAngles would not be exact.
 inline constexpr std::uint8_t kTooManyAnnounced = 2;  ///< kPlan
 inline constexpr std::uint8_t kEnded = 4;             ///< kPlan: the plan of cell has ended, ...
 inline constexpr std::uint8_t kFulfilled = 8;         ///< ... as a module sits there.
 inline constexpr std::uint8_t kDisputed = 16;         ///< kPlan
+inline constexpr std::uint8_t kMoreAnnounced = 8;     ///< kRenew: cell is planned, too.
+inline constexpr std::uint8_t kAtOdds = 16;           ///< kRenew: only a new round can settle it.
+inline constexpr std::uint8_t kNewLoop = 32;          ///< kRenew: factors cannot be kept.
 inline constexpr std::uint8_t kAnyTilting = 1;        ///< kLow
+inline constexpr std::uint8_t kNoRoom = 2;            ///< kTreeIterate: a front found no room.
+inline constexpr std::uint8_t kNoState = 4;  ///< kTreeIterate: the root found no contact state.
+/// kLow, kIterate, kTreeIterate: away from a level floor a facet is open or tilts, so its weak
+/// spring may carry.
+inline constexpr std::uint8_t kMayPull = 8;
+inline constexpr std::uint8_t kStepTold = 32;  ///< kPlan: a step was told.
+inline constexpr std::uint8_t kDenied = 2;     ///< kWord: a word does not fit this module.
+inline constexpr std::uint8_t kSplit = 4;  ///< kWord: the robot would be in pieces, in stage mask.
+inline constexpr std::uint8_t kNewLinks = 1;  ///< kStage: other connections are off than before.
 
 wire::Writer encode(const Order& order);
 wire::Writer encode(wire::Operation operation, const Report& report);

@@ -53,6 +53,15 @@ class Planned {
   /// kPlannedMax cells the later ones are not kept.
   void add(const base::Cell& cell, const base::Cell& self);
 
+  /// The index of a planned cell, or -1.
+  int find(const base::Cell& cell) const;
+
+  /// Nobody emulates planned modules until decide_hosts().
+  void forget_hosts();
+
+  /// One less; who hosts the others has to be decided anew.
+  void remove(int index);
+
   /// Learns which faces of planned module `index` touch modules below the child at `child`. An
   /// index of none is ignored.
   void add_below(base::Direction child, int index, base::Faces touching);

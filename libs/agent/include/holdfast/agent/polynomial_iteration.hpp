@@ -4,6 +4,7 @@
 
 #include <array>
 
+#include "holdfast/agent/condensing.hpp"
 #include "holdfast/agent/exchange_method.hpp"
 #include "holdfast/agent/order.hpp"
 #include "holdfast/agent/workspace.hpp"
@@ -14,16 +15,21 @@ namespace holdfast::agent {
 /// and contact states included (src/minimal_residuals.hpp).
 class PolynomialIteration : public ExchangeMethod {
  public:
-  void begin(Workspace& ws, const Order& order);
+  bool begin(Workspace& ws, const Order& order, int piece);
 
-  void take_exchange(Workspace& ws, const Order& order);
+  bool take_exchange(Workspace& ws, const Order& order, int piece);
+
+  bool condense(Workspace& ws, const Order& order, int piece) {
+    return condensing_.do_piece(ws, order, memory_, piece);
+  }
 
   static PlannedPart planned_part(const Workspace& ws, const Order& order);
 
-  Report report(Workspace& ws, const Order& order);
+  bool report(Workspace& ws, const Order& order, int piece, Report& sum);
 
  private:
-  std::array<IterationVectors, 1 + kPlannedMax> vectors_{};
+  std::array<IterationMemory, 1 + kPlannedMax> memory_{};
+  Condensing condensing_;
   float rho_ = 0;  ///< Coefficient of the polynomial.
 };
 

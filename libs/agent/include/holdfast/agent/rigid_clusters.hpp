@@ -7,6 +7,7 @@
 #include <span>
 
 #include "holdfast/agent/cluster.hpp"
+#include "holdfast/agent/condensing.hpp"
 #include "holdfast/agent/order.hpp"
 #include "holdfast/agent/tree_elimination.hpp"
 #include "holdfast/agent/workspace.hpp"
@@ -33,7 +34,7 @@ namespace holdfast::agent {
 /// may have changed; the displacements come down before the next order.
 class RigidClusters {
  public:
-  void begin(Workspace& ws, const Order& order);
+  bool begin(Workspace& ws, const Order& order, int piece);
 
   /// Its messages may come as soon as there are clusters anywhere.
   static bool expects(const Workspace&, const Order&, Direction,
@@ -44,7 +45,11 @@ class RigidClusters {
   void take(Workspace& ws, const Order& order, Direction face,
             std::span<const std::uint8_t> message);
 
-  void take_exchange(Workspace& ws, const Order& order);
+  bool take_exchange(Workspace& ws, const Order& order, int piece);
+
+  bool condense(Workspace& ws, const Order& order, int piece) {
+    return condensing_.do_piece(ws, order, memory_, piece);
+  }
 
   bool do_piece(Workspace& ws, const Order& order);
 
@@ -52,7 +57,7 @@ class RigidClusters {
 
   static PlannedPart planned_part(const Workspace& ws, const Order& order);
 
-  Report report(Workspace& ws, const Order& order);
+  bool report(Workspace& ws, const Order& order, int piece, Report& sum);
 
  private:
   /// What a module does next: in kClusters, then in a kIterate.
@@ -74,7 +79,8 @@ class RigidClusters {
   bool send_load(Workspace& ws);
   bool shift(Workspace& ws, const Order& order);
 
-  std::array<IterationVectors, 1 + kClusterPlannedMax> vectors_{};
+  std::array<IterationMemory, 1 + kClusterPlannedMax> memory_{};
+  Condensing condensing_;
   Cluster cluster_;
   float rho_ = 0;   ///< Coefficient of the polynomial.
   Faces parent_;    ///< In the clusters' tree.

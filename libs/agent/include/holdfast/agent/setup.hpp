@@ -16,6 +16,7 @@ enum class Method : std::uint8_t {
   kConjugateGradients,  ///< Preconditioned with the 6x6 diagonal blocks.
   kPolynomial,   ///< One sweep an iteration, with a polynomial of 1.5 times the tree's depth.
   kElimination,  ///< One sweep an iteration, exactly over the tree; for robots with few loops.
+  kFronts,       ///< kElimination, and for many loops and other laws fronts in memory that is lent.
 };
 
 /// What is known before the robot is built, the same for all its modules. N, mm, MPa.
@@ -32,9 +33,13 @@ struct Setup {
   std::int32_t support_z = 0;  ///< Modules in this layer rest on the ground.
   /// kElimination means: or kPolynomial, if the robot has too many loops.
   Method method = Method::kElimination;
-  /// Where elimination does not do, the verdict is `undecided`: for robots some of whose modules
-  /// have no other method (src/method.hpp).
-  bool only_elimination = false;
+  /// Elimination and the polynomial alone, without rigid clusters; where they do not do, the
+  /// verdict is `undecided`: for robots some of whose modules have no other method
+  /// (src/methods.hpp).
+  bool only_one_sweep = false;
+  /// After a verdict the next one begins from what is kept, where only a plan has changed or a
+  /// module has come; else, and without it, from nothing.
+  bool keeps_answers = false;
   std::uint32_t iteration_count_max = 4'000'000;
   /// Degree of the polynomial preconditioner of conjugate gradients. A degree m costs m rounds more
   /// and saves about a factor m of sweeps of twice the tree's depth, so the depth is a good degree.

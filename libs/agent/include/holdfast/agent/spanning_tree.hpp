@@ -79,8 +79,8 @@ class SpanningTree {
 
   // ---- Waves.
 
-  /// A round begins: there is no tree.
-  void leave();
+  /// A round begins, of this stage of a step or 0: there is no tree.
+  void leave(std::uint8_t stage = 0);
 
   /// Starts `wave` from this module.
   void start_wave(Links& links, const Round& round, Wave wave);
@@ -103,6 +103,19 @@ class SpanningTree {
   bool take_appointment(Links& links, const Round& round, const Appointment& appointment);
   void take_mark(Links& links, const Round& round, const Mark& mark);
 
+  // ---- A module that comes after the waves.
+
+  /// This module takes its place below the neighbour at `face`, as if the third wave had come.
+  void adopt(Links& links, Direction face, const Adoption& adoption);
+
+  /// A neighbour that has adopted this module as well, or stands beside it.
+  void take_adoption(Links& links, Direction face, const Adoption& adoption);
+
+  /// What this module tells a neighbour that has come.
+  Adoption adoption(const Round& round) const {
+    return {.round = round, .sender = cell_, .root = root_cell_, .hops = hops_};
+  }
+
   /// Has the wave come back to this module, where it started? Says so once.
   bool take_return();
 
@@ -119,6 +132,7 @@ class SpanningTree {
   Wave wave_ = Wave::kNone;
   bool has_cell_;
   bool has_returned_ = false;
+  std::uint8_t stage_ = 0;
   Faces parent_;
   Faces children_;
   Faces awaited_;  ///< Neighbours that have neither joined nor echoed.

@@ -6,6 +6,7 @@
 #include <span>
 
 #include "holdfast/agent/announcements.hpp"
+#include "holdfast/agent/front_elimination.hpp"
 #include "holdfast/agent/krylov_and_jacobi.hpp"
 #include "holdfast/agent/order.hpp"
 #include "holdfast/agent/polynomial_iteration.hpp"
@@ -25,6 +26,7 @@ union MethodState {
   TreeElimination elimination;
   PolynomialIteration polynomial;
   RigidClusters clusters;
+  FrontElimination fronts;
   KrylovAndJacobi gradients;
 };
 
@@ -32,12 +34,14 @@ union MethodState {
 /// equilibrium, by what MethodState holds.
 enum class Course : std::uint8_t {
   kWaves,
+  kStaged,  ///< Behind a kStage.
   kPlanned,
   kHosted,
   kWeighed,
   kElimination,
   kPolynomial,
   kClusters,
+  kFronts,
   kGradients,
   kAnswered,
 };
@@ -58,11 +62,17 @@ class Sweep {
   /// Has the root given an order in this round?
   bool has_begun() const { return course_ != Course::kWaves; }
 
+  /// Was the root's last order its verdict?
+  bool has_answered() const { return course_ == Course::kAnswered; }
+
   /// Does work go on behind the last report that must end before another order is begun?
   bool is_busy(const Workspace& ws) const;
 
   /// The round is over.
   void leave(Workspace& ws);
+
+  /// This module has come after a verdict: a kRenew is the first order that it hears.
+  void adopt(Workspace& ws);
 
   // ---- What may be said now.
 
@@ -81,31 +91,63 @@ class Sweep {
 
   // ---- What follows, a piece at a time.
 
+  /// Is there work that no message may come in between of?
+  bool is_working() const { return work_ != Work::kNone; }
+
+  /// Does a piece of that work; false if there is none.
+  bool work(Workspace& ws, const Announcements& announcements);
+
   /// Ends the exchange under way and starts the next one; false if it has to wait.
   bool exchange(Workspace& ws);
 
   /// Does a piece of the method's work; false if there is none, or if it has to wait.
   bool do_piece(Workspace& ws);
 
-  /// Is all done here and below?
-  bool can_finish(const Workspace& ws) const;
+  /// Begins to add up all reports, if all is done here and below; the sum goes to the parent.
+  bool begin_report(const Workspace& ws);
 
-  /// Adds up all reports, and sends the sum to the parent.
-  Report finish(Workspace& ws, const Announcements& announcements);
+  /// True once after each sweep: the sum of its reports is here.
+  bool take_end();
+
+  const Report& sum() const { return sum_; }
 
  private:
+  /// What a message or an exchange has set off.
+  enum class Work : std::uint8_t {
+    kNone,
+    kBegin,          ///< Of an order.
+    kBeginCondense,  ///< Of an order: the forces for it are here at once.
+    kCondense,
+    kExchange,
+    kReport,
+    kSum,
+  };
+
   const MethodTable* method() const;
   PlannedPart planned_part(const Workspace& ws) const;
   Pending pending() const;
-  bool is_good_begin(const Order& order) const;
+  bool is_good_answer(const Workspace& ws, const Answer& answer) const;
+  bool is_good_resume(const Workspace& ws, const Order& order) const;
+  bool is_good_begin(const Workspace& ws, const Order& order) const;
+  void begin_faces(Workspace& ws, const Order& order);
   void begin_method(Workspace& ws, const Order& order);
+  void begin_work(Work work);
+  void end_work(Workspace& ws);
+  void end_exchange(Workspace& ws);
   void take_planned_down(Workspace& ws, std::span<const std::uint8_t> message);
   void take_planned_up(Workspace& ws, std::span<const std::uint8_t> message);
-  Report own_report(Workspace& ws, const Announcements& announcements);
+  bool report(Workspace& ws, const Announcements& announcements);
+  void add_up(Workspace& ws);
 
   Order order_;
+  Report sum_;
   Course course_ = Course::kWaves;
   bool is_under_way_ = false;
+  bool has_ended_ = false;  ///< The sum has not been taken.
+  Work work_ = Work::kNone;
+  std::uint8_t piece_ = 0;  ///< Of the work; no further than 255.
+  bool is_renewed_ = true;  ///< No order but those about free faces has come behind kRenew, or any.
+  bool has_tree_ = false;   ///< The state is elimination's, which has learned the tree's loops.
   MethodState state_;
 };
 

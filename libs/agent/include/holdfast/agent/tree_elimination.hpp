@@ -34,7 +34,7 @@ enum class Pending : std::uint8_t {
 /// Node::vector has the condensed load of a planned module, then its shift.
 class TreeElimination {
  public:
-  void begin(Workspace& ws, const Order& order);
+  bool begin(Workspace& ws, const Order& order, int piece);
 
   bool expects(const Workspace& ws, const Order& order, Direction face,
                std::span<const std::uint8_t> message) const;
@@ -43,7 +43,7 @@ class TreeElimination {
             std::span<const std::uint8_t> message);
 
   /// An exchange is complete.
-  void take_exchange(Workspace& ws, const Order& order);
+  bool take_exchange(Workspace& ws, const Order& order, int piece);
 
   /// Does the next piece; false if there is none, or if it has to wait.
   bool do_piece(Workspace& ws, const Order& order);
@@ -55,10 +55,13 @@ class TreeElimination {
 
   static PlannedPart planned_part(const Workspace&, const Order&) { return PlannedPart::kTogether; }
 
-  Report report(Workspace& ws, const Order& order);
+  bool report(Workspace& ws, const Order& order, int piece, Report& sum);
 
   /// Finds out which loops pass or close here, and tells the parent; the flags of a report.
   std::uint8_t survey_loops(Workspace& ws);
+
+  /// Does a connection close a loop here that survey_loops() has not found?
+  bool has_new_loop(const Workspace& ws) const;
 
   /// Are there more loops here than a Branch can hold?
   bool has_too_many_loops() const { return has_too_many_; }

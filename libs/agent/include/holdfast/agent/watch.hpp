@@ -48,6 +48,14 @@ class Watch {
   void leave_round(const Clock& clock);
   void enter_round(const Clock& clock);
 
+  /// The verdict is one no more, the tree stands: for the next order.
+  void withdraw(const Clock& clock);
+
+  /// How long the waves took, as a module that comes later is told by its parent.
+  std::uint32_t wave_time() const { return wave_time_; }
+
+  void set_wave_time(std::uint32_t time) { wave_time_ = time; }
+
   void enter_phase(Phase phase) { phase_ = phase; }
 
   void set_answer(const Answer& answer) { answer_ = answer; }

@@ -66,6 +66,13 @@ enum class MessageType : std::uint8_t {
   kColumn,       ///< Up the tree: one column of a branch's condensed stiffness.
   kBranchUp,     ///< Up the tree: a branch's condensed load, or a loop's gap.
   kBranchDown,   ///< Down the tree: the parent's displacement, or the force in a loop's cut.
+  kFrontUp,      ///< Up the tree: a node of a front, six reals of its matrix, or a load.
+  kFrontDown,    ///< Down the tree: the shift of a node in the child's front.
+  kAdopt,        ///< To a neighbour that has come: take your place in the tree that stands.
+  kNews,         ///< Up the tree: a plan begins or ends, or a module has come.
+  kCellsUp,      ///< Up the tree: a part of the cells that are occupied below.
+  kCellsDown,    ///< Down the tree: that part of the whole robot.
+  kReach,        ///< Along the tree, away from the supports: what more the way inward can carry.
 };
 
 /// What an order asks for. Each has a body for the way down and one for the way up; operations.hpp
@@ -91,8 +98,15 @@ enum class Operation : std::uint8_t {
   kTreeIterate,  ///< One iteration of the elimination: move, residual.
   kClusters,     ///< kBegin, and find rigid clusters.
   kForget,       ///< A plan has ended; learn from the first one on.
+  kRenew,        ///< After a verdict: one plan more or less; count, centre of mass, extent.
+  kResume,       ///< kHosts, kAngles and kBegin (with kFactor) in one, from what is kept.
+  kClose,        ///< kCorners and kLoads in one.
+  kWord,         ///< Learn one word of a step, find the next.
+  kStage,        ///< Know the verdict on a stage of a step; the next stage, or scene of one.
+  kShape,        ///< Box, supports and largest load ratio of every subtree.
+  kNext,         ///< Where the next module may go: every free face judges itself.
 };
-inline constexpr int kOperationCount = static_cast<int>(Operation::kForget);  ///< The last one.
+inline constexpr int kOperationCount = static_cast<int>(Operation::kNext);  ///< The last one.
 
 /// Sizes of whole messages, type byte included; 0 for what is not a message. `second` is the byte
 /// after the type and matters for orders and reports only.

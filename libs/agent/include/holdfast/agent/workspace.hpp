@@ -6,6 +6,7 @@
 #include <cstdint>
 
 #include "holdfast/agent/exchange.hpp"
+#include "holdfast/agent/front.hpp"
 #include "holdfast/agent/links.hpp"
 #include "holdfast/agent/node.hpp"
 #include "holdfast/agent/planned.hpp"
@@ -13,6 +14,7 @@
 #include "holdfast/agent/reports.hpp"
 #include "holdfast/agent/setup.hpp"
 #include "holdfast/agent/spanning_tree.hpp"
+#include "holdfast/agent/stages.hpp"
 
 namespace holdfast::agent {
 
@@ -24,15 +26,47 @@ struct Identity {
   base::Cell cell = {};    ///< The anchor's cell.
 };
 
+class FreeFaces;
+
+/// What a module needs besides its own memory where its robot asks for it, lent by whoever runs it;
+/// not owned.
+struct LentMemory {
+  FrontMemory* fronts = nullptr;    ///< Null: no method with fronts.
+  FreeFaces* free_faces = nullptr;  ///< Null: free faces are not judged.
+  Stages* stages = nullptr;         ///< Null: steps are not judged in stages.
+  /// By node, 1 + kPlannedMax of them; null: there is nothing but a floor.
+  Surroundings* surroundings = nullptr;
+  const Environment* environment = nullptr;  ///< Not null where there are surroundings.
+};
+
 /// What the parts of a module's program work on: the module's lines, its place in the tree, the
 /// planned modules that it has to do with, and the mechanics of itself and of those it emulates.
 /// Each part owns its state and is changed through its functions alone; nodes are plain data of the
 /// method in use.
 struct Workspace {
-  Workspace(const Setup& shared, const Identity& identity);
+  Workspace(const Setup& shared, const Identity& identity, const LentMemory* lent_memory = nullptr);
 
   /// This module, then those it emulates: indices of nodes run to node_count().
   int node_count() const { return 1 + planned.hosted_count(); }
+
+  /// Null where there are no fronts.
+  FrontMemory* front_memory() const { return lent == nullptr ? nullptr : lent->fronts; }
+
+  /// What there is beside a floor, or null.
+  const Environment* environment() const {
+    return kHasSurroundings && lent != nullptr ? lent->environment : nullptr;
+  }
+
+  /// Null where steps are not judged in stages.
+  Stages* stages() const { return kJudgesStages && lent != nullptr ? lent->stages : nullptr; }
+
+  /// The stage of a step that is judged, or kNone.
+  Stage stage() const { return stages() == nullptr ? Stage::kNone : stages()->stage(); }
+
+  /// Is the module of a cell gone in the stage that is judged?
+  bool is_gone(const base::Cell& cell) const {
+    return stage() != Stage::kNone && stages()->is_gone(cell);
+  }
 
   Node& node(int index) { return nodes[static_cast<std::size_t>(index)]; }
 
@@ -45,6 +79,9 @@ struct Workspace {
   /// Faces on which a node has a beam.
   Faces faces_of(int node) const;
 
+  /// Null where free faces are not judged.
+  FreeFaces* free_faces() const { return lent == nullptr ? nullptr : lent->free_faces; }
+
   /// Starts an exchange: this module's own vector goes out and, if they are part of it, those of
   /// planned modules emulated here.
   void start_exchange(PlannedPart part);
@@ -56,6 +93,7 @@ struct Workspace {
   Planned planned;
   Exchange exchange;
   PlannedExchange planned_exchange;
+  const LentMemory* lent;  ///< Not owned; may be null.
   bool is_fixed;
   float own_load_ratio = 0;  ///< The largest of this module's own connections.
   std::array<Node, 1 + kPlannedMax> nodes{};

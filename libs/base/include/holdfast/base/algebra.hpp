@@ -58,6 +58,27 @@ constexpr void add_to(Mat6<Real>& sum, const Mat6<Real>& term) {
   }
 }
 
+/// a + factor b
+template <class Real>
+constexpr Vec6<Real> sum_of(const Vec6<Real>& a, Real factor, const Vec6<Real>& b) {
+  Vec6<Real> sum{};
+  for (std::size_t i = 0; i < 6; ++i) {
+    sum[i] = a[i] + factor * b[i];
+  }
+  return sum;
+}
+
+/// share_a a + share_b b
+template <class Real>
+constexpr Vec6<Real> combination(Real share_a, const Vec6<Real>& a, Real share_b,
+                                 const Vec6<Real>& b) {
+  Vec6<Real> sum{};
+  for (std::size_t i = 0; i < 6; ++i) {
+    sum[i] = share_a * a[i] + share_b * b[i];
+  }
+  return sum;
+}
+
 /// The vector with its numbers in another type, rounded if need be.
 template <class To, class From>
 constexpr Vec6<To> converted(const Vec6<From>& vector) {

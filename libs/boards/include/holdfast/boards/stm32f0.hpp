@@ -32,8 +32,16 @@ inline constexpr std::array<Line, 6> kLines = {{
     {0x40004400, 9, 0, 2, 3, 1, 0x14, 0x13},     // USART2
 }};
 
-/// 48 MHz / 115,200 baud.
 inline constexpr std::uint32_t kClockHz = 48'000'000;
-inline constexpr std::uint32_t kBaudDivisor = (kClockHz + 57'600) / 115'200;
+
+/// What a USART divides its clock by, to the nearest.
+constexpr std::uint32_t baud_divisor(std::uint32_t baud) { return (kClockHz + baud / 2) / baud; }
+
+/// Of the lines of Blinky Blocks 2 or, with HOLDFAST_BLINKY_BLOCKS_1, of version 1.
+#ifdef HOLDFAST_BLINKY_BLOCKS_1
+inline constexpr std::uint32_t kBaud = 38'400;
+#else
+inline constexpr std::uint32_t kBaud = 115'200;
+#endif
 
 }  // namespace holdfast::boards::stm32f0

@@ -47,6 +47,8 @@ struct Fault {
 struct EmulationOptions {
   std::uint64_t seed = 1;  ///< Of the noise of the sensors and of when the modules start.
   std::vector<Fault> faults = {};
+  /// Of the board that the image is made for: its bit rate, and its packets.
+  sim::LinkModel link = sim::blinky_blocks_v2();
   std::int32_t anchor = 0;       ///< The module that knows its cell.
   std::int32_t plan_module = 0;  ///< Is told of the robot's planned modules, on a free face.
   Time plan_at = 400'000;        ///< When.
@@ -82,7 +84,7 @@ struct ModuleView {
 
 /// What each existing module knows before it starts, as the bytes of its page in flash.
 std::vector<std::vector<std::uint8_t>> configuration_pages(const model::Robot& robot,
-                                                           std::int32_t anchor);
+                                                           const EmulationOptions& options);
 
 /// Was this built with Unicorn? Without, no Emulation may be made.
 bool is_available();

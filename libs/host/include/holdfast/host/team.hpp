@@ -6,6 +6,8 @@
 #include <memory>
 #include <vector>
 
+#include "holdfast/host/interruption.hpp"
+
 /// A few threads that share loops. Work is cut into chunks of fixed size, and sums are kept by
 /// chunk and added in order: the result has the same bits with any number of threads. Each thread
 /// has a range of chunks of its own, the same in every loop over the same data, and helps with the
@@ -40,9 +42,12 @@ class Team {
 
   /// Calls work(begin, end) for ranges that together are [first, last); ranges begin at multiples
   /// of the chunk from `first`, so that each chunk is computed whole by one thread. What a call
-  /// throws is thrown here once all have ended; of several one.
+  /// throws is thrown here once all have ended; of several one. The others are ended too, where
+  /// they ask whether to go on. An Interruptible of this thread is asked at the beginning, and
+  /// while it waits.
   template <class Work>
   void share(std::size_t first, std::size_t last, const Work& work) {
+    ask_whether_to_go_on();
     const std::size_t chunk_count = (last - first + kChunk - 1) / kChunk;
     if (thread_count_ == 1 || chunk_count < kSharedChunkMin) {
       if (first < last) {

@@ -37,10 +37,22 @@ std::string write_svg_with_ghosts(const model::Robot& robot, std::span<const Gho
 
 /// Writes a VTK XML unstructured grid (.vtu, compressed binary) for ParaView: one cell per module,
 /// in the shape of its lattice, with load ratio, displacement and ground force, one line per
-/// connection with its forces, one square per facet that touches with its state and force.
+/// connection with its forces, one square per facet that touches with its state and force, and a
+/// cell like a module's per cell of the obstacles that are near, `kind` 3.
 /// Field names and units are in docs/formats.md. A stream that can be sought in gets it in a fixed
 /// amount of memory; any other gets it at the end. Ends early if the stream fails.
 void write_vtu(std::ostream& out, const model::Robot& robot, const verdict::Assessment& assessment,
-               const WriteOptions& options = {});
+               const WriteOptions& options = {}, std::span<const model::Obstacle> obstacles = {});
+
+/// The same of a part of a robot (model/robot_part.hpp): its first `own_count` modules, and the
+/// connections and facets that begin at them, without obstacles. The stream can be sought in.
+void write_vtu_piece(std::ostream& out, const model::Robot& part, std::size_t own_count,
+                     const verdict::Assessment& assessment, const WriteOptions& options = {});
+
+/// Writes the VTK XML file (.pvtu) by which ParaView opens all pieces of a robot, from any one part
+/// of it. `pieces` are the names of the files that write_vtu_piece() has written, seen from this
+/// file's folder; they must need no escaping.
+void write_pvtu(std::ostream& out, const model::Robot& part, const verdict::Assessment& assessment,
+                std::span<const std::string> pieces);
 
 }  // namespace holdfast::io

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <functional>
 #include <optional>
@@ -29,6 +30,15 @@ std::string reason_text(const model::Robot& robot, const verdict::Reason& reason
 /// The same with the cells that verdict::cells_of() has found.
 std::string reason_text(const verdict::Reason& reason, std::span<const base::Cell> cells);
 
+/// What a report says of a robot of which the entry's is a part only.
+struct WholeRobot {
+  std::size_t existing_count = 0;
+  std::size_t planned_count = 0;
+  std::size_t facet_count = 0;
+  std::size_t fixed_count = 0;
+  std::span<const std::array<base::Cell, 2>> broken;  ///< Ends of connections, those to be listed.
+};
+
 /// One checked structure, for a report. Views must outlive the call.
 struct ReportEntry {
   std::string_view name;
@@ -40,6 +50,7 @@ struct ReportEntry {
   double proof_seconds = 0;                 ///< What it took beyond that.
   const limit::LimitLoad* limit = nullptr;  ///< If it was asked for.
   double limit_seconds = 0;                 ///< What it took beyond both.
+  const WholeRobot* whole = nullptr;        ///< If the robot is a part: no connections are listed.
 };
 
 /// Which connections a report or table lists.

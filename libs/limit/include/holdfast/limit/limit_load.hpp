@@ -22,6 +22,7 @@ struct LimitOptions {
   double tolerance = 1e-6;  ///< Of the bracket, as a share of the factor.
   /// Then the bracket is what it is so far; an iteration that has begun is ended.
   double seconds_max = 600;
+  int thread_count = 0;  ///< 0: as many as the machine has cores; decides nothing.
   /// Forces of all joints that balance the loads, such as the elastic ones, local frame; they spare
   /// most of the work for large structures. Empty: none are known.
   std::span<const base::Vec6<double>> known_forces = {};

@@ -50,9 +50,9 @@ enum class RigidAnswer : std::uint8_t {
 struct Motion {
   enum class Kind : std::uint8_t {
     kTips,    ///< Over the edge from `from` to `to`, or the corner where both are one.
-    kSlides,  ///< Without turning, along something that it touches.
+    kSlides,  ///< All but without turning, along what it touches.
     kTurns,   ///< About the axis through `from` along `angular`.
-    kLeaves,  ///< Without turning, away from all that it touches.
+    kLeaves,  ///< All but without turning, away from what it touches.
   };
 
   Kind kind = Kind::kLeaves;
@@ -69,9 +69,9 @@ struct RigidStability {
   /// the load is from what contacts can balance, as a share of it. None: bonded, pressed from all
   /// sides, or no load.
   std::optional<double> margin = {};
-  /// The smallest coefficient that would do at all contact facets; 0: none is needed, or however
-  /// little does, between two things that it can press apart. None: none
-  /// does, or there is no need to ask as a facet is bonded.
+  /// The smallest coefficient that would do at all contact facets, at the best pressing; 0: none is
+  /// needed, or however little does, between two things that it can press apart. The elastic forces
+  /// may take more. None: none does, or there is no need to ask as a facet is bonded.
   std::optional<double> friction_needed = {};
   /// The smallest angle by which gravity can turn, in any direction, before it moves; 0 where it
   /// does not hold as it is. None: it holds whatever the direction, or there is no weight.

@@ -48,6 +48,19 @@ const base::Lattice& family_lattice(Family family);
 /// the largest number there is.
 std::size_t family_count(Family family, std::size_t size);
 
+/// Cells from `low` on, below `high`.
+struct CellBox {
+  base::Cell low;
+  base::Cell high;
+};
+
+/// The box that family_has() is asked about; none for growth, ball and prism-wall, whose cells only
+/// family_cells() knows.
+std::optional<CellBox> family_box(Family family, std::size_t size);
+
+/// Whether a cell of that box is one of the structure's.
+bool family_has(Family family, std::size_t size, const base::Cell& cell);
+
 /// The cells. `size` is at least the family's size_min and family_count() at most kModuleCountMax.
 std::vector<base::Cell> family_cells(Family family, std::size_t size);
 

@@ -5,6 +5,7 @@
 #include <array>
 
 #include "holdfast/model/robot.hpp"
+#include "holdfast/model/robot_part.hpp"
 
 namespace holdfast::model {
 
@@ -14,7 +15,8 @@ struct Mass {
   std::array<double, 3> centre_mm{};
 };
 
-/// The mass of all modules, planned ones too, and of what they carry.
-Mass mass_of(const Robot& robot);
+/// The mass of all modules, planned ones too, and of what they carry; of a part of a robot that of
+/// the whole.
+Mass mass_of(const Robot& robot, const RobotPart* part = nullptr);
 
 }  // namespace holdfast::model

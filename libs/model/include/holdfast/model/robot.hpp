@@ -15,6 +15,7 @@
 #include "holdfast/base/result.hpp"
 #include "holdfast/host/team.hpp"
 #include "holdfast/model/cell_index.hpp"
+#include "holdfast/model/connections.hpp"
 #include "holdfast/model/connector_law.hpp"
 #include "holdfast/model/environment.hpp"
 #include "holdfast/model/loads.hpp"
@@ -25,6 +26,7 @@ namespace holdfast::model {
 
 /// More modules than this are refused; indices and exact sums stay far from overflow.
 inline constexpr std::size_t kModuleCountMax = 20'000'000;
+static_assert(kModuleCountMax <= kCodedModuleCountMax);
 
 /// How a module is held from outside the robot.
 enum class Support : std::uint8_t {
@@ -38,14 +40,6 @@ struct Module {
   Support support = Support::kNone;
   bool is_planned = false;
   std::uint16_t kind = 0;  ///< Index in RobotSpec::kinds.
-};
-
-/// A connection, that is a beam, between two modules in neighbouring cells; `b` is the neighbour of
-/// `a` in a direction with an even index.
-struct Connection {
-  std::int32_t a = 0;  ///< Index of a module.
-  std::int32_t b = 0;
-  base::Direction direction = base::Direction::kPlusX;
 };
 
 /// A facet with which a module touches the environment, its centre half a pitch from the module's
@@ -132,34 +126,6 @@ struct RobotSpec {
   std::vector<CarriedMass> carried = {};
 };
 
-/// Modules by module and direction: for each module as many entries as its lattice has directions.
-class NeighbourTable {
- public:
-  explicit NeighbourTable(std::size_t direction_count = base::kDirectionCount)
-      : direction_count_(direction_count) {}
-
-  /// Makes room for so many modules, without neighbours so far.
-  void resize(std::size_t module_count, std::int32_t none) {
-    entries_.resize(module_count * direction_count_, none);
-  }
-
-  std::span<const std::int32_t> operator[](std::size_t module) const {
-    return {entries_.data() + module * direction_count_, direction_count_};
-  }
-
-  std::span<std::int32_t> operator[](std::size_t module) {
-    return {entries_.data() + module * direction_count_, direction_count_};
-  }
-
-  bool empty() const { return entries_.empty(); }
-
-  std::size_t size() const { return entries_.size() / direction_count_; }
-
- private:
-  std::size_t direction_count_;
-  std::vector<std::int32_t> entries_;
-};
-
 /// A robot that can be computed: connected, supported, no two modules in one cell. Immutable.
 class Robot {
  public:
@@ -168,6 +134,14 @@ class Robot {
   /// Checks every rule; the error names the cell, what was found and what is allowed. 0 threads:
   /// as many as the machine has cores.
   static base::Result<Robot> create(const RobotSpec& spec, int thread_count = 0);
+
+  /// What one of several processes has of a robot (robot_part.hpp): the first `own_count` of the
+  /// existing modules are its own, the others copies of their neighbours, and none is planned.
+  /// Facets and connections() are those of its own modules alone, of connections the first module,
+  /// so that all processes together have each once. That the whole robot is connected and held is
+  /// not checked here.
+  static base::Result<Robot> create_part(const RobotSpec& spec, std::size_t own_count,
+                                         int thread_count = 1);
 
   /// Existing modules first, then the planned ones, each in the order of the spec.
   std::span<const Module> modules() const { return modules_; }
@@ -185,7 +159,7 @@ class Robot {
   const NeighbourTable& connected() const { return connected_; }
 
   /// Every pair of modules that is connected once, planned modules included.
-  std::span<const Connection> connections() const { return connections_; }
+  Connections connections() const { return {connections_, connected_}; }
 
   /// How many pairs of neighbours are not connected.
   std::size_t released_count() const { return released_count_; }
@@ -260,6 +234,12 @@ class Robot {
 
   std::size_t lattice_count() const { return static_cast<std::size_t>(lattice_.direction_count); }
 
+  /// Whether a spec says all of a robot, so that it must hang together.
+  enum class Extent : std::uint8_t { kWhole, kPart };
+
+  /// Takes everything from the spec. Returns the first fault.
+  std::optional<std::string> take(const RobotSpec& spec, int thread_count, Extent extent);
+
   void add_modules(const RobotSpec& spec);
   std::optional<std::string> fix(std::span<const base::Cell> cells, const CellIndex& index);
 
@@ -279,7 +259,7 @@ class Robot {
   base::Lattice lattice_;
   NeighbourTable neighbours_;  ///< Empty if all are connected.
   NeighbourTable connected_;
-  std::vector<Connection> connections_;
+  std::vector<ConnectionCode> connections_;
   std::vector<Facet> facets_;
   Material material_;
   double foot_half_width_mm_ = 0;

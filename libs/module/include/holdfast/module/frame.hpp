@@ -29,7 +29,12 @@ inline constexpr std::uint8_t kFrameEscape = '}';
 inline constexpr std::uint8_t kFrameFlip = 0x20;
 inline constexpr std::uint8_t kHelloByte = 0x05;
 
+/// With HOLDFAST_BLINKY_BLOCKS_1, for little memory, packets have no more than version 1's bytes.
+#ifdef HOLDFAST_BLINKY_BLOCKS_1
+inline constexpr int kPayloadBytesMax = agent::wire::kPacketBytesMin;
+#else
 inline constexpr int kPayloadBytesMax = agent::wire::kPacketBytesMax;
+#endif
 inline constexpr int kFrameHeaderBytes = 4;
 inline constexpr int kBodyBytesMax =
     kFrameHeaderBytes + kPayloadBytesMax + agent::wire::kChecksumBytes;

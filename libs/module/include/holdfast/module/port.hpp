@@ -37,6 +37,9 @@ class Port {
   /// Is a neighbour heard at this face?
   virtual bool is_connected(int face) = 0;
 
+  /// The program is at work and does not receive: who is connected is not silent meanwhile.
+  virtual void stay_connected() {}
+
   /// Can a packet be sent on this face now?
   virtual bool is_line_free(int face) = 0;
 

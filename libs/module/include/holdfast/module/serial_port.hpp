@@ -20,6 +20,7 @@ class SerialPort : public Port {
  public:
   bool receive(Incoming& incoming) final;
   bool is_connected(int face) final;
+  void stay_connected() final;
   void send(int face, std::span<const std::uint8_t> packet) final;
   void wait(Time until) final;
 

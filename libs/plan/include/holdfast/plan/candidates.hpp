@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <functional>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -52,13 +53,39 @@ struct CandidateOptions {
 struct CandidateReport {
   std::vector<Candidate> candidates;  ///< In the order of the cells.
   std::size_t check_count = 0;        ///< So many took a check of their own.
+  std::size_t solution_count = 0;     ///< So many others took a whole solution.
   double preparation_seconds = 0;     ///< Spent on the robot as it is.
   double seconds = 0;                 ///< In all.
 };
 
-/// Judges the robot with one more module in each of the cells in turn; the module is of kind 0.
-/// Load ratios are those of the checks to 1e-6, or to what the checks themselves are good for where
-/// they iterate.
+class CandidateJudge;
+
+/// Judges candidates of one robot, as often as it is asked: what was prepared for the first batch
+/// serves all others. Fewer than kWorthPreparing cells prepare nothing and take a check each.
+class CandidateSearch {
+ public:
+  static constexpr std::size_t kWorthPreparing = 8;
+
+  explicit CandidateSearch(model::RobotSpec spec, CandidateOptions options = {});
+  ~CandidateSearch();
+  CandidateSearch(const CandidateSearch&) = delete;
+  CandidateSearch& operator=(const CandidateSearch&) = delete;
+
+  /// Judges the robot with one more module in each of the cells in turn; the module is of kind 0.
+  /// Load ratios are those of the checks to 1e-6, or to what the checks themselves are good for
+  /// where they iterate.
+  CandidateReport judge(std::span<const base::Cell> cells);
+
+ private:
+  const CandidateJudge* judge_for(std::size_t cell_count);
+
+  model::RobotSpec spec_;
+  CandidateOptions options_;
+  bool is_prepared_ = false;
+  std::unique_ptr<CandidateJudge> judge_;  ///< None where only checks can tell.
+};
+
+/// All cells in one batch of a search.
 CandidateReport judge_candidates(const model::RobotSpec& spec, std::span<const base::Cell> cells,
                                  const CandidateOptions& options = {});
 

@@ -49,6 +49,10 @@ class GrowingNetwork {
   [[nodiscard]] bool add(std::size_t element);
   [[nodiscard]] bool remove(std::size_t element);
 
+  /// Adds to what loads a node by itself, beside the elements there: none at first and after
+  /// assign(). A node that goes must have lost it before it is solved again.
+  void add_load(std::size_t node, const base::Vec6<double>& load);
+
   /// Takes back the last add() or remove(); once.
   void undo();
 
@@ -61,6 +65,9 @@ class GrowingNetwork {
 
   /// The largest translation of a node, in mm, infinite if the equations cannot be solved.
   double translation_max();
+
+  /// Blocks below the diagonal of the factors of the whole network.
+  std::size_t block_count() const { return factor_.lower_block_count(); }
 
   const GrowingWork& work() const { return work_; }
 
@@ -76,7 +83,6 @@ class GrowingNetwork {
   std::vector<base::Vec6<double>> solution_;  ///< by node
   std::vector<base::Vec6<double>> residual_;  ///< by node
   double arm_mm_ = 0;                         ///< the longest lever: what moments are measured by
-  double load_sum_n_ = 0;
   std::size_t element_count_ = 0;
   std::size_t last_element_ = 0;
   int last_sign_ = 0;

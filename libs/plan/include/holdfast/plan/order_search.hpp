@@ -40,14 +40,22 @@ class GrowingStructure {
   virtual std::vector<Element> candidates(const ElementSet& state, Sense sense,
                                           std::uint64_t seed) = 0;
 
+  /// The first of the candidates that is open, if any is. What a structure overrides if it need not
+  /// look at all of them for that.
+  virtual std::optional<Element> first_candidate(const ElementSet& state, Sense sense,
+                                                 std::uint64_t seed,
+                                                 const std::function<bool(Element)>& is_open);
+
   /// Whether the state is safe; depends on the set alone.
   virtual Judgement judge(const ElementSet& state) = 0;
 
   /// Judges the states that arise when the elements of `run` are added to `state` (or removed from
-  /// it) one after another, up to and including the first one that is not safe. What a structure
-  /// overrides if it can judge many states on a way for less than each alone.
+  /// it) one after another, up to and including the first one that is not safe, or fewer once
+  /// `is_late`, which several threads may ask. What a structure overrides if it can judge many
+  /// states on a way for less than each alone.
   virtual std::vector<Judgement> judge_run(const ElementSet& state, Sense sense,
-                                           std::span<const Element> run);
+                                           std::span<const Element> run,
+                                           const std::function<bool()>& is_late);
 
   /// So many states at most are judged in one run.
   virtual std::size_t run_length_max() const { return 1; }

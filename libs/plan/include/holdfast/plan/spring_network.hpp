@@ -32,6 +32,10 @@ struct SpringNetwork {
   std::vector<LoadedSpring> elements;
 };
 
+/// The lever of a spring that is free in space, from the place of a to that of b: a force at b is
+/// minus that force at a, and minus its moment about a.
+base::Mat6<double> rigid_lever(const Vector3& arm_mm);
+
 /// A straight bar with the same stiffness in both directions of bending.
 struct BarSection {
   double elastic_modulus_mpa = 0;  ///< E

@@ -20,13 +20,24 @@ struct Fault {
     kDetach,  ///< The module is taken off; its neighbours sense it.
     kAttach,  ///< The module is put on, with a new agent. A module whose first change is this one
               ///< is not there before.
+    kReset,   ///< The module starts again, with a new agent, also one that was silent. Nobody is
+              ///< told.
+    kMend,    ///< The link at `face` that was cut carries again. Nobody is told.
+    kUnplug,  ///< The connection at `face` is opened; both sides sense it.
+    kPlug,    ///< It is closed again; both sides sense it.
   };
 
   Kind kind = Kind::kKill;
   agent::Time at = 0;
   std::int32_t module = 0;                         ///< Index in the robot; an existing one.
-  base::Direction face = base::Direction::kPlusX;  ///< kCut
+  base::Direction face = base::Direction::kPlusX;  ///< Of what concerns a link.
 };
+
+/// Does it happen to a link, not to a module?
+constexpr bool is_of_link(Fault::Kind kind) {
+  return kind == Fault::Kind::kCut || kind == Fault::Kind::kMend || kind == Fault::Kind::kUnplug ||
+         kind == Fault::Kind::kPlug;
+}
 
 /// A module is told that another one is planned, or not any more. One that is silent or not there
 /// hears nothing.
@@ -37,7 +48,7 @@ struct Announcement {
   bool is_withdrawal = false;
 };
 
-/// "kill", "cut", "detach", "attach".
+/// "kill", "cut", "detach", "attach", "reset", "mend", "unplug", "plug".
 std::string_view name(Fault::Kind kind);
 
 }  // namespace holdfast::sim

@@ -32,22 +32,32 @@ struct SimulationOptions {
   std::uint64_t seed = 1;                              ///< Of noise, clocks and session numbers.
   agent::Method method = agent::Method::kElimination;  ///< See agent::Setup.
   std::uint8_t degree_max = 200;                       ///< See agent::Setup.
+  bool keeps_answers = true;  ///< See agent::Setup. False: every change starts from nothing.
+  bool judges_faces = false;  ///< Modules have the memory to judge free faces (free_faces.hpp).
   std::vector<Fault> faults = {};
+  std::vector<std::int32_t> absent = {};         ///< Modules that are not there at the start.
   std::vector<Announcement> announcements = {};  ///< Besides the robot's planned modules.
-  Time time_max = agent::kNever;                 ///< Later events do not happen.
+  /// The words of a step; if there are any, modules have memory to judge its stages.
+  std::vector<agent::StepWord> step = {};
+  Time time_max = agent::kNever;  ///< Later events do not happen.
   std::uint64_t event_count_max = ~std::uint64_t{0};
   /// How long after the last verdict the modules' watching over it is simulated as well.
   Time watch_for = 0;
-  std::int32_t anchor = 0;       ///< The module that knows its cell.
-  std::int32_t plan_module = 0;  ///< Is told of the robot's planned modules before it starts.
-  bool tells_planned = true;     ///< False: nobody is told of them but by `announcements`.
-  TraceSink* trace = nullptr;    ///< Not owned; outlives the simulation.
-  Tamper tamper = {};            ///< Called for every packet, if there is one: faulty modules.
+  std::int32_t anchor = 0;  ///< The module that knows its cell.
+  /// Is told of the robot's planned modules, and of the step, before it starts.
+  std::int32_t plan_module = 0;
+  bool tells_planned = true;   ///< False: nobody is told of them but by `announcements`.
+  TraceSink* trace = nullptr;  ///< Not owned; outlives the simulation.
+  Tamper tamper = {};          ///< Called for every packet, if there is one: faulty modules.
 };
 
 /// Why a simulation cannot be made (what, value found, values allowed), if it cannot.
 std::optional<std::string> find_options_fault(const model::Robot& robot,
                                               const SimulationOptions& options);
+
+/// Why modules that are lent no memory, as all that run elsewhere than in Simulation, do not know
+/// enough of a robot; none if it is cubes on a floor under their weight.
+std::optional<std::string> find_floor_fault(const model::Robot& robot);
 
 /// What the agents of a robot have in common, prepared.
 agent::Setup make_setup(const model::Robot& robot, const SimulationOptions& options);
@@ -70,6 +80,11 @@ class Simulation {
   /// Hands about `event_count` events to modules. False: it is over. The first call also starts all
   /// modules, which counts.
   bool run_for(std::uint64_t event_count);
+
+  /// It happens now, to a simulation that has come to its end, without faults and `watch_for`; it
+  /// can be run again then.
+  void happen(const Fault& fault);
+  void happen(const Announcement& announcement);
 
   /// So far.
   SimulationResult result() const;

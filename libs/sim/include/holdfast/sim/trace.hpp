@@ -6,6 +6,7 @@
 #include <iosfwd>
 #include <memory>
 #include <span>
+#include <string>
 
 #include "holdfast/model/robot.hpp"
 #include "holdfast/sim/fault.hpp"
@@ -82,6 +83,9 @@ class PerfettoTrace : public TraceSink {
   struct Writer;
   std::unique_ptr<Writer> writer_;
 };
+
+/// What a module says of its answer, in words: "knows the verdict: safe (...), load ratio ...".
+std::string describe(const agent::Answer& answer);
 
 struct StoryOptions {
   bool tells_every_module = true;  ///< False: phases and waves only when the first module is there.

@@ -12,20 +12,28 @@
 
 namespace holdfast::solver {
 
+struct FactorView;
+class SelectedInverse;
+
+enum class Symmetry : std::uint8_t { kNone, kSymmetric };
+
 /// Sparse direct solver for matrices of 6x6 blocks: A = (I + L) D (I + U'), D block-diagonal.
 ///
 /// The pattern is symmetric, the values need not be: contact makes some diagonal blocks
-/// unsymmetric. Columns are eliminated in approximate-minimum-degree order [Amestoy 1996]; pivots
-/// are chosen within a diagonal block only, so callers check the residual. Left-looking: a column
-/// is made from finished columns, so after some blocks have changed only their columns and the
-/// ancestors of these in the elimination tree are made again.
+/// unsymmetric. Where they are known to be symmetric, U = L takes half the work and memory. Columns
+/// are eliminated in approximate-minimum-degree order [Amestoy 1996]; pivots are chosen within a
+/// diagonal block only, so callers check the residual. Left-looking: a column is made from finished
+/// columns, so after some blocks have changed only their columns and the ancestors of these in the
+/// elimination tree are made again.
 ///
 /// Use: construct, set every block, factor(), solve(); then change blocks, factor(), solve()...
 class BlockLu {
  public:
   /// Orders and counts, allocates no blocks yet. Gives up (see is_too_large()) once L would need
-  /// more than `block_count_max` blocks; each takes 600 bytes in all.
-  BlockLu(std::size_t node_count, std::span<const Edge> edges, std::size_t block_count_max);
+  /// more than `block_count_max` blocks; each takes 600 bytes in all, 300 of a
+  /// symmetric matrix.
+  BlockLu(std::size_t node_count, std::span<const Edge> edges, std::size_t block_count_max,
+          Symmetry symmetry = Symmetry::kNone);
 
   /// Whether the factorization does not fit into memory; if so, nothing else may be called.
   bool is_too_large() const { return is_too_large_; }
@@ -40,8 +48,15 @@ class BlockLu {
   /// Sets A(node, node); the next factor() makes again what depends on it.
   void set_diagonal(std::size_t node, const base::Mat6<double>& block);
 
-  /// Returns false if a diagonal block became singular.
-  [[nodiscard]] bool factor();
+  /// Returns false if a diagonal block became singular. The bits do not depend on the number of
+  /// threads.
+  [[nodiscard]] bool factor(int thread_count = 1);
+
+  /// Products of two blocks that factor() takes where every column is to be made.
+  std::size_t factor_product_count() const;
+
+  /// The same matrix without its values.
+  BlockLu without_values() const;
 
   /// Columns that all calls of factor() have made so far.
   std::size_t made_column_count() const { return made_column_count_; }
@@ -58,22 +73,34 @@ class BlockLu {
   /// Where a node stands in the order of elimination.
   std::size_t place(std::size_t node) const { return static_cast<std::size_t>(position_[node]); }
 
-  /// Solves A x = b in place for kLaneCount b, by place; to the same bits as one after another.
+  /// Solves A x = b in place for kLaneCount b and a symmetric A, by place; to the same bits as one
+  /// after another.
   void solve_lanes(std::span<LaneBlock> y) const;
 
-  /// The forward substitution of six right-hand sides, the unit vectors of one node: (I + L)^-1,
-  /// where it is not zero, on the node's way up the elimination tree.
-  void forward(std::size_t node, std::vector<std::int32_t>& places,
-               std::vector<base::Mat6<double>>& blocks) const;
+  /// Blocks of A^-1 of a symmetric A: for each of the nodes, for two of them that are coupled, and
+  /// for the pairs of them. Keeps a reference.
+  SelectedInverse selected_inverse(std::span<const std::size_t> nodes,
+                                   std::span<const Edge> pairs = {}, int thread_count = 1) const;
 
-  /// Of a symmetric A = (I + L) D (I + L'): the block of A^-1 for two nodes, a' D^-1 b of what
-  /// forward() makes of each.
-  base::Mat6<double> symmetric_product(std::span<const std::int32_t> places_a,
-                                       std::span<const base::Mat6<double>> a,
-                                       std::span<const std::int32_t> places_b,
-                                       std::span<const base::Mat6<double>> b) const;
+  /// The block of A^-1 of a symmetric A for each of any pairs of nodes: the displacements of the
+  /// first for unit loads on the second, by column. Takes less than selected_inverse() for few
+  /// nodes: see way_product_count().
+  std::vector<base::Mat6<double>> inverse_blocks(std::span<const Edge> nodes,
+                                                 int thread_count = 1) const;
+
+  /// Products of two blocks that inverse_blocks() takes for each of these nodes.
+  std::size_t way_product_count(std::span<const std::size_t> nodes) const;
 
  private:
+  friend class SelectedInverse;
+
+  /// The forward substitution of the six unit vectors of one node: (I + L)^-1, where it is not
+  /// zero, on the node's way up the elimination tree.
+  struct Way {
+    std::vector<std::int32_t> places;
+    std::vector<base::Mat6<double>> blocks;
+  };
+
   struct Entry {
     std::int32_t column = 0;
     std::size_t slot = 0;  ///< Position of this row in the column's list.
@@ -81,11 +108,26 @@ class BlockLu {
 
   void make_row_lists();
   void allocate();
-  void make_column(std::size_t column);
+
+  /// What a thread needs to make columns: row -> slot in the current one.
+  struct Scratch {
+    std::vector<std::size_t> slot_of_row;
+  };
+
+  template <class WaitFor>
+  bool make_column(std::size_t column, Scratch& scratch, const WaitFor& wait_for);
+  template <class WaitFor>
+  bool subtract_left(std::size_t column, base::Mat6<double>& pivot, const WaitFor& wait_for,
+                     const Scratch& scratch);
   void substitute(std::span<base::Vec6<double>> y, std::size_t count) const;
+  FactorView view() const;
+  void find_inverse_blocks(std::span<const Edge> nodes, std::span<base::Mat6<double>> blocks) const;
+  Way way_up(std::int32_t node) const;
+  base::Mat6<double> product_of(const Way& a, const Way& b) const;
   std::size_t find_slot(std::int32_t column, std::int32_t row) const;
 
   std::vector<Edge> edges_;
+  Symmetry symmetry_ = Symmetry::kNone;
   std::vector<std::int32_t> position_;     ///< node -> place in the elimination order
   std::vector<std::int32_t> parent_;       ///< elimination tree, by place
   std::vector<std::size_t> column_start_;  ///< into rows_, lower_, upper_
@@ -95,16 +137,48 @@ class BlockLu {
   std::vector<std::size_t> edge_slot_;     ///< edge -> slot of its lower block
   std::vector<std::vector<std::size_t>> column_edges_;  ///< column -> edges stored in it
 
-  std::vector<base::Mat6<double>> diagonal_;    ///< A(k, k)
-  std::vector<base::Mat6<double>> inverse_;     ///< D(k)^-1
-  std::vector<base::Mat6<double>> lower_;       ///< L(i, k)
-  std::vector<base::Mat6<double>> upper_;       ///< U(k, i), not yet divided by D
+  std::vector<base::Mat6<double>> diagonal_;  ///< A(k, k)
+  std::vector<base::Mat6<double>> inverse_;   ///< D(k)^-1
+  /// L(i, k), then U(k, i), not yet divided by D; of a symmetric matrix L(i, k) D(k) alone.
+  std::vector<base::Mat6<double>> blocks_;
   std::vector<base::Mat6<double>> edge_lower_;  ///< A(i, k) of each edge, i below k
   std::vector<bool> is_stale_;                  ///< columns whose factor is out of date
-  std::vector<std::size_t> slot_of_row_;        ///< scratch: row -> slot in the current column
   std::size_t made_column_count_ = 0;
   bool is_singular_ = false;
   bool is_too_large_ = false;
+};
+
+/// Blocks of the inverse of a symmetric matrix where its factors have some, and where these need
+/// others, from the last column to the first [Takahashi 1973; Erisman 1975]. Good as long as the
+/// factors are.
+class SelectedInverse {
+ public:
+  /// The block of rows `node_a` and columns `node_b`, two of the nodes asked for that are the same,
+  /// coupled, or a pair that was asked for.
+  base::Mat6<double> block(std::size_t node_a, std::size_t node_b) const;
+
+  /// Products of two blocks that it took.
+  std::size_t product_count() const;
+
+ private:
+  friend class BlockLu;
+
+  static constexpr std::size_t kNone = static_cast<std::size_t>(-1);
+
+  /// Finds the columns that the nodes need, and which rows.
+  SelectedInverse(const BlockLu& lu, std::span<const std::size_t> nodes,
+                  std::span<const Edge> pairs);
+
+  void find_rows(std::vector<std::vector<std::int32_t>> more);
+  void make(int thread_count);
+
+  const BlockLu* lu_;
+  std::vector<std::int32_t> columns_;         ///< Those that are needed, the last first.
+  std::vector<std::size_t> turn_;             ///< By place: where it stands among them, or kNone.
+  std::vector<std::size_t> column_start_;     ///< By place, into rows_ and below_.
+  std::vector<std::int32_t> rows_;            ///< Ascending.
+  std::vector<base::Mat6<double>> diagonal_;  ///< By place.
+  std::vector<base::Mat6<double>> below_;
 };
 
 }  // namespace holdfast::solver

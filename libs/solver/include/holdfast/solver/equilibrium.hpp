@@ -63,7 +63,8 @@ struct Equilibrium : Solution {
   std::vector<Solution> others;
   std::vector<mechanics::ContactState> contact;  ///< By facet, in the order of Robot::facets().
   std::vector<base::Vec6<double>> facet_force;   ///< By facet: on its module, at the node.
-  std::vector<base::Vec6<double>> ground_force;  ///< By module: of all its facets together.
+  /// By module: of all its facets together. EquilibriumSolver leaves that to ground_forces().
+  std::vector<base::Vec6<double>> ground_force;
   /// Open facets that are held sideways all the same, as they would close when released: no slip
   /// and no force at once is then impossible, and the truth lies between held and free.
   int open_but_held_count = 0;
@@ -87,6 +88,10 @@ struct Equilibrium : Solution {
 mechanics::ContactState contact_of(const model::Robot& robot, const Equilibrium& equilibrium,
                                    std::size_t module);
 
+/// What all facets of each module together do to it, by module.
+std::vector<base::Vec6<double>> ground_forces(const model::Robot& robot,
+                                              const Equilibrium& equilibrium);
+
 /// Solves one robot, with one law after the other if need be. Everything that does not depend on
 /// the contact is made once. Keeps a reference to the robot.
 class EquilibriumSolver {
@@ -103,6 +108,12 @@ class EquilibriumSolver {
   /// another state, one at a time, and Newton's method goes on from there. Takes nothing where
   /// there are none, else a few linear systems for each. Not certain to find all.
   void seek_others(Equilibrium& settled);
+
+  /// Where solve() under the regularised law did not settle: seeks solutions of it. All states of
+  /// up to three facets are tried on up to 128 modules, so that none is missed. Else Newton's
+  /// method starts with each facet open alone and each stuck alone, which finds one in three;
+  /// nothing is sought for more than eight facets or where systems are iterated.
+  std::vector<Equilibrium> seek_settled(const ContactOptions& contact);
 
   /// Makes the solver ready for a law and returns the method that the next solve() under it begins
   /// with.

@@ -2,12 +2,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
+#include <map>
 #include <memory>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "holdfast/base/algebra.hpp"
 #include "holdfast/model/robot.hpp"
+#include "holdfast/solver/block_pattern.hpp"
 #include "holdfast/solver/lanes.hpp"
 #include "holdfast/solver/linear_system.hpp"
 #include "holdfast/solver/options.hpp"
@@ -17,19 +21,40 @@
 /// states, more beams) is a change of low rank, for which K^-1 between a few modules suffices.
 namespace holdfast::solver {
 
+class BlockLu;
 class DirectSystem;
+class SelectedInverse;
+
+/// Between which modules K^-1 will be asked for.
+struct InfluenceQuestions {
+  std::span<const std::size_t> modules = {};  ///< Themselves, and those of them that are connected.
+  std::span<const Edge> pairs = {};           ///< Any others of them.
+  bool is_any_connected = true;  ///< False: only of `pairs` are two modules asked about.
+  int thread_count = 1;
+};
+
+/// Blocks of the inverse of a robot's stiffness, between modules that were asked about.
+class InverseStiffness {
+ public:
+  InverseStiffness(std::unique_ptr<const BlockLu> factors, const DirectSystem& system,
+                   const InfluenceQuestions& questions);
+  ~InverseStiffness();
+
+  /// The displacements of the first for unit loads on the second, by column, where these are the
+  /// same, connected, or a pair that was asked about. Zero for a fixed module.
+  base::Mat6<double> between(std::size_t first, std::size_t second) const;
+
+ private:
+  std::unique_ptr<const BlockLu> own_;  ///< None: those of the system.
+  const DirectSystem& system_;
+  std::unique_ptr<const SelectedInverse> inverse_;  ///< None: all are in `pairs_`.
+  std::map<std::pair<std::int32_t, std::int32_t>, base::Mat6<double>> pairs_;  ///< By nodes.
+};
 
 /// Keeps a reference to the robot. Its const members may be called by several threads at once.
 class Influence {
  public:
   using Vec = base::Vec6<double>;
-
-  /// Part of K^-1 for a unit of force or torque on each component of one module: the forward half
-  /// of the solution, where it is not zero.
-  struct Reach {
-    std::vector<std::int32_t> places;  ///< In the order of elimination, ascending.
-    std::vector<base::Mat6<double>> blocks;
-  };
 
   /// None if the factorization needs more memory, or fills in more, than the options allow, or
   /// double precision does not suffice for the robot.
@@ -48,11 +73,20 @@ class Influence {
   /// The same before refinement: as far off as what solve() gives.
   const std::vector<Vec>& rough_displacement() const { return rough_; }
 
-  Reach reach(std::size_t module) const;
+  /// What the factorization took, in products of two blocks, and what a solution takes.
+  std::size_t factor_product_count() const;
+  double solution_product_count() const;
 
-  /// The block of K^-1 for two modules: the displacements of the first for unit loads on the
-  /// second, by column. The reach of a fixed module is empty, and this zero.
-  base::Mat6<double> between(const Reach& first, const Reach& second) const;
+  /// Finds K^-1 between modules: inverse() after that.
+  void find_inverse(const InfluenceQuestions& questions);
+
+  /// K^-1 between the modules that were asked about.
+  const InverseStiffness& inverse() const { return *inverse_; }
+
+  /// The same of K with every connection's stiffness times a factor of its own; none if that is
+  /// singular.
+  std::unique_ptr<const InverseStiffness> inverse_of(std::span<const double> connection_factors,
+                                                     const InfluenceQuestions& questions) const;
 
   /// Slots that solve() takes: slot(module) for every module, and one more.
   std::size_t slot_count() const;
@@ -67,6 +101,7 @@ class Influence {
   Influence();
 
   std::unique_ptr<DirectSystem> system_;
+  std::unique_ptr<const InverseStiffness> inverse_;
   std::vector<std::size_t> slots_;
   std::vector<Vec> displacement_;
   std::vector<Vec> rough_;

@@ -7,7 +7,7 @@
 namespace holdfast::solver {
 
 /// Right-hand sides that are solved together.
-inline constexpr std::size_t kLaneCount = 8;
+inline constexpr std::size_t kLaneCount = 16;
 
 /// What a node has in each of kLaneCount right-hand sides or solutions: by component [x y z and
 /// about x y z], then by lane.

@@ -171,6 +171,10 @@ class LinearSystem {
   /// Takes other loads; what solve() goes on from is then no displacements at all.
   void set_loads(model::Loads loads);
 
+  /// Takes other loads, of which the displacements of the last solve() are not far: an iteration
+  /// goes on from them, and solve()'s tolerance means what it meant before.
+  void change_loads(model::Loads loads);
+
   /// Solves for the present facets and loads. An iteration goes on from the last solution until its
   /// error in the energy norm is `tolerance` times that of no displacements; a direct solution is
   /// as exact as it gets.
@@ -202,6 +206,9 @@ class LinearSystem {
   virtual void take_law() = 0;
   virtual void take_facet(std::size_t facet) = 0;
   virtual void take_loads() = 0;
+
+  /// The same for loads that have changed little.
+  virtual void take_changed_loads() { take_loads(); }
 
   /// Changes the weak springs and nothing else.
   void set_gamma(double gamma);

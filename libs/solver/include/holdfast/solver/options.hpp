@@ -9,6 +9,8 @@
 #include <limits>
 
 #include "holdfast/mechanics/ground_contact.hpp"
+#include "holdfast/model/robot_part.hpp"
+#include "holdfast/solver/contact_journal.hpp"
 #include "holdfast/solver/precision.hpp"
 
 /// What a caller may ask of the solvers.
@@ -49,6 +51,14 @@ struct EquilibriumOptions {
   /// Called after every iteration of multigrid with the error that is left, as a share of the
   /// first.
   std::function<void(int iteration, double error)> progress = {};
+  /// Which part of a robot that several processes share the given one is; null: it is the whole.
+  /// They then ask the same in the same order, and by multigrid, which they must say here.
+  const model::RobotPart* part = nullptr;
+  /// Remembers contact states beyond this run; null: nobody does.
+  ContactJournal* journal = nullptr;
+
+  /// Who else has a part of the robot; null: nobody.
+  host::Ranks* ranks() const { return part == nullptr ? nullptr : part->ranks; }
 };
 
 /// The law of contact with the ground.

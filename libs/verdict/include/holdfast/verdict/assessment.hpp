@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <vector>
@@ -55,6 +56,14 @@ struct OpenGaps {
   std::size_t worst = 0;  ///< The index of the one with the largest share of its limit.
   double gap_mm = 0;      ///< Its opening,
   double limit_mm = 0;    ///< and its limit.
+  std::array<base::Cell, 2> ends = {};  ///< Of that connection.
+};
+
+/// Of a robot of which this is a part: what all ranks' connections are together.
+struct WholeLoads {
+  std::size_t connection_count = 0;
+  std::size_t broken_count = 0;
+  std::array<base::Cell, 2> worst = {};  ///< The ends of the one with the largest load ratio.
 };
 
 /// What the largest load ratio lies between: apart by the solver's error, with a margin, or by feet
@@ -77,6 +86,8 @@ struct SeveralSolutions {
 struct ModelStability {
   bool is_stable = false;
   bool is_settled = false;  ///< False: no consistent contact state was found, is_stable is void.
+  /// The answer is the exact contact law's, and the paper's allows states in which the robot falls.
+  bool falls_otherwise = false;
 };
 
 struct Assessment {
@@ -90,6 +101,10 @@ struct Assessment {
   /// On a flat floor by the rigid body. With supports elsewhere only if the rigid body holds and
   /// the model does not say otherwise. Bonded supports hold always.
   bool is_stable = false;
+
+  /// None for a robot that is whole. Of a part `connections` and `broken` are this rank's, and
+  /// `worst` is an index at the rank that has it; all else is of the whole robot.
+  std::optional<WholeLoads> whole;
 
   /// One result per connection of the robot; empty if no equilibrium was found, or sought: a large
   /// robot that topples is known to topple by the rigid body. Not meaningful if unstable.
@@ -124,7 +139,7 @@ inline constexpr double kEnergyFactor = 3;
 inline bool breaks(double load_ratio) { return load_ratio >= 1 - kLoadRatioTie; }
 
 /// What the rigid body says of a robot, and nothing else: no verdict, no reasons.
-Assessment assess_rigidly(const model::Robot& robot);
+Assessment assess_rigidly(const model::Robot& robot, const model::RobotPart* part = nullptr);
 
 /// Seeks the equilibrium of a robot and says what follows from it.
 Assessment assess(const model::Robot& robot, const solver::EquilibriumOptions& options = {});

@@ -51,9 +51,10 @@ enum class ReasonCode : std::uint8_t {
   kCarrierBreaks,  ///< The connection by which a moved module hangs on its carrier: its load ratio.
   kCarrierHolds,   ///< It is the worst of all: its load ratio.
   kInPieces,       ///< The robot is, each of which is judged by itself: how many.
+  kStatesDisagree,  ///< It falls in other states that the paper's contact law allows.
 };
 
-inline constexpr int kReasonCodeCount = static_cast<int>(ReasonCode::kInPieces) + 1;
+inline constexpr int kReasonCodeCount = static_cast<int>(ReasonCode::kStatesDisagree) + 1;
 
 /// One reason for a verdict, as data. io::reason_text() makes a sentence of it.
 struct Reason {
@@ -64,6 +65,8 @@ struct Reason {
   /// What another part of the program says, in its own words: the checker of certificates, or the
   /// robot. Empty for all other codes.
   std::string quoted = {};
+  /// The cells that indices mean, where these are another rank's; else empty.
+  std::vector<base::Cell> cells = {};
 
   friend bool operator==(const Reason&, const Reason&) = default;
 };

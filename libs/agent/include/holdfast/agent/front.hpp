@@ -1,0 +1,136 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+
+#include "holdfast/agent/node.hpp"
+#include "holdfast/base/cell.hpp"
+
+/// Elimination with fronts: a module with everything below it in the spanning tree, condensed to
+/// those nodes that are not finished with [Duff, Reid 1983].
+///
+/// A *front* is a list of nodes and the symmetric stiffness and the loads that belong to them. A
+/// module's front holds its own node, those of planned modules that it emulates, and the fronts of
+/// its children. A beam is put in as soon as both its ends are in one front. A node whose beams are
+/// all in is *complete*: it is eliminated, and the rest goes up to the parent. So any number of
+/// loops may pass, and a planned module between others is a node like every other, in the front of
+/// its host. A facet that holds all over is put in with its node. The node of any other facet is
+/// *kept*: without its facet and not eliminated, up to the root, where contact is decided
+/// (front_contact.hpp). So the matrix is symmetric and positive, and contact never spoils it.
+///
+/// With A the front's matrix, its first n rows those of complete nodes, A = L L^t there, row by
+/// row:
+///   L_ij = (A_ij - sum_{k<j} L_ik L_jk) / L_jj       j < n, j <= i
+///   S_ij =  A_ij - sum_{k<n} L_ik L_jk               j >= n
+/// Sums are in double precision; what is stored and sent is single precision, and the iteration
+/// takes its rounding away.
+namespace holdfast::agent {
+
+/// A node in a front.
+struct FrontNode {
+  base::Cell cell = {};
+  base::Faces missing = {};  ///< Faces whose beams are not in yet.
+  base::Faces joined = {};   ///< Faces whose beams are put in here.
+  bool is_fixed = false;     ///< Does not move: no rows.
+  bool is_kept = false;      ///< Its facet is the root's.
+  bool is_held = true;       ///< Of a kept facet, against slip and twist.
+  base::Vec6<float> u = {};  ///< Of a kept one: its displacement.
+
+  bool is_complete() const { return missing.is_empty() && !is_kept; }
+};
+
+/// What one module needs for its fronts. The caller owns it: whoever has no such memory has other
+/// methods. A front that does not fit is none, and the robot takes another method.
+struct FrontMemory {
+  std::span<FrontNode> nodes;
+  std::span<float> reals;
+  std::span<double> contact;       ///< For the root: see contact_reals().
+  std::span<std::uint8_t> queues;  ///< For the six links, kLentBytes each.
+  std::size_t nodes_used = 0;
+  std::size_t reals_used = 0;
+  std::size_t reals_most = 0;  ///< So far, for reports.
+
+  void clear() { nodes_used = reals_used = 0; }
+
+  /// Empty if there is no room.
+  std::span<FrontNode> take_nodes(std::size_t count);
+  std::span<float> take_reals(std::size_t count);
+};
+
+/// Reals of a lower triangle with so many rows.
+constexpr std::size_t triangle_reals(std::size_t rows) { return rows * (rows + 1) / 2; }
+
+/// Messages of six reals that it takes.
+constexpr int triangle_vectors(int rows) {
+  return static_cast<int>((triangle_reals(static_cast<std::size_t>(rows)) + 5) / 6);
+}
+
+class Front {
+ public:
+  /// Sorts `nodes`, complete ones first, and takes memory for matrix and loads, all zero; false if
+  /// there is no room.
+  bool make(std::span<FrontNode> nodes, FrontMemory& memory);
+
+  std::span<const FrontNode> nodes() const { return nodes_; }
+
+  /// Of the i-th node; -1 for a fixed one.
+  int row_of(std::size_t node) const;
+
+  /// Rows of complete nodes, and of all.
+  int complete_rows() const { return complete_rows_; }
+
+  int rows() const { return rows_; }
+
+  /// How many nodes are eliminated; the others go up.
+  std::size_t complete_count() const { return complete_count_; }
+
+  /// Adds a symmetric 6x6 block on the diagonal, or a block for a pair of nodes; row, column: of
+  /// the nodes' first unknowns.
+  void add_block(int row, int column, const base::Mat6<double>& block);
+
+  /// Adds one element; either triangle.
+  void add(int row, int column, float value) {
+    matrix_[row >= column ? at(row, column) : at(column, row)] += value;
+  }
+
+  float element(int row, int column) const { return matrix_[at(row, column)]; }
+
+  /// The `index`-th element of S, by rows of its lower triangle; zero behind the last one.
+  float element_left(int index) const;
+
+  /// Row `row` of L, then of S. False: not positive, nothing holds the robot.
+  bool factor_row(int row);
+
+  // Loads and shifts of a front are those of its memory.
+  float& load(int row) const { return loads_[static_cast<std::size_t>(row)]; }
+
+  float& shift(int row) const { return shifts_[static_cast<std::size_t>(row)]; }
+
+  void clear_loads();
+
+  /// Loads of complete nodes go over to the others.
+  void condense_loads();
+
+  /// Shifts of complete nodes, those of the others being here.
+  void find_shifts();
+
+ private:
+  static std::size_t at(int row, int column) {
+    return triangle_reals(static_cast<std::size_t>(row)) + static_cast<std::size_t>(column);
+  }
+
+  double product(int row, int column, int count) const;
+
+  std::span<FrontNode> nodes_;
+  std::span<float> matrix_;
+  std::span<float> loads_;
+  std::span<float> shifts_;
+  std::size_t complete_count_ = 0;
+  int complete_rows_ = 0;
+  int rows_ = 0;
+};
+
+}  // namespace holdfast::agent

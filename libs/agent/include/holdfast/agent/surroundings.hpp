@@ -1,0 +1,75 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "holdfast/base/algebra.hpp"
+#include "holdfast/base/cell.hpp"
+#include "holdfast/mechanics/ground_contact.hpp"
+#include "holdfast/mechanics/support_corners.hpp"
+
+/// What a module touches and carries, where that is more than a floor below one layer and the same
+/// weight for all: supports on any of its faces, gravity in any direction, masses and payloads of
+/// their own.
+///
+/// A module of such a robot is lent memory for it (LentMemory); without, it costs nothing. What is
+/// in a place is known before the robot is built, as the layer that rests on the floor is: a module
+/// looks itself up in Environment once it knows its cell, and the planned modules that it emulates.
+namespace holdfast::agent {
+
+/// Is there anything but a floor? Left out of programs with HOLDFAST_AGENT_FLOOR_ONLY, which have
+/// no flash for it.
+#ifdef HOLDFAST_AGENT_FLOOR_ONLY
+inline constexpr bool kHasSurroundings = false;
+#else
+inline constexpr bool kHasSurroundings = true;
+#endif
+
+/// A facet of a module that touches what does not move, and its state as in Node.
+struct TouchingFacet {
+  base::Direction direction = base::Direction::kMinusZ;
+  bool is_bonded = false;  ///< Holds like a module with connectors would.
+  bool is_held = true;
+  bool was_released = false;
+  mechanics::ContactState state = {};
+  mechanics::ContactState wanted = {};
+};
+
+struct Environment;
+
+/// What acts on one node from outside the robot.
+struct Surroundings {
+  const Environment* environment = nullptr;
+  base::Vec6<double> load{};  ///< Weight and payload: 3 N, 3 N mm at the node, global frame.
+  std::int32_t mass = 1;      ///< Whole units, see Environment::is_level.
+  std::uint8_t facet_count = 0;
+  std::array<TouchingFacet, base::kDirectionCount> facets{};
+};
+
+/// What is known of the world before the robot is built, the same for all its modules.
+struct Environment {
+  /// Fills in load, mass and facets of the module that is, or will be, in a cell.
+  void (*describe)(const void* map, const base::Cell& cell, Surroundings& node) = nullptr;
+  const void* map = nullptr;  ///< Handed to describe(). Not owned.
+  double foot_width_mm = 0;   ///< Of all facets that touch; 0 is a point.
+  /// foot_width_mm in pitches, a fraction.
+  std::int32_t foot_numerator = 1;
+  std::int32_t foot_denominator = 1;
+  /// All facets look straight down and lie on one level, nothing but weight acts, straight down,
+  /// and masses are whole numbers of one unit: so the simplified check is exact.
+  bool is_level = false;
+};
+
+/// Is the node bonded to something?
+bool is_any_bonded(const Surroundings& node);
+
+/// Brings the facets of a node back to rest: all stuck.
+void reset(Surroundings& node);
+
+/// The corners with which a node presses, in units of pitch over twice Environment's
+/// foot_denominator; what is bonded holds alone.
+mechanics::SupportCorners support_corners(const Surroundings& node, const base::Cell& cell);
+
+}  // namespace holdfast::agent

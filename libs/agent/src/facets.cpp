@@ -1,0 +1,181 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#include "facets.hpp"
+
+#include <span>
+
+#include "displacements.hpp"
+#include "holdfast/mechanics/frame.hpp"
+#include "scalar.hpp"
+
+namespace holdfast::agent {
+namespace {
+
+using base::Vec6;
+using mechanics::ContactState;
+
+constexpr ContactState kStuck;
+
+/// A facet that presses with less than this share of what else acts on it does not press: what is
+/// left of the residual (kUnevenTolerance) may be as much.
+constexpr double kPressureTie = 1e-6;
+
+std::span<const TouchingFacet> facets_of(const Surroundings& node) {
+  return std::span(node.facets).first(node.facet_count);
+}
+
+std::span<TouchingFacet> facets_of(Surroundings& node) {
+  return std::span(node.facets).first(node.facet_count);
+}
+
+const mechanics::Frame& frame_of(const TouchingFacet& facet) {
+  return mechanics::kCubicFrames[static_cast<std::size_t>(facet.direction)];
+}
+
+/// The sum of force(facet, local displacement) over all facets, in the global frame.
+template <class Force>
+Vec6<double> sum_of(const Surroundings& node, const Vec6<double>& u, Force&& force) {
+  Vec6<double> sum{};
+  for (const TouchingFacet& facet : facets_of(node)) {
+    const mechanics::Frame& frame = frame_of(facet);
+    base::add_to(sum, mechanics::to_global(frame, force(facet, mechanics::to_local(frame, u))));
+  }
+  return sum;
+}
+
+ContactState prescribed_state(const TouchingFacet& facet, const ContactSetting& contact,
+                              const Vec6<double>& local) {
+  if (facet.is_bonded) {
+    return kStuck;
+  }
+  const mechanics::GroundFacet<double>& law = contact.facet;
+  const Vec6<double> trial = mechanics::trial_force(law, local);
+  const double sideways = absolute(trial[0]) + absolute(trial[1]);
+  const double torque = absolute(trial[3]) + absolute(trial[4]) + absolute(trial[5]);
+  const bool is_rounding = absolute(trial[2]) < kPressureTie * (sideways + torque / law.lever);
+  if (is_rounding && law.law == mechanics::ContactLaw::kRegularised) {
+    return {.pressed = false};
+  }
+  return mechanics::contact_state(law, trial);
+}
+
+bool tilts(const ContactState& state) { return state.tilt_x != 0 || state.tilt_y != 0; }
+
+}  // namespace
+
+namespace surrounded {
+
+Vec6<double> facet_force(const Surroundings& node, const ContactSetting& contact,
+                         const Vec6<double>& u) {
+  return sum_of(node, u, [&](const TouchingFacet& facet, const Vec6<double>& local) {
+    return mechanics::contact_force(contact.facet, facet.state, facet.is_held, local);
+  });
+}
+
+Vec6<double> symmetric_product(const Surroundings& node, const ContactSetting& contact,
+                               const Vec6<double>& u) {
+  return sum_of(node, u, [&](const TouchingFacet& facet, const Vec6<double>& local) {
+    return mechanics::symmetric_product(contact.facet, facet.state, facet.is_held, local);
+  });
+}
+
+Vec6<double> prescribed_force(const Surroundings& node, const ContactSetting& contact,
+                              const Vec6<double>& u) {
+  return sum_of(node, u, [&](const TouchingFacet& facet, const Vec6<double>& local) {
+    return mechanics::contact_force(contact.facet, prescribed_state(facet, contact, local),
+                                    facet.is_held, local);
+  });
+}
+
+bool look_up_states(Surroundings& node, const ContactSetting& contact, const Vec6<double>& u) {
+  bool has_changed = false;
+  for (TouchingFacet& facet : facets_of(node)) {
+    facet.wanted = prescribed_state(facet, contact, mechanics::to_local(frame_of(facet), u));
+    has_changed = has_changed || !(facet.wanted == facet.state);
+  }
+  return has_changed;
+}
+
+void take_states(Surroundings& node) {
+  for (TouchingFacet& facet : facets_of(node)) {
+    facet.state = facet.wanted;
+  }
+}
+
+void hold_facets(Surroundings& node, bool frees, Report& report) {
+  for (TouchingFacet& facet : facets_of(node)) {
+    hold_facet(facet, frees, report);
+  }
+}
+
+void report_facets(const Surroundings& node, const base::Cell& cell, Report& report) {
+  for (const TouchingFacet& facet : facets_of(node)) {
+    const int code = ContactState::kCodeCount * (1 + base::index(facet.direction));
+    report.number += hash_of(cell, code + facet.wanted.code());
+    report.flags = static_cast<std::uint8_t>(
+        report.flags | (tilts(facet.state) ? kAnyTilting : 0U) |
+        (facet.state == kStuck || node.environment->is_level ? 0U : kMayPull));
+  }
+}
+
+}  // namespace surrounded
+
+bool is_any_tilting(const Node& node) {
+  const Surroundings* surroundings = surroundings_of(node);
+  if (surroundings == nullptr) {
+    return node.is_ground && tilts(node.state);
+  }
+  bool is_any = false;
+  for (const TouchingFacet& facet : facets_of(*surroundings)) {
+    is_any = is_any || tilts(facet.state);
+  }
+  return is_any;
+}
+
+bool is_any_bonded(const Surroundings& node) {
+  bool is_any = false;
+  for (const TouchingFacet& facet : facets_of(node)) {
+    is_any = is_any || facet.is_bonded;
+  }
+  return is_any;
+}
+
+void reset(Surroundings& node) {
+  for (TouchingFacet& facet : facets_of(node)) {
+    facet = {.direction = facet.direction, .is_bonded = facet.is_bonded};
+  }
+}
+
+/// mx^ < 0 presses the +y' edge, my^ > 0 the +x' edge.
+mechanics::SupportCorners support_corners(const Surroundings& node, const base::Cell& cell) {
+  mechanics::SupportCorners corners;
+  const Environment& environment = *node.environment;
+  const std::int32_t half_pitch = environment.foot_denominator;
+  const std::int32_t half_width = environment.foot_numerator;
+  for (const TouchingFacet& facet : facets_of(node)) {
+    if (facet.is_bonded || (facet.state == kStuck && half_width > 0)) {
+      return {.stable = true};
+    }
+    for (std::int32_t corner = 0; corner < 4 && facet.state.pressed; ++corner) {
+      const std::int32_t side_x = corner % 2 == 0 ? -1 : 1;
+      const std::int32_t side_y = corner < 2 ? -1 : 1;
+      if (facet.state.tilt_x == side_y || facet.state.tilt_y == -side_x) {
+        continue;
+      }
+      // From the node: half a pitch to the facet, along -z', then to its corner.
+      const std::array<std::int32_t, 3> local = {side_x * half_width, side_y * half_width,
+                                                 -half_pitch};
+      std::array<std::int32_t, 3> place = {2 * half_pitch * cell.x, 2 * half_pitch * cell.y,
+                                           2 * half_pitch * cell.z};
+      const mechanics::Frame& frame = frame_of(facet);
+      for (std::size_t i = 0; i < 3; ++i) {
+        place[frame.axis[i]] += frame.sign[i] * local[i];
+      }
+      corners =
+          mechanics::merge(corners, {.count = 1, .corners = {{place[0], place[1], place[2]}}});
+    }
+  }
+  return corners;
+}
+
+}  // namespace holdfast::agent

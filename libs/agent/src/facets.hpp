@@ -1,0 +1,99 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "holdfast/agent/node.hpp"
+#include "holdfast/agent/order.hpp"
+#include "holdfast/agent/surroundings.hpp"
+
+/// The facets with which a node touches something: one on the floor, whose state is the node's, or,
+/// where it has surroundings, any on its faces, each in a state and a frame of its own.
+namespace holdfast::agent {
+
+/// The surroundings of a node, or null: it can touch a floor only.
+inline Surroundings* surroundings_of(const Node& node) {
+#ifdef HOLDFAST_AGENT_FLOOR_ONLY
+  static_cast<void>(node);
+  return nullptr;
+#else
+  return node.surroundings;
+#endif
+}
+
+// The same as below, of a node with surroundings.
+namespace surrounded {
+base::Vec6<double> facet_force(const Surroundings& node, const ContactSetting& contact,
+                               const base::Vec6<double>& u);
+base::Vec6<double> symmetric_product(const Surroundings& node, const ContactSetting& contact,
+                                     const base::Vec6<double>& u);
+base::Vec6<double> prescribed_force(const Surroundings& node, const ContactSetting& contact,
+                                    const base::Vec6<double>& u);
+bool look_up_states(Surroundings& node, const ContactSetting& contact, const base::Vec6<double>& u);
+void take_states(Surroundings& node);
+void hold_facets(Surroundings& node, bool frees, Report& report);
+void report_facets(const Surroundings& node, const base::Cell& cell, Report& report);
+}  // namespace surrounded
+
+/// Does a facet tilt?
+bool is_any_tilting(const Node& node);
+
+/// The force of the facets of a node on the ground for the displacement u, in the states in use;
+/// linear in u.
+inline base::Vec6<double> facet_force(const Node& node, const ContactSetting& contact,
+                                      const base::Vec6<double>& u) {
+  const Surroundings* surroundings = surroundings_of(node);
+  return surroundings != nullptr
+             ? surrounded::facet_force(*surroundings, contact, u)
+             : mechanics::contact_force(contact.facet, node.state, node.is_held, u);
+}
+
+/// The same for the symmetric stand-in of the tangent (mechanics::symmetric_product).
+inline base::Vec6<double> symmetric_facet_product(const Node& node, const ContactSetting& contact,
+                                                  const base::Vec6<double>& u) {
+  const Surroundings* surroundings = surroundings_of(node);
+  return surroundings != nullptr
+             ? surrounded::symmetric_product(*surroundings, contact, u)
+             : mechanics::symmetric_product(contact.facet, node.state, node.is_held, u);
+}
+
+/// The facets' tangent, of a node on the ground.
+inline base::Mat6<double> facet_tangent(const Node& node, const ContactSetting& contact) {
+  const Surroundings* surroundings = surroundings_of(node);
+  if (surroundings == nullptr) {
+    return mechanics::contact_tangent(contact.facet, node.state, node.is_held);
+  }
+  return base::matrix_of<double>([&](const base::Vec6<double>& u) {
+    return surrounded::facet_force(*surroundings, contact, u);
+  });
+}
+
+/// Its symmetric stand-in.
+inline base::Mat6<double> symmetric_facet_tangent(const Node& node, const ContactSetting& contact) {
+  const Surroundings* surroundings = surroundings_of(node);
+  if (surroundings == nullptr) {
+    return mechanics::symmetric_tangent(contact.facet, node.state, node.is_held);
+  }
+  return base::matrix_of<double>([&](const base::Vec6<double>& u) {
+    return surrounded::symmetric_product(*surroundings, contact, u);
+  });
+}
+
+/// Looks up the states that the law prescribes at u + t g. True: some are not those in use.
+inline bool look_up_states(Node& node, const ContactSetting& contact, const base::Vec6<float>& g,
+                           double t) {
+  if (Surroundings* surroundings = surroundings_of(node); surroundings != nullptr) {
+    return surrounded::look_up_states(*surroundings, contact, position_along(node, g, t));
+  }
+  node.wanted = state_along(node, contact, g, t);
+  return node.is_ground && !(node.wanted == node.state);
+}
+
+/// The states that were looked up are in use from now on.
+inline void take_states(Node& node) {
+  node.state = node.wanted;
+  if (Surroundings* surroundings = surroundings_of(node); surroundings != nullptr) {
+    surrounded::take_states(*surroundings);
+  }
+}
+
+}  // namespace holdfast::agent

@@ -1,0 +1,260 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#include "holdfast/agent/front_contact.hpp"
+
+#include "scalar.hpp"
+
+namespace holdfast::agent {
+namespace {
+
+/// Newton's steps of the regularised law until it counts as going round in circles. The exact
+/// solver takes five at most where it settles.
+constexpr int kNewtonMax = 40;
+
+/// What is tried where they do: all stuck, and the states that this leads to.
+constexpr int kFirstSteps = 2;
+
+/// Steps of the unilateral law; each settles some facets, the line search keeps them from
+/// returning.
+constexpr int kConvexMax = 200;
+
+/// Halvings of the interval in which the slope changes its sign.
+constexpr int kHalvingMax = 40;
+
+/// A step is the last if its square is this part of the first one's energy; and how far below its
+/// start the slope must be at a full step.
+constexpr double kLeastPart = 1e-10;
+
+}  // namespace
+
+FrontContact::FrontContact(const mechanics::GroundFacet<double>& law, Front& front,
+                           std::span<KeptFacet> facets, std::span<double> reals)
+    : law_(law), front_(front), facets_(facets), rows_(6 * facets.size()) {
+  const auto vector = [&](std::size_t i) {
+    return reals.subspan(rows_ * rows_ + i * rows_, rows_);
+  };
+  matrix_ = reals.first(rows_ * rows_);
+  d_ = vector(0);
+  g_ = vector(1);
+  trial_ = vector(2);
+  residual_ = vector(3);
+}
+
+bool FrontContact::solve() {
+  clear(d_);
+  bool is_solved = false;
+  if (law_.law == mechanics::ContactLaw::kUnilateral) {
+    is_solved = solve_unilateral();
+  } else {
+    is_solved = solve_regularised(kNewtonMax);
+    if (!is_solved) {
+      clear(d_);
+      for (KeptFacet& facet : facets_) {
+        facet.state = {.pressed = true};
+      }
+      solve_regularised(kFirstSteps);
+    }
+  }
+  take(d_);
+  return is_solved;
+}
+
+void FrontContact::clear(const Vector& vector) {
+  for (double& value : vector) {
+    value = 0;
+  }
+}
+
+double FrontContact::stiffness(std::size_t row, std::size_t column) const {
+  const int first = front_.complete_rows();
+  const int i = first + static_cast<int>(row > column ? row : column);
+  const int j = first + static_cast<int>(row > column ? column : row);
+  return static_cast<double>(front_.element(i, j));
+}
+
+base::Vec6<double> FrontContact::displacement(std::size_t facet, const Vector& d) const {
+  base::Vec6<double> u = facets_[facet].u;
+  for (std::size_t i = 0; i < 6; ++i) {
+    u[i] += d[6 * facet + i];
+  }
+  return u;
+}
+
+/// Takes over the states at u + d. False: they are those already in use.
+bool FrontContact::follow_states(const Vector& d) {
+  bool has_changed = false;
+  for (std::size_t k = 0; k < facets_.size(); ++k) {
+    const mechanics::ContactState state =
+        mechanics::contact_state(law_, mechanics::trial_force(law_, displacement(k, d)));
+    has_changed = has_changed || !(state == facets_[k].state);
+    facets_[k].state = state;
+  }
+  return has_changed;
+}
+
+/// h - S d - F(u + d), in the states in use.
+void FrontContact::find_residual(const Vector& d, Vector& residual) const {
+  for (std::size_t k = 0; k < facets_.size(); ++k) {
+    const KeptFacet& facet = facets_[k];
+    const base::Vec6<double> force =
+        mechanics::contact_force(law_, facet.state, facet.is_held, displacement(k, d));
+    for (std::size_t i = 0; i < 6; ++i) {
+      const std::size_t row = 6 * k + i;
+      residual[row] =
+          static_cast<double>(front_.load(front_.complete_rows() + static_cast<int>(row))) -
+          force[i];
+      for (std::size_t column = 0; column < rows_; ++column) {
+        residual[row] -= stiffness(row, column) * d[column];
+      }
+    }
+  }
+}
+
+/// The matrix: S and the facets' tangents.
+void FrontContact::load_tangent() {
+  for (std::size_t row = 0; row < rows_; ++row) {
+    for (std::size_t column = 0; column < rows_; ++column) {
+      matrix_[row * rows_ + column] = stiffness(row, column);
+    }
+  }
+  for (std::size_t k = 0; k < facets_.size(); ++k) {
+    const base::Mat6<double> tangent =
+        mechanics::contact_tangent(law_, facets_[k].state, facets_[k].is_held);
+    for (int i = 0; i < 6; ++i) {
+      for (int j = 0; j < 6; ++j) {
+        matrix_[(6 * k + static_cast<std::size_t>(i)) * rows_ + 6 * k +
+                static_cast<std::size_t>(j)] += tangent.at(i, j);
+      }
+    }
+  }
+}
+
+/// Gauss's elimination with pivots by rows; b becomes the solution.
+bool FrontContact::solve_linear(Vector& b) {
+  const auto at = [&](std::size_t row, std::size_t column) -> double& {
+    return matrix_[row * rows_ + column];
+  };
+  for (std::size_t k = 0; k < rows_; ++k) {
+    std::size_t pivot = k;
+    for (std::size_t row = k + 1; row < rows_; ++row) {
+      pivot = absolute(at(row, k)) > absolute(at(pivot, k)) ? row : pivot;
+    }
+    if (!(absolute(at(pivot, k)) > 0)) {
+      return false;
+    }
+    for (std::size_t column = 0; column < rows_ && pivot != k; ++column) {
+      const double value = at(k, column);
+      at(k, column) = at(pivot, column);
+      at(pivot, column) = value;
+    }
+    const double value = b[k];
+    b[k] = b[pivot];
+    b[pivot] = value;
+    for (std::size_t row = k + 1; row < rows_; ++row) {
+      const double factor = at(row, k) / at(k, k);
+      for (std::size_t column = k + 1; column < rows_; ++column) {
+        at(row, column) -= factor * at(k, column);
+      }
+      b[row] -= factor * b[k];
+    }
+  }
+  for (std::size_t row = rows_; row-- > 0;) {
+    for (std::size_t column = row + 1; column < rows_; ++column) {
+      b[row] -= at(row, column) * b[column];
+    }
+    b[row] /= at(row, row);
+    if (!is_number(b[row])) {
+      return false;
+    }
+  }
+  return true;
+}
+
+/// Every step solves the linear problem of its states whole, then looks up its states.
+bool FrontContact::solve_regularised(int step_count) {
+  for (int step = 0; step < step_count; ++step) {
+    find_residual(d_, residual_);
+    load_tangent();
+    if (!solve_linear(residual_)) {
+      return false;
+    }
+    for (std::size_t i = 0; i < rows_; ++i) {
+      d_[i] += residual_[i];
+    }
+    if (!follow_states(d_)) {
+      return true;
+    }
+  }
+  return false;
+}
+
+/// d energy / dt at d + t g.
+double FrontContact::slope(const Vector& g, const Vector& d, double t) {
+  for (std::size_t i = 0; i < rows_; ++i) {
+    trial_[i] = d[i] + t * g[i];
+  }
+  follow_states(trial_);
+  find_residual(trial_, residual_);
+  double sum = 0;
+  for (std::size_t i = 0; i < rows_; ++i) {
+    sum -= residual_[i] * g[i];
+  }
+  return sum;
+}
+
+/// The slope of a convex energy never decreases: where it is zero between 0 and 1, or 1.
+double FrontContact::step_length(const Vector& g, const Vector& d) {
+  const double start = absolute(slope(g, d, 0));
+  if (slope(g, d, 1) <= kLeastPart * start) {
+    return 1;
+  }
+  double low = 0;
+  double high = 1;
+  for (int i = 0; i < kHalvingMax; ++i) {
+    const double middle = (low + high) / 2;
+    (slope(g, d, middle) > 0 ? high : low) = middle;
+  }
+  return low;
+}
+
+bool FrontContact::solve_unilateral() {
+  follow_states(d_);
+  double first = 0;
+  for (int step = 0; step < kConvexMax; ++step) {
+    find_residual(d_, residual_);
+    for (std::size_t i = 0; i < rows_; ++i) {
+      g_[i] = residual_[i];
+    }
+    load_tangent();
+    if (!solve_linear(g_)) {
+      return false;
+    }
+    double work = 0;
+    for (std::size_t i = 0; i < rows_; ++i) {
+      work += residual_[i] * g_[i];
+    }
+    first = step == 0 ? work : first;
+    if (!(work > kLeastPart * kLeastPart * first)) {
+      return true;
+    }
+    const double length = step_length(g_, d_);
+    for (std::size_t i = 0; i < rows_; ++i) {
+      d_[i] += length * g_[i];
+    }
+    follow_states(d_);
+  }
+  return false;
+}
+
+/// As single precision has it, like the module itself.
+void FrontContact::take(const Vector& d) {
+  for (std::size_t k = 0; k < facets_.size(); ++k) {
+    for (std::size_t i = 0; i < 6; ++i) {
+      float& shift = front_.shift(front_.complete_rows() + static_cast<int>(6 * k + i));
+      shift = static_cast<float>(d[6 * k + i]);
+      facets_[k].u[i] += static_cast<double>(shift);
+    }
+  }
+}
+
+}  // namespace holdfast::agent

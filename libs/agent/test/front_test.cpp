@@ -1,0 +1,219 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// A front's algebra beside a dense Schur complement; the root's contact problem by its own
+// equations.
+#include "holdfast/agent/front.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Dense>
+#include <vector>
+
+#include "holdfast/agent/front_contact.hpp"
+#include "holdfast/base/rng.hpp"
+#include "test_setup.hpp"
+
+namespace holdfast::agent {
+namespace {
+
+using base::Direction;
+using test::lopsided_beam;
+
+/// Memory for one front and its contact problem.
+struct Store {
+  std::vector<float> reals = std::vector<float>(10'000);
+  std::vector<double> contact = std::vector<double>(contact_reals(kKeptMax));
+  FrontMemory memory{.nodes = {}, .reals = reals, .contact = contact, .queues = {}};
+};
+
+/// Four nodes in a ring, one more above the first, one fixed; nodes 1 and 3 are not complete.
+std::vector<FrontNode> ring() {
+  std::vector<FrontNode> nodes(6);
+  nodes[0].cell = {0, 0, 0};
+  nodes[1].cell = {1, 0, 0};
+  nodes[1].is_kept = true;
+  nodes[2].cell = {1, 1, 0};
+  nodes[3].cell = {0, 1, 0};
+  nodes[3].missing.add(Direction::kMinusX);
+  nodes[4].cell = {0, 0, 1};
+  nodes[5].cell = {2, 1, 0};
+  nodes[5].is_fixed = true;
+  return nodes;
+}
+
+struct Dense {
+  Eigen::MatrixXd matrix;
+  Eigen::VectorXd loads;
+};
+
+/// Puts all beams of neighbours into the front, and into a dense matrix with the same rows.
+Dense filled(Front& front) {
+  const auto beam = lopsided_beam();
+  base::Rng rng(5);
+  Dense dense{Eigen::MatrixXd::Zero(front.rows(), front.rows()), Eigen::VectorXd(front.rows())};
+  const auto add = [&](int row, int column, const base::Mat6<double>& block) {
+    for (int i = 0; i < 6; ++i) {
+      for (int j = 0; j < 6; ++j) {
+        dense.matrix(row + i, column + j) += block.at(i, j);
+      }
+    }
+  };
+  for (std::size_t p = 0; p < front.nodes().size(); ++p) {
+    for (std::size_t q = 0; q < front.nodes().size(); ++q) {
+      for (const Direction direction : base::kDirections) {
+        const int row = front.row_of(p);
+        const int column = front.row_of(q);
+        if (base::neighbour(front.nodes()[p].cell, direction) != front.nodes()[q].cell || row < 0) {
+          continue;
+        }
+        add(row, row, mechanics::block_11(beam, direction));
+        front.add_block(row, row, mechanics::block_11(beam, direction));
+        if (column >= 0) {
+          add(row, column, mechanics::block_12(beam, direction));
+        }
+        if (column >= 0 && base::index(direction) % 2 == 0) {
+          front.add_block(row, column, mechanics::block_12(beam, direction));
+        }
+      }
+    }
+  }
+  for (int row = 0; row < front.rows(); ++row) {
+    dense.loads(row) = static_cast<double>(rng.below(1000)) / 1000 - 0.5;
+    front.load(row) = static_cast<float>(dense.loads(row));
+  }
+  return dense;
+}
+
+void factor(Front& front) {
+  for (int row = 0; row < front.rows(); ++row) {
+    ASSERT_TRUE(front.factor_row(row));
+  }
+  front.condense_loads();
+}
+
+/// Complete nodes come first; a fixed one has no rows. Single precision: 2^-24, times a condition
+/// of a few thousands.
+TEST(Front, condenses_to_the_schur_complement) {
+  Store store;
+  auto nodes = ring();
+  Front front;
+  ASSERT_TRUE(front.make(nodes, store.memory));
+  EXPECT_EQ(front.complete_count(), 4U);
+  EXPECT_EQ(front.rows(), 30);
+  EXPECT_EQ(front.complete_rows(), 18);
+  const Dense dense = filled(front);
+  factor(front);
+  const Eigen::MatrixXd inner = dense.matrix.topLeftCorner(18, 18).inverse();
+  const Eigen::MatrixXd lower = dense.matrix.bottomLeftCorner(12, 18);
+  const Eigen::MatrixXd schur =
+      dense.matrix.bottomRightCorner(12, 12) - lower * inner * lower.transpose();
+  const Eigen::VectorXd loads = dense.loads.tail(12) - lower * inner * dense.loads.head(18);
+  const double size = dense.matrix.diagonal().maxCoeff();
+  int index = 0;
+  for (int i = 0; i < 12; ++i) {
+    EXPECT_NEAR(front.load(18 + i), loads(i), 1e-3 * loads.cwiseAbs().maxCoeff());
+    for (int j = 0; j <= i; ++j) {
+      EXPECT_NEAR(front.element_left(index++), schur(i, j), 1e-5 * size);
+    }
+  }
+  EXPECT_EQ(front.element_left(index), 0);
+}
+
+TEST(Front, finds_the_shifts_of_what_was_eliminated) {
+  Store store;
+  auto nodes = ring();
+  Front front;
+  ASSERT_TRUE(front.make(nodes, store.memory));
+  const Dense dense = filled(front);
+  factor(front);
+  Eigen::VectorXd above(12);
+  for (int i = 0; i < 12; ++i) {
+    above(i) = 1e-3 * (i + 1);
+    front.shift(18 + i) = static_cast<float>(above(i));
+  }
+  front.find_shifts();
+  const Eigen::VectorXd expected = dense.matrix.topLeftCorner(18, 18).ldlt().solve(
+      dense.loads.head(18) - dense.matrix.topRightCorner(18, 12) * above);
+  for (int i = 0; i < 18; ++i) {
+    EXPECT_NEAR(front.shift(i), expected(i), 1e-3 * expected.cwiseAbs().maxCoeff());
+  }
+}
+
+TEST(Front, says_so_if_there_is_no_room_or_nothing_holds_it) {
+  Store store;
+  store.memory.reals = store.memory.reals.first(500);
+  auto nodes = ring();
+  Front front;
+  EXPECT_FALSE(front.make(nodes, store.memory));
+  store.memory = {.nodes = {}, .reals = store.reals, .contact = {}, .queues = {}};
+  ASSERT_TRUE(front.make(nodes, store.memory));
+  EXPECT_FALSE(front.factor_row(0));
+}
+
+/// A post of two modules on one foot, pushed sideways at its top so that the foot rolls onto an
+/// edge: the lower one is kept, the upper one eliminated.
+class Post {
+ public:
+  Post(mechanics::ContactLaw law, double push_n)
+      : facet_(mechanics::ground_facet(lopsided_beam(), 40.0, 40.0, 1e-4, law)) {
+    nodes_[0].cell = {0, 0, 0};
+    nodes_[0].is_kept = true;
+    nodes_[1].cell = {0, 0, 1};
+    EXPECT_TRUE(front_.make(nodes_, store_.memory));
+    filled(front_);
+    front_.clear_loads();
+    front_.load(0) = static_cast<float>(push_n);
+    front_.load(2) = -static_cast<float>(test::kWeight);
+    front_.load(8) = -static_cast<float>(test::kWeight);
+    factor(front_);
+    FrontContact contact(facet_, front_, std::span(&kept_, 1), store_.contact);
+    is_solved_ = contact.solve();
+  }
+
+  bool is_solved() const { return is_solved_; }
+
+  const KeptFacet& foot() const { return kept_; }
+
+  /// Does the state belong to the displacement, and is S d + F = h?
+  void expect_equilibrium() const {
+    EXPECT_EQ(kept_.state,
+              mechanics::contact_state(facet_, mechanics::trial_force(facet_, kept_.u)));
+    const auto force = mechanics::contact_force(facet_, kept_.state, true, kept_.u);
+    for (int i = 0; i < 6; ++i) {
+      double sum = force[static_cast<std::size_t>(i)] - static_cast<double>(front_.load(6 + i));
+      for (int j = 0; j < 6; ++j) {
+        sum += static_cast<double>(front_.element(6 + (i > j ? i : j), 6 + (i > j ? j : i))) *
+               kept_.u[static_cast<std::size_t>(j)];
+      }
+      EXPECT_NEAR(sum, 0, 1e-3);
+    }
+  }
+
+ private:
+  Store store_;
+  std::vector<FrontNode> nodes_ = std::vector<FrontNode>(2);
+  Front front_;
+  mechanics::GroundFacet<double> facet_;
+  KeptFacet kept_{.u = {}, .state = {.pressed = true}, .is_held = true};
+  bool is_solved_ = false;
+};
+
+/// Half the width is 20 mm, the push acts 60 mm up: the foot rolls from 2 W 20 / 60 on, and
+/// carries 2 W.
+TEST(FrontContact, a_foot_rolls_when_the_push_is_too_large) {
+  constexpr double kLimit = 2 * test::kWeight * 20 / 60;
+  for (const auto law : {mechanics::ContactLaw::kRegularised, mechanics::ContactLaw::kUnilateral}) {
+    const Post stands(law, 0.9 * kLimit);
+    ASSERT_TRUE(stands.is_solved());
+    EXPECT_EQ(stands.foot().state, mechanics::ContactState{.pressed = true});
+    stands.expect_equilibrium();
+  }
+  const Post rolls(mechanics::ContactLaw::kRegularised, 1.1 * kLimit);
+  ASSERT_TRUE(rolls.is_solved());
+  EXPECT_NE(rolls.foot().state.tilt_y, 0);
+  rolls.expect_equilibrium();
+}
+
+}  // namespace
+}  // namespace holdfast::agent

@@ -1,0 +1,436 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#include "holdfast/cluster/program.hpp"
+
+#include <fmt/format.h>
+#include <petscsys.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <csignal>
+#include <cstdio>
+#include <cstdlib>
+#include <exception>
+#include <new>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "checkpoint.hpp"
+#include "cluster_check.hpp"
+#include "generator.hpp"
+#include "holdfast/holdfast.hpp"
+#include "launcher.hpp"
+#include "part_maker.hpp"
+#include "picture.hpp"
+#include "shared_text.hpp"
+#include "structure.hpp"
+
+namespace holdfast::cluster {
+namespace {
+
+// As of holdfast itself.
+constexpr int kExitUnsafe = 1;
+constexpr int kExitUndecided = 2;
+constexpr int kExitUsage = 64;
+constexpr int kExitBadInput = 65;
+constexpr int kExitFailure = 70;
+
+struct Options {
+  io::ReadOptions reading;
+  std::string file;
+  std::string json;
+  bool is_quiet = false;
+  bool is_bonded = false;
+  bool is_traffic_shown = false;
+  double memory_gb = 4;
+  std::size_t alone_max = 6000;  ///< Up to here one machine may solve directly.
+  std::string output;
+  std::string family;
+  std::size_t size = 0;
+  std::string vtk;
+  std::string checkpoint;
+
+  std::size_t memory_bytes() const { return static_cast<std::size_t>(memory_gb * 1e9); }
+};
+
+/// For end_on_signal().
+bool is_first_rank = false;
+
+int exit_code(verdict::Verdict verdict) {
+  switch (verdict) {
+    case verdict::Verdict::kSafe:
+      return 0;
+    case verdict::Verdict::kOverload:
+    case verdict::Verdict::kUnstable:
+      return kExitUnsafe;
+    case verdict::Verdict::kUndecided:
+      break;
+  }
+  return kExitUndecided;
+}
+
+/// Ends all ranks, with one line.
+[[noreturn]] void end_all(const std::string& message) {
+  int rank = 0;
+  MPI_Comm_rank(MPI_COMM_WORLD, &rank);
+  fmt::print(stderr, "holdfast-mpi: rank {}: {}; no verdict\n", rank, message);
+  std::fflush(stderr);
+  MPI_Abort(MPI_COMM_WORLD, kExitFailure);
+  std::_Exit(kExitFailure);
+}
+
+[[noreturn]] void end_all_on_exception() {
+  try {
+    std::rethrow_exception(std::current_exception());
+  } catch (const std::bad_alloc&) {
+    end_all("out of memory");
+  } catch (const std::exception& exception) {
+    end_all(exception.what());
+  } catch (...) {
+    end_all("an unknown fault");
+  }
+}
+
+/// mpirun ends the others when a rank dies. Writes nothing but a text that is there already.
+void end_on_signal(int) {
+  constexpr std::string_view kText =
+      "holdfast-mpi: ended from outside, as when another rank dies; no verdict\n";
+  if (is_first_rank) {
+    [[maybe_unused]] const auto written = ::write(STDERR_FILENO, kText.data(), kText.size());
+  }
+  std::_Exit(kExitFailure);
+}
+
+PetscErrorCode end_all_on_petsc_error(MPI_Comm, int, const char*, const char*, PetscErrorCode code,
+                                      PetscErrorType, const char* message, void*) {
+  const char* meaning = nullptr;
+  PetscErrorMessage(code, &meaning, nullptr);
+  if (code == PETSC_ERR_MEM) {
+    end_all("out of memory");
+  }
+  end_all(fmt::format("PETSc: {}: {}", meaning == nullptr ? "a fault" : meaning,
+                      message == nullptr ? "" : message));
+}
+
+int complain(const PetscRanks& ranks, const base::Error& error, const std::string& file) {
+  if (ranks.rank() == 0) {
+    fmt::print(stderr, "holdfast-mpi: {}: {}{}{}\n", io::one_line(file), error.message,
+               error.where.empty() ? "" : ", at ", error.where);
+  }
+  return kExitBadInput;
+}
+
+/// Prints what a rank takes, for those who plan for a machine.
+void show_traffic(PetscRanks& ranks, const Checked& checked) {
+  const Traffic traffic = ranks.traffic();
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  const double iterations = std::max(1, checked.assessment.equilibrium.iteration_count);
+  const double bytes = ranks.max(static_cast<double>(traffic.halo_bytes));
+  const double mb = ranks.max(static_cast<double>(usage.ru_maxrss) / 1024);
+  if (ranks.rank() == 0) {
+    fmt::print(
+        "  traffic     in each iteration: {:.0f} bytes of copies at most in {:.0f} messages to "
+        "each "
+        "neighbour, {:.0f} sums, {:.0f} bytes gathered; {:.0f} MB at most\n",
+        bytes / iterations, static_cast<double>(traffic.halo_count) / iterations,
+        static_cast<double>(traffic.sum_count) / iterations,
+        static_cast<double>(traffic.gather_bytes) / iterations, mb);
+  }
+}
+
+/// Writes what the first rank has to say. Returns whether all went well.
+bool write_answer(const Options& options, const std::string& text, const std::string& json) {
+  if (!options.is_quiet && options.json != "-") {
+    fmt::print("{}", text);
+    std::fflush(stdout);
+  }
+  if (options.json.empty()) {
+    return true;
+  }
+  const auto error = write_file(options.json, json);
+  if (error) {
+    fmt::print(stderr, "holdfast-mpi: {}: {}\n", options.json, error->message);
+  }
+  return !error;
+}
+
+/// Writes a piece of the picture, if one is wanted. Returns whether all went well.
+bool write_picture(const Options& options, const Piece& piece,
+                   const verdict::Assessment& assessment) {
+  if (options.vtk.empty()) {
+    return true;
+  }
+  const auto error = write_piece(options.vtk, piece, assessment);
+  if (error) {
+    fmt::print(stderr, "holdfast-mpi: {}: {}\n", io::one_line(options.vtk), error->message);
+  }
+  return !error;
+}
+
+/// The same at all ranks.
+base::Result<verdict::Verdict> shared(PetscRanks& ranks,
+                                      const base::Result<verdict::Verdict>& first) {
+  SharedText text;
+  text.is_error = !first;
+  text.error = first ? base::Error{} : first.error();
+  text.document = first ? std::to_string(static_cast<int>(first.value())) : "";
+  text = shared_by_first(ranks, text);
+  if (text.is_error) {
+    return text.error;
+  }
+  return static_cast<verdict::Verdict>(std::stoi(text.document));
+}
+
+/// The first rank's answer on a whole robot, as holdfast check gives it.
+base::Result<verdict::Verdict> check_whole(const Options& options, const Structure& structure,
+                                           const std::vector<Record>& records, bool& is_written) {
+  model::RobotSpec spec = structure.common;
+  for (const Record& record : records) {
+    ((record.flags & Record::kPlanned) != 0 ? spec.planned : spec.existing)
+        .push_back(record.place());
+    if ((record.flags & Record::kFixed) != 0) {
+      spec.fixed.push_back(record.place());
+    }
+  }
+  const auto robot = model::Robot::create(spec, 1);
+  if (!robot) {
+    return robot.error();
+  }
+  const CheckResult result =
+      holdfast::check(robot.value(), {.is_bonded = options.is_bonded,
+                                      .thread_count = 1,
+                                      .memory_bytes_max = options.memory_bytes()});
+  const io::ReportEntry entry = {.name = structure.name,
+                                 .robot = &robot.value(),
+                                 .assessment = &result.assessment,
+                                 .warnings = structure.warnings,
+                                 .seconds = result.seconds};
+  const std::string text = fmt::format("{} {}\n{}", banner(result.assessment.verdict),
+                                       io::one_line(structure.name), io::write_report_text(entry));
+  is_written =
+      write_answer(options, text, io::write_report_json(entry) + "\n") &&
+      write_picture(options, {.robot = &robot.value(), .own_count = robot.value().modules().size()},
+                    result.assessment);
+  return result.assessment.verdict;
+}
+
+/// A small robot is one rank's work, with all solvers that there are.
+int check_alone(PetscRanks& ranks, const Options& options, const Structure& structure) {
+  const auto records = host::gather<Record>(ranks, structure.records);
+  bool is_written = true;
+  const auto verdict = shared(
+      ranks, ranks.rank() == 0 ? check_whole(options, structure, records, is_written)
+                               : base::Result<verdict::Verdict>(verdict::Verdict::kUndecided));
+  if (!verdict) {
+    return complain(ranks, verdict.error(), options.file);
+  }
+  return host::all(&ranks, is_written) ? exit_code(verdict.value()) : kExitBadInput;
+}
+
+/// Vectors of PETSc are numbered by PetscInt, which may have 32 bits.
+std::optional<base::Error> find_size_fault(std::size_t module_count) {
+  constexpr auto kMax = static_cast<std::size_t>(PETSC_MAX_INT) / 6;
+  if (module_count <= kMax) {
+    return std::nullopt;
+  }
+  return base::Error{.code = base::ErrorCode::kUnsupported,
+                     .message = fmt::format("{} modules, allowed are {}: more take a PETSc of "
+                                            "64-bit indices (docs/cluster.md)",
+                                            module_count, kMax)};
+}
+
+int check_in_parts(PetscRanks& ranks, const Options& options, const Structure& structure) {
+  const auto part = make_part(ranks, structure);
+  if (!part) {
+    return complain(ranks, part.error(), options.file);
+  }
+  Checkpoint checkpoint(ranks, options.checkpoint, structure.fingerprint,
+                        part.value().robot.facets().size());
+  const bool is_kept = !options.checkpoint.empty();
+  if (is_kept) {
+    if (const auto error = checkpoint.read()) {
+      return complain(ranks, *error, options.checkpoint);
+    }
+  }
+  const Checked checked = check(part.value(), {.is_bonded = options.is_bonded,
+                                               .memory_bytes_max = options.memory_bytes(),
+                                               .journal = is_kept ? &checkpoint : nullptr});
+  bool is_written = write_picture(options,
+                                  {.robot = &part.value().robot,
+                                   .own_count = part.value().share.own_count,
+                                   .rank = ranks.rank(),
+                                   .rank_count = ranks.count()},
+                                  checked.assessment);
+  is_written = host::all(&ranks, is_written);
+  if (ranks.rank() == 0 && is_written) {
+    is_written = write_answer(options, report_text(structure, part.value(), checked),
+                              report_json(structure, part.value(), checked));
+  }
+  is_written = host::all(&ranks, is_written);
+  if (is_kept && is_written) {
+    checkpoint.remove();
+  }
+  if (options.is_traffic_shown) {
+    show_traffic(ranks, checked);
+  }
+  return is_written ? exit_code(checked.assessment.verdict) : kExitBadInput;
+}
+
+int check_file(PetscRanks& ranks, const Options& options) {
+  if (!options.vtk.empty()) {
+    if (const auto fault = find_name_fault(options.vtk)) {
+      return complain(ranks, {.message = *fault}, options.vtk);
+    }
+  }
+  const auto structure = read_structure(ranks, options.file, options.reading);
+  if (!structure) {
+    return complain(ranks, structure.error(), options.file);
+  }
+  const std::size_t count = host::total(&ranks, structure.value().records.size());
+  if (count <= options.alone_max) {
+    return check_alone(ranks, options, structure.value());
+  }
+  if (const auto fault = find_size_fault(count)) {
+    return complain(ranks, *fault, options.file);
+  }
+  return check_in_parts(ranks, options, structure.value());
+}
+
+int generate(PetscRanks& ranks, const Options& options) {
+  const auto count = generate_in_parts(ranks, options.family, options.size, options.output);
+  if (!count) {
+    return complain(ranks, count.error(), options.output);
+  }
+  if (ranks.rank() == 0 && !options.is_quiet) {
+    fmt::print("{}: {} modules\n", options.output, count.value());
+    std::fflush(stdout);
+  }
+  return 0;
+}
+
+int convert(PetscRanks& ranks, const Options& options) {
+  int code = 0;
+  if (ranks.rank() == 0) {
+    const auto text = read_file(options.file);
+    auto read = text ? io::read_document(text.value(), options.reading)
+                     : base::Result<io::ReadDocument>(text.error());
+    const auto written = read ? write_binary(read.value().document, options.output)
+                              : base::Result<std::size_t>(read.error());
+    if (!written) {
+      code = complain(ranks, written.error(), options.file);
+    } else if (!options.is_quiet) {
+      fmt::print("{}: {} modules\n", options.output, written.value());
+      std::fflush(stdout);
+    }
+  }
+  return static_cast<int>(ranks.max(code));
+}
+
+/// PETSc's options, which begin with one dash, and what follows them are not ours.
+std::vector<std::string> own_arguments(int argc, char** argv) {
+  std::vector<std::string> own;
+  bool is_petsc = false;
+  for (int i = 1; i < argc; ++i) {
+    const std::string argument = argv[i];
+    const bool is_long = argument.starts_with("--") || argument == "-h" || argument == "-o";
+    const bool is_short = argument.size() > 1 && argument[0] == '-' && !is_long;
+    is_petsc = is_short || (is_petsc && !is_long);
+    if (!is_petsc) {
+      own.push_back(argument);
+    }
+  }
+  std::ranges::reverse(own);  // As CLI11 wants it.
+  return own;
+}
+
+CLI::App& add_check(CLI::App& app, Options& options) {
+  CLI::App& check = *app.add_subcommand("check", "Say whether a structure holds");
+  check.add_option("file", options.file, "Structure: binary, VisibleSim XML or holdfast JSON")
+      ->required();
+  check.add_option("--robot", options.reading.robot, "Robot of files that do not say it");
+  check.add_option("--json", options.json, "Write the report as JSON; - is standard output");
+  check.add_option("--vtk", options.vtk,
+                   "Write a .pvtu file for ParaView, and beside it a .vtu file of each rank");
+  check.add_option("--checkpoint", options.checkpoint,
+                   "Keep contact states in this file after every step, go on from those that it "
+                   "has, and remove it when there is an answer");
+  check.add_flag("--quiet", options.is_quiet, "Print errors only; the exit code is the answer");
+  check.add_flag("--bonded", options.is_bonded,
+                 "Let the ground hold like a module below would: no lifting, no tilting");
+  check.add_flag("--traffic", options.is_traffic_shown,
+                 "Print what ranks exchange and how much memory they take");
+  check
+      .add_option("--alone-max", options.alone_max,
+                  "Robots of no more modules are checked by one rank, as holdfast check does")
+      ->capture_default_str();
+  check.add_option("--memory", options.memory_gb, "Most memory for the solver, GB, of each rank");
+  return check;
+}
+
+CLI::App& add_generate(CLI::App& app, Options& options) {
+  CLI::App& generation = *app.add_subcommand(
+      "generate", "Write a binary structure of a family, each rank a part of it");
+  generation.add_option("family", options.family, "As of holdfast generate")->required();
+  generation.add_option("size", options.size, "As of holdfast generate")->required();
+  generation.add_option("-o,--output", options.output, "File to write")->required();
+  generation.add_flag("--quiet", options.is_quiet, "Print errors only");
+  return generation;
+}
+
+int run_command(PetscRanks& ranks, int argc, char** argv) {
+  Options options;
+  CLI::App app{"Will it hold? For robots that are too large for one machine: in parts, by MPI."};
+  app.name("holdfast-mpi");
+  app.require_subcommand(1);
+  const CLI::App& check = add_check(app, options);
+  const CLI::App& generation = add_generate(app, options);
+  CLI::App& conversion = *app.add_subcommand("convert", "Write a binary structure");
+  conversion.add_option("input", options.file, "VisibleSim XML or holdfast JSON")->required();
+  conversion.add_option("output", options.output, "File to write")->required();
+  app.footer(
+      "--ranks N, anywhere: start mpirun with so many ranks, and say what came of it in one line\n"
+      "and one exit code. Without it mpirun or srun starts the ranks.\n"
+      "Options with one dash, such as -ksp_monitor or -log_view, are PETSc's; they come last.\n"
+      "Exit: 0 safe, 1 unsafe, 2 undecided, 64 wrong usage, 65 bad input or not writable,\n"
+      "70 a rank failed.");
+  try {
+    app.parse(own_arguments(argc, argv));
+  } catch (const CLI::ParseError& error) {
+    if (ranks.rank() != 0) {
+      return error.get_exit_code() == 0 ? 0 : kExitUsage;
+    }
+    return app.exit(error) == 0 ? 0 : kExitUsage;
+  }
+  return check.parsed()        ? check_file(ranks, options)
+         : generation.parsed() ? generate(ranks, options)
+                               : convert(ranks, options);
+}
+
+}  // namespace
+
+int run(int argc, char** argv) {
+  if (const auto code = launch({argv + 1, argv + argc})) {
+    return *code;
+  }
+  PetscInitialize(&argc, &argv, nullptr, nullptr);
+  PetscPushErrorHandler(end_all_on_petsc_error, nullptr);
+  std::set_terminate(end_all_on_exception);
+  std::signal(SIGTERM, end_on_signal);
+  int code = 0;
+  {
+    PetscRanks ranks(PETSC_COMM_WORLD);
+    is_first_rank = ranks.rank() == 0;
+    code = run_command(ranks, argc, argv);
+  }
+  std::set_terminate(nullptr);
+  // The first rank speaks for all: mpirun would end it when it sees another's code before.
+  code = is_first_rank ? rank_exit_code(code) : 0;
+  is_first_rank = false;
+  PetscFinalize();
+  return code;
+}
+
+}  // namespace holdfast::cluster

@@ -1,0 +1,298 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#include "holdfast/simulated_next.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <map>
+
+#include "holdfast/plan/candidates.hpp"
+
+namespace holdfast {
+namespace {
+
+/// A free cell, and what the modules beside it show.
+struct Place {
+  std::int32_t module = 0;  ///< One beside it.
+  int touching = 0;
+  agent::FreeFace face = {};
+};
+
+using Places = std::map<base::Cell, Place>;
+
+/// Modules by their cells.
+using Cells = std::map<base::Cell, std::int32_t>;
+
+RobotEffort effort_of(const sim::SimulationResult& result) {
+  return {.time = result.verdict_time, .rounds = result.rounds, .packets = result.packets};
+}
+
+RobotEffort difference(const RobotEffort& later, const RobotEffort& earlier) {
+  return {.time = later.time > earlier.time ? later.time - earlier.time : 0,
+          .rounds = later.rounds > earlier.rounds ? later.rounds - earlier.rounds : 0,
+          .packets = later.packets > earlier.packets ? later.packets - earlier.packets : 0};
+}
+
+/// Faces of the same cell say the same; where they did not, nothing would be certain.
+void add_face(Place& place, const agent::FreeFace& face) {
+  const bool is_first = place.touching++ == 0;
+  const bool is_known = face.verdict != agent::Verdict::kNone;
+  if (is_first || (is_known && place.face.verdict == agent::Verdict::kNone)) {
+    place.face = face;
+  } else if (is_known && face.verdict != place.face.verdict) {
+    place.face.verdict = agent::Verdict::kUndecided;
+  }
+}
+
+/// Is the floor there, below a module that rests on it?
+bool is_floor(const model::Robot& robot, const Cells& cells, const base::Cell& cell) {
+  const base::Cell above = base::neighbour(cell, base::Direction::kPlusZ);
+  const auto found = cells.find(above);
+  return above.z == robot.support_z() && found != cells.end() &&
+         robot.modules()[static_cast<std::size_t>(found->second)].support != model::Support::kFixed;
+}
+
+Places read_places(const model::Robot& robot, const sim::Simulation& simulation) {
+  Cells cells;
+  for (std::int32_t module = 0; module < simulation.agent_count(); ++module) {
+    cells.emplace(robot.modules()[static_cast<std::size_t>(module)].cell, module);
+  }
+  Places places;
+  for (std::int32_t module = 0; module < simulation.agent_count(); ++module) {
+    const base::Cell& cell = robot.modules()[static_cast<std::size_t>(module)].cell;
+    for (const base::Direction direction : base::kDirections) {
+      const auto face = static_cast<std::size_t>(direction);
+      const base::Cell beyond = base::neighbour(cell, direction);
+      const bool is_free = robot.neighbours()[static_cast<std::size_t>(module)][face] < 0;
+      if (is_free && !is_floor(robot, cells, beyond)) {
+        Place& place = places.try_emplace(beyond, Place{.module = module}).first->second;
+        add_face(place, simulation.agent(module).free_face(direction));
+      }
+    }
+  }
+  return places;
+}
+
+bool is_decided(const agent::FreeFace& face) {
+  return face.verdict != agent::Verdict::kNone && face.verdict != agent::Verdict::kUndecided;
+}
+
+plan::Candidate candidate_of(const base::Cell& cell, const agent::FreeFace& face) {
+  plan::Candidate candidate{.cell = cell, .is_robot = true};
+  candidate.judgement.verdict = to_verdict(face.verdict);
+  if (face.has_load_ratio && is_decided(face)) {
+    candidate.judgement.load_ratio_max = static_cast<double>(face.load_ratio_max);
+  }
+  if (face.has_margin) {
+    candidate.judgement.margin_mm = static_cast<double>(face.margin_mm);
+  }
+  return candidate;
+}
+
+std::vector<Trial> sorted_trials(const Places& places) {
+  std::vector<plan::Candidate> candidates;
+  for (const auto& [cell, place] : places) {
+    candidates.push_back(candidate_of(cell, place.face));
+  }
+  plan::sort_candidates(candidates);
+  std::vector<Trial> trials;
+  for (const plan::Candidate& candidate : candidates) {
+    trials.push_back({.cell = candidate.cell,
+                      .is_robot = true,
+                      .verdict = candidate.judgement.verdict,
+                      .load_ratio_max = candidate.judgement.load_ratio_max,
+                      .margin_mm = candidate.judgement.margin_mm});
+  }
+  return trials;
+}
+
+/// Plans the cell, waits for the verdict, which the modules beside it note, and withdraws the plan.
+RobotEffort try_cell(sim::Simulation& simulation, const model::Robot& robot, const base::Cell& cell,
+                     Place& place) {
+  const RobotEffort before = effort_of(simulation.result());
+  simulation.happen(sim::Announcement{.module = place.module, .cell = cell});
+  simulation.run();
+  const base::Cell& host = robot.modules()[static_cast<std::size_t>(place.module)].cell;
+  for (const base::Direction direction : base::kDirections) {
+    if (base::neighbour(host, direction) == cell) {
+      const agent::FreeFace shown = simulation.agent(place.module).free_face(direction);
+      place.face.verdict = shown.verdict;
+      place.face.has_load_ratio = shown.has_load_ratio;
+      place.face.load_ratio_max = shown.load_ratio_max;
+    }
+  }
+  simulation.happen(sim::Announcement{.module = place.module, .cell = cell, .is_withdrawal = true});
+  simulation.run();
+  return difference(effort_of(simulation.result()), before);
+}
+
+void try_others(SimulatedNext& simulated, sim::Simulation& simulation, const model::Robot& robot,
+                Places& places, const SimulatedNextOptions& options) {
+  const std::size_t left = places.size() - simulated.shown_count;
+  for (auto& [cell, place] : places) {
+    if (!is_decided(place.face)) {
+      simulated.trials.push_back(try_cell(simulation, robot, cell, place));
+      if (options.progress) {
+        options.progress(simulated.trials.size(), left);
+      }
+    }
+  }
+}
+
+/// The robot without the memory for free faces, for comparison.
+RobotEffort plain_effort(const model::Robot& robot, sim::SimulationOptions options) {
+  options.judges_faces = false;
+  sim::Simulation simulation(robot, options);
+  simulation.run();
+  return effort_of(simulation.result());
+}
+
+std::uint16_t depth_of(const sim::Simulation& simulation) {
+  std::uint16_t depth = 0;
+  for (std::int32_t module = 0; module < simulation.agent_count(); ++module) {
+    depth = std::max(depth, simulation.agent(module).depth());
+  }
+  return depth;
+}
+
+void count_shown(SimulatedNext& simulated, const Places& places, std::int32_t support_z) {
+  for (const auto& [cell, place] : places) {
+    const bool is_hanging = place.touching == 1 && cell.z != support_z;
+    const bool is_shown = is_decided(place.face);
+    simulated.hanging_count += is_hanging ? 1 : 0;
+    simulated.shown_count += is_shown ? 1 : 0;
+    simulated.hanging_shown_count += is_hanging && is_shown ? 1 : 0;
+  }
+}
+
+SimulatedNext run(const model::Robot& robot, const SimulatedNextOptions& options) {
+  const auto start = std::chrono::steady_clock::now();
+  sim::SimulationOptions how = options.simulation;
+  how.judges_faces = true;
+  sim::Simulation simulation(robot, how);
+  simulation.run();
+  const sim::SimulationResult result = simulation.result();
+  SimulatedNext simulated;
+  simulated.link = how.link;
+  simulated.answer = result.answer;
+  simulated.all_agree = result.all_agree;
+  simulated.depth = depth_of(simulation);
+  simulated.verdict = plain_effort(robot, how);
+  simulated.faces = difference(effort_of(result), simulated.verdict);
+  Places places = read_places(robot, simulation);
+  count_shown(simulated, places, robot.support_z());
+  if (options.tries_others) {
+    try_others(simulated, simulation, robot, places, options);
+  }
+  simulated.next = {.candidates = sorted_trials(places), .check_count = simulated.trials.size()};
+  const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
+  simulated.next.seconds = seconds.count();
+  return simulated;
+}
+
+std::vector<std::uint64_t> sorted_rounds(const SimulatedNext& simulated) {
+  std::vector<std::uint64_t> rounds;
+  for (const RobotEffort& trial : simulated.trials) {
+    rounds.push_back(trial.rounds);
+  }
+  std::ranges::sort(rounds);
+  return rounds;
+}
+
+std::string effort_text(const SimulatedNext& simulated, const RobotEffort& effort) {
+  const auto seconds = sim::seconds(simulated.link, effort.time);
+  return fmt::format("{:.1f} sweeps, {} rounds, {} packets{}", simulated.sweeps(effort.rounds),
+                     effort.rounds, effort.packets,
+                     seconds ? fmt::format(", {:.2f} s", *seconds) : std::string());
+}
+
+void write_effort(io::JsonStream& json, const char* key, const SimulatedNext& simulated,
+                  const RobotEffort& effort) {
+  json.key(key);
+  json.begin_object();
+  json.member("sweeps", simulated.sweeps(effort.rounds));
+  json.member("rounds", effort.rounds);
+  json.member("packets", effort.packets);
+  json.member("simulated_s", sim::seconds(simulated.link, effort.time));
+  json.end_object();
+}
+
+}  // namespace
+
+base::Result<SimulatedNext> simulate_next(const model::RobotSpec& spec,
+                                          const SimulatedNextOptions& options) {
+  model::RobotSpec whole = spec;
+  whole.existing.insert(whole.existing.end(), whole.planned.begin(), whole.planned.end());
+  whole.planned.clear();
+  const auto robot = model::Robot::create(whole);
+  if (!robot) {
+    return robot.error();
+  }
+  sim::SimulationOptions judging = options.simulation;
+  judging.judges_faces = true;
+  if (const auto fault = sim::find_options_fault(robot.value(), judging)) {
+    return base::Error{.code = base::ErrorCode::kBadInput, .message = *fault, .where = {}};
+  }
+  return run(robot.value(), options);
+}
+
+base::Result<SimulatedNext> simulate_next(const Structure& structure,
+                                          const SimulatedNextOptions& options) {
+  const auto spec = io::make_spec(structure.document);
+  HOLDFAST_CHECK(spec.has_value());  // The structure's robot was made of it.
+  return simulate_next(spec.value(), options);
+}
+
+std::string simulated_next_text(const Structure& structure, const SimulatedNext& simulated,
+                                const NextReportOptions& options) {
+  const agent::Answer& answer = simulated.answer;
+  std::string text =
+      fmt::format("  robot       {} ({}){}: {}\n", verdict::name(to_verdict(answer.verdict)),
+                  agent::name(answer.reason), simulated.all_agree ? "" : ", NOT all agree",
+                  effort_text(simulated, simulated.verdict));
+  text += fmt::format("  together    {} of {} cells decided, {} of the {} that hang: {}\n",
+                      simulated.shown_count, simulated.next.candidates.size(),
+                      simulated.hanging_shown_count, simulated.hanging_count,
+                      effort_text(simulated, simulated.faces));
+  const std::vector<std::uint64_t> rounds = sorted_rounds(simulated);
+  if (!rounds.empty()) {
+    text += fmt::format(
+        "  one by one  {} cells planned and withdrawn: {:.1f} sweeps each in the median, {:.1f} at "
+        "most\n",
+        rounds.size(), simulated.sweeps(rounds[rounds.size() / 2]),
+        simulated.sweeps(rounds.back()));
+  }
+  return next_text(structure, simulated.next, options) + text;
+}
+
+void write_simulated_next_json(std::ostream& out, const Structure& structure,
+                               const SimulatedNext& simulated, const NextReportOptions& options) {
+  std::string text;
+  io::JsonStream json(text);
+  json.begin_object();
+  write_next_members(json, structure, simulated.next, options);
+  json.key("distributed");
+  json.begin_object();
+  json.member("verdict", verdict::name(to_verdict(simulated.answer.verdict)));
+  json.member("reason", agent::name(simulated.answer.reason));
+  json.member("all_modules_agree", simulated.all_agree);
+  json.member("depth", simulated.depth);
+  json.member("decided_together", simulated.shown_count);
+  json.member("hanging", simulated.hanging_count);
+  json.member("hanging_decided_together", simulated.hanging_shown_count);
+  write_effort(json, "verdict_effort", simulated, simulated.verdict);
+  write_effort(json, "faces_effort", simulated, simulated.faces);
+  json.key("trial_sweeps");
+  json.begin_array();
+  for (const RobotEffort& trial : simulated.trials) {
+    json.value(simulated.sweeps(trial.rounds));
+  }
+  json.end_array();
+  json.end_object();
+  json.end_object();
+  out << text << "\n";
+}
+
+}  // namespace holdfast

@@ -1,0 +1,310 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#include "local_adjoint.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "carried_force.hpp"
+#include "dense.hpp"
+#include "holdfast/base/lattice.hpp"
+#include "holdfast/mechanics/ground_contact.hpp"
+#include "holdfast/model/material.hpp"
+
+namespace holdfast::plan {
+namespace {
+
+using base::at;
+using base::Vec6;
+
+/// What a patch holds at most, and how many modules away from its facet they are. Three away on a
+/// plate that lies on the ground |s| is a twelfth of |z|; of a patch of 25 modules a third of a
+/// millisecond is spent on the dense factors.
+constexpr std::size_t kPatchMax = 26;
+constexpr int kRadiusMax = 3;
+
+}  // namespace
+
+/// The patch and its rim; modules by their place in `modules`.
+struct LocalAdjoints::Region {
+  static constexpr std::int16_t kNone = -1;
+
+  std::vector<std::size_t> modules;       ///< The facet's own first.
+  std::vector<std::int16_t> patch_place;  ///< In the patch, or none.
+  std::vector<std::int16_t> neighbours;   ///< By module, then direction.
+  std::vector<std::int16_t> facet_count;  ///< By module.
+  std::vector<bool> is_fixed;             ///< By module.
+  std::size_t direction_count = 0;
+  std::size_t patch_count = 0;
+
+  std::int16_t neighbour(std::size_t i, int direction) const {
+    return neighbours[i * direction_count + at(direction)];
+  }
+
+  std::int16_t place_of(std::size_t module) const {
+    const auto found = std::ranges::find(modules, module);
+    return found == modules.end() ? kNone : static_cast<std::int16_t>(found - modules.begin());
+  }
+};
+
+double LocalAdjoint::Forces::norm(const std::array<double, 3>& factors) const {
+  double sum = 0;
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      sum += factors[i] * gram[3 * i + k] * factors[k];
+    }
+  }
+  return std::sqrt(std::max(0.0, sum));
+}
+
+LocalAdjoints::LocalAdjoints(const model::Robot& target)
+    : target_(target),
+      beam_(model::beam_section(target.material()), target.lattice()),
+      stiffness_(middle_stiffness(beam_)),
+      first_facet_(target.modules().size() + 1) {
+  for (const model::Facet& facet : target.facets()) {
+    ++first_facet_[at(facet.module) + 1];
+  }
+  for (std::size_t i = 0; i < target.modules().size(); ++i) {
+    first_facet_[i + 1] += first_facet_[i];
+    const auto place = base::place_of(target.lattice(),
+                                      base::axial_of(target.lattice(), target.modules()[i].cell));
+    const double pitch = target.material().pitch_mm;
+    places_.push_back({pitch * place[0], pitch * place[1], pitch * place[2], 0, 0, 0});
+  }
+}
+
+/// Modules in the order of their distance from the facet's, layers into the patch as long as they
+/// fit, and one layer more. Modules that are fixed need no balance and lead on to nothing.
+LocalAdjoints::Region LocalAdjoints::region_around(
+    const model::Facet& facet, const std::function<bool(std::size_t)>& is_there) const {
+  Region region;
+  region.direction_count = base::directions(target_.lattice()).size();
+  const auto is_fixed = [&](std::size_t module) {
+    return target_.modules()[module].support == model::Support::kFixed;
+  };
+  region.modules = {at(facet.module)};
+  std::size_t begin = 0;
+  for (int distance = 0; distance <= kRadiusMax && begin < region.modules.size(); ++distance) {
+    const std::size_t end = region.modules.size();
+    if (end > kPatchMax && distance > 0) {
+      break;
+    }
+    for (std::size_t i = begin; i < end; ++i) {
+      const bool is_in_patch = !is_fixed(region.modules[i]);
+      region.patch_place.push_back(is_in_patch ? static_cast<std::int16_t>(region.patch_count++)
+                                               : Region::kNone);
+    }
+    for (std::size_t i = begin; i < end; ++i) {
+      for (const std::int32_t other : target_.connected()[region.modules[i]]) {
+        if (region.patch_place[i] != Region::kNone && other != model::Robot::kNoNeighbour &&
+            is_there(at(other)) && region.place_of(at(other)) == Region::kNone) {
+          region.modules.push_back(at(other));
+        }
+      }
+    }
+    begin = end;
+  }
+  region.patch_place.resize(region.modules.size(), Region::kNone);
+  for (const std::size_t module : region.modules) {
+    region.is_fixed.push_back(is_fixed(module));
+    region.facet_count.push_back(
+        static_cast<std::int16_t>(first_facet_[module + 1] - first_facet_[module]));
+    for (const std::int32_t other : target_.connected()[module]) {
+      region.neighbours.push_back(other == model::Robot::kNoNeighbour ? Region::kNone
+                                                                      : region.place_of(at(other)));
+    }
+  }
+  return region;
+}
+
+/// z' on the patch for fz, mx and my, six numbers for each of its modules.
+std::optional<std::array<std::vector<double>, 3>> LocalAdjoints::balance_patch(
+    const model::Facet& facet, const Region& region) const {
+  DenseSystem system(6 * region.patch_count);
+  const auto add = [&](std::int16_t row, std::int16_t column, const base::Mat6<double>& block) {
+    for (int i = 0; i < 6; ++i) {
+      for (int k = 0; k < 6; ++k) {
+        system.at(at(6 * row + i), at(6 * column + k)) += block.at(i, k);
+      }
+    }
+  };
+  for (std::size_t i = 0; i < region.modules.size(); ++i) {
+    const std::int16_t row = region.patch_place[i];
+    if (row == Region::kNone) {
+      continue;
+    }
+    for (const base::Direction direction : base::directions(target_.lattice())) {
+      const std::int16_t other = region.neighbour(i, base::index(direction));
+      if (other == Region::kNone) {
+        continue;
+      }
+      add(row, row, beam_.block_11(direction));
+      if (region.patch_place[at(other)] != Region::kNone) {
+        add(row, region.patch_place[at(other)], beam_.block_12(direction));
+      }
+    }
+    const std::size_t module = region.modules[i];
+    for (std::size_t k = first_facet_[module]; k < first_facet_[module + 1]; ++k) {
+      add(row, row, beam_.block_11(target_.facets()[k].direction));
+    }
+  }
+  const auto law = mechanics::ground_facet<double>(beam_.stiffness(), target_.material().pitch_mm,
+                                                   2 * target_.foot_half_width_mm(), 0,
+                                                   mechanics::ContactLaw::kRegularised);
+  if (!system.factor()) {
+    return std::nullopt;
+  }
+  std::array<std::vector<double>, 3> z;
+  for (std::size_t component = 0; component < 3; ++component) {
+    z[component].assign(6 * region.patch_count, 0.0);
+    for (int k = 0; k < 6; ++k) {
+      const Vec6<double> local = beam_.to_local(facet.direction, base::unit<double>(k));
+      z[component][at(k)] = mechanics::trial_force(law, local)[2 + component];
+    }
+    system.solve(z[component]);
+  }
+  return z;
+}
+
+/// What z' leaves unbalanced, by module of the region.
+std::vector<Vec6<double>> LocalAdjoints::residual(const Region& region,
+                                                  const std::vector<double>& z) const {
+  std::vector<Vec6<double>> rest(region.modules.size());
+  for (std::size_t i = 0; i < region.modules.size(); ++i) {
+    for (const base::Direction direction : base::directions(target_.lattice())) {
+      const std::int16_t other = region.neighbour(i, base::index(direction));
+      const bool is_rim = region.patch_place[i] == Region::kNone && !region.is_fixed[i];
+      if (!is_rim || other == Region::kNone || region.patch_place[at(other)] == Region::kNone) {
+        continue;
+      }
+      Vec6<double> u{};
+      std::copy_n(z.begin() + 6 * region.patch_place[at(other)], 6, u.begin());
+      const Vec6<double> force = base::multiply(beam_.block_12(direction), u);
+      for (std::size_t k = 0; k < 6; ++k) {
+        rest[i][k] -= force[k];
+      }
+    }
+  }
+  return rest;
+}
+
+/// From every module of the region the shortest way to one with a facet, or a fixed one.
+LocalAdjoints::Ways LocalAdjoints::ways_to_supports(const Region& region) const {
+  Ways ways{.order = {}, .down = std::vector<int>(region.modules.size(), -1)};
+  std::vector<bool> is_reached(region.modules.size());
+  for (std::size_t i = 0; i < region.modules.size(); ++i) {
+    if (region.facet_count[i] > 0 || region.is_fixed[i]) {
+      is_reached[i] = true;
+      ways.order.push_back(i);
+    }
+  }
+  for (std::size_t next = 0; next < ways.order.size(); ++next) {
+    for (const base::Direction direction : base::directions(target_.lattice())) {
+      const std::int16_t other = region.neighbour(ways.order[next], base::index(direction));
+      if (other != Region::kNone && !is_reached[at(other)]) {
+        is_reached[at(other)] = true;
+        ways.down[at(other)] = base::index(direction) ^ 1;
+        ways.order.push_back(at(other));
+      }
+    }
+  }
+  return ways;
+}
+
+/// The forces s of one component, scaled, by module of the region.
+std::vector<Vec6<double>> LocalAdjoints::carry(const Region& region, const Ways& ways,
+                                               std::vector<Vec6<double>> loads) const {
+  std::vector<Vec6<double>> forces(region.modules.size());
+  for (std::size_t next = ways.order.size(); next-- > 0;) {
+    const std::size_t i = ways.order[next];
+    const std::size_t module = region.modules[i];
+    if (region.is_fixed[i]) {
+      continue;
+    }
+    const base::Direction direction = ways.down[i] < 0
+                                          ? target_.facets()[first_facet_[module]].direction
+                                          : static_cast<base::Direction>(ways.down[i]);
+    forces[i] = force_in_middle(beam_, direction, loads[i], target_.material().pitch_mm);
+    for (std::size_t k = 0; k < 6; ++k) {
+      forces[i][k] /= std::sqrt(stiffness_[k]);
+    }
+    if (ways.down[i] >= 0) {
+      const std::size_t below = at(region.neighbour(i, ways.down[i]));
+      Vec6<double> way = places_[region.modules[below]];
+      for (std::size_t k = 0; k < 3; ++k) {
+        way[k] -= places_[module][k];
+      }
+      base::add_to(loads[below], force_at(loads[i], way));
+    }
+  }
+  return forces;
+}
+
+LocalAdjoint::Forces LocalAdjoints::solve(const model::Facet& facet, const Region& region) const {
+  LocalAdjoint::Forces forces;
+  const auto z = balance_patch(facet, region);
+  if (!z) {
+    return forces;
+  }
+  const Ways ways = ways_to_supports(region);
+  forces.ways.resize(region.modules.size());
+  for (std::size_t component = 0; component < 3; ++component) {
+    const auto s = carry(region, ways, residual(region, (*z)[component]));
+    for (std::size_t i = 0; i < s.size(); ++i) {
+      forces.ways[i].down = ways.down[i];
+      forces.ways[i].force[component] = s[i];
+    }
+  }
+  for (const LocalAdjoint::Way& way : forces.ways) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      for (std::size_t k = 0; k < 3; ++k) {
+        forces.gram[3 * i + k] += base::dot(way.force[i], way.force[k]);
+      }
+    }
+  }
+  return forces;
+}
+
+LocalAdjoint LocalAdjoints::find(const model::Facet& facet,
+                                 const std::function<bool(std::size_t)>& is_there) const {
+  const Region region = region_around(facet, is_there);
+  LocalAdjoint adjoint;
+  adjoint.region = region.modules;
+  for (std::size_t i = 0; i < region.modules.size(); ++i) {
+    if (region.patch_place[i] != Region::kNone) {
+      adjoint.patch.push_back(region.modules[i]);
+    }
+  }
+  std::string key = {static_cast<char>(base::index(facet.direction))};
+  const auto append = [&](int number) {
+    key.push_back(static_cast<char>(number & 0xff));
+    key.push_back(static_cast<char>(number >> 8 & 0xff));
+  };
+  for (std::size_t i = 0; i < region.modules.size(); ++i) {
+    append(region.patch_place[i]);
+    append(region.is_fixed[i] ? 1 : 0);
+    const std::size_t module = region.modules[i];
+    append(region.facet_count[i]);
+    for (std::size_t k = first_facet_[module]; k < first_facet_[module + 1]; ++k) {
+      append(base::index(target_.facets()[k].direction));
+    }
+    for (std::size_t d = 0; d < region.direction_count; ++d) {
+      append(region.neighbours[i * region.direction_count + d]);
+    }
+  }
+  {
+    const std::lock_guard lock(mutex_);
+    const auto found = known_.find(key);
+    if (found != known_.end()) {
+      adjoint.forces = found->second;
+      return adjoint;
+    }
+  }
+  adjoint.forces = std::make_shared<const LocalAdjoint::Forces>(solve(facet, region));
+  const std::lock_guard lock(mutex_);
+  known_.emplace(std::move(key), adjoint.forces);
+  return adjoint;
+}
+
+}  // namespace holdfast::plan

@@ -1,0 +1,101 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#include "local_balance.hpp"
+
+#include <algorithm>
+
+#include "dense.hpp"
+#include "holdfast/base/check.hpp"
+#include "holdfast/base/lattice.hpp"
+#include "holdfast/model/material.hpp"
+
+namespace holdfast::plan {
+
+using base::at;
+using base::Direction;
+using base::Mat6;
+using base::Vec6;
+
+LocalBalance::LocalBalance(const model::Robot& target)
+    : target_(&target),
+      first_facet_(target.modules().size() + 1),
+      is_there_(target.modules().size()) {
+  const model::LatticeBeam<double> beam(model::beam_section(target.material()), target.lattice());
+  for (const Direction direction : base::directions(target.lattice())) {
+    block_12_[at(base::index(direction))] = beam.block_12(direction);
+  }
+  for (const Direction direction : base::facet_directions(target.lattice())) {
+    block_11_[at(base::index(direction))] = beam.block_11(direction);
+  }
+  for (const model::Facet& facet : target.facets()) {
+    ++first_facet_[at(facet.module) + 1];
+  }
+  for (std::size_t i = 0; i < target.modules().size(); ++i) {
+    first_facet_[i + 1] += first_facet_[i];
+  }
+}
+
+void LocalBalance::assign(const std::vector<Element>& elements) {
+  std::ranges::fill(is_there_, std::uint8_t{0});
+  for (const Element element : elements) {
+    is_there_[at(element)] = 1;
+  }
+}
+
+const LocalBalance::Stiffness& LocalBalance::stiffness(std::size_t module) {
+  constexpr auto kFacets = static_cast<std::size_t>(base::Lattice::kDirectionCountMax);
+  std::uint32_t key = 0;
+  for (const Direction direction : base::directions(target_->lattice())) {
+    if (neighbour(module, base::index(direction)) != model::Robot::kNoNeighbour) {
+      key |= std::uint32_t{1} << at(base::index(direction));
+    }
+  }
+  for (std::size_t i = first_facet_[module]; i < first_facet_[module + 1]; ++i) {
+    key |= std::uint32_t{1} << (kFacets + at(base::index(target_->facets()[i].direction)));
+  }
+  const auto [found, is_first] = known_.try_emplace(key);
+  Stiffness& known = found->second;
+  if (!is_first) {
+    return known;
+  }
+  for (std::size_t bit = 0; key >> bit != 0; ++bit) {
+    if ((key >> bit & 1U) != 0) {
+      base::add_to(known.sum, block_11_[bit < kFacets ? bit : bit - kFacets]);
+    }
+  }
+  DenseSystem system(6);
+  for (int i = 0; i < 6; ++i) {
+    for (int k = 0; k < 6; ++k) {
+      system.at(at(i), at(k)) = known.sum.at(i, k);
+    }
+  }
+  // What touches something is held in all directions.
+  HOLDFAST_CHECK(system.factor());
+  for (int k = 0; k < 6; ++k) {
+    Vec6<double> column = base::unit<double>(k);
+    system.solve(column);
+    std::ranges::copy(column, known.inverse.values.begin() + 6 * k);
+  }
+  return known;
+}
+
+LocalBalance::Vec LocalBalance::pull(std::size_t module, const std::vector<Vec>& u) const {
+  Vec rest = target_->loads()[module];
+  for (const Direction direction : base::directions(target_->lattice())) {
+    const std::int32_t other = neighbour(module, base::index(direction));
+    if (other == model::Robot::kNoNeighbour) {
+      continue;
+    }
+    const Vec force = base::multiply(block_12_[at(base::index(direction))], u[at(other)]);
+    for (std::size_t i = 0; i < 6; ++i) {
+      rest[i] -= force[i];
+    }
+  }
+  return rest;
+}
+
+LocalBalance::Vec LocalBalance::facet_force(base::Direction direction, const Vec& u) const {
+  return base::multiply(block_11_[at(base::index(direction))], u);
+}
+
+}  // namespace holdfast::plan

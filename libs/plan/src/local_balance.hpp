@@ -1,0 +1,64 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <unordered_map>
+#include <vector>
+
+#include "holdfast/model/lattice_beam.hpp"
+#include "holdfast/model/robot.hpp"
+#include "holdfast/plan/element_set.hpp"
+
+namespace holdfast::plan {
+
+/// Single modules of a part of a robot in balance with their neighbours, all facets stuck.
+class LocalBalance {
+ public:
+  using Vec = base::Vec6<double>;
+
+  /// K_mm of a module.
+  struct Stiffness {
+    base::Mat6<double> sum{};
+    base::Mat6<double> inverse{};
+  };
+
+  /// Keeps a reference to the whole robot, of which nothing is there.
+  explicit LocalBalance(const model::Robot& target);
+
+  /// Nothing but these is there.
+  void assign(const std::vector<Element>& elements);
+
+  void insert(std::size_t module) { is_there_[module] = 1; }
+
+  bool is_there(std::size_t module) const { return is_there_[module] != 0; }
+
+  /// The module that is there in a direction, or kNoNeighbour.
+  std::int32_t neighbour(std::size_t module, int direction) const {
+    const std::int32_t other = target_->connected()[module][base::at(direction)];
+    return other != model::Robot::kNoNeighbour && is_there(base::at(other))
+               ? other
+               : model::Robot::kNoNeighbour;
+  }
+
+  /// Of a module that touches something. Stays where it is.
+  const Stiffness& stiffness(std::size_t module);
+
+  /// What is out of balance at a module if it does not move, and others by u.
+  Vec pull(std::size_t module, const std::vector<Vec>& u) const;
+
+  /// The force that a stuck facet in a direction takes from its module.
+  Vec facet_force(base::Direction direction, const Vec& u) const;
+
+ private:
+  const model::Robot* target_;
+  std::array<base::Mat6<double>, base::Lattice::kDirectionCountMax + 1> block_11_{};
+  std::array<base::Mat6<double>, base::Lattice::kDirectionCountMax> block_12_{};
+  std::vector<std::size_t> first_facet_;  ///< By module.
+  std::vector<std::uint8_t> is_there_;
+  /// By the directions of a module's beams and facets.
+  std::unordered_map<std::uint32_t, Stiffness> known_;
+};
+
+}  // namespace holdfast::plan

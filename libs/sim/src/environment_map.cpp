@@ -1,0 +1,178 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#include "environment_map.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <utility>
+
+#include "holdfast/agent/feet.hpp"
+
+namespace holdfast::sim {
+namespace {
+
+/// Masses that are whole numbers of this count as such; files give them in few digits.
+constexpr double kMassDigitKg = 1e-6;
+constexpr double kMassTie = 1e-9;
+
+/// The largest unit of which all masses are whole numbers; 0 if there is none.
+double find_mass_unit(const model::Robot& robot) {
+  std::int64_t divisor = 0;
+  double total = 0;
+  for (std::size_t i = 0; i < robot.modules().size(); ++i) {
+    const double digits = robot.mass(i) / kMassDigitKg;
+    const double whole = std::round(digits);
+    if (std::abs(digits - whole) > kMassTie * digits || !(whole >= 1) || whole > 1e15) {
+      return 0;
+    }
+    divisor = std::gcd(divisor, static_cast<std::int64_t>(whole));
+    total += whole;
+  }
+  const bool is_counted = total <= static_cast<double>(agent::kCheckedMassMax * divisor);
+  return is_counted ? static_cast<double>(divisor) * kMassDigitKg : 0;
+}
+
+/// Do all facets lie in one level plane, and can they lift, under weight alone, straight down?
+bool is_on_level_floor(const model::Robot& robot) {
+  const auto& [x, y, z] = robot.gravity();
+  if (x != 0 || y != 0 || z >= 0 || robot.has_payloads() || !robot.carried().empty()) {
+    return false;
+  }
+  const auto level = [&](const model::Facet& facet) {
+    return robot.modules()[base::at(facet.module)].cell.z;
+  };
+  return std::ranges::all_of(robot.facets(), [&](const model::Facet& facet) {
+    return facet.direction == base::down(robot.lattice()) && !facet.is_bonded() &&
+           level(facet) == level(robot.facets().front());
+  });
+}
+
+/// Corners are counted in parts of a cell, up to the largest coordinate that a message holds.
+bool has_far_corners(const model::Robot& robot, const agent::Environment& environment) {
+  constexpr std::int64_t kMost = (1 << 22) - 1;
+  std::int64_t reach = 0;
+  for (const model::Module& module : robot.modules()) {
+    for (const std::int32_t value : {module.cell.x, module.cell.y, module.cell.z}) {
+      reach = std::max<std::int64_t>(reach, std::abs(value));
+    }
+  }
+  return 2 * (reach + 1) * environment.foot_denominator > kMost;
+}
+
+/// Kinds may differ in mass alone.
+bool has_other_connectors(const model::Robot& robot) {
+  const model::ModuleKind plain = model::default_kind(robot.material(), robot.lattice());
+  for (const model::ModuleKind& kind : robot.kinds()) {
+    if (kind.connectors != plain.connectors) {
+      return true;
+    }
+  }
+  return false;
+}
+
+}  // namespace
+
+EnvironmentMap::EnvironmentMap(const model::Robot& robot)
+    : robot_(robot),
+      modules_(robot.modules().size()),
+      first_facet_(robot.modules().size() + 1, 0),
+      mass_unit_kg_(find_mass_unit(robot)) {
+  for (std::size_t i = 0; i < robot.modules().size(); ++i) {
+    modules_.insert(robot.modules()[i].cell, static_cast<std::int32_t>(i));
+  }
+  for (const model::Facet& facet : robot.facets()) {
+    ++first_facet_[base::at(facet.module) + 1];
+  }
+  std::partial_sum(first_facet_.begin(), first_facet_.end(), first_facet_.begin());
+  const auto [numerator, denominator] = foot_parts(robot);
+  environment_ = {.describe = describe,
+                  .map = this,
+                  .foot_width_mm = 2 * robot.foot_half_width_mm(),
+                  .foot_numerator = numerator,
+                  .foot_denominator = denominator,
+                  .is_level = mass_unit_kg_ > 0 && is_on_level_floor(robot)};
+}
+
+void EnvironmentMap::describe(const void* map, const base::Cell& cell, agent::Surroundings& node) {
+  const auto& self = *static_cast<const EnvironmentMap*>(map);
+  const std::int32_t module = self.modules_.find(cell);
+  if (module == model::CellIndex::kNone) {
+    node.load.fill(std::numeric_limits<double>::quiet_NaN());  // Decides nothing.
+    return;
+  }
+  self.describe(base::at(module), node);
+}
+
+void EnvironmentMap::describe(std::size_t module, agent::Surroundings& node) const {
+  node.load = robot_.loads()[module];
+  node.mass = mass_unit_kg_ > 0
+                  ? static_cast<std::int32_t>(std::lround(robot_.mass(module) / mass_unit_kg_))
+                  : 1;
+  for (std::size_t i = first_facet_[module]; i < first_facet_[module + 1]; ++i) {
+    const model::Facet& facet = robot_.facets()[i];
+    node.facets[node.facet_count++] = {.direction = facet.direction,
+                                       .is_bonded = facet.is_bonded()};
+  }
+}
+
+bool needs_environment(const model::Robot& robot) {
+  return model::find_beyond_paper(robot).has_value();
+}
+
+std::optional<std::string> find_unknown_to_modules(const model::Robot& robot) {
+  if (robot.lattice() != base::kCubic) {
+    return "a lattice other than the cubic one";
+  }
+  if (has_other_connectors(robot)) {
+    return "connectors with other limits than Eq. (17)";
+  }
+  for (const model::Facet& facet : robot.facets()) {
+    if (facet.touch.friction) {
+      return "supports with friction";
+    }
+  }
+  if (needs_environment(robot) && has_far_corners(robot, EnvironmentMap(robot).environment())) {
+    return "cells too far from (0,0,0) for corners as fine as these";
+  }
+  return std::nullopt;
+}
+
+FootParts foot_parts(const model::Robot& robot) {
+  // Rounded to this part, then reduced.
+  constexpr std::int32_t kParts = 4096;
+  const double parts =
+      std::round(2 * robot.foot_half_width_mm() / robot.material().pitch_mm * kParts);
+  const auto numerator = static_cast<std::int32_t>(parts < 1 ? 1 : parts);
+  const std::int32_t divisor = std::gcd(numerator, kParts);
+  return {.numerator = numerator / divisor, .denominator = kParts / divisor};
+}
+
+LentStore::LentStore(const model::Robot& robot, std::size_t module_count, Needs needs) {
+  const bool has_map = needs_environment(robot);
+  if (needs.has_stages) {
+    stages_.resize(module_count);
+  }
+  if (needs.judges_faces) {
+    faces_.resize(module_count);
+  }
+  if (needs.has_fronts) {
+    fronts_ = std::make_unique<FrontStore>(module_count);
+  }
+  if (has_map) {
+    map_ = std::make_unique<EnvironmentMap>(robot);
+    surroundings_.resize(module_count);
+  }
+  const bool has_any = needs.has_fronts || needs.has_stages || needs.judges_faces || has_map;
+  memory_.resize(has_any ? module_count : 0);
+  for (std::size_t i = 0; i < memory_.size(); ++i) {
+    memory_[i] = {.fronts = needs.has_fronts ? &fronts_->memory_of(i) : nullptr,
+                  .free_faces = needs.judges_faces ? &faces_[i] : nullptr,
+                  .stages = needs.has_stages ? &stages_[i] : nullptr,
+                  .surroundings = has_map ? surroundings_[i].data() : nullptr,
+                  .environment = has_map ? &map_->environment() : nullptr};
+  }
+}
+
+}  // namespace holdfast::sim

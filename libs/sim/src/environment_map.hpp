@@ -1,0 +1,85 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "front_store.hpp"
+#include "holdfast/agent/free_faces.hpp"
+#include "holdfast/agent/workspace.hpp"
+#include "holdfast/model/robot.hpp"
+
+namespace holdfast::sim {
+
+/// What agents are told of the world where a robot is more than cubes on a floor under their weight
+/// (agent/surroundings.hpp): of every cell with a module, existing or planned, its load, its mass
+/// and its facets.
+class EnvironmentMap {
+ public:
+  /// Keeps a reference to the robot.
+  explicit EnvironmentMap(const model::Robot& robot);
+
+  // Agents know it by its address.
+  EnvironmentMap(const EnvironmentMap&) = delete;
+  EnvironmentMap& operator=(const EnvironmentMap&) = delete;
+
+  const agent::Environment& environment() const { return environment_; }
+
+ private:
+  static void describe(const void* map, const base::Cell& cell, agent::Surroundings& node);
+  void describe(std::size_t module, agent::Surroundings& node) const;
+
+  const model::Robot& robot_;
+  model::CellIndex modules_;
+  std::vector<std::size_t> first_facet_;  ///< Of each module, and behind the last one.
+  double mass_unit_kg_ = 0;               ///< 0: masses are not whole numbers of any.
+  agent::Environment environment_;
+};
+
+/// A robot of equal cubes on a floor that weighs down, which agents know without a map.
+bool needs_environment(const model::Robot& robot);
+
+/// What of a robot its modules' program does not know, if anything.
+std::optional<std::string> find_unknown_to_modules(const model::Robot& robot);
+
+/// The width of a facet on the ground as a fraction of the pitch.
+struct FootParts {
+  std::int32_t numerator = 1;
+  std::int32_t denominator = 1;
+};
+
+FootParts foot_parts(const model::Robot& robot);
+
+/// The memory that modules are lent (agent::LentMemory), for fronts, for stages of a step, for
+/// free faces and for surroundings.
+class LentStore {
+ public:
+  struct Needs {
+    bool has_fronts = false;
+    bool has_stages = false;
+    bool judges_faces = false;
+  };
+
+  LentStore(const model::Robot& robot, std::size_t module_count, Needs needs);
+
+  /// Null where a module needs none.
+  const agent::LentMemory* memory_of(std::size_t module) const {
+    return memory_.empty() ? nullptr : &memory_[module];
+  }
+
+ private:
+  std::unique_ptr<FrontStore> fronts_;
+  std::vector<agent::Stages> stages_;
+  std::vector<agent::FreeFaces> faces_;
+  std::unique_ptr<EnvironmentMap> map_;
+  std::vector<std::array<agent::Surroundings, 1 + agent::kPlannedMax>> surroundings_;
+  std::vector<agent::LentMemory> memory_;
+};
+
+}  // namespace holdfast::sim

@@ -1,0 +1,388 @@
+# SPDX-FileCopyrightText: The holdfast authors
+# SPDX-License-Identifier: Apache-2.0
+"""What may come next: places for a module, steps, orders, moves."""
+from __future__ import annotations
+
+import enum
+import os
+from collections.abc import Mapping, Sequence
+from typing import Any, Optional, Union
+
+import numpy as np
+import numpy.typing as npt
+
+from . import _core
+from ._progress import Progress, told
+from ._robot import Cell, Cells, Path, Robot, Table
+from ._verdict import VERDICTS, Verdict
+
+
+class Stage(enum.Enum):
+    """The three stages of a step (Sec. II-B)."""
+
+    RELEASE = 'release'
+    SHIFT = 'shift'
+    CONNECT = 'connect'
+
+
+class Outcome(enum.Enum):
+    """What came of a search."""
+
+    FOUND = 'found'
+    NONE = 'none'
+    """There is none, which is proved."""
+    NOT_FOUND = 'not-found'
+    """Time ran out, or undecided states are in the way."""
+
+
+def _robot(source: Union[Robot, Path]) -> Robot:
+    return source if isinstance(source, Robot) else Robot.from_file(source)
+
+
+class _Texts:
+    """What has a report for people and one for programs."""
+
+    __slots__ = ('_held',)
+
+    _held: Any
+
+    @classmethod
+    def _of(cls, core: Any) -> Any:
+        made = cls.__new__(cls)
+        made._held = core
+        return made
+
+    def text(self) -> str:
+        """The report for people."""
+        text: str = self._held.text()
+        return text
+
+    def json(self) -> str:
+        """The report as JSON; keys are in docs/formats.md."""
+        text: str = self._held.json()
+        return text
+
+    @property
+    def seconds(self) -> float:
+        """How long it took."""
+        seconds: float = self._held.seconds
+        return seconds
+
+    def __str__(self) -> str:
+        return self.text()
+
+    def __copy__(self) -> Any:
+        return self
+
+    def __deepcopy__(self, memo: Any) -> Any:
+        return self
+
+
+class Places(_Texts):
+    """Where the next module may go: every free cell beside a robot, judged."""
+
+    __slots__ = ()
+
+    _held: _core.Places
+
+    @property
+    def robot(self) -> Robot:
+        """The robot without the next module."""
+        return Robot._of(self._held.structure)
+
+    @property
+    def candidates(self) -> Table:
+        """Best first: safe ones by ascending load ratio, then undecided, overload, unstable.
+
+        Fields: ``cell`` (3), ``verdict`` (0 safe, 1 overload, 2 unstable, 3 undecided),
+        ``load_ratio_max`` and ``margin_mm`` (NaN where none is known).
+        """
+        return self._held.candidates
+
+    @property
+    def safe(self) -> npt.NDArray[np.int32]:
+        """Cells of the safe places, best first: (k, 3)."""
+        candidates = self.candidates
+        cells: npt.NDArray[np.int32] = candidates['cell'][candidates['verdict'] == 0]
+        return cells
+
+    def svg(self) -> str:
+        """A picture with a ghost in every place."""
+        return self._held.svg()
+
+    def _repr_svg_(self) -> str:
+        return self.svg()
+
+    def __len__(self) -> int:
+        return len(self._held.candidates)
+
+    def __repr__(self) -> str:
+        return f'<holdfast.Places: {len(self.safe)} of {len(self)} safe>'
+
+
+def next_places(robot: Union[Robot, Path], *, threads: int = 0, memory: float = 4,
+                bonded: bool = False, progress: Progress = None) -> Places:
+    """Where may the next module go? See `Robot.next`.
+
+    `progress` is called with (places judged, of how many).
+
+    >>> robot = Robot([[0, 0, 0], [1, 0, 0]])
+    >>> next_places(robot)
+    <holdfast.Places: 8 of 8 safe>
+    """
+    with told(progress, 'next', is_counted=True) as tell:
+        places: Places = Places._of(
+            _core.next(_robot(robot)._held, threads, memory, bonded, tell))
+    return places
+
+
+class Steps(_Texts):
+    """A sequence of steps, each judged at its three stages (Sec. II-B)."""
+
+    __slots__ = ('robot',)
+
+    _held: _core.Steps
+    robot: Robot
+    """The robot at the start, with its steps."""
+
+    @property
+    def verdict(self) -> Verdict:
+        """SAFE, UNDECIDED, or that of the first unsafe stage."""
+        return VERDICTS[self._held.verdict]
+
+    @property
+    def stages(self) -> Table:
+        """What each stage was found to be: (steps, 3), release, shift, connect.
+
+        Fields: ``verdict`` (0 safe, 1 overload, 2 unstable, 3 undecided), ``load_ratio_max``,
+        ``margin_mm`` (NaN where none is known).
+        """
+        return self._held.stages
+
+    @property
+    def first_unsafe(self) -> Optional[tuple[int, Stage]]:
+        """The first step, from 0, that is overloaded or unstable, and its stage."""
+        return _stage(self._held.first_unsafe)
+
+    @property
+    def first_undecided(self) -> Optional[tuple[int, Stage]]:
+        """The first undecided one before that."""
+        return _stage(self._held.first_undecided)
+
+    @property
+    def load_ratio_max(self) -> Optional[float]:
+        """The largest load ratio of all stages (Eq. 17)."""
+        return self._held.load_ratio_max
+
+    @property
+    def margin_min_mm(self) -> Optional[float]:
+        """The smallest margin of all stages, mm."""
+        return self._held.margin_min_mm
+
+    def svg(self) -> str:
+        """The verdicts as a band, load ratio and margin below."""
+        return self._held.svg()
+
+    def html(self) -> str:
+        """A page with the picture and the report."""
+        return self._held.html()
+
+    def save_vtk(self, path: Path) -> None:
+        """Writes a series for ParaView: a .pvd file, and a .vtu file for each state beside it."""
+        self._held.save_vtk(os.fspath(path))
+
+    def _repr_svg_(self) -> str:
+        return self.svg()
+
+    def __len__(self) -> int:
+        return len(self._held.stages)
+
+    def __repr__(self) -> str:
+        return f'<holdfast.Steps: {len(self)} steps, {self.verdict.value}>'
+
+
+def _stage(place: Optional[tuple[int, int]]) -> Optional[tuple[int, Stage]]:
+    return None if place is None else (place[0], tuple(Stage)[place[1]])
+
+
+def steps(robot: Union[Robot, Path], plan: Optional[Sequence[Mapping[str, Any]]] = None, *,
+          threads: int = 0, memory: float = 4, ends_when_unsafe: bool = False,
+          progress: Progress = None) -> Steps:
+    """Is every stage of every step safe?
+
+    `plan` is a list of steps as in holdfast JSON, ``[{'attach': [...]}, {'move': [{'from': ...,
+    'to': ...}]}]``; without it the robot's own steps are judged. `progress` is called with (steps
+    judged, of how many).
+
+    >>> tower = Robot([[0, 0, 0], [1, 0, 0]])
+    >>> steps(tower, [{'attach': [[0, 0, 1]]}, {'attach': [[0, 0, 2], [0, 0, 3]]}])
+    <holdfast.Steps: 2 steps, safe>
+    """
+    start = _robot(robot)
+    if plan is not None:
+        start = start.with_steps(plan)
+    with told(progress, 'steps', is_counted=True) as tell:
+        judged: Steps = Steps._of(
+            _core.steps(start._held, threads, memory, ends_when_unsafe, tell))
+    judged.robot = start
+    return judged
+
+
+class Order(_Texts):
+    """An order in which a robot can be built, or taken apart, safe all the way."""
+
+    __slots__ = ()
+
+    _held: _core.Order
+
+    @property
+    def outcome(self) -> Outcome:
+        """FOUND, NONE (proved), NOT_FOUND."""
+        return Outcome(self._held.outcome)
+
+    @property
+    def start(self) -> npt.NDArray[np.int32]:
+        """Cells of the modules that are there at first, or are left behind: (n, 3)."""
+        return self._held.start
+
+    @property
+    def batches(self) -> list[npt.NDArray[np.int32]]:
+        """Cells of the modules that each step attaches, or detaches: (k, 3) each."""
+        return self._held.batches
+
+    @property
+    def judgements(self) -> Table:
+        """Of the start and of the state after each step, in the order of the steps.
+
+        Fields: ``verdict``, ``load_ratio_max``, ``margin_mm`` (NaN where none is known).
+        """
+        return self._held.judgements
+
+    @property
+    def state_count(self) -> int:
+        """States judged in all."""
+        return self._held.state_count
+
+    @property
+    def load_ratio_max(self) -> Optional[float]:
+        """The largest load ratio of all states on the way that were solved."""
+        return self._held.load_ratio_max
+
+    @property
+    def load_ratio_bound(self) -> Optional[float]:
+        """What no state on the way exceeds."""
+        return self._held.load_ratio_bound
+
+    @property
+    def margin_min_mm(self) -> Optional[float]:
+        """The smallest margin on the way, mm."""
+        return self._held.margin_min_mm
+
+    @property
+    def help(self) -> Optional[dict[str, npt.NDArray[np.int32]]]:
+        """Where there is no order: ``supports`` or ``temporary`` modules that would do."""
+        return self._held.help
+
+    def robot(self) -> Robot:
+        """The start with the order as its steps, for `steps`. Error: no order was found."""
+        return Robot._of(self._held.as_steps())
+
+    def certificate(self) -> str:
+        """What proves that there is no order; `verify_order` replays it."""
+        return self._held.certificate()
+
+    def __repr__(self) -> str:
+        return f'<holdfast.Order {self.outcome.value}: {len(self.batches)} steps>'
+
+
+def order(target: Union[Robot, Path], *, start: Optional[Cells] = None, reach: str = 'free',
+          source: Optional[Cell] = None, group: int = 1, reverse: bool = False, seed: int = 0,
+          seconds: float = 300, help_seconds: float = 0, threads: int = 0,
+          progress: Progress = None) -> Order:
+    """In which order can a robot be built so that it is safe all the way?
+
+    Parameters
+    ----------
+    target
+        The robot to build, planned modules included.
+    start
+        Cells of the modules that are there at first; else the fixed modules, or one that the search
+        chooses.
+    reach, source
+        How a module gets to its cell: ``free``, any cell; ``line``, a straight way in; ``surface``,
+        sliding along the robot from `source`.
+    group
+        Attach up to so many modules at once, 1 to 16.
+    reverse
+        Take the robot apart, from the target to the start.
+    seconds, help_seconds
+        Give up after this time; where there is no order, seek the least help for so long.
+    progress
+        Called with (states, modules now, modules at the furthest state).
+
+    >>> order(Robot([[0, 0, 0], [1, 0, 0], [0, 0, 1]]))
+    <holdfast.Order found: 2 steps>
+    """
+    with told(progress, 'order') as tell:
+        found: Order = Order._of(_core.order(_robot(target)._held, start, reach, source, group,
+                                             reverse, seed, seconds, help_seconds, threads, tell))
+    return found
+
+
+class Moves(_Texts):
+    """Moves from one shape to another, safe at every stage."""
+
+    __slots__ = ()
+
+    _held: _core.Moves
+
+    @property
+    def outcome(self) -> Outcome:
+        """FOUND, NONE (proved), NOT_FOUND."""
+        return Outcome(self._held.outcome)
+
+    @property
+    def steps(self) -> list[list[tuple[Cell, Cell, Optional[Cell]]]]:
+        """The moves of each step: from, to, carrier."""
+        return self._held.steps
+
+    @property
+    def is_shortest(self) -> bool:
+        """Whether it is proved that no plan has fewer steps."""
+        return self._held.is_shortest
+
+    @property
+    def length_min(self) -> int:
+        """No plan has fewer steps than this."""
+        return self._held.length_min
+
+    @property
+    def state_count(self) -> int:
+        """Moves judged in all."""
+        return self._held.state_count
+
+    def robot(self) -> Robot:
+        """The start with the moves as its steps, for `steps`."""
+        return Robot._of(self._held.as_steps())
+
+    def __repr__(self) -> str:
+        return f'<holdfast.Moves {self.outcome.value}: {len(self.steps)} steps>'
+
+
+def move(start: Union[Robot, Path], target: Union[Robot, Path], *, pivots: bool = False,
+         within: Optional[Cells] = None, ignores_mechanics: bool = False, seed: int = 0,
+         seconds: float = 300, threads: int = 0, progress: Progress = None) -> Moves:
+    """How does a robot get from one shape to another, module by module?
+
+    `pivots`: modules are cubes that turn about edges. `within`: two cells, the corners of a box
+    that modules stay in. `progress` is called with (moves judged, moves to the target at least).
+
+    >>> row = Robot([[0, 0, 0], [1, 0, 0], [2, 0, 0]])
+    >>> move(row, Robot([[0, 0, 0], [1, 0, 0], [1, 0, 1]]))
+    <holdfast.Moves found: 1 steps>
+    """
+    with told(progress, 'move') as tell:
+        found: Moves = Moves._of(_core.move(_robot(start)._held, _robot(target)._held, pivots,
+                                            within, ignores_mechanics, seed, seconds, threads,
+                                            tell))
+    return found

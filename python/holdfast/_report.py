@@ -1,0 +1,265 @@
+# SPDX-FileCopyrightText: The holdfast authors
+# SPDX-License-Identifier: Apache-2.0
+"""What a check has found."""
+from __future__ import annotations
+
+import os
+from typing import TYPE_CHECKING, Any, NamedTuple, Optional, Union
+
+import numpy as np
+import numpy.typing as npt
+
+from . import _core
+from ._optional import need
+from ._verdict import VERDICTS, Verdict
+
+if TYPE_CHECKING:
+    from ._robot import Robot
+
+Table = npt.NDArray[Any]
+"""A structured array."""
+Path = Union[str, 'os.PathLike[str]']
+
+
+class Timings(NamedTuple):
+    """Seconds: of the check, and what proof and limit load took beyond it."""
+
+    check: float
+    proof: float
+    limit: float
+
+
+class Report:
+    """The verdict on a robot, and everything that it rests on. It never changes.
+
+    Arrays are views of what the solver found: nothing is copied, and they keep it alive.
+    """
+
+    __slots__ = ('_held',)
+
+    _held: _core.Check
+
+    @classmethod
+    def _of(cls, core: _core.Check) -> Report:
+        report = cls.__new__(cls)
+        report._held = core
+        return report
+
+    @property
+    def robot(self) -> Robot:
+        """What was checked."""
+        from ._robot import Robot
+        return Robot._of(self._held.structure)
+
+    @property
+    def verdict(self) -> Verdict:
+        """SAFE, OVERLOAD, UNSTABLE or UNDECIDED."""
+        return VERDICTS[self._held.verdict]
+
+    @property
+    def reasons(self) -> list[str]:
+        """Why, in sentences; the first decides."""
+        return self._held.reasons
+
+    @property
+    def load_ratio_max(self) -> Optional[float]:
+        """The largest load ratio; breaks at 1 or more (Eq. 17). None if none is known."""
+        return self._held.load_ratio_max
+
+    @property
+    def weight_factor(self) -> Optional[float]:
+        """By which all loads could grow before the first connection breaks."""
+        return self._held.weight_factor
+
+    @property
+    def worst(self) -> Optional[int]:
+        """The index of the connection with the largest load ratio; None if none is pulled."""
+        return self._held.worst
+
+    @property
+    def broken(self) -> list[int]:
+        """Indices of connections at 1 or more, worst first."""
+        return self._held.broken
+
+    @property
+    def connections(self) -> Table:
+        """What every connection carries in its middle (Eqs. 16-17), by connection.
+
+        Fields: ``load_ratio``, ``axial_n`` (N, tension positive), ``bending_nmm`` (N mm),
+        ``shear_n`` (N), ``torsion_nmm`` (N mm). Empty where no equilibrium is known.
+        """
+        return self._held.connections
+
+    @property
+    def limits(self) -> list[str]:
+        """What each load ratio is of: ``opens``, ``slips``, ``shears`` or ``twists``."""
+        return self._held.limits
+
+    @property
+    def displacements(self) -> Table:
+        """How far every module moves (Eq. 13), in `Robot.modules`' order.
+
+        Fields: ``translation_mm`` (3), ``rotation_rad`` (3), global frame.
+        """
+        return self._held.displacements
+
+    @property
+    def facet_forces(self) -> Table:
+        """What each facet does to its module, about its node, in `Robot.facets`' order.
+
+        Fields: ``force_n`` (3), ``moment_nmm`` (3), global frame (Eqs. 6-12).
+        """
+        return self._held.facet_forces
+
+    @property
+    def contacts(self) -> Table:
+        """How each facet touches: ``is_pressed``, ``tilt_x``, ``tilt_y`` (signs; Eqs. 9-12)."""
+        return self._held.contacts
+
+    @property
+    def ground_forces(self) -> Table:
+        """What the ground does to every module, in `Robot.modules`' order.
+
+        Fields: ``force_n`` (3), ``moment_nmm`` (3) about the module's centre.
+        """
+        return self._held.ground_forces
+
+    @property
+    def module_load_ratios(self) -> npt.NDArray[np.float64]:
+        """For each module the largest load ratio of its connections; NaN without any."""
+        modules = np.full(len(self.robot), np.nan)
+        if len(self.connections):
+            ratios = self.connections['load_ratio']
+            pairs = self._held.structure.connections
+            np.fmax.at(modules, pairs['a'], ratios)
+            np.fmax.at(modules, pairs['b'], ratios)
+        return modules
+
+    @property
+    def stability(self) -> dict[str, Any]:
+        """Whether it stands: Sec. III-B and III-C, and the rigid body with supports anywhere.
+
+        Keys: ``is_stable``, ``margin_mm``, ``centre_of_mass_mm``, ``polygon_mm``, ``edge_mm``,
+        ``is_stable_by_model``, ``rigid``, ``friction_needed``, ``tilt_margin_deg``, ``motion``.
+        """
+        return self._held.stability
+
+    @property
+    def contact_model(self) -> str:
+        """Where the forces come from: ``none``, ``bonded``, ``regularised`` or ``unilateral``."""
+        return self._held.contact_model
+
+    @property
+    def limit_load(self) -> Optional[dict[str, Any]]:
+        """The factor beyond which no forces balance: ``outcome``, ``low``, ``high``.
+
+        The outcome is found, unbounded or stopped. None if it was not sought.
+        """
+        return self._held.limit_load
+
+    @property
+    def timings(self) -> Timings:
+        """Seconds."""
+        return Timings(*self._held.seconds)
+
+    def certificate(self) -> str:
+        """The proof of the largest load ratio, for holdfast-checker, of ``check(proof=True)``."""
+        return self._held.certificate()
+
+    def text(self) -> str:
+        """The report for people: the verdict, why, and the worst connections."""
+        name = self._held.structure.name
+        return f'{self.verdict.name}  {name}'.rstrip() + '\n' + self._held.text()
+
+    def json(self) -> str:
+        """The report as JSON; keys are in docs/formats.md."""
+        return self._held.json()
+
+    def csv(self) -> str:
+        """A table of the connections."""
+        return self._held.csv()
+
+    def svg(self) -> str:
+        """A picture."""
+        return self._held.svg()
+
+    def plot(self, axes: Any = None, *, title: Optional[str] = None, legend: bool = True) -> Any:
+        """Draws the robot in space, in the colours and with the legend of the SVG.
+
+        Parameters
+        ----------
+        axes
+            Axes of matplotlib with ``projection='3d'``; by default a figure of their own. Their
+            unit is mm, and their frame the robot's.
+        title
+            By default the robot's name.
+
+        Returns the axes. Needs python3-matplotlib.
+        """
+        need('matplotlib', 'report.plot()')
+        from ._picture import plot
+        return plot(self, axes, title, legend)
+
+    def page(self) -> str:
+        """The page with the robot and the report in it: one HTML text that needs no network.
+
+        `PageNotFound` says where the page was looked for, if it is not built.
+        """
+        from ._page import filled
+        return filled(self)
+
+    def show(self, *, height: int = 640) -> None:
+        """Shows the page, where the robot can be turned and changed: in a notebook in the cell's
+        output, elsewhere in the browser."""
+        from ._page import show
+        show(self, height)
+
+    def to_vtk(self) -> Any:
+        """The grid of ``save_vtu`` as a ``vtkUnstructuredGrid``. Needs python3-vtk9."""
+        need('vtkmodules', 'report.to_vtk()')
+        from ._vtk import to_vtk
+        return to_vtk(self)
+
+    def _repr_svg_(self) -> str:
+        return self.svg()
+
+    def _repr_html_(self) -> str:
+        from ._page import frame
+        return frame(self)
+
+    def save_json(self, path: Path) -> None:
+        """Writes the report, whole or not at all."""
+        self._held.save(os.fspath(path), 'json')
+
+    def save_csv(self, path: Path) -> None:
+        """Writes the table of connections."""
+        self._held.save(os.fspath(path), 'csv')
+
+    def save_svg(self, path: Path) -> None:
+        """Writes the picture."""
+        self._held.save(os.fspath(path), 'svg')
+
+    def save_vtu(self, path: Path) -> None:
+        """Writes a grid for ParaView."""
+        self._held.save(os.fspath(path), 'vtu')
+
+    def __reduce__(self) -> Any:
+        return (_unpickled, (self.robot, _core.to_bytes(self._held)))
+
+    def __copy__(self) -> Report:
+        return self
+
+    def __deepcopy__(self, memo: Any) -> Report:
+        return self
+
+    def __str__(self) -> str:
+        return self.text()
+
+    def __repr__(self) -> str:
+        ratio = self.load_ratio_max
+        known = '' if ratio is None else f', largest load ratio {ratio:.4f}'
+        return f'<holdfast.Report {self.verdict.value}{known}>'
+
+
+def _unpickled(robot: Robot, data: bytes) -> Report:
+    return Report._of(_core.from_bytes(robot._held, data))

@@ -1,0 +1,500 @@
+# SPDX-FileCopyrightText: The holdfast authors
+# SPDX-License-Identifier: Apache-2.0
+"""Robots, and where they come from."""
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Iterable, Mapping, Sequence
+from typing import TYPE_CHECKING, Any, Optional, Union
+
+import numpy as np
+import numpy.typing as npt
+
+from . import _core
+from ._progress import Progress, told
+from ._report import Report
+
+if TYPE_CHECKING:
+    from ._distributed import Run
+    from ._plans import Places
+
+Cells = Union[npt.NDArray[Any], Iterable[Iterable[int]]]
+"""An (n, 3) array of integers, or what numpy makes one of."""
+Cell = tuple[int, int, int]
+Table = npt.NDArray[Any]
+"""A structured array."""
+Path = Union[str, 'os.PathLike[str]']
+
+
+def _plain(value: Any) -> Any:
+    """What json does not know: numpy's arrays and numbers."""
+    if isinstance(value, np.ndarray):
+        return value.tolist()
+    if isinstance(value, np.generic):
+        return value.item()
+    raise _core.Error(f'found {type(value).__name__}, expected is a number, a text, a list or a '
+                      'dictionary')
+
+
+def _json(head: Mapping[str, Any]) -> str:
+    try:
+        return json.dumps(head, default=_plain, allow_nan=False)
+    except ValueError as error:
+        if isinstance(error, _core.Error):
+            raise
+        raise _core.Error('a number is infinite or no number, expected are finite ones') from None
+
+
+def _load_list(loads: Any) -> Any:
+    """The form of holdfast JSON, of a mapping from cells to forces in N, or to six numbers."""
+    if not isinstance(loads, Mapping):
+        return loads
+    entries = []
+    for cell, load in loads.items():
+        numbers = np.asarray(load, dtype=float).ravel().tolist()
+        if len(numbers) not in (3, 6):
+            raise _core.Error(f'loads: found {len(numbers)} numbers for {tuple(cell)}, expected '
+                              'are 3, a force, or 6, a force and a torque')
+        entry = {'cell': list(cell), 'force_n': numbers[:3]}
+        if len(numbers) == 6:
+            entry['torque_nmm'] = numbers[3:]
+        entries.append(entry)
+    return entries
+
+
+def _obstacle_list(obstacles: Any) -> Any:
+    """The form of holdfast JSON; an array of cells is one obstacle that touches."""
+    if isinstance(obstacles, np.ndarray):
+        return [{'cells': obstacles.tolist()}]
+    return obstacles
+
+
+def _head(options: Mapping[str, Any], supports: Any) -> str:
+    """Holdfast JSON with all but the modules; empty if all is as it is by default."""
+    said = {key: value for key, value in options.items() if value is not None}
+    if isinstance(supports, Mapping):
+        said.update(supports)
+    elif supports is None:
+        said['support_z'] = None
+    elif supports != 0:
+        said['support_z'] = supports
+    if not said:
+        return ''
+    return _json({'format': 'holdfast-structure', 'version': 2, 'modules': [], **said})
+
+
+def _own(cells: Any, planned: Any, masses: Any, kind_of: Any) -> list[tuple[int, int, str, float]]:
+    """Modules with masses or kinds of their own: step, index, kind, mass or not a number."""
+    if masses is None and kind_of is None:
+        return []
+    existing = [tuple(cell) for cell in np.asarray(cells).tolist()]
+    to_come = [tuple(cell) for cell in np.asarray([] if planned is None else planned).tolist()]
+    names = existing + to_come
+    if masses is not None and not isinstance(masses, Mapping):
+        values = np.asarray(masses, dtype=float)
+        if values.shape not in ((len(existing),), (len(names),)):
+            raise _core.Error(f'masses: found the shape {values.shape}, expected is one number for '
+                              f'each of the {len(existing)} modules, or a mapping from cells')
+        masses = dict(zip(names, values.tolist()))
+    wanted: dict[Any, tuple[str, float]] = {}
+    for cell, kilograms in (masses or {}).items():
+        if not np.isfinite(kilograms):
+            raise _core.Error(f'masses: found {kilograms} for {tuple(cell)}, expected is a number '
+                              'of kg')
+        wanted[tuple(cell)] = ('', float(kilograms))
+    for cell, kind in (kind_of or {}).items():
+        wanted[tuple(cell)] = (kind, wanted.get(tuple(cell), ('', float('nan')))[1])
+    places = {cell: (0, index) for index, cell in enumerate(existing)}
+    places.update({cell: (1, index) for index, cell in enumerate(to_come)})
+    own = []
+    for cell, (kind, kilograms) in wanted.items():
+        if cell not in places:
+            raise _core.Error(f'masses, kind_of: there is no module at {cell}')
+        own.append((*places[cell], kind, kilograms))
+    return sorted(own)
+
+
+class Robot:
+    """A robot with the step that is planned for it. It never changes.
+
+    Cells are VisibleSim's triples (x, y, z), z up; units are N, mm, kg, s.
+
+    >>> robot = Robot([[0, 0, 0], [0, 0, 1], [1, 0, 1]], planned=[[2, 0, 1]])
+    >>> robot
+    <holdfast.Robot of 3 modules and 1 planned, cubic>
+    >>> robot.check().verdict
+    <Verdict.UNSTABLE: 'unstable'>
+
+    Parameters
+    ----------
+    cells
+        The existing modules: an (n, 3) array of integers, of any strides, or lists.
+    planned
+        Modules that are attached in the planned step, all at once: (m, 3).
+    fixed
+        Modules that do not move at all: (k, 3) cells of existing ones, or a mask of n truths.
+    lattice
+        ``cubic``, ``face-centred``, ``hexagonal`` or ``hexagonal-prism``, or what VisibleSim calls
+        its modules, such as ``catoms3D``.
+    supports
+        The layer z whose modules rest on the floor; None: there is no floor; or a mapping with
+        ``support_z``, ``floor`` and ``obstacles`` of holdfast JSON.
+    obstacles
+        Cells that the environment occupies: an array of cells, or a list as in holdfast JSON, such
+        as ``[{'from': (-1, -3, 0), 'to': (-1, 3, 6), 'hold': 'bonded'}]``.
+    masses
+        kg: one for each module (n, or n + m), or a mapping from cells.
+    kinds, kind_of
+        Kinds of modules by name, as in holdfast JSON, and a mapping from cells to names.
+    loads
+        Payloads: a mapping from cells to a force (3) in N, or a force and a torque (6) in N mm.
+    gravity
+        Three numbers, m/s^2. By default (0, 0, -9.81).
+    material
+        What differs from Table I of the paper, keys as in holdfast JSON (``strength_lateral_n``).
+    robot
+        A robot of `holdfast.robots`, whose figures are the defaults.
+    steps
+        What happens to the robot, for `holdfast.steps`, as in holdfast JSON.
+    """
+
+    __slots__ = ('_held',)
+
+    _held: _core.Structure
+
+    def __init__(self, cells: Cells, *, planned: Optional[Cells] = None, fixed: Any = None,
+                 lattice: Optional[str] = None, supports: Any = 0, obstacles: Any = None,
+                 masses: Any = None, kinds: Optional[Mapping[str, Any]] = None,
+                 kind_of: Optional[Mapping[Cell, str]] = None, loads: Any = None,
+                 gravity: Optional[Sequence[float]] = None,
+                 material: Optional[Mapping[str, Any]] = None, robot: Optional[str] = None,
+                 steps: Optional[Sequence[Any]] = None, name: str = '') -> None:
+        head = _head({'lattice': lattice and _core.lattice_name(lattice),
+                      'obstacles': _obstacle_list(obstacles), 'kinds': kinds,
+                      'loads': _load_list(loads), 'gravity_m_s2': gravity, 'material': material,
+                      'robot': robot, 'steps': steps}, supports)
+        self._held = _core.Structure.make(cells, planned, fixed, head,
+                                          _own(cells, planned, masses, kind_of), name)
+
+    @classmethod
+    def _of(cls, core: _core.Structure) -> Robot:
+        robot = cls.__new__(cls)
+        robot._held = core
+        return robot
+
+    @classmethod
+    def from_file(cls, path: Path, *, lattice: str = '', robot: str = '') -> Robot:
+        """Reads VisibleSim XML or holdfast JSON, version 1 or 2.
+
+        `lattice` and `robot` say what the file leaves open.
+        """
+        return cls._of(_core.Structure.load_file(os.fspath(path), lattice, robot))
+
+    @classmethod
+    def from_text(cls, text: str, *, name: str = '', lattice: str = '', robot: str = '') -> Robot:
+        """Reads what `from_file` reads from a text.
+
+        >>> text = Robot([[0, 0, 0]], name='one').json()
+        >>> Robot.from_text(text)
+        <holdfast.Robot 'one' of 1 module, cubic>
+        """
+        return cls._of(_core.Structure.load_text(text, name, lattice, robot))
+
+    @classmethod
+    def from_voxels(cls, voxels: npt.ArrayLike, *, origin: Sequence[int] = (0, 0, 0),
+                    **options: Any) -> Robot:
+        """Makes a module of every element of voxels[x, y, z] that is not 0.
+
+        Voxel (0, 0, 0) is the cell `origin`; a number of 2 is a planned module, one of 3 a fixed
+        one. `options` are those of `Robot`.
+
+        >>> Robot.from_voxels(np.ones((2, 1, 3), dtype=bool))
+        <holdfast.Robot of 6 modules, cubic>
+        """
+        array = np.asarray(voxels)
+        if array.ndim != 3 or array.dtype.kind not in 'bui':
+            raise _core.Error(f'voxels: found an array of {array.dtype} of shape {array.shape}, '
+                              'expected are truths or integers of three dimensions')
+        if array.size and not 0 <= array.min() <= array.max() <= 3:
+            raise _core.Error('voxels: expected are 0 (nothing), 1 (a module), 2 (a planned one) '
+                              f'and 3 (a fixed one), found are {array.min()} to {array.max()}')
+        places = np.argwhere((array == 1) | (array == 3))
+        if (array == 2).any():
+            options.setdefault('planned', np.argwhere(array == 2) + np.asarray(origin))
+        if (array == 3).any():
+            options.setdefault('fixed', array[tuple(places.T)] == 3)
+        return cls(places + np.asarray(origin), **options)
+
+    def check(self, *, threads: int = 0, memory: float = 4, bonded: bool = False,
+              limit: bool = False, limit_seconds: float = 600, proof: bool = False,
+              progress: Progress = None) -> Report:
+        """Says whether the robot holds with its planned modules attached (Eqs. 1-17).
+
+        Parameters
+        ----------
+        threads
+            0: as many as the machine has cores. The result does not depend on it.
+        memory
+            The most for the solver, GB; a robot that needs more is `undecided`.
+        bonded
+            The ground holds like a module below would.
+        limit, limit_seconds
+            Also seeks the limit load: the factor beyond which no forces balance.
+        proof
+            Proves the largest load ratio; a verdict that is not proved becomes `undecided`.
+        progress
+            Called with (iteration, error) while a large robot is solved; True: a bar of tqdm's.
+        """
+        with told(progress, 'check') as tell:
+            return Report._of(_core.check(self._held, threads, memory, bonded, limit,
+                                          limit_seconds, proof, tell))
+
+    def next(self, *, threads: int = 0, memory: float = 4, bonded: bool = False,
+             progress: Progress = None) -> Places:
+        """Where may the next module go? Judges every free cell beside the robot.
+
+        >>> Robot([[0, 0, 0], [1, 0, 0]]).next().safe.shape
+        (8, 3)
+        """
+        from ._plans import next_places
+        return next_places(self, threads=threads, memory=memory, bonded=bonded, progress=progress)
+
+    def simulate(self, *, link: str = 'v1', method: str = 'elimination', seed: int = 1,
+                 noise: Optional[Mapping[str, float]] = None, events: Iterable[Any] = (),
+                 progress: Progress = None) -> Run:
+        """Lets the robot work its verdict out by itself, in simulation.
+
+        Parameters
+        ----------
+        link
+            ``v1`` and ``v2``: Blinky Blocks; ``unit``: rounds of a synchronous network.
+        method
+            ``elimination``, ``polynomial``, ``cg``, ``block-jacobi`` or ``jacobi``.
+        noise
+            Probabilities ``loss``, ``duplication``, ``corruption``, ``reordering``; seconds
+            ``jitter``.
+        events
+            What happens meanwhile: ``('kill', 0.1, cell)``, ``('cut', 0.1, cell, '+x')``,
+            ``('detach', ...)``, ``('attach', ...)``, ``('plan', ...)``, ``('withdraw', ...)``;
+            times are seconds, or rounds.
+        progress
+            Called with (events, rounds).
+
+        >>> run = Robot([[0, 0, 0], [1, 0, 0]], planned=[[0, 0, 1]]).simulate(link='unit')
+        >>> run.verdict is run.exact.verdict
+        True
+        """
+        from ._distributed import Run, events_of, noise_of
+        with told(progress, 'simulate') as tell:
+            return Run._of(_core.simulate(self._held, link, method, seed, noise_of(noise),
+                                          events_of(events), tell))
+
+    def emulate(self, *, image: Optional[Path] = None, seed: int = 1, seconds: float = 60,
+                events: Iterable[Any] = (), progress: Progress = None) -> Run:
+        """Lets the robot work its verdict out as firmware on emulated modules.
+
+        Needs the firmware's image ('./dev firmware'), and a package that was built where Unicorn is
+        installed. `seconds`: give up after so long on the robot. Events are those of `simulate`,
+        but for ``detach``, and ``flip``, ``reset``.
+        """
+        from ._distributed import Run, events_of, find_image
+        if not _core.can_emulate():
+            raise _core.Error('this package was built without Unicorn and cannot emulate; '
+                              "install libunicorn-dev and build it anew by './dev python'")
+        with told(progress, 'emulate') as tell:
+            return Run._of(_core.emulate(self._held, os.fspath(image or find_image()), seed,
+                                         seconds, events_of(events), tell))
+
+    def with_steps(self, steps: Sequence[Mapping[str, Any]]) -> Robot:
+        """The same robot with these steps, as in holdfast JSON, in the place of its own plan.
+
+        >>> Robot([[0, 0, 0]]).with_steps([{'attach': [[0, 0, 1]]}]).step_count
+        1
+        """
+        document = json.loads(self.planning([]).json())
+        document['version'] = 2
+        document['steps'] = list(steps)
+        return self.from_text(_json(document), name=self.name)
+
+    @property
+    def step_count(self) -> int:
+        """How many steps `holdfast.steps` would judge."""
+        return self._held.step_count
+
+    def planning(self, planned: Cells) -> Robot:
+        """The same robot with these planned modules in the place of its own.
+
+        >>> Robot([[0, 0, 0]]).planning([[0, 0, 1]])
+        <holdfast.Robot of 1 module and 1 planned, cubic>
+        """
+        return self._of(self._held.with_planned(planned))
+
+    def attached(self) -> Robot:
+        """The same robot with its planned modules attached.
+
+        >>> Robot([[0, 0, 0]], planned=[[0, 0, 1]]).attached()
+        <holdfast.Robot of 2 modules, cubic>
+        """
+        return self._of(self._held.attached())
+
+    @property
+    def name(self) -> str:
+        """The file's name, or what it was given."""
+        return self._held.name
+
+    @property
+    def warnings(self) -> list[str]:
+        """What the reader wants its user to know."""
+        return self._held.warnings
+
+    @property
+    def lattice(self) -> str:
+        """Its name: ``cubic``, ``face-centred``, ``hexagonal`` or ``hexagonal-prism``."""
+        return self._held.lattice
+
+    @property
+    def modules(self) -> Table:
+        """All modules, existing ones first, then planned: a view, (n + m,).
+
+        Fields: ``cell`` (3), ``support`` (0 none, 1 touches something, 2 fixed), ``is_planned``,
+        ``kind`` (0: of no kind in particular).
+        """
+        return self._held.modules
+
+    @property
+    def cells(self) -> npt.NDArray[np.int32]:
+        """Cells of the existing modules: a view, (n, 3)."""
+        count = len(self.modules) - self._held.planned_count
+        cells: npt.NDArray[np.int32] = self.modules['cell'][:count]
+        return cells
+
+    @property
+    def planned(self) -> npt.NDArray[np.int32]:
+        """Cells of the planned modules: a view, (m, 3)."""
+        count = len(self.modules) - self._held.planned_count
+        cells: npt.NDArray[np.int32] = self.modules['cell'][count:]
+        return cells
+
+    @property
+    def connections(self) -> Table:
+        """All pairs of connected modules: fields ``a``, ``b`` (indices), ``direction``."""
+        return self._held.connections
+
+    @property
+    def facets(self) -> Table:
+        """All facets that touch something, a view.
+
+        Fields: ``module`` (index), ``direction``, ``hold`` (0 contact, 1 bonded).
+        """
+        return self._held.facets
+
+    @property
+    def directions(self) -> npt.NDArray[np.float64]:
+        """The unit vector of each direction of the lattice, (d, 3), global frame."""
+        return self._held.directions
+
+    @property
+    def positions(self) -> npt.NDArray[np.float64]:
+        """The centres of all modules, mm: (n + m, 3)."""
+        return self._held.positions
+
+    @property
+    def masses(self) -> npt.NDArray[np.float64]:
+        """The masses of all modules, kg: (n + m,)."""
+        return self._held.masses
+
+    @property
+    def material(self) -> dict[str, float]:
+        """Every number of Table I, keys as in holdfast JSON."""
+        return self._held.material
+
+    @property
+    def facet_half_width_mm(self) -> float:
+        """Half the width of a facet that touches something, mm."""
+        return self._held.foot_half_width
+
+    @property
+    def obstacles(self) -> list[dict[str, Any]]:
+        """What the robot may touch besides the floor, as in holdfast JSON."""
+        return self._held.obstacles
+
+    @property
+    def supports(self) -> Optional[int]:
+        """The layer whose modules rest on the floor; None: there is no floor."""
+        return self._held.supports
+
+    @property
+    def gravity(self) -> tuple[float, float, float]:
+        """Three numbers, m/s^2, global frame."""
+        x, y, z = self._held.gravity
+        return (x, y, z)
+
+    def json(self) -> str:
+        """Holdfast JSON: version 1 where that says it all."""
+        return self._held.json()
+
+    def visiblesim(self) -> str:
+        """VisibleSim XML."""
+        return self._held.visiblesim()
+
+    def save(self, path: Path) -> None:
+        """Writes holdfast JSON, or VisibleSim XML to a file that ends in .xml."""
+        text = self.visiblesim() if os.fspath(path).endswith('.xml') else self.json()
+        _core.write_file(os.fspath(path), text)
+
+    def __len__(self) -> int:
+        """How many modules there are, planned ones too."""
+        return len(self._held.modules)
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Robot):
+            return NotImplemented
+        return self._held.has_same_document(other._held)
+
+    def __hash__(self) -> int:
+        return hash((self.name, len(self)))
+
+    def __reduce__(self) -> Any:
+        return (Robot.from_text, (self.json(),), (self.name,))
+
+    def __setstate__(self, state: tuple[str]) -> None:
+        if state[0] != self.name:
+            self._held = _core.Structure.load_text(self.json(), state[0], '', '')
+
+    def __copy__(self) -> Robot:
+        return self
+
+    def __deepcopy__(self, memo: Any) -> Robot:
+        return self
+
+    def __repr__(self) -> str:
+        planned = self._held.planned_count
+        count = len(self) - planned
+        name = f' {self.name!r}' if self.name else ''
+        modules = 'module' if count == 1 else 'modules'
+        return (f'<holdfast.Robot{name} of {count} {modules}'
+                f'{f" and {planned} planned" if planned else ""}, {self.lattice}>')
+
+
+def load(path: Path, *, lattice: str = '', robot: str = '') -> Robot:
+    """Reads a robot, see `Robot.from_file`."""
+    return Robot.from_file(path, lattice=lattice, robot=robot)
+
+
+def generate(family: str, size: int) -> Robot:
+    """One of the structures in which solvers are compared; `families` lists them.
+
+    >>> generate('tower', 2)
+    <holdfast.Robot 'tower 2' of 18 modules, cubic>
+    """
+    return Robot._of(_core.Structure.generate(family, size))
+
+
+def families() -> dict[str, str]:
+    """The families of `generate`, and what their size means.
+
+    >>> 'arm' in families()
+    True
+    """
+    return dict(_core.families())

@@ -1,0 +1,279 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <sstream>
+
+#include "check_options.hpp"
+#include "common.hpp"
+#include "long_work.hpp"
+
+/// Checks and what they find.
+namespace holdfast::python {
+
+CheckOptions check_options(int thread_count, double memory_gb, bool is_bonded) {
+  constexpr int kThreadCountMax = 64;  // As of the command line, like the bounds of memory.
+  if (thread_count < 0 || thread_count > kThreadCountMax) {
+    throw Error("threads: found " + std::to_string(thread_count) + ", allowed is 0 to 64");
+  }
+  if (!(memory_gb >= 0.01 && memory_gb <= 1024)) {
+    throw Error("memory: found " + std::to_string(memory_gb) + " GB, allowed is 0.01 to 1024");
+  }
+  return {.is_bonded = is_bonded,
+          .thread_count = thread_count,
+          .memory_bytes_max = static_cast<std::size_t>(memory_gb * 1073741824.0)};
+}
+
+namespace {
+
+SharedCheck check_shared(const SharedStructure& structure, int thread_count, double memory_gb,
+                         bool is_bonded, bool is_limit_wanted, double limit_seconds,
+                         bool is_proof_wanted, py::object progress) {
+  CheckOptions options = check_options(thread_count, memory_gb, is_bonded);
+  options.is_limit_wanted = is_limit_wanted;
+  options.limit_seconds_max = limit_seconds;
+  options.is_proof_wanted = is_proof_wanted;
+  Watch watch(std::move(progress));
+  options.progress = [&](int iteration, double error) { watch(iteration, error); };
+  options.limit_progress = [&](double low, double high) { watch(low, high); };
+  return without_gil(watch, [&] {
+    return std::make_shared<CheckedStructure>(structure, check(*structure, options));
+  });
+}
+
+std::vector<SharedCheck> check_list(const std::vector<SharedStructure>& structures,
+                                    int thread_count, double memory_gb, bool is_bonded,
+                                    py::object progress) {
+  const CheckOptions options = check_options(thread_count, memory_gb, is_bonded);
+  std::vector<const model::Robot*> robots;
+  for (const SharedStructure& structure : structures) {
+    robots.push_back(&structure->robot);
+  }
+  Watch watch(std::move(progress));
+  return without_gil(watch, [&] {
+    std::vector<CheckResult> results = check_many(robots, options, [&](std::size_t done) {
+      done < robots.size() ? watch(done, robots.size()) : watch.tell(done, robots.size());
+    });
+    std::vector<SharedCheck> checks;
+    checks.reserve(results.size());
+    for (std::size_t i = 0; i < results.size(); ++i) {
+      checks.push_back(std::make_shared<CheckedStructure>(structures[i], std::move(results[i])));
+    }
+    return checks;
+  });
+}
+
+/// Six numbers of which three belong together.
+py::dtype pairs_of_vectors(const char* first, const char* second) {
+  return record({{first, "(3,)f8", 0}, {second, "(3,)f8", 3 * sizeof(double)}}, 6 * sizeof(double));
+}
+
+py::array connections(const SharedCheck& check) {
+  using verdict::ConnectionResult;
+  const auto& list = check->result.assessment.connections;
+  return view(list.data(), list.size(),
+              record({{"load_ratio", "f8", offsetof(ConnectionResult, load_ratio)},
+                      {"axial_n", "f8", offsetof(ConnectionResult, axial_n)},
+                      {"bending_nmm", "f8", offsetof(ConnectionResult, bending_nmm)},
+                      {"shear_n", "f8", offsetof(ConnectionResult, shear_n)},
+                      {"torsion_nmm", "f8", offsetof(ConnectionResult, torsion_nmm)}},
+                     sizeof(ConnectionResult)),
+              py::cast(check));
+}
+
+py::array displacements(const SharedCheck& check) {
+  const auto& list = check->result.assessment.equilibrium.displacement;
+  return view(list.data(), list.size(), pairs_of_vectors("translation_mm", "rotation_rad"),
+              py::cast(check));
+}
+
+py::array facet_forces(const SharedCheck& check) {
+  const auto& list = check->result.assessment.equilibrium.facet_force;
+  return view(list.data(), list.size(), pairs_of_vectors("force_n", "moment_nmm"), py::cast(check));
+}
+
+py::array ground_forces(const SharedCheck& check) {
+  const auto& list = check->result.assessment.equilibrium.ground_force;
+  return view(list.data(), list.size(), pairs_of_vectors("force_n", "moment_nmm"), py::cast(check));
+}
+
+/// How each facet touches.
+py::array contacts(const SharedCheck& check) {
+  const auto& list = check->result.assessment.equilibrium.contact;
+  using State = std::decay_t<decltype(list.front())>;
+  return view(list.data(), list.size(),
+              record({{"is_pressed", "?", offsetof(State, pressed)},
+                      {"tilt_x", "i1", offsetof(State, tilt_x)},
+                      {"tilt_y", "i1", offsetof(State, tilt_y)}},
+                     sizeof(State)),
+              py::cast(check));
+}
+
+std::vector<std::string> limits(const CheckedStructure& check) {
+  std::vector<std::string> out;
+  for (const model::Limit limit :
+       connection_limits(check.structure->robot, check.result.assessment)) {
+    out.emplace_back(model::name(limit));
+  }
+  return out;
+}
+
+std::vector<std::string> reasons(const CheckedStructure& check) {
+  std::vector<std::string> out;
+  for (const verdict::Reason& reason : check.result.assessment.reasons) {
+    out.push_back(io::reason_text(check.structure->robot, reason));
+  }
+  return out;
+}
+
+py::dict rigid_body(const verdict::RigidBody& body) {
+  py::dict out;
+  out["is_stable"] = body.is_stable;
+  out["margin_mm"] = body.margin_mm;
+  out["centre_of_mass_mm"] = py::make_tuple(body.centre_of_mass.x, body.centre_of_mass.y);
+  const auto points = [](const auto& list) {
+    py::array_t<double> array({static_cast<py::ssize_t>(list.size()), py::ssize_t{2}});
+    auto rows = array.mutable_unchecked<2>();
+    for (std::size_t i = 0; i < list.size(); ++i) {
+      rows(static_cast<py::ssize_t>(i), 0) = list[i].x;
+      rows(static_cast<py::ssize_t>(i), 1) = list[i].y;
+    }
+    return array;
+  };
+  out["polygon_mm"] = points(body.polygon);
+  out["edge_mm"] = body.edge ? py::object(points(*body.edge)) : py::none();
+  return out;
+}
+
+py::dict stability(const CheckedStructure& check) {
+  const verdict::Assessment& found = check.result.assessment;
+  py::dict out = rigid_body(found.simplified);
+  out["is_stable"] = found.is_stable;
+  out["is_stable_by_model"] =
+      found.model.is_settled ? py::object(py::bool_(found.model.is_stable)) : py::none();
+  const limit::RigidStability& rigid = found.rigid;
+  const bool is_asked = found.stability_rule == verdict::StabilityRule::kContactForces;
+  out["rigid"] = is_asked ? py::object(py::str(limit::name(rigid.answer))) : py::none();
+  out["friction_needed"] = rigid.friction_needed;
+  out["tilt_margin_deg"] = rigid.tilt_margin_deg;
+  out["motion"] = rigid.motion ? py::object(py::str(limit::text(*rigid.motion))) : py::none();
+  return out;
+}
+
+/// Verdict, load ratio, margin, weight factor, modules, seconds; not a number where none is known.
+py::tuple row(const CheckedStructure& check) {
+  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+  const verdict::Assessment& found = check.result.assessment;
+  return py::make_tuple(static_cast<int>(found.verdict), found.load_ratio_max.value_or(kNone),
+                        found.simplified.margin_mm.value_or(kNone),
+                        found.weight_factor.value_or(kNone),
+                        check.structure->robot.modules().size(), check.result.seconds);
+}
+
+py::object limit_load(const CheckedStructure& check) {
+  if (!check.result.limit) {
+    return py::none();
+  }
+  py::dict out;
+  out["outcome"] = limit::name(check.result.limit->outcome);
+  out["low"] = check.result.limit->low;
+  out["high"] = check.result.limit->high;
+  return out;
+}
+
+template <class Write>
+std::string text_of(const Write& write) {
+  return without_gil([&] {
+    std::ostringstream out;
+    write(out);
+    return std::move(out).str();
+  });
+}
+
+/// Writes a file, whole or not at all.
+void save(const CheckedStructure& check, const std::string& path, const std::string& kind) {
+  const auto error = without_gil([&] {
+    return write_file(path, [&](std::ostream& out) {
+      if (kind == "json") {
+        write_report_json(out, *check.structure, check.result);
+      } else if (kind == "csv") {
+        write_connections_csv(out, *check.structure, check.result);
+      } else if (kind == "vtu") {
+        write_picture_vtu(out, *check.structure, check.result);
+      } else {
+        out << picture_svg(*check.structure, check.result);
+      }
+    });
+  });
+  take(error, path);
+}
+
+void add_arrays(py::class_<CheckedStructure, std::shared_ptr<CheckedStructure>>& type) {
+  type.def_property_readonly("connections", &connections)
+      .def_property_readonly("displacements", &displacements)
+      .def_property_readonly("facet_forces", &facet_forces)
+      .def_property_readonly("ground_forces", &ground_forces)
+      .def_property_readonly("contacts", &contacts)
+      .def_property_readonly("limits", &limits);
+}
+
+void add_texts(py::class_<CheckedStructure, std::shared_ptr<CheckedStructure>>& type) {
+  type.def("json",
+           [](const CheckedStructure& c) {
+             return without_gil([&] { return report_json(*c.structure, c.result); });
+           })
+      .def("text",
+           [](const CheckedStructure& c) {
+             return without_gil([&] { return report_text(*c.structure, c.result); });
+           })
+      .def("svg",
+           [](const CheckedStructure& c) {
+             return without_gil([&] { return picture_svg(*c.structure, c.result); });
+           })
+      .def("csv",
+           [](const CheckedStructure& c) {
+             return text_of(
+                 [&](std::ostream& out) { write_connections_csv(out, *c.structure, c.result); });
+           })
+      .def("certificate",
+           [](const CheckedStructure& c) { return take(certificate_text(c.result)); })
+      .def("save", &save);
+}
+
+}  // namespace
+
+void add_check(py::module_& module) {
+  py::class_<CheckedStructure, std::shared_ptr<CheckedStructure>> type(module, "Check");
+  add_arrays(type);
+  add_texts(type);
+  type.def_property_readonly("row", &row)
+      .def_property_readonly("structure", [](const CheckedStructure& c) { return c.structure; })
+      .def_property_readonly(
+          "verdict",
+          [](const CheckedStructure& c) { return static_cast<int>(c.result.assessment.verdict); })
+      .def_property_readonly("reasons", &reasons)
+      .def_property_readonly(
+          "load_ratio_max",
+          [](const CheckedStructure& c) { return c.result.assessment.load_ratio_max; })
+      .def_property_readonly("worst",
+                             [](const CheckedStructure& c) { return c.result.assessment.worst; })
+      .def_property_readonly("broken",
+                             [](const CheckedStructure& c) { return c.result.assessment.broken; })
+      .def_property_readonly(
+          "weight_factor",
+          [](const CheckedStructure& c) { return c.result.assessment.weight_factor; })
+      .def_property_readonly("contact_model",
+                             [](const CheckedStructure& c) {
+                               return verdict::name(c.result.assessment.contact_model);
+                             })
+      .def_property_readonly("stability", &stability)
+      .def_property_readonly("limit_load", &limit_load)
+      .def_property_readonly("seconds", [](const CheckedStructure& c) {
+        return py::make_tuple(c.result.seconds, c.result.proof_seconds, c.result.limit_seconds);
+      });
+  module.def("check", &check_shared);
+  module.def("check_many", &check_list);
+}
+
+}  // namespace holdfast::python

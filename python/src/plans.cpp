@@ -1,0 +1,369 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <sstream>
+
+#include "check_options.hpp"
+#include "common.hpp"
+#include "holdfast/move.hpp"
+#include "holdfast/order.hpp"
+#include "holdfast/steps.hpp"
+#include "holdfast/trial.hpp"
+#include "long_work.hpp"
+
+/// What may come next: places, steps, orders, moves.
+namespace holdfast::python {
+namespace {
+
+/// An answer together with what it was asked of.
+struct Places {
+  SharedStructure structure;
+  NextResult result;
+};
+
+struct JudgedSteps {
+  StepsFile file;
+  StepsResult result;
+};
+
+/// A judgement as numpy has it: not a number where nothing is known.
+struct JudgementRow {
+  std::int32_t cell[3];
+  std::uint8_t verdict;
+  double load_ratio_max;
+  double margin_mm;
+};
+
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+
+py::array rows_of(const std::vector<JudgementRow>& rows, bool has_cells) {
+  const Field cell{"cell", "(3,)i4", offsetof(JudgementRow, cell)};
+  const Field verdict{"verdict", "u1", offsetof(JudgementRow, verdict)};
+  const Field ratio{"load_ratio_max", "f8", offsetof(JudgementRow, load_ratio_max)};
+  const Field margin{"margin_mm", "f8", offsetof(JudgementRow, margin_mm)};
+  const py::dtype type = has_cells ? record({cell, verdict, ratio, margin}, sizeof(JudgementRow))
+                                   : record({verdict, ratio, margin}, sizeof(JudgementRow));
+  return {type, {static_cast<py::ssize_t>(rows.size())}, rows.data()};
+}
+
+template <class Judged>
+JudgementRow row_of(const Judged& judged) {
+  return {.cell = {},
+          .verdict = static_cast<std::uint8_t>(judged.verdict),
+          .load_ratio_max = judged.load_ratio_max.value_or(kNone),
+          .margin_mm = judged.margin_mm.value_or(kNone)};
+}
+
+std::shared_ptr<Places> next(const SharedStructure& structure, int thread_count, double memory_gb,
+                             bool is_bonded, py::object progress) {
+  Watch watch(std::move(progress));
+  NextOptions options{.check = check_options(thread_count, memory_gb, is_bonded)};
+  options.progress = [&](std::size_t done, std::size_t count) { watch(done, count); };
+  return without_gil(
+      watch, [&] { return std::make_shared<Places>(structure, find_next(*structure, options)); });
+}
+
+py::array candidates(const Places& places) {
+  std::vector<JudgementRow> rows;
+  for (const Trial& trial : places.result.candidates) {
+    JudgementRow& row = rows.emplace_back(row_of(trial));
+    row.cell[0] = trial.cell.x;
+    row.cell[1] = trial.cell.y;
+    row.cell[2] = trial.cell.z;
+  }
+  return rows_of(rows, true);
+}
+
+std::shared_ptr<JudgedSteps> steps(const SharedStructure& structure, int thread_count,
+                                   double memory_gb, bool ends_when_unsafe, py::object progress) {
+  const CheckOptions check = check_options(thread_count, memory_gb, false);
+  const std::size_t count = io::step_count(structure->document);
+  if (count == 0) {
+    throw Error("the structure has no steps; check() judges it as it is");
+  }
+  Watch watch(std::move(progress));
+  const StepsOptions options{
+      .thread_count = thread_count,
+      .memory_bytes_max = check.memory_bytes_max,
+      .ends_when_unsafe = ends_when_unsafe,
+      .progress = [&](std::size_t judged_count) { watch(judged_count, count); }};
+  auto judged = std::make_shared<JudgedSteps>(
+      StepsFile{.name = structure->name, .document = structure->document, .warnings = {}},
+      StepsResult{});
+  judged->result = take(without_gil(watch, [&] { return judge_steps(judged->file, options); }));
+  return judged;
+}
+
+/// (steps, 3): release, shift, connect.
+py::array stages(const JudgedSteps& judged) {
+  std::vector<JudgementRow> rows;
+  for (const plan::StepJudgement& step : judged.result.judgement.steps) {
+    for (const plan::StageJudgement& stage : step.stages) {
+      rows.push_back(row_of(stage));
+    }
+  }
+  return rows_of(rows, false).attr("reshape")(-1, 3);
+}
+
+std::optional<std::pair<std::size_t, int>> place_of(const std::optional<plan::StageId>& id) {
+  return id ? std::optional(std::pair(id->step, static_cast<int>(id->stage))) : std::nullopt;
+}
+
+/// The limits of a search: a seed, seconds, threads.
+double seconds_max(double seconds) {
+  if (!(seconds >= 0)) {
+    throw Error("seconds: found " + std::to_string(seconds) + ", allowed is 0 and more");
+  }
+  return seconds;
+}
+
+std::shared_ptr<io::OrderReport> order(const Structure& target, const py::handle& start,
+                                       const std::string& reach, const py::handle& source,
+                                       std::size_t group_size, bool is_reversed, std::uint64_t seed,
+                                       double seconds, double help_seconds, int thread_count,
+                                       py::object progress) {
+  Watch watch(std::move(progress));
+  OrderRequest request{.group_size = group_size,
+                       .is_reversed = is_reversed,
+                       .seed = seed,
+                       .seconds_max = seconds_max(seconds),
+                       .help_seconds_max = seconds_max(help_seconds),
+                       .thread_count = check_options(thread_count, 4, false).thread_count};
+  if (!start.is_none()) {
+    request.start = cells_of(start, "start");
+  }
+  request.rule.reach = reach == "line"      ? plan::Reach::kLine
+                       : reach == "surface" ? plan::Reach::kSurface
+                                            : plan::Reach::kFree;
+  if (reach != plan::name(request.rule.reach)) {
+    throw Error("reach: found '" + reach + "', allowed is free, line or surface");
+  }
+  if (!source.is_none()) {
+    request.rule.source = cell_of(source, "source");
+  }
+  if ((reach == "surface") != request.rule.source.has_value()) {
+    throw Error("reach 'surface' and source belong together");
+  }
+  if (group_size < 1 || group_size > 16) {
+    throw Error("group: found " + std::to_string(group_size) + ", allowed is 1 to 16");
+  }
+  request.progress = [&](std::size_t states, std::size_t grown, std::size_t shrunk) {
+    watch(states, grown, shrunk);
+  };
+  return std::make_shared<io::OrderReport>(
+      take(without_gil(watch, [&] { return seek_order(target.document, request); })));
+}
+
+/// Cells of the target's modules.
+py::array cells_in(const io::OrderReport& report, const auto& elements) {
+  std::vector<base::Cell> cells;
+  for (const auto element : elements) {
+    cells.push_back(report.task.target.existing[static_cast<std::size_t>(element)]);
+  }
+  return array_of(cells);
+}
+
+/// As they are attached, or detached where the robot is taken apart.
+py::list order_batches(const io::OrderReport& report) {
+  py::list out;
+  for (const plan::Batch& batch : report.result.order.steps) {
+    out.append(cells_in(report, batch));
+  }
+  if (report.is_reversed) {
+    out.attr("reverse")();
+  }
+  return out;
+}
+
+py::array order_judgements(const io::OrderReport& report) {
+  std::vector<JudgementRow> rows;
+  for (const plan::Judgement& judgement : report.result.order.judgements) {
+    rows.push_back(row_of(judgement));
+  }
+  if (report.is_reversed) {
+    std::ranges::reverse(rows);
+  }
+  return rows_of(rows, false);
+}
+
+SharedStructure order_as_steps(const io::OrderReport& report) {
+  if (report.result.order.outcome != plan::OrderOutcome::kFound) {
+    throw Error("no order was found");
+  }
+  auto document = take(io::order_steps(report.target, report.result.order, report.is_reversed));
+  return std::make_shared<const Structure>(take(make_structure(std::move(document))));
+}
+
+std::string order_certificate(const io::OrderReport& report) {
+  if (!report.result.certificate) {
+    throw Error("there is no certificate, as it was not proved that there is no order");
+  }
+  return io::write_order_certificate(report.target, *report.result.certificate);
+}
+
+py::object order_help(const io::OrderReport& report) {
+  if (!report.help) {
+    return py::none();
+  }
+  py::dict out;
+  out["supports"] = array_of(report.help->supports);
+  out["temporary"] = array_of(report.help->temporary);
+  return out;
+}
+
+std::shared_ptr<io::MoveReport> move(const Structure& start, const Structure& target, bool pivots,
+                                     const py::handle& within, bool ignores_mechanics,
+                                     std::uint64_t seed, double seconds, int thread_count,
+                                     py::object progress) {
+  Watch watch(std::move(progress));
+  MoveRequest request{.pivots = pivots,
+                      .ignores_mechanics = ignores_mechanics,
+                      .seed = seed,
+                      .seconds_max = seconds_max(seconds),
+                      .thread_count = check_options(thread_count, 4, false).thread_count};
+  if (!within.is_none()) {
+    const auto corners = cells_of(within, "within");
+    if (corners.size() != 2) {
+      throw Error("within: expected are two cells, the corners of a box");
+    }
+    const auto [a, b] = std::pair(corners[0], corners[1]);
+    request.within =
+        plan::CellBox{.low = {std::min(a.x, b.x), std::min(a.y, b.y), std::min(a.z, b.z)},
+                      .high = {std::max(a.x, b.x), std::max(a.y, b.y), std::max(a.z, b.z)}};
+  }
+  request.progress = [&](std::size_t states, int distance) { watch(states, distance); };
+  return std::make_shared<io::MoveReport>(take(
+      without_gil(watch, [&] { return seek_moves(start.document, target.document, request); })));
+}
+
+/// From, to, carrier or None, of every move of every step.
+py::list move_steps(const io::MoveReport& report) {
+  const auto triple = [](const base::Cell& cell) { return py::make_tuple(cell.x, cell.y, cell.z); };
+  py::list out;
+  for (const model::Step& step : report.plan.steps) {
+    py::list moves;
+    for (const model::Move& one : step.moves) {
+      moves.append(py::make_tuple(triple(one.from), triple(one.to),
+                                  one.carrier ? py::object(triple(*one.carrier)) : py::none()));
+    }
+    out.append(moves);
+  }
+  return out;
+}
+
+SharedStructure move_as_steps(const io::MoveReport& report) {
+  return std::make_shared<const Structure>(take(make_structure(io::move_steps(report))));
+}
+
+template <class Write>
+std::string text_of(const Write& write) {
+  return without_gil([&] {
+    std::ostringstream out;
+    write(out);
+    return std::move(out).str();
+  });
+}
+
+void add_places(py::module_& module) {
+  py::class_<Places, std::shared_ptr<Places>>(module, "Places")
+      .def_property_readonly("structure", [](const Places& p) { return p.structure; })
+      .def_property_readonly("candidates", &candidates)
+      .def_property_readonly("check_count", [](const Places& p) { return p.result.check_count; })
+      .def_property_readonly("seconds", [](const Places& p) { return p.result.seconds; })
+      .def("json",
+           [](const Places& p) {
+             return text_of(
+                 [&](std::ostream& out) { write_next_json(out, *p.structure, p.result); });
+           })
+      .def("text", [](const Places& p) { return next_text(*p.structure, p.result); })
+      .def("svg", [](const Places& p) {
+        return without_gil([&] { return next_svg(*p.structure, check(*p.structure), p.result); });
+      });
+  module.def("next", &next);
+}
+
+void add_steps(py::module_& module) {
+  py::class_<JudgedSteps, std::shared_ptr<JudgedSteps>>(module, "Steps")
+      .def_property_readonly(
+          "verdict",
+          [](const JudgedSteps& s) { return static_cast<int>(s.result.judgement.verdict()); })
+      .def_property_readonly("stages", &stages)
+      .def_property_readonly(
+          "first_unsafe",
+          [](const JudgedSteps& s) { return place_of(s.result.judgement.first_unsafe); })
+      .def_property_readonly(
+          "first_undecided",
+          [](const JudgedSteps& s) { return place_of(s.result.judgement.first_undecided); })
+      .def_property_readonly("load_ratio_max",
+                             [](const JudgedSteps& s) { return s.result.judgement.load_ratio_max; })
+      .def_property_readonly("margin_min_mm",
+                             [](const JudgedSteps& s) { return s.result.judgement.margin_min_mm; })
+      .def_property_readonly("seconds", [](const JudgedSteps& s) { return s.result.seconds; })
+      .def("json",
+           [](const JudgedSteps& s) {
+             return text_of([&](std::ostream& out) { write_steps_json(out, s.file, s.result); });
+           })
+      .def("text", [](const JudgedSteps& s) { return steps_text(s.file, s.result); })
+      .def("svg", [](const JudgedSteps& s) { return steps_svg(s.file, s.result); })
+      .def("html", [](const JudgedSteps& s) { return steps_html(s.file, s.result); })
+      .def("save_vtk", [](const JudgedSteps& s, const std::string& path) {
+        take(without_gil([&] { return write_steps_vtk(path, s.file, s.result); }), path);
+      });
+  module.def("steps", &steps);
+}
+
+void add_order(py::module_& module) {
+  using io::OrderReport;
+  py::class_<OrderReport, std::shared_ptr<OrderReport>>(module, "Order")
+      .def_property_readonly("outcome",
+                             [](const OrderReport& r) { return io::name(r.result.order.outcome); })
+      .def_property_readonly(
+          "start",
+          [](const OrderReport& r) { return cells_in(r, r.result.order.start.elements()); })
+      .def_property_readonly("batches", &order_batches)
+      .def_property_readonly("judgements", &order_judgements)
+      .def_property_readonly("state_count",
+                             [](const OrderReport& r) { return r.result.order.state_count; })
+      .def_property_readonly("load_ratio_max",
+                             [](const OrderReport& r) { return r.result.load_ratio_max; })
+      .def_property_readonly("load_ratio_bound",
+                             [](const OrderReport& r) { return r.result.load_ratio_bound; })
+      .def_property_readonly("margin_min_mm",
+                             [](const OrderReport& r) { return r.result.margin_min_mm; })
+      .def_property_readonly("seconds", [](const OrderReport& r) { return r.seconds; })
+      .def_property_readonly("help", &order_help)
+      .def("as_steps", &order_as_steps)
+      .def("certificate", &order_certificate)
+      .def("json", [](const OrderReport& r) { return io::order_json(r); })
+      .def("text", [](const OrderReport& r) { return io::order_text(r); });
+  module.def("order", &order);
+}
+
+void add_move(py::module_& module) {
+  using io::MoveReport;
+  py::class_<MoveReport, std::shared_ptr<MoveReport>>(module, "Moves")
+      .def_property_readonly("outcome",
+                             [](const MoveReport& r) { return plan::name(r.plan.outcome); })
+      .def_property_readonly("steps", &move_steps)
+      .def_property_readonly("is_shortest", [](const MoveReport& r) { return r.plan.is_shortest; })
+      .def_property_readonly("length_min", [](const MoveReport& r) { return r.plan.length_min; })
+      .def_property_readonly("state_count", [](const MoveReport& r) { return r.plan.state_count; })
+      .def_property_readonly("seconds", [](const MoveReport& r) { return r.seconds; })
+      .def("as_steps", &move_as_steps)
+      .def("json", [](const MoveReport& r) { return io::move_json(r); })
+      .def("text", [](const MoveReport& r) { return io::move_text(r); });
+  module.def("move", &move);
+}
+
+}  // namespace
+
+void add_plans(py::module_& module) {
+  add_places(module);
+  add_steps(module);
+  add_order(module);
+  add_move(module);
+}
+
+}  // namespace holdfast::python

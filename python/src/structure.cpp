@@ -1,0 +1,342 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <sstream>
+
+#include "common.hpp"
+#include "long_work.hpp"
+
+/// Robots: made of arrays, of files, of text; written; looked at.
+namespace holdfast::python {
+namespace {
+
+SharedStructure share(base::Result<Structure> made, std::string_view file = {}) {
+  return std::make_shared<const Structure>(take(std::move(made), file));
+}
+
+io::ReadOptions reading(const std::string& lattice, const std::string& robot) {
+  io::ReadOptions options{.robot = robot};
+  if (!lattice.empty()) {
+    options.lattice = take(io::find_lattice(lattice));
+  }
+  return options;
+}
+
+/// Modules that have masses or kinds of their own: step (0 or 1), index there, kind, mass or not a
+/// number.
+using Own = std::vector<std::tuple<std::size_t, std::size_t, std::string, double>>;
+
+/// Marks modules as fixed. Error: there is no module in one of the cells.
+void fix(std::vector<io::ModuleEntry>& modules, std::vector<base::Cell> cells) {
+  std::ranges::sort(cells);
+  std::vector<char> is_found(cells.size());
+  for (io::ModuleEntry& module : modules) {
+    const auto place = std::ranges::lower_bound(cells, module.cell);
+    if (place != cells.end() && *place == module.cell) {
+      module.is_fixed = true;
+      is_found[static_cast<std::size_t>(place - cells.begin())] = 1;
+    }
+  }
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    const bool is_same_as_before = i > 0 && cells[i] == cells[i - 1];
+    if (is_found[i] == 0 && !is_same_as_before) {
+      throw Error("fixed: there is no module at " + model::text(cells[i]));
+    }
+  }
+}
+
+/// A mask of as many truths as there are modules, or cells.
+void fix(std::vector<io::ModuleEntry>& modules, const py::handle& fixed) {
+  const py::array array = py::array::ensure(fixed);
+  if (!array || array.dtype().kind() != 'b') {
+    fix(modules, cells_of(fixed, "fixed"));
+    return;
+  }
+  if (array.ndim() != 1 || static_cast<std::size_t>(array.size()) != modules.size()) {
+    throw Error("fixed: a mask has one truth for each of the " + std::to_string(modules.size()) +
+                " modules, found is the shape " + py::str(array.attr("shape")).cast<std::string>());
+  }
+  const auto mask = py::array_t<bool>::ensure(array);
+  for (std::size_t i = 0; i < modules.size(); ++i) {
+    modules[i].is_fixed = mask.at(static_cast<py::ssize_t>(i));
+  }
+}
+
+void set_modules(io::Document& document, const std::vector<base::Cell>& cells,
+                 const std::vector<base::Cell>& planned) {
+  document.modules.resize(cells.size());
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    document.modules[i].cell = cells[i];
+  }
+  if (!planned.empty()) {
+    io::Step& step = document.steps.emplace_back(planned.size());
+    for (std::size_t i = 0; i < planned.size(); ++i) {
+      step[i].cell = planned[i];
+    }
+  }
+}
+
+/// `head` is holdfast JSON without modules, for all that is said beside them; or empty.
+SharedStructure make(const py::handle& cells, const py::handle& planned, const py::handle& fixed,
+                     const std::string& head, const Own& own, const std::string& name) {
+  io::Document document;
+  if (!head.empty()) {
+    auto read = take(io::read_json(head));
+    if (!read.warnings.empty()) {  // In a file an unknown key may be somebody else's.
+      throw Error(read.warnings.front());
+    }
+    document = std::move(read.document);
+  }
+  document.name = name;
+  const auto existing = cells_of(cells, "cells");
+  const auto to_come = planned.is_none() ? std::vector<base::Cell>{} : cells_of(planned, "planned");
+  set_modules(document, existing, to_come);
+  if (!fixed.is_none()) {
+    fix(document.modules, fixed);
+  }
+  for (const auto& [step, module, kind, mass] : own) {
+    document.extension.own.push_back(
+        {.step = step,
+         .module = module,
+         .kind = kind,
+         .mass_kg = std::isnan(mass) ? std::nullopt : std::optional(mass)});
+  }
+  return share(without_gil([&] { return make_structure(std::move(document)); }));
+}
+
+/// The same robot with other planned modules, and no further steps.
+SharedStructure with_planned(const Structure& structure, const py::handle& planned) {
+  io::Document document = structure.document;
+  document.steps.clear();
+  document.extension.plan.clear();
+  std::erase_if(document.extension.own, [](const io::OwnParameters& own) { return own.step > 0; });
+  const auto cells = cells_of(planned, "planned");
+  if (!cells.empty()) {
+    io::Step& step = document.steps.emplace_back(cells.size());
+    for (std::size_t i = 0; i < cells.size(); ++i) {
+      step[i].cell = cells[i];
+    }
+  }
+  return share(without_gil([&] { return make_structure(std::move(document), structure.name); }));
+}
+
+/// The same robot with its planned modules attached; further steps move up.
+SharedStructure attached(const Structure& structure) {
+  io::Document document = structure.document;
+  if (!document.steps.empty()) {
+    const std::size_t count = document.modules.size();
+    for (const io::PlannedEntry& entry : document.steps.front()) {
+      document.modules.push_back(
+          {.cell = entry.cell, .color = entry.color, .attributes = entry.attributes});
+    }
+    document.steps.erase(document.steps.begin());
+    for (io::OwnParameters& own : document.extension.own) {
+      own.module += own.step == 1 ? count : 0;
+      own.step -= own.step > 0 ? 1 : 0;
+    }
+  }
+  return share(without_gil([&] { return make_structure(std::move(document), structure.name); }));
+}
+
+py::array modules(const SharedStructure& structure) {
+  using model::Module;
+  const auto list = structure->robot.modules();
+  return view(list.data(), list.size(),
+              record({{"cell", "(3,)i4", offsetof(Module, cell)},
+                      {"support", "u1", offsetof(Module, support)},
+                      {"is_planned", "?", offsetof(Module, is_planned)},
+                      {"kind", "u2", offsetof(Module, kind)}},
+                     sizeof(Module)),
+              py::cast(structure));
+}
+
+py::array connections(const SharedStructure& structure) {
+  using model::Connection;
+  const auto list = structure->robot.connections();
+  const std::vector<Connection> made(list.begin(), list.end());
+  py::array array(record({{"a", "i4", offsetof(Connection, a)},
+                          {"b", "i4", offsetof(Connection, b)},
+                          {"direction", "u1", offsetof(Connection, direction)}},
+                         sizeof(Connection)),
+                  static_cast<py::ssize_t>(made.size()), made.data());
+  py::detail::array_proxy(array.ptr())->flags &= ~py::detail::npy_api::NPY_ARRAY_WRITEABLE_;
+  return array;
+}
+
+py::array facets(const SharedStructure& structure) {
+  using model::Facet;
+  const auto list = structure->robot.facets();
+  return view(list.data(), list.size(),
+              record({{"module", "i4", offsetof(Facet, module)},
+                      {"direction", "u1", offsetof(Facet, direction)},
+                      {"hold", "u1", offsetof(Facet, touch) + offsetof(model::Touch, hold)}},
+                     sizeof(Facet)),
+              py::cast(structure));
+}
+
+/// Where the nodes of modules are, mm.
+py::array_t<double> positions(const Structure& structure) {
+  const model::Robot& robot = structure.robot;
+  const base::NodePlaces place(robot.lattice(), robot.material().pitch_mm);
+  py::array_t<double> out({static_cast<py::ssize_t>(robot.modules().size()), py::ssize_t{3}});
+  auto rows = out.mutable_unchecked<2>();
+  for (std::size_t i = 0; i < robot.modules().size(); ++i) {
+    const std::array<double, 3> at = place(robot.modules()[i].cell);
+    for (py::ssize_t k = 0; k < 3; ++k) {
+      rows(static_cast<py::ssize_t>(i), k) = at[static_cast<std::size_t>(k)];
+    }
+  }
+  return out;
+}
+
+py::array_t<double> masses(const Structure& structure) {
+  const std::size_t count = structure.robot.modules().size();
+  py::array_t<double> out(static_cast<py::ssize_t>(count));
+  auto values = out.mutable_unchecked<1>();
+  for (std::size_t i = 0; i < count; ++i) {
+    values(static_cast<py::ssize_t>(i)) = structure.robot.mass(i);
+  }
+  return out;
+}
+
+py::dict material(const Structure& structure) {
+  py::dict out;
+  for (const model::MaterialParameter& parameter : model::kMaterialParameters) {
+    out[parameter.key] = structure.document.material.*parameter.value;
+  }
+  return out;
+}
+
+/// From a node through each facet, in the order of directions: vectors of length one.
+py::array_t<double> directions(const Structure& structure) {
+  const base::Lattice& lattice = structure.robot.lattice();
+  const auto range = base::facet_directions(lattice);
+  py::array_t<double> out({static_cast<py::ssize_t>(range.size()), py::ssize_t{3}});
+  auto rows = out.mutable_unchecked<2>();
+  for (const base::Direction direction : range) {
+    const std::array<double, 3> vector = base::unit_vector(lattice, direction);
+    for (py::ssize_t k = 0; k < 3; ++k) {
+      rows(base::index(direction), k) = vector[static_cast<std::size_t>(k)];
+    }
+  }
+  return out;
+}
+
+/// Boxes and lists of cells, as numpy arrays: from, to, cells, is_bonded, friction or None.
+py::list obstacles(const Structure& structure) {
+  py::list out;
+  for (const model::Obstacle& obstacle : structure.document.extension.obstacles) {
+    py::dict entry;
+    if (obstacle.cells.empty()) {
+      entry["from"] = py::make_tuple(obstacle.from.x, obstacle.from.y, obstacle.from.z);
+      entry["to"] = py::make_tuple(obstacle.to.x, obstacle.to.y, obstacle.to.z);
+    } else {
+      entry["cells"] = array_of(obstacle.cells);
+    }
+    entry["hold"] = obstacle.touch.hold == model::Hold::kBonded ? "bonded" : "contact";
+    if (obstacle.touch.friction) {
+      entry["friction"] = *obstacle.touch.friction;
+    }
+    out.append(entry);
+  }
+  return out;
+}
+
+py::list catalogue() {
+  py::list out;
+  for (const model::CatalogueRobot& robot : model::robot_catalogue()) {
+    py::list figures;
+    for (const model::RobotFigure& figure : robot.figures) {
+      figures.append(
+          py::make_tuple(figure.key, figure.value, model::name(figure.certainty), figure.source));
+    }
+    out.append(py::make_tuple(robot.name, robot.title, io::lattice_name(robot.lattice), robot.note,
+                              figures));
+  }
+  return out;
+}
+
+void add_readers(py::class_<Structure, std::shared_ptr<Structure>>& type) {
+  type.def_static("make", &make)
+      .def_static("load_text",
+                  [](const std::string& text, const std::string& name, const std::string& lattice,
+                     const std::string& robot) {
+                    const io::ReadOptions options = reading(lattice, robot);
+                    return share(without_gil([&] { return load_text(text, name, 0, options); }),
+                                 name);
+                  })
+      .def_static(
+          "load_file",
+          [](const std::string& path, const std::string& lattice, const std::string& robot) {
+            const io::ReadOptions options = reading(lattice, robot);
+            return share(without_gil([&] { return load_file(path, 0, options); }), path);
+          })
+      .def_static("generate",
+                  [](const std::string& family, std::size_t size) {
+                    auto made = without_gil([&]() -> base::Result<Structure> {
+                      auto document = generate(family, size);
+                      return document ? make_structure(std::move(document).value())
+                                      : base::Result<Structure>(document.error());
+                    });
+                    return share(std::move(made));
+                  })
+      .def("with_planned", &with_planned)
+      .def("attached", &attached);
+}
+
+}  // namespace
+
+void add_structure(py::module_& module) {
+  py::class_<Structure, std::shared_ptr<Structure>> type(module, "Structure");
+  add_readers(type);
+  type.def("json",
+           [](const Structure& s) {
+             return without_gil([&] { return io::write_json(s.document); });
+           })
+      .def("visiblesim",
+           [](const Structure& s) {
+             take(io::visiblesim_shift(s.document));
+             return without_gil([&] { return io::write_visiblesim(s.document); });
+           })
+      .def_property_readonly("name", [](const Structure& s) { return s.name; })
+      .def_property_readonly("warnings", [](const Structure& s) { return s.warnings; })
+      .def_property_readonly("lattice",
+                             [](const Structure& s) { return io::lattice_name(s.robot.lattice()); })
+      .def_property_readonly("modules", &modules)
+      .def_property_readonly("connections", &connections)
+      .def_property_readonly("facets", &facets)
+      .def_property_readonly("positions", &positions)
+      .def_property_readonly("masses", &masses)
+      .def_property_readonly("material", &material)
+      .def_property_readonly("directions", &directions)
+      .def_property_readonly("obstacles", &obstacles)
+      .def_property_readonly("planned_count",
+                             [](const Structure& s) { return s.robot.planned_count(); })
+      .def_property_readonly("foot_half_width",
+                             [](const Structure& s) { return s.robot.foot_half_width_mm(); })
+      .def_property_readonly("step_count",
+                             [](const Structure& s) { return io::step_count(s.document); })
+      .def_property_readonly("gravity", [](const Structure& s) { return s.robot.gravity(); })
+      .def_property_readonly("supports",
+                             [](const Structure& s) {
+                               return s.robot.has_floor() ? std::optional(s.robot.support_z())
+                                                          : std::nullopt;
+                             })
+      .def("has_same_document", [](const Structure& a, const Structure& b) {
+        return a.name == b.name && a.document == b.document;
+      });
+  module.def("lattice_name", [](const std::string& name) {
+    return io::lattice_name(take(io::find_lattice(name)));
+  });
+  module.def("write_file", [](const std::string& path, const std::string& text) {
+    take(without_gil([&] { return write_file(path, text); }), path);
+  });
+  module.def("catalogue", &catalogue);
+  module.def("families", &family_list);
+  module.def("version", &version);
+}
+
+}  // namespace holdfast::python

@@ -1,0 +1,134 @@
+# SPDX-FileCopyrightText: The holdfast authors
+# SPDX-License-Identifier: Apache-2.0
+"""Places, steps, orders, moves and the robot's own computation agree with checks."""
+import json
+
+import holdfast
+import numpy as np
+import pytest
+from holdfast import Outcome, Robot, Stage, Verdict
+
+ARM = Robot([[0, 0, 0], [1, 0, 0], [0, 0, 1], [0, 0, 2], [1, 0, 2], [2, 0, 2], [3, 0, 2],
+             [4, 0, 2]])
+VERDICTS = list(Verdict)
+
+
+def test_places_have_the_verdicts_of_checks():
+    places = ARM.next()
+    assert len(places) > 20
+    for candidate in places.candidates:
+        report = ARM.planning([candidate['cell']]).check()
+        assert report.verdict is VERDICTS[candidate['verdict']]
+        if report.verdict in (Verdict.SAFE, Verdict.OVERLOAD):
+            assert candidate['load_ratio_max'] == pytest.approx(report.load_ratio_max, rel=1e-9)
+    assert (places.candidates['verdict'] == 0).sum() == len(places.safe)
+    assert json.loads(places.json()) and places.text() and '<svg' in places.svg()
+    assert places.robot == ARM
+
+
+def test_steps_are_judged_at_every_stage(root):
+    tower = Robot([[0, 0, 0], [1, 0, 0]])
+    judged = holdfast.steps(tower, [{'attach': [[0, 0, 1]]}, {'attach': [[-1, 0, 1], [-2, 0, 1],
+                                                                         [-3, 0, 1]]}])
+    assert judged.stages.shape == (2, 3)
+    assert judged.verdict is Verdict.UNSTABLE
+    assert judged.first_unsafe == (1, Stage.CONNECT)
+    # The last stage is the check of the robot with all attached.
+    whole = Robot([[0, 0, 0], [1, 0, 0], [0, 0, 1], [-1, 0, 1], [-2, 0, 1], [-3, 0, 1]]).check()
+    assert judged.stages['margin_mm'][1, 2] == pytest.approx(whole.stability['margin_mm'])
+    assert '<svg' in judged.svg() and '<html' in judged.html().lower() and judged.text()
+    from_file = holdfast.steps(root / 'scenarios/plan/walk_over_beam.json')
+    assert from_file.verdict is VERDICTS[from_file.stages['verdict'].max()]
+    with pytest.raises(holdfast.Error, match='no steps'):
+        holdfast.steps(tower)
+    with pytest.raises(holdfast.Error, match='step'):
+        holdfast.steps(tower, [{'detach': [[9, 9, 9]]}])
+
+
+def test_steps_are_written_for_paraview(tmp_path):
+    judged = holdfast.steps(Robot([[0, 0, 0]]), [{'attach': [[0, 0, 1]]}])
+    judged.save_vtk(tmp_path / 'series.pvd')
+    assert sorted(path.name for path in tmp_path.iterdir()) == [
+        'series.pvd', 'series_0.vtu', 'series_1.vtu']
+
+
+def test_an_order_is_safe_all_the_way():
+    target = Robot([[0, 0, 0], [1, 0, 0], [0, 0, 1], [1, 0, 1], [2, 0, 1], [-1, 0, 1]])
+    found = holdfast.order(target)
+    assert found.outcome is Outcome.FOUND
+    cells = found.start.tolist()
+    for batch in found.batches:
+        assert Robot(cells, planned=batch).check().verdict is Verdict.SAFE
+        cells += batch.tolist()
+    assert sorted(cells) == sorted(target.cells.tolist())
+    assert holdfast.steps(found.robot()).verdict is Verdict.SAFE
+    apart = holdfast.order(target, reverse=True)
+    assert holdfast.steps(apart.robot()).verdict is Verdict.SAFE
+    for options in ({'reach': 'fly'}, {'reach': 'surface'}, {'group': 0}, {'seconds': -1},
+                    {'seconds': float('nan')}, {'start': [[9, 9, 9]]}):
+        with pytest.raises(holdfast.Error):
+            holdfast.order(target, **options)
+
+
+def test_no_order_is_certified(root):
+    """Each half of the arch topples before they meet (scenarios/plan)."""
+    arch = root / 'scenarios/plan/arch.json'
+    none = holdfast.order(arch, seconds=60)
+    assert none.outcome is Outcome.NONE
+    assert json.loads(none.certificate())['states']
+    found = holdfast.order(Robot([[0, 0, 0], [0, 0, 1]]))
+    assert found.outcome is Outcome.FOUND
+    with pytest.raises(holdfast.Error, match='certificate'):
+        found.certificate()
+
+
+def test_moves_are_safe_steps(root):
+    plan = root / 'scenarios/plan'
+    found = holdfast.move(plan / 'around_arm_from.json', plan / 'around_arm_to.json', seconds=60)
+    assert found.outcome is Outcome.FOUND
+    start, target = (holdfast.load(plan / f'around_arm_{end}.json') for end in ('from', 'to'))
+    cells = {tuple(cell) for cell in start.cells.tolist()}
+    for step in found.steps:
+        for origin, to, _ in step:
+            cells.remove(origin)
+            cells.add(to)
+    assert cells == {tuple(cell) for cell in target.cells.tolist()}
+    assert holdfast.steps(found.robot()).verdict is Verdict.SAFE
+    with pytest.raises(holdfast.Error, match='within'):
+        holdfast.move(start, target, within=[[0, 0, 0]])
+
+
+def test_the_robot_finds_the_exact_verdict_itself(root):
+    for name in ('arm_breaks_a', 'arm_breaks_b', 'crane_tips_b'):
+        robot = holdfast.load(root / f'scenarios/{name}.json')
+        run = robot.simulate(link='unit')
+        assert run.verdict is run.exact.verdict is robot.check().verdict
+        if len(run.load_ratios) and run.verdict is not Verdict.UNSTABLE:
+            # Reals travel as binary32.
+            assert run.load_ratios == pytest.approx(run.exact.connections['load_ratio'], abs=1e-4)
+        assert run.numbers['all_agree'] and run.numbers['packets'] > 0
+        assert run.numbers == robot.simulate(link='unit').numbers
+        assert json.loads(run.json())['distributed'] and run.text() and '<svg' in run.svg()
+
+
+def test_events_happen_to_the_robot(root):
+    robot = holdfast.load(root / 'scenarios/arm_breaks_a.json')
+    silent = robot.simulate(link='unit', events=[('kill', 1, robot.cells[4])])
+    assert silent.verdict is Verdict.UNDECIDED
+    grown = robot.simulate(link='unit', events=[('plan', 200, np.array([1, 1, 3]))])
+    assert grown.exact.robot.planned.tolist()[-1] == [1, 1, 3]
+    noisy = robot.simulate(noise={'loss': 0.05, 'jitter': 0.001}, seed=7)
+    assert noisy.verdict is noisy.exact.verdict and noisy.numbers['lost_packets'] > 0
+    for options in ({'link': 'v3'}, {'method': 'guess'}, {'noise': {'loud': 1.0}},
+                    {'noise': {'loss': 2.0}}, {'events': [('jump', 1, (0, 0, 0))]},
+                    {'events': [('kill', -1, robot.cells[0])]}, {'events': [('kill', 1)]},
+                    {'events': [('kill', 1, (99, 0, 0))]},
+                    {'events': [('cut', 1, robot.cells[0], 'up')]}):
+        with pytest.raises(holdfast.Error):
+            robot.simulate(**options)
+
+
+def test_emulation_says_what_it_needs(tmp_path):
+    """With firmware the emulator's own tests are run; here: clear words without."""
+    with pytest.raises(holdfast.Error, match='Unicorn|firmware|no such|image'):
+        Robot([[0, 0, 0]]).emulate(image=tmp_path / 'absent.elf')

@@ -1,0 +1,171 @@
+# SPDX-FileCopyrightText: The holdfast authors
+# SPDX-License-Identifier: Apache-2.0
+"""Reports: views of what was found, the same as the other ways to read it, equilibrium."""
+import copy
+import gc
+import json
+import pickle
+
+import holdfast
+import numpy as np
+import pytest
+from holdfast import Robot, Verdict
+
+ARRAYS = ['connections', 'displacements', 'facet_forces', 'ground_forces', 'contacts']
+
+
+@pytest.fixture(scope='module')
+def arm(root):
+    return holdfast.load(root / 'scenarios/arm_breaks_b.json')
+
+
+@pytest.mark.parametrize('name', ARRAYS)
+def test_arrays_are_views_that_outlive_their_report(arm, name):
+    report = arm.check()
+    first, second = getattr(report, name), getattr(report, name)
+    assert len(first) > 0
+    assert np.shares_memory(first, second)
+    assert not first.flags.owndata and not first.flags.writeable
+    expected = first.copy()
+    del report, second
+    gc.collect()
+    [np.ones(1000) for _ in range(100)]
+    assert (first == expected).all()
+    with pytest.raises(ValueError):
+        first[0] = first[1]
+
+
+def test_arrays_say_what_the_json_says(arm):
+    report = arm.check()
+    said = json.loads(report.json())
+    assert said['verdict'] == report.verdict.value == 'overload'
+    assert said['reasons'] == report.reasons
+    assert said['overload']['load_ratio_max'] == report.load_ratio_max
+    assert report.connections['load_ratio'].max() == report.load_ratio_max
+    assert report.broken[0] == report.worst == report.connections['load_ratio'].argmax()
+    assert len(said['connections']) == len(report.connections) == len(report.limits)
+    for entry, row in zip(said['connections'], report.connections):
+        assert entry['load_ratio'] == row['load_ratio']
+        assert entry['axial_n'] == row['axial_n']
+    assert report.weight_factor == pytest.approx(1 / report.load_ratio_max)
+    assert report.text().startswith('OVERLOAD  arm_breaks_b\n')
+    assert str(report) == report.text()
+    assert np.nanmax(report.module_load_ratios) == report.load_ratio_max
+
+
+def test_forces_balance_the_weight(arm):
+    """Statics: facets carry the weight, and their moments about the origin balance it."""
+    report = arm.check()
+    weight = np.zeros((len(report.robot), 3))
+    weight[:, 2] = -9.81 * report.robot.masses
+    places = report.robot.positions
+    facets = report.facet_forces
+    at = places[report.robot.facets['module']]
+    force = facets['force_n'].sum(axis=0) + weight.sum(axis=0)
+    moment = (facets['moment_nmm'] + np.cross(at, facets['force_n'])).sum(axis=0)
+    moment += np.cross(places, weight).sum(axis=0)
+    # The displacements have 1e-12 of their digits wrong, forces are stiffness times differences.
+    assert np.abs(force).max() < 1e-6 * np.abs(weight).sum()
+    assert np.abs(moment).max() < 1e-6 * np.abs(np.cross(places, weight)).sum()
+    ground = report.ground_forces['force_n'].sum(axis=0)
+    assert ground == pytest.approx(facets['force_n'].sum(axis=0))
+
+
+def test_displacements_are_those_of_a_rod():
+    """A tower's top moves down by the sum of N L / (E A): Eq. (1) without bending."""
+    height = 6
+    robot = Robot([[0, 0, z] for z in range(height)])
+    down = -robot.check().displacements['translation_mm'][:, 2]
+    material = robot.material
+    weight = material['mass_kg'] * 9.81
+    unit = weight * material['pitch_mm'] / (
+        material['elastic_modulus_mpa'] * material['section_area_mm2'])
+    carried = np.arange(height, 0, -1)  # The beam below a module carries it and all above.
+    assert down == pytest.approx(unit * np.cumsum(carried), rel=1e-9)
+
+
+@pytest.mark.parametrize('name, verdict', [
+    ('arm_breaks_a', Verdict.SAFE), ('arm_breaks_b', Verdict.OVERLOAD),
+    ('crane_tips_b', Verdict.UNSTABLE)])
+def test_verdicts_of_the_scenarios(root, name, verdict):
+    assert holdfast.load(root / f'scenarios/{name}.json').check().verdict is verdict
+
+
+def test_too_little_memory_is_undecided_and_has_no_arrays():
+    report = holdfast.generate('cube', 40).check(memory=0.01)
+    assert report.verdict is Verdict.UNDECIDED
+    for name in ARRAYS[:2]:
+        assert len(getattr(report, name)) == 0
+    assert report.load_ratio_max is None and report.worst is None
+    assert np.isnan(report.module_load_ratios).all()
+
+
+@pytest.mark.parametrize('options', [
+    {'threads': -1}, {'threads': 65}, {'memory': 0}, {'memory': float('nan')}, {'memory': 1e9}])
+def test_options_out_of_bounds(arm, options):
+    with pytest.raises(holdfast.Error, match=next(iter(options))):
+        arm.check(**options)
+
+
+def test_limit_load_proof_and_bonded(arm):
+    report = arm.check(limit=True, proof=True)
+    assert report.limit_load['outcome'] in ('found', 'unbounded', 'stopped')
+    # The static theorem: no elastic answer exceeds the limit load.
+    assert report.limit_load['high'] >= report.weight_factor
+    assert report.certificate()
+    assert report.timings.proof > 0 and report.timings.limit > 0
+    assert arm.check().limit_load is None
+    with pytest.raises(holdfast.Error, match='no certificate'):
+        arm.check().certificate()
+    assert arm.check(bonded=True).contact_model == 'bonded'
+
+
+def test_files(arm, tmp_path):
+    report = arm.check()
+    report.save_json(tmp_path / 'r.json')
+    report.save_csv(tmp_path / 'r.csv')
+    report.save_svg(tmp_path / 'r.svg')
+    report.save_vtu(tmp_path / 'r.vtu')
+    assert (tmp_path / 'r.json').read_text().rstrip() == report.json().rstrip()
+    assert (tmp_path / 'r.csv').read_text() == report.csv()
+    assert (tmp_path / 'r.svg').read_text() == report.svg()
+    assert len(report.csv().splitlines()) == len(report.connections) + 1
+    assert b'<VTKFile' in (tmp_path / 'r.vtu').read_bytes()[:100]
+    with pytest.raises(holdfast.Error, match='absent'):
+        report.save_svg(tmp_path / 'absent' / 'r.svg')
+
+
+@pytest.mark.parametrize('options', [{}, {'limit': True}, {'proof': True}, {'bonded': True}],
+                         ids=str)
+def test_copies_and_pickles_are_the_same(arm, options):
+    report = arm.check(**options)
+    for again in (pickle.loads(pickle.dumps(report)), copy.copy(report), copy.deepcopy(report)):
+        assert again.robot == report.robot
+        assert again.json() == report.json()
+        assert again.timings == report.timings
+        for name in ARRAYS:
+            assert (getattr(again, name) == getattr(report, name)).all()
+
+
+def test_a_pickle_of_a_robot_with_supports_anywhere():
+    robot = Robot([[0, 0, 0], [1, 0, 0]], supports=None, obstacles=[
+        {'from': (-1, -1, 0), 'to': (-1, 1, 0), 'hold': 'contact', 'friction': 0.5},
+        {'from': (0, 0, -1), 'to': (1, 0, -1)}])
+    report = robot.check(limit=True)
+    again = pickle.loads(pickle.dumps(report))
+    assert again.json() == report.json() and again.text() == report.text()
+
+
+def test_many_are_the_same_as_each(root):
+    robots = [holdfast.load(path) for path in sorted((root / 'scenarios').glob('*.json'))]
+    for threads in (1, 2, 5):
+        reports = holdfast.check_many(iter(robots), threads=threads)
+        for robot, report in zip(robots, reports):
+            alone = robot.check()
+            assert report.robot == robot
+            assert (report.connections == alone.connections).all()
+            assert report.reasons == alone.reasons
+    rows = holdfast.table(reports)
+    assert rows['load_ratio_max'] == pytest.approx(
+        [report.load_ratio_max or np.nan for report in reports], nan_ok=True)
+    assert holdfast.check_many([]) == []

@@ -1,0 +1,196 @@
+# SPDX-FileCopyrightText: The holdfast authors
+# SPDX-License-Identifier: Apache-2.0
+"""Robots from arrays of every kind; what is no robot is refused in one line."""
+import copy
+import pickle
+
+import holdfast
+import numpy as np
+import pytest
+from holdfast import Robot
+
+TOWER = np.array([[0, 0, 0], [0, 0, 1], [0, 0, 2]])
+
+
+def test_the_least_that_works():
+    r = Robot([[0, 0, 0], [0, 0, 1], [1, 0, 1]], planned=[[2, 0, 1]]).check()
+    assert r.verdict.name in ('SAFE', 'OVERLOAD', 'UNSTABLE', 'UNDECIDED')
+    # Eq. (17): two modules hang beside the post; 1.5 weights at 40 mm bend the first connection,
+    # whose lever is 20 mm and whose strength is 14.97 N.
+    weight = 0.06106 * 9.81
+    moment = weight * 20 + weight * 60
+    assert r.connections['load_ratio'].max() == pytest.approx(moment / 20 / 14.97, rel=1e-3)
+
+
+@pytest.mark.parametrize('dtype', ['i1', 'u1', 'i2', 'u2', 'i4', 'u4', 'i8', 'u8', '>i4', '>i8'])
+def test_any_integers(dtype):
+    assert Robot(TOWER.astype(dtype)).cells.tolist() == TOWER.tolist()
+
+
+def test_any_strides():
+    wide = np.zeros((6, 6), dtype=int)
+    wide[::2, ::2] = TOWER
+    for array in (wide[::2, ::2], np.asfortranarray(TOWER), TOWER[::-1][::-1],
+                  TOWER.T.copy().T, np.broadcast_to(TOWER, (3, 3))):
+        assert Robot(array).cells.tolist() == TOWER.tolist()
+    assert Robot(TOWER[::-1]).cells.tolist() == TOWER[::-1].tolist()
+
+
+def test_lists_tuples_and_what_is_like_an_array():
+    class Like:
+        def __array__(self, dtype=None):
+            return TOWER
+
+    for cells in (TOWER.tolist(), [tuple(cell) for cell in TOWER.tolist()], Like()):
+        assert len(Robot(cells)) == 3
+
+
+NOT_CELLS = [
+    None, 3, 'text', {}, object(), [[0, 0]], [[0, 0, 0, 0]], [0, 0, 0], [[[0, 0, 0]]],
+    [[0.5, 0, 0]], [[float('nan')] * 3], [[float('inf'), 0, 0]], [['a', 'b', 'c']], [[0, 0, None]],
+    [[0, 0, 0], [0, 0]], np.zeros((3, 0), dtype=int), np.zeros((0, 4, 2)),
+    np.zeros((1, 3), dtype=bool), np.zeros((1, 3), dtype=complex),
+    np.zeros((1, 3), dtype='M8[s]'), np.zeros(1, dtype=[('x', 'i4')]), [[2**70, 0, 0]],
+    [[2**63, 0, 0]], [[2**62, 0, 0]], [[-2**63, 0, 0]], [[10**6 + 1, 0, 0]],
+    np.array([[2**64 - 1, 0, 0]], dtype='u8'), np.array([[2**32, 0, 0]], dtype='u8')]
+
+
+@pytest.mark.parametrize('cells', NOT_CELLS, ids=lambda cells: str(cells)[:30])
+@pytest.mark.parametrize('where', ['cells', 'planned', 'fixed'])
+def test_what_is_no_array_of_cells(cells, where):
+    if where != 'cells' and cells is None:
+        return  # There are none.
+    options = {'cells': [[0, 0, 0]], where: cells}
+    with pytest.raises(holdfast.Error) as caught:
+        Robot(**options)
+    assert isinstance(caught.value, ValueError)
+    assert len(str(caught.value).splitlines()) == 1
+
+
+@pytest.mark.parametrize('cells, said', [
+    ([], 'no existing module'),
+    (np.zeros((0, 3)), 'no existing module'),
+    ([[0, 0, 0], [0, 0, 0]], 'two modules in the cell (0,0,0)'),
+    ([[0, 0, 5]], 'nothing holds the robot'),
+    ([[0, 0, 0], [5, 0, 0]], 'not connected')])
+def test_what_is_no_robot(cells, said):
+    with pytest.raises(holdfast.Error, match=said.replace('(', r'\(').replace(')', r'\)')):
+        Robot(cells)
+
+
+@pytest.mark.parametrize('options', [
+    {'lattice': 'diamond'}, {'robot': 'robby'}, {'material': {'mass': 1}},
+    {'material': {'mass_kg': float('nan')}}, {'material': {'mass_kg': -1}},
+    {'material': {'mass_kg': 'heavy'}}, {'masses': [1.0]}, {'masses': [[1.0, 2.0, 3.0]]},
+    {'masses': [float('nan')] * 3}, {'masses': [-1.0, 1, 1]}, {'masses': {(9, 9, 9): 1.0}},
+    {'loads': {(9, 9, 9): (0, 0, 1)}}, {'loads': {(0, 0, 0): (0, 1)}},
+    {'loads': {(0, 0, 0): (0, 0, float('inf'))}}, {'gravity': (0, 0)},
+    {'gravity': (0, 0, float('nan'))}, {'supports': 2**80}, {'supports': 0.5},
+    {'supports': {'bonds': 1}}, {'fixed': [True]}, {'fixed': [[9, 9, 9]]},
+    {'obstacles': [{'cells': [[0, 0, 0]]}]}, {'obstacles': [{'hold': 'tight'}]},
+    {'kind_of': {(0, 0, 0): 'unknown'}}, {'steps': [{'jump': 1}]}, {'kinds': {'a': object()}}])
+def test_options_that_are_refused(options):
+    with pytest.raises((holdfast.Error, TypeError)) as caught:
+        Robot(TOWER, **options)
+    assert len(str(caught.value).splitlines()) == 1
+
+
+def test_masses_loads_and_kinds_are_where_they_belong():
+    robot = Robot(TOWER, planned=[[1, 0, 2]], masses={(0, 0, 1): 0.5, (1, 0, 2): 0.25},
+                  kinds={'battery': {'mass_kg': 0.2}}, kind_of={(0, 0, 2): 'battery'},
+                  loads={(0, 0, 2): (0, 0, -2)})
+    assert robot.masses.tolist() == [0.06106, 0.5, 0.2, 0.25]
+    # The ground carries all of it.
+    force = robot.check().ground_forces['force_n'].sum(axis=0)
+    assert force[2] == pytest.approx((0.06106 + 0.5 + 0.2 + 0.25) * 9.81 + 2, rel=1e-9)
+    by_number = Robot(TOWER, masses=[0.1, 0.2, 0.3])
+    assert by_number.masses.tolist() == [0.1, 0.2, 0.3]
+
+
+def test_a_mask_and_cells_fix_the_same():
+    by_mask = Robot(TOWER, fixed=[True, False, False])
+    by_cells = Robot(TOWER, fixed=[[0, 0, 0]])
+    assert by_mask == by_cells
+    assert by_mask.modules['support'].tolist() == [2, 0, 0]
+
+
+def test_voxels():
+    voxels = np.zeros((2, 1, 3), dtype=int)
+    voxels[0, 0, :] = 1
+    voxels[0, 0, 0] = 3
+    voxels[1, 0, 2] = 2
+    robot = Robot.from_voxels(voxels, origin=(-4, 5, 0))
+    assert robot.cells.tolist() == [[-4, 5, 0], [-4, 5, 1], [-4, 5, 2]]
+    assert robot.planned.tolist() == [[-3, 5, 2]]
+    assert robot.modules['support'].tolist() == [2, 0, 0, 0]
+    for wrong in (np.zeros((2, 2)), np.zeros((1, 1, 1)), np.full((1, 1, 1), 4),
+                  np.zeros((0, 0, 0))):
+        with pytest.raises(holdfast.Error):
+            Robot.from_voxels(wrong)
+
+
+def test_lattices_and_a_wall():
+    """A catom on a bonded floor of catoms holds; VisibleSim's names of modules do as well."""
+    robot = Robot([[0, 0, 0], [0, 0, 1]], lattice='catoms3D', supports=None,
+                  obstacles=[{'from': (-1, -1, -1), 'to': (1, 1, -1), 'hold': 'bonded'}])
+    assert robot.lattice == 'face-centred'
+    assert robot.supports is None
+    assert robot.check().verdict is holdfast.Verdict.SAFE
+    # All neighbours are one pitch apart.
+    ends = robot.positions[robot.connections['a']] - robot.positions[robot.connections['b']]
+    assert np.linalg.norm(ends, axis=1) == pytest.approx(robot.material['pitch_mm'])
+
+
+def test_files_are_read_and_written(root, tmp_path):
+    for path in sorted((root / 'scenarios').glob('*.json')):
+        robot = holdfast.load(path)
+        assert robot.name
+        robot.save(tmp_path / 'robot.json')
+        assert Robot.from_file(tmp_path / 'robot.json').json() == robot.json()
+        robot.save(tmp_path / 'robot.xml')
+        again = Robot.from_file(tmp_path / 'robot.xml')
+        assert (again.modules == robot.modules).all()
+        assert again.check().verdict is robot.check().verdict
+    with pytest.raises(holdfast.Error, match='no such file'):
+        holdfast.load(tmp_path / 'absent.json')
+    with pytest.raises(holdfast.Error, match='absent'):
+        robot.save(tmp_path / 'absent' / 'robot.json')
+    (tmp_path / 'bad.json').write_text('{"format": "holdfast-structure", "version": 1}')
+    with pytest.raises(holdfast.Error, match='bad.json.*modules'):
+        holdfast.load(tmp_path / 'bad.json')
+
+
+def test_copies_and_pickles_are_equal():
+    robot = Robot(TOWER, planned=[[1, 0, 2]], masses={(0, 0, 1): 0.5}, name='tower')
+    for again in (pickle.loads(pickle.dumps(robot)), copy.copy(robot), copy.deepcopy(robot)):
+        assert again == robot and hash(again) == hash(robot)
+        assert again.name == 'tower'
+    assert robot != Robot(TOWER)
+    assert robot != 'tower'
+
+
+def test_attached_and_planning():
+    robot = Robot(TOWER, planned=[[1, 0, 2]], masses={(1, 0, 2): 0.3})
+    grown = robot.attached()
+    assert grown.cells.tolist() == [*TOWER.tolist(), [1, 0, 2]]
+    assert grown.masses[3] == 0.3 and len(grown.planned) == 0
+    assert robot.planning([[0, 0, 3]]).planned.tolist() == [[0, 0, 3]]
+    assert robot.planned.tolist() == [[1, 0, 2]]
+
+
+def test_arrays_are_read_only_and_keep_the_robot_alive():
+    cells = Robot(TOWER).cells
+    with pytest.raises(ValueError):
+        cells[0] = 1
+    assert cells.tolist() == TOWER.tolist()
+
+
+def test_the_catalogue():
+    blinky = holdfast.robots.get('blinky-blocks')
+    assert blinky.figures['mass_kg'].value == Robot(TOWER, robot='blinky-blocks').masses[0]
+    with pytest.raises(holdfast.Error, match='there are blinky-blocks'):
+        holdfast.robots.get('robby')
+    assert set(holdfast.families()) >= {'arm', 'cube', 'tower'}
+    assert len(holdfast.generate('cube', 3)) == 27
+    with pytest.raises(holdfast.Error, match='no family'):
+        holdfast.generate('sphere', 3)

@@ -1,0 +1,155 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// The robot's own verdict where it touches more than a floor and carries more than its weight:
+// closed forms, and random robots against the exact solver. `./dev bench distributed general 0
+// 1000` runs more.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <numbers>
+
+#include "campaign.hpp"
+#include "general_robot.hpp"
+#include "holdfast/holdfast.hpp"
+
+namespace holdfast {
+namespace {
+
+using agent::Verdict;
+
+model::Robot robot_of(const model::RobotSpec& spec) { return model::Robot::create(spec).value(); }
+
+Verdict verdict_of(const model::RobotSpec& spec, sim::SimulationOptions options = {}) {
+  const model::Robot robot = robot_of(spec);
+  sim::Simulation simulation(robot, std::move(options));
+  simulation.run();
+  EXPECT_TRUE(simulation.result().all_agree);
+  return simulation.result().answer.verdict;
+}
+
+/// A shelf on a wall with connectors, a battery at an arm's tip, cubes on a step: answers by
+/// statics (known_answer in the files).
+TEST(DistributedGeneral, structures_with_a_closed_form_are_decided_as_statics_says) {
+  const std::filesystem::path folder = std::filesystem::path(HOLDFAST_SCENARIO_DIR) / "general";
+  const std::tuple<const char*, Verdict, double> known[] = {
+      {"battery_on_wall", Verdict::kOverload, 1.143019},
+      {"over_a_step", Verdict::kSafe, 0.160053},
+      {"shelf_with_payload", Verdict::kSafe, 0.320374}};
+  for (const auto& [name, verdict, ratio] : known) {
+    SCOPED_TRACE(name);
+    const Structure structure = load_file(folder / (std::string(name) + ".json")).value();
+    const test::Comparison comparison = test::compare(structure.robot, {});
+    EXPECT_EQ(comparison.robot, verdict) << comparison.text();
+    EXPECT_TRUE(comparison.result.all_agree);
+    EXPECT_NEAR(comparison.ratio_robot, ratio, 0.01 + 0.01 * ratio);
+  }
+}
+
+/// A foot of mass M below a row of three of 0.1 kg each: their centre of mass is 120 mm / (M / 0.1
+/// kg + 3) beyond the foot's, whose edge is at 20 mm. So it stands from M = 0.3 kg on, not with it.
+TEST(DistributedGeneral, own_masses_decide_exactly_whether_it_topples_on_a_floor) {
+  const auto with_foot = [](double mass_kg, bool is_last_planned) {
+    model::RobotSpec spec{.existing = {{0, 0, 0}, {0, 0, 1}, {1, 0, 1}}};
+    (is_last_planned ? spec.planned : spec.existing).push_back({2, 0, 1});
+    spec.own_masses = {{{0, 0, 0}, mass_kg}, {{0, 0, 1}, 0.1}, {{1, 0, 1}, 0.1}, {{2, 0, 1}, 0.1}};
+    return spec;
+  };
+  for (const bool is_planned : {false, true}) {
+    EXPECT_EQ(verdict_of(with_foot(0.299999, is_planned)), Verdict::kUnstable);
+    EXPECT_EQ(verdict_of(with_foot(0.3, is_planned)), Verdict::kUnstable);
+    EXPECT_NE(verdict_of(with_foot(0.300001, is_planned)), Verdict::kUnstable);
+  }
+}
+
+/// Three cubes upright tip over an edge when gravity leans by more than atan(20 / 60).
+TEST(DistributedGeneral, a_tower_on_a_slope_tips_at_its_edge) {
+  const double limit = std::atan2(20, 60);
+  for (const double lean : {0.98, 1.02}) {
+    for (const double side : {-1.0, 1.0}) {
+      const double angle = lean * limit;
+      model::RobotSpec spec{.existing = {{0, 0, 0}, {0, 0, 1}, {0, 0, 2}}};
+      spec.gravity_m_s2 = {side * 9.81 * std::sin(angle), 0, -9.81 * std::cos(angle)};
+      EXPECT_EQ(verdict_of(spec), lean < 1 ? Verdict::kSafe : Verdict::kUnstable) << lean;
+    }
+  }
+}
+
+/// The tower turned onto each side of a box, gravity with it: the same robot, the same verdict.
+TEST(DistributedGeneral, a_tower_stands_on_every_face_that_gravity_presses_on) {
+  for (const base::Direction down : base::kDirections) {
+    const base::Cell step = base::neighbour({0, 0, 0}, down);
+    for (const double side : {1.0, -1.0}) {
+      model::RobotSpec spec;
+      spec.support_z = std::nullopt;
+      for (const int k : {0, 1, 2}) {
+        spec.existing.push_back({-k * step.x, -k * step.y, -k * step.z});
+      }
+      spec.obstacles = {{.from = {}, .to = {}, .cells = {step}}};
+      spec.gravity_m_s2 = {side * 9.81 * step.x, side * 9.81 * step.y, side * 9.81 * step.z};
+      // Away from what it touches it falls.
+      EXPECT_EQ(verdict_of(spec), side > 0 ? Verdict::kSafe : Verdict::kUnstable)
+          << base::index(down);
+    }
+  }
+}
+
+/// Walls, ceilings, slots and bonded supports; other masses, payloads, gravity that leans.
+TEST(DistributedGeneral, random_robots_are_decided_like_the_exact_answer) {
+  int count = 0;
+  for (std::uint64_t seed = 0; seed < 30; ++seed) {
+    for (std::size_t planned = 0; planned < (seed < 10 ? 2 : 1); ++planned) {
+      SCOPED_TRACE(::testing::Message() << "general_robot " << seed << ", planned " << planned);
+      const auto robot = model::Robot::create(
+          test::with_last_planned(test::general_robot(base::kCubic, seed), planned));
+      if (!robot) {
+        continue;  // Nothing else of it is held.
+      }
+      ++count;
+      const test::Comparison comparison = test::compare(robot.value(), {.seed = seed});
+      EXPECT_FALSE(comparison.is_wrong()) << comparison.text();
+      EXPECT_FALSE(comparison.is_undecided()) << comparison.text();
+      EXPECT_TRUE(comparison.result.all_agree) << comparison.text();
+      EXPECT_LT(comparison.ratio_error(), 1) << comparison.text();
+    }
+  }
+  EXPECT_GT(count, 35);
+}
+
+/// A module that is taken off and comes back finds what it touches again.
+TEST(DistributedGeneral, a_module_that_comes_back_knows_its_support) {
+  model::RobotSpec spec{.existing = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}}};
+  spec.support_z = std::nullopt;
+  spec.obstacles = {{.from = {}, .to = {}, .cells = {{3, 0, 0}}, .touch = {model::Hold::kBonded}}};
+  using Kind = sim::Fault::Kind;
+  EXPECT_EQ(verdict_of(spec, {.faults = {{.kind = Kind::kDetach, .at = 400, .module = 2},
+                                         {.kind = Kind::kAttach, .at = 800, .module = 2}}}),
+            Verdict::kSafe);
+  // Without it nothing is left that holds.
+  EXPECT_EQ(verdict_of(spec, {.faults = {{.kind = Kind::kDetach, .at = 400, .module = 2}}}),
+            Verdict::kUndecided);
+}
+
+/// What the modules' program does not know is refused, and said.
+TEST(DistributedGeneral, what_modules_do_not_know_is_refused) {
+  model::RobotSpec spec{.existing = {{0, 0, 0}, {1, 0, 0}}};
+  spec.lattice = base::kFaceCentred;
+  EXPECT_EQ(sim::find_options_fault(robot_of(spec), {}),
+            "the robot has a lattice other than the cubic one, which the modules' program does not "
+            "know");
+  spec.lattice = base::kCubic;
+  spec.floor.friction = 0.5;
+  EXPECT_TRUE(sim::find_options_fault(robot_of(spec), {}));
+  spec.floor = {};
+  spec.own_masses = {{{0, 0, 0}, 0.1}};
+  EXPECT_FALSE(sim::find_options_fault(robot_of(spec), {}));
+  EXPECT_TRUE(sim::find_options_fault(
+      robot_of(spec), {.announcements = {{.at = 0, .module = 0, .cell = {5, 0, 0}}}}));
+  EXPECT_EQ(
+      sim::find_options_fault(robot_of(spec), {.judges_faces = true}),
+      "the robot has modules of different masses, and these modules know cubes on a floor only");
+}
+
+}  // namespace
+}  // namespace holdfast

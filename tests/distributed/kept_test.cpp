@@ -1,0 +1,136 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+// A robot that goes on from what it keeps says what one says that starts from nothing, and what the
+// exact solver says, in a fraction of the time. The paper suggests it [Piranda 2021, Sec. II-G].
+#include <gtest/gtest.h>
+
+#include "holdfast/model/families.hpp"
+#include "holdfast/simulated_steps.hpp"
+
+namespace holdfast {
+namespace {
+
+using Cells = std::vector<base::Cell>;
+
+/// A robot that stands, and one module more in every step.
+StepsFile growing(Cells start, const Cells& more, bool is_fixed = false) {
+  StepsFile file{.name = "growing", .document = {}, .warnings = {}};
+  for (const base::Cell& cell : start) {
+    file.document.modules.emplace_back().cell = cell;
+  }
+  file.document.modules.front().is_fixed = is_fixed;
+  for (const base::Cell& cell : more) {
+    file.document.steps.emplace_back().emplace_back().cell = cell;
+  }
+  return file;
+}
+
+SimulatedSteps simulated(const StepsFile& file, sim::SimulationOptions options = {}) {
+  auto steps = simulate_steps(file, options);
+  EXPECT_TRUE(steps.has_value()) << (steps ? "" : steps.error().message);
+  return steps ? std::move(steps).value() : SimulatedSteps{};
+}
+
+void expect_the_same(const SimulatedSteps& steps) {
+  for (std::size_t i = 0; i < steps.changes.size(); ++i) {
+    const StepChange& change = steps.changes[i];
+    SCOPED_TRACE(::testing::Message() << "change " << i << ", " << name(change.kind));
+    EXPECT_EQ(to_verdict(change.kept.answer.verdict), change.exact);
+    EXPECT_EQ(change.kept.answer.verdict, change.fresh.answer.verdict);
+    EXPECT_TRUE(change.kept.all_agree);
+    if (change.exact != verdict::Verdict::kUnstable) {
+      EXPECT_NEAR(change.kept.answer.load_ratio_max, change.load_ratio_exact,
+                  0.01 + 0.01 * change.load_ratio_exact);
+    }
+  }
+}
+
+Cells row(int from, int to) {
+  Cells cells;
+  for (int x = from; x < to; ++x) {
+    cells.push_back({x, 0, 1});
+  }
+  return cells;
+}
+
+TEST(Kept, an_arm_takes_a_quarter_of_the_time) {
+  Cells start = row(0, 5);
+  start.insert(start.begin(), {0, 0, 0});
+  const SimulatedSteps steps = simulated(growing(start, row(5, 55), true));
+  expect_the_same(steps);
+  EXPECT_LE(steps.time_share_median, 0.25);
+}
+
+TEST(Kept, a_growth_with_loops_takes_less_than_a_half) {
+  const Cells cells = model::family_cells(model::Family::kGrowth, 32);
+  const auto half = cells.begin() + 24;
+  const SimulatedSteps steps =
+      simulated(growing(Cells(cells.begin(), half), Cells(half, cells.end())));
+  expect_the_same(steps);
+  EXPECT_LE(steps.time_share_median, 0.5);
+}
+
+/// An arm on a foot that topples in the end, as in the paper's first test, and comes back.
+TEST(Kept, what_is_taken_off_starts_from_nothing) {
+  StepsFile file = growing({{0, 0, 0}, {0, 0, 1}}, {{1, 0, 1}, {2, 0, 1}});
+  const SimulatedSteps steps = simulated(file);
+  expect_the_same(steps);
+  EXPECT_EQ(steps.changes.back().exact, verdict::Verdict::kUnstable);
+  EXPECT_EQ(worst_verdict(steps), verdict::Verdict::kUnstable);
+}
+
+TEST(Kept, the_same_on_noisy_and_on_slow_links) {
+  sim::LinkModel noisy = sim::unit();
+  noisy.loss = 0.1;
+  noisy.duplication = 0.05;
+  noisy.corruption = 0.02;
+  noisy.jitter = 2;
+  Cells start = row(0, 4);
+  start.insert(start.begin(), {0, 0, 0});
+  for (const sim::LinkModel& link : {noisy, sim::blinky_blocks_v1(), sim::blinky_blocks_v2()}) {
+    for (std::uint64_t seed = 1; seed < 4; ++seed) {
+      expect_the_same(simulated(growing(start, {{1, 1, 1}, {4, 0, 1}, {0, 1, 1}, {0, 1, 0}}, true),
+                                {.link = link, .seed = seed}));
+    }
+  }
+}
+
+/// One plan closes a loop, which takes a beam more, the other hangs by none: together they have as
+/// many beams as they would hang by, and yet another method is needed.
+TEST(Kept, a_plan_that_touches_nothing_is_told_apart) {
+  const auto robot = model::Robot::create(
+      {.existing = {{0, 0, 0}, {1, 0, 0}, {0, -1, 0}, {0, -2, 0}, {0, -3, 0}}});
+  ASSERT_TRUE(robot);
+  sim::SimulationOptions options{
+      .link = sim::blinky_blocks_v2(), .time_max = 11'000'000, .anchor = 4};
+  options.announcements = {{.at = 1'000'000, .module = 3, .cell = {1, -1, 0}},
+                           {.at = 1'160'000, .module = 0, .cell = {0, -5, 1}}};
+  sim::Simulation simulation(robot.value(), options);
+  simulation.run();
+  for (std::int32_t i = 0; i < simulation.agent_count(); ++i) {
+    EXPECT_EQ(simulation.agent(i).answer().reason, agent::Reason::kPlannedDetached) << i;
+  }
+}
+
+/// Every change starts a round, or none does.
+TEST(Kept, rounds_begin_anew_only_without_it) {
+  Cells start = row(0, 4);
+  start.insert(start.begin(), {0, 0, 0});
+  const auto robot = model::Robot::create({.existing = start, .fixed = {{0, 0, 0}}});
+  ASSERT_TRUE(robot);
+  for (const bool keeps : {false, true}) {
+    sim::SimulationOptions options{.keeps_answers = keeps};
+    options.announcements = {{.at = 2000, .module = 0, .cell = {4, 0, 1}},
+                             {.at = 3000, .module = 2, .cell = {4, 0, 1}, .is_withdrawal = true}};
+    sim::Simulation simulation(robot.value(), options);
+    simulation.run();
+    EXPECT_EQ(simulation.result().epoch, keeps ? 1 : 3);
+    EXPECT_EQ(simulation.result().answer.verdict, agent::Verdict::kSafe);
+    for (std::int32_t i = 0; i < simulation.agent_count(); ++i) {
+      EXPECT_EQ(simulation.agent(i).announcements().count(), 0) << i;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace holdfast

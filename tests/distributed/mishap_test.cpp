@@ -1,0 +1,37 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+// Whatever goes wrong, no module shows a wrong or an old `safe`, and modules that hear each other
+// soon say the same. What is true at every moment is the exact solver's verdict of the robot as it
+// is then. `./dev bench distributed mishaps FROM TO` runs as many as one likes.
+#include <gtest/gtest.h>
+
+#include "mishap_campaign.hpp"
+
+namespace holdfast::test {
+namespace {
+
+/// An optimised build runs 2,000; sanitizers, which take twenty times as long, fewer.
+#ifdef NDEBUG
+constexpr std::uint64_t kRunsEach = 223;
+#else
+constexpr std::uint64_t kRunsEach = 12;
+#endif
+
+class Mishaps : public ::testing::TestWithParam<std::size_t> {};
+
+TEST_P(Mishaps, lead_to_no_wrong_and_to_no_old_safe) {
+  const auto what = static_cast<Mishap>(GetParam());
+  SCOPED_TRACE(name(what));
+  MishapTally tally;
+  for (std::uint64_t seed = 0; seed < kRunsEach; ++seed) {
+    const int before = tally.faults();
+    run_mishap(what, seed, tally);
+    EXPECT_EQ(tally.faults(), before) << "mishaps " << seed * kMishapCount + GetParam();
+  }
+  EXPECT_EQ(tally.runs, static_cast<int>(kRunsEach));
+}
+
+INSTANTIATE_TEST_SUITE_P(Kinds, Mishaps, ::testing::Range(std::size_t{0}, kMishapCount));
+
+}  // namespace
+}  // namespace holdfast::test
