@@ -24,7 +24,7 @@ LOAD_RATIO_ERROR = 1e-4
 ITERATION_SHARE = 1.2
 # What hangs across ranks is not condensed, and an arm is nothing else (docs/cluster.md).
 ITERATION_SHARE_HANGING = 4
-SECONDS_MAX = 60
+SECONDS_MAX = 600
 STRENGTHS = {'strength_vertical_n': 11.98, 'strength_lateral_n': 14.97}
 
 

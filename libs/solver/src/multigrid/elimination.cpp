@@ -3,6 +3,7 @@
 #include "elimination.hpp"
 
 #include <algorithm>
+#include <memory>
 #include <utility>
 
 #include "holdfast/base/lattice.hpp"
@@ -18,6 +19,12 @@ using model::Support;
 
 using base::at;
 
+/// A tree that crosses ranks more often keeps what is left of it: a wait for each crossing costs
+/// more than the iterations that it saves.
+constexpr std::size_t kRoundMax = 200;
+
+constexpr std::uint8_t kNoWay = 255;
+
 class Eliminator {
  public:
   Eliminator(const Robot& robot, Team& team, const model::RobotPart* part)
@@ -25,18 +32,10 @@ class Eliminator {
         team_(team),
         part_(part),
         axis_count_(at(robot.lattice().direction_count) / 2),
-        is_at_border_(part == nullptr ? 0 : robot.modules().size()),
+        own_count_(part == nullptr ? robot.modules().size() : part->own_count),
+        halo_(part == nullptr ? nullptr : part->ranks->make_halo(own_count_, part->copies)),
         degree_(robot.modules().size()) {
     result_.is_gone.assign(robot.modules().size(), 0);
-    for (std::size_t i = part == nullptr ? robot.modules().size() : part->own_count;
-         i < robot.modules().size(); ++i) {
-      is_at_border_[i] = true;
-      for (const std::int32_t other : robot.connected()[i]) {
-        if (other != Robot::kNoNeighbour) {
-          is_at_border_[at(other)] = true;
-        }
-      }
-    }
   }
 
   /// By module; nothing else is done.
@@ -57,10 +56,6 @@ class Eliminator {
  private:
   bool is_free(std::size_t module) const {
     return robot_.modules()[module].support == Support::kNone;
-  }
-
-  bool is_at_border(std::size_t module) const {
-    return !is_at_border_.empty() && is_at_border_[module];
   }
 
   void count_connections() {
@@ -88,22 +83,76 @@ class Eliminator {
 
   /// Leaves first, until none is left.
   void take_hanging() {
-    for (std::size_t start = 0; start < degree_.size(); ++start) {
-      std::size_t leaf = start;
-      while (result_.is_gone[leaf] == 0 && is_free(leaf) && degree_[leaf] == 1 &&
-             !is_at_border(leaf)) {
-        std::size_t direction = 0;
-        while (!is_connected(leaf, direction)) {
-          ++direction;
-        }
-        const std::size_t host = next(leaf, direction);
-        result_.is_gone[leaf] = 1;
-        result_.hanging.push_back({.module = static_cast<std::int32_t>(leaf),
-                                   .direction = static_cast<std::uint8_t>(direction)});
-        --degree_[host];
-        leaf = host;
+    result_.round_start = {0};
+    for (std::size_t leaf = 0; leaf < own_count_; ++leaf) {
+      take_branch(leaf);
+    }
+    if (part_ != nullptr) {
+      take_hanging_on_ranks();
+    } else if (!result_.hanging.empty()) {
+      result_.round_start.push_back(result_.hanging.size());
+    }
+  }
+
+  /// From a leaf on, as long as what it hung on is one then, and this rank's own.
+  void take_branch(std::size_t leaf) {
+    while (leaf < own_count_ && result_.is_gone[leaf] == 0 && is_free(leaf) && degree_[leaf] == 1) {
+      std::size_t direction = 0;
+      while (!is_connected(leaf, direction)) {
+        ++direction;
+      }
+      leaf = hang(leaf, direction);
+    }
+  }
+
+  /// Eliminates a module; returns what it hangs on.
+  std::size_t hang(std::size_t module, std::size_t direction) {
+    const std::size_t host = next(module, direction);
+    result_.is_gone[module] = 1;
+    result_.hanging.push_back({.module = static_cast<std::int32_t>(module),
+                               .direction = static_cast<std::uint8_t>(direction)});
+    --degree_[host];
+    return host;
+  }
+
+  /// Trees that cross ranks: each tells the others which of its modules hang, and in what
+  /// direction; what other ranks' modules hang on may then be a leaf itself. A round ends when all
+  /// ranks have taken what they can.
+  void take_hanging_on_ranks() {
+    host::Ranks* const ranks = part_->ranks;
+    std::vector<std::uint8_t> way(degree_.size(), kNoWay);
+    bool is_any_new = host::any(ranks, !result_.hanging.empty());
+    while (is_any_new) {
+      for (std::size_t i = result_.round_start.back(); i < result_.hanging.size(); ++i) {
+        way[at(result_.hanging[i].module)] = result_.hanging[i].direction;
+      }
+      result_.round_start.push_back(result_.hanging.size());
+      halo_->update(way.data(), sizeof(std::uint8_t));
+      is_any_new = host::any(ranks, take_copies(way));
+    }
+  }
+
+  /// Takes the copies that have newly gone, then what they leave as leaves. Returns whether some
+  /// hang on modules of this rank.
+  bool take_copies(const std::vector<std::uint8_t>& way) {
+    const bool is_last = result_.round_start.size() > kRoundMax;
+    std::vector<std::size_t> hosts;
+    for (std::size_t i = own_count_; i < way.size(); ++i) {
+      if (way[i] == kNoWay || result_.is_gone[i] != 0) {
+        continue;
+      }
+      result_.is_gone[i] = 1;
+      const std::int32_t host = robot_.connected()[i][way[i]];
+      if (host != Robot::kNoNeighbour && at(host) < own_count_) {
+        hosts.push_back(hang(i, way[i]));
       }
     }
+    for (const std::size_t host : hosts) {
+      if (!is_last) {
+        take_branch(host);
+      }
+    }
+    return !hosts.empty();
   }
 
   /// The axis along which a module only passes forces on, or -1.
@@ -134,12 +183,11 @@ class Eliminator {
 
   std::vector<std::int8_t> axes_of_passage() const {
     std::vector<std::int8_t> axis(degree_.size(), -1);
-    const std::size_t own_count = part_ == nullptr ? axis.size() : part_->own_count;
-    for (std::size_t i = 0; i < own_count; ++i) {
+    for (std::size_t i = 0; i < own_count_; ++i) {
       axis[i] = static_cast<std::int8_t>(axis_of_passage(i));
     }
-    if (part_ != nullptr) {
-      part_->ranks->make_halo(own_count, part_->copies)->update(axis.data(), sizeof(std::int8_t));
+    if (halo_) {
+      halo_->update(axis.data(), sizeof(std::int8_t));
     }
     return axis;
   }
@@ -170,7 +218,7 @@ class Eliminator {
       }
     }
     // No rank has nodes there.
-    for (std::size_t i = part_ == nullptr ? axis.size() : part_->own_count; i < axis.size(); ++i) {
+    for (std::size_t i = own_count_; i < axis.size(); ++i) {
       result_.is_gone[i] = axis[i] >= 0 ? 1 : result_.is_gone[i];
     }
   }
@@ -205,7 +253,7 @@ class Eliminator {
   }
 
   void note_axes() {
-    if (result_.is_empty()) {
+    if (part_ == nullptr && result_.hanging.empty() && result_.runs.empty()) {
       return;
     }
     result_.run_axis.assign(degree_.size(), Elimination::kNoAxis);
@@ -222,7 +270,8 @@ class Eliminator {
   Team& team_;
   const model::RobotPart* part_;
   std::size_t axis_count_;            ///< Pairs of opposite directions.
-  std::vector<bool> is_at_border_;    ///< To another rank's part; empty if there is none.
+  std::size_t own_count_;             ///< Modules that are no copies.
+  std::unique_ptr<host::Halo> halo_;  ///< Of modules; null without ranks.
   std::vector<std::uint8_t> degree_;  ///< Connections that are left.
   Elimination result_;
 };
