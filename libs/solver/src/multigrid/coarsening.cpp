@@ -158,8 +158,7 @@ class Coarsening {
   /// Few nodes of many ranks may have no neighbours of their own rank, but together they have: then
   /// the next level is the same, and whole.
   bool is_gathered_next() const {
-    return fine_.ranks != nullptr &&
-           host::total(fine_.ranks, fine_.own_count()) <= kGatheredCount;
+    return fine_.ranks != nullptr && host::total(fine_.ranks, fine_.own_count()) <= kGatheredCount;
   }
 
   /// Nodes along the curve, without copies.

@@ -68,8 +68,8 @@ void follow_lower_ranks(const ReducedNetwork& network, const model::Material& ma
         continue;
       }
       if (is_lower[at(level.other[e])]) {
-        const auto [found, is_new] = known.try_emplace(
-            std::pair(d, lengths[d]), static_cast<std::uint32_t>(springs.size()));
+        const auto [found, is_new] =
+            known.try_emplace(std::pair(d, lengths[d]), static_cast<std::uint32_t>(springs.size()));
         if (is_new) {
           springs.push_back(
               body_spring(beam_spring(network.lattice, material, d ^ 1U, lengths[d])));
