@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <optional>
 #include <utility>
 
 #include "holdfast/base/lattice.hpp"
@@ -162,23 +163,10 @@ class Eliminator {
     }
     for (std::size_t axis = 0; axis < axis_count_; ++axis) {
       if (is_connected(module, 2 * axis) && is_connected(module, 2 * axis + 1)) {
-        return is_cut(module, axis) ? -1 : static_cast<int>(axis);
+        return static_cast<int>(axis);
       }
     }
     return -1;
-  }
-
-  /// Where beams end in the middle of long runs. Ranks see their own ends of these only, so with
-  /// them it depends on the place alone.
-  bool is_cut(std::size_t module, std::size_t axis) const {
-    if (part_ == nullptr) {
-      return false;
-    }
-    const base::Lattice& lattice = robot_.lattice();
-    const base::Cell step = lattice.steps[2 * axis];
-    const base::Cell cell = base::axial_of(lattice, robot_.modules()[module].cell);
-    const std::int32_t place = step.x != 0 ? cell.x : step.y != 0 ? cell.y : cell.z;
-    return place % kBeamLengthMax == 0;
   }
 
   std::vector<std::int8_t> axes_of_passage() const {
@@ -188,8 +176,76 @@ class Eliminator {
     }
     if (halo_) {
       halo_->update(axis.data(), sizeof(std::int8_t));
+      cut_long_runs(axis);
     }
     return axis;
+  }
+
+  /// The module before or after another one in its run, if it is in the run, too.
+  std::optional<std::size_t> next_in_run(std::size_t module, std::size_t side,
+                                         const std::vector<std::int8_t>& axis) const {
+    const std::size_t other = next(module, 2 * at(axis[module]) + side);
+    return axis[other] == axis[module] ? std::optional(other) : std::nullopt;
+  }
+
+  /// How far the run of each module goes on to one side, pitches, but no more than
+  /// kBeamLengthMax + 1: what is beyond a border is known when its rank has said it.
+  std::vector<std::uint8_t> lengths_ahead(std::size_t side,
+                                          const std::vector<std::int8_t>& axis) const {
+    std::vector<std::uint8_t> length(axis.size(), 0);
+    bool is_any_new = true;
+    while (is_any_new) {
+      is_any_new = false;
+      for (std::size_t i = 0; i < own_count_; ++i) {
+        const auto ahead = axis[i] < 0 ? std::optional(i) : next_in_run(i, side, axis);
+        if (!ahead || *ahead >= own_count_) {
+          is_any_new =
+              measure_back(i, ahead ? length[*ahead] : 0, side, axis, length) || is_any_new;
+        }
+      }
+      halo_->update(length.data(), sizeof(std::uint8_t));
+      is_any_new = host::any(part_->ranks, is_any_new);
+    }
+    return length;
+  }
+
+  /// From a module back along its run, as far as it is this rank's own. Returns whether anything is
+  /// new.
+  bool measure_back(std::size_t module, int length, std::size_t side,
+                    const std::vector<std::int8_t>& axis, std::vector<std::uint8_t>& known) const {
+    bool is_any_new = false;
+    for (std::optional<std::size_t> i = module; i && *i < own_count_;
+         i = next_in_run(*i, 1 - side, axis)) {
+      length = std::min(length + 1, kBeamLengthMax + 1);
+      is_any_new = is_any_new || known[*i] != length;
+      known[*i] = static_cast<std::uint8_t>(length);
+    }
+    return is_any_new;
+  }
+
+  /// Runs too long for one beam end in the middle where it depends on the place alone: ranks see
+  /// their own ends of these only.
+  void cut_long_runs(std::vector<std::int8_t>& axis) const {
+    if (host::all(part_->ranks,
+                  std::ranges::all_of(axis, [](std::int8_t one) { return one < 0; }))) {
+      return;
+    }
+    const std::vector<std::uint8_t> behind = lengths_ahead(0, axis);
+    const std::vector<std::uint8_t> ahead = lengths_ahead(1, axis);
+    for (std::size_t i = 0; i < own_count_; ++i) {
+      if (axis[i] >= 0 && behind[i] + ahead[i] > kBeamLengthMax && is_cut(i, at(axis[i]))) {
+        axis[i] = -1;
+      }
+    }
+    halo_->update(axis.data(), sizeof(std::int8_t));
+  }
+
+  bool is_cut(std::size_t module, std::size_t axis) const {
+    const base::Lattice& lattice = robot_.lattice();
+    const base::Cell step = lattice.steps[2 * axis];
+    const base::Cell cell = base::axial_of(lattice, robot_.modules()[module].cell);
+    const std::int32_t place = step.x != 0 ? cell.x : step.y != 0 ? cell.y : cell.z;
+    return place % kBeamLengthMax == 0;
   }
 
   /// Whether a run goes on to an end that is here. It does, but between copies that are here for
