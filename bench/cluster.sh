@@ -52,7 +52,8 @@ times() { # 1 and 2 threads, 1 and 2 ranks, in turn
     done
   done
   local two_threads
-  two_threads=$(sort -g "$work/threads 2" | awk '{ at[NR] = $1 } END { print at[int((NR + 1) / 2)] }')
+  two_threads=$(sort -g "$work/threads 2" |
+    awk '{ at[NR] = $1 } END { print at[int((NR + 1) / 2)] }')
   printf '\n%-12s %10s %10s %22s %11s  %s\n' on 'fastest s' 'median s' \
     'times as two threads' iterations verdict
   for run in "threads 1" "threads 2" "ranks 1" "ranks 2"; do
