@@ -4,11 +4,11 @@
 # cluster.sh PROGRAMS PEERS [FAMILY SIZE [TURNS]]
 # One robot on one machine's threads and on ranks; what ranks exchange; PETSc's own preconditioners.
 #
-# PROGRAMS holds holdfast and holdfast-mpi, PEERS petsc_bench. Times are of whole checks without
-# reading the file, each run a process of its own, TURNS of each in turn (5), of which the fastest
-# and the median are printed; so they want a quiet machine of two cores. PETSc solves the same robot
-# with bonded feet, its matrix assembled, as far as a residual of 1e-6. Families are those that
-# holdfast-mpi generates; cube 100 if none is named.
+# PROGRAMS holds holdfast and holdfast-mpi, PEERS petsc_bench. Times are what reports say of the
+# solution, without reading the file, each run a process of its own, TURNS of each in turn (5), of
+# which the fastest and the median are printed; so they want a quiet machine of two cores. PETSc
+# solves the same robot with bonded feet, its matrix assembled, as far as a residual of 1e-6.
+# Families are those that holdfast-mpi generates; cube 100 if none is named.
 set -euo pipefail
 programs=$1
 peers=$2
@@ -40,7 +40,8 @@ check() { # THREADS-OR-RANKS COUNT: seconds and iterations of one run
   [ "$code" -le 2 ] || { echo "check on $2 $1 failed with $code" >&2; return 70; }
   python3 -c 'import json, sys
 report = json.load(open(sys.argv[1], encoding="utf-8"))
-print(report["seconds"], report["solver"]["multigrid_iterations"], report["verdict"])' "$report"
+solver = report["solver"]
+print(solver["seconds"], solver["multigrid_iterations"], report["verdict"])' "$report"
 }
 
 times() { # 1 and 2 threads, 1 and 2 ranks, in turn
