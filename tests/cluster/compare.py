@@ -6,7 +6,7 @@
     compare.py HOLDFAST HOLDFAST_MPI RANKS [RANKS ...] [--only TEXT] [--table]
 
 For each structure: the same verdict; the largest load ratio within 1e-4 of itself or of 1; at most
-1.2 times the iterations, and one more.
+1.2 times the iterations. One that is named may be undecided instead, for a reason that is named.
 """
 import argparse
 import copy
@@ -16,15 +16,23 @@ import subprocess
 import sys
 import tempfile
 
+import random_robots
+
 # As root, and on fewer cores than ranks: what mpirun asks for as options, which differ by user.
 ENVIRONMENT = {**os.environ, 'OMPI_ALLOW_RUN_AS_ROOT': '1', 'OMPI_ALLOW_RUN_AS_ROOT_CONFIRM': '1',
                'OMPI_MCA_rmaps_base_oversubscribe': '1', 'OMPI_MCA_mpi_yield_when_idle': '1',
                'OMPI_MCA_btl_vader_single_copy_mechanism': 'none', 'OMP_NUM_THREADS': '1'}
 LOAD_RATIO_ERROR = 1e-4
 ITERATION_SHARE = 1.2
-# What hangs across ranks is not condensed, and an arm is nothing else (docs/cluster.md).
-ITERATION_SHARE_HANGING = 4
-SECONDS_MAX = 60
+SECONDS_MAX = 120
+# Random robots, chosen for what they have: planned and fixed modules, loads, other lattices, trees
+# on frames, a few modules for each rank, undecided ones.
+SEEDS = range(0, 20)
+# Of these multigrid in double precision leaves the loads open, on one rank, too; one machine asks
+# the direct solver, which ranks do not have.
+OPEN_SEEDS = (10,)
+OPEN_REASON = 'so slender that rounding leaves no digits of them'
+BONDED = ('--bonded',)
 STRENGTHS = {'strength_vertical_n': 11.98, 'strength_lateral_n': 14.97}
 
 
@@ -102,6 +110,10 @@ def structures(holdfast):
     yield 'sheet', generated(holdfast, 'sheet', 40), []
     yield 'prism-wall', generated(holdfast, 'prism-wall', 20), []
     yield from special_structures(holdfast)
+    yield from small_structures()
+    yield from slender_structures(holdfast)
+    for seed in SEEDS:
+        yield random_robots.random_robot(seed)
 
 
 def special_structures(holdfast):
@@ -118,7 +130,54 @@ def special_structures(holdfast):
     yield 'cube on a wall', {**cube, **walls}, []
 
 
+def row_of(cells, **others):
+    return {'format': 'holdfast-structure', 'version': 2, 'modules': cells, **others}
+
+
+def small_structures():
+    """Fewer modules than ranks, and a module or two for each; trees that cross ranks often."""
+    yield 'single module', row_of([[0, 0, 0]]), []
+    yield 'single planned module', row_of([[0, 0, 0]], planned=[[0, 0, 1]]), []
+    yield 'three modules', row_of([[0, 0, 0], [0, 0, 1], [1, 0, 1]]), []
+    yield 'hook', row_of([[0, 0, z] for z in range(4)] + [[1, 0, 3], [1, 0, 2]]), ['--bonded']
+    snake = [[x, y, 0] for y in range(0, 16, 2) for x in range(8)]
+    turns = [[7 if y % 4 == 1 else 0, y, 0] for y in range(1, 15, 2)]
+    fixed = {'cell': snake.pop(0), 'fixed': True}
+    yield 'snake', row_of([fixed] + snake + turns, support_z=None), []
+    yield 'held by its tip', row_of([fixed] + [[x, 0, 0] for x in range(1, 70)],
+                                    support_z=None), []
+
+
+def slender_structures(holdfast):
+    """What takes double precision, on lattices and supports of all kinds."""
+    for family, size in (('sheet', 20), ('ball', 12)):
+        wall = generated(holdfast, family, size)
+        for factor in (0.99999, 1.00001):
+            scaled = scaled_to_limit(holdfast, wall, factor, *BONDED)
+            yield f'{family} at {factor} of its limit', scaled, list(BONDED)
+    mast = [[x, y, z] for z in range(3300) for y in range(2) for x in range(2)]
+    yield 'mast of prisms', row_of(mast, lattice='hexagonal-prism',
+                                    gravity_m_s2=[1, 0, -9.7]), list(BONDED)
+    wall = {'support_z': None,
+            'obstacles': [{'from': [-1, 0, 0], 'to': [-1, 1, 1], 'hold': 'bonded'}]}
+    beam = [[x, y, z] for z in range(2) for y in range(2) for x in range(3300)]
+    yield 'beam on a wall', row_of(beam, **wall), []
+
+
+def is_comparable(name, options):
+    """In contact one machine solves small robots directly, at least in between."""
+    return not name.startswith('random') or options == list(BONDED)
+
+
+def is_left_open(name, parts):
+    is_known = any(name.startswith(f'random {seed}:') for seed in OPEN_SEEDS)
+    return is_known and parts['verdict'] == 'undecided' and OPEN_REASON in parts['reasons'][0] and \
+        parts['overload']['load_ratio_max'] is None
+
+
 def compare(one, parts, name):
+    if is_left_open(name, parts):
+        return []
     faults = []
     if parts['verdict'] != one['verdict']:
         faults.append(f'{parts["verdict"]} ({parts["reasons"][0]}) instead of {one["verdict"]}')
@@ -155,7 +214,6 @@ def main():
         one = one_machine(arguments.holdfast, document, options)
         line = f'{name:28} {one["verdict"]:9} {one["overload"]["load_ratio_max"]} ' \
                f'{one["solver"]["multigrid_iterations"]:4}'
-        share = ITERATION_SHARE_HANGING if name.startswith('arm') else ITERATION_SHARE
         expected = one['solver']['multigrid_iterations']
         for ranks in arguments.ranks:
             count += 1
@@ -166,7 +224,8 @@ def main():
                 continue
             faults += compare(one, parts, f'{name} on {ranks} ranks')
             iterations = parts['solver']['multigrid_iterations']
-            if expected > 0 and iterations > share * expected + 1:
+            if expected > 0 and is_comparable(name, options) and \
+                    iterations > ITERATION_SHARE * expected:
                 faults.append(f'{name} on {ranks} ranks: {iterations} iterations, {expected} on '
                               f'one machine')
             line += f' {iterations:4}'

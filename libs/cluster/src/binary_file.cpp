@@ -272,11 +272,6 @@ base::Result<std::pair<SharedText, std::vector<Record>>> read_binary_file(PetscR
       text_sum(text.document) != head.text_sum) {
     return bad_input("the text's checksum is wrong: the file was changed or damaged", "byte 48");
   }
-  if (head.module_count < at(ranks.count())) {
-    return bad_input(fmt::format("{} modules, allowed are {} and more, one for each rank",
-                                 head.module_count, ranks.count()),
-                     "");
-  }
   const auto document = io::read_json(text.document);
   if (!document) {
     return document.error();

@@ -13,12 +13,13 @@ namespace holdfast::cluster {
 /// Of so many modules along the Morton curve the first that belongs to `rank`, of so many ranks;
 /// for a rank past the last how many modules there are. About where ranks have the same number,
 /// but, if it takes no more than a sixteenth of that, where a large cell of keys begins: then
-/// clusters of the finer levels do not cross ranks. key(i) is that of module i.
+/// clusters of the finer levels do not cross ranks. key(i) is that of module i. Of fewer modules
+/// than ranks the first rank has all.
 template <class KeyOf>
 std::size_t split_point(std::size_t count, std::size_t ranks, std::size_t rank, const KeyOf& key) {
   constexpr unsigned kLevelMax = 5;
   constexpr std::size_t kShare = 16;
-  if (rank == 0 || rank >= ranks) {
+  if (rank == 0 || rank >= ranks || count < ranks) {
     return rank == 0 ? 0 : count;
   }
   const std::size_t even = count / ranks * rank + count % ranks * rank / ranks;

@@ -290,7 +290,7 @@ int check_file(PetscRanks& ranks, const Options& options) {
     return complain(ranks, structure.error(), options.file);
   }
   const std::size_t count = host::total(&ranks, structure.value().records.size());
-  if (count <= options.alone_max) {
+  if (count <= options.alone_max || count < static_cast<std::size_t>(ranks.count())) {
     return check_alone(ranks, options, structure.value());
   }
   if (const auto fault = find_size_fault(count)) {

@@ -209,10 +209,6 @@ base::Result<Structure> read_text(PetscRanks& ranks, const std::string& file,
     } else {
       error = read.error();
     }
-    if (!error && whole.records.size() < at(ranks.count())) {
-      error = bad_input(fmt::format("{} modules, allowed are {} and more, one for each rank",
-                                    whole.records.size(), ranks.count()));
-    }
     if (error) {
       whole.text.error = *error;
       whole.text.is_error = true;

@@ -30,9 +30,10 @@ struct Record {
 /// What a rank has of a structure.
 struct Structure {
   std::string name;
-  model::RobotSpec common;      ///< Without modules: all ranks have the same.
-  std::vector<Record> records;  ///< This rank's modules, along the curve; at least one.
-  base::Cell low;               ///< The whole robot's lowest corner, in bricks.
+  model::RobotSpec common;  ///< Without modules: all ranks have the same.
+  /// This rank's modules, along the curve; at least one, if there are as many modules as ranks.
+  std::vector<Record> records;
+  base::Cell low;  ///< The whole robot's lowest corner, in bricks.
   std::vector<std::string> warnings;
   /// The same for the same whole structure, on however many ranks; else another number.
   std::uint64_t fingerprint = 0;

@@ -11,6 +11,7 @@
 #include <unordered_map>
 #include <utility>
 
+#include "gathered_graph.hpp"
 #include "holdfast/base/algebra.hpp"
 #include "slivers.hpp"
 #include "weak_springs.hpp"
@@ -133,7 +134,7 @@ class Coarsening {
       is_weak_.clear();
       find_clusters(shift);
     }
-    if (!has_merged()) {
+    if (!has_merged() && !is_gathered_next()) {
       return false;
     }
     gather_members();
@@ -152,6 +153,12 @@ class Coarsening {
   bool has_merged() const {
     return 10 * host::total(fine_.ranks, cluster_count_) <=
            9 * host::total(fine_.ranks, fine_.own_count());
+  }
+
+  /// Few nodes of many ranks may have no neighbours of their own rank, but together they have: then
+  /// the next level is the same, and whole.
+  bool is_gathered_next() const {
+    return fine_.ranks != nullptr && host::total(fine_.ranks, fine_.own_count()) <= kGatheredCount;
   }
 
   /// Nodes along the curve, without copies.

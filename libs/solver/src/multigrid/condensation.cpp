@@ -197,21 +197,56 @@ void recover_run(const Robot& robot, const Ways& ways, const Run& run,
   }
 }
 
+void update(host::Halo* copies, std::vector<Vec6<double>>& by_module) {
+  if (copies != nullptr) {
+    copies->update(by_module.data(), sizeof(Vec6<double>));
+  }
+}
+
+/// The modules that hang on a network which go in one round, in the order of elimination.
+std::span<const HangingModule> round_of(const ReducedNetwork& network, std::size_t round) {
+  const std::size_t begin = network.round_start[round];
+  return std::span(network.hanging).subspan(begin, network.round_start[round + 1] - begin);
+}
+
+/// Moves hanging modules with what they hang on, as one rigid body, and by what their loads do.
+void recover_hanging(const Robot& robot, const Ways& ways, std::span<const HangingModule> hanging,
+                     const std::vector<Vec6<double>>& condensed,
+                     std::vector<Vec6<double>>& displacement) {
+  for (std::size_t i = hanging.size(); i-- > 0;) {
+    const auto [module, direction] = hanging[i];
+    const std::size_t host = at(robot.connected()[at(module)][direction]);
+    Vec6<double>& u = displacement[at(module)];
+    u = displacement[host];
+    const Point arm = scaled(ways.unit(direction ^ 1U), robot.material().pitch_mm);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const std::size_t j = (axis + 1) % 3;
+      const std::size_t k = (axis + 2) % 3;
+      u[axis] += u[j + 3] * arm[k] - u[k + 3] * arm[j];
+    }
+    base::add_to(u, condensed[at(module)]);
+  }
+}
+
 }  // namespace
 
 std::vector<Vec6<double>> condense(const Robot& robot, const ReducedNetwork& network, Team& team,
-                                   const model::Loads& loads) {
+                                   const model::Loads& loads, host::Halo* copies) {
   std::vector<Vec6<double>> load(robot.modules().size());
   team.share(0, load.size(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       load[i] = loads[i];
     }
   });
+  update(copies, load);  // What modules carry is known to their own rank alone.
   const double pitch = robot.material().pitch_mm;
   const Ways ways(robot.lattice());
-  for (const auto& [module, direction] : network.hanging) {
-    const std::size_t host = at(robot.connected()[at(module)][direction]);
-    base::add_to(load[host], moved(load[at(module)], ways.unit(direction ^ 1U), pitch));
+  for (std::size_t round = 0; round + 1 < network.round_start.size(); ++round) {
+    for (const auto& [module, direction] : round_of(network, round)) {
+      const std::size_t host = at(robot.connected()[at(module)][direction]);
+      base::add_to(load[host], moved(load[at(module)], ways.unit(direction ^ 1U), pitch));
+    }
+    update(copies, load);
   }
   ShapeTable shapes(pitch);
   for (const Run& run : network.runs) {
@@ -223,7 +258,8 @@ std::vector<Vec6<double>> condense(const Robot& robot, const ReducedNetwork& net
 }
 
 void recover(const Robot& robot, const ReducedNetwork& network, Team& team,
-             const std::vector<Vec6<double>>& condensed, std::vector<Vec6<double>>& displacement) {
+             const std::vector<Vec6<double>>& condensed, std::vector<Vec6<double>>& displacement,
+             host::Halo* copies) {
   ShapeTable shapes(robot.material().pitch_mm);
   const Ways ways(robot.lattice());
   for (const Run& run : network.runs) {
@@ -234,18 +270,12 @@ void recover(const Robot& robot, const ReducedNetwork& network, Team& team,
       recover_run(robot, ways, run, shapes.known(run.length), condensed, displacement);
     }
   });
-  for (std::size_t i = network.hanging.size(); i-- > 0;) {
-    const auto [module, direction] = network.hanging[i];
-    const std::size_t host = at(robot.connected()[at(module)][direction]);
-    Vec6<double>& u = displacement[at(module)];
-    u = displacement[host];  // As one rigid body, from the host to what hangs on it.
-    const Point arm = scaled(ways.unit(direction ^ 1U), robot.material().pitch_mm);
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      const std::size_t j = (axis + 1) % 3;
-      const std::size_t k = (axis + 2) % 3;
-      u[axis] += u[j + 3] * arm[k] - u[k + 3] * arm[j];
-    }
-    base::add_to(u, condensed[at(module)]);
+  for (std::size_t round = network.round_start.size() - 1; round-- > 0;) {
+    update(copies, displacement);
+    recover_hanging(robot, ways, round_of(network, round), condensed, displacement);
+  }
+  if (network.round_start.size() > 1) {
+    update(copies, displacement);
   }
 }
 

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "holdfast/base/algebra.hpp"
+#include "holdfast/host/ranks.hpp"
 #include "holdfast/host/team.hpp"
 #include "holdfast/model/loads.hpp"
 #include "holdfast/model/robot.hpp"
@@ -23,14 +24,16 @@ namespace holdfast::solver {
 
 /// The loads on a reduced network, by module: of nodes f_n - K_ne K_ee^-1 f_e, of eliminated
 /// modules K_ee^-1 f_e, how far the loads move them while their run's ends, or what they hang on,
-/// are held.
+/// are held. Of a part of a robot `copies` keeps those of modules up to date: a tree that crosses
+/// ranks hands its load on round by round, from the leaves on.
 std::vector<base::Vec6<double>> condense(const model::Robot& robot, const ReducedNetwork& network,
-                                         host::Team& team, const model::Loads& loads);
+                                         host::Team& team, const model::Loads& loads,
+                                         host::Halo* copies = nullptr);
 
 /// Fills in the displacements of eliminated modules, those of nodes being given, by module; with
-/// the loads that condense() returned.
+/// the loads that condense() returned. Across ranks from what trees hang on to their leaves.
 void recover(const model::Robot& robot, const ReducedNetwork& network, host::Team& team,
              const std::vector<base::Vec6<double>>& condensed,
-             std::vector<base::Vec6<double>>& displacement);
+             std::vector<base::Vec6<double>>& displacement, host::Halo* copies = nullptr);
 
 }  // namespace holdfast::solver

@@ -97,6 +97,7 @@ double ConjugateGradients<Real>::begin() {
   round_residual();
   error_ = precondition();
   p_ = hierarchy_.levels().front().z;
+  has_last_direction_ = false;
   return error_;
 }
 
@@ -182,15 +183,15 @@ Iteration::End ConjugateGradients<Real>::run(const Goal& goal) {
   return error_ >= 0 ? End::kConverged : End::kBroken;
 }
 
-/// q = K p, of a p that is taken apart like that of subtract_product().
+/// q = K p, of a p that is taken apart like that of subtract_product(); leaves its larger part.
 template <class Real>
 void ConjugateGradients<Real>::multiply(const double* p, double* q) {
   q_.resize(6 * node_count_);
   hierarchy_.take_vectors();
   std::fill_n(q, 6 * node_count_, 0.0);
-  for (const bool is_rest : {false, true}) {
+  for (const bool is_rest : {true, false}) {
     if (is_rest && std::is_same_v<Real, double>) {
-      break;
+      continue;
     }
     for (std::size_t i = 0; i < 6 * node_count_; ++i) {
       const auto upper = static_cast<Real>(p[i]);
@@ -204,6 +205,19 @@ void ConjugateGradients<Real>::multiply(const double* p, double* q) {
       }
     });
   }
+}
+
+/// z += turn p, by which z is conjugate to the direction that a run ended with: a method that
+/// begins with this z goes on as if it had not stopped. (r . p = 0, so r . z remains.)
+template <class Real>
+void ConjugateGradients<Real>::turn_from_last_direction() {
+  const double curvature = multiply();
+  if (!(curvature > 0)) {
+    return;
+  }
+  const double turn = -dot_with_z(q_) / curvature;
+  kernels<Real>().combine(static_cast<Real>(turn), p_.data(), 1,
+                          hierarchy_.levels().front().z.data(), {0, node_count_});
 }
 
 /// The same by the method that the ranks have: K d = r, x += d. Its estimate of the error is that
@@ -239,6 +253,9 @@ Iteration::End ConjugateGradients<Real>::run_by_ranks(const Goal& goal) {
     is_given_up = !is_reached(aim, iteration) && is_stuck(aim, iteration);
     return is_given_up || is_reached(aim, iteration);
   };
+  if (std::exchange(has_last_direction_, false) && !is_reached(goal, 0)) {
+    turn_from_last_direction();
+  }
   for (int round = 0; round < kRoundMax && !is_reached(goal, round); ++round) {
     const std::vector<double> b(r_.begin(),
                                 r_.begin() + static_cast<std::ptrdiff_t>(6 * node_count_));
@@ -246,7 +263,9 @@ Iteration::End ConjugateGradients<Real>::run_by_ranks(const Goal& goal) {
     before = 0;
     const bool is_own = hierarchy_.ranks(0)->solve(task, b, d);
     std::vector<double> image(d.size());
+    const std::vector<Six<Real>> last = p_;
     multiply(d.data(), image.data());
+    p_ = last;
     for (std::size_t i = 0; i < d.size(); ++i) {
       x_[i] += d[i];
       r_[i] -= image[i];
@@ -255,6 +274,7 @@ Iteration::End ConjugateGradients<Real>::run_by_ranks(const Goal& goal) {
       return End::kTooSlow;
     }
     if (is_own) {
+      has_last_direction_ = before > 0;
       break;
     }
     round_residual();

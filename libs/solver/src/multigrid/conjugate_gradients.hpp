@@ -46,6 +46,7 @@ class ConjugateGradients final : public Iteration {
   void update_copies(std::vector<Six<Real>>& items) { hierarchy_.update_copies(0, items); }
 
   End run_by_ranks(const Goal& goal);
+  void turn_from_last_direction();
   void multiply(const double* p, double* q);
   double precondition();
   double multiply();
@@ -63,6 +64,8 @@ class ConjugateGradients final : public Iteration {
   std::size_t place_count_;  ///< With copies of others'.
   std::vector<double> q_;    ///< Empty at rest.
   std::vector<Six<Real>> p_;
+  bool has_last_direction_ =
+      false;  ///< p_ is that of a run of ranks, from which r has not changed.
   std::vector<Direction> older_;
   double error_ = 0;
   double least_error_ = 0;  ///< Of this run,

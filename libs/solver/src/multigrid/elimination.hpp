@@ -11,7 +11,8 @@
 
 namespace holdfast::solver {
 
-/// A module that hangs on one connection.
+/// A module that hangs on one connection. Of a part of a robot it, or what it hangs on, may be a
+/// copy.
 struct HangingModule {
   std::int32_t module = 0;
   std::uint8_t direction = 0;  ///< To what it hangs on.
@@ -29,18 +30,21 @@ struct Run {
 struct Elimination {
   std::vector<std::uint8_t> is_gone;  ///< By module: eliminated, or fixed.
   /// The axis, that is half of a direction, of the run that each module lies in, else kNoAxis;
-  /// empty if nothing is eliminated.
+  /// empty if nothing is eliminated, and there are no copies.
   std::vector<std::uint8_t> run_axis;
   std::vector<HangingModule> hanging;  ///< In the order of elimination.
+  /// Where each round of all ranks begins in `hanging`, then its end. Before a round they tell each
+  /// other what has gone. As many at all of them; without ranks one, or none if nothing hangs.
+  std::vector<std::size_t> round_start;
   std::vector<Run> runs;
 
   static constexpr std::uint8_t kNoAxis = 255;
 
-  bool is_empty() const { return hanging.empty() && runs.empty(); }
+  bool is_empty() const { return run_axis.empty(); }
 };
 
 /// Of a part of a robot runs are eliminated across ranks, by all that have some of their modules,
-/// as far as all of these are here (passages.hpp); hanging trees within one rank only.
+/// as far as all of these are here (passages.hpp); hanging trees across ranks by turns.
 Elimination eliminate(const model::Robot& robot, host::Team& team,
                       const model::RobotPart* part = nullptr);
 

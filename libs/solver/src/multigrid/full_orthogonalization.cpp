@@ -78,6 +78,7 @@ Iteration::End ConjugateGradients<Real>::run_unsymmetric(const Goal& goal,
                                                          std::span<const NodeTerm> terms) {
   // The last run's directions would count on, if r were free of them to the last digit: it is not.
   older_.clear();
+  has_last_direction_ = false;
   double before = error_;
   for (int iteration = 0; !is_reached(goal, iteration) || std::abs(before) > kFallMax * goal.error;
        ++iteration) {

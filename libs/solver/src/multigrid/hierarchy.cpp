@@ -438,10 +438,6 @@ void Hierarchy<Real>::look_for_singular_nodes(const std::vector<GroundSpring>& s
   });
 }
 
-/// Levels of so many nodes are gathered: that costs a few messages and, at each rank, what a tenth
-/// of a million modules' cycle does. Less, and levels of a few nodes a rank wait for messages.
-constexpr std::size_t kGatheredCount = 6000;
-
 template <class Real>
 void Hierarchy<Real>::update_contact() {
   std::vector<GroundSpring> springs = finest_ground_springs(network_, material_, ground_);

@@ -3,6 +3,8 @@
 // What the levels of double precision consist of: springs (precise_forces.hpp), and blocks of K in
 // single precision for the sweeps.
 #include <algorithm>
+#include <map>
+#include <utility>
 
 #include "beam_shapes.hpp"
 #include "hierarchy.hpp"
@@ -40,6 +42,43 @@ MiddleSpring middle_spring(const Mat& k12, std::size_t axis, double length) {
   spring.torque.v[3 + next] = length / 2;
   spring.torque.v[3 + last] = -length / 2;
   return spring;
+}
+
+BodySpring body_spring(const Spring& spring) {
+  return {.stiffness = block_of<double>(spring.stiffness),
+          .arm = {-spring.partner[0], -spring.partner[1], -spring.partner[2], 0}};
+}
+
+/// The springs that a finest level has to nodes of lower ranks become theirs, which are known here,
+/// as all beams of one direction and length are alike: so both ends mean the same spring, to the
+/// last digit.
+void follow_lower_ranks(const ReducedNetwork& network, const model::Material& material,
+                        Level<double>& level) {
+  std::vector<bool> is_lower(network.node_count);
+  for (const host::Copy& copy : network.copies) {
+    is_lower[at(copy.place)] = copy.original.rank < network.ranks->rank();
+  }
+  std::map<std::pair<std::size_t, std::size_t>, std::uint32_t> known;
+  std::vector<BodySpring>& springs = level.couplings.springs;
+  for (std::size_t node = 0; node < network.own_count; ++node) {
+    const LatticeBeams::Lengths& lengths = network.beams.lengths[network.beams.kind[node]];
+    auto e = at(level.start[node]);
+    for (std::size_t d = 0; d < lengths.size(); ++d) {
+      if (lengths[d] == 0) {
+        continue;
+      }
+      if (is_lower[at(level.other[e])]) {
+        const auto [found, is_new] =
+            known.try_emplace(std::pair(d, lengths[d]), static_cast<std::uint32_t>(springs.size()));
+        if (is_new) {
+          springs.push_back(
+              body_spring(beam_spring(network.lattice, material, d ^ 1U, lengths[d])));
+        }
+        level.couplings.spring[e] = kFarEnd | found->second;
+      }
+      ++e;
+    }
+  }
 }
 
 }  // namespace
@@ -87,9 +126,7 @@ void Hierarchy<double>::couple(const SpringGraph& graph, Level<double>& level) c
     fill_blocks(graph, level.couplings.blocks);
   }
   for (const Spring& spring : graph.springs) {
-    level.couplings.springs.push_back(
-        {.stiffness = block_of<double>(spring.stiffness),
-         .arm = {-spring.partner[0], -spring.partner[1], -spring.partner[2], 0}});
+    level.couplings.springs.push_back(body_spring(spring));
   }
   level.couplings.spring.resize(level.other.size());
   const auto spring_at = [&](std::size_t node, std::size_t e) {
@@ -99,8 +136,8 @@ void Hierarchy<double>::couple(const SpringGraph& graph, Level<double>& level) c
     for (std::size_t e = at(graph.start[node]); e < at(graph.start[node + 1]); ++e) {
       const std::size_t other = at(graph.other[e]);
       if (graph.is_copy(graph.other[e])) {
-        // Its rank has its own idea of the spring: false loads of a rounding, which a
-        // preconditioner may have.
+        // Above the finest level its rank has its own idea of the spring: false loads of a
+        // rounding, which a preconditioner may have.
         level.couplings.spring[e] = spring_at(node, e);
       } else if (node < other) {
         const auto begin = graph.other.begin() + graph.start[other];
@@ -108,9 +145,12 @@ void Hierarchy<double>::couple(const SpringGraph& graph, Level<double>& level) c
         const auto back = std::find(begin, end, static_cast<std::int32_t>(node));
         level.couplings.spring[e] = spring_at(node, e);
         level.couplings.spring[static_cast<std::size_t>(back - graph.other.begin())] =
-            spring_at(node, e);
+            kFarEnd | spring_at(node, e);
       }
     }
+  }
+  if (is_finest(level)) {
+    follow_lower_ranks(network_, material_, level);
   }
 }
 

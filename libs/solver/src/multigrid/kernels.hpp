@@ -69,13 +69,17 @@ struct ClusterView<float> {
   StencilView stencil = {};  ///< Instead of blocks K_pq, if it has any neighbours.
 };
 
-/// With springs. Both ends of a spring mean the one of the end that comes first.
+/// Marks a spring, by its highest bit, as the one that the other end has.
+inline constexpr std::uint32_t kFarEnd = 1U << 31U;
+
+/// With springs. Both ends of a spring mean the one of the end that comes first, which is that of
+/// the lower rank between two.
 template <>
 struct ClusterView<double> {
   const std::int32_t* start = nullptr;
   const std::int32_t* other = nullptr;
   const std::uint32_t* type = nullptr;
-  const std::uint32_t* spring = nullptr;
+  const std::uint32_t* spring = nullptr;  ///< Index of it, and kFarEnd.
   const BodySpring* springs = nullptr;
   const Block<double>* ground = nullptr;  ///< Of the types from free_type_count on.
   std::size_t free_type_count = 0;

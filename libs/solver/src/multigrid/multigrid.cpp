@@ -104,6 +104,10 @@ Multigrid::Multigrid(const model::Robot& robot, const EquilibriumOptions& option
     }
   }
   alone_ = nodes_alone();
+  if (const model::RobotPart* part = options_.part) {
+    module_copies_ = part->ranks->make_halo(part->own_count, part->copies);
+    node_copies_ = part->ranks->make_halo(network_.own_count, network_.copies);
+  }
   take_loads();
 }
 
@@ -189,8 +193,8 @@ void Multigrid::take_loads() {
 
 void Multigrid::take_changed_loads() {
   condensed_.clear();
-  if (network_.is_reduced()) {
-    condensed_ = condense(robot(), network_, team_, loads());
+  if (network_.is_reduced) {
+    condensed_ = condense(robot(), network_, team_, loads(), module_copies_.get());
   }
   is_residual_known_ = false;
   is_stale_ = true;
@@ -339,11 +343,6 @@ LinearOutcome Multigrid::begin() {
   if (precision_ == Precision::kSingle && is_too_slender()) {
     return LinearOutcome::kTooSlow;
   }
-  if (precision_ == Precision::kDouble && ranks() != nullptr && !network_.is_cubic) {
-    // The ends of a beam between two ranks would not agree to the last digit
-    // (hierarchy_double.cpp).
-    return LinearOutcome::kTooSlow;
-  }
   update_iteration();
   if (iteration_->is_singular()) {
     is_residual_known_ = false;
@@ -470,10 +469,8 @@ LinearReport Multigrid::report() const {
 std::vector<base::Vec6<double>> Multigrid::displacement() {
   std::vector<Vec> by_module(robot().modules().size());
   if (iteration_) {
-    if (options_.part != nullptr) {
-      ranks()
-          ->make_halo(network_.own_count, network_.copies)
-          ->update(iteration_->x().data(), 6 * sizeof(double));
+    if (node_copies_) {
+      node_copies_->update(iteration_->x().data(), 6 * sizeof(double));
     }
     const std::vector<double>& x = iteration_->x();
     team_.share(0, network_.node_count, [&](std::size_t begin, std::size_t end) {
@@ -483,7 +480,7 @@ std::vector<base::Vec6<double>> Multigrid::displacement() {
       }
     });
   }
-  recover(robot(), network_, team_, condensed_, by_module);
+  recover(robot(), network_, team_, condensed_, by_module, module_copies_.get());
   return by_module;
 }
 

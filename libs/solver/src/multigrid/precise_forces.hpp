@@ -56,9 +56,10 @@ inline Wide product(const ClusterView<double>& level, const Six<Real>* z, std::s
   const Wide own = load_wide(z[p]);
   for (std::int32_t e = level.start[p]; e < level.start[p + 1]; ++e) {
     const auto q = static_cast<std::size_t>(level.other[e]);
-    const BodySpring& spring = level.springs[level.spring[e]];
+    const std::uint32_t code = level.spring[e];
+    const BodySpring& spring = level.springs[code & ~kFarEnd];
     const Wide other = load_wide(z[q]);
-    if (p < q) {
+    if ((code & kFarEnd) == 0) {
       sum -= multiply(spring.stiffness, motion_moved(spring.arm, other) - own);
     } else {
       sum += force_moved(spring.arm,

@@ -60,7 +60,10 @@ class Builder {
     connect();
     hold();
     copy();
+    network_.is_reduced =
+        host::any(network_.ranks, !elimination_.hanging.empty() || !elimination_.runs.empty());
     network_.hanging = std::move(elimination_.hanging);
+    network_.round_start = std::move(elimination_.round_start);
     network_.runs = std::move(elimination_.runs);
     return std::move(network_);
   }

@@ -81,11 +81,10 @@ struct ReducedNetwork {
   bool has_long_beams = false;
   std::int32_t extent = 0;  ///< Longest side of the box around the nodes, pitches.
 
-  std::vector<HangingModule> hanging;  ///< In the order of elimination.
+  std::vector<HangingModule> hanging;    ///< In the order of elimination.
+  std::vector<std::size_t> round_start;  ///< In it, as in an Elimination.
   std::vector<Run> runs;
-
-  /// Whether anything was eliminated.
-  bool is_reduced() const { return !hanging.empty() || !runs.empty(); }
+  bool is_reduced = false;  ///< Whether anything was eliminated, by any rank.
 };
 
 ReducedNetwork make_reduced_network(const model::Robot& robot, host::Team& team,
