@@ -144,7 +144,6 @@ void expect_like_exact(const model::RobotSpec& spec, std::uint64_t seed, int& co
   EXPECT_FALSE(comparison.is_wrong()) << comparison.text();
   EXPECT_TRUE(comparison.result.all_agree) << comparison.text();
   EXPECT_LT(comparison.ratio_error(), 1) << comparison.text();
-  EXPECT_LT(comparison.worst_connection, 1) << comparison.text();
   EXPECT_TRUE(comparison.exact == verdict::Verdict::kUndecided || !comparison.is_undecided())
       << comparison.text();
 }

@@ -26,13 +26,13 @@ using Time = std::uint64_t;
 inline constexpr Time kNever = ~Time{0};
 
 struct LinkTiming {
-  int packet_bytes = wire::kPacketBytesMin;  ///< kPacketBytesMin to kPacketBytesMax.
+  int packet_bytes = wire::kPacketBytesMin;    ///< kPacketBytesMin to kPacketBytesMax.
+  std::uint8_t lattice = wire::kCubicLattice;  ///< That greetings name; here, as there is room.
   Time acknowledge_after = 8'000;
   Time retransmit_after = 50'000;  ///< Longer than two packets and acknowledge_after.
   int retry_count = 4;             ///< At this pace; later ones wait twice as long each, up to 8x.
   int lost_after_retries = 20;     ///< Then the neighbour counts as silent.
   Time ping_after = 2'000'000;     ///< Silence that is borne while waiting for the neighbour.
-  std::uint8_t lattice = wire::kCubicLattice;  ///< That greetings name.
 };
 
 /// How long the first packet that nobody acknowledges is under way before the link is lost.

@@ -47,9 +47,6 @@ struct Setup {
   /// This bounds it, as single precision spoils very high ones; 0 leaves the diagonal blocks alone.
   std::uint8_t degree_max = 200;
   LinkTiming timing;
-#ifndef HOLDFAST_AGENT_FLOOR_ONLY
-  base::Lattice lattice = base::kCubic;
-#endif
 
   // Derived by prepare().
   mechanics::BeamStiffness<double> beam;
@@ -62,6 +59,10 @@ struct Setup {
 
   Beams<float> beams_float() const { return beam_float; }
 #else
+  /// Known before, too, but at the end: what is above lies in the flash of real modules
+  /// (module/configuration.hpp).
+  base::Lattice lattice = base::kCubic;
+  // Derived.
   mechanics::LatticeBeam<double> lattice_beam;
   mechanics::LatticeBeam<float> lattice_beam_float;
 
