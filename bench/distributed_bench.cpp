@@ -312,7 +312,7 @@ int run_storms(std::uint64_t from, std::uint64_t to) {
   }
   fmt::print(
       "| runs | wrong safe | nothing said | nothing broken | of these wrong | undecided | "
-      "divided | latest, in first rounds |\n|---|---|---|---|---|---|---|---|\n"
+      "divided | latest, in fresh starts |\n|---|---|---|---|---|---|---|---|\n"
       "| {} | {} | {} | {} | {} | {} | {} | {:.2f} |\n",
       tally.runs, tally.wrong_safe, tally.silent, tally.whole_runs, tally.wrong, tally.undecided,
       tally.divided, tally.latest);

@@ -18,7 +18,7 @@ struct StormTally {
   int undecided = 0;   ///< ... `undecided`, where the exact one is decided.
   int silent = 0;      ///< Some living module says nothing.
   int divided = 0;     ///< Nothing is broken, and not all say the same.
-  double latest = 0;   ///< The last verdict behind the last event, in first rounds, where whole.
+  double latest = 0;   ///< The last verdict behind the last event, in fresh starts, where whole.
 
   int faults() const { return wrong_safe + wrong + silent + divided; }
 };

@@ -18,6 +18,9 @@ TEST(Storm, leads_to_no_wrong_verdict) {
     EXPECT_EQ(tally.faults(), before) << "storms " << seed << " " << seed + 1;
   }
   EXPECT_GT(tally.whole_runs, 40);
+  // What is in the end would take one fresh start; what came before may be in the middle of one,
+  // and a neighbour that is gone is first missed.
+  EXPECT_LT(tally.latest, 3);
 }
 
 }  // namespace

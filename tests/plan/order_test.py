@@ -7,6 +7,7 @@
   that is found safe, forwards and backwards
 - certificates are replayed by a second program, this one: geometry written anew, and what lies just
   beyond the cut checked file by file with `holdfast check`; with a state taken out they fail
+- modules keep kind, mass and load of their own in the steps that attach them
 - bad input is one clear line
 """
 import json
@@ -127,6 +128,31 @@ def check_none(program, file, options, folder):
         expect(not replay(program, certificate, folder), f'{file.name}: the replay sees nothing')
 
 
+def check_special(program, folder):
+    """In the file of the order every module is what it is in the target, whose check says so."""
+    target = {'format': 'holdfast-structure', 'version': 2, 'kinds': {'heavy': {'mass_kg': 0.1}},
+              'modules': [[0, 0, 0], {'cell': [0, 0, 1], 'kind': 'heavy'},
+                          {'cell': [1, 0, 1], 'mass_kg': 0.02}, [0, 0, 2]],
+              'loads': [{'cell': [1, 0, 1], 'force_n': [0, 0, -0.1]}]}
+    file, steps, end = (folder / name for name in ('special.json', 'steps.json', 'end.json'))
+    file.write_text(json.dumps(target))
+    done = run(program, 'order', file, '-q', '-o', steps)
+    expect(done.returncode == 0, f'special modules: {done.returncode} {done.stderr}')
+    judged = json.loads(run(program, 'steps', steps, '--json', '-').stdout)
+    expect(judged['verdict'] == 'safe', f'special modules: {judged["verdict"]}')
+    document = json.loads(steps.read_text())
+    coming = [document.pop('planned', [])] + document.pop('later_steps', [])
+    document['modules'] += [module for step in coming for module in step]
+    end.write_text(json.dumps(document))
+    ratios = []
+    for one in (file, end):
+        report = json.loads(run(program, 'check', one, '--json', '-').stdout)
+        ratios.append(report['overload']['load_ratio_max'])
+    last = judged['steps'][-1]['stages']['connect']['load_ratio_max']
+    expect(max(ratios + [last]) - min(ratios + [last]) < 1e-9,
+           f'special modules: load ratios {ratios}, {last}')
+
+
 def check_bad_input(program, repository, folder):
     balance = repository / 'scenarios/plan/balance.json'
     cube = repository / 'scenarios/plan/core.json'
@@ -170,6 +196,7 @@ def main():
             expect(report['result'] == result, f'{scenario} {options}: {report["result"]}')
             expect(done.returncode == (0 if result == 'found' else 1), f'{scenario}: exit code')
             (check_found if result == 'found' else check_none)(program, file, options, folder)
+        check_special(program, folder)
         check_bad_input(program, repository, folder)
     print('\n'.join(faults) if faults else f'order: {len(rows)} rows, no fault')
     return 1 if faults else 0

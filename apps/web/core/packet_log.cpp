@@ -18,12 +18,15 @@ PacketMeaning meaning_of(wire::MessageType type) {
     case wire::MessageType::kOrder:
     case wire::MessageType::kBranchDown:
     case wire::MessageType::kFrontDown:
+    case wire::MessageType::kCellsDown:
+    case wire::MessageType::kReach:
       return PacketMeaning::kOrder;
     case wire::MessageType::kReport:
     case wire::MessageType::kLoop:
     case wire::MessageType::kColumn:
     case wire::MessageType::kBranchUp:
     case wire::MessageType::kFrontUp:
+    case wire::MessageType::kCellsUp:
     case wire::MessageType::kNews:
       return PacketMeaning::kReport;
     case wire::MessageType::kVector:

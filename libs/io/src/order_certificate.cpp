@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "json_text.hpp"
 #include "json_values.hpp"
@@ -206,31 +207,42 @@ void leave_out(Document& document, const std::vector<base::Cell>& cells) {
   document.extension.own = std::move(own);
 }
 
-/// Why a module of the target cannot be attached by a step.
-std::optional<base::Error> find_untold(const model::RobotSpec& spec,
-                                       const std::vector<base::Cell>& attached) {
-  const auto is_attached = [&](const base::Cell& cell) {
-    return std::ranges::binary_search(attached, cell);
-  };
-  const auto refuse = [](const base::Cell& cell, const char* what) {
-    return base::Error{base::ErrorCode::kUnsupported,
-                       fmt::format("steps attach modules of the first kind only: {} has {} of its "
-                                   "own and is not in the start; holdfast order --reverse and "
-                                   "--from take it",
-                                   model::text(cell), what),
-                       {}};
-  };
-  for (const model::OwnKind& own : spec.own_kinds) {
-    if (is_attached(own.cell)) {
-      return refuse(own.cell, "a kind");
+/// Whether one of the modules, in ascending order, has a kind or a mass of its own, which "attach"
+/// of a step does not say.
+bool is_any_special(const model::RobotSpec& spec, const std::vector<base::Cell>& cells) {
+  const auto is_one = [&](const auto& own) { return std::ranges::binary_search(cells, own.cell); };
+  return std::ranges::any_of(spec.own_kinds, is_one) ||
+         std::ranges::any_of(spec.own_masses, is_one);
+}
+
+/// The cells of every step as "planned" and "later_steps", whose modules have kinds and masses;
+/// beside them what they have of their own.
+std::vector<OwnParameters> plan_modules(const Document& target,
+                                        const std::vector<model::Step>& plan,
+                                        std::vector<Step>& steps) {
+  model::CellIndex index(target.modules.size());
+  for (std::size_t i = 0; i < target.modules.size(); ++i) {
+    index.insert(target.modules[i].cell, static_cast<std::int32_t>(i));
+  }
+  std::vector<const OwnParameters*> own_of(target.modules.size());
+  for (const OwnParameters& own : target.extension.own) {
+    own_of[own.module] = &own;
+  }
+  std::vector<OwnParameters> all;
+  for (const model::Step& step : plan) {
+    Step& entries = steps.emplace_back();
+    for (const base::Cell& cell : step.attach) {
+      const auto place = static_cast<std::size_t>(index.find(cell));
+      const ModuleEntry& module = target.modules[place];
+      if (own_of[place] != nullptr) {
+        all.push_back(*own_of[place]);
+        all.back().step = steps.size();
+        all.back().module = entries.size();
+      }
+      entries.push_back({.cell = cell, .color = module.color, .attributes = module.attributes});
     }
   }
-  for (const model::OwnMass& own : spec.own_masses) {
-    if (is_attached(own.cell)) {
-      return refuse(own.cell, "a mass");
-    }
-  }
-  return std::nullopt;
+  return all;
 }
 
 }  // namespace
@@ -318,10 +330,14 @@ base::Result<Document> order_steps(const Document& target, const plan::Order& or
     return document;
   }
   std::ranges::sort(attached);
-  if (auto fault = find_untold(spec.value(), attached)) {
-    return *std::move(fault);
+  std::vector<Step> planned;
+  std::vector<OwnParameters> own;
+  if (is_any_special(spec.value(), attached)) {
+    own = plan_modules(document, std::exchange(plan, {}), planned);
   }
   leave_out(document, attached);
+  document.steps = std::move(planned);
+  document.extension.own.insert(document.extension.own.end(), own.begin(), own.end());
   return document;
 }
 

@@ -270,24 +270,34 @@ std::optional<std::string> find_connection_fault(const Connections& connections,
 
 namespace {
 
-/// Nobody may be below what rests on a floor but what hangs from a fixed module.
+bool sinks(const base::Lattice& lattice, base::Direction direction) {
+  return lattice.steps[base::at(base::index(direction))].z < 0;
+}
+
+/// Nobody may be below what rests on a floor but what hangs from a fixed module. Where a lattice
+/// leans that is any neighbour of the layer below: it would have to reach through the floor.
 std::optional<std::string> find_module_below_floor(const Robot& robot) {
   const auto floor = base::down(robot.lattice());
-  if (!robot.has_floor() || base::index(floor) >= robot.lattice().direction_count) {
+  if (!robot.has_floor()) {
     return std::nullopt;
   }
   for (const Facet& facet : robot.facets()) {
     const Cell& cell = robot.modules()[base::at(facet.module)].cell;
-    const std::int32_t below =
-        facet.direction == floor && cell.z == robot.support_z()
-            ? robot.neighbours()[base::at(facet.module)][base::at(base::index(floor))]
-            : Robot::kNoNeighbour;
-    if (below != Robot::kNoNeighbour) {
+    if (facet.direction != floor || cell.z != robot.support_z()) {
+      continue;
+    }
+    for (const base::Direction direction : base::directions(robot.lattice())) {
+      const std::int32_t below =
+          robot.neighbours()[base::at(facet.module)][base::at(base::index(direction))];
+      if (below == Robot::kNoNeighbour || !sinks(robot.lattice(), direction)) {
+        continue;
+      }
       return fmt::format(
-          "the module {} is directly below {}, which rests on the ground at the support level "
+          "the module {} is {}below {}, which rests on the ground at the support level "
           "z = {}; allowed below that level is only what hangs from a fixed module: lower the "
           "support level or fix {}",
-          text(robot.modules()[base::at(below)].cell), text(cell), robot.support_z(), text(cell));
+          text(robot.modules()[base::at(below)].cell), direction == floor ? "directly " : "",
+          text(cell), robot.support_z(), text(cell));
     }
   }
   return std::nullopt;

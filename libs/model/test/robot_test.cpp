@@ -275,6 +275,14 @@ TEST(Robot, has_nothing_beneath_its_feet) {
                 "support level z = 0", "allowed", "hangs from a fixed module"});
   expect_error({.existing = {{0, 0, 0}}, .planned = {{0, 0, -1}}},
                {"module (0,0,-1) is directly below (0,0,0)"});
+  // Where no direction is straight down the floor is in the way all the same.
+  for (const base::Lattice& lattice : {base::kFaceCentred, base::kHexagonal}) {
+    expect_error({.existing = {{0, 0, 0}, {1, 0, 0}}, .planned = {{0, 0, -1}}, .lattice = lattice},
+                 {"module (0,0,-1) is below (0,0,0)", "rests on the ground"});
+    EXPECT_TRUE(Robot::create(
+                    {.existing = {{0, 0, 0}, {0, 0, -1}}, .fixed = {{0, 0, 0}}, .lattice = lattice})
+                    .has_value());
+  }
 }
 
 TEST(Robot, names_the_ends_of_a_connection) {

@@ -73,20 +73,26 @@ bool SiteFinder::touches_obstacle(const Cell& cell) const {
   return false;
 }
 
-/// Whether the cell is right below a module that rests on the floor, or on the floor with a module
-/// right below.
+/// Whether the cell is below a module that rests on the floor, or on the floor with a module below:
+/// model::Robot::create() refuses both.
 bool SiteFinder::is_below_floor(const Cell& cell) const {
   const base::Lattice& lattice = robot_.lattice();
-  const base::Direction down = base::down(lattice);
-  if (!robot_.has_floor() || base::index(down) >= lattice.direction_count) {
+  const bool may_be_below = robot_.has_floor() && cell.z == robot_.support_z() - 1;
+  const bool may_be_above = robot_.has_floor() && cell.z == robot_.support_z();
+  if (!may_be_below && !may_be_above) {
     return false;
   }
-  const std::int32_t above = index_.find(base::neighbour(lattice, cell, base::opposite(down)));
-  const bool is_below = cell.z == robot_.support_z() - 1 && above != CellIndex::kNone &&
-                        robot_.modules()[base::at(above)].support != model::Support::kFixed;
-  const bool is_above = cell.z == robot_.support_z() &&
-                        index_.find(base::neighbour(lattice, cell, down)) != CellIndex::kNone;
-  return is_below || is_above;
+  for (const base::Direction direction : base::directions(lattice)) {
+    const std::int32_t step = lattice.steps[base::at(base::index(direction))].z;
+    const bool is_asked = step == (may_be_above ? -1 : 1);
+    const std::int32_t other =
+        is_asked ? index_.find(base::neighbour(lattice, cell, direction)) : CellIndex::kNone;
+    if (other != CellIndex::kNone &&
+        (may_be_above || robot_.modules()[base::at(other)].support != model::Support::kFixed)) {
+      return true;
+    }
+  }
+  return false;
 }
 
 }  // namespace holdfast::plan

@@ -231,6 +231,22 @@ TEST(Candidates, of_a_turned_robot_are_the_turned_ones) {
   }
 }
 
+// A lattice that leans has no direction straight down, but its floor is as solid.
+TEST(Candidates, are_not_below_the_floor) {
+  for (const base::Lattice& lattice : test::kLattices) {
+    const std::vector<Cell> row = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}};
+    for (const RobotSpec& spec : {RobotSpec{.existing = row, .lattice = lattice},
+                                  RobotSpec{.existing = {row[0], row[1]}, .lattice = lattice}}) {
+      CandidateReport report = judge_candidates(spec, free_cells(spec));
+      sort_candidates(report.candidates);
+      EXPECT_FALSE(report.candidates.empty());
+      for (const Candidate& candidate : report.candidates) {
+        EXPECT_GE(candidate.cell.z, 0) << model::text(candidate.cell);
+      }
+    }
+  }
+}
+
 TEST(Candidates, are_sorted_safe_first_and_by_load_ratio) {
   const RobotSpec spec{.existing = model::family_cells(model::Family::kArm, 9)};
   CandidateReport report = judge_candidates(spec, free_cells(spec));

@@ -28,7 +28,7 @@ bool is_order_certificate(std::string_view text);
 
 /// A structure whose modules are those of the order's start and whose steps attach all others, or
 /// where the robot is taken apart one whose modules are the target's and whose steps detach them.
-/// Errors: a step would have to attach a module with a kind or a mass of its own.
+/// If one that is attached has a kind or a mass of its own the steps are planned ones and say so.
 base::Result<Document> order_steps(const Document& target, const plan::Order& order,
                                    bool is_reversed);
 
