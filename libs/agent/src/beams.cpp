@@ -32,7 +32,7 @@ void add_planned_beams(Workspace& ws) {
 }
 
 void add_forces(Workspace& ws, PlannedPart part) {
-  const Beams<double> beams = ws.setup.beams();
+  Beams<double> beams = ws.setup.beams();
   const auto mine = base::converted<double>(ws.node(0).vector.sent);
   visit_beams(ws, part, [&](Direction face, const base::Vec6<float>* other, int k) {
     if (other == nullptr) {

@@ -194,7 +194,7 @@ void KrylovAndJacobi::find_images(Workspace& ws, const Order& order) {
     vectors(i).image = {};
   }
   const PlannedPart part = planned_part(ws, order);
-  const Beams<float> beams = ws.setup.beams_float();
+  Beams<float> beams = ws.setup.beams_float();
   const base::Vec6<float>& mine = ws.node(0).vector.sent;
   // A planned module that has stood apart has all terms to catch up with.
   const base::Vec6<float>& whole =

@@ -178,7 +178,7 @@ bool MinimalResiduals::take_term(int piece) {
 
 void MinimalResiduals::subtract_beams() {
   const PlannedPart part = part_in_iteration(ws_, order_);
-  const Beams<double> beams = ws_.setup.beams();
+  Beams<double> beams = ws_.setup.beams();
   const auto mine = base::converted<double>(ws_.node(0).vector.sent);
   // Planned modules that stand apart stand still in the polynomial; their beams are weaker.
   const bool holds_planned =
