@@ -6,6 +6,8 @@
 // 1000` runs more.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <numbers>
@@ -134,36 +136,46 @@ model::RobotSpec on_a_floor(model::RobotSpec spec, bool has_loads) {
   return spec;
 }
 
-void expect_like_exact(const model::RobotSpec& spec, std::uint64_t seed, int& count) {
+struct Counts {
+  int all = 0;
+  int undecided = 0;
+};
+
+/// Never anything else; and undecided only where the robot falls, which is seen by forces that do
+/// not settle.
+void expect_like_exact(const model::RobotSpec& spec, std::uint64_t seed, Counts& counts) {
   const auto robot = model::Robot::create(spec);
   if (!robot) {
     return;  // Nothing holds what is not planned.
   }
-  ++count;
+  ++counts.all;
   const test::Comparison comparison = test::compare(robot.value(), {.seed = seed});
+  counts.undecided += comparison.is_undecided() ? 1 : 0;
   EXPECT_FALSE(comparison.is_wrong()) << comparison.text();
   EXPECT_TRUE(comparison.result.all_agree) << comparison.text();
   EXPECT_LT(comparison.ratio_error(), 1) << comparison.text();
-  EXPECT_TRUE(comparison.exact == verdict::Verdict::kUndecided || !comparison.is_undecided())
+  EXPECT_TRUE(!comparison.is_undecided() || comparison.exact == verdict::Verdict::kUnstable ||
+              comparison.exact == verdict::Verdict::kUndecided)
       << comparison.text();
 }
 
 /// Modules with six, eight and twelve faces, on floors and on walls.
 TEST(DistributedGeneral, random_robots_of_other_lattices_are_decided_like_the_exact_answer) {
-  int count = 0;
+  Counts counts;
   for (const base::Lattice& lattice : test::kLattices) {
     for (std::uint64_t seed = 0; lattice != base::kCubic && seed < 12; ++seed) {
       for (std::size_t planned = 0; planned < (seed < 6 ? 3 : 1); ++planned) {
         SCOPED_TRACE(::testing::Message() << lattice.direction_count << " directions, seed " << seed
                                           << ", planned " << planned);
         const model::RobotSpec spec = test::general_robot(lattice, seed);
-        expect_like_exact(test::with_last_planned(spec, planned), seed, count);
+        expect_like_exact(test::with_last_planned(spec, planned), seed, counts);
         const model::RobotSpec standing = on_a_floor(spec, seed % 2 == 0);
-        expect_like_exact(test::with_last_planned(standing, planned), seed, count);
+        expect_like_exact(test::with_last_planned(standing, planned), seed, counts);
       }
     }
   }
-  EXPECT_GT(count, 120);
+  EXPECT_GT(counts.all, 120);
+  EXPECT_LT(8 * counts.undecided, counts.all);
 }
 
 /// Two modules: a foot of mass M, and one of 0.1 kg in the next layer or, of prisms, row: the
