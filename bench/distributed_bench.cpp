@@ -5,6 +5,7 @@
 //   distributed_bench random FROM TO [METHOD]   random robots against the exact answer, quiet links
 //   distributed_bench general FROM TO     cubes on walls and ceilings, with loads of their own
 //   distributed_bench general FROM TO planned   the same with one to three modules planned
+//   distributed_bench general FROM TO [planned] LATTICE   modules of another lattice
 //   distributed_bench noisy FROM TO       the same with loss, duplication, jitter, bit errors
 //   distributed_bench faults FROM TO      a random module dies or a random link fails
 //   distributed_bench stale FROM TO       the same after a safe verdict, then an unsafe plan
@@ -29,6 +30,7 @@
 #include "general_robot.hpp"
 #include "holdfast/base/rng.hpp"
 #include "holdfast/distributed.hpp"
+#include "holdfast/io/lattice_names.hpp"
 #include "mishap_campaign.hpp"
 #include "plan_campaign.hpp"
 #include "random_robot.hpp"
@@ -142,14 +144,15 @@ int run_random(std::uint64_t from, std::uint64_t to, bool is_noisy, Method metho
 }
 
 /// Robots that the exact solver does not decide are counted apart.
-int run_general(std::uint64_t from, std::uint64_t to, bool is_planned) {
+int run_general(std::uint64_t from, std::uint64_t to, bool is_planned,
+                const base::Lattice& lattice) {
   Tally tally;
   int both_undecided = 0;
   int decided_alone = 0;
   int wrong_safe = 0;
   for (std::uint64_t seed = from; seed < to; ++seed) {
-    const auto robot = model::Robot::create(test::with_last_planned(
-        test::general_robot(base::kCubic, seed), is_planned ? 1 + seed % 3 : 0));
+    const auto robot = model::Robot::create(
+        test::with_last_planned(test::general_robot(lattice, seed), is_planned ? 1 + seed % 3 : 0));
     if (!robot) {
       continue;  // Nothing else of it is held.
     }
@@ -450,6 +453,23 @@ int usage() {
   return 64;
 }
 
+/// FROM TO [planned] [LATTICE]
+int run_general(std::span<char*> arguments) {
+  const bool is_planned = arguments.size() > 2 && std::string_view(arguments[2]) == "planned";
+  const std::size_t named = is_planned ? 3 : 2;
+  base::Lattice lattice = base::kCubic;
+  if (arguments.size() > named) {
+    const auto found = io::find_lattice(arguments[named]);
+    if (!found || arguments.size() > named + 1) {
+      return usage();
+    }
+    lattice = found.value();
+  }
+  const int wrong = run_general(std::strtoull(arguments[0], nullptr, 10),
+                                std::strtoull(arguments[1], nullptr, 10), is_planned, lattice);
+  return wrong == 0 ? 0 : 1;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -469,12 +489,8 @@ int main(int argc, char** argv) {
   }
   constexpr std::string_view kCampaigns[] = {"random", "noisy", "faults", "stale",
                                              "liars",  "plans", "storms", "mishaps"};
-  const bool is_planned = argc == 5 && std::string_view(argv[4]) == "planned";
-  if (what == "general" && (argc == 4 || is_planned)) {
-    return run_general(std::strtoull(arguments[2], nullptr, 10),
-                       std::strtoull(arguments[3], nullptr, 10), is_planned) == 0
-               ? 0
-               : 1;
+  if (what == "general" && argc >= 4) {
+    return run_general(arguments.subspan(2));
   }
   const std::optional<Method> method =
       argc == 5 && what == "random" ? find_method(arguments[4]) : Method::kElimination;

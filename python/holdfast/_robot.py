@@ -268,7 +268,8 @@ class Robot:
         Parameters
         ----------
         link
-            ``v1`` and ``v2``: Blinky Blocks; ``unit``: rounds of a synchronous network.
+            ``v1`` and ``v2``: Blinky Blocks; ``catoms``: assumed, as nothing is published;
+            ``unit``: rounds of a synchronous network.
         method
             ``elimination``, ``polynomial``, ``cg``, ``block-jacobi`` or ``jacobi``.
         noise

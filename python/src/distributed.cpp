@@ -147,7 +147,8 @@ std::shared_ptr<Run> simulate_robot(const SharedStructure& structure, const std:
   const auto found_method = find_method(method);
   if (!found_link || !found_method) {
     refuse(found_link ? "method" : "link", found_link ? method : link,
-           found_link ? "elimination, polynomial, cg, block-jacobi or jacobi" : "v1, v2 or unit");
+           found_link ? "elimination, polynomial, cg, block-jacobi or jacobi"
+                      : "v1, v2, catoms or unit");
   }
   options.link = *found_link;
   options.method = *found_method;

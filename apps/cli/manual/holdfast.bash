@@ -86,7 +86,7 @@ _holdfast() {
     simulate)
       case $previous in
         --method) words="elimination fronts polynomial cg block-jacobi jacobi" ;;
-        --link) words="v1 v2 unit" ;;
+        --link) words="v1 v2 catoms unit" ;;
         --seed) : ;;
         --loss) : ;;
         --duplicate) : ;;

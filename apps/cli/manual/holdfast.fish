@@ -77,7 +77,7 @@ complete -c holdfast -n '__fish_seen_subcommand_from move' -l lattice -x -d 'Lat
 complete -c holdfast -n __fish_use_subcommand -a simulate -d 'Let the robot work out its own verdict, module by module, message by message'
 complete -c holdfast -n '__fish_seen_subcommand_from simulate' -s h -l help -d 'Print this help message and exit'
 complete -c holdfast -n '__fish_seen_subcommand_from simulate' -l method -x -a 'elimination fronts polynomial cg block-jacobi jacobi' -d 'elimination (polynomial if the robot has many loops), fronts (the same in few sweeps, modules with more memory), polynomial, cg, block-jacobi, jacobi (the paper\'s)'
-complete -c holdfast -n '__fish_seen_subcommand_from simulate' -l link -x -a 'v1 v2 unit' -d 'Blinky Blocks v1 (38,400 baud) or v2 (115,200), unit (rounds)'
+complete -c holdfast -n '__fish_seen_subcommand_from simulate' -l link -x -a 'v1 v2 catoms unit' -d 'Blinky Blocks v1 (38,400 baud) or v2 (115,200), catoms (assumed), unit (rounds)'
 complete -c holdfast -n '__fish_seen_subcommand_from simulate' -l seed -x -d 'Of everything random'
 complete -c holdfast -n '__fish_seen_subcommand_from simulate' -l loss -x -d 'Probability that a packet is lost'
 complete -c holdfast -n '__fish_seen_subcommand_from simulate' -l duplicate -x -d 'Probability that a packet arrives twice'

@@ -349,10 +349,11 @@ Command add_simulate(CLI::App& app) {
                   .description(""))
       ->capture_default_str();
   command
-      ->add_option("--link", options->link,
-                   "Blinky Blocks v1 (38,400 baud) or v2 (115,200), unit (rounds)")
+      ->add_option(
+          "--link", options->link,
+          "Blinky Blocks v1 (38,400 baud) or v2 (115,200), catoms (assumed), unit (rounds)")
       ->type_name("NAME")
-      ->check(CLI::IsMember({"v1", "v2", "unit"}).description(""))
+      ->check(CLI::IsMember({"v1", "v2", "catoms", "unit"}).description(""))
       ->capture_default_str();
   command->add_option("--seed", options->seed, "Of everything random")
       ->type_name("N")

@@ -129,8 +129,8 @@ class Block {
   std::uint64_t packets_sent_ = 0;
   std::uint64_t bytes_sent_ = 0;
   std::uint16_t random_;
-  std::uint8_t wanted_ = 0;  ///< Faces on which a packet waits.
-  std::uint8_t taken_ = 0;   ///< Faces whose line has a packet on it.
+  std::uint16_t wanted_ = 0;  ///< Faces on which a packet waits.
+  std::uint8_t taken_ = 0;    ///< Faces whose line has a packet on it.
   bool is_watching_ = false;
   bool is_attached_ = true;
   bool is_silent_ = false;

@@ -137,7 +137,7 @@ bool Agent::is_only_watching(Time wake_at) const {
     return is_done && wake_at == watch_at();
   }
   return wake_at == ws_.links.deadline(silent) &&
-         ws_.links.deadline(Faces::all() - silent) == kNever && !rounds_.is_left() &&
+         ws_.links.deadline(ws_.links.all() - silent) == kNever && !rounds_.is_left() &&
          (is_done || watch_at() == kNever);
 }
 
@@ -168,7 +168,7 @@ bool Agent::receive_rest() {
       notice_change(face);
       return true;
     }
-    if (!is_legal(message) || !take(face, message)) {
+    if (!is_legal(message, face_count(links.more())) || !take(face, message)) {
       links.refuse(face);
     }
     if (links.take_refusal()) {
@@ -200,9 +200,9 @@ bool Agent::take(Direction face, std::span<const std::uint8_t> message) {
     return take_adoption(face, decoded<Adoption>(message));
   }
   if (type == MessageType::kEcho) {
-    rounds_.hear(face, decoded<Echo>(message).round);
+    rounds_.hear(ws_.links.more(), face, decoded<Echo>(message).round);
   }
-  const bool is_ours = rounds_.of(face) == rounds_.current();
+  const bool is_ours = rounds_.of(ws_.links.more(), face) == rounds_.current();
   if (!is_ours || rounds_.is_left() || ws_.tree.wave() == SpanningTree::Wave::kNone) {
     return true;
   }
@@ -215,7 +215,7 @@ bool Agent::take(Direction face, std::span<const std::uint8_t> message) {
 }
 
 bool Agent::take_join(Direction face, const Join& join) {
-  rounds_.hear(face, join.round);
+  rounds_.hear(ws_.links.more(), face, join.round);
   if (kKeepsAnswers && is_of_newcomer(join)) {
     decline(face, join);
     return true;

@@ -98,7 +98,7 @@ void Agent::welcome(Direction face) {
   adoption.wave_time = watch_.wave_time();
   find_load_ratio(cell(), face, adoption.load_ratio);
   ws_.links.send(welcomed_, encode(adoption));
-  const base::Cell there = base::neighbour(cell(), face);
+  const base::Cell there = neighbour(ws_.links.more(), cell(), face);
   for (int k = 0; k < ws_.planned.count(); ++k) {
     if (ws_.planned.cell(k) != there) {
       ws_.links.send(welcomed_, encode(News{.cell = ws_.planned.cell(k)}));
@@ -128,7 +128,7 @@ void Agent::decline(Direction face, const Join& join) {
 
 /// A neighbour has sent what welcome() sends. False: no working one does.
 bool Agent::take_adoption(Direction face, const Adoption& adoption) {
-  rounds_.hear(face, adoption.round);
+  rounds_.hear(ws_.links.more(), face, adoption.round);
   const bool is_ours = adoption.round == rounds_.current();
   if (!ws_.setup.keeps_answers || (!is_ours && !is_newer(adoption.round, rounds_.current()))) {
     return ws_.setup.keeps_answers;
@@ -167,7 +167,7 @@ void Agent::take_motion(Direction face, const base::Vec6<float>& motion) {
 void Agent::take_newcomer(Direction face, const Echo& echo) {
   ws_.tree.take_echo(ws_.links, face, echo);
   welcomed_.remove(face);
-  const base::Cell there = base::neighbour(cell(), face);
+  const base::Cell there = neighbour(ws_.links.more(), cell(), face);
   const bool is_planned = ws_.planned.find(there) >= 0;
   if (echo.count != 1 || echo.is_anyone_silent != 0) {
     return leave_round();

@@ -15,10 +15,10 @@ namespace holdfast::agent {
 template <class Visit>
 void visit_beams(const Workspace& ws, PlannedPart part, Visit&& visit) {
   const Faces used = ws.links.used();
-  for (const Direction face : base::kDirections) {
+  for (const Direction face : directions(ws.links.more())) {
     const int k = ws.planned.at_face(face);
     if (used.has(face)) {
-      visit(face, &ws.exchange.vector(face), k);
+      visit(face, &ws.exchange.vector(ws.links.more(), face), k);
     } else if (k >= 0) {
       visit(face, part == PlannedPart::kTogether ? &ws.planned_exchange.vector(k) : nullptr, k);
     }

@@ -165,11 +165,10 @@ Which three_from(int first) {
 }  // namespace
 
 /// In the local frame F is two 2x2 blocks and two numbers.
-Joint::Joint(const BeamStiffness<double>& beam, Direction direction)
-    : beam_(beam), direction_(direction) {
+Joint::Joint(Beams<double> beams, Direction direction) : beams_(beams), direction_(direction) {
+  const BeamStiffness<double>& beam = stiffness_of(beams);
   const double pitch = 2 * beam.couple_x / beam.shear_x;  // c/s = L/2
-  const base::Cell way = base::neighbour({0, 0, 0}, direction);
-  lever_ = {-pitch * way.x, -pitch * way.y, -pitch * way.z};
+  lever_ = lever_across(beams, direction, pitch);
   const double x = 1 / (beam.shear_x * beam.bend_x - beam.couple_x * beam.couple_x);
   const double y = 1 / (beam.shear_y * beam.bend_y - beam.couple_y * beam.couple_y);
   straight_ = {beam.bend_x * x,  beam.bend_y * y,  1 / beam.axial,
@@ -179,7 +178,7 @@ Joint::Joint(const BeamStiffness<double>& beam, Direction direction)
 }
 
 void Joint::bend(Vec6<double>& force) const {
-  Vec6<double> local = mechanics::to_local(direction_, force);
+  Vec6<double> local = to_local(beams_, direction_, force);
   const double fx = local[0];
   const double fy = local[1];
   local[0] = straight_[0] * fx + across_x_ * local[4];
@@ -188,10 +187,10 @@ void Joint::bend(Vec6<double>& force) const {
   local[3] = straight_[3] * local[3] + across_y_ * fy;
   local[4] = straight_[4] * local[4] + across_x_ * fx;
   local[5] *= straight_[5];
-  force = mechanics::to_global(direction_, local);
+  force = to_global(beams_, direction_, local);
 }
 
-void Joint::hold(Vec6<double>& u) const { u = mechanics::end_force(beam_, direction_, u, {}); }
+void Joint::hold(Vec6<double>& u) const { u = end_force(beams_, direction_, u, Vec6<double>{}); }
 
 void Joint::carry(Vec6<double>& u) const {
   u[0] += lever_[2] * u[4] - lever_[1] * u[5];
@@ -290,8 +289,8 @@ void Branch::add_stiffness(const Mat6<double>& block) {
 }
 
 /// B = C = 1, or B = -T^t, C = -T.
-void Branch::add_end(int slot, bool is_upper, const BeamStiffness<double>& beam) {
-  const Joint joint(beam, cuts_[at(slot)].direction);
+void Branch::add_end(int slot, bool is_upper, Beams<double> beams) {
+  const Joint joint(beams, cuts_[at(slot)].direction);
   for (int column = 0; column < kSize; ++column) {
     Vec6<double> moved = unit(column);
     if (is_upper) {
@@ -338,7 +337,7 @@ void add_part(Mat6<float>& into, int index, const Vec6<float>& part) {
   }
 }
 
-bool Branch::close_loops(const BeamStiffness<double>& beam, std::uint8_t& piece) {
+bool Branch::close_loops(Beams<double> beams, std::uint8_t& piece) {
   constexpr int kPieces = 1 + kSize;
   while (piece < kPieces * count_) {
     const int slot = piece / kPieces;
@@ -347,16 +346,16 @@ bool Branch::close_loops(const BeamStiffness<double>& beam, std::uint8_t& piece)
     if (is_open(slot)) {
       continue;
     }
-    part == 0 ? close_loop(beam, slot) : close_column(slot, part - 1);
+    part == 0 ? close_loop(beams, slot) : close_column(slot, part - 1);
     return true;
   }
   return false;
 }
 
 /// Q = (P + F)^-1 instead of P.
-void Branch::close_loop(const BeamStiffness<double>& beam, int slot) {
+void Branch::close_loop(Beams<double> beams, int slot) {
   Mat6<float>& give = give_[at(slot)][at(slot)];
-  const Joint joint(beam, cuts_[at(slot)].direction);
+  const Joint joint(beams, cuts_[at(slot)].direction);
   System sum;
   for (int column = 0; column < kSize; ++column) {
     Vec6<double> bent = unit(column);

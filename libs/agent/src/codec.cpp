@@ -40,11 +40,14 @@ void Codec::flags(std::uint8_t& value, std::uint8_t all) {
   require((value & ~unsigned{all}) == 0);
 }
 
-void Codec::faces(std::uint8_t& mask) {
-  constexpr std::uint16_t kAll = (1U << base::kDirectionCount) - 1;
+void Codec::faces(FaceMask& mask) {
   std::uint16_t wide = mask;
-  u16(wide, 0, kAll);
-  mask = static_cast<std::uint8_t>(wide);
+  u16(wide, 0, Faces::all(face_count_).mask());
+  mask = static_cast<FaceMask>(wide);
+}
+
+void Codec::direction(base::Direction& direction) {
+  kind(direction, base::Direction::kPlusX, static_cast<base::Direction>(face_count_ - 1));
 }
 
 void Codec::moment(std::int64_t& value) {

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <span>
 
+#include "holdfast/agent/lattices.hpp"
 #include "holdfast/agent/wire.hpp"
 #include "holdfast/base/cell.hpp"
 
@@ -23,6 +24,13 @@ class Codec {
   /// Reads from an offset on.
   Codec(std::span<const std::uint8_t> message, std::size_t at) : in_(message, at) {}
 
+  /// Reads messages of modules with so many faces; else of cubes.
+  void set_face_count([[maybe_unused]] int count) {
+#ifndef HOLDFAST_AGENT_FLOOR_ONLY
+    face_count_ = count;
+#endif
+  }
+
   /// False once a field was read that no program of this version writes.
   bool is_legal() const { return is_legal_; }
 
@@ -32,7 +40,8 @@ class Codec {
   /// No other bits than those of `all`.
   void flags(std::uint8_t& value, std::uint8_t all);
   /// Faces of a module, in 16 bits as some lattices have 12 directions.
-  void faces(std::uint8_t& mask);
+  void faces(FaceMask& mask);
+  void direction(base::Direction& direction);
   /// The cell of a module, and of a plan: that, or kEveryCell.
   void cell(base::Cell& cell);
   void place(base::Cell& cell);
@@ -63,6 +72,11 @@ class Codec {
   Writer* out_ = nullptr;
   Reader in_;
   bool is_legal_ = true;
+#ifdef HOLDFAST_AGENT_FLOOR_ONLY
+  static constexpr int face_count_ = kOwnFaceCount;
+#else
+  int face_count_ = kOwnFaceCount;
+#endif
 };
 
 /// Measures a message without touching it.
@@ -78,7 +92,9 @@ class Ruler {
 
   constexpr void flags(std::uint8_t&, unsigned) { bytes_ += 1; }
 
-  constexpr void faces(std::uint8_t&) { bytes_ += 2; }
+  constexpr void faces(FaceMask&) { bytes_ += 2; }
+
+  constexpr void direction(base::Direction&) { bytes_ += 1; }
 
   constexpr void moment(std::int64_t&) { bytes_ += 8; }
 

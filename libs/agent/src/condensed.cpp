@@ -17,19 +17,21 @@ constexpr int kPassesMax = 1000;
 constexpr double kLeastMove = 1e-14;
 constexpr int kStateRoundsMax = 20;
 
+constexpr base::Vec6<double> kAtRest{};
+
 /// All beams of a planned module emulated here; those to other modules have left their force at
 /// u_p = 0 in the planned exchange.
 base::Vec6<double> force_on_hosted(const Workspace& ws, int node) {
   const int k = ws.planned.hosted(node - 1);
   const base::Vec6<double>& own = ws.node(node).u;
   base::Vec6<double> force = ws.planned_exchange.force(k);
-  for (const Direction direction : base::kDirections) {
+  for (const Direction direction : ws.planned.directions()) {
     const int other = ws.planned.neighbour_of(k, direction);
     if (other >= 0) {
-      base::add_to(force, mechanics::end_force(ws.setup.beam, direction, own,
-                                               ws.node(ws.planned.node_of(other)).u));
+      base::add_to(
+          force, end_force(ws.setup.beams(), direction, own, ws.node(ws.planned.node_of(other)).u));
     } else if (ws.planned.total(k).has(direction)) {
-      base::add_to(force, mechanics::end_force(ws.setup.beam, direction, own, {}));
+      base::add_to(force, end_force(ws.setup.beams(), direction, own, kAtRest));
     }
   }
   return force;
@@ -62,7 +64,7 @@ System& factor_of(std::span<IterationMemory> memory, int node) {
 /// What the parent of a leaf feels of its displacement.
 base::Vec6<double> force_on_parent(const Workspace& ws, Direction to_parent,
                                    const base::Vec6<double>& leaf) {
-  return mechanics::end_force(ws.setup.beam, base::opposite(to_parent), {}, leaf);
+  return end_force(ws.setup.beams(), base::opposite(to_parent), kAtRest, leaf);
 }
 
 }  // namespace
@@ -169,7 +171,7 @@ void Condensing::eliminate(const Workspace& ws, const Leaves& leaves,
   for (int column = first; column < first + 3; ++column) {
     base::Vec6<double> unit{};
     unit[static_cast<std::size_t>(column)] = 1;
-    base::Vec6<double> give = mechanics::end_force(ws.setup.beam, to_parent, {}, unit);
+    base::Vec6<double> give = end_force(ws.setup.beams(), to_parent, kAtRest, unit);
     factor_of(memory, leaves.node[index_]).solve(give);
     const base::Vec6<double> force = force_on_parent(ws, to_parent, give);
     for (int row = 0; row < 6; ++row) {
@@ -195,7 +197,7 @@ void Condensing::shift(Workspace& ws, const Leaves& leaves, std::span<IterationM
   const int parent = leaves.parent[index_];
   if (parent > 0) {
     const base::Vec6<double> force =
-        mechanics::end_force(ws.setup.beam, leaves.to_parent[index_], {}, ws.node(parent).force);
+        end_force(ws.setup.beams(), leaves.to_parent[index_], kAtRest, ws.node(parent).force);
     node.force = base::sum_of(node.force, -1.0, force);
   }
   factor_of(memory, leaves.node[index_]).solve(node.force);
@@ -230,7 +232,7 @@ void begin_condensing(Workspace& ws) {
   int awaited = 0;
   for (int k = 0; k < ws.planned.count(); ++k) {
     for (const Direction face : ws.planned.own_touching(k)) {
-      ws.planned_exchange.add_force(k, mechanics::end_force(ws.setup.beam, face, {}, ws.node(0).u));
+      ws.planned_exchange.add_force(k, end_force(ws.setup.beams(), face, kAtRest, ws.node(0).u));
     }
     for (const Direction child : ws.tree.children()) {
       awaited += ws.planned.is_needed_below(child, k) ? 2 : 0;
@@ -261,10 +263,9 @@ void add_condensed_beams(Workspace& ws) {
   for (int k = 0; k < ws.planned.count(); ++k) {
     for (const Direction face : ws.planned.own_face(k)) {
       const base::Vec6<double>& theirs = ws.node(ws.planned.slot_of(k)).u;
-      base::add_to(node.force, mechanics::end_force(ws.setup.beam, face, node.u, theirs));
-      const base::Vec6<double> middle =
-          mechanics::middle_force(ws.setup.beam, face, node.u, theirs);
-      ws.middle[static_cast<std::size_t>(face)] = {middle[2], middle[3], middle[4]};
+      base::add_to(node.force, end_force(ws.setup.beams(), face, node.u, theirs));
+      const base::Vec6<double> middle = middle_force(ws.setup.beams(), face, node.u, theirs);
+      ws.middle(face) = {middle[2], middle[3], middle[4]};
     }
   }
 }

@@ -27,7 +27,7 @@ Order Conductor::begin(const Setup& setup, const base::Cell& root, std::uint32_t
   degree_ = depth < setup.degree_max ? depth : setup.degree_max;
   effort_.method = setup.method;
   judges_faces_ = kJudgesFaces && lent.judges_faces;
-  has_left_clusters_ = setup.only_one_sweep;
+  has_left_clusters_ = setup.only_one_sweep || !setup.is_cubic();
   if constexpr (kHasAllMethods) {
     may_have_fronts_ = lent.has_fronts && setup.method == Method::kFronts;
     effort_.method = has_fronts() ? Method::kElimination : effort_.method;

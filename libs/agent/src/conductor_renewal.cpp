@@ -16,8 +16,8 @@ using wire::Operation;
 int planned_connections(const Planned& planned) {
   int ends = 0;
   for (int k = 0; k < planned.count(); ++k) {
-    const base::Faces touching = planned.touching(k);
-    for (const base::Direction direction : base::kDirections) {
+    const Faces touching = planned.touching(k);
+    for (const base::Direction direction : planned.directions()) {
       ends += touching.has(direction) ? 2 : 0;
       ends += planned.neighbour_of(k, direction) >= 0 ? 1 : 0;
     }
@@ -31,7 +31,7 @@ bool is_any_detached(const Planned& planned) {
   for (int pass = 0; pass < planned.count(); ++pass) {
     for (int k = 0; k < planned.count(); ++k) {
       bool is_held = !planned.touching(k).is_empty();
-      for (const base::Direction direction : base::kDirections) {
+      for (const base::Direction direction : planned.directions()) {
         const int other = planned.neighbour_of(k, direction);
         is_held = is_held || (other >= 0 && held.has(other));
       }

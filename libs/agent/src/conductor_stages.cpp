@@ -39,7 +39,7 @@ Order Conductor::after_word(const Report& report, const Stages& stages) {
   Order stage = ask(Operation::kStage);
   stage.answer = {.verdict = Verdict::kUndecided, .reason = Reason::kInPieces};
   const bool is_split = (report.flags & kSplit) != 0;
-  stage.flags = is_split ? report.mask : std::uint8_t{0};
+  stage.flags = static_cast<std::uint8_t>(is_split ? report.mask : 0);
   stage.index = static_cast<std::uint8_t>(is_split ? Stage::kNone : Stage::kRelease);
   return stage;
 }

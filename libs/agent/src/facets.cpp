@@ -32,13 +32,26 @@ const mechanics::Frame& frame_of(const TouchingFacet& facet) {
   return mechanics::kCubicFrames[static_cast<std::size_t>(facet.direction)];
 }
 
+Vec6<double> to_local(const Surroundings& node, const TouchingFacet& facet,
+                      const Vec6<double>& global) {
+  const mechanics::LatticeBeam<double>* beams = node.environment->beams;
+  return beams == nullptr ? mechanics::to_local(frame_of(facet), global)
+                          : beams->to_local(facet.direction, global);
+}
+
+Vec6<double> to_global(const Surroundings& node, const TouchingFacet& facet,
+                       const Vec6<double>& local) {
+  const mechanics::LatticeBeam<double>* beams = node.environment->beams;
+  return beams == nullptr ? mechanics::to_global(frame_of(facet), local)
+                          : beams->to_global(facet.direction, local);
+}
+
 /// The sum of force(facet, local displacement) over all facets, in the global frame.
 template <class Force>
 Vec6<double> sum_of(const Surroundings& node, const Vec6<double>& u, Force&& force) {
   Vec6<double> sum{};
   for (const TouchingFacet& facet : facets_of(node)) {
-    const mechanics::Frame& frame = frame_of(facet);
-    base::add_to(sum, mechanics::to_global(frame, force(facet, mechanics::to_local(frame, u))));
+    base::add_to(sum, to_global(node, facet, force(facet, to_local(node, facet, u))));
   }
   return sum;
 }
@@ -90,7 +103,7 @@ Vec6<double> prescribed_force(const Surroundings& node, const ContactSetting& co
 bool look_up_states(Surroundings& node, const ContactSetting& contact, const Vec6<double>& u) {
   bool has_changed = false;
   for (TouchingFacet& facet : facets_of(node)) {
-    facet.wanted = prescribed_state(facet, contact, mechanics::to_local(frame_of(facet), u));
+    facet.wanted = prescribed_state(facet, contact, to_local(node, facet, u));
     has_changed = has_changed || !(facet.wanted == facet.state);
   }
   return has_changed;
@@ -146,6 +159,36 @@ void reset(Surroundings& node) {
   }
 }
 
+namespace {
+
+std::int32_t rounded(double value) {
+  return static_cast<std::int32_t>(value < 0 ? value - 0.5 : value + 0.5);
+}
+
+/// A place of a facet's own frame, seen from the node, in the unit of corners.
+mechanics::Corner corner_at(const Surroundings& node, const TouchingFacet& facet,
+                            const base::Cell& cell, const std::array<std::int32_t, 3>& local) {
+  const Environment& environment = *node.environment;
+  const std::int32_t pitch = 2 * environment.foot_denominator;
+  if (environment.beams != nullptr) {
+    const auto node_place = base::node_place(*environment.lattice, cell);
+    const Vec6<double> inner = {double(local[0]), double(local[1]), double(local[2]), 0, 0, 0};
+    const Vec6<double> away = environment.beams->to_global(facet.direction, inner);
+    const auto place = [&](std::size_t i) {
+      return rounded(kCornerParts * (node_place[i] + away[i] / pitch));
+    };
+    return {place(0), place(1), place(2)};
+  }
+  std::array<std::int32_t, 3> place = {pitch * cell.x, pitch * cell.y, pitch * cell.z};
+  const mechanics::Frame& frame = frame_of(facet);
+  for (std::size_t i = 0; i < 3; ++i) {
+    place[frame.axis[i]] += frame.sign[i] * local[i];
+  }
+  return {place[0], place[1], place[2]};
+}
+
+}  // namespace
+
 /// mx^ < 0 presses the +y' edge, my^ > 0 the +x' edge.
 mechanics::SupportCorners support_corners(const Surroundings& node, const base::Cell& cell) {
   mechanics::SupportCorners corners;
@@ -165,14 +208,10 @@ mechanics::SupportCorners support_corners(const Surroundings& node, const base::
       // From the node: half a pitch to the facet, along -z', then to its corner.
       const std::array<std::int32_t, 3> local = {side_x * half_width, side_y * half_width,
                                                  -half_pitch};
-      std::array<std::int32_t, 3> place = {2 * half_pitch * cell.x, 2 * half_pitch * cell.y,
-                                           2 * half_pitch * cell.z};
-      const mechanics::Frame& frame = frame_of(facet);
-      for (std::size_t i = 0; i < 3; ++i) {
-        place[frame.axis[i]] += frame.sign[i] * local[i];
-      }
-      corners =
-          mechanics::merge(corners, {.count = 1, .corners = {{place[0], place[1], place[2]}}});
+      const mechanics::SupportCorners one = {.count = 1,
+                                             .corners = {corner_at(node, facet, cell, local)}};
+      corners = environment.beams == nullptr ? mechanics::merge(corners, one)
+                                             : mechanics::merge_rounded(corners, one);
     }
   }
   return corners;

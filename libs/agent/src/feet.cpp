@@ -21,15 +21,81 @@ bool fits_exact_check(const Setup& setup, std::int64_t mass) {
          setup.facet_denominator <= kFacetPartMax;
 }
 
+namespace {
+
+#ifndef HOLDFAST_AGENT_FLOOR_ONLY
+
+/// sqrt(3), to three parts in ten million. What is compared is A + B sqrt(3) with whole numbers A
+/// and B, which is zero for this number, too, where it is zero; with a better one 64 bits would not
+/// do.
+constexpr std::int64_t kRootNumerator = 1351;
+constexpr std::int64_t kRootDenominator = 780;
+
+bool has_rows(const Setup& setup) { return setup.lattice == base::kHexagonalPrism; }
+
+bool has_layers(const Setup& setup) {
+  return setup.lattice.shear_x != 0 || setup.lattice.shear_y != 0;
+}
+
+#endif
+
+/// All lengths of the check are so many times as large as they would have to be.
+std::int64_t scale_of([[maybe_unused]] const Setup& setup) {
+#ifdef HOLDFAST_AGENT_FLOOR_ONLY
+  return 1;
+#else
+  return has_rows(setup) ? kRootDenominator : 1;
+#endif
+}
+
+/// Half of a facet's width is Setup::facet_numerator of these times the scale.
+std::int64_t parts_of_cell(const Setup& setup) {
+#ifdef HOLDFAST_AGENT_FLOOR_ONLY
+  return 2 * std::int64_t{setup.facet_denominator};
+#else
+  const int halves = has_rows(setup) || has_layers(setup) ? 1 : 2;
+  return scale_of(setup) * halves * setup.facet_denominator;
+#endif
+}
+
+std::int64_t parts_of_row(const Setup& setup) {
+#ifndef HOLDFAST_AGENT_FLOOR_ONLY
+  if (has_rows(setup)) {
+    return kRootNumerator * setup.facet_denominator;
+  }
+#endif
+  return parts_of_cell(setup);
+}
+
+}  // namespace
+
+base::Cell floor_place([[maybe_unused]] const Setup& setup, const base::Cell& cell,
+                       const base::Cell& from) {
+  base::Cell away = {cell.x - from.x, cell.y - from.y, cell.z - from.z};
+#ifndef HOLDFAST_AGENT_FLOOR_ONLY
+  if (has_layers(setup)) {
+    const std::int32_t shift = (cell.z & 1) - (from.z & 1);
+    away.x = 2 * away.x + shift * setup.lattice.shear_x;
+    away.y = 2 * away.y + shift * setup.lattice.shear_y;
+  } else if (has_rows(setup)) {
+    away.x = 2 * away.x + away.y;
+  }
+#endif
+  return away;
+}
+
 FeetCheck::FeetCheck(const Setup& setup, std::int32_t mass,
                      const std::array<std::int32_t, 2>& moment)
-    : pitch_(2 * std::int64_t{setup.facet_denominator} * mass),
-      half_width_(std::int64_t{setup.facet_numerator} * mass),
-      mass_{2 * std::int64_t{setup.facet_denominator} * moment[0],
-            2 * std::int64_t{setup.facet_denominator} * moment[1]} {}
+    : pitch_(parts_of_cell(setup) * mass),
+      half_width_(scale_of(setup) * setup.facet_numerator * mass),
+#ifndef HOLDFAST_AGENT_FLOOR_ONLY
+      pitch_y_(parts_of_row(setup) * mass),
+#endif
+      mass_{parts_of_cell(setup) * moment[0], parts_of_row(setup) * moment[1]} {
+}
 
 SafeCorners FeetCheck::of_foot(std::int32_t x, std::int32_t y) const {
-  const Vector centre = {x * pitch_ - mass_.x, y * pitch_ - mass_.y};
+  const Vector centre = {x * pitch_ - mass_.x, y * pitch_y() - mass_.y};
   const Angles angles = mechanics::safe_angles(centre, half_width_);
   SafeCorners corners{.range = angles.range};
   if (angles.range == SafeRange::kArc) {
@@ -48,11 +114,11 @@ SafeCorners FeetCheck::of_foot(std::int32_t x, std::int32_t y) const {
 
 /// A corner from the centre of mass.
 FeetCheck::Vector FeetCheck::seen(const FootCorner& corner) const {
-  const auto place = [&](std::int32_t quarters, std::int64_t mass) {
+  const auto place = [&](std::int32_t quarters, std::int64_t pitch, std::int64_t mass) {
     const std::int32_t cell = (quarters + 1) >> 2;
-    return cell * pitch_ + (quarters > 4 * cell ? half_width_ : -half_width_) - mass;
+    return cell * pitch + (quarters > 4 * cell ? half_width_ : -half_width_) - mass;
   };
-  return {place(corner.x, mass_.x), place(corner.y, mass_.y)};
+  return {place(corner.x, pitch_, mass_.x), place(corner.y, pitch_y(), mass_.y)};
 }
 
 FeetCheck::Angles FeetCheck::angles_of(const SafeCorners& corners) const {

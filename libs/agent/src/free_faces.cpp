@@ -110,7 +110,7 @@ void FreeFaces::take_shape(Direction child, const Report& report) {
   supports_below_[at(child)] = report.count;
   label_below_[at(child)] = report.moment[0];
   ratio_below_[at(child)] = report.reals[0];
-  hops_below_[at(child)] = report.mask;
+  hops_below_[at(child)] = report.support_hops();
 }
 
 /// One hop more for the parent.
@@ -360,7 +360,7 @@ bool FreeFaces::continue_way(const Workspace& ws) {
     way_ = way_of_support(ws);
   }
   for (const Direction face : inward_) {
-    way_.pass(ws.setup, from(ws.tree.cell(), ws.tree.root_cell()), face, ws.middle[at(face)],
+    way_.pass(ws.setup, from(ws.tree.cell(), ws.tree.root_cell()), face, ws.middle(face),
               is_alone(ws, face));
   }
   has_way_ = true;

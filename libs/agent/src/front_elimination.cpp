@@ -101,7 +101,7 @@ bool FrontElimination::begin(Workspace& ws, const Order& order, int /*piece*/) {
   } else if (order.operation == Operation::kFactor) {
     factor();
   } else if (order.operation == Operation::kTreeIterate) {
-    ws.middle = {};
+    ws.clear_middle();
     sends_front_ = false;
     for (Below& below : below_) {
       below.loads_here = 0;

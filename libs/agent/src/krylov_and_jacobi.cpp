@@ -118,7 +118,7 @@ void KrylovAndJacobi::move(Workspace& ws, const Order& order) {
     }
     share_high_part(node);
   }
-  ws.middle = {};
+  ws.clear_middle();
 }
 
 /// In four parts for each node.
@@ -194,7 +194,7 @@ void KrylovAndJacobi::find_images(Workspace& ws, const Order& order) {
     vectors(i).image = {};
   }
   const PlannedPart part = planned_part(ws, order);
-  const mechanics::BeamStiffness<float>& beam = ws.setup.beam_float;
+  Beams<float> beams = ws.setup.beams_float();
   const base::Vec6<float>& mine = ws.node(0).vector.sent;
   // A planned module that has stood apart has all terms to catch up with.
   const base::Vec6<float>& whole =
@@ -202,10 +202,10 @@ void KrylovAndJacobi::find_images(Workspace& ws, const Order& order) {
   visit_beams(ws, part, [&](Direction face, const base::Vec6<float>* other, int k) {
     // A planned module that stands apart stands still.
     const base::Vec6<float> theirs = other == nullptr ? base::Vec6<float>{} : *other;
-    base::add_to(vectors(0).image, mechanics::end_force(beam, face, mine, theirs));
+    base::add_to(vectors(0).image, end_force(beams, face, mine, theirs));
     if (k >= 0 && other != nullptr) {
-      ws.planned_exchange.add_force(k, base::converted<double>(mechanics::end_force(
-                                           beam, base::opposite(face), theirs, whole)));
+      ws.planned_exchange.add_force(
+          k, base::converted<double>(end_force(beams, base::opposite(face), theirs, whole)));
     }
   });
   if (part == PlannedPart::kTogether) {

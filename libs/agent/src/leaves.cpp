@@ -27,7 +27,7 @@ Leaves trees_of(const Planned& planned, bool has_host) {
       }
     }
     const int at = leaves.node[static_cast<std::size_t>(next)];
-    for (const base::Direction direction : base::kDirections) {
+    for (const base::Direction direction : planned.directions()) {
       const int other = planned.neighbour_of(planned.hosted(at - 1), direction);
       const int node = other < 0 ? -1 : planned.node_of(other);
       if (node > 0 && !placed.has(other)) {
@@ -49,7 +49,7 @@ int leaf_connections(const Planned& planned) {
   for (int i = 0; i < planned.hosted_count(); ++i) {
     const int k = planned.hosted(i);
     ends += planned.own_face(k).is_empty() ? 0 : 2;
-    for (const base::Direction direction : base::kDirections) {
+    for (const base::Direction direction : planned.directions()) {
       ends += planned.neighbour_of(k, direction) >= 0 ? 1 : 0;
     }
   }

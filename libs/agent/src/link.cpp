@@ -5,6 +5,7 @@
 #include <bit>
 #include <cstring>
 
+#include "holdfast/agent/lattices.hpp"
 #include "holdfast/base/check.hpp"
 #include "methods.hpp"
 
@@ -30,6 +31,11 @@ std::uint16_t session(std::uint16_t sender, std::uint16_t receiver) {
     parity ^= parity >> half;
   }
   return static_cast<std::uint16_t>(mixed ^ (parity & 1U));
+}
+
+/// What the modules are, as greetings say it.
+std::uint8_t lattice_of(const LinkTiming& timing) {
+  return kKnowsLattices ? timing.lattice : wire::kCubicLattice;
 }
 
 int finish(std::span<std::uint8_t> packet, int size, std::uint16_t start) {
@@ -115,8 +121,9 @@ void Link::drop_unsent() {
 }
 
 /// A greeting: my number, the number heard from you (0: none), am I open, what lattice I am of.
-std::span<const std::uint8_t> Link::receive_greeting(std::span<const std::uint8_t> body) {
-  if (body[5] != wire::kCubicLattice) {
+std::span<const std::uint8_t> Link::receive_greeting(std::span<const std::uint8_t> body,
+                                                     const LinkTiming& timing) {
+  if (body[5] != lattice_of(timing)) {
     lose();
     return {};
   }
@@ -192,7 +199,7 @@ std::span<const std::uint8_t> Link::receive(std::span<const std::uint8_t> packet
   }
   if (is_greeting) {
     heard_at_ = now;
-    return body.size() == kGreetingBytes ? receive_greeting(body) : body.first(0);
+    return body.size() == kGreetingBytes ? receive_greeting(body, timing) : body.first(0);
   }
   if (peer_nonce_ == 0) {
     return {};
@@ -284,7 +291,7 @@ int Link::write_greeting(std::span<std::uint8_t> packet, const LinkTiming& timin
   packet[4] = static_cast<std::uint8_t>(peer_nonce_ & 0xffU);
   packet[5] = static_cast<std::uint8_t>(peer_nonce_ >> 8U);
   packet[6] = state_ == State::kOpen ? 1 : 0;
-  packet[7] = wire::kCubicLattice;
+  packet[7] = lattice_of(timing);
   if (state_ == State::kGreeting) {
     retry_at_ = now + patience(timing);
   }

@@ -11,6 +11,9 @@ Faces Links::working() const {
   for (const Direction face : base::kDirections) {
     faces.set(face, is_used(face));
   }
+  for (const Direction face : all() - Faces::all()) {
+    faces.set(face, is_used(face));
+  }
   return faces;
 }
 
@@ -22,6 +25,13 @@ void Links::send(Faces faces, const wire::Writer& message) {
       has_refused_ = true;
     }
   }
+}
+
+void Links::lend([[maybe_unused]] MoreFaces* more) {
+#ifndef HOLDFAST_AGENT_FLOOR_ONLY
+  more_ = more;
+  more_->deadline.fill(kNever);
+#endif
 }
 
 void Links::lend(std::uint8_t* queues) {
@@ -82,7 +92,10 @@ int Links::write_packet(Direction face, std::span<std::uint8_t> packet, const Cl
 Faces Links::due(Time now) const {
   Faces faces;
   for (const Direction face : base::kDirections) {
-    faces.set(face, deadline_[static_cast<std::size_t>(face)] <= now);
+    faces.set(face, deadline_at(face) <= now);
+  }
+  for (const Direction face : all() - Faces::all()) {
+    faces.set(face, deadline_at(face) <= now);
   }
   return faces;
 }
@@ -93,8 +106,8 @@ void Links::on_time(Direction face, const Clock& clock, bool is_watched) {
 }
 
 void Links::drop_unsent() {
-  for (Link& link : links_) {
-    link.drop_unsent();
+  for (const Direction face : all()) {
+    at(face).drop_unsent();
   }
   touch_all();
 }
@@ -102,7 +115,7 @@ void Links::drop_unsent() {
 void Links::finish_step(const Clock& clock, bool is_watched) {
   for (const Direction face : touched_) {
     waiting_.set(face, at(face).has_packet(clock.now));
-    deadline_[static_cast<std::size_t>(face)] = at(face).deadline(clock.timing, is_watched);
+    deadline_at(face) = at(face).deadline(clock.timing, is_watched);
   }
   touched_ = {};
 }
@@ -110,7 +123,7 @@ void Links::finish_step(const Clock& clock, bool is_watched) {
 Time Links::deadline(Faces faces) const {
   Time earliest = kNever;
   for (const Direction face : faces) {
-    const Time at = deadline_[static_cast<std::size_t>(face)];
+    const Time at = deadline_at(face);
     earliest = at < earliest ? at : earliest;
   }
   return earliest;

@@ -60,7 +60,7 @@ constexpr void fields(auto& codec, Mark& mark) {
 
 constexpr void fields(auto& codec, Cut& cut) {
   codec.cell(cut.cell);
-  codec.kind(cut.direction, base::kDirections.front(), base::kDirections.back());
+  codec.direction(cut.direction);
   codec.require(base::index(cut.direction) % 2 == 0);
 }
 
@@ -122,9 +122,9 @@ bool read(std::span<const std::uint8_t> bytes, Message& message) {
 
 /// Is it a legal order, or report?
 template <class Message>
-bool is_read(std::span<const std::uint8_t> bytes) {
+bool is_read(std::span<const std::uint8_t> bytes, int face_count) {
   Message message;
-  return decode(bytes, message);
+  return decode(bytes, message, face_count);
 }
 
 template <class Message>
@@ -139,8 +139,9 @@ static_assert(kFieldsAt + 1 + OccupiedCells::kPartBytes == wire::kVectorBytes);
 
 }  // namespace
 
-bool is_legal(std::span<const std::uint8_t> message) {
+bool is_legal(std::span<const std::uint8_t> message, int face_count) {
   Codec codec(message, kFieldsAt);
+  codec.set_face_count(face_count);
   const auto is_legal_as = [&codec](auto value) {
     fields(codec, value);
     return codec.is_legal();
@@ -150,9 +151,9 @@ bool is_legal(std::span<const std::uint8_t> message) {
     case MessageType::kVector:
       return true;  // Most messages are.
     case MessageType::kOrder:
-      return is_read<Order>(message);
+      return is_read<Order>(message, face_count);
     case MessageType::kReport:
-      return is_read<Report>(message);
+      return is_read<Report>(message, face_count);
     case MessageType::kJoin:
       return is_legal_as(Join{});
     case MessageType::kEcho:

@@ -64,7 +64,7 @@ bool MinimalResiduals::move(int piece) {
   if (piece + 1 < node_count()) {
     return true;
   }
-  ws_.middle = {};
+  ws_.clear_middle();
   if (ws_.planned.is_any_remote()) {
     begin_condensing(ws_);
   }
@@ -178,7 +178,7 @@ bool MinimalResiduals::take_term(int piece) {
 
 void MinimalResiduals::subtract_beams() {
   const PlannedPart part = part_in_iteration(ws_, order_);
-  const mechanics::BeamStiffness<double>& beam = ws_.setup.beam;
+  Beams<double> beams = ws_.setup.beams();
   const auto mine = base::converted<double>(ws_.node(0).vector.sent);
   // Planned modules that stand apart stand still in the polynomial; their beams are weaker.
   const bool holds_planned =
@@ -186,15 +186,14 @@ void MinimalResiduals::subtract_beams() {
   visit_beams(ws_, part, [&](Direction face, const base::Vec6<float>* other, int k) {
     if (other == nullptr) {
       if (holds_planned) {
-        subtract(vectors_of(0).w, mechanics::end_force(beam, face, mine, {}), kHeldShare);
+        subtract(vectors_of(0).w, end_force(beams, face, mine, base::Vec6<double>{}), kHeldShare);
       }
       return;
     }
     const auto theirs = base::converted<double>(*other);
-    subtract(vectors_of(0).w, mechanics::end_force(beam, face, mine, theirs));
+    subtract(vectors_of(0).w, end_force(beams, face, mine, theirs));
     if (k >= 0) {
-      ws_.planned_exchange.add_force(
-          k, mechanics::end_force(beam, base::opposite(face), theirs, mine));
+      ws_.planned_exchange.add_force(k, end_force(beams, base::opposite(face), theirs, mine));
     }
   });
   if (part == PlannedPart::kTogether) {

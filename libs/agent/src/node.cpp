@@ -15,10 +15,10 @@ std::size_t at(int row, int column) {
 }
 
 /// The forces of all beams on `faces` for a displacement of the node alone.
-Vec6<double> beam_forces(const Setup& setup, base::Faces faces, const Vec6<double>& u) {
+Vec6<double> beam_forces(const Setup& setup, Faces faces, const Vec6<double>& u) {
   Vec6<double> force{};
   for (const base::Direction direction : faces) {
-    base::add_to(force, mechanics::end_force(setup.beam, direction, u, {}));
+    base::add_to(force, end_force(setup.beams(), direction, u, Vec6<double>{}));
   }
   return force;
 }
@@ -36,13 +36,18 @@ Vec6<double> position_along(const Node& node, const Vec6<float>& g, double t) {
 void prepare(Setup& setup) {
   setup.beam = mechanics::beam_stiffness(setup.section);
   const mechanics::BeamSection<double>& section = setup.section;
-  setup.beam_float = mechanics::beam_stiffness(
-      mechanics::BeamSection<float>{.elastic_modulus = static_cast<float>(section.elastic_modulus),
-                                    .length = static_cast<float>(section.length),
-                                    .area = static_cast<float>(section.area),
-                                    .moment_x = static_cast<float>(section.moment_x),
-                                    .moment_y = static_cast<float>(section.moment_y),
-                                    .torsion = static_cast<float>(section.torsion)});
+  const mechanics::BeamSection<float> single = {
+      .elastic_modulus = static_cast<float>(section.elastic_modulus),
+      .length = static_cast<float>(section.length),
+      .area = static_cast<float>(section.area),
+      .moment_x = static_cast<float>(section.moment_x),
+      .moment_y = static_cast<float>(section.moment_y),
+      .torsion = static_cast<float>(section.torsion)};
+  setup.beam_float = mechanics::beam_stiffness(single);
+#ifndef HOLDFAST_AGENT_FLOOR_ONLY
+  setup.lattice_beam = {section, setup.lattice};
+  setup.lattice_beam_float = {single, setup.lattice};
+#endif
 }
 
 void reset(Node& node) {
@@ -72,7 +77,7 @@ Gradients gradients_at_rest(const Node& node, const Setup& setup) {
   return rest;
 }
 
-void form_diagonal(Node& node, const Setup& setup, const ContactSetting& contact, base::Faces faces,
+void form_diagonal(Node& node, const Setup& setup, const ContactSetting& contact, Faces faces,
                    int half) {
   for (int column = 3 * half; column < 3 * half + 3; ++column) {
     const auto unit = base::unit<double>(column);
@@ -101,7 +106,7 @@ void factor_diagonal(Node& node, int half) {
 }
 
 Vec6<double> diagonal_column(const Node& node, const Setup& setup, const ContactSetting& contact,
-                             base::Faces faces, int column) {
+                             Faces faces, int column) {
   const auto unit = base::unit<double>(column);
   Vec6<double> image = beam_forces(setup, faces, unit);
   if (node.is_ground) {
@@ -111,7 +116,7 @@ Vec6<double> diagonal_column(const Node& node, const Setup& setup, const Contact
 }
 
 Vec6<float> scalar_diagonal(const Node& node, const Setup& setup, const ContactSetting& contact,
-                            base::Faces faces) {
+                            Faces faces) {
   Vec6<float> diagonal{};
   for (int i = 0; i < 6; ++i) {
     const auto row = static_cast<std::size_t>(i);

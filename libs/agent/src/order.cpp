@@ -42,7 +42,7 @@ void merge_plan(Report& into, const Report& from) {
   const auto weight = [](const Report& report) {
     return (report.flags & kEnded) != 0 ? 2 : (report.flags & kFound) != 0 ? 1 : 0;
   };
-  into.mask = static_cast<std::uint8_t>(into.mask | from.mask);
+  into.mask = static_cast<FaceMask>(into.mask | from.mask);
   const bool is_first = weight(from) == weight(into) && from.cell < into.cell;
   if (weight(from) > weight(into) || (weight(from) > 0 && is_first)) {
     into.cell = from.cell;
@@ -67,7 +67,7 @@ void merge_renewal(Report& into, const Report& from) {
   if ((has_more(from) && !has_more(into)) || is_first) {
     into.cell = from.cell;
   }
-  into.mask = static_cast<std::uint8_t>(into.mask | from.mask);
+  into.mask = static_cast<FaceMask>(into.mask | from.mask);
   merge_mass(into, from);
 }
 
@@ -137,8 +137,17 @@ void merge_word(Report& into, const Report& from) {
 constexpr std::uint8_t kPlanReportFlags =
     kFound | kTooManyAnnounced | kEnded | kFulfilled | kDisputed | (kJudgesStages ? kStepTold : 0);
 
-constexpr void direction_field(auto& codec, base::Direction& direction) {
-  codec.kind(direction, base::kDirections.front(), base::kDirections.back());
+/// A mask of which messages hold one byte.
+[[gnu::always_inline]] constexpr void byte_flags(auto& codec, FaceMask& mask, unsigned all) {
+  auto byte = static_cast<std::uint8_t>(mask);
+  codec.flags(byte, static_cast<std::uint8_t>(all));
+  mask = byte;
+}
+
+[[gnu::always_inline]] constexpr void byte_field(auto& codec, FaceMask& mask, unsigned last) {
+  auto byte = static_cast<std::uint8_t>(mask);
+  codec.u8(byte, 0, static_cast<std::uint8_t>(last));
+  mask = byte;
 }
 
 constexpr void feet_fields(auto& codec, SafeCorners& feet) {
@@ -174,7 +183,7 @@ constexpr void answer_fields(auto& codec, Answer& answer) {
                 answer.reason != Reason::kNoAnchor);
   codec.real(answer.load_ratio_max);
   codec.cell(answer.worst_cell);
-  direction_field(codec, answer.worst_direction);
+  codec.direction(answer.worst_direction);
 }
 
 constexpr void real_fields(auto& codec, std::span<float> reals) {
@@ -206,7 +215,7 @@ constexpr void resume_fields(auto& codec, Order& order) {
   codec.i32(order.moment[0]);
   codec.i32(order.moment[1]);
   for (std::size_t k = 0; k < kPlannedMax; ++k) {
-    codec.flags(order.masks[k], base::Faces::all().mask());
+    byte_flags(codec, order.masks[k], Faces::all().mask());
   }
 }
 
@@ -245,9 +254,11 @@ constexpr void face_fields(auto& codec, Order& order) {
   real_fields(codec, std::span(order.reals).first(3));
 }
 
-constexpr void mask_fields(auto& codec, std::span<std::uint8_t> masks) {
-  for (std::uint8_t& mask : masks) {
-    codec.faces(mask);
+constexpr void mask_fields(auto& codec, std::span<FaceMask> masks) {
+  constexpr std::size_t kMasks = 8;  // Messages have room for more than there may be.
+  for (std::size_t k = 0; k < kMasks; ++k) {
+    FaceMask none = 0;
+    codec.faces(k < masks.size() ? masks[k] : none);
   }
 }
 
@@ -340,11 +351,11 @@ constexpr void residual_fields(auto& codec, Report& report, std::uint8_t more_fl
 constexpr void worst_fields(auto& codec, Report& report) {
   real_fields(codec, std::span(report.reals).first(1));
   codec.cell(report.cell);
-  direction_field(codec, report.direction);
+  codec.direction(report.direction);
 }
 
 constexpr void resumption_fields(auto& codec, Report& report) {
-  codec.flags(report.mask, kHostedFlags);
+  byte_flags(codec, report.mask, kHostedFlags);
   feet_fields(codec, report.feet);
 }
 
@@ -366,7 +377,7 @@ constexpr void renewal_fields(auto& codec, Report& report) {
 
 constexpr void word_report_fields(auto& codec, Report& report) {
   codec.flags(report.flags, kFound | kDenied | kSplit | kDisputed);
-  codec.u8(report.mask, 0, kStageCount);
+  byte_field(codec, report.mask, kStageCount);
   codec.u32(report.count);
   codec.u16(report.extent);
   codec.u32(report.number);
@@ -382,7 +393,7 @@ constexpr void shape_fields(auto& codec, Report& report) {
   codec.u32(report.count);
   codec.moment(report.moment[0]);
   real_fields(codec, std::span(report.reals).first(2));
-  codec.u8(report.mask);
+  byte_field(codec, report.mask, 0xff);
 }
 
 /// What is in a report behind its operation.
@@ -394,7 +405,7 @@ constexpr void fields(auto& codec, Operation operation, Report& report) {
       codec.flags(report.flags, kPlanReportFlags);
       return codec.place(report.cell);
     case Operation::kHosts:
-      return codec.flags(report.mask, kHostedFlags);
+      return byte_flags(codec, report.mask, kHostedFlags);
     case Operation::kMass:
       codec.u32(report.count);
       codec.u32(report.number);
@@ -491,15 +502,17 @@ Writer encode(Operation operation, const Report& report) {
   return out;
 }
 
-bool decode(std::span<const std::uint8_t> message, Order& order) {
+bool decode(std::span<const std::uint8_t> message, Order& order, int face_count) {
   Codec codec(message, kOrderAt);
+  codec.set_face_count(face_count);
   order = {.operation = operation_of(message)};
   fields(codec, order);
   return codec.is_legal();
 }
 
-bool decode(std::span<const std::uint8_t> message, Report& report) {
+bool decode(std::span<const std::uint8_t> message, Report& report, int face_count) {
   Codec codec(message, kOrderAt);
+  codec.set_face_count(face_count);
   report = {};
   fields(codec, operation_of(message), report);
   return codec.is_legal();
@@ -512,7 +525,7 @@ void merge(Operation operation, Report& into, const Report& from) {
       return merge_plan(into, from);
     case Operation::kHosts:
     case Operation::kResume:
-      into.mask = static_cast<std::uint8_t>(into.mask | from.mask);
+      into.mask = static_cast<FaceMask>(into.mask | from.mask);
       return;
     case Operation::kMass:
       return merge_mass(into, from);

@@ -2,10 +2,41 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "holdfast/agent/planned.hpp"
 
+#include "holdfast/agent/more_faces.hpp"
+
 namespace holdfast::agent {
 
 using base::Direction;
-using base::Faces;
+
+#ifndef HOLDFAST_AGENT_FLOOR_ONLY
+Directions Planned::directions() const { return agent::directions(more_); }
+#endif
+
+void Planned::clear() {
+  MoreFaces* lent = more();
+  *this = Planned();
+  lend(lent);
+  if (lent != nullptr) {
+    lent->below = {};
+  }
+}
+
+Faces Planned::below(Direction child, int index) const {
+  const auto face = static_cast<std::size_t>(child);
+  if (const MoreFaces* lent = more(); kKnowsLattices && lent != nullptr) {
+    return lent->below[face][at(index)];
+  }
+  return Faces::from_mask(below_[face][at(index)].mask());
+}
+
+void Planned::set_below(Direction child, int index, Faces touching) {
+  const auto face = static_cast<std::size_t>(child);
+  if (MoreFaces* lent = more(); kKnowsLattices && lent != nullptr) {
+    lent->below[face][at(index)] = touching;
+  } else {
+    below_[face][at(index)] = base::Faces::from_mask(static_cast<std::uint8_t>(touching.mask()));
+  }
+}
 
 void Planned::add(const base::Cell& cell, const base::Cell& self) {
   if (count_ == kPlannedMax) {
@@ -15,8 +46,8 @@ void Planned::add(const base::Cell& cell, const base::Cell& self) {
   const std::size_t i = count_++;
   cells_[i] = cell;
   own_touching_[i] = {};
-  for (const Direction face : base::kDirections) {
-    if (base::neighbour(self, face) == cell) {
+  for (const Direction face : directions()) {
+    if (neighbour(more(), self, face) == cell) {
       own_touching_[i] = Faces::only(base::opposite(face));
     }
   }
@@ -37,13 +68,13 @@ void Planned::remove(int index) {
   for (int k = index; k < count_; ++k) {
     cells_[at(k)] = cells_[at(k + 1)];
     own_touching_[at(k)] = own_touching_[at(k + 1)];
-    for (auto& child : below_) {
-      child[at(k)] = child[at(k + 1)];
+    for (const Direction child : directions()) {
+      set_below(child, k, below(child, k + 1));
     }
   }
   own_touching_[at(count_)] = {};
-  for (auto& child : below_) {
-    child[at(count_)] = {};
+  for (const Direction child : directions()) {
+    set_below(child, count_, {});
   }
 }
 
@@ -56,14 +87,14 @@ void Planned::forget_hosts() {
 
 void Planned::add_below(Direction child, int index, Faces touching) {
   if (index < count_) {
-    below_[static_cast<std::size_t>(child)][at(index)] = touching;
+    set_below(child, index, touching);
   }
 }
 
 Faces Planned::touching(int index) const {
   Faces faces = own_touching(index);
-  for (const auto& child : below_) {
-    faces |= child[at(index)];
+  for (const Direction child : directions()) {
+    faces |= below(child, index);
   }
   return faces;
 }
@@ -81,7 +112,7 @@ bool Planned::is_whole(std::uint8_t group) const {
 /// Are all participants of a group below a child? Of one that touches nothing they are.
 bool Planned::is_whole_below(std::uint8_t group, Direction child) const {
   for (int k = 0; k < count_; ++k) {
-    if (group_of(k) == group && below_[static_cast<std::size_t>(child)][at(k)] != total(k)) {
+    if (group_of(k) == group && below(child, k) != total(k)) {
       return false;
     }
   }
@@ -91,14 +122,14 @@ bool Planned::is_whole_below(std::uint8_t group, Direction child) const {
 /// Is any participant of a group below a child?
 bool Planned::is_any_below(std::uint8_t group, Direction child) const {
   for (int k = 0; k < count_; ++k) {
-    if (group_of(k) == group && !below_[static_cast<std::size_t>(child)][at(k)].is_empty()) {
+    if (group_of(k) == group && !below(child, k).is_empty()) {
       return true;
     }
   }
   return false;
 }
 
-void Planned::decide_hosts(const std::array<std::uint8_t, 8>& totals) {
+void Planned::decide_hosts(const PlannedMasks& totals) {
   forget_hosts();
   for (int k = 0; k < count_; ++k) {
     totals_[at(k)] = Faces::from_mask(totals[at(k)]);
@@ -107,7 +138,7 @@ void Planned::decide_hosts(const std::array<std::uint8_t, 8>& totals) {
   // A group is named after its first module; names spread until nothing changes.
   for (int pass = 0; pass < count_; ++pass) {
     for (int k = 0; k < count_; ++k) {
-      for (const Direction direction : base::kDirections) {
+      for (const Direction direction : directions()) {
         const int other = neighbour_of(k, direction);
         if (other >= 0 && group_of(other) < group_of(k)) {
           groups_[at(k)] = group_of(other);
@@ -120,7 +151,7 @@ void Planned::decide_hosts(const std::array<std::uint8_t, 8>& totals) {
     // What touches nothing is whole below every face, so nobody hosts it.
     bool is_above = false;
     bool is_own_only = true;
-    for (const Direction child : base::kDirections) {
+    for (const Direction child : directions()) {
       is_above = is_above || is_whole_below(group, child);
       is_own_only = is_own_only && !is_any_below(group, child);
     }
@@ -139,7 +170,7 @@ void Planned::decide_hosts(const std::array<std::uint8_t, 8>& totals) {
   }
 }
 
-bool Planned::agrees_with(const std::array<std::uint8_t, 8>& totals) const {
+bool Planned::agrees_with(const PlannedMasks& totals) const {
   for (int k = 0; k < count_; ++k) {
     if (!(touching(k) - Faces::from_mask(totals[at(k)])).is_empty()) {
       return false;
@@ -158,7 +189,7 @@ int Planned::at_face(Direction face) const {
 }
 
 int Planned::neighbour_of(int index, Direction direction) const {
-  const base::Cell wanted = base::neighbour(cell(index), direction);
+  const base::Cell wanted = neighbour(more(), cell(index), direction);
   for (int k = 0; k < count_; ++k) {
     if (cell(k) == wanted) {
       return k;
@@ -189,7 +220,7 @@ int Planned::slot_of(int index) const {
 }
 
 bool Planned::is_needed_below(Direction child, int index) const {
-  return involved_.has(index) && !below_[static_cast<std::size_t>(child)][at(index)].is_empty();
+  return involved_.has(index) && !below(child, index).is_empty();
 }
 
 }  // namespace holdfast::agent

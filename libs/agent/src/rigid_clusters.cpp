@@ -179,7 +179,7 @@ bool RigidClusters::choose(Workspace& ws) {
   const base::Cell here = {own.x - root.x, own.y - root.y, own.z - root.z};
   Choice choice{.top = here, .parent_top = here};
   for (const Direction face : ws.tree.nearer()) {
-    const Choice theirs = choice_in(ws.exchange.next_vector(face));
+    const Choice theirs = choice_in(ws.exchange.next_vector(ws.links.more(), face));
     if (may_join(here, theirs.top)) {
       choice = {
           .top = theirs.top, .parent_top = theirs.parent_top, .parent_face = base::index(face)};
@@ -201,7 +201,7 @@ bool RigidClusters::choose(Workspace& ws) {
 void RigidClusters::meet_neighbours(const Workspace& ws) {
   const Choice own = choice_in(ws.node(0).vector.sent);
   for (const Direction face : ws.links.used()) {
-    const Choice theirs = choice_in(ws.exchange.vector(face));
+    const Choice theirs = choice_in(ws.exchange.vector(ws.links.more(), face));
     const bool is_child = theirs.parent_face == base::index(base::opposite(face));
     const bool is_member = theirs.top == own.top;
     if (is_child) {

@@ -37,7 +37,7 @@ void SpanningTree::begin_wave(Links& links, const Round& round, Wave wave, Faces
   nearer_ = parent;
   children_ = {};
   has_returned_ = false;
-  census_ = {.count = 1, .hops = hops, .id = id_, .is_anyone_silent = !links.silent().is_empty()};
+  census_ = {.count = 1, .hops = hops, .is_anyone_silent = !links.silent().is_empty(), .id = id_};
   awaited_ = links.used() - parent;
   links.send(awaited_, encode(Join{.round = round,
                                    .wave = number_of(wave),
@@ -56,7 +56,7 @@ bool SpanningTree::take_join(Links& links, Direction face, const Join& join, boo
   }
   if (is_next) {
     if (wave == Wave::kFirst) {
-      cell_ = base::neighbour(join.cell, base::opposite(face));
+      cell_ = neighbour(links.more(), join.cell, base::opposite(face));
       has_cell_ = true;
     } else {
       root_cell_ = join.cell;
@@ -72,7 +72,7 @@ bool SpanningTree::take_join(Links& links, Direction face, const Join& join, boo
 }
 
 void SpanningTree::adopt(Links& links, Direction face, const Adoption& adoption) {
-  cell_ = base::neighbour(adoption.sender, base::opposite(face));
+  cell_ = neighbour(links.more(), adoption.sender, base::opposite(face));
   has_cell_ = true;
   root_cell_ = adoption.root;
   begin_wave(links, adoption.round, Wave::kTree, Faces::only(face), hops_beyond(adoption.hops));
@@ -166,11 +166,11 @@ bool SpanningTree::take_appointment(Links& links, const Round& round,
 
 /// One hop towards the wave's root: of the neighbours nearer to it the one that is nearest to the
 /// place half way between it and `end`.
-Faces SpanningTree::towards_root(const base::Cell& end) const {
+Faces SpanningTree::towards_root(const Links& links, const base::Cell& end) const {
   Faces best = parent_;
   std::int64_t least = ~(std::int64_t{1} << 63U);
   for (const Direction face : nearer_) {
-    const base::Cell there = base::neighbour(cell_, face);
+    const base::Cell there = neighbour(links.more(), cell_, face);
     const std::int64_t x = 2 * there.x - root_cell_.x - end.x;
     const std::int64_t y = 2 * there.y - root_cell_.y - end.y;
     const std::int64_t z = 2 * there.z - root_cell_.z - end.z;
@@ -190,7 +190,7 @@ void SpanningTree::take_mark(Links& links, const Round& round, const Mark& mark)
     return;
   }
   const auto hops = static_cast<std::uint16_t>(mark.hops - 1);
-  links.send(towards_root(mark.sender), encode(Mark{.hops = hops, .sender = mark.sender}));
+  links.send(towards_root(links, mark.sender), encode(Mark{.hops = hops, .sender = mark.sender}));
 }
 
 }  // namespace holdfast::agent

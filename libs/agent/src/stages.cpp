@@ -288,8 +288,8 @@ bool Stages::is_off(const Cell& cell, Direction face) const {
   return stage_ == Stage::kRelease && (lets_go(cell, other) || lets_go(other, cell));
 }
 
-base::Faces Stages::hidden(const Cell& cell) const {
-  base::Faces faces;
+Faces Stages::hidden(const Cell& cell) const {
+  Faces faces;
   for (const Direction face : base::kDirections) {
     faces.set(face, stage() != Stage::kNone && is_off(cell, face));
   }

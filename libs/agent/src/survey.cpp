@@ -19,6 +19,11 @@ base::Cell from_root(const Workspace& ws, int node) {
   return {cell.x - root.x, cell.y - root.y, cell.z - root.z};
 }
 
+/// The same in cells of FeetCheck.
+base::Cell floor_place(const Workspace& ws, int node) {
+  return floor_place(ws.setup, ws.cell_of(node), ws.tree.root_cell());
+}
+
 /// All planned modules have their hosts: nodes for those emulated here.
 void prepare_nodes(Workspace& ws) {
   for (int i = 0; i < ws.node_count(); ++i) {
@@ -178,7 +183,7 @@ Report angles_report(const Workspace& ws, const Order& order) {
   Report report;
   for (int i = 0; i < ws.node_count(); ++i) {
     if (ws.node(i).is_ground) {
-      const base::Cell away = from_root(ws, i);
+      const base::Cell away = floor_place(ws, i);
       report.feet = check.merge(report.feet, check.of_foot(away.x, away.y));
     }
   }
@@ -212,7 +217,7 @@ Report corners_report(const Workspace& ws) {
       own.corners = surroundings != nullptr ? support_corners(*surroundings, ws.cell_of(i))
                                             : mechanics::support_corners(ws.cell_of(i), node.state);
     }
-    merge(Operation::kCorners, report, own);
+    add_report(ws.setup, {.operation = Operation::kCorners}, report, own);
   }
   return report;
 }
@@ -264,9 +269,18 @@ base::Vec6<double> stiff_motion(const Workspace& ws, const base::Cell& cell) {
   base::Vec6<double> u = ws.node(0).u;
   const base::Cell& own = ws.tree.cell();
   const double pitch = ws.setup.section.length;
-  const double x = pitch * (cell.x - own.x);
-  const double y = pitch * (cell.y - own.y);
-  const double z = pitch * (cell.z - own.z);
+  double x = pitch * (cell.x - own.x);
+  double y = pitch * (cell.y - own.y);
+  double z = pitch * (cell.z - own.z);
+#ifndef HOLDFAST_AGENT_FLOOR_ONLY
+  if (!ws.setup.is_cubic()) {
+    const auto from = base::node_place(ws.setup.lattice, own);
+    const auto to = base::node_place(ws.setup.lattice, cell);
+    x = pitch * (to[0] - from[0]);
+    y = pitch * (to[1] - from[1]);
+    z = pitch * (to[2] - from[2]);
+  }
+#endif
   u[0] += u[4] * z - u[5] * y;
   u[1] += u[5] * x - u[3] * z;
   u[2] += u[3] * y - u[4] * x;
@@ -374,9 +388,12 @@ Report mass_report(const Workspace& ws) {
   Report report;
   const Environment* environment = ws.environment();
   for (int i = 0; i < ws.node_count(); ++i) {
-    const base::Cell away = from_root(ws, i);
+    const base::Cell apart = from_root(ws, i);
+    const base::Cell away = floor_place(ws, i);
     const auto size = [](std::int32_t value) { return value < 0 ? -value : value; };
-    const std::int32_t extent = size(away.x) + size(away.y) + size(away.z);
+    // Where layers are shifted cells are up to half a pitch further away than they count.
+    const std::int32_t extent =
+        size(apart.x) + size(apart.y) + size(apart.z) + (ws.setup.is_cubic() ? 0 : 1);
     Report own{.flags = is_held(ws.node(i)) ? kAnyFixed : std::uint8_t{0},
                .extent = static_cast<std::uint16_t>(extent < 0xffff ? extent : 0xffff),
                .count = 1,
@@ -404,7 +421,9 @@ void add_report(const Setup& setup, const Order& order, Report& into, const Repo
     const FeetCheck check(setup, order.mass, order.moment);
     into.feet = check.merge(into.feet, theirs.feet);
   }
-  if (order.operation != Operation::kAngles) {
+  if (order.operation == Operation::kCorners && !setup.is_cubic()) {
+    into.corners = mechanics::merge_rounded(into.corners, theirs.corners);
+  } else if (order.operation != Operation::kAngles) {
     merge(order.operation, into, theirs);
   }
 }

@@ -87,10 +87,17 @@ bool Sweep::is_busy(const Workspace& ws) const {
 
 void Sweep::adopt(Workspace& ws) {
   course_ = Course::kWeighed;
-  method()->make(state_);
+  make_method(ws);
   has_tree_ = true;
   prepare_node(ws, 0);
   reset(ws.node(0));
+}
+
+void Sweep::make_method(Workspace& ws) {
+  method()->make(state_);
+  if (MoreFaces* more = ws.links.more(); kKnowsLattices && more != nullptr) {
+    more->child_cut_count = {};
+  }
 }
 
 void Sweep::leave(Workspace& ws) {
@@ -286,7 +293,7 @@ void Sweep::begin_method(Workspace& ws, const Order& order) {
   if (operation == Operation::kMass || is_renewed || operation == Operation::kClusters ||
       (is_begin && course_ != Course::kElimination)) {
     has_tree_ = course_ == Course::kWeighed;
-    method()->make(state_);
+    make_method(ws);
   }
   begin_work(Work::kBegin);
   if (is_survey(operation)) {
@@ -346,9 +353,9 @@ void Sweep::end_work(Workspace& ws) {
 void Sweep::take(Workspace& ws, Direction face, Message message) {
   switch (static_cast<MessageType>(message[0])) {
     case MessageType::kReport:
-      return ws.reports.take(face, message);
+      return ws.reports.take(ws.links.more(), face, message);
     case MessageType::kVector:
-      return ws.exchange.take(face, message);
+      return ws.exchange.take(ws.links.more(), face, message);
     case MessageType::kPlannedDown:
       return take_planned_down(ws, message);
     case MessageType::kPlannedUp:
@@ -462,7 +469,7 @@ void Sweep::add_up(Workspace& ws) {
   is_under_way_ = false;
   has_ended_ = true;
   for (const Direction face : ws.tree.children()) {
-    const Report theirs = decode_report(ws.reports.of(face));
+    const Report theirs = decode_report(ws.reports.of(ws.links.more(), face));
     add_report(ws.setup, order_, sum_, theirs);
     if (order_.operation == Operation::kPlan && order_.index != kNoPlanned) {
       ws.planned.add_below(face, order_.index, Faces::from_mask(theirs.mask));

@@ -23,8 +23,6 @@ constexpr int kLeafPieces = kStiffnessColumns / Branch::kBatch;
 
 std::size_t at(int index) { return static_cast<std::size_t>(index); }
 
-std::size_t at(Direction face) { return static_cast<std::size_t>(face); }
-
 /// Faces with a connection that is not part of the tree.
 Faces cut_faces(const Workspace& ws) {
   return ws.links.used() - ws.tree.parent() - ws.tree.children();
@@ -34,11 +32,12 @@ Faces cut_faces(const Workspace& ws) {
 bool is_upper(Direction face) { return base::index(face) % 2 != 0; }
 
 /// The connection at a face, named from its lower end.
-Cut cut_at(const base::Cell& cell, Direction face) {
-  return is_upper(face) ? Cut{base::neighbour(cell, face), base::opposite(face)} : Cut{cell, face};
+Cut cut_at(const Workspace& ws, Direction face) {
+  const base::Cell& cell = ws.tree.cell();
+  return is_upper(face) ? Cut{ws.beside(cell, face), base::opposite(face)} : Cut{cell, face};
 }
 
-Joint joint_to_parent(const Workspace& ws) { return {ws.setup.beam, ws.tree.parent().first()}; }
+Joint joint_to_parent(const Workspace& ws) { return {ws.setup.beams(), ws.tree.parent().first()}; }
 
 // Not inlined: its message would stand on the stack beside the matrices of those that call it.
 [[gnu::noinline]] void send_up(Workspace& ws, MessageType type, int label,
@@ -56,7 +55,7 @@ bool TreeElimination::begin(Workspace& ws, const Order& order, int /*piece*/) {
   } else if (order.operation == Operation::kResume) {
     // The loads are those of the displacements that are kept, which are shared first.
     begin_equilibrium(ws, order);
-    ws.middle = {};
+    ws.clear_middle();
     for (int i = 0; i < ws.node_count(); ++i) {
       share_high_part(ws.node(i));
     }
@@ -68,7 +67,7 @@ bool TreeElimination::begin(Workspace& ws, const Order& order, int /*piece*/) {
       begin_piece(Piece::kResiduals);
     }
   } else if (order.operation == Operation::kTreeIterate) {
-    ws.middle = {};
+    ws.clear_middle();
     // What comes down first; the root has it.
     down_awaited_ = static_cast<std::uint8_t>(ws.tree.is_root() ? 0 : 1 + branch_.open_count());
     if (down_awaited_ == 0) {
@@ -82,7 +81,7 @@ bool TreeElimination::begin(Workspace& ws, const Order& order, int /*piece*/) {
 bool TreeElimination::expects(const Workspace& ws, const Order& order, Direction face,
                               std::span<const std::uint8_t> message) const {
   const int label = message[1];
-  const int child_cuts = child_cut_count_[at(face)];
+  const int child_cuts = child_cut_count(ws, face);
   const bool reports = ws.reports.awaits(face);
   const bool is_iteration = order.operation == Operation::kTreeIterate;
   const bool is_factor =
@@ -105,11 +104,11 @@ void TreeElimination::take(Workspace& ws, const Order& /*order*/, Direction face
                            std::span<const std::uint8_t> message) {
   switch (static_cast<MessageType>(message[0])) {
     case MessageType::kLoop:
-      return take_loop(face, message);
+      return take_loop(ws, face, message);
     case MessageType::kColumn:
-      return take_column(face, message);
+      return take_column(ws, face, message);
     case MessageType::kBranchUp:
-      return take_up(face, message);
+      return take_up(ws, face, message);
     default:
       return take_down(ws, message);
   }
@@ -175,12 +174,12 @@ bool TreeElimination::do_piece(Workspace& ws, const Order& /*order*/) {
 std::uint8_t TreeElimination::survey_loops(Workspace& ws) {
   bool has_too_many = leaf_connections(ws.planned) != ws.planned.hosted_count();
   for (const Direction face : cut_faces(ws)) {
-    has_too_many = branch_.meet(cut_at(ws.tree.cell(), face)) < 0 || has_too_many;
+    has_too_many = branch_.meet(cut_at(ws, face)) < 0 || has_too_many;
   }
-  for (std::size_t face = 0; face < child_cuts_.size(); ++face) {
-    for (std::size_t i = 0; i < child_cut_count_[face]; ++i) {
-      const int slot = branch_.meet(child_cuts_[face][i]);
-      slot_of_[face][i] = static_cast<std::uint8_t>(slot);
+  for (const Direction face : directions(ws.links.more())) {
+    for (std::size_t i = 0; i < child_cut_count(ws, face); ++i) {
+      const int slot = branch_.meet(child_cuts(ws, face)[i]);
+      slots_of(ws, face)[i] = static_cast<std::uint8_t>(slot);
       has_too_many = slot < 0 || has_too_many;
     }
   }
@@ -197,15 +196,16 @@ std::uint8_t TreeElimination::survey_loops(Workspace& ws) {
 
 bool TreeElimination::has_new_loop(const Workspace& ws) const {
   for (const Direction face : cut_faces(ws)) {
-    if (branch_.find(cut_at(ws.tree.cell(), face)) < 0) {
+    if (branch_.find(cut_at(ws, face)) < 0) {
       return true;
     }
   }
   return false;
 }
 
-void TreeElimination::take_loop(Direction face, std::span<const std::uint8_t> message) {
-  decode(message, child_cuts_[at(face)][child_cut_count_[at(face)]++]);
+void TreeElimination::take_loop(Workspace& ws, Direction face,
+                                std::span<const std::uint8_t> message) {
+  decode(message, child_cuts(ws, face)[child_cut_count(ws, face)++]);
 }
 
 // ---- Stiffness.
@@ -214,7 +214,9 @@ void TreeElimination::take_loop(Direction face, std::span<const std::uint8_t> me
 void TreeElimination::factor(Workspace& ws) {
   branch_.clear_stiffness();
   load_ = {};  // Children add theirs as they come.
-  columns_here_ = {};
+  for (const Direction face : directions(ws.links.more())) {
+    columns_here(ws, face) = 0;
+  }
   stiffness_above_ = {};
   is_symmetric_ = true;
   for (int i = 0; i < ws.node_count(); ++i) {
@@ -226,7 +228,7 @@ void TreeElimination::factor(Workspace& ws) {
     is_symmetric_ = is_symmetric_ && !is_any_tilting(node);
   }
   for (const Direction face : cut_faces(ws)) {
-    branch_.add_end(branch_.find(cut_at(ws.tree.cell(), face)), is_upper(face), ws.setup.beam);
+    branch_.add_end(branch_.find(cut_at(ws, face)), is_upper(face), ws.setup.beams());
   }
   begin_piece(Piece::kTangents, ws.node_count());
 }
@@ -295,7 +297,7 @@ void TreeElimination::send_leaf_columns(Workspace& ws, const Leaves& leaves, int
   const int parent = leaves.parent[at(leaf)];
   Branch::Columns columns;
   {
-    const Joint joint(ws.setup.beam, leaves.to_parent[at(leaf)]);
+    const Joint joint(ws.setup.beams(), leaves.to_parent[at(leaf)]);
     find_stiffness_up(joint, leaf_stiffness(ws.node(node), node - 1), first, columns);
   }
   for (int k = 0; k < Branch::kBatch; ++k) {
@@ -314,7 +316,7 @@ bool TreeElimination::do_loops(const Workspace& ws) {
   if (branch_.closes_loops() && !ws.reports.are_here()) {
     return false;
   }
-  if (!branch_.close_loops(ws.setup.beam, piece_index_)) {
+  if (!branch_.close_loops(ws.setup.beams(), piece_index_)) {
     begin_piece(Piece::kSymmetry);
   }
   return true;
@@ -329,14 +331,15 @@ bool TreeElimination::do_symmetry(const Workspace& ws) {
   return true;
 }
 
-void TreeElimination::take_column(Direction face, std::span<const std::uint8_t> message) {
+void TreeElimination::take_column(Workspace& ws, Direction face,
+                                  std::span<const std::uint8_t> message) {
   const auto in = decoded<LabelledVector>(message);
   const int index = in.label;
   const int part = index - Branch::kColumnCount;
-  std::uint8_t& here = columns_here_[at(face)];
+  std::uint8_t& here = columns_here(ws, face);
   if (part < 0) {
     is_symmetric_ = is_symmetric_ && index >= kStiffnessColumns;
-    branch_.add_column(index, slot_of_[at(face)], in.vector);
+    branch_.add_column(index, slots_of(ws, face), in.vector);
     here = static_cast<std::uint8_t>(index + 1);
   } else {
     branch_.add_part(part, in.vector);
@@ -347,8 +350,8 @@ void TreeElimination::take_column(Direction face, std::span<const std::uint8_t> 
 /// Is all here that this column needs?
 bool TreeElimination::is_column_ready(const Workspace& ws, int column) const {
   for (const Direction face : ws.reports.awaited()) {
-    if (columns_here_[at(face)] <
-        branch_.columns_needed(column, slot_of_[at(face)], child_cut_count_[at(face)])) {
+    if (columns_here(ws, face) <
+        branch_.columns_needed(column, slots_of(ws, face), child_cut_count(ws, face))) {
       return false;
     }
   }
@@ -449,7 +452,7 @@ void TreeElimination::send_leaf_load(Workspace& ws, const Leaves& leaves, int le
   const int node = leaves.node[at(leaf)];
   const int parent = leaves.parent[at(leaf)];
   auto load = base::converted<double>(ws.node(node).vector.load);
-  find_load_up(Joint(ws.setup.beam, leaves.to_parent[at(leaf)]),
+  find_load_up(Joint(ws.setup.beams(), leaves.to_parent[at(leaf)]),
                leaf_stiffness(ws.node(node), node - 1), load);
   if (parent == 0) {
     base::add_to(load_.load, load);
@@ -474,10 +477,11 @@ void TreeElimination::send_leaf_load(Workspace& ws, const Leaves& leaves, int le
   }
 }
 
-void TreeElimination::take_up(Direction face, std::span<const std::uint8_t> message) {
+void TreeElimination::take_up(Workspace& ws, Direction face,
+                              std::span<const std::uint8_t> message) {
   const auto in = decoded<LabelledVector>(message);
   const int index = in.label;
-  base::Vec6<double>& into = index == 0 ? load_.load : load_.gap[slot_of_[at(face)][at(index - 1)]];
+  base::Vec6<double>& into = index == 0 ? load_.load : load_.gap[slots_of(ws, face)[at(index - 1)]];
   base::add_to(into, base::converted<double>(in.vector));
 }
 
@@ -545,7 +549,7 @@ void TreeElimination::find_leaf_shift(Workspace& ws, const Leaves& leaves, int l
   Node& node = ws.node(leaves.node[at(leaf)]);
   auto load = base::converted<double>(node.vector.load);
   auto shift = base::converted<double>(ws.node(leaves.parent[at(leaf)]).vector.shift);
-  find_displacement(Joint(ws.setup.beam, leaves.to_parent[at(leaf)]),
+  find_displacement(Joint(ws.setup.beams(), leaves.to_parent[at(leaf)]),
                     leaf_stiffness(node, leaves.node[at(leaf)] - 1), load, shift);
   node.vector.shift = base::converted<float>(shift);
 }
@@ -554,10 +558,10 @@ void TreeElimination::send_down(Workspace& ws) {
   for (const Direction face : ws.tree.children()) {
     ws.links.send(Faces::only(face),
                   vector_message(MessageType::kBranchDown, 0, ws.node(0).vector.shift));
-    for (std::size_t i = 0; i < child_cut_count_[at(face)]; ++i) {
+    for (std::size_t i = 0; i < child_cut_count(ws, face); ++i) {
       ws.links.send(Faces::only(face),
                     vector_message(MessageType::kBranchDown, static_cast<std::uint8_t>(1 + i),
-                                   forces_[slot_of_[at(face)][i]]));
+                                   forces_[slots_of(ws, face)[i]]));
     }
   }
   load_ = {};

@@ -12,6 +12,13 @@ Workspace::Workspace(const Setup& shared, const Identity& identity, const LentMe
       tree(identity.id, identity.is_anchor, identity.cell),
       lent(lent_memory),
       is_fixed(identity.is_fixed) {
+  if constexpr (kKnowsLattices) {
+    if (lent != nullptr && lent->faces != nullptr) {
+      *lent->faces = {.lattice = lent->faces->lattice};
+      links.lend(lent->faces);
+      planned.lend(lent->faces);
+    }
+  }
   if constexpr (kHasAllMethods) {
     if (front_memory() != nullptr) {
       links.lend(front_memory()->queues.data());
@@ -24,7 +31,7 @@ Workspace::Workspace(const Setup& shared, const Identity& identity, const LentMe
 
 Faces Workspace::faces_of(int node) const {
   Faces faces = node == 0 ? links.used() : planned.total(planned.hosted(node - 1));
-  for (const Direction face : base::kDirections) {
+  for (const Direction face : directions(links.more())) {
     const int other =
         node == 0 ? planned.at_face(face) : planned.neighbour_of(planned.hosted(node - 1), face);
     if (other >= 0) {
@@ -32,6 +39,13 @@ Faces Workspace::faces_of(int node) const {
     }
   }
   return faces;
+}
+
+void Workspace::clear_middle() {
+  middle_own = {};
+  if (MoreFaces* more = links.more(); kKnowsLattices && more != nullptr) {
+    more->middle = {};
+  }
 }
 
 void Workspace::start_exchange(PlannedPart part) {

@@ -113,7 +113,7 @@ TEST(Conductor, learns_planned_cells_one_by_one) {
   EXPECT_EQ(drive.order.cell, (base::Cell{8, 0, 0}));
   drive.next({.mask = 0x20});
   EXPECT_EQ(drive.order.operation, Operation::kHosts);
-  EXPECT_EQ(drive.order.masks, (std::array<std::uint8_t, 8>{2, 0x20}));
+  EXPECT_EQ(drive.order.masks, (PlannedMasks{2, 0x20}));
   drive.next({.mask = 3});
   EXPECT_EQ(drive.order.operation, Operation::kMass);
   EXPECT_EQ(drive.order.cell, kRoot);
@@ -173,7 +173,7 @@ TEST(Conductor, has_a_plan_that_has_ended_forgotten_and_begins_anew) {
     EXPECT_EQ(drive.order.index, 0);
     drive.next({.mask = 3});
     EXPECT_EQ(drive.order.operation, Operation::kHosts);
-    EXPECT_EQ(drive.order.masks, (std::array<std::uint8_t, 8>{3}));
+    EXPECT_EQ(drive.order.masks, (PlannedMasks{3}));
   }
 }
 

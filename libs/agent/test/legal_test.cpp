@@ -156,6 +156,26 @@ TEST(Legal, corners_are_those_of_cells_near_enough) {
   EXPECT_FALSE(angles("00 00 00 80"));
 }
 
+/// How many faces there are says the lattice: six, eight or twelve.
+TEST(Legal, faces_are_those_of_the_lattice) {
+  const auto verdict = [](std::string_view face) {
+    return from_hex("05 0f 02 02 00 00 c0 3f 01 00 00 fe ff ff 03 00 00 " + std::string(face));
+  };
+  const auto plan = [](std::string_view mask) {
+    return from_hex("06 01 " + std::string(mask) + " 01 01 00 00 fe ff ff 03 00 00");
+  };
+  for (const int count : {6, 8, 12}) {
+    EXPECT_TRUE(is_legal(verdict("05"), count));
+    EXPECT_EQ(is_legal(verdict("06"), count), count > 6);
+    EXPECT_EQ(is_legal(verdict("0b"), count), count == 12);
+    EXPECT_FALSE(is_legal(verdict("0c"), count));
+    EXPECT_TRUE(is_legal(plan("3f 00"), count));
+    EXPECT_EQ(is_legal(plan("ff 00"), count), count > 6);
+    EXPECT_EQ(is_legal(plan("ff 0f"), count), count == 12);
+    EXPECT_FALSE(is_legal(plan("00 10"), count));
+  }
+}
+
 TEST(Legal, rounds_have_a_number) {
   EXPECT_FALSE(is_legal(from_hex("01 00 00 0a 00 00 00 01 ff ff ff 02 00 00 00 00 00 00 00")));
   EXPECT_TRUE(is_legal(from_hex("01 ff ff 0a 00 00 00 01 ff ff ff 02 00 00 00 00 00 00 00")));

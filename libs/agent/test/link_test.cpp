@@ -627,6 +627,22 @@ TEST(Link, is_lost_to_modules_of_another_lattice) {
   }
 }
 
+/// So do catoms: they know those of their own lattice only.
+TEST(Link, of_another_lattice_is_lost_to_cubes) {
+  const LinkTiming timing = {.lattice = wire::kFaceCentredLattice};
+  for (const std::uint8_t lattice : {wire::kCubicLattice, wire::kFaceCentredLattice}) {
+    Link other;
+    other.bring_up(7, 0);
+    std::vector<std::uint8_t> greeting(static_cast<std::size_t>(wire::kPacketBytesMax));
+    const LinkTiming theirs = {.lattice = lattice};
+    greeting.resize(static_cast<std::size_t>(other.write_packet(greeting, theirs, 0)));
+    Link link;
+    link.bring_up(5, 0);
+    EXPECT_TRUE(link.receive(greeting, timing, 0).empty());
+    EXPECT_EQ(link.state() == Link::State::kLost, lattice != timing.lattice) << int{lattice};
+  }
+}
+
 /// A copy that is told the time too early behaves like one that is not.
 void expect_idle_before_deadline(const Link& link, const LinkTiming& timing, Time now) {
   const Time at = link.deadline(timing, true);

@@ -56,7 +56,7 @@ Order random_order(Operation operation, base::Rng& rng) {
   order.flags = static_cast<std::uint8_t>(rng.next());
   order.count = static_cast<std::uint16_t>(rng.next());
   order.cell = random_cell(rng);
-  for (std::uint8_t& mask : order.masks) {
+  for (FaceMask& mask : order.masks) {
     mask = static_cast<std::uint8_t>(rng.next());
   }
   order.mass = static_cast<std::int32_t>(rng.next());

@@ -16,7 +16,6 @@ namespace {
 
 using base::Cell;
 using base::Direction;
-using base::Faces;
 
 /// A module: its cell, and the face of its parent; the first one is the root and has none.
 struct Member {
@@ -34,7 +33,7 @@ std::uint8_t indices(const Planned& part) { return part.from_above().bits(); }
 /// Members are listed parents first. Afterwards every module knows its part.
 std::vector<Planned> share(const std::vector<Member>& members, const std::vector<Cell>& cells) {
   std::vector<Planned> parts(members.size());
-  std::array<std::uint8_t, 8> totals{};
+  PlannedMasks totals{};
   for (std::size_t k = 0; k < cells.size(); ++k) {
     for (std::size_t i = members.size(); i-- > 0;) {
       parts[i].add(cells[k], members[i].cell);

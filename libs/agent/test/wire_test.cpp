@@ -51,7 +51,7 @@ TEST(Wire, orders_are_these_bytes) {
                          .worst_direction = base::Direction::kMinusZ};
   const std::vector<Order> orders = {
       {.operation = Operation::kPlan, .index = 2, .cell = kCell},
-      {.operation = Operation::kHosts, .masks = {1, 2, 4, 8, 16, 32, 0, 0}},
+      {.operation = Operation::kHosts, .masks = {1, 2, 4, 8, 16, 32}},
       {.operation = Operation::kMass, .cell = {-1'000'000, 1'000'000, 0}},
       {.operation = Operation::kAngles, .mass = 29, .moment = {-3, 5}},
       {.operation = Operation::kBegin,

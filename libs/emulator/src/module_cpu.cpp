@@ -68,7 +68,7 @@ ModuleCpu::ModuleCpu(const Image& image, CostTable& costs,
       stm_(hooks(), seed),
       processor_(image, costs, stm_, *this, image.at(kStep)),
       wake_at_(start) {
-  std::array<std::uint8_t, sizeof(module::Configuration)> page{};
+  std::array<std::uint8_t, module::kConfigurationBytes> page{};
   std::memcpy(page.data(), &configuration_, page.size());
   processor_.write(image.at("holdfast_configuration"), page);
 }

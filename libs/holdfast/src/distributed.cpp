@@ -73,7 +73,7 @@ bool is_other_law(const verdict::Assessment& exact, const sim::SimulationResult&
          result.effort.is_unilateral != is_unilateral;
 }
 
-std::vector<std::string> notes_on(const sim::SimulationOptions& options,
+std::vector<std::string> notes_on(const model::Robot& robot, const sim::SimulationOptions& options,
                                   const verdict::Assessment& exact,
                                   const sim::SimulationResult& result) {
   std::vector<std::string> notes;
@@ -84,6 +84,11 @@ std::vector<std::string> notes_on(const sim::SimulationOptions& options,
     notes.emplace_back(
         "the exact answer is for the robot with the modules that were taken off, its own without "
         "them");
+  }
+  if (robot.lattice() != base::kCubic && options.link.ticks_per_second > 0) {
+    notes.emplace_back(
+        "nobody has published what the links of such modules carry: seconds are those of the link "
+        "model that was asked for, not of modules");
   }
   if (is_other_law(exact, result)) {
     notes.emplace_back(
@@ -187,7 +192,7 @@ DistributedRun describe_run(const model::Robot& robot, const CheckResult& exact,
           .result = result,
           .refused = refused_by(robot, agents),
           .view = view_of(robot, exact.assessment, agents, result),
-          .notes = notes_on(options, exact.assessment, result)};
+          .notes = notes_on(robot, options, exact.assessment, result)};
 }
 
 base::Result<DistributedRun> simulate(const model::Robot& robot, const CheckResult& exact,

@@ -29,7 +29,70 @@ void add_corner(SupportCorners& set, const Corner& corner) {
   }
 }
 
+struct Way {
+  double x = 0;
+  double y = 0;
+  double z = 0;
+};
+
+Way way(const Corner& from, const Corner& to) {
+  return {static_cast<double>(to.x) - from.x, static_cast<double>(to.y) - from.y,
+          static_cast<double>(to.z) - from.z};
+}
+
+double square(const Way& a) { return a.x * a.x + a.y * a.y + a.z * a.z; }
+
+/// Each corner is off by at most sqrt(3)/2, so ways u and v by sqrt(3), and their cross product by
+/// sqrt(3) (|u| + |v|) + 3; with (|u| + |v|)^2 <= 2 (u^2 + v^2) no root is needed.
+bool may_be_collinear(const Corner& a, const Corner& b, const Corner& c) {
+  const Way u = way(a, b);
+  const Way v = way(a, c);
+  const Way cross = {u.y * v.z - u.z * v.y, u.z * v.x - u.x * v.z, u.x * v.y - u.y * v.x};
+  constexpr double kRounding = 8;  // 2 * (sqrt(3))^2, and more for the 3, as ways are long.
+  return square(cross) <= kRounding * (square(u) + square(v));
+}
+
+/// Two corners this near are one.
+constexpr double kSameCorner = 4;
+
+void add_rounded(SupportCorners& set, const Corner& corner) {
+  for (int i = 0; i < set.count; ++i) {
+    if (square(way(set.corners[i], corner)) <= kSameCorner) {
+      return;
+    }
+  }
+  if (set.count < 2) {
+    set.corners[set.count++] = corner;
+    return;
+  }
+  Corner& a = set.corners[0];
+  Corner& b = set.corners[1];
+  if (!may_be_collinear(a, b, corner)) {
+    set = {.stable = true};
+    return;
+  }
+  const double between = square(way(a, b));
+  const double from_a = square(way(a, corner));
+  const double from_b = square(way(b, corner));
+  if (from_a > between && from_a >= from_b) {
+    b = corner;
+  } else if (from_b > between) {
+    a = corner;
+  }
+}
+
 }  // namespace
+
+SupportCorners merge_rounded(const SupportCorners& a, const SupportCorners& b) {
+  if (a.stable || b.stable) {
+    return {.stable = true};
+  }
+  SupportCorners merged = a;
+  for (int i = 0; i < b.count && !merged.stable; ++i) {
+    add_rounded(merged, b.corners[i]);
+  }
+  return merged;
+}
 
 SupportCorners support_corners(const base::Cell& cell, ContactState state) {
   if (!state.pressed) {

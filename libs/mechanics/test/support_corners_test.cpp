@@ -129,6 +129,27 @@ TEST(SupportCorners, are_compared_exactly_over_the_whole_lattice) {
   EXPECT_TRUE(merge(pair_of({1, 1, -1}, {65'537, 1, -1}), single({1, 65'537, -1})).stable);
 }
 
+/// Points of a line in a direction that is no ratio of whole numbers, rounded: no triple is taken
+/// for a triangle, however the three are chosen, and one a hundredth of their distance away is.
+TEST(SupportCorners, that_are_rounded_stay_two_on_a_line) {
+  const auto place = [](double along, double across) {
+    const auto part = [](double value) { return static_cast<std::int32_t>(std::lround(value)); };
+    return Corner{part(along * 0.6123 - across * 0.7906), part(along * 0.7906 + across * 0.6123),
+                  part(along * 0.31)};
+  };
+  base::Rng rng(2);
+  for (int i = 0; i < 2000; ++i) {
+    const auto along = [&] { return static_cast<double>(rng.below(100'000)) - 50'000; };
+    SupportCorners set;
+    for (int k = 0; k < 5; ++k) {
+      set = merge_rounded(set, single(place(along(), 0)));
+    }
+    ASSERT_FALSE(set.stable) << i;
+    const double reach = std::abs(static_cast<double>(set.corners[0].x - set.corners[1].x));
+    EXPECT_TRUE(merge_rounded(set, single(place(along(), 1000))).stable || reach < 2000);
+  }
+}
+
 SupportCorners random_set(base::Rng& rng, std::vector<Corner>& all) {
   const Cell cell{static_cast<std::int32_t>(rng.below(3)), static_cast<std::int32_t>(rng.below(3)),
                   static_cast<std::int32_t>(rng.below(2))};

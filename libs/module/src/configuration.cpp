@@ -16,7 +16,7 @@ std::span<const std::uint8_t> bytes_of(const Value& value) {
 
 std::uint32_t checksum_of(const Configuration& configuration) {
   return agent::wire::checksum(
-      bytes_of(configuration.setup),
+      bytes_of(configuration.setup).first(kSetupBytes),
       agent::wire::checksum(bytes_of(configuration.identity), kChecksumStart));
 }
 

@@ -71,6 +71,7 @@ Engine::Engine(const model::Robot& robot, SimulationOptions options)
   static_assert(model::kModuleCountMax < (std::size_t{1} << kModuleBits));
   agents_.reserve(count);
   ports_.resize(count);
+  more_lines_.resize(robot.lattice().direction_count > base::kDirectionCount ? count : 0);
   // A seed of its own for each module: consecutive seeds of the whole do not overlap.
   const std::uint64_t base = base::Rng(options_.seed).next();
   for (std::size_t i = 0; i < count; ++i) {
@@ -139,7 +140,7 @@ void Engine::tell_step() {
 /// A module starts and senses its neighbours.
 void Engine::start(std::int32_t module) {
   hand_in(module, event_of(agent::EventKind::kStart));
-  for (const base::Direction face : base::kDirections) {
+  for (const base::Direction face : base::directions(robot_.lattice())) {
     const std::int32_t other = neighbour(module, face);
     if (other >= 0 && ports_[at(other)].is_attached && !ports_[at(module)].open_faces.has(face)) {
       link_up(module, face);
@@ -278,7 +279,7 @@ void Engine::begin_anew(std::int32_t module) {
 
 /// What happens to a module at all its faces is sensed on the other side.
 void Engine::tell_neighbours(std::int32_t module, agent::EventKind kind) {
-  for (const base::Direction face : base::kDirections) {
+  for (const base::Direction face : base::directions(robot_.lattice())) {
     const std::int32_t other = neighbour(module, face);
     if (other < 0 || !ports_[at(other)].takes_part() || ports_[at(module)].open_faces.has(face)) {
       continue;

@@ -12,14 +12,14 @@ using agent::EventKind;
 
 std::uint64_t Engine::pack(const Happening& what) {
   return static_cast<std::uint64_t>(what.item) << 32U |
-         static_cast<std::uint64_t>(what.module) << 6U |
+         static_cast<std::uint64_t>(what.module) << 7U |
          static_cast<std::uint64_t>(what.face) << 3U | static_cast<std::uint64_t>(what.kind);
 }
 
 Engine::Happening Engine::unpack(std::uint64_t content) {
   return {.kind = static_cast<Kind>(content & 7U),
-          .face = static_cast<base::Direction>((content >> 3U) & 7U),
-          .module = static_cast<std::int32_t>((content >> 6U) & ((1U << kModuleBits) - 1)),
+          .face = static_cast<base::Direction>((content >> 3U) & 15U),
+          .module = static_cast<std::int32_t>((content >> 7U) & ((1U << kModuleBits) - 1)),
           .item = static_cast<std::uint32_t>(content >> 32U)};
 }
 
@@ -107,7 +107,7 @@ void Engine::handle(const Happening& what) {
       break;
     case Kind::kLine:
       port.line_events =
-          static_cast<std::uint8_t>(port.line_events & ~(1U << static_cast<unsigned>(what.face)));
+          static_cast<std::uint16_t>(port.line_events & ~(1U << static_cast<unsigned>(what.face)));
       if (port.takes_part() && !port.is_busy) {
         flush(what.module);
         arm_timer(what.module);

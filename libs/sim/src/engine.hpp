@@ -63,10 +63,14 @@ class Engine {
 
   /// A burst on an unlimited line: more than a link's window, so that it never matters.
   static constexpr int kBurstMax = 64;
-  static constexpr int kModuleBits = 26;
+  static constexpr int kModuleBits = 25;
   static constexpr std::uint32_t kPrefetchAhead = 2;
 
   static std::size_t at(std::int32_t module) { return static_cast<std::size_t>(module); }
+
+  Lines& lines(std::int32_t module, int face) {
+    return face < base::kDirectionCount ? ports_[at(module)].lines : more_lines_[at(module)];
+  }
 
   static std::uint64_t pack(const Happening& what);
   static Happening unpack(std::uint64_t content);
@@ -133,6 +137,7 @@ class Engine {
   std::vector<agent::Agent> agents_;
   LentStore lent_;
   std::vector<Port> ports_;
+  std::vector<Lines> more_lines_;  ///< Of faces that cubes do not have.
   EventQueue queue_;
   PacketPool pool_;
   std::vector<Waiting> waiting_;

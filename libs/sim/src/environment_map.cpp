@@ -58,6 +58,10 @@ bool has_far_corners(const model::Robot& robot, const agent::Environment& enviro
       reach = std::max<std::int64_t>(reach, std::abs(value));
     }
   }
+  if (environment.beams != nullptr) {
+    // Sheared cells are up to twice as far away as they count.
+    return 2 * (reach + 1) * agent::kCornerParts > kMost;
+  }
   return 2 * (reach + 1) * environment.foot_denominator > kMost;
 }
 
@@ -78,7 +82,8 @@ EnvironmentMap::EnvironmentMap(const model::Robot& robot)
     : robot_(robot),
       modules_(robot.modules().size()),
       first_facet_(robot.modules().size() + 1, 0),
-      mass_unit_kg_(find_mass_unit(robot)) {
+      mass_unit_kg_(find_mass_unit(robot)),
+      beams_(model::beam_section(robot.material()), robot.lattice()) {
   for (std::size_t i = 0; i < robot.modules().size(); ++i) {
     modules_.insert(robot.modules()[i].cell, static_cast<std::int32_t>(i));
   }
@@ -89,6 +94,8 @@ EnvironmentMap::EnvironmentMap(const model::Robot& robot)
   const auto [numerator, denominator] = foot_parts(robot);
   environment_ = {.describe = describe,
                   .map = this,
+                  .beams = beams_.is_cubic() ? nullptr : &beams_,
+                  .lattice = &robot.lattice(),
                   .foot_width_mm = 2 * robot.foot_half_width_mm(),
                   .foot_numerator = numerator,
                   .foot_denominator = denominator,
@@ -122,9 +129,6 @@ bool needs_environment(const model::Robot& robot) {
 }
 
 std::optional<std::string> find_unknown_to_modules(const model::Robot& robot) {
-  if (robot.lattice() != base::kCubic) {
-    return "a lattice other than the cubic one";
-  }
   if (has_other_connectors(robot)) {
     return "connectors with other limits than Eq. (17)";
   }
@@ -165,13 +169,19 @@ LentStore::LentStore(const model::Robot& robot, std::size_t module_count, Needs 
     surroundings_.resize(module_count);
   }
   const bool has_any = needs.has_fronts || needs.has_stages || needs.judges_faces || has_map;
+  const bool has_more_faces = robot.lattice() != base::kCubic;
+  more_faces_.resize(has_more_faces ? module_count : 0);
+  for (agent::MoreFaces& more : more_faces_) {
+    more.lattice = &robot.lattice();
+  }
   memory_.resize(has_any ? module_count : 0);
   for (std::size_t i = 0; i < memory_.size(); ++i) {
     memory_[i] = {.fronts = needs.has_fronts ? &fronts_->memory_of(i) : nullptr,
                   .free_faces = needs.judges_faces ? &faces_[i] : nullptr,
                   .stages = needs.has_stages ? &stages_[i] : nullptr,
                   .surroundings = has_map ? surroundings_[i].data() : nullptr,
-                  .environment = has_map ? &map_->environment() : nullptr};
+                  .environment = has_map ? &map_->environment() : nullptr,
+                  .faces = has_more_faces ? &more_faces_[i] : nullptr};
   }
 }
 

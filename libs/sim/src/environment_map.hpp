@@ -13,6 +13,7 @@
 #include "front_store.hpp"
 #include "holdfast/agent/free_faces.hpp"
 #include "holdfast/agent/workspace.hpp"
+#include "holdfast/mechanics/lattice_beam.hpp"
 #include "holdfast/model/robot.hpp"
 
 namespace holdfast::sim {
@@ -39,6 +40,7 @@ class EnvironmentMap {
   model::CellIndex modules_;
   std::vector<std::size_t> first_facet_;  ///< Of each module, and behind the last one.
   double mass_unit_kg_ = 0;               ///< 0: masses are not whole numbers of any.
+  mechanics::LatticeBeam<double> beams_;
   agent::Environment environment_;
 };
 
@@ -79,6 +81,7 @@ class LentStore {
   std::vector<agent::FreeFaces> faces_;
   std::unique_ptr<EnvironmentMap> map_;
   std::vector<std::array<agent::Surroundings, 1 + agent::kPlannedMax>> surroundings_;
+  std::vector<agent::MoreFaces> more_faces_;
   std::vector<agent::LentMemory> memory_;
 };
 

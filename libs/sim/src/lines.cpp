@@ -11,7 +11,7 @@ namespace holdfast::sim {
 
 /// Offers every free line to the agent that wants it.
 void Engine::flush(std::int32_t module) {
-  const std::uint8_t faces = ports_[at(module)].wanted;
+  const std::uint16_t faces = ports_[at(module)].wanted;
   for (unsigned left = faces; left != 0; left &= left - 1) {
     offer_line(module, std::countr_zero(left));
   }
@@ -19,8 +19,8 @@ void Engine::flush(std::int32_t module) {
 
 void Engine::offer_line(std::int32_t module, int face) {
   Port& port = ports_[at(module)];
-  const auto bit = static_cast<std::uint8_t>(1U << static_cast<unsigned>(face));
-  const Time& free_at = port.line_free_at[static_cast<std::size_t>(face)];
+  const auto bit = static_cast<std::uint16_t>(1U << static_cast<unsigned>(face));
+  const Time& free_at = lines(module, face).free_at[line_of(face)];
   bool is_sending = true;
   for (int i = 0; is_sending && i < kBurstMax && (port.wanted & bit) != 0; ++i) {
     if (!options_.link.is_unlimited && now_ < free_at) {
@@ -29,7 +29,7 @@ void Engine::offer_line(std::int32_t module, int face) {
     is_sending = send_one(module, face);
   }
   if (is_sending && (port.wanted & bit) != 0 && (port.line_events & bit) == 0) {
-    port.line_events = static_cast<std::uint8_t>(port.line_events | bit);
+    port.line_events = static_cast<std::uint16_t>(port.line_events | bit);
     push(std::max(free_at, now_ + 1),
          {.kind = Kind::kLine, .face = static_cast<base::Direction>(face), .module = module});
   }
@@ -57,7 +57,7 @@ void Engine::transmit(std::int32_t module, int face, std::span<const std::uint8_
   Port& port = ports_[at(module)];
   const auto direction = static_cast<base::Direction>(face);
   const Time duration = line_times_[packet.size()];
-  port.line_free_at[static_cast<std::size_t>(face)] = now_ + duration;
+  lines(module, face).free_at[line_of(face)] = now_ + duration;
   port.bytes_sent += packet.size();
   ++port.packets_sent;
   const PacketTag tag{.number = packet_count_++,
@@ -94,7 +94,7 @@ void Engine::launch(std::int32_t module, int face, const PacketTag& tag,
       flip_bits(pool_.bytes(slot), port.rng);
     }
     arrival += noise_.jitter(port.rng);
-    Time& last = port.arrival_last[static_cast<std::size_t>(face)];
+    Time& last = lines(module, face).arrival_last[line_of(face)];
     if (noise_.is_held_back(port.rng)) {
       arrival += noise_.delay(port.rng);
     } else {

@@ -31,6 +31,12 @@ LinkModel blinky_blocks_v2() {
   return model;
 }
 
+LinkModel catoms() {
+  LinkModel model = blinky_blocks_v2();
+  model.compute_time = 100;
+  return model;
+}
+
 LinkModel unit() {
   LinkModel model;
   model.ticks_per_second = 0;
@@ -49,6 +55,9 @@ std::optional<LinkModel> find_link_model(std::string_view name) {
   }
   if (name == "v2") {
     return blinky_blocks_v2();
+  }
+  if (name == "catoms") {
+    return catoms();
   }
   if (name == "unit") {
     return unit();
@@ -104,12 +113,12 @@ Time line_time(const LinkModel& model, int packet_bytes) {
 /// the other side's computing; acknowledge_after; a packet that the acknowledgement has to wait
 /// for, the acknowledgement and its delays; computing again. Computing waits for one event of every
 /// face and a timer. Clocks may run fast by the drift.
-agent::LinkTiming link_timing(const LinkModel& model) {
-  constexpr Time kEventsAhead = base::kDirectionCount + 1;
+agent::LinkTiming link_timing(const LinkModel& model, int face_count) {
+  const Time events_ahead = static_cast<Time>(face_count) + 1;
   const Time line = line_time(model, model.packet_bytes);
   const Time held_back = model.reordering > 0 ? model.reordering_delay : 0;
   const Time way = line + model.latency + model.jitter + held_back;
-  const Time computing = (kEventsAhead + 1) * model.compute_time;
+  const Time computing = (events_ahead + 1) * model.compute_time;
   const Time wait = 2 * (way + computing) + line + model.acknowledge_after;
   const auto drift_ppm = static_cast<Time>(model.clock_drift * 1e6);
   // Both clocks count: one side's timeout, the other's acknowledge_after.

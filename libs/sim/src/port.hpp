@@ -15,11 +15,22 @@
 /// What the simulation keeps for each module beside its agent.
 namespace holdfast::sim {
 
+/// The lines at six faces.
+struct Lines {
+  std::array<Time, base::kDirectionCount> free_at{};
+  std::array<Time, base::kDirectionCount> arrival_last{};  ///< Of what was sent on each.
+};
+
+/// The place of a face in its Lines.
+constexpr std::size_t line_of(int face) {
+  return static_cast<std::size_t>(face < base::kDirectionCount ? face
+                                                               : face - base::kDirectionCount);
+}
+
 struct Port {
   static constexpr std::uint32_t kNoEvent = ~std::uint32_t{0};
 
-  std::array<Time, base::kDirectionCount> line_free_at{};
-  std::array<Time, base::kDirectionCount> arrival_last{};  ///< Of what was sent on each face.
+  Lines lines;  ///< Of the first six faces.
 
   WakeTimer timer;  ///< Its calls are timer events in the queue.
 
@@ -37,12 +48,12 @@ struct Port {
 
   Seen seen;  ///< As the agent was after its last step.
 
-  std::uint8_t wanted = 0;       ///< Faces on which a packet waits.
-  std::uint8_t line_events = 0;  ///< Faces with an event in the queue for a free line.
-  base::Faces cut_faces;         ///< Links that drop everything.
-  base::Faces open_faces;        ///< Connections that are not closed: there is no neighbour.
-  bool is_watching = false;      ///< It wants to wake for watching over a verdict, nothing else.
-  bool is_busy = false;          ///< Computing; an event in the queue says when it is done.
+  std::uint16_t wanted = 0;       ///< Faces on which a packet waits.
+  std::uint16_t line_events = 0;  ///< Faces with an event in the queue for a free line.
+  base::WideFaces cut_faces;      ///< Links that drop everything.
+  base::WideFaces open_faces;     ///< Connections that are not closed: there is no neighbour.
+  bool is_watching = false;       ///< It wants to wake for watching over a verdict, nothing else.
+  bool is_busy = false;           ///< Computing; an event in the queue says when it is done.
   bool is_attached = true;
   bool is_silenced = false;
 

@@ -21,7 +21,7 @@ std::optional<std::string> find_module_fault(const char* what, std::int32_t modu
   return fmt::format("{} is {}, allowed are existing modules: 0 to {}", what, module, count - 1);
 }
 
-/// The modules' own program knows cubes, and takes every neighbour for connected.
+/// The modules' own program takes every neighbour for connected.
 std::optional<std::string> find_robot_fault(const model::Robot& robot) {
   if (const auto unknown = find_unknown_to_modules(robot)) {
     return "the robot has " + *unknown + ", which the modules' program does not know";
@@ -33,6 +33,14 @@ std::optional<std::string> find_robot_fault(const model::Robot& robot) {
       "the robot has {} pairs of neighbours that are not connected, allowed are none: the modules' "
       "program connects all neighbours",
       robot.released_count());
+}
+
+/// The number of a lattice in greetings.
+std::uint8_t wire_number(const base::Lattice& lattice) {
+  return lattice == base::kCubic         ? agent::wire::kCubicLattice
+         : lattice == base::kFaceCentred ? agent::wire::kFaceCentredLattice
+         : lattice == base::kHexagonal   ? agent::wire::kHexagonalLattice
+                                         : agent::wire::kHexagonalPrismLattice;
 }
 
 /// What is in a cell where the robot has no module is known of a floor only.
@@ -119,7 +127,9 @@ agent::Setup make_setup(const model::Robot& robot, const SimulationOptions& opti
   setup.method = options.method;
   setup.degree_max = options.degree_max;
   setup.keeps_answers = options.keeps_answers && !needs_environment(robot);
-  setup.timing = link_timing(options.link);
+  setup.lattice = robot.lattice();
+  setup.timing = link_timing(options.link, robot.lattice().direction_count);
+  setup.timing.lattice = wire_number(robot.lattice());
   agent::prepare(setup);
   return setup;
 }

@@ -21,26 +21,28 @@ std::string text(const base::Cell& cell) {
   return fmt::format("({},{},{})", cell.x, cell.y, cell.z);
 }
 
-const char* face_name(base::Direction face) {
-  return kFaceNames[static_cast<std::size_t>(base::index(face))];
+/// Faces of cubes have names, others numbers.
+std::string face_name(base::Direction face, const base::Lattice& lattice) {
+  const auto i = static_cast<std::size_t>(base::index(face));
+  return lattice == base::kCubic ? kFaceNames[i] : fmt::format("face {}", i);
 }
 
-std::string text(const Fault& fault) {
+std::string text(const Fault& fault, const base::Lattice& lattice) {
   switch (fault.kind) {
     case Fault::Kind::kKill:
       return "falls silent";
     case Fault::Kind::kCut:
-      return fmt::format("loses its link at {}", face_name(fault.face));
+      return fmt::format("loses its link at {}", face_name(fault.face, lattice));
     case Fault::Kind::kDetach:
       return "is taken off";
     case Fault::Kind::kReset:
       return "starts again";
     case Fault::Kind::kMend:
-      return fmt::format("has its link at {} again", face_name(fault.face));
+      return fmt::format("has its link at {} again", face_name(fault.face, lattice));
     case Fault::Kind::kUnplug:
-      return fmt::format("is parted from its neighbour at {}", face_name(fault.face));
+      return fmt::format("is parted from its neighbour at {}", face_name(fault.face, lattice));
     case Fault::Kind::kPlug:
-      return fmt::format("is connected at {} again", face_name(fault.face));
+      return fmt::format("is connected at {} again", face_name(fault.face, lattice));
     case Fault::Kind::kAttach:
       break;
   }
@@ -49,7 +51,7 @@ std::string text(const Fault& fault) {
 
 }  // namespace
 
-std::string describe(const agent::Answer& answer) {
+std::string describe(const agent::Answer& answer, const base::Lattice& lattice) {
   if (answer.verdict == agent::Verdict::kNone) {
     return "does not know the verdict any more";
   }
@@ -57,7 +59,7 @@ std::string describe(const agent::Answer& answer) {
                                  agent::name(answer.reason));
   if (answer.verdict == agent::Verdict::kSafe || answer.verdict == agent::Verdict::kOverload) {
     line += fmt::format(", load ratio {:.4g} at {} {}", answer.load_ratio_max,
-                        text(answer.worst_cell), face_name(answer.worst_direction));
+                        text(answer.worst_cell), face_name(answer.worst_direction, lattice));
   }
   return line;
 }
@@ -66,6 +68,11 @@ struct StoryTrace::Writer {
   std::ostream& out;
   StoryOptions options;
   const model::Robot* robot = nullptr;
+
+  const base::Lattice& lattice() const {
+    return robot == nullptr ? base::kCubic : robot->lattice();
+  }
+
   LinkModel link = {};
   std::uint16_t epoch = 0;  ///< The newest that has been told.
   int phase = -1;           ///< The furthest in it.
@@ -123,11 +130,11 @@ void StoryTrace::phase_changed(Time time, std::int32_t module, agent::Phase phas
 }
 
 void StoryTrace::verdict_known(Time time, std::int32_t module, const agent::Answer& answer) {
-  writer_->tell(time, module, describe(answer));
+  writer_->tell(time, module, describe(answer, writer_->lattice()));
 }
 
 void StoryTrace::fault_happened(const Fault& fault) {
-  writer_->tell(fault.at, fault.module, text(fault));
+  writer_->tell(fault.at, fault.module, text(fault, writer_->lattice()));
 }
 
 void StoryTrace::announced(const Announcement& announcement) {

@@ -105,7 +105,7 @@ struct Event {
 };
 
 struct Actions {
-  std::uint8_t send_faces = 0;
+  FaceMask send_faces = 0;
   bool is_unfinished = false;  ///< step_part() has more to do: hand in kContinue.
   Time wake_at = kNever;
   int packet_bytes = 0;  ///< After kLineFree; 0: nothing to send after all.

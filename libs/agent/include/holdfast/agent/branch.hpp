@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 
+#include "holdfast/agent/lattice_beams.hpp"
 #include "holdfast/base/algebra.hpp"
 #include "holdfast/base/cell.hpp"
 #include "holdfast/mechanics/beam.hpp"
@@ -55,7 +56,7 @@ using CutForces = std::array<base::Vec6<float>, kLoopsMax>;
 /// The beam between a module and its parent, or the other side of a cut, seen from the module.
 class Joint {
  public:
-  Joint(const mechanics::BeamStiffness<double>& beam, base::Direction direction);
+  Joint(Beams<double> beams, base::Direction direction);
 
   // All in place: stacks are small.
 
@@ -72,7 +73,7 @@ class Joint {
   void hand_on(base::Vec6<double>& force) const;
 
  private:
-  const mechanics::BeamStiffness<double>& beam_;
+  Beams<double> beams_;
   base::Direction direction_;
   std::array<double, 3> lever_{};  // From the other end to here.
   base::Vec6<double> straight_{};  // F in the local frame: its diagonal, ...
@@ -128,7 +129,7 @@ class Branch {
 
   void clear_stiffness();
   void add_stiffness(const base::Mat6<double>& block);
-  void add_end(int slot, bool is_upper, const mechanics::BeamStiffness<double>& beam);
+  void add_end(int slot, bool is_upper, Beams<double> beams);
 
   /// Column `index` of a child, whose i-th open loop has slot_of[i] here.
   void add_column(int index, const std::array<std::uint8_t, kLoopsMax>& slot_of,
@@ -143,7 +144,7 @@ class Branch {
 
   /// When all children's columns are here: the next piece of closing loops, from `piece` = 0.
   /// False: all are closed.
-  bool close_loops(const mechanics::BeamStiffness<double>& beam, std::uint8_t& piece);
+  bool close_loops(Beams<double> beams, std::uint8_t& piece);
 
   /// How many of a child's columns must be here before column `index` may go up: as soon as S is
   /// complete the columns of a loop pass one by one. Of no use where a loop closes.
@@ -193,7 +194,7 @@ class Branch {
   void find_end_columns(const Joint& to_parent, int first, int count, Columns& columns) const;
   void find_give_columns(const Joint& to_parent, bool is_fixed, int first, int count,
                          Columns& columns) const;
-  void close_loop(const mechanics::BeamStiffness<double>& beam, int slot);
+  void close_loop(Beams<double> beams, int slot);
   void close_column(int slot, int column);
 
   /// Loops are closed in the order of their slots.

@@ -224,7 +224,7 @@ class Conductor {
   std::uint16_t degree_ = 0;  ///< Degree of the polynomial preconditioner.
   std::uint8_t planned_count_ = 0;
   std::uint8_t forgotten_count_ = 0;
-  std::array<std::uint8_t, 8> totals_{};
+  PlannedMasks totals_{};
   bool is_any_remote_ = false;
   std::uint32_t contact_iterations_max_ = 0;  ///< Under the present law.
   bool is_fixed_ = false;

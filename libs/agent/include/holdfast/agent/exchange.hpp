@@ -31,7 +31,7 @@ class Exchange {
   void start(Links& links, const base::Vec6<float>& own);
 
   /// A vector has come.
-  void take(Direction face, std::span<const std::uint8_t> message);
+  void take(MoreFaces* more, Direction face, std::span<const std::uint8_t> message);
 
   bool is_under_way() const { return is_under_way_; }
 
@@ -48,12 +48,16 @@ class Exchange {
   bool is_complete(Faces neighbours) const { return (neighbours - here_[slot(0)]).is_empty(); }
 
   /// What the neighbour at `face` has sent in the exchange under way.
-  const base::Vec6<float>& vector(Direction face) const { return vector(face, 0); }
+  const base::Vec6<float>& vector(const MoreFaces* more, Direction face) const {
+    return vector(more, face, 0);
+  }
 
   /// Are these neighbours' vectors of the exchange to be started next here?
   bool is_next_complete(Faces neighbours) const { return (neighbours - here_[slot(1)]).is_empty(); }
 
-  const base::Vec6<float>& next_vector(Direction face) const { return vector(face, 1); }
+  const base::Vec6<float>& next_vector(const MoreFaces* more, Direction face) const {
+    return vector(more, face, 1);
+  }
 
   /// The exchange is over.
   void end();
@@ -61,8 +65,12 @@ class Exchange {
  private:
   std::size_t slot(unsigned ahead) const { return (tag_ + ahead) & 1U; }
 
-  const base::Vec6<float>& vector(Direction face, unsigned ahead) const {
-    return vectors_[slot(ahead)][static_cast<std::size_t>(face)];
+  const base::Vec6<float>& vector(const MoreFaces* more, Direction face, unsigned ahead) const {
+    const auto i = static_cast<std::size_t>(face);
+    const std::size_t buffer = slot(ahead);
+    return !kKnowsLattices || i < vectors_[buffer].size()
+               ? vectors_[buffer][i]
+               : more->vectors[buffer][i - vectors_[buffer].size()];
   }
 
   bool is_under_way_ = false;
@@ -70,7 +78,7 @@ class Exchange {
   std::array<Faces, 2> here_{};  ///< Whose vectors have come, by the tag's lowest bit.
   std::uint16_t left_ = 0;
   std::uint16_t behind_ = 0;
-  std::array<std::array<base::Vec6<float>, base::kDirectionCount>, 2> vectors_{};
+  std::array<ByFace<base::Vec6<float>>, 2> vectors_{};
 };
 
 }  // namespace holdfast::agent

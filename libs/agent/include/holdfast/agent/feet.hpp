@@ -47,6 +47,11 @@ bool is_good_corner(const FootCorner& corner);
 /// Can a robot of this mass, in units, be checked without overflow?
 bool fits_exact_check(const Setup& setup, std::int64_t mass);
 
+/// Where a module is above the floor, seen from another one, in cells of the check. Those of other
+/// lattices than that of cubes are half of a pitch wide, as layers or rows are shifted by so much;
+/// rows of prisms are sqrt(3)/2 of a pitch apart.
+base::Cell floor_place(const Setup& setup, const base::Cell& cell, const base::Cell& from);
+
 /// The centre of mass, and what feet are as seen from it.
 class FeetCheck {
  public:
@@ -69,6 +74,13 @@ class FeetCheck {
 
   std::int64_t pitch_;       ///< Pitch of cells: its parts times the modules.
   std::int64_t half_width_;  ///< Half the width of a facet.
+#ifdef HOLDFAST_AGENT_FLOOR_ONLY
+  std::int64_t pitch_y() const { return pitch_; }
+#else
+  std::int64_t pitch_y() const { return pitch_y_; }
+
+  std::int64_t pitch_y_;
+#endif
   Vector mass_;
 };
 

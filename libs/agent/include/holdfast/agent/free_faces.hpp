@@ -54,7 +54,7 @@ class FreeFaces {
   void forget() { *this = FreeFaces(); }
 
   /// There is a verdict on the robot with one planned module at these faces.
-  void note(base::Faces touched, const Answer& answer);
+  void note(Faces touched, const Answer& answer);
 
   // ---- Orders.
 
@@ -103,14 +103,14 @@ class FreeFaces {
   bool send_part_down(Workspace& ws);
   void take_part(base::Direction face, bool is_up, std::span<const std::uint8_t> message);
   void take_reach(const Workspace& ws, std::span<const std::uint8_t> message);
-  std::uint16_t hops_from_here(const Workspace& ws, base::Faces left_out) const;
+  std::uint16_t hops_from_here(const Workspace& ws, Faces left_out) const;
   bool send_outside(Workspace& ws);
   void find_inward(const Workspace& ws);
   bool continue_way(const Workspace& ws);
   bool is_alone(const Workspace& ws, base::Direction face) const;
   LoadWay way_of_support(const Workspace& ws) const;
   bool send_reach(Workspace& ws);
-  float largest_but(const Workspace& ws, base::Faces left_out) const;
+  float largest_but(const Workspace& ws, Faces left_out) const;
   bool has_all_parts(const Workspace& ws) const;
   bool judge_next(const Workspace& ws);
   bool find_candidate(const Workspace& ws, base::Direction direction, Candidate& candidate) const;
@@ -151,8 +151,8 @@ class FreeFaces {
   float outside_ = kNoLoadRatio;  ///< The largest load ratio.
 
   // The way inward.
-  base::Faces inward_;   ///< The face through which the way goes, none at a support.
-  base::Faces outward_;  ///< Where the way goes on.
+  Faces inward_;   ///< The face through which the way goes, none at a support.
+  Faces outward_;  ///< Where the way goes on.
   std::uint8_t reach_parts_ = 0;
   bool has_way_ = false;
   bool has_sent_way_ = false;

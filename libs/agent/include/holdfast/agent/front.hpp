@@ -32,8 +32,8 @@ namespace holdfast::agent {
 /// A node in a front.
 struct FrontNode {
   base::Cell cell = {};
-  base::Faces missing = {};  ///< Faces whose beams are not in yet.
-  base::Faces joined = {};   ///< Faces whose beams are put in here.
+  Faces missing = {};        ///< Faces whose beams are not in yet.
+  Faces joined = {};         ///< Faces whose beams are put in here.
   bool is_fixed = false;     ///< Does not move: no rows.
   bool is_kept = false;      ///< Its facet is the root's.
   bool is_held = true;       ///< Of a kept facet, against slip and twist.

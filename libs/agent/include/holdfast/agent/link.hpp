@@ -26,7 +26,8 @@ using Time = std::uint64_t;
 inline constexpr Time kNever = ~Time{0};
 
 struct LinkTiming {
-  int packet_bytes = wire::kPacketBytesMin;  ///< kPacketBytesMin to kPacketBytesMax.
+  int packet_bytes = wire::kPacketBytesMin;    ///< kPacketBytesMin to kPacketBytesMax.
+  std::uint8_t lattice = wire::kCubicLattice;  ///< That greetings name; here, as there is room.
   Time acknowledge_after = 8'000;
   Time retransmit_after = 50'000;  ///< Longer than two packets and acknowledge_after.
   int retry_count = 4;             ///< At this pace; later ones wait twice as long each, up to 8x.
@@ -103,7 +104,8 @@ class Link {
   Time deadline(const LinkTiming& timing, bool is_watched) const;
 
  private:
-  std::span<const std::uint8_t> receive_greeting(std::span<const std::uint8_t> body);
+  std::span<const std::uint8_t> receive_greeting(std::span<const std::uint8_t> body,
+                                                 const LinkTiming& timing);
   void receive_acknowledgement(std::uint8_t next, const LinkTiming& timing, Time now);
   int write_greeting(std::span<std::uint8_t> packet, const LinkTiming& timing, Time now);
   std::uint8_t* queue();
@@ -136,15 +138,16 @@ class Link {
   std::uint8_t retry_count_ = 0;
   std::uint8_t receive_number_ = 0;  // Beside them, as there is room.
   bool owes_acknowledgement_ = false;
-  Time retry_at_ = kNever;        ///< On a lost link: of the next greeting.
-  std::uint8_t* lent_ = nullptr;  ///< Not owned; in place of queue_.
 
-  // Receiving.
-  Time acknowledge_at_ = kNever;
-  Time heard_at_ = 0;
+  // Receiving, bytes first, so that no room is lost.
   std::array<std::uint8_t, wire::kMessageBytesMax> message_{};
   std::uint8_t message_bytes_ = 0;  ///< Here so far, ...
   std::uint8_t message_size_ = 0;   ///< ... of so many.
+  Time acknowledge_at_ = kNever;
+  Time heard_at_ = 0;
+
+  Time retry_at_ = kNever;        ///< On a lost link: of the next greeting.
+  std::uint8_t* lent_ = nullptr;  ///< Not owned; in place of queue_.
 };
 
 }  // namespace holdfast::agent

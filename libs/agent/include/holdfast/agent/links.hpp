@@ -7,14 +7,13 @@
 #include <span>
 
 #include "holdfast/agent/link.hpp"
-#include "holdfast/base/faces.hpp"
+#include "holdfast/agent/more_faces.hpp"
 
-/// The six links of a module: who is there, who has fallen silent, and when they have to be looked
-/// after.
+/// The links of a module, six of them or more: who is there, who has fallen silent, and when they
+/// have to be looked after.
 namespace holdfast::agent {
 
 using base::Direction;
-using base::Faces;
 
 /// What a module knows of time in a step.
 struct Clock {
@@ -25,6 +24,21 @@ struct Clock {
 class Links {
  public:
   Links() { deadline_.fill(kNever); }
+
+  /// Lends a module that is no cube the memory for its other faces. Once, before any link is up.
+  void lend(MoreFaces* more);
+
+  /// Null: the module is a cube.
+  MoreFaces* more() const {
+#ifdef HOLDFAST_AGENT_FLOOR_ONLY
+    return nullptr;
+#else
+    return more_;
+#endif
+  }
+
+  /// All faces of the module.
+  Faces all() const { return all_faces(more()); }
 
   /// Faces whose link is used: a neighbour is there and answers, and it is not hidden.
   Faces used() const { return working() - hidden_; }
@@ -93,7 +107,7 @@ class Links {
   void drop_unsent();
 
   /// All deadlines are found anew in finish_step(): whether links are watched has changed.
-  void touch_all() { touched_ = Faces::all(); }
+  void touch_all() { touched_ = all(); }
 
   /// At the end of a step: finds out which links have a packet to send, and their deadlines.
   void finish_step(const Clock& clock, bool is_watched);
@@ -102,15 +116,28 @@ class Links {
   Faces waiting() const { return waiting_; }
 
   /// When a link has to be looked after at the latest.
-  Time deadline(Faces faces = Faces::all()) const;
+  Time deadline(Faces faces) const;
+
+  Time deadline() const { return deadline(all()); }
 
  private:
-  Link& at(Direction face) { return links_[static_cast<std::size_t>(face)]; }
+  Link& at(Direction face) { return at_face(links_, more(), &MoreFaces::links, face); }
 
-  const Link& at(Direction face) const { return links_[static_cast<std::size_t>(face)]; }
+  const Link& at(Direction face) const { return at_face(links_, more(), &MoreFaces::links, face); }
 
-  std::array<Link, base::kDirectionCount> links_;
-  std::array<Time, base::kDirectionCount> deadline_{};
+  Time& deadline_at(Direction face) {
+    return at_face(deadline_, more(), &MoreFaces::deadline, face);
+  }
+
+  Time deadline_at(Direction face) const {
+    return at_face(deadline_, more(), &MoreFaces::deadline, face);
+  }
+
+#ifndef HOLDFAST_AGENT_FLOOR_ONLY
+  MoreFaces* more_ = nullptr;  ///< Not owned.
+#endif
+  ByFace<Link> links_;
+  ByFace<Time> deadline_{};
   Faces touched_;  ///< Whose link has changed in this step.
   Faces waiting_;
   Faces silent_;

@@ -6,6 +6,7 @@
 #include <span>
 
 #include "holdfast/agent/branch.hpp"
+#include "holdfast/agent/lattices.hpp"
 #include "holdfast/agent/round.hpp"
 #include "holdfast/agent/wire.hpp"
 #include "holdfast/base/algebra.hpp"
@@ -91,7 +92,7 @@ struct LabelledVector {
 
 /// `message` is whole, as Link::next_message() gives it. False: no program of this version writes
 /// it.
-bool is_legal(std::span<const std::uint8_t> message);
+bool is_legal(std::span<const std::uint8_t> message, int face_count = kOwnFaceCount);
 
 wire::Writer encode(const Join& join);
 wire::Writer encode(const Echo& echo);

@@ -5,11 +5,11 @@
 #include <array>
 #include <cstdint>
 
+#include "holdfast/agent/lattices.hpp"
 #include "holdfast/agent/setup.hpp"
 #include "holdfast/agent/surroundings.hpp"
 #include "holdfast/agent/system.hpp"
 #include "holdfast/base/algebra.hpp"
-#include "holdfast/base/faces.hpp"
 #include "holdfast/mechanics/ground_contact.hpp"
 
 /// The mechanical state of one module, existing or planned, and what is computed on it alone.
@@ -117,7 +117,7 @@ Gradients gradients_at_rest(const Node& node, const Setup& setup);
 
 /// Three columns of the diagonal block into Node::matrix, the first or (half 1) the last ones: K11
 /// of the beams on `faces` and the facet's symmetric tangent.
-void form_diagonal(Node& node, const Setup& setup, const ContactSetting& contact, base::Faces faces,
+void form_diagonal(Node& node, const Setup& setup, const ContactSetting& contact, Faces faces,
                    int half);
 
 /// Factors what form_diagonal() has left, three rows of it.
@@ -125,11 +125,11 @@ void factor_diagonal(Node& node, int half);
 
 /// A column of the diagonal block with the facet's true tangent.
 base::Vec6<double> diagonal_column(const Node& node, const Setup& setup,
-                                   const ContactSetting& contact, base::Faces faces, int column);
+                                   const ContactSetting& contact, Faces faces, int column);
 
 /// The scalar diagonal of that block (Eq. 14).
 base::Vec6<float> scalar_diagonal(const Node& node, const Setup& setup,
-                                  const ContactSetting& contact, base::Faces faces);
+                                  const ContactSetting& contact, Faces faces);
 
 /// Solves with the factor that factor_diagonal() has left.
 base::Vec6<float> solve_diagonal(const Node& node, base::Vec6<float> vector);

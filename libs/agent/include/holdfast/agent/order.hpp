@@ -8,6 +8,8 @@
 #include <span>
 
 #include "holdfast/agent/feet.hpp"
+#include "holdfast/agent/lattices.hpp"
+#include "holdfast/agent/planned.hpp"
 #include "holdfast/agent/wire.hpp"
 #include "holdfast/base/cell.hpp"
 #include "holdfast/mechanics/support_corners.hpp"
@@ -86,8 +88,8 @@ struct Order {
   std::uint8_t flags = 0;
   /// kJacobi: iterations; kStart, kGradient, kBegin, kIterate: degree; kWord: words; kStage: scene.
   std::uint16_t count = 0;
-  base::Cell cell = {};  ///< kPlan, kForget, kRenew, kWord: of that module; kMass: of the root.
-  std::array<std::uint8_t, 8> masks{};  ///< kHosts, kResume
+  PlannedMasks masks{};   ///< kHosts, kResume
+  base::Cell cell = {};   ///< kPlan, kForget, kRenew, kWord: of that module; kMass: of the root.
   std::int32_t mass = 0;  ///< kAngles, kResume: of all modules, in units; kWord: bits_of() a word.
   std::array<std::int32_t, 2> moment{};  ///< The same: first moments in x and y, units times cells.
   std::array<float, 3> reals{};
@@ -188,7 +190,7 @@ inline constexpr float kNoFacetMargin = 1e20F;
 /// What comes back, summed up the tree. Operations share the fields; most have a name for each.
 struct Report {
   std::uint8_t flags = 0;
-  std::uint8_t mask = 0;
+  FaceMask mask = 0;
   std::uint16_t extent = 0;
   std::uint32_t count = 0;
   std::uint32_t number = 0;
@@ -252,7 +254,9 @@ struct Report {
   /// The least pressure at an edge of a facet, in N; negative if one does not press all over.
   constexpr float facet_margin() const { return reals[1]; }
 
-  constexpr std::uint8_t support_hops() const { return mask; }  ///< To the nearest one.
+  constexpr std::uint8_t support_hops() const {
+    return static_cast<std::uint8_t>(mask);
+  }  ///< To the nearest one.
 
   // kNext: `count` free faces are decided.
   constexpr std::uint32_t undecided_count() const { return number; }  ///< Free faces that are not.
@@ -292,8 +296,8 @@ wire::Writer encode(const Order& order);
 wire::Writer encode(wire::Operation operation, const Report& report);
 
 /// Reads the order or report that a message holds. False: no program of this version writes it.
-bool decode(std::span<const std::uint8_t> message, Order& order);
-bool decode(std::span<const std::uint8_t> message, Report& report);
+bool decode(std::span<const std::uint8_t> message, Order& order, int face_count = kOwnFaceCount);
+bool decode(std::span<const std::uint8_t> message, Report& report, int face_count = kOwnFaceCount);
 
 /// The order in a message that is legal.
 inline Order decode_order(std::span<const std::uint8_t> message) {

@@ -5,8 +5,8 @@
 #include <array>
 #include <cstdint>
 
+#include "holdfast/agent/lattices.hpp"
 #include "holdfast/base/cell.hpp"
-#include "holdfast/base/faces.hpp"
 
 /// The planned modules and who emulates them.
 ///
@@ -18,10 +18,15 @@
 /// routing table.
 namespace holdfast::agent {
 
+struct MoreFaces;
+
 inline constexpr int kPlannedMax = 5;
 
 /// Planned modules in a robot with clusters, at most: the vectors of more leave no memory for them.
 inline constexpr int kClusterPlannedMax = 2;
+
+/// The faces of each planned module that touch something, by index; the last ones are of none.
+using PlannedMasks = std::array<FaceMask, kPlannedMax + 1>;
 
 /// A set of planned modules, by index.
 class PlannedSet {
@@ -43,7 +48,14 @@ class PlannedSet {
 
 class Planned {
  public:
-  void clear() { *this = Planned(); }
+  /// Lends a module that is no cube the memory for its other faces. Once, before all else.
+  void lend([[maybe_unused]] MoreFaces* more) {
+#ifndef HOLDFAST_AGENT_FLOOR_ONLY
+    more_ = more;
+#endif
+  }
+
+  void clear();
 
   int count() const { return count_; }
 
@@ -64,29 +76,36 @@ class Planned {
 
   /// Learns which faces of planned module `index` touch modules below the child at `child`. An
   /// index of none is ignored.
-  void add_below(base::Direction child, int index, base::Faces touching);
+  void add_below(base::Direction child, int index, Faces touching);
 
   /// The face of planned module `index` that touches this module, or none.
-  base::Faces own_touching(int index) const { return own_touching_[at(index)]; }
+  Faces own_touching(int index) const { return own_touching_[at(index)]; }
 
   /// Faces of planned module `index` that touch modules from this one down.
-  base::Faces touching(int index) const;
+  Faces touching(int index) const;
 
   /// All faces that touch modules are known, by planned index as in an order's masks: finds groups
   /// and hosts, as if for the first time.
-  void decide_hosts(const std::array<std::uint8_t, 8>& totals);
+  void decide_hosts(const PlannedMasks& totals);
 
   /// Do these masks say at least what is known from here down?
-  bool agrees_with(const std::array<std::uint8_t, 8>& totals) const;
+  bool agrees_with(const PlannedMasks& totals) const;
 
   /// Faces of planned module `index` that touch any module.
-  base::Faces total(int index) const { return totals_[at(index)]; }
+  Faces total(int index) const { return totals_[at(index)]; }
 
   /// The face of this module that touches planned module `index`, or none.
-  base::Faces own_face(int index) const { return own_touching(index).opposite(); }
+  Faces own_face(int index) const { return own_touching(index).opposite(); }
 
   /// The planned module at a face of this module, or -1.
   int at_face(base::Direction face) const;
+
+  /// All directions of the lattice.
+#ifdef HOLDFAST_AGENT_FLOOR_ONLY
+  static Directions directions() { return base::kDirections; }
+#else
+  Directions directions() const;
+#endif
 
   /// The planned neighbour of planned module `index` in a direction, or -1.
   int neighbour_of(int index, base::Direction direction) const;
@@ -119,22 +138,37 @@ class Planned {
 
   static std::size_t at(int index) { return static_cast<std::size_t>(index); }
 
+  MoreFaces* more() const {
+#ifdef HOLDFAST_AGENT_FLOOR_ONLY
+    return nullptr;
+#else
+    return more_;
+#endif
+  }
+
+  /// What planned module `index` touches below the child at `child`.
+  Faces below(base::Direction child, int index) const;
+  void set_below(base::Direction child, int index, Faces touching);
+
   bool is_whole(std::uint8_t group) const;
   bool is_whole_below(std::uint8_t group, base::Direction child) const;
   bool is_any_below(std::uint8_t group, base::Direction child) const;
 
+#ifndef HOLDFAST_AGENT_FLOOR_ONLY
+  MoreFaces* more_ = nullptr;  ///< Not owned; null: cubes.
+#endif
   std::uint8_t count_ = 0;
   std::uint8_t hosted_count_ = 0;
   PlannedSet from_above_;
   PlannedSet involved_;  ///< Hosted here, or from above.
   bool is_any_remote_ = false;
-  std::array<base::Cell, kPlannedMax> cells_{};
   std::array<std::uint8_t, kPlannedMax> groups_{};
-  std::array<base::Faces, kPlannedMax> totals_{};
   std::array<std::uint8_t, kPlannedMax> hosted_{};
-  std::array<base::Faces, kPlannedMax> own_touching_{};
-  std::array<std::array<base::Faces, kPlannedMax>, base::kDirectionCount>
-      below_{};  ///< Faces by child.
+  /// Faces by child, of cubes; others have them in memory that is lent.
+  ByFace<std::array<base::Faces, kPlannedMax>> below_{};
+  std::array<Faces, kPlannedMax> totals_{};
+  std::array<Faces, kPlannedMax> own_touching_{};
+  std::array<base::Cell, kPlannedMax> cells_{};
 };
 
 }  // namespace holdfast::agent

@@ -6,8 +6,8 @@
 #include <cstdint>
 #include <span>
 
+#include "holdfast/agent/more_faces.hpp"
 #include "holdfast/agent/wire.hpp"
-#include "holdfast/base/faces.hpp"
 
 namespace holdfast::agent {
 
@@ -15,28 +15,29 @@ namespace holdfast::agent {
 /// faces when all are here, not of their arrival, so that rounding does not depend on the timing.
 class Reports {
  public:
-  void await(base::Faces children) { awaited_ = children; }
+  void await(Faces children) { awaited_ = children; }
 
   bool are_here() const { return awaited_.is_empty(); }
 
   bool awaits(base::Direction face) const { return awaited_.has(face); }
 
-  base::Faces awaited() const { return awaited_; }
+  Faces awaited() const { return awaited_; }
 
-  void take(base::Direction face, std::span<const std::uint8_t> message) {
+  void take(MoreFaces* more, base::Direction face, std::span<const std::uint8_t> message) {
+    auto& into = at_face(messages_, more, &MoreFaces::messages, face);
     for (std::size_t i = 0; i < message.size(); ++i) {
-      messages_[static_cast<std::size_t>(face)][i] = message[i];
+      into[i] = message[i];
     }
     awaited_.remove(face);
   }
 
-  std::span<const std::uint8_t> of(base::Direction face) const {
-    return messages_[static_cast<std::size_t>(face)];
+  std::span<const std::uint8_t> of(const MoreFaces* more, base::Direction face) const {
+    return at_face(messages_, more, &MoreFaces::messages, face);
   }
 
  private:
-  base::Faces awaited_;
-  std::array<std::array<std::uint8_t, wire::kMessageBytesMax>, base::kDirectionCount> messages_{};
+  Faces awaited_;
+  ByFace<std::array<std::uint8_t, wire::kMessageBytesMax>> messages_{};
 };
 
 }  // namespace holdfast::agent

@@ -5,6 +5,7 @@
 #include <array>
 
 #include "holdfast/agent/link.hpp"
+#include "holdfast/agent/more_faces.hpp"
 #include "holdfast/agent/round.hpp"
 #include "holdfast/base/cell.hpp"
 
@@ -18,10 +19,12 @@ class Rounds {
 
   /// The round of what comes in on the link of `face`. A link delivers in order, so the last join
   /// or echo tells to which round a message belongs.
-  const Round& of(base::Direction face) const { return heard_[static_cast<std::size_t>(face)]; }
+  const Round& of(const MoreFaces* more, base::Direction face) const {
+    return at_face(heard_, more, &MoreFaces::heard, face);
+  }
 
-  void hear(base::Direction face, const Round& round) {
-    heard_[static_cast<std::size_t>(face)] = round;
+  void hear(MoreFaces* more, base::Direction face, const Round& round) {
+    at_face(heard_, more, &MoreFaces::heard, face) = round;
   }
 
   void enter(const Round& round) {
@@ -40,7 +43,7 @@ class Rounds {
 
  private:
   Round current_;
-  std::array<Round, base::kDirectionCount> heard_;
+  ByFace<Round> heard_;
   Time restart_at_ = kNever;
 };
 

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 
+#include "holdfast/agent/lattice_beams.hpp"
 #include "holdfast/agent/link.hpp"
 #include "holdfast/mechanics/beam.hpp"
 
@@ -50,7 +51,42 @@ struct Setup {
   // Derived by prepare().
   mechanics::BeamStiffness<double> beam;
   mechanics::BeamStiffness<float> beam_float;
+
+#ifdef HOLDFAST_AGENT_FLOOR_ONLY
+  static constexpr bool is_cubic() { return true; }
+
+  Beams<double> beams() const { return beam; }
+
+  Beams<float> beams_float() const { return beam_float; }
+#else
+  /// Known before, too, but at the end: what is above lies in the flash of real modules
+  /// (module/configuration.hpp).
+  base::Lattice lattice = base::kCubic;
+  // Derived.
+  mechanics::LatticeBeam<double> lattice_beam;
+  mechanics::LatticeBeam<float> lattice_beam_float;
+
+  bool is_cubic() const { return lattice_beam.is_cubic(); }
+
+  /// What joins modules, in all directions of the lattice.
+  Beams<double> beams() const { return {beam, is_cubic() ? nullptr : &lattice_beam}; }
+
+  Beams<float> beams_float() const {
+    return {beam_float, is_cubic() ? nullptr : &lattice_beam_float};
+  }
+#endif
 };
+
+/// The strength of the connectors in a direction.
+inline double strength_n(const Setup& setup, base::Direction direction) {
+#ifdef HOLDFAST_AGENT_FLOOR_ONLY
+  const bool is_vertical = base::is_vertical(direction);
+#else
+  const bool is_vertical =
+      base::connector_class(setup.lattice, direction) == base::ConnectorClass::kVertical;
+#endif
+  return is_vertical ? setup.strength_vertical_n : setup.strength_lateral_n;
+}
 
 /// Fills in what follows from the rest. Call once, before the first agent is made.
 void prepare(Setup& setup);

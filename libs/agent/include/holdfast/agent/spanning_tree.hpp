@@ -40,8 +40,8 @@ class SpanningTree {
   struct Census {
     std::uint32_t count = 0;  ///< Modules.
     std::uint16_t hops = 0;   ///< To the module furthest away, ...
-    std::uint32_t id = 0;     ///< ... and its identity.
     bool is_anyone_silent = false;
+    std::uint32_t id = 0;  ///< ... and the identity of that.
   };
 
   /// `id` differs for every module. The anchor knows its cell.
@@ -126,7 +126,7 @@ class SpanningTree {
   void begin_wave(Links& links, const Round& round, Wave wave, Faces parent, std::uint16_t hops);
   void await_less(Links& links, const Round& round, Faces faces);
   void send_echo(Links& links, const Round& round) const;
-  Faces towards_root(const base::Cell& end) const;
+  Faces towards_root(const Links& links, const base::Cell& end) const;
 
   std::uint32_t id_;
   Wave wave_ = Wave::kNone;

@@ -44,7 +44,7 @@ struct StageMass {
 /// Where a module is, as it knows itself.
 struct StageSite {
   base::Cell cell = {};
-  base::Faces used = {};  ///< Where it has neighbours.
+  Faces used = {};  ///< Where it has neighbours.
   bool is_fixed = false;
   bool is_standing = false;  ///< On the ground.
 };
@@ -117,7 +117,7 @@ class Stages {
   // ---- What the stage makes of the module in a cell.
 
   /// Faces of connections that are off.
-  base::Faces hidden(const base::Cell& cell) const;
+  Faces hidden(const base::Cell& cell) const;
 
   /// Is the module in a cell on its way, or taken off?
   bool is_gone(const base::Cell& cell) const {

@@ -5,6 +5,8 @@
 #include <array>
 #include <cstdint>
 
+#include "holdfast/agent/lattice_beams.hpp"
+#include "holdfast/agent/lattices.hpp"
 #include "holdfast/base/algebra.hpp"
 #include "holdfast/base/cell.hpp"
 #include "holdfast/mechanics/ground_contact.hpp"
@@ -45,15 +47,18 @@ struct Surroundings {
   base::Vec6<double> load{};  ///< Weight and payload: 3 N, 3 N mm at the node, global frame.
   std::int32_t mass = 1;      ///< Whole units, see Environment::is_level.
   std::uint8_t facet_count = 0;
-  std::array<TouchingFacet, base::kDirectionCount> facets{};
+  /// Of lattices without a direction straight down a floor is touched there as well.
+  std::array<TouchingFacet, kFaceCountMax + 1> facets{};
 };
 
 /// What is known of the world before the robot is built, the same for all its modules.
 struct Environment {
   /// Fills in load, mass and facets of the module that is, or will be, in a cell.
   void (*describe)(const void* map, const base::Cell& cell, Surroundings& node) = nullptr;
-  const void* map = nullptr;  ///< Handed to describe(). Not owned.
-  double foot_width_mm = 0;   ///< Of all facets that touch; 0 is a point.
+  const void* map = nullptr;                              ///< Handed to describe(). Not owned.
+  const mechanics::LatticeBeam<double>* beams = nullptr;  ///< Null: cubes. Not owned.
+  const base::Lattice* lattice = nullptr;                 ///< Not null where there are beams.
+  double foot_width_mm = 0;  ///< Of all facets that touch; 0 is a point.
   /// foot_width_mm in pitches, a fraction.
   std::int32_t foot_numerator = 1;
   std::int32_t foot_denominator = 1;
@@ -68,8 +73,11 @@ bool is_any_bonded(const Surroundings& node);
 /// Brings the facets of a node back to rest: all stuck.
 void reset(Surroundings& node);
 
+/// Corners of other lattices are no fractions of the pitch: they are rounded to this part of it.
+inline constexpr std::int32_t kCornerParts = 1024;
+
 /// The corners with which a node presses, in units of pitch over twice Environment's
-/// foot_denominator; what is bonded holds alone.
+/// foot_denominator, or over kCornerParts where it is no cube; what is bonded holds alone.
 mechanics::SupportCorners support_corners(const Surroundings& node, const base::Cell& cell);
 
 }  // namespace holdfast::agent

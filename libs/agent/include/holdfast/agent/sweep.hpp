@@ -131,6 +131,7 @@ class Sweep {
   bool is_good_begin(const Workspace& ws, const Order& order) const;
   void begin_faces(Workspace& ws, const Order& order);
   void begin_method(Workspace& ws, const Order& order);
+  void make_method(Workspace& ws);
   void begin_work(Work work);
   void end_work(Workspace& ws);
   void end_exchange(Workspace& ws);

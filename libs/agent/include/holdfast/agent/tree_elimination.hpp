@@ -90,7 +90,7 @@ class TreeElimination {
   void begin_piece(Piece piece, int index = 0);
 
   // Loops.
-  void take_loop(Direction face, std::span<const std::uint8_t> message);
+  void take_loop(Workspace& ws, Direction face, std::span<const std::uint8_t> message);
 
   // Stiffness.
   void factor(Workspace& ws);
@@ -104,7 +104,7 @@ class TreeElimination {
   bool is_column_ready(const Workspace& ws, int column) const;
   bool send_columns(Workspace& ws);
   void send_batch(Workspace& ws, int column, int count) const;
-  void take_column(Direction face, std::span<const std::uint8_t> message);
+  void take_column(Workspace& ws, Direction face, std::span<const std::uint8_t> message);
 
   // Loads.
   bool do_load_piece(Workspace& ws);
@@ -112,7 +112,7 @@ class TreeElimination {
   void send_leaf_load(Workspace& ws, const Leaves& leaves, int leaf);
   void send_load_up(Workspace& ws) const;
   void send_gaps_up(Workspace& ws) const;
-  void take_up(Direction face, std::span<const std::uint8_t> message);
+  void take_up(Workspace& ws, Direction face, std::span<const std::uint8_t> message);
 
   // Displacements.
   bool do_shift_piece(Workspace& ws);
@@ -121,14 +121,46 @@ class TreeElimination {
   void send_down(Workspace& ws);
   void take_down(Workspace& ws, std::span<const std::uint8_t> message);
 
+  // What is kept for each child: here, or in memory that is lent.
+  using Cuts = std::array<Cut, kLoopsMax>;
+  using Slots = std::array<std::uint8_t, kLoopsMax>;
+
+  Cuts& child_cuts(Workspace& ws, Direction face) {
+    return at_face(child_cuts_, ws.links.more(), &MoreFaces::child_cuts, face);
+  }
+
+  Slots& slots_of(Workspace& ws, Direction face) {
+    return at_face(slot_of_, ws.links.more(), &MoreFaces::slot_of, face);
+  }
+
+  const Slots& slots_of(const Workspace& ws, Direction face) const {
+    return at_face(slot_of_, ws.links.more(), &MoreFaces::slot_of, face);
+  }
+
+  std::uint8_t& child_cut_count(Workspace& ws, Direction face) {
+    return at_face(child_cut_count_, ws.links.more(), &MoreFaces::child_cut_count, face);
+  }
+
+  std::uint8_t child_cut_count(const Workspace& ws, Direction face) const {
+    return at_face(child_cut_count_, ws.links.more(), &MoreFaces::child_cut_count, face);
+  }
+
+  std::uint8_t& columns_here(Workspace& ws, Direction face) {
+    return at_face(columns_here_, ws.links.more(), &MoreFaces::columns_here, face);
+  }
+
+  std::uint8_t columns_here(const Workspace& ws, Direction face) const {
+    return at_face(columns_here_, ws.links.more(), &MoreFaces::columns_here, face);
+  }
+
   Branch branch_;
   BranchLoad load_;
   CutForces forces_{};
   /// The cuts that the child at each face has open, and their slots here.
-  std::array<std::array<Cut, kLoopsMax>, base::kDirectionCount> child_cuts_{};
-  std::array<std::array<std::uint8_t, kLoopsMax>, base::kDirectionCount> slot_of_{};
-  std::array<std::uint8_t, base::kDirectionCount> child_cut_count_{};
-  std::array<std::uint8_t, base::kDirectionCount> columns_here_{};  ///< All before are final.
+  ByFace<Cuts> child_cuts_{};
+  ByFace<Slots> slot_of_{};
+  ByFace<std::uint8_t> child_cut_count_{};
+  ByFace<std::uint8_t> columns_here_{};  ///< All before are final.
   bool has_too_many_ = false;
   bool is_symmetric_ = false;  ///< S' goes up in parts: no facet below tilts, or it hardly matters.
   Piece piece_ = Piece::kNone;

@@ -19,8 +19,11 @@ namespace holdfast::agent::wire {
 
 inline constexpr std::uint8_t kVersion = 1;
 
-/// What the modules are, as greetings say it: cubes. Others have other directions and facets.
+/// What the modules are, as greetings say it. Others have other directions and facets.
 inline constexpr std::uint8_t kCubicLattice = 0;
+inline constexpr std::uint8_t kFaceCentredLattice = 1;
+inline constexpr std::uint8_t kHexagonalLattice = 2;
+inline constexpr std::uint8_t kHexagonalPrismLattice = 3;
 
 inline constexpr int kHeaderBytes = 2;
 inline constexpr int kChecksumBytes = 2;

@@ -37,6 +37,7 @@ struct LentMemory {
   /// By node, 1 + kPlannedMax of them; null: there is nothing but a floor.
   Surroundings* surroundings = nullptr;
   const Environment* environment = nullptr;  ///< Not null where there are surroundings.
+  MoreFaces* faces = nullptr;                ///< Null: the module is a cube.
 };
 
 /// What the parts of a module's program work on: the module's lines, its place in the tree, the
@@ -82,6 +83,22 @@ struct Workspace {
   /// Null where free faces are not judged.
   FreeFaces* free_faces() const { return lent == nullptr ? nullptr : lent->free_faces; }
 
+  /// What the beam at a face carries in its middle.
+  MiddleLoad& middle(Direction face) {
+    return at_face(middle_own, links.more(), &MoreFaces::middle, face);
+  }
+
+  const MiddleLoad& middle(Direction face) const {
+    return at_face(middle_own, links.more(), &MoreFaces::middle, face);
+  }
+
+  void clear_middle();
+
+  /// The cell next to `cell` in a direction of the lattice.
+  base::Cell beside(const base::Cell& cell, Direction direction) const {
+    return neighbour(links.more(), cell, direction);
+  }
+
   /// Starts an exchange: this module's own vector goes out and, if they are part of it, those of
   /// planned modules emulated here.
   void start_exchange(PlannedPart part);
@@ -97,7 +114,7 @@ struct Workspace {
   bool is_fixed;
   float own_load_ratio = 0;  ///< The largest of this module's own connections.
   std::array<Node, 1 + kPlannedMax> nodes{};
-  std::array<MiddleLoad, base::kDirectionCount> middle{};  ///< Loads by face of this module.
+  ByFace<MiddleLoad> middle_own{};  ///< Loads by face of this module, see middle().
   ContactSetting contact;
 };
 

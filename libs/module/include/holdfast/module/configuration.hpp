@@ -24,6 +24,15 @@ struct Configuration {
   agent::Setup setup;
 };
 
+/// The part of the setup that is there: real modules know cubes alone.
+#ifdef HOLDFAST_AGENT_FLOOR_ONLY
+inline constexpr std::size_t kSetupBytes = sizeof(agent::Setup);
+#else
+inline constexpr std::size_t kSetupBytes = offsetof(agent::Setup, lattice);
+#endif
+
+inline constexpr std::size_t kConfigurationBytes = offsetof(Configuration, setup) + kSetupBytes;
+
 // An AVR aligns nothing and has no binary64: its pages are its own.
 #ifndef __AVR__
 static_assert(sizeof(agent::Identity) == 20 && offsetof(agent::Identity, is_anchor) == 5 &&
@@ -33,8 +42,8 @@ static_assert(offsetof(agent::Setup, facet_mm) == 48 &&
               offsetof(agent::Setup, method) == 100 &&
               offsetof(agent::Setup, iteration_count_max) == 104 &&
               offsetof(agent::Setup, timing) == 112 && offsetof(agent::Setup, beam) == 152 &&
-              offsetof(agent::Setup, beam_float) == 216 && sizeof(agent::Setup) == 248);
-static_assert(offsetof(Configuration, setup) == 32 && sizeof(Configuration) == 280);
+              offsetof(agent::Setup, beam_float) == 216 && kSetupBytes == 248);
+static_assert(offsetof(Configuration, setup) == 32 && kConfigurationBytes == 280);
 #endif
 
 /// The checksum of everything but the magic number, the version and the sum itself.

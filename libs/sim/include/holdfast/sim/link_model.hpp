@@ -58,11 +58,16 @@ LinkModel blinky_blocks_v1();
 /// Blinky Blocks, second version: 115,200 baud, payloads of 228 bytes, 3 retries after 100 ms.
 LinkModel blinky_blocks_v2();
 
+/// ASSUMED: nobody has published what a link of 3D catoms, or of any modules with more than six
+/// faces, carries. Each face has lines as those of Blinky Blocks 2, all of them at once, and a
+/// module takes 0.1 ms for each event. It says how times compare, not how long catoms will take.
+LinkModel catoms();
+
 /// Every packet takes one tick and lines are unlimited, so that the simulated time is the number
 /// of rounds of a synchronous network. Packets of 228 bytes, version 2's, hold any message.
 LinkModel unit();
 
-/// "v1", "v2" or "unit".
+/// "v1", "v2", "catoms" or "unit".
 std::optional<LinkModel> find_link_model(std::string_view name);
 
 /// Why a model cannot be simulated (name, value found, values allowed), if it cannot.
@@ -73,7 +78,7 @@ Time line_time(const LinkModel& model, int packet_bytes);
 
 /// The waiting times of the agents: as the model says, but long enough for an acknowledgement to
 /// come back with all delays that the model can add, on the slowest and fastest clock.
-agent::LinkTiming link_timing(const LinkModel& model);
+agent::LinkTiming link_timing(const LinkModel& model, int face_count = base::kDirectionCount);
 
 /// A time in seconds; none if ticks have no length.
 std::optional<double> seconds(const LinkModel& model, Time time);

@@ -85,7 +85,7 @@ class PerfettoTrace : public TraceSink {
 };
 
 /// What a module says of its answer, in words: "knows the verdict: safe (...), load ratio ...".
-std::string describe(const agent::Answer& answer);
+std::string describe(const agent::Answer& answer, const base::Lattice& lattice = base::kCubic);
 
 struct StoryOptions {
   bool tells_every_module = true;  ///< False: phases and waves only when the first module is there.

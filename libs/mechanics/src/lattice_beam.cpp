@@ -1,10 +1,10 @@
 // SPDX-FileCopyrightText: The holdfast authors
 // SPDX-License-Identifier: Apache-2.0
-#include "holdfast/model/lattice_beam.hpp"
+#include "holdfast/mechanics/lattice_beam.hpp"
 
 #include "holdfast/base/double_double.hpp"
 
-namespace holdfast::model {
+namespace holdfast::mechanics {
 namespace {
 
 using base::Direction;
@@ -47,9 +47,8 @@ Vec6<Real> rotated(const Rotation<Real>& axes, const Vec6<Real>& global) {
 }  // namespace
 
 template <class Real>
-LatticeBeam<Real>::LatticeBeam(const mechanics::BeamSection<Real>& section,
-                               const base::Lattice& lattice)
-    : beam_(mechanics::beam_stiffness(section)), is_cubic_(lattice == base::kCubic) {
+LatticeBeam<Real>::LatticeBeam(const BeamSection<Real>& section, const base::Lattice& lattice)
+    : beam_(beam_stiffness(section)), is_cubic_(lattice == base::kCubic) {
   for (const Direction direction : base::facet_directions(lattice)) {
     rotations_[static_cast<std::size_t>(base::index(direction))] =
         rotation_along<Real>(lattice, direction);
@@ -114,9 +113,14 @@ Mat6<Real> LatticeBeam<Real>::block_12(Direction direction) const {
   return base::matrix_of<Real>([&](const Vec& unit) { return end_force(direction, Vec{}, unit); });
 }
 
-template Rotation<double> rotation_along(const base::Lattice&, Direction);
-template Rotation<base::DoubleDouble> rotation_along(const base::Lattice&, Direction);
-template class LatticeBeam<double>;
-template class LatticeBeam<base::DoubleDouble>;
+#define HOLDFAST_INSTANTIATE(Real)                                         \
+  template Rotation<Real> rotation_along(const base::Lattice&, Direction); \
+  template class LatticeBeam<Real>;
 
-}  // namespace holdfast::model
+HOLDFAST_INSTANTIATE(float)
+HOLDFAST_INSTANTIATE(double)
+#if __SIZEOF_DOUBLE__ == 8  // Not on an ATxmega.
+HOLDFAST_INSTANTIATE(base::DoubleDouble)
+#endif
+
+}  // namespace holdfast::mechanics
