@@ -15,8 +15,7 @@
 namespace holdfast::agent {
 namespace {
 
-void factor_block(Node& node, const Setup& setup, const ContactSetting& contact,
-                  base::Faces faces) {
+void factor_block(Node& node, const Setup& setup, const ContactSetting& contact, Faces faces) {
   form_diagonal(node, setup, contact, faces, 0);
   form_diagonal(node, setup, contact, faces, 1);
   factor_diagonal(node, 0);
@@ -71,7 +70,7 @@ ContactState random_state(base::Rng& rng) {
 }
 
 /// The diagonal block, from the same blocks that the exact solver assembles.
-Mat6<double> assembled(const agent::Setup& setup, base::Faces faces) {
+Mat6<double> assembled(const agent::Setup& setup, Faces faces) {
   Mat6<double> block;
   for (const base::Direction direction : faces) {
     base::add_to(block, mechanics::block_11(setup.beam, direction));
@@ -128,7 +127,7 @@ TEST(Node, solve_undoes_multiplication_by_the_block) {
     node.is_ground = rng.below(2) == 0;
     node.is_held = rng.below(2) == 0;
     node.state = random_state(rng);
-    const auto faces = base::Faces::from_mask(static_cast<std::uint8_t>(1 + rng.below(63)));
+    const auto faces = Faces::from_mask(static_cast<std::uint8_t>(1 + rng.below(63)));
     Mat6<double> block = assembled(setup, faces);
     if (node.is_ground) {
       base::add_to(block, mechanics::symmetric_tangent(contact.facet, node.state, node.is_held));
@@ -159,7 +158,7 @@ TEST(Node, scalar_diagonal_is_that_of_the_true_tangent) {
     Node node;
     node.is_ground = rng.below(2) == 0;
     node.state = random_state(rng);
-    const auto faces = base::Faces::from_mask(static_cast<std::uint8_t>(rng.below(64)));
+    const auto faces = Faces::from_mask(static_cast<std::uint8_t>(rng.below(64)));
     Mat6<double> block = assembled(setup, faces);
     if (node.is_ground) {
       base::add_to(block, mechanics::contact_tangent(contact.facet, node.state, true));
@@ -177,7 +176,7 @@ TEST(Node, a_fixed_module_does_not_move) {
   Node node;
   node.is_fixed = true;
   node.force = {1, 2, 3, 4, 5, 6};
-  factor_block(node, setup, contact, base::Faces::all());
+  factor_block(node, setup, contact, Faces::all());
   EXPECT_EQ(solve_diagonal(node, {1, 2, 3, 4, 5, 6}), Vec6<float>{});
   EXPECT_EQ(residual(node, setup, contact), Vec6<double>{});
 }
