@@ -48,7 +48,7 @@ for command in $commands; do
   done
 done
 [ "$count" -ge 40 ] || fault "only $count options were found in --help"
-[ "$(complete_words simulate --link "" | xargs)" = "v1 v2 unit" ] ||
+[ "$(complete_words simulate --link "" | xargs)" = "v1 v2 catoms unit" ] ||
   fault "bash does not complete the words of --link"
 [ "$(complete_words simulate --method c)" = cg ] || fault "bash does not complete --method cg"
 [ "$(complete_words generate po)" = portal ] || fault "bash does not complete generate portal"

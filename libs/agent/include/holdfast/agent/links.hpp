@@ -118,12 +118,25 @@ class Links {
   /// When a link has to be looked after at the latest.
   Time deadline(Faces faces) const;
 
-  Time deadline() const { return deadline(all()); }
+  /// The same of all links, after every step.
+  Time deadline() const {
+    const Time own = earliest(deadline_);
+    const Time lent = more() == nullptr ? kNever : earliest(more()->deadline);
+    return lent < own ? lent : own;
+  }
 
  private:
   Link& at(Direction face) { return at_face(links_, more(), &MoreFaces::links, face); }
 
   const Link& at(Direction face) const { return at_face(links_, more(), &MoreFaces::links, face); }
+
+  static Time earliest(const ByFace<Time>& deadlines) {
+    Time earliest = kNever;
+    for (const Time at : deadlines) {
+      earliest = at < earliest ? at : earliest;
+    }
+    return earliest;
+  }
 
   Time& deadline_at(Direction face) {
     return at_face(deadline_, more(), &MoreFaces::deadline, face);
