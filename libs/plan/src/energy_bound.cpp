@@ -301,26 +301,42 @@ bool EnergyBound::begin(const std::vector<Element>& elements, const verdict::Ass
       solved.contact_model == verdict::ContactModel::kUnilateral || !is_plain(target_)) {
     return false;
   }
+  if (is_grown_to(elements)) {
+    settle_new();
+  } else {
+    hang_all(elements);
+  }
+  solved_error_ = verdict::kEnergyFactor * solved.equilibrium.energy_error;
+  solved_ratio_ = solved.load_ratio_max ? std::max(0.0, solved.load_ratio_range.high) : 0.0;
+  for (std::size_t i = 0; i < elements.size(); ++i) {
+    u_[base::at(elements[i])] = solved.equilibrium.displacement[i];
+  }
+  std::ranges::for_each(facets_, [&](std::size_t facet) { look_at_facet(facet); });
+  return true;
+}
+
+/// Whether these modules are there and no others: then all of them hang already.
+bool EnergyBound::is_grown_to(const std::vector<Element>& elements) const {
+  const auto is_there = [&](Element element) { return nodes_[base::at(element)].is_there; };
+  return std::ranges::all_of(elements, is_there) &&
+         std::ranges::count_if(nodes_, &Node::is_there) == std::ssize(elements);
+}
+
+/// Begins with nothing but these modules, from supports upwards.
+void EnergyBound::hang_all(const std::vector<Element>& elements) {
   forget_nearby(elements);
   std::ranges::fill(nodes_, Node{});
   facets_.clear();
-  new_.clear();
-  gaps_.clear();
-  carrying_.clear();
-  energy_ = 0;
-  change_ratio_ = 0;
-  solved_error_ = verdict::kEnergyFactor * solved.equilibrium.energy_error;
-  solved_ratio_ = solved.load_ratio_max ? std::max(0.0, solved.load_ratio_range.high) : 0.0;
+  forget_changes();
   local_.assign(elements);
   std::vector<std::size_t> queue;
-  for (std::size_t i = 0; i < elements.size(); ++i) {
-    Node& node = nodes_[base::at(elements[i])];
+  for (const Element element : elements) {
+    Node& node = nodes_[base::at(element)];
     node.is_there = true;
     node.depth = std::numeric_limits<std::int32_t>::max() - 1;
-    u_[base::at(elements[i])] = solved.equilibrium.displacement[i];
-    if (has_root(base::at(elements[i]))) {
+    if (has_root(base::at(element))) {
       node.depth = 0;
-      queue.push_back(base::at(elements[i]));
+      queue.push_back(base::at(element));
     }
   }
   for (std::size_t i = 0; i < queue.size(); ++i) {
@@ -342,10 +358,42 @@ bool EnergyBound::begin(const std::vector<Element>& elements, const verdict::Ass
     const std::size_t module = base::at(element);
     for (std::size_t facet = first_facet_[module]; facet < first_facet_[module + 1]; ++facet) {
       facets_.push_back(facet);
-      look_at_facet(facet);
     }
   }
-  return true;
+}
+
+/// What has been attached since the robot was solved is part of it now.
+void EnergyBound::settle_new() {
+  std::vector<bool> is_changed(nodes_.size());
+  for (const std::size_t module : new_) {
+    nodes_[module].is_new = false;
+    is_changed[module] = true;
+    for (const std::int32_t other : target_.connected()[module]) {
+      if (other != model::Robot::kNoNeighbour) {
+        nodes_[base::at(other)].is_host = false;
+        is_changed[base::at(other)] = true;
+      }
+    }
+  }
+  forget_nearby(is_changed);
+  for (const std::size_t module : carrying_) {
+    Node& node = nodes_[module];
+    node.carried = {};
+    node.energy = 0;
+    for (Way& way : node.ways) {
+      way.carried = {};
+      way.energy = 0;
+    }
+  }
+  forget_changes();
+}
+
+void EnergyBound::forget_changes() {
+  new_.clear();
+  gaps_.clear();
+  carrying_.clear();
+  energy_ = 0;
+  change_ratio_ = 0;
 }
 
 /// The inner product of an adjoint's forces, for fz and two torques, with s - h w; the last number
@@ -463,33 +511,8 @@ std::optional<double> EnergyBound::bound() {
 
 std::optional<double> EnergyBound::improve(const std::vector<Vec>& displacement,
                                            double energy_error, double load_ratio) {
-  std::vector<bool> is_changed(nodes_.size());
-  for (const std::size_t module : new_) {
-    nodes_[module].is_new = false;
-    is_changed[module] = true;
-    for (const std::int32_t other : target_.connected()[module]) {
-      if (other != model::Robot::kNoNeighbour) {
-        nodes_[base::at(other)].is_host = false;
-        is_changed[base::at(other)] = true;
-      }
-    }
-  }
-  forget_nearby(is_changed);
-  for (const std::size_t module : carrying_) {
-    Node& node = nodes_[module];
-    node.carried = {};
-    node.energy = 0;
-    for (Way& way : node.ways) {
-      way.carried = {};
-      way.energy = 0;
-    }
-  }
-  new_.clear();
-  gaps_.clear();
-  carrying_.clear();
+  settle_new();
   u_ = displacement;
-  energy_ = 0;
-  change_ratio_ = 0;
   solved_error_ = energy_error;
   solved_ratio_ = load_ratio;
   std::ranges::for_each(facets_, [&](std::size_t facet) { look_at_facet(facet); });

@@ -77,6 +77,10 @@ class EnergyBound {
     double energy = 0;                ///< Of what its facet lacks; twice.
   };
 
+  bool is_grown_to(const std::vector<Element>& elements) const;
+  void hang_all(const std::vector<Element>& elements);
+  void settle_new();
+  void forget_changes();
   void forget_nearby(const std::vector<Element>& elements);
   void forget_nearby(const std::vector<bool>& is_changed);
   std::optional<double> bound();

