@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <optional>
 #include <vector>
 
@@ -59,6 +61,12 @@ class EnergyBound {
   std::optional<double> improve(const std::vector<base::Vec6<double>>& displacement,
                                 double energy_error, double load_ratio);
 
+  /// How far the displacements are off in the energy norm, at most.
+  double energy_error() const { return std::sqrt(std::max(0.0, energy_)) + solved_error_; }
+
+  /// That of a module that has a facet, or is new or beside such a one.
+  const base::Vec6<double>& displacement(std::size_t module) const { return u_[module]; }
+
  private:
   using Vec = base::Vec6<double>;
 
@@ -79,7 +87,7 @@ class EnergyBound {
     bool is_host = false;  ///< A module has been attached beside it since.
     std::int32_t depth = 0;
     std::size_t place = 0;  ///< If new: in new_.
-    std::size_t gaps = 0;  ///< If new: where those of its beams begin in gaps_, by direction.
+    std::size_t gaps = 0;   ///< If new: where those of its beams begin in gaps_, by direction.
     std::array<Way, kWayMax> ways{};  ///< Towards the support, the parent first.
     std::size_t way_count = 0;        ///< 0 at a support.
     Vec carried{};                    ///< New loads that its support bears, as in Way.
@@ -136,13 +144,13 @@ class EnergyBound {
   double solved_ratio_ = 0;
   double solved_error_ = 0;
   const SectionResponse* section_ = nullptr;
-  std::vector<std::int32_t> section_place_;    ///< By module: in the section, or -1.
-  std::vector<Vec> borne_;                     ///< By module of the section, about the origin.
-  SectionResponse::Resultant resultant_{};     ///< Of these.
-  std::vector<Vec> still_;                     ///< u_ when the robot was solved.
-  double own_error_ = 0;                       ///< And solved_error_ then.
-  double energy_ = 0;        ///< |s - h w|^2
-  double change_ratio_ = 0;  ///< The largest c(change of s) / 2 so far.
+  std::vector<std::int32_t> section_place_;  ///< By module: in the section, or -1.
+  std::vector<Vec> borne_;                   ///< By module of the section, about the origin.
+  SectionResponse::Resultant resultant_{};   ///< Of these.
+  std::vector<Vec> still_;                   ///< u_ when the robot was solved.
+  double own_error_ = 0;                     ///< And solved_error_ then.
+  double energy_ = 0;                        ///< |s - h w|^2
+  double change_ratio_ = 0;                  ///< The largest c(change of s) / 2 so far.
 };
 
 }  // namespace holdfast::plan

@@ -452,15 +452,15 @@ std::vector<Judgement> RobotGrowth::judge_piece(ElementSet state, Sense sense,
     }
     const bool is_decided_here =
         assessment.stability_rule != verdict::StabilityRule::kPolygon || balance.has_value();
-    const bool has_section = can_certify && tools.section != nullptr &&
-                             state.size() >= kFollowedMin &&
-                             run.size() - judgements.size() >= kSectionMin &&
-                             tools.section->begin(state);
-    has_bound = can_certify && is_decided_here &&
-                tools.bound.begin(state.elements(), assessment,
-                                  has_section ? tools.section : nullptr);
-    is_followed = has_bound && !has_section && tools.followed != nullptr &&
-                  state.size() >= kFollowedMin &&
+    const bool is_large = state.size() >= kFollowedMin;
+    const bool is_slender =
+        can_certify && is_large && tools.section != nullptr && tools.section->find(state);
+    const bool has_section =
+        is_slender && run.size() - judgements.size() >= kSectionMin && tools.section->solve();
+    has_bound =
+        can_certify && is_decided_here &&
+        tools.bound.begin(state.elements(), assessment, has_section ? tools.section : nullptr);
+    is_followed = has_bound && !is_slender && tools.followed != nullptr && is_large &&
                   tools.followed->worth().begin(assessment.equilibrium.iteration_count);
     if (is_followed) {
       tools.followed->begin(state, assessment);
@@ -497,8 +497,8 @@ std::vector<Judgement> RobotGrowth::judge_run(const ElementSet& state, Sense sen
   host::Team team(thread_count_);
   team.share(0, count * host::Team::kChunk, [&](std::size_t first, std::size_t last) {
     for (std::size_t i = first / host::Team::kChunk; i * host::Team::kChunk < last; ++i) {
-      pieces[i] =
-          judge_piece(begins[i], sense, part(i), {bounds_[i], &followed_[i], &sections_[i], assess, is_late});
+      pieces[i] = judge_piece(begins[i], sense, part(i),
+                              {bounds_[i], &followed_[i], &sections_[i], assess, is_late});
     }
   });
   std::vector<Judgement> judgements;

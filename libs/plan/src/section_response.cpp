@@ -28,8 +28,8 @@ constexpr std::size_t kSectionMax = 16;
 /// Below the section there are at least so many steps; ways down that are shorter cost little.
 constexpr std::size_t kStepsMin = 12;
 
-/// The section lies so many steps below the top, where all modules of a layer are there.
-constexpr std::size_t kStepsBelowTop = 2;
+/// The section lies so many steps below the top, where not all modules of a layer need be there.
+constexpr std::size_t kStepsBelowTop = 1;
 
 /// Of the solutions, of their own energy norm: a thousandth of what the core moves by.
 constexpr double kTolerance = 3e-4;
@@ -56,7 +56,7 @@ SectionResponse::SectionResponse(const model::RobotSpec& spec, const model::Robo
   }
 }
 
-bool SectionResponse::begin(const ElementSet& state) {
+bool SectionResponse::find(const ElementSet& state) {
   if (!is_plain_) {
     return false;
   }
@@ -65,11 +65,7 @@ bool SectionResponse::begin(const ElementSet& state) {
   for (std::size_t i = 0; i < elements_.size(); ++i) {
     place_[at(elements_[i])] = static_cast<std::int32_t>(i);
   }
-  if (!find_section()) {
-    return false;
-  }
-  find_shares();
-  return solve();
+  return find_section();
 }
 
 /// Layer by layer from the supports, as long as each is small.
@@ -220,6 +216,7 @@ double SectionResponse::error(const Resultant& resultant) const {
 
 /// In single precision, or where the core is too slender for it in double.
 bool SectionResponse::solve() {
+  find_shares();
   ElementSet state(target_.modules().size());
   for (const Element element : elements_) {
     state.insert(element);
@@ -234,8 +231,7 @@ bool SectionResponse::solve() {
 }
 
 bool SectionResponse::solve(const model::Robot& core, solver::Precision precision) {
-  const auto system =
-      solver::make_linear_system(core, {.precision = precision, .thread_count = 1});
+  const auto system = solver::make_linear_system(core, {.precision = precision, .thread_count = 1});
   if (!system) {
     return false;
   }
@@ -257,9 +253,9 @@ bool SectionResponse::solve(const model::Robot& core, solver::Precision precisio
     for (std::size_t i = 0; i < loads.size(); ++i) {
       work += base::dot(loads[i], response.displacement[i]);
     }
-    response.error = system->is_exact() ? 0
-                                        : verdict::kEnergyFactor * kTolerance *
-                                              std::sqrt(std::max(0.0, work));
+    response.error = system->is_exact()
+                         ? 0
+                         : verdict::kEnergyFactor * kTolerance * std::sqrt(std::max(0.0, work));
     find_ratios(response);
   }
   return true;

@@ -35,9 +35,13 @@ class SectionResponse {
   /// Keeps references to the robot, all modules of which are there in the end.
   SectionResponse(const model::RobotSpec& spec, const model::Robot& target);
 
-  /// Takes a safe state, all of whose facets are stuck, as the core. False if it is not slender, or
-  /// cannot be solved: then nothing below may be called.
-  bool begin(const ElementSet& state);
+  /// Takes a safe state, all of whose facets are stuck, as the core, and finds a section. False if
+  /// it is not slender.
+  bool find(const ElementSet& state);
+
+  /// Seeks the core's answers, after find(). False if they cannot be found; then nothing below may
+  /// be called.
+  bool solve();
 
   /// The section's modules, each but the first beside an earlier one.
   const std::vector<std::size_t>& modules() const { return modules_; }
@@ -71,7 +75,6 @@ class SectionResponse {
   void find_shares();
   double torque_weight() const;
   Vec share_at_node(std::size_t place, const Resultant& resultant) const;
-  bool solve();
   bool solve(const model::Robot& core, solver::Precision precision);
   void find_ratios(Response& response) const;
 
@@ -79,14 +82,14 @@ class SectionResponse {
   const model::Robot& target_;
   model::LatticeBeam<double> beam_;
   double ratio_per_norm_ = 0;
-  bool is_plain_ = true;                ///< All loads are as resultant() asks for.
-  std::vector<bool> is_support_;        ///< By module.
-  std::vector<Element> elements_;       ///< Of the core.
-  std::vector<std::int32_t> place_;     ///< By module: in elements_, or -1.
-  std::vector<std::size_t> modules_;    ///< Of the section.
-  Vec centroid_{};                      ///< mm; the last three are 0.
-  std::vector<Vec> places_;             ///< By module: its node, mm; the last three are 0.
-  std::array<double, 9> shares_{};      ///< (sum_k B_k W B_k')^-1, by rows.
+  bool is_plain_ = true;              ///< All loads are as resultant() asks for.
+  std::vector<bool> is_support_;      ///< By module.
+  std::vector<Element> elements_;     ///< Of the core.
+  std::vector<std::int32_t> place_;   ///< By module: in elements_, or -1.
+  std::vector<std::size_t> modules_;  ///< Of the section.
+  Vec centroid_{};                    ///< mm; the last three are 0.
+  std::vector<Vec> places_;           ///< By module: its node, mm; the last three are 0.
+  std::array<double, 9> shares_{};    ///< (sum_k B_k W B_k')^-1, by rows.
   std::array<Response, 3> responses_;
 };
 
