@@ -24,7 +24,7 @@ constexpr base::Vec6<double> kAtRest{};
 base::Vec6<double> force_on_hosted(const Workspace& ws, int node) {
   const int k = ws.planned.hosted(node - 1);
   const base::Vec6<double>& own = ws.node(node).u;
-  base::Vec6<double> force = ws.planned_exchange.force(k);
+  base::Vec6<double> force = ws.planned_exchange.force(ws.planned, k);
   for (const Direction direction : ws.planned.directions()) {
     const int other = ws.planned.neighbour_of(k, direction);
     if (other >= 0) {
@@ -228,11 +228,12 @@ void Condensing::follow(Workspace& ws, const Order& order) {
 // ---- Around it.
 
 void begin_condensing(Workspace& ws) {
-  ws.planned_exchange.clear_forces();
+  ws.planned_exchange.clear_forces(ws.planned.more_planned());
   int awaited = 0;
   for (int k = 0; k < ws.planned.count(); ++k) {
     for (const Direction face : ws.planned.own_touching(k)) {
-      ws.planned_exchange.add_force(k, end_force(ws.setup.beams(), face, kAtRest, ws.node(0).u));
+      ws.planned_exchange.add_force(ws.planned, k,
+                                    end_force(ws.setup.beams(), face, kAtRest, ws.node(0).u));
     }
     for (const Direction child : ws.tree.children()) {
       awaited += ws.planned.is_needed_below(child, k) ? 2 : 0;

@@ -19,7 +19,11 @@ constexpr int kNoFront = 0xff;
 /// Room that has to be left in a queue for what follows without asking: a vector and a report; and
 /// the exchanges of an iteration (agent.hpp).
 constexpr int kReportRoom = wire::kVectorBytes + wire::kMessageBytesMax;
-constexpr int kExchangeRoom = (2 * kPlannedMax + 2) * wire::kVectorBytes;
+
+int exchange_room(const Workspace& ws) {
+  const int planned = ws.planned.count() > kPlannedMax ? ws.planned.count() : kPlannedMax;
+  return (2 * planned + 2) * wire::kVectorBytes;
+}
 
 /// In the fourth real of a node's message: faces that are missing, then these.
 constexpr unsigned kFixedBit = 1U << 6U;
@@ -612,7 +616,7 @@ void FrontElimination::await_planned_forces(Workspace& ws) {
 /// All nodes here move, and the exchanges begin; they ask for no room on the way.
 bool FrontElimination::move(Workspace& ws) {
   for (const Direction face : ws.tree.children()) {
-    if (!ws.links.has_room(face, kExchangeRoom)) {
+    if (!ws.links.has_room(face, exchange_room(ws))) {
       return false;
     }
   }

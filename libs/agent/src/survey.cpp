@@ -167,9 +167,10 @@ Report plan_report(const Workspace& ws, const Announcements& announcements, cons
   return report;
 }
 
+/// Of many planned modules the root knows by itself that they are emulated.
 Report hosts_report(const Workspace& ws) {
   PlannedSet hosted;
-  for (int i = 0; i < ws.planned.hosted_count(); ++i) {
+  for (int i = 0; i < ws.planned.hosted_count() && ws.planned.count() <= kPlannedMax; ++i) {
     hosted.add(ws.planned.hosted(i));
   }
   Report report;
@@ -323,7 +324,7 @@ void begin_survey(Workspace& ws, Announcements& announcements, const Order& orde
       break;
     case Operation::kHosts:
       announcements.settle();
-      ws.planned.decide_hosts(order.masks);
+      ws.planned.decide_hosts(order.masks, order.index);
       prepare_nodes(ws);
       break;
     case Operation::kMass:
