@@ -368,14 +368,14 @@ bool FrontElimination::make_front(Workspace& ws) {
 /// What the root keeps of facets; nothing else is left of its front.
 bool FrontElimination::take_kept_facets() {
   const std::span<const FrontNode> rest = front_.nodes().subspan(front_.complete_count());
-  if (rest.size() > kKeptMax || contact_reals(rest.size()) > memory_->contact.size()) {
+  if (rest.size() > memory_->kept.size() || contact_reals(rest.size()) > memory_->contact.size()) {
     return false;
   }
   for (const FrontNode& node : rest) {
     if (!node.is_kept || node.is_fixed) {
       return false;
     }
-    kept_[kept_count_++] = {
+    memory_->kept[kept_count_++] = {
         .u = base::converted<double>(node.u), .state = {.pressed = true}, .is_held = node.is_held};
   }
   return true;
@@ -555,7 +555,7 @@ bool FrontElimination::find_vector_up(int index, base::Vec6<float>& vector, int&
 
 void FrontElimination::find_shifts(const Workspace& ws) {
   if (!has_no_room_ && ws.tree.is_root() && kept_count_ > 0) {
-    FrontContact contact(ws.contact.facet, front_, std::span(kept_).first(kept_count_),
+    FrontContact contact(ws.contact.facet, front_, memory_->kept.first(kept_count_),
                          memory_->contact);
     has_no_state_ = !contact.solve();
   }

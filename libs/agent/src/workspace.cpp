@@ -26,7 +26,7 @@ Workspace::Workspace(const Setup& shared, const Identity& identity, const LentMe
   }
 #ifndef HOLDFAST_AGENT_FLOOR_ONLY
   if (MorePlanned* more = planned.more_planned(); more != nullptr) {
-    *more = {};
+    *more = {.group = more->group};
     links.lend_long(more->queues.data());
   }
 #endif

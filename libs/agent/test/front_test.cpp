@@ -23,8 +23,8 @@ using test::lopsided_beam;
 /// Memory for one front and its contact problem.
 struct Store {
   std::vector<float> reals = std::vector<float>(10'000);
-  std::vector<double> contact = std::vector<double>(contact_reals(kKeptMax));
-  FrontMemory memory{.nodes = {}, .reals = reals, .contact = contact, .queues = {}};
+  std::vector<double> contact = std::vector<double>(contact_reals(24));
+  FrontMemory memory{.nodes = {}, .reals = reals, .kept = {}, .contact = contact, .queues = {}};
 };
 
 /// Four nodes in a ring, one more above the first, one fixed; nodes 1 and 3 are not complete.

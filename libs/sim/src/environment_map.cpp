@@ -162,7 +162,7 @@ LentStore::LentStore(const model::Robot& robot, std::size_t module_count, Needs 
     faces_.resize(module_count);
   }
   if (needs.has_fronts) {
-    fronts_ = std::make_unique<FrontStore>(module_count);
+    fronts_ = std::make_unique<FrontStore>(module_count, needs.plans_many);
   }
   if (has_map) {
     map_ = std::make_unique<EnvironmentMap>(robot);
@@ -171,6 +171,12 @@ LentStore::LentStore(const model::Robot& robot, std::size_t module_count, Needs 
       1 + static_cast<std::size_t>(needs.plans_many ? agent::kPlannedMost : agent::kPlannedMax);
   surroundings_.resize(has_map ? nodes * module_count : 0);
   more_planned_.resize(needs.plans_many ? module_count : 0);
+  groups_.resize(more_planned_.size());
+  for (std::size_t i = 0; i < groups_.size(); ++i) {
+    // Without zeros: a page that is never written costs nothing.
+    groups_[i] = std::unique_ptr<double[]>(new double[agent::MorePlanned::kGroupReals]);
+    more_planned_[i].group = {groups_[i].get(), agent::MorePlanned::kGroupReals};
+  }
   const bool has_any =
       needs.has_fronts || needs.has_stages || needs.judges_faces || has_map || needs.plans_many;
   const bool has_more_faces = robot.lattice() != base::kCubic;

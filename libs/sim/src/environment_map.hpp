@@ -84,6 +84,7 @@ class LentStore {
   std::vector<agent::Surroundings> surroundings_;  ///< By module, then by node.
   std::vector<agent::MoreFaces> more_faces_;
   std::vector<agent::MorePlanned> more_planned_;
+  std::vector<std::unique_ptr<double[]>> groups_;  ///< MorePlanned::group
   std::vector<agent::LentMemory> memory_;
 };
 

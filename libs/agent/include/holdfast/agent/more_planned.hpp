@@ -5,6 +5,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 
 #include "holdfast/agent/announcements.hpp"
 #include "holdfast/agent/lattices.hpp"
@@ -19,6 +20,9 @@ namespace holdfast::agent {
 /// those for which it has no room itself, each part under the name that it has for the others.
 /// Messages are the same, but that several `hosts` orders are needed.
 struct MorePlanned {
+  /// Of a system with six unknowns for every planned module.
+  static constexpr std::size_t kGroupReals = 36UL * kPlannedMost * kPlannedMost;
+
   template <class T>
   using List = std::array<T, kPlannedMost - kPlannedMax>;
 
@@ -36,13 +40,19 @@ struct MorePlanned {
   List<std::array<float, 15>> stiffness_above{};
   std::array<IterationMemory, 1 + kPlannedMost> iterations{};
   List<Gradients> gradients{};
+  /// Where more than kPlannedMax are condensed here: factors, of the states they were made with.
+  std::uint8_t group_count = 0;
+  std::array<mechanics::ContactState, kPlannedMost> group_states{};
 
   AnnouncedPlaces announced{};  ///< All, in place of what a module has itself.
 
   /// For the links, in place of theirs: the vectors of an iteration wait in it.
   std::array<std::uint8_t, static_cast<std::size_t>(kFaceCountMax) * Link::kPlannedBytes> queues{};
 
+  std::span<double> group;  ///< kGroupReals; not owned.
+
   void clear_methods() {
+    group_count = 0;
     stiffness_above = {};
     iterations = {};
     gradients = {};
