@@ -1,13 +1,14 @@
 // SPDX-FileCopyrightText: The holdfast authors
 // SPDX-License-Identifier: Apache-2.0
 // More than five planned modules at once, up to thirty, against the exact solver.
+#include "many_planned.hpp"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
 #include "campaign.hpp"
 #include "holdfast/holdfast.hpp"
-#include "many_planned.hpp"
 
 namespace holdfast {
 namespace {
