@@ -64,7 +64,9 @@ Time lost_after(const LinkTiming& timing) {
 
 // Constants where no queue is ever lent.
 
-std::uint8_t* Link::queue() { return kHasAllMethods && lent_ != nullptr ? lent_ : queue_.data(); }
+std::uint8_t* Link::queue() {
+  return (kHasAllMethods || is_long()) && lent_ != nullptr ? lent_ : queue_.data();
+}
 
 int Link::capacity() const {
   if (is_long()) {
@@ -73,25 +75,15 @@ int Link::capacity() const {
   return kHasAllMethods && lent_ != nullptr ? kLentBytes : kQueueBytes;
 }
 
-#ifdef HOLDFAST_AGENT_FLOOR_ONLY
-
 void Link::clear() {
   std::uint8_t* const lent = lent_;
+  [[maybe_unused]] const bool was_long = is_long();
   *this = Link();
   lent_ = lent;
-}
-
-#else
-
-void Link::clear() {
-  std::uint8_t* const lent = lent_;
-  const bool is_long = is_long_;
-  *this = Link();
-  lent_ = lent;
-  is_long_ = is_long;
-}
-
+#ifndef HOLDFAST_AGENT_FLOOR_ONLY
+  is_long_ = was_long;
 #endif
+}
 
 std::uint16_t Link::wrapped(int position) const {
   return static_cast<std::uint16_t>(position < capacity() ? position : position - capacity());

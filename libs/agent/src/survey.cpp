@@ -170,7 +170,8 @@ Report plan_report(const Workspace& ws, const Announcements& announcements, cons
 /// Of many planned modules the root knows by itself that they are emulated.
 Report hosts_report(const Workspace& ws) {
   PlannedSet hosted;
-  for (int i = 0; i < ws.planned.hosted_count() && ws.planned.count() <= kPlannedMax; ++i) {
+  const bool is_said = !kPlansMany || ws.planned.count() <= kPlannedMax;
+  for (int i = 0; is_said && i < ws.planned.hosted_count(); ++i) {
     hosted.add(ws.planned.hosted(i));
   }
   Report report;

@@ -146,7 +146,7 @@ TEST(Front, says_so_if_there_is_no_room_or_nothing_holds_it) {
   auto nodes = ring();
   Front front;
   EXPECT_FALSE(front.make(nodes, store.memory));
-  store.memory = {.nodes = {}, .reals = store.reals, .contact = {}, .queues = {}};
+  store.memory = {.nodes = {}, .reals = store.reals, .kept = {}, .contact = {}, .queues = {}};
   ASSERT_TRUE(front.make(nodes, store.memory));
   EXPECT_FALSE(front.factor_row(0));
 }
