@@ -562,7 +562,11 @@ Order Conductor::settled() {
     return decide();
   }
   if (is_fixed_ && !is_uneven()) {
-    return ask(Operation::kLoads);
+    // Under the exact law a facet that has let go no longer holds sideways.
+    const bool releases = kHasAllMethods && is_unilateral_;
+    Order last = ask(releases ? Operation::kHold : Operation::kLoads);
+    last.flags = releases ? kReleaseOpen : std::uint8_t{0};
+    return last;
   }
   return ask(kKeepsAnswers && is_resumed_ && !is_unilateral_ ? Operation::kClose
                                                              : Operation::kCorners);
