@@ -562,11 +562,13 @@ Order Conductor::settled() {
     return decide();
   }
   if (is_fixed_ && !is_uneven()) {
-    // Under the exact law a facet that has let go no longer holds sideways.
-    const bool releases = kHasAllMethods && is_unilateral_;
-    Order last = ask(releases ? Operation::kHold : Operation::kLoads);
-    last.flags = releases ? kReleaseOpen : std::uint8_t{0};
-    return last;
+    if (kHasAllMethods && is_unilateral_) {
+      // Under the exact law a facet that has let go no longer holds sideways.
+      Order hold = ask(Operation::kHold);
+      hold.flags = kReleaseOpen;
+      return hold;
+    }
+    return ask(Operation::kLoads);
   }
   return ask(kKeepsAnswers && is_resumed_ && !is_unilateral_ ? Operation::kClose
                                                              : Operation::kCorners);
