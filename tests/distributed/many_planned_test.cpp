@@ -46,7 +46,7 @@ TEST(ManyPlanned, random_robots_are_decided_in_few_sweeps_with_fronts) {
   }
   ASSERT_GT(sweeps.size(), 100U);
   std::ranges::sort(sweeps);
-  EXPECT_LE(sweeps[sweeps.size() * 98 / 100], 30);  // 99 of 100 over thousands, docs/one_sweep.md.
+  EXPECT_LE(sweeps[sweeps.size() * 98 / 100], 30);
   EXPECT_LE(sweeps.back(), 60);
 }
 
