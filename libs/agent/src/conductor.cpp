@@ -562,6 +562,12 @@ Order Conductor::settled() {
     return decide();
   }
   if (is_fixed_ && !is_uneven()) {
+    if (kHasAllMethods && is_unilateral_) {
+      // Under the exact law a facet that has let go no longer holds sideways.
+      Order hold = ask(Operation::kHold);
+      hold.flags = kReleaseOpen;
+      return hold;
+    }
     return ask(Operation::kLoads);
   }
   return ask(kKeepsAnswers && is_resumed_ && !is_unilateral_ ? Operation::kClose
