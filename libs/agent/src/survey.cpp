@@ -402,8 +402,8 @@ Report mass_report(const Workspace& ws) {
     if (environment != nullptr) {
       const std::int32_t mass = surroundings_of(ws.node(i))->mass;
       own.number = static_cast<std::uint32_t>(mass);
-      for (std::int64_t& moment : own.moment) {
-        moment *= mass;
+      for (std::size_t k = 0; k < own.moment.size(); ++k) {
+        own.moment[k] = mass * own.moment[k] + (k < 2 ? surroundings_of(ws.node(i))->moment[k] : 0);
       }
       own.flags = static_cast<std::uint8_t>(own.flags | (environment->is_level ? 0U : kUneven));
     }

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstdint>
 
 #include "holdfast/agent/lattice_beams.hpp"
@@ -62,6 +63,9 @@ struct Setup {
   /// Known before, too, but at the end: what is above lies in the flash of real modules
   /// (module/configuration.hpp).
   base::Lattice lattice = base::kCubic;
+  /// Where loads alone say that the robot falls (feet.hpp): the axes of the plane of all supports.
+  bool has_plane = false;
+  std::array<std::array<double, 3>, 2> plane_axes{};
   // Derived.
   mechanics::LatticeBeam<double> lattice_beam;
   mechanics::LatticeBeam<float> lattice_beam_float;
