@@ -130,7 +130,7 @@ bool has_other_connectors(const model::Robot& robot) {
 std::optional<SupportPlane> find_support_plane(const model::Robot& robot) {
   constexpr double kTie = 1e-9;
   if (robot.facets().empty() || robot.fixed_count() > 0 || !robot.carried().empty() ||
-      (find_mass_unit(robot) > 0 && is_on_level_floor(robot))) {
+      stands_level(robot)) {
     return std::nullopt;
   }
   const base::Direction direction = robot.facets().front().direction;
@@ -171,7 +171,7 @@ EnvironmentMap::EnvironmentMap(const model::Robot& robot)
                   .foot_width_mm = 2 * robot.foot_half_width_mm(),
                   .foot_numerator = numerator,
                   .foot_denominator = denominator,
-                  .is_level = mass_unit_kg_ > 0 && is_on_level_floor(robot)};
+                  .is_level = stands_level(robot)};
   plane_ = find_support_plane(robot);
 }
 
@@ -205,6 +205,10 @@ void EnvironmentMap::describe(std::size_t module, agent::Surroundings& node) con
     node.facets[node.facet_count++] = {.direction = facet.direction,
                                        .is_bonded = facet.is_bonded()};
   }
+}
+
+bool stands_level(const model::Robot& robot) {
+  return find_mass_unit(robot) > 0 && is_on_level_floor(robot);
 }
 
 bool needs_environment(const model::Robot& robot) {

@@ -55,6 +55,10 @@ class EnvironmentMap {
   std::optional<SupportPlane> plane_;
 };
 
+/// All facets lie in one level plane and can lift, only weight acts, straight down, and masses are
+/// whole numbers of one unit: so the simplified check is exact.
+bool stands_level(const model::Robot& robot);
+
 /// A robot of equal cubes on a floor that weighs down, which agents know without a map.
 bool needs_environment(const model::Robot& robot);
 

@@ -6,6 +6,7 @@
 #include <cstdint>
 
 #include "holdfast/agent/lattice_beams.hpp"
+#include "holdfast/agent/lattices.hpp"
 #include "holdfast/agent/link.hpp"
 #include "holdfast/mechanics/beam.hpp"
 
@@ -80,6 +81,15 @@ struct Setup {
   }
 #endif
 };
+
+/// How many faces modules have.
+inline int face_count([[maybe_unused]] const Setup& setup) {
+#ifdef HOLDFAST_AGENT_FLOOR_ONLY
+  return kOwnFaceCount;
+#else
+  return setup.lattice.direction_count;
+#endif
+}
 
 /// The strength of the connectors in a direction.
 inline double strength_n(const Setup& setup, base::Direction direction) {
