@@ -120,7 +120,10 @@ StepsFile growing_at_random(const base::Lattice& lattice, std::uint64_t seed) {
   file.document.extension.lattice = lattice;
   for (std::size_t i = 0; i < first; i += 3) {
     file.document.extension.own.push_back(
-        {.step = 0, .module = i, .kind = {}, .mass_kg = 0.001 * (60.0 + rng.below(60))});
+        {.step = 0,
+         .module = i,
+         .kind = {},
+         .mass_kg = 1e-3 * static_cast<double>(60 + rng.below(60))});
   }
   for (std::size_t i = first; i < count;) {
     auto& step = file.document.steps.emplace_back();

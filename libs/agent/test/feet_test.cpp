@@ -75,7 +75,7 @@ TEST(Feet, small_robots_topple_when_their_mass_is_not_over_them) {
   for (int sample = 0; sample < 4000; ++sample) {
     auto setup = table_setup();
     setup.facet_denominator = 1 + static_cast<std::int32_t>(rng.below(4));
-    setup.facet_numerator = static_cast<std::int32_t>(rng.below(6));  // 0: points.
+    setup.facet_numerator = 1 + static_cast<std::int32_t>(rng.below(5));
     std::vector<Place> feet(1 + rng.below(5));
     for (Place& foot : feet) {
       foot = {static_cast<std::int32_t>(rng.below(9)) - 4,
@@ -135,7 +135,7 @@ TEST(Feet, small_robots_of_prisms_topple_when_their_mass_is_not_over_them) {
     auto setup = table_setup();
     setup.lattice = base::kHexagonalPrism;
     setup.facet_denominator = 1 + static_cast<std::int32_t>(rng.below(4));
-    setup.facet_numerator = static_cast<std::int32_t>(rng.below(6));  // 0: points.
+    setup.facet_numerator = 1 + static_cast<std::int32_t>(rng.below(5));
     std::vector<Place> feet(1 + rng.below(5));
     for (Place& foot : feet) {
       foot = {static_cast<std::int32_t>(rng.below(9)) - 4,

@@ -231,7 +231,8 @@ std::optional<std::string> find_unknown_to_modules(const model::Robot& robot) {
 }
 
 /// Convergents of the continued fraction: the best fractions there are, and the width itself where
-/// lengths have few digits. What is wider than can be checked ends as too large.
+/// lengths have few digits. What is wider than can be checked ends as too large; a point counts as
+/// a foot of one part, as safe angles are of facets (mechanics/safe_angles.hpp).
 FootParts foot_parts(const model::Robot& robot, std::int32_t part_max) {
   constexpr double kTie = 1e-12;
   const double width = 2 * robot.foot_half_width_mm() / robot.material().pitch_mm;
@@ -252,6 +253,9 @@ FootParts foot_parts(const model::Robot& robot, std::int32_t part_max) {
     last = std::exchange(parts, {.numerator = whole * parts.numerator + last.numerator,
                                  .denominator = whole * parts.denominator + last.denominator});
     rest -= part;
+  }
+  if (parts.numerator == 0) {
+    return {.numerator = 1, .denominator = part_max};
   }
   return parts;
 }

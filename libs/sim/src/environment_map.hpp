@@ -71,7 +71,7 @@ struct FootParts {
   std::int32_t denominator = 1;
 };
 
-/// With a numerator and a denominator up to `part_max`; 0 is a point.
+/// With a numerator from 1 and a denominator up to `part_max`.
 FootParts foot_parts(const model::Robot& robot, std::int32_t part_max);
 
 /// The memory that modules are lent (agent::LentMemory), for fronts, for stages of a step, for
