@@ -15,6 +15,7 @@
 #include "campaign.hpp"
 #include "general_robot.hpp"
 #include "holdfast/holdfast.hpp"
+#include "holdfast/model/lattice_beam.hpp"
 
 namespace holdfast {
 namespace {
@@ -141,8 +142,7 @@ struct Counts {
   int undecided = 0;
 };
 
-/// Never anything else; and undecided only where the robot falls, which is seen by forces that do
-/// not settle.
+/// Never anything else; and undecided only where the exact solver is.
 void expect_like_exact(const model::RobotSpec& spec, std::uint64_t seed, Counts& counts) {
   const auto robot = model::Robot::create(spec);
   if (!robot) {
@@ -154,8 +154,7 @@ void expect_like_exact(const model::RobotSpec& spec, std::uint64_t seed, Counts&
   EXPECT_FALSE(comparison.is_wrong()) << comparison.text();
   EXPECT_TRUE(comparison.result.all_agree) << comparison.text();
   EXPECT_LT(comparison.ratio_error(), 1) << comparison.text();
-  EXPECT_TRUE(!comparison.is_undecided() || comparison.exact == verdict::Verdict::kUnstable ||
-              comparison.exact == verdict::Verdict::kUndecided)
+  EXPECT_TRUE(!comparison.is_undecided() || comparison.exact == verdict::Verdict::kUndecided)
       << comparison.text();
 }
 
@@ -183,7 +182,7 @@ TEST(DistributedGeneral, random_robots_of_catoms_are_decided_like_the_exact_answ
 TEST(DistributedGeneral, random_robots_of_discs_are_decided_like_the_exact_answer) {
   const Counts counts = compare_random_robots(base::kHexagonal);
   EXPECT_GT(counts.all, 40);
-  EXPECT_LE(counts.undecided, 8);  // Robots with payloads that fall.
+  EXPECT_LT(8 * counts.undecided, counts.all);
 }
 
 TEST(DistributedGeneral, random_robots_of_prisms_are_decided_like_the_exact_answer) {
@@ -223,6 +222,39 @@ TEST(DistributedGeneral, own_masses_decide_whether_modules_of_other_lattices_top
   }
 }
 
+/// A foot of mass x - y and a module of mass y in the next row of prisms, in mg: they stand if
+/// 12 y^2 < x^2, and with (x/2)^2 - 3 y^2 = 1, or -2 on the other side, the centre of mass is
+/// within 1e-7 pitches of the edge. Turned and mirrored in the plane it is the same robot.
+TEST(DistributedGeneral, rows_of_prisms_are_exact_next_to_the_edge) {
+  for (const auto& [x, y, verdict] :
+       {std::tuple(2702, 780, Verdict::kSafe), std::tuple(10084, 2911, Verdict::kSafe),
+        std::tuple(1978, 571, Verdict::kUnstable), std::tuple(7382, 2131, Verdict::kUnstable)}) {
+    model::RobotSpec spec{.existing = {{0, 0, 0}, {0, 1, 0}}};
+    spec.lattice = base::kHexagonalPrism;
+    spec.support_z = std::nullopt;
+    spec.obstacles = {{.from = {}, .to = {}, .cells = {{0, 0, -1}}}};
+    spec.own_masses = {{{0, 0, 0}, 1e-6 * (x - y)}, {{0, 1, 0}, 1e-6 * y}};
+    int count = 0;
+    for (const test::Symmetry& symmetry : test::symmetries(spec.lattice)) {
+      model::RobotSpec moved = test::turned(spec, symmetry);
+      moved.gravity_m_s2.reset();
+      if (moved.obstacles.front().cells.front().z > 0) {
+        continue;
+      }
+      ++count;
+      // Turned by 60 degrees the facet, a square, is another one: only along y it is as above.
+      const base::Cell& other = moved.existing.back();
+      const bool is_along_y = std::abs(other.y) == 1;
+      const model::Robot robot = robot_of(moved);
+      const test::Comparison comparison = test::compare(robot, {});
+      EXPECT_FALSE(comparison.is_wrong()) << comparison.text();
+      EXPECT_EQ(comparison.robot, is_along_y ? verdict : comparison.robot) << x << " " << other.x;
+      EXPECT_FALSE(comparison.is_undecided()) << comparison.text();
+    }
+    EXPECT_EQ(count, 12);
+  }
+}
+
 /// A catom or prism on one obstacle, in each direction: it rests on what gravity presses it on.
 TEST(DistributedGeneral, modules_of_other_lattices_stand_on_every_face_that_gravity_presses_on) {
   for (const base::Lattice& lattice : test::kLattices) {
@@ -241,6 +273,45 @@ TEST(DistributedGeneral, modules_of_other_lattices_stand_on_every_face_that_grav
       }
     }
   }
+}
+
+/// A module that is pressed on an obstacle by its weight, and turned about the facet's edges by a
+/// payload: it falls if that is more than the weight times half of the facet, a quarter of a pitch.
+/// That is seen by the loads alone where it is far from the edge.
+TEST(DistributedGeneral, a_payload_tips_a_module_on_every_face_at_the_edge) {
+  int count = 0;
+  for (const base::Lattice& lattice : test::kLattices) {
+    for (const base::Direction down : base::directions(lattice)) {
+      const std::array<double, 3> n = base::unit_vector(lattice, down);
+      const auto frame = model::rotation_along<double>(lattice, down);
+      for (const double share : {0.5, 0.98, 1.02, 1.5}) {
+        for (std::size_t axis = 0; axis < 4; ++axis) {
+          model::RobotSpec spec{.existing = {{0, 0, 0}}};
+          spec.lattice = lattice;
+          spec.foot_mm = 20;
+          spec.material.facet_mm = 20;
+          spec.support_z = std::nullopt;
+          spec.obstacles = {
+              {.from = {}, .to = {}, .cells = {base::neighbour(lattice, {0, 0, 0}, down)}}};
+          spec.gravity_m_s2 = {9.81 * n[0], 9.81 * n[1], 9.81 * n[2]};
+          spec.own_masses = {{{0, 0, 0}, 0.1}};
+          const double torque = (axis < 2 ? 1 : -1) * share * 0.1 * 9.81 * 10;
+          const std::array<double, 3>& around = frame[axis % 2];
+          spec.payloads = {
+              {{0, 0, 0}, {}, {torque * around[0], torque * around[1], torque * around[2]}}};
+          const model::Robot robot = robot_of(spec);
+          sim::Simulation simulation(robot, {});
+          simulation.run();
+          const Verdict verdict = simulation.result().answer.verdict;
+          EXPECT_EQ(verdict, share < 1 ? Verdict::kSafe : Verdict::kUnstable)
+              << lattice.direction_count << " directions, " << base::index(down) << " " << share;
+          EXPECT_TRUE(share < 1.5 || simulation.result().effort.iterations == 0);
+          ++count;
+        }
+      }
+    }
+  }
+  EXPECT_GT(count, 500);
 }
 
 /// A module that is taken off and comes back finds what it touches again.

@@ -4,6 +4,10 @@
 // exact solver says, in a fraction of the time. The paper suggests it [Piranda 2021, Sec. II-G].
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
+#include "general_robot.hpp"
+#include "holdfast/base/rng.hpp"
 #include "holdfast/model/families.hpp"
 #include "holdfast/simulated_steps.hpp"
 
@@ -92,6 +96,59 @@ TEST(Kept, the_same_on_noisy_and_on_slow_links) {
       expect_the_same(simulated(growing(start, {{1, 1, 1}, {4, 0, 1}, {0, 1, 1}, {0, 1, 0}}, true),
                                 {.link = link, .seed = seed}));
     }
+  }
+}
+
+/// A robot that grew at random above a floor from one foot, its first third as the start and the
+/// rest in steps of one or two modules; every third module of the start weighs something else.
+StepsFile growing_at_random(const base::Lattice& lattice, std::uint64_t seed) {
+  base::Rng rng(seed);
+  Cells cells = {{0, 0, 0}};
+  const std::size_t count = 9 + rng.below(16);
+  while (cells.size() < count) {
+    const base::Cell& from = cells[rng.below(cells.size())];
+    const auto direction = static_cast<base::Direction>(
+        rng.below(static_cast<std::uint64_t>(lattice.direction_count)));
+    const base::Cell next = base::neighbour(lattice, from, direction);
+    if (next.z >= 0 && std::ranges::find(cells, next) == cells.end()) {
+      cells.push_back(next);
+    }
+  }
+  const std::size_t first = count / 3;
+  StepsFile file = growing(Cells(cells.begin(), cells.begin() + static_cast<std::ptrdiff_t>(first)),
+                           {}, rng.below(4) == 0);
+  file.document.extension.lattice = lattice;
+  for (std::size_t i = 0; i < first; i += 3) {
+    file.document.extension.own.push_back(
+        {.step = 0,
+         .module = i,
+         .kind = {},
+         .mass_kg = 1e-3 * static_cast<double>(60 + rng.below(60))});
+  }
+  for (std::size_t i = first; i < count;) {
+    auto& step = file.document.steps.emplace_back();
+    for (std::size_t k = 1 + rng.below(2); k > 0 && i < count; --k) {
+      step.emplace_back().cell = cells[i++];
+    }
+  }
+  return file;
+}
+
+/// Catoms, discs and prisms, and cubes of different masses: the exact solver's verdicts, in less
+/// time.
+TEST(Kept, modules_of_every_lattice_and_mass_go_on_from_what_they_keep) {
+  for (const base::Lattice& lattice : test::kLattices) {
+    int count = 0;
+    double share = 0;
+    for (std::uint64_t seed = 0; seed < 6; ++seed) {
+      SCOPED_TRACE(::testing::Message() << lattice.direction_count << " faces, seed " << seed);
+      const SimulatedSteps steps = simulated(growing_at_random(lattice, seed));
+      expect_the_same(steps);
+      count += static_cast<int>(steps.changes.size());
+      share += steps.time_share_median / 6;
+    }
+    EXPECT_GT(count, 60);
+    EXPECT_LT(share, 0.7);
   }
 }
 

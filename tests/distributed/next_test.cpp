@@ -10,6 +10,7 @@
 #include <map>
 #include <set>
 
+#include "general_robot.hpp"
 #include "holdfast/base/rng.hpp"
 #include "holdfast/model/families.hpp"
 #include "holdfast/simulated_next.hpp"
@@ -234,6 +235,36 @@ TEST(SimulatedNext, in_a_box_too_large_everything_is_undecided) {
   spec.fixed = {{0, 0, 0}};
   const SimulatedNext next = simulated(spec);
   EXPECT_EQ(next.shown_count, 0U);
+}
+
+/// Modules that are no cubes, or weigh something else, on a floor: planned one by one.
+TEST(SimulatedNext, every_lattice_is_judged_cell_by_cell) {
+  for (const base::Lattice& lattice : test::kLattices) {
+    for (std::uint64_t seed = 0; seed < 3; ++seed) {
+      SCOPED_TRACE(::testing::Message() << lattice.direction_count << " faces, seed " << seed);
+      base::Rng rng(seed);
+      model::RobotSpec spec{.existing = {{0, 0, 0}}};
+      spec.lattice = lattice;
+      while (spec.existing.size() < 6) {
+        const auto direction = static_cast<base::Direction>(
+            rng.below(static_cast<std::uint64_t>(lattice.direction_count)));
+        const Cell cell =
+            base::neighbour(lattice, spec.existing[rng.below(spec.existing.size())], direction);
+        if (cell.z >= 0 && std::ranges::find(spec.existing, cell) == spec.existing.end()) {
+          spec.existing.push_back(cell);
+        }
+      }
+      spec.own_masses = {{spec.existing.front(), 0.2}};
+      const SimulatedNext robot = simulated(spec, true);
+      expect_what_next_says(spec, robot);
+      EXPECT_TRUE(robot.all_agree);
+      EXPECT_EQ(robot.shown_count, 0U);
+      EXPECT_EQ(robot.trials.size(), robot.next.candidates.size());
+      EXPECT_TRUE(std::ranges::none_of(robot.next.candidates, [](const Trial& trial) {
+        return trial.verdict == Verdict::kUndecided;
+      }));
+    }
+  }
 }
 
 }  // namespace

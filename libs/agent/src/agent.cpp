@@ -339,7 +339,7 @@ bool Agent::finish_sweep() {
       return true;
     }
     go_on_with(kKeepsAnswers && order.operation == wire::Operation::kRenew
-                   ? conductor_.after_renew(ws_.setup, sweep_.sum(), ws_.planned)
+                   ? conductor_.after_renew(ws_.setup, sweep_.sum(), ws_.planned, ws_.environment())
                    : conductor_.next(ws_.setup, sweep_.sum(), ws_.planned));
   }
   return true;

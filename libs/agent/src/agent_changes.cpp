@@ -53,7 +53,7 @@ void Agent::tell(const News& news) {
   if (!ws_.tree.is_root()) {
     ws_.links.send(ws_.tree.parent(), encode(news));
   } else if (conductor_.can_renew(ws_.setup)) {
-    go_on_with(conductor_.renew(ws_.setup, news, ws_.planned));
+    go_on_with(conductor_.renew(ws_.setup, news, ws_.planned, ws_.environment()));
   } else {
     leave_round();
   }

@@ -46,6 +46,13 @@ void Codec::faces(FaceMask& mask) {
   mask = static_cast<FaceMask>(wide);
 }
 
+void Codec::resumed_faces(std::uint8_t& byte) {
+  constexpr std::uint8_t kAll = 0xff;
+  flags(byte, face_count_ == kOwnFaceCount
+                  ? static_cast<std::uint8_t>(Faces::all(kOwnFaceCount).mask())
+                  : kAll);
+}
+
 void Codec::direction(base::Direction& direction) {
   kind(direction, base::Direction::kPlusX, static_cast<base::Direction>(face_count_ - 1));
 }

@@ -41,6 +41,8 @@ class Codec {
   void flags(std::uint8_t& value, std::uint8_t all);
   /// Faces of a module, in 16 bits as some lattices have 12 directions.
   void faces(FaceMask& mask);
+  /// A part of the masks of planned modules in kResume (resume_masks.hpp).
+  void resumed_faces(std::uint8_t& byte);
   void direction(base::Direction& direction);
   /// The cell of a module, and of a plan: that, or kEveryCell.
   void cell(base::Cell& cell);
@@ -93,6 +95,8 @@ class Ruler {
   constexpr void flags(std::uint8_t&, unsigned) { bytes_ += 1; }
 
   constexpr void faces(FaceMask&) { bytes_ += 2; }
+
+  constexpr void resumed_faces(std::uint8_t&) { bytes_ += 1; }
 
   constexpr void direction(base::Direction&) { bytes_ += 1; }
 

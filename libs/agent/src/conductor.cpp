@@ -202,6 +202,30 @@ bool Conductor::is_all_hosted(const Report& report, [[maybe_unused]] const Plann
   return (report.mask & 0x7fU) == all;
 }
 
+namespace {
+
+/// Do loads pull a robot away from the plane of all its supports? But for rounding to units.
+bool is_pulled_away(const Setup& setup, const Report& report) {
+#ifdef HOLDFAST_AGENT_FLOOR_ONLY
+  static_cast<void>(setup);
+  static_cast<void>(report);
+  return false;
+#else
+  const auto pressure = static_cast<std::int32_t>(report.mass());
+  return setup.has_plane && pressure < -static_cast<std::int64_t>(report.count);
+#endif
+}
+
+/// In a plane of supports; what does not fit there is left to the equilibrium.
+bool fits_plane_check(const Setup& setup, const Report& report, std::uint16_t extent) {
+  constexpr std::int64_t kMost = 0x7fffffff;
+  const auto fits = [](std::int64_t moment) { return -kMost <= moment && moment <= kMost; };
+  return (report.flags & kSumOverflow) == 0 && fits(report.moment[0]) && fits(report.moment[1]) &&
+         fits_plane_check(setup, static_cast<std::int32_t>(report.mass()), report.count, extent);
+}
+
+}  // namespace
+
 Order Conductor::after_mass(const Setup& setup, const Report& report) {
   if (kJudgesStages && is_resumed_) {
     return resume_stage(setup, report);
@@ -217,7 +241,10 @@ Order Conductor::after_mass(const Setup& setup, const Report& report) {
   if (extent_ > kExtentMax || depth_ > kExtentMax) {
     return finish(Verdict::kUndecided, Reason::kTooLarge);
   }
-  if (is_fixed_ || is_uneven()) {
+  if (is_uneven() && !is_fixed_ && is_pulled_away(setup, report)) {
+    return finish(Verdict::kUnstable, Reason::kTopples);
+  }
+  if (is_fixed_ || (is_uneven() && !fits_plane_check(setup, report, extent_))) {
     return begin_law(setup, false);
   }
   constexpr std::int64_t kMost = 0x7fffffff;

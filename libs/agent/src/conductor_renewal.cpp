@@ -5,6 +5,7 @@
 // stands, and displacements and contact states are a good guess.
 #include "holdfast/agent/conductor.hpp"
 #include "holdfast/agent/feet.hpp"
+#include "resume_masks.hpp"
 #include "scalar.hpp"
 
 namespace holdfast::agent {
@@ -29,6 +30,24 @@ int planned_connections(const Planned& planned) {
 /// with the tree that there is, and no sweep is longer than a quarter more.
 constexpr int kDeeperShare = 4;
 
+/// What is known of a module that is, or will be, in a cell.
+struct Place {
+  std::int64_t mass = 1;  ///< Units.
+  bool is_ground = false;
+  bool is_known = true;
+};
+
+Place place_of(const Setup& setup, const Environment* environment, const base::Cell& cell) {
+  if (!kHasSurroundings || environment == nullptr) {
+    return {.is_ground = cell.z == setup.support_z};
+  }
+  Surroundings there;
+  there.environment = environment;
+  environment->describe(environment->map, cell, there);
+  return {
+      .mass = there.mass, .is_ground = there.facet_count > 0, .is_known = is_number(there.load[0])};
+}
+
 /// An order that is none.
 Order no_order() { return {}; }
 
@@ -45,7 +64,8 @@ bool Conductor::can_renew(const Setup& setup) const {
          !is_unilateral_ && !has_clusters_;
 }
 
-Order Conductor::renew(const Setup& setup, const News& news, const Planned& planned) {
+Order Conductor::renew(const Setup& setup, const News& news, const Planned& planned,
+                       const Environment* environment) {
   is_resumed_ = true;
   is_same_shape_ = (news.flags & kIsFulfilled) != 0;
   has_judged_ = has_judged_ && (news.flags & (kIsFulfilled | kIsGrown)) == 0;
@@ -56,14 +76,14 @@ Order Conductor::renew(const Setup& setup, const News& news, const Planned& plan
   if (depth_ > wave_depth_ + wave_depth_ / kDeeperShare + 2) {
     return no_order();  // Another root would make shorter sweeps.
   }
-  return renew_plan(setup, news.flags, news.cell, planned);
+  return renew_plan(setup, news.flags, news.cell, planned, environment);
 }
 
 /// One plan more or less. What every module knows of plans must fit: one more has place and is
 /// new, one less is there.
 /// Whatever hangs in the air adds no stiffness to the tree.
 Order Conductor::renew_plan(const Setup& setup, std::uint8_t flags, const base::Cell& cell,
-                            const Planned& planned) {
+                            const Planned& planned, const Environment* environment) {
   const bool ends = (flags & kIsEnded) != 0;
   const int left = planned.count() - (ends ? 1 : 0);
   const bool is_known = planned.find(cell) >= 0;
@@ -71,20 +91,25 @@ Order Conductor::renew_plan(const Setup& setup, std::uint8_t flags, const base::
   if (is_known != ends || (is_new && left >= kPlannedMax)) {
     return no_order();
   }
-  has_factors_ = has_factors_ && cell.z != setup.support_z;
+  const Place place = place_of(setup, environment, cell);
+  if (!place.is_known) {
+    return no_order();
+  }
+  has_factors_ = has_factors_ && !place.is_ground;
   Order renew = ask(Operation::kRenew);
   renew.flags = static_cast<std::uint8_t>(flags | (has_factors_ ? kKeepsFactors : 0U));
   renew.cell = cell;
   return renew;
 }
 
-Order Conductor::after_renew(const Setup& setup, const Report& report, const Planned& planned) {
+Order Conductor::after_renew(const Setup& setup, const Report& report, const Planned& planned,
+                             const Environment* environment) {
   if ((report.flags & kAtOdds) != 0 || report.count != census_) {
     return no_order();
   }
   if ((report.flags & kMoreAnnounced) != 0) {
     is_same_shape_ = false;
-    return renew_plan(setup, 0, report.cell, planned);
+    return renew_plan(setup, 0, report.cell, planned, environment);
   }
   if ((report.flags & kNewLoop) != 0) {
     has_factors_ = false;
@@ -99,12 +124,13 @@ Order Conductor::after_renew(const Setup& setup, const Report& report, const Pla
     return finish(answer_.verdict, answer_.reason);
   }
   is_fixed_ = is_fixed;
-  return weigh(setup, report, planned) ? resume(setup, planned) : no_order();
+  return weigh(setup, report, planned, environment) ? resume(setup, planned) : no_order();
 }
 
 /// Adds the planned modules to what the others have reported. False: too large to be counted, or
 /// some touch nothing.
-bool Conductor::weigh(const Setup& setup, const Report& report, const Planned& planned) {
+bool Conductor::weigh(const Setup& setup, const Report& report, const Planned& planned,
+                      const Environment* environment) {
   if (planned.count() > kPlannedMax) {
     return false;  // Their masks have no room in one order.
   }
@@ -112,26 +138,33 @@ bool Conductor::weigh(const Setup& setup, const Report& report, const Planned& p
   effort_ = {.module_count = census_ + planned_count_, .method = setup.method};
   std::array<std::int64_t, 2> moment = {report.moment[0], report.moment[1]};
   std::int64_t extent = report.extent;
+  std::int64_t mass = report.mass();
+  bool is_known = true;
   totals_ = {};
   for (int k = 0; k < planned.count(); ++k) {
     const base::Cell& cell = planned.cell(k);
     const std::int64_t x = cell.x - root_.x;
     const std::int64_t y = cell.y - root_.y;
     const std::int64_t z = cell.z - root_.z;
-    moment[0] += x;
-    moment[1] += y;
-    const std::int64_t reach = (x < 0 ? -x : x) + (y < 0 ? -y : y) + (z < 0 ? -z : z);
+    const base::Cell away = floor_place(setup, cell, root_);
+    const Place place = place_of(setup, environment, cell);
+    moment[0] += place.mass * away.x;
+    moment[1] += place.mass * away.y;
+    mass += place.mass;
+    is_known = is_known && place.is_known;
+    const std::int64_t reach =
+        (x < 0 ? -x : x) + (y < 0 ? -y : y) + (z < 0 ? -z : z) + (setup.is_cubic() ? 0 : 1);
     extent = extent < reach ? reach : extent;
     totals_[static_cast<std::size_t>(k)] = planned.touching(k).mask();
   }
-  const std::int64_t mass = std::int64_t{report.mass()} + planned_count_;
   constexpr std::int64_t kMost = 0x7fffffff;
   for (const std::int64_t value : moment) {
     if (value < -kMost || value > kMost) {
       return false;
     }
   }
-  if (planned.is_any_detached()) {
+  if (!is_known || planned.count() > resumed_planned_max(face_count(setup)) ||
+      planned.is_any_detached()) {
     return false;  // It has a beam less than it would hang by, which hides one that closes a loop.
   }
   const bool is_bent = planned_connections(planned) != planned.count();
@@ -162,7 +195,7 @@ Order Conductor::resume(const Setup& setup, const Planned& /*planned*/) {
       (is_fixed_ ? 0U : kRests) | (is_any_remote_ ? kStandsApart : 0U));
   resume.mass = mass_;
   resume.moment = moment_;
-  resume.masks = totals_;
+  resume.masks = resume_masks(totals_, face_count(setup));
   open_held_count_ = 0;
   is_comparing_ = false;
   return resume;

@@ -21,47 +21,66 @@ bool fits_exact_check(const Setup& setup, std::int64_t mass) {
          setup.facet_denominator <= kFacetPartMax;
 }
 
+bool fits_plane_check([[maybe_unused]] const Setup& setup, [[maybe_unused]] std::int64_t pressure,
+                      [[maybe_unused]] std::uint32_t module_count,
+                      [[maybe_unused]] std::uint16_t extent) {
+#ifdef HOLDFAST_AGENT_FLOOR_ONLY
+  return false;
+#else
+  const std::int64_t reach = std::int64_t{kPlaneParts} * (extent + 2);
+  return setup.has_plane && fits_exact_check(setup, pressure) && reach < kExtentMax &&
+         pressure >= module_count * reach;
+#endif
+}
+
 namespace {
 
 #ifndef HOLDFAST_AGENT_FLOOR_ONLY
 
-/// sqrt(3), to three parts in ten million. What is compared is A + B sqrt(3) with whole numbers A
-/// and B, which is zero for this number, too, where it is zero; with a better one 64 bits would not
-/// do.
-constexpr std::int64_t kRootNumerator = 1351;
-constexpr std::int64_t kRootDenominator = 780;
-
-bool has_rows(const Setup& setup) { return setup.lattice == base::kHexagonalPrism; }
+bool has_rows(const Setup& setup) {
+  return !setup.has_plane && setup.lattice == base::kHexagonalPrism;
+}
 
 bool has_layers(const Setup& setup) {
-  return setup.lattice.shear_x != 0 || setup.lattice.shear_y != 0;
+  return !setup.has_plane && (setup.lattice.shear_x != 0 || setup.lattice.shear_y != 0);
+}
+
+/// Along an axis of the plane of supports, in its parts.
+std::int32_t plane_place(const Setup& setup, std::size_t axis, const base::Cell& cell) {
+  const auto place = base::node_place(setup.lattice, cell);
+  const auto& [x, y, z] = setup.plane_axes[axis];
+  const double parts = kPlaneParts * (x * place[0] + y * place[1] + z * place[2]);
+  return static_cast<std::int32_t>(parts < 0 ? parts - 0.5 : parts + 0.5);
 }
 
 #endif
 
-/// All lengths of the check are so many times as large as they would have to be.
-std::int64_t scale_of([[maybe_unused]] const Setup& setup) {
-#ifdef HOLDFAST_AGENT_FLOOR_ONLY
-  return 1;
-#else
-  return has_rows(setup) ? kRootDenominator : 1;
-#endif
-}
-
-/// Half of a facet's width is Setup::facet_numerator of these times the scale.
+/// Half of a facet's width is Setup::facet_numerator of these.
 std::int64_t parts_of_cell(const Setup& setup) {
 #ifdef HOLDFAST_AGENT_FLOOR_ONLY
   return 2 * std::int64_t{setup.facet_denominator};
 #else
   const int halves = has_rows(setup) || has_layers(setup) ? 1 : 2;
-  return scale_of(setup) * halves * setup.facet_denominator;
+  return setup.has_plane ? 1 : std::int64_t{halves} * setup.facet_denominator;
 #endif
 }
 
-std::int64_t parts_of_row(const Setup& setup) {
+/// Half of a facet's width.
+std::int64_t half_parts_of_facet(const Setup& setup) {
+#ifndef HOLDFAST_AGENT_FLOOR_ONLY
+  if (setup.has_plane) {
+    return kPlaneDoubt + 1 +
+           std::int64_t{kPlaneParts} * setup.facet_numerator / (2 * setup.facet_denominator);
+  }
+#endif
+  return setup.facet_numerator;
+}
+
+/// From one row of cells along x to the next.
+FloorLength parts_of_row(const Setup& setup) {
 #ifndef HOLDFAST_AGENT_FLOOR_ONLY
   if (has_rows(setup)) {
-    return kRootNumerator * setup.facet_denominator;
+    return {0, parts_of_cell(setup)};
   }
 #endif
   return parts_of_cell(setup);
@@ -73,6 +92,10 @@ base::Cell floor_place([[maybe_unused]] const Setup& setup, const base::Cell& ce
                        const base::Cell& from) {
   base::Cell away = {cell.x - from.x, cell.y - from.y, cell.z - from.z};
 #ifndef HOLDFAST_AGENT_FLOOR_ONLY
+  if (setup.has_plane) {
+    return {plane_place(setup, 0, cell) - plane_place(setup, 0, from),
+            plane_place(setup, 1, cell) - plane_place(setup, 1, from), 0};
+  }
   if (has_layers(setup)) {
     const std::int32_t shift = (cell.z & 1) - (from.z & 1);
     away.x = 2 * away.x + shift * setup.lattice.shear_x;
@@ -87,7 +110,7 @@ base::Cell floor_place([[maybe_unused]] const Setup& setup, const base::Cell& ce
 FeetCheck::FeetCheck(const Setup& setup, std::int32_t mass,
                      const std::array<std::int32_t, 2>& moment)
     : pitch_(parts_of_cell(setup) * mass),
-      half_width_(scale_of(setup) * setup.facet_numerator * mass),
+      half_width_(half_parts_of_facet(setup) * mass),
 #ifndef HOLDFAST_AGENT_FLOOR_ONLY
       pitch_y_(parts_of_row(setup) * mass),
 #endif
@@ -114,7 +137,7 @@ SafeCorners FeetCheck::of_foot(std::int32_t x, std::int32_t y) const {
 
 /// A corner from the centre of mass.
 FeetCheck::Vector FeetCheck::seen(const FootCorner& corner) const {
-  const auto place = [&](std::int32_t quarters, std::int64_t pitch, std::int64_t mass) {
+  const auto place = [&](std::int32_t quarters, FloorLength pitch, FloorLength mass) {
     const std::int32_t cell = (quarters + 1) >> 2;
     return cell * pitch + (quarters > 4 * cell ? half_width_ : -half_width_) - mass;
   };

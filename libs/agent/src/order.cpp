@@ -215,7 +215,9 @@ constexpr void resume_fields(auto& codec, Order& order) {
   codec.i32(order.moment[0]);
   codec.i32(order.moment[1]);
   for (std::size_t k = 0; k < kPlannedMax; ++k) {
-    byte_flags(codec, order.masks[k], Faces::all().mask());
+    auto byte = static_cast<std::uint8_t>(order.masks[k]);
+    codec.resumed_faces(byte);
+    order.masks[k] = byte;
   }
 }
 

@@ -7,6 +7,7 @@
 #include "holdfast/agent/feet.hpp"
 #include "holdfast/mechanics/connector.hpp"
 #include "methods.hpp"
+#include "resume_masks.hpp"
 
 namespace holdfast::agent {
 namespace {
@@ -254,8 +255,13 @@ void prepare_node(Workspace& ws, int index) {
 #ifndef HOLDFAST_AGENT_FLOOR_ONLY
   if (const Environment* environment = ws.environment(); environment != nullptr) {
     Surroundings& surroundings = ws.lent->surroundings[index];
+    const bool is_kept = index == 0 && node.surroundings == &surroundings;
+    const Surroundings before = is_kept ? surroundings : Surroundings{};
     surroundings = {.environment = environment};
     environment->describe(environment->map, ws.cell_of(index), surroundings);
+    if (is_kept && before.facet_count == surroundings.facet_count) {
+      surroundings.facets = before.facets;  // Nothing but the states may be others.
+    }
     surroundings.facet_count = node.is_fixed ? std::uint8_t{0} : surroundings.facet_count;
     node.is_ground = surroundings.facet_count > 0;
     node.surroundings = &surroundings;
@@ -291,7 +297,7 @@ base::Vec6<double> stiff_motion(const Workspace& ws, const base::Cell& cell) {
 
 void resume_survey(Workspace& ws, Announcements& announcements, const Order& order) {
   announcements.settle();
-  ws.planned.decide_hosts(order.masks);
+  ws.planned.decide_hosts(masks_of_resume(order.masks, face_count(ws.setup)));
   prepare_nodes(ws);
   for (int i = 1; i < ws.node_count(); ++i) {
     reset(ws.node(i));
@@ -404,8 +410,8 @@ Report mass_report(const Workspace& ws) {
     if (environment != nullptr) {
       const std::int32_t mass = surroundings_of(ws.node(i))->mass;
       own.number = static_cast<std::uint32_t>(mass);
-      for (std::int64_t& moment : own.moment) {
-        moment *= mass;
+      for (std::size_t k = 0; k < own.moment.size(); ++k) {
+        own.moment[k] = mass * own.moment[k] + (k < 2 ? surroundings_of(ws.node(i))->moment[k] : 0);
       }
       own.flags = static_cast<std::uint8_t>(own.flags | (environment->is_level ? 0U : kUneven));
     }
@@ -423,8 +429,12 @@ void add_report(const Setup& setup, const Order& order, Report& into, const Repo
     const FeetCheck check(setup, order.mass, order.moment);
     into.feet = check.merge(into.feet, theirs.feet);
   }
-  if (order.operation == Operation::kCorners && !setup.is_cubic()) {
-    into.corners = mechanics::merge_rounded(into.corners, theirs.corners);
+  const bool has_corners =
+      order.operation == Operation::kCorners || order.operation == Operation::kClose;
+  if (has_corners && !setup.is_cubic()) {
+    const auto corners = mechanics::merge_rounded(into.corners, theirs.corners);
+    merge(order.operation, into, theirs);
+    into.corners = corners;
   } else if (order.operation != Operation::kAngles) {
     merge(order.operation, into, theirs);
   }

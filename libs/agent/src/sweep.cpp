@@ -10,6 +10,7 @@
 #include "holdfast/mechanics/connector.hpp"
 #include "method.hpp"
 #include "methods.hpp"
+#include "resume_masks.hpp"
 #include "survey.hpp"
 
 namespace holdfast::agent {
@@ -234,7 +235,8 @@ bool Sweep::is_good_resume(const Workspace& ws, const Order& order) const {
   const bool is_weighed = (order.flags & kRests) == 0 || fits_exact_check(ws.setup, order.mass);
   const bool is_possible = (order.flags & kWithIterations) != 0 ||
                            (order.count == 0 && !state_.elimination.has_too_many_loops());
-  return course_ == Course::kWeighed && ws.planned.agrees_with(order.masks) && is_weighed &&
+  return course_ == Course::kWeighed && is_weighed &&
+         ws.planned.agrees_with(masks_of_resume(order.masks, face_count(ws.setup))) &&
          is_possible && (order.flags & kOneSweep) != 0;
 }
 

@@ -8,6 +8,8 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+#include <cmath>
 #include <vector>
 
 #include "holdfast/base/rng.hpp"
@@ -23,6 +25,25 @@ struct Place {
   std::int32_t x = 0;
   std::int32_t y = 0;
 };
+
+/// Is there a line through the origin and a corner with all corners on one side? Numbers up to
+/// `tie` are zero.
+template <class Real>
+bool has_all_on_one_side(const std::vector<std::array<Real, 2>>& corners, Real tie) {
+  const auto is_zero = [&](Real value) { return -tie <= value && value <= tie; };
+  for (const auto& border : corners) {
+    for (const int side : {-1, 1}) {
+      bool holds_all = !is_zero(border[0]) || !is_zero(border[1]);
+      for (const auto& corner : corners) {
+        holds_all = holds_all && side * (border[0] * corner[1] - border[1] * corner[0]) >= -tie;
+      }
+      if (holds_all) {
+        return true;
+      }
+    }
+  }
+  return false;
+}
 
 /// Of feet merged one by one.
 SafeRange range_of(const FeetCheck& check, const std::vector<Place>& feet) {
@@ -45,18 +66,7 @@ bool topples(const std::vector<Place>& feet, std::int64_t half_width, std::int64
       }
     }
   }
-  for (const auto& border : corners) {
-    for (const std::int64_t side : {-1, 1}) {
-      bool holds_all = border[0] != 0 || border[1] != 0;
-      for (const auto& corner : corners) {
-        holds_all = holds_all && side * (border[0] * corner[1] - border[1] * corner[0]) >= 0;
-      }
-      if (holds_all) {
-        return true;
-      }
-    }
-  }
-  return false;
+  return has_all_on_one_side<std::int64_t>(corners, 0);
 }
 
 TEST(Feet, small_robots_topple_when_their_mass_is_not_over_them) {
@@ -114,6 +124,72 @@ TEST(Feet, the_largest_numbers_are_exact) {
   EXPECT_EQ(range_of(FeetCheck(setup, kCount, {0, 25'165'816}), feet), SafeRange::kArc);
   EXPECT_EQ(range_of(FeetCheck(setup, kCount, {0x7fffffff, -0x7fffffff}), feet), SafeRange::kFull);
   EXPECT_EQ(range_of(FeetCheck(setup, kCount, {0x7fffffff, 25'165'816}), feet), SafeRange::kArc);
+}
+
+/// Rows of prisms are sqrt(3)/2 of a pitch apart. Second method: as above, in long double, whose
+/// digits tell numbers a + b sqrt(3) of this size from zero.
+TEST(Feet, small_robots_of_prisms_topple_when_their_mass_is_not_over_them) {
+  base::Rng rng(12);
+  int stable_count = 0;
+  for (int sample = 0; sample < 4000; ++sample) {
+    auto setup = table_setup();
+    setup.lattice = base::kHexagonalPrism;
+    setup.facet_denominator = 1 + static_cast<std::int32_t>(rng.below(4));
+    setup.facet_numerator = 1 + static_cast<std::int32_t>(rng.below(5));
+    std::vector<Place> feet(1 + rng.below(5));
+    for (Place& foot : feet) {
+      foot = {static_cast<std::int32_t>(rng.below(9)) - 4,
+              static_cast<std::int32_t>(rng.below(9)) - 4};
+    }
+    const auto count = static_cast<std::int32_t>(1 + rng.below(20));
+    const Place sum = {static_cast<std::int32_t>(rng.below(80)) - 40,
+                       static_cast<std::int32_t>(rng.below(80)) - 40};
+    std::vector<std::array<long double, 2>> corners;
+    for (const Place& foot : feet) {
+      for (const int side_x : {-1, 1}) {
+        for (const int side_y : {-1, 1}) {
+          const long double half = setup.facet_numerator;
+          const long double pitch = setup.facet_denominator;
+          corners.push_back({(pitch * foot.x + half * side_x) * count - pitch * sum.x,
+                             (pitch * foot.y * std::sqrt(3.0L) + half * side_y) * count -
+                                 pitch * sum.y * std::sqrt(3.0L)});
+        }
+      }
+    }
+    const FeetCheck check(setup, count, {sum.x, sum.y});
+    const bool is_stable = !has_all_on_one_side(corners, 1e-9L);
+    EXPECT_EQ(range_of(check, feet) == SafeRange::kFull, is_stable) << "sample " << sample;
+    stable_count += is_stable ? 1 : 0;
+  }
+  EXPECT_GT(stable_count, 400);
+}
+
+/// One foot half a pitch wide, and a mass m of n in the next row of prisms: the centre of mass is
+/// m sqrt(3) / (2 n) pitches away, so it stands if (2 m)^2 3 < n^2. n = 2 x and m = y with x^2 - 3
+/// y^2 = 1, or -2 on the other side, are as near to the edge as whole numbers come.
+TEST(Feet, rows_of_prisms_are_exact) {
+  auto setup = table_setup();
+  setup.lattice = base::kHexagonalPrism;
+  setup.facet_denominator = 2;
+  int count = 0;
+  for (std::array<std::int32_t, 4> xy = {2, 1, 5, 3}; 2 * xy[2] < kCheckedMassMax;
+       xy = {2 * xy[0] + 3 * xy[1], xy[0] + 2 * xy[1], 2 * xy[2] + 3 * xy[3], xy[2] + 2 * xy[3]}) {
+    const auto& [x, y, x_over, y_over] = xy;
+    for (const std::int32_t side : {-1, 1}) {
+      const FeetCheck stands(setup, 2 * x, {0, side * y});
+      EXPECT_EQ(range_of(stands, {{0, 0}}), SafeRange::kFull) << x;
+      const FeetCheck falls(setup, 2 * x_over, {0, side * y_over});
+      EXPECT_EQ(range_of(falls, {{0, 0}}), SafeRange::kArc) << x_over;
+      // The same foot a row and a half aside.
+      EXPECT_EQ(range_of(FeetCheck(setup, 2 * x, {6 * x, side * (y + 4 * x)}), {{3, 2 * side}}),
+                SafeRange::kFull);
+      EXPECT_EQ(range_of(FeetCheck(setup, 2 * x_over, {6 * x_over, side * (y_over + 4 * x_over)}),
+                         {{3, 2 * side}}),
+                SafeRange::kArc);
+    }
+    ++count;
+  }
+  EXPECT_GE(count, 11);
 }
 
 /// What comes off the wire is a corner of a cell, at the end of the largest robot at most.

@@ -46,6 +46,12 @@ void add_face(Place& place, const agent::FreeFace& face) {
   }
 }
 
+/// Do its modules judge all free faces together? Where more is known to them than cubes on a floor
+/// every cell is planned in turn.
+bool judges_faces(const model::Robot& robot) {
+  return !model::find_beyond_paper(robot).has_value();
+}
+
 /// Is the floor there, below a module that rests on it?
 bool is_floor(const model::Robot& robot, const Cells& cells, const base::Cell& cell) {
   const base::Cell above = base::neighbour(cell, base::Direction::kPlusZ);
@@ -108,15 +114,27 @@ std::vector<Trial> sorted_trials(const Places& places) {
   return trials;
 }
 
+/// What the verdict on a plan says of the face that it is planned at.
+agent::FreeFace face_of(const agent::Answer& answer) {
+  const bool has_ratio =
+      answer.verdict == agent::Verdict::kSafe || answer.verdict == agent::Verdict::kOverload;
+  return {.verdict = answer.verdict,
+          .has_load_ratio = has_ratio,
+          .load_ratio_max = answer.load_ratio_max};
+}
+
 /// Plans the cell, waits for the verdict, which the modules beside it note, and withdraws the plan.
 RobotEffort try_cell(sim::Simulation& simulation, const model::Robot& robot, const base::Cell& cell,
                      Place& place) {
   const RobotEffort before = effort_of(simulation.result());
   simulation.happen(sim::Announcement{.module = place.module, .cell = cell});
   simulation.run();
+  if (!judges_faces(robot)) {
+    place.face = face_of(simulation.agent(place.module).answer());
+  }
   const base::Cell& host = robot.modules()[static_cast<std::size_t>(place.module)].cell;
   for (const base::Direction direction : base::kDirections) {
-    if (base::neighbour(host, direction) == cell) {
+    if (judges_faces(robot) && base::neighbour(host, direction) == cell) {
       const agent::FreeFace shown = simulation.agent(place.module).free_face(direction);
       place.face.verdict = shown.verdict;
       place.face.has_load_ratio = shown.has_load_ratio;
@@ -167,10 +185,41 @@ void count_shown(SimulatedNext& simulated, const Places& places, std::int32_t su
   }
 }
 
+/// Free cells in which a module can be, the robot being what it is.
+std::vector<base::Cell> open_cells(const model::RobotSpec& whole) {
+  std::vector<base::Cell> cells;
+  model::RobotSpec more = whole;
+  more.existing.emplace_back();
+  for (const base::Cell& cell : free_cells(whole)) {
+    more.existing.back() = cell;
+    if (model::Robot::create(more, 1)) {
+      cells.push_back(cell);
+    }
+  }
+  return cells;
+}
+
+/// The cells of modules that are absent, and of those that are there one beside each.
+Places absent_places(const model::Robot& robot, const std::vector<std::int32_t>& absent) {
+  const auto first = static_cast<std::int32_t>(robot.modules().size() - absent.size());
+  Places places;
+  for (const std::int32_t module : absent) {
+    Place place;
+    for (const std::int32_t other : robot.neighbours()[static_cast<std::size_t>(module)]) {
+      if (other >= 0 && other < first) {
+        place.module = other;
+        ++place.touching;
+      }
+    }
+    places.emplace(robot.modules()[static_cast<std::size_t>(module)].cell, place);
+  }
+  return places;
+}
+
 SimulatedNext run(const model::Robot& robot, const SimulatedNextOptions& options) {
   const auto start = std::chrono::steady_clock::now();
   sim::SimulationOptions how = options.simulation;
-  how.judges_faces = true;
+  how.judges_faces = judges_faces(robot);
   sim::Simulation simulation(robot, how);
   simulation.run();
   const sim::SimulationResult result = simulation.result();
@@ -181,7 +230,8 @@ SimulatedNext run(const model::Robot& robot, const SimulatedNextOptions& options
   simulated.depth = depth_of(simulation);
   simulated.verdict = plain_effort(robot, how);
   simulated.faces = difference(effort_of(result), simulated.verdict);
-  Places places = read_places(robot, simulation);
+  Places places =
+      how.judges_faces ? read_places(robot, simulation) : absent_places(robot, how.absent);
   count_shown(simulated, places, robot.support_z());
   if (options.tries_others) {
     try_others(simulated, simulation, robot, places, options);
@@ -226,16 +276,28 @@ base::Result<SimulatedNext> simulate_next(const model::RobotSpec& spec,
   model::RobotSpec whole = spec;
   whole.existing.insert(whole.existing.end(), whole.planned.begin(), whole.planned.end());
   whole.planned.clear();
-  const auto robot = model::Robot::create(whole);
+  auto robot = model::Robot::create(whole);
   if (!robot) {
     return robot.error();
   }
-  sim::SimulationOptions judging = options.simulation;
-  judging.judges_faces = true;
+  SimulatedNextOptions how = options;
+  if (!judges_faces(robot.value())) {
+    // What is in a cell is known of modules only, also of those that are not there yet.
+    for (const base::Cell& cell : open_cells(whole)) {
+      how.simulation.absent.push_back(static_cast<std::int32_t>(whole.existing.size()));
+      whole.existing.push_back(cell);
+    }
+    robot = model::Robot::create(whole);
+    if (!robot) {
+      return robot.error();
+    }
+  }
+  sim::SimulationOptions judging = how.simulation;
+  judging.judges_faces = judges_faces(robot.value());
   if (const auto fault = sim::find_options_fault(robot.value(), judging)) {
     return base::Error{.code = base::ErrorCode::kBadInput, .message = *fault, .where = {}};
   }
-  return run(robot.value(), options);
+  return run(robot.value(), how);
 }
 
 base::Result<SimulatedNext> simulate_next(const Structure& structure,

@@ -5,6 +5,9 @@
 #include <initializer_list>
 #include <limits>
 
+#include "holdfast/mechanics/root_three.hpp"
+#include "wide.hpp"
+
 namespace holdfast::mechanics {
 namespace {
 
@@ -13,33 +16,6 @@ template <class Real>
 int sign_of_products(Real p, Real q, Real r, Real s) {
   const Real sum = p * q + r * s;
   return sum > 0 ? 1 : sum == 0 ? 0 : -1;
-}
-
-/// 128 bits in two's complement, without the compiler's own: no module's processor has them.
-struct Wide {
-  std::uint64_t high = 0;
-  std::uint64_t low = 0;
-};
-
-/// The product of all 64 bits, made of halves of 32.
-Wide product(std::int64_t a, std::int64_t b) {
-  const auto size = [](std::int64_t value) {
-    const auto bits = static_cast<std::uint64_t>(value);
-    return value < 0 ? 0 - bits : bits;
-  };
-  constexpr std::uint64_t kHalf = 0xffffffffU;
-  const std::uint64_t x = size(a);
-  const std::uint64_t y = size(b);
-  const std::uint64_t lowest = (x & kHalf) * (y & kHalf);
-  const std::uint64_t left = (x >> 32U) * (y & kHalf) + (lowest >> 32U);
-  const std::uint64_t right = (x & kHalf) * (y >> 32U) + (left & kHalf);
-  Wide wide = {(x >> 32U) * (y >> 32U) + (left >> 32U) + (right >> 32U),
-               (right << 32U) | (lowest & kHalf)};
-  if ((a < 0) != (b < 0)) {
-    wide.low = 0 - wide.low;
-    wide.high = ~wide.high + (wide.low == 0 ? 1U : 0U);
-  }
-  return wide;
 }
 
 /// Exact for all that has_direction() admits.
@@ -59,6 +35,14 @@ int sign_of_products(std::int64_t p, std::int64_t q, std::int64_t r, std::int64_
   const std::uint64_t low = first.low + second.low;
   const std::uint64_t high = first.high + second.high + (low < first.low ? 1U : 0U);
   return (high >> 63U) != 0 ? -1 : (high | low) != 0 ? 1 : 0;
+}
+
+/// Exact for all that has_direction() admits: without roots as large as whole numbers.
+template <>
+int sign_of_products(RootThree p, RootThree q, RootThree r, RootThree s) {
+  const bool has_roots = (p.roots() | q.roots() | r.roots() | s.roots()) != 0;
+  return has_roots ? sign_of_product_sum(p, q, r, s)
+                   : sign_of_products(p.whole(), q.whole(), r.whole(), s.whole());
 }
 
 template <class Real>
@@ -93,6 +77,18 @@ bool has_direction(PlanVector<std::int64_t> v) {
   return (v.x != 0 || v.y != 0) && is_good(v.x) && is_good(v.y);
 }
 
+template <>
+bool has_direction(PlanVector<RootThree> v) {
+  if (v.x.roots() == 0 && v.y.roots() == 0) {
+    return has_direction(PlanVector<std::int64_t>{v.x.whole(), v.y.whole()});
+  }
+  bool is_good = true;
+  for (const std::int64_t part : {v.x.whole(), v.x.roots(), v.y.whole(), v.y.roots()}) {
+    is_good = is_good && -kRootThreeMax <= part && part <= kRootThreeMax;
+  }
+  return is_good;
+}
+
 /// Can a vector and a half width be added without overflow? Reals tell by themselves.
 template <class Real>
 bool is_finite_facet(PlanVector<Real>, Real) {
@@ -105,6 +101,18 @@ bool is_finite_facet(PlanVector<std::int64_t> facet, std::int64_t half_width) {
   bool is_good = true;
   for (const std::int64_t value : {facet.x, facet.y, half_width}) {
     is_good = is_good && -kMost <= value && value <= kMost;
+  }
+  return is_good;
+}
+
+template <>
+bool is_finite_facet(PlanVector<RootThree> facet, RootThree half_width) {
+  constexpr std::int64_t kMost = kPlanVectorMax / 2;
+  bool is_good = true;
+  for (const RootThree& value : {facet.x, facet.y, half_width}) {
+    for (const std::int64_t part : {value.whole(), value.roots()}) {
+      is_good = is_good && -kMost <= part && part <= kMost;
+    }
   }
   return is_good;
 }
@@ -180,9 +188,11 @@ SafeAngles<Real> merge(const SafeAngles<Real>& a, const SafeAngles<Real>& b) {
 template SafeAngles<float> safe_angles(PlanVector<float>, float);
 template SafeAngles<double> safe_angles(PlanVector<double>, double);
 template SafeAngles<std::int64_t> safe_angles(PlanVector<std::int64_t>, std::int64_t);
+template SafeAngles<RootThree> safe_angles(PlanVector<RootThree>, RootThree);
 template SafeAngles<float> merge(const SafeAngles<float>&, const SafeAngles<float>&);
 template SafeAngles<double> merge(const SafeAngles<double>&, const SafeAngles<double>&);
 template SafeAngles<std::int64_t> merge(const SafeAngles<std::int64_t>&,
                                         const SafeAngles<std::int64_t>&);
+template SafeAngles<RootThree> merge(const SafeAngles<RootThree>&, const SafeAngles<RootThree>&);
 
 }  // namespace holdfast::mechanics

@@ -49,6 +49,55 @@ bool is_on_level_floor(const model::Robot& robot) {
   });
 }
 
+double dot(const std::array<double, 3>& a, const std::array<double, 3>& b) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+/// In the frame of a plane: force, then torque.
+base::Vec6<double> in_plane(const SupportPlane& plane, const base::Vec6<double>& load) {
+  base::Vec6<double> local{};
+  for (std::size_t k = 0; k < 3; ++k) {
+    local[k] = dot(plane.axes[k], {load[0], load[1], load[2]});
+    local[k + 3] = dot(plane.axes[k], {load[3], load[4], load[5]});
+  }
+  return local;
+}
+
+/// What a load at a height above the plane, in mm, does to it about the foot of the node: moments
+/// that forces along x' and y' would have to be shifted by.
+std::array<double, 2> moments_about_foot(const base::Vec6<double>& local, double height_mm) {
+  return {height_mm * local[0] + local[4], height_mm * local[1] - local[3]};
+}
+
+/// So small that sums fit, of forces as masses do and of moments in 31 bits, and no smaller.
+double unit_of_loads(const model::Robot& robot, const SupportPlane& plane) {
+  const base::NodePlaces node_mm(robot.lattice(), robot.material().pitch_mm);
+  const double part_mm = robot.material().pitch_mm / agent::kPlaneParts;
+  const auto first = node_mm(robot.modules().front().cell);
+  double reach_mm = robot.material().pitch_mm;
+  for (const model::Module& module : robot.modules()) {
+    const auto [x, y, z] = node_mm(module.cell);
+    reach_mm = std::max(reach_mm, 2 * std::hypot(x - first[0], y - first[1], z - first[2]));
+  }
+  double force = 0;
+  double moment = 0;
+  for (std::size_t i = 0; i < robot.modules().size(); ++i) {
+    const base::Vec6<double> local = in_plane(plane, robot.loads()[i]);
+    const double height_mm = dot(plane.axes[2], node_mm(robot.modules()[i].cell)) -
+                             plane.height * robot.material().pitch_mm;
+    const auto [x, y] = moments_about_foot(local, height_mm);
+    force += std::abs(local[2]);
+    moment += std::abs(x) + std::abs(y) + reach_mm * std::abs(local[2]);
+  }
+  constexpr double kMomentMost = 1U << 30U;
+  const double unit = std::max(2 * force / static_cast<double>(agent::kCheckedMassMax),
+                               moment / part_mm / kMomentMost);
+  return unit > 0 ? unit : 1;
+}
+
+/// Parts of a cell in which corners of cubes are counted, at most.
+constexpr std::int32_t kCornerPartMax = 4096;
+
 /// Corners are counted in parts of a cell, up to the largest coordinate that a message holds.
 bool has_far_corners(const model::Robot& robot, const agent::Environment& environment) {
   constexpr std::int64_t kMost = (1 << 22) - 1;
@@ -78,6 +127,29 @@ bool has_other_connectors(const model::Robot& robot) {
 
 }  // namespace
 
+std::optional<SupportPlane> find_support_plane(const model::Robot& robot) {
+  constexpr double kTie = 1e-9;
+  if (robot.facets().empty() || robot.fixed_count() > 0 || !robot.carried().empty() ||
+      stands_level(robot)) {
+    return std::nullopt;
+  }
+  const base::Direction direction = robot.facets().front().direction;
+  SupportPlane plane{.axes = mechanics::rotation_along<double>(robot.lattice(), direction)};
+  const auto height_of = [&](const model::Facet& facet) {
+    const base::Cell& cell = robot.modules()[base::at(facet.module)].cell;
+    return dot(plane.axes[2], base::node_place(robot.lattice(), cell)) - 0.5;
+  };
+  plane.height = height_of(robot.facets().front());
+  for (const model::Facet& facet : robot.facets()) {
+    const bool is_in_plane = std::abs(height_of(facet) - plane.height) < kTie;
+    if (facet.direction != direction || facet.is_bonded() || !is_in_plane) {
+      return std::nullopt;
+    }
+  }
+  plane.unit_n = unit_of_loads(robot, plane);
+  return plane;
+}
+
 EnvironmentMap::EnvironmentMap(const model::Robot& robot)
     : robot_(robot),
       modules_(robot.modules().size()),
@@ -91,7 +163,7 @@ EnvironmentMap::EnvironmentMap(const model::Robot& robot)
     ++first_facet_[base::at(facet.module) + 1];
   }
   std::partial_sum(first_facet_.begin(), first_facet_.end(), first_facet_.begin());
-  const auto [numerator, denominator] = foot_parts(robot);
+  const auto [numerator, denominator] = foot_parts(robot, kCornerPartMax);
   environment_ = {.describe = describe,
                   .map = this,
                   .beams = beams_.is_cubic() ? nullptr : &beams_,
@@ -99,7 +171,8 @@ EnvironmentMap::EnvironmentMap(const model::Robot& robot)
                   .foot_width_mm = 2 * robot.foot_half_width_mm(),
                   .foot_numerator = numerator,
                   .foot_denominator = denominator,
-                  .is_level = mass_unit_kg_ > 0 && is_on_level_floor(robot)};
+                  .is_level = stands_level(robot)};
+  plane_ = find_support_plane(robot);
 }
 
 void EnvironmentMap::describe(const void* map, const base::Cell& cell, agent::Surroundings& node) {
@@ -117,11 +190,25 @@ void EnvironmentMap::describe(std::size_t module, agent::Surroundings& node) con
   node.mass = mass_unit_kg_ > 0
                   ? static_cast<std::int32_t>(std::lround(robot_.mass(module) / mass_unit_kg_))
                   : 1;
+  if (plane_) {
+    const base::Vec6<double> local = in_plane(*plane_, node.load);
+    const double pitch_mm = robot_.material().pitch_mm;
+    const auto place = base::node_place(robot_.lattice(), robot_.modules()[module].cell);
+    const double height_mm = pitch_mm * (dot(plane_->axes[2], place) - plane_->height);
+    const auto moments = moments_about_foot(local, height_mm);
+    const double moment_unit = plane_->unit_n * pitch_mm / agent::kPlaneParts;
+    node.mass = static_cast<std::int32_t>(std::lround(-local[2] / plane_->unit_n));
+    node.moment = {std::lround(moments[0] / moment_unit), std::lround(moments[1] / moment_unit)};
+  }
   for (std::size_t i = first_facet_[module]; i < first_facet_[module + 1]; ++i) {
     const model::Facet& facet = robot_.facets()[i];
     node.facets[node.facet_count++] = {.direction = facet.direction,
                                        .is_bonded = facet.is_bonded()};
   }
+}
+
+bool stands_level(const model::Robot& robot) {
+  return find_mass_unit(robot) > 0 && is_on_level_floor(robot);
 }
 
 bool needs_environment(const model::Robot& robot) {
@@ -143,14 +230,34 @@ std::optional<std::string> find_unknown_to_modules(const model::Robot& robot) {
   return std::nullopt;
 }
 
-FootParts foot_parts(const model::Robot& robot) {
-  // Rounded to this part, then reduced.
-  constexpr std::int32_t kParts = 4096;
-  const double parts =
-      std::round(2 * robot.foot_half_width_mm() / robot.material().pitch_mm * kParts);
-  const auto numerator = static_cast<std::int32_t>(parts < 1 ? 1 : parts);
-  const std::int32_t divisor = std::gcd(numerator, kParts);
-  return {.numerator = numerator / divisor, .denominator = kParts / divisor};
+/// Convergents of the continued fraction: the best fractions there are, and the width itself where
+/// lengths have few digits. What is wider than can be checked ends as too large; a point counts as
+/// a foot of one part, as safe angles are of facets (mechanics/safe_angles.hpp).
+FootParts foot_parts(const model::Robot& robot, std::int32_t part_max) {
+  constexpr double kTie = 1e-12;
+  const double width = 2 * robot.foot_half_width_mm() / robot.material().pitch_mm;
+  if (!(width <= part_max)) {
+    return {.numerator = agent::kFacetPartMax + 1, .denominator = 1};
+  }
+  FootParts last = {.numerator = 1, .denominator = 0};
+  FootParts parts = {.numerator = static_cast<std::int32_t>(width), .denominator = 1};
+  double rest = width - parts.numerator;
+  while (std::abs(width * parts.denominator - parts.numerator) > kTie * parts.denominator) {
+    rest = 1 / rest;
+    const double part = std::floor(rest);
+    if (part * parts.denominator + last.denominator > part_max ||
+        part * parts.numerator + last.numerator > part_max) {
+      break;
+    }
+    const auto whole = static_cast<std::int32_t>(part);
+    last = std::exchange(parts, {.numerator = whole * parts.numerator + last.numerator,
+                                 .denominator = whole * parts.denominator + last.denominator});
+    rest -= part;
+  }
+  if (parts.numerator == 0) {
+    return {.numerator = 1, .denominator = part_max};
+  }
+  return parts;
 }
 
 LentStore::LentStore(const model::Robot& robot, std::size_t module_count, Needs needs) {

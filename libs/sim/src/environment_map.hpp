@@ -18,6 +18,16 @@
 
 namespace holdfast::sim {
 
+/// The plane of all facets of a robot, if they lie in one, can lift, and loads on it are no weights
+/// on a level floor: then loads alone may say that the robot falls (agent/feet.hpp).
+struct SupportPlane {
+  mechanics::Rotation<double> axes{};  ///< Rows x', y', z' of the facets' frame.
+  double height = 0;                   ///< Of the plane along z', in pitches.
+  double unit_n = 1;                   ///< In which modules count forces.
+};
+
+std::optional<SupportPlane> find_support_plane(const model::Robot& robot);
+
 /// What agents are told of the world where a robot is more than cubes on a floor under their weight
 /// (agent/surroundings.hpp): of every cell with a module, existing or planned, its load, its mass
 /// and its facets.
@@ -42,7 +52,12 @@ class EnvironmentMap {
   double mass_unit_kg_ = 0;               ///< 0: masses are not whole numbers of any.
   mechanics::LatticeBeam<double> beams_;
   agent::Environment environment_;
+  std::optional<SupportPlane> plane_;
 };
+
+/// All facets lie in one level plane and can lift, only weight acts, straight down, and masses are
+/// whole numbers of one unit: so the simplified check is exact.
+bool stands_level(const model::Robot& robot);
 
 /// A robot of equal cubes on a floor that weighs down, which agents know without a map.
 bool needs_environment(const model::Robot& robot);
@@ -56,7 +71,8 @@ struct FootParts {
   std::int32_t denominator = 1;
 };
 
-FootParts foot_parts(const model::Robot& robot);
+/// With a numerator from 1 and a denominator up to `part_max`.
+FootParts foot_parts(const model::Robot& robot, std::int32_t part_max);
 
 /// The memory that modules are lent (agent::LentMemory), for fronts, for stages of a step, for
 /// free faces, for surroundings and for many planned modules.

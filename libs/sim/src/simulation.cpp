@@ -8,6 +8,7 @@
 
 #include "engine.hpp"
 #include "environment_map.hpp"
+#include "holdfast/agent/feet.hpp"
 #include "holdfast/base/check.hpp"
 
 namespace holdfast::sim {
@@ -113,7 +114,7 @@ std::optional<std::string> find_floor_fault(const model::Robot& robot) {
 
 agent::Setup make_setup(const model::Robot& robot, const SimulationOptions& options) {
   const model::Material& material = robot.material();
-  const FootParts foot = foot_parts(robot);
+  const FootParts foot = foot_parts(robot, agent::kFacetPartMax);
   agent::Setup setup;
   setup.section = model::beam_section(material);
   setup.facet_mm = material.facet_mm;
@@ -126,8 +127,12 @@ agent::Setup make_setup(const model::Robot& robot, const SimulationOptions& opti
   setup.support_z = robot.support_z();
   setup.method = options.method;
   setup.degree_max = options.degree_max;
-  setup.keeps_answers = options.keeps_answers && !needs_environment(robot);
+  setup.keeps_answers = options.keeps_answers && (!needs_environment(robot) || stands_level(robot));
   setup.lattice = robot.lattice();
+  if (const auto plane = needs_environment(robot) ? find_support_plane(robot) : std::nullopt) {
+    setup.has_plane = true;
+    setup.plane_axes = {plane->axes[0], plane->axes[1]};
+  }
   setup.timing = link_timing(options.link, robot.lattice().direction_count);
   setup.timing.lattice = wire_number(robot.lattice());
   agent::prepare(setup);

@@ -51,8 +51,9 @@ struct SimulatedNextOptions {
   std::function<void(std::size_t done, std::size_t count)> progress = {};
 };
 
-/// Simulates a robot whose planned modules are attached. Errors: options that do not fit; the
-/// robot goes beyond [Piranda 2021], see model::find_beyond_paper().
+/// Simulates a robot whose planned modules are attached. If it goes beyond [Piranda 2021], see
+/// model::find_beyond_paper(), nothing is decided all together: all cells are planned in turn.
+/// Errors: options that do not fit; the robot is what the modules' program does not know.
 base::Result<SimulatedNext> simulate_next(const model::RobotSpec& spec,
                                           const SimulatedNextOptions& options = {});
 base::Result<SimulatedNext> simulate_next(const Structure& structure,

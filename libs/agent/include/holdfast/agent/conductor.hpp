@@ -94,10 +94,12 @@ class Conductor {
   bool can_renew(const Setup& setup) const;
 
   /// The first order after a change of what the verdict was about.
-  Order renew(const Setup& setup, const News& news, const Planned& planned);
+  Order renew(const Setup& setup, const News& news, const Planned& planned,
+              const Environment* environment = nullptr);
 
   /// The next order, given what kRenew has brought; kNone if only a new round can go on.
-  Order after_renew(const Setup& setup, const Report& report, const Planned& planned);
+  Order after_renew(const Setup& setup, const Report& report, const Planned& planned,
+                    const Environment* environment = nullptr);
 
   /// In place of the verdict: the next scene of the stage that is judged, or the next stage.
   Order end_scene(const Stages& stages, const Answer& answer);
@@ -136,8 +138,9 @@ class Conductor {
   bool is_all_hosted(const Report& report, const Planned& planned) const;
   Order forget(const Report& report);
   Order renew_plan(const Setup& setup, std::uint8_t flags, const base::Cell& cell,
-                   const Planned& planned);
-  bool weigh(const Setup& setup, const Report& report, const Planned& planned);
+                   const Planned& planned, const Environment* environment);
+  bool weigh(const Setup& setup, const Report& report, const Planned& planned,
+             const Environment* environment = nullptr);
   Order resume(const Setup& setup, const Planned& planned);
   Order after_resume(const Report& report);
   Order after_close(const Setup& setup, const Report& report);

@@ -2,9 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstdint>
 
 #include "holdfast/agent/lattice_beams.hpp"
+#include "holdfast/agent/lattices.hpp"
 #include "holdfast/agent/link.hpp"
 #include "holdfast/mechanics/beam.hpp"
 
@@ -62,6 +64,9 @@ struct Setup {
   /// Known before, too, but at the end: what is above lies in the flash of real modules
   /// (module/configuration.hpp).
   base::Lattice lattice = base::kCubic;
+  /// Where loads alone say that the robot falls (feet.hpp): the axes of the plane of all supports.
+  bool has_plane = false;
+  std::array<std::array<double, 3>, 2> plane_axes{};
   // Derived.
   mechanics::LatticeBeam<double> lattice_beam;
   mechanics::LatticeBeam<float> lattice_beam_float;
@@ -76,6 +81,15 @@ struct Setup {
   }
 #endif
 };
+
+/// How many faces modules have.
+inline int face_count([[maybe_unused]] const Setup& setup) {
+#ifdef HOLDFAST_AGENT_FLOOR_ONLY
+  return kOwnFaceCount;
+#else
+  return setup.lattice.direction_count;
+#endif
+}
 
 /// The strength of the connectors in a direction.
 inline double strength_n(const Setup& setup, base::Direction direction) {

@@ -45,7 +45,10 @@ struct Environment;
 struct Surroundings {
   const Environment* environment = nullptr;
   base::Vec6<double> load{};  ///< Weight and payload: 3 N, 3 N mm at the node, global frame.
-  std::int32_t mass = 1;      ///< Whole units, see Environment::is_level.
+  /// Whole units, see Environment::is_level; with Setup::has_plane what presses on the plane.
+  std::int32_t mass = 1;
+  /// With Setup::has_plane: moments of the load besides, in units times parts of a pitch.
+  std::array<std::int64_t, 2> moment{};
   std::uint8_t facet_count = 0;
   /// Of lattices without a direction straight down a floor is touched there as well.
   std::array<TouchingFacet, kFaceCountMax + 1> facets{};
