@@ -89,6 +89,7 @@ int exit_code(verdict::Verdict verdict) {
     std::_Exit(kExitFailure);  // Nor has MPI what it takes to end: mpirun sees the code.
   }
   reserve.reset();
+  is_first_rank = false;  // It has its own line to say.
   int rank = 0;
   MPI_Comm_rank(MPI_COMM_WORLD, &rank);
   fmt::print(stderr, "holdfast-mpi: rank {}: {}; no verdict\n", rank, message);
