@@ -84,7 +84,7 @@ petsc() { # PETSc's preconditioners on the assembled matrix
   local count pc line
   [ -x "$peers/petsc_bench" ] || { printf '\nno PETSc to compare with\n'; return; }
   printf '\n%-22s %10s %8s %11s\n' 'PETSc CG, bonded' seconds MB iterations
-  for count in 1 2; do
+  for count in 1 2 4; do
     for pc in jacobi bjacobi gamg hypre; do
       if line=$(ranks "$count" "$peers/petsc_bench" "$family" "$size" /dev/null -pc_type "$pc" \
         2>/dev/null | tail -1) && [ -n "$line" ]; then

@@ -6,7 +6,7 @@
     compare.py HOLDFAST HOLDFAST_MPI RANKS [RANKS ...] [--only TEXT] [--table]
 
 For each structure: the same verdict; the largest load ratio within 1e-4 of itself or of 1; at most
-1.2 times the iterations. One that is named may be undecided instead, for a reason that is named.
+1.2 times the iterations.
 """
 import argparse
 import copy
@@ -28,10 +28,6 @@ SECONDS_MAX = 120
 # Random robots, chosen for what they have: planned and fixed modules, loads, other lattices, trees
 # on frames, a few modules for each rank, undecided ones.
 SEEDS = range(0, 20)
-# Of these multigrid in double precision leaves the loads open, on one rank, too; one machine asks
-# the direct solver, which ranks do not have.
-OPEN_SEEDS = (10,)
-OPEN_REASON = 'so slender that rounding leaves no digits of them'
 BONDED = ('--bonded',)
 STRENGTHS = {'strength_vertical_n': 11.98, 'strength_lateral_n': 14.97}
 
@@ -169,15 +165,7 @@ def is_comparable(name, options):
     return not name.startswith('random') or options == list(BONDED)
 
 
-def is_left_open(name, parts):
-    is_known = any(name.startswith(f'random {seed}:') for seed in OPEN_SEEDS)
-    return is_known and parts['verdict'] == 'undecided' and OPEN_REASON in parts['reasons'][0] and \
-        parts['overload']['load_ratio_max'] is None
-
-
 def compare(one, parts, name):
-    if is_left_open(name, parts):
-        return []
     faults = []
     if parts['verdict'] != one['verdict']:
         faults.append(f'{parts["verdict"]} ({parts["reasons"][0]}) instead of {one["verdict"]}')

@@ -9,12 +9,15 @@
 
 #include <CLI/CLI.hpp>
 #include <csignal>
+#include <cstddef>
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
+#include <memory>
 #include <new>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "checkpoint.hpp"
@@ -46,6 +49,9 @@ struct Options {
   bool is_traffic_shown = false;
   double memory_gb = 4;
   std::size_t alone_max = 6000;  ///< Up to here one machine may solve directly.
+  /// And up to here it is asked where ranks cannot decide, as it has the direct solver: a second
+  /// for a solid, a few for a slender robot.
+  std::size_t again_max = 100000;
   std::string output;
   std::string family;
   std::size_t size = 0;
@@ -57,6 +63,11 @@ struct Options {
 
 /// For end_on_signal().
 bool is_first_rank = false;
+
+/// Address space for those who end all ranks where there is no more: without it OpenMPI, which
+/// reads what it says from a file, ends with an exit code of its own. Nothing is written to it.
+constexpr std::size_t kReserveBytes = std::size_t{4} << 20;
+std::unique_ptr<std::byte[]> reserve;
 
 int exit_code(verdict::Verdict verdict) {
   switch (verdict) {
@@ -73,6 +84,12 @@ int exit_code(verdict::Verdict verdict) {
 
 /// Ends all ranks, with one line.
 [[noreturn]] void end_all(const std::string& message) {
+  static bool is_ending = false;
+  if (std::exchange(is_ending, true)) {
+    std::_Exit(kExitFailure);  // Nor has MPI what it takes to end: mpirun sees the code.
+  }
+  reserve.reset();
+  is_first_rank = false;  // It has its own line to say.
   int rank = 0;
   MPI_Comm_rank(MPI_COMM_WORLD, &rank);
   fmt::print(stderr, "holdfast-mpi: rank {}: {}; no verdict\n", rank, message);
@@ -103,13 +120,17 @@ void end_on_signal(int) {
   std::_Exit(kExitFailure);
 }
 
-PetscErrorCode end_all_on_petsc_error(MPI_Comm, int, const char*, const char*, PetscErrorCode code,
-                                      PetscErrorType, const char* message, void*) {
-  const char* meaning = nullptr;
-  PetscErrorMessage(code, &meaning, nullptr);
-  if (code == PETSC_ERR_MEM) {
+/// PETSc 3.18 tells of memory that it does not get with a line for the code: its allocators hand an
+/// error on whose first fields its macro takes for others.
+PetscErrorCode end_all_on_petsc_error(MPI_Comm, int, const char* function, const char*,
+                                      PetscErrorCode code, PetscErrorType, const char* message,
+                                      void*) {
+  const std::string_view where = function == nullptr ? "" : function;
+  if (code == PETSC_ERR_MEM || where == "PetscMallocAlign" || where == "PetscReallocAlign") {
     end_all("out of memory");
   }
+  const char* meaning = nullptr;
+  PetscErrorMessage(code, &meaning, nullptr);
   end_all(fmt::format("PETSc: {}: {}", meaning == nullptr ? "a fault" : meaning,
                       message == nullptr ? "" : message));
 }
@@ -258,6 +279,14 @@ int check_in_parts(PetscRanks& ranks, const Options& options, const Structure& s
   const Checked checked = check(part.value(), {.is_bonded = options.is_bonded,
                                                .memory_bytes_max = options.memory_bytes(),
                                                .journal = is_kept ? &checkpoint : nullptr});
+  if (checked.assessment.verdict == verdict::Verdict::kUndecided &&
+      part.value().counts.all <= options.again_max) {
+    const int code = check_alone(ranks, options, structure);
+    if (is_kept && code <= kExitUndecided) {
+      checkpoint.remove();
+    }
+    return code;
+  }
   bool is_written = write_picture(options,
                                   {.robot = &part.value().robot,
                                    .own_count = part.value().share.own_count,
@@ -366,6 +395,11 @@ CLI::App& add_check(CLI::App& app, Options& options) {
       .add_option("--alone-max", options.alone_max,
                   "Robots of no more modules are checked by one rank, as holdfast check does")
       ->capture_default_str();
+  check
+      .add_option("--again-max", options.again_max,
+                  "Robots of no more modules that ranks leave undecided are checked once more by "
+                  "one rank, as holdfast check does")
+      ->capture_default_str();
   check.add_option("--memory", options.memory_gb, "Most memory for the solver, GB, of each rank");
   return check;
 }
@@ -418,6 +452,7 @@ int run(int argc, char** argv) {
   PetscInitialize(&argc, &argv, nullptr, nullptr);
   PetscPushErrorHandler(end_all_on_petsc_error, nullptr);
   std::set_terminate(end_all_on_exception);
+  reserve.reset(new std::byte[kReserveBytes]);
   std::signal(SIGTERM, end_on_signal);
   int code = 0;
   {

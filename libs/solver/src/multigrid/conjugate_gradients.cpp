@@ -22,7 +22,7 @@ constexpr int kPatience = 50;
 }  // namespace
 
 template <class Real>
-ConjugateGradients<Real>::ConjugateGradients(const ReducedNetwork& network,
+ConjugateGradients<Real>::ConjugateGradients(ReducedNetwork& network,
                                              const model::Material& material, Team& team,
                                              const GroundTable& ground,
                                              std::span<const std::int32_t> alone)

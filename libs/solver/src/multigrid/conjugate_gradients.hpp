@@ -13,8 +13,9 @@ namespace holdfast::solver {
 template <class Real>
 class ConjugateGradients final : public Iteration {
  public:
-  /// Keeps references to the network, the material and the table of what facets are.
-  ConjugateGradients(const ReducedNetwork& network, const model::Material& material, Team& team,
+  /// Keeps references to the network, the material and the table of what facets are. Of a whole
+  /// robot takes the network's order and keys away.
+  ConjugateGradients(ReducedNetwork& network, const model::Material& material, Team& team,
                      const GroundTable& ground, std::span<const std::int32_t> alone);
 
   bool is_too_slender() const override { return hierarchy_.is_too_slender(); }

@@ -157,9 +157,8 @@ bool is_zero(const Block<float>& inverse) { return inverse.column[0][0] == 0; }
 
 /// Keys, and places from the robot's lowest corner on.
 template <class Real>
-void Hierarchy<Real>::place_nodes(Team& team, SpringGraph& graph) const {
+void Hierarchy<Real>::place_nodes(Team& team, ReducedNetwork& network, SpringGraph& graph) const {
   const std::size_t count = network_.node_count;
-  graph.order = network_.order;
   graph.copies = network_.copies;
   graph.ranks = network_.ranks;
   graph.key.resize(count);
@@ -178,6 +177,13 @@ void Hierarchy<Real>::place_nodes(Team& team, SpringGraph& graph) const {
       }
     }
   });
+  if (network_.ranks != nullptr) {
+    graph.order = network_.order;
+    return;
+  }
+  graph.order = std::move(network.order);
+  network.order = std::vector<std::int32_t>();
+  network.key = std::vector<std::uint64_t>();
 }
 
 /// The springs of cubes: nodes of the same kind with partners on the same sides share them.
@@ -252,8 +258,8 @@ void Hierarchy<Real>::connect_nodes(SpringGraph& graph) const {
 }
 
 template <class Real>
-void Hierarchy<Real>::fill_graph(Team& team, SpringGraph& graph) const {
-  place_nodes(team, graph);
+void Hierarchy<Real>::fill_graph(Team& team, ReducedNetwork& network, SpringGraph& graph) const {
+  place_nodes(team, network, graph);
   graph.is_cubic = network_.lattice == base::kCubic;
   if (network_.is_cubic) {
     connect_cubes(graph);
@@ -486,16 +492,15 @@ void Hierarchy<Real>::try_to_factor(const SpringGraph& graph) {
 }
 
 template <class Real>
-Hierarchy<Real>::Hierarchy(const ReducedNetwork& network, const model::Material& material,
-                           Team& team, const GroundTable& ground,
-                           std::span<const std::int32_t> alone)
+Hierarchy<Real>::Hierarchy(ReducedNetwork& network, const model::Material& material, Team& team,
+                           const GroundTable& ground, std::span<const std::int32_t> alone)
     : network_(network),
       material_(material),
       ground_(ground),
       alone_count_(host::total(network.ranks, alone.size())),
       gathered_depth_(network.ranks == nullptr ? 0 : std::numeric_limits<std::size_t>::max()) {
   SpringGraph graph;
-  fill_graph(team, graph);
+  fill_graph(team, network, graph);
   graph.is_alone.assign(alone.empty() ? 0 : network_.node_count, false);
   for (const std::int32_t node : alone) {
     graph.is_alone[at(node)] = true;

@@ -49,8 +49,8 @@ template <class Real>
 class Hierarchy {
  public:
   /// Keeps references to the network, the material and the table of what facets are. Nodes that are
-  /// `alone` join no cluster.
-  Hierarchy(const ReducedNetwork& network, const model::Material& material, Team& team,
+  /// `alone` join no cluster. Of a whole robot takes the network's order and keys away.
+  Hierarchy(ReducedNetwork& network, const model::Material& material, Team& team,
             const GroundTable& ground, std::span<const std::int32_t> alone);
 
   /// Takes over changed contact: the same levels, held in another way.
@@ -124,8 +124,8 @@ class Hierarchy {
   void point_at_lattice();
   void set_type(std::size_t node);
   const Mat& floor_tangent(std::uint8_t contact) const;
-  void fill_graph(Team& team, SpringGraph& graph) const;
-  void place_nodes(Team& team, SpringGraph& graph) const;
+  void fill_graph(Team& team, ReducedNetwork& network, SpringGraph& graph) const;
+  void place_nodes(Team& team, ReducedNetwork& network, SpringGraph& graph) const;
   void connect_cubes(SpringGraph& graph) const;
   void connect_nodes(SpringGraph& graph) const;
   void share(const SpringGraph& graph, Level<Real>& level) const;

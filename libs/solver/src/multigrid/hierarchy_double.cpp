@@ -20,8 +20,8 @@ using base::Direction;
 
 /// How stiff a beam is against what its middle sees. K12 has that but for the share of the shear
 /// force in bending: -k + shear * (length/2)^2.
-Six<double> middle_stiffness(const Mat& k12, std::size_t axis, double length) {
-  Six<double> stiffness;
+Eight<double> middle_stiffness(const Mat& k12, std::size_t axis, double length) {
+  Eight<double> stiffness;
   for (std::size_t i = 0; i < 6; ++i) {
     stiffness.v[i] = -k12.at(static_cast<int>(i), static_cast<int>(i));
   }

@@ -56,21 +56,49 @@ inline Double load_double(const double* lanes) {
 
 inline Wide load(const double* lanes) { return {load_double(lanes), load_double(lanes + 4)}; }
 
-inline Single load(const Six<float>& six) { return load(six.v); }
-
-inline Wide load(const Six<double>& six) { return load(six.v); }
-
-inline void store(Six<float>& six, Single value) { std::memcpy(six.v, &value, sizeof value); }
-
-inline void store(Six<double>& six, const Wide& value) {
-  std::memcpy(six.v, &value.low, sizeof value.low);
-  std::memcpy(six.v + 4, &value.high, sizeof value.high);
-}
-
 inline Double load_high(const double* lanes) {
   Pair pair;
   std::memcpy(&pair, lanes, sizeof pair);
   return Double{pair[0], pair[1], 0, 0};
+}
+
+inline Single load(const Eight<float>& lanes) { return load(lanes.v); }
+
+inline Wide load(const Eight<double>& lanes) { return load(lanes.v); }
+
+inline Wide load(const Six<double>& six) { return {load_double(six.v), load_high(six.v + 4)}; }
+
+/// The first two of four, and zeros.
+inline Quad load_two(const float* lanes) {
+  Pair two = {};
+  std::memcpy(&two, lanes, 8);
+  Quad quad;
+  std::memcpy(&quad, &two, 16);
+  return quad;
+}
+
+inline void store_two(float* lanes, Quad quad) {
+  Pair two;
+  std::memcpy(&two, &quad, 16);
+  const double both = two[0];
+  std::memcpy(lanes, &both, 8);
+}
+
+inline Single load(const Six<float>& six) {
+  Quad low;
+  std::memcpy(&low, six.v, 16);
+  return __builtin_shufflevector(low, load_two(six.v + 4), 0, 1, 2, 3, 4, 5, 6, 7);
+}
+
+inline void store(Six<float>& six, Single value) {
+  const Quad low = __builtin_shufflevector(value, value, 0, 1, 2, 3);
+  std::memcpy(six.v, &low, 16);
+  store_two(six.v + 4, __builtin_shufflevector(value, value, 4, 5, 6, 7));
+}
+
+inline void store(Six<double>& six, const Wide& value) {
+  std::memcpy(six.v, &value.low, 32);
+  std::memcpy(six.v + 4, &value.high, 16);
 }
 
 inline Double low(Single a) {
@@ -98,7 +126,7 @@ inline void store_rounded(Six<float>& six, Double low, Double high) {
   const Quad single_low = __builtin_convertvector(low, Quad);
   const Quad single_high = __builtin_convertvector(high, Quad);
   std::memcpy(six.v, &single_low, 16);
-  std::memcpy(six.v + 4, &single_high, 16);
+  store_two(six.v + 4, single_high);
 }
 
 inline void store_rounded(Six<double>& six, Double low, Double high) {

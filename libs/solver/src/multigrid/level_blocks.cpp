@@ -23,8 +23,8 @@ BeamRow<double> beam_row(const Mat& k12, std::size_t axis) {
   return row;
 }
 
-Six<float> single(const Six<double>& six) {
-  Six<float> result;
+Eight<float> single(const Eight<double>& six) {
+  Eight<float> result;
   for (std::size_t i = 0; i < 6; ++i) {
     result.v[i] = static_cast<float>(six.v[i]);
   }

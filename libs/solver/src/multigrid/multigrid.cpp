@@ -261,6 +261,7 @@ void Multigrid::update_iteration() {
     x = std::move(iteration_->x());
   }
   iteration_.reset();
+  find_order(robot(), network_);
   iteration_ = make_iteration();
   is_law_new_ = false;
   is_contact_new_ = false;

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "holdfast/base/algebra.hpp"
+#include "holdfast/solver/morton_key.hpp"
 #include "kernels.hpp"
 #include "morton_order.hpp"
 
@@ -362,6 +363,33 @@ class Builder {
 
 ReducedNetwork make_reduced_network(const Robot& robot, Team& team, const model::RobotPart* part) {
   return Builder(robot, team, part).build();
+}
+
+/// Nodes of one colour lie along the curve.
+void find_order(const Robot& robot, ReducedNetwork& network) {
+  if (network.order.size() == network.node_count) {
+    return;
+  }
+  std::vector<KeyedModule> nodes;
+  nodes.reserve(network.node_count);
+  for (std::size_t node = 0; node < network.node_count; ++node) {
+    const base::Cell& cell = robot.modules()[at(network.module[node])].cell;
+    nodes.push_back({.key = morton_key(brick_of_cell(robot.lattice(), cell), network.low),
+                     .module = static_cast<std::int32_t>(node)});
+  }
+  for (std::size_t colour = 1; colour + 1 < network.colour_start.size(); ++colour) {
+    const auto place = [&](std::size_t i) {
+      return nodes.begin() + static_cast<std::ptrdiff_t>(network.colour_start[i]);
+    };
+    std::inplace_merge(nodes.begin(), place(colour), place(colour + 1),
+                       [](const auto& a, const auto& b) { return a.key < b.key; });
+  }
+  network.order.reserve(nodes.size());
+  network.key.reserve(nodes.size());
+  for (const KeyedModule& item : nodes) {
+    network.order.push_back(item.module);
+    network.key.push_back(item.key);
+  }
 }
 
 }  // namespace holdfast::solver

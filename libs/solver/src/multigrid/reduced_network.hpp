@@ -90,4 +90,7 @@ struct ReducedNetwork {
 ReducedNetwork make_reduced_network(const model::Robot& robot, host::Team& team,
                                     const model::RobotPart* part = nullptr);
 
+/// Finds a whole robot's order and keys again if a hierarchy took them.
+void find_order(const model::Robot& robot, ReducedNetwork& network);
+
 }  // namespace holdfast::solver

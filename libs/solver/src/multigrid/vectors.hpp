@@ -7,13 +7,20 @@
 #include <cstdint>
 #include <vector>
 
-/// Vectors and blocks of the preconditioner, laid out for 8-lane arithmetic: of a node's eight
-/// lanes two stay zero. Real is float, or double where robots are so slender that bending drowns in
-/// single precision's rounding (precise_forces.hpp).
+/// Vectors and blocks of the preconditioner, for 8-lane arithmetic: of a node's eight lanes two are
+/// zero, and in memory only where they are constants. Real is float, or double where robots are so
+/// slender that bending drowns in single precision's rounding (precise_forces.hpp).
 namespace holdfast::solver {
 
+/// A node's vector.
 template <class Real>
-struct alignas(8 * sizeof(Real)) Six {
+struct Six {
+  Real v[6] = {};
+};
+
+/// The same with the lanes that are zero: a constant that many nodes share.
+template <class Real>
+struct alignas(8 * sizeof(Real)) Eight {
   Real v[8] = {};
 };
 
@@ -27,8 +34,8 @@ struct alignas(8 * sizeof(Real)) Block {
 /// that depends on the axis only. So K12 u = direct * u + crossed * swap(u), lane by lane.
 template <class Real>
 struct BeamRow {
-  Six<Real> direct;
-  Six<Real> crossed;
+  Eight<Real> direct;
+  Eight<Real> crossed;
 };
 
 /// K12 of a pair of opposite directions, +d and -d. What couples displacements with displacements
@@ -39,14 +46,14 @@ struct BeamRow {
 /// where turn_k takes number i + k (of each three, cyclically) to place i.
 template <class Real>
 struct PairRow {
-  Six<Real> direct[3];
-  Six<Real> crossed[3];
+  Eight<Real> direct[3];
+  Eight<Real> crossed[3];
 };
 
 /// A beam as its middle sees it.
 struct MiddleSpring {
-  Six<double> stiffness;
-  Six<double> torque;    ///< Levers by which forces, crossed, are torques at the end.
+  Eight<double> stiffness;
+  Eight<double> torque;  ///< Levers by which forces, crossed, are torques at the end.
   double shift[4] = {};  ///< Levers by which rotations, crossed, shift the middle.
 };
 
