@@ -22,6 +22,8 @@ RANKS = 2
 BAD_INPUT = 65
 FAILURE = 70
 USAGE = 64
+# A hang is longer than this; a million modules beside fifteen other programs took a minute.
+SECONDS_MAX = 300
 
 
 def run(program, arguments, limit_bytes=None):
@@ -29,7 +31,8 @@ def run(program, arguments, limit_bytes=None):
         if limit_bytes:
             resource.setrlimit(resource.RLIMIT_AS, (limit_bytes, limit_bytes))
     return subprocess.run(['mpirun', '-n', str(RANKS), program, *arguments], capture_output=True,
-                          timeout=60, env=compare.ENVIRONMENT, preexec_fn=limit, text=True)
+                          timeout=SECONDS_MAX, env=compare.ENVIRONMENT, preexec_fn=limit,
+                          text=True)
 
 
 def lines_of_ours(text):
