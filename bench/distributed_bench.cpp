@@ -2,13 +2,17 @@
 // SPDX-License-Identifier: Apache-2.0
 // The robot's own computation, measured:
 //   distributed_bench cases FILE...       rounds, packets and V1 seconds of each method, a table
-//   distributed_bench random FROM TO [METHOD]   random robots against the exact answer, quiet links
+//   distributed_bench random FROM TO [METHOD [PLANNED]]   random robots against the exact answer,
+//                                         quiet links; with 6 to PLANNED planned modules, 30 at
+//                                         most
 //   distributed_bench general FROM TO     cubes on walls and ceilings, with loads of their own
 //   distributed_bench general FROM TO planned   the same with one to three modules planned
 //   distributed_bench general FROM TO [planned] LATTICE   modules of another lattice
-//   distributed_bench noisy FROM TO       the same with loss, duplication, jitter, bit errors
-//   distributed_bench faults FROM TO      a random module dies or a random link fails
-//   distributed_bench stale FROM TO       the same after a safe verdict, then an unsafe plan
+//   distributed_bench noisy FROM TO [METHOD [PLANNED]]   the same with loss, duplication, jitter,
+//   bit
+//                                         errors
+//   distributed_bench faults FROM TO [METHOD [PLANNED]]   a random module dies or a random link
+//   fails distributed_bench stale FROM TO       the same after a safe verdict, then an unsafe plan
 //   distributed_bench liars FROM TO       a random module hangs, or changes what it sends
 //   distributed_bench watching FILE...    packets that watching over the verdict costs, a table
 //   distributed_bench plans FROM TO       plans told, carried out and withdrawn at any time
@@ -31,6 +35,7 @@
 #include "holdfast/base/rng.hpp"
 #include "holdfast/distributed.hpp"
 #include "holdfast/io/lattice_names.hpp"
+#include "many_planned.hpp"
 #include "mishap_campaign.hpp"
 #include "plan_campaign.hpp"
 #include "random_robot.hpp"
@@ -123,20 +128,40 @@ void print_shares(const char* what, std::vector<double>& values) {
              share(0.9), share(0.99), share(1));
 }
 
-int run_random(std::uint64_t from, std::uint64_t to, bool is_noisy, Method method) {
+/// Random robots of a campaign.
+struct Robots {
+  std::uint64_t from = 0;
+  std::uint64_t to = 0;
+  Method method = Method::kElimination;
+  std::size_t planned_max = 0;  ///< 0: as many as random_robot() has.
+
+  model::Robot make(std::uint64_t seed) const {
+    return make_robot(planned_max == 0 ? test::random_robot(seed)
+                                       : test::many_planned_robot(seed, planned_max));
+  }
+};
+
+int run_random(const Robots& robots, bool is_noisy) {
   Tally tally;
-  for (std::uint64_t seed = from; seed < to; ++seed) {
-    sim::SimulationOptions options{.seed = seed, .method = method};
+  int not_decided = 0;  ///< By the exact solver.
+  for (std::uint64_t seed = robots.from; seed < robots.to; ++seed) {
+    sim::SimulationOptions options{.seed = seed, .method = robots.method};
     if (is_noisy) {
       options.link = test::noisy_rounds();
     }
-    tally.add(test::compare(make_robot(test::random_robot(seed)), options), seed);
+    const test::Comparison comparison = test::compare(robots.make(seed), options);
+    if (comparison.exact == verdict::Verdict::kUndecided) {
+      ++not_decided;
+    } else {
+      tally.add(comparison, seed);
+    }
   }
   fmt::print(
       "{} robots: {} wrong, {} undecided, {} not agreed; {} to conjugate gradients; largest error "
-      "{:.4f} of what is allowed; of {} with an equilibrium:\n",
+      "{:.4f} of what is allowed; besides, not decided by the exact solver {}; of {} with an "
+      "equilibrium:\n",
       tally.count, tally.wrong, tally.undecided, tally.disagreeing, tally.fallen_back,
-      tally.ratio_error, tally.sweeps.size());
+      tally.ratio_error, not_decided, tally.sweeps.size());
   print_shares("sweeps", tally.sweeps);
   print_shares("rounds", tally.rounds);
   print_shares("kB", tally.kilobytes);
@@ -173,15 +198,15 @@ int run_general(std::uint64_t from, std::uint64_t to, bool is_planned,
   return tally.wrong;
 }
 
-int run_faults(std::uint64_t from, std::uint64_t to) {
-  base::Rng rng(from);
+int run_faults(const Robots& robots) {
+  base::Rng rng(robots.from);
   int wrong = 0;
   int counts[5] = {};
-  for (std::uint64_t seed = from; seed < to; ++seed) {
-    const model::Robot robot = make_robot(test::random_robot(seed));
-    const auto whole = test::compare(robot, {.seed = seed});
+  for (std::uint64_t seed = robots.from; seed < robots.to; ++seed) {
+    const model::Robot robot = robots.make(seed);
+    const auto whole = test::compare(robot, {.seed = seed, .method = robots.method});
     const sim::Fault fault = test::random_fault(robot, rng, whole.result.verdict_time);
-    sim::Simulation simulation(robot, {.seed = seed, .faults = {fault}});
+    sim::Simulation simulation(robot, {.seed = seed, .method = robots.method, .faults = {fault}});
     simulation.run();
     HOLDFAST_CHECK(simulation.result().is_quiet);
     bool is_wrong = false;
@@ -198,7 +223,7 @@ int run_faults(std::uint64_t from, std::uint64_t to) {
   fmt::print(
       "{} faults: {} with a wrong safe; modules in the end: {} safe, {} overload, {} "
       "unstable, {} undecided, {} without a verdict\n",
-      to - from, wrong, counts[1], counts[2], counts[3], counts[4], counts[0]);
+      robots.to - robots.from, wrong, counts[1], counts[2], counts[3], counts[4], counts[0]);
   return wrong;
 }
 
@@ -446,8 +471,9 @@ int run_throughput() {
 
 int usage() {
   fmt::print(stderr,
-             "usage: distributed_bench cases FILE... | random FROM TO [METHOD] | noisy FROM TO | "
-             "faults FROM TO | stale FROM TO | liars FROM TO | plans FROM TO | storms FROM TO | "
+             "usage: distributed_bench cases FILE... | random FROM TO [METHOD [PLANNED]] | "
+             "noisy FROM TO [METHOD [PLANNED]] | faults FROM TO [METHOD [PLANNED]] | stale FROM TO "
+             "| liars FROM TO | plans FROM TO | storms FROM TO | "
              "mishaps FROM TO | watching FILE... | "
              "growth | sweeps METHOD FILE... | throughput\n");
   return 64;
@@ -492,20 +518,24 @@ int main(int argc, char** argv) {
   if (what == "general" && argc >= 4) {
     return run_general(arguments.subspan(2));
   }
+  const bool has_robots = what == "random" || what == "noisy" || what == "faults";
   const std::optional<Method> method =
-      argc == 5 && what == "random" ? find_method(arguments[4]) : Method::kElimination;
-  if ((argc != 4 && what != "random") || !method ||
+      argc > 4 && has_robots ? find_method(arguments[4]) : Method::kElimination;
+  const std::size_t planned_max = argc > 5 ? std::strtoull(arguments[5], nullptr, 10) : 0;
+  const bool is_planned = planned_max >= 6 && planned_max <= agent::kPlannedMost;
+  if (argc < 4 || argc > (has_robots ? 6 : 4) || !method || (argc > 5 && !is_planned) ||
       std::ranges::find(kCampaigns, what) == std::end(kCampaigns)) {
     return usage();
   }
   const std::uint64_t from = std::strtoull(arguments[2], nullptr, 10);
   const std::uint64_t to = std::strtoull(arguments[3], nullptr, 10);
-  const int faults = what == "faults"    ? run_faults(from, to)
+  const Robots robots = {.from = from, .to = to, .method = *method, .planned_max = planned_max};
+  const int faults = what == "faults"    ? run_faults(robots)
                      : what == "stale"   ? run_stale(from, to)
                      : what == "liars"   ? run_liars(from, to)
                      : what == "plans"   ? run_plans(from, to)
                      : what == "storms"  ? run_storms(from, to)
                      : what == "mishaps" ? run_mishaps(from, to)
-                                         : run_random(from, to, what == "noisy", *method);
+                                         : run_random(robots, what == "noisy");
   return faults == 0 ? 0 : 1;
 }

@@ -306,7 +306,7 @@ Command add_check(CLI::App& app) {
   command
       ->add_option("--limit-seconds", options->limit_seconds,
                    "Most time for the limit load, s; then the report says what it lies between")
-      ->check(CLI::Range(0.0, 1e6))
+      ->check(number_between(0.0, 1e6))
       ->capture_default_str();
   command->add_flag("--quiet", options->is_quiet, "Print errors only; the exit code is the answer");
   command->add_flag("--bonded", options->is_bonded,
@@ -316,7 +316,7 @@ Command add_check(CLI::App& app) {
   command
       ->add_option("--memory", options->memory_gb,
                    "Most memory for the solver, GB; a robot that needs more is undecided")
-      ->check(CLI::Range(0.01, 1024.0))
+      ->check(number_between(0.01, 1024.0))
       ->capture_default_str();
   command->footer(
       "Verdicts: safe, overload (a connection breaks), unstable (topples), undecided.\n"

@@ -5,6 +5,9 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <charconv>
+#include <cmath>
+#include <cstdint>
 #include <functional>
 #include <span>
 #include <string>
@@ -56,6 +59,32 @@ template <class Value>
 void add_required(CLI::App& command, const std::string& name, Value& value,
                   const std::string& help) {
   command.add_option(name, value, help)->type_name("")->required();
+}
+
+/// Checks a number as CLI::Range does, which lets pass what is not a number.
+inline CLI::Validator number_between(double low, double high) {
+  CLI::Validator check = CLI::Range(low, high);
+  check.operation([within = check](std::string& text) {
+    double number = 0;
+    const bool is_nan = CLI::detail::lexical_cast(text, number) && std::isnan(number);
+    return is_nan ? text + " is not a number" : within(text);
+  });
+  return check;
+}
+
+/// The option --seed. CLI11 by itself takes what is too large for the largest seed.
+inline CLI::Option& add_seed(CLI::App& command, std::uint64_t& seed, const std::string& help) {
+  return *command.add_option("--seed", seed, help)
+              ->type_name("N")
+              ->check([](const std::string& text) {
+                std::uint64_t number = 0;
+                const char* const end = text.data() + text.size();
+                const auto read = std::from_chars(text.data(), end, number);
+                return read.ec == std::errc{} && read.ptr == end
+                           ? std::string()
+                           : fmt::format("{} is not a whole number from 0 to {}",
+                                         io::one_line(text), UINT64_MAX);
+              });
 }
 
 /// The one form of an error on the terminal.

@@ -179,14 +179,12 @@ Command add_emulate(CLI::App& app) {
                    "Only write the page of flash of every module, module_0.bin and so on, for a "
                    "programmer")
       ->type_name("FOLDER");
-  command->add_option("--seed", options->seed, "Of everything random")
-      ->type_name("N")
-      ->capture_default_str();
+  add_seed(*command, options->seed, "Of everything random").capture_default_str();
   add_fault_options(*command, options->faults);
   add_change_options(*command, options->changes, "s");
   command->add_option("--time", options->time_max_s, "Give up after so long (s on the robot)")
       ->type_name("T")
-      ->check(CLI::Range(0.001, 3600.0).description(""))
+      ->check(number_between(0.001, 3600.0).description(""))
       ->capture_default_str();
   command->add_option("--json", options->json, "Write the report; - is standard output")
       ->type_name("FILE");

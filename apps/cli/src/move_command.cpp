@@ -95,7 +95,9 @@ int exit_code_of(plan::MoveOutcome outcome) {
 /// Writes what is asked for; the exit code is that of a file that cannot be written, or the
 /// answer's.
 int show(const Options& options, const io::MoveReport& report) {
-  if (!options.steps.empty() && !report.plan.steps.empty() &&
+  const bool has_moves =
+      report.plan.outcome == plan::MoveOutcome::kFound || !report.plan.steps.empty();
+  if (!options.steps.empty() && has_moves &&
       !write_or_complain(options.steps, io::write_json(io::move_steps(report)))) {
     return kExitBadInput;
   }
@@ -197,14 +199,11 @@ void add_ways(CLI::App& command, Options& options) {
 }
 
 void add_limits(CLI::App& command, Options& options) {
-  command
-      .add_option("--seed", options.seed,
-                  "Another seed tries moves in another order; the same one finds the same")
-      ->type_name("N")
-      ->check(CLI::NonNegativeNumber);
+  add_seed(command, options.seed,
+           "Another seed tries moves in another order; the same one finds the same");
   command.add_option("--seconds", options.seconds, "Give up after this time")
       ->type_name("S")
-      ->check(CLI::Range(0.0, 1e6))
+      ->check(number_between(0.0, 1e6))
       ->capture_default_str();
   command
       .add_option("--threads", options.thread_count,

@@ -103,7 +103,7 @@ Command add_next(CLI::App& app) {
                     "Let the ground hold like a module below would: no lifting, no tilting");
   command->add_option("--threads", options->thread_count, "0: all cores")->check(CLI::Range(0, 64));
   command->add_option("--memory", options->memory_gb, "Most memory for the solver, GB")
-      ->check(CLI::Range(0.01, 1024.0))
+      ->check(number_between(0.01, 1024.0))
       ->capture_default_str();
   command->footer(
       "Places are listed best first: the safe by ascending load ratio, then undecided, overload\n"

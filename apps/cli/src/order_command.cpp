@@ -190,20 +190,17 @@ void add_ways(CLI::App& command, Options& options) {
 }
 
 void add_limits(CLI::App& command, Options& options) {
-  command
-      .add_option("--seed", options.seed,
-                  "Another seed tries candidates in another order; the same one finds the same")
-      ->type_name("N")
-      ->check(CLI::NonNegativeNumber);
+  add_seed(command, options.seed,
+           "Another seed tries candidates in another order; the same one finds the same");
   command.add_option("--seconds", options.seconds, "Give up after this time")
       ->type_name("S")
-      ->check(CLI::Range(0.0, 1e6))
+      ->check(number_between(0.0, 1e6))
       ->capture_default_str();
   command
       .add_option("--help-seconds", options.help_seconds,
                   "Where there is no order, seek the least help that would do for this time")
       ->type_name("S")
-      ->check(CLI::Range(0.0, 1e6))
+      ->check(number_between(0.0, 1e6))
       ->capture_default_str();
   command
       .add_option("--threads", options.thread_count,

@@ -319,7 +319,7 @@ void add_noise_options(CLI::App& command, Options& options) {
   const auto add = [&](const char* name, double& value, const char* help) {
     command.add_option(name, value, help)
         ->type_name("P")
-        ->check(CLI::Range(0.0, 1.0).description(""));
+        ->check(number_between(0.0, 1.0).description(""));
   };
   add("--loss", options.loss, "Probability that a packet is lost");
   add("--duplicate", options.duplication, "Probability that a packet arrives twice");
@@ -327,7 +327,7 @@ void add_noise_options(CLI::App& command, Options& options) {
   add("--corrupt", options.corruption, "Probability that 1 to 3 bits of a packet flip");
   command.add_option("--jitter", options.jitter, "Delays each packet by 0 to T (s, or rounds)")
       ->type_name("T")
-      ->check(CLI::Range(0.0, 1e6).description(""));
+      ->check(number_between(0.0, 1e6).description(""));
 }
 
 }  // namespace
@@ -355,9 +355,7 @@ Command add_simulate(CLI::App& app) {
       ->type_name("NAME")
       ->check(CLI::IsMember({"v1", "v2", "catoms", "unit"}).description(""))
       ->capture_default_str();
-  command->add_option("--seed", options->seed, "Of everything random")
-      ->type_name("N")
-      ->capture_default_str();
+  add_seed(*command, options->seed, "Of everything random").capture_default_str();
   add_noise_options(*command, *options);
   add_fault_options(*command, options->faults);
   add_change_options(*command, options->changes, "s, or rounds");

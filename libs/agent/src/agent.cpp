@@ -25,7 +25,13 @@ Phase phase_of(SpanningTree::Wave wave) {
 }  // namespace
 
 Agent::Agent(const Setup& setup, const Identity& identity, const LentMemory* lent)
-    : identity_(identity), clock_{.timing = setup.timing}, ws_(setup, identity, lent) {}
+    : identity_(identity), clock_{.timing = setup.timing}, ws_(setup, identity, lent) {
+#ifndef HOLDFAST_AGENT_FLOOR_ONLY
+  if (MorePlanned* more = ws_.planned.more_planned(); more != nullptr) {
+    announcements_.lend(&more->announced);
+  }
+#endif
+}
 
 // ---- An event comes in.
 
@@ -334,7 +340,7 @@ bool Agent::finish_sweep() {
     }
     go_on_with(kKeepsAnswers && order.operation == wire::Operation::kRenew
                    ? conductor_.after_renew(ws_.setup, sweep_.sum(), ws_.planned, ws_.environment())
-                   : conductor_.next(ws_.setup, sweep_.sum()));
+                   : conductor_.next(ws_.setup, sweep_.sum(), ws_.planned));
   }
   return true;
 }

@@ -54,7 +54,7 @@ bool Agent::go_on_in_stages(const Report& sum) {
       return true;
     }
   } else if (ws_.stage() != Stage::kNone) {
-    next = conductor_.next(ws_.setup, sum);
+    next = conductor_.next(ws_.setup, sum, ws_.planned);
     next = next.operation == wire::Operation::kVerdict
                ? conductor_.end_scene(*ws_.stages(), next.answer)
                : next;

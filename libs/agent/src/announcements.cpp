@@ -17,9 +17,34 @@ bool is_legal(const base::Cell& cell) {
 
 }  // namespace
 
+#ifdef HOLDFAST_AGENT_FLOOR_ONLY
+
+void Announcements::clear() { *this = Announcements(); }
+
+#else
+
+void Announcements::clear() {
+  const Announcements before = *this;
+  *this = Announcements();
+  if (before.is_lent_) {
+    *before.cells_.lent = {};
+    lend(before.cells_.lent);
+  }
+}
+
+bool operator==(const Announcements& one, const Announcements& other) {
+  bool is_equal = one.count_ == other.count_ && one.lost_ == other.lost_;
+  for (int i = 0; is_equal && i < one.count_; ++i) {
+    is_equal = one.cell(i) == other.cell(i) && one.told(i) == other.told(i);
+  }
+  return is_equal;
+}
+
+#endif
+
 int Announcements::find(const base::Cell& cell) const {
   for (int i = 0; i < count_; ++i) {
-    if (cells_[static_cast<std::size_t>(i)] == cell) {
+    if (cells()[static_cast<std::size_t>(i)] == cell) {
       return i;
     }
   }
@@ -33,29 +58,29 @@ void Announcements::put(const base::Cell& cell, Told told) {
   if (!is_possible && told == Told::kWithdrawal) {
     return;
   }
-  if (!is_possible || (found < 0 && count_ == kAnnouncedMax)) {
+  if (!is_possible || (found < 0 && count_ == static_cast<int>(tolds().size()))) {
     lost_ = Told::kPlan;
     return;
   }
   const auto i = static_cast<std::size_t>(found < 0 ? count_++ : found);
-  cells_[i] = cell;
-  told_[i] = told;
+  cells()[i] = cell;
+  tolds()[i] = told;
 }
 
 /// The last one takes its place; free places are empty, so that equal contents are equal.
 void Announcements::erase(int i) {
   const auto last = static_cast<std::size_t>(--count_);
-  cells_[static_cast<std::size_t>(i)] = cells_[last];
-  told_[static_cast<std::size_t>(i)] = told_[last];
-  cells_[last] = {};
-  told_[last] = Told::kNothing;
+  cells()[static_cast<std::size_t>(i)] = cells()[last];
+  tolds()[static_cast<std::size_t>(i)] = tolds()[last];
+  cells()[last] = {};
+  tolds()[last] = Told::kNothing;
 }
 
 void Announcements::plan(const base::Cell& cell) { recall(cell, Told::kPlan); }
 
 void Announcements::withdraw(const base::Cell& cell) {
   if (cell == kEveryCell) {
-    *this = Announcements();
+    clear();
   }
   put(cell, Told::kWithdrawal);
 }
@@ -69,7 +94,7 @@ void Announcements::recall(const base::Cell& cell, Told told) {
 }
 
 void Announcements::settle() {
-  for (Told& told : told_) {
+  for (Told& told : tolds()) {
     told = told == Told::kPlan           ? Told::kKnownPlan
            : told == Told::kDisputedPlan ? Told::kKnownDispute
                                          : told;
@@ -79,14 +104,14 @@ void Announcements::settle() {
 
 void Announcements::finish_forgetting() {
   for (int i = count_; i-- > 0;) {
-    if (told_[static_cast<std::size_t>(i)] == Told::kCarriedWithdrawal) {
+    if (tolds()[static_cast<std::size_t>(i)] == Told::kCarriedWithdrawal) {
       erase(i);
     }
   }
 }
 
 void Announcements::begin_anew() {
-  for (Told& told : told_) {
+  for (Told& told : tolds()) {
     told = is_withdrawal(told) ? Told::kWithdrawal : told;
   }
 }
@@ -94,8 +119,8 @@ void Announcements::begin_anew() {
 void Announcements::forget(const base::Cell& cell, bool is_fulfilled) {
   const bool is_every = cell == kEveryCell;
   for (int i = count_; i-- > 0;) {
-    Told& told = told_[static_cast<std::size_t>(i)];
-    if (!is_every && cells_[static_cast<std::size_t>(i)] != cell) {
+    Told& told = tolds()[static_cast<std::size_t>(i)];
+    if (!is_every && cells()[static_cast<std::size_t>(i)] != cell) {
       continue;
     }
     if (is_withdrawal(told)) {

@@ -24,9 +24,10 @@ void add_planned_beams(Workspace& ws) {
       if (other < 0) {
         continue;
       }
-      const auto mine = base::converted<double>(ws.planned_exchange.vector(k));
-      const auto theirs = base::converted<double>(ws.planned_exchange.vector(other));
-      ws.planned_exchange.add_force(k, end_force(ws.setup.beams(), direction, mine, theirs));
+      const auto mine = base::converted<double>(ws.planned_exchange.vector(ws.planned, k));
+      const auto theirs = base::converted<double>(ws.planned_exchange.vector(ws.planned, other));
+      ws.planned_exchange.add_force(ws.planned, k,
+                                    end_force(ws.setup.beams(), direction, mine, theirs));
     }
   }
 }
@@ -41,7 +42,8 @@ void add_forces(Workspace& ws, PlannedPart part) {
     const auto theirs = base::converted<double>(*other);
     base::add_to(ws.node(0).force, end_force(beams, face, mine, theirs));
     if (k >= 0) {
-      ws.planned_exchange.add_force(k, end_force(beams, base::opposite(face), theirs, mine));
+      ws.planned_exchange.add_force(ws.planned, k,
+                                    end_force(beams, base::opposite(face), theirs, mine));
     }
     const base::Vec6<double> middle = middle_force(beams, face, mine, theirs);
     MiddleLoad& load = ws.middle(face);
@@ -54,7 +56,7 @@ void add_forces(Workspace& ws, PlannedPart part) {
   }
   add_planned_beams(ws);
   for (int i = 1; i < ws.node_count(); ++i) {
-    base::add_to(ws.node(i).force, ws.planned_exchange.force(ws.planned.hosted(i - 1)));
+    base::add_to(ws.node(i).force, ws.planned_exchange.force(ws.planned, ws.planned.hosted(i - 1)));
   }
 }
 

@@ -20,7 +20,9 @@ void visit_beams(const Workspace& ws, PlannedPart part, Visit&& visit) {
     if (used.has(face)) {
       visit(face, &ws.exchange.vector(ws.links.more(), face), k);
     } else if (k >= 0) {
-      visit(face, part == PlannedPart::kTogether ? &ws.planned_exchange.vector(k) : nullptr, k);
+      visit(face,
+            part == PlannedPart::kTogether ? &ws.planned_exchange.vector(ws.planned, k) : nullptr,
+            k);
     }
   }
 }

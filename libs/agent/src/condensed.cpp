@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "condensed.hpp"
 
+#include "condensed_group.hpp"
 #include "displacements.hpp"
 #include "holdfast/agent/condensing.hpp"
 #include "holdfast/agent/messages.hpp"
@@ -14,6 +15,8 @@ namespace {
 /// One, and another to see that nothing moves any more; many only where planned modules form a
 /// ring.
 constexpr int kPassesMax = 1000;
+/// Of many that are solved for together.
+constexpr int kGroupPassesMax = 3;
 constexpr double kLeastMove = 1e-14;
 constexpr int kStateRoundsMax = 20;
 
@@ -24,7 +27,7 @@ constexpr base::Vec6<double> kAtRest{};
 base::Vec6<double> force_on_hosted(const Workspace& ws, int node) {
   const int k = ws.planned.hosted(node - 1);
   const base::Vec6<double>& own = ws.node(node).u;
-  base::Vec6<double> force = ws.planned_exchange.force(k);
+  base::Vec6<double> force = ws.planned_exchange.force(ws.planned, k);
   for (const Direction direction : ws.planned.directions()) {
     const int other = ws.planned.neighbour_of(k, direction);
     if (other >= 0) {
@@ -90,10 +93,16 @@ bool Condensing::do_piece(Workspace& ws, const Order& order, std::span<Iteration
   if (number == 0) {
     start(ws);
   }
-  const Leaves leaves = group_trees(ws.planned);
-  const int last = leaves.count - 1;
+  const bool is_many = kPlansMany && is_group(ws);
+  const Leaves leaves = is_many ? Leaves() : group_trees(ws.planned);
+  const int last = ws.planned.hosted_count() - 1;
   switch (piece_) {
     case Piece::kBlocks:
+      if (is_many) {
+        factor_group(ws);
+        begin_passes();
+        return true;
+      }
       form_half(ws, memory);
       index_ < 2 * last + 1 ? begin_piece(Piece::kBlocks, index_ + 1)
                             : begin_piece(Piece::kFactor, last);
@@ -114,9 +123,14 @@ bool Condensing::do_piece(Workspace& ws, const Order& order, std::span<Iteration
       Node& node = ws.node(1 + index_);
       node.force = force_on_hosted(ws, 1 + index_);
       node.force = residual(node, ws.setup, ws.contact);
-      index_ < last ? begin_piece(Piece::kResiduals, index_ + 1) : begin_piece(Piece::kLoads, last);
+      index_ < last ? begin_piece(Piece::kResiduals, index_ + 1)
+      : is_many     ? begin_piece(Piece::kGroup, 0)
+                    : begin_piece(Piece::kLoads, last);
       return true;
     }
+    case Piece::kGroup:
+      kPlansMany ? shift_group(ws) : void();
+      return true;
     case Piece::kLoads:
       hand_load_on(ws, leaves, memory);
       index_ > 0 ? begin_piece(Piece::kLoads, index_ - 1) : begin_piece(Piece::kShifts, 0);
@@ -156,6 +170,10 @@ void Condensing::factor(const Leaves& leaves, std::span<IterationMemory> memory)
                 leaves.parent[index_] > 0 ? index_ : index_ - 1);
     return;
   }
+  begin_passes();
+}
+
+void Condensing::begin_passes() {
   pass_ = 0;
   move_ = 0;
   size_ = 0;
@@ -201,17 +219,34 @@ void Condensing::shift(Workspace& ws, const Leaves& leaves, std::span<IterationM
     node.force = base::sum_of(node.force, -1.0, force);
   }
   factor_of(memory, leaves.node[index_]).solve(node.force);
+  add_shift(node);
+  if (++index_ == leaves.count) {
+    end_pass(kPassesMax);
+  }
+}
+
+/// Its force is how far it moves.
+void Condensing::add_shift(Node& node) {
   for (std::size_t k = 0; k < 6; ++k) {
     node.u[k] += node.force[k];
     move_ = absolute(node.force[k]) > move_ ? absolute(node.force[k]) : move_;
     size_ = absolute(node.u[k]) > size_ ? absolute(node.u[k]) : size_;
   }
-  if (++index_ == leaves.count) {
-    ++pass_;
-    const bool is_over = pass_ == kPassesMax || !(move_ > kLeastMove * size_);
-    move_ = 0;
-    begin_piece(is_over ? Piece::kStates : Piece::kResiduals, 0);
+}
+
+void Condensing::end_pass(int passes_max) {
+  ++pass_;
+  const bool is_over = pass_ == passes_max || !(move_ > kLeastMove * size_);
+  move_ = 0;
+  begin_piece(is_over ? Piece::kStates : Piece::kResiduals, 0);
+}
+
+void Condensing::shift_group(Workspace& ws) {
+  solve_group(ws);
+  for (int i = 1; i < ws.node_count(); ++i) {
+    add_shift(ws.node(i));
   }
+  end_pass(kGroupPassesMax);
 }
 
 void Condensing::follow(Workspace& ws, const Order& order) {
@@ -228,11 +263,12 @@ void Condensing::follow(Workspace& ws, const Order& order) {
 // ---- Around it.
 
 void begin_condensing(Workspace& ws) {
-  ws.planned_exchange.clear_forces();
+  ws.planned_exchange.clear_forces(ws.planned.more_planned());
   int awaited = 0;
   for (int k = 0; k < ws.planned.count(); ++k) {
     for (const Direction face : ws.planned.own_touching(k)) {
-      ws.planned_exchange.add_force(k, end_force(ws.setup.beams(), face, kAtRest, ws.node(0).u));
+      ws.planned_exchange.add_force(ws.planned, k,
+                                    end_force(ws.setup.beams(), face, kAtRest, ws.node(0).u));
     }
     for (const Direction child : ws.tree.children()) {
       awaited += ws.planned.is_needed_below(child, k) ? 2 : 0;

@@ -37,13 +37,13 @@ Order Conductor::begin(const Setup& setup, const base::Cell& root, std::uint32_t
   return first;
 }
 
-Order Conductor::next(const Setup& setup, const Report& report) {
+Order Conductor::next(const Setup& setup, const Report& report, const Planned& planned) {
   switch (asked_) {
     case Operation::kPlan:
     case Operation::kForget:
-      return after_plan(report);
+      return after_plan(report, planned);
     case Operation::kHosts:
-      return after_hosts(report);
+      return after_hosts(report, planned);
     case Operation::kMass:
       return after_mass(setup, report);
     case Operation::kAngles:
@@ -119,14 +119,14 @@ Order Conductor::next_of_solve(const Setup& setup, const Report& report) {
 /// then all begins anew: so every withdrawal goes before every plan. It is only behind the last
 /// plan that a robot with too many or disputed ones gives up: by then another sweep has gone down
 /// than the one that found them, as Announcements::settle() needs.
-Order Conductor::after_plan(const Report& report) {
+Order Conductor::after_plan(const Report& report, const Planned& planned) {
   if ((report.flags & kEnded) != 0) {
     return forget(report);
   }
-  if (planned_count_ > kPlannedMax) {
+  if (planned_count_ > planned.capacity()) {
     return finish(Verdict::kUndecided, Reason::kPlannedTooMany);
   }
-  if (planned_count_ > 0) {
+  if (planned_count_ > 0 && (!kPlansMany || planned_count_ <= kMasksOfPart)) {
     totals_[planned_count_ - 1U] = report.mask;
   }
   if ((report.flags & kFound) != 0) {
@@ -143,8 +143,23 @@ Order Conductor::after_plan(const Report& report) {
   if (kJudgesStages && (report.flags & kStepTold) != 0) {
     return ask_word(kNoWord, {.number = bits_of({.kind = StepWord::Kind::kAttach})});
   }
+  return ask_hosts(planned);
+}
+
+/// Of many planned modules the masks go down in parts. `planned` has those of the later ones.
+Order Conductor::ask_hosts([[maybe_unused]] const Planned& planned) {
   Order hosts = ask(Operation::kHosts);
   hosts.masks = totals_;
+#ifndef HOLDFAST_AGENT_FLOOR_ONLY
+  if (planned_count_ > kMasksOfPart) {
+    const int first = planned.parts_here() * kMasksOfPart;
+    hosts.index = static_cast<std::uint8_t>(planned.parts_here());
+    for (std::size_t i = 0; i < hosts.masks.size(); ++i) {
+      const int k = first + static_cast<int>(i);
+      hosts.masks[i] = k < planned.count() ? planned.touching(k).mask() : FaceMask{0};
+    }
+  }
+#endif
   return hosts;
 }
 
@@ -160,15 +175,31 @@ Order Conductor::forget(const Report& report) {
   return forget;
 }
 
-Order Conductor::after_hosts(const Report& report) {
+Order Conductor::after_hosts(const Report& report, [[maybe_unused]] const Planned& planned) {
+#ifndef HOLDFAST_AGENT_FLOOR_ONLY
+  if (!planned.has_all_parts()) {
+    return ask_hosts(planned);
+  }
+#endif
   is_any_remote_ = (report.mask & kAnyRemote) != 0;
-  const unsigned all = (1U << planned_count_) - 1;
-  if ((report.mask & 0x7fU) != all) {
+  if (!is_all_hosted(report, planned)) {
     return finish(Verdict::kUndecided, Reason::kPlannedDetached);
   }
   Order mass = ask(Operation::kMass);
   mass.cell = root_;
   return mass;
+}
+
+/// Does somebody emulate every planned module? Reports have room for few; of many the root knows
+/// it.
+bool Conductor::is_all_hosted(const Report& report, [[maybe_unused]] const Planned& planned) const {
+#ifndef HOLDFAST_AGENT_FLOOR_ONLY
+  if (planned_count_ > kPlannedMax) {
+    return !planned.is_any_detached();
+  }
+#endif
+  const unsigned all = (1U << planned_count_) - 1;
+  return (report.mask & 0x7fU) == all;
 }
 
 namespace {

@@ -20,6 +20,7 @@ constexpr int kClusterStagnationMax = 12;
 
 /// Larger robots with many loops begin with the polynomial and take fronts if that makes no
 /// progress: a cube of 5 takes 6 sweeps with it, and its fronts are the largest there are.
+/// Of many planned modules so many more: condensed, they spoil the polynomial.
 constexpr std::uint32_t kFrontModulesMax = 80;
 
 /// Changes of contact states that elimination takes, two sweeps each, until fronts solve contact in
@@ -74,7 +75,8 @@ void Conductor::choose_one_sweep(bool is_unilateral) {
   if (is_unilateral) {
     effort_.method = has_memory ? Method::kFronts : Method::kConjugateGradients;
   } else if (has_many_loops_ || is_any_remote_) {
-    const bool is_small = effort_.module_count <= kFrontModulesMax;
+    const std::uint32_t many = planned_count_ > kPlannedMax ? planned_count_ : 0U;
+    const bool is_small = effort_.module_count <= kFrontModulesMax + many;
     if (!has_memory || !(is_small || has_fronts())) {
       effort_.method = Method::kPolynomial;
     } else {

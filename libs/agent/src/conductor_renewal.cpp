@@ -26,24 +26,6 @@ int planned_connections(const Planned& planned) {
   return ends / 2;
 }
 
-/// Does a group of planned modules touch nothing?
-bool is_any_detached(const Planned& planned) {
-  PlannedSet held;
-  for (int pass = 0; pass < planned.count(); ++pass) {
-    for (int k = 0; k < planned.count(); ++k) {
-      bool is_held = !planned.touching(k).is_empty();
-      for (const base::Direction direction : planned.directions()) {
-        const int other = planned.neighbour_of(k, direction);
-        is_held = is_held || (other >= 0 && held.has(other));
-      }
-      if (is_held) {
-        held.add(k);
-      }
-    }
-  }
-  return held.bits() != (1U << static_cast<unsigned>(planned.count())) - 1;
-}
-
 /// A tree that has grown deeper than this part of its depth is made anew. All steps but few go on
 /// with the tree that there is, and no sweep is longer than a quarter more.
 constexpr int kDeeperShare = 4;
@@ -149,6 +131,9 @@ Order Conductor::after_renew(const Setup& setup, const Report& report, const Pla
 /// some touch nothing.
 bool Conductor::weigh(const Setup& setup, const Report& report, const Planned& planned,
                       const Environment* environment) {
+  if (planned.count() > resumed_planned_max(face_count(setup))) {
+    return false;  // Their masks have no room in one order.
+  }
   planned_count_ = static_cast<std::uint8_t>(planned.count());
   effort_ = {.module_count = census_ + planned_count_, .method = setup.method};
   std::array<std::int64_t, 2> moment = {report.moment[0], report.moment[1]};
@@ -178,8 +163,7 @@ bool Conductor::weigh(const Setup& setup, const Report& report, const Planned& p
       return false;
     }
   }
-  if (!is_known || planned.count() > resumed_planned_max(face_count(setup)) ||
-      is_any_detached(planned)) {
+  if (!is_known || planned.is_any_detached()) {
     return false;  // It has a beam less than it would hang by, which hides one that closes a loop.
   }
   const bool is_bent = planned_connections(planned) != planned.count();

@@ -19,7 +19,11 @@ constexpr int kNoFront = 0xff;
 /// Room that has to be left in a queue for what follows without asking: a vector and a report; and
 /// the exchanges of an iteration (agent.hpp).
 constexpr int kReportRoom = wire::kVectorBytes + wire::kMessageBytesMax;
-constexpr int kExchangeRoom = (2 * kPlannedMax + 2) * wire::kVectorBytes;
+
+int exchange_room(const Workspace& ws) {
+  const int planned = ws.planned.count() > kPlannedMax ? ws.planned.count() : kPlannedMax;
+  return (2 * planned + 2) * wire::kVectorBytes;
+}
 
 /// In the fourth real of a node's message: faces that are missing, then these.
 constexpr unsigned kFixedBit = 1U << 6U;
@@ -364,14 +368,14 @@ bool FrontElimination::make_front(Workspace& ws) {
 /// What the root keeps of facets; nothing else is left of its front.
 bool FrontElimination::take_kept_facets() {
   const std::span<const FrontNode> rest = front_.nodes().subspan(front_.complete_count());
-  if (rest.size() > kKeptMax || contact_reals(rest.size()) > memory_->contact.size()) {
+  if (rest.size() > memory_->kept.size() || contact_reals(rest.size()) > memory_->contact.size()) {
     return false;
   }
   for (const FrontNode& node : rest) {
     if (!node.is_kept || node.is_fixed) {
       return false;
     }
-    kept_[kept_count_++] = {
+    memory_->kept[kept_count_++] = {
         .u = base::converted<double>(node.u), .state = {.pressed = true}, .is_held = node.is_held};
   }
   return true;
@@ -551,7 +555,7 @@ bool FrontElimination::find_vector_up(int index, base::Vec6<float>& vector, int&
 
 void FrontElimination::find_shifts(const Workspace& ws) {
   if (!has_no_room_ && ws.tree.is_root() && kept_count_ > 0) {
-    FrontContact contact(ws.contact.facet, front_, std::span(kept_).first(kept_count_),
+    FrontContact contact(ws.contact.facet, front_, memory_->kept.first(kept_count_),
                          memory_->contact);
     has_no_state_ = !contact.solve();
   }
@@ -612,7 +616,7 @@ void FrontElimination::await_planned_forces(Workspace& ws) {
 /// All nodes here move, and the exchanges begin; they ask for no room on the way.
 bool FrontElimination::move(Workspace& ws) {
   for (const Direction face : ws.tree.children()) {
-    if (!ws.links.has_room(face, kExchangeRoom)) {
+    if (!ws.links.has_room(face, exchange_room(ws))) {
       return false;
     }
   }

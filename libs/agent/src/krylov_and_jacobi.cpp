@@ -33,6 +33,7 @@ PlannedPart KrylovAndJacobi::planned_part(const Workspace& ws, const Order& orde
 bool KrylovAndJacobi::begin(Workspace& ws, const Order& order, int piece) {
   switch (order.operation) {
     case Operation::kBegin:
+      more_ = ws.planned.more_planned();
       begin_equilibrium(ws, order);
       for (int i = 0; i < ws.node_count(); ++i) {
         vectors(i) = gradients_at_rest(ws.node(i), ws.setup);
@@ -205,14 +206,15 @@ void KrylovAndJacobi::find_images(Workspace& ws, const Order& order) {
     base::add_to(vectors(0).image, end_force(beams, face, mine, theirs));
     if (k >= 0 && other != nullptr) {
       ws.planned_exchange.add_force(
-          k, base::converted<double>(end_force(beams, base::opposite(face), theirs, whole)));
+          ws.planned, k,
+          base::converted<double>(end_force(beams, base::opposite(face), theirs, whole)));
     }
   });
   if (part == PlannedPart::kTogether) {
     add_planned_beams(ws);
     for (int i = 1; i < ws.node_count(); ++i) {
       vectors(i).image =
-          base::converted<float>(ws.planned_exchange.force(ws.planned.hosted(i - 1)));
+          base::converted<float>(ws.planned_exchange.force(ws.planned, ws.planned.hosted(i - 1)));
     }
   }
 }

@@ -11,9 +11,9 @@ namespace holdfast::agent {
 /// The planned modules of one host as trees, parents before children.
 struct Leaves {
   int count = 0;
-  std::array<int, kPlannedMax> node{};    ///< Index into nodes_.
-  std::array<int, kPlannedMax> parent{};  ///< The same; 0 is the host, or none.
-  std::array<base::Direction, kPlannedMax> to_parent{};
+  std::array<int, kPlannedMost> node{};    ///< Index into nodes_.
+  std::array<int, kPlannedMost> parent{};  ///< The same; 0 is the host, or none.
+  std::array<base::Direction, kPlannedMost> to_parent{};
 };
 
 /// All of them hang on the host, or on each other.

@@ -64,9 +64,26 @@ Time lost_after(const LinkTiming& timing) {
 
 // Constants where no queue is ever lent.
 
-std::uint8_t* Link::queue() { return kHasAllMethods && lent_ != nullptr ? lent_ : queue_.data(); }
+std::uint8_t* Link::queue() {
+  return (kHasAllMethods || is_long()) && lent_ != nullptr ? lent_ : queue_.data();
+}
 
-int Link::capacity() const { return kHasAllMethods && lent_ != nullptr ? kLentBytes : kQueueBytes; }
+int Link::capacity() const {
+  if (is_long()) {
+    return kPlannedBytes;
+  }
+  return kHasAllMethods && lent_ != nullptr ? kLentBytes : kQueueBytes;
+}
+
+void Link::clear() {
+  std::uint8_t* const lent = lent_;
+  [[maybe_unused]] const bool was_long = is_long();
+  *this = Link();
+  lent_ = lent;
+#ifndef HOLDFAST_AGENT_FLOOR_ONLY
+  is_long_ = was_long;
+#endif
+}
 
 std::uint16_t Link::wrapped(int position) const {
   return static_cast<std::uint16_t>(position < capacity() ? position : position - capacity());
@@ -74,9 +91,7 @@ std::uint16_t Link::wrapped(int position) const {
 
 void Link::bring_up(std::uint16_t nonce, Time now) {
   const std::uint16_t last = nonce_;
-  std::uint8_t* const lent = lent_;
-  *this = Link();
-  lent_ = lent;
+  clear();
   state_ = State::kGreeting;
   nonce_ = nonce;
   while (nonce_ == 0 || nonce_ == last) {
@@ -88,9 +103,7 @@ void Link::bring_up(std::uint16_t nonce, Time now) {
 
 void Link::bring_down() {
   const std::uint16_t last = nonce_;
-  std::uint8_t* const lent = lent_;
-  *this = Link();
-  lent_ = lent;
+  clear();
   nonce_ = last;
 }
 

@@ -40,6 +40,14 @@ void Links::lend(std::uint8_t* queues) {
   }
 }
 
+#ifndef HOLDFAST_AGENT_FLOOR_ONLY
+void Links::lend_long(std::uint8_t* queues) {
+  for (const Direction face : directions(more())) {
+    at(face).lend_long(queues + static_cast<std::ptrdiff_t>(face) * Link::kPlannedBytes);
+  }
+}
+#endif
+
 bool Links::take_refusal() {
   const bool has_refused = has_refused_;
   has_refused_ = false;

@@ -88,7 +88,7 @@ constexpr std::uint8_t label_last(MessageType type) {
     case MessageType::kBranchDown:
       return kLoopsMax;
     case MessageType::kPlannedUp:
-      return kPlannedMax - 1;
+      return kPlannedMost - 1;
     case MessageType::kReach:
       return kReachLabelLast;
     default:
@@ -99,7 +99,7 @@ constexpr std::uint8_t label_last(MessageType type) {
 constexpr void fields(auto& codec, LabelledVector& labelled) {
   codec.u8(labelled.label, 0, label_last(labelled.type));
   codec.require(labelled.type != MessageType::kPlannedDown ||
-                (labelled.label & kPlannedIndexMask) < kPlannedMax);
+                (labelled.label & kPlannedIndexMask) < kPlannedMost);
   for (float& value : labelled.vector) {
     codec.real(value);
   }

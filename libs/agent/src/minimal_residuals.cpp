@@ -193,13 +193,14 @@ void MinimalResiduals::subtract_beams() {
     const auto theirs = base::converted<double>(*other);
     subtract(vectors_of(0).w, end_force(beams, face, mine, theirs));
     if (k >= 0) {
-      ws_.planned_exchange.add_force(k, end_force(beams, base::opposite(face), theirs, mine));
+      ws_.planned_exchange.add_force(ws_.planned, k,
+                                     end_force(beams, base::opposite(face), theirs, mine));
     }
   });
   if (part == PlannedPart::kTogether) {
     add_planned_beams(ws_);
     for (int i = 1; i < ws_.node_count(); ++i) {
-      subtract(vectors_of(i).w, ws_.planned_exchange.force(ws_.planned.hosted(i - 1)));
+      subtract(vectors_of(i).w, ws_.planned_exchange.force(ws_.planned, ws_.planned.hosted(i - 1)));
     }
   }
 }

@@ -256,11 +256,16 @@ constexpr void face_fields(auto& codec, Order& order) {
   real_fields(codec, std::span(order.reals).first(3));
 }
 
-constexpr void mask_fields(auto& codec, std::span<FaceMask> masks) {
-  constexpr std::size_t kMasks = 8;  // Messages have room for more than there may be.
+/// Messages have room for more than there may be; in the last place is which part of all it is.
+constexpr void mask_fields(auto& codec, Order& order) {
+  constexpr std::size_t kMasks = 8;
   for (std::size_t k = 0; k < kMasks; ++k) {
-    FaceMask none = 0;
-    codec.faces(k < masks.size() ? masks[k] : none);
+    FaceMask none = kPlansMany && k + 1 == kMasks ? order.index : FaceMask{0};
+    codec.faces(k < order.masks.size() ? order.masks[k] : none);
+    if (kPlansMany && k + 1 == kMasks) {
+      order.index = static_cast<std::uint8_t>(none);
+      codec.require(none < (kPlannedMost + kMasksOfPart - 1) / kMasksOfPart);
+    }
   }
 }
 
@@ -270,10 +275,10 @@ constexpr void fields(auto& codec, Order& order) {
   switch (order.operation) {
     case Operation::kPlan:
       codec.u8(order.index);
-      codec.require(order.index <= kPlannedMax || order.index == kNoPlanned);
+      codec.require(order.index <= kPlannedMost || order.index == kNoPlanned);
       return codec.cell(order.cell);
     case Operation::kHosts:
-      return mask_fields(codec, order.masks);
+      return mask_fields(codec, order);
     case Operation::kMass:
       return codec.cell(order.cell);
     case Operation::kAngles:

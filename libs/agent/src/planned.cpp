@@ -3,26 +3,71 @@
 #include "holdfast/agent/planned.hpp"
 
 #include "holdfast/agent/more_faces.hpp"
+#include "holdfast/agent/more_planned.hpp"
+#include "holdfast/agent/workspace.hpp"
 
 namespace holdfast::agent {
 
 using base::Direction;
 
-#ifndef HOLDFAST_AGENT_FLOOR_ONLY
-Directions Planned::directions() const { return agent::directions(more_); }
-#endif
+#ifdef HOLDFAST_AGENT_FLOOR_ONLY
+
+void Planned::clear() { *this = Planned(); }
+
+#else
+
+MoreFaces* Planned::more() const { return lent_ == nullptr ? nullptr : lent_->faces; }
+
+MorePlanned* Planned::more_planned() const { return lent_ == nullptr ? nullptr : lent_->planned; }
+
+Directions Planned::directions() const { return agent::directions(more()); }
 
 void Planned::clear() {
-  MoreFaces* lent = more();
+  const LentMemory* lent = lent_;
   *this = Planned();
   lend(lent);
-  if (lent != nullptr) {
-    lent->below = {};
+  if (more() != nullptr) {
+    more()->below = {};
   }
+  if (more_planned() != nullptr) {
+    more_planned()->below = {};
+  }
+}
+
+#endif
+
+template <class T>
+T& Planned::place(ByPlanned<T>& own, ByMorePlanned<T> MorePlanned::*lent, int index) {
+  return is_own(index) ? own[at(index)] : (more_planned()->*lent)[at(index - kPlannedMax)];
+}
+
+template <class T>
+const T& Planned::place(const ByPlanned<T>& own, ByMorePlanned<T> MorePlanned::*lent,
+                        int index) const {
+  return is_own(index) ? own[at(index)] : (more_planned()->*lent)[at(index - kPlannedMax)];
+}
+
+const base::Cell& Planned::more_cell(int index) const {
+  return place(cells_, &MorePlanned::cells, index);
+}
+
+Faces Planned::more_own_touching(int index) const {
+  return place(own_touching_, &MorePlanned::own_touching, index);
+}
+
+Faces Planned::more_total(int index) const { return place(totals_, &MorePlanned::totals, index); }
+
+int Planned::more_hosted(int i) const { return place(hosted_, &MorePlanned::hosted, i); }
+
+std::uint8_t Planned::group_of(int index) const {
+  return place(groups_, &MorePlanned::groups, index);
 }
 
 Faces Planned::below(Direction child, int index) const {
   const auto face = static_cast<std::size_t>(child);
+  if (!is_own(index)) {
+    return more_planned()->below[face][at(index - kPlannedMax)];
+  }
   if (const MoreFaces* lent = more(); kKnowsLattices && lent != nullptr) {
     return lent->below[face][at(index)];
   }
@@ -31,7 +76,9 @@ Faces Planned::below(Direction child, int index) const {
 
 void Planned::set_below(Direction child, int index, Faces touching) {
   const auto face = static_cast<std::size_t>(child);
-  if (MoreFaces* lent = more(); kKnowsLattices && lent != nullptr) {
+  if (!is_own(index)) {
+    more_planned()->below[face][at(index - kPlannedMax)] = touching;
+  } else if (MoreFaces* lent = more(); kKnowsLattices && lent != nullptr) {
     lent->below[face][at(index)] = touching;
   } else {
     below_[face][at(index)] = base::Faces::from_mask(static_cast<std::uint8_t>(touching.mask()));
@@ -39,23 +86,27 @@ void Planned::set_below(Direction child, int index, Faces touching) {
 }
 
 void Planned::add(const base::Cell& cell, const base::Cell& self) {
-  if (count_ == kPlannedMax) {
+  if (count_ == capacity()) {
     return;
   }
   forget_hosts();
-  const std::size_t i = count_++;
-  cells_[i] = cell;
-  own_touching_[i] = {};
+  const int i = count_++;
+#ifndef HOLDFAST_AGENT_FLOOR_ONLY
+  parts_here_ = 0;
+#endif
+  place(cells_, &MorePlanned::cells, i) = cell;
+  Faces& touching = place(own_touching_, &MorePlanned::own_touching, i);
+  touching = {};
   for (const Direction face : directions()) {
     if (neighbour(more(), self, face) == cell) {
-      own_touching_[i] = Faces::only(base::opposite(face));
+      touching = Faces::only(base::opposite(face));
     }
   }
 }
 
 int Planned::find(const base::Cell& cell) const {
   for (int k = 0; k < count_; ++k) {
-    if (cells_[at(k)] == cell) {
+    if (this->cell(k) == cell) {
       return k;
     }
   }
@@ -66,13 +117,13 @@ void Planned::remove(int index) {
   forget_hosts();
   --count_;
   for (int k = index; k < count_; ++k) {
-    cells_[at(k)] = cells_[at(k + 1)];
-    own_touching_[at(k)] = own_touching_[at(k + 1)];
+    place(cells_, &MorePlanned::cells, k) = cell(k + 1);
+    place(own_touching_, &MorePlanned::own_touching, k) = own_touching(k + 1);
     for (const Direction child : directions()) {
       set_below(child, k, below(child, k + 1));
     }
   }
-  own_touching_[at(count_)] = {};
+  place(own_touching_, &MorePlanned::own_touching, count_) = {};
   for (const Direction child : directions()) {
     set_below(child, count_, {});
   }
@@ -81,7 +132,6 @@ void Planned::remove(int index) {
 void Planned::forget_hosts() {
   hosted_count_ = 0;
   from_above_ = {};
-  involved_ = {};
   is_any_remote_ = false;
 }
 
@@ -129,11 +179,22 @@ bool Planned::is_any_below(std::uint8_t group, Direction child) const {
   return false;
 }
 
-void Planned::decide_hosts(const PlannedMasks& totals) {
+void Planned::decide_hosts(const PlannedMasks& totals, [[maybe_unused]] int part) {
   forget_hosts();
+  const int first = kPlansMany ? part * kMasksOfPart : 0;
+  for (int k = first; k < count_ && k < first + kMasksOfPart; ++k) {
+    place(totals_, &MorePlanned::totals, k) = Faces::from_mask(totals[at(k - first)]);
+  }
+#ifndef HOLDFAST_AGENT_FLOOR_ONLY
+  if (part_count() > 1) {
+    parts_here_ = static_cast<std::uint8_t>(part + 1);
+    if (!has_all_parts()) {
+      return;
+    }
+  }
+#endif
   for (int k = 0; k < count_; ++k) {
-    totals_[at(k)] = Faces::from_mask(totals[at(k)]);
-    groups_[at(k)] = static_cast<std::uint8_t>(k);
+    place(groups_, &MorePlanned::groups, k) = static_cast<std::uint8_t>(k);
   }
   // A group is named after its first module; names spread until nothing changes.
   for (int pass = 0; pass < count_; ++pass) {
@@ -141,7 +202,7 @@ void Planned::decide_hosts(const PlannedMasks& totals) {
       for (const Direction direction : directions()) {
         const int other = neighbour_of(k, direction);
         if (other >= 0 && group_of(other) < group_of(k)) {
-          groups_[at(k)] = group_of(other);
+          place(groups_, &MorePlanned::groups, k) = group_of(other);
         }
       }
     }
@@ -159,24 +220,40 @@ void Planned::decide_hosts(const PlannedMasks& totals) {
       continue;
     }
     if (is_whole(group)) {
-      hosted_[hosted_count_++] = static_cast<std::uint8_t>(k);
-      involved_.add(k);
+      place(hosted_, &MorePlanned::hosted, hosted_count_++) = static_cast<std::uint8_t>(k);
       is_any_remote_ = is_any_remote_ || !is_own_only;
     } else if (!touching(k).is_empty()) {
       from_above_.add(k);
-      involved_.add(k);
       is_any_remote_ = true;
     }
   }
 }
 
-bool Planned::agrees_with(const PlannedMasks& totals) const {
-  for (int k = 0; k < count_; ++k) {
-    if (!(touching(k) - Faces::from_mask(totals[at(k)])).is_empty()) {
+bool Planned::agrees_with(const PlannedMasks& totals, [[maybe_unused]] int part) const {
+  const int first = kPlansMany ? part * kMasksOfPart : 0;
+  for (int k = first; k < count_ && k < first + kMasksOfPart; ++k) {
+    if (!(touching(k) - Faces::from_mask(totals[at(k - first)])).is_empty()) {
       return false;
     }
   }
   return true;
+}
+
+bool Planned::is_any_detached() const {
+  PlannedSet held;
+  for (int pass = 0; pass < count(); ++pass) {
+    for (int k = 0; k < count(); ++k) {
+      bool is_held = !touching(k).is_empty();
+      for (const base::Direction direction : directions()) {
+        const int other = neighbour_of(k, direction);
+        is_held = is_held || (other >= 0 && held.has(other));
+      }
+      if (is_held) {
+        held.add(k);
+      }
+    }
+  }
+  return held.bits() != (1U << static_cast<unsigned>(count())) - 1;
 }
 
 int Planned::at_face(Direction face) const {
@@ -220,7 +297,7 @@ int Planned::slot_of(int index) const {
 }
 
 bool Planned::is_needed_below(Direction child, int index) const {
-  return involved_.has(index) && !below(child, index).is_empty();
+  return (is_from_above(index) || node_of(index) > 0) && !below(child, index).is_empty();
 }
 
 }  // namespace holdfast::agent

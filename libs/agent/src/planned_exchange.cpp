@@ -14,7 +14,11 @@ void PlannedExchange::enter() {
 
 void PlannedExchange::share(Links& links, Faces children, const Planned& planned, int index,
                             const base::Vec6<float>& vector) {
-  vector_[at(index)] = vector;
+  if (is_own(index)) {
+    vector_[at(index)] = vector;
+  } else {
+    planned.more_planned()->vector[more_at(index)] = vector;
+  }
   send_down(links, children, planned, static_cast<std::uint8_t>(index), vector);
 }
 
@@ -39,13 +43,13 @@ void PlannedExchange::send_up(Links& links, Faces parent, const Planned& planned
     if (!planned.is_from_above(k)) {
       continue;
     }
-    base::Vec6<double>& force = force_[at(k)];
+    base::Vec6<double>& rest = force(planned, k);
     const int parts = is_precise ? 2 : 1;
     for (int part = 0; part < parts; ++part) {
-      base::Vec6<double> leading = force;
+      base::Vec6<double> leading = rest;
       for (std::size_t i = 0; i < 6; ++i) {
-        leading[i] = part + 1 < parts ? leading_part(force[i]) : force[i];
-        force[i] -= leading[i];
+        leading[i] = part + 1 < parts ? leading_part(rest[i]) : rest[i];
+        rest[i] -= leading[i];
       }
       links.send(parent, vector_message(wire::MessageType::kPlannedUp, static_cast<std::uint8_t>(k),
                                         base::converted<float>(leading)));
@@ -53,9 +57,9 @@ void PlannedExchange::send_up(Links& links, Faces parent, const Planned& planned
   }
 }
 
-bool PlannedExchange::take_up(std::span<const std::uint8_t> message) {
+bool PlannedExchange::take_up(const Planned& planned, std::span<const std::uint8_t> message) {
   const auto in = decoded<LabelledVector>(message);
-  add_force(in.label, base::converted<double>(in.vector));
+  add_force(planned, in.label, base::converted<double>(in.vector));
   return awaits_forces() && --forces_awaited_ == 0;
 }
 

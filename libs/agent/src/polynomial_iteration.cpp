@@ -11,20 +11,20 @@ PlannedPart PolynomialIteration::planned_part(const Workspace& ws, const Order& 
 }
 
 bool PolynomialIteration::begin(Workspace& ws, const Order& order, int piece) {
-  MinimalResiduals iteration(ws, order, memory_, rho_);
+  MinimalResiduals iteration(ws, order, memory(ws), rho_);
   return order.operation == wire::Operation::kIterate ? iteration.move(piece)
                                                       : iteration.begin(piece);
 }
 
 bool PolynomialIteration::take_exchange(Workspace& ws, const Order& order, int piece) {
-  MinimalResiduals iteration(ws, order, memory_, rho_);
+  MinimalResiduals iteration(ws, order, memory(ws), rho_);
   return ws.exchange.left_before_report() > 0 ? iteration.take_displacements(piece)
                                               : iteration.take_term(piece);
 }
 
 bool PolynomialIteration::report(Workspace& ws, const Order& order, int piece, Report& sum) {
   return order.operation == wire::Operation::kIterate &&
-         MinimalResiduals(ws, order, memory_, rho_).report(piece, sum);
+         MinimalResiduals(ws, order, memory(ws), rho_).report(piece, sum);
 }
 
 }  // namespace holdfast::agent

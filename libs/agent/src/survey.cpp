@@ -168,9 +168,11 @@ Report plan_report(const Workspace& ws, const Announcements& announcements, cons
   return report;
 }
 
+/// Of many planned modules the root knows by itself that they are emulated.
 Report hosts_report(const Workspace& ws) {
   PlannedSet hosted;
-  for (int i = 0; i < ws.planned.hosted_count(); ++i) {
+  const bool is_said = !kPlansMany || ws.planned.count() <= kPlannedMax;
+  for (int i = 0; is_said && i < ws.planned.hosted_count(); ++i) {
     hosted.add(ws.planned.hosted(i));
   }
   Report report;
@@ -329,7 +331,7 @@ void begin_survey(Workspace& ws, Announcements& announcements, const Order& orde
       break;
     case Operation::kHosts:
       announcements.settle();
-      ws.planned.decide_hosts(order.masks);
+      ws.planned.decide_hosts(order.masks, order.index);
       prepare_nodes(ws);
       break;
     case Operation::kMass:

@@ -99,6 +99,9 @@ void Sweep::make_method(Workspace& ws) {
   if (MoreFaces* more = ws.links.more(); kKnowsLattices && more != nullptr) {
     more->child_cut_count = {};
   }
+  if (MorePlanned* more = ws.planned.more_planned(); kPlansMany && more != nullptr) {
+    more->clear_methods();
+  }
 }
 
 void Sweep::leave(Workspace& ws) {
@@ -134,9 +137,10 @@ bool Sweep::is_in_course(const Workspace& ws, const Order& order) const {
       return ws.stages() != nullptr && course_ != Course::kWaves && course_ != Course::kAnswered &&
              ws.stages()->total() > 0 && ws.stages()->learned_count() == ws.stages()->total();
     case Operation::kHosts:
-      return course_ == Course::kPlanned && ws.planned.agrees_with(order.masks);
+      return is_good_hosts(ws, order);
     case Operation::kMass:
-      return course_ == Course::kHosted || (kJudgesStages && course_ == Course::kStaged);
+      return (course_ == Course::kHosted && ws.planned.has_all_parts()) ||
+             (kJudgesStages && course_ == Course::kStaged);
     case Operation::kAngles:
       return course_ == Course::kWeighed && fits_exact_check(ws.setup, order.mass) &&
              mass_report(ws).extent <= kExtentMax;
@@ -170,6 +174,18 @@ bool Sweep::is_in_course(const Workspace& ws, const Order& order) const {
       return course_ == Course::kGradients ||
              (order.operation == Operation::kHold && makes_fronts(course_));
   }
+}
+
+/// Whether these can be the faces that touch planned modules, or the next part of them.
+bool Sweep::is_good_hosts(const Workspace& ws, const Order& order) const {
+#ifndef HOLDFAST_AGENT_FLOOR_ONLY
+  if (order.index != ws.planned.parts_here()) {
+    return false;
+  }
+#endif
+  const bool is_first = course_ == Course::kPlanned;
+  return (is_first || (course_ == Course::kHosted && !ws.planned.has_all_parts())) &&
+         ws.planned.agrees_with(order.masks, order.index);
 }
 
 /// Whether this can be the verdict now: none is found before what decides it, but for one that is
@@ -380,7 +396,7 @@ void Sweep::take_planned_down(Workspace& ws, Message message) {
 }
 
 void Sweep::take_planned_up(Workspace& ws, Message message) {
-  if (ws.planned_exchange.take_up(message) && !makes_fronts(course_)) {
+  if (ws.planned_exchange.take_up(ws.planned, message) && !makes_fronts(course_)) {
     begin_work(Work::kCondense);
   }
 }

@@ -63,7 +63,7 @@ bool TreeElimination::begin(Workspace& ws, const Order& order, int /*piece*/) {
       factor(ws);
     } else {
       load_ = {};
-      stiffness_above_ = {};  // Planned modules here touch no ground.
+      clear_stiffness_above(ws);  // Planned modules here touch no ground.
       begin_piece(Piece::kResiduals);
     }
   } else if (order.operation == Operation::kTreeIterate) {
@@ -210,6 +210,13 @@ void TreeElimination::take_loop(Workspace& ws, Direction face,
 
 // ---- Stiffness.
 
+void TreeElimination::clear_stiffness_above([[maybe_unused]] const Workspace& ws) {
+  stiffness_above_ = {};
+  if (MorePlanned* more = ws.planned.more_planned(); kPlansMany && more != nullptr) {
+    more->stiffness_above = {};
+  }
+}
+
 /// From nothing: tangents, then columns of leaves, come piece by piece.
 void TreeElimination::factor(Workspace& ws) {
   branch_.clear_stiffness();
@@ -217,7 +224,7 @@ void TreeElimination::factor(Workspace& ws) {
   for (const Direction face : directions(ws.links.more())) {
     columns_here(ws, face) = 0;
   }
-  stiffness_above_ = {};
+  clear_stiffness_above(ws);
   is_symmetric_ = true;
   for (int i = 0; i < ws.node_count(); ++i) {
     Node& node = ws.node(i);
@@ -250,33 +257,35 @@ bool TreeElimination::do_tangent(Workspace& ws) {
   }
   for (int row = 0; row < 6; ++row) {
     for (int column = 0; column < 6; ++column) {
-      add_leaf_stiffness(node, index - 1, row, column, static_cast<float>(tangent.at(row, column)));
+      add_leaf_stiffness(node, stiffness_above(ws, index - 1), row, column,
+                         static_cast<float>(tangent.at(row, column)));
     }
   }
   return true;
 }
 
 /// What holds a planned module, from its own ground and the planned ones beyond it.
-base::Mat6<float> TreeElimination::leaf_stiffness(const Node& node, int leaf) const {
+base::Mat6<float> TreeElimination::leaf_stiffness(const Node& node, const Above& above) {
   base::Mat6<float> stiffness;
   std::size_t below = 0;
-  std::size_t above = 0;
+  std::size_t next_above = 0;
   for (int i = 0; i < 6; ++i) {
     for (int k = 0; k <= i; ++k) {
       stiffness.at(i, k) = node.matrix.stiffness_below[below++];
       if (k < i) {
-        stiffness.at(k, i) = stiffness_above_[at(leaf)][above++];
+        stiffness.at(k, i) = above[next_above++];
       }
     }
   }
   return stiffness;
 }
 
-void TreeElimination::add_leaf_stiffness(Node& node, int leaf, int row, int column, float value) {
+void TreeElimination::add_leaf_stiffness(Node& node, Above& above, int row, int column,
+                                         float value) {
   if (column <= row) {
     node.matrix.stiffness_below[at(row * (row + 1) / 2 + column)] += value;
   } else {
-    stiffness_above_[at(leaf)][at(column * (column - 1) / 2 + row)] += value;
+    above[at(column * (column - 1) / 2 + row)] += value;
   }
 }
 
@@ -298,7 +307,8 @@ void TreeElimination::send_leaf_columns(Workspace& ws, const Leaves& leaves, int
   Branch::Columns columns;
   {
     const Joint joint(ws.setup.beams(), leaves.to_parent[at(leaf)]);
-    find_stiffness_up(joint, leaf_stiffness(ws.node(node), node - 1), first, columns);
+    find_stiffness_up(joint, leaf_stiffness(ws.node(node), stiffness_above(ws, node - 1)), first,
+                      columns);
   }
   for (int k = 0; k < Branch::kBatch; ++k) {
     const base::Vec6<float>& column = columns[at(k)];
@@ -307,7 +317,8 @@ void TreeElimination::send_leaf_columns(Workspace& ws, const Leaves& leaves, int
       continue;
     }
     for (int row = 0; row < 6; ++row) {
-      add_leaf_stiffness(ws.node(parent), parent - 1, row, first + k, column[at(row)]);
+      add_leaf_stiffness(ws.node(parent), stiffness_above(ws, parent - 1), row, first + k,
+                         column[at(row)]);
     }
   }
 }
@@ -453,7 +464,7 @@ void TreeElimination::send_leaf_load(Workspace& ws, const Leaves& leaves, int le
   const int parent = leaves.parent[at(leaf)];
   auto load = base::converted<double>(ws.node(node).vector.load);
   find_load_up(Joint(ws.setup.beams(), leaves.to_parent[at(leaf)]),
-               leaf_stiffness(ws.node(node), node - 1), load);
+               leaf_stiffness(ws.node(node), stiffness_above(ws, node - 1)), load);
   if (parent == 0) {
     base::add_to(load_.load, load);
   } else {
@@ -545,12 +556,13 @@ bool TreeElimination::do_shift_piece(Workspace& ws) {
   node.vector.shift = base::converted<float>(shift);
 }
 
-void TreeElimination::find_leaf_shift(Workspace& ws, const Leaves& leaves, int leaf) const {
+void TreeElimination::find_leaf_shift(Workspace& ws, const Leaves& leaves, int leaf) {
   Node& node = ws.node(leaves.node[at(leaf)]);
   auto load = base::converted<double>(node.vector.load);
   auto shift = base::converted<double>(ws.node(leaves.parent[at(leaf)]).vector.shift);
   find_displacement(Joint(ws.setup.beams(), leaves.to_parent[at(leaf)]),
-                    leaf_stiffness(node, leaves.node[at(leaf)] - 1), load, shift);
+                    leaf_stiffness(node, stiffness_above(ws, leaves.node[at(leaf)] - 1)), load,
+                    shift);
   node.vector.shift = base::converted<float>(shift);
 }
 

@@ -16,14 +16,20 @@ Workspace::Workspace(const Setup& shared, const Identity& identity, const LentMe
     if (lent != nullptr && lent->faces != nullptr) {
       *lent->faces = {.lattice = lent->faces->lattice};
       links.lend(lent->faces);
-      planned.lend(lent->faces);
     }
+    planned.lend(lent);
   }
   if constexpr (kHasAllMethods) {
     if (front_memory() != nullptr) {
       links.lend(front_memory()->queues.data());
     }
   }
+#ifndef HOLDFAST_AGENT_FLOOR_ONLY
+  if (MorePlanned* more = planned.more_planned(); more != nullptr) {
+    *more = {.group = more->group};
+    links.lend_long(more->queues.data());
+  }
+#endif
   if (kJudgesFaces && free_faces() != nullptr) {
     free_faces()->forget();
   }
@@ -53,7 +59,7 @@ void Workspace::start_exchange(PlannedPart part) {
   if (part != PlannedPart::kTogether) {
     return;
   }
-  planned_exchange.clear_forces();
+  planned_exchange.clear_forces(planned.more_planned());
   for (int k = 0; k < planned.count(); ++k) {
     const int at = planned.node_of(k);
     if (at >= 0) {

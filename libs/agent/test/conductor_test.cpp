@@ -32,7 +32,7 @@ class Drive {
   }
 
   const Order& next(const Report& report = {}) {
-    order = conductor.next(setup, report);
+    order = conductor.next(setup, report, Planned());
     return order;
   }
 

@@ -23,8 +23,8 @@ using test::lopsided_beam;
 /// Memory for one front and its contact problem.
 struct Store {
   std::vector<float> reals = std::vector<float>(10'000);
-  std::vector<double> contact = std::vector<double>(contact_reals(kKeptMax));
-  FrontMemory memory{.nodes = {}, .reals = reals, .contact = contact, .queues = {}};
+  std::vector<double> contact = std::vector<double>(contact_reals(24));
+  FrontMemory memory{.nodes = {}, .reals = reals, .kept = {}, .contact = contact, .queues = {}};
 };
 
 /// Four nodes in a ring, one more above the first, one fixed; nodes 1 and 3 are not complete.
@@ -146,7 +146,7 @@ TEST(Front, says_so_if_there_is_no_room_or_nothing_holds_it) {
   auto nodes = ring();
   Front front;
   EXPECT_FALSE(front.make(nodes, store.memory));
-  store.memory = {.nodes = {}, .reals = store.reals, .contact = {}, .queues = {}};
+  store.memory = {.nodes = {}, .reals = store.reals, .kept = {}, .contact = {}, .queues = {}};
   ASSERT_TRUE(front.make(nodes, store.memory));
   EXPECT_FALSE(front.factor_row(0));
 }

@@ -39,7 +39,7 @@ struct Limit {
 
 bool is_face(unsigned value) { return value <= 5; }
 
-bool is_planned(unsigned value) { return value < 5; }
+bool is_planned(unsigned value) { return value < 30; }
 
 template <unsigned kBits>
 bool is_flags(unsigned value) {
@@ -60,14 +60,15 @@ const Limit kLimits[] = {
     {kGoldenVectors[1], 1, [](unsigned v) { return is_planned(v & 0x3fU); }},  // planned down
     {kGoldenVectors[2], 1, is_planned},                                        // planned up
     {kGoldenLoop, 10, [](unsigned v) { return v == 0 || v == 2 || v == 4; }},
-    {kGoldenVectors[3], 1, is_within<0, 57>},                               // column
-    {kGoldenVectors[4], 1, is_within<0, 2>},                                // branch up
-    {kGoldenVectors[5], 1, is_within<0, 2>},                                // branch down
-    {kGoldenOrders[0], 2, [](unsigned v) { return v <= 5 || v == 0xff; }},  // plan
-    {kGoldenOrders[1], 2, is_flags<0x3f>},                                  // hosts, the first ...
+    {kGoldenVectors[3], 1, is_within<0, 57>},                                // column
+    {kGoldenVectors[4], 1, is_within<0, 2>},                                 // branch up
+    {kGoldenVectors[5], 1, is_within<0, 2>},                                 // branch down
+    {kGoldenOrders[0], 2, [](unsigned v) { return v <= 30 || v == 0xff; }},  // plan
+    {kGoldenOrders[1], 2, is_flags<0x3f>},                                   // hosts, the first ...
     {kGoldenOrders[1], 3, is_within<0, 0>},
     {kGoldenOrders[3], 2, is_within<5, 5>},   // angles: facet
-    {kGoldenOrders[1], 16, is_flags<0x3f>},   // ... and the last
+    {kGoldenOrders[1], 14, is_flags<0x3f>},   // ... and the last
+    {kGoldenOrders[1], 16, is_within<0, 4>},  // which part
     {kGoldenOrders[4], 2, is_flags<15>},      // begin
     {kGoldenOrders[6], 2, is_flags<1>},       // low
     {kGoldenOrders[7], 2, is_flags<7>},       // start

@@ -28,7 +28,7 @@ constexpr Direction kMinusX = Direction::kMinusX;
 constexpr Direction kMinusY = Direction::kMinusY;
 
 /// A set of planned modules, as in messages.
-std::uint8_t indices(const Planned& part) { return part.from_above().bits(); }
+unsigned indices(const Planned& part) { return part.from_above().bits(); }
 
 /// Members are listed parents first. Afterwards every module knows its part.
 std::vector<Planned> share(const std::vector<Member>& members, const std::vector<Cell>& cells) {

@@ -230,18 +230,6 @@ void write_step(io::JsonStream& json, const StepsFile& file, const SimulatedStag
   json.end_object();
 }
 
-void write_id(io::JsonStream& json, std::string_view key, const std::optional<plan::StageId>& id) {
-  json.key(key);
-  if (!id) {
-    json.value(nullptr);
-    return;
-  }
-  json.begin_object();
-  json.member("step", id->step);
-  json.member("stage", plan::name(id->stage));
-  json.end_object();
-}
-
 }  // namespace
 
 void write_simulated_stages_json(std::ostream& out, const StepsFile& file,
@@ -258,8 +246,8 @@ void write_simulated_stages_json(std::ostream& out, const StepsFile& file,
   json.begin_object();
   json.member("name", file.name);
   json.member("verdict", verdict::name(stages.verdict()));
-  write_id(json, "first_unsafe", stages.first_unsafe());
-  write_id(json, "first_undecided", stages.first_undecided());
+  io::write_stage_id(json, "first_unsafe", stages.first_unsafe());
+  io::write_stage_id(json, "first_undecided", stages.first_undecided());
   json.member("load_ratio_max", largest);
   json.key("steps");
   json.begin_array();

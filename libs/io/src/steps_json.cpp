@@ -67,7 +67,10 @@ void write_step(JsonStream& json, const StepsEntry& entry, std::size_t step) {
   json.end_object();
 }
 
-void write_id(JsonStream& json, std::string_view key, const std::optional<plan::StageId>& id) {
+}  // namespace
+
+void write_stage_id(JsonStream& json, std::string_view key,
+                    const std::optional<plan::StageId>& id) {
   json.key(key);
   if (!id) {
     json.value(nullptr);
@@ -79,8 +82,6 @@ void write_id(JsonStream& json, std::string_view key, const std::optional<plan::
   json.end_object();
 }
 
-}  // namespace
-
 void write_steps_json(std::ostream& out, const StepsEntry& entry) {
   const plan::SequenceJudgement& judged = *entry.judgement;
   std::string text;
@@ -88,8 +89,8 @@ void write_steps_json(std::ostream& out, const StepsEntry& entry) {
   json.begin_object();
   json.member("name", entry.name);
   json.member("verdict", verdict::name(judged.verdict()));
-  write_id(json, "first_unsafe", judged.first_unsafe);
-  write_id(json, "first_undecided", judged.first_undecided);
+  write_stage_id(json, "first_unsafe", judged.first_unsafe);
+  write_stage_id(json, "first_undecided", judged.first_undecided);
   json.member("load_ratio_max", judged.load_ratio_max);
   json.member("margin_min_mm", judged.margin_min_mm);
   json.key("steps");

@@ -21,6 +21,9 @@ using mechanics::ContactState;
 /// A bound this near to 1 is not trusted: multigrid's load ratios are within 1e-4.
 constexpr double kRatioMax = 1 - 1e-3;
 
+/// New modules above a section are brought into balance so many times there and back.
+constexpr int kSweepCount = 2;
+
 bool is_plain(const model::Robot& target) {
   return std::ranges::none_of(
       target.facets(), [](const model::Facet& facet) { return facet.touch.friction.has_value(); });
@@ -57,6 +60,9 @@ EnergyBound::EnergyBound(const model::Robot& target, const LocalAdjoints& adjoin
 
 /// Whether the module hands its load to a support of its own.
 bool EnergyBound::has_root(std::size_t module) const {
+  if (section_ != nullptr) {
+    return section_place_[module] >= 0;
+  }
   return first_facet_[module] < first_facet_[module + 1] ||
          target_.modules()[module].support == model::Support::kFixed;
 }
@@ -134,7 +140,8 @@ void EnergyBound::open_gaps(std::size_t module) {
   for (const base::Direction direction : base::directions(target_.lattice())) {
     const int d = base::index(direction);
     const std::int32_t other = local_.neighbour(module, d);
-    if (other == model::Robot::kNoNeighbour) {
+    if (other == model::Robot::kNoNeighbour ||
+        (nodes_[base::at(other)].is_new && nodes_[base::at(other)].place > node.place)) {
       continue;
     }
     nodes_[base::at(other)].is_host = true;
@@ -194,6 +201,13 @@ void EnergyBound::look_at_facet(std::size_t index) {
 /// Takes a part of a module's load down one of its ways.
 void EnergyBound::carry_down(std::size_t module, Way& way, const Vec& load) {
   base::add_to(way.carried, load);
+  if (section_ == nullptr) {
+    weigh(module, way);
+  }
+}
+
+/// What a way's forces mean.
+void EnergyBound::weigh(std::size_t module, Way& way) {
   const Vec force = middle(way.carried, module, way.direction);
   const Vec moved = gap(nodes_[module], way.direction);
   Vec lack = force;
@@ -233,6 +247,10 @@ void EnergyBound::carry(std::size_t from) {
     for (const auto& [module, load] : parts) {
       Node& node = nodes_[module];
       carrying_.push_back(module);
+      if (section_ != nullptr && has_root(module)) {
+        base::add_to(borne_[base::at(section_place_[module])], load);
+        continue;
+      }
       if (has_root(module)) {
         base::add_to(node.carried, load);
         if (first_facet_[module] < first_facet_[module + 1]) {
@@ -292,7 +310,8 @@ void EnergyBound::forget_nearby(const std::vector<bool>& is_changed) {
   }
 }
 
-bool EnergyBound::begin(const std::vector<Element>& elements, const verdict::Assessment& solved) {
+bool EnergyBound::begin(const std::vector<Element>& elements, const verdict::Assessment& solved,
+                        const SectionResponse* section) {
   const bool is_stuck =
       std::ranges::all_of(solved.equilibrium.contact,
                           [](const ContactState& state) { return state == ContactState{}; });
@@ -301,15 +320,21 @@ bool EnergyBound::begin(const std::vector<Element>& elements, const verdict::Ass
       solved.contact_model == verdict::ContactModel::kUnilateral || !is_plain(target_)) {
     return false;
   }
-  if (is_grown_to(elements)) {
+  if (section == nullptr && section_ == nullptr && is_grown_to(elements)) {
     settle_new();
   } else {
+    section_ = section;
     hang_all(elements);
   }
   solved_error_ = verdict::kEnergyFactor * solved.equilibrium.energy_error;
   solved_ratio_ = solved.load_ratio_max ? std::max(0.0, solved.load_ratio_range.high) : 0.0;
   for (std::size_t i = 0; i < elements.size(); ++i) {
     u_[base::at(elements[i])] = solved.equilibrium.displacement[i];
+  }
+  if (section_ != nullptr) {
+    still_ = u_;
+    own_error_ = solved_error_;
+    borne_.assign(section_->modules().size(), {});
   }
   std::ranges::for_each(facets_, [&](std::size_t facet) { look_at_facet(facet); });
   return true;
@@ -329,6 +354,10 @@ void EnergyBound::hang_all(const std::vector<Element>& elements) {
   facets_.clear();
   forget_changes();
   local_.assign(elements);
+  section_place_.assign(section_ == nullptr ? 0 : nodes_.size(), -1);
+  for (std::size_t i = 0; section_ != nullptr && i < section_->modules().size(); ++i) {
+    section_place_[section_->modules()[i]] = static_cast<std::int32_t>(i);
+  }
   std::vector<std::size_t> queue;
   for (const Element element : elements) {
     Node& node = nodes_[base::at(element)];
@@ -354,10 +383,26 @@ void EnergyBound::hang_all(const std::vector<Element>& elements) {
       hang(module);
     }
   }
+  hang_section();
   for (const Element element : elements) {
     const std::size_t module = base::at(element);
     for (std::size_t facet = first_facet_[module]; facet < first_facet_[module + 1]; ++facet) {
       facets_.push_back(facet);
+    }
+  }
+}
+
+/// The ways between modules of the section: from each to an earlier one.
+void EnergyBound::hang_section() {
+  for (std::size_t i = 1; section_ != nullptr && i < section_->modules().size(); ++i) {
+    const std::size_t module = section_->modules()[i];
+    for (const base::Direction direction : base::directions(target_.lattice())) {
+      const std::int32_t other = local_.neighbour(module, base::index(direction));
+      if (other != model::Robot::kNoNeighbour && section_place_[base::at(other)] >= 0 &&
+          base::at(section_place_[base::at(other)]) < i) {
+        nodes_[module].ways.front() = {.to = other, .direction = base::index(direction)};
+        nodes_[module].way_count = 1;
+      }
     }
   }
 }
@@ -486,6 +531,10 @@ std::optional<double> EnergyBound::add(Element element) {
   Node& node = nodes_[module];
   node.is_there = true;
   node.is_new = true;
+  node.place = new_.size();
+  if (section_ != nullptr) {
+    return add_above_section(module);
+  }
   take_place(module);
   open_gaps(module);
   for (std::size_t facet = first_facet_[module]; facet < first_facet_[module + 1]; ++facet) {
@@ -497,6 +546,95 @@ std::optional<double> EnergyBound::add(Element element) {
   new_.push_back(module);
   carry(module);
   return bound();
+}
+
+std::optional<double> EnergyBound::add_above_section(std::size_t module) {
+  if (first_facet_[module] < first_facet_[module + 1]) {
+    return std::nullopt;
+  }
+  new_.push_back(module);
+  local_.insert(module);
+  carry(module);
+  Vec sum{};
+  for (const Vec& borne : borne_) {
+    base::add_to(sum, borne);
+  }
+  resultant_ = section_->resultant(sum);
+  solved_error_ = own_error_ + section_->error(resultant_);
+  move_with_section();
+  bear_by_section();
+  return bound();
+}
+
+/// The core moves by its answer to the resultant, and new modules into balance on it, one after
+/// another, there and back.
+void EnergyBound::move_with_section() {
+  const auto move = [&](std::size_t module) {
+    u_[module] = still_[module];
+    base::add_to(u_[module], section_->displacement(module, resultant_));
+  };
+  for (const std::size_t facet : facets_) {
+    move(base::at(target_.facets()[facet].module));
+    look_at_facet(facet);
+  }
+  for (const std::size_t module : new_) {
+    for (const base::Direction direction : base::directions(target_.lattice())) {
+      const std::int32_t other = local_.neighbour(module, base::index(direction));
+      if (other != model::Robot::kNoNeighbour && !nodes_[base::at(other)].is_new) {
+        move(base::at(other));
+      }
+    }
+  }
+  std::ranges::for_each(new_, [&](std::size_t module) { local_.erase(module); });
+  std::ranges::for_each(new_, [&](std::size_t module) { take_place(module); });
+  for (int sweep = 0; sweep < kSweepCount; ++sweep) {
+    for (std::size_t i = new_.size(); i-- > 0;) {
+      take_place(new_[i]);
+    }
+    std::ranges::for_each(new_, [&](std::size_t module) { take_place(module); });
+  }
+}
+
+/// The section's modules bear what the answer takes them to; what they get is carried to there, and
+/// what all ways carry is weighed against how new modules lie now.
+void EnergyBound::bear_by_section() {
+  energy_ = 0;
+  change_ratio_ = 0;
+  gaps_.clear();
+  std::ranges::sort(carrying_);
+  carrying_.erase(std::unique(carrying_.begin(), carrying_.end()), carrying_.end());
+  const auto forget = [](Node& node) {
+    for (Way& way : node.ways) {
+      way.energy = 0;
+    }
+  };
+  std::ranges::for_each(carrying_, [&](std::size_t module) { forget(nodes_[module]); });
+  std::ranges::for_each(new_, [&](std::size_t module) { open_gaps(module); });
+  for (const std::size_t module : carrying_) {
+    for (std::size_t i = 0; i < nodes_[module].way_count; ++i) {
+      weigh(module, nodes_[module].ways[i]);
+    }
+  }
+  std::vector<Vec> rest = borne_;
+  for (std::size_t i = rest.size(); i-- > 0;) {
+    const std::size_t module = section_->modules()[i];
+    Node& node = nodes_[module];
+    node.is_host = true;
+    forget(node);
+    if (node.way_count == 0) {
+      continue;  // The first, where nothing remains.
+    }
+    Vec minus = section_->share(i, resultant_);
+    for (double& value : minus) {
+      value = -value;
+    }
+    base::add_to(rest[i], minus);
+    Way& way = node.ways.front();
+    way.carried = rest[i];
+    weigh(module, way);
+    base::add_to(rest[base::at(section_place_[base::at(way.to)])], rest[i]);
+  }
+  change_ratio_ += section_->load_ratio(resultant_);  // A beam may bear both.
 }
 
 /// That of the largest load ratio, if every facet is pressed all over.

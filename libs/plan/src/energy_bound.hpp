@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <optional>
 #include <vector>
 
@@ -12,6 +14,7 @@
 #include "holdfast/verdict/assessment.hpp"
 #include "local_adjoint.hpp"
 #include "local_balance.hpp"
+#include "section_response.hpp"
 
 namespace holdfast::plan {
 
@@ -31,6 +34,10 @@ namespace holdfast::plan {
 /// half its width. If nothing breaks by that and every facet presses all over, then that is the
 /// equilibrium of the paper's law, with all facets stuck. Each module costs the length of its way
 /// down.
+///
+/// Above a section of a slender robot, ways end at the section's modules, and the core moves by its
+/// answer to the resultant there (SectionResponse): s and h w then change alike below. New modules
+/// are brought into balance on the core where it is now.
 class EnergyBound {
  public:
   /// Keeps references to the whole robot and to what is known of its facets.
@@ -39,7 +46,10 @@ class EnergyBound {
   /// Begins with a solved robot, whose modules are `elements` of the target, in that order. False
   /// if nothing can be built on it: it is not safe, a facet tilts or is open, or the polygon does
   /// not decide.
-  bool begin(const std::vector<Element>& elements, const verdict::Assessment& solved);
+  /// With a section of this robot, modules that are attached must not have facets. Keeps a
+  /// reference to it.
+  bool begin(const std::vector<Element>& elements, const verdict::Assessment& solved,
+             const SectionResponse* section = nullptr);
 
   /// Attaches a module, which must be beside one that is there. Returns a bound of the largest load
   /// ratio, or none if the robot may be unsafe; it is then to be solved.
@@ -50,6 +60,12 @@ class EnergyBound {
   /// no load ratio exceeds `load_ratio`. Returns as add() does.
   std::optional<double> improve(const std::vector<base::Vec6<double>>& displacement,
                                 double energy_error, double load_ratio);
+
+  /// How far the displacements are off in the energy norm, at most.
+  double energy_error() const { return std::sqrt(std::max(0.0, energy_)) + solved_error_; }
+
+  /// That of a module that has a facet, or is new or beside such a one.
+  const base::Vec6<double>& displacement(std::size_t module) const { return u_[module]; }
 
  private:
   using Vec = base::Vec6<double>;
@@ -70,7 +86,8 @@ class EnergyBound {
     bool is_new = false;   ///< Attached since the robot was solved.
     bool is_host = false;  ///< A module has been attached beside it since.
     std::int32_t depth = 0;
-    std::size_t gaps = 0;  ///< If new: where those of its beams begin in gaps_, by direction.
+    std::size_t place = 0;  ///< If new: in new_.
+    std::size_t gaps = 0;   ///< If new: where those of its beams begin in gaps_, by direction.
     std::array<Way, kWayMax> ways{};  ///< Towards the support, the parent first.
     std::size_t way_count = 0;        ///< 0 at a support.
     Vec carried{};                    ///< New loads that its support bears, as in Way.
@@ -79,6 +96,7 @@ class EnergyBound {
 
   bool is_grown_to(const std::vector<Element>& elements) const;
   void hang_all(const std::vector<Element>& elements);
+  void hang_section();
   void settle_new();
   void forget_changes();
   void forget_nearby(const std::vector<Element>& elements);
@@ -93,6 +111,10 @@ class EnergyBound {
   void carry(std::size_t from);
   std::size_t nearest_way(const Node& node, const Vec& place) const;
   void carry_down(std::size_t module, Way& way, const Vec& load);
+  void weigh(std::size_t module, Way& way);
+  std::optional<double> add_above_section(std::size_t module);
+  void move_with_section();
+  void bear_by_section();
   Vec middle(const Vec& carried, std::size_t module, int direction) const;
   double energy_of(const Vec& force) const;
   void look_at_facet(std::size_t facet);
@@ -121,8 +143,14 @@ class EnergyBound {
   std::vector<std::optional<LocalAdjoint>> nearby_;  ///< By facet, as far as asked for.
   double solved_ratio_ = 0;
   double solved_error_ = 0;
-  double energy_ = 0;        ///< |s - h w|^2
-  double change_ratio_ = 0;  ///< The largest c(change of s) / 2 so far.
+  const SectionResponse* section_ = nullptr;
+  std::vector<std::int32_t> section_place_;  ///< By module: in the section, or -1.
+  std::vector<Vec> borne_;                   ///< By module of the section, about the origin.
+  SectionResponse::Resultant resultant_{};   ///< Of these.
+  std::vector<Vec> still_;                   ///< u_ when the robot was solved.
+  double own_error_ = 0;                     ///< And solved_error_ then.
+  double energy_ = 0;                        ///< |s - h w|^2
+  double change_ratio_ = 0;                  ///< The largest c(change of s) / 2 so far.
 };
 
 }  // namespace holdfast::plan

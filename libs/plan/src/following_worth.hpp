@@ -8,8 +8,8 @@ namespace holdfast::plan {
 
 /// Whether it pays to follow a growing robot from a state that was solved: what that takes for each
 /// state that it certifies, against what a solution from nothing takes for each that its bound
-/// does. In a tower of a thousand layers the displacements that follow are near, but soon no bound
-/// of the load ratio is, and every one of them takes more than a solution from nothing.
+/// does. Where ways down to supports are long the displacements that follow are near, but soon no
+/// bound of the load ratio is, and every one of them takes more than a solution from nothing.
 ///
 /// Counts multigrid's iterations, not time, so that the same states are solved on every machine.
 class FollowingWorth {

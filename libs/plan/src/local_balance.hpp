@@ -32,6 +32,8 @@ class LocalBalance {
 
   void insert(std::size_t module) { is_there_[module] = 1; }
 
+  void erase(std::size_t module) { is_there_[module] = 0; }
+
   bool is_there(std::size_t module) const { return is_there_[module] != 0; }
 
   /// The module that is there in a direction, or kNoNeighbour.

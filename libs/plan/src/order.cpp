@@ -107,6 +107,16 @@ ElementSet core_of(const std::vector<ElementSet>& starts, std::size_t module_cou
   return starts.size() == 1 ? starts.front() : ElementSet(module_count);
 }
 
+bool touches_target(const OrderTask& task, const Cell& cell) {
+  for (const base::Direction side : base::directions(task.target.lattice)) {
+    const Cell beside = base::neighbour(task.target.lattice, cell, side);
+    if (std::ranges::find(task.target.existing, beside) != task.target.existing.end()) {
+      return true;
+    }
+  }
+  return false;
+}
+
 std::optional<base::Error> find_source_fault(const OrderTask& task) {
   const bool is_surface = task.rule.reach == Reach::kSurface;
   if (is_surface != task.rule.source.has_value()) {
@@ -117,6 +127,12 @@ std::optional<base::Error> find_source_fault(const OrderTask& task) {
   if (is_surface && std::ranges::find(start, *task.rule.source) != start.end()) {
     return bad_input(fmt::format("the source {} is taken by a module of the start",
                                  model::text(*task.rule.source)));
+  }
+  if (is_surface && task.target.existing.size() > 1 && !touches_target(task, *task.rule.source)) {
+    return bad_input(
+        fmt::format("the source {} touches no module of the target: nothing that comes "
+                    "from there gets to the robot",
+                    model::text(*task.rule.source)));
   }
   return std::nullopt;
 }

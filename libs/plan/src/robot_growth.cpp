@@ -91,6 +91,7 @@ RobotGrowth::RobotGrowth(const model::RobotSpec& spec, const model::Robot& targe
       beside_count_(spec.existing.size()) {
   for (std::size_t i = 0; i < kPieceCountMax; ++i) {
     followed_.emplace_back(spec, target);
+    sections_.emplace_back(spec, target);
   }
   if (verdict::is_on_flat_floor(target) && target.fixed_count() == 0) {
     balance_.emplace(target);
@@ -451,8 +452,15 @@ std::vector<Judgement> RobotGrowth::judge_piece(ElementSet state, Sense sense,
     }
     const bool is_decided_here =
         assessment.stability_rule != verdict::StabilityRule::kPolygon || balance.has_value();
-    has_bound = can_certify && is_decided_here && tools.bound.begin(state.elements(), assessment);
-    is_followed = has_bound && tools.followed != nullptr && state.size() >= kFollowedMin &&
+    const bool is_large = state.size() >= kFollowedMin;
+    const bool is_slender =
+        can_certify && is_large && tools.section != nullptr && tools.section->find(state);
+    const bool has_section =
+        is_slender && run.size() - judgements.size() >= kSectionMin && tools.section->solve();
+    has_bound =
+        can_certify && is_decided_here &&
+        tools.bound.begin(state.elements(), assessment, has_section ? tools.section : nullptr);
+    is_followed = has_bound && !is_slender && tools.followed != nullptr && is_large &&
                   tools.followed->worth().begin(assessment.equilibrium.iteration_count);
     if (is_followed) {
       tools.followed->begin(state, assessment);
@@ -472,7 +480,7 @@ std::vector<Judgement> RobotGrowth::judge_run(const ElementSet& state, Sense sen
       const auto assessment = assess_by_factors(next);
       return assessment ? *assessment : assess_alone(next);
     };
-    return judge_piece(state, sense, run, {bounds_.front(), nullptr, assess, is_late});
+    return judge_piece(state, sense, run, {bounds_.front(), nullptr, nullptr, assess, is_late});
   }
   const std::size_t length = std::max(kPieceMin, (run.size() - 1) / kPieceCountMax + 1);
   const std::size_t count = (run.size() - 1) / length + 1;
@@ -489,8 +497,8 @@ std::vector<Judgement> RobotGrowth::judge_run(const ElementSet& state, Sense sen
   host::Team team(thread_count_);
   team.share(0, count * host::Team::kChunk, [&](std::size_t first, std::size_t last) {
     for (std::size_t i = first / host::Team::kChunk; i * host::Team::kChunk < last; ++i) {
-      pieces[i] =
-          judge_piece(begins[i], sense, part(i), {bounds_[i], &followed_[i], assess, is_late});
+      pieces[i] = judge_piece(begins[i], sense, part(i),
+                              {bounds_[i], &followed_[i], &sections_[i], assess, is_late});
     }
   });
   std::vector<Judgement> judgements;

@@ -18,6 +18,7 @@
 #include "holdfast/plan/order_search.hpp"
 #include "holdfast/plan/reach.hpp"
 #include "holdfast/solver/options.hpp"
+#include "section_response.hpp"
 
 namespace holdfast::plan {
 
@@ -64,6 +65,9 @@ class RobotGrowth final : public GrowingStructure {
 
   /// In robots of fewer modules a solution from nothing costs no more than one that follows.
   static constexpr std::size_t kFollowedMin = 256;
+  /// A section's answers take about four solutions from nothing: for fewer states they are not
+  /// sought.
+  static constexpr std::size_t kSectionMin = 6;
   /// Each costs another solution that follows.
   static constexpr int kImprovementMax = 2;
 
@@ -75,7 +79,8 @@ class RobotGrowth final : public GrowingStructure {
   /// What a piece of a run is judged with.
   struct Tools {
     EnergyBound& bound;
-    FollowedRobot* followed = nullptr;  ///< None where factors grow with the robot.
+    FollowedRobot* followed = nullptr;   ///< None where factors grow with the robot,
+    SectionResponse* section = nullptr;  ///< nor this.
     const Assess& assess;
     const std::function<bool()>& is_late;
   };
@@ -105,10 +110,11 @@ class RobotGrowth final : public GrowingStructure {
   int thread_count_;
   GrowingRobot growing_;
   LocalAdjoints adjoints_;
-  std::vector<EnergyBound> bounds_;      ///< By piece of a run.
-  std::vector<FollowedRobot> followed_;  ///< The same.
-  bool is_bonded_;                       ///< All supports are, so that nothing topples.
-  std::vector<std::int64_t> distance_;   ///< By module: steps from a support or the core.
+  std::vector<EnergyBound> bounds_;        ///< By piece of a run.
+  std::vector<FollowedRobot> followed_;    ///< The same.
+  std::vector<SectionResponse> sections_;  ///< The same.
+  bool is_bonded_;                         ///< All supports are, so that nothing topples.
+  std::vector<std::int64_t> distance_;     ///< By module: steps from a support or the core.
   std::uint64_t seed_ = 0;
   // What follows the state that was asked for last.
   ElementSet state_;

@@ -305,6 +305,7 @@ TEST(RobotOrder, is_safe_all_the_way_where_states_are_certified_without_being_so
   for (const auto& [family, size] :
        std::vector<std::pair<const char*, std::size_t>>{{"cube", 5},
                                                         {"tower", 12},
+                                                        {"tower", 45},
                                                         {"shell", 6},
                                                         {"scaffold", 9},
                                                         {"growth", 60},

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <memory>
+#include <set>
 #include <utility>
 
 #include "engine.hpp"
@@ -36,6 +37,27 @@ bool has_noise(const LinkModel& link) {
          link.corruption > 0;
 }
 
+/// Have modules to keep more planned modules than they have room for themselves, those of a step's
+/// end included?
+bool plans_many(const model::Robot& robot, const SimulationOptions& options) {
+  std::set<base::Cell> cells;
+  for (std::size_t i = robot.modules().size() - robot.planned_count(); i < robot.modules().size();
+       ++i) {
+    cells.insert(robot.modules()[i].cell);
+  }
+  for (const Announcement& announcement : options.announcements) {
+    if (!announcement.is_withdrawal) {
+      cells.insert(announcement.cell);
+    }
+  }
+  for (const agent::StepWord& word : options.step) {
+    if (word.kind == agent::StepWord::Kind::kAttach) {
+      cells.insert(word.cell);
+    }
+  }
+  return options.plans_many || cells.size() > static_cast<std::size_t>(agent::kPlannedMax);
+}
+
 }  // namespace
 
 bool starts_attached(const SimulationOptions& options, std::int32_t module) {
@@ -61,7 +83,8 @@ Engine::Engine(const model::Robot& robot, SimulationOptions options)
       lent_(robot, robot.modules().size() - robot.planned_count(),
             {.has_fronts = options_.method == agent::Method::kFronts && !needs_environment(robot),
              .has_stages = !options_.step.empty(),
-             .judges_faces = options_.judges_faces}),
+             .judges_faces = options_.judges_faces,
+             .plans_many = plans_many(robot, options_)}),
       pool_(options_.link.packet_bytes),
       recorder_(options_.trace) {
   for (std::size_t size = 0; size < line_times_.size(); ++size) {

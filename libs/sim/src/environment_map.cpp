@@ -269,13 +269,23 @@ LentStore::LentStore(const model::Robot& robot, std::size_t module_count, Needs 
     faces_.resize(module_count);
   }
   if (needs.has_fronts) {
-    fronts_ = std::make_unique<FrontStore>(module_count);
+    fronts_ = std::make_unique<FrontStore>(module_count, needs.plans_many);
   }
   if (has_map) {
     map_ = std::make_unique<EnvironmentMap>(robot);
-    surroundings_.resize(module_count);
   }
-  const bool has_any = needs.has_fronts || needs.has_stages || needs.judges_faces || has_map;
+  const std::size_t nodes =
+      1 + static_cast<std::size_t>(needs.plans_many ? agent::kPlannedMost : agent::kPlannedMax);
+  surroundings_.resize(has_map ? nodes * module_count : 0);
+  more_planned_.resize(needs.plans_many ? module_count : 0);
+  groups_.resize(more_planned_.size());
+  for (std::size_t i = 0; i < groups_.size(); ++i) {
+    // Without zeros: a page that is never written costs nothing.
+    groups_[i] = std::unique_ptr<double[]>(new double[agent::MorePlanned::kGroupReals]);
+    more_planned_[i].group = {groups_[i].get(), agent::MorePlanned::kGroupReals};
+  }
+  const bool has_any =
+      needs.has_fronts || needs.has_stages || needs.judges_faces || has_map || needs.plans_many;
   const bool has_more_faces = robot.lattice() != base::kCubic;
   more_faces_.resize(has_more_faces ? module_count : 0);
   for (agent::MoreFaces& more : more_faces_) {
@@ -286,9 +296,10 @@ LentStore::LentStore(const model::Robot& robot, std::size_t module_count, Needs 
     memory_[i] = {.fronts = needs.has_fronts ? &fronts_->memory_of(i) : nullptr,
                   .free_faces = needs.judges_faces ? &faces_[i] : nullptr,
                   .stages = needs.has_stages ? &stages_[i] : nullptr,
-                  .surroundings = has_map ? surroundings_[i].data() : nullptr,
+                  .surroundings = has_map ? &surroundings_[i * nodes] : nullptr,
                   .environment = has_map ? &map_->environment() : nullptr,
-                  .faces = has_more_faces ? &more_faces_[i] : nullptr};
+                  .faces = has_more_faces ? &more_faces_[i] : nullptr,
+                  .planned = needs.plans_many ? &more_planned_[i] : nullptr};
   }
 }
 

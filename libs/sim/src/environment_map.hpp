@@ -75,13 +75,14 @@ struct FootParts {
 FootParts foot_parts(const model::Robot& robot, std::int32_t part_max);
 
 /// The memory that modules are lent (agent::LentMemory), for fronts, for stages of a step, for
-/// free faces and for surroundings.
+/// free faces, for surroundings and for many planned modules.
 class LentStore {
  public:
   struct Needs {
     bool has_fronts = false;
     bool has_stages = false;
     bool judges_faces = false;
+    bool plans_many = false;  ///< More than agent::kPlannedMax planned modules.
   };
 
   LentStore(const model::Robot& robot, std::size_t module_count, Needs needs);
@@ -96,8 +97,10 @@ class LentStore {
   std::vector<agent::Stages> stages_;
   std::vector<agent::FreeFaces> faces_;
   std::unique_ptr<EnvironmentMap> map_;
-  std::vector<std::array<agent::Surroundings, 1 + agent::kPlannedMax>> surroundings_;
+  std::vector<agent::Surroundings> surroundings_;  ///< By module, then by node.
   std::vector<agent::MoreFaces> more_faces_;
+  std::vector<agent::MorePlanned> more_planned_;
+  std::vector<std::unique_ptr<double[]>> groups_;  ///< MorePlanned::group
   std::vector<agent::LentMemory> memory_;
 };
 

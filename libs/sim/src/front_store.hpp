@@ -17,14 +17,18 @@ namespace holdfast::sim {
 /// The memory for fronts of all modules. A page that is never written costs nothing.
 class FrontStore {
  public:
-  explicit FrontStore(std::size_t module_count) : modules_(module_count) {
+  FrontStore(std::size_t module_count, bool plans_many) : modules_(module_count) {
+    const Sizes sizes = plans_many ? kManyPlanned : kFewPlanned;
+    const std::size_t contact_reals = agent::contact_reals(sizes.kept);
     for (Module& module : modules_) {
-      module.nodes = std::make_unique<agent::FrontNode[]>(kNodes);
-      module.reals = std::unique_ptr<float[]>(new float[kReals]);
-      module.contact = std::unique_ptr<double[]>(new double[kContactReals]);
-      module.memory = {.nodes = {module.nodes.get(), kNodes},
-                       .reals = {module.reals.get(), kReals},
-                       .contact = {module.contact.get(), kContactReals},
+      module.nodes = std::make_unique<agent::FrontNode[]>(sizes.nodes);
+      module.reals = std::unique_ptr<float[]>(new float[sizes.reals]);
+      module.kept = std::make_unique<agent::KeptFacet[]>(sizes.kept);
+      module.contact = std::unique_ptr<double[]>(new double[contact_reals]);
+      module.memory = {.nodes = {module.nodes.get(), sizes.nodes},
+                       .reals = {module.reals.get(), sizes.reals},
+                       .kept = {module.kept.get(), sizes.kept},
+                       .contact = {module.contact.get(), contact_reals},
                        .queues = module.queues};
     }
   }
@@ -32,13 +36,20 @@ class FrontStore {
   agent::FrontMemory& memory_of(std::size_t module) { return modules_[module].memory; }
 
  private:
-  static constexpr std::size_t kNodes = 256;
-  static constexpr std::size_t kReals = 48'000;
-  static constexpr std::size_t kContactReals = agent::contact_reals(agent::kKeptMax);
+  struct Sizes {
+    std::size_t nodes;
+    std::size_t reals;
+    std::size_t kept;
+  };
+
+  static constexpr Sizes kFewPlanned = {.nodes = 256, .reals = 48'000, .kept = 24};
+  /// A group of 30 is in the front of its host, and above it with all that it touches.
+  static constexpr Sizes kManyPlanned = {.nodes = 512, .reals = 192'000, .kept = 60};
 
   struct Module {
     std::unique_ptr<agent::FrontNode[]> nodes;
     std::unique_ptr<float[]> reals;
+    std::unique_ptr<agent::KeptFacet[]> kept;
     std::unique_ptr<double[]> contact;
     std::array<std::uint8_t, base::kDirectionCount * agent::Link::kLentBytes> queues{};
     agent::FrontMemory memory;

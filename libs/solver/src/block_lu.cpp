@@ -62,6 +62,7 @@ void BlockLu::allocate() {
   const std::size_t n = position_.size();
   diagonal_.resize(n);
   inverse_.resize(n);
+  blocks_.reserve(2 * rows_.size());  // Symmetry may be given up; until then U takes no pages.
   blocks_.resize(symmetry_ == Symmetry::kSymmetric ? rows_.size() : 2 * rows_.size());
   edge_lower_.resize(edges_.size());
   is_stale_.assign(n, true);
@@ -93,6 +94,35 @@ void BlockLu::set_diagonal(std::size_t node, const base::Mat6<double>& block) {
   const auto place = static_cast<std::size_t>(position_[node]);
   diagonal_[place] = block;
   is_stale_[place] = true;
+}
+
+void BlockLu::set_symmetry(Symmetry symmetry) {
+  if (symmetry == symmetry_) {
+    return;
+  }
+  symmetry_ = symmetry;
+  allocate();
+  if (symmetry == Symmetry::kSymmetric) {
+    is_stale_.assign(is_stale_.size(), true);
+  } else {
+    make_upper();
+  }
+}
+
+/// Of L D it makes L, and U not yet divided by D, which is (L D)'.
+void BlockLu::make_upper() {
+  blocks_.resize(2 * rows_.size());
+  for (std::size_t k = 0; k < position_.size(); ++k) {
+    if (is_stale_[k]) {
+      continue;
+    }
+    const std::size_t end = column_start_[k + 1];
+    for (std::size_t slot = column_start_[k]; slot < end; ++slot) {
+      blocks_[rows_.size() + slot] = transpose(blocks_[slot]);
+    }
+    base::Mat6<double>* const lower = blocks_.data();
+    factor_kernels().multiply_each(lower + column_start_[k], lower + end, inverse_[k]);
+  }
 }
 
 std::size_t BlockLu::factor_product_count() const {

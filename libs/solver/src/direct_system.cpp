@@ -60,12 +60,23 @@ bool is_refined(const Solution& solution) {
   return change <= kRefinedShare * largest;
 }
 
+void add_scaled(Mat6<double>& sum, double factor, const Mat6<double>& block) {
+  for (std::size_t i = 0; i < block.values.size(); ++i) {
+    sum.values[i] += factor * block.values[i];
+  }
+}
+
+Mat6<double> scaled(double factor, const Mat6<double>& block) {
+  Mat6<double> result;
+  add_scaled(result, factor, block);
+  return result;
+}
+
 }  // namespace
 
 std::unique_ptr<DirectSystem> DirectSystem::make(const model::Robot& robot,
-                                                 const EquilibriumOptions& options,
-                                                 Symmetry symmetry) {
-  std::unique_ptr<DirectSystem> system(new DirectSystem(robot, options, symmetry));
+                                                 const EquilibriumOptions& options) {
+  std::unique_ptr<DirectSystem> system(new DirectSystem(robot, options));
   if (system->lu_->is_too_large()) {
     return nullptr;
   }
@@ -73,8 +84,7 @@ std::unique_ptr<DirectSystem> DirectSystem::make(const model::Robot& robot,
   return system;
 }
 
-DirectSystem::DirectSystem(const model::Robot& robot, const EquilibriumOptions& options,
-                           Symmetry symmetry)
+DirectSystem::DirectSystem(const model::Robot& robot, const EquilibriumOptions& options)
     : LinearSystem(robot),
       is_bonded_(options.is_bonded),
       is_precise_(options.is_precise),
@@ -87,7 +97,7 @@ DirectSystem::DirectSystem(const model::Robot& robot, const EquilibriumOptions& 
     }
   }
   diagonal_.resize(at(next));
-  order(options, symmetry);
+  order(options);
 }
 
 std::int32_t DirectSystem::node_of(std::int32_t module) const {
@@ -95,7 +105,7 @@ std::int32_t DirectSystem::node_of(std::int32_t module) const {
 }
 
 /// Finds the order of elimination and what fills in.
-void DirectSystem::order(const EquilibriumOptions& options, Symmetry symmetry) {
+void DirectSystem::order(const EquilibriumOptions& options) {
   std::vector<Edge> edges;
   edges.reserve(robot().connections().size());
   for (const model::Connection& connection : robot().connections()) {
@@ -105,7 +115,7 @@ void DirectSystem::order(const EquilibriumOptions& options, Symmetry symmetry) {
     }
   }
   lu_.emplace(diagonal_.size(), edges, block_count_max(options, diagonal_.size(), edges.size()),
-              symmetry);
+              Symmetry::kSymmetric);
 }
 
 /// Everything but the contact.
@@ -136,20 +146,15 @@ std::vector<Mat6<double>> DirectSystem::set_connections(BlockLu& lu,
     const auto direction = static_cast<std::size_t>(base::index(connection.direction));
     const auto opposite =
         static_cast<std::size_t>(base::index(base::opposite(connection.direction)));
-    const auto part = [&](Mat6<double> block) {
-      for (double& value : block.values) {
-        value = factors.empty() ? value : factors[i] * value;
-      }
-      return block;
-    };
+    const double factor = factors.empty() ? 1 : factors[i];
     if (a >= 0) {
-      base::add_to(diagonal[at(a)], part(k11[direction]));
+      add_scaled(diagonal[at(a)], factor, k11[direction]);
     }
     if (b >= 0) {
-      base::add_to(diagonal[at(b)], part(k11[opposite]));
+      add_scaled(diagonal[at(b)], factor, k11[opposite]);
     }
     if (a >= 0 && b >= 0) {
-      lu.set_edge(edge++, part(k12[direction]));
+      lu.set_edge(edge++, factor == 1 ? k12[direction] : scaled(factor, k12[direction]));
     }
   }
   return diagonal;
@@ -169,9 +174,19 @@ BlockLu DirectSystem::factors_of(std::span<const double> connection_factors) con
 }
 
 void DirectSystem::take_law() {
+  if (std::ranges::all_of(facets(), [&](const FacetState& facet) { return is_symmetric(facet); })) {
+    lu_->set_symmetry(Symmetry::kSymmetric);
+  }
   for (std::size_t i = 0; i < facets().size(); i = first_facet_after(i)) {
     take_facet(i);
   }
+}
+
+/// Whether the derivative of the facet's force is symmetric: not where it tilts and its torque
+/// follows the force.
+bool DirectSystem::is_symmetric(const FacetState& facet) const {
+  const bool tilts = facet.state.tilt_x != 0 || facet.state.tilt_y != 0;
+  return !tilts || ground().law == ContactLaw::kUnilateral;
 }
 
 /// The first facet of the next module.
@@ -187,6 +202,11 @@ void DirectSystem::take_facet(std::size_t facet) {
   const std::size_t module = facets()[facet].module;
   while (facet > 0 && facets()[facet - 1].module == module) {
     --facet;
+  }
+  for (std::size_t i = facet; i < first_facet_after(facet); ++i) {
+    if (!is_symmetric(facets()[i])) {
+      lu_->set_symmetry(Symmetry::kNone);
+    }
   }
   const std::size_t node = at(node_of_module_[module]);
   lu_->set_diagonal(node, with_facets(diagonal_[node], facet));

@@ -17,11 +17,10 @@ namespace holdfast::solver {
 /// facet touches is factorized again.
 class DirectSystem final : public LinearSystem {
  public:
-  /// None if it needs more memory, or fills in more, than the options allow. Symmetric if all
-  /// facets stay stuck.
+  /// None if it needs more memory, or fills in more, than the options allow. The factors are
+  /// symmetric until a facet tilts under the regularised law.
   static std::unique_ptr<DirectSystem> make(const model::Robot& robot,
-                                            const EquilibriumOptions& options,
-                                            Symmetry symmetry = Symmetry::kNone);
+                                            const EquilibriumOptions& options);
 
   [[nodiscard]] LinearOutcome solve(double tolerance) override;
   std::vector<Vec> displacement() override;
@@ -47,14 +46,15 @@ class DirectSystem final : public LinearSystem {
   }
 
  private:
-  DirectSystem(const model::Robot& robot, const EquilibriumOptions& options, Symmetry symmetry);
+  DirectSystem(const model::Robot& robot, const EquilibriumOptions& options);
 
   void take_law() override;
   void take_facet(std::size_t facet) override;
 
   void take_loads() override {}
 
-  void order(const EquilibriumOptions& options, Symmetry symmetry);
+  void order(const EquilibriumOptions& options);
+  bool is_symmetric(const FacetState& facet) const;
   void assemble();
   std::vector<base::Mat6<double>> set_connections(BlockLu& lu,
                                                   std::span<const double> factors) const;

@@ -122,8 +122,52 @@ inline Block transposed(const Block& a) {
   return t;
 }
 
-/// y -= A x, or A' x, lane by lane.
-template <bool kIsAcross>
+/// Sums of the first two numbers of a and b, then of their last two.
+inline Four sum_of_pairs(const Four& a, const Four& b) {
+  return __builtin_shufflevector(a, b, 0, 4, 2, 6) + __builtin_shufflevector(a, b, 1, 5, 3, 7);
+}
+
+/// y -= A' x, each number a sum of pairs: ((0 + 1) + (2 + 3)) + (4 + 5).
+inline void subtract_across(Column& y, const Block& a, const Column& x) {
+  const Six factor = load_six(x.data());
+  Six term[6];
+  for (std::size_t k = 0; k < 6; ++k) {
+    const Six column = load_six(a.values.data() + 6 * k);
+    term[k] = {column.head * factor.head, column.tail * factor.tail};
+  }
+  Two head[3];
+  Two tail[3];
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Four pairs = sum_of_pairs(term[2 * k].head, term[2 * k + 1].head);
+    head[k] =
+        __builtin_shufflevector(pairs, pairs, 0, 1) + __builtin_shufflevector(pairs, pairs, 2, 3);
+    const Two& even = term[2 * k].tail;
+    const Two& odd = term[2 * k + 1].tail;
+    tail[k] = __builtin_shufflevector(even, odd, 0, 2) + __builtin_shufflevector(even, odd, 1, 3);
+  }
+  for (std::size_t k = 0; k < 3; ++k) {
+    store(y.data() + 2 * k, load<Two>(y.data() + 2 * k) - (head[k] + tail[k]));
+  }
+}
+
+/// y -= A' x, lane by lane, with the same sums.
+inline void subtract_across(LaneBlock& y, const Block& a, const LaneBlock& x) {
+  for (std::size_t lane = 0; lane < kLaneCount; lane += kWide) {
+    Wide factor[6];
+    for (std::size_t k = 0; k < 6; ++k) {
+      factor[k] = load<Wide>(x.values[k] + lane);
+    }
+    for (std::size_t i = 0; i < 6; ++i) {
+      const double* const v = a.values.data() + 6 * i;
+      const Wide sum = ((all_wide(v[0]) * factor[0] + all_wide(v[1]) * factor[1]) +
+                        (all_wide(v[2]) * factor[2] + all_wide(v[3]) * factor[3])) +
+                       (all_wide(v[4]) * factor[4] + all_wide(v[5]) * factor[5]);
+      store(y.values[i] + lane, load<Wide>(y.values[i] + lane) - sum);
+    }
+  }
+}
+
+/// y -= A x, lane by lane.
 inline void subtract(LaneBlock& y, const Block& a, const LaneBlock& x) {
   for (std::size_t lane = 0; lane < kLaneCount; lane += kWide) {
     Wide sum[6];
@@ -133,7 +177,7 @@ inline void subtract(LaneBlock& y, const Block& a, const LaneBlock& x) {
     for (std::size_t k = 0; k < 6; ++k) {
       const Wide factor = load<Wide>(x.values[k] + lane);
       for (std::size_t i = 0; i < 6; ++i) {
-        sum[i] -= all_wide(a.values[kIsAcross ? 6 * i + k : 6 * k + i]) * factor;
+        sum[i] -= all_wide(a.values[6 * k + i]) * factor;
       }
     }
     for (std::size_t i = 0; i < 6; ++i) {
@@ -188,13 +232,13 @@ void substitute_lanes(const FactorView& factors, LaneBlock* y) {
     }
     multiply_by(factors.inverse[k], y[k]);
     for (std::size_t slot = factors.column_start[k]; slot < factors.column_start[k + 1]; ++slot) {
-      subtract<false>(y[factors.rows[slot]], factors.lower[slot], y[k]);
+      subtract(y[factors.rows[slot]], factors.lower[slot], y[k]);
     }
   }
   for (std::size_t k = n; k-- > 0;) {
     LaneBlock rest;
     for (std::size_t slot = factors.column_start[k]; slot < factors.column_start[k + 1]; ++slot) {
-      subtract<true>(rest, factors.lower[slot], y[factors.rows[slot]]);
+      subtract_across(rest, factors.lower[slot], y[factors.rows[slot]]);
     }
     add_rest(factors.inverse[k], rest, y[k]);
   }
@@ -217,8 +261,8 @@ void substitute_symmetric(const FactorView& factors, Column* y, std::size_t coun
     for (std::size_t c = 0; c < count; ++c) {
       Column rest{};
       for (std::size_t slot = factors.column_start[k]; slot < factors.column_start[k + 1]; ++slot) {
-        subtract(rest, transposed(factors.lower[slot]),
-                 y[count * static_cast<std::size_t>(factors.rows[slot]) + c]);
+        subtract_across(rest, factors.lower[slot],
+                        y[count * static_cast<std::size_t>(factors.rows[slot]) + c]);
       }
       multiply_by(factors.inverse[k], rest);
       for (std::size_t i = 0; i < 6; ++i) {

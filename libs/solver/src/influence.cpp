@@ -72,7 +72,7 @@ Influence::~Influence() = default;
 std::unique_ptr<Influence> Influence::make(const model::Robot& robot,
                                            const EquilibriumOptions& options) {
   std::unique_ptr<Influence> influence(new Influence());
-  influence->system_ = DirectSystem::make(robot, options, Symmetry::kSymmetric);
+  influence->system_ = DirectSystem::make(robot, options);
   if (!influence->system_) {
     return nullptr;
   }

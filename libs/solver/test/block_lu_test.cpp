@@ -344,6 +344,50 @@ BlockLu symmetric_lattice(base::Rng& rng, std::size_t node_count, std::span<cons
   return lu;
 }
 
+/// Against factors that never were symmetric: where nothing changed, with changes that are not yet
+/// factorized, and with unsymmetric blocks from then on.
+TEST(BlockLu, gives_up_symmetry_and_takes_it_up_again) {
+  const std::vector<Edge> edges = lattice(4, 3, 3);
+  for (const bool is_changed_before : {false, true}) {
+    base::Rng rng(12);
+    base::Rng same(12);
+    BlockLu lu = symmetric_lattice(rng, 36, edges);
+    BlockLu other = symmetric_lattice(same, 36, edges, Symmetry::kNone);
+    const auto expect_same_solution = [&] {
+      ASSERT_TRUE(lu.factor() && other.factor());
+      std::vector<Vec6<double>> x(36, Vec6<double>{1, -2, 3, -4, 5, -6});
+      std::vector<Vec6<double>> y = x;
+      lu.solve(x);
+      other.solve(y);
+      for (std::size_t i = 0; i < 36; ++i) {
+        for (std::size_t k = 0; k < 6; ++k) {
+          EXPECT_NEAR(x[i][k], y[i][k], kTolerance);
+        }
+      }
+    };
+    const auto change = [&](std::size_t node, const Mat6<double>& block) {
+      lu.set_diagonal(node, block);
+      other.set_diagonal(node, block);
+    };
+    expect_same_solution();
+    if (is_changed_before) {
+      change(5, scaled_identity(25));
+    }
+    lu.set_symmetry(Symmetry::kNone);
+    expect_same_solution();
+    EXPECT_EQ(lu.made_column_count(), other.made_column_count());
+    for (const std::size_t node : {0U, 17U, 35U}) {
+      change(node, random_block(rng, 30));
+      expect_same_solution();
+    }
+    for (const std::size_t node : {0U, 17U, 35U}) {
+      change(node, scaled_identity(30));
+    }
+    lu.set_symmetry(Symmetry::kSymmetric);
+    expect_same_solution();
+  }
+}
+
 TEST(BlockLu, solves_lanes_to_the_bits_of_one_after_another) {
   base::Rng rng(5);
   const std::vector<Edge> edges = lattice(3, 3, 4);

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 
 #include "holdfast/agent/planned.hpp"
 #include "holdfast/base/cell.hpp"
@@ -27,6 +28,9 @@ namespace holdfast::agent {
 /// `undecided` then until everything is withdrawn.
 inline constexpr int kAnnouncedMax = kPlannedMax;
 
+/// The same of a module that is lent memory for it.
+inline constexpr int kAnnouncedMost = kPlannedMost;
+
 /// Withdrawn, it means all plans, lost ones as well. The lowest cell that the wire can carry.
 inline constexpr std::int32_t kEveryCoordinate = -(std::int32_t{1} << 23);
 inline constexpr base::Cell kEveryCell = {kEveryCoordinate, kEveryCoordinate, kEveryCoordinate};
@@ -45,8 +49,22 @@ constexpr bool is_withdrawal(Told told) {
   return told == Told::kWithdrawal || told == Told::kCarriedWithdrawal;
 }
 
+/// Room for what a module is told that is lent memory for it.
+struct AnnouncedPlaces {
+  std::array<base::Cell, kAnnouncedMost> cells{};
+  std::array<Told, kAnnouncedMost> told{};
+};
+
 class Announcements {
  public:
+#ifndef HOLDFAST_AGENT_FLOOR_ONLY
+  /// Lends room for kAnnouncedMost. Once, before all else.
+  void lend(AnnouncedPlaces* places) {
+    cells_.lent = places;
+    is_lent_ = true;
+  }
+#endif
+
   /// The module is told of a planned cell.
   void plan(const base::Cell& cell);
 
@@ -73,10 +91,10 @@ class Announcements {
   int count() const { return count_ + (lost_ != Told::kNothing ? 1 : 0); }
 
   base::Cell cell(int i) const {
-    return i < count_ ? cells_[static_cast<std::size_t>(i)] : kEveryCell;
+    return i < count_ ? cells()[static_cast<std::size_t>(i)] : kEveryCell;
   }
 
-  Told told(int i) const { return i < count_ ? told_[static_cast<std::size_t>(i)] : lost_; }
+  Told told(int i) const { return i < count_ ? tolds()[static_cast<std::size_t>(i)] : lost_; }
 
   /// Is anything told of this cell in it?
   bool has(const base::Cell& cell) const { return find(cell) >= 0; }
@@ -88,19 +106,63 @@ class Announcements {
   bool is_overfull() const { return lost_ != Told::kNothing; }
 
   /// False only of memory that never was one.
-  bool is_sound() const { return count_ <= kAnnouncedMax; }
+  bool is_sound() const { return count_ <= kAnnouncedMax && !is_lent(); }
 
+#ifdef HOLDFAST_AGENT_FLOOR_ONLY
   friend bool operator==(const Announcements&, const Announcements&) = default;
+#else
+  friend bool operator==(const Announcements& one, const Announcements& other);
+#endif
 
  private:
   int find(const base::Cell& cell) const;
   void put(const base::Cell& cell, Told told);
   void erase(int i);
 
+  void clear();
+
+#ifdef HOLDFAST_AGENT_FLOOR_ONLY
+  static constexpr bool is_lent() { return false; }
+
+  std::span<base::Cell> cells() { return cells_; }
+
+  std::span<const base::Cell> cells() const { return cells_; }
+
+  std::span<Told> tolds() { return told_; }
+
+  std::span<const Told> tolds() const { return told_; }
+
   std::array<base::Cell, kAnnouncedMax> cells_{};
+#else
+  union Cells {
+    std::array<base::Cell, kAnnouncedMax> own{};
+    AnnouncedPlaces* lent;  ///< Not owned.
+  };
+
+  bool is_lent() const { return is_lent_; }
+
+  std::span<base::Cell> cells() {
+    return is_lent_ ? std::span<base::Cell>(cells_.lent->cells) : cells_.own;
+  }
+
+  std::span<const base::Cell> cells() const {
+    return is_lent_ ? std::span<const base::Cell>(cells_.lent->cells) : cells_.own;
+  }
+
+  std::span<Told> tolds() { return is_lent_ ? std::span<Told>(cells_.lent->told) : told_; }
+
+  std::span<const Told> tolds() const {
+    return is_lent_ ? std::span<const Told>(cells_.lent->told) : told_;
+  }
+
+  Cells cells_;
+#endif
   std::array<Told, kAnnouncedMax> told_{};
   std::uint8_t count_ = 0;
   Told lost_ = Told::kNothing;  ///< As of plans that found no place.
+#ifndef HOLDFAST_AGENT_FLOOR_ONLY
+  bool is_lent_ = false;
+#endif
 };
 
 }  // namespace holdfast::agent

@@ -35,6 +35,7 @@ class Condensing {
     kResiduals,
     kLoads,   ///< From the last leaf on: loads to parents.
     kShifts,  ///< From the first: displacements.
+    kGroup,   ///< In place of the last two, of many at once.
     kStates,
     kSend,
   };
@@ -47,6 +48,10 @@ class Condensing {
                  int first) const;
   void hand_load_on(Workspace& ws, const Leaves& leaves, std::span<IterationMemory> memory) const;
   void shift(Workspace& ws, const Leaves& leaves, std::span<IterationMemory> memory);
+  void shift_group(Workspace& ws);
+  void begin_passes();
+  void add_shift(Node& node);
+  void end_pass(int passes_max);
   void follow(Workspace& ws, const Order& order);
 
   Piece piece_ = Piece::kSend;

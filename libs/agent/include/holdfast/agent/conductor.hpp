@@ -87,8 +87,8 @@ class Conductor {
   Order begin(const Setup& setup, const base::Cell& root, std::uint32_t module_count,
               std::uint16_t depth, const Lent& lent = {});
 
-  /// The next order, given what the last one has brought.
-  Order next(const Setup& setup, const Report& report);
+  /// The next order, given what the last one has brought. `planned`: as the root has learned them.
+  Order next(const Setup& setup, const Report& report, const Planned& planned);
 
   /// Can the verdict's successor begin from what the robot keeps?
   bool can_renew(const Setup& setup) const;
@@ -133,7 +133,9 @@ class Conductor {
 
   Order ask(wire::Operation operation);
   Order next_of_solve(const Setup& setup, const Report& report);
-  Order after_plan(const Report& report);
+  Order after_plan(const Report& report, const Planned& planned);
+  Order ask_hosts(const Planned& planned);
+  bool is_all_hosted(const Report& report, const Planned& planned) const;
   Order forget(const Report& report);
   Order renew_plan(const Setup& setup, std::uint8_t flags, const base::Cell& cell,
                    const Planned& planned, const Environment* environment);
@@ -142,7 +144,7 @@ class Conductor {
   Order resume(const Setup& setup, const Planned& planned);
   Order after_resume(const Report& report);
   Order after_close(const Setup& setup, const Report& report);
-  Order after_hosts(const Report& report);
+  Order after_hosts(const Report& report, const Planned& planned);
   Order after_mass(const Setup& setup, const Report& report);
   Order after_angles(const Setup& setup, const Report& report);
   Order begin_law(const Setup& setup, bool is_unilateral);

@@ -42,12 +42,20 @@ struct FrontNode {
   bool is_complete() const { return missing.is_empty() && !is_kept; }
 };
 
+/// What the root keeps of a kept facet from one iteration to the next.
+struct KeptFacet {
+  base::Vec6<double> u{};
+  mechanics::ContactState state;
+  bool is_held = true;
+};
+
 /// What one module needs for its fronts. The caller owns it: whoever has no such memory has other
 /// methods. A front that does not fit is none, and the robot takes another method.
 struct FrontMemory {
   std::span<FrontNode> nodes;
   std::span<float> reals;
-  std::span<double> contact;       ///< For the root: see contact_reals().
+  std::span<KeptFacet> kept;       ///< For the root: so many at most, ...
+  std::span<double> contact;       ///< ... and contact_reals() for them.
   std::span<std::uint8_t> queues;  ///< For the six links, kLentBytes each.
   std::size_t nodes_used = 0;
   std::size_t reals_used = 0;

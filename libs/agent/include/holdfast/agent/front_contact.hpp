@@ -18,17 +18,7 @@
 /// energy; Newton's method with a line search always arrives.
 namespace holdfast::agent {
 
-/// What the root keeps of such a facet from one iteration to the next.
-struct KeptFacet {
-  base::Vec6<double> u{};
-  mechanics::ContactState state;
-  bool is_held = true;
-};
-
-/// So many facets at most.
-inline constexpr std::size_t kKeptMax = 24;
-
-/// Reals of FrontMemory::contact for them: a matrix and five vectors.
+/// Reals of FrontMemory::contact for so many facets: a matrix and five vectors.
 constexpr std::size_t contact_reals(std::size_t facets) {
   return 36 * facets * facets + 30 * facets;
 }

@@ -115,8 +115,7 @@ class FrontElimination {
   FrontMemory* memory_ = nullptr;  ///< Lent, from the begin of an equilibrium on.
   Front front_;
   std::array<Below, base::kDirectionCount> below_{};
-  std::array<KeptFacet, kKeptMax> kept_{};  ///< The root's.
-  std::uint8_t kept_count_ = 0;
+  std::uint8_t kept_count_ = 0;  ///< Facets that the root keeps.
   Piece piece_ = Piece::kNone;
   bool has_no_room_ = false;
   bool has_no_state_ = false;

@@ -28,9 +28,20 @@ class KrylovAndJacobi : public ExchangeMethod {
   bool report(Workspace& ws, const Order& order, int piece, Report& sum);
 
  private:
-  Gradients& vectors(int node) { return vectors_[static_cast<std::size_t>(node)]; }
+  Gradients& vectors(int node) {
+    return Workspace::is_own_node(node) ? vectors_[static_cast<std::size_t>(node)]
+                                        : more_vectors(node);
+  }
 
-  const Gradients& vectors(int node) const { return vectors_[static_cast<std::size_t>(node)]; }
+  const Gradients& vectors(int node) const {
+    return Workspace::is_own_node(node) ? vectors_[static_cast<std::size_t>(node)]
+                                        : more_vectors(node);
+  }
+
+  /// Of a planned module for which there is no room here.
+  Gradients& more_vectors([[maybe_unused]] int node) const {
+    return more_->gradients[static_cast<std::size_t>(node - kPlannedMax - 1)];
+  }
 
   void move(Workspace& ws, const Order& order);
   void start_solve(Workspace& ws, const Order& order, int part, int node);
@@ -48,6 +59,7 @@ class KrylovAndJacobi : public ExchangeMethod {
   void report_mix(const Workspace& ws, Report& report) const;
 
   std::array<Gradients, 1 + kPlannedMax> vectors_{};
+  MorePlanned* more_ = nullptr;                ///< Not owned; may be null.
   std::array<double, kSlopePlaces> slopes_{};  ///< While they are added up.
   float rho_ = 0;                              ///< Coefficient of the polynomial preconditioner.
   float jacobi_error_ = 0;  ///< The bound on the error that the last Jacobi iteration has found.

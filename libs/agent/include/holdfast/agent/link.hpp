@@ -47,6 +47,8 @@ class Link {
   static constexpr int kQueueBytes = 320;
   /// The same where a longer queue is lent: a window of the largest packets and more.
   static constexpr int kLentBytes = 1024;
+  /// The same where there may be many planned modules: all vectors of an iteration, and more.
+  static constexpr int kPlannedBytes = 2048;
 
   /// A neighbour is there. `nonce` should differ each time. 0 and the last one are never used, the
   /// next number is; if it is that of a session before this object was made, which the neighbour
@@ -59,6 +61,14 @@ class Link {
   /// acknowledges every second packet that is full at once.
   void lend(std::uint8_t* queue) { lent_ = queue; }
 
+#ifndef HOLDFAST_AGENT_FLOOR_ONLY
+  /// The same, kPlannedBytes.
+  void lend_long(std::uint8_t* queue) {
+    lent_ = queue;
+    is_long_ = true;
+  }
+#endif
+
   /// The neighbour has said what it must not: it counts as silent, and is not listened to any more.
   void lose();
 
@@ -70,7 +80,9 @@ class Link {
   [[nodiscard]] bool send(std::span<const std::uint8_t> message);
 
   /// Can a message of so many bytes be queued?
-  bool has_room(int bytes) const { return queued_bytes_ + bytes <= kQueueBytes; }
+  bool has_room(int bytes) const {
+    return queued_bytes_ + bytes <= (is_long() ? kPlannedBytes : kQueueBytes);
+  }
 
   /// The same for a long stream, which may use a queue that is lent.
   bool has_long_room(int bytes) const { return queued_bytes_ + bytes <= capacity(); }
@@ -110,12 +122,19 @@ class Link {
   int write_greeting(std::span<std::uint8_t> packet, const LinkTiming& timing, Time now);
   std::uint8_t* queue();
   int capacity() const;
+  void clear();
   std::uint16_t wrapped(int position) const;
   int packet_chunk(const LinkTiming& timing) const;
   Time patience(const LinkTiming& timing) const;
 
   /// Is a neighbour greeted that has fallen silent?
   bool is_calling() const { return state_ == State::kLost && retry_at_ != kNever; }
+
+#ifdef HOLDFAST_AGENT_FLOOR_ONLY
+  static constexpr bool is_long() { return false; }
+#else
+  bool is_long() const { return is_long_; }
+#endif
 
   State state_ = State::kDown;
   bool needs_greeting_ = false;
@@ -143,6 +162,9 @@ class Link {
   std::array<std::uint8_t, wire::kMessageBytesMax> message_{};
   std::uint8_t message_bytes_ = 0;  ///< Here so far, ...
   std::uint8_t message_size_ = 0;   ///< ... of so many.
+#ifndef HOLDFAST_AGENT_FLOOR_ONLY
+  bool is_long_ = false;  ///< What is lent has kPlannedBytes.
+#endif
   Time acknowledge_at_ = kNever;
   Time heard_at_ = 0;
 

@@ -69,6 +69,11 @@ class Links {
   /// Lends every link a longer queue, `face` times Link::kLentBytes from here.
   void lend(std::uint8_t* queues);
 
+#ifndef HOLDFAST_AGENT_FLOOR_ONLY
+  /// The same, for all faces there may be, `face` times Link::kPlannedBytes from here.
+  void lend_long(std::uint8_t* queues);
+#endif
+
   /// Has a neighbour fallen silent by what was sent since the last call?
   bool take_refusal();
 

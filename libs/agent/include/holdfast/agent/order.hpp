@@ -27,7 +27,7 @@ enum class Reason : std::uint8_t {
   kBreaks,
   kTopples,
   kNeighbourSilent,  ///< A module that is there did not take part.
-  kPlannedTooMany,   ///< More than kPlannedMax planned modules.
+  kPlannedTooMany,   ///< More planned modules than there is memory for.
   kPlanDisputed,     ///< A plan and its withdrawal, which came first is not known.
   kPlannedDetached,  ///< A planned module touches nothing.
   kTooLarge,         ///< Too many modules, or too far apart, to be counted (feet.hpp).
@@ -82,8 +82,8 @@ inline constexpr std::uint16_t kJacobiCountMax = 4096;
 /// operation. See docs/wire.md.
 struct Order {
   wire::Operation operation{};
-  /// kPlan: planned index learned, kPlannedMax: one too many, or 0xff. kWord: of the word learned,
-  /// or kNoWord. kStage: the stage that is judged next, or 0.
+  /// kPlan: planned index learned, one too many, or 0xff. kHosts: the part of the masks. kWord: of
+  /// the word learned, or kNoWord. kStage: the stage that is judged next, or 0.
   std::uint8_t index = 0;
   std::uint8_t flags = 0;
   /// kJacobi: iterations; kStart, kGradient, kBegin, kIterate: degree; kWord: words; kStage: scene.

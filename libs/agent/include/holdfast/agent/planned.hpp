@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <type_traits>
 
 #include "holdfast/agent/lattices.hpp"
 #include "holdfast/base/cell.hpp"
@@ -19,50 +20,74 @@
 namespace holdfast::agent {
 
 struct MoreFaces;
+struct MorePlanned;
+struct LentMemory;
 
+/// Planned modules that every module has room for itself.
 inline constexpr int kPlannedMax = 5;
+
+/// Can modules be lent memory for more (more_planned.hpp)? For so many then.
+inline constexpr bool kPlansMany = kKnowsLattices;
+inline constexpr int kPlannedMost = kPlansMany ? 30 : kPlannedMax;
 
 /// Planned modules in a robot with clusters, at most: the vectors of more leave no memory for them.
 inline constexpr int kClusterPlannedMax = 2;
 
-/// The faces of each planned module that touch something, by index; the last ones are of none.
+/// The faces of each planned module that touch something, by index; the last ones are of none. Of
+/// more planned modules these are a part, and several orders bring all parts.
 using PlannedMasks = std::array<FaceMask, kPlannedMax + 1>;
+inline constexpr int kMasksOfPart = kPlannedMax + 1;
 
 /// A set of planned modules, by index.
 class PlannedSet {
+  using Bits = std::conditional_t<kPlansMany, std::uint32_t, std::uint8_t>;
+
  public:
-  void add(int index) { bits_ = static_cast<std::uint8_t>(bits_ | bit(index)); }
+  void add(int index) { bits_ = static_cast<Bits>(bits_ | bit(index)); }
 
   bool has(int index) const { return (bits_ & bit(index)) != 0; }
 
   bool has_all(PlannedSet others) const { return (others.bits_ & ~unsigned{bits_}) == 0; }
 
-  /// As in messages: bit i stands for index i.
-  std::uint8_t bits() const { return bits_; }
+  /// Bit i stands for index i.
+  Bits bits() const { return bits_; }
 
  private:
   static unsigned bit(int index) { return 1U << static_cast<unsigned>(index); }
 
-  std::uint8_t bits_ = 0;
+  Bits bits_ = 0;
 };
 
 class Planned {
  public:
-  /// Lends a module that is no cube the memory for its other faces. Once, before all else.
-  void lend([[maybe_unused]] MoreFaces* more) {
+  /// Lends memory for faces that cubes do not have, and for more planned modules. Once, before all
+  /// else.
+  void lend([[maybe_unused]] const LentMemory* lent) {
 #ifndef HOLDFAST_AGENT_FLOOR_ONLY
-    more_ = more;
+    lent_ = lent;
 #endif
   }
+
+  /// Null: kPlannedMax planned modules at most.
+#ifdef HOLDFAST_AGENT_FLOOR_ONLY
+  static constexpr MorePlanned* more_planned() { return nullptr; }
+#else
+  MorePlanned* more_planned() const;
+#endif
 
   void clear();
 
   int count() const { return count_; }
 
-  const base::Cell& cell(int index) const { return cells_[static_cast<std::size_t>(index)]; }
+  /// How many there can be.
+  int capacity() const { return more_planned() == nullptr ? kPlannedMax : kPlannedMost; }
+
+  const base::Cell& cell(int index) const {
+    return is_own(index) ? cells_[at(index)] : more_cell(index);
+  }
 
   /// Learns the next cell and what touches it here; `self` is this module's cell. Of more than
-  /// kPlannedMax cells the later ones are not kept.
+  /// capacity() cells the later ones are not kept.
   void add(const base::Cell& cell, const base::Cell& self);
 
   /// The index of a planned cell, or -1.
@@ -79,20 +104,39 @@ class Planned {
   void add_below(base::Direction child, int index, Faces touching);
 
   /// The face of planned module `index` that touches this module, or none.
-  Faces own_touching(int index) const { return own_touching_[at(index)]; }
+  Faces own_touching(int index) const {
+    return is_own(index) ? own_touching_[at(index)] : more_own_touching(index);
+  }
 
   /// Faces of planned module `index` that touch modules from this one down.
   Faces touching(int index) const;
 
-  /// All faces that touch modules are known, by planned index as in an order's masks: finds groups
-  /// and hosts, as if for the first time.
-  void decide_hosts(const PlannedMasks& totals);
+  /// Faces that touch modules are known, by planned index as in an order's masks: those of part 0,
+  /// 1, ... Behind the last part it finds groups and hosts, as if for the first time.
+  void decide_hosts(const PlannedMasks& totals, int part = 0);
 
   /// Do these masks say at least what is known from here down?
-  bool agrees_with(const PlannedMasks& totals) const;
+  bool agrees_with(const PlannedMasks& totals, int part = 0) const;
+
+  /// How many parts there are, one at least, ...
+  int part_count() const {
+    return kPlansMany && count_ > kMasksOfPart ? (count_ + kMasksOfPart - 1) / kMasksOfPart : 1;
+  }
+
+  /// ... and, where there are several, are here.
+#ifdef HOLDFAST_AGENT_FLOOR_ONLY
+  static constexpr bool has_all_parts() { return true; }
+#else
+  int parts_here() const { return parts_here_; }
+
+  bool has_all_parts() const { return count_ <= kMasksOfPart || parts_here_ == part_count(); }
+#endif
 
   /// Faces of planned module `index` that touch any module.
-  Faces total(int index) const { return totals_[at(index)]; }
+  Faces total(int index) const { return is_own(index) ? totals_[at(index)] : more_total(index); }
+
+  /// Of the root: does a group of planned modules touch nothing?
+  bool is_any_detached() const;
 
   /// The face of this module that touches planned module `index`, or none.
   Faces own_face(int index) const { return own_touching(index).opposite(); }
@@ -113,7 +157,7 @@ class Planned {
   int hosted_count() const { return hosted_count_; }
 
   /// The planned index of the i-th module emulated here.
-  int hosted(int i) const { return hosted_[static_cast<std::size_t>(i)]; }
+  int hosted(int i) const { return is_own(i) ? hosted_[at(i)] : more_hosted(i); }
 
   /// The other way round: its node, 1 and up, or -1 if it is not emulated here.
   int node_of(int index) const;
@@ -134,17 +178,34 @@ class Planned {
   bool is_any_remote() const { return is_any_remote_; }
 
  private:
-  std::uint8_t group_of(int index) const { return groups_[static_cast<std::size_t>(index)]; }
+  template <class T>
+  using ByPlanned = std::array<T, kPlannedMax>;
+  template <class T>
+  using ByMorePlanned = std::array<T, kPlannedMost - kPlannedMax>;
 
   static std::size_t at(int index) { return static_cast<std::size_t>(index); }
 
-  MoreFaces* more() const {
+  /// Does this module itself have room for planned module `index`?
+  static bool is_own(int index) { return !kPlansMany || index < kPlannedMax; }
+
+  template <class T>
+  T& place(ByPlanned<T>& own, ByMorePlanned<T> MorePlanned::*lent, int index);
+  template <class T>
+  const T& place(const ByPlanned<T>& own, ByMorePlanned<T> MorePlanned::*lent, int index) const;
+
+  // Of those that memory is lent for.
+  const base::Cell& more_cell(int index) const;
+  Faces more_own_touching(int index) const;
+  Faces more_total(int index) const;
+  int more_hosted(int i) const;
+
+  std::uint8_t group_of(int index) const;
+
 #ifdef HOLDFAST_AGENT_FLOOR_ONLY
-    return nullptr;
+  static constexpr MoreFaces* more() { return nullptr; }
 #else
-    return more_;
+  MoreFaces* more() const;
 #endif
-  }
 
   /// What planned module `index` touches below the child at `child`.
   Faces below(base::Direction child, int index) const;
@@ -155,20 +216,22 @@ class Planned {
   bool is_any_below(std::uint8_t group, base::Direction child) const;
 
 #ifndef HOLDFAST_AGENT_FLOOR_ONLY
-  MoreFaces* more_ = nullptr;  ///< Not owned; null: cubes.
+  const LentMemory* lent_ = nullptr;  ///< Not owned; may be null.
 #endif
+  PlannedSet from_above_;
   std::uint8_t count_ = 0;
   std::uint8_t hosted_count_ = 0;
-  PlannedSet from_above_;
-  PlannedSet involved_;  ///< Hosted here, or from above.
   bool is_any_remote_ = false;
-  std::array<std::uint8_t, kPlannedMax> groups_{};
-  std::array<std::uint8_t, kPlannedMax> hosted_{};
+#ifndef HOLDFAST_AGENT_FLOOR_ONLY
+  std::uint8_t parts_here_ = 0;
+#endif
+  ByPlanned<std::uint8_t> groups_{};
+  ByPlanned<std::uint8_t> hosted_{};
   /// Faces by child, of cubes; others have them in memory that is lent.
-  ByFace<std::array<base::Faces, kPlannedMax>> below_{};
-  std::array<Faces, kPlannedMax> totals_{};
-  std::array<Faces, kPlannedMax> own_touching_{};
-  std::array<base::Cell, kPlannedMax> cells_{};
+  ByFace<ByPlanned<base::Faces>> below_{};
+  ByPlanned<Faces> totals_{};
+  ByPlanned<Faces> own_touching_{};
+  ByPlanned<base::Cell> cells_{};
 };
 
 }  // namespace holdfast::agent

@@ -7,6 +7,7 @@
 #include <span>
 
 #include "holdfast/agent/exchange.hpp"
+#include "holdfast/agent/more_planned.hpp"
 #include "holdfast/agent/planned.hpp"
 #include "holdfast/agent/spanning_tree.hpp"
 
@@ -27,7 +28,12 @@ class PlannedExchange {
   void enter();
 
   /// An exchange begins: forces are added up anew.
-  void clear_forces() { force_ = {}; }
+  void clear_forces(MorePlanned* more) {
+    force_ = {};
+    if (kPlansMany && more != nullptr) {
+      more->force = {};
+    }
+  }
 
   /// The vector of a planned module that is emulated here goes to all below that touch it.
   void share(Links& links, Faces children, const Planned& planned, int index,
@@ -42,13 +48,21 @@ class PlannedExchange {
                         const base::Vec6<float>& vector);
 
   /// The vector of a planned module in the exchange under way.
-  const base::Vec6<float>& vector(int index) const { return vector_[at(index)]; }
+  const base::Vec6<float>& vector(const Planned& planned, int index) const {
+    return is_own(index) ? vector_[at(index)] : planned.more_planned()->vector[more_at(index)];
+  }
 
   /// The force of all beams from here down on a planned module.
-  const base::Vec6<double>& force(int index) const { return force_[at(index)]; }
+  const base::Vec6<double>& force(const Planned& planned, int index) const {
+    return is_own(index) ? force_[at(index)] : planned.more_planned()->force[more_at(index)];
+  }
 
-  void add_force(int index, const base::Vec6<double>& force) {
-    base::add_to(force_[at(index)], force);
+  base::Vec6<double>& force(const Planned& planned, int index) {
+    return is_own(index) ? force_[at(index)] : planned.more_planned()->force[more_at(index)];
+  }
+
+  void add_force(const Planned& planned, int index, const base::Vec6<double>& addend) {
+    base::add_to(force(planned, index), addend);
   }
 
   /// Forces on planned modules from here down go to their hosts above. Where digits beyond single
@@ -56,10 +70,10 @@ class PlannedExchange {
   void send_up(Links& links, Faces parent, const Planned& planned, bool is_precise);
 
   /// A force from below has come. True: it was the last that await_forces() was told of.
-  bool take_up(std::span<const std::uint8_t> message);
+  bool take_up(const Planned& planned, std::span<const std::uint8_t> message);
 
   /// So many forces from below have to come before planned modules can be condensed.
-  void await_forces(int count) { forces_awaited_ = static_cast<std::uint8_t>(count); }
+  void await_forces(int count) { forces_awaited_ = static_cast<Count>(count); }
 
   bool awaits_forces() const { return forces_awaited_ != 0; }
 
@@ -73,10 +87,17 @@ class PlannedExchange {
   void end() { here_ = {}; }
 
  private:
+  /// Two messages a planned module and child.
+  using Count = std::conditional_t<kPlansMany, std::uint16_t, std::uint8_t>;
+
+  static bool is_own(int index) { return !kPlansMany || index < kPlannedMax; }
+
   static std::size_t at(int index) { return static_cast<std::size_t>(index); }
 
+  static std::size_t more_at(int index) { return static_cast<std::size_t>(index - kPlannedMax); }
+
   PlannedSet here_;  ///< Whose vectors have come from above.
-  std::uint8_t forces_awaited_ = 0;
+  Count forces_awaited_ = 0;
   std::array<base::Vec6<float>, kPlannedMax> vector_{};
   std::array<base::Vec6<double>, kPlannedMax> force_{};
 };

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <span>
 
 #include "holdfast/agent/condensing.hpp"
 #include "holdfast/agent/exchange_method.hpp"
@@ -20,7 +21,7 @@ class PolynomialIteration : public ExchangeMethod {
   bool take_exchange(Workspace& ws, const Order& order, int piece);
 
   bool condense(Workspace& ws, const Order& order, int piece) {
-    return condensing_.do_piece(ws, order, memory_, piece);
+    return condensing_.do_piece(ws, order, memory(ws), piece);
   }
 
   static PlannedPart planned_part(const Workspace& ws, const Order& order);
@@ -28,6 +29,11 @@ class PolynomialIteration : public ExchangeMethod {
   bool report(Workspace& ws, const Order& order, int piece, Report& sum);
 
  private:
+  std::span<IterationMemory> memory(const Workspace& ws) {
+    MorePlanned* more = ws.planned.more_planned();
+    return kPlansMany && more != nullptr ? std::span<IterationMemory>(more->iterations) : memory_;
+  }
+
   std::array<IterationMemory, 1 + kPlannedMax> memory_{};
   Condensing condensing_;
   float rho_ = 0;  ///< Coefficient of the polynomial.

@@ -126,6 +126,7 @@ class Sweep {
   const MethodTable* method() const;
   PlannedPart planned_part(const Workspace& ws) const;
   Pending pending() const;
+  bool is_good_hosts(const Workspace& ws, const Order& order) const;
   bool is_good_answer(const Workspace& ws, const Answer& answer) const;
   bool is_good_resume(const Workspace& ws, const Order& order) const;
   bool is_good_begin(const Workspace& ws, const Order& order) const;

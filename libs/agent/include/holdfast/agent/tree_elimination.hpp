@@ -98,8 +98,19 @@ class TreeElimination {
   bool do_leaf_columns(Workspace& ws);
   bool do_loops(const Workspace& ws);
   bool do_symmetry(const Workspace& ws);
-  void add_leaf_stiffness(Node& node, int leaf, int row, int column, float value);
-  base::Mat6<float> leaf_stiffness(const Node& node, int leaf) const;
+  /// What holds a planned module, above its diagonal, by rows.
+  using Above = std::array<float, 15>;
+
+  Above& stiffness_above(const Workspace& ws, int leaf) {
+    const auto i = static_cast<std::size_t>(leaf);
+    return !kPlansMany || leaf < kPlannedMax
+               ? stiffness_above_[i]
+               : ws.planned.more_planned()->stiffness_above[i - kPlannedMax];
+  }
+
+  static void add_leaf_stiffness(Node& node, Above& above, int row, int column, float value);
+  static base::Mat6<float> leaf_stiffness(const Node& node, const Above& above);
+  void clear_stiffness_above(const Workspace& ws);
   void send_leaf_columns(Workspace& ws, const Leaves& leaves, int leaf, int first);
   bool is_column_ready(const Workspace& ws, int column) const;
   bool send_columns(Workspace& ws);
@@ -117,7 +128,7 @@ class TreeElimination {
   // Displacements.
   bool do_shift_piece(Workspace& ws);
   void find_own_shift(Workspace& ws);
-  void find_leaf_shift(Workspace& ws, const Leaves& leaves, int leaf) const;
+  void find_leaf_shift(Workspace& ws, const Leaves& leaves, int leaf);
   void send_down(Workspace& ws);
   void take_down(Workspace& ws, std::span<const std::uint8_t> message);
 
@@ -166,8 +177,8 @@ class TreeElimination {
   Piece piece_ = Piece::kNone;
   std::uint8_t piece_index_ = 0;
   std::uint8_t down_awaited_ = 0;  ///< Messages that must come from the parent before an iteration.
-  /// What holds each planned module here, above its diagonal; NodeMatrix has the rest.
-  std::array<std::array<float, 15>, kPlannedMax> stiffness_above_{};
+  /// Of each planned module here; NodeMatrix has the rest. See stiffness_above().
+  std::array<Above, kPlannedMax> stiffness_above_{};
 };
 
 }  // namespace holdfast::agent

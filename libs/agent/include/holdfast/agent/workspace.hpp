@@ -8,6 +8,7 @@
 #include "holdfast/agent/exchange.hpp"
 #include "holdfast/agent/front.hpp"
 #include "holdfast/agent/links.hpp"
+#include "holdfast/agent/more_planned.hpp"
 #include "holdfast/agent/node.hpp"
 #include "holdfast/agent/planned.hpp"
 #include "holdfast/agent/planned_exchange.hpp"
@@ -34,10 +35,11 @@ struct LentMemory {
   FrontMemory* fronts = nullptr;    ///< Null: no method with fronts.
   FreeFaces* free_faces = nullptr;  ///< Null: free faces are not judged.
   Stages* stages = nullptr;         ///< Null: steps are not judged in stages.
-  /// By node, 1 + kPlannedMax of them; null: there is nothing but a floor.
+  /// By node, for all planned ones that there may be; null: there is nothing but a floor.
   Surroundings* surroundings = nullptr;
   const Environment* environment = nullptr;  ///< Not null where there are surroundings.
   MoreFaces* faces = nullptr;                ///< Null: the module is a cube.
+  MorePlanned* planned = nullptr;            ///< Null: kPlannedMax planned modules at most.
 };
 
 /// What the parts of a module's program work on: the module's lines, its place in the tree, the
@@ -69,9 +71,20 @@ struct Workspace {
     return stage() != Stage::kNone && stages()->is_gone(cell);
   }
 
-  Node& node(int index) { return nodes[static_cast<std::size_t>(index)]; }
+  Node& node(int index) {
+    return is_own_node(index) ? nodes[static_cast<std::size_t>(index)] : more_node(index);
+  }
 
-  const Node& node(int index) const { return nodes[static_cast<std::size_t>(index)]; }
+  const Node& node(int index) const {
+    return is_own_node(index) ? nodes[static_cast<std::size_t>(index)] : more_node(index);
+  }
+
+  static bool is_own_node(int index) { return !kPlansMany || index <= kPlannedMax; }
+
+  /// Of a planned module for which there is no room in the module itself.
+  Node& more_node(int index) const {
+    return lent->planned->nodes[static_cast<std::size_t>(index - kPlannedMax - 1)];
+  }
 
   const base::Cell& cell_of(int node) const {
     return node == 0 ? tree.cell() : planned.cell(planned.hosted(node - 1));

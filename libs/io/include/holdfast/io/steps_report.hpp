@@ -3,12 +3,14 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <ostream>
 #include <span>
 #include <string>
 #include <string_view>
 
 #include "holdfast/io/document.hpp"
+#include "holdfast/io/json_stream.hpp"
 #include "holdfast/plan/sequence.hpp"
 
 /// What is said of a sequence of steps.
@@ -25,6 +27,9 @@ struct StepsEntry {
 
 /// The JSON report, one object without a line feed behind it; keys are in docs/formats.md.
 void write_steps_json(std::ostream& out, const StepsEntry& entry);
+
+/// Writes a member: a stage of a step as {"step", "stage"}, or null.
+void write_stage_id(JsonStream& json, std::string_view key, const std::optional<plan::StageId>& id);
 
 /// What a step does, in a few words: "moves (1,0,1) to (2,0,1), attaches 3 modules".
 std::string step_text(const Document& document, std::size_t step);

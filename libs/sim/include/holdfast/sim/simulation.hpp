@@ -34,6 +34,9 @@ struct SimulationOptions {
   std::uint8_t degree_max = 200;                       ///< See agent::Setup.
   bool keeps_answers = true;  ///< See agent::Setup. False: every change starts from nothing.
   bool judges_faces = false;  ///< Modules have the memory to judge free faces (free_faces.hpp).
+  /// Modules have the memory for 30 planned ones, not 5 (more_planned.hpp). They have it anyway
+  /// where the robot, the step and `announcements` have more than 5 together.
+  bool plans_many = false;
   std::vector<Fault> faults = {};
   std::vector<std::int32_t> absent = {};         ///< Modules that are not there at the start.
   std::vector<Announcement> announcements = {};  ///< Besides the robot's planned modules.

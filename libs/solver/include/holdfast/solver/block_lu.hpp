@@ -20,7 +20,7 @@ enum class Symmetry : std::uint8_t { kNone, kSymmetric };
 /// Sparse direct solver for matrices of 6x6 blocks: A = (I + L) D (I + U'), D block-diagonal.
 ///
 /// The pattern is symmetric, the values need not be: contact makes some diagonal blocks
-/// unsymmetric. Where they are known to be symmetric, U = L takes half the work and memory. Columns
+/// unsymmetric. As long as they are symmetric, U = L takes half the work and memory. Columns
 /// are eliminated in approximate-minimum-degree order [Amestoy 1996]; pivots are chosen within a
 /// diagonal block only, so callers check the residual. Left-looking: a column is made from finished
 /// columns, so after some blocks have changed only their columns and the ancestors of these in the
@@ -47,6 +47,10 @@ class BlockLu {
 
   /// Sets A(node, node); the next factor() makes again what depends on it.
   void set_diagonal(std::size_t node, const base::Mat6<double>& block);
+
+  /// Whether A is symmetric from here on. If it no longer is, none of the factors that are there is
+  /// made again; if it is again, all are.
+  void set_symmetry(Symmetry symmetry);
 
   /// Returns false if a diagonal block became singular. The bits do not depend on the number of
   /// threads.
@@ -108,6 +112,7 @@ class BlockLu {
 
   void make_row_lists();
   void allocate();
+  void make_upper();
 
   /// What a thread needs to make columns: row -> slot in the current one.
   struct Scratch {

@@ -1,0 +1,96 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "holdfast/model/lattice_beam.hpp"
+#include "holdfast/model/robot.hpp"
+#include "holdfast/plan/element_set.hpp"
+#include "holdfast/solver/linear_system.hpp"
+
+namespace holdfast::plan {
+
+/// How a slender robot, the core, answers to what grows on top of it.
+///
+/// A *section* is all modules at one number of steps from the supports, near the top. Weights that
+/// come to stand above it are borne by the section's modules as a resultant R: a force straight
+/// down and two moments about the section's centroid. If each module takes the part of R that the
+/// theory of beams gives it, its share of a stress that is linear over the section,
+///   p_i = W B_i' (sum_k B_k W B_k')^-1 R,      B_i p_i the resultant of p_i,
+/// W being a module's own area and second moments of it, then three solutions for the core, one for
+/// each component of R, answer to whatever comes: there s = h w but for the error of these
+/// solutions. What a module really bears differs from p by forces in balance over the section.
+class SectionResponse {
+ public:
+  using Vec = base::Vec6<double>;
+
+  /// A force downwards and two moments.
+  using Resultant = std::array<double, 3>;
+
+  /// Keeps references to the robot, all modules of which are there in the end.
+  SectionResponse(const model::RobotSpec& spec, const model::Robot& target);
+
+  /// Takes a safe state, all of whose facets are stuck, as the core, and finds a section. False if
+  /// it is not slender.
+  bool find(const ElementSet& state);
+
+  /// Seeks the core's answers, after find(). False if they cannot be found; then nothing below may
+  /// be called.
+  bool solve();
+
+  /// The section's modules, each but the first beside an earlier one.
+  const std::vector<std::size_t>& modules() const { return modules_; }
+
+  /// The resultant of loads about the origin, of which forces aside and torsion must be none.
+  Resultant resultant(const Vec& load) const;
+
+  /// The part of R that a module bears, by its place in modules(), about the origin.
+  Vec share(std::size_t place, const Resultant& resultant) const;
+
+  /// How a module of the core moves by R more.
+  Vec displacement(std::size_t module, const Resultant& resultant) const;
+
+  /// No connection of the core gains a larger load ratio by R.
+  double load_ratio(const Resultant& resultant) const;
+
+  /// How far displacement() is off in the energy norm, at most.
+  double error(const Resultant& resultant) const;
+
+ private:
+  /// The answer to one component of R.
+  struct Response {
+    std::vector<Vec> displacement;  ///< By module of the core.
+    double error = 0;               ///< In the energy norm.
+    std::array<double, 2> ratio{};  ///< The largest load ratio where the component is positive,
+                                    ///< and where it is negative.
+  };
+
+  bool find_section();
+  bool put_in_order();
+  void find_shares();
+  double torque_weight() const;
+  Vec share_at_node(std::size_t place, const Resultant& resultant) const;
+  bool solve(const model::Robot& core, solver::Precision precision);
+  void find_ratios(Response& response) const;
+
+  const model::RobotSpec& spec_;
+  const model::Robot& target_;
+  model::LatticeBeam<double> beam_;
+  double ratio_per_norm_ = 0;
+  bool is_plain_ = true;              ///< All loads are as resultant() asks for.
+  std::vector<bool> is_support_;      ///< By module.
+  std::vector<Element> elements_;     ///< Of the core.
+  std::vector<std::int32_t> place_;   ///< By module: in elements_, or -1.
+  std::vector<std::size_t> modules_;  ///< Of the section.
+  Vec centroid_{};                    ///< mm; the last three are 0.
+  std::vector<Vec> places_;           ///< By module: its node, mm; the last three are 0.
+  std::array<double, 9> shares_{};    ///< (sum_k B_k W B_k')^-1, by rows.
+  std::array<Response, 3> responses_;
+};
+
+}  // namespace holdfast::plan
