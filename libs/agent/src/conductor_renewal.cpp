@@ -131,7 +131,7 @@ Order Conductor::after_renew(const Setup& setup, const Report& report, const Pla
 /// some touch nothing.
 bool Conductor::weigh(const Setup& setup, const Report& report, const Planned& planned,
                       const Environment* environment) {
-  if (planned.count() > kPlannedMax) {
+  if (planned.count() > resumed_planned_max(face_count(setup))) {
     return false;  // Their masks have no room in one order.
   }
   planned_count_ = static_cast<std::uint8_t>(planned.count());
@@ -163,8 +163,7 @@ bool Conductor::weigh(const Setup& setup, const Report& report, const Planned& p
       return false;
     }
   }
-  if (!is_known || planned.count() > resumed_planned_max(face_count(setup)) ||
-      planned.is_any_detached()) {
+  if (!is_known || planned.is_any_detached()) {
     return false;  // It has a beam less than it would hang by, which hides one that closes a loop.
   }
   const bool is_bent = planned_connections(planned) != planned.count();
