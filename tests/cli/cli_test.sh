@@ -149,6 +149,10 @@ expect_exit 64 simulate "$safe" --next --steps
 expect_exit 64 simulate "$safe" --next --stages
 expect_exit 64 simulate "$safe" --steps --stages
 expect_exit 64 simulate "$safe" --method magic
+expect_exit 0 simulate "$safe" --method fronts --link unit
+[ ! -s err ] || fault "fronts of cubes: $(cat err)"
+expect_exit 1 simulate "$repository/examples/catoms_hang.json" --method fronts --link unit
+expect_line err 'note: .*elimination instead of fronts'
 expect_exit 65 simulate nowhere.json
 
 # Outputs.

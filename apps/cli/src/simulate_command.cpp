@@ -121,11 +121,21 @@ class SimulateRun {
     if (!structure) {
       return fail(structure.error(), options_.file);
     }
+    note_method(structure.value());
     return options_.changes.is_empty() ? run_with_faults(structure.value())
                                        : run_with_changes(structure.value());
   }
 
  private:
+  /// Modules make fronts of cubes on a floor only.
+  void note_method(const Structure& structure) const {
+    const auto beyond = model::find_beyond_paper(structure.robot);
+    if (simulation_.method == agent::Method::kFronts && beyond) {
+      const std::string note = fmt::format("{}: elimination instead of fronts", *beyond);
+      print_notes({&note, 1}, options_.file);
+    }
+  }
+
   /// Is anything asked for that happens to the robot on its way, or tells of it?
   bool has_happenings() const {
     const bool has_faults = std::ranges::any_of(
@@ -144,6 +154,7 @@ class SimulateRun {
     if (!structure) {
       return fail(structure.error(), options_.file);
     }
+    note_method(structure.value());
     const auto simulated = simulate_next(
         structure.value(),
         {.simulation = simulation_, .progress = [this](std::size_t done, std::size_t count) {
