@@ -336,6 +336,10 @@ TEST(DistributedGeneral, what_modules_do_not_know_is_refused) {
   EXPECT_EQ(sim::find_options_fault(robot_of(spec), {.judges_faces = true}),
             "the robot has a lattice other than the cubic one, and these modules know cubes on a "
             "floor only");
+  spec.foot_mm = 0;  // The two are balanced on the line between two points.
+  EXPECT_EQ(sim::find_options_fault(robot_of(spec), {}),
+            "the robot has feet that are points, which the modules' program does not know");
+  spec.foot_mm = std::nullopt;
   spec.lattice = base::kCubic;
   spec.floor.friction = 0.5;
   EXPECT_TRUE(sim::find_options_fault(robot_of(spec), {}));

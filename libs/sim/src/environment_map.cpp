@@ -223,6 +223,10 @@ std::optional<std::string> find_unknown_to_modules(const model::Robot& robot) {
     if (facet.touch.friction) {
       return "supports with friction";
     }
+    // Safe angles are of facets: robots balanced on an edge between two points would count as safe.
+    if (!facet.is_bonded() && robot.foot_half_width_mm() == 0) {
+      return "feet that are points";
+    }
   }
   if (needs_environment(robot) && has_far_corners(robot, EnvironmentMap(robot).environment())) {
     return "cells too far from (0,0,0) for corners as fine as these";
@@ -231,8 +235,8 @@ std::optional<std::string> find_unknown_to_modules(const model::Robot& robot) {
 }
 
 /// Convergents of the continued fraction: the best fractions there are, and the width itself where
-/// lengths have few digits. What is wider than can be checked ends as too large; a point counts as
-/// a foot of one part, as safe angles are of facets (mechanics/safe_angles.hpp).
+/// lengths have few digits. What is wider than can be checked ends as too large; what is narrower
+/// than a part counts as one, as safe angles are of facets (mechanics/safe_angles.hpp).
 FootParts foot_parts(const model::Robot& robot, std::int32_t part_max) {
   constexpr double kTie = 1e-12;
   const double width = 2 * robot.foot_half_width_mm() / robot.material().pitch_mm;
