@@ -127,7 +127,9 @@ test('a link holds the whole structure; a broken one is said to be broken', asyn
   const other = await openPage(browser, { fragment });
   assert.equal(await count(other), 29);
   assert.equal(await verdict(other), 'overload');
-  assert.match(await other.innerText('#figures'), /1\.209 \(7,2,2\)-\(7,2,3\)/);
+  // The robot is its own mirror image: two connections carry the same.
+  assert.match(
+    await other.innerText('#figures'), /1\.209 (\(7,2,2\)-\(7,2,3\)|\(2,7,2\)-\(2,7,3\))/);
   const broken = await openPage(browser, { fragment: fragment.slice(0, 60) });
   assert.match(await message(broken), /the link is broken/);
   assert.equal(await count(broken), 13, 'the first example is there instead');
