@@ -69,21 +69,35 @@ bool topples(const std::vector<Place>& feet, std::int64_t half_width, std::int64
   return has_all_on_one_side<std::int64_t>(corners, 0);
 }
 
+/// Feet within a few cells, and the sum of the places of so many masses.
+struct SmallRobot {
+  std::vector<Place> feet;
+  std::int32_t count = 0;
+  Place sum;
+};
+
+/// With facets of any width, which go into the setup.
+SmallRobot random_robot(base::Rng& rng, Setup& setup) {
+  setup.facet_denominator = 1 + static_cast<std::int32_t>(rng.below(4));
+  setup.facet_numerator = 1 + static_cast<std::int32_t>(rng.below(5));
+  SmallRobot robot;
+  robot.feet.resize(1 + rng.below(5));
+  for (Place& foot : robot.feet) {
+    foot = {static_cast<std::int32_t>(rng.below(9)) - 4,
+            static_cast<std::int32_t>(rng.below(9)) - 4};
+  }
+  robot.count = static_cast<std::int32_t>(1 + rng.below(20));
+  robot.sum = {static_cast<std::int32_t>(rng.below(80)) - 40,
+               static_cast<std::int32_t>(rng.below(80)) - 40};
+  return robot;
+}
+
 TEST(Feet, small_robots_topple_when_their_mass_is_not_over_them) {
   base::Rng rng(11);
   int stable_count = 0;
   for (int sample = 0; sample < 4000; ++sample) {
     auto setup = table_setup();
-    setup.facet_denominator = 1 + static_cast<std::int32_t>(rng.below(4));
-    setup.facet_numerator = 1 + static_cast<std::int32_t>(rng.below(5));
-    std::vector<Place> feet(1 + rng.below(5));
-    for (Place& foot : feet) {
-      foot = {static_cast<std::int32_t>(rng.below(9)) - 4,
-              static_cast<std::int32_t>(rng.below(9)) - 4};
-    }
-    const auto count = static_cast<std::int32_t>(1 + rng.below(20));
-    const Place sum = {static_cast<std::int32_t>(rng.below(80)) - 40,
-                       static_cast<std::int32_t>(rng.below(80)) - 40};
+    const auto [feet, count, sum] = random_robot(rng, setup);
     const FeetCheck check(setup, count, {sum.x, sum.y});
     const bool is_stable =
         !topples(feet, setup.facet_numerator, 2 * setup.facet_denominator, sum, count);
@@ -134,16 +148,7 @@ TEST(Feet, small_robots_of_prisms_topple_when_their_mass_is_not_over_them) {
   for (int sample = 0; sample < 4000; ++sample) {
     auto setup = table_setup();
     setup.lattice = base::kHexagonalPrism;
-    setup.facet_denominator = 1 + static_cast<std::int32_t>(rng.below(4));
-    setup.facet_numerator = 1 + static_cast<std::int32_t>(rng.below(5));
-    std::vector<Place> feet(1 + rng.below(5));
-    for (Place& foot : feet) {
-      foot = {static_cast<std::int32_t>(rng.below(9)) - 4,
-              static_cast<std::int32_t>(rng.below(9)) - 4};
-    }
-    const auto count = static_cast<std::int32_t>(1 + rng.below(20));
-    const Place sum = {static_cast<std::int32_t>(rng.below(80)) - 40,
-                       static_cast<std::int32_t>(rng.below(80)) - 40};
+    const auto [feet, count, sum] = random_robot(rng, setup);
     std::vector<std::array<long double, 2>> corners;
     for (const Place& foot : feet) {
       for (const int side_x : {-1, 1}) {

@@ -639,7 +639,7 @@ void EnergyBound::bear_by_section() {
 
 /// That of the largest load ratio, if every facet is pressed all over.
 std::optional<double> EnergyBound::bound() {
-  const double radius = (std::sqrt(std::max(0.0, energy_)) + solved_error_) / 2;
+  const double radius = energy_error() / 2;
   const double ratio = solved_ratio_ + change_ratio_ + ratio_per_norm_ * radius;
   if (!(ratio < kRatioMax) || !are_pressed(radius + solved_error_ / 2)) {
     return std::nullopt;

@@ -150,7 +150,7 @@ class EnergyBound {
   std::vector<Vec> still_;                   ///< u_ when the robot was solved.
   double own_error_ = 0;                     ///< And solved_error_ then.
   double energy_ = 0;                        ///< |s - h w|^2
-  double change_ratio_ = 0;                  ///< The largest c(change of s) / 2 so far.
+  double change_ratio_ = 0;                  ///< The largest c(change of s) / 2 so far, and R's.
 };
 
 }  // namespace holdfast::plan

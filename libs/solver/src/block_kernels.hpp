@@ -75,6 +75,14 @@ inline base::Mat6<double> transpose(const base::Mat6<double>& a) {
   return t;
 }
 
+inline base::Mat6<double> scaled(const base::Mat6<double>& a, double factor) {
+  base::Mat6<double> result = a;
+  for (double& value : result.values) {
+    value *= factor;
+  }
+  return result;
+}
+
 /// Gauss-Jordan with row pivoting. Returns false for a singular or non-finite block; `inverse` is
 /// then void.
 bool invert(const base::Mat6<double>& block, base::Mat6<double>& inverse);

@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "beam_forces.hpp"
+#include "block_kernels.hpp"
 #include "holdfast/base/algebra.hpp"
 #include "holdfast/base/check.hpp"
 #include "precise_refinement.hpp"
@@ -64,12 +65,6 @@ void add_scaled(Mat6<double>& sum, double factor, const Mat6<double>& block) {
   for (std::size_t i = 0; i < block.values.size(); ++i) {
     sum.values[i] += factor * block.values[i];
   }
-}
-
-Mat6<double> scaled(double factor, const Mat6<double>& block) {
-  Mat6<double> result;
-  add_scaled(result, factor, block);
-  return result;
 }
 
 }  // namespace
@@ -154,7 +149,7 @@ std::vector<Mat6<double>> DirectSystem::set_connections(BlockLu& lu,
       add_scaled(diagonal[at(b)], factor, k11[opposite]);
     }
     if (a >= 0 && b >= 0) {
-      lu.set_edge(edge++, factor == 1 ? k12[direction] : scaled(factor, k12[direction]));
+      lu.set_edge(edge++, factor == 1 ? k12[direction] : scaled(k12[direction], factor));
     }
   }
   return diagonal;

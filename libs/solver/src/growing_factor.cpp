@@ -19,14 +19,6 @@ Mat6<double> identity() {
   return base::matrix_of<double>([](const Vec6<double>& x) { return x; });
 }
 
-Mat6<double> scaled(const Mat6<double>& a, double factor) {
-  Mat6<double> result = a;
-  for (double& value : result.values) {
-    value *= factor;
-  }
-  return result;
-}
-
 bool is_zero(const Mat6<double>& a) {
   return std::ranges::all_of(a.values, [](double value) { return value == 0; });
 }

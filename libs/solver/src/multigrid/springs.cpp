@@ -182,13 +182,6 @@ Point scaled(const Point& point, double factor) {
   return {factor * point[0], factor * point[1], factor * point[2]};
 }
 
-Mat scaled(Mat matrix, double factor) {
-  for (double& value : matrix.values) {
-    value *= factor;
-  }
-  return matrix;
-}
-
 /// S T(a): the columns of t gain those of u times -[a]x.
 Mat times_carry(Mat s, const Point& a) {
   carry_columns(s, a);

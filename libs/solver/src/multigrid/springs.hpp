@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "../block_kernels.hpp"
 #include "holdfast/base/algebra.hpp"
 #include "holdfast/base/lattice.hpp"
 #include "holdfast/model/material.hpp"
@@ -51,8 +52,6 @@ Point offset(const Seat<Real>& seat) {
 
 /// Distance from a node back to the centre of its cluster, against a direction.
 double behind(const Point& offset, const Point& direction);
-
-Mat scaled(Mat matrix, double factor);
 
 Point scaled(const Point& point, double factor);
 
