@@ -284,7 +284,10 @@ class Order(_Texts):
         return self._held.help
 
     def robot(self) -> Robot:
-        """The start with the order as its steps, for `steps`. Error: no order was found."""
+        """The start with the order as its steps, for `steps`; of NOT_FOUND as far as it got.
+
+        Error: no step was found.
+        """
         return Robot._of(self._held.as_steps())
 
     def certificate(self) -> str:

@@ -189,10 +189,11 @@ py::array order_judgements(const io::OrderReport& report) {
 }
 
 SharedStructure order_as_steps(const io::OrderReport& report) {
-  if (report.result.order.outcome != plan::OrderOutcome::kFound) {
+  const plan::Order& order = report.result.order;
+  if (order.outcome != plan::OrderOutcome::kFound && order.steps.empty()) {
     throw Error("no order was found");
   }
-  auto document = take(io::order_steps(report.target, report.result.order, report.is_reversed));
+  auto document = take(io::order_steps(report.target, order, report.is_reversed));
   return std::make_shared<const Structure>(take(make_structure(std::move(document))));
 }
 

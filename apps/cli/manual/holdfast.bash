@@ -22,7 +22,7 @@ _holdfast() {
         --limit-seconds) : ;;
         --threads) : ;;
         --memory) : ;;
-        *) if [[ $current == -* ]]; then words="-h --help --robot --lattice --json --connections --csv --svg --vtk --html --certificate --prove --limit --limit-seconds --quiet --bonded --threads --memory"; else files=1; fi ;;
+        *) if [[ $current == -* ]]; then words="-h --help --robot --lattice --json --connections --csv --svg --vtk --html --certificate --prove --limit --limit-seconds -q --quiet --bonded --threads --memory"; else files=1; fi ;;
       esac
       ;;
     steps)
@@ -36,7 +36,7 @@ _holdfast() {
         --until-unsafe) : ;;
         --verify) : ;;
         --threads) : ;;
-        *) if [[ $current == -* ]]; then words="-h --help --robot --lattice --json --svg --html --vtk --until-unsafe --verify --quiet --threads"; else files=1; fi ;;
+        *) if [[ $current == -* ]]; then words="-h --help --robot --lattice --json --svg --html --vtk --until-unsafe --verify -q --quiet --threads"; else files=1; fi ;;
       esac
       ;;
     next)
@@ -48,7 +48,7 @@ _holdfast() {
         --limit) : ;;
         --threads) : ;;
         --memory) : ;;
-        *) if [[ $current == -* ]]; then words="-h --help --robot --lattice --json --svg --limit --quiet --bonded --threads --memory"; else files=1; fi ;;
+        *) if [[ $current == -* ]]; then words="-h --help --robot --lattice --json --svg --limit -q --quiet --bonded --threads --memory"; else files=1; fi ;;
       esac
       ;;
     order)
@@ -104,7 +104,7 @@ _holdfast() {
         --trace) files=1 ;;
         --story) files=1 ;;
         --svg) files=1 ;;
-        *) if [[ $current == -* ]]; then words="-h --help --method --link --seed --loss --duplicate --reorder --corrupt --jitter --kill --cut --detach --plan --withdraw --attach --steps --stages --next --json --connections --trace --story --svg --quiet"; else files=1; fi ;;
+        *) if [[ $current == -* ]]; then words="-h --help --method --link --seed --loss --duplicate --reorder --corrupt --jitter --kill --cut --detach --plan --withdraw --attach --steps --stages --next --json --connections --trace --story --svg -q --quiet"; else files=1; fi ;;
       esac
       ;;
     emulate)
@@ -124,7 +124,7 @@ _holdfast() {
         --json) files=1 ;;
         --connections) : ;;
         --svg) files=1 ;;
-        *) if [[ $current == -* ]]; then words="-h --help --board --image --pages --seed --kill --reset --cut --flip --plan --withdraw --attach --time --json --connections --svg --quiet"; else files=1; fi ;;
+        *) if [[ $current == -* ]]; then words="-h --help --board --image --pages --seed --kill --reset --cut --flip --plan --withdraw --attach --time --json --connections --svg -q --quiet"; else files=1; fi ;;
       esac
       ;;
     convert)

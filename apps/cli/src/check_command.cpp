@@ -308,7 +308,8 @@ Command add_check(CLI::App& app) {
                    "Most time for the limit load, s; then the report says what it lies between")
       ->check(number_between(0.0, 1e6))
       ->capture_default_str();
-  command->add_flag("--quiet", options->is_quiet, "Print errors only; the exit code is the answer");
+  command->add_flag("-q,--quiet", options->is_quiet,
+                    "Print errors only; the exit code is the answer");
   command->add_flag("--bonded", options->is_bonded,
                     "Let the ground hold like a module below would: no lifting, no tilting");
   command->add_option("--threads", options->thread_count, "For large robots; 0: all cores")

@@ -191,7 +191,8 @@ Command add_emulate(CLI::App& app) {
   add_connections(*command, options->connections);
   command->add_option("--svg", options->svg, "Draw the robot in the colours that its lamps show")
       ->type_name("FILE");
-  command->add_flag("--quiet", options->is_quiet, "Print errors only; the exit code is the answer");
+  command->add_flag("-q,--quiet", options->is_quiet,
+                    "Print errors only; the exit code is the answer");
   command->footer(
       "The exact answer stands beside the robot's own: with --plan, --withdraw and --attach that "
       "for\n"

@@ -5,12 +5,12 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
-#include <csignal>
 #include <memory>
 
 #include "commands.hpp"
 #include "file_clash.hpp"
 #include "holdfast/move.hpp"
+#include "interruption.hpp"
 #include "progress.hpp"
 
 namespace holdfast::cli {
@@ -30,34 +30,6 @@ struct Options {
   std::string steps;
   std::string json;
   std::string verified;
-};
-
-volatile std::sig_atomic_t is_interrupted = 0;
-
-/// While it lives the first SIGINT or SIGTERM is only noted; the next one does what it always does.
-class Interruption {
- public:
-  Interruption() {
-    struct sigaction action {};
-
-    action.sa_handler = [](int signal) {
-      is_interrupted = 1;
-      ::sigaction(signal, &before_[signal == SIGINT ? 0 : 1], nullptr);
-    };
-    ::sigaction(SIGINT, &action, &before_[0]);
-    ::sigaction(SIGTERM, &action, &before_[1]);
-  }
-
-  Interruption(const Interruption&) = delete;
-  Interruption& operator=(const Interruption&) = delete;
-
-  ~Interruption() {
-    ::sigaction(SIGINT, before_.data(), nullptr);
-    ::sigaction(SIGTERM, &before_[1], nullptr);
-  }
-
- private:
-  static inline std::array<struct sigaction, 2> before_{};
 };
 
 /// The box that "X,Y,Z:X,Y,Z" says, by its two corners in any order; none if it is no box.
@@ -146,7 +118,7 @@ MoveRequest request_of(const Options& options, Progress& progress) {
                       .seed = options.seed,
                       .seconds_max = options.seconds,
                       .thread_count = options.thread_count,
-                      .is_interrupted = [] { return is_interrupted != 0; }};
+                      .is_interrupted = &Interruption::is_here};
   if (!options.within.empty()) {
     request.within = box_of(options.within);
   }

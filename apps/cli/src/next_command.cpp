@@ -98,7 +98,8 @@ Command add_next(CLI::App& app) {
       ->type_name("N")
       ->check(CLI::Range(0, 1'000'000'000))
       ->capture_default_str();
-  command->add_flag("--quiet", options->is_quiet, "Print errors only; the exit code is the answer");
+  command->add_flag("-q,--quiet", options->is_quiet,
+                    "Print errors only; the exit code is the answer");
   command->add_flag("--bonded", options->is_bonded,
                     "Let the ground hold like a module below would: no lifting, no tilting");
   command->add_option("--threads", options->thread_count, "0: all cores")->check(CLI::Range(0, 64));

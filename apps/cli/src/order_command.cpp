@@ -9,6 +9,7 @@
 #include "commands.hpp"
 #include "file_clash.hpp"
 #include "holdfast/order.hpp"
+#include "interruption.hpp"
 #include "progress.hpp"
 
 namespace holdfast::cli {
@@ -76,7 +77,8 @@ OrderRequest request_of(const Options& options, Progress& progress) {
                        .seed = options.seed,
                        .seconds_max = options.seconds,
                        .help_seconds_max = options.help_seconds,
-                       .thread_count = options.thread_count};
+                       .thread_count = options.thread_count,
+                       .is_interrupted = &Interruption::is_here};
   request.rule.reach = options.reach == "line"      ? plan::Reach::kLine
                        : options.reach == "surface" ? plan::Reach::kSurface
                                                     : plan::Reach::kFree;
@@ -108,7 +110,8 @@ int exit_code_of(plan::OrderOutcome outcome) {
 /// answer's.
 int show(const Options& options, const io::OrderReport& report) {
   const plan::OrderOutcome outcome = report.result.order.outcome;
-  if (!options.steps.empty() && outcome == plan::OrderOutcome::kFound) {
+  const bool has_way = outcome == plan::OrderOutcome::kFound || !report.result.order.steps.empty();
+  if (!options.steps.empty() && has_way) {
     const auto steps = io::order_steps(report.target, report.result.order, report.is_reversed);
     if (!steps) {
       return fail(steps.error(), options.target);
@@ -163,7 +166,10 @@ int run(const Options& options) {
     }
     request.start = std::move(cells).value();
   }
-  const auto report = seek_order(read.value().document, request);
+  const auto report = [&] {
+    const Interruption interruption;
+    return seek_order(read.value().document, request);
+  }();
   return report ? show(options, report.value()) : fail(report.error(), options.target);
 }
 
@@ -227,8 +233,10 @@ Command add_order(CLI::App& app) {
   add_ways(*command, *options);
   add_limits(*command, *options);
   command
-      ->add_option("-o,--output", options->steps,
-                   "Write the order as a structure with steps; - is standard output")
+      ->add_option(
+          "-o,--output", options->steps,
+          "Write the order as a structure with steps; - is standard output. If none is found: "
+          "as far as the search got")
       ->type_name("STEPS.json");
   command->add_option("--json", options->json, "Write a JSON report; - is standard output")
       ->type_name("FILE");
@@ -240,9 +248,9 @@ Command add_order(CLI::App& app) {
   add_reading(*command, options->reading);
   command->footer(
       "Every state on the way is checked as holdfast check does it; one that is undecided is not\n"
-      "safe. Exit: 0 found, 1 there is none, 2 not found in the time given, 64 wrong usage, 65 "
-      "bad\n"
-      "input or not writable.");
+      "safe. The first interrupt ends the search and leaves what it has. Exit: 0 found, 1 there "
+      "is\n"
+      "none, 2 not found in the time given, 64 wrong usage, 65 bad input or not writable.");
   return {command, [options] { return run(*options); }};
 }
 

@@ -387,7 +387,8 @@ Command add_simulate(CLI::App& app) {
       ->type_name("FILE");
   command->add_option("--svg", options->svg, "Draw the robot in the colours that it shows")
       ->type_name("FILE");
-  command->add_flag("--quiet", options->is_quiet, "Print errors only; the exit code is the answer");
+  command->add_flag("-q,--quiet", options->is_quiet,
+                    "Print errors only; the exit code is the answer");
   command->footer(
       "The exact answer stands beside the robot's own: with --plan, --withdraw and --attach that "
       "for\n"

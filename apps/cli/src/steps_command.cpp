@@ -140,7 +140,8 @@ Command add_steps(CLI::App& app) {
       ->excludes("--html")
       ->excludes("--vtk")
       ->excludes("--until-unsafe");
-  command->add_flag("--quiet", options->is_quiet, "Print errors only; the exit code is the answer");
+  command->add_flag("-q,--quiet", options->is_quiet,
+                    "Print errors only; the exit code is the answer");
   command->add_option("--threads", options->thread_count, "0: all cores; the answer is the same")
       ->check(CLI::Range(0, 64));
   command->footer(

@@ -19,10 +19,14 @@ base::Result<io::OrderReport> seek_order(const io::Document& target, const Order
                                   .group_size = request.group_size},
                          .is_reversed = request.is_reversed};
   const auto begin = std::chrono::steady_clock::now();
-  auto result = plan::find_robot_order(report.task, {.seed = request.seed,
-                                                     .seconds_max = request.seconds_max,
-                                                     .progress = request.progress,
-                                                     .thread_count = request.thread_count});
+  auto result = plan::find_robot_order(
+      report.task,
+      {.seed = request.seed,
+       .seconds_max = request.seconds_max,
+       .is_interrupted = request.is_interrupted,
+       .told_end = request.is_reversed ? plan::Sense::kShrinking : plan::Sense::kGrowing,
+       .progress = request.progress,
+       .thread_count = request.thread_count});
   if (!result) {
     return result.error();
   }
@@ -32,7 +36,8 @@ base::Result<io::OrderReport> seek_order(const io::Document& target, const Order
   report.is_help_sought = request.help_seconds_max > 0 && report.result.certificate.has_value();
   if (report.is_help_sought) {
     report.help = plan::find_help(report.task, {.seconds_max = request.help_seconds_max,
-                                                .thread_count = request.thread_count});
+                                                .thread_count = request.thread_count,
+                                                .is_interrupted = request.is_interrupted});
   }
   return report;
 }

@@ -316,26 +316,30 @@ base::Result<Document> order_steps(const Document& target, const plan::Order& or
   Document document = target;
   gather_modules(document);
   std::vector<model::Step>& plan = document.extension.plan;
-  std::vector<base::Cell> attached;
   for (const plan::Batch& group : order.steps) {
     model::Step& step = plan.emplace_back();
     for (const plan::Element element : group) {
       const base::Cell& cell = spec.value().existing[static_cast<std::size_t>(element)];
       (is_reversed ? step.detach : step.attach).push_back(cell);
-      attached.push_back(cell);
     }
   }
   if (is_reversed) {
     std::ranges::reverse(plan);
     return document;
   }
-  std::ranges::sort(attached);
+  std::vector<base::Cell> later;
+  for (std::size_t i = 0; i < spec.value().existing.size(); ++i) {
+    if (!order.start.contains(static_cast<plan::Element>(i))) {
+      later.push_back(spec.value().existing[i]);
+    }
+  }
+  std::ranges::sort(later);
   std::vector<Step> planned;
   std::vector<OwnParameters> own;
-  if (is_any_special(spec.value(), attached)) {
+  if (is_any_special(spec.value(), later)) {
     own = plan_modules(document, std::exchange(plan, {}), planned);
   }
-  leave_out(document, attached);
+  leave_out(document, later);
   document.steps = std::move(planned);
   document.extension.own.insert(document.extension.own.end(), own.begin(), own.end());
   return document;

@@ -84,6 +84,22 @@ std::string help_words(const OrderReport& report) {
                      words(is_support ? report.help->supports : report.help->temporary));
 }
 
+/// How far the search got.
+std::string furthest_words(const OrderReport& report) {
+  const plan::Order& order = report.result.order;
+  if (order.steps.empty()) {
+    return "";
+  }
+  std::size_t count = report.is_reversed ? report.task.target.existing.size() : order.start.size();
+  for (const plan::Batch& group : order.steps) {
+    count = report.is_reversed ? count - group.size() : count + group.size();
+  }
+  return fmt::format("  as far as   {} of {} modules, by {} step{}, every state {} is safe\n",
+                     count, report.task.target.existing.size(), order.steps.size(),
+                     order.steps.size() == 1 ? "" : "s",
+                     report.is_reversed ? "left behind" : "on the way");
+}
+
 std::string none_words(const OrderReport& report) {
   const plan::Closure& closure = report.result.certificate->closure;
   const bool is_growing = closure.sense == plan::Sense::kGrowing;
@@ -146,7 +162,7 @@ std::string order_text(const OrderReport& report) {
             ? "no order found in the time given; there may be one\n"
             : fmt::format("every order leads through states that are undecided, {} at one end\n",
                           order.undecided_count);
-    return "NOT FOUND   " + why + examined;
+    return "NOT FOUND   " + why + furthest_words(report) + examined;
   }
   if (order.outcome == OrderOutcome::kNone) {
     return "NONE        there is no safe order\n" + none_words(report) + help_words(report) +

@@ -205,6 +205,8 @@ base::Result<RobotOrder> find_robot_order(const OrderTask& task, const RobotOrde
                              .seed = options.seed,
                              .seconds_max = options.seconds_max,
                              .state_count_max = options.state_count_max,
+                             .is_interrupted = options.is_interrupted,
+                             .told_end = options.told_end,
                              .progress = options.progress});
   take_extremes(result);
   if (result.order.closure) {

@@ -46,6 +46,9 @@ class HelpSearch {
 };
 
 bool HelpSearch::is_late() const {
+  if (options_.is_interrupted && options_.is_interrupted()) {
+    return true;
+  }
   const std::chrono::duration<double> passed = std::chrono::steady_clock::now() - begin_;
   return passed.count() >= options_.seconds_max;
 }
@@ -103,8 +106,9 @@ std::vector<std::vector<Cell>> HelpSearch::runs() const {
 }
 
 bool HelpSearch::has_order(const OrderTask& task) const {
-  const auto found = find_robot_order(
-      task, {.state_count_max = options_.state_count_max, .thread_count = options_.thread_count});
+  const auto found = find_robot_order(task, {.state_count_max = options_.state_count_max,
+                                             .is_interrupted = options_.is_interrupted,
+                                             .thread_count = options_.thread_count});
   return found && found.value().order.outcome == OrderOutcome::kFound;
 }
 

@@ -50,7 +50,8 @@ class Knowledge {
 
   bool is_late() const {
     const std::chrono::duration<double> passed = Clock::now() - begin_;
-    return passed.count() >= options_.seconds_max;
+    return passed.count() >= options_.seconds_max ||
+           (options_.is_interrupted && options_.is_interrupted());
   }
 
   bool is_spent() const { return is_late() || state_count() >= options_.state_count_max; }
@@ -86,10 +87,17 @@ class Explorer {
   /// The most (growing) or fewest elements of a safe state so far.
   std::size_t furthest() const { return furthest_; }
 
-  /// After kReached: the root, and the groups from it to the goal.
-  const ElementSet& root() const { return root_; }
+  /// A way of safe states: the root, and the groups from it on.
+  struct Way {
+    ElementSet root;
+    std::vector<Batch> groups = {};
+  };
 
-  std::vector<Batch> way() const;
+  /// After kReached: to the goal.
+  Way way() const;
+
+  /// To the first of the states that are furthest; none if no root is safe.
+  std::optional<Way> furthest_way();
 
   /// After kExhausted.
   Closure closure() const;
@@ -114,7 +122,7 @@ class Explorer {
     return is_dead(state) || (known != nullptr && !known->is_safe());
   }
 
-  Answer search_from_root(std::size_t state_count_max);
+  Answer search_from(const ElementSet& root, std::size_t state_count_max);
   bool advance();
   bool take_group();
   std::vector<Element> propose();
@@ -122,6 +130,7 @@ class Explorer {
   void enter(Batch group);
   void leave();
   void note(const ElementSet& state);
+  void keep_way();
 
   GrowingStructure& structure_;
   Knowledge& knowledge_;
@@ -137,6 +146,8 @@ class Explorer {
   std::size_t run_length_ = kFirstRun;
   std::uint64_t seed_ = 0;
   std::size_t furthest_ = 0;
+  std::optional<Way> kept_;        ///< The furthest one that was left.
+  std::size_t kept_furthest_ = 0;  ///< The elements of the state at its end.
 };
 
 void Explorer::note(const ElementSet& state) {
@@ -151,8 +162,19 @@ void Explorer::enter(Batch group) {
   frames_.push_back({.group = std::move(group)});
 }
 
+/// Before the present way is left.
+void Explorer::keep_way() {
+  const bool is_further =
+      sense_ == Sense::kGrowing ? state_.size() > kept_furthest_ : state_.size() < kept_furthest_;
+  if (!frames_.empty() && (!kept_ || is_further)) {
+    kept_ = way();
+    kept_furthest_ = state_.size();
+  }
+}
+
 /// Goes back from a state from which no way is left.
 void Explorer::leave() {
+  keep_way();
   dead_in_order_.push_back(state_);
   dead_.insert(state_);
   const Sense back = sense_ == Sense::kGrowing ? Sense::kShrinking : Sense::kGrowing;
@@ -256,8 +278,10 @@ bool Explorer::take_group() {
   return false;
 }
 
-Explorer::Answer Explorer::search_from_root(std::size_t state_count_max) {
-  state_ = root_;
+Explorer::Answer Explorer::search_from(const ElementSet& root, std::size_t state_count_max) {
+  keep_way();
+  root_ = root;
+  state_ = root;
   frames_.clear();
   run_length_ = std::min(kFirstRun, structure_.run_length_max());
   enter({});
@@ -286,8 +310,7 @@ Explorer::Answer Explorer::explore(std::size_t budget, std::uint64_t seed) {
     if (is_dead(root) || !knowledge_.judge(root).is_safe()) {
       continue;
     }
-    root_ = root;
-    const Answer answer = search_from_root(state_count_max);
+    const Answer answer = search_from(root, state_count_max);
     if (answer != Answer::kExhausted) {
       return answer;
     }
@@ -295,12 +318,17 @@ Explorer::Answer Explorer::explore(std::size_t budget, std::uint64_t seed) {
   return Answer::kExhausted;
 }
 
-std::vector<Batch> Explorer::way() const {
-  std::vector<Batch> groups;
+Explorer::Way Explorer::way() const {
+  Way way{.root = root_};
   for (std::size_t i = 1; i < frames_.size(); ++i) {
-    groups.push_back(frames_[i].group);
+    way.groups.push_back(frames_[i].group);
   }
-  return groups;
+  return way;
+}
+
+std::optional<Explorer::Way> Explorer::furthest_way() {
+  keep_way();
+  return kept_;
 }
 
 Closure Explorer::closure() const {
@@ -325,13 +353,11 @@ std::uint64_t seed_of(std::uint64_t seed, std::size_t round) {
   return round == 0 ? seed : base::Rng(seed + round).next() | 1U;
 }
 
-Order order_found(const Explorer& explorer, Sense sense, const ElementSet& whole,
-                  Knowledge& knowledge) {
-  Order order{.outcome = OrderOutcome::kFound, .steps = explorer.way()};
-  order.start = explorer.root();
+/// The order that a way from one end is, with what is known of its states.
+Order order_along(Explorer::Way way, Sense sense, Knowledge& knowledge) {
+  Order order{.start = std::move(way.root), .steps = std::move(way.groups)};
   if (sense == Sense::kShrinking) {
     std::ranges::reverse(order.steps);
-    order.start = whole;
     for (Batch& group : order.steps) {
       order.start = changed(std::move(order.start), Sense::kShrinking, group);
       std::ranges::reverse(group);
@@ -438,6 +464,13 @@ Order find_order(GrowingStructure& structure, std::span<const ElementSet> starts
     explorers[1].explore(0, options.seed);
     return order_closed(explorers[1].closure(), knowledge);
   }
+  const auto furthest = [&] {
+    Explorer& told = explorers[options.told_end == Sense::kGrowing ? 0 : 1];
+    const auto way = told.furthest_way();
+    Order order = way ? order_along(*way, options.told_end, knowledge) : Order{};
+    order.state_count = knowledge.state_count();
+    return order;
+  };
   std::size_t budget =
       std::max(kFirstBudgetMin, kFirstBudgetPerElement * structure.element_count());
   std::array<bool, 2> is_closed{};
@@ -446,20 +479,27 @@ Order find_order(GrowingStructure& structure, std::span<const ElementSet> starts
       Explorer& explorer = explorers[sense == Sense::kGrowing ? 0 : 1];
       const Explorer::Answer answer = explorer.explore(budget, seed_of(options.seed, round));
       if (answer == Explorer::Answer::kReached) {
-        Order order = order_found(explorer, sense, whole, knowledge);
+        Order order = order_along(explorer.way(), sense, knowledge);
+        order.outcome = OrderOutcome::kFound;
         order.state_count = knowledge.state_count();
         return order;
       }
       if (answer == Explorer::Answer::kExhausted) {
         Order order = order_closed(explorer.closure(), knowledge);
         is_closed[sense == Sense::kGrowing ? 0 : 1] = true;
-        if (order.outcome == OrderOutcome::kNone || (is_closed[0] && is_closed[1])) {
+        if (order.outcome == OrderOutcome::kNone) {
+          return order;
+        }
+        if (is_closed[0] && is_closed[1]) {
+          const std::size_t undecided_count = order.undecided_count;
+          order = furthest();
+          order.undecided_count = undecided_count;
           return order;
         }
       }
     }
   }
-  return {.outcome = OrderOutcome::kNotFound, .state_count = knowledge.state_count()};
+  return furthest();
 }
 
 }  // namespace holdfast::plan

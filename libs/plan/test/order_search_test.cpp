@@ -158,6 +158,63 @@ TEST(OrderSearch, proves_nothing_where_undecided_states_are_in_the_way) {
   EXPECT_GT(open_count, 100);
 }
 
+/// How far safe sets lead, one element at a time: the largest one from {0}, or the smallest one
+/// that leads to all.
+std::size_t furthest_size(const RandomStructure& structure, Sense sense) {
+  const bool is_growing = sense == Sense::kGrowing;
+  std::vector<bool> reached(1U << kCount);
+  std::size_t furthest = is_growing ? 0 : kCount;
+  for (std::size_t i = 0; i < reached.size(); ++i) {
+    const std::size_t mask = is_growing ? i : reached.size() - 1 - i;
+    reached[mask] = mask == (is_growing ? 1 : reached.size() - 1);
+    for (std::size_t bit = 1; bit < reached.size(); bit *= 2) {
+      const bool has_before = ((mask & bit) != 0) == is_growing;
+      reached[mask] = reached[mask] || (has_before && reached[mask ^ bit]);
+    }
+    reached[mask] = reached[mask] && structure.is_safe(mask);
+    if (reached[mask]) {
+      const auto size = static_cast<std::size_t>(__builtin_popcountll(mask));
+      furthest = is_growing ? std::max(furthest, size) : std::min(furthest, size);
+    }
+  }
+  return furthest;
+}
+
+TEST(OrderSearch, tells_how_far_safe_states_lead_where_it_finds_no_order) {
+  int told_count = 0;
+  for (std::uint64_t seed = 0; seed < 600; ++seed) {
+    RandomStructure structure(seed, 3 + seed % 3, 8);
+    const ElementSet start = set_of(1);
+    for (const Sense sense : {Sense::kGrowing, Sense::kShrinking}) {
+      const Order order = find_order(structure, {&start, 1}, {.told_end = sense});
+      if (order.outcome != OrderOutcome::kNotFound) {
+        continue;
+      }
+      if (order.judgements.empty()) {
+        EXPECT_TRUE(sense == Sense::kGrowing && !structure.is_safe(1)) << seed;
+        continue;
+      }
+      EXPECT_EQ(order.judgements.size(), order.steps.size() + 1);
+      std::size_t mask = mask_of(order.start);
+      EXPECT_TRUE(structure.is_safe(mask));
+      EXPECT_TRUE(sense == Sense::kShrinking || mask == 1);
+      for (const Batch& group : order.steps) {
+        ASSERT_EQ(group.size(), 1U);
+        EXPECT_EQ(mask >> group.front() & 1U, 0U);
+        mask |= std::size_t{1} << group.front();
+        EXPECT_TRUE(structure.is_safe(mask));
+      }
+      EXPECT_TRUE(sense == Sense::kGrowing || mask == (1U << kCount) - 1);
+      const std::size_t end = sense == Sense::kGrowing ? mask : mask_of(order.start);
+      EXPECT_EQ(static_cast<std::size_t>(__builtin_popcountll(end)),
+                furthest_size(structure, sense))
+          << seed;
+      told_count += order.steps.empty() ? 0 : 1;
+    }
+  }
+  EXPECT_GT(told_count, 100);
+}
+
 TEST(OrderSearch, finds_an_order_or_a_cut_as_a_walk_through_all_sets_says) {
   int found_count = 0;
   int none_count = 0;
@@ -228,6 +285,23 @@ TEST(OrderSearch, ends_within_its_time_also_in_the_middle_of_a_run) {
   // A run that has begun would take 0.64 s more on top; a busy machine oversleeps, too.
   EXPECT_LT(order.state_count, 33U);
   EXPECT_LT(passed.count(), 0.6);
+}
+
+TEST(OrderSearch, that_is_interrupted_leaves_the_way_so_far) {
+  SlowRow row;
+  ElementSet start(row.element_count());
+  start.insert(0);
+  int asked = 0;
+  const Order order =
+      find_order(row, {&start, 1}, {.is_interrupted = [&] { return ++asked > 12; }});
+  EXPECT_EQ(order.outcome, OrderOutcome::kNotFound);
+  EXPECT_EQ(mask_of(order.start), 1U);
+  ASSERT_FALSE(order.steps.empty());
+  EXPECT_LT(order.steps.size(), 20U);
+  for (std::size_t i = 0; i < order.steps.size(); ++i) {
+    EXPECT_EQ(order.steps[i], Batch{static_cast<Element>(i + 1)});
+    EXPECT_TRUE(order.judgements[i + 1].is_safe());
+  }
 }
 
 }  // namespace

@@ -31,6 +31,9 @@ struct OrderRequest {
   double seconds_max = std::numeric_limits<double>::infinity();
   double help_seconds_max = 0;  ///< Where there is no order: time to seek help; 0: none is sought.
   int thread_count = 0;         ///< 0: as many as the machine has cores; decides nothing.
+  /// Asked all the time, by several threads; once it says so the search ends, and what has been
+  /// found by then is the answer.
+  std::function<bool()> is_interrupted = {};
   std::function<void(std::size_t states, std::size_t grown, std::size_t shrunk)> progress = {};
 };
 

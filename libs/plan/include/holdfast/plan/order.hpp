@@ -33,6 +33,8 @@ struct RobotOrderOptions {
   std::uint64_t seed = 0;
   double seconds_max = std::numeric_limits<double>::infinity();
   std::size_t state_count_max = std::numeric_limits<std::size_t>::max();
+  std::function<bool()> is_interrupted = {};
+  Sense told_end = Sense::kGrowing;
   std::function<void(std::size_t states, std::size_t grown, std::size_t shrunk)> progress = {};
   /// 0: as many as the machine has cores. The result does not depend on it.
   int thread_count = 0;

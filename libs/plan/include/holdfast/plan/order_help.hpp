@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -21,6 +22,7 @@ struct HelpOptions {
   double seconds_max = 10;
   std::size_t state_count_max = 2000;  ///< For every try.
   int thread_count = 0;
+  std::function<bool()> is_interrupted = {};  ///< As of RobotOrderOptions.
 };
 
 /// Tries single obstacles below modules, single modules beside the target, pairs of them, and

@@ -69,6 +69,10 @@ struct OrderOptions {
   /// The search stops after this time, or so many judged states, without an answer.
   double seconds_max = std::numeric_limits<double>::infinity();
   std::size_t state_count_max = std::numeric_limits<std::size_t>::max();
+  /// Asked all the time, by several threads; the search stops once it says so.
+  std::function<bool()> is_interrupted = {};
+  /// The end whose way is told if no order is found: from the start, or from the whole.
+  Sense told_end = Sense::kGrowing;
   /// Called now and then with the number of states judged so far, and how many elements the largest
   /// state reached from the start has, and how many the smallest reached from the whole.
   std::function<void(std::size_t states, std::size_t grown, std::size_t shrunk)> progress = {};
@@ -93,11 +97,13 @@ struct Closure {
   std::vector<std::pair<ElementSet, Judgement>> blocked = {};
 };
 
+/// Of kNotFound only the part of an order that led furthest from the end that is to be told: from
+/// a start, or to the whole. It is empty if no state there is safe.
 struct Order {
   OrderOutcome outcome = OrderOutcome::kNotFound;
-  ElementSet start = {};                   ///< The start that the order begins with.
-  std::vector<Batch> steps = {};           ///< From the start to the whole.
-  std::vector<Judgement> judgements = {};  ///< Of the start and of the state after each step.
+  ElementSet start = {};                   ///< What the order begins with.
+  std::vector<Batch> steps = {};           ///< From there to the whole.
+  std::vector<Judgement> judgements = {};  ///< Of that and of the state after each step; all safe.
   std::size_t state_count = 0;             ///< Judged in all.
   /// Of kNotFound before time ran out: as many undecided states are all that could be entered next,
   /// so that nothing is proved.

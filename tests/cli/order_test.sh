@@ -1,0 +1,60 @@
+#!/usr/bin/env bash
+# order_test.sh PROGRAM   holdfast order that finds none: what there is so far is left, whether time
+# runs out or somebody interrupts it, and every state of it is safe.
+set -euo pipefail
+program=$1
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+cd "$work"
+faults=0
+
+fault() {
+  printf 'FAULT: %s\n' "$*"
+  faults=$((faults + 1))
+}
+
+# expect_part FILE MODULES SHARE   some safe steps of a robot that begins with so many modules and
+# ends with fewer (SHARE below) or more (SHARE above) of them
+expect_part() {
+  "$program" steps "$1" -q || fault "not safe: $1"
+  python3 - "$@" <<'PYTHON' || fault "$1 is no part of an order"
+import json, sys
+document = json.load(open(sys.argv[1]))
+steps = document['steps']
+begin = len(document['modules'])
+end = begin + sum(len(step.get('attach', [])) - len(step.get('detach', [])) for step in steps)
+assert steps and begin == int(sys.argv[2]), (begin, len(steps))
+assert 0 < end < 640 and (end < begin) == (sys.argv[3] == 'below'), end
+PYTHON
+}
+
+# No order of it is known, and no proof that there is none.
+"$program" generate portal 24 -o portal.json
+for patience in 1 5 20; do # A slow machine has nothing yet after a short while.
+  code=0
+  "$program" order portal.json --seconds "$patience" -o part.json --json report.json >out 2>err ||
+    code=$?
+  [ "$code" -eq 2 ] || fault "exit $code"
+  [ ! -f part.json ] || break
+done
+expect_part part.json 1 above
+grep -Eq '^  as far as   [0-9]+ of 640 modules, by [0-9]+ steps, every state on the way' out ||
+  fault "not said: $(cat out)"
+grep -q '"result": "not-found"' report.json || fault "$(head -c 300 report.json)"
+
+for signal in INT TERM; do
+  for patience in 4 15 60; do
+    code=0
+    rm -f left.json
+    "$program" order portal.json --reverse -o left.json -q &
+    process=$!
+    sleep "$patience"
+    kill -s "$signal" "$process"
+    wait "$process" || code=$?
+    [ "$code" -eq 2 ] || fault "exit $code of a search that was interrupted by SIG$signal"
+    [ ! -f left.json ] || break
+  done
+  expect_part left.json 640 below
+done
+
+[ "$faults" -eq 0 ] || exit 1
