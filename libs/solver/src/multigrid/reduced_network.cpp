@@ -370,11 +370,12 @@ void find_order(const Robot& robot, ReducedNetwork& network) {
   if (network.order.size() == network.node_count) {
     return;
   }
+  const Bricks bricks(robot.lattice());
   std::vector<KeyedModule> nodes;
   nodes.reserve(network.node_count);
   for (std::size_t node = 0; node < network.node_count; ++node) {
     const base::Cell& cell = robot.modules()[at(network.module[node])].cell;
-    nodes.push_back({.key = morton_key(brick_of_cell(robot.lattice(), cell), network.low),
+    nodes.push_back({.key = morton_key(bricks.of(cell), network.low),
                      .module = static_cast<std::int32_t>(node)});
   }
   for (std::size_t colour = 1; colour + 1 < network.colour_start.size(); ++colour) {
