@@ -4,6 +4,7 @@
 
 #include <petsc/private/kspimpl.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "holdfast/host/ranks.hpp"
