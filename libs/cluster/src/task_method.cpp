@@ -42,13 +42,13 @@ PetscErrorCode solve(KSP solver) {
 }
 
 /// Monitors of true residuals ask for it; the task's own.
-PetscErrorCode build_residual(KSP solver, Vec work, Vec, Vec* residual) {
+PetscErrorCode build_residual(KSP solver, Vec, Vec room, Vec* residual) {
   const host::KrylovTask& task = task_of(solver);
   PetscScalar* numbers = nullptr;
-  VecGetArrayWrite(work, &numbers);
+  VecGetArrayWrite(room, &numbers);
   std::copy(task.r.begin(), task.r.end(), numbers);
-  VecRestoreArrayWrite(work, &numbers);
-  *residual = work;
+  VecRestoreArrayWrite(room, &numbers);
+  *residual = room;
   return 0;
 }
 

@@ -223,6 +223,11 @@ Iteration::End ConjugateGradients<Real>::run(const Goal& goal) {
     task.x = std::span(x_).first(6 * node_count_);
     task.r = std::span(r_).first(6 * node_count_);
     task.is_over = is_over;
+    task.multiply = [&](const double* p, double* q) {  // Who watches may ask between iterations.
+      const std::vector<Six<Real>> last = p_;
+      multiply(p, q);
+      p_ = last;
+    };
     task.iterate = [&](const auto& is_ended) { is_definite = iterate(is_ended); };
     if (!ranks->is_own_method(task)) {
       return run_by_another(goal, task);
