@@ -99,7 +99,7 @@ class Failures:
                     BAD_INPUT, 'pieces')
 
     def check_memory(self):
-        """A million modules where there is room for them, and where there is not: 400 to 600 MB of
+        """A million modules where there is room for them, and where there is not: 400 to 500 MB of
         address space, of which MPI takes 300. A rank says this and no more; the first one, if
         only the other does, may have been ended from outside before."""
         large = os.path.join(self.folder, 'large.json')
@@ -108,7 +108,7 @@ class Failures:
         from_outside = 'holdfast-mpi: ended from outside, as when another rank dies; no verdict'
         allowed = [[line.format(0)], [line.format(1)], [line.format(0), line.format(1)],
                    sorted([line.format(1), from_outside])]
-        for limit_mb, code in ((None, 0), (400, FAILURE), (500, FAILURE), (600, FAILURE)):
+        for limit_mb, code in ((None, 0), (400, FAILURE), (450, FAILURE), (500, FAILURE)):
             done = run(self.program, ['check', large, '--quiet'],
                        limit_bytes=limit_mb and limit_mb << 20)
             self.count += 1

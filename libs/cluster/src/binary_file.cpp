@@ -159,10 +159,10 @@ std::optional<base::Error> find_fault(const Head& head, std::uint64_t file_size)
 /// What is wrong with a rank's records, of which the first is number `first` of all; empty if
 /// nothing is. `before` is the key of the record before them, -1 if there is none.
 std::string find_fault(std::span<const Record> records, std::uint64_t first,
-                       const base::Lattice& lattice, const base::Cell& low, std::int64_t before) {
+                       const solver::Bricks& bricks, const base::Cell& low, std::int64_t before) {
   for (std::size_t i = 0; i < records.size(); ++i) {
     const Record& record = records[i];
-    const base::Cell brick = solver::brick_of_cell(lattice, record.place());
+    const base::Cell brick = bricks.of(record.place());
     const bool is_inside = brick.x >= low.x && brick.y >= low.y && brick.z >= low.z;
     if (!is_inside || record.flags > (Record::kPlanned | Record::kFixed)) {
       return fmt::format("the module {} in the cell {}: {}", first + i, model::text(record.place()),
@@ -192,11 +192,12 @@ std::string first_message(PetscRanks& ranks, const std::string& mine) {
 base::Result<std::vector<Record>> read_records(PetscRanks& ranks, SharedFile& file,
                                                const Head& head, const base::Lattice& lattice) {
   const base::Cell low = {head.low[0], head.low[1], head.low[2]};
+  const solver::Bricks bricks(lattice);
   const std::uint64_t begin = records_begin(head);
   const auto key = [&](std::size_t i) {
     Record record;
     file.read_alone(begin + sizeof(Record) * i, std::as_writable_bytes(std::span(&record, 1)));
-    return solver::morton_key(solver::brick_of_cell(lattice, record.place()), low);
+    return solver::morton_key(bricks.of(record.place()), low);
   };
   const auto rank = at(ranks.rank());
   const std::size_t first = split_point(head.module_count, at(ranks.count()), rank, key);
@@ -206,7 +207,7 @@ base::Result<std::vector<Record>> read_records(PetscRanks& ranks, SharedFile& fi
     return bad_input("the modules could not be read", fmt::format("byte {}", begin));
   }
   const std::int64_t before = first == 0 ? -1 : static_cast<std::int64_t>(key(first - 1));
-  const std::string fault = first_message(ranks, find_fault(records, first, lattice, low, before));
+  const std::string fault = first_message(ranks, find_fault(records, first, bricks, low, before));
   if (!fault.empty()) {
     return bad_input(fault, "");
   }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <limits>
 #include <map>
 #include <optional>
 #include <set>
@@ -50,11 +51,19 @@ struct Answer {
 class Neighbourhood {
  public:
   Neighbourhood(PetscRanks& ranks, const Structure& structure)
-      : ranks_(ranks), structure_(structure), lattice_(structure.common.lattice) {
+      : ranks_(ranks),
+        structure_(structure),
+        lattice_(structure.common.lattice),
+        bricks_(lattice_) {
+    keys_.reserve(structure.records.size());
     for (const Record& record : structure.records) {
       keys_.push_back(key_of(record.place()));
     }
     first_ = host::gather(ranks, std::span<const std::uint64_t>(keys_.data(), 1));
+    const auto here = at(ranks.rank());
+    first_here_ = here == 0 ? 0 : first_[here];
+    last_here_ = here + 1 == first_.size() ? std::numeric_limits<std::uint64_t>::max()
+                                           : first_[here + 1] - 1;
   }
 
   /// Copies of all neighbours; appends their records to those of the rank's own.
@@ -179,14 +188,28 @@ class Neighbourhood {
   }
 
   std::uint64_t key_of(const base::Cell& cell) const {
-    return solver::morton_key(solver::brick_of_cell(lattice_, cell), structure_.low);
+    return solver::morton_key(bricks_.of(cell), structure_.low);
   }
 
   /// Whether a cell may hold a module: keys begin at the lowest corner.
   bool is_possible(const base::Cell& cell) const {
-    const base::Cell brick = solver::brick_of_cell(lattice_, cell);
+    const base::Cell brick = bricks_.of(cell);
     return brick.x >= structure_.low.x && brick.y >= structure_.low.y &&
            brick.z >= structure_.low.z;
+  }
+
+  /// Whether a key lies in this rank's range.
+  bool is_here(std::uint64_t key) const { return key >= first_here_ && key <= last_here_; }
+
+  /// Whether all neighbours of a module are surely in this rank's range: keys rise with each
+  /// coordinate, of which theirs are one less or more at most in any lattice.
+  bool is_inside(const base::Cell& cell) const {
+    const base::Cell brick = bricks_.of(cell);
+    const base::Cell& low = structure_.low;
+    const base::Cell before = {std::max(brick.x - 1, low.x), std::max(brick.y - 1, low.y),
+                               std::max(brick.z - 1, low.z)};
+    return is_here(solver::morton_key(before, low)) &&
+           is_here(solver::morton_key({brick.x + 1, brick.y + 1, brick.z + 1}, low));
   }
 
   /// The rank whose range of keys a key lies in.
@@ -200,6 +223,9 @@ class Neighbourhood {
     std::vector<std::vector<base::Cell>> asked(at(ranks_.count()));
     const auto here = at(ranks_.rank());
     for (const Record& record : structure_.records) {
+      if (is_inside(record.place())) {
+        continue;
+      }
       for (const base::Direction direction : base::directions(lattice_)) {
         const base::Cell cell = base::neighbour(lattice_, record.place(), direction);
         const std::size_t owner = is_possible(cell) ? owner_of(key_of(cell)) : here;
@@ -233,8 +259,11 @@ class Neighbourhood {
   PetscRanks& ranks_;
   const Structure& structure_;
   const base::Lattice& lattice_;
+  const solver::Bricks bricks_;
   std::vector<std::uint64_t> keys_;    ///< Of this rank's modules, ascending.
   std::vector<std::uint64_t> first_;   ///< Of each rank.
+  std::uint64_t first_here_ = 0;       ///< This rank's range of keys,
+  std::uint64_t last_here_ = 0;        ///< the last one included.
   std::vector<Record> first_records_;  ///< Of own modules and their neighbours.
 };
 

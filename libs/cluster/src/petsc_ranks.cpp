@@ -10,6 +10,8 @@
 #include <numeric>
 #include <stdexcept>
 
+#include "task_method.hpp"
+
 namespace holdfast::cluster {
 
 /// A star forest: originals are its roots, copies its leaves.
@@ -102,9 +104,16 @@ PetscErrorCode precondition(PC preconditioner, Vec r, Vec z) {
 /// The natural norm is the root of r . M^-1 r.
 PetscErrorCode test_convergence(KSP, PetscInt iteration, PetscReal norm, KSPConvergedReason* reason,
                                 void* context) {
-  const bool is_reached = task_of(context)->is_reached(static_cast<int>(iteration), norm * norm);
-  *reason = is_reached ? KSP_CONVERGED_ATOL : KSP_CONVERGED_ITERATING;
+  const bool is_over = task_of(context)->is_over(static_cast<int>(iteration), norm * norm);
+  *reason = is_over ? KSP_CONVERGED_ATOL : KSP_CONVERGED_ITERATING;
   return 0;
+}
+
+template <class Object>
+bool has_type(Object object, const char* type) {
+  PetscBool is_that = PETSC_FALSE;
+  PetscObjectTypeCompare(reinterpret_cast<PetscObject>(object), type, &is_that);
+  return is_that == PETSC_TRUE;
 }
 
 }  // namespace
@@ -112,6 +121,13 @@ PetscErrorCode test_convergence(KSP, PetscInt iteration, PetscReal norm, KSPConv
 PetscRanks::PetscRanks(MPI_Comm comm) : comm_(comm) {
   MPI_Comm_rank(comm, &rank_);
   MPI_Comm_size(comm, &count_);
+  register_task_method();
+  PetscClassId id = 0;
+  PetscClassIdRegister("holdfast", &id);
+  PetscLogEventRegister("holdfast K p", id,
+                        &events_[static_cast<std::size_t>(host::Work::kProduct)]);
+  PetscLogEventRegister("holdfast cycle", id,
+                        &events_[static_cast<std::size_t>(host::Work::kCycle)]);
 }
 
 PetscRanks::~PetscRanks() {
@@ -125,7 +141,13 @@ PetscRanks::~PetscRanks() {
 MPI_Datatype PetscRanks::unit(std::size_t size) {
   const auto [found, is_new] = units_.try_emplace(size, MPI_DATATYPE_NULL);
   if (is_new) {
-    MPI_Type_contiguous(int_count(size), MPI_BYTE, &found->second);
+    // PETSc packs what consists of its integers faster than bytes.
+    constexpr std::size_t kWord = sizeof(PetscInt);
+    if (size % kWord == 0) {
+      MPI_Type_contiguous(int_count(size / kWord), MPIU_INT, &found->second);
+    } else {
+      MPI_Type_contiguous(int_count(size), MPI_BYTE, &found->second);
+    }
     MPI_Type_commit(&found->second);
   }
   return found->second;
@@ -136,6 +158,11 @@ double PetscRanks::sum(double mine) {
   MPI_Allreduce(&mine, &all, 1, MPI_DOUBLE, MPI_SUM, comm_);
   ++traffic_.sum_count;
   return all;
+}
+
+void PetscRanks::sum(std::span<double> mine) {
+  MPI_Allreduce(MPI_IN_PLACE, mine.data(), int_count(mine.size()), MPI_DOUBLE, MPI_SUM, comm_);
+  ++traffic_.sum_count;
 }
 
 double PetscRanks::max(double mine) {
@@ -185,8 +212,19 @@ std::unique_ptr<host::Halo> PetscRanks::make_halo(std::size_t own_count,
   return std::make_unique<PetscHalo>(*this, own_count, copies);
 }
 
-void PetscRanks::make_solver(PetscInt count) {
-  if (count == solver_count_) {
+void PetscRanks::log(host::Work work, bool is_begin) {
+  const PetscLogEvent event = events_[static_cast<std::size_t>(work)];
+  if (is_begin) {
+    PetscLogEventBegin(event, 0, 0, 0, 0);
+  } else {
+    PetscLogEventEnd(event, 0, 0, 0, 0);
+  }
+}
+
+/// All ranks or none make a solver anew.
+void PetscRanks::make_solver(std::size_t own_count) {
+  const auto count = static_cast<PetscInt>(own_count);
+  if (max(solver_count_ == count ? 0 : 1) == 0) {
     return;
   }
   solver_count_ = count;
@@ -197,6 +235,15 @@ void PetscRanks::make_solver(PetscInt count) {
   MatSetOption(matrix_, MAT_SPD, PETSC_TRUE);
   KSPCreate(comm_, &solver_);
   KSPSetOperators(solver_, matrix_, matrix_);
+  set_method();
+  // What is asked of the method is an error in the energy norm, whatever the options say.
+  KSPSetNormType(solver_, KSP_NORM_NATURAL);
+  KSPSetConvergenceTest(solver_, test_convergence, &task_, nullptr);
+}
+
+/// The task's own method, unless options name a method or a preconditioner: PETSc's flexible CG is
+/// what goes with any.
+void PetscRanks::set_method() {
   KSPSetType(solver_, KSPFCG);
   KSPFCGSetMmax(solver_, 1);  // As one machine has: it keeps the memory of a rank small.
   KSPFCGSetNprealloc(solver_, 1);
@@ -207,18 +254,37 @@ void PetscRanks::make_solver(PetscInt count) {
   PCShellSetApply(preconditioner, precondition);
   PCShellSetName(preconditioner, "holdfast: one K-cycle");
   KSPSetFromOptions(solver_);
-  // What is asked of the method is an error in the energy norm, whatever the options say.
-  KSPSetNormType(solver_, KSP_NORM_NATURAL);
-  KSPSetConvergenceTest(solver_, test_convergence, &task_, nullptr);
+  PetscBool is_named = PETSC_FALSE;
+  PetscOptionsHasName(nullptr, nullptr, "-ksp_type", &is_named);
+  if (is_named == PETSC_FALSE && has_type(preconditioner, PCSHELL)) {
+    KSPSetType(solver_, kTaskMethod);
+  }
+}
+
+bool PetscRanks::is_own_method(const host::KrylovTask& task) {
+  make_solver(task.r.size());
+  return has_type(solver_, kTaskMethod);
+}
+
+/// What a monitor gets to see: b is the residual with which the method begins.
+void PetscRanks::watch(const host::KrylovTask& task) {
+  task_ = &task;
+  const auto count = static_cast<PetscInt>(task.r.size());
+  Vec right = nullptr;
+  Vec solution = nullptr;
+  VecCreateMPIWithArray(comm_, 1, count, PETSC_DETERMINE, task.r.data(), &right);
+  VecCreateMPIWithArray(comm_, 1, count, PETSC_DETERMINE, task.x.data(), &solution);
+  KSPSetInitialGuessNonzero(solver_, PETSC_TRUE);
+  KSPSolve(solver_, right, solution);
+  VecDestroy(&right);
+  VecDestroy(&solution);
+  task_ = nullptr;
 }
 
 bool PetscRanks::solve(const host::KrylovTask& task, std::span<const double> b,
                        std::span<double> x) {
   task_ = &task;
-  // All of them or none make a solver anew.
-  const bool is_new = max(solver_count_ == static_cast<PetscInt>(b.size()) ? 0 : 1) > 0;
-  solver_count_ = is_new ? -1 : solver_count_;
-  make_solver(static_cast<PetscInt>(b.size()));
+  make_solver(b.size());
   Vec right = nullptr;
   Vec solution = nullptr;
   const auto count = static_cast<PetscInt>(b.size());
@@ -230,9 +296,7 @@ bool PetscRanks::solve(const host::KrylovTask& task, std::span<const double> b,
   task_ = nullptr;
   PC preconditioner = nullptr;
   KSPGetPC(solver_, &preconditioner);
-  PetscBool is_own = PETSC_FALSE;
-  PetscObjectTypeCompare(reinterpret_cast<PetscObject>(preconditioner), PCSHELL, &is_own);
-  return is_own == PETSC_TRUE;
+  return has_type(preconditioner, PCSHELL);
 }
 
 }  // namespace holdfast::cluster

@@ -5,6 +5,7 @@
 #include <mpi.h>
 #include <petscksp.h>
 
+#include <array>
 #include <cstdint>
 #include <map>
 
@@ -16,14 +17,14 @@ namespace holdfast::cluster {
 struct Traffic {
   std::size_t halo_count = 0;  ///< Updates of copies.
   std::size_t halo_bytes = 0;  ///< Received in them.
-  std::size_t sum_count = 0;   ///< Reductions, of one number each.
+  std::size_t sum_count = 0;   ///< Reductions, of one number or a few each.
   std::size_t gather_count = 0;
   std::size_t gather_bytes = 0;  ///< Received in them.
 };
 
 /// The ranks of a communicator of MPI. Copies are updated by PetscSF; linear systems are solved by
-/// KSP, a flexible CG with the task's cycle as a PCSHELL, as far as PETSc's options say nothing
-/// else. An error of MPI or PETSc ends all ranks (program.cpp).
+/// KSP, whose type is the task's own flexible CG, with the task's cycle as a PCSHELL, as far as
+/// PETSc's options say nothing else. An error of MPI or PETSc ends all ranks (program.cpp).
 class PetscRanks final : public host::Ranks {
  public:
   explicit PetscRanks(MPI_Comm comm);
@@ -39,9 +40,13 @@ class PetscRanks final : public host::Ranks {
 
   double sum(double mine) override;
   double max(double mine) override;
+  void sum(std::span<double> mine) override;
   std::vector<std::byte> gather(std::span<const std::byte> mine) override;
   std::unique_ptr<host::Halo> make_halo(std::size_t own_count,
                                         std::span<const host::Copy> copies) override;
+  void log(host::Work work, bool is_begin) override;
+  bool is_own_method(const host::KrylovTask& task) override;
+  void watch(const host::KrylovTask& task) override;
   bool solve(const host::KrylovTask& task, std::span<const double> b, std::span<double> x) override;
 
   /// To each rank its bytes; returns what each has for this one.
@@ -51,7 +56,8 @@ class PetscRanks final : public host::Ranks {
   friend class PetscHalo;
 
   MPI_Datatype unit(std::size_t size);
-  void make_solver(PetscInt count);
+  void make_solver(std::size_t count);
+  void set_method();
 
   MPI_Comm comm_;
   int rank_ = 0;
@@ -62,6 +68,7 @@ class PetscRanks final : public host::Ranks {
   PetscInt solver_count_ = -1;                 ///< Numbers of this rank that it is made for.
   KSP solver_ = nullptr;
   Mat matrix_ = nullptr;
+  std::array<PetscLogEvent, 2> events_{};  ///< By host::Work.
 };
 
 }  // namespace holdfast::cluster

@@ -135,6 +135,14 @@ PetscErrorCode end_all_on_petsc_error(MPI_Comm, int, const char* function, const
                       message == nullptr ? "" : message));
 }
 
+/// Where addresses are limited they are not to be had by the gigabyte.
+void use_large_pages_if_unlimited() {
+  rlimit limit{};
+  if (getrlimit(RLIMIT_AS, &limit) == 0 && limit.rlim_cur == RLIM_INFINITY) {
+    host::use_large_pages();
+  }
+}
+
 int complain(const PetscRanks& ranks, const base::Error& error, const std::string& file) {
   if (ranks.rank() == 0) {
     fmt::print(stderr, "holdfast-mpi: {}: {}{}{}\n", io::one_line(file), error.message,
@@ -449,6 +457,7 @@ int run(int argc, char** argv) {
   if (const auto code = launch({argv + 1, argv + argc})) {
     return *code;
   }
+  use_large_pages_if_unlimited();
   PetscInitialize(&argc, &argv, nullptr, nullptr);
   PetscPushErrorHandler(end_all_on_petsc_error, nullptr);
   std::set_terminate(end_all_on_exception);

@@ -92,8 +92,9 @@ std::vector<Record> records_of(const io::Document& document) {
 base::Cell low_corner(const base::Lattice& lattice, const std::vector<Record>& records) {
   constexpr std::int32_t kMax = std::numeric_limits<std::int32_t>::max();
   base::Cell low = {kMax, kMax, kMax};
+  const solver::Bricks bricks(lattice);
   for (const Record& record : records) {
-    const base::Cell brick = solver::brick_of_cell(lattice, record.place());
+    const base::Cell brick = bricks.of(record.place());
     low = {std::min(low.x, brick.x), std::min(low.y, brick.y), std::min(low.z, brick.z)};
   }
   return low;
@@ -103,11 +104,11 @@ base::Cell low_corner(const base::Lattice& lattice, const std::vector<Record>& r
 base::Result<std::vector<std::uint64_t>> sort_along_curve(const base::Lattice& lattice,
                                                           const base::Cell& low,
                                                           std::vector<Record>& records) {
+  const solver::Bricks bricks(lattice);
   std::vector<std::pair<std::uint64_t, Record>> keyed;
   keyed.reserve(records.size());
   for (const Record& record : records) {
-    keyed.emplace_back(solver::morton_key(solver::brick_of_cell(lattice, record.place()), low),
-                       record);
+    keyed.emplace_back(solver::morton_key(bricks.of(record.place()), low), record);
   }
   std::ranges::sort(keyed, {}, [](const auto& one) { return one.first; });
   std::vector<std::uint64_t> keys;

@@ -3,6 +3,7 @@
 #include "coarsening.hpp"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <map>
@@ -292,7 +293,7 @@ class Coarsening {
   /// First fit along the curve: two colours on a lattice.
   void colour(std::vector<std::size_t>& colour_start) {
     std::vector<std::uint8_t> colours(cluster_count_, kNoColour);
-    std::array<std::size_t, 64> count{};
+    std::array<double, 64> count{};  // Whole numbers, which ranks add up.
     for (std::size_t c = 0; c < cluster_count_; ++c) {
       std::uint64_t taken = 0;
       for_members(c, [&](std::size_t node) {
@@ -312,12 +313,13 @@ class Coarsening {
     for (const std::uint8_t colour : colours) {
       ++count[colour];
     }
+    const std::array<double, 64> everywhere = host::sum(fine_.ranks, count);
     colour_start = {0};
     std::array<std::int32_t, 64> next{};
     for (std::size_t k = 0; k < 64; ++k) {
       next[k] = static_cast<std::int32_t>(colour_start.back());
-      if (host::any(fine_.ranks, count[k] > 0)) {  // All ranks have the same colours.
-        colour_start.push_back(colour_start.back() + count[k]);
+      if (everywhere[k] > 0) {  // All ranks have the same colours.
+        colour_start.push_back(colour_start.back() + static_cast<std::size_t>(count[k]));
       }
     }
     final_.resize(cluster_count_);

@@ -3,6 +3,7 @@
 #include "conjugate_gradients.hpp"
 
 #include <algorithm>
+#include <span>
 #include <type_traits>
 #include <utility>
 
@@ -75,19 +76,39 @@ void ConjugateGradients<Real>::round_residual() {
   });
 }
 
+/// This rank's part of a . z.
+template <class Real>
+double ConjugateGradients<Real>::own_dot_with_z(const std::vector<double>& a) {
+  const std::vector<Six<Real>>& z = hierarchy_.levels().front().z;
+  return team_.sum(node_count_, [&](std::size_t begin, std::size_t end) {
+    return kernels<Real>().dot(a.data(), z.data(), {begin, end});
+  });
+}
+
 template <class Real>
 double ConjugateGradients<Real>::dot_with_z(const std::vector<double>& a) {
-  const std::vector<Six<Real>>& z = hierarchy_.levels().front().z;
-  return sum(team_.sum(node_count_, [&](std::size_t begin, std::size_t end) {
-    return kernels<Real>().dot(a.data(), z.data(), {begin, end});
-  }));
+  return sum(own_dot_with_z(a));
+}
+
+template <class Real>
+void ConjugateGradients<Real>::run_cycle() {
+  const host::Logged logged(hierarchy_.ranks(0), host::Work::kCycle);
+  cycle_.run();
 }
 
 /// z = M^-1 r; returns r . z.
 template <class Real>
 double ConjugateGradients<Real>::precondition() {
-  cycle_.run();
+  run_cycle();
   return dot_with_z(r_);
+}
+
+/// The same; returns q . z as well.
+template <class Real>
+std::array<double, 2> ConjugateGradients<Real>::precondition_and_compare() {
+  run_cycle();
+  const double error = own_dot_with_z(r_);
+  return host::sum(hierarchy_.ranks(0), std::array{error, own_dot_with_z(q_)});
 }
 
 template <class Real>
@@ -113,6 +134,7 @@ base::Vec6<double> ConjugateGradients<Real>::correction(std::size_t node) {
 /// q = K p; returns p . q.
 template <class Real>
 double ConjugateGradients<Real>::multiply() {
+  const host::Logged logged(hierarchy_.ranks(0), host::Work::kProduct);
   q_.resize(6 * node_count_);
   hierarchy_.take_vectors();
   update_copies(p_);
@@ -155,32 +177,69 @@ void ConjugateGradients<Real>::tell() const {
   }
 }
 
+template <class Real>
+typename ConjugateGradients<Real>::State ConjugateGradients<Real>::state(const Goal& goal,
+                                                                         int iteration) {
+  if (is_reached(goal, iteration)) {
+    return State::kReached;
+  }
+  return is_stuck(goal, iteration) ? State::kStuck : State::kOnTheWay;
+}
+
+/// Iterates until is_over(iteration, error). Returns false if K is not positive definite.
 // x, r, q: displacement, residual, K p;  p, z: direction, preconditioned residual
 template <class Real>
-Iteration::End ConjugateGradients<Real>::run(const Goal& goal) {
-  if (hierarchy_.ranks(0) != nullptr) {
-    return run_by_ranks(goal);
-  }
+template <class IsOver>
+bool ConjugateGradients<Real>::iterate(const IsOver& is_over) {
   const std::vector<Six<Real>>& z = hierarchy_.levels().front().z;
-  for (int iteration = 0; !is_reached(goal, iteration); ++iteration) {
-    if (is_stuck(goal, iteration)) {
-      return End::kTooSlow;
-    }
+  for (int iteration = 0; !is_over(iteration, error_); ++iteration) {
     const double curvature = multiply();
     if (!(curvature > 0)) {
-      return End::kBroken;
+      return false;
     }
     const double step = error_ / curvature;
     advance(step);
-    const double error = precondition();
-    const double turn = -step * dot_with_z(q_) / error_;  // z (r_new - r_old) / z_old r_old
+    const auto [error, change] = precondition_and_compare();
+    const double turn = -step * change / error_;  // z (r_new - r_old) / z_old r_old
     error_ = error;
     team_.share(0, node_count_, [&](std::size_t begin, std::size_t end) {
       kernels<Real>().combine(1, z.data(), static_cast<Real>(turn), p_.data(), {begin, end});
     });
     tell();
   }
-  return error_ >= 0 ? End::kConverged : End::kBroken;
+  return true;
+}
+
+template <class Real>
+Iteration::End ConjugateGradients<Real>::run(const Goal& goal) {
+  State reached = State::kOnTheWay;
+  bool is_definite = true;
+  const auto is_over = [&](int iteration, double) {
+    reached = state(goal, iteration);
+    return reached != State::kOnTheWay;
+  };
+  if (host::Ranks* const ranks = hierarchy_.ranks(0)) {
+    host::KrylovTask task;
+    task.x = std::span(x_).first(6 * node_count_);
+    task.r = std::span(r_).first(6 * node_count_);
+    task.is_over = is_over;
+    task.multiply = [&](const double* p, double* q) {  // Who watches may ask between iterations.
+      const std::vector<Six<Real>> last = p_;
+      multiply(p, q);
+      p_ = last;
+    };
+    task.iterate = [&](const auto& is_ended) { is_definite = iterate(is_ended); };
+    if (!ranks->is_own_method(task)) {
+      return run_by_another(goal, task);
+    }
+    ranks->watch(task);
+  } else {
+    is_definite = iterate(is_over);
+  }
+  if (is_definite && reached != State::kReached) {
+    return End::kTooSlow;
+  }
+  return is_definite && error_ >= 0 ? End::kConverged : End::kBroken;
 }
 
 /// q = K p, of a p that is taken apart like that of subtract_product(); leaves its larger part.
@@ -220,16 +279,15 @@ void ConjugateGradients<Real>::turn_from_last_direction() {
                           hierarchy_.levels().front().z.data(), {0, node_count_});
 }
 
-/// The same by the method that the ranks have: K d = r, x += d. Its estimate of the error is that
-/// of its preconditioner; where that is not the cycle it goes on until the cycle agrees.
+/// The same by another method that the ranks have: K d = r, x += d. Its estimate of the error is
+/// that of its preconditioner; where that is not the cycle it goes on until the cycle agrees.
 template <class Real>
-Iteration::End ConjugateGradients<Real>::run_by_ranks(const Goal& goal) {
+Iteration::End ConjugateGradients<Real>::run_by_another(const Goal& goal, host::KrylovTask& task) {
   constexpr int kRoundMax = 5;
   Goal aim = goal;
   bool is_known = true;  // z is that of r.
   int before = 0;
-  bool is_given_up = false;
-  host::KrylovTask task;
+  State reached = State::kOnTheWay;
   task.multiply = [&](const double* p, double* q) { multiply(p, q); };
   task.precondition = [&](const double* r, double* z) {
     if (!std::exchange(is_known, false)) {
@@ -237,28 +295,27 @@ Iteration::End ConjugateGradients<Real>::run_by_ranks(const Goal& goal) {
       for (std::size_t i = 0; i < 6 * node_count_; ++i) {
         finest[i / 6].v[i % 6] = static_cast<Real>(r[i]);
       }
-      cycle_.run();
+      run_cycle();
     }
     for (std::size_t i = 0; i < 6 * node_count_; ++i) {
       z[i] = static_cast<double>(hierarchy_.levels().front().z[i / 6].v[i % 6]);
     }
   };
-  task.is_reached = [&](int iteration, double error) {
+  task.is_over = [&](int iteration, double error) {
     error_ = error;
     if (iteration > before) {
       before = iteration;
       ++iteration_count_;
       tell();
     }
-    is_given_up = !is_reached(aim, iteration) && is_stuck(aim, iteration);
-    return is_given_up || is_reached(aim, iteration);
+    reached = state(aim, iteration);
+    return reached != State::kOnTheWay;
   };
   if (std::exchange(has_last_direction_, false) && !is_reached(goal, 0)) {
     turn_from_last_direction();
   }
   for (int round = 0; round < kRoundMax && !is_reached(goal, round); ++round) {
-    const std::vector<double> b(r_.begin(),
-                                r_.begin() + static_cast<std::ptrdiff_t>(6 * node_count_));
+    const std::vector<double> b(task.r.begin(), task.r.end());
     std::vector<double> d(b.size());
     before = 0;
     const bool is_own = hierarchy_.ranks(0)->solve(task, b, d);
@@ -270,7 +327,7 @@ Iteration::End ConjugateGradients<Real>::run_by_ranks(const Goal& goal) {
       x_[i] += d[i];
       r_[i] -= image[i];
     }
-    if (is_given_up) {
+    if (reached == State::kStuck) {
       return End::kTooSlow;
     }
     if (is_own) {

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
+
 #include "cycle.hpp"
 #include "iteration.hpp"
 
@@ -39,6 +41,8 @@ class ConjugateGradients final : public Iteration {
     double curvature = 0;       ///< p . A p
   };
 
+  enum class State : std::uint8_t { kOnTheWay, kReached, kStuck };
+  State state(const Goal& goal, int iteration);
   bool is_reached(const Goal& goal, int iteration) const;
   bool is_stuck(const Goal& goal, int iteration);
 
@@ -46,13 +50,18 @@ class ConjugateGradients final : public Iteration {
 
   void update_copies(std::vector<Six<Real>>& items) { hierarchy_.update_copies(0, items); }
 
-  End run_by_ranks(const Goal& goal);
+  template <class IsOver>
+  bool iterate(const IsOver& is_over);
+  End run_by_another(const Goal& goal, host::KrylovTask& task);
   void turn_from_last_direction();
   void multiply(const double* p, double* q);
+  void run_cycle();
   double precondition();
+  std::array<double, 2> precondition_and_compare();
   double multiply();
   void advance(double step);
   void tell() const;
+  double own_dot_with_z(const std::vector<double>& a);
   double dot_with_z(const std::vector<double>& a);
   void round_residual();
   void turn_away_from_older();

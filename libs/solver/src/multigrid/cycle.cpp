@@ -3,6 +3,7 @@
 #include "cycle.hpp"
 
 #include <algorithm>
+#include <array>
 #include <type_traits>
 
 namespace holdfast::solver {
@@ -66,11 +67,12 @@ void Cycle<Real>::relax(std::size_t depth, Order order, Start start) {
       std::fill(z.data() + begin, z.data() + own_begin, Six<float>{});
       std::fill(z.data() + own_end, z.data() + end, Six<float>{});
     });
+    std::fill(z.data() + level.node_count, z.data() + level.place_count, Six<float>{});
   }
   for (int sweep = 0; sweep < sweep_count_; ++sweep) {
     for (std::size_t i = 0; i < colour_count; ++i) {
       relax_colour(depth, colour_at(i), start == Start::kZero && sweep == 0 && i == 0);
-      hierarchy_.update_copies(depth, swept_z(level));
+      hierarchy_.update_copies(depth, colour_at(i), swept_z(level));
     }
   }
 }
@@ -215,24 +217,27 @@ void Cycle<Real>::solve(std::size_t depth) {
   Level<Real>& level = hierarchy_.levels()[depth];
   const std::size_t count = level.node_count;
   descend(depth);
-  const double before = dot(depth, level.r, level.r);
-  const double alpha_1 = dot(depth, level.z, level.r);
-  const double rho_1 = apply(depth, level.first_image);
+  const auto [before, alpha_1, rho_1] =
+      host::sum(hierarchy_.ranks(depth),
+                std::array{own_dot(level.r, level.r, count), own_dot(level.z, level.r, count),
+                           apply(depth, level.first_image)});
   const double step = alpha_1 / rho_1;
   if (!is_credible(step)) {
     return;
   }
   combine(count, -step, level.first_image, 1, level.r);
-  if (dot(depth, level.r, level.r) <= kEnough * kEnough * before) {
+  const double after = host::sum(hierarchy_.ranks(depth), own_dot(level.r, level.r, count));
+  if (after <= kEnough * kEnough * before) {
     combine(count, step, level.z, 0, level.z);
     return;
   }
   std::swap(level.first, level.z);
   descend(depth);
-  const double gamma = dot(depth, level.z, level.first_image);
-  const double alpha_2 = dot(depth, level.z, level.r);
-  // Its image is needed for one number only; first_image is not needed any more.
-  const double beta = apply(depth, level.first_image);
+  // Braces keep the order: z's image is needed for one number only, and first_image for one before.
+  const auto [gamma, alpha_2, beta] =
+      host::sum(hierarchy_.ranks(depth),
+                std::array{own_dot(level.z, level.first_image, count),
+                           own_dot(level.z, level.r, count), apply(depth, level.first_image)});
   const double rho_2 = beta - gamma * gamma / rho_1;
   if (!is_credible(alpha_2 / rho_2)) {
     combine(count, step, level.first, 0, level.z);
@@ -273,23 +278,21 @@ void Cycle<Real>::add_coarsest(const Vector& r, Vector& z) {
   }
 }
 
-/// image = K z; returns z . image.
+/// image = K z; returns this rank's part of z . image.
 template <class Real>
 double Cycle<Real>::apply(std::size_t depth, Vector& image) {
   Level<Real>& level = hierarchy_.levels()[depth];
-  const double product = team_.sum(level.node_count, [&](std::size_t begin, std::size_t end) {
+  return team_.sum(level.node_count, [&](std::size_t begin, std::size_t end) {
     return kernels<Real>().apply_cluster(level.view(), level.z.data(), image.data(), {begin, end});
   });
-  return host::sum(hierarchy_.ranks(depth), product);
 }
 
+/// This rank's part of a . b.
 template <class Real>
-double Cycle<Real>::dot(std::size_t depth, const Vector& a, const Vector& b) {
-  const std::size_t count = hierarchy_.levels()[depth].node_count;
-  const double product = team_.sum(count, [&](std::size_t begin, std::size_t end) {
+double Cycle<Real>::own_dot(const Vector& a, const Vector& b, std::size_t count) {
+  return team_.sum(count, [&](std::size_t begin, std::size_t end) {
     return kernels<Real>().dot_same(a.data(), b.data(), {begin, end});
   });
-  return host::sum(hierarchy_.ranks(depth), product);
 }
 
 /// y = factor x + other y

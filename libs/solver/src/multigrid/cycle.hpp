@@ -35,7 +35,7 @@ class Cycle {
   void leave_residual(std::size_t depth);
   void add_rough(std::size_t depth);
   double apply(std::size_t depth, Vector& image);
-  double dot(std::size_t depth, const Vector& a, const Vector& b);
+  double own_dot(const Vector& a, const Vector& b, std::size_t count);
   Vector& passed_down(std::size_t depth);
   void gather_forces(std::size_t depth);
   const Vector& passed_up(std::size_t depth);

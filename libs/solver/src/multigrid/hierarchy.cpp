@@ -362,8 +362,24 @@ void Hierarchy<Real>::add_level(const SpringGraph& graph, const std::vector<Grou
 /// Takes note of whose copies a level of a part of a robot has.
 template <class Real>
 void Hierarchy<Real>::share(const SpringGraph& graph, Level<Real>& level) const {
-  if (graph.ranks != nullptr) {
-    level.halo = graph.ranks->make_halo(graph.own_count(), graph.copies);
+  if (graph.ranks == nullptr) {
+    return;
+  }
+  level.halo = graph.ranks->make_halo(graph.own_count(), graph.copies);
+  const std::size_t colour_count = level.colour_start.size() - 1;
+  std::vector<std::uint8_t> colour_of(level.place_count);
+  for (std::size_t colour = 0; colour < colour_count; ++colour) {
+    std::fill(colour_of.begin() + static_cast<std::ptrdiff_t>(level.colour_start[colour]),
+              colour_of.begin() + static_cast<std::ptrdiff_t>(level.colour_start[colour + 1]),
+              static_cast<std::uint8_t>(colour));
+  }
+  level.halo->update(colour_of.data(), sizeof(std::uint8_t));
+  std::vector<std::vector<host::Copy>> copies(colour_count);
+  for (const host::Copy& copy : graph.copies) {
+    copies[colour_of[at(copy.place)]].push_back(copy);
+  }
+  for (const std::vector<host::Copy>& list : copies) {
+    level.halo_of_colour.push_back(graph.ranks->make_halo(graph.own_count(), list));
   }
 }
 

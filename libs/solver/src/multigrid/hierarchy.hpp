@@ -80,6 +80,14 @@ class Hierarchy {
     }
   }
 
+  /// The same where only nodes of one colour have changed.
+  template <class Item>
+  void update_copies(std::size_t depth, std::size_t colour, std::vector<Item>& items) {
+    if (levels_[depth].halo != nullptr) {
+      levels_[depth].halo_of_colour[colour]->update(items.data(), sizeof(Item));
+    }
+  }
+
   /// q = K p on the finest level, in double precision; returns p . q.
   double apply(const Six<Real>* p, double* q, const Range& range) const {
     return network_.is_cubic ? kernels<Real>().apply_lattice(lattice_, p, q, range)

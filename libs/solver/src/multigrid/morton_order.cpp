@@ -113,8 +113,8 @@ std::uint8_t colour_of_brick(const base::Lattice& lattice, const base::Cell& bri
   return static_cast<std::uint8_t>((upright & 1) + 2 * (leaning & 1));
 }
 
-base::Cell brick_of_cell(const base::Lattice& lattice, const base::Cell& cell) {
-  return lattice == base::kCubic ? cell : brick_of(lattice, base::axial_of(lattice, cell));
+base::Cell Bricks::of_leaning(const base::Cell& cell) const {
+  return brick_of(lattice_, base::axial_of(lattice_, cell));
 }
 
 std::uint64_t morton_key(const base::Cell& brick, const base::Cell& low) {
@@ -126,12 +126,8 @@ std::uint64_t morton_key(const base::Cell& brick, const base::Cell& low) {
 MortonOrder morton_order(const model::Robot& robot, const std::vector<std::uint8_t>& is_gone,
                          const model::RobotPart* part) {
   const auto modules = robot.modules();
-  const base::Lattice& lattice = robot.lattice();
-  const bool is_cubic = lattice == base::kCubic;
-  const auto brick = [&](std::size_t module) {
-    const base::Cell& cell = modules[module].cell;
-    return is_cubic ? cell : brick_of(lattice, base::axial_of(lattice, cell));
-  };
+  const Bricks bricks(robot.lattice());
+  const auto brick = [&](std::size_t module) { return bricks.of(modules[module].cell); };
   MortonOrder order;
   base::Cell low = brick(0);
   for (std::size_t i = 1; i < modules.size(); ++i) {

@@ -166,15 +166,16 @@ class Builder {
     }
     part_from_other_ranks(colour);
     constexpr std::size_t kColourMax = base::Lattice::kDirectionCountMax + 1;
-    std::array<std::size_t, kColourMax> count{};
+    std::array<double, kColourMax> count{};  // Whole numbers, which ranks add up.
     for (std::size_t i = 0; i < network_.own_count; ++i) {
       ++count[colour[at(order_.modules[i].module)]];
     }
+    const std::array<double, kColourMax> everywhere = host::sum(network_.ranks, count);
     std::array<std::size_t, kColourMax + 1> start{};
     network_.colour_start = {0};
     for (std::size_t c = 0; c < kColourMax; ++c) {
-      start[c + 1] = start[c] + count[c];
-      if (host::any(network_.ranks, count[c] > 0)) {  // All ranks have the same colours.
+      start[c + 1] = start[c] + static_cast<std::size_t>(count[c]);
+      if (everywhere[c] > 0) {  // All ranks have the same colours.
         network_.colour_start.push_back(start[c + 1]);
       }
     }
@@ -370,11 +371,12 @@ void find_order(const Robot& robot, ReducedNetwork& network) {
   if (network.order.size() == network.node_count) {
     return;
   }
+  const Bricks bricks(robot.lattice());
   std::vector<KeyedModule> nodes;
   nodes.reserve(network.node_count);
   for (std::size_t node = 0; node < network.node_count; ++node) {
     const base::Cell& cell = robot.modules()[at(network.module[node])].cell;
-    nodes.push_back({.key = morton_key(brick_of_cell(robot.lattice(), cell), network.low),
+    nodes.push_back({.key = morton_key(bricks.of(cell), network.low),
                      .module = static_cast<std::int32_t>(node)});
   }
   for (std::size_t colour = 1; colour + 1 < network.colour_start.size(); ++colour) {

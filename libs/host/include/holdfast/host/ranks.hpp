@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
@@ -41,13 +42,23 @@ class Halo {
   virtual void update(void* items, std::size_t size) = 0;
 };
 
-/// A linear system for somebody else's flexible conjugate gradients: K x = b, from x = 0.
+/// A linear system for flexible conjugate gradients: K x = b.
 struct KrylovTask {
+  /// Asked before each iteration, with its number from 0 on and r . M^-1 r; true ends the method.
+  using IsOver = std::function<bool(int, double)>;
+
+  std::span<double> x;  ///< What the task itself works on,
+  std::span<double> r;  ///< and what that leaves of b.
+  /// The task's own method, which improves x. May end before it is told to.
+  std::function<void(const IsOver&)> iterate;
+  // What somebody else's method takes.
   std::function<void(const double* p, double* q)> multiply;      ///< q = K p
   std::function<void(const double* r, double* z)> precondition;  ///< z = M^-1 r; M varies a little.
-  /// Called with the iteration and r . M^-1 r; true ends it.
-  std::function<bool(int, double)> is_reached;
+  IsOver is_over;
 };
+
+/// What time goes to, for those who keep a log.
+enum class Work : std::uint8_t { kProduct, kCycle };
 
 class Ranks {
  public:
@@ -63,20 +74,62 @@ class Ranks {
   virtual double sum(double mine) = 0;
   virtual double max(double mine) = 0;
 
+  /// Sums several numbers at once, each over all ranks, in place.
+  virtual void sum(std::span<double> mine) = 0;
+
   /// All ranks' bytes, in the order of the ranks.
   virtual std::vector<std::byte> gather(std::span<const std::byte> mine) = 0;
 
   /// For arrays that have `own_count` items of this rank's own.
   virtual std::unique_ptr<Halo> make_halo(std::size_t own_count, std::span<const Copy> copies) = 0;
 
-  /// Solves for x, as far as is asked; both are of this rank's numbers. Returns whether it was the
-  /// task's own preconditioner that served, last for the residual that x leaves.
+  /// Work begins, or ends.
+  virtual void log(Work work, bool is_begin) = 0;
+
+  /// Whether the task's own method serves, and not another that somebody has asked for.
+  virtual bool is_own_method(const KrylovTask& task) = 0;
+
+  /// Lets the task's own method improve its x, watched.
+  virtual void watch(const KrylovTask& task) = 0;
+
+  /// Solves for x from x = 0 by another method, as far as is asked; both are of this rank's
+  /// numbers. Returns whether it was the task's own preconditioner that served, last for the
+  /// residual that x leaves.
   virtual bool solve(const KrylovTask& task, std::span<const double> b, std::span<double> x) = 0;
+};
+
+/// Logs work as long as it lives; without ranks nobody asks.
+class Logged {
+ public:
+  Logged(Ranks* ranks, Work work) : ranks_(ranks), work_(work) { log(true); }
+
+  ~Logged() { log(false); }
+
+  Logged(const Logged&) = delete;
+  Logged& operator=(const Logged&) = delete;
+
+ private:
+  void log(bool is_begin) {
+    if (ranks_ != nullptr) {
+      ranks_->log(work_, is_begin);
+    }
+  }
+
+  Ranks* ranks_;
+  Work work_;
 };
 
 // What all ranks say together; without ranks what the one says.
 
 inline double sum(Ranks* ranks, double mine) { return ranks == nullptr ? mine : ranks->sum(mine); }
+
+template <std::size_t kCount>
+std::array<double, kCount> sum(Ranks* ranks, std::array<double, kCount> mine) {
+  if (ranks != nullptr) {
+    ranks->sum(std::span<double>(mine));
+  }
+  return mine;
+}
 
 inline double max(Ranks* ranks, double mine) { return ranks == nullptr ? mine : ranks->max(mine); }
 

@@ -9,9 +9,22 @@
 
 namespace holdfast::solver {
 
-/// The brick of a module's cell: the coordinates that Morton keys are made of (docs/solver.md). In
-/// a cubic lattice the cell itself.
-base::Cell brick_of_cell(const base::Lattice& lattice, const base::Cell& cell);
+/// The bricks of modules' cells: the coordinates that Morton keys are made of (docs/solver.md). In
+/// a cubic lattice the cells themselves.
+class Bricks {
+ public:
+  /// Keeps a reference.
+  explicit Bricks(const base::Lattice& lattice)
+      : lattice_(lattice), is_cubic_(lattice == base::kCubic) {}
+
+  base::Cell of(const base::Cell& cell) const { return is_cubic_ ? cell : of_leaning(cell); }
+
+ private:
+  base::Cell of_leaning(const base::Cell& cell) const;
+
+  const base::Lattice& lattice_;
+  bool is_cubic_;  ///< Asked once: lattices are long to compare.
+};
 
 /// The bits of a brick's x, y and z in turns, from the lowest, counted from the lowest corner of
 /// the robot. Clusters of the n-th level lie in cells of keys that agree but for the last 3 n bits.

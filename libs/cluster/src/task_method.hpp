@@ -1,0 +1,17 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+/// A KSP that leaves the iteration to the task it works on (host::KrylovTask), whose directions are
+/// in the preconditioner's own precision and whose vectors are its own: PETSc's options, monitors
+/// and logs see it as they see any other method. Its matrix is a MATSHELL whose context points to
+/// the task.
+namespace holdfast::cluster {
+
+/// Its KSPType.
+inline constexpr const char* kTaskMethod = "holdfast";
+
+/// Makes it known to PETSc; once is enough, more often does no harm.
+void register_task_method();
+
+}  // namespace holdfast::cluster
