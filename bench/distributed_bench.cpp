@@ -4,7 +4,7 @@
 //   distributed_bench cases FILE...       rounds, packets and V1 seconds of each method, a table
 //   distributed_bench random FROM TO [METHOD [PLANNED]]   random robots against the exact answer,
 //                                         quiet links; with 6 to PLANNED planned modules, 30 at
-//                                         most
+//                                         most; METHOD firmware: those that firmware has
 //   distributed_bench general FROM TO     cubes on walls and ceilings, with loads of their own
 //   distributed_bench general FROM TO planned   the same with one to three modules planned
 //   distributed_bench general FROM TO [planned] LATTICE   modules of another lattice
@@ -133,6 +133,7 @@ struct Robots {
   std::uint64_t from = 0;
   std::uint64_t to = 0;
   Method method = Method::kElimination;
+  bool only_one_sweep = false;  ///< As firmware.
   std::size_t planned_max = 0;  ///< 0: as many as random_robot() has.
 
   model::Robot make(std::uint64_t seed) const {
@@ -145,7 +146,8 @@ int run_random(const Robots& robots, bool is_noisy) {
   Tally tally;
   int not_decided = 0;  ///< By the exact solver.
   for (std::uint64_t seed = robots.from; seed < robots.to; ++seed) {
-    sim::SimulationOptions options{.seed = seed, .method = robots.method};
+    sim::SimulationOptions options{
+        .seed = seed, .method = robots.method, .only_one_sweep = robots.only_one_sweep};
     if (is_noisy) {
       options.link = test::noisy_rounds();
     }
@@ -519,8 +521,10 @@ int main(int argc, char** argv) {
     return run_general(arguments.subspan(2));
   }
   const bool has_robots = what == "random" || what == "noisy" || what == "faults";
+  const bool only_one_sweep =
+      argc > 4 && has_robots && std::string_view(arguments[4]) == "firmware";
   const std::optional<Method> method =
-      argc > 4 && has_robots ? find_method(arguments[4]) : Method::kElimination;
+      argc > 4 && has_robots && !only_one_sweep ? find_method(arguments[4]) : Method::kElimination;
   const std::size_t planned_max = argc > 5 ? std::strtoull(arguments[5], nullptr, 10) : 0;
   const bool is_planned = planned_max >= 6 && planned_max <= agent::kPlannedMost;
   if (argc < 4 || argc > (has_robots ? 6 : 4) || !method || (argc > 5 && !is_planned) ||
@@ -529,7 +533,11 @@ int main(int argc, char** argv) {
   }
   const std::uint64_t from = std::strtoull(arguments[2], nullptr, 10);
   const std::uint64_t to = std::strtoull(arguments[3], nullptr, 10);
-  const Robots robots = {.from = from, .to = to, .method = *method, .planned_max = planned_max};
+  const Robots robots = {.from = from,
+                         .to = to,
+                         .method = *method,
+                         .only_one_sweep = only_one_sweep,
+                         .planned_max = planned_max};
   const int faults = what == "faults"    ? run_faults(robots)
                      : what == "stale"   ? run_stale(from, to)
                      : what == "liars"   ? run_liars(from, to)

@@ -82,7 +82,8 @@ Order Conductor::next(const Setup& setup, const Report& report, const Planned& p
   if constexpr (kHasAllMethods) {
     return next_of_solve(setup, report);
   }
-  return finish(Verdict::kUndecided, Reason::kNotConverged);
+  return asked_ == Operation::kHold ? after_hold(report)
+                                    : finish(Verdict::kUndecided, Reason::kNotConverged);
 }
 
 /// The next order of conjugate gradients and of the Jacobi methods.
@@ -279,7 +280,6 @@ Order Conductor::begin_law(const Setup& setup, bool is_unilateral) {
   effort_.is_unilateral = is_unilateral;
   is_tilting_ = false;
   has_history_ = false;
-  seen_count_ = 0;
   contact_iterations_max_ = effort_.contact_iterations + kContactIterationsMax;
   check_at_ = effort_.iterations + 2 * jacobi_span();
   check_error_ = kUnbounded;
@@ -291,7 +291,7 @@ Order Conductor::begin_law(const Setup& setup, bool is_unilateral) {
   solve_iterations_max_ = 200 + 20 * effort_.module_count;
   Order begin = ask(Operation::kBegin);
   if (is_one_sweep()) {
-    choose_one_sweep(is_unilateral);
+    choose_one_sweep(setup, is_unilateral);
     had_clusters_ = false;
     begin = ask(may_have_clusters() ? Operation::kClusters : Operation::kBegin);
     const bool starts = effort_.method == Method::kPolynomial && !is_any_remote_;
@@ -301,6 +301,7 @@ Order Conductor::begin_law(const Setup& setup, bool is_unilateral) {
   if (!has_all && !is_one_sweep()) {
     return finish(Verdict::kUndecided, Reason::kNotConverged);
   }
+  begin_newton();
   begin.flags = static_cast<std::uint8_t>(
       (is_unilateral ? kUnilateralLaw : 0U) | (is_one_sweep() ? kOneSweep : 0U) |
       (effort_.method == Method::kPolynomial ? kWithIterations : 0U) |
@@ -375,12 +376,9 @@ Order Conductor::give_up(const Setup& setup) {
   if (effort_.iterations > setup.iteration_count_max) {
     return finish(Verdict::kUndecided, Reason::kNotConverged);
   }
-  if (effort_.method == Method::kJacobi) {
-    effort_.method = Method::kBlockJacobi;
-    return begin_law(setup, false);
-  }
-  if (effort_.method == Method::kBlockJacobi) {
-    effort_.method = Method::kConjugateGradients;
+  if (kHasAllMethods && is_jacobi()) {
+    effort_.method =
+        effort_.method == Method::kJacobi ? Method::kBlockJacobi : Method::kConjugateGradients;
     return begin_law(setup, false);
   }
   if (!is_unilateral_) {
@@ -589,7 +587,7 @@ Order Conductor::settled() {
     return decide();
   }
   if (is_fixed_ && !is_uneven()) {
-    if (kHasAllMethods && is_unilateral_) {
+    if (is_unilateral_) {
       // Under the exact law a facet that has let go no longer holds sideways.
       Order hold = ask(Operation::kHold);
       hold.flags = kReleaseOpen;
@@ -620,7 +618,8 @@ Order Conductor::after_hold(const Report& report) {
     error_best_ = kUnbounded;
     stagnation_count_ = 0;
     target_ = is_uneven() ? kUnevenTolerance : kRatioTolerance;
-    return has_fronts() ? factor() : move(0);
+    begin_newton();
+    return has_fronts() ? factor() : is_one_sweep() ? first_iteration() : move(0);
   }
   open_held_count_ = report.open_held_count();
   if (kHasSurroundings && is_second_) {
@@ -639,7 +638,7 @@ Order Conductor::after_hold(const Report& report) {
 
 /// The law that has an answer for every robot.
 Order Conductor::begin_unilateral(const Setup& setup) {
-  effort_.method = may_have_fronts_ ? Method::kFronts : Method::kConjugateGradients;
+  take_safest_method(setup);
   return begin_law(setup, true);
 }
 

@@ -17,6 +17,10 @@ using wire::Operation;
 constexpr int kIterationStagnationMax = 40;
 constexpr int kEliminationStagnationMax = 6;
 constexpr int kClusterStagnationMax = 12;
+constexpr int kNewtonStagnationMax = 250;
+
+/// A linear problem of Newton's method is solved to this share of what load ratios are to be.
+constexpr double kSolvedShare = 0.3;
 
 /// Larger robots with many loops begin with the polynomial and take fronts if that makes no
 /// progress: a cube of 5 takes 6 sweeps with it, and its fronts are the largest there are.
@@ -68,12 +72,12 @@ bool Conductor::has_fronts() const { return kHasAllMethods && effort_.method == 
 
 bool Conductor::is_exact() const { return effort_.method == Method::kElimination || has_fronts(); }
 
-/// The unilateral law needs a line search, which conjugate gradients have, and at the root the
-/// method with fronts.
-void Conductor::choose_one_sweep(bool is_unilateral) {
+/// The unilateral law is for what takes its time: conjugate gradients, whose line search cannot
+/// fail, Newton's method by the polynomial in their place, or the method with fronts.
+void Conductor::choose_one_sweep(const Setup& setup, bool is_unilateral) {
   const bool has_memory = kHasAllMethods && may_have_fronts_;
   if (is_unilateral) {
-    effort_.method = has_memory ? Method::kFronts : Method::kConjugateGradients;
+    take_safest_method(setup);
   } else if (has_many_loops_ || is_any_remote_) {
     const std::uint32_t many = planned_count_ > kPlannedMax ? planned_count_ : 0U;
     const bool is_small = effort_.module_count <= kFrontModulesMax + many;
@@ -118,7 +122,7 @@ void Conductor::choose_clusters(const Report& report) {
 Order Conductor::first_iteration() {
   ++effort_.solves;
   predicted_ = kUnbounded;
-  holds_planned_ = false;
+  holds_planned_ = is_newton_ && is_any_remote_;
   held_planned_ = false;
   if (is_exact()) {
     return factor();
@@ -137,16 +141,19 @@ Order Conductor::tree_iteration() { return ask(Operation::kTreeIterate); }
 Order Conductor::next_iteration(std::uint8_t flags, const std::array<float, 3>& coefficients) {
   Order iteration = ask(Operation::kIterate);
   const bool takes_clusters = has_clusters() && !least_residual_;
-  iteration.flags = static_cast<std::uint8_t>(flags | (least_residual_ ? kLeastResidual : 0U) |
-                                              (takes_clusters ? kWithClusters : 0U) |
-                                              (holds_planned_ ? kHoldPlanned : 0U));
-  kept_states_ = is_uneven() && !(error_ <= uneven_target());
+  iteration.flags = static_cast<std::uint8_t>(
+      flags | (least_residual_ ? kLeastResidual : 0U) | (takes_clusters ? kWithClusters : 0U) |
+      (holds_planned_ ? kHoldPlanned : 0U) | (stands_in_ ? kStandIn : 0U));
+  kept_states_ =
+      is_newton_ ? stands_in_ || !is_solved_ : is_uneven() && !(error_ <= uneven_target());
   iteration.flags = static_cast<std::uint8_t>(iteration.flags | (kept_states_ ? kKeepStates : 0U));
   iteration.count = takes_clusters ? cluster_degree() : iteration_degree();
   iteration.reals = coefficients;
-  has_changed_ = takes_clusters != had_clusters() || holds_planned_ != held_planned_;
+  has_changed_ = takes_clusters != had_clusters() || holds_planned_ != held_planned_ ||
+                 stands_in_ != stood_in_;
   had_clusters_ = takes_clusters;
   held_planned_ = holds_planned_;
+  stood_in_ = stands_in_;
   return iteration;
 }
 
@@ -156,7 +163,7 @@ Order Conductor::next_iteration(std::uint8_t flags, const std::array<float, 3>& 
 /// as if.
 Order Conductor::restarted_iteration() {
   has_older_ = false;
-  least_residual_ = is_tilting_ && !has_clusters() && !is_any_remote_;
+  least_residual_ = is_tilting_ && !has_clusters() && !is_any_remote_ && !is_newton_;
   energy_bound_.restart();
   return next_iteration(kRestart, {});
 }
@@ -179,11 +186,15 @@ Order Conductor::after_iteration(const Setup& setup, const Report& report) {
   }
   const bool is_elimination = is_exact();
   const auto bound = static_cast<double>(report.error());
-  const double error = has_jumped || is_elimination ? bound : iteration_error(setup, report, bound);
+  const bool has_energy = !has_jumped && !is_elimination && stood_in_ == is_newton_;
+  const double error = has_energy ? iteration_error(setup, report, bound) : bound;
   if (!is_number(error) || effort_.iterations > setup.iteration_count_max) {
     return leave_one_sweep(setup, false);
   }
   error_ = error;
+  if (is_newton_) {
+    steer_newton(error);
+  }
   const bool is_rough = is_uneven() && error > uneven_target();
   if (has_jumped && !(is_rough && is_elimination)) {
     ++effort_.contact_iterations;
@@ -193,10 +204,11 @@ Order Conductor::after_iteration(const Setup& setup, const Report& report) {
       return begin_law(setup, false);
     }
     // With fronts a facet that has changed is never asked again.
-    const bool is_cycle = !has_fronts() && was_accurate && was_seen(report.states_hash());
+    const bool is_cycle =
+        !has_fronts() && (was_accurate || is_newton_) && was_seen(report.states_hash());
     if (is_cycle || effort_.contact_iterations > contact_iterations_max_) {
       // Only exact iterations are certain to go round in circles: conjugate gradients try first.
-      return leave_one_sweep(setup, is_cycle && is_elimination);
+      return leave_one_sweep(setup, is_cycle && (is_elimination || is_newton_));
     }
     error_best_ = kUnbounded;
     stagnation_count_ = 0;
@@ -209,11 +221,11 @@ Order Conductor::after_iteration(const Setup& setup, const Report& report) {
   if (error <= target_ && !kept_states_ && (error <= distance || error <= kErrorLeast)) {
     return settled();
   }
-  const bool is_better = error < 0.7 * error_best_;
+  const bool is_better = !stood_in_ && error < 0.7 * error_best_;
   error_best_ = is_better ? error : error_best_;
   stagnation_count_ =
       is_better ? std::uint8_t{0} : static_cast<std::uint8_t>(stagnation_count_ + 1);
-  if (stagnation_count_ > (is_elimination ? kEliminationStagnationMax : kIterationStagnationMax)) {
+  if (stagnation_count_ > stagnation_max()) {
     return leave_one_sweep(setup, false);
   }
   if (is_elimination) {
@@ -310,11 +322,54 @@ Order Conductor::leave_fronts(const Setup& setup, bool has_no_room) {
   return is_unilateral_ ? leave_one_sweep(setup, true) : begin_law(setup, true);
 }
 
-/// With memory for fronts elimination gives way to them, and they to conjugate gradients.
+/// With memory for fronts elimination gives way to them, and they to conjugate gradients; in a
+/// robot without these all gives way to Newton's method.
 Order Conductor::leave_one_sweep(const Setup& setup, bool is_unilateral) {
+  if (is_newton_) {
+    return is_unilateral && !is_unilateral_ ? begin_law(setup, true) : give_up(setup);
+  }
   may_have_fronts_ = may_have_fronts_ && !has_fronts();
-  effort_.method = may_have_fronts_ ? Method::kFronts : Method::kConjugateGradients;
+  take_safest_method(setup);
   return begin_law(setup, is_unilateral);
+}
+
+/// What takes over where no other method settles, and under the unilateral law.
+void Conductor::take_safest_method(const Setup& setup) {
+  const bool has_memory = kHasAllMethods && may_have_fronts_;
+  is_newton_ = !has_memory && (!kHasAllMethods || setup.only_one_sweep);
+  effort_.method = has_memory   ? Method::kFronts
+                   : is_newton_ ? Method::kPolynomial
+                                : Method::kConjugateGradients;
+}
+
+int Conductor::stagnation_max() const {
+  return is_exact()   ? kEliminationStagnationMax
+         : is_newton_ ? kNewtonStagnationMax
+                      : kIterationStagnationMax;
+}
+
+// ---- Newton's method by the polynomial, in a robot without conjugate gradients.
+
+void Conductor::begin_newton() {
+  seen_count_ = 0;
+  stands_in_ = is_newton_;
+  is_solved_ = false;
+  enough_ = kSolvedShare * kRatioTolerance;
+}
+
+/// After an iteration: is the next one another of the same linear problem, or are the facets' own
+/// forces looked up, and, where they are in balance, their states?
+void Conductor::steer_newton(double error) {
+  const double scale = 1 + absolute(ratio_);
+  if (stood_in_) {
+    stands_in_ = error > enough_;
+    return;
+  }
+  const double least = kReductionTilting * error;
+  const double enough = kSolvedShare * kRatioTolerance * scale;
+  enough_ = least > enough ? least : enough;
+  is_solved_ = error <= kStateTolerance * scale;
+  stands_in_ = !kept_states_ || !is_solved_;
 }
 
 }  // namespace holdfast::agent

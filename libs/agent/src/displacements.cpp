@@ -39,6 +39,7 @@ void begin_equilibrium(Workspace& ws, const Order& order) {
       is_unilateral ? mechanics::ContactLaw::kUnilateral : mechanics::ContactLaw::kRegularised;
   ws.contact.facet = mechanics::ground_facet(ws.setup.beam, ws.setup.section.length, foot_width(ws),
                                              static_cast<double>(order.gamma()), law);
+  ws.contact.stands_in = false;
   ws.contact.lever_mm = static_cast<double>(order.lever_mm());
   const bool keeps =
       order.operation == wire::Operation::kResume && (order.flags & kKeepsMotion) != 0;
@@ -66,6 +67,9 @@ void share_low_part(Workspace& ws) {
 }
 
 bool follow_state(Node& node, const ContactSetting& contact, bool is_kept) {
+  if (!contact.stands_in) {
+    node.anchor = base::converted<float>(node.u);
+  }
   if (is_kept) {
     node.wanted = node.state;
     return false;

@@ -56,6 +56,24 @@ inline base::Vec6<double> symmetric_facet_product(const Node& node, const Contac
              : mechanics::symmetric_product(contact.facet, node.state, node.is_held, u);
 }
 
+/// The tangent in use times u: the facets' own, or its stand-in.
+inline base::Vec6<double> facet_product(const Node& node, const ContactSetting& contact,
+                                        const base::Vec6<double>& u) {
+  return contact.stands_in ? symmetric_facet_product(node, contact, u)
+                           : facet_force(node, contact, u);
+}
+
+/// The facets' force at the node's place; with stand-ins that at the anchor, and from there on
+/// theirs.
+inline base::Vec6<double> facet_force_in_use(const Node& node, const ContactSetting& contact) {
+  if (!contact.stands_in) {
+    return facet_force(node, contact, node.u);
+  }
+  const auto anchor = base::converted<double>(node.anchor);
+  return base::sum_of(facet_force(node, contact, anchor), 1.0,
+                      facet_product(node, contact, base::sum_of(node.u, -1.0, anchor)));
+}
+
 /// The facets' tangent, of a node on the ground.
 inline base::Mat6<double> facet_tangent(const Node& node, const ContactSetting& contact) {
   const Surroundings* surroundings = surroundings_of(node);

@@ -15,6 +15,9 @@ namespace {
 /// The lower end of the interval in which the polynomial is good is this over (m + 1)^2.
 constexpr double kIterationSpread = 3;
 
+/// In which a node's diagonal is formed and factored.
+constexpr int kDiagonalParts = 4;
+
 void subtract(base::Vec6<double>& from, const base::Vec6<double>& force, double share = 1) {
   for (std::size_t k = 0; k < 6; ++k) {
     from[k] -= share * force[k];
@@ -47,16 +50,29 @@ bool MinimalResiduals::begin(int piece) {
   }
   const int index = (piece - 1) % count;
   const int part = (piece - 1) / count;
-  if (part < 2) {
-    form_diagonal(ws_.node(index), ws_.setup, ws_.contact, ws_.faces_of(index), part);
-  } else if (part < 4) {
-    factor_diagonal(ws_.node(index), part - 2);
+  if (part < kDiagonalParts) {
+    renew_diagonal(index, part);
   } else if (moves) {
     return move(index);
   } else {
     start_term(index);
   }
-  return piece < (moves || starts ? 5 : 4) * count;
+  return piece < (kDiagonalParts + (moves || starts ? 1 : 0)) * count;
+}
+
+void MinimalResiduals::renew_diagonal(int index, int part) {
+  Node& node = ws_.node(index);
+  part < 2 ? form_diagonal(node, ws_.setup, ws_.contact, ws_.faces_of(index), part)
+           : factor_diagonal(node, part - 2);
+}
+
+bool MinimalResiduals::hold(int piece, Report& report) {
+  if (piece == 0) {
+    hold_facets(ws_, order_, report);
+    return true;
+  }
+  renew_diagonal((piece - 1) / kDiagonalParts, (piece - 1) % kDiagonalParts);
+  return piece < kDiagonalParts * ws_.node_count();
 }
 
 bool MinimalResiduals::move(int piece) {
@@ -76,6 +92,8 @@ void MinimalResiduals::move_node(int index) {
   const auto a = static_cast<double>(order_.a());
   const auto b = static_cast<double>(order_.b());
   const bool restarts = (order_.flags & kRestart) != 0;
+  ws_.contact.stands_in =
+      order_.operation == wire::Operation::kIterate && (order_.flags & kStandIn) != 0;
   Node& node = ws_.node(index);
   SearchDirection& newer = vectors_of(index).newer;
   SearchDirection& older = vectors_of(index).older;
@@ -121,8 +139,7 @@ bool MinimalResiduals::take_displacements(int piece) {
   } else if (stage == 5) {
     find_residual(index);
   } else if (node.has_changed) {
-    stage > 2 ? factor_diagonal(node, stage - 3)
-              : form_diagonal(node, ws_.setup, ws_.contact, ws_.faces_of(index), stage - 1);
+    renew_diagonal(index, stage - 1);
   }
   return piece < 6 * node_count();
 }
@@ -215,7 +232,7 @@ void MinimalResiduals::subtract_facet(int index) {
   const Node& node = ws_.node(index);
   if (node.is_ground) {
     subtract(vectors_of(index).w,
-             facet_force(node, ws_.contact, base::converted<double>(node.vector.sent)));
+             facet_product(node, ws_.contact, base::converted<double>(node.vector.sent)));
   }
 }
 

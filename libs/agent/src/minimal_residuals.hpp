@@ -56,6 +56,9 @@ class MinimalResiduals {
   /// Then the next term.
   bool take_term(int piece);
 
+  /// A kHold: facets that are held or released, and with them the factors of the diagonals.
+  bool hold(int piece, Report& report);
+
   /// All of the residual is left: the polynomial's first terms.
   void start_terms();
 
@@ -84,6 +87,7 @@ class MinimalResiduals {
     return memory_[static_cast<std::size_t>(node)].vectors;
   }
 
+  void renew_diagonal(int node, int part);
   void move_node(int node);
   void find_residual(int node);
   void start_term(int node);

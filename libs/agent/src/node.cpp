@@ -57,6 +57,7 @@ void reset(Node& node) {
   node.state = {.pressed = node.is_ground};
   node.wanted = node.state;
   node.u = {};
+  node.anchor = {};
   node.force = {};
   if (Surroundings* surroundings = surroundings_of(node); surroundings != nullptr) {
     reset(*surroundings);
@@ -110,7 +111,7 @@ Vec6<double> diagonal_column(const Node& node, const Setup& setup, const Contact
   const auto unit = base::unit<double>(column);
   Vec6<double> image = beam_forces(setup, faces, unit);
   if (node.is_ground) {
-    base::add_to(image, facet_force(node, contact, unit));
+    base::add_to(image, facet_product(node, contact, unit));
   }
   return image;
 }
@@ -155,7 +156,7 @@ Vec6<double> residual(const Node& node, const Setup& setup, const ContactSetting
   rest = load_of(node, setup);
   Vec6<double> facet{};
   if (node.is_ground) {
-    facet = facet_force(node, contact, node.u);
+    facet = facet_force_in_use(node, contact);
   }
   for (std::size_t i = 0; i < 6; ++i) {
     rest[i] -= node.force[i] + facet[i];

@@ -269,6 +269,28 @@ constexpr void mask_fields(auto& codec, Order& order) {
   }
 }
 
+/// Of conjugate gradients and the Jacobi methods.
+constexpr void solve_fields(auto& codec, Order& order) {
+  switch (order.operation) {
+    case Operation::kLow:
+      return codec.flags(order.flags, kFollowStates);
+    case Operation::kStart:
+      codec.flags(order.flags, kAdoptStates | kWithScalars | kWithBlocks);
+      return degree_field(codec, order.count);
+    case Operation::kJacobi:
+      return codec.u16(order.count, 1, kJacobiCountMax);
+    case Operation::kGradient:
+      degree_field(codec, order.count);
+      break;
+    case Operation::kSlope:
+      codec.flags(order.flags, kExchangeFirst | kMixProducts);
+      break;
+    default:
+      break;
+  }
+  real_fields(codec, std::span(order.reals).first(2));
+}
+
 /// What is in an order behind its operation.
 constexpr void fields(auto& codec, Order& order) {
   base::Direction facet = kStandingFacet;
@@ -292,27 +314,20 @@ constexpr void fields(auto& codec, Order& order) {
       codec.u16(order.count, 0, kDegreeMax);
       return real_fields(codec, std::span(order.reals).first(2));
     case Operation::kHigh:
-      return real_fields(codec, std::span(order.reals).first(2));
     case Operation::kLow:
-      return codec.flags(order.flags, kFollowStates);
     case Operation::kStart:
-      codec.flags(order.flags, kAdoptStates | kWithScalars | kWithBlocks);
-      return degree_field(codec, order.count);
     case Operation::kGradient:
-      degree_field(codec, order.count);
-      return real_fields(codec, std::span(order.reals).first(2));
     case Operation::kJacobi:
-      return codec.u16(order.count, 1, kJacobiCountMax);
     case Operation::kSlope:
-      codec.flags(order.flags, kExchangeFirst | kMixProducts);
-      return real_fields(codec, std::span(order.reals).first(2));
+      codec.require(kHasAllMethods);
+      return kHasAllMethods ? solve_fields(codec, order) : void();
     case Operation::kHold:
       return codec.flags(order.flags, kReleaseOpen | kFreeOpen);
     case Operation::kVerdict:
       return answer_fields(codec, order.answer);
     case Operation::kIterate:
-      codec.flags(order.flags,
-                  kRestart | kLeastResidual | kKeepStates | kWithClusters | kHoldPlanned);
+      codec.flags(order.flags, kRestart | kLeastResidual | kKeepStates | kWithClusters |
+                                   kHoldPlanned | kStandIn);
       codec.u16(order.count, 0, kDegreeMax);
       return real_fields(codec, std::span(order.reals).first(3));
     case Operation::kForget:
@@ -359,6 +374,21 @@ constexpr void worst_fields(auto& codec, Report& report) {
   real_fields(codec, std::span(report.reals).first(1));
   codec.cell(report.cell);
   codec.direction(report.direction);
+}
+
+/// Of conjugate gradients and the Jacobi methods.
+constexpr void solve_report_fields(auto& codec, Operation operation, Report& report) {
+  switch (operation) {
+    case Operation::kLow:
+      return residual_fields(codec, report);
+    case Operation::kJacobi:
+      return real_fields(codec, std::span(report.reals).first(1));
+    case Operation::kSlope:
+      return real_fields(codec, std::span(report.reals).first(5));
+    default:
+      real_fields(codec, std::span(report.reals).first(2));
+      codec.short_real(report.reals[2]);
+  }
 }
 
 constexpr void resumption_fields(auto& codec, Report& report) {
@@ -427,8 +457,6 @@ constexpr void fields(auto& codec, Operation operation, Report& report) {
       return kKeepsAnswers ? renewal_fields(codec, report) : void();
     case Operation::kResume:
       return kKeepsAnswers ? resumption_fields(codec, report) : void();
-    case Operation::kLow:
-      return residual_fields(codec, report);
     case Operation::kTreeIterate:
       return residual_fields(codec, report, kFrontFlags);
     case Operation::kIterate:
@@ -437,14 +465,12 @@ constexpr void fields(auto& codec, Operation operation, Report& report) {
         codec.long_real(product);
       }
       return;
+    case Operation::kLow:
     case Operation::kStart:
     case Operation::kGradient:
-      real_fields(codec, std::span(report.reals).first(2));
-      return codec.short_real(report.reals[2]);
     case Operation::kJacobi:
-      return real_fields(codec, std::span(report.reals).first(1));
     case Operation::kSlope:
-      return real_fields(codec, std::span(report.reals).first(5));
+      return kHasAllMethods ? solve_report_fields(codec, operation, report) : void();
     case Operation::kHold:
     case Operation::kClusters:
     case Operation::kNext:
@@ -483,7 +509,10 @@ static_assert([] {
     Ruler up(kOrderAt);
     Report report;
     fields(up, row.operation, report);
-    const bool is_known = kKeepsAnswers || row.operation < Operation::kRenew;
+    const bool is_of_solve =
+        row.operation >= Operation::kHigh && row.operation <= Operation::kSlope;
+    const bool is_known =
+        (kKeepsAnswers || row.operation < Operation::kRenew) && (kHasAllMethods || !is_of_solve);
     if (is_known && (down.bytes() != row.order_bytes || up.bytes() != row.report_bytes)) {
       return false;
     }

@@ -23,8 +23,10 @@ bool PolynomialIteration::take_exchange(Workspace& ws, const Order& order, int p
 }
 
 bool PolynomialIteration::report(Workspace& ws, const Order& order, int piece, Report& sum) {
-  return order.operation == wire::Operation::kIterate &&
-         MinimalResiduals(ws, order, memory(ws), rho_).report(piece, sum);
+  MinimalResiduals iteration(ws, order, memory(ws), rho_);
+  return order.operation == wire::Operation::kHold
+             ? iteration.hold(piece, sum)
+             : order.operation == wire::Operation::kIterate && iteration.report(piece, sum);
 }
 
 }  // namespace holdfast::agent

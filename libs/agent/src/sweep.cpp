@@ -172,7 +172,9 @@ bool Sweep::is_in_course(const Workspace& ws, const Order& order) const {
              (course_ == Course::kPolynomial && (order.flags & kWithClusters) == 0);
     default:
       return course_ == Course::kGradients ||
-             (order.operation == Operation::kHold && makes_fronts(course_));
+             (order.operation == Operation::kHold &&
+              ((ws.setup.only_one_sweep && course_ == Course::kPolynomial) ||
+               makes_fronts(course_)));
   }
 }
 

@@ -77,7 +77,7 @@ const Limit kLimits[] = {
     {kGoldenOrders[14], 2, is_within<2, 2>},  // verdict: overload, as the reason says
     {kGoldenOrders[14], 3, is_within<2, 2>},  // and the reason: breaks
     {kGoldenOrders[14], 17, is_face},
-    {kGoldenOrders[16], 2, is_flags<31>},    // iterate
+    {kGoldenOrders[16], 2, is_flags<63>},    // iterate
     {kGoldenOrders[18], 2, is_flags<7>},     // clusters
     {kGoldenOrders[19], 2, is_flags<1>},     // forget
     {kGoldenReports[0], 2, is_flags<0x3f>},  // plan

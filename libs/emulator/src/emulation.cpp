@@ -48,9 +48,9 @@ std::vector<module::Configuration> configurations(const model::Robot& robot,
                                                   const EmulationOptions& options) {
   sim::SimulationOptions simulation;
   simulation.link = options.link;
+  simulation.only_one_sweep = true;
   module::Configuration configuration;
   configuration.setup = sim::make_setup(robot, simulation);
-  configuration.setup.only_one_sweep = true;
   configuration.setup.keeps_answers = false;  // Left out of the images.
   std::vector<module::Configuration> all;
   for (std::size_t i = 0; i < robot.modules().size() - robot.planned_count(); ++i) {

@@ -24,15 +24,9 @@ std::int8_t sign(Real value) {
   return value < 0 ? std::int8_t{-1} : std::int8_t{1};
 }
 
-#ifdef HOLDFAST_REGULARISED_LAW_ONLY
-constexpr bool kHasUnilateralLaw = false;  // A program with little flash.
-#else
-constexpr bool kHasUnilateralLaw = true;
-#endif
-
 template <class Real>
 bool is_regularised(const GroundFacet<Real>& facet) {
-  return !kHasUnilateralLaw || facet.law == ContactLaw::kRegularised;
+  return facet.law == ContactLaw::kRegularised;
 }
 
 /// Force at the facet centre to force at the node: the torques gain the lever of the force.

@@ -127,6 +127,7 @@ agent::Setup make_setup(const model::Robot& robot, const SimulationOptions& opti
   setup.support_z = robot.support_z();
   setup.method = options.method;
   setup.degree_max = options.degree_max;
+  setup.only_one_sweep = options.only_one_sweep;
   setup.keeps_answers = options.keeps_answers && (!needs_environment(robot) || stands_level(robot));
   setup.lattice = robot.lattice();
   if (const auto plane = needs_environment(robot) ? find_support_plane(robot) : std::nullopt) {

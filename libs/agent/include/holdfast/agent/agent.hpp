@@ -75,7 +75,7 @@
 /// most. Not re-entrant: one step at a time.
 namespace holdfast::agent {
 
-inline constexpr std::size_t kAgentBytesMax = 8448;
+inline constexpr std::size_t kAgentBytesMax = 8704;
 
 enum class EventKind : std::uint8_t {
   kStart,

@@ -177,23 +177,27 @@ class Branch {
                     CutForces& gaps) const;
 
   /// Eq. (2): the displacement instead of the parent's; `forces` has those of the open loops.
-  void find_displacement(const Joint& to_parent, const BranchLoad& load, const CutForces& forces,
-                         base::Vec6<double>& u) const;
+  [[gnu::noinline]] void find_displacement(const Joint& to_parent, const BranchLoad& load,
+                                           const CutForces& forces, base::Vec6<double>& u) const;
 
   /// The displacement of the root. Not finite if nothing holds the robot.
-  void find_displacement_of_root(const BranchLoad& load, base::Vec6<double>& u) const;
+  [[gnu::noinline]] void find_displacement_of_root(const BranchLoad& load,
+                                                   base::Vec6<double>& u) const;
 
   /// Forces in the loops closed here, for the displacement u.
-  void find_forces(const BranchLoad& load, const base::Vec6<double>& u, CutForces& forces) const;
+  [[gnu::noinline]] void find_forces(const BranchLoad& load, const base::Vec6<double>& u,
+                                     CutForces& forces) const;
 
  private:
   bool is_open(int slot) const { return ((open_ >> static_cast<unsigned>(slot)) & 1U) != 0; }
 
-  void find_stiffness_up(const Joint& to_parent, bool is_fixed,
-                         const std::array<std::uint8_t, kBatch>& which, Columns& columns) const;
-  void find_end_columns(const Joint& to_parent, int first, int count, Columns& columns) const;
-  void find_give_columns(const Joint& to_parent, bool is_fixed, int first, int count,
-                         Columns& columns) const;
+  [[gnu::noinline]] void find_stiffness_up(const Joint& to_parent, bool is_fixed,
+                                           const std::array<std::uint8_t, kBatch>& which,
+                                           Columns& columns) const;
+  [[gnu::noinline]] void find_end_columns(const Joint& to_parent, int first, int count,
+                                          Columns& columns) const;
+  [[gnu::noinline]] void find_give_columns(const Joint& to_parent, bool is_fixed, int first,
+                                           int count, Columns& columns) const;
   void close_loop(Beams<double> beams, int slot);
   void close_column(int slot, int column);
 

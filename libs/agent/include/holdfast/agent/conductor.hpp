@@ -25,6 +25,13 @@
 /// correction, the last two iterations mixed [Anderson 1965]); and the loop ends
 /// by a bound on the error of every load ratio, not by a count.
 ///
+/// A robot without conjugate gradients (Setup::only_one_sweep) has Newton's method by the
+/// polynomial in their place. Contact states are kept while the linear problem they make is solved
+/// by iterations, as many as it takes; tilting facets act by symmetric stand-ins, so the least
+/// energy is what converges. Then one iteration has the facets' own forces (defect correction), and
+/// where these are in balance as far as states need it the next one looks states up. Under the
+/// unilateral law there is no line search: states that come again end as `undecided`.
+///
 /// What follows a report; where several do, the first that applies.
 ///
 ///   asked          next
@@ -153,7 +160,7 @@ class Conductor {
   Order after_gradient(const Setup& setup, const Report& report);
   Order next_gradient(double gamma, double delta);
   // conductor_iterations.cpp
-  void choose_one_sweep(bool is_unilateral);
+  void choose_one_sweep(const Setup& setup, bool is_unilateral);
   std::uint16_t iteration_degree() const;
   std::uint16_t cluster_degree() const;
   bool may_have_clusters() const;
@@ -173,6 +180,10 @@ class Conductor {
   double iteration_error(const Setup& setup, const Report& report, double bound);
   Order leave_fronts(const Setup& setup, bool has_no_room);
   Order leave_one_sweep(const Setup& setup, bool is_unilateral);
+  void take_safest_method(const Setup& setup);
+  void begin_newton();
+  void steer_newton(double error);
+  int stagnation_max() const;
 
   Order start_jacobi();
   Order after_jacobi(const Setup& setup, const Report& report);
@@ -282,6 +293,12 @@ class Conductor {
   double predicted_ = 0;            ///< Error expected after the last iteration.
   double older_square_ = 0;         ///< (p, q) of the older direction, or |q|^2.
   EnergyBound energy_bound_;
+  // Newton's method by the polynomial.
+  bool is_newton_ = false;  ///< Contact states are kept until their forces are in balance.
+  bool stands_in_ = false;  ///< The next iteration is one of a linear problem, ...
+  bool stood_in_ = false;   ///< ... as the last one was.
+  bool is_solved_ = false;  ///< The facets' own forces are in balance, as far as states need it.
+  double enough_ = 0;       ///< The linear problem is solved when its error is below.
   // Jacobi.
   std::uint16_t batch_ = 0;
   std::uint32_t check_at_ = 0;

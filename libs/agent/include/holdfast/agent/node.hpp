@@ -18,6 +18,8 @@ namespace holdfast::agent {
 /// How the equilibrium treats the ground, the same everywhere in the robot.
 struct ContactSetting {
   mechanics::GroundFacet<double> facet;
+  /// Facets act by the symmetric stand-ins of their tangents, from Node::anchor on.
+  bool stands_in = false;
   double lever_mm = 0;  ///< The robot's extent: how far a force that is not balanced may reach.
 };
 
@@ -63,6 +65,7 @@ struct Node {
 #endif
 
   base::Vec6<double> u{};
+  base::Vec6<float> anchor{};  ///< Where facets have acted by their own tangents last.
   base::Vec6<double> force{};  ///< Force of all beams on their module ends, at u.
 };
 
@@ -123,7 +126,7 @@ void form_diagonal(Node& node, const Setup& setup, const ContactSetting& contact
 /// Factors what form_diagonal() has left, three rows of it.
 void factor_diagonal(Node& node, int half);
 
-/// A column of the diagonal block with the facet's true tangent.
+/// A column of the diagonal block with the facet's tangent in use.
 base::Vec6<double> diagonal_column(const Node& node, const Setup& setup,
                                    const ContactSetting& contact, Faces faces, int column);
 

@@ -158,6 +158,8 @@ inline constexpr std::uint8_t kKeepStates = 4;      ///< kIterate: contact state
 inline constexpr std::uint8_t kWithClusters = 8;    ///< kIterate: clusters between two polynomials.
 /// kIterate: planned modules between others stand still in the polynomial.
 inline constexpr std::uint8_t kHoldPlanned = 16;
+/// kIterate: facets act by the symmetric stand-ins of their tangents.
+inline constexpr std::uint8_t kStandIn = 32;
 inline constexpr std::uint8_t kAdoptStates = 1;    ///< kStart
 inline constexpr std::uint8_t kWithScalars = 2;    ///< kStart
 inline constexpr std::uint8_t kWithBlocks = 4;     ///< kStart

@@ -36,9 +36,9 @@ struct Setup {
   std::int32_t support_z = 0;  ///< Modules in this layer rest on the ground.
   /// kElimination means: or kPolynomial, if the robot has too many loops.
   Method method = Method::kElimination;
-  /// Elimination and the polynomial alone, without rigid clusters; where they do not do, the
-  /// verdict is `undecided`: for robots some of whose modules have no other method
-  /// (src/methods.hpp).
+  /// Elimination and the polynomial alone, without rigid clusters, and Newton's method by the
+  /// polynomial where others take conjugate gradients: for robots some of whose modules have no
+  /// other method (src/methods.hpp).
   bool only_one_sweep = false;
   /// After a verdict the next one begins from what is kept, where only a plan has changed or a
   /// module has come; else, and without it, from nothing.

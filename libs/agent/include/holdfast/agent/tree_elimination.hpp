@@ -125,11 +125,11 @@ class TreeElimination {
   void send_gaps_up(Workspace& ws) const;
   void take_up(Workspace& ws, Direction face, std::span<const std::uint8_t> message);
 
-  // Displacements.
+  // Displacements. What has matrices on its stack is not merged with what comes next.
   bool do_shift_piece(Workspace& ws);
   void find_own_shift(Workspace& ws);
-  void find_leaf_shift(Workspace& ws, const Leaves& leaves, int leaf);
-  void send_down(Workspace& ws);
+  [[gnu::noinline]] void find_leaf_shift(Workspace& ws, const Leaves& leaves, int leaf);
+  [[gnu::noinline]] void send_down(Workspace& ws);
   void take_down(Workspace& ws, std::span<const std::uint8_t> message);
 
   // What is kept for each child: here, or in memory that is lent.

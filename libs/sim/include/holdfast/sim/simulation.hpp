@@ -32,8 +32,9 @@ struct SimulationOptions {
   std::uint64_t seed = 1;                              ///< Of noise, clocks and session numbers.
   agent::Method method = agent::Method::kElimination;  ///< See agent::Setup.
   std::uint8_t degree_max = 200;                       ///< See agent::Setup.
-  bool keeps_answers = true;  ///< See agent::Setup. False: every change starts from nothing.
-  bool judges_faces = false;  ///< Modules have the memory to judge free faces (free_faces.hpp).
+  bool only_one_sweep = false;  ///< See agent::Setup: modules with little flash.
+  bool keeps_answers = true;    ///< See agent::Setup. False: every change starts from nothing.
+  bool judges_faces = false;    ///< Modules have the memory to judge free faces (free_faces.hpp).
   /// Modules have the memory for 30 planned ones, not 5 (more_planned.hpp). They have it anyway
   /// where the robot, the step and `announcements` have more than 5 together.
   bool plans_many = false;
