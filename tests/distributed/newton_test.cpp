@@ -34,9 +34,10 @@ TEST(Newton, finds_the_state_of_the_regularised_law) {
   }
 }
 
-/// They have no state under the regularised law.
+/// They have no state under the regularised law. In 32062 feet that let go hold sideways no longer,
+/// which changes the load ratio by 3 %.
 TEST(Newton, decides_by_the_unilateral_law) {
-  for (const std::uint64_t seed : {198U, 351U, 406U, 455U, 518U, 616U, 926U}) {
+  for (const std::uint64_t seed : {198U, 351U, 406U, 455U, 518U, 616U, 926U, 32062U}) {
     expect_decided(seed, true);
   }
 }

@@ -11,6 +11,9 @@ PlannedPart PolynomialIteration::planned_part(const Workspace& ws, const Order& 
 }
 
 bool PolynomialIteration::begin(Workspace& ws, const Order& order, int piece) {
+  if (order.operation == wire::Operation::kHold) {
+    return false;  // Work is left to the report.
+  }
   MinimalResiduals iteration(ws, order, memory(ws), rho_);
   return order.operation == wire::Operation::kIterate ? iteration.move(piece)
                                                       : iteration.begin(piece);
