@@ -5,9 +5,12 @@
 //   distributed_bench random FROM TO [METHOD [PLANNED]]   random robots against the exact answer,
 //                                         quiet links; with 6 to PLANNED planned modules, 30 at
 //                                         most; METHOD firmware: those that firmware has
-//   distributed_bench general FROM TO     cubes on walls and ceilings, with loads of their own
-//   distributed_bench general FROM TO planned   the same with one to three modules planned
-//   distributed_bench general FROM TO [planned] LATTICE   modules of another lattice
+//   distributed_bench general FROM TO [planned] [turned] [floor] [laws] [near] [friction] [LATTICE]
+//                                         cubes or others on walls and ceilings, with loads of
+//                                         their own; one to three modules planned; turned and
+//                                         mirrored; on a floor; connectors with laws of their own,
+//                                         all strengths so that the load ratio is within 1 % of 1;
+//                                         friction
 //   distributed_bench noisy FROM TO [METHOD [PLANNED]]   the same with loss, duplication, jitter,
 //   bit
 //                                         errors
@@ -154,6 +157,7 @@ int run_random(const Robots& robots, bool is_noisy) {
     const test::Comparison comparison = test::compare(robots.make(seed), options);
     if (comparison.exact == verdict::Verdict::kUndecided) {
       ++not_decided;
+      fmt::print("random_robot({}): {}\n", seed, comparison.text());
     } else {
       tally.add(comparison, seed);
     }
@@ -170,20 +174,53 @@ int run_random(const Robots& robots, bool is_noisy) {
   return tally.wrong + tally.undecided;
 }
 
+/// What random robots of general_robot() are made into.
+struct Variety {
+  bool is_planned = false;
+  bool is_turned = false;
+  bool is_on_floor = false;
+  bool has_laws = false;
+  bool is_near = false;
+  bool has_friction = false;
+  base::Lattice lattice = base::kCubic;
+
+  std::optional<model::Robot> make(std::uint64_t seed) const;
+};
+
+std::optional<model::Robot> Variety::make(std::uint64_t seed) const {
+  model::RobotSpec spec = test::general_robot(lattice, seed);
+  spec = is_on_floor ? test::on_a_floor(spec, seed % 2 == 0) : spec;
+  spec = test::with_last_planned(spec, is_planned ? 1 + seed % 3 : 0);
+  spec = has_laws ? test::with_laws(spec, seed) : spec;
+  spec = has_friction ? test::with_friction(spec, seed) : spec;
+  if (is_turned) {
+    std::vector<test::Symmetry> all = test::symmetries(lattice);
+    std::erase_if(all, [&](const auto& one) { return !test::keeps_frames(lattice, one); });
+    spec = test::turned(spec, all[seed % all.size()]);
+  }
+  if (is_near) {
+    return test::near_limit(spec, seed);
+  }
+  auto robot = model::Robot::create(spec);
+  return robot ? std::optional(std::move(robot).value()) : std::nullopt;
+}
+
 /// Robots that the exact solver does not decide are counted apart.
-int run_general(std::uint64_t from, std::uint64_t to, bool is_planned,
-                const base::Lattice& lattice) {
+int run_general(std::uint64_t from, std::uint64_t to, const Variety& variety) {
   Tally tally;
   int both_undecided = 0;
   int decided_alone = 0;
   int wrong_safe = 0;
+  int other_limits = 0;
+  int other_gaps = 0;
   for (std::uint64_t seed = from; seed < to; ++seed) {
-    const auto robot = model::Robot::create(
-        test::with_last_planned(test::general_robot(lattice, seed), is_planned ? 1 + seed % 3 : 0));
+    const auto robot = variety.make(seed);
     if (!robot) {
       continue;  // Nothing else of it is held.
     }
-    const test::Comparison comparison = test::compare(robot.value(), {.seed = seed});
+    const test::Comparison comparison = test::compare(*robot, {.seed = seed});
+    other_limits += comparison.has_other_limit ? 1 : 0;
+    other_gaps += comparison.has_other_gaps ? 1 : 0;
     if (comparison.exact == verdict::Verdict::kUndecided) {
       (comparison.is_undecided() ? both_undecided : decided_alone) += 1;
       continue;
@@ -193,9 +230,10 @@ int run_general(std::uint64_t from, std::uint64_t to, bool is_planned,
   }
   fmt::print(
       "{} robots: {} wrong, {} of them safe, {} undecided, {} not agreed; largest error {:.4f} of "
-      "what is allowed; not decided by the exact solver {}, by the robot either {}\n",
+      "what is allowed; not decided by the exact solver {}, by the robot either {}; another limit "
+      "named {}, other gaps {}\n",
       tally.count, tally.wrong, wrong_safe, tally.undecided, tally.disagreeing, tally.ratio_error,
-      both_undecided + decided_alone, both_undecided);
+      both_undecided + decided_alone, both_undecided, other_limits, other_gaps);
   print_shares("sweeps", tally.sweeps);
   return tally.wrong;
 }
@@ -481,20 +519,28 @@ int usage() {
   return 64;
 }
 
-/// FROM TO [planned] [LATTICE]
+/// FROM TO, words, and the lattice.
 int run_general(std::span<char*> arguments) {
-  const bool is_planned = arguments.size() > 2 && std::string_view(arguments[2]) == "planned";
-  const std::size_t named = is_planned ? 3 : 2;
-  base::Lattice lattice = base::kCubic;
-  if (arguments.size() > named) {
-    const auto found = io::find_lattice(arguments[named]);
-    if (!found || arguments.size() > named + 1) {
+  Variety variety;
+  const std::pair<std::string_view, bool Variety::*> words[] = {
+      {"planned", &Variety::is_planned}, {"turned", &Variety::is_turned},
+      {"floor", &Variety::is_on_floor},  {"laws", &Variety::has_laws},
+      {"near", &Variety::is_near},       {"friction", &Variety::has_friction}};
+  for (const std::string_view argument : arguments.subspan(2)) {
+    const auto* const word =
+        std::ranges::find(words, argument, &std::pair<std::string_view, bool Variety::*>::first);
+    if (word != std::end(words)) {
+      variety.*word->second = true;
+      continue;
+    }
+    const auto found = io::find_lattice(argument);
+    if (!found) {
       return usage();
     }
-    lattice = found.value();
+    variety.lattice = found.value();
   }
   const int wrong = run_general(std::strtoull(arguments[0], nullptr, 10),
-                                std::strtoull(arguments[1], nullptr, 10), is_planned, lattice);
+                                std::strtoull(arguments[1], nullptr, 10), variety);
   return wrong == 0 ? 0 : 1;
 }
 

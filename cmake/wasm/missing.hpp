@@ -186,6 +186,12 @@ constexpr auto upper_bound(Range&& range, const Value& value, Compare compare = 
                           });
 }
 
+template <class Range, class Predicate, class Projection = holdfast_detail::Identity>
+constexpr auto partition_point(Range&& range, Predicate predicate, Projection projection = {}) {
+  return std::partition_point(std::begin(range), std::end(range),
+                              holdfast_detail::on(predicate, projection));
+}
+
 template <class Range, class Value, class Compare = holdfast_detail::Less>
 constexpr bool binary_search(Range&& range, const Value& value, Compare compare = {}) {
   return std::binary_search(std::begin(range), std::end(range), value, compare);

@@ -69,4 +69,4 @@ axes.plot(needed, np.arange(1, len(needed) + 1) / len(needed))
 axes.axvline(strength, linestyle='--', color='gray')
 axes.annotate(' Blinky Blocks', (strength, 0.02))
 axes.set(xlabel='strength of lateral connections, N', ylabel='share of robots that hold',
-         xlim=(0, None), ylim=(0, 1))
+         xlim=(0, None), ylim=(0, 1));

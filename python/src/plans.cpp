@@ -259,7 +259,7 @@ SharedStructure move_as_steps(const io::MoveReport& report) {
 }
 
 template <class Write>
-std::string text_of(const Write& write) {
+std::string written_text(const Write& write) {
   return without_gil([&] {
     std::ostringstream out;
     write(out);
@@ -275,7 +275,7 @@ void add_places(py::module_& module) {
       .def_property_readonly("seconds", [](const Places& p) { return p.result.seconds; })
       .def("json",
            [](const Places& p) {
-             return text_of(
+             return written_text(
                  [&](std::ostream& out) { write_next_json(out, *p.structure, p.result); });
            })
       .def("text", [](const Places& p) { return next_text(*p.structure, p.result); })
@@ -304,7 +304,8 @@ void add_steps(py::module_& module) {
       .def_property_readonly("seconds", [](const JudgedSteps& s) { return s.result.seconds; })
       .def("json",
            [](const JudgedSteps& s) {
-             return text_of([&](std::ostream& out) { write_steps_json(out, s.file, s.result); });
+             return written_text(
+                 [&](std::ostream& out) { write_steps_json(out, s.file, s.result); });
            })
       .def("text", [](const JudgedSteps& s) { return steps_text(s.file, s.result); })
       .def("svg", [](const JudgedSteps& s) { return steps_svg(s.file, s.result); })

@@ -153,7 +153,7 @@ py::array modules(const SharedStructure& structure) {
               py::cast(structure));
 }
 
-py::array connections(const SharedStructure& structure) {
+py::array connections_of(const SharedStructure& structure) {
   using model::Connection;
   const auto list = structure->robot.connections();
   const std::vector<Connection> made(list.begin(), list.end());
@@ -306,7 +306,7 @@ void add_structure(py::module_& module) {
       .def_property_readonly("lattice",
                              [](const Structure& s) { return io::lattice_name(s.robot.lattice()); })
       .def_property_readonly("modules", &modules)
-      .def_property_readonly("connections", &connections)
+      .def_property_readonly("connections", &connections_of)
       .def_property_readonly("facets", &facets)
       .def_property_readonly("positions", &positions)
       .def_property_readonly("masses", &masses)

@@ -3,26 +3,7 @@
 set -euo pipefail
 program=$1
 repository=$2
-work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
-cd "$work"
-faults=0
-
-fault() {
-  printf 'FAULT: %s\n' "$*"
-  faults=$((faults + 1))
-}
-
-# expect_exit CODE ARGUMENTS...   output in out, errors in err
-expect_exit() {
-  local expected=$1 code=0
-  shift
-  "$program" "$@" >out 2>err </dev/null || code=$?
-  [ "$code" -eq "$expected" ] || fault "exit $code, expected $expected: $*: $(head -c 300 err)"
-}
-
-# expect_line FILE PATTERN   one of its lines matches
-expect_line() { grep -Eq -- "$2" "$1" || fault "no line '$2' in $1: $(head -c 400 "$1")"; }
+. "$(dirname "${BASH_SOURCE[0]}")/expect.sh"
 
 # expect_refusal TEXT FILE   exit 65 and one clear line that names the file and says TEXT
 expect_refusal() {

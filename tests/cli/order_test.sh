@@ -3,15 +3,7 @@
 # runs out or somebody interrupts it, and every state of it is safe.
 set -euo pipefail
 program=$1
-work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
-cd "$work"
-faults=0
-
-fault() {
-  printf 'FAULT: %s\n' "$*"
-  faults=$((faults + 1))
-}
+. "$(dirname "${BASH_SOURCE[0]}")/expect.sh"
 
 # expect_part FILE MODULES SHARE   some safe steps of a robot that begins with so many modules and
 # ends with fewer (SHARE below) or more (SHARE above) of them
@@ -31,16 +23,12 @@ PYTHON
 # No order of it is known, and no proof that there is none.
 "$program" generate portal 24 -o portal.json
 for patience in 1 5 20; do # A slow machine has nothing yet after a short while.
-  code=0
-  "$program" order portal.json --seconds "$patience" -o part.json --json report.json >out 2>err ||
-    code=$?
-  [ "$code" -eq 2 ] || fault "exit $code"
+  expect_exit 2 order portal.json --seconds "$patience" -o part.json --json report.json
   [ ! -f part.json ] || break
 done
 expect_part part.json 1 above
-grep -Eq '^  as far as   [0-9]+ of 640 modules, by [0-9]+ steps, every state on the way' out ||
-  fault "not said: $(cat out)"
-grep -q '"result": "not-found"' report.json || fault "$(head -c 300 report.json)"
+expect_line out '^  as far as   [0-9]+ of 640 modules, by [0-9]+ steps, every state on the way'
+expect_line report.json '"result": "not-found"'
 
 for signal in INT TERM; do
   for patience in 4 15 60; do
@@ -58,3 +46,4 @@ for signal in INT TERM; do
 done
 
 [ "$faults" -eq 0 ] || exit 1
+echo "order: all as expected"

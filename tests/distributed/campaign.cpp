@@ -7,8 +7,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "general_robot.hpp"
 #include "holdfast/base/check.hpp"
 #include "holdfast/distributed.hpp"
+#include "holdfast/verdict/connection_law.hpp"
 
 namespace holdfast::test {
 
@@ -88,7 +90,63 @@ double worst_error(const sim::Simulation& simulation, const model::Robot& robot,
   return worst;
 }
 
+model::Limit limit_of(const model::Robot& robot, const verdict::Assessment& assessment,
+                      std::size_t connection) {
+  const verdict::ConnectionResult& found = assessment.connections[connection];
+  const model::ConnectionForce force = {.axial_n = found.axial_n,
+                                        .bending_nmm = found.bending_nmm,
+                                        .shear_n = found.shear_n,
+                                        .torsion_nmm = found.torsion_nmm};
+  return model::load_ratio(robot.connector(robot.connections()[connection]), force).limit;
+}
+
+/// Does the robot name another limit of the same connection?
+bool has_other_limit(const model::Robot& robot, const verdict::Assessment& assessment,
+                     const agent::Answer& answer) {
+  if (robot.has_default_connectors() || !assessment.worst) {
+    return false;
+  }
+  std::array<base::Cell, 2> exact = model::ends(robot, *assessment.worst);
+  std::array<base::Cell, 2> named = {
+      answer.worst_cell,
+      base::neighbour(robot.lattice(), answer.worst_cell, answer.worst_direction)};
+  std::ranges::sort(exact);
+  std::ranges::sort(named);
+  const auto limit = static_cast<model::Limit>(answer.remarks & agent::kLimitBits);
+  return exact == named && limit != limit_of(robot, assessment, *assessment.worst);
+}
+
+/// The largest opening of an edge over what it may be.
+double gap_share(const model::Robot& robot, const verdict::Assessment& assessment) {
+  const verdict::ConnectionLaws laws(robot);
+  double share = 0;
+  for (const model::Connection& pair : robot.connections()) {
+    share = std::max(share, laws.gap_mm(pair, assessment.equilibrium.displacement,
+                                        assessment.equilibrium.displacement_low) /
+                                robot.connector(pair).gap_limit_mm);
+  }
+  return share;
+}
+
+bool has_other_gaps(const model::Robot& robot, const verdict::Assessment& assessment,
+                    const agent::Answer& answer) {
+  const double share = gap_share(robot, assessment);
+  const bool opens = (answer.remarks & agent::kGapOpens) != 0;
+  return opens != (share > 1) && std::abs(share - 1) > 0.02;
+}
+
 }  // namespace
+
+std::optional<model::Robot> near_limit(const model::RobotSpec& spec, std::uint64_t seed) {
+  base::Rng rng(seed);
+  const auto robot = model::Robot::create(spec);
+  const auto ratio = robot ? verdict::assess(robot.value()).load_ratio_max : std::nullopt;
+  if (!ratio || !(*ratio > 1e-6)) {
+    return std::nullopt;
+  }
+  const double wanted = 0.99 + 1e-5 * static_cast<double>(rng.below(2001));
+  return model::Robot::create(with_strengths_times(spec, *ratio / wanted)).value();
+}
 
 Comparison compare(const model::Robot& robot, const sim::SimulationOptions& options) {
   const verdict::Assessment assessment = verdict::assess(robot);
@@ -105,6 +163,8 @@ Comparison compare(const model::Robot& robot, const sim::SimulationOptions& opti
       comparison.robot == agent::Verdict::kSafe || comparison.robot == agent::Verdict::kOverload;
   if (has_loads && assessment.load_ratio_max) {
     comparison.worst_connection = worst_error(simulation, robot, assessment);
+    comparison.has_other_limit = has_other_limit(robot, assessment, comparison.result.answer);
+    comparison.has_other_gaps = has_other_gaps(robot, assessment, comparison.result.answer);
   }
   for (std::int32_t i = 0; i < simulation.agent_count(); ++i) {
     comparison.depth = std::max<int>(comparison.depth, simulation.agent(i).depth());

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "holdfast/base/rng.hpp"
@@ -19,6 +20,10 @@ struct Comparison {
   /// Over all connections: the largest error of a load ratio over what is allowed.
   double worst_connection = 0;
   int depth = 0;  ///< Of the spanning tree.
+  /// The robot names the worst connection that the exact answer has, with another limit.
+  bool has_other_limit = false;
+  /// Only one of both says that a gap opens, and none is within 2 % of its limit.
+  bool has_other_gaps = false;
   sim::SimulationResult result;
 
   /// Decided, and differently.
@@ -37,6 +42,10 @@ struct Comparison {
 
 /// The link `unit` with everything that can go wrong with packets.
 sim::LinkModel noisy_rounds();
+
+/// The robot with strengths by which its largest load ratio is within 1 % of 1; none where it has
+/// no robot or no load ratio.
+std::optional<model::Robot> near_limit(const model::RobotSpec& spec, std::uint64_t seed);
 
 /// Ends with a broken check if the simulation does not end by itself.
 Comparison compare(const model::Robot& robot, const sim::SimulationOptions& options);

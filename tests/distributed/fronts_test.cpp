@@ -48,6 +48,36 @@ TEST(Fronts, random_robots_are_decided_in_few_sweeps) {
   }
 }
 
+/// What else made sweeps many: refinement that came to a halt at the rounding of displacements and
+/// loads of kept facets (3534), a root's matrix that rounding had made negative (6226), more kept
+/// facets than the root had room for (10506), batches of one and two facets (4478, 12982), and open
+/// feet that are freed one after the other (5162).
+TEST(Fronts, robots_that_took_many_sweeps_take_few) {
+  for (const std::uint64_t seed : {3534U, 4478U, 5162U, 6226U, 10506U, 12982U}) {
+    SCOPED_TRACE(::testing::Message() << "random_robot(" << seed << ")");
+    const auto comparison =
+        test::compare(made(test::random_robot(seed)), {.seed = seed, .method = kFronts});
+    expect_right(comparison);
+    EXPECT_LE(comparison.sweeps(), 60);
+    expect_exact_method(comparison);
+  }
+}
+
+/// Of these the exact solver knows two solutions of the paper's law; by one of them a connection
+/// breaks. The one that is found first does not.
+TEST(Fronts, no_robot_is_safe_that_another_solution_breaks) {
+  for (const std::uint64_t seed : {7373U, 12085U, 31269U}) {
+    SCOPED_TRACE(::testing::Message() << "random_robot(" << seed << ")");
+    const auto comparison =
+        test::compare(made(test::random_robot(seed)), {.seed = seed, .method = kFronts});
+    EXPECT_EQ(comparison.exact, verdict::Verdict::kUndecided);
+    EXPECT_EQ(comparison.result.answer.verdict, agent::Verdict::kUndecided);
+    EXPECT_EQ(comparison.result.answer.reason, agent::Reason::kAmbiguousFeet);
+    EXPECT_EQ(comparison.result.effort.method, kFronts);
+    EXPECT_LE(comparison.sweeps(), 30);
+  }
+}
+
 /// Two rows of modules on the ground with rungs between them, and a planned module between two.
 TEST(Fronts, a_lying_ladder_with_a_planned_module_takes_few_sweeps) {
   model::RobotSpec ladder;

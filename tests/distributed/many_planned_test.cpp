@@ -50,6 +50,18 @@ TEST(ManyPlanned, random_robots_are_decided_in_few_sweeps_with_fronts) {
   EXPECT_LE(sweeps.back(), 60);
 }
 
+/// Where nothing holds the robot at first (2478, 2690), and the longest fronts (4478, 5382).
+TEST(ManyPlanned, robots_that_took_many_sweeps_take_few) {
+  for (const std::uint64_t seed : {2478U, 2690U, 4478U, 5382U}) {
+    SCOPED_TRACE(::testing::Message() << "many_planned_robot(" << seed << ")");
+    const auto comparison = test::compare(made(test::many_planned_robot(seed)),
+                                          {.seed = seed, .method = Method::kFronts});
+    expect_right(comparison);
+    EXPECT_LE(comparison.sweeps(), 60);
+    EXPECT_EQ(comparison.result.effort.method, Method::kFronts);
+  }
+}
+
 TEST(ManyPlanned, random_robots_are_decided_without_memory_for_fronts) {
   for (std::uint64_t seed = 0; seed < 16; ++seed) {
     SCOPED_TRACE(::testing::Message() << "many_planned_robot(" << seed << ")");

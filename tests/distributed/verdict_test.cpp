@@ -10,6 +10,7 @@
 #include "campaign.hpp"
 #include "holdfast/holdfast.hpp"
 #include "random_robot.hpp"
+#include "seeds.hpp"
 
 namespace holdfast {
 namespace {
@@ -61,7 +62,7 @@ TEST(Distributed, the_published_method_and_its_safer_form_come_to_the_same_answe
 }
 
 TEST(Distributed, random_robots_are_decided_like_the_exact_answer) {
-  for (std::uint64_t seed = 0; seed < 60; ++seed) {
+  for (std::uint64_t seed = 0; seed < test::campaign(60U); ++seed) {
     SCOPED_TRACE(::testing::Message() << "random_robot(" << seed << ")");
     const auto robot = model::Robot::create(test::random_robot(seed));
     ASSERT_TRUE(robot);
@@ -147,8 +148,10 @@ TEST(Distributed, long_thick_robots_are_decided_in_few_steps) {
   model::RobotSpec between = slender_frame(70, 60);
   std::erase(between.existing, base::Cell{35, 0, 58});
   between.planned = {{35, 0, 58}};
-  for (const model::RobotSpec& spec :
-       {thick_cantilever(140), slender_frame(71, 61), planned, between}) {
+  std::vector<model::RobotSpec> specs{between, thick_cantilever(140), slender_frame(71, 61),
+                                      planned};
+  specs.resize(test::campaign(specs.size()));
+  for (const model::RobotSpec& spec : specs) {
     SCOPED_TRACE(spec.existing.size());
     const auto robot = model::Robot::create(spec);
     ASSERT_TRUE(robot);
@@ -161,7 +164,7 @@ TEST(Distributed, long_thick_robots_are_decided_in_few_steps) {
 }
 
 TEST(Distributed, loss_duplication_reordering_and_bit_errors_change_no_verdict) {
-  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+  for (std::uint64_t seed = 0; seed < test::campaign(20U); ++seed) {
     SCOPED_TRACE(::testing::Message() << "random_robot(" << seed << ")");
     const auto robot = model::Robot::create(test::random_robot(seed));
     ASSERT_TRUE(robot);

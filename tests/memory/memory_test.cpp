@@ -100,10 +100,10 @@ TEST_P(Memory, of_a_check_stays_within_its_budget) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Families, Memory,
-                         testing::Values(Budget{"cube", 37, 220, 385},
-                                         Budget{"scaffold", 61, 195, 205},
-                                         Budget{"ball", 46, 205, 515},
-                                         Budget{"tower", 6000, 220, 605}),
+                         testing::Values(Budget{"cube", 37, 216, 236},
+                                         Budget{"scaffold", 61, 195, 170},
+                                         Budget{"ball", 46, 198, 420},
+                                         Budget{"tower", 6000, 212, 470}),
                          [](const auto& one) { return one.param.family; });
 
 }  // namespace

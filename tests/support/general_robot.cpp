@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <set>
+#include <string>
 
 #include "holdfast/base/rng.hpp"
 #include "holdfast/model/lattice_beam.hpp"
@@ -116,6 +117,46 @@ Matrix inverse(const Matrix& m) {
   return result;
 }
 
+model::ConnectorLaw any_law(double pitch_mm, base::Rng& rng) {
+  const auto has = [&](std::uint64_t one_in) { return rng.below(one_in) == 0; };
+  model::ConnectorLaw law;
+  // Seldom nothing but shear and torsion is limited.
+  if (!has(6)) {
+    law.strength_n = between(2, 30, rng);
+  }
+  law.lever_mm = between(0.2, 0.6, rng) * pitch_mm;
+  law.bending = has(2) ? model::BendingLaw::kRound : model::BendingLaw::kSquare;
+  if (has(2)) {
+    law.shear_strength_n = between(2, 30, rng);
+  }
+  if (has(2)) {
+    law.torsion_strength_nmm = between(20, 600, rng);
+  }
+  if (has(3)) {
+    law.friction = between(0.2, 1.5, rng);
+    law.torsion_radius_mm =
+        has(3) ? model::ConnectorLaw::kUnlimited : between(0.2, 0.6, rng) * pitch_mm;
+  }
+  if (has(2)) {
+    law.gap_limit_mm = between(0.0001, 0.1, rng);
+  }
+  return law;
+}
+
+/// One law for all directions, one for vertical and one for lateral ones, or one for each.
+model::ModuleKind any_kind(const base::Lattice& lattice, double pitch_mm, base::Rng& rng) {
+  model::ModuleKind kind{.name = "a kind", .mass_kg = between(0.02, 0.1, rng)};
+  const std::uint64_t how = rng.below(3);
+  const model::ConnectorLaw vertical = any_law(pitch_mm, rng);
+  const model::ConnectorLaw lateral = how == 0 ? vertical : any_law(pitch_mm, rng);
+  for (const Direction direction : base::directions(lattice)) {
+    const bool is_vertical =
+        base::connector_class(lattice, direction) == base::ConnectorClass::kVertical;
+    kind.connectors.push_back(how == 2 ? any_law(pitch_mm, rng) : is_vertical ? vertical : lateral);
+  }
+  return kind;
+}
+
 bool is_orthogonal(const Matrix& m) {
   for (std::size_t i = 0; i < 3; ++i) {
     for (std::size_t j = 0; j < 3; ++j) {
@@ -162,6 +203,64 @@ model::RobotSpec with_last_planned(model::RobotSpec spec, std::size_t count) {
     }
     spec.planned.push_back(spec.existing.back());
     spec.existing.pop_back();
+  }
+  return spec;
+}
+
+model::RobotSpec with_laws(model::RobotSpec spec, std::uint64_t seed) {
+  base::Rng rng(seed ^ 0x1a35U);
+  const std::uint64_t kinds = 2 + rng.below(2);
+  for (std::uint64_t k = 0; k < kinds; ++k) {
+    spec.kinds.push_back(any_kind(spec.lattice, spec.material.pitch_mm, rng));
+    spec.kinds.back().name += std::to_string(k);
+  }
+  for (const std::vector<Cell>* cells : {&spec.existing, &spec.planned}) {
+    for (const Cell& cell : *cells) {
+      const auto kind = static_cast<std::uint16_t>(rng.below(kinds));
+      if (kind > 0) {
+        spec.own_kinds.push_back({.cell = cell, .kind = kind});
+      }
+    }
+  }
+  return spec;
+}
+
+model::RobotSpec with_friction(model::RobotSpec spec, std::uint64_t seed) {
+  base::Rng rng(seed ^ 0xf21cU);
+  for (model::Obstacle& obstacle : spec.obstacles) {
+    if (rng.below(4) != 0 && obstacle.touch.hold == model::Hold::kContact) {
+      obstacle.touch.friction = between(0.1, 3, rng);
+    }
+  }
+  if (rng.below(4) != 0) {
+    spec.floor.friction = between(0.05, 1, rng);
+  }
+  return spec;
+}
+
+model::RobotSpec with_strengths_times(model::RobotSpec spec, double factor) {
+  for (model::ModuleKind& kind : spec.kinds) {
+    for (model::ConnectorLaw& law : kind.connectors) {
+      law.strength_n *= factor;
+      law.shear_strength_n *= factor;
+      law.torsion_strength_nmm *= factor;
+    }
+  }
+  return spec;
+}
+
+model::RobotSpec on_a_floor(model::RobotSpec spec, bool has_loads) {
+  std::int32_t lowest = spec.existing.front().z;
+  for (const Cell& cell : spec.existing) {
+    lowest = std::min(lowest, cell.z);
+  }
+  spec.support_z = lowest;
+  spec.obstacles.clear();
+  spec.fixed.clear();
+  spec.gravity_m_s2.reset();
+  if (!has_loads) {
+    spec.payloads.clear();
+    spec.own_masses.clear();
   }
   return spec;
 }
@@ -218,6 +317,21 @@ std::vector<Symmetry> symmetries(const base::Lattice& lattice) {
   return found;
 }
 
+namespace {
+
+/// Where a direction goes.
+Direction turned(const base::Lattice& lattice, const Symmetry& symmetry, Direction direction) {
+  const Cell image = symmetry(lattice, base::neighbour(lattice, {0, 0, 0}, direction));
+  for (const Direction other : base::directions(lattice)) {
+    if (base::neighbour(lattice, {0, 0, 0}, other) == image) {
+      return other;
+    }
+  }
+  std::abort();
+}
+
+}  // namespace
+
 model::RobotSpec turned(const model::RobotSpec& spec, const Symmetry& symmetry) {
   model::RobotSpec result = spec;
   const auto turn = [&](Cell& cell) { cell = symmetry(spec.lattice, cell); };
@@ -229,6 +343,16 @@ model::RobotSpec turned(const model::RobotSpec& spec, const Symmetry& symmetry) 
   }
   for (model::OwnMass& own : result.own_masses) {
     turn(own.cell);
+  }
+  for (model::OwnKind& own : result.own_kinds) {
+    turn(own.cell);
+  }
+  for (std::size_t k = 0; k < spec.kinds.size(); ++k) {
+    for (const Direction direction : base::directions(spec.lattice)) {
+      result.kinds[k]
+          .connectors[static_cast<std::size_t>(turned(spec.lattice, symmetry, direction))] =
+          spec.kinds[k].connectors[static_cast<std::size_t>(direction)];
+    }
   }
   const Vector gravity = spec.gravity_m_s2.value_or(Vector{0, 0, -spec.material.gravity_m_s2});
   result.gravity_m_s2 = times(symmetry.matrix, gravity);

@@ -26,6 +26,21 @@ model::RobotSpec general_robot(const base::Lattice& lattice, std::uint64_t seed)
 /// are left. It may be that nothing holds what is left.
 model::RobotSpec with_last_planned(model::RobotSpec spec, std::size_t count);
 
+/// The robot on a floor below its lowest modules and on nothing else, under weight alone or with
+/// payloads and masses besides.
+model::RobotSpec on_a_floor(model::RobotSpec spec, bool has_loads);
+
+/// The robot with two or three kinds of modules whose connectors have random laws: square and round
+/// bending, levers, shear and torsion strengths, friction, limits of gaps, the same for all
+/// directions, for vertical and lateral ones or for each direction.
+model::RobotSpec with_laws(model::RobotSpec spec, std::uint64_t seed);
+
+/// The robot with random friction at some of its obstacles and the floor.
+model::RobotSpec with_friction(model::RobotSpec spec, std::uint64_t seed);
+
+/// All limits of its kinds' connectors times a factor.
+model::RobotSpec with_strengths_times(model::RobotSpec spec, double factor);
+
 /// A turn or mirror image that maps a lattice onto itself.
 struct Symmetry {
   std::array<std::array<std::int32_t, 3>, 3> axial{};  ///< Rows: axial coordinates of the image.

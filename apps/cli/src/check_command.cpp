@@ -15,7 +15,7 @@ namespace {
 
 using verdict::Verdict;
 
-struct Options {
+struct CheckArguments {
   io::ReadOptions reading;
   std::vector<std::string> files;
   std::string json;
@@ -37,7 +37,8 @@ struct Options {
 /// Goes through the files of one run and keeps count.
 class CheckRun {
  public:
-  explicit CheckRun(const Options& options) : options_(options), progress_(options.is_quiet) {}
+  explicit CheckRun(const CheckArguments& options)
+      : options_(options), progress_(options.is_quiet) {}
 
   int run() {
     for (std::size_t i = 0; i < options_.files.size(); ++i) {
@@ -110,10 +111,10 @@ class CheckRun {
                  report_text(structure, result));
       return;
     }
-    const std::string ratio = !assessment.load_ratio_max ? "-"
-                              : assessment.is_stable
-                                  ? io::beside_one(*assessment.load_ratio_max, 4) + " "
-                                  : fmt::format("({:.4f})", *assessment.load_ratio_max);
+    const std::string ratio =
+        !assessment.load_ratio_max ? "-"
+        : assessment.is_stable     ? io::beside_one(*assessment.load_ratio_max, 4) + " "
+                               : fmt::format("({})", io::beside_one(*assessment.load_ratio_max, 4));
     const std::string margin = assessment.simplified.margin_mm
                                    ? fmt::format("{:9.2f} mm", *assessment.simplified.margin_mm)
                                    : "       fixed";
@@ -249,7 +250,7 @@ class CheckRun {
     return kExitSafe;
   }
 
-  const Options& options_;
+  const CheckArguments& options_;
   std::array<std::size_t, 4> counts_{};
   std::size_t bad_count_ = 0;
   std::optional<host::OutputFile> json_;
@@ -257,7 +258,7 @@ class CheckRun {
   Progress progress_;
 };
 
-int run(const Options& options) {
+int run(const CheckArguments& options) {
   if (options.files.size() > 1 &&
       !(options.csv.empty() && options.svg.empty() && options.vtk.empty() && options.html.empty() &&
         options.certificate.empty())) {
@@ -282,11 +283,11 @@ int run(const Options& options) {
 }  // namespace
 
 Command add_check(CLI::App& app) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<CheckArguments>();
   CLI::App* command = app.add_subcommand(
       "check", "Say whether a structure holds with its planned modules attached");
   add_required(*command, "FILE", options->files,
-               "Structures, VisibleSim XML or holdfast JSON; - is standard input");
+               "Structures: VisibleSim XML, holdfast JSON or binary; - is standard input");
   add_reading(*command, options->reading);
   const auto add_output = [&](const char* name, std::string& path, const char* help) {
     command->add_option(name, path, help)->type_name("FILE");
@@ -308,8 +309,7 @@ Command add_check(CLI::App& app) {
                    "Most time for the limit load, s; then the report says what it lies between")
       ->check(number_between(0.0, 1e6))
       ->capture_default_str();
-  command->add_flag("-q,--quiet", options->is_quiet,
-                    "Print errors only; the exit code is the answer");
+  add_quiet(*command, options->is_quiet);
   command->add_flag("--bonded", options->is_bonded,
                     "Let the ground hold like a module below would: no lifting, no tilting");
   command->add_option("--threads", options->thread_count, "For large robots; 0: all cores")

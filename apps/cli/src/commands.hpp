@@ -72,6 +72,12 @@ inline CLI::Validator number_between(double low, double high) {
   return check;
 }
 
+/// The flag -q, --quiet.
+inline void add_quiet(CLI::App& command, bool& is_quiet,
+                      const std::string& help = "Print errors only; the exit code is the answer") {
+  command.add_flag("-q,--quiet", is_quiet, help);
+}
+
 /// The option --seed. CLI11 by itself takes what is too large for the largest seed.
 inline CLI::Option& add_seed(CLI::App& command, std::uint64_t& seed, const std::string& help) {
   return *command.add_option("--seed", seed, help)

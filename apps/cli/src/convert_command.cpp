@@ -11,14 +11,14 @@
 namespace holdfast::cli {
 namespace {
 
-struct Options {
+struct ConvertArguments {
   io::ReadOptions reading;
   std::string from;
   std::string to;
 };
 
 /// Notes obstacles of which VisibleSim is shown a corner only.
-void note_large_boxes(const io::Document& document, const Options& options) {
+void note_large_boxes(const io::Document& document, const ConvertArguments& options) {
   const auto count = std::ranges::count_if(document.extension.obstacles, io::is_large_box);
   if (count > 0) {
     const std::string note = fmt::format(
@@ -30,7 +30,7 @@ void note_large_boxes(const io::Document& document, const Options& options) {
 }
 
 /// False, and an error, if VisibleSim has no grid for these cells.
-bool note_shift(const io::Document& document, const Options& options) {
+bool note_shift(const io::Document& document, const ConvertArguments& options) {
   const auto shift = io::visiblesim_shift(document);
   if (!shift) {
     print_error(shift.error(), options.from);
@@ -46,12 +46,24 @@ bool note_shift(const io::Document& document, const Options& options) {
   return true;
 }
 
-int run(const Options& options) {
+int write_binary(const io::Document& document, const ConvertArguments& options) {
+  const auto structure = io::make_binary(document);
+  if (!structure) {
+    return fail(structure.error(), options.from);
+  }
+  print_notes(io::lost_in_binary(document), options.to);
+  const auto error =
+      write_file(options.to, [&](std::ostream& out) { io::write_binary(out, structure.value()); });
+  return error ? fail(*error, options.to) : 0;
+}
+
+int run(const ConvertArguments& options) {
   const bool to_json = options.to.ends_with(".json");
-  if (!to_json && !options.to.ends_with(".xml")) {
+  const bool to_binary = options.to.ends_with(".holdfast");
+  if (!to_json && !to_binary && !options.to.ends_with(".xml")) {
     fmt::print(stderr,
-               "holdfast: {}: the ending says the format: expected is .json (holdfast JSON) or "
-               ".xml (VisibleSim XML)\n",
+               "holdfast: {}: the ending says the format: expected is .json (holdfast JSON), .xml "
+               "(VisibleSim XML) or .holdfast (binary)\n",
                options.to);
     return kExitUsage;
   }
@@ -68,6 +80,9 @@ int run(const Options& options) {
   }
   print_notes(read.value().warnings, options.from);
   const io::Document& document = read.value().document;
+  if (to_binary) {
+    return write_binary(document, options);
+  }
   if (!to_json && !note_shift(document, options)) {
     return kExitBadInput;
   }
@@ -82,16 +97,19 @@ int run(const Options& options) {
 }  // namespace
 
 Command add_convert(CLI::App& app) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<ConvertArguments>();
   CLI::App* command = app.add_subcommand(
-      "convert", "Convert a structure between VisibleSim XML and holdfast JSON, without loss");
+      "convert", "Convert a structure between VisibleSim XML, holdfast JSON and binary");
   add_required(*command, "FROM", options->from,
-               "Structure to read, either format; - is standard input");
-  add_required(*command, "TO", options->to, "File to write; .xml or .json says the format");
+               "Structure to read, any format; - is standard input");
+  add_required(*command, "TO", options->to,
+               "File to write; .xml, .json or .holdfast says the format");
   add_reading(*command, options->reading);
   command->footer(
       "Kept are modules, steps, parameters, obstacles, loads, colours and all of VisibleSim's own\n"
-      "attributes; not kept are comments and the layout of the text.\n"
+      "attributes; not kept are comments and the layout of the text. A binary structure, "
+      ".holdfast,\n"
+      "is small and quick to read; it has what check needs, and a note says what it leaves out.\n"
       "Exit: 0 written, 64 wrong usage, 65 bad input or not writable.");
   return {command, [options] { return run(*options); }};
 }

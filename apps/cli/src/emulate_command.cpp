@@ -19,7 +19,7 @@ namespace {
 
 using emulator::Fault;
 
-struct Options {
+struct EmulateArguments {
   std::string file;
   std::string board = "v2";
   std::string image;
@@ -48,7 +48,8 @@ std::string default_image(const std::string& board) {
 
 class EmulateRun {
  public:
-  explicit EmulateRun(const Options& options) : options_(options), progress_(options.is_quiet) {}
+  explicit EmulateRun(const EmulateArguments& options)
+      : options_(options), progress_(options.is_quiet) {}
 
   int run() {
     const std::string inputs[] = {options_.file, image()};
@@ -148,7 +149,7 @@ class EmulateRun {
     return show_run(options_, is_silent, structure, exact, run, run.run);
   }
 
-  const Options& options_;
+  const EmulateArguments& options_;
   emulator::EmulationOptions emulation_;
   Progress progress_;
 };
@@ -156,13 +157,13 @@ class EmulateRun {
 }  // namespace
 
 Command add_emulate(CLI::App& app) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<EmulateArguments>();
   CLI::App* command =
       app.add_subcommand("emulate",
                          "Let the robot work out its own verdict as firmware, one emulated "
                          "microcontroller for every module");
   add_required(*command, "FILE", options->file,
-               "Structure, VisibleSim XML or holdfast JSON; - is standard input");
+               "Structure: VisibleSim XML, holdfast JSON or binary; - is standard input");
   command
       ->add_option("--board", options->board,
                    "Lines and memory of Blinky Blocks v2 (115,200 baud) or v1 (38,400), both with "
@@ -191,8 +192,7 @@ Command add_emulate(CLI::App& app) {
   add_connections(*command, options->connections);
   command->add_option("--svg", options->svg, "Draw the robot in the colours that its lamps show")
       ->type_name("FILE");
-  command->add_flag("-q,--quiet", options->is_quiet,
-                    "Print errors only; the exit code is the answer");
+  add_quiet(*command, options->is_quiet);
   command->footer(
       "The exact answer stands beside the robot's own: with --plan, --withdraw and --attach that "
       "for\n"

@@ -9,13 +9,13 @@
 namespace holdfast::cli {
 namespace {
 
-struct Options {
+struct GenerateArguments {
   std::string family;
   std::int64_t size = 0;
   std::string to = "-";
 };
 
-int run(const Options& options) {
+int run(const GenerateArguments& options) {
   if (options.size < 0) {
     fmt::print(stderr, "holdfast: the size {} is not allowed: it is 1 or more\n", options.size);
     return kExitUsage;
@@ -25,6 +25,11 @@ int run(const Options& options) {
     fmt::print(stderr, "holdfast: {}\n", document.error().message);
     return kExitUsage;
   }
+  if (options.to.ends_with(".holdfast")) {
+    const auto structure = io::make_binary(document.value());
+    const auto write = [&](std::ostream& out) { io::write_binary(out, structure.value()); };
+    return write_or_complain(options.to, write) ? kExitSafe : kExitBadInput;
+  }
   const std::string text = options.to.ends_with(".xml") ? io::write_visiblesim(document.value())
                                                         : io::write_json(document.value());
   return write_or_complain(options.to, text) ? kExitSafe : kExitBadInput;
@@ -33,13 +38,14 @@ int run(const Options& options) {
 }  // namespace
 
 Command add_generate(CLI::App& app) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<GenerateArguments>();
   CLI::App* command = app.add_subcommand(
       "generate", "Write one of the structures in which solvers are compared, of any size");
   add_required(*command, "FAMILY", options->family, "Its name, see below");
   add_required(*command, "SIZE", options->size, "How large, see below");
   command
-      ->add_option("-o,--output", options->to, "File to write, .json or .xml; - is standard output")
+      ->add_option("-o,--output", options->to,
+                   "File to write, .json, .xml or .holdfast; - is standard output")
       ->type_name("FILE");
   std::string footer = "Families:\n";
   for (const auto& [name, help] : family_list()) {

@@ -16,7 +16,7 @@
 namespace holdfast::cli {
 namespace {
 
-struct Options {
+struct MoveArguments {
   io::ReadOptions reading;
   std::string start;
   std::string target;
@@ -52,7 +52,7 @@ std::optional<plan::CellBox> box_of(const std::string& text) {
                        .high = {std::max(ax, bx), std::max(ay, by), std::max(az, bz)}};
 }
 
-int exit_code_of(plan::MoveOutcome outcome) {
+int outcome_code(plan::MoveOutcome outcome) {
   switch (outcome) {
     case plan::MoveOutcome::kFound:
       return kExitSafe;
@@ -66,7 +66,7 @@ int exit_code_of(plan::MoveOutcome outcome) {
 
 /// Writes what is asked for; the exit code is that of a file that cannot be written, or the
 /// answer's.
-int show(const Options& options, const io::MoveReport& report) {
+int show(const MoveArguments& options, const io::MoveReport& report) {
   const bool has_moves =
       report.plan.outcome == plan::MoveOutcome::kFound || !report.plan.steps.empty();
   if (!options.steps.empty() && has_moves &&
@@ -79,10 +79,10 @@ int show(const Options& options, const io::MoveReport& report) {
   if (!options.is_quiet && options.json != "-" && options.steps != "-") {
     fmt::print("{}", io::move_text(report));
   }
-  return exit_code_of(report.plan.outcome);
+  return outcome_code(report.plan.outcome);
 }
 
-int verify(const Options& options, const MoveRequest& request, const io::Document& start,
+int verify(const MoveArguments& options, const MoveRequest& request, const io::Document& start,
            const io::Document& target) {
   const auto text = read_file(options.verified);
   if (!text) {
@@ -112,7 +112,7 @@ base::Result<io::Document> read(const std::string& file, const io::ReadOptions& 
   return std::move(found).value().document;
 }
 
-MoveRequest request_of(const Options& options, Progress& progress) {
+MoveRequest request_of(const MoveArguments& options, Progress& progress) {
   MoveRequest request{.pivots = options.pivots,
                       .ignores_mechanics = options.ignores_mechanics,
                       .seed = options.seed,
@@ -131,7 +131,7 @@ MoveRequest request_of(const Options& options, Progress& progress) {
   return request;
 }
 
-int run(const Options& options) {
+int run(const MoveArguments& options) {
   const std::array<std::string, 3> inputs = {options.start, options.target, options.verified};
   if (complain_of_clash({inputs.data(), options.verified.empty() ? 2U : 3U},
                         {{"--output", options.steps}, {"--json", options.json}})) {
@@ -156,7 +156,7 @@ int run(const Options& options) {
                 : fail(report.error(), options.start + " " + options.target);
 }
 
-void add_ways(CLI::App& command, Options& options) {
+void add_ways(CLI::App& command, MoveArguments& options) {
   command.add_flag("--pivot", options.pivots,
                    "Cubes turn about edges, and need the cells that they sweep on their way");
   command
@@ -170,7 +170,7 @@ void add_ways(CLI::App& command, Options& options) {
                    "Seek moves that need not be safe, and judge their stages afterwards");
 }
 
-void add_limits(CLI::App& command, Options& options) {
+void add_limits(CLI::App& command, MoveArguments& options) {
   add_seed(command, options.seed,
            "Another seed tries moves in another order; the same one finds the same");
   command.add_option("--seconds", options.seconds, "Give up after this time")
@@ -182,13 +182,13 @@ void add_limits(CLI::App& command, Options& options) {
                   "Threads; 0: as many as the machine has cores. The answer does not depend on it")
       ->type_name("N")
       ->check(CLI::Range(0, 64));
-  command.add_flag("-q,--quiet", options.is_quiet, "No progress and no text, only the exit code");
+  add_quiet(command, options.is_quiet, "No progress and no text, only the exit code");
 }
 
 }  // namespace
 
 Command add_move(CLI::App& app) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<MoveArguments>();
   CLI::App* command = app.add_subcommand(
       "move", "Find moves of single modules from one shape to another, safe at every stage");
   add_required(*command, "FROM", options->start, "The robot as it stands; - is standard input");

@@ -14,7 +14,7 @@ namespace {
 
 using verdict::Verdict;
 
-struct Options {
+struct NextArguments {
   io::ReadOptions reading;
   std::string file;
   std::string json;
@@ -26,7 +26,7 @@ struct Options {
   double memory_gb = 4;
 };
 
-bool write_files(const Options& options, const Structure& structure, const NextResult& result,
+bool write_files(const NextArguments& options, const Structure& structure, const NextResult& result,
                  const CheckOptions& check_options) {
   bool is_written = true;
   if (!options.json.empty()) {
@@ -42,7 +42,7 @@ bool write_files(const Options& options, const Structure& structure, const NextR
   return is_written;
 }
 
-int run(const Options& options) {
+int run(const NextArguments& options) {
   if (complain_of_clash({&options.file, 1}, {{"--json", options.json}, {"--svg", options.svg}})) {
     return kExitUsage;
   }
@@ -82,11 +82,11 @@ int exit_code_of(const NextResult& result) {
 }
 
 Command add_next(CLI::App& app) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<NextArguments>();
   CLI::App* command =
       app.add_subcommand("next", "Say where the next module may go: every free cell, judged");
   add_required(*command, "FILE", options->file,
-               "Structure, VisibleSim XML or holdfast JSON; - is standard input");
+               "Structure: VisibleSim XML, holdfast JSON or binary; - is standard input");
   add_reading(*command, options->reading);
   command->add_option("--json", options->json, "Write the places as JSON; - is standard output")
       ->type_name("FILE");
@@ -98,8 +98,7 @@ Command add_next(CLI::App& app) {
       ->type_name("N")
       ->check(CLI::Range(0, 1'000'000'000))
       ->capture_default_str();
-  command->add_flag("-q,--quiet", options->is_quiet,
-                    "Print errors only; the exit code is the answer");
+  add_quiet(*command, options->is_quiet);
   command->add_flag("--bonded", options->is_bonded,
                     "Let the ground hold like a module below would: no lifting, no tilting");
   command->add_option("--threads", options->thread_count, "0: all cores")->check(CLI::Range(0, 64));

@@ -15,7 +15,7 @@
 namespace holdfast::cli {
 namespace {
 
-struct Options {
+struct OrderArguments {
   io::ReadOptions reading;
   std::string target;
   std::string start;
@@ -51,7 +51,7 @@ std::optional<base::Cell> cell_of(const std::string& text) {
 }
 
 /// All cells of a document that is to be the start.
-base::Result<std::vector<base::Cell>> start_cells(const Options& options,
+base::Result<std::vector<base::Cell>> start_cells(const OrderArguments& options,
                                                   const io::Document& target) {
   const auto text = read_file(options.start);
   if (!text) {
@@ -71,7 +71,7 @@ base::Result<std::vector<base::Cell>> start_cells(const Options& options,
   return cells;
 }
 
-OrderRequest request_of(const Options& options, Progress& progress) {
+OrderRequest request_of(const OrderArguments& options, Progress& progress) {
   OrderRequest request{.group_size = options.group_size,
                        .is_reversed = options.is_reversed,
                        .seed = options.seed,
@@ -94,7 +94,7 @@ OrderRequest request_of(const Options& options, Progress& progress) {
   return request;
 }
 
-int exit_code_of(plan::OrderOutcome outcome) {
+int outcome_code(plan::OrderOutcome outcome) {
   switch (outcome) {
     case plan::OrderOutcome::kFound:
       return kExitSafe;
@@ -108,7 +108,7 @@ int exit_code_of(plan::OrderOutcome outcome) {
 
 /// Writes what is asked for; the exit code is that of a file that cannot be written, or the
 /// answer's.
-int show(const Options& options, const io::OrderReport& report) {
+int show(const OrderArguments& options, const io::OrderReport& report) {
   const plan::OrderOutcome outcome = report.result.order.outcome;
   const bool has_way = outcome == plan::OrderOutcome::kFound || !report.result.order.steps.empty();
   if (!options.steps.empty() && has_way) {
@@ -133,10 +133,10 @@ int show(const Options& options, const io::OrderReport& report) {
       !is_stdout(options.certificate)) {
     fmt::print("{}", io::order_text(report));
   }
-  return exit_code_of(outcome);
+  return outcome_code(outcome);
 }
 
-int run(const Options& options) {
+int run(const OrderArguments& options) {
   const std::array<std::string, 2> inputs = {options.target, options.start};
   if (complain_of_clash({inputs.data(), options.start.empty() ? 1U : 2U},
                         {{"--output", options.steps},
@@ -173,7 +173,7 @@ int run(const Options& options) {
   return report ? show(options, report.value()) : fail(report.error(), options.target);
 }
 
-void add_ways(CLI::App& command, Options& options) {
+void add_ways(CLI::App& command, OrderArguments& options) {
   command
       .add_option(
           "--reach", options.reach,
@@ -195,7 +195,7 @@ void add_ways(CLI::App& command, Options& options) {
                    "Take the robot apart, from the target to the start");
 }
 
-void add_limits(CLI::App& command, Options& options) {
+void add_limits(CLI::App& command, OrderArguments& options) {
   add_seed(command, options.seed,
            "Another seed tries candidates in another order; the same one finds the same");
   command.add_option("--seconds", options.seconds, "Give up after this time")
@@ -213,13 +213,13 @@ void add_limits(CLI::App& command, Options& options) {
                   "Threads; 0: as many as the machine has cores. The answer does not depend on it")
       ->type_name("N")
       ->check(CLI::Range(0, 64));
-  command.add_flag("-q,--quiet", options.is_quiet, "No progress and no text, only the exit code");
+  add_quiet(command, options.is_quiet, "No progress and no text, only the exit code");
 }
 
 }  // namespace
 
 Command add_order(CLI::App& app) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<OrderArguments>();
   CLI::App* command = app.add_subcommand(
       "order", "Find an order in which modules can be attached, or detached, safe all the way");
   add_required(*command, "TARGET", options->target,

@@ -15,7 +15,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-struct Options {
+struct RobotsArguments {
   std::string name;
   std::string json;
 };
@@ -76,7 +76,7 @@ Json list_json() {
   return list;
 }
 
-int run(const Options& options) {
+int run(const RobotsArguments& options) {
   const model::CatalogueRobot* const robot =
       options.name.empty() ? nullptr : model::find_robot(options.name);
   if (!options.name.empty() && robot == nullptr) {
@@ -100,7 +100,7 @@ int run(const Options& options) {
 }  // namespace
 
 Command add_robots(CLI::App& app) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<RobotsArguments>();
   CLI::App* command = app.add_subcommand(
       "robots", "List robots that have been built, with what is known of them and from where");
   command->add_option("NAME", options->name, "Show one of them, with every figure and its source")

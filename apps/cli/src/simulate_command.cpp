@@ -20,9 +20,7 @@
 namespace holdfast::cli {
 namespace {
 
-using sim::Fault;
-
-struct Options {
+struct SimulateArguments {
   std::string file;
   std::string method = "elimination";
   std::string link = "v1";
@@ -32,10 +30,10 @@ struct Options {
   double reordering = 0;
   double corruption = 0;
   double jitter = 0;
-  std::vector<FaultOption<Fault>> faults = {
-      {"kill", Fault::Kind::kKill, false, "A module falls silent at time T (s, or rounds)"},
-      {"cut", Fault::Kind::kCut, true, "A link fails; FACE is +x, -x, +y, -y, +z or -z"},
-      {"detach", Fault::Kind::kDetach, false, "A module is taken off"}};
+  std::vector<FaultOption<sim::Fault>> faults = {
+      {"kill", sim::Fault::Kind::kKill, false, "A module falls silent at time T (s, or rounds)"},
+      {"cut", sim::Fault::Kind::kCut, true, "A link fails; FACE is +x, -x, +y, -y, +z or -z"},
+      {"detach", sim::Fault::Kind::kDetach, false, "A module is taken off"}};
   ChangeOptions changes;
   std::string json;
   std::string connections = "all";
@@ -95,7 +93,8 @@ struct TraceFile {
 
 class SimulateRun {
  public:
-  explicit SimulateRun(const Options& options) : options_(options), progress_(options.is_quiet) {}
+  explicit SimulateRun(const SimulateArguments& options)
+      : options_(options), progress_(options.is_quiet) {}
 
   int run() {
     const auto link = sim::find_link_model(options_.link);
@@ -321,12 +320,12 @@ class SimulateRun {
     return show_run(options_, is_silent, structure, exact, run, run);
   }
 
-  const Options& options_;
+  const SimulateArguments& options_;
   sim::SimulationOptions simulation_;
   Progress progress_;
 };
 
-void add_noise_options(CLI::App& command, Options& options) {
+void add_noise_options(CLI::App& command, SimulateArguments& options) {
   const auto add = [&](const char* name, double& value, const char* help) {
     command.add_option(name, value, help)
         ->type_name("P")
@@ -344,11 +343,11 @@ void add_noise_options(CLI::App& command, Options& options) {
 }  // namespace
 
 Command add_simulate(CLI::App& app) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<SimulateArguments>();
   CLI::App* command = app.add_subcommand(
       "simulate", "Let the robot work out its own verdict, module by module, message by message");
   add_required(*command, "FILE", options->file,
-               "Structure, VisibleSim XML or holdfast JSON; - is standard input");
+               "Structure: VisibleSim XML, holdfast JSON or binary; - is standard input");
   command
       ->add_option(
           "--method", options->method,
@@ -387,8 +386,7 @@ Command add_simulate(CLI::App& app) {
       ->type_name("FILE");
   command->add_option("--svg", options->svg, "Draw the robot in the colours that it shows")
       ->type_name("FILE");
-  command->add_flag("-q,--quiet", options->is_quiet,
-                    "Print errors only; the exit code is the answer");
+  add_quiet(*command, options->is_quiet);
   command->footer(
       "The exact answer stands beside the robot's own: with --plan, --withdraw and --attach that "
       "for\n"

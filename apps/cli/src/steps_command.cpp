@@ -11,7 +11,7 @@
 namespace holdfast::cli {
 namespace {
 
-struct Options {
+struct StepsArguments {
   io::ReadOptions reading;
   std::string file;
   std::string json;
@@ -24,7 +24,7 @@ struct Options {
   int thread_count = 0;
 };
 
-StepsOptions judging(const Options& options, const StepsFile& file, Progress& progress,
+StepsOptions judging(const StepsArguments& options, const StepsFile& file, Progress& progress,
                      const char* verb) {
   return {.thread_count = options.thread_count,
           .ends_when_unsafe = options.ends_when_unsafe,
@@ -37,7 +37,7 @@ StepsOptions judging(const Options& options, const StepsFile& file, Progress& pr
           }};
 }
 
-bool write_series(const Options& options, const StepsFile& file, const StepsResult& result) {
+bool write_series(const StepsArguments& options, const StepsFile& file, const StepsResult& result) {
   Progress progress(options.is_quiet);
   const auto error =
       write_steps_vtk(options.vtk, file, result, judging(options, file, progress, "written"));
@@ -47,7 +47,7 @@ bool write_series(const Options& options, const StepsFile& file, const StepsResu
   return !error;
 }
 
-bool write_files(const Options& options, const StepsFile& file, const StepsResult& result) {
+bool write_files(const StepsArguments& options, const StepsFile& file, const StepsResult& result) {
   bool is_written = true;
   if (!options.json.empty()) {
     is_written = write_or_complain(options.json, [&](std::ostream& out) {
@@ -65,7 +65,7 @@ bool write_files(const Options& options, const StepsFile& file, const StepsResul
 }
 
 /// Replays the certificate of an order that does not exist.
-int run_certificate(const Options& options) {
+int run_certificate(const StepsArguments& options) {
   const auto text = read_file(options.file);
   if (!text) {
     return fail(text.error(), options.file);
@@ -83,7 +83,7 @@ int run_certificate(const Options& options) {
   return kExitSafe;
 }
 
-int run(const Options& options) {
+int run(const StepsArguments& options) {
   if (options.is_certificate) {
     return run_certificate(options);
   }
@@ -115,7 +115,7 @@ int run(const Options& options) {
 }  // namespace
 
 Command add_steps(CLI::App& app) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<StepsArguments>();
   CLI::App* command = app.add_subcommand(
       "steps",
       "Say whether every stage of every step of a sequence is safe: release, shift, connect");
@@ -140,8 +140,7 @@ Command add_steps(CLI::App& app) {
       ->excludes("--html")
       ->excludes("--vtk")
       ->excludes("--until-unsafe");
-  command->add_flag("-q,--quiet", options->is_quiet,
-                    "Print errors only; the exit code is the answer");
+  add_quiet(*command, options->is_quiet);
   command->add_option("--threads", options->thread_count, "0: all cores; the answer is the same")
       ->check(CLI::Range(0, 64));
   command->footer(

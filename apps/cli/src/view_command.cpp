@@ -11,7 +11,7 @@
 namespace holdfast::cli {
 namespace {
 
-struct Options {
+struct ViewArguments {
   io::ReadOptions reading;
   std::string file;
   std::string out;
@@ -51,7 +51,7 @@ int show(const std::string& page, const std::string& out, bool stays_closed) {
   return 0;
 }
 
-int run(const Options& options) {
+int run(const ViewArguments& options) {
   if (complain_of_clash({&options.file, 1}, {{"--out", options.out}})) {
     return kExitUsage;
   }
@@ -78,11 +78,11 @@ int run(const Options& options) {
 }  // namespace
 
 Command add_view(CLI::App& app) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<ViewArguments>();
   CLI::App* command =
       app.add_subcommand("view", "Open a structure in the browser, to look at and to change");
   add_required(*command, "FILE", options->file,
-               "Structure, VisibleSim XML or holdfast JSON; - is standard input");
+               "Structure: VisibleSim XML, holdfast JSON or binary; - is standard input");
   add_reading(*command, options->reading);
   command
       ->add_option("--out", options->out,

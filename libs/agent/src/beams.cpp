@@ -4,6 +4,7 @@
 
 #include "holdfast/agent/order.hpp"
 #include "holdfast/mechanics/connector.hpp"
+#include "scalar.hpp"
 
 namespace holdfast::agent {
 namespace {
@@ -14,7 +15,71 @@ double ratio_of(const Setup& setup, const MiddleLoad& load, Direction direction)
                                strength_n(setup, direction));
 }
 
+#ifndef HOLDFAST_AGENT_FLOOR_ONLY
+
+double length(double x, double y) {
+  const double square = x * x + y * y;
+  return is_number(square) ? square_root(square) : square;
+}
+
+/// The force in the middle of a connection of this module, or between planned ones emulated here.
+base::Vec6<double> force_in_middle(const Workspace& ws, const base::Cell& cell,
+                                   Direction direction) {
+  if (cell == ws.tree.cell()) {
+    const MiddleLoad& load = ws.middle(direction);
+    const std::array<double, 3>& across = (*ws.across())[static_cast<std::size_t>(direction)];
+    return {across[0], across[1], load.axial_n, load.bending_x_nmm, load.bending_y_nmm, across[2]};
+  }
+  const int k = ws.planned.find(cell);
+  const int other = ws.planned.neighbour_of(k, direction);
+  return middle_force(ws.setup.beams(), direction, ws.node(ws.planned.node_of(k)).u,
+                      ws.node(ws.planned.node_of(other)).u);
+}
+
+const mechanics::ConnectorLaw& law_of(const Workspace& ws, const base::Cell& cell,
+                                      Direction direction) {
+  const Environment& environment = *ws.environment();
+  return environment.law(environment.map, cell, direction);
+}
+
+/// By the law of the connection.
+mechanics::LimitRatio lawful_ratio(const Workspace& ws, const base::Cell& cell,
+                                   Direction direction) {
+  const mechanics::ConnectorLaw& law = law_of(ws, cell, direction);
+  return mechanics::load_ratio(
+      law, mechanics::connection_force(law, force_in_middle(ws, cell, direction), length));
+}
+
+#endif
+
+/// By Eq. (17), but where connections have laws of their own.
+double ratio_of(const Workspace& ws, const base::Cell& cell, Direction direction,
+                const MiddleLoad& load) {
+#ifndef HOLDFAST_AGENT_FLOOR_ONLY
+  if (ws.across() != nullptr) {
+    return lawful_ratio(ws, cell, direction).ratio;
+  }
+#endif
+  static_cast<void>(cell);
+  return ratio_of(ws.setup, load, direction);
+}
+
 }  // namespace
+
+std::uint8_t remarks_on([[maybe_unused]] const Workspace& ws,
+                        [[maybe_unused]] const base::Cell& cell,
+                        [[maybe_unused]] Direction direction) {
+#ifndef HOLDFAST_AGENT_FLOOR_ONLY
+  if (ws.across() != nullptr) {
+    const mechanics::ConnectorLaw& law = law_of(ws, cell, direction);
+    const double gap =
+        mechanics::gap_mm(law, ws.setup.beam, force_in_middle(ws, cell, direction), length);
+    const auto limit = static_cast<unsigned>(lawful_ratio(ws, cell, direction).limit);
+    return static_cast<std::uint8_t>(limit | (gap > law.gap_limit_mm ? kGapOpens : 0U));
+  }
+#endif
+  return 0;
+}
 
 void add_planned_beams(Workspace& ws) {
   for (int i = 0; i < ws.planned.hosted_count(); ++i) {
@@ -50,6 +115,7 @@ void add_forces(Workspace& ws, PlannedPart part) {
     load.axial_n += middle[2];
     load.bending_x_nmm += middle[3];
     load.bending_y_nmm += middle[4];
+    ws.add_across(face, middle);
   });
   if (part != PlannedPart::kTogether) {
     return;
@@ -65,7 +131,7 @@ void visit_loads(const Workspace& ws, LoadVisit visit, void* visitor) {
   const bool is_gone = ws.is_gone(cell);
   for (const Direction direction : ws.faces_of(0)) {
     if (!is_gone && !ws.is_gone(ws.beside(cell, direction))) {
-      visit(visitor, cell, direction, ratio_of(ws.setup, ws.middle(direction), direction));
+      visit(visitor, cell, direction, ratio_of(ws, cell, direction, ws.middle(direction)));
     }
   }
   if (ws.stage() == Stage::kShift) {
@@ -82,7 +148,7 @@ void visit_loads(const Workspace& ws, LoadVisit visit, void* visitor) {
       const base::Vec6<double> middle = middle_force(ws.setup.beams(), direction, ws.node(i).u,
                                                      ws.node(ws.planned.node_of(other)).u);
       visit(visitor, ws.cell_of(i), direction,
-            ratio_of(ws.setup, {middle[2], middle[3], middle[4]}, direction));
+            ratio_of(ws, ws.cell_of(i), direction, {middle[2], middle[3], middle[4]}));
     }
   }
 }

@@ -57,6 +57,19 @@ void Codec::direction(base::Direction& direction) {
   kind(direction, base::Direction::kPlusX, static_cast<base::Direction>(face_count_ - 1));
 }
 
+#ifndef HOLDFAST_AGENT_FLOOR_ONLY
+void Codec::direction(base::Direction& direction, std::uint8_t& remarks, std::uint8_t all) {
+  constexpr unsigned kBits = 4;
+  constexpr unsigned kDirectionBits = (1U << kBits) - 1;
+  auto byte = static_cast<std::uint8_t>(static_cast<unsigned>(base::index(direction)) |
+                                        static_cast<unsigned>(remarks) << kBits);
+  u8(byte);
+  remarks = static_cast<std::uint8_t>(byte >> kBits);
+  direction = static_cast<base::Direction>(byte & kDirectionBits);
+  require(base::index(direction) < face_count_ && (remarks & ~unsigned{all}) == 0);
+}
+#endif
+
 void Codec::moment(std::int64_t& value) {
   auto low = static_cast<std::uint32_t>(value & 0xffffffff);
   auto high = static_cast<std::int32_t>(value >> 32);

@@ -44,6 +44,10 @@ class Codec {
   /// A part of the masks of planned modules in kResume (resume_masks.hpp).
   void resumed_faces(std::uint8_t& byte);
   void direction(base::Direction& direction);
+#ifndef HOLDFAST_AGENT_FLOOR_ONLY
+  /// In one byte with remarks above it, no others than those of `all`.
+  void direction(base::Direction& direction, std::uint8_t& remarks, std::uint8_t all);
+#endif
   /// The cell of a module, and of a plan: that, or kEveryCell.
   void cell(base::Cell& cell);
   void place(base::Cell& cell);
@@ -99,6 +103,8 @@ class Ruler {
   constexpr void resumed_faces(std::uint8_t&) { bytes_ += 1; }
 
   constexpr void direction(base::Direction&) { bytes_ += 1; }
+
+  constexpr void direction(base::Direction&, std::uint8_t&, unsigned) { bytes_ += 1; }
 
   constexpr void moment(std::int64_t&) { bytes_ += 8; }
 

@@ -302,6 +302,7 @@ void add_condensed_beams(Workspace& ws) {
       base::add_to(node.force, end_force(ws.setup.beams(), face, node.u, theirs));
       const base::Vec6<double> middle = middle_force(ws.setup.beams(), face, node.u, theirs);
       ws.middle(face) = {middle[2], middle[3], middle[4]};
+      ws.set_across(face, middle);
     }
   }
 }

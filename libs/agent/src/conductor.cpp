@@ -28,6 +28,9 @@ Order Conductor::begin(const Setup& setup, const base::Cell& root, std::uint32_t
   effort_.method = setup.method;
   judges_faces_ = kJudgesFaces && lent.judges_faces;
   has_left_clusters_ = setup.only_one_sweep || !setup.is_cubic();
+#ifndef HOLDFAST_AGENT_FLOOR_ONLY
+  slack_bits_ = setup.slack_bits;
+#endif
   if constexpr (kHasAllMethods) {
     may_have_fronts_ = lent.has_fronts && setup.method == Method::kFronts;
     effort_.method = has_fronts() ? Method::kElimination : effort_.method;
@@ -76,6 +79,8 @@ Order Conductor::next(const Setup& setup, const Report& report, const Planned& p
       return kJudgesFaces ? after_shape(report) : say_answer();
     case Operation::kNext:
       return say_answer();
+    case Operation::kSeek:
+      return kSeeksOthers ? after_seek(setup, report) : say_answer();
     default:
       break;
   }
@@ -213,7 +218,8 @@ bool is_pulled_away(const Setup& setup, const Report& report) {
   return false;
 #else
   const auto pressure = static_cast<std::int32_t>(report.mass());
-  return setup.has_plane && pressure < -static_cast<std::int64_t>(report.count);
+  return setup.has_plane && (report.flags & kSumOverflow) == 0 &&
+         pressure < -static_cast<std::int64_t>(report.count);
 #endif
 }
 
@@ -277,6 +283,11 @@ Order Conductor::begin_law(const Setup& setup, bool is_unilateral) {
   has_motion_ = has_motion_ && is_renewed;
   has_factors_ = has_factors_ && is_renewed;
   is_unilateral_ = is_unilateral;
+  if (kHasSurroundings && !is_unilateral) {
+    has_given_up_ = false;
+    is_second_ = false;
+    weak_springs_ = WeakSprings::kWeakest;
+  }
   effort_.is_unilateral = is_unilateral;
   is_tilting_ = false;
   has_history_ = false;
@@ -288,6 +299,11 @@ Order Conductor::begin_law(const Setup& setup, bool is_unilateral) {
   error_best_ = kUnbounded;
   target_ = is_fixed_ ? kRatioTolerance : kStateTolerance;
   kept_states_ = false;
+  if constexpr (kSeeksOthers) {
+    may_differ_ = false;
+    seeking_ = Seeking::kNotYet;
+    other_breaks_ = false;
+  }
   solve_iterations_max_ = 200 + 20 * effort_.module_count;
   Order begin = ask(Operation::kBegin);
   if (is_one_sweep()) {
@@ -297,24 +313,47 @@ Order Conductor::begin_law(const Setup& setup, bool is_unilateral) {
     const bool starts = effort_.method == Method::kPolynomial && !is_any_remote_;
     begin.count = starts ? iteration_degree() : std::uint16_t{0};
   }
-  const bool has_all = kHasAllMethods && !setup.only_one_sweep;
-  if (!has_all && !is_one_sweep()) {
+  if (!has_gradients(setup) && !is_one_sweep()) {
     return finish(Verdict::kUndecided, Reason::kNotConverged);
   }
-  begin_newton();
+  begin_states();
   begin.flags = static_cast<std::uint8_t>(
       (is_unilateral ? kUnilateralLaw : 0U) | (is_one_sweep() ? kOneSweep : 0U) |
       (effort_.method == Method::kPolynomial ? kWithIterations : 0U) |
       (has_fronts() ? kWithFronts : 0U));
-  const double unilateral_gamma =
-      kHasSurroundings && is_toppling_ ? kTopplingGamma : kUnilateralGamma;
-  begin.reals[0] = static_cast<float>(is_unilateral ? unilateral_gamma : setup.contact_gamma);
+  begin.reals[0] = static_cast<float>(is_unilateral ? unilateral_gamma() : setup.contact_gamma);
   begin.reals[1] = static_cast<float>(static_cast<double>(extent_ + 1) * setup.section.length);
   return begin;
 }
 
+double Conductor::unilateral_gamma() const {
+  switch (kHasSurroundings ? weak_springs_ : WeakSprings::kWeakest) {
+    case WeakSprings::kStiffer:
+      return kStifferGamma;
+    case WeakSprings::kToppling:
+      return kTopplingGamma;
+    default:
+      return kUnilateralGamma;
+  }
+}
+
+bool Conductor::needs_forces([[maybe_unused]] const Setup& setup) const {
+#ifdef HOLDFAST_AGENT_FLOOR_ONLY
+  return false;
+#else
+  return is_uneven() || setup.has_friction;
+#endif
+}
+
 /// How good load ratios must be before contact states are told away from a level floor.
-double Conductor::uneven_target() const { return kUnevenTolerance * (1 + absolute(ratio_)); }
+double Conductor::uneven_target() const {
+  const double target = kUnevenTolerance * (1 + absolute(ratio_));
+#ifdef HOLDFAST_AGENT_FLOOR_ONLY
+  return target;
+#else
+  return target * static_cast<double>(1U << slack_bits_);
+#endif
+}
 
 Order Conductor::move(double length, double mix) {
   Order high = ask(Operation::kHigh);
@@ -322,12 +361,21 @@ Order Conductor::move(double length, double mix) {
   return high;
 }
 
+/// What a residual's report says of contact.
+void Conductor::note_facets(const Report& report) {
+  is_tilting_ = (report.flags & kAnyTilting) != 0;
+  may_pull_ = (report.flags & kMayPull) != 0;
+  if constexpr (kSeeksOthers) {
+    may_differ_ = (report.flags & kMayDiffer) != 0;
+    states_hash_ = report.states_hash();
+  }
+}
+
 /// Reports of kLow: error bound, largest ratio, facets that want another state, the hash of all.
 Order Conductor::judge(const Setup& setup, const Report& report) {
   const auto error = static_cast<double>(report.error());
   ratio_ = static_cast<double>(report.load_ratio_max());
-  is_tilting_ = (report.flags & kAnyTilting) != 0;
-  may_pull_ = (report.flags & kMayPull) != 0;
+  note_facets(report);
   if (!is_number(error) || effort_.iterations > setup.iteration_count_max) {
     return give_up(setup);
   }
@@ -340,8 +388,9 @@ Order Conductor::judge(const Setup& setup, const Report& report) {
   const bool follows = is_unilateral_ || is_jacobi();
   const bool is_consistent = follows || report.changed_count() == 0;
   target_ = (is_consistent ? kRatioTolerance : kStateTolerance) * (1 + absolute(ratio_));
-  if (is_uneven()) {
-    target_ = uneven_target();
+  if (needs_forces(setup)) {
+    const bool is_halting = stagnation_count_ > kStagnationMax;
+    target_ = (is_halting ? kHalting : 1) * uneven_target();
   }
   const bool is_told = error <= target_ || (stagnation_count_ > kStagnationMax && !is_uneven());
   if (!is_consistent && is_told) {
@@ -350,7 +399,7 @@ Order Conductor::judge(const Setup& setup, const Report& report) {
   if (is_consistent && error <= target_) {
     const double distance = absolute(ratio_ - 1) / kDoubt;
     if (error <= distance || error <= kErrorLeast) {
-      return settled();
+      return settled(setup);
     }
     target_ = distance > kErrorLeast ? distance : kErrorLeast;
   }
@@ -362,8 +411,11 @@ Order Conductor::judge(const Setup& setup, const Report& report) {
 
 /// The linear problem is solved and some facets want another state.
 Order Conductor::judge_regularised(const Setup& setup, const Report& report) {
+  if (is_back()) {
+    return next_trial();
+  }
   if (was_seen(report.states_hash()) || effort_.contact_iterations > contact_iterations_max_) {
-    return begin_law(setup, true);
+    return is_seeking() ? leave_trial(setup) : begin_law(setup, true);
   }
   ++effort_.contact_iterations;
   error_best_ = kUnbounded;
@@ -373,6 +425,9 @@ Order Conductor::judge_regularised(const Setup& setup, const Report& report) {
 
 /// The present way leads nowhere: the next safer method, the next law, or no answer.
 Order Conductor::give_up(const Setup& setup) {
+  if (is_seeking()) {
+    return leave_trial(setup);
+  }
   if (effort_.iterations > setup.iteration_count_max) {
     return finish(Verdict::kUndecided, Reason::kNotConverged);
   }
@@ -385,8 +440,11 @@ Order Conductor::give_up(const Setup& setup) {
     has_given_up_ = true;
     return begin_law(setup, true);
   }
-  if (is_uneven() && !is_fixed_ && !is_second_ && !is_toppling_) {
-    is_toppling_ = true;
+  const bool is_weakest = weak_springs_ == WeakSprings::kWeakest;
+  const bool may_topple = weak_springs_ == WeakSprings::kStiffer && !is_fixed_ && !is_second_;
+  if (is_uneven() && (is_weakest || may_topple)) {
+    weak_springs_ = is_weakest ? WeakSprings::kStiffer : WeakSprings::kToppling;
+    is_comparing_ = false;
     return begin_law(setup, true);
   }
   const bool is_settled_but_close = error_ <= kRatioTolerance;
@@ -425,7 +483,8 @@ Order Conductor::after_start(const Report& report) {
     jacobi.count = batch_;
     return jacobi;
   }
-  const double reduction = is_tilting_ && !is_unilateral_ ? kReductionTilting : kReductionLeast;
+  const bool is_rough = is_tilting_ && !is_unilateral_ && !is_uneven();
+  const double reduction = is_rough ? kReductionTilting : kReductionLeast;
   const double least = reduction * static_cast<double>(report.solve_error());
   const double enough = is_tilting_ && !is_unilateral_ ? 0 : 0.3 * target_;
   solve_error_ = least > enough ? least : enough;
@@ -505,12 +564,14 @@ Order Conductor::after_slope(const Report& report) {
     return move(1);
   }
   const double spacing = (high_ - low_) / 4;
+  const bool is_at_start = !(low_ > 0) && slope_at(1) > 0;
+  const int count_max = is_at_start ? kSlopeCountLimit : kSlopeCountMax;
   double before = 0;
   for (std::size_t place = 1; place <= 4; ++place) {
     const double slope = slope_at(place);
     const double t = low_ + spacing * static_cast<double>(place);
     if (slope > 0) {
-      if (slope_count_ == kSlopeCountMax) {
+      if (slope_count_ >= count_max) {
         // Between two places the slope is nearly straight by now.
         return move(t - spacing + (before < 0 ? spacing * before / (before - slope) : 0));
       }
@@ -523,7 +584,7 @@ Order Conductor::after_slope(const Report& report) {
   ++slope_count_;
   Order again = ask(Operation::kSlope);
   again.reals = {static_cast<float>(low_), static_cast<float>(high_)};
-  return slope_count_ > kSlopeCountMax ? move(high_) : again;
+  return slope_count_ > kSlopeCountLimit ? move(high_) : again;
 }
 
 // ---- Jacobi methods.
@@ -579,12 +640,18 @@ Order Conductor::after_jacobi(const Setup& setup, const Report& report) {
 
 // ---- The end.
 
-Order Conductor::settled() {
+Order Conductor::settled(const Setup& setup) {
   effort_.ratio_error = static_cast<float>(error_);
   has_motion_ = is_one_sweep() && !is_unilateral_;
   has_factors_ = has_motion_ && effort_.method == Method::kElimination;
   if (is_comparing_) {
     return decide();
+  }
+  if (is_seeking()) {
+    return after_trial(setup);
+  }
+  if (may_seek()) {
+    return begin_seeking();
   }
   if (is_fixed_ && !is_uneven()) {
     if (is_unilateral_) {
@@ -618,8 +685,8 @@ Order Conductor::after_hold(const Report& report) {
     error_best_ = kUnbounded;
     stagnation_count_ = 0;
     target_ = is_uneven() ? kUnevenTolerance : kRatioTolerance;
-    begin_newton();
-    return has_fronts() ? factor() : is_one_sweep() ? first_iteration() : move(0);
+    begin_states();
+    return has_fronts() ? tree_iteration() : is_one_sweep() ? first_iteration() : move(0);
   }
   open_held_count_ = report.open_held_count();
   if (kHasSurroundings && is_second_) {
@@ -630,7 +697,7 @@ Order Conductor::after_hold(const Report& report) {
   if (is_uneven() && !is_standing_) {
     return finish(Verdict::kUnstable, Reason::kTopples);
   }
-  if (kHasSurroundings && is_toppling_) {
+  if (kHasSurroundings && weak_springs_ == WeakSprings::kToppling) {
     return finish(Verdict::kUndecided, Reason::kNotConverged);
   }
   return ask(Operation::kLoads);
@@ -642,17 +709,27 @@ Order Conductor::begin_unilateral(const Setup& setup) {
   return begin_law(setup, true);
 }
 
+/// The worst connection, as everybody will know it.
+void Conductor::note_worst(const Report& report) {
+  answer_.load_ratio_max = report.worst_load_ratio();
+  answer_.worst_cell = report.cell;
+  answer_.worst_direction = report.direction;
+#ifndef HOLDFAST_AGENT_FLOOR_ONLY
+  answer_.remarks = report.remarks & (kLimitBits | kGapOpens);
+#endif
+}
+
 /// A verdict by weak springs that may pull is given only if the law without them agrees.
 Order Conductor::after_loads(const Setup& setup, const Report& report) {
   if (report.module_count() != effort_.module_count) {
     return finish(Verdict::kUndecided, Reason::kNeighbourSilent);
   }
-  answer_.load_ratio_max = report.worst_load_ratio();
-  answer_.worst_cell = report.cell;
-  answer_.worst_direction = report.direction;
-  if (may_pull() && !is_unilateral_) {
-    is_second_ = true;
-    return begin_unilateral(setup);
+  note_worst(report);
+  if (may_slip(report)) {
+    return finish(Verdict::kUndecided, Reason::kMaySlip);
+  }
+  if (!is_unilateral_) {
+    return conclude(setup);
   }
   return open_held_count_ == 0 ? decide() : free_open_feet();
 }
@@ -667,7 +744,9 @@ Order Conductor::free_open_feet() {
 Order Conductor::decide() {
   const auto first = static_cast<double>(answer_.load_ratio_max);
   const bool breaks = mechanics::breaks(first);
-  const double doubt = error_ > kErrorLeast ? error_ : kErrorLeast;
+  const double springs = is_unilateral_ ? kRatioPerGamma * unilateral_gamma() : 0;
+  const double least = springs * (1 + absolute(ratio_));
+  const double doubt = (error_ > kErrorLeast ? error_ : kErrorLeast) + (is_uneven() ? least : 0);
   // Away from a level floor the robot may fall by the law that was given up.
   if (!is_number(first) || !is_number(ratio_) || (is_uneven() && has_given_up_)) {
     return finish(Verdict::kUndecided, Reason::kNotConverged);

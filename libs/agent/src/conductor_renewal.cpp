@@ -220,10 +220,11 @@ Order Conductor::after_close(const Setup& setup, const Report& report) {
   if (!report.corners.stable) {
     return after_corners(setup, report);
   }
-  answer_.load_ratio_max = report.worst_load_ratio();
-  answer_.worst_cell = report.cell;
-  answer_.worst_direction = report.direction;
-  return decide();
+  note_worst(report);
+  if (may_slip(report)) {
+    return finish(Verdict::kUndecided, Reason::kMaySlip);
+  }
+  return conclude(setup);
 }
 
 }  // namespace holdfast::agent

@@ -26,8 +26,9 @@ Order Conductor::after_word(const Report& report, const Stages& stages) {
   const std::uint8_t learned = stages.learned_count();
   const std::uint16_t total = learned == 0 ? report.extent : stages.total();
   const bool is_last = learned > 0 && learned == total;
-  const bool is_found =
-      (report.flags & kFound) != 0 && report.extent == total && total <= kWordCountMax;
+  const bool is_found = (report.flags & kFound) != 0 && report.extent == total &&
+                        total <= kWordCountMax &&
+                        stages.is_possible(word_of(report.number, report.cell));
   const bool is_clear = (report.flags & (kDisputed | kDenied)) == 0 &&
                         (is_last ? stages.is_whole(report.count) : is_found);
   if (!is_clear) {

@@ -4,6 +4,7 @@
 
 #include "beams.hpp"
 #include "facets.hpp"
+#include "methods.hpp"
 #include "scalar.hpp"
 #include "stage_load.hpp"
 
@@ -82,16 +83,21 @@ bool follow_state(Node& node, const ContactSetting& contact, bool is_kept) {
   return true;
 }
 
-void report_facet(Report& report, const base::Cell& cell, const Node& node) {
+void report_facet(Report& report, const Workspace& ws, int index) {
+  const Node& node = ws.node(index);
+  const base::Cell cell = ws.cell_of(index);
   if (!node.is_ground) {
     return;
   }
   if (const Surroundings* surroundings = surroundings_of(node); surroundings != nullptr) {
-    return surrounded::report_facets(*surroundings, cell, report);
+    return surrounded::report_facets(*surroundings, ws.contact, node.u, cell, report);
   }
   report.number += hash_of(cell, code_of(node.wanted));
   if (node.state.tilt_x != 0 || node.state.tilt_y != 0) {
     report.flags |= kAnyTilting;
+  }
+  if (kSeeksOthers && !ws.setup.only_one_sweep && is_doubtful(ws.contact, node.state, node.u)) {
+    report.flags |= kMayDiffer;
   }
 }
 
@@ -104,11 +110,27 @@ bool iteration_report(const Workspace& ws, int piece, Report& report) {
   for (int i = 0; i < ws.node_count(); ++i) {
     const Node& node = ws.node(i);
     report.extent = static_cast<std::uint16_t>(report.extent + (node.has_changed ? 1 : 0));
-    report_facet(report, ws.cell_of(i), node);
+    report_facet(report, ws, i);
     error += ratio_error(residual(ws, i), ws.setup, ws.contact);
   }
   report.reals[0] = static_cast<float>(error);
   return true;
+}
+
+void seek_facets(Workspace& ws, const Order& order, Report& report) {
+  for (int i = 0; i < ws.node_count(); ++i) {
+    Node& node = ws.node(i);
+    if (!node.is_ground) {
+      continue;
+    }
+    const base::Cell cell = from_root(ws, ws.cell_of(i));
+    if (Surroundings* surroundings = surroundings_of(node); surroundings != nullptr) {
+      surrounded::seek_facets(*surroundings, ws.contact, node.u, cell, order, report);
+    } else {
+      seek_facet(node, is_doubtful(ws.contact, node.state, node.u), seek_key(cell, 0), order,
+                 report);
+    }
+  }
 }
 
 void hold_facets(Workspace& ws, const Order& order, Report& report) {

@@ -31,7 +31,7 @@ bool follow_state(Node& node, const ContactSetting& contact, bool is_kept);
 std::uint32_t hash_of(const base::Cell& cell, int code);
 
 /// The hash of the states that a node's facets want, and whether any tilts in those in use.
-void report_facet(Report& report, const base::Cell& cell, const Node& node);
+void report_facet(Report& report, const Workspace& ws, int index);
 
 /// What every iteration of the one-sweep methods reports: the bound on the error of load ratios
 /// that the residual means, the facets, and in a second piece the largest load ratio.
@@ -50,6 +50,39 @@ void hold_facet(Facet& facet, bool frees, Report& report) {
   }
   report.number += !facet.state.pressed && facet.is_held ? 1U : 0U;
 }
+
+/// One facet's part in a kSeek.
+template <class Facet>
+void seek_facet(Facet& facet, bool is_doubtful, std::uint32_t key, const Order& order,
+                Report& report) {
+  if ((order.flags & kRemember) != 0) {
+    facet.found = facet.state;
+    facet.is_doubtful = is_doubtful;
+  }
+  const bool is_tried = facet.is_doubtful && key == order.key();
+  facet.state = is_tried ? mechanics::ContactState{.pressed = !facet.found.pressed} : facet.found;
+  facet.wanted = facet.state;
+  if (facet.is_doubtful) {
+    ++report.count;
+    const bool is_next = key > order.key() && (report.number == 0 || key < report.number);
+    report.number = is_next ? key : report.number;
+  }
+}
+
+/// The key of a facet for a kSeek, not 0; the cell as seen from the root.
+/// Keys do not depend on where the robot's origin is, so neither does the order of trials.
+inline base::Cell from_root(const Workspace& ws, const base::Cell& cell) {
+  const base::Cell& root = ws.tree.root_cell();
+  return {cell.x - root.x, cell.y - root.y, cell.z - root.z};
+}
+
+inline std::uint32_t seek_key(const base::Cell& cell, int facet) {
+  return hash_of(cell, facet) | 1U;
+}
+
+/// A kSeek: all facets in the states that were found, but that of the order's key. A pressed one is
+/// opened, an open one presses all over.
+void seek_facets(Workspace& ws, const Order& order, Report& report);
 
 /// A kHold: releases open facets and holds pressed ones (count: how many changed); number: open but
 /// held.

@@ -20,6 +20,9 @@ constexpr ContactState kStuck;
 /// left of the residual (kUnevenTolerance) may be as much.
 constexpr double kPressureTie = 1e-6;
 
+/// A facet that is so near to slipping may slip: forces are good to some 1e-7 of what acts on it.
+constexpr double kSlipTie = 1e-5;
+
 std::span<const TouchingFacet> facets_of(const Surroundings& node) {
   return std::span(node.facets).first(node.facet_count);
 }
@@ -121,8 +124,22 @@ void hold_facets(Surroundings& node, bool frees, Report& report) {
   }
 }
 
-void report_facets(const Surroundings& node, const base::Cell& cell, Report& report) {
+/// Each has a key of its own.
+void seek_facets(Surroundings& node, const ContactSetting& contact, const Vec6<double>& u,
+                 const base::Cell& cell, const Order& order, Report& report) {
+  int index = 0;
+  for (TouchingFacet& facet : facets_of(node)) {
+    const bool doubts = is_doubtful(contact, facet.state, to_local(node, facet, u));
+    seek_facet(facet, doubts, seek_key(cell, ++index), order, report);
+  }
+}
+
+void report_facets(const Surroundings& node, const ContactSetting& contact, const Vec6<double>& u,
+                   const base::Cell& cell, Report& report) {
   for (const TouchingFacet& facet : facets_of(node)) {
+    if (is_doubtful(contact, facet.state, to_local(node, facet, u))) {
+      report.flags = static_cast<std::uint8_t>(report.flags | kMayDiffer);
+    }
     const int code = ContactState::kCodeCount * (1 + base::index(facet.direction));
     report.number += hash_of(cell, code + facet.wanted.code());
     report.flags = static_cast<std::uint8_t>(
@@ -145,6 +162,65 @@ bool is_any_tilting(const Node& node) {
   return is_any;
 }
 
+namespace {
+
+/// Can corners of a facet bear this by pressing and friction? `force` in its frame, the torque
+/// about the node, which is its lever before the facet.
+///
+/// It presses with P at c = (my^, -mx^) / P, for instance with P/4 (1 +- cx/h) (1 +- cy/h) at the
+/// corners, h half its width. Across, corners share the force as they press, and turn about c by w
+/// times pressure times distance: together w P (2 h^2 - c^2), which is the torque about c. That is
+/// one way; if no corner slips in it, the facet holds. On a level floor under weight alone turning
+/// is not asked of (verdict/stability.hpp), and w is none.
+bool may_slip_at_corners(const Vec6<double>& force, double friction,
+                         const mechanics::GroundFacet<double>& facet, bool turns) {
+  const double half_width = facet.half_width;
+  const double pressure = -force[2];
+  const std::array<double, 2> across = {force[0] / pressure, force[1] / pressure};
+  const std::array<double, 2> centre = {(force[4] + force[0] * facet.lever) / pressure,
+                                        (force[1] * facet.lever - force[3]) / pressure};
+  const double most = (1 - kSlipTie) * friction * friction;
+  if (!turns) {
+    return !(across[0] * across[0] + across[1] * across[1] < most);
+  }
+  const double torque = force[5] / pressure - centre[0] * across[1] + centre[1] * across[0];
+  const double spread = 2 * half_width * half_width - centre[0] * centre[0] - centre[1] * centre[1];
+  const double turn = torque / spread;
+  bool holds = spread > 0;
+  for (int corner = 0; corner < 4; ++corner) {
+    const double x = (corner % 2 == 0 ? -half_width : half_width) - centre[0];
+    const double y = (corner < 2 ? -half_width : half_width) - centre[1];
+    const double along_x = across[0] - turn * y;
+    const double along_y = across[1] + turn * x;
+    holds = holds && along_x * along_x + along_y * along_y < most;
+  }
+  return !holds;
+}
+
+}  // namespace
+
+/// In the states in use. As the exact solver asks, the force across is compared with what presses
+/// (verdict/stability.cpp), and, where the rigid body has to hold by friction, corners are.
+bool may_slip(const Node& node, const ContactSetting& contact) {
+  const Surroundings* surroundings = surroundings_of(node);
+  if (surroundings == nullptr || !node.is_ground) {
+    return false;
+  }
+  const Environment& environment = *surroundings->environment;
+  bool may = false;
+  for (const TouchingFacet& facet : facets_of(*surroundings)) {
+    if (facet.friction == kNoSlip || facet.is_bonded || !facet.state.pressed) {
+      continue;
+    }
+    const Vec6<double> force = mechanics::contact_force(contact.facet, facet.state, facet.is_held,
+                                                        to_local(*surroundings, facet, node.u));
+    const bool is_idle = environment.is_level && force[0] == 0 && force[1] == 0;
+    may = may || (!is_idle &&
+                  may_slip_at_corners(force, facet.friction, contact.facet, !environment.is_level));
+  }
+  return may;
+}
+
 bool is_any_bonded(const Surroundings& node) {
   bool is_any = false;
   for (const TouchingFacet& facet : facets_of(node)) {
@@ -155,7 +231,8 @@ bool is_any_bonded(const Surroundings& node) {
 
 void reset(Surroundings& node) {
   for (TouchingFacet& facet : facets_of(node)) {
-    facet = {.direction = facet.direction, .is_bonded = facet.is_bonded};
+    facet = {
+        .direction = facet.direction, .is_bonded = facet.is_bonded, .friction = facet.friction};
   }
 }
 

@@ -31,11 +31,30 @@ base::Vec6<double> prescribed_force(const Surroundings& node, const ContactSetti
 bool look_up_states(Surroundings& node, const ContactSetting& contact, const base::Vec6<double>& u);
 void take_states(Surroundings& node);
 void hold_facets(Surroundings& node, bool frees, Report& report);
-void report_facets(const Surroundings& node, const base::Cell& cell, Report& report);
+void seek_facets(Surroundings& node, const ContactSetting& contact, const base::Vec6<double>& u,
+                 const base::Cell& cell, const Order& order, Report& report);
+void report_facets(const Surroundings& node, const ContactSetting& contact,
+                   const base::Vec6<double>& u, const base::Cell& cell, Report& report);
 }  // namespace surrounded
+
+/// May a facet in this state have a second one under the regularised law, `u` in its own frame? As
+/// the exact solver has it (solver/other_solutions.cpp): it is pulled sideways by more than it
+/// presses, or than its gap would pull, and does not press all over.
+inline bool is_doubtful(const ContactSetting& contact, const mechanics::ContactState& state,
+                        const base::Vec6<double>& u) {
+  if (contact.facet.law != mechanics::ContactLaw::kRegularised ||
+      state == mechanics::ContactState{}) {
+    return false;
+  }
+  const base::Vec6<double> trial = mechanics::trial_force(contact.facet, u);
+  return trial[0] * trial[0] + trial[1] * trial[1] > trial[2] * trial[2];
+}
 
 /// Does a facet tilt?
 bool is_any_tilting(const Node& node);
+
+/// Is a facet pulled sideways by more than its friction, or by so much that it cannot be told?
+bool may_slip(const Node& node, const ContactSetting& contact);
 
 /// The force of the facets of a node on the ground for the displacement u, in the states in use;
 /// linear in u.

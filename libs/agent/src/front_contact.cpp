@@ -25,6 +25,12 @@ constexpr int kHalvingMax = 40;
 /// start the slope must be at a full step.
 constexpr double kLeastPart = 1e-10;
 
+/// How much all facets hold where too few do, and how much more where that is too little.
+constexpr double kHoldLeast = 1e-7;
+constexpr double kHoldMore = 10;
+
+constexpr mechanics::ContactState kStuck = {.pressed = true};
+
 }  // namespace
 
 FrontContact::FrontContact(const mechanics::GroundFacet<double>& law, Front& front,
@@ -38,10 +44,12 @@ FrontContact::FrontContact(const mechanics::GroundFacet<double>& law, Front& fro
   g_ = vector(1);
   trial_ = vector(2);
   residual_ = vector(3);
+  start_ = vector(4);
 }
 
 bool FrontContact::solve() {
   clear(d_);
+  find_start();
   bool is_solved = false;
   if (law_.law == mechanics::ContactLaw::kUnilateral) {
     is_solved = solve_unilateral();
@@ -57,6 +65,27 @@ bool FrontContact::solve() {
   }
   take(d_);
   return is_solved;
+}
+
+void FrontContact::take_found() {
+  for (KeptFacet& facet : facets_) {
+    facet.state = facet.found;
+  }
+}
+
+bool FrontContact::leads_elsewhere(std::size_t k) {
+  take_found();
+  facets_[k].state = {.pressed = !facets_[k].found.pressed};
+  clear(d_);
+  find_start();
+  bool is_elsewhere = false;
+  if (solve_regularised(kNewtonMax)) {
+    for (const KeptFacet& facet : facets_) {
+      is_elsewhere = is_elsewhere || !(facet.state == facet.found);
+    }
+  }
+  take_found();
+  return is_elsewhere;
 }
 
 void FrontContact::clear(const Vector& vector) {
@@ -92,7 +121,20 @@ bool FrontContact::follow_states(const Vector& d) {
   return has_changed;
 }
 
-/// h - S d - F(u + d), in the states in use.
+/// In the states that the law has for u, which are not those of the start.
+void FrontContact::find_start() {
+  for (std::size_t k = 0; k < facets_.size(); ++k) {
+    const KeptFacet& facet = facets_[k];
+    const mechanics::ContactState state =
+        mechanics::contact_state(law_, mechanics::trial_force(law_, facet.u));
+    const base::Vec6<double> force = mechanics::contact_force(law_, state, facet.was_held, facet.u);
+    for (std::size_t i = 0; i < 6; ++i) {
+      start_[6 * k + i] = force[i];
+    }
+  }
+}
+
+/// r + F(u) - S d - F(u + d), in the states in use.
 void FrontContact::find_residual(const Vector& d, Vector& residual) const {
   for (std::size_t k = 0; k < facets_.size(); ++k) {
     const KeptFacet& facet = facets_[k];
@@ -101,8 +143,8 @@ void FrontContact::find_residual(const Vector& d, Vector& residual) const {
     for (std::size_t i = 0; i < 6; ++i) {
       const std::size_t row = 6 * k + i;
       residual[row] =
-          static_cast<double>(front_.load(front_.complete_rows() + static_cast<int>(row))) -
-          force[i];
+          static_cast<double>(front_.load(front_.complete_rows() + static_cast<int>(row))) +
+          start_[row] - force[i];
       for (std::size_t column = 0; column < rows_; ++column) {
         residual[row] -= stiffness(row, column) * d[column];
       }
@@ -110,8 +152,8 @@ void FrontContact::find_residual(const Vector& d, Vector& residual) const {
   }
 }
 
-/// The matrix: S and the facets' tangents.
-void FrontContact::load_tangent() {
+/// The matrix: S, the facets' tangents and `hold` of what they would be if all held all over.
+void FrontContact::load_tangent(double hold) {
   for (std::size_t row = 0; row < rows_; ++row) {
     for (std::size_t column = 0; column < rows_; ++column) {
       matrix_[row * rows_ + column] = stiffness(row, column);
@@ -120,10 +162,11 @@ void FrontContact::load_tangent() {
   for (std::size_t k = 0; k < facets_.size(); ++k) {
     const base::Mat6<double> tangent =
         mechanics::contact_tangent(law_, facets_[k].state, facets_[k].is_held);
+    const base::Mat6<double> held = mechanics::contact_tangent(law_, kStuck, true);
     for (int i = 0; i < 6; ++i) {
       for (int j = 0; j < 6; ++j) {
         matrix_[(6 * k + static_cast<std::size_t>(i)) * rows_ + 6 * k +
-                static_cast<std::size_t>(j)] += tangent.at(i, j);
+                static_cast<std::size_t>(j)] += tangent.at(i, j) + hold * held.at(i, j);
       }
     }
   }
@@ -174,7 +217,7 @@ bool FrontContact::solve_linear(Vector& b) {
 bool FrontContact::solve_regularised(int step_count) {
   for (int step = 0; step < step_count; ++step) {
     find_residual(d_, residual_);
-    load_tangent();
+    load_tangent(0);
     if (!solve_linear(residual_)) {
       return false;
     }
@@ -217,25 +260,30 @@ double FrontContact::step_length(const Vector& g, const Vector& d) {
   return low;
 }
 
+/// Where too few facets hold, S alone is singular, and what rounding has made of it need not be
+/// positive. Then all hold a little: with any positive matrix a step leads down.
 bool FrontContact::solve_unilateral() {
   follow_states(d_);
   double first = 0;
+  double hold = 0;
   for (int step = 0; step < kConvexMax; ++step) {
     find_residual(d_, residual_);
     for (std::size_t i = 0; i < rows_; ++i) {
       g_[i] = residual_[i];
     }
-    load_tangent();
-    if (!solve_linear(g_)) {
-      return false;
-    }
+    load_tangent(hold);
+    const bool is_regular = solve_linear(g_);
     double work = 0;
     for (std::size_t i = 0; i < rows_; ++i) {
       work += residual_[i] * g_[i];
     }
-    first = step == 0 ? work : first;
-    if (!(work > kLeastPart * kLeastPart * first)) {
+    first = first > 0 ? first : work;
+    if (is_regular && absolute(work) <= kLeastPart * kLeastPart * first) {
       return true;
+    }
+    if (!is_regular || !(work > 0)) {
+      hold = hold > 0 ? kHoldMore * hold : kHoldLeast;
+      continue;
     }
     const double length = step_length(g_, d_);
     for (std::size_t i = 0; i < rows_; ++i) {
@@ -246,14 +294,17 @@ bool FrontContact::solve_unilateral() {
   return false;
 }
 
-/// As single precision has it, like the module itself.
+/// As single precision has it, like the module itself, whose facet is in the same state then.
 void FrontContact::take(const Vector& d) {
   for (std::size_t k = 0; k < facets_.size(); ++k) {
+    KeptFacet& facet = facets_[k];
     for (std::size_t i = 0; i < 6; ++i) {
       float& shift = front_.shift(front_.complete_rows() + static_cast<int>(6 * k + i));
       shift = static_cast<float>(d[6 * k + i]);
-      facets_[k].u[i] += static_cast<double>(shift);
+      facet.u[i] += static_cast<double>(shift);
     }
+    facet.state = mechanics::contact_state(law_, mechanics::trial_force(law_, facet.u));
+    facet.was_held = facet.is_held;
   }
 }
 

@@ -101,6 +101,9 @@ bool KrylovAndJacobi::report(Workspace& ws, const Order& order, int piece, Repor
     case Operation::kHold:
       hold_facets(ws, order, sum);
       return false;
+    case Operation::kSeek:
+      seek_facets(ws, order, sum);
+      return false;
     default:
       return false;
   }
@@ -305,7 +308,7 @@ bool KrylovAndJacobi::report_residual(Workspace& ws, const Order& order, int pie
       take_states(node);
     }
   }
-  report_facet(report, ws.cell_of(piece), node);
+  report_facet(report, ws, piece);
   const base::Vec6<double> rest = residual(ws, piece);
   report.reals[0] += static_cast<float>(ratio_error(rest, ws.setup, ws.contact));
   vectors(piece).r = base::converted<float>(rest);

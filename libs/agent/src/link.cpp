@@ -70,9 +70,17 @@ std::uint8_t* Link::queue() {
 
 int Link::capacity() const {
   if (is_long()) {
-    return kPlannedBytes;
+    return kPlannedBytes - kLentWindow;
   }
-  return kHasAllMethods && lent_ != nullptr ? kLentBytes : kQueueBytes;
+  return kHasAllMethods && lent_ != nullptr ? kLentBytes - kLentWindow : kQueueBytes;
+}
+
+int Link::window() const { return kHasAllMethods && lent_ != nullptr ? kLentWindow : kWindow; }
+
+/// Of the `index`-th packet under way; with a lent queue they stand behind it.
+std::uint8_t& Link::chunk_bytes(int index) {
+  return kHasAllMethods && lent_ != nullptr ? lent_[capacity() + index]
+                                            : chunk_bytes_[static_cast<std::size_t>(index)];
 }
 
 void Link::clear() {
@@ -172,16 +180,17 @@ void Link::receive_acknowledgement(std::uint8_t next, const LinkTiming& timing, 
   if (count == 0 || count > known_count_) {
     return;
   }
+  std::uint8_t* const chunks = &chunk_bytes(0);
   for (std::uint8_t i = 0; i < count; ++i) {
-    const std::uint8_t bytes = chunk_bytes_[i];
+    const std::uint8_t bytes = chunks[i];
     head_ = wrapped(head_ + bytes);
     queued_bytes_ = static_cast<std::uint16_t>(queued_bytes_ - bytes);
     furthest_bytes_ = static_cast<std::uint16_t>(furthest_bytes_ - bytes);
     // An acknowledgement can overtake a packet that is being sent again.
     sent_bytes_ = static_cast<std::uint16_t>(sent_bytes_ > bytes ? sent_bytes_ - bytes : 0);
   }
-  for (int i = count; i < kWindow; ++i) {
-    chunk_bytes_[static_cast<std::size_t>(i - count)] = chunk_bytes_[static_cast<std::size_t>(i)];
+  for (int i = count; i < window(); ++i) {
+    chunks[i - count] = chunks[i];
   }
   known_count_ = static_cast<std::uint8_t>(known_count_ - count);
   sent_count_ = static_cast<std::uint8_t>(sent_count_ > count ? sent_count_ - count : 0);
@@ -289,8 +298,9 @@ bool Link::has_packet(Time now) const {
   if (!is_used()) {
     return is_calling() && needs_greeting_;
   }
-  const bool has_data =
-      state_ == State::kOpen && sent_count_ < kWindow && sent_bytes_ < queued_bytes_;
+  const bool has_data = state_ == State::kOpen &&
+                        sent_count_ < (kHasAllMethods ? window() : kWindow) &&
+                        sent_bytes_ < queued_bytes_;
   return needs_greeting_ || needs_ping_ || has_data ||
          (owes_acknowledgement_ && now >= acknowledge_at_);
 }
@@ -312,9 +322,9 @@ int Link::write_greeting(std::span<std::uint8_t> packet, const LinkTiming& timin
 }
 
 /// Bytes of the next data packet: as before if it is sent again, else as many as fit.
-int Link::packet_chunk(const LinkTiming& timing) const {
+int Link::packet_chunk(const LinkTiming& timing) {
   if (sent_count_ < known_count_) {
-    return chunk_bytes_[sent_count_];
+    return chunk_bytes(sent_count_);
   }
   const int room = timing.packet_bytes - wire::kHeaderBytes - wire::kChecksumBytes;
   const int waiting = queued_bytes_ - sent_bytes_;
@@ -331,7 +341,7 @@ int Link::write_packet(std::span<std::uint8_t> packet, const LinkTiming& timing,
   auto kind = PacketKind::kAcknowledge;
   int size = wire::kHeaderBytes;
   std::uint8_t number = 0;
-  if (sent_count_ < kWindow && sent_bytes_ < queued_bytes_) {
+  if (sent_count_ < (kHasAllMethods ? window() : kWindow) && sent_bytes_ < queued_bytes_) {
     kind = PacketKind::kData;
     const int chunk = packet_chunk(timing);
     const int cursor = wrapped(head_ + sent_bytes_);
@@ -341,7 +351,7 @@ int Link::write_packet(std::span<std::uint8_t> packet, const LinkTiming& timing,
     std::memcpy(packet.data() + size + first, queue(), static_cast<std::size_t>(chunk) - first);
     size += chunk;
     number = static_cast<std::uint8_t>((send_number_ + sent_count_) & kNumberMask);
-    chunk_bytes_[sent_count_++] = static_cast<std::uint8_t>(chunk);
+    chunk_bytes(sent_count_++) = static_cast<std::uint8_t>(chunk);
     sent_bytes_ = static_cast<std::uint16_t>(sent_bytes_ + chunk);
     known_count_ = known_count_ > sent_count_ ? known_count_ : sent_count_;
     // Follow message boundaries, so that drop_unsent() never cuts a message.

@@ -27,4 +27,8 @@ inline constexpr bool kKeepsAnswers = true;
 /// Can free faces be judged (free_faces.hpp)? Left out together with the above.
 inline constexpr bool kJudgesFaces = kKeepsAnswers;
 
+/// Are further solutions of the regularised law sought (conductor_seeking.cpp)? Left out together
+/// with conjugate gradients.
+inline constexpr bool kSeeksOthers = kHasAllMethods;
+
 }  // namespace holdfast::agent

@@ -7,6 +7,7 @@
 #include "condensed.hpp"
 #include "displacements.hpp"
 #include "facets.hpp"
+#include "methods.hpp"
 #include "stage_load.hpp"
 
 namespace holdfast::agent {
@@ -68,7 +69,11 @@ void MinimalResiduals::renew_diagonal(int index, int part) {
 
 bool MinimalResiduals::hold(int piece, Report& report) {
   if (piece == 0) {
-    hold_facets(ws_, order_, report);
+    if (kSeeksOthers && order_.operation == wire::Operation::kSeek) {
+      seek_facets(ws_, order_, report);
+    } else {
+      hold_facets(ws_, order_, report);
+    }
     return true;
   }
   renew_diagonal((piece - 1) / kDiagonalParts, (piece - 1) % kDiagonalParts);

@@ -56,7 +56,7 @@ class MinimalResiduals {
   /// Then the next term.
   bool take_term(int piece);
 
-  /// A kHold: facets that are held or released, and with them the factors of the diagonals.
+  /// A kHold or kSeek: facets in other states, and with them the factors of the diagonals.
   bool hold(int piece, Report& report);
 
   /// All of the residual is left: the polynomial's first terms.

@@ -194,6 +194,11 @@ double ratio_error(const Vec6<double>& residual, const Setup& setup,
     force += absolute(static_cast<double>(residual[i]));
     torque += absolute(static_cast<double>(residual[i + 3]));
   }
+#ifndef HOLDFAST_AGENT_FLOOR_ONLY
+  if (setup.ratio_per_n > 0) {
+    return setup.ratio_per_n * force + setup.ratio_per_nmm * (torque + force * contact.lever_mm);
+  }
+#endif
   const double strength = setup.strength_vertical_n < setup.strength_lateral_n
                               ? setup.strength_vertical_n
                               : setup.strength_lateral_n;

@@ -108,6 +108,12 @@ void merge_loads(Report& into, const Report& from) {
   const bool is_worse =
       larger(into.reals[0], from.reals[0]) != into.reals[0] && into.reals[0] == into.reals[0];
   const bool is_equal = from.reals[0] == into.reals[0];
+#ifndef HOLDFAST_AGENT_FLOOR_ONLY
+  const std::uint8_t limit = into.remarks & kLimitBits;
+  into.remarks = static_cast<std::uint8_t>((into.remarks | from.remarks) & ~kLimitBits);
+  const bool is_theirs = is_worse || (is_equal && from.cell < into.cell);
+  into.remarks |= is_theirs ? static_cast<std::uint8_t>(from.remarks & kLimitBits) : limit;
+#endif
   if (is_worse || (is_equal && from.cell < into.cell)) {
     into.reals[0] = from.reals[0];
     into.cell = from.cell;
@@ -115,6 +121,13 @@ void merge_loads(Report& into, const Report& from) {
   }
   into.count += from.count;
   into.number += from.number;
+}
+
+/// The least key.
+void merge_keys(Report& into, const Report& from) {
+  const bool is_less = from.number != 0 && (into.number == 0 || from.number < into.number);
+  into.number = is_less ? from.number : into.number;
+  into.count += from.count;
 }
 
 /// Of two words the least that was found; two that differ are disputed.
@@ -175,15 +188,29 @@ constexpr void corner_fields(auto& codec, mechanics::SupportCorners& corners) {
   }
 }
 
+/// A connection's direction, and above it what there is to say of connections.
+template <class Fields>
+constexpr void connection_fields(auto& codec, base::Direction& direction,
+                                 [[maybe_unused]] Fields& of, [[maybe_unused]] std::uint8_t all) {
+#ifdef HOLDFAST_AGENT_FLOOR_ONLY
+  codec.direction(direction);
+#else
+  codec.direction(direction, of.remarks, all);
+#endif
+}
+
+constexpr Reason kReasonLast = kKnowsLattices  ? Reason::kMaySlip
+                               : kJudgesStages ? Reason::kStepUnclear
+                                               : Reason::kAmbiguousFeet;
+
 constexpr void answer_fields(auto& codec, Answer& answer) {
   codec.kind(answer.verdict, Verdict::kSafe, Verdict::kUndecided);
-  codec.kind(answer.reason, Reason::kNone,
-             kJudgesStages ? Reason::kStepUnclear : Reason::kAmbiguousFeet);
+  codec.kind(answer.reason, Reason::kNone, kReasonLast);
   codec.require(is_reasoned(answer) && answer.reason != Reason::kNoAnswer &&
                 answer.reason != Reason::kNoAnchor);
   codec.real(answer.load_ratio_max);
   codec.cell(answer.worst_cell);
-  codec.direction(answer.worst_direction);
+  connection_fields(codec, answer.worst_direction, answer, kLimitBits | kGapOpens);
 }
 
 constexpr void real_fields(auto& codec, std::span<float> reals) {
@@ -291,6 +318,11 @@ constexpr void solve_fields(auto& codec, Order& order) {
   real_fields(codec, std::span(order.reals).first(2));
 }
 
+constexpr void seek_fields(auto& codec, Order& order) {
+  codec.flags(order.flags, kRemember);
+  codec.i32(order.mass);
+}
+
 /// What is in an order behind its operation.
 constexpr void fields(auto& codec, Order& order) {
   base::Direction facet = kStandingFacet;
@@ -347,6 +379,9 @@ constexpr void fields(auto& codec, Order& order) {
     case Operation::kShape:
     case Operation::kNext:
       return face_fields(codec, order);
+    case Operation::kSeek:
+      codec.require(kSeeksOthers);
+      return kSeeksOthers ? seek_fields(codec, order) : void();
     case Operation::kCorners:
     case Operation::kLoads:
     case Operation::kFactor:
@@ -359,6 +394,7 @@ constexpr void fields(auto& codec, Order& order) {
 constexpr std::uint8_t kHostedFlags = (1U << kPlannedMax) - 1 + kAnyRemote;
 constexpr std::uint8_t kRenewalFlags =
     kAnyFixed | kSumOverflow | kManyLoops | kMoreAnnounced | kAtOdds | kNewLoop;
+constexpr std::uint8_t kFacetFlags = kAnyTilting | kMayPull | (kSeeksOthers ? kMayDiffer : 0);
 constexpr std::uint8_t kFrontFlags = kHasAllMethods ? kNoRoom | kNoState : 0;
 
 /// Bound on the error, largest load ratio; facets that change, the hash of all states, any tilting.
@@ -366,14 +402,14 @@ constexpr void residual_fields(auto& codec, Report& report, std::uint8_t more_fl
   real_fields(codec, std::span(report.reals).first(2));
   codec.u16(report.extent);
   codec.u32(report.number);
-  codec.flags(report.flags, kAnyTilting | kMayPull | more_flags);
+  codec.flags(report.flags, kFacetFlags | more_flags);
 }
 
 /// The worst connection.
 constexpr void worst_fields(auto& codec, Report& report) {
   real_fields(codec, std::span(report.reals).first(1));
   codec.cell(report.cell);
-  codec.direction(report.direction);
+  connection_fields(codec, report.direction, report, kLimitBits | kGapOpens | kFacetSlips);
 }
 
 /// Of conjugate gradients and the Jacobi methods.
@@ -474,6 +510,7 @@ constexpr void fields(auto& codec, Operation operation, Report& report) {
     case Operation::kHold:
     case Operation::kClusters:
     case Operation::kNext:
+    case Operation::kSeek:
       codec.u32(report.count);
       return codec.u32(report.number);
     case Operation::kShape:
@@ -510,7 +547,8 @@ static_assert([] {
     Report report;
     fields(up, row.operation, report);
     const bool is_of_solve =
-        row.operation >= Operation::kHigh && row.operation <= Operation::kSlope;
+        (row.operation >= Operation::kHigh && row.operation <= Operation::kSlope) ||
+        row.operation == Operation::kSeek;
     const bool is_known =
         (kKeepsAnswers || row.operation < Operation::kRenew) && (kHasAllMethods || !is_of_solve);
     if (is_known && (down.bytes() != row.order_bytes || up.bytes() != row.report_bytes)) {
@@ -586,6 +624,8 @@ void merge(Operation operation, Report& into, const Report& from) {
       break;
     case Operation::kShape:
       return kJudgesFaces ? merge_shape(into, from) : void();
+    case Operation::kSeek:
+      return kSeeksOthers ? merge_keys(into, from) : void();
     default:
       break;
   }
@@ -624,11 +664,12 @@ const char* name(Reason reason) {
                                     "the robot is too large to be counted",
                                     "no method settled",
                                     "the largest load ratio cannot be told from 1",
-                                    "the verdict depends on feet that are neither held nor free",
+                                    "the verdict depends on feet that may hold or not",
                                     "no answer in time",
                                     "no module that knows its cell was heard",
                                     "the robot would be in pieces",
-                                    "the step as it was told does not fit the robot"};
+                                    "the step as it was told does not fit the robot",
+                                    "a facet may slip: it is pulled by more than its friction"};
   return kNames[static_cast<std::size_t>(reason)];
 }
 

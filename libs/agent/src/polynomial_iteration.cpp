@@ -2,16 +2,27 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "holdfast/agent/polynomial_iteration.hpp"
 
+#include "methods.hpp"
 #include "minimal_residuals.hpp"
 
 namespace holdfast::agent {
+
+namespace {
+
+/// Another state of facets, and nothing moves.
+bool is_about_facets(const Order& order) {
+  return order.operation == wire::Operation::kHold ||
+         (kSeeksOthers && order.operation == wire::Operation::kSeek);
+}
+
+}  // namespace
 
 PlannedPart PolynomialIteration::planned_part(const Workspace& ws, const Order& order) {
   return part_in_iteration(ws, order);
 }
 
 bool PolynomialIteration::begin(Workspace& ws, const Order& order, int piece) {
-  if (order.operation == wire::Operation::kHold) {
+  if (is_about_facets(order)) {
     return false;  // Work is left to the report.
   }
   MinimalResiduals iteration(ws, order, memory(ws), rho_);
@@ -27,7 +38,7 @@ bool PolynomialIteration::take_exchange(Workspace& ws, const Order& order, int p
 
 bool PolynomialIteration::report(Workspace& ws, const Order& order, int piece, Report& sum) {
   MinimalResiduals iteration(ws, order, memory(ws), rho_);
-  return order.operation == wire::Operation::kHold
+  return is_about_facets(order)
              ? iteration.hold(piece, sum)
              : order.operation == wire::Operation::kIterate && iteration.report(piece, sum);
 }

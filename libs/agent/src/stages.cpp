@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "holdfast/agent/stages.hpp"
 
+#include "holdfast/agent/feet.hpp"
 #include "holdfast/mechanics/connector.hpp"
+#include "holdfast/mechanics/lattice_beam.hpp"
 
 namespace holdfast::agent {
 namespace {
@@ -27,26 +29,25 @@ int severity(Verdict verdict) {
   }
 }
 
-/// Twice the place of a moved module at a waypoint, from a cell.
-std::array<std::int32_t, 3> doubled_place(const StepWord& move, int waypoint, const Cell& from) {
-  const Cell way = doubled_way(move, waypoint);
-  return {2 * (move.cell.x - from.x) + way.x, 2 * (move.cell.y - from.y) + way.y,
-          2 * (move.cell.z - from.z) + way.z};
+using Vector = std::array<double, 3>;
+
+/// Facets whose distances to a group differ by less than this share of a pitch, squared, are
+/// equally near.
+constexpr double kNearestTie = 1e-6;
+
+double dot(const Vector& a, const Vector& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+
+double square_between(const Vector& a, const Vector& b) {
+  const Vector apart = {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
+  return dot(apart, apart);
 }
 
-/// Twice the unit vector of a direction.
-std::array<std::int32_t, 3> doubled_unit(Direction direction) {
-  const Cell unit = base::neighbour({}, direction);
-  return {2 * unit.x, 2 * unit.y, 2 * unit.z};
-}
-
-std::int32_t square_between(const std::array<std::int32_t, 3>& a,
-                            const std::array<std::int32_t, 3>& b) {
-  std::int32_t sum = 0;
-  for (std::size_t i = 0; i < 3; ++i) {
-    sum += (a[i] - b[i]) * (a[i] - b[i]);
+/// A way in axial coordinates, in cells of FeetCheck (floor_place()).
+Cell floor_way(const base::Lattice& lattice, const Cell& way) {
+  if (lattice.shear_x != 0 || lattice.shear_y != 0) {
+    return {2 * way.x + lattice.shear_x * way.z, 2 * way.y + lattice.shear_y * way.z, way.z};
   }
-  return sum;
+  return lattice == base::kHexagonalPrism ? Cell{2 * way.x + way.y, way.y, way.z} : way;
 }
 
 }  // namespace
@@ -58,7 +59,7 @@ void Stages::tell(std::uint8_t index, std::uint8_t total, const StepWord& word) 
     forget_told(false);
   }
   told_total_ = total;
-  if (total > kWordCountMax || index >= total || !is_word(bits_of(word))) {
+  if (total > kWordCountMax || index >= total || !is_possible(word)) {
     return;  // Such a plan is never whole.
   }
   words_[index] = word;
@@ -128,19 +129,26 @@ bool Stages::fits(const StepWord& word, const StageSite& site) const {
   return word.kind == Kind::kCarry || site.used.has(static_cast<Direction>(word.face));
 }
 
-/// A module that stays in a cell that another one needs, or stands on the ground above it.
+/// A module that stays in a cell that another one needs, or touches what does not move there.
 bool Stages::is_in_the_way(const StepWord& word, const StageSite& site) const {
   const bool stays =
       find(Kind::kMove, site.cell) == nullptr && find(Kind::kDetach, site.cell) == nullptr;
   if (!stays || (word.kind != Kind::kMove && word.kind != Kind::kAttach)) {
     return false;
   }
-  const Cell target = word.kind == Kind::kMove ? target_of(word) : word.cell;
-  const bool is_below = target == base::neighbour(site.cell, Direction::kMinusZ);
-  const bool is_passed =
-      word.kind == Kind::kMove &&
-      site.cell == base::neighbour(word.cell, static_cast<Direction>(word.first));
-  return target == site.cell || is_passed || (is_below && site.is_standing);
+  const auto is_taken = [&](const Cell& cell) {
+    bool is_obstacle = site.is_standing && cell.z < site.cell.z;
+    for (const Direction face : site.touching) {
+      is_obstacle = is_obstacle || cell == base::neighbour(*lattice_, site.cell, face);
+    }
+    return cell == site.cell || is_obstacle;
+  };
+  if (word.kind == Kind::kAttach) {
+    return is_taken(word.cell);
+  }
+  const auto first = static_cast<Direction>(word.first);
+  return is_taken(base::neighbour(*lattice_, word.cell, first)) ||
+         is_taken(target_of(*lattice_, word));
 }
 
 bool Stages::is_whole(std::uint32_t confirmed_count) const {
@@ -230,7 +238,7 @@ Answer Stages::overall() const {
 bool Stages::is_target(const Cell& cell) const {
   for (int i = 0; i < total_; ++i) {
     const StepWord& mine = word(i);
-    if ((mine.kind == Kind::kMove && target_of(mine) == cell) ||
+    if ((mine.kind == Kind::kMove && target_of(*lattice_, mine) == cell) ||
         (mine.kind == Kind::kAttach && mine.cell == cell)) {
       return true;
     }
@@ -239,7 +247,7 @@ bool Stages::is_target(const Cell& cell) const {
 }
 
 /// The word by which the module of a cell is gone in this stage. Where another one comes to its
-/// place nothing is changed by that in the end: all modules are alike.
+/// place nothing is changed by that in the end but what it weighs: all modules are alike.
 const StepWord* Stages::leaving(const Cell& cell) const {
   if (stage_ != Stage::kShift && stage_ != Stage::kConnect) {
     return nullptr;
@@ -267,7 +275,7 @@ bool Stages::lets_go(const Cell& from, const Cell& other) const {
 }
 
 bool Stages::is_off(const Cell& cell, Direction face) const {
-  const Cell other = base::neighbour(cell, face);
+  const Cell other = base::neighbour(*lattice_, cell, face);
   const auto there = static_cast<std::uint8_t>(base::opposite(face));
   const StepWord* mine = leaving(cell);
   const StepWord* theirs = leaving(other);
@@ -290,7 +298,7 @@ bool Stages::is_off(const Cell& cell, Direction face) const {
 
 Faces Stages::hidden(const Cell& cell) const {
   Faces faces;
-  for (const Direction face : base::kDirections) {
+  for (const Direction face : base::directions(*lattice_)) {
     faces.set(face, stage() != Stage::kNone && is_off(cell, face));
   }
   return faces;
@@ -300,7 +308,7 @@ bool Stages::find_planned(bool has_last, const Cell& last, Cell& cell) const {
   bool is_found = false;
   for (int i = 0; i < total_ && stage() == Stage::kConnect; ++i) {
     const StepWord& mine = word(i);
-    const Cell there = mine.kind == Kind::kMove ? target_of(mine) : mine.cell;
+    const Cell there = mine.kind == Kind::kMove ? target_of(*lattice_, mine) : mine.cell;
     const bool comes = mine.kind == Kind::kMove || mine.kind == Kind::kAttach;
     const bool is_refilled =
         find(Kind::kMove, there) != nullptr || find(Kind::kDetach, there) != nullptr;
@@ -395,85 +403,177 @@ bool Stages::carries(std::uint8_t group, const Cell& cell, int& waypoint) const 
          carrier(group, waypoint, choice[group])->cell == cell;
 }
 
-StageMass Stages::mass(const Cell& cell) const {
-  StageMass sum{.mass = is_gone(cell) ? 0 : 2};
+/// What a module weighs, in units.
+std::int32_t Stages::mass_of(const Cell& cell) const {
+  if (!kHasSurroundings || environment_ == nullptr) {
+    return 1;
+  }
+  Surroundings there{.environment = environment_};
+  environment_->describe(environment_->map, cell, there);
+  return there.mass;
+}
+
+/// What acts on a module from outside.
+base::Vec6<double> Stages::load_of(const Cell& cell, const Setup& setup) const {
+  if (!kHasSurroundings || environment_ == nullptr) {
+    return {0, 0, -setup.weight_n};
+  }
+  Surroundings there{.environment = environment_};
+  environment_->describe(environment_->map, cell, there);
+  return there.load;
+}
+
+/// Twice the way from a cell to a moved module, axial coordinates.
+Cell Stages::doubled_apart(const StepWord& move, int waypoint, const Cell& from) const {
+  const Cell way = doubled_way(*lattice_, move, waypoint);
+  const Cell here = base::axial_of(*lattice_, from);
+  const Cell there = base::axial_of(*lattice_, move.cell);
+  return {2 * (there.x - here.x) + way.x, 2 * (there.y - here.y) + way.y,
+          2 * (there.z - here.z) + way.z};
+}
+
+/// The same in the global frame, in pitches.
+Stages::Place Stages::place_from(const StepWord& move, int waypoint, const Cell& from) const {
+  const Vector doubled = base::place_of(*lattice_, doubled_apart(move, waypoint, from));
+  return {doubled[0] / 2, doubled[1] / 2, doubled[2] / 2};
+}
+
+HungMass Stages::hung_mass(const Cell& cell, [[maybe_unused]] const Setup& setup) const {
+  HungMass sum;
+#ifndef HOLDFAST_AGENT_FLOOR_ONLY
+  if (setup.has_plane) {
+    return hung_on_plane(cell, setup);
+  }
+#endif
   for (std::uint8_t group = 0; group < kGroupCount; ++group) {
     int waypoint = 0;
     if (!carries(group, cell, waypoint)) {
       continue;
     }
     for (int i = 0; i < total_; ++i) {
-      if (word(i).kind == Kind::kMove && word(i).group == group) {
-        const auto place = doubled_place(word(i), waypoint, cell);
-        sum.mass += 2;
-        for (std::size_t k = 0; k < 3; ++k) {
-          sum.moment[k] += place[k];
-        }
+      if (word(i).kind != Kind::kMove || word(i).group != group) {
+        continue;
       }
+      const std::int32_t mass = mass_of(word(i).cell);
+      const Cell place = floor_way(*lattice_, doubled_apart(word(i), waypoint, cell));
+      sum.mass += 2 * mass;
+      sum.moment[0] += std::int64_t{mass} * place.x;
+      sum.moment[1] += std::int64_t{mass} * place.y;
+      sum.moment[2] += std::int64_t{mass} * place.z;
     }
   }
   return sum;
 }
 
-void Stages::hang(const Cell& cell, const Setup& setup) {
-  const StageMass sum = mass(cell);
-  const double half_pitch = setup.section.length / 2;
-  hung_ = {};
-  hung_[2] = -setup.weight_n * (sum.mass - 2) / 2;
-  hung_[3] = -setup.weight_n * half_pitch * sum.moment[1];
-  hung_[4] = setup.weight_n * half_pitch * sum.moment[0];
+/// What acts on a group, about a point given from the node of its carrier, in pitches.
+base::Vec6<double> Stages::group_load(std::uint8_t group, int waypoint, const Cell& cell,
+                                      const Place& point, const Setup& setup) const {
+  base::Vec6<double> sum{};
+  for (int i = 0; i < total_; ++i) {
+    if (word(i).kind != Kind::kMove || word(i).group != group) {
+      continue;
+    }
+    base::Vec6<double> load = load_of(word(i).cell, setup);
+    const Vector place = place_from(word(i), waypoint, cell);
+    const double x = setup.section.length * (place[0] - point[0]);
+    const double y = setup.section.length * (place[1] - point[1]);
+    const double z = setup.section.length * (place[2] - point[2]);
+    load[3] += y * load[2] - z * load[1];
+    load[4] += z * load[0] - x * load[2];
+    load[5] += x * load[1] - y * load[0];
+    base::add_to(sum, load);
+  }
+  return sum;
 }
 
-/// The load of the group about the middle of the carrier's facet: tension along the facet's
+/// All that hangs on a module, about its node.
+base::Vec6<double> Stages::hung_load(const Cell& cell, const Setup& setup) const {
+  base::Vec6<double> sum{};
+  for (std::uint8_t group = 0; group < kGroupCount; ++group) {
+    int waypoint = 0;
+    if (carries(group, cell, waypoint)) {
+      base::add_to(sum, group_load(group, waypoint, cell, {}, setup));
+    }
+  }
+  return sum;
+}
+
+#ifndef HOLDFAST_AGENT_FLOOR_ONLY
+/// Its pressure on the plane of supports, and its moments about the foot of the module there, as
+/// the module's own load is counted: rounded once more, in the place of a module that is gone.
+HungMass Stages::hung_on_plane(const Cell& cell, const Setup& setup) const {
+  const base::Vec6<double> load = hung_load(cell, setup);
+  const auto& [x, y] = setup.plane_axes;
+  const Vector out = {x[1] * y[2] - x[2] * y[1], x[2] * y[0] - x[0] * y[2],
+                      x[0] * y[1] - x[1] * y[0]};
+  const Vector force = {load[0], load[1], load[2]};
+  const Vector torque = {load[3], load[4], load[5]};
+  const double pitch = setup.section.length;
+  const double height =
+      pitch * (dot(out, base::node_place(*lattice_, cell)) - environment_->plane_height);
+  const double unit = environment_->plane_unit_n;
+  const auto rounded = [](double value) {
+    return static_cast<std::int64_t>(value + (value < 0 ? -0.5 : 0.5));
+  };
+  const double moment_unit = unit * pitch / kPlaneParts;
+  return {.mass = static_cast<std::int32_t>(rounded(-dot(out, force) / unit)),
+          .moment = {rounded((height * dot(x, force) + dot(y, torque)) / moment_unit),
+                     rounded((height * dot(y, force) - dot(x, torque)) / moment_unit), 0}};
+}
+#endif
+
+/// A module that is gone has no load: of one with surroundings they know it, on another one its
+/// weight is taken off.
+void Stages::hang(const Cell& cell, const Setup& setup) {
+  hung_ = hung_load(cell, setup);
+  hung_[2] += is_gone(cell) && environment_ == nullptr ? setup.weight_n : 0;
+}
+
+/// Of the load of a group in the middle of its carrier's facet: tension along the facet's
 /// direction, and bending about the two axes across it.
+double Stages::ratio_through(Direction face, std::uint8_t group, int waypoint, const Cell& cell,
+                             const Setup& setup) const {
+  const Vector along = base::unit_vector(*lattice_, face);
+  const base::Vec6<double> load =
+      group_load(group, waypoint, cell, {along[0] / 2, along[1] / 2, along[2] / 2}, setup);
+  const auto frame = mechanics::rotation_along<double>(*lattice_, face);
+  const Vector force = {load[0], load[1], load[2]};
+  const Vector torque = {load[3], load[4], load[5]};
+  const base::Vec6<double> middle = {dot(force, frame[0]),  dot(force, frame[1]),
+                                     dot(force, along),     dot(torque, frame[0]),
+                                     dot(torque, frame[1]), dot(torque, frame[2])};
+  return mechanics::load_ratio(mechanics::connection_load(middle), setup.facet_mm,
+                               strength_n(setup, face));
+}
+
+/// Facets of the carrier that are as near to a module of the group as the nearest.
 bool Stages::find_hanging(std::uint8_t group, const Cell& cell, const Setup& setup,
                           Direction& direction, double& ratio) const {
   int waypoint = 0;
   if (!carries(group, cell, waypoint)) {
     return false;
   }
-  std::int32_t nearest = 0x7fffffff;
-  std::int32_t count = 0;
-  std::array<std::int32_t, 3> sum{};
+  const auto distance = [&](int i, Direction face) {
+    return square_between(place_from(word(i), waypoint, cell), base::unit_vector(*lattice_, face));
+  };
+  const auto is_member = [&](int i) {
+    return word(i).kind == Kind::kMove && word(i).group == group;
+  };
+  double nearest = 1e30;
   for (int i = 0; i < total_; ++i) {
-    if (word(i).kind != Kind::kMove || word(i).group != group) {
-      continue;
-    }
-    const auto place = doubled_place(word(i), waypoint, cell);
-    ++count;
-    for (std::size_t k = 0; k < 3; ++k) {
-      sum[k] += place[k];
-    }
-    for (const Direction face : base::kDirections) {
-      const std::int32_t apart = square_between(place, doubled_unit(face));
+    for (const Direction face : base::directions(*lattice_)) {
+      const double apart = is_member(i) ? distance(i, face) : nearest;
       nearest = apart < nearest ? apart : nearest;
     }
   }
-  const double half_pitch = setup.section.length / 2;
   bool is_found = false;
   for (int i = 0; i < total_; ++i) {
-    for (const Direction face : base::kDirections) {
-      if (word(i).kind != Kind::kMove || word(i).group != group ||
-          square_between(doubled_place(word(i), waypoint, cell), doubled_unit(face)) != nearest) {
+    for (const Direction face : base::directions(*lattice_)) {
+      if (!is_member(i) || distance(i, face) > nearest + kNearestTie) {
         continue;
       }
-      // Arms count from the middle of the facet, half a pitch from the node.
-      const auto unit = doubled_unit(face);
-      const double x = half_pitch * (sum[0] - count * unit[0] / 2);
-      const double y = half_pitch * (sum[1] - count * unit[1] / 2);
-      const std::array<double, 3> torque = {-y * setup.weight_n, x * setup.weight_n, 0};
-      const auto axis = static_cast<std::size_t>(base::index(face)) / 2;
-      const base::Vec6<double> middle = {0,
-                                         0,
-                                         -setup.weight_n * count * unit[2] / 2,
-                                         torque[(axis + 1) % 3],
-                                         torque[(axis + 2) % 3],
-                                         0};
-      const double strength =
-          base::is_vertical(face) ? setup.strength_vertical_n : setup.strength_lateral_n;
-      const double here =
-          mechanics::load_ratio(mechanics::connection_load(middle), setup.facet_mm, strength);
-      if (!is_found || here > ratio) {
+      const double here = ratio_through(face, group, waypoint, cell, setup);
+      if (!is_found || !(here <= ratio)) {
         direction = face;
         ratio = here;
       }

@@ -8,6 +8,7 @@
 #include "holdfast/mechanics/connector.hpp"
 #include "methods.hpp"
 #include "resume_masks.hpp"
+#include "scalar.hpp"
 
 namespace holdfast::agent {
 namespace {
@@ -126,14 +127,29 @@ base::Cell touching_cell(const Workspace& ws) {
   }
 }
 
+/// Where this module touches what does not move, as it knows before any node is made ready.
+void note_touching(const Workspace& ws, StageSite& site) {
+  const Environment* environment = ws.environment();
+  if (!kHasSurroundings || environment == nullptr) {
+    site.is_standing = !site.is_fixed && site.cell.z == ws.setup.support_z;
+    return;
+  }
+  Surroundings here{.environment = environment};
+  environment->describe(environment->map, site.cell, here);
+  for (int i = 0; i < here.facet_count; ++i) {
+    const Direction direction = here.facets[static_cast<std::size_t>(i)].direction;
+    const bool is_face = base::index(direction) < face_count(ws.setup);
+    site.is_standing = site.is_standing || !is_face;
+    site.touching.set(direction, is_face || site.touching.has(direction));
+  }
+}
+
 Report stage_report(const Workspace& ws, const Order& order) {
   const base::Cell& cell = ws.tree.cell();
   if (order.operation == Operation::kWord) {
-    const bool is_standing = !ws.is_fixed && cell.z == ws.setup.support_z;
-    return ws.stages()->report(order.index, {.cell = cell,
-                                             .used = ws.links.used(),
-                                             .is_fixed = ws.is_fixed,
-                                             .is_standing = is_standing});
+    StageSite site{.cell = cell, .used = ws.links.used(), .is_fixed = ws.is_fixed};
+    note_touching(ws, site);
+    return ws.stages()->report(order.index, site);
   }
   const Faces working = ws.links.working();
   const bool is_changed = (ws.links.hidden() & working) != (ws.stages()->hidden(cell) & working);
@@ -193,12 +209,20 @@ Report angles_report(const Workspace& ws, const Order& order) {
   return report;
 }
 
-/// Masses in half units: half way between two cells first moments are whole numbers, too.
-void weigh_in_stage(const Workspace& ws, int node, Report& report) {
-  const StageMass mine = node == 0 ? ws.stages()->mass(ws.tree.cell()) : StageMass{};
-  report.number = static_cast<std::uint32_t>(mine.mass);
+/// Masses in half units: half way between two cells first moments are whole numbers, too. In a
+/// plane of supports no length is one.
+void weigh_in_stage(const Workspace& ws, int node, const base::Cell& away, Report& report) {
+  const bool is_gone = node == 0 && ws.is_gone(ws.tree.cell());
+  const HungMass hung = node == 0 ? ws.stages()->hung_mass(ws.tree.cell(), ws.setup) : HungMass{};
+  std::uint32_t parts = is_gone ? 0 : 2;
+#ifndef HOLDFAST_AGENT_FLOOR_ONLY
+  parts = ws.setup.has_plane && !is_gone ? 1 : parts;
+#endif
+  const std::array<std::int32_t, 3> place = {away.x, away.y, away.z};
+  report.number = parts * report.number + static_cast<std::uint32_t>(hung.mass);
   for (std::size_t k = 0; k < report.moment.size(); ++k) {
-    report.moment[k] = mine.mass * report.moment[k] + mine.moment[k];
+    report.moment[k] = std::int64_t{parts} * report.moment[k] + std::int64_t{hung.mass} * place[k] +
+                       hung.moment[k];
   }
 }
 
@@ -238,11 +262,19 @@ Report loads_report(Workspace& ws) {
     own.cell = cell;
     own.direction = direction;
     own.count = mechanics::breaks(ratio) ? 1 : 0;
+#ifndef HOLDFAST_AGENT_FLOOR_ONLY
+    own.remarks = remarks_on(ws, cell, direction);
+#endif
     merge(Operation::kLoads, report, own);
     if (cell == ws.tree.cell()) {
       ws.own_load_ratio = larger(ws.own_load_ratio, value);
     }
   });
+#ifndef HOLDFAST_AGENT_FLOOR_ONLY
+  for (int i = 0; ws.setup.has_friction && i < ws.node_count(); ++i) {
+    report.remarks |= may_slip(ws.node(i), ws.contact) ? kFacetSlips : std::uint8_t{0};
+  }
+#endif
   return report;
 }
 
@@ -262,7 +294,13 @@ void prepare_node(Workspace& ws, int index) {
     if (is_kept && before.facet_count == surroundings.facet_count) {
       surroundings.facets = before.facets;  // Nothing but the states may be others.
     }
-    surroundings.facet_count = node.is_fixed ? std::uint8_t{0} : surroundings.facet_count;
+    const bool is_gone = index == 0 && ws.is_gone(ws.tree.cell());
+    if (is_gone) {
+      surroundings.load = {};  // The map may know nothing of it any more.
+      surroundings.mass = 0;
+    }
+    surroundings.facet_count =
+        node.is_fixed || is_gone ? std::uint8_t{0} : surroundings.facet_count;
     node.is_ground = surroundings.facet_count > 0;
     node.surroundings = &surroundings;
   }
@@ -413,10 +451,12 @@ Report mass_report(const Workspace& ws) {
       for (std::size_t k = 0; k < own.moment.size(); ++k) {
         own.moment[k] = mass * own.moment[k] + (k < 2 ? surroundings_of(ws.node(i))->moment[k] : 0);
       }
-      own.flags = static_cast<std::uint8_t>(own.flags | (environment->is_level ? 0U : kUneven));
+      const bool is_known = is_number(surroundings_of(ws.node(i))->load[0]);
+      own.flags = static_cast<std::uint8_t>(own.flags | (environment->is_level ? 0U : kUneven) |
+                                            (is_known ? 0U : kSumOverflow));
     }
     if (ws.stage() != Stage::kNone) {
-      weigh_in_stage(ws, i, own);
+      weigh_in_stage(ws, i, away, own);
     }
     merge(Operation::kMass, report, own);
   }

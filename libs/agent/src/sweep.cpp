@@ -132,7 +132,8 @@ bool Sweep::is_in_course(const Workspace& ws, const Order& order) const {
       return course_ == Course::kPlanned;
     case Operation::kWord:
       return ws.stages() != nullptr && course_ == Course::kPlanned &&
-             order.index == (order.count == 0 ? kNoWord : ws.stages()->learned_count());
+             order.index == (order.count == 0 ? kNoWord : ws.stages()->learned_count()) &&
+             ws.stages()->is_possible(word_of(static_cast<std::uint32_t>(order.mass), order.cell));
     case Operation::kStage:
       return ws.stages() != nullptr && course_ != Course::kWaves && course_ != Course::kAnswered &&
              ws.stages()->total() > 0 && ws.stages()->learned_count() == ws.stages()->total();
@@ -170,11 +171,15 @@ bool Sweep::is_in_course(const Workspace& ws, const Order& order) const {
     case Operation::kIterate:
       return course_ == Course::kClusters ||
              (course_ == Course::kPolynomial && (order.flags & kWithClusters) == 0);
+    case Operation::kSeek:
+      return kSeeksOthers && !ws.setup.only_one_sweep &&
+             ((order.flags & kRemember) == 0 || order.key() == 0) &&
+             (course_ == Course::kElimination || course_ == Course::kPolynomial ||
+              course_ == Course::kGradients || makes_fronts(course_));
     default:
       return course_ == Course::kGradients ||
              (order.operation == Operation::kHold &&
-              ((ws.setup.only_one_sweep && course_ == Course::kPolynomial) ||
-               makes_fronts(course_)));
+              (course_ == Course::kPolynomial || makes_fronts(course_)));
   }
 }
 

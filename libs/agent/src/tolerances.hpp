@@ -18,6 +18,10 @@ inline constexpr double kStateTolerance = 2e-2;
 /// whether they do decides what carries: contact states are told at this accuracy.
 inline constexpr double kUnevenTolerance = 1e-7;
 
+/// At so many times of it where that is not reached: displacements of a robot that hangs on weak
+/// springs are so large that their last digits are forces.
+inline constexpr double kHalting = 10;
+
 /// A verdict needs the largest ratio this many times its error bound away from 1.
 inline constexpr double kDoubt = 3;
 
@@ -29,7 +33,9 @@ inline constexpr double kErrorLeast = 2e-8;
 inline constexpr double kFaceTolerance = 1e-5;
 
 /// How much smaller the error bound becomes in one linear solve, at most. Single precision rarely
-/// gives more than five digits in one go; a tilting facet's stand-in tangent deserves fewer.
+/// gives more than five digits in one go; a tilting facet's stand-in tangent deserves fewer. But
+/// where a robot hangs on its weak springs, as it may away from a level floor, the outer loop mixes
+/// iterates a hundredfold, and what a solve has left with them.
 inline constexpr double kReductionLeast = 1e-5;
 inline constexpr double kReductionTilting = 1e-3;
 
@@ -43,8 +49,19 @@ inline constexpr std::uint32_t kContactIterationsMax = 100;
 inline constexpr double kSlopeReduction = 0.1;
 inline constexpr int kSlopeCountMax = 3;
 
+/// The same while not even the first quarter is short enough: a step of no length leads nowhere.
+inline constexpr int kSlopeCountLimit = 16;
+
 /// The weak springs of the unilateral law, as in the exact solver (verdict/assessment.cpp).
 inline constexpr double kUnilateralGamma = 1e-9;
+
+/// Where those are lost in single precision away from a level floor, as multigrid has it in the
+/// exact solver.
+inline constexpr double kStifferGamma = 1e-6;
+
+/// So much may weak springs move load ratios, for their share of the contact's stiffness, as in the
+/// exact solver (verdict/several_solutions.hpp).
+inline constexpr double kRatioPerGamma = 1e3;
 
 /// Those of a robot that seems to hang on them, as in the exact solver; it is never `safe` by
 /// these.

@@ -7,6 +7,7 @@
 #include "facets.hpp"
 #include "holdfast/agent/messages.hpp"
 #include "leaves.hpp"
+#include "methods.hpp"
 #include "stage_load.hpp"
 
 namespace holdfast::agent {
@@ -38,6 +39,11 @@ Cut cut_at(const Workspace& ws, Direction face) {
 }
 
 Joint joint_to_parent(const Workspace& ws) { return {ws.setup.beams(), ws.tree.parent().first()}; }
+
+/// In a queue that is lent all columns have room at once.
+bool has_room(const Links& links, Direction face, int bytes) {
+  return kHasAllMethods ? links.has_long_room(face, bytes) : links.has_room(face, bytes);
+}
 
 // Not inlined: its message would stand on the stack beside the matrices of those that call it.
 [[gnu::noinline]] void send_up(Workspace& ws, MessageType type, int label,
@@ -134,6 +140,10 @@ bool TreeElimination::take_exchange(Workspace& ws, const Order& /*order*/, int /
 }
 
 bool TreeElimination::report(Workspace& ws, const Order& order, int piece, Report& sum) {
+  if (kSeeksOthers && order.operation == Operation::kSeek) {
+    seek_facets(ws, order, sum);
+    return false;
+  }
   return order.operation == Operation::kTreeIterate && iteration_report(ws, piece, sum);
 }
 
@@ -389,7 +399,7 @@ bool TreeElimination::send_columns(Workspace& ws) {
     }
     // What follows must find room too.
     const int room = (count + 1 + kLoopsMax) * wire::kVectorBytes + wire::kMessageBytesMax;
-    if (!ws.links.has_room(ws.tree.parent().first(), room)) {
+    if (!has_room(ws.links, ws.tree.parent().first(), room)) {
       return false;
     }
     send_batch(ws, piece_index_, count);

@@ -52,6 +52,9 @@ void Workspace::clear_middle() {
   if (MoreFaces* more = links.more(); kKnowsLattices && more != nullptr) {
     more->middle = {};
   }
+  if (AcrossLoads* loads = across(); kHasSurroundings && loads != nullptr) {
+    *loads = {};
+  }
 }
 
 void Workspace::start_exchange(PlannedPart part) {

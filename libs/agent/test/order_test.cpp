@@ -42,7 +42,9 @@ base::Cell random_cell(base::Rng& rng) {
 
 /// A module that moves, any way.
 std::int32_t random_word(base::Rng& rng) {
-  const auto direction = [&] { return static_cast<std::uint8_t>(rng.below(6)); };
+  const auto direction = [&] {
+    return static_cast<std::uint8_t>(rng.below(std::uint64_t{kFaceCountMax}));
+  };
   return static_cast<std::int32_t>(bits_of({.kind = StepWord::Kind::kMove,
                                             .group = static_cast<std::uint8_t>(rng.below(4)),
                                             .face = direction(),
@@ -69,7 +71,8 @@ Order random_order(Operation operation, base::Rng& rng) {
                   .reason = static_cast<Reason>(rng.below(12)),
                   .load_ratio_max = exact_real(rng),
                   .worst_cell = random_cell(rng),
-                  .worst_direction = static_cast<base::Direction>(rng.below(6))};
+                  .worst_direction = static_cast<base::Direction>(rng.below(6)),
+                  .remarks = static_cast<std::uint8_t>(rng.below(8))};
   if (operation == Operation::kWord) {
     order.count = static_cast<std::uint16_t>(1 + rng.below(kWordCountMax));
     order.index = static_cast<std::uint8_t>(rng.below(order.count));
@@ -122,6 +125,7 @@ Report random_report(Operation operation, base::Rng& rng) {
     report.set_far_cell(random_cell(rng));
   }
   report.direction = static_cast<base::Direction>(rng.below(6));
+  report.remarks = static_cast<std::uint8_t>(rng.below(16));
   if (rng.below(4) != 0) {
     report.feet = feet_check().of_foot(sum(), sum());
   }
@@ -211,6 +215,7 @@ TEST(Order, fields_come_back_where_they_were) {
   EXPECT_EQ(back.answer.load_ratio_max, sent.answer.load_ratio_max);
   EXPECT_EQ(back.answer.worst_cell, sent.answer.worst_cell);
   EXPECT_EQ(back.answer.worst_direction, sent.answer.worst_direction);
+  EXPECT_EQ(back.answer.remarks, sent.answer.remarks);
   const Report mass = random_report(Operation::kMass, rng);
   const Report mass_back = through_wire(Operation::kMass, mass);
   EXPECT_EQ(mass_back.count, mass.count);
@@ -331,6 +336,21 @@ TEST(Order, counts_of_hold_and_verdict_add_up) {
   EXPECT_EQ(merged(Operation::kVerdict, {.count = 28}, {.count = 1}).count, 29U);
 }
 
+/// 0 stands for none.
+TEST(Order, the_next_facet_is_the_one_with_the_least_key) {
+  for (const auto& [a, b, least] : {std::tuple{5U, 0U, 5U},
+                                    {0U, 5U, 5U},
+                                    {7U, 5U, 5U},
+                                    {5U, 7U, 5U},
+                                    {0x80000000U, 7U, 7U},
+                                    {0U, 0U, 0U}}) {
+    const Report both =
+        merged(Operation::kSeek, {.count = 2, .number = a}, {.count = 1, .number = b});
+    EXPECT_EQ(both.next_key(), least);
+    EXPECT_EQ(both.count, 3U);
+  }
+}
+
 TEST(Order, changed_facets_do_not_wrap) {
   const Report many = merged(Operation::kLow, {.extent = 0xfffe}, {.extent = 3});
   EXPECT_EQ(many.extent, 0xffff);
@@ -352,6 +372,40 @@ TEST(Order, what_is_not_a_number_survives) {
     EXPECT_TRUE(std::isnan(merged(Operation::kLoads, fine, bad_load).reals[0])) << other;
   }
   EXPECT_EQ(merged(Operation::kLow, one, one).reals[1], 1.0F);
+}
+
+/// The worst connection's limit goes with it; that a gap opens or a facet slips is true of all.
+TEST(Order, remarks_go_with_the_worst_connection_or_are_of_any) {
+  const auto report_of = [](float ratio, std::uint8_t remarks) {
+    Report report;
+    report.reals[0] = ratio;
+    report.remarks = remarks;
+    return report;
+  };
+  for (const Operation operation : {Operation::kLoads, Operation::kClose}) {
+    Report sum = report_of(0.5F, 1);
+    merge(operation, sum, report_of(0.75F, 2 | kFacetSlips));
+    merge(operation, sum, report_of(0.25F, 3 | kGapOpens));
+    EXPECT_EQ(sum.remarks, 2 | kGapOpens | kFacetSlips);
+    EXPECT_EQ(through_wire(operation, sum).remarks, sum.remarks);
+  }
+}
+
+/// A direction that the lattice does not have, and in a verdict the bit that only reports have.
+TEST(Order, directions_and_remarks_that_nobody_writes_are_refused) {
+  Order sent{.operation = Operation::kVerdict,
+             .answer = {.verdict = Verdict::kSafe, .reason = Reason::kHolds}};
+  const auto is_legal_with = [&](int direction, std::uint8_t remarks, int face_count) {
+    sent.answer.worst_direction = static_cast<base::Direction>(direction);
+    sent.answer.remarks = remarks;
+    Order back;
+    return decode(encode(sent).bytes(), back, face_count);
+  };
+  EXPECT_TRUE(is_legal_with(5, 7, 6));
+  EXPECT_FALSE(is_legal_with(6, 7, 6));
+  EXPECT_TRUE(is_legal_with(11, 7, 12));
+  EXPECT_FALSE(is_legal_with(12, 0, 12));
+  EXPECT_FALSE(is_legal_with(5, kFacetSlips, 6));
 }
 
 TEST(Order, every_verdict_and_reason_has_a_name_of_its_own) {

@@ -41,7 +41,7 @@ std::string report_text(Operation operation, const Report& report) {
 constexpr base::Cell kCell = {1, -2, 3};
 
 /// Group 1 turns a corner, +x and then down, and keeps the link below.
-constexpr std::int32_t kWordBits = 2 + 8 * 1 + 64 * 5 + 512 * 0 + 4096 * 5;
+constexpr std::int32_t kWordBits = 2 + 8 * 1 + 64 * 5 + 1024 * 0 + 16384 * 5;
 
 TEST(Wire, orders_are_these_bytes) {
   const Answer answer = {.verdict = Verdict::kOverload,
@@ -98,7 +98,8 @@ TEST(Wire, orders_are_these_bytes) {
        .cell = kCell,
        .mass = 4,
        .moment = {5, 6},
-       .reals = {0.25F, 0.5F, 2}}};
+       .reals = {0.25F, 0.5F, 2}},
+      {.operation = Operation::kSeek, .mass = static_cast<std::int32_t>(0x89abcdefU)}};
   ASSERT_EQ(orders.size(), kGoldenOrders.size());
   for (std::size_t i = 0; i < orders.size(); ++i) {
     EXPECT_EQ(order_text(orders[i]), kGoldenOrders[i]);
@@ -150,7 +151,8 @@ TEST(Wire, reports_are_these_bytes) {
       {.flags = kFound, .extent = 4, .count = 2, .number = kWordBits, .cell = kCell},
       {.flags = kNewLinks, .count = 29},
       {.mask = 3, .count = 2, .number = 4, .moment = {5, 5, 6}, .reals = {1.5F, 2}, .cell = kCell},
-      {.count = 29, .number = 2}};
+      {.count = 29, .number = 2},
+      {.count = 2, .number = 0x89abcdef}};
   ASSERT_EQ(reports.size(), kGoldenReports.size());
   for (std::size_t i = 0; i < reports.size(); ++i) {
     EXPECT_EQ(report_text(static_cast<Operation>(i + 1), reports[i]), kGoldenReports[i]);

@@ -103,7 +103,7 @@ std::optional<base::Error> Checkpoint::take(const std::string& bytes) {
     return bad_input("is no checkpoint, expected are the letters HOLDSTEP, at byte 0");
   }
   if (Reader(std::string_view(bytes).substr(body)).take<std::uint64_t>() !=
-      text_sum(std::string_view(bytes).substr(0, body))) {
+      io::text_sum(std::string_view(bytes).substr(0, body))) {
     return bad_input("the checkpoint's checksum is wrong: the file was changed or damaged");
   }
   Reader reader(std::string_view(bytes).substr(kMagic.size(), body - kMagic.size()));
@@ -142,7 +142,7 @@ std::string Checkpoint::bytes() const {
     put(bytes, std::uint64_t{search.states.size()});
     bytes.append(search.states.begin(), search.states.end());
   }
-  put(bytes, text_sum(bytes));
+  put(bytes, io::text_sum(bytes));
   return bytes;
 }
 

@@ -190,7 +190,7 @@ std::string text_of(const Wanted& wanted) {
   document.name = fmt::format("{} {}", wanted.info->name, wanted.size);
   document.description = wanted.info->help;
   document.modules.emplace_back().cell = wanted.box.low;
-  return common_text(document);
+  return io::common_text(document);
 }
 
 }  // namespace
@@ -207,20 +207,20 @@ base::Result<std::uint64_t> generate_in_parts(PetscRanks& ranks, const std::stri
   const std::vector<std::size_t> starts = host::starts(ranks, count);
   const std::string text = text_of(wanted.value());
   const Cell& low = wanted.value().box.low;
-  const std::size_t records_begin = binary_beginning(low, text, 0, 0).size();
+  const std::size_t records_begin = io::binary_beginning(low, text, 0, 0).size();
   SharedOutput output(ranks, file);
   std::uint64_t sum = 0;
   std::uint64_t next = starts[at(ranks.rank())];
   if (output.is_good()) {
     for_chunks(wanted.value(), blocks, [&](std::span<const Record> chunk) {
       output.write(records_begin + sizeof(Record) * next, std::as_bytes(chunk));
-      sum += record_sum(chunk, next);
+      sum += io::record_sum(chunk, next);
       next += chunk.size();
     });
   }
   sum = sum_of_ranks(ranks, sum);
   if (output.is_good() && ranks.rank() == 0) {
-    const std::string beginning = binary_beginning(low, text, starts.back(), sum);
+    const std::string beginning = io::binary_beginning(low, text, starts.back(), sum);
     output.write(0, std::as_bytes(std::span(beginning)));
   }
   if (!output.finish()) {

@@ -254,6 +254,9 @@ void PetscRanks::set_method() {
   PCShellSetApply(preconditioner, precondition);
   PCShellSetName(preconditioner, "holdfast: one K-cycle");
   KSPSetFromOptions(solver_);
+  if (has_absent_monitor(solver_)) {
+    throw std::invalid_argument("a monitor of PETSc's in a format that it does not have");
+  }
   PetscBool is_named = PETSC_FALSE;
   PetscOptionsHasName(nullptr, nullptr, "-ksp_type", &is_named);
   if (is_named == PETSC_FALSE && has_type(preconditioner, PCSHELL)) {
@@ -262,29 +265,13 @@ void PetscRanks::set_method() {
 }
 
 bool PetscRanks::is_own_method(const host::KrylovTask& task) {
-  make_solver(task.r.size());
+  make_solver(task.x.size());
   return has_type(solver_, kTaskMethod);
 }
 
-/// What a monitor gets to see: b is the residual with which the method begins.
-void PetscRanks::watch(const host::KrylovTask& task) {
+void PetscRanks::run_solver(const host::KrylovTask& task, std::span<const double> b,
+                            std::span<double> x) {
   task_ = &task;
-  const auto count = static_cast<PetscInt>(task.r.size());
-  Vec right = nullptr;
-  Vec solution = nullptr;
-  VecCreateMPIWithArray(comm_, 1, count, PETSC_DETERMINE, task.r.data(), &right);
-  VecCreateMPIWithArray(comm_, 1, count, PETSC_DETERMINE, task.x.data(), &solution);
-  KSPSetInitialGuessNonzero(solver_, PETSC_TRUE);
-  KSPSolve(solver_, right, solution);
-  VecDestroy(&right);
-  VecDestroy(&solution);
-  task_ = nullptr;
-}
-
-bool PetscRanks::solve(const host::KrylovTask& task, std::span<const double> b,
-                       std::span<double> x) {
-  task_ = &task;
-  make_solver(b.size());
   Vec right = nullptr;
   Vec solution = nullptr;
   const auto count = static_cast<PetscInt>(b.size());
@@ -294,6 +281,20 @@ bool PetscRanks::solve(const host::KrylovTask& task, std::span<const double> b,
   VecDestroy(&right);
   VecDestroy(&solution);
   task_ = nullptr;
+}
+
+/// What a monitor gets to see: b is the residual with which the method begins.
+void PetscRanks::watch(const host::KrylovTask& task) {
+  KSPSetInitialGuessNonzero(solver_, PETSC_TRUE);
+  std::vector<double> b(task.x.size());
+  task.residual(b.data());
+  run_solver(task, b, task.x);
+}
+
+bool PetscRanks::solve(const host::KrylovTask& task, std::span<const double> b,
+                       std::span<double> x) {
+  make_solver(b.size());
+  run_solver(task, b, x);
   PC preconditioner = nullptr;
   KSPGetPC(solver_, &preconditioner);
   return has_type(preconditioner, PCSHELL);

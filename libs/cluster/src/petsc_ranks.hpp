@@ -58,6 +58,7 @@ class PetscRanks final : public host::Ranks {
   MPI_Datatype unit(std::size_t size);
   void make_solver(std::size_t count);
   void set_method();
+  void run_solver(const host::KrylovTask& task, std::span<const double> b, std::span<double> x);
 
   MPI_Comm comm_;
   int rank_ = 0;

@@ -47,6 +47,7 @@ struct Options {
   bool is_quiet = false;
   bool is_bonded = false;
   bool is_traffic_shown = false;
+  bool is_multigrid_only = false;
   double memory_gb = 4;
   std::size_t alone_max = 6000;  ///< Up to here one machine may solve directly.
   /// And up to here it is asked where ranks cannot decide, as it has the direct solver: a second
@@ -213,6 +214,23 @@ base::Result<verdict::Verdict> shared(PetscRanks& ranks,
   return static_cast<verdict::Verdict>(std::stoi(text.document));
 }
 
+/// As one machine does; by multigrid only, if that is asked.
+CheckResult check_by_one(const model::Robot& robot, const Options& options) {
+  if (!options.is_multigrid_only) {
+    return holdfast::check(robot, {.is_bonded = options.is_bonded,
+                                   .thread_count = 1,
+                                   .memory_bytes_max = options.memory_bytes()});
+  }
+  const double start = MPI_Wtime();
+  CheckResult result{.assessment =
+                         verdict::assess(robot, {.memory_bytes_max = options.memory_bytes(),
+                                                 .method = solver::Method::kMultigrid,
+                                                 .is_bonded = options.is_bonded,
+                                                 .thread_count = 1})};
+  result.seconds = MPI_Wtime() - start;
+  return result;
+}
+
 /// The first rank's answer on a whole robot, as holdfast check gives it.
 base::Result<verdict::Verdict> check_whole(const Options& options, const Structure& structure,
                                            const std::vector<Record>& records, bool& is_written) {
@@ -228,10 +246,7 @@ base::Result<verdict::Verdict> check_whole(const Options& options, const Structu
   if (!robot) {
     return robot.error();
   }
-  const CheckResult result =
-      holdfast::check(robot.value(), {.is_bonded = options.is_bonded,
-                                      .thread_count = 1,
-                                      .memory_bytes_max = options.memory_bytes()});
+  const CheckResult result = check_by_one(robot.value(), options);
   const io::ReportEntry entry = {.name = structure.name,
                                  .robot = &robot.value(),
                                  .assessment = &result.assessment,
@@ -287,7 +302,7 @@ int check_in_parts(PetscRanks& ranks, const Options& options, const Structure& s
   const Checked checked = check(part.value(), {.is_bonded = options.is_bonded,
                                                .memory_bytes_max = options.memory_bytes(),
                                                .journal = is_kept ? &checkpoint : nullptr});
-  if (checked.assessment.verdict == verdict::Verdict::kUndecided &&
+  if (checked.assessment.verdict == verdict::Verdict::kUndecided && !options.is_multigrid_only &&
       part.value().counts.all <= options.again_max) {
     const int code = check_alone(ranks, options, structure);
     if (is_kept && code <= kExitUndecided) {
@@ -399,6 +414,9 @@ CLI::App& add_check(CLI::App& app, Options& options) {
                  "Let the ground hold like a module below would: no lifting, no tilting");
   check.add_flag("--traffic", options.is_traffic_shown,
                  "Print what ranks exchange and how much memory they take");
+  check.add_flag("--multigrid", options.is_multigrid_only,
+                 "Do without the direct solver, on one rank, too, and ask nobody once more: to "
+                 "compare iterations");
   check
       .add_option("--alone-max", options.alone_max,
                   "Robots of no more modules are checked by one rank, as holdfast check does")

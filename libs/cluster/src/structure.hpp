@@ -2,13 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <string>
 #include <vector>
 
 #include "holdfast/base/cell.hpp"
 #include "holdfast/base/result.hpp"
+#include "holdfast/io/binary_structure.hpp"
 #include "holdfast/io/document.hpp"
 #include "holdfast/model/robot.hpp"
 #include "petsc_ranks.hpp"
@@ -16,16 +16,8 @@
 /// A structure of which each rank has a part: modules along the Morton curve.
 namespace holdfast::cluster {
 
-/// A module in a file of this format, and between ranks: 16 bytes.
-struct Record {
-  static constexpr std::uint32_t kPlanned = 1;
-  static constexpr std::uint32_t kFixed = 2;
-
-  std::array<std::int32_t, 3> cell{};
-  std::uint32_t flags = 0;
-
-  base::Cell place() const { return {cell[0], cell[1], cell[2]}; }
-};
+/// A module, in files and between ranks.
+using Record = io::ModuleRecord;
 
 /// What a rank has of a structure.
 struct Structure {
@@ -43,9 +35,6 @@ struct Structure {
 /// which hands out the parts. All ranks return the same error.
 base::Result<Structure> read_structure(PetscRanks& ranks, const std::string& file,
                                        const io::ReadOptions& options);
-
-/// What a document says beside its modules, as binary structures have it.
-std::string common_text(const io::Document& document);
 
 /// Writes a document as a binary structure (docs/formats.md); called by one rank.
 base::Result<std::size_t> write_binary(const io::Document& document, const std::string& file);

@@ -6,7 +6,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
+#include "holdfast/base/algebra.hpp"
 #include "holdfast/host/ranks.hpp"
 
 namespace holdfast::cluster {
@@ -46,7 +48,7 @@ PetscErrorCode build_residual(KSP solver, Vec, Vec room, Vec* residual) {
   const host::KrylovTask& task = task_of(solver);
   PetscScalar* numbers = nullptr;
   VecGetArrayWrite(room, &numbers);
-  std::copy(task.r.begin(), task.r.end(), numbers);
+  task.residual(numbers);
   VecRestoreArrayWrite(room, &numbers);
   *residual = room;
   return 0;
@@ -65,5 +67,10 @@ PetscErrorCode create(KSP solver) {
 }  // namespace
 
 void register_task_method() { KSPRegister(kTaskMethod, create); }
+
+bool has_absent_monitor(KSP solver) {
+  const auto monitors = std::span(solver->monitor).first(base::at(solver->numbermonitors));
+  return std::ranges::any_of(monitors, [](auto one) { return one == nullptr; });
+}
 
 }  // namespace holdfast::cluster

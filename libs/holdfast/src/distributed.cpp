@@ -90,6 +90,11 @@ std::vector<std::string> notes_on(const model::Robot& robot, const sim::Simulati
         "nobody has published what the links of such modules carry: seconds are those of the link "
         "model that was asked for, not of modules");
   }
+  if ((result.answer.remarks & agent::kGapOpens) != 0) {
+    notes.emplace_back(
+        "the robot says that a facet's edge opens by more than gap_limit_mm: contacts of power and "
+        "data part there");
+  }
   if (is_other_law(exact, result)) {
     notes.emplace_back(
         "the robot's load ratios are those of another contact law than the exact answer's: they "
@@ -126,6 +131,15 @@ verdict::Assessment view_of(const model::Robot& robot, const verdict::Assessment
     }
   }
   return view;
+}
+
+void note_worst(const model::Robot& robot, DistributedRun& run) {
+  const agent::Answer& answer = run.result.answer;
+  run.worst_cells = {answer.worst_cell,
+                     base::neighbour(robot.lattice(), answer.worst_cell, answer.worst_direction)};
+  if (!robot.has_default_connectors()) {
+    run.worst_limit = static_cast<model::Limit>(answer.remarks & agent::kLimitBits);
+  }
 }
 
 RefusedMessages refused_by(const model::Robot& robot, const Agents& agents) {
@@ -188,11 +202,13 @@ std::optional<agent::Method> find_method(std::string_view name_wanted) {
 DistributedRun describe_run(const model::Robot& robot, const CheckResult& exact,
                             const sim::SimulationOptions& options, const Agents& agents,
                             const sim::SimulationResult& result) {
-  return {.link = options.link,
-          .result = result,
-          .refused = refused_by(robot, agents),
-          .view = view_of(robot, exact.assessment, agents, result),
-          .notes = notes_on(robot, options, exact.assessment, result)};
+  DistributedRun run{.link = options.link,
+                     .result = result,
+                     .refused = refused_by(robot, agents),
+                     .view = view_of(robot, exact.assessment, agents, result),
+                     .notes = notes_on(robot, options, exact.assessment, result)};
+  note_worst(robot, run);
+  return run;
 }
 
 base::Result<DistributedRun> simulate(const model::Robot& robot, const CheckResult& exact,

@@ -13,6 +13,9 @@ namespace holdfast {
 verdict::Assessment view_of(const model::Robot& robot, const verdict::Assessment& exact,
                             const Agents& agents, const sim::SimulationResult& result);
 
+/// Which connection the robot names, and its limit.
+void note_worst(const model::Robot& robot, DistributedRun& run);
+
 RefusedMessages refused_by(const model::Robot& robot, const Agents& agents);
 
 using TextOut = std::back_insert_iterator<std::string>;

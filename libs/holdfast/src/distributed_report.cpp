@@ -13,8 +13,16 @@ namespace {
 /// All phases but the last, in which nothing is left to do.
 constexpr std::size_t kBusyPhaseCount = sim::kPhaseCount - 1;
 
+/// A robot of one module has no connection.
 bool has_load_ratio(const agent::Answer& answer) {
-  return answer.verdict == agent::Verdict::kSafe || answer.verdict == agent::Verdict::kOverload;
+  const bool is_judged =
+      answer.verdict == agent::Verdict::kSafe || answer.verdict == agent::Verdict::kOverload;
+  return is_judged && answer.load_ratio_max > agent::kNoLoadRatio;
+}
+
+/// Does the robot name a worst connection?
+bool has_worst(const sim::SimulationResult& result) {
+  return has_load_ratio(result.answer) && result.effort.module_count > 1;
 }
 
 void write_cell(io::JsonStream& json, const base::Cell& cell) {
@@ -26,15 +34,15 @@ void write_cell(io::JsonStream& json, const base::Cell& cell) {
 }
 
 /// The two cells of the robot's own worst connection, or null.
-void write_worst(io::JsonStream& json, const sim::SimulationResult& result) {
-  const agent::Answer& answer = result.answer;
-  if (!has_load_ratio(answer) || result.effort.module_count <= 1) {
+void write_worst(io::JsonStream& json, const DistributedRun& run) {
+  if (!has_worst(run.result)) {
     json.value(nullptr);
     return;
   }
   json.begin_array();
-  write_cell(json, answer.worst_cell);
-  write_cell(json, base::neighbour(answer.worst_cell, answer.worst_direction));
+  for (const base::Cell& cell : run.worst_cells) {
+    write_cell(json, cell);
+  }
   json.end_array();
 }
 
@@ -109,11 +117,11 @@ void write_answer(TextOut out, const Structure& structure, const CheckResult& ex
                    model::ends_text(structure.robot, *truth.worst));
   }
   fmt::format_to(out, "\n  robot       {}", verdict::name(run.view.verdict));
-  if (has_load_ratio(answer) && run.result.effort.module_count > 1) {
-    const base::Cell& a = answer.worst_cell;
-    const base::Cell b = base::neighbour(a, answer.worst_direction);
-    fmt::format_to(out, ", load ratio {}  ({},{},{})-({},{},{})",
-                   io::beside_one(answer.load_ratio_max, 4), a.x, a.y, a.z, b.x, b.y, b.z);
+  if (has_worst(run.result)) {
+    const auto& [a, b] = run.worst_cells;
+    fmt::format_to(out, ", load ratio {}  ({},{},{})-({},{},{}){}",
+                   io::beside_one(answer.load_ratio_max, 4), a.x, a.y, a.z, b.x, b.y, b.z,
+                   run.worst_limit ? fmt::format(" {}", model::name(*run.worst_limit)) : "");
   }
   fmt::format_to(out, "{}\n", run.result.all_agree ? "; all modules agree" : "; NOT all agree");
 }
@@ -134,7 +142,10 @@ void write_distributed(io::JsonStream& json, const DistributedRun& run) {
   json.member("load_ratio_max",
               has_load_ratio(answer) ? std::optional<double>(answer.load_ratio_max) : std::nullopt);
   json.key("at");
-  write_worst(json, result);
+  write_worst(json, run);
+  if (run.worst_limit && has_worst(result)) {
+    json.member("limit", model::name(*run.worst_limit));
+  }
   json.member("load_ratio_error", result.effort.ratio_error);
   json.member("method", name(result.effort.method));
   json.member("contact_model", result.effort.is_unilateral ? "unilateral" : "regularised");

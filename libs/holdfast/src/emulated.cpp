@@ -79,6 +79,7 @@ base::Result<EmulatedRun> emulate(const Structure& structure, const CheckResult&
       .count = emulation.module_count()};
   run.run.refused = refused_by(structure.robot, agents);
   run.run.view = view_of(structure.robot, exact.assessment, agents, run.run.result);
+  note_worst(structure.robot, run.run);
   return run;
 }
 

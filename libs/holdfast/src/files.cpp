@@ -17,13 +17,17 @@ base::Error unreadable(std::string message) {
   return {.code = base::ErrorCode::kUnreadable, .message = std::move(message)};
 }
 
-/// Reads to the end, to the first zero byte or one byte beyond the limit.
+/// Reads to the end, to one byte beyond the limit or, unless it is a binary structure, to the first
+/// zero byte.
 base::Result<std::string> read_stream(std::istream& stream) {
   std::string text;
+  bool is_binary = false;
   char buffer[1U << 16U];
   while (stream.read(buffer, sizeof buffer) || stream.gcount() > 0) {
     const std::string_view block(buffer, static_cast<std::size_t>(stream.gcount()));
-    if (const std::size_t at = block.find('\0'); at != std::string_view::npos) {
+    is_binary = is_binary || (text.empty() && block.starts_with(io::kBinaryMagic));
+    const std::size_t at = is_binary ? std::string_view::npos : block.find('\0');
+    if (at != std::string_view::npos) {
       return unreadable("holds a zero byte after " + std::to_string(text.size() + at) +
                         " bytes, expected is text, in UTF-8");
     }

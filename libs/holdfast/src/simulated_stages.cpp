@@ -22,8 +22,11 @@ std::size_t at(Stage stage) { return static_cast<std::size_t>(stage); }
 /// The same stage as modules name it: 0 is none.
 agent::Stage stage_of(Stage stage) { return static_cast<agent::Stage>(at(stage) + 1); }
 
+/// A robot of one module has no connection.
 bool has_load_ratio(const agent::Answer& answer) {
-  return answer.verdict == agent::Verdict::kSafe || answer.verdict == agent::Verdict::kOverload;
+  const bool is_judged =
+      answer.verdict == agent::Verdict::kSafe || answer.verdict == agent::Verdict::kOverload;
+  return is_judged && answer.load_ratio_max > agent::kNoLoadRatio;
 }
 
 std::optional<double> load_ratio(const agent::Answer& answer) {
@@ -107,8 +110,13 @@ base::Result<SimulatedStep> simulate_step(const plan::RobotState& before, const 
   if (!robot) {
     return robot.error();
   }
+  plan::RobotState after = before;
+  plan::apply(step, transition, after);
+  const auto robot_after = model::Robot::create(after.spec());
   sim::SimulationOptions mine = options;
   mine.step = std::move(words).value();
+  // Without where it would be in pieces, or held by nothing.
+  mine.step_end = robot_after ? &robot_after.value() : nullptr;
   if (const auto fault = sim::find_options_fault(robot.value(), mine)) {
     return base::Error{.code = base::ErrorCode::kBadInput, .message = *fault, .where = {}};
   }
@@ -131,6 +139,7 @@ base::Result<SimulatedStages> simulate_stages(
   SimulatedStages result{
       .link = options.link, .steps = {}, .exact = std::move(exact).value().judgement};
   plan::RobotState robot(sequence.value().start);
+  result.lattice = robot.lattice();
   for (std::size_t i = 0; i < sequence.value().steps.size(); ++i) {
     if (progress) {
       progress(i);
@@ -187,7 +196,8 @@ void write_cell(io::JsonStream& json, const base::Cell& cell) {
   json.end_array();
 }
 
-void write_stage(io::JsonStream& json, const agent::Answer& answer, verdict::Verdict exact) {
+void write_stage(io::JsonStream& json, const base::Lattice& lattice, const agent::Answer& answer,
+                 verdict::Verdict exact) {
   json.begin_object();
   json.member("verdict", verdict::name(to_verdict(answer.verdict)));
   json.key("reasons");
@@ -199,7 +209,7 @@ void write_stage(io::JsonStream& json, const agent::Answer& answer, verdict::Ver
   if (has_load_ratio(answer)) {
     json.begin_array();
     write_cell(json, answer.worst_cell);
-    write_cell(json, base::neighbour(answer.worst_cell, answer.worst_direction));
+    write_cell(json, base::neighbour(lattice, answer.worst_cell, answer.worst_direction));
     json.end_array();
   } else {
     json.value(nullptr);
@@ -218,7 +228,8 @@ void write_step(io::JsonStream& json, const StepsFile& file, const SimulatedStag
   json.begin_object();
   for (const Stage stage : kStages) {
     json.key(plan::name(stage));
-    write_stage(json, step.stages[at(stage)], stages.exact.steps[index].stages[at(stage)].verdict);
+    write_stage(json, stages.lattice, step.stages[at(stage)],
+                stages.exact.steps[index].stages[at(stage)].verdict);
   }
   json.end_object();
   json.member("failing", step.failing ? std::optional<std::string_view>(plan::name(*step.failing))

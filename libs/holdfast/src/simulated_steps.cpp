@@ -195,8 +195,11 @@ double median_share(const std::vector<StepChange>& changes) {
   return shares.size() % 2 == 1 ? shares[half] : (shares[half - 1] + shares[half]) / 2;
 }
 
+/// A robot of one module has no connection.
 bool has_load_ratio(const agent::Answer& answer) {
-  return answer.verdict == agent::Verdict::kSafe || answer.verdict == agent::Verdict::kOverload;
+  const bool is_judged =
+      answer.verdict == agent::Verdict::kSafe || answer.verdict == agent::Verdict::kOverload;
+  return is_judged && answer.load_ratio_max > agent::kNoLoadRatio;
 }
 
 std::string cells_text(const StepChange& change) {

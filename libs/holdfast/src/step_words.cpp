@@ -34,8 +34,8 @@ std::map<Cell, base::Direction> kept_links(const plan::RobotState& before,
   for (bool is_growing = true; is_growing;) {
     std::map<Cell, base::Direction> next;
     for (const Cell& cell : left) {
-      for (const base::Direction face : base::kDirections) {
-        const Cell other = base::neighbour(cell, face);
+      for (const base::Direction face : base::directions(before.lattice())) {
+        const Cell other = base::neighbour(before.lattice(), cell, face);
         const bool stays = before.find(other) != plan::RobotState::kNone && !left.contains(other);
         if (!kept.contains(cell) && (stays || reached.contains(other))) {
           next.try_emplace(cell, face);
@@ -69,23 +69,22 @@ void add_releases(const plan::RobotState& before, const model::Step& step,
 }
 
 /// The direction of half a way, 2 axial coordinates.
-base::Direction direction_of(const Cell& from, const Cell& to) {
+base::Direction direction_of(const base::Lattice& lattice, const Cell& from, const Cell& to) {
   const Cell step = {to.x - from.x, to.y - from.y, to.z - from.z};
-  return *std::ranges::find_if(base::kDirections, [&](base::Direction direction) {
-    return base::neighbour({}, direction) == step;
-  });
+  return static_cast<base::Direction>(std::ranges::find(lattice.steps, step) -
+                                      lattice.steps.begin());
 }
 
-void add_group(const plan::Group& group, std::uint8_t index,
+void add_group(const base::Lattice& lattice, const plan::Group& group, std::uint8_t index,
                const std::map<Cell, base::Direction>& kept, std::vector<StepWord>& words) {
   for (const Cell& from : group.from) {
     StepWord word{.kind = Kind::kMove,
                   .group = index,
                   .face = number(kept.at(from)),
-                  .first = number(direction_of(group.way[0], group.way[1])),
+                  .first = number(direction_of(lattice, group.way[0], group.way[1])),
                   .cell = from};
     if (group.way.size() > 3) {
-      word.second = number(direction_of(group.way[2], group.way[3]));
+      word.second = number(direction_of(lattice, group.way[2], group.way[3]));
     }
     words.push_back(word);
   }
@@ -121,7 +120,7 @@ base::Result<std::vector<StepWord>> step_words(const plan::RobotState& before,
                        .where = {}};
   }
   for (std::size_t i = 0; i < transition.groups.size(); ++i) {
-    add_group(transition.groups[i], static_cast<std::uint8_t>(i), kept, words);
+    add_group(before.lattice(), transition.groups[i], static_cast<std::uint8_t>(i), kept, words);
   }
   for (const Cell& cell : step.attach) {
     words.push_back({.kind = Kind::kAttach, .cell = cell});

@@ -18,7 +18,8 @@ std::string beside_one(double number, int decimals) {
          text.find_first_not_of("0.", 1) == std::string::npos) {
     text = fmt::format("{:.{}f}", number, ++decimals);
   }
-  return text;
+  const bool is_zero = text.find_first_not_of("-0.") == std::string::npos;
+  return is_zero && text.starts_with('-') ? text.substr(1) : text;
 }
 
 }  // namespace holdfast::io

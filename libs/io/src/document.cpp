@@ -4,11 +4,15 @@
 
 #include <fmt/format.h>
 
+#include "holdfast/io/binary_structure.hpp"
 #include "text_input.hpp"
 
 namespace holdfast::io {
 
 base::Result<Format> detect_format(std::string_view text) {
+  if (text.starts_with(kBinaryMagic)) {
+    return Format::kBinary;
+  }
   text = trimmed(without_bom(text));
   if (text.starts_with('<')) {
     return Format::kVisibleSimXml;
@@ -32,8 +36,15 @@ base::Result<ReadDocument> read_document(std::string_view text, const ReadOption
   if (!format) {
     return format.error();
   }
-  return format.value() == Format::kJson ? read_json(text, options)
-                                         : read_visiblesim(text, options);
+  switch (format.value()) {
+    case Format::kVisibleSimXml:
+      return read_visiblesim(text, options);
+    case Format::kJson:
+      return read_json(text, options);
+    case Format::kBinary:
+      break;
+  }
+  return read_binary(text, options);
 }
 
 }  // namespace holdfast::io

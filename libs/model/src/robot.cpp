@@ -133,8 +133,8 @@ base::Result<Robot> Robot::create_part(const RobotSpec& spec, std::size_t own_co
   }
   std::erase_if(robot.facets_,
                 [&](const Facet& facet) { return base::at(facet.module) >= own_count; });
-  std::erase_if(robot.connections_,
-                [&](const ConnectionCode& pair) { return pair.a() >= own_count; });
+  host::Team team(thread_count, own_count);
+  robot.connections_ = ConnectionIndex(robot.connected_, own_count, team);
   robot.has_bonded_facets_ = std::ranges::any_of(robot.facets_, &Facet::is_bonded);
   return robot;
 }
@@ -149,7 +149,7 @@ std::optional<std::string> Robot::take(const RobotSpec& spec, int thread_count, 
   if (!fault) {
     host::Team team(thread_count, modules_.size());
     connect(index, team);
-    fault = spec.released.empty() ? std::nullopt : release(spec.released, index);
+    fault = spec.released.empty() ? std::nullopt : release(spec.released, index, team);
   }
   if (!fault && extent == Extent::kWhole) {
     fault = find_connection_fault(connections(), modules_, spec.existing.size());
@@ -186,37 +186,19 @@ std::optional<std::string> Robot::fix(std::span<const Cell> cells, const CellInd
 
 void Robot::connect(const CellIndex& index, host::Team& team) {
   connected_.resize(modules_.size(), kNoNeighbour);
-  std::vector<std::size_t> first;  // Connection of every chunk of modules.
-  team.map(modules_.size(), first, [&](std::size_t begin, std::size_t end) {
-    std::size_t count = 0;
+  team.share(0, modules_.size(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       for (const base::Direction direction : base::directions(lattice_)) {
-        const std::int32_t other =
+        connected_[i][static_cast<std::size_t>(base::index(direction))] =
             index.find(base::neighbour(lattice_, modules_[i].cell, direction));
-        connected_[i][static_cast<std::size_t>(base::index(direction))] = other;
-        count += other != kNoNeighbour && base::index(direction) % 2 == 0 ? 1 : 0;
-      }
-    }
-    return count;
-  });
-  std::size_t total = 0;
-  for (std::size_t& count : first) {
-    total += std::exchange(count, total);
-  }
-  connections_.resize(total);
-  team.share(0, modules_.size(), [&](std::size_t begin, std::size_t end) {
-    std::size_t next = first[begin / host::Team::kChunk];
-    for (std::size_t i = begin; i < end; ++i) {
-      for (std::size_t d = 0; d < lattice_count(); d += 2) {
-        if (connected_[i][d] != kNoNeighbour) {
-          connections_[next++] = {i, d};
-        }
       }
     }
   });
+  connections_ = ConnectionIndex(connected_, modules_.size(), team);
 }
 
-std::optional<std::string> Robot::release(std::span<const CellPair> pairs, const CellIndex& index) {
+std::optional<std::string> Robot::release(std::span<const CellPair> pairs, const CellIndex& index,
+                                          host::Team& team) {
   neighbours_ = connected_;
   for (const CellPair& pair : pairs) {
     const auto direction = direction_between(lattice_, pair);
@@ -235,9 +217,7 @@ std::optional<std::string> Robot::release(std::span<const CellPair> pairs, const
     there = kNoNeighbour;
     connected_[base::at(b)][base::at(base::index(base::opposite(*direction)))] = kNoNeighbour;
   }
-  std::erase_if(connections_, [&](const ConnectionCode& pair) {
-    return connected_[pair.a()][pair.direction()] == kNoNeighbour;
-  });
+  connections_ = ConnectionIndex(connected_, modules_.size(), team);
   released_count_ = pairs.size();
   return std::nullopt;
 }

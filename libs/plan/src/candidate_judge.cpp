@@ -45,6 +45,13 @@ constexpr double kScreenProducts = 10;
 /// time per module: above so many cubed rows per module checks are faster.
 constexpr std::size_t kCubedRowsPerModule = 8000;
 
+/// So many connections, those with the largest load ratios before, are looked at first: mostly the
+/// largest afterwards is theirs.
+constexpr std::size_t kFirstContenders = 8;
+
+/// Where more than one of so many connections may decide, all displacements are found.
+constexpr std::size_t kWholeShare = 2;
+
 /// Pairs of hosts of one site, each pair once.
 std::vector<solver::Edge> pairs_of(const std::vector<Site>& sites) {
   std::vector<std::pair<std::size_t, std::size_t>> pairs;
@@ -134,6 +141,7 @@ double energy_of(const solver::InverseStiffness& inverse, std::span<const PointL
 }  // namespace
 
 std::unique_ptr<CandidateJudge> CandidateJudge::make(const model::RobotSpec& spec,
+                                                     const RobotSymmetry& symmetry,
                                                      const CandidateOptions& options) {
   auto robot = model::Robot::create(spec, options.equilibrium.thread_count);
   if (!robot) {
@@ -141,7 +149,7 @@ std::unique_ptr<CandidateJudge> CandidateJudge::make(const model::RobotSpec& spe
   }
   std::unique_ptr<CandidateJudge> judge(
       new CandidateJudge(spec, options, std::move(robot).value()));
-  return judge->prepare() ? std::move(judge) : nullptr;
+  return judge->prepare(symmetry) ? std::move(judge) : nullptr;
 }
 
 CandidateJudge::CandidateJudge(const model::RobotSpec& spec, const CandidateOptions& options,
@@ -154,12 +162,15 @@ CandidateJudge::CandidateJudge(const model::RobotSpec& spec, const CandidateOpti
       is_held_(robot_.fixed_count() > 0 || robot_.has_bonded_facets()) {}
 
 /// False if nothing can be judged without checks.
-bool CandidateJudge::prepare() {
+bool CandidateJudge::prepare(const RobotSymmetry& symmetry) {
   const bool is_polygon = verdict::is_on_flat_floor(robot_);
   if (!is_held_ && !is_polygon && !options_.equilibrium.is_bonded) {
     return false;
   }
   for (const base::Cell& cell : free_cells(spec_)) {
+    if (symmetry.representative(cell) != cell) {
+      continue;
+    }
     Site site = finder_.find(cell);
     if (site.kind == Site::Kind::kOpen) {
       sites_.push_back(std::move(site));
@@ -487,15 +498,15 @@ void CandidateJudge::judge_together(std::span<Waiting> lanes, std::vector<Waitin
       }
     }
   }
-  influence_->solve(more);
-  const LaneRatios::PerLane largest = ratios_->largest(more);
+  const Solved solved = solve_where_it_matters(lanes, more);
   for (std::size_t lane = 0; lane < lanes.size(); ++lane) {
     Waiting& one = lanes[lane];
     const auto hosts = host_displacements(one, lane, more);
     const Vec6<double> own = one.grown.node->displacement(hosts);
     if (!one.grown.is_settled) {
       one.grown.footing = contact_->footing_if_stuck(
-          one.site, own, [&](std::size_t module) { return displacement(module, lane, more); });
+          one.site, own, solved.facet_count,
+          [&](std::size_t module) { return displacement(module, lane, more); });
       if (!one.grown.footing.is_certain) {
         if (auto grown = settled(one.site)) {
           one.grown = *std::move(grown);
@@ -504,8 +515,50 @@ void CandidateJudge::judge_together(std::span<Waiting> lanes, std::vector<Waitin
         continue;
       }
     }
-    conclude(one, std::max(largest[lane], new_ratio(one.site, hosts, own)));
+    conclude(one, std::max(solved.largest[lane], new_ratio(one.site, hosts, own)));
   }
+}
+
+/// The displacements of hosts, and of the ends of all connections and facets that matter. By the
+/// energy of the loads all other facets stick, and no other connection has a larger load ratio than
+/// the largest of those that have the largest ones before.
+CandidateJudge::Solved CandidateJudge::solve_where_it_matters(std::span<const Waiting> lanes,
+                                                              std::span<LaneBlock> more) const {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  const solver::LaneNumbers energies = influence_->begin_solution(more);
+  std::vector<std::size_t> slots;
+  for (const Waiting& one : lanes) {
+    for (const Link& link : one.site.links) {
+      slots.push_back(influence_->slot(link.host));
+    }
+  }
+  const std::size_t first_count = std::min(kFirstContenders, ratios_->connection_count());
+  ratios_->add_slots(first_count, slots);
+  std::vector<std::uint8_t> is_found;
+  influence_->find_solution(more, slots, is_found);
+  Solved solved;
+  solved.largest.fill(-kInfinity);
+  solved.largest = ratios_->largest(more, 0, first_count, solved.largest);
+  std::size_t count = first_count;
+  for (std::size_t lane = 0; lane < lanes.size(); ++lane) {
+    const double root = std::isnan(energies[lane]) ? kInfinity : std::sqrt(energies[lane]);
+    count = std::max(count, ratios_->contender_count(solved.largest[lane], root));
+    if (!lanes[lane].grown.is_settled) {
+      solved.facet_count = std::max(solved.facet_count, contact_->uncertain_count(root));
+    }
+  }
+  if (kWholeShare * count > ratios_->connection_count()) {
+    influence_->end_solution(more, is_found);
+  } else {
+    slots.clear();
+    ratios_->add_slots(count, slots);
+    for (std::size_t i = 0; i < solved.facet_count; ++i) {
+      slots.push_back(influence_->slot(contact_->uncertain_module(i)));
+    }
+    influence_->find_solution(more, slots, is_found);
+  }
+  solved.largest = ratios_->largest(more, first_count, count, solved.largest);
+  return solved;
 }
 
 void CandidateJudge::conclude(const Waiting& waiting, double ratio) const {

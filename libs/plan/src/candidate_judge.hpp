@@ -15,6 +15,7 @@
 #include "holdfast/verdict/rigid_body.hpp"
 #include "lane_ratios.hpp"
 #include "ratio_screen.hpp"
+#include "robot_symmetry.hpp"
 #include "site.hpp"
 
 namespace holdfast::plan {
@@ -22,8 +23,10 @@ namespace holdfast::plan {
 /// Judges candidates from the robot without them, as far as that is certain to be a check's answer.
 class CandidateJudge {
  public:
-  /// None if nothing can be said without checks. Keeps references.
+  /// None if nothing can be said without checks. Asked only for representatives of cells by the
+  /// robot's symmetry. Keeps references.
   static std::unique_ptr<CandidateJudge> make(const model::RobotSpec& spec,
+                                              const RobotSymmetry& symmetry,
                                               const CandidateOptions& options);
 
   /// Leaves out those that need a check. The bits of a judgement do not depend on the other cells.
@@ -41,7 +44,7 @@ class CandidateJudge {
   };
 
   CandidateJudge(const model::RobotSpec& spec, const CandidateOptions& options, model::Robot robot);
-  bool prepare();
+  bool prepare(const RobotSymmetry& symmetry);
   bool may_screen() const;
   void find_inverse();
   bool make_screen();
@@ -57,6 +60,15 @@ class CandidateJudge {
   std::optional<double> screened(Waiting& waiting) const;
   std::optional<double> bounded(const Waiting& waiting) const;
   LoadChange change_of(const Grown& grown, std::vector<PointLoad>& loads) const;
+
+  /// A group of solutions.
+  struct Solved {
+    LaneRatios::PerLane largest{};  ///< Load ratio of the robot's connections.
+    std::size_t facet_count = 0;    ///< So many of GrownContact's may not stick.
+  };
+
+  Solved solve_where_it_matters(std::span<const Waiting> lanes,
+                                std::span<solver::LaneBlock> more) const;
   void judge_together(std::span<Waiting> lanes, std::vector<Waiting>& again) const;
   void judge_fully(std::vector<Waiting> waiting) const;
   void conclude(const Waiting& waiting, double ratio) const;

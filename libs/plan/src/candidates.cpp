@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "candidate_judge.hpp"
+#include "robot_symmetry.hpp"
 
 namespace holdfast::plan {
 namespace {
@@ -94,14 +95,16 @@ std::vector<base::Cell> free_cells(const model::RobotSpec& spec) {
 }
 
 CandidateSearch::CandidateSearch(model::RobotSpec spec, CandidateOptions options)
-    : spec_(std::move(spec)), options_(std::move(options)) {}
+    : spec_(std::move(spec)),
+      options_(std::move(options)),
+      symmetry_(std::make_unique<RobotSymmetry>(spec_)) {}
 
 CandidateSearch::~CandidateSearch() = default;
 
 const CandidateJudge* CandidateSearch::judge_for(std::size_t cell_count) {
   if (!is_prepared_ && !options_.is_by_checks && cell_count >= kWorthPreparing) {
     is_prepared_ = true;
-    judge_ = CandidateJudge::make(spec_, options_);
+    judge_ = CandidateJudge::make(spec_, *symmetry_, options_);
   }
   return judge_.get();
 }
@@ -109,6 +112,29 @@ const CandidateJudge* CandidateSearch::judge_for(std::size_t cell_count) {
 CandidateReport CandidateSearch::judge(std::span<const base::Cell> cells) {
   const Stopwatch watch;
   CandidateReport report;
+  if (options_.is_by_checks) {
+    report.candidates = judge_each(cells, report);
+  } else {
+    std::vector<base::Cell> firsts;
+    std::ranges::transform(cells, std::back_inserter(firsts),
+                           [&](const base::Cell& cell) { return symmetry_->representative(cell); });
+    std::vector<base::Cell> asked = firsts;
+    std::ranges::sort(asked);
+    asked.erase(std::unique(asked.begin(), asked.end()), asked.end());
+    const std::vector<Candidate> judged = judge_each(asked, report);
+    for (std::size_t i = 0; i < cells.size(); ++i) {
+      const auto found = std::ranges::lower_bound(asked, firsts[i]) - asked.begin();
+      report.candidates.push_back(judged[static_cast<std::size_t>(found)]);
+      report.candidates.back().cell = cells[i];
+    }
+  }
+  report.seconds = watch.seconds();
+  return report;
+}
+
+std::vector<Candidate> CandidateSearch::judge_each(std::span<const base::Cell> cells,
+                                                   CandidateReport& report) {
+  const Stopwatch watch;
   const auto tell = [&](std::size_t done) {
     if (options_.progress) {
       options_.progress(done, cells.size());
@@ -126,15 +152,15 @@ CandidateReport CandidateSearch::judge(std::span<const base::Cell> cells) {
   }
   const auto known = static_cast<std::size_t>(std::ranges::count_if(
       judged, [](const std::optional<Candidate>& candidate) { return candidate.has_value(); }));
+  std::vector<Candidate> candidates;
   for (std::size_t i = 0; i < cells.size(); ++i) {
     if (!judged[i]) {
       judged[i] = check_candidate(spec_, cells[i], options_);
       tell(known + ++report.check_count);
     }
-    report.candidates.push_back(*judged[i]);
+    candidates.push_back(*judged[i]);
   }
-  report.seconds = watch.seconds();
-  return report;
+  return candidates;
 }
 
 CandidateReport judge_candidates(const model::RobotSpec& spec, std::span<const base::Cell> cells,

@@ -515,6 +515,12 @@ Footing GrownContact::footing_if_stuck(const Site& site, const Vec& new_module,
   return footing;
 }
 
+std::size_t GrownContact::uncertain_count(double energy_root) const {
+  const auto is_uncertain = [&](const auto& facet) { return !(energy_root < facet.first); };
+  return static_cast<std::size_t>(std::ranges::partition_point(by_root_, is_uncertain) -
+                                  by_root_.begin());
+}
+
 /// Whether a facet is so far from tilting and lifting that certain_state() says that it is stuck.
 bool GrownContact::sticks_by_far(const Vec& trial) const {
   constexpr double kRoom = 1e-3;  // Far more than certain_state()'s doubts.

@@ -58,10 +58,19 @@ class GrownContact {
                            const FacetInfluence* facets) const;
 
   /// What facets that move with the modules' `displacement(module)` and the new one say; certain
-  /// only if all of them are stuck.
+  /// only if all of them are stuck. Asks for no more than the first `count` facets: the others
+  /// stick.
   template <class Displacement>
-  Footing footing_if_stuck(const Site& site, const Vec& new_module,
+  Footing footing_if_stuck(const Site& site, const Vec& new_module, std::size_t count,
                            const Displacement& displacement) const;
+
+  /// How many facets may not stick under loads whose energy has such a root, and the module of
+  /// each.
+  std::size_t uncertain_count(double energy_root) const;
+
+  std::size_t uncertain_module(std::size_t i) const {
+    return influence_.facets()[by_root_[i].second].module;
+  }
 
   /// The loads in the contact states where the path ends; none if it does not end, or not for
   /// certain as that of a check. A site without links: the robot without a new module.
@@ -114,12 +123,13 @@ class GrownContact {
 };
 
 template <class Displacement>
-Footing GrownContact::footing_if_stuck(const Site& site, const Vec& new_module,
+Footing GrownContact::footing_if_stuck(const Site& site, const Vec& new_module, std::size_t count,
                                        const Displacement& displacement) const {
   Footing footing = {};
-  for (std::size_t i = 0; !is_bonded_ && i < influence_.facets().size(); ++i) {
-    const solver::FacetState& facet = influence_.facets()[i];
-    look_if_stuck(facet, robot_.facets()[i].touch.friction,
+  for (std::size_t i = 0; !is_bonded_ && i < count; ++i) {
+    const std::size_t place = by_root_[i].second;
+    const solver::FacetState& facet = influence_.facets()[place];
+    look_if_stuck(facet, robot_.facets()[place].touch.friction,
                   influence_.law().trial_force(facet, displacement(facet.module)), footing);
   }
   look_at_own(site, new_module, footing);

@@ -41,9 +41,7 @@ verdict::Verdict MoveJudge::judge(const RobotState& before, const model::Step& s
 }
 
 bool MoveJudge::is_over() const {
-  const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - start_;
-  return count_ >= options_.state_count_max || spent.count() >= options_.seconds_max ||
-         (options_.is_interrupted && options_.is_interrupted());
+  return count_ >= options_.state_count_max || patience_.is_over();
 }
 
 void MoveJudge::report(int distance) const {

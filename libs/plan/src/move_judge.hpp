@@ -2,10 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <chrono>
 #include <unordered_set>
 
 #include "holdfast/plan/move_plan.hpp"
+#include "patience.hpp"
 #include "shape.hpp"
 
 namespace holdfast::plan {
@@ -38,7 +38,7 @@ class MoveJudge {
 
   const MoveTask& task_;
   const MoveOptions& options_;
-  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+  Patience patience_{options_.seconds_max, options_.is_interrupted};
   std::size_t count_ = 0;
   std::size_t undecided_count_ = 0;
   std::unordered_set<Shape, ShapeHash> unsafe_;  ///< Even when all is connected.

@@ -3,10 +3,10 @@
 #include "holdfast/plan/order_help.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <set>
 
 #include "holdfast/base/lattice.hpp"
+#include "patience.hpp"
 
 namespace holdfast::plan {
 namespace {
@@ -35,23 +35,14 @@ class HelpSearch {
   std::optional<Help> try_all(const std::vector<Help>& helps) const;
   bool serves(const Help& help) const;
   bool has_order(const OrderTask& task) const;
-  bool is_late() const;
 
   const OrderTask& task_;
   const HelpOptions& options_;
   std::set<Cell> taken_;
   std::vector<Cell> beside_;  ///< Free cells beside the target, ascending by layer.
   std::vector<Cell> below_;   ///< Those straight below a module, where the lattice has any.
-  std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
+  Patience patience_{options_.seconds_max, options_.is_interrupted};
 };
-
-bool HelpSearch::is_late() const {
-  if (options_.is_interrupted && options_.is_interrupted()) {
-    return true;
-  }
-  const std::chrono::duration<double> passed = std::chrono::steady_clock::now() - begin_;
-  return passed.count() >= options_.seconds_max;
-}
 
 bool HelpSearch::is_free(const Cell& cell) const {
   const model::ObstacleIndex obstacles(task_.target.obstacles);
@@ -131,7 +122,7 @@ bool HelpSearch::serves(const Help& help) const {
 
 std::optional<Help> HelpSearch::try_all(const std::vector<Help>& helps) const {
   for (const Help& help : helps) {
-    if (is_late()) {
+    if (patience_.is_over()) {
       return std::nullopt;
     }
     if (serves(help)) {

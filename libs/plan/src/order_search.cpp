@@ -4,12 +4,12 @@
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <unordered_map>
 #include <unordered_set>
 #include <utility>
 
 #include "holdfast/base/rng.hpp"
+#include "patience.hpp"
 
 namespace holdfast::plan {
 namespace {
@@ -48,21 +48,15 @@ class Knowledge {
 
   std::size_t state_count() const { return judgements_.size(); }
 
-  bool is_late() const {
-    const std::chrono::duration<double> passed = Clock::now() - begin_;
-    return passed.count() >= options_.seconds_max ||
-           (options_.is_interrupted && options_.is_interrupted());
-  }
+  bool is_late() const { return patience_.is_over(); }
 
   bool is_spent() const { return is_late() || state_count() >= options_.state_count_max; }
 
  private:
-  using Clock = std::chrono::steady_clock;
-
   GrowingStructure& structure_;
   const OrderOptions& options_;
   std::unordered_map<ElementSet, Judgement, ElementSetHash> judgements_;
-  Clock::time_point begin_ = Clock::now();
+  Patience patience_{options_.seconds_max, options_.is_interrupted};
 };
 
 /// One end of the search: depth first from its roots, until a goal is reached or nothing is left.
@@ -464,11 +458,14 @@ Order find_order(GrowingStructure& structure, std::span<const ElementSet> starts
     explorers[1].explore(0, options.seed);
     return order_closed(explorers[1].closure(), knowledge);
   }
-  const auto furthest = [&] {
-    Explorer& told = explorers[options.told_end == Sense::kGrowing ? 0 : 1];
-    const auto way = told.furthest_way();
+  const auto explorer_from = [&](Sense sense) -> Explorer& {
+    return explorers[sense == Sense::kGrowing ? 0 : 1];
+  };
+  const auto furthest = [&](std::size_t undecided_count) {
+    const auto way = explorer_from(options.told_end).furthest_way();
     Order order = way ? order_along(*way, options.told_end, knowledge) : Order{};
     order.state_count = knowledge.state_count();
+    order.undecided_count = undecided_count;
     return order;
   };
   std::size_t budget =
@@ -476,7 +473,7 @@ Order find_order(GrowingStructure& structure, std::span<const ElementSet> starts
   std::array<bool, 2> is_closed{};
   for (std::size_t round = 0; !knowledge.is_spent() || round == 0; ++round, budget *= 2) {
     for (const Sense sense : {Sense::kGrowing, Sense::kShrinking}) {
-      Explorer& explorer = explorers[sense == Sense::kGrowing ? 0 : 1];
+      Explorer& explorer = explorer_from(sense);
       const Explorer::Answer answer = explorer.explore(budget, seed_of(options.seed, round));
       if (answer == Explorer::Answer::kReached) {
         Order order = order_along(explorer.way(), sense, knowledge);
@@ -491,15 +488,12 @@ Order find_order(GrowingStructure& structure, std::span<const ElementSet> starts
           return order;
         }
         if (is_closed[0] && is_closed[1]) {
-          const std::size_t undecided_count = order.undecided_count;
-          order = furthest();
-          order.undecided_count = undecided_count;
-          return order;
+          return furthest(order.undecided_count);
         }
       }
     }
   }
-  return furthest();
+  return furthest(0);
 }
 
 }  // namespace holdfast::plan

@@ -16,6 +16,7 @@
 #include "hard_robot.hpp"
 #include "holdfast/model/families.hpp"
 #include "random_robot.hpp"
+#include "seeds.hpp"
 #include "standing_robot.hpp"
 
 namespace holdfast::plan {
@@ -97,7 +98,9 @@ TEST(Candidates, of_random_cubes_on_a_floor_are_judged_as_checks_judge_them) {
 TEST(Candidates, are_judged_so_in_every_lattice_with_supports_and_loads_of_every_kind) {
   for (const base::Lattice& lattice : test::kLattices) {
     for (std::uint64_t seed = 0; seed < test::kHardnessCount; ++seed) {
-      compare(test::general_robot(lattice, seed), "general_robot " + std::to_string(seed), 5);
+      if (seed < test::campaign(test::kHardnessCount)) {
+        compare(test::general_robot(lattice, seed), "general_robot " + std::to_string(seed), 5);
+      }
       compare(test::hard_robot(lattice, seed), "hard_robot " + std::to_string(seed), 5);
     }
   }

@@ -17,6 +17,7 @@
 #include "holdfast/base/rng.hpp"
 #include "holdfast/model/families.hpp"
 #include "holdfast/verdict/assessment.hpp"
+#include "seeds.hpp"
 
 namespace holdfast::plan {
 namespace {
@@ -318,6 +319,9 @@ TEST(RobotOrder, is_safe_all_the_way_where_states_are_certified_without_being_so
                                                         {"sheet", 8},
                                                         {"portal", 8}}) {
     for (const double share : {0.0, 0.9}) {
+      if (holdfast::test::kIsSanitized && (size > 60 || share > 0)) {
+        continue;
+      }
       OrderTask task{.target = family_spec(family, size)};
       const auto whole = verdict::assess(model::Robot::create(task.target).value());
       if (share > 0 && whole.load_ratio_max.value_or(0) > 1e-3) {
@@ -338,7 +342,7 @@ TEST(RobotOrder, is_safe_all_the_way_where_states_are_certified_without_being_so
       }
     }
   }
-  EXPECT_GT(certified_count, 500);
+  EXPECT_GT(certified_count, holdfast::test::campaign(500));
 }
 
 }  // namespace

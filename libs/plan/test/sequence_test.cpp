@@ -14,6 +14,7 @@
 #include "holdfast/base/rng.hpp"
 #include "moves.hpp"
 #include "random_robot.hpp"
+#include "seeds.hpp"
 
 namespace holdfast::plan {
 namespace {
@@ -134,14 +135,14 @@ TEST(Sequence, is_so_for_steps_of_every_kind) {
 TEST(Sequence, is_so_in_every_lattice_and_on_every_support) {
   std::size_t step_count = 0;
   for (const base::Lattice& lattice : holdfast::test::kLattices) {
-    for (std::uint64_t seed = 0; seed < 4; ++seed) {
+    for (std::uint64_t seed = 0; seed < holdfast::test::campaign(4U, 2U); ++seed) {
       const model::RobotSpec start = holdfast::test::general_robot(lattice, seed);
       const auto steps = random_steps(start, seed, 6);
       compare(start, steps);
       step_count += steps.size();
     }
   }
-  EXPECT_GT(step_count, 40);
+  EXPECT_GT(step_count, holdfast::test::campaign(40, 2));
 }
 
 model::Step turned(const model::Step& step, const base::Lattice& lattice,
@@ -170,7 +171,7 @@ model::RobotSpec with_round_connectors(model::RobotSpec spec) {
 TEST(Sequence, is_as_safe_when_it_is_turned_or_mirrored) {
   for (const base::Lattice& lattice : holdfast::test::kLattices) {
     const auto symmetries = holdfast::test::symmetries(lattice);
-    for (std::uint64_t seed = 20; seed < 26; ++seed) {
+    for (std::uint64_t seed = 20; seed < 20 + holdfast::test::campaign(6U, 3U); ++seed) {
       const model::RobotSpec start =
           with_round_connectors(holdfast::test::general_robot(lattice, seed));
       const auto& symmetry = symmetries[1 + seed % (symmetries.size() - 1)];

@@ -16,6 +16,7 @@
 #include "general_robot.hpp"
 #include "holdfast/verdict/assessment.hpp"
 #include "moves.hpp"
+#include "seeds.hpp"
 
 namespace holdfast::plan {
 namespace {
@@ -182,7 +183,7 @@ model::RobotSpec with_payload(const RobotState& robot, const Scene& scene, const
 TEST(Stages, make_a_module_on_its_way_a_load_on_its_carrier_in_every_lattice) {
   std::size_t compared_count = 0;
   for (const base::Lattice& lattice : holdfast::test::kLattices) {
-    for (std::uint64_t seed = 0; seed < 5; ++seed) {
+    for (std::uint64_t seed = 0; seed < holdfast::test::campaign(5U, 3U); ++seed) {
       const RobotState robot(holdfast::test::general_robot(lattice, seed));
       for (const ModuleState& module : robot.modules()) {
         const auto moves = test::moves_of(robot, module.cell);
@@ -211,7 +212,7 @@ TEST(Stages, make_a_module_on_its_way_a_load_on_its_carrier_in_every_lattice) {
       }
     }
   }
-  EXPECT_GT(compared_count, 100);
+  EXPECT_GT(compared_count, holdfast::test::campaign(100, 5));
 }
 
 }  // namespace

@@ -81,10 +81,12 @@ Engine::Engine(const model::Robot& robot, SimulationOptions options)
       noise_(options_.link),
       is_noisy_(has_noise(options_.link)),
       lent_(robot, robot.modules().size() - robot.planned_count(),
-            {.has_fronts = options_.method == agent::Method::kFronts && !needs_environment(robot),
+            {.has_fronts = options_.method == agent::Method::kFronts &&
+                           !needs_environment(robot, options_.step_end),
              .has_stages = !options_.step.empty(),
              .judges_faces = options_.judges_faces,
-             .plans_many = plans_many(robot, options_)}),
+             .plans_many = plans_many(robot, options_),
+             .step_end = options_.step_end}),
       pool_(options_.link.packet_bytes),
       recorder_(options_.trace) {
   for (std::size_t size = 0; size < line_times_.size(); ++size) {

@@ -114,17 +114,6 @@ bool has_far_corners(const model::Robot& robot, const agent::Environment& enviro
   return 2 * (reach + 1) * environment.foot_denominator > kMost;
 }
 
-/// Kinds may differ in mass alone.
-bool has_other_connectors(const model::Robot& robot) {
-  const model::ModuleKind plain = model::default_kind(robot.material(), robot.lattice());
-  for (const model::ModuleKind& kind : robot.kinds()) {
-    if (kind.connectors != plain.connectors) {
-      return true;
-    }
-  }
-  return false;
-}
-
 }  // namespace
 
 std::optional<SupportPlane> find_support_plane(const model::Robot& robot) {
@@ -150,6 +139,17 @@ std::optional<SupportPlane> find_support_plane(const model::Robot& robot) {
   return plane;
 }
 
+std::optional<SupportPlane> find_support_plane(const model::Robot& robot,
+                                               const model::Robot* step_end) {
+  const auto plane = find_support_plane(robot);
+  if (!plane || step_end == nullptr) {
+    return plane;
+  }
+  const auto other = find_support_plane(*step_end);
+  const bool is_same = other && other->axes == plane->axes && other->height == plane->height;
+  return is_same ? plane : std::nullopt;
+}
+
 EnvironmentMap::EnvironmentMap(const model::Robot& robot)
     : robot_(robot),
       modules_(robot.modules().size()),
@@ -165,6 +165,7 @@ EnvironmentMap::EnvironmentMap(const model::Robot& robot)
   std::partial_sum(first_facet_.begin(), first_facet_.end(), first_facet_.begin());
   const auto [numerator, denominator] = foot_parts(robot, kCornerPartMax);
   environment_ = {.describe = describe,
+                  .law = robot.has_default_connectors() ? nullptr : law,
                   .map = this,
                   .beams = beams_.is_cubic() ? nullptr : &beams_,
                   .lattice = &robot.lattice(),
@@ -173,6 +174,10 @@ EnvironmentMap::EnvironmentMap(const model::Robot& robot)
                   .foot_denominator = denominator,
                   .is_level = stands_level(robot)};
   plane_ = find_support_plane(robot);
+  if (plane_) {
+    environment_.plane_unit_n = plane_->unit_n;
+    environment_.plane_height = plane_->height;
+  }
 }
 
 void EnvironmentMap::describe(const void* map, const base::Cell& cell, agent::Surroundings& node) {
@@ -183,6 +188,20 @@ void EnvironmentMap::describe(const void* map, const base::Cell& cell, agent::Su
     return;
   }
   self.describe(base::at(module), node);
+}
+
+/// Of a module that the robot does not have nothing is known: its load already decides nothing.
+const model::ConnectorLaw& EnvironmentMap::law(const void* map, const base::Cell& cell,
+                                               base::Direction direction) {
+  static const model::ConnectorLaw kUnknown;
+  const auto& self = *static_cast<const EnvironmentMap*>(map);
+  const std::int32_t a = self.modules_.find(cell);
+  const std::int32_t b =
+      self.modules_.find(base::neighbour(self.robot_.lattice(), cell, direction));
+  if (a == model::CellIndex::kNone || b == model::CellIndex::kNone) {
+    return kUnknown;
+  }
+  return self.robot_.connector({.a = a, .b = b, .direction = direction});
 }
 
 void EnvironmentMap::describe(std::size_t module, agent::Surroundings& node) const {
@@ -203,8 +222,43 @@ void EnvironmentMap::describe(std::size_t module, agent::Surroundings& node) con
   for (std::size_t i = first_facet_[module]; i < first_facet_[module + 1]; ++i) {
     const model::Facet& facet = robot_.facets()[i];
     node.facets[node.facet_count++] = {.direction = facet.direction,
-                                       .is_bonded = facet.is_bonded()};
+                                       .is_bonded = facet.is_bonded(),
+                                       .friction = facet.touch.friction.value_or(agent::kNoSlip)};
   }
+}
+
+RatioBounds ratio_bounds(const model::Robot& robot) {
+  if (robot.has_default_connectors()) {
+    return {};
+  }
+  double force = 0;
+  for (std::size_t i = 0; i < robot.modules().size(); ++i) {
+    const base::Vec6<double>& load = robot.loads()[i];
+    force += std::hypot(load[0], load[1], load[2]) +
+             std::hypot(load[3], load[4], load[5]) / robot.material().pitch_mm;
+  }
+  const auto beam = mechanics::beam_stiffness(model::beam_section(robot.material()));
+  RatioBounds bounds = {.per_n = 1 / force,
+                        .per_nmm = 1 / (force * robot.material().pitch_mm),
+                        .per_energy_root = std::sqrt(beam.axial) / force};
+  for (const model::ConnectorLaw& law : robot.connectors()) {
+    const double mu = law.friction.value_or(model::ConnectorLaw::kUnlimited);
+    bounds.per_n =
+        std::max({bounds.per_n, std::hypot(1, 1 / mu) / law.strength_n, 1 / law.shear_strength_n});
+    bounds.per_nmm =
+        std::max({bounds.per_nmm, 1 / (law.lever_mm * law.strength_n),
+                  1 / (mu * law.torsion_radius_mm * law.strength_n), 1 / law.torsion_strength_nmm});
+  }
+  // Where Eq. (17) is the law of robots of some twenty modules this share is one or two.
+  constexpr double kUsual = 2;
+  constexpr double kBitsMost = 13;
+  const double share =
+      std::max(bounds.per_n, bounds.per_nmm * robot.material().pitch_mm) * force / kUsual;
+  bounds.slack_bits =
+      static_cast<std::uint8_t>(std::clamp(std::floor(std::log2(share)), 0.0, kBitsMost));
+  bounds.per_energy_root =
+      std::max(bounds.per_energy_root, model::load_ratio_per_energy_norm(robot));
+  return bounds;
 }
 
 bool stands_level(const model::Robot& robot) {
@@ -215,14 +269,12 @@ bool needs_environment(const model::Robot& robot) {
   return model::find_beyond_paper(robot).has_value();
 }
 
+bool needs_environment(const model::Robot& robot, const model::Robot* step_end) {
+  return needs_environment(robot) || (step_end != nullptr && needs_environment(*step_end));
+}
+
 std::optional<std::string> find_unknown_to_modules(const model::Robot& robot) {
-  if (has_other_connectors(robot)) {
-    return "connectors with other limits than Eq. (17)";
-  }
   for (const model::Facet& facet : robot.facets()) {
-    if (facet.touch.friction) {
-      return "supports with friction";
-    }
     // Safe angles are of facets: robots balanced on an edge between two points would count as safe.
     if (!facet.is_bonded() && robot.foot_half_width_mm() == 0) {
       return "feet that are points";
@@ -265,10 +317,7 @@ FootParts foot_parts(const model::Robot& robot, std::int32_t part_max) {
 }
 
 LentStore::LentStore(const model::Robot& robot, std::size_t module_count, Needs needs) {
-  const bool has_map = needs_environment(robot);
-  if (needs.has_stages) {
-    stages_.resize(module_count);
-  }
+  const bool has_map = needs_environment(robot, needs.step_end);
   if (needs.judges_faces) {
     faces_.resize(module_count);
   }
@@ -277,6 +326,14 @@ LentStore::LentStore(const model::Robot& robot, std::size_t module_count, Needs 
   }
   if (has_map) {
     map_ = std::make_unique<EnvironmentMap>(robot);
+  }
+  if (has_map && needs.step_end != nullptr) {
+    map_connected_ = std::make_unique<EnvironmentMap>(*needs.step_end);
+    map_->set_connected(&map_connected_->environment());
+  }
+  if (needs.has_stages) {
+    stages_.resize(module_count,
+                   agent::Stages(robot.lattice(), has_map ? &map_->environment() : nullptr));
   }
   const std::size_t nodes =
       1 + static_cast<std::size_t>(needs.plans_many ? agent::kPlannedMost : agent::kPlannedMax);
@@ -295,6 +352,7 @@ LentStore::LentStore(const model::Robot& robot, std::size_t module_count, Needs 
   for (agent::MoreFaces& more : more_faces_) {
     more.lattice = &robot.lattice();
   }
+  across_.resize(robot.has_default_connectors() ? 0 : module_count);
   memory_.resize(has_any ? module_count : 0);
   for (std::size_t i = 0; i < memory_.size(); ++i) {
     memory_[i] = {.fronts = needs.has_fronts ? &fronts_->memory_of(i) : nullptr,
@@ -303,7 +361,8 @@ LentStore::LentStore(const model::Robot& robot, std::size_t module_count, Needs 
                   .surroundings = has_map ? &surroundings_[i * nodes] : nullptr,
                   .environment = has_map ? &map_->environment() : nullptr,
                   .faces = has_more_faces ? &more_faces_[i] : nullptr,
-                  .planned = needs.plans_many ? &more_planned_[i] : nullptr};
+                  .planned = needs.plans_many ? &more_planned_[i] : nullptr,
+                  .across = across_.empty() ? nullptr : &across_[i]};
   }
 }
 

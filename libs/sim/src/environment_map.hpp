@@ -28,6 +28,10 @@ struct SupportPlane {
 
 std::optional<SupportPlane> find_support_plane(const model::Robot& robot);
 
+/// The same plane before a step and behind it.
+std::optional<SupportPlane> find_support_plane(const model::Robot& robot,
+                                               const model::Robot* step_end);
+
 /// What agents are told of the world where a robot is more than cubes on a floor under their weight
 /// (agent/surroundings.hpp): of every cell with a module, existing or planned, its load, its mass
 /// and its facets.
@@ -42,8 +46,13 @@ class EnvironmentMap {
 
   const agent::Environment& environment() const { return environment_; }
 
+  /// Of the robot as a step leaves it; outlives this one.
+  void set_connected(const agent::Environment* connected) { environment_.connected = connected; }
+
  private:
   static void describe(const void* map, const base::Cell& cell, agent::Surroundings& node);
+  static const model::ConnectorLaw& law(const void* map, const base::Cell& cell,
+                                        base::Direction direction);
   void describe(std::size_t module, agent::Surroundings& node) const;
 
   const model::Robot& robot_;
@@ -55,12 +64,27 @@ class EnvironmentMap {
   std::optional<SupportPlane> plane_;
 };
 
+/// The most that a force, a torque and the root of an energy do to a load ratio, where connections
+/// have laws of their own; else 0, which stands for Eq. (17). No less than if a connection broke by
+/// all loads together: contact states need their forces, however strong connections are.
+struct RatioBounds {
+  double per_n = 0;
+  double per_nmm = 0;
+  double per_energy_root = 0;
+  std::uint8_t slack_bits = 0;  ///< agent::Setup::slack_bits
+};
+
+RatioBounds ratio_bounds(const model::Robot& robot);
+
 /// All facets lie in one level plane and can lift, only weight acts, straight down, and masses are
 /// whole numbers of one unit: so the simplified check is exact.
 bool stands_level(const model::Robot& robot);
 
 /// A robot of equal cubes on a floor that weighs down, which agents know without a map.
 bool needs_environment(const model::Robot& robot);
+
+/// The same of a robot or of what a step makes of it, if that is known.
+bool needs_environment(const model::Robot& robot, const model::Robot* step_end);
 
 /// What of a robot its modules' program does not know, if anything.
 std::optional<std::string> find_unknown_to_modules(const model::Robot& robot);
@@ -82,7 +106,8 @@ class LentStore {
     bool has_fronts = false;
     bool has_stages = false;
     bool judges_faces = false;
-    bool plans_many = false;  ///< More than agent::kPlannedMax planned modules.
+    bool plans_many = false;                 ///< More than agent::kPlannedMax planned modules.
+    const model::Robot* step_end = nullptr;  ///< As of SimulationOptions.
   };
 
   LentStore(const model::Robot& robot, std::size_t module_count, Needs needs);
@@ -97,9 +122,11 @@ class LentStore {
   std::vector<agent::Stages> stages_;
   std::vector<agent::FreeFaces> faces_;
   std::unique_ptr<EnvironmentMap> map_;
+  std::unique_ptr<EnvironmentMap> map_connected_;  ///< As a step leaves the robot.
   std::vector<agent::Surroundings> surroundings_;  ///< By module, then by node.
   std::vector<agent::MoreFaces> more_faces_;
   std::vector<agent::MorePlanned> more_planned_;
+  std::vector<agent::AcrossLoads> across_;
   std::vector<std::unique_ptr<double[]>> groups_;  ///< MorePlanned::group
   std::vector<agent::LentMemory> memory_;
 };

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -25,24 +24,27 @@ class FrontStore {
       module.reals = std::unique_ptr<float[]>(new float[sizes.reals]);
       module.kept = std::make_unique<agent::KeptFacet[]>(sizes.kept);
       module.contact = std::unique_ptr<double[]>(new double[contact_reals]);
+      module.queues = std::unique_ptr<std::uint8_t[]>(new std::uint8_t[kQueueBytes]);
       module.memory = {.nodes = {module.nodes.get(), sizes.nodes},
                        .reals = {module.reals.get(), sizes.reals},
                        .kept = {module.kept.get(), sizes.kept},
                        .contact = {module.contact.get(), contact_reals},
-                       .queues = module.queues};
+                       .queues = {module.queues.get(), kQueueBytes}};
     }
   }
 
   agent::FrontMemory& memory_of(std::size_t module) { return modules_[module].memory; }
 
  private:
+  static constexpr std::size_t kQueueBytes = base::kDirectionCount * agent::Link::kLentBytes;
+
   struct Sizes {
     std::size_t nodes;
     std::size_t reals;
     std::size_t kept;
   };
 
-  static constexpr Sizes kFewPlanned = {.nodes = 256, .reals = 48'000, .kept = 24};
+  static constexpr Sizes kFewPlanned = {.nodes = 256, .reals = 48'000, .kept = 60};
   /// A group of 30 is in the front of its host, and above it with all that it touches.
   static constexpr Sizes kManyPlanned = {.nodes = 512, .reals = 192'000, .kept = 60};
 
@@ -51,7 +53,7 @@ class FrontStore {
     std::unique_ptr<float[]> reals;
     std::unique_ptr<agent::KeptFacet[]> kept;
     std::unique_ptr<double[]> contact;
-    std::array<std::uint8_t, base::kDirectionCount * agent::Link::kLentBytes> queues{};
+    std::unique_ptr<std::uint8_t[]> queues;
     agent::FrontMemory memory;
   };
 

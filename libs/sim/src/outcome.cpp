@@ -11,7 +11,8 @@ bool is_same(const agent::Answer& a, const agent::Answer& b) {
   return a.verdict == b.verdict && a.reason == b.reason &&
          std::bit_cast<std::uint32_t>(a.load_ratio_max) ==
              std::bit_cast<std::uint32_t>(b.load_ratio_max) &&
-         a.worst_cell == b.worst_cell && a.worst_direction == b.worst_direction;
+         a.worst_cell == b.worst_cell && a.worst_direction == b.worst_direction &&
+         a.remarks == b.remarks;
 }
 
 void Outcome::add(std::int32_t module, const ModuleOutcome& outcome) {

@@ -67,15 +67,20 @@ void Recorder::note_change(Time now, std::int32_t module, const agent::Agent& ag
       trace_->verdict_known(now, module, agent.answer());
     }
   }
+  const bool has_moved = agent.epoch() != seen.epoch || agent.phase() != seen.phase;
   seen = {.epoch = agent.epoch(), .phase = agent.phase(), .verdict = agent.answer().verdict};
-  reached(now, seen.epoch, seen.phase);
+  if (has_moved) {
+    reached(now, seen.epoch, seen.phase, agent.is_root());
+  }
 }
 
-/// A module is in this phase of this epoch from now on.
-void Recorder::reached(Time time, std::uint16_t epoch, agent::Phase phase) {
+/// A module is in this phase of this epoch from now on. The root alone leads back to an earlier
+/// one, as from load ratios to another equilibrium.
+void Recorder::reached(Time time, std::uint16_t epoch, agent::Phase phase, bool is_root) {
   const bool is_same = epoch == result_.epoch;
   const bool is_newer = agent::is_newer({.epoch = epoch}, {.epoch = result_.epoch});
-  if (is_same ? phase <= phase_ : !is_newer) {
+  const bool is_next = is_root ? phase != phase_ : phase > phase_;
+  if (is_same ? !is_next : !is_newer) {
     return;
   }
   leave_phase(time, result_);

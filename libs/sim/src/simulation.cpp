@@ -22,10 +22,23 @@ std::optional<std::string> find_module_fault(const char* what, std::int32_t modu
   return fmt::format("{} is {}, allowed are existing modules: 0 to {}", what, module, count - 1);
 }
 
-/// The modules' own program takes every neighbour for connected.
-std::optional<std::string> find_robot_fault(const model::Robot& robot) {
+/// Has some support a coefficient of friction?
+bool has_friction(const model::Robot& robot) {
+  return std::ranges::any_of(
+      robot.facets(), [](const model::Facet& facet) { return facet.touch.friction.has_value(); });
+}
+
+std::optional<std::string> find_unknown_fault(const model::Robot& robot) {
   if (const auto unknown = find_unknown_to_modules(robot)) {
     return "the robot has " + *unknown + ", which the modules' program does not know";
+  }
+  return std::nullopt;
+}
+
+/// The modules' own program takes every neighbour for connected.
+std::optional<std::string> find_robot_fault(const model::Robot& robot) {
+  if (auto unknown = find_unknown_fault(robot)) {
+    return unknown;
   }
   if (robot.released_count() == 0) {
     return std::nullopt;
@@ -34,6 +47,18 @@ std::optional<std::string> find_robot_fault(const model::Robot& robot) {
       "the robot has {} pairs of neighbours that are not connected, allowed are none: the modules' "
       "program connects all neighbours",
       robot.released_count());
+}
+
+/// Stages of a step and free faces know Eq. (17) and feet that do not slip.
+std::optional<std::string> find_law_fault(const model::Robot& robot) {
+  constexpr const char* kUnknown = "which stages of a step and free faces do not know";
+  if (!robot.has_default_connectors()) {
+    return fmt::format("the robot has connectors with other limits than Eq. (17), {}", kUnknown);
+  }
+  if (has_friction(robot)) {
+    return fmt::format("the robot has supports with friction, {}", kUnknown);
+  }
+  return std::nullopt;
 }
 
 /// The number of a lattice in greetings.
@@ -67,7 +92,14 @@ std::optional<std::string> find_options_fault(const model::Robot& robot,
   const std::size_t count = robot.modules().size() - robot.planned_count();
   auto found = find_robot_fault(robot);
   if (!found && (!options.step.empty() || options.judges_faces)) {
+    found = find_law_fault(robot);
+  }
+  if (!found && options.judges_faces) {
     found = find_floor_fault(robot);
+  }
+  if (!found && options.step_end != nullptr) {
+    found = find_unknown_fault(*options.step_end);
+    found = found ? found : find_law_fault(*options.step_end);
   }
   if (!found && !options.step.empty() && options.judges_faces) {
     found = "the options ask for stages of a step and for free faces, allowed is one of them";
@@ -128,9 +160,19 @@ agent::Setup make_setup(const model::Robot& robot, const SimulationOptions& opti
   setup.method = options.method;
   setup.degree_max = options.degree_max;
   setup.only_one_sweep = options.only_one_sweep;
-  setup.keeps_answers = options.keeps_answers && (!needs_environment(robot) || stands_level(robot));
+  const bool has_map = needs_environment(robot, options.step_end);
+  const bool is_level =
+      stands_level(robot) && (options.step_end == nullptr || stands_level(*options.step_end));
+  setup.has_friction = has_friction(robot);
+  setup.keeps_answers = options.keeps_answers && !setup.has_friction && (!has_map || is_level);
+  const RatioBounds bounds = ratio_bounds(robot);
+  setup.ratio_per_n = bounds.per_n;
+  setup.ratio_per_nmm = bounds.per_nmm;
+  setup.ratio_per_energy_root = bounds.per_energy_root;
+  setup.slack_bits = bounds.slack_bits;
   setup.lattice = robot.lattice();
-  if (const auto plane = needs_environment(robot) ? find_support_plane(robot) : std::nullopt) {
+  const auto plane = has_map ? find_support_plane(robot, options.step_end) : std::nullopt;
+  if (plane) {
     setup.has_plane = true;
     setup.plane_axes = {plane->axes[0], plane->axes[1]};
   }

@@ -196,7 +196,10 @@ bool BlockLu::make_column(std::size_t k, Scratch& scratch, const WaitFor& wait_f
     }
   }
   base::Mat6<double> pivot = diagonal_[k];
-  if (!subtract_left(k, pivot, wait_for, scratch) || !invert(pivot, inverse_[k])) {
+  const bool is_made = symmetry_ == Symmetry::kSymmetric
+                           ? subtract_left_symmetric(k, pivot, wait_for, scratch)
+                           : subtract_left(k, pivot, wait_for, scratch);
+  if (!is_made || !invert(pivot, inverse_[k])) {
     return false;
   }
   if (upper != nullptr) {
@@ -211,24 +214,12 @@ bool BlockLu::subtract_left(std::size_t k, base::Mat6<double>& pivot, const Wait
                             const Scratch& scratch) {
   const FactorKernels& kernels = factor_kernels();
   base::Mat6<double>* const lower = blocks_.data();
+  base::Mat6<double>* const upper = lower + rows_.size();
   for (std::size_t entry = row_start_[k]; entry < row_start_[k + 1]; ++entry) {
     const auto [left, slot_k] = row_entries_[entry];
     if (!wait_for(left)) {
       return false;
     }
-    const std::size_t last = column_start_[static_cast<std::size_t>(left) + 1];
-    if (symmetry_ == Symmetry::kSymmetric) {
-      kernels.update_symmetric({.rows = rows_.data(),
-                                .slot_of_row = scratch.slot_of_row.data(),
-                                .lower = lower,
-                                .pivot = &pivot,
-                                .inverse = &inverse_[base::at(left)],
-                                .source = slot_k,
-                                .first = slot_k + 1,
-                                .last = last});
-      continue;
-    }
-    base::Mat6<double>* const upper = lower + rows_.size();
     kernels.subtract_product(pivot, lower[slot_k], upper[slot_k]);
     kernels.update_column({.rows = rows_.data(),
                            .slot_of_row = scratch.slot_of_row.data(),
@@ -236,7 +227,40 @@ bool BlockLu::subtract_left(std::size_t k, base::Mat6<double>& pivot, const Wait
                            .upper = upper,
                            .source = slot_k,
                            .first = slot_k + 1,
-                           .last = last});
+                           .last = column_start_[base::at(left) + 1]});
+  }
+  return true;
+}
+
+/// The same where A is symmetric. A column's parent has all its rows below, so if it has as many
+/// from row k on, they are the same ones: such columns go together.
+template <class WaitFor>
+bool BlockLu::subtract_left_symmetric(std::size_t k, base::Mat6<double>& pivot,
+                                      const WaitFor& wait_for, const Scratch& scratch) {
+  const auto rows_from = [&](const Entry& entry) {
+    return column_start_[base::at(entry.column) + 1] - entry.slot;
+  };
+  SymmetricUpdate::Source sources[SymmetricUpdate::kSourceMax];
+  for (std::size_t entry = row_start_[k]; entry < row_start_[k + 1];) {
+    const std::size_t row_count = rows_from(row_entries_[entry]);
+    std::size_t count = 0;
+    do {
+      const auto [left, slot_k] = row_entries_[entry++];
+      if (!wait_for(left)) {
+        return false;
+      }
+      sources[count++] = {.column = base::at(left), .slot = slot_k};
+    } while (count < SymmetricUpdate::kSourceMax && entry < row_start_[k + 1] &&
+             parent_[sources[count - 1].column] == row_entries_[entry].column &&
+             rows_from(row_entries_[entry]) == row_count);
+    factor_kernels().update_symmetric({.rows = rows_.data(),
+                                       .slot_of_row = scratch.slot_of_row.data(),
+                                       .lower = blocks_.data(),
+                                       .pivot = &pivot,
+                                       .inverse = inverse_.data(),
+                                       .sources = sources,
+                                       .source_count = count,
+                                       .row_count = row_count});
   }
   return true;
 }
@@ -286,9 +310,37 @@ void BlockLu::substitute(std::span<base::Vec6<double>> y, std::size_t count) con
 }
 
 void BlockLu::solve_lanes(std::span<LaneBlock> y) const {
+  begin_lanes(y);
+  factor_kernels().backward_lanes(view(), nullptr, y.data());
+}
+
+LaneNumbers BlockLu::begin_lanes(std::span<LaneBlock> y) const {
   HOLDFAST_CHECK(y.size() == position_.size() && symmetry_ == Symmetry::kSymmetric &&
                  !is_singular_);
-  factor_kernels().substitute_lanes(view(), y.data());
+  return factor_kernels().forward_lanes(view(), y.data());
+}
+
+void BlockLu::find_lanes(std::span<LaneBlock> y, std::span<const std::size_t> places,
+                         std::vector<std::uint8_t>& is_found) const {
+  is_found.resize(position_.size(), 0);
+  std::vector<std::uint8_t> is_asked(position_.size(), 0);
+  for (const std::size_t place : places) {
+    for (auto k = static_cast<std::int32_t>(place); k >= 0 && is_found[base::at(k)] == 0;
+         k = parent_[base::at(k)]) {
+      is_asked[base::at(k)] = 1;
+      is_found[base::at(k)] = 1;
+    }
+  }
+  factor_kernels().backward_lanes(view(), is_asked.data(), y.data());
+}
+
+void BlockLu::end_lanes(std::span<LaneBlock> y, std::vector<std::uint8_t>& is_found) const {
+  is_found.resize(position_.size(), 0);
+  for (std::uint8_t& flag : is_found) {
+    flag = flag == 0 ? 1 : 0;
+  }
+  factor_kernels().backward_lanes(view(), is_found.data(), y.data());
+  is_found.assign(is_found.size(), 1);
 }
 
 BlockLu::Way BlockLu::way_up(std::int32_t node) const {

@@ -61,32 +61,26 @@ bool ContactIteration::is_tight_now() {
   return system_.is_exact() || std::exchange(tolerance_, std::min(tolerance_, tight)) <= tight;
 }
 
-Outcome ContactIteration::solve(Solution& solution) {
-  const LinearOutcome outcome = system_.solve(tolerance_);
-  if (outcome == LinearOutcome::kSolved) {
-    solution.displacement = std::vector<Vec>();  // Before the next ones take memory.
-    solution.displacement = system_.displacement();
-  }
-  return outcome_of(outcome);
-}
+Outcome ContactIteration::solve() { return outcome_of(system_.solve(tolerance_)); }
 
-Outcome ContactIteration::solve_for_states(Solution& solution) {
-  Outcome outcome = solve(solution);
-  while (outcome == Outcome::kSettled && tolerance_ > kFinestTolerance &&
-         !are_states_certain(solution.displacement)) {
+Outcome ContactIteration::solve_for_states() {
+  Outcome outcome = solve();
+  while (outcome == Outcome::kSettled && tolerance_ > kFinestTolerance && !are_states_certain()) {
     tolerance_ = std::max(kPathFactor * tolerance_, kFinestTolerance);
-    outcome = solve(solution);
+    outcome = solve();
   }
   return outcome;
 }
 
 /// Whether every facet's state is that of the exact solution.
-bool ContactIteration::are_states_certain(const std::vector<Vec>& displacement) const {
+bool ContactIteration::are_states_certain() {
   const std::vector<double> errors = system_.facet_errors();
+  const std::vector<Vec> displacement =
+      errors.empty() ? std::vector<Vec>() : system_.facet_displacement();
   bool is_certain = true;
   for (std::size_t i = 0; is_certain && i < errors.size(); ++i) {
     const FacetState& facet = system_.facets()[i];
-    Vec more = system_.law().trial_force(facet, displacement[facet.module]);
+    Vec more = system_.law().trial_force(facet, displacement[i]);
     Vec less = more;
     more[2] -= errors[i];
     less[2] += errors[i];
@@ -104,13 +98,31 @@ std::vector<ContactState> ContactIteration::present_states() const {
   return states;
 }
 
-std::vector<ContactState> ContactIteration::states_at(const std::vector<Vec>& displacement) const {
+std::vector<ContactState> ContactIteration::states_at(const std::vector<Vec>& facets) const {
   std::vector<ContactState> states;
-  states.reserve(system_.facets().size());
-  for (const FacetState& facet : system_.facets()) {
-    states.push_back(system_.law().state_at(facet, displacement[facet.module]));
+  states.reserve(facets.size());
+  for (std::size_t i = 0; i < facets.size(); ++i) {
+    states.push_back(system_.law().state_at(system_.facets()[i], facets[i]));
   }
   return states;
+}
+
+std::vector<base::Vec6<double>> ContactIteration::at_facets(
+    const std::vector<Vec>& displacement) const {
+  std::vector<Vec> by_facet;
+  by_facet.reserve(system_.facets().size());
+  for (const FacetState& facet : system_.facets()) {
+    by_facet.push_back(displacement[facet.module]);
+  }
+  return by_facet;
+}
+
+bool ContactIteration::complete(Solution& solution) {
+  if (!system_.refine(solution)) {
+    return false;
+  }
+  system_.hand_over(solution, LinearSystem::Further::kMore);
+  return true;
 }
 
 bool ContactIteration::set_states(const std::vector<ContactState>& states) {
@@ -149,6 +161,6 @@ BondedContact::BondedContact(LinearSystem& system, const EquilibriumOptions& opt
   is_tight_now();
 }
 
-Outcome BondedContact::run(Solution& solution) { return solve(solution); }
+Outcome BondedContact::run() { return solve(); }
 
 }  // namespace holdfast::solver

@@ -18,9 +18,12 @@ class ContactIteration {
 
   virtual ~ContactIteration() = default;
 
-  /// Seeks consistent states, from the system's present ones on; the solution then holds the
-  /// displacements.
-  virtual Outcome run(Solution& solution) = 0;
+  /// Seeks consistent states, from the system's present ones on, which then has been solved for
+  /// them.
+  virtual Outcome run() = 0;
+
+  /// Where a search that has not settled has come to, by module.
+  virtual std::vector<Vec> last_displacement() { return system_.displacement(); }
 
   /// Takes over the states that an earlier run's same search has come to, and from now on tells the
   /// journal of those of this one. Without a journal does nothing.
@@ -44,17 +47,28 @@ class ContactIteration {
     return options_.part == nullptr ? system_.robot().modules().size() : options_.part->own_count;
   }
 
-  /// Displacements for the present states.
-  Outcome solve(Solution& solution);
+  /// Solves for the present states.
+  Outcome solve();
 
-  /// Displacements good enough to look up the states that the exact ones prescribe.
-  Outcome solve_for_states(Solution& solution);
+  /// The same, well enough to look up the states that the exact solution prescribes.
+  Outcome solve_for_states();
 
   /// The states that the facets are in.
   std::vector<mechanics::ContactState> present_states() const;
 
-  /// The states that displacements prescribe, by facet.
-  std::vector<mechanics::ContactState> states_at(const std::vector<Vec>& displacement) const;
+  /// The states that the facets' displacements prescribe, both by facet.
+  std::vector<mechanics::ContactState> states_at(const std::vector<Vec>& facets) const;
+
+  /// Those of the last solution.
+  std::vector<mechanics::ContactState> next_states() {
+    return states_at(system_.facet_displacement());
+  }
+
+  /// Of displacements by module those of the facets.
+  std::vector<Vec> at_facets(const std::vector<Vec>& displacement) const;
+
+  /// Takes the last solution to the last digits, with more to come. Returns whether it has them.
+  [[nodiscard]] bool complete(Solution& solution);
 
   /// Takes over new states; returns whether any of them differs.
   bool set_states(const std::vector<mechanics::ContactState>& states);
@@ -68,7 +82,7 @@ class ContactIteration {
 
  private:
   void tell_journal() const;
-  bool are_states_certain(const std::vector<Vec>& displacement) const;
+  bool are_states_certain();
 
   LinearSystem& system_;
   const EquilibriumOptions& options_;
@@ -81,7 +95,7 @@ class BondedContact final : public ContactIteration {
  public:
   BondedContact(LinearSystem& system, const EquilibriumOptions& options);
 
-  Outcome run(Solution& solution) override;
+  Outcome run() override;
 };
 
 }  // namespace holdfast::solver

@@ -134,14 +134,14 @@ std::vector<Mat6<double>> DirectSystem::set_connections(BlockLu& lu,
   }
   std::vector<Mat6<double>> diagonal(lu.node_count());
   std::size_t edge = 0;
-  for (std::size_t i = 0; i < robot().connections().size(); ++i) {
-    const model::Connection& connection = robot().connections()[i];
+  std::size_t i = 0;
+  for (const model::Connection connection : robot().connections()) {
     const std::int32_t a = node_of(connection.a);
     const std::int32_t b = node_of(connection.b);
     const auto direction = static_cast<std::size_t>(base::index(connection.direction));
     const auto opposite =
         static_cast<std::size_t>(base::index(base::opposite(connection.direction)));
-    const double factor = factors.empty() ? 1 : factors[i];
+    const double factor = factors.empty() ? 1 : factors[i++];
     if (a >= 0) {
       add_scaled(diagonal[at(a)], factor, k11[direction]);
     }
@@ -250,6 +250,16 @@ LinearOutcome DirectSystem::solve(double /*tolerance*/) {
 
 std::vector<Vec6<double>> DirectSystem::displacement() { return by_module(x_); }
 
+/// Fixed modules have no facets.
+std::vector<Vec6<double>> DirectSystem::facet_displacement() {
+  std::vector<Vec> by_facet;
+  by_facet.reserve(facets().size());
+  for (const FacetState& facet : facets()) {
+    by_facet.push_back(x_[at(node_of_module_[facet.module])]);
+  }
+  return by_facet;
+}
+
 std::optional<std::vector<std::vector<Vec6<double>>>> DirectSystem::solve_each(
     std::span<const model::Loads> loads, double /*tolerance*/) {
   if (!lu_->factor(thread_count_)) {
@@ -275,6 +285,7 @@ std::vector<Vec6<double>> DirectSystem::solve_for(const std::vector<Vec>& load) 
 
 bool DirectSystem::refine(Solution& solution) {
   solution.gamma = ground().gamma;
+  solution.displacement = displacement();
   for (int step = 0; step < kRefinementCount; ++step) {
     refine_once(solution);
   }

@@ -24,6 +24,7 @@ class DirectSystem final : public LinearSystem {
 
   [[nodiscard]] LinearOutcome solve(double tolerance) override;
   std::vector<Vec> displacement() override;
+  std::vector<Vec> facet_displacement() override;
   [[nodiscard]] bool refine(Solution& solution) override;
   [[nodiscard]] std::optional<std::vector<std::vector<Vec>>> solve_each(
       std::span<const model::Loads> loads, double tolerance) override;

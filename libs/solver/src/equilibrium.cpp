@@ -40,12 +40,23 @@ void take_contact(const LinearSystem& system, Equilibrium& result) {
   }
 }
 
-/// The last digits, then everything that follows from the displacements.
-void finish(LinearSystem& system, Equilibrium& result) {
+/// The search, the last digits, then everything that follows from the displacements.
+/// `is_more_likely` says, when there are these digits, whether the system is likely to be solved
+/// again.
+template <class IsMoreLikely>
+void solve_with(LinearSystem& system, ContactIteration& search, const IsMoreLikely& is_more_likely,
+                Equilibrium& result) {
+  using Further = LinearSystem::Further;
+  result.outcome = search.run();
+  if (result.outcome == Outcome::kNotSettled) {
+    result.displacement = search.last_displacement();
+  }
   if (result.outcome != Outcome::kSettled) {
     return;
   }
   if (system.refine(result)) {
+    const bool is_kept = !system.is_exact() && is_more_likely();
+    system.hand_over(result, is_kept ? Further::kMore : Further::kNothing);
     take_contact(system, result);
   } else {
     result.outcome = Outcome::kTooSlow;
@@ -128,18 +139,19 @@ void EquilibriumSolver::attempt(const ContactOptions& contact, Equilibrium& resu
   system.set_law(contact);
   const bool is_all_bonded = std::ranges::all_of(system.facets(), &FacetState::is_bonded);
   if (options_.is_bonded || host::all(options_.ranks(), is_all_bonded)) {
-    result.outcome = BondedContact(system, options_).run(result);
-    finish(system, result);
+    BondedContact search(system, options_);
+    solve_with(
+        system, search, [] { return false; }, result);
   } else if (contact.law == ContactLaw::kRegularised) {
     RegularisedContact search(system, options_);
     search.go_on(contact);
-    result.outcome = search.run(result);
-    finish(system, result);
+    solve_with(
+        system, search, [&] { return search.has_doubts(); }, result);
   } else {
     UnilateralContact search(system, options_);
     search.go_on(contact);
-    result.outcome = search.run(result);
-    finish(system, result);
+    solve_with(
+        system, search, [&] { return search.open_but_held_count() > 0; }, result);
     compare_with_free_facets(search, result);
   }
   const Attempt& last = attempts.emplace_back(attempt_since(before, system.report(), result));

@@ -35,35 +35,26 @@ struct ColumnUpdate {
   std::size_t last = 0;
 };
 
-/// The same of a symmetric matrix, where the finished column holds L D.
+/// The same of a symmetric matrix, whose finished columns hold L D: for several of these at once
+/// that have the same rows from row k on.
 struct SymmetricUpdate {
+  /// Enough to keep what is subtracted from in registers, few enough that the last ones, which
+  /// other threads may be at, are not long waited for.
+  static constexpr std::size_t kSourceMax = 8;
+
+  struct Source {
+    std::size_t column = 0;
+    std::size_t slot = 0;  ///< Of its row k; those of the rows below follow.
+  };
+
   const std::int32_t* rows = nullptr;
   const std::size_t* slot_of_row = nullptr;
   base::Mat6<double>* lower = nullptr;
   base::Mat6<double>* pivot = nullptr;          ///< Of column k.
-  const base::Mat6<double>* inverse = nullptr;  ///< Of the finished column's pivot.
-  std::size_t source = 0;
-  std::size_t first = 0;
-  std::size_t last = 0;
-};
-
-/// The blocks of an inverse A^-1 = Z of a symmetric matrix, lower half: its diagonal by place, what
-/// is below by slot. Each column has the rows of the factors' column, and maybe more.
-struct InverseView {
-  const std::size_t* column_start = nullptr;
-  const std::int32_t* rows = nullptr;
-  base::Mat6<double>* diagonal = nullptr;
-  base::Mat6<double>* below = nullptr;
-};
-
-/// A column k of Z as it is made: Z_ik = - sum over rows j of the factors' column k of Z_ij L_jk
-/// [Takahashi 1973]. Of Z_ij and Z_ji' one is stored: what the other gives is summed up transposed.
-struct InverseColumn {
-  std::size_t k = 0;
-  base::Mat6<double>* straight = nullptr;      ///< By row of the column of Z.
-  base::Mat6<double>* across = nullptr;        ///< The same.
-  base::Mat6<double>* lower = nullptr;         ///< L by row of the factors' column.
-  base::Mat6<double>* lower_across = nullptr;  ///< L', the same.
+  const base::Mat6<double>* inverse = nullptr;  ///< Of the pivots, by column.
+  const Source* sources = nullptr;              ///< Ascending.
+  std::size_t source_count = 0;
+  std::size_t row_count = 0;  ///< From row k on.
 };
 
 struct FactorKernels {
@@ -71,28 +62,25 @@ struct FactorKernels {
   void (*subtract_product)(base::Mat6<double>& c, const base::Mat6<double>& a,
                            const base::Mat6<double>& b);
 
+  /// The same for `count` products, one after the other; to the same bits.
+  void (*subtract_products)(base::Mat6<double>& c, const base::Mat6<double>* const* a,
+                            const base::Mat6<double>* const* b, std::size_t count);
+
   /// C = C A for all blocks C of a range.
   void (*multiply_each)(base::Mat6<double>* first, base::Mat6<double>* last,
                         const base::Mat6<double>& a);
 
-  /// Solves in place for kLaneCount right-hand sides of a symmetric matrix; y by place in the order
-  /// of elimination.
-  void (*substitute_lanes)(const FactorView& factors, LaneBlock* y);
+  /// Solves in place for kLaneCount right-hand sides f of a symmetric matrix A, y by place in the
+  /// order of elimination: the first half gives f' A^-1 f, the second finds the solution in the
+  /// places that are asked for; those above them in the elimination tree are, or have theirs.
+  LaneNumbers (*forward_lanes)(const FactorView& factors, LaneBlock* y);
+  void (*backward_lanes)(const FactorView& factors, const std::uint8_t* is_asked, LaneBlock* y);
 
-  /// The same for `count` right-hand sides, y by place, then by side.
+  /// Solves in place for `count` right-hand sides, y by place, then by side.
   void (*substitute)(const FactorView& factors, base::Vec6<double>* y, std::size_t count);
 
   void (*update_column)(const ColumnUpdate& update);
   void (*update_symmetric)(const SymmetricUpdate& update);
-
-  /// A column of Z: begin, then take what the columns of its rows give, the row by its number, then
-  /// end.
-  void (*begin_inverse)(const FactorView& factors, const InverseView& inverse,
-                        const InverseColumn& column);
-  void (*add_to_inverse)(const FactorView& factors, const InverseView& inverse,
-                         const InverseColumn& column, std::size_t row);
-  void (*end_inverse)(const FactorView& factors, const InverseView& inverse,
-                      const InverseColumn& column);
 };
 
 /// Those for this machine.

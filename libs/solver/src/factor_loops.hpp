@@ -7,6 +7,10 @@
 
 #include "factor_kernels.hpp"
 
+#ifdef __AVX512F__
+#include <immintrin.h>
+#endif
+
 /// The loops of factor_kernels.hpp. Included once per instruction set, in a namespace of its own;
 /// there is no fused multiply-add, so the bits are the same everywhere.
 namespace holdfast::solver {
@@ -57,6 +61,82 @@ inline void store_six(double* to, const Six& value) {
   store(to + 4, value.tail);
 }
 
+/// A column of a block that many are subtracted from: in one register, where there are such.
+#ifdef __AVX512F__
+using Tall = Wide;
+
+/// Of what has lain there for a while: it is read in other pieces than it was written in.
+inline Tall load_tall(const double* from) {
+  constexpr __mmask8 kSix = 0x3F;
+  return _mm512_maskz_loadu_pd(kSix, from);
+}
+
+inline Tall tall(const Six& value) {
+  const Four tail = __builtin_shufflevector(value.tail, Two{}, 0, 1, 2, 3);
+  return __builtin_shufflevector(value.head, tail, 0, 1, 2, 3, 4, 5, 6, 7);
+}
+
+inline Six six(const Tall& value) {
+  return {__builtin_shufflevector(value, value, 0, 1, 2, 3),
+          __builtin_shufflevector(value, value, 4, 5)};
+}
+
+inline void add_scaled(Tall& sum, const Tall& column, double factor) {
+  sum += column * all_wide(factor);
+}
+
+inline void subtract_scaled(Tall& sum, const Tall& column, double factor) {
+  sum -= column * all_wide(factor);
+}
+#else
+using Tall = Six;
+
+inline Tall load_tall(const double* from) { return load_six(from); }
+
+inline Tall tall(const Six& value) { return value; }
+
+inline Six six(const Tall& value) { return value; }
+
+inline void add_scaled(Tall& sum, const Tall& column, double factor) {
+  sum.head += column.head * all_four(factor);
+  sum.tail += column.tail * all_two(factor);
+}
+
+inline void subtract_scaled(Tall& sum, const Tall& column, double factor) {
+  sum.head -= column.head * all_four(factor);
+  sum.tail -= column.tail * all_two(factor);
+}
+#endif
+
+/// C -= A_0 B_0, then A_1 B_1, and so on, to the same bits as one after another; with kIsAcross the
+/// transposes of the B.
+template <bool kIsAcross, class A, class B>
+inline void subtract_each(Block& c, const A& a, const B& b, std::size_t count) {
+  Tall sum[6];
+  for (std::size_t column = 0; column < 6; ++column) {
+    sum[column] = tall(load_six(c.values.data() + 6 * column));
+  }
+  for (std::size_t j = 0; j < count; ++j) {
+    const double* const a_j = a(j).values.data();
+    const double* const b_j = b(j).values.data();
+    for (std::size_t k = 0; k < 6; ++k) {
+      const Tall column_a = load_tall(a_j + 6 * k);
+      for (std::size_t column = 0; column < 6; ++column) {
+        subtract_scaled(sum[column], column_a, b_j[kIsAcross ? 6 * k + column : 6 * column + k]);
+      }
+    }
+  }
+  for (std::size_t column = 0; column < 6; ++column) {
+    store_six(c.values.data() + 6 * column, six(sum[column]));
+  }
+}
+
+void subtract_products(Block& c, const Block* const* a, const Block* const* b, std::size_t count) {
+  const auto left = [&](std::size_t j) -> const Block& { return *a[j]; };
+  const auto right = [&](std::size_t j) -> const Block& { return *b[j]; };
+  subtract_each<false>(c, left, right, count);
+}
+
 /// C -= A B
 inline void subtract(Block& c, const Block& a, const Block& b) {
   Six column_a[6];
@@ -76,16 +156,17 @@ inline void subtract(Block& c, const Block& a, const Block& b) {
 }
 
 inline Block product(const Block& a, const Block& b) {
+  Tall column_a[6];
+  for (std::size_t k = 0; k < 6; ++k) {
+    column_a[k] = load_tall(a.values.data() + 6 * k);
+  }
   Block c;
   for (std::size_t column = 0; column < 6; ++column) {
-    Six sum = {all_four(0), all_two(0)};
+    Tall sum = tall({all_four(0), all_two(0)});
     for (std::size_t k = 0; k < 6; ++k) {
-      const Six column_a = load_six(a.values.data() + 6 * k);
-      const double factor = b.values[6 * column + k];
-      sum.head += column_a.head * all_four(factor);
-      sum.tail += column_a.tail * all_two(factor);
+      add_scaled(sum, column_a[k], b.values[6 * column + k]);
     }
-    store_six(c.values.data() + 6 * column, sum);
+    store_six(c.values.data() + 6 * column, six(sum));
   }
   return c;
 }
@@ -110,16 +191,6 @@ inline void multiply_by(const Block& a, Column& y) {
     sum.tail += column.tail * all_two(y[k]);
   }
   store_six(y.data(), sum);
-}
-
-inline Block transposed(const Block& a) {
-  Block t;
-  for (std::size_t row = 0; row < 6; ++row) {
-    for (std::size_t column = 0; column < 6; ++column) {
-      t.values[6 * row + column] = a.values[6 * column + row];
-    }
-  }
-  return t;
 }
 
 /// Sums of the first two numbers of a and b, then of their last two.
@@ -150,7 +221,14 @@ inline void subtract_across(Column& y, const Block& a, const Column& x) {
   }
 }
 
-/// y -= A' x, lane by lane, with the same sums.
+/// One number of A' x, of a column of A, lane by lane, with the same sums.
+inline Wide sum_across(const double* column, const Wide* factor) {
+  return ((all_wide(column[0]) * factor[0] + all_wide(column[1]) * factor[1]) +
+          (all_wide(column[2]) * factor[2] + all_wide(column[3]) * factor[3])) +
+         (all_wide(column[4]) * factor[4] + all_wide(column[5]) * factor[5]);
+}
+
+/// y -= A' x, lane by lane.
 inline void subtract_across(LaneBlock& y, const Block& a, const LaneBlock& x) {
   for (std::size_t lane = 0; lane < kLaneCount; lane += kWide) {
     Wide factor[6];
@@ -158,10 +236,7 @@ inline void subtract_across(LaneBlock& y, const Block& a, const LaneBlock& x) {
       factor[k] = load<Wide>(x.values[k] + lane);
     }
     for (std::size_t i = 0; i < 6; ++i) {
-      const double* const v = a.values.data() + 6 * i;
-      const Wide sum = ((all_wide(v[0]) * factor[0] + all_wide(v[1]) * factor[1]) +
-                        (all_wide(v[2]) * factor[2] + all_wide(v[3]) * factor[3])) +
-                       (all_wide(v[4]) * factor[4] + all_wide(v[5]) * factor[5]);
+      const Wide sum = sum_across(a.values.data() + 6 * i, factor);
       store(y.values[i] + lane, load<Wide>(y.values[i] + lane) - sum);
     }
   }
@@ -224,23 +299,142 @@ inline void add_rest(const Block& inverse, LaneBlock& rest, LaneBlock& y) {
   }
 }
 
-void substitute_lanes(const FactorView& factors, LaneBlock* y) {
-  const std::size_t n = factors.place_count;
-  for (std::size_t k = 0; k < n; ++k) {
-    if (is_zero(y[k])) {
-      continue;  // Loads on a few nodes reach only the ancestors of these.
-    }
-    multiply_by(factors.inverse[k], y[k]);
-    for (std::size_t slot = factors.column_start[k]; slot < factors.column_start[k + 1]; ++slot) {
-      subtract(y[factors.rows[slot]], factors.lower[slot], y[k]);
+/// Columns that go through a substitution together: each has the rows of the next one, and that
+/// one's own. Every sum is the same for any number of them.
+inline constexpr std::size_t kForwardColumns = 4;
+#ifdef __AVX512F__
+inline constexpr std::size_t kBackwardColumns = 3;  ///< As many as there are registers for.
+#else
+inline constexpr std::size_t kBackwardColumns = 1;
+#endif
+
+inline bool has_rows_of_next(const FactorView& factors, std::size_t k) {
+  const std::size_t* const start = factors.column_start + k;
+  return k + 1 < factors.place_count && start[1] - start[0] == start[2] - start[1] + 1 &&
+         static_cast<std::size_t>(factors.rows[start[0]]) == k + 1;
+}
+
+/// Subtracts what the columns of [first, end) contribute to the rows that all of them have.
+inline void substitute_forward(const FactorView& factors, std::size_t first, std::size_t end,
+                               LaneBlock* y) {
+  const std::size_t* const ends = factors.column_start + 1;
+  for (std::size_t back = ends[end - 1] - factors.column_start[end - 1]; back > 0; --back) {
+    LaneBlock& row = y[factors.rows[ends[end - 1] - back]];
+    for (std::size_t lane = 0; lane < kLaneCount; lane += kWide) {
+      Wide sum[6];
+      for (std::size_t i = 0; i < 6; ++i) {
+        sum[i] = load<Wide>(row.values[i] + lane);
+      }
+      for (std::size_t column = first; column < end; ++column) {
+        const double* const a = factors.lower[ends[column] - back].values.data();
+        for (std::size_t k = 0; k < 6; ++k) {
+          const Wide factor = load<Wide>(y[column].values[k] + lane);
+          for (std::size_t i = 0; i < 6; ++i) {
+            sum[i] -= all_wide(a[6 * k + i]) * factor;
+          }
+        }
+      }
+      for (std::size_t i = 0; i < 6; ++i) {
+        store(row.values[i] + lane, sum[i]);
+      }
     }
   }
-  for (std::size_t k = n; k-- > 0;) {
-    LaneBlock rest;
-    for (std::size_t slot = factors.column_start[k]; slot < factors.column_start[k + 1]; ++slot) {
-      subtract_across(rest, factors.lower[slot], y[factors.rows[slot]]);
+}
+
+/// What the rows that all of `count` columns from `first` on have contribute to these, the last row
+/// first.
+template <std::size_t kCount>
+inline void substitute_backward(const FactorView& factors, std::size_t first, std::size_t count,
+                                const LaneBlock* y, LaneBlock* rest) {
+  if constexpr (kCount > 1) {
+    if (count < kCount) {
+      return substitute_backward<kCount - 1>(factors, first, count, y, rest);
     }
-    add_rest(factors.inverse[k], rest, y[k]);
+  }
+  const std::size_t* const ends = factors.column_start + first + 1;
+  const std::size_t end = ends[kCount - 1];
+  const std::size_t row_count = end - factors.column_start[first + kCount - 1];
+  for (std::size_t lane = 0; lane < kLaneCount; lane += kWide) {
+    Wide sum[kCount][6] = {};
+    for (std::size_t back = 1; back <= row_count; ++back) {
+      const LaneBlock& row = y[factors.rows[end - back]];
+      Wide factor[6];
+      for (std::size_t k = 0; k < 6; ++k) {
+        factor[k] = load<Wide>(row.values[k] + lane);
+      }
+      for (std::size_t t = 0; t < kCount; ++t) {
+        const double* const a = factors.lower[ends[t] - back].values.data();
+        for (std::size_t i = 0; i < 6; ++i) {
+          sum[t][i] -= sum_across(a + 6 * i, factor);
+        }
+      }
+    }
+    for (std::size_t t = 0; t < kCount; ++t) {
+      for (std::size_t i = 0; i < 6; ++i) {
+        store(rest[t].values[i] + lane, sum[t][i]);
+      }
+    }
+  }
+}
+
+/// y = A y; adds y' A y to `energies`.
+inline void divide(const Block& a, LaneBlock& y, LaneNumbers& energies) {
+  const LaneBlock before = y;
+  multiply_by(a, y);
+  for (std::size_t lane = 0; lane < kLaneCount; lane += kWide) {
+    Wide sum = load<Wide>(energies.data() + lane);
+    for (std::size_t i = 0; i < 6; ++i) {
+      sum += load<Wide>(before.values[i] + lane) * load<Wide>(y.values[i] + lane);
+    }
+    store(energies.data() + lane, sum);
+  }
+}
+
+LaneNumbers forward_lanes(const FactorView& factors, LaneBlock* y) {
+  LaneNumbers energies{};
+  const std::size_t* const start = factors.column_start;
+  for (std::size_t k = 0; k < factors.place_count;) {
+    if (is_zero(y[k])) {
+      ++k;
+      continue;  // Loads on a few nodes reach only the ancestors of these.
+    }
+    const std::size_t first = k++;
+    while (k - first < kForwardColumns && has_rows_of_next(factors, k - 1)) {
+      ++k;
+    }
+    for (std::size_t column = first; column < k; ++column) {
+      divide(factors.inverse[column], y[column], energies);
+      for (std::size_t own = 0; own + 1 < k - column; ++own) {
+        subtract(y[column + 1 + own], factors.lower[start[column] + own], y[column]);
+      }
+    }
+    substitute_forward(factors, first, k, y);
+  }
+  return energies;
+}
+
+void backward_lanes(const FactorView& factors, const std::uint8_t* is_asked, LaneBlock* y) {
+  const std::size_t* const start = factors.column_start;
+  for (std::size_t end = factors.place_count; end > 0;) {
+    std::size_t first = end - 1;
+    if (is_asked != nullptr && is_asked[first] == 0) {
+      end = first;
+      continue;
+    }
+    while (end - first < kBackwardColumns && first > 0 && has_rows_of_next(factors, first - 1) &&
+           (is_asked == nullptr || is_asked[first - 1] != 0)) {
+      --first;
+    }
+    LaneBlock rest[kBackwardColumns];
+    substitute_backward<kBackwardColumns>(factors, first, end - first, y, rest);
+    for (std::size_t column = end; column-- > first;) {
+      for (std::size_t own = end - 1 - column; own-- > 0;) {
+        subtract_across(rest[column - first], factors.lower[start[column] + own],
+                        y[column + 1 + own]);
+      }
+      add_rest(factors.inverse[column], rest[column - first], y[column]);
+    }
+    end = first;
   }
 }
 
@@ -260,7 +454,7 @@ void substitute_symmetric(const FactorView& factors, Column* y, std::size_t coun
   for (std::size_t k = n; k-- > 0;) {
     for (std::size_t c = 0; c < count; ++c) {
       Column rest{};
-      for (std::size_t slot = factors.column_start[k]; slot < factors.column_start[k + 1]; ++slot) {
+      for (std::size_t slot = factors.column_start[k + 1]; slot-- > factors.column_start[k];) {
         subtract_across(rest, factors.lower[slot],
                         y[count * static_cast<std::size_t>(factors.rows[slot]) + c]);
       }
@@ -315,98 +509,35 @@ void multiply_each(Block* first, Block* last, const Block& a) {
   }
 }
 
-/// (L D)_ik -= (L D)_ij L_kj'
+/// (L D)_ik -= sum over the finished columns j of (L D)_ij L_kj'
 void update_symmetric(const SymmetricUpdate& update) {
-  const Block across = transposed(update.lower[update.source]);
-  const Block l_kj_across = product(*update.inverse, across);
-  subtract(*update.pivot, update.lower[update.source], l_kj_across);
-  for (std::size_t slot = update.first; slot < update.last; ++slot) {
-    const std::size_t target = update.slot_of_row[static_cast<std::size_t>(update.rows[slot])];
-    subtract(update.lower[target], update.lower[slot], l_kj_across);
+  Block l_k[SymmetricUpdate::kSourceMax];
+  for (std::size_t j = 0; j < update.source_count; ++j) {
+    const SymmetricUpdate::Source& source = update.sources[j];
+    l_k[j] = product(update.lower[source.slot], update.inverse[source.column]);
   }
-}
-
-void begin_inverse(const FactorView& factors, const InverseView& inverse,
-                   const InverseColumn& column) {
-  const std::size_t k = column.k;
-  for (std::size_t i = 0; i < inverse.column_start[k + 1] - inverse.column_start[k]; ++i) {
-    column.straight[i] = {};
-    column.across[i] = {};
+  const auto subtract_row = [&](Block& target, std::size_t row) {
+    const auto left = [&](std::size_t j) -> const Block& {
+      return update.lower[update.sources[j].slot + row];
+    };
+    const auto right = [&](std::size_t j) -> const Block& { return l_k[j]; };
+    subtract_each<true>(target, left, right, update.source_count);
+  };
+  subtract_row(*update.pivot, 0);
+  const std::int32_t* const rows = update.rows + update.sources[0].slot;
+  for (std::size_t row = 1; row < update.row_count; ++row) {
+    subtract_row(update.lower[update.slot_of_row[static_cast<std::size_t>(rows[row])]], row);
   }
-  const std::size_t begin = factors.column_start[k];
-  for (std::size_t i = 0; i < factors.column_start[k + 1] - begin; ++i) {
-    column.lower[i] = product(factors.lower[begin + i], factors.inverse[k]);
-    column.lower_across[i] = transposed(column.lower[i]);
-  }
-}
-
-void add_to_inverse(const FactorView& factors, const InverseView& inverse,
-                    const InverseColumn& column, std::size_t row) {
-  const std::int32_t* const all_rows = inverse.rows + inverse.column_start[column.k];
-  const std::size_t all_count = inverse.column_start[column.k + 1] - inverse.column_start[column.k];
-  const std::int32_t* const rows = factors.rows + factors.column_start[column.k];
-  const std::size_t count = factors.column_start[column.k + 1] - factors.column_start[column.k];
-  const std::int32_t place = all_rows[row];
-  std::size_t j = 0;
-  while (j < count && rows[j] < place) {
-    ++j;
-  }
-  const bool is_of_factors = j < count && rows[j] == place;
-  const Block* const l_jk = column.lower + j;
-  if (is_of_factors) {
-    subtract(column.straight[row], inverse.diagonal[place], *l_jk);
-    ++j;
-  }
-  std::size_t slot = inverse.column_start[place];
-  for (std::size_t i = row + 1; i < all_count; ++i) {
-    const bool is_other_of_factors = j < count && rows[j] == all_rows[i];
-    if (!is_of_factors && !is_other_of_factors) {
-      continue;
-    }
-    while (inverse.rows[slot] != all_rows[i]) {
-      ++slot;  // The column of this row has all that are needed.
-    }
-    if (is_of_factors) {
-      subtract(column.straight[i], inverse.below[slot], *l_jk);
-    }
-    if (is_other_of_factors) {
-      subtract(column.across[row], column.lower_across[j++], inverse.below[slot]);
-    }
-  }
-}
-
-/// Z_kk = D_k^-1 - sum of L_jk' Z_jk
-void end_inverse(const FactorView& factors, const InverseView& inverse,
-                 const InverseColumn& column) {
-  const std::size_t k = column.k;
-  const std::size_t begin = inverse.column_start[k];
-  const std::int32_t* const rows = factors.rows + factors.column_start[k];
-  const std::size_t count = factors.column_start[k + 1] - factors.column_start[k];
-  Block pivot = factors.inverse[k];
-  std::size_t j = 0;
-  for (std::size_t i = 0; i < inverse.column_start[k + 1] - begin; ++i) {
-    const Block other = transposed(column.across[i]);
-    Block sum = column.straight[i];
-    for (std::size_t v = 0; v < 36; ++v) {
-      sum.values[v] += other.values[v];
-    }
-    inverse.below[begin + i] = sum;
-    if (j < count && rows[j] == inverse.rows[begin + i]) {
-      subtract(pivot, column.lower_across[j++], sum);
-    }
-  }
-  inverse.diagonal[k] = pivot;
 }
 
 constexpr FactorKernels kFactorKernels = {.subtract_product = subtract,
+                                          .subtract_products = subtract_products,
                                           .multiply_each = multiply_each,
-                                          .substitute_lanes = substitute_lanes,
+                                          .forward_lanes = forward_lanes,
+                                          .backward_lanes = backward_lanes,
                                           .substitute = substitute,
                                           .update_column = update_column,
-                                          .update_symmetric = update_symmetric,
-                                          .begin_inverse = begin_inverse,
-                                          .add_to_inverse = add_to_inverse,
-                                          .end_inverse = end_inverse};
+                                          .update_symmetric = update_symmetric};
 
 }  // namespace
 }  // namespace holdfast::solver

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "holdfast/solver/influence.hpp"
 
+#include <algorithm>
+#include <iterator>
 #include <utility>
 
 #include "block_kernels.hpp"
@@ -83,8 +85,7 @@ std::unique_ptr<Influence> Influence::make(const model::Robot& robot,
     return nullptr;
   }
   Solution solution;
-  solution.displacement = system.displacement();
-  influence->rough_ = solution.displacement;
+  influence->rough_ = system.displacement();
   if (!system.refine(solution) || !solution.displacement_low.empty()) {
     return nullptr;
   }
@@ -131,6 +132,24 @@ std::unique_ptr<const InverseStiffness> Influence::inverse_of(
 void Influence::solve(std::span<LaneBlock> by_slot) const {
   system_->factors().solve_lanes(by_slot.first(by_slot.size() - 1));
   by_slot.back() = {};
+}
+
+LaneNumbers Influence::begin_solution(std::span<LaneBlock> by_slot) const {
+  by_slot.back() = {};
+  return system_->factors().begin_lanes(by_slot.first(by_slot.size() - 1));
+}
+
+void Influence::find_solution(std::span<LaneBlock> by_slot, std::span<const std::size_t> slots,
+                              std::vector<std::uint8_t>& is_found) const {
+  std::vector<std::size_t> places;
+  std::ranges::copy_if(slots, std::back_inserter(places),
+                       [&](std::size_t slot) { return slot + 1 != by_slot.size(); });
+  system_->factors().find_lanes(by_slot.first(by_slot.size() - 1), places, is_found);
+}
+
+void Influence::end_solution(std::span<LaneBlock> by_slot,
+                             std::vector<std::uint8_t>& is_found) const {
+  system_->factors().end_lanes(by_slot.first(by_slot.size() - 1), is_found);
 }
 
 }  // namespace holdfast::solver

@@ -59,6 +59,16 @@ void LinearSystem::change_loads(model::Loads loads) {
   take_changed_loads();
 }
 
+std::vector<base::Vec6<double>> LinearSystem::facet_displacement() {
+  const std::vector<Vec> by_module = displacement();
+  std::vector<Vec> by_facet;
+  by_facet.reserve(facets_.size());
+  for (const FacetState& facet : facets_) {
+    by_facet.push_back(by_module[facet.module]);
+  }
+  return by_facet;
+}
+
 std::optional<std::vector<std::vector<base::Vec6<double>>>> LinearSystem::solve_each(
     std::span<const model::Loads> loads, double tolerance) {
   std::vector<std::vector<Vec>> displacements;

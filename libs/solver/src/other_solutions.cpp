@@ -62,13 +62,13 @@ constexpr std::size_t kElsewhere = std::numeric_limits<std::size_t>::max();
 
 /// Facets, by index, that may have a second state; lightest for their sideways force first, and one
 /// only of those that bear the same, as each other's mirror images do.
-std::vector<std::size_t> RegularisedContact::doubtful_facets(const Solution& settled) const {
+std::vector<std::size_t> RegularisedContact::doubtful_facets(const std::vector<Vec>& facets) const {
   const std::size_t here = ranks() == nullptr ? 0 : base::at(ranks()->rank());
   std::vector<Doubt> doubts;
   for (std::size_t i = 0; i < system().facets().size(); ++i) {
     const FacetState& facet = system().facets()[i];
     const bool is_stuck = facet.state == mechanics::ContactState{};
-    const Vec force = system().law().trial_force(facet, settled.displacement[facet.module]);
+    const Vec force = system().law().trial_force(facet, facets[i]);
     const Doubt doubt = {.facet = i,
                          .rank = here,
                          .upright_n = std::abs(force[2]),
@@ -92,7 +92,7 @@ std::vector<std::size_t> RegularisedContact::doubtful_facets(const Solution& set
 }
 
 std::vector<Solution> RegularisedContact::find_others(const Solution& settled) {
-  std::vector<std::size_t> doubtful = doubtful_facets(settled);
+  std::vector<std::size_t> doubtful = doubtful_facets(at_facets(settled.displacement));
   if (!system().is_exact() && doubtful.size() > kTriedMaxIterated) {
     doubtful.resize(kTriedMaxIterated);
   }
@@ -130,7 +130,7 @@ void RegularisedContact::find_from_elsewhere(const std::function<void(Solution)>
     set_states(states);
     loosen();
     Solution solution;
-    if (run(solution) == Outcome::kSettled && system().refine(solution) &&
+    if (run() == Outcome::kSettled && complete(solution) &&
         std::ranges::find(known, present_states()) == known.end()) {
       known.push_back(present_states());
       take(std::move(solution));
@@ -156,8 +156,7 @@ void RegularisedContact::try_all_states(const std::function<void(Solution)>& tak
     }
     set_states(states);
     Solution solution;
-    if (solve(solution) == Outcome::kSettled && states_at(solution.displacement) == states &&
-        system().refine(solution)) {
+    if (solve() == Outcome::kSettled && next_states() == states && complete(solution)) {
       take(std::move(solution));
     }
   } while (next());
@@ -169,11 +168,11 @@ bool RegularisedContact::goes_on_from(std::size_t facet, Solution& other) {
   const bool is_here = facet != kElsewhere;
   const bool was_pressed = is_here && system().facets()[facet].state.pressed;
   loosen();
-  if (solve_for_states(other) != Outcome::kSettled) {
+  if (solve_for_states() != Outcome::kSettled) {
     return false;
   }
-  const bool stays = !is_here || states_at(other.displacement)[facet].pressed == was_pressed;
-  return host::all(ranks(), stays) && run(other) == Outcome::kSettled && system().refine(other);
+  const bool stays = !is_here || next_states()[facet].pressed == was_pressed;
+  return host::all(ranks(), stays) && run() == Outcome::kSettled && complete(other);
 }
 
 }  // namespace holdfast::solver

@@ -39,14 +39,14 @@ std::vector<std::int8_t> codes_of_all(host::Ranks& ranks, const std::vector<std:
 RegularisedContact::RegularisedContact(LinearSystem& system, const EquilibriumOptions& options)
     : ContactIteration(system, options) {}
 
-Outcome RegularisedContact::run(Solution& solution) {
+Outcome RegularisedContact::run() {
   std::set<std::vector<std::int8_t>> seen;
   for (int step = 0; step < step_count_max(); ++step) {
-    const Outcome outcome = solve_for_states(solution);
+    const Outcome outcome = solve_for_states();
     if (outcome != Outcome::kSettled) {
       return outcome;
     }
-    const std::vector<ContactState> states = states_at(solution.displacement);
+    const std::vector<ContactState> states = next_states();
     if (!set_states(states)) {
       if (is_tight_now()) {
         return Outcome::kSettled;

@@ -15,7 +15,12 @@ class RegularisedContact final : public ContactIteration {
  public:
   RegularisedContact(LinearSystem& system, const EquilibriumOptions& options);
 
-  Outcome run(Solution& solution) override;
+  Outcome run() override;
+
+  /// Whether find_others() would try anything, the system being at a solution.
+  bool has_doubts() {
+    return host::any(ranks(), !doubtful_facets(system().facet_displacement()).empty());
+  }
 
   /// Further solutions beside `settled`, whose states the system has: feet that hardly press and
   /// are pulled sideways are put into another state, one at a time, and Newton's method goes on
@@ -31,7 +36,7 @@ class RegularisedContact final : public ContactIteration {
   void try_all_states(const std::function<void(Solution)>& take);
 
  private:
-  std::vector<std::size_t> doubtful_facets(const Solution& settled) const;
+  std::vector<std::size_t> doubtful_facets(const std::vector<Vec>& facets) const;
   bool goes_on_from(std::size_t facet, Solution& other);
 };
 

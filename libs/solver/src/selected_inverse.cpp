@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <iterator>
+#include <span>
 #include <utility>
+#include <vector>
 
 #include "block_kernels.hpp"
 #include "column_pipeline.hpp"
@@ -13,10 +15,11 @@
 namespace holdfast::solver {
 namespace {
 
-/// What a thread needs to make columns.
-struct Scratch {
-  std::vector<base::Mat6<double>> blocks;
-};
+using Block = base::Mat6<double>;
+
+/// More columns share what is looked up for their rows, fewer let threads share the last columns,
+/// which need one another.
+constexpr std::size_t kPanelColumnMax = 8;
 
 }  // namespace
 
@@ -41,7 +44,6 @@ SelectedInverse::SelectedInverse(const BlockLu& lu, std::span<const std::size_t>
   }
   for (std::size_t k = count; k-- > 0;) {
     if (turn_[k] != kNone) {
-      turn_[k] = columns_.size();
       columns_.push_back(static_cast<std::int32_t>(k));
     }
   }
@@ -54,6 +56,7 @@ SelectedInverse::SelectedInverse(const BlockLu& lu, std::span<const std::size_t>
     }
   }
   find_rows(std::move(more));
+  find_panels();
 }
 
 /// Z_ik needs Z_ij for every row j of the factors' column k. For rows i of that column the factors
@@ -96,33 +99,265 @@ std::size_t SelectedInverse::product_count() const {
   return count;
 }
 
+void SelectedInverse::find_panels() {
+  const auto has_rows_of_next = [](const std::vector<std::size_t>& start, std::size_t k) {
+    return start[k + 1] - start[k] == start[k + 2] - start[k + 1] + 1;
+  };
+  for (const std::int32_t column : columns_) {
+    const auto k = base::at(column);
+    if (!panels_.empty() && lu_->parent_[k] == column + 1 &&
+        panels_.back().column_count < kPanelColumnMax && has_rows_of_next(lu_->column_start_, k) &&
+        has_rows_of_next(column_start_, k)) {
+      panels_.back().first = k;
+      ++panels_.back().column_count;
+    } else {
+      panels_.push_back({.first = k, .column_count = 1});
+    }
+    turn_[k] = panels_.size() - 1;
+  }
+}
+
+/// Makes the panels J of Z, one after another, with what it needs for each. For the rows R below
+/// that the factors or Z have,
+///   Z_RJ = - Z_RF M,   M = L_FJ L_JJ^-1,   F: the factors' rows,
+/// and then for its columns k, from the last to the first, with H the other rows of column k in L,
+///   Z_ik = - Z_iH L_Hk for i in J,   Z_kk = D_k^-1 - Z_Hk' L_Hk.
+/// Of Z_ij and Z_ji' one is there; what the other gives is summed up transposed.
+class SelectedInverse::PanelMaker {
+ public:
+  PanelMaker() = default;
+
+  /// Keeps a reference.
+  void begin(SelectedInverse& inverse, const Panel& panel) {
+    z_ = &inverse;
+    lu_ = inverse.lu_;
+    panel_ = panel;
+    const std::size_t last = panel.first + panel.column_count - 1;
+    rows_ = std::span(z_->rows_).subspan(z_->column_start_[last],
+                                         z_->column_start_[last + 1] - z_->column_start_[last]);
+    find_ranks(std::span(lu_->rows_)
+                   .subspan(lu_->column_start_[last],
+                            lu_->column_start_[last + 1] - lu_->column_start_[last]));
+    take_factors();
+    across_.assign(panel_.column_count * rows_.size(), Block{});
+    by_row_.resize(kPanelColumnMax * rows_.size());
+  }
+
+  /// Takes what the columns of other panels give; false if one of these will not be made. The
+  /// parent's is the last.
+  template <class WaitFor>
+  [[nodiscard]] bool take_others(const WaitFor& wait_for) {
+    for (std::size_t end = rows_.size(); end > 0;) {
+      const std::size_t turn = z_->turn_[base::at(rows_[end - 1])];
+      std::size_t begin = end;
+      while (begin > 0 && z_->turn_[base::at(rows_[begin - 1])] == turn) {
+        --begin;
+      }
+      if (!wait_for(turn)) {
+        return false;
+      }
+      for (std::size_t p = begin; p < end; ++p) {
+        take_column(p, ranks_before_[begin]);
+      }
+      take_straight(begin, end);
+      end = begin;
+    }
+    return true;
+  }
+
+  void finish() {
+    for (std::size_t t = 0; t < panel_.column_count; ++t) {
+      for (std::size_t i = 0; i < rows_.size(); ++i) {
+        base::add_to(below(t, i), transpose(across_[t * rows_.size() + i]));
+      }
+    }
+    own_.assign(panel_.column_count * panel_.column_count, Block{});
+    for (std::size_t t = panel_.column_count; t-- > 0;) {
+      finish_column(t);
+    }
+  }
+
+ private:
+  using Blocks = std::vector<Block>;
+  using List = std::vector<const Block*>;
+
+  /// Which of the rows the factors have.
+  void find_ranks(std::span<const std::int32_t> factor_rows) {
+    factor_row_count_ = factor_rows.size();
+    ranks_before_.assign(1, 0);
+    row_of_rank_.clear();
+    for (std::size_t i = 0; i < rows_.size(); ++i) {
+      const std::size_t rank = ranks_before_.back();
+      const bool is_of_factors = rank < factor_row_count_ && factor_rows[rank] == rows_[i];
+      if (is_of_factors) {
+        row_of_rank_.push_back(i);
+      }
+      ranks_before_.push_back(rank + (is_of_factors ? 1 : 0));
+    }
+  }
+
+  bool is_of_factors(std::size_t i) const { return ranks_before_[i + 1] > ranks_before_[i]; }
+
+  /// L and M with their transposes. Of a column of the panel its own rows come first.
+  void take_factors() {
+    const std::size_t columns = panel_.column_count;
+    const std::size_t stride = columns + factor_row_count_;
+    for (Blocks* const blocks : {&lower_, &lower_across_, &solved_, &solved_across_}) {
+      blocks->resize(columns * stride);
+    }
+    for (List* const list : {&lower_across_list_, &solved_list_, &solved_across_list_}) {
+      list->resize(columns * stride);
+    }
+    stride_ = stride;
+    for (std::size_t t = columns; t-- > 0;) {
+      const std::size_t k = panel_.first + t;
+      const Block* const from = lu_->blocks_.data() + lu_->column_start_[k];
+      const std::size_t own = columns - 1 - t;
+      for (std::size_t i = 0; i < own + factor_row_count_; ++i) {
+        const std::size_t at = t * stride + i;
+        lower_[at] = product(from[i], lu_->inverse_[k]);
+        lower_across_[at] = transpose(lower_[at]);
+        lower_across_list_[at] = &lower_across_[at];
+      }
+      solve_column(t, own);
+    }
+  }
+
+  /// M_t = L_t - sum over the columns u of the panel behind t of M_u L_ut, by rank.
+  void solve_column(std::size_t t, std::size_t own) {
+    const Block* left[kPanelColumnMax];
+    const Block* right[kPanelColumnMax];
+    for (std::size_t i = 0; i < factor_row_count_; ++i) {
+      const std::size_t at = t * stride_ + i;
+      solved_[at] = lower_[t * stride_ + own + i];
+      for (std::size_t u = 0; u < own; ++u) {
+        left[u] = &solved_[(t + 1 + u) * stride_ + i];
+        right[u] = &lower_[t * stride_ + u];
+      }
+      factor_kernels().subtract_products(solved_[at], left, right, own);
+      solved_across_[at] = transpose(solved_[at]);
+      solved_list_[at] = &solved_[at];
+      solved_across_list_[at] = &solved_across_[at];
+    }
+  }
+
+  /// Row i of the rows below the panel in its column t.
+  Block& below(std::size_t t, std::size_t i) {
+    return z_->below_[z_->column_start_[panel_.first + t] + panel_.column_count - 1 - t + i];
+  }
+
+  /// Lists the blocks Z_ip for rows i from p on, and takes Z_pi M_i of those below it.
+  void take_column(std::size_t p, std::size_t rank_begin) {
+    const auto place = base::at(rows_[p]);
+    const bool is_straight = is_of_factors(p);
+    by_column_.clear();
+    if (is_straight) {
+      by_row_[kPanelColumnMax * p + ranks_before_[p] - rank_begin] = &z_->diagonal_[place];
+    }
+    std::size_t slot = z_->column_start_[place];
+    for (std::size_t i = p + 1; i < rows_.size(); ++i) {
+      if (!is_straight && !is_of_factors(i)) {
+        continue;
+      }
+      while (z_->rows_[slot] != rows_[i]) {
+        ++slot;  // The column of this row has all that are needed.
+      }
+      const Block* const block = &z_->below_[slot];
+      if (is_straight) {
+        by_row_[kPanelColumnMax * i + ranks_before_[p] - rank_begin] = block;
+      }
+      if (is_of_factors(i)) {
+        by_column_.push_back(block);
+      }
+    }
+    for (std::size_t t = 0; t < panel_.column_count; ++t) {
+      factor_kernels().subtract_products(
+          across_[t * rows_.size() + p],
+          solved_across_list_.data() + t * stride_ + ranks_before_[p + 1], by_column_.data(),
+          by_column_.size());
+    }
+  }
+
+  /// Takes Z_ip M_p for all p of [begin, end) and the rows i from p on.
+  void take_straight(std::size_t begin, std::size_t end) {
+    const std::size_t rank_begin = ranks_before_[begin];
+    for (std::size_t i = begin; i < rows_.size(); ++i) {
+      const std::size_t count = ranks_before_[std::min(i + 1, end)] - rank_begin;
+      for (std::size_t t = 0; t < panel_.column_count && count > 0; ++t) {
+        factor_kernels().subtract_products(below(t, i), by_row_.data() + kPanelColumnMax * i,
+                                           solved_list_.data() + t * stride_ + rank_begin, count);
+      }
+    }
+  }
+
+  void finish_column(std::size_t t) {
+    const std::size_t columns = panel_.column_count;
+    const std::size_t own = columns - 1 - t;
+    const std::size_t k = panel_.first + t;
+    const Block* const* const lower_across = lower_across_list_.data() + t * stride_;
+    const auto list_below = [&](std::size_t u) {
+      for (const std::size_t i : row_of_rank_) {
+        by_column_.push_back(&below(u, i));
+      }
+    };
+    for (std::size_t u = columns - 1; u > t; --u) {
+      by_column_.clear();
+      list_below(u);
+      Block turned;
+      factor_kernels().subtract_products(turned, lower_across + own, by_column_.data(),
+                                         factor_row_count_);
+      Block block = transpose(turned);
+      for (std::size_t v = t + 1; v < columns; ++v) {
+        factor_kernels().subtract_product(block, own_[u * columns + v],
+                                          lower_[t * stride_ + v - t - 1]);
+      }
+      own_[u * columns + t] = block;
+      own_[t * columns + u] = transpose(block);
+      z_->below_[z_->column_start_[k] + u - t - 1] = block;
+    }
+    by_column_.clear();
+    for (std::size_t u = t + 1; u < columns; ++u) {
+      by_column_.push_back(&own_[u * columns + t]);
+    }
+    list_below(t);
+    Block pivot = lu_->inverse_[k];
+    factor_kernels().subtract_products(pivot, lower_across, by_column_.data(), by_column_.size());
+    z_->diagonal_[k] = pivot;
+    own_[t * columns + t] = pivot;
+  }
+
+  SelectedInverse* z_ = nullptr;
+  const BlockLu* lu_ = nullptr;
+  Panel panel_;
+  std::span<const std::int32_t> rows_;     ///< R
+  std::size_t factor_row_count_ = 0;       ///< Of F; its rows count by rank.
+  std::vector<std::size_t> ranks_before_;  ///< By row of R.
+  std::vector<std::size_t> row_of_rank_;
+  std::size_t stride_ = 0;  ///< From column to column of what follows.
+  Blocks lower_;            ///< L by row of the panel, then by rank.
+  Blocks lower_across_;
+  Blocks solved_;  ///< M by rank.
+  Blocks solved_across_;
+  List lower_across_list_;
+  List solved_list_;
+  List solved_across_list_;
+  Blocks across_;  ///< By column of the panel, then row of R.
+  Blocks own_;     ///< Z_JJ
+  List by_row_;    ///< Z_ip by row i of R, then p by rank.
+  List by_column_;
+};
+
 void SelectedInverse::make(int thread_count) {
   diagonal_.resize(lu_->node_count());
   below_.resize(rows_.size());
-  const FactorView factors = lu_->view();
-  const InverseView view{.column_start = column_start_.data(),
-                         .rows = rows_.data(),
-                         .diagonal = diagonal_.data(),
-                         .below = below_.data()};
-  const FactorKernels& kernels = factor_kernels();
-  ColumnPipeline pipeline(columns_.size(), product_count(), thread_count);
-  const bool is_made = pipeline.run<Scratch>([&](std::size_t turn, Scratch& scratch) {
-    const auto k = base::at(columns_[turn]);
-    const std::size_t count = column_start_[k + 1] - column_start_[k];
-    scratch.blocks.resize(std::max(scratch.blocks.size(), 4 * count));
-    const InverseColumn column{.k = k,
-                               .straight = scratch.blocks.data(),
-                               .across = scratch.blocks.data() + count,
-                               .lower = scratch.blocks.data() + 2 * count,
-                               .lower_across = scratch.blocks.data() + 3 * count};
-    kernels.begin_inverse(factors, view, column);
-    for (std::size_t row = count; row-- > 0;) {  // The parent's is made last.
-      if (!pipeline.wait_for(turn_[base::at(rows_[column_start_[k] + row])])) {
-        return false;
-      }
-      kernels.add_to_inverse(factors, view, column, row);
+  ColumnPipeline pipeline(panels_.size(), product_count(), thread_count);
+  const auto wait_for = [&](std::size_t turn) { return pipeline.wait_for(turn); };
+  const bool is_made = pipeline.run<PanelMaker>([&](std::size_t turn, PanelMaker& maker) {
+    maker.begin(*this, panels_[turn]);
+    if (!maker.take_others(wait_for)) {
+      return false;
     }
-    kernels.end_inverse(factors, view, column);
+    maker.finish();
     return true;
   });
   HOLDFAST_CHECK(is_made);

@@ -31,34 +31,37 @@ bool is_open_but_held(const FacetState& facet) { return !facet.state.pressed && 
 UnilateralContact::UnilateralContact(LinearSystem& system, const EquilibriumOptions& options)
     : ContactIteration(system, options), was_released_(system.facets().size()) {}
 
-Outcome UnilateralContact::run(Solution& solution) {
-  Outcome outcome = minimise(solution);
+Outcome UnilateralContact::run() {
+  Outcome outcome = minimise();
   while (outcome == Outcome::kSettled && update_held()) {
-    outcome = minimise(solution);
+    outcome = minimise();
   }
   return outcome;
 }
 
 /// Newton's method with an exact line search on the convex energy, for the present held facets.
-Outcome UnilateralContact::minimise(Solution& solution) {
-  std::vector<Vec> current;
+Outcome UnilateralContact::minimise() {
+  current_.clear();
   for (int step = 0; step < step_count_max(); ++step) {
-    const Outcome outcome = solve(solution);
+    const Outcome outcome = solve();
     if (outcome != Outcome::kSettled) {
       return outcome;
     }
-    if (!set_states(states_at(solution.displacement))) {
+    if (!set_states(next_states())) {
       if (is_tight_now()) {
+        current_ = std::vector<Vec>();
         return Outcome::kSettled;
       }
       continue;
     }
-    if (!current.empty()) {
-      const std::vector<Vec> direction = sum(solution.displacement, -1, current);
-      solution.displacement = sum(current, search_line(current, direction), direction);
-      set_states(states_at(solution.displacement));
+    std::vector<Vec> next = system().displacement();
+    if (!current_.empty()) {
+      const std::vector<Vec> direction = sum(std::move(next), -1, current_);
+      const double length = search_line(current_, direction);
+      next = sum(std::move(current_), length, direction);
+      set_states(states_at(at_facets(next)));
     }
-    current = solution.displacement;
+    current_ = std::move(next);
   }
   return Outcome::kNotSettled;
 }
@@ -117,9 +120,8 @@ std::vector<Vec6<double>> UnilateralContact::displacement_with_free_facets(
     const FacetState& facet = system().facets()[i];
     system().set_facet(i, facet.state, facet.is_held && facet.state.pressed);
   }
-  set_states(states_at(displacement));
-  Solution free;
-  return minimise(free) == Outcome::kSettled ? std::move(free.displacement) : std::vector<Vec>{};
+  set_states(states_at(at_facets(displacement)));
+  return minimise() == Outcome::kSettled ? system().displacement() : std::vector<Vec>{};
 }
 
 }  // namespace holdfast::solver

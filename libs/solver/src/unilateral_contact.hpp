@@ -14,7 +14,9 @@ class UnilateralContact final : public ContactIteration {
  public:
   UnilateralContact(LinearSystem& system, const EquilibriumOptions& options);
 
-  Outcome run(Solution& solution) override;
+  Outcome run() override;
+
+  std::vector<Vec> last_displacement() override { return current_; }
 
   /// After run(): open facets that are held sideways all the same, as they would close when
   /// released.
@@ -25,11 +27,12 @@ class UnilateralContact final : public ContactIteration {
   std::vector<Vec> displacement_with_free_facets(const std::vector<Vec>& displacement);
 
  private:
-  Outcome minimise(Solution& solution);
+  Outcome minimise();
   bool update_held();
   double search_line(const std::vector<Vec>& from, const std::vector<Vec>& direction) const;
 
   std::vector<bool> was_released_;  ///< By facet.
+  std::vector<Vec> current_;        ///< From where the next step goes on, by module.
 };
 
 }  // namespace holdfast::solver

@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstring>
 #include <utility>
 #include <vector>
@@ -43,38 +44,31 @@ TEST(FactorKernels, have_the_same_bits_on_every_machine) {
                         .inverse = pivots.data()};
   const auto run = [&](const FactorKernels& kernels) {
     std::vector<LaneBlock> y = lanes;
-    kernels.substitute_lanes(view, y.data());
+    const LaneNumbers energies = kernels.forward_lanes(view, y.data());
+    kernels.backward_lanes(view, nullptr, y.data());
+    std::copy(energies.begin(), energies.end(), y.emplace_back().values[0]);
     const std::vector<std::size_t> slot_of_row = {0, 0, 2};
     std::vector<Block> updated = lower;
     Block pivot = pivots[1];
+    // As if columns 0 and 1 both had row 1, and row 2 below.
+    const SymmetricUpdate::Source sources[] = {{.column = 0, .slot = 0}, {.column = 2, .slot = 1}};
     kernels.update_symmetric({.rows = rows.data(),
                               .slot_of_row = slot_of_row.data(),
                               .lower = updated.data(),
                               .pivot = &pivot,
                               .inverse = pivots.data(),
-                              .source = 0,
-                              .first = 1,
-                              .last = 2});
+                              .sources = sources,
+                              .source_count = 2,
+                              .row_count = 2});
     updated.push_back(pivot);
-    std::vector<Block> inverse(6, pivots[2]);
-    std::vector<Block> scratch(8);
-    const InverseView to{.column_start = start.data(),
-                         .rows = rows.data(),
-                         .diagonal = inverse.data(),
-                         .below = inverse.data() + 3};
-    for (const std::size_t k : {1U, 0U}) {
-      const InverseColumn column{.k = k,
-                                 .straight = scratch.data(),
-                                 .across = scratch.data() + 2,
-                                 .lower = scratch.data() + 4,
-                                 .lower_across = scratch.data() + 6};
-      kernels.begin_inverse(view, to, column);
-      for (std::size_t row = start[k + 1] - start[k]; row-- > 0;) {
-        kernels.add_to_inverse(view, to, column, row);
-      }
-      kernels.end_inverse(view, to, column);
+    const Block* const left[] = {&lower[0], &pivots[1], &lower[2]};
+    const Block* const right[] = {&pivots[2], &lower[1], &pivots[0]};
+    kernels.subtract_products(updated.emplace_back(pivots[2]), left, right, 3);
+    Block one_by_one = pivots[2];
+    for (std::size_t i = 0; i < 3; ++i) {
+      kernels.subtract_product(one_by_one, *left[i], *right[i]);
     }
-    updated.insert(updated.end(), inverse.begin(), inverse.end());
+    EXPECT_EQ(one_by_one.values, updated.back().values);
     return std::pair(y, updated);
   };
   const auto [y, blocks] = run(factor_kernels());

@@ -7,7 +7,9 @@
 #include <gtest/gtest.h>
 
 #include <bit>
+#include <cmath>
 #include <cstring>
+#include <limits>
 #include <vector>
 
 #include "../src/multigrid/kernel_loops.hpp"
@@ -98,7 +100,10 @@ struct Clusters {
   }
 
   TransferView<float> transfer() const {
-    return {.seat = seat.data(), .start = member_start.data(), .member = member.data()};
+    return {.seat = seat.codes(),
+            .offset = seat.offsets(),
+            .start = member_start.data(),
+            .member = member.data()};
   }
 
   std::size_t cluster_count() const { return member_start.size() - 1; }
@@ -110,7 +115,7 @@ struct Clusters {
   std::vector<Block<float>> blocks;
   std::vector<Block<float>> inverse;
   std::vector<Block<float>> diagonal;
-  std::vector<Seat<float>> seat;
+  Seats<float> seat;
   std::vector<std::int32_t> member_start;
   std::vector<std::int32_t> member;
 };
@@ -128,6 +133,55 @@ TEST(Kernels, sweeps_have_the_same_bits_on_every_machine) {
   sweeps().relax_first(clusters.type.data(), clusters.inverse.data(), r.data(), z.data(), kEvery);
   kSweeps.relax_first(clusters.type.data(), clusters.inverse.data(), r.data(), here.data(), kEvery);
   EXPECT_TRUE(is_same(z, here));
+}
+
+/// Rounded and low parts are the number itself (split_numbers.hpp): what is joined again has the
+/// bits of what was split, from the least that a float holds as a normal number to the most.
+TEST(SplitNumbers, are_the_numbers_to_the_last_bit) {
+  base::Rng rng(8);
+  for (int exponent = -124; exponent < 126; ++exponent) {
+    for (int i = 0; i < 40; ++i) {
+      const double x = std::ldexp(random_number(rng), exponent);
+      const auto near = static_cast<float>(x);
+      EXPECT_TRUE(std::abs(x) < std::numeric_limits<float>::min() ||
+                  is_same(joined(near, low_part(x, near)), x))
+          << x;
+    }
+  }
+  for (const double x : {0.0, 1.0, std::nextafter(2.0, 0.0), -std::nextafter(4.0, 5.0)}) {
+    const auto near = static_cast<float>(x);
+    EXPECT_TRUE(is_same(joined(near, low_part(x, near)), x)) << x;
+  }
+  EXPECT_EQ(joined(static_cast<float>(1e-60), low_part(1e-60, static_cast<float>(1e-60))), 0);
+}
+
+/// The loops' own way of splitting is that of single numbers, and x and r go along p and q.
+TEST(SplitNumbers, advance_by_steps_in_double_precision) {
+  base::Rng rng(9);
+  const auto p = random_vector<float>(rng);
+  std::vector<double> q(6 * kCount);
+  std::vector<double> x(6 * kCount);
+  std::vector<double> r(6 * kCount);
+  std::vector<Six<float>> rounded(kCount + 1);
+  std::vector<std::int32_t> low(6 * kCount);
+  const SplitView<float> split = {.rounded = rounded.data(), .low = low.data()};
+  for (std::size_t i = 0; i < q.size(); ++i) {
+    q[i] = random_number(rng);
+    x[i] = random_number(rng);
+    r[i] = random_number(rng);
+    split.set(i, r[i]);
+  }
+  const double step = random_number(rng);
+  auto x_there = x;
+  kernels<float>().advance(step, p.data(), q.data(), x_there.data(), split, kEvery);
+  double work = 0;
+  for (std::size_t i = 0; i < q.size(); ++i) {
+    EXPECT_TRUE(is_same(x_there[i], x[i] + step * static_cast<double>(p[i / 6].v[i % 6])));
+    EXPECT_TRUE(is_same(split.get(i), r[i] - step * q[i]));
+    work += split.get(i) * static_cast<double>(p[i / 6].v[i % 6]);
+  }
+  // Sums in another order: 600 roundings of terms of about 1.
+  EXPECT_NEAR(kernels<float>().dot_split(split, p.data(), kEvery), work, 1e-12);
 }
 
 TEST(Kernels, products_and_transfers_have_the_same_bits_on_every_machine) {

@@ -174,7 +174,7 @@ SpringGraph chain(double s) {
   graph.other = {1, 0, 2, 1, 3, 2};
   graph.pattern = {0, 1, 3, 5};
   for (const double stiffness : {1.0, 1.0, s, s, 1.0, 1.0}) {
-    graph.springs.push_back({.stiffness = scaled(unit, stiffness)});
+    graph.springs.emplace_back(Spring{.stiffness = scaled(unit, stiffness)});
   }
   graph.shift = 3;
   return graph;
@@ -194,8 +194,8 @@ TEST(WeakSprings, a_spring_is_weak_below_a_share_of_what_holds_its_nodes) {
 TEST(WeakSprings, what_hangs_on_one_spring_alone_joins_it) {
   host::Team team(1);
   SpringGraph graph = chain(1);
-  graph.springs[0].stiffness = graph.springs[1].stiffness =
-      scaled(graph.springs[1].stiffness, 1e-5);
+  const PackedSpring soft(Spring{.stiffness = scaled(graph.springs[1].stiffness(), 1e-5)});
+  graph.springs[0] = graph.springs[1] = soft;
   EXPECT_TRUE(weak_springs(graph, team).empty() ||
               weak_springs(graph, team) == std::vector<std::uint8_t>(6));
 }

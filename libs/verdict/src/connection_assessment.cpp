@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "holdfast/host/free_memory.hpp"
 #include "holdfast/host/team.hpp"
 #include "holdfast/verdict/connection_law.hpp"
 #include "several_solutions.hpp"
@@ -60,23 +61,36 @@ struct Loads {
   }
 };
 
-/// Every connection's result, and what they say together.
-Loads add_up(const model::Robot& robot, int thread_count, Assessment& assessment) {
+/// Whether the second answer is for the range alone, so that its memory may go before results take
+/// theirs.
+bool is_alternative_spent(const Equilibrium& equilibrium) {
+  return equilibrium.method == solver::Method::kMultigrid && equilibrium.displacement_low.empty() &&
+         equilibrium.open_but_held_count == 0;
+}
+
+/// What all connections say together; the results of each as well, if the second answer is to stay.
+/// If that has gone before, nothing is known of how the two differ.
+Loads add_up(const model::Robot& robot, host::Team& team, Assessment& assessment) {
   const ConnectionLaws laws(robot);
   const auto connections = robot.connections();
   const Equilibrium& equilibrium = assessment.equilibrium;
   const bool has_alternative =
-      equilibrium.displacement_low.empty() || equilibrium.open_but_held_count > 0;
-  assessment.connections.resize(connections.size());
-  host::Team team(thread_count, connections.size());
+      !equilibrium.alternative.empty() &&
+      (equilibrium.displacement_low.empty() || equilibrium.open_but_held_count > 0);
+  const bool is_kept = !is_alternative_spent(equilibrium);
+  assessment.connections.resize(is_kept ? connections.size() : 0);
   std::vector<Loads> parts;
   team.map(connections.size(), parts, [&](std::size_t begin, std::size_t end) {
     Loads part;
-    for (std::size_t i = begin; i < end; ++i) {
-      const model::Connection& pair = connections[i];
-      assessment.connections[i] =
-          laws.result(pair, equilibrium.displacement, equilibrium.displacement_low);
-      const double ratio = assessment.connections[i].load_ratio;
+    auto connection = connections.from(begin);
+    for (std::size_t i = begin; i < end; ++i, ++connection) {
+      const model::Connection pair = *connection;
+      if (is_kept) {
+        assessment.connections[i] =
+            laws.result(pair, equilibrium.displacement, equilibrium.displacement_low);
+      }
+      const double ratio = is_kept ? assessment.connections[i].load_ratio
+                                   : laws.load_ratio(pair, equilibrium.displacement, {});
       part.add(i, ratio,
                has_alternative ? laws.load_ratio(pair, equilibrium.alternative[base::at(pair.a)],
                                                  equilibrium.alternative[base::at(pair.b)])
@@ -88,7 +102,25 @@ Loads add_up(const model::Robot& robot, int thread_count, Assessment& assessment
   for (const Loads& part : parts) {
     all.add(part);
   }
+  if (!is_kept && !has_alternative) {
+    all.change = std::numeric_limits<double>::infinity();
+  }
   return all;
+}
+
+/// Every connection's result.
+void add_results(const model::Robot& robot, host::Team& team, Assessment& assessment) {
+  const ConnectionLaws laws(robot);
+  const auto connections = robot.connections();
+  const Equilibrium& equilibrium = assessment.equilibrium;
+  assessment.connections.resize(connections.size());
+  team.share(0, connections.size(), [&](std::size_t begin, std::size_t end) {
+    auto connection = connections.from(begin);
+    for (std::size_t i = begin; i < end; ++i, ++connection) {
+      assessment.connections[i] =
+          laws.result(*connection, equilibrium.displacement, equilibrium.displacement_low);
+    }
+  });
 }
 
 /// What one rank's connections say, for all others.
@@ -161,6 +193,10 @@ double error_margin(const model::Robot& robot, const Equilibrium& equilibrium,
   return margin + kDirectFactor * loads.change;
 }
 
+/// From so many on the results, which come in one piece, are larger than any hole that the solver
+/// has left.
+constexpr std::size_t kManyModules = 1'000'000;
+
 /// Nothing is said of a load below its own uncertainty: then it may as well be compression. Between
 /// the answers of ambiguous feet, which lie far apart, each is as good as the other.
 bool is_pulled_apart(double ratio_max, const Assessment& assessment) {
@@ -197,7 +233,15 @@ void assess_connections(const model::Robot& robot, const solver::EquilibriumOpti
   if (host::all(options.ranks(), robot.connections().empty())) {
     return;
   }
-  Loads loads = add_up(robot, options.thread_count, assessment);
+  host::Team team(options.thread_count, robot.connections().size());
+  Loads loads = add_up(robot, team, assessment);
+  if (assessment.connections.empty()) {
+    assessment.equilibrium.alternative = std::vector<base::Vec6<double>>();
+    if (robot.modules().size() >= kManyModules) {
+      host::give_back_free_memory();
+    }
+    add_results(robot, team, assessment);
+  }
   if (options.part != nullptr) {
     assessment.whole = add_ranks(robot, *options.ranks(), loads);
   }
@@ -217,6 +261,11 @@ void assess_connections(const model::Robot& robot, const solver::EquilibriumOpti
     assessment.worst = loads.worst;
     assessment.weight_factor = 1 / loads.ratio_max;
   }
+}
+
+void assess_connections_again(const model::Robot& robot, int thread_count, Assessment& assessment) {
+  host::Team team(thread_count, robot.connections().size());
+  add_results(robot, team, assessment);
 }
 
 std::optional<OpenGaps> find_open_gaps(const model::Robot& robot, const Equilibrium& equilibrium,

@@ -13,9 +13,14 @@ namespace holdfast::verdict {
 double tolerance_share(const solver::EquilibriumOptions& options);
 
 /// Fills in all connections of an assessment whose equilibrium is settled, their largest load ratio
-/// and what breaks.
+/// and what breaks. Multigrid's second answer, unless feet are ambiguous, is given back: it is for
+/// the range alone.
 void assess_connections(const model::Robot& robot, const solver::EquilibriumOptions& options,
                         Assessment& assessment);
+
+/// Fills in the connections alone of an assessment that gave them back: all that they say together
+/// is known.
+void assess_connections_again(const model::Robot& robot, int thread_count, Assessment& assessment);
 
 /// The gaps that are too wide; none if no connection has a limit, or none is exceeded.
 std::optional<OpenGaps> find_open_gaps(const model::Robot& robot,

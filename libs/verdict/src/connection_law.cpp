@@ -74,14 +74,8 @@ double ConnectionLaws::gap_mm(const model::Connection& pair, const Vecs& high,
       low.empty()
           ? beam_.middle_force(pair.direction, high[base::at(pair.a)], high[base::at(pair.b)])
           : beam_.middle_force(pair.direction, relative_motion(pair, high, low), Vec{});
-  const mechanics::BeamStiffness<double>& beam = beam_.stiffness();
-  const model::ConnectorLaw& law = robot_.connector(pair);
-  const double about_x = std::abs(force[3]) / (beam.bend_y / 4);
-  const double about_y = std::abs(force[4]) / (beam.bend_x / 4);
-  const double angle =
-      law.bending == model::BendingLaw::kRound ? std::hypot(about_x, about_y) : about_x + about_y;
-  const double gap = force[2] / beam.axial + angle * law.lever_mm;
-  return gap < 0 ? 0 : gap;
+  return mechanics::gap_mm(robot_.connector(pair), beam_.stiffness(), force,
+                           [](double x, double y) { return std::hypot(x, y); });
 }
 
 base::Vec6<double> ConnectionLaws::relative_motion(const model::Connection& pair, const Vecs& high,

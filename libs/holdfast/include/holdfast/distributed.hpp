@@ -2,8 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <functional>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "holdfast/agent/agent.hpp"     // IWYU pragma: export
 #include "holdfast/agent/listener.hpp"  // IWYU pragma: export
@@ -34,6 +37,9 @@ struct DistributedRun {
   /// it has come to know any.
   verdict::Assessment view;
   std::vector<std::string> notes;  ///< What to know when comparing with the exact answer.
+  std::array<base::Cell, 2> worst_cells = {};  ///< Of the robot's own worst connection.
+  /// Which limit that is nearest to; none where Eq. (17) is the law of all connections.
+  std::optional<model::Limit> worst_limit = {};
 };
 
 /// What is done to a robot while it computes.

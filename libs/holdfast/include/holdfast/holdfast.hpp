@@ -18,6 +18,7 @@
 #include "holdfast/host/large_pages.hpp"       // IWYU pragma: export
 #include "holdfast/host/output_file.hpp"       // IWYU pragma: export
 #include "holdfast/io/beside_one.hpp"          // IWYU pragma: export
+#include "holdfast/io/binary_structure.hpp"    // IWYU pragma: export
 #include "holdfast/io/collapse.hpp"            // IWYU pragma: export
 #include "holdfast/io/document.hpp"            // IWYU pragma: export
 #include "holdfast/io/lattice_names.hpp"       // IWYU pragma: export
@@ -107,8 +108,8 @@ struct CheckResult {
 /// The library's version, "major.minor.patch".
 std::string_view version();
 
-/// Reads a whole file of text; "-" is standard input. Errors: a folder, too large, not readable, a
-/// zero byte, at which reading ends.
+/// Reads a whole file of text, or a binary structure; "-" is standard input. Errors: a folder, too
+/// large, not readable, a zero byte in a text, at which reading ends.
 base::Result<std::string> read_file(const std::filesystem::path& path);
 
 /// Writes a whole file or nothing, as host::OutputFile does; "-" is standard output.
@@ -118,8 +119,8 @@ std::optional<base::Error> write_file(const std::filesystem::path& path, std::st
 std::optional<base::Error> write_file(const std::filesystem::path& path,
                                       const std::function<void(std::ostream&)>& write);
 
-/// Reads VisibleSim XML or holdfast JSON and builds the robot with the first planned step. 0
-/// threads: as many as the machine has cores. The options say what a file leaves open.
+/// Reads VisibleSim XML, holdfast JSON or a binary structure and builds the robot with the first
+/// planned step. 0 threads: all cores. The options say what a file leaves open.
 base::Result<Structure> load_text(std::string_view text, std::string_view name = {},
                                   int thread_count = 0, const io::ReadOptions& options = {});
 base::Result<Structure> load_file(const std::filesystem::path& path, int thread_count = 0,

@@ -30,6 +30,7 @@ struct SimulatedStep {
 
 struct SimulatedStages {
   sim::LinkModel link = {};
+  base::Lattice lattice = base::kCubic;
   std::vector<SimulatedStep> steps;  ///< In their order.
   plan::SequenceJudgement exact;     ///< Of the same steps.
 
@@ -49,8 +50,8 @@ base::Result<std::vector<agent::StepWord>> step_words(const plan::RobotState& be
                                                       const model::Step& step,
                                                       const plan::Transition& transition);
 
-/// Has a simulated robot judge one step. Errors: as of step_words(); the robot goes beyond [Piranda
-/// 2021]; options that do not fit.
+/// Has a simulated robot judge one step. Errors: as of step_words(); the robot has what the
+/// modules' program does not know; options that do not fit.
 base::Result<SimulatedStep> simulate_step(const plan::RobotState& before, const model::Step& step,
                                           const plan::Transition& transition,
                                           const sim::SimulationOptions& options);

@@ -19,8 +19,9 @@ inline Single axis_sum(const LatticeView<float>& level, const Six<float>* z, std
     const BeamRow<float>& beam = level.beams[2 * kAxis * kRow + 1];
     return load(beam.direct) * (plus + minus) + load(beam.crossed) * swap<kAxis>(plus - minus);
   }
-  const BeamRow<float>& up = level.beams[2 * kAxis * kRow + level.kind[p][2 * kAxis]];
-  const BeamRow<float>& down = level.beams[(2 * kAxis + 1) * kRow + level.kind[p][2 * kAxis + 1]];
+  const Kind& kind = level.kind[level.type[p]];
+  const BeamRow<float>& up = level.beams[2 * kAxis * kRow + kind[2 * kAxis]];
+  const BeamRow<float>& down = level.beams[(2 * kAxis + 1) * kRow + kind[2 * kAxis + 1]];
   return load(up.direct) * plus + load(up.crossed) * swap<kAxis>(plus) +
          (load(down.direct) * minus + load(down.crossed) * swap<kAxis>(minus));
 }
@@ -108,7 +109,7 @@ inline Wide wide_axis_sum(const LatticeView<float>& level, const Six<float>* p, 
     const BeamRow<double>& beam = level.beams_double[2 * kAxis * kRow + 1];
     return load(beam.direct) * (plus + minus) + load(beam.crossed) * swap<kAxis>(plus - minus);
   }
-  const Kind& kind = level.kind[node];
+  const Kind& kind = level.kind[level.type[node]];
   const BeamRow<double>& up = level.beams_double[2 * kAxis * kRow + kind[2 * kAxis]];
   const BeamRow<double>& down = level.beams_double[(2 * kAxis + 1) * kRow + kind[2 * kAxis + 1]];
   return load(up.direct) * plus + load(up.crossed) * swap<kAxis>(plus) +

@@ -113,10 +113,15 @@ Point mean_direction(const Point& sum, double weight, const Point& partner) {
 template <class Real>
 class Coarsening {
  public:
-  Coarsening(const SpringGraph& fine, Level<Real>& level, Team& team, SpringGraph& coarse)
+  Coarsening(SpringGraph& fine, Level<Real>& level, Team& team, SpringGraph& coarse)
       : fine_(fine), level_(level), team_(team), coarse_(coarse) {}
 
   bool run(std::vector<std::size_t>& colour_start) {
+    if (is_gathered_as_it_is()) {
+      join_none();
+      finish(0, colour_start);
+      return true;
+    }
     unsigned shift = 3;
     const std::size_t count = host::total(fine_.ranks, fine_.own_count());
     while (shift < 63 && 5 * host::total(fine_.ranks, count_cells(shift)) > 2 * count) {
@@ -135,31 +140,53 @@ class Coarsening {
       is_weak_.clear();
       find_clusters(shift);
     }
-    if (!has_merged() && !is_gathered_next()) {
+    if (!has_merged()) {
       return false;
     }
+    finish(shift, colour_start);
+    return true;
+  }
+
+ private:
+  /// Makes the level of the clusters that nodes have joined.
+  void finish(unsigned shift, std::vector<std::size_t>& colour_start) {
     gather_members();
     colour(colour_start);
     renumber(shift);
     place_centres();
     follow_copies();
     seat_members();
+    // Springs take the most memory, and need neither.
+    fine_.place = std::vector<Point>();
+    fine_.key = std::vector<std::uint64_t>();
     make_springs();
     leave_alone();
-    return true;
   }
 
- private:
   /// Enough for a level of its own.
   bool has_merged() const {
     return 10 * host::total(fine_.ranks, cluster_count_) <=
            9 * host::total(fine_.ranks, fine_.own_count());
   }
 
-  /// Few nodes of many ranks may have no neighbours of their own rank, but together they have: then
-  /// the next level is the same, and whole.
-  bool is_gathered_next() const {
+  /// Few nodes in parts, which clusters within ranks would make a poor level of: the next level is
+  /// the same, and whole.
+  bool is_gathered_as_it_is() const {
     return fine_.ranks != nullptr && host::total(fine_.ranks, fine_.own_count()) <= kGatheredCount;
+  }
+
+  void join_none() {
+    cluster_.assign(fine_.order.size(), -1);
+    std::int32_t count = 0;
+    for (const std::int32_t node : own_order()) {
+      cluster_[at(node)] = count++;
+    }
+    cluster_count_ = at(count);
+    coarse_.shift = fine_.shift;
+    coarse_.is_cubic = fine_.is_cubic;
+    for (std::size_t i = 0; i < fine_.box.size() && i < cluster_count_; ++i) {
+      coarse_.box.push_back(fine_.box[at(fine_.order[i])]);
+    }
   }
 
   /// Nodes along the curve, without copies.
@@ -242,26 +269,34 @@ class Coarsening {
     }
   }
 
-  /// Where neighbours of two ranks have one colour, the one of the higher rank takes another. Two
-  /// of them may then take the same again, and after a few rounds they keep it: they are relaxed at
-  /// the same time.
-  void part_from_other_ranks(std::vector<std::uint8_t>& colours) {
-    constexpr int kRoundMax = 8;
-    if (fine_.ranks == nullptr) {
-      return;
-    }
+  /// The rank that each node is of.
+  std::vector<std::int32_t> rank_of_nodes() const {
     std::vector<std::int32_t> rank(fine_.order.size(), fine_.ranks->rank());
     for (const host::Copy& copy : fine_.copies) {
       rank[at(copy.place)] = copy.original.rank;
     }
+    return rank;
+  }
+
+  /// The colours of the clusters that nodes have joined, of other ranks' too.
+  void tell_colours(const std::vector<std::uint8_t>& colours, std::vector<std::uint8_t>& seen) {
+    for (std::size_t node = 0; node < fine_.own_count(); ++node) {
+      seen[node] = colours[at(cluster_[node])];
+    }
+    level_.halo->update(seen.data(), sizeof(std::uint8_t));
+  }
+
+  /// Where neighbours of two ranks have one colour, the one of the higher rank takes another. Two
+  /// of them may then take the same again, and after a few rounds they keep it: they are relaxed at
+  /// the same time.
+  void part_from_other_ranks(const std::vector<std::int32_t>& rank,
+                             std::vector<std::uint8_t>& colours) {
+    constexpr int kRoundMax = 8;
     std::vector<std::uint8_t> seen(fine_.order.size());
     bool is_any_changed = true;
     for (int round = 0; is_any_changed && round < kRoundMax; ++round) {
       is_any_changed = false;
-      for (std::size_t node = 0; node < fine_.own_count(); ++node) {
-        seen[node] = colours[at(cluster_[node])];
-      }
-      level_.halo->update(seen.data(), sizeof(std::uint8_t));
+      tell_colours(colours, seen);
       for (std::size_t c = 0; c < cluster_count_; ++c) {
         std::uint64_t taken = 0;
         bool is_shared = false;
@@ -283,33 +318,81 @@ class Coarsening {
     }
   }
 
-  /// The colour of a cluster's cell on a chessboard: on a cubic lattice these suit all ranks.
-  int parity(std::size_t cluster) const {
+  /// The colour of a cluster's cell on a chessboard.
+  std::uint8_t parity(std::size_t cluster) const {
     const std::uint64_t cell =
         fine_.key[at(member_[at(member_start_[cluster])])] >> (coarse_.shift - fine_.shift);
-    return static_cast<int>((cell ^ cell >> 1U ^ cell >> 2U) & 1U);
+    return static_cast<std::uint8_t>((cell ^ cell >> 1U ^ cell >> 2U) & 1U);
   }
 
-  /// First fit along the curve: two colours on a lattice.
-  void colour(std::vector<std::size_t>& colour_start) {
-    std::vector<std::uint8_t> colours(cluster_count_, kNoColour);
-    std::array<double, 64> count{};  // Whole numbers, which ranks add up.
+  /// First fit along the curve: two colours on a lattice. `seen` has the colours of the clusters
+  /// that copies have joined, where they are known.
+  void colour_own(const std::vector<std::uint8_t>& seen, std::vector<std::uint8_t>& colours) const {
+    std::ranges::fill(colours, kNoColour);
     for (std::size_t c = 0; c < cluster_count_; ++c) {
       std::uint64_t taken = 0;
       for_members(c, [&](std::size_t node) {
         for_neighbours(node, [&](std::int32_t other) {
-          if (!fine_.is_copy(other)) {
-            const std::uint8_t used = colours[at(cluster_[at(other)])];
-            taken |= used == kNoColour ? 0 : std::uint64_t{1} << used;
-          }
+          const std::uint8_t used =
+              fine_.is_copy(other) ? seen[at(other)] : colours[at(cluster_[at(other)])];
+          taken |= used == kNoColour ? 0 : std::uint64_t{1} << used;
         });
       });
       // A 64th colour may be shared by neighbours: the sweep is then not quite Gauss-Seidel.
-      const int free = std::min(std::countr_one(taken), 63);
-      const int preferred = fine_.ranks == nullptr ? free : parity(c);
-      colours[c] = static_cast<std::uint8_t>((taken >> preferred & 1U) == 0 ? preferred : free);
+      colours[c] = static_cast<std::uint8_t>(std::min(std::countr_one(taken), 63));
     }
-    part_from_other_ranks(colours);
+  }
+
+  /// What first fit comes to on a cubic lattice: a chessboard, on which the first cluster along the
+  /// curve, of the first rank that has any, has the first colour.
+  void guess_colours(std::vector<std::uint8_t>& colours) const {
+    const std::uint8_t mine = cluster_count_ > 0 ? parity(0) : kNoColour;
+    const auto firsts = host::gather(*fine_.ranks, std::span<const std::uint8_t>(&mine, 1));
+    const auto first = std::ranges::find_if(firsts, [](auto one) { return one != kNoColour; });
+    const std::uint8_t change = first == firsts.end() ? std::uint8_t{0} : *first;
+    for (std::size_t c = 0; c < cluster_count_; ++c) {
+      colours[c] = static_cast<std::uint8_t>(parity(c) ^ change);
+    }
+  }
+
+  /// The colours of one machine: those of lower ranks, whose clusters come before along the curve,
+  /// are guessed, then asked for until they stay. As many rounds as ranks would do; after a few
+  /// neighbours of two ranks need only have two colours.
+  void colour_on_ranks(std::vector<std::uint8_t>& colours) {
+    constexpr int kRoundMax = 8;
+    const std::vector<std::int32_t> rank = rank_of_nodes();
+    std::vector<std::uint8_t> seen(fine_.order.size());
+    std::vector<std::uint8_t> before;
+    guess_colours(colours);
+    bool is_any_changed = true;
+    for (int round = 0; is_any_changed && round < kRoundMax; ++round) {
+      tell_colours(colours, seen);
+      std::vector<std::uint8_t> lower;
+      for (const host::Copy& copy : fine_.copies) {
+        std::uint8_t& colour = seen[at(copy.place)];
+        colour = copy.original.rank < fine_.ranks->rank() ? colour : kNoColour;
+        lower.push_back(colour);
+      }
+      const bool is_changed = round == 0 || lower != before;
+      if (is_changed) {
+        colour_own(seen, colours);
+      }
+      before = std::move(lower);
+      is_any_changed = host::any(fine_.ranks, is_changed);
+    }
+    if (is_any_changed) {
+      part_from_other_ranks(rank, colours);
+    }
+  }
+
+  void colour(std::vector<std::size_t>& colour_start) {
+    std::vector<std::uint8_t> colours(cluster_count_, kNoColour);
+    std::array<double, 64> count{};  // Whole numbers, which ranks add up.
+    if (fine_.ranks == nullptr) {
+      colour_own({}, colours);
+    } else {
+      colour_on_ranks(colours);
+    }
     for (const std::uint8_t colour : colours) {
       ++count[colour];
     }
@@ -421,15 +504,14 @@ class Coarsening {
   }
 
   void seat_members() {
-    level_.seat.resize(fine_.order.size());
-    team_.share(0, level_.seat.size(), [&](std::size_t begin, std::size_t end) {
-      for (std::size_t node = begin; node < end; ++node) {
-        const Point offset = difference(fine_.place[node], coarse_.place[at(cluster_[node])]);
-        level_.seat[node] = {.offset = {static_cast<Real>(offset[0]), static_cast<Real>(offset[1]),
+    level_.seat.reserve(fine_.order.size());
+    for (std::size_t node = 0; node < fine_.order.size(); ++node) {
+      const Point offset = difference(fine_.place[node], coarse_.place[at(cluster_[node])]);
+      level_.seat.push_back({.offset = {static_cast<Real>(offset[0]), static_cast<Real>(offset[1]),
                                         static_cast<Real>(offset[2])},
-                             .cluster = cluster_[node]};
-      }
-    });
+                             .cluster = cluster_[node]});
+    }
+    level_.seat.finish();
   }
 
   /// Calls f(node, edge, other node) for every spring that leads out of a cluster.
@@ -510,8 +592,7 @@ class Coarsening {
     if (fine_.is_cubic) {
       return 1;
     }
-    const Mat& s = fine_.springs[part.spring].stiffness;
-    return s.at(0, 0) + s.at(1, 1) + s.at(2, 2);
+    return fine_.springs[part.spring].strength();
   }
 
   /// Where a cluster's springs lead; `springs` have their partners.
@@ -548,10 +629,10 @@ class Coarsening {
     find_directions(parts, springs);
     std::vector<Sum> sums(springs.size());
     for (const Part& part : parts) {
-      const Spring& fine = fine_.springs[part.spring];
+      const PackedSpring& fine = fine_.springs[part.spring];
       Spring& spring = springs[part.target];
       const double share = weight(part);
-      base::add_to(spring.stiffness, carried(fine.stiffness, part.offset));
+      base::add_to(spring.stiffness, carried(fine.stiffness(), part.offset));
       for (std::size_t k = 0; k < 3; ++k) {
         spring.middle[k] += share * (part.offset[k] + fine.middle[k]);
       }
@@ -619,16 +700,20 @@ class Coarsening {
     team_.share(0, examples.size(), [&](std::size_t begin, std::size_t end) {
       std::vector<Part> parts;
       std::vector<std::int32_t> targets;
+      std::vector<Spring> springs;
       for (std::size_t i = begin; i < end; ++i) {
         list_parts(at(examples[i]), parts, targets);
-        add_up(
-            parts,
-            std::span(coarse_.springs).subspan(coarse_.pattern[at(examples[i])], targets.size()));
+        springs.assign(targets.size(), {});
+        add_up(parts, springs);
+        std::ranges::transform(
+            springs,
+            coarse_.springs.begin() + static_cast<std::ptrdiff_t>(coarse_.pattern[at(examples[i])]),
+            [](const Spring& spring) { return PackedSpring(spring); });
       }
     });
   }
 
-  const SpringGraph& fine_;
+  SpringGraph& fine_;
   Level<Real>& level_;
   Team& team_;
   SpringGraph& coarse_;
@@ -643,14 +728,12 @@ class Coarsening {
 }  // namespace
 
 template <class Real>
-bool coarsen(const SpringGraph& fine, Level<Real>& level, Team& team, SpringGraph& coarse,
+bool coarsen(SpringGraph& fine, Level<Real>& level, Team& team, SpringGraph& coarse,
              std::vector<std::size_t>& colour_start) {
   return Coarsening<Real>(fine, level, team, coarse).run(colour_start);
 }
 
-template bool coarsen(const SpringGraph&, Level<float>&, Team&, SpringGraph&,
-                      std::vector<std::size_t>&);
-template bool coarsen(const SpringGraph&, Level<double>&, Team&, SpringGraph&,
-                      std::vector<std::size_t>&);
+template bool coarsen(SpringGraph&, Level<float>&, Team&, SpringGraph&, std::vector<std::size_t>&);
+template bool coarsen(SpringGraph&, Level<double>&, Team&, SpringGraph&, std::vector<std::size_t>&);
 
 }  // namespace holdfast::solver

@@ -15,9 +15,9 @@ namespace holdfast::solver {
 using host::Team;
 
 /// Fills what leads from `level` to the next one. Returns false if larger cells do not make fewer
-/// nodes.
+/// nodes; else takes places and keys of `fine` away.
 template <class Real>
-bool coarsen(const SpringGraph& fine, Level<Real>& level, Team& team, SpringGraph& coarse,
+bool coarsen(SpringGraph& fine, Level<Real>& level, Team& team, SpringGraph& coarse,
              std::vector<std::size_t>& colour_start);
 
 }  // namespace holdfast::solver

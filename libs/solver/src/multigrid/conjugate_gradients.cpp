@@ -17,8 +17,30 @@ constexpr int kSweepCount = 2;
 /// An error so far below the one sought, both squared, may be rounding, which no step improves.
 constexpr double kRounding = 0.01;
 
+/// From so many nodes on K p, which processors' caches no longer hold, is not kept but made where
+/// it is needed. In solids of cubes, whose neighbours are found quickly, that takes a twentieth of
+/// the time of a check; in shells and in other lattices an eighth.
+constexpr std::size_t kKeptProductMax = std::size_t{1} << 14U;
+
+/// A solid is what has more neighbours than this on average.
+constexpr double kSolidDegree = 5;
+
+/// A curvature that is so small a share of what it is the difference of is computed anew.
+constexpr double kCancelled = 1e-3;
+
 /// After so many iterations that gained nothing only rounding is left.
 constexpr int kPatience = 50;
+
+bool is_solid(const ReducedNetwork& network) {
+  std::size_t ends = 0;
+  for (std::size_t node = 0; network.is_cubic && node < network.own_count; ++node) {
+    const Kind& kind = network.cubic.kind[node];
+    for (std::size_t d = 0; d < base::kDirectionCount; ++d) {
+      ends += kind[d] > 0 ? 1 : 0;
+    }
+  }
+  return static_cast<double>(ends) > kSolidDegree * static_cast<double>(network.own_count);
+}
 
 }  // namespace
 
@@ -31,10 +53,57 @@ ConjugateGradients<Real>::ConjugateGradients(ReducedNetwork& network,
       hierarchy_(network, material, team, ground, alone),
       cycle_(hierarchy_, team, kSweepCount),
       node_count_(network.own_count),
+      is_solid_(is_solid(network)),
       place_count_(network.node_count),
       p_(place_count_ + 1) {
   x_.resize(6 * place_count_);
-  r_.resize(6 * place_count_);
+  hierarchy_.take_vectors();
+  low_.resize(std::is_same_v<Real, float> ? 6 * place_count_ : 0);
+}
+
+template <class Real>
+base::Vec6<double> ConjugateGradients<Real>::residual(std::size_t node) {
+  base::Vec6<double> value{};
+  for (std::size_t k = 0; k < 6; ++k) {
+    value[k] = r().get(6 * node + k);
+  }
+  return value;
+}
+
+template <class Real>
+void ConjugateGradients<Real>::set_residual(std::size_t node, const base::Vec6<double>& residual) {
+  for (std::size_t k = 0; k < 6; ++k) {
+    r().set(6 * node + k, residual[k]);
+  }
+}
+
+template <class Real>
+void ConjugateGradients<Real>::mark() {
+  is_marked_ = true;
+  step_from_mark_.reset();
+  marked_ = std::vector<double>();
+}
+
+/// Where x was marked, before p changes. Mostly that is never needed, as one iteration follows.
+template <class Real>
+void ConjugateGradients<Real>::write_marked() {
+  if (!step_from_mark_) {
+    return;
+  }
+  marked_.resize(x_.size());
+  const double step = *std::exchange(step_from_mark_, std::nullopt);
+  team_.share(0, node_count_, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = 6 * begin; i < 6 * end; ++i) {
+      marked_[i] = x_[i] - step * static_cast<double>(p_[i / 6].v[i % 6]);
+    }
+  });
+}
+
+template <class Real>
+std::vector<double> ConjugateGradients<Real>::marked() {
+  write_marked();
+  is_marked_ = false;
+  return marked_.empty() ? x_ : std::move(marked_);
 }
 
 template <class Real>
@@ -44,10 +113,18 @@ void ConjugateGradients<Real>::rest() {
   hierarchy_.drop_vectors();
 }
 
+template <class Real>
+void ConjugateGradients<Real>::retire() {
+  rest();
+  low_ = std::vector<std::int32_t>();
+  hierarchy_.levels().clear();
+}
+
 /// x is taken apart into two directions: 48 bits in single precision, all in double.
 template <class Real>
 void ConjugateGradients<Real>::subtract_product() {
   q_.resize(6 * node_count_);
+  const SplitView<Real> left = r();
   for (const bool is_rest : {false, true}) {
     team_.share(0, node_count_, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = 6 * begin; i < 6 * end; ++i) {
@@ -60,19 +137,17 @@ void ConjugateGradients<Real>::subtract_product() {
     team_.share(0, node_count_, [&](std::size_t begin, std::size_t end) {
       hierarchy_.apply(p_.data(), q_.data(), {begin, end});
       for (std::size_t i = 6 * begin; i < 6 * end; ++i) {
-        r_[i] -= q_[i];
+        left.set(i, left.get(i) - q_[i]);
       }
     });
   }
 }
 
+/// This rank's part of r . z, or of another vector.
 template <class Real>
-void ConjugateGradients<Real>::round_residual() {
-  Level<Real>& finest = hierarchy_.levels().front();
-  team_.share(0, node_count_, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = 6 * begin; i < 6 * end; ++i) {
-      finest.r[i / 6].v[i % 6] = static_cast<Real>(r_[i]);
-    }
+double ConjugateGradients<Real>::own_residual_dot(const std::vector<Six<Real>>& z) {
+  return team_.sum(node_count_, [&](std::size_t begin, std::size_t end) {
+    return kernels<Real>().dot_split(r(), z.data(), {begin, end});
   });
 }
 
@@ -86,11 +161,6 @@ double ConjugateGradients<Real>::own_dot_with_z(const std::vector<double>& a) {
 }
 
 template <class Real>
-double ConjugateGradients<Real>::dot_with_z(const std::vector<double>& a) {
-  return sum(own_dot_with_z(a));
-}
-
-template <class Real>
 void ConjugateGradients<Real>::run_cycle() {
   const host::Logged logged(hierarchy_.ranks(0), host::Work::kCycle);
   cycle_.run();
@@ -100,14 +170,14 @@ void ConjugateGradients<Real>::run_cycle() {
 template <class Real>
 double ConjugateGradients<Real>::precondition() {
   run_cycle();
-  return dot_with_z(r_);
+  return sum(own_residual_dot(hierarchy_.levels().front().z));
 }
 
 /// The same; returns q . z as well.
 template <class Real>
 std::array<double, 2> ConjugateGradients<Real>::precondition_and_compare() {
   run_cycle();
-  const double error = own_dot_with_z(r_);
+  const double error = own_residual_dot(hierarchy_.levels().front().z);
   return host::sum(hierarchy_.ranks(0), std::array{error, own_dot_with_z(q_)});
 }
 
@@ -115,8 +185,10 @@ template <class Real>
 double ConjugateGradients<Real>::begin() {
   older_ = {};
   hierarchy_.take_vectors();
-  round_residual();
   error_ = precondition();
+  write_marked();
+  turn_.reset();
+  curvature_.reset();
   p_ = hierarchy_.levels().front().z;
   has_last_direction_ = false;
   return error_;
@@ -143,14 +215,44 @@ double ConjugateGradients<Real>::multiply() {
   }));
 }
 
+/// p := z + turn p
+template <class Real>
+void ConjugateGradients<Real>::turn() {
+  if (!turn_) {
+    return;
+  }
+  write_marked();
+  const auto turn = static_cast<Real>(*std::exchange(turn_, std::nullopt));
+  const std::vector<Six<Real>>& z = hierarchy_.levels().front().z;
+  team_.share(0, node_count_, [&](std::size_t begin, std::size_t end) {
+    kernels<Real>().combine(1, z.data(), turn, p_.data(), {begin, end});
+  });
+}
+
 /// x += step p, r -= step q
 template <class Real>
 void ConjugateGradients<Real>::advance(double step) {
-  Level<Real>& finest = hierarchy_.levels().front();
   team_.share(0, node_count_, [&](std::size_t begin, std::size_t end) {
-    kernels<Real>().advance(step, p_.data(), q_.data(), x_.data(), r_.data(), finest.r.data(),
-                            {begin, end});
+    kernels<Real>().advance(step, p_.data(), q_.data(), x_.data(), r(), {begin, end});
   });
+  count_step(step);
+}
+
+/// x += step p, r -= step K p; returns p . K p.
+template <class Real>
+double ConjugateGradients<Real>::advance_by_product(double step) {
+  const double curvature = team_.sum(node_count_, [&](std::size_t begin, std::size_t end) {
+    return hierarchy_.advance(step, p_.data(), x_.data(), r(), {begin, end});
+  });
+  count_step(step);
+  return curvature;
+}
+
+template <class Real>
+void ConjugateGradients<Real>::count_step(double step) {
+  if (is_marked_ && marked_.empty()) {
+    step_from_mark_ = step;
+  }
   ++iteration_count_;
 }
 
@@ -191,8 +293,8 @@ typename ConjugateGradients<Real>::State ConjugateGradients<Real>::state(const G
 template <class Real>
 template <class IsOver>
 bool ConjugateGradients<Real>::iterate(const IsOver& is_over) {
-  const std::vector<Six<Real>>& z = hierarchy_.levels().front().z;
   for (int iteration = 0; !is_over(iteration, error_); ++iteration) {
+    turn();
     const double curvature = multiply();
     if (!(curvature > 0)) {
       return false;
@@ -200,11 +302,64 @@ bool ConjugateGradients<Real>::iterate(const IsOver& is_over) {
     const double step = error_ / curvature;
     advance(step);
     const auto [error, change] = precondition_and_compare();
-    const double turn = -step * change / error_;  // z (r_new - r_old) / z_old r_old
+    turn_ = -step * change / error_;  // z (r_new - r_old) / z_old r_old
     error_ = error;
-    team_.share(0, node_count_, [&](std::size_t begin, std::size_t end) {
-      kernels<Real>().combine(1, z.data(), static_cast<Real>(turn), p_.data(), {begin, end});
-    });
+    tell();
+  }
+  return true;
+}
+
+template <class Real>
+bool ConjugateGradients<Real>::is_product_kept() const {
+  return std::is_same_v<Real, double> || hierarchy_.ranks(0) != nullptr ||
+         node_count_ <= kKeptProductMax || !is_solid_;
+}
+
+/// z . K z and p . K z
+template <class Real>
+std::array<double, 2> ConjugateGradients<Real>::compare(const std::vector<Six<Real>>& z,
+                                                        const std::vector<Six<Real>>& p) {
+  std::vector<std::array<double, 2>> parts;
+  team_.map(node_count_, parts, [&](std::size_t begin, std::size_t end) {
+    return hierarchy_.compare(z.data(), p.data(), {begin, end});
+  });
+  std::array<double, 2> sum{};
+  for (const std::array<double, 2>& part : parts) {
+    sum = {sum[0] + part[0], sum[1] + part[1]};
+  }
+  return sum;
+}
+
+/// p := z + turn p, conjugate to the last p; returns its curvature,
+///   z . K z + 2 turn p . K z + turn^2 p . K p = z . K z - (p . K z)^2 / p . K p,
+/// but for the rounding of p, which x and r take into account both.
+template <class Real>
+double ConjugateGradients<Real>::turn_to_curvature() {
+  const std::vector<Six<Real>>& z = hierarchy_.levels().front().z;
+  if (!curvature_) {
+    return compare(p_, p_)[0];
+  }
+  const double last = *std::exchange(curvature_, std::nullopt);
+  const auto [own, change] = compare(z, p_);
+  turn_ = -change / last;
+  turn();
+  const double curvature = own - change * change / last;
+  return curvature > kCancelled * own ? curvature : compare(p_, p_)[0];
+}
+
+/// What iterate() does, in other words: K p is made twice and kept nowhere.
+template <class Real>
+template <class IsOver>
+bool ConjugateGradients<Real>::iterate_without_product(const IsOver& is_over) {
+  q_ = std::vector<double>();
+  hierarchy_.take_vectors();
+  for (int iteration = 0; !is_over(iteration, error_); ++iteration) {
+    const double curvature = turn_to_curvature();
+    if (!(curvature > 0)) {
+      return false;
+    }
+    curvature_ = advance_by_product(error_ / curvature);
+    error_ = precondition();
     tell();
   }
   return true;
@@ -221,7 +376,7 @@ Iteration::End ConjugateGradients<Real>::run(const Goal& goal) {
   if (host::Ranks* const ranks = hierarchy_.ranks(0)) {
     host::KrylovTask task;
     task.x = std::span(x_).first(6 * node_count_);
-    task.r = std::span(r_).first(6 * node_count_);
+    task.residual = [&](double* numbers) { copy_residual(numbers); };
     task.is_over = is_over;
     task.multiply = [&](const double* p, double* q) {  // Who watches may ask between iterations.
       const std::vector<Six<Real>> last = p_;
@@ -234,7 +389,7 @@ Iteration::End ConjugateGradients<Real>::run(const Goal& goal) {
     }
     ranks->watch(task);
   } else {
-    is_definite = iterate(is_over);
+    is_definite = is_product_kept() ? iterate(is_over) : iterate_without_product(is_over);
   }
   if (is_definite && reached != State::kReached) {
     return End::kTooSlow;
@@ -274,7 +429,7 @@ void ConjugateGradients<Real>::turn_from_last_direction() {
   if (!(curvature > 0)) {
     return;
   }
-  const double turn = -dot_with_z(q_) / curvature;
+  const double turn = -sum(own_dot_with_z(q_)) / curvature;
   kernels<Real>().combine(static_cast<Real>(turn), p_.data(), 1,
                           hierarchy_.levels().front().z.data(), {0, node_count_});
 }
@@ -284,6 +439,11 @@ void ConjugateGradients<Real>::turn_from_last_direction() {
 template <class Real>
 Iteration::End ConjugateGradients<Real>::run_by_another(const Goal& goal, host::KrylovTask& task) {
   constexpr int kRoundMax = 5;
+  write_marked();
+  if (is_marked_ && marked_.empty()) {
+    marked_ = x_;
+  }
+  turn_.reset();
   Goal aim = goal;
   bool is_known = true;  // z is that of r.
   int before = 0;
@@ -291,10 +451,7 @@ Iteration::End ConjugateGradients<Real>::run_by_another(const Goal& goal, host::
   task.multiply = [&](const double* p, double* q) { multiply(p, q); };
   task.precondition = [&](const double* r, double* z) {
     if (!std::exchange(is_known, false)) {
-      std::vector<Six<Real>>& finest = hierarchy_.levels().front().r;
-      for (std::size_t i = 0; i < 6 * node_count_; ++i) {
-        finest[i / 6].v[i % 6] = static_cast<Real>(r[i]);
-      }
+      take_residual(r);
       run_cycle();
     }
     for (std::size_t i = 0; i < 6 * node_count_; ++i) {
@@ -315,7 +472,8 @@ Iteration::End ConjugateGradients<Real>::run_by_another(const Goal& goal, host::
     turn_from_last_direction();
   }
   for (int round = 0; round < kRoundMax && !is_reached(goal, round); ++round) {
-    const std::vector<double> b(task.r.begin(), task.r.end());
+    std::vector<double> b(6 * node_count_);
+    copy_residual(b.data());
     std::vector<double> d(b.size());
     before = 0;
     const bool is_own = hierarchy_.ranks(0)->solve(task, b, d);
@@ -325,8 +483,9 @@ Iteration::End ConjugateGradients<Real>::run_by_another(const Goal& goal, host::
     p_ = last;
     for (std::size_t i = 0; i < d.size(); ++i) {
       x_[i] += d[i];
-      r_[i] -= image[i];
+      b[i] -= image[i];
     }
+    take_residual(b.data());
     if (reached == State::kStuck) {
       return End::kTooSlow;
     }
@@ -334,7 +493,6 @@ Iteration::End ConjugateGradients<Real>::run_by_another(const Goal& goal, host::
       has_last_direction_ = before > 0;
       break;
     }
-    round_residual();
     error_ = precondition();
     is_known = true;
     aim.error *= goal.error / std::max(2 * error_, goal.error);
@@ -343,6 +501,20 @@ Iteration::End ConjugateGradients<Real>::run_by_another(const Goal& goal, host::
     return End::kBroken;
   }
   return error_ <= goal.error ? End::kConverged : End::kTooSlow;
+}
+
+template <class Real>
+void ConjugateGradients<Real>::copy_residual(double* numbers) {
+  for (std::size_t i = 0; i < 6 * node_count_; ++i) {
+    numbers[i] = r().get(i);
+  }
+}
+
+template <class Real>
+void ConjugateGradients<Real>::take_residual(const double* numbers) {
+  for (std::size_t i = 0; i < 6 * node_count_; ++i) {
+    r().set(i, numbers[i]);
+  }
 }
 
 template class ConjugateGradients<float>;

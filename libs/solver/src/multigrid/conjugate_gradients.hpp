@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 
 #include "cycle.hpp"
 #include "iteration.hpp"
@@ -31,14 +32,19 @@ class ConjugateGradients final : public Iteration {
   End run(const Goal& goal) override;
   End run_unsymmetric(const Goal& goal, std::span<const NodeTerm> terms) override;
   base::Vec6<double> correction(std::size_t node) override;
+  void mark() override;
+  std::vector<double> marked() override;
   void rest() override;
+  void retire() override;
+  base::Vec6<double> residual(std::size_t node) override;
+  void set_residual(std::size_t node, const base::Vec6<double>& residual) override;
 
  private:
   /// One that A made unsymmetric runs remember.
   struct Direction {
     std::vector<Six<Real>> p;
-    std::vector<double> image;  ///< A^T p
-    double curvature = 0;       ///< p . A p
+    std::vector<Six<Real>> image;  ///< A^T p, rounded like p.
+    double curvature = 0;          ///< p . A p
   };
 
   enum class State : std::uint8_t { kOnTheWay, kReached, kStuck };
@@ -52,6 +58,12 @@ class ConjugateGradients final : public Iteration {
 
   template <class IsOver>
   bool iterate(const IsOver& is_over);
+  template <class IsOver>
+  bool iterate_without_product(const IsOver& is_over);
+  bool is_product_kept() const;
+  std::array<double, 2> compare(const std::vector<Six<Real>>& z, const std::vector<Six<Real>>& p);
+  double turn_to_curvature();
+  double advance_by_product(double step);
   End run_by_another(const Goal& goal, host::KrylovTask& task);
   void turn_from_last_direction();
   void multiply(const double* p, double* q);
@@ -60,20 +72,37 @@ class ConjugateGradients final : public Iteration {
   std::array<double, 2> precondition_and_compare();
   double multiply();
   void advance(double step);
+  void count_step(double step);
+  void turn();
+  void copy_residual(double* numbers);
+  void take_residual(const double* numbers);
+  void write_marked();
   void tell() const;
+  double own_residual_dot(const std::vector<Six<Real>>& z);
   double own_dot_with_z(const std::vector<double>& a);
-  double dot_with_z(const std::vector<double>& a);
-  void round_residual();
+
+  /// The residual; its rounded part is the finest level's.
+  SplitView<Real> r() {
+    return {.rounded = hierarchy_.levels().front().r.data(), .low = low_.data()};
+  }
+
   void turn_away_from_older();
   double remember_direction(std::span<const NodeTerm> terms);
 
   Team& team_;
   Hierarchy<Real> hierarchy_;
   Cycle<Real> cycle_;
-  std::size_t node_count_;   ///< Of a part of a robot this rank's own.
-  std::size_t place_count_;  ///< With copies of others'.
-  std::vector<double> q_;    ///< Empty at rest.
+  std::size_t node_count_;         ///< Of a part of a robot this rank's own.
+  bool is_solid_;                  ///< And of cubes.
+  std::size_t place_count_;        ///< With copies of others'.
+  std::vector<std::int32_t> low_;  ///< The low parts of r.
+  std::vector<double> q_;          ///< Empty at rest.
   std::vector<Six<Real>> p_;
+  std::optional<double> turn_;            ///< By which p_ is yet to be turned.
+  std::optional<double> curvature_;       ///< p . K p where z has yet to be compared with p_.
+  bool is_marked_ = false;                ///< If so, x was marked_ or, as long as that is empty,
+  std::optional<double> step_from_mark_;  ///< so many p_ back.
+  std::vector<double> marked_;
   bool has_last_direction_ =
       false;  ///< p_ is that of a run of ranks, from which r has not changed.
   std::vector<Direction> older_;

@@ -40,7 +40,10 @@ void Cycle<Real>::relax_colour(std::size_t depth, std::size_t colour, bool is_fi
               [&](std::size_t begin, std::size_t end) {
                 const Range range{begin, end};
                 if (is_first) {
-                  sweeps().relax_first(level.type.data(), level.inverse.data(), r, z, range);
+                  const std::uint32_t* const type = hierarchy_.is_cubic(depth)
+                                                        ? hierarchy_.block_lattice().type
+                                                        : level.type.data();
+                  sweeps().relax_first(type, level.inverse.data(), r, z, range);
                 } else if (hierarchy_.is_cubic(depth)) {
                   sweeps().relax_lattice(hierarchy_.block_lattice(), r, z, range);
                 } else {

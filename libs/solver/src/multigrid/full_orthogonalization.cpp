@@ -13,15 +13,16 @@ namespace {
 constexpr std::size_t kMemoryBytes = std::size_t{256} << 20U;
 constexpr std::size_t kMemoryMin = 8;
 template <class Real>
-constexpr std::size_t kNodeBytes = sizeof(Six<Real>) + 6 * sizeof(double);
+constexpr std::size_t kNodeBytes = 2 * sizeof(Six<Real>);
 
 /// An estimate of the error that falls by more than this in one step fell by chance.
 constexpr double kFallMax = 1e4;
 
-/// Adds a difference times p at the nodes that have one; returns p times that.
-template <class Real>
+/// Adds a difference times p at the nodes that have one, by add(number, part); returns p times
+/// that.
+template <class Real, class Add>
 double add_terms(std::span<const NodeTerm> terms, Mat NodeTerm::*difference,
-                 const std::vector<Six<Real>>& p, std::vector<double>& image) {
+                 const std::vector<Six<Real>>& p, const Add& add) {
   double sum = 0;
   for (const NodeTerm& term : terms) {
     const auto node = static_cast<std::size_t>(term.node);
@@ -29,7 +30,7 @@ double add_terms(std::span<const NodeTerm> terms, Mat NodeTerm::*difference,
       for (int column = 0; column < 6; ++column) {
         const double part =
             (term.*difference).at(row, column) * static_cast<double>(p[node].v[column]);
-        image[6 * node + static_cast<std::size_t>(row)] += part;
+        add(6 * node + static_cast<std::size_t>(row), part);
         sum += part * static_cast<double>(p[node].v[row]);
       }
     }
@@ -42,10 +43,13 @@ double add_terms(std::span<const NodeTerm> terms, Mat NodeTerm::*difference,
 /// p := z, less what an older direction answers for: p_old . A p = 0.
 template <class Real>
 void ConjugateGradients<Real>::turn_away_from_older() {
+  write_marked();
+  turn_.reset();
+  curvature_.reset();
   p_ = hierarchy_.levels().front().z;
   for (const Direction& old : older_) {
     const double product = sum(team_.sum(node_count_, [&](std::size_t begin, std::size_t end) {
-      return kernels<Real>().dot(old.image.data(), p_.data(), {begin, end});
+      return kernels<Real>().dot_same(old.image.data(), p_.data(), {begin, end});
     }));
     const auto turn = static_cast<Real>(-product / old.curvature);
     team_.share(0, node_count_, [&](std::size_t begin, std::size_t end) {
@@ -67,9 +71,20 @@ double ConjugateGradients<Real>::remember_direction(std::span<const NodeTerm> te
   }
   Direction& newest = older_.back();
   newest.p = p_;
-  newest.image = q_;
-  add_terms(terms, &NodeTerm::transposed_difference, p_, newest.image);
-  newest.curvature = symmetric_part + sum(add_terms(terms, &NodeTerm::difference, p_, q_));
+  newest.image.resize(node_count_);
+  team_.share(0, node_count_, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t node = begin; node < end; ++node) {
+      for (std::size_t k = 0; k < 6; ++k) {
+        newest.image[node].v[k] = static_cast<Real>(q_[6 * node + k]);
+      }
+    }
+  });
+  add_terms(terms, &NodeTerm::transposed_difference, p_, [&](std::size_t i, double part) {
+    Real& rounded = newest.image[i / 6].v[i % 6];
+    rounded = static_cast<Real>(static_cast<double>(rounded) + part);
+  });
+  const auto add = [&](std::size_t i, double part) { q_[i] += part; };
+  newest.curvature = symmetric_part + sum(add_terms(terms, &NodeTerm::difference, p_, add));
   return newest.curvature;
 }
 
@@ -92,9 +107,7 @@ Iteration::End ConjugateGradients<Real>::run_unsymmetric(const Goal& goal,
     }
     before = error_;
     // r . z but for rounding, which must not add up.
-    const double force = sum(team_.sum(node_count_, [&](std::size_t begin, std::size_t end) {
-      return kernels<Real>().dot(r_.data(), p_.data(), {begin, end});
-    }));
+    const double force = sum(own_residual_dot(p_));
     advance(force / curvature);
     error_ = precondition();
     tell();

@@ -23,6 +23,7 @@ struct NodeRecord {
   CellBox box = {};
   std::uint32_t pattern = 0;  ///< Among this rank's springs.
   std::int32_t degree = 0;
+  std::int32_t position = 0;  ///< Along the curve, among this rank's nodes.
   bool is_alone = false;
 };
 
@@ -33,7 +34,7 @@ struct AllNodes {
   std::vector<std::size_t> row;  ///< Where each node's entries in `other` begin.
   std::vector<std::int32_t> other;
   std::vector<std::uint32_t> pattern;  ///< Among all ranks' springs.
-  std::vector<Spring> springs;
+  std::vector<PackedSpring> springs;
 };
 
 /// The number among all of a node here or of a copy.
@@ -59,6 +60,9 @@ std::vector<NodeRecord> records_of(const SpringGraph& part) {
                      .degree = part.start[node + 1] - part.start[node],
                      .is_alone = !part.is_alone.empty() && part.is_alone[node]};
   }
+  for (std::size_t i = 0; i < part.own_count(); ++i) {
+    records[at(part.order[i])].position = static_cast<std::int32_t>(i);
+  }
   return records;
 }
 
@@ -74,7 +78,7 @@ AllNodes all_nodes(const SpringGraph& part) {
   }
   all.other = host::gather<std::int32_t>(ranks, other);
   const std::vector<std::size_t> first_spring = host::starts(ranks, part.springs.size());
-  all.springs = host::gather<Spring>(ranks, part.springs);
+  all.springs = host::gather<PackedSpring>(ranks, part.springs);
   all.row = {0};
   for (std::size_t rank = 0; rank + 1 < all.first.size(); ++rank) {
     for (std::size_t node = all.first[rank]; node < all.first[rank + 1]; ++node) {
@@ -86,9 +90,14 @@ AllNodes all_nodes(const SpringGraph& part) {
   return all;
 }
 
+/// Clusters of one cell stay in the order of their first members, as on one machine.
 std::vector<std::int32_t> curve_of(const AllNodes& all) {
   std::vector<std::int32_t> curve(all.records.size());
-  std::iota(curve.begin(), curve.end(), 0);
+  for (std::size_t rank = 0; rank + 1 < all.first.size(); ++rank) {
+    for (std::size_t i = all.first[rank]; i < all.first[rank + 1]; ++i) {
+      curve[all.first[rank] + at(all.records[i].position)] = static_cast<std::int32_t>(i);
+    }
+  }
   std::ranges::stable_sort(curve, {}, [&](std::int32_t node) { return all.records[at(node)].key; });
   return curve;
 }

@@ -100,7 +100,7 @@ std::vector<GroundSpring> finest_ground_springs(const ReducedNetwork& network,
 
 template <class Real>
 std::vector<GroundSpring> coarse_ground_springs(const std::vector<GroundSpring>& fine,
-                                                const std::vector<Seat<Real>>& seat) {
+                                                const Seats<Real>& seat) {
   const auto cluster = [&](std::size_t i) { return seat[at(fine[i].node)].cluster; };
   std::vector<std::size_t> order(fine.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
@@ -122,8 +122,8 @@ std::vector<GroundSpring> coarse_ground_springs(const std::vector<GroundSpring>&
 }
 
 template std::vector<GroundSpring> coarse_ground_springs(const std::vector<GroundSpring>&,
-                                                         const std::vector<Seat<float>>&);
+                                                         const Seats<float>&);
 template std::vector<GroundSpring> coarse_ground_springs(const std::vector<GroundSpring>&,
-                                                         const std::vector<Seat<double>>&);
+                                                         const Seats<double>&);
 
 }  // namespace holdfast::solver

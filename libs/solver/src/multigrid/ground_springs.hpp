@@ -10,6 +10,7 @@
 #include "holdfast/model/material.hpp"
 #include "kernels.hpp"
 #include "reduced_network.hpp"
+#include "seats.hpp"
 #include "springs.hpp"
 
 /// What holds a robot. Contact states change while everything else of a hierarchy stays as it is,
@@ -49,6 +50,6 @@ std::vector<GroundSpring> finest_ground_springs(const ReducedNetwork& network,
 /// springs. `seat` says where the members sit.
 template <class Real>
 std::vector<GroundSpring> coarse_ground_springs(const std::vector<GroundSpring>& fine,
-                                                const std::vector<Seat<Real>>& seat);
+                                                const Seats<Real>& seat);
 
 }  // namespace holdfast::solver

@@ -50,7 +50,7 @@ Mat spring_sum(const SpringGraph& graph, std::size_t node) {
   Mat sum;
   const std::size_t count = at(graph.start[node + 1] - graph.start[node]);
   for (std::size_t i = 0; i < count; ++i) {
-    base::add_to(sum, graph.springs[graph.pattern[node] + i].stiffness);
+    base::add_to(sum, graph.springs[graph.pattern[node] + i].stiffness());
   }
   return sum;
 }
@@ -72,7 +72,7 @@ void for_springs(const SpringGraph& graph, const F& f) {
 /// The whole level as a sparse matrix in double precision, as yet without ground springs.
 std::optional<BlockLu> unheld_matrix(const SpringGraph& graph, std::size_t block_count_max) {
   std::vector<Edge> edges;
-  for_springs(graph, [&](std::int32_t a, std::int32_t b, const Spring&) {
+  for_springs(graph, [&](std::int32_t a, std::int32_t b, const PackedSpring&) {
     edges.push_back({a, b});
   });
   BlockLu lu(graph.order.size(), edges, block_count_max);
@@ -80,8 +80,8 @@ std::optional<BlockLu> unheld_matrix(const SpringGraph& graph, std::size_t block
     return std::nullopt;
   }
   std::size_t edge = 0;
-  for_springs(graph, [&](std::int32_t, std::int32_t, const Spring& spring) {
-    lu.set_edge(edge++, coupling(spring));
+  for_springs(graph, [&](std::int32_t, std::int32_t, const PackedSpring& spring) {
+    lu.set_edge(edge++, coupling(spring.unpacked()));
   });
   for (std::size_t node = 0; node < graph.order.size(); ++node) {
     lu.set_diagonal(node, spring_sum(graph, node));
@@ -216,7 +216,7 @@ void Hierarchy<Real>::connect_cubes(SpringGraph& graph) const {
     graph.pattern[node] = found->second;
     for (std::size_t d = 0; is_new && d < 6; ++d) {
       if (kind[d] > 0) {
-        graph.springs.push_back(beam_spring(network_.lattice, material_, d, kind[d]));
+        graph.springs.emplace_back(beam_spring(network_.lattice, material_, d, kind[d]));
       }
     }
   }
@@ -247,7 +247,7 @@ void Hierarchy<Real>::connect_nodes(SpringGraph& graph) const {
     pattern_of_kind.push_back(static_cast<std::uint32_t>(graph.springs.size()));
     for (std::size_t d = 0; d < lengths.size(); ++d) {
       if (lengths[d] > 0) {
-        graph.springs.push_back(beam_spring(network_.lattice, material_, d, lengths[d]));
+        graph.springs.emplace_back(beam_spring(network_.lattice, material_, d, lengths[d]));
       }
     }
   }
@@ -275,14 +275,7 @@ void Hierarchy<Real>::make_lattice() {
   level.node_count = network_.own_count;
   level.place_count = network_.node_count;
   level.colour_start = network_.colour_start;
-  level.type.resize(network_.node_count);
-  for (std::size_t node = 0; node < network_.own_count; ++node) {
-    if (node > 0 && network_.cubic.kind[node] == network_.cubic.kind[node - 1]) {
-      level.type[node] = level.type[node - 1];
-    } else {
-      set_type(node);
-    }
-  }
+  add_types();
   point_at_lattice();
 }
 
@@ -308,14 +301,12 @@ Mat Hierarchy<Real>::diagonal(const Kind& kind) const {
   return sum;
 }
 
+/// Types of cubes are their kinds, with the same numbers.
 template <class Real>
-void Hierarchy<Real>::set_type(std::size_t node) {
-  const auto kind = std::bit_cast<std::uint64_t>(network_.cubic.kind[node]);
-  const auto [found, is_new] =
-      type_of_kind_.try_emplace(kind, static_cast<std::uint32_t>(type_of_kind_.size()));
-  levels_.front().type[node] = found->second;
-  if (is_new) {
-    add_type(network_.cubic.kind[node]);
+void Hierarchy<Real>::add_types() {
+  const std::vector<Kind>& kinds = network_.cubic.kind.list();
+  for (std::size_t i = levels_.front().inverse.size(); i < kinds.size(); ++i) {
+    add_type(kinds[i]);
   }
 }
 
@@ -355,6 +346,9 @@ void Hierarchy<Real>::add_level(const SpringGraph& graph, const std::vector<Grou
   }
   couple(graph, level);
   set_types(graph, level);
+  if (!held_.empty()) {
+    held_.back().sums = std::vector<Mat>();
+  }
   held_.push_back(held_nodes(graph, springs));
   set_ground_springs(levels_.size() - 1, springs);
 }
@@ -420,24 +414,29 @@ void Hierarchy<Real>::set_ground_springs(std::size_t depth,
   clear_ground(level, held.free_type_count);
   BlockPool<Real> pool;
   BlockPool<double> finest_pool;
+  held.sums = std::vector<Mat>();
+  const bool is_coarsest = depth + 1 == levels_.size();
   auto spring = springs.begin();
-  for (HeldNode& node : held.nodes) {
-    node.ground_sum = {};
+  for (const HeldNode& node : held.nodes) {
+    HeldSum sum;
     for (; spring != springs.end() && at(spring->node) == node.node; ++spring) {
-      base::add_to(node.ground_sum, spring->stiffness);
+      base::add_to(sum.ground, spring->stiffness);
     }
-    node.sum = node.spring_sum;
-    base::add_to(node.sum, node.ground_sum);
+    sum.all = node.spring_sum;
+    base::add_to(sum.all, sum.ground);
+    if (is_coarsest) {
+      held.sums.push_back(sum.all);
+    }
     // Only K_pp counts in single precision, on the finest level in double as well; in double, what
     // is on the ground must be known by itself.
     std::size_t type = level.inverse.size();
     if (std::is_same_v<Real, float>) {
-      type = held.free_type_count + (depth == 0 ? finest_pool.insert(block_of<double>(node.sum))
-                                                : pool.insert(block_of<Real>(node.sum)));
+      type = held.free_type_count + (depth == 0 ? finest_pool.insert(block_of<double>(sum.all))
+                                                : pool.insert(block_of<Real>(sum.all)));
     }
     level.type[node.node] = static_cast<std::uint32_t>(type);
     if (type == level.inverse.size()) {
-      add_grounded_type(level, node);
+      add_grounded_type(level, sum);
     }
     is_singular_ = is_singular_ || is_zero(level.inverse[type]);
   }
@@ -445,8 +444,9 @@ void Hierarchy<Real>::set_ground_springs(std::size_t depth,
 
 template <class Real>
 bool Hierarchy<Real>::factor_coarsest() {
-  for (const HeldNode& node : held_.back().nodes) {
-    coarsest_->set_diagonal(node.node, node.sum);
+  const Held& held = held_.back();
+  for (std::size_t i = 0; i < held.nodes.size(); ++i) {
+    coarsest_->set_diagonal(held.nodes[i].node, held.sums[i]);
   }
   return coarsest_->factor();
 }
@@ -456,7 +456,7 @@ template <class Real>
 void Hierarchy<Real>::look_for_singular_nodes(const std::vector<GroundSpring>& springs) {
   const Level<Real>& finest = levels_.front();
   is_singular_ = std::ranges::any_of(springs, [&](const GroundSpring& spring) {
-    return is_zero(finest.inverse[finest.type[at(spring.node)]]);
+    return is_zero(finest.inverse[network_.cubic.kind.number(at(spring.node))]);
   });
 }
 
@@ -464,9 +464,7 @@ template <class Real>
 void Hierarchy<Real>::update_contact() {
   std::vector<GroundSpring> springs = finest_ground_springs(network_, material_, ground_);
   if (network_.is_cubic) {
-    for (const GroundSpring& spring : springs) {
-      set_type(at(spring.node));
-    }
+    add_types();
     look_for_singular_nodes(springs);
     point_at_lattice();
   } else {

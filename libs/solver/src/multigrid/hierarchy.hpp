@@ -2,10 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <span>
-#include <unordered_map>
 #include <vector>
 
 #include "coarsening.hpp"
@@ -94,6 +94,20 @@ class Hierarchy {
                              : kernels<Real>().apply_finest(levels_.front().view(), p, q, range);
   }
 
+  /// z . K z and p . K z there.
+  std::array<double, 2> compare(const Six<Real>* z, const Six<Real>* p, const Range& range) const {
+    return network_.is_cubic ? kernels<Real>().compare_lattice(lattice_, z, p, range)
+                             : kernels<Real>().compare_finest(levels_.front().view(), z, p, range);
+  }
+
+  /// x += step p, r -= step K p there; returns p . K p.
+  double advance(double step, const Six<Real>* p, double* x, SplitView<Real> r,
+                 const Range& range) const {
+    return network_.is_cubic
+               ? kernels<Real>().advance_lattice(lattice_, step, p, x, r, range)
+               : kernels<Real>().advance_finest(levels_.front().view(), step, p, x, r, range);
+  }
+
   const LatticeView<Real>& lattice() const { return lattice_; }
 
   /// What the sweeps need.
@@ -114,15 +128,20 @@ class Hierarchy {
  private:
   struct HeldNode {
     std::size_t node = 0;
-    Mat spring_sum;       ///< K_pp without ground springs.
-    Mat ground_sum = {};  ///< What they add.
-    Mat sum = {};         ///< K_pp
+    Mat spring_sum;  ///< K_pp without ground springs.
+  };
+
+  /// K_pp of a node that has ground springs.
+  struct HeldSum {
+    Mat ground;  ///< What they add to it.
+    Mat all;
   };
 
   /// Nodes of a coarse level that have ground springs. Their blocks come after those of all others.
   struct Held {
     std::size_t free_type_count = 0;
     std::vector<HeldNode> nodes;
+    std::vector<Mat> sums;  ///< Their K_pp; of the coarsest level alone.
   };
 
   bool is_finest(const Level<Real>& level) const { return &level == levels_.data(); }
@@ -130,7 +149,7 @@ class Hierarchy {
   void make_lattice();
   void make_beams();
   void point_at_lattice();
-  void set_type(std::size_t node);
+  void add_types();
   const Mat& floor_tangent(std::uint8_t contact) const;
   void fill_graph(Team& team, ReducedNetwork& network, SpringGraph& graph) const;
   void place_nodes(Team& team, ReducedNetwork& network, SpringGraph& graph) const;
@@ -145,7 +164,7 @@ class Hierarchy {
   void add_type(const Kind& kind);
   void couple(const SpringGraph& graph, Level<Real>& level) const;
   void clear_ground(Level<Real>& level, std::size_t free_type_count) const;
-  void add_grounded_type(Level<Real>& level, const HeldNode& node) const;
+  void add_grounded_type(Level<Real>& level, const HeldSum& sum) const;
   void add_type(Level<Real>& level, const Mat& sum) const;
   void set_types(const SpringGraph& graph, Level<Real>& level) const;
   Held held_nodes(const SpringGraph& graph, const std::vector<GroundSpring>& springs) const;
@@ -159,7 +178,6 @@ class Hierarchy {
   const GroundTable& ground_;
   std::size_t alone_count_ = 0;     ///< Of all ranks.
   std::size_t gathered_depth_ = 0;  ///< From here on levels are whole.
-  std::unordered_map<std::uint64_t, std::uint32_t> type_of_kind_;
   std::vector<Level<Real>> levels_;
   std::vector<Held> held_;  ///< By level; not filled in where is_cubic().
   LatticeView<Real> lattice_;
@@ -182,7 +200,7 @@ void Hierarchy<float>::couple(const SpringGraph& graph, Level<float>& level) con
 template <>
 void Hierarchy<float>::clear_ground(Level<float>& level, std::size_t free_type_count) const;
 template <>
-void Hierarchy<float>::add_grounded_type(Level<float>& level, const HeldNode& node) const;
+void Hierarchy<float>::add_grounded_type(Level<float>& level, const HeldSum& sum) const;
 template <>
 void Hierarchy<float>::add_type(Level<float>& level, const Mat& sum) const;
 template <>
@@ -198,6 +216,6 @@ void Hierarchy<double>::couple(const SpringGraph& graph, Level<double>& level) c
 template <>
 void Hierarchy<double>::clear_ground(Level<double>& level, std::size_t free_type_count) const;
 template <>
-void Hierarchy<double>::add_grounded_type(Level<double>& level, const HeldNode& node) const;
+void Hierarchy<double>::add_grounded_type(Level<double>& level, const HeldSum& sum) const;
 
 }  // namespace holdfast::solver

@@ -109,13 +109,13 @@ template <>
 void Hierarchy<double>::point_at_lattice() {
   const Level<double>& level = levels_.front();
   lattice_ = {.other = network_.cubic.other.data(),
-              .kind = network_.cubic.kind.data(),
-              .type = level.type.data(),
+              .kind = network_.cubic.kind.list().data(),
+              .type = network_.cubic.kind.numbers(),
               .springs = beams_.springs.data(),
               .ground = beams_.ground.data()};
   block_lattice_ = {.other = network_.cubic.other.data(),
-                    .kind = network_.has_long_beams ? network_.cubic.kind.data() : nullptr,
-                    .type = level.type.data(),
+                    .kind = network_.has_long_beams ? network_.cubic.kind.list().data() : nullptr,
+                    .type = network_.cubic.kind.numbers(),
                     .inverse = level.inverse.data(),
                     .beams = beams_.rows.data()};
 }
@@ -125,8 +125,8 @@ void Hierarchy<double>::couple(const SpringGraph& graph, Level<double>& level) c
   if (level.stencil.other == nullptr) {
     fill_blocks(graph, level.couplings.blocks);
   }
-  for (const Spring& spring : graph.springs) {
-    level.couplings.springs.push_back(body_spring(spring));
+  for (const PackedSpring& spring : graph.springs) {
+    level.couplings.springs.push_back(body_spring(spring.unpacked()));
   }
   level.couplings.spring.resize(level.other.size());
   const auto spring_at = [&](std::size_t node, std::size_t e) {
@@ -162,9 +162,9 @@ void Hierarchy<double>::clear_ground(Level<double>& level, std::size_t free_type
 }
 
 template <>
-void Hierarchy<double>::add_grounded_type(Level<double>& level, const HeldNode& node) const {
-  add_type(level, node.sum);
-  level.couplings.ground.push_back(block_of<double>(node.ground_sum));
+void Hierarchy<double>::add_grounded_type(Level<double>& level, const HeldSum& sum) const {
+  add_type(level, sum.all);
+  level.couplings.ground.push_back(block_of<double>(sum.ground));
 }
 
 template <>

@@ -25,8 +25,8 @@ template <>
 void Hierarchy<float>::point_at_lattice() {
   const Level<float>& level = levels_.front();
   lattice_ = {.other = network_.cubic.other.data(),
-              .kind = network_.has_long_beams ? network_.cubic.kind.data() : nullptr,
-              .type = level.type.data(),
+              .kind = network_.has_long_beams ? network_.cubic.kind.list().data() : nullptr,
+              .type = network_.cubic.kind.numbers(),
               .inverse = level.inverse.data(),
               .beams = beams_.rows.data(),
               .diagonal = beams_.diagonal.data(),
@@ -51,8 +51,8 @@ void Hierarchy<float>::clear_ground(Level<float>& level, std::size_t free_type_c
 }
 
 template <>
-void Hierarchy<float>::add_grounded_type(Level<float>& level, const HeldNode& node) const {
-  add_type(level, node.sum);
+void Hierarchy<float>::add_grounded_type(Level<float>& level, const HeldSum& sum) const {
+  add_type(level, sum.all);
 }
 
 template <>

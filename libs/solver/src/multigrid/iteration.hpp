@@ -26,7 +26,9 @@ class Iteration {
   /// Six numbers per node.
   std::vector<double>& x() { return x_; }
 
-  std::vector<double>& r() { return r_; }
+  /// What x leaves of f at a node.
+  virtual base::Vec6<double> residual(std::size_t node) = 0;
+  virtual void set_residual(std::size_t node, const base::Vec6<double>& residual) = 0;
 
   /// Whether the robot is so slender that single precision is not to be trusted.
   virtual bool is_too_slender() const = 0;
@@ -65,9 +67,18 @@ class Iteration {
   /// M^-1 r at a node: about what x is still off by there. After begin() or run().
   virtual base::Vec6<double> correction(std::size_t node) = 0;
 
+  /// From now on marked() says what x is now. That costs memory from the second iteration on.
+  virtual void mark() = 0;
+
+  /// What x was when mark() was called, once.
+  virtual std::vector<double> marked() = 0;
+
   /// Gives back the memory that run() works in. The next call that needs it takes it again; x, r
   /// and correction() stay.
   virtual void rest() = 0;
+
+  /// Gives back all memory but that of x and marked(); then nothing but these may be asked for.
+  virtual void retire() = 0;
 
   int iteration_count() const { return iteration_count_; }
 
@@ -76,7 +87,6 @@ class Iteration {
 
  protected:
   std::vector<double> x_;
-  std::vector<double> r_;
   int iteration_count_ = 0;
 };
 

@@ -45,7 +45,7 @@ void restrict_to(const View& level, const TransferView<Real>& transfer, std::siz
         __builtin_prefetch(&z[next]);
         __builtin_prefetch(&r[next]);
         __builtin_prefetch(&transfer.seat[next]);
-        sum += force_moved(transfer.seat[p].offset, unbalanced(level, r, z, p));
+        sum += force_moved(transfer.offset_of(p), unbalanced(level, r, z, p));
       }
     }
     store(coarse[transfer.seat[transfer.member[transfer.start[k]]].cluster], sum);
@@ -56,8 +56,8 @@ template <class Real>
 void prolong(const TransferView<Real>& transfer, const Six<Real>* coarse, Six<Real>* z,
              Range range) {
   for (std::size_t p = range.begin; p < range.end; ++p) {
-    const Seat<Real>& seat = transfer.seat[p];
-    store(z[p], load(z[p]) + motion_moved(seat.offset, load(coarse[seat.cluster])));
+    const auto motion = load(coarse[transfer.seat[p].cluster]);
+    store(z[p], load(z[p]) + motion_moved(transfer.offset_of(p), motion));
   }
 }
 
@@ -71,8 +71,8 @@ inline void round(const Six<double>* r, Six<float>* rounded, Range range) {
 inline void prolong_rough(const TransferView<double>& transfer, const Six<double>* coarse,
                           const Six<float>* rough, Six<double>* z, Range range) {
   for (std::size_t p = range.begin; p < range.end; ++p) {
-    const Seat<double>& seat = transfer.seat[p];
-    store(z[p], load_wide(rough[p]) + motion_moved(seat.offset, load(coarse[seat.cluster])));
+    const auto motion = load(coarse[transfer.seat[p].cluster]);
+    store(z[p], load_wide(rough[p]) + motion_moved(transfer.offset_of(p), motion));
   }
 }
 
@@ -107,26 +107,58 @@ double apply(const View& level, const Six<Real>* p, double* q, Range range) {
   return sum_of(dots);
 }
 
-template <class Real>
-double advance(double step, const Six<Real>* p, const double* q, double* x, double* r,
-               Six<Real>* rounded, Range range) {
+template <class Real, class View>
+std::array<double, 2> compare(const View& level, const Six<Real>* z, const Six<Real>* p,
+                              Range range) {
+  Double own = {};
+  Double other = {};
+  for (std::size_t node = range.begin; node < range.end; ++node) {
+    foresee(level, z, std::min(node + kAhead, range.end - 1));
+    const auto u = load(z[node]);
+    const auto v = load(p[node]);
+    const Wide sum = wide_product(level, z, node);
+    own += low(u) * sum.low + high(u) * sum.high;
+    other += low(v) * sum.low + high(v) * sum.high;
+  }
+  return {sum_of(own), sum_of(other)};
+}
+
+template <class Real, class View>
+double advance_by_product(const View& level, double step, const Six<Real>* p, double* x,
+                          SplitView<Real> r, Range range) {
   const Double factor = {step, step, step, step};
   Double dots = {};
   for (std::size_t node = range.begin; node < range.end; ++node) {
+    foresee(level, p, std::min(node + kAhead, range.end - 1));
     const auto u = load(p[node]);
+    const Wide sum = wide_product(level, p, node);
+    dots += low(u) * sum.low + high(u) * sum.high;
     const std::size_t i = 6 * node;
+    const Wide left = load(r, node);
     const Double x_low = load_double(x + i) + factor * low(u);
     const Double x_high = load_high(x + i + 4) + factor * high(u);
-    const Double r_low = load_double(r + i) - factor * load_double(q + i);
-    const Double r_high = load_high(r + i + 4) - factor * load_high(q + i + 4);
     std::memcpy(x + i, &x_low, 32);
     std::memcpy(x + i + 4, &x_high, 16);
-    std::memcpy(r + i, &r_low, 32);
-    std::memcpy(r + i + 4, &r_high, 16);
-    store_rounded(rounded[node], r_low, r_high);
-    dots += r_low * r_low;
+    store(r, node, Wide{left.low - factor * sum.low, left.high - factor * sum.high});
   }
-  return dots[0] + dots[1] + dots[2];
+  return sum_of(dots);
+}
+
+template <class Real>
+void advance(double step, const Six<Real>* p, const double* q, double* x, SplitView<Real> r,
+             Range range) {
+  const Double factor = {step, step, step, step};
+  for (std::size_t node = range.begin; node < range.end; ++node) {
+    const auto u = load(p[node]);
+    const std::size_t i = 6 * node;
+    const Wide left = load(r, node);
+    const Double x_low = load_double(x + i) + factor * low(u);
+    const Double x_high = load_high(x + i + 4) + factor * high(u);
+    std::memcpy(x + i, &x_low, 32);
+    std::memcpy(x + i + 4, &x_high, 16);
+    store(r, node,
+          Wide{left.low - factor * load_double(q + i), left.high - factor * load_high(q + i + 4)});
+  }
 }
 
 template <class Real>
@@ -135,6 +167,17 @@ double dot(const double* r, const Six<Real>* z, Range range) {
   for (std::size_t node = range.begin; node < range.end; ++node) {
     const auto u = load(z[node]);
     dots += load_double(r + 6 * node) * low(u) + load_high(r + 6 * node + 4) * high(u);
+  }
+  return sum_of(dots);
+}
+
+template <class Real>
+double dot_split(SplitView<Real> r, const Six<Real>* z, Range range) {
+  Double dots = {};
+  for (std::size_t node = range.begin; node < range.end; ++node) {
+    const auto u = load(z[node]);
+    const Wide value = load(r, node);
+    dots += value.low * low(u) + value.high * high(u);
   }
   return sum_of(dots);
 }
@@ -190,8 +233,13 @@ constexpr Kernels<Real> kAll = {.restrict_lattice = restrict_to<Real, LatticeVie
                                 .combine = combine<Real>,
                                 .apply_lattice = apply<Real, LatticeView<Real>>,
                                 .apply_finest = apply<Real, ClusterView<Real>>,
+                                .compare_lattice = compare<Real, LatticeView<Real>>,
+                                .compare_finest = compare<Real, ClusterView<Real>>,
+                                .advance_lattice = advance_by_product<Real, LatticeView<Real>>,
+                                .advance_finest = advance_by_product<Real, ClusterView<Real>>,
                                 .advance = advance<Real>,
-                                .dot = dot<Real>};
+                                .dot = dot<Real>,
+                                .dot_split = dot_split<Real>};
 
 }  // namespace
 }  // namespace holdfast::solver

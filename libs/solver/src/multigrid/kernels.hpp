@@ -2,9 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 
+#include "seats.hpp"
+#include "split_numbers.hpp"
 #include "vectors.hpp"
 
 /// The loops over nodes in which all time is spent. They are compiled twice, for the machine that
@@ -23,8 +26,8 @@ struct LatticeView;
 template <>
 struct LatticeView<float> {
   const Others* other = nullptr;
-  const Kind* kind = nullptr;              ///< Null if every beam is one pitch long.
-  const std::uint32_t* type = nullptr;     ///< Node -> diagonal, inverse
+  const Kind* kind = nullptr;              ///< By type; null if every beam is one pitch long.
+  const std::uint32_t* type = nullptr;     ///< Node -> kind, diagonal, inverse
   const Block<float>* inverse = nullptr;   ///< K_pp^-1
   const BeamRow<float>* beams = nullptr;   ///< [direction * (kBeamLengthMax + 1) + length]
   const Block<float>* diagonal = nullptr;  ///< K_pp
@@ -36,8 +39,8 @@ struct LatticeView<float> {
 template <>
 struct LatticeView<double> {
   const Others* other = nullptr;
-  const Kind* kind = nullptr;
-  const std::uint32_t* type = nullptr;    ///< Node -> ground
+  const Kind* kind = nullptr;             ///< By type.
+  const std::uint32_t* type = nullptr;    ///< Node -> kind, ground
   const MiddleSpring* springs = nullptr;  ///< [axis * (kBeamLengthMax + 1) + length]
   const Block<double>* ground = nullptr;  ///< What kContactByte stands for.
 };
@@ -88,9 +91,13 @@ struct ClusterView<double> {
 /// From a level to the next coarser one.
 template <class Real>
 struct TransferView {
-  const Seat<Real>* seat = nullptr;
-  const std::int32_t* start = nullptr;  ///< Of each cluster's members, along the Morton curve.
+  const SeatCode* seat = nullptr;
+  const Offset<Real>* offset = nullptr;  ///< By their numbers.
+  const std::int32_t* start = nullptr;   ///< Of each cluster's members, along the Morton curve.
   const std::int32_t* member = nullptr;
+
+  /// From the centre of its cluster to a node.
+  const Real* offset_of(std::size_t node) const { return offset[seat[node].place].data(); }
 };
 
 struct Range {
@@ -147,12 +154,20 @@ struct Kernels {
   /// q = K p in double precision; returns p . q.
   double (*apply_lattice)(const Lattice&, const Vector* p, double* q, Range);
   double (*apply_finest)(const Cluster&, const Vector* p, double* q, Range);
-  /// x += step p, r -= step q, and r rounded; returns the sum of the squared forces left, torques
-  /// left out.
-  double (*advance)(double step, const Vector* p, const double* q, double* x, double* r,
-                    Vector* rounded, Range);
-  /// r . z, r in double precision.
-  double (*dot)(const double* r, const Vector* z, Range);
+  /// z . K z and p . K z, in double precision.
+  std::array<double, 2> (*compare_lattice)(const Lattice&, const Vector* z, const Vector* p, Range);
+  std::array<double, 2> (*compare_finest)(const Cluster&, const Vector* z, const Vector* p, Range);
+  /// x += step p, r -= step K p; returns p . K p.
+  double (*advance_lattice)(const Lattice&, double step, const Vector* p, double* x,
+                            SplitView<Real> r, Range);
+  double (*advance_finest)(const Cluster&, double step, const Vector* p, double* x,
+                           SplitView<Real> r, Range);
+  /// x += step p, r -= step q
+  void (*advance)(double step, const Vector* p, const double* q, double* x, SplitView<Real> r,
+                  Range);
+  /// q . z and r . z, in double precision.
+  double (*dot)(const double* q, const Vector* z, Range);
+  double (*dot_split)(SplitView<Real> r, const Vector* z, Range);
 };
 
 /// Those for this machine.

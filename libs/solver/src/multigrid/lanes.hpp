@@ -5,6 +5,7 @@
 #include <cstring>
 
 #include "kernels.hpp"
+#include "split_numbers.hpp"
 
 /// Eight lanes at once: a node's vector of single or double precision.
 /// Included once per instruction set, in a namespace of its own.
@@ -15,6 +16,8 @@ using Single = float __attribute__((vector_size(32)));
 using Quad = float __attribute__((vector_size(16)));
 using Double = double __attribute__((vector_size(32)));
 using Pair = double __attribute__((vector_size(16)));
+using Places = std::int64_t __attribute__((vector_size(32)));
+using Ints = std::int32_t __attribute__((vector_size(16)));
 
 /// Eight lanes of double precision.
 struct Wide {
@@ -129,8 +132,57 @@ inline void store_rounded(Six<float>& six, Double low, Double high) {
   store_two(six.v + 4, single_high);
 }
 
-inline void store_rounded(Six<double>& six, Double low, Double high) {
-  store(six, Wide{low, high});
+/// split_numbers.hpp, four numbers at a time.
+inline Double joined_lanes(Double rounded, Ints low) {
+  Places places;
+  std::memcpy(&places, &rounded, sizeof places);
+  places += __builtin_convertvector(low, Places);
+  std::memcpy(&rounded, &places, sizeof rounded);
+  return rounded;
+}
+
+inline Ints low_lanes(Double value, Quad rounded) {
+  const Double near = __builtin_convertvector(rounded, Double);
+  Places places;
+  Places near_places;
+  Ints bits;
+  std::memcpy(&places, &value, sizeof places);
+  std::memcpy(&near_places, &near, sizeof near_places);
+  std::memcpy(&bits, &rounded, sizeof bits);
+  return __builtin_convertvector(places - near_places, Ints) & ((bits & kExponentBits) != 0);
+}
+
+inline Wide load(const SplitView<float>& split, std::size_t node) {
+  const Single rounded = load(split.rounded[node]);
+  Ints four;
+  Ints two;
+  Pair pair = {};
+  std::memcpy(&four, split.low + 6 * node, 16);
+  std::memcpy(&pair, split.low + 6 * node + 4, 8);
+  std::memcpy(&two, &pair, 16);
+  return {joined_lanes(low(rounded), four), joined_lanes(high(rounded), two)};
+}
+
+inline Wide load(const SplitView<double>& split, std::size_t node) {
+  return load(split.rounded[node]);
+}
+
+inline void store(const SplitView<float>& split, std::size_t node, const Wide& value) {
+  const Quad four = __builtin_convertvector(value.low, Quad);
+  const Quad two = __builtin_convertvector(value.high, Quad);
+  const Ints low_four = low_lanes(value.low, four);
+  const Ints low_two = low_lanes(value.high, two);
+  std::memcpy(split.rounded[node].v, &four, 16);
+  store_two(split.rounded[node].v + 4, two);
+  std::memcpy(split.low + 6 * node, &low_four, 16);
+  Pair pair;
+  std::memcpy(&pair, &low_two, 16);
+  const double both = pair[0];
+  std::memcpy(split.low + 6 * node + 4, &both, 8);
+}
+
+inline void store(const SplitView<double>& split, std::size_t node, const Wide& value) {
+  store(split.rounded[node], value);
 }
 
 template <int kLane>

@@ -82,7 +82,7 @@ struct Level {
   std::vector<std::uint32_t> type;    ///< Node -> K_pp
   std::vector<Block<float>> inverse;  ///< K_pp^-1
   // To the next level; empty on the coarsest.
-  std::vector<Seat<Real>> seat;
+  Seats<Real> seat;
   std::vector<std::int32_t> member_start;  ///< By cluster, along the Morton curve.
   std::vector<std::int32_t> member;
   // Vectors of the cycle, one node more than there are places, which stays zero.
@@ -111,7 +111,10 @@ struct Level {
   }
 
   TransferView<Real> transfer() const {
-    return {.seat = seat.data(), .start = member_start.data(), .member = member.data()};
+    return {.seat = seat.codes(),
+            .offset = seat.offsets(),
+            .start = member_start.data(),
+            .member = member.data()};
   }
 };
 

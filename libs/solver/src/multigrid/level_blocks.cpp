@@ -96,7 +96,7 @@ void fill_blocks(const SpringGraph& graph, Blocks& blocks, std::vector<Block<dou
   BlockPool<float> pool;
   std::vector<std::uint32_t> block_of_spring(graph.springs.size());
   for (std::size_t i = 0; i < graph.springs.size(); ++i) {
-    const Mat k_pq = coupling(graph.springs[i]);
+    const Mat k_pq = coupling(graph.springs[i].unpacked());
     block_of_spring[i] = pool.insert(block_of<float>(k_pq));
     if (wide != nullptr && block_of_spring[i] == wide->size()) {
       wide->push_back(block_of<double>(k_pq));

@@ -175,9 +175,10 @@ void Multigrid::take_facet(std::size_t facet) {
   }
   beam.contact = contact;
   if (network_.is_cubic) {
-    Kind& kind = network_.cubic.kind[at(beam.node)];
+    Kind kind = network_.cubic.kind[at(beam.node)];
     kind[beam.direction] = contact == 0 ? 1 : 0;
     kind[kContactByte] = contact;
+    network_.cubic.kind.set(at(beam.node), kind);
   }
   is_contact_new_ = true;
   is_stale_ = true;
@@ -185,11 +186,12 @@ void Multigrid::take_facet(std::size_t facet) {
 
 void Multigrid::take_loads() {
   take_changed_loads();
-  if (iteration_) {
-    iteration_->x().assign(iteration_->x().size(), 0);
-  }
+  std::ranges::fill(x(), 0);
   reference_ = 0;
 }
+
+/// The nodes' displacements; empty where nothing is known of them.
+std::vector<double>& Multigrid::x() { return iteration_ ? iteration_->x() : no_x_; }
 
 void Multigrid::take_changed_loads() {
   condensed_.clear();
@@ -200,14 +202,14 @@ void Multigrid::take_changed_loads() {
   is_stale_ = true;
 }
 
-Multigrid::Vec Multigrid::displacement_of(std::int32_t node) const {
+Multigrid::Vec Multigrid::displacement_of(std::int32_t node) {
   Vec u;
-  std::copy_n(iteration_->x().begin() + 6 * std::ptrdiff_t{node}, 6, u.begin());
+  std::copy_n(x().begin() + 6 * std::ptrdiff_t{node}, 6, u.begin());
   return u;
 }
 
 /// The force that the ground takes from a node whose facet is in a state.
-Multigrid::Vec Multigrid::force_on(const FacetState& facet, std::int32_t node) const {
+Multigrid::Vec Multigrid::force_on(const FacetState& facet, std::int32_t node) {
   return law().force(facet, displacement_of(node));
 }
 
@@ -256,10 +258,7 @@ void Multigrid::update_iteration() {
     }
     return;
   }
-  std::vector<double> x;
-  if (iteration_) {
-    x = std::move(iteration_->x());
-  }
+  std::vector<double> x = std::move(this->x());
   iteration_.reset();
   find_order(robot(), network_);
   iteration_ = make_iteration();
@@ -278,12 +277,10 @@ void Multigrid::update_iteration() {
 
 /// What the present displacements leave unbalanced, with the contact's own tangent.
 void Multigrid::compute_residual() {
-  std::vector<double>& r = iteration_->r();
   team_.share(0, network_.own_count, [&](std::size_t begin, std::size_t end) {
     for (std::size_t node = begin; node < end; ++node) {
       const std::size_t module = at(network_.module[node]);
-      const Vec& load = condensed_.empty() ? loads()[module] : condensed_[module];
-      std::copy(load.begin(), load.end(), r.begin() + static_cast<std::ptrdiff_t>(6 * node));
+      iteration_->set_residual(node, condensed_.empty() ? loads()[module] : condensed_[module]);
     }
   });
   if (reference_ > 0) {
@@ -294,24 +291,27 @@ void Multigrid::compute_residual() {
     if (number_of(facet) != 0) {
       const Vec known = base::multiply(known_tangent(facet), displacement_of(ground_node.node));
       const Vec true_force = force_on(facet, ground_node.node);
+      Vec left = iteration_->residual(at(ground_node.node));
       for (std::size_t k = 0; k < 6; ++k) {
-        r[6 * at(ground_node.node) + k] -= true_force[k] - known[k];
+        left[k] -= true_force[k] - known[k];
       }
+      iteration_->set_residual(at(ground_node.node), left);
     }
   }
 }
 
 /// Updates the residual where only facets have changed since: x and r have never parted.
 void Multigrid::update_residual() {
-  std::vector<double>& r = iteration_->r();
   for (const GroundNode& ground_node : ground_nodes_) {
     const FacetState& facet = facets()[ground_node.facet];
     if (number_of(facet) != number_of(ground_node.known)) {
       const Vec before = force_on(ground_node.known, ground_node.node);
       const Vec now = force_on(facet, ground_node.node);
+      Vec left = iteration_->residual(at(ground_node.node));
       for (std::size_t k = 0; k < 6; ++k) {
-        r[6 * at(ground_node.node) + k] += before[k] - now[k];
+        left[k] += before[k] - now[k];
       }
+      iteration_->set_residual(at(ground_node.node), left);
     }
   }
 }
@@ -422,7 +422,6 @@ LinearOutcome Multigrid::improve(const Target& target) {
 
 bool Multigrid::refine(Solution& solution) {
   solution.gamma = ground().gamma;
-  solution.alternative = std::move(solution.displacement);
   // Where convergence is slow r . M^-1 r misses more of the error.
   const double pace = std::min(1.0, kBriskIterations / last_count_);
   const double share = precision_ == Precision::kDouble ? kSlenderShare : 1;
@@ -432,15 +431,37 @@ bool Multigrid::refine(Solution& solution) {
   if (is_thin()) {
     target.error_max = kThinError * options_.tolerance / model::load_ratio_per_energy_norm(robot());
   }
+  if (iteration_) {
+    iteration_->mark();
+  }
   if (improve(target) != LinearOutcome::kSolved) {
     return false;
   }
   solution.energy_error = energy_error_;
-  if (iteration_) {
-    iteration_->rest();  // Most robots need no further solution.
-  }
-  solution.displacement = displacement();
   return true;
+}
+
+/// The second answer is the one that refine() began with. All that is not needed any more goes
+/// before memory is taken for it; who asks further all the same begins anew.
+void Multigrid::hand_over(Solution& solution, Further further) {
+  std::vector<double> first;
+  std::vector<double> last;
+  if (iteration_ && further == Further::kNothing) {
+    iteration_->retire();
+    first = iteration_->marked();
+    last = std::move(iteration_->x());
+    iteration_.reset();
+    reference_ = 0;
+    is_law_new_ = true;
+    is_residual_known_ = false;
+    is_stale_ = true;
+  } else if (iteration_) {
+    iteration_->rest();
+    first = iteration_->marked();
+  }
+  solution.displacement = by_module(iteration_ ? x() : last);
+  last = std::vector<double>();
+  solution.alternative = by_module(first);
 }
 
 std::vector<double> Multigrid::facet_errors() const {
@@ -467,22 +488,35 @@ LinearReport Multigrid::report() const {
           .iteration_count = iteration_count_};
 }
 
-std::vector<base::Vec6<double>> Multigrid::displacement() {
-  std::vector<Vec> by_module(robot().modules().size());
-  if (iteration_) {
+std::vector<base::Vec6<double>> Multigrid::displacement() { return by_module(x()); }
+
+/// Facets are the nodes' alone.
+std::vector<base::Vec6<double>> Multigrid::facet_displacement() {
+  std::vector<Vec> by_facet;
+  by_facet.reserve(facets().size());
+  for (std::size_t i = 0; i < facets().size(); ++i) {
+    by_facet.push_back(x().empty() ? Vec{}
+                                   : displacement_of(ground_nodes_[ground_node_of_facet_[i]].node));
+  }
+  return by_facet;
+}
+
+/// From nodes' displacements to those of all modules.
+std::vector<base::Vec6<double>> Multigrid::by_module(std::vector<double>& x) {
+  std::vector<Vec> all(robot().modules().size());
+  if (!x.empty()) {
     if (node_copies_) {
-      node_copies_->update(iteration_->x().data(), 6 * sizeof(double));
+      node_copies_->update(x.data(), 6 * sizeof(double));
     }
-    const std::vector<double>& x = iteration_->x();
     team_.share(0, network_.node_count, [&](std::size_t begin, std::size_t end) {
       for (std::size_t node = begin; node < end; ++node) {
         std::copy_n(x.begin() + static_cast<std::ptrdiff_t>(6 * node), 6,
-                    by_module[at(network_.module[node])].begin());
+                    all[at(network_.module[node])].begin());
       }
     });
   }
-  recover(robot(), network_, team_, condensed_, by_module, module_copies_.get());
-  return by_module;
+  recover(robot(), network_, team_, condensed_, all, module_copies_.get());
+  return all;
 }
 
 }  // namespace holdfast::solver

@@ -33,7 +33,9 @@ class Multigrid final : public LinearSystem {
 
   [[nodiscard]] LinearOutcome solve(double tolerance) override;
   std::vector<Vec> displacement() override;
+  std::vector<Vec> facet_displacement() override;
   [[nodiscard]] bool refine(Solution& solution) override;
+  void hand_over(Solution& solution, Further further) override;
 
   bool is_exact() const override { return false; }
 
@@ -64,8 +66,8 @@ class Multigrid final : public LinearSystem {
   void take_changed_loads() override;
 
   std::uint8_t number_of(const FacetState& facet) const;
-  Vec displacement_of(std::int32_t node) const;
-  Vec force_on(const FacetState& facet, std::int32_t node) const;
+  Vec displacement_of(std::int32_t node);
+  Vec force_on(const FacetState& facet, std::int32_t node);
   const Mat& known_tangent(const FacetState& facet) const;
 
   host::Ranks* ranks() const { return options_.ranks(); }
@@ -77,6 +79,8 @@ class Multigrid final : public LinearSystem {
   LinearOutcome begin();
   LinearOutcome improve(const Target& target);
   std::unique_ptr<Iteration> make_iteration();
+  std::vector<double>& x();
+  std::vector<Vec> by_module(std::vector<double>& x);
   void update_iteration();
   void compute_residual();
   void update_residual();
@@ -94,6 +98,7 @@ class Multigrid final : public LinearSystem {
   std::vector<std::int32_t> alone_;                ///< Nodes that join no cluster.
   GroundTable known_tangents_;  ///< What the hierarchy takes for the facets' tangents.
   std::unique_ptr<Iteration> iteration_;
+  std::vector<double> no_x_;        ///< Empty.
   bool is_law_new_ = false;         ///< Everything must be made again.
   bool is_contact_new_ = false;     ///< The iteration does not know all facets' states.
   bool is_residual_known_ = false;  ///< But for facets that changed.

@@ -30,8 +30,9 @@ template <int kAxis, class Real>
 inline Wide axis_product(const LatticeView<double>& level, const Six<Real>* z, std::size_t p) {
   const Others& other = level.other[p];
   const MiddleSpring* springs = level.springs + kAxis * (kBeamLengthMax + 1);
-  const MiddleSpring& up = springs[level.kind[p][2 * kAxis]];
-  const MiddleSpring& down = springs[level.kind[p][2 * kAxis + 1]];
+  const Kind& kind = level.kind[level.type[p]];
+  const MiddleSpring& up = springs[kind[2 * kAxis]];
+  const MiddleSpring& down = springs[kind[2 * kAxis + 1]];
   const Wide own = load_wide(z[p]);
   const Wide above = middle_force<kAxis>(up, own, load_wide(z[other[2 * kAxis]]));
   const Wide below = middle_force<kAxis>(down, load_wide(z[other[2 * kAxis + 1]]), own);
@@ -44,7 +45,7 @@ template <class Real>
 inline Wide product(const LatticeView<double>& level, const Six<Real>* z, std::size_t p) {
   Wide sum =
       axis_product<0>(level, z, p) + axis_product<1>(level, z, p) + axis_product<2>(level, z, p);
-  if (level.kind[p][kContactByte] != 0) {
+  if (level.kind[level.type[p]][kContactByte] != 0) {
     sum += multiply(level.ground[level.type[p]], load_wide(z[p]));
   }
   return sum;

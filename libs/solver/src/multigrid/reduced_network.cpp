@@ -88,14 +88,19 @@ class Builder {
     return other;
   }
 
+  /// The colour of a module's cell on a chessboard, which the lattice has.
+  std::uint8_t lattice_colour(std::int32_t module) const {
+    return colour_of_brick(
+        robot_.lattice(),
+        brick_of(robot_.lattice(),
+                 base::axial_of(robot_.lattice(), robot_.modules()[at(module)].cell)));
+  }
+
   /// The colour of a module whose neighbours have taken some: the first, which makes two for cubes,
   /// else the lattice's own if no long beam has brought it there, of which there are four.
   std::uint8_t free_colour(std::int32_t module, unsigned taken) const {
-    if (!is_cubic_ || part_ != nullptr) {
-      const std::uint8_t own = colour_of_brick(
-          robot_.lattice(),
-          brick_of(robot_.lattice(),
-                   base::axial_of(robot_.lattice(), robot_.modules()[at(module)].cell)));
+    if (!is_cubic_) {
+      const std::uint8_t own = lattice_colour(module);
       if ((taken >> own & 1U) == 0) {
         return own;
       }
@@ -129,21 +134,70 @@ class Builder {
     return is_any;
   }
 
-  /// As Coarsening does: neighbours of two ranks are to have two colours.
-  void part_from_other_ranks(std::vector<std::uint8_t>& colour) const {
-    constexpr int kRoundMax = 8;
-    if (part_ == nullptr) {
-      return;
+  /// First fit along the curve, for this rank's modules: sees those before them and, of other
+  /// ranks', the copies that have colours.
+  void colour_own(std::vector<std::uint8_t>& colour) const {
+    std::fill_n(colour.begin(), part_ == nullptr ? colour.size() : part_->own_count, kNoColour);
+    for (std::size_t i = 0; i < network_.own_count; ++i) {
+      const std::int32_t module = order_.modules[i].module;
+      colour[at(module)] = free_colour(module, colours_around(module, colour));
     }
+  }
+
+  /// What first fit comes to where all beams are short: the lattice's own colours, so exchanged
+  /// that the first module along the curve, of the first rank that has any, has the first.
+  void guess_colours(std::vector<std::uint8_t>& colour) const {
+    const bool has_any = network_.own_count > 0;
+    const std::uint8_t mine = has_any ? lattice_colour(order_.modules.front().module) : kNoColour;
+    const auto firsts = host::gather(*part_->ranks, std::span<const std::uint8_t>(&mine, 1));
+    const auto first = std::ranges::find_if(firsts, [](auto one) { return one != kNoColour; });
+    const std::uint8_t change = is_cubic_ && first != firsts.end() ? *first : std::uint8_t{0};
+    for (std::size_t i = 0; i < network_.own_count; ++i) {
+      const std::int32_t module = order_.modules[i].module;
+      colour[at(module)] = static_cast<std::uint8_t>(lattice_colour(module) ^ change);
+    }
+  }
+
+  /// The colours of one machine: those of lower ranks, whose modules come before along the curve,
+  /// are guessed, then asked for until they stay. As many rounds as ranks would do; after a few
+  /// neighbours of two ranks need only have two colours.
+  void colour_on_ranks(std::vector<std::uint8_t>& colour) const {
+    constexpr int kRoundMax = 8;
     std::vector<std::int32_t> rank(colour.size(), part_->ranks->rank());
     for (const host::Copy& copy : part_->copies) {
       rank[at(copy.place)] = copy.original.rank;
     }
     const auto halo = part_->ranks->make_halo(part_->own_count, part_->copies);
+    guess_colours(colour);
+    bool is_any_changed = true;
+    for (int round = 0; is_any_changed && round < kRoundMax; ++round) {
+      const std::vector<std::uint8_t> before = colour;
+      halo->update(colour.data(), sizeof(std::uint8_t));
+      for (const host::Copy& copy : part_->copies) {
+        colour[at(copy.place)] =
+            copy.original.rank < part_->ranks->rank() ? colour[at(copy.place)] : kNoColour;
+      }
+      const bool is_changed = round == 0 || colour != before;
+      if (is_changed) {
+        colour_own(colour);
+      }
+      is_any_changed = host::any(part_->ranks, is_changed);
+    }
+    if (is_any_changed) {
+      part_from_other_ranks(rank, *halo, colour);
+    }
+    std::fill(colour.begin() + static_cast<std::ptrdiff_t>(part_->own_count), colour.end(),
+              kNoColour);
+  }
+
+  /// As Coarsening does: neighbours of two ranks are to have two colours.
+  void part_from_other_ranks(const std::vector<std::int32_t>& rank, host::Halo& halo,
+                             std::vector<std::uint8_t>& colour) const {
+    constexpr int kRoundMax = 8;
     bool is_any_changed = true;
     for (int round = 0; is_any_changed && round < kRoundMax; ++round) {
       is_any_changed = false;
-      halo->update(colour.data(), sizeof(std::uint8_t));
+      halo.update(colour.data(), sizeof(std::uint8_t));
       for (std::size_t i = 0; i < network_.own_count; ++i) {
         const std::int32_t module = order_.modules[i].module;
         if (is_shared(module, colour, rank)) {
@@ -154,17 +208,15 @@ class Builder {
       }
       is_any_changed = host::any(network_.ranks, is_any_changed);
     }
-    std::fill(colour.begin() + static_cast<std::ptrdiff_t>(part_->own_count), colour.end(),
-              kNoColour);
   }
 
   void colour_nodes() {
     std::vector<std::uint8_t> colour(robot_.modules().size(), kNoColour);
-    for (std::size_t i = 0; i < network_.own_count; ++i) {
-      const std::int32_t module = order_.modules[i].module;
-      colour[at(module)] = free_colour(module, colours_around(module, colour));
+    if (part_ == nullptr) {
+      colour_own(colour);
+    } else {
+      colour_on_ranks(colour);
     }
-    part_from_other_ranks(colour);
     constexpr std::size_t kColourMax = base::Lattice::kDirectionCountMax + 1;
     std::array<double, kColourMax> count{};  // Whole numbers, which ranks add up.
     for (std::size_t i = 0; i < network_.own_count; ++i) {
@@ -198,7 +250,7 @@ class Builder {
   void connect() {
     if (network_.is_cubic) {
       network_.cubic.other.resize(network_.node_count);
-      network_.cubic.kind.resize(network_.node_count);
+      kinds_.resize(network_.node_count);
       team_.share(0, network_.node_count, [&](std::size_t begin, std::size_t end) {
         for (std::size_t node = begin; node < end; ++node) {
           connect_cube(node);
@@ -231,7 +283,7 @@ class Builder {
       network_.cubic.other[node][direction] = other;
       kind[direction] = length;
     });
-    network_.cubic.kind[node] = kind;
+    kinds_[node] = kind;
   }
 
   void connect_by_direction() {
@@ -340,11 +392,12 @@ class Builder {
                                        .length = 1,
                                        .facet = static_cast<std::int32_t>(i)});
       if (network_.is_cubic) {
-        network_.cubic.kind[at(node)][at(direction)] = 1;
+        kinds_[at(node)][at(direction)] = 1;
       }
     }
     std::ranges::sort(network_.ground_beams, {},
                       [](const GroundBeam& beam) { return std::pair(beam.node, beam.direction); });
+    network_.cubic.kind = Kinds(kinds_);
   }
 
   static constexpr std::uint8_t kNoColour = 255;
@@ -357,6 +410,7 @@ class Builder {
   bool is_cubic_;  ///< The lattice.
   std::size_t direction_count_;
   std::vector<std::int32_t> node_of_;
+  std::vector<Kind> kinds_;  ///< By node, of cubes.
   ReducedNetwork network_;
 };
 

@@ -12,6 +12,7 @@
 #include "holdfast/base/lattice.hpp"
 #include "holdfast/host/team.hpp"
 #include "holdfast/model/robot.hpp"
+#include "kinds.hpp"
 #include "vectors.hpp"
 
 /// What is left of a robot when everything is eliminated that can be eliminated by hand: static
@@ -43,7 +44,7 @@ struct GroundBeam {
 /// their own kernels read it.
 struct CubicBeams {
   std::vector<Others> other;
-  std::vector<Kind> kind;  ///< A beam down to the ground or to a fixed module has no other node.
+  Kinds kind;  ///< A beam down to the ground or to a fixed module has no other node.
 };
 
 /// What connects the nodes of all other robots: by direction if all beams are one pitch long, else

@@ -45,8 +45,7 @@ void for_ties(const SpringGraph& fine, const std::vector<std::int32_t>& cluster,
       }
       const std::int32_t to = cluster[at(fine.other[e])];
       if (to != cluster[node]) {
-        const Mat& s = fine.springs[fine.pattern[node] + e - start].stiffness;
-        f(at(cluster[node]), to, s.at(0, 0) + s.at(1, 1) + s.at(2, 2));
+        f(at(cluster[node]), to, fine.springs[fine.pattern[node] + e - start].strength());
       }
     }
   }

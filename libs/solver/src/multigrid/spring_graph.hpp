@@ -34,7 +34,7 @@ struct SpringGraph {
   std::vector<std::int32_t> start;
   std::vector<std::int32_t> other;
   std::vector<std::uint32_t> pattern;
-  std::vector<Spring> springs;
+  std::vector<PackedSpring> springs;
   unsigned shift = 0;     ///< Cells are 2^(shift/3) modules wide.
   bool is_cubic = false;  ///< All springs are along the axes, however coarse the level.
 

@@ -207,6 +207,39 @@ Mat carried(const Mat& s, const Point& a) {
 }
 
 /// Along an axis of the global frame nothing is turned.
+PackedSpring::PackedSpring(const Spring& spring)
+    : direction(spring.direction),
+      length(spring.length),
+      middle(spring.middle),
+      partner(spring.partner) {
+  std::size_t next = 0;
+  for (int row = 0; row < 6; ++row) {
+    for (int column = row; column < 6; ++column) {
+      half[next++] = spring.stiffness.at(row, column);
+    }
+  }
+}
+
+Mat PackedSpring::stiffness() const {
+  Mat all;
+  std::size_t next = 0;
+  for (int row = 0; row < 6; ++row) {
+    for (int column = row; column < 6; ++column) {
+      all.at(row, column) = half[next];
+      all.at(column, row) = half[next++];
+    }
+  }
+  return all;
+}
+
+Spring PackedSpring::unpacked() const {
+  return {.direction = direction,
+          .length = length,
+          .middle = middle,
+          .partner = partner,
+          .stiffness = stiffness()};
+}
+
 Mat stretched(const Mat& stiffness, const Point& arm, const Point& direction, double length,
               double reach) {
   const Mat c = carried(stiffness, {-arm[0], -arm[1], -arm[2]});

@@ -39,6 +39,25 @@ struct Spring {
   Mat stiffness = {};    ///< At the node.
 };
 
+/// The same in less memory: of the stiffness, which is symmetric, one half.
+struct PackedSpring {
+  PackedSpring() = default;
+
+  explicit PackedSpring(const Spring& spring);
+
+  Spring unpacked() const;
+  Mat stiffness() const;
+
+  /// The sum of the stiffness against displacements, in all directions.
+  double strength() const { return half[0] + half[6] + half[11]; }
+
+  Point direction = {};
+  double length = 0;
+  Point middle = {};
+  Point partner = {};
+  std::array<double, 21> half = {};  ///< Row by row, from the diagonal on.
+};
+
 /// The spring of a beam `length` pitches long.
 Spring beam_spring(const base::Lattice& lattice, const model::Material& material,
                    std::size_t direction, std::size_t length);

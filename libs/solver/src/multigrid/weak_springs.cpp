@@ -44,11 +44,11 @@ std::vector<std::uint8_t> weak_at_node(const SpringGraph& graph, host::Team& tea
       const std::size_t last = first + at(graph.start[nodes[k] + 1] - graph.start[nodes[k]]);
       Mat sum{};
       for (std::size_t i = first; i < last; ++i) {
-        base::add_to(sum, graph.springs[i].stiffness);
+        base::add_to(sum, graph.springs[i].stiffness());
       }
       const Mat share = scaled(sum, -kWeakShare);
       for (std::size_t i = first; i < last; ++i) {
-        Mat rest = graph.springs[i].stiffness;
+        Mat rest = graph.springs[i].stiffness();
         base::add_to(rest, share);
         is_weak[i] = is_positive_definite(rest) ? 0 : 1;
       }

@@ -25,12 +25,15 @@
 /// correction, the last two iterations mixed [Anderson 1965]); and the loop ends
 /// by a bound on the error of every load ratio, not by a count.
 ///
-/// A robot without conjugate gradients (Setup::only_one_sweep) has Newton's method by the
-/// polynomial in their place. Contact states are kept while the linear problem they make is solved
-/// by iterations, as many as it takes; tilting facets act by symmetric stand-ins, so the least
-/// energy is what converges. Then one iteration has the facets' own forces (defect correction), and
-/// where these are in balance as far as states need it the next one looks states up. Under the
-/// unilateral law there is no line search: states that come again end as `undecided`.
+/// Where one-sweep methods come to no end, and for the unilateral law, there is Newton's method by
+/// the polynomial; conjugate gradients follow where it fails, unless the robot has none
+/// (Setup::only_one_sweep), and in its place where it is not tried: in other lattices than the
+/// cubic one and with supports that are no level floor. Contact states are kept while the linear
+/// problem they make is solved by iterations, as many as it takes; tilting facets act by symmetric
+/// stand-ins, so the least energy is what converges. Then one iteration has the facets' own forces
+/// (defect correction), and where these are in balance as far as states need it the next one looks
+/// states up. Under the unilateral law there is no line search: states that come again end as
+/// `undecided`.
 ///
 /// What follows a report; where several do, the first that applies.
 ///
@@ -181,7 +184,7 @@ class Conductor {
   Order leave_fronts(const Setup& setup, bool has_no_room);
   Order leave_one_sweep(const Setup& setup, bool is_unilateral);
   void take_safest_method(const Setup& setup);
-  void begin_newton();
+  void begin_states();
   void steer_newton(double error);
   int stagnation_max() const;
 
@@ -194,13 +197,29 @@ class Conductor {
   Order judge(const Setup& setup, const Report& report);
   Order judge_regularised(const Setup& setup, const Report& report);
   Order give_up(const Setup& setup);
-  Order settled();
+  Order settled(const Setup& setup);
   Order after_corners(const Setup& setup, const Report& report);
   Order after_hold(const Report& report);
   Order after_loads(const Setup& setup, const Report& report);
   Order free_open_feet();
   Order begin_unilateral(const Setup& setup);
+  void note_facets(const Report& report);
   double uneven_target() const;
+  double unilateral_gamma() const;
+
+  /// Are not only load ratios asked for, but the forces of facets?
+  bool needs_forces(const Setup& setup) const;
+
+  void note_worst(const Report& report);
+
+  /// Does a facet slip, or may it?
+  static bool may_slip([[maybe_unused]] const Report& report) {
+#ifdef HOLDFAST_AGENT_FLOOR_ONLY
+    return false;
+#else
+    return (report.remarks & kFacetSlips) != 0;
+#endif
+  }
 
   // Never in a program that knows a floor only.
   bool is_uneven() const { return kHasSurroundings && is_uneven_; }
@@ -211,6 +230,18 @@ class Conductor {
   Order finish(Verdict verdict, Reason reason);
   Order after_shape(const Report& report);
   Order say_answer();
+
+  // conductor_seeking.cpp; constants in a program that does not seek.
+  bool is_seeking() const;
+  bool may_seek() const;
+  bool is_back() const;
+  Order begin_seeking();
+  Order seek(std::uint32_t key, std::uint8_t flags = 0);
+  Order after_seek(const Setup& setup, const Report& report);
+  Order next_trial();
+  Order after_trial(const Setup& setup);
+  Order leave_trial(const Setup& setup);
+  Order conclude(const Setup& setup);
 
   // conductor_stages.cpp
   Order ask_word(std::uint8_t index, const Report& found);
@@ -225,6 +256,9 @@ class Conductor {
   bool is_one_sweep() const { return effort_.method == Method::kPolynomial || is_exact(); }
 
   bool has_fronts() const;
+
+  /// Are there conjugate gradients, for what no other method decides?
+  static bool has_gradients(const Setup& setup);
 
   /// Does an iteration solve the linear problem but for rounding?
   bool is_exact() const;
@@ -259,13 +293,21 @@ class Conductor {
   // Equilibrium.
   bool is_unilateral_ = false;
   bool is_tilting_ = false;
-  bool has_history_ = false;   ///< The last solve was for the same contact states.
-  bool is_comparing_ = false;  ///< Open feet freed, to see whether the verdict stays.
-  bool may_pull_ = false;      ///< Weak springs away from a level floor may carry.
-  bool is_standing_ = false;   ///< By the corners that press.
-  bool is_toppling_ = false;   ///< It is only asked whether the robot hangs on weak springs.
-  bool is_second_ = false;     ///< The unilateral law is asked as well, as they may.
-  double gamma_ = 0;           ///< (r, z) of conjugate gradients.
+  bool has_history_ = false;  ///< The last solve was for the same contact states.
+#ifndef HOLDFAST_AGENT_FLOOR_ONLY
+  std::uint8_t slack_bits_ = 0;  ///< Setup::slack_bits
+#endif
+  std::uint32_t states_hash_ = 0;  ///< Of the contact states wanted at the last judgement.
+  bool may_differ_ = false;        ///< A facet may have a second state.
+  bool is_comparing_ = false;      ///< Open feet freed, to see whether the verdict stays.
+  bool may_pull_ = false;          ///< Weak springs away from a level floor may carry.
+  bool is_standing_ = false;       ///< By the corners that press.
+  /// Beside the unilateral law: the weakest, then some that single precision can tell, then those
+  /// that only answer whether the robot hangs on them.
+  enum class WeakSprings : std::uint8_t { kWeakest, kStiffer, kToppling };
+  WeakSprings weak_springs_ = WeakSprings::kWeakest;
+  bool is_second_ = false;  ///< The unilateral law is asked as well, as they may.
+  double gamma_ = 0;        ///< (r, z) of conjugate gradients.
   double alpha_ = 0;
   double solve_error_ = 0;  ///< A solve ends when its residual's bound is below.
   std::uint32_t solve_iterations_ = 0;
@@ -294,11 +336,20 @@ class Conductor {
   double older_square_ = 0;         ///< (p, q) of the older direction, or |q|^2.
   EnergyBound energy_bound_;
   // Newton's method by the polynomial.
-  bool is_newton_ = false;  ///< Contact states are kept until their forces are in balance.
-  bool stands_in_ = false;  ///< The next iteration is one of a linear problem, ...
-  bool stood_in_ = false;   ///< ... as the last one was.
+  bool is_newton_ = false;        ///< Contact states are kept until their forces are in balance.
+  bool has_left_newton_ = false;  ///< It came to no end: never again.
+  bool stands_in_ = false;        ///< The next iteration is one of a linear problem, ...
+  bool stood_in_ = false;         ///< ... as the last one was.
   bool is_solved_ = false;  ///< The facets' own forces are in balance, as far as states need it.
   double enough_ = 0;       ///< The linear problem is solved when its error is below.
+  // Further solutions.
+  enum class Seeking : std::uint8_t { kNotYet, kTrying, kReturning, kDone };
+  Seeking seeking_ = Seeking::kNotYet;
+  std::uint32_t found_hash_ = 0;  ///< Of the states that were found first.
+  std::uint32_t next_key_ = 0;    ///< Of the facet that is tried next; 0: all have been.
+  std::uint8_t trial_count_ = 0;
+  bool other_breaks_ = false;  ///< Another solution was found, and with it a connection breaks.
+  bool was_newton_ = false;    ///< is_newton_ before.
   // Jacobi.
   std::uint16_t batch_ = 0;
   std::uint32_t check_at_ = 0;

@@ -32,12 +32,16 @@ namespace holdfast::agent {
 /// A node in a front.
 struct FrontNode {
   base::Cell cell = {};
-  Faces missing = {};        ///< Faces whose beams are not in yet.
-  Faces joined = {};         ///< Faces whose beams are put in here.
-  bool is_fixed = false;     ///< Does not move: no rows.
-  bool is_kept = false;      ///< Its facet is the root's.
-  bool is_held = true;       ///< Of a kept facet, against slip and twist.
-  base::Vec6<float> u = {};  ///< Of a kept one: its displacement.
+  Faces missing = {};     ///< Faces whose beams are not in yet.
+  Faces joined = {};      ///< Faces whose beams are put in here.
+  bool is_fixed = false;  ///< Does not move: no rows.
+  bool is_kept = false;   ///< Its facet is the root's.
+  bool is_held = true;    ///< Of a kept facet, against slip and twist.
+  bool was_released = false;
+  bool is_doubtful = false;            ///< Of a kept facet, as Node has it; ...
+  mechanics::ContactState state = {};  ///< ... in use ...
+  mechanics::ContactState found = {};  ///< ... and when others were sought.
+  base::Vec6<double> u = {};           ///< Of a kept one: its displacement.
 
   bool is_complete() const { return missing.is_empty() && !is_kept; }
 };
@@ -47,6 +51,11 @@ struct KeptFacet {
   base::Vec6<double> u{};
   mechanics::ContactState state;
   bool is_held = true;
+  bool was_held = true;  ///< When the loads that are here were found.
+  bool was_released = false;
+  mechanics::ContactState found = {};  ///< When others were sought (kSeek), ...
+  bool is_doubtful = false;            ///< ... and whether another state leads elsewhere.
+  std::uint32_t key = 0;               ///< By which orders name it.
 };
 
 /// What one module needs for its fronts. The caller owns it: whoever has no such memory has other

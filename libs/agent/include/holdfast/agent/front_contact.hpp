@@ -34,6 +34,10 @@ class FrontContact {
   /// with these facets say so.
   bool solve();
 
+  /// Under the regularised law: does Newton's method come to another solution when facet k begins
+  /// in the other state, all others in those that were found? Nothing changes.
+  bool leads_elsewhere(std::size_t k);
+
  private:
   using Vector = std::span<double>;
 
@@ -42,8 +46,10 @@ class FrontContact {
   bool solve_unilateral();
   base::Vec6<double> displacement(std::size_t facet, const Vector& d) const;
   bool follow_states(const Vector& d);
+  void take_found();
+  void find_start();
   void find_residual(const Vector& d, Vector& residual) const;
-  void load_tangent();
+  void load_tangent(double hold);
   bool solve_linear(Vector& b);
   double slope(const Vector& g, const Vector& d, double t);
   double step_length(const Vector& g, const Vector& d);
@@ -60,6 +66,7 @@ class FrontContact {
   Vector g_;
   Vector trial_;
   Vector residual_;
+  Vector start_;  ///< F(u).
 };
 
 }  // namespace holdfast::agent

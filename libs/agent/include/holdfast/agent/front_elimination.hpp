@@ -88,13 +88,16 @@ class FrontElimination {
   static void take_vector(std::span<float> into, std::size_t index,
                           const base::Vec6<float>& vector);
 
-  static void begin_law(Workspace& ws, const Order& order);
+  void begin_law(Workspace& ws, const Order& order);
+  void keep_weak(Workspace& ws);
+  void hold_kept(const Order& order);
+  void seek_kept(const Workspace& ws, const Order& order, Report& sum);
 
   // The front.
   void factor();
   void assemble(Workspace& ws);
   bool make_front(Workspace& ws);
-  bool take_kept_facets();
+  bool take_kept_facets(const Workspace& ws);
   int row_at(const base::Cell& cell) const;
   void add_below(const Below& below);
   void add_beams(const Workspace& ws);
@@ -115,10 +118,12 @@ class FrontElimination {
   FrontMemory* memory_ = nullptr;  ///< Lent, from the begin of an equilibrium on.
   Front front_;
   std::array<Below, base::kDirectionCount> below_{};
+  PlannedSet weak_;              ///< Nodes whose facets hold, but with little pressure.
   std::uint8_t kept_count_ = 0;  ///< Facets that the root keeps.
   Piece piece_ = Piece::kNone;
   bool has_no_room_ = false;
   bool has_no_state_ = false;
+  bool is_seeking_ = false;   ///< Kept facets begin in the states in use, not in "all stuck".
   bool sends_front_ = false;  ///< A kFactor: the front goes up, not its loads alone.
   int index_ = 0;             ///< Of what comes next in a piece.
   std::uint16_t down_awaited_ = 0;

@@ -15,9 +15,9 @@
 /// packet starts from them, so that packets of an earlier session, or of another neighbour, fail
 /// it. A neighbour that has fallen silent is greeted every `ping_after`, so that both sides find
 /// each other when it comes back. Packets carry a 6-bit sequence number and acknowledge what has
-/// come the other way; at most kWindow of them are under way, and all are sent again when no
-/// acknowledgement comes in time (go-back-N). An acknowledgement waits a little for data to ride
-/// on.
+/// come the other way; at most kWindow of them are under way, or kLentWindow, and all are sent
+/// again when no acknowledgement comes in time (go-back-N). An acknowledgement waits a little for
+/// data to ride on.
 namespace holdfast::agent {
 
 /// In the port's unit, for instance microseconds; only differences and order matter.
@@ -45,10 +45,12 @@ class Link {
   static constexpr int kWindow = 4;
   /// Bytes that can wait to be sent or acknowledged: a whole sweep of the largest messages.
   static constexpr int kQueueBytes = 320;
-  /// The same where a longer queue is lent: a window of the largest packets and more.
-  static constexpr int kLentBytes = 1024;
+  /// The window of a link whose queue is lent: long streams wait for acknowledgements less often.
+  static constexpr int kLentWindow = 16;
+  /// What is lent for a longer queue: a window of the largest packets and more, and their sizes.
+  static constexpr int kLentBytes = 4096;
   /// The same where there may be many planned modules: all vectors of an iteration, and more.
-  static constexpr int kPlannedBytes = 2048;
+  static constexpr int kPlannedBytes = 4096;
 
   /// A neighbour is there. `nonce` should differ each time. 0 and the last one are never used, the
   /// next number is; if it is that of a session before this object was made, which the neighbour
@@ -81,7 +83,7 @@ class Link {
 
   /// Can a message of so many bytes be queued?
   bool has_room(int bytes) const {
-    return queued_bytes_ + bytes <= (is_long() ? kPlannedBytes : kQueueBytes);
+    return queued_bytes_ + bytes <= (is_long() ? kPlannedBytes - kLentWindow : kQueueBytes);
   }
 
   /// The same for a long stream, which may use a queue that is lent.
@@ -122,9 +124,11 @@ class Link {
   int write_greeting(std::span<std::uint8_t> packet, const LinkTiming& timing, Time now);
   std::uint8_t* queue();
   int capacity() const;
+  int window() const;
+  std::uint8_t& chunk_bytes(int index);
   void clear();
   std::uint16_t wrapped(int position) const;
-  int packet_chunk(const LinkTiming& timing) const;
+  int packet_chunk(const LinkTiming& timing);
   Time patience(const LinkTiming& timing) const;
 
   /// Is a neighbour greeted that has fallen silent?

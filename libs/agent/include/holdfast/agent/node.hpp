@@ -57,6 +57,8 @@ struct Node {
   bool is_kept = false;      ///< With fronts: its facet has not held all over, and is the root's.
   mechanics::ContactState state;   ///< In use.
   mechanics::ContactState wanted;  ///< That the law prescribes for u.
+  mechanics::ContactState found;   ///< When others were sought (kSeek), ...
+  bool is_doubtful = false;        ///< ... and whether there may be another one.
   NodeVector vector;
   NodeMatrix matrix;
 #ifndef HOLDFAST_AGENT_FLOOR_ONLY

@@ -113,6 +113,8 @@ inline constexpr OperationInfo kOperations[] = {
      "box, supports, the largest load ratio"},
     {wire::Operation::kNext, "next", 35, 10, Phase::kOverload, {}, false, false,
      "where the next module may go"},
+    {wire::Operation::kSeek, "seek", 7, 10, Phase::kEquilibrium, {}, false, false,
+     "put a facet into another state"},
 };
 // clang-format on
 

@@ -33,13 +33,22 @@ enum class Reason : std::uint8_t {
   kTooLarge,         ///< Too many modules, or too far apart, to be counted (feet.hpp).
   kNotConverged,     ///< No method settled within the limit of iterations.
   kTooClose,         ///< The largest load ratio cannot be told from 1.
-  kAmbiguousFeet,    ///< The verdict depends on feet that are neither held nor free.
-  kNoAnswer,         ///< The computation has stopped, or the root is no longer heard.
-  kNoAnchor,         ///< Nobody has said where this module is.
-  kInPieces,         ///< In a stage of a step the robot would be in pieces.
-  kStepUnclear,      ///< The words of a step are missing, contradict each other, or do not fit.
+  kAmbiguousFeet,  ///< The verdict depends on feet that are neither held nor free, or may be both.
+  kNoAnswer,       ///< The computation has stopped, or the root is no longer heard.
+  kNoAnchor,       ///< Nobody has said where this module is.
+  kInPieces,       ///< In a stage of a step the robot would be in pieces.
+  kStepUnclear,    ///< The words of a step are missing, contradict each other, or do not fit.
+  kMaySlip,        ///< A facet is pulled sideways by more than its friction.
 };
-inline constexpr int kReasonCount = 16;
+inline constexpr int kReasonCount = 17;
+
+/// What there is to say of connections besides how much they carry, where they have laws of their
+/// own: which limit it is (mechanics::Limit) that the worst one is nearest to, ...
+inline constexpr std::uint8_t kLimitBits = 3;
+/// ... whether the edge of some facet opens by more than its contacts of power and data bear, ...
+inline constexpr std::uint8_t kGapOpens = 4;
+/// ... and, in reports only, whether a facet that touches something may slip.
+inline constexpr std::uint8_t kFacetSlips = 8;
 
 const char* name(Verdict verdict);
 const char* name(Reason reason);
@@ -51,6 +60,9 @@ struct Answer {
   float load_ratio_max = 0;    ///< Not meaningful if unstable or undecided.
   base::Cell worst_cell = {};  ///< The worst connection: this cell and its neighbour ...
   base::Direction worst_direction = base::Direction::kPlusX;  ///< ... in this direction.
+#ifndef HOLDFAST_AGENT_FLOOR_ONLY
+  std::uint8_t remarks = 0;  ///< kLimitBits, kGapOpens
+#endif
 
   friend constexpr bool operator==(const Answer&, const Answer&) = default;
 };
@@ -122,6 +134,9 @@ struct Order {
 
   constexpr float b() const { return reals[2]; }
 
+  // kSeek
+  constexpr std::uint32_t key() const { return static_cast<std::uint32_t>(mass); }  ///< Of a facet.
+
   // kNext; `count` supports.
   constexpr float ratio_error() const { return reals[0]; }  ///< Bound on that of load ratios.
 
@@ -170,6 +185,7 @@ inline constexpr std::uint8_t kFreeOpen = 2;       ///< kHold: of all open facet
 inline constexpr std::uint8_t kIsHeld = 1;         ///< kNext: a module is fixed, nothing topples.
 inline constexpr std::uint8_t kHasForces = 2;      ///< kNext: there is an equilibrium, ...
 inline constexpr std::uint8_t kIsUnilateral = 4;   ///< ... by the unilateral law.
+inline constexpr std::uint8_t kRemember = 1;       ///< kSeek: states in use are those found.
 
 /// Does a kRenew tell of one plan more?
 constexpr bool is_new_plan(const Order& renew) {
@@ -202,6 +218,9 @@ struct Report {
   std::array<double, 3> products{};  ///< kIterate
   base::Cell cell = {};
   base::Direction direction = base::Direction::kPlusX;
+#ifndef HOLDFAST_AGENT_FLOOR_ONLY
+  std::uint8_t remarks = 0;  ///< kLoads, kClose: kLimitBits, kGapOpens, kFacetSlips
+#endif
   SafeCorners feet = {};
   mechanics::SupportCorners corners = {};
 
@@ -233,6 +252,9 @@ struct Report {
 
   // kHold
   constexpr std::uint32_t open_held_count() const { return number; }  ///< How many facets.
+
+  // kSeek: `count` facets may have a second state.
+  constexpr std::uint32_t next_key() const { return number; }  ///< The least above the order's; 0.
 
   // kClusters: `count` beams between clusters; these do not lead to the parent cluster.
   constexpr std::uint32_t stray_count() const { return number; }
@@ -289,6 +311,8 @@ inline constexpr std::uint8_t kNoState = 4;  ///< kTreeIterate: the root found n
 /// kLow, kIterate, kTreeIterate: away from a level floor a facet is open or tilts, so its weak
 /// spring may carry.
 inline constexpr std::uint8_t kMayPull = 8;
+/// kLow, kIterate, kTreeIterate: a facet may have a second state (is_doubtful()).
+inline constexpr std::uint8_t kMayDiffer = 16;
 inline constexpr std::uint8_t kStepTold = 32;  ///< kPlan: a step was told.
 inline constexpr std::uint8_t kDenied = 2;     ///< kWord: a word does not fit this module.
 inline constexpr std::uint8_t kSplit = 4;  ///< kWord: the robot would be in pieces, in stage mask.

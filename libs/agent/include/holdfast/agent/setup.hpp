@@ -36,9 +36,9 @@ struct Setup {
   std::int32_t support_z = 0;  ///< Modules in this layer rest on the ground.
   /// kElimination means: or kPolynomial, if the robot has too many loops.
   Method method = Method::kElimination;
-  /// Elimination and the polynomial alone, without rigid clusters, and Newton's method by the
-  /// polynomial where others take conjugate gradients: for robots some of whose modules have no
-  /// other method (src/methods.hpp).
+  /// Elimination and the polynomial alone, without rigid clusters and without conjugate gradients
+  /// where they do not settle: for robots some of whose modules have no other method
+  /// (src/methods.hpp).
   bool only_one_sweep = false;
   /// After a verdict the next one begins from what is kept, where only a plan has changed or a
   /// module has come; else, and without it, from nothing.
@@ -67,6 +67,14 @@ struct Setup {
   /// Where loads alone say that the robot falls (feet.hpp): the axes of the plane of all supports.
   bool has_plane = false;
   std::array<std::array<double, 3>, 2> plane_axes{};
+  bool has_friction = false;  ///< Of a support: whether it slips is asked of forces.
+  /// Where connections have laws of their own, the most that a force, a torque and the root of an
+  /// energy do to a load ratio; 0: Eq. (17).
+  double ratio_per_n = 0;
+  double ratio_per_nmm = 0;
+  double ratio_per_energy_root = 0;
+  /// Such a bound makes 2 to the power of this more of the same forces than Eq. (17) would.
+  std::uint8_t slack_bits = 0;
   // Derived.
   mechanics::LatticeBeam<double> lattice_beam;
   mechanics::LatticeBeam<float> lattice_beam_float;

@@ -9,8 +9,9 @@
 #include "holdfast/agent/round.hpp"
 #include "holdfast/agent/setup.hpp"
 #include "holdfast/agent/step_word.hpp"
+#include "holdfast/agent/surroundings.hpp"
 #include "holdfast/base/algebra.hpp"
-#include "holdfast/base/faces.hpp"
+#include "holdfast/base/lattice.hpp"
 
 /// The plan of a step as one module knows it, and what that makes of the module in each stage.
 ///
@@ -34,11 +35,11 @@ inline constexpr int kStageCount = 3;
 /// Stages::words() of a robot that was told nothing.
 inline constexpr std::uint8_t kNoWord = 0xff;
 
-/// What a module weighs in a stage, half units of mass, and the first moments from its own centre
-/// of what hangs on it, half units times cells.
-struct StageMass {
-  std::int32_t mass = 2;
-  std::array<std::int32_t, 3> moment{};
+/// What hangs on a module in a stage: half units of mass, and first moments from its centre, half
+/// units times cells of FeetCheck. With Setup::has_plane as in Surroundings.
+struct HungMass {
+  std::int32_t mass = 0;
+  std::array<std::int64_t, 3> moment{};
 };
 
 /// Where a module is, as it knows itself.
@@ -46,11 +47,19 @@ struct StageSite {
   base::Cell cell = {};
   Faces used = {};  ///< Where it has neighbours.
   bool is_fixed = false;
-  bool is_standing = false;  ///< On the ground.
+  Faces touching = {};       ///< Where it touches what does not move, but for a floor.
+  bool is_standing = false;  ///< On the floor.
 };
 
 class Stages {
  public:
+  Stages() = default;
+
+  /// Of modules of a lattice; with `environment`, in which they find what they weigh, null only if
+  /// they are equal cubes on a floor.
+  Stages(const base::Lattice& lattice, const Environment* environment)
+      : lattice_(&lattice), environment_(environment) {}
+
   // ---- What this module was told.
 
   /// Word `index` of a plan of `total` words. Its first word replaces another plan.
@@ -66,6 +75,11 @@ class Stages {
 
   /// A round over all links begins; its plan is learned anew.
   void leave(const Round& round);
+
+  /// Does the word name faces that modules have?
+  bool is_possible(const StepWord& word) const {
+    return is_word(bits_of(word), lattice_->direction_count);
+  }
 
   /// All know the word from here on.
   void learn(std::uint8_t index, std::uint8_t total, const StepWord& word);
@@ -127,12 +141,12 @@ class Stages {
   /// The first cell behind `last`, or of all, that is planned in this stage. False: there is none.
   bool find_planned(bool has_last, const base::Cell& last, base::Cell& cell) const;
 
-  StageMass mass(const base::Cell& cell) const;
+  HungMass hung_mass(const base::Cell& cell, const Setup& setup) const;
 
   /// Works out hung() for the module in `cell`.
   void hang(const base::Cell& cell, const Setup& setup);
 
-  /// What acts on this module besides its weight: N, N mm.
+  /// What acts on this module besides its own load: N, N mm.
   const base::Vec6<double>& hung() const { return hung_; }
 
   /// visit(direction, load ratio) for every group that hangs on `cell`: of the connection between
@@ -152,6 +166,7 @@ class Stages {
   static std::size_t at(Stage stage) { return static_cast<std::size_t>(stage) - 1; }
 
   using Choice = std::array<std::uint8_t, kGroupCount>;
+  using Place = std::array<double, 3>;
 
   const StepWord* find(StepWord::Kind kind, const base::Cell& cell) const;
   const StepWord* leaving(const base::Cell& cell) const;
@@ -167,7 +182,19 @@ class Stages {
   bool carries(std::uint8_t group, const base::Cell& cell, int& waypoint) const;
   bool find_hanging(std::uint8_t group, const base::Cell& cell, const Setup& setup,
                     base::Direction& direction, double& ratio) const;
+  std::int32_t mass_of(const base::Cell& cell) const;
+  base::Vec6<double> load_of(const base::Cell& cell, const Setup& setup) const;
+  base::Vec6<double> hung_load(const base::Cell& cell, const Setup& setup) const;
+  HungMass hung_on_plane(const base::Cell& cell, const Setup& setup) const;
+  base::Cell doubled_apart(const StepWord& move, int waypoint, const base::Cell& from) const;
+  Place place_from(const StepWord& move, int waypoint, const base::Cell& from) const;
+  base::Vec6<double> group_load(std::uint8_t group, int waypoint, const base::Cell& cell,
+                                const Place& point, const Setup& setup) const;
+  double ratio_through(base::Direction face, std::uint8_t group, int waypoint,
+                       const base::Cell& cell, const Setup& setup) const;
 
+  const base::Lattice* lattice_ = &base::kCubic;
+  const Environment* environment_ = nullptr;
   std::array<StepWord, kWordCountMax> words_{};
   std::array<Answer, kStageCount> answers_{};
   base::Vec6<double> hung_{};

@@ -5,7 +5,9 @@
 #include <array>
 #include <cstdint>
 
+#include "holdfast/agent/lattices.hpp"
 #include "holdfast/base/cell.hpp"
+#include "holdfast/base/lattice.hpp"
 
 /// A step of a reconfiguration as modules are told of it, word by word (docs/distributed.md).
 namespace holdfast::agent {
@@ -31,7 +33,7 @@ inline constexpr int kSceneMax = 200;
 inline constexpr int kWaypointMax = 5;
 
 /// In place of a direction: none.
-inline constexpr std::uint8_t kNoDirection = 7;
+inline constexpr std::uint8_t kNoDirection = 15;
 
 /// One word of the plan of a step.
 struct StepWord {
@@ -63,25 +65,28 @@ struct StepWord {
 /// All of a word but its cell.
 constexpr std::uint32_t bits_of(const StepWord& word) {
   return static_cast<std::uint32_t>(word.kind) | std::uint32_t{word.group} << 3U |
-         std::uint32_t{word.face} << 6U | std::uint32_t{word.first} << 9U |
-         std::uint32_t{word.second} << 12U | std::uint32_t{word.mask} << 15U;
+         std::uint32_t{word.face} << 6U | std::uint32_t{word.first} << 10U |
+         std::uint32_t{word.second} << 14U | std::uint32_t{word.mask} << 18U;
 }
 
 constexpr StepWord word_of(std::uint32_t bits, const base::Cell& cell) {
-  const auto three = [bits](unsigned at) { return static_cast<std::uint8_t>(bits >> at & 7U); };
-  return {.kind = static_cast<StepWord::Kind>(bits & 7U),
-          .group = three(3),
-          .face = three(6),
-          .first = three(9),
-          .second = three(12),
-          .mask = static_cast<std::uint8_t>(bits >> 15U & 31U),
+  const auto part = [bits](unsigned at, unsigned most) {
+    return static_cast<std::uint8_t>(bits >> at & most);
+  };
+  return {.kind = static_cast<StepWord::Kind>(part(0, 7)),
+          .group = part(3, 7),
+          .face = part(6, 15),
+          .first = part(10, 15),
+          .second = part(14, 15),
+          .mask = part(18, 31),
           .cell = cell};
 }
 
-/// Are these the bits of a word? What a kind has no use for is as in a word that was just made.
-constexpr bool is_word(std::uint32_t bits) {
+/// Are these the bits of a word to modules with so many faces? What a kind has no use for is as in
+/// a word that was just made.
+constexpr bool is_word(std::uint32_t bits, int face_count = kFaceCountMax) {
   const StepWord word = word_of(bits, {});
-  const auto is_direction = [](std::uint8_t value) { return value < base::kDirectionCount; };
+  const auto is_direction = [face_count](std::uint8_t value) { return value < face_count; };
   const bool is_plain = word.first == kNoDirection && word.second == kNoDirection;
   const bool is_ungrouped = word.group == 0;
   if (bits != bits_of(word)) {
@@ -104,11 +109,12 @@ constexpr bool is_word(std::uint32_t bits) {
 }
 
 /// Where a moved module goes to.
-constexpr base::Cell target_of(const StepWord& move) {
-  const base::Cell next = base::neighbour(move.cell, static_cast<base::Direction>(move.first));
+constexpr base::Cell target_of(const base::Lattice& lattice, const StepWord& move) {
+  const base::Cell next =
+      base::neighbour(lattice, move.cell, static_cast<base::Direction>(move.first));
   return move.second == kNoDirection
              ? next
-             : base::neighbour(next, static_cast<base::Direction>(move.second));
+             : base::neighbour(lattice, next, static_cast<base::Direction>(move.second));
 }
 
 /// Waypoints of a move: start, middle, end of each of its cells.
@@ -116,11 +122,13 @@ constexpr int waypoint_count(const StepWord& move) {
   return move.second == kNoDirection ? 3 : kWaypointMax;
 }
 
-/// Twice the way that a moved module has gone at a waypoint; behind its last one it waits.
-constexpr base::Cell doubled_way(const StepWord& move, int waypoint) {
+/// Twice the way that a moved module has gone at a waypoint, in axial coordinates; behind its last
+/// one it waits.
+constexpr base::Cell doubled_way(const base::Lattice& lattice, const StepWord& move, int waypoint) {
   base::Cell way;
   for (int half = 0; half < waypoint && half < waypoint_count(move) - 1; ++half) {
-    way = base::neighbour(way, static_cast<base::Direction>(half < 2 ? move.first : move.second));
+    const base::Cell& step = lattice.steps[half < 2 ? move.first : move.second];
+    way = {way.x + step.x, way.y + step.y, way.z + step.z};
   }
   return way;
 }

@@ -9,6 +9,7 @@
 #include "holdfast/agent/lattices.hpp"
 #include "holdfast/base/algebra.hpp"
 #include "holdfast/base/cell.hpp"
+#include "holdfast/mechanics/connector_law.hpp"
 #include "holdfast/mechanics/ground_contact.hpp"
 #include "holdfast/mechanics/support_corners.hpp"
 
@@ -29,14 +30,20 @@ inline constexpr bool kHasSurroundings = false;
 inline constexpr bool kHasSurroundings = true;
 #endif
 
+/// The coefficient of friction of what does not slip.
+inline constexpr double kNoSlip = -1;
+
 /// A facet of a module that touches what does not move, and its state as in Node.
 struct TouchingFacet {
   base::Direction direction = base::Direction::kMinusZ;
-  bool is_bonded = false;  ///< Holds like a module with connectors would.
+  bool is_bonded = false;     ///< Holds like a module with connectors would.
+  double friction = kNoSlip;  ///< Its coefficient.
   bool is_held = true;
   bool was_released = false;
   mechanics::ContactState state = {};
   mechanics::ContactState wanted = {};
+  mechanics::ContactState found = {};  ///< As of a Node.
+  bool is_doubtful = false;
 };
 
 struct Environment;
@@ -58,7 +65,11 @@ struct Surroundings {
 struct Environment {
   /// Fills in load, mass and facets of the module that is, or will be, in a cell.
   void (*describe)(const void* map, const base::Cell& cell, Surroundings& node) = nullptr;
-  const void* map = nullptr;                              ///< Handed to describe(). Not owned.
+  /// The law of the connection of the modules in a cell and beside it, the weaker of their two
+  /// connectors; null: Eq. (17) for all.
+  const mechanics::ConnectorLaw& (*law)(const void* map, const base::Cell& cell,
+                                        base::Direction direction) = nullptr;
+  const void* map = nullptr;                              ///< Handed to these functions. Not owned.
   const mechanics::LatticeBeam<double>* beams = nullptr;  ///< Null: cubes. Not owned.
   const base::Lattice* lattice = nullptr;                 ///< Not null where there are beams.
   double foot_width_mm = 0;  ///< Of all facets that touch; 0 is a point.
@@ -68,7 +79,18 @@ struct Environment {
   /// All facets look straight down and lie on one level, nothing but weight acts, straight down,
   /// and masses are whole numbers of one unit: so the simplified check is exact.
   bool is_level = false;
+  /// With Setup::has_plane: in which pressure on the plane is counted, and where that is along its
+  /// axis out of the robot, in pitches.
+  double plane_unit_n = 1;
+  double plane_height = 0;
+  /// Of the robot as the step whose stages are judged leaves it. Null: there is no such step, or it
+  /// leaves no robot. Not owned.
+  const Environment* connected = nullptr;
 };
+
+/// What connections with laws of their own carry besides MiddleLoad, by face of a module: two
+/// forces across and the torsion, N and N mm.
+using AcrossLoads = std::array<std::array<double, 3>, kFaceCountMax>;
 
 /// Is the node bonded to something?
 bool is_any_bonded(const Surroundings& node);

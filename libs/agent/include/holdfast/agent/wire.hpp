@@ -108,8 +108,9 @@ enum class Operation : std::uint8_t {
   kStage,        ///< Know the verdict on a stage of a step; the next stage, or scene of one.
   kShape,        ///< Box, supports and largest load ratio of every subtree.
   kNext,         ///< Where the next module may go: every free face judges itself.
+  kSeek,         ///< Contact states as they were found, one facet in another state.
 };
-inline constexpr int kOperationCount = static_cast<int>(Operation::kNext);  ///< The last one.
+inline constexpr int kOperationCount = static_cast<int>(Operation::kSeek);  ///< The last one.
 
 /// Sizes of whole messages, type byte included; 0 for what is not a message. `second` is the byte
 /// after the type and matters for orders and reports only.

@@ -40,6 +40,7 @@ struct LentMemory {
   const Environment* environment = nullptr;  ///< Not null where there are surroundings.
   MoreFaces* faces = nullptr;                ///< Null: the module is a cube.
   MorePlanned* planned = nullptr;            ///< Null: kPlannedMax planned modules at most.
+  AcrossLoads* across = nullptr;             ///< Null: Eq. (17) is the law of every connection.
 };
 
 /// What the parts of a module's program work on: the module's lines, its place in the tree, the
@@ -57,7 +58,9 @@ struct Workspace {
 
   /// What there is beside a floor, or null.
   const Environment* environment() const {
-    return kHasSurroundings && lent != nullptr ? lent->environment : nullptr;
+    const Environment* all = kHasSurroundings && lent != nullptr ? lent->environment : nullptr;
+    const bool is_left = all != nullptr && all->connected != nullptr && stage() == Stage::kConnect;
+    return is_left ? all->connected : all;
   }
 
   /// Null where steps are not judged in stages.
@@ -105,7 +108,20 @@ struct Workspace {
     return at_face(middle_own, links.more(), &MoreFaces::middle, face);
   }
 
+  /// What connections with laws of their own carry besides, or null.
+  AcrossLoads* across() const {
+    return kHasSurroundings && lent != nullptr ? lent->across : nullptr;
+  }
+
   void clear_middle();
+
+  /// Adds to across() what the beam at a face carries, given the force in its middle.
+  void add_across(Direction face, const base::Vec6<double>& force) {
+    if (AcrossLoads* loads = across(); kHasSurroundings && loads != nullptr) {
+      std::array<double, 3>& load = (*loads)[static_cast<std::size_t>(face)];
+      load = {load[0] + force[0], load[1] + force[1], load[2] + force[5]};
+    }
+  }
 
   /// The cell next to `cell` in a direction of the lattice.
   base::Cell beside(const base::Cell& cell, Direction direction) const {
@@ -115,6 +131,13 @@ struct Workspace {
   /// Starts an exchange: this module's own vector goes out and, if they are part of it, those of
   /// planned modules emulated here.
   void start_exchange(PlannedPart part);
+
+  /// The same, from nothing.
+  void set_across(Direction face, const base::Vec6<double>& force) {
+    if (AcrossLoads* loads = across(); kHasSurroundings && loads != nullptr) {
+      (*loads)[static_cast<std::size_t>(face)] = {force[0], force[1], force[5]};
+    }
+  }
 
   const Setup& setup;
   Links links;

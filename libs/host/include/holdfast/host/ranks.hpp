@@ -47,8 +47,8 @@ struct KrylovTask {
   /// Asked before each iteration, with its number from 0 on and r . M^-1 r; true ends the method.
   using IsOver = std::function<bool(int, double)>;
 
-  std::span<double> x;  ///< What the task itself works on,
-  std::span<double> r;  ///< and what that leaves of b.
+  std::span<double> x;                    ///< What the task itself works on.
+  std::function<void(double*)> residual;  ///< Writes what that leaves of b.
   /// The task's own method, which improves x. May end before it is told to.
   std::function<void(const IsOver&)> iterate;
   // What somebody else's method takes.

@@ -75,15 +75,15 @@ struct ReadDocument {
   std::vector<std::string> warnings;
 };
 
-enum class Format : std::uint8_t { kVisibleSimXml, kJson };
+enum class Format : std::uint8_t { kVisibleSimXml, kJson, kBinary };
 
 /// The limits of what is read, against files that are not what they seem. Nesting is that of XML
 /// elements, and of JSON objects and arrays.
 inline constexpr std::size_t kFileBytesMax = std::size_t{1} << 30U;
 inline constexpr int kNestingMax = 64;
 
-/// The format by the first character that is not white space: '<' for XML, '{' or '[' for JSON; an
-/// error for anything else.
+/// The format by its first letters, HOLDFAST for a binary structure, or by the first character that
+/// is not white space: '<' for XML, '{' or '[' for JSON; an error for anything else.
 base::Result<Format> detect_format(std::string_view text);
 
 /// What holds where a file says nothing of it; a file that says otherwise is an error.
@@ -92,7 +92,7 @@ struct ReadOptions {
   std::string robot = {};  ///< One of model::robot_catalogue(); empty: Table I of the paper.
 };
 
-/// Reads either format. Error::where is "line 12" or a JSON pointer such as "/modules/3".
+/// Reads any of the formats. Error::where is "line 12" or a JSON pointer such as "/modules/3".
 base::Result<ReadDocument> read_document(std::string_view text, const ReadOptions& options = {});
 
 base::Result<ReadDocument> read_visiblesim(std::string_view text, const ReadOptions& options = {});

@@ -9,6 +9,7 @@
 
 #include "holdfast/base/cell.hpp"
 #include "holdfast/base/lattice.hpp"
+#include "holdfast/host/team.hpp"
 
 /// Which modules of a robot are neighbours, and which are connected, in few bytes.
 namespace holdfast::model {
@@ -42,6 +43,8 @@ class NeighbourTable {
 
   bool empty() const { return entries_.empty(); }
 
+  std::size_t direction_count() const { return direction_count_; }
+
   std::size_t size() const { return entries_.size() / direction_count_; }
 
  private:
@@ -49,30 +52,35 @@ class NeighbourTable {
   std::vector<std::int32_t> entries_;
 };
 
-/// The end `a` of a connection and its direction, in four bytes; the other end is a's neighbour.
-class ConnectionCode {
+/// Where in a table of neighbours a robot's connections are: how many come before each fourth
+/// module, and before which of these each sixteenth connection is.
+class ConnectionIndex {
  public:
-  ConnectionCode() = default;
+  /// Those of which `a` is one of the first `module_count` modules.
+  ConnectionIndex(const NeighbourTable& connected, std::size_t module_count, host::Team& team);
 
-  ConnectionCode(std::size_t a, std::size_t direction)
-      : bits_(static_cast<std::uint32_t>(a << kDirectionBits | direction)) {}
+  ConnectionIndex() = default;
 
-  std::size_t a() const { return bits_ >> kDirectionBits; }
+  std::size_t size() const { return before_.empty() ? 0 : before_.back(); }
 
-  std::size_t direction() const { return bits_ & ((1U << kDirectionBits) - 1); }
+  /// The last fourth module before which there are at most so many.
+  std::size_t module_before(std::size_t connection) const;
+
+  std::size_t count_before(std::size_t module) const { return before_[module / kStep]; }
 
  private:
-  static constexpr unsigned kDirectionBits = 4;
-  static_assert(base::Lattice::kDirectionCountMax <= 1 << kDirectionBits);
+  static constexpr std::size_t kStep = 4;
+  static constexpr std::size_t kConnectionStep = 16;
 
-  std::uint32_t bits_ = 0;
+  void mark_connections();
+
+  std::vector<std::uint32_t> before_;  ///< And how many there are in all.
+  std::vector<std::uint32_t> step_of_;
 };
 
-/// More modules than this have no codes.
-inline constexpr std::size_t kCodedModuleCountMax = std::size_t{1} << 28U;
-
-/// A robot's connections, as a list that makes each of them when it is asked for. Valid as long as
-/// the robot.
+/// A robot's connections, as a list that makes each of them when it is asked for: by ascending
+/// module, then by ascending direction. To go through them costs less than to ask for one after the
+/// other. Valid as long as the robot.
 class Connections {
  public:
   class Iterator {
@@ -82,51 +90,69 @@ class Connections {
 
     Iterator() = default;
 
-    Iterator(const ConnectionCode* code, const NeighbourTable* connected)
-        : code_(code), connected_(connected) {}
-
     Connection operator*() const {
-      return {.a = static_cast<std::int32_t>(code_->a()),
-              .b = (*connected_)[code_->a()][code_->direction()],
-              .direction = static_cast<base::Direction>(code_->direction())};
+      return {.a = static_cast<std::int32_t>(a_),
+              .b = (*connected_)[a_][direction_],
+              .direction = static_cast<base::Direction>(direction_)};
     }
 
     Iterator& operator++() {
-      ++code_;
+      if (++place_ < end_) {
+        step();
+      }
       return *this;
     }
 
     Iterator operator++(int) {
       const Iterator before = *this;
-      ++code_;
+      ++*this;
       return before;
     }
 
-    friend bool operator==(const Iterator& a, const Iterator& b) { return a.code_ == b.code_; }
+    friend bool operator==(const Iterator& a, const Iterator& b) { return a.place_ == b.place_; }
 
    private:
-    const ConnectionCode* code_ = nullptr;
+    friend Connections;
+
+    /// To the next connection, which there must be.
+    void step() {
+      do {
+        direction_ += 2;
+        if (direction_ >= connected_->direction_count()) {
+          direction_ = 0;
+          ++a_;
+        }
+      } while ((*connected_)[a_][direction_] < 0);
+    }
+
     const NeighbourTable* connected_ = nullptr;
+    std::size_t a_ = 0;
+    std::size_t direction_ = 0;
+    std::size_t place_ = 0;
+    std::size_t end_ = 0;
   };
 
   /// Keeps references.
-  Connections(std::span<const ConnectionCode> codes, const NeighbourTable& connected)
-      : codes_(codes), connected_(&connected) {}
+  Connections(const ConnectionIndex& index, const NeighbourTable& connected)
+      : index_(&index), connected_(&connected) {}
 
-  Connection operator[](std::size_t i) const { return *Iterator(&codes_[i], connected_); }
+  Connection operator[](std::size_t i) const { return *from(i); }
 
-  Connection front() const { return (*this)[0]; }
+  Connection front() const { return *begin(); }
 
-  std::size_t size() const { return codes_.size(); }
+  std::size_t size() const { return index_->size(); }
 
-  bool empty() const { return codes_.empty(); }
+  bool empty() const { return size() == 0; }
 
-  Iterator begin() const { return {codes_.data(), connected_}; }
+  Iterator begin() const { return from(0); }
 
-  Iterator end() const { return {codes_.data() + codes_.size(), connected_}; }
+  Iterator end() const { return from(size()); }
+
+  /// To go on from the connection number i.
+  Iterator from(std::size_t i) const;
 
  private:
-  std::span<const ConnectionCode> codes_;
+  const ConnectionIndex* index_;
   const NeighbourTable* connected_;
 };
 

@@ -3,66 +3,25 @@
 #pragma once
 
 #include <array>
-#include <cstdint>
-#include <limits>
-#include <optional>
 
 #include "holdfast/base/algebra.hpp"
+#include "holdfast/mechanics/connector_law.hpp"
 
-/// When a connection breaks: its limits, and how near a load is to each of them.
-///
-/// In the middle of a connection act N axially (tension +), the bending moment M, V across and the
-/// torsion T. Each limit makes a ratio, the factor by which all loads exceed it:
-///   opens           (N + M / lever) / strength             M = max(|mx|, |my|), or their length
-///   slides, turns   (N + V / mu + |T| / (mu r)) / strength magnets that press with their strength
-///   slides          V / shear_strength                     latches
-///   turns           |T| / torsion_strength                 latches
-/// The largest is the load ratio. With friction the second takes the place of the first where it is
-/// larger. Eq. (17) of [Piranda 2021] is the first with lever = a / 2.
+/// When a connection breaks (mechanics/connector_law.hpp), with the standard library's square root.
 namespace holdfast::model {
 
-enum class Limit : std::uint8_t { kOpens, kSlips, kShears, kTwists };
+using mechanics::BendingLaw;
+using mechanics::ConnectionForce;
+using mechanics::ConnectorLaw;
+using mechanics::kLimitCount;
+using mechanics::Limit;
+using mechanics::limit_ratios;
+using mechanics::LimitRatio;
+using mechanics::load_ratio;
+using mechanics::name;
+using mechanics::weaker;
 
-inline constexpr int kLimitCount = 4;
-
-/// "opens", "slips", "shears", "twists".
-const char* name(Limit limit);
-
-enum class BendingLaw : std::uint8_t {
-  kSquare,  ///< M = max(|mx|, |my|)
-  kRound,   ///< M = the length of (mx, my)
-};
-
-struct ConnectorLaw {
-  static constexpr double kUnlimited = std::numeric_limits<double>::infinity();
-
-  double strength_n = kUnlimited;
-  double lever_mm = 1;
-  BendingLaw bending = BendingLaw::kSquare;
-  double shear_strength_n = kUnlimited;
-  double torsion_strength_nmm = kUnlimited;
-  /// Coefficient of friction mu, more than 0. None: does not slip.
-  std::optional<double> friction = {};
-  double torsion_radius_mm = kUnlimited;  ///< r; unlimited: does not turn.
-  /// An opening of the facet's edge beyond which contacts of power and data part: a warning.
-  double gap_limit_mm = kUnlimited;
-
-  friend bool operator==(const ConnectorLaw&, const ConnectorLaw&) = default;
-};
-
-/// The law of a connection of two modules: of every number the one that holds less.
-ConnectorLaw weaker(const ConnectorLaw& a, const ConnectorLaw& b);
-
-/// What a connection carries, given by the numbers of its limits: N axially, M bending, V across, T
-/// torsion; units N and N mm.
-struct ConnectionForce {
-  double axial_n = 0;
-  double bending_nmm = 0;
-  double shear_n = 0;
-  double torsion_nmm = 0;
-};
-
-/// These numbers of a force in the middle, local frame (Eq. 16).
+/// The numbers of a force in the middle, local frame (Eq. 16).
 ConnectionForce connection_force(const ConnectorLaw& law, const base::Vec6<double>& middle_force);
 
 /// M of a force in the middle, local frame.
@@ -73,16 +32,7 @@ double bending_moment(const ConnectorLaw& law, const base::Vec6<double>& middle_
 std::array<double, kLimitCount> limit_ratios(const ConnectorLaw& law,
                                              const base::Vec6<double>& middle_force);
 
-/// The largest of the ratios, and whose it is; 0 where nothing is limited.
-struct LimitRatio {
-  Limit limit = Limit::kOpens;
-  double ratio = 0;
-};
-
+/// The largest of them.
 LimitRatio load_ratio(const ConnectorLaw& law, const base::Vec6<double>& middle_force);
-
-/// The same two functions of these numbers.
-std::array<double, kLimitCount> limit_ratios(const ConnectorLaw& law, const ConnectionForce& force);
-LimitRatio load_ratio(const ConnectorLaw& law, const ConnectionForce& force);
 
 }  // namespace holdfast::model

@@ -26,7 +26,6 @@ namespace holdfast::model {
 
 /// More modules than this are refused; indices and exact sums stay far from overflow.
 inline constexpr std::size_t kModuleCountMax = 20'000'000;
-static_assert(kModuleCountMax <= kCodedModuleCountMax);
 
 /// How a module is held from outside the robot.
 enum class Support : std::uint8_t {
@@ -247,7 +246,8 @@ class Robot {
   void connect(const CellIndex& index, host::Team& team);
 
   /// Takes these connections away. Returns what is wrong with the first pair that is none.
-  std::optional<std::string> release(std::span<const CellPair> pairs, const CellIndex& index);
+  std::optional<std::string> release(std::span<const CellPair> pairs, const CellIndex& index,
+                                     host::Team& team);
 
   /// Finds facets. Returns what is wrong with the first obstacle that is where a module is.
   std::optional<std::string> touch(const RobotSpec& spec);
@@ -259,7 +259,7 @@ class Robot {
   base::Lattice lattice_;
   NeighbourTable neighbours_;  ///< Empty if all are connected.
   NeighbourTable connected_;
-  std::vector<ConnectionCode> connections_;
+  ConnectionIndex connections_;
   std::vector<Facet> facets_;
   Material material_;
   double foot_half_width_mm_ = 0;

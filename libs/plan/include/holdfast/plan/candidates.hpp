@@ -21,7 +21,8 @@
 /// rank, and so is every facet that tilts or lifts; Newton's path over the contact states is that
 /// of the check. Where that is not certain to end as the check does, the check itself is made:
 /// supports anywhere whose forces decide stability, several solutions, the exact contact law, and a
-/// load ratio within kNearLimit of the limit.
+/// load ratio within kNearLimit of the limit. Of cells that are images of one another, as the
+/// robot is its own, one is judged.
 namespace holdfast::plan {
 
 /// A load ratio this near to 1 is left to a check.
@@ -52,13 +53,14 @@ struct CandidateOptions {
 
 struct CandidateReport {
   std::vector<Candidate> candidates;  ///< In the order of the cells.
-  std::size_t check_count = 0;        ///< So many took a check of their own.
-  std::size_t solution_count = 0;     ///< So many others took a whole solution.
+  std::size_t check_count = 0;        ///< So many checks were made.
+  std::size_t solution_count = 0;     ///< So many whole solutions for others.
   double preparation_seconds = 0;     ///< Spent on the robot as it is.
   double seconds = 0;                 ///< In all.
 };
 
 class CandidateJudge;
+class RobotSymmetry;
 
 /// Judges candidates of one robot, as often as it is asked: what was prepared for the first batch
 /// serves all others. Fewer than kWorthPreparing cells prepare nothing and take a check each.
@@ -78,10 +80,12 @@ class CandidateSearch {
 
  private:
   const CandidateJudge* judge_for(std::size_t cell_count);
+  std::vector<Candidate> judge_each(std::span<const base::Cell> cells, CandidateReport& report);
 
   model::RobotSpec spec_;
   CandidateOptions options_;
   bool is_prepared_ = false;
+  std::unique_ptr<const RobotSymmetry> symmetry_;
   std::unique_ptr<CandidateJudge> judge_;  ///< None where only checks can tell.
 };
 

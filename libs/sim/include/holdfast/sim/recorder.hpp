@@ -61,7 +61,7 @@ class Recorder {
 
  private:
   void note_change(Time now, std::int32_t module, const agent::Agent& agent, Seen& seen);
-  void reached(Time time, std::uint16_t epoch, agent::Phase phase);
+  void reached(Time time, std::uint16_t epoch, agent::Phase phase, bool is_root);
   void leave_phase(Time time, SimulationResult& result) const;
   void hash(std::uint64_t value, int bytes);
 

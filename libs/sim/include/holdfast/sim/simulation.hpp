@@ -43,6 +43,9 @@ struct SimulationOptions {
   std::vector<Announcement> announcements = {};  ///< Besides the robot's planned modules.
   /// The words of a step; if there are any, modules have memory to judge its stages.
   std::vector<agent::StepWord> step = {};
+  /// The robot as the step leaves it, where it is more than cubes on a floor; not owned. Without,
+  /// modules know nothing of what a new one touches and weighs, and its stage is undecided.
+  const model::Robot* step_end = nullptr;
   Time time_max = agent::kNever;  ///< Later events do not happen.
   std::uint64_t event_count_max = ~std::uint64_t{0};
   /// How long after the last verdict the modules' watching over it is simulated as well.

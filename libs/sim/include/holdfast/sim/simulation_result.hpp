@@ -23,7 +23,8 @@ bool is_same(const agent::Answer& a, const agent::Answer& b);
 struct PhaseStatistics {
   std::uint64_t packets = 0;  ///< By the phase of the sender when it hands out the packet.
   std::uint64_t bytes = 0;
-  /// While this was the largest phase that any module had reached in the newest epoch.
+  /// While this was the phase of the newest epoch: the largest that any module had reached, until
+  /// the root led back to an earlier one.
   Time time = 0;
   std::uint64_t rounds = 0;  ///< By how much the rounds grew meanwhile.
 };

@@ -81,6 +81,13 @@ class BlockLu {
   /// after another.
   void solve_lanes(std::span<LaneBlock> y) const;
 
+  /// The same in parts: the first gives b' A^-1 b, the others find what these places, or all that
+  /// are left, have of x. `is_found` tells by place, none at first; what others have is void.
+  LaneNumbers begin_lanes(std::span<LaneBlock> y) const;
+  void find_lanes(std::span<LaneBlock> y, std::span<const std::size_t> places,
+                  std::vector<std::uint8_t>& is_found) const;
+  void end_lanes(std::span<LaneBlock> y, std::vector<std::uint8_t>& is_found) const;
+
   /// Blocks of A^-1 of a symmetric A: for each of the nodes, for two of them that are coupled, and
   /// for the pairs of them. Keeps a reference.
   SelectedInverse selected_inverse(std::span<const std::size_t> nodes,
@@ -124,6 +131,9 @@ class BlockLu {
   template <class WaitFor>
   bool subtract_left(std::size_t column, base::Mat6<double>& pivot, const WaitFor& wait_for,
                      const Scratch& scratch);
+  template <class WaitFor>
+  bool subtract_left_symmetric(std::size_t column, base::Mat6<double>& pivot,
+                               const WaitFor& wait_for, const Scratch& scratch);
   void substitute(std::span<base::Vec6<double>> y, std::size_t count) const;
   FactorView view() const;
   void find_inverse_blocks(std::span<const Edge> nodes, std::span<base::Mat6<double>> blocks) const;
@@ -174,12 +184,23 @@ class SelectedInverse {
   SelectedInverse(const BlockLu& lu, std::span<const std::size_t> nodes,
                   std::span<const Edge> pairs);
 
+  class PanelMaker;
+
+  /// Columns that are made together: each is the parent of the one before it and has the same rows
+  /// below, in the factors as well.
+  struct Panel {
+    std::size_t first = 0;
+    std::size_t column_count = 0;
+  };
+
   void find_rows(std::vector<std::vector<std::int32_t>> more);
+  void find_panels();
   void make(int thread_count);
 
   const BlockLu* lu_;
   std::vector<std::int32_t> columns_;         ///< Those that are needed, the last first.
-  std::vector<std::size_t> turn_;             ///< By place: where it stands among them, or kNone.
+  std::vector<Panel> panels_;                 ///< Of these, the last first.
+  std::vector<std::size_t> turn_;             ///< By place: its panel, or kNone.
   std::vector<std::size_t> column_start_;     ///< By place, into rows_ and below_.
   std::vector<std::int32_t> rows_;            ///< Ascending.
   std::vector<base::Mat6<double>> diagonal_;  ///< By place.

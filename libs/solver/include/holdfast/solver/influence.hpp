@@ -97,6 +97,14 @@ class Influence {
   /// From loads to displacements, in place; what stands in the last slot is not looked at.
   void solve(std::span<LaneBlock> by_slot) const;
 
+  /// The same in parts: the first gives f' K^-1 f for loads f, the others find the displacements
+  /// in these slots, or in all that are left. `is_found` is empty at first; what the slots have
+  /// that were not asked for is void.
+  LaneNumbers begin_solution(std::span<LaneBlock> by_slot) const;
+  void find_solution(std::span<LaneBlock> by_slot, std::span<const std::size_t> slots,
+                     std::vector<std::uint8_t>& is_found) const;
+  void end_solution(std::span<LaneBlock> by_slot, std::vector<std::uint8_t>& is_found) const;
+
  private:
   Influence();
 

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstddef>
 
 namespace holdfast::solver {
@@ -14,5 +15,8 @@ inline constexpr std::size_t kLaneCount = 16;
 struct alignas(32) LaneBlock {
   double values[6][kLaneCount] = {};
 };
+
+/// A number for each of them.
+using LaneNumbers = std::array<double, kLaneCount>;
 
 }  // namespace holdfast::solver

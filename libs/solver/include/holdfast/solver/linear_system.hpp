@@ -183,9 +183,21 @@ class LinearSystem {
   /// The last solution, by module; fixed modules do not move.
   virtual std::vector<Vec> displacement() = 0;
 
-  /// Takes a solution whose displacement is that of the last solve() to the last digits that the
-  /// options ask for, and fills in all else. Returns false if there are not so many.
+  /// The same of the facets' modules alone, by facet.
+  virtual std::vector<Vec> facet_displacement();
+
+  /// Takes the last solve()'s solution to the last digits that the options ask for. Returns false
+  /// if there are not so many. What `solution` then holds is not complete before hand_over().
   [[nodiscard]] virtual bool refine(Solution& solution) = 0;
+
+  /// What a system is asked for after hand_over().
+  enum class Further : std::uint8_t {
+    kNothing,  ///< Most likely; it may give back what it can make again.
+    kMore,
+  };
+
+  /// After refine(): fills in all that a solution holds.
+  virtual void hand_over(Solution& /*solution*/, Further /*further*/) {}
 
   /// Displacements by module under each of several loads, for the present facets; none if a
   /// solution fails. The loads that were set are forgotten.

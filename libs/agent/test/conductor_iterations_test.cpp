@@ -1,0 +1,299 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// The root's decisions with the one-sweep methods, and how it seeks further solutions, as
+// conductor_test.cpp has all others.
+#include "drive.hpp"
+
+namespace holdfast::agent {
+namespace {
+
+using namespace holdfast::agent::test;
+using wire::Operation;
+
+TEST(Conductor, few_loops_are_eliminated_many_are_left_to_a_polynomial) {
+  Drive tree = one_sweep_drive(false);
+  EXPECT_EQ(tree.order.count, 0);
+  ASSERT_EQ(tree.next().operation, Operation::kFactor);
+  ASSERT_EQ(tree.next().operation, Operation::kTreeIterate);
+  EXPECT_EQ(tree.next(iteration_report(1e-6F)).operation, Operation::kLoads);
+
+  Drive loops = one_sweep_drive(true);
+  EXPECT_EQ(loops.order.count, 6);  // One and a half times the depth of 4.
+  ASSERT_EQ(loops.next().operation, Operation::kIterate);
+  EXPECT_EQ(loops.order.flags, kRestart);
+  EXPECT_EQ(loops.order.count, 6);
+}
+
+/// Up to the report of the first iteration with fronts.
+Drive fronts_drive() {
+  Drive drive(Method::kFronts);
+  drive.to_mass();
+  drive.next({.flags = kAnyFixed | kManyLoops, .extent = 5, .count = kCensus, .number = kCensus});
+  EXPECT_EQ(drive.order.operation, Operation::kBegin);
+  EXPECT_EQ(drive.order.flags, kOneSweep | kWithFronts);
+  EXPECT_EQ(drive.next().operation, Operation::kFactor);
+  EXPECT_EQ(drive.next().operation, Operation::kTreeIterate);
+  return drive;
+}
+
+TEST(Conductor, fronts_without_room_give_way_to_the_polynomial) {
+  Drive drive = fronts_drive();
+  Report report = iteration_report(1);
+  report.flags = kNoRoom;
+  ASSERT_EQ(drive.next(report).operation, Operation::kBegin);
+  EXPECT_EQ(drive.order.flags, kOneSweep | kWithIterations);
+}
+
+/// While others want to let go there may yet be a state; then the other law, then another method.
+TEST(Conductor, fronts_without_a_contact_state_take_the_unilateral_law) {
+  Drive drive = fronts_drive();
+  Report report = iteration_report(1, {}, 2);
+  report.flags = kNoState;
+  ASSERT_EQ(drive.next(report).operation, Operation::kFactor);
+  drive.next();
+  report.extent = 0;
+  ASSERT_EQ(drive.next(report).operation, Operation::kBegin);
+  EXPECT_EQ(drive.order.flags, kUnilateralLaw | kOneSweep | kWithFronts);
+  drive.next();
+  drive.next();
+  ASSERT_EQ(drive.next(report).operation, Operation::kBegin);
+  EXPECT_EQ(drive.order.flags, kUnilateralLaw | kOneSweep | kWithIterations);
+}
+
+TEST(Conductor, a_change_of_contact_states_is_factored_or_starts_directions_anew) {
+  Drive tree = one_sweep_drive(false);
+  tree.next();
+  tree.next();
+  EXPECT_EQ(tree.next(iteration_report(1e-6F, {}, 1)).operation, Operation::kFactor);
+  EXPECT_EQ(tree.conductor.effort().contact_iterations, 1U);
+
+  Drive loops = one_sweep_drive(true);
+  loops.next();
+  loops.next(iteration_report(100, {1, 1, 0}));
+  ASSERT_EQ(loops.order.flags, 0);
+  loops.next(iteration_report(1, {1, 1, 0}, 2));
+  EXPECT_EQ(loops.order.flags, kRestart);
+  EXPECT_EQ(loops.conductor.effort().contact_iterations, 1U);
+}
+
+/// A tilting facet makes the tangent unsymmetric, so that there is no energy.
+TEST(Conductor, minimises_the_residual_while_a_facet_tilts) {
+  Drive drive = one_sweep_drive(true);
+  drive.next();
+  Report report = iteration_report(1, {1, 1, 0}, 2);
+  report.flags = kAnyTilting;
+  drive.next(report);
+  EXPECT_EQ(drive.order.flags, kRestart | kLeastResidual);
+  report.extent = 0;
+  drive.next(report);
+  EXPECT_EQ(drive.order.flags, kLeastResidual);
+}
+
+/// K = diag(1, 2, 4), u = 0, f = (4, 4, 4), M = 2. The full correction p = (2, 2, 2) has q = (2, 4,
+/// 8) and leaves r = (2, 0, -4): (r, p) = -4, (p, q) = 28, so a = -1/7: the energy is least at 6/7
+/// p, where r^ = (16, 4, -20) / 7. The next p = r^ / 2 = (8, 2, -10) / 7 has q = (8, 4, -40) / 7
+/// and leaves r = (8, 0, 20) / 7: (r, p) = -136 / 49, (p, q) = 472 / 49, (p, q_older) = -8.
+TEST(Conductor, minimises_the_energy_over_two_directions) {
+  Drive drive = one_sweep_drive(true);
+  drive.next();
+  drive.next(iteration_report(100, {-4, 28, 0}));
+  ASSERT_EQ(drive.order.operation, Operation::kIterate);
+  EXPECT_FLOAT_EQ(drive.order.reals[0], 0);
+  EXPECT_FLOAT_EQ(drive.order.reals[1], -1.F / 7);
+  EXPECT_FLOAT_EQ(drive.order.reals[2], 0);
+  drive.next(iteration_report(100, {-136. / 49, 472. / 49, -8}));
+  // c = -2/7, (r, p_older) = 8: p - c older = (12, 6, -6) / 7 has (p, q) = 360 / 49 and
+  // (r, p) = -24 / 49.
+  EXPECT_FLOAT_EQ(drive.order.reals[0], -2.F / 7);
+  EXPECT_FLOAT_EQ(drive.order.reals[1], -24.F / 360);
+  EXPECT_FLOAT_EQ(drive.order.reals[2], 2.F / 7);
+}
+
+/// Up to the begin of the equilibrium of a deep robot with many loops.
+Drive deep_drive(std::uint16_t depth) {
+  Drive drive(Method::kElimination, depth);
+  drive.to_mass();
+  drive.next({.flags = kAnyFixed | kManyLoops, .extent = 5, .count = kCensus, .number = kCensus});
+  return drive;
+}
+
+TEST(Conductor, deep_robots_take_iterations_with_clusters) {
+  EXPECT_EQ(deep_drive(63).order.operation, Operation::kBegin);
+  Drive drive = deep_drive(200);
+  ASSERT_EQ(drive.order.operation, Operation::kClusters);
+  EXPECT_EQ(drive.order.count, 300);  // The first iteration is that of the polynomial.
+  drive.next({.count = 100, .number = 49});
+  ASSERT_EQ(drive.order.operation, Operation::kIterate);
+  EXPECT_EQ(drive.order.flags, kRestart | kWithClusters);
+  EXPECT_EQ(drive.order.count, 40);  // A fifth of the depth.
+  drive.next(iteration_report(100, {1, 1, 0}));
+  EXPECT_EQ(drive.order.flags, kRestart | kWithClusters) << "the iteration before had another M^-1";
+  drive.next(iteration_report(100, {1, 1, 0}));
+  EXPECT_EQ(drive.order.flags, kWithClusters);
+}
+
+TEST(Conductor, clusters_with_many_stray_beams_are_left_alone) {
+  Drive drive = deep_drive(200);
+  drive.next({.count = 100, .number = 50});
+  EXPECT_EQ(drive.order.flags, kRestart);
+  EXPECT_EQ(drive.order.count, 300);
+  drive.next(iteration_report(100, {1, 1, 0}));
+  EXPECT_EQ(drive.order.flags, 0);
+}
+
+/// Iterations are full ones when contact states have changed, but for what was too long.
+TEST(Conductor, takes_back_what_is_too_long_of_an_iteration_with_clusters) {
+  Drive drive = deep_drive(200);
+  drive.next({.count = 100});
+  drive.next(iteration_report(100, {1, 1, 0}));
+  drive.next(iteration_report(100, {0.5, 1, 0}, 3));
+  EXPECT_EQ(drive.order.flags, kRestart | kWithClusters);
+  drive.next(iteration_report(100, {-0.5, 1, 0}, 3));
+  EXPECT_EQ(drive.order.flags, kWithClusters);
+  EXPECT_EQ(drive.order.reals, (std::array<float, 3>{0, -0.5F, 0}));
+}
+
+// ---- Further solutions.
+
+constexpr std::uint32_t kFoundHash = 17;
+
+/// Of an iteration of elimination that ends in these states.
+Report settled_report(float ratio, std::uint32_t hash, std::uint16_t changed = 0) {
+  return {.flags = kMayDiffer, .extent = changed, .number = hash, .reals = {1e-6F, ratio}};
+}
+
+/// A robot that is held, up to behind its first solution.
+Drive seeking_drive(float ratio) {
+  Drive drive = one_sweep_drive(false);
+  drive.next();
+  drive.next();
+  drive.next(settled_report(ratio, kFoundHash));
+  return drive;
+}
+
+/// Behind the last trial: back to what was found first, and its loads.
+void return_to_found(Drive& drive, float ratio) {
+  ASSERT_EQ(drive.order.operation, Operation::kSeek);
+  EXPECT_EQ(drive.order.key(), 0U);
+  ASSERT_EQ(drive.next({.count = 2, .number = 5}).operation, Operation::kFactor);
+  ASSERT_EQ(drive.next().operation, Operation::kTreeIterate);
+  ASSERT_EQ(drive.next(settled_report(ratio, kFoundHash)).operation, Operation::kLoads);
+  drive.next({.number = kCensus, .reals = {ratio}});
+}
+
+TEST(Conductor, puts_one_facet_after_the_other_into_its_second_state) {
+  Drive drive = seeking_drive(0.9F);
+  ASSERT_EQ(drive.order.operation, Operation::kSeek);
+  EXPECT_EQ(drive.order.flags, kRemember);
+  EXPECT_EQ(drive.order.key(), 0U);
+  Report last{.count = 2, .number = 5};
+  for (const std::uint32_t key : {5U, 9U}) {
+    ASSERT_EQ(drive.next(last).operation, Operation::kSeek);
+    EXPECT_EQ(drive.order.flags, 0);
+    EXPECT_EQ(drive.order.key(), key);
+    const std::uint32_t after = key == 5 ? 9 : 0;
+    ASSERT_EQ(drive.next({.count = 2, .number = after}).operation, Operation::kFactor);
+    ASSERT_EQ(drive.next().operation, Operation::kTreeIterate);
+    last = settled_report(0.9F, kFoundHash, 1);  // It wants to go back.
+  }
+  drive.next(last);
+  return_to_found(drive, 0.9F);
+  drive.expect_finished(Verdict::kSafe, Reason::kHolds);
+}
+
+TEST(Conductor, is_not_safe_where_another_solution_breaks) {
+  for (const float other : {1.1F, 0.95F}) {
+    Drive drive = seeking_drive(0.9F);
+    drive.next({.count = 1, .number = 5});
+    drive.next({.count = 1});
+    drive.next();
+    drive.next(settled_report(other, kFoundHash + 1));
+    return_to_found(drive, 0.9F);
+    drive.expect_finished(other > 1 ? Verdict::kUndecided : Verdict::kSafe,
+                          other > 1 ? Reason::kAmbiguousFeet : Reason::kHolds);
+  }
+}
+
+TEST(Conductor, seeks_no_other_solution_of_what_is_far_from_breaking_or_breaks) {
+  for (const float ratio : {0.7F, 1.1F}) {
+    EXPECT_EQ(seeking_drive(ratio).order.operation, Operation::kLoads);
+  }
+}
+
+TEST(Conductor, a_trial_that_comes_to_no_end_says_nothing) {
+  Drive drive = seeking_drive(0.9F);
+  drive.next({.count = 1, .number = 5});
+  drive.next({.count = 1});
+  drive.next();
+  drive.next(iteration_report(kNan));
+  return_to_found(drive, 0.9F);
+  drive.expect_finished(Verdict::kSafe, Reason::kHolds);
+}
+
+TEST(Conductor, what_is_not_found_again_is_found_from_rest) {
+  Drive drive = seeking_drive(0.9F);
+  drive.next({.count = 1, .number = 5});
+  drive.next({.count = 1});
+  drive.next();
+  drive.next(settled_report(1.1F, kFoundHash + 1));
+  drive.next({.count = 1, .number = 5});
+  drive.next();
+  ASSERT_EQ(drive.next(iteration_report(kNan)).operation, Operation::kBegin);
+  EXPECT_EQ(drive.order.flags & kUnilateralLaw, 0);
+  drive.next();
+  drive.next();
+  ASSERT_EQ(drive.next(settled_report(0.9F, kFoundHash)).operation, Operation::kLoads);
+  drive.next({.number = kCensus, .reals = {0.9F}});
+  drive.expect_finished(Verdict::kUndecided, Reason::kAmbiguousFeet);
+}
+
+/// States that are told at solutions that are not accurate may lead to where Newton's method would
+/// not come.
+TEST(Conductor, leaves_a_polynomial_that_changes_states_again_and_again) {
+  Drive drive = one_sweep_drive(true);
+  drive.next();
+  std::uint32_t hash = 0;
+  while (drive.order.operation == Operation::kIterate && hash < 100) {
+    EXPECT_EQ(drive.order.flags & kStandIn, 0);
+    Report report = iteration_report(100, {0, 1, 0}, 1);
+    report.number = ++hash;  // States that have not been seen.
+    drive.next(report);
+  }
+  EXPECT_EQ(hash, 41U);
+  ASSERT_EQ(drive.order.operation, Operation::kBegin);
+  drive.next();
+  EXPECT_EQ(drive.order.operation, Operation::kIterate);
+  EXPECT_NE(drive.order.flags & kStandIn, 0);
+}
+
+TEST(Conductor, gives_clusters_up_that_bring_no_progress) {
+  Drive drive = deep_drive(200);
+  drive.next({.count = 100});
+  int iterations = 0;
+  while (drive.order.operation == Operation::kIterate && iterations < 100) {
+    EXPECT_NE(drive.order.flags & kWithClusters, 0);
+    drive.next(iteration_report(100, {0, 1, 0}));
+    ++iterations;
+  }
+  EXPECT_LT(iterations, 20);
+  ASSERT_EQ(drive.order.operation, Operation::kBegin);
+  drive.next();
+  EXPECT_EQ(drive.order.flags, kRestart);
+}
+
+TEST(Conductor, leaves_a_one_sweep_method_that_brings_no_number) {
+  Drive drive = one_sweep_drive(false);
+  drive.next();
+  drive.next();
+  ASSERT_EQ(drive.next(iteration_report(kNan)).operation, Operation::kBegin);
+  EXPECT_EQ(drive.order.flags, kOneSweep | kWithIterations);
+  EXPECT_EQ(drive.conductor.effort().method, Method::kPolynomial);
+  drive.next();
+  ASSERT_EQ(drive.next(iteration_report(kNan)).operation, Operation::kBegin);
+  EXPECT_EQ(drive.order.flags, 0);
+  EXPECT_EQ(drive.conductor.effort().method, Method::kConjugateGradients);
+}
+
+}  // namespace
+}  // namespace holdfast::agent
