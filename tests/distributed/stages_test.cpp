@@ -4,6 +4,8 @@
 // A robot that judges the stages of a step itself says of each what the exact solver says (Sec.
 // II-B): of random steps on random robots of every lattice, with any supports and loads, and of the
 // scenarios. HOLDFAST_STAGE_CASES=N tries as many as that of each kind.
+#include "holdfast/plan/stages.hpp"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -14,6 +16,7 @@
 #include "general_robot.hpp"
 #include "holdfast/base/rng.hpp"
 #include "holdfast/simulated_stages.hpp"
+#include "holdfast/verdict/assessment.hpp"
 #include "random_robot.hpp"
 #include "seeds.hpp"
 
@@ -158,13 +161,43 @@ struct Tally {
   int unsafe = 0;
   int undecided = 0;
   int beyond = 0;  ///< Decided where the exact solver does not.
+  int others = 0;  ///< Judged by another solution of the paper's law than the exact solver's.
   int impossible = 0;
   int moves = 0;
 };
 
-/// Never `safe` but where the exact solver says so.
+bool is_near(double ratio, double expected) {
+  return std::abs(ratio - expected) <= 0.01 + 0.01 * std::abs(expected);
+}
+
+/// Of a step on a robot.
+struct StageOfStep {
+  const RobotState& robot;
+  const model::Step& step;
+  const plan::Transition& transition;
+  plan::Stage stage;
+};
+
+/// The largest load ratios of a stage by the solutions of the paper's law, of which it may have
+/// several, that load it least and most.
+verdict::LoadRange range_of_solutions(const StageOfStep& of) {
+  verdict::LoadRange range = {.low = -1e300, .high = -1e300};
+  const auto scenes = plan::find_scenes(of.robot, of.step, of.transition, of.stage);
+  for (const plan::Scene& scene : scenes.value()) {
+    for (const model::RobotSpec& piece : scene.pieces) {
+      const auto assessment = verdict::assess(model::Robot::create(piece).value());
+      if (assessment.several) {
+        range.low = std::max(range.low, assessment.several->regularised.low);
+        range.high = std::max(range.high, assessment.several->regularised.high);
+      }
+    }
+  }
+  return range;
+}
+
+/// Never `safe` but where the exact solver says so. Without `of` other solutions do not count.
 void compare_stage(const agent::Answer& answer, const base::Result<plan::StageJudgement>& exact,
-                   Tally& tally) {
+                   Tally& tally, const StageOfStep* of = nullptr) {
   ++tally.stages;
   if (!exact || exact.value().piece_count > 1) {
     // In pieces, held by nothing, or it cannot be.
@@ -187,8 +220,16 @@ void compare_stage(const agent::Answer& answer, const base::Result<plan::StageJu
   if (exact.value().verdict != verdict::Verdict::kUnstable) {
     // None of a single module, which has no connection.
     const double ratio = exact.value().load_ratio_max.value_or(0);
-    const bool is_alone = answer.load_ratio_max == agent::kNoLoadRatio;
-    EXPECT_NEAR(is_alone ? 0 : answer.load_ratio_max, ratio, 0.01 + 0.01 * std::abs(ratio));
+    const double found = answer.load_ratio_max == agent::kNoLoadRatio ? 0 : answer.load_ratio_max;
+    if (of == nullptr) {
+      EXPECT_TRUE(is_near(found, ratio)) << found << ", the exact solver " << ratio;
+    } else if (!is_near(found, ratio)) {
+      const verdict::LoadRange range = range_of_solutions(*of);
+      EXPECT_TRUE(is_near(found, range.low) || is_near(found, range.high))
+          << found << ", the exact solver " << ratio << ", all solutions " << range.low << " to "
+          << range.high;
+      ++tally.others;
+    }
   }
 }
 
@@ -219,7 +260,8 @@ void compare(RandomSpec random_spec, std::uint64_t seed, Tally& tally) {
         ++tally.impossible;
         break;
       }
-      compare_stage(answer, plan::judge_stage(robot, step, transition.value(), stage), tally);
+      const StageOfStep of = {robot, step, transition.value(), stage};
+      compare_stage(answer, plan::judge_stage(robot, step, transition.value(), stage), tally, &of);
     }
     return;
   }
@@ -238,6 +280,7 @@ void compare_many(RandomSpec random_spec, std::uint64_t count, int decided = 50,
   ::testing::Test::RecordProperty("unsafe", tally.unsafe);
   ::testing::Test::RecordProperty("undecided", tally.undecided);
   ::testing::Test::RecordProperty("beyond", tally.beyond);
+  ::testing::Test::RecordProperty("others", tally.others);
   ::testing::Test::RecordProperty("impossible", tally.impossible);
   ::testing::Test::RecordProperty("moves", tally.moves);
   EXPECT_LE(tally.undecided, tally.stages / decided + more);
