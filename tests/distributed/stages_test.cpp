@@ -114,7 +114,7 @@ RobotState state_of(model::RobotSpec spec, base::Rng& rng) {
   const double weakness = 0.05 + 0.05 * static_cast<double>(rng.below(20));
   spec.material.strength_vertical_n *= weakness;
   spec.material.strength_lateral_n *= weakness;
-  RobotState robot(spec);
+  RobotState robot(test::with_strengths_times(spec, weakness));
   const auto pairs = pairs_of(robot);
   if (rng.below(4) == 0 && !pairs.empty()) {
     robot.release(pick(pairs, rng));
@@ -149,6 +149,34 @@ model::RobotSpec on_a_floor(std::uint64_t seed) {
     spec.own_masses.clear();
   }
   return spec;
+}
+
+/// Of either, kinds of modules whose connectors have laws of their own.
+template <int Index>
+model::RobotSpec with_laws(std::uint64_t seed) {
+  const auto spec = seed % 3 == 0 ? on_a_floor<Index>(seed) : held_anywhere<Index>(seed);
+  return test::with_laws(spec, seed);
+}
+
+/// Of either, supports that slip.
+template <int Index>
+model::RobotSpec with_friction(std::uint64_t seed) {
+  const auto spec = seed % 2 == 0 ? on_a_floor<Index>(seed) : held_anywhere<Index>(seed);
+  return test::with_friction(spec, seed);
+}
+
+/// With strengths by which the largest load ratio of a step's stages is within 1 % of 1.
+RobotState near_limit(const RobotState& robot, const model::Step& step,
+                      const plan::Transition& transition, std::uint64_t seed) {
+  double largest = 0;
+  for (const plan::Stage stage :
+       {plan::Stage::kRelease, plan::Stage::kShift, plan::Stage::kConnect}) {
+    const auto judged = plan::judge_stage(robot, step, transition, stage);
+    largest = std::max(largest, judged ? judged.value().load_ratio_max.value_or(0) : 0);
+  }
+  const double wanted = 0.99 + 0.001 * static_cast<double>(seed % 21);
+  return largest > 0 ? RobotState(test::with_strengths_times(robot.spec(), largest / wanted))
+                     : robot;
 }
 
 constexpr agent::Method kMethods[] = {agent::Method::kElimination, agent::Method::kFronts,
@@ -237,13 +265,16 @@ void compare_stage(const agent::Answer& answer, const base::Result<plan::StageJu
 void compare(RandomSpec random_spec, std::uint64_t seed, Tally& tally) {
   SCOPED_TRACE(::testing::Message() << "seed " << seed);
   base::Rng rng(seed);
-  const RobotState robot = state_of(random_spec(seed), rng);
+  RobotState robot = state_of(random_spec(seed), rng);
   const std::uint64_t kind = rng.below(8);
   for (int attempt = 0; attempt < 200; ++attempt) {
     const model::Step step = random_step(robot, kind, rng);
     const auto transition = plan::find_transition(robot, step);
     if (!transition) {
       continue;
+    }
+    if (!robot.surroundings().kinds.empty()) {
+      robot = near_limit(robot, step, transition.value(), seed);
     }
     const auto judged =
         simulate_step(robot, step, transition.value(), {.method = kMethods[seed % 4]});
@@ -318,6 +349,35 @@ TEST(Stages, of_catoms_in_a_plane_on_a_floor_are_judged_as_by_the_exact_solver) 
 
 TEST(Stages, of_prisms_on_a_floor_are_judged_as_by_the_exact_solver) {
   compare_many(on_a_floor<3>, test::campaign(20U));
+}
+
+TEST(Stages, of_cubes_with_connector_laws_are_judged_as_by_the_exact_solver) {
+  compare_many(with_laws<0>, test::campaign(20U), 20, 1);
+}
+
+TEST(Stages, of_catoms_in_space_with_connector_laws_are_judged_as_by_the_exact_solver) {
+  compare_many(with_laws<1>, test::campaign(12U), 20, 1);
+}
+
+TEST(Stages, of_catoms_in_a_plane_with_connector_laws_are_judged_as_by_the_exact_solver) {
+  compare_many(with_laws<2>, test::campaign(12U), 20, 1);
+}
+
+TEST(Stages, of_prisms_with_connector_laws_are_judged_as_by_the_exact_solver) {
+  compare_many(with_laws<3>, test::campaign(12U), 20, 1);
+}
+
+/// Forces found that balance within friction are a proof; others are none.
+TEST(Stages, of_cubes_that_may_slip_are_judged_as_by_the_exact_solver) {
+  compare_many(with_friction<0>, test::campaign(20U), 6, 1);
+}
+
+TEST(Stages, of_catoms_in_space_that_may_slip_are_judged_as_by_the_exact_solver) {
+  compare_many(with_friction<1>, test::campaign(10U), 6, 1);
+}
+
+TEST(Stages, of_prisms_that_may_slip_are_judged_as_by_the_exact_solver) {
+  compare_many(with_friction<3>, test::campaign(10U), 6, 1);
 }
 
 /// Of a foot of two, a column of two on it, and an arm of one, told these words; all modules agree.
@@ -395,6 +455,36 @@ TEST(Stages, what_hangs_on_a_carrier_loads_it_by_what_it_weighs_and_carries) {
   EXPECT_TRUE(judged.value().all_agree);
   EXPECT_NEAR(judged.value().stages[0].load_ratio_max, load / 14.97, 0.001);
   EXPECT_NEAR(judged.value().stages[1].load_ratio_max, load / 11.98, 0.001);
+}
+
+/// The same with an arm whose latch shears off: beside its carrier W goes across the facet.
+TEST(Stages, what_hangs_on_a_carrier_is_held_by_the_weaker_connector_of_the_two) {
+  model::RobotSpec spec{.existing = {{0, 0, 0}, {1, 0, 0}, {0, 0, 1}, {0, 0, 2}, {1, 0, 2}},
+                        .fixed = {{0, 0, 0}}};
+  const model::ModuleKind strong = model::default_kind(spec.material, spec.lattice);
+  const double weight = model::module_weight_n(spec.material);
+  for (const bool is_arm_weak : {true, false}) {
+    spec.kinds = {strong, strong};
+    spec.kinds[0].name = "column";
+    spec.kinds[1].name = "arm";
+    for (model::ConnectorLaw& law : spec.kinds[is_arm_weak ? 1 : 0].connectors) {
+      law.shear_strength_n = weight / 1.5;
+    }
+    spec.own_kinds = {{{1, 0, 2}, 1}};
+    const RobotState robot(spec);
+    const model::Step step{.moves = {{.from = {1, 0, 2}, .to = {0, 0, 3}}}};
+    const auto transition = plan::find_transition(robot, step);
+    ASSERT_TRUE(transition);
+    const auto judged = simulate_step(robot, step, transition.value(), {});
+    ASSERT_TRUE(judged) << judged.error().message;
+    const auto& [release, shift, connect] = judged.value().stages;
+    for (const agent::Answer& answer : {release, shift}) {
+      EXPECT_EQ(answer.verdict, agent::Verdict::kOverload);
+      EXPECT_NEAR(answer.load_ratio_max, 1.5, 0.001);
+      EXPECT_EQ(answer.remarks & agent::kLimitBits, static_cast<int>(model::Limit::kShears));
+    }
+    EXPECT_EQ(connect.verdict, agent::Verdict::kSafe) << "it stands on the column";
+  }
 }
 
 /// A battery on the foot's edge: the robot stands with it, and topples once it hangs beside it.

@@ -17,11 +17,6 @@ double ratio_of(const Setup& setup, const MiddleLoad& load, Direction direction)
 
 #ifndef HOLDFAST_AGENT_FLOOR_ONLY
 
-double length(double x, double y) {
-  const double square = x * x + y * y;
-  return is_number(square) ? square_root(square) : square;
-}
-
 /// The force in the middle of a connection of this module, or between planned ones emulated here.
 base::Vec6<double> force_in_middle(const Workspace& ws, const base::Cell& cell,
                                    Direction direction) {
@@ -39,7 +34,7 @@ base::Vec6<double> force_in_middle(const Workspace& ws, const base::Cell& cell,
 const mechanics::ConnectorLaw& law_of(const Workspace& ws, const base::Cell& cell,
                                       Direction direction) {
   const Environment& environment = *ws.environment();
-  return environment.law(environment.map, cell, direction);
+  return environment.law(environment.map, cell, direction, ws.beside(cell, direction));
 }
 
 /// By the law of the connection.
@@ -68,9 +63,14 @@ double ratio_of(const Workspace& ws, const base::Cell& cell, Direction direction
 
 std::uint8_t remarks_on([[maybe_unused]] const Workspace& ws,
                         [[maybe_unused]] const base::Cell& cell,
-                        [[maybe_unused]] Direction direction) {
+                        [[maybe_unused]] Direction direction, [[maybe_unused]] double ratio) {
 #ifndef HOLDFAST_AGENT_FLOOR_ONLY
   if (ws.across() != nullptr) {
+    const bool has_hanging = ws.stage() == Stage::kShift && cell == ws.tree.cell();
+    if (mechanics::Limit limit{};
+        has_hanging && ws.stages()->find_limit(cell, ws.setup, direction, ratio, limit)) {
+      return static_cast<std::uint8_t>(limit);
+    }
     const mechanics::ConnectorLaw& law = law_of(ws, cell, direction);
     const double gap =
         mechanics::gap_mm(law, ws.setup.beam, force_in_middle(ws, cell, direction), length);
@@ -135,8 +135,8 @@ void visit_loads(const Workspace& ws, LoadVisit visit, void* visitor) {
     }
   }
   if (ws.stage() == Stage::kShift) {
-    ws.stages()->visit_hanging(cell, ws.setup, [&](Direction direction, double ratio) {
-      visit(visitor, cell, direction, ratio);
+    ws.stages()->visit_hanging(cell, ws.setup, [&](const Hanging& hanging) {
+      visit(visitor, cell, hanging.direction, hanging.worst.ratio);
     });
   }
   for (int i = 1; i < ws.node_count(); ++i) {

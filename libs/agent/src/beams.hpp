@@ -53,9 +53,10 @@ void visit_loads(const Workspace& ws, Visit&& visit) {
       &visit);
 }
 
-/// What there is to say of a connection that visit_loads() names, as in Report::remarks; nothing
-/// where Eq. (17) is the law of all.
-std::uint8_t remarks_on(const Workspace& ws, const base::Cell& cell, Direction direction);
+/// What there is to say of a connection that visit_loads() names, with its load ratio, as in
+/// Report::remarks; nothing where Eq. (17) is the law of all.
+std::uint8_t remarks_on(const Workspace& ws, const base::Cell& cell, Direction direction,
+                        double ratio);
 
 /// The largest load ratio of all connections here, kNoLoadRatio if there is none.
 float largest_load_ratio(const Workspace& ws);

@@ -31,6 +31,12 @@ Real square_root(Real value) {
   return root;
 }
 
+/// Of a vector.
+inline double length(double x, double y) {
+  const double square = x * x + y * y;
+  return is_number(square) ? square_root(square) : square;
+}
+
 /// The leading 24 binary digits of a number, which single precision holds exactly. By its bits and
 /// not by a conversion to float and back, which g++ 12 loses when it vectorises straight code; what
 /// converts elsewhere relies on it being compiled without (holdfast_same_bits in

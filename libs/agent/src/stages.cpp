@@ -5,6 +5,7 @@
 #include "holdfast/agent/feet.hpp"
 #include "holdfast/mechanics/connector.hpp"
 #include "holdfast/mechanics/lattice_beam.hpp"
+#include "scalar.hpp"
 
 namespace holdfast::agent {
 namespace {
@@ -202,7 +203,9 @@ void Stages::note(Stage stage, const Answer& answer) {
     worst.worst_cell = answer.worst_cell;
     worst.worst_direction = answer.worst_direction;
     worst.load_ratio_max = answer.load_ratio_max;
+    worst.remarks = static_cast<std::uint8_t>((worst.remarks & kGapOpens) | answer.remarks);
   }
+  worst.remarks |= answer.remarks & kGapOpens;
   if (severity(answer.verdict) > severity(worst.verdict)) {
     worst.verdict = answer.verdict;
     worst.reason = answer.reason;
@@ -530,25 +533,32 @@ void Stages::hang(const Cell& cell, const Setup& setup) {
 }
 
 /// Of the load of a group in the middle of its carrier's facet: tension along the facet's
-/// direction, and bending about the two axes across it.
-double Stages::ratio_through(Direction face, std::uint8_t group, int waypoint, const Cell& cell,
-                             const Setup& setup) const {
+/// direction, and bending about the two axes across it. `held`: the module that the facet holds.
+mechanics::LimitRatio Stages::ratio_through(Direction face, const StepWord& held, int waypoint,
+                                            const Cell& cell, const Setup& setup) const {
   const Vector along = base::unit_vector(*lattice_, face);
   const base::Vec6<double> load =
-      group_load(group, waypoint, cell, {along[0] / 2, along[1] / 2, along[2] / 2}, setup);
+      group_load(held.group, waypoint, cell, {along[0] / 2, along[1] / 2, along[2] / 2}, setup);
   const auto frame = mechanics::rotation_along<double>(*lattice_, face);
   const Vector force = {load[0], load[1], load[2]};
   const Vector torque = {load[3], load[4], load[5]};
   const base::Vec6<double> middle = {dot(force, frame[0]),  dot(force, frame[1]),
                                      dot(force, along),     dot(torque, frame[0]),
                                      dot(torque, frame[1]), dot(torque, frame[2])};
-  return mechanics::load_ratio(mechanics::connection_load(middle), setup.facet_mm,
-                               strength_n(setup, face));
+#ifndef HOLDFAST_AGENT_FLOOR_ONLY
+  if (environment_ != nullptr && environment_->law != nullptr) {
+    const mechanics::ConnectorLaw& law =
+        environment_->law(environment_->map, cell, face, held.cell);
+    return mechanics::load_ratio(law, mechanics::connection_force(law, middle, length));
+  }
+#endif
+  return {.ratio = mechanics::load_ratio(mechanics::connection_load(middle), setup.facet_mm,
+                                         strength_n(setup, face))};
 }
 
 /// Facets of the carrier that are as near to a module of the group as the nearest.
 bool Stages::find_hanging(std::uint8_t group, const Cell& cell, const Setup& setup,
-                          Direction& direction, double& ratio) const {
+                          Hanging& worst) const {
   int waypoint = 0;
   if (!carries(group, cell, waypoint)) {
     return false;
@@ -572,14 +582,25 @@ bool Stages::find_hanging(std::uint8_t group, const Cell& cell, const Setup& set
       if (!is_member(i) || distance(i, face) > nearest + kNearestTie) {
         continue;
       }
-      const double here = ratio_through(face, group, waypoint, cell, setup);
-      if (!is_found || !(here <= ratio)) {
-        direction = face;
-        ratio = here;
+      const mechanics::LimitRatio here = ratio_through(face, word(i), waypoint, cell, setup);
+      if (!is_found || !(here.ratio <= worst.worst.ratio)) {
+        worst = {.direction = face, .worst = here};
       }
       is_found = true;
     }
   }
+  return is_found;
+}
+
+bool Stages::find_limit(const Cell& cell, const Setup& setup, Direction direction, double ratio,
+                        mechanics::Limit& limit) const {
+  bool is_found = false;
+  visit_hanging(cell, setup, [&](const Hanging& hanging) {
+    if (hanging.direction == direction && hanging.worst.ratio == ratio) {
+      limit = hanging.worst.limit;
+      is_found = true;
+    }
+  });
   return is_found;
 }
 

@@ -263,7 +263,7 @@ Report loads_report(Workspace& ws) {
     own.direction = direction;
     own.count = mechanics::breaks(ratio) ? 1 : 0;
 #ifndef HOLDFAST_AGENT_FLOOR_ONLY
-    own.remarks = remarks_on(ws, cell, direction);
+    own.remarks = remarks_on(ws, cell, direction, ratio);
 #endif
     merge(Operation::kLoads, report, own);
     if (cell == ws.tree.cell()) {

@@ -34,6 +34,11 @@ std::optional<double> load_ratio(const agent::Answer& answer) {
                                 : std::nullopt;
 }
 
+/// Which limit the connection with the largest load ratio is nearest to.
+const char* limit_name(const agent::Answer& answer) {
+  return model::name(static_cast<model::Limit>(answer.remarks & agent::kLimitBits));
+}
+
 base::Error at_step(const StepsFile& file, std::size_t step, base::Error error) {
   error.where = io::step_pointer(file.document, step);
   return error;
@@ -140,6 +145,7 @@ base::Result<SimulatedStages> simulate_stages(
       .link = options.link, .steps = {}, .exact = std::move(exact).value().judgement};
   plan::RobotState robot(sequence.value().start);
   result.lattice = robot.lattice();
+  result.has_laws = !robot.surroundings().kinds.empty();
   for (std::size_t i = 0; i < sequence.value().steps.size(); ++i) {
     if (progress) {
       progress(i);
@@ -169,11 +175,13 @@ std::string simulated_stages_text(const StepsFile& file, const SimulatedStages& 
     for (const Stage stage : kStages) {
       const agent::Answer& answer = step.stages[at(stage)];
       const auto ratio = load_ratio(answer);
-      fmt::format_to(out, "  {:>5} {:<8} {:<10} {:<10} {:>10}  {}{}\n", i, plan::name(stage),
+      const bool has_limit = stages.has_laws && ratio;
+      fmt::format_to(out, "  {:>5} {:<8} {:<10} {:<10} {:>10}  {}{}{}{}\n", i, plan::name(stage),
                      verdict::name(stages.exact.steps[i].stages[at(stage)].verdict),
                      verdict::name(to_verdict(answer.verdict)),
-                     ratio ? fmt::format("{:.4f}", *ratio) : "-", agent::name(answer.reason),
-                     step.all_agree ? "" : "; NOT all agree");
+                     ratio ? fmt::format("{:.4f}", *ratio) : "-",
+                     has_limit ? limit_name(answer) : "", has_limit ? ": " : "",
+                     agent::name(answer.reason), step.all_agree ? "" : "; NOT all agree");
     }
   }
   const auto unsafe = stages.first_unsafe();
@@ -196,7 +204,7 @@ void write_cell(io::JsonStream& json, const base::Cell& cell) {
   json.end_array();
 }
 
-void write_stage(io::JsonStream& json, const base::Lattice& lattice, const agent::Answer& answer,
+void write_stage(io::JsonStream& json, const SimulatedStages& stages, const agent::Answer& answer,
                  verdict::Verdict exact) {
   json.begin_object();
   json.member("verdict", verdict::name(to_verdict(answer.verdict)));
@@ -205,11 +213,14 @@ void write_stage(io::JsonStream& json, const base::Lattice& lattice, const agent
   json.value(agent::name(answer.reason));
   json.end_array();
   json.member("load_ratio_max", load_ratio(answer));
+  if (stages.has_laws && has_load_ratio(answer)) {
+    json.member("limit", limit_name(answer));
+  }
   json.key("at");
   if (has_load_ratio(answer)) {
     json.begin_array();
     write_cell(json, answer.worst_cell);
-    write_cell(json, base::neighbour(lattice, answer.worst_cell, answer.worst_direction));
+    write_cell(json, base::neighbour(stages.lattice, answer.worst_cell, answer.worst_direction));
     json.end_array();
   } else {
     json.value(nullptr);
@@ -228,7 +239,7 @@ void write_step(io::JsonStream& json, const StepsFile& file, const SimulatedStag
   json.begin_object();
   for (const Stage stage : kStages) {
     json.key(plan::name(stage));
-    write_stage(json, stages.lattice, step.stages[at(stage)],
+    write_stage(json, stages, step.stages[at(stage)],
                 stages.exact.steps[index].stages[at(stage)].verdict);
   }
   json.end_object();

@@ -192,12 +192,11 @@ void EnvironmentMap::describe(const void* map, const base::Cell& cell, agent::Su
 
 /// Of a module that the robot does not have nothing is known: its load already decides nothing.
 const model::ConnectorLaw& EnvironmentMap::law(const void* map, const base::Cell& cell,
-                                               base::Direction direction) {
+                                               base::Direction direction, const base::Cell& other) {
   static const model::ConnectorLaw kUnknown;
   const auto& self = *static_cast<const EnvironmentMap*>(map);
   const std::int32_t a = self.modules_.find(cell);
-  const std::int32_t b =
-      self.modules_.find(base::neighbour(self.robot_.lattice(), cell, direction));
+  const std::int32_t b = self.modules_.find(other);
   if (a == model::CellIndex::kNone || b == model::CellIndex::kNone) {
     return kUnknown;
   }
@@ -258,6 +257,18 @@ RatioBounds ratio_bounds(const model::Robot& robot) {
       static_cast<std::uint8_t>(std::clamp(std::floor(std::log2(share)), 0.0, kBitsMost));
   bounds.per_energy_root =
       std::max(bounds.per_energy_root, model::load_ratio_per_energy_norm(robot));
+  return bounds;
+}
+
+RatioBounds ratio_bounds(const model::Robot& robot, const model::Robot* step_end) {
+  RatioBounds bounds = ratio_bounds(robot);
+  if (step_end != nullptr) {
+    const RatioBounds other = ratio_bounds(*step_end);
+    bounds.per_n = std::max(bounds.per_n, other.per_n);
+    bounds.per_nmm = std::max(bounds.per_nmm, other.per_nmm);
+    bounds.per_energy_root = std::max(bounds.per_energy_root, other.per_energy_root);
+    bounds.slack_bits = std::max(bounds.slack_bits, other.slack_bits);
+  }
   return bounds;
 }
 

@@ -52,7 +52,7 @@ class EnvironmentMap {
  private:
   static void describe(const void* map, const base::Cell& cell, agent::Surroundings& node);
   static const model::ConnectorLaw& law(const void* map, const base::Cell& cell,
-                                        base::Direction direction);
+                                        base::Direction direction, const base::Cell& other);
   void describe(std::size_t module, agent::Surroundings& node) const;
 
   const model::Robot& robot_;
@@ -75,6 +75,9 @@ struct RatioBounds {
 };
 
 RatioBounds ratio_bounds(const model::Robot& robot);
+
+/// The same of a robot before a step and behind it.
+RatioBounds ratio_bounds(const model::Robot& robot, const model::Robot* step_end);
 
 /// All facets lie in one level plane and can lift, only weight acts, straight down, and masses are
 /// whole numbers of one unit: so the simplified check is exact.

@@ -49,18 +49,6 @@ std::optional<std::string> find_robot_fault(const model::Robot& robot) {
       robot.released_count());
 }
 
-/// Stages of a step and free faces know Eq. (17) and feet that do not slip.
-std::optional<std::string> find_law_fault(const model::Robot& robot) {
-  constexpr const char* kUnknown = "which stages of a step and free faces do not know";
-  if (!robot.has_default_connectors()) {
-    return fmt::format("the robot has connectors with other limits than Eq. (17), {}", kUnknown);
-  }
-  if (has_friction(robot)) {
-    return fmt::format("the robot has supports with friction, {}", kUnknown);
-  }
-  return std::nullopt;
-}
-
 /// The number of a lattice in greetings.
 std::uint8_t wire_number(const base::Lattice& lattice) {
   return lattice == base::kCubic         ? agent::wire::kCubicLattice
@@ -91,15 +79,11 @@ std::optional<std::string> find_options_fault(const model::Robot& robot,
                                               const SimulationOptions& options) {
   const std::size_t count = robot.modules().size() - robot.planned_count();
   auto found = find_robot_fault(robot);
-  if (!found && (!options.step.empty() || options.judges_faces)) {
-    found = find_law_fault(robot);
-  }
   if (!found && options.judges_faces) {
     found = find_floor_fault(robot);
   }
   if (!found && options.step_end != nullptr) {
     found = find_unknown_fault(*options.step_end);
-    found = found ? found : find_law_fault(*options.step_end);
   }
   if (!found && !options.step.empty() && options.judges_faces) {
     found = "the options ask for stages of a step and for free faces, allowed is one of them";
@@ -163,9 +147,10 @@ agent::Setup make_setup(const model::Robot& robot, const SimulationOptions& opti
   const bool has_map = needs_environment(robot, options.step_end);
   const bool is_level =
       stands_level(robot) && (options.step_end == nullptr || stands_level(*options.step_end));
-  setup.has_friction = has_friction(robot);
+  setup.has_friction =
+      has_friction(robot) || (options.step_end != nullptr && has_friction(*options.step_end));
   setup.keeps_answers = options.keeps_answers && !setup.has_friction && (!has_map || is_level);
-  const RatioBounds bounds = ratio_bounds(robot);
+  const RatioBounds bounds = ratio_bounds(robot, options.step_end);
   setup.ratio_per_n = bounds.per_n;
   setup.ratio_per_nmm = bounds.per_nmm;
   setup.ratio_per_energy_root = bounds.per_energy_root;

@@ -31,6 +31,7 @@ struct SimulatedStep {
 struct SimulatedStages {
   sim::LinkModel link = {};
   base::Lattice lattice = base::kCubic;
+  bool has_laws = false;  ///< Connections have limits besides Eq. (17); answers name the nearest.
   std::vector<SimulatedStep> steps;  ///< In their order.
   plan::SequenceJudgement exact;     ///< Of the same steps.
 

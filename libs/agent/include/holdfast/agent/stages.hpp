@@ -51,6 +51,12 @@ struct StageSite {
   bool is_standing = false;  ///< On the floor.
 };
 
+/// A group on its carrier: the connection between the two, by which it is loaded most.
+struct Hanging {
+  base::Direction direction{};  ///< Of the carrier's facet.
+  mechanics::LimitRatio worst;
+};
+
 class Stages {
  public:
   Stages() = default;
@@ -149,18 +155,22 @@ class Stages {
   /// What acts on this module besides its own load: N, N mm.
   const base::Vec6<double>& hung() const { return hung_; }
 
-  /// visit(direction, load ratio) for every group that hangs on `cell`: of the connection between
-  /// the two, the worst of those whose facets are nearest to the group.
+  /// visit(hanging) for every group that hangs on `cell`, by the worst of those connections between
+  /// the two whose facets are nearest to the group.
   template <class Visit>
   void visit_hanging(const base::Cell& cell, const Setup& setup, Visit&& visit) const {
+    Hanging hanging;
     for (std::uint8_t group = 0; stage() == Stage::kShift && group < kGroupCount; ++group) {
-      base::Direction direction{};
-      double ratio = 0;
-      if (find_hanging(group, cell, setup, direction, ratio)) {
-        visit(direction, ratio);
+      if (find_hanging(group, cell, setup, hanging)) {
+        visit(hanging);
       }
     }
   }
+
+  /// The limit that a group on `cell` is nearest to which visit_hanging() names with this direction
+  /// and load ratio. False: there is none, so they are of another connection.
+  bool find_limit(const base::Cell& cell, const Setup& setup, base::Direction direction,
+                  double ratio, mechanics::Limit& limit) const;
 
  private:
   static std::size_t at(Stage stage) { return static_cast<std::size_t>(stage) - 1; }
@@ -181,7 +191,7 @@ class Stages {
   bool find_scene(int& waypoint, Choice& choice) const;
   bool carries(std::uint8_t group, const base::Cell& cell, int& waypoint) const;
   bool find_hanging(std::uint8_t group, const base::Cell& cell, const Setup& setup,
-                    base::Direction& direction, double& ratio) const;
+                    Hanging& worst) const;
   std::int32_t mass_of(const base::Cell& cell) const;
   base::Vec6<double> load_of(const base::Cell& cell, const Setup& setup) const;
   base::Vec6<double> hung_load(const base::Cell& cell, const Setup& setup) const;
@@ -190,8 +200,8 @@ class Stages {
   Place place_from(const StepWord& move, int waypoint, const base::Cell& from) const;
   base::Vec6<double> group_load(std::uint8_t group, int waypoint, const base::Cell& cell,
                                 const Place& point, const Setup& setup) const;
-  double ratio_through(base::Direction face, std::uint8_t group, int waypoint,
-                       const base::Cell& cell, const Setup& setup) const;
+  mechanics::LimitRatio ratio_through(base::Direction face, const StepWord& held, int waypoint,
+                                      const base::Cell& cell, const Setup& setup) const;
 
   const base::Lattice* lattice_ = &base::kCubic;
   const Environment* environment_ = nullptr;

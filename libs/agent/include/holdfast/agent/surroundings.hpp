@@ -65,10 +65,11 @@ struct Surroundings {
 struct Environment {
   /// Fills in load, mass and facets of the module that is, or will be, in a cell.
   void (*describe)(const void* map, const base::Cell& cell, Surroundings& node) = nullptr;
-  /// The law of the connection of the modules in a cell and beside it, the weaker of their two
-  /// connectors; null: Eq. (17) for all.
+  /// The law of the connection of the module in a cell, by its face in a direction, to the module
+  /// that is in another cell now: the weaker of their two connectors. Null: Eq. (17) for all.
   const mechanics::ConnectorLaw& (*law)(const void* map, const base::Cell& cell,
-                                        base::Direction direction) = nullptr;
+                                        base::Direction direction,
+                                        const base::Cell& other) = nullptr;
   const void* map = nullptr;                              ///< Handed to these functions. Not owned.
   const mechanics::LatticeBeam<double>* beams = nullptr;  ///< Null: cubes. Not owned.
   const base::Lattice* lattice = nullptr;                 ///< Not null where there are beams.
