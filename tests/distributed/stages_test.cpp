@@ -92,6 +92,9 @@ model::Step random_step(const RobotState& robot, std::uint64_t kind, base::Rng& 
     if (robot.surroundings().lattice != base::kCubic && rng.below(3) == 0) {
       step.own_masses = {{step.attach.front(), 0.1}};
     }
+    if (robot.kind_count() > 1 && rng.below(2) == 0) {
+      step.own_kinds = {{step.attach.front(), 1}};
+    }
   }
   if (kind == 1 || kind == 5) {
     step.detach = {robot.modules()[rng.below(robot.modules().size())].cell};
@@ -165,7 +168,8 @@ model::RobotSpec with_friction(std::uint64_t seed) {
   return test::with_friction(spec, seed);
 }
 
-/// With strengths by which the largest load ratio of a step's stages is within 1 % of 1.
+/// With strengths by which the largest load ratio of a step's stages, if it has any, is within 1 %
+/// of 1.
 RobotState near_limit(const RobotState& robot, const model::Step& step,
                       const plan::Transition& transition, std::uint64_t seed) {
   double largest = 0;
@@ -175,8 +179,8 @@ RobotState near_limit(const RobotState& robot, const model::Step& step,
     largest = std::max(largest, judged ? judged.value().load_ratio_max.value_or(0) : 0);
   }
   const double wanted = 0.99 + 0.001 * static_cast<double>(seed % 21);
-  return largest > 0 ? RobotState(test::with_strengths_times(robot.spec(), largest / wanted))
-                     : robot;
+  return largest > 1e-6 ? RobotState(test::with_strengths_times(robot.spec(), largest / wanted))
+                        : robot;
 }
 
 constexpr agent::Method kMethods[] = {agent::Method::kElimination, agent::Method::kFronts,
