@@ -199,13 +199,16 @@ void Stages::note(Stage stage, const Answer& answer) {
     return;
   }
   const bool has_ratio = answer.verdict == Verdict::kSafe || answer.verdict == Verdict::kOverload;
-  if (has_ratio && answer.load_ratio_max > worst.load_ratio_max) {
+  const bool is_worse = has_ratio && answer.load_ratio_max > worst.load_ratio_max;
+#ifndef HOLDFAST_AGENT_FLOOR_ONLY
+  const int limit = (is_worse ? answer : worst).remarks & kLimitBits;
+  worst.remarks = static_cast<std::uint8_t>(limit | ((worst.remarks | answer.remarks) & kGapOpens));
+#endif
+  if (is_worse) {
     worst.worst_cell = answer.worst_cell;
     worst.worst_direction = answer.worst_direction;
     worst.load_ratio_max = answer.load_ratio_max;
-    worst.remarks = static_cast<std::uint8_t>((worst.remarks & kGapOpens) | answer.remarks);
   }
-  worst.remarks |= answer.remarks & kGapOpens;
   if (severity(answer.verdict) > severity(worst.verdict)) {
     worst.verdict = answer.verdict;
     worst.reason = answer.reason;
