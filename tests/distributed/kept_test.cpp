@@ -101,8 +101,10 @@ TEST(Kept, the_same_on_noisy_and_on_slow_links) {
 }
 
 /// A robot that grew at random above a floor from one foot, its first third as the start and the
-/// rest in steps of one or two modules; every third module of the start weighs something else.
-StepsFile growing_at_random(const base::Lattice& lattice, std::uint64_t seed) {
+/// rest in steps of one or two modules; every third module of the start weighs something else, or
+/// every second one that comes.
+StepsFile growing_at_random(const base::Lattice& lattice, std::uint64_t seed,
+                            bool is_of_start = true) {
   base::Rng rng(seed);
   Cells cells = {{0, 0, 0}};
   const std::size_t count = 9 + rng.below(16);
@@ -119,7 +121,7 @@ StepsFile growing_at_random(const base::Lattice& lattice, std::uint64_t seed) {
   StepsFile file = growing(Cells(cells.begin(), cells.begin() + static_cast<std::ptrdiff_t>(first)),
                            {}, rng.below(4) == 0);
   file.document.extension.lattice = lattice;
-  for (std::size_t i = 0; i < first; i += 3) {
+  for (std::size_t i = 0; is_of_start && i < first; i += 3) {
     file.document.extension.own.push_back(
         {.step = 0,
          .module = i,
@@ -130,6 +132,13 @@ StepsFile growing_at_random(const base::Lattice& lattice, std::uint64_t seed) {
     auto& step = file.document.steps.emplace_back();
     for (std::size_t k = 1 + rng.below(2); k > 0 && i < count; --k) {
       step.emplace_back().cell = cells[i++];
+      if (!is_of_start && i % 2 == 0) {
+        file.document.extension.own.push_back(
+            {.step = file.document.steps.size(),
+             .module = step.size() - 1,
+             .kind = {},
+             .mass_kg = 1e-3 * static_cast<double>(60 + rng.below(60))});
+      }
     }
   }
   return file;
@@ -152,6 +161,33 @@ TEST(Kept, modules_of_every_lattice_and_mass_go_on_from_what_they_keep) {
     EXPECT_GT(count, test::campaign(60, 3));
     EXPECT_LT(share, 0.7);
   }
+}
+
+TEST(Kept, modules_that_weigh_something_else_come_as_any) {
+  for (const base::Lattice& lattice : test::kLattices) {
+    for (std::uint64_t seed = 0; seed < test::campaign(4U, 1U); ++seed) {
+      SCOPED_TRACE(::testing::Message() << lattice.direction_count << " faces, seed " << seed);
+      expect_the_same(simulated(growing_at_random(lattice, seed, false)));
+    }
+  }
+}
+
+/// A battery of weight B at the tip of an arm on a foot, its modules of weight W. The foot carries
+/// 2 W + B, which press, and the moments of W at a pitch and B at two: 2 W + 4 B - (2 W + B) = 3 B.
+/// When it has gone the arm is left, W beside the foot; no other module can take its cell.
+TEST(Kept, a_battery_comes_and_goes) {
+  StepsFile file = growing({{0, 0, 0}, {0, 0, 1}, {1, 0, 1}}, {{2, 0, 1}}, true);
+  file.document.extension.kinds = {{.name = "battery", .mass_kg = 0.3, .connectors = {}}};
+  file.document.extension.own = {{.step = 1, .module = 0, .kind = "battery", .mass_kg = {}}};
+  file.document.extension.plan = {{.detach = {{2, 0, 1}}}};
+  const SimulatedSteps steps = simulated(file);
+  expect_the_same(steps);
+  const double weight = 0.06106 * 9.81;
+  ASSERT_EQ(steps.changes.size(), 4);
+  EXPECT_NEAR(steps.changes[2].kept.answer.load_ratio_max, 3 * 0.3 * 9.81 / 11.98, 0.001);
+  EXPECT_NEAR(steps.changes[3].kept.answer.load_ratio_max, weight / 14.97, 0.001);
+  file.document.extension.plan.push_back({.attach = {{2, 0, 1}}});
+  EXPECT_FALSE(simulate_steps(file, {}).has_value());
 }
 
 /// One plan closes a loop, which takes a beam more, the other hangs by none: together they have as

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 #include <optional>
 #include <utility>
 
@@ -30,24 +31,62 @@ std::optional<base::Error> find_fault(const StepsFile& file, const io::Sequence&
     if (!step.release.empty() || !step.connect.empty()) {
       return unsupported(file, i, "releases or makes connections");
     }
-    if (!step.own_kinds.empty() || !step.own_masses.empty() || !step.payloads.empty()) {
-      return unsupported(file, i, "attaches modules that weigh something else");
-    }
   }
   return std::nullopt;
 }
 
-/// The robot with all modules that are ever there.
-model::RobotSpec whole_of(const io::Sequence& sequence) {
+bool has(const Cells& cells, const base::Cell& cell) {
+  return std::ranges::find(cells, cell) != cells.end();
+}
+
+/// Those of a list, by cell, that belong to a cell.
+template <class Item>
+std::vector<Item> of_cell(const std::vector<Item>& items, const base::Cell& cell) {
+  std::vector<Item> found;
+  std::ranges::copy_if(items, std::back_inserter(found),
+                       [&](const Item& item) { return item.cell == cell; });
+  return found;
+}
+
+/// Is the module that a step attaches in a cell as the one that was there before?
+bool is_alike(const model::RobotSpec& robot, const model::Step& step, const base::Cell& cell) {
+  return of_cell(robot.own_kinds, cell) == of_cell(step.own_kinds, cell) &&
+         of_cell(robot.own_masses, cell) == of_cell(step.own_masses, cell) &&
+         of_cell(robot.payloads, cell) == of_cell(step.payloads, cell);
+}
+
+template <class Item>
+void append(std::vector<Item>& items, const std::vector<Item>& more) {
+  items.insert(items.end(), more.begin(), more.end());
+}
+
+/// The robot with all modules that are ever there. Modules know the world by its cells, so what is
+/// in a cell is the same whenever anything is.
+base::Result<model::RobotSpec> whole_of(const StepsFile& file, const io::Sequence& sequence) {
   model::RobotSpec whole = sequence.start;
-  for (const model::Step& step : sequence.steps) {
+  for (std::size_t i = 0; i < sequence.steps.size(); ++i) {
+    const model::Step& step = sequence.steps[i];
     for (const base::Cell& cell : step.attach) {
-      if (std::ranges::find(whole.existing, cell) == whole.existing.end()) {
+      if (!has(whole.existing, cell)) {
         whole.existing.push_back(cell);
+        append(whole.own_kinds, of_cell(step.own_kinds, cell));
+        append(whole.own_masses, of_cell(step.own_masses, cell));
+        append(whole.payloads, of_cell(step.payloads, cell));
+      } else if (!is_alike(whole, step, cell)) {
+        return unsupported(file, i, "attaches another kind of module where one was before");
       }
     }
   }
   return whole;
+}
+
+template <class Item>
+void keep_of(std::vector<Item>& items, const std::vector<Item>& all, const Cells& existing,
+             const Cells& planned) {
+  items.clear();
+  std::ranges::copy_if(all, std::back_inserter(items), [&](const Item& item) {
+    return has(existing, item.cell) || has(planned, item.cell);
+  });
 }
 
 /// A simulated robot to which one thing happens after the other.
@@ -96,7 +135,8 @@ class Run {
  public:
   Run(const model::Robot& robot, const model::RobotSpec& whole, const io::Sequence& sequence,
       const sim::SimulationOptions& options)
-      : cells_(whole.existing),
+      : whole_(whole),
+        cells_(whole.existing),
         now_(sequence.start),
         kept_(robot, options_of(options, now_.existing.size(), cells_.size(), true)),
         fresh_(robot, options_of(options, now_.existing.size(), cells_.size(), false)) {}
@@ -155,6 +195,9 @@ class Run {
   std::optional<base::Error> note(StepChange change,
                                   const std::vector<sim::Announcement>& announcements,
                                   const std::vector<sim::Fault>& faults) {
+    keep_of(now_.own_kinds, whole_.own_kinds, now_.existing, now_.planned);
+    keep_of(now_.own_masses, whole_.own_masses, now_.existing, now_.planned);
+    keep_of(now_.payloads, whole_.payloads, now_.existing, now_.planned);
     const auto robot = model::Robot::create(now_);
     if (!robot) {
       return robot.error();
@@ -168,6 +211,7 @@ class Run {
     return std::nullopt;
   }
 
+  const model::RobotSpec& whole_;
   Cells cells_;  ///< By index in the simulations.
   model::RobotSpec now_;
   Follower kept_;
@@ -269,15 +313,18 @@ base::Result<SimulatedSteps> simulate_steps(const StepsFile& file,
   if (const auto error = find_fault(file, sequence.value())) {
     return *error;
   }
-  const model::RobotSpec whole = whole_of(sequence.value());
-  const auto robot = model::Robot::create(whole);
+  const auto whole = whole_of(file, sequence.value());
+  if (!whole) {
+    return whole.error();
+  }
+  const auto robot = model::Robot::create(whole.value());
   if (!robot) {
     return robot.error();
   }
   if (const auto fault = sim::find_options_fault(robot.value(), options)) {
     return base::Error{.code = base::ErrorCode::kBadInput, .message = *fault, .where = {}};
   }
-  Run run(robot.value(), whole, sequence.value(), options);
+  Run run(robot.value(), whole.value(), sequence.value(), options);
   auto error = run.start();
   for (std::size_t i = 0; !error && i < sequence.value().steps.size(); ++i) {
     if (progress) {
