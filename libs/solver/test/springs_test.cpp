@@ -8,6 +8,8 @@
 
 #include <Eigen/Dense>
 #include <cmath>
+#include <cstring>
+#include <map>
 
 #include "../src/multigrid/beam_shapes.hpp"
 #include "../src/multigrid/weak_springs.hpp"
@@ -206,6 +208,119 @@ TEST(WeakSprings, on_the_finest_level_none_is_weak) {
   SpringGraph graph = chain(1e-6);
   graph.shift = 0;
   EXPECT_TRUE(weak_springs(graph, team).empty());
+}
+
+/// What each rank has last had for its nodes, as bytes.
+using Mail = std::map<host::Original, std::vector<std::byte>>;
+
+/// Posts this rank's items, and fetches what others have posted before.
+class MailHalo final : public host::Halo {
+ public:
+  MailHalo(const SpringGraph& graph, Mail& mail) : graph_(graph), mail_(mail) {}
+
+  void update(void* items, std::size_t size) override {
+    auto* const bytes = static_cast<std::byte*>(items);
+    for (std::size_t node = 0; node < graph_.own_count(); ++node) {
+      const host::Original own = {.rank = graph_.ranks->rank(),
+                                  .index = static_cast<std::int32_t>(node)};
+      mail_[own].assign(bytes + node * size, bytes + (node + 1) * size);
+    }
+    for (const host::Copy& copy : graph_.copies) {
+      const auto posted = mail_.find(copy.original);
+      if (posted != mail_.end()) {
+        std::memcpy(bytes + base::at(copy.place) * size, posted->second.data(), size);
+      }
+    }
+  }
+
+ private:
+  const SpringGraph& graph_;
+  Mail& mail_;
+};
+
+/// One of two ranks, the other of which says yes to everything.
+class OneOfTwo final : public host::Ranks {
+ public:
+  explicit OneOfTwo(int rank) : rank_(rank) {}
+
+  int rank() const override { return rank_; }
+
+  int count() const override { return 2; }
+
+  double sum(double mine) override { return mine; }
+
+  double max(double) override { return 1; }
+
+  void sum(std::span<double>) override {}
+
+  std::vector<std::byte> gather(std::span<const std::byte>) override { return {}; }
+
+  std::unique_ptr<host::Halo> make_halo(std::size_t, std::span<const host::Copy>) override {
+    return nullptr;
+  }
+
+  void log(host::Work, bool) override {}
+
+  bool is_own_method(const host::KrylovTask&) override { return true; }
+
+  void watch(const host::KrylovTask&) override {}
+
+  bool solve(const host::KrylovTask&, std::span<const double>, std::span<double>) override {
+    return true;
+  }
+
+ private:
+  int rank_;
+};
+
+/// The half of a chain that a rank has, and a copy of the other's end: 0 = 1 - [2] and
+/// [1] - 2 = 3, whose 2 and 3 are then 0 and 1.
+SpringGraph half_chain(const SpringGraph& whole, OneOfTwo& ranks) {
+  const bool is_second = ranks.rank() == 1;
+  SpringGraph half;
+  half.ranks = &ranks;
+  half.order = {0, 1, 2};
+  half.copies = {{.original = {.rank = is_second ? 0 : 1, .index = is_second ? 1 : 0}, .place = 2}};
+  half.start =
+      is_second ? std::vector<std::int32_t>{0, 2, 3, 3} : std::vector<std::int32_t>{0, 1, 3, 3};
+  half.other = is_second ? std::vector<std::int32_t>{2, 1, 0} : std::vector<std::int32_t>{1, 0, 2};
+  half.pattern = is_second ? std::vector<std::uint32_t>{0, 2} : std::vector<std::uint32_t>{0, 1};
+  const auto first = whole.springs.begin() + (is_second ? 3 : 0);
+  half.springs.assign(first, first + 3);
+  half.shift = whole.shift;
+  return half;
+}
+
+/// What two ranks find of the halves of a chain, in the order of the whole one's edges. The first
+/// is asked again when the second has told it what it finds.
+std::vector<std::uint8_t> weak_in_halves(const SpringGraph& whole) {
+  host::Team team(1);
+  OneOfTwo first(0);
+  OneOfTwo second(1);
+  const SpringGraph left = half_chain(whole, first);
+  const SpringGraph right = half_chain(whole, second);
+  Mail mail;
+  MailHalo left_halo(left, mail);
+  MailHalo right_halo(right, mail);
+  weak_springs(left, team, &left_halo);
+  const std::vector<std::uint8_t> of_right = weak_springs(right, team, &right_halo);
+  std::vector<std::uint8_t> all = weak_springs(left, team, &left_halo);
+  all.insert(all.end(), of_right.begin(), of_right.end());
+  return all;
+}
+
+/// A neck between two ranks is one at both, and what is weak at one end only is none.
+TEST(WeakSprings, ranks_find_those_of_the_whole) {
+  host::Team team(1);
+  const SpringGraph whole = chain(0.006);
+  EXPECT_EQ(weak_springs(whole, team), (std::vector<std::uint8_t>{0, 0, 1, 1, 0, 0}));
+  EXPECT_EQ(weak_in_halves(whole), weak_springs(whole, team));
+  SpringGraph soft_end = whole;  // Holds the third body by so little that the middle spring counts.
+  const Mat soft = scaled(whole.springs[4].stiffness(), 0.1);
+  soft_end.springs[4] = soft_end.springs[5] = PackedSpring(Spring{.stiffness = soft});
+  EXPECT_TRUE(weak_springs(soft_end, team).empty() ||
+              weak_springs(soft_end, team) == std::vector<std::uint8_t>(6));
+  EXPECT_EQ(weak_in_halves(soft_end), std::vector<std::uint8_t>(6));
 }
 
 }  // namespace

@@ -128,7 +128,7 @@ class Coarsening {
       shift += 3;
     }
     if constexpr (std::is_same_v<Real, float>) {
-      is_weak_ = weak_springs(fine_, team_);
+      is_weak_ = weak_springs(fine_, team_, level_.halo.get());
     }
     find_clusters(shift);
     coarse_.shift = fine_.shift + shift;

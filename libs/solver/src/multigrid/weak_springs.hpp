@@ -23,8 +23,9 @@
 namespace holdfast::solver {
 
 /// 1 for every edge of the level whose spring is weak at both ends; empty if there is none. On the
-/// finest level each spring is one beam, and none counts as weak; nor does one to a copy of another
-/// rank's node.
-std::vector<std::uint8_t> weak_springs(const SpringGraph& graph, host::Team& team);
+/// finest level each spring is one beam, and none counts as weak. Ranks that share the level ask
+/// together, by what keeps its `copies` up to date.
+std::vector<std::uint8_t> weak_springs(const SpringGraph& graph, host::Team& team,
+                                       host::Halo* copies = nullptr);
 
 }  // namespace holdfast::solver
