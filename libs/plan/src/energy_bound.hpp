@@ -37,8 +37,8 @@ namespace holdfast::plan {
 /// equilibrium of the paper's law, with all facets stuck. Each module costs the length of its way
 /// down.
 ///
-/// Facets for which that is too coarse are looked at with what is known around them (LocalAdjoint),
-/// or if that was found in the whole robot (FacetAdjoint).
+/// Facets for which that is too coarse are looked at by what is known of them from the modules
+/// around (LocalAdjoint) or, where somebody has found it, from the whole robot (FacetAdjoint).
 ///
 /// Above a section of a slender robot, ways end at the section's modules, and the core moves by its
 /// answer to the resultant there (SectionResponse): s and h w then change alike below. New modules
