@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "carried_force.hpp"
 #include "holdfast/base/lattice.hpp"
@@ -40,7 +41,8 @@ EnergyBound::EnergyBound(const model::Robot& target, const LocalAdjoints& adjoin
       nodes_(target.modules().size()),
       u_(target.modules().size()),
       room_(target.facets().size()),
-      nearby_(target.facets().size()) {
+      nearby_(target.facets().size()),
+      watched_(target) {
   stiffness_ = middle_stiffness(beam_);
   const double b = target.foot_half_width_mm();
   facet_per_norm_x_ = std::sqrt(stiffness_[3] + stiffness_[2] * b * b);
@@ -337,6 +339,7 @@ bool EnergyBound::begin(const std::vector<Element>& elements, const verdict::Ass
     borne_.assign(section_->modules().size(), {});
   }
   std::ranges::for_each(facets_, [&](std::size_t facet) { look_at_facet(facet); });
+  watched_.begin(elements);
   return true;
 }
 
@@ -517,10 +520,43 @@ bool EnergyBound::is_pressed_nearby(std::size_t index, double radius) {
 }
 
 bool EnergyBound::are_pressed(double radius) {
-  return std::ranges::all_of(facets_, [&](std::size_t facet) {
-    return radius < room_[facet] || is_pressed_nearby(facet, radius);
+  const auto doubtful = std::ranges::find_if(facets_, [&](std::size_t facet) {
+    return !(radius < room_[facet] || is_pressed_nearby(facet, radius) ||
+             is_pressed_by_adjoint(facet));
   });
+  if (doubtful == facets_.end()) {
+    return true;
+  }
+  ++doubtful_[*doubtful];
+  return false;
 }
+
+/// As is_pressed_nearby(), by the facet's adjoint, where the displacements are off by the energy
+/// error at most.
+bool EnergyBound::is_pressed_by_adjoint(std::size_t index) {
+  const model::Facet& facet = target_.facets()[index];
+  if (section_ != nullptr || nodes_[base::at(facet.module)].is_new) {
+    return false;
+  }
+  const GrownAdjoint* adjoint = watched_.find(index, u_);
+  if (adjoint == nullptr) {
+    return false;
+  }
+  Vec force = trial_force(facet, u_[base::at(facet.module)]);
+  for (std::size_t i = 0; i < 3; ++i) {
+    force[2 + i] += adjoint->work()[i];
+  }
+  const double b = target_.foot_half_width_mm();
+  const auto holds = [&](double torque, double mx, double my) {
+    const double slack = -force[2] * b - std::abs(torque);
+    return std::ranges::all_of(std::array{1.0, -1.0}, [&](double sign) {
+      return adjoint->error({b, sign * mx, sign * my}) * energy_error() < slack;
+    });
+  };
+  return holds(force[3], 1, 0) && holds(force[4], 0, 1);
+}
+
+std::map<std::size_t, int> EnergyBound::take_doubtful() { return std::exchange(doubtful_, {}); }
 
 std::optional<double> EnergyBound::add(Element element) {
   const std::size_t module = base::at(element);
@@ -544,6 +580,7 @@ std::optional<double> EnergyBound::add(Element element) {
     }
   }
   new_.push_back(module);
+  watched_.attach(module);
   carry(module);
   return bound();
 }
@@ -650,6 +687,7 @@ std::optional<double> EnergyBound::bound() {
 std::optional<double> EnergyBound::improve(const std::vector<Vec>& displacement,
                                            double energy_error, double load_ratio) {
   settle_new();
+  watched_.improve();
   u_ = displacement;
   solved_error_ = energy_error;
   solved_ratio_ = load_ratio;

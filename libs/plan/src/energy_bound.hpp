@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 #include <optional>
 #include <vector>
 
@@ -15,6 +16,7 @@
 #include "local_adjoint.hpp"
 #include "local_balance.hpp"
 #include "section_response.hpp"
+#include "watched_facets.hpp"
 
 namespace holdfast::plan {
 
@@ -34,6 +36,9 @@ namespace holdfast::plan {
 /// half its width. If nothing breaks by that and every facet presses all over, then that is the
 /// equilibrium of the paper's law, with all facets stuck. Each module costs the length of its way
 /// down.
+///
+/// Facets for which that is too coarse are looked at by what is known of them from the modules
+/// around (LocalAdjoint) or, where somebody has found it, from the whole robot (FacetAdjoint).
 ///
 /// Above a section of a slender robot, ways end at the section's modules, and the core moves by its
 /// answer to the resultant there (SectionResponse): s and h w then change alike below. New modules
@@ -60,6 +65,16 @@ class EnergyBound {
   /// no load ratio exceeds `load_ratio`. Returns as add() does.
   std::optional<double> improve(const std::vector<base::Vec6<double>>& displacement,
                                 double energy_error, double load_ratio);
+
+  /// From the next begin() on the forces of these facets are looked at with their adjoints.
+  void take_adjoints(const FacetAdjoints& adjoints) { watched_.take(adjoints); }
+
+  /// Whether the adjoint of a facet has been asked for since it was taken.
+  bool has_asked_for(std::size_t facet) const { return watched_.has_asked_for(facet); }
+
+  /// How often each facet was the first one that left a state without a bound, since this was asked
+  /// last.
+  std::map<std::size_t, int> take_doubtful();
 
   /// How far the displacements are off in the energy norm, at most.
   double energy_error() const { return std::sqrt(std::max(0.0, energy_)) + solved_error_; }
@@ -122,6 +137,7 @@ class EnergyBound {
   std::array<double, 4> product_with(const LocalAdjoint& nearby) const;
   bool is_pressed_nearby(std::size_t facet, double radius);
   bool are_pressed(double radius);
+  bool is_pressed_by_adjoint(std::size_t facet);
 
   const model::Robot& target_;
   const LocalAdjoints& adjoints_;
@@ -141,6 +157,8 @@ class EnergyBound {
   std::vector<std::size_t> facets_;    ///< There, by index in the target.
   std::vector<double> room_;           ///< By facet of the target: what |s - h w| / 2 may be.
   std::vector<std::optional<LocalAdjoint>> nearby_;  ///< By facet, as far as asked for.
+  WatchedFacets watched_;
+  std::map<std::size_t, int> doubtful_;  ///< As take_doubtful() says.
   double solved_ratio_ = 0;
   double solved_error_ = 0;
   const SectionResponse* section_ = nullptr;

@@ -3,7 +3,9 @@
 #include "robot_growth.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <limits>
+#include <map>
 
 #include "holdfast/base/rng.hpp"
 #include "holdfast/host/team.hpp"
@@ -14,6 +16,12 @@ namespace {
 
 /// A seed moves candidates by up to so many steps.
 constexpr std::uint64_t kDisturbance = 4;
+
+/// A facet that has left so many states of a run without a bound is worth its adjoint: three
+/// solutions from nothing, some twenty iterations of multigrid, where one that follows takes five;
+/// but of so many facets after a run at most.
+constexpr int kDoubtMin = 8;
+constexpr std::size_t kAdjointCountMax = 16;
 
 /// Steps from the nearest of `sources`, through connections of the target.
 std::vector<std::int64_t> distances_from(const model::Robot& target,
@@ -502,13 +510,66 @@ std::vector<Judgement> RobotGrowth::judge_run(const ElementSet& state, Sense sen
     }
   });
   std::vector<Judgement> judgements;
+  ElementSet reached = state;
   for (std::size_t i = 0; i < count; ++i) {
     judgements.insert(judgements.end(), pieces[i].begin(), pieces[i].end());
     if (pieces[i].size() < part(i).size() || !judgements.back().is_safe()) {
       break;
     }
+    reached = changed(std::move(reached), sense, part(i));
+  }
+  if (sense == Sense::kGrowing) {
+    renew_adjoints(reached, is_late);
   }
   return judgements;
+}
+
+/// The facets that are worth their adjoints after a run, those first that have left the most states
+/// without a bound.
+std::vector<std::size_t> RobotGrowth::doubtful_facets(const ElementSet& state) {
+  std::map<std::size_t, int> doubtful;
+  for (EnergyBound& bound : bounds_) {
+    for (const auto& [facet, count] : bound.take_doubtful()) {
+      doubtful[facet] += count;
+    }
+  }
+  std::vector<std::pair<int, std::size_t>> ranked;
+  for (const auto& [facet, count] : doubtful) {
+    if (count >= kDoubtMin && state.contains(target_.facets()[facet].module)) {
+      ranked.emplace_back(-count, facet);
+    }
+  }
+  std::ranges::sort(ranked);
+  ranked.resize(std::min(ranked.size(), kAdjointCountMax));
+  std::vector<std::size_t> facets;
+  std::ranges::transform(ranked, std::back_inserter(facets),
+                         [](const auto& each) { return each.second; });
+  return facets;
+}
+
+/// Finds the adjoints of doubtful facets of a safe state, to which a run has led, anew where they
+/// were known, and forgets those that nobody has asked for in the run. All pieces of the next run
+/// know the same ones, so that threads make no difference.
+void RobotGrowth::renew_adjoints(const ElementSet& state, const std::function<bool()>& is_late) {
+  if (element_count() - state.size() < kRunLength / 2) {
+    return;  // Too few states are left to come.
+  }
+  const std::vector<std::size_t> facets = doubtful_facets(state);
+  const std::size_t known_count = facet_adjoints_.size();
+  std::erase_if(facet_adjoints_, [&](const auto& adjoint) {
+    return std::ranges::find(facets, adjoint->facet) != facets.end() ||
+           std::ranges::none_of(bounds_, [&](const EnergyBound& bound) {
+             return bound.has_asked_for(adjoint->facet);
+           });
+  });
+  if (!facets.empty()) {
+    const FacetAdjoints found = find_adjoints(spec_, target_, state, facets, is_late);
+    facet_adjoints_.insert(facet_adjoints_.end(), found.begin(), found.end());
+  }
+  if (known_count + facet_adjoints_.size() > 0) {
+    std::ranges::for_each(bounds_,
+                          [&](EnergyBound& bound) { bound.take_adjoints(facet_adjoints_); });
+  }
 }
 
 }  // namespace holdfast::plan

@@ -1,0 +1,100 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#include "facet_adjoint.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "holdfast/mechanics/ground_contact.hpp"
+#include "holdfast/model/lattice_beam.hpp"
+#include "holdfast/model/material.hpp"
+#include "holdfast/solver/linear_system.hpp"
+#include "holdfast/verdict/assessment.hpp"
+#include "robot_growth.hpp"
+
+namespace holdfast::plan {
+namespace {
+
+using base::at;
+using base::Vec6;
+
+/// Of z, of its own energy norm: what it costs is that share of what other displacements are off.
+constexpr double kTolerance = 1e-3;
+
+/// The loads of fz, mx and my of a facet on its module.
+std::array<Vec6<double>, 3> facet_loads(const model::Robot& target,
+                                        const model::LatticeBeam<double>& beam,
+                                        const model::Facet& facet) {
+  const auto law = mechanics::ground_facet<double>(beam.stiffness(), target.material().pitch_mm,
+                                                   2 * target.foot_half_width_mm(), 0,
+                                                   mechanics::ContactLaw::kRegularised);
+  std::array<Vec6<double>, 3> loads{};
+  for (int k = 0; k < 6; ++k) {
+    const auto force =
+        mechanics::trial_force(law, beam.to_local(facet.direction, base::unit<double>(k)));
+    for (std::size_t i = 0; i < 3; ++i) {
+      loads[i][at(k)] = force[2 + i];
+    }
+  }
+  return loads;
+}
+
+/// None if it cannot be solved.
+std::shared_ptr<const FacetAdjoint> find_adjoint(solver::LinearSystem& system,
+                                                 const model::Robot& target,
+                                                 std::shared_ptr<const ElementSet> core,
+                                                 std::size_t facet) {
+  auto adjoint = std::make_shared<FacetAdjoint>();
+  adjoint->facet = facet;
+  adjoint->z.resize(target.modules().size());
+  const std::vector<Element> elements = core->elements();
+  const std::size_t module = at(target.facets()[facet].module);
+  const auto place = static_cast<std::size_t>(
+      std::ranges::lower_bound(elements, static_cast<Element>(module)) - elements.begin());
+  const auto loads = facet_loads(target, system.beam(), target.facets()[facet]);
+  for (std::size_t i = 0; i < 3; ++i) {
+    std::vector<Vec6<double>> on_modules(elements.size());
+    on_modules[place] = loads[i];
+    system.set_loads(model::Loads(on_modules));
+    if (system.solve(kTolerance) != solver::LinearOutcome::kSolved) {
+      return nullptr;
+    }
+    const auto z = system.displacement();
+    for (std::size_t k = 0; k < elements.size(); ++k) {
+      adjoint->z[at(elements[k])][i] = z[k];
+    }
+    const double norm = std::sqrt(std::max(0.0, base::dot(loads[i], z[place])));
+    adjoint->error[i] = system.is_exact() ? 0 : verdict::kEnergyFactor * kTolerance * norm;
+  }
+  adjoint->core = std::move(core);
+  return adjoint;
+}
+
+}  // namespace
+
+FacetAdjoints find_adjoints(const model::RobotSpec& spec, const model::Robot& target,
+                            const ElementSet& core, const std::vector<std::size_t>& facets,
+                            const std::function<bool()>& is_late) {
+  FacetAdjoints adjoints;
+  const auto robot = model::Robot::create(part_of(spec, core), 1);
+  if (!robot) {
+    return adjoints;
+  }
+  const auto system = solver::make_linear_system(robot.value(), {.thread_count = 1});
+  if (!system) {
+    return adjoints;
+  }
+  system->set_law({});
+  const auto shared = std::make_shared<const ElementSet>(core);
+  for (const std::size_t facet : facets) {
+    if (is_late()) {
+      break;
+    }
+    if (auto adjoint = find_adjoint(*system, target, shared, facet)) {
+      adjoints.push_back(std::move(adjoint));
+    }
+  }
+  return adjoints;
+}
+
+}  // namespace holdfast::plan

@@ -1,0 +1,151 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#include "watched_facets.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "carried_force.hpp"
+#include "holdfast/base/lattice.hpp"
+#include "holdfast/model/material.hpp"
+
+namespace holdfast::plan {
+
+using base::at;
+using base::Direction;
+
+namespace {
+
+void add_times(base::Vec6<double>& sum, double factor, const base::Vec6<double>& term) {
+  for (std::size_t i = 0; i < 6; ++i) {
+    sum[i] += factor * term[i];
+  }
+}
+
+}  // namespace
+
+WatchedFacets::WatchedFacets(const model::Robot& target)
+    : target_(&target),
+      beam_(model::beam_section(target.material()), target.lattice()),
+      there_(target) {}
+
+void WatchedFacets::take(const FacetAdjoints& adjoints) {
+  std::vector<Watched> watched;
+  for (const auto& adjoint : adjoints) {
+    const auto found = std::ranges::find_if(
+        watched_, [&](const Watched& known) { return known.adjoint.core() == adjoint; });
+    watched.push_back(found == watched_.end() ? Watched{.adjoint = {*target_, adjoint}}
+                                              : std::move(*found));
+  }
+  watched_ = std::move(watched);
+  for (Watched& each : watched_) {
+    each.is_asked_for = false;
+  }
+}
+
+bool WatchedFacets::has_asked_for(std::size_t facet) const {
+  return std::ranges::any_of(watched_, [&](const Watched& watched) {
+    return watched.is_asked_for && watched.adjoint.core()->facet == facet;
+  });
+}
+
+void WatchedFacets::begin(const std::vector<Element>& elements) {
+  elements_ = elements;
+  attached_.clear();
+  for (Watched& watched : watched_) {
+    watched.has_begun = false;
+  }
+  improve();
+}
+
+void WatchedFacets::improve() {
+  settled_count_ = attached_.size();
+  rest_.clear();
+  for (Watched& watched : watched_) {
+    watched.has_rest = false;
+  }
+}
+
+/// Continues an adjoint to the solved robot, from its core if it has been in others.
+bool WatchedFacets::begin(Watched& watched) const {
+  if (watched.adjoint.grow_to(elements_)) {
+    return true;
+  }
+  watched.adjoint = GrownAdjoint(*target_, watched.adjoint.core());
+  return watched.adjoint.grow_to(elements_);
+}
+
+const GrownAdjoint* WatchedFacets::find(std::size_t facet, const std::vector<Vec>& u) {
+  const auto found = std::ranges::find_if(
+      watched_, [&](const Watched& known) { return known.adjoint.core()->facet == facet; });
+  if (found == watched_.end()) {
+    return nullptr;
+  }
+  found->is_asked_for = true;
+  if (!found->has_begun) {
+    found->has_begun = true;
+    found->is_void = !begin(*found);
+    found->attached = 0;
+  }
+  if (found->is_void) {
+    return nullptr;
+  }
+  if (!found->has_rest) {
+    for (; found->attached < settled_count_; ++found->attached) {
+      found->adjoint.grow(attached_[found->attached]);
+    }
+    find_rest(u);
+    found->adjoint.set_rest(rest_);
+    found->has_rest = true;
+  }
+  for (; found->attached < attached_.size(); ++found->attached) {
+    found->adjoint.grow(attached_[found->attached]);
+    found->adjoint.add_rest(attached_[found->attached], u);
+  }
+  return &found->adjoint;
+}
+
+/// f - K u of the modules that have the last displacements, unless it is known.
+void WatchedFacets::find_rest(const std::vector<Vec>& u) {
+  if (!rest_.empty()) {
+    return;
+  }
+  rest_.resize(target_->modules().size());
+  there_.assign(elements_);
+  std::for_each_n(attached_.begin(), settled_count_,
+                  [&](std::size_t module) { there_.insert(module); });
+  for (std::size_t module = 0; module < rest_.size(); ++module) {
+    if (!there_.is_there(module)) {
+      continue;
+    }
+    base::add_to(rest_[module], target_->loads()[module]);
+    for (const Direction direction : base::directions(target_->lattice())) {
+      const std::int32_t other = there_.neighbour(module, base::index(direction));
+      if (base::index(direction) % 2 == 0 && other != model::Robot::kNoNeighbour) {
+        pull(module, direction, at(other), u);
+      }
+    }
+  }
+  for (const model::Facet& facet : target_->facets()) {
+    const std::size_t module = at(facet.module);
+    if (there_.is_there(module)) {
+      add_times(rest_[module], -1, there_.facet_force(facet.direction, u[module]));
+    }
+  }
+}
+
+/// What a beam does to its ends: the force in its middle, so that both get the same one, and no
+/// digits are lost where much moves.
+void WatchedFacets::pull(std::size_t module, Direction direction, std::size_t other,
+                         const std::vector<Vec>& u) {
+  const Vec force = beam_.to_global(direction, beam_.middle_force(direction, u[module], u[other]));
+  const auto step =
+      base::place_of(target_->lattice(), target_->lattice().steps[at(base::index(direction))]);
+  const double half = target_->material().pitch_mm / 2;
+  const Vec to = {half * step[0], half * step[1], half * step[2], 0, 0, 0};
+  const Vec back = {-to[0], -to[1], -to[2], 0, 0, 0};
+  add_times(rest_[module], -1, force_at(force, back));
+  add_times(rest_[other], 1, force_at(force, to));
+}
+
+}  // namespace holdfast::plan
