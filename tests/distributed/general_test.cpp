@@ -95,6 +95,22 @@ TEST(DistributedGeneral, a_mass_over_the_edge_is_not_safe_whatever_else_acts) {
   }
 }
 
+/// Four discs between two obstacles and a planned one: by the solution on Newton's path the largest
+/// load ratio is 0.950, by another one, which iterations of one sweep do not reach, 1.048.
+TEST(DistributedGeneral, a_robot_that_another_solution_breaks_is_not_safe) {
+  model::RobotSpec spec{.existing = {{0, 0, 0}, {0, 0, -1}, {0, 0, -2}, {1, 0, -2}}};
+  spec.planned = {{1, 0, 0}};
+  spec.lattice = base::kHexagonal;
+  spec.material.mass_kg = 0.002;
+  spec.material.strength_lateral_n = 0.79;
+  spec.support_z = std::nullopt;
+  spec.obstacles = {{.from = {}, .to = {}, .cells = {{-1, 0, 0}, {0, 0, -3}}}};
+  spec.payloads = {{{0, 0, -2}, {-0.512, -0.005, 0.132}, {7.378, 6.165, -5.506}}};
+  const test::Comparison comparison = test::compare(robot_of(spec), {});
+  EXPECT_EQ(comparison.exact, verdict::Verdict::kUndecided) << comparison.text();
+  EXPECT_EQ(comparison.robot, Verdict::kUndecided) << comparison.text();
+}
+
 /// The tower turned onto each side of a box, gravity with it: the same robot, the same verdict.
 TEST(DistributedGeneral, a_tower_stands_on_every_face_that_gravity_presses_on) {
   for (const base::Direction down : base::kDirections) {
