@@ -185,7 +185,7 @@ class Robot:
 
     @classmethod
     def from_file(cls, path: Path, *, lattice: str = '', robot: str = '') -> Robot:
-        """Reads VisibleSim XML or holdfast JSON, version 1 or 2.
+        """Reads VisibleSim XML, holdfast JSON, version 1 or 2, or a binary structure.
 
         `lattice` and `robot` say what the file leaves open.
         """

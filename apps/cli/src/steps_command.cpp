@@ -119,8 +119,9 @@ Command add_steps(CLI::App& app) {
   CLI::App* command = app.add_subcommand(
       "steps",
       "Say whether every stage of every step of a sequence is safe: release, shift, connect");
-  add_required(*command, "FILE", options->file,
-               "A structure with steps, VisibleSim XML or holdfast JSON; - is standard input");
+  add_required(
+      *command, "FILE", options->file,
+      "A structure with steps: VisibleSim XML, holdfast JSON or binary; - is standard input");
   add_reading(*command, options->reading);
   const auto add_output = [&](const char* name, std::string& path, const char* help) {
     command->add_option(name, path, help)->type_name("FILE");

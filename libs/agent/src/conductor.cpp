@@ -415,7 +415,7 @@ Order Conductor::judge_regularised(const Setup& setup, const Report& report) {
     return next_trial();
   }
   if (was_seen(report.states_hash()) || effort_.contact_iterations > contact_iterations_max_) {
-    return is_seeking() ? leave_trial(setup) : begin_law(setup, true);
+    return is_seeking() ? leave_trial(setup, false) : begin_law(setup, true);
   }
   ++effort_.contact_iterations;
   error_best_ = kUnbounded;
@@ -426,7 +426,7 @@ Order Conductor::judge_regularised(const Setup& setup, const Report& report) {
 /// The present way leads nowhere: the next safer method, the next law, or no answer.
 Order Conductor::give_up(const Setup& setup) {
   if (is_seeking()) {
-    return leave_trial(setup);
+    return leave_trial(setup, true);
   }
   if (effort_.iterations > setup.iteration_count_max) {
     return finish(Verdict::kUndecided, Reason::kNotConverged);

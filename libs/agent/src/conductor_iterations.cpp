@@ -334,7 +334,7 @@ Order Conductor::leave_clusters(const Setup& setup) {
 /// Fronts that find no room anywhere, or no contact state: the next safer method, the next law.
 Order Conductor::leave_fronts(const Setup& setup, bool has_no_room) {
   if (is_seeking()) {
-    return leave_trial(setup);
+    return leave_trial(setup, false);
   }
   if (has_no_room) {
     may_have_fronts_ = false;
@@ -348,7 +348,7 @@ Order Conductor::leave_fronts(const Setup& setup, bool has_no_room) {
 /// conjugate gradients where there are any.
 Order Conductor::leave_one_sweep(const Setup& setup, bool is_unilateral) {
   if (is_seeking()) {
-    return leave_trial(setup);
+    return leave_trial(setup, !is_unilateral);
   }
   if (is_newton_ && is_unilateral && !is_unilateral_) {
     return begin_law(setup, true);

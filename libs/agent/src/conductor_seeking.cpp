@@ -54,6 +54,7 @@ Order Conductor::begin_seeking() {
   seeking_ = Seeking::kTrying;
   found_hash_ = states_hash_;
   trial_count_ = 0;
+  is_trial_lost_ = false;
   was_newton_ = is_newton_;
   is_newton_ = effort_.method == Method::kPolynomial && !is_uneven();
   return seek(0, kRemember);
@@ -106,24 +107,44 @@ Order Conductor::after_trial(const Setup& setup) {
     return next_trial();
   }
   if (is_other) {
-    return leave_trial(setup);
+    return leave_trial(setup, false);
+  }
+  is_newton_ = was_newton_;
+  if (seeks_again(setup)) {
+    return seek_by_gradients(setup);
   }
   seeking_ = Seeking::kDone;
-  is_newton_ = was_newton_;
   return settled(setup);
 }
 
 /// A trial that comes to no end says nothing. What was found first is found again from rest.
-Order Conductor::leave_trial(const Setup& setup) {
+/// `is_lost`: not as states went round in circles, but as the method did not converge.
+Order Conductor::leave_trial(const Setup& setup, bool is_lost) {
+  is_trial_lost_ = is_trial_lost_ || is_lost;
   if (seeking_ == Seeking::kTrying) {
     return next_trial();
   }
   is_newton_ = was_newton_;
+  if (seeks_again(setup)) {
+    return seek_by_gradients(setup);
+  }
   const bool other_breaks = other_breaks_;
   const Order begin = begin_law(setup, false);
   seeking_ = Seeking::kDone;
   other_breaks_ = other_breaks;
   return begin;
+}
+
+/// On few feet that are nearly open a one-sweep method may converge from rest, but not in a trial.
+bool Conductor::seeks_again(const Setup& setup) const {
+  return kSeeksOthers && is_trial_lost_ && !other_breaks_ && is_one_sweep() && has_gradients(setup);
+}
+
+/// All of it from the beginning.
+Order Conductor::seek_by_gradients(const Setup& setup) {
+  is_newton_ = false;
+  effort_.method = Method::kConjugateGradients;
+  return begin_law(setup, false);
 }
 
 /// The load ratio is known, by the regularised law.

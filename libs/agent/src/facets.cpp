@@ -23,6 +23,9 @@ constexpr double kPressureTie = 1e-6;
 /// A facet that is so near to slipping may slip: forces are good to some 1e-7 of what acts on it.
 constexpr double kSlipTie = 1e-5;
 
+/// A facet that is so near to tilting presses with its edge alone: forces are good to as much.
+constexpr double kEdgeTie = 1e-5;
+
 std::span<const TouchingFacet> facets_of(const Surroundings& node) {
   return std::span(node.facets).first(node.facet_count);
 }
@@ -266,20 +269,50 @@ mechanics::Corner corner_at(const Surroundings& node, const TouchingFacet& facet
 
 }  // namespace
 
+/// The edges that a facet presses with, as the state of one that tilts over them: it does where it
+/// is so near to that that rounding could decide.
+ContactState edges_of(const Surroundings& node, const TouchingFacet& facet,
+                      const ContactSetting& contact, const Vec6<double>& u) {
+  ContactState edges = facet.state;
+  const mechanics::GroundFacet<double>& law = contact.facet;
+  const Vec6<double> force =
+      mechanics::contact_force(law, facet.state, facet.is_held, to_local(node, facet, u));
+  const double limit = -(1 - kEdgeTie) * force[2] * law.half_width;
+  const auto tilt = [&](double torque) {
+    return absolute(torque) < limit ? std::int8_t{0}
+                                    : static_cast<std::int8_t>(torque < 0 ? -1 : 1);
+  };
+  if (edges.tilt_x == 0) {
+    edges.tilt_x = tilt(force[3] - force[1] * law.lever);
+  }
+  if (edges.tilt_y == 0) {
+    edges.tilt_y = tilt(force[4] + force[0] * law.lever);
+  }
+  return edges;
+}
+
 /// mx^ < 0 presses the +y' edge, my^ > 0 the +x' edge.
-mechanics::SupportCorners support_corners(const Surroundings& node, const base::Cell& cell) {
+mechanics::SupportCorners support_corners(const Surroundings& node, const ContactSetting& contact,
+                                          const Vec6<double>& u, const base::Cell& cell) {
   mechanics::SupportCorners corners;
   const Environment& environment = *node.environment;
   const std::int32_t half_pitch = environment.foot_denominator;
   const std::int32_t half_width = environment.foot_numerator;
   for (const TouchingFacet& facet : facets_of(node)) {
-    if (facet.is_bonded || (facet.state == kStuck && half_width > 0)) {
+    if (facet.is_bonded) {
       return {.stable = true};
     }
-    for (std::int32_t corner = 0; corner < 4 && facet.state.pressed; ++corner) {
+    if (!facet.state.pressed) {
+      continue;
+    }
+    const ContactState edges = edges_of(node, facet, contact, u);
+    if (edges == kStuck && half_width > 0) {
+      return {.stable = true};
+    }
+    for (std::int32_t corner = 0; corner < 4; ++corner) {
       const std::int32_t side_x = corner % 2 == 0 ? -1 : 1;
       const std::int32_t side_y = corner < 2 ? -1 : 1;
-      if (facet.state.tilt_x == side_y || facet.state.tilt_y == -side_x) {
+      if (edges.tilt_x == side_y || edges.tilt_y == -side_x) {
         continue;
       }
       // From the node: half a pitch to the facet, along -z', then to its corner.

@@ -56,6 +56,11 @@ bool is_any_tilting(const Node& node);
 /// Is a facet pulled sideways by more than its friction, or by so much that it cannot be told?
 bool may_slip(const Node& node, const ContactSetting& contact);
 
+/// The corners with which a node in a cell presses, in units of pitch over twice Environment's
+/// foot_denominator, or over kCornerParts where it is no cube; what is bonded holds alone.
+mechanics::SupportCorners support_corners(const Surroundings& node, const ContactSetting& contact,
+                                          const base::Vec6<double>& u, const base::Cell& cell);
+
 /// The force of the facets of a node on the ground for the displacement u, in the states in use;
 /// linear in u.
 inline base::Vec6<double> facet_force(const Node& node, const ContactSetting& contact,

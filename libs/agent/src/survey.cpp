@@ -241,8 +241,9 @@ Report corners_report(const Workspace& ws) {
       own.corners = mechanics::fixed_support();
     } else if (node.is_ground) {
       const Surroundings* surroundings = surroundings_of(node);
-      own.corners = surroundings != nullptr ? support_corners(*surroundings, ws.cell_of(i))
-                                            : mechanics::support_corners(ws.cell_of(i), node.state);
+      own.corners = surroundings != nullptr
+                        ? support_corners(*surroundings, ws.contact, node.u, ws.cell_of(i))
+                        : mechanics::support_corners(ws.cell_of(i), node.state);
     }
     add_report(ws.setup, {.operation = Operation::kCorners}, report, own);
   }

@@ -163,10 +163,7 @@ base::Result<std::pair<SharedText, std::vector<Record>>> read_binary_file(PetscR
   if (!file.read_all(sizeof head, std::as_writable_bytes(std::span(text.document)))) {
     return bad_input("the text could not be read", fmt::format("byte {}", sizeof head));
   }
-  if (auto fault = io::find_text_fault(head, text.document)) {
-    return *std::move(fault);
-  }
-  const auto document = io::read_json(text.document);
+  const auto document = io::read_binary_text(head, text.document);
   if (!document) {
     return document.error();
   }

@@ -55,7 +55,7 @@ base::Result<std::string> read_file(const fs::path& path) {
     return unreadable("no such file");
   }
   if (fs::is_directory(status)) {
-    return unreadable("is a folder, expected is a file of VisibleSim XML or holdfast JSON");
+    return unreadable("is a folder, expected is a file: VisibleSim XML, holdfast JSON or binary");
   }
   std::ifstream stream(path, std::ios::binary);
   if (!stream) {

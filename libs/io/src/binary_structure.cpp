@@ -39,6 +39,28 @@ base::Error bad_input(std::string message, std::string where = {}) {
       .code = base::ErrorCode::kBadInput, .message = std::move(message), .where = std::move(where)};
 }
 
+/// Beyond this a lowest corner is none of a robot: bricks of leaning lattices reach further than
+/// their cells.
+constexpr std::int32_t kLowMax = 4 * base::kCoordinateMax;
+
+bool is_within(const base::Cell& cell, std::int32_t most) {
+  const auto is_near = [most](std::int32_t value) { return value >= -most && value <= most; };
+  return is_near(cell.x) && is_near(cell.y) && is_near(cell.z);
+}
+
+/// What is wrong with a record wherever it stands; null if nothing is.
+const char* find_own_fault(const ModuleRecord& record, const solver::Bricks& bricks,
+                           const base::Cell& low) {
+  if (!is_within(record.place(), base::kCoordinateMax)) {
+    return "it lies outside the lattice, allowed are coordinates from -1000000 to 1000000";
+  }
+  const base::Cell brick = bricks.of(record.place());
+  if (brick.x < low.x || brick.y < low.y || brick.z < low.z) {
+    return "it lies below the low corner";
+  }
+  return record.flags > ModuleRecord::kFixed ? "flags that are not known" : nullptr;
+}
+
 std::optional<base::Error> find_fault(const BinaryHead& head, std::uint64_t file_size) {
   if (head.magic != BinaryHead().magic) {
     return bad_input("is no binary structure, expected are the letters HOLDFAST", "byte 0");
@@ -55,6 +77,10 @@ std::optional<base::Error> find_fault(const BinaryHead& head, std::uint64_t file
     return bad_input(fmt::format("{} modules of {} bytes and a text of {} bytes", head.module_count,
                                  head.record_size, head.text_size),
                      "byte 12");
+  }
+  if (!is_within(head.low_corner(), kLowMax) || head.zero != 0) {
+    return bad_input("the lowest corner is none of a robot's modules, or is not followed by 0",
+                     "byte 32");
   }
   const std::uint64_t expected = head.records_begin() + sizeof(ModuleRecord) * head.module_count;
   if (file_size != expected) {
@@ -82,6 +108,11 @@ Document without_modules(const Document& document) {
   common.extension = document.extension;
   common.extension.own.clear();
   common.extension.plan.clear();
+  if (!common.extension.payloads.empty() && step_count(document) > 0) {
+    if (const auto spec = make_spec(document)) {
+      common.extension.payloads = spec.value().payloads;  // None on modules that come later.
+    }
+  }
   const auto special = special_modules(document);
   for (std::size_t i = 0; i < document.modules.size(); ++i) {
     if (i == 0 || special.contains({0, i})) {
@@ -155,15 +186,32 @@ std::optional<base::Error> sort_along_curve(const base::Lattice& lattice, const 
   return std::nullopt;
 }
 
-/// Puts records into a document that has those modules only that have something of their own, and
-/// the first one.
-std::optional<base::Error> take_modules(std::span<const ModuleRecord> records, Document& document) {
-  const std::vector<ModuleEntry> named = std::exchange(document.modules, {});
-  std::vector<std::pair<base::Cell, std::size_t>> own;  // And their places in the list.
-  for (std::size_t i = 0; i < document.extension.own.size(); ++i) {
-    own.emplace_back(named[document.extension.own[i].module].cell, i);
+/// A module that the text names, and what it has of its own there, if anything.
+struct NamedModule {
+  base::Cell cell;
+  OwnParameters* own = nullptr;
+};
+
+/// The modules of a document, by their cells. What they have of their own points into it.
+std::vector<NamedModule> named_modules(const std::vector<ModuleEntry>& modules,
+                                       std::vector<OwnParameters>& own) {
+  std::vector<NamedModule> named;
+  named.reserve(modules.size());
+  for (const ModuleEntry& module : modules) {
+    named.push_back({.cell = module.cell});
   }
-  std::ranges::sort(own);
+  for (OwnParameters& one : own) {
+    named[one.module].own = &one;
+  }
+  std::ranges::sort(named, {}, &NamedModule::cell);
+  return named;
+}
+
+/// Puts records into a document that names those modules only that have something of their own, and
+/// the first one; it plans none.
+std::optional<base::Error> take_modules(std::span<const ModuleRecord> records, Document& document) {
+  const std::vector<NamedModule> named =
+      named_modules(std::exchange(document.modules, {}), document.extension.own);
   std::size_t found = 0;
   const auto planned_count = static_cast<std::size_t>(
       std::ranges::count(records, ModuleRecord::kPlanned, &ModuleRecord::flags));
@@ -172,11 +220,13 @@ std::optional<base::Error> take_modules(std::span<const ModuleRecord> records, D
   for (const ModuleRecord& record : records) {
     const base::Cell cell = record.place();
     const bool is_planned = record.flags == ModuleRecord::kPlanned;
-    for (auto at = std::ranges::lower_bound(own, std::pair(cell, std::size_t{0}));
-         at != own.end() && at->first == cell; ++at, ++found) {
-      document.extension.own[at->second].step = is_planned ? 1 : 0;
-      document.extension.own[at->second].module =
-          is_planned ? planned.size() : document.modules.size();
+    const auto at = std::ranges::lower_bound(named, cell, {}, &NamedModule::cell);
+    if (at != named.end() && at->cell == cell) {
+      ++found;
+      if (at->own != nullptr) {
+        at->own->step = is_planned ? 1 : 0;
+        at->own->module = is_planned ? planned.size() : document.modules.size();
+      }
     }
     if (is_planned) {
       planned.emplace_back().cell = cell;
@@ -186,8 +236,8 @@ std::optional<base::Error> take_modules(std::span<const ModuleRecord> records, D
       module.is_fixed = record.flags == ModuleRecord::kFixed;
     }
   }
-  if (found != own.size()) {
-    return bad_input("the text names a module of its own mass or kind that is not there",
+  if (found != named.size()) {
+    return bad_input("the text names a module twice, or one that is not there",
                      fmt::format("byte {}", sizeof(BinaryHead)));
   }
   std::ranges::sort(document.extension.own, {},
@@ -231,11 +281,17 @@ base::Result<BinaryHead> read_binary_head(std::string_view begin, std::uint64_t 
   return head;
 }
 
-std::optional<base::Error> find_text_fault(const BinaryHead& head, std::string_view text) {
+base::Result<ReadDocument> read_binary_text(const BinaryHead& head, std::string_view text,
+                                            const ReadOptions& options) {
   if (text_sum(text) != head.text_sum) {
     return bad_input("the text's checksum is wrong: the file was changed or damaged", "byte 48");
   }
-  return std::nullopt;
+  auto read = read_json(text, options);
+  if (read && step_count(read.value().document) > 0) {
+    return bad_input("the text has steps; planned modules stand behind it, among all modules",
+                     fmt::format("byte {}", sizeof head));
+  }
+  return read;
 }
 
 std::string find_record_fault(std::span<const ModuleRecord> records, std::uint64_t first,
@@ -244,12 +300,11 @@ std::string find_record_fault(std::span<const ModuleRecord> records, std::uint64
   const solver::Bricks bricks(lattice);
   for (std::size_t i = 0; i < records.size(); ++i) {
     const ModuleRecord& record = records[i];
-    const base::Cell brick = bricks.of(record.place());
-    const bool is_inside = brick.x >= low.x && brick.y >= low.y && brick.z >= low.z;
-    if (!is_inside || record.flags > ModuleRecord::kFixed) {
+    if (const char* fault = find_own_fault(record, bricks, low)) {
       return fmt::format("the module {} in the cell {}: {}", first + i, model::text(record.place()),
-                         is_inside ? "flags that are not known" : "it lies below the low corner");
+                         fault);
     }
+    const base::Cell brick = bricks.of(record.place());
     const std::uint64_t key = solver::morton_key(brick, low);
     if (static_cast<std::int64_t>(key) <= before) {
       return fmt::format(
@@ -337,16 +392,12 @@ base::Result<ReadDocument> read_binary(std::string_view bytes, const ReadOptions
     return read_head.error();
   }
   const BinaryHead& head = read_head.value();
-  const std::string_view text = bytes.substr(sizeof head, head.text_size);
-  if (auto fault = find_text_fault(head, text)) {
-    return *std::move(fault);
-  }
   if (head.module_count > model::kModuleCountMax) {
     return bad_input(fmt::format("{} modules, allowed are at most {}", head.module_count,
                                  model::kModuleCountMax),
                      "byte 16");
   }
-  auto read = read_json(text, options);
+  auto read = read_binary_text(head, bytes.substr(sizeof head, head.text_size), options);
   if (!read) {
     return read;
   }

@@ -24,11 +24,12 @@ base::Result<Format> detect_format(std::string_view text) {
     return base::Error{base::ErrorCode::kBadInput, "the input is empty, expected is a structure",
                        ""};
   }
-  return base::Error{base::ErrorCode::kBadInput,
-                     fmt::format("the input begins with {}, expected is VisibleSim XML, which "
-                                 "begins with '<', or holdfast JSON, with '{{'",
-                                 excerpt(text.substr(0, 8))),
-                     ""};
+  return base::Error{
+      base::ErrorCode::kBadInput,
+      fmt::format("the input begins with {}, expected is VisibleSim XML, which "
+                  "begins with '<', holdfast JSON, with '{{', or binary, with HOLDFAST",
+                  excerpt(text.substr(0, 8))),
+      ""};
 }
 
 base::Result<ReadDocument> read_document(std::string_view text, const ReadOptions& options) {

@@ -226,6 +226,21 @@ void add_payloads(const Document& document, Sequence& sequence) {
   }
 }
 
+/// All loads but those on modules that later steps attach.
+std::vector<model::Payload> present_payloads(const Document& document) {
+  if (document.steps.size() <= 1 && document.extension.plan.empty()) {
+    return document.extension.payloads;
+  }
+  Sequence sequence{.start = start_of(document), .steps = steps_of(document)};
+  add_payloads(document, sequence);
+  std::vector<model::Payload> present = std::move(sequence.start.payloads);
+  if (!document.steps.empty()) {
+    const std::vector<model::Payload>& planned = sequence.steps.front().payloads;
+    present.insert(present.end(), planned.begin(), planned.end());
+  }
+  return present;
+}
+
 }  // namespace
 
 base::Result<model::RobotSpec> make_spec(const Document& document) {
@@ -233,7 +248,7 @@ base::Result<model::RobotSpec> make_spec(const Document& document) {
     return *std::move(error);
   }
   model::RobotSpec spec = start_of(document);
-  spec.payloads = document.extension.payloads;
+  spec.payloads = present_payloads(document);
   if (!document.steps.empty()) {
     for (const PlannedEntry& planned : document.steps.front()) {
       spec.planned.push_back(planned.cell);

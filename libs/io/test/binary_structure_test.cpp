@@ -8,6 +8,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstdint>
+#include <limits>
 #include <set>
 #include <sstream>
 #include <string>
@@ -146,6 +148,63 @@ TEST(BinaryStructure, is_refused_with_modules_out_of_order_twice_or_unknown_flag
             std::string::npos);
   EXPECT_NE(message_after([](auto& records) { records.pop_back(); }).find("not there"),
             std::string::npos);
+}
+
+/// A structure that lies, with all checksums right: what its text says of modules has to be of
+/// those behind it, and it has no steps.
+TEST(BinaryStructure, is_refused_where_its_text_has_other_modules) {
+  const BinaryStructure good = make_binary(document_of(kCubes)).value();
+  const std::string modules = "\"modules\": [";
+  const std::size_t key = good.text.find(modules);
+  ASSERT_NE(key, std::string::npos);
+  const auto is_read_with = [&](std::size_t place, const std::string& more) {
+    BinaryStructure bad = good;
+    bad.text.insert(place, more + ", ");
+    std::ostringstream out;
+    write_binary(out, bad);
+    return static_cast<bool>(read_binary(out.str()));
+  };
+  const auto names = [&](const std::string& more) {
+    return is_read_with(key + modules.size(), more);
+  };
+  EXPECT_TRUE(names("[1,-1,-1]"));
+  EXPECT_FALSE(names("[9,9,9]"));
+  EXPECT_FALSE(names("[0,0,1], [0,0,1]"));
+  EXPECT_FALSE(names(R"({"cell": [2,-1,-1], "mass_kg": 9})"));
+  const auto has = [&](const std::string& more) { return is_read_with(key, more); };
+  EXPECT_TRUE(has(R"("description": "the same")"));
+  EXPECT_FALSE(has(R"("planned": [[0,2,1]])"));
+  EXPECT_FALSE(has(R"("planned": [{"cell": [0,2,1], "mass_kg": 9}])"));
+  EXPECT_FALSE(has(R"("later_steps": [[{"cell": [0,2,1], "kind": "battery"}]])"));
+  EXPECT_FALSE(has(R"("steps": [{"detach": [[0,0,1]]}])"));
+}
+
+TEST(BinaryStructure, is_refused_with_cells_and_corners_outside_the_lattice) {
+  constexpr std::int32_t kFar = std::numeric_limits<std::int32_t>::max();
+  for (const std::string_view text : {kCubes, kBalls}) {
+    const auto is_read = [&](const auto& change) {
+      BinaryStructure bad = make_binary(document_of(text)).value();
+      change(bad);
+      std::ostringstream out;
+      write_binary(out, bad);
+      return static_cast<bool>(read_binary(out.str()));
+    };
+    EXPECT_TRUE(is_read([](BinaryStructure& /*same*/) {}));
+    EXPECT_FALSE(is_read([](BinaryStructure& bad) {
+      bad.records.back().cell = {kFar, kFar, kFar};
+    }));
+    EXPECT_FALSE(is_read([](BinaryStructure& bad) { bad.low = {-kFar, -kFar, -kFar}; }));
+  }
+}
+
+TEST(BinaryStructure, leaves_loads_out_with_the_modules_that_they_are_on) {
+  const Document document = document_of(R"({"format": "holdfast-structure", "version": 2,
+      "modules": [[0,0,0]], "planned": [[1,0,0]], "steps": [{"attach": [[3,0,0]]}],
+      "loads": [{"cell": [1,0,0], "force_n": [0,0,-2]}, {"cell": [3,0,0], "force_n": [0,0,-4]}]})");
+  const Document back = document_test::accepted(read_document(binary(document))).document;
+  ASSERT_EQ(back.extension.payloads.size(), 1U);
+  EXPECT_EQ(back.extension.payloads[0].force_n[2], -2);
+  EXPECT_TRUE(make_robot(back));
 }
 
 TEST(BinaryStructure, says_what_it_has_no_room_for) {

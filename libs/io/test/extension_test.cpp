@@ -154,6 +154,22 @@ TEST(Version2, makes_steps_of_what_is_planned_and_of_the_plan) {
   EXPECT_EQ(sequence.start.kinds.size(), 2);
 }
 
+/// A load on a module that a later step attaches is none of the robot before it.
+TEST(Version2, loads_modules_from_when_they_are_there) {
+  const Document document = read(R"("modules": [[0,0,0]], "planned": [[1,0,0]],
+      "later_steps": [[[2,0,0]]], "steps": [{"attach": [[3,0,0]]}],
+      "loads": [{"cell": [0,0,0], "force_n": [0,0,-1]}, {"cell": [1,0,0], "force_n": [0,0,-2]},
+                {"cell": [2,0,0], "force_n": [0,0,-3]}, {"cell": [3,0,0], "force_n": [0,0,-4]}])");
+  const std::vector<model::Payload> first_two = {{{0, 0, 0}, {0, 0, -1}}, {{1, 0, 0}, {0, 0, -2}}};
+  EXPECT_EQ(make_spec(document).value().payloads, first_two);
+  EXPECT_TRUE(make_robot(document));
+  const Sequence sequence = make_sequence(document).value();
+  for (std::size_t i = 0; i < 3; ++i) {
+    ASSERT_EQ(sequence.steps[i].payloads.size(), 1U) << i;
+    EXPECT_EQ(sequence.steps[i].payloads[0].force_n[2], -2.0 - static_cast<double>(i));
+  }
+}
+
 TEST(Version2, becomes_what_a_robot_is_made_from) {
   const model::RobotSpec spec = spec_of(R"("lattice": "face-centred", "support_z": null,
       "floor": {"friction": 0.5}, "gravity_m_s2": [1, 0, -9], "material": {"foot_mm": 0},

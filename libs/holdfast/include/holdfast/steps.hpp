@@ -28,7 +28,7 @@ struct StepsFile {
   std::vector<std::string> warnings;
 };
 
-/// Reads VisibleSim XML or holdfast JSON. Errors: as of read_document(); there is no step.
+/// Reads VisibleSim XML, holdfast JSON or binary. Errors: as of read_document(); there is no step.
 base::Result<StepsFile> load_steps(const std::filesystem::path& path,
                                    const io::ReadOptions& options = {});
 

@@ -240,7 +240,9 @@ class Conductor {
   Order after_seek(const Setup& setup, const Report& report);
   Order next_trial();
   Order after_trial(const Setup& setup);
-  Order leave_trial(const Setup& setup);
+  Order leave_trial(const Setup& setup, bool is_lost);
+  bool seeks_again(const Setup& setup) const;
+  Order seek_by_gradients(const Setup& setup);
   Order conclude(const Setup& setup);
 
   // conductor_stages.cpp
@@ -348,8 +350,9 @@ class Conductor {
   std::uint32_t found_hash_ = 0;  ///< Of the states that were found first.
   std::uint32_t next_key_ = 0;    ///< Of the facet that is tried next; 0: all have been.
   std::uint8_t trial_count_ = 0;
-  bool other_breaks_ = false;  ///< Another solution was found, and with it a connection breaks.
-  bool was_newton_ = false;    ///< is_newton_ before.
+  bool other_breaks_ = false;   ///< Another solution was found, and with it a connection breaks.
+  bool is_trial_lost_ = false;  ///< A trial did not converge by the present method.
+  bool was_newton_ = false;     ///< is_newton_ before.
   // Jacobi.
   std::uint16_t batch_ = 0;
   std::uint32_t check_at_ = 0;

@@ -102,8 +102,4 @@ void reset(Surroundings& node);
 /// Corners of other lattices are no fractions of the pitch: they are rounded to this part of it.
 inline constexpr std::int32_t kCornerParts = 1024;
 
-/// The corners with which a node presses, in units of pitch over twice Environment's
-/// foot_denominator, or over kCornerParts where it is no cube; what is bonded holds alone.
-mechanics::SupportCorners support_corners(const Surroundings& node, const base::Cell& cell);
-
 }  // namespace holdfast::agent

@@ -70,8 +70,10 @@ std::uint64_t record_sum(std::span<const ModuleRecord> records, std::uint64_t fi
 /// The head of a file of so many bytes, of which `begin` are the first ones.
 base::Result<BinaryHead> read_binary_head(std::string_view begin, std::uint64_t file_size);
 
-/// What is wrong with the text that a head is of.
-std::optional<base::Error> find_text_fault(const BinaryHead& head, std::string_view text);
+/// The document that the text behind a head is of: all but modules. Errors: another checksum; as of
+/// read_json(); it has steps.
+base::Result<ReadDocument> read_binary_text(const BinaryHead& head, std::string_view text,
+                                            const ReadOptions& options = {});
 
 /// What is wrong with records, of which the first is number `first` of all; empty if nothing is.
 /// `before` is the key of the record before them, -1 if there is none.
