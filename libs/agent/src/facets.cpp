@@ -267,8 +267,6 @@ mechanics::Corner corner_at(const Surroundings& node, const TouchingFacet& facet
   return {place[0], place[1], place[2]};
 }
 
-}  // namespace
-
 /// The edges that a facet presses with, as the state of one that tilts over them: it does where it
 /// is so near to that that rounding could decide.
 ContactState edges_of(const Surroundings& node, const TouchingFacet& facet,
@@ -290,6 +288,8 @@ ContactState edges_of(const Surroundings& node, const TouchingFacet& facet,
   }
   return edges;
 }
+
+}  // namespace
 
 /// mx^ < 0 presses the +y' edge, my^ > 0 the +x' edge.
 mechanics::SupportCorners support_corners(const Surroundings& node, const ContactSetting& contact,
