@@ -75,6 +75,17 @@ TEST(Kept, a_growth_with_loops_takes_less_than_a_half) {
   EXPECT_LE(steps.time_share_median, 0.5);
 }
 
+/// Most plans of a tower are between others, and what comes touches modules of several depths: it
+/// would take more than a half if trees grew deeper than waves make them.
+TEST(Kept, a_tower_takes_less_than_a_half) {
+  const Cells cells = model::family_cells(model::Family::kTower, 5);
+  const auto start = cells.begin() + 27;
+  const SimulatedSteps steps =
+      simulated(growing(Cells(cells.begin(), start), Cells(start, start + 12)));
+  expect_the_same(steps);
+  EXPECT_LE(steps.time_share_median, 0.45);
+}
+
 /// An arm on a foot that topples in the end, as in the paper's first test, and comes back.
 TEST(Kept, what_is_taken_off_starts_from_nothing) {
   StepsFile file = growing({{0, 0, 0}, {0, 0, 1}}, {{1, 0, 1}, {2, 0, 1}});

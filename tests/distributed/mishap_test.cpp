@@ -31,6 +31,15 @@ TEST_P(Mishaps, lead_to_no_wrong_and_to_no_old_safe) {
   EXPECT_EQ(tally.runs, static_cast<int>(kRunsEach));
 }
 
+/// Two modules come at once, and one finds a nearer parent than its first: it joins others anew,
+/// but not the other newcomer, which has declined already and would do so once more.
+TEST(Newcomers, of_two_at_once_neither_hears_a_second_join) {
+  MishapTally tally;
+  run_mishap(Mishap::kChanges, 45154, tally);
+  EXPECT_EQ(tally.runs, 1);
+  EXPECT_EQ(tally.faults(), 0);
+}
+
 INSTANTIATE_TEST_SUITE_P(Kinds, Mishaps, ::testing::Range(std::size_t{0}, kMishapCount));
 
 }  // namespace

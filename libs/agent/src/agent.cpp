@@ -244,7 +244,9 @@ bool Agent::take_join(Direction face, const Join& join) {
   if (!ws_.tree.take_join(ws_.links, face, join, sweep_.has_begun())) {
     return false;
   }
-  welcomed_.remove(face);  // A newcomer that has taken its place elsewhere.
+  if (join.hops <= depth() + 1) {
+    welcomed_.remove(face);  // A newcomer that has taken its place elsewhere.
+  }
   watch_.keep_waiting(clock_);
   follow_wave(before);
   return true;

@@ -63,7 +63,7 @@ void Agent::tell(const News& news) {
 /// has begun to renew its verdict already, a plan will be reported to it all the same.
 void Agent::take_news(Direction face, const News& news) {
   if (!ws_.tree.children().has(face)) {
-    if (ws_.tree.parent().has(face)) {
+    if (ws_.tree.parent().has(face) && ws_.planned.find(news.cell) < 0) {
       ws_.planned.add(news.cell, cell());
     }
     return;

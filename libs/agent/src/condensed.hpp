@@ -4,6 +4,7 @@
 
 #include "holdfast/agent/order.hpp"
 #include "holdfast/agent/workspace.hpp"
+#include "methods.hpp"
 
 /// Planned modules that touch several others.
 ///
@@ -33,6 +34,12 @@ namespace holdfast::agent {
 /// robots whose iterations were given up, 12 still are with 0.7, 8 with 0.5, 14 with 0.4, if
 /// planned modules are held from the first iteration on.
 inline constexpr double kHeldShare = 0.5;
+
+/// Does an order of the polynomial's move modules between which planned ones may be?
+constexpr bool moves_between_others(wire::Operation operation) {
+  return operation == wire::Operation::kIterate ||
+         (kKeepsAnswers && operation == wire::Operation::kResume);
+}
 
 /// Nodes with a part in the polynomial.
 inline int joined_count(const Workspace& ws, PlannedPart part) {

@@ -144,10 +144,11 @@ Order Conductor::first_iteration() {
   if (is_exact()) {
     return factor();
   }
+  // Where planned modules are condensed a kBegin leaves no residual: nobody has their weight yet,
+  // so this iteration moves nothing. A kResume has brought it.
+  const bool moves = !is_any_remote_ || (kKeepsAnswers && asked_ == Operation::kResume);
   Order iteration = restarted_iteration();
-  // Where planned modules are condensed it moves nothing: nobody has their weight yet.
-  iteration.flags =
-      static_cast<std::uint8_t>(iteration.flags | (is_any_remote_ ? kKeepStates : 0U));
+  iteration.flags = static_cast<std::uint8_t>(iteration.flags | (moves ? 0U : kKeepStates));
   return iteration;
 }
 

@@ -189,9 +189,10 @@ Order Conductor::resume(const Setup& setup, const Planned& /*planned*/) {
   asked_ = Operation::kResume;
   // A planned module between others closes a loop.
   has_factors_ = has_factors_ && effort_.method == Method::kElimination;
-  resume.flags = static_cast<std::uint8_t>(
-      begin.flags | (has_factors_ ? kKeepsFactors : 0U) | (has_motion_ ? kKeepsMotion : 0U) |
-      (is_fixed_ ? 0U : kRests) | (is_any_remote_ ? kStandsApart : 0U));
+  resume.flags =
+      static_cast<std::uint8_t>(begin.flags | (has_factors_ ? kKeepsFactors : 0U) |
+                                (has_motion_ ? kKeepsMotion : 0U) | (is_fixed_ ? 0U : kRests));
+  resume.count = is_exact() ? std::uint16_t{0} : iteration_degree();
   resume.mass = mass_;
   resume.moment = moment_;
   resume.masks = resume_masks(totals_, face_count(setup));

@@ -32,7 +32,7 @@ PlannedPart part_in_iteration(const Workspace& ws, const Order& order) {
     return PlannedPart::kTogether;
   }
   const bool is_second =
-      order.operation == wire::Operation::kIterate && ws.exchange.left_before_report() == 1;
+      moves_between_others(order.operation) && ws.exchange.left_before_report() == 1;
   return is_second ? PlannedPart::kCondensed : PlannedPart::kApart;
 }
 
@@ -42,7 +42,7 @@ int MinimalResiduals::node_count() const {
 
 bool MinimalResiduals::begin(int piece) {
   const int count = node_count();
-  // By nothing, from what is kept; planned modules that stand apart have no exchange for it.
+  // By nothing, from what is kept.
   const bool moves = order_.operation == wire::Operation::kResume && ws_.exchange.left() > 0;
   const bool starts = order_.operation == wire::Operation::kBegin && order_.count > 0;
   if (piece == 0) {

@@ -232,7 +232,7 @@ constexpr std::uint8_t kBeginFlags = kClusterFlags | (kHasAllMethods ? kWithFron
 constexpr std::uint8_t kRenewFlags =
     kIsFulfilled | kIsEnded | kIsGrown | kIsUnchanged | kKeepsFactors;
 constexpr std::uint8_t kResumeFlags =
-    kKeepsFactors | kOneSweep | kWithIterations | kKeepsMotion | kRests | kStandsApart;
+    kKeepsFactors | kOneSweep | kWithIterations | kKeepsMotion | kRests;
 
 constexpr void resume_fields(auto& codec, Order& order) {
   codec.flags(order.flags, kResumeFlags);

@@ -39,12 +39,16 @@ void SpanningTree::begin_wave(Links& links, const Round& round, Wave wave, Faces
   has_returned_ = false;
   census_ = {.count = 1, .hops = hops, .is_anyone_silent = !links.silent().is_empty(), .id = id_};
   awaited_ = links.used() - parent;
-  links.send(awaited_, encode(Join{.round = round,
-                                   .wave = number_of(wave),
-                                   .stage = stage_,
-                                   .cell = wave == Wave::kFirst ? cell_ : root_cell_,
-                                   .hops = hops}));
+  send_join(links, round, awaited_);
   await_less(links, round, {});
+}
+
+void SpanningTree::send_join(Links& links, const Round& round, Faces faces) const {
+  links.send(faces, encode(Join{.round = round,
+                                .wave = number_of(wave_),
+                                .stage = stage_,
+                                .cell = wave_ == Wave::kFirst ? cell_ : root_cell_,
+                                .hops = hops_}));
 }
 
 bool SpanningTree::take_join(Links& links, Direction face, const Join& join, bool is_in_use) {
@@ -79,9 +83,19 @@ void SpanningTree::adopt(Links& links, Direction face, const Adoption& adoption)
 }
 
 void SpanningTree::take_adoption(Links& links, Direction face, const Adoption& adoption) {
-  if (hops_beyond(adoption.hops) <= hops_) {
+  const std::uint16_t hops = hops_beyond(adoption.hops);
+  Faces others = Faces::only(face);
+  if (hops < hops_ && awaited_.has(face)) {
+    others = parent_;
+    parent_ = Faces::only(face);
+    nearer_ = parent_;
+    hops_ = hops;
+    census_.hops = hops;
+  } else if (hops <= hops_) {
     nearer_.add(face);
   }
+  // They have welcomed this module, and may wait for it since its first join, which was worse.
+  send_join(links, adoption.round, others);
   await_less(links, adoption.round, Faces::only(face));
 }
 

@@ -31,7 +31,7 @@ bool makes_fronts(Course course) { return kHasAllMethods && course == Course::kF
 
 /// Are planned modules condensed behind this order?
 bool condenses(const Workspace& ws, const Order& order) {
-  return order.operation == Operation::kIterate && ws.planned.is_any_remote();
+  return moves_between_others(order.operation) && ws.planned.is_any_remote();
 }
 
 bool has_fronts(const Order& begin) { return kHasAllMethods && (begin.flags & kWithFronts) != 0; }
@@ -260,7 +260,7 @@ bool Sweep::expects(const Workspace& ws, Direction face, Message message) const 
     }
     case MessageType::kPlannedUp:
       return ws.tree.children().has(face) && message[1] < ws.planned.count() &&
-             (order_.operation != Operation::kIterate || ws.planned_exchange.awaits_forces());
+             (!moves_between_others(order_.operation) || ws.planned_exchange.awaits_forces());
     case MessageType::kVector:
       return true;
     case MessageType::kCellsUp:

@@ -121,5 +121,36 @@ TEST(Renewal, a_planned_module_between_others_is_condensed) {
   EXPECT_EQ(network.agent(0).epoch(), 1);
 }
 
+/// A U on the floor has its root in the middle of its base. What comes between its legs touches
+/// their ends, two hops away from the root, and the root: whichever it hears first, it hangs on the
+/// root, and the tree is as deep as before.
+TEST(Renewal, a_module_that_comes_hangs_on_the_neighbour_nearest_to_the_root) {
+  const auto setup = keeping_setup();
+  for (int turns = 0; turns < 4; ++turns) {
+    SCOPED_TRACE(::testing::Message() << turns << " quarter turns");
+    const auto turned = [turns](Cell cell) {
+      for (int i = 0; i < turns; ++i) {
+        cell = {-cell.y, cell.x, cell.z};
+      }
+      return cell;
+    };
+    std::vector<Place> places;
+    for (const Cell& cell :
+         {Cell{0, 1, 0}, Cell{0, 0, 0}, Cell{1, 0, 0}, Cell{2, 0, 0}, Cell{2, 1, 0}}) {
+      places.push_back({.cell = turned(cell)});
+    }
+    TestNetwork network(setup, places, {.in_parts = true});
+    ASSERT_TRUE(network.run());
+    wait(network, kLong);
+    ASSERT_EQ(network.agent(2).depth(), 0);
+    network.attach({.cell = turned({1, 1, 0})});
+    wait(network, kLong);
+    ASSERT_TRUE(network.run());
+    EXPECT_EQ(network.agent(0).epoch(), 1);
+    EXPECT_EQ(network.agent(5).depth(), 1);
+    EXPECT_EQ(network.agent(5).answer().verdict, Verdict::kSafe);
+  }
+}
+
 }  // namespace
 }  // namespace holdfast::agent

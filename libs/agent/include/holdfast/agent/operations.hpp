@@ -101,7 +101,7 @@ inline constexpr OperationInfo kOperations[] = {
     {wire::Operation::kRenew, "renew", 12, 40, Phase::kMass, {}, false, false,
      "a change after the verdict"},
     {wire::Operation::kResume, "resume", 30, 20, Phase::kEquilibrium,
-     {.fixed = 2, .is_counted = true, .is_behind = true, .never_with = kStandsApart}, true, false,
+     {.fixed = 2, .is_counted = true, .is_behind = true}, true, false,
      "hosts, safe angles, an equilibrium from what is kept"},
     {wire::Operation::kClose, "close", 2, 35, Phase::kModel, {}, false, false,
      "support corners, the worst connection"},

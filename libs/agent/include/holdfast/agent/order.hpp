@@ -159,8 +159,6 @@ inline constexpr std::uint8_t kIsGrown = 4;      ///< ... or a module has come t
 inline constexpr std::uint8_t kIsUnchanged = 8;  ///< ... or nothing more is to be learned.
 inline constexpr std::uint8_t kKeepsMotion = 8;  ///< kResume: displacements, contact states.
 inline constexpr std::uint8_t kRests = 16;       ///< kResume: safe angles are asked for.
-/// kResume: planned modules between others, which no exchange reaches yet.
-inline constexpr std::uint8_t kStandsApart = 32;
 inline constexpr std::uint8_t kKeepsFactors = 64;   ///< kRenew, kResume: those of elimination.
 inline constexpr std::uint8_t kUnilateralLaw = 1;   ///< kBegin
 inline constexpr std::uint8_t kOneSweep = 2;        ///< kBegin: for kIterate or kTreeIterate.

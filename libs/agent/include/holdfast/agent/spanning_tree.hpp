@@ -108,7 +108,8 @@ class SpanningTree {
   /// This module takes its place below the neighbour at `face`, as if the third wave had come.
   void adopt(Links& links, Direction face, const Adoption& adoption);
 
-  /// A neighbour that has adopted this module as well, or stands beside it.
+  /// A neighbour that has adopted this module as well, or stands beside it. One that is nearer to
+  /// the root than the parent takes the parent's place.
   void take_adoption(Links& links, Direction face, const Adoption& adoption);
 
   /// What this module tells a neighbour that has come.
@@ -124,6 +125,7 @@ class SpanningTree {
 
  private:
   void begin_wave(Links& links, const Round& round, Wave wave, Faces parent, std::uint16_t hops);
+  void send_join(Links& links, const Round& round, Faces faces) const;
   void await_less(Links& links, const Round& round, Faces faces);
   void send_echo(Links& links, const Round& round) const;
   Faces towards_root(const Links& links, const base::Cell& end) const;
