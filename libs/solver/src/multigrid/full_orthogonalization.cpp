@@ -8,10 +8,12 @@
 namespace holdfast::solver {
 namespace {
 
-/// Directions are remembered, for all of them together no more than so many bytes, but a few in any
-/// case; then the oldest are dropped, and robots whose contact is far from symmetric may fail.
-constexpr std::size_t kMemoryBytes = std::size_t{256} << 20U;
-constexpr std::size_t kMemoryMin = 8;
+/// Directions are remembered, for all of them together no more than so many bytes, but two in any
+/// case; then the oldest are dropped. What the preconditioner does not know of A is that a tilting
+/// facet's torque follows its pressure, and that hardly needs older ones: growth, portals, tunnels
+/// and shells take the same iterations with one, two or all.
+constexpr std::size_t kMemoryBytes = std::size_t{4} << 20U;
+constexpr std::size_t kMemoryMin = 2;
 template <class Real>
 constexpr std::size_t kNodeBytes = 2 * sizeof(Six<Real>);
 
