@@ -331,13 +331,9 @@ std::vector<NodeTerm> Multigrid::unsymmetric_terms() const {
     const FacetState& facet = facets()[ground_node.facet];
     if (ground().law == ContactLaw::kRegularised &&
         (facet.state.tilt_x != 0 || facet.state.tilt_y != 0)) {
-      const Mat exact = law().tangent(facet);
-      const Mat minus_known = scaled(known_tangent(facet), -1);
       NodeTerm& term = terms.emplace_back();
-      term = {
-          .node = ground_node.node, .difference = exact, .transposed_difference = transpose(exact)};
-      base::add_to(term.difference, minus_known);
-      base::add_to(term.transposed_difference, minus_known);
+      term = {.node = ground_node.node, .difference = law().tangent(facet)};
+      base::add_to(term.difference, scaled(known_tangent(facet), -1));
     }
   }
   return terms;
