@@ -99,12 +99,12 @@ TEST_P(Memory, of_a_check_stays_within_its_budget) {
   EXPECT_LE(bytes_per_module(count, assess), budget.assess);
 }
 
-INSTANTIATE_TEST_SUITE_P(Families, Memory,
-                         testing::Values(Budget{"cube", 37, 216, 236},
-                                         Budget{"scaffold", 61, 195, 170},
-                                         Budget{"ball", 46, 198, 420},
-                                         Budget{"tower", 6000, 212, 470}),
-                         [](const auto& one) { return one.param.family; });
+INSTANTIATE_TEST_SUITE_P(
+    Families, Memory,
+    testing::Values(Budget{"cube", 37, 216, 236}, Budget{"scaffold", 61, 195, 170},
+                    Budget{"ball", 46, 198, 420}, Budget{"tower", 6000, 212, 470},
+                    Budget{"portal", 2002, 212, 360}, Budget{"growth", 50000, 215, 510}),
+    [](const auto& one) { return one.param.family; });
 
 }  // namespace
 }  // namespace holdfast

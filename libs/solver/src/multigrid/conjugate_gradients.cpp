@@ -109,7 +109,6 @@ std::vector<double> ConjugateGradients<Real>::marked() {
 template <class Real>
 void ConjugateGradients<Real>::rest() {
   q_ = std::vector<double>();
-  older_ = std::vector<Direction>();
   hierarchy_.drop_vectors();
 }
 
@@ -183,7 +182,6 @@ std::array<double, 2> ConjugateGradients<Real>::precondition_and_compare() {
 
 template <class Real>
 double ConjugateGradients<Real>::begin() {
-  older_ = {};
   hierarchy_.take_vectors();
   error_ = precondition();
   write_marked();

@@ -40,13 +40,6 @@ class ConjugateGradients final : public Iteration {
   void set_residual(std::size_t node, const base::Vec6<double>& residual) override;
 
  private:
-  /// One that A made unsymmetric runs remember.
-  struct Direction {
-    std::vector<Six<Real>> p;
-    std::vector<Six<Real>> image;  ///< A^T p, rounded like p.
-    double curvature = 0;          ///< p . A p
-  };
-
   enum class State : std::uint8_t { kOnTheWay, kReached, kStuck };
   State state(const Goal& goal, int iteration);
   bool is_reached(const Goal& goal, int iteration) const;
@@ -86,9 +79,6 @@ class ConjugateGradients final : public Iteration {
     return {.rounded = hierarchy_.levels().front().r.data(), .low = low_.data()};
   }
 
-  void turn_away_from_older();
-  double remember_direction(std::span<const NodeTerm> terms);
-
   Team& team_;
   Hierarchy<Real> hierarchy_;
   Cycle<Real> cycle_;
@@ -105,7 +95,6 @@ class ConjugateGradients final : public Iteration {
   std::vector<double> marked_;
   bool has_last_direction_ =
       false;  ///< p_ is that of a run of ranks, from which r has not changed.
-  std::vector<Direction> older_;
   double error_ = 0;
   double least_error_ = 0;  ///< Of this run,
   int least_at_ = 0;        ///< and in which iteration.

@@ -3,9 +3,10 @@
 #include "ground_springs.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <numeric>
+#include <optional>
 
+#include "../block_kernels.hpp"
 #include "holdfast/base/algebra.hpp"
 
 namespace holdfast::solver {
@@ -30,6 +31,7 @@ class BeamGroundSprings {
             .length = spring_.length,
             .reach = spring_.length,
             .middle = spring_.middle,
+            .stuck = spring_.stiffness,
             .stiffness = spring_.stiffness};
   }
 
@@ -51,10 +53,12 @@ GroundSpring moved(const GroundSpring& spring, const Seat<Real>& seat) {
       .length = spring.length,
       .reach = spring.reach + behind(arm, spring.way),
       .middle = {spring.middle[0] + arm[0], spring.middle[1] + arm[1], spring.middle[2] + arm[2]},
+      .stuck = carried(spring.stuck, arm),
       .stiffness = carried(spring.stiffness, arm)};
 }
 
 void add_to(GroundSpring& sum, const GroundSpring& spring) {
+  base::add_to(sum.stuck, spring.stuck);
   base::add_to(sum.stiffness, spring.stiffness);
   sum.length += spring.length;
   sum.reach += spring.reach;
@@ -63,8 +67,19 @@ void add_to(GroundSpring& sum, const GroundSpring& spring) {
   }
 }
 
-bool is_finite(const Mat& matrix) {
-  return std::ranges::all_of(matrix.values, [](double value) { return std::isfinite(value); });
+/// The inverse of A^-1 + B^-1 - C^-1; none if one of them is singular.
+std::optional<Mat> in_series(const Mat& a, const Mat& b, const Mat& c) {
+  Mat sum;
+  Mat inverse;
+  if (!invert(a, sum) || !invert(b, inverse)) {
+    return std::nullopt;
+  }
+  base::add_to(sum, inverse);
+  if (!invert(c, inverse)) {
+    return std::nullopt;
+  }
+  base::add_to(sum, scaled(inverse, -1));
+  return invert(sum, inverse) ? std::optional(inverse) : std::nullopt;
 }
 
 /// Makes a sum of ground springs of one cluster in one direction a single one. What does not resist
@@ -74,10 +89,11 @@ void unite(GroundSpring& sum, double count) {
     x /= count;
   }
   sum.reach /= count;
-  const Mat longer = stretched(sum.stiffness, sum.middle, sum.way, sum.length / count, sum.reach);
-  if (is_finite(longer)) {
-    sum.stiffness = longer;
-  }
+  const Mat longer = stretched(sum.stuck, sum.middle, sum.way, sum.length / count, sum.reach);
+  const bool is_stuck = sum.stiffness.values == sum.stuck.values;
+  sum.stiffness =
+      is_stuck ? longer : in_series(longer, sum.stiffness, sum.stuck).value_or(sum.stiffness);
+  sum.stuck = longer;
   sum.length = sum.reach;
 }
 

@@ -15,6 +15,11 @@
 
 /// What holds a robot. Contact states change while everything else of a hierarchy stays as it is,
 /// so ground springs go from level to level by themselves.
+///
+/// What a facet gives, by which it lifts or tilts, is in the middle of its beam and not spread
+/// along it. So the stuck beam alone is lengthened, and the rest of the compliance stays as it is:
+///   C = C_longer + (C - C_stuck).
+/// Else a hinge would make the coarse springs give way sideways as well.
 namespace holdfast::solver {
 
 /// A spring to something that does not move: the ground, a fixed module.
@@ -25,7 +30,8 @@ struct GroundSpring {
   double length = 0;           ///< mm
   double reach = 0;            ///< From the ground to the cluster's centre, mm.
   Point middle = {};
-  Mat stiffness = {};  ///< At the node.
+  Mat stuck = {};      ///< At the node, if no facet lifted or tilted.
+  Mat stiffness = {};  ///< At the node, as the facets are.
 };
 
 /// What a facet adds to K_pp of its node, by direction and by the number of its state. (The first
@@ -47,7 +53,7 @@ std::vector<GroundSpring> finest_ground_springs(const ReducedNetwork& network,
                                                 const GroundTable& ground);
 
 /// Those of the next level's clusters, ascending by node: sums over the members, lengthened like
-/// springs. `seat` says where the members sit.
+/// springs as far as they are beams. `seat` says where the members sit.
 template <class Real>
 std::vector<GroundSpring> coarse_ground_springs(const std::vector<GroundSpring>& fine,
                                                 const Seats<Real>& seat);

@@ -11,11 +11,10 @@
 
 namespace holdfast::solver {
 
-/// What a matrix A that is not symmetric has at a node that the hierarchy's matrix K has not.
+/// What a matrix A that is not symmetric has at a node beyond the hierarchy's matrix K.
 struct NodeTerm {
   std::int32_t node = 0;
-  Mat difference;             ///< A - K
-  Mat transposed_difference;  ///< A^T - K
+  Mat difference;  ///< A - K
 };
 
 /// Solves K x = f by iteration, whatever the precision of its preconditioner.
@@ -58,10 +57,11 @@ class Iteration {
   /// After begin(), or to go on with another goal: improves x.
   virtual End run(const Goal& goal) = 0;
 
-  /// Does what run() does for a matrix A that is not symmetric, by full orthogonalization
-  /// [Saad 1981]: r is kept orthogonal to all directions so far, as conjugate gradients do by
-  /// themselves. (To make r smallest instead, as GMRES does, would need directions in double
-  /// precision: r counts every rounding error of a stiff lattice.)
+  /// Does what run() does for a matrix A that is not symmetric, by incomplete orthogonalization
+  /// [Saad 1981]: r is kept orthogonal to the last direction p by p . A p_next = 0, as conjugate
+  /// gradients do, and to older ones as far as K is near to A. (To make r smallest instead, as
+  /// GMRES does, would need directions in double precision: r counts every rounding error of a
+  /// stiff lattice.)
   virtual End run_unsymmetric(const Goal& goal, std::span<const NodeTerm> terms) = 0;
 
   /// M^-1 r at a node: about what x is still off by there. After begin() or run().

@@ -73,6 +73,16 @@ constexpr double kSlenderShare = 0.3;
 /// a third once in a while.
 constexpr double kThinError = 2;
 
+/// The symmetric matrix that above the diagonal is this one.
+Mat mirrored(Mat matrix) {
+  for (int row = 0; row < 6; ++row) {
+    for (int column = 0; column < row; ++column) {
+      matrix.at(row, column) = matrix.at(column, row);
+    }
+  }
+  return matrix;
+}
+
 bool is_held_sideways(ContactLaw law, bool is_held) {
   return law == ContactLaw::kRegularised || is_held;
 }
@@ -141,15 +151,13 @@ bool Multigrid::is_too_slender() const {
          std::numeric_limits<float>::epsilon() / 2 * slenderness_squared > kRoundingShare;
 }
 
-/// If its coarsest level has all facets the hierarchy gets the tangent itself: the finest level as
-/// it is, the others with its upper half on both sides, as springs are moved. Else a stand-in.
+/// The hierarchy takes for a tangent its upper half on both sides, as it is symmetric: a facet that
+/// tilts, whose torque follows its pressure, is a hinge there.
 void Multigrid::take_law() {
-  const bool is_any_alone = host::any(ranks(), !alone_.empty());
   for (int code = 0; code < ContactState::kCodeCount; ++code) {
     const ContactState state = ContactState::from_code(code);
     for (const bool is_held : {false, true}) {
-      const Mat tangent = is_any_alone ? mechanics::contact_tangent(ground(), state, is_held)
-                                       : mechanics::symmetric_tangent(ground(), state, is_held);
+      const Mat tangent = mirrored(mechanics::contact_tangent(ground(), state, is_held));
       for (const base::Direction direction : base::facet_directions(robot().lattice())) {
         known_tangents_[at(base::index(direction))][at(1 + 2 * code + (is_held ? 1 : 0))] =
             beam().to_global(direction, tangent);
@@ -323,13 +331,9 @@ std::vector<NodeTerm> Multigrid::unsymmetric_terms() const {
     const FacetState& facet = facets()[ground_node.facet];
     if (ground().law == ContactLaw::kRegularised &&
         (facet.state.tilt_x != 0 || facet.state.tilt_y != 0)) {
-      const Mat exact = law().tangent(facet);
-      const Mat minus_known = scaled(known_tangent(facet), -1);
       NodeTerm& term = terms.emplace_back();
-      term = {
-          .node = ground_node.node, .difference = exact, .transposed_difference = transpose(exact)};
-      base::add_to(term.difference, minus_known);
-      base::add_to(term.transposed_difference, minus_known);
+      term = {.node = ground_node.node, .difference = law().tangent(facet)};
+      base::add_to(term.difference, scaled(known_tangent(facet), -1));
     }
   }
   return terms;
