@@ -61,8 +61,8 @@ class Documents:
 
 
 def emulate(holdfast, scenario, board):
-    run = subprocess.run([holdfast, 'emulate', scenario, '--board', board, '--quiet', '--json', '-'],
-                         capture_output=True, text=True, check=False)
+    run = subprocess.run([holdfast, 'emulate', scenario, '--board', board, '--quiet',
+                          '--json', '-'], capture_output=True, text=True, check=False)
     return json.loads(run.stdout)
 
 
@@ -86,7 +86,8 @@ def check_scenario(documents, scenario, v2, v1):
 def check_sizes(documents, images, v2, v1):
     flash, ram, agent = (f'{v2[key]:,}' for key in ('flash_bytes', 'ram_bytes', 'agent_bytes'))
     documents.expect('README.md', r'^(The image takes .* of them the agent)\.',
-                     f'The image takes {flash} bytes of flash and {ram} of RAM, {agent} of them the agent')
+                     f'The image takes {flash} bytes of flash and {ram} of RAM, '
+                     f'{agent} of them the agent')
     documents.expect('docs/firmware.md', r'the image \(the 62 KB .*\| ([\d,]+) \|$', flash)
     documents.expect('docs/firmware.md', r'^\| flash at most 60 KB .*\| ([\d,]+) \| met', flash)
     documents.expect('docs/firmware.md', r'^\| RAM at most 8 KB .*\| (.*) bytes: agent', ram)
