@@ -221,14 +221,39 @@ TEST(Conductor, seeks_no_other_solution_of_what_is_far_from_breaking_or_breaks) 
   }
 }
 
-TEST(Conductor, a_trial_that_comes_to_no_end_says_nothing) {
+/// Up to the first solution of a trial.
+Drive trial_drive() {
   Drive drive = seeking_drive(0.9F);
   drive.next({.count = 1, .number = 5});
   drive.next({.count = 1});
   drive.next();
-  drive.next(iteration_report(kNan));
+  return drive;
+}
+
+TEST(Conductor, a_trial_that_goes_round_in_circles_says_nothing) {
+  Drive drive = trial_drive();
+  for (const std::uint32_t state : {1U, 2U, 1U}) {
+    ASSERT_EQ(drive.order.operation, Operation::kTreeIterate);
+    drive.next(iteration_report(0.01F));  // Accurate enough to look at states.
+    drive.next(settled_report(1.1F, kFoundHash + state, 1));
+    if (drive.order.operation == Operation::kFactor) {
+      drive.next();
+    }
+  }
   return_to_found(drive, 0.9F);
   drive.expect_finished(Verdict::kSafe, Reason::kHolds);
+}
+
+TEST(Conductor, conjugate_gradients_seek_once_more_where_a_trial_does_not_converge) {
+  Drive drive = trial_drive();
+  ASSERT_EQ(drive.next(iteration_report(kNan)).operation, Operation::kSeek);
+  EXPECT_EQ(drive.order.key(), 0U);
+  drive.next({.count = 2, .number = 5});
+  drive.next();
+  ASSERT_EQ(drive.next(settled_report(0.9F, kFoundHash)).operation, Operation::kBegin);
+  drive.to_judgement();
+  ASSERT_EQ(drive.next(settled_report(0.9F, kFoundHash)).operation, Operation::kSeek);
+  EXPECT_EQ(drive.order.flags, kRemember);
 }
 
 TEST(Conductor, what_is_not_found_again_is_found_from_rest) {
