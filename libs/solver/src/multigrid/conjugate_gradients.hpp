@@ -40,6 +40,13 @@ class ConjugateGradients final : public Iteration {
   void set_residual(std::size_t node, const base::Vec6<double>& residual) override;
 
  private:
+  /// One that A made unsymmetric runs remember.
+  struct Direction {
+    std::vector<Six<Real>> p;
+    std::vector<Six<Real>> image;  ///< A^T p, rounded like p.
+    double curvature = 0;          ///< p . A p
+  };
+
   enum class State : std::uint8_t { kOnTheWay, kReached, kStuck };
   State state(const Goal& goal, int iteration);
   bool is_reached(const Goal& goal, int iteration) const;
@@ -73,6 +80,14 @@ class ConjugateGradients final : public Iteration {
   void tell() const;
   double own_residual_dot(const std::vector<Six<Real>>& z);
   double own_dot_with_z(const std::vector<double>& a);
+
+  // orthogonalization.cpp
+  bool is_still_reached(const Goal& goal, int iteration, double before);
+  End run_by_last_direction(const Goal& goal, std::span<const NodeTerm> terms);
+  void turn_away_from(const std::vector<Direction>& older);
+  Direction multiply_direction(std::span<const NodeTerm> terms);
+  End run_by_all_directions(const Goal& goal, std::span<const NodeTerm> terms,
+                            std::size_t direction_count);
 
   /// The residual; its rounded part is the finest level's.
   SplitView<Real> r() {

@@ -57,11 +57,12 @@ class Iteration {
   /// After begin(), or to go on with another goal: improves x.
   virtual End run(const Goal& goal) = 0;
 
-  /// Does what run() does for a matrix A that is not symmetric, by incomplete orthogonalization
-  /// [Saad 1981]: r is kept orthogonal to the last direction p by p . A p_next = 0, as conjugate
-  /// gradients do, and to older ones as far as K is near to A. (To make r smallest instead, as
-  /// GMRES does, would need directions in double precision: r counts every rounding error of a
-  /// stiff lattice.)
+  /// Does what run() does for a matrix A that is not symmetric, by orthogonalization [Saad 1981].
+  /// In small robots it is full: r is kept orthogonal to all directions p so far, by
+  /// p . A p_next = 0, so that it ends however far A is from K. In large ones it is incomplete: to
+  /// the last direction, and to older ones as far as K is near to A, as with conjugate gradients.
+  /// (To make r smallest instead, as GMRES does, would need directions in double precision: r
+  /// counts every rounding error of a stiff lattice.)
   virtual End run_unsymmetric(const Goal& goal, std::span<const NodeTerm> terms) = 0;
 
   /// M^-1 r at a node: about what x is still off by there. After begin() or run().
