@@ -244,7 +244,7 @@ bool Agent::take_join(Direction face, const Join& join) {
   if (!ws_.tree.take_join(ws_.links, face, join, sweep_.has_begun())) {
     return false;
   }
-  if (join.hops <= depth() + 1) {
+  if (kKeepsAnswers && join.hops <= depth() + 1) {
     welcomed_.remove(face);  // A newcomer that has taken its place elsewhere.
   }
   watch_.keep_waiting(clock_);
