@@ -4,7 +4,8 @@
 # the headers of the standard library are those of the Cortex-M0's compiler.
 set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
-rooms=$here/../../libs
+root=$(cd "$here/../.." && pwd)
+rooms=$root/libs
 out=$1
 flash_max=262144
 ram_max=16384
@@ -14,7 +15,8 @@ flags=(--target=avr -mmcu=atxmega256a3 -std=c++20 -Os -DNDEBUG -ffreestanding -f
        -DHOLDFAST_AGENT_ONE_SWEEP_ONLY -DHOLDFAST_AGENT_STARTS_AFRESH
        -DHOLDFAST_AGENT_SMALL_CHECKSUM -DHOLDFAST_AGENT_FLOOR_ONLY
        -isystem "$headers" -isystem "${headers}arm-none-eabi/thumb/v6-m/nofp"
-       -isystem /usr/lib/avr/include)
+       -isystem /usr/lib/avr/include
+       "-fmacro-prefix-map=$root/=")  # The image must not depend on where it is built.
 for room in base mechanics agent module; do
   flags+=("-I$rooms/$room/include")
 done
