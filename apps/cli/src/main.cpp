@@ -19,6 +19,22 @@ namespace {
 
 namespace cli = holdfast::cli;
 
+/// What to say where the first argument is neither an option nor a command; else empty.
+std::string unknown_command(const CLI::App& app, int argc, char** argv) {
+  const std::string argument = argc > 1 ? argv[1] : "";
+  if (argument.empty() || argument.starts_with('-')) {
+    return {};
+  }
+  std::string text = "holdfast: there is no command '" + argument + "', but";
+  for (const CLI::App* command : app.get_subcommands({})) {
+    if (command->check_name(argument)) {
+      return {};
+    }
+    text += " " + command->get_name();
+  }
+  return text + "\n";
+}
+
 int run(int argc, char** argv) {
   CLI::App app(
       "Will it hold? Predicts whether a modular robot breaks or topples when modules are attached.",
@@ -30,6 +46,10 @@ int run(int argc, char** argv) {
       cli::add_check(app),    cli::add_steps(app),    cli::add_next(app),    cli::add_order(app),
       cli::add_move(app),     cli::add_simulate(app), cli::add_emulate(app), cli::add_convert(app),
       cli::add_generate(app), cli::add_robots(app),   cli::add_view(app)};
+  if (const std::string fault = unknown_command(app, argc, argv); !fault.empty()) {
+    std::fputs(fault.c_str(), stderr);
+    return cli::kExitUsage;
+  }
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
