@@ -15,6 +15,7 @@
 #include "holdfast/model/families.hpp"
 #include "holdfast/simulated_next.hpp"
 #include "random_robot.hpp"
+#include "seeds.hpp"
 
 namespace holdfast {
 namespace {
@@ -150,7 +151,7 @@ TEST(SimulatedNext, of_random_robots_is_never_wrong) {
   std::size_t shown_count = 0;
   std::size_t hanging_count = 0;
   std::size_t hanging_shown_count = 0;
-  for (std::uint64_t seed = 0; seed < 60; ++seed) {
+  for (std::uint64_t seed = 0; seed < test::campaign(60U); ++seed) {
     SCOPED_TRACE(::testing::Message() << "seed " << seed);
     model::RobotSpec spec = test::random_robot(seed, 3, 30);
     spec.existing.insert(spec.existing.end(), spec.planned.begin(), spec.planned.end());
@@ -162,7 +163,7 @@ TEST(SimulatedNext, of_random_robots_is_never_wrong) {
     hanging_count += next.hanging_count;
     hanging_shown_count += next.hanging_shown_count;
   }
-  EXPECT_GT(shown_count, 500U);
+  EXPECT_GT(shown_count, test::campaign(500U));
   EXPECT_GT(4 * hanging_shown_count, hanging_count);
   RecordProperty("hanging", static_cast<int>(hanging_count));
   RecordProperty("hanging_shown", static_cast<int>(hanging_shown_count));

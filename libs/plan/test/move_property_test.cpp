@@ -12,6 +12,7 @@
 #include "holdfast/base/rng.hpp"
 #include "holdfast/plan/move_plan.hpp"
 #include "move_brute_force.hpp"
+#include "seeds.hpp"
 
 namespace holdfast::plan {
 namespace {
@@ -117,7 +118,8 @@ void compare(std::uint64_t seed, Tally& tally) {
 
 TEST(MoveProperty, plans_exist_and_are_short_as_by_brute_force) {
   const char* const wanted = std::getenv("HOLDFAST_MOVE_CASES");
-  const std::uint64_t case_count = wanted != nullptr ? std::strtoull(wanted, nullptr, 10) : 60;
+  const std::uint64_t case_count =
+      wanted != nullptr ? std::strtoull(wanted, nullptr, 10) : holdfast::test::campaign(60U);
   Tally tally;
   for (std::uint64_t seed = 1; seed <= case_count && !testing::Test::HasFatalFailure(); ++seed) {
     compare(seed, tally);

@@ -231,7 +231,7 @@ void expect_cut(const Walk& walk, const Closure& closure) {
 TEST(RobotOrder, is_found_just_where_a_walk_through_all_parts_finds_one) {
   int found_count = 0;
   int none_count = 0;
-  for (std::uint64_t seed = 0; seed < 2000; ++seed) {
+  for (std::uint64_t seed = 0; seed < holdfast::test::campaign(2000U); ++seed) {
     OrderTask task{.target = random_target(seed)};
     task.group_size = 1 + seed % 5 / 4;
     task.rule.reach = seed % 3 == 2 ? Reach::kLine : Reach::kFree;
@@ -253,8 +253,8 @@ TEST(RobotOrder, is_found_just_where_a_walk_through_all_parts_finds_one) {
     EXPECT_TRUE(verify(*result.value().certificate));
     ++none_count;
   }
-  EXPECT_GT(found_count, 400);
-  EXPECT_GT(none_count, 300);
+  EXPECT_GT(found_count, holdfast::test::campaign(400));
+  EXPECT_GT(none_count, holdfast::test::campaign(300));
 }
 
 model::RobotSpec family_spec(const char* name, std::size_t size) {

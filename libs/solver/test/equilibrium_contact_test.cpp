@@ -14,6 +14,7 @@
 #include "dense_reference.hpp"
 #include "holdfast/solver/equilibrium.hpp"
 #include "random_robot.hpp"
+#include "seeds.hpp"
 
 namespace holdfast::solver {
 namespace {
@@ -113,7 +114,8 @@ TEST(EquilibriumOfARandomRobot, is_found_by_either_law) {
       EXPECT_LE(result.steps, 40);
     }
   }
-  // Newton's method on Eqs. (9)-(12) cycles on 3.5 % of random robots (MODEL.md, section 5).
+  // Newton's method on Eqs. (9)-(12) cycles on 3.5 % of random robots, as another program
+  // counted.
   EXPECT_GE(settled_count[0], 190);
   EXPECT_EQ(settled_count[1], 200);
 }
@@ -151,7 +153,7 @@ TEST(EquilibriumOfARandomRobot, has_the_states_that_its_displacements_prescribe)
 }
 
 TEST(EquilibriumOfARandomRobot, is_that_of_a_dense_solution_with_the_same_states) {
-  for (std::uint64_t seed = 0; seed < 60; ++seed) {
+  for (std::uint64_t seed = 0; seed < campaign(60U); ++seed) {
     const Robot robot = lopsided_robot(seed);
     EquilibriumSolver solver(robot);
     for (const ContactOptions& law : kLaws) {
@@ -294,7 +296,7 @@ TEST(EquilibriumOfARandomRobot, is_the_same_in_both_laws_while_all_facets_are_cl
 /// answers differ by rounding.
 TEST(EquilibriumOfARandomRobot, has_an_alternative_with_ambiguous_facets_free) {
   int ambiguous_count = 0;
-  for (std::uint64_t seed = 0; seed < kRobotCount; ++seed) {
+  for (std::uint64_t seed = 0; seed < campaign(kRobotCount); ++seed) {
     const Robot robot = make(random_robot(seed));
     const Equilibrium result = EquilibriumSolver(robot).solve(kLaws[1]);
     ASSERT_EQ(result.outcome, Outcome::kSettled) << "seed " << seed;
@@ -318,7 +320,7 @@ TEST(EquilibriumOfARandomRobot, has_an_alternative_with_ambiguous_facets_free) {
       ++ambiguous_count;
     }
   }
-  EXPECT_GT(ambiguous_count, 3);
+  EXPECT_GE(ambiguous_count, campaign(4));
 }
 
 }  // namespace

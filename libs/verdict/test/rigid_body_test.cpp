@@ -2,10 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // The rigid body on flat ground. Expected values: closed forms, the margins of the paper's own
-// structures as computed independently of this project (MODEL.md, section 4; six decimals in
-// mm), a brute-force search for the lines that support all corners, and the other method of
-// Sec. III-B, safe angles. Lengths in mm; a cell is 40 wide and cell (0,0) is centred on the
-// origin.
+// structures as computed independently of this project (six decimals in mm), a brute-force search
+// for the lines that support all corners, and the other method of Sec. III-B, safe angles. Lengths
+// in mm; a cell is 40 wide and cell (0,0) is centred on the origin.
 #include "holdfast/verdict/rigid_body.hpp"
 
 #include <gtest/gtest.h>
