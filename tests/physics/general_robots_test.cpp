@@ -14,7 +14,7 @@ namespace {
 using verdict::Assessment;
 
 // bench/general_bench.cpp looks at thousands of each.
-constexpr std::uint64_t kRobotCount = test::campaign(120U);
+constexpr std::uint64_t kRobotCount = test::campaign(120U, 2U);
 
 class GeneralRobots : public testing::TestWithParam<base::Lattice> {};
 
@@ -37,7 +37,7 @@ TEST_P(GeneralRobots, are_answered_with_reasons_and_balance) {
     undecided_count += is_undecided && !are_laws_at_odds ? 1 : 0;
   }
   // The generator must reach robots that stand, or the test above says little.
-  EXPECT_GT(settled_count, test::campaign(15, 8));
+  EXPECT_GT(settled_count, test::campaign(15));
   EXPECT_LT(undecided_count, static_cast<int>(kRobotCount) / 20);
 }
 
