@@ -42,6 +42,9 @@ void TrueRobot::happen(const Fault& fault) {
   if (sim::is_of_link(fault.kind)) {
     return set_link(fault);
   }
+  if (fault.kind == Fault::Kind::kAttach && module.is_attached) {
+    return;  // Nobody puts on what is there, silent or not.
+  }
   // Its plans are lost with its memory; those of a silent one nobody knows.
   std::erase_if(plans_, [&](const Plan& plan) { return plan.holder == fault.module; });
   module.is_silent = fault.kind == Fault::Kind::kKill;
