@@ -40,6 +40,17 @@ TEST(Newcomers, of_two_at_once_neither_hears_a_second_join) {
   EXPECT_EQ(tally.faults(), 0);
 }
 
+/// A module at fault keeps the news of a plan to itself, and goes on handing on the old verdict:
+/// those that know of the plan start a round before a link would be lost. Two robots.
+TEST(News, that_a_neighbour_swallows_leave_no_old_safe) {
+  MishapTally tally;
+  run_mishap(Mishap::kChangedRenewals, 9542, tally);
+  run_mishap(Mishap::kChangedRenewals, 63231, tally);
+  EXPECT_EQ(tally.runs, 2);
+  EXPECT_EQ(tally.faults(), 0);
+  EXPECT_LT(tally.longest, 1);
+}
+
 INSTANTIATE_TEST_SUITE_P(Kinds, Mishaps, ::testing::Range(std::size_t{0}, kMishapCount));
 
 }  // namespace

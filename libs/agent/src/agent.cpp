@@ -332,7 +332,7 @@ bool Agent::finish_sweep() {
   if (order.operation == wire::Operation::kVerdict) {
     const bool is_alone = is_root && ws_.tree.children().is_empty();
     const bool is_watched = order.answer.verdict != Verdict::kUndecided && !is_alone;
-    if (!is_withdrawn()) {
+    if (!is_withdrawn_) {
       watch_.end_verdict(is_watched, is_root, clock_);
     }
     ws_.links.touch_all();
@@ -393,24 +393,21 @@ void Agent::take_order(const Order& order) {
   if (is_renewal && !welcomed_.is_empty()) {
     return leave_round();
   }
-  if (is_renewal) {
-    standing_ = Standing::kStands;
-  } else if (standing_ == Standing::kContradicted) {
-    return leave_round();  // The news has not reached the root, or its answer not this module.
-  } else if (is_withdrawn()) {
-    standing_ = Standing::kContradicted;
-  }
-  if (!is_withdrawn()) {
+  is_withdrawn_ = is_withdrawn_ && !is_renewal;
+  if (!is_withdrawn_) {
     watch_.begin_order(order.operation, clock_);
   }
   sweep_.take_order(ws_, announcements_, order);
-  if (order.operation == wire::Operation::kVerdict && !is_withdrawn()) {
+  if (order.operation == wire::Operation::kVerdict && !is_withdrawn_) {
     watch_.set_answer(order.answer);
   }
 }
 
 /// The clock has run out, or it is time to say the verdict again.
 void Agent::run_out() {
+  if (kKeepsAnswers && is_withdrawn_) {
+    return leave_round();  // The news has not reached the root, or its answer not this module.
+  }
   if (phase() == Phase::kDone && ws_.tree.is_root() && !sweep_.is_under_way()) {
     keep_order(sweep_.order());
     is_busy_ = true;
@@ -457,7 +454,7 @@ void Agent::abandon_work() {
   sweep_.leave(ws_);
   ws_.tree.take_return();
   has_next_order_ = false;
-  standing_ = Standing::kStands;
+  is_withdrawn_ = false;
   welcomed_ = {};
 }
 

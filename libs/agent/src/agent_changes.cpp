@@ -33,18 +33,17 @@ bool Agent::can_keep() const {
 /// This module was told of a plan, or of its end. Before the kRenew has come that another change
 /// has asked for there is nothing to tell: the report to that will.
 void Agent::change(const News& news) {
-  if (!announcements_.has(news.cell) || news.cell == kEveryCell ||
-      !(can_keep() || is_withdrawn())) {
+  if (!announcements_.has(news.cell) || news.cell == kEveryCell || !(can_keep() || is_withdrawn_)) {
     return leave_round();
   }
-  if (!is_withdrawn()) {
+  if (!is_withdrawn_) {
     withdraw();
     tell(news);
   }
 }
 
 void Agent::withdraw() {
-  standing_ = Standing::kWithdrawn;
+  is_withdrawn_ = true;
   watch_.withdraw(clock_);
   ws_.links.touch_all();
 }
@@ -68,11 +67,11 @@ void Agent::take_news(Direction face, const News& news) {
     }
     return;
   }
-  const bool is_known = is_withdrawn() && ws_.tree.is_root();
+  const bool is_known = is_withdrawn_ && ws_.tree.is_root();
   if (is_known && news.flags == 0) {
     return;
   }
-  if (is_known || !(is_withdrawn() || can_keep())) {
+  if (is_known || !(is_withdrawn_ || can_keep())) {
     return leave_round();
   }
   withdraw();

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "holdfast/agent/watch.hpp"
 
+#include "methods.hpp"
+
 namespace holdfast::agent {
 namespace {
 
@@ -55,6 +57,8 @@ void Watch::enter_round(const Clock& clock) {
 void Watch::withdraw(const Clock& clock) {
   phase_ = Phase::kMass;
   forget_answer(clock);
+  messages_heard_ = kMessagesMax;
+  at_ = clock.now + clock.timing.ping_after + 2 * Time{wave_time_};
 }
 
 void Watch::forget_answer(const Clock& clock) {
@@ -80,7 +84,7 @@ void Watch::begin_order(wire::Operation operation, const Clock& clock) {
   if (phase_ <= Phase::kTree) {
     wave_time_ = static_cast<std::uint32_t>(clock.now) - wave_time_;
   }
-  if (operation == wire::Operation::kRenew) {
+  if (kKeepsAnswers && operation == wire::Operation::kRenew) {
     withdraw(clock);
   }
   const bool is_verdict = operation == wire::Operation::kVerdict;

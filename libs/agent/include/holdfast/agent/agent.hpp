@@ -186,15 +186,6 @@ class Agent {
   const Effort& effort() const { return conductor_.effort(); }
 
  private:
-  /// What became of the verdict here.
-  enum class Standing : std::uint8_t {
-    kStands,
-    kWithdrawn,     ///< Something has changed, and the root's kRenew is still to come.
-    kContradicted,  ///< Since then the root has said its verdict again.
-  };
-
-  bool is_withdrawn() const { return standing_ != Standing::kStands; }
-
   // An event comes in.
   void begin(const Event& event, Actions& actions);
   void handle(const Event& event);
@@ -221,7 +212,7 @@ class Agent {
   // After a verdict: what has changed is told to the root, and all else stands (agent_changes.cpp).
   bool can_keep() const;
 
-  bool is_newcomer() const { return is_withdrawn() && !sweep_.has_answered(); }
+  bool is_newcomer() const { return is_withdrawn_ && !sweep_.has_answered(); }
 
   void change(const News& news);
   void withdraw();
@@ -257,8 +248,8 @@ class Agent {
   bool was_used_ = false;      ///< Was its link used when the packet came?
   Direction packet_face_ = Direction::kPlusX;
   bool has_next_order_ = false;  ///< An order of the root, or one that has to wait.
-  Standing standing_ = Standing::kStands;
-  Faces welcomed_;  ///< A neighbour that has come, and not taken its place yet.
+  bool is_withdrawn_ = false;    ///< Something has changed, and the kRenew is still to come.
+  Faces welcomed_;               ///< A neighbour that has come, and not taken its place yet.
   Clock clock_;
   Rounds rounds_;
   Watch watch_;

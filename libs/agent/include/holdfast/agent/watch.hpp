@@ -7,12 +7,13 @@
 
 /// The one clock of a module that ends every wait. When it runs out the module says `undecided`;
 /// nothing else changes, so that a clock that was too short does no harm: what comes later counts
-/// as if it had come in time.
+/// as if it had come in time. Where a verdict is withdrawn a round begins instead.
 ///
 ///   before the first round     from the start: nobody has said where this module is
 ///   waves, waiting for others  from the last message of the round, kWaveSilences long
 ///   sweeps                     from the last message of the round, silence + kWavesPerSilence W
 ///   with a verdict             from the root's last order, watch_time()
+///   with a withdrawn one       from its withdrawal, ping_after + 2 W
 ///
 /// W is how long the waves took here, from the first join to the first order. They cross the robot
 /// at least three times, so no order is under way much longer on a sound robot, however large and
@@ -48,7 +49,9 @@ class Watch {
   void leave_round(const Clock& clock);
   void enter_round(const Clock& clock);
 
-  /// The verdict is one no more, the tree stands: for the next order.
+  /// The verdict is one no more, the tree stands. The root's answer comes within `ping_after` + 2
+  /// W, whatever else is heard: what tells it of the change goes up the tree, waits for one sweep
+  /// at most, and the order comes down, a third of what the waves took each.
   void withdraw(const Clock& clock);
 
   /// How long the waves took, as a module that comes later is told by its parent.
