@@ -135,23 +135,30 @@ TEST(Kernels, sweeps_have_the_same_bits_on_every_machine) {
   EXPECT_TRUE(is_same(z, here));
 }
 
-/// Rounded and low parts are the number itself (split_numbers.hpp): what is joined again has the
-/// bits of what was split, from the least that a float holds as a normal number to the most.
-TEST(SplitNumbers, are_the_numbers_to_the_last_bit) {
+/// Half a unit of low parts, as a share of the number.
+constexpr double kSplitError = 0x1p-39;
+
+/// Rounded and low parts are the number to 39 bits (split_numbers.hpp), from the least that a float
+/// holds as a normal number to the most, and split again what is joined does not change.
+TEST(SplitNumbers, are_the_numbers_to_half_a_unit) {
   base::Rng rng(8);
+  std::vector<double> numbers = {1.0, std::nextafter(2.0, 0.0), -std::nextafter(4.0, 5.0),
+                                 1 + 0x1p-24};
   for (int exponent = -124; exponent < 126; ++exponent) {
     for (int i = 0; i < 40; ++i) {
-      const double x = std::ldexp(random_number(rng), exponent);
-      const auto near = static_cast<float>(x);
-      EXPECT_TRUE(std::abs(x) < std::numeric_limits<float>::min() ||
-                  is_same(joined(near, low_part(x, near)), x))
-          << x;
+      numbers.push_back(std::ldexp(random_number(rng), exponent));
     }
   }
-  for (const double x : {0.0, 1.0, std::nextafter(2.0, 0.0), -std::nextafter(4.0, 5.0)}) {
-    const auto near = static_cast<float>(x);
-    EXPECT_TRUE(is_same(joined(near, low_part(x, near)), x)) << x;
+  for (const double x : numbers) {
+    if (std::abs(x) >= std::numeric_limits<float>::min()) {
+      const auto near = static_cast<float>(x);
+      const double kept = joined(near, low_part(x, near));
+      const auto again = static_cast<float>(kept);
+      EXPECT_LE(std::abs(kept - x), kSplitError * std::abs(x)) << x;
+      EXPECT_TRUE(is_same(joined(again, low_part(kept, again)), kept)) << x;
+    }
   }
+  EXPECT_EQ(joined(0, low_part(0, 0)), 0);
   EXPECT_EQ(joined(static_cast<float>(1e-60), low_part(1e-60, static_cast<float>(1e-60))), 0);
 }
 
@@ -163,13 +170,13 @@ TEST(SplitNumbers, advance_by_steps_in_double_precision) {
   std::vector<double> x(6 * kCount);
   std::vector<double> r(6 * kCount);
   std::vector<Six<float>> rounded(kCount + 1);
-  std::vector<std::int32_t> low(6 * kCount);
+  std::vector<std::int16_t> low(6 * kCount);
   const SplitView<float> split = {.rounded = rounded.data(), .low = low.data()};
   for (std::size_t i = 0; i < q.size(); ++i) {
     q[i] = random_number(rng);
     x[i] = random_number(rng);
-    r[i] = random_number(rng);
-    split.set(i, r[i]);
+    split.set(i, random_number(rng));
+    r[i] = split.get(i);
   }
   const double step = random_number(rng);
   auto x_there = x;
@@ -177,7 +184,10 @@ TEST(SplitNumbers, advance_by_steps_in_double_precision) {
   double work = 0;
   for (std::size_t i = 0; i < q.size(); ++i) {
     EXPECT_TRUE(is_same(x_there[i], x[i] + step * static_cast<double>(p[i / 6].v[i % 6])));
-    EXPECT_TRUE(is_same(split.get(i), r[i] - step * q[i]));
+    const double left = r[i] - step * q[i];
+    const auto near = static_cast<float>(left);
+    EXPECT_TRUE(is_same(split.get(i), joined(near, low_part(left, near))));
+    EXPECT_LE(std::abs(split.get(i) - left), kSplitError * std::abs(left));
     work += split.get(i) * static_cast<double>(p[i / 6].v[i % 6]);
   }
   // Sums in another order: 600 roundings of terms of about 1.

@@ -115,7 +115,7 @@ void ConjugateGradients<Real>::rest() {
 template <class Real>
 void ConjugateGradients<Real>::retire() {
   rest();
-  low_ = std::vector<std::int32_t>();
+  low_ = std::vector<std::int16_t>();
   hierarchy_.levels().clear();
 }
 

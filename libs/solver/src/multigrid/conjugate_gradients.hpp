@@ -8,9 +8,10 @@
 #include "cycle.hpp"
 #include "iteration.hpp"
 
-/// Flexible preconditioned conjugate gradients [Notay 2000]. Displacements and residuals are kept
-/// in double precision; search directions in that of the preconditioner, but what they do to x and
-/// r is computed from the same rounded direction in double precision, so x and r never part.
+/// Flexible preconditioned conjugate gradients [Notay 2000]. Displacements are kept in
+/// double precision, residuals in 39 bits, less of them the smaller they are (split_numbers.hpp);
+/// search directions in the preconditioner's precision, but what they do to x and r is computed
+/// from the same rounded direction in double precision, so x and r do not part.
 namespace holdfast::solver {
 
 template <class Real>
@@ -100,7 +101,7 @@ class ConjugateGradients final : public Iteration {
   std::size_t node_count_;         ///< Of a part of a robot this rank's own.
   bool is_solid_;                  ///< And of cubes.
   std::size_t place_count_;        ///< With copies of others'.
-  std::vector<std::int32_t> low_;  ///< The low parts of r.
+  std::vector<std::int16_t> low_;  ///< The low parts of r.
   std::vector<double> q_;          ///< Empty at rest.
   std::vector<Six<Real>> p_;
   std::optional<double> turn_;            ///< By which p_ is yet to be turned.

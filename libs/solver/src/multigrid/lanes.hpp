@@ -18,6 +18,8 @@ using Double = double __attribute__((vector_size(32)));
 using Pair = double __attribute__((vector_size(16)));
 using Places = std::int64_t __attribute__((vector_size(32)));
 using Ints = std::int32_t __attribute__((vector_size(16)));
+using Shorts = std::int16_t __attribute__((vector_size(8)));
+using EightShorts = std::int16_t __attribute__((vector_size(16)));
 
 /// Eight lanes of double precision.
 struct Wide {
@@ -133,15 +135,15 @@ inline void store_rounded(Six<float>& six, Double low, Double high) {
 }
 
 /// split_numbers.hpp, four numbers at a time.
-inline Double joined_lanes(Double rounded, Ints low) {
+inline Double joined_lanes(Double rounded, Shorts low) {
   Places places;
   std::memcpy(&places, &rounded, sizeof places);
-  places += __builtin_convertvector(low, Places);
+  places += __builtin_convertvector(__builtin_convertvector(low, Ints) * kUnit, Places);
   std::memcpy(&rounded, &places, sizeof rounded);
   return rounded;
 }
 
-inline Ints low_lanes(Double value, Quad rounded) {
+inline Shorts low_lanes(Double value, Quad rounded) {
   const Double near = __builtin_convertvector(rounded, Double);
   Places places;
   Places near_places;
@@ -149,17 +151,20 @@ inline Ints low_lanes(Double value, Quad rounded) {
   std::memcpy(&places, &value, sizeof places);
   std::memcpy(&near_places, &near, sizeof near_places);
   std::memcpy(&bits, &rounded, sizeof bits);
-  return __builtin_convertvector(places - near_places, Ints) & ((bits & kExponentBits) != 0);
+  const Ints beyond = __builtin_convertvector(places - near_places, Ints);
+  const Ints units = (beyond + kUnit / 2) >> kUnitBits;
+  const Ints kept = units & ((bits & kExponentBits) != 0);
+  EightShorts halves;
+  std::memcpy(&halves, &kept, sizeof halves);
+  return __builtin_shufflevector(halves, halves, 0, 2, 4, 6);
 }
 
 inline Wide load(const SplitView<float>& split, std::size_t node) {
   const Single rounded = load(split.rounded[node]);
-  Ints four;
-  Ints two;
-  Pair pair = {};
-  std::memcpy(&four, split.low + 6 * node, 16);
-  std::memcpy(&pair, split.low + 6 * node + 4, 8);
-  std::memcpy(&two, &pair, 16);
+  Shorts four;
+  Shorts two = {};
+  std::memcpy(&four, split.low + 6 * node, 8);
+  std::memcpy(&two, split.low + 6 * node + 4, 4);
   return {joined_lanes(low(rounded), four), joined_lanes(high(rounded), two)};
 }
 
@@ -170,15 +175,12 @@ inline Wide load(const SplitView<double>& split, std::size_t node) {
 inline void store(const SplitView<float>& split, std::size_t node, const Wide& value) {
   const Quad four = __builtin_convertvector(value.low, Quad);
   const Quad two = __builtin_convertvector(value.high, Quad);
-  const Ints low_four = low_lanes(value.low, four);
-  const Ints low_two = low_lanes(value.high, two);
+  const Shorts low_four = low_lanes(value.low, four);
+  const Shorts low_two = low_lanes(value.high, two);
   std::memcpy(split.rounded[node].v, &four, 16);
   store_two(split.rounded[node].v + 4, two);
-  std::memcpy(split.low + 6 * node, &low_four, 16);
-  Pair pair;
-  std::memcpy(&pair, &low_two, 16);
-  const double both = pair[0];
-  std::memcpy(split.low + 6 * node + 4, &both, 8);
+  std::memcpy(split.low + 6 * node, &low_four, 8);
+  std::memcpy(split.low + 6 * node + 4, &low_two, 4);
 }
 
 inline void store(const SplitView<double>& split, std::size_t node, const Wide& value) {

@@ -308,7 +308,7 @@ void Multigrid::compute_residual() {
   }
 }
 
-/// Updates the residual where only facets have changed since: x and r have never parted.
+/// Updates the residual where only facets have changed since: x and r differ by rounding alone.
 void Multigrid::update_residual() {
   for (const GroundNode& ground_node : ground_nodes_) {
     const FacetState& facet = facets()[ground_node.facet];
