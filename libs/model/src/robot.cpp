@@ -16,6 +16,9 @@
 namespace holdfast::model {
 namespace {
 
+/// The level of a floor that is not there: who compares levels without asking finds nothing on it.
+constexpr std::int32_t kBelowAllCells = -2 * base::kCoordinateMax;
+
 using base::Cell;
 
 CellIndex index_of(const RobotSpec& spec) {
@@ -106,7 +109,7 @@ Robot::Robot(const RobotSpec& spec)
       gravity_(gravity_of(spec)),
       loads_(weight_loads(spec.material)),
       has_floor_(spec.support_z.has_value()),
-      support_z_(spec.support_z.value_or(0)),
+      support_z_(spec.support_z.value_or(kBelowAllCells)),
       planned_count_(spec.planned.size()) {}
 
 base::Result<Robot> Robot::create(const RobotSpec& spec, int thread_count) {

@@ -59,6 +59,21 @@ TEST(Proof, holds_the_closed_form_of_cantilevers) {
   }
 }
 
+/// Without a floor the cell level 0 is like any other.
+TEST(Proof, knows_no_floor_where_there_is_none) {
+  for (const std::int32_t level : {-1, 0, 1}) {
+    const Robot robot = Robot::create({.existing = {{0, 0, level}, {1, 0, level}},
+                                       .fixed = {{0, 0, level}},
+                                       .support_z = std::nullopt})
+                            .value();
+    const Proof proof = prove(robot, verdict::assess(robot));
+    ASSERT_TRUE(proof.is_proved()) << proof.verification.reason;
+    const double exact = model::module_weight_n(robot.material()) / 14.97;
+    EXPECT_NEAR(proof.verification.ratio_low, exact, 1e-12) << "level " << level;
+    EXPECT_NEAR(proof.verification.ratio_high, exact, 1e-12) << "level " << level;
+  }
+}
+
 /// Nothing is certified of another robot than the one that was asked about.
 TEST(Proof, leaves_a_robot_with_released_pairs_undecided) {
   const Robot robot = Robot::create({.existing = {{0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}},

@@ -87,6 +87,21 @@ TEST(Simulation, agrees_with_the_exact_solver) {
   }
 }
 
+/// A fixed module holds one more by its side, at every level, as there is no floor: all the weight
+/// w at half a pitch, so Eq. (17) says 2 w (L / 2) / L / Fmax, w / Fmax.
+TEST(Simulation, knows_no_floor_where_there_is_none) {
+  const model::Material material;
+  const double expected = model::module_weight_n(material) / material.strength_lateral_n;
+  for (const std::int32_t level : {-1, 0, 1}) {
+    const model::Robot robot = make_robot({.existing = {{0, 0, level}, {1, 0, level}},
+                                           .fixed = {{0, 0, level}},
+                                           .support_z = std::nullopt});
+    const SimulationResult result = simulate(robot, {});
+    EXPECT_EQ(result.answer.verdict, agent::Verdict::kSafe) << "level " << level;
+    EXPECT_NEAR(result.answer.load_ratio_max, expected, 1e-5) << "level " << level;
+  }
+}
+
 TEST(Simulation, may_tell_the_plan_to_any_module_and_anchor_any) {
   const model::Robot robot = make_robot(arm(4));
   const SimulationResult first = simulate(robot, {});
