@@ -201,6 +201,16 @@ TEST(Kept, a_battery_comes_and_goes) {
   EXPECT_FALSE(simulate_steps(file, {}).has_value());
 }
 
+/// Another comes to the cell of a module that was fixed, and is not: the modules cannot know.
+TEST(Kept, no_module_takes_the_cell_of_a_fixed_one) {
+  StepsFile file = growing({{0, 0, 0}, {1, 0, 0}}, {}, true);
+  file.document.modules.back().is_fixed = true;
+  file.document.extension.plan = {{.detach = {{1, 0, 0}}}};
+  EXPECT_TRUE(simulate_steps(file, {}).has_value());
+  file.document.extension.plan.push_back({.attach = {{1, 0, 0}}});
+  EXPECT_FALSE(simulate_steps(file, {}).has_value());
+}
+
 /// One plan closes a loop, which takes a beam more, the other hangs by none: together they have as
 /// many beams as they would hang by, and yet another method is needed.
 TEST(Kept, a_plan_that_touches_nothing_is_told_apart) {

@@ -178,6 +178,36 @@ TEST(SimulatedNext, a_gap_between_two_arms_is_no_hanging_candidate) {
   EXPECT_EQ(cells.at({0, 0, 2}).verdict, Verdict::kSafe);
 }
 
+/// The robot is held by a module that touches nothing; only what comes would stand on the floor.
+TEST(SimulatedNext, knows_a_floor_on_which_nothing_stands_yet) {
+  const model::RobotSpec spec{
+      .existing = {{0, 0, 0}}, .fixed = {{0, 0, 0}}, .floor = {.friction = 0.001}};
+  const SimulatedNext next = simulated(spec, true);
+  expect_what_next_says(spec, next);
+  EXPECT_EQ(by_cell(next.next.candidates).at({1, 0, 0}).verdict, Verdict::kUndecided);
+}
+
+/// The same of obstacles; none of their cells is a place.
+TEST(SimulatedNext, knows_obstacles_that_nothing_touches_yet) {
+  const model::RobotSpec spec{
+      .existing = {{0, 0, 0}, {1, 0, 0}},
+      .fixed = {{0, 0, 0}},
+      .support_z = std::nullopt,
+      .obstacles = {{.from = {}, .to = {}, .cells = {{-1, 0, 0}, {2, 0, -1}}}}};
+  const SimulatedNext next = simulated(spec, true);
+  expect_what_next_says(spec, next);
+  EXPECT_FALSE(by_cell(next.next.candidates).contains({-1, 0, 0}));
+}
+
+/// A module there would rest on the ground and on a module below the ground.
+TEST(SimulatedNext, no_place_on_the_floor_is_above_a_module) {
+  const model::RobotSpec spec{.existing = {{0, 0, 0}, {0, 0, -1}, {1, 0, -1}},
+                              .fixed = {{0, 0, 0}}};
+  const SimulatedNext next = simulated(spec, true);
+  expect_what_next_says(spec, next);
+  EXPECT_FALSE(by_cell(next.next.candidates).contains({1, 0, 0}));
+}
+
 TEST(SimulatedNext, one_by_one_all_cells_get_the_verdict_of_next) {
   for (const char* name : {"crane_tips_a", "arm_tips_a", "bush_tips_a"}) {
     SCOPED_TRACE(name);

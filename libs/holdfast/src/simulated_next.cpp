@@ -47,9 +47,10 @@ void add_face(Place& place, const agent::FreeFace& face) {
 }
 
 /// Do its modules judge all free faces together? Where more is known to them than cubes on a floor
-/// every cell is planned in turn.
-bool judges_faces(const model::Robot& robot) {
-  return !model::find_beyond_paper(robot).has_value();
+/// every cell is planned in turn; also where only what comes would touch more.
+bool judges_faces(const model::RobotSpec& spec, const model::Robot& robot) {
+  return !model::find_beyond_paper(robot).has_value() && spec.obstacles.empty() &&
+         spec.floor == model::Touch{};
 }
 
 /// Is the floor there, below a module that rests on it?
@@ -58,6 +59,12 @@ bool is_floor(const model::Robot& robot, const Cells& cells, const base::Cell& c
   const auto found = cells.find(above);
   return above.z == robot.support_z() && found != cells.end() &&
          robot.modules()[static_cast<std::size_t>(found->second)].support != model::Support::kFixed;
+}
+
+/// Is a module below, where one that comes would have the floor?
+bool is_above_floor(const model::Robot& robot, const Cells& cells, const base::Cell& cell) {
+  return cell.z == robot.support_z() &&
+         cells.contains(base::neighbour(cell, base::Direction::kMinusZ));
 }
 
 Places read_places(const model::Robot& robot, const sim::Simulation& simulation) {
@@ -72,7 +79,7 @@ Places read_places(const model::Robot& robot, const sim::Simulation& simulation)
       const auto face = static_cast<std::size_t>(direction);
       const base::Cell beyond = base::neighbour(cell, direction);
       const bool is_free = robot.neighbours()[static_cast<std::size_t>(module)][face] < 0;
-      if (is_free && !is_floor(robot, cells, beyond)) {
+      if (is_free && !is_floor(robot, cells, beyond) && !is_above_floor(robot, cells, beyond)) {
         Place& place = places.try_emplace(beyond, Place{.module = module}).first->second;
         add_face(place, simulation.agent(module).free_face(direction));
       }
@@ -125,16 +132,16 @@ agent::FreeFace face_of(const agent::Answer& answer) {
 
 /// Plans the cell, waits for the verdict, which the modules beside it note, and withdraws the plan.
 RobotEffort try_cell(sim::Simulation& simulation, const model::Robot& robot, const base::Cell& cell,
-                     Place& place) {
+                     bool judges_faces, Place& place) {
   const RobotEffort before = effort_of(simulation.result());
   simulation.happen(sim::Announcement{.module = place.module, .cell = cell});
   simulation.run();
-  if (!judges_faces(robot)) {
+  if (!judges_faces) {
     place.face = face_of(simulation.agent(place.module).answer());
   }
   const base::Cell& host = robot.modules()[static_cast<std::size_t>(place.module)].cell;
   for (const base::Direction direction : base::kDirections) {
-    if (judges_faces(robot) && base::neighbour(host, direction) == cell) {
+    if (judges_faces && base::neighbour(host, direction) == cell) {
       const agent::FreeFace shown = simulation.agent(place.module).free_face(direction);
       place.face.verdict = shown.verdict;
       place.face.has_load_ratio = shown.has_load_ratio;
@@ -151,7 +158,8 @@ void try_others(SimulatedNext& simulated, sim::Simulation& simulation, const mod
   const std::size_t left = places.size() - simulated.shown_count;
   for (auto& [cell, place] : places) {
     if (!is_decided(place.face)) {
-      simulated.trials.push_back(try_cell(simulation, robot, cell, place));
+      simulated.trials.push_back(
+          try_cell(simulation, robot, cell, options.simulation.judges_faces, place));
       if (options.progress) {
         options.progress(simulated.trials.size(), left);
       }
@@ -218,8 +226,7 @@ Places absent_places(const model::Robot& robot, const std::vector<std::int32_t>&
 
 SimulatedNext run(const model::Robot& robot, const SimulatedNextOptions& options) {
   const auto start = std::chrono::steady_clock::now();
-  sim::SimulationOptions how = options.simulation;
-  how.judges_faces = judges_faces(robot);
+  const sim::SimulationOptions& how = options.simulation;
   sim::Simulation simulation(robot, how);
   simulation.run();
   const sim::SimulationResult result = simulation.result();
@@ -281,7 +288,8 @@ base::Result<SimulatedNext> simulate_next(const model::RobotSpec& spec,
     return robot.error();
   }
   SimulatedNextOptions how = options;
-  if (!judges_faces(robot.value())) {
+  how.simulation.judges_faces = judges_faces(whole, robot.value());
+  if (!how.simulation.judges_faces) {
     // What is in a cell is known of modules only, also of those that are not there yet.
     for (const base::Cell& cell : open_cells(whole)) {
       how.simulation.absent.push_back(static_cast<std::int32_t>(whole.existing.size()));
@@ -292,9 +300,7 @@ base::Result<SimulatedNext> simulate_next(const model::RobotSpec& spec,
       return robot.error();
     }
   }
-  sim::SimulationOptions judging = how.simulation;
-  judging.judges_faces = judges_faces(robot.value());
-  if (const auto fault = sim::find_options_fault(robot.value(), judging)) {
+  if (const auto fault = sim::find_options_fault(robot.value(), how.simulation)) {
     return base::Error{.code = base::ErrorCode::kBadInput, .message = *fault, .where = {}};
   }
   return run(robot.value(), how);

@@ -48,9 +48,11 @@ std::vector<Item> of_cell(const std::vector<Item>& items, const base::Cell& cell
   return found;
 }
 
-/// Is the module that a step attaches in a cell as the one that was there before?
+/// Is the module that a step attaches in a cell as the one that was there before? None that comes
+/// is fixed.
 bool is_alike(const model::RobotSpec& robot, const model::Step& step, const base::Cell& cell) {
-  return of_cell(robot.own_kinds, cell) == of_cell(step.own_kinds, cell) &&
+  return !has(robot.fixed, cell) &&
+         of_cell(robot.own_kinds, cell) == of_cell(step.own_kinds, cell) &&
          of_cell(robot.own_masses, cell) == of_cell(step.own_masses, cell) &&
          of_cell(robot.payloads, cell) == of_cell(step.payloads, cell);
 }
