@@ -345,13 +345,13 @@ bool Conductor::needs_forces([[maybe_unused]] const Setup& setup) const {
 #endif
 }
 
-/// How good load ratios must be before contact states are told away from a level floor.
+/// What load ratios must be good to before contact states are told; a single module has none.
 double Conductor::uneven_target() const {
-  const double target = kUnevenTolerance * (1 + absolute(ratio_));
+  const double size = kHasAllMethods && !(ratio_ > kNoLoadRatio) ? 0 : absolute(ratio_);
 #ifdef HOLDFAST_AGENT_FLOOR_ONLY
-  return target;
+  return kUnevenTolerance * (1 + size);
 #else
-  return target * static_cast<double>(1U << slack_bits_);
+  return kUnevenTolerance * (1 + size) * static_cast<double>(1U << slack_bits_);
 #endif
 }
 

@@ -102,6 +102,23 @@ TEST(Simulation, knows_no_floor_where_there_is_none) {
   }
 }
 
+/// It has no load ratio, by which what its facets bear would be good or not. It is pulled off one
+/// wall and along the other.
+TEST(Simulation, waits_for_the_facets_of_a_single_module) {
+  const model::Robot robot =
+      make_robot({.existing = {{0, 0, 0}},
+                  .support_z = std::nullopt,
+                  .obstacles = {{.from = {}, .to = {}, .cells = {{-1, 0, 0}, {0, -1, 0}}}},
+                  .gravity_m_s2 = {{5, 0, -10}}});
+  EXPECT_EQ(verdict::assess(robot).verdict, verdict::Verdict::kUnstable);
+  for (const agent::Method method :
+       {agent::Method::kElimination, agent::Method::kConjugateGradients}) {
+    const SimulationResult result = simulate(robot, {.method = method});
+    EXPECT_EQ(result.answer.verdict, agent::Verdict::kUnstable)
+        << agent::name(result.answer.reason);
+  }
+}
+
 TEST(Simulation, may_tell_the_plan_to_any_module_and_anchor_any) {
   const model::Robot robot = make_robot(arm(4));
   const SimulationResult first = simulate(robot, {});
