@@ -43,6 +43,13 @@ std::vector<base::Direction> directions_of(const Site& site) {
   return directions;
 }
 
+/// Whether the robot is on a flat floor, or would be with a module on one.
+bool stands_flat(const model::Robot& robot) {
+  const auto& [x, y, z] = robot.gravity();
+  return robot.facets().empty() ? x == 0 && y == 0 && z < 0 && !robot.has_payloads()
+                                : verdict::is_on_flat_floor(robot);
+}
+
 Vec6<double> scaled(const Vec6<double>& a, const Vec6<double>& b) {
   Vec6<double> product{};
   for (std::size_t k = 0; k < 6; ++k) {
@@ -297,7 +304,7 @@ GrownContact::GrownContact(const model::Robot& robot, const model::Touch& floor,
     : robot_(robot),
       influence_(influence),
       is_bonded_(is_bonded),
-      is_on_flat_floor_(robot.facets().empty() || verdict::is_on_flat_floor(robot)),
+      is_flat_(stands_flat(robot)),
       is_held_(robot.fixed_count() > 0 || robot.has_bonded_facets()),
       floor_(floor) {
   const double mass = robot.kinds().front().mass_kg;
@@ -399,10 +406,20 @@ void GrownContact::look_at(const FacetState& facet, std::optional<double> fricti
   footing.is_certain = footing.is_certain && std::abs(sideways - allowed) > doubt;
 }
 
+/// Whether the grown robot is on a flat floor: there open and tilted facets only pull down.
+bool GrownContact::is_on_flat_floor(const Site& site) const {
+  const auto level = [&] {
+    return robot_.modules()[base::at(robot_.facets().front().module)].cell.z;
+  };
+  return is_flat_ && (!site.is_on_floor || robot_.facets().empty() || level() == site.cell.z);
+}
+
 /// Whether the check would end here as well, but for further solutions: it looks for the exact
-/// law's answer where open facets may pull, and at the corners where no facet presses all over.
-Footing GrownContact::footing_of(const States& states, const Step& step) const {
+/// law's answer where open and tilted facets may pull, and at the corners where no facet presses
+/// all over.
+Footing GrownContact::footing_of(const Site& site, const States& states, const Step& step) const {
   Footing footing;
+  const bool is_flat = is_on_flat_floor(site);
   bool is_any_stuck = false;
   for (std::size_t i = 0; i < states.size(); ++i) {
     const bool is_own = i == influence_.facets().size();
@@ -410,7 +427,7 @@ Footing GrownContact::footing_of(const States& states, const Step& step) const {
     facet.state = states[i];
     const Vec trial = scaled(influence_.law().ground().stiffness, step.motions[i]);
     const bool is_stuck = states[i] == ContactState{};
-    const bool may_pull = !is_on_flat_floor_ && !states[i].pressed;
+    const bool may_pull = !is_flat && !is_stuck;
     footing.is_certain = footing.is_certain && !may_pull;
     is_any_stuck = is_any_stuck || is_stuck;
     look_at(facet, is_own ? floor_.friction : robot_.facets()[i].touch.friction, trial, footing);
@@ -560,7 +577,7 @@ std::optional<Grown> GrownContact::settle(const Site& site, const FacetInfluence
       return std::nullopt;
     }
     if (*next == states) {
-      Footing footing = footing_of(states, *step);
+      Footing footing = footing_of(site, states, *step);
       footing.is_certain = footing.is_certain && !may_have_others(site, states, *step, facets);
       Grown result = grown(site, own, *std::move(step), footing);
       result.is_settled = true;

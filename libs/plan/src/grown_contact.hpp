@@ -100,7 +100,8 @@ class GrownContact {
   double stuck_energy_root(std::size_t facet) const;
   void look_at(const solver::FacetState& facet, std::optional<double> friction, const Vec& trial,
                Footing& footing) const;
-  Footing footing_of(const States& states, const Step& step) const;
+  bool is_on_flat_floor(const Site& site) const;
+  Footing footing_of(const Site& site, const States& states, const Step& step) const;
   bool may_have_others(const Site& site, const States& states, const Step& step,
                        const FacetInfluence& facets) const;
   solver::FacetState own_facet(const mechanics::ContactState& state) const;
@@ -111,7 +112,7 @@ class GrownContact {
   const model::Robot& robot_;
   const solver::Influence& influence_;
   bool is_bonded_ = false;
-  bool is_on_flat_floor_ = true;
+  bool is_flat_ = true;  ///< But for the facets of new modules.
   bool is_held_ = false;
   model::Touch floor_;
   Vec load_{};          ///< Of the new module.

@@ -185,6 +185,28 @@ TEST(Candidates, of_other_kinds_of_modules_and_connectors) {
   }
 }
 
+/// A light foot with a torque tilts on the floor beside a fixed module, and no facet is open: its
+/// weak spring pulls, and only the exact law knows that a weak connection breaks.
+TEST(Candidates, ask_the_exact_law_where_a_foot_of_a_loaded_robot_tilts) {
+  RobotSpec spec{.existing = {{0, -1, 3}, {-1, -1, 3}, {-1, -2, 3}, {-2, -1, 3}}, .support_z = 3};
+  spec.fixed = {{0, -1, 3}};
+  spec.payloads = {{.cell = {-2, -1, 3}, .force_n = {}, .torque_nmm = {40, 0, 0}}};
+  spec.material.mass_kg = 0.1;
+  spec.material.strength_vertical_n = 3;
+  spec.material.strength_lateral_n = 3;
+  const model::ModuleKind usual = model::default_kind(spec.material, spec.lattice);
+  model::ModuleKind light = usual;
+  model::ModuleKind weak = usual;
+  light.mass_kg = 1e-7;
+  for (model::ConnectorLaw& law : weak.connectors) {
+    law.strength_n = 1e-3;
+  }
+  spec.kinds = {usual, light, weak};
+  spec.own_kinds = {{.cell = {-2, -1, 3}, .kind = 1}, {.cell = {-1, -2, 3}, .kind = 2}};
+  const Compared compared = compare(spec, "a foot tilts");
+  EXPECT_GT(compared.verdict_count[3], 0U);
+}
+
 TEST(Candidates, have_the_same_bits_for_any_number_of_threads) {
   const RobotSpec spec{.existing = model::family_cells(model::Family::kTower, 40)};
   const std::vector<Cell> cells = free_cells(spec);

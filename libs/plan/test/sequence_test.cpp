@@ -237,6 +237,24 @@ TEST(Sequence, has_the_same_bits_with_any_number_of_threads) {
   }
 }
 
+TEST(Sequence, asks_the_exact_law_where_a_foot_on_a_slope_tilts) {
+  // No foot is open. Under the paper's law, whose tilted feet pull a little, the robot holds at
+  // (0, -1, 0) with a tenth to spare; under the exact one it breaks.
+  model::RobotSpec spec{.existing = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {1, -1, 0}},
+                        .fixed = {{0, 0, 0}}};
+  spec.gravity_m_s2 = {-3, 2, -9.81};
+  spec.own_masses = {{.cell = {1, 0, 0}, .mass_kg = 1e-7}};
+  spec.material.mass_kg = 0.1;
+  spec.material.strength_vertical_n = 0.142;
+  spec.material.strength_lateral_n = 0.142;
+  const model::Step there = test::move({1, -1, 0}, {0, -1, 0});
+  const model::Step back = test::move({0, -1, 0}, {1, -1, 0});
+  const std::vector<model::Step> steps = {there, back, there, back};
+  compare(spec, steps);
+  const SequenceJudgement judged = judge_sequence(spec, steps).value();
+  EXPECT_EQ(judged.steps[2].stages[2].verdict, Verdict::kUndecided);
+}
+
 TEST(Sequence, finds_the_solution_that_a_check_finds) {
   // Newton's method from all stuck cycles on the first of these robots, so that a check answers by
   // the exact law; from the states of the feet without the walker it settles on a lesser load.
