@@ -118,15 +118,11 @@ bool is_final(const model::Robot& robot, const verdict::Assessment& assessment) 
   const bool is_model_needed = assessment.stability_rule != verdict::StabilityRule::kContactForces;
   const bool agrees = assessment.model.is_settled && assessment.is_stable &&
                       (assessment.model.is_stable || !is_model_needed);
-  constexpr mechanics::ContactState kStuck;
-  const bool may_pull =
-      !verdict::is_on_flat_floor(robot) &&
-      std::ranges::any_of(assessment.equilibrium.contact,
-                          [&](const mechanics::ContactState& state) { return state != kStuck; });
   const bool is_decided =
       assessment.verdict == Verdict::kSafe || assessment.verdict == Verdict::kOverload;
   const double distance = std::abs(assessment.load_ratio_max.value_or(0) - 1);
-  return agrees && !may_pull && is_decided && distance > kNearLimit;
+  return agrees && !verdict::has_pulling_facets(robot, assessment) && is_decided &&
+         distance > kNearLimit;
 }
 
 /// Whether two robots with the same surroundings are the same.

@@ -69,18 +69,6 @@ std::span<const double> weak_springs(solver::EquilibriumSolver& solver, bool is_
              : kStableGammas;
 }
 
-/// Whether weak springs of open or tilted facets, part of the paper's law, may carry part of the
-/// load where supports are anywhere: on a floor all that they can do is pull down.
-bool has_pulling_facets(const model::Robot& robot, const Assessment& assessment,
-                        const model::RobotPart* part) {
-  constexpr mechanics::ContactState kStuck;
-  const auto& contact = assessment.equilibrium.contact;
-  const bool is_any_not_stuck =
-      std::ranges::any_of(contact, [&](const auto& state) { return state != kStuck; });
-  return !is_on_flat_floor(robot, part) &&
-         host::any(part == nullptr ? nullptr : part->ranks, is_any_not_stuck);
-}
-
 /// Whether the paper's law, of which Newton's method found no solution, has one that falls. With
 /// supports anywhere its answer counts beside the exact law's.
 bool falls_by_other_states(const model::Robot& robot, solver::EquilibriumSolver& solver,
@@ -204,6 +192,16 @@ std::vector<solver::EquilibriumOptions> finer_options(const solver::EquilibriumO
 }
 
 }  // namespace
+
+bool has_pulling_facets(const model::Robot& robot, const Assessment& assessment,
+                        const model::RobotPart* part) {
+  constexpr mechanics::ContactState kStuck;
+  const auto& contact = assessment.equilibrium.contact;
+  const bool is_any_not_stuck =
+      std::ranges::any_of(contact, [&](const auto& state) { return state != kStuck; });
+  return !is_on_flat_floor(robot, part) &&
+         host::any(part == nullptr ? nullptr : part->ranks, is_any_not_stuck);
+}
 
 Assessment assess_rigidly(const model::Robot& robot, const model::RobotPart* part) {
   Assessment assessment;

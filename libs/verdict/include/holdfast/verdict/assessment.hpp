@@ -138,6 +138,12 @@ inline constexpr double kEnergyFactor = 3;
 /// Whether a connection with this load ratio breaks.
 inline bool breaks(double load_ratio) { return load_ratio >= 1 - kLoadRatioTie; }
 
+/// Whether weak springs of open or tilted facets, part of the paper's law, may carry part of the
+/// load in the assessment's equilibrium, as supports are anywhere: on a floor all that they can do
+/// is pull down. Then the exact law is asked as well.
+bool has_pulling_facets(const model::Robot& robot, const Assessment& assessment,
+                        const model::RobotPart* part = nullptr);
+
 /// What the rigid body says of a robot, and nothing else: no verdict, no reasons.
 Assessment assess_rigidly(const model::Robot& robot, const model::RobotPart* part = nullptr);
 
