@@ -94,8 +94,8 @@ py::array facet_forces(const SharedCheck& check) {
 }
 
 py::array ground_forces(const SharedCheck& check) {
-  const auto& list = check->result.assessment.equilibrium.ground_force;
-  return view(list.data(), list.size(), pairs_of_vectors("force_n", "moment_nmm"), py::cast(check));
+  const auto list = holdfast::ground_forces(check->structure->robot, check->result);
+  return py::array(pairs_of_vectors("force_n", "moment_nmm"), list.size(), list.data());
 }
 
 /// How each facet touches.

@@ -69,7 +69,7 @@ TEST(TwoCubes, on_a_third_one_press_its_facet_and_do_not_tilt_it) {
   EXPECT_NEAR(u[0], turn * kPitch / 2, 1e-12);
 
   // By the ground on the module's node: the weight, and the torque that its lever makes.
-  const base::Vec6<double>& ground = found.equilibrium.ground_force.at(0);
+  const base::Vec6<double>& ground = found.equilibrium.facet_force.at(0);
   EXPECT_NEAR(ground[2], 3 * kWeight, 1e-10);
   EXPECT_NEAR(ground[4], -kWeight * kPitch, 1e-9);
   EXPECT_LT(kWeight * kPitch, 3 * kWeight * kPitch / 2);

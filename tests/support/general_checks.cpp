@@ -29,12 +29,13 @@ double largest(const std::vector<Vec6<double>>& vectors) {
 /// What loads and supports leave of the robot as a whole, about the origin, beyond 1e-6 of the
 /// forces; of moments 100 times that, as arms are some 100 mm long.
 std::string imbalance(const model::Robot& robot, const Assessment& assessment) {
+  const std::vector<Vec6<double>> forces = solver::ground_forces(robot, assessment.equilibrium);
   Vec6<double> sum{};
   double size = 0;
   for (std::size_t i = 0; i < robot.modules().size(); ++i) {
     auto place = base::node_place(robot.lattice(), robot.modules()[i].cell);
     std::ranges::for_each(place, [&](double& x) { x *= robot.material().pitch_mm; });
-    for (const Vec6<double>& f : {robot.loads()[i], assessment.equilibrium.ground_force[i]}) {
+    for (const Vec6<double>& f : {robot.loads()[i], forces[i]}) {
       base::add_to(sum, {f[0], f[1], f[2], f[3] + place[1] * f[2] - place[2] * f[1],
                          f[4] + place[2] * f[0] - place[0] * f[2],
                          f[5] + place[0] * f[1] - place[1] * f[0]});

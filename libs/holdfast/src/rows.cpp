@@ -37,8 +37,9 @@ Rows displacement_rows(const CheckResult& result) {
   return rows_of<6>(result.assessment.equilibrium.displacement);
 }
 
-Rows ground_force_rows(const CheckResult& result) {
-  return rows_of<6>(result.assessment.equilibrium.ground_force);
+std::vector<base::Vec6<double>> ground_forces(const model::Robot& robot,
+                                              const CheckResult& result) {
+  return solver::ground_forces(robot, result.assessment.equilibrium);
 }
 
 }  // namespace holdfast

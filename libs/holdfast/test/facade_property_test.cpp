@@ -86,7 +86,7 @@ void expect_same_equilibrium(const solver::Equilibrium& a, const solver::Equilib
   EXPECT_EQ(a.alternative, b.alternative);
   EXPECT_EQ(a.gamma, b.gamma);
   EXPECT_EQ(a.energy_error, b.energy_error);
-  EXPECT_EQ(a.ground_force, b.ground_force);
+  EXPECT_EQ(a.facet_force, b.facet_force);
   EXPECT_EQ(a.contact, b.contact);
   EXPECT_EQ(a.open_but_held_count, b.open_but_held_count);
   EXPECT_EQ(a.method, b.method);
@@ -174,10 +174,11 @@ TEST(FacadeProperties, the_ground_carries_the_weight_where_it_is) {
     const double pitch = robot.value().material().pitch_mm;
     const double weight = model::module_weight_n(robot.value().material());
     std::array<double, 5> left{};  // Forces along x, y, z, moments about x, y.
-    const Rows ground = ground_force_rows(result);
-    for (std::size_t i = 0; i < ground.count(); ++i) {
+    const auto ground = ground_forces(robot.value(), result);
+    ASSERT_EQ(ground.size(), robot.value().modules().size());
+    for (std::size_t i = 0; i < ground.size(); ++i) {
       const base::Cell& cell = robot.value().modules()[i].cell;
-      const auto force = ground.row(i);
+      const base::Vec6<double>& force = ground[i];
       const double up = force[2] - weight;
       left[0] += force[0];
       left[1] += force[1];
@@ -185,7 +186,7 @@ TEST(FacadeProperties, the_ground_carries_the_weight_where_it_is) {
       left[3] += force[3] + pitch * (cell.y * up - cell.z * force[1]);
       left[4] += force[4] + pitch * (cell.z * force[0] - cell.x * up);
     }
-    const double all = weight * static_cast<double>(ground.count());
+    const double all = weight * static_cast<double>(ground.size());
     for (std::size_t k = 0; k < left.size(); ++k) {
       EXPECT_NEAR(left[k], 0, 1e-6 * all * (k < 3 ? 1 : 10 * pitch)) << seed << ", " << k;
     }

@@ -161,20 +161,20 @@ TEST(Rows, are_the_loads_the_motions_and_the_ground_forces_in_the_robots_order) 
   EXPECT_EQ(displacements.row(0)[2], 0) << "it is fixed";
   EXPECT_LT(displacements.row(1)[2], 0) << "its weight presses it down";
   EXPECT_EQ(displacements.row(2)[2], result.assessment.equilibrium.displacement[2][2]);
-  const Rows ground = ground_force_rows(result);
-  ASSERT_EQ(ground.count(), 3U);
-  EXPECT_TRUE(std::ranges::all_of(ground.numbers, [](double force) { return force == 0; }));
+  const base::Vec6<double> none{};
+  EXPECT_EQ(ground_forces(robot.value(), result), std::vector(3, none));
 }
 
-TEST(Rows, of_the_ground_carry_the_robots_weight) {
+TEST(GroundForces, carry_the_robots_weight) {
   const std::array<base::Cell, 3> cells = {{{0, 0, 0}, {1, 0, 0}, {0, 0, 1}}};
   const auto robot = make_robot({.existing = cells});
   ASSERT_TRUE(robot);
   const CheckResult result = check(robot.value());
-  const Rows ground = ground_force_rows(result);
-  const double up_n = ground.row(0)[2] + ground.row(1)[2];
+  const auto ground = ground_forces(robot.value(), result);
+  ASSERT_EQ(ground.size(), 3U);
+  const double up_n = ground[0][2] + ground[1][2];
   EXPECT_NEAR(up_n, 3 * model::module_weight_n({}), 1e-9);
-  EXPECT_EQ(ground.row(2)[2], 0) << "it does not touch the ground";
+  EXPECT_EQ(ground[2][2], 0) << "it does not touch the ground";
 }
 
 TEST(Facade, describes_an_error_in_one_line) {

@@ -45,8 +45,8 @@ Assessment with_ghosts(Assessment assessment, const model::Robot& robot, std::si
     equilibrium.contact.resize(robot.facets().size(), {.pressed = false});
     equilibrium.facet_force.resize(robot.facets().size());
   }
-  for (auto* by_module : {&equilibrium.displacement, &equilibrium.ground_force}) {
-    by_module->resize(by_module->empty() ? 0 : robot.modules().size());
+  if (!equilibrium.displacement.empty()) {
+    equilibrium.displacement.resize(robot.modules().size());
   }
   return assessment;
 }

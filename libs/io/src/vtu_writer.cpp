@@ -470,11 +470,6 @@ class Writer {
                : 0;
   }
 
-  base::Vec6<double> ground_force(std::size_t module) const {
-    const auto& all = assessment_.equilibrium.ground_force;
-    return has_loads_ && all.size() == module_count_ ? all[module] : base::Vec6<double>{};
-  }
-
   base::Vec6<double> facet_force(std::size_t facet) const {
     const auto& all = assessment_.equilibrium.facet_force;
     return has_loads_ && all.size() == facet_count_ ? all[facet] : base::Vec6<double>{};
@@ -500,11 +495,15 @@ class Writer {
     announce_cell_array(
         "contact", [most = contact_by_module()](std::size_t i) { return most[i]; },
         always(kNotOnGround), [this](std::size_t i) { return contact(i); }, always(kNotOnGround));
+    if (has_loads_) {
+      ground_forces_ = solver::ground_forces(robot_, assessment_.equilibrium);
+    }
+    ground_forces_.resize(module_count_);
     announce_cell_array(
-        "ground_force_n", [this](std::size_t i) { return first_half(ground_force(i)); },
+        "ground_force_n", [this](std::size_t i) { return first_half(ground_forces_[i]); },
         always(Triple{}), [this](std::size_t i) { return first_half(facet_force(i)); });
     announce_cell_array(
-        "ground_torque_nmm", [this](std::size_t i) { return second_half(ground_force(i)); },
+        "ground_torque_nmm", [this](std::size_t i) { return second_half(ground_forces_[i]); },
         always(Triple{}), [this](std::size_t i) { return second_half(facet_force(i)); });
     const auto rotation = [this](std::size_t i) { return second_half(displacement(i)); };
     announce_cell_array("rotation_rad", rotation, always(Triple{}),
@@ -525,6 +524,7 @@ class Writer {
   std::vector<ModulePaint> paints_;
   std::vector<bool> is_broken_;  ///< By connection.
   bool has_loads_ = false;
+  std::vector<base::Vec6<double>> ground_forces_;  ///< By module.
   VtuArrays arrays_;
 };
 

@@ -98,6 +98,10 @@ mechanics::ContactState contact_of(const model::Robot& robot, const Equilibrium&
 
 std::vector<base::Vec6<double>> ground_forces(const model::Robot& robot,
                                               const Equilibrium& equilibrium) {
+  if (equilibrium.displacement.empty() ||
+      equilibrium.facet_force.size() != robot.facets().size()) {
+    return {};
+  }
   std::vector<base::Vec6<double>> forces(robot.modules().size());
   for (std::size_t i = 0; i < equilibrium.facet_force.size(); ++i) {
     base::add_to(forces[base::at(robot.facets()[i].module)], equilibrium.facet_force[i]);

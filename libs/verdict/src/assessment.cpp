@@ -135,16 +135,6 @@ void find_equilibrium(const model::Robot& robot, const solver::EquilibriumOption
   assessment.model.falls_otherwise = falls_by_other_states(robot, solver, options.part, assessment);
 }
 
-/// What is said of every module once the verdict stands.
-Assessment complete(const model::Robot& robot, Assessment assessment) {
-  Equilibrium& equilibrium = assessment.equilibrium;
-  if (!equilibrium.displacement.empty() &&
-      equilibrium.facet_force.size() == robot.facets().size()) {
-    equilibrium.ground_force = solver::ground_forces(robot, equilibrium);
-  }
-  return assessment;
-}
-
 /// Loads, verdict and reasons, once there is an equilibrium.
 Assessment conclude(const model::Robot& robot, Assessment assessment,
                     const solver::EquilibriumOptions& options) {
@@ -215,7 +205,7 @@ Assessment assess_rigidly(const model::Robot& robot, const model::RobotPart* par
 Assessment assess(const model::Robot& robot, const solver::EquilibriumOptions& options) {
   Assessment assessment = assess_once(robot, options);
   if (!is_near_limit(assessment)) {
-    return complete(robot, std::move(assessment));
+    return assessment;
   }
   // Their memory is needed elsewhere, and they can be had again.
   assessment.connections = std::vector<ConnectionResult>();
@@ -224,13 +214,13 @@ Assessment assess(const model::Robot& robot, const solver::EquilibriumOptions& o
     // Solutions that were found once are there, whether or not they are found again.
     const bool is_one_lost = assessment.several && !next.several;
     if (next.equilibrium.outcome == Outcome::kSettled && !is_one_lost) {
-      return complete(robot, std::move(next));
+      return next;
     }
   }
   if (assessment.equilibrium.outcome == Outcome::kSettled) {
     assess_connections_again(robot, options.thread_count, assessment);
   }
-  return complete(robot, std::move(assessment));
+  return assessment;
 }
 
 Assessment assess_equilibrium(const model::Robot& robot, Equilibrium equilibrium,
@@ -239,7 +229,7 @@ Assessment assess_equilibrium(const model::Robot& robot, Equilibrium equilibrium
   assessment.equilibrium = std::move(equilibrium);
   assessment.model = model_stability(robot, assessment.equilibrium, nullptr);
   assessment.contact_model = contact_model(robot, assessment.equilibrium.law, nullptr);
-  return complete(robot, conclude(robot, std::move(assessment), {.thread_count = thread_count}));
+  return conclude(robot, std::move(assessment), {.thread_count = thread_count});
 }
 
 const char* name(Verdict verdict) {

@@ -179,8 +179,8 @@ std::vector<model::Limit> connection_limits(const model::Robot& robot,
 Rows displacement_rows(const CheckResult& result);
 
 /// What the ground does to every module, in the same order: force in N, moment about the module's
-/// centre in N mm. No rows where no equilibrium is known.
-Rows ground_force_rows(const CheckResult& result);
+/// centre in N mm. Made of what its facets carry. Empty where no equilibrium is known.
+std::vector<base::Vec6<double>> ground_forces(const model::Robot& robot, const CheckResult& result);
 
 /// The certificate of a check's proof, for holdfast-checker; see docs/formats.md. Errors: there is
 /// none, as nothing could be proved, or no proof was wanted.

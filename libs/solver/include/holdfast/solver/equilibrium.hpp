@@ -63,8 +63,6 @@ struct Equilibrium : Solution {
   std::vector<Solution> others;
   std::vector<mechanics::ContactState> contact;  ///< By facet, in the order of Robot::facets().
   std::vector<base::Vec6<double>> facet_force;   ///< By facet: on its module, at the node.
-  /// By module: of all its facets together. EquilibriumSolver leaves that to ground_forces().
-  std::vector<base::Vec6<double>> ground_force;
   /// Open facets that are held sideways all the same, as they would close when released: no slip
   /// and no force at once is then impossible, and the truth lies between held and free.
   int open_but_held_count = 0;
@@ -88,7 +86,8 @@ struct Equilibrium : Solution {
 mechanics::ContactState contact_of(const model::Robot& robot, const Equilibrium& equilibrium,
                                    std::size_t module);
 
-/// What all facets of each module together do to it, by module.
+/// What all facets of each module together do to it, by module: force in N, moment about the
+/// module's centre in N mm, in the global frame. Empty where no displacements are known.
 std::vector<base::Vec6<double>> ground_forces(const model::Robot& robot,
                                               const Equilibrium& equilibrium);
 
