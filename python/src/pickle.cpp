@@ -126,7 +126,7 @@ void visit(Archive& archive, verdict::RigidBody& body) {
 template <class Archive>
 void visit_solution(Archive& archive, auto& solution) {
   archive(solution.displacement, solution.displacement_low, solution.alternative, solution.gamma,
-          solution.energy_error);
+          solution.energy_error, solution.contact);
 }
 
 using Equilibrium = decltype(verdict::Assessment::equilibrium);
@@ -140,9 +140,9 @@ void visit(Archive& archive, Solution& solution) {
 template <class Archive>
 void visit(Archive& archive, Equilibrium& found) {
   visit_solution(archive, found);
-  archive(found.outcome, found.law, found.others, found.contact, found.facet_force,
-          found.open_but_held_count, found.attempts, found.method, found.precision, found.steps,
-          found.iteration_count, found.made_column_count);
+  archive(found.outcome, found.law, found.others, found.facet_force, found.open_but_held_count,
+          found.attempts, found.method, found.precision, found.steps, found.iteration_count,
+          found.made_column_count);
 }
 
 template <class Archive>

@@ -37,10 +37,12 @@ base::Error bad_input(std::string message) {
 }
 
 /// Calls f(corner) along the Morton curve for the cubes of 2^bottom cells within one of 2^level
-/// that reach into the box.
-template <class F>
-void walk(const CellBox& box, const Cell& corner, int level, int bottom, const F& f) {
-  if (corner.x >= box.high.x || corner.y >= box.high.y || corner.z >= box.high.z) {
+/// that reach into the box. Those that may_have(corner, level) denies are passed by.
+template <class Test, class F>
+void walk(const CellBox& box, const Cell& corner, int level, int bottom, const Test& may_have,
+          const F& f) {
+  if (corner.x >= box.high.x || corner.y >= box.high.y || corner.z >= box.high.z ||
+      !may_have(corner, level)) {
     return;
   }
   if (level == bottom) {
@@ -52,8 +54,24 @@ void walk(const CellBox& box, const Cell& corner, int level, int bottom, const F
     walk(box,
          {corner.x + half * (octant & 1), corner.y + half * (octant >> 1 & 1),
           corner.z + half * (octant >> 2 & 1)},
-         level - 1, bottom, f);
+         level - 1, bottom, may_have, f);
   }
+}
+
+/// A family and a size that can be made in parts, or what is wrong with them.
+struct Wanted {
+  const model::FamilyInfo* info = nullptr;
+  std::size_t size = 0;
+  CellBox box;
+};
+
+/// Whether a cube of 2^level cells may hold any.
+auto may_have(const Wanted& wanted) {
+  return [&wanted](const Cell& corner, int level) {
+    const std::int32_t side = 1 << level;
+    return model::family_may_have(wanted.info->family, wanted.size,
+                                  {corner, {corner.x + side, corner.y + side, corner.z + side}});
+  };
 }
 
 /// A rank's part of the curve: cubes of 2^level cells.
@@ -62,7 +80,8 @@ struct Blocks {
   int level = 0;
 };
 
-Blocks blocks_of_rank(const PetscRanks& ranks, const CellBox& box) {
+Blocks blocks_of_rank(const PetscRanks& ranks, const Wanted& wanted) {
+  const CellBox& box = wanted.box;
   const std::int32_t extent =
       std::max({box.high.x - box.low.x, box.high.y - box.low.y, box.high.z - box.low.z});
   const int top = static_cast<int>(std::bit_width(static_cast<std::uint32_t>(extent - 1)));
@@ -71,7 +90,8 @@ Blocks blocks_of_rank(const PetscRanks& ranks, const CellBox& box) {
   while (blocks.level > 0 && all.size() < kBlocksPerRank * at(ranks.count())) {
     --blocks.level;
     all.clear();
-    walk(box, box.low, top, blocks.level, [&](const Cell& corner) { all.push_back(corner); });
+    walk(wanted.box, wanted.box.low, top, blocks.level, may_have(wanted),
+         [&](const Cell& corner) { all.push_back(corner); });
   }
   const auto bound = [&](int rank) {
     return all.begin() + static_cast<std::ptrdiff_t>(all.size() * at(rank) / at(ranks.count()));
@@ -140,13 +160,6 @@ class SharedOutput {
   bool is_good_ = false;
 };
 
-/// A family and a size that can be made in parts, or what is wrong with them.
-struct Wanted {
-  const model::FamilyInfo* info = nullptr;
-  std::size_t size = 0;
-  CellBox box;
-};
-
 base::Result<Wanted> find_wanted(const std::string& family, std::size_t size) {
   const auto families = model::families();
   const auto found = std::ranges::find(families, family, &model::FamilyInfo::name);
@@ -171,7 +184,7 @@ template <class F>
 void for_chunks(const Wanted& wanted, const Blocks& blocks, const F& f) {
   std::vector<Record> chunk;
   for (const Cell& block : blocks.corners) {
-    walk(wanted.box, block, blocks.level, 0, [&](const Cell& cell) {
+    walk(wanted.box, block, blocks.level, 0, may_have(wanted), [&](const Cell& cell) {
       if (!model::family_has(wanted.info->family, wanted.size, cell)) {
         return;
       }
@@ -201,7 +214,7 @@ base::Result<std::uint64_t> generate_in_parts(PetscRanks& ranks, const std::stri
   if (!wanted) {
     return wanted.error();
   }
-  const Blocks blocks = blocks_of_rank(ranks, wanted.value().box);
+  const Blocks blocks = blocks_of_rank(ranks, wanted.value());
   std::size_t count = 0;
   for_chunks(wanted.value(), blocks, [&](std::span<const Record> chunk) { count += chunk.size(); });
   const std::vector<std::size_t> starts = host::starts(ranks, count);

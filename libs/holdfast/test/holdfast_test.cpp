@@ -165,6 +165,52 @@ TEST(Rows, are_the_loads_the_motions_and_the_ground_forces_in_the_robots_order) 
   EXPECT_EQ(ground_forces(robot.value(), result), std::vector(3, none));
 }
 
+/// A column of 100 modules and one as heavy as all of them beside its top: the centre of mass lies
+/// over the edge of the foot, wherever the robot stands.
+TEST(Check, sees_a_tie_far_from_where_coordinates_begin) {
+  for (const int x : {0, 1000, 999'998}) {
+    const auto module = [](int cell_x, int cell_z, const char* mass_kg) {
+      return "{\"cell\":[" + std::to_string(cell_x) + ",0," + std::to_string(cell_z) +
+             "],\"mass_kg\":" + mass_kg + "}";
+    };
+    std::string modules = module(x + 1, 99, "7");
+    for (int z = 0; z < 100; ++z) {
+      modules += "," + module(x, z, "0.07");
+    }
+    const auto structure =
+        load_text("{\"format\":\"holdfast-structure\",\"version\":2,\"modules\":[" + modules +
+                  "],\"material\":{\"strength_n\":2e4}}");
+    ASSERT_TRUE(structure) << structure.error().message;
+    EXPECT_EQ(check(structure.value()).assessment.verdict, verdict::Verdict::kUnstable) << x;
+  }
+}
+
+/// Three cubes between two walls. Trying all states of both facets (tools/contact_states.py) finds
+/// two solutions of the paper's law: in one both have come off, and the robot drops.
+TEST(Check, is_undecided_where_another_solution_falls) {
+  const auto structure = load_text(
+      "{\"format\":\"holdfast-structure\",\"version\":2,\"modules\":[[0,0,0],[1,0,0],[0,0,-1]],"
+      "\"support_z\":null,\"obstacles\":[{\"cells\":[[-1,0,-1],[2,0,0]]}]}");
+  ASSERT_TRUE(structure) << structure.error().message;
+  const verdict::Assessment found = check(structure.value()).assessment;
+  EXPECT_EQ(found.verdict, verdict::Verdict::kUndecided);
+  EXPECT_EQ(found.reasons.front().code, verdict::ReasonCode::kStatesDisagree);
+}
+
+/// By the exact law, solved apart from this program, the wall's facet carries 0.28 N along it and
+/// is pressed with 0.036 N; the paper's law, whose open facets may pull, stays within the friction.
+TEST(Check, is_undecided_where_the_exact_law_slips) {
+  const auto structure = load_text(
+      "{\"format\":\"holdfast-structure\",\"version\":2,\"modules\":[{\"cell\":[0,0,0],"
+      "\"mass_kg\":0.01},{\"cell\":[0,-1,0],\"mass_kg\":0.2}],\"support_z\":null,\"obstacles\":[{"
+      "\"cells\":[[0,-2,0],[0,-1,-1]],\"friction\":0.928}],\"gravity_m_s2\":[1,0,-9]}");
+  ASSERT_TRUE(structure) << structure.error().message;
+  const verdict::Assessment found = check(structure.value()).assessment;
+  EXPECT_EQ(found.verdict, verdict::Verdict::kUndecided);
+  ASSERT_EQ(found.reasons.front().code, verdict::ReasonCode::kMaySlip);
+  EXPECT_NEAR(found.reasons.front().numbers[1], 7.76, 0.05);
+}
+
 TEST(GroundForces, carry_the_robots_weight) {
   const std::array<base::Cell, 3> cells = {{{0, 0, 0}, {1, 0, 0}, {0, 0, 1}}};
   const auto robot = make_robot({.existing = cells});

@@ -93,8 +93,8 @@ std::string_view fixed_text(ReasonCode code) {
              "that press lie on one line; contact forces of a rigid body that would hold it do "
              "exist, so it may depend on how the load came, and is not safe";
     case ReasonCode::kStatesDisagree:
-      return "the exact contact law holds it, but by the paper's, whose search for contact states "
-             "does not end here, there are states in which it falls";
+      return "contact forces of one solution hold it, but the contact laws, which allow several "
+             "here, have states in which it falls, too";
     case ReasonCode::kLoadsTogether:
       return "load ratios and the weight factor are of all loads together, weight and payloads";
     default:

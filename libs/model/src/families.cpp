@@ -252,6 +252,20 @@ bool family_has(Family family, std::size_t wanted, const Cell& cell) {
   }
 }
 
+bool family_may_have(Family family, std::size_t wanted, const CellBox& box) {
+  const auto size = static_cast<std::int32_t>(wanted);
+  switch (family) {
+    case Family::kShell:
+      return box.low.x < 1 || box.high.x >= size || box.low.y < 1 || box.high.y >= size ||
+             box.high.z >= size;
+    case Family::kPortal:
+      return box.low.x < kPortalThickness || box.high.x > size - kPortalThickness ||
+             box.high.z > size / 2 - kPortalThickness;
+    default:
+      return true;
+  }
+}
+
 Cells family_cells(Family family, std::size_t wanted) {
   HOLDFAST_CHECK(wanted > 0 && family_count(family, wanted) <= kModuleCountMax);
   const auto size = static_cast<std::int32_t>(wanted);

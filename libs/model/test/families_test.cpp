@@ -6,13 +6,19 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <optional>
 #include <set>
+#include <utility>
 
+#include "holdfast/base/algebra.hpp"
+#include "holdfast/base/rng.hpp"
 #include "holdfast/model/robot.hpp"
 
 namespace holdfast::model {
 namespace {
 
+using base::at;
 using base::Cell;
 
 TEST(Families, are_robots_without_double_cells_and_as_many_as_the_formula_says) {
@@ -52,4 +58,40 @@ TEST(Families, are_found_by_name) {
 }
 
 }  // namespace
+
+/// Of all boxes of small structures, by walking through their cells.
+TEST(Families, are_denied_only_where_no_cell_is) {
+  std::size_t denied_count = 0;
+  for (const FamilyInfo& info : families()) {
+    const std::size_t size = std::max<std::size_t>(info.size_min, 9);
+    const std::optional<CellBox> all = family_box(info.family, size);
+    if (!all) {
+      continue;
+    }
+    base::Rng rng(7);
+    for (int i = 0; i < 2000; ++i) {
+      const auto within = [&](std::int32_t low, std::int32_t high) {
+        const auto begin = low + static_cast<std::int32_t>(rng.below(at(high - low)));
+        const auto end = begin + 1 + static_cast<std::int32_t>(rng.below(at(high - begin)));
+        return std::pair(begin, end);
+      };
+      const auto [x, x_end] = within(all->low.x, all->high.x);
+      const auto [y, y_end] = within(all->low.y, all->high.y);
+      const auto [z, z_end] = within(all->low.z, all->high.z);
+      bool has_any = false;
+      for (base::Cell cell = {x, y, z}; cell.z < z_end; ++cell.z) {
+        for (cell.y = y; cell.y < y_end; ++cell.y) {
+          for (cell.x = x; cell.x < x_end; ++cell.x) {
+            has_any = has_any || family_has(info.family, size, cell);
+          }
+        }
+      }
+      const bool may_have = family_may_have(info.family, size, {{x, y, z}, {x_end, y_end, z_end}});
+      EXPECT_TRUE(may_have || !has_any) << info.name << " from " << x << ' ' << y << ' ' << z;
+      denied_count += may_have ? 0 : 1;
+    }
+  }
+  EXPECT_GT(denied_count, 100U) << "the hollow of a shell and a portal";
+}
+
 }  // namespace holdfast::model

@@ -111,6 +111,7 @@ std::vector<Solution> RegularisedContact::find_others(const Solution& settled) {
         known, [&](const auto& one) { return host::all(ranks(), one == found); });
     if (is_found && is_new) {
       known.push_back(found);
+      other.contact = found;
       others.push_back(std::move(other));
     }
   }

@@ -156,9 +156,12 @@ void heed_model(const model::Robot& robot, const model::RobotPart* part, Assessm
   if (!assessment.is_stable) {
     return;
   }
-  const auto slip = assessment.equilibrium.outcome == Outcome::kSettled
-                        ? find_slip(robot, assessment.equilibrium, part)
-                        : std::nullopt;
+  auto slip = assessment.equilibrium.outcome == Outcome::kSettled
+                  ? find_slip(robot, assessment.equilibrium, part)
+                  : std::nullopt;
+  if (!slip) {
+    slip = assessment.model.slip_otherwise;
+  }
   if (assessment.stability_rule == StabilityRule::kContactForces && assessment.model.is_settled &&
       !assessment.model.is_stable) {
     assessment.is_stable = false;

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "holdfast/base/lattice.hpp"
+#include "holdfast/model/mass.hpp"
 
 namespace holdfast::verdict {
 namespace {
@@ -72,6 +73,7 @@ FloatingBody body_of(const model::Robot& robot, const model::RobotPart* part) {
                     .foot_half_width_mm = robot.foot_half_width_mm(),
                     .tie_mm = kMarginTie * robot.material().pitch_mm};
   const base::NodePlaces node_mm(robot.lattice(), robot.material().pitch_mm);
+  body.origin_mm = model::common_node_mm(robot, part);
   for (std::size_t i = 0; i < count; ++i) {
     add_module(body, node_mm(robot.modules()[i].cell), robot.mass(i), false);
   }
@@ -103,7 +105,7 @@ FloatingBody body_of(const model::Robot& robot, const model::RobotPart* part) {
 void add_module(FloatingBody& body, const std::array<double, 3>& node_mm, double mass_kg,
                 bool is_on_floor) {
   for (std::size_t k = 0; k < 3; ++k) {
-    body.moment_kgmm[k] += mass_kg * node_mm[k];
+    body.moment_kgmm[k] += mass_kg * (node_mm[k] - body.origin_mm[k]);
   }
   body.kg += mass_kg;
   if (is_on_floor) {
@@ -115,7 +117,8 @@ void add_module(FloatingBody& body, const std::array<double, 3>& node_mm, double
 
 RigidBody floating_body(const FloatingBody& given) {
   RigidBody body;
-  body.centre_of_mass = {given.moment_kgmm[0] / given.kg, given.moment_kgmm[1] / given.kg};
+  body.centre_of_mass = {given.origin_mm[0] + given.moment_kgmm[0] / given.kg,
+                         given.origin_mm[1] + given.moment_kgmm[1] / given.kg};
   body.is_stable = given.is_held;
   if (!given.is_flat) {
     return body;

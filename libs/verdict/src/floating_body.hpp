@@ -12,7 +12,10 @@ namespace holdfast::verdict {
 /// What floating_body() needs to know of a robot.
 struct FloatingBody {
   double kg = 0;
-  std::array<double, 3> moment_kgmm{};  ///< Mass times place, over all modules.
+  /// A node of the robot, that of any module: sums over a thousand modules that are far from where
+  /// coordinates begin would else lose what decides.
+  std::array<double, 3> origin_mm{};
+  std::array<double, 3> moment_kgmm{};  ///< Mass times place from the origin, over all modules.
   bool is_held = false;                 ///< By a fixed module or a bonded facet.
   bool is_flat = false;                 ///< is_on_flat_floor()
   double foot_half_width_mm = 0;

@@ -9,6 +9,7 @@
 
 #include "connection_assessment.hpp"
 #include "holdfast/verdict/connection_law.hpp"
+#include "stability.hpp"
 
 namespace holdfast::verdict {
 namespace {
@@ -79,7 +80,14 @@ void compare_solutions(const model::Robot& robot, solver::EquilibriumSolver& sol
       solver.solve({.law = mechanics::ContactLaw::kUnilateral, .gamma = gamma});
   settled.steps += exact.steps;
   settled.iteration_count += exact.iteration_count;
+  const bool is_held_by_contact = assessment.stability_rule == StabilityRule::kContactForces;
+  const auto does_fall = [&](const solver::Solution& one) {
+    return is_held_by_contact && !do_states_hold(robot, one.contact, options.part);
+  };
+  assessment.model.falls_otherwise = std::ranges::any_of(settled.others, does_fall);
   if (exact.outcome == solver::Outcome::kSettled) {
+    assessment.model.falls_otherwise |= does_fall(exact);
+    assessment.model.slip_otherwise = find_slip(robot, exact, options.part);
     widen(several.unilateral.emplace(kEmpty), robot, ranks, exact, exact.open_but_held_count > 0);
   }
   const bool is_multigrid =

@@ -19,7 +19,8 @@ inline constexpr double kWeakSprings = 1e3;
 inline constexpr double kMultigridError = 1e-4;
 
 /// Sets `assessment.several` from `assessment.equilibrium`, whose `others` are known, and the exact
-/// law's answer, with weak springs of `gamma`, if multigrid's tolerance is so many times the usual.
+/// law's answer, with weak springs of `gamma`, if multigrid's tolerance is so many times the usual;
+/// and in `assessment.model` whether by any of them it falls or slips.
 void compare_solutions(const model::Robot& robot, solver::EquilibriumSolver& solver, double gamma,
                        const solver::EquilibriumOptions& options, Assessment& assessment);
 

@@ -116,13 +116,13 @@ void add_pressing_corners(const limit::ContactFacet& facet, const mechanics::Con
   }
 }
 
-bool holds_by_corners(const model::Robot& robot, const Equilibrium& equilibrium,
+bool holds_by_corners(const model::Robot& robot, std::span<const mechanics::ContactState> contact,
                       const model::RobotPart* part) {
   const std::vector<limit::ContactFacet> facets = limit::contact_facets(robot);
   std::vector<Vector3> corners;
   bool is_any_flat = false;
   for (std::size_t i = 0; !is_any_flat && i < facets.size(); ++i) {
-    const mechanics::ContactState& state = equilibrium.contact[i];
+    const mechanics::ContactState& state = contact[i];
     is_any_flat = state == mechanics::ContactState{} && robot.foot_half_width_mm() > 0;
     add_pressing_corners(facets[i], state, corners);
   }
@@ -136,13 +136,13 @@ bool holds_by_corners(const model::Robot& robot, const Equilibrium& equilibrium,
 }
 
 /// The same on the floor of cubes, in integers.
-bool holds_by_cube_corners(const model::Robot& robot, const Equilibrium& equilibrium,
+bool holds_by_cube_corners(const model::Robot& robot,
+                           std::span<const mechanics::ContactState> contact,
                            const model::RobotPart* part) {
   mechanics::SupportCorners corners;
   for (std::size_t i = 0; i < robot.facets().size() && !corners.stable; ++i) {
     const model::Module& module = robot.modules()[base::at(robot.facets()[i].module)];
-    corners =
-        mechanics::merge(corners, mechanics::support_corners(module.cell, equilibrium.contact[i]));
+    corners = mechanics::merge(corners, mechanics::support_corners(module.cell, contact[i]));
   }
   if (part != nullptr) {
     const auto all =
@@ -189,10 +189,14 @@ ModelStability model_stability(const model::Robot& robot, const Equilibrium& equ
   if (stability_rule(robot, part) == StabilityRule::kHeld) {
     return {.is_stable = true, .is_settled = true};
   }
+  return {.is_stable = do_states_hold(robot, equilibrium.contact, part), .is_settled = true};
+}
+
+bool do_states_hold(const model::Robot& robot, std::span<const mechanics::ContactState> contact,
+                    const model::RobotPart* part) {
   const bool is_cubes_floor = robot.lattice() == base::kCubic && is_on_flat_floor(robot, part);
-  return {.is_stable = is_cubes_floor ? holds_by_cube_corners(robot, equilibrium, part)
-                                      : holds_by_corners(robot, equilibrium, part),
-          .is_settled = true};
+  return is_cubes_floor ? holds_by_cube_corners(robot, contact, part)
+                        : holds_by_corners(robot, contact, part);
 }
 
 std::optional<Slip> find_slip(const model::Robot& robot, const Equilibrium& equilibrium,

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 
 #include "holdfast/verdict/assessment.hpp"
 
@@ -22,15 +23,13 @@ limit::RigidStability rigid_stability(const model::Robot& robot, StabilityRule r
 ModelStability model_stability(const model::Robot& robot, const solver::Equilibrium& equilibrium,
                                const model::RobotPart* part);
 
+/// Whether the states of all facets, in their order, hold a robot that nothing else holds: the
+/// same.
+bool do_states_hold(const model::Robot& robot, std::span<const mechanics::ContactState> contact,
+                    const model::RobotPart* part);
+
 /// The facet whose sideways force exceeds its friction most, as a share of what it presses with
 /// times the coefficient; none if none does.
-struct Slip {
-  std::size_t module = 0;  ///< Index, at `rank`.
-  int rank = 0;
-  double friction = 0;  ///< The coefficient.
-  double ratio = 0;     ///< |ft| / |fn|.
-};
-
 std::optional<Slip> find_slip(const model::Robot& robot, const solver::Equilibrium& equilibrium,
                               const model::RobotPart* part);
 

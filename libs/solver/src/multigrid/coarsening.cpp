@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <bit>
 #include <cmath>
 #include <map>
@@ -12,6 +13,7 @@
 #include <unordered_map>
 #include <utility>
 
+#include "cluster_colours.hpp"
 #include "gathered_graph.hpp"
 #include "holdfast/base/algebra.hpp"
 #include "slivers.hpp"
@@ -21,8 +23,6 @@ namespace holdfast::solver {
 namespace {
 
 using base::at;
-
-constexpr std::uint8_t kNoColour = 255;
 
 /// Directions whose mean is shorter than this lead everywhere.
 constexpr double kClear = 0.1;
@@ -208,12 +208,68 @@ class Coarsening {
   bool is_weak(std::size_t edge) const { return !is_weak_.empty() && is_weak_[edge] == 1; }
 
   /// Connected parts within cells whose keys agree but for the last `shift` bits, numbered along
-  /// the Morton curve.
+  /// the Morton curve. Threads take stretches of it that end where cells do.
   void find_clusters(unsigned shift) {
     cluster_.assign(fine_.order.size(), -1);
+    const std::vector<std::size_t> bounds = stretches(shift);
+    std::vector<std::int32_t> counts(bounds.size() - 1);
+    const auto stretch = [&](std::size_t i) {
+      return own_order().subspan(bounds[i], bounds[i + 1] - bounds[i]);
+    };
+    team_.each(counts.size(), [&](std::size_t i) { counts[i] = join(shift, stretch(i)); });
+    std::int32_t count = 0;
+    for (std::int32_t& first : counts) {
+      count += std::exchange(first, count);
+    }
+    team_.each(counts.size(), [&](std::size_t i) {
+      for (const std::int32_t node : stretch(i)) {
+        cluster_[at(node)] += counts[i];
+      }
+    });
+    cluster_count_ = at(count);
+  }
+
+  /// Where stretches of the curve begin and end, between cells.
+  std::vector<std::size_t> stretches(unsigned shift) const {
+    constexpr std::size_t kLength = 1U << 14U;
+    const auto order = own_order();
+    const auto cell = [&](std::size_t i) { return fine_.key[at(order[i])] >> shift; };
+    const std::size_t length = is_along_curve(shift) ? kLength : order.size();
+    std::vector<std::size_t> bounds = {0};
+    for (std::size_t i = length; i < order.size(); i += length) {
+      while (i < order.size() && cell(i) == cell(i - 1)) {
+        ++i;
+      }
+      if (i < order.size()) {
+        bounds.push_back(i);
+      }
+    }
+    bounds.push_back(order.size());
+    return bounds;
+  }
+
+  /// Whether cells are stretches of the curve, as they are but where slivers of several were
+  /// united.
+  bool is_along_curve(unsigned shift) const {
+    const auto order = own_order();
+    const auto cell = [&](std::size_t i) { return fine_.key[at(order[i])] >> shift; };
+    std::atomic<bool> is_so = true;
+    team_.share(0, order.size(), [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = std::max<std::size_t>(begin, 1); i < end; ++i) {
+        if (cell(i) < cell(i - 1)) {
+          is_so.store(false, std::memory_order_relaxed);
+        }
+      }
+    });
+    return is_so;
+  }
+
+  /// Numbers the clusters of some nodes, all those of their cells, from 0 on, and says how many
+  /// there are.
+  std::int32_t join(unsigned shift, std::span<const std::int32_t> nodes) {
     std::vector<std::int32_t> open;
     std::int32_t count = 0;
-    for (const std::int32_t first : own_order()) {
+    for (const std::int32_t first : nodes) {
       if (cluster_[at(first)] >= 0) {
         continue;
       }
@@ -225,8 +281,9 @@ class Coarsening {
         open.pop_back();
         for (std::size_t e = at(fine_.start[node]); e < at(fine_.start[node + 1]); ++e) {
           const std::int32_t other = fine_.other[e];
-          if (cluster_[at(other)] < 0 && !fine_.is_copy(other) &&
-              fine_.key[at(other)] >> shift == cell && !is_weak(e) && !is_alone(at(other))) {
+          // Of other cells' nodes another thread may be telling the cluster.
+          if (!fine_.is_copy(other) && fine_.key[at(other)] >> shift == cell &&
+              cluster_[at(other)] < 0 && !is_weak(e) && !is_alone(at(other))) {
             cluster_[at(other)] = count;
             open.push_back(other);
           }
@@ -234,17 +291,10 @@ class Coarsening {
       }
       ++count;
     }
-    cluster_count_ = at(count);
+    return count;
   }
 
   bool is_alone(std::size_t node) const { return !fine_.is_alone.empty() && fine_.is_alone[node]; }
-
-  template <class F>
-  void for_neighbours(std::size_t node, const F& f) const {
-    for (std::size_t e = at(fine_.start[node]); e < at(fine_.start[node + 1]); ++e) {
-      f(fine_.other[e]);
-    }
-  }
 
   /// Members by cluster, clusters as yet along the Morton curve.
   void gather_members() {
@@ -269,130 +319,15 @@ class Coarsening {
     }
   }
 
-  /// The rank that each node is of.
-  std::vector<std::int32_t> rank_of_nodes() const {
-    std::vector<std::int32_t> rank(fine_.order.size(), fine_.ranks->rank());
-    for (const host::Copy& copy : fine_.copies) {
-      rank[at(copy.place)] = copy.original.rank;
-    }
-    return rank;
-  }
-
-  /// The colours of the clusters that nodes have joined, of other ranks' too.
-  void tell_colours(const std::vector<std::uint8_t>& colours, std::vector<std::uint8_t>& seen) {
-    for (std::size_t node = 0; node < fine_.own_count(); ++node) {
-      seen[node] = colours[at(cluster_[node])];
-    }
-    level_.halo->update(seen.data(), sizeof(std::uint8_t));
-  }
-
-  /// Where neighbours of two ranks have one colour, the one of the higher rank takes another. Two
-  /// of them may then take the same again, and after a few rounds they keep it: they are relaxed at
-  /// the same time.
-  void part_from_other_ranks(const std::vector<std::int32_t>& rank,
-                             std::vector<std::uint8_t>& colours) {
-    constexpr int kRoundMax = 8;
-    std::vector<std::uint8_t> seen(fine_.order.size());
-    bool is_any_changed = true;
-    for (int round = 0; is_any_changed && round < kRoundMax; ++round) {
-      is_any_changed = false;
-      tell_colours(colours, seen);
-      for (std::size_t c = 0; c < cluster_count_; ++c) {
-        std::uint64_t taken = 0;
-        bool is_shared = false;
-        for_members(c, [&](std::size_t node) {
-          for_neighbours(node, [&](std::int32_t other) {
-            const bool is_other_cluster = fine_.is_copy(other) || at(cluster_[at(other)]) != c;
-            const std::uint8_t used =
-                fine_.is_copy(other) ? seen[at(other)] : colours[at(cluster_[at(other)])];
-            taken |= is_other_cluster ? std::uint64_t{1} << used : 0;
-            is_shared = is_shared || (used == colours[c] && rank[at(other)] < fine_.ranks->rank());
-          });
-        });
-        if (is_shared) {
-          colours[c] = static_cast<std::uint8_t>(std::min(std::countr_one(taken), 63));
-          is_any_changed = true;
-        }
-      }
-      is_any_changed = host::any(fine_.ranks, is_any_changed);
-    }
-  }
-
-  /// The colour of a cluster's cell on a chessboard.
-  std::uint8_t parity(std::size_t cluster) const {
-    const std::uint64_t cell =
-        fine_.key[at(member_[at(member_start_[cluster])])] >> (coarse_.shift - fine_.shift);
-    return static_cast<std::uint8_t>((cell ^ cell >> 1U ^ cell >> 2U) & 1U);
-  }
-
-  /// First fit along the curve: two colours on a lattice. `seen` has the colours of the clusters
-  /// that copies have joined, where they are known.
-  void colour_own(const std::vector<std::uint8_t>& seen, std::vector<std::uint8_t>& colours) const {
-    std::ranges::fill(colours, kNoColour);
-    for (std::size_t c = 0; c < cluster_count_; ++c) {
-      std::uint64_t taken = 0;
-      for_members(c, [&](std::size_t node) {
-        for_neighbours(node, [&](std::int32_t other) {
-          const std::uint8_t used =
-              fine_.is_copy(other) ? seen[at(other)] : colours[at(cluster_[at(other)])];
-          taken |= used == kNoColour ? 0 : std::uint64_t{1} << used;
-        });
-      });
-      // A 64th colour may be shared by neighbours: the sweep is then not quite Gauss-Seidel.
-      colours[c] = static_cast<std::uint8_t>(std::min(std::countr_one(taken), 63));
-    }
-  }
-
-  /// What first fit comes to on a cubic lattice: a chessboard, on which the first cluster along the
-  /// curve, of the first rank that has any, has the first colour.
-  void guess_colours(std::vector<std::uint8_t>& colours) const {
-    const std::uint8_t mine = cluster_count_ > 0 ? parity(0) : kNoColour;
-    const auto firsts = host::gather(*fine_.ranks, std::span<const std::uint8_t>(&mine, 1));
-    const auto first = std::ranges::find_if(firsts, [](auto one) { return one != kNoColour; });
-    const std::uint8_t change = first == firsts.end() ? std::uint8_t{0} : *first;
-    for (std::size_t c = 0; c < cluster_count_; ++c) {
-      colours[c] = static_cast<std::uint8_t>(parity(c) ^ change);
-    }
-  }
-
-  /// The colours of one machine: those of lower ranks, whose clusters come before along the curve,
-  /// are guessed, then asked for until they stay. As many rounds as ranks would do; after a few
-  /// neighbours of two ranks need only have two colours.
-  void colour_on_ranks(std::vector<std::uint8_t>& colours) {
-    constexpr int kRoundMax = 8;
-    const std::vector<std::int32_t> rank = rank_of_nodes();
-    std::vector<std::uint8_t> seen(fine_.order.size());
-    std::vector<std::uint8_t> before;
-    guess_colours(colours);
-    bool is_any_changed = true;
-    for (int round = 0; is_any_changed && round < kRoundMax; ++round) {
-      tell_colours(colours, seen);
-      std::vector<std::uint8_t> lower;
-      for (const host::Copy& copy : fine_.copies) {
-        std::uint8_t& colour = seen[at(copy.place)];
-        colour = copy.original.rank < fine_.ranks->rank() ? colour : kNoColour;
-        lower.push_back(colour);
-      }
-      const bool is_changed = round == 0 || lower != before;
-      if (is_changed) {
-        colour_own(seen, colours);
-      }
-      before = std::move(lower);
-      is_any_changed = host::any(fine_.ranks, is_changed);
-    }
-    if (is_any_changed) {
-      part_from_other_ranks(rank, colours);
-    }
-  }
-
   void colour(std::vector<std::size_t>& colour_start) {
-    std::vector<std::uint8_t> colours(cluster_count_, kNoColour);
+    const std::vector<std::uint8_t> colours =
+        colour_clusters(fine_,
+                        {.of_node = cluster_,
+                         .member = member_,
+                         .member_start = member_start_,
+                         .shift = coarse_.shift - fine_.shift},
+                        team_, level_.halo.get());
     std::array<double, 64> count{};  // Whole numbers, which ranks add up.
-    if (fine_.ranks == nullptr) {
-      colour_own({}, colours);
-    } else {
-      colour_on_ranks(colours);
-    }
     for (const std::uint8_t colour : colours) {
       ++count[colour];
     }

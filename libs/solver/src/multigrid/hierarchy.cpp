@@ -186,40 +186,76 @@ void Hierarchy<Real>::place_nodes(Team& team, ReducedNetwork& network, SpringGra
   network.key = std::vector<std::uint64_t>();
 }
 
-/// The springs of cubes: nodes of the same kind with partners on the same sides share them.
+/// The springs of cubes: nodes of the same kind with partners on the same sides share them. Kinds
+/// are numbered in the order in which nodes are first of them.
 template <class Real>
-void Hierarchy<Real>::connect_cubes(SpringGraph& graph) const {
+void Hierarchy<Real>::connect_cubes(Team& team, SpringGraph& graph) const {
+  /// What a chunk of nodes has of springs.
+  struct Part {
+    std::int32_t end_count = 0;  ///< Then how many there are before.
+    std::vector<std::uint64_t> kinds;
+    std::vector<std::uint32_t> patterns;  ///< Of these kinds.
+  };
+
   const std::size_t count = network_.node_count;
   const CubicBeams& cubic = network_.cubic;
-  graph.start.resize(count + 1);
-  graph.other.reserve(6 * count);
-  graph.pattern.resize(count);
-  std::unordered_map<std::uint64_t, std::uint32_t> patterns;
-  Kind last{};
-  for (std::size_t node = 0; node < count; ++node) {
+  /// The lengths of a node's beams, but for those to what is held, as one number.
+  const auto kind_of = [&](std::size_t node) {
     Kind kind{};
-    for (std::size_t d = 0; d < 6; ++d) {
-      const std::size_t length = cubic.kind[node][d];
-      if (length > 0 && at(cubic.other[node][d]) < count) {
-        kind[d] = static_cast<std::uint8_t>(length);
-        graph.other.push_back(cubic.other[node][d]);
+    for (std::size_t d = 0; d < base::kDirectionCount; ++d) {
+      const bool is_spring = cubic.kind[node][d] > 0 && at(cubic.other[node][d]) < count;
+      kind[d] = is_spring ? cubic.kind[node][d] : std::uint8_t{0};
+    }
+    return kind;
+  };
+  std::vector<Part> parts;
+  team.map(count, parts, [&](std::size_t begin, std::size_t end) {
+    Part part;
+    for (std::size_t node = begin; node < end; ++node) {
+      const Kind kind = kind_of(node);
+      part.end_count += static_cast<std::int32_t>(
+          std::ranges::count_if(kind, [](std::uint8_t length) { return length > 0; }));
+      const auto number = std::bit_cast<std::uint64_t>(kind);
+      if (std::ranges::find(part.kinds, number) == part.kinds.end()) {
+        part.kinds.push_back(number);
       }
     }
-    graph.start[node + 1] = static_cast<std::int32_t>(graph.other.size());
-    if (node > 0 && kind == last) {
-      graph.pattern[node] = graph.pattern[node - 1];
-      continue;
-    }
-    last = kind;
-    const auto [found, is_new] = patterns.try_emplace(
-        std::bit_cast<std::uint64_t>(kind), static_cast<std::uint32_t>(graph.springs.size()));
-    graph.pattern[node] = found->second;
-    for (std::size_t d = 0; is_new && d < 6; ++d) {
-      if (kind[d] > 0) {
-        graph.springs.emplace_back(beam_spring(network_.lattice, material_, d, kind[d]));
+    return part;
+  });
+  std::unordered_map<std::uint64_t, std::uint32_t> patterns;
+  std::int32_t end_count = 0;
+  for (Part& part : parts) {
+    end_count += std::exchange(part.end_count, end_count);
+    for (const std::uint64_t number : part.kinds) {
+      const auto [found, is_new] =
+          patterns.try_emplace(number, static_cast<std::uint32_t>(graph.springs.size()));
+      part.patterns.push_back(found->second);
+      const auto kind = std::bit_cast<Kind>(number);
+      for (std::size_t d = 0; is_new && d < base::kDirectionCount; ++d) {
+        if (kind[d] > 0) {
+          graph.springs.emplace_back(beam_spring(network_.lattice, material_, d, kind[d]));
+        }
       }
     }
   }
+  graph.start.resize(count + 1);
+  graph.other.resize(at(end_count));
+  graph.pattern.resize(count);
+  team.share(0, count, [&](std::size_t begin, std::size_t end) {
+    std::int32_t next = parts[begin / Team::kChunk].end_count;
+    for (std::size_t node = begin; node < end; ++node) {
+      const Part& part = parts[node / Team::kChunk];
+      const Kind kind = kind_of(node);
+      for (std::size_t d = 0; d < base::kDirectionCount; ++d) {
+        if (kind[d] > 0) {
+          graph.other[at(next++)] = cubic.other[node][d];
+        }
+      }
+      graph.start[node + 1] = next;
+      const auto found = std::ranges::find(part.kinds, std::bit_cast<std::uint64_t>(kind));
+      graph.pattern[node] = part.patterns[static_cast<std::size_t>(found - part.kinds.begin())];
+    }
+  });
 }
 
 /// The springs of all other robots: the same for all nodes of one kind.
@@ -262,7 +298,7 @@ void Hierarchy<Real>::fill_graph(Team& team, ReducedNetwork& network, SpringGrap
   place_nodes(team, network, graph);
   graph.is_cubic = network_.lattice == base::kCubic;
   if (network_.is_cubic) {
-    connect_cubes(graph);
+    connect_cubes(team, graph);
   } else {
     connect_nodes(graph);
   }

@@ -153,7 +153,7 @@ class Hierarchy {
   const Mat& floor_tangent(std::uint8_t contact) const;
   void fill_graph(Team& team, ReducedNetwork& network, SpringGraph& graph) const;
   void place_nodes(Team& team, ReducedNetwork& network, SpringGraph& graph) const;
-  void connect_cubes(SpringGraph& graph) const;
+  void connect_cubes(Team& team, SpringGraph& graph) const;
   void connect_nodes(SpringGraph& graph) const;
   void share(const SpringGraph& graph, Level<Real>& level) const;
   void gather(SpringGraph& graph, std::vector<GroundSpring>& springs,

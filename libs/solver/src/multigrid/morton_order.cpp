@@ -4,12 +4,18 @@
 
 #include <algorithm>
 #include <array>
+#include <functional>
 #include <limits>
+#include <numeric>
+#include <optional>
+#include <utility>
 
 #include "holdfast/solver/morton_key.hpp"
 
 namespace holdfast::solver {
 namespace {
+
+using host::Team;
 
 /// The least of all ranks' numbers.
 std::int32_t lowest(host::Ranks* ranks, std::int32_t mine) {
@@ -25,9 +31,12 @@ struct Extent {
                      std::numeric_limits<std::int32_t>::min(),
                      std::numeric_limits<std::int32_t>::min()};
 
-  void add(const base::Cell& cell) {
-    low = {std::min(low.x, cell.x), std::min(low.y, cell.y), std::min(low.z, cell.z)};
-    high = {std::max(high.x, cell.x), std::max(high.y, cell.y), std::max(high.z, cell.z)};
+  void add(const base::Cell& cell) { add(Extent{.low = cell, .high = cell}); }
+
+  void add(const Extent& box) {
+    low = {std::min(low.x, box.low.x), std::min(low.y, box.low.y), std::min(low.z, box.low.z)};
+    high = {std::max(high.x, box.high.x), std::max(high.y, box.high.y),
+            std::max(high.z, box.high.z)};
   }
 
   /// The box around all ranks' boxes.
@@ -67,31 +76,88 @@ std::uint64_t spread(std::uint64_t value) {
   return value;
 }
 
-/// Least significant digit first; stable.
-void radix_sort(std::vector<KeyedModule>& items) {
-  constexpr unsigned kBits = 11;
-  std::uint64_t all = 0;
-  for (const KeyedModule& item : items) {
-    all |= item.key;
+/// Sorts by key, least significant digit first; stable. Each thread counts and moves whole blocks
+/// of items, and as the order is the only one that is stable, it is that of any number of blocks.
+class RadixSort {
+ public:
+  RadixSort(Team& team, std::vector<KeyedModule>& items)
+      : team_(team),
+        items_(items),
+        block_size_(std::max((items.size() + kBlockMax - 1) / kBlockMax, kBlockSizeMin)),
+        start_((items.size() + block_size_ - 1) / block_size_),
+        sorted_(items.size()) {}
+
+  void run() {
+    for (unsigned shift = 0; shift < 64 && (all_bits() >> shift) != 0; shift += kBits) {
+      count(shift);
+      place();
+      move(shift);
+      items_.swap(sorted_);
+    }
   }
-  std::vector<KeyedModule> sorted(items.size());
-  for (unsigned shift = 0; shift < 64 && (all >> shift) != 0; shift += kBits) {
-    std::array<std::size_t, (1U << kBits) + 1> start{};
-    const auto digit = [&](const KeyedModule& item) {
-      return (item.key >> shift) & ((1U << kBits) - 1);
-    };
-    for (const KeyedModule& item : items) {
-      ++start[digit(item) + 1];
-    }
-    for (std::size_t i = 1; i < start.size(); ++i) {
-      start[i] += start[i - 1];
-    }
-    for (const KeyedModule& item : items) {
-      sorted[start[digit(item)]++] = item;
-    }
-    items.swap(sorted);
+
+ private:
+  static constexpr unsigned kBits = 11;
+  static constexpr std::size_t kDigitCount = std::size_t{1} << kBits;
+  static constexpr std::size_t kBlockMax = 64;
+  static constexpr std::size_t kBlockSizeMin = 1U << 15U;
+
+  static std::size_t digit(const KeyedModule& item, unsigned shift) {
+    return (item.key >> shift) & (kDigitCount - 1);
   }
-}
+
+  template <class F>
+  void for_block(std::size_t block, const F& f) const {
+    const std::size_t end = std::min((block + 1) * block_size_, items_.size());
+    for (std::size_t i = block * block_size_; i < end; ++i) {
+      f(items_[i]);
+    }
+  }
+
+  /// All bits that any key has.
+  std::uint64_t all_bits() {
+    if (!bits_) {
+      std::vector<std::uint64_t> bits(start_.size());
+      team_.each(bits.size(), [&](std::size_t block) {
+        for_block(block, [&](const KeyedModule& item) { bits[block] |= item.key; });
+      });
+      bits_ = std::accumulate(bits.begin(), bits.end(), std::uint64_t{0}, std::bit_or<>());
+    }
+    return *bits_;
+  }
+
+  void count(unsigned shift) {
+    team_.each(start_.size(), [&](std::size_t block) {
+      start_[block].fill(0);
+      for_block(block, [&](const KeyedModule& item) { ++start_[block][digit(item, shift)]; });
+    });
+  }
+
+  /// From how many items a block has of a digit to where it puts the first of them.
+  void place() {
+    std::size_t next = 0;
+    for (std::size_t i = 0; i < kDigitCount; ++i) {
+      for (auto& start : start_) {
+        next += std::exchange(start[i], next);
+      }
+    }
+  }
+
+  void move(unsigned shift) {
+    team_.each(start_.size(), [&](std::size_t block) {
+      for_block(block, [&](const KeyedModule& item) {
+        sorted_[start_[block][digit(item, shift)]++] = item;
+      });
+    });
+  }
+
+  Team& team_;
+  std::vector<KeyedModule>& items_;
+  std::size_t block_size_;
+  std::vector<std::array<std::size_t, kDigitCount>> start_;  ///< By block.
+  std::vector<KeyedModule> sorted_;
+  std::optional<std::uint64_t> bits_;
+};
 
 }  // namespace
 
@@ -124,29 +190,53 @@ std::uint64_t morton_key(const base::Cell& brick, const base::Cell& low) {
 }
 
 MortonOrder morton_order(const model::Robot& robot, const std::vector<std::uint8_t>& is_gone,
-                         const model::RobotPart* part) {
+                         Team& team, const model::RobotPart* part) {
+  /// What one thread sees of a chunk of modules.
+  struct Survey {
+    Extent all;
+    Extent left;            ///< Of those that are not gone.
+    std::size_t count = 0;  ///< How many are not gone; then how many there are before.
+  };
+
   const auto modules = robot.modules();
   const Bricks bricks(robot.lattice());
   const auto brick = [&](std::size_t module) { return bricks.of(modules[module].cell); };
-  MortonOrder order;
-  base::Cell low = brick(0);
-  for (std::size_t i = 1; i < modules.size(); ++i) {
-    const base::Cell cell = brick(i);
-    low = {std::min(low.x, cell.x), std::min(low.y, cell.y), std::min(low.z, cell.z)};
+  std::vector<Survey> surveys;
+  team.map(modules.size(), surveys, [&](std::size_t begin, std::size_t end) {
+    Survey survey;
+    for (std::size_t i = begin; i < end; ++i) {
+      const base::Cell cell = brick(i);
+      survey.all.add(cell);
+      if (is_gone[i] == 0) {
+        survey.left.add(cell);
+        ++survey.count;
+      }
+    }
+    return survey;
+  });
+  Extent all;
+  Extent extent;
+  std::size_t count = 0;
+  for (Survey& survey : surveys) {
+    all.add(survey.all);
+    extent.add(survey.left);
+    count += std::exchange(survey.count, count);
   }
   host::Ranks* const ranks = part == nullptr ? nullptr : part->ranks;
-  low = {lowest(ranks, low.x), lowest(ranks, low.y), lowest(ranks, low.z)};
-  order.modules.reserve(modules.size());
-  Extent extent;
-  for (std::size_t i = 0; i < modules.size(); ++i) {
-    if (is_gone[i] == 0) {
-      const base::Cell cell = brick(i);
-      extent.add(cell);
-      order.modules.push_back(
-          {.key = morton_key(cell, low), .module = static_cast<std::int32_t>(i)});
+  const base::Cell low = {lowest(ranks, all.low.x), lowest(ranks, all.low.y),
+                          lowest(ranks, all.low.z)};
+  MortonOrder order;
+  order.modules.resize(count);
+  team.share(0, modules.size(), [&](std::size_t begin, std::size_t end) {
+    std::size_t next = surveys[begin / Team::kChunk].count;
+    for (std::size_t i = begin; i < end; ++i) {
+      if (is_gone[i] == 0) {
+        order.modules[next++] = {.key = morton_key(brick(i), low),
+                                 .module = static_cast<std::int32_t>(i)};
+      }
     }
-  }
-  radix_sort(order.modules);
+  });
+  RadixSort(team, order.modules).run();
   if (part != nullptr) {
     std::stable_partition(order.modules.begin(), order.modules.end(), [&](const KeyedModule& item) {
       return base::at(item.module) < part->own_count;

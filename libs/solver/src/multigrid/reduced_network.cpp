@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <bit>
 #include <map>
 #include <numeric>
@@ -31,6 +32,8 @@ bool is_on_floor_only(const Robot& robot) {
          });
 }
 
+constexpr std::size_t kColourMax = base::Lattice::kDirectionCountMax + 1;
+
 /// Builds a network of the modules that an elimination leaves.
 class Builder {
  public:
@@ -39,7 +42,7 @@ class Builder {
         team_(team),
         part_(part),
         elimination_(eliminate(robot, team, part)),
-        order_(morton_order(robot, elimination_.is_gone, part)),
+        order_(morton_order(robot, elimination_.is_gone, team, part)),
         is_cubic_(robot.lattice() == base::kCubic),
         direction_count_(at(robot.lattice().direction_count)) {
     network_.lattice = robot.lattice();
@@ -144,17 +147,66 @@ class Builder {
     }
   }
 
-  /// What first fit comes to where all beams are short: the lattice's own colours, so exchanged
-  /// that the first module along the curve, of the first rank that has any, has the first.
-  void guess_colours(std::vector<std::uint8_t>& colour) const {
+  /// The lattice's colour of the first module along the curve, of the first rank that has any.
+  std::uint8_t first_colour() const {
     const bool has_any = network_.own_count > 0;
     const std::uint8_t mine = has_any ? lattice_colour(order_.modules.front().module) : kNoColour;
+    if (part_ == nullptr) {
+      return mine;
+    }
     const auto firsts = host::gather(*part_->ranks, std::span<const std::uint8_t>(&mine, 1));
     const auto first = std::ranges::find_if(firsts, [](auto one) { return one != kNoColour; });
-    const std::uint8_t change = is_cubic_ && first != firsts.end() ? *first : std::uint8_t{0};
-    for (std::size_t i = 0; i < network_.own_count; ++i) {
-      const std::int32_t module = order_.modules[i].module;
-      colour[at(module)] = static_cast<std::uint8_t>(lattice_colour(module) ^ change);
+    return first != firsts.end() ? *first : kNoColour;
+  }
+
+  /// What first fit comes to where all beams are short: the lattice's own colours, so exchanged
+  /// that the first module along the curve has the first.
+  void guess_colours(std::vector<std::uint8_t>& colour) const {
+    const std::uint8_t first = first_colour();
+    const std::uint8_t change = is_cubic_ && first != kNoColour ? first : std::uint8_t{0};
+    team_.share(0, network_.own_count, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        const std::int32_t module = order_.modules[i].module;
+        colour[at(module)] = static_cast<std::uint8_t>(lattice_colour(module) ^ change);
+      }
+    });
+  }
+
+  /// Whether first fit along the curve leaves a module of a cubic lattice its colour: of what its
+  /// beams lead to, that lies before it which has the lower coordinates.
+  bool is_first_fit(std::int32_t module, const std::vector<std::uint8_t>& colour) const {
+    const auto sum = [&](std::int32_t one) {
+      const base::Cell& cell = robot_.modules()[at(one)].cell;
+      return cell.x + cell.y + cell.z;
+    };
+    unsigned taken = 0;
+    for (std::size_t direction = 0; direction < direction_count_; ++direction) {
+      int length = 0;
+      const std::int32_t other = far_end(at(module), direction, length);
+      const bool is_before = other != Robot::kNoNeighbour && sum(other) < sum(module);
+      if (is_before && colour[at(other)] != kNoColour) {
+        taken |= 1U << colour[at(other)];
+      }
+    }
+    return std::countr_one(taken) == colour[at(module)];
+  }
+
+  /// First fit along the curve. On cubes that is mostly a chessboard, and whether it is threads can
+  /// tell; else modules are coloured one by one.
+  void colour_whole(std::vector<std::uint8_t>& colour) const {
+    std::atomic<bool> is_guessed = is_cubic_;
+    if (is_cubic_) {
+      guess_colours(colour);
+      team_.share(0, network_.own_count, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end && is_guessed.load(std::memory_order_relaxed); ++i) {
+          if (!is_first_fit(order_.modules[i].module, colour)) {
+            is_guessed = false;
+          }
+        }
+      });
+    }
+    if (!is_guessed) {
+      colour_own(colour);
     }
   }
 
@@ -210,40 +262,59 @@ class Builder {
     }
   }
 
+  /// Nodes are numbered by colour, along the curve in each; copies, which have none, come last.
   void colour_nodes() {
     std::vector<std::uint8_t> colour(robot_.modules().size(), kNoColour);
     if (part_ == nullptr) {
-      colour_own(colour);
+      colour_whole(colour);
     } else {
       colour_on_ranks(colour);
     }
-    constexpr std::size_t kColourMax = base::Lattice::kDirectionCountMax + 1;
+    const auto group = [&](const KeyedModule& item) {
+      return std::min<std::size_t>(colour[at(item.module)], kColourMax);
+    };
+    std::vector<std::array<std::int32_t, kColourMax + 1>> starts;  // By chunk.
+    team_.map(order_.modules.size(), starts, [&](std::size_t begin, std::size_t end) {
+      std::array<std::int32_t, kColourMax + 1> count{};
+      for (std::size_t i = begin; i < end; ++i) {
+        ++count[group(order_.modules[i])];
+      }
+      return count;
+    });
     std::array<double, kColourMax> count{};  // Whole numbers, which ranks add up.
-    for (std::size_t i = 0; i < network_.own_count; ++i) {
-      ++count[colour[at(order_.modules[i].module)]];
-    }
-    const std::array<double, kColourMax> everywhere = host::sum(network_.ranks, count);
-    std::array<std::size_t, kColourMax + 1> start{};
-    network_.colour_start = {0};
-    for (std::size_t c = 0; c < kColourMax; ++c) {
-      start[c + 1] = start[c] + static_cast<std::size_t>(count[c]);
-      if (everywhere[c] > 0) {  // All ranks have the same colours.
-        network_.colour_start.push_back(start[c + 1]);
+    std::int32_t next = 0;
+    std::array<std::int32_t, kColourMax> end{};
+    for (std::size_t c = 0; c <= kColourMax; ++c) {
+      const std::int32_t begin = next;
+      for (auto& start : starts) {
+        next += std::exchange(start[c], next);
+      }
+      if (c < kColourMax) {
+        count[c] = next - begin;
+        end[c] = next;
       }
     }
-    std::size_t next_copy = network_.own_count;
+    const std::array<double, kColourMax> everywhere = host::sum(network_.ranks, count);
+    network_.colour_start = {0};
+    for (std::size_t c = 0; c < kColourMax; ++c) {
+      if (everywhere[c] > 0) {  // All ranks have the same colours.
+        network_.colour_start.push_back(at(end[c]));
+      }
+    }
     node_of_.assign(robot_.modules().size(), static_cast<std::int32_t>(network_.node_count));
     network_.module.resize(order_.modules.size());
-    network_.order.reserve(order_.modules.size());
-    network_.key.reserve(order_.modules.size());
-    for (const KeyedModule& item : order_.modules) {
-      const std::uint8_t own = colour[at(item.module)];
-      const std::size_t node = own == kNoColour ? next_copy++ : start[own]++;
-      node_of_[at(item.module)] = static_cast<std::int32_t>(node);
-      network_.module[node] = item.module;
-      network_.order.push_back(static_cast<std::int32_t>(node));
-      network_.key.push_back(item.key);
-    }
+    network_.order.resize(order_.modules.size());
+    network_.key.resize(order_.modules.size());
+    team_.share(0, order_.modules.size(), [&](std::size_t begin, std::size_t last) {
+      for (std::size_t i = begin; i < last; ++i) {
+        const KeyedModule& item = order_.modules[i];
+        const std::int32_t node = starts[i / Team::kChunk][group(item)]++;
+        node_of_[at(item.module)] = node;
+        network_.module[at(node)] = item.module;
+        network_.order[i] = node;
+        network_.key[i] = item.key;
+      }
+    });
     order_ = {};
   }
 

@@ -67,6 +67,27 @@ class Team {
         &part);
   }
 
+  /// Calls work(index) for each of `count` pieces of work that are worth a thread each.
+  template <class Work>
+  void each(std::size_t count, const Work& work) {
+    ask_whether_to_go_on();
+    const auto pieces = [&](std::size_t begin, std::size_t end) {
+      for (std::size_t index = begin; index < end; ++index) {
+        work(index);
+      }
+    };
+    if (thread_count_ == 1 || count < 2) {
+      pieces(0, count);
+      return;
+    }
+    run(
+        count,
+        [](const void* context, std::size_t begin, std::size_t end) {
+          (*static_cast<decltype(&pieces)>(context))(begin, end);
+        },
+        &pieces);
+  }
+
   /// work(begin, end) of every chunk of [0, count), in their order.
   template <class Value, class Work>
   void map(std::size_t count, std::vector<Value>& values, const Work& work) {

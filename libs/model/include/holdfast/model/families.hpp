@@ -61,6 +61,10 @@ std::optional<CellBox> family_box(Family family, std::size_t size);
 /// Whether a cell of that box is one of the structure's.
 bool family_has(Family family, std::size_t size, const base::Cell& cell);
 
+/// Whether any cell of a box may be one of the structure's. False only where none is, so that
+/// whoever walks through all cells can pass by what is hollow.
+bool family_may_have(Family family, std::size_t size, const CellBox& box);
+
 /// The cells. `size` is at least the family's size_min and family_count() at most kModuleCountMax.
 std::vector<base::Cell> family_cells(Family family, std::size_t size);
 

@@ -61,8 +61,7 @@ struct Equilibrium : Solution {
   mechanics::ContactLaw law = mechanics::ContactLaw::kRegularised;
   /// Further solutions of the same law, as far as seek_others() found any.
   std::vector<Solution> others;
-  std::vector<mechanics::ContactState> contact;  ///< By facet, in the order of Robot::facets().
-  std::vector<base::Vec6<double>> facet_force;   ///< By facet: on its module, at the node.
+  std::vector<base::Vec6<double>> facet_force;  ///< By facet: on its module, at the node.
   /// Open facets that are held sideways all the same, as they would close when released: no slip
   /// and no force at once is then impossible, and the truth lies between held and free.
   int open_but_held_count = 0;

@@ -49,6 +49,7 @@ struct Solution {
   double gamma = 0;
   /// The error in the energy norm, (N mm)^(1/2), by multigrid's own estimate.
   double energy_error = 0;
+  std::vector<mechanics::ContactState> contact;  ///< By facet, in the order of Robot::facets().
 };
 
 /// How a linear solution ended.

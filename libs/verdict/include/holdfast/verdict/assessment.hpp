@@ -83,11 +83,21 @@ struct SeveralSolutions {
   double error = 0;                     ///< By which each of these may be off.
 };
 
+/// A pressed facet that carries more sideways than its friction.
+struct Slip {
+  std::size_t module = 0;  ///< Index, at `rank`.
+  int rank = 0;
+  double friction = 0;  ///< The coefficient.
+  double ratio = 0;     ///< |ft| / |fn|.
+};
+
 struct ModelStability {
   bool is_stable = false;
   bool is_settled = false;  ///< False: no consistent contact state was found, is_stable is void.
-  /// The answer is the exact contact law's, and the paper's allows states in which the robot falls.
+  /// Another solution of the paper's contact law, or the exact law's, has states in which the robot
+  /// falls.
   bool falls_otherwise = false;
+  std::optional<Slip> slip_otherwise = {};  ///< By the exact law, asked beside the paper's.
 };
 
 struct Assessment {
