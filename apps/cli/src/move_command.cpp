@@ -92,7 +92,10 @@ int verify(const MoveArguments& options, const MoveRequest& request, const io::D
   if (!check) {
     return fail(check.error(), options.verified);
   }
-  if (!options.is_quiet) {
+  if (!options.is_quiet && check.value().target) {
+    fmt::print("PROVED      the target itself is not safe: {}\n",
+               verdict::name(*check.value().target));
+  } else if (!options.is_quiet) {
     fmt::print("PROVED      {} shapes inside, {} moves out of them judged anew, none safe\n",
                check.value().shape_count, check.value().unsafe_count);
   }

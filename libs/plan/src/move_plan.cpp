@@ -305,12 +305,17 @@ base::Result<MoveCertificateCheck> verify(const MoveCertificate& certificate,
     return problem.error();
   }
   const MoveOptions more{.solver = options};
+  if (certificate.target && task.ignores_mechanics) {
+    return bad_input(
+        "the certificate says that the target is not safe, which proves nothing where steps need "
+        "not be safe");
+  }
   if (certificate.target) {
     const Judgement target = judge_spec(task.target, more);
     if (target.is_safe() || target.verdict == verdict::Verdict::kUndecided) {
       return bad_input(fmt::format("the target is {}", verdict::name(target.verdict)));
     }
-    return MoveCertificateCheck{.unsafe_count = 1};
+    return MoveCertificateCheck{.target = target.verdict};
   }
   return replay(certificate, problem.value(), more);
 }

@@ -3,7 +3,9 @@
 #include "holdfast/plan/order_help.hpp"
 
 #include <algorithm>
+#include <cstdint>
 #include <set>
+#include <utility>
 
 #include "holdfast/base/lattice.hpp"
 #include "patience.hpp"
@@ -19,9 +21,20 @@ constexpr std::size_t kPairedCellsMax = 60;
 /// Runs of modules that would help are sought up to this length.
 constexpr std::size_t kRunMax = 40;
 
+std::vector<Cell> sorted(std::vector<Cell> cells) {
+  std::ranges::sort(cells);
+  return cells;
+}
+
 class HelpSearch {
  public:
-  HelpSearch(const OrderTask& task, const HelpOptions& options) : task_(task), options_(options) {
+  HelpSearch(const OrderTask& task, const HelpOptions& options)
+      : task_(task), options_(options), floor_z_(task.target.support_z) {
+    for (const Cell& cell : task.target.existing) {
+      if (floor_z_ && cell.z < *floor_z_) {
+        floor_z_.reset();
+      }
+    }
     taken_.insert(task.target.existing.begin(), task.target.existing.end());
     list_cells();
   }
@@ -38,6 +51,7 @@ class HelpSearch {
 
   const OrderTask& task_;
   const HelpOptions& options_;
+  std::optional<std::int32_t> floor_z_;  ///< None if it bars nothing, as in ReachFinder.
   std::set<Cell> taken_;
   std::vector<Cell> beside_;  ///< Free cells beside the target, ascending by layer.
   std::vector<Cell> below_;   ///< Those straight below a module, where the lattice has any.
@@ -47,8 +61,7 @@ class HelpSearch {
 bool HelpSearch::is_free(const Cell& cell) const {
   const model::ObstacleIndex obstacles(task_.target.obstacles);
   return !taken_.contains(cell) && obstacles.find(cell) == model::CellIndex::kNone &&
-         (!task_.target.support_z || cell.z >= *task_.target.support_z) &&
-         task_.rule.source != cell;
+         (!floor_z_ || cell.z >= *floor_z_) && task_.rule.source != cell;
 }
 
 void HelpSearch::list_cells() {
@@ -84,12 +97,10 @@ std::vector<std::vector<Cell>> HelpSearch::runs() const {
       while (is_free(cell) && run.size() < kRunMax) {
         run.push_back(cell);
         cell = base::neighbour(lattice, cell, direction);
-      }
-      const bool is_on_floor =
-          !run.empty() && run.back().z == task_.target.support_z && cell.z < run.back().z;
-      if (run.size() > 1 && (is_on_floor || taken_.contains(cell))) {
-        std::ranges::sort(run);
-        found.insert(std::move(run));
+        const bool is_on_floor = run.back().z == task_.target.support_z && cell.z < run.back().z;
+        if (run.size() > 1 && (is_on_floor || taken_.contains(cell))) {
+          found.insert(sorted(run));
+        }
       }
     }
   }

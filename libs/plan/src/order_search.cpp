@@ -245,14 +245,18 @@ bool Explorer::advance() {
   return true;
 }
 
-/// Tries the next group of several elements. False if none is left.
+/// Tries the next group of several elements. False if none is left; true, too, if time is over.
 bool Explorer::take_group() {
   if (options_.group_size == 1) {
     return false;
   }
   if (!frames_.back().has_groups) {
     Frame& frame = frames_.back();
-    frame.groups = successors(structure_, state_, sense_, options_.group_size, seed_);
+    frame.groups = successors(structure_, state_, sense_, options_.group_size, seed_,
+                              [&] { return knowledge_.is_late(); });
+    if (knowledge_.is_late()) {
+      return true;  // Some may be missing, and the search ends here.
+    }
     std::erase_if(frame.groups, [](const Batch& group) { return group.size() == 1; });
     frame.has_groups = true;
     frame.next = 0;
@@ -385,8 +389,8 @@ Order order_closed(Closure closure, const Knowledge& knowledge) {
 /// these and yet another element make: a set depends not on the order in which it was made, so the
 /// first one will do.
 void add_groups(GrowingStructure& structure, const ElementSet& state, Sense sense,
-                const OrderOptions& options, const Batch& before, States& seen,
-                std::vector<Batch>& groups) {
+                const OrderOptions& options, const Batch& before,
+                const std::function<bool()>& is_late, States& seen, std::vector<Batch>& groups) {
   const std::size_t begin = groups.size();
   for (const Element element : structure.candidates(state, sense, options.seed)) {
     if (seen.insert(changed(state, sense, {&element, 1})).second) {
@@ -396,9 +400,12 @@ void add_groups(GrowingStructure& structure, const ElementSet& state, Sense sens
   }
   const std::size_t end = groups.size();
   for (std::size_t i = begin; before.size() + 1 < options.group_size && i < end; ++i) {
+    if (is_late && is_late()) {
+      return;
+    }
     const Batch group = groups[i];
-    add_groups(structure, changed(state, sense, {&group.back(), 1}), sense, options, group, seen,
-               groups);
+    add_groups(structure, changed(state, sense, {&group.back(), 1}), sense, options, group, is_late,
+               seen, groups);
   }
 }
 
@@ -435,11 +442,12 @@ ElementSet changed(ElementSet state, Sense sense, std::span<const Element> eleme
 }
 
 std::vector<Batch> successors(GrowingStructure& structure, const ElementSet& state, Sense sense,
-                              std::size_t group_size, std::uint64_t seed) {
+                              std::size_t group_size, std::uint64_t seed,
+                              const std::function<bool()>& is_late) {
   States seen;
   std::vector<Batch> groups;
   const OrderOptions options{.group_size = group_size, .seed = seed};
-  add_groups(structure, state, sense, options, {}, seen, groups);
+  add_groups(structure, state, sense, options, {}, is_late, seen, groups);
   std::ranges::stable_sort(groups, {}, &Batch::size);
   return groups;
 }

@@ -48,6 +48,9 @@ ReachFinder::ReachFinder(const model::RobotSpec& target, ReachRule rule)
     low_ = low_of(low_, target.existing[i]);
     high_ = high_of(high_, target.existing[i]);
   }
+  if (floor_z_ && low_.z < *floor_z_) {
+    floor_z_.reset();
+  }
   for (const model::Obstacle& obstacle : obstacles_) {
     const std::vector<Cell> box = {obstacle.from, obstacle.to};
     for (const Cell& cell : obstacle.cells.empty() ? box : obstacle.cells) {

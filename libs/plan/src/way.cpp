@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdint>
 #include <string>
 
 namespace holdfast::plan {
@@ -44,11 +45,22 @@ bool WayFinder::is_staying(const Cell& cell) const {
   return robot_.find(cell) != RobotState::kNone && !left_.contains(cell);
 }
 
-/// Of modules that stay, of those that leave elsewhere, and of obstacles.
+/// Whether the floor bars the cell: no module is below it, neither before the step nor after.
+bool WayFinder::is_under_floor(const Cell& cell) const {
+  const std::optional<std::int32_t>& floor_z = robot_.surroundings().support_z;
+  const auto is_under = [&](const Cell& other) { return floor_z && other.z < *floor_z; };
+  return is_under(cell) && std::ranges::none_of(step_.attach, is_under) &&
+         std::ranges::none_of(step_.moves, is_under, &model::Move::to) &&
+         std::ranges::none_of(robot_.modules(), [&](const ModuleState& module) {
+           return module.is_there && is_under(module.cell);
+         });
+}
+
+/// Of modules that stay, of those that leave elsewhere, of obstacles, and of the floor.
 bool WayFinder::is_free(const Cell& cell, const Draft& draft) const {
   return (robot_.find(cell) == RobotState::kNone || draft.members.contains(cell) ||
           std::ranges::find(step_.detach, cell) != step_.detach.end()) &&
-         robot_.obstacles().find(cell) == model::CellIndex::kNone;
+         robot_.obstacles().find(cell) == model::CellIndex::kNone && !is_under_floor(cell);
 }
 
 bool WayFinder::is_step(const Cell& axial) const {
@@ -126,26 +138,44 @@ base::Result<Group> WayFinder::find(std::span<const std::size_t> moves) const {
 }
 
 std::optional<std::string> WayFinder::find_named(Draft& draft) const {
-  std::optional<Cell> first;
   for (const Cell& carrier : draft.named) {
     if (!holds(carrier, draft)) {
       return fmt::format("{}: the carrier {} is no module that stays and is connected to it",
                          way_text(draft.group), text(carrier));
     }
-    if (is_step(draft.translation)) {
-      continue;
-    }
-    const auto about = turn_about(carrier, draft);
-    if (!about || (first && *first != *about)) {
+  }
+  if (!is_step(draft.translation)) {
+    return find_named_turn(draft);
+  }
+  draft.group.way = slide_way(draft.translation);
+  draft.group.carriers.assign(draft.group.way.size(), draft.named);
+  return std::nullopt;
+}
+
+/// The turn about all named carriers. If none is free it is one that is not, which
+/// find_obstruction() complains of.
+std::optional<std::string> WayFinder::find_named_turn(Draft& draft) const {
+  std::set<Cell> ways = turns_about(draft.named.front(), draft);
+  for (const Cell& carrier : draft.named) {
+    const std::set<Cell> own = turns_about(carrier, draft);
+    std::erase_if(ways, [&](const Cell& way) { return !own.contains(way); });
+    if (ways.empty()) {
       return fmt::format(
           "{}: that is out of reach of its carrier {}; a carrier reaches as far as a slide by one "
           "cell, or a turn about its corner",
           way_text(draft.group), text(carrier));
     }
-    first = about;
   }
-  draft.group.way = first ? turn_way(*first, difference(draft.translation, *first))
-                          : slide_way(draft.translation);
+  const auto is_open = [&](const Cell& way) { return is_open_turn(way, draft); };
+  const auto open_count = std::ranges::count_if(ways, is_open);
+  if (open_count > 1) {
+    return fmt::format(
+        "{}: there is more than one way about its carrier {}; name one more carrier, or move its "
+        "modules one after another",
+        way_text(draft.group), text(draft.named.front()));
+  }
+  const Cell first = open_count == 1 ? *std::ranges::find_if(ways, is_open) : *ways.begin();
+  draft.group.way = turn_way(first, difference(draft.translation, first));
   draft.group.carriers.assign(draft.group.way.size(), draft.named);
   return std::nullopt;
 }
@@ -180,33 +210,40 @@ std::optional<std::string> WayFinder::find_slide(Draft& draft) const {
   return std::nullopt;
 }
 
-/// The way to the cell between, axial, if the group can turn about a corner of the carrier.
-std::optional<Cell> WayFinder::turn_about(const Cell& carrier, const Draft& draft) const {
+/// The ways to the cell between, axial, by which the group can turn about a corner of the carrier:
+/// one for every arrival beside it at most.
+std::set<Cell> WayFinder::turns_about(const Cell& carrier, const Draft& draft) const {
   const Cell centre = base::axial_of(robot_.lattice(), carrier);
+  std::set<Cell> ways;
   for (const Cell& arrival : draft.group.to) {
     const Cell first = difference(base::axial_of(robot_.lattice(), arrival), centre);
     const Cell second = difference(draft.translation, first);
     if (first != second && is_step(first) &&
         is_step(second)) {  // Else it goes through the carrier.
-      return first;
+      ways.insert(first);
     }
   }
-  return std::nullopt;
+  return ways;
+}
+
+/// Whether the cell between is free for every module.
+bool WayFinder::is_open_turn(const Cell& first, const Draft& draft) const {
+  return std::ranges::all_of(draft.members, [&](const Cell& member) {
+    return is_free(moved(robot_.lattice(), member, sum(first, first)), draft);
+  });
 }
 
 std::optional<std::string> WayFinder::find_turn(Draft& draft) const {
   std::set<Cell> ways;
   std::vector<Cell> carriers;
   for (const Cell& carrier : beside(draft.members)) {
-    const auto about = holds(carrier, draft) ? turn_about(carrier, draft) : std::nullopt;
-    if (!about) {
+    if (!holds(carrier, draft)) {
       continue;
     }
-    const Cell doubled = sum(*about, *about);
-    if (std::ranges::all_of(draft.members, [&](const Cell& member) {
-          return is_free(moved(robot_.lattice(), member, doubled), draft);
-        })) {
-      ways.insert(*about);
+    std::set<Cell> own = turns_about(carrier, draft);
+    std::erase_if(own, [&](const Cell& way) { return !is_open_turn(way, draft); });
+    if (!own.empty()) {
+      ways.insert(own.begin(), own.end());
       carriers.push_back(carrier);
     }
   }
@@ -226,7 +263,8 @@ std::optional<std::string> WayFinder::find_obstruction(const Draft& draft) const
     for (const Cell& member : draft.group.from) {
       const Cell cell = moved(robot_.lattice(), member, draft.group.way[i]);
       if (!is_free(cell, draft)) {
-        return fmt::format("{}: on its way {} is occupied", way_text(draft.group), text(cell));
+        return fmt::format("{}: on its way {} is {}", way_text(draft.group), text(cell),
+                           is_under_floor(cell) ? "below the floor" : "occupied");
       }
     }
   }

@@ -43,15 +43,18 @@ class WayFinder {
   };
 
   bool is_staying(const base::Cell& cell) const;
+  bool is_under_floor(const base::Cell& cell) const;
   bool is_free(const base::Cell& cell, const Draft& draft) const;
   bool is_step(const base::Cell& axial) const;
   bool touches(const base::Cell& carrier, const std::set<base::Cell>& cells) const;
   bool holds(const base::Cell& carrier, const Draft& draft) const;
   std::vector<base::Cell> beside(const std::set<base::Cell>& cells) const;
+  bool is_open_turn(const base::Cell& first, const Draft& draft) const;
   std::optional<std::string> find_named(Draft& draft) const;
+  std::optional<std::string> find_named_turn(Draft& draft) const;
   std::optional<std::string> find_slide(Draft& draft) const;
   std::optional<std::string> find_turn(Draft& draft) const;
-  std::optional<base::Cell> turn_about(const base::Cell& carrier, const Draft& draft) const;
+  std::set<base::Cell> turns_about(const base::Cell& carrier, const Draft& draft) const;
   std::optional<std::string> find_obstruction(const Draft& draft) const;
 
   const RobotState& robot_;

@@ -91,7 +91,12 @@ TEST(MovePlan, a_target_that_topples_is_none_with_its_verdict) {
   EXPECT_EQ(plan.outcome, MoveOutcome::kNone);
   ASSERT_TRUE(plan.certificate && plan.certificate->target);
   EXPECT_EQ(plan.certificate->target->verdict, verdict::Verdict::kUnstable);
-  EXPECT_TRUE(verify(*plan.certificate));
+  EXPECT_EQ(verify(*plan.certificate).value().target, verdict::Verdict::kUnstable);
+  // It proves nothing where steps, and so the target, need not be safe.
+  MoveCertificate other = *plan.certificate;
+  other.task.ignores_mechanics = true;
+  EXPECT_FALSE(verify(other));
+  EXPECT_NE(find_moves(other.task).value().outcome, MoveOutcome::kNone);
 }
 
 TEST(MovePlan, modules_of_another_kind_change_places_where_those_alike_need_not) {

@@ -287,6 +287,48 @@ TEST(OrderSearch, ends_within_its_time_also_in_the_middle_of_a_run) {
   EXPECT_LT(passed.count(), 0.6);
 }
 
+/// Forty elements of which any may come next: there are 1.4 x 10^11 groups of up to 20.
+class FreeElements final : public GrowingStructure {
+ public:
+  std::size_t element_count() const override { return 40; }
+
+  std::vector<Element> candidates(const ElementSet& state, Sense sense,
+                                  std::uint64_t /*seed*/) override {
+    std::vector<Element> list;
+    for (Element element = 0; element < static_cast<Element>(element_count()); ++element) {
+      if (state.contains(element) == (sense == Sense::kShrinking)) {
+        list.push_back(element);
+      }
+    }
+    return list;
+  }
+
+  /// Nothing in between is safe.
+  Judgement judge(const ElementSet& state) override {
+    const bool is_end = state.size() == 0 || state.size() == element_count();
+    return {.verdict = is_end ? verdict::Verdict::kSafe : verdict::Verdict::kOverload};
+  }
+};
+
+TEST(OrderSearch, lists_groups_while_there_is_time) {
+  FreeElements elements;
+  int asked_count = 0;
+  const auto is_late = [&] { return ++asked_count > 100; };
+  const std::vector<Batch> groups =
+      successors(elements, ElementSet(elements.element_count()), Sense::kGrowing, 20, 0, is_late);
+  EXPECT_GT(groups.size(), elements.element_count());
+  EXPECT_LT(groups.size(), 101 * elements.element_count());
+  EXPECT_EQ(groups.front().size(), 1U);
+}
+
+/// What is missing of the list must not read as a proof.
+TEST(OrderSearch, proves_nothing_by_groups_that_it_had_no_time_to_list) {
+  FreeElements elements;
+  const ElementSet nothing(elements.element_count());
+  const Order order = find_order(elements, {&nothing, 1}, {.group_size = 20, .seconds_max = 0.05});
+  EXPECT_EQ(order.outcome, OrderOutcome::kNotFound);
+}
+
 TEST(OrderSearch, that_is_interrupted_leaves_the_way_so_far) {
   SlowRow row;
   ElementSet start(row.element_count());

@@ -90,5 +90,20 @@ TEST(Reach, of_an_empty_state_is_everywhere) {
   EXPECT_TRUE(surface.can_reach(ElementSet(spec.existing.size()), {0, 0, 0}));
 }
 
+TEST(Reach, below_the_support_level_is_free_where_the_target_has_a_module) {
+  // A module that hangs from one on the floor's edge comes from below, or around the corner.
+  const model::RobotSpec hanging{.existing = {{0, 0, 0}, {0, 0, -1}}, .fixed = {{0, 0, 0}}};
+  const ElementSet state = all_but(hanging, {{0, 0, -1}});
+  const ReachRule rules[] = {{.reach = Reach::kLine},
+                             {.reach = Reach::kSurface, .source = Cell{1, 0, 0}}};
+  for (const ReachRule& rule : rules) {
+    EXPECT_TRUE(ReachFinder(hanging, rule).can_reach(state, {0, 0, -1})) << name(rule.reach);
+  }
+  // Under a robot that stands on it the floor is closed.
+  const model::RobotSpec standing{.existing = {{0, 0, 0}, {0, 0, 1}}, .fixed = {{0, 0, 0}}};
+  EXPECT_FALSE(
+      ReachFinder(standing, rules[1]).can_reach(all_but(standing, {{0, 0, 1}}), {0, 0, -1}));
+}
+
 }  // namespace
 }  // namespace holdfast::plan

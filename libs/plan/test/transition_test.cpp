@@ -148,5 +148,99 @@ TEST(Transition, says_what_cannot_be_done_and_in_which_stage) {
   }
 }
 
+/// One module in the face-centred lattice, and what it hangs on: a sphere in a hollow of four.
+model::RobotSpec hanging_sphere() {
+  return {.existing = {{0, 0, 1}, {0, 1, 0}}, .fixed = {{0, 0, 1}}, .lattice = base::kFaceCentred};
+}
+
+std::string fault_of(const model::RobotSpec& spec, const model::Step& step) {
+  const auto found = find_transition(RobotState(spec), step);
+  return found ? "none" : found.error().message;
+}
+
+TEST(Transition, turns_through_no_floor) {
+  // Under the sphere at (0,0,1) the modules (0,1,0) and (1,0,0) lie across from each other. About
+  // it the way between them leads over (0,0,-1), which touches all four below the sphere.
+  const model::RobotSpec standing = hanging_sphere();
+  const model::Step step = test::move({0, 1, 0}, {1, 0, 0});
+  EXPECT_EQ(
+      fault_of(standing, step),
+      "shift: (0,1,0) cannot go to (1,0,0): there is no slide by one cell and no turn about a "
+      "corner that leads there");
+  model::Step named = step;
+  named.moves[0].carrier = Cell{0, 0, 1};
+  EXPECT_EQ(fault_of(standing, named),
+            "shift: (0,1,0) cannot go to (1,0,0): on its way (0,0,-1) is below the floor");
+  // No floor bars where there is none, or where a module of the robot is below, before or after.
+  model::RobotSpec held = standing;
+  held.support_z = std::nullopt;
+  EXPECT_EQ(fault_of(held, step), "none");
+  held = standing;
+  held.existing.push_back({0, -1, -1});
+  EXPECT_EQ(fault_of(held, step), "none");
+  model::Step attaching = step;
+  attaching.attach = {{0, -1, -1}};
+  EXPECT_EQ(fault_of(standing, attaching), "none");
+}
+
+TEST(Transition, knows_the_only_way_above_the_floor) {
+  // Beside the sphere in the floor's layer the way leads over (1,1,0).
+  model::RobotSpec spec = hanging_sphere();
+  spec.existing.push_back({0, 0, 0});
+  const auto found = find_transition(RobotState(spec), test::move({0, 1, 0}, {1, 0, 0}));
+  ASSERT_TRUE(found) << found.error().message;
+  const Group& group = found.value().groups.at(0);
+  EXPECT_EQ(group.way.at(2), (Cell{2, 0, 0}));
+  EXPECT_EQ(group.carriers, std::vector(5, std::vector<Cell>{{0, 0, 0}}));
+}
+
+/// Two spheres, connected and both beside a third, that go one cell along x and one along y: both
+/// ways over a cell between lead about the third, one along x first, the other upwards first.
+model::RobotSpec two_about_one() {
+  return {.existing = {{1, 1, 2}, {1, 0, 2}, {0, 0, 3}},
+          .fixed = {{1, 1, 2}},
+          .support_z = std::nullopt,
+          .lattice = base::kFaceCentred};
+}
+
+/// The same step with its moves in both orders, each with a carrier or without.
+std::vector<model::Step> in_both_orders(const std::optional<Cell>& lower,
+                                        const std::optional<Cell>& upper) {
+  const model::Move a{.from = {1, 0, 2}, .to = {2, 1, 2}, .carrier = lower};
+  const model::Move b{.from = {0, 0, 3}, .to = {1, 1, 3}, .carrier = upper};
+  return {{.moves = {a, b}}, {.moves = {b, a}}};
+}
+
+TEST(Transition, refuses_a_group_with_two_ways_about_one_carrier) {
+  const auto expect_refusal = [](const std::optional<Cell>& carrier, const std::string& message) {
+    for (const model::Step& step : in_both_orders(carrier, carrier)) {
+      const std::string fault = fault_of(two_about_one(), step);
+      EXPECT_NE(fault.find(message), std::string::npos) << fault;
+    }
+  };
+  expect_refusal({}, "there is more than one way; name its carrier");
+  expect_refusal(Cell{1, 1, 2}, "there is more than one way about its carrier (1,1,2)");
+}
+
+TEST(Transition, takes_the_way_of_a_group_that_is_left_in_any_order_of_its_moves) {
+  const auto expect_way = [](const model::RobotSpec& spec, const std::vector<model::Step>& steps,
+                             const Cell& middle) {
+    for (const model::Step& step : steps) {
+      const auto found = find_transition(RobotState(spec), step);
+      ASSERT_TRUE(found) << found.error().message;
+      EXPECT_EQ(found.value().groups.at(0).way.at(2), middle);
+    }
+  };
+  // An obstacle bars the way along x.
+  model::RobotSpec barred = two_about_one();
+  barred.obstacles = {{.from = {2, 0, 2}, .to = {2, 0, 2}, .cells = {}, .touch = {}}};
+  expect_way(barred, in_both_orders({}, {}), {0, 0, 2});
+  expect_way(barred, in_both_orders(Cell{1, 1, 2}, Cell{1, 1, 2}), {0, 0, 2});
+  // About (0,1,3), which the upper module leaves along x and ends beside, there is the other only.
+  model::RobotSpec beside = two_about_one();
+  beside.existing.push_back({0, 1, 3});
+  expect_way(beside, in_both_orders(Cell{1, 1, 2}, Cell{0, 1, 3}), {2, 0, 0});
+}
+
 }  // namespace
 }  // namespace holdfast::plan

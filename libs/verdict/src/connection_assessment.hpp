@@ -9,8 +9,9 @@
 /// What an equilibrium says of the connections (Sec. III-D).
 namespace holdfast::verdict {
 
-/// How many times the usual tolerance of multigrid the options have.
-double tolerance_share(const solver::EquilibriumOptions& options);
+/// What multigrid's load ratios may be off by, as a share of the largest or of 1: what it promises
+/// at this tolerance, or what very soft beams take of it.
+double multigrid_error(const model::Robot& robot, const solver::EquilibriumOptions& options);
 
 /// Fills in all connections of an assessment whose equilibrium is settled, their largest load ratio
 /// and what breaks. Multigrid's second answer, unless feet are ambiguous, is given back: it is for

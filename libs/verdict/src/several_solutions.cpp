@@ -92,7 +92,7 @@ void compare_solutions(const model::Robot& robot, solver::EquilibriumSolver& sol
   }
   const bool is_multigrid =
       settled.method == solver::Method::kMultigrid || exact.method == solver::Method::kMultigrid;
-  const double share = is_multigrid ? kMultigridError * tolerance_share(options) : kRounding;
+  const double share = is_multigrid ? multigrid_error(robot, options) : kRounding;
   several.error = std::max(1.0, several.regularised.high) * (share + kWeakSprings * exact.gamma);
 }
 

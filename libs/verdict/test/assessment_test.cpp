@@ -244,6 +244,27 @@ TEST(Assessment, does_not_depend_on_the_order_of_modules) {
   EXPECT_NEAR(*forward.load_ratio_max, *backward.load_ratio_max, kRounding);
 }
 
+/// A corkscrew that hangs from one module carries what statics says, however soft torsion is: with
+/// usual beams, and with 1e-12 of their torsion.
+TEST(Assessment, has_the_truth_in_its_range_where_beams_are_very_soft_one_way) {
+  model::RobotSpec spec;
+  Cell cell = {0, 0, 0};
+  for (int i = 0; i < 130; ++i) {
+    spec.existing.push_back(cell);
+    const int turn = i / 2 % 4;
+    cell.x += turn == 0 ? 1 : 0;
+    cell.y += turn % 2 == 1 ? 1 : 0;
+    cell.z += turn == 2 ? 1 : 0;
+  }
+  spec.fixed = {spec.existing.front()};
+  const Assessment usual = assess_spec(spec);
+  spec.material.torsion_mm4 = 1e-7;
+  const Assessment soft = assess_spec(spec);
+  ASSERT_TRUE(usual.load_ratio_max.has_value());
+  EXPECT_LE(soft.load_ratio_range.low, *usual.load_ratio_max);
+  EXPECT_GE(soft.load_ratio_range.high, *usual.load_ratio_max);
+}
+
 TEST(Assessment, counts_a_planned_module_on_the_ground_as_a_support) {
   // An arm that topples alone stands once its far end gets a leg: one planned module at z = 0.
   model::RobotSpec spec = arm(4);

@@ -91,10 +91,13 @@ base::Result<MovePlan> find_moves(const MoveTask& task, const MoveOptions& optio
 struct MoveCertificateCheck {
   std::size_t shape_count = 0;   ///< Shapes inside.
   std::size_t unsafe_count = 0;  ///< Moves that lead out, judged anew, none of which is safe.
+  /// The verdict on the target, judged anew, if that it is not safe is all that was to be proved.
+  std::optional<verdict::Verdict> target = {};
 };
 
 /// Replays a certificate: every move from every shape leads to another of them or is judged anew
-/// and not safe. Errors: what is not so.
+/// and not safe; or the target is judged anew and not safe. Errors: what is not so, and a target
+/// that need not be safe.
 base::Result<MoveCertificateCheck> verify(const MoveCertificate& certificate,
                                           const solver::EquilibriumOptions& options = {});
 

@@ -115,9 +115,11 @@ struct Order {
 Order find_order(GrowingStructure& structure, std::span<const ElementSet> starts,
                  const OrderOptions& options = {});
 
-/// Every state that one step leads to from `state`, each once: groups of one first.
+/// Every state that one step leads to from `state`, each once: groups of one first. From when
+/// is_late() is true on no more are sought, as there may be very many.
 std::vector<Batch> successors(GrowingStructure& structure, const ElementSet& state, Sense sense,
-                              std::size_t group_size, std::uint64_t seed = 0);
+                              std::size_t group_size, std::uint64_t seed = 0,
+                              const std::function<bool()>& is_late = {});
 
 /// The state with the elements added, or without them.
 ElementSet changed(ElementSet state, Sense sense, std::span<const Element> elements);

@@ -35,7 +35,8 @@ struct ReachRule {
 /// Along the surface a module goes from cell to cell, each of them free and beside a module that is
 /// there: to a neighbouring cell if it stays beside the same module, or if the module beside it has
 /// a neighbour in the same direction (a slide); or about one module to another cell beside it if a
-/// free cell lies between both (a convex turn). Floor and obstacles bar the way and carry nobody.
+/// free cell lies between both (a convex turn). Floor and obstacles bar the way and carry nobody; a
+/// floor below which the target has a module is taken to end beside the robot, and bars nothing.
 class ReachFinder {
  public:
   /// Keeps no reference.
@@ -63,7 +64,7 @@ class ReachFinder {
   std::vector<base::Cell> surface(const ElementSet& state) const;
 
   base::Lattice lattice_;
-  std::optional<std::int32_t> floor_z_;
+  std::optional<std::int32_t> floor_z_;  ///< None if it bars nothing.
   std::vector<model::Obstacle> obstacles_;
   model::ObstacleIndex obstacle_index_;
   model::CellIndex modules_;  ///< Of the target.

@@ -54,8 +54,9 @@ struct Transition {
 
 /// What a step does to a robot. Errors, each beginning with the stage: what is released is not
 /// connected, or what is connected no pair of released neighbours; a module is moved or detached
-/// that is not there, is fixed, or twice; a cell on the way, or one to attach at, is occupied; a
-/// move has no carrier, or its carrier does not reach that far, or there are several ways.
+/// that is not there, is fixed, or twice; a cell on the way, or one to attach at, is occupied; the
+/// way leads below the floor, though no module of the robot is there before or after; a move has no
+/// carrier, or its carrier does not reach that far, or there are several ways.
 base::Result<Transition> find_transition(const RobotState& robot, const model::Step& step);
 
 /// The robot after a step whose transition is this.
