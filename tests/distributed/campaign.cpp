@@ -15,7 +15,9 @@
 namespace holdfast::test {
 
 bool Comparison::is_wrong() const {
-  return robot != agent::Verdict::kNone && !is_undecided() && to_verdict(robot) != exact;
+  const bool is_known = robot == agent::Verdict::kSafe && falls_otherwise;
+  return robot != agent::Verdict::kNone && !is_undecided() && to_verdict(robot) != exact &&
+         !is_known;
 }
 
 double Comparison::ratio_error() const {
@@ -153,7 +155,9 @@ Comparison compare(const model::Robot& robot, const sim::SimulationOptions& opti
   sim::Simulation simulation(robot, options);
   simulation.run();
   Comparison comparison;
-  comparison.result = simulation.result();
+  comparison.exact = assessment.verdict;
+  comparison.falls_otherwise =
+      assessment.verdict == verdict::Verdict::kUndecided && assessment.model.falls_otherwise;
   HOLDFAST_CHECK(comparison.result.is_quiet);
   comparison.exact = assessment.verdict;
   comparison.robot = comparison.result.answer.verdict;
