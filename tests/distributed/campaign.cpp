@@ -155,11 +155,11 @@ Comparison compare(const model::Robot& robot, const sim::SimulationOptions& opti
   sim::Simulation simulation(robot, options);
   simulation.run();
   Comparison comparison;
+  comparison.result = simulation.result();
+  HOLDFAST_CHECK(comparison.result.is_quiet);
   comparison.exact = assessment.verdict;
   comparison.falls_otherwise =
       assessment.verdict == verdict::Verdict::kUndecided && assessment.model.falls_otherwise;
-  HOLDFAST_CHECK(comparison.result.is_quiet);
-  comparison.exact = assessment.verdict;
   comparison.robot = comparison.result.answer.verdict;
   comparison.ratio_exact = assessment.load_ratio_max.value_or(0);
   comparison.ratio_robot = static_cast<double>(comparison.result.answer.load_ratio_max);

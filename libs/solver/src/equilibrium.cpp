@@ -98,8 +98,7 @@ mechanics::ContactState contact_of(const model::Robot& robot, const Equilibrium&
 
 std::vector<base::Vec6<double>> ground_forces(const model::Robot& robot,
                                               const Equilibrium& equilibrium) {
-  if (equilibrium.displacement.empty() ||
-      equilibrium.facet_force.size() != robot.facets().size()) {
+  if (equilibrium.displacement.empty() || equilibrium.facet_force.size() != robot.facets().size()) {
     return {};
   }
   std::vector<base::Vec6<double>> forces(robot.modules().size());
