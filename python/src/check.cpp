@@ -95,7 +95,9 @@ py::array facet_forces(const SharedCheck& check) {
 
 py::array ground_forces(const SharedCheck& check) {
   const auto list = holdfast::ground_forces(check->structure->robot, check->result);
-  return py::array(pairs_of_vectors("force_n", "moment_nmm"), list.size(), list.data());
+  py::array array(pairs_of_vectors("force_n", "moment_nmm"), list.size(), list.data());
+  py::detail::array_proxy(array.ptr())->flags &= ~py::detail::npy_api::NPY_ARRAY_WRITEABLE_;
+  return array;
 }
 
 /// How each facet touches.
