@@ -210,6 +210,7 @@ int run_general(std::uint64_t from, std::uint64_t to, const Variety& variety) {
   Tally tally;
   int both_undecided = 0;
   int decided_alone = 0;
+  int safe_alone = 0;
   int wrong_safe = 0;
   int other_limits = 0;
   int other_gaps = 0;
@@ -223,6 +224,7 @@ int run_general(std::uint64_t from, std::uint64_t to, const Variety& variety) {
     other_gaps += comparison.has_other_gaps ? 1 : 0;
     if (comparison.exact == verdict::Verdict::kUndecided) {
       (comparison.is_undecided() ? both_undecided : decided_alone) += 1;
+      safe_alone += comparison.robot == agent::Verdict::kSafe ? 1 : 0;
       continue;
     }
     wrong_safe += comparison.is_wrong() && comparison.robot == agent::Verdict::kSafe ? 1 : 0;
@@ -230,10 +232,11 @@ int run_general(std::uint64_t from, std::uint64_t to, const Variety& variety) {
   }
   fmt::print(
       "{} robots: {} wrong, {} of them safe, {} undecided, {} not agreed; largest error {:.4f} of "
-      "what is allowed; not decided by the exact solver {}, by the robot either {}; another limit "
+      "what is allowed; not decided by the exact solver {}, by the robot either {}, safe "
+      "by the robot {}; another limit "
       "named {}, other gaps {}\n",
       tally.count, tally.wrong, wrong_safe, tally.undecided, tally.disagreeing, tally.ratio_error,
-      both_undecided + decided_alone, both_undecided, other_limits, other_gaps);
+      both_undecided + decided_alone, both_undecided, safe_alone, other_limits, other_gaps);
   print_shares("sweeps", tally.sweeps);
   return tally.wrong;
 }

@@ -15,9 +15,7 @@
 namespace holdfast::test {
 
 bool Comparison::is_wrong() const {
-  const bool is_known = robot == agent::Verdict::kSafe && falls_otherwise;
-  return robot != agent::Verdict::kNone && !is_undecided() && to_verdict(robot) != exact &&
-         !is_known;
+  return robot != agent::Verdict::kNone && !is_undecided() && to_verdict(robot) != exact;
 }
 
 double Comparison::ratio_error() const {
@@ -158,8 +156,6 @@ Comparison compare(const model::Robot& robot, const sim::SimulationOptions& opti
   comparison.result = simulation.result();
   HOLDFAST_CHECK(comparison.result.is_quiet);
   comparison.exact = assessment.verdict;
-  comparison.falls_otherwise =
-      assessment.verdict == verdict::Verdict::kUndecided && assessment.model.falls_otherwise;
   comparison.robot = comparison.result.answer.verdict;
   comparison.ratio_exact = assessment.load_ratio_max.value_or(0);
   comparison.ratio_robot = static_cast<double>(comparison.result.answer.load_ratio_max);

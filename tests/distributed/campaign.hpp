@@ -24,12 +24,9 @@ struct Comparison {
   bool has_other_limit = false;
   /// Only one of both says that a gap opens, and none is within 2 % of its limit.
   bool has_other_gaps = false;
-  /// The exact solver is undecided as another solution of the contact laws falls. Modules do not
-  /// ask that and may be safe: known and not mended (docs/distributed.md).
-  bool falls_otherwise = false;
   sim::SimulationResult result;
 
-  /// Decided, and differently, but for what is known.
+  /// Decided, and differently.
   bool is_wrong() const;
 
   bool is_undecided() const { return robot == agent::Verdict::kUndecided; }

@@ -144,7 +144,8 @@ TEST(DistributedGeneral, random_robots_are_decided_like_the_exact_answer) {
       ++count;
       const test::Comparison comparison = test::compare(robot.value(), {.seed = seed});
       EXPECT_FALSE(comparison.is_wrong()) << comparison.text();
-      EXPECT_FALSE(comparison.is_undecided()) << comparison.text();
+      EXPECT_EQ(comparison.is_undecided(), comparison.exact == verdict::Verdict::kUndecided)
+          << comparison.text();
       EXPECT_TRUE(comparison.result.all_agree) << comparison.text();
       EXPECT_LT(comparison.ratio_error(), 1) << comparison.text();
     }
@@ -217,15 +218,28 @@ TEST(DistributedGeneral, robots_that_were_undecided_are_decided_like_the_exact_a
 
   Counts counts;
   for (const Seeds& one :
-       {Seeds{base::kCubic, {60, 63, 281}}, Seeds{base::kFaceCentred, {20, 87, 96, 100}},
+       {Seeds{base::kCubic, {60, 281}}, Seeds{base::kFaceCentred, {20, 87, 96, 100}},
         Seeds{base::kHexagonal, {37, 49}}, Seeds{base::kHexagonalPrism, {61}}}) {
     for (const std::uint64_t seed : one.seeds) {
       SCOPED_TRACE(::testing::Message() << "seed " << seed);
       expect_like_exact(test::general_robot(one.lattice, seed), seed, counts);
     }
   }
-  EXPECT_EQ(counts.all, 10);
+  EXPECT_EQ(counts.all, 9);
   EXPECT_EQ(counts.undecided, 1);  // 281, as check has it.
+}
+
+/// The exact law holds them; by another solution of the paper's law they fall, hanging by one foot.
+/// All are trees but the first, in which a facet in another state leads to it.
+TEST(DistributedGeneral, is_undecided_where_another_solution_falls) {
+  for (const std::uint64_t seed : {17, 108, 113, 118}) {
+    const auto robot = model::Robot::create(test::general_robot(base::kCubic, seed)).value();
+    const test::Comparison comparison = test::compare(robot, {.seed = seed});
+    EXPECT_EQ(comparison.exact, verdict::Verdict::kUndecided) << seed;
+    EXPECT_TRUE(comparison.is_undecided()) << seed << ": " << comparison.text();
+    EXPECT_EQ(comparison.result.answer.reason, agent::Reason::kAmbiguousFeet) << seed;
+    EXPECT_TRUE(comparison.result.all_agree) << seed;
+  }
 }
 
 /// Two modules: a foot of mass M, and one of 0.1 kg in the next layer or, of prisms, row: the

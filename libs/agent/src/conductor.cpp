@@ -302,7 +302,8 @@ Order Conductor::begin_law(const Setup& setup, bool is_unilateral) {
   if constexpr (kSeeksOthers) {
     may_differ_ = false;
     seeking_ = Seeking::kNotYet;
-    other_breaks_ = false;
+    other_fails_ = false;
+    is_by_one_foot_ = false;
   }
   solve_iterations_max_ = 200 + 20 * effort_.module_count;
   Order begin = ask(Operation::kBegin);
@@ -324,17 +325,6 @@ Order Conductor::begin_law(const Setup& setup, bool is_unilateral) {
   begin.reals[0] = static_cast<float>(is_unilateral ? unilateral_gamma() : setup.contact_gamma);
   begin.reals[1] = static_cast<float>(static_cast<double>(extent_ + 1) * setup.section.length);
   return begin;
-}
-
-double Conductor::unilateral_gamma() const {
-  switch (kHasSurroundings ? weak_springs_ : WeakSprings::kWeakest) {
-    case WeakSprings::kStiffer:
-      return kStifferGamma;
-    case WeakSprings::kToppling:
-      return kTopplingGamma;
-    default:
-      return kUnilateralGamma;
-  }
 }
 
 bool Conductor::needs_forces([[maybe_unused]] const Setup& setup) const {
@@ -412,7 +402,7 @@ Order Conductor::judge(const Setup& setup, const Report& report) {
 /// The linear problem is solved and some facets want another state.
 Order Conductor::judge_regularised(const Setup& setup, const Report& report) {
   if (is_back()) {
-    return next_trial();
+    return next_trial(setup);
   }
   if (was_seen(report.states_hash()) || effort_.contact_iterations > contact_iterations_max_) {
     return is_seeking() ? leave_trial(setup, false) : begin_law(setup, true);
@@ -667,6 +657,10 @@ Order Conductor::settled(const Setup& setup) {
 }
 
 Order Conductor::after_corners(const Setup& setup, const Report& report) {
+  if (is_seeking()) {
+    other_fails_ = !report.corners.stable;
+    return next_trial(setup);
+  }
   is_standing_ = report.corners.stable;
   if (!is_unilateral_) {
     if (is_standing_) {
@@ -754,7 +748,8 @@ Order Conductor::decide() {
   if (absolute(ratio_ - 1) <= doubt) {
     return finish(Verdict::kUndecided, Reason::kTooClose);
   }
-  if (mechanics::breaks(ratio_) != breaks) {
+  const bool falls = kHasSurroundings && (other_fails_ || (is_second_ && !is_standing_));
+  if (mechanics::breaks(ratio_) != breaks || (falls && !breaks)) {
     return finish(Verdict::kUndecided, Reason::kAmbiguousFeet);
   }
   return finish(breaks ? Verdict::kOverload : Verdict::kSafe,

@@ -216,7 +216,7 @@ Order Conductor::after_iteration(const Setup& setup, const Report& report) {
   if (has_jumped && !(is_rough && is_elimination)) {
     ++effort_.contact_iterations;
     if (is_back()) {
-      return next_trial();
+      return next_trial(setup);
     }
     if (kKeepsAnswers && has_motion_ &&
         effort_.contact_iterations >
@@ -351,6 +351,9 @@ Order Conductor::leave_one_sweep(const Setup& setup, bool is_unilateral) {
   if (is_seeking()) {
     return leave_trial(setup, !is_unilateral);
   }
+  if (is_unilateral && may_hang_by_foot()) {
+    return begin_one_foot();
+  }
   if (is_newton_ && is_unilateral && !is_unilateral_) {
     return begin_law(setup, true);
   }
@@ -372,6 +375,17 @@ void Conductor::take_safest_method(const Setup& setup) {
   effort_.method = has_memory   ? Method::kFronts
                    : is_newton_ ? Method::kPolynomial
                                 : Method::kConjugateGradients;
+}
+
+double Conductor::unilateral_gamma() const {
+  switch (kHasSurroundings ? weak_springs_ : WeakSprings::kWeakest) {
+    case WeakSprings::kStiffer:
+      return kStifferGamma;
+    case WeakSprings::kToppling:
+      return kTopplingGamma;
+    default:
+      return kUnilateralGamma;
+  }
 }
 
 int Conductor::stagnation_max() const {

@@ -5,7 +5,11 @@
 // (solver/other_solutions.cpp): a facet that does not press all over, and is pulled sideways by
 // more than it presses, may be held where it is open, or let go where it presses. So each is put
 // into that state, one at a time, and Newton's method goes on from there. Most go back at once. No
-// robot is safe of which another solution breaks a connection.
+// robot is safe of which another solution breaks a connection or falls.
+//
+// Where Newton's method settles nowhere, and contact states say whether the robot falls, it is
+// those that fall that are sought: who falls hangs by one foot, so each edge of each foot is tried
+// as all that presses. The exact law decides whether what is not found to fall is safe.
 #include "holdfast/agent/conductor.hpp"
 #include "holdfast/mechanics/connector.hpp"
 #include "methods.hpp"
@@ -22,6 +26,10 @@ constexpr std::uint8_t kTrialsMax = 16;
 
 /// Changes of contact states in one trial.
 constexpr std::uint32_t kChangesOfTrial = 20;
+
+/// Edges that are tried at most where a robot may hang by one foot, and changes in one such trial.
+constexpr int kTrialsByOneFoot = 32;
+constexpr std::uint32_t kChangesByOneFoot = 6;
 
 /// On a level floor a largest load ratio below this is not doubted: of 80 further solutions of
 /// 7,400 random robots none has more than 1.2 times another's.
@@ -42,12 +50,24 @@ bool Conductor::is_seeking() const {
 bool Conductor::may_seek() const {
   return kSeeksOthers && may_differ_ && !is_unilateral_ && seeking_ == Seeking::kNotYet &&
          !may_have_clusters() && !is_jacobi() &&
-         ratio_ > (is_uneven() ? kDoubtedFromUneven : kDoubtedFrom) && !mechanics::breaks(ratio_);
+         (may_fall() || ratio_ > (is_uneven() ? kDoubtedFromUneven : kDoubtedFrom)) &&
+         !mechanics::breaks(ratio_);
+}
+
+/// Do contact states say whether it falls?
+bool Conductor::may_fall() const { return is_uneven() && !is_fixed_; }
+
+/// States go round in circles. May there be a solution that falls? Asked by elimination only: by
+/// other methods these trials take twenty times what all else does.
+bool Conductor::may_hang_by_foot() const {
+  return kSeeksOthers && may_fall() && is_exact() && !is_unilateral_ &&
+         seeking_ == Seeking::kNotYet;
 }
 
 /// Are the states those that were found first, and want to be?
 bool Conductor::is_back() const {
-  return kSeeksOthers && seeking_ == Seeking::kTrying && states_hash_ == found_hash_;
+  return kSeeksOthers && !is_by_one_foot_ && seeking_ == Seeking::kTrying &&
+         states_hash_ == found_hash_;
 }
 
 Order Conductor::begin_seeking() {
@@ -60,9 +80,14 @@ Order Conductor::begin_seeking() {
   return seek(0, kRemember);
 }
 
+Order Conductor::begin_one_foot() {
+  is_by_one_foot_ = true;
+  return begin_seeking();
+}
+
 Order Conductor::seek(std::uint32_t key, std::uint8_t flags) {
   Order order = ask(Operation::kSeek);
-  order.flags = flags;
+  order.flags = is_by_one_foot_ ? kOneFoot : flags;
   order.mass = static_cast<std::int32_t>(key);
   next_key_ = key;
   has_motion_ = false;
@@ -80,20 +105,26 @@ Order Conductor::after_seek(const Setup& setup, const Report& report) {
     return settled(setup);
   }
   if (is_first) {
-    return next_trial();
+    return next_trial(setup);
   }
   error_ = kUnbounded;
   error_best_ = kUnbounded;
   stagnation_count_ = 0;
   target_ = kRatioTolerance;
-  contact_iterations_max_ = effort_.contact_iterations + kChangesOfTrial;
+  contact_iterations_max_ =
+      effort_.contact_iterations + (is_by_one_foot_ ? kChangesByOneFoot : kChangesOfTrial);
   begin_states();
   return has_fronts() ? tree_iteration() : is_one_sweep() ? first_iteration() : move(0);
 }
 
 /// The next facet; behind the last one all go back to what was found.
-Order Conductor::next_trial() {
-  const bool has_next = next_key_ != 0 && trial_count_ < kTrialsMax;
+Order Conductor::next_trial(const Setup& setup) {
+  const int trials_max = is_by_one_foot_ ? kTrialsByOneFoot : kTrialsMax;
+  const bool has_next = next_key_ != 0 && trial_count_ < trials_max && !other_fails_;
+  if (is_by_one_foot_ && !has_next) {
+    take_safest_method(setup);
+    return begin_anew(setup, true);
+  }
   trial_count_ = static_cast<std::uint8_t>(trial_count_ + 1);
   seeking_ = has_next ? Seeking::kTrying : Seeking::kReturning;
   return seek(has_next ? next_key_ : 0);
@@ -101,10 +132,10 @@ Order Conductor::next_trial() {
 
 /// A solution: another one, or, in the end, the first one again.
 Order Conductor::after_trial(const Setup& setup) {
-  const bool is_other = states_hash_ != found_hash_;
+  const bool is_other = is_by_one_foot_ || states_hash_ != found_hash_;
   if (seeking_ == Seeking::kTrying) {
-    other_breaks_ = other_breaks_ || (is_other && mechanics::breaks(ratio_ + error_));
-    return next_trial();
+    other_fails_ = other_fails_ || (is_other && mechanics::breaks(ratio_ + error_));
+    return is_other && may_fall() && !other_fails_ ? ask(Operation::kCorners) : next_trial(setup);
   }
   if (is_other) {
     return leave_trial(setup, false);
@@ -122,22 +153,27 @@ Order Conductor::after_trial(const Setup& setup) {
 Order Conductor::leave_trial(const Setup& setup, bool is_lost) {
   is_trial_lost_ = is_trial_lost_ || is_lost;
   if (seeking_ == Seeking::kTrying) {
-    return next_trial();
+    return next_trial(setup);
   }
   is_newton_ = was_newton_;
   if (seeks_again(setup)) {
     return seek_by_gradients(setup);
   }
-  const bool other_breaks = other_breaks_;
-  const Order begin = begin_law(setup, false);
+  return begin_anew(setup, false);
+}
+
+/// From rest, seeking no more.
+Order Conductor::begin_anew(const Setup& setup, bool is_unilateral) {
+  const bool other_fails = other_fails_;
+  const Order begin = begin_law(setup, is_unilateral);
   seeking_ = Seeking::kDone;
-  other_breaks_ = other_breaks;
+  other_fails_ = other_fails;
   return begin;
 }
 
 /// On few feet that are nearly open a one-sweep method may converge from rest, but not in a trial.
 bool Conductor::seeks_again(const Setup& setup) const {
-  return kSeeksOthers && is_trial_lost_ && !other_breaks_ && is_one_sweep() && has_gradients(setup);
+  return kSeeksOthers && is_trial_lost_ && !other_fails_ && is_one_sweep() && has_gradients(setup);
 }
 
 /// All of it from the beginning.
@@ -149,7 +185,7 @@ Order Conductor::seek_by_gradients(const Setup& setup) {
 
 /// The load ratio is known, by the regularised law.
 Order Conductor::conclude(const Setup& setup) {
-  if (kSeeksOthers && other_breaks_) {
+  if (kSeeksOthers && other_fails_) {
     return finish(Verdict::kUndecided, Reason::kAmbiguousFeet);
   }
   if (may_pull()) {

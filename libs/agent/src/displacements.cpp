@@ -127,8 +127,7 @@ void seek_facets(Workspace& ws, const Order& order, Report& report) {
     if (Surroundings* surroundings = surroundings_of(node); surroundings != nullptr) {
       surrounded::seek_facets(*surroundings, ws.contact, node.u, cell, order, report);
     } else {
-      seek_facet(node, is_doubtful(ws.contact, node.state, node.u), seek_key(cell, 0), order,
-                 report);
+      seek_facet(node, is_doubtful(ws.contact, node.state, node.u), cell, 0, order, report);
     }
   }
 }

@@ -51,24 +51,6 @@ void hold_facet(Facet& facet, bool frees, Report& report) {
   report.number += !facet.state.pressed && facet.is_held ? 1U : 0U;
 }
 
-/// One facet's part in a kSeek.
-template <class Facet>
-void seek_facet(Facet& facet, bool is_doubtful, std::uint32_t key, const Order& order,
-                Report& report) {
-  if ((order.flags & kRemember) != 0) {
-    facet.found = facet.state;
-    facet.is_doubtful = is_doubtful;
-  }
-  const bool is_tried = facet.is_doubtful && key == order.key();
-  facet.state = is_tried ? mechanics::ContactState{.pressed = !facet.found.pressed} : facet.found;
-  facet.wanted = facet.state;
-  if (facet.is_doubtful) {
-    ++report.count;
-    const bool is_next = key > order.key() && (report.number == 0 || key < report.number);
-    report.number = is_next ? key : report.number;
-  }
-}
-
 /// The key of a facet for a kSeek, not 0; the cell as seen from the root.
 /// Keys do not depend on where the robot's origin is, so neither does the order of trials.
 inline base::Cell from_root(const Workspace& ws, const base::Cell& cell) {
@@ -80,8 +62,49 @@ inline std::uint32_t seek_key(const base::Cell& cell, int facet) {
   return hash_of(cell, facet) | 1U;
 }
 
+/// A kSeek's next key, if this one is behind the order's and before the one so far.
+inline void offer_key(std::uint32_t key, const Order& order, Report& report) {
+  ++report.count;
+  const bool is_next = key > order.key() && (report.number == 0 || key < report.number);
+  report.number = is_next ? key : report.number;
+}
+
+/// One facet's part in a kSeek; `index` among those of the module in the cell.
+template <class Facet>
+void seek_facet(Facet& facet, bool is_doubtful, const base::Cell& cell, int index,
+                const Order& order, Report& report) {
+  if ((order.flags & kRemember) != 0) {
+    facet.found = facet.state;
+    facet.is_doubtful = is_doubtful;
+  }
+  const std::uint32_t key = seek_key(cell, index);
+  const bool is_tried = facet.is_doubtful && key == order.key();
+  facet.state = is_tried ? mechanics::ContactState{.pressed = !facet.found.pressed} : facet.found;
+  facet.wanted = facet.state;
+  if (facet.is_doubtful) {
+    offer_key(key, order, report);
+  }
+}
+
+/// The same in a kSeek with kOneFoot: each edge has a key.
+template <class Facet>
+void press_on_edge(Facet& facet, const base::Cell& cell, int index, const Order& order,
+                   Report& report) {
+  constexpr int kIndexMax = 16;
+  constexpr std::array<mechanics::ContactState, 4> kEdges = {
+      {{.tilt_x = 1}, {.tilt_x = -1}, {.tilt_y = 1}, {.tilt_y = -1}}};
+  facet.state = {.pressed = false};
+  for (std::size_t edge = 0; edge < kEdges.size(); ++edge) {
+    const std::uint32_t key = seek_key(cell, index + kIndexMax * static_cast<int>(1 + edge));
+    facet.state = key == order.key() ? kEdges[edge] : facet.state;
+    offer_key(key, order, report);
+  }
+  facet.wanted = facet.state;
+}
+
 /// A kSeek: all facets in the states that were found, but that of the order's key. A pressed one is
-/// opened, an open one presses all over.
+/// opened, an open one presses all over. With kOneFoot all are open, but that of the order's key:
+/// it presses on the key's edge.
 void seek_facets(Workspace& ws, const Order& order, Report& report);
 
 /// A kHold: releases open facets and holds pressed ones (count: how many changed); number: open but

@@ -132,8 +132,13 @@ void seek_facets(Surroundings& node, const ContactSetting& contact, const Vec6<d
                  const base::Cell& cell, const Order& order, Report& report) {
   int index = 0;
   for (TouchingFacet& facet : facets_of(node)) {
-    const bool doubts = is_doubtful(contact, facet.state, to_local(node, facet, u));
-    seek_facet(facet, doubts, seek_key(cell, ++index), order, report);
+    ++index;
+    if ((order.flags & kOneFoot) != 0) {
+      press_on_edge(facet, cell, index, order, report);
+    } else {
+      const bool doubts = is_doubtful(contact, facet.state, to_local(node, facet, u));
+      seek_facet(facet, doubts, cell, index, order, report);
+    }
   }
 }
 

@@ -319,7 +319,7 @@ constexpr void solve_fields(auto& codec, Order& order) {
 }
 
 constexpr void seek_fields(auto& codec, Order& order) {
-  codec.flags(order.flags, kRemember);
+  codec.flags(order.flags, kRemember | (kHasSurroundings ? kOneFoot : 0));
   codec.i32(order.mass);
 }
 

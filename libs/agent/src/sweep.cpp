@@ -173,7 +173,8 @@ bool Sweep::is_in_course(const Workspace& ws, const Order& order) const {
              (course_ == Course::kPolynomial && (order.flags & kWithClusters) == 0);
     case Operation::kSeek:
       return kSeeksOthers && !ws.setup.only_one_sweep &&
-             ((order.flags & kRemember) == 0 || order.key() == 0) &&
+             (order.flags == 0 || order.flags == kOneFoot ||
+              (order.flags == kRemember && order.key() == 0)) &&
              (course_ == Course::kElimination || course_ == Course::kPolynomial ||
               course_ == Course::kGradients || makes_fronts(course_));
     default:

@@ -108,7 +108,7 @@ const Limit kLimits[] = {
     {kGoldenReports[23], 3, is_within<0, 3>},
     {kGoldenReports[24], 2, is_flags<1>},     // stage
     {kGoldenOrders[26], 2, is_flags<7>},      // next
-    {kGoldenOrders[27], 2, is_flags<1>},      // seek
+    {kGoldenOrders[27], 2, is_flags<3>},      // seek
     {kGoldenVectors[8], 1, is_within<0, 6>},  // reach
     {kGoldenParts[0], 1, is_within<0, 42>},   // cells up
     {kGoldenParts[1], 1, is_within<0, 42>}};  // cells down

@@ -199,7 +199,7 @@ std::vector<Equilibrium> EquilibriumSolver::seek_settled(const ContactOptions& c
       system->robot().modules().size() <= kModuleCountTried) {
     contact_search.try_all_states(take);
   } else {
-    contact_search.find_from_elsewhere(take);
+    contact_search.find_from_one_foot(take);
   }
   return all;
 }

@@ -119,15 +119,12 @@ std::vector<Solution> RegularisedContact::find_others(const Solution& settled) {
   return others;
 }
 
-void RegularisedContact::find_from_elsewhere(const std::function<void(Solution)>& take) {
-  constexpr mechanics::ContactState kStuck;
-  constexpr mechanics::ContactState kOpen{.pressed = false};
+void RegularisedContact::find_from_one_foot(const std::function<void(Solution)>& take) {
   const std::size_t count = system().facets().size();
   std::vector<std::vector<mechanics::ContactState>> known;
-  for (std::size_t i = 0; i < 2 * count; ++i) {
-    const bool is_one_open = i < count;
-    std::vector<mechanics::ContactState> states(count, is_one_open ? kStuck : kOpen);
-    states[i % count] = is_one_open ? kOpen : kStuck;
+  const auto go_on_from = [&](std::size_t facet, const mechanics::ContactState& state) {
+    std::vector<mechanics::ContactState> states(count, {.pressed = false});
+    states[facet] = state;
     set_states(states);
     loosen();
     Solution solution;
@@ -135,6 +132,14 @@ void RegularisedContact::find_from_elsewhere(const std::function<void(Solution)>
         std::ranges::find(known, present_states()) == known.end()) {
       known.push_back(present_states());
       take(std::move(solution));
+    }
+  };
+  for (std::size_t facet = 0; facet < count; ++facet) {
+    for (int code = 0; code < mechanics::ContactState::kCodeCount; ++code) {
+      const auto state = mechanics::ContactState::from_code(code);
+      if (state.pressed) {
+        go_on_from(facet, state);
+      }
     }
   }
 }

@@ -27,9 +27,10 @@ class RegularisedContact final : public ContactIteration {
   /// from there. Leaves the system in the states it had.
   std::vector<Solution> find_others(const Solution& settled);
 
-  /// Seeks solutions by Newton's method from all facets stuck but one, and from all open but one.
-  /// Calls `take` for each, once, while the system has its states.
-  void find_from_elsewhere(const std::function<void(Solution)>& take);
+  /// Seeks solutions by Newton's method from one facet that presses, all over, on an edge or on a
+  /// corner, and all others open: who falls hangs by one foot. Calls `take` for each, once, while
+  /// the system has its states.
+  void find_from_one_foot(const std::function<void(Solution)>& take);
 
   /// Tries all states of all facets, ten each. Calls `take` for each solution, while the system has
   /// its states.

@@ -234,11 +234,15 @@ class Conductor {
   // conductor_seeking.cpp; constants in a program that does not seek.
   bool is_seeking() const;
   bool may_seek() const;
+  bool may_fall() const;
+  bool may_hang_by_foot() const;
   bool is_back() const;
   Order begin_seeking();
+  Order begin_one_foot();
   Order seek(std::uint32_t key, std::uint8_t flags = 0);
   Order after_seek(const Setup& setup, const Report& report);
-  Order next_trial();
+  Order next_trial(const Setup& setup);
+  Order begin_anew(const Setup& setup, bool is_unilateral);
   Order after_trial(const Setup& setup);
   Order leave_trial(const Setup& setup, bool is_lost);
   bool seeks_again(const Setup& setup) const;
@@ -350,9 +354,10 @@ class Conductor {
   std::uint32_t found_hash_ = 0;  ///< Of the states that were found first.
   std::uint32_t next_key_ = 0;    ///< Of the facet that is tried next; 0: all have been.
   std::uint8_t trial_count_ = 0;
-  bool other_breaks_ = false;   ///< Another solution was found, and with it a connection breaks.
-  bool is_trial_lost_ = false;  ///< A trial did not converge by the present method.
-  bool was_newton_ = false;     ///< is_newton_ before.
+  bool other_fails_ = false;     ///< Another solution was found that breaks a connection or falls.
+  bool is_by_one_foot_ = false;  ///< Those are sought that fall, hanging by one foot.
+  bool is_trial_lost_ = false;   ///< A trial did not converge by the present method.
+  bool was_newton_ = false;      ///< is_newton_ before.
   // Jacobi.
   std::uint16_t batch_ = 0;
   std::uint32_t check_at_ = 0;

@@ -134,8 +134,8 @@ struct Order {
 
   constexpr float b() const { return reals[2]; }
 
-  // kSeek
-  constexpr std::uint32_t key() const { return static_cast<std::uint32_t>(mass); }  ///< Of a facet.
+  // kSeek: of a facet, or of its edge.
+  constexpr std::uint32_t key() const { return static_cast<std::uint32_t>(mass); }
 
   // kNext; `count` supports.
   constexpr float ratio_error() const { return reals[0]; }  ///< Bound on that of load ratios.
@@ -184,6 +184,7 @@ inline constexpr std::uint8_t kIsHeld = 1;         ///< kNext: a module is fixed
 inline constexpr std::uint8_t kHasForces = 2;      ///< kNext: there is an equilibrium, ...
 inline constexpr std::uint8_t kIsUnilateral = 4;   ///< ... by the unilateral law.
 inline constexpr std::uint8_t kRemember = 1;       ///< kSeek: states in use are those found.
+inline constexpr std::uint8_t kOneFoot = 2;        ///< kSeek: one facet presses on an edge, alone.
 
 /// Does a kRenew tell of one plan more?
 constexpr bool is_new_plan(const Order& renew) {

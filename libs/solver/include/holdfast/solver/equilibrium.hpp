@@ -109,8 +109,8 @@ class EquilibriumSolver {
 
   /// Where solve() under the regularised law did not settle: seeks solutions of it. All states of
   /// up to three facets are tried on up to 128 modules, so that none is missed. Else Newton's
-  /// method starts with each facet open alone and each stuck alone, which finds one in three;
-  /// nothing is sought for more than eight facets or where systems are iterated.
+  /// method starts with each facet as the only one that presses, all over, on an edge or on a
+  /// corner; nothing is sought for more than eight facets or where systems are iterated.
   std::vector<Equilibrium> seek_settled(const ContactOptions& contact);
 
   /// Makes the solver ready for a law and returns the method that the next solve() under it begins
