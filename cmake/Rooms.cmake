@@ -50,11 +50,12 @@ function(holdfast_freestanding name)
   target_compile_options(holdfast_${name} PRIVATE -fno-exceptions -fno-rtti)
 endfunction()
 
-# Without optimisation, and the headers that all tests include compiled once. A compiler's launcher,
-# ccache, knows the files one by one and does without. The build that users get checks that each
-# test includes what it needs.
-function(holdfast_test_quickly_compiled target)
-  target_compile_options(${target} PRIVATE -O0)
+# Tests take longer to compile than what they test, so they are optimised less, and the headers that
+# all of them include are compiled once. A compiler's launcher, ccache, knows the files one by one
+# and does without. That each test includes what it needs is checked where it is compiled as
+# WebAssembly, or LONG with sanitizers.
+function(holdfast_test_quickly_compiled target level)
+  target_compile_options(${target} PRIVATE ${level})
   if(CMAKE_CXX_COMPILER_LAUNCHER)
     return()
   endif()
@@ -64,7 +65,7 @@ function(holdfast_test_quickly_compiled target)
     file(CONFIGURE OUTPUT ${empty} CONTENT "")
     add_library(${headers} OBJECT ${empty})
     holdfast_same_bits(${headers})
-    target_compile_options(${headers} PRIVATE -O0)
+    target_compile_options(${headers} PRIVATE ${level})
     target_link_libraries(${headers} PRIVATE GTest::gtest_main)
     target_precompile_headers(${headers} PRIVATE <gtest/gtest.h> <algorithm> <array> <cmath>
       <filesystem> <fstream> <functional> <map> <memory> <numeric> <optional> <random> <ranges>
@@ -75,8 +76,8 @@ endfunction()
 
 # holdfast_test(NAME [LONG] SOURCES ... LINKS ... [LABELS ...]): a test program, its tests found by
 # ctest. As WebAssembly it is one test in all, as starting Node takes longer than most of them.
-# Under sanitizers, what does not run LONG is compiled without optimisation, in half of the time;
-# the rooms that it tests are compiled as always.
+# What does not run LONG is compiled without optimisation under sanitizers, in half of the time; the
+# rooms that it tests are compiled as always.
 function(holdfast_test name)
   cmake_parse_arguments(TEST "LONG" "" "SOURCES;LINKS;LABELS" ${ARGN})
   if(NOT HOLDFAST_BUILD_TESTS)
@@ -87,8 +88,12 @@ function(holdfast_test name)
   set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/tests)
   target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR}/tests/support)
   target_link_libraries(${name} PRIVATE ${TEST_LINKS} GTest::gtest_main)
-  if(CMAKE_CXX_FLAGS MATCHES "-fsanitize" AND NOT TEST_LONG)
-    holdfast_test_quickly_compiled(${name})
+  if(CMAKE_CXX_FLAGS MATCHES "-fsanitize")
+    if(NOT TEST_LONG)
+      holdfast_test_quickly_compiled(${name} -O0)
+    endif()
+  elseif(CMAKE_BUILD_TYPE STREQUAL "Release" AND NOT EMSCRIPTEN)
+    holdfast_test_quickly_compiled(${name} -O1)
   endif()
   if(EMSCRIPTEN)
     target_compile_options(${name} PRIVATE -O1)
