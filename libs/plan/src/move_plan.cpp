@@ -9,6 +9,7 @@
 #include <string>
 #include <utility>
 
+#include "barring_floor.hpp"
 #include "move_judge.hpp"
 #include "shape_search.hpp"
 #include "surface_planner.hpp"
@@ -22,17 +23,10 @@ base::Error bad_input(std::string message) {
   return {.code = base::ErrorCode::kBadInput, .message = std::move(message), .where = {}};
 }
 
-/// Cells below the floor, unless a module hangs there in one of the shapes.
 MoveRule rule_of(const MoveTask& task) {
-  MoveRule rule{.pivots = task.pivots, .floor_z = task.start.support_z, .within = task.within};
-  for (const model::RobotSpec* spec : {&task.start, &task.target}) {
-    for (const Cell& cell : spec->existing) {
-      if (rule.floor_z && cell.z < *rule.floor_z) {
-        rule.floor_z.reset();
-      }
-    }
-  }
-  return rule;
+  return {.pivots = task.pivots,
+          .floor_z = barring_floor(task.start.support_z, task.start.existing, task.target.existing),
+          .within = task.within};
 }
 
 /// What is wrong with one of the two robots; `which` says which.

@@ -7,6 +7,7 @@
 #include <set>
 #include <utility>
 
+#include "barring_floor.hpp"
 #include "holdfast/base/lattice.hpp"
 #include "patience.hpp"
 
@@ -29,12 +30,9 @@ std::vector<Cell> sorted(std::vector<Cell> cells) {
 class HelpSearch {
  public:
   HelpSearch(const OrderTask& task, const HelpOptions& options)
-      : task_(task), options_(options), floor_z_(task.target.support_z) {
-    for (const Cell& cell : task.target.existing) {
-      if (floor_z_ && cell.z < *floor_z_) {
-        floor_z_.reset();
-      }
-    }
+      : task_(task),
+        options_(options),
+        floor_z_(barring_floor(task.target.support_z, task.target.existing)) {
     taken_.insert(task.target.existing.begin(), task.target.existing.end());
     list_cells();
   }
@@ -51,7 +49,7 @@ class HelpSearch {
 
   const OrderTask& task_;
   const HelpOptions& options_;
-  std::optional<std::int32_t> floor_z_;  ///< None if it bars nothing, as in ReachFinder.
+  std::optional<std::int32_t> floor_z_;
   std::set<Cell> taken_;
   std::vector<Cell> beside_;  ///< Free cells beside the target, ascending by layer.
   std::vector<Cell> below_;   ///< Those straight below a module, where the lattice has any.

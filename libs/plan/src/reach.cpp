@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <set>
 
+#include "barring_floor.hpp"
 #include "holdfast/base/lattice.hpp"
 
 namespace holdfast::plan {
@@ -36,7 +37,7 @@ const char* name(Reach reach) {
 
 ReachFinder::ReachFinder(const model::RobotSpec& target, ReachRule rule)
     : lattice_(target.lattice),
-      floor_z_(target.support_z),
+      floor_z_(barring_floor(target.support_z, target.existing)),
       obstacles_(target.obstacles),
       obstacle_index_(obstacles_),
       modules_(target.existing.size()),
@@ -47,9 +48,6 @@ ReachFinder::ReachFinder(const model::RobotSpec& target, ReachRule rule)
     modules_.insert(target.existing[i], static_cast<std::int32_t>(i));
     low_ = low_of(low_, target.existing[i]);
     high_ = high_of(high_, target.existing[i]);
-  }
-  if (floor_z_ && low_.z < *floor_z_) {
-    floor_z_.reset();
   }
   for (const model::Obstacle& obstacle : obstacles_) {
     const std::vector<Cell> box = {obstacle.from, obstacle.to};

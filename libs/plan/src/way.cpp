@@ -6,7 +6,10 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <ranges>
 #include <string>
+
+#include "barring_floor.hpp"
 
 namespace holdfast::plan {
 namespace {
@@ -45,15 +48,14 @@ bool WayFinder::is_staying(const Cell& cell) const {
   return robot_.find(cell) != RobotState::kNone && !left_.contains(cell);
 }
 
-/// Whether the floor bars the cell: no module is below it, neither before the step nor after.
+/// Whether the floor bars the cell, by the modules before the step and after.
 bool WayFinder::is_under_floor(const Cell& cell) const {
-  const std::optional<std::int32_t>& floor_z = robot_.surroundings().support_z;
-  const auto is_under = [&](const Cell& other) { return floor_z && other.z < *floor_z; };
-  return is_under(cell) && std::ranges::none_of(step_.attach, is_under) &&
-         std::ranges::none_of(step_.moves, is_under, &model::Move::to) &&
-         std::ranges::none_of(robot_.modules(), [&](const ModuleState& module) {
-           return module.is_there && is_under(module.cell);
-         });
+  const std::optional<std::int32_t>& support_z = robot_.surroundings().support_z;
+  return support_z && cell.z < *support_z &&
+         barring_floor(support_z, step_.attach,
+                       step_.moves | std::views::transform(&model::Move::to),
+                       robot_.modules() | std::views::filter(&ModuleState::is_there) |
+                           std::views::transform(&ModuleState::cell));
 }
 
 /// Of modules that stay, of those that leave elsewhere, of obstacles, and of the floor.
