@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# order_test.sh PROGRAM   holdfast order that finds none: what there is so far is left, whether time
-# runs out or somebody interrupts it, and every state of it is safe.
+# order_test.sh PROGRAM   holdfast order: what it says of a start, and, where it finds no order, that
+# what there is so far is left, whether time runs out or somebody interrupts it, every state safe.
 set -euo pipefail
 program=$1
 . "$(dirname "${BASH_SOURCE[0]}")/expect.sh"
@@ -19,6 +19,18 @@ assert steps and begin == int(sys.argv[2]), (begin, len(steps))
 assert 0 < end < 640 and (end < begin) == (sys.argv[3] == 'below'), end
 PYTHON
 }
+
+structure() { printf '{"format": "holdfast-structure", "version": 1, %s}' "$2" >"$1"; }
+
+# Of the start only modules count, and it says so.
+structure tower.json '"modules": [[0,0,0], [0,0,1], [0,0,2]]'
+structure other.json '"modules": [[0,0,0]], "support_z": -1, "oops": 1'
+structure planned.json '"modules": [[0,0,0]], "planned": [[0,0,1]]'
+expect_exit 0 order tower.json --from other.json
+expect_line err "other.json: note: /oops: the key 'oops' is unknown"
+expect_line err "other.json: note: only its modules are taken; support_z is the target's"
+expect_exit 65 order tower.json --from planned.json
+expect_line err 'planned.json: it has planned modules or steps'
 
 # No order of it is known, and no proof that there is none.
 "$program" generate portal 24 -o portal.json

@@ -50,6 +50,15 @@ std::optional<base::Cell> cell_of(const std::string& text) {
   return base::Cell{triple[0], triple[1], triple[2]};
 }
 
+/// What the file of the start says besides its modules, and the target otherwise; empty if nothing.
+std::string difference_of(const io::Document& start, const io::Document& target) {
+  return start.support_z != target.support_z                             ? "support_z"
+         : start.material != target.material                             ? "material"
+         : start.extension.obstacles != target.extension.obstacles       ? "obstacles"
+         : start.extension.gravity_m_s2 != target.extension.gravity_m_s2 ? "gravity_m_s2"
+                                                                         : "";
+}
+
 /// All cells of a document that is to be the start.
 base::Result<std::vector<base::Cell>> start_cells(const OrderArguments& options,
                                                   const io::Document& target) {
@@ -60,6 +69,16 @@ base::Result<std::vector<base::Cell>> start_cells(const OrderArguments& options,
   const auto read = io::read_document(text.value(), options.reading);
   if (!read) {
     return read.error();
+  }
+  print_notes(read.value().warnings, options.start);
+  if (io::step_count(read.value().document) > 0) {
+    return base::Error{base::ErrorCode::kBadInput,
+                       "it has planned modules or steps; allowed is a robot as it stands",
+                       {}};
+  }
+  if (const std::string other = difference_of(read.value().document, target); !other.empty()) {
+    print_notes({{fmt::format("only its modules are taken; {} is the target's", other)}},
+                options.start);
   }
   if (read.value().document.extension.lattice != target.extension.lattice) {
     return base::Error{base::ErrorCode::kBadInput, "its lattice is not that of the target", {}};
