@@ -55,16 +55,10 @@ class Team {
       }
       return;
     }
-    const auto part = [&](std::size_t begin, std::size_t end) {
+    hand_over(chunk_count, [&](std::size_t begin, std::size_t end) {
       end = first + end * kChunk;
       work(first + begin * kChunk, end < last ? end : last);
-    };
-    run(
-        chunk_count,
-        [](const void* context, std::size_t begin, std::size_t end) {
-          (*static_cast<decltype(&part)>(context))(begin, end);
-        },
-        &part);
+    });
   }
 
   /// Calls work(index) for each of `count` pieces of work that are worth a thread each.
@@ -80,12 +74,7 @@ class Team {
       pieces(0, count);
       return;
     }
-    run(
-        count,
-        [](const void* context, std::size_t begin, std::size_t end) {
-          (*static_cast<decltype(&pieces)>(context))(begin, end);
-        },
-        &pieces);
+    hand_over(count, pieces);
   }
 
   /// work(begin, end) of every chunk of [0, count), in their order.
@@ -122,7 +111,18 @@ class Team {
 
   static Crew* call(int thread_count);
 
-  /// Runs task(context, begin, end) on chunks that together are [0, chunk_count); waits for all.
+  /// Runs work(begin, end) on chunks that together are [0, chunk_count); waits for all.
+  template <class Work>
+  void hand_over(std::size_t chunk_count, const Work& work) {
+    run(
+        chunk_count,
+        [](const void* context, std::size_t begin, std::size_t end) {
+          (*static_cast<const Work*>(context))(begin, end);
+        },
+        &work);
+  }
+
+  /// The same by task(context, begin, end).
   void run(std::size_t chunk_count, Task task, const void* context);
 
   std::unique_ptr<Crew, Dismiss> crew_;  ///< None if there is one thread only.
