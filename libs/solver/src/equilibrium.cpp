@@ -178,10 +178,15 @@ void EquilibriumSolver::seek_others(Equilibrium& settled) {
 }
 
 std::vector<Equilibrium> EquilibriumSolver::seek_settled(const ContactOptions& contact) {
-  constexpr std::size_t kFacetCountMax = 8;
+  constexpr std::size_t kModuleCountTried = 128;
   choice_->prepare(contact.law);
   LinearSystem* const system = choice_->system();
-  if (system == nullptr || !system->is_exact() || system->facets().size() > kFacetCountMax) {
+  if (system == nullptr || !system->is_exact()) {
+    return {};
+  }
+  const bool is_small = system->robot().modules().size() <= kModuleCountTried;
+  const std::size_t facet_count_max = is_small ? 24 : 8;
+  if (system->facets().size() > facet_count_max) {
     return {};
   }
   system->set_law(contact);
@@ -193,10 +198,8 @@ std::vector<Equilibrium> EquilibriumSolver::seek_settled(const ContactOptions& c
     take_contact(*system, one);
   };
   constexpr std::size_t kFacetCountTried = 3;
-  constexpr std::size_t kModuleCountTried = 128;
   RegularisedContact contact_search(*system, options_);
-  if (system->facets().size() <= kFacetCountTried &&
-      system->robot().modules().size() <= kModuleCountTried) {
+  if (is_small && system->facets().size() <= kFacetCountTried) {
     contact_search.try_all_states(take);
   } else {
     contact_search.find_from_one_foot(take);

@@ -110,7 +110,8 @@ class EquilibriumSolver {
   /// Where solve() under the regularised law did not settle: seeks solutions of it. All states of
   /// up to three facets are tried on up to 128 modules, so that none is missed. Else Newton's
   /// method starts with each facet as the only one that presses, all over, on an edge or on a
-  /// corner; nothing is sought for more than eight facets or where systems are iterated.
+  /// corner; nothing is sought for more than 24 facets, or eight with more than 128 modules, or
+  /// where systems are iterated.
   std::vector<Equilibrium> seek_settled(const ContactOptions& contact);
 
   /// Makes the solver ready for a law and returns the method that the next solve() under it begins
