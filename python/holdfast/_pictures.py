@@ -76,14 +76,21 @@ def states(robot: Robot) -> Iterator[Robot]:
     steps += [{'attach': step} for step in document.pop('later_steps', [])]
     steps += document.pop('steps', [])
     document.pop('known_answer', None)
+    loads = document.pop('loads', [])
 
     def state() -> Robot:
-        text = json.dumps({**document, 'modules': list(modules.values())})
+        carried = [load for load in loads if _cell(load) in modules]
+        text = json.dumps({**document, 'modules': list(modules.values()),
+                           **({'loads': carried} if carried else {})})
         return Robot.from_text(text, name=robot.name)
     yield state()
     for step in steps:
-        for cell in step.get('detach', []):
-            del modules[_cell(cell)]
+        gone = {_cell(cell) for cell in step.get('detach', [])}
+        ways = {_cell(move['from']): move['to'] for move in step.get('move', [])}
+        loads = [{**load, 'cell': ways.get(_cell(load), load['cell'])} for load in loads
+                 if _cell(load) not in gone]
+        for cell in gone:
+            del modules[cell]
         moved = {tuple(move['to']): modules.pop(tuple(move['from']))
                  for move in step.get('move', [])}
         for cell, module in moved.items():

@@ -153,7 +153,8 @@ class Report:
     def limit_load(self) -> Optional[dict[str, Any]]:
         """The factor beyond which no forces balance: ``outcome``, ``low``, ``high``.
 
-        The outcome is found, unbounded or stopped. None if it was not sought.
+        The outcome is found, unbounded or stopped; ``high`` is None where none is known. None if it
+        was not sought.
         """
         return self._held.limit_load
 

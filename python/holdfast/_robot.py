@@ -74,7 +74,11 @@ def _head(options: Mapping[str, Any], supports: Any) -> str:
     """Holdfast JSON with all but the modules; empty if all is as it is by default."""
     said = {key: value for key, value in options.items() if value is not None}
     if isinstance(supports, Mapping):
-        said.update(supports)
+        for key, value in supports.items():
+            if key not in ('support_z', 'floor', 'obstacles') or key in said:
+                raise _core.Error(f'supports: found {key!r}; allowed are support_z, floor and '
+                                  'obstacles, each once')
+            said[key] = value
     elif supports is None:
         said['support_z'] = None
     elif supports != 0:
@@ -82,6 +86,12 @@ def _head(options: Mapping[str, Any], supports: Any) -> str:
     if not said:
         return ''
     return _json({'format': 'holdfast-structure', 'version': 2, 'modules': [], **said})
+
+
+def _cell_of(entry: Any) -> tuple[Any, ...]:
+    """The cell of what has one in holdfast JSON; empty if it has none."""
+    cell = entry.get('cell') if isinstance(entry, dict) else entry
+    return tuple(cell) if isinstance(cell, list) else ()
 
 
 def _own(cells: Any, planned: Any, masses: Any, kind_of: Any) -> list[tuple[int, int, str, float]]:
@@ -220,6 +230,10 @@ class Robot:
             raise _core.Error('voxels: expected are 0 (nothing), 1 (a module), 2 (a planned one) '
                               f'and 3 (a fixed one), found are {array.min()} to {array.max()}')
         places = np.argwhere((array == 1) | (array == 3))
+        for value, key in ((2, 'planned'), (3, 'fixed')):
+            if (array == value).any() and key in options:
+                raise _core.Error(f'voxels: a {value} says what is {key}, and so does the option; '
+                                  'allowed is one of them')
         if (array == 2).any():
             options.setdefault('planned', np.argwhere(array == 2) + np.asarray(origin))
         if (array == 3).any():
@@ -313,10 +327,28 @@ class Robot:
         >>> Robot([[0, 0, 0]]).with_steps([{'attach': [[0, 0, 1]]}]).step_count
         1
         """
-        document = json.loads(self.planning([]).json())
+        document = json.loads(self.json())
+        own_plan = [document.pop('planned', []), *document.pop('later_steps', [])]
+        own = [entry for step in own_plan for entry in step
+               if isinstance(entry, dict) and not entry.keys() <= {'cell', 'color', 'attributes'}]
+        document.pop('known_answer', None)
         document['version'] = 2
         document['steps'] = list(steps)
-        return self.from_text(_json(document), name=self.name)
+        text = _json(document)
+        document = json.loads(text)
+        attached = {_cell_of(cell) for step in document['steps'] if isinstance(step, dict)
+                    and isinstance(step.get('attach'), list) for cell in step['attach']}
+        for entry in own:
+            if _cell_of(entry) in attached:
+                raise _core.Error(f'the planned module {_cell_of(entry)} has a mass or a kind of '
+                                  'its own, which steps cannot say; allowed is a robot without it')
+        there = {_cell_of(module) for module in document['modules']} | attached
+        document['loads'] = [load for load in document.get('loads', []) if _cell_of(load) in there]
+        made = self.from_text(_json(document), name=self.name)
+        for warning in made.warnings:
+            if warning.startswith('/steps/'):  # In a file an unknown key may be somebody else's.
+                raise _core.Error(warning)
+        return made
 
     @property
     def step_count(self) -> int:

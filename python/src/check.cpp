@@ -155,8 +155,7 @@ py::dict stability(const CheckedStructure& check) {
   out["is_stable_by_model"] =
       found.model.is_settled ? py::object(py::bool_(found.model.is_stable)) : py::none();
   const limit::RigidStability& rigid = found.rigid;
-  const bool is_asked = found.stability_rule == verdict::StabilityRule::kContactForces;
-  out["rigid"] = is_asked ? py::object(py::str(limit::name(rigid.answer))) : py::none();
+  out["rigid"] = limit::name(rigid.answer);
   out["friction_needed"] = rigid.friction_needed;
   out["tilt_margin_deg"] = rigid.tilt_margin_deg;
   out["motion"] = rigid.motion ? py::object(py::str(limit::text(*rigid.motion))) : py::none();
@@ -179,8 +178,9 @@ py::object limit_load(const CheckedStructure& check) {
   }
   py::dict out;
   out["outcome"] = limit::name(check.result.limit->outcome);
+  const double high = check.result.limit->high;
   out["low"] = check.result.limit->low;
-  out["high"] = check.result.limit->high;
+  out["high"] = high < limit::kFactorMax ? py::object(py::float_(high)) : py::none();
   return out;
 }
 

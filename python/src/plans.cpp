@@ -180,7 +180,8 @@ py::list order_batches(const io::OrderReport& report) {
 py::array order_judgements(const io::OrderReport& report) {
   std::vector<JudgementRow> rows;
   for (const plan::Judgement& judgement : report.result.order.judgements) {
-    rows.push_back(row_of(judgement));
+    JudgementRow& row = rows.emplace_back(row_of(judgement));
+    row.load_ratio_max = judgement.is_bound ? kNone : row.load_ratio_max;
   }
   if (report.is_reversed) {
     std::ranges::reverse(rows);

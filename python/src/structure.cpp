@@ -107,19 +107,50 @@ SharedStructure make(const py::handle& cells, const py::handle& planned, const p
   return share(without_gil([&] { return make_structure(std::move(document)); }));
 }
 
-/// The same robot with other planned modules, and no further steps.
+/// The kinds and masses of existing modules, and those of planned modules that are planned again.
+std::vector<io::OwnParameters> own_of(const io::Document& document,
+                                      const std::vector<base::Cell>& planned) {
+  std::vector<io::OwnParameters> kept;
+  for (io::OwnParameters own : document.extension.own) {
+    if (own.step > 0) {
+      const auto again = std::ranges::find(planned, document.steps[own.step - 1][own.module].cell);
+      if (again == planned.end()) {
+        continue;
+      }
+      own.step = 1;
+      own.module = static_cast<std::size_t>(again - planned.begin());
+    }
+    kept.push_back(std::move(own));
+  }
+  return kept;
+}
+
+/// Whether an existing or planned module of the first step is in the cell.
+bool is_module(const io::Document& document, const base::Cell& cell) {
+  return std::ranges::find(document.modules, cell, &io::ModuleEntry::cell) !=
+             document.modules.end() ||
+         (!document.steps.empty() &&
+          std::ranges::find(document.steps.front(), cell, &io::PlannedEntry::cell) !=
+              document.steps.front().end());
+}
+
+/// The same robot with other planned modules, and no further steps. Those that are planned again
+/// keep their kinds, masses and loads.
 SharedStructure with_planned(const Structure& structure, const py::handle& planned) {
   io::Document document = structure.document;
+  const auto cells = cells_of(planned, "planned");
+  document.extension.own = own_of(document, cells);
+  document.known_answer.reset();
   document.steps.clear();
   document.extension.plan.clear();
-  std::erase_if(document.extension.own, [](const io::OwnParameters& own) { return own.step > 0; });
-  const auto cells = cells_of(planned, "planned");
   if (!cells.empty()) {
     io::Step& step = document.steps.emplace_back(cells.size());
     for (std::size_t i = 0; i < cells.size(); ++i) {
       step[i].cell = cells[i];
     }
   }
+  std::erase_if(document.extension.payloads,
+                [&](const model::Payload& payload) { return !is_module(document, payload.cell); });
   return share(without_gil([&] { return make_structure(std::move(document), structure.name); }));
 }
 
@@ -127,6 +158,7 @@ SharedStructure with_planned(const Structure& structure, const py::handle& plann
 SharedStructure attached(const Structure& structure) {
   io::Document document = structure.document;
   if (!document.steps.empty()) {
+    document.known_answer.reset();
     const std::size_t count = document.modules.size();
     for (const io::PlannedEntry& entry : document.steps.front()) {
       document.modules.push_back(

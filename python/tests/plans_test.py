@@ -132,3 +132,47 @@ def test_emulation_says_what_it_needs(tmp_path):
     """With firmware the emulator's own tests are run; here: clear words without."""
     with pytest.raises(holdfast.Error, match='Unicorn|firmware|no such|image'):
         Robot([[0, 0, 0]]).emulate(image=tmp_path / 'absent.elf')
+
+
+def test_steps_with_unknown_keys_are_refused():
+    for plan in ([{'add': [[0, 0, 1]]}], [{'attach': [[0, 0, 1]], 'speed': 3}]):
+        with pytest.raises(holdfast.Error, match='unknown'):
+            holdfast.steps(Robot([[0, 0, 0]]), plan)
+    with pytest.raises(holdfast.Error, match='/steps/0'):
+        holdfast.steps(Robot([[0, 0, 0]]), [{'attach': 3}])
+
+
+def test_a_plan_of_its_own_keeps_masses_and_loads():
+    heavy = Robot([[0, 0, 0], [0, 0, 1]], planned=[[1, 0, 1]], masses={(1, 0, 1): 2.0})
+    assert heavy.check().verdict == holdfast.Verdict.UNSTABLE
+    assert heavy.planning([[-1, 0, 0], [1, 0, 1]]).planning(heavy.planned).check() \
+        .verdict == holdfast.Verdict.UNSTABLE
+    assert heavy.planning([[1, 0, 0]]).check().verdict == holdfast.Verdict.SAFE
+    with pytest.raises(holdfast.Error, match='mass or a kind'):
+        holdfast.steps(heavy, [{'attach': [[1, 0, 1]]}])
+    loaded = Robot([[0, 0, 0], [0, 0, 1]], planned=[[1, 0, 1]], loads={(1, 0, 1): (0, 0, -20)})
+    assert holdfast.steps(loaded, [{'attach': [[1, 0, 1]]}]).verdict \
+        == holdfast.steps(loaded).verdict == holdfast.Verdict.UNSTABLE
+    assert loaded.planning([]).check().verdict == holdfast.Verdict.SAFE
+    assert holdfast.steps(loaded, [{'attach': [[0, 0, 2]]}]).verdict == holdfast.Verdict.SAFE
+
+
+def test_loads_move_and_leave_with_their_modules():
+    robot = Robot([[0, 0, 0], [1, 0, 0], [2, 0, 0]], loads={(2, 0, 0): (0, 0, -1)})
+    plan = [{'move': [{'from': (2, 0, 0), 'to': (1, 0, 1)}]}, {'detach': [(1, 0, 1)]}]
+    steps = holdfast.steps(robot, plan)
+    from holdfast._pictures import states
+    _, moved, left = states(steps.robot)
+    assert moved.check().load_ratio_max == pytest.approx(steps.stages['load_ratio_max'][0, 2])
+    assert 'loads' not in left.json()
+    holdfast.animate(holdfast.order(robot))
+
+
+def test_a_bound_is_no_load_ratio():
+    order = holdfast.order(Robot([[0, 0, 0], [-1, 0, 0]], planned=[[0, -1, 0], [0, -2, 0]],
+                                 fixed=[[0, 0, 0]]))
+    found = order.judgements['load_ratio_max'][1:]
+    exact = holdfast.steps(order.robot()).stages['load_ratio_max'][:, 2]
+    known = ~np.isnan(found)
+    assert known.any()
+    assert found[known] == pytest.approx(exact[known], rel=1e-6)

@@ -194,3 +194,21 @@ def test_the_catalogue():
     assert len(holdfast.generate('cube', 3)) == 27
     with pytest.raises(holdfast.Error, match='no family'):
         holdfast.generate('sphere', 3)
+
+
+def test_what_is_said_twice_is_refused():
+    cells = [[0, 0, 0], [1, 0, 0]]
+    with pytest.raises(holdfast.Error, match='supports'):
+        Robot(cells, obstacles=[{'cells': [[2, 0, 0]]}], supports={'obstacles': []})
+    with pytest.raises(holdfast.Error, match='supports'):
+        Robot(cells, supports={'gravity_m_s2': [0, 0, 1]})
+    with pytest.raises(holdfast.Error, match='voxels'):
+        Robot.from_voxels(np.array([[[3, 1]]]), fixed=None)
+
+
+def test_another_robot_has_no_known_answer():
+    robot = Robot.from_text('{"format": "holdfast-structure", "version": 1, "modules": [[0,0,0]],'
+                            ' "planned": [[0,0,1]], "known_answer": {"verdict": "safe"}}')
+    assert 'known_answer' in robot.json()
+    for other in (robot.attached(), robot.planning([]), robot.with_steps([])):
+        assert 'known_answer' not in other.json()

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# order_test.sh PROGRAM   holdfast order: what it says of a start, and, where it finds no order, that
-# what there is so far is left, whether time runs out or somebody interrupts it, every state safe.
+# order_test.sh PROGRAM   holdfast order: what it says of a start; and, where it finds no order, that
+# what there is is left, whether time runs out or somebody interrupts it, every state safe.
 set -euo pipefail
 program=$1
 . "$(dirname "${BASH_SOURCE[0]}")/expect.sh"

@@ -352,8 +352,8 @@ verdict::Verdict worst_verdict(const SimulatedSteps& steps) {
       return change.kept.answer.verdict == verdict;
     });
   };
-  for (const agent::Verdict verdict : {agent::Verdict::kNone, agent::Verdict::kUndecided,
-                                       agent::Verdict::kUnstable, agent::Verdict::kOverload}) {
+  for (const agent::Verdict verdict : {agent::Verdict::kUnstable, agent::Verdict::kOverload,
+                                       agent::Verdict::kNone, agent::Verdict::kUndecided}) {
     if (has(verdict)) {
       return to_verdict(verdict);
     }

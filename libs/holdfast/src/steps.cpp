@@ -19,6 +19,15 @@ io::StepsEntry entry_of(const StepsFile& file, const StepsResult& result) {
           .seconds = result.seconds};
 }
 
+/// For an attribute in XML.
+std::string escaped(const std::string& text) {
+  std::string out;
+  for (const char c : text) {
+    out += c == '&' ? "&amp;" : c == '<' ? "&lt;" : c == '"' ? "&quot;" : std::string(1, c);
+  }
+  return out;
+}
+
 }  // namespace
 
 base::Result<StepsFile> load_steps(const std::filesystem::path& path,
@@ -105,7 +114,7 @@ class Series {
         return error;
       }
       entries_ += fmt::format("    <DataSet timestep=\"{}\" part=\"{}\" file=\"{}\"/>\n", time_,
-                              part, name);
+                              part, escaped(name));
     }
     ++time_;
     return std::nullopt;

@@ -13,10 +13,11 @@ namespace {
 constexpr double kGridPxMin = 9;
 constexpr double kNumberPxMin = 25;
 
-/// 1, 2, 5, 10, 20... cells, so that `px` apart.
+/// 1, 2, 5, 10, 20... cells, so that `px` apart; no more than leave room for a sum of two.
 std::int32_t step_for(double edge_px, double px) {
+  constexpr std::int32_t kStepMax = 500'000'000;
   std::int32_t step = 1;
-  for (int i = 0; step * edge_px < px; ++i) {
+  for (int i = 0; step * edge_px < px && step < kStepMax; ++i) {
     step = i % 3 == 1 ? step / 2 * 5 : step * 2;
   }
   return step;

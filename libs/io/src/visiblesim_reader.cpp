@@ -194,6 +194,18 @@ void read_world(XmlReading& reading, const pugi::xml_node& world, const ReadOpti
   }
 }
 
+/// What stands beside the root would go unread.
+void expect_nothing_beside(XmlReading& reading, const pugi::xml_node& tree) {
+  for (const pugi::xml_node& child : tree.children()) {
+    if (is_one_of(child.name(), {"parameters", "world"})) {
+      reading.fail(child, fmt::format("the element <{}> is beside <{}>; allowed is one within it",
+                                      child.name(), kRootElement));
+    } else if (std::string_view(child.name()) != kRootElement) {
+      reading.warn_of_unknown_child(child, kRootElements);
+    }
+  }
+}
+
 void read_roots(XmlReading& reading, const pugi::xml_node& tree, const ReadOptions& options) {
   for (const pugi::xml_node& child : tree.children()) {
     if (!is_one_of(child.name(), {"parameters", "world"})) {
@@ -231,6 +243,9 @@ base::Result<ReadDocument> read_visiblesim(std::string_view text, const ReadOpti
   reading.parse(tree);
   if (!reading.has_failed()) {
     const pugi::xml_node root = only_child(reading, tree, kRootElement);
+    if (root) {
+      expect_nothing_beside(reading, tree);
+    }
     read_roots(reading, root ? root : tree, options);
   }
   return std::move(reading).finish();

@@ -239,7 +239,12 @@ void add_own_element(pugi::xml_node world, const Document& document, const base:
     }
   }
   add_if_any(node, "robot", document.extension.robot);
-  if (document.extension.lattice != default_lattice(document.extension.robot)) {
+  // Blocks of some sizes would be taken for a simulated module's, of another lattice.
+  const bool is_guessed = document.extension.robot.empty() &&
+                          std::ranges::any_of(document.block_list, [](const auto& attribute) {
+                            return attribute.first == "blockSize";
+                          });
+  if (is_guessed || document.extension.lattice != default_lattice(document.extension.robot)) {
     add(node, "lattice", std::string(lattice_name(document.extension.lattice)));
   }
   if (is_grid_computed) {

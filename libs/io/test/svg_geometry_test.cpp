@@ -449,6 +449,14 @@ TEST(SvgGeometry, a_large_plate_is_a_small_file) {
   }
 }
 
+TEST(SvgGeometry, a_foot_of_any_width_is_drawn) {
+  model::RobotSpec spec{.existing = box(2, 1, 1)};
+  spec.material.pitch_mm = 1;
+  spec.material.facet_mm = 1e12;
+  const model::Robot robot = make(spec);
+  EXPECT_EQ(Picture(write_svg(robot, without_loads(robot), "wide")).faces("modules").size(), 4U);
+}
+
 TEST(SvgGeometry, a_gradient_on_a_large_plate_is_drawn_completely) {
   // The area of all polygons is that of the visible faces: 60 * 60 tops, 60 left, 60 right, each a
   // rhombus of base * height = edge^2 sin 60.

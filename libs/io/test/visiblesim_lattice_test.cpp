@@ -221,6 +221,16 @@ TEST(VisibleSimObstacles, are_found_in_the_scenery_of_older_files) {
   EXPECT_EQ(document.scenery.size(), 1U);
 }
 
+TEST(VisibleSimLattice, cubes_as_large_as_other_modules_stay_cubes) {
+  for (const char* size : {"50,50,12.5", "1,5,1"}) {
+    Document document =
+        accepted(read_json(document_test::json(R"("modules": [[0,0,0], [1,0,0]])"))).document;
+    document.block_list = {{"blockSize", size}};
+    const Document again = accepted(read_visiblesim(write_visiblesim(document))).document;
+    EXPECT_EQ(again.extension.lattice, base::kCubic) << size;
+  }
+}
+
 TEST(VisibleSimObstacles, say_what_is_wrong) {
   const auto bad = [](std::string_view obstacle, std::string_view message) {
     const base::Error error =

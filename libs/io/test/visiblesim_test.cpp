@@ -48,6 +48,17 @@ bool contains(const std::string& text, std::string_view part) {
   return text.find(part) != std::string::npos;
 }
 
+TEST(VisibleSim, parameters_beside_the_root_do_not_go_unread) {
+  const std::string robot = "<vs>" + world("<block position=\"1,1,1\"/>") + "</vs>";
+  EXPECT_EQ(read("<!-- a comment -->" + robot).document.modules.size(), 1U);
+  for (const char* beside : {"<parameters globalMass=\"7\"/>", "<world/>"}) {
+    const auto error = read_visiblesim(robot + beside);
+    ASSERT_FALSE(error) << beside;
+    EXPECT_TRUE(contains(error.error().message, "is beside <vs>")) << error.error().message;
+  }
+  EXPECT_TRUE(contains(warning_of(robot + "<robot/>"), "'robot' is unknown"));
+}
+
 TEST(VisibleSim, is_read_with_two_roots_comments_and_a_byte_order_mark) {
   const ReadDocument result = read(
       "\xEF\xBB\xBF<?xml version=\"1.0\" standalone=\"no\" ?>\n"

@@ -15,7 +15,7 @@ namespace holdfast::plan {
 /// the robot.
 template <class... Cells>
 std::optional<std::int32_t> barring_floor(std::optional<std::int32_t> support_z,
-                                          Cells&&... modules) {
+                                          const Cells&... modules) {
   const auto is_below = [&](const base::Cell& cell) { return cell.z < *support_z; };
   const bool ends = support_z && (std::ranges::any_of(modules, is_below) || ...);
   return ends ? std::nullopt : support_z;

@@ -6,8 +6,8 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <ranges>
 #include <string>
+#include <vector>
 
 #include "barring_floor.hpp"
 
@@ -51,11 +51,19 @@ bool WayFinder::is_staying(const Cell& cell) const {
 /// Whether the floor bars the cell, by the modules before the step and after.
 bool WayFinder::is_under_floor(const Cell& cell) const {
   const std::optional<std::int32_t>& support_z = robot_.surroundings().support_z;
-  return support_z && cell.z < *support_z &&
-         barring_floor(support_z, step_.attach,
-                       step_.moves | std::views::transform(&model::Move::to),
-                       robot_.modules() | std::views::filter(&ModuleState::is_there) |
-                           std::views::transform(&ModuleState::cell));
+  if (!support_z || cell.z >= *support_z) {
+    return false;
+  }
+  std::vector<Cell> before_and_after = step_.attach;
+  for (const model::Move& move : step_.moves) {
+    before_and_after.push_back(move.to);
+  }
+  for (const ModuleState& module : robot_.modules()) {
+    if (module.is_there) {
+      before_and_after.push_back(module.cell);
+    }
+  }
+  return barring_floor(support_z, before_and_after).has_value();
 }
 
 /// Of modules that stay, of those that leave elsewhere, of obstacles, and of the floor.
