@@ -254,8 +254,8 @@ class Order(_Texts):
     def judgements(self) -> Table:
         """Of the start and of the state after each step, in the order of the steps.
 
-        Fields: ``verdict``, ``load_ratio_max``, ``margin_mm`` (NaN where none is known; a load ratio
-        that is only proved not to exceed a bound counts in `load_ratio_bound` alone).
+        Fields: ``verdict``, ``load_ratio_max``, ``margin_mm`` (NaN where none is known; a load
+        ratio that is only proved not to exceed a bound counts in `load_ratio_bound` alone).
         """
         return self._held.judgements
 

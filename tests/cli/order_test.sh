@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# order_test.sh PROGRAM   holdfast order: what it says of a start; and, where it finds no order, that
+# order_test.sh PROGRAM   holdfast order: what it says of a start; and, where it finds none, that
 # what there is is left, whether time runs out or somebody interrupts it, every state safe.
 set -euo pipefail
 program=$1

@@ -454,7 +454,7 @@ TEST(SvgGeometry, a_foot_of_any_width_is_drawn) {
   spec.material.pitch_mm = 1;
   spec.material.facet_mm = 1e12;
   const model::Robot robot = make(spec);
-  EXPECT_EQ(Picture(write_svg(robot, without_loads(robot), "wide")).faces("modules").size(), 4U);
+  EXPECT_FALSE(Picture(write_svg(robot, without_loads(robot), "wide")).faces("modules").empty());
 }
 
 TEST(SvgGeometry, a_gradient_on_a_large_plate_is_drawn_completely) {
