@@ -543,6 +543,8 @@ END
 expect_line steps.svg '^</svg>$'
 expect_line steps.html '^</html>$'
 expect_line steps.pvd 'timestep="6" part="0" file="steps_6\.vtu"'
+expect_exit 64 steps "$walk" --json steps_1.vtu --vtk steps.pvd # Of the series' files.
+expect_exit 64 steps "$walk" --vtk -
 [ -s steps_0.vtu ] || fault "no .vtu file of the start"
 expect_exit 0 steps "$walk" --quiet
 [ -s out ] && fault "--quiet prints: $(cat out)"

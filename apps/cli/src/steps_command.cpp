@@ -1,6 +1,9 @@
 // SPDX-FileCopyrightText: The holdfast authors
 // SPDX-License-Identifier: Apache-2.0
+#include <filesystem>
 #include <memory>
+#include <string>
+#include <system_error>
 
 #include "commands.hpp"
 #include "file_clash.hpp"
@@ -83,6 +86,36 @@ int run_certificate(const StepsArguments& options) {
   return kExitSafe;
 }
 
+/// Whether a file may be one of the series: STEM_3.vtu or STEM_3_1.vtu beside STEM.pvd.
+bool is_in_series(const std::filesystem::path& file, const std::filesystem::path& series) {
+  const auto folder = [](const std::filesystem::path& path) {
+    std::error_code ignored;
+    return std::filesystem::weakly_canonical(std::filesystem::absolute(path).parent_path(),
+                                             ignored);
+  };
+  const std::string name = file.filename().string();
+  const std::string begin = series.stem().string() + "_";
+  return name.starts_with(begin) && name.ends_with(".vtu") &&
+         name.find_first_not_of("0123456789_", begin.size()) == name.size() - 4 &&
+         folder(file) == folder(series);
+}
+
+/// A series is several files, which must not be the input, nor one another output.
+bool complain_of_series(const StepsArguments& options) {
+  if (options.vtk == "-") {
+    fmt::print(stderr, "holdfast: --vtk -: a series is several files; expected is a name\n");
+    return true;
+  }
+  for (const std::string& file : {options.file, options.json, options.svg, options.html}) {
+    if (!options.vtk.empty() && is_in_series(file, options.vtk)) {
+      fmt::print(stderr, "holdfast: {}: --vtk {} may write a file of this name\n",
+                 io::one_line(file), io::one_line(options.vtk));
+      return true;
+    }
+  }
+  return false;
+}
+
 int run(const StepsArguments& options) {
   if (options.is_certificate) {
     return run_certificate(options);
@@ -91,7 +124,8 @@ int run(const StepsArguments& options) {
   if (complain_of_clash(inputs, {{"--json", options.json},
                                  {"--svg", options.svg},
                                  {"--html", options.html},
-                                 {"--vtk", options.vtk}})) {
+                                 {"--vtk", options.vtk}}) ||
+      complain_of_series(options)) {
     return kExitUsage;
   }
   const auto file = load_steps(options.file, options.reading);
