@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <new>
 #include <utility>
 #include <vector>
@@ -19,8 +20,28 @@ namespace {
 /// More elements cannot be a structure of kModuleCountMax modules.
 constexpr std::size_t kElementCountMax = model::kModuleCountMax + 10'000;
 
-/// Depth and number of elements, in one pass before the parser takes memory for them. Goes from '<'
-/// to '<'; whether the text is well-formed is left to the parser.
+/// The entity at the beginning of a text, from '&' to ';'; empty if it is a mere ampersand.
+std::string_view entity_of(std::string_view text) {
+  std::size_t i = 1;
+  const auto is_part = [](char c) {
+    return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '#';
+  };
+  while (i < text.size() && is_part(text[i])) {
+    ++i;
+  }
+  return i > 1 && i < text.size() && text[i] == ';' ? text.substr(0, i + 1) : std::string_view();
+}
+
+/// Whether the parser reads an entity as what it stands for. It knows none that a file declares,
+/// and ends a value at a character 0.
+bool is_read(std::string_view entity) {
+  constexpr std::string_view kNamed[] = {"&lt;", "&gt;", "&amp;", "&quot;", "&apos;"};
+  return entity.starts_with("&#") ? entity.find_first_not_of("&#xX0;") != std::string_view::npos
+                                  : std::ranges::find(kNamed, entity) != std::end(kNamed);
+}
+
+/// Depth and number of elements, and entities in attributes, in one pass before the parser takes
+/// memory for them. Goes from '<' to '<'; whether the text is well-formed is left to the parser.
 class ShapeCheck {
  public:
   explicit ShapeCheck(std::string_view text) : text_(text) {}
@@ -32,6 +53,12 @@ class ShapeCheck {
       if (depth_ > kNestingMax) {
         return syntax_error(text_, begin,
                             fmt::format("elements nested deeper than the {} allowed", kNestingMax));
+      }
+      if (unread_at_ < text_.size()) {
+        return syntax_error(text_, unread_at_,
+                            fmt::format("the entity {} is unknown, allowed are &lt; &gt; &amp; "
+                                        "&quot; &apos; and numbers of characters but 0",
+                                        entity_of(text_.substr(unread_at_))));
       }
       if (count_ > kElementCountMax) {
         return syntax_error(text_, begin,
@@ -74,6 +101,9 @@ class ShapeCheck {
       const char c = text_[i];
       if (quote != '\0') {
         quote = c == quote ? '\0' : quote;
+        if (c == '&') {
+          note_entity(i);
+        }
       } else if (c == '"' || c == '\'') {
         quote = c;
       } else if (c == '>' || c == '<') {
@@ -83,9 +113,17 @@ class ShapeCheck {
     }
   }
 
+  void note_entity(std::size_t i) {
+    const std::string_view entity = entity_of(text_.substr(i));
+    if (!entity.empty() && !is_read(entity)) {
+      unread_at_ = std::min(unread_at_, i);
+    }
+  }
+
   std::string_view text_;
   int depth_ = 0;
   std::size_t count_ = 0;
+  std::size_t unread_at_ = std::string_view::npos;  ///< The first entity that is not read.
 };
 
 bool is_text(const pugi::xml_node& node) {

@@ -169,6 +169,10 @@ TEST(BadInput, that_breaks_the_rules_of_xml_is_refused_with_its_line) {
   expect_refusal({"<world>\n<blockList>\n</world>", "line 3", "no well-formed XML"});
   expect_refusal({"<world\x01>", "line 1", "no well-formed XML"});
   expect_refusal({"<world><blockList/>", "line 1", "no well-formed XML"});
+  expect_refusal(
+      {"<world>\n<block fixed=\"&f;\"/></world>", "line 2", "the entity &f; is unknown"});
+  expect_refusal({"<world name='a&#0;b'/>", "line 1", "the entity &#0; is unknown"});
+  expect_refusal({"<world name='a&#x00;b'/>", "line 1", "the entity &#x00; is unknown"});
   expect_refusal({"<!DOCTYPE html><html><body/></html>", "", "no element <world>"});
   expect_refusal({"<parameters/>\n<world/>", "line 2", "<blockList>"});
   expect_refusal({xml("") + "\n<world/>", "line 4", "a second <world>"});
