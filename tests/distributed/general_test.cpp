@@ -232,7 +232,7 @@ TEST(DistributedGeneral, robots_that_were_undecided_are_decided_like_the_exact_a
 /// The exact law holds them; by another solution of the paper's law they fall, hanging by one foot.
 /// All are trees but the first, in which a facet in another state leads to it.
 TEST(DistributedGeneral, is_undecided_where_another_solution_falls) {
-  for (const std::uint64_t seed : {17, 108, 113, 118}) {
+  for (const std::uint64_t seed : {17U, 108U, 113U, 118U}) {
     const auto robot = model::Robot::create(test::general_robot(base::kCubic, seed)).value();
     const test::Comparison comparison = test::compare(robot, {.seed = seed});
     EXPECT_EQ(comparison.exact, verdict::Verdict::kUndecided) << seed;
