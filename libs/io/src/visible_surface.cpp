@@ -150,6 +150,10 @@ const Triangle* VisibleSurface::find(std::int32_t u, std::int32_t middle) const 
 }
 
 bool VisibleSurface::covers(double u, double v) const {
+  constexpr double kFarthest = 1e8;  // No module is, and a place still is a whole number.
+  if (!(std::abs(u) < kFarthest && std::abs(v) < kFarthest)) {
+    return false;
+  }
   const double column = std::floor(u);
   const double share = u - column;
   const auto column_index = static_cast<std::int32_t>(column);
