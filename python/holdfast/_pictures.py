@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, Optional, Union
 from ._optional import need
 from ._plans import Order, Steps
 from ._report import Report
-from ._robot import Path, Robot
+from ._robot import Path, Robot, _cell_of
 
 if TYPE_CHECKING:
     from ._film import Film
@@ -71,7 +71,7 @@ def animate(source: Union[Steps, Order, Sequence[Report]], path: Optional[Path] 
 def states(robot: Robot) -> Iterator[Robot]:
     """The robot without its steps, and as it is after each of them."""
     document = json.loads(robot.json())
-    modules = {_cell(module): module for module in document.pop('modules')}
+    modules = {_cell_of(module): module for module in document.pop('modules')}
     steps = [{'attach': step} for step in (document.pop('planned', None), ) if step]
     steps += [{'attach': step} for step in document.pop('later_steps', [])]
     steps += document.pop('steps', [])
@@ -79,25 +79,21 @@ def states(robot: Robot) -> Iterator[Robot]:
     loads = document.pop('loads', [])
 
     def state() -> Robot:
-        carried = [load for load in loads if _cell(load) in modules]
+        carried = [load for load in loads if _cell_of(load) in modules]
         text = json.dumps({**document, 'modules': list(modules.values()),
                            **({'loads': carried} if carried else {})})
         return Robot.from_text(text, name=robot.name)
     yield state()
     for step in steps:
-        gone = {_cell(cell) for cell in step.get('detach', [])}
-        ways = {_cell(move['from']): move['to'] for move in step.get('move', [])}
-        loads = [{**load, 'cell': ways.get(_cell(load), load['cell'])} for load in loads
-                 if _cell(load) not in gone]
+        gone = {_cell_of(cell) for cell in step.get('detach', [])}
+        ways = {_cell_of(move['from']): move['to'] for move in step.get('move', [])}
+        loads = [{**load, 'cell': ways.get(_cell_of(load), load['cell'])} for load in loads
+                 if _cell_of(load) not in gone]
         for cell in gone:
             del modules[cell]
         moved = {tuple(move['to']): modules.pop(tuple(move['from']))
                  for move in step.get('move', [])}
         for cell, module in moved.items():
             modules[cell] = {**module, 'cell': cell} if isinstance(module, dict) else cell
-        modules.update((_cell(module), module) for module in step.get('attach', []))
+        modules.update((_cell_of(module), module) for module in step.get('attach', []))
         yield state()
-
-
-def _cell(module: Any) -> tuple[int, ...]:
-    return tuple(module['cell'] if isinstance(module, dict) else module)

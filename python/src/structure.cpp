@@ -4,6 +4,8 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <map>
+#include <set>
 #include <sstream>
 
 #include "common.hpp"
@@ -110,28 +112,36 @@ SharedStructure make(const py::handle& cells, const py::handle& planned, const p
 /// The kinds and masses of existing modules, and those of planned modules that are planned again.
 std::vector<io::OwnParameters> own_of(const io::Document& document,
                                       const std::vector<base::Cell>& planned) {
+  std::map<base::Cell, std::size_t> index;
+  for (std::size_t i = 0; i < planned.size(); ++i) {
+    index.emplace(planned[i], i);
+  }
   std::vector<io::OwnParameters> kept;
   for (io::OwnParameters own : document.extension.own) {
     if (own.step > 0) {
-      const auto again = std::ranges::find(planned, document.steps[own.step - 1][own.module].cell);
-      if (again == planned.end()) {
+      const auto again = index.find(document.steps[own.step - 1][own.module].cell);
+      if (again == index.end()) {
         continue;
       }
       own.step = 1;
-      own.module = static_cast<std::size_t>(again - planned.begin());
+      own.module = again->second;
     }
     kept.push_back(std::move(own));
   }
   return kept;
 }
 
-/// Whether an existing or planned module of the first step is in the cell.
-bool is_module(const io::Document& document, const base::Cell& cell) {
-  return std::ranges::find(document.modules, cell, &io::ModuleEntry::cell) !=
-             document.modules.end() ||
-         (!document.steps.empty() &&
-          std::ranges::find(document.steps.front(), cell, &io::PlannedEntry::cell) !=
-              document.steps.front().end());
+/// Leaves out loads on cells without an existing module or one of these planned ones.
+void keep_carried_loads(io::Document& document, const std::vector<base::Cell>& planned) {
+  if (document.extension.payloads.empty()) {
+    return;
+  }
+  std::set<base::Cell> there(planned.begin(), planned.end());
+  for (const io::ModuleEntry& module : document.modules) {
+    there.insert(module.cell);
+  }
+  std::erase_if(document.extension.payloads,
+                [&](const model::Payload& payload) { return !there.contains(payload.cell); });
 }
 
 /// The same robot with other planned modules, and no further steps. Those that are planned again
@@ -149,8 +159,7 @@ SharedStructure with_planned(const Structure& structure, const py::handle& plann
       step[i].cell = cells[i];
     }
   }
-  std::erase_if(document.extension.payloads,
-                [&](const model::Payload& payload) { return !is_module(document, payload.cell); });
+  keep_carried_loads(document, cells);
   return share(without_gil([&] { return make_structure(std::move(document), structure.name); }));
 }
 

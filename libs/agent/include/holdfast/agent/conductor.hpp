@@ -55,7 +55,7 @@
 ///   high           low
 ///   low            settled: corners | stuck: begin, with the next method or law | start
 ///   corners        regularised law, stable: loads | not stable: begin, with the unilateral law
-///                  | unilateral law: hold
+///                  | unilateral law: hold | of another solution: seek
 ///   hold           facets have changed: high | loads
 ///   loads          open feet were held: hold, to compare | verdict
 ///   verdict        the same again, while it stands | a plan or a module has come: renew
