@@ -211,6 +211,40 @@ TEST(Kept, no_module_takes_the_cell_of_a_fixed_one) {
   EXPECT_FALSE(simulate_steps(file, {}).has_value());
 }
 
+/// Without either arm alone the robot would tip over; taken one by one from the inner end it would
+/// be in pieces.
+TEST(Kept, a_step_counts_as_a_whole) {
+  StepsFile file =
+      growing({{0, 0, 0}, {0, 0, 1}, {1, 0, 1}, {2, 0, 1}, {-1, 0, 1}, {-2, 0, 1}}, {});
+  const Cells arms = {{1, 0, 1}, {2, 0, 1}, {-1, 0, 1}, {-2, 0, 1}};
+  file.document.extension.plan = {{.detach = arms}, {.attach = {arms.rbegin(), arms.rend()}}};
+  const SimulatedSteps steps = simulated(file);
+  expect_the_same(steps);
+  ASSERT_EQ(steps.changes.size(), 4);
+  EXPECT_EQ(worst_verdict(steps), verdict::Verdict::kSafe);
+}
+
+/// Modules keep 30 plans. Whoever plans more withdraws what found no place once it is there.
+TEST(Kept, a_step_of_more_than_modules_can_plan_leaves_no_doubt_behind) {
+  for (const int count : {30, 31}) {
+    SCOPED_TRACE(count);
+    StepsFile file = growing({{-2, 0, 0}, {-1, 0, 0}}, {});
+    Cells slab;
+    for (int i = 0; i < count; ++i) {
+      slab.push_back({i / 4, i % 4, 0});
+    }
+    file.document.extension.plan = {{.attach = slab}, {.attach = {{-3, 0, 0}}}};
+    SimulatedSteps steps = simulated(file);
+    ASSERT_EQ(steps.changes.size(), 5);
+    if (count > 30) {
+      EXPECT_EQ(steps.changes[1].kept.answer.verdict, agent::Verdict::kUndecided);
+      EXPECT_EQ(steps.changes[1].fresh.answer.verdict, agent::Verdict::kUndecided);
+      steps.changes.erase(steps.changes.begin() + 1);
+    }
+    expect_the_same(steps);
+  }
+}
+
 /// One plan closes a loop, which takes a beam more, the other hangs by none: together they have as
 /// many beams as they would hang by, and yet another method is needed.
 TEST(Kept, a_plan_that_touches_nothing_is_told_apart) {

@@ -268,10 +268,11 @@ TEST(SimulatedNext, in_a_box_too_large_everything_is_undecided) {
   EXPECT_EQ(next.shown_count, 0U);
 }
 
-/// Modules that are no cubes, or weigh something else, on a floor: planned one by one.
+/// Modules that are no cubes, or weigh something else, on a floor: planned one by one. Below one
+/// that is fixed there is room, and none where another beside it would rest on the floor.
 TEST(SimulatedNext, every_lattice_is_judged_cell_by_cell) {
   for (const base::Lattice& lattice : test::kLattices) {
-    for (std::uint64_t seed = 0; seed < 3; ++seed) {
+    for (std::uint64_t seed = 0; seed < 4; ++seed) {
       SCOPED_TRACE(::testing::Message() << lattice.direction_count << " faces, seed " << seed);
       base::Rng rng(seed);
       model::RobotSpec spec{.existing = {{0, 0, 0}}};
@@ -286,6 +287,7 @@ TEST(SimulatedNext, every_lattice_is_judged_cell_by_cell) {
         }
       }
       spec.own_masses = {{spec.existing.front(), 0.2}};
+      spec.fixed.assign(seed % 2, spec.existing.front());
       const SimulatedNext robot = simulated(spec, true);
       expect_what_next_says(spec, robot);
       EXPECT_TRUE(robot.all_agree);

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <chrono>
 #include <map>
+#include <numeric>
 
 #include "holdfast/plan/candidates.hpp"
 
@@ -155,7 +156,7 @@ RobotEffort try_cell(sim::Simulation& simulation, const model::Robot& robot, con
 
 void try_others(SimulatedNext& simulated, sim::Simulation& simulation, const model::Robot& robot,
                 Places& places, const SimulatedNextOptions& options) {
-  const std::size_t left = places.size() - simulated.shown_count;
+  const std::size_t left = simulated.trials.size() + places.size() - simulated.shown_count;
   for (auto& [cell, place] : places) {
     if (!is_decided(place.face)) {
       simulated.trials.push_back(
@@ -193,18 +194,33 @@ void count_shown(SimulatedNext& simulated, const Places& places, std::int32_t su
   }
 }
 
-/// Free cells in which a module can be, the robot being what it is.
-std::vector<base::Cell> open_cells(const model::RobotSpec& whole) {
-  std::vector<base::Cell> cells;
-  model::RobotSpec more = whole;
-  more.existing.emplace_back();
+using CellList = std::vector<base::Cell>;
+
+bool can_be(model::RobotSpec robot, const CellList& more) {
+  robot.existing.insert(robot.existing.end(), more.begin(), more.end());
+  return model::Robot::create(robot, 1).has_value();
+}
+
+/// Free cells in which a module can be, the robot being what it is, in groups of cells that modules
+/// can be in at once: below one that rests on the floor nothing is, and none rests on what is not
+/// there once something is below.
+std::vector<CellList> open_cells(const model::RobotSpec& whole) {
+  std::vector<CellList> groups;
   for (const base::Cell& cell : free_cells(whole)) {
-    more.existing.back() = cell;
-    if (model::Robot::create(more, 1)) {
-      cells.push_back(cell);
+    if (!can_be(whole, {cell})) {
+      continue;
+    }
+    const auto fits = [&](CellList& group) {
+      group.push_back(cell);
+      const bool is_fitting = can_be(whole, group);
+      group.resize(group.size() - (is_fitting ? 0 : 1));
+      return is_fitting;
+    };
+    if (std::ranges::none_of(groups, fits)) {
+      groups.push_back({cell});
     }
   }
-  return cells;
+  return groups;
 }
 
 /// The cells of modules that are absent, and of those that are there one beside each.
@@ -224,13 +240,13 @@ Places absent_places(const model::Robot& robot, const std::vector<std::int32_t>&
   return places;
 }
 
-SimulatedNext run(const model::Robot& robot, const SimulatedNextOptions& options) {
-  const auto start = std::chrono::steady_clock::now();
+/// What one simulation says of the cells beside it. Of a second one only that is asked.
+Places run(const model::Robot& robot, const SimulatedNextOptions& options,
+           SimulatedNext& simulated) {
   const sim::SimulationOptions& how = options.simulation;
   sim::Simulation simulation(robot, how);
   simulation.run();
   const sim::SimulationResult result = simulation.result();
-  SimulatedNext simulated;
   simulated.link = how.link;
   simulated.answer = result.answer;
   simulated.all_agree = result.all_agree;
@@ -243,10 +259,7 @@ SimulatedNext run(const model::Robot& robot, const SimulatedNextOptions& options
   if (options.tries_others) {
     try_others(simulated, simulation, robot, places, options);
   }
-  simulated.next = {.candidates = sorted_trials(places), .check_count = simulated.trials.size()};
-  const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
-  simulated.next.seconds = seconds.count();
-  return simulated;
+  return places;
 }
 
 std::vector<std::uint64_t> sorted_rounds(const SimulatedNext& simulated) {
@@ -289,21 +302,32 @@ base::Result<SimulatedNext> simulate_next(const model::RobotSpec& spec,
   }
   SimulatedNextOptions how = options;
   how.simulation.judges_faces = judges_faces(whole, robot.value());
-  if (!how.simulation.judges_faces) {
-    // What is in a cell is known of modules only, also of those that are not there yet.
-    for (const base::Cell& cell : open_cells(whole)) {
-      how.simulation.absent.push_back(static_cast<std::int32_t>(whole.existing.size()));
-      whole.existing.push_back(cell);
-    }
-    robot = model::Robot::create(whole);
+  // What is in a cell is known of modules only, also of those that are not there yet.
+  std::vector<CellList> groups =
+      how.simulation.judges_faces ? std::vector<CellList>() : open_cells(whole);
+  groups.resize(std::max<std::size_t>(groups.size(), 1));
+  const auto start = std::chrono::steady_clock::now();
+  SimulatedNext simulated;
+  Places places;
+  for (const CellList& group : groups) {
+    model::RobotSpec more = whole;
+    more.existing.insert(more.existing.end(), group.begin(), group.end());
+    how.simulation.absent.resize(group.size());
+    std::iota(how.simulation.absent.begin(), how.simulation.absent.end(),
+              static_cast<std::int32_t>(whole.existing.size()));
+    robot = model::Robot::create(more);
     if (!robot) {
       return robot.error();
     }
+    if (const auto fault = sim::find_options_fault(robot.value(), how.simulation)) {
+      return base::Error{.code = base::ErrorCode::kBadInput, .message = *fault, .where = {}};
+    }
+    places.merge(run(robot.value(), how, simulated));
   }
-  if (const auto fault = sim::find_options_fault(robot.value(), how.simulation)) {
-    return base::Error{.code = base::ErrorCode::kBadInput, .message = *fault, .where = {}};
-  }
-  return run(robot.value(), how);
+  simulated.next = {.candidates = sorted_trials(places), .check_count = simulated.trials.size()};
+  const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
+  simulated.next.seconds = seconds.count();
+  return simulated;
 }
 
 base::Result<SimulatedNext> simulate_next(const Structure& structure,

@@ -121,12 +121,15 @@ class Follower {
   sim::Simulation simulation_;
 };
 
-sim::SimulationOptions options_of(const sim::SimulationOptions& options, std::size_t start_count,
-                                  std::size_t count, bool keeps) {
+sim::SimulationOptions options_of(const sim::SimulationOptions& options,
+                                  const io::Sequence& sequence, std::size_t count, bool keeps) {
   sim::SimulationOptions mine = options;
   mine.keeps_answers = keeps;
   mine.tells_planned = false;
-  for (std::size_t i = start_count; i < count; ++i) {
+  mine.plans_many = std::ranges::any_of(sequence.steps, [](const model::Step& step) {
+    return step.attach.size() > std::size_t{agent::kPlannedMax};
+  });
+  for (std::size_t i = sequence.start.existing.size(); i < count; ++i) {
     mine.absent.push_back(static_cast<std::int32_t>(i));
   }
   return mine;
@@ -140,8 +143,8 @@ class Run {
       : whole_(whole),
         cells_(whole.existing),
         now_(sequence.start),
-        kept_(robot, options_of(options, now_.existing.size(), cells_.size(), true)),
-        fresh_(robot, options_of(options, now_.existing.size(), cells_.size(), false)) {}
+        kept_(robot, options_of(options, sequence, cells_.size(), true)),
+        fresh_(robot, options_of(options, sequence, cells_.size(), false)) {}
 
   std::optional<base::Error> start() { return note({.kind = Kind::kStart}, {}, {}); }
 
@@ -149,25 +152,17 @@ class Run {
     for (const base::Cell& cell : step.detach) {
       std::erase(now_.existing, cell);
       std::erase(now_.fixed, cell);
-      if (auto error = change(index, Kind::kDetach, {cell})) {
-        return error;
-      }
     }
-    if (step.attach.empty()) {
-      return std::nullopt;
+    if (auto error = change(index, Kind::kDetach, step.detach)) {
+      return error;
     }
     now_.planned = step.attach;
     if (auto error = change(index, Kind::kPlan, step.attach)) {
       return error;
     }
-    for (const base::Cell& cell : step.attach) {
-      std::erase(now_.planned, cell);
-      now_.existing.push_back(cell);
-      if (auto error = change(index, Kind::kAttach, {cell})) {
-        return error;
-      }
-    }
-    return std::nullopt;
+    now_.planned.clear();
+    append(now_.existing, step.attach);
+    return change(index, Kind::kAttach, step.attach);
   }
 
   std::vector<StepChange> changes() && { return std::move(changes_); }
@@ -179,17 +174,26 @@ class Run {
     return static_cast<std::int32_t>(std::ranges::find(cells_, cell) - cells_.begin());
   }
 
+  /// All the cells at once: a step counts as a whole.
   std::optional<base::Error> change(std::size_t step, Kind kind, const Cells& cells) {
+    if (cells.empty()) {
+      return std::nullopt;
+    }
     std::vector<sim::Announcement> announcements;
     std::vector<sim::Fault> faults;
+    const std::int32_t told = index_of(now_.existing.front());
     for (const base::Cell& cell : cells) {
       if (kind == Kind::kPlan) {
-        announcements.push_back({.module = index_of(now_.existing.front()), .cell = cell});
+        announcements.push_back({.module = told, .cell = cell});
       } else {
         faults.push_back(
             {.kind = kind == Kind::kAttach ? sim::Fault::Kind::kAttach : sim::Fault::Kind::kDetach,
              .module = index_of(cell)});
       }
+    }
+    if (kind == Kind::kAttach && cells.size() > std::size_t{agent::kPlannedMost}) {
+      // Plans that found no place are in no module, so none of them ends by what comes.
+      announcements.push_back({.module = told, .cell = agent::kEveryCell, .is_withdrawal = true});
     }
     return note({.step = step, .kind = kind, .cells = cells}, announcements, faults);
   }
