@@ -306,6 +306,11 @@ Entry JsonReader::entry(const Json& value, const Place& place, OwnParameters own
     } else if (key == "attributes") {
       entry.attributes =
           reading_.attributes(member, here, kIsModule ? is_module_attribute : is_planned_attribute);
+      if (kIsModule && find_attribute(entry.attributes, kDatomAttribute) != nullptr) {
+        reading_.fail({base::ErrorCode::kUnsupported,
+                       fmt::format("a module with '{}' is a datom: {}", kDatomAttribute, kNoDatoms),
+                       here.pointer()});
+      }
     } else if (std::ranges::find(kOwnParameterKeys, key) != kOwnParameterKeys.end()) {
       if (allows(here)) {
         read_own_parameter(reading_, key, member, here, own);

@@ -87,7 +87,7 @@ double JsonReading::number(const Json& value, const Place& place) {
     refuse(value, place, "a number");
     return 0;
   }
-  return value.get<double>();
+  return value.get<double>() + 0.0;  // -0, which some write as an integer, is 0.
 }
 
 std::int32_t JsonReading::integer(const Json& value, const Place& place, IntegerRange range) {

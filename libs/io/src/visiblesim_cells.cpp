@@ -57,8 +57,8 @@ void read_own(XmlReading& reading, const pugi::xml_node& node, OwnParameters own
 
 ModuleEntry read_block(XmlReading& reading, const pugi::xml_node& block) {
   reading.expect_no_content(block);
-  if (has_more_than_position(block) && block.attribute("piston")) {
-    reading.fail(block, fmt::format("<block piston> is a datom: {}", kNoDatoms),
+  if (has_more_than_position(block) && block.attribute(kDatomAttribute)) {
+    reading.fail(block, fmt::format("<block {}> is a datom: {}", kDatomAttribute, kNoDatoms),
                  base::ErrorCode::kUnsupported);
   }
   read_own(reading, block, {0, reading.document.modules.size(), {}, {}});

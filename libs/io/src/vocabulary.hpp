@@ -25,6 +25,9 @@ inline constexpr const char* kNoDatoms =
     "datoms sit in a skewed face-centred lattice and change their shape, which this program does "
     "not know";
 
+/// The attribute that datoms have, and no others.
+inline constexpr const char* kDatomAttribute = "piston";
+
 /// The attribute of <parameters> that is Document::support_z.
 inline constexpr const char* kSupportParameter = "globalSupportZ";
 
@@ -138,7 +141,7 @@ inline constexpr auto kBlockListAttributes =
                                      "ids", "idseed", "seed", "step", "format"});
 inline constexpr auto kBlockAttributes = std::to_array<std::string_view>(
     {"position", "color", "fixed", "centroid", "solver", "stabilityCheck", "id", "master", "leader",
-     "alive", "angle", "orientation", "rotation", "piston", "isTarget", "isWall", kOwnKindAttribute,
+     "alive", "angle", "orientation", "rotation", kDatomAttribute, "isTarget", "isWall", kOwnKindAttribute,
      kOwnMassAttribute});
 inline constexpr auto kCellAttributes =
     std::to_array<std::string_view>({"position", "color", kOwnKindAttribute, kOwnMassAttribute});

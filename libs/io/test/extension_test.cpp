@@ -6,6 +6,7 @@
 // can say are written in version 1.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <string>
 
 #include "document_support.hpp"
@@ -125,6 +126,15 @@ TEST(Version2, is_written_only_where_version_1_does_not_say_it_all) {
   EXPECT_NE(write_json(document).find(R"("version": 1)"), std::string::npos);
   EXPECT_EQ(accepted(read_json(write_json(document))).document, document);
   EXPECT_EQ(json_version(accepted(read_json(version_2(kWhole))).document), 2);
+}
+
+/// "-0" is an integer, which has no sign, so "-0.0" has none either.
+TEST(Version2, has_no_negative_zero) {
+  const Document document =
+      read(R"("modules": [[0,0,0]], "loads": [{"cell": [0,0,0], "force_n": [-0.0, -0, -1]}])");
+  ASSERT_EQ(document.extension.payloads.size(), 1U);
+  EXPECT_FALSE(std::signbit(document.extension.payloads[0].force_n[0]));
+  EXPECT_EQ(write_json(document).find("-0"), std::string::npos);
 }
 
 model::RobotSpec spec_of(std::string_view members) {

@@ -114,6 +114,12 @@ TEST(VisibleSimLattice, has_the_names_of_files_and_of_visiblesims_modules) {
   const base::Error piston = refused(world("", R"(<block position="0,0,0" piston="2345"/>)"));
   EXPECT_EQ(piston.code, base::ErrorCode::kUnsupported);
   EXPECT_TRUE(contains(piston.message, "datoms"));
+  const auto json = read_json(document_test::json(
+      R"("modules": [[1,0,0], {"cell": [0,0,0], "attributes": {"piston": "2345"}}])"));
+  ASSERT_FALSE(json);
+  EXPECT_EQ(json.error().code, base::ErrorCode::kUnsupported);
+  EXPECT_EQ(json.error().where, "/modules/1/attributes");
+  EXPECT_TRUE(contains(json.error().message, "datoms"));
 }
 
 TEST(VisibleSimLattice, turns_all_modules_of_a_row_or_box_as_it_says) {
