@@ -2,12 +2,45 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cxxabi.h>
+
 #include <chrono>
+#include <thread>
 #include <utility>
 
 #include "common.hpp"
 
 namespace holdfast::python {
+
+/// Returns what `act` does. When Python ends it unwinds the stack of a thread that asks for the
+/// GIL, which takes the process down where destructors wait in C++. Such a thread sleeps here until
+/// the process has ended, as Python itself lets it from 3.14 on.
+template <class Act>
+auto sleep_when_python_ends(const Act& act) {
+  try {
+    return act();
+  } catch (const abi::__forced_unwind&) {
+    for (;;) {
+      std::this_thread::sleep_for(std::chrono::hours(1));
+    }
+  }
+}
+
+/// The GIL is for others while this lives.
+class GilReleased {
+ public:
+  GilReleased() : thread_(PyEval_SaveThread()) {}
+
+  GilReleased(const GilReleased&) = delete;
+  GilReleased& operator=(const GilReleased&) = delete;
+
+  ~GilReleased() {
+    sleep_when_python_ends([this] { PyEval_RestoreThread(thread_); });
+  }
+
+ private:
+  PyThreadState* thread_;
+};
 
 /// What long work asks now and then, without the GIL, from the thread that was called: has the user
 /// pressed Ctrl-C? It also tells Python how far the work is. What Python raises is thrown here,
@@ -31,26 +64,42 @@ class Watch {
     const auto now = std::chrono::steady_clock::now();
     if (now - last_asked_ >= kPeriod) {
       last_asked_ = now;
-      const py::gil_scoped_acquire gil;
-      if (PyErr_CheckSignals() != 0) {
-        throw py::error_already_set();
-      }
+      with_gil([] {});
     }
   }
 
   /// At once.
   template <class... Number>
   void tell(Number... numbers) {
-    const py::gil_scoped_acquire gil;
-    if (PyErr_CheckSignals() != 0) {
-      throw py::error_already_set();
-    }
-    if (!progress_.is_none()) {
-      progress_(numbers...);
-    }
+    with_gil([&] {
+      if (!progress_.is_none()) {
+        call(py::make_tuple(numbers...));
+      }
+    });
   }
 
  private:
+  template <class Act>
+  static void with_gil(const Act& act) {
+    sleep_when_python_ends([&] {
+      const py::gil_scoped_acquire gil;
+      if (PyErr_CheckSignals() != 0) {
+        throw py::error_already_set();
+      }
+      act();
+    });
+  }
+
+  /// Python code gives the GIL away now and then, and may not get it back.
+  void call(const py::tuple& numbers) {
+    PyObject* const result =
+        sleep_when_python_ends([&] { return PyObject_CallObject(progress_.ptr(), numbers.ptr()); });
+    if (result == nullptr) {
+      throw py::error_already_set();
+    }
+    Py_DECREF(result);
+  }
+
   static constexpr std::chrono::milliseconds kPeriod{20};
 
   py::object progress_;
@@ -61,7 +110,7 @@ class Watch {
 /// Does work without the GIL, so that other threads of Python run meanwhile, and lets it ask.
 template <class Work>
 auto without_gil(Watch& watch, const Work& work) {
-  const py::gil_scoped_release released;
+  const GilReleased released;
   const host::Interruptible interruptible([&watch] { watch.ask(); });
   return work();
 }

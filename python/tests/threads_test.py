@@ -103,6 +103,33 @@ def test_ctrl_c_ends_long_work(name):
         assert float(seconds) < 0.2 * float(os.environ.get('HOLDFAST_TEST_PATIENCE', '5'))
 
 
+ENDS_MEANWHILE = '''
+import holdfast, threading, time
+
+def work():
+    while True:
+        {work}
+
+for _ in range({count}):
+    threading.Thread(target=work, daemon=True).start()
+time.sleep(0.5)
+print('ended')
+'''
+
+
+@pytest.mark.parametrize('count', [1, 3])
+@pytest.mark.parametrize('work', [
+    LONG_WORK['check'], LONG_WORK['check_many'], LONG_WORK['simulate'],
+    "holdfast.generate('arm', 29).check().json()",
+    "holdfast.generate('cube', 40).check(progress=lambda *_: sum(range(100_000)))"])
+def test_a_program_ends_while_daemon_threads_work(work, count):
+    """Python gives them the GIL no more; an abort would be a return code of -6."""
+    script = ENDS_MEANWHILE.format(work=work, count=count)
+    done = subprocess.run([sys.executable, '-c', script], capture_output=True, text=True,
+                          timeout=120)
+    assert (done.returncode, done.stdout, done.stderr) == (0, 'ended\n', '')
+
+
 def test_progress_is_told_and_its_errors_arrive():
     told = []
     holdfast.generate('cube', 40).check(progress=lambda *numbers: told.append(numbers))
