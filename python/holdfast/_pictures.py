@@ -64,7 +64,7 @@ def animate(source: Union[Steps, Order, Sequence[Report]], path: Optional[Path] 
         reports = list(source)
     film = Film(reports, milliseconds)
     if path is not None:
-        film.save(os.fspath(path))
+        film.save(os.fsdecode(path))
     return film
 
 

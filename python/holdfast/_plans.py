@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 import enum
-import os
 from collections.abc import Mapping, Sequence
 from typing import Any, Optional, Union
 
@@ -189,7 +188,7 @@ class Steps(_Texts):
 
     def save_vtk(self, path: Path) -> None:
         """Writes a series for ParaView: a .pvd file, and a .vtu file for each state beside it."""
-        self._held.save_vtk(os.fspath(path))
+        self._held.save_vtk(path)
 
     def _repr_svg_(self) -> str:
         return self.svg()

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 Table = npt.NDArray[Any]
 """A structured array."""
-Path = Union[str, 'os.PathLike[str]']
+Path = Union[str, bytes, 'os.PathLike[str]', 'os.PathLike[bytes]']
 
 
 class Timings(NamedTuple):
@@ -230,19 +230,19 @@ class Report:
 
     def save_json(self, path: Path) -> None:
         """Writes the report, whole or not at all."""
-        self._held.save(os.fspath(path), 'json')
+        self._held.save(path, 'json')
 
     def save_csv(self, path: Path) -> None:
         """Writes the table of connections."""
-        self._held.save(os.fspath(path), 'csv')
+        self._held.save(path, 'csv')
 
     def save_svg(self, path: Path) -> None:
         """Writes the picture."""
-        self._held.save(os.fspath(path), 'svg')
+        self._held.save(path, 'svg')
 
     def save_vtu(self, path: Path) -> None:
         """Writes a grid for ParaView."""
-        self._held.save(os.fspath(path), 'vtu')
+        self._held.save(path, 'vtu')
 
     def __reduce__(self) -> Any:
         return (_unpickled, (self.robot, _core.to_bytes(self._held)))

@@ -24,7 +24,7 @@ Cells = Union[npt.NDArray[Any], Iterable[Iterable[int]]]
 Cell = tuple[int, int, int]
 Table = npt.NDArray[Any]
 """A structured array."""
-Path = Union[str, 'os.PathLike[str]']
+Path = Union[str, bytes, 'os.PathLike[str]', 'os.PathLike[bytes]']
 
 
 def _plain(value: Any) -> Any:
@@ -39,7 +39,7 @@ def _plain(value: Any) -> Any:
 
 def _json(head: Mapping[str, Any]) -> str:
     try:
-        return json.dumps(head, default=_plain, allow_nan=False)
+        return json.dumps(head, default=_plain, allow_nan=False, ensure_ascii=False)
     except ValueError as error:
         if isinstance(error, _core.Error):
             raise
@@ -183,9 +183,9 @@ class Robot:
         head = _head({'lattice': lattice and _core.lattice_name(lattice),
                       'obstacles': _obstacle_list(obstacles), 'kinds': kinds,
                       'loads': _load_list(loads), 'gravity_m_s2': gravity, 'material': material,
-                      'robot': robot, 'steps': steps}, supports)
+                      'robot': robot, 'steps': steps, 'name': name or None}, supports)
         self._held = _core.Structure.make(cells, planned, fixed, head,
-                                          _own(cells, planned, masses, kind_of), name)
+                                          _own(cells, planned, masses, kind_of))
 
     @classmethod
     def _of(cls, core: _core.Structure) -> Robot:
@@ -199,7 +199,7 @@ class Robot:
 
         `lattice` and `robot` say what the file leaves open.
         """
-        return cls._of(_core.Structure.load_file(os.fspath(path), lattice, robot))
+        return cls._of(_core.Structure.load_file(path, lattice, robot))
 
     @classmethod
     def from_text(cls, text: str, *, name: str = '', lattice: str = '', robot: str = '') -> Robot:
@@ -318,7 +318,7 @@ class Robot:
             raise _core.Error('this package was built without Unicorn and cannot emulate; '
                               "install libunicorn-dev and build it anew by './dev python'")
         with told(progress, 'emulate') as tell:
-            return Run._of(_core.emulate(self._held, os.fspath(image or find_image()), seed,
+            return Run._of(_core.emulate(self._held, image or find_image(), seed,
                                          seconds, events_of(events), tell))
 
     def with_steps(self, steps: Sequence[Mapping[str, Any]]) -> Robot:
@@ -473,8 +473,8 @@ class Robot:
 
     def save(self, path: Path) -> None:
         """Writes holdfast JSON, or VisibleSim XML to a file that ends in .xml."""
-        text = self.visiblesim() if os.fspath(path).endswith('.xml') else self.json()
-        _core.write_file(os.fspath(path), text)
+        text = self.visiblesim() if os.fsdecode(path).endswith('.xml') else self.json()
+        _core.write_file(path, text)
 
     def __len__(self) -> int:
         """How many modules there are, planned ones too."""

@@ -51,6 +51,13 @@ struct CheckedStructure {
 
 using SharedCheck = std::shared_ptr<const CheckedStructure>;
 
+/// A path as the system has it, from what Python's open() takes. Raises holdfast.Error for what can
+/// be no path.
+std::string path_of(const py::handle& given);
+
+/// A text in UTF-8. Raises TypeError or holdfast.Error that begins with `what`.
+std::string utf8_of(const py::handle& given, const char* what);
+
 /// Cells from an (n, 3) array of integers, or what numpy makes one of. Raises holdfast.Error that
 /// begins with `what` for anything else.
 std::vector<base::Cell> cells_of(const py::handle& given, const char* what);

@@ -45,10 +45,10 @@ std::vector<Event> events_of(const py::handle& given) {
       throw Error("events: expected is (kind, time, cell), with a face behind it for 'cut'");
     }
     Event& event = events.emplace_back();
-    event.kind = parts[0].cast<std::string>();
+    event.kind = utf8_of(py::object(parts[0]), "events");
     event.at = parts[1].cast<double>();
     event.cell = parts[2].is_none() ? agent::kEveryCell : cell_of(parts[2], "events");
-    event.face = parts.size() == 4 ? parts[3].cast<std::string>() : "";
+    event.face = parts.size() == 4 ? utf8_of(py::object(parts[3]), "events") : "";
     if (!(event.at >= 0 && event.at <= 1e9)) {
       throw Error("events: found the time " + std::to_string(event.at) + ", allowed is 0 to 1e9");
     }
@@ -118,7 +118,7 @@ auto going_on(Watch& watch) {
 /// What disturbs the lines: probabilities, and seconds for jitter.
 void add_noise(sim::LinkModel& link, const py::dict& noise, double ticks) {
   for (const auto& [key, value] : noise) {
-    const auto name = key.cast<std::string>();
+    const std::string name = utf8_of(key, "noise");
     const auto number = value.cast<double>();
     if (name == "loss") {
       link.loss = number;
@@ -138,11 +138,13 @@ void add_noise(sim::LinkModel& link, const py::dict& noise, double ticks) {
   }
 }
 
-std::shared_ptr<Run> simulate_robot(const SharedStructure& structure, const std::string& link,
-                                    const std::string& method, std::uint64_t seed,
+std::shared_ptr<Run> simulate_robot(const SharedStructure& structure, const py::handle& link_name,
+                                    const py::handle& method_name, std::uint64_t seed,
                                     const py::dict& noise, const py::handle& events,
                                     py::object progress) {
   sim::SimulationOptions options;
+  const std::string link = utf8_of(link_name, "link");
+  const std::string method = utf8_of(method_name, "method");
   const auto found_link = sim::find_link_model(link);
   const auto found_method = find_method(method);
   if (!found_link || !found_method) {
@@ -184,13 +186,14 @@ std::shared_ptr<Run> simulate_robot(const SharedStructure& structure, const std:
   return run;
 }
 
-std::shared_ptr<Run> emulate_robot(const SharedStructure& structure, const std::string& image,
+std::shared_ptr<Run> emulate_robot(const SharedStructure& structure, const py::handle& image_path,
                                    std::uint64_t seed, double seconds, const py::handle& events,
                                    py::object progress) {
   constexpr double kTicks = 1e6;
   if (!(seconds >= 0.001 && seconds <= 3600)) {
     throw Error("seconds: found " + std::to_string(seconds) + ", allowed is 0.001 to 3600");
   }
+  const std::string image = path_of(image_path);
   emulator::EmulationOptions options{.seed = seed};
   options.time_max = static_cast<sim::Time>(seconds * kTicks);
   const Course course = course_of(structure, events_of(events), kTicks);

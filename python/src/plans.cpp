@@ -120,7 +120,7 @@ double seconds_max(double seconds) {
 }
 
 std::shared_ptr<io::OrderReport> order(const Structure& target, const py::handle& start,
-                                       const std::string& reach, const py::handle& source,
+                                       const py::handle& reach_name, const py::handle& source,
                                        std::size_t group_size, bool is_reversed, std::uint64_t seed,
                                        double seconds, double help_seconds, int thread_count,
                                        py::object progress) {
@@ -134,6 +134,7 @@ std::shared_ptr<io::OrderReport> order(const Structure& target, const py::handle
   if (!start.is_none()) {
     request.start = cells_of(start, "start");
   }
+  const std::string reach = utf8_of(reach_name, "reach");
   request.rule.reach = reach == "line"      ? plan::Reach::kLine
                        : reach == "surface" ? plan::Reach::kSurface
                                             : plan::Reach::kFree;
@@ -311,7 +312,8 @@ void add_steps(py::module_& module) {
       .def("text", [](const JudgedSteps& s) { return steps_text(s.file, s.result); })
       .def("svg", [](const JudgedSteps& s) { return steps_svg(s.file, s.result); })
       .def("html", [](const JudgedSteps& s) { return steps_html(s.file, s.result); })
-      .def("save_vtk", [](const JudgedSteps& s, const std::string& path) {
+      .def("save_vtk", [](const JudgedSteps& s, const py::handle& given) {
+        const std::string path = path_of(given);
         take(without_gil([&] { return write_steps_vtk(path, s.file, s.result); }), path);
       });
   module.def("steps", &steps);

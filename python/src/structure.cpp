@@ -19,17 +19,17 @@ SharedStructure share(base::Result<Structure> made, std::string_view file = {}) 
   return std::make_shared<const Structure>(take(std::move(made), file));
 }
 
-io::ReadOptions reading(const std::string& lattice, const std::string& robot) {
-  io::ReadOptions options{.robot = robot};
-  if (!lattice.empty()) {
-    options.lattice = take(io::find_lattice(lattice));
+io::ReadOptions reading(const py::handle& lattice, const py::handle& robot) {
+  io::ReadOptions options{.robot = utf8_of(robot, "robot")};
+  if (const std::string name = utf8_of(lattice, "lattice"); !name.empty()) {
+    options.lattice = take(io::find_lattice(name));
   }
   return options;
 }
 
 /// Modules that have masses or kinds of their own: step (0 or 1), index there, kind, mass or not a
 /// number.
-using Own = std::vector<std::tuple<std::size_t, std::size_t, std::string, double>>;
+using Own = std::vector<std::tuple<std::size_t, std::size_t, py::object, double>>;
 
 /// Marks modules as fixed. Error: there is no module in one of the cells.
 void fix(std::vector<io::ModuleEntry>& modules, std::vector<base::Cell> cells) {
@@ -83,16 +83,15 @@ void set_modules(io::Document& document, const std::vector<base::Cell>& cells,
 
 /// `head` is holdfast JSON without modules, for all that is said beside them; or empty.
 SharedStructure make(const py::handle& cells, const py::handle& planned, const py::handle& fixed,
-                     const std::string& head, const Own& own, const std::string& name) {
+                     const py::handle& head, const Own& own) {
   io::Document document;
-  if (!head.empty()) {
-    auto read = take(io::read_json(head));
+  if (const std::string json = utf8_of(head, "options"); !json.empty()) {
+    auto read = take(io::read_json(json));
     if (!read.warnings.empty()) {  // In a file an unknown key may be somebody else's.
       throw Error(read.warnings.front());
     }
     document = std::move(read.document);
   }
-  document.name = name;
   const auto existing = cells_of(cells, "cells");
   const auto to_come = planned.is_none() ? std::vector<base::Cell>{} : cells_of(planned, "planned");
   set_modules(document, existing, to_come);
@@ -103,7 +102,7 @@ SharedStructure make(const py::handle& cells, const py::handle& planned, const p
     document.extension.own.push_back(
         {.step = step,
          .module = module,
-         .kind = kind,
+         .kind = utf8_of(kind, "kind_of"),
          .mass_kg = std::isnan(mass) ? std::nullopt : std::optional(mass)});
   }
   return share(without_gil([&] { return make_structure(std::move(document)); }));
@@ -300,23 +299,33 @@ py::list catalogue() {
   return out;
 }
 
+SharedStructure from_file(const py::handle& given, const py::handle& lattice,
+                          const py::handle& robot) {
+  const std::string path = path_of(given);
+  const io::ReadOptions options = reading(lattice, robot);
+  auto read = take(without_gil([&] { return load_file(path, 0, options); }), path);
+  // The name is the file's, which need not be UTF-8.
+  const auto size = static_cast<py::ssize_t>(read.name.size());
+  read.name =
+      py::reinterpret_steal<py::str>(PyUnicode_DecodeUTF8(read.name.data(), size, "replace"));
+  return std::make_shared<const Structure>(std::move(read));
+}
+
 void add_readers(py::class_<Structure, std::shared_ptr<Structure>>& type) {
   type.def_static("make", &make)
       .def_static("load_text",
-                  [](const std::string& text, const std::string& name, const std::string& lattice,
-                     const std::string& robot) {
+                  [](const py::handle& given, const py::handle& called, const py::handle& lattice,
+                     const py::handle& robot) {
+                    const std::string text = utf8_of(given, "text");
+                    const std::string name = utf8_of(called, "name");
                     const io::ReadOptions options = reading(lattice, robot);
                     return share(without_gil([&] { return load_text(text, name, 0, options); }),
                                  name);
                   })
-      .def_static(
-          "load_file",
-          [](const std::string& path, const std::string& lattice, const std::string& robot) {
-            const io::ReadOptions options = reading(lattice, robot);
-            return share(without_gil([&] { return load_file(path, 0, options); }), path);
-          })
+      .def_static("load_file", &from_file)
       .def_static("generate",
-                  [](const std::string& family, std::size_t size) {
+                  [](const py::handle& given, std::size_t size) {
+                    const std::string family = utf8_of(given, "family");
                     auto made = without_gil([&]() -> base::Result<Structure> {
                       auto document = generate(family, size);
                       return document ? make_structure(std::move(document).value())
@@ -369,10 +378,11 @@ void add_structure(py::module_& module) {
       .def("has_same_document", [](const Structure& a, const Structure& b) {
         return a.name == b.name && a.document == b.document;
       });
-  module.def("lattice_name", [](const std::string& name) {
-    return io::lattice_name(take(io::find_lattice(name)));
+  module.def("lattice_name", [](const py::handle& name) {
+    return io::lattice_name(take(io::find_lattice(utf8_of(name, "lattice"))));
   });
-  module.def("write_file", [](const std::string& path, const std::string& text) {
+  module.def("write_file", [](const py::handle& given, const std::string& text) {
+    const std::string path = path_of(given);
     take(without_gil([&] { return write_file(path, text); }), path);
   });
   module.def("catalogue", &catalogue);

@@ -2,6 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Robots from arrays of every kind; what is no robot is refused in one line."""
 import copy
+import os
+import pathlib
 import pickle
 
 import holdfast
@@ -158,6 +160,61 @@ def test_files_are_read_and_written(root, tmp_path):
     (tmp_path / 'bad.json').write_text('{"format": "holdfast-structure", "version": 1}')
     with pytest.raises(holdfast.Error, match='bad.json.*modules'):
         holdfast.load(tmp_path / 'bad.json')
+
+
+@pytest.mark.parametrize('kind', [os.fsencode, os.fsdecode, pathlib.Path])
+def test_files_whose_names_are_not_utf_8(tmp_path, kind):
+    """A path is what Python's open() takes."""
+    def here(ending):
+        return kind(os.fsdecode(os.fsencode(tmp_path) + b'/m\xfcnze.' + ending))
+
+    robot = Robot(TOWER)
+    for ending in (b'json', b'xml'):
+        robot.save(here(ending))
+        with open(here(ending), encoding='utf-8') as file:
+            assert file.read().startswith('<?xml' if ending == b'xml' else '{')
+        again = holdfast.load(here(ending))
+        assert (again.cells == robot.cells).all() and again.name == 'm\ufffdnze'
+        assert pickle.loads(pickle.dumps(again)) == again
+        assert 'm\ufffdnze' in str(again.check())
+    report = robot.check()
+    for save in (report.save_json, report.save_csv, report.save_svg, report.save_vtu):
+        save(here(b'out'))
+        assert os.path.getsize(here(b'out')) > 0
+    with pytest.raises(holdfast.Error, match=r'm\\xfcnze.absent: no such file'):
+        holdfast.load(here(b'absent'))
+    with pytest.raises(holdfast.Error, match='pvd'):
+        holdfast.steps(robot, [{'attach': [[0, 0, 3]]}]).save_vtk(here(b'pvd'))
+
+
+def test_paths_that_no_file_can_have(tmp_path):
+    robot = Robot(TOWER)
+    robot.save(tmp_path / 'a.json')
+    for path in (f'{tmp_path}/a.json\0more', os.fsencode(tmp_path) + b'/a.json\0', '\ud800'):
+        with pytest.raises(ValueError):
+            open(path)
+        for use in (holdfast.load, robot.save, robot.check().save_json,
+                    holdfast.steps(robot, [{'attach': [[0, 0, 3]]}]).save_vtk):
+            with pytest.raises(holdfast.Error, match='path'):
+                use(path)
+    with pytest.raises(TypeError):
+        holdfast.load(3)
+    assert os.listdir(tmp_path) == ['a.json']
+
+
+def test_names_that_no_file_can_keep():
+    robot = Robot(TOWER, name='T\u00fcrme \U0001f5fc')
+    assert Robot.from_text(robot.json()).name == robot.name == 'T\u00fcrme \U0001f5fc'
+    for name in ('a\0b', 'a\x1b', 'a\udcfc'):
+        with pytest.raises(holdfast.Error, match='name|surrogates') as caught:
+            Robot(TOWER, name=name)
+        assert len(str(caught.value).splitlines()) == 1
+    for call in (lambda text: Robot.from_text(robot.json(), name=text),
+                 lambda text: Robot(TOWER, lattice=text), lambda text: holdfast.generate(text, 3),
+                 lambda text: Robot(TOWER, kinds={'a': {}}, kind_of={(0, 0, 0): text}),
+                 lambda text: robot.simulate(method=text)):
+        with pytest.raises(holdfast.Error, match='surrogates'):
+            call('a\udcfc')
 
 
 def test_copies_and_pickles_are_equal():

@@ -59,7 +59,7 @@ base::Result<EmulatedRun> emulate(const Structure& structure, const CheckResult&
   const auto image = emulator::load_image(image_path);
   if (!image) {
     base::Error error = image.error();
-    error.where = image_path;
+    error.where = io::one_line(image_path);
     return error;
   }
   emulator::Emulation emulation(image.value(), structure.robot, options);

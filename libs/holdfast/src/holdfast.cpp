@@ -81,8 +81,9 @@ base::Result<io::Document> generate(std::string_view family, std::size_t size) {
     for (const model::FamilyInfo& info : model::families()) {
       names += (names.empty() ? "" : ", ") + std::string(info.name);
     }
-    return base::Error{.code = base::ErrorCode::kBadInput,
-                       .message = fmt::format("no family '{}', there are {}", family, names)};
+    return base::Error{
+        .code = base::ErrorCode::kBadInput,
+        .message = fmt::format("no family '{}', there are {}", io::one_line(family), names)};
   }
   const std::size_t count = model::family_count(found->family, size);
   if (size < found->size_min || count > model::kModuleCountMax) {

@@ -142,6 +142,13 @@ std::optional<base::Error> write_steps_vtk(const std::filesystem::path& path, co
   if (!sequence) {
     return sequence.error();
   }
+  const std::string name = path.stem().string();
+  if (io::one_line(name) != name) {
+    return base::Error{.code = base::ErrorCode::kBadInput,
+                       .message =
+                           "names of .vtu files are written into the .pvd file, allowed is "
+                           "UTF-8 without control characters"};
+  }
   plan::RobotState robot(sequence.value().start);
   Series series(path, options);
   const std::vector<model::RobotSpec> start = {sequence.value().start};

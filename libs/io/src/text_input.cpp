@@ -139,7 +139,7 @@ std::optional<std::string> find_string_fault(std::string_view text) {
   if (text.size() > kStringBytesMax) {
     return fmt::format("has {} bytes, allowed are {}", text.size(), kStringBytesMax);
   }
-  if (find_bad_byte(text)) {
+  if (const auto offset = find_bad_byte(text); offset && text[*offset] != '\0') {
     return "is not UTF-8";
   }
   const auto* control = std::ranges::find_if(

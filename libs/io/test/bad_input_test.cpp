@@ -80,6 +80,7 @@ TEST(BadInput, that_is_no_text_is_refused) {
   expect_refusal({xml("<block position=\"0,0,0\" id=\"&#7;\"/>"), "line 3", "0x07"});
   expect_refusal({xml("<block position=\"0,0,0\" id=\"&#xD800;\"/>"), "line 3", "not UTF-8"});
   expect_refusal({json("\"name\": \"\\u001b[2J\", \"modules\": []"), "/name", "0x1B"});
+  expect_refusal({json("\"name\": \"a\\u0000b\", \"modules\": []"), "/name", "0x00"});
 }
 
 TEST(BadInput, beyond_the_size_limit_is_refused) {
