@@ -64,9 +64,12 @@ def _load_list(loads: Any) -> Any:
 
 
 def _obstacle_list(obstacles: Any) -> Any:
-    """The form of holdfast JSON; an array of cells is one obstacle that touches."""
+    """The form of holdfast JSON; cells are together one obstacle that touches."""
     if isinstance(obstacles, np.ndarray):
-        return [{'cells': obstacles.tolist()}]
+        obstacles = obstacles.tolist()
+    is_list = isinstance(obstacles, (list, tuple)) and len(obstacles) > 0
+    if is_list and not any(isinstance(entry, Mapping) for entry in obstacles):
+        return [{'cells': obstacles}]
     return obstacles
 
 
@@ -78,7 +81,7 @@ def _head(options: Mapping[str, Any], supports: Any) -> str:
             if key not in ('support_z', 'floor', 'obstacles') or key in said:
                 raise _core.Error(f'supports: found {key!r}; allowed are support_z, floor and '
                                   'obstacles, each once')
-            said[key] = value
+            said[key] = _obstacle_list(value) if key == 'obstacles' else value
     elif supports is None:
         said['support_z'] = None
     elif supports != 0:
@@ -151,8 +154,8 @@ class Robot:
         The layer z whose modules rest on the floor; None: there is no floor; or a mapping with
         ``support_z``, ``floor`` and ``obstacles`` of holdfast JSON.
     obstacles
-        Cells that the environment occupies: an array of cells, or a list as in holdfast JSON, such
-        as ``[{'from': (-1, -3, 0), 'to': (-1, 3, 6), 'hold': 'bonded'}]``.
+        Cells that the environment occupies: (k, 3) cells, or a list as in holdfast JSON, such as
+        ``[{'from': (-1, -3, 0), 'to': (-1, 3, 6), 'hold': 'bonded'}]``.
     masses
         kg: one for each module (n, or n + m), or a mapping from cells.
     kinds, kind_of

@@ -143,6 +143,23 @@ def test_lattices_and_a_wall():
     assert np.linalg.norm(ends, axis=1) == pytest.approx(robot.material['pitch_mm'])
 
 
+def test_obstacles_are_cells_or_what_json_has():
+    cells = [(1, 0, 0), (1, 0, 1)]
+    as_json = Robot(TOWER, obstacles=[{'cells': cells}])
+    # The wall beside the tower: two facets touch it, and one the floor.
+    assert len(as_json.facets) == 3
+    for given in (cells, tuple(cells), [list(cell) for cell in cells], np.array(cells),
+                  [np.array(cell) for cell in cells]):
+        assert Robot(TOWER, obstacles=given) == as_json
+        assert Robot(TOWER, supports={'obstacles': given}) == as_json
+    for none in ([], np.zeros((0, 3), dtype=int)):
+        assert Robot(TOWER, obstacles=none) == Robot(TOWER)
+    for wrong in ([1, 0, 0], [(1, 0)], [(1.5, 0, 0)], [(1, 0, 2**70)], [(0, 0, 0)], 'wall', 3,
+                  [(1, 0, 0), {'cells': [(2, 0, 0)]}], [[(1, 0, 0)]]):
+        with pytest.raises(holdfast.Error, match='obstacle'):
+            Robot(TOWER, obstacles=wrong)
+
+
 def test_files_are_read_and_written(root, tmp_path):
     for path in sorted((root / 'scenarios').glob('*.json')):
         robot = holdfast.load(path)
