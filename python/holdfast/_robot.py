@@ -288,7 +288,8 @@ class Robot:
             ``v1`` and ``v2``: Blinky Blocks; ``catoms``: assumed, as nothing is published;
             ``unit``: rounds of a synchronous network.
         method
-            ``elimination``, ``polynomial``, ``cg``, ``block-jacobi`` or ``jacobi``.
+            ``elimination``; ``fronts``, the same in few sweeps for robots with many loops and
+            modules with more memory; ``polynomial``, ``cg``, ``block-jacobi`` or ``jacobi``.
         noise
             Probabilities ``loss``, ``duplication``, ``corruption``, ``reordering``; seconds
             ``jitter``.

@@ -149,7 +149,7 @@ std::shared_ptr<Run> simulate_robot(const SharedStructure& structure, const py::
   const auto found_method = find_method(method);
   if (!found_link || !found_method) {
     refuse(found_link ? "method" : "link", found_link ? method : link,
-           found_link ? "elimination, polynomial, cg, block-jacobi or jacobi"
+           found_link ? "elimination, fronts, polynomial, cg, block-jacobi or jacobi"
                       : "v1, v2, catoms or unit");
   }
   options.link = *found_link;

@@ -111,6 +111,20 @@ def test_the_robot_finds_the_exact_verdict_itself(root):
         assert json.loads(run.json())['distributed'] and run.text() and '<svg' in run.svg()
 
 
+def test_every_method_is_described_and_finds_the_verdict(root):
+    text = (root / 'docs/distributed.md').read_text()
+    table = text[text.index('| `--method` |'):].split('\n\n')[0].splitlines()[2:]
+    methods = [row.split('`')[1] for row in table]
+    assert len(methods) == 6 and 'fronts' in methods
+    robot = Robot([[x, y, 0] for x in range(3) for y in range(3)], planned=[[1, 1, 1]])
+    with pytest.raises(holdfast.Error) as caught:
+        robot.simulate(method='guess')
+    for method in methods:
+        assert f'``{method}``' in Robot.simulate.__doc__ and method in str(caught.value)
+        run = robot.simulate(link='unit', method=method)
+        assert run.verdict is run.exact.verdict is Verdict.SAFE
+
+
 def test_events_happen_to_the_robot(root):
     robot = holdfast.load(root / 'scenarios/arm_breaks_a.json')
     silent = robot.simulate(link='unit', events=[('kill', 1, robot.cells[4])])
