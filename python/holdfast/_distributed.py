@@ -18,7 +18,7 @@ from ._verdict import VERDICTS, Verdict
 
 
 class Run:
-    """What the modules of a robot came to, beside the exact answer."""
+    """What the modules of a robot came to, beside the exact answer. It never changes."""
 
     __slots__ = ('_held',)
 
@@ -76,6 +76,12 @@ class Run:
     def svg(self) -> str:
         """The robot in the colours of its own load ratios."""
         return self._held.svg()
+
+    def __copy__(self) -> Run:
+        return self
+
+    def __deepcopy__(self, memo: Any) -> Run:
+        return self
 
     def __str__(self) -> str:
         return self.text()

@@ -1,6 +1,7 @@
 # SPDX-FileCopyrightText: The holdfast authors
 # SPDX-License-Identifier: Apache-2.0
 """Places, steps, orders, moves and the robot's own computation agree with checks."""
+import copy
 import json
 
 import holdfast
@@ -123,6 +124,16 @@ def test_every_method_is_described_and_finds_the_verdict(root):
         assert f'``{method}``' in Robot.simulate.__doc__ and method in str(caught.value)
         run = robot.simulate(link='unit', method=method)
         assert run.verdict is run.exact.verdict is Verdict.SAFE
+
+
+def test_answers_are_copied_as_they_never_change():
+    robot = Robot([[0, 0, 0], [1, 0, 0]], planned=[[0, 0, 1]])
+    for answer in (robot.simulate(link='unit'), robot.check(), robot.next(), holdfast.order(robot),
+                   holdfast.steps(robot), holdfast.move(Robot([[0, 0, 0], [1, 0, 0]]),
+                                                        Robot([[0, 0, 0], [0, 0, 1]]))):
+        for again in (copy.copy(answer), copy.deepcopy(answer), copy.deepcopy([answer])[0]):
+            assert type(again) is type(answer)
+            assert again.json() == answer.json() and again.text() == answer.text()
 
 
 def test_events_happen_to_the_robot(root):
