@@ -110,4 +110,7 @@ def events_of(events: Iterable[Any]) -> list[Any]:
 
 def noise_of(noise: Optional[Mapping[str, float]]) -> dict[str, float]:
     """As the extension takes it."""
+    if not isinstance(noise, (Mapping, type(None))):
+        raise _core.Error(f'noise: found {type(noise).__name__}, expected is a mapping from names '
+                          'to numbers')
     return dict(noise or {})

@@ -29,8 +29,8 @@ class Film:
     def __init__(self, reports: list[Report], milliseconds: int) -> None:
         if not reports:
             raise _core.Error('found no reports, expected is at least one')
-        if milliseconds < 10:
-            raise _core.Error(f'found {milliseconds} milliseconds, allowed is 10 and more')
+        if not 10 <= milliseconds <= 600_000:
+            raise _core.Error(f'found {milliseconds} milliseconds, allowed is 10 to 600,000')
         self.reports = reports
         self.milliseconds = milliseconds
         self._cells = np.concatenate([report.robot.modules['cell'] for report in reports])
@@ -75,13 +75,16 @@ class Film:
             _core.write_file(path, self.html())
         elif path.endswith('.gif'):
             need('PIL', 'a .gif')
-            film = self.animation()
-            with tempfile.TemporaryDirectory(dir=os.path.dirname(path) or '.') as folder:
-                made = os.path.join(folder, 'film.gif')
-                film.save(made, PillowWriter(fps=1000 / self.milliseconds),
-                          savefig_kwargs={'facecolor': _look.CARD})
-                os.replace(made, path)
-            pyplot.close(film._fig)
+            try:
+                with tempfile.TemporaryDirectory(dir=os.path.dirname(path) or '.') as folder:
+                    made = os.path.join(folder, 'film.gif')
+                    film = self.animation()
+                    film.save(made, PillowWriter(fps=1000 / self.milliseconds),
+                              savefig_kwargs={'facecolor': _look.CARD})
+                    pyplot.close(film._fig)
+                    os.replace(made, path)
+            except OSError as error:
+                raise _core.Error(f'{path}: {error.strerror}') from None
         else:
             raise _core.Error(f'{path}: expected is a name that ends in .gif or .html')
 

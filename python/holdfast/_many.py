@@ -9,7 +9,7 @@ import numpy as np
 
 from . import _core
 from ._progress import Progress, told
-from ._report import Report, Table
+from ._report import Report, Table, expect
 from ._robot import Robot
 
 
@@ -23,7 +23,10 @@ def check_many(robots: Iterable[Robot], *, threads: int = 0, memory: float = 4,
     >>> [report.verdict.name for report in reports]
     ['SAFE', 'SAFE', 'SAFE']
     """
-    cores = [robot._held for robot in robots]
+    cores = []
+    for robot in robots:
+        expect(robot, Robot, 'robots')
+        cores.append(robot._held)
     with told(progress, 'check', is_counted=True) as tell:
         checks = _core.check_many(cores, threads, memory, bonded, tell)
     return [Report._of(check) for check in checks]
@@ -42,5 +45,6 @@ def table(reports: Sequence[Report]) -> Table:
                                          ('margin_mm', 'f8'), ('weight_factor', 'f8'),
                                          ('modules', 'i8'), ('seconds', 'f8')])
     for index, report in enumerate(reports):
+        expect(report, Report, 'reports')
         rows[index] = report._held.row
     return rows

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, Optional, Union
 
 from ._optional import need
 from ._plans import Order, Steps
-from ._report import Report
+from ._report import Report, expect
 from ._robot import Path, Robot, _cell_of
 
 if TYPE_CHECKING:
@@ -23,6 +23,7 @@ def plot_steps(judged: Steps, figure: Any = None) -> Any:
     `judged` comes of `steps`. Returns the figure, by default a new one, with three axes. Needs
     python3-matplotlib.
     """
+    expect(judged, Steps, 'judged')
     need('matplotlib', 'plot_steps')
     from ._curves import draw_steps
     return draw_steps(judged, figure)
@@ -35,6 +36,7 @@ def plot_order(found: Order, figure: Any = None) -> Any:
     comes of `order`. Returns the figure, by default a new one, with three axes. Needs
     python3-matplotlib.
     """
+    expect(found, Order, 'found')
     need('matplotlib', 'plot_order')
     from ._curves import draw_order
     return draw_order(found, figure)
@@ -62,6 +64,8 @@ def animate(source: Union[Steps, Order, Sequence[Report]], path: Optional[Path] 
         reports = [state.check() for state in states(robot)]
     else:
         reports = list(source)
+        for report in reports:
+            expect(report, Report, 'source')
     film = Film(reports, milliseconds)
     if path is not None:
         film.save(os.fsdecode(path))

@@ -21,6 +21,12 @@ Table = npt.NDArray[Any]
 Path = Union[str, bytes, 'os.PathLike[str]', 'os.PathLike[bytes]']
 
 
+def expect(given: object, kind: type, what: str) -> None:
+    """Raises TypeError for anything else."""
+    if not isinstance(given, kind):
+        raise TypeError(f'{what}: found {type(given).__name__}, expected is {kind.__name__}')
+
+
 class Timings(NamedTuple):
     """Seconds: of the check, and what proof and limit load took beyond it."""
 

@@ -46,13 +46,21 @@ def _json(head: Mapping[str, Any]) -> str:
         raise _core.Error('a number is infinite or no number, expected are finite ones') from None
 
 
+def _floats(what: str, given: Any) -> npt.NDArray[np.float64]:
+    """An array of numbers, or Error."""
+    try:
+        return np.asarray(given, dtype=float)
+    except (ValueError, OverflowError) as error:
+        raise _core.Error(f'{what}: {error}') from None
+
+
 def _load_list(loads: Any) -> Any:
     """The form of holdfast JSON, of a mapping from cells to forces in N, or to six numbers."""
     if not isinstance(loads, Mapping):
         return loads
     entries = []
     for cell, load in loads.items():
-        numbers = np.asarray(load, dtype=float).ravel().tolist()
+        numbers = _floats('loads', load).ravel().tolist()
         if len(numbers) not in (3, 6):
             raise _core.Error(f'loads: found {len(numbers)} numbers for {tuple(cell)}, expected '
                               'are 3, a force, or 6, a force and a torque')
@@ -105,17 +113,20 @@ def _own(cells: Any, planned: Any, masses: Any, kind_of: Any) -> list[tuple[int,
     to_come = [tuple(cell) for cell in np.asarray([] if planned is None else planned).tolist()]
     names = existing + to_come
     if masses is not None and not isinstance(masses, Mapping):
-        values = np.asarray(masses, dtype=float)
+        values = _floats('masses', masses)
         if values.shape not in ((len(existing),), (len(names),)):
             raise _core.Error(f'masses: found the shape {values.shape}, expected is one number for '
                               f'each of the {len(existing)} modules, or a mapping from cells')
         masses = dict(zip(names, values.tolist()))
     wanted: dict[Any, tuple[str, float]] = {}
     for cell, kilograms in (masses or {}).items():
-        if not np.isfinite(kilograms):
+        if not np.isfinite(_floats('masses', kilograms)).all():
             raise _core.Error(f'masses: found {kilograms} for {tuple(cell)}, expected is a number '
                               'of kg')
         wanted[tuple(cell)] = ('', float(kilograms))
+    if not isinstance(kind_of, (Mapping, type(None))):
+        raise _core.Error(f'kind_of: found {type(kind_of).__name__}, expected is a mapping from '
+                          'cells to names')
     for cell, kind in (kind_of or {}).items():
         wanted[tuple(cell)] = (kind, wanted.get(tuple(cell), ('', float('nan')))[1])
     places = {cell: (0, index) for index, cell in enumerate(existing)}
@@ -225,6 +236,8 @@ class Robot:
         >>> Robot.from_voxels(np.ones((2, 1, 3), dtype=bool))
         <holdfast.Robot of 6 modules, cubic>
         """
+        if (shape := _floats('origin', origin).shape) != (3,):
+            raise _core.Error(f'origin: found the shape {shape}, expected is a cell')
         array = np.asarray(voxels)
         if array.ndim != 3 or array.dtype.kind not in 'bui':
             raise _core.Error(f'voxels: found an array of {array.dtype} of shape {array.shape}, '

@@ -12,27 +12,28 @@
 /// Checks and what they find.
 namespace holdfast::python {
 
-CheckOptions check_options(int thread_count, double memory_gb, bool is_bonded) {
-  constexpr int kThreadCountMax = 64;  // As of the command line, like the bounds of memory.
-  if (thread_count < 0 || thread_count > kThreadCountMax) {
-    throw Error("threads: found " + std::to_string(thread_count) + ", allowed is 0 to 64");
-  }
-  if (!(memory_gb >= 0.01 && memory_gb <= 1024)) {
-    throw Error("memory: found " + std::to_string(memory_gb) + " GB, allowed is 0.01 to 1024");
-  }
+// Bounds as of the command line.
+int thread_count_of(const py::handle& threads) {
+  return static_cast<int>(integer_of(threads, "threads", 0, 64));
+}
+
+CheckOptions check_options(const py::handle& threads, const py::handle& memory, bool is_bonded) {
+  const double memory_gb = number_of(memory, "memory", 0.01, 1024);
   return {.is_bonded = is_bonded,
-          .thread_count = thread_count,
+          .thread_count = thread_count_of(threads),
           .memory_bytes_max = static_cast<std::size_t>(memory_gb * 1073741824.0)};
 }
 
 namespace {
 
-SharedCheck check_shared(const SharedStructure& structure, int thread_count, double memory_gb,
-                         bool is_bonded, bool is_limit_wanted, double limit_seconds,
-                         bool is_proof_wanted, py::object progress) {
-  CheckOptions options = check_options(thread_count, memory_gb, is_bonded);
+SharedCheck check_shared(const SharedStructure& structure, const py::handle& threads,
+                         const py::handle& memory, bool is_bonded, bool is_limit_wanted,
+                         const py::handle& limit_seconds, bool is_proof_wanted,
+                         py::object progress) {
+  CheckOptions options = check_options(threads, memory, is_bonded);
   options.is_limit_wanted = is_limit_wanted;
-  options.limit_seconds_max = limit_seconds;
+  options.limit_seconds_max =
+      number_of(limit_seconds, "limit_seconds", 0, std::numeric_limits<double>::infinity());
   options.is_proof_wanted = is_proof_wanted;
   Watch watch(std::move(progress));
   options.progress = [&](int iteration, double error) { watch(iteration, error); };
@@ -43,9 +44,9 @@ SharedCheck check_shared(const SharedStructure& structure, int thread_count, dou
 }
 
 std::vector<SharedCheck> check_list(const std::vector<SharedStructure>& structures,
-                                    int thread_count, double memory_gb, bool is_bonded,
-                                    py::object progress) {
-  const CheckOptions options = check_options(thread_count, memory_gb, is_bonded);
+                                    const py::handle& threads, const py::handle& memory,
+                                    bool is_bonded, py::object progress) {
+  const CheckOptions options = check_options(threads, memory, is_bonded);
   std::vector<const model::Robot*> robots;
   for (const SharedStructure& structure : structures) {
     robots.push_back(&structure->robot);

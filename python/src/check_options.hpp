@@ -2,11 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "holdfast/holdfast.hpp"
+#include "common.hpp"
 
 namespace holdfast::python {
 
-/// How to check; holdfast.Error for what is not allowed. `memory_gb` is in 2^30 bytes.
-CheckOptions check_options(int thread_count, double memory_gb, bool is_bonded);
+/// How to check; holdfast.Error for what is not allowed. `memory` is in GB of 2^30 bytes.
+CheckOptions check_options(const py::handle& threads, const py::handle& memory, bool is_bonded);
+
+int thread_count_of(const py::handle& threads);
 
 }  // namespace holdfast::python

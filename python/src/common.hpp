@@ -6,6 +6,7 @@
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
+#include <cstdint>
 #include <memory>
 #include <stdexcept>
 #include <string>
@@ -57,6 +58,15 @@ std::string path_of(const py::handle& given);
 
 /// A text in UTF-8. Raises TypeError or holdfast.Error that begins with `what`.
 std::string utf8_of(const py::handle& given, const char* what);
+
+/// An integer, or a number, within bounds. Raises TypeError or holdfast.Error that begins with
+/// `what`.
+std::uint64_t integer_of(const py::handle& given, const char* what, std::uint64_t low,
+                         std::uint64_t high);
+double number_of(const py::handle& given, const char* what, double low, double high);
+
+/// Any number of 64 bits.
+std::uint64_t seed_of(const py::handle& given);
 
 /// Cells from an (n, 3) array of integers, or what numpy makes one of. Raises holdfast.Error that
 /// begins with `what` for anything else.

@@ -46,12 +46,9 @@ std::vector<Event> events_of(const py::handle& given) {
     }
     Event& event = events.emplace_back();
     event.kind = utf8_of(py::object(parts[0]), "events");
-    event.at = parts[1].cast<double>();
+    event.at = number_of(parts[1], "events: a time", 0, 1e9);
     event.cell = parts[2].is_none() ? agent::kEveryCell : cell_of(parts[2], "events");
     event.face = parts.size() == 4 ? utf8_of(py::object(parts[3]), "events") : "";
-    if (!(event.at >= 0 && event.at <= 1e9)) {
-      throw Error("events: found the time " + std::to_string(event.at) + ", allowed is 0 to 1e9");
-    }
   }
   return events;
 }
@@ -119,7 +116,7 @@ auto going_on(Watch& watch) {
 void add_noise(sim::LinkModel& link, const py::dict& noise, double ticks) {
   for (const auto& [key, value] : noise) {
     const std::string name = utf8_of(key, "noise");
-    const auto number = value.cast<double>();
+    const double number = number_of(value, "noise", 0, 1e6);
     if (name == "loss") {
       link.loss = number;
     } else if (name == "duplication") {
@@ -129,7 +126,7 @@ void add_noise(sim::LinkModel& link, const py::dict& noise, double ticks) {
     } else if (name == "reordering") {
       link.reordering = number;
       link.reordering_delay = number > 0 ? 3 * sim::line_time(link, link.packet_bytes) : 0;
-    } else if (name == "jitter" && number >= 0 && number <= 1e6) {
+    } else if (name == "jitter") {
       link.jitter = static_cast<sim::Time>(std::llround(number * ticks));
     } else {
       refuse("noise", name,
@@ -139,7 +136,7 @@ void add_noise(sim::LinkModel& link, const py::dict& noise, double ticks) {
 }
 
 std::shared_ptr<Run> simulate_robot(const SharedStructure& structure, const py::handle& link_name,
-                                    const py::handle& method_name, std::uint64_t seed,
+                                    const py::handle& method_name, const py::handle& seed,
                                     const py::dict& noise, const py::handle& events,
                                     py::object progress) {
   sim::SimulationOptions options;
@@ -154,7 +151,7 @@ std::shared_ptr<Run> simulate_robot(const SharedStructure& structure, const py::
   }
   options.link = *found_link;
   options.method = *found_method;
-  options.seed = seed;
+  options.seed = seed_of(seed);
   const double ticks =
       options.link.ticks_per_second > 0 ? static_cast<double>(options.link.ticks_per_second) : 1.0;
   add_noise(options.link, noise, ticks);
@@ -187,14 +184,12 @@ std::shared_ptr<Run> simulate_robot(const SharedStructure& structure, const py::
 }
 
 std::shared_ptr<Run> emulate_robot(const SharedStructure& structure, const py::handle& image_path,
-                                   std::uint64_t seed, double seconds, const py::handle& events,
-                                   py::object progress) {
+                                   const py::handle& seed, const py::handle& seconds_max,
+                                   const py::handle& events, py::object progress) {
   constexpr double kTicks = 1e6;
-  if (!(seconds >= 0.001 && seconds <= 3600)) {
-    throw Error("seconds: found " + std::to_string(seconds) + ", allowed is 0.001 to 3600");
-  }
+  const double seconds = number_of(seconds_max, "seconds", 0.001, 3600);
   const std::string image = path_of(image_path);
-  emulator::EmulationOptions options{.seed = seed};
+  emulator::EmulationOptions options{.seed = seed_of(seed)};
   options.time_max = static_cast<sim::Time>(seconds * kTicks);
   const Course course = course_of(structure, events_of(events), kTicks);
   using Kind = emulator::Fault::Kind;

@@ -56,10 +56,10 @@ JudgementRow row_of(const Judged& judged) {
           .margin_mm = judged.margin_mm.value_or(kNone)};
 }
 
-std::shared_ptr<Places> next(const SharedStructure& structure, int thread_count, double memory_gb,
-                             bool is_bonded, py::object progress) {
+std::shared_ptr<Places> next(const SharedStructure& structure, const py::handle& threads,
+                             const py::handle& memory, bool is_bonded, py::object progress) {
   Watch watch(std::move(progress));
-  NextOptions options{.check = check_options(thread_count, memory_gb, is_bonded)};
+  NextOptions options{.check = check_options(threads, memory, is_bonded)};
   options.progress = [&](std::size_t done, std::size_t count) { watch(done, count); };
   return without_gil(
       watch, [&] { return std::make_shared<Places>(structure, find_next(*structure, options)); });
@@ -76,16 +76,17 @@ py::array candidates(const Places& places) {
   return rows_of(rows, true);
 }
 
-std::shared_ptr<JudgedSteps> steps(const SharedStructure& structure, int thread_count,
-                                   double memory_gb, bool ends_when_unsafe, py::object progress) {
-  const CheckOptions check = check_options(thread_count, memory_gb, false);
+std::shared_ptr<JudgedSteps> steps(const SharedStructure& structure, const py::handle& threads,
+                                   const py::handle& memory, bool ends_when_unsafe,
+                                   py::object progress) {
+  const CheckOptions check = check_options(threads, memory, false);
   const std::size_t count = io::step_count(structure->document);
   if (count == 0) {
     throw Error("the structure has no steps; check() judges it as it is");
   }
   Watch watch(std::move(progress));
   const StepsOptions options{
-      .thread_count = thread_count,
+      .thread_count = check.thread_count,
       .memory_bytes_max = check.memory_bytes_max,
       .ends_when_unsafe = ends_when_unsafe,
       .progress = [&](std::size_t judged_count) { watch(judged_count, count); }};
@@ -111,26 +112,23 @@ std::optional<std::pair<std::size_t, int>> place_of(const std::optional<plan::St
   return id ? std::optional(std::pair(id->step, static_cast<int>(id->stage))) : std::nullopt;
 }
 
-/// The limits of a search: a seed, seconds, threads.
-double seconds_max(double seconds) {
-  if (!(seconds >= 0)) {
-    throw Error("seconds: found " + std::to_string(seconds) + ", allowed is 0 and more");
-  }
-  return seconds;
+double seconds_of(const py::handle& given, const char* what) {
+  return number_of(given, what, 0, std::numeric_limits<double>::infinity());
 }
 
 std::shared_ptr<io::OrderReport> order(const Structure& target, const py::handle& start,
                                        const py::handle& reach_name, const py::handle& source,
-                                       std::size_t group_size, bool is_reversed, std::uint64_t seed,
-                                       double seconds, double help_seconds, int thread_count,
+                                       const py::handle& group, bool is_reversed,
+                                       const py::handle& seed, const py::handle& seconds,
+                                       const py::handle& help_seconds, const py::handle& threads,
                                        py::object progress) {
   Watch watch(std::move(progress));
-  OrderRequest request{.group_size = group_size,
+  OrderRequest request{.group_size = integer_of(group, "group", 1, 16),
                        .is_reversed = is_reversed,
-                       .seed = seed,
-                       .seconds_max = seconds_max(seconds),
-                       .help_seconds_max = seconds_max(help_seconds),
-                       .thread_count = check_options(thread_count, 4, false).thread_count};
+                       .seed = seed_of(seed),
+                       .seconds_max = seconds_of(seconds, "seconds"),
+                       .help_seconds_max = seconds_of(help_seconds, "help_seconds"),
+                       .thread_count = thread_count_of(threads)};
   if (!start.is_none()) {
     request.start = cells_of(start, "start");
   }
@@ -146,9 +144,6 @@ std::shared_ptr<io::OrderReport> order(const Structure& target, const py::handle
   }
   if ((reach == "surface") != request.rule.source.has_value()) {
     throw Error("reach 'surface' and source belong together");
-  }
-  if (group_size < 1 || group_size > 16) {
-    throw Error("group: found " + std::to_string(group_size) + ", allowed is 1 to 16");
   }
   request.progress = [&](std::size_t states, std::size_t grown, std::size_t shrunk) {
     watch(states, grown, shrunk);
@@ -218,14 +213,14 @@ py::object order_help(const io::OrderReport& report) {
 
 std::shared_ptr<io::MoveReport> move(const Structure& start, const Structure& target, bool pivots,
                                      const py::handle& within, bool ignores_mechanics,
-                                     std::uint64_t seed, double seconds, int thread_count,
-                                     py::object progress) {
+                                     const py::handle& seed, const py::handle& seconds,
+                                     const py::handle& threads, py::object progress) {
   Watch watch(std::move(progress));
   MoveRequest request{.pivots = pivots,
                       .ignores_mechanics = ignores_mechanics,
-                      .seed = seed,
-                      .seconds_max = seconds_max(seconds),
-                      .thread_count = check_options(thread_count, 4, false).thread_count};
+                      .seed = seed_of(seed),
+                      .seconds_max = seconds_of(seconds, "seconds"),
+                      .thread_count = thread_count_of(threads)};
   if (!within.is_none()) {
     const auto corners = cells_of(within, "within");
     if (corners.size() != 2) {

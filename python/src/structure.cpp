@@ -324,8 +324,9 @@ void add_readers(py::class_<Structure, std::shared_ptr<Structure>>& type) {
                   })
       .def_static("load_file", &from_file)
       .def_static("generate",
-                  [](const py::handle& given, std::size_t size) {
+                  [](const py::handle& given, const py::handle& number) {
                     const std::string family = utf8_of(given, "family");
+                    const std::size_t size = integer_of(number, "size", 0, model::kModuleCountMax);
                     auto made = without_gil([&]() -> base::Result<Structure> {
                       auto document = generate(family, size);
                       return document ? make_structure(std::move(document).value())

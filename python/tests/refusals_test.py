@@ -1,0 +1,97 @@
+# SPDX-FileCopyrightText: The holdfast authors
+# SPDX-License-Identifier: Apache-2.0
+"""Numbers and texts that are not allowed are refused in one line, whatever takes them."""
+import holdfast
+import pytest
+from holdfast import Robot
+
+ROBOT = Robot([[0, 0, 0], [1, 0, 0]], planned=[[0, 0, 1]])
+STEPS = [{'attach': [[0, 0, 1]]}]
+HUGE = [2**31, 2**32, 2**64, 10**400, -1, -2**63, -2**64]
+NO_NUMBERS = [float('nan'), float('-inf'), 10**400, -1]
+
+CALLS = {
+    'threads': lambda given: ROBOT.check(threads=given),
+    'threads of many': lambda given: holdfast.check_many([ROBOT], threads=given),
+    'threads of next': lambda given: ROBOT.next(threads=given),
+    'threads of steps': lambda given: holdfast.steps(ROBOT, STEPS, threads=given),
+    'threads of order': lambda given: holdfast.order(ROBOT, threads=given),
+    'threads of move': lambda given: holdfast.move(ROBOT, ROBOT, threads=given),
+    'group': lambda given: holdfast.order(ROBOT, group=given),
+    'size': lambda given: holdfast.generate('cube', given),
+}
+SEEDS = {
+    'simulate': lambda given: ROBOT.simulate(link='unit', seed=given),
+    'order': lambda given: holdfast.order(ROBOT, seed=given),
+    'move': lambda given: holdfast.move(ROBOT.planning([]), ROBOT.planning([]), seed=given),
+}
+NUMBERS = {
+    'memory': lambda given: ROBOT.check(memory=given),
+    'limit_seconds': lambda given: ROBOT.check(limit=True, limit_seconds=given),
+    'seconds of order': lambda given: holdfast.order(ROBOT, seconds=given),
+    'help_seconds': lambda given: holdfast.order(ROBOT, help_seconds=given),
+    'seconds of move': lambda given: holdfast.move(ROBOT, ROBOT, seconds=given),
+    'a time': lambda given: ROBOT.simulate(events=[('kill', given, (0, 0, 0))]),
+    'loss': lambda given: ROBOT.simulate(noise={'loss': given}),
+    'jitter': lambda given: ROBOT.simulate(noise={'jitter': given}),
+    'mass': lambda given: Robot([[0, 0, 0]], masses={(0, 0, 0): given}),
+    'masses': lambda given: Robot([[0, 0, 0]], masses=[given]),
+}
+# No number is a text, nor a text a number.
+TYPES = [
+    lambda: ROBOT.check(threads=1.5), lambda: ROBOT.check(memory='much'),
+    lambda: ROBOT.simulate(seed='one'), lambda: ROBOT.simulate(method=3),
+    lambda: ROBOT.simulate(noise={'loss': 'much'}), lambda: ROBOT.simulate(noise={3: 0.1}),
+    lambda: ROBOT.simulate(events=[('kill', 'soon', (0, 0, 0))]),
+    lambda: ROBOT.simulate(events=[(3, 1, (0, 0, 0))]),
+    lambda: ROBOT.simulate(events=[('cut', 1, (0, 0, 0), 3)]),
+    lambda: holdfast.order(ROBOT, reach=3), lambda: holdfast.generate('cube', 3.0),
+    lambda: Robot.from_text(b'{}'), lambda: Robot([[0, 0, 0]], kind_of={(0, 0, 0): 3}),
+    lambda: holdfast.check_many(['robot.json']), lambda: holdfast.table([ROBOT]),
+    lambda: holdfast.animate([ROBOT]), lambda: holdfast.plot_steps(ROBOT),
+    lambda: holdfast.plot_order(ROBOT)]
+
+
+def refuses(call, error=holdfast.Error):
+    with pytest.raises(error) as caught:
+        call()
+    assert len(str(caught.value).splitlines()) == 1
+    return str(caught.value)
+
+
+@pytest.mark.parametrize('name', CALLS)
+def test_integers_beyond_what_is_allowed(name):
+    for given in HUGE:
+        assert f'found {given}, allowed' in refuses(lambda given=given: CALLS[name](given))
+
+
+@pytest.mark.parametrize('name', SEEDS)
+def test_seeds_have_64_bits(name):
+    for given in (-1, 2**64):
+        assert f'seed: found {given}' in refuses(lambda given=given: SEEDS[name](given))
+    SEEDS[name](2**64 - 1)
+
+
+@pytest.mark.parametrize('name', NUMBERS)
+def test_numbers_that_are_none(name):
+    for given in NO_NUMBERS:
+        refuses(lambda given=given: NUMBERS[name](given))
+
+
+@pytest.mark.parametrize('call', TYPES)
+def test_wrong_types(call):
+    refuses(call, TypeError)
+
+
+def test_other_values_that_are_refused(tmp_path):
+    for options in ({'masses': ['heavy']}, {'masses': 'heavy'}, {'kind_of': 3},
+                    {'loads': {(0, 0, 0): 'heavy'}}, {'loads': {(0, 0, 0): (10**400, 0, 0)}}):
+        refuses(lambda options=options: Robot([[0, 0, 0]], **options))
+    for origin in ((0, 0), [], ((0,), 0, 0)):
+        refuses(lambda origin=origin: Robot.from_voxels([[[1]]], origin=origin))
+    refuses(lambda: ROBOT.simulate(noise='loud'))
+    report = ROBOT.check()
+    for milliseconds in (0, float('nan'), float('inf'), 10**400):
+        refuses(lambda given=milliseconds: holdfast.animate([report], milliseconds=given))
+    for name in ('film.gif', 'film.html'):
+        refuses(lambda name=name: holdfast.animate([report], tmp_path / 'absent' / name))
