@@ -2,11 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "holdfast/steps.hpp"
 
-#include <fmt/format.h>
-
 #include <chrono>
 #include <span>
 #include <utility>
+#include <vector>
 
 namespace holdfast {
 namespace {
@@ -17,15 +16,6 @@ io::StepsEntry entry_of(const StepsFile& file, const StepsResult& result) {
           .judgement = &result.judgement,
           .warnings = file.warnings,
           .seconds = result.seconds};
-}
-
-/// For an attribute in XML.
-std::string escaped(const std::string& text) {
-  std::string out;
-  for (const char c : text) {
-    out += c == '&' ? "&amp;" : c == '<' ? "&lt;" : c == '"' ? "&quot;" : std::string(1, c);
-  }
-  return out;
 }
 
 }  // namespace
@@ -113,25 +103,21 @@ class Series {
       if (error) {
         return error;
       }
-      entries_ += fmt::format("    <DataSet timestep=\"{}\" part=\"{}\" file=\"{}\"/>\n", time_,
-                              part, escaped(name));
+      files_.push_back({.time = time_, .part = part, .name = std::move(name)});
     }
     ++time_;
     return std::nullopt;
   }
 
   std::optional<base::Error> finish() const {
-    return write_file(path_,
-                      "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" "
-                      "version=\"1.0\">\n  <Collection>\n" +
-                          entries_ + "  </Collection>\n</VTKFile>\n");
+    return write_file(path_, [this](std::ostream& out) { io::write_pvd(out, files_); });
   }
 
  private:
   std::filesystem::path path_;
   const StepsOptions& options_;
   std::size_t time_ = 0;
-  std::string entries_;
+  std::vector<io::SeriesFile> files_;
 };
 
 }  // namespace

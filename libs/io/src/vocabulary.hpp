@@ -141,8 +141,8 @@ inline constexpr auto kBlockListAttributes =
                                      "ids", "idseed", "seed", "step", "format"});
 inline constexpr auto kBlockAttributes = std::to_array<std::string_view>(
     {"position", "color", "fixed", "centroid", "solver", "stabilityCheck", "id", "master", "leader",
-     "alive", "angle", "orientation", "rotation", kDatomAttribute, "isTarget", "isWall", kOwnKindAttribute,
-     kOwnMassAttribute});
+     "alive", "angle", "orientation", "rotation", kDatomAttribute, "isTarget", "isWall",
+     kOwnKindAttribute, kOwnMassAttribute});
 inline constexpr auto kCellAttributes =
     std::to_array<std::string_view>({"position", "color", kOwnKindAttribute, kOwnMassAttribute});
 inline constexpr auto kRowAttributes =

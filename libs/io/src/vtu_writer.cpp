@@ -16,6 +16,7 @@
 #include "holdfast/verdict/connection_law.hpp"
 #include "module_paint.hpp"
 #include "obstacle_cells.hpp"
+#include "svg_text.hpp"
 #include "vtu_arrays.hpp"
 #include "vtu_shape.hpp"
 
@@ -552,6 +553,15 @@ void write_vtu_piece(std::ostream& out, const model::Robot& part, std::size_t ow
 void write_pvtu(std::ostream& out, const model::Robot& part, const verdict::Assessment& assessment,
                 std::span<const std::string> pieces) {
   Writer(out, part, 0, assessment, {}, {}).write_index(pieces);
+}
+
+void write_pvd(std::ostream& out, std::span<const SeriesFile> files) {
+  out << "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"1.0\">\n  <Collection>\n";
+  for (const SeriesFile& file : files) {
+    out << fmt::format("    <DataSet timestep=\"{}\" part=\"{}\" file=\"{}\"/>\n", file.time,
+                       file.part, escape(file.name));
+  }
+  out << "  </Collection>\n</VTKFile>\n";
 }
 
 }  // namespace holdfast::io

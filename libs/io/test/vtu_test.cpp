@@ -5,7 +5,10 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <sstream>
 #include <streambuf>
+#include <string>
+#include <vector>
 
 #include "random_robot.hpp"
 #include "vtu_support.hpp"
@@ -297,6 +300,20 @@ TEST(Vtu, comes_whole_through_a_stream_without_positions) {
   std::ostream out(&pipe);
   write_vtu(out, robot, assessment);
   EXPECT_EQ(pipe.text, text_of(robot, assessment));
+}
+
+/// What XML has a meaning for stands in it as an entity.
+TEST(Vtu, a_series_names_its_files) {
+  const std::vector<SeriesFile> files = {{.time = 0, .part = 0, .name = "a&b_0.vtu"},
+                                         {.time = 1, .part = 1, .name = "\"<é>.vtu"}};
+  std::ostringstream out;
+  write_pvd(out, files);
+  EXPECT_EQ(out.str(),
+            "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"1.0\">\n"
+            "  <Collection>\n"
+            "    <DataSet timestep=\"0\" part=\"0\" file=\"a&amp;b_0.vtu\"/>\n"
+            "    <DataSet timestep=\"1\" part=\"1\" file=\"&quot;&lt;é&gt;.vtu\"/>\n"
+            "  </Collection>\n</VTKFile>\n");
 }
 
 }  // namespace

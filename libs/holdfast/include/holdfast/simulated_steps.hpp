@@ -49,10 +49,10 @@ struct SimulatedSteps {
 /// "start", "plan", "attach", "detach".
 const char* name(StepChange::Kind kind);
 
-/// Simulates all steps: what a step detaches goes first, all of it at once, then what it attaches is
-/// planned at once and attached at once. Errors: a step moves, releases or connects; it attaches a module
-/// that is not as the one that was in its cell before, or where one was fixed; the robot has what
-/// the modules' program does not know; options that do not fit.
+/// Simulates all steps: what a step detaches goes first, all at once, then what it attaches is
+/// planned at once and attached at once. Errors: a step moves, releases or connects; it attaches a
+/// module that is not as the one that was in its cell before, or where one was fixed; the robot has
+/// what the modules' program does not know; options that do not fit.
 base::Result<SimulatedSteps> simulate_steps(
     const StepsFile& file, const sim::SimulationOptions& options,
     const std::function<void(std::size_t step)>& progress = {});

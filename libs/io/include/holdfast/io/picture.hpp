@@ -55,4 +55,14 @@ void write_vtu_piece(std::ostream& out, const model::Robot& part, std::size_t ow
 void write_pvtu(std::ostream& out, const model::Robot& part, const verdict::Assessment& assessment,
                 std::span<const std::string> pieces);
 
+/// A file of a series of files over time; several of one time are parts of the robot.
+struct SeriesFile {
+  std::size_t time = 0;
+  std::size_t part = 0;
+  std::string name;  ///< Seen from the index's folder; UTF-8 without control characters.
+};
+
+/// Writes the VTK XML file (.pvd) by which ParaView opens a series that write_vtu() has written.
+void write_pvd(std::ostream& out, std::span<const SeriesFile> files);
+
 }  // namespace holdfast::io
