@@ -50,18 +50,9 @@ std::optional<base::Cell> cell_of(const std::string& text) {
   return base::Cell{triple[0], triple[1], triple[2]};
 }
 
-/// What the file of the start says besides its modules, and the target otherwise; empty if nothing.
-std::string difference_of(const io::Document& start, const io::Document& target) {
-  return start.support_z != target.support_z                             ? "support_z"
-         : start.material != target.material                             ? "material"
-         : start.extension.obstacles != target.extension.obstacles       ? "obstacles"
-         : start.extension.gravity_m_s2 != target.extension.gravity_m_s2 ? "gravity_m_s2"
-                                                                         : "";
-}
-
 /// All cells of a document that is to be the start.
 base::Result<std::vector<base::Cell>> start_cells(const OrderArguments& options,
-                                                  const io::Document& target) {
+                                                  const model::RobotSpec& target) {
   const auto text = read_file(options.start);
   if (!text) {
     return text.error();
@@ -76,12 +67,17 @@ base::Result<std::vector<base::Cell>> start_cells(const OrderArguments& options,
                        "it has planned modules or steps; allowed is a robot as it stands",
                        {}};
   }
-  if (const std::string other = difference_of(read.value().document, target); !other.empty()) {
+  const auto start = io::make_spec(read.value().document);
+  if (!start) {
+    return start.error();
+  }
+  if (start.value().lattice != target.lattice) {
+    return base::Error{base::ErrorCode::kBadInput, "its lattice is not that of the target", {}};
+  }
+  const std::string_view other = plan::difference_of_surroundings(start.value(), target);
+  if (!other.empty()) {
     print_notes({{fmt::format("only its modules are taken; {} is the target's", other)}},
                 options.start);
-  }
-  if (read.value().document.extension.lattice != target.extension.lattice) {
-    return base::Error{base::ErrorCode::kBadInput, "its lattice is not that of the target", {}};
   }
   std::vector<base::Cell> cells;
   for (const io::ModuleEntry& module : read.value().document.modules) {
@@ -179,7 +175,11 @@ int run(const OrderArguments& options) {
   Progress progress(options.is_quiet);
   OrderRequest request = request_of(options, progress);
   if (!options.start.empty()) {
-    auto cells = start_cells(options, read.value().document);
+    const auto target = io::make_spec(read.value().document);
+    if (!target) {
+      return fail(target.error(), options.target);
+    }
+    auto cells = start_cells(options, target.value());
     if (!cells) {
       return fail(cells.error(), options.start);
     }

@@ -23,6 +23,10 @@ model::RobotSpec surroundings_of(const model::RobotSpec& spec) {
           .kinds = spec.kinds};
 }
 
+bool are_same(const model::ModuleKind& a, const model::ModuleKind& b) {
+  return a.mass_kg == b.mass_kg && a.connectors == b.connectors;
+}
+
 }  // namespace
 
 void add_payload(const model::Payload& payload, ModuleState& module) {
@@ -198,6 +202,18 @@ model::RobotSpec RobotState::spec() const {
     }
   }
   return spec(all);
+}
+
+std::string_view difference_of_surroundings(const model::RobotSpec& a, const model::RobotSpec& b) {
+  return a.lattice != b.lattice                            ? "lattice"
+         : a.material != b.material                        ? "material"
+         : a.support_z != b.support_z                      ? "support_z"
+         : a.floor != b.floor                              ? "floor"
+         : a.obstacles != b.obstacles                      ? "obstacles"
+         : a.gravity_m_s2 != b.gravity_m_s2                ? "gravity_m_s2"
+         : a.foot_mm != b.foot_mm                          ? "foot_mm"
+         : !std::ranges::equal(a.kinds, b.kinds, are_same) ? "kinds or connectors"
+                                                           : "";
 }
 
 }  // namespace holdfast::plan

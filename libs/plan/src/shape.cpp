@@ -55,32 +55,14 @@ Classes classes_of(const RobotState& robot) {
   return classes;
 }
 
-bool are_same(const model::ModuleKind& a, const model::ModuleKind& b) {
-  return a.mass_kg == b.mass_kg && a.connectors == b.connectors;
-}
-
-/// What differs between two robots besides their modules; empty if nothing does.
-std::string difference_of(const RobotState& a, const RobotState& b) {
-  const model::RobotSpec& from = a.surroundings();
-  const model::RobotSpec& to = b.surroundings();
-  return from.lattice != to.lattice                            ? "lattice"
-         : from.material != to.material                        ? "material"
-         : from.support_z != to.support_z                      ? "support_z"
-         : from.floor != to.floor                              ? "floor"
-         : from.obstacles != to.obstacles                      ? "obstacles"
-         : from.gravity_m_s2 != to.gravity_m_s2                ? "gravity_m_s2"
-         : from.foot_mm != to.foot_mm                          ? "foot_mm"
-         : !std::ranges::equal(from.kinds, to.kinds, are_same) ? "kinds or connectors"
-                                                               : "";
-}
-
 base::Error bad_pair(std::string message) {
   return {.code = base::ErrorCode::kBadInput, .message = std::move(message), .where = {}};
 }
 
 std::optional<base::Error> find_fault(const RobotState& start, const RobotState& target,
                                       const Classes& from, const Classes& to) {
-  const std::string different = difference_of(start, target);
+  const std::string_view different =
+      difference_of_surroundings(start.surroundings(), target.surroundings());
   if (!different.empty()) {
     return bad_pair(
         fmt::format("{} of both robots differ; allowed are two shapes of one robot where it stands",

@@ -8,6 +8,7 @@
 #include <optional>
 #include <set>
 #include <span>
+#include <string_view>
 #include <unordered_map>
 #include <vector>
 
@@ -125,6 +126,10 @@ class RobotState {
   std::unordered_map<base::Cell, std::int32_t, CellHash> index_;
   std::set<model::CellPair> released_;
 };
+
+/// What differs between two robots besides their modules, as holdfast JSON names it; empty if
+/// nothing does.
+std::string_view difference_of_surroundings(const model::RobotSpec& a, const model::RobotSpec& b);
 
 /// A pair of cells in ascending order.
 model::CellPair ordered(const model::CellPair& pair);
