@@ -93,6 +93,34 @@ TEST(LimitBracket, HoldsOnRandomRobotsWithRandomLaws) {
   }
 }
 
+// A module between a fixed one, whose connection holds a torsion of 60 N mm, and a wall that it
+// touches at a point is twisted by 100 N mm, and two springs alike bear half of it each. Without
+// slip the wall holds any part of it; a point that may slip holds none, whatever the elastic one
+// does.
+TEST(LimitBracket, APointBearsTorsionUnlessItMaySlip) {
+  for (const bool slips : {false, true}) {
+    SCOPED_TRACE(slips);
+    const auto structure =
+        load_text(std::string(R"({"format": "holdfast-structure", "version": 2, "support_z": null,
+            "lattice": "hexagonal-prism", "gravity_m_s2": [1e-9, 0, 0],
+            "material": {"foot_mm": 0, "torsion_strength_nmm": 60},
+            "modules": [{"cell": [0,0,0], "fixed": true}, [1,0,0]],
+            "obstacles": [{"cells": [[2,0,0]])") +
+                  (slips ? R"(, "friction": 0.5)" : "") + R"(}],
+            "loads": [{"cell": [1,0,0], "force_n": [5,0,0], "torque_nmm": [100,0,0]}]})");
+    ASSERT_TRUE(structure) << structure.error().message;
+    const CheckResult result = check(structure.value(), {.is_limit_wanted = true});
+    EXPECT_NEAR(result.assessment.load_ratio_max.value(), 50.0 / 60, 1e-6);
+    ASSERT_TRUE(result.limit);
+    if (slips) {
+      EXPECT_NEAR(result.limit->low, 0.6, 1e-5);
+      EXPECT_NEAR(result.limit->high, 0.6, 1e-5);
+    } else {
+      EXPECT_EQ(result.limit->outcome, limit::LimitLoad::Outcome::kUnbounded);
+    }
+  }
+}
+
 // Too solid to be factored as a whole: free are the joints near their limits, the bounds come from
 // parts of the robot. A small arm at a solid block breaks at its root, wherever the block goes on
 // to.

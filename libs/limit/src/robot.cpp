@@ -59,10 +59,12 @@ void add_facet(const model::Robot& robot, const model::Facet& facet, bool is_bon
   if (!is_bonded && !facet.is_bonded()) {
     joint.law.strength_n = 0;
     joint.law.friction = facet.touch.friction;
-    if (half > 0 && !facet.touch.friction) {
+    if (facet.touch.friction) {
+      joint.carries = kCarriesForce;
+    } else if (half > 0) {
       joint.law.lever_mm = half;
     } else {
-      joint.carries = kCarriesForce;
+      joint.carries = kCarriesForce | kCarriesTorsion;
     }
   }
   for (const Vector3& place : contact_places(robot, facet)) {
@@ -206,7 +208,8 @@ std::vector<base::Vec6<double>> known_forces(const model::Robot& robot, const St
     const Joint& joint = structure.joints[forces.size()];
     base::Vec6<double> force =
         joint_force(joint, facet_force[i], structure.bodies[base::at(joint.a)].centre_mm);
-    if (count > 1) {
+    const bool is_point_twisted = (joint.carries & kCarriesTorsion) == 0 && force[5] != 0;
+    if (count > 1 || is_point_twisted) {
       force.fill(std::numeric_limits<double>::quiet_NaN());
     }
     forces.insert(forces.end(), count, force);
