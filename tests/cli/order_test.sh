@@ -29,9 +29,10 @@ structure planned.json '"modules": [[0,0,0]], "planned": [[0,0,1]]'
 expect_exit 0 order tower.json --from other.json
 expect_line err "other.json: note: /oops: the key 'oops' is unknown"
 expect_line err "other.json: note: only its modules are taken; support_z is the target's"
-printf '{"format": "holdfast-structure", "version": 2, "modules": [[0,0,0]], "floor": {"friction": 0.5}}' >small.json
-expect_exit 0 order tower.json --from small.json
-expect_line err "small.json: note: only its modules are taken; floor is the target's"
+printf '{"format": "holdfast-structure", "version": 2, %s}' \
+  '"modules": [[0,0,0]], "floor": {"friction": 0.5}' >smooth.json
+expect_exit 0 order tower.json --from smooth.json
+expect_line err "smooth.json: note: only its modules are taken; floor is the target's"
 expect_exit 65 order tower.json --from planned.json
 expect_line err 'planned.json: it has planned modules or steps'
 

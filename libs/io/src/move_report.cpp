@@ -96,9 +96,8 @@ std::string headline(const MoveReport& report) {
     return "NOT FOUND   what leads there is undecided, so there may be a plan\n";
   }
   return fmt::format(
-      "NOT FOUND   no plan found so far; there may be one. {} lead to the nearest "
-      "shape\n",
-      steps);
+      "NOT FOUND   no plan found so far; there may be one. {} lead to the nearest shape{}\n", steps,
+      plan.undecided_count > 0 ? "; some moves are undecided, and were not made" : "");
 }
 
 std::string proof_words(const plan::MoveCertificate& certificate) {

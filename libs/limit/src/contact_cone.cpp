@@ -16,6 +16,10 @@ constexpr double kRemainderTie = 1e-10;
 /// more than the rounding of the load.
 constexpr double kOpposedTie = 1e-9;
 constexpr double kRounding = 1e-15;
+/// What no-slip forces balance leaves rounding of what it was, which points anywhere.
+constexpr double kSpannedTie = 1e-10;
+/// Newton's iteration has found where a ray leaves if no more than this share of the load remains.
+constexpr double kNearTie = 1e-5;
 constexpr int kGeneratorMax = 2000;
 constexpr int kExitStepMax = 100;
 
@@ -111,7 +115,9 @@ ContactCone::ContactCone(const std::vector<ContactPoint>& points, double gyratio
   for (const ContactPoint& point : points) {
     Generator generator;
     const auto reduced = [&](const Vector3d& force) -> Reduced {
-      return basis_.transpose() * wrench_at(point.place, force, gyration_mm);
+      const Vector6d wrench = wrench_at(point.place, force, gyration_mm);
+      const Reduced part = basis_.transpose() * wrench;
+      return part.norm() > kSpannedTie * wrench.norm() ? part : Reduced::Zero(part.size());
     };
     generator.normal = reduced(point.normal);
     if (point.friction.value_or(0) > 0) {
@@ -151,9 +157,11 @@ ContactCone::Remainder ContactCone::remainder(const Vector6d& load) const {
   for (int i = 0; i < kGeneratorMax; ++i) {
     double product = 0;
     const Reduced push = most_opposed(passive.remainder(), product);
-    const double tie = kOpposedTie * passive.remainder().norm() + kRounding * load.norm();
+    const double length = passive.remainder().norm();
+    const double tie = kOpposedTie * length + kRounding * load.norm();
     if (product >= -tie || !passive.add(push)) {
-      return {.wrench = basis_ * passive.remainder()};
+      return {.wrench = basis_ * passive.remainder(),
+              .is_settled = product >= -tie || -product * load.norm() <= length * length};
     }
   }
   return {.wrench = basis_ * passive.remainder(), .is_settled = false};
@@ -170,9 +178,12 @@ ContactCone::Exit ContactCone::leave(const Vector6d& from, const Vector6d& along
   Vector6d load = along;
   for (int step = 0; step < kExitStepMax; ++step) {
     const Remainder left = remainder(load);
-    exit.is_settled = exit.is_settled && left.is_settled;
     const double closing = left.wrench.dot(along);
     if (is_nothing(left.wrench, load) || closing <= 0) {
+      return exit;
+    }
+    if (!left.is_settled) {
+      exit.is_settled = left.wrench.norm() <= kNearTie * load.norm() && !exit.normal.isZero();
       return exit;
     }
     const double distance = std::max(0.0, -left.wrench.dot(from) / closing);

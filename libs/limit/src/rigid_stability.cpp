@@ -84,7 +84,8 @@ Vector6d wrench_of(const BodyLoad& load) {
 
 }  // namespace
 
-RigidStability assess_rigid(std::span<const ContactFacet> facets, const BodyLoad& load) {
+RigidStability assess_rigid(std::span<const ContactFacet> facets, const BodyLoad& load,
+                            bool has_tilt) {
   RigidStability result;
   if (std::ranges::any_of(facets, &ContactFacet::is_bonded)) {
     result.answer = RigidAnswer::kHolds;
@@ -118,7 +119,9 @@ RigidStability assess_rigid(std::span<const ContactFacet> facets, const BodyLoad
     return result;
   }
   result.answer = margin.is_settled ? RigidAnswer::kHolds : RigidAnswer::kUndecided;
-  result.tilt_margin_deg = smallest_tilt_deg(cone, load);
+  if (has_tilt) {
+    result.tilt_margin_deg = smallest_tilt_deg(cone, load);
+  }
   return result;
 }
 

@@ -134,19 +134,21 @@ class Tilt {
     refine(middle, b, depth - 1);
   }
 
-  /// Whether no line between two rays can be nearer than the nearest, as the set is convex.
+  /// Whether the border between two rays, less than half a turn apart, comes no nearer than the
+  /// nearest line: as the set is convex, it is not within the triangle of both ends and the origin,
+  /// nor, where one ray never ends, within the strip along it.
   bool is_closed(const Hit& a, const Hit& b) const {
     constexpr double kTie = 1e-9;
     // Cones of friction have no edges; how much nearer they may be than what was found.
     constexpr double kCurved = 1e-4;
+    const double near_enough = nearest_ * (1 - kCurved);
     if (a.is_none() || b.is_none()) {
-      return a.is_none() && b.is_none();
+      return std::min(a.distance, b.distance) >= near_enough;
     }
     const Eigen::Vector2d from = a.place();
     const Eigen::Vector2d chord = b.place() - from;
-    const double length = chord.norm();
-    const double line = std::abs(from.x() * chord.y() - from.y() * chord.x());
-    if (length == 0 || line >= nearest_ * length * (1 - kCurved)) {
+    const double part = std::clamp(-from.dot(chord) / chord.squaredNorm(), 0.0, 1.0);
+    if (!(chord.norm() > 0) || (from + part * chord).norm() >= near_enough) {
       return true;
     }
     // Both on one line.

@@ -10,6 +10,8 @@
 #include <numbers>
 #include <vector>
 
+#include "holdfast/base/algebra.hpp"
+
 namespace holdfast::limit {
 namespace {
 
@@ -185,6 +187,79 @@ TEST(RigidStability, FacetsWithinTheHullChangeNothing) {
   const RigidStability b = assess_rigid(all, load);
   EXPECT_NEAR(*a.margin, *b.margin, 1e-9);
   EXPECT_NEAR(*a.tilt_margin_deg, *b.tilt_margin_deg, 1e-7);
+}
+
+/// A facet that pushes along `normal`, one of the axes or its opposite.
+ContactFacet wall_at(const Vector3& centre, std::size_t axis, double sign,
+                     std::optional<double> friction = {}) {
+  std::array<Vector3, 3> frame{};
+  frame[0][(axis + 1) % 3] = 1;
+  frame[1][(axis + 2) % 3] = sign;
+  frame[2][axis] = sign;
+  return {.centre_mm = centre, .frame = frame, .half_width_mm = 20, .friction = friction};
+}
+
+// Weight along -x, away from a wall, and a floor: it turns about the edge where both meet, which is
+// above the wall's other corners. These do not move then, and what is left of their pushes beside
+// forces that hold sideways is rounding, of either sign.
+TEST(RigidStability, ACornerThatDoesNotMoveHoldsNothing) {
+  for (const double far : {0.0, 1e4, 1e7}) {
+    SCOPED_TRACE(far);
+    const std::vector<ContactFacet> facets = {wall_at({far - 20, 0, -40}, 0, 1),
+                                              wall_at({far + 40, 40, -20}, 2, 1)};
+    const BodyLoad load = {
+        .weight_n = {-1, 0, 0}, .centre_of_mass_mm = {far + 10, 20, -10}, .gyration_mm = 30};
+    const RigidStability found = assess_rigid(facets, load);
+    EXPECT_EQ(found.answer, RigidAnswer::kFalls);
+    EXPECT_LT(*found.margin, -0.01);
+  }
+}
+
+// What can be balanced by cones of friction is smooth. Against its definition: gravity turned by a
+// little less than the margin, whatever the direction, is balanced, and in one by little more not.
+TEST(RigidStability, TheTiltOfConesIsWhereItEnds) {
+  int count = 0;
+  for (int seed = 0; seed < 5; ++seed) {
+    SCOPED_TRACE(seed);
+    const double x = 0.37 * std::sin(3.0 * seed);
+    const double y = 0.29 * std::cos(5.0 * seed);
+    const std::vector<ContactFacet> facets = {wall_at({0, 0, -20}, 2, 1, 0.6),
+                                              wall_at({-20, 0, 0}, 0, 1, 0.2 + 0.002 * seed),
+                                              wall_at({0, 20, 0}, 1, -1, 0.25)};
+    BodyLoad load = {.weight_n = {10 * x, 10 * y, -10},
+                     .centre_of_mass_mm = {3, -2, 1.0 * (seed % 7)},
+                     .gyration_mm = 20};
+    load.payload_n = {0.3 * (seed % 3), 0, -0.2 * (seed % 5)};
+    const RigidStability found = assess_rigid(facets, load);
+    if (!found.holds()) {
+      continue;
+    }
+    ASSERT_TRUE(found.tilt_margin_deg);
+    ++count;
+    ASSERT_GT(*found.tilt_margin_deg, 0);
+    const Vector3 down = load.weight_n;
+    const double weight = std::hypot(down[0], down[1], down[2]);
+    const Vector3 side = {-down[2] / std::hypot(down[0], down[2]), 0,
+                          down[0] / std::hypot(down[0], down[2])};
+    const Vector3 other = {down[1] * side[2], down[2] * side[0] - down[0] * side[2],
+                           -down[1] * side[0]};
+    const auto holds = [&](double degrees, double turn) {
+      BodyLoad turned = load;
+      for (std::size_t k = 0; k < 3; ++k) {
+        const double across = weight * std::cos(turn) * side[k] + std::sin(turn) * other[k];
+        turned.weight_n[k] =
+            std::cos(degrees * kDegree) * down[k] + std::sin(degrees * kDegree) * across;
+      }
+      return assess_rigid(facets, turned).holds();
+    };
+    bool is_any_moving = false;
+    for (int i = 0; i < 36; ++i) {
+      EXPECT_TRUE(holds(*found.tilt_margin_deg * 0.999, 10 * i * kDegree)) << i;
+      is_any_moving = is_any_moving || !holds(*found.tilt_margin_deg * 1.03, 10 * i * kDegree);
+    }
+    EXPECT_TRUE(is_any_moving);
+  }
+  EXPECT_GE(count, 3);
 }
 
 }  // namespace

@@ -7,7 +7,7 @@
 namespace holdfast::plan {
 
 verdict::Assessment first_look(const model::Robot& robot) {
-  verdict::Assessment assessment = verdict::assess_rigidly(robot);
+  verdict::Assessment assessment = verdict::assess_rigidly(robot, nullptr, false);
   const bool is_open =
       assessment.is_stable || assessment.rigid.answer == limit::RigidAnswer::kUndecided;
   assessment.verdict = is_open ? verdict::Verdict::kUndecided : verdict::Verdict::kUnstable;
@@ -24,7 +24,9 @@ verdict::Assessment assess(const model::Robot& robot, const solver::EquilibriumO
 }
 
 Judgement judge(const model::Robot& robot, const solver::EquilibriumOptions& options) {
-  const verdict::Assessment assessment = assess(robot, options);
+  solver::EquilibriumOptions mine = options;
+  mine.is_tilt_sought = false;
+  const verdict::Assessment assessment = assess(robot, mine);
   return {.verdict = assessment.verdict,
           .load_ratio_max = assessment.load_ratio_max,
           .margin_mm = assessment.simplified.margin_mm};

@@ -384,7 +384,8 @@ Judgement judgement_of(const verdict::Assessment& assessment) {
 
 verdict::Assessment RobotGrowth::assess_alone(const ElementSet& state) const {
   const auto part = robot(state);
-  return part ? assess(part.value(), {.thread_count = 1}) : verdict::Assessment{};
+  return part ? assess(part.value(), {.thread_count = 1, .is_tilt_sought = false})
+              : verdict::Assessment{};
 }
 
 /// A bound of the load ratio of the state that both tools have come to, by solutions that follow

@@ -20,7 +20,9 @@ std::optional<double> smaller(const std::optional<double>& a, const std::optiona
 /// where they are, is kept from one to the next; no answer depends on it.
 class StageJudge {
  public:
-  explicit StageJudge(solver::EquilibriumOptions options) : options_(std::move(options)) {}
+  explicit StageJudge(solver::EquilibriumOptions options) : options_(std::move(options)) {
+    options_.is_tilt_sought = false;
+  }
 
   /// `known`: the last stage of the step before, if it was judged; the first stage is the same
   /// where nothing lets go. `shares_core`: other steps nearby leave the same modules where they

@@ -3,6 +3,7 @@
 #include "unilateral_contact.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "beam_forces.hpp"
@@ -22,6 +23,19 @@ double dot_all(const std::vector<Vec6<double>>& a, const std::vector<Vec6<double
     sum += base::dot(a[i], b[i]);
   }
   return sum;
+}
+
+/// Of displacements: where a facet is at the border of two states both have the same solution.
+constexpr double kTieShare = 1e-11;
+
+double largest(const std::vector<Vec6<double>>& vectors) {
+  double most = 0;
+  for (const Vec6<double>& vector : vectors) {
+    for (const double value : vector) {
+      most = std::max(most, std::abs(value));
+    }
+  }
+  return most;
 }
 
 bool is_open_but_held(const FacetState& facet) { return !facet.state.pressed && facet.is_held; }
@@ -57,6 +71,11 @@ Outcome UnilateralContact::minimise() {
     std::vector<Vec> next = system().displacement();
     if (!current_.empty()) {
       const std::vector<Vec> direction = sum(std::move(next), -1, current_);
+      const double change = host::max(ranks(), largest(direction));
+      if (change <= kTieShare * host::max(ranks(), largest(current_))) {
+        current_ = std::vector<Vec>();
+        return solve();
+      }
       const double length = search_line(current_, direction);
       next = sum(std::move(current_), length, direction);
       set_states(states_at(at_facets(next)));

@@ -147,7 +147,7 @@ Assessment conclude(const model::Robot& robot, Assessment assessment,
 }
 
 Assessment assess_once(const model::Robot& robot, const solver::EquilibriumOptions& options) {
-  Assessment assessment = assess_rigidly(robot, options.part);
+  Assessment assessment = assess_rigidly(robot, options.part, options.is_tilt_sought);
   assessment.is_stable = assessment.is_stable || options.is_bonded;
   find_equilibrium(robot, options, assessment);
   return conclude(robot, std::move(assessment), options);
@@ -193,11 +193,12 @@ bool has_pulling_facets(const model::Robot& robot, const Assessment& assessment,
          host::any(part == nullptr ? nullptr : part->ranks, is_any_not_stuck);
 }
 
-Assessment assess_rigidly(const model::Robot& robot, const model::RobotPart* part) {
+Assessment assess_rigidly(const model::Robot& robot, const model::RobotPart* part, bool has_tilt) {
   Assessment assessment;
   assessment.simplified = assess_rigid_body(robot, part);
   assessment.stability_rule = stability_rule(robot, part);
-  assessment.rigid = rigid_stability(robot, assessment.stability_rule, assessment.simplified, part);
+  assessment.rigid =
+      rigid_stability(robot, assessment.stability_rule, assessment.simplified, part, has_tilt);
   assessment.is_stable = assessment.rigid.holds();
   return assessment;
 }

@@ -17,7 +17,8 @@ StabilityRule stability_rule(const model::Robot& robot, const model::RobotPart* 
 /// The rigid body with supports anywhere; on a flat floor, where `body` knows it all, in closed
 /// form.
 limit::RigidStability rigid_stability(const model::Robot& robot, StabilityRule rule,
-                                      const RigidBody& body, const model::RobotPart* part);
+                                      const RigidBody& body, const model::RobotPart* part,
+                                      bool has_tilt);
 
 /// Sec. III-C: stable if a facet presses all over, or three corners that press are not on one line.
 ModelStability model_stability(const model::Robot& robot, const solver::Equilibrium& equilibrium,

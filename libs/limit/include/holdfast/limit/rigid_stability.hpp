@@ -74,7 +74,8 @@ struct RigidStability {
   /// may take more. None: none does, or there is no need to ask as a facet is bonded.
   std::optional<double> friction_needed = {};
   /// The smallest angle by which gravity can turn, in any direction, before it moves; 0 where it
-  /// does not hold as it is. None: it holds whatever the direction, or there is no weight.
+  /// does not hold as it is. None: it holds whatever the direction, there is no weight, or nobody
+  /// asked for it.
   std::optional<double> tilt_margin_deg = {};
   /// None where it holds, or nothing says in which direction it would go.
   std::optional<Motion> motion = {};
@@ -88,7 +89,9 @@ inline constexpr double kMarginTie = 1e-9;
 /// Coefficients of friction beyond this are not looked at.
 inline constexpr double kFrictionMax = 1000;
 
-RigidStability assess_rigid(std::span<const ContactFacet> facets, const BodyLoad& load);
+/// The tilt takes as long as a hundred of the rest where contacts have friction.
+RigidStability assess_rigid(std::span<const ContactFacet> facets, const BodyLoad& load,
+                            bool has_tilt = true);
 
 /// "holds", "nothing to spare", "falls", "undecided".
 const char* name(RigidAnswer answer);

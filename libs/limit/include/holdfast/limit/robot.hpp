@@ -17,7 +17,8 @@ namespace holdfast::limit {
 /// Does the robot, as one rigid body, stay on what it touches? A fixed module or a bonded facet
 /// holds it whatever the load is.
 /// Of a part of a robot the answer is that of the whole, as is what follows.
-RigidStability assess_rigid(const model::Robot& robot, const model::RobotPart* part = nullptr);
+RigidStability assess_rigid(const model::Robot& robot, const model::RobotPart* part = nullptr,
+                            bool has_tilt = true);
 
 /// The robot's facets, and its load as one body.
 std::vector<ContactFacet> contact_facets(const model::Robot& robot,

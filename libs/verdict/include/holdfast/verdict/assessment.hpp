@@ -154,8 +154,10 @@ inline bool breaks(double load_ratio) { return load_ratio >= 1 - kLoadRatioTie; 
 bool has_pulling_facets(const model::Robot& robot, const Assessment& assessment,
                         const model::RobotPart* part = nullptr);
 
-/// What the rigid body says of a robot, and nothing else: no verdict, no reasons.
-Assessment assess_rigidly(const model::Robot& robot, const model::RobotPart* part = nullptr);
+/// What the rigid body says of a robot, and nothing else: no verdict, no reasons. On supports
+/// anywhere the tilt only if asked for.
+Assessment assess_rigidly(const model::Robot& robot, const model::RobotPart* part = nullptr,
+                          bool has_tilt = true);
 
 /// Seeks the equilibrium of a robot and says what follows from it.
 Assessment assess(const model::Robot& robot, const solver::EquilibriumOptions& options = {});
