@@ -141,7 +141,7 @@ TEST(RobotsOnWalls, with_facets_at_a_border_have_one_verdict_in_any_order) {
   for (std::vector<base::Cell>* modules : {&two, &three}) {
     do {
       EXPECT_EQ(verdict_of(*modules, {{0, 1, 0}, {-1, 0, 0}, {0, 0, 1}}), verdict::Verdict::kSafe);
-    } while (std::ranges::next_permutation(*modules).found);
+    } while (std::next_permutation(modules->begin(), modules->end()));
   }
 }
 
