@@ -136,7 +136,7 @@ TEST(RobotsOnWalls, are_not_safe_where_the_papers_law_lets_them_fall) {
 /// Facets at the border of two states, which have the same solution: rounding goes from one to the
 /// other for ever, by the order of the modules.
 TEST(RobotsOnWalls, with_facets_at_a_border_have_one_verdict_in_any_order) {
-  std::vector<base::Cell> two = {{0, 0, 0}, {0, 0, -1}};
+  std::vector<base::Cell> two = {{0, 0, -1}, {0, 0, 0}};
   std::vector<base::Cell> three = {{0, 0, -2}, {0, 0, -1}, {0, 0, 0}};
   for (std::vector<base::Cell>* modules : {&two, &three}) {
     do {
