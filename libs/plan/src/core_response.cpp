@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "dense.hpp"
+#include "holdfast/solver/largest.hpp"
 #include "holdfast/verdict/assessment.hpp"
 
 namespace holdfast::plan {
@@ -39,16 +40,6 @@ constexpr std::size_t kFillMax = 64;
 
 /// The error that is left of a column, as a share of it; beyond it digits are missing.
 constexpr double kColumnError = 1e-9;
-
-double largest(const std::vector<Vec6<double>>& vectors) {
-  double size = 0;
-  for (const Vec6<double>& vector : vectors) {
-    for (const double number : vector) {
-      size = std::max(size, std::abs(number));
-    }
-  }
-  return size;
-}
 
 /// The first three and the last three differ in unit; each is compared with its own.
 bool is_close(const std::vector<Vec6<double>>& a, const std::vector<Vec6<double>>& b) {
@@ -511,7 +502,7 @@ std::optional<std::vector<CoreResponse::Answer>> CoreResponse::answers(
     for (std::size_t k = 0; k < answer.refined.size(); ++k) {
       base::add_to(answer.refined[k], (*corrections)[i][k]);
     }
-    if (!(largest(answer.refined) < 1e300) || !is_close(answer.refined, answer.rough)) {
+    if (!(solver::largest(answer.refined) < 1e300) || !is_close(answer.refined, answer.rough)) {
       return std::nullopt;
     }
     answers.push_back(std::move(answer));

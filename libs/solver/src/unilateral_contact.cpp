@@ -3,10 +3,10 @@
 #include "unilateral_contact.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 #include "beam_forces.hpp"
+#include "holdfast/solver/largest.hpp"
 
 namespace holdfast::solver {
 namespace {
@@ -29,16 +29,6 @@ double dot_all(const std::vector<Vec6<double>>& a, const std::vector<Vec6<double
 /// share of the largest, and rounding goes from one to the other. Most that settle have by half of
 /// the steps that are allowed.
 constexpr double kTieShare = 1e-11;
-
-double largest(const std::vector<Vec6<double>>& vectors) {
-  double most = 0;
-  for (const Vec6<double>& vector : vectors) {
-    for (const double value : vector) {
-      most = std::max(most, std::abs(value));
-    }
-  }
-  return most;
-}
 
 bool is_open_but_held(const FacetState& facet) { return !facet.state.pressed && facet.is_held; }
 
@@ -73,9 +63,7 @@ Outcome UnilateralContact::minimise() {
     std::vector<Vec> next = system().displacement();
     if (!current_.empty()) {
       const std::vector<Vec> direction = sum(std::move(next), -1, current_);
-      const double change = host::max(ranks(), largest(direction));
-      const bool is_same = change <= kTieShare * host::max(ranks(), largest(current_));
-      if (is_same && step >= step_count_max() / 2) {
+      if (step >= step_count_max() / 2 && is_nothing(direction)) {
         current_ = std::vector<Vec>();
         return solve();
       }
@@ -86,6 +74,12 @@ Outcome UnilateralContact::minimise() {
     current_ = std::move(next);
   }
   return Outcome::kNotSettled;
+}
+
+/// Whether a change of the present displacements is no more than rounding.
+bool UnilateralContact::is_nothing(const std::vector<Vec>& direction) const {
+  const double change = host::max(ranks(), largest(direction));
+  return change <= kTieShare * host::max(ranks(), largest(current_));
 }
 
 /// Where the energy along a line is least: the root of its slope, which never decreases.

@@ -29,6 +29,7 @@ class UnilateralContact final : public ContactIteration {
  private:
   Outcome minimise();
   bool update_held();
+  bool is_nothing(const std::vector<Vec>& direction) const;
   double search_line(const std::vector<Vec>& from, const std::vector<Vec>& direction) const;
 
   std::vector<bool> was_released_;  ///< By facet.
