@@ -6,6 +6,9 @@
 #pragma once
 
 #include <algorithm>
+#include <cstddef>
+#include <initializer_list>
+#include <vector>
 
 namespace holdfast::test {
 
@@ -24,6 +27,12 @@ inline constexpr bool kIsSanitized = false;
 template <class Count>
 constexpr Count campaign(Count all, Count share = 4) {
   return kIsSanitized ? std::max(all / share, Count{1}) : all;
+}
+
+/// A list of robots, or of what is done with them; under sanitizers the first of it, a share.
+template <class Item>
+std::vector<Item> campaign(std::initializer_list<Item> all, std::size_t share = 4) {
+  return std::vector<Item>(all.begin(), all.begin() + campaign(all.size(), share));
 }
 
 }  // namespace holdfast::test

@@ -7,9 +7,11 @@
 
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "checked_robot.hpp"
 #include "holdfast/model/families.hpp"
+#include "seeds.hpp"
 
 namespace holdfast::io {
 namespace {
@@ -101,7 +103,13 @@ TEST(Report, as_json_lists_the_attempt_that_failed_beside_the_one_that_did_not) 
   Checked tower(spec);
   tower.assessment =
       verdict::assess(tower.robot, {.method = solver::Method::kMultigrid, .is_bonded = true});
-  const Json report = Json::parse(write_report_json(tower.entry()));
+  ReportOptions options;
+  if (test::kIsSanitized) {
+    options.connections = {.kind = ConnectionChoice::Kind::kLargest, .count = 5};
+  }
+  std::ostringstream text;
+  write_report_json(text, tower.entry(), options);
+  const Json report = Json::parse(text.str());
   const Json& attempts = report["solver"]["attempts"];
   ASSERT_EQ(attempts.size(), 2U);
   EXPECT_EQ(attempts[0]["outcome"], "too_slow");

@@ -9,6 +9,7 @@
 
 #include "picture_support.hpp"
 #include "random_robot.hpp"
+#include "seeds.hpp"
 
 // Where things are drawn. Pixels are measured from the picture itself: where the robot's outline
 // lies tells scale and origin.
@@ -153,7 +154,7 @@ TEST(SvgGeometry, what_is_drawn_is_what_a_ray_of_sight_meets_first) {
   // A second method: intersect a ray with every cube. Edges of cubes are seen as edges of one
   // triangular lattice with corners where u and v are both even or both odd, so the middles of its
   // triangles are all that can differ. One polygon may cover each, that of the module that is hit.
-  for (std::uint64_t seed = 0; seed < 12; ++seed) {
+  for (std::uint64_t seed = 0; seed < test::campaign(12U); ++seed) {
     const model::RobotSpec spec = test::random_robot(seed);
     std::vector<Cell> all = spec.existing;
     all.insert(all.end(), spec.planned.begin(), spec.planned.end());
@@ -383,7 +384,7 @@ TEST(SvgGeometry, numbers_have_two_decimals_at_most_and_zero_has_no_sign) {
 }
 
 TEST(SvgGeometry, everything_lies_on_the_card) {
-  for (std::uint64_t seed = 0; seed < 40; ++seed) {
+  for (std::uint64_t seed = 0; seed < test::campaign(40U, 10U); ++seed) {
     const Picture picture(draw(test::random_robot(seed)));
     const double width = picture.root().attribute("width").as_double();
     const double height = picture.root().attribute("height").as_double();

@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "lattice_support.hpp"
+#include "seeds.hpp"
 
 // Pictures of every lattice, of obstacles, facets and loads. What is seen where is compared with
 // rays that meet spheres, cylinders and prisms.
@@ -203,7 +204,7 @@ Picture draw_bodies(const model::RobotSpec& spec) {
 
 TEST_P(EveryLattice, the_last_that_is_drawn_over_a_point_is_what_a_ray_meets_first) {
   const base::Lattice& lattice = GetParam().lattice;
-  for (std::uint32_t seed = 0; seed < 6; ++seed) {
+  for (std::uint32_t seed = 0; seed < test::campaign(6U); ++seed) {
     const model::RobotSpec spec = random_lattice_robot(lattice, seed, 30);
     const auto drawn = drawn_modules(draw_bodies(spec));
     const View view(drawn, lattice, spec.existing);
@@ -290,7 +291,7 @@ void add_places(const pugi::xml_node& node, Bounds& bounds) {
 
 TEST_P(EveryLattice, nothing_lies_outside_of_the_picture) {
   const base::Lattice& lattice = GetParam().lattice;
-  for (std::uint32_t seed = 0; seed < 5; ++seed) {
+  for (std::uint32_t seed = 0; seed < test::campaign(5U, 2U); ++seed) {
     model::RobotSpec spec = random_lattice_robot(lattice, seed, 5 + 20 * seed, 2);
     spec.obstacles = {{.from = {-500'000, -500'000, -40}, .to = {500'000, 500'000, -1}}};
     spec.payloads = {{.cell = spec.existing.back(), .force_n = {1, 2, -3}, .torque_nmm = {0, 9, 0}},
