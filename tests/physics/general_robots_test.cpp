@@ -14,7 +14,7 @@ namespace {
 using verdict::Assessment;
 
 // bench/general_bench.cpp looks at thousands of each.
-constexpr std::uint64_t kRobotCount = test::campaign(120U, 2U);
+constexpr std::uint64_t kRobotCount = test::campaign(120U, 5U);
 
 class GeneralRobots : public testing::TestWithParam<base::Lattice> {};
 
@@ -37,8 +37,8 @@ TEST_P(GeneralRobots, are_answered_with_reasons_and_balance) {
     undecided_count += is_undecided && !are_laws_at_odds ? 1 : 0;
   }
   // The generator must reach robots that stand, or the test above says little.
-  EXPECT_GT(settled_count, test::campaign(15));
-  EXPECT_LT(undecided_count, static_cast<int>(kRobotCount) / 20);
+  EXPECT_GT(settled_count, test::campaign(15, 5));
+  EXPECT_LT(20 * undecided_count, static_cast<int>(kRobotCount));
 }
 
 TEST_P(GeneralRobots, double_their_answer_when_all_loads_double) {
@@ -67,7 +67,7 @@ TEST_P(GeneralRobots, have_the_same_answer_when_all_is_turned) {
       compared_count += checked.is_compared ? 1 : 0;
     }
   }
-  EXPECT_GT(compared_count, test::campaign(10));
+  EXPECT_GT(compared_count, test::campaign(10, 5));
 }
 
 TEST_P(GeneralRobots, that_are_hard_have_the_same_answer_when_all_is_turned) {

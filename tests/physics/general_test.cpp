@@ -12,6 +12,7 @@
 #include <string>
 
 #include "holdfast/holdfast.hpp"
+#include "seeds.hpp"
 
 namespace holdfast {
 namespace {
@@ -83,8 +84,12 @@ TEST(General, has_all_structures) { EXPECT_EQ(read_cases().size(), 100U); }
 
 TEST(General, loads_stability_and_rigid_answers_agree) {
   int without_settled_law_count = 0;
+  int case_count = 0;
   for (const Json& json : read_cases()) {
     const Json& expected = json["expected"];
+    if (test::kIsSanitized && ++case_count % 8 > 0 && expected["settled"].get<bool>()) {
+      continue;
+    }
     SCOPED_TRACE(json["structure"]["name"].get<std::string>());
     const auto structure = load_text(json["structure"].dump());
     ASSERT_TRUE(structure) << structure.error().message;
