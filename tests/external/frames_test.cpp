@@ -113,8 +113,10 @@ TEST(PrintedFrames, that_sag_when_done_have_no_order) {
 // from one end are closed, as whatever leads out of them is too soft. Looked at again here.
 TEST(PrintedFrames, have_no_order_if_a_closed_set_of_states_says_so) {
   const test::Frame frame = read_frames().at("robarch_tree");
-  EXPECT_LT(test::translation_max(whole(frame)), kLimit);
-  const Order order = find_order(test::network_of(frame), translation_limit(kLimit));
+  // Within less there is none either; that is found in fewer states.
+  constexpr double kEnough = test::kIsSanitized ? 1.09 : kLimit;
+  EXPECT_LT(test::translation_max(whole(frame)), kEnough);
+  const Order order = find_order(test::network_of(frame), translation_limit(kEnough));
   ASSERT_EQ(order.outcome, OrderOutcome::kNone);
   const Closure& closure = order.closure.value();
   ASSERT_FALSE(closure.states.empty());
@@ -144,7 +146,7 @@ TEST(PrintedFrames, have_no_order_if_a_closed_set_of_states_says_so) {
       }
       ASSERT_TRUE(too_soft.contains(next));
       if (next.hash() % (test::kIsSanitized ? 512 : 64) == 0) {
-        EXPECT_GT(test::translation_max(test::frame_displacements(frame, bars)), kLimit);
+        EXPECT_GT(test::translation_max(test::frame_displacements(frame, bars)), kEnough);
         ++solved_count;
       }
     }

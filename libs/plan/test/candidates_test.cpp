@@ -86,22 +86,24 @@ void add(Compared& sum, const Compared& more) {
 
 TEST(Candidates, of_random_cubes_on_a_floor_are_judged_as_checks_judge_them) {
   Compared sum;
-  for (std::uint64_t seed = 0; seed < 60; ++seed) {
+  for (std::uint64_t seed = 0; seed < test::campaign(60U, 6U); ++seed) {
     add(sum, compare(test::random_robot(seed), "random_robot " + std::to_string(seed)));
   }
   EXPECT_GT(sum.verdict_count[0], sum.count / 8);
   EXPECT_GT(sum.verdict_count[1], 0U);
   EXPECT_GT(sum.verdict_count[2], 0U);
-  EXPECT_LT(sum.check_count, sum.count / 10);
+  EXPECT_LT(sum.check_count, sum.count / (test::kIsSanitized ? 3 : 10));
 }
 
 TEST(Candidates, are_judged_so_in_every_lattice_with_supports_and_loads_of_every_kind) {
+  constexpr std::size_t kStride = test::kIsSanitized ? 40 : 5;
   for (const base::Lattice& lattice : test::kLattices) {
     for (std::uint64_t seed = 0; seed < test::kHardnessCount; ++seed) {
       if (seed < test::campaign(test::kHardnessCount)) {
-        compare(test::general_robot(lattice, seed), "general_robot " + std::to_string(seed), 5);
+        compare(test::general_robot(lattice, seed), "general_robot " + std::to_string(seed),
+                kStride);
       }
-      compare(test::hard_robot(lattice, seed), "hard_robot " + std::to_string(seed), 5);
+      compare(test::hard_robot(lattice, seed), "hard_robot " + std::to_string(seed), kStride);
     }
   }
 }
@@ -130,7 +132,7 @@ TEST(Candidates, on_the_floor_of_every_lattice_seldom_need_a_check) {
 
 TEST(Candidates, of_robots_on_feet_follow_the_contact_states_of_the_check) {
   Compared sum;
-  for (std::uint64_t seed = 0; seed < 8; ++seed) {
+  for (std::uint64_t seed = 0; seed < test::campaign(8U); ++seed) {
     add(sum, compare(test::standing_robot(seed), "standing_robot " + std::to_string(seed), 7));
   }
   EXPECT_LT(sum.check_count, sum.count / 2);
@@ -165,7 +167,7 @@ TEST(Candidates, of_robots_bonded_to_the_ground_need_no_stability) {
 }
 
 TEST(Candidates, of_other_kinds_of_modules_and_connectors) {
-  for (std::uint64_t seed = 0; seed < 12; ++seed) {
+  for (std::uint64_t seed = 0; seed < test::campaign(12U); ++seed) {
     RobotSpec spec = test::random_robot(seed);
     spec.floor.friction = 0.3;
     model::ModuleKind light = model::default_kind(spec.material, spec.lattice);

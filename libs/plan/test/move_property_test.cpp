@@ -119,7 +119,7 @@ void compare(std::uint64_t seed, Tally& tally) {
 TEST(MoveProperty, plans_exist_and_are_short_as_by_brute_force) {
   const char* const wanted = std::getenv("HOLDFAST_MOVE_CASES");
   const std::uint64_t case_count =
-      wanted != nullptr ? std::strtoull(wanted, nullptr, 10) : holdfast::test::campaign(60U);
+      wanted != nullptr ? std::strtoull(wanted, nullptr, 10) : holdfast::test::campaign(60U, 10U);
   Tally tally;
   for (std::uint64_t seed = 1; seed <= case_count && !testing::Test::HasFatalFailure(); ++seed) {
     compare(seed, tally);

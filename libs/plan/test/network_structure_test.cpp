@@ -13,6 +13,7 @@
 
 #include "frame_network.hpp"
 #include "random_frame.hpp"
+#include "seeds.hpp"
 
 namespace holdfast::plan {
 namespace {
@@ -61,7 +62,7 @@ double largest(const test::Frame& frame) {
 TEST(NetworkOrder, is_found_if_and_only_if_there_is_one) {
   int found_count = 0;
   int none_count = 0;
-  for (std::uint64_t seed = 1; seed <= 25; ++seed) {
+  for (std::uint64_t seed = 1; seed <= test::campaign(25U); ++seed) {
     const test::Frame frame = test::random_frame(seed, 7, 6);
     const SpringNetwork network = test::network_of(frame);
     const std::vector<double> by_mask = translations(frame);
@@ -79,8 +80,8 @@ TEST(NetworkOrder, is_found_if_and_only_if_there_is_one) {
       ++(order.outcome == OrderOutcome::kFound ? found_count : none_count);
     }
   }
-  EXPECT_GT(found_count, 20);
-  EXPECT_GT(none_count, 30);
+  EXPECT_GT(found_count, test::campaign(20));
+  EXPECT_GT(none_count, test::campaign(30));
 }
 
 TEST(NetworkOrder, is_safe_at_every_bar) {

@@ -105,14 +105,14 @@ void compare(const model::RobotSpec& start, const std::vector<model::Step>& step
 
 TEST(Sequence, is_stage_by_stage_what_checks_say) {
   std::size_t step_count = 0;
-  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+  for (std::uint64_t seed = 0; seed < holdfast::test::campaign(20U); ++seed) {
     model::RobotSpec start = holdfast::test::random_robot(seed, 4, 14);
     start.planned.clear();
     const auto steps = random_steps(start, seed, 14);
     compare(start, steps);
     step_count += steps.size();
   }
-  EXPECT_GT(step_count, 120);
+  EXPECT_GT(step_count, holdfast::test::campaign(120));
 }
 
 /// Steps of every kind, on a bridge of two posts.
@@ -171,11 +171,11 @@ model::RobotSpec with_round_connectors(model::RobotSpec spec) {
 TEST(Sequence, is_as_safe_when_it_is_turned_or_mirrored) {
   for (const base::Lattice& lattice : holdfast::test::kLattices) {
     const auto symmetries = holdfast::test::symmetries(lattice);
-    for (std::uint64_t seed = 20; seed < 20 + holdfast::test::campaign(6U, 3U); ++seed) {
+    for (std::uint64_t seed = 20; seed < 20 + holdfast::test::campaign(6U, 6U); ++seed) {
       const model::RobotSpec start =
           with_round_connectors(holdfast::test::general_robot(lattice, seed));
       const auto& symmetry = symmetries[1 + seed % (symmetries.size() - 1)];
-      const auto steps = random_steps(start, seed, 4);
+      const auto steps = random_steps(start, seed, holdfast::test::campaign(4U, 2U));
       std::vector<model::Step> others;
       for (const model::Step& step : steps) {
         others.push_back(turned(step, lattice, symmetry));
@@ -221,7 +221,7 @@ std::vector<model::Step> rounds(std::size_t count) {
 }
 
 TEST(Sequence, has_the_same_bits_with_any_number_of_threads) {
-  const auto steps = rounds(700);
+  const auto steps = rounds(holdfast::test::campaign(std::size_t{700}));
   const auto with = [&](int threads) {
     SequenceOptions options;
     options.solver.thread_count = threads;
