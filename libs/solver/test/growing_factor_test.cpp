@@ -14,6 +14,7 @@
 #include <set>
 
 #include "holdfast/base/rng.hpp"
+#include "seeds.hpp"
 
 namespace holdfast::solver {
 namespace {
@@ -177,7 +178,7 @@ bool change(Case& c) {
 }
 
 TEST(GrowingFactor, is_right_after_every_change) {
-  for (std::uint64_t seed = 1; seed <= 12; ++seed) {
+  for (std::uint64_t seed = 1; seed <= test::campaign(12U); ++seed) {
     Case c(seed);
     for (int step = 0; step < 150; ++step) {
       if (change(c)) {
