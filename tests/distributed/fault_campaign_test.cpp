@@ -15,7 +15,7 @@ namespace {
 TEST(FaultCampaign, a_silent_module_or_link_never_leads_to_a_wrong_safe) {
   base::Rng rng(20211);
   int undecided_count = 0;
-  for (std::uint64_t seed = 0; seed < test::campaign(40U); ++seed) {
+  for (std::uint64_t seed = 0; seed < test::campaign(40U, 8U); ++seed) {
     SCOPED_TRACE(::testing::Message() << "random_robot(" << seed << ")");
     const auto robot = model::Robot::create(test::random_robot(seed));
     ASSERT_TRUE(robot);
@@ -39,7 +39,7 @@ TEST(FaultCampaign, a_silent_module_or_link_never_leads_to_a_wrong_safe) {
     }
   }
   // Most faults come while the verdict is still open.
-  EXPECT_GT(undecided_count, test::campaign(300));
+  EXPECT_GT(undecided_count, test::campaign(300, 8));
 }
 
 /// What is taken off is no longer part of the robot: the answer is that of what is left.

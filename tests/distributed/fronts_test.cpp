@@ -7,6 +7,7 @@
 #include "campaign.hpp"
 #include "holdfast/holdfast.hpp"
 #include "random_robot.hpp"
+#include "seeds.hpp"
 
 namespace holdfast {
 namespace {
@@ -37,7 +38,7 @@ model::Robot made(const model::RobotSpec& spec) {
 /// most. 60 sweeps are what is asked of the worst robot.
 TEST(Fronts, random_robots_are_decided_in_few_sweeps) {
   for (const std::uint64_t from : {0U, 400U, 610U, 920U}) {
-    for (std::uint64_t seed = from; seed < from + 20; ++seed) {
+    for (std::uint64_t seed = from; seed < from + test::campaign(20U); ++seed) {
       SCOPED_TRACE(::testing::Message() << "random_robot(" << seed << ")");
       const auto comparison =
           test::compare(made(test::random_robot(seed)), {.seed = seed, .method = kFronts});
@@ -53,7 +54,7 @@ TEST(Fronts, random_robots_are_decided_in_few_sweeps) {
 /// facets than the root had room for (10506), batches of one and two facets (4478, 12982), and open
 /// feet that are freed one after the other (5162).
 TEST(Fronts, robots_that_took_many_sweeps_take_few) {
-  for (const std::uint64_t seed : {3534U, 4478U, 5162U, 6226U, 10506U, 12982U}) {
+  for (const std::uint64_t seed : test::campaign({3534U, 4478U, 5162U, 6226U, 10506U, 12982U}, 3)) {
     SCOPED_TRACE(::testing::Message() << "random_robot(" << seed << ")");
     const auto comparison =
         test::compare(made(test::random_robot(seed)), {.seed = seed, .method = kFronts});

@@ -10,6 +10,7 @@
 #include "campaign.hpp"
 #include "holdfast/distributed.hpp"
 #include "holdfast/holdfast.hpp"
+#include "seeds.hpp"
 
 namespace holdfast {
 namespace {
@@ -35,7 +36,7 @@ void expect_right(const test::Comparison& comparison) {
 
 TEST(ManyPlanned, random_robots_are_decided_in_few_sweeps_with_fronts) {
   std::vector<double> sweeps;
-  for (std::uint64_t seed = 0; seed < 200; ++seed) {
+  for (std::uint64_t seed = 0; seed < test::campaign(200U, 10U); ++seed) {
     SCOPED_TRACE(::testing::Message() << "many_planned_robot(" << seed << ")");
     const auto comparison = test::compare(made(test::many_planned_robot(seed)),
                                           {.seed = seed, .method = Method::kFronts});
@@ -44,7 +45,7 @@ TEST(ManyPlanned, random_robots_are_decided_in_few_sweeps_with_fronts) {
       sweeps.push_back(comparison.sweeps());
     }
   }
-  ASSERT_GT(sweeps.size(), 100U);
+  ASSERT_GT(sweeps.size(), test::campaign(100U, 10U));
   std::ranges::sort(sweeps);
   EXPECT_LE(sweeps[sweeps.size() * 98 / 100], 30);
   EXPECT_LE(sweeps.back(), 60);
@@ -52,7 +53,7 @@ TEST(ManyPlanned, random_robots_are_decided_in_few_sweeps_with_fronts) {
 
 /// Where nothing holds the robot at first (2478, 2690), and the longest fronts (4478, 5382).
 TEST(ManyPlanned, robots_that_took_many_sweeps_take_few) {
-  for (const std::uint64_t seed : {2478U, 2690U, 4478U, 5382U}) {
+  for (const std::uint64_t seed : test::campaign({2478U, 2690U, 4478U, 5382U}, 2)) {
     SCOPED_TRACE(::testing::Message() << "many_planned_robot(" << seed << ")");
     const auto comparison = test::compare(made(test::many_planned_robot(seed)),
                                           {.seed = seed, .method = Method::kFronts});
@@ -63,7 +64,7 @@ TEST(ManyPlanned, robots_that_took_many_sweeps_take_few) {
 }
 
 TEST(ManyPlanned, random_robots_are_decided_without_memory_for_fronts) {
-  for (std::uint64_t seed = 0; seed < 16; ++seed) {
+  for (std::uint64_t seed = 0; seed < test::campaign(16U); ++seed) {
     SCOPED_TRACE(::testing::Message() << "many_planned_robot(" << seed << ")");
     expect_right(test::compare(made(test::many_planned_robot(seed)), {.seed = seed}));
   }
@@ -79,7 +80,7 @@ TEST(ManyPlanned, a_fixed_robot_lets_go_of_open_feet_under_the_exact_law) {
 }
 
 TEST(ManyPlanned, bad_links_change_no_verdict) {
-  for (std::uint64_t seed = 0; seed < 24; ++seed) {
+  for (std::uint64_t seed = 0; seed < test::campaign(24U); ++seed) {
     SCOPED_TRACE(::testing::Message() << "many_planned_robot(" << seed << ")");
     expect_right(
         test::compare(made(test::many_planned_robot(seed)),
@@ -90,7 +91,7 @@ TEST(ManyPlanned, bad_links_change_no_verdict) {
 /// Whoever is alive in the end has a verdict, and none is a wrong `safe`.
 TEST(ManyPlanned, a_fault_makes_no_wrong_safe) {
   base::Rng rng(7);
-  for (std::uint64_t seed = 0; seed < 24; ++seed) {
+  for (std::uint64_t seed = 0; seed < test::campaign(24U); ++seed) {
     SCOPED_TRACE(::testing::Message() << "many_planned_robot(" << seed << ")");
     const model::Robot robot = made(test::many_planned_robot(seed));
     const auto whole = test::compare(robot, {.seed = seed, .method = Method::kFronts});

@@ -31,7 +31,7 @@ void expect_decided(std::uint64_t seed, bool is_unilateral) {
 /// the slowest; the last six have another load ratio under the unilateral law, by 5 to 36 %.
 TEST(Newton, finds_the_state_of_the_regularised_law) {
   std::vector<std::uint64_t> seeds{562, 1298, 5, 690, 381, 772, 929, 1043, 1205};
-  seeds.resize(test::campaign(seeds.size(), std::size_t{3}));
+  seeds.resize(test::campaign(seeds.size()));
   for (const std::uint64_t seed : seeds) {
     expect_decided(seed, false);
   }
@@ -41,7 +41,7 @@ TEST(Newton, finds_the_state_of_the_regularised_law) {
 /// which changes the load ratio by 3 %.
 TEST(Newton, decides_by_the_unilateral_law) {
   std::vector<std::uint64_t> seeds{198, 32062, 351, 406, 455, 518, 616, 926};
-  seeds.resize(test::campaign(seeds.size()));
+  seeds.resize(test::campaign(seeds.size(), std::size_t{8}));
   for (const std::uint64_t seed : seeds) {
     expect_decided(seed, true);
   }

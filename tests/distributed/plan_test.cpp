@@ -5,6 +5,7 @@
 
 #include "holdfast/distributed.hpp"
 #include "plan_campaign.hpp"
+#include "seeds.hpp"
 
 namespace holdfast {
 namespace {
@@ -17,15 +18,15 @@ using test::PlanCase;
 class PlanCampaign : public ::testing::TestWithParam<std::size_t> {};
 
 TEST_P(PlanCampaign, every_verdict_is_that_of_the_robot_and_its_plan_in_the_end) {
-  constexpr std::uint64_t kRobots = 5;
+  constexpr std::uint64_t kRobots = test::campaign(5U, 2U);
   const auto what = static_cast<PlanCase>(GetParam());
   SCOPED_TRACE(test::name(what));
   test::PlanTally tally;
   for (std::uint64_t seed = 0; seed < kRobots; ++seed) {
     test::run_plan_case(what, seed, tally);
   }
-  EXPECT_GE(tally.runs, 3);
-  EXPECT_GT(tally.right, 25);
+  EXPECT_GE(tally.runs, test::campaign(3, 2));
+  EXPECT_GT(tally.right, test::campaign(25, 2));
   EXPECT_EQ(tally.wrong_safe, 0);
   EXPECT_EQ(tally.wrong_otherwise, 0);
   EXPECT_EQ(tally.none, 0);

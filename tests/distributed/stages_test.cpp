@@ -321,14 +321,16 @@ void compare_many(RandomSpec random_spec, std::uint64_t count, int decided = 50,
   EXPECT_LE(tally.undecided, tally.stages / decided + more);
 }
 
-TEST(Stages, random_steps_are_judged_as_by_the_exact_solver) { compare_many(cubes_on_a_floor, 60); }
+TEST(Stages, random_steps_are_judged_as_by_the_exact_solver) {
+  compare_many(cubes_on_a_floor, test::campaign(60U));
+}
 
 TEST(Stages, of_cubes_that_are_held_anywhere_are_judged_as_by_the_exact_solver) {
   compare_many(held_anywhere<0>, test::campaign(30U), 20, 1);
 }
 
 TEST(Stages, of_catoms_in_space_that_are_held_anywhere_are_judged_as_by_the_exact_solver) {
-  compare_many(held_anywhere<1>, test::campaign(16U), 20, 1);
+  compare_many(held_anywhere<1>, test::campaign(16U, 8U), 20, 1);
 }
 
 TEST(Stages, of_catoms_in_a_plane_that_are_held_anywhere_are_judged_as_by_the_exact_solver) {
@@ -336,7 +338,7 @@ TEST(Stages, of_catoms_in_a_plane_that_are_held_anywhere_are_judged_as_by_the_ex
 }
 
 TEST(Stages, of_prisms_that_are_held_anywhere_are_judged_as_by_the_exact_solver) {
-  compare_many(held_anywhere<3>, test::campaign(16U), 20, 1);
+  compare_many(held_anywhere<3>, test::campaign(16U, 8U), 20, 1);
 }
 
 TEST(Stages, of_cubes_with_masses_and_payloads_on_a_floor_are_judged_as_by_the_exact_solver) {

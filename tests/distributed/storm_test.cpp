@@ -5,6 +5,7 @@
 // distributed storms` runs as many as one likes.
 #include <gtest/gtest.h>
 
+#include "seeds.hpp"
 #include "storm_campaign.hpp"
 
 namespace holdfast {
@@ -12,12 +13,12 @@ namespace {
 
 TEST(Storm, leads_to_no_wrong_verdict) {
   test::StormTally tally;
-  for (std::uint64_t seed = 0; seed < 150; ++seed) {
+  for (std::uint64_t seed = 0; seed < test::campaign(150U, 8U); ++seed) {
     const int before = tally.faults();
     test::run_storm(seed, tally);
     EXPECT_EQ(tally.faults(), before) << "storms " << seed << " " << seed + 1;
   }
-  EXPECT_GT(tally.whole_runs, 40);
+  EXPECT_GT(tally.whole_runs, test::campaign(40, 8));
   // What is in the end would take one fresh start; what came before may be in the middle of one,
   // and a neighbour that is gone is first missed.
   EXPECT_LT(tally.latest, 3);

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "random_robot.hpp"
+#include "seeds.hpp"
 #include "watch_campaign.hpp"
 
 namespace holdfast::test {
@@ -13,7 +14,7 @@ namespace {
 /// `safe` invites somebody to attach it.
 TEST(Watch, no_module_keeps_an_old_safe_longer_than_stated) {
   int count = 0;
-  for (std::uint64_t seed = 0; seed < 16; ++seed) {
+  for (std::uint64_t seed = 0; seed < campaign(16U); ++seed) {
     const auto robot = endangered_robot(seed);
     for (const Break kind : {Break::kOneDies, Break::kThreeDie, Break::kLinkCut}) {
       for (const sim::LinkModel& link : {sim::blinky_blocks_v1(), sim::blinky_blocks_v2()}) {
@@ -28,7 +29,7 @@ TEST(Watch, no_module_keeps_an_old_safe_longer_than_stated) {
       }
     }
   }
-  EXPECT_GT(count, 20);
+  EXPECT_GT(count, campaign(20));
 }
 
 /// A post whose lower half hangs right after the verdict, its link alive: what stands on it cannot
@@ -157,7 +158,7 @@ TEST(Watch, noise_does_not_shake_a_verdict) {
     link.duplication = 0.05;
     link.corruption = 0.02;
     link.jitter = 5'000;
-    for (std::uint64_t seed = 0; seed < 4; ++seed) {
+    for (std::uint64_t seed = 0; seed < campaign(4U); ++seed) {
       const auto robot = model::Robot::create(random_robot(seed));
       ASSERT_TRUE(robot);
       Counter counter;
