@@ -42,6 +42,9 @@ class TestNetwork {
     agents_.resize(places_.size());
     actions_.resize(places_.size());
     for (std::size_t i = 0; i < places_.size(); ++i) {
+      by_cell_.emplace(places_[i].cell, static_cast<int>(i));
+    }
+    for (std::size_t i = 0; i < places_.size(); ++i) {
       start(i);
     }
   }
@@ -87,6 +90,7 @@ class TestNetwork {
   /// Takes a module off; its neighbours feel it.
   void remove(std::size_t i) {
     const base::Cell cell = places_[i].cell;
+    by_cell_.erase(cell);
     places_[i] = {.cell = {0, 0, -1000 - static_cast<std::int32_t>(i)}, .is_mute = true};
     for (const base::Direction face : base::kDirections) {
       const int other = find(base::neighbour(cell, face));
@@ -98,6 +102,7 @@ class TestNetwork {
 
   /// A module comes; its neighbours feel it.
   void attach(const Place& place) {
+    by_cell_.emplace(place.cell, static_cast<int>(places_.size()));
     places_.push_back(place);
     agents_.emplace_back();
     actions_.emplace_back();
@@ -231,12 +236,8 @@ class TestNetwork {
   };
 
   int find(const base::Cell& cell) const {
-    for (std::size_t i = 0; i < places_.size(); ++i) {
-      if (places_[i].cell == cell) {
-        return static_cast<int>(i);
-      }
-    }
-    return -1;
+    const auto found = by_cell_.find(cell);
+    return found != by_cell_.end() ? found->second : -1;
   }
 
   Event event(EventKind kind, base::Direction face = base::Direction::kPlusX) const {
@@ -257,8 +258,8 @@ class TestNetwork {
   void take_packet(std::size_t i, base::Direction face) {
     step(i, event(EventKind::kLineFree, face));
     const auto size = static_cast<std::size_t>(actions_[i].packet_bytes);
-    const int to = find(base::neighbour(places_[i].cell, face));
-    if (size == 0 || to < 0) {
+    const int to = size > 0 ? neighbour(i, face) : -1;
+    if (to < 0) {
       return;
     }
     if (watch) {
@@ -277,6 +278,7 @@ class TestNetwork {
 
   const Setup& setup_;
   std::vector<Place> places_;
+  std::map<base::Cell, int> by_cell_;
   NetworkOptions options_;
   base::Rng rng_;
   std::vector<std::optional<Agent>> agents_;
