@@ -52,8 +52,7 @@ endfunction()
 
 # Tests take longer to compile than what they test, so they are optimised less, and the headers that
 # all of them include are compiled once. A compiler's launcher, ccache, knows the files one by one
-# and does without. That each test includes what it needs is checked where it is compiled as
-# WebAssembly, or LONG with sanitizers.
+# and does without. That each test includes what it needs is checked by ./dev lint.
 function(holdfast_test_quickly_compiled target level)
   target_compile_options(${target} PRIVATE ${level})
   if(CMAKE_CXX_COMPILER_LAUNCHER)
@@ -78,12 +77,11 @@ function(holdfast_test_quickly_compiled target level)
   endif()
 endfunction()
 
-# holdfast_test(NAME [LONG] SOURCES ... LINKS ... [LABELS ...]): a test program, its tests found by
-# ctest. As WebAssembly it is one test in all, as starting Node takes longer than most of them.
-# What does not run LONG is compiled without optimisation under sanitizers, in half of the time; the
-# rooms that it tests are compiled as always.
+# holdfast_test(NAME SOURCES ... LINKS ... [LABELS ...]): a test program, its tests found by ctest.
+# As WebAssembly it is one test in all, as starting Node takes longer than most of them. Under
+# sanitizers it is compiled without optimisation, in half of the time; what it tests as always.
 function(holdfast_test name)
-  cmake_parse_arguments(TEST "LONG" "" "SOURCES;LINKS;LABELS" ${ARGN})
+  cmake_parse_arguments(TEST "" "" "SOURCES;LINKS;LABELS" ${ARGN})
   if(NOT HOLDFAST_BUILD_TESTS)
     return()
   endif()
@@ -93,9 +91,7 @@ function(holdfast_test name)
   target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR}/tests/support)
   target_link_libraries(${name} PRIVATE ${TEST_LINKS} GTest::gtest_main)
   if(CMAKE_CXX_FLAGS MATCHES "-fsanitize")
-    if(NOT TEST_LONG)
-      holdfast_test_quickly_compiled(${name} -O0)
-    endif()
+    holdfast_test_quickly_compiled(${name} -O0)
   elseif(CMAKE_BUILD_TYPE STREQUAL "Release" AND NOT EMSCRIPTEN)
     holdfast_test_quickly_compiled(${name} -O1)
   endif()

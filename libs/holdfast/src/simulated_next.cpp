@@ -207,16 +207,13 @@ bool can_be(model::RobotSpec robot, const CellList& more) {
 std::vector<CellList> open_cells(const model::RobotSpec& whole) {
   std::vector<CellList> groups;
   for (const base::Cell& cell : free_cells(whole)) {
-    if (!can_be(whole, {cell})) {
-      continue;
-    }
     const auto fits = [&](CellList& group) {
       group.push_back(cell);
       const bool is_fitting = can_be(whole, group);
       group.resize(group.size() - (is_fitting ? 0 : 1));
       return is_fitting;
     };
-    if (std::ranges::none_of(groups, fits)) {
+    if (std::ranges::none_of(groups, fits) && can_be(whole, {cell})) {
       groups.push_back({cell});
     }
   }
@@ -240,19 +237,26 @@ Places absent_places(const model::Robot& robot, const std::vector<std::int32_t>&
   return places;
 }
 
-/// What one simulation says of the cells beside it. Of a second one only that is asked.
-Places run(const model::Robot& robot, const SimulatedNextOptions& options,
+/// What the robot says of itself, and what that took it.
+void note_verdict(SimulatedNext& simulated, const sim::Simulation& simulation,
+                  const RobotEffort& verdict) {
+  const sim::SimulationResult result = simulation.result();
+  simulated.answer = result.answer;
+  simulated.all_agree = result.all_agree;
+  simulated.depth = depth_of(simulation);
+  simulated.verdict = verdict;
+  simulated.faces = difference(effort_of(result), verdict);
+}
+
+/// What one simulation says of the cells beside it; the first one of the robot, too.
+Places run(const model::Robot& robot, const SimulatedNextOptions& options, bool is_first,
            SimulatedNext& simulated) {
   const sim::SimulationOptions& how = options.simulation;
   sim::Simulation simulation(robot, how);
   simulation.run();
-  const sim::SimulationResult result = simulation.result();
-  simulated.link = how.link;
-  simulated.answer = result.answer;
-  simulated.all_agree = result.all_agree;
-  simulated.depth = depth_of(simulation);
-  simulated.verdict = plain_effort(robot, how);
-  simulated.faces = difference(effort_of(result), simulated.verdict);
+  if (is_first) {
+    note_verdict(simulated, simulation, plain_effort(robot, how));
+  }
   Places places =
       how.judges_faces ? read_places(robot, simulation) : absent_places(robot, how.absent);
   count_shown(simulated, places, robot.support_z());
@@ -308,6 +312,7 @@ base::Result<SimulatedNext> simulate_next(const model::RobotSpec& spec,
   groups.resize(std::max<std::size_t>(groups.size(), 1));
   const auto start = std::chrono::steady_clock::now();
   SimulatedNext simulated;
+  simulated.link = how.simulation.link;
   Places places;
   for (const CellList& group : groups) {
     model::RobotSpec more = whole;
@@ -322,7 +327,7 @@ base::Result<SimulatedNext> simulate_next(const model::RobotSpec& spec,
     if (const auto fault = sim::find_options_fault(robot.value(), how.simulation)) {
       return base::Error{.code = base::ErrorCode::kBadInput, .message = *fault, .where = {}};
     }
-    places.merge(run(robot.value(), how, simulated));
+    places.merge(run(robot.value(), how, &group == &groups.front(), simulated));
   }
   simulated.next = {.candidates = sorted_trials(places), .check_count = simulated.trials.size()};
   const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;

@@ -85,7 +85,7 @@ Vector6d wrench_of(const BodyLoad& load) {
 }  // namespace
 
 RigidStability assess_rigid(std::span<const ContactFacet> facets, const BodyLoad& load,
-                            bool has_tilt) {
+                            bool has_figures) {
   RigidStability result;
   if (std::ranges::any_of(facets, &ContactFacet::is_bonded)) {
     result.answer = RigidAnswer::kHolds;
@@ -100,7 +100,9 @@ RigidStability assess_rigid(std::span<const ContactFacet> facets, const BodyLoad
   }
   const ContactCone cone(points, load.gyration_mm);
   const ContactCone::Remainder left = cone.remainder(wrench);
-  result.friction_needed = find_friction_needed(points, wrench, load.gyration_mm);
+  if (has_figures) {
+    result.friction_needed = find_friction_needed(points, wrench, load.gyration_mm);
+  }
   if (!ContactCone::is_nothing(left.wrench, wrench)) {
     result.answer = left.is_settled ? RigidAnswer::kFalls : RigidAnswer::kUndecided;
     result.margin = -left.wrench.norm() / wrench.norm();
@@ -119,7 +121,7 @@ RigidStability assess_rigid(std::span<const ContactFacet> facets, const BodyLoad
     return result;
   }
   result.answer = margin.is_settled ? RigidAnswer::kHolds : RigidAnswer::kUndecided;
-  if (has_tilt) {
+  if (has_figures) {
     result.tilt_margin_deg = smallest_tilt_deg(cone, load);
   }
   return result;

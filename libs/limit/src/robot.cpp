@@ -158,11 +158,11 @@ BodyLoad body_load(const model::Robot& robot, const model::RobotPart* part) {
 }
 
 RigidStability assess_rigid(const model::Robot& robot, const model::RobotPart* part,
-                            bool has_tilt) {
+                            bool has_figures) {
   if (host::any(part == nullptr ? nullptr : part->ranks, robot.fixed_count() > 0)) {
     return {.answer = RigidAnswer::kHolds};
   }
-  return assess_rigid(contact_facets(robot, part), body_load(robot, part), has_tilt);
+  return assess_rigid(contact_facets(robot, part), body_load(robot, part), has_figures);
 }
 
 Structure structure_of(const model::Robot& robot, bool is_bonded) {

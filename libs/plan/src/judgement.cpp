@@ -25,7 +25,7 @@ verdict::Assessment assess(const model::Robot& robot, const solver::EquilibriumO
 
 Judgement judge(const model::Robot& robot, const solver::EquilibriumOptions& options) {
   solver::EquilibriumOptions mine = options;
-  mine.is_tilt_sought = false;
+  mine.has_rigid_figures = false;
   const verdict::Assessment assessment = assess(robot, mine);
   return {.verdict = assessment.verdict,
           .load_ratio_max = assessment.load_ratio_max,

@@ -384,7 +384,7 @@ Judgement judgement_of(const verdict::Assessment& assessment) {
 
 verdict::Assessment RobotGrowth::assess_alone(const ElementSet& state) const {
   const auto part = robot(state);
-  return part ? assess(part.value(), {.thread_count = 1, .is_tilt_sought = false})
+  return part ? assess(part.value(), {.thread_count = 1, .has_rigid_figures = false})
               : verdict::Assessment{};
 }
 

@@ -21,7 +21,7 @@ std::optional<double> smaller(const std::optional<double>& a, const std::optiona
 class StageJudge {
  public:
   explicit StageJudge(solver::EquilibriumOptions options) : options_(std::move(options)) {
-    options_.is_tilt_sought = false;
+    options_.has_rigid_figures = false;
   }
 
   /// `known`: the last stage of the step before, if it was judged; the first stage is the same

@@ -147,7 +147,7 @@ Assessment conclude(const model::Robot& robot, Assessment assessment,
 }
 
 Assessment assess_once(const model::Robot& robot, const solver::EquilibriumOptions& options) {
-  Assessment assessment = assess_rigidly(robot, options.part, options.is_tilt_sought);
+  Assessment assessment = assess_rigidly(robot, options.part, options.has_rigid_figures);
   assessment.is_stable = assessment.is_stable || options.is_bonded;
   find_equilibrium(robot, options, assessment);
   return conclude(robot, std::move(assessment), options);
@@ -193,12 +193,13 @@ bool has_pulling_facets(const model::Robot& robot, const Assessment& assessment,
          host::any(part == nullptr ? nullptr : part->ranks, is_any_not_stuck);
 }
 
-Assessment assess_rigidly(const model::Robot& robot, const model::RobotPart* part, bool has_tilt) {
+Assessment assess_rigidly(const model::Robot& robot, const model::RobotPart* part,
+                          bool has_figures) {
   Assessment assessment;
   assessment.simplified = assess_rigid_body(robot, part);
   assessment.stability_rule = stability_rule(robot, part);
   assessment.rigid =
-      rigid_stability(robot, assessment.stability_rule, assessment.simplified, part, has_tilt);
+      rigid_stability(robot, assessment.stability_rule, assessment.simplified, part, has_figures);
   assessment.is_stable = assessment.rigid.holds();
   return assessment;
 }

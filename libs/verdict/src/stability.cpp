@@ -172,14 +172,14 @@ StabilityRule stability_rule(const model::Robot& robot, const model::RobotPart* 
 
 limit::RigidStability rigid_stability(const model::Robot& robot, StabilityRule rule,
                                       const RigidBody& body, const model::RobotPart* part,
-                                      bool has_tilt) {
+                                      bool has_figures) {
   if (rule == StabilityRule::kHeld) {
     return {.answer = limit::RigidAnswer::kHolds};
   }
   if (rule == StabilityRule::kPolygon) {
     return floor_stability(robot, body, part);
   }
-  return limit::assess_rigid(robot, part, has_tilt);
+  return limit::assess_rigid(robot, part, has_figures);
 }
 
 ModelStability model_stability(const model::Robot& robot, const Equilibrium& equilibrium,

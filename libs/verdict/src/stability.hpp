@@ -18,7 +18,7 @@ StabilityRule stability_rule(const model::Robot& robot, const model::RobotPart* 
 /// form.
 limit::RigidStability rigid_stability(const model::Robot& robot, StabilityRule rule,
                                       const RigidBody& body, const model::RobotPart* part,
-                                      bool has_tilt);
+                                      bool has_figures);
 
 /// Sec. III-C: stable if a facet presses all over, or three corners that press are not on one line.
 ModelStability model_stability(const model::Robot& robot, const solver::Equilibrium& equilibrium,

@@ -71,7 +71,7 @@ struct RigidStability {
   std::optional<double> margin = {};
   /// The smallest coefficient that would do at all contact facets, at the best pressing; 0: none is
   /// needed, or however little does, between two things that it can press apart. The elastic forces
-  /// may take more. None: none does, or there is no need to ask as a facet is bonded.
+  /// may take more. None: none does, nobody asked for it, or nobody needs to as a facet is bonded.
   std::optional<double> friction_needed = {};
   /// The smallest angle by which gravity can turn, in any direction, before it moves; 0 where it
   /// does not hold as it is. None: it holds whatever the direction, there is no weight, or nobody
@@ -89,9 +89,10 @@ inline constexpr double kMarginTie = 1e-9;
 /// Coefficients of friction beyond this are not looked at.
 inline constexpr double kFrictionMax = 1000;
 
-/// The tilt takes as long as a hundred of the rest where contacts have friction.
+/// With `has_figures` also the friction needed and the tilt, which takes as long as a hundred of
+/// the rest where contacts have friction.
 RigidStability assess_rigid(std::span<const ContactFacet> facets, const BodyLoad& load,
-                            bool has_tilt = true);
+                            bool has_figures = true);
 
 /// "holds", "nothing to spare", "falls", "undecided".
 const char* name(RigidAnswer answer);

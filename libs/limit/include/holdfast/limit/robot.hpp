@@ -18,7 +18,7 @@ namespace holdfast::limit {
 /// holds it whatever the load is.
 /// Of a part of a robot the answer is that of the whole, as is what follows.
 RigidStability assess_rigid(const model::Robot& robot, const model::RobotPart* part = nullptr,
-                            bool has_tilt = true);
+                            bool has_figures = true);
 
 /// The robot's facets, and its load as one body.
 std::vector<ContactFacet> contact_facets(const model::Robot& robot,

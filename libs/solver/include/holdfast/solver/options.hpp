@@ -46,8 +46,9 @@ struct EquilibriumOptions {
   /// unilateral law where it needs none. Otherwise it does so only where double precision does not
   /// suffice.
   bool is_precise = false;
-  /// Of verdict::assess(): how far gravity may turn where supports are anywhere, for reports.
-  bool is_tilt_sought = true;
+  /// Of verdict::assess(): how far gravity may turn and which friction would do where supports are
+  /// anywhere. Only reports need them.
+  bool has_rigid_figures = true;
   /// The direct solver gives up (kTooLarge) where more blocks than this fill in per node.
   std::size_t fill_max = std::numeric_limits<std::size_t>::max();
   /// Called after every iteration of multigrid with the error that is left, as a share of the

@@ -155,9 +155,9 @@ bool has_pulling_facets(const model::Robot& robot, const Assessment& assessment,
                         const model::RobotPart* part = nullptr);
 
 /// What the rigid body says of a robot, and nothing else: no verdict, no reasons. On supports
-/// anywhere the tilt only if asked for.
+/// anywhere the tilt and the friction needed only if asked for.
 Assessment assess_rigidly(const model::Robot& robot, const model::RobotPart* part = nullptr,
-                          bool has_tilt = true);
+                          bool has_figures = true);
 
 /// Seeks the equilibrium of a robot and says what follows from it.
 Assessment assess(const model::Robot& robot, const solver::EquilibriumOptions& options = {});
