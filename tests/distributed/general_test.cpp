@@ -226,7 +226,7 @@ TEST(DistributedGeneral, robots_that_were_undecided_are_decided_like_the_exact_a
       expect_like_exact(test::general_robot(one.lattice, seed), seed, counts);
     }
   }
-  EXPECT_EQ(counts.all, test::kIsSanitized ? 4 : 9);
+  EXPECT_EQ(counts.all, test::kIsShort ? 4 : 9);
   EXPECT_EQ(counts.undecided, 1);  // 281, as check has it.
 }
 

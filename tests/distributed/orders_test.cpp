@@ -205,7 +205,7 @@ TEST(Orders, follow_each_other_as_the_document_says) {
   for (const auto& pair : table) {
     shown += seen.contains(pair) ? 1 : 0;
   }
-  EXPECT_GT(shown, (test::kIsSanitized ? 2 : 3) * table.size() / 4);
+  EXPECT_GT(shown, (test::kIsShort ? 2 : 3) * table.size() / 4);
 }
 
 }  // namespace

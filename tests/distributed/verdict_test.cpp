@@ -143,7 +143,7 @@ model::RobotSpec thick_cantilever(std::int32_t length) {
 /// Bending of long robots is what rigid clusters are for. Without them the cantilever takes 40
 /// steps and the frame 89.
 TEST(Distributed, long_thick_robots_are_decided_in_few_steps) {
-  constexpr std::int32_t kWidth = test::kIsSanitized ? 56 : 70;
+  constexpr std::int32_t kWidth = test::kIsShort ? 56 : 70;
   constexpr std::int32_t kHeight = kWidth - 10;
   model::RobotSpec planned = slender_frame(kWidth, kHeight);
   planned.planned = {{30, 0, kHeight}, {31, 0, kHeight}};

@@ -114,7 +114,7 @@ TEST(PrintedFrames, that_sag_when_done_have_no_order) {
 TEST(PrintedFrames, have_no_order_if_a_closed_set_of_states_says_so) {
   const test::Frame frame = read_frames().at("robarch_tree");
   // Within less there is none either; that is found in fewer states.
-  constexpr double kEnough = test::kIsSanitized ? 1.09 : kLimit;
+  constexpr double kEnough = test::kIsShort ? 1.09 : kLimit;
   EXPECT_LT(test::translation_max(whole(frame)), kEnough);
   const Order order = find_order(test::network_of(frame), translation_limit(kEnough));
   ASSERT_EQ(order.outcome, OrderOutcome::kNone);
@@ -145,7 +145,7 @@ TEST(PrintedFrames, have_no_order_if_a_closed_set_of_states_says_so) {
         continue;
       }
       ASSERT_TRUE(too_soft.contains(next));
-      if (next.hash() % (test::kIsSanitized ? 512 : 64) == 0) {
+      if (next.hash() % (test::kIsShort ? 512 : 64) == 0) {
         EXPECT_GT(test::translation_max(test::frame_displacements(frame, bars)), kEnough);
         ++solved_count;
       }

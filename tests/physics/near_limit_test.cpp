@@ -47,7 +47,7 @@ TEST(NearLimit, the_verdict_is_right_where_the_largest_load_ratio_is_almost_1) {
   int count = 0;
   for (std::uint64_t seed = 0; seed < kRobotCount; ++seed) {
     SCOPED_TRACE(seed);
-    model::RobotSpec spec = test::random_robot(seed, 129, test::kIsSanitized ? 150 : 300);
+    model::RobotSpec spec = test::random_robot(seed, 129, test::kIsShort ? 150 : 300);
     const model::Robot robot = model::Robot::create(spec).value();
     auto exact = verdict::assess_rigid_body(robot).is_stable ? test::ExactLoads(robot).load_ratios()
                                                              : std::nullopt;
@@ -73,7 +73,7 @@ TEST(NearLimit, ranges_hold_the_truth_and_load_ratios_are_within_1e_4_elsewhere)
   for (std::uint64_t seed = 100; seed < 100 + kRobotCount; ++seed) {
     SCOPED_TRACE(seed);
     const model::Robot robot =
-        model::Robot::create(test::random_robot(seed, 129, test::kIsSanitized ? 150 : 400)).value();
+        model::Robot::create(test::random_robot(seed, 129, test::kIsShort ? 150 : 400)).value();
     if (!verdict::assess_rigid_body(robot).is_stable) {
       continue;
     }

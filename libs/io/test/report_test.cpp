@@ -104,7 +104,7 @@ TEST(Report, as_json_lists_the_attempt_that_failed_beside_the_one_that_did_not) 
   tower.assessment =
       verdict::assess(tower.robot, {.method = solver::Method::kMultigrid, .is_bonded = true});
   ReportOptions options;
-  if (test::kIsSanitized) {
+  if (test::kIsShort) {
     options.connections = {.kind = ConnectionChoice::Kind::kLargest, .count = 5};
   }
   std::ostringstream text;

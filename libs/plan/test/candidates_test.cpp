@@ -92,11 +92,11 @@ TEST(Candidates, of_random_cubes_on_a_floor_are_judged_as_checks_judge_them) {
   EXPECT_GT(sum.verdict_count[0], sum.count / 8);
   EXPECT_GT(sum.verdict_count[1], 0U);
   EXPECT_GT(sum.verdict_count[2], 0U);
-  EXPECT_LT(sum.check_count, sum.count / (test::kIsSanitized ? 3 : 10));
+  EXPECT_LT(sum.check_count, sum.count / (test::kIsShort ? 3 : 10));
 }
 
 TEST(Candidates, are_judged_so_in_every_lattice_with_supports_and_loads_of_every_kind) {
-  constexpr std::size_t kStride = test::kIsSanitized ? 40 : 5;
+  constexpr std::size_t kStride = test::kIsShort ? 40 : 5;
   for (const base::Lattice& lattice : test::kLattices) {
     for (std::uint64_t seed = 0; seed < test::kHardnessCount; ++seed) {
       if (seed < test::campaign(test::kHardnessCount)) {

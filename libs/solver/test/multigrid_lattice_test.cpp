@@ -150,7 +150,7 @@ bool expect_agreement(const model::Robot& robot, const ContactOptions& contact,
 TEST(MultigridOnALattice, agrees_with_the_direct_solver_with_supports_anywhere) {
   for (const auto& [name, lattice] : kLattices) {
     int settled_count = 0;
-    for (std::uint64_t seed = 1; seed <= 20; seed += test::kIsSanitized ? 7 : 1) {
+    for (std::uint64_t seed = 1; seed <= 20; seed += test::kIsShort ? 7 : 1) {
       SCOPED_TRACE(std::string(name) + ", seed " + std::to_string(seed));
       const auto robot = model::Robot::create(random_spec(lattice, seed));
       ASSERT_TRUE(robot.has_value()) << robot.error().message;
@@ -216,7 +216,7 @@ TEST(MultigridOnALattice, takes_few_iterations_whatever_the_size) {
 /// its feet must not stay out of the clusters, as those of portals do.
 TEST(MultigridOnALattice, takes_no_more_iterations_for_a_ball_that_rests_than_for_a_bonded_one) {
   const model::RobotSpec spec = {
-      .existing = model::family_cells(model::Family::kBall, test::kIsSanitized ? 40 : 72),
+      .existing = model::family_cells(model::Family::kBall, test::kIsShort ? 40 : 72),
       .lattice = base::kFaceCentred};
   const model::Robot robot = model::Robot::create(spec).value();
   const auto solved = [&](bool is_bonded) {
