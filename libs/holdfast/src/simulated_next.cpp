@@ -23,8 +23,7 @@ struct Place {
 
 using Places = std::map<base::Cell, Place>;
 
-/// Modules by their cells.
-using Cells = std::map<base::Cell, std::int32_t>;
+using ModulesByCell = std::map<base::Cell, std::int32_t>;
 
 RobotEffort effort_of(const sim::SimulationResult& result) {
   return {.time = result.verdict_time, .rounds = result.rounds, .packets = result.packets};
@@ -55,7 +54,7 @@ bool judges_faces(const model::RobotSpec& spec, const model::Robot& robot) {
 }
 
 /// Is the floor there, below a module that rests on it?
-bool is_floor(const model::Robot& robot, const Cells& cells, const base::Cell& cell) {
+bool is_floor(const model::Robot& robot, const ModulesByCell& cells, const base::Cell& cell) {
   const base::Cell above = base::neighbour(cell, base::Direction::kPlusZ);
   const auto found = cells.find(above);
   return above.z == robot.support_z() && found != cells.end() &&
@@ -63,13 +62,13 @@ bool is_floor(const model::Robot& robot, const Cells& cells, const base::Cell& c
 }
 
 /// Is a module below, where one that comes would have the floor?
-bool is_above_floor(const model::Robot& robot, const Cells& cells, const base::Cell& cell) {
+bool is_above_floor(const model::Robot& robot, const ModulesByCell& cells, const base::Cell& cell) {
   return cell.z == robot.support_z() &&
          cells.contains(base::neighbour(cell, base::Direction::kMinusZ));
 }
 
 Places read_places(const model::Robot& robot, const sim::Simulation& simulation) {
-  Cells cells;
+  ModulesByCell cells;
   for (std::int32_t module = 0; module < simulation.agent_count(); ++module) {
     cells.emplace(robot.modules()[static_cast<std::size_t>(module)].cell, module);
   }

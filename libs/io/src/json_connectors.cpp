@@ -15,16 +15,16 @@ namespace {
 
 constexpr double kUnlimited = model::ConnectorLaw::kUnlimited;
 
-double positive_or_null(JsonReading& reading, const Json& value, const Place& place) {
+double positive_or_null(JsonReading& reading, const Json& value, const JsonPlace& place) {
   return value.is_null() ? kUnlimited : read_positive(reading, value, place);
 }
 
 /// {"vertical": number, "lateral": number}; one of them may be absent.
 std::vector<std::optional<double>> by_class(JsonReading& reading, const Json& value,
-                                            const Place& place) {
+                                            const JsonPlace& place) {
   std::vector<std::optional<double>> values(kClassKeys.size());
   for (const auto& [key, member] : reading.members(value, place)) {
-    const Place here = place.at(key);
+    const JsonPlace here = place.at(key);
     const auto found = std::ranges::find(kClassKeys, key);
     if (found != kClassKeys.end()) {
       values[static_cast<std::size_t>(found - kClassKeys.begin())] =
@@ -40,7 +40,7 @@ std::vector<std::optional<double>> by_class(JsonReading& reading, const Json& va
 }
 
 ConnectorParameter parameter(JsonReading& reading, const std::string& key, const Json& value,
-                             const Place& place) {
+                             const JsonPlace& place) {
   if (value.is_object()) {
     return {key, Spread::kClasses, by_class(reading, value, place)};
   }
@@ -61,7 +61,7 @@ ConnectorParameter parameter(JsonReading& reading, const std::string& key, const
 
 /// Reads one of kConnectorKeys.
 void read_connector_parameter(JsonReading& reading, const std::string& key, const Json& value,
-                              const Place& place, Connectors& connectors) {
+                              const JsonPlace& place, Connectors& connectors) {
   if (key == kBendingKey) {
     connectors.bending =
         static_cast<model::BendingLaw>(read_choice(reading, value, place, kBendingNames));
@@ -70,7 +70,8 @@ void read_connector_parameter(JsonReading& reading, const std::string& key, cons
   }
 }
 
-void check_pair_lists_of(JsonReading& reading, const Connectors& connectors, const Place& place) {
+void check_pair_lists_of(JsonReading& reading, const Connectors& connectors,
+                         const JsonPlace& place) {
   const base::Lattice& lattice = reading.document.extension.lattice;
   const auto pair_count = static_cast<std::size_t>(lattice.direction_count / 2);
   for (const ConnectorParameter& parameter : connectors.parameters) {
@@ -85,7 +86,7 @@ void check_pair_lists_of(JsonReading& reading, const Connectors& connectors, con
 
 }  // namespace
 
-double read_not_negative(JsonReading& reading, const Json& value, const Place& place) {
+double read_not_negative(JsonReading& reading, const Json& value, const JsonPlace& place) {
   const double number = reading.number(value, place);
   if (!(number >= 0)) {
     reading.refuse(value, place, "a number that is not negative");
@@ -93,7 +94,7 @@ double read_not_negative(JsonReading& reading, const Json& value, const Place& p
   return number;
 }
 
-double read_positive(JsonReading& reading, const Json& value, const Place& place) {
+double read_positive(JsonReading& reading, const Json& value, const JsonPlace& place) {
   const double number = reading.number(value, place);
   if (!(number > 0)) {
     reading.refuse(value, place, "a positive number");
@@ -101,7 +102,8 @@ double read_positive(JsonReading& reading, const Json& value, const Place& place
   return number;
 }
 
-std::size_t read_choice(JsonReading& reading, const Json& value, const Place& place, Names names) {
+std::size_t read_choice(JsonReading& reading, const Json& value, const JsonPlace& place,
+                        Names names) {
   const std::string name = reading.string(value, place);
   const auto found = std::ranges::find(names, name);
   if (found == names.end()) {
@@ -116,7 +118,7 @@ bool is_material_extension(std::string_view key) {
 }
 
 void read_material_extension(JsonReading& reading, const std::string& key, const Json& value,
-                             const Place& place) {
+                             const JsonPlace& place) {
   Extension& extension = reading.document.extension;
   if (key == kFootKey) {
     extension.foot_mm = read_not_negative(reading, value, place);
@@ -126,10 +128,10 @@ void read_material_extension(JsonReading& reading, const std::string& key, const
 }
 
 KindEntry read_kind(JsonReading& reading, const std::string& name, const Json& value,
-                    const Place& place) {
+                    const JsonPlace& place) {
   KindEntry kind{name, {}, {}};
   for (const auto& [key, member] : reading.members(value, place)) {
-    const Place here = place.at(key);
+    const JsonPlace here = place.at(key);
     if (key == "mass_kg") {
       kind.mass_kg = read_positive(reading, member, here);
     } else if (std::ranges::find(kClassStrengthKeys, key) != kClassStrengthKeys.end()) {
@@ -145,7 +147,7 @@ KindEntry read_kind(JsonReading& reading, const std::string& name, const Json& v
   return kind;
 }
 
-void expect_one_strength(JsonReading& reading, const Json& value, const Place& place) {
+void expect_one_strength(JsonReading& reading, const Json& value, const JsonPlace& place) {
   const auto has = [&](std::string_view key) { return value.is_object() && value.contains(key); };
   if (has("strength_n") && std::ranges::any_of(kClassStrengthKeys, has)) {
     reading.fail(place.at("strength_n"),
@@ -156,9 +158,9 @@ void expect_one_strength(JsonReading& reading, const Json& value, const Place& p
 
 void check_pair_lists(JsonReading& reading) {
   const Extension& extension = reading.document.extension;
-  const Place top;
+  const JsonPlace top;
   check_pair_lists_of(reading, extension.connectors, top.at("material"));
-  const Place kinds = top.at("kinds");
+  const JsonPlace kinds = top.at("kinds");
   for (const KindEntry& kind : extension.kinds) {
     check_pair_lists_of(reading, kind.connectors, kinds.at(kind.name));
   }

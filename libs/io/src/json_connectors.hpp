@@ -15,26 +15,27 @@ bool is_material_extension(std::string_view key);
 
 /// Reads such a member of the material.
 void read_material_extension(JsonReading& reading, const std::string& key, const Json& value,
-                             const Place& place);
+                             const JsonPlace& place);
 
 /// Reads a kind of modules.
 KindEntry read_kind(JsonReading& reading, const std::string& name, const Json& value,
-                    const Place& place);
+                    const JsonPlace& place);
 
 /// A failure if an object of the material or a kind says the strength of a direction twice.
-void expect_one_strength(JsonReading& reading, const Json& value, const Place& place);
+void expect_one_strength(JsonReading& reading, const Json& value, const JsonPlace& place);
 
 /// After all members: a failure if a list has not a value for each pair of the lattice's
 /// directions.
 void check_pair_lists(JsonReading& reading);
 
 /// A number that is not negative, such as a coefficient of friction or a width.
-double read_not_negative(JsonReading& reading, const Json& value, const Place& place);
+double read_not_negative(JsonReading& reading, const Json& value, const JsonPlace& place);
 
 /// A positive number.
-double read_positive(JsonReading& reading, const Json& value, const Place& place);
+double read_positive(JsonReading& reading, const Json& value, const JsonPlace& place);
 
 /// The index of a name, an enumerator; 0, and a failure, if it is none of them.
-std::size_t read_choice(JsonReading& reading, const Json& value, const Place& place, Names names);
+std::size_t read_choice(JsonReading& reading, const Json& value, const JsonPlace& place,
+                        Names names);
 
 }  // namespace holdfast::io

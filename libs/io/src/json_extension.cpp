@@ -18,7 +18,7 @@ namespace {
 
 using base::Cell;
 
-std::array<double, 3> vector(JsonReading& reading, const Json& value, const Place& place) {
+std::array<double, 3> vector(JsonReading& reading, const Json& value, const JsonPlace& place) {
   const Json::array_t& array = reading.elements(value, place);
   std::array<double, 3> numbers{};
   if (array.size() != numbers.size()) {
@@ -34,7 +34,7 @@ std::array<double, 3> vector(JsonReading& reading, const Json& value, const Plac
 
 /// Calls take(element, its place) for every element of an array that takes up cells.
 template <class Take>
-void for_each_element(JsonReading& reading, const Json& value, const Place& place,
+void for_each_element(JsonReading& reading, const Json& value, const JsonPlace& place,
                       const Take& take) {
   const Json::array_t& array = reading.elements(value, place);
   if (reading.take_room(array.size(), [&] { return place.pointer(); })) {
@@ -46,25 +46,26 @@ void for_each_element(JsonReading& reading, const Json& value, const Place& plac
 
 /// What read(reading, element, its place) makes of every element of an array.
 template <class Read>
-auto list_of(JsonReading& reading, const Json& value, const Place& place, const Read& read) {
+auto list_of(JsonReading& reading, const Json& value, const JsonPlace& place, const Read& read) {
   std::vector<decltype(read(reading, value, place))> list;
-  for_each_element(reading, value, place, [&](const Json& element, const Place& here) {
+  for_each_element(reading, value, place, [&](const Json& element, const JsonPlace& here) {
     list.push_back(read(reading, element, here));
   });
   return list;
 }
 
-Cell cell(JsonReading& reading, const Json& value, const Place& place) {
+Cell cell(JsonReading& reading, const Json& value, const JsonPlace& place) {
   return reading.cell(value, place);
 }
 
-std::vector<Cell> cells(JsonReading& reading, const Json& value, const Place& place) {
+std::vector<Cell> cells(JsonReading& reading, const Json& value, const JsonPlace& place) {
   return list_of(reading, value, place, cell);
 }
 
-std::vector<model::CellPair> pairs(JsonReading& reading, const Json& value, const Place& place) {
+std::vector<model::CellPair> pairs(JsonReading& reading, const Json& value,
+                                   const JsonPlace& place) {
   std::vector<model::CellPair> list;
-  for_each_element(reading, value, place, [&](const Json& element, const Place& here) {
+  for_each_element(reading, value, place, [&](const Json& element, const JsonPlace& here) {
     const std::vector<Cell> ends = cells(reading, element, here);
     if (ends.size() == 2) {
       list.push_back({ends[0], ends[1]});
@@ -77,15 +78,15 @@ std::vector<model::CellPair> pairs(JsonReading& reading, const Json& value, cons
 }
 
 /// A failure if an object lacks a key that it must have.
-void demand(JsonReading& reading, const Json& value, const Place& place, std::string_view key) {
+void demand(JsonReading& reading, const Json& value, const JsonPlace& place, std::string_view key) {
   if (value.is_object() && !value.contains(key)) {
     reading.fail(place.at(key), fmt::format("\"{}\" is missing", key));
   }
 }
 
-void read_floor(JsonReading& reading, const Json& value, const Place& place) {
+void read_floor(JsonReading& reading, const Json& value, const JsonPlace& place) {
   for (const auto& [key, member] : reading.members(value, place)) {
-    const Place here = place.at(key);
+    const JsonPlace here = place.at(key);
     if (key == "friction") {
       reading.document.extension.floor_friction = read_not_negative(reading, member, here);
     } else {
@@ -95,7 +96,7 @@ void read_floor(JsonReading& reading, const Json& value, const Place& place) {
 }
 
 /// Straight down it is what the material says, which version 1 can say too.
-void read_gravity(JsonReading& reading, const Json& value, const Place& place) {
+void read_gravity(JsonReading& reading, const Json& value, const JsonPlace& place) {
   const std::array<double, 3> gravity = vector(reading, value, place);
   Document& document = reading.document;
   if (!reading.has_failed() && gravity == std::array<double, 3>{}) {
@@ -112,9 +113,9 @@ void read_gravity(JsonReading& reading, const Json& value, const Place& place) {
   }
 }
 
-void read_kinds(JsonReading& reading, const Json& value, const Place& place) {
+void read_kinds(JsonReading& reading, const Json& value, const JsonPlace& place) {
   for (const auto& [name, member] : reading.members(value, place)) {
-    const Place here = place.at(name);
+    const JsonPlace here = place.at(name);
     if (const auto fault = find_string_fault(name); fault || name.empty()) {
       reading.fail(here, "the name of a kind is empty or no printable text");
     }
@@ -127,12 +128,12 @@ struct ColoredObstacle {
   std::optional<Color> color;
 };
 
-ColoredObstacle obstacle(JsonReading& reading, const Json& value, const Place& place) {
+ColoredObstacle obstacle(JsonReading& reading, const Json& value, const JsonPlace& place) {
   ColoredObstacle colored;
   model::Obstacle& found = colored.obstacle;
   bool is_list = false;
   for (const auto& [key, member] : reading.members(value, place)) {
-    const Place here = place.at(key);
+    const JsonPlace here = place.at(key);
     if (key == "from") {
       found.from = reading.cell(member, here);
     } else if (key == "to") {
@@ -161,7 +162,7 @@ ColoredObstacle obstacle(JsonReading& reading, const Json& value, const Place& p
   return colored;
 }
 
-void read_obstacles(JsonReading& reading, const Json& value, const Place& place) {
+void read_obstacles(JsonReading& reading, const Json& value, const JsonPlace& place) {
   Extension& extension = reading.document.extension;
   bool is_colored = false;
   for (ColoredObstacle& found : list_of(reading, value, place, obstacle)) {
@@ -174,11 +175,11 @@ void read_obstacles(JsonReading& reading, const Json& value, const Place& place)
   }
 }
 
-model::Payload payload(JsonReading& reading, const Json& value, const Place& place) {
+model::Payload payload(JsonReading& reading, const Json& value, const JsonPlace& place) {
   model::Payload found;
   demand(reading, value, place, "cell");
   for (const auto& [key, member] : reading.members(value, place)) {
-    const Place here = place.at(key);
+    const JsonPlace here = place.at(key);
     if (key == "cell") {
       found.cell = reading.cell(member, here);
     } else if (key == "force_n") {
@@ -192,16 +193,16 @@ model::Payload payload(JsonReading& reading, const Json& value, const Place& pla
   return found;
 }
 
-void read_loads(JsonReading& reading, const Json& value, const Place& place) {
+void read_loads(JsonReading& reading, const Json& value, const JsonPlace& place) {
   reading.document.extension.payloads = list_of(reading, value, place, payload);
 }
 
-model::Move move(JsonReading& reading, const Json& value, const Place& place) {
+model::Move move(JsonReading& reading, const Json& value, const JsonPlace& place) {
   model::Move found;
   demand(reading, value, place, "from");
   demand(reading, value, place, "to");
   for (const auto& [key, member] : reading.members(value, place)) {
-    const Place here = place.at(key);
+    const JsonPlace here = place.at(key);
     if (key == "from") {
       found.from = reading.cell(member, here);
     } else if (key == "to") {
@@ -215,10 +216,10 @@ model::Move move(JsonReading& reading, const Json& value, const Place& place) {
   return found;
 }
 
-model::Step plan_step(JsonReading& reading, const Json& value, const Place& place) {
+model::Step plan_step(JsonReading& reading, const Json& value, const JsonPlace& place) {
   model::Step step;
   for (const auto& [key, member] : reading.members(value, place)) {
-    const Place here = place.at(key);
+    const JsonPlace here = place.at(key);
     if (key == "attach") {
       step.attach = cells(reading, member, here);
     } else if (key == "detach") {
@@ -236,12 +237,12 @@ model::Step plan_step(JsonReading& reading, const Json& value, const Place& plac
   return step;
 }
 
-void read_steps(JsonReading& reading, const Json& value, const Place& place) {
+void read_steps(JsonReading& reading, const Json& value, const JsonPlace& place) {
   reading.document.extension.plan = list_of(reading, value, place, plan_step);
 }
 
 /// For what is read before all else.
-void pass_over(JsonReading& /*reading*/, const Json& /*value*/, const Place& /*place*/) {}
+void pass_over(JsonReading& /*reading*/, const Json& /*value*/, const JsonPlace& /*place*/) {}
 
 /// The JSON pointer to a module that has parameters of its own.
 std::string own_place(const OwnParameters& own) {
@@ -252,7 +253,7 @@ std::string own_place(const OwnParameters& own) {
 }
 
 /// The readers of kExtensionKeys, in their order.
-constexpr void (*kReaders[])(JsonReading&, const Json&, const Place&) = {
+constexpr void (*kReaders[])(JsonReading&, const Json&, const JsonPlace&) = {
     pass_over,  pass_over,      read_floor, read_gravity,
     read_kinds, read_obstacles, read_loads, read_steps};
 static_assert(std::size(kReaders) == kExtensionKeys.size());
@@ -260,13 +261,13 @@ static_assert(std::size(kReaders) == kExtensionKeys.size());
 }  // namespace
 
 void read_extension_member(JsonReading& reading, std::string_view key, const Json& value,
-                           const Place& place) {
+                           const JsonPlace& place) {
   const auto found = std::ranges::find(kExtensionKeys, key);
   kReaders[found - kExtensionKeys.begin()](reading, value, place);
 }
 
 void read_own_parameter(JsonReading& reading, std::string_view key, const Json& value,
-                        const Place& place, OwnParameters& own) {
+                        const JsonPlace& place, OwnParameters& own) {
   if (key == "kind") {
     own.kind = reading.string(value, place);
     if (own.kind.empty()) {
@@ -286,9 +287,9 @@ void read_extension_text(Reading& reading, std::string_view text, const Reading:
     reading.fail({root.error().code, root.error().message, where()});
     return;
   }
-  const Place top;
+  const JsonPlace top;
   for (const auto& [key, value] : json.members(root.value(), top)) {
-    const Place here = top.at(key);
+    const JsonPlace here = top.at(key);
     if (key == "support_z" && value.is_null()) {
       json.document.extension.has_floor = false;
     } else if (key == "material") {

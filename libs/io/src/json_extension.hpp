@@ -14,11 +14,11 @@ namespace holdfast::io {
 
 /// Reads the top-level member `key`, one of kExtensionKeys.
 void read_extension_member(JsonReading& reading, std::string_view key, const Json& value,
-                           const Place& place);
+                           const JsonPlace& place);
 
 /// Reads one of kOwnParameterKeys, a member of a module.
 void read_own_parameter(JsonReading& reading, std::string_view key, const Json& value,
-                        const Place& place, OwnParameters& own);
+                        const JsonPlace& place, OwnParameters& own);
 
 /// Reads the object that extension_text() has written, and checks kinds and lists of numbers; the
 /// lattice, what modules have of their own and obstacles are there already.

@@ -24,22 +24,22 @@ class JsonReader {
   base::Result<ReadDocument> read(const Json& root, const ReadOptions& options) &&;
 
  private:
-  bool read_heading(const Json::object_t& root, const Place& place, const ReadOptions& options);
-  void read_robot(const Json& value, const Place& place, const ReadOptions& options);
-  void read_lattice(const Json& value, const Place& place, const ReadOptions& options);
-  bool allows(const Place& place);
-  void read_member(const std::string& key, const Json& value, const Place& place);
-  void read_material(const Json& value, const Place& place);
-  void read_known_answer(const Json& value, const Place& place);
-  void read_visiblesim(const Json& value, const Place& place);
-  void take_old_obstacles(std::vector<Element>& list, const Place& place);
-  std::vector<Element> scenery(const Json& value, const Place& place);
-  std::vector<Element> targets(const Json& value, const Place& place);
+  bool read_heading(const Json::object_t& root, const JsonPlace& place, const ReadOptions& options);
+  void read_robot(const Json& value, const JsonPlace& place, const ReadOptions& options);
+  void read_lattice(const Json& value, const JsonPlace& place, const ReadOptions& options);
+  bool allows(const JsonPlace& place);
+  void read_member(const std::string& key, const Json& value, const JsonPlace& place);
+  void read_material(const Json& value, const JsonPlace& place);
+  void read_known_answer(const Json& value, const JsonPlace& place);
+  void read_visiblesim(const Json& value, const JsonPlace& place);
+  void take_old_obstacles(std::vector<Element>& list, const JsonPlace& place);
+  std::vector<Element> scenery(const Json& value, const JsonPlace& place);
+  std::vector<Element> targets(const Json& value, const JsonPlace& place);
 
   template <class Entry>
-  std::vector<Entry> entries(const Json& value, const Place& place, std::size_t step);
+  std::vector<Entry> entries(const Json& value, const JsonPlace& place, std::size_t step);
   template <class Entry>
-  Entry entry(const Json& value, const Place& place, OwnParameters own);
+  Entry entry(const Json& value, const JsonPlace& place, OwnParameters own);
 
   Names entry_keys(bool is_module) const;
 
@@ -50,7 +50,7 @@ class JsonReader {
 };
 
 base::Result<ReadDocument> JsonReader::read(const Json& root, const ReadOptions& options) && {
-  const Place top;
+  const JsonPlace top;
   const Json::object_t& members = reading_.members(root, top);
   if (!reading_.has_failed() && read_heading(members, top, options)) {
     for (const auto& [key, value] : members) {
@@ -67,7 +67,7 @@ base::Result<ReadDocument> JsonReader::read(const Json& root, const ReadOptions&
 }
 
 /// What must be there, and in a version that can be read.
-bool JsonReader::read_heading(const Json::object_t& root, const Place& place,
+bool JsonReader::read_heading(const Json::object_t& root, const JsonPlace& place,
                               const ReadOptions& options) {
   static const Json kNone;
   const auto value_of = [&](const char* key) -> const Json& {
@@ -101,7 +101,7 @@ bool JsonReader::read_heading(const Json::object_t& root, const Place& place,
 }
 
 /// As read_lattice(), and before it.
-void JsonReader::read_robot(const Json& value, const Place& place, const ReadOptions& options) {
+void JsonReader::read_robot(const Json& value, const JsonPlace& place, const ReadOptions& options) {
   const bool is_named = is_extended_ && !value.is_null();
   const std::string name = is_named ? reading_.string(value, place) : "";
   if (is_named && name.empty()) {
@@ -111,7 +111,8 @@ void JsonReader::read_robot(const Json& value, const Place& place, const ReadOpt
 }
 
 /// Before all that depends on it. The value is null if there is none.
-void JsonReader::read_lattice(const Json& value, const Place& place, const ReadOptions& options) {
+void JsonReader::read_lattice(const Json& value, const JsonPlace& place,
+                              const ReadOptions& options) {
   const auto where = [&] { return place.pointer(); };
   if (value.is_null() || !is_extended_) {
     reading_.take_lattice(std::nullopt, options, where);
@@ -125,7 +126,7 @@ void JsonReader::read_lattice(const Json& value, const Place& place, const ReadO
 
 /// Whether a key that only version 2 has may stand here; a failure if not, as what it says would be
 /// lost.
-bool JsonReader::allows(const Place& place) {
+bool JsonReader::allows(const JsonPlace& place) {
   if (!is_extended_) {
     reading_.fail(place, fmt::format("the key {} is one of version 2, the document says version 1",
                                      excerpt(place.key)));
@@ -133,7 +134,7 @@ bool JsonReader::allows(const Place& place) {
   return is_extended_;
 }
 
-void JsonReader::read_member(const std::string& key, const Json& value, const Place& place) {
+void JsonReader::read_member(const std::string& key, const Json& value, const JsonPlace& place) {
   Document& document = reading_.document;
   if (std::ranges::find(kExtensionKeys, key) != kExtensionKeys.end()) {
     if (allows(place)) {
@@ -167,9 +168,9 @@ void JsonReader::read_member(const std::string& key, const Json& value, const Pl
   }
 }
 
-void JsonReader::read_material(const Json& value, const Place& place) {
+void JsonReader::read_material(const Json& value, const JsonPlace& place) {
   for (const auto& [key, member] : reading_.members(value, place)) {
-    const Place here = place.at(key);
+    const JsonPlace here = place.at(key);
     const auto* parameter =
         std::ranges::find(model::kMaterialParameters, key, &model::MaterialParameter::key);
     if (parameter != model::kMaterialParameters.end()) {
@@ -185,10 +186,10 @@ void JsonReader::read_material(const Json& value, const Place& place) {
   expect_one_strength(reading_, value, place);
 }
 
-void JsonReader::read_known_answer(const Json& value, const Place& place) {
+void JsonReader::read_known_answer(const Json& value, const JsonPlace& place) {
   KnownAnswer answer;
   for (const auto& [key, member] : reading_.members(value, place)) {
-    const Place here = place.at(key);
+    const JsonPlace here = place.at(key);
     if (key == "verdict") {
       answer.verdict = reading_.string(member, here);
     } else if (key == "margin_mm") {
@@ -204,11 +205,11 @@ void JsonReader::read_known_answer(const Json& value, const Place& place) {
   reading_.take_known_answer(std::move(answer), [&] { return place.at("verdict").pointer(); });
 }
 
-void JsonReader::read_visiblesim(const Json& value, const Place& place) {
+void JsonReader::read_visiblesim(const Json& value, const JsonPlace& place) {
   const auto is_free = [](std::string_view) { return false; };
   Document& document = reading_.document;
   for (const auto& [key, member] : reading_.members(value, place)) {
-    const Place here = place.at(key);
+    const JsonPlace here = place.at(key);
     if (key == "parameters") {
       document.parameters = reading_.attributes(member, here, is_mechanical_parameter);
     } else if (key == "world") {
@@ -231,7 +232,7 @@ void JsonReader::read_visiblesim(const Json& value, const Place& place) {
 }
 
 /// Before obstacles had a meaning, <obstacleList> was kept as scenery.
-void JsonReader::take_old_obstacles(std::vector<Element>& list, const Place& place) {
+void JsonReader::take_old_obstacles(std::vector<Element>& list, const JsonPlace& place) {
   const auto found = std::ranges::find(list, kObstacleListElement, &Element::name);
   if (found != list.end() && reading_.document.extension.obstacles.empty()) {
     reading_.take_obstacles(*found, [&] { return place.pointer(); });
@@ -239,7 +240,7 @@ void JsonReader::take_old_obstacles(std::vector<Element>& list, const Place& pla
   }
 }
 
-std::vector<Element> JsonReader::scenery(const Json& value, const Place& place) {
+std::vector<Element> JsonReader::scenery(const Json& value, const JsonPlace& place) {
   std::vector<Element> list = reading_.element_list(value, place, 1);
   take_old_obstacles(list, place);
   for (const Element& element : list) {
@@ -250,7 +251,7 @@ std::vector<Element> JsonReader::scenery(const Json& value, const Place& place) 
   return list;
 }
 
-std::vector<Element> JsonReader::targets(const Json& value, const Place& place) {
+std::vector<Element> JsonReader::targets(const Json& value, const JsonPlace& place) {
   std::vector<Element> list = reading_.element_list(value, place, 1);
   for (const Element& element : list) {
     const std::string* const format = find_attribute(element.attributes, "format");
@@ -265,7 +266,8 @@ std::vector<Element> JsonReader::targets(const Json& value, const Place& place) 
 
 /// `step` is that of OwnParameters.
 template <class Entry>
-std::vector<Entry> JsonReader::entries(const Json& value, const Place& place, std::size_t step) {
+std::vector<Entry> JsonReader::entries(const Json& value, const JsonPlace& place,
+                                       std::size_t step) {
   std::vector<Entry> list;
   const Json::array_t& array = reading_.elements(value, place);
   if (reading_.take_room(array.size(), [&] { return place.pointer(); })) {
@@ -280,7 +282,7 @@ std::vector<Entry> JsonReader::entries(const Json& value, const Place& place, st
 
 /// `own` says which module it is; kept if the entry has parameters of its own.
 template <class Entry>
-Entry JsonReader::entry(const Json& value, const Place& place, OwnParameters own) {
+Entry JsonReader::entry(const Json& value, const JsonPlace& place, OwnParameters own) {
   constexpr bool kIsModule = std::is_same_v<Entry, ModuleEntry>;
   Entry entry;
   if (value.is_array()) {
@@ -292,7 +294,7 @@ Entry JsonReader::entry(const Json& value, const Place& place, OwnParameters own
     return entry;
   }
   for (const auto& [key, member] : reading_.members(value, place)) {
-    const Place here = place.at(key);
+    const JsonPlace here = place.at(key);
     if constexpr (kIsModule) {
       if (key == "fixed") {
         entry.is_fixed = reading_.boolean(member, here);

@@ -24,7 +24,7 @@ std::string describe(const Json& value) {
 
 /// The value as a T of the tree, or a failure and an empty T.
 template <class T>
-const T& take(JsonReading& reading, const Json& value, const Place& place,
+const T& take(JsonReading& reading, const Json& value, const JsonPlace& place,
               std::string_view expected) {
   static const T kNone{};
   const auto* found = value.get_ptr<const T*>();
@@ -37,9 +37,9 @@ const T& take(JsonReading& reading, const Json& value, const Place& place,
 
 }  // namespace
 
-std::string Place::pointer() const {
+std::string JsonPlace::pointer() const {
   std::string text;
-  for (const Place* place = this; place->parent != nullptr; place = place->parent) {
+  for (const JsonPlace* place = this; place->parent != nullptr; place = place->parent) {
     if (text.size() > kPointerShownMax) {
       return "..." + text;
     }
@@ -49,28 +49,28 @@ std::string Place::pointer() const {
   return text;
 }
 
-void JsonReading::fail(const Place& place, std::string message) {
+void JsonReading::fail(const JsonPlace& place, std::string message) {
   fail({base::ErrorCode::kBadInput, std::move(message), place.pointer()});
 }
 
-void JsonReading::refuse(const Json& value, const Place& place, std::string_view expected) {
+void JsonReading::refuse(const Json& value, const JsonPlace& place, std::string_view expected) {
   fail(place, fmt::format("found {}, expected is {}", describe(value), expected));
 }
 
-void JsonReading::note_unknown_key(const Place& place, Names known) {
+void JsonReading::note_unknown_key(const JsonPlace& place, Names known) {
   note_unknown(fmt::format("the key {}", excerpt(place.key)), place.key, known, "ignored",
                [&] { return place.pointer(); });
 }
 
-const Json::object_t& JsonReading::members(const Json& value, const Place& place) {
+const Json::object_t& JsonReading::members(const Json& value, const JsonPlace& place) {
   return take<Json::object_t>(*this, value, place, "an object");
 }
 
-const Json::array_t& JsonReading::elements(const Json& value, const Place& place) {
+const Json::array_t& JsonReading::elements(const Json& value, const JsonPlace& place) {
   return take<Json::array_t>(*this, value, place, "an array");
 }
 
-std::string JsonReading::string(const Json& value, const Place& place) {
+std::string JsonReading::string(const Json& value, const JsonPlace& place) {
   const auto& text = take<Json::string_t>(*this, value, place, "a string");
   if (const auto fault = find_string_fault(text)) {
     fail(place, fmt::format("the string {}", *fault));
@@ -78,11 +78,11 @@ std::string JsonReading::string(const Json& value, const Place& place) {
   return text;
 }
 
-bool JsonReading::boolean(const Json& value, const Place& place) {
+bool JsonReading::boolean(const Json& value, const JsonPlace& place) {
   return take<Json::boolean_t>(*this, value, place, "true or false");
 }
 
-double JsonReading::number(const Json& value, const Place& place) {
+double JsonReading::number(const Json& value, const JsonPlace& place) {
   if (!value.is_number()) {
     refuse(value, place, "a number");
     return 0;
@@ -90,7 +90,7 @@ double JsonReading::number(const Json& value, const Place& place) {
   return value.get<double>() + 0.0;  // -0, which some write as an integer, is 0.
 }
 
-std::int32_t JsonReading::integer(const Json& value, const Place& place, IntegerRange range) {
+std::int32_t JsonReading::integer(const Json& value, const JsonPlace& place, IntegerRange range) {
   const double number =
       value.is_number() ? value.get<double>() : std::numeric_limits<double>::quiet_NaN();
   if (!range.contains(number) || number != std::trunc(number)) {
@@ -100,7 +100,7 @@ std::int32_t JsonReading::integer(const Json& value, const Place& place, Integer
   return static_cast<std::int32_t>(number);
 }
 
-std::array<std::int32_t, 3> JsonReading::triple(const Json& value, const Place& place,
+std::array<std::int32_t, 3> JsonReading::triple(const Json& value, const JsonPlace& place,
                                                 IntegerRange range) {
   const Json::array_t& array = elements(value, place);
   std::array<std::int32_t, 3> triple{};
@@ -114,21 +114,21 @@ std::array<std::int32_t, 3> JsonReading::triple(const Json& value, const Place& 
   return triple;
 }
 
-base::Cell JsonReading::cell(const Json& value, const Place& place) {
+base::Cell JsonReading::cell(const Json& value, const JsonPlace& place) {
   const auto [x, y, z] = triple(value, place, kCoordinateRange);
   return {x, y, z};
 }
 
-Color JsonReading::color(const Json& value, const Place& place) {
+Color JsonReading::color(const Json& value, const JsonPlace& place) {
   const auto [red, green, blue] = triple(value, place, kColorRange);
   return {red, green, blue};
 }
 
-Attributes JsonReading::attributes(const Json& value, const Place& place,
+Attributes JsonReading::attributes(const Json& value, const JsonPlace& place,
                                    bool (*is_reserved)(std::string_view name)) {
   Attributes attributes;
   for (const auto& [key, member] : members(value, place)) {
-    const Place here = place.at(key);
+    const JsonPlace here = place.at(key);
     if (const auto fault = find_name_fault(key)) {
       fail(here, *fault);
     } else if (is_reserved(key)) {
@@ -139,14 +139,14 @@ Attributes JsonReading::attributes(const Json& value, const Place& place,
   return attributes;
 }
 
-Element JsonReading::element(const Json& value, const Place& place, int depth) {
+Element JsonReading::element(const Json& value, const JsonPlace& place, int depth) {
   Element element;
   if (depth > kSceneryNestingMax) {
     fail(place, fmt::format("elements nested deeper than the {} allowed", kSceneryNestingMax));
     return element;
   }
   for (const auto& [key, member] : members(value, place)) {
-    const Place here = place.at(key);
+    const JsonPlace here = place.at(key);
     if (key == "element") {
       element.name = string(member, here);
     } else if (key == "attributes") {
@@ -165,7 +165,8 @@ Element JsonReading::element(const Json& value, const Place& place, int depth) {
   return element;
 }
 
-std::vector<Element> JsonReading::element_list(const Json& value, const Place& place, int depth) {
+std::vector<Element> JsonReading::element_list(const Json& value, const JsonPlace& place,
+                                               int depth) {
   std::vector<Element> list;
   const Json::array_t& array = elements(value, place);
   for (std::size_t i = 0; i < array.size() && !has_failed(); ++i) {

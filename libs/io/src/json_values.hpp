@@ -15,14 +15,14 @@ namespace holdfast::io {
 
 /// A value's place in the tree; its JSON pointer is put together only when someone asks. Outlived
 /// by its parent.
-struct Place {
-  const Place* parent = nullptr;
+struct JsonPlace {
+  const JsonPlace* parent = nullptr;
   std::string_view key;  ///< Void if there is an index.
   std::optional<std::size_t> index;
 
-  Place at(std::string_view member) const { return {this, member, {}}; }
+  JsonPlace at(std::string_view member) const { return {this, member, {}}; }
 
-  Place at(std::size_t element) const { return {this, {}, element}; }
+  JsonPlace at(std::size_t element) const { return {this, {}, element}; }
 
   std::string pointer() const;
 };
@@ -32,33 +32,33 @@ class JsonReading : public Reading {
  public:
   using Reading::fail;
 
-  void fail(const Place& place, std::string message);
+  void fail(const JsonPlace& place, std::string message);
 
   /// The one message for a value that is not what it should be.
-  void refuse(const Json& value, const Place& place, std::string_view expected);
+  void refuse(const Json& value, const JsonPlace& place, std::string_view expected);
 
   /// A key that is none of the known ones.
-  void note_unknown_key(const Place& place, Names known);
+  void note_unknown_key(const JsonPlace& place, Names known);
 
-  const Json::object_t& members(const Json& value, const Place& place);
-  const Json::array_t& elements(const Json& value, const Place& place);
-  std::string string(const Json& value, const Place& place);
-  bool boolean(const Json& value, const Place& place);
-  double number(const Json& value, const Place& place);
-  std::int32_t integer(const Json& value, const Place& place, IntegerRange range);
-  base::Cell cell(const Json& value, const Place& place);
-  Color color(const Json& value, const Place& place);
+  const Json::object_t& members(const Json& value, const JsonPlace& place);
+  const Json::array_t& elements(const Json& value, const JsonPlace& place);
+  std::string string(const Json& value, const JsonPlace& place);
+  bool boolean(const Json& value, const JsonPlace& place);
+  double number(const Json& value, const JsonPlace& place);
+  std::int32_t integer(const Json& value, const JsonPlace& place, IntegerRange range);
+  base::Cell cell(const Json& value, const JsonPlace& place);
+  Color color(const Json& value, const JsonPlace& place);
 
   /// `is_reserved` tells names that have a place of their own.
-  Attributes attributes(const Json& value, const Place& place,
+  Attributes attributes(const Json& value, const JsonPlace& place,
                         bool (*is_reserved)(std::string_view name));
 
   /// `depth` counts from 1.
-  Element element(const Json& value, const Place& place, int depth);
-  std::vector<Element> element_list(const Json& value, const Place& place, int depth);
+  Element element(const Json& value, const JsonPlace& place, int depth);
+  std::vector<Element> element_list(const Json& value, const JsonPlace& place, int depth);
 
  private:
-  std::array<std::int32_t, 3> triple(const Json& value, const Place& place, IntegerRange range);
+  std::array<std::int32_t, 3> triple(const Json& value, const JsonPlace& place, IntegerRange range);
 };
 
 }  // namespace holdfast::io

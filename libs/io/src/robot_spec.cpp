@@ -73,7 +73,7 @@ void apply(const Connectors& connectors, const base::Lattice& lattice, model::Mo
 constexpr double kNumberMin = 1e-12;
 constexpr double kNumberMax = 1e12;
 
-std::optional<base::Error> find_fault(const Connectors& connectors, const Place& place) {
+std::optional<base::Error> find_fault(const Connectors& connectors, const JsonPlace& place) {
   for (const ConnectorParameter& parameter : connectors.parameters) {
     for (const std::optional<double>& value : parameter.values) {
       if (!(value.value_or(1) >= kNumberMin)) {
@@ -88,11 +88,11 @@ std::optional<base::Error> find_fault(const Connectors& connectors, const Place&
 
 /// Before the robot is made, which does not know the file's names and places.
 std::optional<base::Error> find_fault(const Extension& extension) {
-  const Place top;
+  const JsonPlace top;
   auto fault = find_fault(extension.connectors, top.at("material"));
-  const Place kinds = top.at("kinds");
+  const JsonPlace kinds = top.at("kinds");
   for (const KindEntry& kind : extension.kinds) {
-    const Place place = kinds.at(kind.name);
+    const JsonPlace place = kinds.at(kind.name);
     const double mass = kind.mass_kg.value_or(1);
     if (!fault && !(mass >= kNumberMin && mass <= kNumberMax)) {
       fault = {base::ErrorCode::kBadInput,
