@@ -155,6 +155,13 @@ RefusedMessages refused_by(const model::Robot& robot, const Agents& agents) {
   return refused;
 }
 
+std::optional<double> load_ratio_max(const agent::Answer& answer) {
+  const bool is_judged =
+      answer.verdict == agent::Verdict::kSafe || answer.verdict == agent::Verdict::kOverload;
+  const bool is_told = is_judged && answer.load_ratio_max > agent::kNoLoadRatio;
+  return is_told ? std::optional(static_cast<double>(answer.load_ratio_max)) : std::nullopt;
+}
+
 verdict::Verdict to_verdict(agent::Verdict verdict) {
   switch (verdict) {
     case agent::Verdict::kSafe:

@@ -13,16 +13,9 @@ namespace {
 /// All phases but the last, in which nothing is left to do.
 constexpr std::size_t kBusyPhaseCount = sim::kPhaseCount - 1;
 
-/// A robot of one module has no connection.
-bool has_load_ratio(const agent::Answer& answer) {
-  const bool is_judged =
-      answer.verdict == agent::Verdict::kSafe || answer.verdict == agent::Verdict::kOverload;
-  return is_judged && answer.load_ratio_max > agent::kNoLoadRatio;
-}
-
 /// Does the robot name a worst connection?
 bool has_worst(const sim::SimulationResult& result) {
-  return has_load_ratio(result.answer) && result.effort.module_count > 1;
+  return load_ratio_max(result.answer) && result.effort.module_count > 1;
 }
 
 void write_cell(io::JsonStream& json, const base::Cell& cell) {
@@ -139,8 +132,7 @@ void write_distributed(io::JsonStream& json, const DistributedRun& run) {
   const agent::Answer& answer = result.answer;
   json.member("verdict", verdict::name(run.view.verdict));
   json.member("reason", agent::name(answer.reason));
-  json.member("load_ratio_max",
-              has_load_ratio(answer) ? std::optional<double>(answer.load_ratio_max) : std::nullopt);
+  json.member("load_ratio_max", load_ratio_max(answer));
   json.key("at");
   write_worst(json, run);
   if (run.worst_limit && has_worst(result)) {

@@ -22,18 +22,6 @@ std::size_t at(Stage stage) { return static_cast<std::size_t>(stage); }
 /// The same stage as modules name it: 0 is none.
 agent::Stage stage_of(Stage stage) { return static_cast<agent::Stage>(at(stage) + 1); }
 
-/// A robot of one module has no connection.
-bool has_load_ratio(const agent::Answer& answer) {
-  const bool is_judged =
-      answer.verdict == agent::Verdict::kSafe || answer.verdict == agent::Verdict::kOverload;
-  return is_judged && answer.load_ratio_max > agent::kNoLoadRatio;
-}
-
-std::optional<double> load_ratio(const agent::Answer& answer) {
-  return has_load_ratio(answer) ? std::optional(static_cast<double>(answer.load_ratio_max))
-                                : std::nullopt;
-}
-
 /// Which limit the connection with the largest load ratio is nearest to.
 const char* limit_name(const agent::Answer& answer) {
   return model::name(static_cast<model::Limit>(answer.remarks & agent::kLimitBits));
@@ -174,7 +162,7 @@ std::string simulated_stages_text(const StepsFile& file, const SimulatedStages& 
     const SimulatedStep& step = stages.steps[i];
     for (const Stage stage : kStages) {
       const agent::Answer& answer = step.stages[at(stage)];
-      const auto ratio = load_ratio(answer);
+      const auto ratio = load_ratio_max(answer);
       const bool has_limit = stages.has_laws && ratio;
       fmt::format_to(out, "  {:>5} {:<8} {:<10} {:<10} {:>10}  {}{}{}{}\n", i, plan::name(stage),
                      verdict::name(stages.exact.steps[i].stages[at(stage)].verdict),
@@ -212,12 +200,12 @@ void write_stage(io::JsonStream& json, const SimulatedStages& stages, const agen
   json.begin_array();
   json.value(agent::name(answer.reason));
   json.end_array();
-  json.member("load_ratio_max", load_ratio(answer));
-  if (stages.has_laws && has_load_ratio(answer)) {
+  json.member("load_ratio_max", load_ratio_max(answer));
+  if (stages.has_laws && load_ratio_max(answer)) {
     json.member("limit", limit_name(answer));
   }
   json.key("at");
-  if (has_load_ratio(answer)) {
+  if (load_ratio_max(answer)) {
     json.begin_array();
     write_cell(json, answer.worst_cell);
     write_cell(json, base::neighbour(stages.lattice, answer.worst_cell, answer.worst_direction));
@@ -261,7 +249,7 @@ void write_simulated_stages_json(std::ostream& out, const StepsFile& file,
   std::optional<double> largest;
   for (const SimulatedStep& step : stages.steps) {
     for (const agent::Answer& answer : step.stages) {
-      const auto ratio = load_ratio(answer);
+      const auto ratio = load_ratio_max(answer);
       largest = ratio && (!largest || *ratio > *largest) ? ratio : largest;
     }
   }

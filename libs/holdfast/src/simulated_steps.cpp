@@ -245,13 +245,6 @@ double median_share(const std::vector<StepChange>& changes) {
   return shares.size() % 2 == 1 ? shares[half] : (shares[half - 1] + shares[half]) / 2;
 }
 
-/// A robot of one module has no connection.
-bool has_load_ratio(const agent::Answer& answer) {
-  const bool is_judged =
-      answer.verdict == agent::Verdict::kSafe || answer.verdict == agent::Verdict::kOverload;
-  return is_judged && answer.load_ratio_max > agent::kNoLoadRatio;
-}
-
 std::string cells_text(const StepChange& change) {
   std::string text;
   for (const base::Cell& cell : change.cells) {
@@ -269,10 +262,7 @@ void write_answer(io::JsonStream& json, const sim::LinkModel& link, const StepAn
   json.begin_object();
   json.member("verdict", verdict::name(to_verdict(answer.answer.verdict)));
   json.member("reason", agent::name(answer.answer.reason));
-  json.member("load_ratio_max",
-              has_load_ratio(answer.answer)
-                  ? std::optional<double>(static_cast<double>(answer.answer.load_ratio_max))
-                  : std::nullopt);
+  json.member("load_ratio_max", load_ratio_max(answer.answer));
   json.member("all_modules_agree", answer.all_agree);
   json.member("rounds", answer.rounds);
   json.member("simulated_s", sim::seconds(link, answer.time));
@@ -373,14 +363,13 @@ std::string simulated_steps_text(const StepsFile& file, const SimulatedSteps& st
   for (const StepChange& change : steps.changes) {
     const agent::Answer& answer = change.kept.answer;
     const std::string step = change.kind == Kind::kStart ? "" : fmt::format("{}", change.step);
-    const std::string ratio =
-        has_load_ratio(answer) ? fmt::format("{:.4f}", answer.load_ratio_max) : "-";
-    fmt::format_to(out, "  {:>5} {:<10} {:<10} {:>10} {:>8} {:>8} {:>8} {:>8}  {}{}{}\n", step,
-                   verdict::name(change.exact), verdict::name(to_verdict(answer.verdict)), ratio,
-                   time_text(steps.link, change.kept.time),
-                   time_text(steps.link, change.fresh.time), change.kept.packets,
-                   change.fresh.packets, name(change.kind), cells_text(change),
-                   change.kept.all_agree ? "" : "; NOT all agree");
+    const auto ratio = load_ratio_max(answer);
+    fmt::format_to(
+        out, "  {:>5} {:<10} {:<10} {:>10} {:>8} {:>8} {:>8} {:>8}  {}{}{}\n", step,
+        verdict::name(change.exact), verdict::name(to_verdict(answer.verdict)),
+        ratio ? fmt::format("{:.4f}", *ratio) : "-", time_text(steps.link, change.kept.time),
+        time_text(steps.link, change.fresh.time), change.kept.packets, change.fresh.packets,
+        name(change.kind), cells_text(change), change.kept.all_agree ? "" : "; NOT all agree");
   }
   fmt::format_to(out,
                  "  from what the robot keeps a step takes {:.2f} of the time, in the median\n",
