@@ -58,7 +58,7 @@ function(holdfast_test_quickly_compiled target level)
   if(CMAKE_CXX_COMPILER_LAUNCHER)
     return()
   endif()
-  set(headers holdfast_test_headers)
+  set(headers holdfast_test_headers${level})
   if(NOT TARGET ${headers})
     set(empty ${CMAKE_BINARY_DIR}/${headers}.cpp)
     file(CONFIGURE OUTPUT ${empty} CONTENT "")
@@ -77,11 +77,12 @@ function(holdfast_test_quickly_compiled target level)
   endif()
 endfunction()
 
-# holdfast_test(NAME SOURCES ... LINKS ... [LABELS ...]): a test program, its tests found by ctest.
-# As WebAssembly it is one test in all, as starting Node takes longer than most of them. Under
-# sanitizers it is compiled without optimisation, in half of the time; what it tests as always.
+# holdfast_test(NAME [LONG] SOURCES ... LINKS ... [LABELS ...]): a test program, its tests found by
+# ctest. As WebAssembly it is one test in all, as starting Node takes longer than most of them.
+# What does not run LONG is compiled without optimisation under sanitizers, in half of the time; the
+# rooms that it tests are compiled as always.
 function(holdfast_test name)
-  cmake_parse_arguments(TEST "" "" "SOURCES;LINKS;LABELS" ${ARGN})
+  cmake_parse_arguments(TEST "LONG" "" "SOURCES;LINKS;LABELS" ${ARGN})
   if(NOT HOLDFAST_BUILD_TESTS)
     return()
   endif()
@@ -91,7 +92,11 @@ function(holdfast_test name)
   target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR}/tests/support)
   target_link_libraries(${name} PRIVATE ${TEST_LINKS} GTest::gtest_main)
   if(CMAKE_CXX_FLAGS MATCHES "-fsanitize")
-    holdfast_test_quickly_compiled(${name} -O0)
+    if(TEST_LONG)
+      holdfast_test_quickly_compiled(${name} -O1)
+    else()
+      holdfast_test_quickly_compiled(${name} -O0)
+    endif()
   elseif(CMAKE_BUILD_TYPE STREQUAL "Release" AND NOT EMSCRIPTEN)
     holdfast_test_quickly_compiled(${name} -O1)
   endif()
