@@ -113,8 +113,8 @@ std::string picture_svg(const Structure& structure, const DistributedRun& run);
 /// The word that the exact answer has for a verdict of the robot.
 verdict::Verdict to_verdict(agent::Verdict verdict);
 
-/// The robot's largest load ratio; none where it tells none, as it stands on one module or may not
-/// stand.
+/// The robot's largest load ratio; none of a single module, which has no connection, and where the
+/// verdict is neither `safe` nor `overload`.
 std::optional<double> load_ratio_max(const agent::Answer& answer);
 
 /// "elimination", "polynomial", "cg", "block-jacobi", "jacobi", and back.
