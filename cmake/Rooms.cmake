@@ -36,12 +36,25 @@ function(holdfast_room name)
     target_include_directories(${target} PRIVATE src)
     target_link_libraries(${target} PRIVATE ${ROOM_PRIVATE_LINKS})
     holdfast_same_bits(${target})
+    holdfast_compiled_together(${target})
     if(HOLDFAST_INSTALL OR HOLDFAST_BUILD_PYTHON)
       # Shared libraries are made of the same objects. Nobody replaces functions within it.
       set_target_properties(${target} PROPERTIES POSITION_INDEPENDENT_CODE ON)
       target_compile_options(${target} PRIVATE
         $<$<CXX_COMPILER_ID:GNU>:-fno-semantic-interposition>)
     endif()
+  endif()
+endfunction()
+
+# holdfast_compiled_together(TARGET): eight files at a time, as half and more of what a file takes
+# to compile is its headers. Names in unnamed namespaces are therefore one room's, not one file's.
+# Not in the preset `dev`: ./dev lint looks at each file.
+function(holdfast_compiled_together target)
+  if(CMAKE_BUILD_TYPE STREQUAL "Release" OR CMAKE_CXX_FLAGS MATCHES "-fsanitize")
+    set_target_properties(${target} PROPERTIES UNITY_BUILD ON)
+    # g++ takes a file that is included for a header.
+    target_compile_options(${target} PRIVATE
+      $<$<CXX_COMPILER_ID:GNU>:-Wno-subobject-linkage>)
   endif()
 endfunction()
 
@@ -77,17 +90,19 @@ function(holdfast_test_quickly_compiled target level)
   endif()
 endfunction()
 
-# holdfast_test(NAME [LONG] SOURCES ... LINKS ... [LABELS ...]): a test program, its tests found by
-# ctest. As WebAssembly it is one test in all, as starting Node takes longer than most of them.
-# What does not run LONG is compiled without optimisation under sanitizers, in half of the time; the
-# rooms that it tests are compiled as always.
+# holdfast_test(NAME [LONG] SOURCES ... [APART ...] LINKS ... [LABELS ...]): a test program, its
+# tests found by ctest. As WebAssembly it is one test in all, as starting Node takes longer than
+# most of them. What does not run LONG is compiled without optimisation under sanitizers, in half of
+# the time; the rooms that it tests are compiled as always. Files whose names others have go APART.
 function(holdfast_test name)
-  cmake_parse_arguments(TEST "LONG" "" "SOURCES;LINKS;LABELS" ${ARGN})
+  cmake_parse_arguments(TEST "LONG" "" "SOURCES;APART;LINKS;LABELS" ${ARGN})
   if(NOT HOLDFAST_BUILD_TESTS)
     return()
   endif()
-  add_executable(${name} ${TEST_SOURCES})
+  add_executable(${name} ${TEST_SOURCES} ${TEST_APART})
   holdfast_same_bits(${name})
+  holdfast_compiled_together(${name})
+  set_source_files_properties(${TEST_APART} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
   set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/tests)
   target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR}/tests/support)
   target_link_libraries(${name} PRIVATE ${TEST_LINKS} GTest::gtest_main)

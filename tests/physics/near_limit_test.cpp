@@ -23,7 +23,7 @@ using verdict::Verdict;
 /// of 1.
 constexpr double kPromised = 1e-4;
 
-constexpr std::uint64_t kRobotCount = test::campaign(60U, 12U);
+constexpr std::uint64_t kNearLimitCount = test::campaign(60U, 12U);
 constexpr int kComparedMin = test::campaign(40, 12);  ///< The others topple, or do not settle.
 
 void expect_truth(const Assessment& found, const std::vector<long double>& exact) {
@@ -45,7 +45,7 @@ void expect_truth(const Assessment& found, const std::vector<long double>& exact
 TEST(NearLimit, the_verdict_is_right_where_the_largest_load_ratio_is_almost_1) {
   constexpr double kDistances[] = {5e-5, 1e-6, 1e-8, 3e-9};
   int count = 0;
-  for (std::uint64_t seed = 0; seed < kRobotCount; ++seed) {
+  for (std::uint64_t seed = 0; seed < kNearLimitCount; ++seed) {
     SCOPED_TRACE(seed);
     model::RobotSpec spec = test::random_robot(seed, 129, test::kIsShort ? 150 : 300);
     const model::Robot robot = model::Robot::create(spec).value();
@@ -70,7 +70,7 @@ TEST(NearLimit, the_verdict_is_right_where_the_largest_load_ratio_is_almost_1) {
 
 TEST(NearLimit, ranges_hold_the_truth_and_load_ratios_are_within_1e_4_elsewhere) {
   int count = 0;
-  for (std::uint64_t seed = 100; seed < 100 + kRobotCount; ++seed) {
+  for (std::uint64_t seed = 100; seed < 100 + kNearLimitCount; ++seed) {
     SCOPED_TRACE(seed);
     const model::Robot robot =
         model::Robot::create(test::random_robot(seed, 129, test::kIsShort ? 150 : 400)).value();

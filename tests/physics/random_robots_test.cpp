@@ -14,12 +14,12 @@
 namespace holdfast {
 namespace {
 
-constexpr std::uint64_t kRobotCount = test::campaign(2000U, 8U);
+constexpr std::uint64_t kRandomCount = test::campaign(2000U, 8U);
 
 TEST(RandomRobots, are_always_decided_and_both_stability_checks_agree) {
   int unilateral_count = 0;
   int unstable_count = 0;
-  for (std::uint64_t seed = 0; seed < kRobotCount; ++seed) {
+  for (std::uint64_t seed = 0; seed < kRandomCount; ++seed) {
     SCOPED_TRACE(::testing::Message() << "random_robot(" << seed << ")");
     const auto robot = model::Robot::create(test::random_robot(seed));
     ASSERT_TRUE(robot) << robot.error().message;
@@ -40,7 +40,7 @@ TEST(RandomRobots, are_always_decided_and_both_stability_checks_agree) {
 
 /// Gravity does not know north: a quarter turn about the vertical turns the answer.
 TEST(RandomRobots, have_the_same_answer_when_turned) {
-  for (std::uint64_t seed = 0; seed < kRobotCount; seed += 10) {
+  for (std::uint64_t seed = 0; seed < kRandomCount; seed += 10) {
     SCOPED_TRACE(::testing::Message() << "random_robot(" << seed << ")");
     model::RobotSpec spec = test::random_robot(seed);
     const auto robot = model::Robot::create(spec);
@@ -63,7 +63,7 @@ TEST(RandomRobots, have_the_same_answer_when_turned) {
 /// The solver of large robots is another method, so each checks the other.
 TEST(RandomRobots, have_the_same_answer_by_multigrid) {
   int unilateral_count = 0;
-  for (std::uint64_t seed = 0; seed < kRobotCount; seed += 2) {
+  for (std::uint64_t seed = 0; seed < kRandomCount; seed += 2) {
     SCOPED_TRACE(::testing::Message() << "random_robot(" << seed << ")");
     const auto robot = model::Robot::create(test::random_robot(seed)).value();
     const verdict::Assessment direct = verdict::assess(robot);

@@ -68,7 +68,7 @@ struct Robot {
   }
 };
 
-double random_signed(base::Rng& rng) {
+double random_entry(base::Rng& rng) {
   return static_cast<double>(rng.below(2'000'001)) / 1'000'000 - 1;
 }
 
@@ -93,7 +93,7 @@ Robot random_robot(base::Rng& rng, bool has_fixed) {
   robot.is_fixed.resize(count);
   for (std::size_t i = 0; i < count; ++i) {
     for (std::size_t k = 0; k < 6; ++k) {
-      robot.loads[i][k] = random_signed(rng) * (k < 3 ? 1 : 40);
+      robot.loads[i][k] = random_entry(rng) * (k < 3 ? 1 : 40);
     }
     const bool is_held = i == count - 1 || rng.below(5) == 0;
     robot.is_fixed[i] = is_held && has_fixed;
@@ -101,7 +101,7 @@ Robot random_robot(base::Rng& rng, bool has_fixed) {
       robot.springs[i].at(k, k) = k < 3 ? 3000 : 2e6;
     }
     if (is_held && !has_fixed) {
-      robot.springs[i].at(2, 3) = robot.springs[i].at(3, 2) = 2e4 * random_signed(rng);
+      robot.springs[i].at(2, 3) = robot.springs[i].at(3, 2) = 2e4 * random_entry(rng);
     }
   }
   return robot;

@@ -5,8 +5,6 @@
 namespace holdfast::certificate {
 namespace {
 
-constexpr int kZ = 2;
-
 constexpr const char* kTooLarge = "a force is too large for the numbers of the proof";
 
 /// Rotation about x or y, and the state's tilt about it.

@@ -212,13 +212,6 @@ Six spring_force(const Springs& h, const Six& w, bool& is_too_large) {
   return s;
 }
 
-namespace {
-
-/// Its nearest double, which is as near as the sum with zero is rounded.
-Ball ball_of(Integer value) { return Ball(0) + Ball(static_cast<double>(value)); }
-
-}  // namespace
-
 void add_mismatch(Ball& energy, const Springs& h, const Six& s, const Six& w) {
   for (std::size_t i = 0; i < 6; ++i) {
     const Ball off = (ball_of(s[i]) - h[i] * ball_of(w[i])).largest();

@@ -18,7 +18,12 @@
 /// A facet on the ground is the same with an immobile a, one pitch below.
 namespace holdfast::certificate {
 
+constexpr int kZ = 2;
+
 using Springs = std::array<Ball, 6>;
+
+/// Its nearest double, which is as near as the sum with zero is rounded.
+inline Ball ball_of(Integer value) { return Ball(0) + Ball(static_cast<double>(value)); }
 
 struct Beam {
   std::size_t a = 0;

@@ -10,10 +10,7 @@
 namespace holdfast::certificate {
 namespace {
 
-constexpr int kZ = 2;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
-Ball ball_of(Integer value) { return Ball(0) + Ball(static_cast<double>(value)); }
 
 /// The absolute value, from below and from above.
 bool is_surely_less(const Ball& a, const Ball& b) { return a.high() < b.low(); }

@@ -19,11 +19,6 @@ namespace {
 
 using base::at;
 
-base::Error bad_input(std::string message, std::string where) {
-  return {
-      .code = base::ErrorCode::kBadInput, .message = std::move(message), .where = std::move(where)};
-}
-
 /// A file that all ranks have open.
 class SharedFile {
  public:
@@ -106,13 +101,13 @@ base::Result<std::vector<Record>> read_records(PetscRanks& ranks, SharedFile& fi
   const std::size_t last = split_point(head.module_count, at(ranks.count()), rank + 1, key);
   std::vector<Record> records(last > first ? last - first : 0);
   if (!file.read_all(begin + sizeof(Record) * first, std::as_writable_bytes(std::span(records)))) {
-    return bad_input("the modules could not be read", fmt::format("byte {}", begin));
+    return base::bad_input("the modules could not be read", fmt::format("byte {}", begin));
   }
   const std::int64_t before = first == 0 ? -1 : static_cast<std::int64_t>(key(first - 1));
   const std::string fault =
       first_message(ranks, io::find_record_fault(records, first, lattice, low, before));
   if (!fault.empty()) {
-    return bad_input(fault, "");
+    return base::bad_input(fault, "");
   }
   if (auto sum_fault =
           io::find_sum_fault(head, sum_of_ranks(ranks, io::record_sum(records, first)))) {
@@ -151,7 +146,7 @@ base::Result<std::pair<SharedText, std::vector<Record>>> read_binary_file(PetscR
   const std::uint64_t size = file.size();
   std::string begin(std::min<std::uint64_t>(size, sizeof(io::BinaryHead)), '\0');
   if (!file.read_all(0, std::as_writable_bytes(std::span(begin)))) {
-    return bad_input("the head could not be read", "byte 0");
+    return base::bad_input("the head could not be read", "byte 0");
   }
   const auto read_head = io::read_binary_head(begin, size);
   if (!read_head) {
@@ -161,7 +156,7 @@ base::Result<std::pair<SharedText, std::vector<Record>>> read_binary_file(PetscR
   SharedText text;
   text.document.resize(head.text_size);
   if (!file.read_all(sizeof head, std::as_writable_bytes(std::span(text.document)))) {
-    return bad_input("the text could not be read", fmt::format("byte {}", sizeof head));
+    return base::bad_input("the text could not be read", fmt::format("byte {}", sizeof head));
   }
   const auto document = io::read_binary_text(head, text.document);
   if (!document) {

@@ -55,10 +55,6 @@ class Reader {
   std::string_view bytes_;
 };
 
-base::Error bad_input(std::string message) {
-  return {.code = base::ErrorCode::kBadInput, .message = std::move(message)};
-}
-
 /// Whether all are numbers that facets have (solver/contact_iteration.cpp).
 bool are_states(std::span<const std::uint8_t> states) {
   return std::ranges::all_of(states, [](std::uint8_t number) {
@@ -100,20 +96,21 @@ std::optional<base::Error> Checkpoint::read() {
 std::optional<base::Error> Checkpoint::take(const std::string& bytes) {
   const std::size_t body = bytes.size() < sizeof(std::uint64_t) ? 0 : bytes.size() - 8;
   if (!std::string_view(bytes).starts_with(kMagic)) {
-    return bad_input("is no checkpoint, expected are the letters HOLDSTEP, at byte 0");
+    return base::bad_input("is no checkpoint, expected are the letters HOLDSTEP, at byte 0");
   }
   if (Reader(std::string_view(bytes).substr(body)).take<std::uint64_t>() !=
       io::text_sum(std::string_view(bytes).substr(0, body))) {
-    return bad_input("the checkpoint's checksum is wrong: the file was changed or damaged");
+    return base::bad_input("the checkpoint's checksum is wrong: the file was changed or damaged");
   }
   Reader reader(std::string_view(bytes).substr(kMagic.size(), body - kMagic.size()));
   if (const auto version = reader.take<std::uint32_t>(); version != kVersion) {
-    return bad_input(fmt::format("a checkpoint of version {}, known is {}", version, kVersion));
+    return base::bad_input(
+        fmt::format("a checkpoint of version {}, known is {}", version, kVersion));
   }
   const auto search_count = reader.take<std::uint32_t>();
   const bool is_same = reader.take<std::uint64_t>() == fingerprint_;
   if (!is_same || reader.take<std::uint64_t>() != facet_count_all_) {
-    return bad_input("a checkpoint of another structure: remove it, or name another file");
+    return base::bad_input("a checkpoint of another structure: remove it, or name another file");
   }
   for (std::uint32_t i = 0; i < search_count; ++i) {
     Search& search = earlier_.emplace_back();
@@ -124,7 +121,7 @@ std::optional<base::Error> Checkpoint::take(const std::string& bytes) {
     search.states.assign(states.begin(), states.end());
     const bool is_whole = search.states.empty() || search.states.size() == facet_count_all_;
     if (!is_whole || !are_states(search.states)) {
-      return bad_input("a checkpoint with states that are not known");
+      return base::bad_input("a checkpoint with states that are not known");
     }
   }
   return std::nullopt;

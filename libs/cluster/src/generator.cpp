@@ -32,10 +32,6 @@ constexpr std::size_t kChunk = 65536;
 /// Blocks of the curve for each rank, so that ranks have about as much to do.
 constexpr std::size_t kBlocksPerRank = 64;
 
-base::Error bad_input(std::string message) {
-  return {.code = base::ErrorCode::kBadInput, .message = std::move(message)};
-}
-
 /// Calls f(corner) along the Morton curve for the cubes of 2^bottom cells within one of 2^level
 /// that reach into the box. Those that may_have(corner, level) denies are passed by.
 template <class Test, class F>
@@ -164,15 +160,15 @@ base::Result<Wanted> find_wanted(const std::string& family, std::size_t size) {
   const auto families = model::families();
   const auto found = std::ranges::find(families, family, &model::FamilyInfo::name);
   if (found == families.end()) {
-    return bad_input(fmt::format("no family '{}'", family));
+    return base::bad_input(fmt::format("no family '{}'", family));
   }
   if (size < found->size_min || size > at(kExtentMax)) {
-    return bad_input(fmt::format("the size {} is not allowed for {}: it is {} to {}", size, family,
-                                 found->size_min, kExtentMax));
+    return base::bad_input(fmt::format("the size {} is not allowed for {}: it is {} to {}", size,
+                                       family, found->size_min, kExtentMax));
   }
   const auto box = model::family_box(found->family, size);
   if (!box || found->lattice != base::kCubic) {
-    return bad_input(fmt::format(
+    return base::bad_input(fmt::format(
         "the family {} cannot be made in parts: write it by holdfast generate, then convert it",
         family));
   }

@@ -328,10 +328,6 @@ ModuleCounts count_modules(PetscRanks& ranks, const Structure& structure,
           .facets = host::total(&ranks, robot.facets().size())};
 }
 
-base::Error bad_input(std::string message) {
-  return {.code = base::ErrorCode::kBadInput, .message = std::move(message)};
-}
-
 /// The robot of own modules and copies.
 base::Result<model::Robot> robot_of(PetscRanks& ranks, const Structure& structure,
                                     const std::vector<Record>& records) {
@@ -347,7 +343,7 @@ base::Result<model::Robot> robot_of(PetscRanks& ranks, const Structure& structur
   auto robot = model::Robot::create_part(spec, own_count);
   if (auto fault =
           first_fault(ranks, robot ? std::nullopt : std::optional(robot.error().message))) {
-    return bad_input(*fault);
+    return base::bad_input(*fault);
   }
   return robot;
 }
@@ -364,7 +360,7 @@ base::Result<Part> make_part(PetscRanks& ranks, const Structure& structure) {
     return robot.error();
   }
   if (auto fault = find_fault(robot.value(), share)) {
-    return bad_input(*fault);
+    return base::bad_input(*fault);
   }
   const std::vector<std::int8_t> axes = solver::passage_axes(robot.value(), share);
   const auto copies = neighbourhood.follow_runs(robot.value(), share.copies, axes, records);

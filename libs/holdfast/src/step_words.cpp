@@ -15,7 +15,7 @@ namespace {
 
 using agent::StepWord;
 using base::Cell;
-using Kind = StepWord::Kind;
+using WordKind = StepWord::Kind;
 
 constexpr std::uint8_t kUntilConnected = 0b011;
 constexpr std::uint8_t kAlways = 0b111;
@@ -61,7 +61,7 @@ void add_releases(const plan::RobotState& before, const model::Step& step,
   }
   for (const model::CellPair& pair : pairs) {
     const auto direction = plan::direction_between(before.lattice(), pair[0], pair[1]);
-    words.push_back({.kind = Kind::kOff,
+    words.push_back({.kind = WordKind::kOff,
                      .face = number(direction.value()),
                      .mask = after.released().contains(pair) ? kAlways : kUntilConnected,
                      .cell = pair[0]});
@@ -78,7 +78,7 @@ base::Direction direction_of(const base::Lattice& lattice, const Cell& from, con
 void add_group(const base::Lattice& lattice, const plan::Group& group, std::uint8_t index,
                const std::map<Cell, base::Direction>& kept, std::vector<StepWord>& words) {
   for (const Cell& from : group.from) {
-    StepWord word{.kind = Kind::kMove,
+    StepWord word{.kind = WordKind::kMove,
                   .group = index,
                   .face = number(kept.at(from)),
                   .first = number(direction_of(lattice, group.way[0], group.way[1])),
@@ -95,7 +95,7 @@ void add_group(const base::Lattice& lattice, const plan::Group& group, std::uint
     }
   }
   for (const auto& [carrier, mask] : carriers) {
-    words.push_back({.kind = Kind::kCarry, .group = index, .mask = mask, .cell = carrier});
+    words.push_back({.kind = WordKind::kCarry, .group = index, .mask = mask, .cell = carrier});
   }
 }
 
@@ -109,7 +109,7 @@ base::Result<std::vector<StepWord>> step_words(const plan::RobotState& before,
   add_releases(before, step, transition, words);
   for (const Cell& cell : step.detach) {
     const auto link = kept.find(cell);
-    words.push_back({.kind = Kind::kDetach,
+    words.push_back({.kind = WordKind::kDetach,
                      .face = link == kept.end() ? std::uint8_t{0} : number(link->second),
                      .cell = cell});
   }
@@ -123,7 +123,7 @@ base::Result<std::vector<StepWord>> step_words(const plan::RobotState& before,
     add_group(before.lattice(), transition.groups[i], static_cast<std::uint8_t>(i), kept, words);
   }
   for (const Cell& cell : step.attach) {
-    words.push_back({.kind = Kind::kAttach, .cell = cell});
+    words.push_back({.kind = WordKind::kAttach, .cell = cell});
   }
   if (words.size() > agent::kWordCountMax) {
     return base::Error{.code = base::ErrorCode::kUnsupported,

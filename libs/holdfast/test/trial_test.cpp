@@ -114,14 +114,14 @@ TEST(Trial, of_a_robot_bonded_to_the_ground_gives_loads_where_it_would_topple) {
 }
 
 /// A post with a row of one beside it: on its far end a module topples it, as above.
-Structure post() {
+Structure post_and_row() {
   return load_text(R"({"format": "holdfast-structure", "version": 1, "name": "post",
                        "modules": [[0,0,0], [0,0,1], [1,0,1]]})")
       .value();
 }
 
 TEST(Next, lists_every_free_cell_once_safe_ones_first) {
-  const Structure structure = post();
+  const Structure structure = post_and_row();
   const NextResult result = find_next(structure);
   std::vector<Cell> cells;
   for (const Trial& trial : result.candidates) {
@@ -140,7 +140,7 @@ TEST(Next, lists_every_free_cell_once_safe_ones_first) {
 }
 
 TEST(Next, writes_the_keys_that_other_tools_rely_on) {
-  const Structure structure = post();
+  const Structure structure = post_and_row();
   const NextResult result = find_next(structure);
   std::ostringstream out;
   write_next_json(out, structure, result, {.count_max = 2});
@@ -158,7 +158,7 @@ TEST(Next, writes_the_keys_that_other_tools_rely_on) {
 }
 
 TEST(Next, draws_a_ghost_for_every_place_and_the_robot_as_it_is) {
-  const Structure structure = post();
+  const Structure structure = post_and_row();
   const NextResult result = find_next(structure);
   const std::string picture = next_svg(structure, check(structure), result);
   std::size_t ghost_count = 0;

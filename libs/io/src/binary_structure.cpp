@@ -34,11 +34,6 @@ std::uint64_t mixed(std::uint64_t word) {
   return word ^ word >> 31U;
 }
 
-base::Error bad_input(std::string message, std::string where = {}) {
-  return {
-      .code = base::ErrorCode::kBadInput, .message = std::move(message), .where = std::move(where)};
-}
-
 /// Beyond this a lowest corner is none of a robot: bricks of leaning lattices reach further than
 /// their cells.
 constexpr std::int32_t kLowMax = 4 * base::kCoordinateMax;
@@ -63,29 +58,30 @@ const char* find_own_fault(const ModuleRecord& record, const solver::Bricks& bri
 
 std::optional<base::Error> find_fault(const BinaryHead& head, std::uint64_t file_size) {
   if (head.magic != BinaryHead().magic) {
-    return bad_input("is no binary structure, expected are the letters HOLDFAST", "byte 0");
+    return base::bad_input("is no binary structure, expected are the letters HOLDFAST", "byte 0");
   }
   if (head.version != BinaryHead::kVersion) {
-    return bad_input(fmt::format("version {}, known is {}", head.version, BinaryHead::kVersion),
-                     "byte 8");
+    return base::bad_input(
+        fmt::format("version {}, known is {}", head.version, BinaryHead::kVersion), "byte 8");
   }
   if (head.head_sum != sum_of(head)) {
-    return bad_input("the head's checksum is wrong: the file was changed or damaged", "byte 64");
+    return base::bad_input("the head's checksum is wrong: the file was changed or damaged",
+                           "byte 64");
   }
   if (head.record_size != sizeof(ModuleRecord) || head.text_size > kTextSizeMax ||
       head.module_count == 0 || head.module_count > kModuleCountMax) {
-    return bad_input(fmt::format("{} modules of {} bytes and a text of {} bytes", head.module_count,
-                                 head.record_size, head.text_size),
-                     "byte 12");
+    return base::bad_input(fmt::format("{} modules of {} bytes and a text of {} bytes",
+                                       head.module_count, head.record_size, head.text_size),
+                           "byte 12");
   }
   if (!is_within(head.low_corner(), kLowMax) || head.zero != 0) {
-    return bad_input("the lowest corner is none of a robot's modules, or is not followed by 0",
-                     "byte 32");
+    return base::bad_input(
+        "the lowest corner is none of a robot's modules, or is not followed by 0", "byte 32");
   }
   const std::uint64_t expected = head.records_begin() + sizeof(ModuleRecord) * head.module_count;
   if (file_size != expected) {
-    return bad_input(fmt::format("{} bytes long, expected are {}", file_size, expected),
-                     fmt::format("byte {}", std::min(file_size, expected)));
+    return base::bad_input(fmt::format("{} bytes long, expected are {}", file_size, expected),
+                           fmt::format("byte {}", std::min(file_size, expected)));
   }
   return std::nullopt;
 }
@@ -179,8 +175,8 @@ std::optional<base::Error> sort_along_curve(const base::Lattice& lattice, const 
   std::ranges::sort(keyed, {}, key);
   const auto twice = std::ranges::adjacent_find(keyed, {}, key);
   if (twice != keyed.end()) {
-    return bad_input(fmt::format("two modules in the cell {}, allowed is one",
-                                 model::text(twice->second.place())));
+    return base::bad_input(fmt::format("two modules in the cell {}, allowed is one",
+                                       model::text(twice->second.place())));
   }
   std::ranges::transform(keyed, records.begin(), [](const auto& one) { return one.second; });
   return std::nullopt;
@@ -237,8 +233,8 @@ std::optional<base::Error> take_modules(std::span<const ModuleRecord> records, D
     }
   }
   if (found != named.size()) {
-    return bad_input("the text names a module twice, or one that is not there",
-                     fmt::format("byte {}", sizeof(BinaryHead)));
+    return base::bad_input("the text names a module twice, or one that is not there",
+                           fmt::format("byte {}", sizeof(BinaryHead)));
   }
   std::ranges::sort(document.extension.own, {},
                     [](const OwnParameters& one) { return std::pair(one.step, one.module); });
@@ -271,8 +267,9 @@ std::uint64_t record_sum(std::span<const ModuleRecord> records, std::uint64_t fi
 base::Result<BinaryHead> read_binary_head(std::string_view begin, std::uint64_t file_size) {
   BinaryHead head;
   if (begin.size() < sizeof head) {
-    return bad_input(fmt::format("{} bytes long, the head alone has {}", file_size, sizeof head),
-                     fmt::format("byte {}", file_size));
+    return base::bad_input(
+        fmt::format("{} bytes long, the head alone has {}", file_size, sizeof head),
+        fmt::format("byte {}", file_size));
   }
   std::memcpy(&head, begin.data(), sizeof head);
   if (auto fault = find_fault(head, file_size)) {
@@ -284,12 +281,13 @@ base::Result<BinaryHead> read_binary_head(std::string_view begin, std::uint64_t 
 base::Result<ReadDocument> read_binary_text(const BinaryHead& head, std::string_view text,
                                             const ReadOptions& options) {
   if (text_sum(text) != head.text_sum) {
-    return bad_input("the text's checksum is wrong: the file was changed or damaged", "byte 48");
+    return base::bad_input("the text's checksum is wrong: the file was changed or damaged",
+                           "byte 48");
   }
   auto read = read_json(text, options);
   if (read && step_count(read.value().document) > 0) {
-    return bad_input("the text has steps; planned modules stand behind it, among all modules",
-                     fmt::format("byte {}", sizeof head));
+    return base::bad_input("the text has steps; planned modules stand behind it, among all modules",
+                           fmt::format("byte {}", sizeof head));
   }
   return read;
 }
@@ -318,7 +316,8 @@ std::string find_record_fault(std::span<const ModuleRecord> records, std::uint64
 
 std::optional<base::Error> find_sum_fault(const BinaryHead& head, std::uint64_t record_sum) {
   if (record_sum != head.record_sum) {
-    return bad_input("the modules' checksum is wrong: the file was changed or damaged", "byte 56");
+    return base::bad_input("the modules' checksum is wrong: the file was changed or damaged",
+                           "byte 56");
   }
   return std::nullopt;
 }
@@ -332,7 +331,7 @@ base::Result<BinaryStructure> make_binary(const Document& document) {
   BinaryStructure structure{
       .low = {}, .text = common_text(document), .records = records_of(document)};
   if (structure.records.empty()) {
-    return bad_input("no modules, at least one is needed");
+    return base::bad_input("no modules, at least one is needed");
   }
   structure.low = low_corner(document.extension.lattice, structure.records);
   if (auto error = sort_along_curve(document.extension.lattice, structure.low, structure.records)) {
@@ -393,9 +392,9 @@ base::Result<ReadDocument> read_binary(std::string_view bytes, const ReadOptions
   }
   const BinaryHead& head = read_head.value();
   if (head.module_count > model::kModuleCountMax) {
-    return bad_input(fmt::format("{} modules, allowed are at most {}", head.module_count,
-                                 model::kModuleCountMax),
-                     "byte 16");
+    return base::bad_input(fmt::format("{} modules, allowed are at most {}", head.module_count,
+                                       model::kModuleCountMax),
+                           "byte 16");
   }
   auto read = read_binary_text(head, bytes.substr(sizeof head, head.text_size), options);
   if (!read) {
@@ -408,7 +407,7 @@ base::Result<ReadDocument> read_binary(std::string_view bytes, const ReadOptions
   const std::string fault =
       find_record_fault(records, 0, result.document.extension.lattice, head.low_corner(), -1);
   if (!fault.empty()) {
-    return bad_input(fault);
+    return base::bad_input(fault);
   }
   if (auto sum_fault = find_sum_fault(head, record_sum(records, 0))) {
     return *std::move(sum_fault);

@@ -164,10 +164,10 @@ Bounds body_bounds(const base::Lattice& lattice) {
 }
 
 /// Pixels of a point given in edges: from the bounds of everything that is drawn.
-class View {
+class LatticeView {
  public:
-  View(const std::vector<Drawn>& drawn, const base::Lattice& lattice,
-       const std::vector<Cell>& cells) {
+  LatticeView(const std::vector<Drawn>& drawn, const base::Lattice& lattice,
+              const std::vector<Cell>& cells) {
     const Bounds body = body_bounds(lattice);
     Bounds pixels;
     std::ranges::for_each(drawn, [&](const Drawn& one) { pixels.add(one); });
@@ -207,7 +207,7 @@ TEST_P(EveryLattice, the_last_that_is_drawn_over_a_point_is_what_a_ray_meets_fir
   for (std::uint32_t seed = 0; seed < test::campaign(6U); ++seed) {
     const model::RobotSpec spec = random_lattice_robot(lattice, seed, 30);
     const auto drawn = drawn_modules(draw_bodies(spec));
-    const View view(drawn, lattice, spec.existing);
+    const LatticeView view(drawn, lattice, spec.existing);
     int compared = 0;
     int sampled = 0;
     for (double x = view.edges().low.x; x < view.edges().high.x; x += 0.1131) {
@@ -248,7 +248,7 @@ TEST_P(EveryLattice, every_module_that_is_seen_is_drawn_once) {
   for (const Drawn& one : drawn) {
     ++counts[one.cell];
   }
-  const View view(drawn, lattice, spec.existing);
+  const LatticeView view(drawn, lattice, spec.existing);
   for (double x = view.edges().low.x; x < view.edges().high.x; x += 0.09) {
     for (double y = view.edges().low.y; y < view.edges().high.y; y += 0.09) {
       const std::string met = first_met(lattice, spec.existing, {x, y});

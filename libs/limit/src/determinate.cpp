@@ -65,9 +65,9 @@ Tree tree_of(const Structure& structure, std::span<const Wrench> known_forces) {
 /// Whether it is nothing but rounding where the joint carries nothing.
 bool is_carried(const Joint& joint, const Wrench& force, double length) {
   const double size = std::max({std::abs(force[0]), std::abs(force[1]), std::abs(force[2])});
-  constexpr double kRounding = 1e-12;
+  constexpr double kNothing = 1e-12;
   const auto is_nothing = [&](std::size_t i) {
-    return std::abs(force[i]) <= kRounding * size * (i < 3 ? 1 : length);
+    return std::abs(force[i]) <= kNothing * size * (i < 3 ? 1 : length);
   };
   constexpr std::array<std::uint8_t, 6> kComponent = {kCarriesAcross,  kCarriesAcross,
                                                       kCarriesAxial,   kCarriesBending,

@@ -101,5 +101,6 @@ HOLDFAST_INSTANTIATE(double)
 #if __SIZEOF_DOUBLE__ == 8  // Not on an ATxmega.
 HOLDFAST_INSTANTIATE(base::DoubleDouble)
 #endif
+#undef HOLDFAST_INSTANTIATE
 
 }  // namespace holdfast::mechanics

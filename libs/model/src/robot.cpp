@@ -64,10 +64,6 @@ std::optional<base::Direction> direction_between(const base::Lattice& lattice,
   return std::nullopt;
 }
 
-base::Error bad_input(std::string message) {
-  return {.code = base::ErrorCode::kBadInput, .message = std::move(message)};
-}
-
 std::array<double, 3> gravity_of(const RobotSpec& spec) {
   return spec.gravity_m_s2.value_or(std::array<double, 3>{0, 0, -spec.material.gravity_m_s2});
 }
@@ -114,13 +110,13 @@ Robot::Robot(const RobotSpec& spec)
 
 base::Result<Robot> Robot::create(const RobotSpec& spec, int thread_count) {
   if (auto fault = find_number_fault(spec)) {
-    return bad_input(*fault);
+    return base::bad_input(*fault);
   }
   Robot robot(spec);
   auto fault = robot.take(spec, thread_count, Extent::kWhole);
   fault = fault ? fault : find_support_fault(robot, spec);
   if (fault) {
-    return bad_input(*fault);
+    return base::bad_input(*fault);
   }
   return robot;
 }
@@ -128,11 +124,11 @@ base::Result<Robot> Robot::create(const RobotSpec& spec, int thread_count) {
 base::Result<Robot> Robot::create_part(const RobotSpec& spec, std::size_t own_count,
                                        int thread_count) {
   if (auto fault = find_number_fault(spec)) {
-    return bad_input(*fault);
+    return base::bad_input(*fault);
   }
   Robot robot(spec);
   if (auto fault = robot.take(spec, thread_count, Extent::kPart)) {
-    return bad_input(*fault);
+    return base::bad_input(*fault);
   }
   std::erase_if(robot.facets_,
                 [&](const Facet& facet) { return base::at(facet.module) >= own_count; });

@@ -5,7 +5,7 @@
 namespace holdfast::module {
 namespace {
 
-constexpr std::uint16_t kChecksumStart = 0xffff;
+constexpr std::uint16_t kIdentityStart = 0xffff;
 
 template <class Value>
 std::span<const std::uint8_t> bytes_of(const Value& value) {
@@ -17,7 +17,7 @@ std::span<const std::uint8_t> bytes_of(const Value& value) {
 std::uint32_t checksum_of(const Configuration& configuration) {
   return agent::wire::checksum(
       bytes_of(configuration.setup).first(kSetupBytes),
-      agent::wire::checksum(bytes_of(configuration.identity), kChecksumStart));
+      agent::wire::checksum(bytes_of(configuration.identity), kIdentityStart));
 }
 
 bool is_valid(const Configuration& configuration) {

@@ -20,7 +20,7 @@ using verdict::Verdict;
 
 /// Where more blocks than this fill in per module, a solution per candidate takes longer than
 /// multigrid's check of it.
-constexpr std::size_t kFillMax = 100;
+constexpr std::size_t kJudgedFillMax = 100;
 
 /// Rounding beyond this share of a load ratio is left to the checks, which refine.
 constexpr double kErrorShareMax = 1e-9;
@@ -179,7 +179,7 @@ bool CandidateJudge::prepare(const RobotSymmetry& symmetry) {
   hosts_ = hosts_of(sites_);
   solver::EquilibriumOptions direct = options_.equilibrium;
   direct.method = solver::Method::kDirect;
-  direct.fill_max = kFillMax;
+  direct.fill_max = kJudgedFillMax;
   influence_ = solver::Influence::make(robot_, direct);
   if (!influence_) {
     return false;

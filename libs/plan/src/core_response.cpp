@@ -36,7 +36,7 @@ constexpr double kSlipRatio = 1;
 constexpr std::size_t kColumnBytesMax = std::size_t{256} << 20U;
 
 /// What may fill in, per module: as for the exact law of contact.
-constexpr std::size_t kFillMax = 64;
+constexpr std::size_t kCoreFillMax = 64;
 
 /// The error that is left of a column, as a share of it; beyond it digits are missing.
 constexpr double kColumnError = 1e-9;
@@ -459,7 +459,7 @@ bool CoreResponse::prepare(const solver::EquilibriumOptions& options) {
   }
   solver::EquilibriumOptions direct = options;
   direct.method = solver::Method::kDirect;
-  direct.fill_max = kFillMax;
+  direct.fill_max = kCoreFillMax;
   const solver::ContactOptions contact = {.law = ContactLaw::kRegularised,
                                           .gamma = core_.material().contact_gamma};
   const solver::Equilibrium settled = solver::EquilibriumSolver(core_, direct).solve(contact);

@@ -19,7 +19,7 @@ using base::at;
 using base::Vec6;
 
 /// Of z, of its own energy norm: what it costs is that share of what other displacements are off.
-constexpr double kTolerance = 1e-3;
+constexpr double kAdjointTolerance = 1e-3;
 
 /// The loads of fz, mx and my of a facet on its module.
 std::array<Vec6<double>, 3> facet_loads(const model::Robot& target,
@@ -56,7 +56,7 @@ std::shared_ptr<const FacetAdjoint> find_adjoint(solver::LinearSystem& system,
     std::vector<Vec6<double>> on_modules(elements.size());
     on_modules[place] = loads[i];
     system.set_loads(model::Loads(on_modules));
-    if (system.solve(kTolerance) != solver::LinearOutcome::kSolved) {
+    if (system.solve(kAdjointTolerance) != solver::LinearOutcome::kSolved) {
       return nullptr;
     }
     const auto z = system.displacement();
@@ -64,7 +64,7 @@ std::shared_ptr<const FacetAdjoint> find_adjoint(solver::LinearSystem& system,
       adjoint->z[at(elements[k])][i] = z[k];
     }
     const double norm = std::sqrt(std::max(0.0, base::dot(loads[i], z[place])));
-    adjoint->error[i] = system.is_exact() ? 0 : verdict::kEnergyFactor * kTolerance * norm;
+    adjoint->error[i] = system.is_exact() ? 0 : verdict::kEnergyFactor * kAdjointTolerance * norm;
   }
   adjoint->core = std::move(core);
   return adjoint;

@@ -30,7 +30,7 @@ constexpr std::size_t kThinMax = 5;
 constexpr std::size_t kModuleCountMax = 100'000;
 
 /// A state that is farther away than so many modules is factorized anew.
-constexpr std::size_t kStepCountMax = 64;
+constexpr std::size_t kChangeCountMax = 64;
 
 bool is_plain(const model::Robot& target) {
   return std::ranges::none_of(
@@ -150,7 +150,7 @@ bool GrowingRobot::go_to(const ElementSet& state) {
       gone.push_back(element);
     }
   }
-  if (!is_valid_ || gone.size() + rest.size() > kStepCountMax || gone.size() > 1) {
+  if (!is_valid_ || gone.size() + rest.size() > kChangeCountMax || gone.size() > 1) {
     return assign(state);
   }
   const auto is_beside = [&](Element element) {

@@ -19,10 +19,6 @@ namespace {
 
 using base::Cell;
 
-base::Error bad_input(std::string message) {
-  return {.code = base::ErrorCode::kBadInput, .message = std::move(message), .where = {}};
-}
-
 MoveRule rule_of(const MoveTask& task) {
   return {.pivots = task.pivots,
           .floor_z = barring_floor(task.start.support_z, task.start.existing, task.target.existing),
@@ -33,22 +29,23 @@ MoveRule rule_of(const MoveTask& task) {
 std::optional<base::Error> find_robot_fault(const MoveTask& task, const model::RobotSpec& spec,
                                             const std::string& which) {
   if (!spec.planned.empty()) {
-    return bad_input(
+    return base::bad_input(
         fmt::format("{} has planned modules; allowed are robots as they stand", which));
   }
   if (!spec.released.empty()) {
-    return bad_input(fmt::format("{} has released pairs; all neighbours must be connected", which));
+    return base::bad_input(
+        fmt::format("{} has released pairs; all neighbours must be connected", which));
   }
   const auto robot = model::Robot::create(spec);
   if (!robot) {
-    return bad_input(which + ": " + robot.error().message);
+    return base::bad_input(which + ": " + robot.error().message);
   }
   for (const Cell& cell : spec.existing) {
     const bool is_fixed = std::ranges::find(spec.fixed, cell) != spec.fixed.end();
     if (task.within && !is_fixed && !task.within->contains(cell)) {
-      return bad_input(fmt::format("{}: the module {} is outside the box from {} to {}", which,
-                                   model::text(cell), model::text(task.within->low),
-                                   model::text(task.within->high)));
+      return base::bad_input(fmt::format("{}: the module {} is outside the box from {} to {}",
+                                         which, model::text(cell), model::text(task.within->low),
+                                         model::text(task.within->high)));
     }
   }
   return std::nullopt;
@@ -62,7 +59,8 @@ struct Problem {
 
 base::Result<Problem> make_problem(const MoveTask& task) {
   if (task.pivots && task.start.lattice != base::kCubic) {
-    return bad_input("only cubes pivot about an edge; modules of other lattices roll as they are");
+    return base::bad_input(
+        "only cubes pivot about an edge; modules of other lattices roll as they are");
   }
   if (auto fault = find_robot_fault(task, task.start, "the robot")) {
     return *std::move(fault);
@@ -223,7 +221,7 @@ base::Result<MoveCertificateCheck> replay(const MoveCertificate& certificate,
   const ShapeSpace space = is_backward ? problem.space.reversed() : problem.space;
   const std::set<Shape> inside(certificate.shapes.begin(), certificate.shapes.end());
   if (!inside.contains(space.start()) || inside.contains(space.target())) {
-    return bad_input("of start and target the wrong one is among the shapes");
+    return base::bad_input("of start and target the wrong one is among the shapes");
   }
   MoveJudge judge(certificate.task, options);
   MoveCertificateCheck check{.shape_count = inside.size()};
@@ -238,14 +236,15 @@ base::Result<MoveCertificateCheck> replay(const MoveCertificate& certificate,
         const model::Move made = is_backward ? back(move) : move;
         if (is_backward ? judge.is_safe(space.state_of(next), made, shape)
                         : judge.is_safe(robot, made, next)) {
-          return bad_input(
+          return base::bad_input(
               fmt::format("the module {} can go to {} safely, across the border of "
                           "the shapes",
                           model::text(made.from), model::text(made.to)));
         }
         if (judge.undecided_count() > 0) {
-          return bad_input(fmt::format("whether the module {} can go to {} safely is undecided",
-                                       model::text(made.from), model::text(made.to)));
+          return base::bad_input(
+              fmt::format("whether the module {} can go to {} safely is undecided",
+                          model::text(made.from), model::text(made.to)));
         }
         ++check.unsafe_count;
       }
@@ -276,8 +275,9 @@ base::Result<MovePlan> find_moves(const MoveTask& task, const MoveOptions& optio
   if (!task.ignores_mechanics) {
     const Judgement start = judge_spec(task.start, options);
     if (!start.is_safe()) {
-      return bad_input(fmt::format("the robot is {} before any step; a plan begins with a safe one",
-                                   verdict::name(start.verdict)));
+      return base::bad_input(
+          fmt::format("the robot is {} before any step; a plan begins with a safe one",
+                      verdict::name(start.verdict)));
     }
     const Judgement target = judge_spec(task.target, options);
     if (!target.is_safe()) {
@@ -300,14 +300,14 @@ base::Result<MoveCertificateCheck> verify(const MoveCertificate& certificate,
   }
   const MoveOptions more{.solver = options};
   if (certificate.target && task.ignores_mechanics) {
-    return bad_input(
+    return base::bad_input(
         "the certificate says that the target is not safe, which proves nothing where steps need "
         "not be safe");
   }
   if (certificate.target) {
     const Judgement target = judge_spec(task.target, more);
     if (target.is_safe() || target.verdict == verdict::Verdict::kUndecided) {
-      return bad_input(fmt::format("the target is {}", verdict::name(target.verdict)));
+      return base::bad_input(fmt::format("the target is {}", verdict::name(target.verdict)));
     }
     return MoveCertificateCheck{.target = target.verdict};
   }

@@ -31,7 +31,7 @@ double disturbance(Element element, std::uint64_t seed) {
 }
 
 /// A state that is farther away than so many elements is factorized anew: about what that costs.
-constexpr std::size_t kStepCountMax = 16;
+constexpr std::size_t kRestCountMax = 16;
 
 /// States of the first search, beside two ways through the whole.
 constexpr std::size_t kFirstBudgetMin = 256;
@@ -150,8 +150,9 @@ bool NetworkStructure::is_held(const ElementSet& state) const {
 }
 
 std::vector<Element> NetworkStructure::addable(const ElementSet& state, std::uint64_t seed) const {
-  std::vector<std::uint8_t> has_node(touch_.size(), 0);
-  has_node.back() = 1;
+  const std::size_t ground = touch_.size() - 1;
+  std::vector<std::uint8_t> has_node(ground + 1, 0);
+  has_node[ground] = 1;
   for (const Element element : state.elements()) {
     has_node[ends_[at(element)].a] = 1;
     has_node[ends_[at(element)].b] = 1;
@@ -293,7 +294,7 @@ bool NetworkStructure::go_to(const ElementSet& state) {
   }
   std::vector<Element> rest = difference(state_, state);
   const bool is_growing = std::ranges::none_of(rest, [&](Element e) { return state_.contains(e); });
-  if (rest.size() > kStepCountMax || (!is_growing && rest.size() > 1)) {
+  if (rest.size() > kRestCountMax || (!is_growing && rest.size() > 1)) {
     return assign(state);
   }
   while (!rest.empty()) {

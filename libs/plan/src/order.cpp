@@ -15,10 +15,6 @@ namespace {
 using base::Cell;
 using States = std::unordered_set<ElementSet, ElementSetHash>;
 
-base::Error bad_input(std::string message) {
-  return {.code = base::ErrorCode::kBadInput, .message = std::move(message)};
-}
-
 ElementSet whole_of(const OrderTask& task) {
   ElementSet whole(task.target.existing.size());
   for (std::size_t i = 0; i < task.target.existing.size(); ++i) {
@@ -37,7 +33,7 @@ base::Result<ElementSet> find_modules(const OrderTask& task, const std::vector<C
   for (const Cell& cell : cells) {
     const std::int32_t found = index.find(cell);
     if (found == model::CellIndex::kNone) {
-      return bad_input(fmt::format(
+      return base::bad_input(fmt::format(
           "the start has a module in {}, where the target has none: it must be a part of it",
           model::text(cell)));
     }
@@ -88,14 +84,14 @@ base::Result<std::vector<ElementSet>> find_starts(const OrderTask& task,
   }
   for (const Cell& cell : task.target.fixed) {
     if (std::ranges::find(cells, cell) == cells.end()) {
-      return bad_input(
+      return base::bad_input(
           fmt::format("the fixed module {} is not in the start: no step attaches a fixed module",
                       model::text(cell)));
     }
   }
   const auto start = model::Robot::create(part_of(task.target, modules.value()));
   if (!start) {
-    return bad_input(
+    return base::bad_input(
         fmt::format("the start: {}{}", start.error().message,
                     task.start.empty() ? "; give one that connects the fixed modules" : ""));
   }
@@ -120,16 +116,17 @@ bool touches_target(const OrderTask& task, const Cell& cell) {
 std::optional<base::Error> find_source_fault(const OrderTask& task) {
   const bool is_surface = task.rule.reach == Reach::kSurface;
   if (is_surface != task.rule.source.has_value()) {
-    return bad_input(is_surface ? "along the surface modules come from a source: give its cell"
-                                : "a source is for ways along the surface only");
+    return base::bad_input(is_surface
+                               ? "along the surface modules come from a source: give its cell"
+                               : "a source is for ways along the surface only");
   }
   const std::vector<Cell>& start = task.start.empty() ? task.target.fixed : task.start;
   if (is_surface && std::ranges::find(start, *task.rule.source) != start.end()) {
-    return bad_input(fmt::format("the source {} is taken by a module of the start",
-                                 model::text(*task.rule.source)));
+    return base::bad_input(fmt::format("the source {} is taken by a module of the start",
+                                       model::text(*task.rule.source)));
   }
   if (is_surface && task.target.existing.size() > 1 && !touches_target(task, *task.rule.source)) {
-    return bad_input(
+    return base::bad_input(
         fmt::format("the source {} touches no module of the target: nothing that comes "
                     "from there gets to the robot",
                     model::text(*task.rule.source)));
@@ -146,7 +143,7 @@ struct Setting {
 
 base::Result<Setting> make_setting(const OrderTask& task, int thread_count) {
   if (!task.target.planned.empty()) {
-    return bad_input("the target has planned modules: all of an order's modules exist in it");
+    return base::bad_input("the target has planned modules: all of an order's modules exist in it");
   }
   auto target = model::Robot::create(task.target, thread_count);
   if (!target) {
@@ -196,7 +193,8 @@ base::Result<RobotOrder> find_robot_order(const OrderTask& task, const RobotOrde
   if (!task.start.empty()) {
     const Judgement start = growth.judge(made.starts.front());
     if (!start.is_safe()) {
-      return bad_input(fmt::format("the start is not safe: {}", verdict::name(start.verdict)));
+      return base::bad_input(
+          fmt::format("the start is not safe: {}", verdict::name(start.verdict)));
     }
   }
   RobotOrder result;
@@ -233,7 +231,7 @@ base::Result<CertificateCheck> verify(const OrderCertificate& certificate, int t
   const std::vector<ElementSet>& far = is_growing ? whole : made.starts;
   for (const ElementSet& state : far) {
     if (inside.contains(state)) {
-      return bad_input("the other end is inside the cut: the certificate proves nothing");
+      return base::bad_input("the other end is inside the cut: the certificate proves nothing");
     }
   }
   const auto look_at = [&](const ElementSet& state) {
@@ -244,7 +242,7 @@ base::Result<CertificateCheck> verify(const OrderCertificate& certificate, int t
     return !judged.is_safe() && judged.verdict != verdict::Verdict::kUndecided;
   };
   const auto leaves = [](const ElementSet& state) {
-    return bad_input(
+    return base::bad_input(
         fmt::format("a state of {} modules outside the cut is safe, or undecided: the "
                     "certificate proves nothing",
                     state.size()));

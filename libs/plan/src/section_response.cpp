@@ -32,7 +32,7 @@ constexpr std::size_t kStepsMin = 12;
 constexpr std::size_t kStepsBelowTop = 1;
 
 /// Of the solutions, of their own energy norm: a thousandth of what the core moves by.
-constexpr double kTolerance = 3e-4;
+constexpr double kSectionTolerance = 3e-4;
 
 }  // namespace
 
@@ -244,7 +244,7 @@ bool SectionResponse::solve(const model::Robot& core, solver::Precision precisio
       loads[at(place_[modules_[i]])] = share_at_node(i, unit);
     }
     system->set_loads(model::Loads(loads));
-    if (system->solve(kTolerance) != solver::LinearOutcome::kSolved) {
+    if (system->solve(kSectionTolerance) != solver::LinearOutcome::kSolved) {
       return false;
     }
     Response& response = responses_[k];
@@ -253,9 +253,9 @@ bool SectionResponse::solve(const model::Robot& core, solver::Precision precisio
     for (std::size_t i = 0; i < loads.size(); ++i) {
       work += base::dot(loads[i], response.displacement[i]);
     }
-    response.error = system->is_exact()
-                         ? 0
-                         : verdict::kEnergyFactor * kTolerance * std::sqrt(std::max(0.0, work));
+    response.error = system->is_exact() ? 0
+                                        : verdict::kEnergyFactor * kSectionTolerance *
+                                              std::sqrt(std::max(0.0, work));
     find_ratios(response);
   }
   return true;

@@ -24,7 +24,7 @@ using base::at;
 using base::Vec6;
 
 /// Modules by their distance from the supports, so that each prefix is connected to one.
-std::vector<Element> nearest_first(const model::Robot& robot) {
+std::vector<Element> from_the_start(const model::Robot& robot) {
   std::vector<Element> order;
   std::vector<bool> is_found(robot.modules().size());
   for (std::size_t i = 0; i < robot.modules().size(); ++i) {
@@ -82,7 +82,7 @@ TEST(FollowedRobot, is_where_a_check_finds_it_within_its_error) {
            {"growth", 200}, {"cube", 6}, {"ball", 7}, {"tower", 20}, {"scaffold", 9}}) {
     const model::RobotSpec spec = spec_of(family, size);
     const model::Robot target = model::Robot::create(spec).value();
-    const std::vector<Element> order = nearest_first(target);
+    const std::vector<Element> order = from_the_start(target);
     const std::size_t core_count = order.size() - 8;
     ElementSet state(order.size());
     for (std::size_t i = 0; i < core_count; ++i) {

@@ -38,7 +38,7 @@ std::vector<Element> outwards(const model::Robot& target) {
   return order;
 }
 
-model::Robot part_of(const model::RobotSpec& spec, const ElementSet& state) {
+model::Robot robot_of(const model::RobotSpec& spec, const ElementSet& state) {
   model::RobotSpec part = spec;
   part.existing.clear();
   for (const Element element : state.elements()) {
@@ -60,7 +60,7 @@ void grow(model::RobotSpec spec, Tally& tally) {
   ElementSet state(spec.existing.size());
   for (const Element element : outwards(target)) {
     state.insert(element);
-    const verdict::Assessment full = verdict::assess(part_of(spec, state));
+    const verdict::Assessment full = verdict::assess(robot_of(spec, state));
     const auto grown = growing.assess_safe(state);
     ++tally.state_count;
     if (grown && full.verdict != verdict::Verdict::kUnstable) {

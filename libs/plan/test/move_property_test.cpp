@@ -65,14 +65,14 @@ MoveTask task_of(const World& world, const Cells& start, const Cells& target) {
   return task;
 }
 
-struct Tally {
+struct MoveTally {
   int found = 0;
   int none = 0;
   int backward = 0;  ///< Certificates that begin at the target.
 };
 
 /// All parts of the search in turns, with little patience each.
-void compare_in_turns(const MoveTask& task, const std::optional<int>& truth, Tally& tally) {
+void compare_in_turns(const MoveTask& task, const std::optional<int>& truth, MoveTally& tally) {
   const auto plan = find_moves(task, {.exact_count_max = 0});
   ASSERT_EQ(plan.value().outcome, truth ? MoveOutcome::kFound : MoveOutcome::kNone);
   const auto length = static_cast<int>(plan.value().steps.size());
@@ -88,7 +88,7 @@ void compare_in_turns(const MoveTask& task, const std::optional<int>& truth, Tal
   tally.backward += certificate.is_backward ? 1 : 0;
 }
 
-void compare(std::uint64_t seed, Tally& tally) {
+void compare(std::uint64_t seed, MoveTally& tally) {
   SCOPED_TRACE("seed " + std::to_string(seed));
   base::Rng rng(seed);
   const World world = random_world(rng);
@@ -120,7 +120,7 @@ TEST(MoveProperty, plans_exist_and_are_short_as_by_brute_force) {
   const char* const wanted = std::getenv("HOLDFAST_MOVE_CASES");
   const std::uint64_t case_count =
       wanted != nullptr ? std::strtoull(wanted, nullptr, 10) : holdfast::test::campaign(60U, 10U);
-  Tally tally;
+  MoveTally tally;
   for (std::uint64_t seed = 1; seed <= case_count && !testing::Test::HasFatalFailure(); ++seed) {
     compare(seed, tally);
   }

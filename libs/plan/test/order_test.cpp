@@ -192,10 +192,10 @@ class Walk {
   std::vector<bool> safe_;
 };
 
-std::size_t mask_of(const ElementSet& set) { return set.words().front(); }
+std::size_t bits_of(const ElementSet& set) { return set.words().front(); }
 
 void expect_order(const Walk& walk, const Order& order) {
-  std::size_t mask = mask_of(order.start);
+  std::size_t mask = bits_of(order.start);
   EXPECT_TRUE(walk.is_start(mask));
   EXPECT_TRUE(walk.is_safe(mask));
   for (const Batch& group : order.steps) {
@@ -213,7 +213,7 @@ void expect_order(const Walk& walk, const Order& order) {
 void expect_cut(const Walk& walk, const Closure& closure) {
   std::vector<bool> inside(walk.size());
   for (const ElementSet& state : closure.states) {
-    inside[mask_of(state)] = true;
+    inside[bits_of(state)] = true;
   }
   const bool is_growing = closure.sense == Sense::kGrowing;
   for (std::size_t mask = 1; mask < walk.size(); ++mask) {

@@ -23,8 +23,8 @@ namespace {
 
 using base::Cell;
 
-const double kWeight = 0.06106 * 9.81;  // N
-constexpr double kVertical = 11.98;     // Strengths, N.
+const double kModuleWeight = 0.06106 * 9.81;  // N
+constexpr double kVertical = 11.98;           // Strengths, N.
 constexpr double kLateral = 14.97;
 
 /// Five modules in a row, the first fixed, and one on top of the module `x`.
@@ -49,7 +49,7 @@ verdict::Assessment assess(const model::RobotSpec& spec) {
 
 /// The load ratio at the fixed end for a walker at x, mm.
 double ratio_at_root(double x) {
-  const double bending = kWeight * ((20 + 60 + 100 + 140) + (x - 20));
+  const double bending = kModuleWeight * ((20 + 60 + 100 + 140) + (x - 20));
   return bending / 20 / kLateral;
 }
 
@@ -72,13 +72,13 @@ TEST(Stages, of_a_slide_move_the_load_by_half_cells) {
 TEST(Stages, know_what_the_connection_to_the_carrier_bears) {
   // On top it is pressed, N = -w. Half a cell on, M = 20 w, and M / 20 makes up for N.
   const auto slide = scenes(beam_with_walker(1), test::move({1, 0, 1}, {2, 0, 1}), Stage::kShift);
-  EXPECT_NEAR(slide[0].hangings.front().load_ratio, -kWeight / kVertical, 1e-12);
+  EXPECT_NEAR(slide[0].hangings.front().load_ratio, -kModuleWeight / kVertical, 1e-12);
   EXPECT_NEAR(slide[1].hangings.front().load_ratio, 0, 1e-12);
   // Round the end: on top, half on, at the corner with M = 40 w at the upper facet (20 w and no N
   // at the one at the end), then beside the end with M = 20 w.
   const auto turn = scenes(beam_with_walker(4), test::move({4, 0, 1}, {5, 0, 0}), Stage::kShift);
-  const double expected[] = {-kWeight / kVertical, 0, kWeight / kVertical, kWeight / kLateral,
-                             kWeight / kLateral};
+  const double expected[] = {-kModuleWeight / kVertical, 0, kModuleWeight / kVertical,
+                             kModuleWeight / kLateral, kModuleWeight / kLateral};
   ASSERT_EQ(turn.size(), std::size(expected));
   for (std::size_t i = 0; i < turn.size(); ++i) {
     EXPECT_NEAR(turn[i].hangings.front().load_ratio, expected[i], 1e-12) << i;
@@ -97,7 +97,7 @@ TEST(Stages, let_a_named_carrier_carry_all_the_way) {
   const auto shift = scenes(beam_with_walker(1), step, Stage::kShift);
   ASSERT_EQ(shift.size(), 3);
   // A whole cell on: M = 40 w at the upper facet.
-  EXPECT_NEAR(shift[2].hangings.front().load_ratio, kWeight / kVertical, 1e-12);
+  EXPECT_NEAR(shift[2].hangings.front().load_ratio, kModuleWeight / kVertical, 1e-12);
 }
 
 TEST(Stages, carry_a_group_as_one_body) {
@@ -110,10 +110,10 @@ TEST(Stages, carry_a_group_as_one_body) {
   ASSERT_EQ(shift.size(), 4);
   EXPECT_EQ(shift[0].hangings.size(), 1);
   // N = -2 w, M = 2 w 20.
-  EXPECT_NEAR(shift[0].hangings.front().load_ratio, -2 * kWeight / kVertical, 1e-12);
+  EXPECT_NEAR(shift[0].hangings.front().load_ratio, -2 * kModuleWeight / kVertical, 1e-12);
   EXPECT_NEAR(shift[1].hangings.front().load_ratio, 0, 1e-12);
   EXPECT_NEAR(*assess(shift[3].pieces.front()).load_ratio_max,
-              ratio_at_root(80) + kWeight * 60 / 20 / kLateral, 1e-9);
+              ratio_at_root(80) + kModuleWeight * 60 / 20 / kLateral, 1e-9);
 }
 
 TEST(Stages, release_all_but_the_carriers) {

@@ -15,7 +15,7 @@
 namespace holdfast::solver {
 namespace {
 
-using Block = base::Mat6<double>;
+using Square = base::Mat6<double>;
 
 /// More columns share what is looked up for their rows, fewer let threads share the last columns,
 /// which need one another.
@@ -139,7 +139,7 @@ class SelectedInverse::PanelMaker {
                    .subspan(lu_->column_start_[last],
                             lu_->column_start_[last + 1] - lu_->column_start_[last]));
     take_factors();
-    across_.assign(panel_.column_count * rows_.size(), Block{});
+    across_.assign(panel_.column_count * rows_.size(), Square{});
     by_row_.resize(kPanelColumnMax * rows_.size());
   }
 
@@ -171,15 +171,15 @@ class SelectedInverse::PanelMaker {
         base::add_to(below(t, i), transpose(across_[t * rows_.size() + i]));
       }
     }
-    own_.assign(panel_.column_count * panel_.column_count, Block{});
+    own_.assign(panel_.column_count * panel_.column_count, Square{});
     for (std::size_t t = panel_.column_count; t-- > 0;) {
       finish_column(t);
     }
   }
 
  private:
-  using Blocks = std::vector<Block>;
-  using List = std::vector<const Block*>;
+  using Blocks = std::vector<Square>;
+  using List = std::vector<const Square*>;
 
   /// Which of the rows the factors have.
   void find_ranks(std::span<const std::int32_t> factor_rows) {
@@ -211,7 +211,7 @@ class SelectedInverse::PanelMaker {
     stride_ = stride;
     for (std::size_t t = columns; t-- > 0;) {
       const std::size_t k = panel_.first + t;
-      const Block* const from = lu_->blocks_.data() + lu_->column_start_[k];
+      const Square* const from = lu_->blocks_.data() + lu_->column_start_[k];
       const std::size_t own = columns - 1 - t;
       for (std::size_t i = 0; i < own + factor_row_count_; ++i) {
         const std::size_t at = t * stride + i;
@@ -225,8 +225,8 @@ class SelectedInverse::PanelMaker {
 
   /// M_t = L_t - sum over the columns u of the panel behind t of M_u L_ut, by rank.
   void solve_column(std::size_t t, std::size_t own) {
-    const Block* left[kPanelColumnMax];
-    const Block* right[kPanelColumnMax];
+    const Square* left[kPanelColumnMax];
+    const Square* right[kPanelColumnMax];
     for (std::size_t i = 0; i < factor_row_count_; ++i) {
       const std::size_t at = t * stride_ + i;
       solved_[at] = lower_[t * stride_ + own + i];
@@ -242,7 +242,7 @@ class SelectedInverse::PanelMaker {
   }
 
   /// Row i of the rows below the panel in its column t.
-  Block& below(std::size_t t, std::size_t i) {
+  Square& below(std::size_t t, std::size_t i) {
     return z_->below_[z_->column_start_[panel_.first + t] + panel_.column_count - 1 - t + i];
   }
 
@@ -262,7 +262,7 @@ class SelectedInverse::PanelMaker {
       while (z_->rows_[slot] != rows_[i]) {
         ++slot;  // The column of this row has all that are needed.
       }
-      const Block* const block = &z_->below_[slot];
+      const Square* const block = &z_->below_[slot];
       if (is_straight) {
         by_row_[kPanelColumnMax * i + ranks_before_[p] - rank_begin] = block;
       }
@@ -294,7 +294,7 @@ class SelectedInverse::PanelMaker {
     const std::size_t columns = panel_.column_count;
     const std::size_t own = columns - 1 - t;
     const std::size_t k = panel_.first + t;
-    const Block* const* const lower_across = lower_across_list_.data() + t * stride_;
+    const Square* const* const lower_across = lower_across_list_.data() + t * stride_;
     const auto list_below = [&](std::size_t u) {
       for (const std::size_t i : row_of_rank_) {
         by_column_.push_back(&below(u, i));
@@ -303,10 +303,10 @@ class SelectedInverse::PanelMaker {
     for (std::size_t u = columns - 1; u > t; --u) {
       by_column_.clear();
       list_below(u);
-      Block turned;
+      Square turned;
       factor_kernels().subtract_products(turned, lower_across + own, by_column_.data(),
                                          factor_row_count_);
-      Block block = transpose(turned);
+      Square block = transpose(turned);
       for (std::size_t v = t + 1; v < columns; ++v) {
         factor_kernels().subtract_product(block, own_[u * columns + v],
                                           lower_[t * stride_ + v - t - 1]);
@@ -320,7 +320,7 @@ class SelectedInverse::PanelMaker {
       by_column_.push_back(&own_[u * columns + t]);
     }
     list_below(t);
-    Block pivot = lu_->inverse_[k];
+    Square pivot = lu_->inverse_[k];
     factor_kernels().subtract_products(pivot, lower_across, by_column_.data(), by_column_.size());
     z_->diagonal_[k] = pivot;
     own_[t * columns + t] = pivot;

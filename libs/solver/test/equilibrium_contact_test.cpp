@@ -27,9 +27,9 @@ using model::Robot;
 using model::RobotSpec;
 
 constexpr double kGamma = 1e-4;
-constexpr ContactOptions kLaws[] = {{.law = ContactLaw::kRegularised, .gamma = kGamma},
-                                    {.law = ContactLaw::kUnilateral, .gamma = kGamma}};
-constexpr double kTolerance = 1e-6;
+constexpr ContactOptions kContactLaws[] = {{.law = ContactLaw::kRegularised, .gamma = kGamma},
+                                           {.law = ContactLaw::kUnilateral, .gamma = kGamma}};
+constexpr double kContactTolerance = 1e-6;
 constexpr std::uint64_t kRobotCount = 200;
 
 Robot make(const RobotSpec& spec) {
@@ -110,7 +110,7 @@ TEST(EquilibriumOfARandomRobot, is_found_by_either_law) {
     const Robot robot = make(random_robot(seed));
     EquilibriumSolver solver(robot);
     for (std::size_t law = 0; law < 2; ++law) {
-      const Equilibrium result = solver.solve(kLaws[law]);
+      const Equilibrium result = solver.solve(kContactLaws[law]);
       settled_count[law] += result.outcome == Outcome::kSettled ? 1 : 0;
       EXPECT_LE(result.steps, 40);
     }
@@ -125,10 +125,10 @@ TEST(EquilibriumOfARandomRobot, balances_the_weight_and_its_torque) {
   for (std::uint64_t seed = 0; seed < kRobotCount; ++seed) {
     const Robot robot = make(random_robot(seed));
     EquilibriumSolver solver(robot);
-    for (const ContactOptions& law : kLaws) {
+    for (const ContactOptions& law : kContactLaws) {
       const Equilibrium result = solver.solve(law);
       if (result.outcome == Outcome::kSettled) {
-        EXPECT_LT(imbalance(robot, result), kTolerance) << "seed " << seed;
+        EXPECT_LT(imbalance(robot, result), kContactTolerance) << "seed " << seed;
       }
     }
   }
@@ -138,7 +138,7 @@ TEST(EquilibriumOfARandomRobot, has_the_states_that_its_displacements_prescribe)
   for (std::uint64_t seed = 0; seed < kRobotCount; ++seed) {
     const Robot robot = lopsided_robot(seed);
     EquilibriumSolver solver(robot);
-    for (const ContactOptions& law : kLaws) {
+    for (const ContactOptions& law : kContactLaws) {
       const Equilibrium result = solver.solve(law);
       const auto facet = facet_of(robot, law);
       for (std::size_t i = 0; result.outcome == Outcome::kSettled && i < robot.modules().size();
@@ -157,7 +157,7 @@ TEST(EquilibriumOfARandomRobot, is_that_of_a_dense_solution_with_the_same_states
   for (std::uint64_t seed = 0; seed < campaign(60U, 10U); ++seed) {
     const Robot robot = lopsided_robot(seed);
     EquilibriumSolver solver(robot);
-    for (const ContactOptions& law : kLaws) {
+    for (const ContactOptions& law : kContactLaws) {
       const Equilibrium result = solver.solve(law);
       if (result.outcome != Outcome::kSettled) {
         continue;
@@ -171,7 +171,7 @@ TEST(EquilibriumOfARandomRobot, is_that_of_a_dense_solution_with_the_same_states
                                         Facet(facet, result.displacement[i], forces[i]).is_held());
       });
       EXPECT_LT(largest_difference(result.displacement, dense),
-                kTolerance * largest(result.displacement))
+                kContactTolerance * largest(result.displacement))
           << "seed " << seed;
     }
   }
@@ -184,7 +184,7 @@ TEST(EquilibriumOfARandomRobot, doubles_when_gravity_doubles) {
     const Robot once = make(spec);
     spec.material.gravity_m_s2 *= 2;
     const Robot twice = make(spec);
-    for (const ContactOptions& law : kLaws) {
+    for (const ContactOptions& law : kContactLaws) {
       Equilibrium result = EquilibriumSolver(once).solve(law);
       const Equilibrium doubled = EquilibriumSolver(twice).solve(law);
       for (Vec6<double>& u : result.displacement) {
@@ -203,8 +203,8 @@ TEST(EquilibriumOfARandomRobot, does_not_depend_on_what_was_solved_before) {
     const Robot robot = make(random_robot(seed));
     EquilibriumSolver used(robot);
     for (const std::size_t law : {0U, 1U, 0U, 1U}) {
-      const Equilibrium again = used.solve(kLaws[law]);
-      const Equilibrium fresh = EquilibriumSolver(robot).solve(kLaws[law]);
+      const Equilibrium again = used.solve(kContactLaws[law]);
+      const Equilibrium fresh = EquilibriumSolver(robot).solve(kContactLaws[law]);
       EXPECT_EQ(again.displacement, fresh.displacement) << "seed " << seed;
       EXPECT_EQ(again.alternative, fresh.alternative) << "seed " << seed;
       EXPECT_EQ(again.steps, fresh.steps) << "seed " << seed;
@@ -230,7 +230,7 @@ TEST(EquilibriumOfTwoParts, leaves_the_part_alone_whose_contact_does_not_change)
   }
   spec.existing.insert(spec.existing.end(), arm.begin(), arm.end());
   const Robot robot = make(spec);
-  for (const ContactOptions& law : kLaws) {
+  for (const ContactOptions& law : kContactLaws) {
     const Equilibrium result = EquilibriumSolver(robot).solve(law);
     ASSERT_EQ(result.outcome, Outcome::kSettled);
     ASSERT_GT(result.steps, 1);
@@ -244,13 +244,13 @@ TEST(EquilibriumOfTwoParts, leaves_the_part_alone_whose_contact_does_not_change)
 TEST(EquilibriumOfARandomRobot, obeys_unilateral_contact_at_every_facet) {
   for (std::uint64_t seed = 0; seed < kRobotCount; ++seed) {
     const Robot robot = lopsided_robot(seed);
-    const Equilibrium result = EquilibriumSolver(robot).solve(kLaws[1]);
+    const Equilibrium result = EquilibriumSolver(robot).solve(kContactLaws[1]);
     ASSERT_EQ(result.outcome, Outcome::kSettled) << "seed " << seed;
     const std::vector<Vec6<double>> forces = ground_forces(robot, result);
-    const auto facet = facet_of(robot, kLaws[1]);
+    const auto facet = facet_of(robot, kContactLaws[1]);
     const double l = facet.half_width;
-    const double height = kTolerance * largest(result.displacement);  // mm
-    const double force = kTolerance * largest(forces);                // N, or N mm / l
+    const double height = kContactTolerance * largest(result.displacement);  // mm
+    const double force = kContactTolerance * largest(forces);                // N, or N mm / l
     int open_but_held_count = 0;
     for (std::size_t i = 0; i < robot.modules().size(); ++i) {
       if (!rests(robot, i)) {
@@ -275,7 +275,7 @@ TEST(EquilibriumOfARandomRobot, is_the_same_in_both_laws_while_all_facets_are_cl
   for (std::uint64_t seed = 0; seed < kRobotCount; ++seed) {
     const Robot robot = make(random_robot(seed));
     EquilibriumSolver solver(robot);
-    const Equilibrium regularised = solver.solve(kLaws[0]);
+    const Equilibrium regularised = solver.solve(kContactLaws[0]);
     const Equilibrium exact = solver.solve({.law = ContactLaw::kUnilateral, .gamma = 1e-9});
     bool is_closed = true;
     for (const ContactState& state : regularised.contact) {
@@ -299,25 +299,26 @@ TEST(EquilibriumOfARandomRobot, has_an_alternative_with_ambiguous_facets_free) {
   int ambiguous_count = 0;
   for (std::uint64_t seed = 0; seed < campaign(kRobotCount, std::uint64_t{16}); ++seed) {
     const Robot robot = make(random_robot(seed));
-    const Equilibrium result = EquilibriumSolver(robot).solve(kLaws[1]);
+    const Equilibrium result = EquilibriumSolver(robot).solve(kContactLaws[1]);
     ASSERT_EQ(result.outcome, Outcome::kSettled) << "seed " << seed;
-    const auto facet = facet_of(robot, kLaws[1]);
+    const auto facet = facet_of(robot, kContactLaws[1]);
     const auto dense = dense_displacement(robot, [&](std::size_t i) {
       const auto trial = mechanics::trial_force(facet, result.alternative[i]);
       return unilateral_tangent(robot.material(), kGamma, mechanics::contact_state(facet, trial),
                                 contact_of(robot, result, i).pressed);
     });
     EXPECT_LT(largest_difference(result.alternative, dense),
-              kTolerance * largest(result.displacement))
+              kContactTolerance * largest(result.displacement))
         << "seed " << seed;
     if (result.open_but_held_count > 0) {
       // More digits leave both answers, and the weak springs that feet to be freed may need.
-      const Equilibrium precise = EquilibriumSolver(robot, {.is_precise = true}).solve(kLaws[1]);
-      EXPECT_EQ(precise.gamma, kLaws[1].gamma);
+      const Equilibrium precise =
+          EquilibriumSolver(robot, {.is_precise = true}).solve(kContactLaws[1]);
+      EXPECT_EQ(precise.gamma, kContactLaws[1].gamma);
       EXPECT_LT(largest_difference(precise.displacement, result.displacement),
-                kTolerance * largest(result.displacement));
+                kContactTolerance * largest(result.displacement));
       EXPECT_LT(largest_difference(precise.alternative, dense),
-                kTolerance * largest(result.displacement));
+                kContactTolerance * largest(result.displacement));
       ++ambiguous_count;
     }
   }

@@ -25,12 +25,12 @@ using model::Material;
 using model::Robot;
 using model::RobotSpec;
 
-constexpr double kTolerance = 1e-9;
+constexpr double kEquilibriumTolerance = 1e-9;
 constexpr ContactLaw kLaws[] = {ContactLaw::kRegularised, ContactLaw::kUnilateral};
 constexpr Direction kLateral[] = {Direction::kPlusX, Direction::kMinusX, Direction::kPlusY,
                                   Direction::kMinusY};
 
-Robot make(const RobotSpec& spec) {
+Robot made(const RobotSpec& spec) {
   auto robot = Robot::create(spec);
   EXPECT_TRUE(robot.has_value()) << robot.error().message;
   return std::move(robot).value();
@@ -69,34 +69,35 @@ Vec6<double> middle(const Robot& robot, const Equilibrium& result, Direction dir
 
 TEST(Equilibrium, of_a_standing_column_carries_the_weight_above_each_connection) {
   const std::size_t n = 12;
-  const Robot robot = make({.existing = row({}, Direction::kPlusZ, 12), .fixed = {{0, 0, 0}}});
+  const Robot robot = made({.existing = row({}, Direction::kPlusZ, 12), .fixed = {{0, 0, 0}}});
   const Equilibrium result = settle(robot);
   const double weight = model::module_weight_n(robot.material());
   double settlement = 0;
   for (std::size_t i = 0; i + 1 < n; ++i) {
     const double above = static_cast<double>(n - 1 - i) * weight;
-    EXPECT_NEAR(middle(robot, result, Direction::kPlusZ, i)[2], -above, kTolerance * above);
+    EXPECT_NEAR(middle(robot, result, Direction::kPlusZ, i)[2], -above,
+                kEquilibriumTolerance * above);
     settlement -= above * 40 / (100.0 * 1600);  // N L / (E A)
-    EXPECT_NEAR(result.displacement[i + 1][2], settlement, -kTolerance * settlement);
+    EXPECT_NEAR(result.displacement[i + 1][2], settlement, -kEquilibriumTolerance * settlement);
   }
   EXPECT_EQ(result.displacement[0], Vec6<double>{});
 }
 
 TEST(Equilibrium, of_a_hanging_column_pulls_with_the_weight_below_each_connection) {
   const Robot robot =
-      make({.existing = row({0, 0, 9}, Direction::kMinusZ, 5), .fixed = {{0, 0, 9}}});
+      made({.existing = row({0, 0, 9}, Direction::kMinusZ, 5), .fixed = {{0, 0, 9}}});
   const Equilibrium result = settle(robot);
   const double weight = model::module_weight_n(robot.material());
   for (std::size_t i = 0; i < 4; ++i) {
     EXPECT_NEAR(middle(robot, result, Direction::kMinusZ, i)[2],
-                static_cast<double>(4 - i) * weight, kTolerance * weight);
+                static_cast<double>(4 - i) * weight, kEquilibriumTolerance * weight);
   }
 }
 
 /// One more beam, to the ground: all n modules press on it.
 TEST(Equilibrium, of_a_free_column_settles_on_the_ground_too) {
   const int n = 7;
-  const Robot robot = make({.existing = row({}, Direction::kPlusZ, n)});
+  const Robot robot = made({.existing = row({}, Direction::kPlusZ, n)});
   const double weight = model::module_weight_n(robot.material());
   for (const ContactLaw law : kLaws) {
     const Equilibrium result = settle(robot, {.law = law});
@@ -104,11 +105,11 @@ TEST(Equilibrium, of_a_free_column_settles_on_the_ground_too) {
     for (int i = 0; i < n; ++i) {
       settlement -= (n - i) * weight * 40 / (100.0 * 1600);
       EXPECT_NEAR(result.displacement[static_cast<std::size_t>(i)][2], settlement,
-                  -kTolerance * settlement);
+                  -kEquilibriumTolerance * settlement);
     }
     EXPECT_EQ(result.contact[0], ContactState{});
     EXPECT_EQ(result.contact.size(), 1U);
-    EXPECT_NEAR(ground_forces(robot, result)[0][2], n * weight, kTolerance * weight);
+    EXPECT_NEAR(ground_forces(robot, result)[0][2], n * weight, kEquilibriumTolerance * weight);
     EXPECT_EQ(result.steps, 1);
   }
 }
@@ -118,7 +119,7 @@ TEST(Equilibrium, of_a_free_column_settles_on_the_ground_too) {
 TEST(Equilibrium, of_a_cantilever_is_that_of_euler_and_bernoulli) {
   const int n = 9;
   for (const Direction direction : kLateral) {
-    const Robot robot = make(
+    const Robot robot = made(
         {.existing = row({0, 0, 1}, direction, n), .fixed = {{0, 0, 1}}, .material = lopsided()});
     const Equilibrium result = settle(robot);
     const double weight = model::module_weight_n(robot.material());
@@ -128,7 +129,7 @@ TEST(Equilibrium, of_a_cantilever_is_that_of_euler_and_bernoulli) {
       const double a = j * 40;
       deflection -= weight * a * a * (3 * tip - a) / (6 * 100.0 * 150'000);
     }
-    EXPECT_NEAR(result.displacement.back()[2], deflection, -kTolerance * deflection);
+    EXPECT_NEAR(result.displacement.back()[2], deflection, -kEquilibriumTolerance * deflection);
     for (int i = 0; i + 1 < n; ++i) {
       double bending = 0;
       for (int j = i + 1; j < n; ++j) {
@@ -136,9 +137,10 @@ TEST(Equilibrium, of_a_cantilever_is_that_of_euler_and_bernoulli) {
       }
       const auto force = middle(robot, result, direction, static_cast<std::size_t>(i));
       const auto load = mechanics::connection_load(force);
-      EXPECT_NEAR(load.bending, bending, kTolerance * n * n * 40 * weight);
-      EXPECT_NEAR(load.axial, 0, kTolerance * n * weight);
-      EXPECT_NEAR(std::hypot(force[0], force[1]), (n - 1 - i) * weight, kTolerance * n * weight);
+      EXPECT_NEAR(load.bending, bending, kEquilibriumTolerance * n * n * 40 * weight);
+      EXPECT_NEAR(load.axial, 0, kEquilibriumTolerance * n * weight);
+      EXPECT_NEAR(std::hypot(force[0], force[1]), (n - 1 - i) * weight,
+                  kEquilibriumTolerance * n * weight);
     }
   }
 }
@@ -148,12 +150,12 @@ TEST(Equilibrium, of_a_cantilever_is_that_of_euler_and_bernoulli) {
 TEST(Equilibrium, of_the_published_arms_loads_them_as_published) {
   for (const auto& [overhang, ratio] : {std::pair{4, 0.6402}, {3, 0.3601}}) {
     const Robot robot =
-        make({.existing = row({0, 0, 1}, Direction::kPlusX, overhang + 1), .fixed = {{0, 0, 1}}});
+        made({.existing = row({0, 0, 1}, Direction::kPlusX, overhang + 1), .fixed = {{0, 0, 1}}});
     const auto load =
         mechanics::connection_load(middle(robot, settle(robot), Direction::kPlusX, 0));
     const double found = mechanics::load_ratio(load, 40.0, 14.97);
     EXPECT_NEAR(found, overhang * overhang * model::module_weight_n(robot.material()) / 14.97,
-                kTolerance);
+                kEquilibriumTolerance);
     EXPECT_NEAR(found, ratio, 5e-5);
   }
 }
@@ -168,7 +170,7 @@ TEST(Equilibrium, of_an_arm_on_one_foot_presses_what_the_weight_lies_over) {
       for (const int reach : {1, 2}) {
         RobotSpec spec = {.existing = row({0, 0, 1}, direction, reach + 1)};
         spec.existing.insert(spec.existing.begin(), Cell{0, 0, 0});
-        const Robot robot = make(spec);
+        const Robot robot = made(spec);
         const Equilibrium result = settle(robot, {.law = law});
         const Cell q = base::neighbour({}, direction);
         const ContactState tips = {.tilt_x = static_cast<std::int8_t>(-q.y),
@@ -179,7 +181,8 @@ TEST(Equilibrium, of_an_arm_on_one_foot_presses_what_the_weight_lies_over) {
         const Vec6<double> expected = {0, 0, (reach + 2) * weight, q.y * torque, -q.x * torque, 0};
         for (std::size_t i = 0; i < 6; ++i) {
           // A robot that tips hangs on springs of 1e-4: as many digits are lost.
-          EXPECT_NEAR(ground_forces(robot, result)[0][i], expected[i], 1e4 * kTolerance * torque);
+          EXPECT_NEAR(ground_forces(robot, result)[0][i], expected[i],
+                      1e4 * kEquilibriumTolerance * torque);
         }
       }
     }
@@ -187,7 +190,7 @@ TEST(Equilibrium, of_an_arm_on_one_foot_presses_what_the_weight_lies_over) {
 }
 
 TEST(Equilibrium, is_none_for_modules_that_are_all_fixed) {
-  const Robot robot = make({.existing = {{0, 0, 0}, {1, 0, 0}}, .fixed = {{0, 0, 0}, {1, 0, 0}}});
+  const Robot robot = made({.existing = {{0, 0, 0}, {1, 0, 0}}, .fixed = {{0, 0, 0}, {1, 0, 0}}});
   for (const ContactLaw law : kLaws) {
     const Equilibrium result = settle(robot, {.law = law});
     EXPECT_EQ(result.displacement, std::vector<Vec6<double>>(2));
@@ -197,14 +200,14 @@ TEST(Equilibrium, is_none_for_modules_that_are_all_fixed) {
 
 TEST(Equilibrium, does_not_depend_on_what_is_planned_and_what_exists) {
   const std::vector<Cell> cells = {{0, 0, 0}, {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {1, 0, 0}};
-  const Robot whole = make({.existing = cells});
-  const Robot planned = make({.existing = {cells.begin(), cells.begin() + 2},
+  const Robot whole = made({.existing = cells});
+  const Robot planned = made({.existing = {cells.begin(), cells.begin() + 2},
                               .planned = {cells.begin() + 2, cells.end()}});
   EXPECT_EQ(settle(whole).displacement, settle(planned).displacement);
 }
 
 TEST(Equilibrium, says_when_the_factorization_does_not_fit) {
-  const Robot robot = make({.existing = row({}, Direction::kPlusX, 3)});
+  const Robot robot = made({.existing = row({}, Direction::kPlusX, 3)});
   // Three nodes of 984 bytes, two edges of 352; a row makes two blocks of 600 bytes of them.
   EquilibriumSolver fits(robot, {.memory_bytes_max = 4856});
   EXPECT_EQ(fits.solve({}).outcome, Outcome::kSettled);
@@ -216,7 +219,7 @@ TEST(Equilibrium, says_when_the_factorization_does_not_fit) {
 
 /// A tipping robot needs a second step, for the state that the first one found.
 TEST(Equilibrium, says_when_the_steps_do_not_suffice) {
-  const Robot robot = make({.existing = {{0, 0, 0}, {0, 0, 1}, {1, 0, 1}, {2, 0, 1}}});
+  const Robot robot = made({.existing = {{0, 0, 0}, {0, 0, 1}, {1, 0, 1}, {2, 0, 1}}});
   for (const ContactLaw law : kLaws) {
     EXPECT_EQ(EquilibriumSolver(robot, {.step_count_max = 1}).solve({.law = law}).outcome,
               Outcome::kNotSettled);

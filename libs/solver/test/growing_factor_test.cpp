@@ -23,14 +23,14 @@ using base::Mat6;
 using base::Vec6;
 using Matrix6 = Eigen::Matrix<double, 6, 6>;
 
-constexpr double kTolerance = 1e-9;
+constexpr double kFactorTolerance = 1e-9;
 
-double random_signed(base::Rng& rng) {
+double random_entry(base::Rng& rng) {
   return static_cast<double>(rng.below(2'000'001)) / 1'000'000 - 1;
 }
 
 Matrix6 random_matrix(base::Rng& rng) {
-  return Matrix6::NullaryExpr([&] { return random_signed(rng); });
+  return Matrix6::NullaryExpr([&] { return random_entry(rng); });
 }
 
 Mat6<double> block(const Matrix6& matrix) {
@@ -137,7 +137,7 @@ struct Case {
 
   double error() {
     const Eigen::VectorXd load =
-        Eigen::VectorXd::NullaryExpr(6 * node_count, [&] { return random_signed(rng); });
+        Eigen::VectorXd::NullaryExpr(6 * node_count, [&] { return random_entry(rng); });
     std::vector<Vec6<double>> x(static_cast<std::size_t>(node_count));
     for (int i = 0; i < 6 * node_count; ++i) {
       x[static_cast<std::size_t>(i / 6)][static_cast<std::size_t>(i % 6)] = load[i];
@@ -182,7 +182,7 @@ TEST(GrowingFactor, is_right_after_every_change) {
     Case c(seed);
     for (int step = 0; step < 150; ++step) {
       if (change(c)) {
-        ASSERT_LT(c.error(), kTolerance) << "seed " << seed << " step " << step;
+        ASSERT_LT(c.error(), kFactorTolerance) << "seed " << seed << " step " << step;
       }
     }
   }
@@ -219,11 +219,11 @@ TEST(GrowingFactor, goes_on_from_a_factorization_anew) {
     terms.push_back(&c.terms[t]);
   }
   ASSERT_TRUE(c.factor.factor(terms));
-  EXPECT_LT(c.error(), kTolerance);
+  EXPECT_LT(c.error(), kFactorTolerance);
   for (int step = 0; step < 100; ++step) {
     change(c);
   }
-  EXPECT_LT(c.error(), kTolerance);
+  EXPECT_LT(c.error(), kFactorTolerance);
 }
 
 TEST(GrowingFactor, refuses_what_hangs_on_nothing) {

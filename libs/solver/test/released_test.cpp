@@ -26,7 +26,7 @@ constexpr Method kMethods[] = {Method::kDirect, Method::kMultigrid};
 
 /// Rounding times the condition number of some dozen beams; what hangs has the loads of statics
 /// with multigrid, too.
-constexpr double kTolerance = 1e-9;
+constexpr double kReleasedTolerance = 1e-9;
 
 /// What multigrid's displacements are asked for, in the energy norm, and found to.
 constexpr double kAskedTolerance = 1e-9;
@@ -77,7 +77,8 @@ TEST(ReleasedPair, opens_a_ring_to_a_chain_with_the_loads_of_statics) {
         lever += (ring[j].x - 0.5 * (a.x + b.x)) * (b.x - a.x) +
                  (ring[j].y - 0.5 * (a.y + b.y)) * (b.y - a.y);
       }
-      EXPECT_NEAR(found[i], std::abs(lever) * weight_pitch, 8 * 8 * kTolerance * weight_pitch)
+      EXPECT_NEAR(found[i], std::abs(lever) * weight_pitch,
+                  8 * 8 * kReleasedTolerance * weight_pitch)
           << model::ends_text(robot, i) << ", method " << static_cast<int>(method);
     }
   }
@@ -103,7 +104,8 @@ TEST(ReleasedPair, leaves_rows_side_by_side_cantilevers_of_their_own_length) {
     for (std::size_t i = 0; i < found.size(); ++i) {
       const auto [a, b] = model::ends(robot, i);
       const double count = a.y == b.y ? lengths[a.y] - a.x : 0;
-      EXPECT_NEAR(found[i], count * count / 2 * weight_pitch, 40 * 40 * kTolerance * weight_pitch)
+      EXPECT_NEAR(found[i], count * count / 2 * weight_pitch,
+                  40 * 40 * kReleasedTolerance * weight_pitch)
           << model::ends_text(robot, i) << ", method " << static_cast<int>(method);
     }
   }
@@ -142,8 +144,9 @@ TEST(ReleasedPair, passes_no_force_by_either_method_where_loops_remain) {
         const auto exact = test::dense_displacement(robot, loads[i], [&](std::size_t) {
           return test::unilateral_tangent(robot.material(), 1e-3, {}, true);
         });
-        EXPECT_LE(test::largest_difference((*found)[i], exact),
-                  (system->is_exact() ? kTolerance : kMultigridTolerance) * test::largest(exact))
+        EXPECT_LE(
+            test::largest_difference((*found)[i], exact),
+            (system->is_exact() ? kReleasedTolerance : kMultigridTolerance) * test::largest(exact))
             << "seed " << seed << ", load " << i;
       }
     }

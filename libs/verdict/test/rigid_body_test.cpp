@@ -24,7 +24,7 @@ using base::Cell;
 using model::Robot;
 using model::RobotSpec;
 
-constexpr double kRounding = 1e-9;  // mm, for lengths up to some thousand
+constexpr double kLengthRounding = 1e-9;  // mm, for lengths up to some thousand
 
 Robot make(const RobotSpec& spec) {
   auto robot = Robot::create(spec);
@@ -36,10 +36,10 @@ RigidBody assess(const RobotSpec& spec) { return assess_rigid_body(make(spec)); 
 
 void expect_edge(const RigidBody& body, const PlanPoint& a, const PlanPoint& b) {
   ASSERT_TRUE(body.edge);
-  EXPECT_NEAR((*body.edge)[0].x, a.x, kRounding);
-  EXPECT_NEAR((*body.edge)[0].y, a.y, kRounding);
-  EXPECT_NEAR((*body.edge)[1].x, b.x, kRounding);
-  EXPECT_NEAR((*body.edge)[1].y, b.y, kRounding);
+  EXPECT_NEAR((*body.edge)[0].x, a.x, kLengthRounding);
+  EXPECT_NEAR((*body.edge)[0].y, a.y, kLengthRounding);
+  EXPECT_NEAR((*body.edge)[1].x, b.x, kLengthRounding);
+  EXPECT_NEAR((*body.edge)[1].y, b.y, kLengthRounding);
 }
 
 /// Three feet in an L, whose polygon has a diagonal edge from (60, 20) to (20, 60), and a tower of
@@ -56,9 +56,9 @@ std::vector<Cell> with(std::vector<Cell> cells, std::initializer_list<Cell> more
 TEST(RigidBody, that_is_a_single_module_has_half_a_cell_to_spare) {
   const RigidBody body = assess({.existing = {{3, -2, 0}}});
   EXPECT_TRUE(body.is_stable);
-  EXPECT_NEAR(*body.margin_mm, 20, kRounding);
-  EXPECT_NEAR(body.centre_of_mass.x, 120, kRounding);
-  EXPECT_NEAR(body.centre_of_mass.y, -80, kRounding);
+  EXPECT_NEAR(*body.margin_mm, 20, kLengthRounding);
+  EXPECT_NEAR(body.centre_of_mass.x, 120, kLengthRounding);
+  EXPECT_NEAR(body.centre_of_mass.y, -80, kLengthRounding);
   EXPECT_EQ(body.polygon.size(), 4U);
 }
 
@@ -111,7 +111,7 @@ TEST(RigidBody, names_the_edge_that_it_topples_over_with_the_polygon_on_its_left
   expect_edge(arm(0, -1), {-20, -20}, {20, -20});
   for (const auto& [x, y] : {std::pair{1, 0}, {0, 1}, {-1, 0}, {0, -1}}) {
     EXPECT_FALSE(arm(x, y).is_stable);
-    EXPECT_NEAR(*arm(x, y).margin_mm, -10, kRounding);
+    EXPECT_NEAR(*arm(x, y).margin_mm, -10, kLengthRounding);
   }
 }
 
@@ -149,11 +149,11 @@ TEST(RigidBody, recognises_a_tie_exactly_on_a_diagonal_and_far_away) {
 TEST(RigidBody, measures_its_margin_at_right_angles_to_a_diagonal_edge) {
   const RigidBody beyond = assess({.existing = with(kDiagonalTie, {{3, 2, 1}})});
   EXPECT_FALSE(beyond.is_stable);
-  EXPECT_NEAR(*beyond.margin_mm, 40 * (2 - 21.0 / 9) / std::sqrt(2), kRounding);
+  EXPECT_NEAR(*beyond.margin_mm, 40 * (2 - 21.0 / 9) / std::sqrt(2), kLengthRounding);
   expect_edge(beyond, {60, 20}, {20, 60});
   const RigidBody within = assess({.existing = with(kDiagonalTie, {{1, 0, 2}})});
   EXPECT_TRUE(within.is_stable);
-  EXPECT_NEAR(*within.margin_mm, 40 * (2 - 17.0 / 9) / std::sqrt(2), kRounding);
+  EXPECT_NEAR(*within.margin_mm, 40 * (2 - 17.0 / 9) / std::sqrt(2), kLengthRounding);
   expect_edge(within, {60, 20}, {20, 60});
 }
 
@@ -162,7 +162,7 @@ TEST(RigidBody, measures_its_margin_at_right_angles_to_a_diagonal_edge) {
 TEST(RigidBody, measures_beyond_a_corner_to_the_line_of_the_worse_edge) {
   const RigidBody body =
       assess({.existing = {{0, 0, 0}, {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {2, 1, 1}, {2, 2, 1}}});
-  EXPECT_NEAR(*body.margin_mm, -20, kRounding);
+  EXPECT_NEAR(*body.margin_mm, -20, kLengthRounding);
   expect_edge(body, {20, -20}, {20, 20});
 }
 
@@ -198,7 +198,7 @@ TEST(RigidBody, that_is_fixed_needs_no_ground) {
   EXPECT_TRUE(body.is_stable);
   EXPECT_FALSE(body.margin_mm);
   EXPECT_TRUE(body.polygon.empty());
-  EXPECT_NEAR(body.centre_of_mass.x, 40, kRounding);
+  EXPECT_NEAR(body.centre_of_mass.x, 40, kLengthRounding);
 }
 
 TEST(RigidBody, weighs_planned_modules_and_stands_on_them) {
@@ -207,7 +207,7 @@ TEST(RigidBody, weighs_planned_modules_and_stands_on_them) {
   // Mean x is 5/5: the foot at x = 2 widens the polygon to 100 mm.
   const RigidBody body = assess({.existing = tower, .planned = {{2, 0, 0}}});
   EXPECT_TRUE(body.is_stable);
-  EXPECT_NEAR(*body.margin_mm, 20, kRounding);
+  EXPECT_NEAR(*body.margin_mm, 20, kLengthRounding);
 }
 
 TEST(RigidBody, has_the_margin_of_the_nearest_line_that_supports_all_corners) {
@@ -219,12 +219,13 @@ TEST(RigidBody, has_the_margin_of_the_nearest_line_that_supports_all_corners) {
       mass.x += 40.0 * module.cell.x / static_cast<double>(robot.modules().size());
       mass.y += 40.0 * module.cell.y / static_cast<double>(robot.modules().size());
     }
-    EXPECT_NEAR(body.centre_of_mass.x, mass.x, kRounding);
-    EXPECT_NEAR(body.centre_of_mass.y, mass.y, kRounding);
-    EXPECT_NEAR(*body.margin_mm, margin_by_brute_force(corners_of(robot), mass), kRounding)
+    EXPECT_NEAR(body.centre_of_mass.x, mass.x, kLengthRounding);
+    EXPECT_NEAR(body.centre_of_mass.y, mass.y, kLengthRounding);
+    EXPECT_NEAR(*body.margin_mm, margin_by_brute_force(corners_of(robot), mass), kLengthRounding)
         << "seed " << seed;
     const auto& [a, b] = *body.edge;
-    EXPECT_NEAR(turn(a, b, mass) / std::hypot(b.x - a.x, b.y - a.y), *body.margin_mm, kRounding);
+    EXPECT_NEAR(turn(a, b, mass) / std::hypot(b.x - a.x, b.y - a.y), *body.margin_mm,
+                kLengthRounding);
   }
 }
 

@@ -10,7 +10,7 @@ namespace holdfast::solver {
 namespace {
 
 /// One step of the inner iteration is enough if it removes this share of the residual; Notay's.
-constexpr double kEnough = 0.25;
+constexpr double kGoodShare = 0.25;
 
 /// How often the coarsest level's solution is refined.
 template <class Real>
@@ -230,7 +230,7 @@ void Cycle<Real>::solve(std::size_t depth) {
   }
   combine(count, -step, level.first_image, 1, level.r);
   const double after = host::sum(hierarchy_.ranks(depth), own_dot(level.r, level.r, count));
-  if (after <= kEnough * kEnough * before) {
+  if (after <= kGoodShare * kGoodShare * before) {
     combine(count, step, level.z, 0, level.z);
     return;
   }

@@ -26,6 +26,11 @@ struct Error {
   std::string where = {};  ///< File, line, or path inside a document; may be empty.
 };
 
+/// What is refused because it breaks a rule, and where.
+inline Error bad_input(std::string message, std::string where = {}) {
+  return {.code = ErrorCode::kBadInput, .message = std::move(message), .where = std::move(where)};
+}
+
 /// A value or an Error. Reading the one that is not there is a bug and aborts.
 template <class T>
 class [[nodiscard]] Result {
