@@ -36,7 +36,7 @@ TEST(LimitBracket, HoldsOnTheGeneralReferences) {
   std::ifstream file(HOLDFAST_GENERAL_FILE);
   int count = 0;
   for (std::string line; std::getline(file, line); ++count) {
-    if (test::kIsShort && count % 8 > 0) {
+    if (count % test::every(8) > 0) {
       continue;
     }
     const nlohmann::json json = nlohmann::json::parse(line);
@@ -53,7 +53,7 @@ TEST(LimitBracket, HoldsOnTheGeneralReferences) {
 
 TEST(LimitBracket, HoldsOnThePublishedReferences) {
   const auto references = test::read_references(HOLDFAST_REFERENCE_FILE);
-  for (std::size_t i = 0; i < references.size(); i += test::kIsShort ? 8 : 1) {
+  for (std::size_t i = 0; i < references.size(); i += test::every(8)) {
     const test::Reference& reference = references[i];
     const auto robot = model::Robot::create(reference.spec);
     ASSERT_TRUE(robot);

@@ -30,6 +30,9 @@ constexpr Count campaign(Count all, Count share = 4) {
   return kIsShort ? std::max(all / share, Count{1}) : all;
 }
 
+/// Every how many-th of a list is tried; where it is short every `share`-th.
+constexpr int every(int share) { return kIsShort ? share : 1; }
+
 /// A list of robots, or of what is done with them; where it is short the first of it, a share.
 template <class Item>
 std::vector<Item> campaign(std::initializer_list<Item> all, std::size_t share = 4) {

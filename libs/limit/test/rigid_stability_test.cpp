@@ -254,7 +254,7 @@ TEST(RigidStability, TheTiltOfConesIsWhereItEnds) {
       return assess_rigid(facets, turned).holds();
     };
     bool is_any_moving = false;
-    for (int i = 0; i < 36; i += test::kIsShort ? 3 : 1) {
+    for (int i = 0; i < 36; i += test::every(3)) {
       EXPECT_TRUE(holds(*found.tilt_margin_deg * 0.999, 10 * i * kDegree)) << i;
       is_any_moving = is_any_moving || !holds(*found.tilt_margin_deg * 1.03, 10 * i * kDegree);
     }
