@@ -16,7 +16,7 @@ using base::at;
 using base::DoubleDouble;
 
 /// A correction this small beside the displacements is rounding in 106 bits.
-constexpr double kRounding = 1e-26;
+constexpr double kSmallChange = 1e-26;
 
 /// What stops falling below this has 18 digits at least and counts as found.
 constexpr double kFound = 1e-18;
@@ -89,7 +89,7 @@ bool PreciseRefinement::run(const std::vector<Vec>& displacement, const Solve& s
     add(left, -length, next.image);
     const double change = std::abs(length.high) * size_of(next.p);
     const double largest = size_of(displacement_);
-    if (change <= kRounding * largest) {
+    if (change <= kSmallChange * largest) {
       return true;
     }
     least = std::min(least, change);

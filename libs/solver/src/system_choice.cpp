@@ -17,7 +17,7 @@ constexpr std::size_t kDirectCountMax = 128;
 constexpr std::size_t kUnilateralCountMax = 6000;
 constexpr std::size_t kUnilateralFillMax = 16;
 
-constexpr std::size_t kNoLimit = std::numeric_limits<std::size_t>::max();
+constexpr std::size_t kUnlimited = std::numeric_limits<std::size_t>::max();
 
 }  // namespace
 
@@ -69,7 +69,7 @@ bool SystemChoice::try_next() {
 }
 
 bool SystemChoice::try_direct() {
-  return !std::exchange(has_tried_direct_, true) && make_direct(kNoLimit);
+  return !std::exchange(has_tried_direct_, true) && make_direct(kUnlimited);
 }
 
 bool SystemChoice::try_double() {

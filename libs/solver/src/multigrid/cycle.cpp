@@ -14,7 +14,7 @@ constexpr double kGoodShare = 0.25;
 
 /// How often the coarsest level's solution is refined.
 template <class Real>
-constexpr int kRefinementCount = std::is_same_v<Real, double> ? 2 : 0;
+constexpr int kCoarsestRefinementCount = std::is_same_v<Real, double> ? 2 : 0;
 
 /// What the sweeps work on.
 std::vector<Six<float>>& swept_r(Level<float>& level) { return level.r; }
@@ -256,7 +256,7 @@ void Cycle<Real>::solve_coarsest() {
   Level<Real>& level = hierarchy_.levels().back();
   std::fill(level.z.begin(), level.z.end(), Six<Real>{});
   add_coarsest(level.r, level.z);
-  for (int step = 0; step < kRefinementCount<Real>; ++step) {
+  for (int step = 0; step < kCoarsestRefinementCount<Real>; ++step) {
     apply(hierarchy_.levels().size() - 1, level.first_image);
     combine(level.node_count, 1, level.r, -1, level.first_image);
     add_coarsest(level.first_image, level.z);

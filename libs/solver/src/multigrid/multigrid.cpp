@@ -54,7 +54,7 @@ constexpr double kWidthMax = 8;
 /// What counts as thin: plates one module thick and solids have four neighbours a node and more,
 /// but for their edges; full ladders have three.
 constexpr std::size_t kThinCountMax = 2000;
-constexpr double kThinDegree = 3.5;
+constexpr double kThinEndCount = 3.5;
 
 /// How far a facet's force may be off: so many times what the preconditioner would still change it
 /// by, and such a share of what it would change any facet by.
@@ -387,7 +387,7 @@ bool Multigrid::is_thin() const {
                                                [](auto length) { return length > 0; }));
   }
   return static_cast<double>(host::total(ranks(), ends)) <=
-         kThinDegree * static_cast<double>(network_.all_count);
+         kThinEndCount * static_cast<double>(network_.all_count);
 }
 
 LinearOutcome Multigrid::solve(double tolerance) {

@@ -214,7 +214,7 @@ class Builder {
   /// are guessed, then asked for until they stay. As many rounds as ranks would do; after a few
   /// neighbours of two ranks need only have two colours.
   void colour_on_ranks(std::vector<std::uint8_t>& colour) const {
-    constexpr int kRoundMax = 8;
+    constexpr int kTrialRoundMax = 8;
     std::vector<std::int32_t> rank(colour.size(), part_->ranks->rank());
     for (const host::Copy& copy : part_->copies) {
       rank[at(copy.place)] = copy.original.rank;
@@ -222,7 +222,7 @@ class Builder {
     const auto halo = part_->ranks->make_halo(part_->own_count, part_->copies);
     guess_colours(colour);
     bool is_any_changed = true;
-    for (int round = 0; is_any_changed && round < kRoundMax; ++round) {
+    for (int round = 0; is_any_changed && round < kTrialRoundMax; ++round) {
       const std::vector<std::uint8_t> before = colour;
       halo->update(colour.data(), sizeof(std::uint8_t));
       for (const host::Copy& copy : part_->copies) {
@@ -245,9 +245,9 @@ class Builder {
   /// As Coarsening does: neighbours of two ranks are to have two colours.
   void part_from_other_ranks(const std::vector<std::int32_t>& rank, host::Halo& halo,
                              std::vector<std::uint8_t>& colour) const {
-    constexpr int kRoundMax = 8;
+    constexpr int kTrialRoundMax = 8;
     bool is_any_changed = true;
-    for (int round = 0; is_any_changed && round < kRoundMax; ++round) {
+    for (int round = 0; is_any_changed && round < kTrialRoundMax; ++round) {
       is_any_changed = false;
       halo.update(colour.data(), sizeof(std::uint8_t));
       for (std::size_t i = 0; i < network_.own_count; ++i) {
