@@ -46,11 +46,16 @@ function(holdfast_room name)
   endif()
 endfunction()
 
+set(HOLDFAST_COMPILES_TOGETHER OFF)
+if(CMAKE_BUILD_TYPE MATCHES "^(Release|None)$" OR CMAKE_CXX_FLAGS MATCHES "-fsanitize")
+  set(HOLDFAST_COMPILES_TOGETHER ON)
+endif()
+
 # holdfast_compiled_together(TARGET): eight files at a time, as half and more of what a file takes
 # to compile is its headers. Names in unnamed namespaces are therefore one room's, not one file's.
 # Not in the preset `dev`: ./dev lint looks at each file.
 function(holdfast_compiled_together target)
-  if(CMAKE_BUILD_TYPE STREQUAL "Release" OR CMAKE_CXX_FLAGS MATCHES "-fsanitize")
+  if(HOLDFAST_COMPILES_TOGETHER)
     set_target_properties(${target} PROPERTIES UNITY_BUILD ON)
     # g++ takes a file that is included for a header.
     target_compile_options(${target} PRIVATE

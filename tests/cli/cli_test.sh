@@ -242,6 +242,18 @@ expect_exit 0 check --robot rofi "$safe"
 expect_exit 65 check --robot smores-ep wall.json
 expect_line err '/material: of the robot smores-ep no mass_kg is published'
 
+# A number out of range is told with its place.
+printf '{"format": "holdfast-structure", "version": 1, "modules": [{"cell": [0,0,0]}],
+  "material": {"mass_kg": 0}}' >weightless.json
+expect_exit 65 check weightless.json
+expect_line err 'weightless.json: /material/mass_kg: mass_kg is 0, allowed is 1e-12 to '
+
+# The rigid body and the model differ, and the report says so.
+printf '{"format": "holdfast-structure", "version": 2, "support_z": null, "modules": [[0,0,0]],
+  "obstacles": [{"cells": [[-1,0,0], [1,0,0]]}]}' >slot.json
+expect_exit 1 check slot.json
+expect_line out 'stability +unstable: as a rigid body it holds.*; the model-based check says un'
+
 # Named structures, large ones, bonded supports.
 expect_exit 0 generate cube 3
 expect_line out '"cube 3"'

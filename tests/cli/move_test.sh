@@ -30,6 +30,8 @@ expect_exit 0 move "$from" "$to" "$plane" --geometry-only -o short.json
 expect_line out '^FOUND +8 steps'
 expect_line out '4 of them not safe'
 expect_exit 1 steps short.json
+expect_exit 64 steps short.json --vtk short.vtu
+expect_line err 'expected is OUT.pvd'
 
 # A row cannot go on in its own layer: proved, and proved again.
 shape row.json '[0,0,0],[1,0,0],[2,0,0]'
@@ -41,6 +43,14 @@ expect_line out '^NONE'
 expect_line none.json '"reason": "exhausted"'
 expect_exit 0 move row.json next.json $layer --verify none.json
 expect_line out '^PROVED'
+sed 's/"exhausted"/"tired"/' none.json >tired.json
+expect_refusal 65 'expected is target or exhausted' row.json next.json $layer --verify tired.json
+sed 's/"end": "[a-z]*"/"end": "middle"/' none.json >middle.json
+expect_refusal 65 'expected is start or target' row.json next.json $layer --verify middle.json
+echo old >kept.json
+expect_exit 1 move row.json next.json $layer -o kept.json
+expect_line err 'kept.json: note: not written, as there are no moves'
+expect_line kept.json '^old$'
 expect_refusal 65 'across the border' row.json next.json --verify none.json
 expect_refusal 65 'a report with a certificate' "$from" "$to" --verify report.json
 

@@ -46,6 +46,10 @@ expect_part part.json 1 above
 expect_line out '^  as far as   [0-9]+ of 640 modules, by [0-9]+ steps, every state on the way'
 expect_line report.json '"result": "not-found"'
 
+expect_exit 2 order portal.json --seconds 0 -o nothing.json --certificate nothing.txt
+expect_line err 'nothing.json: note: not written, as there are no steps'
+expect_line err 'nothing.txt: note: not written, as it is not proved that there is no order'
+
 for signal in INT TERM; do
   for patience in 4 15 60; do
     code=0

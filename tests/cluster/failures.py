@@ -137,6 +137,12 @@ class Failures:
                               capture_output=True, timeout=60)
         self.expect('--ranks no number', done, USAGE, 'two')
 
+        tight = {name: value for name, value in compare.ENVIRONMENT.items()
+                 if 'subscribe' not in name}
+        done = subprocess.run([self.program, 'check', self.binary, '--ranks', '9999'], text=True,
+                              capture_output=True, timeout=60, env=tight)
+        self.expect('--ranks beyond all cores', done, FAILURE, 'has not enough slots')
+
     def check_death_launched(self):
         """The same with --ranks: one line, and exit code 70."""
         large = os.path.join(self.folder, 'large.json')

@@ -37,6 +37,12 @@ std::string Comparison::text() const {
                      result.effort.solves);
 }
 
+model::Robot robot_of(const model::RobotSpec& spec) {
+  auto robot = model::Robot::create(spec);
+  HOLDFAST_CHECK(robot.has_value());
+  return std::move(robot).value();
+}
+
 sim::LinkModel noisy_rounds() {
   sim::LinkModel link = sim::unit();
   link.loss = 0.1;

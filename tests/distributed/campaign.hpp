@@ -40,6 +40,9 @@ struct Comparison {
   std::string text() const;
 };
 
+/// Ends with a broken check if the spec describes none.
+model::Robot robot_of(const model::RobotSpec& spec);
+
 /// The link `unit` with everything that can go wrong with packets.
 sim::LinkModel noisy_rounds();
 

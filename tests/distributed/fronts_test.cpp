@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "campaign.hpp"
+#include "expectations.hpp"
 #include "holdfast/holdfast.hpp"
 #include "random_robot.hpp"
 #include "seeds.hpp"
@@ -14,24 +15,10 @@ namespace {
 
 constexpr auto kFronts = agent::Method::kFronts;
 
-/// The right verdict at every module, and every load ratio within 0.01 + 1 %.
-void expect_right(const test::Comparison& comparison) {
-  EXPECT_FALSE(comparison.is_wrong()) << comparison.text();
-  EXPECT_FALSE(comparison.is_undecided()) << comparison.text();
-  EXPECT_TRUE(comparison.result.all_agree) << comparison.text();
-  EXPECT_LT(comparison.ratio_error(), 1) << comparison.text();
-}
-
 /// Neither polynomial nor conjugate gradients.
 void expect_exact_method(const test::Comparison& comparison) {
   const agent::Method method = comparison.result.effort.method;
   EXPECT_TRUE(method == kFronts || method == agent::Method::kElimination) << comparison.text();
-}
-
-model::Robot made(const model::RobotSpec& spec) {
-  auto robot = model::Robot::create(spec);
-  HOLDFAST_CHECK(robot.has_value());
-  return std::move(robot).value();
 }
 
 /// 406, 616 and 926 have no state under the regularised law; planned modules between others in
@@ -40,9 +27,9 @@ TEST(Fronts, random_robots_are_decided_in_few_sweeps) {
   for (const std::uint64_t from : {0U, 400U, 610U, 920U}) {
     for (std::uint64_t seed = from; seed < from + test::campaign(20U); ++seed) {
       SCOPED_TRACE(::testing::Message() << "random_robot(" << seed << ")");
-      const auto comparison =
-          test::compare(made(test::random_robot(seed)), {.seed = seed, .method = kFronts});
-      expect_right(comparison);
+      const auto comparison = test::compare(test::robot_of(test::random_robot(seed)),
+                                            {.seed = seed, .method = kFronts});
+      test::expect_right(comparison);
       EXPECT_LE(comparison.sweeps(), 60);
       expect_exact_method(comparison);
     }
@@ -57,8 +44,8 @@ TEST(Fronts, robots_that_took_many_sweeps_take_few) {
   for (const std::uint64_t seed : test::campaign({3534U, 4478U, 5162U, 6226U, 10506U, 12982U}, 3)) {
     SCOPED_TRACE(::testing::Message() << "random_robot(" << seed << ")");
     const auto comparison =
-        test::compare(made(test::random_robot(seed)), {.seed = seed, .method = kFronts});
-    expect_right(comparison);
+        test::compare(test::robot_of(test::random_robot(seed)), {.seed = seed, .method = kFronts});
+    test::expect_right(comparison);
     EXPECT_LE(comparison.sweeps(), 60);
     expect_exact_method(comparison);
   }
@@ -70,7 +57,7 @@ TEST(Fronts, no_robot_is_safe_that_another_solution_breaks) {
   for (const std::uint64_t seed : {7373U, 12085U, 31269U}) {
     SCOPED_TRACE(::testing::Message() << "random_robot(" << seed << ")");
     const auto comparison =
-        test::compare(made(test::random_robot(seed)), {.seed = seed, .method = kFronts});
+        test::compare(test::robot_of(test::random_robot(seed)), {.seed = seed, .method = kFronts});
     EXPECT_EQ(comparison.exact, verdict::Verdict::kUndecided);
     EXPECT_EQ(comparison.result.answer.verdict, agent::Verdict::kUndecided);
     EXPECT_EQ(comparison.result.answer.reason, agent::Reason::kAmbiguousFeet);
@@ -91,8 +78,8 @@ TEST(Fronts, a_lying_ladder_with_a_planned_module_takes_few_sweeps) {
     ladder.existing.push_back({2 * rung, 1, 0});
   }
   ladder.planned = {{kRungs + 1, 1, 0}};
-  const auto comparison = test::compare(made(ladder), {.method = kFronts});
-  expect_right(comparison);
+  const auto comparison = test::compare(test::robot_of(ladder), {.method = kFronts});
+  test::expect_right(comparison);
   EXPECT_LE(comparison.sweeps(), 30);
 }
 
@@ -110,9 +97,9 @@ TEST(Fronts, a_frame_that_tilts_on_its_feet_takes_few_sweeps) {
       frame.existing.push_back({x, 0, kHeight - 1});
     }
   }
-  const auto robot = made(frame);
+  const auto robot = test::robot_of(frame);
   const auto comparison = test::compare(robot, {.method = kFronts});
-  expect_right(comparison);
+  test::expect_right(comparison);
   EXPECT_LE(comparison.sweeps(), 30);
 }
 
@@ -129,8 +116,8 @@ TEST(Fronts, a_fixed_block_with_planned_modules_between_others_is_decided) {
     }
   }
   block.planned = {{1, 1, 2}, {1, 0, 2}, {3, 1, 3}};
-  const auto comparison = test::compare(made(block), {.method = kFronts});
-  expect_right(comparison);
+  const auto comparison = test::compare(test::robot_of(block), {.method = kFronts});
+  test::expect_right(comparison);
   EXPECT_EQ(comparison.result.effort.method, kFronts);
 }
 
@@ -140,16 +127,16 @@ TEST(Fronts, a_large_block_is_left_to_the_polynomial) {
   for (std::int32_t i = 0; i < 9 * 9 * 5; ++i) {
     block.existing.push_back({i % 9, i / 9 % 9, i / 81});
   }
-  const auto comparison = test::compare(made(block), {.method = kFronts});
-  expect_right(comparison);
+  const auto comparison = test::compare(test::robot_of(block), {.method = kFronts});
+  test::expect_right(comparison);
   EXPECT_EQ(comparison.result.effort.method, agent::Method::kPolynomial);
 }
 
 TEST(Fronts, bad_links_change_no_verdict) {
   for (std::uint64_t seed = 0; seed < 12; ++seed) {
     SCOPED_TRACE(::testing::Message() << "random_robot(" << seed << ")");
-    expect_right(
-        test::compare(made(test::random_robot(seed)),
+    test::expect_right(
+        test::compare(test::robot_of(test::random_robot(seed)),
                       {.link = test::noisy_rounds(), .seed = seed + 1, .method = kFronts}));
   }
 }

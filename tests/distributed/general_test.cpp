@@ -24,10 +24,8 @@ namespace {
 
 using agent::Verdict;
 
-model::Robot robot_of(const model::RobotSpec& spec) { return model::Robot::create(spec).value(); }
-
 Verdict verdict_of(const model::RobotSpec& spec, sim::SimulationOptions options = {}) {
-  const model::Robot robot = robot_of(spec);
+  const model::Robot robot = test::robot_of(spec);
   sim::Simulation simulation(robot, std::move(options));
   simulation.run();
   EXPECT_TRUE(simulation.result().all_agree);
@@ -107,7 +105,7 @@ TEST(DistributedGeneral, a_robot_that_another_solution_breaks_is_not_safe) {
   spec.support_z = std::nullopt;
   spec.obstacles = {{.from = {}, .to = {}, .cells = {{-1, 0, 0}, {0, 0, -3}}}};
   spec.payloads = {{{0, 0, -2}, {-0.512, -0.005, 0.132}, {7.378, 6.165, -5.506}}};
-  const test::Comparison comparison = test::compare(robot_of(spec), {});
+  const test::Comparison comparison = test::compare(test::robot_of(spec), {});
   EXPECT_EQ(comparison.exact, verdict::Verdict::kUndecided) << comparison.text();
   EXPECT_EQ(comparison.robot, Verdict::kUndecided) << comparison.text();
 }
@@ -297,7 +295,7 @@ TEST(DistributedGeneral, rows_of_prisms_are_exact_next_to_the_edge) {
       // Turned by 60 degrees the facet, a square, is another one: only along y it is as above.
       const base::Cell& other = moved.existing.back();
       const bool is_along_y = std::abs(other.y) == 1;
-      const model::Robot robot = robot_of(moved);
+      const model::Robot robot = test::robot_of(moved);
       const test::Comparison comparison = test::compare(robot, {});
       EXPECT_FALSE(comparison.is_wrong()) << comparison.text();
       EXPECT_EQ(comparison.robot, is_along_y ? verdict : comparison.robot) << x << " " << other.x;
@@ -351,7 +349,7 @@ TEST(DistributedGeneral, a_payload_tips_a_module_on_every_face_at_the_edge) {
           const std::array<double, 3>& around = frame[axis % 2];
           spec.payloads = {
               {{0, 0, 0}, {}, {torque * around[0], torque * around[1], torque * around[2]}}};
-          const model::Robot robot = robot_of(spec);
+          const model::Robot robot = test::robot_of(spec);
           sim::Simulation simulation(robot, {});
           simulation.run();
           const Verdict verdict = simulation.result().answer.verdict;
@@ -409,7 +407,7 @@ TEST(DistributedGeneral, a_hook_breaks_by_the_limit_that_statics_says) {
     for (const double wanted : {0.9999, 1.0001}) {
       SCOPED_TRACE(::testing::Message() << model::name(limit) << " " << wanted);
       const model::Robot robot =
-          robot_of(test::with_strengths_times(Hook(law).spec, ratio / wanted));
+          test::robot_of(test::with_strengths_times(Hook(law).spec, ratio / wanted));
       const test::Comparison comparison = test::compare(robot, {});
       EXPECT_EQ(comparison.robot, wanted < 1 ? Verdict::kSafe : Verdict::kOverload)
           << comparison.text();
@@ -428,7 +426,7 @@ TEST(DistributedGeneral, round_and_square_connectors_bend_as_their_laws_say) {
     hook.spec.payloads = {{hook.spec.existing.back(), {}, {0, 0, hook.bending_nmm}}};
     const double larger = hook.bending_nmm / 15 / 20;
     const double expected = bending == model::BendingLaw::kRound ? std::sqrt(2.0) * larger : larger;
-    const test::Comparison comparison = test::compare(robot_of(hook.spec), {});
+    const test::Comparison comparison = test::compare(test::robot_of(hook.spec), {});
     EXPECT_NEAR(comparison.ratio_robot, expected, 1e-5);
   }
 }
@@ -441,7 +439,7 @@ TEST(DistributedGeneral, a_connection_has_the_weaker_limits_of_its_two_modules) 
     hook.spec.kinds[1].name = "other";
     hook.spec.kinds[weak].connectors.assign(6, {.shear_strength_n = 2 * hook.weight_n});
     hook.spec.own_kinds = {{hook.spec.existing.front(), 1}};
-    const test::Comparison comparison = test::compare(robot_of(hook.spec), {});
+    const test::Comparison comparison = test::compare(test::robot_of(hook.spec), {});
     EXPECT_NEAR(comparison.ratio_robot, 0.5, 1e-5);
   }
 }
@@ -453,7 +451,7 @@ TEST(DistributedGeneral, a_gap_beyond_its_limit_is_told_to_all_modules) {
   const double gap = hook.bending_nmm / (beam.bend_y / 4) * 20;
   for (const double share : {0.99, 1.01}) {
     const Hook limited({.strength_n = 100, .lever_mm = 20, .gap_limit_mm = gap / share});
-    const test::Comparison comparison = test::compare(robot_of(limited.spec), {});
+    const test::Comparison comparison = test::compare(test::robot_of(limited.spec), {});
     EXPECT_EQ(comparison.robot, Verdict::kSafe);
     EXPECT_EQ((comparison.result.answer.remarks & agent::kGapOpens) != 0, share > 1);
     EXPECT_TRUE(comparison.result.all_agree);
@@ -527,7 +525,7 @@ TEST(DistributedGeneral, a_cube_on_a_slope_is_safe_only_within_its_friction) {
     model::RobotSpec spec{.existing = {{0, 0, 0}}};
     spec.floor.friction = friction;
     spec.gravity_m_s2 = {1, 0, -4};
-    const model::Robot robot = robot_of(spec);
+    const model::Robot robot = test::robot_of(spec);
     sim::Simulation simulation(robot, {});
     simulation.run();
     EXPECT_EQ(simulation.result().answer.verdict, verdict);
@@ -545,7 +543,7 @@ TEST(DistributedGeneral, a_cube_that_is_turned_is_safe_only_within_its_friction)
       const double weight = model::module_weight_n(spec.material);
       const double most = 0.5 * weight * spec.material.facet_mm / std::sqrt(2.0);
       spec.payloads = {{{0, 0, 0}, {}, {0, 0, side * share * most}}};
-      const test::Comparison comparison = test::compare(robot_of(spec), {});
+      const test::Comparison comparison = test::compare(test::robot_of(spec), {});
       EXPECT_EQ(comparison.robot, share < 1 ? Verdict::kSafe : Verdict::kUndecided);
       EXPECT_EQ(comparison.exact,
                 share < 1 ? verdict::Verdict::kSafe : verdict::Verdict::kUnstable);
@@ -590,30 +588,30 @@ TEST(DistributedGeneral, a_module_that_comes_back_knows_its_support) {
 TEST(DistributedGeneral, what_modules_do_not_know_is_refused) {
   model::RobotSpec spec{.existing = {{0, 0, 0}, {1, 0, 0}}};
   spec.lattice = base::kFaceCentred;
-  EXPECT_FALSE(sim::find_options_fault(robot_of(spec), {}));
-  EXPECT_EQ(sim::find_options_fault(robot_of(spec), {.judges_faces = true}),
+  EXPECT_FALSE(sim::find_options_fault(test::robot_of(spec), {}));
+  EXPECT_EQ(sim::find_options_fault(test::robot_of(spec), {.judges_faces = true}),
             "the robot has a lattice other than the cubic one, and these modules know cubes on a "
             "floor only");
   spec.foot_mm = 0;  // The two are balanced on the line between two points.
-  EXPECT_EQ(sim::find_options_fault(robot_of(spec), {}),
+  EXPECT_EQ(sim::find_options_fault(test::robot_of(spec), {}),
             "the robot has feet that are points, which the modules' program does not know");
   spec.foot_mm = std::nullopt;
   spec.lattice = base::kCubic;
   spec.own_masses = {{{0, 0, 0}, 0.1}};
-  EXPECT_FALSE(sim::find_options_fault(robot_of(spec), {}));
+  EXPECT_FALSE(sim::find_options_fault(test::robot_of(spec), {}));
   model::RobotSpec other{.existing = spec.existing};
   other.floor.friction = 0.5;
-  EXPECT_FALSE(sim::find_options_fault(robot_of(other), {}));
-  EXPECT_EQ(sim::find_options_fault(robot_of(other), {.judges_faces = true}),
+  EXPECT_FALSE(sim::find_options_fault(test::robot_of(other), {}));
+  EXPECT_EQ(sim::find_options_fault(test::robot_of(other), {.judges_faces = true}),
             "the robot has supports other than a floor without slip, and these modules know cubes "
             "on a floor only");
   other = test::with_laws(spec, 1);
-  EXPECT_FALSE(sim::find_options_fault(robot_of(other), {}));
-  EXPECT_FALSE(sim::find_options_fault(robot_of(other), {.step = {{}}}));
+  EXPECT_FALSE(sim::find_options_fault(test::robot_of(other), {}));
+  EXPECT_FALSE(sim::find_options_fault(test::robot_of(other), {.step = {{}}}));
   EXPECT_TRUE(sim::find_options_fault(
-      robot_of(spec), {.announcements = {{.at = 0, .module = 0, .cell = {5, 0, 0}}}}));
+      test::robot_of(spec), {.announcements = {{.at = 0, .module = 0, .cell = {5, 0, 0}}}}));
   EXPECT_EQ(
-      sim::find_options_fault(robot_of(spec), {.judges_faces = true}),
+      sim::find_options_fault(test::robot_of(spec), {.judges_faces = true}),
       "the robot has modules of different masses, and these modules know cubes on a floor only");
 }
 

@@ -8,6 +8,7 @@
 #include <filesystem>
 
 #include "campaign.hpp"
+#include "expectations.hpp"
 #include "holdfast/holdfast.hpp"
 #include "random_robot.hpp"
 #include "seeds.hpp"
@@ -26,14 +27,6 @@ std::vector<std::filesystem::path> scenario_files() {
   return files;
 }
 
-/// The right verdict at every module, and every load ratio within 0.01 + 1 %.
-void expect_verdict_right(const test::Comparison& comparison) {
-  EXPECT_FALSE(comparison.is_wrong()) << comparison.text();
-  EXPECT_FALSE(comparison.is_undecided()) << comparison.text();
-  EXPECT_TRUE(comparison.result.all_agree) << comparison.text();
-  EXPECT_LT(comparison.ratio_error(), 1) << comparison.text();
-}
-
 TEST(Distributed, every_scenario_is_decided_like_the_exact_answer) {
   const auto files = scenario_files();
   ASSERT_GE(files.size(), 20U);
@@ -41,7 +34,7 @@ TEST(Distributed, every_scenario_is_decided_like_the_exact_answer) {
     SCOPED_TRACE(file.filename());
     const auto structure = load_file(file);
     ASSERT_TRUE(structure);
-    expect_verdict_right(test::compare(structure.value().robot, {}));
+    test::expect_right(test::compare(structure.value().robot, {}));
   }
 }
 
@@ -54,7 +47,7 @@ TEST(Distributed, the_published_method_and_its_safer_form_come_to_the_same_answe
     ASSERT_TRUE(structure);
     for (const agent::Method method : {agent::Method::kJacobi, agent::Method::kBlockJacobi}) {
       const auto comparison = test::compare(structure.value().robot, {.method = method});
-      expect_verdict_right(comparison);
+      test::expect_right(comparison);
       const bool diverges = std::string(name) != "arm_tips_a";
       EXPECT_EQ(comparison.result.effort.method, diverges ? agent::Method::kBlockJacobi : method);
     }
@@ -66,7 +59,7 @@ TEST(Distributed, random_robots_are_decided_like_the_exact_answer) {
     SCOPED_TRACE(::testing::Message() << "random_robot(" << seed << ")");
     const auto robot = model::Robot::create(test::random_robot(seed));
     ASSERT_TRUE(robot);
-    expect_verdict_right(test::compare(robot.value(), {.seed = seed}));
+    test::expect_right(test::compare(robot.value(), {.seed = seed}));
   }
 }
 
@@ -90,8 +83,8 @@ TEST(Distributed, a_planned_module_between_others_costs_some_steps_more_and_no_o
   ASSERT_TRUE(whole && planned);
   const auto without = test::compare(whole.value(), {});
   const auto with = test::compare(planned.value(), {});
-  expect_verdict_right(without);
-  expect_verdict_right(with);
+  test::expect_right(without);
+  test::expect_right(with);
   EXPECT_EQ(with.result.effort.method, agent::Method::kPolynomial);
   EXPECT_LT(with.result.effort.iterations, 4 * without.result.effort.iterations);
 }
@@ -104,7 +97,7 @@ TEST(Distributed, planned_modules_between_others_let_no_step_go_too_far) {
     const auto robot = model::Robot::create(test::random_robot(seed));
     ASSERT_TRUE(robot);
     const auto comparison = test::compare(robot.value(), {.seed = seed});
-    expect_verdict_right(comparison);
+    test::expect_right(comparison);
     EXPECT_EQ(comparison.result.effort.method, agent::Method::kPolynomial);
   }
 }
@@ -159,7 +152,7 @@ TEST(Distributed, long_thick_robots_are_decided_in_few_steps) {
     const auto robot = model::Robot::create(spec);
     ASSERT_TRUE(robot);
     const auto comparison = test::compare(robot.value(), {});
-    expect_verdict_right(comparison);
+    test::expect_right(comparison);
     EXPECT_GE(comparison.depth, 64);
     EXPECT_EQ(comparison.result.effort.method, agent::Method::kPolynomial);
     EXPECT_LE(comparison.result.effort.iterations, 40U);
@@ -171,7 +164,7 @@ TEST(Distributed, loss_duplication_reordering_and_bit_errors_change_no_verdict) 
     SCOPED_TRACE(::testing::Message() << "random_robot(" << seed << ")");
     const auto robot = model::Robot::create(test::random_robot(seed));
     ASSERT_TRUE(robot);
-    expect_verdict_right(
+    test::expect_right(
         test::compare(robot.value(), {.link = test::noisy_rounds(), .seed = seed + 1}));
   }
 }
@@ -187,7 +180,7 @@ TEST(Distributed, the_verdict_does_not_depend_on_the_seed_or_the_link) {
     options.link.clock_drift = 0.01;
     options.link.compute_time = 300;
     options.anchor = static_cast<std::int32_t>(seed % 3);
-    expect_verdict_right(test::compare(robot.value(), options));
+    test::expect_right(test::compare(robot.value(), options));
   }
 }
 

@@ -112,6 +112,14 @@ inline void print_notes(std::span<const std::string> notes, const std::string& f
   }
 }
 
+/// An output that was asked for and that there is nothing for: a file that is there stays as it
+/// was.
+inline void print_not_written(const std::string& file, const char* reason) {
+  if (!file.empty()) {
+    fmt::print(stderr, "holdfast: {}: note: not written, as {}\n", io::one_line(file), reason);
+  }
+}
+
 /// The options of commands that read structures, for what a file leaves open.
 inline void add_reading(CLI::App& command, io::ReadOptions& options) {
   command

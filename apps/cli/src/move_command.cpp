@@ -73,6 +73,9 @@ int show(const MoveArguments& options, const io::MoveReport& report) {
       !write_or_complain(options.steps, io::write_json(io::move_steps(report)))) {
     return kExitBadInput;
   }
+  if (!has_moves) {
+    print_not_written(options.steps, "there are no moves");
+  }
   if (!options.json.empty() && !write_or_complain(options.json, io::move_json(report))) {
     return kExitBadInput;
   }

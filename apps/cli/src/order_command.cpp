@@ -135,9 +135,15 @@ int show(const OrderArguments& options, const io::OrderReport& report) {
       return kExitBadInput;
     }
   }
-  if (!options.certificate.empty() && report.result.certificate &&
-      !write_or_complain(options.certificate,
-                         io::write_order_certificate(report.target, *report.result.certificate))) {
+  if (!has_way) {
+    print_not_written(options.steps, "there are no steps");
+  }
+  if (!report.result.certificate) {
+    print_not_written(options.certificate, "it is not proved that there is no order");
+  } else if (!options.certificate.empty() &&
+             !write_or_complain(
+                 options.certificate,
+                 io::write_order_certificate(report.target, *report.result.certificate))) {
     return kExitBadInput;
   }
   if (!options.json.empty() && !write_or_complain(options.json, io::order_json(report))) {

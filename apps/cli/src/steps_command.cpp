@@ -106,6 +106,12 @@ bool complain_of_series(const StepsArguments& options) {
     fmt::print(stderr, "holdfast: --vtk -: a series is several files; expected is a name\n");
     return true;
   }
+  if (options.vtk.ends_with(".vtu")) {
+    fmt::print(stderr,
+               "holdfast: --vtk {}: the pictures' list is no picture; expected is OUT.pvd\n",
+               io::one_line(options.vtk));
+    return true;
+  }
   for (const std::string& file : {options.file, options.json, options.svg, options.html}) {
     if (!options.vtk.empty() && is_in_series(file, options.vtk)) {
       fmt::print(stderr, "holdfast: {}: --vtk {} may write a file of this name\n",

@@ -13,8 +13,7 @@ namespace {
 
 using base::Vec6;
 using mechanics::ContactState;
-
-constexpr ContactState kStuck;
+using mechanics::kStuck;
 
 /// A facet that presses with less than this share of what else acts on it does not press: what is
 /// left of the residual (kUnevenTolerance) may be as much.

@@ -29,8 +29,6 @@ constexpr double kLeastPart = 1e-10;
 constexpr double kHoldLeast = 1e-7;
 constexpr double kHoldMore = 10;
 
-constexpr mechanics::ContactState kStuck = {.pressed = true};
-
 }  // namespace
 
 FrontContact::FrontContact(const mechanics::GroundFacet<double>& law, Front& front,
@@ -162,7 +160,7 @@ void FrontContact::load_tangent(double hold) {
   for (std::size_t k = 0; k < facets_.size(); ++k) {
     const base::Mat6<double> tangent =
         mechanics::contact_tangent(law_, facets_[k].state, facets_[k].is_held);
-    const base::Mat6<double> held = mechanics::contact_tangent(law_, kStuck, true);
+    const base::Mat6<double> held = mechanics::contact_tangent(law_, mechanics::kStuck, true);
     for (int i = 0; i < 6; ++i) {
       for (int j = 0; j < 6; ++j) {
         matrix_[(6 * k + static_cast<std::size_t>(i)) * rows_ + 6 * k +

@@ -41,9 +41,7 @@ std::size_t at(int index) { return static_cast<std::size_t>(index); }
 
 std::size_t at(Direction face) { return static_cast<std::size_t>(face); }
 
-constexpr mechanics::ContactState kStuck = {.pressed = true};
-
-bool holds_all_over(const Node& node) { return node.is_held && node.state == kStuck; }
+bool holds_all_over(const Node& node) { return node.is_held && node.state == mechanics::kStuck; }
 
 /// Of its pressure a facet loses so much until it counts as one that holds all over in any case. Of
 /// those that are nearer to letting go most do, when others have: kept with the first that do they
@@ -54,7 +52,7 @@ constexpr double kWeakShare = 0.95;
 bool is_weak(const Node& node, const ContactSetting& contact) {
   base::Vec6<double> trial = mechanics::trial_force(contact.facet, node.u);
   trial[2] *= 1 - kWeakShare;
-  return node.is_ground && !(mechanics::contact_state(contact.facet, trial) == kStuck);
+  return node.is_ground && !(mechanics::contact_state(contact.facet, trial) == mechanics::kStuck);
 }
 
 base::Vec6<float> packed(const FrontNode& node) {
@@ -482,7 +480,7 @@ bool FrontElimination::take_kept_facets(const Workspace& ws) {
       return false;
     }
     memory_->kept[kept_count_++] = {.u = node.u,
-                                    .state = is_seeking_ ? node.state : kStuck,
+                                    .state = is_seeking_ ? node.state : mechanics::kStuck,
                                     .is_held = node.is_held,
                                     .was_held = node.is_held,
                                     .was_released = node.was_released,

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "holdfast/base/rng.hpp"
+#include "random_signed.hpp"
 #include "test_setup.hpp"
 
 namespace holdfast::agent {
@@ -19,6 +20,7 @@ using base::Cell;
 using base::Direction;
 using base::Mat6;
 using base::Vec6;
+using holdfast::test::random_signed;
 using test::lopsided_beam;
 
 /// A robot with its spanning tree: parents come before children.
@@ -196,10 +198,6 @@ Tree random_tree(base::Rng& rng, std::size_t count) {
     }
   }
   return tree;
-}
-
-double random_signed(base::Rng& rng) {
-  return static_cast<double>(rng.below(2'000'001)) / 1'000'000 - 1;
 }
 
 double largest_error(const Vectors& found, const Vectors& expected) {

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "holdfast/base/rng.hpp"
+#include "random_signed.hpp"
 #include "test_setup.hpp"
 
 namespace holdfast::agent {
@@ -19,6 +20,7 @@ using base::Cell;
 using base::Direction;
 using base::Mat6;
 using base::Vec6;
+using holdfast::test::random_signed;
 using test::lopsided_beam;
 using Matrix6 = Eigen::Matrix<double, 6, 6>;
 
@@ -68,10 +70,6 @@ struct Robot {
   }
 };
 
-double random_entry(base::Rng& rng) {
-  return static_cast<double>(rng.below(2'000'001)) / 1'000'000 - 1;
-}
-
 Robot random_robot(base::Rng& rng, bool has_fixed) {
   Robot robot;
   robot.cells = {{0, 0, 0}};
@@ -93,7 +91,7 @@ Robot random_robot(base::Rng& rng, bool has_fixed) {
   robot.is_fixed.resize(count);
   for (std::size_t i = 0; i < count; ++i) {
     for (std::size_t k = 0; k < 6; ++k) {
-      robot.loads[i][k] = random_entry(rng) * (k < 3 ? 1 : 40);
+      robot.loads[i][k] = random_signed(rng) * (k < 3 ? 1 : 40);
     }
     const bool is_held = i == count - 1 || rng.below(5) == 0;
     robot.is_fixed[i] = is_held && has_fixed;
@@ -101,7 +99,7 @@ Robot random_robot(base::Rng& rng, bool has_fixed) {
       robot.springs[i].at(k, k) = k < 3 ? 3000 : 2e6;
     }
     if (is_held && !has_fixed) {
-      robot.springs[i].at(2, 3) = robot.springs[i].at(3, 2) = 2e4 * random_entry(rng);
+      robot.springs[i].at(2, 3) = robot.springs[i].at(3, 2) = 2e4 * random_signed(rng);
     }
   }
   return robot;

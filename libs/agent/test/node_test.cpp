@@ -11,6 +11,7 @@
 #include <cmath>
 
 #include "holdfast/base/rng.hpp"
+#include "random_signed.hpp"
 
 namespace holdfast::agent {
 namespace {
@@ -24,6 +25,7 @@ void factor_block(Node& node, const Setup& setup, const ContactSetting& contact,
 
 using base::Mat6;
 using base::Vec6;
+using holdfast::test::random_signed;
 using mechanics::ContactLaw;
 using mechanics::ContactState;
 
@@ -46,10 +48,6 @@ auto lopsided_setup() {
 ContactSetting contact_of(const agent::Setup& setup, ContactLaw law, double gamma = 1e-4) {
   return {.facet = mechanics::ground_facet(setup.section, setup.facet_mm, gamma, law),
           .lever_mm = 200};
-}
-
-double random_signed(base::Rng& rng) {
-  return static_cast<double>(rng.below(2'000'001)) / 1'000'000 - 1;
 }
 
 template <class Real>

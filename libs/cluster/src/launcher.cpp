@@ -13,11 +13,10 @@
 #include <cstdlib>
 #include <string_view>
 
+#include "exit_codes.hpp"
+
 namespace holdfast::cluster {
 namespace {
-
-constexpr int kExitUsage = 64;
-constexpr int kExitFailure = 70;
 
 /// mpirun itself ends with 1 where it cannot start, and with 128 and a signal's number.
 constexpr int kFirstCode = 150;
@@ -89,6 +88,18 @@ std::string cause(const std::vector<std::string>& lines) {
   };
   if (const std::string ours = find("holdfast-mpi: rank "); !ours.empty()) {
     return ours;
+  }
+  if (!find("not enough slots").empty()) {
+    return fmt::format(
+        "{}mpirun has not enough slots, one a core; OMPI_MCA_rmaps_base_oversubscribe=1 lets ranks "
+        "share cores; no verdict",
+        kOurs);
+  }
+  if (!find("run as root").empty()) {
+    return fmt::format(
+        "{}mpirun does not run as root unless OMPI_ALLOW_RUN_AS_ROOT=1 and "
+        "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 are set; no verdict",
+        kOurs);
   }
   for (const std::string_view part : {"exited on signal", "mpirun", "holdfast-mpi: "}) {
     if (const std::string line = find(part); !line.empty()) {

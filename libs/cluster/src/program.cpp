@@ -22,6 +22,7 @@
 
 #include "checkpoint.hpp"
 #include "cluster_check.hpp"
+#include "exit_codes.hpp"
 #include "generator.hpp"
 #include "holdfast/holdfast.hpp"
 #include "launcher.hpp"
@@ -32,13 +33,6 @@
 
 namespace holdfast::cluster {
 namespace {
-
-// As of holdfast itself.
-constexpr int kExitUnsafe = 1;
-constexpr int kExitUndecided = 2;
-constexpr int kExitUsage = 64;
-constexpr int kExitBadInput = 65;
-constexpr int kExitFailure = 70;
 
 struct Options {
   io::ReadOptions reading;

@@ -18,14 +18,6 @@ bool has_worst(const sim::SimulationResult& result) {
   return load_ratio_max(result.answer) && result.effort.module_count > 1;
 }
 
-void write_cell(io::JsonStream& json, const base::Cell& cell) {
-  json.begin_array();
-  json.value(cell.x);
-  json.value(cell.y);
-  json.value(cell.z);
-  json.end_array();
-}
-
 /// The two cells of the robot's own worst connection, or null.
 void write_worst(io::JsonStream& json, const DistributedRun& run) {
   if (!has_worst(run.result)) {
@@ -34,7 +26,7 @@ void write_worst(io::JsonStream& json, const DistributedRun& run) {
   }
   json.begin_array();
   for (const base::Cell& cell : run.worst_cells) {
-    write_cell(json, cell);
+    json.value(cell);
   }
   json.end_array();
 }
@@ -42,8 +34,7 @@ void write_worst(io::JsonStream& json, const DistributedRun& run) {
 void write_refused_entry(io::JsonStream& json, const RefusedMessages& refused) {
   json.begin_object();
   json.member("messages", refused.count);
-  json.key("cell");
-  write_cell(json, refused.cell);
+  json.member("cell", refused.cell);
   json.member("messages_of_cell", refused.count_of_cell);
   json.end_object();
 }

@@ -18,12 +18,7 @@ std::span<const Trial> listed(const NextResult& result, const NextReportOptions&
 
 void write_candidate(io::JsonStream& json, const Trial& trial) {
   json.begin_object();
-  json.key("cell");
-  json.begin_array();
-  for (const std::int32_t coordinate : {trial.cell.x, trial.cell.y, trial.cell.z}) {
-    json.value(coordinate);
-  }
-  json.end_array();
+  json.member("cell", trial.cell);
   json.member("verdict", verdict::name(trial.verdict));
   json.member("load_ratio_max", trial.load_ratio_max);
   json.member("margin_mm", trial.margin_mm);

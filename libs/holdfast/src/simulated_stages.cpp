@@ -184,14 +184,6 @@ std::string simulated_stages_text(const StepsFile& file, const SimulatedStages& 
 
 namespace {
 
-void write_cell(io::JsonStream& json, const base::Cell& cell) {
-  json.begin_array();
-  json.value(cell.x);
-  json.value(cell.y);
-  json.value(cell.z);
-  json.end_array();
-}
-
 void write_stage(io::JsonStream& json, const SimulatedStages& stages, const agent::Answer& answer,
                  verdict::Verdict exact) {
   json.begin_object();
@@ -207,8 +199,8 @@ void write_stage(io::JsonStream& json, const SimulatedStages& stages, const agen
   json.key("at");
   if (load_ratio_max(answer)) {
     json.begin_array();
-    write_cell(json, answer.worst_cell);
-    write_cell(json, base::neighbour(stages.lattice, answer.worst_cell, answer.worst_direction));
+    json.value(answer.worst_cell);
+    json.value(base::neighbour(stages.lattice, answer.worst_cell, answer.worst_direction));
     json.end_array();
   } else {
     json.value(nullptr);

@@ -277,11 +277,7 @@ void write_change(io::JsonStream& json, const sim::LinkModel& link, const StepCh
   json.key("cells");
   json.begin_array();
   for (const base::Cell& cell : change.cells) {
-    json.begin_array();
-    json.value(cell.x);
-    json.value(cell.y);
-    json.value(cell.z);
-    json.end_array();
+    json.value(cell);
   }
   json.end_array();
   json.member("exact", verdict::name(change.exact));

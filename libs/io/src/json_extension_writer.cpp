@@ -17,18 +17,10 @@ std::string vector_text(const std::array<double, 3>& vector) {
   return row({json_text(vector[0]), json_text(vector[1]), json_text(vector[2])});
 }
 
-std::string cells_text(const std::vector<base::Cell>& cells) {
-  Items items;
-  for (const base::Cell& cell : cells) {
-    items.push_back(json_text(cell));
-  }
-  return row(items);
-}
-
 std::string pairs_text(const std::vector<model::CellPair>& pairs) {
   Items items;
   for (const model::CellPair& pair : pairs) {
-    items.push_back(cells_text({pair.begin(), pair.end()}));
+    items.push_back(json_text(std::span(pair)));
   }
   return row(items);
 }
@@ -55,7 +47,7 @@ std::string obstacle_text(const model::Obstacle& obstacle, const std::optional<C
   if (obstacle.cells.empty()) {
     members = {member("from", json_text(obstacle.from)), member("to", json_text(obstacle.to))};
   } else {
-    members = {member("cells", cells_text(obstacle.cells))};
+    members = {member("cells", json_text(std::span(obstacle.cells)))};
   }
   members.push_back(
       member("hold", name_text(kHoldNames[static_cast<std::size_t>(obstacle.touch.hold)])));
@@ -89,6 +81,7 @@ std::string step_text(const model::Step& step) {
       members.push_back(member(key, to_text(list)));
     }
   };
+  const auto cells_text = [](std::span<const base::Cell> cells) { return json_text(cells); };
   add("attach", step.attach, cells_text);
   add("detach", step.detach, cells_text);
   add("move", step.moves, [](const std::vector<model::Move>& moves) {

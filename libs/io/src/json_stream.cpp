@@ -96,6 +96,14 @@ void JsonStream::value(std::string_view text) {
   *out_ += nlohmann::json(text).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }
 
+void JsonStream::value(const base::Cell& cell) {
+  begin_array();
+  value(cell.x);
+  value(cell.y);
+  value(cell.z);
+  end_array();
+}
+
 void JsonStream::integer(std::int64_t number) {
   begin_value();
   append_integer(*out_, number);

@@ -15,8 +15,20 @@ std::string json_text(const std::string& value) {
 
 std::string json_text(double value) { return fmt::format("{}", value); }
 
+std::string json_text(const std::optional<double>& value) {
+  return value ? json_text(*value) : std::string("null");
+}
+
 std::string json_text(const base::Cell& cell) {
   return fmt::format("[{},{},{}]", cell.x, cell.y, cell.z);
+}
+
+std::string json_text(std::span<const base::Cell> cells) {
+  Items items;
+  for (const base::Cell& cell : cells) {
+    items.push_back(json_text(cell));
+  }
+  return row(items);
 }
 
 std::string json_text(const Color& color) {

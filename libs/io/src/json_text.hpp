@@ -3,6 +3,8 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -26,7 +28,11 @@ std::string json_text(const std::string& value);
 /// The shortest text that reads back as the same number.
 std::string json_text(double value);
 
+/// That of the number, or null.
+std::string json_text(const std::optional<double>& value);
+
 std::string json_text(const base::Cell& cell);
+std::string json_text(std::span<const base::Cell> cells);
 std::string json_text(const Color& color);
 
 std::string member(std::string_view key, const std::string& value);

@@ -20,17 +20,9 @@ constexpr std::size_t kListedCount = 3;
 /// A factor of rounding.
 constexpr double kNoLoad = 1e-9;
 
-void write_cell(JsonStream& json, const model::Robot& robot, std::int32_t module) {
-  if (module == limit::Joint::kGround) {
-    json.value(nullptr);
-    return;
-  }
-  const base::Cell& cell = robot.modules()[base::at(module)].cell;
-  json.begin_array();
-  json.value(cell.x);
-  json.value(cell.y);
-  json.value(cell.z);
-  json.end_array();
+std::optional<base::Cell> cell_of(const model::Robot& robot, std::int32_t module) {
+  return module == limit::Joint::kGround ? std::nullopt
+                                         : std::optional(robot.modules()[base::at(module)].cell);
 }
 
 void write_yields(JsonStream& json, const model::Robot& robot, const limit::Mechanism& mechanism) {
@@ -38,10 +30,8 @@ void write_yields(JsonStream& json, const model::Robot& robot, const limit::Mech
   json.begin_array();
   for (const limit::Yield& yield : mechanism.yields) {
     json.begin_object();
-    json.key("a");
-    write_cell(json, robot, yield.a);
-    json.key("b");
-    write_cell(json, robot, yield.b);
+    json.member("a", cell_of(robot, yield.a));
+    json.member("b", cell_of(robot, yield.b));
     json.member("limit", model::name(yield.limit));
     json.member("speed_mm", yield.speed);
     json.end_object();

@@ -17,10 +17,6 @@ namespace {
 
 using plan::MoveOutcome;
 
-std::string number_text(const std::optional<double>& value) {
-  return value ? json_text(*value) : std::string("null");
-}
-
 std::string certificate_text(const plan::MovePlan& plan) {
   if (!plan.certificate) {
     return "null";
@@ -28,15 +24,12 @@ std::string certificate_text(const plan::MovePlan& plan) {
   if (const auto& target = plan.certificate->target) {
     return object({member("reason", json_text(std::string("target"))),
                    member("verdict", json_text(std::string(verdict::name(target->verdict)))),
-                   member("load_ratio_max", number_text(target->load_ratio_max)),
-                   member("margin_mm", number_text(target->margin_mm))});
+                   member("load_ratio_max", json_text(target->load_ratio_max)),
+                   member("margin_mm", json_text(target->margin_mm))});
   }
   Items shapes;
   for (const auto& shape : plan.certificate->shapes) {
-    Items cells;
-    std::ranges::transform(shape, std::back_inserter(cells),
-                           [](const base::Cell& cell) { return json_text(cell); });
-    shapes.push_back(row(cells));
+    shapes.push_back(json_text(std::span(shape)));
   }
   return lines(
       '{',
@@ -178,8 +171,8 @@ std::string move_json(const MoveReport& report) {
                 member("states", fmt::format("{}", plan.state_count)),
                 member("stages", fmt::format("{}", stages.all)),
                 member("stages_safe", fmt::format("{}", stages.safe)),
-                member("load_ratio_max", number_text(load_ratio_of(plan))),
-                member("margin_min_mm", number_text(margin_of(plan))),
+                member("load_ratio_max", json_text(load_ratio_of(plan))),
+                member("margin_min_mm", json_text(margin_of(plan))),
                 member("seconds", json_text(report.seconds)),
                 member("certificate", certificate_text(plan))},
                '}', 0) +
@@ -236,6 +229,12 @@ base::Result<plan::MoveCertificate> read_move_certificate(std::string_view text,
   const Json& shapes = at(value, "shapes");
   if (!shapes.is_array()) {
     return no_certificate("a report with a certificate", "/certificate");
+  }
+  if (at(value, "reason") != "exhausted") {
+    return no_certificate("target or exhausted", "/certificate/reason");
+  }
+  if (at(value, "end") != "start" && at(value, "end") != "target") {
+    return no_certificate("start or target", "/certificate/end");
   }
   certificate.is_backward = at(value, "end") == "target";
   for (const Json& entry : shapes) {

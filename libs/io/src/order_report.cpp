@@ -16,17 +16,6 @@ namespace {
 
 using plan::OrderOutcome;
 
-std::string number_text(const std::optional<double>& value) {
-  return value ? json_text(*value) : std::string("null");
-}
-
-std::string cells_text(const std::vector<base::Cell>& cells) {
-  Items items;
-  std::ranges::transform(cells, std::back_inserter(items),
-                         [](const base::Cell& cell) { return json_text(cell); });
-  return row(items);
-}
-
 std::vector<base::Cell> cells_of(const OrderReport& report,
                                  const std::vector<plan::Element>& elements) {
   std::vector<base::Cell> cells;
@@ -47,10 +36,10 @@ Items way_items(const OrderReport& report) {
     const std::vector<plan::Element> none;
     const auto& group = i == 0 ? none : order.steps[step];
     items.push_back(object(
-        {member(report.is_reversed ? "detach" : "attach", cells_text(cells_of(report, group))),
+        {member(report.is_reversed ? "detach" : "attach", json_text(cells_of(report, group))),
          member(order.judgements[k].is_bound ? "load_ratio_bound" : "load_ratio_max",
-                number_text(order.judgements[k].load_ratio_max)),
-         member("margin_mm", number_text(order.judgements[k].margin_mm))}));
+                json_text(order.judgements[k].load_ratio_max)),
+         member("margin_mm", json_text(order.judgements[k].margin_mm))}));
   }
   return items;
 }
@@ -59,8 +48,8 @@ std::string help_text(const OrderReport& report) {
   if (!report.help) {
     return "null";
   }
-  return object({member("supports", cells_text(report.help->supports)),
-                 member("temporary", cells_text(report.help->temporary))});
+  return object({member("supports", json_text(report.help->supports)),
+                 member("temporary", json_text(report.help->temporary))});
 }
 
 std::string words(const std::vector<base::Cell>& cells) {
@@ -140,11 +129,11 @@ std::string order_json(const OrderReport& report) {
                {member("result", json_text(std::string(name(order.outcome)))),
                 member("steps", fmt::format("{}", order.steps.size())),
                 member("states", fmt::format("{}", order.state_count)),
-                member("load_ratio_max", number_text(report.result.load_ratio_max)),
-                member("load_ratio_bound", number_text(report.result.load_ratio_bound)),
-                member("margin_min_mm", number_text(report.result.margin_min_mm)),
+                member("load_ratio_max", json_text(report.result.load_ratio_max)),
+                member("load_ratio_bound", json_text(report.result.load_ratio_bound)),
+                member("margin_min_mm", json_text(report.result.margin_min_mm)),
                 member("seconds", json_text(report.seconds)),
-                member("start", cells_text(cells_of(report, order.start.elements()))),
+                member("start", json_text(cells_of(report, order.start.elements()))),
                 member("way", array(way_items(report), 2)), member("help", help_text(report)),
                 member("certificate", certificate)},
                '}', 0) +

@@ -16,14 +16,6 @@ namespace {
 /// Values of a long array that one thread writes at a time: of connections some 170 KB.
 constexpr std::size_t kBlockValues = 512;
 
-void write_cell(JsonStream& json, const base::Cell& cell) {
-  json.begin_array();
-  json.value(cell.x);
-  json.value(cell.y);
-  json.value(cell.z);
-  json.end_array();
-}
-
 void write_pair(JsonStream& json, double first, double second) {
   json.begin_array();
   json.value(first);
@@ -43,8 +35,8 @@ void write_range(JsonStream& json, std::string_view key, const verdict::LoadRang
 void write_ends(JsonStream& json, const std::array<base::Cell, 2>& ends) {
   const auto& [a, b] = ends;
   json.begin_array();
-  write_cell(json, a);
-  write_cell(json, b);
+  json.value(a);
+  json.value(b);
   json.end_array();
 }
 
@@ -136,9 +128,9 @@ void write_connection(JsonStream& json, const model::Robot& robot,
   const auto [a, b] = model::ends(robot, connection);
   json.begin_object();
   json.key("a");
-  write_cell(json, a);
+  json.value(a);
   json.key("b");
-  write_cell(json, b);
+  json.value(b);
   json.member("load_ratio", result.load_ratio);
   json.member("axial_n", result.axial_n);
   json.member("bending_nmm", result.bending_nmm);

@@ -43,6 +43,8 @@ std::string rigid_text(const limit::RigidStability& rigid) {
 void write_stability(Out out, const model::Robot& robot, const verdict::Assessment& assessment) {
   const verdict::RigidBody& body = assessment.simplified;
   const bool is_doubtful = assessment.verdict == verdict::Verdict::kUndecided;
+  // What the model-based check agrees with, or not.
+  bool is_said_stable = assessment.is_stable;
   const char* word = assessment.is_stable ? "stable" : is_doubtful ? "not certain" : "unstable";
   if (body.margin_mm) {
     const auto& [a, b] = *body.edge;
@@ -55,10 +57,11 @@ void write_stability(Out out, const model::Robot& robot, const verdict::Assessme
                    robot.fixed_count() > 0 ? "fixed module" : "bonded support");
   } else {
     fmt::format_to(out, "  stability   {}{}", word, rigid_text(assessment.rigid));
+    is_said_stable = assessment.rigid.holds();
   }
   if (!assessment.model.is_settled) {
     fmt::format_to(out, "; the model-based check has no answer\n");
-  } else if (assessment.model.is_stable == assessment.is_stable) {
+  } else if (assessment.model.is_stable == is_said_stable) {
     fmt::format_to(out, "; the model-based check agrees\n");
   } else {
     fmt::format_to(out, "; the model-based check says {}\n",

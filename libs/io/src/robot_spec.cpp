@@ -86,10 +86,23 @@ std::optional<base::Error> find_fault(const Connectors& connectors, const JsonPl
   return std::nullopt;
 }
 
+std::optional<base::Error> find_fault(const model::Material& material, const JsonPlace& place) {
+  for (const model::MaterialParameter& parameter : model::kMaterialParameters) {
+    if (auto fault = model::find_fault(parameter, material.*parameter.value)) {
+      return base::Error{base::ErrorCode::kBadInput, *std::move(fault),
+                         place.at(parameter.key).pointer()};
+    }
+  }
+  return std::nullopt;
+}
+
 /// Before the robot is made, which does not know the file's names and places.
-std::optional<base::Error> find_fault(const Extension& extension) {
+std::optional<base::Error> find_fault(const Document& document) {
+  const Extension& extension = document.extension;
   const JsonPlace top;
-  auto fault = find_fault(extension.connectors, top.at("material"));
+  const JsonPlace material = top.at("material");
+  auto fault = find_fault(document.material, material);
+  fault = fault ? fault : find_fault(extension.connectors, material);
   const JsonPlace kinds = top.at("kinds");
   for (const KindEntry& kind : extension.kinds) {
     const JsonPlace place = kinds.at(kind.name);
@@ -244,7 +257,7 @@ std::vector<model::Payload> present_payloads(const Document& document) {
 }  // namespace
 
 base::Result<model::RobotSpec> make_spec(const Document& document) {
-  if (auto error = find_fault(document.extension)) {
+  if (auto error = find_fault(document)) {
     return *std::move(error);
   }
   model::RobotSpec spec = start_of(document);
@@ -279,7 +292,7 @@ std::string step_pointer(const Document& document, std::size_t step) {
 }
 
 base::Result<Sequence> make_sequence(const Document& document) {
-  if (auto error = find_fault(document.extension)) {
+  if (auto error = find_fault(document)) {
     return *std::move(error);
   }
   Sequence sequence{.start = start_of(document), .steps = steps_of(document)};

@@ -13,11 +13,7 @@ constexpr std::size_t kBlockBytes = std::size_t{1} << 16U;
 void write_pair(JsonStream& json, const model::CellPair& pair) {
   json.begin_array();
   for (const base::Cell& cell : pair) {
-    json.begin_array();
-    json.value(cell.x);
-    json.value(cell.y);
-    json.value(cell.z);
-    json.end_array();
+    json.value(cell);
   }
   json.end_array();
 }

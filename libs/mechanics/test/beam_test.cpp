@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 
 #include "paper.hpp"
+#include "random_signed.hpp"
 
 namespace holdfast::mechanics {
 namespace {

@@ -11,6 +11,7 @@
 #include "holdfast/base/cell.hpp"
 #include "holdfast/base/rng.hpp"
 #include "holdfast/mechanics/beam.hpp"
+#include "random_signed.hpp"
 
 /// Second methods for the tests of this room: Eqs. (1)-(2) of [Piranda 2021] written out densely,
 /// in double, and whatever else is needed to compare with them.
@@ -132,11 +133,6 @@ inline base::Vec6<double> term_magnitudes(const Dense& matrix, const base::Vec6<
 /// Rounding of a few dozen operations on terms of magnitude one.
 template <class Real>
 constexpr double kRounding = 32 * static_cast<double>(std::numeric_limits<Real>::epsilon());
-
-/// Uniform in [-1, 1), on a grid that float resolves, so that both scalars see the same number.
-inline double random_signed(base::Rng& rng) {
-  return static_cast<double>(rng.below(2'000'001)) / 1'000'000 - 1;
-}
 
 /// A displacement of both scalars: as large in mm as its turns are at the end of a lever of 20 mm.
 inline base::Vec6<double> random_displacement(base::Rng& rng) {

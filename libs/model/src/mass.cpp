@@ -14,7 +14,7 @@ std::array<double, 3> common_node_mm(const Robot& robot, const RobotPart* part) 
     node = node_mm(robot.modules().front().cell);
   }
   for (double& x : node) {
-    x = host::max(part == nullptr ? nullptr : part->ranks, x);
+    x = host::max(ranks_of(part), x);
   }
   return node;
 }
@@ -23,7 +23,7 @@ Mass mass_of(const Robot& robot, const RobotPart* part) {
   const base::NodePlaces node_mm(robot.lattice(), robot.material().pitch_mm);
   const std::array<double, 3> origin = common_node_mm(robot, part);
   Mass mass;
-  host::Ranks* const ranks = part == nullptr ? nullptr : part->ranks;
+  host::Ranks* const ranks = ranks_of(part);
   const std::size_t count = part == nullptr ? robot.modules().size() : part->own_count;
   for (std::size_t i = 0; i < count; ++i) {
     const auto node = node_mm(robot.modules()[i].cell);

@@ -26,12 +26,18 @@ mechanics::Connector<double> connector(const Material& material, base::Connector
                                                               : material.strength_lateral_n};
 }
 
+std::optional<std::string> find_fault(const MaterialParameter& parameter, double value) {
+  if (value >= parameter.lowest && value <= parameter.highest) {
+    return std::nullopt;
+  }
+  return fmt::format("{} is {}, allowed is {} to {}", parameter.key, value, parameter.lowest,
+                     parameter.highest);
+}
+
 std::optional<std::string> find_material_fault(const Material& material) {
   for (const MaterialParameter& parameter : kMaterialParameters) {
-    const double value = material.*parameter.value;
-    if (!(value >= parameter.lowest && value <= parameter.highest)) {
-      return fmt::format("{} is {}, allowed is {} to {}", parameter.key, value, parameter.lowest,
-                         parameter.highest);
+    if (auto fault = find_fault(parameter, material.*parameter.value)) {
+      return fault;
     }
   }
   return std::nullopt;

@@ -316,7 +316,7 @@ bool EnergyBound::begin(const std::vector<Element>& elements, const verdict::Ass
                         const SectionResponse* section) {
   const bool is_stuck =
       std::ranges::all_of(solved.equilibrium.contact,
-                          [](const ContactState& state) { return state == ContactState{}; });
+                          [](const ContactState& state) { return state == mechanics::kStuck; });
   if (solved.verdict != verdict::Verdict::kSafe || !is_stuck || solved.several ||
       solved.stability_rule == verdict::StabilityRule::kContactForces ||
       solved.contact_model == verdict::ContactModel::kUnilateral || !is_plain(target_)) {

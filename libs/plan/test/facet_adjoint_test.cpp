@@ -19,6 +19,7 @@
 #include "holdfast/mechanics/ground_contact.hpp"
 #include "holdfast/model/families.hpp"
 #include "holdfast/model/material.hpp"
+#include "nearest_first.hpp"
 #include "robot_growth.hpp"
 #include "watched_facets.hpp"
 
@@ -41,25 +42,6 @@ model::RobotSpec spec_of(const Case& robot) {
   const model::Family family = model::find_family(robot.family).value();
   return {.existing = model::family_cells(family, robot.size),
           .lattice = model::family_lattice(family)};
-}
-
-/// Modules by their distance from the supports, so that each prefix is connected to one.
-std::vector<Element> nearest_first(const model::Robot& robot) {
-  std::vector<Element> order;
-  std::vector<bool> is_found(robot.modules().size());
-  const auto find = [&](std::int32_t module) {
-    if (module != model::Robot::kNoNeighbour && !is_found[at(module)]) {
-      is_found[at(module)] = true;
-      order.push_back(module);
-    }
-  };
-  for (const model::Facet& facet : robot.facets()) {
-    find(facet.module);
-  }
-  for (std::size_t i = 0; i < order.size(); ++i) {
-    std::ranges::for_each(robot.connected()[at(order[i])], find);
-  }
-  return order;
 }
 
 verdict::Assessment check(const model::RobotSpec& spec, const ElementSet& state) {
@@ -164,7 +146,7 @@ TEST(FacetAdjoint, knows_a_facets_force_but_for_the_product_of_two_errors) {
                                              {"scaffold", 9, 12}}) {
     const model::RobotSpec spec = spec_of(robot);
     const model::Robot target = model::Robot::create(spec).value();
-    const std::vector<Element> order = nearest_first(target);
+    const std::vector<Element> order = test::nearest_first(target);
     ElementSet state(order.size());
     const std::size_t core_count = order.size() - robot.grown;
     for (std::size_t i = 0; i < core_count; ++i) {
@@ -218,7 +200,7 @@ int certified_count(const Case& robot, bool has_adjoints) {
   const model::Robot target = model::Robot::create(spec).value();
   const LocalAdjoints nearby(target);
   EnergyBound bound(target, nearby);
-  const std::vector<Element> order = nearest_first(target);
+  const std::vector<Element> order = test::nearest_first(target);
   ElementSet state(order.size());
   const std::size_t core_count = order.size() - robot.grown;
   for (std::size_t i = 0; i < core_count; ++i) {

@@ -15,6 +15,7 @@
 #include "holdfast/base/lattice.hpp"
 #include "holdfast/model/families.hpp"
 #include "holdfast/model/material.hpp"
+#include "nearest_first.hpp"
 #include "robot_growth.hpp"
 
 namespace holdfast::plan {
@@ -22,27 +23,6 @@ namespace {
 
 using base::at;
 using base::Vec6;
-
-/// Modules by their distance from the supports, so that each prefix is connected to one.
-std::vector<Element> from_the_start(const model::Robot& robot) {
-  std::vector<Element> order;
-  std::vector<bool> is_found(robot.modules().size());
-  for (std::size_t i = 0; i < robot.modules().size(); ++i) {
-    if (robot.modules()[i].support != model::Support::kNone) {
-      order.push_back(static_cast<Element>(i));
-      is_found[i] = true;
-    }
-  }
-  for (std::size_t i = 0; i < order.size(); ++i) {
-    for (const std::int32_t other : robot.connected()[at(order[i])]) {
-      if (other != model::Robot::kNoNeighbour && !is_found[at(other)]) {
-        is_found[at(other)] = true;
-        order.push_back(other);
-      }
-    }
-  }
-  return order;
-}
 
 /// Twice the energy of the difference of two displacements of a robot whose facets are stuck.
 double energy_between(const model::Robot& robot, const std::vector<Vec6<double>>& a,
@@ -82,7 +62,7 @@ TEST(FollowedRobot, is_where_a_check_finds_it_within_its_error) {
            {"growth", 200}, {"cube", 6}, {"ball", 7}, {"tower", 20}, {"scaffold", 9}}) {
     const model::RobotSpec spec = spec_of(family, size);
     const model::Robot target = model::Robot::create(spec).value();
-    const std::vector<Element> order = from_the_start(target);
+    const std::vector<Element> order = test::nearest_first(target);
     const std::size_t core_count = order.size() - 8;
     ElementSet state(order.size());
     for (std::size_t i = 0; i < core_count; ++i) {

@@ -10,6 +10,7 @@
 
 #include "holdfast/verdict/assessment.hpp"
 #include "random_robot.hpp"
+#include "robot_growth.hpp"
 
 namespace holdfast::plan {
 namespace {
@@ -38,15 +39,6 @@ std::vector<Element> outwards(const model::Robot& target) {
   return order;
 }
 
-model::Robot robot_of(const model::RobotSpec& spec, const ElementSet& state) {
-  model::RobotSpec part = spec;
-  part.existing.clear();
-  for (const Element element : state.elements()) {
-    part.existing.push_back(spec.existing[base::at(element)]);
-  }
-  return model::Robot::create(part).value();
-}
-
 struct Tally {
   int state_count = 0;
   int sure_count = 0;
@@ -60,7 +52,8 @@ void grow(model::RobotSpec spec, Tally& tally) {
   ElementSet state(spec.existing.size());
   for (const Element element : outwards(target)) {
     state.insert(element);
-    const verdict::Assessment full = verdict::assess(robot_of(spec, state));
+    const verdict::Assessment full =
+        verdict::assess(model::Robot::create(part_of(spec, state)).value());
     const auto grown = growing.assess_safe(state);
     ++tally.state_count;
     if (grown && full.verdict != verdict::Verdict::kUnstable) {

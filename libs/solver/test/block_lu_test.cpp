@@ -16,19 +16,17 @@
 #include <utility>
 
 #include "holdfast/base/rng.hpp"
+#include "random_signed.hpp"
 
 namespace holdfast::solver {
 namespace {
 
 using base::Mat6;
 using base::Vec6;
+using test::random_signed;
 
 constexpr double kTolerance = 1e-11;
 constexpr std::size_t kUnlimited = 1'000'000;
-
-double random_signed(base::Rng& rng) {
-  return static_cast<double>(rng.below(2'000'001)) / 1'000'000 - 1;
-}
 
 /// Unsymmetric, entries within one, `weight` added on the diagonal.
 Mat6<double> random_block(base::Rng& rng, double weight) {

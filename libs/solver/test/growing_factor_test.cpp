@@ -14,6 +14,7 @@
 #include <set>
 
 #include "holdfast/base/rng.hpp"
+#include "random_signed.hpp"
 #include "seeds.hpp"
 
 namespace holdfast::solver {
@@ -21,16 +22,13 @@ namespace {
 
 using base::Mat6;
 using base::Vec6;
+using test::random_signed;
 using Matrix6 = Eigen::Matrix<double, 6, 6>;
 
 constexpr double kFactorTolerance = 1e-9;
 
-double random_entry(base::Rng& rng) {
-  return static_cast<double>(rng.below(2'000'001)) / 1'000'000 - 1;
-}
-
 Matrix6 random_matrix(base::Rng& rng) {
-  return Matrix6::NullaryExpr([&] { return random_entry(rng); });
+  return Matrix6::NullaryExpr([&] { return random_signed(rng); });
 }
 
 Mat6<double> block(const Matrix6& matrix) {
@@ -137,7 +135,7 @@ struct Case {
 
   double error() {
     const Eigen::VectorXd load =
-        Eigen::VectorXd::NullaryExpr(6 * node_count, [&] { return random_entry(rng); });
+        Eigen::VectorXd::NullaryExpr(6 * node_count, [&] { return random_signed(rng); });
     std::vector<Vec6<double>> x(static_cast<std::size_t>(node_count));
     for (int i = 0; i < 6 * node_count; ++i) {
       x[static_cast<std::size_t>(i / 6)][static_cast<std::size_t>(i % 6)] = load[i];

@@ -185,12 +185,10 @@ std::vector<solver::EquilibriumOptions> finer_options(const solver::EquilibriumO
 
 bool has_pulling_facets(const model::Robot& robot, const Assessment& assessment,
                         const model::RobotPart* part) {
-  constexpr mechanics::ContactState kStuck;
   const auto& contact = assessment.equilibrium.contact;
   const bool is_any_not_stuck =
-      std::ranges::any_of(contact, [&](const auto& state) { return state != kStuck; });
-  return !is_on_flat_floor(robot, part) &&
-         host::any(part == nullptr ? nullptr : part->ranks, is_any_not_stuck);
+      std::ranges::any_of(contact, [&](const auto& state) { return state != mechanics::kStuck; });
+  return !is_on_flat_floor(robot, part) && host::any(model::ranks_of(part), is_any_not_stuck);
 }
 
 Assessment assess_rigidly(const model::Robot& robot, const model::RobotPart* part,

@@ -216,8 +216,7 @@ void add_load_remarks(const model::Robot& robot, const model::RobotPart* part,
                                               assessment.gaps->gap_mm, assessment.gaps->limit_mm},
                                   .cells = gap_cells(*assessment.gaps, part)});
   }
-  const bool has_payloads =
-      host::any(part == nullptr ? nullptr : part->ranks, robot.has_payloads());
+  const bool has_payloads = host::any(model::ranks_of(part), robot.has_payloads());
   if (has_payloads && assessment.worst) {
     assessment.reasons.push_back({.code = ReasonCode::kLoadsTogether});
   }

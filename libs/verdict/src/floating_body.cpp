@@ -65,7 +65,7 @@ void add_corners(const std::array<double, 3>& centre, double half_width,
 }  // namespace
 
 FloatingBody body_of(const model::Robot& robot, const model::RobotPart* part) {
-  host::Ranks* const ranks = part == nullptr ? nullptr : part->ranks;
+  host::Ranks* const ranks = model::ranks_of(part);
   const std::size_t count = part == nullptr ? robot.modules().size() : part->own_count;
   FloatingBody body{.is_held = host::any(ranks, robot.fixed_count() > 0) ||
                                host::any(ranks, robot.has_bonded_facets()),

@@ -177,21 +177,17 @@ CubeSums cube_sums(const model::Robot& robot, const model::RobotPart* part) {
   return all;
 }
 
-host::Ranks* ranks_of(const model::RobotPart* part) {
-  return part == nullptr ? nullptr : part->ranks;
-}
-
 Cubes cubes_of(const model::Robot& robot, const model::RobotPart* part = nullptr) {
   const CubeSums sums = cube_sums(robot, part);
   const model::Material& material = robot.material();
   Cubes cubes{.measure = Measure(material.pitch_mm, material.facet_mm),
               .pitch_mm = material.pitch_mm,
               .facet_mm = material.facet_mm,
-              .is_fixed = host::any(ranks_of(part), robot.fixed_count() > 0),
+              .is_fixed = host::any(model::ranks_of(part), robot.fixed_count() > 0),
               .count = sums.count};
   cubes.mass.x.pitches = sums.x;
   cubes.mass.y.pitches = sums.y;
-  cubes.hull = convex_hull(support_corners(robot, ranks_of(part)), cubes.measure);
+  cubes.hull = convex_hull(support_corners(robot, model::ranks_of(part)), cubes.measure);
   return cubes;
 }
 
@@ -216,7 +212,7 @@ RigidBody exact_body(const Cubes& cubes) {
 
 /// Whether exact_body() decides.
 bool is_exact(const model::Robot& robot, const model::RobotPart* part = nullptr) {
-  host::Ranks* const ranks = ranks_of(part);
+  host::Ranks* const ranks = model::ranks_of(part);
   const double mass_max = host::max(ranks, robot.mass(0));  // All ranks ask.
   const bool is_alike = robot.is_uniform() && robot.mass(0) == mass_max;
   const bool is_plain = robot.lattice() == base::kCubic && is_alike && robot.carried().empty();
@@ -227,7 +223,7 @@ bool is_exact(const model::Robot& robot, const model::RobotPart* part = nullptr)
 }  // namespace
 
 bool is_on_flat_floor(const model::Robot& robot, const model::RobotPart* part) {
-  host::Ranks* const ranks = ranks_of(part);
+  host::Ranks* const ranks = model::ranks_of(part);
   const auto& [x, y, z] = robot.gravity();
   const bool has_facets = host::any(ranks, !robot.facets().empty());
   const bool has_payloads = host::any(ranks, robot.has_payloads());

@@ -38,10 +38,6 @@ struct Heights {
   double centre_of_mass_mm = 0;  ///< Above the floor.
 };
 
-host::Ranks* ranks_of(const model::RobotPart* part) {
-  return part == nullptr ? nullptr : part->ranks;
-}
-
 Heights heights(const model::Robot& robot, const model::RobotPart* part) {
   const base::NodePlaces node_mm(robot.lattice(), robot.material().pitch_mm);
   double floor_mm = -std::numeric_limits<double>::infinity();
@@ -50,7 +46,7 @@ Heights heights(const model::Robot& robot, const model::RobotPart* part) {
     floor_mm =
         node_mm(robot.modules()[base::at(facet.module)].cell)[2] - robot.material().pitch_mm / 2;
   }
-  floor_mm = host::max(ranks_of(part), floor_mm);
+  floor_mm = host::max(model::ranks_of(part), floor_mm);
   return {.floor_mm = floor_mm,
           .centre_of_mass_mm = model::mass_of(robot, part).centre_mm[2] - floor_mm};
 }
@@ -126,7 +122,7 @@ bool holds_by_corners(const model::Robot& robot, std::span<const mechanics::Cont
     is_any_flat = state == mechanics::ContactState{} && robot.foot_half_width_mm() > 0;
     add_pressing_corners(facets[i], state, corners);
   }
-  if (host::any(ranks_of(part), is_any_flat)) {
+  if (host::any(model::ranks_of(part), is_any_flat)) {
     return true;
   }
   if (part != nullptr) {
@@ -164,7 +160,7 @@ struct RankedSlip {
 }  // namespace
 
 StabilityRule stability_rule(const model::Robot& robot, const model::RobotPart* part) {
-  if (host::any(ranks_of(part), robot.fixed_count() > 0 || robot.has_bonded_facets())) {
+  if (host::any(model::ranks_of(part), robot.fixed_count() > 0 || robot.has_bonded_facets())) {
     return StabilityRule::kHeld;
   }
   return is_on_flat_floor(robot, part) ? StabilityRule::kPolygon : StabilityRule::kContactForces;

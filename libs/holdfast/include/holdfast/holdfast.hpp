@@ -48,8 +48,17 @@
 ///     holdfast::model::RobotSpec shelf{.existing = cells, .support_z = {}, .obstacles = wall};
 ///     auto robot = holdfast::model::Robot::create(shelf);
 ///
-/// What an application may name of the rooms below is what is exported here, and by trial.hpp,
-/// distributed.hpp and emulated.hpp. No function throws or prints; what a caller's own callbacks
+/// Robots that a program makes become structures, which find_next() takes, and documents, which
+/// seek_order() and seek_moves() take, by way of io::Document:
+///
+///     holdfast::io::Document document;
+///     for (const holdfast::base::Cell& cell : cells) {
+///       document.modules.push_back({.cell = cell});
+///     }
+///     auto structure = holdfast::make_structure(document);
+///
+/// What an application may name of the rooms below is what is exported here and by the headers
+/// beside this one. No function throws or prints; what a caller's own callbacks
 /// throw, such as that of host::Interruptible, passes through, and ends the work. Units: N, mm, kg,
 /// s. Frame: global, z up, one cell = one pitch.
 namespace holdfast {
@@ -186,7 +195,8 @@ std::vector<base::Vec6<double>> ground_forces(const model::Robot& robot, const C
 /// none, as nothing could be proved, or no proof was wanted.
 base::Result<std::string> certificate_text(const CheckResult& result);
 
-/// Reports and pictures of a checked structure; see io/report.hpp and io/picture.hpp.
+/// Reports and pictures of a checked structure; see io/report.hpp and io/picture.hpp. The text is
+/// what the program prints below the line of the verdict.
 std::string report_json(const Structure& structure, const CheckResult& result);
 std::string report_text(const Structure& structure, const CheckResult& result);
 std::string picture_svg(const Structure& structure, const CheckResult& result);

@@ -15,7 +15,7 @@
 /// The facade's moves: how does a robot get from one shape to another, safe at every stage?
 ///
 ///     const auto report = holdfast::seek_moves(from, to, {.seconds_max = 60});
-///     if (report && report.value().plan.outcome == plan::MoveOutcome::kFound) {
+///     if (report && report.value().plan.outcome == holdfast::plan::MoveOutcome::kFound) {
 ///       ... report.value().plan.steps ...
 ///     }
 namespace holdfast {

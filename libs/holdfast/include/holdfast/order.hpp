@@ -19,7 +19,8 @@
 /// The facade's orders: how can a robot be built, module by module, so that it is safe all the way?
 ///
 ///     const auto answer = holdfast::seek_order(document, {.start = first_cells});
-///     if (answer && answer.value().result.order.outcome == plan::OrderOutcome::kFound) { ... }
+///     if (answer && answer.value().result.order.outcome == holdfast::plan::OrderOutcome::kFound)
+///         { ... }
 namespace holdfast {
 
 struct OrderRequest {

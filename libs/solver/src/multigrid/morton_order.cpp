@@ -222,7 +222,7 @@ MortonOrder morton_order(const model::Robot& robot, const std::vector<std::uint8
     extent.add(survey.left);
     count += std::exchange(survey.count, count);
   }
-  host::Ranks* const ranks = part == nullptr ? nullptr : part->ranks;
+  host::Ranks* const ranks = model::ranks_of(part);
   const base::Cell low = {lowest(ranks, all.low.x), lowest(ranks, all.low.y),
                           lowest(ranks, all.low.z)};
   MortonOrder order;

@@ -46,7 +46,7 @@ class Builder {
         is_cubic_(robot.lattice() == base::kCubic),
         direction_count_(at(robot.lattice().direction_count)) {
     network_.lattice = robot.lattice();
-    network_.ranks = part == nullptr ? nullptr : part->ranks;
+    network_.ranks = model::ranks_of(part);
     network_.is_cubic = host::all(network_.ranks, is_on_floor_only(robot));
     network_.node_count = order_.modules.size();
     network_.own_count =

@@ -10,6 +10,8 @@
 #include <string_view>
 #include <type_traits>
 
+#include "holdfast/base/cell.hpp"
+
 namespace holdfast::io {
 
 /// Appends JSON to a text, value by value, without a tree of it in memory. The layout and the
@@ -39,7 +41,8 @@ class JsonStream {
   void value(std::nullptr_t);
   void value(bool flag);
   void value(double number);  ///< The shortest digits that give it back; null if it is not finite.
-  void value(std::string_view text);  ///< What is not UTF-8 becomes U+FFFD.
+  void value(std::string_view text);   ///< What is not UTF-8 becomes U+FFFD.
+  void value(const base::Cell& cell);  ///< An array of three numbers.
 
   void value(const char* text) { value(std::string_view(text)); }
 

@@ -68,6 +68,9 @@ struct ContactState {
   friend constexpr bool operator==(const ContactState&, const ContactState&) = default;
 };
 
+/// Presses all over, and is stuck sideways: where every search for states begins.
+inline constexpr ContactState kStuck;
+
 /// The diagonal H of one facet, and its geometry. Units: N/mm, N mm, mm.
 template <class Real>
 struct GroundFacet {

@@ -76,6 +76,9 @@ double module_weight_n(const Material& material);
 /// width of a face and the strength of that class.
 mechanics::Connector<double> connector(const Material& material, base::ConnectorClass kind);
 
+/// Why a parameter cannot have this value, if it cannot.
+std::optional<std::string> find_fault(const MaterialParameter& parameter, double value);
+
 /// Why a material cannot be computed with (name, value found, values allowed), if it cannot.
 std::optional<std::string> find_material_fault(const Material& material);
 

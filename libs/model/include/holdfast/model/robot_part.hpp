@@ -17,4 +17,9 @@ struct RobotPart {
   std::vector<host::Copy> copies;  ///< Of modules: all from own_count on.
 };
 
+/// Those that a part is shared with; none where the robot is in one piece.
+inline host::Ranks* ranks_of(const RobotPart* part) {
+  return part == nullptr ? nullptr : part->ranks;
+}
+
 }  // namespace holdfast::model
