@@ -268,9 +268,6 @@ std::string write_order_certificate(const Document& target,
                                     const plan::OrderCertificate& certificate) {
   const plan::OrderTask& task = certificate.task;
   const std::size_t count = task.target.existing.size();
-  Items start;
-  std::ranges::transform(task.start, std::back_inserter(start),
-                         [](const base::Cell& cell) { return json_text(cell); });
   Items states;
   for (const ElementSet& state : certificate.closure.states) {
     states.push_back(json_text(state_text(state, count)));
@@ -285,7 +282,7 @@ std::string write_order_certificate(const Document& target,
   const auto& source = task.rule.source;
   return lines('{',
                {member("format", json_text(std::string(kFormat))), member("version", "1"),
-                member("target", structure), member("start", row(start)),
+                member("target", structure), member("start", json_text(std::span(task.start))),
                 member("group", fmt::format("{}", task.group_size)),
                 member("reach", json_text(std::string(plan::name(task.rule.reach)))),
                 member("source", source ? json_text(*source) : "null"),
