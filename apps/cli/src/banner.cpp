@@ -28,17 +28,4 @@ std::string banner(verdict::Verdict verdict) {
   return fmt::format("\033[1;{}m{}\033[0m", kColours[static_cast<std::size_t>(verdict)], word);
 }
 
-int exit_code(verdict::Verdict verdict) {
-  switch (verdict) {
-    case verdict::Verdict::kSafe:
-      return kExitSafe;
-    case verdict::Verdict::kOverload:
-    case verdict::Verdict::kUnstable:
-      return kExitUnsafe;
-    case verdict::Verdict::kUndecided:
-      break;
-  }
-  return kExitUndecided;
-}
-
 }  // namespace holdfast::cli

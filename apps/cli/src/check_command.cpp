@@ -244,7 +244,7 @@ class CheckRun {
     }
     for (const Verdict verdict : {Verdict::kOverload, Verdict::kUnstable, Verdict::kUndecided}) {
       if (counts_[static_cast<std::size_t>(verdict)] > 0) {
-        return cli::exit_code(verdict);
+        return holdfast::exit_code(verdict);
       }
     }
     return kExitSafe;

@@ -13,20 +13,13 @@
 #include <string>
 #include <string_view>
 
+#include "holdfast/exit_code.hpp"
 #include "holdfast/holdfast.hpp"
 #include "holdfast/trial.hpp"
 
 /// The commands of the program. Each adds itself to the app and returns what to run if it is used;
 /// that returns the exit code.
 namespace holdfast::cli {
-
-// Exit codes; from 64 on those of sysexits.h.
-inline constexpr int kExitSafe = 0;
-inline constexpr int kExitUnsafe = 1;
-inline constexpr int kExitUndecided = 2;
-inline constexpr int kExitUsage = 64;
-inline constexpr int kExitBadInput = 65;
-inline constexpr int kExitFailure = 70;  ///< Out of memory, or a fault of the program.
 
 struct Command {
   CLI::App* app = nullptr;
@@ -47,9 +40,6 @@ Command add_view(CLI::App& app);
 
 /// The verdict in capitals, coloured on a terminal, padded to the longest.
 std::string banner(verdict::Verdict verdict);
-
-/// What the program ends with when the robot has worked out this verdict.
-int exit_code(verdict::Verdict verdict);
 
 /// What the program ends with when it was asked where the next module may go.
 int exit_code_of(const NextResult& result);

@@ -48,19 +48,19 @@ int run(int argc, char** argv) {
       cli::add_generate(app), cli::add_robots(app),   cli::add_view(app)};
   if (const std::string fault = unknown_command(app, argc, argv); !fault.empty()) {
     std::fputs(fault.c_str(), stderr);
-    return cli::kExitUsage;
+    return holdfast::kExitUsage;
   }
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : cli::kExitUsage;
+    return app.exit(error) == 0 ? 0 : holdfast::kExitUsage;
   }
   for (const cli::Command& command : commands) {
     if (command.app->parsed()) {
       return command.run();
     }
   }
-  return cli::kExitUsage;
+  return holdfast::kExitUsage;
 }
 
 /// Descriptors 0 to 2 are never those of a file: one that is closed is opened so that it cannot be
@@ -85,14 +85,14 @@ int fail_out_of_memory() {
       "holdfast: out of memory: the structure is too large for this machine, or for the limit "
       "that is set here\n",
       stderr);
-  return cli::kExitFailure;
+  return holdfast::kExitFailure;
 }
 
 int fail_output(int error) {
   std::fputs("holdfast: standard output cannot be written: ", stderr);
   std::fputs(std::strerror(error), stderr);
   std::fputs("\n", stderr);
-  return cli::kExitBadInput;
+  return holdfast::kExitBadInput;
 }
 
 /// The exit code for what a command threw.
@@ -111,7 +111,7 @@ int fail_exception() {
     std::fputs(error.what(), stderr);
     std::fputs("\n", stderr);
   }
-  return cli::kExitFailure;
+  return holdfast::kExitFailure;
 }
 
 /// Where an exception has nobody left to catch it: what it is decides, as in main.
@@ -138,7 +138,7 @@ int main(int argc, char** argv) {
   // Small texts are written only now.
   errno = 0;
   if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {
-    return code >= cli::kExitUsage ? code : fail_output(errno != 0 ? errno : EIO);
+    return code >= holdfast::kExitUsage ? code : fail_output(errno != 0 ? errno : EIO);
   }
   return code;
 }

@@ -13,7 +13,7 @@
 #include <cstdlib>
 #include <string_view>
 
-#include "exit_codes.hpp"
+#include "holdfast/exit_code.hpp"
 
 namespace holdfast::cluster {
 namespace {

@@ -22,8 +22,8 @@
 
 #include "checkpoint.hpp"
 #include "cluster_check.hpp"
-#include "exit_codes.hpp"
 #include "generator.hpp"
+#include "holdfast/exit_code.hpp"
 #include "holdfast/holdfast.hpp"
 #include "launcher.hpp"
 #include "part_maker.hpp"
@@ -63,19 +63,6 @@ bool is_first_rank = false;
 /// reads what it says from a file, ends with an exit code of its own. Nothing is written to it.
 constexpr std::size_t kReserveBytes = std::size_t{4} << 20;
 std::unique_ptr<std::byte[]> reserve;
-
-int exit_code(verdict::Verdict verdict) {
-  switch (verdict) {
-    case verdict::Verdict::kSafe:
-      return 0;
-    case verdict::Verdict::kOverload:
-    case verdict::Verdict::kUnstable:
-      return kExitUnsafe;
-    case verdict::Verdict::kUndecided:
-      break;
-  }
-  return kExitUndecided;
-}
 
 /// Ends all ranks, with one line.
 [[noreturn]] void end_all(const std::string& message) {
