@@ -54,8 +54,8 @@ def shown_commands(text):
 
 
 def masked(line):
-    """Without times, and without the sign of what is zero to all digits shown."""
-    return re.sub(r'-(0\.0+)\b', r' \1', re.sub(r'in [\d.]+ (us|ms|s)\b', 'in N s', line.rstrip()))
+    """Without times."""
+    return re.sub(r'in [\d.]+ (us|ms|s)\b', 'in N s', line.rstrip())
 
 
 def renewed(text, shown, printed):

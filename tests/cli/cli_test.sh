@@ -168,6 +168,9 @@ expect_exit 64 check "$overload" --connections few
 expect_line err 'all, broken or a count'
 expect_exit 64 check "$overload" --json same.out --csv same.out
 expect_exit 64 check "$safe" "$overload" --csv table.csv
+expect_exit 0 check "$safe" --csv zeros.csv
+expect_line zeros.csv ',0,'
+! grep -Eq '(^|,)-0(,|$)' zeros.csv || fault "a zero with a sign in a table"
 python3 - <<'PYTHON' || fault "the choice of connections is wrong"
 import csv, json
 three = json.load(open('three.json'))
@@ -209,11 +212,11 @@ cmp -s wall_back.json wall_again.json || fault "conversion to XML and back chang
 printf '%s' '{"format": "holdfast-structure", "version": 2, "modules": [[0,0,0]],' \
   '"steps": [{"attach": [[1,0,0]]}]}' >plan.json
 expect_exit 0 check plan.json
-expect_line err 'plan.json: note: 1 steps are read; the robot before them is judged'
+expect_line err 'plan.json: note: 1 step is read; the robot before them is judged'
 printf '%s' '{"format": "holdfast-structure", "version": 2, "modules": [[0,0,0]],' \
   '"obstacles": [{"from": [-1000,0,2], "to": [1000,100,2]}]}' >ceiling.json
 expect_exit 0 convert ceiling.json ceiling.xml
-expect_line err 'large obstacles VisibleSim is shown the first corner only'
+expect_line err 'of 1 large obstacle VisibleSim is shown the first corner only'
 
 # VisibleSim does not say which modules its files are for.
 printf '%s' '<world><blockList><block position="0,0,0" orientation="1"/>' \

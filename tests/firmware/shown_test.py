@@ -72,7 +72,7 @@ def check_scenario(documents, scenario, v2, v1):
     seconds_v1 = v1['firmware']['verdict_after_s']
     ratio = robot['load_ratio_max']
     begin = [str(len(json.loads(scenario.read_text())['modules'])),
-             robot['verdict'] + (f' {ratio:.4f}' if ratio is not None else ''),
+             robot['verdict'] + (f' {round(ratio, 4) + 0:.4f}' if ratio is not None else ''),
              f'{image["verdict_after_s"]:.2f}']
     longest = f'{image["step_cycles_max"] / CYCLES_PER_MS:.1f}'
     end = [f'{image["stack_bytes_max"]:,}', 'NO' if image['steps_unlike_host'] else 'yes']

@@ -115,9 +115,10 @@ class CheckRun {
         !assessment.load_ratio_max ? "-"
         : assessment.is_stable     ? io::beside_one(*assessment.load_ratio_max, 4) + " "
                                : fmt::format("({})", io::beside_one(*assessment.load_ratio_max, 4));
-    const std::string margin = assessment.simplified.margin_mm
-                                   ? fmt::format("{:9.2f} mm", *assessment.simplified.margin_mm)
-                                   : "       fixed";
+    const std::string margin =
+        assessment.simplified.margin_mm
+            ? fmt::format("{:>9} mm", host::fixed(*assessment.simplified.margin_mm, 2))
+            : "       fixed";
     fmt::print("{}  load ratio {:>9}  margin {}  {}\n", banner(assessment.verdict), ratio, margin,
                io::one_line(file));
   }
@@ -224,14 +225,15 @@ class CheckRun {
     if (!options_.is_quiet) {
       options.progress = [this, &structure, file](int iteration, double error) {
         progress_.show([&] {
-          return fmt::format("{}: {} modules, iteration {}, error {:.1e} of the first",
-                             io::one_line(file), structure.robot.modules().size(), iteration,
+          return fmt::format("{}: {}, iteration {}, error {:.1e} of the first", io::one_line(file),
+                             host::counted(structure.robot.modules().size(), "module"), iteration,
                              error);
         });
       };
       options.limit_progress = [this, file](double low, double high) {
         progress_.show([&] {
-          return fmt::format("{}: limit load from {:.4g} to {:.4g}", io::one_line(file), low, high);
+          return fmt::format("{}: limit load from {} to {}", io::one_line(file),
+                             io::beside_one(low, 4), io::beside_one(high, 4));
         });
       };
     }

@@ -22,9 +22,8 @@ void note_large_boxes(const io::Document& document, const ConvertArguments& opti
   const auto count = std::ranges::count_if(document.extension.obstacles, io::is_large_box);
   if (count > 0) {
     const std::string note = fmt::format(
-        "of {} large obstacles VisibleSim is shown the first corner only; holdfast reads all of "
-        "them back",
-        count);
+        "of {} VisibleSim is shown the first corner only; holdfast reads {} back",
+        host::counted(count, "large obstacle"), count == 1 ? "all of it" : "all of them");
     print_notes({&note, 1}, options.to);
   }
 }

@@ -116,7 +116,7 @@ class EmulateRun {
         return kExitBadInput;
       }
     }
-    fmt::print("{} pages written to {}\n", pages.size(), options_.pages);
+    fmt::print("{} written to {}\n", host::counted(pages.size(), "page"), options_.pages);
     return kExitSafe;
   }
 
@@ -138,8 +138,8 @@ class EmulateRun {
 
   void show_progress(const sim::SimulationResult& result) {
     progress_.show([&] {
-      return fmt::format("{:.2f} s on the robot, {} steps", static_cast<double>(result.time) * 1e-6,
-                         result.events);
+      return fmt::format("{:.2f} s on the robot, {}", static_cast<double>(result.time) * 1e-6,
+                         host::counted(result.events, "step"));
     });
   }
 

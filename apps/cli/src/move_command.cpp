@@ -99,8 +99,10 @@ int verify(const MoveArguments& options, const MoveRequest& request, const io::D
     fmt::print("PROVED      the target itself is not safe: {}\n",
                verdict::name(*check.value().target));
   } else if (!options.is_quiet) {
-    fmt::print("PROVED      {} shapes inside, {} moves out of them judged anew, none safe\n",
-               check.value().shape_count, check.value().unsafe_count);
+    fmt::print("PROVED      {} inside, {} out of {} judged anew, none safe\n",
+               host::counted(check.value().shape_count, "shape"),
+               host::counted(check.value().unsafe_count, "move"),
+               check.value().shape_count == 1 ? "it" : "them");
   }
   return kExitSafe;
 }
@@ -130,8 +132,8 @@ MoveRequest request_of(const MoveArguments& options, Progress& progress) {
   }
   request.progress = [&progress](std::size_t states, int distance) {
     progress.show([&] {
-      return fmt::format("{} moves examined, the nearest shape is {} or more moves away", states,
-                         distance);
+      return fmt::format("{} examined, the nearest shape is {} or more moves away",
+                         host::counted(states, "move"), distance);
     });
   };
   return request;

@@ -59,8 +59,8 @@ int run(const NextArguments& options) {
       find_next(structure.value(),
                 {.check = check_options, .progress = [&](std::size_t done, std::size_t count) {
                    progress.show([&] {
-                     return fmt::format("{}: {} of {} places judged", io::one_line(options.file),
-                                        done, count);
+                     return fmt::format("{}: {} of {} judged", io::one_line(options.file), done,
+                                        host::counted(count, "place"));
                    });
                  }});
   if (!options.is_quiet && options.json != "-" && options.svg != "-") {

@@ -102,8 +102,8 @@ OrderRequest request_of(const OrderArguments& options, Progress& progress) {
   }
   request.progress = [&progress](std::size_t states, std::size_t here, std::size_t furthest) {
     progress.show([&] {
-      return fmt::format("{} states examined, now at {} modules, got as far as {}", states, here,
-                         furthest);
+      return fmt::format("{} examined, now at {}, got as far as {}", host::counted(states, "state"),
+                         host::counted(here, "module"), furthest);
     });
   };
   return request;

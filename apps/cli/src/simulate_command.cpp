@@ -157,7 +157,8 @@ class SimulateRun {
     const auto simulated = simulate_next(
         structure.value(),
         {.simulation = simulation_, .progress = [this](std::size_t done, std::size_t count) {
-           progress_.show([&] { return fmt::format("{} of {} cells planned", done, count); });
+           progress_.show(
+               [&] { return fmt::format("{} of {} planned", done, host::counted(count, "cell")); });
          }});
     if (!simulated) {
       return fail(simulated.error(), options_.file);
@@ -308,7 +309,7 @@ class SimulateRun {
   void show_progress(const sim::SimulationResult& result) {
     progress_.show([&] {
       const auto seconds = sim::seconds(simulation_.link, result.time);
-      return fmt::format("{} events, {}", result.events,
+      return fmt::format("{}, {}", host::counted(result.events, "event"),
                          seconds ? fmt::format("{:.1f} s on the robot", *seconds)
                                  : fmt::format("round {}", result.time));
     });

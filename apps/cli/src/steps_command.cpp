@@ -34,8 +34,8 @@ StepsOptions judging(const StepsArguments& options, const StepsFile& file, Progr
           .progress = [&options, &progress, verb,
                        count = io::step_count(file.document)](std::size_t done) {
             progress.show([&] {
-              return fmt::format("{}: {} of {} steps {}", io::one_line(options.file), done, count,
-                                 verb);
+              return fmt::format("{}: {} of {} {}", io::one_line(options.file), done,
+                                 host::counted(count, "step"), verb);
             });
           }};
 }
@@ -79,9 +79,9 @@ int run_certificate(const StepsArguments& options) {
   }
   if (!options.is_quiet) {
     fmt::print(
-        "PROVED      there is no safe order: {} states replayed, and {} just beyond, none of "
-        "which is safe\n",
-        check.value().state_count, check.value().blocked_count);
+        "PROVED      there is no safe order: {} replayed, and {} just beyond, none of which is "
+        "safe\n",
+        host::counted(check.value().state_count, "state"), check.value().blocked_count);
   }
   return kExitSafe;
 }

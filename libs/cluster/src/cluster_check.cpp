@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "holdfast/base/algebra.hpp"
+#include "holdfast/host/text.hpp"
 
 namespace holdfast::cluster {
 namespace {
@@ -93,20 +94,21 @@ std::string report_text(const Structure& structure, const Part& part, const Chec
   for (const verdict::Reason& reason : assessment.reasons) {
     text += fmt::format("  {}\n", io::reason_text(part.robot, reason));
   }
-  text += fmt::format("\n  modules     {}, {} of them planned, {} facets on the ground, {} fixed\n",
-                      part.counts.all, part.counts.planned, part.counts.facets, part.counts.fixed);
+  text += fmt::format("\n  modules     {}, {} of them planned, {} on the ground, {} fixed\n",
+                      part.counts.all, part.counts.planned,
+                      host::counted(part.counts.facets, "facet"), part.counts.fixed);
   if (assessment.simplified.margin_mm) {
-    text += fmt::format("  stability   margin {:.2f} mm\n", *assessment.simplified.margin_mm);
+    text += fmt::format("  stability   margin {} mm\n",
+                        host::fixed(*assessment.simplified.margin_mm, 2));
   }
   if (assessment.load_ratio_max) {
     text += fmt::format("  load ratio  {}\n", range_text(assessment));
   }
-  return text + fmt::format(
-                    "  contact     {}; {} linear solves, {} iterations of multigrid in "
-                    "{:.2f} s on {} ranks\n",
-                    verdict::name(assessment.contact_model), assessment.equilibrium.steps,
-                    assessment.equilibrium.iteration_count, checked.seconds,
-                    part.share.ranks->count());
+  return text + fmt::format("  contact     {}; {}, {} of multigrid in {:.2f} s on {}\n",
+                            verdict::name(assessment.contact_model),
+                            host::counted(assessment.equilibrium.steps, "linear solve"),
+                            host::counted(assessment.equilibrium.iteration_count, "iteration"),
+                            checked.seconds, host::counted(part.share.ranks->count(), "rank"));
 }
 
 }  // namespace holdfast::cluster

@@ -62,18 +62,18 @@ std::string time_text(const sim::LinkModel& link, sim::Time time) {
 void write_cost(TextOut out, const DistributedRun& run) {
   const sim::SimulationResult& result = run.result;
   if (result.effort.solves > 0) {
-    fmt::format_to(out,
-                   "  method      {}: {} iterations in {} solves, {} contact; load ratios within "
-                   "{:.1g}\n",
-                   name(result.effort.method), result.effort.iterations, result.effort.solves,
+    fmt::format_to(out, "  method      {}: {} in {}, {} contact; load ratios within {:.1g}\n",
+                   name(result.effort.method), host::counted(result.effort.iterations, "iteration"),
+                   host::counted(result.effort.solves, "solve"),
                    result.effort.is_unilateral ? "unilateral" : "regularised",
                    result.effort.ratio_error);
   }
   const auto seconds = sim::seconds(run.link, result.verdict_time);
-  fmt::format_to(out,
-                 "  cost        {}{} rounds, {} packets, {} bytes; busiest module {} packets\n",
-                 seconds ? fmt::format("{:.3f} s, ", *seconds) : "", result.rounds, result.packets,
-                 result.bytes, result.packets_module_max);
+  fmt::format_to(out, "  cost        {}{}, {}, {}; busiest module {}\n",
+                 seconds ? fmt::format("{:.3f} s, ", *seconds) : "",
+                 host::counted(result.rounds, "round"), host::counted(result.packets, "packet"),
+                 host::counted(result.bytes, "byte"),
+                 host::counted(result.packets_module_max, "packet"));
   write_refused(out, run.refused);
   fmt::format_to(out, "  memory      {} bytes in each module\n\n", result.bytes_per_module);
   fmt::format_to(out, "  {:<12} {:>9} {:>10} {:>10} {:>12}\n", "phase", "rounds", "packets",
@@ -113,8 +113,9 @@ void write_answer(TextOut out, const Structure& structure, const CheckResult& ex
 void write_refused(TextOut out, const RefusedMessages& refused) {
   if (refused.count > 0) {
     const base::Cell& cell = refused.cell;
-    fmt::format_to(out, "  refused     {} messages; most, {}, by ({},{},{})\n", refused.count,
-                   refused.count_of_cell, cell.x, cell.y, cell.z);
+    fmt::format_to(out, "  refused     {}; most, {}, by ({},{},{})\n",
+                   host::counted(refused.count, "message"), refused.count_of_cell, cell.x, cell.y,
+                   cell.z);
   }
 }
 

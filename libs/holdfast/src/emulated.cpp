@@ -111,8 +111,9 @@ std::string report_text(const Structure& structure, const CheckResult& exact,
                  structure.robot.planned_count() > 0
                      ? "from the plan to the last module's verdict"
                      : "from the start to the last module's verdict");
-  fmt::format_to(out, "  packets     {}, {} bytes; busiest module {} packets\n", result.packets,
-                 result.bytes, result.packets_module_max);
+  fmt::format_to(out, "  packets     {}, {}; busiest module {}\n", result.packets,
+                 host::counted(result.bytes, "byte"),
+                 host::counted(result.packets_module_max, "packet"));
   write_refused(out, run.run.refused);
   fmt::format_to(out, "  image       {} bytes of flash, {} of RAM ({} of them the agent)\n",
                  firmware.flash_bytes, firmware.ram_bytes, firmware.agent_bytes);
@@ -121,8 +122,9 @@ std::string report_text(const Structure& structure, const CheckResult& exact,
                  firmware.step_count, firmware.step_cycles_mean, firmware.step_cycles_max,
                  static_cast<double>(firmware.step_cycles_max) / 48e3, firmware.step_longest);
   fmt::format_to(out, "  host        {}\n",
-                 firmware.mismatch_count == 0
-                     ? std::string("every step bit for bit the same")
+                 firmware.mismatch_count == 0 ? std::string("every step bit for bit the same")
+                 : firmware.mismatch_count == 1
+                     ? std::string("1 step is NOT the same")
                      : fmt::format("{} steps are NOT the same", firmware.mismatch_count));
   for (const std::string& note : structure.warnings) {
     fmt::format_to(out, "  note        {}\n", note);

@@ -53,7 +53,9 @@ base::Result<Structure> load_text(std::string_view text, std::string_view name, 
   auto [document, warnings] = std::move(read).value();
   if (document.steps.size() > 1 || !document.extension.plan.empty()) {
     warnings.push_back(fmt::format(
-        "{} steps are read; {} is judged, holdfast steps judges all", io::step_count(document),
+        "{} {} read; {} is judged, holdfast steps judges all",
+        host::counted(io::step_count(document), "step"),
+        io::step_count(document) == 1 ? "is" : "are",
         document.steps.empty() ? "the robot before them" : "the robot after the first"));
   }
   auto made = make_structure(std::move(document), name, thread_count);

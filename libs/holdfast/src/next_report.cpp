@@ -62,10 +62,11 @@ void write_next_json(std::ostream& out, const Structure& structure, const NextRe
 std::string next_text(const Structure& structure, const NextResult& result,
                       const NextReportOptions& options) {
   std::string text = fmt::format(
-      "{}: {} modules, {} places for the next: {} safe, {} undecided, {} overload, {} unstable\n",
-      io::one_line(structure.name), structure.robot.modules().size(), result.candidates.size(),
-      result.count(Verdict::kSafe), result.count(Verdict::kUndecided),
-      result.count(Verdict::kOverload), result.count(Verdict::kUnstable));
+      "{}: {}, {} for the next: {} safe, {} undecided, {} overload, {} unstable\n",
+      io::one_line(structure.name), host::counted(structure.robot.modules().size(), "module"),
+      host::counted(result.candidates.size(), "place"), result.count(Verdict::kSafe),
+      result.count(Verdict::kUndecided), result.count(Verdict::kOverload),
+      result.count(Verdict::kUnstable));
   const auto list = listed(result, options);
   if (!list.empty()) {
     text += fmt::format("  {:<10} {:>10} {:>12}  {}\n", "verdict", "load ratio", "margin", "cell");
@@ -74,7 +75,7 @@ std::string next_text(const Structure& structure, const NextResult& result,
     const std::string ratio =
         trial.load_ratio_max ? io::beside_one(*trial.load_ratio_max, 4) : std::string("-");
     const std::string margin =
-        trial.margin_mm ? fmt::format("{:.2f} mm", *trial.margin_mm) : std::string("-");
+        trial.margin_mm ? host::fixed(*trial.margin_mm, 2) + " mm" : std::string("-");
     text += fmt::format("  {:<10} {:>10} {:>12}  {}\n", verdict::name(trial.verdict), ratio, margin,
                         model::text(trial.cell));
   }

@@ -276,8 +276,8 @@ std::vector<std::uint64_t> sorted_rounds(const SimulatedNext& simulated) {
 
 std::string effort_text(const SimulatedNext& simulated, const RobotEffort& effort) {
   const auto seconds = sim::seconds(simulated.link, effort.time);
-  return fmt::format("{:.1f} sweeps, {} rounds, {} packets{}", simulated.sweeps(effort.rounds),
-                     effort.rounds, effort.packets,
+  return fmt::format("{:.1f} sweeps, {}, {}{}", simulated.sweeps(effort.rounds),
+                     host::counted(effort.rounds, "round"), host::counted(effort.packets, "packet"),
                      seconds ? fmt::format(", {:.2f} s", *seconds) : std::string());
 }
 
@@ -348,16 +348,16 @@ std::string simulated_next_text(const Structure& structure, const SimulatedNext&
       fmt::format("  robot       {} ({}){}: {}\n", verdict::name(to_verdict(answer.verdict)),
                   agent::name(answer.reason), simulated.all_agree ? "" : ", NOT all agree",
                   effort_text(simulated, simulated.verdict));
-  text += fmt::format("  together    {} of {} cells decided, {} of the {} that hang: {}\n",
-                      simulated.shown_count, simulated.next.candidates.size(),
-                      simulated.hanging_shown_count, simulated.hanging_count,
-                      effort_text(simulated, simulated.faces));
+  text += fmt::format(
+      "  together    {} of {} decided, {} of the {} that hang: {}\n", simulated.shown_count,
+      host::counted(simulated.next.candidates.size(), "cell"), simulated.hanging_shown_count,
+      simulated.hanging_count, effort_text(simulated, simulated.faces));
   const std::vector<std::uint64_t> rounds = sorted_rounds(simulated);
   if (!rounds.empty()) {
     text += fmt::format(
-        "  one by one  {} cells planned and withdrawn: {:.1f} sweeps each in the median, {:.1f} at "
+        "  one by one  {} planned and withdrawn: {:.1f} sweeps each in the median, {:.1f} at "
         "most\n",
-        rounds.size(), simulated.sweeps(rounds[rounds.size() / 2]),
+        host::counted(rounds.size(), "cell"), simulated.sweeps(rounds[rounds.size() / 2]),
         simulated.sweeps(rounds.back()));
   }
   return next_text(structure, simulated.next, options) + text;

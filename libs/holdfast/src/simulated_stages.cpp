@@ -167,9 +167,9 @@ std::string simulated_stages_text(const StepsFile& file, const SimulatedStages& 
       fmt::format_to(out, "  {:>5} {:<8} {:<10} {:<10} {:>10}  {}{}{}{}\n", i, plan::name(stage),
                      verdict::name(stages.exact.steps[i].stages[at(stage)].verdict),
                      verdict::name(to_verdict(answer.verdict)),
-                     ratio ? fmt::format("{:.4f}", *ratio) : "-",
-                     has_limit ? limit_name(answer) : "", has_limit ? ": " : "",
-                     agent::name(answer.reason), step.all_agree ? "" : "; NOT all agree");
+                     ratio ? io::beside_one(*ratio, 4) : "-", has_limit ? limit_name(answer) : "",
+                     has_limit ? ": " : "", agent::name(answer.reason),
+                     step.all_agree ? "" : "; NOT all agree");
     }
   }
   const auto unsafe = stages.first_unsafe();

@@ -363,8 +363,8 @@ std::string simulated_steps_text(const StepsFile& file, const SimulatedSteps& st
     fmt::format_to(
         out, "  {:>5} {:<10} {:<10} {:>10} {:>8} {:>8} {:>8} {:>8}  {}{}{}\n", step,
         verdict::name(change.exact), verdict::name(to_verdict(answer.verdict)),
-        ratio ? fmt::format("{:.4f}", *ratio) : "-", time_text(steps.link, change.kept.time),
-        time_text(steps.link, change.fresh.time), change.kept.packets, change.fresh.packets,
+        ratio ? io::beside_one(*ratio, 4) : "-", time_or_rounds(steps.link, change.kept.time),
+        time_or_rounds(steps.link, change.fresh.time), change.kept.packets, change.fresh.packets,
         name(change.kind), cells_text(change), change.kept.all_agree ? "" : "; NOT all agree");
   }
   fmt::format_to(out,

@@ -74,7 +74,7 @@ TEST(Refused, is_what_one_module_did_not_take_from_another) {
   EXPECT_EQ(spoilt.run.refused.cell, (base::Cell{2, 0, 0}));
   EXPECT_EQ(spoilt.json["distributed"]["refused"],
             nlohmann::json::parse(R"({"messages": 1, "cell": [2,0,0], "messages_of_cell": 1})"));
-  EXPECT_NE(spoilt.text.find("  refused     1 messages; most, 1, by (2,0,0)\n"), std::string::npos)
+  EXPECT_NE(spoilt.text.find("  refused     1 message; most, 1, by (2,0,0)\n"), std::string::npos)
       << spoilt.text;
 }
 

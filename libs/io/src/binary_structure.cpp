@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "holdfast/base/algebra.hpp"
+#include "holdfast/host/text.hpp"
 #include "holdfast/solver/morton_key.hpp"
 
 namespace holdfast::io {
@@ -70,9 +71,10 @@ std::optional<base::Error> find_fault(const BinaryHead& head, std::uint64_t file
   }
   if (head.record_size != sizeof(ModuleRecord) || head.text_size > kTextSizeMax ||
       head.module_count == 0 || head.module_count > kModuleCountMax) {
-    return base::bad_input(fmt::format("{} modules of {} bytes and a text of {} bytes",
-                                       head.module_count, head.record_size, head.text_size),
-                           "byte 12");
+    return base::bad_input(
+        fmt::format("{} of {} and a text of {}", host::counted(head.module_count, "module"),
+                    host::counted(head.record_size, "byte"), host::counted(head.text_size, "byte")),
+        "byte 12");
   }
   if (!is_within(head.low_corner(), kLowMax) || head.zero != 0) {
     return base::bad_input(
@@ -80,8 +82,9 @@ std::optional<base::Error> find_fault(const BinaryHead& head, std::uint64_t file
   }
   const std::uint64_t expected = head.records_begin() + sizeof(ModuleRecord) * head.module_count;
   if (file_size != expected) {
-    return base::bad_input(fmt::format("{} bytes long, expected are {}", file_size, expected),
-                           fmt::format("byte {}", std::min(file_size, expected)));
+    return base::bad_input(
+        fmt::format("{} long, expected are {}", host::counted(file_size, "byte"), expected),
+        fmt::format("byte {}", std::min(file_size, expected)));
   }
   return std::nullopt;
 }
@@ -267,9 +270,9 @@ std::uint64_t record_sum(std::span<const ModuleRecord> records, std::uint64_t fi
 base::Result<BinaryHead> read_binary_head(std::string_view begin, std::uint64_t file_size) {
   BinaryHead head;
   if (begin.size() < sizeof head) {
-    return base::bad_input(
-        fmt::format("{} bytes long, the head alone has {}", file_size, sizeof head),
-        fmt::format("byte {}", file_size));
+    return base::bad_input(fmt::format("{} long, the head alone has {}",
+                                       host::counted(file_size, "byte"), sizeof head),
+                           fmt::format("byte {}", file_size));
   }
   std::memcpy(&head, begin.data(), sizeof head);
   if (auto fault = find_fault(head, file_size)) {

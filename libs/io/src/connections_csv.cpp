@@ -20,10 +20,11 @@ constexpr std::string_view kNames =
 /// Rows that one thread makes at a time, some 60 KB.
 constexpr std::size_t kBlockRows = 512;
 
-/// The shortest digits that give the number back; "nan" and "inf" as they are.
+/// The shortest digits that give the number back; "nan" and "inf" as they are, a zero without a
+/// sign.
 template <class Number>
 void append(std::string& out, Number number) {
-  fmt::format_to(std::back_inserter(out), FMT_COMPILE("{},"), number);
+  fmt::format_to(std::back_inserter(out), FMT_COMPILE("{},"), number + Number(0));
 }
 
 /// The step that leads to the second module, in axial coordinates: "+x" and so on along one of

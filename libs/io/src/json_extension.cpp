@@ -9,6 +9,7 @@
 #include <optional>
 #include <utility>
 
+#include "holdfast/host/text.hpp"
 #include "json_connectors.hpp"
 #include "text_input.hpp"
 #include "vocabulary.hpp"
@@ -70,8 +71,8 @@ std::vector<model::CellPair> pairs(JsonReading& reading, const Json& value,
     if (ends.size() == 2) {
       list.push_back({ends[0], ends[1]});
     } else {
-      reading.fail(
-          here, fmt::format("found {} cells, expected are the two of a connection", ends.size()));
+      reading.fail(here, fmt::format("found {}, expected are the two of a connection",
+                                     host::counted(ends.size(), "cell")));
     }
   });
   return list;

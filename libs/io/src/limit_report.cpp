@@ -121,11 +121,10 @@ std::string limit_text(const ReportEntry& entry) {
                 "  limit load  no forces balance more than {} times these loads, in {:.2f} s\n",
                 beside_one(load.low, 4), entry.limit_seconds)
       : load.high < limit::kFactorMax
-          ? fmt::format(
-                "  limit load  not found: from {:.4g} to {:.4g} times these loads, in {:.2f} s\n",
-                load.low, load.high, entry.limit_seconds)
-          : fmt::format("  limit load  not found: {:.4g} times these loads or more, in {:.2f} s\n",
-                        load.low, entry.limit_seconds);
+          ? fmt::format("  limit load  not found: from {} to {} times these loads, in {:.2f} s\n",
+                        beside_one(load.low, 4), beside_one(load.high, 4), entry.limit_seconds)
+          : fmt::format("  limit load  not found: {} times these loads or more, in {:.2f} s\n",
+                        beside_one(load.low, 4), entry.limit_seconds);
   const std::vector<limit::Yield>& yields = load.mechanism.yields;
   for (std::size_t i = 0; i < std::min(yields.size(), kListedCount); ++i) {
     text += fmt::format("              then {} {}\n", place_text(*entry.robot, yields[i]),

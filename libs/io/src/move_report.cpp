@@ -8,6 +8,7 @@
 #include <iterator>
 #include <nlohmann/json.hpp>
 
+#include "holdfast/host/text.hpp"
 #include "holdfast/io/beside_one.hpp"
 #include "json_text.hpp"
 #include "json_values.hpp"
@@ -66,13 +67,9 @@ std::optional<double> margin_of(const plan::MovePlan& plan) {
   return plan.judgement ? plan.judgement->margin_min_mm : std::nullopt;
 }
 
-std::string counted(std::size_t count, const char* what) {
-  return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
-}
-
 std::string headline(const MoveReport& report) {
   const plan::MovePlan& plan = report.plan;
-  const std::string steps = counted(plan.steps.size(), "step");
+  const std::string steps = host::counted(plan.steps.size(), "step");
   switch (plan.outcome) {
     case MoveOutcome::kFound:
       return fmt::format("FOUND       {}{}\n", steps,
@@ -100,7 +97,7 @@ std::string proof_words(const plan::MoveCertificate& certificate) {
   }
   const bool is_backward = certificate.is_backward;
   return fmt::format("  proof       {} {}, and no {}move leads {} them\n",
-                     counted(certificate.shapes.size(), "shape"),
+                     host::counted(certificate.shapes.size(), "shape"),
                      is_backward ? "lead to the target" : "can be reached",
                      certificate.task.ignores_mechanics ? "" : "safe ",
                      is_backward ? "into" : "out of");
@@ -196,10 +193,11 @@ std::string move_text(const MoveReport& report) {
         fmt::format("  load ratio  {} at most on the way\n", beside_one(*load_ratio_of(plan), 4));
   }
   if (margin_of(plan)) {
-    text += fmt::format("  margin      {:.4g} mm at least on the way\n", *margin_of(plan));
+    text += fmt::format("  margin      {} mm at least on the way\n",
+                        host::significant(*margin_of(plan), 4));
   }
-  return text + fmt::format("  examined    {} in {:.3g} s\n", counted(plan.state_count, "move"),
-                            report.seconds);
+  return text + fmt::format("  examined    {} in {:.3g} s\n",
+                            host::counted(plan.state_count, "move"), report.seconds);
 }
 
 Document move_steps(const MoveReport& report) {

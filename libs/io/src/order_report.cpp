@@ -8,6 +8,8 @@
 #include <iterator>
 #include <vector>
 
+#include "holdfast/host/text.hpp"
+#include "holdfast/io/beside_one.hpp"
 #include "holdfast/io/order_certificate.hpp"
 #include "json_text.hpp"
 
@@ -83,9 +85,9 @@ std::string furthest_words(const OrderReport& report) {
   for (const plan::Batch& group : order.steps) {
     count = report.is_reversed ? count - group.size() : count + group.size();
   }
-  return fmt::format("  as far as   {} of {} modules, by {} step{}, every state {} is safe\n",
-                     count, report.task.target.existing.size(), order.steps.size(),
-                     order.steps.size() == 1 ? "" : "s",
+  return fmt::format("  as far as   {} of {}, by {}, every state {} is safe\n", count,
+                     host::counted(report.task.target.existing.size(), "module"),
+                     host::counted(order.steps.size(), "step"),
                      report.is_reversed ? "left behind" : "on the way");
 }
 
@@ -98,10 +100,12 @@ std::string none_words(const OrderReport& report) {
                        verdict::name(closure.blocked.front().second.verdict));
   }
   return fmt::format(
-      "  proof       {} safe state{} can be reached from {}, and all {} states that one step more "
-      "leads to are not safe\n",
-      closure.states.size(), closure.states.size() == 1 ? "" : "s",
-      is_growing ? "the start" : "the target, backwards,", closure.blocked.size());
+      "  proof       {} can be reached from {}, and {} that one step more leads to {} not safe\n",
+      host::counted(closure.states.size(), "safe state"),
+      is_growing ? "the start" : "the target, backwards,",
+      closure.blocked.size() == 1 ? "the only state"
+                                  : fmt::format("all {} states", closure.blocked.size()),
+      closure.blocked.size() == 1 ? "is" : "are");
 }
 
 }  // namespace
@@ -142,9 +146,8 @@ std::string order_json(const OrderReport& report) {
 
 std::string order_text(const OrderReport& report) {
   const plan::Order& order = report.result.order;
-  const std::string examined =
-      fmt::format("  examined    {} state{} in {:.2f} s\n", order.state_count,
-                  order.state_count == 1 ? "" : "s", report.seconds);
+  const std::string examined = fmt::format(
+      "  examined    {} in {:.2f} s\n", host::counted(order.state_count, "state"), report.seconds);
   if (order.outcome == OrderOutcome::kNotFound) {
     const std::string why =
         order.undecided_count == 0
@@ -157,18 +160,18 @@ std::string order_text(const OrderReport& report) {
     return "NONE        there is no safe order\n" + none_words(report) + help_words(report) +
            examined;
   }
-  std::string text = fmt::format("FOUND       {} step{}, every state {} is safe\n",
-                                 order.steps.size(), order.steps.size() == 1 ? "" : "s",
+  std::string text = fmt::format("FOUND       {}, every state {} is safe\n",
+                                 host::counted(order.steps.size(), "step"),
                                  report.is_reversed ? "left behind" : "on the way");
   if (report.result.load_ratio_max) {
     text += fmt::format(
-        "  load ratio  {:.4g} is the largest of the states that were solved, no state exceeds "
-        "{:.4g}\n",
-        *report.result.load_ratio_max, *report.result.load_ratio_bound);
+        "  load ratio  {} is the largest of the states that were solved, no state exceeds {}\n",
+        beside_one(*report.result.load_ratio_max, 4),
+        beside_one(*report.result.load_ratio_bound, 4));
   }
   if (report.result.margin_min_mm) {
-    text +=
-        fmt::format("  margin      {:.4g} mm at least on the way\n", *report.result.margin_min_mm);
+    text += fmt::format("  margin      {} mm at least on the way\n",
+                        host::significant(*report.result.margin_min_mm, 4));
   }
   return text + examined;
 }

@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "edge_text.hpp"
+#include "holdfast/host/text.hpp"
 #include "holdfast/io/beside_one.hpp"
 #include "holdfast/io/report.hpp"
 
@@ -17,8 +19,9 @@ using Numbers = std::array<double, Reason::kNumberMax>;
 
 using Cells = std::span<const base::Cell>;
 
-std::string edge_text(const Numbers& n) {
-  return fmt::format("the edge ({:.10g}, {:.10g})-({:.10g}, {:.10g}) mm", n[0], n[1], n[2], n[3]);
+/// Counts are among a reason's numbers.
+std::string counted(double count, std::string_view one, std::string_view many = {}) {
+  return fmt::format("{:.0f} {}", count, host::noun(count == 1, one, many));
 }
 
 /// Which modules carry and are carried only the stage of a step knows.
@@ -113,9 +116,9 @@ std::string load_text(const Reason& reason, Cells cells) {
     case ReasonCode::kSolutionsDisagree:
       return "stable, but " + several_text(n) + "; they do not agree whether anything breaks";
     case ReasonCode::kConnectionsBreak:
-      return fmt::format(
-          "{:.0f} of {:.0f} connections would break; the worst, {}, carries {} of its strength",
-          n[0], n[1], connection_text(cells), beside_one(n[3], 4));
+      return fmt::format("{:.0f} of {} would break; the worst, {}, carries {} of its strength",
+                         n[0], counted(n[1], "connection"), connection_text(cells),
+                         beside_one(n[3], 4));
     case ReasonCode::kNoKnownTension:
       return fmt::format(
           "stable, and no connection is known to be pulled apart: none carries more than {:.1g} of "
@@ -128,15 +131,22 @@ std::string load_text(const Reason& reason, Cells cells) {
       return several_text(n) + (n[0] < 2 ? "; both give this verdict" : "; all give this verdict");
     case ReasonCode::kAmbiguousFeet:
       return fmt::format(
-          "{:.0f} lifted feet would touch down again if they slid freely, and lift again if held; "
-          "between the two the largest load ratio lies from {} to {}",
-          n[0], beside_one(n[1], 4), beside_one(n[2], 4));
+          "{} would touch down again if {} slid freely, and lift again if held; between the two "
+          "the largest load ratio lies from {} to {}",
+          counted(n[0], "lifted foot", "lifted feet"), n[0] == 1 ? "it" : "they",
+          beside_one(n[1], 4), beside_one(n[2], 4));
     default:
       return {};
   }
 }
 
 }  // namespace
+
+std::string edge_text(std::span<const double, 4> ends) {
+  return fmt::format("the edge ({}, {})-({}, {}) mm", host::significant(ends[0], 10),
+                     host::significant(ends[1], 10), host::significant(ends[2], 10),
+                     host::significant(ends[3], 10));
+}
 
 std::string reason_text(const model::Robot& robot, const verdict::Reason& reason) {
   return reason_text(reason, verdict::cells_of(robot, reason));
@@ -148,10 +158,10 @@ std::string reason_text(const verdict::Reason& reason, std::span<const base::Cel
     case ReasonCode::kNothingToSpare:
       return fmt::format(
           "the centre of mass lies exactly over {} of the support polygon: nothing to spare",
-          edge_text(n));
+          edge_text(std::span(n).first<4>()));
     case ReasonCode::kTopples:
-      return fmt::format("it topples over {}: the centre of mass lies {:.2f} mm beyond it",
-                         edge_text(n), n[4]);
+      return fmt::format("it topples over {}: the centre of mass lies {} mm beyond it",
+                         edge_text(std::span(n).first<4>()), host::fixed(n[4], 2));
     case ReasonCode::kTooManyModules:
       return fmt::format(
           "stable, but the {:.0f} modules are too many for the solver's memory, so the loads are "
@@ -159,10 +169,11 @@ std::string reason_text(const verdict::Reason& reason, std::span<const base::Cel
           n[0]);
     case ReasonCode::kNoEquilibrium:
     case ReasonCode::kSingularStiffness:
-      return fmt::format(
-          "stable, but no equilibrium was found in {:.0f} steps of the contact iteration{}", n[0],
-          reason.code == ReasonCode::kSingularStiffness ? ": the stiffness matrix became singular"
-                                                        : "");
+      return fmt::format("stable, but no equilibrium was found in {} of the contact iteration{}",
+                         counted(n[0], "step"),
+                         reason.code == ReasonCode::kSingularStiffness
+                             ? ": the stiffness matrix became singular"
+                             : "");
     case ReasonCode::kModelDisagrees:
       return fmt::format("the model-based check says {}; on flat ground the rigid body decides",
                          n[0] != 0 ? "stable" : "unstable");
@@ -178,10 +189,10 @@ std::string reason_text(const verdict::Reason& reason, std::span<const base::Cel
           model::text(cells[0]), beside_one(n[1], 4), n[2]);
     case ReasonCode::kGapsOpen:
       return fmt::format(
-          "warning: {:.0f} connections open so far that contacts of power and data part; the "
-          "worst, "
-          "{}, by {:.3g} mm at its edge where {:.3g} are allowed",
-          n[0], connection_text(cells), n[2], n[3]);
+          "warning: {} so far that contacts of power and data part; the worst, {}, by {:.3g} mm at "
+          "its edge where {:.3g} are allowed",
+          n[0] == 1 ? "1 connection opens" : fmt::format("{:.0f} connections open", n[0]),
+          connection_text(cells), n[2], n[3]);
     case ReasonCode::kCarrierBreaks:
       return fmt::format(
           "the connection by which {} carries the module from {} would break: it carries {} of its "
@@ -193,7 +204,7 @@ std::string reason_text(const verdict::Reason& reason, std::span<const base::Cel
           "strength",
           carrier_text(cells, 0), carrier_text(cells, 1), beside_one(n[0], 4));
     case ReasonCode::kInPieces:
-      return fmt::format("the robot is in {:.0f} pieces, each judged by itself", n[0]);
+      return fmt::format("the robot is in {}, each judged by itself", counted(n[0], "piece"));
     case ReasonCode::kVerdictOfTheRobot:
       return fmt::format("the robot's own verdict: {}{}", reason.quoted,
                          n[0] != 0 ? "" : "; not every module knows it");

@@ -2,10 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
+#include <array>
 #include <cmath>
 #include <iterator>
 
 #include "connection_list.hpp"
+#include "edge_text.hpp"
+#include "holdfast/host/text.hpp"
 #include "holdfast/io/beside_one.hpp"
 #include "holdfast/io/report.hpp"
 #include "limit_report.hpp"
@@ -48,10 +51,9 @@ void write_stability(Out out, const model::Robot& robot, const verdict::Assessme
   const char* word = assessment.is_stable ? "stable" : is_doubtful ? "not certain" : "unstable";
   if (body.margin_mm) {
     const auto& [a, b] = *body.edge;
-    fmt::format_to(
-        out,
-        "  stability   {}, margin {:.2f} mm at the edge ({:.10g}, {:.10g})-({:.10g}, {:.10g}) mm",
-        word, *body.margin_mm, a.x, a.y, b.x, b.y);
+    const std::array<double, 4> ends = {a.x, a.y, b.x, b.y};
+    fmt::format_to(out, "  stability   {}, margin {} mm at {}", word,
+                   host::fixed(*body.margin_mm, 2), edge_text(ends));
   } else if (assessment.stability_rule == verdict::StabilityRule::kHeld) {
     fmt::format_to(out, "  stability   {}, held by a {}", word,
                    robot.fixed_count() > 0 ? "fixed module" : "bonded support");
@@ -79,9 +81,10 @@ void write_loads(Out out, const model::Robot& robot, const verdict::Assessment& 
   const std::vector<std::size_t> order = most_loaded(assessment, kListedCount);
   for (std::size_t i = 0; i < order.size(); ++i) {
     const verdict::ConnectionResult& result = assessment.connections[order[i]];
-    fmt::format_to(out, "  {}  {:>7}  {:<24} {:9.3f} N axial {:9.1f} N mm bending\n",
+    fmt::format_to(out, "  {}  {:>7}  {:<24} {:>9} N axial {:>9} N mm bending\n",
                    i == 0 ? "load ratio" : "          ", beside_one(result.load_ratio, 4),
-                   model::ends_text(robot, order[i]), result.axial_n, result.bending_nmm);
+                   model::ends_text(robot, order[i]), host::fixed(result.axial_n, 3),
+                   host::fixed(result.bending_nmm, 1));
   }
   if (!order.empty() && !assessment.is_stable) {
     fmt::format_to(out, "              (not meaningful: the robot {})\n",
@@ -104,10 +107,11 @@ void write_solver(Out out, const verdict::Assessment& assessment, double seconds
     fmt::format_to(out, "  loads       not sought, as the robot topples; {}\n", time);
     return;
   }
-  fmt::format_to(out, "  contact     {}; {} linear solves{} in {}\n",
-                 verdict::name(assessment.contact_model), equilibrium.steps,
+  fmt::format_to(out, "  contact     {}; {}{} in {}\n", verdict::name(assessment.contact_model),
+                 host::counted(equilibrium.steps, "linear solve"),
                  equilibrium.method == solver::Method::kMultigrid
-                     ? fmt::format(", {} iterations of multigrid", equilibrium.iteration_count)
+                     ? fmt::format(", {} of multigrid",
+                                   host::counted(equilibrium.iteration_count, "iteration"))
                      : "",
                  time);
 }
@@ -122,10 +126,10 @@ void write_proof(Out out, const ReportEntry& entry) {
   }
   const double low = found.ratio_low - std::abs(found.ratio_low) * kOutwards;
   const double high = found.ratio_high + std::abs(found.ratio_high) * kOutwards;
-  fmt::format_to(out,
-                 "  proof       the largest load ratio lies between {:.13g} and {:.13g}; {} linear "
-                 "solves in {}\n",
-                 low, high, entry.proof->solve_count, time_text(entry.proof_seconds));
+  fmt::format_to(
+      out, "  proof       the largest load ratio lies between {:.13g} and {:.13g}; {} in {}\n", low,
+      high, host::counted(entry.proof->solve_count, "linear solve"),
+      time_text(entry.proof_seconds));
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <set>
 
+#include "holdfast/host/text.hpp"
 #include "holdfast/io/beside_one.hpp"
 #include "holdfast/io/report.hpp"
 #include "holdfast/io/steps_report.hpp"
@@ -33,7 +34,7 @@ bool is_safe(const plan::StepJudgement& step) {
 std::string numbers_text(const StageJudgement& stage) {
   const std::string ratio = stage.load_ratio_max ? beside_one(*stage.load_ratio_max, 4) : "-";
   const std::string margin =
-      stage.margin_mm ? fmt::format("{:+.2f}", *stage.margin_mm) : std::string("-");
+      stage.margin_mm ? host::fixed_signed(*stage.margin_mm, 2) : std::string("-");
   return fmt::format("{:>7} {:>8}", ratio, margin);
 }
 
@@ -138,10 +139,10 @@ std::string write_steps_text(const StepsEntry& entry) {
     safe_count += is_safe(step) ? 1 : 0;
   }
   text += fmt::format(
-      "  {} of {} steps safe in all stages; largest load ratio {}, smallest margin {}\n",
-      safe_count, io::step_count(*entry.document),
+      "  {} of {} safe in all stages; largest load ratio {}, smallest margin {}\n", safe_count,
+      host::counted(io::step_count(*entry.document), "step"),
       judged.load_ratio_max ? beside_one(*judged.load_ratio_max, 4) : "unknown",
-      judged.margin_min_mm ? fmt::format("{:+.2f} mm", *judged.margin_min_mm) : "none (held)");
+      judged.margin_min_mm ? host::fixed_signed(*judged.margin_min_mm, 2) + " mm" : "none (held)");
   if (judged.first_unsafe) {
     text += id_text(entry, *judged.first_unsafe, "unsafe");
   }

@@ -6,6 +6,7 @@
 #include <array>
 #include <tuple>
 
+#include "holdfast/host/text.hpp"
 #include "svg_parts.hpp"
 
 namespace holdfast::io {
@@ -230,8 +231,7 @@ std::string touch_text(const model::Robot& robot, std::size_t module) {
   }
   std::string text = is_on_floor ? ", on the ground" : "";
   if (obstacle_count > 0) {
-    text += fmt::format(", touches obstacles with {} side{}", obstacle_count,
-                        obstacle_count == 1 ? "" : "s");
+    text += ", touches obstacles with " + host::counted(obstacle_count, "side");
   }
   return text;
 }

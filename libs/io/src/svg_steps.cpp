@@ -8,6 +8,7 @@
 #include <limits>
 #include <vector>
 
+#include "holdfast/host/text.hpp"
 #include "holdfast/io/steps_report.hpp"
 #include "svg_layout.hpp"
 #include "svg_text.hpp"
@@ -187,7 +188,8 @@ std::string write_steps_svg(const StepsEntry& entry) {
       "fill=\"{2}\"/>\n",
       number(kWidth), number(height), kCardFill);
   add_text(out, kLeft, 24, "start", 16,
-           fit_text(fmt::format("{}: {} steps, {}", entry.name, entry.judgement->steps.size(),
+           fit_text(fmt::format("{}: {}, {}", entry.name,
+                                host::counted(entry.judgement->steps.size(), "step"),
                                 verdict::name(entry.judgement->verdict())),
                     16, kRight - kLeft),
            kInk);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "holdfast/host/text.hpp"
 #include "holdfast/io/picture.hpp"
 #include "holdfast/io/report.hpp"
 #include "svg_parts.hpp"
@@ -14,13 +15,12 @@ namespace {
 std::string description(const Scene& scene) {
   const Headline line = headline(scene);
   const std::size_t count = scene.robot.modules().size() - scene.ghost_count;
-  std::string text = fmt::format(
-      "Isometric view of a modular robot of {} module{}, {} of them "
-      "planned. {}: {}.",
-      count, count == 1 ? "" : "s", scene.robot.planned_count() - scene.ghost_count, line.verdict,
-      line.essence);
+  std::string text =
+      fmt::format("Isometric view of a modular robot of {}, {} of them planned. {}: {}.",
+                  host::counted(count, "module"), scene.robot.planned_count() - scene.ghost_count,
+                  line.verdict, line.essence);
   if (scene.ghost_count > 0) {
-    text += fmt::format(" {} places where a module may go.", scene.ghost_count);
+    text += fmt::format(" {} where a module may go.", host::counted(scene.ghost_count, "place"));
   }
   for (const verdict::Reason& reason : scene.assessment.reasons) {
     const std::string sentence = reason_text(scene.robot, reason);

@@ -9,6 +9,7 @@
 #include <string>
 #include <utility>
 
+#include "holdfast/host/text.hpp"
 #include "holdfast/sim/trace.hpp"
 
 namespace holdfast::sim {
@@ -58,7 +59,7 @@ std::string describe(const agent::Answer& answer, const base::Lattice& lattice) 
   std::string line = fmt::format("knows the verdict: {} ({})", agent::name(answer.verdict),
                                  agent::name(answer.reason));
   if (answer.verdict == agent::Verdict::kSafe || answer.verdict == agent::Verdict::kOverload) {
-    line += fmt::format(", load ratio {:.4g} at {} {}", answer.load_ratio_max,
+    line += fmt::format(", load ratio {} at {} {}", host::beside_one(answer.load_ratio_max, 4, 0),
                         text(answer.worst_cell), face_name(answer.worst_direction, lattice));
   }
   return line;
@@ -104,7 +105,8 @@ StoryTrace::~StoryTrace() = default;
 void StoryTrace::begin(const model::Robot& robot, const LinkModel& link) {
   writer_->robot = &robot;
   writer_->link = link;
-  writer_->write("{} modules, {} planned\n", robot.modules().size() - robot.planned_count(),
+  writer_->write("{}, {} planned\n",
+                 host::counted(robot.modules().size() - robot.planned_count(), "module"),
                  robot.planned_count());
 }
 
@@ -158,7 +160,7 @@ void StoryTrace::end(const SimulationResult& result) {
   }
   writer.write("{:<12} {:>14} {:>12} {:>14}\n", "all", writer.text_of(result.time), result.packets,
                result.bytes);
-  writer.write("{} packets lost, {}\n", result.lost_packets,
+  writer.write("{} lost, {}\n", host::counted(result.lost_packets, "packet"),
                result.is_quiet ? "all is quiet" : "stopped at a limit");
   writer.out.flush();
 }

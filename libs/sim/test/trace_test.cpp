@@ -109,6 +109,16 @@ TEST(StoryTrace, tells_of_waves_phases_verdicts_and_faults) {
   }
 }
 
+TEST(StoryTrace, does_not_round_load_ratios_across_1) {
+  agent::Answer answer;
+  answer.verdict = agent::Verdict::kOverload;
+  answer.load_ratio_max = 1.0003F;
+  EXPECT_NE(describe(answer).find(", load ratio 1.0003 at (0,0,0) +x"), std::string::npos);
+  answer.verdict = agent::Verdict::kSafe;
+  answer.load_ratio_max = 0.99999F;
+  EXPECT_NE(describe(answer).find(", load ratio 0.99999 at (0,0,0) +x"), std::string::npos);
+}
+
 TEST(StoryTrace, is_short_when_it_tells_of_the_first_modules_only) {
   std::ostringstream all_text;
   std::ostringstream short_text;

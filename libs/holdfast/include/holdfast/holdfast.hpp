@@ -17,6 +17,7 @@
 #include "holdfast/host/interruption.hpp"      // IWYU pragma: export
 #include "holdfast/host/large_pages.hpp"       // IWYU pragma: export
 #include "holdfast/host/output_file.hpp"       // IWYU pragma: export
+#include "holdfast/host/text.hpp"              // IWYU pragma: export
 #include "holdfast/io/beside_one.hpp"          // IWYU pragma: export
 #include "holdfast/io/binary_structure.hpp"    // IWYU pragma: export
 #include "holdfast/io/collapse.hpp"            // IWYU pragma: export
