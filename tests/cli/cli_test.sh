@@ -361,6 +361,18 @@ expect_line err "^holdfast: noted.xml: note: .*'isWall' is unknown and kept$"
 expect_exit 65 check slip.xml "$safe"
 expect_exit 0 simulate --quiet noted.json
 expect_line err "note: .*'colour_scheme'"
+# Once, where both outputs go to one place; on standard error and in the report, where they do not.
+json '"modules": [[0,0,0]], "colour_scheme": 3, "planned": [[0,0,1]]' >noted_steps.json
+for words in 'check noted.json' 'simulate noted.json' 'simulate --steps noted_steps.json' \
+  'simulate --stages noted_steps.json'; do
+  # shellcheck disable=SC2086
+  "$program" $words >both 2>&1 </dev/null
+  [ "$(grep -c colour_scheme both)" -eq 1 ] || fault "not one note: $words: $(cat both)"
+  # shellcheck disable=SC2086
+  expect_exit 0 $words
+  expect_line err "note: .*'colour_scheme'"
+  expect_line out "  note  .*'colour_scheme'"
+done
 expect_exit 0 convert noted.json noted_again.xml
 expect_line err "note: .*'colour_scheme'"
 

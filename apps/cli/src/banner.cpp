@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: The holdfast authors
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <array>
@@ -13,7 +14,19 @@ namespace {
 
 bool has_colour() { return isatty(STDOUT_FILENO) != 0 && std::getenv("NO_COLOR") == nullptr; }
 
+/// Whether what goes to standard error is seen, or kept, where standard output is.
+bool is_one_output() {
+  struct stat out {};
+
+  struct stat error {};
+
+  return ::fstat(STDOUT_FILENO, &out) == 0 && ::fstat(STDERR_FILENO, &error) == 0 &&
+         out.st_dev == error.st_dev && out.st_ino == error.st_ino;
+}
+
 }  // namespace
+
+TextOptions text_options() { return {.has_notes = !is_one_output()}; }
 
 std::string banner(verdict::Verdict verdict) {
   std::string word = verdict::name(verdict);

@@ -108,7 +108,7 @@ class CheckRun {
     const verdict::Assessment& assessment = result.assessment;
     if (!is_many()) {
       fmt::print("{} {}\n{}", banner(assessment.verdict), io::one_line(structure.name),
-                 report_text(structure, result));
+                 report_text(structure, result, text_options()));
       return;
     }
     const std::string ratio =

@@ -102,6 +102,9 @@ inline void print_notes(std::span<const std::string> notes, const std::string& f
   }
 }
 
+/// Notes are on standard error already: a text report for the same place does without them.
+TextOptions text_options();
+
 /// An output that was asked for and that there is nothing for: a file that is there stays as it
 /// was.
 inline void print_not_written(const std::string& file, const char* reason) {

@@ -15,7 +15,7 @@ bool show_run(const Options& options, bool is_silent, const Structure& structure
               const CheckResult& exact, const Run& run, const DistributedRun& picture) {
   if (!is_silent) {
     fmt::print("{} {}\n{}", banner(picture.view.verdict), io::one_line(structure.name),
-               report_text(structure, exact, run));
+               report_text(structure, exact, run, text_options()));
   }
   bool is_written = true;
   if (!options.json.empty()) {

@@ -198,6 +198,7 @@ class SimulateRun {
     if (!file) {
       return fail(file.error(), options_.file);
     }
+    print_notes(file.value().warnings, options_.file);
     return options_.judges_stages ? run_stages(file.value()) : run_kept(file.value());
   }
 
@@ -211,7 +212,7 @@ class SimulateRun {
     const verdict::Verdict verdict = stages.value().verdict();
     if (!options_.is_quiet && options_.json != "-") {
       fmt::print("{} {}\n{}", banner(verdict), io::one_line(file.name),
-                 simulated_stages_text(file, stages.value()));
+                 simulated_stages_text(file, stages.value(), text_options()));
     }
     const bool is_written =
         options_.json.empty() || write_or_complain(options_.json, [&](std::ostream& out) {
@@ -231,7 +232,7 @@ class SimulateRun {
     const verdict::Verdict worst = worst_verdict(steps.value());
     if (!options_.is_quiet && options_.json != "-") {
       fmt::print("{} {}\n{}", banner(worst), io::one_line(file.name),
-                 simulated_steps_text(file, steps.value()));
+                 simulated_steps_text(file, steps.value(), text_options()));
     }
     const bool is_written =
         options_.json.empty() || write_or_complain(options_.json, [&](std::ostream& out) {

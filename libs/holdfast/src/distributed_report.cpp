@@ -174,16 +174,13 @@ std::string report_json(const Structure& structure, const CheckResult& exact,
 }
 
 std::string report_text(const Structure& structure, const CheckResult& exact,
-                        const DistributedRun& run) {
+                        const DistributedRun& run, const TextOptions& options) {
   std::string text;
   const TextOut out(text);
   write_answer(out, structure, exact, run);
   write_cost(out, run);
-  for (const auto* list : {&structure.warnings, &run.notes}) {
-    for (const std::string& note : *list) {
-      fmt::format_to(out, "  note        {}\n", note);
-    }
-  }
+  add_notes(text, structure.warnings, options);
+  add_notes(text, run.notes, {});
   return text;
 }
 

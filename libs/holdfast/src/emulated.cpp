@@ -101,7 +101,7 @@ std::string report_json(const Structure& structure, const CheckResult& exact,
 }
 
 std::string report_text(const Structure& structure, const CheckResult& exact,
-                        const EmulatedRun& run) {
+                        const EmulatedRun& run, const TextOptions& options) {
   const sim::SimulationResult& result = run.run.result;
   const emulator::FirmwareReport& firmware = run.firmware;
   std::string text;
@@ -126,9 +126,7 @@ std::string report_text(const Structure& structure, const CheckResult& exact,
                  : firmware.mismatch_count == 1
                      ? std::string("1 step is NOT the same")
                      : fmt::format("{} steps are NOT the same", firmware.mismatch_count));
-  for (const std::string& note : structure.warnings) {
-    fmt::format_to(out, "  note        {}\n", note);
-  }
+  add_notes(text, structure.warnings, options);
   return text;
 }
 

@@ -29,6 +29,12 @@ io::ReportEntry entry_of(const Structure& structure, const CheckResult& result) 
           .limit_seconds = result.limit_seconds};
 }
 
+void add_notes(std::string& text, std::span<const std::string> notes, const TextOptions& options) {
+  for (const std::string& note : options.has_notes ? notes : std::span<const std::string>()) {
+    text += fmt::format("  note        {}\n", note);
+  }
+}
+
 std::string_view version() { return kVersion; }
 
 base::Result<Structure> make_structure(io::Document document, std::string_view name,
@@ -223,8 +229,13 @@ std::string report_json(const Structure& structure, const CheckResult& result) {
   return io::write_report_json(entry_of(structure, result));
 }
 
-std::string report_text(const Structure& structure, const CheckResult& result) {
-  return io::write_report_text(entry_of(structure, result));
+std::string report_text(const Structure& structure, const CheckResult& result,
+                        const TextOptions& options) {
+  io::ReportEntry entry = entry_of(structure, result);
+  if (!options.has_notes) {
+    entry.warnings = {};
+  }
+  return io::write_report_text(entry);
 }
 
 std::string picture_svg(const Structure& structure, const CheckResult& result) {

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <span>
 #include <sstream>
 #include <string>
 #include <utility>
@@ -12,6 +13,9 @@ namespace holdfast {
 
 /// What a report needs of a checked structure: views of both.
 io::ReportEntry entry_of(const Structure& structure, const CheckResult& result);
+
+/// Adds the reader's notes to a text report, if they belong there.
+void add_notes(std::string& text, std::span<const std::string> notes, const TextOptions& options);
 
 /// What a function writes to a stream, as a text.
 template <class Write>

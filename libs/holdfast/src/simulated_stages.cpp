@@ -9,6 +9,8 @@
 #include <ostream>
 #include <utility>
 
+#include "report_entry.hpp"
+
 namespace holdfast {
 namespace {
 
@@ -153,7 +155,8 @@ base::Result<SimulatedStages> simulate_stages(
   return result;
 }
 
-std::string simulated_stages_text(const StepsFile& file, const SimulatedStages& stages) {
+std::string simulated_stages_text(const StepsFile& file, const SimulatedStages& stages,
+                                  const TextOptions& options) {
   std::string text;
   const auto out = std::back_inserter(text);
   fmt::format_to(out, "  {:>5} {:<8} {:<10} {:<10} {:>10}  {}\n", "step", "stage", "exact", "robot",
@@ -176,9 +179,7 @@ std::string simulated_stages_text(const StepsFile& file, const SimulatedStages& 
   if (unsafe) {
     fmt::format_to(out, "  first unsafe: step {}, {}\n", unsafe->step, plan::name(unsafe->stage));
   }
-  for (const std::string& warning : file.warnings) {
-    fmt::format_to(out, "  note        {}\n", warning);
-  }
+  add_notes(text, file.warnings, options);
   return text;
 }
 

@@ -9,6 +9,9 @@
 #include <optional>
 #include <utility>
 
+#include "distributed_parts.hpp"
+#include "report_entry.hpp"
+
 namespace holdfast {
 namespace {
 
@@ -351,7 +354,8 @@ verdict::Verdict worst_verdict(const SimulatedSteps& steps) {
   return verdict::Verdict::kSafe;
 }
 
-std::string simulated_steps_text(const StepsFile& file, const SimulatedSteps& steps) {
+std::string simulated_steps_text(const StepsFile& file, const SimulatedSteps& steps,
+                                 const TextOptions& options) {
   std::string text;
   const auto out = std::back_inserter(text);
   fmt::format_to(out, "  {:>5} {:<10} {:<10} {:>10} {:>17} {:>17}  {}\n", "step", "exact", "robot",
@@ -370,9 +374,7 @@ std::string simulated_steps_text(const StepsFile& file, const SimulatedSteps& st
   fmt::format_to(out,
                  "  from what the robot keeps a step takes {:.2f} of the time, in the median\n",
                  steps.time_share_median);
-  for (const std::string& warning : file.warnings) {
-    fmt::format_to(out, "  note        {}\n", warning);
-  }
+  add_notes(text, file.warnings, options);
   return text;
 }
 

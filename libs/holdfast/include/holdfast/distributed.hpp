@@ -105,7 +105,7 @@ void write_distributed(io::JsonStream& json, const DistributedRun& run);
 
 /// For people: what the robot found, beside the exact answer, and what it cost by phases.
 std::string report_text(const Structure& structure, const CheckResult& exact,
-                        const DistributedRun& run);
+                        const DistributedRun& run, const TextOptions& options = {});
 
 /// The robot in the colours of its own load ratios.
 std::string picture_svg(const Structure& structure, const DistributedRun& run);

@@ -37,6 +37,6 @@ std::string report_json(const Structure& structure, const CheckResult& exact,
 
 /// For people.
 std::string report_text(const Structure& structure, const CheckResult& exact,
-                        const EmulatedRun& run);
+                        const EmulatedRun& run, const TextOptions& options = {});
 
 }  // namespace holdfast

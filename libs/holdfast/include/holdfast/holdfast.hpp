@@ -196,10 +196,15 @@ std::vector<base::Vec6<double>> ground_forces(const model::Robot& robot, const C
 /// none, as nothing could be proved, or no proof was wanted.
 base::Result<std::string> certificate_text(const CheckResult& result);
 
+struct TextOptions {
+  bool has_notes = true;  ///< Whether it lists those of the reader.
+};
+
 /// Reports and pictures of a checked structure; see io/report.hpp and io/picture.hpp. The text is
 /// what the program prints below the line of the verdict.
 std::string report_json(const Structure& structure, const CheckResult& result);
-std::string report_text(const Structure& structure, const CheckResult& result);
+std::string report_text(const Structure& structure, const CheckResult& result,
+                        const TextOptions& options = {});
 std::string picture_svg(const Structure& structure, const CheckResult& result);
 std::string picture_vtu(const Structure& structure, const CheckResult& result);
 

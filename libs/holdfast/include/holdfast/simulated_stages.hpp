@@ -64,7 +64,8 @@ base::Result<SimulatedStages> simulate_stages(
     const std::function<void(std::size_t step)>& progress = {});
 
 /// For people: a line for every stage.
-std::string simulated_stages_text(const StepsFile& file, const SimulatedStages& stages);
+std::string simulated_stages_text(const StepsFile& file, const SimulatedStages& stages,
+                                  const TextOptions& options = {});
 
 /// Keys as of write_steps_json() where they mean the same.
 void write_simulated_stages_json(std::ostream& out, const StepsFile& file,

@@ -61,7 +61,8 @@ base::Result<SimulatedSteps> simulate_steps(
 verdict::Verdict worst_verdict(const SimulatedSteps& steps);
 
 /// For people: a line for every change.
-std::string simulated_steps_text(const StepsFile& file, const SimulatedSteps& steps);
+std::string simulated_steps_text(const StepsFile& file, const SimulatedSteps& steps,
+                                 const TextOptions& options = {});
 
 void write_simulated_steps_json(std::ostream& out, const StepsFile& file,
                                 const SimulatedSteps& steps);
