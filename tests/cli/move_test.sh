@@ -86,6 +86,9 @@ expect_refusal 65 'has 3 modules and its target 2' row.json less.json
 expect_refusal 65 'the target: ' row.json parts.json
 expect_refusal 65 'the robot is unstable before any step' tips.json four.json
 expect_refusal 65 'missing.json' row.json missing.json
+shape planned.json '[0,0,0],[1,0,0]], "planned": [[2,0,0]'
+expect_refusal 65 '^holdfast: planned.json: /planned: the robot has planned' planned.json next.json
+expect_refusal 65 '^holdfast: planned.json: /planned: the target has planned' row.json planned.json
 expect_exit 1 move four.json tips.json
 expect_line out 'the target itself is not safe: unstable'
 expect_exit 64 move row.json tower.json --seconds -1

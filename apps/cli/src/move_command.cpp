@@ -107,7 +107,9 @@ int verify(const MoveArguments& options, const MoveRequest& request, const io::D
   return kExitSafe;
 }
 
-base::Result<io::Document> read(const std::string& file, const io::ReadOptions& options) {
+/// A robot as it stands, so that an error names the file that it is in.
+base::Result<io::Document> read(const std::string& file, std::string_view which,
+                                const io::ReadOptions& options) {
   const auto text = read_file(file);
   if (!text) {
     return text.error();
@@ -117,6 +119,9 @@ base::Result<io::Document> read(const std::string& file, const io::ReadOptions& 
     return found.error();
   }
   print_notes(found.value().warnings, file);
+  if (const auto spec = io::standing_spec(found.value().document, which); !spec) {
+    return spec.error();
+  }
   return std::move(found).value().document;
 }
 
@@ -145,11 +150,11 @@ int run(const MoveArguments& options) {
                         {{"--output", options.steps}, {"--json", options.json}})) {
     return kExitUsage;
   }
-  const auto start = read(options.start, options.reading);
+  const auto start = read(options.start, "the robot", options.reading);
   if (!start) {
     return fail(start.error(), options.start);
   }
-  const auto target = read(options.target, options.reading);
+  const auto target = read(options.target, "the target", options.reading);
   if (!target) {
     return fail(target.error(), options.target);
   }

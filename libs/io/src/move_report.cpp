@@ -103,17 +103,6 @@ std::string proof_words(const plan::MoveCertificate& certificate) {
                      is_backward ? "into" : "out of");
 }
 
-std::optional<base::Error> find_plan(const Document& document, const char* which) {
-  if (document.steps.empty() && document.extension.plan.empty()) {
-    return std::nullopt;
-  }
-  return base::Error{
-      .code = base::ErrorCode::kBadInput,
-      .message =
-          fmt::format("{} has planned modules or steps; allowed are robots as they stand", which),
-      .where = document.steps.empty() ? "/steps" : "/planned"};
-}
-
 base::Error no_certificate(const char* expected, const char* where) {
   return {.code = base::ErrorCode::kBadInput,
           .message = fmt::format("expected is {}, as holdfast move --json writes it", expected),
@@ -141,17 +130,23 @@ std::optional<std::vector<base::Cell>> read_shape(const Json& value) {
 
 }  // namespace
 
-base::Result<plan::MoveTask> move_task(const Document& start, const Document& target) {
-  auto fault = find_plan(start, "the robot");
-  fault = fault ? fault : find_plan(target, "the target");
-  if (fault) {
-    return *std::move(fault);
+base::Result<model::RobotSpec> standing_spec(const Document& document, std::string_view which) {
+  if (document.steps.empty() && document.extension.plan.empty()) {
+    return make_spec(document);
   }
-  auto from = make_spec(start);
+  return base::Error{
+      .code = base::ErrorCode::kBadInput,
+      .message =
+          fmt::format("{} has planned modules or steps; allowed are robots as they stand", which),
+      .where = document.steps.empty() ? "/steps" : "/planned"};
+}
+
+base::Result<plan::MoveTask> move_task(const Document& start, const Document& target) {
+  auto from = standing_spec(start, "the robot");
   if (!from) {
     return from.error();
   }
-  auto to = make_spec(target);
+  auto to = standing_spec(target, "the target");
   if (!to) {
     return to.error();
   }
