@@ -31,7 +31,7 @@ expect_line out '^FOUND +8 steps'
 expect_line out '4 of them not safe'
 expect_exit 1 steps short.json
 expect_exit 64 steps short.json --vtk short.vtu
-expect_line err 'expected is OUT.pvd'
+expect_line err 'short.vtu: .* expected is a name that ends with .pvd'
 
 # A row cannot go on in its own layer: proved, and proved again.
 shape row.json '[0,0,0],[1,0,0],[2,0,0]'

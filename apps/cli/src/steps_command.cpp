@@ -107,9 +107,11 @@ bool complain_of_series(const StepsArguments& options) {
     return true;
   }
   if (options.vtk.ends_with(".vtu")) {
-    fmt::print(stderr,
-               "holdfast: --vtk {}: the pictures' list is no picture; expected is OUT.pvd\n",
-               io::one_line(options.vtk));
+    fmt::print(
+        stderr,
+        "holdfast: --vtk {}: the steps are several .vtu files and one list of them, which is to "
+        "be named here; expected is a name that ends with .pvd\n",
+        io::one_line(options.vtk));
     return true;
   }
   for (const std::string& file : {options.file, options.json, options.svg, options.html}) {
