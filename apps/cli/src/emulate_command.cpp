@@ -20,6 +20,7 @@ namespace {
 using emulator::Fault;
 
 struct EmulateArguments {
+  io::ReadOptions reading;
   std::string file;
   std::string board = "v2";
   std::string image;
@@ -56,7 +57,7 @@ class EmulateRun {
     if (complain_of_clash(inputs, {{"--json", options_.json}, {"--svg", options_.svg}})) {
       return kExitUsage;
     }
-    const auto structure = load_with_notes(options_.file);
+    const auto structure = load_with_notes(options_.file, options_.reading);
     if (!structure) {
       return fail(structure.error(), options_.file);
     }
@@ -164,6 +165,7 @@ Command add_emulate(CLI::App& app) {
                          "microcontroller for every module");
   add_required(*command, "FILE", options->file,
                "Structure: VisibleSim XML, holdfast JSON or binary; - is standard input");
+  add_reading(*command, options->reading);
   command
       ->add_option("--board", options->board,
                    "Lines and memory of Blinky Blocks v2 (115,200 baud) or v1 (38,400), both with "

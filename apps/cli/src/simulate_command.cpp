@@ -21,6 +21,7 @@ namespace holdfast::cli {
 namespace {
 
 struct SimulateArguments {
+  io::ReadOptions reading;
   std::string file;
   std::string method = "elimination";
   std::string link = "v1";
@@ -116,7 +117,7 @@ class SimulateRun {
     if (options_.asks_next) {
       return run_next();
     }
-    const auto structure = load_with_notes(options_.file);
+    const auto structure = load_with_notes(options_.file, options_.reading);
     if (!structure) {
       return fail(structure.error(), options_.file);
     }
@@ -149,7 +150,7 @@ class SimulateRun {
           "--next goes with none of --kill, --cut, --detach, --plan, --withdraw, --attach, "
           "--trace, --story");
     }
-    const auto structure = load_with_notes(options_.file);
+    const auto structure = load_with_notes(options_.file, options_.reading);
     if (!structure) {
       return fail(structure.error(), options_.file);
     }
@@ -194,7 +195,7 @@ class SimulateRun {
           "--steps and --stages go with none of --kill, --cut, --detach, --plan, --withdraw, "
           "--attach, --trace, --story, --svg, --next");
     }
-    const auto file = load_steps(options_.file);
+    const auto file = load_steps(options_.file, options_.reading);
     if (!file) {
       return fail(file.error(), options_.file);
     }
@@ -350,6 +351,7 @@ Command add_simulate(CLI::App& app) {
       "simulate", "Let the robot work out its own verdict, module by module, message by message");
   add_required(*command, "FILE", options->file,
                "Structure: VisibleSim XML, holdfast JSON or binary; - is standard input");
+  add_reading(*command, options->reading);
   command
       ->add_option(
           "--method", options->method,
