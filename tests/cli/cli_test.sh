@@ -295,6 +295,13 @@ expect_exit 64 check
 expect_exit 64 check "$safe" "$overload" --svg picture.svg
 expect_exit 0 --help
 expect_line out 'check'
+for command in check steps next order move simulate emulate convert generate view; do
+  expect_exit 0 "$command" --help
+  expect_line out 'Exit.*: 0 '
+  for code in 64 65 70; do
+    tr '\n' ' ' <out | grep -Eq "Exit.*[ ,(]$code " || fault "$command --help does not say $code"
+  done
+done
 expect_exit 0 check --help
 expect_line out '64 wrong usage'
 expect_exit 0 --version

@@ -85,6 +85,8 @@ _holdfast() {
       ;;
     simulate)
       case $previous in
+        --robot) : ;;
+        --lattice) : ;;
         --method) words="elimination fronts polynomial cg block-jacobi jacobi" ;;
         --link) words="v1 v2 catoms unit" ;;
         --seed) : ;;
@@ -104,11 +106,13 @@ _holdfast() {
         --trace) files=1 ;;
         --story) files=1 ;;
         --svg) files=1 ;;
-        *) if [[ $current == -* ]]; then words="-h --help --method --link --seed --loss --duplicate --reorder --corrupt --jitter --kill --cut --detach --plan --withdraw --attach --steps --stages --next --json --connections --trace --story --svg -q --quiet"; else files=1; fi ;;
+        *) if [[ $current == -* ]]; then words="-h --help --robot --lattice --method --link --seed --loss --duplicate --reorder --corrupt --jitter --kill --cut --detach --plan --withdraw --attach --steps --stages --next --json --connections --trace --story --svg -q --quiet"; else files=1; fi ;;
       esac
       ;;
     emulate)
       case $previous in
+        --robot) : ;;
+        --lattice) : ;;
         --board) words="v2 v1" ;;
         --image) files=1 ;;
         --pages) files=1 ;;
@@ -124,7 +128,7 @@ _holdfast() {
         --json) files=1 ;;
         --connections) : ;;
         --svg) files=1 ;;
-        *) if [[ $current == -* ]]; then words="-h --help --board --image --pages --seed --kill --reset --cut --flip --plan --withdraw --attach --time --json --connections --svg -q --quiet"; else files=1; fi ;;
+        *) if [[ $current == -* ]]; then words="-h --help --robot --lattice --board --image --pages --seed --kill --reset --cut --flip --plan --withdraw --attach --time --json --connections --svg -q --quiet"; else files=1; fi ;;
       esac
       ;;
     convert)

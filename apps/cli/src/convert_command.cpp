@@ -109,7 +109,7 @@ Command add_convert(CLI::App& app) {
       "attributes; not kept are comments and the layout of the text. A binary structure, "
       ".holdfast,\n"
       "is small and quick to read; it has what check needs, and a note says what it leaves out.\n"
-      "Exit: 0 written, 64 wrong usage, 65 bad input or not writable.");
+      "Exit: 0 written, 64 wrong usage, 65 bad input or not writable, 70 out of memory.");
   return {command, [options] { return run(*options); }};
 }
 

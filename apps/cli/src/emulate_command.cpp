@@ -200,7 +200,7 @@ Command add_emulate(CLI::App& app) {
       "for\n"
       "the robot and what is planned in the end. Nothing is told before 0.4 s after the start.\n"
       "Exit, by the robot's verdict: 0 safe, 1 overload or unstable, 2 undecided, 64 wrong usage,\n"
-      "65 bad input, no firmware, or a program without Unicorn.");
+      "65 bad input, not writable, no firmware, or a program without Unicorn, 70 out of memory.");
   return {command, [options] { return EmulateRun(*options).run(); }};
 }
 

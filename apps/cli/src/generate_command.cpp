@@ -51,7 +51,9 @@ Command add_generate(CLI::App& app) {
   for (const auto& [name, help] : family_list()) {
     footer += fmt::format("  {:<12}{}\n", name, help);
   }
-  command->footer(footer + "All stand on z = 0. Exit: 0 written, 64 wrong usage, 65 not writable.");
+  command->footer(footer +
+                  "All stand on z = 0.\n"
+                  "Exit: 0 written, 64 wrong usage, 65 not writable, 70 out of memory.");
   return {command, [options] { return run(*options); }};
 }
 

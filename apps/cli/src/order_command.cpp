@@ -273,9 +273,10 @@ Command add_order(CLI::App& app) {
   add_reading(*command, options->reading);
   command->footer(
       "Every state on the way is checked as holdfast check does it; one that is undecided is not\n"
-      "safe. The first interrupt ends the search and leaves what it has. Exit: 0 found, 1 there "
-      "is\n"
-      "none, 2 not found in the time given, 64 wrong usage, 65 bad input or not writable.");
+      "safe. The first interrupt ends the search and leaves what it has.\n"
+      "Exit: 0 found, 1 there is none, 2 not found in the time given, 64 wrong usage, 65 bad "
+      "input\n"
+      "or not writable, 70 out of memory.");
   return {command, [options] { return run(*options); }};
 }
 

@@ -400,7 +400,7 @@ Command add_simulate(CLI::App& app) {
       "stands there for every stage, and the exit code is that of the first unsafe one.\n"
       "With --next the exit code is that of holdfast next, by what the robot says.\n"
       "Exit, by the robot's verdict: 0 safe, 1 overload or unstable, 2 undecided, 64 wrong usage,\n"
-      "65 bad input.");
+      "65 bad input or not writable, 70 out of memory.");
   return {command, [options] { return SimulateRun(*options).run(); }};
 }
 

@@ -192,8 +192,9 @@ Command add_steps(CLI::App& app) {
       "those of \"steps\". In each the robot is judged after letting go (release), at every "
       "waypoint\n"
       "of what moves (shift), and when all is connected again (connect).\n"
-      "Exit: 0 all safe, 1 any unsafe, 2 any undecided, 64 wrong usage, 65 bad input\n"
-      "or not writable, 70 out of memory.");
+      "Exit: 0 all safe, or proved again, 1 any unsafe, 2 any undecided, 64 wrong usage, 65 bad "
+      "input,\n"
+      "not writable or not proved, 70 out of memory.");
   return {command, [options] { return run(*options); }};
 }
 

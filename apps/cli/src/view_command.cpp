@@ -92,7 +92,7 @@ Command add_view(CLI::App& app) {
   command->footer(
       "Writes one HTML file that needs neither a server nor a network, prints its name, opens it;\n"
       "with --out - the page goes to standard output, and nothing is opened.\n"
-      "Exit: 0 written, 64 wrong usage, 65 bad input, no page or not writable.");
+      "Exit: 0 written, 64 wrong usage, 65 bad input, no page or not writable, 70 out of memory.");
   return {command, [options] { return run(*options); }};
 }
 
