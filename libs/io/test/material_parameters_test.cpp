@@ -75,6 +75,42 @@ TEST(MaterialParameters, have_the_ranges_of_the_schema) {
   }
 }
 
+/// Version 2 of one module, with a member more.
+bool is_read(const std::string& key, const nlohmann::json& value,
+             const nlohmann::json& gravity = nullptr) {
+  nlohmann::json root = {{"format", "holdfast-structure"}, {"version", 2}};
+  root["modules"] = nlohmann::json::parse("[[0, 0, 0]]");
+  root[key] = value;
+  if (!gravity.is_null()) {
+    root["gravity_m_s2"] = gravity;
+  }
+  return read_json(root.dump()).has_value();
+}
+
+/// What the schema excludes the reader refuses: two strengths, of the material or of a kind, and
+/// two gravities.
+TEST(MaterialParameters, exclude_each_other_as_in_the_schema) {
+  const auto schema = nlohmann::json::parse(document_text("structure.schema.json"));
+  const nlohmann::json strengths = {{"$ref", "#/definitions/strength_twice"}};
+  EXPECT_EQ(schema["properties"]["material"]["not"], strengths);
+  EXPECT_EQ(schema["properties"]["kinds"]["additionalProperties"]["not"], strengths);
+  const auto& excluded = schema["definitions"]["strength_twice"];
+  const std::string one = excluded["required"][0];
+  EXPECT_TRUE(is_read("material", {{one, 5}}));
+  EXPECT_EQ(excluded["anyOf"].size(), 2U);
+  for (const auto& other : excluded["anyOf"]) {
+    const std::string two = other["required"][0];
+    EXPECT_TRUE(is_read("material", {{two, 5}})) << two;
+    EXPECT_FALSE(is_read("material", {{one, 5}, {two, 5}})) << two;
+    EXPECT_FALSE(is_read("kinds", {{"heavy", {{one, 5}, {two, 5}}}})) << two;
+  }
+  EXPECT_EQ(schema["not"], nlohmann::json({{"$ref", "#/definitions/gravity_twice"}}));
+  const std::string inner =
+      schema["definitions"]["gravity_twice"]["properties"]["material"]["required"][0];
+  EXPECT_TRUE(is_read("material", {{"mass_kg", 1}}, {0, 0, -1}));
+  EXPECT_FALSE(is_read("material", {{inner, 1}}, {0, 0, -1}));
+}
+
 /// The row that docs/formats.md has to have; a failure shows it.
 std::string row(const MaterialParameter& parameter) {
   const std::string visiblesim =
