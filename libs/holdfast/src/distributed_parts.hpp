@@ -20,6 +20,9 @@ RefusedMessages refused_by(const model::Robot& robot, const Agents& agents);
 
 using TextOut = std::back_insert_iterator<std::string>;
 
+/// "1.250 s"; `otherwise` if ticks of the link have no length.
+std::string time_text(const sim::LinkModel& link, sim::Time time, const std::string& otherwise);
+
 /// The exact answer and the robot's.
 void write_answer(TextOut out, const Structure& structure, const CheckResult& exact,
                   const DistributedRun& run);

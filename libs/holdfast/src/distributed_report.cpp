@@ -54,11 +54,6 @@ void write_phases(io::JsonStream& json, const DistributedRun& run) {
   json.end_object();
 }
 
-std::string time_text(const sim::LinkModel& link, sim::Time time) {
-  const auto seconds = sim::seconds(link, time);
-  return seconds ? fmt::format("{:.3f} s", *seconds) : std::string("-");
-}
-
 void write_cost(TextOut out, const DistributedRun& run) {
   const sim::SimulationResult& result = run.result;
   if (result.effort.solves > 0) {
@@ -82,11 +77,16 @@ void write_cost(TextOut out, const DistributedRun& run) {
     const sim::PhaseStatistics& phase = result.phases[i];
     fmt::format_to(out, "  {:<12} {:>9} {:>10} {:>10} {:>12}\n",
                    sim::name(static_cast<agent::Phase>(i)), phase.rounds, phase.packets,
-                   phase.bytes, time_text(run.link, phase.time));
+                   phase.bytes, time_text(run.link, phase.time, "-"));
   }
 }
 
 }  // namespace
+
+std::string time_text(const sim::LinkModel& link, sim::Time time, const std::string& otherwise) {
+  const auto seconds = sim::seconds(link, time);
+  return seconds ? fmt::format("{:.3f} s", *seconds) : otherwise;
+}
 
 void write_answer(TextOut out, const Structure& structure, const CheckResult& exact,
                   const DistributedRun& run) {

@@ -256,9 +256,9 @@ std::string cells_text(const StepChange& change) {
   return text;
 }
 
-std::string time_text(const sim::LinkModel& link, sim::Time time) {
-  const auto seconds = sim::seconds(link, time);
-  return seconds ? fmt::format("{:.2f} s", *seconds) : fmt::format("{}", time);
+/// In rounds where ticks have no length.
+std::string time_or_rounds(const sim::LinkModel& link, sim::Time time) {
+  return time_text(link, time, fmt::format("{}", time));
 }
 
 void write_answer(io::JsonStream& json, const sim::LinkModel& link, const StepAnswer& answer) {
@@ -358,14 +358,14 @@ std::string simulated_steps_text(const StepsFile& file, const SimulatedSteps& st
                                  const TextOptions& options) {
   std::string text;
   const auto out = std::back_inserter(text);
-  fmt::format_to(out, "  {:>5} {:<10} {:<10} {:>10} {:>17} {:>17}  {}\n", "step", "exact", "robot",
+  fmt::format_to(out, "  {:>5} {:<10} {:<10} {:>10} {:>21} {:>17}  {}\n", "step", "exact", "robot",
                  "load ratio", "time kept, fresh", "packets", "what happens");
   for (const StepChange& change : steps.changes) {
     const agent::Answer& answer = change.kept.answer;
     const std::string step = change.kind == Kind::kStart ? "" : fmt::format("{}", change.step);
     const auto ratio = load_ratio_max(answer);
     fmt::format_to(
-        out, "  {:>5} {:<10} {:<10} {:>10} {:>8} {:>8} {:>8} {:>8}  {}{}{}\n", step,
+        out, "  {:>5} {:<10} {:<10} {:>10} {:>10} {:>10} {:>8} {:>8}  {}{}{}\n", step,
         verdict::name(change.exact), verdict::name(to_verdict(answer.verdict)),
         ratio ? io::beside_one(*ratio, 4) : "-", time_or_rounds(steps.link, change.kept.time),
         time_or_rounds(steps.link, change.fresh.time), change.kept.packets, change.fresh.packets,
