@@ -1,9 +1,10 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: The holdfast authors
 # SPDX-License-Identifier: Apache-2.0
-"""manual.py PROGRAM CHECKER FOLDER [--check]   writes the man pages of both programs, and of the
-first the completions for bash, zsh and fish, from what their --help says. With --check nothing is
-written; exits 1 if a file in FOLDER is not what would be written."""
+"""manual.py PROGRAM CHECKER FOLDER [--mpi MPI_PROGRAM] [--check]   writes the man pages of the
+programs, and of the first the completions for bash, zsh and fish, from what their --help says; that
+of holdfast-mpi only if it is given, as not every build has it. With --check nothing is written;
+exits 1 if a file in FOLDER is not what would be written."""
 import pathlib
 import re
 import subprocess
@@ -12,6 +13,7 @@ import sys
 SECTIONS = {'Positionals': 'ARGUMENTS', 'Options': 'OPTIONS', 'Subcommands': 'COMMANDS'}
 FILE_TYPES = {'FILE', 'FOLDER', 'FROM', 'START', 'STEPS.json', 'TARGET', 'TO'}
 CHECKER = 'holdfast-checker'
+MPI = 'holdfast-mpi'
 
 
 class Entry:
@@ -87,11 +89,18 @@ def ask_values(program, command, entry):
 
 
 def read_pages(program):
+    """The --help of the program itself and of its commands, by their names."""
     pages = {'': Page(output_of(program, '--help'))}
     for command in pages[''].lists['Subcommands']:
-        page = pages[command.names[0]] = Page(output_of(program, command.names[0], '--help'))
-        for entry in page.options():
-            ask_values(program, command.names[0], entry)
+        pages[command.names[0]] = Page(output_of(program, command.names[0], '--help'))
+    return pages
+
+
+def read_pages_with_values(program):
+    pages = read_pages(program)
+    for name, page in pages.items():
+        for entry in page.options() if name else []:
+            ask_values(program, name, entry)
     families = output_of(program, 'generate', '?', '1')
     pages['generate'].arguments()[0].values = re.search('there are (.*)', families)[1].split(', ')
     return pages
@@ -118,18 +127,19 @@ def roff_preformatted(text):
     return f'.PP\n.nf\n{roff(text)}\n.fi\n' if text else ''
 
 
-def man_page(pages, version):
+def man_page(name, summary, pages, version, other):
     main = pages['']
-    text = roff_head('holdfast', version, 'will a modular robot hold?')
-    text += f'.SH SYNOPSIS\n.B holdfast\nCOMMAND [OPTIONS] ARGUMENTS\n'
+    text = roff_head(name, version, summary)
+    text += f'.SH SYNOPSIS\n.B {roff(name)}\nCOMMAND [OPTIONS] ARGUMENTS\n'
     text += f'.SH DESCRIPTION\n{roff(main.summary)}\n'
+    text += roff_preformatted(main.footer)
     text += f'.SH OPTIONS\n{roff_list(main.options())}.SH COMMANDS\n'
     for command in main.lists['Subcommands']:
         page = pages[command.names[0]]
         text += f'.SS {roff(page.usage)}\n{roff(page.summary)}.\n'
         text += roff_list(page.arguments()) + roff_list(page.options())
         text += roff_preformatted(page.footer)
-    return text + '.SH SEE ALSO\n.BR holdfast\\-checker (1)\n'
+    return text + f'.SH SEE ALSO\n.BR {roff(other)} (1)\n'
 
 
 def checker_page(help_text, version):
@@ -275,13 +285,19 @@ def fish_completion(pages):
 
 def main():
     program, checker, folder = sys.argv[1:4]
-    pages = read_pages(program)
+    pages = read_pages_with_values(program)
     version = output_of(program, '--version').split()[1]
-    files = {'holdfast.1': man_page(pages, version),
+    files = {'holdfast.1': man_page('holdfast', 'will a modular robot hold?', pages, version,
+                                    CHECKER),
              f'{CHECKER}.1': checker_page(output_of(checker, '--help'), version),
              'holdfast.bash': bash_completion(pages),
              '_holdfast': zsh_completion(pages),
              'holdfast.fish': fish_completion(pages)}
+    if '--mpi' in sys.argv:
+        mpi = sys.argv[sys.argv.index('--mpi') + 1]
+        files[f'{MPI}.1'] = man_page(
+            MPI, 'will a modular robot hold that is too large for one machine?', read_pages(mpi),
+            output_of(mpi, '--version').split()[1], 'holdfast')
     stale = []
     for name, text in files.items():
         path = pathlib.Path(folder) / name

@@ -65,6 +65,28 @@ class Outputs:
                     (65, True))
         return file
 
+    def check_words(self):
+        """The version, and the lattice of a file that does not say it, as of holdfast."""
+        done = self.run('--version')
+        said = subprocess.run([self.holdfast, '--version'], text=True, capture_output=True,
+                              check=True).stdout
+        self.expect('version', (done.returncode, done.stdout),
+                    (0, said.replace('holdfast', 'holdfast-mpi')))
+        file, one, parts = (self.path(name) for name in ('catoms.xml', 'one.holdfast',
+                                                         'parts.holdfast'))
+        with open(file, 'w', encoding='ascii') as xml:
+            xml.write('<world><blockList><block position="0,0,0" orientation="1"/>'
+                      '<block position="0,0,1" orientation="2"/></blockList></world>')
+        subprocess.run([self.holdfast, 'convert', '--lattice', 'catoms3D', file, one], check=True,
+                       capture_output=True)
+        done = self.run('convert', '--lattice', 'catoms3D', file, parts)
+        self.expect('convert --lattice: exit', done.returncode, 0)
+        with open(one, 'rb') as a, open(parts, 'rb') as b:
+            self.expect('convert --lattice: the same bytes', a.read() == b.read(), True)
+        self.expect('check --lattice', self.run('check', '--lattice', 'hexagonal', one).returncode,
+                    65)
+        self.expect('no lattice', self.run('check', '--lattice', 'fcc', file).returncode, 64)
+
     def check_picture(self, cube, size):
         """Each module, connection and facet of a cube is a cell of one piece."""
         picture = self.path('cube.pvtu')
@@ -142,6 +164,7 @@ class Outputs:
 def main():
     with tempfile.TemporaryDirectory() as folder:
         outputs = Outputs(os.path.abspath(sys.argv[1]), os.path.abspath(sys.argv[2]), folder)
+        outputs.check_words()
         cube = outputs.check_generated()
         outputs.check_picture(cube, 12)
         outputs.check_checkpoint()

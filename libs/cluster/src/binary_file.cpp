@@ -137,8 +137,8 @@ bool is_binary_file(PetscRanks& ranks, const std::string& file) {
   return host::any(&ranks, is_binary);
 }
 
-base::Result<std::pair<SharedText, std::vector<Record>>> read_binary_file(PetscRanks& ranks,
-                                                                          const std::string& path) {
+base::Result<std::pair<SharedText, std::vector<Record>>> read_binary_file(
+    PetscRanks& ranks, const std::string& path, const io::ReadOptions& options) {
   SharedFile file(ranks, path);
   if (!host::all(&ranks, file.is_open())) {
     return base::Error{.code = base::ErrorCode::kUnreadable, .message = "cannot be opened"};
@@ -158,7 +158,7 @@ base::Result<std::pair<SharedText, std::vector<Record>>> read_binary_file(PetscR
   if (!file.read_all(sizeof head, std::as_writable_bytes(std::span(text.document)))) {
     return base::bad_input("the text could not be read", fmt::format("byte {}", sizeof head));
   }
-  const auto document = io::read_binary_text(head, text.document);
+  const auto document = io::read_binary_text(head, text.document, options);
   if (!document) {
     return document.error();
   }

@@ -21,7 +21,7 @@ bool is_binary_file(PetscRanks& ranks, const std::string& file);
 
 /// Reads this rank's modules by MPI-IO. All ranks return the same error: what is wrong, and at
 /// which byte or module.
-base::Result<std::pair<SharedText, std::vector<Record>>> read_binary_file(PetscRanks& ranks,
-                                                                          const std::string& file);
+base::Result<std::pair<SharedText, std::vector<Record>>> read_binary_file(
+    PetscRanks& ranks, const std::string& file, const io::ReadOptions& options);
 
 }  // namespace holdfast::cluster

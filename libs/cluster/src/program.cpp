@@ -338,7 +338,7 @@ int generate(PetscRanks& ranks, const Options& options) {
     return complain(ranks, count.error(), options.output);
   }
   if (ranks.rank() == 0 && !options.is_quiet) {
-    fmt::print("{}: {} modules\n", options.output, count.value());
+    fmt::print("{}: {}\n", options.output, host::counted(count.value(), "module"));
     std::fflush(stdout);
   }
   return 0;
@@ -355,7 +355,7 @@ int convert(PetscRanks& ranks, const Options& options) {
     if (!written) {
       code = complain(ranks, written.error(), options.file);
     } else if (!options.is_quiet) {
-      fmt::print("{}: {} modules\n", options.output, written.value());
+      fmt::print("{}: {}\n", options.output, host::counted(written.value(), "module"));
       std::fflush(stdout);
     }
   }
@@ -379,17 +379,62 @@ std::vector<std::string> own_arguments(int argc, char** argv) {
   return own;
 }
 
+/// A value that must be given. The help shows no type beside its name.
+template <class Value>
+void add_required(CLI::App& command, const std::string& name, Value& value,
+                  const std::string& help) {
+  command.add_option(name, value, help)->type_name("")->required();
+}
+
+void add_file(CLI::App& command, const std::string& name, std::string& file,
+              const std::string& help) {
+  command.add_option(name, file, help)->type_name("FILE");
+}
+
+/// As of the commands of holdfast.
+void add_reading(CLI::App& command, io::ReadOptions& reading) {
+  command.add_option("--robot", reading.robot, "Robot of files that do not say it")
+      ->type_name("NAME");
+  command
+      .add_option_function<std::string>(
+          "--lattice",
+          [&reading](const std::string& name) { reading.lattice = io::find_lattice(name).value(); },
+          "Lattice of files that do not say it, such as VisibleSim's, or VisibleSim's name of the "
+          "modules")
+      ->type_name("NAME")
+      ->check([](const std::string& name) {
+        const auto found = io::find_lattice(name);
+        return found ? std::string() : found.error().message;
+      });
+}
+
+/// Which of one rank and of many answers.
+void add_sizes(CLI::App& check, Options& options) {
+  check
+      .add_option("--alone-max", options.alone_max,
+                  "Robots of no more modules are checked by one rank, as holdfast check does")
+      ->type_name("N")
+      ->capture_default_str();
+  check
+      .add_option("--again-max", options.again_max,
+                  "Robots of no more modules that ranks leave undecided are checked once more by "
+                  "one rank, as holdfast check does")
+      ->type_name("N")
+      ->capture_default_str();
+  check.add_option("--memory", options.memory_gb, "Most memory for the solver, GB, of each rank")
+      ->capture_default_str();
+}
+
 CLI::App& add_check(CLI::App& app, Options& options) {
   CLI::App& check = *app.add_subcommand("check", "Say whether a structure holds");
-  check.add_option("file", options.file, "Structure: binary, VisibleSim XML or holdfast JSON")
-      ->required();
-  check.add_option("--robot", options.reading.robot, "Robot of files that do not say it");
-  check.add_option("--json", options.json, "Write the report as JSON; - is standard output");
-  check.add_option("--vtk", options.vtk,
-                   "Write a .pvtu file for ParaView, and beside it a .vtu file of each rank");
-  check.add_option("--checkpoint", options.checkpoint,
-                   "Keep contact states in this file after every step, go on from those that it "
-                   "has, and remove it when there is an answer");
+  add_required(check, "FILE", options.file, "Structure: binary, VisibleSim XML or holdfast JSON");
+  add_reading(check, options.reading);
+  add_file(check, "--json", options.json, "Write the report as JSON; - is standard output");
+  add_file(check, "--vtk", options.vtk,
+           "Write a .pvtu file for ParaView, and beside it a .vtu file of each rank");
+  add_file(check, "--checkpoint", options.checkpoint,
+           "Keep contact states in this file after every step, go on from those that it has, and "
+           "remove it when there is an answer");
   check.add_flag("--quiet", options.is_quiet, "Print errors only; the exit code is the answer");
   check.add_flag("--bonded", options.is_bonded,
                  "Let the ground hold like a module below would: no lifting, no tilting");
@@ -398,45 +443,52 @@ CLI::App& add_check(CLI::App& app, Options& options) {
   check.add_flag("--multigrid", options.is_multigrid_only,
                  "Do without the direct solver, on one rank, too, and ask nobody once more: to "
                  "compare iterations");
-  check
-      .add_option("--alone-max", options.alone_max,
-                  "Robots of no more modules are checked by one rank, as holdfast check does")
-      ->capture_default_str();
-  check
-      .add_option("--again-max", options.again_max,
-                  "Robots of no more modules that ranks leave undecided are checked once more by "
-                  "one rank, as holdfast check does")
-      ->capture_default_str();
-  check.add_option("--memory", options.memory_gb, "Most memory for the solver, GB, of each rank");
+  add_sizes(check, options);
+  check.footer(
+      "Exit: 0 safe, 1 overload or unstable, 2 undecided, 64 wrong usage, 65 bad input or not\n"
+      "writable, 70 a rank failed or is out of memory.");
   return check;
 }
+
+constexpr const char* kWrittenCodes =
+    "Exit: 0 written, 64 wrong usage, 65 bad input or not writable, 70 a rank failed or is out of\n"
+    "memory.";
 
 CLI::App& add_generate(CLI::App& app, Options& options) {
   CLI::App& generation = *app.add_subcommand(
       "generate", "Write a binary structure of a family, each rank a part of it");
-  generation.add_option("family", options.family, "As of holdfast generate")->required();
-  generation.add_option("size", options.size, "As of holdfast generate")->required();
-  generation.add_option("-o,--output", options.output, "File to write")->required();
+  add_required(generation, "FAMILY", options.family, "As of holdfast generate");
+  add_required(generation, "SIZE", options.size, "As of holdfast generate");
+  add_file(generation, "-o,--output", options.output, "File to write");
+  generation.get_option("--output")->required();
   generation.add_flag("--quiet", options.is_quiet, "Print errors only");
+  generation.footer(kWrittenCodes);
   return generation;
+}
+
+void add_convert(CLI::App& app, Options& options) {
+  CLI::App& conversion = *app.add_subcommand("convert", "Write a binary structure");
+  add_required(conversion, "FROM", options.file, "VisibleSim XML or holdfast JSON");
+  add_required(conversion, "TO", options.output, "File to write");
+  add_reading(conversion, options.reading);
+  conversion.footer(kWrittenCodes);
 }
 
 int run_command(PetscRanks& ranks, int argc, char** argv) {
   Options options;
   CLI::App app{"Will it hold? For robots that are too large for one machine: in parts, by MPI."};
   app.name("holdfast-mpi");
+  app.set_version_flag("--version", "holdfast-mpi " + std::string(holdfast::version()));
   app.require_subcommand(1);
   const CLI::App& check = add_check(app, options);
   const CLI::App& generation = add_generate(app, options);
-  CLI::App& conversion = *app.add_subcommand("convert", "Write a binary structure");
-  conversion.add_option("input", options.file, "VisibleSim XML or holdfast JSON")->required();
-  conversion.add_option("output", options.output, "File to write")->required();
+  add_convert(app, options);
   app.footer(
       "--ranks N, anywhere: start mpirun with so many ranks, and say what came of it in one line\n"
       "and one exit code. Without it mpirun or srun starts the ranks.\n"
       "Options with one dash, such as -ksp_monitor or -log_view, are PETSc's; they come last.\n"
       "Exit: 0 safe, 1 unsafe, 2 undecided, 64 wrong usage, 65 bad input or not writable,\n"
-      "70 a rank failed.");
+      "70 a rank failed or is out of memory.");
   try {
     app.parse(own_arguments(argc, argv));
   } catch (const CLI::ParseError& error) {

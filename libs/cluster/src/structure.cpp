@@ -73,8 +73,9 @@ std::vector<Record> scatter(PetscRanks& ranks, const Whole& whole) {
 }
 
 base::Result<Structure> structure_of(PetscRanks& ranks, const SharedText& text,
-                                     std::vector<Record> records) {
-  auto read = io::read_json(text.document);
+                                     std::vector<Record> records,
+                                     const io::ReadOptions& options = {}) {
+  auto read = io::read_json(text.document, options);
   if (!read) {
     return read.error();
   }
@@ -125,12 +126,12 @@ base::Result<Structure> read_structure(PetscRanks& ranks, const std::string& fil
   if (!is_binary_file(ranks, file)) {
     return read_text(ranks, file, options);
   }
-  auto read = read_binary_file(ranks, file);
+  auto read = read_binary_file(ranks, file, options);
   if (!read) {
     return read.error();
   }
   auto [text, records] = std::move(read).value();
-  return structure_of(ranks, text, std::move(records));
+  return structure_of(ranks, text, std::move(records), options);
 }
 
 base::Result<std::size_t> write_binary(const io::Document& document, const std::string& file) {
