@@ -8,6 +8,7 @@
 
 #include "commands.hpp"
 #include "file_clash.hpp"
+#include "holdfast/move.hpp"
 #include "holdfast/order.hpp"
 #include "interruption.hpp"
 #include "progress.hpp"
