@@ -74,7 +74,8 @@ traffic() { # what ranks exchange, for 1 to 64 of them
     said=$(ranks "$count" "$programs/holdfast-mpi" check "$work/robot.holdfast" --alone-max 0 \
       --traffic) || [ $? -le 2 ]
     awk -v ranks="$count" '
-      / iterations of multigrid/ { for (i = 2; i <= NF; ++i) if ($i == "iterations") n = $(i - 1) }
+      / iterations? of multigrid/ { for (i = 2; i <= NF; ++i)
+          if ($i ~ /^iterations?$/) n = $(i - 1) }
       /^  traffic/ { gsub(/[^0-9. ]/, ""); printf "%-6s %10s %14s %8s %10s %14s %6s\n",
                      ranks, n, $1, $2, $3, $4, $5 }' <<<"$said"
   done
