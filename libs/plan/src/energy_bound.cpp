@@ -25,6 +25,16 @@ constexpr double kRatioMax = 1 - 1e-3;
 /// New modules above a section are brought into balance so many times there and back.
 constexpr int kSweepCount = 2;
 
+/// Where a load ratio is above this, a connection that statics alone decides is told from others.
+constexpr double kRatioHeavy = 0.3;
+
+/// What statics says of a connection may be off by that share, by rounding.
+constexpr double kRoundingOfStatics = 1e-9;
+
+/// A load that costs more than this share of what the load ratio leaves room for, if it goes down
+/// through a single file of modules, is spread: that takes up to a millisecond.
+constexpr double kSpreadShare = 0.1;
+
 bool is_plain(const model::Robot& target) {
   return std::ranges::none_of(
       target.facets(), [](const model::Facet& facet) { return facet.touch.friction.has_value(); });
@@ -32,31 +42,31 @@ bool is_plain(const model::Robot& target) {
 
 }  // namespace
 
-EnergyBound::EnergyBound(const model::Robot& target, const LocalAdjoints& adjoints)
+EnergyBound::EnergyBound(const model::Robot& target, const LocalAdjoints& adjoints, bool spreads)
     : target_(target),
       adjoints_(adjoints),
       local_(target),
       beam_(model::beam_section(target.material()), target.lattice()),
+      changes_(target),
+      spread_(target),
+      spreads_(spreads),
       ratio_per_norm_(model::load_ratio_per_energy_norm(target)),
       nodes_(target.modules().size()),
       u_(target.modules().size()),
       room_(target.facets().size()),
       nearby_(target.facets().size()),
-      watched_(target) {
-  stiffness_ = middle_stiffness(beam_);
+      watched_(target),
+      cuts_(target) {
+  const Vec& h = changes_.stiffness();
   const double b = target.foot_half_width_mm();
-  facet_per_norm_x_ = std::sqrt(stiffness_[3] + stiffness_[2] * b * b);
-  facet_per_norm_y_ = std::sqrt(stiffness_[4] + stiffness_[2] * b * b);
+  facet_per_norm_x_ = std::sqrt(h[3] + h[2] * b * b);
+  facet_per_norm_y_ = std::sqrt(h[4] + h[2] * b * b);
   first_facet_.assign(target.modules().size() + 1, 0);
   for (const model::Facet& facet : target.facets()) {
     ++first_facet_[base::at(facet.module) + 1];
   }
   for (std::size_t i = 0; i < target.modules().size(); ++i) {
     first_facet_[i + 1] += first_facet_[i];
-    const auto place = base::place_of(target.lattice(),
-                                      base::axial_of(target.lattice(), target.modules()[i].cell));
-    const double pitch = target.material().pitch_mm;
-    places_.push_back({pitch * place[0], pitch * place[1], pitch * place[2], 0, 0, 0});
   }
 }
 
@@ -69,27 +79,13 @@ bool EnergyBound::has_root(std::size_t module) const {
          target_.modules()[module].support == model::Support::kFixed;
 }
 
-double EnergyBound::energy_of(const Vec& force) const {
-  double energy = 0;
-  for (std::size_t i = 0; i < 6; ++i) {
-    energy += force[i] * force[i] / stiffness_[i];
-  }
-  return energy;
-}
-
-/// What a module carries, in the middle of its beam or facet in a direction, local frame.
-EnergyBound::Vec EnergyBound::middle(const Vec& carried, std::size_t module, int direction) const {
-  const Vec at_node = force_at(carried, places_[module]);
-  return force_in_middle(beam_, static_cast<base::Direction>(direction), at_node,
-                         target_.material().pitch_mm);
-}
-
 /// How far a way down through this neighbour leads aside within two steps, squared, in mm^2.
 double EnergyBound::lean(std::size_t module, std::size_t neighbour) const {
   const Node& next = nodes_[neighbour];
-  const Vec& below = places_[next.way_count == 0 ? neighbour : base::at(next.ways.front().to)];
-  const double x = below[0] - places_[module][0];
-  const double y = below[1] - places_[module][1];
+  const Vec& below =
+      changes_.place(next.way_count == 0 ? neighbour : base::at(next.ways.front().to));
+  const double x = below[0] - changes_.place(module)[0];
+  const double y = below[1] - changes_.place(module)[1];
   return x * x + y * y;
 }
 
@@ -136,9 +132,7 @@ void EnergyBound::take_place(std::size_t module) {
 
 /// Adds what the gaps of its beams mean as long as no load goes through these.
 void EnergyBound::open_gaps(std::size_t module) {
-  Node& node = nodes_[module];
-  node.gaps = gaps_.size();
-  gaps_.resize(gaps_.size() + base::directions(target_.lattice()).size());
+  const Node& node = nodes_[module];
   for (const base::Direction direction : base::directions(target_.lattice())) {
     const int d = base::index(direction);
     const std::int32_t other = local_.neighbour(module, d);
@@ -147,26 +141,8 @@ void EnergyBound::open_gaps(std::size_t module) {
       continue;
     }
     nodes_[base::at(other)].is_host = true;
-    const Vec force = beam_.middle_force(direction, u_[module], u_[base::at(other)]);
-    gaps_[node.gaps + base::at(d)] = force;
-    const double energy = energy_of(force);
-    energy_ += energy;
-    const auto end = node.ways.begin() + static_cast<std::ptrdiff_t>(node.way_count);
-    const auto way =
-        std::find_if(node.ways.begin(), end, [&](const Way& each) { return each.direction == d; });
-    if (way != end) {
-      way->energy = energy;
-    } else {
-      change_ratio_ =
-          std::max(change_ratio_, connection_ratio(target_, module, base::at(other), d, force) / 2);
-    }
+    changes_.open_gap(module, d, u_[module], u_[base::at(other)]);
   }
-}
-
-/// h w of a beam in a direction; nothing beyond what it was when the robot was solved if that knew
-/// the module.
-EnergyBound::Vec EnergyBound::gap(const Node& node, int direction) const {
-  return node.is_new ? gaps_[node.gaps + base::at(direction)] : Vec{};
 }
 
 /// The force on a stuck facet whose module moves by u, in the facet's middle.
@@ -181,16 +157,13 @@ EnergyBound::Vec EnergyBound::trial_force(const model::Facet& facet, const Vec& 
 void EnergyBound::look_at_facet(std::size_t index) {
   const model::Facet& facet = target_.facets()[index];
   const std::size_t module = base::at(facet.module);
-  Node& node = nodes_[module];
+  const bool is_new = nodes_[module].is_new;
   const Vec moved = trial_force(facet, u_[module]);
-  const bool is_first = index == first_facet_[module];
-  Vec change = is_first ? middle(node.carried, module, base::index(facet.direction)) : Vec{};
-  for (std::size_t i = 0; node.is_new && i < 6; ++i) {
+  changes_.weigh_facet(index, is_new ? moved : Vec{});
+  Vec change = changes_.facet_change(index);
+  for (std::size_t i = 0; is_new && i < 6; ++i) {
     change[i] -= moved[i];
   }
-  const double energy = energy_of(change);
-  energy_ += energy - (is_first ? node.energy : 0);
-  node.energy = is_first ? energy : node.energy;
   if (facet.is_bonded()) {
     room_[index] = std::numeric_limits<double>::infinity();
     return;
@@ -200,35 +173,10 @@ void EnergyBound::look_at_facet(std::size_t index) {
                           (limit - std::abs(moved[4] + change[4] / 2)) / facet_per_norm_y_);
 }
 
-/// Takes a part of a module's load down one of its ways.
-void EnergyBound::carry_down(std::size_t module, Way& way, const Vec& load) {
-  base::add_to(way.carried, load);
-  if (section_ == nullptr) {
-    weigh(module, way);
-  }
-}
-
-/// What a way's forces mean.
-void EnergyBound::weigh(std::size_t module, Way& way) {
-  const Vec force = middle(way.carried, module, way.direction);
-  const Vec moved = gap(nodes_[module], way.direction);
-  Vec lack = force;
-  Vec sum = force;
-  for (std::size_t i = 0; i < 6; ++i) {
-    lack[i] -= moved[i];
-    sum[i] += moved[i];
-  }
-  const double energy = energy_of(lack);
-  energy_ += energy - way.energy;
-  way.energy = energy;
-  change_ratio_ = std::max(
-      change_ratio_, connection_ratio(target_, module, base::at(way.to), way.direction, sum) / 2);
-}
-
 /// The way that leads nearest to below a place.
 std::size_t EnergyBound::nearest_way(const Node& node, const Vec& place) const {
   const auto aside = [&](const Way& way) {
-    const Vec& to = places_[base::at(way.to)];
+    const Vec& to = changes_.place(base::at(way.to));
     return (to[0] - place[0]) * (to[0] - place[0]) + (to[1] - place[1]) * (to[1] - place[1]);
   };
   std::size_t best = 0;
@@ -238,30 +186,87 @@ std::size_t EnergyBound::nearest_way(const Node& node, const Vec& place) const {
   return best;
 }
 
+/// What a module's load costs if it goes straight down, through a single file of modules.
+double EnergyBound::way_energy(std::size_t from) const {
+  const Vec load = load_about_origin(from);
+  double energy = 0;
+  for (std::size_t module = from; !has_root(module);) {
+    const Way& way = nodes_[module].ways.front();
+    energy += changes_.energy_of(changes_.middle(load, module, way.direction));
+    module = base::at(way.to);
+  }
+  return energy;
+}
+
+/// Whether a module's load, on a single file of modules, takes much of what there is room for.
+bool EnergyBound::is_far_aside(std::size_t module) const {
+  const double norm_max = 2 * (kRatioMax - solved_ratio_) / ratio_per_norm_;
+  return spreads_ && way_energy(module) > kSpreadShare * norm_max * norm_max;
+}
+
+EnergyBound::Vec EnergyBound::load_about_origin(std::size_t module) const {
+  const Vec& place = changes_.place(module);
+  return force_at(target_.loads()[module], {-place[0], -place[1], -place[2], 0, 0, 0});
+}
+
+/// Hands a module's load on to supports through all modules near its way. False if that cannot be.
+bool EnergyBound::spread(std::size_t from) {
+  std::vector<std::size_t> way = {from};
+  while (!has_root(way.back())) {
+    way.push_back(base::at(nodes_[way.back()].ways.front().to));
+  }
+  const auto entry = spread_.find(way, local_);
+  if (!entry) {
+    return false;
+  }
+  const Vec load = load_about_origin(from);
+  const std::vector<Vec> u =
+      spread_.displacement(*entry, force_at(load, changes_.place(way[entry->on_way])));
+  if (u.empty()) {
+    return false;
+  }
+  for (std::size_t i = 0; i < entry->on_way; ++i) {
+    changes_.hand_on(way[i], nodes_[way[i]].ways.front().direction, load);
+  }
+  const LoadSpread::Part& part = *entry->part;
+  for (const auto& [a, b, direction] : part.beams) {
+    changes_.bear(part.modules[base::at(a)], base::index(direction), u[base::at(a)],
+                  b < 0 ? Vec{} : u[base::at(b)]);
+  }
+  for (std::size_t i = 0; i < part.modules.size(); ++i) {
+    const std::size_t module = part.modules[i];
+    for (std::size_t facet = first_facet_[module]; facet < first_facet_[module + 1]; ++facet) {
+      changes_.bear(facet, trial_force(target_.facets()[facet], u[i]));
+      look_at_facet(facet);
+    }
+  }
+  return true;
+}
+
 /// Hands a module's load on to supports: through all ways down at once, which meet again below
 /// where they can, and so on.
 void EnergyBound::carry(std::size_t from) {
-  const Vec minus = {-places_[from][0], -places_[from][1], -places_[from][2], 0, 0, 0};
-  std::vector<std::pair<std::size_t, Vec>> parts = {{from, force_at(target_.loads()[from], minus)}};
+  std::vector<std::pair<std::size_t, Vec>> parts = {{from, load_about_origin(from)}};
   std::vector<std::pair<std::size_t, Vec>> next;
   for (; !parts.empty(); std::swap(parts, next)) {
     next.clear();
     for (const auto& [module, load] : parts) {
-      Node& node = nodes_[module];
-      carrying_.push_back(module);
+      const Node& node = nodes_[module];
       if (section_ != nullptr && has_root(module)) {
         base::add_to(borne_[base::at(section_place_[module])], load);
         continue;
       }
       if (has_root(module)) {
-        base::add_to(node.carried, load);
-        if (first_facet_[module] < first_facet_[module + 1]) {
-          look_at_facet(first_facet_[module]);
+        const std::size_t facet = first_facet_[module];
+        if (facet < first_facet_[module + 1]) {
+          changes_.bear(
+              facet, changes_.middle(load, module, base::index(target_.facets()[facet].direction)));
+          look_at_facet(facet);
         }
         continue;
       }
       const bool is_split = parts.size() == 1;
-      const std::size_t begin = is_split ? 0 : nearest_way(node, places_[from]);
+      const std::size_t begin = is_split ? 0 : nearest_way(node, changes_.place(from));
       const std::size_t end = is_split ? node.way_count : begin + 1;
       Vec share = load;
       for (double& component : share) {
@@ -269,7 +274,7 @@ void EnergyBound::carry(std::size_t from) {
       }
       for (std::size_t i = begin; i < end; ++i) {
         const std::size_t to = base::at(node.ways[i].to);
-        carry_down(module, node.ways[i], share);
+        changes_.hand_on(module, node.ways[i].direction, share);
         const auto found = std::ranges::find(next, to, &std::pair<std::size_t, Vec>::first);
         if (found == next.end()) {
           next.emplace_back(to, share);
@@ -340,7 +345,24 @@ bool EnergyBound::begin(const std::vector<Element>& elements, const verdict::Ass
   }
   std::ranges::for_each(facets_, [&](std::size_t facet) { look_at_facet(facet); });
   watched_.begin(elements);
+  find_cuts(elements);
+  spread_.forget_absent(local_);
   return true;
+}
+
+/// Tells what statics alone decides from the rest, where that bears less.
+void EnergyBound::find_cuts(const std::vector<Element>& elements) {
+  cuts_.clear();
+  if (section_ != nullptr || solved_ratio_ < kRatioHeavy) {
+    return;
+  }
+  cuts_.assign(elements);
+  const double others = cuts_.load_ratio_of_others(u_) + ratio_per_norm_ * solved_error_;
+  if (others < solved_ratio_) {
+    solved_ratio_ = others;
+  } else {
+    cuts_.clear();
+  }
 }
 
 /// Whether these modules are there and no others: then all of them hang already.
@@ -424,64 +446,34 @@ void EnergyBound::settle_new() {
     }
   }
   forget_nearby(is_changed);
-  for (const std::size_t module : carrying_) {
-    Node& node = nodes_[module];
-    node.carried = {};
-    node.energy = 0;
-    for (Way& way : node.ways) {
-      way.carried = {};
-      way.energy = 0;
-    }
-  }
   forget_changes();
 }
 
 void EnergyBound::forget_changes() {
   new_.clear();
-  gaps_.clear();
-  carrying_.clear();
-  energy_ = 0;
-  change_ratio_ = 0;
+  changes_.clear();
+  section_ratio_ = 0;
 }
 
-/// The inner product of an adjoint's forces, for fz and two torques, with s - h w; the last number
-/// is how far any combination may be off, over the largest of its factors.
-std::array<double, 4> EnergyBound::product_with(const LocalAdjoint& nearby) const {
-  std::array<double, 4> sum{};
-  const auto add = [&](const LocalAdjoint::Way& adjoint, const Vec& carried, std::size_t module,
-                       int direction) {
-    Vec force = middle(carried, module, direction);
+/// The inner product of an adjoint's forces, for fz and two torques, with s - h w.
+std::array<double, 3> EnergyBound::product_with(const LocalAdjoint& nearby) const {
+  std::array<double, 3> sum{};
+  for (std::size_t i = 0; i < nearby.region.size(); ++i) {
+    const std::size_t module = nearby.region[i];
+    const LocalAdjoint::Way& adjoint = nearby.forces->ways[i];
+    const std::size_t facet = first_facet_[module];
+    const bool has_facet = facet < first_facet_[module + 1];
+    if (adjoint.down >= 0 ? !changes_.has_changed(module, adjoint.down)
+                          : !has_facet || !changes_.has_changed(facet)) {
+      continue;
+    }
+    Vec force =
+        adjoint.down >= 0 ? changes_.change(module, adjoint.down) : changes_.facet_change(facet);
     for (std::size_t k = 0; k < 6; ++k) {
-      force[k] /= std::sqrt(stiffness_[k]);
+      force[k] /= std::sqrt(changes_.stiffness()[k]);
     }
     for (std::size_t k = 0; k < 3; ++k) {
       sum[k] += base::dot(adjoint.force[k], force);
-    }
-  };
-  for (std::size_t i = 0; i < nearby.region.size(); ++i) {
-    const std::size_t module = nearby.region[i];
-    const Node& node = nodes_[module];
-    const LocalAdjoint::Way& adjoint = nearby.forces->ways[i];
-    if (adjoint.down < 0) {
-      if (node.energy > 0) {
-        add(adjoint, node.carried, module,
-            base::index(target_.facets()[first_facet_[module]].direction));
-      }
-      continue;
-    }
-    for (std::size_t k = 0; k < node.way_count; ++k) {
-      if (node.ways[k].direction == adjoint.down && node.ways[k].energy > 0) {
-        add(adjoint, node.ways[k].carried, module, adjoint.down);
-      }
-    }
-    // The neighbour may hand its loads on the other way.
-    const Node& below = nodes_[base::at(target_.connected()[module][base::at(adjoint.down)])];
-    for (std::size_t k = 0; k < below.way_count; ++k) {
-      if (below.ways[k].to == static_cast<std::int32_t>(module)) {
-        for (const Vec& force : adjoint.force) {
-          sum[3] += std::sqrt(base::dot(force, force) * below.ways[k].energy);
-        }
-      }
     }
   }
   return sum;
@@ -507,12 +499,11 @@ bool EnergyBound::is_pressed_nearby(std::size_t index, double radius) {
   }
   const Vec force = trial_force(facet, u_[base::at(facet.module)]);
   const double b = target_.foot_half_width_mm();
-  const std::array<double, 4> product = product_with(*nearby);
+  const std::array<double, 3> product = product_with(*nearby);
   const auto holds = [&](double torque, double mx, double my, double lack_per_norm) {
     const double slack = -force[2] * b - std::abs(torque) - lack_per_norm * solved_error_;
     return std::ranges::all_of(std::array{1.0, -1.0}, [&](double sign) {
-      const double shared = std::abs(b * product[0] + sign * (mx * product[1] + my * product[2])) +
-                            std::max(b, 1.0) * product[3];
+      const double shared = std::abs(b * product[0] + sign * (mx * product[1] + my * product[2]));
       return nearby->forces->norm({b, sign * mx, sign * my}) * radius + shared / 2 < slack;
     });
   };
@@ -568,6 +559,7 @@ std::optional<double> EnergyBound::add(Element element) {
   node.is_there = true;
   node.is_new = true;
   node.place = new_.size();
+  cuts_.add(module);
   if (section_ != nullptr) {
     return add_above_section(module);
   }
@@ -581,7 +573,9 @@ std::optional<double> EnergyBound::add(Element element) {
   }
   new_.push_back(module);
   watched_.attach(module);
-  carry(module);
+  if (!is_far_aside(module) || !spread(module)) {
+    carry(module);
+  }
   return bound();
 }
 
@@ -635,29 +629,12 @@ void EnergyBound::move_with_section() {
 /// The section's modules bear what the answer takes them to; what they get is carried to there, and
 /// what all ways carry is weighed against how new modules lie now.
 void EnergyBound::bear_by_section() {
-  energy_ = 0;
-  change_ratio_ = 0;
-  gaps_.clear();
-  std::ranges::sort(carrying_);
-  carrying_.erase(std::unique(carrying_.begin(), carrying_.end()), carrying_.end());
-  const auto forget = [](Node& node) {
-    for (Way& way : node.ways) {
-      way.energy = 0;
-    }
-  };
-  std::ranges::for_each(carrying_, [&](std::size_t module) { forget(nodes_[module]); });
   std::ranges::for_each(new_, [&](std::size_t module) { open_gaps(module); });
-  for (const std::size_t module : carrying_) {
-    for (std::size_t i = 0; i < nodes_[module].way_count; ++i) {
-      weigh(module, nodes_[module].ways[i]);
-    }
-  }
   std::vector<Vec> rest = borne_;
   for (std::size_t i = rest.size(); i-- > 0;) {
     const std::size_t module = section_->modules()[i];
     Node& node = nodes_[module];
     node.is_host = true;
-    forget(node);
     if (node.way_count == 0) {
       continue;  // The first, where nothing remains.
     }
@@ -666,18 +643,21 @@ void EnergyBound::bear_by_section() {
       value = -value;
     }
     base::add_to(rest[i], minus);
-    Way& way = node.ways.front();
-    way.carried = rest[i];
-    weigh(module, way);
+    const Way& way = node.ways.front();
+    changes_.hand_on_only(module, way.direction, rest[i]);
     base::add_to(rest[base::at(section_place_[base::at(way.to)])], rest[i]);
   }
-  change_ratio_ += section_->load_ratio(resultant_);  // A beam may bear both.
+  changes_.weigh_all();
+  section_ratio_ = section_->load_ratio(resultant_);  // A beam may bear both.
 }
 
 /// That of the largest load ratio, if every facet is pressed all over.
 std::optional<double> EnergyBound::bound() {
   const double radius = energy_error() / 2;
-  const double ratio = solved_ratio_ + change_ratio_ + ratio_per_norm_ * radius;
+  const double others = std::max(solved_ratio_, cuts_.released_ratio());
+  const double ratio =
+      std::max(others + changes_.load_ratio() + section_ratio_ + ratio_per_norm_ * radius,
+               cuts_.load_ratio() * (1 + kRoundingOfStatics));
   if (!(ratio < kRatioMax) || !are_pressed(radius + solved_error_ / 2)) {
     return std::nullopt;
   }

@@ -9,10 +9,13 @@
 #include <optional>
 #include <vector>
 
+#include "changed_forces.hpp"
+#include "cut_connections.hpp"
 #include "holdfast/model/lattice_beam.hpp"
 #include "holdfast/model/robot.hpp"
 #include "holdfast/plan/element_set.hpp"
 #include "holdfast/verdict/assessment.hpp"
+#include "load_spread.hpp"
 #include "local_adjoint.hpp"
 #include "local_balance.hpp"
 #include "section_response.hpp"
@@ -35,7 +38,8 @@ namespace holdfast::plan {
 /// and what a facet lacks to tilting is off by sqrt(h_m + h_f b^2) |s - h w| / 2 at most, b being
 /// half its width. If nothing breaks by that and every facet presses all over, then that is the
 /// equilibrium of the paper's law, with all facets stuck. Each module costs the length of its way
-/// down.
+/// down. Where that way leads far aside, so that its beams bend, the load goes down through all
+/// modules near it instead (LoadSpread), which costs a tenth to a fortieth.
 ///
 /// Facets for which that is too coarse are looked at by what is known of them from the modules
 /// around (LocalAdjoint) or, where somebody has found it, from the whole robot (FacetAdjoint).
@@ -45,8 +49,9 @@ namespace holdfast::plan {
 /// are brought into balance on the core where it is now.
 class EnergyBound {
  public:
-  /// Keeps references to the whole robot and to what is known of its facets.
-  EnergyBound(const model::Robot& target, const LocalAdjoints& adjoints);
+  /// Keeps references to the whole robot and to what is known of its facets. In thin robots, where
+  /// few modules are near any way, `spreads` is better false.
+  EnergyBound(const model::Robot& target, const LocalAdjoints& adjoints, bool spreads = true);
 
   /// Begins with a solved robot, whose modules are `elements` of the target, in that order. False
   /// if nothing can be built on it: it is not safe, a facet tilts or is open, or the polygon does
@@ -76,8 +81,17 @@ class EnergyBound {
   /// last.
   std::map<std::size_t, int> take_doubtful();
 
+  /// Connections whose forces statics alone gives, as long as it does: where they bear more than
+  /// all others, their exact load ratios are a part of the bound. None are known else.
+  const CutConnections& cuts() const { return cuts_; }
+
+  /// What no load ratio of other connections exceeds by the displacements and their error.
+  double solved_ratio() const { return solved_ratio_; }
+
   /// How far the displacements are off in the energy norm, at most.
-  double energy_error() const { return std::sqrt(std::max(0.0, energy_)) + solved_error_; }
+  double energy_error() const {
+    return std::sqrt(std::max(0.0, changes_.energy())) + solved_error_;
+  }
 
   /// That of a module that has a facet, or is new or beside such a one.
   const base::Vec6<double>& displacement(std::size_t module) const { return u_[module]; }
@@ -92,8 +106,6 @@ class EnergyBound {
   struct Way {
     std::int32_t to = -1;
     int direction = 0;
-    Vec carried{};      ///< New loads that it hands on, about the origin; global frame.
-    double energy = 0;  ///< Of s - h w, but for what it was when the robot was solved; twice.
   };
 
   struct Node {
@@ -101,18 +113,16 @@ class EnergyBound {
     bool is_new = false;   ///< Attached since the robot was solved.
     bool is_host = false;  ///< A module has been attached beside it since.
     std::int32_t depth = 0;
-    std::size_t place = 0;  ///< If new: in new_.
-    std::size_t gaps = 0;   ///< If new: where those of its beams begin in gaps_, by direction.
+    std::size_t place = 0;            ///< If new: in new_.
     std::array<Way, kWayMax> ways{};  ///< Towards the support, the parent first.
     std::size_t way_count = 0;        ///< 0 at a support.
-    Vec carried{};                    ///< New loads that its support bears, as in Way.
-    double energy = 0;                ///< Of what its facet lacks; twice.
   };
 
   bool is_grown_to(const std::vector<Element>& elements) const;
   void hang_all(const std::vector<Element>& elements);
   void hang_section();
   void settle_new();
+  void find_cuts(const std::vector<Element>& elements);
   void forget_changes();
   void forget_nearby(const std::vector<Element>& elements);
   void forget_nearby(const std::vector<bool>& is_changed);
@@ -122,19 +132,18 @@ class EnergyBound {
   void hang(std::size_t module);
   void take_place(std::size_t module);
   void open_gaps(std::size_t module);
-  Vec gap(const Node& node, int direction) const;
+  Vec load_about_origin(std::size_t module) const;
+  double way_energy(std::size_t from) const;
+  bool is_far_aside(std::size_t module) const;
+  bool spread(std::size_t from);
   void carry(std::size_t from);
   std::size_t nearest_way(const Node& node, const Vec& place) const;
-  void carry_down(std::size_t module, Way& way, const Vec& load);
-  void weigh(std::size_t module, Way& way);
   std::optional<double> add_above_section(std::size_t module);
   void move_with_section();
   void bear_by_section();
-  Vec middle(const Vec& carried, std::size_t module, int direction) const;
-  double energy_of(const Vec& force) const;
   void look_at_facet(std::size_t facet);
   Vec trial_force(const model::Facet& facet, const Vec& u) const;
-  std::array<double, 4> product_with(const LocalAdjoint& nearby) const;
+  std::array<double, 3> product_with(const LocalAdjoint& nearby) const;
   bool is_pressed_nearby(std::size_t facet, double radius);
   bool are_pressed(double radius);
   bool is_pressed_by_adjoint(std::size_t facet);
@@ -143,21 +152,21 @@ class EnergyBound {
   const LocalAdjoints& adjoints_;
   LocalBalance local_;
   model::LatticeBeam<double> beam_;
-  Vec stiffness_{};  ///< Of the springs in the middle, h.
+  ChangedForces changes_;
+  LoadSpread spread_;
+  bool spreads_ = true;
   double ratio_per_norm_ = 0;
   double facet_per_norm_x_ = 0;  ///< How much a facet's lack may be off, by norm.
   double facet_per_norm_y_ = 0;
-  std::vector<base::Vec6<double>> places_;  ///< Nodes, mm; the last three are 0.
-  std::vector<std::size_t> first_facet_;    ///< By module; facets of module i begin there.
+  std::vector<std::size_t> first_facet_;  ///< By module; facets of module i begin there.
   std::vector<Node> nodes_;
-  std::vector<Vec> u_;                 ///< Displacements, by module.
-  std::vector<Vec> gaps_;              ///< h w of beams of new modules to those there before them.
-  std::vector<std::size_t> new_;       ///< Attached since the robot was solved.
-  std::vector<std::size_t> carrying_;  ///< Hand on something of their loads; some repeated.
-  std::vector<std::size_t> facets_;    ///< There, by index in the target.
-  std::vector<double> room_;           ///< By facet of the target: what |s - h w| / 2 may be.
+  std::vector<Vec> u_;               ///< Displacements, by module.
+  std::vector<std::size_t> new_;     ///< Attached since the robot was solved.
+  std::vector<std::size_t> facets_;  ///< There, by index in the target.
+  std::vector<double> room_;         ///< By facet of the target: what |s - h w| / 2 may be.
   std::vector<std::optional<LocalAdjoint>> nearby_;  ///< By facet, as far as asked for.
   WatchedFacets watched_;
+  CutConnections cuts_;
   std::map<std::size_t, int> doubtful_;  ///< As take_doubtful() says.
   double solved_ratio_ = 0;
   double solved_error_ = 0;
@@ -167,8 +176,7 @@ class EnergyBound {
   SectionResponse::Resultant resultant_{};   ///< Of these.
   std::vector<Vec> still_;                   ///< u_ when the robot was solved.
   double own_error_ = 0;                     ///< And solved_error_ then.
-  double energy_ = 0;                        ///< |s - h w|^2
-  double change_ratio_ = 0;                  ///< The largest c(change of s) / 2 so far, and R's.
+  double section_ratio_ = 0;                 ///< R's.
 };
 
 }  // namespace holdfast::plan

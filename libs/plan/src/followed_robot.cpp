@@ -91,7 +91,8 @@ FollowedRobot::FollowedRobot(const model::RobotSpec& spec, const model::Robot& t
   }
 }
 
-void FollowedRobot::begin(const ElementSet& state, const verdict::Assessment& solved) {
+void FollowedRobot::begin(const ElementSet& state, const verdict::Assessment& solved,
+                          const CutConnections& cuts, double load_ratio) {
   core_ = state;
   elements_ = state.elements();
   local_.assign(elements_);
@@ -106,7 +107,8 @@ void FollowedRobot::begin(const ElementSet& state, const verdict::Assessment& so
     place_[at(elements_[i])] = static_cast<std::int32_t>(i);
     u_[at(elements_[i])] = solved.equilibrium.displacement[i];
   }
-  core_ratio_ = solved.load_ratio_max ? std::max(0.0, solved.load_ratio_range.high) : 0.0;
+  core_ratio_ = load_ratio;
+  cuts_ = &cuts;
   core_error_ = verdict::kEnergyFactor * solved.equilibrium.energy_error;
   motion_error_ = 0;
   iteration_count_ = 0;
@@ -383,6 +385,9 @@ double FollowedRobot::energy_of(const Vec& a, const Vec& b) const {
 /// The larger of what is known and the load ratio of a connection by the displacements.
 double FollowedRobot::ratio_of(std::size_t module, std::size_t other, int direction,
                                double known) const {
+  if (cuts_->contains(module, other)) {
+    return known;
+  }
   const Vec force = beam_.middle_force(direction_of(direction), u_[module], u_[other]);
   if (ratio_per_norm_ * std::sqrt(energy_of(force, force)) <= known) {
     return known;
@@ -393,7 +398,7 @@ double FollowedRobot::ratio_of(std::size_t module, std::size_t other, int direct
 /// That no connection's exceeds, if the displacements are off by `error`.
 double FollowedRobot::load_ratio(double error) const {
   const double moved = std::sqrt(std::max(0.0, work_of(given_, moved_))) + motion_error_;
-  double largest = core_ratio_ + ratio_per_norm_ * moved;
+  double largest = std::max(core_ratio_, cuts_->released_ratio()) + ratio_per_norm_ * moved;
   if (largest + ratio_per_norm_ * error > kRatioEasy) {
     largest = 0;
     for (const Element element : elements_) {

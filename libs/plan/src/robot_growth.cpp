@@ -92,7 +92,7 @@ RobotGrowth::RobotGrowth(const model::RobotSpec& spec, const model::Robot& targe
       thread_count_(thread_count),
       growing_(target),
       adjoints_(target),
-      bounds_(kPieceCountMax, EnergyBound(target, adjoints_)),
+      bounds_(kPieceCountMax, EnergyBound(target, adjoints_, !growing_.is_thin())),
       is_bonded_(std::ranges::all_of(target.facets(), &model::Facet::is_bonded)),
       distance_(distances_from(target, supports_and(target, core))),
       state_(spec.existing.size()),
@@ -472,7 +472,7 @@ std::vector<Judgement> RobotGrowth::judge_piece(ElementSet state, Sense sense,
     is_followed = has_bound && !is_slender && tools.followed != nullptr && is_large &&
                   tools.followed->worth().begin(assessment.equilibrium.iteration_count);
     if (is_followed) {
-      tools.followed->begin(state, assessment);
+      tools.followed->begin(state, assessment, tools.bound.cuts(), tools.bound.solved_ratio());
     }
   }
   return judgements;

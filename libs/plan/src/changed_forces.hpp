@@ -1,0 +1,116 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "holdfast/model/lattice_beam.hpp"
+#include "holdfast/model/robot.hpp"
+
+namespace holdfast::plan {
+
+/// How far forces s that balance all loads, and those of displacements, h w, are from what both
+/// were when a robot was solved: in the middle of each beam and facet six, local frame, of springs
+/// h that know nothing of each other. Where nothing was solved both were nothing.
+class ChangedForces {
+ public:
+  using Vec = base::Vec6<double>;
+
+  /// Keeps a reference to the robot, all modules of which are there in the end.
+  explicit ChangedForces(const model::Robot& target);
+
+  /// Where the module's node is, in mm; the last three are 0.
+  const Vec& place(std::size_t module) const { return places_[module]; }
+
+  /// Six numbers stiffness, h.
+  const Vec& stiffness() const { return stiffness_; }
+
+  /// The sum of squares of a force over the stiffness.
+  double energy_of(const Vec& force) const;
+
+  /// What a load about the origin that a module hands on in a direction is in the middle of its
+  /// beam or facet there.
+  Vec middle(const Vec& load, std::size_t module, int direction) const;
+
+  /// Nothing has changed.
+  void clear();
+
+  /// |s - h w|^2 of all that was weighed.
+  double energy() const { return energy_; }
+
+  /// The largest load ratio of half of what s and h w have changed by together, in any beam at any
+  /// time since the last clear() or weigh_all().
+  double load_ratio() const { return load_ratio_; }
+
+  /// A module hands on one more load, about the origin, to its neighbour in a direction.
+  void hand_on(std::size_t module, int direction, const Vec& load);
+
+  /// The same instead of all that it has handed on there, not weighed yet.
+  void hand_on_only(std::size_t module, int direction, const Vec& load);
+
+  /// The beam to a neighbour bears what these displacements of its ends mean besides.
+  void bear(std::size_t module, int direction, const Vec& u_module, const Vec& u_other);
+
+  /// A facet bears one more force; not weighed yet.
+  void bear(std::size_t facet, const Vec& force) {
+    base::add_to(facets_[facet].change, force);
+    touch_facet(facet);
+  }
+
+  /// What h w of a beam is now, if it was nothing.
+  void open_gap(std::size_t module, int direction, const Vec& u_module, const Vec& u_other);
+
+  /// Weighs a facet, where h w has changed by `moved`.
+  void weigh_facet(std::size_t facet, const Vec& moved);
+
+  /// Weighs all beams anew.
+  void weigh_all();
+
+  /// Whether a beam, or a facet, bears more or was weighed since the last clear().
+  bool has_changed(std::size_t module, int direction) const {
+    return is_touched_[beam_from(module, direction)] != 0;
+  }
+
+  bool has_changed(std::size_t facet) const { return is_facet_touched_[facet] != 0; }
+
+  /// What a module hands on more to its neighbour in a direction.
+  Vec change(std::size_t module, int direction) const;
+
+  Vec facet_change(std::size_t facet) const { return facets_[facet].change; }
+
+ private:
+  struct Spring {
+    Vec change{};  ///< Of s.
+    Vec gap{};     ///< Of h w.
+    double energy = 0;
+  };
+
+  /// Beams are known by the end from which they have an even direction.
+  std::size_t beam_from(std::size_t module, int direction) const {
+    const std::size_t first =
+        direction % 2 == 0 ? module : base::at(target_->connected()[module][base::at(direction)]);
+    return first * half_ + base::at(direction) / 2;
+  }
+
+  void touch_facet(std::size_t facet);
+  void weigh(std::size_t beam);
+  Vec along(std::size_t module, int direction, const Vec& load) const;
+
+  const model::Robot* target_;
+  model::LatticeBeam<double> beam_;
+  Vec stiffness_{};
+  std::size_t half_ = 0;       ///< Of the number of directions.
+  std::vector<Vec> places_;    ///< By module.
+  std::vector<Spring> beams_;  ///< By module, then every other direction from it.
+  std::vector<Spring> facets_;
+  std::vector<std::uint8_t> is_touched_;  ///< By beam.
+  std::vector<std::uint8_t> is_facet_touched_;
+  std::vector<std::size_t> touched_;  ///< Beams.
+  std::vector<std::size_t> touched_facets_;
+  double energy_ = 0;
+  double load_ratio_ = 0;
+};
+
+}  // namespace holdfast::plan
