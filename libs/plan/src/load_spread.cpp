@@ -24,15 +24,16 @@ constexpr std::size_t kDetourMax = 4;
 constexpr std::size_t kPartCountMax = 4;
 
 /// What is solved at most.
-constexpr std::size_t kModuleCountMax = 1000;
+constexpr std::size_t kPartSizeMax = 1000;
 
 /// Of the load, what the solution may leave unbalanced; rounding leaves about 1e-12.
 constexpr double kResidualMax = 1e-9;
 
 }  // namespace
 
-LoadSpread::LoadSpread(const model::Robot& target)
+LoadSpread::LoadSpread(const model::Robot& target, std::size_t width_min)
     : target_(&target),
+      width_min_(width_min),
       beam_(model::beam_section(target.material()), target.lattice()),
       first_facet_(target.modules().size() + 1),
       place_(target.modules().size(), kAbsent) {
@@ -127,7 +128,7 @@ std::optional<LoadSpread::Part> LoadSpread::make(std::span<const std::size_t> wa
   for (const std::size_t module : modules) {
     place_[module] = kAbsent;
   }
-  if (modules.empty() || modules.size() > kModuleCountMax) {
+  if (modules.size() < width_min_ * way.size() || modules.size() > kPartSizeMax) {
     return std::nullopt;
   }
   const std::vector<solver::LowRankTerm> terms = springs(modules, all);
