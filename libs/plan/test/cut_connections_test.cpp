@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <map>
 
 #include "holdfast/model/families.hpp"
@@ -65,7 +66,7 @@ std::map<Pair, double> exact_ratios(const model::RobotSpec& spec, const ElementS
 TEST(CutConnections, are_what_a_search_finds_and_bear_what_the_direct_solver_finds) {
   int cut_count = 0;
   int released_count = 0;
-  for (const std::size_t size : {60, 90, 120, 150}) {
+  for (const std::size_t size : std::array<std::size_t, 4>{60, 90, 120, 150}) {
     const model::Family family = model::find_family("growth").value();
     const model::RobotSpec spec{.existing = model::family_cells(family, size)};
     const model::Robot target = model::Robot::create(spec).value();
