@@ -202,7 +202,10 @@ int certified_count(const char* family, std::size_t size, bool spreads) {
 TEST(LoadSpread, lets_a_bound_certify_more_states_all_of_them_safe) {
   int more = 0;
   for (const auto& [family, size] : std::vector<std::pair<const char*, std::size_t>>{
-           {"ball", 12}, {"ball", 15}, {"growth", 300}}) {
+           {"ball", 12}, {"ball", 15}, {"growth", 400}}) {
+    if (holdfast::test::kIsShort && size == 15) {
+      continue;  // The largest robot.
+    }
     const int without = certified_count(family, size, false);
     const int with = certified_count(family, size, true);
     EXPECT_GE(with, without) << family << size;
