@@ -7,8 +7,10 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "holdfast/base/lattice.hpp"
 #include "holdfast/model/connector_law.hpp"
 #include "holdfast/model/lattice_beam.hpp"
+#include "holdfast/model/material.hpp"
 #include "holdfast/model/robot.hpp"
 
 /// Forces that are carried through a robot from module to module.
@@ -27,6 +29,20 @@ inline base::Vec6<double> force_at(const base::Vec6<double>& force, const base::
     moved[i + 3] -= moment[i];
   }
   return moved;
+}
+
+/// Where a module's node is, in mm; the last three are 0.
+inline base::Vec6<double> node_place(const model::Robot& robot, std::size_t module) {
+  const auto place = base::place_of(robot.lattice(),
+                                    base::axial_of(robot.lattice(), robot.modules()[module].cell));
+  const double pitch = robot.material().pitch_mm;
+  return {pitch * place[0], pitch * place[1], pitch * place[2], 0, 0, 0};
+}
+
+/// A module's own load, about the origin; `place` is that of its node.
+inline base::Vec6<double> load_about_origin(const model::Robot& robot, std::size_t module,
+                                            const base::Vec6<double>& place) {
+  return force_at(robot.loads()[module], {-place[0], -place[1], -place[2], 0, 0, 0});
 }
 
 /// A force at a module's node, in the middle of its beam or facet in a direction, local frame.

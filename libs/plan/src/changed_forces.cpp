@@ -33,11 +33,8 @@ ChangedForces::ChangedForces(const model::Robot& target)
       facets_(target.facets().size()),
       is_touched_(beams_.size()),
       is_facet_touched_(facets_.size()) {
-  const double pitch = target.material().pitch_mm;
-  for (const model::Module& module : target.modules()) {
-    const auto place =
-        base::place_of(target.lattice(), base::axial_of(target.lattice(), module.cell));
-    places_.push_back({pitch * place[0], pitch * place[1], pitch * place[2], 0, 0, 0});
+  for (std::size_t module = 0; module < target.modules().size(); ++module) {
+    places_.push_back(node_place(target, module));
   }
 }
 
@@ -127,23 +124,25 @@ void ChangedForces::hand_on_only(std::size_t module, int direction, const Vec& l
   weigh(beam);
 }
 
+/// The force in the middle of a module's beam, in the beam's frame.
+ChangedForces::Vec ChangedForces::force_between(int direction, const Vec& u_module,
+                                                const Vec& u_other) const {
+  return direction % 2 == 0
+             ? beam_.middle_force(static_cast<Direction>(direction), u_module, u_other)
+             : beam_.middle_force(static_cast<Direction>(direction ^ 1), u_other, u_module);
+}
+
 void ChangedForces::bear(std::size_t module, int direction, const Vec& u_module,
                          const Vec& u_other) {
   const std::size_t beam = beam_from(module, direction);
-  base::add_to(beams_[beam].change,
-               direction % 2 == 0
-                   ? beam_.middle_force(static_cast<Direction>(direction), u_module, u_other)
-                   : beam_.middle_force(static_cast<Direction>(direction ^ 1), u_other, u_module));
+  base::add_to(beams_[beam].change, force_between(direction, u_module, u_other));
   weigh(beam);
 }
 
 void ChangedForces::open_gap(std::size_t module, int direction, const Vec& u_module,
                              const Vec& u_other) {
   const std::size_t beam = beam_from(module, direction);
-  beams_[beam].gap =
-      direction % 2 == 0
-          ? beam_.middle_force(static_cast<Direction>(direction), u_module, u_other)
-          : beam_.middle_force(static_cast<Direction>(direction ^ 1), u_other, u_module);
+  beams_[beam].gap = force_between(direction, u_module, u_other);
   weigh(beam);
 }
 

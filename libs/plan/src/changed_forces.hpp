@@ -47,7 +47,7 @@ class ChangedForces {
   /// A module hands on one more load, about the origin, to its neighbour in a direction.
   void hand_on(std::size_t module, int direction, const Vec& load);
 
-  /// The same instead of all that it has handed on there, not weighed yet.
+  /// The same instead of all that it has handed on there.
   void hand_on_only(std::size_t module, int direction, const Vec& load);
 
   /// The beam to a neighbour bears what these displacements of its ends mean besides.
@@ -97,6 +97,7 @@ class ChangedForces {
   void touch_facet(std::size_t facet);
   void weigh(std::size_t beam);
   Vec along(std::size_t module, int direction, const Vec& load) const;
+  Vec force_between(int direction, const Vec& u_module, const Vec& u_other) const;
 
   const model::Robot* target_;
   model::LatticeBeam<double> beam_;

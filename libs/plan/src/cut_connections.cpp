@@ -58,7 +58,7 @@ void CutConnections::visit(std::size_t first) {
     order_[module] = static_cast<std::int32_t>(visited_.size());
     low_[module] = is_support(module) ? 0 : order_[module];
     way_to_[module] = direction < 0 ? -1 : direction ^ 1;
-    way.push_back({.module = module, .way = direction});
+    way.push_back({.module = module});
   };
   enter(first, -1);
   const int direction_count = static_cast<int>(base::directions(target_->lattice()).size());
@@ -111,7 +111,7 @@ void CutConnections::name_blocks() {
       continue;
     }
     Cut& cut = cuts_[at(block_[*module])];
-    base::add_to(cut.borne, load_about_origin(*module));
+    base::add_to(cut.borne, load_about_origin(*target_, *module, node_place(*target_, *module)));
     if (own_[*module] != kNone) {
       const Vec borne = cut.borne;
       bear(cut, {});
@@ -122,21 +122,9 @@ void CutConnections::name_blocks() {
   }
 }
 
-CutConnections::Vec CutConnections::load_about_origin(std::size_t module) const {
-  const auto place = base::place_of(
-      target_->lattice(), base::axial_of(target_->lattice(), target_->modules()[module].cell));
-  const double pitch = target_->material().pitch_mm;
-  return force_at(target_->loads()[module],
-                  {-pitch * place[0], -pitch * place[1], -pitch * place[2], 0, 0, 0});
-}
-
 void CutConnections::bear(Cut& cut, const Vec& load) {
   base::add_to(cut.borne, load);
-  const auto place = base::place_of(
-      target_->lattice(), base::axial_of(target_->lattice(), target_->modules()[cut.module].cell));
-  const double pitch = target_->material().pitch_mm;
-  const Vec at_node =
-      force_at(cut.borne, {pitch * place[0], pitch * place[1], pitch * place[2], 0, 0, 0});
+  const Vec at_node = force_at(cut.borne, node_place(*target_, cut.module));
   const Vec force = force_in_middle(beam_, static_cast<base::Direction>(cut.direction), at_node,
                                     target_->material().pitch_mm);
   cut.ratio = connection_ratio(*target_, cut.module, cut.other, cut.direction, force);
@@ -181,7 +169,7 @@ void CutConnections::add(std::size_t module) {
   }
   local_.insert(module);
   block_[module] = block.value_or(kNone);
-  const Vec load = load_about_origin(module);
+  const Vec load = load_about_origin(*target_, module, node_place(*target_, module));
   for (std::int32_t cut = block_[module]; cut != kNone; cut = first_of(cuts_[at(cut)].behind)) {
     bear(cuts_[at(cut)], load);
   }

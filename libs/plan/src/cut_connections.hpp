@@ -69,7 +69,6 @@ class CutConnections {
   /// A module on the way of the depth-first search.
   struct Visit {
     std::size_t module = 0;
-    int way = -1;  ///< The direction that it was come to by, -1 from the ground.
     int next = 0;  ///< The direction to look in.
   };
 
@@ -77,7 +76,6 @@ class CutConnections {
   void visit(std::size_t first);
   void leave(std::vector<Visit>& way);
   void name_blocks();
-  Vec load_about_origin(std::size_t module) const;
   void bear(Cut& cut, const Vec& load);
   std::int32_t first_of(std::int32_t cut) const;
   std::int32_t join(std::int32_t a, std::int32_t b);

@@ -188,7 +188,7 @@ std::size_t EnergyBound::nearest_way(const Node& node, const Vec& place) const {
 
 /// What a module's load costs if it goes straight down, through a single file of modules.
 double EnergyBound::way_energy(std::size_t from) const {
-  const Vec load = load_about_origin(from);
+  const Vec load = load_about_origin(target_, from, changes_.place(from));
   double energy = 0;
   for (std::size_t module = from; !has_root(module);) {
     const Way& way = nodes_[module].ways.front();
@@ -204,11 +204,6 @@ bool EnergyBound::is_far_aside(std::size_t module) const {
   return spreads_ && way_energy(module) > kSpreadShare * norm_max * norm_max;
 }
 
-EnergyBound::Vec EnergyBound::load_about_origin(std::size_t module) const {
-  const Vec& place = changes_.place(module);
-  return force_at(target_.loads()[module], {-place[0], -place[1], -place[2], 0, 0, 0});
-}
-
 /// Hands a module's load on to supports through all modules near its way. False if that cannot be.
 bool EnergyBound::spread(std::size_t from) {
   std::vector<std::size_t> way = {from};
@@ -219,7 +214,7 @@ bool EnergyBound::spread(std::size_t from) {
   if (!entry) {
     return false;
   }
-  const Vec load = load_about_origin(from);
+  const Vec load = load_about_origin(target_, from, changes_.place(from));
   const std::vector<Vec> u =
       spread_.displacement(*entry, force_at(load, changes_.place(way[entry->on_way])));
   if (u.empty()) {
@@ -246,7 +241,8 @@ bool EnergyBound::spread(std::size_t from) {
 /// Hands a module's load on to supports: through all ways down at once, which meet again below
 /// where they can, and so on.
 void EnergyBound::carry(std::size_t from) {
-  std::vector<std::pair<std::size_t, Vec>> parts = {{from, load_about_origin(from)}};
+  std::vector<std::pair<std::size_t, Vec>> parts = {
+      {from, load_about_origin(target_, from, changes_.place(from))}};
   std::vector<std::pair<std::size_t, Vec>> next;
   for (; !parts.empty(); std::swap(parts, next)) {
     next.clear();

@@ -132,7 +132,6 @@ class EnergyBound {
   void hang(std::size_t module);
   void take_place(std::size_t module);
   void open_gaps(std::size_t module);
-  Vec load_about_origin(std::size_t module) const;
   double way_energy(std::size_t from) const;
   bool is_far_aside(std::size_t module) const;
   bool spread(std::size_t from);

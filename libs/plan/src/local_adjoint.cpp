@@ -69,10 +69,7 @@ LocalAdjoints::LocalAdjoints(const model::Robot& target)
   }
   for (std::size_t i = 0; i < target.modules().size(); ++i) {
     first_facet_[i + 1] += first_facet_[i];
-    const auto place = base::place_of(target.lattice(),
-                                      base::axial_of(target.lattice(), target.modules()[i].cell));
-    const double pitch = target.material().pitch_mm;
-    places_.push_back({pitch * place[0], pitch * place[1], pitch * place[2], 0, 0, 0});
+    places_.push_back(node_place(target, i));
   }
 }
 

@@ -42,15 +42,12 @@ SectionResponse::SectionResponse(const model::RobotSpec& spec, const model::Robo
       beam_(model::beam_section(target.material()), target.lattice()),
       ratio_per_norm_(model::load_ratio_per_energy_norm(target)),
       is_support_(target.modules().size()) {
-  const double pitch = target.material().pitch_mm;
   for (const model::Facet& facet : target.facets()) {
     is_support_[at(facet.module)] = true;
   }
   for (std::size_t i = 0; i < target.modules().size(); ++i) {
     is_support_[i] = is_support_[i] || target.modules()[i].support == model::Support::kFixed;
-    const auto place = base::place_of(target.lattice(),
-                                      base::axial_of(target.lattice(), target.modules()[i].cell));
-    places_.push_back({pitch * place[0], pitch * place[1], pitch * place[2], 0, 0, 0});
+    places_.push_back(node_place(target, i));
     const Vec& load = target.loads()[i];
     is_plain_ = is_plain_ && load[0] == 0 && load[1] == 0 && load[5] == 0;
   }
