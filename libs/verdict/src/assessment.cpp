@@ -43,6 +43,11 @@ constexpr double kFinerTolerance = 1e-6;
 /// cube of 17, 4,913 modules, has 60.
 constexpr std::size_t kPreciseFillMax = 100;
 
+/// From here on it is asked last, after multigrid with some more digits and with many: of a tower
+/// of 3 x 3 x 20,000 that takes a sixth of the time and a tenth of the memory.
+constexpr std::size_t kPreciseCountMax = 2'000;
+constexpr double kFineTolerance = 1e-4;
+
 /// Whether the model's stability is the rigid body's. A margin of zero is unstable by decision, not
 /// by mechanics: no model need agree with it.
 bool agrees(const Assessment& assessment) {
@@ -163,20 +168,28 @@ bool is_near_limit(const Assessment& assessment) {
 }
 
 /// Where the verdict hangs on the error: the direct solver with all digits, or where that does not
-/// fit multigrid with more of them.
-std::vector<solver::EquilibriumOptions> finer_options(const solver::EquilibriumOptions& options) {
+/// fit multigrid with more of them; of large robots the other way round.
+std::vector<solver::EquilibriumOptions> finer_options(const model::Robot& robot,
+                                                      const solver::EquilibriumOptions& options) {
   std::vector<solver::EquilibriumOptions> list;
+  const bool is_large = robot.modules().size() > kPreciseCountMax;
+  if (options.method != solver::Method::kDirect) {
+    solver::EquilibriumOptions multigrid = options;
+    multigrid.method = solver::Method::kMultigrid;
+    if (is_large) {
+      multigrid.tolerance = options.tolerance * kFineTolerance;
+      list.push_back(multigrid);
+    }
+    multigrid.precision = solver::Precision::kDouble;
+    multigrid.tolerance = options.tolerance * kFinerTolerance;
+    list.push_back(multigrid);
+  }
   if (options.method != solver::Method::kMultigrid) {
-    solver::EquilibriumOptions& direct = list.emplace_back(options);
+    solver::EquilibriumOptions direct = options;
     direct.method = solver::Method::kDirect;
     direct.is_precise = true;
     direct.fill_max = kPreciseFillMax;
-  }
-  if (options.method != solver::Method::kDirect) {
-    solver::EquilibriumOptions& multigrid = list.emplace_back(options);
-    multigrid.method = solver::Method::kMultigrid;
-    multigrid.precision = solver::Precision::kDouble;
-    multigrid.tolerance *= kFinerTolerance;
+    list.insert(is_large ? list.end() : list.begin(), direct);
   }
   return list;
 }
@@ -207,17 +220,21 @@ Assessment assess(const model::Robot& robot, const solver::EquilibriumOptions& o
   if (!is_near_limit(assessment)) {
     return assessment;
   }
-  // Their memory is needed elsewhere, and they can be had again.
-  assessment.connections = std::vector<ConnectionResult>();
-  for (const solver::EquilibriumOptions& finer : finer_options(options)) {
+  for (const solver::EquilibriumOptions& finer : finer_options(robot, options)) {
+    // Their memory is needed elsewhere, and they can be had again.
+    assessment.connections = std::vector<ConnectionResult>();
     Assessment next = assess_once(robot, finer);
     // Solutions that were found once are there, whether or not they are found again.
     const bool is_one_lost = assessment.several && !next.several;
-    if (next.equilibrium.outcome == Outcome::kSettled && !is_one_lost) {
+    if (next.equilibrium.outcome != Outcome::kSettled || is_one_lost) {
+      continue;
+    }
+    if (finer.is_precise || !is_near_limit(next)) {
       return next;
     }
+    assessment = std::move(next);
   }
-  if (assessment.equilibrium.outcome == Outcome::kSettled) {
+  if (assessment.equilibrium.outcome == Outcome::kSettled && assessment.connections.empty()) {
     assess_connections_again(robot, options.thread_count, assessment);
   }
   return assessment;

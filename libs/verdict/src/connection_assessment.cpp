@@ -168,6 +168,11 @@ WholeLoads add_ranks(const model::Robot& robot, host::Ranks& ranks, Loads& loads
 /// is less; and never less than what is promised (docs/solver.md).
 constexpr double kMultigridFactor = 10;
 
+/// Where a verdict that hung on the error is sought with more digits, rounding may leave fewer than
+/// the two answers have in common: in a tower of 111,111 levels they differed by a thirtieth of the
+/// error.
+constexpr double kFinerFactor = 10;
+
 /// Refinements in double that find nothing but rounding differ by less than their error now and
 /// then.
 constexpr double kDirectFactor = 10;
@@ -182,10 +187,9 @@ double stiffness_spread(const model::Robot& robot) {
   return most / least;
 }
 
-/// How far the largest load ratio may be from the truth, if it is multigrid's that is off by so
-/// much as a share of it, or of 1.
-double error_margin(const model::Robot& robot, const Equilibrium& equilibrium,
-                    double multigrid_error, const Loads& loads) {
+/// How far the largest load ratio may be from the truth.
+double error_margin(const model::Robot& robot, const solver::EquilibriumOptions& options,
+                    const Equilibrium& equilibrium, const Loads& loads) {
   const double scale = std::max(1.0, loads.ratio_max);
   double margin = kRounding * scale;
   if (equilibrium.law == ContactLaw::kUnilateral && equilibrium.gamma > 0) {
@@ -197,8 +201,10 @@ double error_margin(const model::Robot& robot, const Equilibrium& equilibrium,
   if (equilibrium.method == solver::Method::kMultigrid) {
     const double bound =
         kEnergyFactor * model::load_ratio_per_energy_norm(robot) * equilibrium.energy_error;
-    return margin +
-           std::max(multigrid_error * scale, std::min(kMultigridFactor * loads.change, bound));
+    const bool is_finer = options.tolerance < solver::EquilibriumOptions{}.tolerance;
+    const double factor = kMultigridFactor * (is_finer ? kFinerFactor : 1);
+    return margin + std::max(multigrid_error(robot, options) * scale,
+                             std::min(factor * loads.change, bound));
   }
   return margin + kDirectFactor * loads.change;
 }
@@ -264,7 +270,7 @@ void assess_connections(const model::Robot& robot, const solver::EquilibriumOpti
   }
   assessment.load_ratio_change = loads.change;
   const double margin =
-      error_margin(robot, assessment.equilibrium, multigrid_error(robot, options), loads);
+      error_margin(robot, options, assessment.equilibrium, loads);
   assessment.load_ratio_range = {.low = loads.range.low - margin,
                                  .high = loads.range.high + margin};
   assessment.broken = std::move(loads.broken);
