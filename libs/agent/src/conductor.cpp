@@ -740,7 +740,7 @@ Order Conductor::decide() {
   const bool breaks = mechanics::breaks(first);
   const double springs = is_unilateral_ ? kRatioPerGamma * unilateral_gamma() : 0;
   const double least = springs * (1 + absolute(ratio_));
-  const double doubt = (error_ > kErrorLeast ? error_ : kErrorLeast) + (is_uneven() ? least : 0);
+  const double doubt = (error_ > kErrorLeast ? error_ : kErrorLeast) + least;
   // Away from a level floor the robot may fall by the law that was given up.
   if (!is_number(first) || !is_number(ratio_) || (is_uneven() && has_given_up_)) {
     return finish(Verdict::kUndecided, Reason::kNotConverged);

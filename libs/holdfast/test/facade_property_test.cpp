@@ -89,6 +89,7 @@ void expect_same_equilibrium(const solver::Equilibrium& a, const solver::Equilib
   EXPECT_EQ(a.facet_force, b.facet_force);
   EXPECT_EQ(a.contact, b.contact);
   EXPECT_EQ(a.open_but_held_count, b.open_but_held_count);
+  EXPECT_EQ(a.free_gamma, b.free_gamma);
   EXPECT_EQ(a.method, b.method);
   EXPECT_EQ(a.precision, b.precision);
   EXPECT_EQ(a.steps, b.steps);

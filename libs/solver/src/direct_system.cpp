@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <limits>
+#include <numeric>
 
 #include "beam_forces.hpp"
 #include "block_kernels.hpp"
@@ -29,6 +31,14 @@ constexpr int kRefinementCount = 2;
 /// If the last step still moves something by more than this share, digits are missing.
 constexpr double kRefinedShare = 1e-3;
 
+/// Weak springs are taken back in so many steps at most, until one moves nothing by more than this
+/// share, or by what rounding does. A robot that stands without them takes two or three; where it
+/// hangs on them, or nearly, steps do not become shorter.
+constexpr int kTakeBackMax = 20;
+constexpr double kTakenBackShare = 1e-12;
+constexpr double kTakenBackRounding = 1e-9;
+constexpr double kTakeBackPace = 0.7;
+
 /// What the factorization takes: for a block, upper and lower; for a node, the diagonal and its
 /// inverse; for an edge, its own block.
 constexpr std::size_t kBlockBytes = 2 * sizeof(Mat6<double>) + 24;
@@ -46,9 +56,8 @@ std::size_t block_count_max(const EquilibriumOptions& options, std::size_t node_
   return is_limited ? std::min(affordable, options.fill_max * node_count) : affordable;
 }
 
-/// Whether the last refinement had next to nothing to correct. On a robot so slender that bending
-/// drowns in double precision's rounding, each finds something else.
-bool is_refined(const Solution& solution) {
+/// How far the two answers are apart, as a share of the largest displacement; 0 if there is none.
+double change_share(const Solution& solution) {
   double largest = 0;
   double change = 0;
   for (std::size_t i = 0; i < solution.displacement.size(); ++i) {
@@ -58,8 +67,12 @@ bool is_refined(const Solution& solution) {
       change = std::max(change, std::abs(u - solution.alternative[i][k]));
     }
   }
-  return change <= kRefinedShare * largest;
+  return change > 0 ? change / largest : 0;
 }
+
+/// Whether the last refinement had next to nothing to correct. On a robot so slender that bending
+/// drowns in double precision's rounding, each finds something else.
+bool is_refined(const Solution& solution) { return change_share(solution) <= kRefinedShare; }
 
 void add_scaled(Mat6<double>& sum, double factor, const Mat6<double>& block) {
   for (std::size_t i = 0; i < block.values.size(); ++i) {
@@ -287,31 +300,83 @@ bool DirectSystem::refine(Solution& solution) {
   solution.gamma = ground().gamma;
   solution.displacement = displacement();
   for (int step = 0; step < kRefinementCount; ++step) {
-    refine_once(solution);
+    refine_once(solution, WeakSprings::kKept);
   }
-  if (is_refined(solution) && !is_precise_) {
-    return true;
-  }
+  const bool is_enough = is_refined(solution);
+  const bool has_weak_springs = ground().law == ContactLaw::kUnilateral && ground().gamma > 0;
   const bool is_any_open_but_held = std::ranges::any_of(
       facets(), [](const FacetState& facet) { return !facet.state.pressed && facet.is_held; });
-  if (ground().law == ContactLaw::kUnilateral && !is_any_open_but_held &&
+  if (has_weak_springs && (is_precise_ || !is_enough) && !is_any_open_but_held &&
       refine_without_weak_springs(solution)) {
+    return true;
+  }
+  if (has_weak_springs && is_enough) {
+    take_back_weak_springs(solution);
+    return true;
+  }
+  if (is_enough && !is_precise_) {
     return true;
   }
   return refine_precisely(solution);
 }
 
 /// Solves for the residual and adds the correction.
-void DirectSystem::refine_once(Solution& solution) const {
+void DirectSystem::refine_once(Solution& solution, WeakSprings weak_springs) const {
   std::vector<Vec> residual = beam_forces(robot(), beam(), solution.displacement);
   for (const FacetState& facet : facets()) {
-    base::add_to(residual[facet.module], law().force(facet, solution.displacement[facet.module]));
+    const Vec& u = solution.displacement[facet.module];
+    base::add_to(residual[facet.module], weak_springs == WeakSprings::kKept
+                                             ? law().force(facet, u)
+                                             : law().force_without_weak_spring(facet, u));
   }
   for (std::size_t i = 0; i < residual.size(); ++i) {
     residual[i] = sum(loads()[i], -1, residual[i]);
   }
   solution.alternative = solution.displacement;
   solution.displacement = sum(std::move(solution.displacement), 1, solve_for(residual));
+}
+
+/// The factors are those of K with the weak springs W, and W <= K. So steps by the residual of the
+/// robot without them, K u_next = f + W u, lead to its solution wherever it has one. If that is not
+/// reached, or facets would then be in other states, it is the second answer: what the weak springs
+/// do is then known about, but not left out, and in the error's energy.
+void DirectSystem::take_back_weak_springs(Solution& solution) const {
+  Solution next;
+  next.displacement = solution.displacement;
+  double before = std::numeric_limits<double>::infinity();
+  bool is_over = false;
+  for (int step = 0; step < kTakeBackMax && !is_over; ++step) {
+    refine_once(next, WeakSprings::kTakenBack);
+    const double change = change_share(next);
+    const bool is_shorter = change < kTakeBackPace * before;
+    is_over = change <= (is_shorter ? kTakenBackShare : kTakenBackRounding);
+    if (!is_shorter) {
+      break;
+    }
+    before = change;
+  }
+  const bool is_consistent = std::ranges::all_of(facets(), [&](const FacetState& facet) {
+    return law().is_consistent_without_weak_spring(facet, next.displacement[facet.module]);
+  });
+  if (is_over && is_consistent) {
+    // What rounding leaves the first refinement knows better than the last, short step.
+    const bool is_rounding = change_share(next) <= change_share(solution);
+    const std::vector<Vec> rounding = sum(solution.alternative, -1, solution.displacement);
+    solution.alternative =
+        is_rounding ? sum(next.displacement, 1, rounding) : std::move(next.alternative);
+    solution.displacement = std::move(next.displacement);
+    solution.gamma = 0;
+    return;
+  }
+  solution.energy_error = std::numeric_limits<double>::infinity();
+  if (is_over) {
+    const std::vector<Vec> change = sum(next.displacement, -1, solution.displacement);
+    const std::vector<Vec> forces = beam_forces(robot(), beam(), change);
+    solution.energy_error = std::sqrt(std::max(
+        0.0, std::inner_product(change.begin(), change.end(), forces.begin(), 0.0, std::plus<>(),
+                                [](const Vec& a, const Vec& b) { return base::dot(a, b); })));
+  }
+  solution.alternative = std::move(next.displacement);
 }
 
 /// Returns false if that does not settle, or the facets' states are then other ones.

@@ -65,7 +65,9 @@ class DirectSystem final : public LinearSystem {
   template <class Load>
   std::vector<Vec> by_node(const Load& load) const;
   std::vector<Vec> solve_for(const std::vector<Vec>& load) const;
-  void refine_once(Solution& solution) const;
+  enum class WeakSprings : std::uint8_t { kKept, kTakenBack };
+  void refine_once(Solution& solution, WeakSprings weak_springs) const;
+  void take_back_weak_springs(Solution& solution) const;
   bool refine_precisely(Solution& solution);
   bool refine_without_weak_springs(Solution& solution);
 

@@ -3,6 +3,7 @@
 #include "holdfast/solver/equilibrium.hpp"
 
 #include <algorithm>
+#include <optional>
 #include <utility>
 
 #include "regularised_contact.hpp"
@@ -30,8 +31,10 @@ Attempt attempt_since(const LinearReport& before, const LinearReport& now,
 void take_contact(const LinearSystem& system, Equilibrium& result) {
   result.contact.clear();
   result.facet_force.clear();
+  FacetLaw<double> law = system.law();
+  law.set_gamma(result.gamma);
   for (const FacetState& facet : system.facets()) {
-    auto force = system.law().force(facet, result.displacement[facet.module]);
+    auto force = law.force(facet, result.displacement[facet.module]);
     for (double& component : force) {
       component = -component;
     }
@@ -69,12 +72,14 @@ void compare_with_free_facets(UnilateralContact& contact, Equilibrium& result) {
     return;
   }
   result.open_but_held_count = contact.open_but_held_count();
-  std::vector<base::Vec6<double>> free = contact.displacement_with_free_facets(result.displacement);
-  if (free.empty()) {
+  std::optional<Solution> free = contact.with_free_facets(result.displacement);
+  if (!free) {
     result.outcome = Outcome::kNotSettled;  // Held is one limit, and the other is not known.
     return;
   }
-  result.alternative = std::move(free);
+  result.alternative = std::move(free->displacement);
+  result.free_gamma = free->gamma;
+  result.energy_error = std::max(result.energy_error, free->energy_error);
 }
 
 }  // namespace

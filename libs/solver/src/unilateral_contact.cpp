@@ -130,14 +130,15 @@ int UnilateralContact::open_but_held_count() const {
   return static_cast<int>(host::total(ranks(), static_cast<std::size_t>(count)));
 }
 
-std::vector<Vec6<double>> UnilateralContact::displacement_with_free_facets(
-    const std::vector<Vec>& displacement) {
+std::optional<Solution> UnilateralContact::with_free_facets(const std::vector<Vec>& displacement) {
   for (std::size_t i = 0; i < system().facets().size(); ++i) {
     const FacetState& facet = system().facets()[i];
     system().set_facet(i, facet.state, facet.is_held && facet.state.pressed);
   }
   set_states(states_at(at_facets(displacement)));
-  return minimise() == Outcome::kSettled ? system().displacement() : std::vector<Vec>{};
+  Solution free;
+  return minimise() == Outcome::kSettled && complete(free) ? std::optional(std::move(free))
+                                                           : std::nullopt;
 }
 
 }  // namespace holdfast::solver

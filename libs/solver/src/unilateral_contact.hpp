@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "contact_iteration.hpp"
@@ -23,8 +24,8 @@ class UnilateralContact final : public ContactIteration {
   int open_but_held_count() const;
 
   /// The other limit where some facets can neither be held nor free, half open, half closed: the
-  /// displacements with these facets free. Empty if there is no equilibrium then.
-  std::vector<Vec> displacement_with_free_facets(const std::vector<Vec>& displacement);
+  /// solution with these facets free. None if there is no equilibrium then.
+  std::optional<Solution> with_free_facets(const std::vector<Vec>& displacement);
 
  private:
   Outcome minimise();

@@ -13,6 +13,13 @@ namespace holdfast::verdict {
 /// at this tolerance, or what very soft beams take of it.
 double multigrid_error(const model::Robot& robot, const solver::EquilibriumOptions& options);
 
+/// What weak springs beside the unilateral contact may have done to load ratios, the largest of
+/// which, or 1, is `scale`, where the solver could not take them back, besides what the second
+/// answer shows: a share of the contact's stiffness. Where that answer is for ambiguous feet, or
+/// what they do is not known, what the energy between the solutions with and without could do.
+double weak_spring_error(const model::Robot& robot, const solver::Equilibrium& equilibrium,
+                         double scale);
+
 /// Fills in all connections of an assessment whose equilibrium is settled, their largest load ratio
 /// and what breaks. Multigrid's second answer, unless feet are ambiguous, is given back: it is for
 /// the range alone.

@@ -93,7 +93,8 @@ void compare_solutions(const model::Robot& robot, solver::EquilibriumSolver& sol
   const bool is_multigrid =
       settled.method == solver::Method::kMultigrid || exact.method == solver::Method::kMultigrid;
   const double share = is_multigrid ? multigrid_error(robot, options) : kRounding;
-  several.error = std::max(1.0, several.regularised.high) * (share + kWeakSprings * exact.gamma);
+  const double scale = std::max(1.0, several.regularised.high);
+  several.error = share * scale + weak_spring_error(robot, exact, scale);
 }
 
 bool do_agree(const SeveralSolutions& several, bool is_broken) {

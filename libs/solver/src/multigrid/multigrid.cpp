@@ -68,6 +68,11 @@ constexpr double kBriskIterations = 8;
 /// energy is that of a sag that is found first. Without it a bridge of 41,600 is off by 2e-4.
 constexpr double kSlenderShare = 0.3;
 
+/// Weak springs are taken back in so many steps at most, as long as each is so much shorter than
+/// the one before: otherwise the robot hangs on them, or nearly.
+constexpr int kTakeBackMax = 20;
+constexpr double kTakeBackPace = 0.7;
+
 /// In a thin robot one beam may have most of the error's energy. So that energy must not be able to
 /// change a load ratio by more than this times the tolerance; the estimate of the energy is low by
 /// a third once in a while.
@@ -442,7 +447,72 @@ bool Multigrid::refine(Solution& solution) {
     return false;
   }
   solution.energy_error = energy_error_;
+  if (ground().law == ContactLaw::kUnilateral && ground().gamma > 0) {
+    const double left = take_back_weak_springs();
+    solution.gamma = left == 0 ? 0 : solution.gamma;
+    solution.energy_error += left;
+  }
   return true;
+}
+
+/// Adds what weak springs do at the present displacements to the residual, less what was `taken` of
+/// it before. Returns r . M^-1 r.
+double Multigrid::take_back_weak_forces(std::vector<Vec>& taken) {
+  for (std::size_t i = 0; i < ground_nodes_.size(); ++i) {
+    const GroundNode& ground_node = ground_nodes_[i];
+    const FacetState& facet = facets()[ground_node.facet];
+    const Vec u = displacement_of(ground_node.node);
+    Vec weak = law().force(facet, u);
+    const Vec rest = law().force_without_weak_spring(facet, u);
+    Vec left = iteration_->residual(at(ground_node.node));
+    for (std::size_t k = 0; k < 6; ++k) {
+      weak[k] -= rest[k];
+      left[k] += weak[k] - taken[i][k];
+    }
+    iteration_->set_residual(at(ground_node.node), left);
+    taken[i] = weak;
+  }
+  return iteration_->begin();
+}
+
+/// The iteration's K has the weak springs W, and W <= K. So K u_next = f + W u leads to the
+/// solution without them wherever there is one. Returns 0; or, if facets would then be in other
+/// states, how far that is away in the energy norm; infinity if it is not reached. marked() is then
+/// still the solution with them.
+double Multigrid::take_back_weak_springs() {
+  constexpr double kNotReached = std::numeric_limits<double>::infinity();
+  const double error_max = energy_error_ * energy_error_;
+  const Iteration::Goal goal = {
+      .error = error_max, .iteration_count_min = 0, .iteration_count_max = kIterationMax};
+  std::vector<Vec> taken(ground_nodes_.size());
+  double first = 0;
+  double before = kNotReached;
+  bool is_over = false;
+  for (int step = 0; step < kTakeBackMax; ++step) {
+    const double error = take_back_weak_forces(taken);
+    is_over = error <= error_max;
+    if (is_over || !(error < kTakeBackPace * kTakeBackPace * before)) {
+      break;
+    }
+    if (step == 0) {
+      first = std::sqrt(error);
+      iteration_->mark();
+    }
+    if (iteration_->run(goal) != Iteration::End::kConverged) {
+      break;
+    }
+    before = error;
+  }
+  is_residual_known_ = false;
+  is_stale_ = true;
+  const bool is_consistent = std::ranges::all_of(ground_nodes_, [&](const GroundNode& node) {
+    return law().is_consistent_without_weak_spring(facets()[node.facet],
+                                                   displacement_of(node.node));
+  });
+  if (!is_over) {
+    return kNotReached;
+  }
+  return host::all(ranks(), is_consistent) ? 0 : energy_error_ + first / (1 - kTakeBackPace);
 }
 
 /// The second answer is the one that refine() began with. All that is not needed any more goes

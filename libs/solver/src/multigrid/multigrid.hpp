@@ -78,6 +78,8 @@ class Multigrid final : public LinearSystem {
   std::vector<std::int32_t> nodes_alone() const;
   LinearOutcome begin();
   LinearOutcome improve(const Target& target);
+  double take_back_weak_springs();
+  double take_back_weak_forces(std::vector<Vec>& taken);
   std::unique_ptr<Iteration> make_iteration();
   std::vector<double>& x();
   std::vector<Vec> by_module(std::vector<double>& x);

@@ -65,6 +65,7 @@ struct Equilibrium : Solution {
   /// Open facets that are held sideways all the same, as they would close when released: no slip
   /// and no force at once is then impossible, and the truth lies between held and free.
   int open_but_held_count = 0;
+  double free_gamma = 0;  ///< The weak springs of the alternative with these free.
   /// All tries, in their order; the last one made the displacements.
   std::vector<Attempt> attempts;
   // What the last attempt took, and what was done after it.

@@ -47,7 +47,8 @@ struct Solution {
   std::vector<base::Vec6<double>> alternative;
   /// The weak springs that hold beside the contact, as in ContactOptions; 0 if they were left out.
   double gamma = 0;
-  /// The error in the energy norm, (N mm)^(1/2), by multigrid's own estimate.
+  /// The error in the energy norm, (N mm)^(1/2), by multigrid's own estimate; and what weak springs
+  /// do that could not be left out, infinite if that is not known.
   double energy_error = 0;
   std::vector<mechanics::ContactState> contact;  ///< By facet, in the order of Robot::facets().
 };
@@ -109,6 +110,20 @@ class FacetLaw {
     return beam_->to_global(facet.direction,
                             mechanics::contact_force(ground_, facet.state, facet.is_held,
                                                      beam_->to_local(facet.direction, u)));
+  }
+
+  /// The same by the law without weak springs, in the state that the facet is in.
+  Vec force_without_weak_spring(const FacetState& facet, const Vec& u) const {
+    FacetLaw law = *this;
+    law.set_gamma(0);
+    return law.force(facet, u);
+  }
+
+  /// Whether the law without weak springs prescribes the state that the facet is in.
+  bool is_consistent_without_weak_spring(const FacetState& facet, const Vec& u) const {
+    FacetLaw law = *this;
+    law.set_gamma(0);
+    return facet.is_bonded || law.state_at(facet, u) == facet.state;
   }
 
   /// The derivative of force().
