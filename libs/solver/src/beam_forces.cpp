@@ -28,4 +28,12 @@ std::vector<Vec6<double>> sum(std::vector<Vec6<double>> a, double factor,
   return a;
 }
 
+double dot_all(const std::vector<base::Vec6<double>>& a, const std::vector<base::Vec6<double>>& b) {
+  double sum = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    sum += base::dot(a[i], b[i]);
+  }
+  return sum;
+}
+
 }  // namespace holdfast::solver

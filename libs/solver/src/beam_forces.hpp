@@ -28,4 +28,7 @@ inline base::Vec6<double> sum(base::Vec6<double> a, double factor, const base::V
 std::vector<base::Vec6<double>> sum(std::vector<base::Vec6<double>> a, double factor,
                                     const std::vector<base::Vec6<double>>& b);
 
+/// a . b, all vectors together.
+double dot_all(const std::vector<base::Vec6<double>>& a, const std::vector<base::Vec6<double>>& b);
+
 }  // namespace holdfast::solver

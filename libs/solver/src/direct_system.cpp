@@ -5,9 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <functional>
 #include <limits>
-#include <numeric>
 
 #include "beam_forces.hpp"
 #include "block_kernels.hpp"
@@ -31,13 +29,10 @@ constexpr int kRefinementCount = 2;
 /// If the last step still moves something by more than this share, digits are missing.
 constexpr double kRefinedShare = 1e-3;
 
-/// Weak springs are taken back in so many steps at most, until one moves nothing by more than this
-/// share, or by what rounding does. A robot that stands without them takes two or three; where it
-/// hangs on them, or nearly, steps do not become shorter.
-constexpr int kTakeBackMax = 20;
+/// Weak springs are taken back until a step moves nothing by more than this share, or by what
+/// rounding does.
 constexpr double kTakenBackShare = 1e-12;
 constexpr double kTakenBackRounding = 1e-9;
-constexpr double kTakeBackPace = 0.7;
 
 /// What the factorization takes: for a block, upper and lower; for a node, the diagonal and its
 /// inverse; for an edge, its own block.
@@ -300,17 +295,16 @@ bool DirectSystem::refine(Solution& solution) {
   solution.gamma = ground().gamma;
   solution.displacement = displacement();
   for (int step = 0; step < kRefinementCount; ++step) {
-    refine_once(solution, WeakSprings::kKept);
+    refine_once(solution, law());
   }
   const bool is_enough = is_refined(solution);
-  const bool has_weak_springs = ground().law == ContactLaw::kUnilateral && ground().gamma > 0;
   const bool is_any_open_but_held = std::ranges::any_of(
       facets(), [](const FacetState& facet) { return !facet.state.pressed && facet.is_held; });
-  if (has_weak_springs && (is_precise_ || !is_enough) && !is_any_open_but_held &&
+  if (has_weak_springs() && (is_precise_ || !is_enough) && !is_any_open_but_held &&
       refine_without_weak_springs(solution)) {
     return true;
   }
-  if (has_weak_springs && is_enough) {
+  if (has_weak_springs() && is_enough) {
     take_back_weak_springs(solution);
     return true;
   }
@@ -320,14 +314,11 @@ bool DirectSystem::refine(Solution& solution) {
   return refine_precisely(solution);
 }
 
-/// Solves for the residual and adds the correction.
-void DirectSystem::refine_once(Solution& solution, WeakSprings weak_springs) const {
+/// Solves for the residual by a law and adds the correction.
+void DirectSystem::refine_once(Solution& solution, const FacetLaw<double>& law) const {
   std::vector<Vec> residual = beam_forces(robot(), beam(), solution.displacement);
   for (const FacetState& facet : facets()) {
-    const Vec& u = solution.displacement[facet.module];
-    base::add_to(residual[facet.module], weak_springs == WeakSprings::kKept
-                                             ? law().force(facet, u)
-                                             : law().force_without_weak_spring(facet, u));
+    base::add_to(residual[facet.module], law.force(facet, solution.displacement[facet.module]));
   }
   for (std::size_t i = 0; i < residual.size(); ++i) {
     residual[i] = sum(loads()[i], -1, residual[i]);
@@ -341,12 +332,13 @@ void DirectSystem::refine_once(Solution& solution, WeakSprings weak_springs) con
 /// reached, or facets would then be in other states, it is the second answer: what the weak springs
 /// do is then known about, but not left out, and in the error's energy.
 void DirectSystem::take_back_weak_springs(Solution& solution) const {
+  const FacetLaw<double> exact = law().with_gamma(0);
   Solution next;
   next.displacement = solution.displacement;
   double before = std::numeric_limits<double>::infinity();
   bool is_over = false;
   for (int step = 0; step < kTakeBackMax && !is_over; ++step) {
-    refine_once(next, WeakSprings::kTakenBack);
+    refine_once(next, exact);
     const double change = change_share(next);
     const bool is_shorter = change < kTakeBackPace * before;
     is_over = change <= (is_shorter ? kTakenBackShare : kTakenBackRounding);
@@ -356,7 +348,7 @@ void DirectSystem::take_back_weak_springs(Solution& solution) const {
     before = change;
   }
   const bool is_consistent = std::ranges::all_of(facets(), [&](const FacetState& facet) {
-    return law().is_consistent_without_weak_spring(facet, next.displacement[facet.module]);
+    return exact.state_at(facet, next.displacement[facet.module]) == facet.state;
   });
   if (is_over && is_consistent) {
     // What rounding leaves the first refinement knows better than the last, short step.
@@ -371,10 +363,8 @@ void DirectSystem::take_back_weak_springs(Solution& solution) const {
   solution.energy_error = std::numeric_limits<double>::infinity();
   if (is_over) {
     const std::vector<Vec> change = sum(next.displacement, -1, solution.displacement);
-    const std::vector<Vec> forces = beam_forces(robot(), beam(), change);
-    solution.energy_error = std::sqrt(std::max(
-        0.0, std::inner_product(change.begin(), change.end(), forces.begin(), 0.0, std::plus<>(),
-                                [](const Vec& a, const Vec& b) { return base::dot(a, b); })));
+    solution.energy_error =
+        std::sqrt(std::max(0.0, dot_all(beam_forces(robot(), beam(), change), change)));
   }
   solution.alternative = std::move(next.displacement);
 }

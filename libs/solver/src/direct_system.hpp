@@ -65,8 +65,7 @@ class DirectSystem final : public LinearSystem {
   template <class Load>
   std::vector<Vec> by_node(const Load& load) const;
   std::vector<Vec> solve_for(const std::vector<Vec>& load) const;
-  enum class WeakSprings : std::uint8_t { kKept, kTakenBack };
-  void refine_once(Solution& solution, WeakSprings weak_springs) const;
+  void refine_once(Solution& solution, const FacetLaw<double>& law) const;
   void take_back_weak_springs(Solution& solution) const;
   bool refine_precisely(Solution& solution);
   bool refine_without_weak_springs(Solution& solution);

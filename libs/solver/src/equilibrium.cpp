@@ -31,8 +31,7 @@ Attempt attempt_since(const LinearReport& before, const LinearReport& now,
 void take_contact(const LinearSystem& system, Equilibrium& result) {
   result.contact.clear();
   result.facet_force.clear();
-  FacetLaw<double> law = system.law();
-  law.set_gamma(result.gamma);
+  const FacetLaw<double> law = system.law().with_gamma(result.gamma);
   for (const FacetState& facet : system.facets()) {
     auto force = law.force(facet, result.displacement[facet.module]);
     for (double& component : force) {

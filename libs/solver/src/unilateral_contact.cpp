@@ -17,14 +17,6 @@ using mechanics::ContactState;
 /// Halvings of the bracket in the line search, to the resolution of double.
 constexpr int kLineStepMax = 60;
 
-double dot_all(const std::vector<Vec6<double>>& a, const std::vector<Vec6<double>>& b) {
-  double sum = 0;
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    sum += base::dot(a[i], b[i]);
-  }
-  return sum;
-}
-
 /// Where a facet is at the border of two states both have the same displacements, but for this
 /// share of the largest, and rounding goes from one to the other. Most that settle have by half of
 /// the steps that are allowed.

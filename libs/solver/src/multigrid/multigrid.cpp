@@ -68,11 +68,6 @@ constexpr double kBriskIterations = 8;
 /// energy is that of a sag that is found first. Without it a bridge of 41,600 is off by 2e-4.
 constexpr double kSlenderShare = 0.3;
 
-/// Weak springs are taken back in so many steps at most, as long as each is so much shorter than
-/// the one before: otherwise the robot hangs on them, or nearly.
-constexpr int kTakeBackMax = 20;
-constexpr double kTakeBackPace = 0.7;
-
 /// In a thin robot one beam may have most of the error's energy. So that energy must not be able to
 /// change a load ratio by more than this times the tolerance; the estimate of the energy is low by
 /// a third once in a while.
@@ -447,7 +442,7 @@ bool Multigrid::refine(Solution& solution) {
     return false;
   }
   solution.energy_error = energy_error_;
-  if (ground().law == ContactLaw::kUnilateral && ground().gamma > 0) {
+  if (has_weak_springs()) {
     const double left = take_back_weak_springs();
     solution.gamma = left == 0 ? 0 : solution.gamma;
     solution.energy_error += left;
@@ -458,12 +453,13 @@ bool Multigrid::refine(Solution& solution) {
 /// Adds what weak springs do at the present displacements to the residual, less what was `taken` of
 /// it before. Returns r . M^-1 r.
 double Multigrid::take_back_weak_forces(std::vector<Vec>& taken) {
+  const FacetLaw<double> exact = law().with_gamma(0);
   for (std::size_t i = 0; i < ground_nodes_.size(); ++i) {
     const GroundNode& ground_node = ground_nodes_[i];
     const FacetState& facet = facets()[ground_node.facet];
     const Vec u = displacement_of(ground_node.node);
     Vec weak = law().force(facet, u);
-    const Vec rest = law().force_without_weak_spring(facet, u);
+    const Vec rest = exact.force(facet, u);
     Vec left = iteration_->residual(at(ground_node.node));
     for (std::size_t k = 0; k < 6; ++k) {
       weak[k] -= rest[k];
@@ -505,9 +501,10 @@ double Multigrid::take_back_weak_springs() {
   }
   is_residual_known_ = false;
   is_stale_ = true;
+  const FacetLaw<double> exact = law().with_gamma(0);
   const bool is_consistent = std::ranges::all_of(ground_nodes_, [&](const GroundNode& node) {
-    return law().is_consistent_without_weak_spring(facets()[node.facet],
-                                                   displacement_of(node.node));
+    const FacetState& facet = facets()[node.facet];
+    return exact.state_at(facet, displacement_of(node.node)) == facet.state;
   });
   if (!is_over) {
     return kNotReached;

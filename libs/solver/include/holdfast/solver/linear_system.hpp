@@ -74,6 +74,13 @@ class FacetLaw {
 
   void set_gamma(Real gamma) { ground_.gamma = gamma; }
 
+  /// The same law with other weak springs.
+  FacetLaw with_gamma(Real gamma) const {
+    FacetLaw law = *this;
+    law.set_gamma(gamma);
+    return law;
+  }
+
   /// The trial force on the facet when its module moves by u, local frame.
   Vec trial_force(const FacetState& facet, const Vec& u) const {
     return mechanics::trial_force(ground_, beam_->to_local(facet.direction, u));
@@ -110,20 +117,6 @@ class FacetLaw {
     return beam_->to_global(facet.direction,
                             mechanics::contact_force(ground_, facet.state, facet.is_held,
                                                      beam_->to_local(facet.direction, u)));
-  }
-
-  /// The same by the law without weak springs, in the state that the facet is in.
-  Vec force_without_weak_spring(const FacetState& facet, const Vec& u) const {
-    FacetLaw law = *this;
-    law.set_gamma(0);
-    return law.force(facet, u);
-  }
-
-  /// Whether the law without weak springs prescribes the state that the facet is in.
-  bool is_consistent_without_weak_spring(const FacetState& facet, const Vec& u) const {
-    FacetLaw law = *this;
-    law.set_gamma(0);
-    return facet.is_bonded || law.state_at(facet, u) == facet.state;
   }
 
   /// The derivative of force().
@@ -237,6 +230,17 @@ class LinearSystem {
 
   /// The same for loads that have changed little.
   virtual void take_changed_loads() { take_loads(); }
+
+  /// Weak springs are taken back in so many steps at most, as long as each is so much shorter than
+  /// the one before. A robot that stands without them takes two or three; where it hangs on them,
+  /// or nearly, steps do not become shorter.
+  static constexpr int kTakeBackMax = 20;
+  static constexpr double kTakeBackPace = 0.7;
+
+  /// Whether there are springs beside the exact law, which are no part of it.
+  bool has_weak_springs() const {
+    return ground().law == mechanics::ContactLaw::kUnilateral && ground().gamma > 0;
+  }
 
   /// Changes the weak springs and nothing else.
   void set_gamma(double gamma);
