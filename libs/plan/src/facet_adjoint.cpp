@@ -42,12 +42,12 @@ std::array<Vec6<double>, 3> facet_loads(const model::Robot& target,
 /// None if it cannot be solved.
 std::shared_ptr<const FacetAdjoint> find_adjoint(solver::LinearSystem& system,
                                                  const model::Robot& target,
-                                                 std::shared_ptr<const ElementSet> core,
+                                                 std::shared_ptr<const std::vector<Element>> core,
                                                  std::size_t facet) {
   auto adjoint = std::make_shared<FacetAdjoint>();
   adjoint->facet = facet;
-  adjoint->z.resize(target.modules().size());
-  const std::vector<Element> elements = core->elements();
+  const std::vector<Element>& elements = *core;
+  adjoint->z.resize(elements.size());
   const std::size_t module = at(target.facets()[facet].module);
   const auto place = static_cast<std::size_t>(
       std::ranges::lower_bound(elements, static_cast<Element>(module)) - elements.begin());
@@ -61,7 +61,7 @@ std::shared_ptr<const FacetAdjoint> find_adjoint(solver::LinearSystem& system,
     }
     const auto z = system.displacement();
     for (std::size_t k = 0; k < elements.size(); ++k) {
-      adjoint->z[at(elements[k])][i] = z[k];
+      adjoint->z[k][i] = z[k];
     }
     const double norm = std::sqrt(std::max(0.0, base::dot(loads[i], z[place])));
     adjoint->error[i] = system.is_exact() ? 0 : verdict::kEnergyFactor * kAdjointTolerance * norm;
@@ -85,7 +85,7 @@ FacetAdjoints find_adjoints(const model::RobotSpec& spec, const model::Robot& ta
     return adjoints;
   }
   system->set_law({});
-  const auto shared = std::make_shared<const ElementSet>(core);
+  const auto shared = std::make_shared<const std::vector<Element>>(core.elements());
   for (const std::size_t facet : facets) {
     if (is_late()) {
       break;

@@ -30,10 +30,10 @@ namespace holdfast::plan {
 struct FacetAdjoint {
   using Vec = base::Vec6<double>;
 
-  std::size_t facet = 0;  ///< Of the target.
-  std::shared_ptr<const ElementSet> core;
-  std::vector<std::array<Vec, 3>> z;  ///< By module of the target, for fz, mx and my.
-  std::array<double, 3> error{};      ///< Of z, in the energy norm.
+  std::size_t facet = 0;                             ///< Of the target.
+  std::shared_ptr<const std::vector<Element>> core;  ///< Its modules, of the target, ascending.
+  std::vector<std::array<Vec, 3>> z;                 ///< By place in the core, for fz, mx and my.
+  std::array<double, 3> error{};                     ///< Of z, in the energy norm.
 };
 
 using FacetAdjoints = std::vector<std::shared_ptr<const FacetAdjoint>>;

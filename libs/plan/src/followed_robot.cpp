@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <unordered_set>
 
@@ -29,6 +30,14 @@ constexpr double kTolerance = 0.03;
 /// A solution that leaves a larger gap, of the same unit, is improved at once: what it leaves room
 /// for is soon used up. In a sheet of 1,024 modules 66 and as many improvements do instead of 293.
 constexpr double kGapMax = 0.3;
+
+/// A gap that is closed leaves a tenth of it. So the solution for that may be off by so many times
+/// its tolerance for each unit of the gap. With 2 a ball takes a tenth more of them, each as
+/// short as before.
+constexpr double kGapShare = 1;
+
+/// For no known error at all.
+constexpr double kRoughly = std::numeric_limits<double>::infinity();
 
 /// What the first solution begins with: by it one learns what the tolerance is of the whole.
 constexpr double kToleranceFirst = 0.03;
@@ -60,6 +69,8 @@ void add_times(Vec6<double>& sum, double factor, const Vec6<double>& term) {
     sum[i] += factor * term[i];
   }
 }
+
+double square(double x) { return x * x; }
 
 double work_of(const std::vector<Vec6<double>>& loads, const std::vector<Vec6<double>>& u) {
   double work = 0;
@@ -100,6 +111,7 @@ void FollowedRobot::begin(const ElementSet& state, const verdict::Assessment& so
   robot_.reset();
   new_.clear();
   springs_.clear();
+  loaded_.clear();
   solved_count_ = 0;
   place_.assign(target_.modules().size(), kAbsent);
   u_.resize(target_.modules().size());
@@ -330,8 +342,9 @@ bool FollowedRobot::make_system(const std::vector<Vec>& loads) {
   return false;
 }
 
-/// How the core moves if it takes these loads besides.
-bool FollowedRobot::find_motion(const std::vector<Vec>& change) {
+/// How the core moves if it takes these loads besides: to so many times the tolerance, or, if that
+/// is kRoughly, only about.
+bool FollowedRobot::find_motion(const std::vector<Vec>& change, double coarseness) {
   std::vector<Vec> loads = change;
   for (std::size_t i = 0; i < loads.size(); ++i) {
     base::add_to(loads[i], given_[i]);
@@ -340,13 +353,18 @@ bool FollowedRobot::find_motion(const std::vector<Vec>& change) {
     if (!make_system(loads)) {
       return false;
     }
+    coarseness = 1;
   } else {
     system_->change_loads(model::Loads(loads));
-    if (system_->solve(tolerance_) != solver::LinearOutcome::kSolved) {
+    const auto outcome =
+        coarseness == kRoughly ? system_->approach() : system_->solve(coarseness * tolerance_);
+    if (outcome != solver::LinearOutcome::kSolved) {
       system_.reset();
       return false;
     }
   }
+  solution_error_ =
+      system_->is_exact() ? 0 : verdict::kEnergyFactor * coarseness * kTolerance * unit_;
   iteration_count_ = system_->report().iteration_count;
   change_ = change;
   motion_ = system_->displacement();
@@ -395,19 +413,45 @@ double FollowedRobot::ratio_of(std::size_t module, std::size_t other, int direct
   return std::max(known, connection_ratio(target_, module, other, direction, force));
 }
 
+/// The core's connections, by their load ratios when it was solved.
+const std::vector<FollowedRobot::Loaded>& FollowedRobot::most_loaded_first() {
+  if (!loaded_.empty()) {
+    return loaded_;
+  }
+  const auto still = [&](std::size_t module) {
+    return difference(u_[module], moved_[at(place_[module])]);
+  };
+  for (const Element element : elements_) {
+    const std::size_t module = at(element);
+    for (const Direction direction : base::directions(target_.lattice())) {
+      const std::int32_t other = local_.neighbour(module, base::index(direction));
+      if (base::index(direction) % 2 != 0 || other == model::Robot::kNoNeighbour ||
+          is_new(at(other))) {
+        continue;
+      }
+      const Vec force = beam_.middle_force(direction, still(module), still(at(other)));
+      loaded_.push_back(
+          {.module = module,
+           .other = at(other),
+           .direction = base::index(direction),
+           .ratio = connection_ratio(target_, module, at(other), base::index(direction), force)});
+    }
+  }
+  std::ranges::sort(loaded_, std::greater(), &Loaded::ratio);
+  return loaded_;
+}
+
 /// That no connection's exceeds, if the displacements are off by `error`.
-double FollowedRobot::load_ratio(double error) const {
+double FollowedRobot::load_ratio(double error) {
   const double moved = std::sqrt(std::max(0.0, work_of(given_, moved_))) + motion_error_;
   double largest = std::max(core_ratio_, cuts_->released_ratio()) + ratio_per_norm_ * moved;
   if (largest + ratio_per_norm_ * error > kRatioEasy) {
     largest = 0;
-    for (const Element element : elements_) {
-      for (const Direction direction : base::directions(target_.lattice())) {
-        const std::int32_t other = local_.neighbour(at(element), base::index(direction));
-        if (base::index(direction) % 2 == 0 && other != model::Robot::kNoNeighbour) {
-          largest = ratio_of(at(element), at(other), base::index(direction), largest);
-        }
+    for (const Loaded& each : most_loaded_first()) {
+      if (each.ratio + ratio_per_norm_ * moved <= largest) {
+        break;
       }
+      largest = ratio_of(each.module, each.other, each.direction, largest);
     }
   }
   for (const Spring& spring : springs_) {
@@ -418,15 +462,32 @@ double FollowedRobot::load_ratio(double error) const {
   return largest + ratio_per_norm_ * error;
 }
 
-/// Of the last solution for the core, in the energy norm.
-double FollowedRobot::solution_error() const {
-  return system_->is_exact() ? 0 : verdict::kEnergyFactor * kTolerance * unit_;
-}
-
 FollowedRobot::Result FollowedRobot::finish(double gap_energy) {
   const double solved = core_error_ + motion_error_;
   const double error = std::sqrt(gap_energy + solved * solved);
   return {.energy_error = error, .load_ratio = load_ratio(error)};
+}
+
+/// Gives loads to the core; new modules follow it. False: it cannot be solved.
+bool FollowedRobot::move(const std::vector<Vec>& change, double coarseness) {
+  if (!find_motion(change, coarseness)) {
+    return false;
+  }
+  move_core(1);
+  motion_error_ = solution_error_;
+  relax(modules_from(0));
+  return true;
+}
+
+/// Of d.
+double FollowedRobot::gap_energy() const {
+  double energy = 0;
+  const std::vector<Vec> gap = gaps();
+  for (std::size_t i = 0; i < gap.size(); ++i) {
+    const Vec lack = difference(springs_[i].force, gap[i]);
+    energy += energy_of(lack, lack);
+  }
+  return energy;
 }
 
 std::optional<FollowedRobot::Result> FollowedRobot::solve() {
@@ -434,19 +495,16 @@ std::optional<FollowedRobot::Result> FollowedRobot::solve() {
   const std::vector<Vec> given = find_forces(solved_count_, springs);
   springs_.insert(springs_.end(), springs.begin(), springs.end());
   solved_count_ = new_.size();
-  if (!find_motion(given)) {
+  if (!move(given, kRoughly)) {
     return std::nullopt;
   }
-  move_core(1);
-  motion_error_ = solution_error();
-  relax(modules_from(0));
-  double energy = 0;
-  const std::vector<Vec> gap = gaps();
-  for (std::size_t i = 0; i < gap.size(); ++i) {
-    const Vec lack = difference(springs_[i].force, gap[i]);
-    energy += energy_of(lack, lack);
+  if (gap_energy() > square(kGapMax * unit_)) {
+    return improve();
   }
-  return std::sqrt(energy) > kGapMax * unit_ ? improve() : finish(energy);
+  if (!std::isfinite(motion_error_) && !move(std::vector<Vec>(given.size()), 1)) {
+    return std::nullopt;
+  }
+  return finish(gap_energy());
 }
 
 std::optional<FollowedRobot::Result> FollowedRobot::improve() {
@@ -463,7 +521,8 @@ std::optional<FollowedRobot::Result> FollowedRobot::improve() {
   for (std::size_t i = 0; i < change.size(); ++i) {
     change[i] = difference(change[i], given_[i]);
   }
-  if (!find_motion(change)) {
+  const double coarseness = std::max(1.0, kGapShare * std::sqrt(gap_energy()) / unit_);
+  if (!find_motion(change, coarseness)) {
     return std::nullopt;
   }
   move_core(1);
@@ -481,9 +540,11 @@ std::optional<FollowedRobot::Result> FollowedRobot::improve() {
     along += energy_of(lack[i], more[i]);
     length += energy_of(more[i], more[i]);
   }
-  const double factor = length > 0 ? -along / length : 0;
+  const bool was_rough = !std::isfinite(motion_error_);
+  const double factor = was_rough ? 1 : length > 0 ? -along / length : 0;
   move_core(factor - 1);
-  motion_error_ = std::abs(1 - factor) * motion_error_ + std::abs(factor) * solution_error();
+  motion_error_ =
+      std::abs(factor) * solution_error_ + (was_rough ? 0 : std::abs(1 - factor) * motion_error_);
   for (std::size_t i = 0; i < new_.size(); ++i) {
     Vec& u = u_[new_[i].module];
     add_times(u, factor - 1, difference(u, still[i]));

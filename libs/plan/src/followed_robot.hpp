@@ -32,7 +32,10 @@ namespace holdfast::plan {
 /// the exact displacements are no farther from u in the energy norm than |d| and the errors of all
 /// solutions for K_0 together: what these leave unbalanced moves the stiffer whole no more than the
 /// core. Where |d| is too large the same is done with all new modules for last ones: both s and u
-/// then go as far that way, by a factor, as makes |d| least.
+/// then go as far that way, by a factor, as makes |d| least. Where new modules close loops that is
+/// so nearly always; so at first the core only comes near z, by one step of the iteration, and the
+/// second solution is the coarser the larger |d| was. It goes all the way, as nobody knows how far
+/// off the first one is.
 class FollowedRobot {
  public:
   using Vec = base::Vec6<double>;
@@ -78,6 +81,14 @@ class FollowedRobot {
     Vec force{};
   };
 
+  /// A connection of the core.
+  struct Loaded {
+    std::size_t module = 0;
+    std::size_t other = 0;
+    int direction = 0;
+    double ratio = 0;  ///< When the core was solved.
+  };
+
   /// A module that is not of the core.
   struct NewModule {
     std::size_t module = 0;
@@ -100,13 +111,15 @@ class FollowedRobot {
   std::vector<Vec> balance(std::size_t first, std::vector<Spring>& springs);
   std::vector<Vec> find_forces(std::size_t first, std::vector<Spring>& springs);
   bool make_system(const std::vector<Vec>& loads);
-  bool find_motion(const std::vector<Vec>& change);
+  bool find_motion(const std::vector<Vec>& change, double coarseness);
   void move_core(double factor);
   std::vector<Vec> gaps() const;
   double energy_of(const Vec& a, const Vec& b) const;
-  double solution_error() const;
+  bool move(const std::vector<Vec>& change, double coarseness);
+  double gap_energy() const;
   Result finish(double gap_energy);
-  double load_ratio(double error) const;
+  const std::vector<Loaded>& most_loaded_first();
+  double load_ratio(double error);
   double ratio_of(std::size_t module, std::size_t other, int direction, double known) const;
 
   static constexpr std::int32_t kAbsent = -1;
@@ -127,16 +140,18 @@ class FollowedRobot {
   std::vector<NewModule> new_;
   std::vector<Spring> springs_;   ///< Of those that were there at the last solve(), with s.
   std::size_t solved_count_ = 0;  ///< How many of them these are.
+  std::vector<Loaded> loaded_;    ///< As most_loaded_first(); empty: not yet asked for.
   std::vector<Vec> u_;            ///< By module of the target.
   std::vector<Vec> given_;   ///< By module of the core: loads beyond its own that it has taken.
   std::vector<Vec> moved_;   ///< And how far it has moved by them, z.
   std::vector<Vec> change_;  ///< The loads that it may take next,
   std::vector<Vec> motion_;  ///< and how it would move by them.
   const CutConnections* cuts_ = nullptr;
-  double core_ratio_ = 0;    ///< When it was solved, of all that are no cuts.
-  double core_error_ = 0;    ///< In the energy norm, of the solution that it is taken from,
-  double motion_error_ = 0;  ///< and of moved_.
-  double unit_ = 0;          ///< The weight of a module on a beam, in the energy norm.
+  double core_ratio_ = 0;      ///< When it was solved, of all that are no cuts.
+  double core_error_ = 0;      ///< In the energy norm, of the solution that it is taken from,
+  double motion_error_ = 0;    ///< and of moved_; infinite if it is not known.
+  double solution_error_ = 0;  ///< Of the last one for the core.
+  double unit_ = 0;            ///< The weight of a module on a beam, in the energy norm.
   int iteration_count_ = 0;
   FollowingWorth worth_;
   double tolerance_ = 0;  ///< What LinearSystem::solve() is asked for.

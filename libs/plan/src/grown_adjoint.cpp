@@ -17,6 +17,23 @@ using base::at;
 using base::Direction;
 using base::Vec6;
 
+/// z . rest by component of a displacement, so that no sum waits for another.
+std::array<Vec6<double>, 3> products(const std::vector<Element>& modules,
+                                     const std::vector<std::array<Vec6<double>, 3>>& z,
+                                     const std::vector<Vec6<double>>& rest) {
+  std::array<Vec6<double>, 3> sum{};
+  for (std::size_t place = 0; place < modules.size(); ++place) {
+    const std::array<Vec6<double>, 3>& own = z[place];
+    const Vec6<double>& load = rest[at(modules[place])];
+    for (std::size_t i = 0; i < 3; ++i) {
+      for (std::size_t k = 0; k < 6; ++k) {
+        sum[i][k] += own[i][k] * load[k];
+      }
+    }
+  }
+  return sum;
+}
+
 }  // namespace
 
 GrownAdjoint::GrownAdjoint(const model::Robot& target, std::shared_ptr<const FacetAdjoint> core)
@@ -24,13 +41,12 @@ GrownAdjoint::GrownAdjoint(const model::Robot& target, std::shared_ptr<const Fac
       beam_(model::beam_section(target.material()), target.lattice()),
       stiffness_(middle_stiffness(beam_)),
       core_(std::move(core)),
-      local_(target) {
-  local_.assign(core_->core->elements());
-}
-
-const GrownAdjoint::Vec& GrownAdjoint::z(std::size_t component, std::size_t module) const {
-  const auto found = grown_.find(module);
-  return found == grown_.end() ? core_->z[module][component] : found->second[component];
+      local_(target),
+      place_(target.modules().size()) {
+  local_.assign(*core_->core);
+  for (std::size_t i = 0; i < core_->core->size(); ++i) {
+    place_[base::at((*core_->core)[i])] = static_cast<std::int32_t>(i);
+  }
 }
 
 bool GrownAdjoint::is_beside(std::size_t module) const {
@@ -95,8 +111,9 @@ void GrownAdjoint::grow(std::size_t module) {
     });
     own[i] = base::multiply(local_.stiffness(module).inverse, pull);
   }
-  grown_[module] = own;
-  grown_order_.push_back(module);
+  place_[module] = static_cast<std::int32_t>(core_->z.size() + grown_.size());
+  grown_.push_back(own);
+  grown_modules_.push_back(static_cast<Element>(module));
   weigh(module);
 }
 
@@ -128,23 +145,11 @@ void GrownAdjoint::weigh(std::size_t module) {
 }
 
 void GrownAdjoint::set_rest(const std::vector<Vec>& rest) {
-  // By component of a displacement, so that no sum waits for another.
-  std::array<Vec, 3> sum{};
-  const auto add = [&](const std::array<Vec, 3>& own, const Vec& load) {
-    for (std::size_t i = 0; i < 3; ++i) {
-      for (std::size_t k = 0; k < 6; ++k) {
-        sum[i][k] += own[i][k] * load[k];
-      }
-    }
-  };
-  for (std::size_t module = 0; module < rest.size(); ++module) {
-    add(core_->z[module], rest[module]);
-  }
-  for (const std::size_t module : grown_order_) {
-    add(grown_.at(module), rest[module]);
-  }
+  const std::array<Vec, 3> core = products(*core_->core, core_->z, rest);
+  const std::array<Vec, 3> grown = products(grown_modules_, grown_, rest);
   for (std::size_t i = 0; i < 3; ++i) {
-    work_[i] = std::accumulate(sum[i].begin(), sum[i].end(), 0.0);
+    work_[i] = std::accumulate(core[i].begin(), core[i].end(), 0.0) +
+               std::accumulate(grown[i].begin(), grown[i].end(), 0.0);
   }
 }
 

@@ -4,8 +4,8 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <memory>
-#include <unordered_map>
 #include <vector>
 
 #include "facet_adjoint.hpp"
@@ -49,7 +49,14 @@ class GrownAdjoint {
   double error(const Triple& factors) const;
 
  private:
-  const Vec& z(std::size_t component, std::size_t module) const;
+  const Vec& z(std::size_t component, std::size_t module) const {
+    const auto place = at(place_[module]);
+    const std::size_t core_count = core_->z.size();
+    return place < core_count ? core_->z[place][component] : grown_[place - core_count][component];
+  }
+
+  static std::size_t at(std::int32_t place) { return static_cast<std::size_t>(place); }
+
   bool is_beside(std::size_t module) const;
   void weigh(std::size_t module);
   template <class Each>
@@ -61,9 +68,10 @@ class GrownAdjoint {
   model::LatticeBeam<double> beam_;
   Vec stiffness_{};  ///< Of the springs in the middle, h.
   std::shared_ptr<const FacetAdjoint> core_;
-  LocalBalance local_;                                         ///< What z is known for.
-  std::unordered_map<std::size_t, std::array<Vec, 3>> grown_;  ///< z beyond the core.
-  std::vector<std::size_t> grown_order_;                       ///< Its modules as they came.
+  LocalBalance local_;                     ///< What z is known for.
+  std::vector<std::int32_t> place_;        ///< By module: in the core's z, then in grown_.
+  std::vector<std::array<Vec, 3>> grown_;  ///< z beyond the core,
+  std::vector<Element> grown_modules_;     ///< and whose it is.
   Triple work_{};
   std::array<double, 9> gram_{};  ///< <e_i, e_k>, by rows.
 };

@@ -4,10 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <utility>
 
 #include "holdfast/base/lattice.hpp"
 #include "holdfast/model/material.hpp"
-#include "holdfast/plan/spring_network.hpp"
 
 namespace holdfast::plan {
 namespace {
@@ -38,12 +39,8 @@ LoadSpread::LoadSpread(const model::Robot& target, std::size_t width_min)
       first_facet_(target.modules().size() + 1),
       place_(target.modules().size(), kAbsent) {
   for (const Direction direction : base::directions(target.lattice())) {
-    const auto step =
-        base::place_of(target.lattice(), target.lattice().steps[at(base::index(direction))]);
-    const double pitch = target.material().pitch_mm;
-    solver::LowRankTerm& spring = spring_[at(base::index(direction))];
-    spring.lever = rigid_lever({pitch * step[0], pitch * step[1], pitch * step[2]});
-    spring.stiffness = beam_.block_11(base::opposite(direction));
+    k11_[at(base::index(direction))] = beam_.block_11(direction);
+    k12_[at(base::index(direction))] = beam_.block_12(direction);
   }
   for (const model::Facet& facet : target.facets()) {
     ++first_facet_[at(facet.module) + 1];
@@ -77,27 +74,34 @@ std::vector<LoadSpread::Part::Beam> LoadSpread::beams(const std::vector<std::siz
   return beams;
 }
 
-/// Of all beams and facets.
-std::vector<solver::LowRankTerm> LoadSpread::springs(const std::vector<std::size_t>& modules,
-                                                     const std::vector<Part::Beam>& beams) const {
-  std::vector<solver::LowRankTerm> springs;
+/// The equations of all beams and facets; none if something hangs free.
+std::optional<solver::BlockLu> LoadSpread::factored(const std::vector<std::size_t>& modules,
+                                                    const std::vector<Part::Beam>& beams) const {
+  std::vector<base::Mat6<double>> diagonal(modules.size());
+  std::vector<solver::Edge> edges;
+  std::vector<const base::Mat6<double>*> coupling;
   for (const auto& [a, b, direction] : beams) {
-    solver::LowRankTerm& spring = springs.emplace_back(spring_[at(base::index(direction))]);
-    spring.a = a;
-    spring.b = b;
-    if (b < 0) {
-      spring = {.a = -1, .b = a, .lever = {}, .stiffness = beam_.block_11(direction)};
+    base::add_to(diagonal[at(a)], k11_[at(base::index(direction))]);
+    if (b >= 0) {
+      base::add_to(diagonal[at(b)], k11_[at(base::index(base::opposite(direction)))]);
+      edges.push_back({a, b});
+      coupling.push_back(&k12_[at(base::index(direction))]);
     }
   }
   for (std::size_t i = 0; i < modules.size(); ++i) {
     for (std::size_t k = first_facet_[modules[i]]; k < first_facet_[modules[i] + 1]; ++k) {
-      springs.push_back({.a = -1,
-                         .b = static_cast<std::int32_t>(i),
-                         .lever = {},
-                         .stiffness = beam_.block_11(target_->facets()[k].direction)});
+      base::add_to(diagonal[i], beam_.block_11(target_->facets()[k].direction));
     }
   }
-  return springs;
+  solver::BlockLu factor(modules.size(), edges, std::numeric_limits<std::size_t>::max(),
+                         solver::Symmetry::kSymmetric);
+  for (std::size_t i = 0; i < edges.size(); ++i) {
+    factor.set_edge(i, *coupling[i]);
+  }
+  for (std::size_t i = 0; i < modules.size(); ++i) {
+    factor.set_diagonal(i, diagonal[i]);
+  }
+  return factor.factor() ? std::optional(std::move(factor)) : std::nullopt;
 }
 
 /// The way's modules first, and so on step by step; modules that are fixed are not among them.
@@ -131,23 +135,14 @@ std::optional<LoadSpread::Part> LoadSpread::make(std::span<const std::size_t> wa
   if (modules.size() < width_min_ * way.size() || modules.size() > kPartSizeMax) {
     return std::nullopt;
   }
-  const std::vector<solver::LowRankTerm> terms = springs(modules, all);
-  std::vector<solver::Edge> edges;
-  std::vector<const solver::LowRankTerm*> pointers;
-  for (const solver::LowRankTerm& term : terms) {
-    pointers.push_back(&term);
-    if (term.a >= 0) {
-      edges.push_back({term.a, term.b});
-    }
-  }
-  solver::GrowingFactor factor(modules.size(), edges);
-  if (!factor.factor(pointers)) {
+  std::optional<solver::BlockLu> factor = factored(modules, all);
+  if (!factor) {
     return std::nullopt;
   }
   return Part{.modules = std::move(modules),
               .inner_count = inner_count,
               .beams = std::move(all),
-              .factor = std::move(factor)};
+              .factor = std::move(*factor)};
 }
 
 std::optional<LoadSpread::Entry> LoadSpread::find_known(std::span<const std::size_t> way) const {

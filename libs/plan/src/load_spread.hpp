@@ -11,7 +11,7 @@
 
 #include "holdfast/model/lattice_beam.hpp"
 #include "holdfast/model/robot.hpp"
-#include "holdfast/solver/growing_factor.hpp"
+#include "holdfast/solver/block_lu.hpp"
 #include "local_balance.hpp"
 
 namespace holdfast::plan {
@@ -34,7 +34,7 @@ class LoadSpread {
     std::vector<std::size_t> modules;
     std::size_t inner_count = 0;  ///< So many of them, the first ones, are not at its edge.
     std::vector<Beam> beams;
-    solver::GrowingFactor factor;
+    solver::BlockLu factor;
   };
 
   /// Where a way comes to a part.
@@ -70,8 +70,8 @@ class LoadSpread {
   std::optional<Part> make(std::span<const std::size_t> way, const LocalBalance& there);
   std::vector<Part::Beam> beams(const std::vector<std::size_t>& modules,
                                 const LocalBalance& there) const;
-  std::vector<solver::LowRankTerm> springs(const std::vector<std::size_t>& modules,
-                                           const std::vector<Part::Beam>& beams) const;
+  std::optional<solver::BlockLu> factored(const std::vector<std::size_t>& modules,
+                                          const std::vector<Part::Beam>& beams) const;
   void subtract_forces(const Part& part, const std::vector<Vec>& u, std::vector<Vec>& rest) const;
 
   static constexpr std::int32_t kAbsent = -1;
@@ -79,8 +79,8 @@ class LoadSpread {
   const model::Robot* target_;
   std::size_t width_min_;
   model::LatticeBeam<double> beam_;
-  /// By direction: a beam from node a to node b there.
-  std::array<solver::LowRankTerm, base::Lattice::kDirectionCountMax> spring_{};
+  std::array<base::Mat6<double>, base::Lattice::kDirectionCountMax> k11_{};  ///< By direction.
+  std::array<base::Mat6<double>, base::Lattice::kDirectionCountMax> k12_{};
   std::vector<std::size_t> first_facet_;  ///< By module.
   std::vector<std::int32_t> place_;       ///< By module: in a part that is made, or kAbsent.
   std::deque<Part> parts_;                ///< The latest first.

@@ -56,8 +56,9 @@ class RobotGrowth final : public GrowingStructure {
   base::Result<model::Robot> robot(const ElementSet& state) const;
 
  private:
-  /// Longer runs cost little less for each state, and are in vain beyond the first unsafe one.
-  static constexpr std::size_t kRunLength = 512;
+  /// Longer runs cost less for each state, as each of their pieces begins with a solution from
+  /// nothing, and are in vain beyond the first unsafe one.
+  static constexpr std::size_t kRunLength = 1024;
   /// Pieces of a run, each of which begins with a state that is solved: at least so long, and no
   /// more of them than that, whatever the number of threads, so that the same states are solved.
   static constexpr std::size_t kPieceMin = 8;

@@ -77,25 +77,26 @@ TEST(FollowedRobot, is_where_a_check_finds_it_within_its_error) {
     for (std::size_t i = core_count; i < order.size(); ++i) {
       state.insert(order[i]);
       followed.add(order[i]);
-      ASSERT_TRUE(followed.solve()) << family;
-      const auto found = followed.improve();
-      ASSERT_TRUE(found) << family;
       const model::Robot robot = model::Robot::create(part_of(spec, state)).value();
       const verdict::Assessment whole = verdict::assess(robot, exact);
-      std::vector<Vec6<double>> u;
-      for (const Element element : state.elements()) {
-        u.push_back(followed.displacement()[at(element)]);
+      for (const bool improves : {false, true, true}) {
+        const auto found = improves ? followed.improve() : followed.solve();
+        ASSERT_TRUE(found) << family;
+        std::vector<Vec6<double>> u;
+        for (const Element element : state.elements()) {
+          u.push_back(followed.displacement()[at(element)]);
+        }
+        const double norm = std::sqrt(energy_between(robot, u, whole.equilibrium.displacement));
+        EXPECT_LE(norm, found->energy_error) << family << i;
+        EXPECT_LE(*whole.load_ratio_max, found->load_ratio) << family << i;
+        const std::vector<Vec6<double>> still(u.size());
+        const double all = std::sqrt(energy_between(robot, still, whole.equilibrium.displacement));
+        near_count += found->energy_error < 0.02 * all ? 1 : 0;
       }
-      const double norm = std::sqrt(energy_between(robot, u, whole.equilibrium.displacement));
-      EXPECT_LE(norm, found->energy_error) << family << i;
-      EXPECT_LE(*whole.load_ratio_max, found->load_ratio) << family << i;
-      const std::vector<Vec6<double>> still(u.size());
-      const double all = std::sqrt(energy_between(robot, still, whole.equilibrium.displacement));
-      near_count += found->energy_error < 0.02 * all ? 1 : 0;
     }
   }
   // Not where new modules are stiffer than what they close a loop of, as in the scaffold.
-  EXPECT_GE(near_count, 25);
+  EXPECT_GE(near_count, 80);
 }
 
 TEST(FollowingWorth, goes_on_where_following_takes_less_for_a_state_than_solutions_from_nothing) {

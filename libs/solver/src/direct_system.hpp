@@ -23,6 +23,9 @@ class DirectSystem final : public LinearSystem {
                                             const EquilibriumOptions& options);
 
   [[nodiscard]] LinearOutcome solve(double tolerance) override;
+
+  [[nodiscard]] LinearOutcome approach() override { return solve(0); }
+
   std::vector<Vec> displacement() override;
   std::vector<Vec> facet_displacement() override;
   [[nodiscard]] bool refine(Solution& solution) override;

@@ -55,8 +55,8 @@ void LinearSystem::set_loads(model::Loads loads) {
 }
 
 void LinearSystem::change_loads(model::Loads loads) {
-  loads_ = std::move(loads);
-  take_changed_loads();
+  const model::Loads before = std::exchange(loads_, std::move(loads));
+  take_changed_loads(before);
 }
 
 std::vector<base::Vec6<double>> LinearSystem::facet_displacement() {

@@ -308,6 +308,19 @@ bool ConjugateGradients<Real>::iterate(const IsOver& is_over) {
 }
 
 template <class Real>
+bool ConjugateGradients<Real>::step() {
+  if (!(error_ > 0)) {
+    return error_ == 0;
+  }
+  const double curvature = multiply();
+  if (!(curvature > 0)) {
+    return false;
+  }
+  advance(error_ / curvature);
+  return true;
+}
+
+template <class Real>
 bool ConjugateGradients<Real>::is_product_kept() const {
   return std::is_same_v<Real, double> || hierarchy_.ranks(0) != nullptr ||
          node_count_ <= kKeptProductMax || !is_solid_;

@@ -31,6 +31,7 @@ class ConjugateGradients final : public Iteration {
   void subtract_product() override;
   double begin() override;
   End run(const Goal& goal) override;
+  bool step() override;
   End run_unsymmetric(const Goal& goal, std::span<const NodeTerm> terms) override;
   base::Vec6<double> correction(std::size_t node) override;
   void mark() override;

@@ -57,6 +57,10 @@ class Iteration {
   /// After begin(), or to go on with another goal: improves x.
   virtual End run(const Goal& goal) = 0;
 
+  /// After begin(), and before the next: one step of run(). Returns false, and leaves x as it is,
+  /// if there is none to make.
+  virtual bool step() = 0;
+
   /// Does what run() does for a matrix A that is not symmetric, by orthogonalization [Saad 1981].
   /// In small robots it is full: r is kept orthogonal to all directions p so far, by
   /// p . A p_next = 0, so that it ends however far A is from K. In large ones it is incomplete: to

@@ -193,21 +193,52 @@ void Multigrid::take_facet(std::size_t facet) {
 }
 
 void Multigrid::take_loads() {
-  take_changed_loads();
+  condense_loads();
+  is_residual_known_ = false;
+  is_stale_ = true;
   std::ranges::fill(x(), 0);
   reference_ = 0;
+}
+
+/// The residual changes as the loads do.
+void Multigrid::take_changed_loads(const model::Loads& before) {
+  const std::vector<Vec> condensed = std::exchange(condensed_, {});
+  condense_loads();
+  is_stale_ = true;
+  if (!is_residual_known_) {
+    return;
+  }
+  team_.share(0, network_.own_count, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t node = begin; node < end; ++node) {
+      const std::size_t module = at(network_.module[node]);
+      const Vec& now = load_of(node);
+      const Vec& then = condensed.empty() ? before[module] : condensed[module];
+      if (now == then) {
+        continue;
+      }
+      Vec left = iteration_->residual(node);
+      for (std::size_t k = 0; k < 6; ++k) {
+        left[k] += now[k] - then[k];
+      }
+      iteration_->set_residual(node, left);
+    }
+  });
 }
 
 /// The nodes' displacements; empty where nothing is known of them.
 std::vector<double>& Multigrid::x() { return iteration_ ? iteration_->x() : no_x_; }
 
-void Multigrid::take_changed_loads() {
+void Multigrid::condense_loads() {
   condensed_.clear();
   if (network_.is_reduced) {
     condensed_ = condense(robot(), network_, team_, loads(), module_copies_.get());
   }
-  is_residual_known_ = false;
-  is_stale_ = true;
+}
+
+/// What acts on a node.
+const Multigrid::Vec& Multigrid::load_of(std::size_t node) const {
+  const std::size_t module = at(network_.module[node]);
+  return condensed_.empty() ? loads()[module] : condensed_[module];
 }
 
 Multigrid::Vec Multigrid::displacement_of(std::int32_t node) {
@@ -287,8 +318,7 @@ void Multigrid::update_iteration() {
 void Multigrid::compute_residual() {
   team_.share(0, network_.own_count, [&](std::size_t begin, std::size_t end) {
     for (std::size_t node = begin; node < end; ++node) {
-      const std::size_t module = at(network_.module[node]);
-      iteration_->set_residual(node, condensed_.empty() ? loads()[module] : condensed_[module]);
+      iteration_->set_residual(node, load_of(node));
     }
   });
   if (reference_ > 0) {
@@ -394,6 +424,27 @@ LinearOutcome Multigrid::solve(double tolerance) {
   is_stale_ = host::any(ranks(), is_stale_);
   solve_count_ += is_stale_ ? 1 : 0;
   return improve({.tolerance = tolerance});
+}
+
+/// A step is the best one along M^-1 r as long as K is symmetric.
+LinearOutcome Multigrid::approach() {
+  constexpr double kRoughly = 0.1;
+  if (network_.all_count == 0 || !host::all(ranks(), unsymmetric_terms().empty())) {
+    return solve(kRoughly);
+  }
+  is_stale_ = host::any(ranks(), is_stale_);
+  solve_count_ += is_stale_ ? 1 : 0;
+  const LinearOutcome beginning = begin();
+  if (beginning != LinearOutcome::kSolved) {
+    return beginning;
+  }
+  is_stale_ = true;
+  if (!iteration_->step()) {
+    is_residual_known_ = false;
+    return LinearOutcome::kTooSlow;
+  }
+  ++iteration_count_;
+  return LinearOutcome::kSolved;
 }
 
 /// Goes on from the present displacements.

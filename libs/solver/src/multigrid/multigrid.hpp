@@ -32,6 +32,7 @@ class Multigrid final : public LinearSystem {
   [[nodiscard]] bool set_precision(Precision precision);
 
   [[nodiscard]] LinearOutcome solve(double tolerance) override;
+  [[nodiscard]] LinearOutcome approach() override;
   std::vector<Vec> displacement() override;
   std::vector<Vec> facet_displacement() override;
   [[nodiscard]] bool refine(Solution& solution) override;
@@ -63,9 +64,11 @@ class Multigrid final : public LinearSystem {
   void take_law() override;
   void take_facet(std::size_t facet) override;
   void take_loads() override;
-  void take_changed_loads() override;
+  void take_changed_loads(const model::Loads& before) override;
 
   std::uint8_t number_of(const FacetState& facet) const;
+  void condense_loads();
+  const Vec& load_of(std::size_t node) const;
   Vec displacement_of(std::int32_t node);
   Vec force_on(const FacetState& facet, std::int32_t node);
   const Mat& known_tangent(const FacetState& facet) const;
