@@ -70,8 +70,6 @@ void add_times(Vec6<double>& sum, double factor, const Vec6<double>& term) {
   }
 }
 
-double square(double x) { return x * x; }
-
 double work_of(const std::vector<Vec6<double>>& loads, const std::vector<Vec6<double>>& u) {
   double work = 0;
   for (std::size_t i = 0; i < loads.size(); ++i) {
@@ -498,7 +496,7 @@ std::optional<FollowedRobot::Result> FollowedRobot::solve() {
   if (!move(given, kRoughly)) {
     return std::nullopt;
   }
-  if (gap_energy() > square(kGapMax * unit_)) {
+  if (std::sqrt(gap_energy()) > kGapMax * unit_) {
     return improve();
   }
   if (!std::isfinite(motion_error_) && !move(std::vector<Vec>(given.size()), 1)) {
