@@ -477,10 +477,9 @@ bool FollowedRobot::move(const std::vector<Vec>& change, double coarseness) {
   return true;
 }
 
-/// Of d.
-double FollowedRobot::gap_energy() const {
+/// Of d, for these h w.
+double FollowedRobot::gap_energy(const std::vector<Vec>& gap) const {
   double energy = 0;
-  const std::vector<Vec> gap = gaps();
   for (std::size_t i = 0; i < gap.size(); ++i) {
     const Vec lack = difference(springs_[i].force, gap[i]);
     energy += energy_of(lack, lack);
@@ -496,13 +495,13 @@ std::optional<FollowedRobot::Result> FollowedRobot::solve() {
   if (!move(given, kRoughly)) {
     return std::nullopt;
   }
-  if (std::sqrt(gap_energy()) > kGapMax * unit_) {
+  if (std::sqrt(gap_energy(gaps())) > kGapMax * unit_) {
     return improve();
   }
   if (!std::isfinite(motion_error_) && !move(std::vector<Vec>(given.size()), 1)) {
     return std::nullopt;
   }
-  return finish(gap_energy());
+  return finish(gap_energy(gaps()));
 }
 
 std::optional<FollowedRobot::Result> FollowedRobot::improve() {
@@ -519,7 +518,7 @@ std::optional<FollowedRobot::Result> FollowedRobot::improve() {
   for (std::size_t i = 0; i < change.size(); ++i) {
     change[i] = difference(change[i], given_[i]);
   }
-  const double coarseness = std::max(1.0, kGapShare * std::sqrt(gap_energy()) / unit_);
+  const double coarseness = std::max(1.0, kGapShare * std::sqrt(gap_energy(gap)) / unit_);
   if (!find_motion(change, coarseness)) {
     return std::nullopt;
   }

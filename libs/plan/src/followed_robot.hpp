@@ -116,7 +116,7 @@ class FollowedRobot {
   std::vector<Vec> gaps() const;
   double energy_of(const Vec& a, const Vec& b) const;
   bool move(const std::vector<Vec>& change, double coarseness);
-  double gap_energy() const;
+  double gap_energy(const std::vector<Vec>& gap) const;
   Result finish(double gap_energy);
   const std::vector<Loaded>& most_loaded_first();
   double load_ratio(double error);

@@ -45,7 +45,7 @@ GrownAdjoint::GrownAdjoint(const model::Robot& target, std::shared_ptr<const Fac
       place_(target.modules().size()) {
   local_.assign(*core_->core);
   for (std::size_t i = 0; i < core_->core->size(); ++i) {
-    place_[base::at((*core_->core)[i])] = static_cast<std::int32_t>(i);
+    place_[at((*core_->core)[i])] = static_cast<std::int32_t>(i);
   }
 }
 

@@ -50,12 +50,10 @@ class GrownAdjoint {
 
  private:
   const Vec& z(std::size_t component, std::size_t module) const {
-    const auto place = at(place_[module]);
+    const std::size_t place = base::at(place_[module]);
     const std::size_t core_count = core_->z.size();
     return place < core_count ? core_->z[place][component] : grown_[place - core_count][component];
   }
-
-  static std::size_t at(std::int32_t place) { return static_cast<std::size_t>(place); }
 
   bool is_beside(std::size_t module) const;
   void weigh(std::size_t module);

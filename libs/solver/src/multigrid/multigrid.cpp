@@ -136,6 +136,7 @@ bool Multigrid::set_precision(Precision precision) {
   precision_ = precision;
   iteration_.reset();
   reference_ = 0;
+  is_residual_known_ = false;
   is_stale_ = true;
   return true;
 }
