@@ -342,7 +342,6 @@ bool EnergyBound::begin(const std::vector<Element>& elements, const verdict::Ass
   std::ranges::for_each(facets_, [&](std::size_t facet) { look_at_facet(facet); });
   watched_.begin(elements);
   find_cuts(elements);
-  spread_.forget_absent(local_);
   return true;
 }
 
@@ -374,6 +373,7 @@ void EnergyBound::hang_all(const std::vector<Element>& elements) {
   std::ranges::fill(nodes_, Node{});
   facets_.clear();
   forget_changes();
+  spread_.clear();
   local_.assign(elements);
   section_place_.assign(section_ == nullptr ? 0 : nodes_.size(), -1);
   for (std::size_t i = 0; section_ != nullptr && i < section_->modules().size(); ++i) {
@@ -506,16 +506,17 @@ bool EnergyBound::is_pressed_nearby(std::size_t index, double radius) {
   return holds(force[3], 1, 0, facet_per_norm_x_) && holds(force[4], 0, 1, facet_per_norm_y_);
 }
 
+/// Counts all that are doubtful, as one that is known better makes room for the next only.
 bool EnergyBound::are_pressed(double radius) {
-  const auto doubtful = std::ranges::find_if(facets_, [&](std::size_t facet) {
-    return !(radius < room_[facet] || is_pressed_nearby(facet, radius) ||
-             is_pressed_by_adjoint(facet));
-  });
-  if (doubtful == facets_.end()) {
-    return true;
+  bool are_all = true;
+  for (const std::size_t facet : facets_) {
+    if (!(radius < room_[facet] || is_pressed_nearby(facet, radius) ||
+          is_pressed_by_adjoint(facet))) {
+      are_all = false;
+      ++doubtful_[facet];
+    }
   }
-  ++doubtful_[*doubtful];
-  return false;
+  return are_all;
 }
 
 /// As is_pressed_nearby(), by the facet's adjoint, where the displacements are off by the energy

@@ -71,22 +71,22 @@ class EnergyBound {
   std::optional<double> improve(const std::vector<base::Vec6<double>>& displacement,
                                 double energy_error, double load_ratio);
 
+  /// No module is attached until the next begin(): gives back what takes much memory.
+  void end() { spread_.clear(); }
+
   /// From the next begin() on the forces of these facets are looked at with their adjoints.
   void take_adjoints(const FacetAdjoints& adjoints) { watched_.take(adjoints); }
 
   /// Whether the adjoint of a facet has been asked for since it was taken.
   bool has_asked_for(std::size_t facet) const { return watched_.has_asked_for(facet); }
 
-  /// How often each facet was the first one that left a state without a bound, since this was asked
-  /// last.
+  /// How often each facet has left a state without a bound, alone or with others, since this was
+  /// asked last.
   std::map<std::size_t, int> take_doubtful();
 
   /// Connections whose forces statics alone gives, as long as it does: where they bear more than
   /// all others, their exact load ratios are a part of the bound. None are known else.
   const CutConnections& cuts() const { return cuts_; }
-
-  /// What no load ratio of other connections exceeds by the displacements and their error.
-  double solved_ratio() const { return solved_ratio_; }
 
   /// How far the displacements are off in the energy norm, at most.
   double energy_error() const {

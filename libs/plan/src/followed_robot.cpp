@@ -51,9 +51,6 @@ constexpr double kGainShare = 1e-4;
 /// So many steps from new modules those of the core move with them at first.
 constexpr int kNear = 2;
 
-/// Up to this bound of the load ratio nobody looks at each of the core's connections.
-constexpr double kRatioEasy = 0.9;
-
 Direction direction_of(int index) { return static_cast<Direction>(index); }
 
 Vec6<double> difference(const Vec6<double>& a, const Vec6<double>& b) {
@@ -101,7 +98,7 @@ FollowedRobot::FollowedRobot(const model::RobotSpec& spec, const model::Robot& t
 }
 
 void FollowedRobot::begin(const ElementSet& state, const verdict::Assessment& solved,
-                          const CutConnections& cuts, double load_ratio) {
+                          const CutConnections& cuts) {
   core_ = state;
   elements_ = state.elements();
   local_.assign(elements_);
@@ -117,7 +114,6 @@ void FollowedRobot::begin(const ElementSet& state, const verdict::Assessment& so
     place_[at(elements_[i])] = static_cast<std::int32_t>(i);
     u_[at(elements_[i])] = solved.equilibrium.displacement[i];
   }
-  core_ratio_ = load_ratio;
   cuts_ = &cuts;
   core_error_ = verdict::kEnergyFactor * solved.equilibrium.energy_error;
   motion_error_ = 0;
@@ -442,15 +438,12 @@ const std::vector<FollowedRobot::Loaded>& FollowedRobot::most_loaded_first() {
 /// That no connection's exceeds, if the displacements are off by `error`.
 double FollowedRobot::load_ratio(double error) {
   const double moved = std::sqrt(std::max(0.0, work_of(given_, moved_))) + motion_error_;
-  double largest = std::max(core_ratio_, cuts_->released_ratio()) + ratio_per_norm_ * moved;
-  if (largest + ratio_per_norm_ * error > kRatioEasy) {
-    largest = 0;
-    for (const Loaded& each : most_loaded_first()) {
-      if (each.ratio + ratio_per_norm_ * moved <= largest) {
-        break;
-      }
-      largest = ratio_of(each.module, each.other, each.direction, largest);
+  double largest = 0;
+  for (const Loaded& each : most_loaded_first()) {
+    if (each.ratio + ratio_per_norm_ * moved <= largest) {
+      break;
     }
+    largest = ratio_of(each.module, each.other, each.direction, largest);
   }
   for (const Spring& spring : springs_) {
     if (spring.other >= 0) {

@@ -49,10 +49,9 @@ class FollowedRobot {
   FollowedRobot(const model::RobotSpec& spec, const model::Robot& target);
 
   /// Takes a safe state, all of whose facets are stuck, as the core. Somebody else looks at `cuts`
-  /// of it, as long as there are any; no other connection's load ratio exceeds `load_ratio`. Keeps
-  /// a reference.
-  void begin(const ElementSet& state, const verdict::Assessment& solved, const CutConnections& cuts,
-             double load_ratio);
+  /// of it, as long as there are any. Keeps a reference.
+  void begin(const ElementSet& state, const verdict::Assessment& solved,
+             const CutConnections& cuts);
 
   /// Attaches a module, which must be beside one that is there, and not fixed.
   void add(Element module);
@@ -147,7 +146,6 @@ class FollowedRobot {
   std::vector<Vec> change_;  ///< The loads that it may take next,
   std::vector<Vec> motion_;  ///< and how it would move by them.
   const CutConnections* cuts_ = nullptr;
-  double core_ratio_ = 0;      ///< When it was solved, of all that are no cuts.
   double core_error_ = 0;      ///< In the energy norm, of the solution that it is taken from,
   double motion_error_ = 0;    ///< and of moved_; infinite if it is not known.
   double solution_error_ = 0;  ///< Of the last one for the core.

@@ -56,8 +56,8 @@ class FollowingWorth {
 
   /// To make a robot, its equations and their hierarchy, in iterations.
   static constexpr int kSetup = 15;
-  /// Of a solution that follows, for each state that it certifies.
-  static constexpr int kEffortMin = 3;
+  /// Of a solution that follows, about three, for each of the states that it certifies.
+  static constexpr int kEffortMin = 1;
   /// Solved states.
   static constexpr int kPauseMax = 1000;
 

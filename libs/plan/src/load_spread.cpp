@@ -22,7 +22,7 @@ constexpr int kReach = 2;
 
 /// After so many modules of a way at most it comes to a known part, and so many are known.
 constexpr std::size_t kDetourMax = 4;
-constexpr std::size_t kPartCountMax = 4;
+constexpr std::size_t kPartCountMax = 32;
 
 /// What is solved at most.
 constexpr std::size_t kPartSizeMax = 1000;
@@ -213,13 +213,6 @@ std::vector<LoadSpread::Vec> LoadSpread::displacement(const Entry& entry, const 
     }
   }
   return lack <= kResidualMax * std::sqrt(base::dot(load, load)) ? u : std::vector<Vec>{};
-}
-
-void LoadSpread::forget_absent(const LocalBalance& there) {
-  std::erase_if(parts_, [&](const Part& part) {
-    return !std::ranges::all_of(part.modules,
-                                [&](std::size_t module) { return there.is_there(module); });
-  });
 }
 
 }  // namespace holdfast::plan

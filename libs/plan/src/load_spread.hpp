@@ -61,8 +61,8 @@ class LoadSpread {
   /// cannot be told to all digits.
   std::vector<Vec> displacement(const Entry& entry, const Vec& load) const;
 
-  /// Forgets parts that have modules that are not there.
-  void forget_absent(const LocalBalance& there);
+  /// Forgets all parts, which are large, or have modules that are gone.
+  void clear() { parts_.clear(); }
 
  private:
   bool is_fixed(std::size_t module) const;

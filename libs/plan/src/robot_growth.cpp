@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <iterator>
-#include <limits>
 #include <map>
 
 #include "holdfast/base/rng.hpp"
@@ -14,34 +13,14 @@
 namespace holdfast::plan {
 namespace {
 
-/// A seed moves candidates by up to so many steps.
+/// A seed moves candidates by up to so many layers.
 constexpr std::uint64_t kDisturbance = 4;
 
-/// A facet that has left so many states of a run without a bound is worth its adjoint: three
-/// solutions from nothing, some twenty iterations of multigrid, where one that follows takes five;
-/// but of so many facets after a run at most.
-constexpr int kDoubtMin = 8;
+/// A facet that has left so many states of a run without a bound, alone or with others, is worth
+/// its adjoint, which takes three solutions from nothing and a sum over all modules each time it is
+/// asked for; but of so many facets after a run at most.
+constexpr int kDoubtMin = 32;
 constexpr std::size_t kAdjointCountMax = 16;
-
-/// Steps from the nearest of `sources`, through connections of the target.
-std::vector<std::int64_t> distances_from(const model::Robot& target,
-                                         std::vector<std::size_t> sources) {
-  std::vector<std::int64_t> distance(target.modules().size(),
-                                     std::numeric_limits<std::int32_t>::max());
-  for (const std::size_t source : sources) {
-    distance[source] = 0;
-  }
-  for (std::size_t i = 0; i < sources.size(); ++i) {
-    for (const std::int32_t other : target.connected()[sources[i]]) {
-      if (other != model::Robot::kNoNeighbour &&
-          distance[base::at(other)] > distance[sources[i]] + 1) {
-        distance[base::at(other)] = distance[sources[i]] + 1;
-        sources.push_back(base::at(other));
-      }
-    }
-  }
-  return distance;
-}
 
 std::vector<std::size_t> supports_and(const model::Robot& target, const ElementSet& core) {
   std::vector<std::size_t> sources;
@@ -94,7 +73,7 @@ RobotGrowth::RobotGrowth(const model::RobotSpec& spec, const model::Robot& targe
       adjoints_(target),
       bounds_(kPieceCountMax, EnergyBound(target, adjoints_, !growing_.is_thin())),
       is_bonded_(std::ranges::all_of(target.facets(), &model::Facet::is_bonded)),
-      distance_(distances_from(target, supports_and(target, core))),
+      places_(places_in_layers(target, supports_and(target, core))),
       state_(spec.existing.size()),
       beside_count_(spec.existing.size()) {
   for (std::size_t i = 0; i < kPieceCountMax; ++i) {
@@ -107,12 +86,12 @@ RobotGrowth::RobotGrowth(const model::RobotSpec& spec, const model::Robot& targe
 }
 
 RobotGrowth::Rank RobotGrowth::rank(Element element) const {
-  std::int64_t steps = distance_[base::at(element)];
+  LayerPlace place = places_[base::at(element)];
   if (seed_ != 0) {
     base::Rng rng(seed_ + 0x9e3779b97f4a7c15U * (static_cast<std::uint64_t>(element) + 1));
-    steps += static_cast<std::int64_t>(rng.below(kDisturbance + 1));
+    place.layer += static_cast<std::int64_t>(rng.below(kDisturbance + 1));
   }
-  return {steps, element};
+  return {place, element};
 }
 
 void RobotGrowth::set_seed(std::uint64_t seed) {
@@ -472,9 +451,10 @@ std::vector<Judgement> RobotGrowth::judge_piece(ElementSet state, Sense sense,
     is_followed = has_bound && !is_slender && tools.followed != nullptr && is_large &&
                   tools.followed->worth().begin(assessment.equilibrium.iteration_count);
     if (is_followed) {
-      tools.followed->begin(state, assessment, tools.bound.cuts(), tools.bound.solved_ratio());
+      tools.followed->begin(state, assessment, tools.bound.cuts());
     }
   }
+  tools.bound.end();
   return judgements;
 }
 

@@ -18,6 +18,7 @@
 #include "holdfast/plan/order_search.hpp"
 #include "holdfast/plan/reach.hpp"
 #include "holdfast/solver/options.hpp"
+#include "layers.hpp"
 #include "section_response.hpp"
 
 namespace holdfast::plan {
@@ -33,9 +34,9 @@ class RobotGrowth final : public GrowingStructure {
 
   std::size_t element_count() const override { return spec_.existing.size(); }
 
-  /// Growing: modules nearest to a support or to the core first, by steps in the target. Shrinking:
-  /// the farthest first. On a flat floor those without which the robot would topple, or with which
-  /// it would, come last.
+  /// Growing: in layers about the supports and the core, by steps in the target (LayerPlace).
+  /// Shrinking: the other way. On a flat floor those without which the robot would topple, or with
+  /// which it would, come last.
   std::vector<Element> candidates(const ElementSet& state, Sense sense,
                                   std::uint64_t seed) override;
 
@@ -73,7 +74,7 @@ class RobotGrowth final : public GrowingStructure {
   static constexpr int kImprovementMax = 2;
 
   /// What decides between candidates: lower first.
-  using Rank = std::pair<std::int64_t, Element>;
+  using Rank = std::pair<LayerPlace, Element>;
 
   using Assess = std::function<verdict::Assessment(const ElementSet&)>;
 
@@ -118,7 +119,7 @@ class RobotGrowth final : public GrowingStructure {
   std::vector<FollowedRobot> followed_;    ///< The same.
   std::vector<SectionResponse> sections_;  ///< The same.
   bool is_bonded_;                         ///< All supports are, so that nothing topples.
-  std::vector<std::int64_t> distance_;     ///< By module: steps from a support or the core.
+  std::vector<LayerPlace> places_;         ///< By module, about the supports and the core.
   std::uint64_t seed_ = 0;
   // What follows the state that was asked for last.
   ElementSet state_;

@@ -73,7 +73,7 @@ TEST(FollowedRobot, is_where_a_check_finds_it_within_its_error) {
     const verdict::Assessment core =
         verdict::assess(model::Robot::create(part_of(spec, state)).value(), exact);
     ASSERT_EQ(core.verdict, verdict::Verdict::kSafe) << family;
-    followed.begin(state, core, no_cuts, core.load_ratio_range.high);
+    followed.begin(state, core, no_cuts);
     for (std::size_t i = core_count; i < order.size(); ++i) {
       state.insert(order[i]);
       followed.add(order[i]);

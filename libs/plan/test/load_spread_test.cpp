@@ -14,6 +14,7 @@
 
 #include "carried_force.hpp"
 #include "energy_bound.hpp"
+#include "family_spec.hpp"
 #include "holdfast/base/lattice.hpp"
 #include "holdfast/model/families.hpp"
 #include "holdfast/model/material.hpp"
@@ -26,11 +27,6 @@ namespace {
 
 using base::at;
 using base::Vec6;
-
-model::RobotSpec family_spec(const char* name, std::size_t size) {
-  const model::Family family = model::find_family(name).value();
-  return {.existing = model::family_cells(family, size), .lattice = model::family_lattice(family)};
-}
 
 Vec6<double> place_of(const model::Robot& robot, std::size_t module) {
   const auto place = base::place_of(robot.lattice(),
@@ -84,7 +80,7 @@ TEST(LoadSpread, takes_a_load_to_the_ground_whole) {
   int part_count = 0;
   for (const auto& [family, size] : std::vector<std::pair<const char*, std::size_t>>{
            {"growth", 300}, {"cube", 6}, {"ball", 9}, {"prism-wall", 6}, {"scaffold", 9}}) {
-    const model::RobotSpec spec = family_spec(family, size);
+    const model::RobotSpec spec = test::family_spec(family, size);
     const model::Robot robot = model::Robot::create(spec).value();
     LocalBalance there(robot);
     there.assign(test::nearest_first(robot));
@@ -148,8 +144,8 @@ TEST(LoadSpread, costs_on_a_single_file_what_statics_says) {
   EXPECT_NEAR(base::dot(load, u[entry->place]), energy, 1e-6 * energy);
 }
 
-TEST(LoadSpread, knows_a_part_again_until_a_module_of_it_is_gone) {
-  const model::Robot robot = model::Robot::create(family_spec("ball", 9)).value();
+TEST(LoadSpread, knows_a_part_again_until_it_forgets_all) {
+  const model::Robot robot = model::Robot::create(test::family_spec("ball", 9)).value();
   const std::vector<Element> order = test::nearest_first(robot);
   LocalBalance there(robot);
   there.assign(order);
@@ -160,7 +156,7 @@ TEST(LoadSpread, knows_a_part_again_until_a_module_of_it_is_gone) {
   const std::size_t edge = first->part->modules.back();
   EXPECT_EQ(spread.find(way, there)->part, first->part);
   there.erase(edge);
-  spread.forget_absent(there);
+  spread.clear();
   const auto second = spread.find(way, there);
   ASSERT_TRUE(second);
   EXPECT_EQ(std::ranges::count(second->part->modules, edge), 0);
@@ -171,7 +167,7 @@ constexpr std::size_t kStateCount = holdfast::test::campaign(150, 10);
 
 /// How many states a bound certifies from few that are solved.
 int certified_count(const char* family, std::size_t size, bool spreads) {
-  const model::RobotSpec spec = family_spec(family, size);
+  const model::RobotSpec spec = test::family_spec(family, size);
   const model::Robot target = model::Robot::create(spec).value();
   const LocalAdjoints nearby(target);
   EnergyBound bound(target, nearby, spreads);

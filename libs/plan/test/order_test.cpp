@@ -13,6 +13,7 @@
 #include <set>
 #include <string>
 
+#include "family_spec.hpp"
 #include "holdfast/base/lattice.hpp"
 #include "holdfast/base/rng.hpp"
 #include "holdfast/model/families.hpp"
@@ -258,11 +259,6 @@ TEST(RobotOrder, is_found_just_where_a_walk_through_all_parts_finds_one) {
   EXPECT_GT(none_count, holdfast::test::campaign(300, 20));
 }
 
-model::RobotSpec family_spec(const char* name, std::size_t size) {
-  const model::Family family = model::find_family(name).value();
-  return {.existing = model::family_cells(family, size), .lattice = model::family_lattice(family)};
-}
-
 /// The largest load ratio, with all digits: that of multigrid may be off by 1e-4.
 double exact_ratio(const model::RobotSpec& spec) {
   const verdict::Assessment found =
@@ -332,7 +328,7 @@ TEST(RobotOrder, is_safe_all_the_way_where_states_are_certified_without_being_so
       if (holdfast::test::kIsShort && (size > 12 || share > 0)) {
         continue;
       }
-      OrderTask task{.target = family_spec(family, size)};
+      OrderTask task{.target = test::family_spec(family, size)};
       const auto whole = verdict::assess(model::Robot::create(task.target).value());
       if (share > 0 && whole.load_ratio_max.value_or(0) > 1e-3) {
         task.target.material.strength_vertical_n *= *whole.load_ratio_max / share;

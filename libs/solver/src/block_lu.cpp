@@ -62,8 +62,8 @@ void BlockLu::allocate() {
   const std::size_t n = position_.size();
   diagonal_.resize(n);
   inverse_.resize(n);
-  blocks_.reserve(2 * rows_.size());  // Symmetry may be given up; until then U takes no pages.
-  blocks_.resize(symmetry_ == Symmetry::kSymmetric ? rows_.size() : 2 * rows_.size());
+  lower_.resize(rows_.size());
+  upper_.resize(symmetry_ == Symmetry::kNone ? rows_.size() : 0);
   edge_lower_.resize(edges_.size());
   is_stale_.assign(n, true);
   edge_slot_.resize(edges_.size());
@@ -111,16 +111,16 @@ void BlockLu::set_symmetry(Symmetry symmetry) {
 
 /// Of L D it makes L, and U not yet divided by D, which is (L D)'.
 void BlockLu::make_upper() {
-  blocks_.resize(2 * rows_.size());
+  upper_.resize(rows_.size());
   for (std::size_t k = 0; k < position_.size(); ++k) {
     if (is_stale_[k]) {
       continue;
     }
     const std::size_t end = column_start_[k + 1];
     for (std::size_t slot = column_start_[k]; slot < end; ++slot) {
-      blocks_[rows_.size() + slot] = transpose(blocks_[slot]);
+      upper_[slot] = transpose(lower_[slot]);
     }
-    base::Mat6<double>* const lower = blocks_.data();
+    base::Mat6<double>* const lower = lower_.data();
     factor_kernels().multiply_each(lower + column_start_[k], lower + end, inverse_[k]);
   }
 }
@@ -180,8 +180,8 @@ bool BlockLu::make_column(std::size_t k, Scratch& scratch, const WaitFor& wait_f
   scratch.slot_of_row.resize(position_.size());
   const std::size_t begin = column_start_[k];
   const std::size_t end = column_start_[k + 1];
-  base::Mat6<double>* const lower = blocks_.data();
-  base::Mat6<double>* const upper = symmetry_ == Symmetry::kNone ? lower + rows_.size() : nullptr;
+  base::Mat6<double>* const lower = lower_.data();
+  base::Mat6<double>* const upper = symmetry_ == Symmetry::kNone ? upper_.data() : nullptr;
   for (std::size_t slot = begin; slot < end; ++slot) {
     lower[slot] = {};
     scratch.slot_of_row[static_cast<std::size_t>(rows_[slot])] = slot;
@@ -213,8 +213,8 @@ template <class WaitFor>
 bool BlockLu::subtract_left(std::size_t k, base::Mat6<double>& pivot, const WaitFor& wait_for,
                             const Scratch& scratch) {
   const FactorKernels& kernels = factor_kernels();
-  base::Mat6<double>* const lower = blocks_.data();
-  base::Mat6<double>* const upper = lower + rows_.size();
+  base::Mat6<double>* const lower = lower_.data();
+  base::Mat6<double>* const upper = upper_.data();
   for (std::size_t entry = row_start_[k]; entry < row_start_[k + 1]; ++entry) {
     const auto [left, slot_k] = row_entries_[entry];
     if (!wait_for(left)) {
@@ -255,7 +255,7 @@ bool BlockLu::subtract_left_symmetric(std::size_t k, base::Mat6<double>& pivot,
              rows_from(row_entries_[entry]) == row_count);
     factor_kernels().update_symmetric({.rows = rows_.data(),
                                        .slot_of_row = scratch.slot_of_row.data(),
-                                       .lower = blocks_.data(),
+                                       .lower = lower_.data(),
                                        .pivot = &pivot,
                                        .inverse = inverse_.data(),
                                        .sources = sources,
@@ -299,8 +299,8 @@ FactorView BlockLu::view() const {
   return {.place_count = position_.size(),
           .column_start = column_start_.data(),
           .rows = rows_.data(),
-          .lower = blocks_.data(),
-          .upper = symmetry_ == Symmetry::kNone ? blocks_.data() + rows_.size() : nullptr,
+          .lower = lower_.data(),
+          .upper = symmetry_ == Symmetry::kNone ? upper_.data() : nullptr,
           .inverse = inverse_.data()};
 }
 
@@ -360,7 +360,7 @@ BlockLu::Way BlockLu::way_up(std::int32_t node) const {
       while (way.places[target] != rows_[slot]) {
         ++target;
       }
-      factor_kernels().subtract_product(way.blocks[target], blocks_[slot], divided);
+      factor_kernels().subtract_product(way.blocks[target], lower_[slot], divided);
     }
   }
   return way;

@@ -211,7 +211,7 @@ class SelectedInverse::PanelMaker {
     stride_ = stride;
     for (std::size_t t = columns; t-- > 0;) {
       const std::size_t k = panel_.first + t;
-      const Square* const from = lu_->blocks_.data() + lu_->column_start_[k];
+      const Square* const from = lu_->lower_.data() + lu_->column_start_[k];
       const std::size_t own = columns - 1 - t;
       for (std::size_t i = 0; i < own + factor_row_count_; ++i) {
         const std::size_t at = t * stride + i;

@@ -154,8 +154,8 @@ class BlockLu {
 
   std::vector<base::Mat6<double>> diagonal_;  ///< A(k, k)
   std::vector<base::Mat6<double>> inverse_;   ///< D(k)^-1
-  /// L(i, k), then U(k, i), not yet divided by D; of a symmetric matrix L(i, k) D(k) alone.
-  std::vector<base::Mat6<double>> blocks_;
+  std::vector<base::Mat6<double>> lower_;     ///< L(i, k); of a symmetric matrix L(i, k) D(k).
+  std::vector<base::Mat6<double>> upper_;  ///< U(k, i), not yet divided by D, where it is needed.
   std::vector<base::Mat6<double>> edge_lower_;  ///< A(i, k) of each edge, i below k
   std::vector<bool> is_stale_;                  ///< columns whose factor is out of date
   std::size_t made_column_count_ = 0;
