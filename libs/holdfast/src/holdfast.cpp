@@ -184,7 +184,6 @@ CheckResult check(const Structure& structure, const CheckOptions& options) {
 std::vector<CheckResult> check_many(std::span<const model::Robot* const> robots,
                                     const CheckOptions& options,
                                     const std::function<void(std::size_t done)>& progress) {
-  constexpr std::size_t kChunk = host::Team::kChunk;  // A robot is as much as a chunk of nodes.
   const std::size_t count = robots.size();
   const bool is_shared = count >= host::Team::kSharedChunkMin;
   CheckOptions one = options;
@@ -192,15 +191,14 @@ std::vector<CheckResult> check_many(std::span<const model::Robot* const> robots,
   std::vector<CheckResult> results(count);
   std::atomic<std::size_t> done = 0;
   const std::thread::id caller = std::this_thread::get_id();
-  host::Team team(is_shared ? options.thread_count : 1, count * kChunk);
-  team.share(0, count * kChunk, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin / kChunk; i < end / kChunk; ++i) {
-      host::ask_whether_to_go_on();
-      results[i] = check(*robots[i], one);
-      ++done;
-      if (progress && std::this_thread::get_id() == caller) {
-        progress(done);
-      }
+  // A robot is as much as a chunk of nodes.
+  host::Team team(is_shared ? options.thread_count : 1, count * host::Team::kChunk);
+  team.each(count, [&](std::size_t i) {
+    host::ask_whether_to_go_on();
+    results[i] = check(*robots[i], one);
+    ++done;
+    if (progress && std::this_thread::get_id() == caller) {
+      progress(done);
     }
   });
   if (progress && count > 0) {

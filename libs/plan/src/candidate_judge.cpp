@@ -467,16 +467,13 @@ void CandidateJudge::judge_fully(std::vector<Waiting> waiting) const {
   std::ranges::stable_sort(waiting, {}, [&](const Waiting& one) {
     return influence_->slot(one.site.links.front().host);
   });
-  constexpr std::size_t kChunk = host::Team::kChunk;
   const std::size_t group_count = (waiting.size() + kLaneCount - 1) / kLaneCount;
   std::vector<std::vector<Waiting>> again(group_count);
-  host::Team team(options_.equilibrium.thread_count, group_count * kChunk);
-  team.share(0, group_count * kChunk, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t group = begin / kChunk; group < (end + kChunk - 1) / kChunk; ++group) {
-      const std::size_t first = group * kLaneCount;
-      const std::size_t count = std::min(kLaneCount, waiting.size() - first);
-      judge_together(std::span(waiting).subspan(first, count), again[group]);
-    }
+  host::Team team(options_.equilibrium.thread_count, group_count * host::Team::kChunk);
+  team.each(group_count, [&](std::size_t group) {
+    const std::size_t first = group * kLaneCount;
+    const std::size_t count = std::min(kLaneCount, waiting.size() - first);
+    judge_together(std::span(waiting).subspan(first, count), again[group]);
   });
   std::vector<Waiting> left;
   for (std::vector<Waiting>& group : again) {

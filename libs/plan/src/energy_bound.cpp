@@ -526,19 +526,19 @@ bool EnergyBound::is_pressed_by_adjoint(std::size_t index) {
   if (section_ != nullptr || nodes_[base::at(facet.module)].is_new) {
     return false;
   }
-  const GrownAdjoint* adjoint = watched_.find(index, u_);
-  if (adjoint == nullptr) {
+  const auto known = watched_.find(index, u_);
+  if (!known) {
     return false;
   }
   Vec force = trial_force(facet, u_[base::at(facet.module)]);
   for (std::size_t i = 0; i < 3; ++i) {
-    force[2 + i] += adjoint->work()[i];
+    force[2 + i] += known->work[i];
   }
   const double b = target_.foot_half_width_mm();
   const auto holds = [&](double torque, double mx, double my) {
     const double slack = -force[2] * b - std::abs(torque);
     return std::ranges::all_of(std::array{1.0, -1.0}, [&](double sign) {
-      return adjoint->error({b, sign * mx, sign * my}) * energy_error() < slack;
+      return known->error({b, sign * mx, sign * my}) * energy_error() < slack;
     });
   };
   return holds(force[3], 1, 0) && holds(force[4], 0, 1);

@@ -74,8 +74,9 @@ class EnergyBound {
   /// No module is attached until the next begin(): gives back what takes much memory.
   void end() { spread_.clear(); }
 
-  /// From the next begin() on the forces of these facets are looked at with their adjoints.
-  void take_adjoints(const FacetAdjoints& adjoints) { watched_.take(adjoints); }
+  /// From the next begin() on the forces of these facets are looked at with their adjoints, as long
+  /// as modules are attached in the order in which these have grown.
+  void take_adjoints(const GrownAdjoints& adjoints) { watched_.take(adjoints); }
 
   /// Whether the adjoint of a facet has been asked for since it was taken.
   bool has_asked_for(std::size_t facet) const { return watched_.has_asked_for(facet); }

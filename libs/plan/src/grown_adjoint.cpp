@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <numeric>
+#include <span>
 
 #include "carried_force.hpp"
 #include "holdfast/base/lattice.hpp"
@@ -17,8 +19,9 @@ using base::at;
 using base::Direction;
 using base::Vec6;
 
-/// z . rest by component of a displacement, so that no sum waits for another.
-std::array<Vec6<double>, 3> products(const std::vector<Element>& modules,
+/// z . rest by component of a displacement, so that no sum waits for another, of the first modules
+/// that have a z.
+std::array<Vec6<double>, 3> products(std::span<const Element> modules,
                                      const std::vector<std::array<Vec6<double>, 3>>& z,
                                      const std::vector<Vec6<double>>& rest) {
   std::array<Vec6<double>, 3> sum{};
@@ -41,35 +44,45 @@ GrownAdjoint::GrownAdjoint(const model::Robot& target, std::shared_ptr<const Fac
       beam_(model::beam_section(target.material()), target.lattice()),
       stiffness_(middle_stiffness(beam_)),
       core_(std::move(core)),
-      local_(target),
-      place_(target.modules().size()) {
+      local_(target) {
+  shrink_to_core();
+}
+
+void GrownAdjoint::shrink_to_core() {
   local_.assign(*core_->core);
+  place_.assign(target_->modules().size(), kAbsent);
   for (std::size_t i = 0; i < core_->core->size(); ++i) {
     place_[at((*core_->core)[i])] = static_cast<std::int32_t>(i);
   }
+  grown_.clear();
+  grown_modules_.clear();
+  gram_.assign(1, {});
 }
 
 bool GrownAdjoint::is_beside(std::size_t module) const {
   return std::ranges::any_of(target_->connected()[module], [&](std::int32_t other) {
-    return other != model::Robot::kNoNeighbour && local_.is_there(at(other));
+    return other != model::Robot::kNoNeighbour && place_[at(other)] != kAbsent;
   });
 }
 
 bool GrownAdjoint::grow_to(const std::vector<Element>& elements) {
-  std::vector<std::size_t> missing;
-  for (const Element element : elements) {
-    if (!local_.is_there(at(element))) {
-      missing.push_back(at(element));
+  const auto is_known = [&](Element element) { return place_[at(element)] != kAbsent; };
+  const auto known_count = [&] {
+    return static_cast<std::size_t>(std::ranges::count_if(elements, is_known));
+  };
+  if (known_count() < core_->core->size() + grown_.size()) {
+    shrink_to_core();
+    if (known_count() < core_->core->size()) {
+      return false;
     }
   }
-  if (elements.size() - missing.size() < core_->core->size() + grown_.size()) {
-    return false;
-  }
+  std::vector<Element> missing;
+  std::ranges::remove_copy_if(elements, std::back_inserter(missing), is_known);
   for (bool has_grown = true; has_grown;) {
-    has_grown = std::erase_if(missing, [&](std::size_t module) {
-                  const bool can_grow = is_beside(module);
+    has_grown = std::erase_if(missing, [&](Element element) {
+                  const bool can_grow = is_beside(at(element));
                   if (can_grow) {
-                    grow(module);
+                    grow(at(element));
                   }
                   return can_grow;
                 }) > 0;
@@ -77,11 +90,23 @@ bool GrownAdjoint::grow_to(const std::vector<Element>& elements) {
   return missing.empty();
 }
 
+std::optional<std::size_t> GrownAdjoint::count_in(const std::vector<Element>& elements) const {
+  const auto end = static_cast<std::int32_t>(elements.size());
+  const bool is_on_way =
+      elements.size() >= core_->z.size() && std::ranges::all_of(elements, [&](Element element) {
+        const std::int32_t place = place_[at(element)];
+        return place != kAbsent && place < end;
+      });
+  return is_on_way ? std::optional(elements.size() - core_->z.size()) : std::nullopt;
+}
+
+/// Those to modules that came before it.
 template <class Each>
 void GrownAdjoint::for_each_beam(std::size_t module, const Each& each) const {
   for (const Direction direction : base::directions(target_->lattice())) {
-    const std::int32_t other = local_.neighbour(module, base::index(direction));
-    if (other != model::Robot::kNoNeighbour) {
+    const std::int32_t other = target_->connected()[module][at(base::index(direction))];
+    if (other != model::Robot::kNoNeighbour && place_[at(other)] != kAbsent &&
+        place_[at(other)] < place_[module]) {
       each(direction, at(other));
     }
   }
@@ -99,6 +124,7 @@ void GrownAdjoint::for_each_facet(std::size_t module, const Each& each) const {
 
 void GrownAdjoint::grow(std::size_t module) {
   local_.insert(module);
+  place_[module] = static_cast<std::int32_t>(core_->z.size() + grown_.size());
   std::array<Vec, 3> own{};
   const bool is_fixed = target_->modules()[module].support == model::Support::kFixed;
   for (std::size_t i = 0; i < 3 && !is_fixed; ++i) {
@@ -111,19 +137,23 @@ void GrownAdjoint::grow(std::size_t module) {
     });
     own[i] = base::multiply(local_.stiffness(module).inverse, pull);
   }
-  place_[module] = static_cast<std::int32_t>(core_->z.size() + grown_.size());
   grown_.push_back(own);
   grown_modules_.push_back(static_cast<Element>(module));
-  weigh(module);
+  std::array<double, 9> gram = products_of_gaps(module);
+  for (std::size_t i = 0; i < gram.size(); ++i) {
+    gram[i] += gram_.back()[i];
+  }
+  gram_.push_back(gram);
 }
 
-/// Adds the energies of e in the beams and facets of a module that has grown last.
-void GrownAdjoint::weigh(std::size_t module) {
+/// <e_i, e_k> in the beams and facets of a module that has grown.
+std::array<double, 9> GrownAdjoint::products_of_gaps(std::size_t module) const {
+  std::array<double, 9> products{};
   const auto add = [&](const std::array<Vec, 3>& forces) {
     for (std::size_t i = 0; i < 3; ++i) {
       for (std::size_t k = 0; k < 3; ++k) {
         for (std::size_t c = 0; c < 6; ++c) {
-          gram_[3 * i + k] += forces[i][c] * forces[k][c] / stiffness_[c];
+          products[3 * i + k] += forces[i][c] * forces[k][c] / stiffness_[c];
         }
       }
     }
@@ -142,41 +172,49 @@ void GrownAdjoint::weigh(std::size_t module) {
     }
     add(forces);
   });
+  return products;
 }
 
-void GrownAdjoint::set_rest(const std::vector<Vec>& rest) {
+GrownAdjoint::Triple GrownAdjoint::work(const std::vector<Vec>& rest, std::size_t count) const {
   const std::array<Vec, 3> core = products(*core_->core, core_->z, rest);
-  const std::array<Vec, 3> grown = products(grown_modules_, grown_, rest);
+  const std::array<Vec, 3> grown = products(std::span(grown_modules_).first(count), grown_, rest);
+  Triple work{};
   for (std::size_t i = 0; i < 3; ++i) {
-    work_[i] = std::accumulate(core[i].begin(), core[i].end(), 0.0) +
-               std::accumulate(grown[i].begin(), grown[i].end(), 0.0);
+    work[i] = std::accumulate(core[i].begin(), core[i].end(), 0.0) +
+              std::accumulate(grown[i].begin(), grown[i].end(), 0.0);
   }
+  return work;
 }
 
-void GrownAdjoint::add_rest(std::size_t module, const std::vector<Vec>& u) {
+GrownAdjoint::Triple GrownAdjoint::work_of_next(std::size_t count,
+                                                const std::vector<Vec>& u) const {
+  const std::size_t module = at(grown_modules_[count]);
+  Triple work{};
   for (std::size_t i = 0; i < 3; ++i) {
     const Vec& own = z(i, module);
-    work_[i] += base::dot(own, target_->loads()[module]);
+    work[i] = base::dot(own, target_->loads()[module]);
     for_each_beam(module, [&](Direction direction, std::size_t other) {
       const Vec e = beam_.middle_force(direction, own, z(i, other));
       const Vec gap = beam_.middle_force(direction, u[module], u[other]);
       for (std::size_t c = 0; c < 6; ++c) {
-        work_[i] -= e[c] * gap[c] / stiffness_[c];
+        work[i] -= e[c] * gap[c] / stiffness_[c];
       }
     });
     for_each_facet(module, [&](Direction direction) {
-      work_[i] -= base::dot(own, local_.facet_force(direction, u[module]));
+      work[i] -= base::dot(own, local_.facet_force(direction, u[module]));
     });
   }
+  return work;
 }
 
-double GrownAdjoint::error(const Triple& factors) const {
+double GrownAdjoint::error(const Triple& factors, std::size_t count) const {
+  const std::array<double, 9>& gram = gram_[count];
   double sum = 0;
   double own = 0;
   for (std::size_t i = 0; i < 3; ++i) {
     own += std::abs(factors[i]) * core_->error[i];
     for (std::size_t k = 0; k < 3; ++k) {
-      sum += factors[i] * gram_[3 * i + k] * factors[k];
+      sum += factors[i] * gram[3 * i + k] * factors[k];
     }
   }
   return std::sqrt(std::max(0.0, sum) + own * own);

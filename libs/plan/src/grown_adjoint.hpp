@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "facet_adjoint.hpp"
@@ -15,8 +16,9 @@
 
 namespace holdfast::plan {
 
-/// A facet's adjoint that is continued while a robot grows, and what z says of the facet's force
-/// for displacements that are not in balance (FacetAdjoint).
+/// A facet's adjoint, continued to modules with which a robot grows after its core, one after
+/// another. It serves all states on that way at once: those that have the core and the first so
+/// many of these modules.
 class GrownAdjoint {
  public:
   using Vec = base::Vec6<double>;
@@ -27,36 +29,48 @@ class GrownAdjoint {
   /// Keeps a reference to the robot, all modules of which are there in the end.
   GrownAdjoint(const model::Robot& target, std::shared_ptr<const FacetAdjoint> core);
 
-  const std::shared_ptr<const FacetAdjoint>& core() const { return core_; }
+  /// Of the target.
+  std::size_t facet() const { return core_->facet; }
 
-  /// Continues z to all modules of a connected state. False if it lacks one that z is known for.
+  /// Continues z to all modules of a connected state; from the core if it has been continued to
+  /// others. False if the state lacks a module of the core.
   bool grow_to(const std::vector<Element>& elements);
 
   /// Continues z to a module beside one that z is known for.
   void grow(std::size_t module);
 
-  /// Takes what displacements leave unbalanced, f - K u, by module of the target.
-  void set_rest(const std::vector<Vec>& rest);
+  /// How many modules a state on the way has beyond the core; none if it is not on the way.
+  std::optional<std::size_t> count_in(const std::vector<Element>& elements) const;
 
-  /// Directly after grow(): adds what the displacements of the module, and those of its neighbours
-  /// that it has been attached to, leave unbalanced by its beams and its load.
-  void add_rest(std::size_t module, const std::vector<Vec>& u);
+  /// Whether the module comes next, after so many.
+  bool is_next(std::size_t count, std::size_t module) const {
+    return count < grown_modules_.size() && base::at(grown_modules_[count]) == module;
+  }
 
-  /// z (f - K u) for fz, mx and my.
-  const Triple& work() const { return work_; }
+  /// z (f - K u) for fz, mx and my, where displacements leave f - K u unbalanced, by module of the
+  /// target, in the state that has so many modules beyond the core.
+  Triple work(const std::vector<Vec>& rest, std::size_t count) const;
 
-  /// What |z* - z| is at most for a combination of fz, mx and my.
-  double error(const Triple& factors) const;
+  /// What the module that comes after so many adds to work(): by its load, its facets and its beams
+  /// to modules that are there.
+  Triple work_of_next(std::size_t count, const std::vector<Vec>& u) const;
+
+  /// What |z* - z| is at most for a combination of fz, mx and my, in the state that has so many
+  /// modules beyond the core.
+  double error(const Triple& factors, std::size_t count) const;
 
  private:
+  static constexpr std::int32_t kAbsent = -1;
+
   const Vec& z(std::size_t component, std::size_t module) const {
     const std::size_t place = base::at(place_[module]);
     const std::size_t core_count = core_->z.size();
     return place < core_count ? core_->z[place][component] : grown_[place - core_count][component];
   }
 
+  void shrink_to_core();
   bool is_beside(std::size_t module) const;
-  void weigh(std::size_t module);
+  std::array<double, 9> products_of_gaps(std::size_t module) const;
   template <class Each>
   void for_each_beam(std::size_t module, const Each& each) const;
   template <class Each>
@@ -67,11 +81,13 @@ class GrownAdjoint {
   Vec stiffness_{};  ///< Of the springs in the middle, h.
   std::shared_ptr<const FacetAdjoint> core_;
   LocalBalance local_;                     ///< What z is known for.
-  std::vector<std::int32_t> place_;        ///< By module: in the core's z, then in grown_.
+  std::vector<std::int32_t> place_;        ///< By module: in the core's z, then in grown_; kAbsent.
   std::vector<std::array<Vec, 3>> grown_;  ///< z beyond the core,
   std::vector<Element> grown_modules_;     ///< and whose it is.
-  Triple work_{};
-  std::array<double, 9> gram_{};  ///< <e_i, e_k>, by rows.
+  /// <e_i, e_k>, by rows, with no module beyond the core, with one, and so on.
+  std::vector<std::array<double, 9>> gram_;
 };
+
+using GrownAdjoints = std::vector<std::shared_ptr<GrownAdjoint>>;
 
 }  // namespace holdfast::plan

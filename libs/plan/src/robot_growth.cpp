@@ -482,13 +482,13 @@ std::vector<Judgement> RobotGrowth::judge_run(const ElementSet& state, Sense sen
   };
   const Assess assess = [this](const ElementSet& next) { return assess_alone(next); };
   std::vector<std::vector<Judgement>> pieces(count);
-  // The loop is shared by chunks of items: one for each piece.
+  if (sense == Sense::kGrowing) {
+    grow_adjoints(state, run);
+  }
   host::Team team(thread_count_);
-  team.share(0, count * host::Team::kChunk, [&](std::size_t first, std::size_t last) {
-    for (std::size_t i = first / host::Team::kChunk; i * host::Team::kChunk < last; ++i) {
-      pieces[i] = judge_piece(begins[i], sense, part(i),
-                              {bounds_[i], &followed_[i], &sections_[i], assess, is_late});
-    }
+  team.each(count, [&](std::size_t i) {
+    pieces[i] = judge_piece(begins[i], sense, part(i),
+                            {bounds_[i], &followed_[i], &sections_[i], assess, is_late});
   });
   std::vector<Judgement> judgements;
   ElementSet reached = state;
@@ -528,6 +528,18 @@ std::vector<std::size_t> RobotGrowth::doubtful_facets(const ElementSet& state) {
   return facets;
 }
 
+/// Before a run: continues what is known of facets to all its modules.
+void RobotGrowth::grow_adjoints(const ElementSet& state, std::span<const Element> run) {
+  const std::vector<Element> elements = state.elements();
+  host::Team team(thread_count_);
+  team.each(facet_adjoints_.size(), [&](std::size_t i) {
+    GrownAdjoint& adjoint = *facet_adjoints_[i];
+    if (adjoint.grow_to(elements)) {
+      std::ranges::for_each(run, [&](Element element) { adjoint.grow(base::at(element)); });
+    }
+  });
+}
+
 /// Finds the adjoints of doubtful facets of a safe state, to which a run has led, anew where they
 /// were known, and forgets those that nobody has asked for in the run. All pieces of the next run
 /// know the same ones, so that threads make no difference.
@@ -538,14 +550,15 @@ void RobotGrowth::renew_adjoints(const ElementSet& state, const std::function<bo
   const std::vector<std::size_t> facets = doubtful_facets(state);
   const std::size_t known_count = facet_adjoints_.size();
   std::erase_if(facet_adjoints_, [&](const auto& adjoint) {
-    return std::ranges::find(facets, adjoint->facet) != facets.end() ||
+    return std::ranges::find(facets, adjoint->facet()) != facets.end() ||
            std::ranges::none_of(bounds_, [&](const EnergyBound& bound) {
-             return bound.has_asked_for(adjoint->facet);
+             return bound.has_asked_for(adjoint->facet());
            });
   });
   if (!facets.empty()) {
-    const FacetAdjoints found = find_adjoints(spec_, target_, state, facets, is_late);
-    facet_adjoints_.insert(facet_adjoints_.end(), found.begin(), found.end());
+    for (const auto& core : find_adjoints(spec_, target_, state, facets, is_late)) {
+      facet_adjoints_.push_back(std::make_shared<GrownAdjoint>(target_, core));
+    }
   }
   if (known_count + facet_adjoints_.size() > 0) {
     std::ranges::for_each(bounds_,

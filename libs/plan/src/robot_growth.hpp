@@ -102,6 +102,7 @@ class RobotGrowth final : public GrowingStructure {
   std::vector<Judgement> judge_piece(ElementSet state, Sense sense, std::span<const Element> run,
                                      const Tools& tools) const;
   std::vector<std::size_t> doubtful_facets(const ElementSet& state);
+  void grow_adjoints(const ElementSet& state, std::span<const Element> run);
   void renew_adjoints(const ElementSet& state, const std::function<bool()>& is_late);
   static std::optional<double> bound_by_following(const Tools& tools);
   void put_toppling_last(std::vector<Element>& list, Sense sense);
@@ -115,7 +116,7 @@ class RobotGrowth final : public GrowingStructure {
   GrowingRobot growing_;
   LocalAdjoints adjoints_;
   std::vector<EnergyBound> bounds_;        ///< By piece of a run.
-  FacetAdjoints facet_adjoints_;           ///< All of these know them.
+  GrownAdjoints facet_adjoints_;           ///< All of these know them.
   std::vector<FollowedRobot> followed_;    ///< The same.
   std::vector<SectionResponse> sections_;  ///< The same.
   bool is_bonded_;                         ///< All supports are, so that nothing topples.

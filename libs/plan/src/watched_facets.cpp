@@ -29,23 +29,16 @@ WatchedFacets::WatchedFacets(const model::Robot& target)
       beam_(model::beam_section(target.material()), target.lattice()),
       there_(target) {}
 
-void WatchedFacets::take(const FacetAdjoints& adjoints) {
-  std::vector<Watched> watched;
+void WatchedFacets::take(const GrownAdjoints& adjoints) {
+  watched_.clear();
   for (const auto& adjoint : adjoints) {
-    const auto found = std::ranges::find_if(
-        watched_, [&](const Watched& known) { return known.adjoint.core() == adjoint; });
-    watched.push_back(found == watched_.end() ? Watched{.adjoint = {*target_, adjoint}}
-                                              : std::move(*found));
-  }
-  watched_ = std::move(watched);
-  for (Watched& each : watched_) {
-    each.is_asked_for = false;
+    watched_.push_back({.adjoint = adjoint});
   }
 }
 
 bool WatchedFacets::has_asked_for(std::size_t facet) const {
   return std::ranges::any_of(watched_, [&](const Watched& watched) {
-    return watched.is_asked_for && watched.adjoint.core()->facet == facet;
+    return watched.is_asked_for && watched.adjoint->facet() == facet;
   });
 }
 
@@ -66,43 +59,52 @@ void WatchedFacets::improve() {
   }
 }
 
-/// Continues an adjoint to the solved robot, from its core if it has been in others.
-bool WatchedFacets::begin(Watched& watched) const {
-  if (watched.adjoint.grow_to(elements_)) {
-    return true;
-  }
-  watched.adjoint = GrownAdjoint(*target_, watched.adjoint.core());
-  return watched.adjoint.grow_to(elements_);
+void WatchedFacets::begin(Watched& watched, const std::vector<Element>& elements) {
+  const auto count = watched.adjoint->count_in(elements);
+  watched.has_begun = true;
+  watched.is_void = !count;
+  watched.begin_count = count.value_or(0);
+  watched.attached = 0;
 }
 
-const GrownAdjoint* WatchedFacets::find(std::size_t facet, const std::vector<Vec>& u) {
+/// Goes on to so many attached modules; false if others come next on the adjoint's way.
+bool WatchedFacets::goes_on(Watched& watched, std::size_t attached) const {
+  for (; !watched.is_void && watched.attached < attached; ++watched.attached) {
+    watched.is_void = !watched.adjoint->is_next(watched.begin_count + watched.attached,
+                                                attached_[watched.attached]);
+  }
+  return !watched.is_void;
+}
+
+std::optional<WatchedFacets::Answer> WatchedFacets::find(std::size_t facet,
+                                                         const std::vector<Vec>& u) {
   const auto found = std::ranges::find_if(
-      watched_, [&](const Watched& known) { return known.adjoint.core()->facet == facet; });
+      watched_, [&](const Watched& known) { return known.adjoint->facet() == facet; });
   if (found == watched_.end()) {
-    return nullptr;
+    return std::nullopt;
   }
-  found->is_asked_for = true;
-  if (!found->has_begun) {
-    found->has_begun = true;
-    found->is_void = !begin(*found);
-    found->attached = 0;
+  Watched& watched = *found;
+  watched.is_asked_for = true;
+  if (!watched.has_begun) {
+    begin(watched, elements_);
   }
-  if (found->is_void) {
-    return nullptr;
-  }
-  if (!found->has_rest) {
-    for (; found->attached < settled_count_; ++found->attached) {
-      found->adjoint.grow(attached_[found->attached]);
-    }
+  if (!watched.has_rest && goes_on(watched, settled_count_)) {
     find_rest(u);
-    found->adjoint.set_rest(rest_);
-    found->has_rest = true;
+    watched.work = watched.adjoint->work(rest_, watched.begin_count + settled_count_);
+    watched.has_rest = true;
   }
-  for (; found->attached < attached_.size(); ++found->attached) {
-    found->adjoint.grow(attached_[found->attached]);
-    found->adjoint.add_rest(attached_[found->attached], u);
+  while (watched.attached < attached_.size() && goes_on(watched, watched.attached + 1)) {
+    const auto more = watched.adjoint->work_of_next(watched.begin_count + watched.attached - 1, u);
+    for (std::size_t i = 0; i < more.size(); ++i) {
+      watched.work[i] += more[i];
+    }
   }
-  return &found->adjoint;
+  if (watched.is_void) {
+    return std::nullopt;
+  }
+  return Answer{.adjoint = watched.adjoint.get(),
+                .count = watched.begin_count + watched.attached,
+                .work = watched.work};
 }
 
 /// f - K u of the modules that have the last displacements, unless it is known.

@@ -4,9 +4,9 @@
 
 #include <cstddef>
 #include <memory>
+#include <optional>
 #include <vector>
 
-#include "facet_adjoint.hpp"
 #include "grown_adjoint.hpp"
 #include "holdfast/model/lattice_beam.hpp"
 #include "holdfast/model/robot.hpp"
@@ -15,8 +15,8 @@
 
 namespace holdfast::plan {
 
-/// Facets of a growing robot whose adjoints are known. They are brought up to date when they are
-/// asked for, as few of them are at a time.
+/// Facets of a growing robot whose adjoints are known, and what these say of displacements, which
+/// is found when it is asked for, as few of them are at a time.
 class WatchedFacets {
  public:
   using Vec = base::Vec6<double>;
@@ -24,8 +24,19 @@ class WatchedFacets {
   /// Keeps a reference to the robot, all modules of which are there in the end.
   explicit WatchedFacets(const model::Robot& target);
 
-  /// Watches these and no others, from the next begin() on.
-  void take(const FacetAdjoints& adjoints);
+  /// What an adjoint says of a facet.
+  struct Answer {
+    const GrownAdjoint* adjoint = nullptr;
+    std::size_t count = 0;        ///< The modules beyond its core.
+    GrownAdjoint::Triple work{};  ///< GrownAdjoint::work().
+
+    double error(const GrownAdjoint::Triple& factors) const {
+      return adjoint->error(factors, count);
+    }
+  };
+
+  /// Watches these and no others, from the next begin() on; until then they may still grow.
+  void take(const GrownAdjoints& adjoints);
 
   /// Whether a facet has been asked for since take().
   bool has_asked_for(std::size_t facet) const;
@@ -39,22 +50,25 @@ class WatchedFacets {
   /// The robot that is there now has got better displacements.
   void improve();
 
-  /// A facet's adjoint, its work() that of displacements u: those of the solved robot, or the
-  /// better ones, and of the modules that have been attached since. None if it is not known, or the
-  /// robot has not all modules that it was found for.
-  const GrownAdjoint* find(std::size_t facet, const std::vector<Vec>& u);
+  /// For displacements u: those of the solved robot, or the better ones, and of the modules that
+  /// have been attached since. None if the facet is not watched, or the robot does not grow the way
+  /// its adjoint has grown.
+  std::optional<Answer> find(std::size_t facet, const std::vector<Vec>& u);
 
  private:
   struct Watched {
-    GrownAdjoint adjoint;
+    std::shared_ptr<const GrownAdjoint> adjoint;
     bool is_asked_for = false;
-    bool has_begun = false;    ///< Since the robot was solved.
-    bool is_void = false;      ///< Until then.
-    bool has_rest = false;     ///< Of the last displacements.
-    std::size_t attached = 0;  ///< So many of attached_ it knows.
+    bool has_begun = false;       ///< Since the robot was solved.
+    bool is_void = false;         ///< Until then.
+    bool has_rest = false;        ///< Of the last displacements.
+    std::size_t begin_count = 0;  ///< The modules beyond its core when the robot was solved,
+    std::size_t attached = 0;     ///< and how many of attached_ there are in work.
+    GrownAdjoint::Triple work{};
   };
 
-  bool begin(Watched& watched) const;
+  static void begin(Watched& watched, const std::vector<Element>& elements);
+  bool goes_on(Watched& watched, std::size_t attached) const;
   void find_rest(const std::vector<Vec>& u);
   void pull(std::size_t module, base::Direction direction, std::size_t other,
             const std::vector<Vec>& u);

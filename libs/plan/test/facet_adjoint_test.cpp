@@ -109,6 +109,20 @@ std::array<double, 3> facet_force(const model::Robot& target, const model::Facet
   return {force[2], force[3], force[4]};
 }
 
+/// Those of facets of a state that have grown to the modules that come.
+GrownAdjoints grown_adjoints(const model::RobotSpec& spec, const model::Robot& target,
+                             const ElementSet& state, const std::vector<std::size_t>& facets,
+                             std::span<const Element> run) {
+  GrownAdjoints adjoints;
+  for (const auto& core : find_adjoints(spec, target, state, facets, [] { return false; })) {
+    adjoints.push_back(std::make_shared<GrownAdjoint>(target, core));
+    for (const Element element : run) {
+      adjoints.back()->grow(at(element));
+    }
+  }
+  return adjoints;
+}
+
 struct Count {
   int all = 0;
   int near = 0;  ///< Of those that are off by less than a tenth of what the displacements say.
@@ -120,8 +134,8 @@ void compare(const model::Robot& target, const ElementSet& state, const Displace
   const double norm = std::sqrt(energy_between(target, state, u, exact));
   for (std::size_t i = 0; i < target.facets().size(); ++i) {
     const model::Facet& facet = target.facets()[i];
-    const GrownAdjoint* adjoint = watched.find(i, u);
-    if (adjoint == nullptr) {
+    const auto answer = watched.find(i, u);
+    if (!answer) {
       continue;
     }
     const auto known = facet_force(target, facet, u);
@@ -129,8 +143,8 @@ void compare(const model::Robot& target, const ElementSet& state, const Displace
     for (std::size_t k = 0; k < 3; ++k) {
       std::array<double, 3> unit{};
       unit[k] = 1;
-      const double off = std::abs(real[k] - known[k] - adjoint->work()[k]);
-      EXPECT_LE(off, adjoint->error(unit) * norm + 1e-9);  // Rounding.
+      const double off = std::abs(real[k] - known[k] - answer->work[k]);
+      EXPECT_LE(off, answer->error(unit) * norm + 1e-9);  // Rounding.
       ++count.all;
       count.near += off < 0.1 * std::abs(real[k] - known[k]) ? 1 : 0;
     }
@@ -157,7 +171,7 @@ TEST(FacetAdjoint, knows_a_facets_force_but_for_the_product_of_two_errors) {
       facets.push_back(i);
     }
     WatchedFacets watched(target);
-    watched.take(find_adjoints(spec, target, state, facets, [] { return false; }));
+    watched.take(grown_adjoints(spec, target, state, facets, std::span(order).subspan(core_count)));
     watched.begin(state.elements());
     const verdict::Assessment core = check(spec, state);
     Displacements u = exact_displacements(spec, state, core);
@@ -194,6 +208,39 @@ TEST(FacetAdjoint, knows_a_facets_force_but_for_the_product_of_two_errors) {
   EXPECT_GT(3 * count.near, 2 * count.all);
 }
 
+TEST(FacetAdjoint, answers_in_states_on_the_way_that_it_has_grown_and_no_others) {
+  const model::RobotSpec spec = spec_of({"growth", 300, 40});
+  const model::Robot target = model::Robot::create(spec).value();
+  const std::vector<Element> order = test::nearest_first(target);
+  const auto run = std::span(order).last(40);
+  ElementSet core(order.size());
+  std::ranges::for_each(std::span(order).first(260),
+                        [&](Element element) { core.insert(element); });
+  const GrownAdjoints adjoints = grown_adjoints(spec, target, core, {0}, run);
+  WatchedFacets watched(target);
+  watched.take(adjoints);
+  const Displacements u(order.size());
+  ElementSet state = core;
+  for (std::size_t i = 0; i < 10; ++i) {
+    state.insert(run[i]);
+  }
+  watched.begin(state.elements());
+  watched.attach(at(run[10]));
+  EXPECT_EQ(watched.find(0, u).value().count, 11U);
+  EXPECT_FALSE(watched.find(1, u));  // Not watched.
+  watched.attach(at(run[12]));
+  EXPECT_FALSE(watched.find(0, u));
+  state.insert(run[12]);
+  watched.begin(state.elements());
+  EXPECT_FALSE(watched.find(0, u));
+  // It grows that way if it is told to, from its core.
+  EXPECT_TRUE(adjoints.front()->grow_to(state.elements()));
+  watched.begin(state.elements());
+  EXPECT_EQ(watched.find(0, u).value().count, 11U);
+  core.erase(order.front());
+  EXPECT_FALSE(adjoints.front()->grow_to(core.elements()));
+}
+
 /// How many modules are attached one by one until there is no bound; each state is checked.
 int certified_count(const Case& robot, bool has_adjoints) {
   const model::RobotSpec spec = spec_of(robot);
@@ -211,7 +258,8 @@ int certified_count(const Case& robot, bool has_adjoints) {
     for (std::size_t i = 0; i < facets.size(); ++i) {
       facets[i] = i;
     }
-    bound.take_adjoints(find_adjoints(spec, target, state, facets, [] { return false; }));
+    bound.take_adjoints(
+        grown_adjoints(spec, target, state, facets, std::span(order).subspan(core_count)));
   }
   EXPECT_TRUE(bound.begin(state.elements(), check(spec, state))) << robot.family;
   for (std::size_t i = core_count; i < order.size(); ++i) {
