@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "carried_force.hpp"
+#include "facet_starts.hpp"
 #include "holdfast/base/lattice.hpp"
 #include "holdfast/mechanics/ground_contact.hpp"
 #include "holdfast/model/connector_law.hpp"
@@ -51,6 +52,7 @@ EnergyBound::EnergyBound(const model::Robot& target, const LocalAdjoints& adjoin
       spread_(target),
       spreads_(spreads),
       ratio_per_norm_(model::load_ratio_per_energy_norm(target)),
+      first_facet_(facet_starts(target)),
       nodes_(target.modules().size()),
       u_(target.modules().size()),
       room_(target.facets().size()),
@@ -61,13 +63,6 @@ EnergyBound::EnergyBound(const model::Robot& target, const LocalAdjoints& adjoin
   const double b = target.foot_half_width_mm();
   facet_per_norm_x_ = std::sqrt(h[3] + h[2] * b * b);
   facet_per_norm_y_ = std::sqrt(h[4] + h[2] * b * b);
-  first_facet_.assign(target.modules().size() + 1, 0);
-  for (const model::Facet& facet : target.facets()) {
-    ++first_facet_[base::at(facet.module) + 1];
-  }
-  for (std::size_t i = 0; i < target.modules().size(); ++i) {
-    first_facet_[i + 1] += first_facet_[i];
-  }
 }
 
 /// Whether the module hands its load to a support of its own.

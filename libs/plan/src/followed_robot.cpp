@@ -10,6 +10,7 @@
 
 #include "carried_force.hpp"
 #include "dense.hpp"
+#include "facet_starts.hpp"
 #include "holdfast/base/lattice.hpp"
 #include "holdfast/model/connector_law.hpp"
 #include "holdfast/model/material.hpp"
@@ -84,16 +85,10 @@ FollowedRobot::FollowedRobot(const model::RobotSpec& spec, const model::Robot& t
       stiffness_(middle_stiffness(beam_)),
       ratio_per_norm_(model::load_ratio_per_energy_norm(target)),
       local_(target),
-      first_facet_(target.modules().size() + 1) {
+      first_facet_(facet_starts(target)) {
   for (std::size_t i = 0; i < target.modules().size(); ++i) {
     const Vec& load = target.loads()[i];
     unit_ = std::max(unit_, std::hypot(load[0], load[1], load[2]) / std::sqrt(stiffness_[2]));
-  }
-  for (const model::Facet& facet : target.facets()) {
-    ++first_facet_[at(facet.module) + 1];
-  }
-  for (std::size_t i = 0; i < target.modules().size(); ++i) {
-    first_facet_[i + 1] += first_facet_[i];
   }
 }
 

@@ -7,6 +7,7 @@
 #include <limits>
 #include <utility>
 
+#include "facet_starts.hpp"
 #include "holdfast/base/lattice.hpp"
 #include "holdfast/model/material.hpp"
 
@@ -36,17 +37,11 @@ LoadSpread::LoadSpread(const model::Robot& target, std::size_t width_min)
     : target_(&target),
       width_min_(width_min),
       beam_(model::beam_section(target.material()), target.lattice()),
-      first_facet_(target.modules().size() + 1),
+      first_facet_(facet_starts(target)),
       place_(target.modules().size(), kAbsent) {
   for (const Direction direction : base::directions(target.lattice())) {
     k11_[at(base::index(direction))] = beam_.block_11(direction);
     k12_[at(base::index(direction))] = beam_.block_12(direction);
-  }
-  for (const model::Facet& facet : target.facets()) {
-    ++first_facet_[at(facet.module) + 1];
-  }
-  for (std::size_t i = 0; i < target.modules().size(); ++i) {
-    first_facet_[i + 1] += first_facet_[i];
   }
 }
 

@@ -7,6 +7,7 @@
 
 #include "carried_force.hpp"
 #include "dense.hpp"
+#include "facet_starts.hpp"
 #include "holdfast/base/lattice.hpp"
 #include "holdfast/mechanics/ground_contact.hpp"
 #include "holdfast/model/material.hpp"
@@ -63,12 +64,8 @@ LocalAdjoints::LocalAdjoints(const model::Robot& target)
     : target_(target),
       beam_(model::beam_section(target.material()), target.lattice()),
       stiffness_(middle_stiffness(beam_)),
-      first_facet_(target.modules().size() + 1) {
-  for (const model::Facet& facet : target.facets()) {
-    ++first_facet_[at(facet.module) + 1];
-  }
+      first_facet_(facet_starts(target)) {
   for (std::size_t i = 0; i < target.modules().size(); ++i) {
-    first_facet_[i + 1] += first_facet_[i];
     places_.push_back(node_place(target, i));
   }
 }

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "dense.hpp"
+#include "facet_starts.hpp"
 #include "holdfast/base/check.hpp"
 #include "holdfast/base/lattice.hpp"
 #include "holdfast/model/material.hpp"
@@ -17,21 +18,13 @@ using base::Mat6;
 using base::Vec6;
 
 LocalBalance::LocalBalance(const model::Robot& target)
-    : target_(&target),
-      first_facet_(target.modules().size() + 1),
-      is_there_(target.modules().size()) {
+    : target_(&target), first_facet_(facet_starts(target)), is_there_(target.modules().size()) {
   const model::LatticeBeam<double> beam(model::beam_section(target.material()), target.lattice());
   for (const Direction direction : base::directions(target.lattice())) {
     block_12_[at(base::index(direction))] = beam.block_12(direction);
   }
   for (const Direction direction : base::facet_directions(target.lattice())) {
     block_11_[at(base::index(direction))] = beam.block_11(direction);
-  }
-  for (const model::Facet& facet : target.facets()) {
-    ++first_facet_[at(facet.module) + 1];
-  }
-  for (std::size_t i = 0; i < target.modules().size(); ++i) {
-    first_facet_[i + 1] += first_facet_[i];
   }
 }
 

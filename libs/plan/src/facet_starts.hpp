@@ -1,0 +1,24 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "holdfast/model/robot.hpp"
+
+namespace holdfast::plan {
+
+/// Which facets a module has, as these go by modules: those from [module] to [module + 1].
+inline std::vector<std::size_t> facet_starts(const model::Robot& robot) {
+  std::vector<std::size_t> starts(robot.modules().size() + 1);
+  for (const model::Facet& facet : robot.facets()) {
+    ++starts[base::at(facet.module) + 1];
+  }
+  for (std::size_t i = 0; i + 1 < starts.size(); ++i) {
+    starts[i + 1] += starts[i];
+  }
+  return starts;
+}
+
+}  // namespace holdfast::plan
