@@ -14,8 +14,7 @@ Balance::Balance(const model::Robot& target)
       standing_(target.modules().size()),
       half_width_(target.foot_half_width_mm() / target.material().pitch_mm) {
   for (std::size_t i = 0; i < target.modules().size(); ++i) {
-    const auto place = base::place_of(target.lattice(),
-                                      base::axial_of(target.lattice(), target.modules()[i].cell));
+    const auto place = base::node_place(target.lattice(), target.modules()[i].cell);
     places_.push_back({place[0], place[1]});
     masses_.push_back(target.mass(i));
   }

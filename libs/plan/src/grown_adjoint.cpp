@@ -61,14 +61,14 @@ void GrownAdjoint::shrink_to_core() {
 
 bool GrownAdjoint::is_beside(std::size_t module) const {
   return std::ranges::any_of(target_->connected()[module], [&](std::int32_t other) {
-    return other != model::Robot::kNoNeighbour && place_[at(other)] != kAbsent;
+    return other != model::Robot::kNoNeighbour && is_known(at(other));
   });
 }
 
 bool GrownAdjoint::grow_to(const std::vector<Element>& elements) {
-  const auto is_known = [&](Element element) { return place_[at(element)] != kAbsent; };
+  const auto is_there = [&](Element element) { return is_known(at(element)); };
   const auto known_count = [&] {
-    return static_cast<std::size_t>(std::ranges::count_if(elements, is_known));
+    return static_cast<std::size_t>(std::ranges::count_if(elements, is_there));
   };
   if (known_count() < core_->core->size() + grown_.size()) {
     shrink_to_core();
@@ -77,7 +77,7 @@ bool GrownAdjoint::grow_to(const std::vector<Element>& elements) {
     }
   }
   std::vector<Element> missing;
-  std::ranges::remove_copy_if(elements, std::back_inserter(missing), is_known);
+  std::ranges::remove_copy_if(elements, std::back_inserter(missing), is_there);
   for (bool has_grown = true; has_grown;) {
     has_grown = std::erase_if(missing, [&](Element element) {
                   const bool can_grow = is_beside(at(element));
@@ -94,8 +94,7 @@ std::optional<std::size_t> GrownAdjoint::count_in(const std::vector<Element>& el
   const auto end = static_cast<std::int32_t>(elements.size());
   const bool is_on_way =
       elements.size() >= core_->z.size() && std::ranges::all_of(elements, [&](Element element) {
-        const std::int32_t place = place_[at(element)];
-        return place != kAbsent && place < end;
+        return is_known(at(element)) && place_[at(element)] < end;
       });
   return is_on_way ? std::optional(elements.size() - core_->z.size()) : std::nullopt;
 }
@@ -105,7 +104,7 @@ template <class Each>
 void GrownAdjoint::for_each_beam(std::size_t module, const Each& each) const {
   for (const Direction direction : base::directions(target_->lattice())) {
     const std::int32_t other = target_->connected()[module][at(base::index(direction))];
-    if (other != model::Robot::kNoNeighbour && place_[at(other)] != kAbsent &&
+    if (other != model::Robot::kNoNeighbour && is_known(at(other)) &&
         place_[at(other)] < place_[module]) {
       each(direction, at(other));
     }

@@ -68,6 +68,8 @@ class GrownAdjoint {
     return place < core_count ? core_->z[place][component] : grown_[place - core_count][component];
   }
 
+  bool is_known(std::size_t module) const { return place_[module] != kAbsent; }
+
   void shrink_to_core();
   bool is_beside(std::size_t module) const;
   std::array<double, 9> products_of_gaps(std::size_t module) const;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <iterator>
 #include <map>
+#include <memory>
 
 #include "holdfast/base/rng.hpp"
 #include "holdfast/host/team.hpp"

@@ -59,8 +59,8 @@ void WatchedFacets::improve() {
   }
 }
 
-void WatchedFacets::begin(Watched& watched, const std::vector<Element>& elements) {
-  const auto count = watched.adjoint->count_in(elements);
+void WatchedFacets::begin(Watched& watched) const {
+  const auto count = watched.adjoint->count_in(elements_);
   watched.has_begun = true;
   watched.is_void = !count;
   watched.begin_count = count.value_or(0);
@@ -86,7 +86,7 @@ std::optional<WatchedFacets::Answer> WatchedFacets::find(std::size_t facet,
   Watched& watched = *found;
   watched.is_asked_for = true;
   if (!watched.has_begun) {
-    begin(watched, elements_);
+    begin(watched);
   }
   if (!watched.has_rest && goes_on(watched, settled_count_)) {
     find_rest(u);

@@ -67,7 +67,7 @@ class WatchedFacets {
     GrownAdjoint::Triple work{};
   };
 
-  static void begin(Watched& watched, const std::vector<Element>& elements);
+  void begin(Watched& watched) const;
   bool goes_on(Watched& watched, std::size_t attached) const;
   void find_rest(const std::vector<Vec>& u);
   void pull(std::size_t module, base::Direction direction, std::size_t other,
