@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <numeric>
 #include <span>
 
@@ -76,8 +75,8 @@ bool GrownAdjoint::grow_to(const std::vector<Element>& elements) {
       return false;
     }
   }
-  std::vector<Element> missing;
-  std::ranges::remove_copy_if(elements, std::back_inserter(missing), is_there);
+  std::vector<Element> missing = elements;
+  std::erase_if(missing, is_there);
   for (bool has_grown = true; has_grown;) {
     has_grown = std::erase_if(missing, [&](Element element) {
                   const bool can_grow = is_beside(at(element));
