@@ -42,8 +42,7 @@ void report_facets(const Surroundings& node, const ContactSetting& contact,
 /// presses, or than its gap would pull, and does not press all over.
 inline bool is_doubtful(const ContactSetting& contact, const mechanics::ContactState& state,
                         const base::Vec6<double>& u) {
-  if (contact.facet.law != mechanics::ContactLaw::kRegularised ||
-      state == mechanics::ContactState{}) {
+  if (contact.facet.law != mechanics::ContactLaw::kRegularised || state == mechanics::kStuck) {
     return false;
   }
   const base::Vec6<double> trial = mechanics::trial_force(contact.facet, u);

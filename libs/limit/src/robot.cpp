@@ -118,7 +118,7 @@ std::vector<ContactFacet> contact_facets(const model::Robot& robot, const model:
 }
 
 BodyLoad body_load(const model::Robot& robot, const model::RobotPart* part) {
-  host::Ranks* const ranks = part == nullptr ? nullptr : part->ranks;
+  host::Ranks* const ranks = model::ranks_of(part);
   BodyLoad load;
   const model::Mass mass = model::mass_of(robot, part);
   load.centre_of_mass_mm = mass.centre_mm;
@@ -127,7 +127,7 @@ BodyLoad body_load(const model::Robot& robot, const model::RobotPart* part) {
   }
   const base::NodePlaces places(robot.lattice(), robot.material().pitch_mm);
   double inertia = 0;
-  const std::size_t count = part == nullptr ? robot.modules().size() : part->own_count;
+  const std::size_t count = model::own_module_count(robot, part);
   for (std::size_t module = 0; module < count; ++module) {
     const Vector3 node = places(robot.modules()[module].cell);
     const Vector3 arm = difference(node, load.centre_of_mass_mm);
@@ -159,7 +159,7 @@ BodyLoad body_load(const model::Robot& robot, const model::RobotPart* part) {
 
 RigidStability assess_rigid(const model::Robot& robot, const model::RobotPart* part,
                             bool has_figures) {
-  if (host::any(part == nullptr ? nullptr : part->ranks, robot.fixed_count() > 0)) {
+  if (host::any(model::ranks_of(part), robot.fixed_count() > 0)) {
     return {.answer = RigidAnswer::kHolds};
   }
   return assess_rigid(contact_facets(robot, part), body_load(robot, part), has_figures);

@@ -24,7 +24,7 @@ Mass mass_of(const Robot& robot, const RobotPart* part) {
   const std::array<double, 3> origin = common_node_mm(robot, part);
   Mass mass;
   host::Ranks* const ranks = ranks_of(part);
-  const std::size_t count = part == nullptr ? robot.modules().size() : part->own_count;
+  const std::size_t count = own_module_count(robot, part);
   for (std::size_t i = 0; i < count; ++i) {
     const auto node = node_mm(robot.modules()[i].cell);
     for (std::size_t k = 0; k < 3; ++k) {

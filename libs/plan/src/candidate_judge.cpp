@@ -218,7 +218,7 @@ bool CandidateJudge::is_stuck() const {
   return options_.equilibrium.is_bonded ||
          std::ranges::all_of(influence_->facets(), [&](const solver::FacetState& facet) {
            return influence_->law().state_at(facet, displacement[facet.module]) ==
-                  mechanics::ContactState{};
+                  mechanics::kStuck;
          });
 }
 

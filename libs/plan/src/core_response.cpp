@@ -99,7 +99,7 @@ class CoreResponse::Grown {
     if (!match() || !add_loads() || !add_beams()) {
       return std::nullopt;
     }
-    states_.assign(robot_.facets().size(), ContactState{});
+    states_.assign(robot_.facets().size(), mechanics::kStuck);
     std::set<std::vector<int>> seen;
     for (int step = 0; step < kStepMax; ++step) {
       if (!solve_for_states()) {
@@ -203,7 +203,7 @@ class CoreResponse::Grown {
 
   ContactState state_of_core(std::size_t facet) const {
     const std::size_t core = facet_of_core_[facet];
-    return core == kNone ? ContactState{} : whole_.system_->facets()[core].state;
+    return core == kNone ? mechanics::kStuck : whole_.system_->facets()[core].state;
   }
 
   FacetState facet_state(std::size_t facet, const ContactState& state) const {
@@ -385,9 +385,7 @@ class CoreResponse::Grown {
       return;
     }
     for (std::size_t i = 0; i < sum.size(); ++i) {
-      for (std::size_t k = 0; k < 6; ++k) {
-        sum[i][k] += factor * more[i][k];
-      }
+      base::add_times(sum[i], factor, more[i]);
     }
   }
 
@@ -404,7 +402,7 @@ class CoreResponse::Grown {
     for (std::size_t i = 0; i < states_.size(); ++i) {
       const FacetState facet = facet_state(i, states_[i]);
       const Vec force = whole_.system_->law().trial_force(facet, displacement_[facet.module]);
-      if (states_[i] != ContactState{} &&
+      if (states_[i] != mechanics::kStuck &&
           std::hypot(force[0], force[1]) > kSlipRatio * std::abs(force[2])) {
         return true;
       }

@@ -8,10 +8,10 @@
 #include <utility>
 
 #include "carried_force.hpp"
-#include "facet_starts.hpp"
 #include "holdfast/base/lattice.hpp"
 #include "holdfast/mechanics/ground_contact.hpp"
 #include "holdfast/model/connector_law.hpp"
+#include "holdfast/model/facet_starts.hpp"
 #include "holdfast/model/material.hpp"
 
 namespace holdfast::plan {
@@ -52,7 +52,7 @@ EnergyBound::EnergyBound(const model::Robot& target, const LocalAdjoints& adjoin
       spread_(target),
       spreads_(spreads),
       ratio_per_norm_(model::load_ratio_per_energy_norm(target)),
-      first_facet_(facet_starts(target)),
+      first_facet_(model::facet_starts(target)),
       nodes_(target.modules().size()),
       u_(target.modules().size()),
       room_(target.facets().size()),

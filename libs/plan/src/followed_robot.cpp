@@ -10,9 +10,9 @@
 
 #include "carried_force.hpp"
 #include "dense.hpp"
-#include "facet_starts.hpp"
 #include "holdfast/base/lattice.hpp"
 #include "holdfast/model/connector_law.hpp"
+#include "holdfast/model/facet_starts.hpp"
 #include "holdfast/model/material.hpp"
 #include "robot_growth.hpp"
 
@@ -62,12 +62,6 @@ Vec6<double> difference(const Vec6<double>& a, const Vec6<double>& b) {
   return sum;
 }
 
-void add_times(Vec6<double>& sum, double factor, const Vec6<double>& term) {
-  for (std::size_t i = 0; i < 6; ++i) {
-    sum[i] += factor * term[i];
-  }
-}
-
 double work_of(const std::vector<Vec6<double>>& loads, const std::vector<Vec6<double>>& u) {
   double work = 0;
   for (std::size_t i = 0; i < loads.size(); ++i) {
@@ -85,7 +79,7 @@ FollowedRobot::FollowedRobot(const model::RobotSpec& spec, const model::Robot& t
       stiffness_(middle_stiffness(beam_)),
       ratio_per_norm_(model::load_ratio_per_energy_norm(target)),
       local_(target),
-      first_facet_(facet_starts(target)) {
+      first_facet_(model::facet_starts(target)) {
   for (std::size_t i = 0; i < target.modules().size(); ++i) {
     const Vec& load = target.loads()[i];
     unit_ = std::max(unit_, std::hypot(load[0], load[1], load[2]) / std::sqrt(stiffness_[2]));
@@ -366,9 +360,9 @@ bool FollowedRobot::find_motion(const std::vector<Vec>& change, double coarsenes
 /// So many times as far as was found last.
 void FollowedRobot::move_core(double factor) {
   for (std::size_t i = 0; i < motion_.size(); ++i) {
-    add_times(moved_[i], factor, motion_[i]);
-    add_times(given_[i], factor, change_[i]);
-    add_times(u_[at(elements_[i])], factor, motion_[i]);
+    base::add_times(moved_[i], factor, motion_[i]);
+    base::add_times(given_[i], factor, change_[i]);
+    base::add_times(u_[at(elements_[i])], factor, motion_[i]);
   }
 }
 
@@ -532,12 +526,12 @@ std::optional<FollowedRobot::Result> FollowedRobot::improve() {
       std::abs(factor) * solution_error_ + (was_rough ? 0 : std::abs(1 - factor) * motion_error_);
   for (std::size_t i = 0; i < new_.size(); ++i) {
     Vec& u = u_[new_[i].module];
-    add_times(u, factor - 1, difference(u, still[i]));
+    base::add_times(u, factor - 1, difference(u, still[i]));
   }
   double energy = 0;
   for (std::size_t i = 0; i < springs.size(); ++i) {
-    add_times(springs_[i].force, factor, difference(springs[i].force, springs_[i].force));
-    add_times(lack[i], factor, more[i]);
+    base::add_times(springs_[i].force, factor, difference(springs[i].force, springs_[i].force));
+    base::add_times(lack[i], factor, more[i]);
     energy += energy_of(lack[i], lack[i]);
   }
   return finish(energy);

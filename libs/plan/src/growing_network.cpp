@@ -60,11 +60,8 @@ bool GrowingNetwork::can_be_added(std::size_t element) const {
 void GrowingNetwork::load(std::size_t e, double sign) {
   const LoadedSpring& element = network_->elements[e];
   const auto put = [&](std::int32_t node, const Vec6<double>& load) {
-    if (node == kGround) {
-      return;
-    }
-    for (std::size_t i = 0; i < 6; ++i) {
-      loads_[at(node)][i] += sign * load[i];
+    if (node != kGround) {
+      base::add_times(loads_[at(node)], sign, load);
     }
   };
   put(element.spring.a, element.load_a);

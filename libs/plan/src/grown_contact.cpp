@@ -29,12 +29,6 @@ constexpr double kStateRounding = 1e-12;
 /// By which a facet's sideways force may be off where only its size decides.
 constexpr double kForceShare = 1e-6;
 
-void add_scaled(Vec6<double>& sum, double factor, const Vec6<double>& term) {
-  for (std::size_t k = 0; k < 6; ++k) {
-    sum[k] += factor * term[k];
-  }
-}
-
 std::vector<base::Direction> directions_of(const Site& site) {
   std::vector<base::Direction> directions;
   for (const Link& link : site.links) {
@@ -70,7 +64,7 @@ class GrownContact::System {
          const FacetInfluence* facets, const States& states)
       : contact_(contact), site_(site), node_(node), facets_(facets) {
     for (std::size_t i = 0; facets != nullptr && i < contact.influence_.facets().size(); ++i) {
-      if (states[i] != ContactState{}) {
+      if (states[i] != mechanics::kStuck) {
         add_facet(i, states[i]);
       }
     }
@@ -280,7 +274,7 @@ class GrownContact::System {
     for (std::size_t i = 0; i < values_.size(); ++i) {
       const Outputs part = outputs_of(i);
       for (std::size_t h = 0; h < y.size(); ++h) {
-        add_scaled(y[h], values_[i], part[h]);
+        base::add_times(y[h], values_[i], part[h]);
       }
     }
     return y;
@@ -426,7 +420,7 @@ Footing GrownContact::footing_of(const Site& site, const States& states, const S
     FacetState facet = is_own ? own_facet({}) : influence_.facets()[i];
     facet.state = states[i];
     const Vec trial = scaled(influence_.law().ground().stiffness, step.motions[i]);
-    const bool is_stuck = states[i] == ContactState{};
+    const bool is_stuck = states[i] == mechanics::kStuck;
     const bool may_pull = !is_flat && !is_stuck;
     footing.is_certain = footing.is_certain && !may_pull;
     is_any_stuck = is_any_stuck || is_stuck;
@@ -448,12 +442,12 @@ bool GrownContact::may_have_others(const Site& site, const States& states, const
     const Vec trial = scaled(stiffness, step.motions[i]);
     const bool is_doubtful =
         std::hypot(trial[0], trial[1]) > (1 - kForceShare) * std::abs(trial[2]);
-    if (facet.is_bonded || states[i] == ContactState{} || !is_doubtful) {
+    if (facet.is_bonded || states[i] == mechanics::kStuck || !is_doubtful) {
       continue;
     }
     States other = states;
     other[i] = {.pressed = !states[i].pressed};
-    const NewNode& own = node(site, site.is_on_floor ? other.back() : ContactState{});
+    const NewNode& own = node(site, site.is_on_floor ? other.back() : mechanics::kStuck);
     const auto next = solve(site, own, &facets, other);
     const auto state =
         next ? certain_state(facet, scaled(stiffness, next->motions[i])) : std::nullopt;
@@ -553,8 +547,8 @@ bool GrownContact::sticks_by_far(const Vec& trial) const {
 
 void GrownContact::look_if_stuck(const FacetState& facet, std::optional<double> friction,
                                  const Vec& trial, Footing& footing) const {
-  footing.is_certain =
-      footing.is_certain && (sticks_by_far(trial) || certain_state(facet, trial) == ContactState{});
+  footing.is_certain = footing.is_certain &&
+                       (sticks_by_far(trial) || certain_state(facet, trial) == mechanics::kStuck);
   look_at(facet, friction, trial, footing);
 }
 
@@ -570,7 +564,7 @@ std::optional<Grown> GrownContact::settle(const Site& site, const FacetInfluence
   States states(count);
   std::vector<States> seen;
   for (std::size_t i = 0; i < kStepCountMax; ++i) {
-    const NewNode& own = node(site, site.is_on_floor ? states.back() : ContactState{});
+    const NewNode& own = node(site, site.is_on_floor ? states.back() : mechanics::kStuck);
     auto step = solve(site, own, &facets, states);
     auto next = step ? next_states(*step) : std::nullopt;
     if (!next) {

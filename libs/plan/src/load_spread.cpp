@@ -7,8 +7,8 @@
 #include <limits>
 #include <utility>
 
-#include "facet_starts.hpp"
 #include "holdfast/base/lattice.hpp"
+#include "holdfast/model/facet_starts.hpp"
 #include "holdfast/model/material.hpp"
 
 namespace holdfast::plan {
@@ -37,7 +37,7 @@ LoadSpread::LoadSpread(const model::Robot& target, std::size_t width_min)
     : target_(&target),
       width_min_(width_min),
       beam_(model::beam_section(target.material()), target.lattice()),
-      first_facet_(facet_starts(target)),
+      first_facet_(model::facet_starts(target)),
       place_(target.modules().size(), kAbsent) {
   for (const Direction direction : base::directions(target.lattice())) {
     k11_[at(base::index(direction))] = beam_.block_11(direction);

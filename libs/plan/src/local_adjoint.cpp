@@ -7,9 +7,9 @@
 
 #include "carried_force.hpp"
 #include "dense.hpp"
-#include "facet_starts.hpp"
 #include "holdfast/base/lattice.hpp"
 #include "holdfast/mechanics/ground_contact.hpp"
+#include "holdfast/model/facet_starts.hpp"
 #include "holdfast/model/material.hpp"
 
 namespace holdfast::plan {
@@ -64,7 +64,7 @@ LocalAdjoints::LocalAdjoints(const model::Robot& target)
     : target_(target),
       beam_(model::beam_section(target.material()), target.lattice()),
       stiffness_(middle_stiffness(beam_)),
-      first_facet_(facet_starts(target)) {
+      first_facet_(model::facet_starts(target)) {
   for (std::size_t i = 0; i < target.modules().size(); ++i) {
     places_.push_back(node_place(target, i));
   }

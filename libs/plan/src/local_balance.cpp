@@ -5,9 +5,9 @@
 #include <algorithm>
 
 #include "dense.hpp"
-#include "facet_starts.hpp"
 #include "holdfast/base/check.hpp"
 #include "holdfast/base/lattice.hpp"
+#include "holdfast/model/facet_starts.hpp"
 #include "holdfast/model/material.hpp"
 
 namespace holdfast::plan {
@@ -18,7 +18,9 @@ using base::Mat6;
 using base::Vec6;
 
 LocalBalance::LocalBalance(const model::Robot& target)
-    : target_(&target), first_facet_(facet_starts(target)), is_there_(target.modules().size()) {
+    : target_(&target),
+      first_facet_(model::facet_starts(target)),
+      is_there_(target.modules().size()) {
   const model::LatticeBeam<double> beam(model::beam_section(target.material()), target.lattice());
   for (const Direction direction : base::directions(target.lattice())) {
     block_12_[at(base::index(direction))] = beam.block_12(direction);

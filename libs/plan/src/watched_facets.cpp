@@ -14,16 +14,6 @@ namespace holdfast::plan {
 using base::at;
 using base::Direction;
 
-namespace {
-
-void add_times(base::Vec6<double>& sum, double factor, const base::Vec6<double>& term) {
-  for (std::size_t i = 0; i < 6; ++i) {
-    sum[i] += factor * term[i];
-  }
-}
-
-}  // namespace
-
 WatchedFacets::WatchedFacets(const model::Robot& target)
     : target_(&target),
       beam_(model::beam_section(target.material()), target.lattice()),
@@ -131,7 +121,7 @@ void WatchedFacets::find_rest(const std::vector<Vec>& u) {
   for (const model::Facet& facet : target_->facets()) {
     const std::size_t module = at(facet.module);
     if (there_.is_there(module)) {
-      add_times(rest_[module], -1, there_.facet_force(facet.direction, u[module]));
+      base::add_times(rest_[module], -1, there_.facet_force(facet.direction, u[module]));
     }
   }
 }
@@ -146,8 +136,8 @@ void WatchedFacets::pull(std::size_t module, Direction direction, std::size_t ot
   const double half = target_->material().pitch_mm / 2;
   const Vec to = {half * step[0], half * step[1], half * step[2], 0, 0, 0};
   const Vec back = {-to[0], -to[1], -to[2], 0, 0, 0};
-  add_times(rest_[module], -1, force_at(force, back));
-  add_times(rest_[other], 1, force_at(force, to));
+  base::add_times(rest_[module], -1, force_at(force, back));
+  base::add_times(rest_[other], 1, force_at(force, to));
 }
 
 }  // namespace holdfast::plan

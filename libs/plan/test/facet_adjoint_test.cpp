@@ -53,7 +53,7 @@ verdict::Assessment check(const model::RobotSpec& spec, const ElementSet& state)
 bool is_stuck(const verdict::Assessment& assessment) {
   return std::ranges::all_of(
       assessment.equilibrium.contact,
-      [](const mechanics::ContactState& contact) { return contact == mechanics::ContactState{}; });
+      [](const mechanics::ContactState& contact) { return contact == mechanics::kStuck; });
 }
 
 /// By module of the target.

@@ -291,7 +291,7 @@ int expect_safe_all_the_way(const OrderTask& task, const Order& order) {
       EXPECT_LE(is_clear ? ratio : exact_ratio(part), *judged.load_ratio_max) << i;
       EXPECT_TRUE(std::ranges::all_of(
           assessment.equilibrium.contact,
-          [](const mechanics::ContactState& state) { return state == mechanics::ContactState{}; }))
+          [](const mechanics::ContactState& state) { return state == mechanics::kStuck; }))
           << i;
     } else {
       EXPECT_NEAR(ratio, judged.load_ratio_max.value_or(0), 1e-4) << i;

@@ -177,10 +177,9 @@ Count grow(const Slender& robot, double strength) {
   for (std::size_t i = core_count; i < spec.existing.size(); ++i) {
     state.insert(static_cast<Element>(i));
     const verdict::Assessment whole = check();
-    const bool is_stuck =
-        std::ranges::all_of(whole.equilibrium.contact, [](const mechanics::ContactState& contact) {
-          return contact == mechanics::ContactState{};
-        });
+    const bool is_stuck = std::ranges::all_of(
+        whole.equilibrium.contact,
+        [](const mechanics::ContactState& contact) { return contact == mechanics::kStuck; });
     count.tilted += is_stuck ? 0 : 1;
     const auto ratio = is_certified ? bound.add(static_cast<Element>(i)) : std::nullopt;
     is_certified = ratio.has_value();

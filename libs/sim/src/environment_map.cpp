@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "holdfast/agent/feet.hpp"
+#include "holdfast/model/facet_starts.hpp"
 
 namespace holdfast::sim {
 namespace {
@@ -153,16 +154,12 @@ std::optional<SupportPlane> find_support_plane(const model::Robot& robot,
 EnvironmentMap::EnvironmentMap(const model::Robot& robot)
     : robot_(robot),
       modules_(robot.modules().size()),
-      first_facet_(robot.modules().size() + 1, 0),
+      first_facet_(model::facet_starts(robot)),
       mass_unit_kg_(find_mass_unit(robot)),
       beams_(model::beam_section(robot.material()), robot.lattice()) {
   for (std::size_t i = 0; i < robot.modules().size(); ++i) {
     modules_.insert(robot.modules()[i].cell, static_cast<std::int32_t>(i));
   }
-  for (const model::Facet& facet : robot.facets()) {
-    ++first_facet_[base::at(facet.module) + 1];
-  }
-  std::partial_sum(first_facet_.begin(), first_facet_.end(), first_facet_.begin());
   const auto [numerator, denominator] = foot_parts(robot, kCornerPartMax);
   environment_ = {.describe = describe,
                   .law = robot.has_default_connectors() ? nullptr : law,

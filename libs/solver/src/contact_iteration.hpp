@@ -43,9 +43,7 @@ class ContactIteration {
   host::Ranks* ranks() const { return options_.ranks(); }
 
   /// Of the robot's modules those that are not copies of other ranks'.
-  std::size_t own_count() const {
-    return options_.part == nullptr ? system_.robot().modules().size() : options_.part->own_count;
-  }
+  std::size_t own_count() const { return model::own_module_count(system_.robot(), options_.part); }
 
   /// Solves for the present states.
   Outcome solve();

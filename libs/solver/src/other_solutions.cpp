@@ -67,7 +67,7 @@ std::vector<std::size_t> RegularisedContact::doubtful_facets(const std::vector<V
   std::vector<Doubt> doubts;
   for (std::size_t i = 0; i < system().facets().size(); ++i) {
     const FacetState& facet = system().facets()[i];
-    const bool is_stuck = facet.state == mechanics::ContactState{};
+    const bool is_stuck = facet.state == mechanics::kStuck;
     const Vec force = system().law().trial_force(facet, facets[i]);
     const Doubt doubt = {.facet = i,
                          .rank = here,

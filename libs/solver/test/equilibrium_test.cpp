@@ -107,7 +107,7 @@ TEST(Equilibrium, of_a_free_column_settles_on_the_ground_too) {
       EXPECT_NEAR(result.displacement[static_cast<std::size_t>(i)][2], settlement,
                   -kEquilibriumTolerance * settlement);
     }
-    EXPECT_EQ(result.contact[0], ContactState{});
+    EXPECT_EQ(result.contact[0], mechanics::kStuck);
     EXPECT_EQ(result.contact.size(), 1U);
     EXPECT_NEAR(ground_forces(robot, result)[0][2], n * weight, kEquilibriumTolerance * weight);
     EXPECT_EQ(result.steps, 1);
@@ -175,7 +175,7 @@ TEST(Equilibrium, of_an_arm_on_one_foot_presses_what_the_weight_lies_over) {
         const Cell q = base::neighbour({}, direction);
         const ContactState tips = {.tilt_x = static_cast<std::int8_t>(-q.y),
                                    .tilt_y = static_cast<std::int8_t>(q.x)};
-        EXPECT_EQ(result.contact[0], reach == 1 ? ContactState{} : tips);
+        EXPECT_EQ(result.contact[0], reach == 1 ? mechanics::kStuck : tips);
         const double weight = model::module_weight_n(robot.material());
         const double torque = weight * 40 * reach * (reach + 1) / 2;
         const Vec6<double> expected = {0, 0, (reach + 2) * weight, q.y * torque, -q.x * torque, 0};

@@ -172,10 +172,7 @@ bool is_near_limit(const Assessment& assessment) {
 std::vector<solver::EquilibriumOptions> finer_options(const model::Robot& robot,
                                                       const solver::EquilibriumOptions& options) {
   std::vector<solver::EquilibriumOptions> list;
-  const std::size_t count = options.part == nullptr
-                                ? robot.modules().size()
-                                : host::total(options.ranks(), options.part->own_count);
-  const bool is_large = count > kPreciseCountMax;
+  const bool is_large = model::whole_module_count(robot, options.part) > kPreciseCountMax;
   if (options.method != solver::Method::kDirect) {
     solver::EquilibriumOptions multigrid = options;
     multigrid.method = solver::Method::kMultigrid;

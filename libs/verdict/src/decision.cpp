@@ -97,8 +97,7 @@ Reason breaking_reason(const Assessment& assessment) {
 
 void decide_stable(const model::Robot& robot, const model::RobotPart* part,
                    Assessment& assessment) {
-  const std::size_t count =
-      part == nullptr ? robot.modules().size() : host::total(part->ranks, part->own_count);
+  const std::size_t count = model::whole_module_count(robot, part);
   auto obstacle = find_obstacle(count, assessment.equilibrium);
   if (!obstacle) {
     obstacle = find_doubt(assessment);

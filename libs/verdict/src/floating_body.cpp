@@ -66,7 +66,7 @@ void add_corners(const std::array<double, 3>& centre, double half_width,
 
 FloatingBody body_of(const model::Robot& robot, const model::RobotPart* part) {
   host::Ranks* const ranks = model::ranks_of(part);
-  const std::size_t count = part == nullptr ? robot.modules().size() : part->own_count;
+  const std::size_t count = model::own_module_count(robot, part);
   FloatingBody body{.is_held = host::any(ranks, robot.fixed_count() > 0) ||
                                host::any(ranks, robot.has_bonded_facets()),
                     .is_flat = is_on_flat_floor(robot, part),

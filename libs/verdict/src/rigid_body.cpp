@@ -159,7 +159,7 @@ struct CubeSums {
 };
 
 CubeSums cube_sums(const model::Robot& robot, const model::RobotPart* part) {
-  const std::size_t count = part == nullptr ? robot.modules().size() : part->own_count;
+  const std::size_t count = model::own_module_count(robot, part);
   CubeSums mine{.count = static_cast<std::int64_t>(count)};
   for (const model::Module& module : robot.modules().first(count)) {
     mine.x += 2 * std::int64_t{module.cell.x};

@@ -119,7 +119,7 @@ bool holds_by_corners(const model::Robot& robot, std::span<const mechanics::Cont
   bool is_any_flat = false;
   for (std::size_t i = 0; !is_any_flat && i < facets.size(); ++i) {
     const mechanics::ContactState& state = contact[i];
-    is_any_flat = state == mechanics::ContactState{} && robot.foot_half_width_mm() > 0;
+    is_any_flat = state == mechanics::kStuck && robot.foot_half_width_mm() > 0;
     add_pressing_corners(facets[i], state, corners);
   }
   if (host::any(model::ranks_of(part), is_any_flat)) {

@@ -33,7 +33,7 @@ class Eliminator {
         team_(team),
         part_(part),
         axis_count_(at(robot.lattice().direction_count) / 2),
-        own_count_(part == nullptr ? robot.modules().size() : part->own_count),
+        own_count_(model::own_module_count(robot, part)),
         halo_(part == nullptr ? nullptr : part->ranks->make_halo(own_count_, part->copies)),
         degree_(robot.modules().size()) {
     result_.is_gone.assign(robot.modules().size(), 0);

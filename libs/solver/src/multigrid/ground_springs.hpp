@@ -42,7 +42,7 @@ using GroundTable = std::array<std::array<Mat, 1 + 2 * mechanics::ContactState::
 /// The number of a facet's state: 0 for one that is stuck, a beam like any
 /// other, else one for each state, held sideways or not.
 inline std::uint8_t contact_number(const mechanics::ContactState& state, bool is_held_sideways) {
-  const bool is_stuck = state == mechanics::ContactState{} && is_held_sideways;
+  const bool is_stuck = state == mechanics::kStuck && is_held_sideways;
   return static_cast<std::uint8_t>(is_stuck ? 0
                                             : 1 + 2 * state.code() + (is_held_sideways ? 1 : 0));
 }

@@ -144,9 +144,7 @@ bool Multigrid::set_precision(Precision precision) {
 /// Whether it is plain from the robot's shape that single precision will not do.
 bool Multigrid::is_too_slender() const {
   const double length = network_.extent;
-  const auto count = static_cast<double>(options_.part == nullptr
-                                             ? robot().modules().size()
-                                             : host::total(ranks(), options_.part->own_count));
+  const auto count = static_cast<double>(model::whole_module_count(robot(), options_.part));
   const double slenderness_squared = length * length * length / count;
   return network_.all_count > kTrivialCount &&
          std::numeric_limits<float>::epsilon() / 2 * slenderness_squared > kRoundingShare;

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <type_traits>
 
 /// Vectors of six and 6x6 matrices: displacement and force of one module, and one stiffness block.
 namespace holdfast::base {
@@ -55,6 +56,15 @@ template <class Real>
 constexpr void add_to(Mat6<Real>& sum, const Mat6<Real>& term) {
   for (std::size_t i = 0; i < 36; ++i) {
     sum.values[i] += term.values[i];
+  }
+}
+
+/// sum += factor term
+template <class Real>
+constexpr void add_times(Vec6<Real>& sum, std::type_identity_t<Real> factor,
+                         const Vec6<Real>& term) {
+  for (std::size_t i = 0; i < 6; ++i) {
+    sum[i] += factor * term[i];
   }
 }
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "holdfast/host/ranks.hpp"
+#include "holdfast/model/robot.hpp"
 
 namespace holdfast::model {
 
@@ -20,6 +21,16 @@ struct RobotPart {
 /// Those that a part is shared with; none where the robot is in one piece.
 inline host::Ranks* ranks_of(const RobotPart* part) {
   return part == nullptr ? nullptr : part->ranks;
+}
+
+/// How many of a robot's modules are this rank's own: all of them where it is in one piece.
+inline std::size_t own_module_count(const Robot& robot, const RobotPart* part) {
+  return part == nullptr ? robot.modules().size() : part->own_count;
+}
+
+/// How many modules the whole robot has, of all ranks.
+inline std::size_t whole_module_count(const Robot& robot, const RobotPart* part) {
+  return host::total(ranks_of(part), own_module_count(robot, part));
 }
 
 }  // namespace holdfast::model

@@ -61,7 +61,7 @@ struct EquilibriumOptions {
   ContactJournal* journal = nullptr;
 
   /// Who else has a part of the robot; null: nobody.
-  host::Ranks* ranks() const { return part == nullptr ? nullptr : part->ranks; }
+  host::Ranks* ranks() const { return model::ranks_of(part); }
 };
 
 /// The law of contact with the ground.

@@ -7,12 +7,12 @@
 
 #include "holdfast/model/robot.hpp"
 
-namespace holdfast::plan {
+namespace holdfast::model {
 
 /// Which facets a module has, as these go by modules: those from [module] to [module + 1].
-inline std::vector<std::size_t> facet_starts(const model::Robot& robot) {
+inline std::vector<std::size_t> facet_starts(const Robot& robot) {
   std::vector<std::size_t> starts(robot.modules().size() + 1);
-  for (const model::Facet& facet : robot.facets()) {
+  for (const Facet& facet : robot.facets()) {
     ++starts[base::at(facet.module) + 1];
   }
   for (std::size_t i = 0; i + 1 < starts.size(); ++i) {
@@ -21,4 +21,4 @@ inline std::vector<std::size_t> facet_starts(const model::Robot& robot) {
   return starts;
 }
 
-}  // namespace holdfast::plan
+}  // namespace holdfast::model
