@@ -161,6 +161,9 @@ def check_bad_input(program, repository, folder):
         (65, 'not safe', [cube, '--from', folder / 'arm.json']),
         (65, 'is taken by a module of the start',
          [balance, '--from', folder / 'foot.json', '--reach', 'surface', '--source', '0,0,0']),
+        (65, 'lies in an obstacle or below the floor',
+         [cube, '--reach', 'surface', '--source', '0,0,-1']),
+        (64, 'named for two files', ['-', '--from', '-']),
         (64, 'belong together', [balance, '--reach', 'surface']),
         (64, 'belong together', [balance, '--source', '0,0,0']),
         (64, 'expected is a cell', [balance, '--reach', 'surface', '--source', '1,2']),
@@ -177,6 +180,10 @@ def check_bad_input(program, repository, folder):
     (folder / 'arm.json').write_text(json.dumps(
         {**frame, 'modules': [[0, 0, 0], [0, 0, 1], [1, 0, 1], [2, 0, 1]]}))
     (folder / 'foot.json').write_text(json.dumps({**frame, 'modules': [[0, 0, 0]]}))
+    (folder / 'heavy.json').write_text(json.dumps(
+        {**frame, 'version': 2, 'modules': [{'cell': [0, 0, 0], 'mass_kg': 5, 'fixed': True}]}))
+    done = run(program, 'order', cube, '--from', folder / 'heavy.json')
+    expect('differs in what is fixed, masses\n' in done.stderr, f'start: {done.stderr}')
     for code, words, arguments in cases:
         done = run(program, 'order', *arguments)
         expect(done.returncode == code and words in done.stderr,

@@ -6,6 +6,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <system_error>
 #include <vector>
@@ -85,6 +86,9 @@ std::optional<std::string> find_clash(std::span<const std::string> inputs,
       entries.push_back(
           {output, identify(output.path, STDOUT_FILENO), is_standard_output(output.path)});
     }
+  }
+  if (std::ranges::count(inputs, "-") > 1) {
+    return "standard input is named for two files, and can be read for one";
   }
   for (std::size_t i = 0; i < entries.size(); ++i) {
     const auto& [output, file, is_standard] = entries[i];

@@ -17,8 +17,8 @@ struct Output {
 };
 
 /// What is wrong if an output is an input, or two outputs are one: by whatever spelling, link or
-/// further name, or because standard output goes there. Nothing if all is well. Of devices only
-/// standard output counts: /dev/null may be given twice.
+/// further name, or because standard output goes there; or if standard input is named twice.
+/// Nothing if all is well. Of devices only standard output counts: /dev/null may be given twice.
 std::optional<std::string> find_clash(std::span<const std::string> inputs,
                                       std::initializer_list<Output> outputs);
 

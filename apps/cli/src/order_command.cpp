@@ -5,6 +5,7 @@
 #include <array>
 #include <charconv>
 #include <memory>
+#include <string_view>
 
 #include "commands.hpp"
 #include "file_clash.hpp"
@@ -51,6 +52,18 @@ std::optional<base::Cell> cell_of(const std::string& text) {
   return base::Cell{triple[0], triple[1], triple[2]};
 }
 
+/// What a start says that the target says otherwise.
+std::vector<std::string_view> differences(const model::RobotSpec& start,
+                                          const model::RobotSpec& target) {
+  std::vector<std::string_view> names = plan::differences_of_surroundings(start, target);
+  if (model::Robot::create(start, 1) && model::Robot::create(target, 1)) {
+    const auto more =
+        plan::differences_of_modules(plan::RobotState(start), plan::RobotState(target));
+    names.insert(names.end(), more.begin(), more.end());
+  }
+  return names;
+}
+
 /// All cells of a document that is to be the start.
 base::Result<std::vector<base::Cell>> start_cells(const OrderArguments& options,
                                                   const model::RobotSpec& target) {
@@ -75,9 +88,10 @@ base::Result<std::vector<base::Cell>> start_cells(const OrderArguments& options,
   if (start.value().lattice != target.lattice) {
     return base::Error{base::ErrorCode::kBadInput, "its lattice is not that of the target", {}};
   }
-  const std::string_view other = plan::difference_of_surroundings(start.value(), target);
-  if (!other.empty()) {
-    print_notes({{fmt::format("only its modules are taken; {} is the target's", other)}},
+  if (const auto other = differences(start.value(), target); !other.empty()) {
+    print_notes({{fmt::format("only its cells are taken, all else is the target's, which differs "
+                              "in {}",
+                              fmt::join(other, ", "))}},
                 options.start);
   }
   std::vector<base::Cell> cells;

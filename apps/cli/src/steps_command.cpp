@@ -78,10 +78,12 @@ int run_certificate(const StepsArguments& options) {
     return fail(check.error(), options.file);
   }
   if (!options.is_quiet) {
-    fmt::print(
-        "PROVED      there is no safe order: {} replayed, and {} just beyond, none of which is "
-        "safe\n",
-        host::counted(check.value().state_count, "state"), check.value().blocked_count);
+    const std::size_t blocked_count = check.value().blocked_count;
+    fmt::print("PROVED      there is no safe order: {} replayed, and {}\n",
+               host::counted(check.value().state_count, "state"),
+               blocked_count == 0
+                   ? "no step leads any further"
+                   : fmt::format("{} just beyond, none of which is safe", blocked_count));
   }
   return kExitSafe;
 }

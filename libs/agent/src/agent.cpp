@@ -266,7 +266,7 @@ bool Agent::expects(Direction face, std::span<const std::uint8_t> message) const
       return ws_.tree.expects_echo(face) || welcomed_.has(face);
     case MessageType::kNews:
       return ws_.setup.keeps_answers && ws_.tree.wave() == SpanningTree::Wave::kTree &&
-             (ws_.tree.children().has(face) || is_newcomer());
+             (ws_.tree.children().has(face) || welcoming_.has(face));
     case MessageType::kAppoint:
       return ws_.tree.expects_appointment(face, message, sweep_.has_begun());
     case MessageType::kMark:
@@ -290,7 +290,7 @@ void Agent::take_expected(Direction face, std::span<const std::uint8_t> message)
     case MessageType::kNews:
       return kKeepsAnswers ? take_news(face, decoded<News>(message)) : void();
     case MessageType::kVector:
-      return kKeepsAnswers && is_newcomer()
+      return kKeepsAnswers && welcoming_.has(face)
                  ? take_motion(face, decoded<LabelledVector>(message).vector)
                  : sweep_.take(ws_, face, message);
     case MessageType::kAppoint:
@@ -456,6 +456,7 @@ void Agent::abandon_work() {
   has_next_order_ = false;
   is_withdrawn_ = false;
   welcomed_ = {};
+  welcoming_ = {};
 }
 
 void Agent::start_round(Stage stage) {

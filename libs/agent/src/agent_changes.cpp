@@ -137,6 +137,7 @@ bool Agent::take_adoption(Direction face, const Adoption& adoption) {
     return true;
   }
   if (is_ours) {
+    welcoming_.add(face);
     ws_.own_load_ratio = larger(ws_.own_load_ratio, adoption.load_ratio);
     ws_.tree.take_adoption(ws_.links, face, adoption);
     return true;
@@ -148,6 +149,7 @@ bool Agent::take_adoption(Direction face, const Adoption& adoption) {
     leave_round();  // It has a past, or stands apart from what was planned.
     return true;
   }
+  welcoming_.add(face);
   sweep_.adopt(ws_);
   watch_.set_wave_time(adoption.wave_time);
   ws_.own_load_ratio = adoption.load_ratio;
@@ -155,8 +157,10 @@ bool Agent::take_adoption(Direction face, const Adoption& adoption) {
   return true;
 }
 
-/// The parent tells a newcomer how it moves.
+/// The last of what welcome() sends; the parent's counts. Others' may come when this module has had
+/// its place for long, and is no vector of an exchange then either.
 void Agent::take_motion(Direction face, const base::Vec6<float>& motion) {
+  welcoming_.remove(face);
   if (ws_.tree.parent().has(face)) {
     ws_.node(0).u = base::converted<double>(motion);
   }

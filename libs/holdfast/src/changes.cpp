@@ -30,11 +30,12 @@ void follow(const Change& change, const Modules& modules, io::Step& step) {
 base::Result<ChangedStructure> with_changes(const Structure& structure,
                                             std::vector<Change> changes) {
   if (const auto beyond = model::find_beyond_paper(structure.robot)) {
-    return base::Error{.code = base::ErrorCode::kUnsupported,
-                       .message = fmt::format("the robot has {}, and the modules' program knows "
-                                              "cubes on a floor only",
-                                              *beyond),
-                       .where = {}};
+    return base::Error{
+        .code = base::ErrorCode::kUnsupported,
+        .message = fmt::format("the robot has {}, and changes on the way are simulated "
+                               "of cubes on a floor only",
+                               *beyond),
+        .where = {}};
   }
   io::Document document = structure.document;
   document.extension.own.clear();  // Says nothing, or the robot would be beyond the paper.

@@ -73,6 +73,19 @@ bool is_other_law(const verdict::Assessment& exact, const sim::SimulationResult&
          result.effort.is_unilateral != is_unilateral;
 }
 
+/// Whether a module that is told what is planned is taken off.
+bool are_plans_lost(const model::Robot& robot, const sim::SimulationOptions& options) {
+  const auto is_told = [&](std::int32_t module) {
+    return (options.tells_planned && robot.planned_count() > 0 && module == options.plan_module) ||
+           std::ranges::any_of(options.announcements, [&](const sim::Announcement& announcement) {
+             return announcement.module == module && !announcement.is_withdrawal;
+           });
+  };
+  return std::ranges::any_of(options.faults, [&](const sim::Fault& fault) {
+    return fault.kind == sim::Fault::Kind::kDetach && is_told(fault.module);
+  });
+}
+
 std::vector<std::string> notes_on(const model::Robot& robot, const sim::SimulationOptions& options,
                                   const verdict::Assessment& exact,
                                   const sim::SimulationResult& result) {
@@ -84,6 +97,11 @@ std::vector<std::string> notes_on(const model::Robot& robot, const sim::Simulati
     notes.emplace_back(
         "the exact answer is for the robot with the modules that were taken off, its own without "
         "them");
+  }
+  if (are_plans_lost(robot, options)) {
+    notes.emplace_back(
+        "the module that was told what is planned was taken off, and its plans with it: the robot "
+        "answers without them until they are told again");
   }
   if (robot.lattice() != base::kCubic && options.link.ticks_per_second > 0) {
     notes.emplace_back(

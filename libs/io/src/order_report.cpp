@@ -99,13 +99,17 @@ std::string none_words(const OrderReport& report) {
                        is_growing ? "no start" : "the target itself",
                        verdict::name(closure.blocked.front().second.verdict));
   }
-  return fmt::format(
-      "  proof       {} can be reached from {}, and {} that one step more leads to {} not safe\n",
-      host::counted(closure.states.size(), "safe state"),
-      is_growing ? "the start" : "the target, backwards,",
-      closure.blocked.size() == 1 ? "the only state"
-                                  : fmt::format("all {} states", closure.blocked.size()),
-      closure.blocked.size() == 1 ? "is" : "are");
+  const std::string reached = fmt::format("  proof       {} can be reached from {}, and ",
+                                          host::counted(closure.states.size(), "safe state"),
+                                          is_growing ? "the start" : "the target, backwards,");
+  if (closure.blocked.empty()) {
+    return reached + "no step leads any further\n";
+  }
+  return fmt::format("{}{} that one step more leads to {} not safe\n", reached,
+                     closure.blocked.size() == 1
+                         ? "the only state"
+                         : fmt::format("all {} states", closure.blocked.size()),
+                     closure.blocked.size() == 1 ? "is" : "are");
 }
 
 }  // namespace

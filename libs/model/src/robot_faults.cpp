@@ -249,9 +249,9 @@ std::optional<std::string> find_connection_fault(const Connections& connections,
   }
   if (loose_count > 0) {
     return fmt::format(
-        "the robot is not connected: {} of {} modules, {} among them, share no "
-        "chain of faces with {}",
-        loose_count, existing_count, text(modules[loose].cell), text(modules[0].cell));
+        "the robot is not connected: {} of {} modules, {}{} no chain of faces with {}", loose_count,
+        existing_count, text(modules[loose].cell),
+        loose_count == 1 ? ", shares" : " among them, share", text(modules[0].cell));
   }
   for (const Connection& pair : connections) {
     if (pair.a >= first_planned || pair.b >= first_planned) {

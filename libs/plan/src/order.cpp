@@ -125,6 +125,11 @@ std::optional<base::Error> find_source_fault(const OrderTask& task) {
     return base::bad_input(fmt::format("the source {} is taken by a module of the start",
                                        model::text(*task.rule.source)));
   }
+  if (is_surface && !ReachFinder(task.target, task.rule).has_room(*task.rule.source)) {
+    return base::bad_input(fmt::format(
+        "the source {} lies in an obstacle or below the floor: nothing comes from there",
+        model::text(*task.rule.source)));
+  }
   if (is_surface && task.target.existing.size() > 1 && !touches_target(task, *task.rule.source)) {
     return base::bad_input(
         fmt::format("the source {} touches no module of the target: nothing that comes "

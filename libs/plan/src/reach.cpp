@@ -63,9 +63,13 @@ bool ReachFinder::is_module(const ElementSet& state, const Cell& cell) const {
   return found != model::CellIndex::kNone && state.contains(found);
 }
 
-bool ReachFinder::is_free(const ElementSet& state, const Cell& cell) const {
-  return !is_module(state, cell) && (!floor_z_ || cell.z >= *floor_z_) &&
+bool ReachFinder::has_room(const Cell& cell) const {
+  return (!floor_z_ || cell.z >= *floor_z_) &&
          (obstacles_.empty() || obstacle_index_.find(cell) == model::CellIndex::kNone);
+}
+
+bool ReachFinder::is_free(const ElementSet& state, const Cell& cell) const {
+  return !is_module(state, cell) && has_room(cell);
 }
 
 bool ReachFinder::is_beside(const ElementSet& state, const Cell& cell) const {

@@ -3,6 +3,7 @@
 #include "holdfast/plan/robot_state.hpp"
 
 #include <algorithm>
+#include <initializer_list>
 #include <numeric>
 #include <utility>
 
@@ -25,6 +26,18 @@ model::RobotSpec surroundings_of(const model::RobotSpec& spec) {
 
 bool are_same(const model::ModuleKind& a, const model::ModuleKind& b) {
   return a.mass_kg == b.mass_kg && a.connectors == b.connectors;
+}
+
+/// The names of what is not alike.
+std::vector<std::string_view> named(
+    std::initializer_list<std::pair<bool, std::string_view>> comparisons) {
+  std::vector<std::string_view> names;
+  for (const auto& [is_alike, name] : comparisons) {
+    if (!is_alike) {
+      names.push_back(name);
+    }
+  }
+  return names;
 }
 
 }  // namespace
@@ -204,16 +217,53 @@ model::RobotSpec RobotState::spec() const {
   return spec(all);
 }
 
-std::string_view difference_of_surroundings(const model::RobotSpec& a, const model::RobotSpec& b) {
-  return a.lattice != b.lattice                            ? "lattice"
-         : a.material != b.material                        ? "material"
-         : a.support_z != b.support_z                      ? "support_z"
-         : a.floor != b.floor                              ? "floor"
-         : a.obstacles != b.obstacles                      ? "obstacles"
-         : a.gravity_m_s2 != b.gravity_m_s2                ? "gravity_m_s2"
-         : a.foot_mm != b.foot_mm                          ? "foot_mm"
-         : !std::ranges::equal(a.kinds, b.kinds, are_same) ? "kinds or connectors"
-                                                           : "";
+std::vector<std::string_view> differences_of_surroundings(const model::RobotSpec& a,
+                                                          const model::RobotSpec& b) {
+  model::Material material = a.material;
+  material.gravity_m_s2 = b.material.gravity_m_s2;
+  const bool pulls_alike =
+      a.material.gravity_m_s2 == b.material.gravity_m_s2 && a.gravity_m_s2 == b.gravity_m_s2;
+  return named({{a.lattice == b.lattice, "lattice"},
+                {material == b.material, "material"},
+                {a.support_z == b.support_z, "support_z"},
+                {a.floor == b.floor, "floor"},
+                {a.obstacles == b.obstacles, "obstacles"},
+                {pulls_alike, "gravity_m_s2"},
+                {a.foot_mm == b.foot_mm, "foot_mm"},
+                {std::ranges::equal(a.kinds, b.kinds, are_same), "kinds or connectors"}});
+}
+
+std::vector<std::string_view> differences_of_modules(const RobotState& a, const RobotState& b) {
+  bool is_fixed_alike = true;
+  bool is_kind_alike = true;
+  bool is_mass_alike = true;
+  bool is_load_alike = true;
+  bool is_connected_alike = true;
+  for (std::size_t i = 0; i < a.modules().size(); ++i) {
+    const ModuleState& one = a.modules()[i];
+    const std::int32_t index = one.is_there ? b.find(one.cell) : RobotState::kNone;
+    if (index == RobotState::kNone) {
+      continue;
+    }
+    const ModuleState& other = b.module(index);
+    is_fixed_alike = is_fixed_alike && one.is_fixed == other.is_fixed;
+    is_kind_alike = is_kind_alike && one.kind == other.kind;
+    is_mass_alike = is_mass_alike && a.mass_kg(static_cast<std::int32_t>(i)) == b.mass_kg(index);
+    is_load_alike = is_load_alike && one.payload == other.payload;
+    for (const base::Direction direction : base::directions(a.lattice())) {
+      const Cell beside = base::neighbour(a.lattice(), one.cell, direction);
+      const bool are_both =
+          a.find(beside) != RobotState::kNone && b.find(beside) != RobotState::kNone;
+      is_connected_alike =
+          is_connected_alike &&
+          (!are_both || a.are_connected(one.cell, beside) == b.are_connected(one.cell, beside));
+    }
+  }
+  return named({{is_fixed_alike, "what is fixed"},
+                {is_kind_alike, "kinds"},
+                {is_mass_alike, "masses"},
+                {is_load_alike, "loads"},
+                {is_connected_alike, "connections"}});
 }
 
 }  // namespace holdfast::plan

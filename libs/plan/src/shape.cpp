@@ -61,12 +61,12 @@ base::Error bad_pair(std::string message) {
 
 std::optional<base::Error> find_fault(const RobotState& start, const RobotState& target,
                                       const Classes& from, const Classes& to) {
-  const std::string_view different =
-      difference_of_surroundings(start.surroundings(), target.surroundings());
+  const std::vector<std::string_view> different =
+      differences_of_surroundings(start.surroundings(), target.surroundings());
   if (!different.empty()) {
     return bad_pair(
-        fmt::format("{} of both robots differ; allowed are two shapes of one robot where it stands",
-                    different));
+        fmt::format("both robots differ in {}; allowed are two shapes of one robot where it stands",
+                    fmt::join(different, ", ")));
   }
   if (start.module_count() != target.module_count()) {
     return bad_pair(fmt::format(

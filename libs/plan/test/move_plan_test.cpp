@@ -176,7 +176,7 @@ TEST(MovePlan, refuses_what_is_no_pair_of_shapes_of_one_robot) {
   MoveTask task = task_of(row, row);
   task.target.material.mass_kg = 1;
   EXPECT_EQ(fault_of(task),
-            "material of both robots differ; allowed are two shapes of one robot where it stands");
+            "both robots differ in material; allowed are two shapes of one robot where it stands");
   task = task_of(row, row);
   task.start.fixed = {{0, 0, 0}};
   EXPECT_EQ(fault_of(task),

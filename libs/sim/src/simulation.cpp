@@ -109,8 +109,10 @@ std::optional<std::string> find_options_fault(const model::Robot& robot,
       const auto& neighbours = robot.neighbours()[static_cast<std::size_t>(fault.module)];
       const std::int32_t other = neighbours[static_cast<std::size_t>(base::index(fault.face))];
       if (other < 0 || static_cast<std::size_t>(other) >= count) {
-        found = fmt::format("module {} has no link to {} at face {}", fault.module,
-                            name(fault.kind), base::index(fault.face));
+        found =
+            fmt::format("the module {} has no neighbour at face {}, so there is no link to {}",
+                        model::text(robot.modules()[static_cast<std::size_t>(fault.module)].cell),
+                        base::index(fault.face), name(fault.kind));
       }
     }
   }

@@ -88,6 +88,30 @@ TEST(Fault, of_a_module_put_on_leads_to_the_verdict_with_it) {
   }
 }
 
+/// It closes a ring, so two neighbours welcome it; what one of them says of plans and of how it
+/// moves may be sent again and come when it has had its place below the other for long.
+TEST(Fault, of_a_module_put_on_between_two_is_survived_by_lossy_links) {
+  for (const std::vector<base::Cell>& planned :
+       {std::vector<base::Cell>{}, {{2, 0, 0}, {2, 0, 1}}}) {
+    const model::Robot robot =
+        make_robot({.existing = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}, .planned = planned});
+    LinkModel link = blinky_blocks_v1();
+    link.loss = 0.15;
+    for (std::uint64_t seed = 1; seed <= 24; ++seed) {
+      Simulation simulation(robot,
+                            {.link = link,
+                             .seed = seed,
+                             .faults = {{.kind = Kind::kAttach, .at = 100'000'000, .module = 3}}});
+      simulation.run();
+      SCOPED_TRACE(::testing::Message() << "seed " << seed << ", planned " << planned.size());
+      expect_verdict(simulation, agent::Verdict::kSafe);
+      for (std::int32_t i = 0; i < simulation.agent_count(); ++i) {
+        EXPECT_EQ(simulation.agent(i).refused_count(), 0) << "module " << i;
+      }
+    }
+  }
+}
+
 TEST(Fault, list_may_take_a_module_off_and_put_it_on_again) {
   const model::Robot robot = make_robot(cube(2));
   for (const Time gap : {Time{1}, Time{20}, Time{2000}}) {

@@ -212,8 +212,6 @@ class Agent {
   // After a verdict: what has changed is told to the root, and all else stands (agent_changes.cpp).
   bool can_keep() const;
 
-  bool is_newcomer() const { return is_withdrawn_ && !sweep_.has_answered(); }
-
   void change(const News& news);
   void withdraw();
   void tell(const News& news);
@@ -250,6 +248,7 @@ class Agent {
   bool has_next_order_ = false;  ///< An order of the root, or one that has to wait.
   bool is_withdrawn_ = false;    ///< Something has changed, and the kRenew is still to come.
   Faces welcomed_;               ///< A neighbour that has come, and not taken its place yet.
+  Faces welcoming_;              ///< Of a newcomer: who have yet to say how it moves.
   Clock clock_;
   Rounds rounds_;
   Watch watch_;

@@ -49,7 +49,10 @@ class ReachFinder {
   /// every cell can be reached: nothing is in the way, and nothing there to go along.
   bool can_reach(const ElementSet& state, const base::Cell& cell) const;
 
-  /// The same for many cells at once.
+  /// Whether floor and obstacles leave `cell` to a module.
+  bool has_room(const base::Cell& cell) const;
+
+  /// The same as can_reach() for many cells at once.
   std::vector<bool> can_reach_each(const ElementSet& state,
                                    const std::vector<base::Cell>& cells) const;
 

@@ -127,9 +127,12 @@ class RobotState {
   std::set<model::CellPair> released_;
 };
 
-/// What differs between two robots besides their modules, as holdfast JSON names it; empty if
-/// nothing does.
-std::string_view difference_of_surroundings(const model::RobotSpec& a, const model::RobotSpec& b);
+/// What differs between two robots besides their modules, as holdfast JSON names it.
+std::vector<std::string_view> differences_of_surroundings(const model::RobotSpec& a,
+                                                          const model::RobotSpec& b);
+
+/// In what those modules differ that both robots have in the same cells.
+std::vector<std::string_view> differences_of_modules(const RobotState& a, const RobotState& b);
 
 /// A pair of cells in ascending order.
 model::CellPair ordered(const model::CellPair& pair);
