@@ -212,7 +212,7 @@ cmp -s wall_back.json wall_again.json || fault "conversion to XML and back chang
 printf '%s' '{"format": "holdfast-structure", "version": 2, "modules": [[0,0,0]],' \
   '"steps": [{"attach": [[1,0,0]]}]}' >plan.json
 expect_exit 0 check plan.json
-expect_line err 'plan.json: note: 1 step is read; the robot before them is judged'
+expect_line err 'plan.json: note: 1 step is read; the robot before it is judged'
 printf '%s' '{"format": "holdfast-structure", "version": 2, "modules": [[0,0,0]],' \
   '"obstacles": [{"from": [-1000,0,2], "to": [1000,100,2]}]}' >ceiling.json
 expect_exit 0 convert ceiling.json ceiling.xml

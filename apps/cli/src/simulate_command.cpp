@@ -392,13 +392,13 @@ Command add_simulate(CLI::App& app) {
       ->type_name("FILE");
   add_quiet(*command, options->is_quiet);
   command->footer(
-      "The exact answer stands beside the robot's own: with --plan, --withdraw and --attach that "
-      "for\n"
-      "the robot and what is planned in the end. With --steps it stands there for every step, and\n"
-      "beside what the robot takes from what it keeps what it takes from nothing; with --stages "
-      "it\n"
-      "stands there for every stage, and the exit code is that of the first unsafe one.\n"
-      "With --next the exit code is that of holdfast next, by what the robot says.\n"
+      "The exact answer stands beside the robot's own: with --plan, --withdraw and --attach, "
+      "which\n"
+      "are for cubes on a floor, that for the robot and what is planned in the end. With --steps\n"
+      "it stands there for every step, and beside what the robot takes from what it keeps what it\n"
+      "takes from nothing; with --stages it stands there for every stage, and the exit code is\n"
+      "that of the first unsafe one. With --next it is that of holdfast next, by what the robot\n"
+      "says.\n"
       "Exit, by the robot's verdict: 0 safe, 1 overload or unstable, 2 undecided, 64 wrong usage,\n"
       "65 bad input or not writable, 70 out of memory.");
   return {command, [options] { return SimulateRun(*options).run(); }};
