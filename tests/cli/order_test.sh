@@ -28,11 +28,13 @@ structure other.json '"modules": [[0,0,0]], "support_z": -1, "oops": 1'
 structure planned.json '"modules": [[0,0,0]], "planned": [[0,0,1]]'
 expect_exit 0 order tower.json --from other.json
 expect_line err "other.json: note: /oops: the key 'oops' is unknown"
-expect_line err "only its cells are taken, all else is the target's, which differs in support_z"
+expect_line err "other.json: note: only its cells are taken, all else is the target's, "\
+"which differs in support_z"
 printf '{"format": "holdfast-structure", "version": 2, %s}' \
   '"modules": [[0,0,0]], "floor": {"friction": 0.5}' >smooth.json
 expect_exit 0 order tower.json --from smooth.json
-expect_line err "only its cells are taken, all else is the target's, which differs in floor"
+expect_line err "smooth.json: note: only its cells are taken, all else is the target's, "\
+"which differs in floor"
 expect_exit 65 order tower.json --from planned.json
 expect_line err 'planned.json: it has planned modules or steps'
 

@@ -120,17 +120,20 @@ std::optional<base::Error> find_source_fault(const OrderTask& task) {
                                ? "along the surface modules come from a source: give its cell"
                                : "a source is for ways along the surface only");
   }
+  if (!is_surface) {
+    return std::nullopt;
+  }
   const std::vector<Cell>& start = task.start.empty() ? task.target.fixed : task.start;
-  if (is_surface && std::ranges::find(start, *task.rule.source) != start.end()) {
+  if (std::ranges::find(start, *task.rule.source) != start.end()) {
     return base::bad_input(fmt::format("the source {} is taken by a module of the start",
                                        model::text(*task.rule.source)));
   }
-  if (is_surface && !ReachFinder(task.target, task.rule).has_room(*task.rule.source)) {
+  if (!ReachFinder(task.target, task.rule).has_room(*task.rule.source)) {
     return base::bad_input(fmt::format(
         "the source {} lies in an obstacle or below the floor: nothing comes from there",
         model::text(*task.rule.source)));
   }
-  if (is_surface && task.target.existing.size() > 1 && !touches_target(task, *task.rule.source)) {
+  if (task.target.existing.size() > 1 && !touches_target(task, *task.rule.source)) {
     return base::bad_input(
         fmt::format("the source {} touches no module of the target: nothing that comes "
                     "from there gets to the robot",

@@ -62,9 +62,6 @@ class Sweep {
   /// Has the root given an order in this round?
   bool has_begun() const { return course_ != Course::kWaves; }
 
-  /// Was the root's last order its verdict?
-  bool has_answered() const { return course_ == Course::kAnswered; }
-
   /// Does work go on behind the last report that must end before another order is begun?
   bool is_busy(const Workspace& ws) const;
 
