@@ -40,8 +40,8 @@ std::vector<Six<Real>> random_vector(base::Rng& rng) {
 template <class Real>
 Block<Real> random_block(base::Rng& rng) {
   Block<Real> block;
-  for (auto& column : block.column) {
-    fill(rng, column);
+  for (int column = 0; column < 6; ++column) {
+    fill(rng, block.column(column));
   }
   return block;
 }

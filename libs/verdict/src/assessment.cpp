@@ -90,15 +90,9 @@ bool falls_by_other_states(const model::Robot& robot, solver::EquilibriumSolver&
 }
 
 /// The paper's contact law first; the exact one where it has no answer or one that contradicts the
-/// rigid body, which is certain on flat ground, and beside it where the paper's has several.
-void find_equilibrium(const model::Robot& robot, const solver::EquilibriumOptions& options,
-                      Assessment& assessment) {
-  if (!assessment.is_stable && (robot.modules().size() > kTopplingCountMax ||
-                                options.method == solver::Method::kMultigrid)) {
-    assessment.equilibrium.outcome = Outcome::kNotSought;
-    return;
-  }
-  solver::EquilibriumSolver solver(robot, options);
+/// rigid body, which is certain on flat ground.
+void find_equilibrium(const model::Robot& robot, solver::EquilibriumSolver& solver,
+                      const solver::EquilibriumOptions& options, Assessment& assessment) {
   assessment.equilibrium =
       solver.solve({.law = ContactLaw::kRegularised, .gamma = robot.material().contact_gamma});
   assessment.model = model_stability(robot, assessment.equilibrium, options.part);
@@ -111,23 +105,10 @@ void find_equilibrium(const model::Robot& robot, const solver::EquilibriumOption
     assessment.contact_model = ContactModel::kBonded;
     return;
   }
-  const bool is_settled = agrees(assessment);
-  if (is_settled && !assessment.is_stable) {
+  if (agrees(assessment)) {
     return;
   }
-  if (is_settled) {
-    solver.seek_others(assessment.equilibrium);
-    if (assessment.equilibrium.others.empty() &&
-        !has_pulling_facets(robot, assessment, options.part)) {
-      return;
-    }
-  }
-  const std::span<const double> gammas = weak_springs(solver, assessment.is_stable);
-  if (is_settled) {
-    compare_solutions(robot, solver, gammas.front(), options, assessment);
-    return;
-  }
-  for (const double gamma : gammas) {
+  for (const double gamma : weak_springs(solver, assessment.is_stable)) {
     if (agrees(assessment)) {
       break;
     }
@@ -140,11 +121,50 @@ void find_equilibrium(const model::Robot& robot, const solver::EquilibriumOption
   assessment.model.falls_otherwise = falls_by_other_states(robot, solver, options.part, assessment);
 }
 
-/// Loads, verdict and reasons, once there is an equilibrium.
+/// Whether the equilibrium is one of the paper's law that stands.
+bool stands_by_paper(const Assessment& assessment) {
+  return assessment.contact_model == ContactModel::kRegularised && assessment.is_stable &&
+         agrees(assessment);
+}
+
+/// The paper's law's further solutions, and the exact law's beside them where there are any, or
+/// where open facets may pull. `answers` are those of the equilibrium.
+void seek_others(const model::Robot& robot, solver::EquilibriumSolver& solver,
+                 const solver::EquilibriumOptions& options, const LoadRange& answers,
+                 Assessment& assessment) {
+  solver.seek_others(assessment.equilibrium);
+  if (!assessment.equilibrium.others.empty() ||
+      has_pulling_facets(robot, assessment, options.part)) {
+    const double gamma = weak_springs(solver, assessment.is_stable).front();
+    compare_solutions(robot, solver, gamma, options, answers, assessment);
+  }
+}
+
+/// The equilibrium, its loads, and what there is beside it. Loads come before others are sought, as
+/// then the second answer need not wait.
+void solve(const model::Robot& robot, const solver::EquilibriumOptions& options,
+           Assessment& assessment) {
+  if (!assessment.is_stable && (robot.modules().size() > kTopplingCountMax ||
+                                options.method == solver::Method::kMultigrid)) {
+    assessment.equilibrium.outcome = Outcome::kNotSought;
+    return;
+  }
+  solver::EquilibriumSolver solver(robot, options);
+  find_equilibrium(robot, solver, options, assessment);
+  if (assessment.equilibrium.outcome != Outcome::kSettled) {
+    return;
+  }
+  const LoadRange answers = assess_loads(robot, options, assessment);
+  if (stands_by_paper(assessment)) {
+    seek_others(robot, solver, options, answers, assessment);
+  }
+}
+
+/// Connections, verdict and reasons, once there are an equilibrium and its loads.
 Assessment conclude(const model::Robot& robot, Assessment assessment,
                     const solver::EquilibriumOptions& options) {
   if (assessment.equilibrium.outcome == Outcome::kSettled) {
-    assess_connections(robot, options, assessment);
+    assess_connections(robot, options.thread_count, assessment);
     assessment.gaps = find_open_gaps(robot, assessment.equilibrium, options.ranks());
   }
   decide(robot, options.part, assessment);
@@ -154,7 +174,7 @@ Assessment conclude(const model::Robot& robot, Assessment assessment,
 Assessment assess_once(const model::Robot& robot, const solver::EquilibriumOptions& options) {
   Assessment assessment = assess_rigidly(robot, options.part, options.has_rigid_figures);
   assessment.is_stable = assessment.is_stable || options.is_bonded;
-  find_equilibrium(robot, options, assessment);
+  solve(robot, options, assessment);
   return conclude(robot, std::move(assessment), options);
 }
 
@@ -235,7 +255,7 @@ Assessment assess(const model::Robot& robot, const solver::EquilibriumOptions& o
     assessment = std::move(next);
   }
   if (assessment.equilibrium.outcome == Outcome::kSettled && assessment.connections.empty()) {
-    assess_connections_again(robot, options.thread_count, assessment);
+    assess_connections(robot, options.thread_count, assessment);
   }
   return assessment;
 }
@@ -246,7 +266,11 @@ Assessment assess_equilibrium(const model::Robot& robot, Equilibrium equilibrium
   assessment.equilibrium = std::move(equilibrium);
   assessment.model = model_stability(robot, assessment.equilibrium, nullptr);
   assessment.contact_model = contact_model(robot, assessment.equilibrium.law, nullptr);
-  return conclude(robot, std::move(assessment), {.thread_count = thread_count});
+  const solver::EquilibriumOptions options = {.thread_count = thread_count};
+  if (assessment.equilibrium.outcome == Outcome::kSettled) {
+    assess_loads(robot, options, assessment);
+  }
+  return conclude(robot, std::move(assessment), options);
 }
 
 const char* name(Verdict verdict) {

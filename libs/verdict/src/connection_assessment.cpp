@@ -31,6 +31,7 @@ struct Loads {
   LoadRange range = {.low = -std::numeric_limits<double>::infinity(),
                      .high = -std::numeric_limits<double>::infinity()};
   double ratio_max = -std::numeric_limits<double>::infinity();
+  double other_max = -std::numeric_limits<double>::infinity();  ///< Of the second answer.
   double change = 0;  ///< The most by which the two answers differ, of any connection.
   std::size_t worst = 0;
   std::vector<std::size_t> broken;
@@ -40,6 +41,7 @@ struct Loads {
     const double high = ratio < other_ratio ? other_ratio : ratio;
     range = {.low = max_or_nan(range.low, low), .high = max_or_nan(range.high, high)};
     change = high - low > change ? high - low : change;
+    other_max = other_ratio > other_max ? other_ratio : other_max;
     if (ratio > ratio_max) {
       ratio_max = ratio;
       worst = connection;
@@ -53,6 +55,7 @@ struct Loads {
     range = {.low = max_or_nan(range.low, next.range.low),
              .high = max_or_nan(range.high, next.range.high)};
     change = std::max(change, next.change);
+    other_max = std::max(other_max, next.other_max);
     if (next.ratio_max > ratio_max) {
       ratio_max = next.ratio_max;
       worst = next.worst;
@@ -127,6 +130,7 @@ void add_results(const model::Robot& robot, host::Team& team, Assessment& assess
 struct RankLoads {
   LoadRange range;
   double ratio_max = 0;
+  double other_max = 0;
   double change = 0;
   std::size_t worst = 0;
   std::array<base::Cell, 2> worst_ends = {};
@@ -140,6 +144,7 @@ WholeLoads add_ranks(const model::Robot& robot, host::Ranks& ranks, Loads& loads
   const RankLoads mine = {
       .range = loads.range,
       .ratio_max = loads.ratio_max,
+      .other_max = loads.other_max,
       .change = loads.change,
       .worst = loads.worst,
       .worst_ends = count > 0 ? model::ends(robot, loads.worst) : std::array<base::Cell, 2>{},
@@ -151,6 +156,7 @@ WholeLoads add_ranks(const model::Robot& robot, host::Ranks& ranks, Loads& loads
     loads.range = {.low = max_or_nan(loads.range.low, one.range.low),
                    .high = max_or_nan(loads.range.high, one.range.high)};
     loads.change = std::max(loads.change, one.change);
+    loads.other_max = std::max(loads.other_max, one.other_max);
     if (one.ratio_max > loads.ratio_max) {
       loads.ratio_max = one.ratio_max;
       loads.worst = one.worst;
@@ -205,6 +211,14 @@ double error_margin(const model::Robot& robot, const solver::EquilibriumOptions&
     return margin + std::max(least * scale, std::min(factor * loads.change, bound));
   }
   return margin + kDirectFactor * loads.change;
+}
+
+/// What lies between the largest load ratios of two answers.
+LoadRange between_answers(const Loads& loads) {
+  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+  return is_nan(loads.range) ? LoadRange{.low = kNan, .high = kNan}
+                             : LoadRange{.low = std::min(loads.ratio_max, loads.other_max),
+                                         .high = std::max(loads.ratio_max, loads.other_max)};
 }
 
 /// From so many on the results, which come in one piece, are larger than any hole that the solver
@@ -267,20 +281,15 @@ double weak_spring_error(const model::Robot& robot, const Equilibrium& equilibri
               : kEnergyFactor * model::load_ratio_per_energy_norm(robot) * energy);
 }
 
-/// Sec. III-D for every connection.
-void assess_connections(const model::Robot& robot, const solver::EquilibriumOptions& options,
-                        Assessment& assessment) {
+LoadRange assess_loads(const model::Robot& robot, const solver::EquilibriumOptions& options,
+                       Assessment& assessment) {
   if (host::all(options.ranks(), robot.connections().empty())) {
-    return;
+    return {};
   }
   host::Team team(options.thread_count, robot.connections().size());
   Loads loads = add_up(robot, team, assessment);
-  if (assessment.connections.empty()) {
+  if (is_alternative_spent(assessment.equilibrium)) {
     assessment.equilibrium.alternative = std::vector<base::Vec6<double>>();
-    if (robot.modules().size() >= kManyModules) {
-      host::give_back_free_memory();
-    }
-    add_results(robot, team, assessment);
   }
   if (options.part != nullptr) {
     assessment.whole = add_ranks(robot, *options.ranks(), loads);
@@ -290,21 +299,28 @@ void assess_connections(const model::Robot& robot, const solver::EquilibriumOpti
   assessment.load_ratio_range = {.low = loads.range.low - margin,
                                  .high = loads.range.high + margin};
   assessment.broken = std::move(loads.broken);
-  std::ranges::stable_sort(assessment.broken, std::greater<>(),
-                           [&](std::size_t i) { return assessment.connections[i].load_ratio; });
   if (is_nan(loads.range)) {
-    return;
+    return between_answers(loads);
   }
   assessment.load_ratio_max = loads.ratio_max;
   if (is_pulled_apart(loads.ratio_max, assessment)) {
     assessment.worst = loads.worst;
     assessment.weight_factor = 1 / loads.ratio_max;
   }
+  return between_answers(loads);
 }
 
-void assess_connections_again(const model::Robot& robot, int thread_count, Assessment& assessment) {
-  host::Team team(thread_count, robot.connections().size());
-  add_results(robot, team, assessment);
+/// Sec. III-D for every connection.
+void assess_connections(const model::Robot& robot, int thread_count, Assessment& assessment) {
+  if (assessment.connections.empty() && !robot.connections().empty()) {
+    if (robot.modules().size() >= kManyModules) {
+      host::give_back_free_memory();
+    }
+    host::Team team(thread_count, robot.connections().size());
+    add_results(robot, team, assessment);
+  }
+  std::ranges::stable_sort(assessment.broken, std::greater<>(),
+                           [&](std::size_t i) { return assessment.connections[i].load_ratio; });
 }
 
 std::optional<OpenGaps> find_open_gaps(const model::Robot& robot, const Equilibrium& equilibrium,

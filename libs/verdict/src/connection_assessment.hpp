@@ -20,15 +20,16 @@ double multigrid_error(const model::Robot& robot, const solver::EquilibriumOptio
 double weak_spring_error(const model::Robot& robot, const solver::Equilibrium& equilibrium,
                          double scale);
 
-/// Fills in all connections of an assessment whose equilibrium is settled, their largest load ratio
-/// and what breaks. Multigrid's second answer, unless feet are ambiguous, is given back: it is for
-/// the range alone.
-void assess_connections(const model::Robot& robot, const solver::EquilibriumOptions& options,
-                        Assessment& assessment);
+/// Fills in what all connections of an assessment whose equilibrium is settled say together: their
+/// largest load ratio, its range and what breaks. Returns what lies between the largest load ratios
+/// of the equilibrium's two answers. Multigrid's second one, unless feet are ambiguous, is given
+/// back: it is for the range alone.
+LoadRange assess_loads(const model::Robot& robot, const solver::EquilibriumOptions& options,
+                       Assessment& assessment);
 
-/// Fills in the connections alone of an assessment that gave them back: all that they say together
-/// is known.
-void assess_connections_again(const model::Robot& robot, int thread_count, Assessment& assessment);
+/// After assess_loads(): fills in every connection's result, unless they are there, and sorts those
+/// that break.
+void assess_connections(const model::Robot& robot, int thread_count, Assessment& assessment);
 
 /// The gaps that are too wide; none if no connection has a limit, or none is exceeded.
 std::optional<OpenGaps> find_open_gaps(const model::Robot& robot,

@@ -63,7 +63,8 @@ bool is_on_side(const LoadRange& range, double error, bool is_broken) {
 }  // namespace
 
 void compare_solutions(const model::Robot& robot, solver::EquilibriumSolver& solver, double gamma,
-                       const solver::EquilibriumOptions& options, Assessment& assessment) {
+                       const solver::EquilibriumOptions& options, const LoadRange& answers,
+                       Assessment& assessment) {
   host::Ranks* const ranks = options.ranks();
   if (host::all(ranks, robot.connections().empty())) {
     return;
@@ -71,8 +72,7 @@ void compare_solutions(const model::Robot& robot, solver::EquilibriumSolver& sol
   solver::Equilibrium& settled = assessment.equilibrium;
   SeveralSolutions& several = assessment.several.emplace();
   several.found_count = settled.others.size() + 1;
-  several.regularised = kEmpty;
-  widen(several.regularised, robot, ranks, settled);
+  several.regularised = answers;
   for (const solver::Solution& other : settled.others) {
     widen(several.regularised, robot, ranks, other);
   }

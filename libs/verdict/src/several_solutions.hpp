@@ -19,11 +19,13 @@ inline constexpr double kWeakSprings = 1e3;
 /// What multigrid may be off by, as it promises (docs/solver.md).
 inline constexpr double kMultigridError = 1e-4;
 
-/// Sets `assessment.several` from `assessment.equilibrium`, whose `others` are known, and the exact
-/// law's answer, with weak springs of `gamma`, if multigrid's tolerance is so many times the usual;
-/// and in `assessment.model` whether by any of them it falls or slips.
+/// Sets `assessment.several` from `assessment.equilibrium`, whose `others` are known, from what
+/// lies between its two `answers`, and from the exact law's answer, with weak springs of `gamma`,
+/// if multigrid's tolerance is so many times the usual; and in `assessment.model` whether by any of
+/// them it falls or slips.
 void compare_solutions(const model::Robot& robot, solver::EquilibriumSolver& solver, double gamma,
-                       const solver::EquilibriumOptions& options, Assessment& assessment);
+                       const solver::EquilibriumOptions& options, const LoadRange& answers,
+                       Assessment& assessment);
 
 /// Whether all of them, the exact law's among them, break something if `is_broken`, and nothing if
 /// not. False if the exact law has no answer.

@@ -124,8 +124,8 @@ inline Wide wide_product(const LatticeView<float>& level, const Six<float>* p, s
   for (int k = 0; k < 6; ++k) {
     const double factor = static_cast<double>(p[node].v[k]);
     const Double factors = {factor, factor, factor, factor};
-    sum.low += load_double(diagonal.column[k]) * factors;
-    sum.high += load_double(diagonal.column[k] + 4) * factors;
+    sum.low += load_double(diagonal.column(k)) * factors;
+    sum.high += load_high(diagonal.column(k) + 4) * factors;
   }
   return sum;
 }

@@ -38,11 +38,11 @@ class BlockPool {
 
   /// Each column by itself, so that the processor computes them at once.
   static std::uint64_t hash(const Block<Real>& block) {
-    constexpr std::size_t kWords = 6 * sizeof(Real) / 8;  // The last two lanes are zero.
+    constexpr std::size_t kWords = 6 * sizeof(Real) / 8;
     std::uint64_t mixed[6] = {1, 2, 3, 4, 5, 6};
-    for (std::size_t column = 0; column < 6; ++column) {
+    for (int column = 0; column < 6; ++column) {
       std::uint64_t words[kWords];
-      std::memcpy(words, block.column[column], sizeof words);
+      std::memcpy(words, block.column(column), sizeof words);
       for (const std::uint64_t word : words) {
         mixed[column] = (mixed[column] ^ word) * 0x9e3779b97f4a7c15U;
         mixed[column] ^= mixed[column] >> 32U;

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "condensation.hpp"
 
+#include <algorithm>
 #include <array>
 #include <span>
 #include <utility>
@@ -179,8 +180,8 @@ void apply_flexibilities(const Robot& robot, const ReducedNetwork& network, Team
 
 /// Moves a run's inner modules with its ends, and by what their loads do.
 void recover_run(const Robot& robot, const Ways& ways, const Run& run,
-                 const std::vector<BeamShape>& shapes, const std::vector<Vec6<double>>& condensed,
-                 std::vector<Vec6<double>>& displacement) {
+                 const std::vector<BeamShape>& shapes, const model::Loads& loads,
+                 const CondensedLoads& condensed, std::vector<Vec6<double>>& displacement) {
   std::array<std::size_t, kBeamLengthMax + 1> modules{};
   modules[0] = at(run.from);
   const std::size_t length = at(run.length);
@@ -190,7 +191,7 @@ void recover_run(const Robot& robot, const Ways& ways, const Run& run,
   const Vec6<double> near = displacement[modules[0]];
   const Vec6<double> far = displacement[modules[length]];
   for (std::size_t i = 1; i < length; ++i) {
-    Vec6<double> u = condensed[modules[i]];
+    Vec6<double> u = condensed.of(modules[i], loads);
     ways.add_motion(shapes[i], run.direction, near, u);
     ways.add_motion(shapes[length - i], run.direction ^ 1U, far, u);
     displacement[modules[i]] = u;
@@ -211,7 +212,7 @@ std::span<const HangingModule> round_of(const ReducedNetwork& network, std::size
 
 /// Moves hanging modules with what they hang on, as one rigid body, and by what their loads do.
 void recover_hanging(const Robot& robot, const Ways& ways, std::span<const HangingModule> hanging,
-                     const std::vector<Vec6<double>>& condensed,
+                     const model::Loads& loads, const CondensedLoads& condensed,
                      std::vector<Vec6<double>>& displacement) {
   for (std::size_t i = hanging.size(); i-- > 0;) {
     const auto [module, direction] = hanging[i];
@@ -224,14 +225,34 @@ void recover_hanging(const Robot& robot, const Ways& ways, std::span<const Hangi
       const std::size_t k = (axis + 2) % 3;
       u[axis] += u[j + 3] * arm[k] - u[k + 3] * arm[j];
     }
-    base::add_to(u, condensed[at(module)]);
+    base::add_to(u, condensed.of(at(module), loads));
   }
 }
 
 }  // namespace
 
-std::vector<Vec6<double>> condense(const Robot& robot, const ReducedNetwork& network, Team& team,
-                                   const model::Loads& loads, host::Halo* copies) {
+CondensedLoads::CondensedLoads(const std::vector<Load>& loads, const model::Loads& own)
+    : marks_((loads.size() + kBits - 1) / kBits) {
+  before_.reserve(marks_.size());
+  std::uint32_t count = 0;
+  for (std::size_t i = 0; i < marks_.size(); ++i) {
+    before_.push_back(count);
+    for (std::size_t module = kBits * i; module < std::min(kBits * (i + 1), loads.size());
+         ++module) {
+      marks_[i] |= std::uint64_t{loads[module] != own[module]} << module % kBits;
+    }
+    count += static_cast<std::uint32_t>(std::popcount(marks_[i]));
+  }
+  kept_.reserve(count);
+  for (std::size_t module = 0; module < loads.size(); ++module) {
+    if (loads[module] != own[module]) {
+      kept_.push_back(loads[module]);
+    }
+  }
+}
+
+CondensedLoads condense(const Robot& robot, const ReducedNetwork& network, Team& team,
+                        const model::Loads& loads, host::Halo* copies) {
   std::vector<Vec6<double>> load(robot.modules().size());
   team.share(0, load.size(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
@@ -254,12 +275,12 @@ std::vector<Vec6<double>> condense(const Robot& robot, const ReducedNetwork& net
   }
   const Vec6<double> common = loads.is_uniform() ? loads[0] : Vec6<double>{};
   apply_flexibilities(robot, network, team, common, load);
-  return load;
+  return {load, loads};
 }
 
 void recover(const Robot& robot, const ReducedNetwork& network, Team& team,
-             const std::vector<Vec6<double>>& condensed, std::vector<Vec6<double>>& displacement,
-             host::Halo* copies) {
+             const model::Loads& loads, const CondensedLoads& condensed,
+             std::vector<Vec6<double>>& displacement, host::Halo* copies) {
   ShapeTable shapes(robot.material().pitch_mm);
   const Ways ways(robot.lattice());
   for (const Run& run : network.runs) {
@@ -267,12 +288,12 @@ void recover(const Robot& robot, const ReducedNetwork& network, Team& team,
   }
   team.share(0, network.runs.size(), [&](std::size_t begin, std::size_t end) {
     for (const Run& run : std::span(network.runs).subspan(begin, end - begin)) {
-      recover_run(robot, ways, run, shapes.known(run.length), condensed, displacement);
+      recover_run(robot, ways, run, shapes.known(run.length), loads, condensed, displacement);
     }
   });
   for (std::size_t round = network.round_start.size() - 1; round-- > 0;) {
     update(copies, displacement);
-    recover_hanging(robot, ways, round_of(network, round), condensed, displacement);
+    recover_hanging(robot, ways, round_of(network, round), loads, condensed, displacement);
   }
   if (network.round_start.size() > 1) {
     update(copies, displacement);

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <bit>
+#include <cstdint>
 #include <vector>
 
 #include "holdfast/base/algebra.hpp"
@@ -22,18 +24,48 @@
 /// flexibility K_ee^-1, run by run.
 namespace holdfast::solver {
 
+/// Loads by module, kept where they are not the robot's own: most nodes carry nothing but those.
+class CondensedLoads {
+ public:
+  using Load = base::Vec6<double>;
+
+  CondensedLoads() = default;
+
+  /// Of loads by module those that differ from the robot's `own`.
+  CondensedLoads(const std::vector<Load>& loads, const model::Loads& own);
+
+  /// The load of a module; `own` are the same robot's as before.
+  const Load& of(std::size_t module, const model::Loads& own) const {
+    const bool is_kept = !marks_.empty() && (marks_[module / kBits] >> module % kBits & 1U) != 0;
+    return is_kept ? kept_[place_of(module)] : own[module];
+  }
+
+ private:
+  static constexpr std::size_t kBits = 64;
+
+  /// How many are kept of the modules before.
+  std::size_t place_of(std::size_t module) const {
+    const std::uint64_t before =
+        marks_[module / kBits] & ((std::uint64_t{1} << module % kBits) - 1);
+    return before_[module / kBits] + static_cast<std::size_t>(std::popcount(before));
+  }
+
+  std::vector<std::uint64_t> marks_;   ///< A bit for each module, set if its load is kept.
+  std::vector<std::uint32_t> before_;  ///< How many bits are set before each of these numbers.
+  std::vector<Load> kept_;             ///< By module.
+};
+
 /// The loads on a reduced network, by module: of nodes f_n - K_ne K_ee^-1 f_e, of eliminated
 /// modules K_ee^-1 f_e, how far the loads move them while their run's ends, or what they hang on,
 /// are held. Of a part of a robot `copies` keeps those of modules up to date: a tree that crosses
 /// ranks hands its load on round by round, from the leaves on.
-std::vector<base::Vec6<double>> condense(const model::Robot& robot, const ReducedNetwork& network,
-                                         host::Team& team, const model::Loads& loads,
-                                         host::Halo* copies = nullptr);
+CondensedLoads condense(const model::Robot& robot, const ReducedNetwork& network, host::Team& team,
+                        const model::Loads& loads, host::Halo* copies = nullptr);
 
 /// Fills in the displacements of eliminated modules, those of nodes being given, by module; with
-/// the loads that condense() returned. Across ranks from what trees hang on to their leaves.
+/// the loads that condense() made of `loads`. Across ranks from what trees hang on to their leaves.
 void recover(const model::Robot& robot, const ReducedNetwork& network, host::Team& team,
-             const std::vector<base::Vec6<double>>& condensed,
+             const model::Loads& loads, const CondensedLoads& condensed,
              std::vector<base::Vec6<double>>& displacement, host::Halo* copies = nullptr);
 
 }  // namespace holdfast::solver

@@ -54,8 +54,7 @@ ConjugateGradients<Real>::ConjugateGradients(ReducedNetwork& network,
       cycle_(hierarchy_, team, kSweepCount),
       node_count_(network.own_count),
       is_solid_(is_solid(network)),
-      place_count_(network.node_count),
-      p_(place_count_ + 1) {
+      place_count_(network.node_count) {
   x_.resize(6 * place_count_);
   hierarchy_.take_vectors();
   low_.resize(std::is_same_v<Real, float> ? 6 * place_count_ : 0);
@@ -107,22 +106,33 @@ std::vector<double> ConjugateGradients<Real>::marked() {
 }
 
 template <class Real>
+void ConjugateGradients<Real>::update_contact() {
+  q_ = std::vector<double>();
+  hierarchy_.update_contact();
+}
+
+template <class Real>
 void ConjugateGradients<Real>::rest() {
   q_ = std::vector<double>();
   hierarchy_.drop_vectors();
+  write_marked();
+  p_ = std::vector<Six<Real>>();
 }
 
 template <class Real>
 void ConjugateGradients<Real>::retire() {
-  rest();
+  q_ = std::vector<double>();
   low_ = std::vector<std::int16_t>();
   hierarchy_.levels().clear();
+  write_marked();
+  p_ = std::vector<Six<Real>>();
 }
 
 /// x is taken apart into two directions: 48 bits in single precision, all in double.
 template <class Real>
 void ConjugateGradients<Real>::subtract_product() {
   q_.resize(6 * node_count_);
+  p_.resize(place_count_ + 1);
   const SplitView<Real> left = r();
   for (const bool is_rest : {false, true}) {
     team_.share(0, node_count_, [&](std::size_t begin, std::size_t end) {

@@ -26,7 +26,7 @@ class ConjugateGradients final : public Iteration {
 
   bool is_singular() const override { return hierarchy_.is_singular(); }
 
-  void update_contact() override { hierarchy_.update_contact(); }
+  void update_contact() override;
 
   void subtract_product() override;
   double begin() override;

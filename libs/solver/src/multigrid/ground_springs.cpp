@@ -3,7 +3,6 @@
 #include "ground_springs.hpp"
 
 #include <algorithm>
-#include <numeric>
 #include <optional>
 
 #include "../block_kernels.hpp"
@@ -13,34 +12,6 @@ namespace holdfast::solver {
 namespace {
 
 using base::at;
-
-/// Ground springs of beams; what was asked last is remembered, as most are alike.
-class BeamGroundSprings {
- public:
-  BeamGroundSprings(const base::Lattice& lattice, const model::Material& material)
-      : lattice_(lattice), material_(material) {}
-
-  GroundSpring spring(const GroundBeam& beam) {
-    if (beam.direction != last_.direction || beam.length != last_.length) {
-      spring_ = beam_spring(lattice_, material_, beam.direction, beam.length);
-      last_ = beam;
-    }
-    return {.node = beam.node,
-            .direction = beam.direction,
-            .way = spring_.direction,
-            .length = spring_.length,
-            .reach = spring_.length,
-            .middle = spring_.middle,
-            .stuck = spring_.stiffness,
-            .stiffness = spring_.stiffness};
-  }
-
- private:
-  const base::Lattice& lattice_;
-  const model::Material& material_;
-  GroundBeam last_;  ///< None yet: of no length.
-  Spring spring_;
-};
 
 /// A ground spring of a member as its cluster has it.
 template <class Real>
@@ -99,44 +70,69 @@ void unite(GroundSpring& sum, double count) {
 
 }  // namespace
 
-std::vector<GroundSpring> finest_ground_springs(const ReducedNetwork& network,
-                                                const model::Material& material,
-                                                const GroundTable& ground) {
-  std::vector<GroundSpring> springs;
-  springs.reserve(network.ground_beams.size());
-  BeamGroundSprings beams(network.lattice, material);
+FinestGroundSprings::FinestGroundSprings(const ReducedNetwork& network,
+                                         const model::Material& material, const GroundTable& ground)
+    : network_(network), ground_(ground) {
   for (const GroundBeam& beam : network.ground_beams) {
-    springs.push_back(beams.spring(beam));
-    if (beam.contact != 0) {
-      springs.back().stiffness = ground[beam.direction][beam.contact];
+    if (find(beam) == nullptr) {
+      beams_.push_back(
+          {.direction = beam.direction,
+           .length = beam.length,
+           .spring = beam_spring(network.lattice, material, beam.direction, beam.length)});
     }
   }
-  return springs;
 }
 
-template <class Real>
-std::vector<GroundSpring> coarse_ground_springs(const std::vector<GroundSpring>& fine,
-                                                const Seats<Real>& seat) {
-  const auto cluster = [&](std::size_t i) { return seat[at(fine[i].node)].cluster; };
+const Spring* FinestGroundSprings::find(const GroundBeam& beam) const {
+  const auto found = std::ranges::find_if(beams_, [&](const BeamSpring& known) {
+    return known.direction == beam.direction && known.length == beam.length;
+  });
+  return found == beams_.end() ? nullptr : &found->spring;
+}
+
+GroundSpring FinestGroundSprings::operator[](std::size_t i) const {
+  const GroundBeam& beam = network_.ground_beams[i];
+  const Spring& spring = *find(beam);
+  return {
+      .node = beam.node,
+      .direction = beam.direction,
+      .way = spring.direction,
+      .length = spring.length,
+      .reach = spring.length,
+      .middle = spring.middle,
+      .stuck = spring.stiffness,
+      .stiffness = beam.contact == 0 ? spring.stiffness : ground_[beam.direction][beam.contact]};
+}
+
+template <class Springs, class Real>
+std::vector<GroundSpring> coarse_ground_springs(const Springs& fine, const Seats<Real>& seat) {
+  std::vector<std::int32_t> cluster;
   std::vector<std::size_t> order(fine.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::ranges::stable_sort(order, {}, cluster);
+  for (std::size_t i = 0; i < fine.size(); ++i) {
+    cluster.push_back(seat[at(fine[i].node)].cluster);
+    order[i] = i;
+  }
+  std::ranges::stable_sort(order, {}, [&](std::size_t i) { return cluster[i]; });
   std::vector<GroundSpring> coarse;
   for (auto i = order.begin(); i != order.end();) {
-    const std::size_t first = *i;
-    coarse.push_back(moved(fine[first], seat[at(fine[first].node)]));
+    const auto member = [&] { return moved(fine[*i], seat[at(fine[*i].node)]); };
+    GroundSpring sum = member();
     double count = 1;
-    for (++i; i != order.end() && cluster(*i) == cluster(first) &&
-              fine[*i].direction == fine[first].direction;
+    for (++i; i != order.end() && cluster[*i] == sum.node && fine[*i].direction == sum.direction;
          ++i) {
-      add_to(coarse.back(), moved(fine[*i], seat[at(fine[*i].node)]));
+      add_to(sum, member());
       ++count;
     }
-    unite(coarse.back(), count);
+    unite(sum, count);
+    coarse.push_back(sum);
   }
   return coarse;
 }
 
+template std::vector<GroundSpring> coarse_ground_springs(const FinestGroundSprings&,
+                                                         const Seats<float>&);
+template std::vector<GroundSpring> coarse_ground_springs(const FinestGroundSprings&,
+                                                         const Seats<double>&);
 template std::vector<GroundSpring> coarse_ground_springs(const std::vector<GroundSpring>&,
                                                          const Seats<float>&);
 template std::vector<GroundSpring> coarse_ground_springs(const std::vector<GroundSpring>&,

@@ -47,15 +47,36 @@ inline std::uint8_t contact_number(const mechanics::ContactState& state, bool is
                                             : 1 + 2 * state.code() + (is_held_sideways ? 1 : 0));
 }
 
-/// Those of the nodes themselves, ascending by node.
-std::vector<GroundSpring> finest_ground_springs(const ReducedNetwork& network,
-                                                const model::Material& material,
-                                                const GroundTable& ground);
+/// Those of the nodes themselves, ascending by node; each is made when it is asked for.
+class FinestGroundSprings {
+ public:
+  /// Keeps references to the network and to the table of what facets are.
+  FinestGroundSprings(const ReducedNetwork& network, const model::Material& material,
+                      const GroundTable& ground);
+
+  std::size_t size() const { return network_.ground_beams.size(); }
+
+  GroundSpring operator[](std::size_t i) const;
+
+ private:
+  /// The spring of all beams of one direction and length.
+  struct BeamSpring {
+    std::uint8_t direction = 0;
+    std::uint8_t length = 0;
+    Spring spring;
+  };
+
+  /// The spring of a beam; null where no such beam has come yet.
+  const Spring* find(const GroundBeam& beam) const;
+
+  const ReducedNetwork& network_;
+  const GroundTable& ground_;
+  std::vector<BeamSpring> beams_;
+};
 
 /// Those of the next level's clusters, ascending by node: sums over the members, lengthened like
 /// springs as far as they are beams. `seat` says where the members sit.
-template <class Real>
-std::vector<GroundSpring> coarse_ground_springs(const std::vector<GroundSpring>& fine,
-                                                const Seats<Real>& seat);
+template <class Springs, class Real>
+std::vector<GroundSpring> coarse_ground_springs(const Springs& fine, const Seats<Real>& seat);
 
 }  // namespace holdfast::solver

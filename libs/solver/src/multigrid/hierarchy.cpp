@@ -151,7 +151,7 @@ class Places {
 };
 
 /// What inverse_block() makes of a singular matrix; the inverse of no other has a zero there.
-bool is_zero(const Block<float>& inverse) { return inverse.column[0][0] == 0; }
+bool is_zero(const Block<float>& inverse) { return inverse.numbers[0] == 0; }
 
 }  // namespace
 
@@ -367,7 +367,8 @@ void Hierarchy<Real>::set_types(const SpringGraph& graph, Level<Real>& level) co
 }
 
 template <class Real>
-void Hierarchy<Real>::add_level(const SpringGraph& graph, const std::vector<GroundSpring>& springs,
+template <class Springs>
+void Hierarchy<Real>::add_level(const SpringGraph& graph, const Springs& springs,
                                 std::vector<std::size_t> colour_start) {
   Level<Real>& level = levels_.emplace_back();
   level.node_count = graph.own_count();
@@ -428,14 +429,15 @@ void Hierarchy<Real>::gather(SpringGraph& graph, std::vector<GroundSpring>& spri
 
 /// Takes note of the nodes of the newest level that have ground springs.
 template <class Real>
-typename Hierarchy<Real>::Held Hierarchy<Real>::held_nodes(
-    const SpringGraph& graph, const std::vector<GroundSpring>& springs) const {
+template <class Springs>
+typename Hierarchy<Real>::Held Hierarchy<Real>::held_nodes(const SpringGraph& graph,
+                                                           const Springs& springs) const {
   Held held;
   held.free_type_count = levels_.back().inverse.size();
-  for (const GroundSpring& spring : springs) {
-    if (held.nodes.empty() || held.nodes.back().node != at(spring.node)) {
-      held.nodes.push_back(
-          {.node = at(spring.node), .spring_sum = spring_sum(graph, at(spring.node))});
+  for (std::size_t i = 0; i < springs.size(); ++i) {
+    const std::size_t node = at(springs[i].node);
+    if (held.nodes.empty() || held.nodes.back().node != node) {
+      held.nodes.push_back({.node = node, .spring_sum = spring_sum(graph, node)});
     }
   }
   return held;
@@ -443,8 +445,8 @@ typename Hierarchy<Real>::Held Hierarchy<Real>::held_nodes(
 
 /// K_pp of the nodes that have ground springs.
 template <class Real>
-void Hierarchy<Real>::set_ground_springs(std::size_t depth,
-                                         const std::vector<GroundSpring>& springs) {
+template <class Springs>
+void Hierarchy<Real>::set_ground_springs(std::size_t depth, const Springs& springs) {
   Level<Real>& level = levels_[depth];
   Held& held = held_[depth];
   clear_ground(level, held.free_type_count);
@@ -452,11 +454,11 @@ void Hierarchy<Real>::set_ground_springs(std::size_t depth,
   BlockPool<double> finest_pool;
   held.sums = std::vector<Mat>();
   const bool is_coarsest = depth + 1 == levels_.size();
-  auto spring = springs.begin();
+  std::size_t next = 0;
   for (const HeldNode& node : held.nodes) {
     HeldSum sum;
-    for (; spring != springs.end() && at(spring->node) == node.node; ++spring) {
-      base::add_to(sum.ground, spring->stiffness);
+    for (; next < springs.size() && at(springs[next].node) == node.node; ++next) {
+      base::add_to(sum.ground, springs[next].stiffness);
     }
     sum.all = node.spring_sum;
     base::add_to(sum.all, sum.ground);
@@ -489,26 +491,29 @@ bool Hierarchy<Real>::factor_coarsest() {
 
 /// Only what is on the ground may be held by nothing.
 template <class Real>
-void Hierarchy<Real>::look_for_singular_nodes(const std::vector<GroundSpring>& springs) {
+void Hierarchy<Real>::look_for_singular_nodes() {
   const Level<Real>& finest = levels_.front();
-  is_singular_ = std::ranges::any_of(springs, [&](const GroundSpring& spring) {
-    return is_zero(finest.inverse[network_.cubic.kind.number(at(spring.node))]);
+  is_singular_ = std::ranges::any_of(network_.ground_beams, [&](const GroundBeam& beam) {
+    return is_zero(finest.inverse[network_.cubic.kind.number(at(beam.node))]);
   });
 }
 
 template <class Real>
 void Hierarchy<Real>::update_contact() {
-  std::vector<GroundSpring> springs = finest_ground_springs(network_, material_, ground_);
+  const FinestGroundSprings finest(network_, material_, ground_);
   if (network_.is_cubic) {
     add_types();
-    look_for_singular_nodes(springs);
+    look_for_singular_nodes();
     point_at_lattice();
   } else {
     is_singular_ = false;
-    set_ground_springs(0, springs);
+    set_ground_springs(0, finest);
   }
+  std::vector<GroundSpring> springs;
   for (std::size_t depth = 1; depth < levels_.size(); ++depth) {
-    springs = coarse_ground_springs(springs, levels_[depth - 1].seat);
+    const Seats<Real>& seat = levels_[depth - 1].seat;
+    springs =
+        depth == 1 ? coarse_ground_springs(finest, seat) : coarse_ground_springs(springs, seat);
     const Gathering& gathering = levels_[depth].gathering;
     if (!gathering.is_empty()) {
       springs = gathered_springs(springs, gathering, *network_.ranks);
@@ -555,14 +560,15 @@ Hierarchy<Real>::Hierarchy(ReducedNetwork& network, const model::Material& mater
   for (const std::int32_t node : alone) {
     graph.is_alone[at(node)] = true;
   }
-  std::vector<GroundSpring> springs = finest_ground_springs(network_, material_, ground_);
+  const FinestGroundSprings finest(network_, material_, ground_);
   if (network_.is_cubic) {
     make_lattice();
     held_.emplace_back();
-    look_for_singular_nodes(springs);
+    look_for_singular_nodes();
   } else {
-    add_level(graph, springs, network_.colour_start);
+    add_level(graph, finest, network_.colour_start);
   }
+  std::vector<GroundSpring> springs;
   share(graph, levels_.front());
   while (!coarsest_ && (levels_.size() == 1 || graph.ranks != nullptr ||
                         graph.order.size() > kCoarsestCount + alone_count_)) {
@@ -572,7 +578,9 @@ Hierarchy<Real>::Hierarchy(ReducedNetwork& network, const model::Material& mater
       break;
     }
     graph = std::move(coarse);
-    springs = coarse_ground_springs(springs, levels_.back().seat);
+    const Seats<Real>& seat = levels_.back().seat;
+    springs = levels_.size() == 1 ? coarse_ground_springs(finest, seat)
+                                  : coarse_ground_springs(springs, seat);
     const bool is_part = graph.ranks != nullptr;
     if (is_part && host::total(graph.ranks, graph.own_count()) <= kGatheredCount) {
       gather(graph, springs, colour_start);
@@ -609,10 +617,11 @@ void Hierarchy<Real>::drop_vectors() {
   for (Level<Real>& level : levels_) {
     level.rough_r = std::vector<Six<float>>();
     level.rough_z = std::vector<Six<float>>();
+    for (auto* vector : {&level.z, &level.first, &level.first_image}) {
+      *vector = std::vector<Six<Real>>();
+    }
     if (!is_finest(level)) {
-      for (auto* vector : {&level.r, &level.z, &level.first, &level.first_image}) {
-        *vector = std::vector<Six<Real>>();
-      }
+      level.r = std::vector<Six<Real>>();
     }
   }
 }

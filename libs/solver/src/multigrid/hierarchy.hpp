@@ -61,7 +61,7 @@ class Hierarchy {
   /// Takes the memory of all vectors that a cycle needs, unless they have it.
   void take_vectors();
 
-  /// Gives back the memory of all vectors but the finest level's r and z.
+  /// Gives back the memory of all vectors but the finest level's r.
   void drop_vectors();
 
   /// Whether a level has the kernels of cubes on a floor; only the finest may.
@@ -158,7 +158,8 @@ class Hierarchy {
   void share(const SpringGraph& graph, Level<Real>& level) const;
   void gather(SpringGraph& graph, std::vector<GroundSpring>& springs,
               std::vector<std::size_t>& colour_start);
-  void add_level(const SpringGraph& graph, const std::vector<GroundSpring>& springs,
+  template <class Springs>
+  void add_level(const SpringGraph& graph, const Springs& springs,
                  std::vector<std::size_t> colour_start);
   Mat diagonal(const Kind& kind) const;
   void add_type(const Kind& kind);
@@ -167,9 +168,11 @@ class Hierarchy {
   void add_grounded_type(Level<Real>& level, const HeldSum& sum) const;
   void add_type(Level<Real>& level, const Mat& sum) const;
   void set_types(const SpringGraph& graph, Level<Real>& level) const;
-  Held held_nodes(const SpringGraph& graph, const std::vector<GroundSpring>& springs) const;
-  void set_ground_springs(std::size_t depth, const std::vector<GroundSpring>& springs);
-  void look_for_singular_nodes(const std::vector<GroundSpring>& springs);
+  template <class Springs>
+  Held held_nodes(const SpringGraph& graph, const Springs& springs) const;
+  template <class Springs>
+  void set_ground_springs(std::size_t depth, const Springs& springs);
+  void look_for_singular_nodes();
   void try_to_factor(const SpringGraph& graph);
   bool factor_coarsest();
 

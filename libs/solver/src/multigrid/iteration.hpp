@@ -78,8 +78,7 @@ class Iteration {
   /// What x was when mark() was called, once.
   virtual std::vector<double> marked() = 0;
 
-  /// Gives back the memory that run() works in. The next call that needs it takes it again; x, r
-  /// and correction() stay.
+  /// Gives back the memory that run() works in; x, r and marked() stay. Then begin() must be next.
   virtual void rest() = 0;
 
   /// Gives back all memory but that of x and marked(); then nothing but these may be asked for.

@@ -230,11 +230,11 @@ inline Wide swap(const Wide& a) {
 
 inline Single multiply(const Block<float>& block, Single x) {
   const Single a =
-      load(block.column[0]) * broadcast<0>(x) + load(block.column[1]) * broadcast<1>(x);
+      load(block.column(0)) * broadcast<0>(x) + load(block.column(1)) * broadcast<1>(x);
   const Single b =
-      load(block.column[2]) * broadcast<2>(x) + load(block.column[3]) * broadcast<3>(x);
+      load(block.column(2)) * broadcast<2>(x) + load(block.column(3)) * broadcast<3>(x);
   const Single c =
-      load(block.column[4]) * broadcast<4>(x) + load(block.column[5]) * broadcast<5>(x);
+      load(block.column(4)) * broadcast<4>(x) + load(block.column(5)) * broadcast<5>(x);
   return a + b + c;
 }
 
@@ -306,19 +306,19 @@ inline Single repeated(float x) { return Single{x, x, x, x, x, x, x, x}; }
 /// The same bits, for an x in memory, from where numbers are repeated for nothing.
 inline Single multiply(const Block<float>& block, const Six<float>& x) {
   const Single a =
-      load(block.column[0]) * repeated(x.v[0]) + load(block.column[1]) * repeated(x.v[1]);
+      load(block.column(0)) * repeated(x.v[0]) + load(block.column(1)) * repeated(x.v[1]);
   const Single b =
-      load(block.column[2]) * repeated(x.v[2]) + load(block.column[3]) * repeated(x.v[3]);
+      load(block.column(2)) * repeated(x.v[2]) + load(block.column(3)) * repeated(x.v[3]);
   const Single c =
-      load(block.column[4]) * repeated(x.v[4]) + load(block.column[5]) * repeated(x.v[5]);
+      load(block.column(4)) * repeated(x.v[4]) + load(block.column(5)) * repeated(x.v[5]);
   return a + b + c;
 }
 
 template <int kColumn>
 inline Wide column_product(const Block<double>& block, const Wide& x) {
   const Double factor = broadcast<kColumn>(x);
-  const Wide column = load(block.column[kColumn]);
-  return {column.low * factor, column.high * factor};
+  const double* const column = block.column(kColumn);
+  return {load_double(column) * factor, load_high(column + 4) * factor};
 }
 
 inline Wide multiply(const Block<double>& block, const Wide& x) {

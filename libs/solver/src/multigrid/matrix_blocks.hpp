@@ -22,7 +22,7 @@ Block<Real> block_of(const Mat& matrix) {
   Block<Real> block;
   for (int column = 0; column < 6; ++column) {
     for (int row = 0; row < 6; ++row) {
-      block.column[column][row] = static_cast<Real>(matrix.at(row, column));
+      block.column(column)[row] = static_cast<Real>(matrix.at(row, column));
     }
   }
   return block;

@@ -201,7 +201,7 @@ void Multigrid::take_loads() {
 
 /// The residual changes as the loads do.
 void Multigrid::take_changed_loads(const model::Loads& before) {
-  const std::vector<Vec> condensed = std::exchange(condensed_, {});
+  const CondensedLoads condensed = std::exchange(condensed_, {});
   condense_loads();
   is_stale_ = true;
   if (!is_residual_known_) {
@@ -211,7 +211,7 @@ void Multigrid::take_changed_loads(const model::Loads& before) {
     for (std::size_t node = begin; node < end; ++node) {
       const std::size_t module = at(network_.module[node]);
       const Vec& now = load_of(node);
-      const Vec& then = condensed.empty() ? before[module] : condensed[module];
+      const Vec& then = condensed.of(module, before);
       if (now == then) {
         continue;
       }
@@ -228,7 +228,7 @@ void Multigrid::take_changed_loads(const model::Loads& before) {
 std::vector<double>& Multigrid::x() { return iteration_ ? iteration_->x() : no_x_; }
 
 void Multigrid::condense_loads() {
-  condensed_.clear();
+  condensed_ = {};
   if (network_.is_reduced) {
     condensed_ = condense(robot(), network_, team_, loads(), module_copies_.get());
   }
@@ -236,8 +236,7 @@ void Multigrid::condense_loads() {
 
 /// What acts on a node.
 const Multigrid::Vec& Multigrid::load_of(std::size_t node) const {
-  const std::size_t module = at(network_.module[node]);
-  return condensed_.empty() ? loads()[module] : condensed_[module];
+  return condensed_.of(at(network_.module[node]), loads());
 }
 
 Multigrid::Vec Multigrid::displacement_of(std::int32_t node) {
@@ -578,11 +577,12 @@ void Multigrid::hand_over(Solution& solution, Further further) {
     is_stale_ = true;
   } else if (iteration_) {
     iteration_->rest();
+    is_stale_ = true;
     first = iteration_->marked();
   }
-  solution.displacement = by_module(iteration_ ? x() : last);
-  last = std::vector<double>();
   solution.alternative = by_module(first);
+  first = std::vector<double>();
+  solution.displacement = by_module(iteration_ ? x() : last);
 }
 
 std::vector<double> Multigrid::facet_errors() const {
@@ -636,7 +636,7 @@ std::vector<base::Vec6<double>> Multigrid::by_module(std::vector<double>& x) {
       }
     });
   }
-  recover(robot(), network_, team_, condensed_, all, module_copies_.get());
+  recover(robot(), network_, team_, loads(), condensed_, all, module_copies_.get());
   return all;
 }
 

@@ -97,7 +97,7 @@ class Multigrid final : public LinearSystem {
   ReducedNetwork network_;
   std::unique_ptr<host::Halo> module_copies_;  ///< Of a part of a robot.
   std::unique_ptr<host::Halo> node_copies_;
-  std::vector<Vec> condensed_;            ///< Loads by module; empty if the robot's are the nodes'.
+  CondensedLoads condensed_;              ///< Where they are not the robot's own.
   std::vector<GroundNode> ground_nodes_;  ///< In the network's order; a node for each facet.
   std::vector<std::size_t> ground_node_of_facet_;  ///< By place in facets().
   std::vector<std::int32_t> alone_;                ///< Nodes that join no cluster.

@@ -24,10 +24,15 @@ struct alignas(8 * sizeof(Real)) Eight {
   Real v[8] = {};
 };
 
-/// A 6x6 block by columns.
+/// A 6x6 block by columns, and zeros to the end of the last one's eight lanes. In the last two
+/// lanes of the others is what comes next; what that yields stays in them, and nobody reads it.
 template <class Real>
-struct alignas(8 * sizeof(Real)) Block {
-  Real column[6][8] = {};
+struct Block {
+  Real* column(int index) { return numbers + std::ptrdiff_t{6} * index; }
+
+  const Real* column(int index) const { return numbers + std::ptrdiff_t{6} * index; }
+
+  Real numbers[38] = {};
 };
 
 /// K12 of a beam along an axis has ten nonzeros: a diagonal, and one number in four rows at a place
