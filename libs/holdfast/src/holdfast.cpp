@@ -59,12 +59,13 @@ base::Result<Structure> load_text(std::string_view text, std::string_view name, 
   auto [document, warnings] = std::move(read).value();
   if (document.steps.size() > 1 || !document.extension.plan.empty()) {
     const bool is_one = io::step_count(document) == 1;
+    const bool is_first_judged = !document.steps.empty() && io::first_step(document) == 0;
     warnings.push_back(fmt::format("{} {} read; the robot {} is judged, holdfast steps judges all",
                                    host::counted(io::step_count(document), "step"),
                                    is_one ? "is" : "are",
-                                   !document.steps.empty() ? "after the first"
-                                   : is_one                ? "before it"
-                                                           : "before them"));
+                                   is_first_judged ? "after the first"
+                                   : is_one        ? "before it"
+                                                   : "before them"));
   }
   auto made = make_structure(std::move(document), name, thread_count);
   if (made) {

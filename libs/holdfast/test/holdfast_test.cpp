@@ -60,6 +60,17 @@ TEST(Facade, says_how_many_steps_a_check_leaves_out) {
           "2 steps are read; the robot after the first is judged, holdfast steps judges all"});
 }
 
+/// Where nothing is planned the file's first later step is its first.
+TEST(Facade, counts_no_step_in_which_nothing_is_planned) {
+  const auto loaded = load_text(R"({"format": "holdfast-structure", "version": 1,
+      "modules": [[0,0,0]], "later_steps": [[[1,0,0]]]})");
+  ASSERT_TRUE(loaded);
+  EXPECT_EQ(loaded.value().robot.planned_count(), 0);
+  EXPECT_EQ(loaded.value().warnings,
+            std::vector<std::string>{
+                "1 step is read; the robot before it is judged, holdfast steps judges all"});
+}
+
 TEST(Facade, names_the_limit_that_a_connection_is_near) {
   // The weight of one module, 0.599 N, shears; it opens at w L / (2 lever) = 0.599 N of 14.97 N.
   for (const auto& [shear_n, limit, ratio] :

@@ -138,7 +138,7 @@ base::Result<model::RobotSpec> standing_spec(const Document& document, std::stri
       .code = base::ErrorCode::kBadInput,
       .message =
           fmt::format("{} has planned modules or steps; allowed are robots as they stand", which),
-      .where = document.steps.empty() ? "/steps" : "/planned"};
+      .where = step_pointer(document, 0)};
 }
 
 base::Result<plan::MoveTask> move_task(const Document& start, const Document& target) {

@@ -160,8 +160,8 @@ std::optional<base::Error> add_own(const Document& document,
                                    const Lists& lists) {
   for (const OwnParameters& own : document.extension.own) {
     const base::Cell* const cell = find_cell(document, own);
-    const std::optional<OwnLists> list = lists(own.step);
-    if (cell == nullptr || !list) {
+    const std::optional<OwnLists> list = cell == nullptr ? std::nullopt : lists(own.step);
+    if (!list) {
       continue;
     }
     const auto kind = std::ranges::find(kinds, own.kind, &model::ModuleKind::name);
@@ -209,9 +209,9 @@ bool has_kinds(const Document& document) {
 
 std::vector<model::Step> steps_of(const Document& document) {
   std::vector<model::Step> steps;
-  for (const Step& planned : document.steps) {
+  for (std::size_t i = first_step(document); i < document.steps.size(); ++i) {
     model::Step& step = steps.emplace_back();
-    for (const PlannedEntry& entry : planned) {
+    for (const PlannedEntry& entry : document.steps[i]) {
       step.attach.push_back(entry.cell);
     }
   }
@@ -247,7 +247,7 @@ std::vector<model::Payload> present_payloads(const Document& document) {
   Sequence sequence{.start = start_of(document), .steps = steps_of(document)};
   add_payloads(document, sequence);
   std::vector<model::Payload> present = std::move(sequence.start.payloads);
-  if (!document.steps.empty()) {
+  if (!document.steps.empty() && first_step(document) == 0) {
     const std::vector<model::Payload>& planned = sequence.steps.front().payloads;
     present.insert(present.end(), planned.begin(), planned.end());
   }
@@ -280,15 +280,20 @@ base::Result<model::RobotSpec> make_spec(const Document& document) {
   return spec;
 }
 
+std::size_t first_step(const Document& document) {
+  return !document.steps.empty() && document.steps.front().empty() ? 1 : 0;
+}
+
 std::size_t step_count(const Document& document) {
-  return document.steps.size() + document.extension.plan.size();
+  return document.steps.size() - first_step(document) + document.extension.plan.size();
 }
 
 std::string step_pointer(const Document& document, std::size_t step) {
-  if (step >= document.steps.size()) {
-    return fmt::format("/steps/{}", step - document.steps.size());
+  const std::size_t index = step + first_step(document);
+  if (index >= document.steps.size()) {
+    return fmt::format("/steps/{}", index - document.steps.size());
   }
-  return step == 0 ? "/planned" : fmt::format("/later_steps/{}", step - 1);
+  return index == 0 ? "/planned" : fmt::format("/later_steps/{}", index - 1);
 }
 
 base::Result<Sequence> make_sequence(const Document& document) {
@@ -298,11 +303,13 @@ base::Result<Sequence> make_sequence(const Document& document) {
   Sequence sequence{.start = start_of(document), .steps = steps_of(document)};
   add_payloads(document, sequence);
   std::vector<model::ModuleKind> kinds = kinds_of(document);
-  const auto lists = [&](std::size_t step) {
+  const auto lists = [&, first = first_step(document)](std::size_t step) {
     model::RobotSpec& start = sequence.start;
-    return step == 0 ? std::optional(OwnLists{start.own_kinds, start.own_masses})
-                     : std::optional(OwnLists{sequence.steps[step - 1].own_kinds,
-                                              sequence.steps[step - 1].own_masses});
+    if (step == 0) {
+      return std::optional(OwnLists{start.own_kinds, start.own_masses});
+    }
+    model::Step& attaching = sequence.steps[step - 1 - first];
+    return std::optional(OwnLists{attaching.own_kinds, attaching.own_masses});
   };
   if (auto error = add_own(document, kinds, lists)) {
     return *std::move(error);

@@ -95,13 +95,14 @@ void add_part(std::string& text, std::string_view verb, std::size_t count, const
 
 std::string step_text(const Document& document, std::size_t step) {
   std::string text;
-  if (step < document.steps.size()) {
-    const Step& planned = document.steps[step];
+  const std::size_t index = step + first_step(document);
+  if (index < document.steps.size()) {
+    const Step& planned = document.steps[index];
     add_part(text, "attach", planned.size(),
              planned.empty() ? "" : model::text(planned.front().cell));
     return text.empty() ? "nothing" : text;
   }
-  const model::Step& plan = document.extension.plan[step - document.steps.size()];
+  const model::Step& plan = document.extension.plan[index - document.steps.size()];
   const auto pair_text = [](const std::vector<model::CellPair>& pairs) {
     return pairs.empty() ? std::string()
                          : model::text(pairs.front()[0]) + "-" + model::text(pairs.front()[1]);

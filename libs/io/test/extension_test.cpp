@@ -143,6 +143,27 @@ model::RobotSpec spec_of(std::string_view members) {
   return spec ? spec.value() : model::RobotSpec{};
 }
 
+/// An empty "planned" is none, so each step is the same as in a file with a plan alone, and kinds
+/// and loads go with the modules that it attaches.
+TEST(Version2, makes_no_step_of_nothing_planned) {
+  const Document document = read(R"("kinds": {"heavy": {"mass_kg": 0.5}}, "modules": [[0,0,0]],
+      "later_steps": [[{"cell": [1,0,0], "kind": "heavy"}]], "steps": [{"detach": [[1,0,0]]}],
+      "loads": [{"cell": [1,0,0], "force_n": [0,0,-1]}])");
+  ASSERT_EQ(step_count(document), 2);
+  EXPECT_EQ(step_pointer(document, 0), "/later_steps/0");
+  EXPECT_EQ(step_pointer(document, 1), "/steps/0");
+  const Sequence sequence = make_sequence(document).value();
+  ASSERT_EQ(sequence.steps.size(), 2);
+  EXPECT_EQ(sequence.steps[0].attach, (std::vector<Cell>{{1, 0, 0}}));
+  EXPECT_EQ(sequence.steps[0].own_kinds, (std::vector<model::OwnKind>{{{1, 0, 0}, 1}}));
+  EXPECT_EQ(sequence.steps[0].payloads.size(), 1);
+  EXPECT_EQ(sequence.steps[1].detach, (std::vector<Cell>{{1, 0, 0}}));
+  const model::RobotSpec spec = make_spec(document).value();
+  EXPECT_TRUE(spec.planned.empty());
+  EXPECT_TRUE(spec.payloads.empty());
+  EXPECT_TRUE(spec.own_kinds.empty());
+}
+
 TEST(Version2, makes_steps_of_what_is_planned_and_of_the_plan) {
   const Document document = read(R"("kinds": {"heavy": {"mass_kg": 0.5}}, "modules": [[0,0,0]],
       "planned": [[1,0,0]], "later_steps": [[{"cell": [2,0,0], "kind": "heavy", "mass_kg": 0.6}]],

@@ -127,10 +127,15 @@ base::Result<model::RobotSpec> make_spec(const Document& document);
 /// A robot and what happens to it.
 struct Sequence {
   model::RobotSpec start;  ///< The existing modules.
-  /// Document::steps, each as a step that attaches its modules, then the plan. A load on a cell
-  /// where no module is at first belongs to the first step that attaches one there.
+  /// Document::steps from first_step() on, each as a step that attaches its modules, then the plan.
+  /// A load on a cell where no module is at first belongs to the first step that attaches one
+  /// there.
   std::vector<model::Step> steps;
 };
+
+/// Which of Document::steps is the first step of make_sequence(): the second, index 1, where
+/// nothing is planned.
+std::size_t first_step(const Document& document);
 
 /// The number of steps of make_sequence().
 std::size_t step_count(const Document& document);
