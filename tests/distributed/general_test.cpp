@@ -241,6 +241,21 @@ TEST(DistributedGeneral, is_undecided_where_another_solution_falls) {
   }
 }
 
+/// By the paper's law a facet that presses with 6e-6 N, less than a millionth of what else acts on
+/// it, holds 1.9 N across, and a connection breaks; by the exact law it carries 0.55 of what it
+/// can. Without that facet the paper's law has no state here, and the exact law would decide alone.
+TEST(DistributedGeneral, is_undecided_where_a_facet_that_hardly_presses_decides) {
+  model::RobotSpec spec{.existing = {{0, 0, 0}, {0, -1, 0}, {0, 1, 0}, {1, 0, 0}, {-1, -1, 0}}};
+  spec.support_z = std::nullopt;
+  spec.obstacles = {{.from = {}, .to = {}, .cells = {{1, 1, 0}, {0, 1, 1}, {1, -1, 0}}}};
+  spec.material.strength_vertical_n = 2.860943936170919;
+  spec.material.strength_lateral_n = 3.574985870156816;
+  const test::Comparison comparison = test::compare(test::robot_of(spec), {});
+  EXPECT_EQ(comparison.exact, verdict::Verdict::kUndecided);
+  EXPECT_TRUE(comparison.is_undecided()) << comparison.text();
+  EXPECT_EQ(comparison.result.answer.reason, agent::Reason::kAmbiguousFeet);
+}
+
 /// Two modules: a foot of mass M, and one of 0.1 kg in the next layer or, of prisms, row: the
 /// centre of mass is a share 0.1 / (0.1 + M) of their distance on the floor from the foot's middle.
 /// A foot is half a pitch wide, so they fall if that is a quarter of a pitch or more.

@@ -341,7 +341,8 @@ double Conductor::uneven_target() const {
 #ifdef HOLDFAST_AGENT_FLOOR_ONLY
   return kUnevenTolerance * (1 + size);
 #else
-  return kUnevenTolerance * (1 + size) * static_cast<double>(1U << slack_bits_);
+  const double share = is_exact() ? kEliminatedShare : 1;
+  return share * kUnevenTolerance * (1 + size) * static_cast<double>(1U << slack_bits_);
 #endif
 }
 

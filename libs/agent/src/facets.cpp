@@ -15,10 +15,6 @@ using base::Vec6;
 using mechanics::ContactState;
 using mechanics::kStuck;
 
-/// A facet that presses with less than this share of what else acts on it does not press: what is
-/// left of the residual (kUnevenTolerance) may be as much.
-constexpr double kPressureTie = 1e-6;
-
 /// A facet that is so near to slipping may slip: forces are good to some 1e-7 of what acts on it.
 constexpr double kSlipTie = 1e-5;
 
@@ -62,7 +58,7 @@ Vec6<double> sum_of(const Surroundings& node, const Vec6<double>& u, Force&& for
 }
 
 ContactState prescribed_state(const TouchingFacet& facet, const ContactSetting& contact,
-                              const Vec6<double>& local) {
+                              const Vec6<double>& local, double tie) {
   if (facet.is_bonded) {
     return kStuck;
   }
@@ -70,7 +66,7 @@ ContactState prescribed_state(const TouchingFacet& facet, const ContactSetting& 
   const Vec6<double> trial = mechanics::trial_force(law, local);
   const double sideways = absolute(trial[0]) + absolute(trial[1]);
   const double torque = absolute(trial[3]) + absolute(trial[4]) + absolute(trial[5]);
-  const bool is_rounding = absolute(trial[2]) < kPressureTie * (sideways + torque / law.lever);
+  const bool is_rounding = absolute(trial[2]) < tie * (sideways + torque / law.lever);
   if (is_rounding && law.law == mechanics::ContactLaw::kRegularised) {
     return {.pressed = false};
   }
@@ -100,15 +96,16 @@ Vec6<double> symmetric_product(const Surroundings& node, const ContactSetting& c
 Vec6<double> prescribed_force(const Surroundings& node, const ContactSetting& contact,
                               const Vec6<double>& u) {
   return sum_of(node, u, [&](const TouchingFacet& facet, const Vec6<double>& local) {
-    return mechanics::contact_force(contact.facet, prescribed_state(facet, contact, local),
-                                    facet.is_held, local);
+    return mechanics::contact_force(
+        contact.facet, prescribed_state(facet, contact, local, kPressureTie), facet.is_held, local);
   });
 }
 
-bool look_up_states(Surroundings& node, const ContactSetting& contact, const Vec6<double>& u) {
+bool look_up_states(Surroundings& node, const ContactSetting& contact, const Vec6<double>& u,
+                    double tie) {
   bool has_changed = false;
   for (TouchingFacet& facet : facets_of(node)) {
-    facet.wanted = prescribed_state(facet, contact, to_local(node, facet, u));
+    facet.wanted = prescribed_state(facet, contact, to_local(node, facet, u), tie);
     has_changed = has_changed || !(facet.wanted == facet.state);
   }
   return has_changed;

@@ -5,6 +5,7 @@
 #include "holdfast/agent/node.hpp"
 #include "holdfast/agent/order.hpp"
 #include "holdfast/agent/surroundings.hpp"
+#include "tolerances.hpp"
 
 /// The facets with which a node touches something: one on the floor, whose state is the node's, or,
 /// where it has surroundings, any on its faces, each in a state and a frame of its own.
@@ -20,7 +21,13 @@ inline Surroundings* surroundings_of(const Node& node) {
 #endif
 }
 
-// The same as below, of a node with surroundings.
+/// A facet that presses with less than this share of what else acts on it does not press: what is
+/// left of the residual (kUnevenTolerance) may be as much. Elimination leaves less
+/// (kEliminatedShare).
+inline constexpr double kPressureTie = 1e-6;
+inline constexpr double kPressureTieEliminated = kEliminatedShare * kPressureTie;
+
+// The same as below, of a node with surroundings. `tie`: one of these.
 namespace surrounded {
 base::Vec6<double> facet_force(const Surroundings& node, const ContactSetting& contact,
                                const base::Vec6<double>& u);
@@ -28,7 +35,8 @@ base::Vec6<double> symmetric_product(const Surroundings& node, const ContactSett
                                      const base::Vec6<double>& u);
 base::Vec6<double> prescribed_force(const Surroundings& node, const ContactSetting& contact,
                                     const base::Vec6<double>& u);
-bool look_up_states(Surroundings& node, const ContactSetting& contact, const base::Vec6<double>& u);
+bool look_up_states(Surroundings& node, const ContactSetting& contact, const base::Vec6<double>& u,
+                    double tie);
 void take_states(Surroundings& node);
 void hold_facets(Surroundings& node, bool frees, Report& report);
 void seek_facets(Surroundings& node, const ContactSetting& contact, const base::Vec6<double>& u,
@@ -123,7 +131,8 @@ inline base::Mat6<double> symmetric_facet_tangent(const Node& node, const Contac
 inline bool look_up_states(Node& node, const ContactSetting& contact, const base::Vec6<float>& g,
                            double t) {
   if (Surroundings* surroundings = surroundings_of(node); surroundings != nullptr) {
-    return surrounded::look_up_states(*surroundings, contact, position_along(node, g, t));
+    return surrounded::look_up_states(*surroundings, contact, position_along(node, g, t),
+                                      kPressureTie);
   }
   node.wanted = state_along(node, contact, g, t);
   return node.is_ground && !(node.wanted == node.state);

@@ -18,6 +18,10 @@ inline constexpr double kStateTolerance = 2e-2;
 /// whether they do decides what carries: contact states are told at this accuracy.
 inline constexpr double kUnevenTolerance = 1e-7;
 
+/// At this share of it by elimination, of which two steps leave a residual of some 1e-11. Then
+/// smaller pressures can be told from none, as the exact solver tells them down to 1e-9.
+inline constexpr double kEliminatedShare = 0.1;
+
 /// At so many times of it where that is not reached: displacements of a robot that hangs on weak
 /// springs are so large that their last digits are forces.
 inline constexpr double kHalting = 10;

@@ -130,8 +130,10 @@ bool TreeElimination::take_exchange(Workspace& ws, const Order& /*order*/, int /
   for (int i = 0; i < ws.node_count(); ++i) {
     Node& node = ws.node(i);
     node.has_changed = false;
-    if (surroundings_of(node) != nullptr) {
-      node.has_changed = look_up_states(node, ws.contact, {}, 0);  // The next kFactor takes them.
+    if (Surroundings* surroundings = surroundings_of(node); surroundings != nullptr) {
+      // The next kFactor takes them.
+      node.has_changed =
+          surrounded::look_up_states(*surroundings, ws.contact, node.u, kPressureTieEliminated);
     } else {
       follow_state(node, ws.contact, false);
     }
