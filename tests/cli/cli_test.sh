@@ -386,6 +386,16 @@ for words in 'check noted.json' 'simulate noted.json' 'simulate --steps noted_st
   expect_line err "note: .*'colour_scheme'"
   expect_line out "  note  .*'colour_scheme'"
 done
+# Stages behind pieces are not judged, and say why.
+printf '{"format": "holdfast-structure", "version": 2, "modules": [[0,0,0], [1,0,0], [2,0,0]],
+  "steps": [{"detach": [[1,0,0]]}]}' >split.json
+expect_exit 2 simulate --stages split.json
+expect_line out '0 shift .* undecided  *-  the robot would be in pieces$'
+expect_line out '0 connect .* undecided  *-  not judged: the robot would be in pieces$'
+# Nothing happens to a module that has been taken off.
+json '"modules": [[0,0,0], [1,0,0]]' >pair.json
+expect_exit 0 simulate pair.json --detach 1,0,0@0.1 --kill 1,0,0@5
+expect_line out 'note  .*\(1,0,0\) was not there when it was to fall silent: nothing came of that$'
 expect_exit 0 convert noted.json noted_again.xml
 expect_line err "note: .*'colour_scheme'"
 

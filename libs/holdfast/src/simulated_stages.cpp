@@ -71,6 +71,13 @@ std::optional<plan::StageId> find_first(const std::vector<SimulatedStep>& steps,
   return std::nullopt;
 }
 
+/// Why a stage has its answer; of one that the robot did not come to, why it did not.
+std::string reason_text(const SimulatedStep& step, const agent::Answer& answer) {
+  return answer.verdict == agent::Verdict::kNone
+             ? fmt::format("not judged: {}", agent::name(step.answer.reason))
+             : agent::name(answer.reason);
+}
+
 }  // namespace
 
 std::optional<plan::StageId> SimulatedStages::first_unsafe() const {
@@ -171,7 +178,7 @@ std::string simulated_stages_text(const StepsFile& file, const SimulatedStages& 
                      verdict::name(stages.exact.steps[i].stages[at(stage)].verdict),
                      verdict::name(to_verdict(answer.verdict)),
                      ratio ? io::beside_one(*ratio, 4) : "-", has_limit ? limit_name(answer) : "",
-                     has_limit ? ": " : "", agent::name(answer.reason),
+                     has_limit ? ": " : "", reason_text(step, answer),
                      step.all_agree ? "" : "; NOT all agree");
     }
   }
@@ -185,13 +192,14 @@ std::string simulated_stages_text(const StepsFile& file, const SimulatedStages& 
 
 namespace {
 
-void write_stage(io::JsonStream& json, const SimulatedStages& stages, const agent::Answer& answer,
-                 verdict::Verdict exact) {
+void write_stage(io::JsonStream& json, const SimulatedStages& stages, const SimulatedStep& step,
+                 Stage stage, verdict::Verdict exact) {
+  const agent::Answer& answer = step.stages[at(stage)];
   json.begin_object();
   json.member("verdict", verdict::name(to_verdict(answer.verdict)));
   json.key("reasons");
   json.begin_array();
-  json.value(agent::name(answer.reason));
+  json.value(reason_text(step, answer));
   json.end_array();
   json.member("load_ratio_max", load_ratio_max(answer));
   if (stages.has_laws && load_ratio_max(answer)) {
@@ -220,8 +228,7 @@ void write_step(io::JsonStream& json, const StepsFile& file, const SimulatedStag
   json.begin_object();
   for (const Stage stage : kStages) {
     json.key(plan::name(stage));
-    write_stage(json, stages, step.stages[at(stage)],
-                stages.exact.steps[index].stages[at(stage)].verdict);
+    write_stage(json, stages, step, stage, stages.exact.steps[index].stages[at(stage)].verdict);
   }
   json.end_object();
   json.member("failing", step.failing ? std::optional<std::string_view>(plan::name(*step.failing))

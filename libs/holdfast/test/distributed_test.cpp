@@ -61,6 +61,38 @@ TEST(Simulate, says_so_if_its_load_ratios_are_those_of_another_contact_law) {
             std::string::npos);
 }
 
+/// A module that was taken off can neither fall silent nor be taken off; before, it can, and again
+/// when it has been put on.
+TEST(Simulate, says_what_was_to_happen_to_modules_that_are_not_there) {
+  using Happening = sim::Fault::Kind;
+  const Structure structure = post();
+  const CheckResult exact = check(structure);
+  const auto notes_of = [&](std::vector<sim::Fault> faults) {
+    const auto run = simulate(structure, exact, {.faults = std::move(faults)});
+    return run ? run.value().notes : std::vector<std::string>();
+  };
+  const std::string nothing = ": nothing came of that";
+  const std::vector<std::string> gone =
+      notes_of({{.kind = Happening::kKill, .at = 9000, .module = 2},
+                {.kind = Happening::kDetach, .at = 10, .module = 2}});
+  ASSERT_EQ(gone.size(), 2U);
+  EXPECT_EQ(gone[1], "(2,0,0) was not there when it was to fall silent" + nothing);
+  const std::vector<std::string> twice =
+      notes_of({{.kind = Happening::kDetach, .at = 10, .module = 2},
+                {.kind = Happening::kDetach, .at = 10, .module = 2}});
+  ASSERT_EQ(twice.size(), 2U);
+  EXPECT_EQ(twice[1], "(2,0,0) was not there when it was to be taken off" + nothing);
+  EXPECT_EQ(notes_of({{.kind = Happening::kKill, .at = 5, .module = 2},
+                      {.kind = Happening::kDetach, .at = 10, .module = 2}})
+                .size(),
+            1U);
+  EXPECT_EQ(notes_of({{.kind = Happening::kDetach, .at = 10, .module = 2},
+                      {.kind = Happening::kAttach, .at = 20, .module = 2},
+                      {.kind = Happening::kKill, .at = 9000, .module = 2}})
+                .size(),
+            1U);
+}
+
 TEST(Simulate, ends_when_the_caller_says_so_and_claims_nothing_then) {
   // An arm for which the Jacobi method takes millions of events.
   const auto arm = load_text(
