@@ -87,6 +87,20 @@ class Outputs:
                     65)
         self.expect('no lattice', self.run('check', '--lattice', 'fcc', file).returncode, 64)
 
+    def check_notes(self):
+        """In parts a report has the notes that it has of the whole, as holdfast check."""
+        file = self.path('noted.json')
+        with open(file, 'w', encoding='ascii') as text:
+            text.write('{"format": "holdfast-structure", "version": 1, "oops": 1, '
+                       '"modules": [[0,0,0], [1,0,0], [2,0,0]]}')
+        said = subprocess.run([self.holdfast, 'check', file], text=True, capture_output=True,
+                              check=True).stdout
+        notes = [line for line in said.splitlines() if line.startswith('  note ')]
+        self.expect('notes of the whole', len(notes), 1)
+        done = self.run('check', file, '--alone-max', '0')
+        found = [line for line in done.stdout.splitlines() if line.startswith('  note ')]
+        self.expect('notes in parts', found, notes)
+
     def check_picture(self, cube, size):
         """Each module, connection and facet of a cube is a cell of one piece."""
         picture = self.path('cube.pvtu')
@@ -165,6 +179,7 @@ def main():
     with tempfile.TemporaryDirectory() as folder:
         outputs = Outputs(os.path.abspath(sys.argv[1]), os.path.abspath(sys.argv[2]), folder)
         outputs.check_words()
+        outputs.check_notes()
         cube = outputs.check_generated()
         outputs.check_picture(cube, 12)
         outputs.check_checkpoint()

@@ -104,11 +104,15 @@ std::string report_text(const Structure& structure, const Part& part, const Chec
   if (assessment.load_ratio_max) {
     text += fmt::format("  load ratio  {}\n", range_text(assessment));
   }
-  return text + fmt::format("  contact     {}; {}, {} of multigrid in {:.2f} s on {}\n",
-                            verdict::name(assessment.contact_model),
-                            host::counted(assessment.equilibrium.steps, "linear solve"),
-                            host::counted(assessment.equilibrium.iteration_count, "iteration"),
-                            checked.seconds, host::counted(part.share.ranks->count(), "rank"));
+  text += fmt::format("  contact     {}; {}, {} of multigrid in {:.2f} s on {}\n",
+                      verdict::name(assessment.contact_model),
+                      host::counted(assessment.equilibrium.steps, "linear solve"),
+                      host::counted(assessment.equilibrium.iteration_count, "iteration"),
+                      checked.seconds, host::counted(part.share.ranks->count(), "rank"));
+  for (const std::string& warning : structure.warnings) {
+    text += fmt::format("  note        {}\n", warning);
+  }
+  return text;
 }
 
 }  // namespace holdfast::cluster
