@@ -15,6 +15,7 @@ from matplotlib.ticker import MaxNLocator  # type: ignore[import]
 
 from . import _look
 from ._plans import Order, Stage, Steps
+from ._robot import counted
 from ._verdict import VERDICTS
 
 _RATIO_INK, _MARGIN_INK, _LIMIT_INK = '#2f6690', '#3f6b7d', '#d1495b'
@@ -107,7 +108,7 @@ def draw_order(found: Order, figure: Any) -> Any:
     margin.plot(steps, margins, color=_MARGIN_INK, marker='.', linewidth=1.2)
     _limit(margin, 0, _MARGIN_WORDS)
     margin.set_xlabel('step')
-    titles = {'found': f'an order of {len(found.batches)} steps',
+    titles = {'found': f'an order of {counted(len(found.batches), "step")}',
               'none': 'there is no safe order', 'not-found': 'no order was found'}
     figure.suptitle(titles[found.outcome.value])
     return figure

@@ -12,7 +12,7 @@ import numpy.typing as npt
 
 from . import _core
 from ._progress import Progress, told
-from ._robot import Cell, Cells, Path, Robot, Table
+from ._robot import Cell, Cells, Path, Robot, Table, counted
 from ._verdict import VERDICTS, Verdict
 
 
@@ -197,7 +197,7 @@ class Steps(_Texts):
         return len(self._held.stages)
 
     def __repr__(self) -> str:
-        return f'<holdfast.Steps: {len(self)} steps, {self.verdict.value}>'
+        return f'<holdfast.Steps: {counted(len(self), "step")}, {self.verdict.value}>'
 
 
 def _stage(place: Optional[tuple[int, int]]) -> Optional[tuple[int, Stage]]:
@@ -295,7 +295,7 @@ class Order(_Texts):
         return self._held.certificate()
 
     def __repr__(self) -> str:
-        return f'<holdfast.Order {self.outcome.value}: {len(self.batches)} steps>'
+        return f'<holdfast.Order {self.outcome.value}: {counted(len(self.batches), "step")}>'
 
 
 def order(target: Union[Robot, Path], *, start: Optional[Cells] = None, reach: str = 'free',
@@ -369,7 +369,7 @@ class Moves(_Texts):
         return Robot._of(self._held.as_steps())
 
     def __repr__(self) -> str:
-        return f'<holdfast.Moves {self.outcome.value}: {len(self.steps)} steps>'
+        return f'<holdfast.Moves {self.outcome.value}: {counted(len(self.steps), "step")}>'
 
 
 def move(start: Union[Robot, Path], target: Union[Robot, Path], *, pivots: bool = False,
@@ -382,7 +382,7 @@ def move(start: Union[Robot, Path], target: Union[Robot, Path], *, pivots: bool 
 
     >>> row = Robot([[0, 0, 0], [1, 0, 0], [2, 0, 0]])
     >>> move(row, Robot([[0, 0, 0], [1, 0, 0], [1, 0, 1]]))
-    <holdfast.Moves found: 1 steps>
+    <holdfast.Moves found: 1 step>
     """
     with told(progress, 'move') as tell:
         found: Moves = Moves._of(_core.move(_robot(start)._held, _robot(target)._held, pivots,

@@ -27,6 +27,11 @@ Table = npt.NDArray[Any]
 Path = Union[str, bytes, 'os.PathLike[str]', 'os.PathLike[bytes]']
 
 
+def counted(count: int, one: str) -> str:
+    """A number of things with their noun: 1 step, 2 steps."""
+    return f'{count} {one if count == 1 else one + "s"}'
+
+
 def _plain(value: Any) -> Any:
     """What json does not know: numpy's arrays and numbers."""
     if isinstance(value, np.ndarray):
@@ -522,8 +527,7 @@ class Robot:
         planned = self._held.planned_count
         count = len(self) - planned
         name = f' {self.name!r}' if self.name else ''
-        modules = 'module' if count == 1 else 'modules'
-        return (f'<holdfast.Robot{name} of {count} {modules}'
+        return (f'<holdfast.Robot{name} of {counted(count, "module")}'
                 f'{f" and {planned} planned" if planned else ""}, {self.lattice}>')
 
 

@@ -35,6 +35,11 @@ printf '{"format": "holdfast-structure", "version": 2, %s}' \
 expect_exit 0 order tower.json --from smooth.json
 expect_line err "smooth.json: note: only its cells are taken, all else is the target's, "\
 "which differs in floor"
+# A load of zero is none.
+printf '{"format": "holdfast-structure", "version": 2, %s}' \
+  '"modules": [[0,0,0]], "loads": [{"cell": [0,0,0], "force_n": [0,0,0]}]' >idle.json
+expect_exit 0 order tower.json --from idle.json
+! grep -q 'which differs' err || fault 'a load of zero differs from none'
 expect_exit 65 order tower.json --from planned.json
 expect_line err 'planned.json: it has planned modules or steps'
 

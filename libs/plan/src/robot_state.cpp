@@ -40,6 +40,12 @@ std::vector<std::string_view> named(
   return names;
 }
 
+/// Force and torque; of none as of one of zero.
+auto load_of(const ModuleState& module) {
+  const model::Payload payload = module.payload.value_or(model::Payload{});
+  return std::pair(payload.force_n, payload.torque_nmm);
+}
+
 }  // namespace
 
 void add_payload(const model::Payload& payload, ModuleState& module) {
@@ -249,7 +255,7 @@ std::vector<std::string_view> differences_of_modules(const RobotState& a, const 
     is_fixed_alike = is_fixed_alike && one.is_fixed == other.is_fixed;
     is_kind_alike = is_kind_alike && one.kind == other.kind;
     is_mass_alike = is_mass_alike && a.mass_kg(static_cast<std::int32_t>(i)) == b.mass_kg(index);
-    is_load_alike = is_load_alike && one.payload == other.payload;
+    is_load_alike = is_load_alike && load_of(one) == load_of(other);
     for (const base::Direction direction : base::directions(a.lattice())) {
       const Cell beside = base::neighbour(a.lattice(), one.cell, direction);
       const bool are_both =

@@ -21,11 +21,6 @@ bool is_square(const model::Material& material) {
   return material.moment_x_mm4 == material.moment_y_mm4;
 }
 
-std::vector<Cell> sorted(std::vector<Cell> cells) {
-  std::ranges::sort(cells);
-  return cells;
-}
-
 }  // namespace
 
 Cell RobotSymmetry::Image::of(const Cell& cell) const {
@@ -71,7 +66,8 @@ void RobotSymmetry::find_box(const model::RobotSpec& spec) {
 
 void RobotSymmetry::add_if_symmetric(const model::RobotSpec& spec, const Image& image) {
   for (const std::vector<Cell>* const cells : {&spec.existing, &spec.planned, &spec.fixed}) {
-    const std::vector<Cell> all = sorted(*cells);
+    std::vector<Cell> all = *cells;
+    std::ranges::sort(all);
     const auto is_there = [&](const Cell& cell) {
       return std::ranges::binary_search(all, image.of(cell));
     };

@@ -11,6 +11,7 @@
 #include <string>
 #include <tuple>
 
+#include "holdfast/host/text.hpp"
 #include "way.hpp"
 
 namespace holdfast::plan {
@@ -69,9 +70,9 @@ std::optional<base::Error> find_fault(const RobotState& start, const RobotState&
                     fmt::join(different, ", ")));
   }
   if (start.module_count() != target.module_count()) {
-    return bad_pair(fmt::format(
-        "the robot has {} modules and its target {}; allowed are shapes of the same modules",
-        start.module_count(), target.module_count()));
+    return bad_pair(
+        fmt::format("the robot has {} and its target {}; allowed are shapes of the same modules",
+                    host::counted(start.module_count(), "module"), target.module_count()));
   }
   for (const auto& [cell, alike] : from.fixed) {
     const auto found = to.fixed.find(cell);

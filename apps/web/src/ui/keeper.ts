@@ -98,7 +98,10 @@ export class Keeper {
   }
 }
 
-export const nameOf = ({ name, modules }: KeptRobot) => name || `a structure of ${modules.length / 4} modules`;
+export function nameOf({ name, modules }: KeptRobot): string {
+  const count = modules.length / 4;
+  return name || `a structure of ${count} ${count === 1 ? 'module' : 'modules'}`;
+}
 
 export const whenOf = ({ time }: KeptRobot) =>
   new Date(time).toLocaleString('en', { dateStyle: 'medium', timeStyle: 'short' });

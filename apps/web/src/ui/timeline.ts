@@ -403,5 +403,6 @@ function summary({ report, texts }: JudgedSteps): string {
   const ratio = report.load_ratio_max === null ? '' : `; largest load ${formatRatio(report.load_ratio_max)}`;
   const margin = report.margin_min_mm === null ? '' : `; smallest margin ${report.margin_min_mm.toFixed(2)} mm`;
   const first = report.first_unsafe ? `; first unsafe: step ${report.first_unsafe.step}, ${report.first_unsafe.stage}` : '';
-  return `${safe} of ${texts.length} steps safe in every stage${ratio}${margin}${first}.`;
+  const steps = texts.length === 1 ? 'step' : 'steps';
+  return `${safe} of ${texts.length} ${steps} safe in every stage${ratio}${margin}${first}.`;
 }
