@@ -15,7 +15,6 @@
 #include "carried_force.hpp"
 #include "energy_bound.hpp"
 #include "family_spec.hpp"
-#include "holdfast/base/lattice.hpp"
 #include "holdfast/model/families.hpp"
 #include "holdfast/model/material.hpp"
 #include "nearest_first.hpp"
@@ -27,13 +26,6 @@ namespace {
 
 using base::at;
 using base::Vec6;
-
-Vec6<double> place_of(const model::Robot& robot, std::size_t module) {
-  const auto place = base::place_of(robot.lattice(),
-                                    base::axial_of(robot.lattice(), robot.modules()[module].cell));
-  const double pitch = robot.material().pitch_mm;
-  return {pitch * place[0], pitch * place[1], pitch * place[2], 0, 0, 0};
-}
 
 Vec6<double> opposite_of(Vec6<double> vec) {
   for (double& value : vec) {
@@ -70,7 +62,7 @@ Vec6<double> ground_load(const model::Robot& robot, const LoadSpread::Part& part
     if (found != part.modules.end()) {
       const auto place = static_cast<std::size_t>(found - part.modules.begin());
       base::add_to(sum, force_at(base::multiply(beam.block_11(facet.direction), u[place]),
-                                 opposite_of(place_of(robot, at(facet.module)))));
+                                 opposite_of(node_place(robot, at(facet.module)))));
     }
   }
   return sum;
@@ -94,7 +86,7 @@ TEST(LoadSpread, takes_a_load_to_the_ground_whole) {
       const Vec6<double> load = robot.loads()[to];
       const auto u = spread.displacement(*entry, load);
       ASSERT_FALSE(u.empty()) << family << module;
-      const Vec6<double> whole = force_at(load, opposite_of(place_of(robot, to)));
+      const Vec6<double> whole = force_at(load, opposite_of(node_place(robot, to)));
       const Vec6<double> borne = ground_load(robot, *entry->part, u);
       for (std::size_t k = 0; k < 6; ++k) {
         EXPECT_NEAR(borne[k], whole[k], k < 3 ? 1e-8 : 1e-5) << family << module;

@@ -133,11 +133,7 @@ Displacements displacements(const model::Robot& target, const EnergyBound& bound
                             std::size_t count) {
   base::Vec6<double> load{};
   for (std::size_t i = core.size(); i < count; ++i) {
-    const auto place = base::place_of(target.lattice(),
-                                      base::axial_of(target.lattice(), target.modules()[i].cell));
-    const double pitch = target.material().pitch_mm;
-    base::add_to(load, force_at(target.loads()[i], {-pitch * place[0], -pitch * place[1],
-                                                    -pitch * place[2], 0, 0, 0}));
+    base::add_to(load, load_about_origin(target, i, node_place(target, i)));
   }
   Displacements u = core;
   for (std::size_t i = 0; i < core.size(); ++i) {
