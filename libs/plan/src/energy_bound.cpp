@@ -3,7 +3,9 @@
 #include "energy_bound.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
+#include <cstdio>
 #include <limits>
 #include <utility>
 
@@ -335,7 +337,7 @@ bool EnergyBound::begin(const std::vector<Element>& elements, const verdict::Ass
     borne_.assign(section_->modules().size(), {});
   }
   std::ranges::for_each(facets_, [&](std::size_t facet) { look_at_facet(facet); });
-  watched_.begin(elements);
+  watched_.begin(elements, u_);
   find_cuts(elements);
   return true;
 }
@@ -521,22 +523,17 @@ bool EnergyBound::is_pressed_by_adjoint(std::size_t index) {
   if (section_ != nullptr || nodes_[base::at(facet.module)].is_new) {
     return false;
   }
-  const auto known = watched_.find(index, u_);
-  if (!known) {
-    return false;
-  }
-  Vec force = trial_force(facet, u_[base::at(facet.module)]);
-  for (std::size_t i = 0; i < 3; ++i) {
-    force[2 + i] += known->work[i];
-  }
   const double b = target_.foot_half_width_mm();
-  const auto holds = [&](double torque, double mx, double my) {
-    const double slack = -force[2] * b - std::abs(torque);
-    return std::ranges::all_of(std::array{1.0, -1.0}, [&](double sign) {
-      return known->error({b, sign * mx, sign * my}) * energy_error() < slack;
-    });
+  const auto is_pressed = [&](const std::optional<WatchedFacets::Answer>& known) {
+    const auto holds = [&](double torque, double x, double y) {
+      const double slack = -known->force[0] * b - std::abs(torque);
+      return std::ranges::all_of(std::array{1.0, -1.0}, [&](double sign) {
+        return known->error({b, sign * x, sign * y}, energy_error()) < slack;
+      });
+    };
+    return known && holds(known->force[1], 1, 0) && holds(known->force[2], 0, 1);
   };
-  return holds(force[3], 1, 0) && holds(force[4], 0, 1);
+  return is_pressed(watched_.find(index, u_)) || is_pressed(watched_.find_finer(index, u_));
 }
 
 std::map<std::size_t, int> EnergyBound::take_doubtful() { return std::exchange(doubtful_, {}); }
@@ -657,12 +654,12 @@ std::optional<double> EnergyBound::bound() {
 }
 
 std::optional<double> EnergyBound::improve(const std::vector<Vec>& displacement,
-                                           double energy_error, double load_ratio) {
+                                           const FollowedRobot::Result& known) {
   settle_new();
-  watched_.improve();
+  watched_.improve(known.moved);
   u_ = displacement;
-  solved_error_ = energy_error;
-  solved_ratio_ = load_ratio;
+  solved_error_ = known.energy_error;
+  solved_ratio_ = known.load_ratio;
   std::ranges::for_each(facets_, [&](std::size_t facet) { look_at_facet(facet); });
   return bound();
 }

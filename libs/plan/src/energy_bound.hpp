@@ -11,6 +11,7 @@
 
 #include "changed_forces.hpp"
 #include "cut_connections.hpp"
+#include "followed_robot.hpp"
 #include "holdfast/model/lattice_beam.hpp"
 #include "holdfast/model/robot.hpp"
 #include "holdfast/plan/element_set.hpp"
@@ -66,10 +67,9 @@ class EnergyBound {
   std::optional<double> add(Element module);
 
   /// Goes on from better displacements of the robot that is there now, all of whose facets are
-  /// stuck, by module of the target. They are off by `energy_error` in the energy norm at most, and
-  /// no load ratio exceeds `load_ratio`. Returns as add() does.
+  /// stuck, by module of the target. Returns as add() does.
   std::optional<double> improve(const std::vector<base::Vec6<double>>& displacement,
-                                double energy_error, double load_ratio);
+                                const FollowedRobot::Result& known);
 
   /// No module is attached until the next begin(): gives back what takes much memory.
   void end() { spread_.clear(); }

@@ -51,7 +51,7 @@ std::shared_ptr<const FacetAdjoint> find_adjoint(solver::LinearSystem& system,
   const std::size_t module = at(target.facets()[facet].module);
   const auto place = static_cast<std::size_t>(
       std::ranges::lower_bound(elements, static_cast<Element>(module)) - elements.begin());
-  const auto loads = facet_loads(target, system.beam(), target.facets()[facet]);
+  const auto& loads = adjoint->load = facet_loads(target, system.beam(), target.facets()[facet]);
   for (std::size_t i = 0; i < 3; ++i) {
     std::vector<Vec6<double>> on_modules(elements.size());
     on_modules[place] = loads[i];

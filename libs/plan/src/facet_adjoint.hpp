@@ -27,10 +27,16 @@ namespace holdfast::plan {
 /// 1/2 |z* - z|^2: of the core's part z is the minimum itself, and the rest of it is 1/2 |e|^2.
 /// Far from the facet e is small, and where a module hangs on one other it is zero. So the force is
 /// known but for the product of two errors [Becker 2001].
+///
+/// That is also q u* = z f - (K z - q) u + ..., and K z - q is next to nothing but where modules
+/// have been attached: there it is what e puts on them, and on the core what its solution has left.
+/// So once the whole sum is known for some u_0 of a state, it takes a sum over new modules to know
+/// it for other u and later states, but for (the error of z) |u - u_0|.
 struct FacetAdjoint {
   using Vec = base::Vec6<double>;
 
   std::size_t facet = 0;                             ///< Of the target.
+  std::array<Vec, 3> load{};                         ///< q on its module, for fz, mx and my.
   std::shared_ptr<const std::vector<Element>> core;  ///< Its modules, of the target, ascending.
   std::vector<std::array<Vec, 3>> z;                 ///< By place in the core, for fz, mx and my.
   std::array<double, 3> error{};                     ///< Of z, in the energy norm.

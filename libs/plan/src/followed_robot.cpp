@@ -424,9 +424,9 @@ const std::vector<FollowedRobot::Loaded>& FollowedRobot::most_loaded_first() {
   return loaded_;
 }
 
-/// That no connection's exceeds, if the displacements are off by `error`.
-double FollowedRobot::load_ratio(double error) {
-  const double moved = std::sqrt(std::max(0.0, work_of(given_, moved_))) + motion_error_;
+/// That no connection's exceeds, if the core has moved so far and the displacements are off by
+/// `error`.
+double FollowedRobot::load_ratio(double moved, double error) {
   double largest = 0;
   for (const Loaded& each : most_loaded_first()) {
     if (each.ratio + ratio_per_norm_ * moved <= largest) {
@@ -445,7 +445,8 @@ double FollowedRobot::load_ratio(double error) {
 FollowedRobot::Result FollowedRobot::finish(double gap_energy) {
   const double solved = core_error_ + motion_error_;
   const double error = std::sqrt(gap_energy + solved * solved);
-  return {.energy_error = error, .load_ratio = load_ratio(error)};
+  const double moved = std::sqrt(std::max(0.0, work_of(given_, moved_))) + motion_error_;
+  return {.energy_error = error, .load_ratio = load_ratio(moved, error), .moved = moved};
 }
 
 /// Gives loads to the core; new modules follow it. False: it cannot be solved.

@@ -43,6 +43,7 @@ class FollowedRobot {
   struct Result {
     double energy_error = 0;  ///< How far displacement() is off in the energy norm, at most.
     double load_ratio = 0;    ///< No load ratio but those of cuts exceeds this.
+    double moved = 0;  ///< How far the core has moved since begin(), in the energy norm, at most.
   };
 
   /// Keeps a reference to the robot, all modules of which are there in the end.
@@ -118,7 +119,7 @@ class FollowedRobot {
   double gap_energy(const std::vector<Vec>& gap) const;
   Result finish(double gap_energy);
   const std::vector<Loaded>& most_loaded_first();
-  double load_ratio(double error);
+  double load_ratio(double moved, double error);
   double ratio_of(std::size_t module, std::size_t other, int direction, double known) const;
 
   static constexpr std::int32_t kAbsent = -1;

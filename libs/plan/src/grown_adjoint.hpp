@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "facet_adjoint.hpp"
@@ -33,7 +34,8 @@ class GrownAdjoint {
   std::size_t facet() const { return core_->facet; }
 
   /// Continues z to all modules of a connected state; from the core if it has been continued to
-  /// others. False if the state lacks a module of the core.
+  /// others. From then on answers for this state and those beyond. False if the state lacks a
+  /// module of the core.
   bool grow_to(const std::vector<Element>& elements);
 
   /// Continues z to a module beside one that z is known for.
@@ -47,13 +49,21 @@ class GrownAdjoint {
     return count < grown_modules_.size() && base::at(grown_modules_[count]) == module;
   }
 
-  /// z (f - K u) for fz, mx and my, where displacements leave f - K u unbalanced, by module of the
-  /// target, in the state that has so many modules beyond the core.
-  Triple work(const std::vector<Vec>& rest, std::size_t count) const;
+  /// q u + z (f - K u) for fz, mx and my, of displacements u that leave `rest`, f - K u,
+  /// unbalanced, both by module of the target, in the state that has so many modules beyond the
+  /// core.
+  Triple force(const std::vector<Vec>& u, const std::vector<Vec>& rest, std::size_t count) const;
 
-  /// What the module that comes after so many adds to work(): by its load, its facets and its beams
-  /// to modules that are there.
-  Triple work_of_next(std::size_t count, const std::vector<Vec>& u) const;
+  /// What of that is due to modules beyond the core, from one to before another: z f of these, less
+  /// what e puts on modules times how far these are displaced.
+  Triple share(const std::vector<Vec>& u, std::size_t first, std::size_t end) const;
+
+  /// How that of the first so many changes if modules move from where they were still: but for
+  /// error_of_moved() times how far the core moves, in the energy norm.
+  Triple share_of_moved(const std::vector<Vec>& u, const std::vector<Vec>& still,
+                        std::size_t count) const;
+
+  double error_of_moved(const Triple& factors) const;
 
   /// What |z* - z| is at most for a combination of fz, mx and my, in the state that has so many
   /// modules beyond the core.
@@ -61,6 +71,12 @@ class GrownAdjoint {
 
  private:
   static constexpr std::int32_t kAbsent = -1;
+
+  /// What the beam of a module that has grown puts on one that was there, as much as z moves them.
+  struct Pull {
+    std::size_t module = 0;
+    std::array<Vec, 3> force{};
+  };
 
   const Vec& z(std::size_t component, std::size_t module) const {
     const std::size_t place = base::at(place_[module]);
@@ -73,6 +89,11 @@ class GrownAdjoint {
   void shrink_to_core();
   bool is_beside(std::size_t module) const;
   std::array<double, 9> products_of_gaps(std::size_t module) const;
+  void find_pulls(std::size_t module);
+  void settle();
+  bool leave_out(std::size_t count);
+  void add_up(const Pull& pull);
+  std::span<const Pull> pulls(std::size_t first, std::size_t end) const;
   template <class Each>
   void for_each_beam(std::size_t module, const Each& each) const;
   template <class Each>
@@ -88,6 +109,15 @@ class GrownAdjoint {
   std::vector<Element> grown_modules_;     ///< and whose it is.
   /// <e_i, e_k>, by rows, with no module beyond the core, with one, and so on.
   std::vector<std::array<double, 9>> gram_;
+  std::vector<Triple> lift_;  ///< z f of grown modules, summed up in the same way.
+  /// Of those that had grown at the last grow_to(), so many, the pulls, one of each module that is
+  /// pulled, and |e|^2 of those whose pulls are left out.
+  std::size_t settled_count_ = 0;
+  std::vector<Pull> settled_;
+  std::vector<std::int32_t> settled_place_;  ///< By module; kAbsent.
+  Triple left_out_{};
+  std::vector<Pull> pulls_;              ///< Of those that have grown since,
+  std::vector<std::size_t> pull_count_;  ///< with none of them, with one, and so on so many.
 };
 
 using GrownAdjoints = std::vector<std::shared_ptr<GrownAdjoint>>;

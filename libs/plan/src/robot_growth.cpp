@@ -373,8 +373,7 @@ verdict::Assessment RobotGrowth::assess_alone(const ElementSet& state) const {
 std::optional<double> RobotGrowth::bound_by_following(const Tools& tools) {
   auto known = tools.followed->solve();
   for (int i = 0; known; ++i) {
-    const auto ratio =
-        tools.bound.improve(tools.followed->displacement(), known->energy_error, known->load_ratio);
+    const auto ratio = tools.bound.improve(tools.followed->displacement(), *known);
     if (ratio || i == kImprovementMax) {
       return ratio;
     }

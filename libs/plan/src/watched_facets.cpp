@@ -14,6 +14,16 @@ namespace holdfast::plan {
 using base::at;
 using base::Direction;
 
+namespace {
+
+void add(GrownAdjoint::Triple& sum, const GrownAdjoint::Triple& more) {
+  for (std::size_t i = 0; i < sum.size(); ++i) {
+    sum[i] += more[i];
+  }
+}
+
+}  // namespace
+
 WatchedFacets::WatchedFacets(const model::Robot& target)
     : target_(&target),
       beam_(model::beam_section(target.material()), target.lattice()),
@@ -32,29 +42,36 @@ bool WatchedFacets::has_asked_for(std::size_t facet) const {
   });
 }
 
-void WatchedFacets::begin(const std::vector<Element>& elements) {
+void WatchedFacets::begin(const std::vector<Element>& elements, const std::vector<Vec>& u) {
   elements_ = elements;
+  u_ = watched_.empty() ? std::vector<Vec>() : u;
+  rest_.clear();
   attached_.clear();
   for (Watched& watched : watched_) {
     watched.has_begun = false;
   }
-  improve();
+  improve(0);
 }
 
-void WatchedFacets::improve() {
+void WatchedFacets::improve(double moved) {
+  moved_ = moved;
   settled_count_ = attached_.size();
-  rest_.clear();
   for (Watched& watched : watched_) {
-    watched.has_rest = false;
+    watched.is_settled = false;
+    watched.finer.reset();
   }
 }
 
-void WatchedFacets::begin(Watched& watched) const {
+void WatchedFacets::begin(Watched& watched) {
   const auto count = watched.adjoint->count_in(elements_);
   watched.has_begun = true;
   watched.is_void = !count;
   watched.begin_count = count.value_or(0);
   watched.attached = 0;
+  if (count) {
+    find_rest();
+    watched.first = watched.adjoint->force(u_, rest_, *count);
+  }
 }
 
 /// Goes on to so many attached modules; false if others come next on the adjoint's way.
@@ -66,71 +83,90 @@ bool WatchedFacets::goes_on(Watched& watched, std::size_t attached) const {
   return !watched.is_void;
 }
 
-std::optional<WatchedFacets::Answer> WatchedFacets::find(std::size_t facet,
-                                                         const std::vector<Vec>& u) {
+/// Null if it is not watched.
+WatchedFacets::Watched* WatchedFacets::find_watched(std::size_t facet) {
   const auto found = std::ranges::find_if(
       watched_, [&](const Watched& known) { return known.adjoint->facet() == facet; });
-  if (found == watched_.end()) {
-    return std::nullopt;
-  }
-  Watched& watched = *found;
-  watched.is_asked_for = true;
-  if (!watched.has_begun) {
-    begin(watched);
-  }
-  if (!watched.has_rest && goes_on(watched, settled_count_)) {
-    find_rest(u);
-    watched.work = watched.adjoint->work(rest_, watched.begin_count + settled_count_);
-    watched.has_rest = true;
-  }
-  while (watched.attached < attached_.size() && goes_on(watched, watched.attached + 1)) {
-    const auto more = watched.adjoint->work_of_next(watched.begin_count + watched.attached - 1, u);
-    for (std::size_t i = 0; i < more.size(); ++i) {
-      watched.work[i] += more[i];
-    }
-  }
-  if (watched.is_void) {
-    return std::nullopt;
-  }
-  return Answer{.adjoint = watched.adjoint.get(),
-                .count = watched.begin_count + watched.attached,
-                .work = watched.work};
+  return found == watched_.end() ? nullptr : &*found;
 }
 
-/// f - K u of the modules that have the last displacements, unless it is known.
-void WatchedFacets::find_rest(const std::vector<Vec>& u) {
+WatchedFacets::Answer WatchedFacets::answer(const Watched& watched) const {
+  return {.adjoint = watched.adjoint.get(),
+          .count = watched.begin_count + watched.attached,
+          .still = watched.begin_count,
+          .moved = moved_,
+          .force = watched.force};
+}
+
+std::optional<WatchedFacets::Answer> WatchedFacets::find(std::size_t facet,
+                                                         const std::vector<Vec>& u) {
+  Watched* const watched = find_watched(facet);
+  if (watched == nullptr) {
+    return std::nullopt;
+  }
+  watched->is_asked_for = true;
+  if (!watched->has_begun) {
+    begin(*watched);
+  }
+  const auto share = [&](std::size_t first, std::size_t end) {
+    return watched->adjoint->share(u, watched->begin_count + first, watched->begin_count + end);
+  };
+  if (!watched->is_settled && goes_on(*watched, settled_count_)) {
+    watched->force = watched->first;
+    add(watched->force, share(0, settled_count_));
+    watched->is_settled = true;
+  }
+  while (watched->attached < attached_.size() && goes_on(*watched, watched->attached + 1)) {
+    add(watched->force, share(watched->attached - 1, watched->attached));
+  }
+  return watched->is_void ? std::nullopt : std::optional(answer(*watched));
+}
+
+std::optional<WatchedFacets::Answer> WatchedFacets::find_finer(std::size_t facet,
+                                                               const std::vector<Vec>& u) {
+  Watched* const watched = find_watched(facet);
+  if (watched == nullptr || moved_ == 0 || !find(facet, u)) {
+    return std::nullopt;
+  }
+  if (!watched->finer) {
+    watched->finer = watched->adjoint->share_of_moved(u, u_, watched->begin_count);
+  }
+  Answer finer = answer(*watched);
+  finer.is_fine = true;
+  add(finer.force, *watched->finer);
+  return finer;
+}
+
+/// f - K u when the robot was solved, unless it is known.
+void WatchedFacets::find_rest() {
   if (!rest_.empty()) {
     return;
   }
   rest_.resize(target_->modules().size());
   there_.assign(elements_);
-  std::for_each_n(attached_.begin(), settled_count_,
-                  [&](std::size_t module) { there_.insert(module); });
-  for (std::size_t module = 0; module < rest_.size(); ++module) {
-    if (!there_.is_there(module)) {
-      continue;
-    }
+  for (const Element element : elements_) {
+    const std::size_t module = at(element);
     base::add_to(rest_[module], target_->loads()[module]);
     for (const Direction direction : base::directions(target_->lattice())) {
       const std::int32_t other = there_.neighbour(module, base::index(direction));
       if (base::index(direction) % 2 == 0 && other != model::Robot::kNoNeighbour) {
-        pull(module, direction, at(other), u);
+        pull(module, direction, at(other));
       }
     }
   }
   for (const model::Facet& facet : target_->facets()) {
     const std::size_t module = at(facet.module);
     if (there_.is_there(module)) {
-      base::add_times(rest_[module], -1, there_.facet_force(facet.direction, u[module]));
+      base::add_times(rest_[module], -1, there_.facet_force(facet.direction, u_[module]));
     }
   }
 }
 
 /// What a beam does to its ends: the force in its middle, so that both get the same one, and no
 /// digits are lost where much moves.
-void WatchedFacets::pull(std::size_t module, Direction direction, std::size_t other,
-                         const std::vector<Vec>& u) {
-  const Vec force = beam_.to_global(direction, beam_.middle_force(direction, u[module], u[other]));
+void WatchedFacets::pull(std::size_t module, Direction direction, std::size_t other) {
+  const Vec force =
+      beam_.to_global(direction, beam_.middle_force(direction, u_[module], u_[other]));
   const auto step =
       base::place_of(target_->lattice(), target_->lattice().steps[at(base::index(direction))]);
   const double half = target_->material().pitch_mm / 2;
