@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <span>
 
@@ -123,11 +124,12 @@ bool GrownAdjoint::leave_out(std::size_t count) {
   Triple square{};
   bool is_small = true;
   for (std::size_t i = 0; i < 3; ++i) {
-    square[i] = gram_[count + 1][4 * i] - gram_[count][4 * i];
+    const double sum = gram_[count + 1][4 * i];
+    square[i] = sum - gram_[count][4 * i] + std::numeric_limits<double>::epsilon() * sum;
     is_small = is_small && square[i] <= kSmall * core_->error[i] * core_->error[i];
   }
   for (std::size_t i = 0; is_small && i < 3; ++i) {
-    left_out_[i] += std::max(0.0, square[i]);
+    left_out_[i] += square[i];
   }
   return is_small;
 }

@@ -18,8 +18,8 @@ namespace {
 constexpr std::uint64_t kDisturbance = 4;
 
 /// A facet that has left so many states of a run without a bound, alone or with others, is worth
-/// its adjoint, which takes three solutions from nothing and a sum over all modules each time it is
-/// asked for; but of so many facets after a run at most.
+/// its adjoint, which takes three solutions from nothing and a sum over all modules for each state
+/// that is solved; but of so many facets after a run at most.
 constexpr int kDoubtMin = 32;
 constexpr std::size_t kAdjointCountMax = 16;
 
