@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <vector>
+
 namespace holdfast::solver {
 namespace {
 
@@ -17,7 +19,7 @@ TEST(CondensedLoads, are_those_that_were_given_whether_they_differ_from_the_robo
   own[70][3] = 40;
   for (const model::Loads& robot : {model::Loads(weight), model::Loads(own)}) {
     std::vector<Load> given(kModuleCount, weight);
-    for (const std::size_t module : {0, 1, 63, 64, 70, 127, 128, 199}) {
+    for (const std::size_t module : std::vector<std::size_t>{0, 1, 63, 64, 70, 127, 128, 199}) {
       given[module][0] = static_cast<double>(module + 1);
     }
     const CondensedLoads loads(given, robot);
