@@ -74,8 +74,7 @@ def draw_steps(judged: Steps, figure: Any) -> Any:
     ratio.set_ylim(bottom=min(0, ratio.get_ylim()[0]))
     margin.set_xlim(0, count)
     margin.set_xlabel('step')
-    steps = 'step' if count == 1 else 'steps'
-    title = f'{judged.robot.name}: {count} {steps}, {judged.verdict.value}'
+    title = f'{judged.robot.name}: {counted(count, "step")}, {judged.verdict.value}'
     if judged.first_unsafe is not None:
         step, stage = judged.first_unsafe
         for axes in (bands, ratio, margin):

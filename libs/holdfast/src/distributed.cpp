@@ -86,37 +86,33 @@ bool are_plans_lost(const model::Robot& robot, const sim::SimulationOptions& opt
   });
 }
 
-bool puts_on_or_takes_off(const sim::Fault& fault) {
-  return fault.kind == sim::Fault::Kind::kAttach || fault.kind == sim::Fault::Kind::kDetach;
-}
-
 /// Whether the module of a fault of this index is there when it happens. Those of the same time
-/// happen in the order of the list; a module that is put on first is not there before.
-bool is_there(const std::vector<sim::Fault>& faults, std::size_t index) {
-  std::vector<sim::Fault> changes;
-  std::ptrdiff_t before = 0;
-  for (std::size_t i = 0; i < faults.size(); ++i) {
-    if (faults[i].module == faults[index].module && puts_on_or_takes_off(faults[i])) {
-      changes.push_back(faults[i]);
-      const bool is_earlier =
-          faults[i].at < faults[index].at || (faults[i].at == faults[index].at && i < index);
-      before += is_earlier ? 1 : 0;
+/// happen in the order of the list.
+bool is_there(const sim::SimulationOptions& options, std::size_t index) {
+  using Kind = sim::Fault::Kind;
+  const sim::Fault& fault = options.faults[index];
+  const sim::Fault* last = nullptr;
+  for (std::size_t i = 0; i < options.faults.size(); ++i) {
+    const sim::Fault& other = options.faults[i];
+    const bool is_change = other.kind == Kind::kAttach || other.kind == Kind::kDetach;
+    const bool is_earlier = other.at < fault.at || (other.at == fault.at && i < index);
+    if (is_change && is_earlier && other.module == fault.module &&
+        (last == nullptr || last->at <= other.at)) {
+      last = &other;
     }
   }
-  std::ranges::stable_sort(changes, {}, &sim::Fault::at);
-  if (before > 0) {
-    return changes[static_cast<std::size_t>(before - 1)].kind == sim::Fault::Kind::kAttach;
-  }
-  return changes.empty() || changes.front().kind == sim::Fault::Kind::kDetach;
+  return last == nullptr ? sim::starts_attached(options, fault.module)
+                         : last->kind == Kind::kAttach;
 }
 
 /// Modules that were to fall silent or to be taken off, and were not there then.
-void note_idle_faults(const model::Robot& robot, const std::vector<sim::Fault>& faults,
+void note_idle_faults(const model::Robot& robot, const sim::SimulationOptions& options,
                       std::vector<std::string>& notes) {
-  for (std::size_t i = 0; i < faults.size(); ++i) {
-    const bool is_kill = faults[i].kind == sim::Fault::Kind::kKill;
-    if ((is_kill || faults[i].kind == sim::Fault::Kind::kDetach) && !is_there(faults, i)) {
-      const auto module = static_cast<std::size_t>(faults[i].module);
+  for (std::size_t i = 0; i < options.faults.size(); ++i) {
+    const sim::Fault& fault = options.faults[i];
+    const bool is_kill = fault.kind == sim::Fault::Kind::kKill;
+    if ((is_kill || fault.kind == sim::Fault::Kind::kDetach) && !is_there(options, i)) {
+      const auto module = static_cast<std::size_t>(fault.module);
       notes.push_back(fmt::format("{} was not there when it was to {}: nothing came of that",
                                   model::text(robot.modules()[module].cell),
                                   is_kill ? "fall silent" : "be taken off"));
@@ -141,7 +137,7 @@ std::vector<std::string> notes_on(const model::Robot& robot, const sim::Simulati
         "the module that was told what is planned was taken off, and its plans with it: the robot "
         "answers without them until they are told again");
   }
-  note_idle_faults(robot, options.faults, notes);
+  note_idle_faults(robot, options, notes);
   if (robot.lattice() != base::kCubic && options.link.ticks_per_second > 0) {
     notes.emplace_back(
         "nobody has published what the links of such modules carry: seconds are those of the link "

@@ -3,9 +3,7 @@
 #include "energy_bound.hpp"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 #include <utility>
 

@@ -125,7 +125,7 @@ std::optional<WatchedFacets::Answer> WatchedFacets::find(std::size_t facet,
 std::optional<WatchedFacets::Answer> WatchedFacets::find_finer(std::size_t facet,
                                                                const std::vector<Vec>& u) {
   Watched* const watched = find_watched(facet);
-  if (watched == nullptr || moved_ == 0 || !find(facet, u)) {
+  if (watched == nullptr || watched->is_void || moved_ == 0) {
     return std::nullopt;
   }
   if (!watched->finer) {

@@ -62,8 +62,8 @@ class WatchedFacets {
   /// its adjoint has grown.
   std::optional<Answer> find(std::size_t facet, const std::vector<Vec>& u);
 
-  /// The same nearer, which takes a sum over modules beyond the core. None if nothing has moved, so
-  /// that it is the same.
+  /// After find(), for the same u: the same nearer, by a sum over modules beyond the core. None if
+  /// find() has none, or nothing has moved, so that it is the same.
   std::optional<Answer> find_finer(std::size_t facet, const std::vector<Vec>& u);
 
  private:

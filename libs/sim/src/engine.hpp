@@ -165,7 +165,4 @@ inline agent::Event event_of(agent::EventKind kind,
   return event;
 }
 
-/// Is the module there at the start?
-bool starts_attached(const SimulationOptions& options, std::int32_t module);
-
 }  // namespace holdfast::sim

@@ -23,6 +23,9 @@ export function make<K extends keyof HTMLElementTagNameMap>(
   return element;
 }
 
+/** A number of things with their noun: 1 step, 2 steps. */
+export const counted = (count: number, one: string): string => `${count} ${count === 1 ? one : `${one}s`}`;
+
 export function download(name: string, content: Blob): void {
   const url = URL.createObjectURL(content);
   make('a', { href: url, download: name }).click();

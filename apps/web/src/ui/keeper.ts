@@ -3,7 +3,7 @@
 import type { EditedRobot } from '../model/edited_robot';
 import { Kept, originOf, type KeptRobot } from '../model/kept';
 import type { Workbench } from '../model/workbench';
-import { addMessage, make, tell } from './dom';
+import { addMessage, counted, make, tell } from './dom';
 import { askedFor } from './start';
 
 /** So long after a change it is kept, and longer if it is large; at once when the page goes away. */
@@ -98,10 +98,8 @@ export class Keeper {
   }
 }
 
-export function nameOf({ name, modules }: KeptRobot): string {
-  const count = modules.length / 4;
-  return name || `a structure of ${count} ${count === 1 ? 'module' : 'modules'}`;
-}
+export const nameOf = ({ name, modules }: KeptRobot) =>
+  name || `a structure of ${counted(modules.length / 4, 'module')}`;
 
 export const whenOf = ({ time }: KeptRobot) =>
   new Date(time).toLocaleString('en', { dateStyle: 'medium', timeStyle: 'short' });

@@ -9,7 +9,7 @@ import { STAGES, Sequence, type StageRobot } from '../model/sequence';
 import type { App } from './app';
 import { formatRatio } from './answer_panel';
 import { drawBands } from './bands';
-import { byId, icon, say, tell, type IconName } from './dom';
+import { byId, counted, icon, say, tell, type IconName } from './dom';
 import { openText, take } from './files';
 import { findingOf } from './stage_finding';
 
@@ -96,8 +96,7 @@ export class Timeline {
     const { recorder } = this;
     this.recorder = undefined;
     if (recorder.steps.length > 0) {
-      const count = recorder.steps.length;
-      bench.history.replace(`recording ${count} ${count === 1 ? 'step' : 'steps'}`, recorder.result(bench.robot));
+      bench.history.replace(`recording ${counted(recorder.steps.length, 'step')}`, recorder.result(bench.robot));
     }
     this.showRecording();
     this.changed();
@@ -391,7 +390,7 @@ export class Timeline {
 }
 
 const recordingText = ({ steps }: Recorder) =>
-  `Recording: ${steps.length} ${steps.length === 1 ? 'step' : 'steps'}. Every change of the modules is one.`;
+  `Recording: ${counted(steps.length, 'step')}. Every change of the modules is one.`;
 
 function hasPlanned(robot: EditedRobot): boolean {
   return Array.from({ length: robot.count }, (_, slot) => robot.roleAt(slot)).includes(Role.kPlanned);
@@ -403,6 +402,5 @@ function summary({ report, texts }: JudgedSteps): string {
   const ratio = report.load_ratio_max === null ? '' : `; largest load ${formatRatio(report.load_ratio_max)}`;
   const margin = report.margin_min_mm === null ? '' : `; smallest margin ${report.margin_min_mm.toFixed(2)} mm`;
   const first = report.first_unsafe ? `; first unsafe: step ${report.first_unsafe.step}, ${report.first_unsafe.stage}` : '';
-  const steps = texts.length === 1 ? 'step' : 'steps';
-  return `${safe} of ${texts.length} ${steps} safe in every stage${ratio}${margin}${first}.`;
+  return `${safe} of ${counted(texts.length, 'step')} safe in every stage${ratio}${margin}${first}.`;
 }

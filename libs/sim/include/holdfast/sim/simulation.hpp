@@ -69,6 +69,9 @@ std::optional<std::string> find_floor_fault(const model::Robot& robot);
 /// What the agents of a robot have in common, prepared.
 agent::Setup make_setup(const model::Robot& robot, const SimulationOptions& options);
 
+/// Is the module there at the start? Not if it is put on before it is taken off.
+bool starts_attached(const SimulationOptions& options, std::int32_t module);
+
 class Engine;
 
 class Simulation {
