@@ -7,6 +7,7 @@
 #include <limits>
 #include <utility>
 
+#include "block_product.hpp"
 #include "carried_force.hpp"
 #include "holdfast/base/lattice.hpp"
 #include "holdfast/mechanics/ground_contact.hpp"
@@ -122,7 +123,7 @@ void EnergyBound::hang(std::size_t module) {
 /// Moves until it is in balance, all others staying where they are.
 void EnergyBound::take_place(std::size_t module) {
   local_.insert(module);
-  u_[module] = base::multiply(local_.stiffness(module).inverse, local_.pull(module, u_));
+  u_[module] = block_product(local_.stiffness(module).inverse, local_.pull(module, u_));
 }
 
 /// Adds what the gaps of its beams mean as long as no load goes through these.

@@ -8,6 +8,7 @@
 #include <limits>
 #include <unordered_set>
 
+#include "block_product.hpp"
 #include "carried_force.hpp"
 #include "dense.hpp"
 #include "holdfast/base/lattice.hpp"
@@ -139,19 +140,30 @@ void FollowedRobot::add(Element element) {
   new_.push_back(added);
 }
 
-/// Block Gauss-Seidel, there and back.
+/// Block Gauss-Seidel, there and back. What is beside each module is looked up once for all sweeps.
 void FollowedRobot::relax(const std::vector<std::size_t>& modules) {
-  std::vector<const LocalBalance::Stiffness*> stiffness;
+  struct Place {
+    const LocalBalance::Stiffness* stiffness = nullptr;
+    std::size_t beam_end = 0;
+  };
+
+  std::vector<Place> places;
+  std::vector<LocalBalance::Beam> beams;
   for (const std::size_t module : modules) {
-    stiffness.push_back(&local_.stiffness(module));
+    local_.add_beams(module, beams);
+    places.push_back({.stiffness = &local_.stiffness(module), .beam_end = beams.size()});
   }
   double first_gain = 0;
   for (int sweep = 0; sweep < kSweepMax; ++sweep) {
     double gain = 0;
     const auto move = [&](std::size_t i) {
-      const Vec next = base::multiply(stiffness[i]->inverse, local_.pull(modules[i], u_));
+      Vec pull = target_.loads()[modules[i]];
+      for (std::size_t k = i == 0 ? 0 : places[i - 1].beam_end; k < places[i].beam_end; ++k) {
+        pull = difference(pull, block_product(*beams[k].block_12, u_[beams[k].other]));
+      }
+      const Vec next = block_product(places[i].stiffness->inverse, pull);
       const Vec step = difference(next, u_[modules[i]]);
-      gain += base::dot(step, base::multiply(stiffness[i]->sum, step));
+      gain += base::dot(step, block_product(places[i].stiffness->sum, step));
       u_[modules[i]] = next;
     };
     for (std::size_t i = 0; i < modules.size(); ++i) {
@@ -258,7 +270,7 @@ std::vector<FollowedRobot::Vec> FollowedRobot::balance(std::size_t first,
     const std::size_t module = added.module;
     if (i >= first) {
       base::add_to(rest[i], difference(local_.pull(module, u_),
-                                       base::multiply(local_.stiffness(module).sum, u_[module])));
+                                       block_product(local_.stiffness(module).sum, u_[module])));
     }
     const auto begin = i >= first ? springs.begin() : springs_.begin();
     auto& next = i >= first ? own : old;

@@ -8,6 +8,7 @@
 #include <numeric>
 #include <span>
 
+#include "block_product.hpp"
 #include "carried_force.hpp"
 #include "holdfast/base/lattice.hpp"
 #include "holdfast/model/material.hpp"
@@ -192,7 +193,7 @@ void GrownAdjoint::grow(std::size_t module) {
         pull[k] -= force[k];
       }
     });
-    own[i] = base::multiply(local_.stiffness(module).inverse, pull);
+    own[i] = block_product(local_.stiffness(module).inverse, pull);
   }
   grown_.push_back(own);
   grown_modules_.push_back(static_cast<Element>(module));

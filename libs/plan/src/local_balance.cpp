@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "block_product.hpp"
 #include "dense.hpp"
 #include "holdfast/base/check.hpp"
 #include "holdfast/base/lattice.hpp"
@@ -74,6 +75,15 @@ const LocalBalance::Stiffness& LocalBalance::stiffness(std::size_t module) {
   return known;
 }
 
+void LocalBalance::add_beams(std::size_t module, std::vector<Beam>& beams) const {
+  for (const Direction direction : base::directions(target_->lattice())) {
+    const std::int32_t other = neighbour(module, base::index(direction));
+    if (other != model::Robot::kNoNeighbour) {
+      beams.push_back({.block_12 = &block_12_[at(base::index(direction))], .other = at(other)});
+    }
+  }
+}
+
 LocalBalance::Vec LocalBalance::pull(std::size_t module, const std::vector<Vec>& u) const {
   Vec rest = target_->loads()[module];
   for (const Direction direction : base::directions(target_->lattice())) {
@@ -81,7 +91,7 @@ LocalBalance::Vec LocalBalance::pull(std::size_t module, const std::vector<Vec>&
     if (other == model::Robot::kNoNeighbour) {
       continue;
     }
-    const Vec force = base::multiply(block_12_[at(base::index(direction))], u[at(other)]);
+    const Vec force = block_product(block_12_[at(base::index(direction))], u[at(other)]);
     for (std::size_t i = 0; i < 6; ++i) {
       rest[i] -= force[i];
     }
@@ -90,7 +100,7 @@ LocalBalance::Vec LocalBalance::pull(std::size_t module, const std::vector<Vec>&
 }
 
 LocalBalance::Vec LocalBalance::facet_force(base::Direction direction, const Vec& u) const {
-  return base::multiply(block_11_[at(base::index(direction))], u);
+  return block_product(block_11_[at(base::index(direction))], u);
 }
 
 }  // namespace holdfast::plan

@@ -24,6 +24,12 @@ class LocalBalance {
     base::Mat6<double> inverse{};
   };
 
+  /// What a module gets from a neighbour that moves by u: less K_12 u.
+  struct Beam {
+    const base::Mat6<double>* block_12 = nullptr;
+    std::size_t other = 0;
+  };
+
   /// Keeps a reference to the whole robot, of which nothing is there.
   explicit LocalBalance(const model::Robot& target);
 
@@ -46,6 +52,9 @@ class LocalBalance {
 
   /// Of a module that touches something. Stays where it is.
   const Stiffness& stiffness(std::size_t module);
+
+  /// Adds the beams of a module; they are valid as long as *this stays where it is.
+  void add_beams(std::size_t module, std::vector<Beam>& beams) const;
 
   /// What is out of balance at a module if it does not move, and others by u.
   Vec pull(std::size_t module, const std::vector<Vec>& u) const;
