@@ -4,9 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
+#include "block_product.hpp"
 #include "carried_force.hpp"
-#include "dense.hpp"
 #include "holdfast/base/lattice.hpp"
 #include "holdfast/mechanics/ground_contact.hpp"
 #include "holdfast/model/facet_starts.hpp"
@@ -65,6 +66,12 @@ LocalAdjoints::LocalAdjoints(const model::Robot& target)
       beam_(model::beam_section(target.material()), target.lattice()),
       stiffness_(middle_stiffness(beam_)),
       first_facet_(model::facet_starts(target)) {
+  for (const base::Direction direction : base::directions(target.lattice())) {
+    block_12_[at(base::index(direction))] = beam_.block_12(direction);
+  }
+  for (const base::Direction direction : base::facet_directions(target.lattice())) {
+    block_11_[at(base::index(direction))] = beam_.block_11(direction);
+  }
   for (std::size_t i = 0; i < target.modules().size(); ++i) {
     places_.push_back(node_place(target, i));
   }
@@ -114,17 +121,11 @@ LocalAdjoints::Region LocalAdjoints::region_around(
   return region;
 }
 
-/// z' on the patch for fz, mx and my, six numbers for each of its modules.
-std::optional<std::array<std::vector<double>, 3>> LocalAdjoints::balance_patch(
-    const model::Facet& facet, const Region& region) const {
-  DenseSystem system(6 * region.patch_count);
-  const auto add = [&](std::int16_t row, std::int16_t column, const base::Mat6<double>& block) {
-    for (int i = 0; i < 6; ++i) {
-      for (int k = 0; k < 6; ++k) {
-        system.at(at(6 * row + i), at(6 * column + k)) += block.at(i, k);
-      }
-    }
-  };
+/// The equations of the patch, all beyond which stands still; none if something hangs free.
+std::optional<solver::BlockLu> LocalAdjoints::patch_equations(const Region& region) const {
+  std::vector<base::Mat6<double>> diagonal(region.patch_count);
+  std::vector<solver::Edge> edges;
+  std::vector<const base::Mat6<double>*> coupling;
   for (std::size_t i = 0; i < region.modules.size(); ++i) {
     const std::int16_t row = region.patch_place[i];
     if (row == Region::kNone) {
@@ -135,37 +136,53 @@ std::optional<std::array<std::vector<double>, 3>> LocalAdjoints::balance_patch(
       if (other == Region::kNone) {
         continue;
       }
-      add(row, row, beam_.block_11(direction));
-      if (region.patch_place[at(other)] != Region::kNone) {
-        add(row, region.patch_place[at(other)], beam_.block_12(direction));
+      base::add_to(diagonal[at(row)], block_11_[at(base::index(direction))]);
+      if (region.patch_place[at(other)] > row) {
+        edges.push_back({.a = row, .b = region.patch_place[at(other)]});
+        coupling.push_back(&block_12_[at(base::index(direction))]);
       }
     }
     const std::size_t module = region.modules[i];
     for (std::size_t k = first_facet_[module]; k < first_facet_[module + 1]; ++k) {
-      add(row, row, beam_.block_11(target_.facets()[k].direction));
+      base::add_to(diagonal[at(row)], block_11_[at(base::index(target_.facets()[k].direction))]);
     }
+  }
+  solver::BlockLu equations(region.patch_count, edges, std::numeric_limits<std::size_t>::max(),
+                            solver::Symmetry::kSymmetric);
+  for (std::size_t i = 0; i < edges.size(); ++i) {
+    equations.set_edge(i, *coupling[i]);
+  }
+  for (std::size_t i = 0; i < diagonal.size(); ++i) {
+    equations.set_diagonal(i, diagonal[i]);
+  }
+  return equations.factor() ? std::optional(std::move(equations)) : std::nullopt;
+}
+
+/// z' on the patch for fz, mx and my, by its modules.
+std::optional<std::vector<std::vector<Vec6<double>>>> LocalAdjoints::balance_patch(
+    const model::Facet& facet, const Region& region) const {
+  const auto equations = patch_equations(region);
+  if (!equations) {
+    return std::nullopt;
   }
   const auto law = mechanics::ground_facet<double>(beam_.stiffness(), target_.material().pitch_mm,
                                                    2 * target_.foot_half_width_mm(), 0,
                                                    mechanics::ContactLaw::kRegularised);
-  if (!system.factor()) {
-    return std::nullopt;
-  }
-  std::array<std::vector<double>, 3> z;
-  for (std::size_t component = 0; component < 3; ++component) {
-    z[component].assign(6 * region.patch_count, 0.0);
-    for (int k = 0; k < 6; ++k) {
-      const Vec6<double> local = beam_.to_local(facet.direction, base::unit<double>(k));
-      z[component][at(k)] = mechanics::trial_force(law, local)[2 + component];
+  std::vector<std::vector<Vec6<double>>> z(3, std::vector<Vec6<double>>(region.patch_count));
+  for (int k = 0; k < 6; ++k) {
+    const Vec6<double> local = beam_.to_local(facet.direction, base::unit<double>(k));
+    const Vec6<double> force = mechanics::trial_force(law, local);
+    for (std::size_t component = 0; component < 3; ++component) {
+      z[component].front()[at(k)] = force[2 + component];
     }
-    system.solve(z[component]);
   }
+  equations->solve_each(z);
   return z;
 }
 
 /// What z' leaves unbalanced, by module of the region.
 std::vector<Vec6<double>> LocalAdjoints::residual(const Region& region,
-                                                  const std::vector<double>& z) const {
+                                                  const std::vector<Vec6<double>>& z) const {
   std::vector<Vec6<double>> rest(region.modules.size());
   for (std::size_t i = 0; i < region.modules.size(); ++i) {
     for (const base::Direction direction : base::directions(target_.lattice())) {
@@ -174,9 +191,8 @@ std::vector<Vec6<double>> LocalAdjoints::residual(const Region& region,
       if (!is_rim || other == Region::kNone || region.patch_place[at(other)] == Region::kNone) {
         continue;
       }
-      Vec6<double> u{};
-      std::copy_n(z.begin() + 6 * region.patch_place[at(other)], 6, u.begin());
-      const Vec6<double> force = base::multiply(beam_.block_12(direction), u);
+      const Vec6<double> force = block_product(block_12_[at(base::index(direction))],
+                                               z[at(region.patch_place[at(other)])]);
       for (std::size_t k = 0; k < 6; ++k) {
         rest[i][k] -= force[k];
       }

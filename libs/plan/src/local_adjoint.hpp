@@ -14,6 +14,7 @@
 
 #include "holdfast/model/lattice_beam.hpp"
 #include "holdfast/model/robot.hpp"
+#include "holdfast/solver/block_lu.hpp"
 
 namespace holdfast::plan {
 
@@ -73,16 +74,20 @@ class LocalAdjoints {
   Region region_around(const model::Facet& facet,
                        const std::function<bool(std::size_t)>& is_there) const;
   LocalAdjoint::Forces solve(const model::Facet& facet, const Region& region) const;
-  std::optional<std::array<std::vector<double>, 3>> balance_patch(const model::Facet& facet,
-                                                                  const Region& region) const;
+  std::optional<solver::BlockLu> patch_equations(const Region& region) const;
+  std::optional<std::vector<std::vector<base::Vec6<double>>>> balance_patch(
+      const model::Facet& facet, const Region& region) const;
   std::vector<base::Vec6<double>> residual(const Region& region,
-                                           const std::vector<double>& z) const;
+                                           const std::vector<base::Vec6<double>>& z) const;
   Ways ways_to_supports(const Region& region) const;
   std::vector<base::Vec6<double>> carry(const Region& region, const Ways& ways,
                                         std::vector<base::Vec6<double>> loads) const;
 
   const model::Robot& target_;
   model::LatticeBeam<double> beam_;
+  /// By direction.
+  std::array<base::Mat6<double>, base::Lattice::kDirectionCountMax + 1> block_11_{};
+  std::array<base::Mat6<double>, base::Lattice::kDirectionCountMax> block_12_{};
   base::Vec6<double> stiffness_{};          ///< Of the springs in the middle.
   std::vector<base::Vec6<double>> places_;  ///< Nodes, mm; the last three are 0.
   std::vector<std::size_t> first_facet_;    ///< By module.
