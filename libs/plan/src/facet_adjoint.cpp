@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "holdfast/host/team.hpp"
 #include "holdfast/mechanics/ground_contact.hpp"
 #include "holdfast/model/lattice_beam.hpp"
 #include "holdfast/model/material.hpp"
@@ -74,26 +75,26 @@ std::shared_ptr<const FacetAdjoint> find_adjoint(solver::LinearSystem& system,
 
 FacetAdjoints find_adjoints(const model::RobotSpec& spec, const model::Robot& target,
                             const ElementSet& core, const std::vector<std::size_t>& facets,
-                            const std::function<bool()>& is_late) {
-  FacetAdjoints adjoints;
+                            int thread_count, const std::function<bool()>& is_late) {
   const auto robot = model::Robot::create(part_of(spec, core), 1);
   if (!robot) {
-    return adjoints;
+    return {};
   }
-  const auto system = solver::make_linear_system(robot.value(), {.thread_count = 1});
-  if (!system) {
-    return adjoints;
-  }
-  system->set_law({});
   const auto shared = std::make_shared<const std::vector<Element>>(core.elements());
-  for (const std::size_t facet : facets) {
-    if (is_late()) {
-      break;
+  FacetAdjoints adjoints(facets.size());
+  host::Team team(thread_count);
+  const std::size_t group_count = std::min(at(team.thread_count()), facets.size());
+  team.each(group_count, [&](std::size_t group) {
+    const auto system = solver::make_linear_system(robot.value(), {.thread_count = 1});
+    if (!system) {
+      return;
     }
-    if (auto adjoint = find_adjoint(*system, target, shared, facet)) {
-      adjoints.push_back(std::move(adjoint));
+    system->set_law({});
+    for (std::size_t i = group; i < facets.size() && !is_late(); i += group_count) {
+      adjoints[i] = find_adjoint(*system, target, shared, facets[i]);
     }
-  }
+  });
+  std::erase(adjoints, nullptr);
   return adjoints;
 }
 

@@ -45,9 +45,10 @@ struct FacetAdjoint {
 using FacetAdjoints = std::vector<std::shared_ptr<const FacetAdjoint>>;
 
 /// Finds the adjoints of facets, by index in the target, of a robot all whose facets are stuck;
-/// none of those that cannot be solved, nor of any more when it is late.
+/// none of those that cannot be solved, nor of any more when it is late. The number of threads
+/// makes no other difference.
 FacetAdjoints find_adjoints(const model::RobotSpec& spec, const model::Robot& target,
                             const ElementSet& core, const std::vector<std::size_t>& facets,
-                            const std::function<bool()>& is_late);
+                            int thread_count, const std::function<bool()>& is_late);
 
 }  // namespace holdfast::plan

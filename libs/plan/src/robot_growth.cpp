@@ -556,7 +556,7 @@ void RobotGrowth::renew_adjoints(const ElementSet& state, const std::function<bo
            });
   });
   if (!facets.empty()) {
-    for (const auto& core : find_adjoints(spec_, target_, state, facets, is_late)) {
+    for (const auto& core : find_adjoints(spec_, target_, state, facets, thread_count_, is_late)) {
       facet_adjoints_.push_back(std::make_shared<GrownAdjoint>(target_, core));
     }
   }

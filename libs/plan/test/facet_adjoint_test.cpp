@@ -114,7 +114,7 @@ GrownAdjoints grown_adjoints(const model::RobotSpec& spec, const model::Robot& t
                              const ElementSet& state, const std::vector<std::size_t>& facets,
                              std::span<const Element> run) {
   GrownAdjoints adjoints;
-  for (const auto& core : find_adjoints(spec, target, state, facets, [] { return false; })) {
+  for (const auto& core : find_adjoints(spec, target, state, facets, 1, [] { return false; })) {
     adjoints.push_back(std::make_shared<GrownAdjoint>(target, core));
     for (const Element element : run) {
       adjoints.back()->grow(at(element));
