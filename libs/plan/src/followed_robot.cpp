@@ -81,6 +81,9 @@ FollowedRobot::FollowedRobot(const model::RobotSpec& spec, const model::Robot& t
       ratio_per_norm_(model::load_ratio_per_energy_norm(target)),
       local_(target),
       first_facet_(model::facet_starts(target)) {
+  for (std::size_t i = 0; i < 6; ++i) {
+    flexibility_[i] = 1 / stiffness_[i];
+  }
   for (std::size_t i = 0; i < target.modules().size(); ++i) {
     const Vec& load = target.loads()[i];
     unit_ = std::max(unit_, std::hypot(load[0], load[1], load[2]) / std::sqrt(stiffness_[2]));
@@ -402,7 +405,11 @@ double FollowedRobot::ratio_of(std::size_t module, std::size_t other, int direct
     return known;
   }
   const Vec force = beam_.middle_force(direction_of(direction), u_[module], u_[other]);
-  if (ratio_per_norm_ * std::sqrt(energy_of(force, force)) <= known) {
+  double energy = 0;
+  for (std::size_t i = 0; i < 6; ++i) {
+    energy += force[i] * force[i] * flexibility_[i];
+  }
+  if (ratio_per_norm_ * ratio_per_norm_ * energy <= known * known) {
     return known;
   }
   return std::max(known, connection_ratio(target_, module, other, direction, force));

@@ -127,7 +127,8 @@ class FollowedRobot {
   const model::RobotSpec& spec_;
   const model::Robot& target_;
   model::LatticeBeam<double> beam_;
-  Vec stiffness_{};  ///< Of the springs in the middle, h.
+  Vec stiffness_{};    ///< Of the springs in the middle, h,
+  Vec flexibility_{};  ///< and 1 / h.
   double ratio_per_norm_ = 0;
   LocalBalance local_;
   std::vector<std::size_t> first_facet_;  ///< By module.
