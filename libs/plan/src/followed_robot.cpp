@@ -7,6 +7,7 @@
 #include <functional>
 #include <limits>
 #include <unordered_set>
+#include <utility>
 
 #include "block_product.hpp"
 #include "carried_force.hpp"
@@ -113,6 +114,15 @@ void FollowedRobot::begin(const ElementSet& state, const verdict::Assessment& so
   iteration_count_ = 0;
   given_.assign(elements_.size(), {});
   moved_.assign(elements_.size(), {});
+}
+
+void FollowedRobot::end() {
+  system_.reset();
+  robot_.reset();
+  loaded_ = std::vector<Loaded>();
+  for (std::vector<Vec>* const each : {&given_, &moved_, &change_, &motion_}) {
+    *each = std::vector<Vec>();
+  }
 }
 
 /// To the core, or a facet, through as few new modules as can be.
@@ -342,10 +352,10 @@ bool FollowedRobot::make_system(const std::vector<Vec>& loads) {
 
 /// How the core moves if it takes these loads besides: to so many times the tolerance, or, if that
 /// is kRoughly, only about.
-bool FollowedRobot::find_motion(const std::vector<Vec>& change, double coarseness) {
-  std::vector<Vec> loads = change;
+bool FollowedRobot::find_motion(std::vector<Vec> change, double coarseness) {
+  std::vector<Vec> loads = given_;
   for (std::size_t i = 0; i < loads.size(); ++i) {
-    base::add_to(loads[i], given_[i]);
+    base::add_to(loads[i], change[i]);
   }
   if (!system_) {
     if (!make_system(loads)) {
@@ -353,7 +363,7 @@ bool FollowedRobot::find_motion(const std::vector<Vec>& change, double coarsenes
     }
     coarseness = 1;
   } else {
-    system_->change_loads(model::Loads(loads));
+    system_->change_loads(model::Loads(std::move(loads)));
     const auto outcome =
         coarseness == kRoughly ? system_->approach() : system_->solve(coarseness * tolerance_);
     if (outcome != solver::LinearOutcome::kSolved) {
@@ -364,7 +374,7 @@ bool FollowedRobot::find_motion(const std::vector<Vec>& change, double coarsenes
   solution_error_ =
       system_->is_exact() ? 0 : verdict::kEnergyFactor * coarseness * kTolerance * unit_;
   iteration_count_ = system_->report().iteration_count;
-  change_ = change;
+  change_ = std::move(change);
   motion_ = system_->displacement();
   for (std::size_t i = 0; i < motion_.size(); ++i) {
     motion_[i] = difference(motion_[i], moved_[i]);
@@ -374,6 +384,9 @@ bool FollowedRobot::find_motion(const std::vector<Vec>& change, double coarsenes
 
 /// So many times as far as was found last.
 void FollowedRobot::move_core(double factor) {
+  if (factor == 0) {
+    return;
+  }
   for (std::size_t i = 0; i < motion_.size(); ++i) {
     base::add_times(moved_[i], factor, motion_[i]);
     base::add_times(given_[i], factor, change_[i]);
@@ -469,8 +482,8 @@ FollowedRobot::Result FollowedRobot::finish(double gap_energy) {
 }
 
 /// Gives loads to the core; new modules follow it. False: it cannot be solved.
-bool FollowedRobot::move(const std::vector<Vec>& change, double coarseness) {
-  if (!find_motion(change, coarseness)) {
+bool FollowedRobot::move(std::vector<Vec> change, double coarseness) {
+  if (!find_motion(std::move(change), coarseness)) {
     return false;
   }
   move_core(1);
@@ -491,16 +504,16 @@ double FollowedRobot::gap_energy(const std::vector<Vec>& gap) const {
 
 std::optional<FollowedRobot::Result> FollowedRobot::solve() {
   std::vector<Spring> springs;
-  const std::vector<Vec> given = find_forces(solved_count_, springs);
+  std::vector<Vec> given = find_forces(solved_count_, springs);
   springs_.insert(springs_.end(), springs.begin(), springs.end());
   solved_count_ = new_.size();
-  if (!move(given, kRoughly)) {
+  if (!move(std::move(given), kRoughly)) {
     return std::nullopt;
   }
   if (std::sqrt(gap_energy(gaps())) > kGapMax * unit_) {
     return improve();
   }
-  if (!std::isfinite(motion_error_) && !move(std::vector<Vec>(given.size()), 1)) {
+  if (!std::isfinite(motion_error_) && !move(std::vector<Vec>(elements_.size()), 1)) {
     return std::nullopt;
   }
   return finish(gap_energy(gaps()));
@@ -521,7 +534,7 @@ std::optional<FollowedRobot::Result> FollowedRobot::improve() {
     change[i] = difference(change[i], given_[i]);
   }
   const double coarseness = std::max(1.0, kGapShare * std::sqrt(gap_energy(gap)) / unit_);
-  if (!find_motion(change, coarseness)) {
+  if (!find_motion(std::move(change), coarseness)) {
     return std::nullopt;
   }
   move_core(1);

@@ -66,6 +66,9 @@ class FollowedRobot {
   /// The same nearer, after solve(), which asks for it once where that is sure to pay.
   std::optional<Result> improve();
 
+  /// Gives back what takes much memory; begin() is next.
+  void end();
+
   /// Multigrid's, in all solutions since begin().
   int iteration_count() const { return iteration_count_; }
 
@@ -111,11 +114,11 @@ class FollowedRobot {
   std::vector<Vec> balance(std::size_t first, std::vector<Spring>& springs);
   std::vector<Vec> find_forces(std::size_t first, std::vector<Spring>& springs);
   bool make_system(const std::vector<Vec>& loads);
-  bool find_motion(const std::vector<Vec>& change, double coarseness);
+  bool find_motion(std::vector<Vec> change, double coarseness);
   void move_core(double factor);
   std::vector<Vec> gaps() const;
   double energy_of(const Vec& a, const Vec& b) const;
-  bool move(const std::vector<Vec>& change, double coarseness);
+  bool move(std::vector<Vec> change, double coarseness);
   double gap_energy(const std::vector<Vec>& gap) const;
   Result finish(double gap_energy);
   const std::vector<Loaded>& most_loaded_first();

@@ -455,6 +455,9 @@ std::vector<Judgement> RobotGrowth::judge_piece(ElementSet state, Sense sense,
     }
   }
   tools.bound.end();
+  if (tools.followed != nullptr) {
+    tools.followed->end();
+  }
   return judgements;
 }
 

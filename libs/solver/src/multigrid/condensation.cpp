@@ -244,9 +244,9 @@ CondensedLoads::CondensedLoads(const std::vector<Load>& loads, const model::Load
     count += static_cast<std::uint32_t>(std::popcount(marks_[i]));
   }
   kept_.reserve(count);
-  for (std::size_t module = 0; module < loads.size(); ++module) {
-    if (loads[module] != own[module]) {
-      kept_.push_back(loads[module]);
+  for (std::size_t i = 0; i < marks_.size(); ++i) {
+    for (std::uint64_t marks = marks_[i]; marks != 0; marks &= marks - 1) {
+      kept_.push_back(loads[kBits * i + static_cast<std::size_t>(std::countr_zero(marks))]);
     }
   }
 }
