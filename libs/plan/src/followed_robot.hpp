@@ -115,6 +115,7 @@ class FollowedRobot {
   std::vector<Vec> find_forces(std::size_t first, std::vector<Spring>& springs);
   bool make_system(const std::vector<Vec>& loads);
   bool find_motion(std::vector<Vec> change, double coarseness);
+  double solution_error(double coarseness) const;
   void move_core(double factor);
   std::vector<Vec> gaps() const;
   double energy_of(const Vec& a, const Vec& b) const;

@@ -36,6 +36,8 @@ class DirectSystem final : public LinearSystem {
 
   std::vector<double> facet_errors() const override { return {}; }
 
+  double energy_error() const override { return 0; }
+
   /// The factors, one node per module that is not fixed, as of the last solve().
   const BlockLu& factors() const { return *lu_; }
 

@@ -305,11 +305,12 @@ void Multigrid::update_iteration() {
   if (!x.empty()) {
     iteration_->x() = std::move(x);
   }
-  if (options_.progress) {
-    iteration_->progress = [this](int, double error) {
+  iteration_->progress = [this](int, double error) {
+    error_ = error;
+    if (options_.progress) {
       options_.progress(++told_count_, std::sqrt(std::max(0.0, error) / reference_));
-    };
-  }
+    }
+  };
 }
 
 /// What the present displacements leave unbalanced, with the contact's own tangent.
@@ -393,9 +394,9 @@ LinearOutcome Multigrid::begin() {
   for (GroundNode& ground_node : ground_nodes_) {
     ground_node.known = facets()[ground_node.facet];
   }
-  const double error = iteration_->begin();
+  error_ = iteration_->begin();
   if (reference_ == 0) {
-    reference_ = error;
+    reference_ = error_;
   }
   is_stale_ = false;
   return LinearOutcome::kSolved;
@@ -601,6 +602,8 @@ std::vector<double> Multigrid::facet_errors() const {
   }
   return errors;
 }
+
+double Multigrid::energy_error() const { return std::sqrt(std::max(0.0, error_)); }
 
 LinearReport Multigrid::report() const {
   return {.method = Method::kMultigrid,

@@ -43,6 +43,7 @@ class Multigrid final : public LinearSystem {
   /// Taken from the preconditioner, and more where the iteration converges slowly: it then misses
   /// more of the error.
   std::vector<double> facet_errors() const override;
+  double energy_error() const override;
   LinearReport report() const override;
 
  private:
@@ -108,7 +109,8 @@ class Multigrid final : public LinearSystem {
   bool is_contact_new_ = false;     ///< The iteration does not know all facets' states.
   bool is_residual_known_ = false;  ///< But for facets that changed.
   bool is_stale_ = true;            ///< Some facet, the law or the loads changed since solve().
-  double reference_ = 0;            ///< Square of the first error.
+  double reference_ = 0;            ///< Square of the first error,
+  double error_ = 0;                ///< and of the last one that was estimated.
   double energy_error_ = 0;         ///< (N mm)^(1/2), what the last solution was to have.
   int solve_count_ = 0;
   int iteration_count_ = 0;

@@ -225,6 +225,10 @@ class LinearSystem {
   /// facet's width; empty if is_exact().
   virtual std::vector<double> facet_errors() const = 0;
 
+  /// How far the last solve() is from its solution in the energy norm, by its own estimate, which
+  /// may be much less than the tolerance asks for; 0 if is_exact().
+  virtual double energy_error() const = 0;
+
   virtual LinearReport report() const = 0;
 
  protected:
