@@ -3,6 +3,7 @@
 #include "robot_growth.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <iterator>
 #include <map>
 #include <memory>
@@ -488,10 +489,15 @@ std::vector<Judgement> RobotGrowth::judge_run(const ElementSet& state, Sense sen
   if (sense == Sense::kGrowing) {
     grow_adjoints(state, run);
   }
+  // The last pieces, whose robots are the largest, first: so threads end at about the same time.
+  std::atomic<std::size_t> taken_count{0};
   host::Team team(thread_count_);
-  team.each(count, [&](std::size_t i) {
-    pieces[i] = judge_piece(begins[i], sense, part(i),
-                            {bounds_[i], &followed_[i], &sections_[i], assess, is_late});
+  team.each(std::min(count, base::at(team.thread_count())), [&](std::size_t) {
+    for (std::size_t turn = taken_count++; turn < count; turn = taken_count++) {
+      const std::size_t i = count - 1 - turn;
+      pieces[i] = judge_piece(begins[i], sense, part(i),
+                              {bounds_[i], &followed_[i], &sections_[i], assess, is_late});
+    }
   });
   std::vector<Judgement> judgements;
   ElementSet reached = state;
