@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "holdfast/model/families.hpp"
@@ -43,9 +44,10 @@ class Preconditioner {
   /// M^-1 r.
   std::vector<Six<Real>> operator()(const std::vector<Six<Real>>& r) {
     hierarchy_.take_vectors();
-    hierarchy_.levels()[0].r = r;
+    std::ranges::copy(r, hierarchy_.levels()[0].r.begin());
     cycle_.run();
-    return hierarchy_.levels()[0].z;
+    const auto z = hierarchy_.levels()[0].z;
+    return {z.begin(), z.end()};
   }
 
  private:

@@ -112,6 +112,8 @@ void find_equilibrium(const model::Robot& robot, solver::EquilibriumSolver& solv
     if (agrees(assessment)) {
       break;
     }
+    assessment.equilibrium.displacement = std::vector<base::Vec6<double>>();  // To have its memory.
+    assessment.equilibrium.alternative = std::vector<base::Vec6<double>>();
     Equilibrium exact = solver.solve({.law = ContactLaw::kUnilateral, .gamma = gamma});
     exact.begin_with(assessment.equilibrium);
     assessment.equilibrium = std::move(exact);
@@ -240,9 +242,14 @@ Assessment assess(const model::Robot& robot, const solver::EquilibriumOptions& o
   if (!is_near_limit(assessment)) {
     return assessment;
   }
-  for (const solver::EquilibriumOptions& finer : finer_options(robot, options)) {
+  const std::vector<solver::EquilibriumOptions> all_finer = finer_options(robot, options);
+  const solver::EquilibriumOptions* known = &options;  // What `assessment` was found with.
+  bool is_whole = true;
+  for (const solver::EquilibriumOptions& finer : all_finer) {
     // Their memory is needed elsewhere, and they can be had again.
     assessment.connections = std::vector<ConnectionResult>();
+    assessment.equilibrium.displacement = std::vector<base::Vec6<double>>();
+    is_whole = false;
     Assessment next = assess_once(robot, finer);
     // Solutions that were found once are there, whether or not they are found again.
     const bool is_one_lost = assessment.several && !next.several;
@@ -253,11 +260,10 @@ Assessment assess(const model::Robot& robot, const solver::EquilibriumOptions& o
       return next;
     }
     assessment = std::move(next);
+    known = &finer;
+    is_whole = true;
   }
-  if (assessment.equilibrium.outcome == Outcome::kSettled && assessment.connections.empty()) {
-    assess_connections(robot, options.thread_count, assessment);
-  }
-  return assessment;
+  return is_whole ? std::move(assessment) : assess_once(robot, *known);
 }
 
 Assessment assess_equilibrium(const model::Robot& robot, Equilibrium equilibrium,

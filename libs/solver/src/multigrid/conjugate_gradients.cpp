@@ -25,9 +25,6 @@ constexpr std::size_t kKeptProductMax = std::size_t{1} << 14U;
 /// A solid is what has more neighbours than this on average.
 constexpr double kSolidDegree = 5;
 
-/// A curvature that is so small a share of what it is the difference of is computed anew.
-constexpr double kCancelled = 1e-3;
-
 /// After so many iterations that gained nothing only rounding is left.
 constexpr int kPatience = 50;
 
@@ -79,30 +76,44 @@ void ConjugateGradients<Real>::set_residual(std::size_t node, const base::Vec6<d
 template <class Real>
 void ConjugateGradients<Real>::mark() {
   is_marked_ = true;
-  step_from_mark_.reset();
-  marked_ = std::vector<double>();
+  last_step_.reset();
+  gain_ = std::vector<Six<float>>();
+  gain_low_ = std::vector<std::int16_t>();
 }
 
-/// Where x was marked, before p changes. Mostly that is never needed, as one iteration follows.
+/// Takes the memory of the gain, unless it is there.
 template <class Real>
-void ConjugateGradients<Real>::write_marked() {
-  if (!step_from_mark_) {
+void ConjugateGradients<Real>::take_gain() {
+  gain_.resize(node_count_);
+  gain_low_.resize(6 * node_count_);
+}
+
+/// Adds the last step to the gain, before p changes. Mostly that is never needed, as one iteration
+/// follows.
+template <class Real>
+void ConjugateGradients<Real>::write_gain() {
+  if (!last_step_) {
     return;
   }
-  marked_.resize(x_.size());
-  const double step = *std::exchange(step_from_mark_, std::nullopt);
+  take_gain();
+  const double step = *std::exchange(last_step_, std::nullopt);
   team_.share(0, node_count_, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = 6 * begin; i < 6 * end; ++i) {
-      marked_[i] = x_[i] - step * static_cast<double>(p_[i / 6].v[i % 6]);
+      gain().set(i, gain().get(i) + step * static_cast<double>(p_[i / 6].v[i % 6]));
     }
   });
 }
 
 template <class Real>
 std::vector<double> ConjugateGradients<Real>::marked() {
-  write_marked();
+  write_gain();
+  std::vector<double> marked = x_;
+  for (std::size_t i = 0; i < 6 * gain_.size(); ++i) {
+    marked[i] -= gain().get(i);
+  }
+  mark();
   is_marked_ = false;
-  return marked_.empty() ? x_ : std::move(marked_);
+  return marked;
 }
 
 template <class Real>
@@ -115,7 +126,7 @@ template <class Real>
 void ConjugateGradients<Real>::rest() {
   q_ = std::vector<double>();
   hierarchy_.drop_vectors();
-  write_marked();
+  write_gain();
   p_ = std::vector<Six<Real>>();
 }
 
@@ -123,8 +134,8 @@ template <class Real>
 void ConjugateGradients<Real>::retire() {
   q_ = std::vector<double>();
   low_ = std::vector<std::int16_t>();
-  hierarchy_.levels().clear();
-  write_marked();
+  hierarchy_.drop_levels();
+  write_gain();
   p_ = std::vector<Six<Real>>();
 }
 
@@ -154,7 +165,7 @@ void ConjugateGradients<Real>::subtract_product() {
 
 /// This rank's part of r . z, or of another vector.
 template <class Real>
-double ConjugateGradients<Real>::own_residual_dot(const std::vector<Six<Real>>& z) {
+double ConjugateGradients<Real>::own_residual_dot(std::span<const Six<Real>> z) {
   return team_.sum(node_count_, [&](std::size_t begin, std::size_t end) {
     return kernels<Real>().dot_split(r(), z.data(), {begin, end});
   });
@@ -163,9 +174,8 @@ double ConjugateGradients<Real>::own_residual_dot(const std::vector<Six<Real>>& 
 /// This rank's part of a . z.
 template <class Real>
 double ConjugateGradients<Real>::own_dot_with_z(const std::vector<double>& a) {
-  const std::vector<Six<Real>>& z = hierarchy_.levels().front().z;
   return team_.sum(node_count_, [&](std::size_t begin, std::size_t end) {
-    return kernels<Real>().dot(a.data(), z.data(), {begin, end});
+    return kernels<Real>().dot(a.data(), preconditioned().data(), {begin, end});
   });
 }
 
@@ -179,14 +189,14 @@ void ConjugateGradients<Real>::run_cycle() {
 template <class Real>
 double ConjugateGradients<Real>::precondition() {
   run_cycle();
-  return sum(own_residual_dot(hierarchy_.levels().front().z));
+  return sum(own_residual_dot(preconditioned()));
 }
 
 /// The same; returns q . z as well.
 template <class Real>
 std::array<double, 2> ConjugateGradients<Real>::precondition_and_compare() {
   run_cycle();
-  const double error = own_residual_dot(hierarchy_.levels().front().z);
+  const double error = own_residual_dot(preconditioned());
   return host::sum(hierarchy_.ranks(0), std::array{error, own_dot_with_z(q_)});
 }
 
@@ -194,21 +204,21 @@ template <class Real>
 double ConjugateGradients<Real>::begin() {
   hierarchy_.take_vectors();
   error_ = precondition();
-  write_marked();
+  write_gain();
   turn_.reset();
   curvature_.reset();
-  p_ = hierarchy_.levels().front().z;
+  p_.assign(preconditioned().begin(), preconditioned().end());
   has_last_direction_ = false;
   return error_;
 }
 
 template <class Real>
 base::Vec6<double> ConjugateGradients<Real>::correction(std::size_t node) {
-  base::Vec6<double> z{};
+  base::Vec6<double> value{};
   for (std::size_t k = 0; k < 6; ++k) {
-    z[k] = static_cast<double>(hierarchy_.levels().front().z[node].v[k]);
+    value[k] = static_cast<double>(preconditioned()[node].v[k]);
   }
-  return z;
+  return value;
 }
 
 /// q = K p; returns p . q.
@@ -229,11 +239,10 @@ void ConjugateGradients<Real>::turn() {
   if (!turn_) {
     return;
   }
-  write_marked();
+  write_gain();
   const auto turn = static_cast<Real>(*std::exchange(turn_, std::nullopt));
-  const std::vector<Six<Real>>& z = hierarchy_.levels().front().z;
   team_.share(0, node_count_, [&](std::size_t begin, std::size_t end) {
-    kernels<Real>().combine(1, z.data(), turn, p_.data(), {begin, end});
+    kernels<Real>().combine(1, preconditioned().data(), turn, p_.data(), {begin, end});
   });
 }
 
@@ -258,8 +267,8 @@ double ConjugateGradients<Real>::advance_by_product(double step) {
 
 template <class Real>
 void ConjugateGradients<Real>::count_step(double step) {
-  if (is_marked_ && marked_.empty()) {
-    step_from_mark_ = step;
+  if (is_marked_) {
+    last_step_ = step;
   }
   ++iteration_count_;
 }
@@ -297,23 +306,35 @@ typename ConjugateGradients<Real>::State ConjugateGradients<Real>::state(const G
 }
 
 /// Iterates until is_over(iteration, error). Returns false if K is not positive definite.
-// x, r, q: displacement, residual, K p;  p, z: direction, preconditioned residual
 template <class Real>
 template <class IsOver>
 bool ConjugateGradients<Real>::iterate(const IsOver& is_over) {
   for (int iteration = 0; !is_over(iteration, error_); ++iteration) {
-    turn();
-    const double curvature = multiply();
-    if (!(curvature > 0)) {
+    if (!(is_product_kept() ? go_on_with_product() : go_on_without_product())) {
       return false;
     }
-    const double step = error_ / curvature;
-    advance(step);
-    const auto [error, change] = precondition_and_compare();
-    turn_ = -step * change / error_;  // z (r_new - r_old) / z_old r_old
-    error_ = error;
     tell();
   }
+  return true;
+}
+
+/// One iteration. Returns false if K is not positive definite.
+// x, r, q: displacement, residual, K p;  p, z: direction, preconditioned residual
+template <class Real>
+bool ConjugateGradients<Real>::go_on_with_product() {
+  if (curvature_) {
+    turn_to_curvature();  // The last iteration kept no product.
+  }
+  turn();
+  const double curvature = multiply();
+  if (!(curvature > 0)) {
+    return false;
+  }
+  const double step = error_ / curvature;
+  advance(step);
+  const auto [error, change] = precondition_and_compare();
+  turn_ = -step * change / error_;  // z (r_new - r_old) / z_old r_old
+  error_ = error;
   return true;
 }
 
@@ -330,19 +351,20 @@ bool ConjugateGradients<Real>::step() {
   return true;
 }
 
+/// Not where what has been gained since a mark takes memory.
 template <class Real>
 bool ConjugateGradients<Real>::is_product_kept() const {
-  return std::is_same_v<Real, double> || hierarchy_.ranks(0) != nullptr ||
-         node_count_ <= kKeptProductMax || !is_solid_;
+  const bool is_large = node_count_ > kKeptProductMax;
+  const bool is_expensive = std::is_same_v<Real, double> || is_solid_ || last_step_ || !gain_.empty();
+  return hierarchy_.ranks(0) != nullptr || !is_large || !is_expensive;
 }
 
-/// z . K z and p . K z
+/// z . K z and p . K z, for any z.
 template <class Real>
-std::array<double, 2> ConjugateGradients<Real>::compare(const std::vector<Six<Real>>& z,
-                                                        const std::vector<Six<Real>>& p) {
+std::array<double, 2> ConjugateGradients<Real>::compare(std::span<const Six<Real>> z) {
   std::vector<std::array<double, 2>> parts;
   team_.map(node_count_, parts, [&](std::size_t begin, std::size_t end) {
-    return hierarchy_.compare(z.data(), p.data(), {begin, end});
+    return hierarchy_.compare(z.data(), p_.data(), {begin, end});
   });
   std::array<double, 2> sum{};
   for (const std::array<double, 2>& part : parts) {
@@ -356,33 +378,29 @@ std::array<double, 2> ConjugateGradients<Real>::compare(const std::vector<Six<Re
 /// but for the rounding of p, which x and r take into account both.
 template <class Real>
 double ConjugateGradients<Real>::turn_to_curvature() {
-  const std::vector<Six<Real>>& z = hierarchy_.levels().front().z;
   if (!curvature_) {
-    return compare(p_, p_)[0];
+    turn();
+    return compare(p_)[0];
   }
   const double last = *std::exchange(curvature_, std::nullopt);
-  const auto [own, change] = compare(z, p_);
+  const auto [own, change] = compare(preconditioned());
   turn_ = -change / last;
   turn();
   const double curvature = own - change * change / last;
-  return curvature > kCancelled * own ? curvature : compare(p_, p_)[0];
+  return curvature > kCancelled * own ? curvature : compare(p_)[0];
 }
 
-/// What iterate() does, in other words: K p is made twice and kept nowhere.
+/// The same in other words: K p is made twice and kept nowhere.
 template <class Real>
-template <class IsOver>
-bool ConjugateGradients<Real>::iterate_without_product(const IsOver& is_over) {
+bool ConjugateGradients<Real>::go_on_without_product() {
   q_ = std::vector<double>();
   hierarchy_.take_vectors();
-  for (int iteration = 0; !is_over(iteration, error_); ++iteration) {
-    const double curvature = turn_to_curvature();
-    if (!(curvature > 0)) {
-      return false;
-    }
-    curvature_ = advance_by_product(error_ / curvature);
-    error_ = precondition();
-    tell();
+  const double curvature = turn_to_curvature();
+  if (!(curvature > 0)) {
+    return false;
   }
+  curvature_ = advance_by_product(error_ / curvature);
+  error_ = precondition();
   return true;
 }
 
@@ -410,7 +428,7 @@ Iteration::End ConjugateGradients<Real>::run(const Goal& goal) {
     }
     ranks->watch(task);
   } else {
-    is_definite = is_product_kept() ? iterate(is_over) : iterate_without_product(is_over);
+    is_definite = iterate(is_over);
   }
   if (is_definite && reached != State::kReached) {
     return End::kTooSlow;
@@ -460,9 +478,9 @@ void ConjugateGradients<Real>::turn_from_last_direction() {
 template <class Real>
 Iteration::End ConjugateGradients<Real>::run_by_another(const Goal& goal, host::KrylovTask& task) {
   constexpr int kRoundMax = 5;
-  write_marked();
-  if (is_marked_ && marked_.empty()) {
-    marked_ = x_;
+  write_gain();
+  if (is_marked_) {
+    take_gain();
   }
   turn_.reset();
   Goal aim = goal;
@@ -476,7 +494,7 @@ Iteration::End ConjugateGradients<Real>::run_by_another(const Goal& goal, host::
       run_cycle();
     }
     for (std::size_t i = 0; i < 6 * node_count_; ++i) {
-      z[i] = static_cast<double>(hierarchy_.levels().front().z[i / 6].v[i % 6]);
+      z[i] = static_cast<double>(preconditioned()[i / 6].v[i % 6]);
     }
   };
   task.is_over = [&](int iteration, double error) {
@@ -505,6 +523,9 @@ Iteration::End ConjugateGradients<Real>::run_by_another(const Goal& goal, host::
     for (std::size_t i = 0; i < d.size(); ++i) {
       x_[i] += d[i];
       b[i] -= image[i];
+      if (is_marked_) {
+        gain().set(i, gain().get(i) + d[i]);
+      }
     }
     take_residual(b.data());
     if (reached == State::kStuck) {

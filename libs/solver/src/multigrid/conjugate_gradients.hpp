@@ -4,6 +4,8 @@
 
 #include <array>
 #include <optional>
+#include <span>
+#include <vector>
 
 #include "cycle.hpp"
 #include "iteration.hpp"
@@ -49,6 +51,9 @@ class ConjugateGradients final : public Iteration {
     double curvature = 0;          ///< p . A p
   };
 
+  /// A curvature that is so small a share of what it is the difference of is computed anew.
+  static constexpr double kCancelled = 1e-3;
+
   enum class State : std::uint8_t { kOnTheWay, kReached, kStuck };
   State state(const Goal& goal, int iteration);
   bool is_reached(const Goal& goal, int iteration) const;
@@ -56,14 +61,19 @@ class ConjugateGradients final : public Iteration {
 
   double sum(double mine) { return host::sum(hierarchy_.ranks(0), mine); }
 
-  void update_copies(std::vector<Six<Real>>& items) { hierarchy_.update_copies(0, items); }
+  void update_copies(std::vector<Six<Real>>& items) {
+    hierarchy_.update_copies(0, std::span(items));
+  }
+
+  /// M^-1 r, after a cycle.
+  std::span<const Six<Real>> preconditioned() { return hierarchy_.levels().front().z; }
 
   template <class IsOver>
   bool iterate(const IsOver& is_over);
-  template <class IsOver>
-  bool iterate_without_product(const IsOver& is_over);
+  bool go_on_with_product();
+  bool go_on_without_product();
   bool is_product_kept() const;
-  std::array<double, 2> compare(const std::vector<Six<Real>>& z, const std::vector<Six<Real>>& p);
+  std::array<double, 2> compare(std::span<const Six<Real>> z);
   double turn_to_curvature();
   double advance_by_product(double step);
   End run_by_another(const Goal& goal, host::KrylovTask& task);
@@ -78,18 +88,25 @@ class ConjugateGradients final : public Iteration {
   void turn();
   void copy_residual(double* numbers);
   void take_residual(const double* numbers);
-  void write_marked();
+  void write_gain();
   void tell() const;
-  double own_residual_dot(const std::vector<Six<Real>>& z);
+  double own_residual_dot(std::span<const Six<Real>> z);
   double own_dot_with_z(const std::vector<double>& a);
 
   // orthogonalization.cpp
   bool is_still_reached(const Goal& goal, int iteration, double before);
   End run_by_last_direction(const Goal& goal, std::span<const NodeTerm> terms);
+  bool go_on_with_product(std::span<const NodeTerm> terms);
+  bool go_on_without_product(std::span<const NodeTerm> terms);
+  double turn_to_curvature(std::span<const NodeTerm> terms);
   void turn_away_from(const std::vector<Direction>& older);
   Direction multiply_direction(std::span<const NodeTerm> terms);
   End run_by_all_directions(const Goal& goal, std::span<const NodeTerm> terms,
                             std::size_t direction_count);
+
+  SplitView<float> gain() { return {.rounded = gain_.data(), .low = gain_low_.data()}; }
+
+  void take_gain();
 
   /// The residual; its rounded part is the finest level's.
   SplitView<Real> r() {
@@ -107,9 +124,10 @@ class ConjugateGradients final : public Iteration {
   std::vector<Six<Real>> p_;
   std::optional<double> turn_;            ///< By which p_ is yet to be turned.
   std::optional<double> curvature_;       ///< p . K p where z has yet to be compared with p_.
-  bool is_marked_ = false;                ///< If so, x was marked_ or, as long as that is empty,
-  std::optional<double> step_from_mark_;  ///< so many p_ back.
-  std::vector<double> marked_;
+  bool is_marked_ = false;           ///< If so, x has changed since by the gain
+  std::optional<double> last_step_;  ///< and so many p_.
+  std::vector<Six<float>> gain_;     ///< Empty as long as there is none.
+  std::vector<std::int16_t> gain_low_;
   bool has_last_direction_ =
       false;  ///< p_ is that of a run of ranks, from which r has not changed.
   double error_ = 0;

@@ -17,13 +17,13 @@ template <class Real>
 constexpr int kCoarsestRefinementCount = std::is_same_v<Real, double> ? 2 : 0;
 
 /// What the sweeps work on.
-std::vector<Six<float>>& swept_r(Level<float>& level) { return level.r; }
+std::span<Six<float>> swept_r(Level<float>& level) { return level.r; }
 
-std::vector<Six<float>>& swept_r(Level<double>& level) { return level.rough_r; }
+std::span<Six<float>> swept_r(Level<double>& level) { return level.rough_r; }
 
-std::vector<Six<float>>& swept_z(Level<float>& level) { return level.z; }
+std::span<Six<float>> swept_z(Level<float>& level) { return level.z; }
 
-std::vector<Six<float>>& swept_z(Level<double>& level) { return level.rough_z; }
+std::span<Six<float>> swept_z(Level<double>& level) { return level.rough_z; }
 
 /// The cycle's own length is right within a factor of two or so. A step far from 1 is rounding: on
 /// a slender robot the energy of a smooth motion drowns in single precision, and no step is better.
@@ -63,7 +63,7 @@ void Cycle<Real>::relax(std::size_t depth, Order order, Start start) {
   if (start == Start::kZero) {
     // A colour sees only those before it, so the rest must be zero in the first sweep.
     const std::size_t first = colour_at(0);
-    std::vector<Six<float>>& z = swept_z(level);
+    const std::span<Six<float>> z = swept_z(level);
     team_.share(0, level.node_count, [&](std::size_t begin, std::size_t end) {
       const std::size_t own_begin = std::clamp(level.colour_start[first], begin, end);
       const std::size_t own_end = std::clamp(level.colour_start[first + 1], begin, end);
@@ -82,9 +82,9 @@ void Cycle<Real>::relax(std::size_t depth, Order order, Start start) {
 
 /// Where the forces on a coarse level's clusters go: those of this rank's, if it is gathered.
 template <class Real>
-typename Cycle<Real>::Vector& Cycle<Real>::passed_down(std::size_t depth) {
+typename Cycle<Real>::Vector Cycle<Real>::passed_down(std::size_t depth) {
   Level<Real>& coarse = hierarchy_.levels()[depth];
-  return coarse.gathering.is_empty() ? coarse.r : coarse.part;
+  return coarse.gathering.is_empty() ? coarse.r : Vector(coarse.part);
 }
 
 /// If the level is gathered: the forces on all ranks' clusters.
@@ -102,7 +102,7 @@ void Cycle<Real>::gather_forces(std::size_t depth) {
 
 /// How the clusters move that this rank's nodes belong to.
 template <class Real>
-const typename Cycle<Real>::Vector& Cycle<Real>::passed_up(std::size_t depth) {
+typename Cycle<Real>::Vector Cycle<Real>::passed_up(std::size_t depth) {
   Level<Real>& coarse = hierarchy_.levels()[depth];
   const Gathering& gathering = coarse.gathering;
   if (gathering.is_empty()) {
@@ -119,7 +119,7 @@ template <class Real>
 void Cycle<Real>::pass_down(std::size_t depth, std::size_t settled) {
   Level<Real>& level = hierarchy_.levels()[depth];
   const std::size_t cluster_count = level.member_start.size() - 1;
-  Vector& forces = passed_down(depth + 1);
+  const Vector forces = passed_down(depth + 1);
   const Six<float>* z = swept_z(level).data();
   const Kernels<Real>& kernel = kernels<Real>();
   team_.share(0, cluster_count, [&](std::size_t begin, std::size_t end) {
@@ -146,7 +146,7 @@ void Cycle<float>::descend(std::size_t depth) {
     const std::size_t settled = level.colour_start[level.colour_start.size() - 2];
     pass_down(depth, settled);
     solve(depth + 1);
-    const Vector& motion = passed_up(depth + 1);
+    const Vector motion = passed_up(depth + 1);
     team_.share(0, settled, [&](std::size_t begin, std::size_t end) {
       kernels<float>().prolong(level.transfer(), motion.data(), level.z.data(), {begin, end});
     });
@@ -185,7 +185,7 @@ void Cycle<double>::descend(std::size_t depth) {
   if (depth + 1 < hierarchy_.levels().size()) {
     pass_down(depth, level.node_count);
     solve(depth + 1);
-    const Vector& motion = passed_up(depth + 1);
+    const Vector motion = passed_up(depth + 1);
     team_.share(0, level.node_count, [&](std::size_t begin, std::size_t end) {
       rounding().prolong(level.transfer(), motion.data(), level.rough_z.data(), level.z.data(),
                          {begin, end});
@@ -242,11 +242,12 @@ void Cycle<Real>::solve(std::size_t depth) {
                 std::array{own_dot(level.z, level.first_image, count),
                            own_dot(level.z, level.r, count), apply(depth, level.first_image)});
   const double rho_2 = beta - gamma * gamma / rho_1;
-  if (!is_credible(alpha_2 / rho_2)) {
-    combine(count, step, level.first, 0, level.z);
-    return;
+  if (is_credible(alpha_2 / rho_2)) {
+    combine(count, alpha_2 / rho_2, level.z, step - gamma * alpha_2 / (rho_1 * rho_2), level.first);
+  } else {
+    combine(count, step, level.first, 0, level.first);
   }
-  combine(count, step - gamma * alpha_2 / (rho_1 * rho_2), level.first, alpha_2 / rho_2, level.z);
+  std::swap(level.first, level.z);  // Only z's own memory is kept while the finest z is made.
 }
 
 /// Solves the coarsest level by factors of K; in double precision their error is found spring by
@@ -265,7 +266,7 @@ void Cycle<Real>::solve_coarsest() {
 
 /// z += K^-1 r
 template <class Real>
-void Cycle<Real>::add_coarsest(const Vector& r, Vector& z) {
+void Cycle<Real>::add_coarsest(Vector r, Vector z) {
   const std::size_t count = hierarchy_.levels().back().node_count;
   coarsest_.resize(count);
   for (std::size_t node = 0; node < count; ++node) {
@@ -283,7 +284,7 @@ void Cycle<Real>::add_coarsest(const Vector& r, Vector& z) {
 
 /// image = K z; returns this rank's part of z . image.
 template <class Real>
-double Cycle<Real>::apply(std::size_t depth, Vector& image) {
+double Cycle<Real>::apply(std::size_t depth, Vector image) {
   Level<Real>& level = hierarchy_.levels()[depth];
   return team_.sum(level.node_count, [&](std::size_t begin, std::size_t end) {
     return kernels<Real>().apply_cluster(level.view(), level.z.data(), image.data(), {begin, end});
@@ -292,7 +293,7 @@ double Cycle<Real>::apply(std::size_t depth, Vector& image) {
 
 /// This rank's part of a . b.
 template <class Real>
-double Cycle<Real>::own_dot(const Vector& a, const Vector& b, std::size_t count) {
+double Cycle<Real>::own_dot(Vector a, Vector b, std::size_t count) {
   return team_.sum(count, [&](std::size_t begin, std::size_t end) {
     return kernels<Real>().dot_same(a.data(), b.data(), {begin, end});
   });
@@ -300,8 +301,7 @@ double Cycle<Real>::own_dot(const Vector& a, const Vector& b, std::size_t count)
 
 /// y = factor x + other y
 template <class Real>
-void Cycle<Real>::combine(std::size_t count, double factor, const Vector& x, double other,
-                          Vector& y) {
+void Cycle<Real>::combine(std::size_t count, double factor, Vector x, double other, Vector y) {
   team_.share(0, count, [&](std::size_t begin, std::size_t end) {
     kernels<Real>().combine(static_cast<Real>(factor), x.data(), static_cast<Real>(other), y.data(),
                             {begin, end});

@@ -2,6 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <span>
+#include <vector>
+
 #include "hierarchy.hpp"
 
 /// The preconditioner z = M^-1 r: one K-cycle [Notay 2008]. On each level relax, pass the forces
@@ -21,12 +24,12 @@ class Cycle {
   void run() { descend(0); }
 
  private:
-  using Vector = std::vector<Six<Real>>;
+  using Vector = std::span<Six<Real>>;
 
   void descend(std::size_t depth);
   void solve(std::size_t depth);
   void solve_coarsest();
-  void add_coarsest(const Vector& r, Vector& z);
+  void add_coarsest(Vector r, Vector z);
   enum class Start : std::uint8_t { kZero, kPresent };
   enum class Order : std::uint8_t { kForward, kBackward };
   void relax(std::size_t depth, Order order, Start start);
@@ -34,12 +37,12 @@ class Cycle {
   void pass_down(std::size_t depth, std::size_t settled);
   void leave_residual(std::size_t depth);
   void add_rough(std::size_t depth);
-  double apply(std::size_t depth, Vector& image);
-  double own_dot(const Vector& a, const Vector& b, std::size_t count);
-  Vector& passed_down(std::size_t depth);
+  double apply(std::size_t depth, Vector image);
+  double own_dot(Vector a, Vector b, std::size_t count);
+  Vector passed_down(std::size_t depth);
   void gather_forces(std::size_t depth);
-  const Vector& passed_up(std::size_t depth);
-  void combine(std::size_t count, double factor, const Vector& x, double other, Vector& y);
+  Vector passed_up(std::size_t depth);
+  void combine(std::size_t count, double factor, Vector x, double other, Vector y);
 
   Hierarchy<Real>& hierarchy_;
   Team& team_;

@@ -70,12 +70,13 @@ void for_springs(const SpringGraph& graph, const F& f) {
 }
 
 /// The whole level as a sparse matrix in double precision, as yet without ground springs.
+/// (GroundTable's tangents are symmetric.)
 std::optional<BlockLu> unheld_matrix(const SpringGraph& graph, std::size_t block_count_max) {
   std::vector<Edge> edges;
   for_springs(graph, [&](std::int32_t a, std::int32_t b, const PackedSpring&) {
     edges.push_back({a, b});
   });
-  BlockLu lu(graph.order.size(), edges, block_count_max);
+  BlockLu lu(graph.order.size(), edges, block_count_max, Symmetry::kSymmetric);
   if (lu.is_too_large()) {
     return std::nullopt;
   }
@@ -593,37 +594,6 @@ Hierarchy<Real>::Hierarchy(ReducedNetwork& network, const model::Material& mater
     }
   }
   is_singular_ = host::any(network_.ranks, is_singular_);
-}
-
-template <class Real>
-void Hierarchy<Real>::take_vectors() {
-  for (Level<Real>& level : levels_) {
-    const std::size_t size = level.place_count + 1;
-    level.r.resize(size);
-    level.z.resize(size);
-    if (std::is_same_v<Real, double>) {
-      level.rough_r.resize(size);
-      level.rough_z.resize(size);
-    }
-    if (!is_finest(level)) {
-      level.first.resize(size);
-      level.first_image.resize(size);
-    }
-  }
-}
-
-template <class Real>
-void Hierarchy<Real>::drop_vectors() {
-  for (Level<Real>& level : levels_) {
-    level.rough_r = std::vector<Six<float>>();
-    level.rough_z = std::vector<Six<float>>();
-    for (auto* vector : {&level.z, &level.first, &level.first_image}) {
-      *vector = std::vector<Six<Real>>();
-    }
-    if (!is_finest(level)) {
-      level.r = std::vector<Six<Real>>();
-    }
-  }
 }
 
 template class Hierarchy<float>;

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "coarsening.hpp"
+#include "cycle_vectors.hpp"
 #include "ground_springs.hpp"
 #include "holdfast/model/material.hpp"
 #include "holdfast/solver/block_lu.hpp"
@@ -59,10 +60,16 @@ class Hierarchy {
   std::vector<Level<Real>>& levels() { return levels_; }
 
   /// Takes the memory of all vectors that a cycle needs, unless they have it.
-  void take_vectors();
+  void take_vectors() { vectors_.take(levels_); }
 
   /// Gives back the memory of all vectors but the finest level's r.
-  void drop_vectors();
+  void drop_vectors() { vectors_.drop(levels_); }
+
+  /// Gives back the memory of all levels.
+  void drop_levels() {
+    levels_.clear();
+    vectors_ = {};
+  }
 
   /// Whether a level has the kernels of cubes on a floor; only the finest may.
   bool is_cubic(std::size_t depth) const { return depth == 0 && network_.is_cubic; }
@@ -74,7 +81,7 @@ class Hierarchy {
 
   /// Gives copies on a level what their originals have.
   template <class Item>
-  void update_copies(std::size_t depth, std::vector<Item>& items) {
+  void update_copies(std::size_t depth, std::span<Item> items) {
     if (levels_[depth].halo != nullptr) {
       levels_[depth].halo->update(items.data(), sizeof(Item));
     }
@@ -82,7 +89,7 @@ class Hierarchy {
 
   /// The same where only nodes of one colour have changed.
   template <class Item>
-  void update_copies(std::size_t depth, std::size_t colour, std::vector<Item>& items) {
+  void update_copies(std::size_t depth, std::size_t colour, std::span<Item> items) {
     if (levels_[depth].halo != nullptr) {
       levels_[depth].halo_of_colour[colour]->update(items.data(), sizeof(Item));
     }
@@ -182,6 +189,7 @@ class Hierarchy {
   std::size_t alone_count_ = 0;     ///< Of all ranks.
   std::size_t gathered_depth_ = 0;  ///< From here on levels are whole.
   std::vector<Level<Real>> levels_;
+  CycleVectors<Real> vectors_;
   std::vector<Held> held_;  ///< By level; not filled in where is_cubic().
   LatticeView<Real> lattice_;
   LatticeView<float> block_lattice_;

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "holdfast/host/ranks.hpp"
@@ -85,16 +86,17 @@ struct Level {
   Seats<Real> seat;
   std::vector<std::int32_t> member_start;  ///< By cluster, along the Morton curve.
   std::vector<std::int32_t> member;
-  // Vectors of the cycle, one node more than there are places, which stays zero.
-  std::vector<Six<Real>> r;
-  std::vector<Six<Real>> z;
-  std::vector<Six<Real>> first;        ///< First direction of the inner iteration, coarse levels.
-  std::vector<Six<Real>> first_image;  ///< K times it.
-  std::vector<Six<Real>> part;         ///< Of a gathered level: this rank's part of r, then of z.
+  std::vector<Six<Real>> part;  ///< Of a gathered level: this rank's part of r, then of z.
+  // Vectors of the cycle, whose memory is that of CycleVectors. Those of the finest level have one
+  // node more than there are places, which stays zero.
+  std::span<Six<Real>> r;
+  std::span<Six<Real>> z;
+  std::span<Six<Real>> first;        ///< First direction of the inner iteration, coarse levels.
+  std::span<Six<Real>> first_image;  ///< K times it.
 
   // What the sweeps see of r and z, in double precision, where r and z are not that themselves.
-  std::vector<Six<float>> rough_r;
-  std::vector<Six<float>> rough_z;
+  std::span<Six<float>> rough_r;
+  std::span<Six<float>> rough_z;
 
   ClusterView<Real> view() const;
 

@@ -16,8 +16,10 @@ constexpr std::size_t kEnough = 64;
 /// An estimate of the error that falls by more than this in one step fell by chance.
 constexpr double kFallMax = 1e4;
 
+bool is_curvature(double number) { return number != 0 && std::isfinite(number); }
+
 template <class Real>
-base::Vec6<double> at_node(const std::vector<Six<Real>>& vector, const NodeTerm& term) {
+base::Vec6<double> at_node(const Six<Real>* vector, const NodeTerm& term) {
   base::Vec6<double> value{};
   for (std::size_t k = 0; k < 6; ++k) {
     value[k] = static_cast<double>(vector[static_cast<std::size_t>(term.node)].v[k]);
@@ -27,8 +29,7 @@ base::Vec6<double> at_node(const std::vector<Six<Real>>& vector, const NodeTerm&
 
 /// q += (A - K) p; returns p . (A - K) p.
 template <class Real>
-double add_terms(std::span<const NodeTerm> terms, const std::vector<Six<Real>>& p,
-                 std::vector<double>& q) {
+double add_terms(std::span<const NodeTerm> terms, const Six<Real>* p, std::vector<double>& q) {
   double sum = 0;
   for (const NodeTerm& term : terms) {
     const base::Vec6<double> own = at_node(p, term);
@@ -41,10 +42,19 @@ double add_terms(std::span<const NodeTerm> terms, const std::vector<Six<Real>>& 
   return sum;
 }
 
+/// p . (A - K) z
+template <class Real>
+double product(std::span<const NodeTerm> terms, const Six<Real>* p, const Six<Real>* z) {
+  double sum = 0;
+  for (const NodeTerm& term : terms) {
+    sum += base::dot(at_node(p, term), base::multiply(term.difference, at_node(z, term)));
+  }
+  return sum;
+}
+
 /// p . A z - z . A p
 template <class Real>
-double asymmetry(std::span<const NodeTerm> terms, const std::vector<Six<Real>>& p,
-                 const std::vector<Six<Real>>& z) {
+double asymmetry(std::span<const NodeTerm> terms, const Six<Real>* p, const Six<Real>* z) {
   double sum = 0;
   for (const NodeTerm& term : terms) {
     const base::Vec6<double> from = at_node(p, term);
@@ -74,7 +84,6 @@ bool ConjugateGradients<Real>::is_still_reached(const Goal& goal, int iteration,
   return is_reached(goal, iteration) && std::abs(before) <= kFallMax * goal.error;
 }
 
-// As in iterate(), but for q = A p.
 template <class Real>
 Iteration::End ConjugateGradients<Real>::run_by_last_direction(const Goal& goal,
                                                                std::span<const NodeTerm> terms) {
@@ -83,31 +92,85 @@ Iteration::End ConjugateGradients<Real>::run_by_last_direction(const Goal& goal,
     if (is_stuck(goal, iteration)) {
       return End::kTooSlow;
     }
-    turn();
-    const double symmetric_part = multiply();
-    const double curvature = symmetric_part + sum(add_terms(terms, p_, q_));
-    if (curvature == 0 || !std::isfinite(curvature)) {
+    before = error_;
+    if (!(is_product_kept() ? go_on_with_product(terms) : go_on_without_product(terms))) {
       return End::kBroken;
     }
-    before = error_;
-    // r . z but for rounding, which must not add up.
-    const double force = sum(own_residual_dot(p_));
-    advance(force / curvature);
-    const auto [error, change] = precondition_and_compare();
-    error_ = error;
-    turn_ = -(change + sum(asymmetry(terms, p_, hierarchy_.levels().front().z))) / curvature;
     tell();
   }
   return error_ >= 0 ? End::kConverged : End::kBroken;
 }
 
+// As for a symmetric matrix, but for q = A p.
+template <class Real>
+bool ConjugateGradients<Real>::go_on_with_product(std::span<const NodeTerm> terms) {
+  if (curvature_) {
+    turn_to_curvature(terms);  // The last iteration kept no product.
+  }
+  turn();
+  const double symmetric_part = multiply();
+  const double curvature = symmetric_part + sum(add_terms(terms, p_.data(), q_));
+  if (!is_curvature(curvature)) {
+    return false;
+  }
+  // r . z but for rounding, which must not add up.
+  const double force = sum(own_residual_dot(p_));
+  advance(force / curvature);
+  const auto [error, change] = precondition_and_compare();
+  error_ = error;
+  turn_ = -(change + sum(asymmetry(terms, p_.data(), preconditioned().data()))) / curvature;
+  return true;
+}
+
+// As for a symmetric matrix; curvature_ is that of K.
+template <class Real>
+bool ConjugateGradients<Real>::go_on_without_product(std::span<const NodeTerm> terms) {
+  q_ = std::vector<double>();
+  hierarchy_.take_vectors();
+  const double symmetric_part = turn_to_curvature(terms);
+  const double curvature = symmetric_part + product(terms, p_.data(), p_.data());
+  if (!is_curvature(curvature)) {
+    return false;
+  }
+  const double step = own_residual_dot(p_) / curvature;
+  curvature_ = advance_by_product(step);
+  for (const NodeTerm& term : terms) {
+    const auto node = static_cast<std::size_t>(term.node);
+    const base::Vec6<double> part = base::multiply(term.difference, at_node(p_.data(), term));
+    base::Vec6<double> left = residual(node);
+    for (std::size_t k = 0; k < 6; ++k) {
+      left[k] -= step * part[k];
+    }
+    set_residual(node, left);
+  }
+  error_ = precondition();
+  return true;
+}
+
+/// p := z + turn p, by which p_old . A p = 0; returns p . K p.
+template <class Real>
+double ConjugateGradients<Real>::turn_to_curvature(std::span<const NodeTerm> terms) {
+  if (!curvature_) {
+    turn();
+    return compare(p_)[0];
+  }
+  const double last = *std::exchange(curvature_, std::nullopt);
+  const auto [own, change] = compare(preconditioned());
+  const double turn_by = -(change + product(terms, p_.data(), preconditioned().data())) /
+                         (last + product(terms, p_.data(), p_.data()));
+  turn_ = turn_by;
+  turn();
+  const double curvature = own + turn_by * (2 * change + turn_by * last);
+  return curvature > kCancelled * own ? curvature : compare(p_)[0];
+}
+
 /// p := z, less what older directions answer for: p_old . A p = 0.
 template <class Real>
 void ConjugateGradients<Real>::turn_away_from(const std::vector<Direction>& older) {
-  write_marked();
+  write_gain();
   turn_.reset();
   curvature_.reset();
-  p_ = hierarchy_.levels().front().z;
+  p_.assign(preconditioned().begin(), preconditioned().end());
   for (const Direction& old : older) {
     const double product = sum(team_.sum(node_count_, [&](std::size_t begin, std::size_t end) {
       return kernels<Real>().dot_same(old.image.data(), p_.data(), {begin, end});
@@ -138,9 +201,9 @@ auto ConjugateGradients<Real>::multiply_direction(std::span<const NodeTerm> term
   });
   for (const NodeTerm& term : terms) {
     round(static_cast<std::size_t>(term.node),
-          base::multiply(transpose(term.difference), at_node(p_, term)));
+          base::multiply(transpose(term.difference), at_node(p_.data(), term)));
   }
-  direction.curvature += sum(add_terms(terms, p_, q_));
+  direction.curvature += sum(add_terms(terms, p_.data(), q_));
   return direction;
 }
 
@@ -161,7 +224,7 @@ Iteration::End ConjugateGradients<Real>::run_by_all_directions(const Goal& goal,
     }
     older.push_back(multiply_direction(terms));
     const double curvature = older.back().curvature;
-    if (curvature == 0 || !std::isfinite(curvature)) {
+    if (!is_curvature(curvature)) {
       return End::kBroken;
     }
     before = error_;
