@@ -45,7 +45,8 @@ class Preconditioner {
   std::vector<Six<Real>> operator()(const std::vector<Six<Real>>& r) {
     hierarchy_.take_vectors();
     std::ranges::copy(r, hierarchy_.levels()[0].r.begin());
-    cycle_.run();
+    std::vector<std::int16_t> low(6 * r.size());
+    cycle_.run({.rounded = hierarchy_.levels()[0].r.data(), .low = low.data()});
     const auto z = hierarchy_.levels()[0].z;
     return {z.begin(), z.end()};
   }

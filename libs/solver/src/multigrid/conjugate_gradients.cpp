@@ -179,24 +179,23 @@ double ConjugateGradients<Real>::own_dot_with_z(const std::vector<double>& a) {
   });
 }
 
+/// z = M^-1 r; returns this rank's part of r . z.
 template <class Real>
-void ConjugateGradients<Real>::run_cycle() {
+double ConjugateGradients<Real>::run_cycle() {
   const host::Logged logged(hierarchy_.ranks(0), host::Work::kCycle);
-  cycle_.run();
+  return cycle_.run(r());
 }
 
-/// z = M^-1 r; returns r . z.
+/// The same; returns r . z.
 template <class Real>
 double ConjugateGradients<Real>::precondition() {
-  run_cycle();
-  return sum(own_residual_dot(preconditioned()));
+  return sum(run_cycle());
 }
 
 /// The same; returns q . z as well.
 template <class Real>
 std::array<double, 2> ConjugateGradients<Real>::precondition_and_compare() {
-  run_cycle();
-  const double error = own_residual_dot(preconditioned());
+  const double error = run_cycle();
   return host::sum(hierarchy_.ranks(0), std::array{error, own_dot_with_z(q_)});
 }
 

@@ -79,7 +79,7 @@ class ConjugateGradients final : public Iteration {
   End run_by_another(const Goal& goal, host::KrylovTask& task);
   void turn_from_last_direction();
   void multiply(const double* p, double* q);
-  void run_cycle();
+  double run_cycle();
   double precondition();
   std::array<double, 2> precondition_and_compare();
   double multiply();

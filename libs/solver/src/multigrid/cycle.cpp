@@ -135,9 +135,37 @@ void Cycle<Real>::pass_down(std::size_t depth, std::size_t settled) {
   gather_forces(depth + 1);
 }
 
-/// z = M^-1 r on this level and all below.
 template <>
-void Cycle<float>::descend(std::size_t depth) {
+double Cycle<float>::run(SplitView<float> r) {
+  sweep(0);
+  const Level<float>& level = hierarchy_.levels().front();
+  return team_.sum(level.node_count, [&](std::size_t begin, std::size_t end) {
+    return kernels<float>().dot_split(r, level.z.data(), {begin, end});
+  });
+}
+
+template <>
+double Cycle<double>::run(SplitView<double> /*r*/) {
+  return descend(0);
+}
+
+/// z = M^-1 r on this level and all below; returns this rank's part of r . z.
+template <>
+double Cycle<float>::descend(std::size_t depth) {
+  sweep(depth);
+  const Level<float>& level = hierarchy_.levels()[depth];
+  return own_dot(level.z, level.r, level.node_count);
+}
+
+template <>
+double Cycle<double>::descend(std::size_t depth) {
+  sweep(depth);
+  return add_rough(depth);
+}
+
+/// All of descend() but its last pass.
+template <>
+void Cycle<float>::sweep(std::size_t depth) {
   Level<float>& level = hierarchy_.levels()[depth];
   relax(depth, Order::kForward, Start::kZero);
   if (depth + 1 < hierarchy_.levels().size()) {
@@ -176,7 +204,7 @@ void Cycle<double>::leave_residual(std::size_t depth) {
 /// of r is in double precision. There, as in single precision no forces are left only up to its
 /// rounding, all nodes' forces are passed down.
 template <>
-void Cycle<double>::descend(std::size_t depth) {
+void Cycle<double>::sweep(std::size_t depth) {
   Level<double>& level = hierarchy_.levels()[depth];
   team_.share(0, level.node_count, [&](std::size_t begin, std::size_t end) {
     rounding().round(level.r.data(), level.rough_r.data(), {begin, end});
@@ -197,17 +225,17 @@ void Cycle<double>::descend(std::size_t depth) {
   }
   leave_residual(depth);
   relax(depth, Order::kBackward, Start::kZero);
-  add_rough(depth);
 }
 
-/// z += what the sweeps found.
+/// z += what the sweeps found; returns this rank's part of r . z.
 template <>
-void Cycle<double>::add_rough(std::size_t depth) {
+double Cycle<double>::add_rough(std::size_t depth) {
   Level<double>& level = hierarchy_.levels()[depth];
-  team_.share(0, level.node_count, [&](std::size_t begin, std::size_t end) {
-    rounding().add(level.rough_z.data(), level.z.data(), {begin, end});
+  const double work = team_.sum(level.node_count, [&](std::size_t begin, std::size_t end) {
+    return rounding().add(level.rough_z.data(), level.r.data(), level.z.data(), {begin, end});
   });
   hierarchy_.update_copies(depth, level.z);
+  return work;
 }
 
 /// K z = r on a coarse level, about: Algorithm 3.2 of [Notay 2008].
@@ -219,11 +247,10 @@ void Cycle<Real>::solve(std::size_t depth) {
   }
   Level<Real>& level = hierarchy_.levels()[depth];
   const std::size_t count = level.node_count;
-  descend(depth);
+  const double own_work = descend(depth);
   const auto [before, alpha_1, rho_1] =
-      host::sum(hierarchy_.ranks(depth),
-                std::array{own_dot(level.r, level.r, count), own_dot(level.z, level.r, count),
-                           apply(depth, level.first_image)});
+      host::sum(hierarchy_.ranks(depth), std::array{own_dot(level.r, level.r, count), own_work,
+                                                    apply(depth, level.first_image)});
   const double step = alpha_1 / rho_1;
   if (!is_credible(step)) {
     return;
@@ -235,12 +262,11 @@ void Cycle<Real>::solve(std::size_t depth) {
     return;
   }
   std::swap(level.first, level.z);
-  descend(depth);
+  const double more_work = descend(depth);
   // Braces keep the order: z's image is needed for one number only, and first_image for one before.
   const auto [gamma, alpha_2, beta] =
-      host::sum(hierarchy_.ranks(depth),
-                std::array{own_dot(level.z, level.first_image, count),
-                           own_dot(level.z, level.r, count), apply(depth, level.first_image)});
+      host::sum(hierarchy_.ranks(depth), std::array{own_dot(level.z, level.first_image, count),
+                                                    more_work, apply(depth, level.first_image)});
   const double rho_2 = beta - gamma * gamma / rho_1;
   if (is_credible(alpha_2 / rho_2)) {
     combine(count, alpha_2 / rho_2, level.z, step - gamma * alpha_2 / (rho_1 * rho_2), level.first);

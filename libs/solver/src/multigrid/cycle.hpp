@@ -20,13 +20,15 @@ class Cycle {
   Cycle(Hierarchy<Real>& hierarchy, Team& team, int sweep_count)
       : hierarchy_(hierarchy), team_(team), sweep_count_(sweep_count) {}
 
-  /// From the finest level's r to its z, in the hierarchy's vectors, which must be there.
-  void run() { descend(0); }
+  /// From the finest level's r to its z, in the hierarchy's vectors, which must be there. Returns
+  /// this rank's part of r . z, with an r that may have further digits.
+  double run(SplitView<Real> r);
 
  private:
   using Vector = std::span<Six<Real>>;
 
-  void descend(std::size_t depth);
+  double descend(std::size_t depth);
+  void sweep(std::size_t depth);
   void solve(std::size_t depth);
   void solve_coarsest();
   void add_coarsest(Vector r, Vector z);
@@ -36,7 +38,7 @@ class Cycle {
   void relax_colour(std::size_t depth, std::size_t colour, bool is_first);
   void pass_down(std::size_t depth, std::size_t settled);
   void leave_residual(std::size_t depth);
-  void add_rough(std::size_t depth);
+  double add_rough(std::size_t depth);
   double apply(std::size_t depth, Vector image);
   double own_dot(Vector a, Vector b, std::size_t count);
   Vector passed_down(std::size_t depth);
@@ -51,12 +53,20 @@ class Cycle {
 };
 
 template <>
-void Cycle<float>::descend(std::size_t depth);
+double Cycle<float>::run(SplitView<float> r);
 template <>
-void Cycle<double>::descend(std::size_t depth);
+double Cycle<double>::run(SplitView<double> r);
+template <>
+double Cycle<float>::descend(std::size_t depth);
+template <>
+double Cycle<double>::descend(std::size_t depth);
+template <>
+void Cycle<float>::sweep(std::size_t depth);
+template <>
+void Cycle<double>::sweep(std::size_t depth);
 template <>
 void Cycle<double>::leave_residual(std::size_t depth);
 template <>
-void Cycle<double>::add_rough(std::size_t depth);
+double Cycle<double>::add_rough(std::size_t depth);
 
 }  // namespace holdfast::solver

@@ -85,13 +85,18 @@ void leave(const View& level, const Six<double>* r, const Six<double>* z, Six<fl
   }
 }
 
-inline void add(const Six<float>* rough, Six<double>* z, Range range) {
-  for (std::size_t p = range.begin; p < range.end; ++p) {
-    store(z[p], load(z[p]) + load_wide(rough[p]));
-  }
-}
-
 inline double sum_of(Double dots) { return (dots[0] + dots[1]) + (dots[2] + dots[3]); }
+
+inline double add(const Six<float>* rough, const Six<double>* r, Six<double>* z, Range range) {
+  Double dots = {};
+  for (std::size_t p = range.begin; p < range.end; ++p) {
+    const Wide sum = load(z[p]) + load_wide(rough[p]);
+    const Wide force = load(r[p]);
+    store(z[p], sum);
+    dots += sum.low * force.low + sum.high * force.high;
+  }
+  return sum_of(dots);
+}
 
 template <class Real, class View>
 double apply(const View& level, const Six<Real>* p, double* q, Range range) {

@@ -10,9 +10,9 @@
 #include "split_numbers.hpp"
 #include "vectors.hpp"
 
-/// The loops over nodes in which all time is spent. They are compiled twice, for the machine that
-/// the compiler aims at and for AVX2, from the same code without fused multiply-add, so the bits
-/// are the same.
+/// The loops over nodes in which all time is spent. They are compiled for the machine that the
+/// compiler aims at, for AVX2 and for AVX-512, from the same code without fused multiply-add, so the
+/// bits are the same.
 namespace holdfast::solver {
 
 /// Longest beam, pitches; longer straight runs keep nodes in between.
@@ -126,8 +126,8 @@ struct Rounding {
                         Six<float>* rounded, Range);
   void (*leave_cluster)(const ClusterView<double>&, const Six<double>* r, const Six<double>* z,
                         Six<float>* rounded, Range);
-  /// z += rough
-  void (*add)(const Six<float>* rough, Six<double>* z, Range);
+  /// z += rough; returns r . z.
+  double (*add)(const Six<float>* rough, const Six<double>* r, Six<double>* z, Range);
 };
 
 template <class Real>
