@@ -106,14 +106,25 @@ void ConjugateGradients<Real>::write_gain() {
 
 template <class Real>
 std::vector<double> ConjugateGradients<Real>::marked() {
-  write_gain();
   std::vector<double> marked = x_;
-  for (std::size_t i = 0; i < 6 * gain_.size(); ++i) {
-    marked[i] -= gain().get(i);
-  }
+  team_.share(0, node_count_, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = 6 * begin; i < 6 * end; ++i) {
+      marked[i] -= last_step_ ? *last_step_ * static_cast<double>(p_[i / 6].v[i % 6]) : 0;
+      marked[i] -= gain_.empty() ? 0 : gain().get(i);
+    }
+  });
+  p_ = std::vector<Six<Real>>();
   mark();
   is_marked_ = false;
   return marked;
+}
+
+/// But for what marked() needs.
+template <class Real>
+void ConjugateGradients<Real>::drop_direction() {
+  if (!last_step_) {
+    p_ = std::vector<Six<Real>>();
+  }
 }
 
 template <class Real>
@@ -126,8 +137,7 @@ template <class Real>
 void ConjugateGradients<Real>::rest() {
   q_ = std::vector<double>();
   hierarchy_.drop_vectors();
-  write_gain();
-  p_ = std::vector<Six<Real>>();
+  drop_direction();
 }
 
 template <class Real>
@@ -135,8 +145,7 @@ void ConjugateGradients<Real>::retire() {
   q_ = std::vector<double>();
   low_ = std::vector<std::int16_t>();
   hierarchy_.drop_levels();
-  write_gain();
-  p_ = std::vector<Six<Real>>();
+  drop_direction();
 }
 
 /// x is taken apart into two directions: 48 bits in single precision, all in double.

@@ -107,6 +107,7 @@ class ConjugateGradients final : public Iteration {
   SplitView<float> gain() { return {.rounded = gain_.data(), .low = gain_low_.data()}; }
 
   void take_gain();
+  void drop_direction();
 
   /// The residual; its rounded part is the finest level's.
   SplitView<Real> r() {

@@ -75,7 +75,7 @@ class Iteration {
   /// From now on marked() says what x is now. That costs memory from the second iteration on.
   virtual void mark() = 0;
 
-  /// What x was when mark() was called, once.
+  /// What x was when mark() was called, once, after rest() or retire().
   virtual std::vector<double> marked() = 0;
 
   /// Gives back the memory that run() works in; x, r and marked() stay. Then begin() must be next.
