@@ -363,7 +363,8 @@ bool ConjugateGradients<Real>::step() {
 template <class Real>
 bool ConjugateGradients<Real>::is_product_kept() const {
   const bool is_large = node_count_ > kKeptProductMax;
-  const bool is_expensive = std::is_same_v<Real, double> || is_solid_ || last_step_ || !gain_.empty();
+  const bool is_expensive =
+      std::is_same_v<Real, double> || is_solid_ || last_step_ || !gain_.empty();
   return hierarchy_.ranks(0) != nullptr || !is_large || !is_expensive;
 }
 

@@ -123,8 +123,8 @@ class ConjugateGradients final : public Iteration {
   std::vector<std::int16_t> low_;  ///< The low parts of r.
   std::vector<double> q_;          ///< Empty at rest.
   std::vector<Six<Real>> p_;
-  std::optional<double> turn_;            ///< By which p_ is yet to be turned.
-  std::optional<double> curvature_;       ///< p . K p where z has yet to be compared with p_.
+  std::optional<double> turn_;       ///< By which p_ is yet to be turned.
+  std::optional<double> curvature_;  ///< p . K p where z has yet to be compared with p_.
   bool is_marked_ = false;           ///< If so, x has changed since by the gain
   std::optional<double> last_step_;  ///< and so many p_.
   std::vector<Six<float>> gain_;     ///< Empty as long as there is none.

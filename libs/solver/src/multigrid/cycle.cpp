@@ -248,9 +248,9 @@ void Cycle<Real>::solve(std::size_t depth) {
   Level<Real>& level = hierarchy_.levels()[depth];
   const std::size_t count = level.node_count;
   const double own_work = descend(depth);
-  const auto [before, alpha_1, rho_1] =
-      host::sum(hierarchy_.ranks(depth), std::array{own_dot(level.r, level.r, count), own_work,
-                                                    apply(depth, level.first_image)});
+  const auto [before, alpha_1, rho_1] = host::sum(
+      hierarchy_.ranks(depth),
+      std::array{own_dot(level.r, level.r, count), own_work, apply(depth, level.first_image)});
   const double step = alpha_1 / rho_1;
   if (!is_credible(step)) {
     return;

@@ -11,8 +11,8 @@
 #include "vectors.hpp"
 
 /// The loops over nodes in which all time is spent. They are compiled for the machine that the
-/// compiler aims at, for AVX2 and for AVX-512, from the same code without fused multiply-add, so the
-/// bits are the same.
+/// compiler aims at, for AVX2 and for AVX-512, from the same code without fused multiply-add, so
+/// the bits are the same.
 namespace holdfast::solver {
 
 /// Longest beam, pitches; longer straight runs keep nodes in between.

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The holdfast authors
 // SPDX-License-Identifier: Apache-2.0
-// The kernels for machines with AVX-512, whose instructions shuffle two vectors of the same width as
-// AVX2's at once; the build compiles this file for them.
+// The kernels for machines with AVX-512, which shuffle two vectors of AVX2's width at once; the
+// build compiles this file for them.
 #include "kernel_loops.hpp"
 
 namespace holdfast::solver {
