@@ -277,7 +277,7 @@ expect_exit 0 generate bridge 200 -o bridge.json
 expect_exit 1 check bridge.json
 expect_line out '^UNSTABLE'
 expect_line out 'not sought, as the robot topples'
-expect_exit 0 generate cube 30 -o cube.json
+expect_exit 0 generate cube 32 -o cube.json
 expect_exit 2 check --memory 0.01 cube.json
 expect_line out 'too many for the solver'
 expect_exit 64 generate castle 3
