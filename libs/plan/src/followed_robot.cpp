@@ -6,6 +6,7 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <span>
 #include <unordered_set>
 #include <utility>
 
@@ -175,11 +176,10 @@ void FollowedRobot::relax(const std::vector<std::size_t>& modules) {
   for (int sweep = 0; sweep < kSweepMax; ++sweep) {
     double gain = 0;
     const auto move = [&](std::size_t i) {
-      Vec pull = target_.loads()[modules[i]];
-      for (std::size_t k = i == 0 ? 0 : places[i - 1].beam_end; k < places[i].beam_end; ++k) {
-        pull = difference(pull, block_product(*beams[k].block_12, u_[beams[k].other]));
-      }
-      const Vec next = block_product(places[i].stiffness->inverse, pull);
+      const std::size_t begin = i == 0 ? 0 : places[i - 1].beam_end;
+      const auto own = std::span(beams).subspan(begin, places[i].beam_end - begin);
+      const Vec next =
+          block_product(places[i].stiffness->inverse, local_.pull(modules[i], own, u_));
       const Vec step = difference(next, u_[modules[i]]);
       gain += base::dot(step, block_product(places[i].stiffness->sum, step));
       u_[modules[i]] = next;

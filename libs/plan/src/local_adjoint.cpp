@@ -64,14 +64,9 @@ double LocalAdjoint::Forces::norm(const std::array<double, 3>& factors) const {
 LocalAdjoints::LocalAdjoints(const model::Robot& target)
     : target_(target),
       beam_(model::beam_section(target.material()), target.lattice()),
+      blocks_(beam_, target.lattice()),
       stiffness_(middle_stiffness(beam_)),
       first_facet_(model::facet_starts(target)) {
-  for (const base::Direction direction : base::directions(target.lattice())) {
-    block_12_[at(base::index(direction))] = beam_.block_12(direction);
-  }
-  for (const base::Direction direction : base::facet_directions(target.lattice())) {
-    block_11_[at(base::index(direction))] = beam_.block_11(direction);
-  }
   for (std::size_t i = 0; i < target.modules().size(); ++i) {
     places_.push_back(node_place(target, i));
   }
@@ -136,15 +131,15 @@ std::optional<solver::BlockLu> LocalAdjoints::patch_equations(const Region& regi
       if (other == Region::kNone) {
         continue;
       }
-      base::add_to(diagonal[at(row)], block_11_[at(base::index(direction))]);
+      base::add_to(diagonal[at(row)], blocks_.block_11(direction));
       if (region.patch_place[at(other)] > row) {
         edges.push_back({.a = row, .b = region.patch_place[at(other)]});
-        coupling.push_back(&block_12_[at(base::index(direction))]);
+        coupling.push_back(&blocks_.block_12(direction));
       }
     }
     const std::size_t module = region.modules[i];
     for (std::size_t k = first_facet_[module]; k < first_facet_[module + 1]; ++k) {
-      base::add_to(diagonal[at(row)], block_11_[at(base::index(target_.facets()[k].direction))]);
+      base::add_to(diagonal[at(row)], blocks_.block_11(target_.facets()[k].direction));
     }
   }
   solver::BlockLu equations(region.patch_count, edges, std::numeric_limits<std::size_t>::max(),
@@ -191,8 +186,8 @@ std::vector<Vec6<double>> LocalAdjoints::residual(const Region& region,
       if (!is_rim || other == Region::kNone || region.patch_place[at(other)] == Region::kNone) {
         continue;
       }
-      const Vec6<double> force = block_product(block_12_[at(base::index(direction))],
-                                               z[at(region.patch_place[at(other)])]);
+      const Vec6<double> force =
+          block_product(blocks_.block_12(direction), z[at(region.patch_place[at(other)])]);
       for (std::size_t k = 0; k < 6; ++k) {
         rest[i][k] -= force[k];
       }

@@ -12,6 +12,7 @@
 #include <unordered_map>
 #include <vector>
 
+#include "beam_blocks.hpp"
 #include "holdfast/model/lattice_beam.hpp"
 #include "holdfast/model/robot.hpp"
 #include "holdfast/solver/block_lu.hpp"
@@ -85,9 +86,7 @@ class LocalAdjoints {
 
   const model::Robot& target_;
   model::LatticeBeam<double> beam_;
-  /// By direction.
-  std::array<base::Mat6<double>, base::Lattice::kDirectionCountMax + 1> block_11_{};
-  std::array<base::Mat6<double>, base::Lattice::kDirectionCountMax> block_12_{};
+  BeamBlocks blocks_;
   base::Vec6<double> stiffness_{};          ///< Of the springs in the middle.
   std::vector<base::Vec6<double>> places_;  ///< Nodes, mm; the last three are 0.
   std::vector<std::size_t> first_facet_;    ///< By module.

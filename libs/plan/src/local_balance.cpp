@@ -18,18 +18,22 @@ using base::Direction;
 using base::Mat6;
 using base::Vec6;
 
-LocalBalance::LocalBalance(const model::Robot& target)
-    : target_(&target),
-      first_facet_(model::facet_starts(target)),
-      is_there_(target.modules().size()) {
-  const model::LatticeBeam<double> beam(model::beam_section(target.material()), target.lattice());
-  for (const Direction direction : base::directions(target.lattice())) {
-    block_12_[at(base::index(direction))] = beam.block_12(direction);
-  }
-  for (const Direction direction : base::facet_directions(target.lattice())) {
-    block_11_[at(base::index(direction))] = beam.block_11(direction);
+namespace {
+
+void subtract(Vec6<double>& rest, const Vec6<double>& force) {
+  for (std::size_t i = 0; i < 6; ++i) {
+    rest[i] -= force[i];
   }
 }
+
+}  // namespace
+
+LocalBalance::LocalBalance(const model::Robot& target)
+    : target_(&target),
+      blocks_(model::LatticeBeam<double>(model::beam_section(target.material()), target.lattice()),
+              target.lattice()),
+      first_facet_(model::facet_starts(target)),
+      is_there_(target.modules().size()) {}
 
 void LocalBalance::assign(const std::vector<Element>& elements) {
   std::ranges::fill(is_there_, std::uint8_t{0});
@@ -56,7 +60,8 @@ const LocalBalance::Stiffness& LocalBalance::stiffness(std::size_t module) {
   }
   for (std::size_t bit = 0; key >> bit != 0; ++bit) {
     if ((key >> bit & 1U) != 0) {
-      base::add_to(known.sum, block_11_[bit < kFacets ? bit : bit - kFacets]);
+      base::add_to(known.sum,
+                   blocks_.block_11(static_cast<Direction>(bit < kFacets ? bit : bit - kFacets)));
     }
   }
   DenseSystem system(6);
@@ -79,7 +84,7 @@ void LocalBalance::add_beams(std::size_t module, std::vector<Beam>& beams) const
   for (const Direction direction : base::directions(target_->lattice())) {
     const std::int32_t other = neighbour(module, base::index(direction));
     if (other != model::Robot::kNoNeighbour) {
-      beams.push_back({.block_12 = &block_12_[at(base::index(direction))], .other = at(other)});
+      beams.push_back({.block_12 = &blocks_.block_12(direction), .other = at(other)});
     }
   }
 }
@@ -88,19 +93,24 @@ LocalBalance::Vec LocalBalance::pull(std::size_t module, const std::vector<Vec>&
   Vec rest = target_->loads()[module];
   for (const Direction direction : base::directions(target_->lattice())) {
     const std::int32_t other = neighbour(module, base::index(direction));
-    if (other == model::Robot::kNoNeighbour) {
-      continue;
-    }
-    const Vec force = block_product(block_12_[at(base::index(direction))], u[at(other)]);
-    for (std::size_t i = 0; i < 6; ++i) {
-      rest[i] -= force[i];
+    if (other != model::Robot::kNoNeighbour) {
+      subtract(rest, block_product(blocks_.block_12(direction), u[at(other)]));
     }
   }
   return rest;
 }
 
+LocalBalance::Vec LocalBalance::pull(std::size_t module, std::span<const Beam> beams,
+                                     const std::vector<Vec>& u) const {
+  Vec rest = target_->loads()[module];
+  for (const Beam& beam : beams) {
+    subtract(rest, block_product(*beam.block_12, u[beam.other]));
+  }
+  return rest;
+}
+
 LocalBalance::Vec LocalBalance::facet_force(base::Direction direction, const Vec& u) const {
-  return block_product(block_11_[at(base::index(direction))], u);
+  return block_product(blocks_.block_11(direction), u);
 }
 
 }  // namespace holdfast::plan

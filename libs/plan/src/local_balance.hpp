@@ -2,12 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <array>
 #include <cstdint>
+#include <span>
 #include <unordered_map>
 #include <vector>
 
-#include "holdfast/model/lattice_beam.hpp"
+#include "beam_blocks.hpp"
 #include "holdfast/model/robot.hpp"
 #include "holdfast/plan/element_set.hpp"
 
@@ -59,13 +59,15 @@ class LocalBalance {
   /// What is out of balance at a module if it does not move, and others by u.
   Vec pull(std::size_t module, const std::vector<Vec>& u) const;
 
+  /// The same by beams that were looked up before.
+  Vec pull(std::size_t module, std::span<const Beam> beams, const std::vector<Vec>& u) const;
+
   /// The force that a stuck facet in a direction takes from its module.
   Vec facet_force(base::Direction direction, const Vec& u) const;
 
  private:
   const model::Robot* target_;
-  std::array<base::Mat6<double>, base::Lattice::kDirectionCountMax + 1> block_11_{};
-  std::array<base::Mat6<double>, base::Lattice::kDirectionCountMax> block_12_{};
+  BeamBlocks blocks_;
   std::vector<std::size_t> first_facet_;  ///< By module.
   std::vector<std::uint8_t> is_there_;
   /// By the directions of a module's beams and facets.

@@ -99,7 +99,7 @@ void ConjugateGradients<Real>::write_gain() {
   const double step = *std::exchange(last_step_, std::nullopt);
   team_.share(0, node_count_, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = 6 * begin; i < 6 * end; ++i) {
-      gain().set(i, gain().get(i) + step * static_cast<double>(p_[i / 6].v[i % 6]));
+      gain().add(i, step * static_cast<double>(p_[i / 6].v[i % 6]));
     }
   });
 }
@@ -331,7 +331,7 @@ bool ConjugateGradients<Real>::iterate(const IsOver& is_over) {
 template <class Real>
 bool ConjugateGradients<Real>::go_on_with_product() {
   if (curvature_) {
-    turn_to_curvature();  // The last iteration kept no product.
+    turn_to_curvature({});  // The last iteration kept no product.
   }
   turn();
   const double curvature = multiply();
@@ -382,29 +382,12 @@ std::array<double, 2> ConjugateGradients<Real>::compare(std::span<const Six<Real
   return sum;
 }
 
-/// p := z + turn p, conjugate to the last p; returns its curvature,
-///   z . K z + 2 turn p . K z + turn^2 p . K p = z . K z - (p . K z)^2 / p . K p,
-/// but for the rounding of p, which x and r take into account both.
-template <class Real>
-double ConjugateGradients<Real>::turn_to_curvature() {
-  if (!curvature_) {
-    turn();
-    return compare(p_)[0];
-  }
-  const double last = *std::exchange(curvature_, std::nullopt);
-  const auto [own, change] = compare(preconditioned());
-  turn_ = -change / last;
-  turn();
-  const double curvature = own - change * change / last;
-  return curvature > kCancelled * own ? curvature : compare(p_)[0];
-}
-
 /// The same in other words: K p is made twice and kept nowhere.
 template <class Real>
 bool ConjugateGradients<Real>::go_on_without_product() {
   q_ = std::vector<double>();
   hierarchy_.take_vectors();
-  const double curvature = turn_to_curvature();
+  const double curvature = turn_to_curvature({});
   if (!(curvature > 0)) {
     return false;
   }
@@ -533,7 +516,7 @@ Iteration::End ConjugateGradients<Real>::run_by_another(const Goal& goal, host::
       x_[i] += d[i];
       b[i] -= image[i];
       if (is_marked_) {
-        gain().set(i, gain().get(i) + d[i]);
+        gain().add(i, d[i]);
       }
     }
     take_residual(b.data());

@@ -51,9 +51,6 @@ class ConjugateGradients final : public Iteration {
     double curvature = 0;          ///< p . A p
   };
 
-  /// A curvature that is so small a share of what it is the difference of is computed anew.
-  static constexpr double kCancelled = 1e-3;
-
   enum class State : std::uint8_t { kOnTheWay, kReached, kStuck };
   State state(const Goal& goal, int iteration);
   bool is_reached(const Goal& goal, int iteration) const;
@@ -74,7 +71,6 @@ class ConjugateGradients final : public Iteration {
   bool go_on_without_product();
   bool is_product_kept() const;
   std::array<double, 2> compare(std::span<const Six<Real>> z);
-  double turn_to_curvature();
   double advance_by_product(double step);
   End run_by_another(const Goal& goal, host::KrylovTask& task);
   void turn_from_last_direction();

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "../block_kernels.hpp"
 #include "conjugate_gradients.hpp"
@@ -15,6 +16,9 @@ constexpr std::size_t kEnough = 64;
 
 /// An estimate of the error that falls by more than this in one step fell by chance.
 constexpr double kFallMax = 1e4;
+
+/// A curvature that is so small a share of what it is the difference of is computed anew.
+constexpr double kCancelled = 1e-3;
 
 bool is_curvature(double number) { return number != 0 && std::isfinite(number); }
 
@@ -147,7 +151,11 @@ bool ConjugateGradients<Real>::go_on_without_product(std::span<const NodeTerm> t
   return true;
 }
 
-/// p := z + turn p, by which p_old . A p = 0; returns p . K p.
+/// p := z + turn p, by which p_old . A p = 0; returns p . K p,
+///   z . K z + 2 turn p . K z + turn^2 p . K p
+///     = z . K z - (p . K z)^2 / p . K p + p . K p (turn + p . K z / p . K p)^2,
+/// whose last term is zero where A = K; but for the rounding of p, which x and r take into account
+/// both.
 template <class Real>
 double ConjugateGradients<Real>::turn_to_curvature(std::span<const NodeTerm> terms) {
   if (!curvature_) {
@@ -160,7 +168,8 @@ double ConjugateGradients<Real>::turn_to_curvature(std::span<const NodeTerm> ter
                          (last + product(terms, p_.data(), p_.data()));
   turn_ = turn_by;
   turn();
-  const double curvature = own + turn_by * (2 * change + turn_by * last);
+  const double beside = turn_by + change / last;
+  const double curvature = own - change * change / last + last * beside * beside;
   return curvature > kCancelled * own ? curvature : compare(p_)[0];
 }
 
@@ -241,5 +250,7 @@ template Iteration::End ConjugateGradients<float>::run_unsymmetric(const Goal&,
                                                                    std::span<const NodeTerm>);
 template Iteration::End ConjugateGradients<double>::run_unsymmetric(const Goal&,
                                                                     std::span<const NodeTerm>);
+template double ConjugateGradients<float>::turn_to_curvature(std::span<const NodeTerm>);
+template double ConjugateGradients<double>::turn_to_curvature(std::span<const NodeTerm>);
 
 }  // namespace holdfast::solver

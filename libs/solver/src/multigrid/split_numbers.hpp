@@ -50,6 +50,8 @@ struct SplitView {
     near = static_cast<float>(value);
     low[i] = low_part(value, near);
   }
+
+  void add(std::size_t i, double term) const { set(i, get(i) + term); }
 };
 
 /// Those of a preconditioner in double precision are whole as they are.
