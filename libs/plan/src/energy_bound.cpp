@@ -450,22 +450,31 @@ void EnergyBound::forget_changes() {
 /// The inner product of an adjoint's forces, for fz and two torques, with s - h w.
 std::array<double, 3> EnergyBound::product_with(const LocalAdjoint& nearby) const {
   std::array<double, 3> sum{};
+  const auto add = [&](const Vec& change, const auto& force_of) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Vec force = force_of(k);
+      for (std::size_t i = 0; i < 6; ++i) {
+        sum[k] += force[i] * change[i] / changes_.stiffness()[i];
+      }
+    }
+  };
+  const auto& moved = nearby.forces->moved;
+  for (const LocalAdjoint::Beam& beam : nearby.forces->beams) {
+    const std::size_t module = nearby.region[base::at(beam.a)];
+    if (changes_.has_changed(module, beam.direction)) {
+      add(changes_.change(module, beam.direction), [&](std::size_t k) {
+        return beam_.middle_force(static_cast<base::Direction>(beam.direction),
+                                  moved[base::at(beam.a)][k], moved[base::at(beam.b)][k]);
+      });
+    }
+  }
   for (std::size_t i = 0; i < nearby.region.size(); ++i) {
     const std::size_t module = nearby.region[i];
-    const LocalAdjoint::Way& adjoint = nearby.forces->ways[i];
-    const std::size_t facet = first_facet_[module];
-    const bool has_facet = facet < first_facet_[module + 1];
-    if (adjoint.down >= 0 ? !changes_.has_changed(module, adjoint.down)
-                          : !has_facet || !changes_.has_changed(facet)) {
-      continue;
-    }
-    Vec force =
-        adjoint.down >= 0 ? changes_.change(module, adjoint.down) : changes_.facet_change(facet);
-    for (std::size_t k = 0; k < 6; ++k) {
-      force[k] /= std::sqrt(changes_.stiffness()[k]);
-    }
-    for (std::size_t k = 0; k < 3; ++k) {
-      sum[k] += base::dot(adjoint.force[k], force);
+    for (std::size_t facet = first_facet_[module]; facet < first_facet_[module + 1]; ++facet) {
+      if (changes_.has_changed(facet)) {
+        add(changes_.facet_change(facet),
+            [&](std::size_t k) { return trial_force(target_.facets()[facet], moved[i][k]); });
+      }
     }
   }
   return sum;
@@ -485,18 +494,28 @@ bool EnergyBound::is_pressed_nearby(std::size_t index, double radius) {
       return nodes_[module].is_there && !nodes_[module].is_new;
     });
   }
-  if (nearby->forces->ways.empty() ||
+  if (nearby->forces->moved.empty() ||
       std::ranges::any_of(nearby->patch, [&](std::size_t i) { return nodes_[i].is_host; })) {
     return false;
   }
+  // What all forces of changes are worth at most is no more than `radius` either, and needs no sum.
+  return holds_nearby(facet, *nearby, radius, std::nullopt) ||
+         holds_nearby(facet, *nearby, radius, product_with(*nearby));
+}
+
+/// The same if its adjoint has these products with s - h w, or any.
+bool EnergyBound::holds_nearby(const model::Facet& facet, const LocalAdjoint& nearby, double radius,
+                               const std::optional<std::array<double, 3>>& product) const {
   const Vec force = trial_force(facet, u_[base::at(facet.module)]);
   const double b = target_.foot_half_width_mm();
-  const std::array<double, 3> product = product_with(*nearby);
   const auto holds = [&](double torque, double mx, double my, double lack_per_norm) {
     const double slack = -force[2] * b - std::abs(torque) - lack_per_norm * solved_error_;
     return std::ranges::all_of(std::array{1.0, -1.0}, [&](double sign) {
-      const double shared = std::abs(b * product[0] + sign * (mx * product[1] + my * product[2]));
-      return nearby->forces->norm({b, sign * mx, sign * my}) * radius + shared / 2 < slack;
+      const double off = nearby.forces->norm({b, sign * mx, sign * my}) * radius;
+      const auto shared = [&](const std::array<double, 3>& p) {
+        return std::abs(b * p[0] + sign * (mx * p[1] + my * p[2])) / 2;
+      };
+      return off + (product ? shared(*product) : off) < slack;
     });
   };
   return holds(force[3], 1, 0, facet_per_norm_x_) && holds(force[4], 0, 1, facet_per_norm_y_);

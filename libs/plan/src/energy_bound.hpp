@@ -145,6 +145,8 @@ class EnergyBound {
   Vec trial_force(const model::Facet& facet, const Vec& u) const;
   std::array<double, 3> product_with(const LocalAdjoint& nearby) const;
   bool is_pressed_nearby(std::size_t facet, double radius);
+  bool holds_nearby(const model::Facet& facet, const LocalAdjoint& nearby, double radius,
+                    const std::optional<std::array<double, 3>>& product) const;
   bool are_pressed(double radius);
   bool is_pressed_by_adjoint(std::size_t facet);
 

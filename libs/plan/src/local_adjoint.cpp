@@ -66,11 +66,7 @@ LocalAdjoints::LocalAdjoints(const model::Robot& target)
       beam_(model::beam_section(target.material()), target.lattice()),
       blocks_(beam_, target.lattice()),
       stiffness_(middle_stiffness(beam_)),
-      first_facet_(model::facet_starts(target)) {
-  for (std::size_t i = 0; i < target.modules().size(); ++i) {
-    places_.push_back(node_place(target, i));
-  }
-}
+      first_facet_(model::facet_starts(target)) {}
 
 /// Modules in the order of their distance from the facet's, layers into the patch as long as they
 /// fit, and one layer more. Modules that are fixed need no balance and lead on to nothing.
@@ -116,14 +112,17 @@ LocalAdjoints::Region LocalAdjoints::region_around(
   return region;
 }
 
-/// The equations of the patch, all beyond which stands still; none if something hangs free.
-std::optional<solver::BlockLu> LocalAdjoints::patch_equations(const Region& region) const {
-  std::vector<base::Mat6<double>> diagonal(region.patch_count);
+/// The equations of the modules of a region that have a row; those that have none, and no others,
+/// stand still. None if something hangs free.
+std::optional<solver::BlockLu> LocalAdjoints::equations(
+    const Region& region, const std::vector<std::int16_t>& row) const {
+  const auto count = static_cast<std::size_t>(
+      std::ranges::count_if(row, [](std::int16_t each) { return each != Region::kNone; }));
+  std::vector<base::Mat6<double>> diagonal(count);
   std::vector<solver::Edge> edges;
   std::vector<const base::Mat6<double>*> coupling;
   for (std::size_t i = 0; i < region.modules.size(); ++i) {
-    const std::int16_t row = region.patch_place[i];
-    if (row == Region::kNone) {
+    if (row[i] == Region::kNone) {
       continue;
     }
     for (const base::Direction direction : base::directions(target_.lattice())) {
@@ -131,18 +130,18 @@ std::optional<solver::BlockLu> LocalAdjoints::patch_equations(const Region& regi
       if (other == Region::kNone) {
         continue;
       }
-      base::add_to(diagonal[at(row)], blocks_.block_11(direction));
-      if (region.patch_place[at(other)] > row) {
-        edges.push_back({.a = row, .b = region.patch_place[at(other)]});
+      base::add_to(diagonal[at(row[i])], blocks_.block_11(direction));
+      if (row[at(other)] > row[i]) {
+        edges.push_back({.a = row[i], .b = row[at(other)]});
         coupling.push_back(&blocks_.block_12(direction));
       }
     }
     const std::size_t module = region.modules[i];
     for (std::size_t k = first_facet_[module]; k < first_facet_[module + 1]; ++k) {
-      base::add_to(diagonal[at(row)], blocks_.block_11(target_.facets()[k].direction));
+      base::add_to(diagonal[at(row[i])], blocks_.block_11(target_.facets()[k].direction));
     }
   }
-  solver::BlockLu equations(region.patch_count, edges, std::numeric_limits<std::size_t>::max(),
+  solver::BlockLu equations(count, edges, std::numeric_limits<std::size_t>::max(),
                             solver::Symmetry::kSymmetric);
   for (std::size_t i = 0; i < edges.size(); ++i) {
     equations.set_edge(i, *coupling[i]);
@@ -153,17 +152,17 @@ std::optional<solver::BlockLu> LocalAdjoints::patch_equations(const Region& regi
   return equations.factor() ? std::optional(std::move(equations)) : std::nullopt;
 }
 
-/// z' on the patch for fz, mx and my, by its modules.
-std::optional<std::vector<std::vector<Vec6<double>>>> LocalAdjoints::balance_patch(
-    const model::Facet& facet, const Region& region) const {
-  const auto equations = patch_equations(region);
-  if (!equations) {
+/// Under fz, mx and my of the facet, by row.
+std::optional<std::vector<std::vector<Vec6<double>>>> LocalAdjoints::displacements(
+    const model::Facet& facet, const Region& region, const std::vector<std::int16_t>& row) const {
+  const auto factors = equations(region, row);
+  if (!factors) {
     return std::nullopt;
   }
   const auto law = mechanics::ground_facet<double>(beam_.stiffness(), target_.material().pitch_mm,
                                                    2 * target_.foot_half_width_mm(), 0,
                                                    mechanics::ContactLaw::kRegularised);
-  std::vector<std::vector<Vec6<double>>> z(3, std::vector<Vec6<double>>(region.patch_count));
+  std::vector<std::vector<Vec6<double>>> z(3, std::vector<Vec6<double>>(factors->node_count()));
   for (int k = 0; k < 6; ++k) {
     const Vec6<double> local = beam_.to_local(facet.direction, base::unit<double>(k));
     const Vec6<double> force = mechanics::trial_force(law, local);
@@ -171,105 +170,78 @@ std::optional<std::vector<std::vector<Vec6<double>>>> LocalAdjoints::balance_pat
       z[component].front()[at(k)] = force[2 + component];
     }
   }
-  equations->solve_each(z);
+  factors->solve_each(z);
   return z;
 }
 
-/// What z' leaves unbalanced, by module of the region.
-std::vector<Vec6<double>> LocalAdjoints::residual(const Region& region,
-                                                  const std::vector<Vec6<double>>& z) const {
-  std::vector<Vec6<double>> rest(region.modules.size());
-  for (std::size_t i = 0; i < region.modules.size(); ++i) {
-    for (const base::Direction direction : base::directions(target_.lattice())) {
-      const std::int16_t other = region.neighbour(i, base::index(direction));
-      const bool is_rim = region.patch_place[i] == Region::kNone && !region.is_fixed[i];
-      if (!is_rim || other == Region::kNone || region.patch_place[at(other)] == Region::kNone) {
-        continue;
-      }
-      const Vec6<double> force =
-          block_product(blocks_.block_12(direction), z[at(region.patch_place[at(other)])]);
-      for (std::size_t k = 0; k < 6; ++k) {
-        rest[i][k] -= force[k];
-      }
-    }
-  }
-  return rest;
-}
-
-/// From every module of the region the shortest way to one with a facet, or a fixed one.
-LocalAdjoints::Ways LocalAdjoints::ways_to_supports(const Region& region) const {
-  Ways ways{.order = {}, .down = std::vector<int>(region.modules.size(), -1)};
-  std::vector<bool> is_reached(region.modules.size());
-  for (std::size_t i = 0; i < region.modules.size(); ++i) {
-    if (region.facet_count[i] > 0 || region.is_fixed[i]) {
-      is_reached[i] = true;
-      ways.order.push_back(i);
-    }
-  }
-  for (std::size_t next = 0; next < ways.order.size(); ++next) {
-    for (const base::Direction direction : base::directions(target_.lattice())) {
-      const std::int16_t other = region.neighbour(ways.order[next], base::index(direction));
-      if (other != Region::kNone && !is_reached[at(other)]) {
-        is_reached[at(other)] = true;
-        ways.down[at(other)] = base::index(direction) ^ 1;
-        ways.order.push_back(at(other));
-      }
-    }
-  }
-  return ways;
-}
-
-/// The forces s of one component, scaled, by module of the region.
-std::vector<Vec6<double>> LocalAdjoints::carry(const Region& region, const Ways& ways,
-                                               std::vector<Vec6<double>> loads) const {
-  std::vector<Vec6<double>> forces(region.modules.size());
-  for (std::size_t next = ways.order.size(); next-- > 0;) {
-    const std::size_t i = ways.order[next];
-    const std::size_t module = region.modules[i];
-    if (region.is_fixed[i]) {
-      continue;
-    }
-    const base::Direction direction = ways.down[i] < 0
-                                          ? target_.facets()[first_facet_[module]].direction
-                                          : static_cast<base::Direction>(ways.down[i]);
-    forces[i] = force_in_middle(beam_, direction, loads[i], target_.material().pitch_mm);
-    for (std::size_t k = 0; k < 6; ++k) {
-      forces[i][k] /= std::sqrt(stiffness_[k]);
-    }
-    if (ways.down[i] >= 0) {
-      const std::size_t below = at(region.neighbour(i, ways.down[i]));
-      Vec6<double> way = places_[region.modules[below]];
+/// <s_i, s_k> of all beams and facets of the region.
+std::array<double, 9> LocalAdjoints::products(const Region& region,
+                                              const LocalAdjoint::Forces& forces) const {
+  std::array<double, 9> sum{};
+  std::array<Vec6<double>, 3> s{};
+  const auto add = [&] {
+    for (std::size_t i = 0; i < 3; ++i) {
       for (std::size_t k = 0; k < 3; ++k) {
-        way[k] -= places_[module][k];
+        for (std::size_t c = 0; c < 6; ++c) {
+          sum[3 * i + k] += s[i][c] * s[k][c] / stiffness_[c];
+        }
       }
-      base::add_to(loads[below], force_at(loads[i], way));
+    }
+  };
+  for (const LocalAdjoint::Beam& beam : forces.beams) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      s[i] = beam_.middle_force(static_cast<base::Direction>(beam.direction),
+                                forces.moved[at(beam.a)][i], forces.moved[at(beam.b)][i]);
+    }
+    add();
+  }
+  for (std::size_t place = 0; place < region.modules.size(); ++place) {
+    const std::size_t module = region.modules[place];
+    for (std::size_t k = first_facet_[module]; k < first_facet_[module + 1]; ++k) {
+      const base::Direction direction = target_.facets()[k].direction;
+      for (std::size_t i = 0; i < 3; ++i) {
+        s[i] = force_in_middle(beam_, direction,
+                               block_product(blocks_.block_11(direction), forces.moved[place][i]),
+                               target_.material().pitch_mm);
+      }
+      add();
     }
   }
-  return forces;
+  return sum;
 }
 
 LocalAdjoint::Forces LocalAdjoints::solve(const model::Facet& facet, const Region& region) const {
   LocalAdjoint::Forces forces;
-  const auto z = balance_patch(facet, region);
-  if (!z) {
+  std::vector<std::int16_t> row(region.modules.size(), Region::kNone);
+  std::int16_t row_count = 0;
+  for (std::size_t i = 0; i < row.size(); ++i) {
+    row[i] = region.is_fixed[i] ? Region::kNone : row_count++;
+  }
+  const auto open = displacements(facet, region, row);
+  const auto closed = displacements(facet, region, region.patch_place);
+  if (!open || !closed) {
     return forces;
   }
-  const Ways ways = ways_to_supports(region);
-  forces.ways.resize(region.modules.size());
-  for (std::size_t component = 0; component < 3; ++component) {
-    const auto s = carry(region, ways, residual(region, (*z)[component]));
-    for (std::size_t i = 0; i < s.size(); ++i) {
-      forces.ways[i].down = ways.down[i];
-      forces.ways[i].force[component] = s[i];
+  forces.moved.resize(region.modules.size());
+  for (std::size_t i = 0; i < row.size(); ++i) {
+    for (std::size_t component = 0; component < 3; ++component) {
+      Vec6<double>& moved = forces.moved[i][component];
+      if (row[i] != Region::kNone) {
+        moved = (*open)[component][at(row[i])];
+      }
+      if (region.patch_place[i] != Region::kNone) {
+        base::add_times(moved, -1, (*closed)[component][at(region.patch_place[i])]);
+      }
     }
-  }
-  for (const LocalAdjoint::Way& way : forces.ways) {
-    for (std::size_t i = 0; i < 3; ++i) {
-      for (std::size_t k = 0; k < 3; ++k) {
-        forces.gram[3 * i + k] += base::dot(way.force[i], way.force[k]);
+    for (int d = 0; d < static_cast<int>(region.direction_count); d += 2) {
+      if (region.neighbour(i, d) != Region::kNone) {
+        forces.beams.push_back({.a = static_cast<std::int16_t>(i),
+                                .b = region.neighbour(i, d),
+                                .direction = static_cast<std::int16_t>(d)});
       }
     }
   }
+  forces.gram = products(region, forces);
   return forces;
 }
 

@@ -23,25 +23,28 @@ namespace holdfast::plan {
 /// changes far away.
 ///
 /// Let q u be a component of the facet's force for displacements u, and z the displacements under
-/// the load q. Take z' that is in equilibrium on a patch of modules around the facet, and zero
-/// beyond. What it leaves unbalanced at the patch's rim is carried to supports there by forces s,
-/// so that |z - z'| <= |s| in the energy norm. For displacements u' of equations whose residual
-/// does not touch the patch, q (u - u') = (z - z') K (u - u'): of the order of |s| |u - u'| instead
-/// of |z| |u - u'| [Prager 1947].
+/// the load q. Take z' that is in equilibrium on a patch of modules around the facet, all beyond
+/// standing still, and y in equilibrium on the patch and a rim about it, as if nothing were beyond.
+/// The forces of y balance q, and those of y - z', s, balance what z' leaves unbalanced at the
+/// patch's rim: so |z - z'| <= |s| in the energy norm, and |s|^2 = q (y - z') is as little as such
+/// forces have. For displacements u' of equations whose residual does not touch the patch,
+/// q (u - u') = (z - z') K (u - u'): of the order of |s| |u - u'| instead of |z| |u - u'|
+/// [Prager 1947].
 struct LocalAdjoint {
   using Vec = base::Vec6<double>;
 
-  /// What each module of the region hands on: to its neighbour in a direction, or to its first
-  /// facet if that is none. For fz and the torques mx and my of the facet: the force in the middle,
-  /// each component over the root of its stiffness.
-  struct Way {
-    int down = -1;
-    std::array<Vec, 3> force{};
+  /// Between two modules of the region.
+  struct Beam {
+    std::int16_t a = 0;
+    std::int16_t b = 0;
+    std::int16_t direction = 0;  ///< From a; even.
   };
 
   /// What does not depend on where the facet is.
   struct Forces {
-    std::vector<Way> ways;         ///< By module of the region.
+    std::vector<Beam> beams;
+    /// y - z', for fz and the torques mx and my of the facet, by module of the region.
+    std::vector<std::array<Vec, 3>> moved;
     std::array<double, 9> gram{};  ///< <s_i, s_k>, by rows.
 
     /// |s| for the combination of fz and torques with these factors.
@@ -66,30 +69,20 @@ class LocalAdjoints {
  private:
   struct Region;
 
-  /// The region's modules, nearest to a support first, and in which direction it lies.
-  struct Ways {
-    std::vector<std::size_t> order;
-    std::vector<int> down;
-  };
-
   Region region_around(const model::Facet& facet,
                        const std::function<bool(std::size_t)>& is_there) const;
   LocalAdjoint::Forces solve(const model::Facet& facet, const Region& region) const;
-  std::optional<solver::BlockLu> patch_equations(const Region& region) const;
-  std::optional<std::vector<std::vector<base::Vec6<double>>>> balance_patch(
-      const model::Facet& facet, const Region& region) const;
-  std::vector<base::Vec6<double>> residual(const Region& region,
-                                           const std::vector<base::Vec6<double>>& z) const;
-  Ways ways_to_supports(const Region& region) const;
-  std::vector<base::Vec6<double>> carry(const Region& region, const Ways& ways,
-                                        std::vector<base::Vec6<double>> loads) const;
+  std::optional<solver::BlockLu> equations(const Region& region,
+                                           const std::vector<std::int16_t>& row) const;
+  std::optional<std::vector<std::vector<base::Vec6<double>>>> displacements(
+      const model::Facet& facet, const Region& region, const std::vector<std::int16_t>& row) const;
+  std::array<double, 9> products(const Region& region, const LocalAdjoint::Forces& forces) const;
 
   const model::Robot& target_;
   model::LatticeBeam<double> beam_;
   BeamBlocks blocks_;
-  base::Vec6<double> stiffness_{};          ///< Of the springs in the middle.
-  std::vector<base::Vec6<double>> places_;  ///< Nodes, mm; the last three are 0.
-  std::vector<std::size_t> first_facet_;    ///< By module.
+  base::Vec6<double> stiffness_{};        ///< Of the springs in the middle.
+  std::vector<std::size_t> first_facet_;  ///< By module.
   mutable std::mutex mutex_;
   /// By neighbourhood.
   mutable std::unordered_map<std::string, std::shared_ptr<const LocalAdjoint::Forces>> known_;
