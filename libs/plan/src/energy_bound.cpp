@@ -37,6 +37,10 @@ constexpr double kRoundingOfStatics = 1e-9;
 /// through a single file of modules, is spread: that takes up to a millisecond.
 constexpr double kSpreadShare = 0.1;
 
+/// Where a facet's force may be off by this share of what it lacks to tilting, by its adjoint, that
+/// is soon too coarse and better found anew. With 0.3 or 0.8 growth takes as long or longer.
+constexpr double kStrainMax = 0.5;
+
 bool is_plain(const model::Robot& target) {
   return std::ranges::none_of(
       target.facets(), [](const model::Facet& facet) { return facet.touch.friction.has_value(); });
@@ -525,33 +529,46 @@ bool EnergyBound::holds_nearby(const model::Facet& facet, const LocalAdjoint& ne
 bool EnergyBound::are_pressed(double radius) {
   bool are_all = true;
   for (const std::size_t facet : facets_) {
-    if (!(radius < room_[facet] || is_pressed_nearby(facet, radius) ||
-          is_pressed_by_adjoint(facet))) {
+    if (radius < room_[facet] || is_pressed_nearby(facet, radius)) {
+      continue;
+    }
+    const double strain = strain_by_adjoint(facet);
+    if (!(strain < 1)) {
       are_all = false;
+    }
+    if (!(strain < kStrainMax)) {
       ++doubtful_[facet];
     }
   }
   return are_all;
 }
 
-/// As is_pressed_nearby(), by the facet's adjoint, where the displacements are off by the energy
-/// error at most.
-bool EnergyBound::is_pressed_by_adjoint(std::size_t index) {
+/// Below 1 where a facet stays pressed all over, as its adjoint shows, if the displacements are off
+/// by the energy error at most: how much of what it lacks to tilting it may be off by.
+double EnergyBound::strain_by_adjoint(std::size_t index) {
+  constexpr double kUnknown = std::numeric_limits<double>::infinity();
   const model::Facet& facet = target_.facets()[index];
   if (section_ != nullptr || nodes_[base::at(facet.module)].is_new) {
-    return false;
+    return kUnknown;
   }
   const double b = target_.foot_half_width_mm();
-  const auto is_pressed = [&](const std::optional<WatchedFacets::Answer>& known) {
-    const auto holds = [&](double torque, double x, double y) {
+  const auto strain = [&](const std::optional<WatchedFacets::Answer>& known) {
+    double largest = known ? 0 : kUnknown;
+    const auto look = [&](double torque, double x, double y) {
       const double slack = -known->force[0] * b - std::abs(torque);
-      return std::ranges::all_of(std::array{1.0, -1.0}, [&](double sign) {
-        return known->error({b, sign * x, sign * y}, energy_error()) < slack;
-      });
+      for (const double sign : {1.0, -1.0}) {
+        const double error = known->error({b, sign * x, sign * y}, energy_error());
+        largest = error < slack ? std::max(largest, error / slack) : kUnknown;
+      }
     };
-    return known && holds(known->force[1], 1, 0) && holds(known->force[2], 0, 1);
+    if (known) {
+      look(known->force[1], 1, 0);
+      look(known->force[2], 0, 1);
+    }
+    return largest;
   };
-  return is_pressed(watched_.find(index, u_)) || is_pressed(watched_.find_finer(index, u_));
+  const double by_core = strain(watched_.find(index, u_));
+  return by_core < kStrainMax ? by_core : std::min(by_core, strain(watched_.find_finer(index, u_)));
 }
 
 std::map<std::size_t, int> EnergyBound::take_doubtful() { return std::exchange(doubtful_, {}); }

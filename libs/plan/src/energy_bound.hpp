@@ -81,8 +81,8 @@ class EnergyBound {
   /// Whether the adjoint of a facet has been asked for since it was taken.
   bool has_asked_for(std::size_t facet) const { return watched_.has_asked_for(facet); }
 
-  /// How often each facet has left a state without a bound, alone or with others, since this was
-  /// asked last.
+  /// How often each facet has left a state without a bound, alone or with others, or nearly so by
+  /// its adjoint, since this was asked last.
   std::map<std::size_t, int> take_doubtful();
 
   /// Connections whose forces statics alone gives, as long as it does: where they bear more than
@@ -148,7 +148,7 @@ class EnergyBound {
   bool holds_nearby(const model::Facet& facet, const LocalAdjoint& nearby, double radius,
                     const std::optional<std::array<double, 3>>& product) const;
   bool are_pressed(double radius);
-  bool is_pressed_by_adjoint(std::size_t facet);
+  double strain_by_adjoint(std::size_t facet);
 
   const model::Robot& target_;
   const LocalAdjoints& adjoints_;
