@@ -66,24 +66,25 @@ TEST(Kept, an_arm_takes_a_quarter_of_the_time) {
   EXPECT_LE(steps.time_share_median, 0.25);
 }
 
-TEST(Kept, a_growth_with_loops_takes_less_than_a_half) {
+TEST(Kept, a_growth_with_loops_takes_less_than_a_third) {
   const Cells cells = model::family_cells(model::Family::kGrowth, 32);
   const auto half = cells.begin() + 24;
   const SimulatedSteps steps =
       simulated(growing(Cells(cells.begin(), half), Cells(half, cells.end())));
   expect_the_same(steps);
-  EXPECT_LE(steps.time_share_median, 0.5);
+  EXPECT_LE(steps.time_share_median, 0.3);
 }
 
 /// Most plans of a tower are between others, and what comes touches modules of several depths: it
-/// would take more than a half if trees grew deeper than waves make them.
-TEST(Kept, a_tower_takes_less_than_a_half) {
-  const Cells cells = model::family_cells(model::Family::kTower, 5);
-  const auto start = cells.begin() + 27;
+/// would take more than a half if trees grew deeper than waves make them, and two fifths if the
+/// bending of the tower had to be found anew for every plan.
+TEST(Kept, a_tower_takes_less_than_a_quarter) {
+  const Cells cells = model::family_cells(model::Family::kTower, 8);
+  const auto start = cells.begin() + 45;
   const SimulatedSteps steps =
-      simulated(growing(Cells(cells.begin(), start), Cells(start, start + 12)));
+      simulated(growing(Cells(cells.begin(), start), Cells(start, start + 20)));
   expect_the_same(steps);
-  EXPECT_LE(steps.time_share_median, 0.45);
+  EXPECT_LE(steps.time_share_median, 0.25);
 }
 
 /// An arm on a foot that topples in the end, as in the paper's first test, and comes back.

@@ -4,6 +4,7 @@
 
 #include "beams.hpp"
 #include "holdfast/agent/messages.hpp"
+#include "kept_changes.hpp"
 #include "methods.hpp"
 
 namespace holdfast::agent {
@@ -291,7 +292,7 @@ void Agent::take_expected(Direction face, std::span<const std::uint8_t> message)
       return kKeepsAnswers ? take_news(face, decoded<News>(message)) : void();
     case MessageType::kVector:
       return kKeepsAnswers && welcoming_.has(face)
-                 ? take_motion(face, decoded<LabelledVector>(message).vector)
+                 ? take_motion(face, message[1], decoded<LabelledVector>(message).vector)
                  : sweep_.take(ws_, face, message);
     case MessageType::kAppoint:
       if (ws_.tree.take_appointment(ws_.links, round, decoded<Appointment>(message))) {
@@ -364,7 +365,8 @@ bool Agent::end_wave() {
   } else if (tree.wave() == SpanningTree::Wave::kTree) {
     keep_order(conductor_.begin(ws_.setup, tree.cell(), census.count, census.hops,
                                 {.has_fronts = ws_.front_memory() != nullptr,
-                                 .judges_faces = ws_.free_faces() != nullptr}));
+                                 .judges_faces = ws_.free_faces() != nullptr,
+                                 .deflation = deflation_of(ws_)}));
   } else {
     const SpanningTree::Wave before = tree.wave();
     watch_.enter_phase(Phase::kElection);

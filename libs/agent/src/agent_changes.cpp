@@ -5,6 +5,8 @@
 // withdraws its verdict and tells the root, which begins the next one from what all modules keep
 // (conductor_renewal.cpp). Whatever does not fit, here or on the way, is left to a new round.
 #include "holdfast/agent/agent.hpp"
+#include "holdfast/agent/deflation.hpp"
+#include "kept_changes.hpp"
 #include "survey.hpp"
 
 namespace holdfast::agent {
@@ -16,7 +18,7 @@ base::Vec6<double> motion_at(const Workspace& ws, const base::Cell& cell) {
   if (k >= 0 && (ws.planned.node_of(k) > 0 || ws.planned.is_from_above(k))) {
     return ws.node(ws.planned.slot_of(k)).u;
   }
-  return stiff_motion(ws, cell);
+  return stiff_motion(ws, ws.node(0).u, cell);
 }
 
 }  // namespace
@@ -103,6 +105,12 @@ void Agent::welcome(Direction face) {
       ws_.links.send(welcomed_, encode(News{.cell = ws_.planned.cell(k)}));
     }
   }
+  if (const KeptChanges* kept = ws_.kept_changes(); kept != nullptr) {
+    std::uint8_t label = 0;
+    for (const base::Vec6<float>& change : kept->changes) {
+      ws_.links.send(welcomed_, vector_message(wire::MessageType::kVector, ++label, change));
+    }
+  }
   ws_.links.send(welcomed_, vector_message(wire::MessageType::kVector, 0,
                                            base::converted<float>(motion_at(ws_, there))));
 }
@@ -159,7 +167,10 @@ bool Agent::take_adoption(Direction face, const Adoption& adoption) {
 
 /// The last of what welcome() sends; the parent's counts. Others' may come when this module has had
 /// its place for long, and is no vector of an exchange then either.
-void Agent::take_motion(Direction face, const base::Vec6<float>& motion) {
+void Agent::take_motion(Direction face, std::uint8_t label, const base::Vec6<float>& motion) {
+  if (label != 0) {
+    return hear_change(ws_, face, label - 1, motion);
+  }
   welcoming_.remove(face);
   if (ws_.tree.parent().has(face)) {
     ws_.node(0).u = base::converted<double>(motion);

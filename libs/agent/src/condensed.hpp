@@ -37,8 +37,7 @@ inline constexpr double kHeldShare = 0.5;
 
 /// Does an order of the polynomial's move modules between which planned ones may be?
 constexpr bool moves_between_others(wire::Operation operation) {
-  return operation == wire::Operation::kIterate ||
-         (kKeepsAnswers && operation == wire::Operation::kResume);
+  return is_iterate(operation) || is_resume(operation);
 }
 
 /// Nodes with a part in the polynomial.

@@ -28,6 +28,7 @@ Order Conductor::begin(const Setup& setup, const base::Cell& root, std::uint32_t
   effort_.method = setup.method;
   judges_faces_ = kJudgesFaces && lent.judges_faces;
   has_left_clusters_ = setup.only_one_sweep || !setup.is_cubic();
+  deflation_ = lent.deflation;
 #ifndef HOLDFAST_AGENT_FLOOR_ONLY
   slack_bits_ = setup.slack_bits;
 #endif
@@ -61,14 +62,18 @@ Order Conductor::next(const Setup& setup, const Report& report, const Planned& p
     case Operation::kFactor:
       return tree_iteration();
     case Operation::kResume:
+    case Operation::kResumeDeflated:
     case Operation::kClose:
       if constexpr (kKeepsAnswers) {
-        return asked_ == Operation::kResume ? after_resume(report) : after_close(setup, report);
+        return asked_ != Operation::kClose ? after_resume(report) : after_close(setup, report);
       }
       break;
     case Operation::kIterate:
     case Operation::kTreeIterate:
       return after_iteration(setup, report);
+    case Operation::kIterateDeflated:
+    case Operation::kIterateLast:
+      return kKeepsAnswers ? after_iteration(setup, completed(report)) : say_answer();
     case Operation::kCorners:
       return after_corners(setup, report);
     case Operation::kLoads:
@@ -282,6 +287,9 @@ Order Conductor::begin_law(const Setup& setup, bool is_unilateral) {
       asked_ == Operation::kRenew || (kJudgesStages && is_resumed_ && asked_ == Operation::kMass);
   has_motion_ = has_motion_ && is_renewed;
   has_factors_ = has_factors_ && is_renewed;
+  if (kKeepsAnswers && deflation_ != nullptr && !has_motion_) {
+    deflation_->forget();
+  }
   is_unilateral_ = is_unilateral;
   if (kHasSurroundings && !is_unilateral) {
     has_given_up_ = false;
@@ -356,6 +364,9 @@ Order Conductor::move(double length, double mix) {
 void Conductor::note_facets(const Report& report) {
   is_tilting_ = (report.flags & kAnyTilting) != 0;
   may_pull_ = (report.flags & kMayPull) != 0;
+  if constexpr (kKeepsAnswers) {
+    is_spoiled_ = is_spoiled_ || report.changed_count() > 0;
+  }
   if constexpr (kSeeksOthers) {
     may_differ_ = (report.flags & kMayDiffer) != 0;
     states_hash_ = report.states_hash();
@@ -630,32 +641,6 @@ Order Conductor::after_jacobi(const Setup& setup, const Report& report) {
 }
 
 // ---- The end.
-
-Order Conductor::settled(const Setup& setup) {
-  effort_.ratio_error = static_cast<float>(error_);
-  has_motion_ = is_one_sweep() && !is_unilateral_;
-  has_factors_ = has_motion_ && effort_.method == Method::kElimination;
-  if (is_comparing_) {
-    return decide();
-  }
-  if (is_seeking()) {
-    return after_trial(setup);
-  }
-  if (may_seek()) {
-    return begin_seeking();
-  }
-  if (is_fixed_ && !is_uneven()) {
-    if (is_unilateral_) {
-      // Under the exact law a facet that has let go no longer holds sideways.
-      Order hold = ask(Operation::kHold);
-      hold.flags = kReleaseOpen;
-      return hold;
-    }
-    return ask(Operation::kLoads);
-  }
-  return ask(kKeepsAnswers && is_resumed_ && !is_unilateral_ ? Operation::kClose
-                                                             : Operation::kCorners);
-}
 
 Order Conductor::after_corners(const Setup& setup, const Report& report) {
   if (is_seeking()) {

@@ -112,7 +112,10 @@ void Conductor::choose_one_sweep(const Setup& setup, bool is_unilateral) {
 /// deep: the root must wait for the modules furthest away to start theirs. Half as many more make
 /// a sweep longer by a quarter and save as many iterations.
 std::uint16_t Conductor::iteration_degree() const {
-  const std::uint32_t degree = depth_ + (depth_ + 1U) / 2;
+  const std::uint32_t more = !kKeepsAnswers || !is_resumed_ ? (depth_ + 1U) / 2
+                             : deflates()                   ? 0U
+                                                            : depth_ / 4U;
+  const std::uint32_t degree = depth_ + more;
   return static_cast<std::uint16_t>(degree < kDegreeMax ? degree : kDegreeMax);
 }
 
@@ -139,14 +142,16 @@ void Conductor::choose_clusters(const Report& report) {
 Order Conductor::first_iteration() {
   ++effort_.solves;
   predicted_ = kUnbounded;
-  holds_planned_ = is_newton_ && is_any_remote_;
-  held_planned_ = false;
+  const bool is_resuming = is_resume(asked_);
+  holds_planned_ = (is_newton_ || is_resuming) && is_any_remote_;
+  held_planned_ = is_resuming && holds_planned_;
   if (is_exact()) {
     return factor();
   }
   // Where planned modules are condensed a kBegin leaves no residual: nobody has their weight yet,
   // so this iteration moves nothing. A kResume has brought it.
-  const bool moves = !is_any_remote_ || (kKeepsAnswers && asked_ == Operation::kResume);
+  const bool moves = !is_any_remote_ || is_resuming;
+  is_spoiled_ = !moves;
   Order iteration = restarted_iteration();
   iteration.flags = static_cast<std::uint8_t>(iteration.flags | (moves ? 0U : kKeepStates));
   return iteration;
@@ -157,7 +162,7 @@ Order Conductor::factor() { return ask(Operation::kFactor); }
 Order Conductor::tree_iteration() { return ask(Operation::kTreeIterate); }
 
 Order Conductor::next_iteration(std::uint8_t flags, const std::array<float, 3>& coefficients) {
-  Order iteration = ask(Operation::kIterate);
+  Order iteration = ask(iterate());
   const bool takes_clusters = has_clusters() && !least_residual_;
   iteration.flags = static_cast<std::uint8_t>(
       flags | (least_residual_ ? kLeastResidual : 0U) | (takes_clusters ? kWithClusters : 0U) |
@@ -167,6 +172,7 @@ Order Conductor::next_iteration(std::uint8_t flags, const std::array<float, 3>& 
   iteration.flags = static_cast<std::uint8_t>(iteration.flags | (kept_states_ ? kKeepStates : 0U));
   iteration.count = takes_clusters ? cluster_degree() : iteration_degree();
   iteration.reals = coefficients;
+  set_along(iteration);
   has_changed_ = takes_clusters != had_clusters() || holds_planned_ != held_planned_ ||
                  stands_in_ != stood_in_;
   had_clusters_ = takes_clusters;
@@ -239,7 +245,7 @@ Order Conductor::after_iteration(const Setup& setup, const Report& report) {
   target_ = needs_forces(setup) ? uneven_target() : kRatioTolerance * (1 + absolute(ratio_));
   const double distance = absolute(ratio_ - 1) / kDoubt;
   if (error <= target_ && !kept_states_ && (error <= distance || error <= kErrorLeast)) {
-    return settled(setup);
+    return settled(setup, &report);
   }
   const bool is_better = !stood_in_ && error < 0.7 * error_best_;
   error_best_ = is_better ? error : error_best_;

@@ -185,14 +185,16 @@ Order Conductor::resume(const Setup& setup, const Planned& /*planned*/) {
     return no_order();
   }
   Order resume = begin;
-  resume.operation = Operation::kResume;
-  asked_ = Operation::kResume;
+  const bool deflates = deflation_ != nullptr && deflation_->is_used() && !is_exact();
+  resume.operation = deflates ? Operation::kResumeDeflated : Operation::kResume;
+  asked_ = resume.operation;
   // A planned module between others closes a loop.
   has_factors_ = has_factors_ && effort_.method == Method::kElimination;
   resume.flags =
       static_cast<std::uint8_t>(begin.flags | (has_factors_ ? kKeepsFactors : 0U) |
                                 (has_motion_ ? kKeepsMotion : 0U) | (is_fixed_ ? 0U : kRests));
   resume.count = is_exact() ? std::uint16_t{0} : iteration_degree();
+  resume.index = deflation_ != nullptr ? deflation_->place() : std::uint8_t{wire::kKeptMax};
   resume.mass = mass_;
   resume.moment = moment_;
   resume.masks = resume_masks(totals_, face_count(setup));
@@ -210,6 +212,11 @@ Order Conductor::after_resume(const Report& report) {
     return finish(Verdict::kUnstable, Reason::kTopples);
   }
   if (!is_exact()) {
+#ifndef HOLDFAST_AGENT_STARTS_AFRESH
+    if (asked_ == Operation::kResumeDeflated) {
+      deflation_->begin(report.along, report.energies);
+    }
+#endif
     return first_iteration();
   }
   ++effort_.solves;

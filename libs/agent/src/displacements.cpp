@@ -4,6 +4,7 @@
 
 #include "beams.hpp"
 #include "facets.hpp"
+#include "kept_changes.hpp"
 #include "methods.hpp"
 #include "scalar.hpp"
 #include "stage_load.hpp"
@@ -34,16 +35,15 @@ std::uint32_t hash_of(const base::Cell& cell, int code) {
 }
 
 void begin_equilibrium(Workspace& ws, const Order& order) {
-  const bool is_unilateral =
-      order.operation != wire::Operation::kResume && (order.flags & kUnilateralLaw) != 0;
+  const bool is_unilateral = !is_resume(order.operation) && (order.flags & kUnilateralLaw) != 0;
   const auto law =
       is_unilateral ? mechanics::ContactLaw::kUnilateral : mechanics::ContactLaw::kRegularised;
   ws.contact.facet = mechanics::ground_facet(ws.setup.beam, ws.setup.section.length, foot_width(ws),
                                              static_cast<double>(order.gamma()), law);
+  begin_change(ws, order);
   ws.contact.stands_in = false;
   ws.contact.lever_mm = static_cast<double>(order.lever_mm());
-  const bool keeps =
-      order.operation == wire::Operation::kResume && (order.flags & kKeepsMotion) != 0;
+  const bool keeps = is_resume(order.operation) && (order.flags & kKeepsMotion) != 0;
   for (int i = 0; i < ws.node_count() && !keeps; ++i) {
     reset(ws.node(i));
   }

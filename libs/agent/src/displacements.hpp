@@ -4,6 +4,7 @@
 
 #include "holdfast/agent/order.hpp"
 #include "holdfast/agent/workspace.hpp"
+#include "methods.hpp"
 
 /// What several methods do at the begin of an equilibrium and around an exchange of displacements,
 /// which takes two parts: leading digits and the rest.
@@ -20,7 +21,7 @@ void share_low_part(Workspace& ws);
 
 /// Does the order say that contact states stay as they are?
 inline bool keeps_states(const Order& order) {
-  return order.operation == wire::Operation::kIterate && (order.flags & kKeepStates) != 0;
+  return is_iterate(order.operation) && (order.flags & kKeepStates) != 0;
 }
 
 /// Takes over the contact states that belong to u, unless they are kept. True: some are others.

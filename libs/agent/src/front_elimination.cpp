@@ -20,7 +20,7 @@ constexpr int kNoFront = 0xff;
 
 /// Room that has to be left in a queue for what follows without asking: a vector and a report; and
 /// the exchanges of an iteration (agent.hpp).
-constexpr int kReportRoom = wire::kVectorBytes + wire::kMessageBytesMax;
+constexpr int kReportRoom = wire::kVectorBytes + wire::kPlainBytesMax;
 
 int exchange_room(const Workspace& ws) {
   const int planned = ws.planned.count() > kPlannedMax ? ws.planned.count() : kPlannedMax;

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "holdfast/agent/wire.hpp"
+
 /// Does the program have all methods (method.hpp)? One with HOLDFAST_AGENT_ONE_SWEEP_ONLY, for
 /// modules with little flash, has elimination and the polynomial: what takes one sweep an iteration
 /// and needs no more memory or code than they do. Where conjugate gradients would take over it goes
@@ -23,6 +25,23 @@ inline constexpr bool kKeepsAnswers = false;
 #else
 inline constexpr bool kKeepsAnswers = true;
 #endif
+
+/// Does an iteration go along what is kept, if anything is?
+constexpr bool is_deflated(wire::Operation operation) {
+  return kKeepsAnswers && (operation == wire::Operation::kIterateDeflated ||
+                           operation == wire::Operation::kIterateLast);
+}
+
+/// Is this an iteration of the polynomial?
+constexpr bool is_iterate(wire::Operation operation) {
+  return operation == wire::Operation::kIterate || is_deflated(operation);
+}
+
+/// Does an equilibrium begin from what is kept?
+constexpr bool is_resume(wire::Operation operation) {
+  return kKeepsAnswers &&
+         (operation == wire::Operation::kResume || operation == wire::Operation::kResumeDeflated);
+}
 
 /// Can free faces be judged (free_faces.hpp)? Left out together with the above.
 inline constexpr bool kJudgesFaces = kKeepsAnswers;

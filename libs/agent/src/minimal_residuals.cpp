@@ -7,8 +7,10 @@
 #include "condensed.hpp"
 #include "displacements.hpp"
 #include "facets.hpp"
+#include "kept_changes.hpp"
 #include "methods.hpp"
 #include "stage_load.hpp"
+#include "survey.hpp"
 
 namespace holdfast::agent {
 namespace {
@@ -27,7 +29,15 @@ void subtract(base::Vec6<double>& from, const base::Vec6<double>& force, double 
 
 }  // namespace
 
-PlannedPart part_in_iteration(const Workspace& ws, const Order& order) {
+/// How many of the changes that are kept are left to be exchanged before displacements are.
+int changes_left(const Workspace& ws, const Order& order) {
+  constexpr int kDisplacements = 2;
+  const bool weighs = kKeepsAnswers && order.operation == wire::Operation::kResumeDeflated;
+  const int left = ws.exchange.left_before_report() - kDisplacements;
+  return weighs && left > 0 ? left : 0;
+}
+
+PlannedPart part_of_displacements(const Workspace& ws, const Order& order) {
   if (!ws.planned.is_any_remote()) {
     return PlannedPart::kTogether;
   }
@@ -36,14 +46,18 @@ PlannedPart part_in_iteration(const Workspace& ws, const Order& order) {
   return is_second ? PlannedPart::kCondensed : PlannedPart::kApart;
 }
 
+PlannedPart part_in_iteration(const Workspace& ws, const Order& order) {
+  return changes_left(ws, order) > 0 ? PlannedPart::kApart : part_of_displacements(ws, order);
+}
+
 int MinimalResiduals::node_count() const {
-  return joined_count(ws_, part_in_iteration(ws_, order_));
+  return joined_count(ws_, part_of_displacements(ws_, order_));
 }
 
 bool MinimalResiduals::begin(int piece) {
   const int count = node_count();
   // By nothing, from what is kept.
-  const bool moves = order_.operation == wire::Operation::kResume && ws_.exchange.left() > 0;
+  const bool moves = is_resume(order_.operation) && ws_.exchange.left() > 0;
   const bool starts = order_.operation == wire::Operation::kBegin && order_.count > 0;
   if (piece == 0) {
     begin_equilibrium(ws_, order_);
@@ -89,6 +103,9 @@ bool MinimalResiduals::move(int piece) {
   if (ws_.planned.is_any_remote()) {
     begin_condensing(ws_);
   }
+  if (const int left = changes_left(ws_, order_); left > 0) {
+    share_change(ws_, wire::kKeptMax - left);
+  }
   return false;
 }
 
@@ -115,6 +132,7 @@ void MinimalResiduals::move_node(int index) {
     move = base::combination(a, newer.p, b, older.p);
     base::add_to(move, correction);
   }
+  move_along(ws_, order_, index, move);
   base::add_to(node.u, move);
   older = restarts ? SearchDirection{} : newer;
   newer = {.p = correction, .q = rest, .z = correction};
@@ -122,6 +140,9 @@ void MinimalResiduals::move_node(int index) {
 }
 
 bool MinimalResiduals::take_displacements(int piece) {
+  if (const int left = changes_left(ws_, order_); left > 0) {
+    return take_change(left);
+  }
   const PlannedPart part = part_in_iteration(ws_, order_);
   if (piece == 0) {
     add_forces(ws_, part);
@@ -147,6 +168,19 @@ bool MinimalResiduals::take_displacements(int piece) {
     renew_diagonal(index, stage - 1);
   }
   return piece < 6 * node_count();
+}
+
+/// The next change goes out, or, after the last one, displacements.
+bool MinimalResiduals::take_change(int left) {
+  weigh_change(ws_, wire::kKeptMax - left);
+  if (left > 1) {
+    share_change(ws_, wire::kKeptMax - left + 1);
+  } else {
+    for (int i = 0; i < ws_.node_count(); ++i) {
+      share_high_part(ws_.node(i));
+    }
+  }
+  return false;
 }
 
 void MinimalResiduals::find_residual(int index) {
@@ -203,8 +237,8 @@ void MinimalResiduals::subtract_beams() {
   Beams<double> beams = ws_.setup.beams();
   const auto mine = base::converted<double>(ws_.node(0).vector.sent);
   // Planned modules that stand apart stand still in the polynomial; their beams are weaker.
-  const bool holds_planned =
-      order_.operation == wire::Operation::kIterate && (order_.flags & kHoldPlanned) != 0;
+  const bool holds_planned = (is_iterate(order_.operation) && (order_.flags & kHoldPlanned) != 0) ||
+                             is_resume(order_.operation);
   visit_beams(ws_, part, [&](Direction face, const base::Vec6<float>* other, int k) {
     if (other == nullptr) {
       if (holds_planned) {
@@ -264,6 +298,12 @@ bool MinimalResiduals::report(int piece, Report& report) const {
   constexpr int kLoadPieces = 2;
   if (piece < kLoadPieces) {
     iteration_report(ws_, piece, report);
+    if (piece == 0 && is_deflated(order_.operation)) {
+      report_along(ws_, report);
+    }
+    if (piece > 0 && kKeepsAnswers && order_.operation == wire::Operation::kIterateLast) {
+      report_last(ws_, report);
+    }
     return true;
   }
   const int index = piece - kLoadPieces;

@@ -87,6 +87,7 @@ class MinimalResiduals {
     return memory_[static_cast<std::size_t>(node)].vectors;
   }
 
+  bool take_change(int left);
   void renew_diagonal(int node, int part);
   void move_node(int node);
   void find_residual(int node);

@@ -88,6 +88,18 @@ void merge_residual(Report& into, const Report& from) {
   merge_facets(into, from);
 }
 
+/// Products with the changes of displacement that are kept.
+void merge_along([[maybe_unused]] Report& into, [[maybe_unused]] const Report& from) {
+#ifndef HOLDFAST_AGENT_STARTS_AFRESH
+  for (std::size_t i = 0; i < into.along.size(); ++i) {
+    into.along[i] += from.along[i];
+  }
+  for (std::size_t i = 0; i < into.energies.size(); ++i) {
+    into.energies[i] += from.energies[i];
+  }
+#endif
+}
+
 /// The box of both; supports are added up, labels modulo 2.
 void merge_shape(Report& into, const Report& from) {
   base::Cell far = into.far_cell();
@@ -121,6 +133,19 @@ void merge_loads(Report& into, const Report& from) {
   }
   into.count += from.count;
   into.number += from.number;
+}
+
+/// An iteration's sums; of the two largest load ratios the larger one's place.
+void merge_last(Report& into, const Report& from) {
+  Report worst = worst_of(into);
+  merge_loads(worst, worst_of(from));
+  into.cell = worst.cell;
+  into.direction = worst.direction;
+#ifndef HOLDFAST_AGENT_FLOOR_ONLY
+  into.remarks = worst.remarks;
+#endif
+  into.corners = mechanics::merge(into.corners, from.corners);
+  merge_residual(into, from);
 }
 
 /// The least key.
@@ -236,6 +261,7 @@ constexpr std::uint8_t kResumeFlags =
 
 constexpr void resume_fields(auto& codec, Order& order) {
   codec.flags(order.flags, kResumeFlags);
+  codec.u8(order.index, 0, wire::kKeptMax);
   codec.u16(order.count, 0, kDegreeMax);
   real_fields(codec, std::span(order.reals).first(2));
   codec.i32(order.mass);
@@ -246,6 +272,20 @@ constexpr void resume_fields(auto& codec, Order& order) {
     codec.resumed_faces(byte);
     order.masks[k] = byte;
   }
+}
+
+constexpr void iterate_fields(auto& codec, Order& order, std::uint8_t flags) {
+  codec.flags(order.flags, flags);
+  codec.u16(order.count, 0, kDegreeMax);
+  real_fields(codec, std::span(order.reals).first(3));
+}
+
+/// An iteration with the least energy, and how far to go along what is kept.
+constexpr void deflated_fields([[maybe_unused]] auto& codec, [[maybe_unused]] Order& order) {
+#ifndef HOLDFAST_AGENT_STARTS_AFRESH
+  iterate_fields(codec, order, kRestart | kLeastResidual | kKeepStates | kHoldPlanned);
+  real_fields(codec, order.along);
+#endif
 }
 
 constexpr void word_fields(auto& codec, Order& order) {
@@ -358,10 +398,13 @@ constexpr void fields(auto& codec, Order& order) {
     case Operation::kVerdict:
       return answer_fields(codec, order.answer);
     case Operation::kIterate:
-      codec.flags(order.flags, kRestart | kLeastResidual | kKeepStates | kWithClusters |
-                                   kHoldPlanned | kStandIn);
-      codec.u16(order.count, 0, kDegreeMax);
-      return real_fields(codec, std::span(order.reals).first(3));
+      return iterate_fields(
+          codec, order,
+          kRestart | kLeastResidual | kKeepStates | kWithClusters | kHoldPlanned | kStandIn);
+    case Operation::kIterateDeflated:
+    case Operation::kIterateLast:
+      codec.require(kKeepsAnswers);
+      return deflated_fields(codec, order);
     case Operation::kForget:
       codec.flags(order.flags, kIsFulfilled);
       return codec.place(order.cell);
@@ -370,6 +413,7 @@ constexpr void fields(auto& codec, Order& order) {
       codec.flags(order.flags, kRenewFlags);
       return codec.place(order.cell);
     case Operation::kResume:
+    case Operation::kResumeDeflated:
       codec.require(kKeepsAnswers);
       return kKeepsAnswers ? resume_fields(codec, order) : void();
     case Operation::kWord:
@@ -427,9 +471,50 @@ constexpr void solve_report_fields(auto& codec, Operation operation, Report& rep
   }
 }
 
+constexpr void along_fields([[maybe_unused]] auto& codec, [[maybe_unused]] Report& report) {
+#ifndef HOLDFAST_AGENT_STARTS_AFRESH
+  real_fields(codec, report.along);
+#endif
+}
+
+constexpr void energy_fields([[maybe_unused]] auto& codec, [[maybe_unused]] Report& report) {
+#ifndef HOLDFAST_AGENT_STARTS_AFRESH
+  along_fields(codec, report);
+  real_fields(codec, report.energies);
+#endif
+}
+
 constexpr void resumption_fields(auto& codec, Report& report) {
   byte_flags(codec, report.mask, kHostedFlags);
   feet_fields(codec, report.feet);
+}
+
+/// Bound on the error, facets, products.
+constexpr void iteration_fields(auto& codec, Report& report) {
+  residual_fields(codec, report);
+  for (double& product : report.products) {
+    codec.long_real(product);
+  }
+}
+
+/// Where the largest load ratio is, and the corners.
+constexpr void last_fields(auto& codec, Report& report) {
+  corner_fields(codec, report.corners);
+  codec.cell(report.cell);
+  connection_fields(codec, report.direction, report, kLimitBits | kGapOpens | kFacetSlips);
+}
+
+/// Of an equilibrium that begins from what is kept, and of iterations along it.
+constexpr void deflated_report_fields(auto& codec, Operation operation, Report& report) {
+  if (operation == Operation::kResumeDeflated) {
+    resumption_fields(codec, report);
+    return energy_fields(codec, report);
+  }
+  iteration_fields(codec, report);
+  along_fields(codec, report);
+  if (operation == Operation::kIterateLast) {
+    last_fields(codec, report);
+  }
 }
 
 constexpr void closing_fields(auto& codec, Report& report) {
@@ -496,11 +581,11 @@ constexpr void fields(auto& codec, Operation operation, Report& report) {
     case Operation::kTreeIterate:
       return residual_fields(codec, report, kFrontFlags);
     case Operation::kIterate:
-      residual_fields(codec, report);
-      for (double& product : report.products) {
-        codec.long_real(product);
-      }
-      return;
+      return iteration_fields(codec, report);
+    case Operation::kIterateDeflated:
+    case Operation::kIterateLast:
+    case Operation::kResumeDeflated:
+      return kKeepsAnswers ? deflated_report_fields(codec, operation, report) : void();
     case Operation::kLow:
     case Operation::kStart:
     case Operation::kGradient:
@@ -560,6 +645,13 @@ static_assert([] {
 
 }  // namespace
 
+Report worst_of(const Report& last) {
+  Report worst = last;
+  worst.reals[0] = last.load_ratio_max();
+  worst.count = 0;
+  return worst;
+}
+
 Writer encode(const Order& order) {
   Writer out(MessageType::kOrder, order.operation);
   Codec codec(out);
@@ -599,8 +691,9 @@ void merge(Operation operation, Report& into, const Report& from) {
       return merge_plan(into, from);
     case Operation::kHosts:
     case Operation::kResume:
+    case Operation::kResumeDeflated:
       into.mask = static_cast<FaceMask>(into.mask | from.mask);
-      return;
+      return merge_along(into, from);
     case Operation::kMass:
       return merge_mass(into, from);
     case Operation::kRenew:
@@ -609,6 +702,12 @@ void merge(Operation operation, Report& into, const Report& from) {
     case Operation::kIterate:
     case Operation::kTreeIterate:
       return merge_residual(into, from);
+    case Operation::kIterateDeflated:
+      merge_along(into, from);
+      return merge_residual(into, from);
+    case Operation::kIterateLast:
+      merge_along(into, from);
+      return kKeepsAnswers ? merge_last(into, from) : void();
     case Operation::kClose:
       into.corners = mechanics::merge(into.corners, from.corners);
       return merge_loads(into, from);

@@ -26,8 +26,7 @@ bool PolynomialIteration::begin(Workspace& ws, const Order& order, int piece) {
     return false;  // Work is left to the report.
   }
   MinimalResiduals iteration(ws, order, memory(ws), rho_);
-  return order.operation == wire::Operation::kIterate ? iteration.move(piece)
-                                                      : iteration.begin(piece);
+  return is_iterate(order.operation) ? iteration.move(piece) : iteration.begin(piece);
 }
 
 bool PolynomialIteration::take_exchange(Workspace& ws, const Order& order, int piece) {
@@ -38,9 +37,8 @@ bool PolynomialIteration::take_exchange(Workspace& ws, const Order& order, int p
 
 bool PolynomialIteration::report(Workspace& ws, const Order& order, int piece, Report& sum) {
   MinimalResiduals iteration(ws, order, memory(ws), rho_);
-  return is_about_facets(order)
-             ? iteration.hold(piece, sum)
-             : order.operation == wire::Operation::kIterate && iteration.report(piece, sum);
+  return is_about_facets(order) ? iteration.hold(piece, sum)
+                                : is_iterate(order.operation) && iteration.report(piece, sum);
 }
 
 }  // namespace holdfast::agent

@@ -6,6 +6,7 @@
 #include "facets.hpp"
 #include "holdfast/agent/feet.hpp"
 #include "holdfast/mechanics/connector.hpp"
+#include "kept_changes.hpp"
 #include "methods.hpp"
 #include "resume_masks.hpp"
 #include "scalar.hpp"
@@ -312,8 +313,7 @@ void prepare_node(Workspace& ws, int index) {
   }
 }
 
-base::Vec6<double> stiff_motion(const Workspace& ws, const base::Cell& cell) {
-  base::Vec6<double> u = ws.node(0).u;
+base::Vec6<double> stiff_motion(const Workspace& ws, base::Vec6<double> u, const base::Cell& cell) {
   const base::Cell& own = ws.tree.cell();
   const double pitch = ws.setup.section.length;
   double x = pitch * (cell.x - own.x);
@@ -341,14 +341,26 @@ void resume_survey(Workspace& ws, Announcements& announcements, const Order& ord
   for (int i = 1; i < ws.node_count(); ++i) {
     reset(ws.node(i));
     if ((order.flags & kKeepsMotion) != 0) {
-      ws.node(i).u = stiff_motion(ws, ws.cell_of(i));
+      ws.node(i).u = stiff_motion(ws, ws.node(0).u, ws.cell_of(i));
     }
   }
+}
+
+void report_last(Workspace& ws, Report& report) {
+  const Report worst = loads_report(ws);
+  report.reals[1] = worst.reals[0];
+  report.cell = worst.cell;
+  report.direction = worst.direction;
+#ifndef HOLDFAST_AGENT_FLOOR_ONLY
+  report.remarks = worst.remarks;
+#endif
+  report.corners = corners_report(ws).corners;
 }
 
 Report resume_report(const Workspace& ws, const Order& order) {
   Report report = (order.flags & kRests) != 0 ? angles_report(ws, order) : Report{};
   report.mask = hosts_report(ws).mask;
+  report_along(ws, report);
   return report;
 }
 
@@ -465,13 +477,14 @@ Report mass_report(const Workspace& ws) {
 }
 
 void add_report(const Setup& setup, const Order& order, Report& into, const Report& theirs) {
-  const bool is_resumed = order.operation == Operation::kResume && (order.flags & kRests) != 0;
+  const bool is_resumed = is_resume(order.operation) && (order.flags & kRests) != 0;
   if (is_resumed || order.operation == Operation::kAngles) {
     const FeetCheck check(setup, order.mass, order.moment);
     into.feet = check.merge(into.feet, theirs.feet);
   }
-  const bool has_corners =
-      order.operation == Operation::kCorners || order.operation == Operation::kClose;
+  const bool has_corners = order.operation == Operation::kCorners ||
+                           order.operation == Operation::kClose ||
+                           (kKeepsAnswers && order.operation == Operation::kIterateLast);
   if (has_corners && !setup.is_cubic()) {
     const auto corners = mechanics::merge_rounded(into.corners, theirs.corners);
     merge(order.operation, into, theirs);

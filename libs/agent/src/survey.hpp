@@ -19,7 +19,7 @@ inline bool is_survey(wire::Operation operation) {
 void prepare_node(Workspace& ws, int index);
 
 /// How a module in `cell` moves that is joined stiffly to this one.
-base::Vec6<double> stiff_motion(const Workspace& ws, const base::Cell& cell);
+base::Vec6<double> stiff_motion(const Workspace& ws, base::Vec6<double> u, const base::Cell& cell);
 
 /// The order has come.
 void begin_survey(Workspace& ws, Announcements& announcements, const Order& order);
@@ -33,6 +33,9 @@ Report survey_report(Workspace& ws, const Announcements& announcements, const Or
 void resume_survey(Workspace& ws, Announcements& announcements, const Order& order);
 
 /// What a kResume says besides its method: as kHosts and kAngles.
+/// Adds to what an iteration reports what a kClose would ask for.
+void report_last(Workspace& ws, Report& report);
+
 Report resume_report(const Workspace& ws, const Order& order);
 
 /// Count, supports and extent of the nodes here, from the root's cell.

@@ -53,6 +53,7 @@ Course course_after(const Order& order, Course course) {
     case Operation::kRenew:
       return Course::kWeighed;
     case Operation::kResume:
+    case Operation::kResumeDeflated:
       return (order.flags & kWithIterations) == 0 ? Course::kElimination : Course::kPolynomial;
     case Operation::kBegin:
       return (order.flags & kOneSweep) == 0         ? Course::kGradients
@@ -150,7 +151,10 @@ bool Sweep::is_in_course(const Workspace& ws, const Order& order) const {
              (course_ == Course::kAnswered || course_ == Course::kWeighed) &&
              (has_tree_ || (order.flags & kKeepsFactors) == 0);
     case Operation::kResume:
-      return kKeepsAnswers && ws.setup.keeps_answers && is_good_resume(ws, order);
+    case Operation::kResumeDeflated:
+    case Operation::kIterateDeflated:
+    case Operation::kIterateLast:
+      return kKeepsAnswers && ws.setup.keeps_answers && is_good_from_kept(ws, order);
     case Operation::kBegin:
       return is_good_begin(ws, order);
     case Operation::kFactor:
@@ -172,11 +176,7 @@ bool Sweep::is_in_course(const Workspace& ws, const Order& order) const {
       return course_ == Course::kClusters ||
              (course_ == Course::kPolynomial && (order.flags & kWithClusters) == 0);
     case Operation::kSeek:
-      return kSeeksOthers && !ws.setup.only_one_sweep &&
-             (order.flags == 0 || order.flags == kOneFoot ||
-              (order.flags == kRemember && order.key() == 0)) &&
-             (course_ == Course::kElimination || course_ == Course::kPolynomial ||
-              course_ == Course::kGradients || makes_fronts(course_));
+      return kSeeksOthers && is_good_seek(ws, order);
     default:
       return course_ == Course::kGradients ||
              (order.operation == Operation::kHold &&
@@ -248,6 +248,26 @@ bool Sweep::is_good_resume(const Workspace& ws, const Order& order) const {
          is_possible && (order.flags & kOneSweep) != 0;
 }
 
+bool Sweep::is_good_seek(const Workspace& ws, const Order& order) const {
+  return !ws.setup.only_one_sweep &&
+         (order.flags == 0 || order.flags == kOneFoot ||
+          (order.flags == kRemember && order.key() == 0)) &&
+         (course_ == Course::kElimination || course_ == Course::kPolynomial ||
+          course_ == Course::kGradients || makes_fronts(course_));
+}
+
+/// Whether an equilibrium may begin from what is kept, or an iteration go along it, for which a
+/// module needs memory.
+bool Sweep::is_good_from_kept(const Workspace& ws, const Order& order) const {
+  const bool is_resumed_so = order.operation == Operation::kResumeDeflated;
+  const bool needs_memory = is_resumed_so || order.operation == Operation::kIterateDeflated;
+  if ((needs_memory && ws.kept_changes() == nullptr) ||
+      (is_resumed_so && (order.flags & kWithIterations) == 0)) {
+    return false;
+  }
+  return is_resume(order.operation) ? is_good_resume(ws, order) : course_ == Course::kPolynomial;
+}
+
 bool Sweep::expects(const Workspace& ws, Direction face, Message message) const {
   const MethodTable* own = method();
   switch (static_cast<MessageType>(message[0])) {
@@ -288,7 +308,7 @@ void Sweep::take_order(Workspace& ws, Announcements& announcements, const Order&
   ws.links.send(ws.tree.children(), encode(order));
   if (is_survey(order.operation)) {
     begin_survey(ws, announcements, order);
-  } else if (kKeepsAnswers && order.operation == Operation::kResume) {
+  } else if (is_resume(order.operation)) {
     resume_survey(ws, announcements, order);
   }
   if (judges_faces(ws)) {
@@ -314,7 +334,7 @@ void Sweep::begin_faces(Workspace& ws, const Order& order) {
 void Sweep::begin_method(Workspace& ws, const Order& order) {
   const Operation operation = order.operation;
   // What elimination has learned with kMass it needs in its equilibrium.
-  const bool is_begin = operation == Operation::kBegin || operation == Operation::kResume;
+  const bool is_begin = operation == Operation::kBegin || is_resume(operation);
   const bool is_renewed = operation == Operation::kRenew && (order.flags & kKeepsFactors) == 0;
   if (operation == Operation::kMass || is_renewed || operation == Operation::kClusters ||
       (is_begin && course_ != Course::kElimination)) {
@@ -466,7 +486,7 @@ bool Sweep::begin_report(const Workspace& ws) {
 /// A piece of what this module reports.
 bool Sweep::report(Workspace& ws, const Announcements& announcements) {
   const Operation operation = order_.operation;
-  if (kKeepsAnswers && operation == Operation::kResume) {
+  if (is_resume(operation)) {
     sum_ = resume_report(ws, order_);
     return false;
   }

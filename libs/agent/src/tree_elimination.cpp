@@ -58,7 +58,7 @@ bool TreeElimination::begin(Workspace& ws, const Order& order, int /*piece*/) {
     begin_equilibrium(ws, order);
   } else if (order.operation == Operation::kFactor) {
     factor(ws);
-  } else if (order.operation == Operation::kResume) {
+  } else if (is_resume(order.operation)) {
     // The loads are those of the displacements that are kept, which are shared first.
     begin_equilibrium(ws, order);
     ws.clear_middle();
@@ -90,8 +90,7 @@ bool TreeElimination::expects(const Workspace& ws, const Order& order, Direction
   const int child_cuts = child_cut_count(ws, face);
   const bool reports = ws.reports.awaits(face);
   const bool is_iteration = order.operation == Operation::kTreeIterate;
-  const bool is_factor =
-      order.operation == Operation::kFactor || order.operation == Operation::kResume;
+  const bool is_factor = order.operation == Operation::kFactor || is_resume(order.operation);
   switch (static_cast<MessageType>(message[0])) {
     case MessageType::kLoop:
       return reports && child_cuts < kLoopsMax &&
@@ -400,7 +399,7 @@ bool TreeElimination::send_columns(Workspace& ws) {
       ++count;
     }
     // What follows must find room too.
-    const int room = (count + 1 + kLoopsMax) * wire::kVectorBytes + wire::kMessageBytesMax;
+    const int room = (count + 1 + kLoopsMax) * wire::kVectorBytes + wire::kPlainBytesMax;
     if (!has_room(ws.links, ws.tree.parent().first(), room)) {
       return false;
     }

@@ -34,8 +34,17 @@ constexpr ChecksumTables checksum_tables() {
 constexpr std::array<std::uint8_t, 21> kMessageBytes = {0,  19, 19, 8,  12, 0,  0,  26, 26, 26, 11,
                                                         26, 26, 26, 26, 26, 35, 13, 26, 26, 26};
 
-constexpr auto kOrderBytes = column(&OperationInfo::order_bytes);
-constexpr auto kReportBytes = column(&OperationInfo::report_bytes);
+/// Those of orders or reports; 0 of what a program has no room for, and so does not know.
+constexpr auto room_for(std::uint8_t OperationInfo::*bytes) {
+  auto sizes = column(bytes);
+  for (std::uint8_t& size : sizes) {
+    size = size <= kMessageBytesMax ? size : std::uint8_t{0};
+  }
+  return sizes;
+}
+
+constexpr auto kOrderBytes = room_for(&OperationInfo::order_bytes);
+constexpr auto kReportBytes = room_for(&OperationInfo::report_bytes);
 
 }  // namespace
 

@@ -4,6 +4,7 @@
 // The root's decisions with the one-sweep methods, and how it seeks further solutions, as
 // conductor_test.cpp has all others.
 #include "drive.hpp"
+#include "holdfast/agent/deflation.hpp"
 
 namespace holdfast::agent {
 namespace {
@@ -318,6 +319,93 @@ TEST(Conductor, leaves_a_one_sweep_method_that_brings_no_number) {
   ASSERT_EQ(drive.next(iteration_report(kNan)).operation, Operation::kBegin);
   EXPECT_EQ(drive.order.flags, 0);
   EXPECT_EQ(drive.conductor.effort().method, Method::kConjugateGradients);
+}
+
+Report standing_report() {
+  Report report;
+  report.feet.range = mechanics::SafeRange::kFull;
+  report.corners.stable = true;
+  return report;
+}
+
+/// A robot with many loops that knows a verdict; a module comes. Up to the order that resumes.
+Drive resumed_drive(Deflation& deflation, std::uint32_t iterations, bool is_fixed = true) {
+  Drive drive(Method::kElimination);
+  drive.setup.keeps_answers = true;
+  drive.order = drive.conductor.begin(drive.setup, kRoot, kCensus, 4, {.deflation = &deflation});
+  drive.to_mass();
+  const std::uint8_t flags = is_fixed ? kAnyFixed | kManyLoops : kManyLoops;
+  drive.next({.flags = flags, .extent = 5, .count = kCensus, .number = kCensus});
+  if (!is_fixed) {
+    drive.next(standing_report());
+  }
+  EXPECT_EQ(drive.next().operation, Operation::kIterate);
+  drive.next(iteration_report(1e-6F));
+  if (!is_fixed) {
+    EXPECT_EQ(drive.order.operation, Operation::kCorners);
+    drive.next(standing_report());
+  }
+  EXPECT_EQ(drive.order.operation, Operation::kLoads);
+  EXPECT_EQ(drive.next({.number = kCensus, .reals = {0.5F}}).operation, Operation::kVerdict);
+  deflation.end(iterations, true);
+  deflation.end(iterations, true);
+  drive.order = drive.conductor.renew(
+      drive.setup, {.flags = kIsGrown, .hops = 4, .cell = {2, 2, 3}}, Planned(), nullptr);
+  EXPECT_EQ(drive.order.operation, Operation::kRenew);
+  drive.order = drive.conductor.after_renew(
+      drive.setup, {.flags = flags, .extent = 5, .count = kCensus + 1, .number = kCensus + 1},
+      Planned(), nullptr);
+  return drive;
+}
+
+/// W'r and E of two changes, of which the first one is kept.
+const Report kDeflatedReport = {.along = {4, 8}, .energies = {2, 0, 2}};
+
+/// The last change's place is told in any case, and energies are asked for where they pay.
+TEST(Conductor, resumes_along_what_is_kept_after_slow_solves) {
+  Deflation quick;
+  EXPECT_EQ(resumed_drive(quick, 6).order.operation, Operation::kResume);
+  Deflation slow;
+  Drive drive = resumed_drive(slow, 9);
+  ASSERT_EQ(drive.order.operation, Operation::kResumeDeflated);
+  EXPECT_EQ(drive.order.index, 0);
+  ASSERT_EQ(drive.next(kDeflatedReport).operation, Operation::kIterateDeflated);
+  EXPECT_EQ(drive.order.flags, kRestart);
+  EXPECT_EQ(drive.order.along, (std::array<float, wire::kKeptMax>{2}));
+}
+
+/// h = 2 along the one change: (r, p) = -6 + 2 x 1, (q, p) = 22 + 2 x (4 - 1).
+TEST(Conductor, completes_products_along_what_is_kept) {
+  Deflation deflation;
+  Drive drive = resumed_drive(deflation, 9);
+  drive.next(kDeflatedReport);
+  Report report = iteration_report(100, {-6, 22, 0});
+  report.along = {1};
+  ASSERT_EQ(drive.next(report).operation, Operation::kIterateDeflated);
+  EXPECT_EQ(drive.order.flags, 0);
+  EXPECT_FLOAT_EQ(drive.order.reals[1], -4.F / 28);
+}
+
+/// What is probably the last iteration brings corners and the worst connection, so that nothing is
+/// left to ask; also where nothing is kept that it could go along.
+TEST(Conductor, the_last_iteration_closes_the_equilibrium) {
+  for (const std::uint32_t iterations : {6U, 9U}) {
+    Deflation deflation;
+    Drive drive = resumed_drive(deflation, iterations, false);
+    ASSERT_EQ(drive.next(standing_report()).operation,
+              iterations > 6 ? Operation::kIterateDeflated : Operation::kIterate);
+    ASSERT_NE(drive.next(iteration_report(1, {-4, 28, 0})).operation, Operation::kIterateLast);
+    ASSERT_EQ(drive.next(iteration_report(1e-2F, {-4, 28, 0})).operation, Operation::kIterateLast);
+    Report last = standing_report();
+    last.reals = {1e-6F, 0.75F};
+    last.cell = {4, 5, 6};
+    last.direction = base::Direction::kMinusY;
+    drive.next(last);
+    drive.expect_finished(Verdict::kSafe, Reason::kHolds);
+    EXPECT_EQ(drive.order.answer.load_ratio_max, 0.75F);
+    EXPECT_EQ(drive.order.answer.worst_cell, (base::Cell{4, 5, 6}));
+    EXPECT_EQ(drive.order.answer.worst_direction, base::Direction::kMinusY);
+  }
 }
 
 }  // namespace

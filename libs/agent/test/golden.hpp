@@ -13,7 +13,7 @@
 namespace holdfast::agent::test {
 
 /// By operation, from 1.
-inline constexpr std::array<std::string_view, 28> kGoldenOrders = {
+inline constexpr std::array<std::string_view, 31> kGoldenOrders = {
     "05 01 02 01 00 00 fe ff ff 03 00 00",
     "05 02 01 00 02 00 04 00 08 00 10 00 20 00 00 00 00 00",
     "05 03 c0 bd f0 40 42 0f 00 00 00",
@@ -35,16 +35,21 @@ inline constexpr std::array<std::string_view, 28> kGoldenOrders = {
     "05 13 06 03 00 00 00 00 3f 00 00 7a 44",
     "05 14 01 01 00 00 fe ff ff 03 00 00",
     "05 15 47 01 00 00 fe ff ff 03 00 00",
-    "05 16 5a 00 00 00 00 00 3f 00 00 7a 44 1d 00 00 00 fd ff ff ff 05 00 00 00 01 02 04 08 10",
+    "05 16 5a 02 00 00 00 00 00 3f 00 00 7a 44 1d 00 00 00 fd ff ff ff 05 00 00 00 01 02 04 08 10",
     "05 17",
     "05 18 01 04 00 01 00 00 fe ff ff 03 00 00 4a 41 01 00",
     "05 19 03 02 00 00 02 02 00 00 c0 3f 01 00 00 fe ff ff 03 00 00 05",
     "05 1a",
     "05 1b 03 01 00 00 fe ff ff 03 00 00 04 00 00 05 00 00 06 00 00 02 00 00 00 80 3e "
     "00 00 00 3f 00 00 00 40",
-    "05 1c 00 ef cd ab 89"};
+    "05 1c 00 ef cd ab 89",
+    "05 1d 1e 04 2c 01 00 00 00 3f 00 00 7a 44 1d 00 00 00 fd ff ff ff 05 00 00 00 01 02 04 08 10",
+    "05 1e 14 2c 01 00 00 80 3e 00 00 00 bf 00 00 80 be 00 00 80 3f 00 00 00 c0 00 00 00 3f "
+    "00 00 c0 3f",
+    "05 1f 01 07 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 80 3e 00 00 80 bf 00 00 00 00 "
+    "00 00 40 40"};
 
-inline constexpr std::array<std::string_view, 28> kGoldenReports = {
+inline constexpr std::array<std::string_view, 31> kGoldenReports = {
     "06 01 21 00 01 01 00 00 fe ff ff 03 00 00",
     "06 02 87",
     "06 03 1d 00 00 00 3a 00 00 00 fd ff ff ff ff ff ff ff 05 00 00 00 00 00 00 00 07 00 00 00 00 "
@@ -77,7 +82,15 @@ inline constexpr std::array<std::string_view, 28> kGoldenReports = {
     "06 1a 01 00 00 fe ff ff 03 00 00 04 00 00 05 00 00 06 00 00 02 00 00 00 05 00 00 00 00 00 00 "
     "00 00 00 c0 3f 00 00 00 40 03",
     "06 1b 1d 00 00 00 02 00 00 00",
-    "06 1c 02 00 00 00 ef cd ab 89"};
+    "06 1c 02 00 00 00 ef cd ab 89",
+    "06 1d 87 01 01 00 00 00 ff ff ff ff 01 ff ff ff 03 00 00 00 00 00 80 3f 00 00 00 c0 "
+    "00 00 00 3f 00 00 80 3e 00 00 80 3f 00 00 00 3f 00 00 00 40 00 00 80 be 00 00 00 00 "
+    "00 00 40 40 00 00 c0 3f 00 00 80 bf 00 00 80 3e 00 00 80 40",
+    "06 1e 00 00 80 3e 00 00 00 3f 03 00 ef cd ab 89 01 00 00 80 3f 00 00 80 30 00 00 80 be "
+    "00 00 00 00 00 00 40 40 00 00 00 00 00 00 80 3f 00 00 00 c0 00 00 00 3f 00 00 80 3e",
+    "06 1f 00 00 80 3e 00 00 c0 3f 00 00 ef cd ab 89 08 00 00 80 3f 00 00 80 30 00 00 80 be "
+    "00 00 00 00 00 00 40 40 00 00 00 00 00 00 c0 3f 00 00 80 bf 00 00 00 00 00 00 00 40 "
+    "02 01 00 00 ff ff ff 00 00 00 fd ff ff 01 00 00 00 00 00 01 00 00 fe ff ff 03 00 00 94"};
 
 /// Types 7, 8, 9, 11 to 15 and 20, label 5, with the reals 1, -2, 0.5, 0.25, -1, 1.5.
 inline constexpr std::array<std::string_view, 9> kGoldenVectors = {

@@ -6,6 +6,7 @@
 
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include "golden.hpp"
 #include "holdfast/agent/messages.hpp"
@@ -109,6 +110,24 @@ const Limit kLimits[] = {
     {kGoldenReports[24], 2, is_flags<1>},     // stage
     {kGoldenOrders[26], 2, is_flags<7>},      // next
     {kGoldenOrders[27], 2, is_flags<3>},      // seek
+    {kGoldenOrders[21], 2, is_flags<0x5e>},   // resume
+    {kGoldenOrders[21], 3, is_within<0, 4>},  // in whose place the last change is kept, or nowhere
+    {kGoldenOrders[21], 26, is_flags<0x3f>},  // masks, the first ...
+    {kGoldenOrders[21], 30, is_flags<0x3f>},  // ... and the last
+    {kGoldenOrders[28], 2, is_flags<0x5e>},   // resume deflated
+    {kGoldenOrders[28], 3, is_within<0, 4>},
+    {kGoldenOrders[28], 26, is_flags<0x3f>},
+    {kGoldenOrders[28], 30, is_flags<0x3f>},
+    {kGoldenOrders[29], 2, is_flags<23>},     // iterate deflated: no clusters, no stand-ins
+    {kGoldenOrders[30], 2, is_flags<23>},     // iterate last
+    {kGoldenReports[21], 2, is_flags<0x9f>},  // resume
+    {kGoldenReports[21], 3, is_within<0, 2>},
+    {kGoldenReports[28], 2, is_flags<0x9f>},  // resume deflated
+    {kGoldenReports[28], 3, is_within<0, 2>},
+    {kGoldenReports[29], 16, is_flags<25>},  // iterate deflated
+    {kGoldenReports[30], 16, is_flags<25>},  // iterate last
+    {kGoldenReports[30], 57, [](unsigned v) { return v <= 2 || v == 4; }},
+    {kGoldenReports[30], 85, is_connection<15>},
     {kGoldenVectors[8], 1, is_within<0, 6>},  // reach
     {kGoldenParts[0], 1, is_within<0, 42>},   // cells up
     {kGoldenParts[1], 1, is_within<0, 42>}};  // cells down
@@ -145,6 +164,18 @@ TEST(Legal, exchanges_are_bounded) {
   EXPECT_TRUE(is_legal(from_hex("05 05 06 a0 0f 00 00 00 3f 00 00 7a 44")));
   EXPECT_FALSE(is_legal(from_hex("05 05 06 a1 0f 00 00 00 3f 00 00 7a 44")));
   EXPECT_FALSE(is_legal(from_hex("05 13 06 a1 0f 00 00 00 3f 00 00 7a 44")));
+  // The degrees of iterations, and of what begins with one.
+  for (const auto& [text, offset] : {std::pair<std::string_view, std::size_t>{kGoldenOrders[21], 4},
+                                     {kGoldenOrders[28], 4},
+                                     {kGoldenOrders[29], 3},
+                                     {kGoldenOrders[30], 3}}) {
+    auto message = from_hex(text);
+    message[offset] = 0xa0;
+    message[offset + 1] = 0x0f;
+    EXPECT_TRUE(is_legal(message)) << text;
+    message[offset] = 0xa1;
+    EXPECT_FALSE(is_legal(message)) << text;
+  }
   EXPECT_TRUE(is_legal(from_hex("05 0a 00 10")));
   EXPECT_FALSE(is_legal(from_hex("05 0a 01 10")));
   EXPECT_FALSE(is_legal(from_hex("05 0a 00 00")));
@@ -182,6 +213,40 @@ TEST(Legal, faces_are_those_of_the_lattice) {
     EXPECT_EQ(is_legal(plan("ff 0f"), count), count == 12);
     EXPECT_FALSE(is_legal(plan("00 10"), count));
   }
+}
+
+/// How far to move along a change, and sums of what is kept: all reals, from the first byte to the
+/// last, so the largest message too.
+TEST(Legal, sums_along_what_is_kept_may_be_anything) {
+  struct Reals {
+    std::string_view message;
+    std::size_t first = 0;
+    std::size_t bytes = 0;
+  };
+
+  for (const Reals& reals : {Reals{kGoldenOrders[29], 17, 16}, Reals{kGoldenOrders[30], 17, 16},
+                             Reals{kGoldenReports[28], 20, 56}, Reals{kGoldenReports[29], 41, 16},
+                             Reals{kGoldenReports[30], 41, 16}}) {
+    auto message = from_hex(reals.message);
+    for (std::size_t i = 0; i < reals.bytes; ++i) {
+      message[reals.first + i] = 0xff;
+    }
+    EXPECT_TRUE(is_legal(message)) << reals.message;
+  }
+}
+
+/// The worst connection of the last iteration is one of the lattice, as that of `loads`.
+TEST(Legal, the_last_iteration_tells_of_a_connection) {
+  auto message = from_hex(kGoldenReports[30]);
+  for (const int count : {6, 8, 12}) {
+    for (unsigned face = 0; face <= 15; ++face) {
+      message[85] = static_cast<std::uint8_t>(0xf0U | face);
+      EXPECT_EQ(is_legal(message, count), face < static_cast<unsigned>(count)) << face;
+    }
+  }
+  message = from_hex(kGoldenReports[30]);
+  message[78] = 0x10;  // Its cell: 0x100001 is more than 1,000,000.
+  EXPECT_FALSE(is_legal(message));
 }
 
 TEST(Legal, rounds_have_a_number) {

@@ -7,6 +7,7 @@
 
 #include <string_view>
 
+#include "golden.hpp"
 #include "tampered_network.hpp"
 
 namespace holdfast::agent {
@@ -68,6 +69,26 @@ TEST(OneSweepOnly, refuses_parts_of_displacements) {
   for (const std::string_view wrong :
        {"08 40 00 00 80 3f 00 00 00 c0 00 00 00 3f 00 00 80 3e 00 00 80 bf 00 00 c0 3f",
         "08 80 00 00 80 3f 00 00 00 c0 00 00 00 3f 00 00 80 3e 00 00 80 bf 00 00 c0 3f"}) {
+    const Outcome outcome = outcome_of(wrong);
+    EXPECT_GT(outcome.refused_count, 0) << wrong;
+    EXPECT_EQ(outcome.verdict, Verdict::kUndecided) << wrong;
+  }
+}
+
+/// What renews a verdict it does not have, nor, as its messages have 41 bytes at most, room for
+/// what is reported along changes that are kept: such bytes are no message.
+TEST(OneSweepOnly, refuses_what_needs_kept_changes) {
+  static_assert(wire::kMessageBytesMax == 41);
+  for (const wire::Operation operation :
+       {wire::Operation::kResumeDeflated, wire::Operation::kIterateDeflated,
+        wire::Operation::kIterateLast}) {
+    EXPECT_EQ(wire::message_bytes(6, static_cast<std::uint8_t>(operation)), 0);
+  }
+  for (const wire::Operation operation :
+       {wire::Operation::kResume, wire::Operation::kResumeDeflated,
+        wire::Operation::kIterateDeflated, wire::Operation::kIterateLast}) {
+    const std::string_view wrong = kGoldenOrders[static_cast<std::size_t>(operation) - 1];
+    EXPECT_FALSE(is_legal(from_hex(wrong))) << wrong;
     const Outcome outcome = outcome_of(wrong);
     EXPECT_GT(outcome.refused_count, 0) << wrong;
     EXPECT_EQ(outcome.verdict, Verdict::kUndecided) << wrong;

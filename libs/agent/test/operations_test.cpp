@@ -49,6 +49,10 @@ TEST(Operations, exchange_as_often_as_the_document_says) {
   EXPECT_EQ(counts_of(Operation::kTreeIterate, 0, 0), (Counts{2, 0}));
   EXPECT_EQ(counts_of(Operation::kClusters), (Counts{1, kDegree}));
   EXPECT_EQ(counts_of(Operation::kResume), (Counts{2, kDegree}));
+  EXPECT_EQ(counts_of(Operation::kResumeDeflated), (Counts{2 + 4, kDegree}));
+  EXPECT_EQ(counts_of(Operation::kIterateDeflated, kRestart), (Counts{2, kDegree}));
+  EXPECT_EQ(counts_of(Operation::kIterateLast, kKeepStates), (Counts{2, kDegree}));
+  EXPECT_EQ(counts_of(Operation::kIterateLast, 0, 0), (Counts{2, 0}));
 }
 
 TEST(Operations, exchange_nothing_where_the_document_has_a_dash) {

@@ -67,6 +67,9 @@ Order random_order(Operation operation, base::Rng& rng) {
     order.set_far_cell(random_cell(rng));
   }
   order.reals = {exact_real(rng), exact_real(rng), exact_real(rng)};
+  for (float& real : order.along) {
+    real = exact_real(rng);
+  }
   order.answer = {.verdict = static_cast<Verdict>(rng.below(5)),
                   .reason = static_cast<Reason>(rng.below(12)),
                   .load_ratio_max = exact_real(rng),
@@ -110,6 +113,12 @@ Report random_report(Operation operation, base::Rng& rng) {
   for (double& product : report.products) {
     product = static_cast<double>(exact_real(rng));
   }
+  for (float& real : report.along) {
+    real = exact_real(rng);
+  }
+  for (float& real : report.energies) {
+    real = exact_real(rng);
+  }
   if (operation == Operation::kStart || operation == Operation::kGradient) {
     report.reals[2] = static_cast<float>(rng.below(16)) / 8;  // Seven digits of fraction hold it.
   }
@@ -150,7 +159,7 @@ Report merged(Operation operation, Report into, const Report& from) {
     into.feet = feet_check().merge(into.feet, from.feet);
     return into;
   }
-  if (operation == Operation::kResume) {
+  if (operation == Operation::kResume || operation == Operation::kResumeDeflated) {
     into.feet = feet_check().merge(into.feet, from.feet);
   }
   merge(operation, into, from);
@@ -183,33 +192,34 @@ TEST(Order, every_report_comes_back) {
   }
 }
 
+Order there_and_back(Operation operation, Order& sent, base::Rng& rng) {
+  sent = random_order(operation, rng);
+  return decode_order(encode(sent).bytes());
+}
+
 /// Field by field, for what bytes alone would not tell: that decoding puts them where they were.
 TEST(Order, fields_come_back_where_they_were) {
   base::Rng rng(3);
-  const auto there_and_back = [&](Operation operation, Order& sent) {
-    sent = random_order(operation, rng);
-    return decode_order(encode(sent).bytes());
-  };
   Order sent;
-  Order back = there_and_back(Operation::kPlan, sent);
+  Order back = there_and_back(Operation::kPlan, sent, rng);
   EXPECT_EQ(back.index, sent.index);
   EXPECT_EQ(back.cell, sent.cell);
-  back = there_and_back(Operation::kForget, sent);
+  back = there_and_back(Operation::kForget, sent, rng);
   EXPECT_EQ(back.flags, sent.flags);
   EXPECT_EQ(back.cell, sent.cell);
-  back = there_and_back(Operation::kHosts, sent);
+  back = there_and_back(Operation::kHosts, sent, rng);
   EXPECT_EQ(back.masks, sent.masks);
-  back = there_and_back(Operation::kAngles, sent);
+  back = there_and_back(Operation::kAngles, sent, rng);
   EXPECT_EQ(back.mass, sent.mass);
   EXPECT_EQ(back.moment, sent.moment);
-  back = there_and_back(Operation::kSlope, sent);
+  back = there_and_back(Operation::kSlope, sent, rng);
   EXPECT_EQ(back.flags, sent.flags);
   EXPECT_EQ(back.reals, (std::array<float, 3>{sent.reals[0], sent.reals[1], 0}));
-  back = there_and_back(Operation::kIterate, sent);
+  back = there_and_back(Operation::kIterate, sent, rng);
   EXPECT_EQ(back.flags, sent.flags);
   EXPECT_EQ(back.count, sent.count);
   EXPECT_EQ(back.reals, sent.reals);
-  back = there_and_back(Operation::kVerdict, sent);
+  back = there_and_back(Operation::kVerdict, sent, rng);
   EXPECT_EQ(back.answer.verdict, sent.answer.verdict);
   EXPECT_EQ(back.answer.reason, sent.answer.reason);
   EXPECT_EQ(back.answer.load_ratio_max, sent.answer.load_ratio_max);
@@ -228,8 +238,45 @@ TEST(Order, fields_come_back_where_they_were) {
   EXPECT_EQ(low_back.extent, low.extent);
 }
 
-/// Corner sets are left out of associativity: of many corners on a line any two may be kept. What
-/// kClose has besides is merged as that of kLoads.
+TEST(Order, fields_of_what_is_kept_come_back_where_they_were) {
+  base::Rng rng(5);
+  Order sent;
+  Order back;
+  for (const Operation operation : {Operation::kResume, Operation::kResumeDeflated}) {
+    back = there_and_back(operation, sent, rng);
+    EXPECT_EQ(back.flags, sent.flags);
+    EXPECT_EQ(back.index, sent.index);
+    EXPECT_EQ(back.count, sent.count);
+    EXPECT_EQ(back.reals, (std::array<float, 3>{sent.reals[0], sent.reals[1], 0}));
+    EXPECT_EQ(back.mass, sent.mass);
+    EXPECT_EQ(back.moment, sent.moment);
+    EXPECT_EQ(back.along, decltype(back.along){});
+  }
+  for (const Operation operation : {Operation::kIterateDeflated, Operation::kIterateLast}) {
+    back = there_and_back(operation, sent, rng);
+    EXPECT_EQ(back.flags, sent.flags);
+    EXPECT_EQ(back.count, sent.count);
+    EXPECT_EQ(back.reals, sent.reals);
+    EXPECT_EQ(back.along, sent.along);
+  }
+  const Report resumed = random_report(Operation::kResumeDeflated, rng);
+  const Report resumed_back = through_wire(Operation::kResumeDeflated, resumed);
+  EXPECT_EQ(resumed_back.along, resumed.along);
+  EXPECT_EQ(resumed_back.energies, resumed.energies);
+  const Report last = random_report(Operation::kIterateLast, rng);
+  const Report last_back = through_wire(Operation::kIterateLast, last);
+  EXPECT_EQ(last_back.reals[1], last.reals[1]);
+  EXPECT_EQ(last_back.number, last.number);
+  EXPECT_EQ(last_back.products, last.products);
+  EXPECT_EQ(last_back.along, last.along);
+  EXPECT_EQ(last_back.energies, decltype(last.energies){});
+  EXPECT_EQ(last_back.corners.count, last.corners.count);
+  EXPECT_EQ(last_back.cell, last.cell);
+  EXPECT_EQ(last_back.direction, last.direction);
+  EXPECT_EQ(last_back.remarks, last.remarks);
+}
+
+/// Corner sets are left out of associativity: of many corners on a line any two may be kept.
 TEST(Order, merging_is_commutative_and_associative) {
   base::Rng rng(4);
   for (int i = 1; i <= wire::kOperationCount; ++i) {
@@ -238,17 +285,16 @@ TEST(Order, merging_is_commutative_and_associative) {
       const Report a = through_wire(operation, random_report(operation, rng));
       const Report b = through_wire(operation, random_report(operation, rng));
       const Report c = through_wire(operation, random_report(operation, rng));
-      const Report left = merged(operation, merged(operation, a, b), c);
-      const Report right = merged(operation, a, merged(operation, b, c));
-      if (operation == Operation::kCorners || operation == Operation::kClose) {
-        EXPECT_EQ(left.corners.stable, right.corners.stable);
-        EXPECT_EQ(left.corners.count, right.corners.count);
-        continue;
-      }
+      Report left = merged(operation, merged(operation, a, b), c);
+      Report right = merged(operation, a, merged(operation, b, c));
+      EXPECT_EQ(left.corners.stable, right.corners.stable);
+      EXPECT_EQ(left.corners.count, right.corners.count);
+      left.corners = right.corners = {};
       EXPECT_EQ(text_of(operation, left), text_of(operation, right)) << i;
-      EXPECT_EQ(text_of(operation, merged(operation, a, b)),
-                text_of(operation, merged(operation, b, a)))
-          << i;
+      left = merged(operation, a, b);
+      right = merged(operation, b, a);
+      left.corners = right.corners = {};
+      EXPECT_EQ(text_of(operation, left), text_of(operation, right)) << i;
     }
   }
 }
@@ -328,6 +374,91 @@ TEST(Order, of_equal_loads_the_first_cell_is_the_worst) {
   }
 }
 
+/// What an iteration adds up, and of the largest load ratio, which it reports anyway, the place.
+TEST(Order, the_last_iteration_keeps_the_place_of_the_larger_ratio) {
+  const auto report_of = [](float ratio, const base::Cell& cell, base::Direction direction) {
+    Report report;
+    report.reals = {0.125F, ratio};
+    report.cell = cell;
+    report.direction = direction;
+    return report;
+  };
+  // The bound on the error, which comes before it, is of no account.
+  Report low = report_of(0.5F, {-9, 0, 0}, base::Direction::kPlusZ);
+  low.reals[0] = 8;
+  const Report first = report_of(1.25F, {0, 0, 0}, base::Direction::kMinusX);
+  const Report second = report_of(1.25F, {0, 0, 1}, base::Direction::kPlusY);
+  const auto merged_last = [](const Report& a, const Report& b) {
+    return merged(Operation::kIterateLast, a, b);
+  };
+  for (const auto& [a, b] : {std::pair{first, second}, {second, first}}) {
+    for (const Report& all :
+         {merged_last(merged_last(low, a), b), merged_last(a, merged_last(b, low))}) {
+      EXPECT_EQ(all.error(), 8.25F);
+      EXPECT_EQ(all.load_ratio_max(), 1.25F);
+      EXPECT_EQ(all.cell, first.cell);
+      EXPECT_EQ(all.direction, first.direction);
+    }
+  }
+  EXPECT_EQ(merged_last(low, second).cell, second.cell);
+  EXPECT_EQ(merged_last(second, low).cell, second.cell);
+  // Without a connection there is no place.
+  const Report none = report_of(kNoLoadRatio, {-99, 0, 0}, base::Direction::kPlusX);
+  EXPECT_EQ(merged_last(none, low).cell, low.cell);
+  EXPECT_EQ(merged_last(low, none).cell, low.cell);
+}
+
+TEST(Order, the_last_iteration_is_an_iteration_with_all_that_closes) {
+  const auto corner_at = [](std::int32_t x) {
+    return mechanics::SupportCorners{.count = 1, .corners = {{x, 1, 0}}};
+  };
+  const Report a = {.flags = kAnyTilting,
+                    .extent = 2,
+                    .number = 5,
+                    .reals = {0.25F, 2},
+                    .products = {1, 2, -3},
+                    .corners = corner_at(-1),
+                    .along = {1, 2, 3, 4}};
+  const Report b = {.flags = kMayPull,
+                    .extent = 3,
+                    .number = 7,
+                    .reals = {0.5F, 1},
+                    .products = {4, -5, 6},
+                    .corners = corner_at(3),
+                    .along = {-1, 0.5F, 8, 0.25F}};
+  const Report sum = merged(Operation::kIterateLast, a, b);
+  EXPECT_EQ(sum.flags, kAnyTilting | kMayPull);
+  EXPECT_EQ(sum.changed_count(), 5);
+  EXPECT_EQ(sum.states_hash(), 12U);
+  EXPECT_EQ(sum.error(), 0.75F);
+  EXPECT_EQ(sum.load_ratio_max(), 2.0F);
+  EXPECT_EQ(sum.products, (std::array<double, 3>{5, -3, 3}));
+  EXPECT_EQ(sum.along, (std::array<float, 4>{0, 2.5F, 11, 4.25F}));
+  EXPECT_EQ(sum.corners.count, 2);
+  // To a kClose the ratio is the first of its reals.
+  EXPECT_EQ(worst_of(sum).worst_load_ratio(), 2.0F);
+  EXPECT_EQ(worst_of(sum).corners.count, 2);
+}
+
+TEST(Order, sums_along_what_is_kept_add_up) {
+  Report a;
+  Report b;
+  for (std::size_t i = 0; i < a.energies.size(); ++i) {
+    a.energies[i] = static_cast<float>(i);
+    b.energies[i] = 0.5F;
+  }
+  a.along = {1, 2, 3, 4};
+  b.along = {8, 8, -8, 8};
+  for (const Operation operation :
+       {Operation::kResumeDeflated, Operation::kIterateDeflated, Operation::kIterateLast}) {
+    EXPECT_EQ(merged(operation, a, b).along, (std::array<float, 4>{9, 10, -5, 12}));
+  }
+  const Report sum = merged(Operation::kResumeDeflated, a, b);
+  for (std::size_t i = 0; i < sum.energies.size(); ++i) {
+    EXPECT_EQ(sum.energies[i], static_cast<float>(i) + 0.5F);
+  }
+}
+
 TEST(Order, counts_of_hold_and_verdict_add_up) {
   const Report hold =
       merged(Operation::kHold, {.count = 2, .number = 1}, {.count = 3, .number = 4});
@@ -370,6 +501,8 @@ TEST(Order, what_is_not_a_number_survives) {
     const Report bad_load = {.reals = {kNan}};
     EXPECT_TRUE(std::isnan(merged(Operation::kLoads, bad_load, fine).reals[0])) << other;
     EXPECT_TRUE(std::isnan(merged(Operation::kLoads, fine, bad_load).reals[0])) << other;
+    EXPECT_TRUE(std::isnan(merged(Operation::kIterateLast, bad_ratio, fine).reals[1])) << other;
+    EXPECT_TRUE(std::isnan(merged(Operation::kIterateLast, fine, bad_ratio).reals[1])) << other;
   }
   EXPECT_EQ(merged(Operation::kLow, one, one).reals[1], 1.0F);
 }
@@ -378,11 +511,12 @@ TEST(Order, what_is_not_a_number_survives) {
 TEST(Order, remarks_go_with_the_worst_connection_or_are_of_any) {
   const auto report_of = [](float ratio, std::uint8_t remarks) {
     Report report;
-    report.reals[0] = ratio;
+    report.reals = {ratio, ratio};
     report.remarks = remarks;
     return report;
   };
-  for (const Operation operation : {Operation::kLoads, Operation::kClose}) {
+  for (const Operation operation :
+       {Operation::kLoads, Operation::kClose, Operation::kIterateLast}) {
     Report sum = report_of(0.5F, 1);
     merge(operation, sum, report_of(0.75F, 2 | kFacetSlips));
     merge(operation, sum, report_of(0.25F, 3 | kGapOpens));

@@ -43,13 +43,33 @@ constexpr base::Cell kCell = {1, -2, 3};
 /// Group 1 turns a corner, +x and then down, and keeps the link below.
 constexpr std::int32_t kWordBits = 2 + 8 * 1 + 64 * 5 + 1024 * 0 + 16384 * 5;
 
+/// The last three operations, along changes that are kept.
+const std::array<Order, 3> kDeflatedOrders = {
+    {{.operation = Operation::kResumeDeflated,
+      .index = wire::kKeptMax,
+      .flags = kOneSweep | kWithIterations | kKeepsMotion | kRests,
+      .count = 300,
+      .masks = {1, 2, 4, 8, 16},
+      .mass = 29,
+      .moment = {-3, 5},
+      .reals = {0.5F, 1000}},
+     {.operation = Operation::kIterateDeflated,
+      .flags = kKeepStates | kHoldPlanned,
+      .count = 300,
+      .reals = {0.25F, -0.5F, -0.25F},
+      .along = {1, -2, 0.5F, 1.5F}},
+     {.operation = Operation::kIterateLast,
+      .flags = kRestart,
+      .count = 7,
+      .along = {0.25F, -1, 0, 3}}}};
+
 TEST(Wire, orders_are_these_bytes) {
   const Answer answer = {.verdict = Verdict::kOverload,
                          .reason = Reason::kBreaks,
                          .load_ratio_max = 1.5F,
                          .worst_cell = kCell,
                          .worst_direction = base::Direction::kMinusZ};
-  const std::vector<Order> orders = {
+  std::vector<Order> orders = {
       {.operation = Operation::kPlan, .index = 2, .cell = kCell},
       {.operation = Operation::kHosts, .masks = {1, 2, 4, 8, 16, 32}},
       {.operation = Operation::kMass, .cell = {-1'000'000, 1'000'000, 0}},
@@ -83,6 +103,7 @@ TEST(Wire, orders_are_these_bytes) {
        .flags = kIsFulfilled | kIsEnded | kIsGrown | kKeepsFactors,
        .cell = kCell},
       {.operation = Operation::kResume,
+       .index = 2,
        .flags = kOneSweep | kKeepsMotion | kRests | kKeepsFactors,
        .masks = {1, 2, 4, 8, 16},
        .mass = 29,
@@ -100,17 +121,41 @@ TEST(Wire, orders_are_these_bytes) {
        .moment = {5, 6},
        .reals = {0.25F, 0.5F, 2}},
       {.operation = Operation::kSeek, .mass = static_cast<std::int32_t>(0x89abcdefU)}};
+  orders.insert(orders.end(), kDeflatedOrders.begin(), kDeflatedOrders.end());
   ASSERT_EQ(orders.size(), kGoldenOrders.size());
   for (std::size_t i = 0; i < orders.size(); ++i) {
     EXPECT_EQ(order_text(orders[i]), kGoldenOrders[i]);
   }
 }
 
+std::array<Report, 3> deflated_reports(const SafeCorners& feet,
+                                       const mechanics::SupportCorners& corners) {
+  return {{{.mask = 0x87,
+            .feet = feet,
+            .along = {1, -2, 0.5F, 0.25F},
+            .energies = {1, 0.5F, 2, -0.25F, 0, 3, 1.5F, -1, 0.25F, 4}},
+           {.flags = kAnyTilting,
+            .extent = 3,
+            .number = 0x89abcdef,
+            .reals = {0.25F, 0.5F},
+            .products = {1 + 0x1p-30, -0.25, 3},
+            .along = {1, -2, 0.5F, 0.25F}},
+           {.flags = kMayPull,
+            .number = 0x89abcdef,
+            .reals = {0.25F, 1.5F},
+            .products = {1 + 0x1p-30, -0.25, 3},
+            .cell = kCell,
+            .direction = base::Direction::kPlusZ,
+            .remarks = 1 | kFacetSlips,
+            .corners = corners,
+            .along = {1.5F, -1, 0, 2}}}};
+}
+
 TEST(Wire, reports_are_these_bytes) {
   const SafeCorners feet = {
       .range = mechanics::SafeRange::kArc, .first = {1, -1}, .last = {-255, 3}};
   const mechanics::SupportCorners corners = {.count = 2, .corners = {{1, -1, 0}, {-3, 1, 0}}};
-  const std::vector<Report> reports = {
+  std::vector<Report> reports = {
       {.flags = kFound, .mask = 0x21, .cell = kCell},
       {.mask = 0x87},
       {.flags = kAnyFixed, .extent = 300, .count = 29, .number = 58, .moment = {-3, 5, 7}},
@@ -153,6 +198,8 @@ TEST(Wire, reports_are_these_bytes) {
       {.mask = 3, .count = 2, .number = 4, .moment = {5, 5, 6}, .reals = {1.5F, 2}, .cell = kCell},
       {.count = 29, .number = 2},
       {.count = 2, .number = 0x89abcdef}};
+  const auto deflated = deflated_reports(feet, corners);
+  reports.insert(reports.end(), deflated.begin(), deflated.end());
   ASSERT_EQ(reports.size(), kGoldenReports.size());
   for (std::size_t i = 0; i < reports.size(); ++i) {
     EXPECT_EQ(report_text(static_cast<Operation>(i + 1), reports[i]), kGoldenReports[i]);

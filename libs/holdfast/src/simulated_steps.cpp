@@ -128,6 +128,7 @@ sim::SimulationOptions options_of(const sim::SimulationOptions& options,
                                   const io::Sequence& sequence, std::size_t count, bool keeps) {
   sim::SimulationOptions mine = options;
   mine.keeps_answers = keeps;
+  mine.deflates = keeps;
   mine.tells_planned = false;
   mine.plans_many = std::ranges::any_of(sequence.steps, [](const model::Step& step) {
     return step.attach.size() > std::size_t{agent::kPlannedMax};

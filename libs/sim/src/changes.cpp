@@ -85,6 +85,7 @@ Engine::Engine(const model::Robot& robot, SimulationOptions options)
                            !needs_environment(robot, options_.step_end),
              .has_stages = !options_.step.empty(),
              .judges_faces = options_.judges_faces,
+             .keeps_changes = options_.deflates && setup_.keeps_answers,
              .plans_many = plans_many(robot, options_),
              .step_end = options_.step_end}),
       pool_(options_.link.packet_bytes),

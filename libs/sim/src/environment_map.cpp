@@ -329,6 +329,9 @@ LentStore::LentStore(const model::Robot& robot, std::size_t module_count, Needs 
   if (needs.judges_faces) {
     faces_.resize(module_count);
   }
+  if (needs.keeps_changes) {
+    changes_.resize(module_count);
+  }
   if (needs.has_fronts) {
     fronts_ = std::make_unique<FrontStore>(module_count, needs.plans_many);
   }
@@ -353,8 +356,8 @@ LentStore::LentStore(const model::Robot& robot, std::size_t module_count, Needs 
     groups_[i] = std::unique_ptr<double[]>(new double[agent::MorePlanned::kGroupReals]);
     more_planned_[i].group = {groups_[i].get(), agent::MorePlanned::kGroupReals};
   }
-  const bool has_any =
-      needs.has_fronts || needs.has_stages || needs.judges_faces || has_map || needs.plans_many;
+  const bool has_any = needs.has_fronts || needs.has_stages || needs.judges_faces ||
+                       needs.keeps_changes || has_map || needs.plans_many;
   const bool has_more_faces = robot.lattice() != base::kCubic;
   more_faces_.resize(has_more_faces ? module_count : 0);
   for (agent::MoreFaces& more : more_faces_) {
@@ -370,7 +373,8 @@ LentStore::LentStore(const model::Robot& robot, std::size_t module_count, Needs 
                   .environment = has_map ? &map_->environment() : nullptr,
                   .faces = has_more_faces ? &more_faces_[i] : nullptr,
                   .planned = needs.plans_many ? &more_planned_[i] : nullptr,
-                  .across = across_.empty() ? nullptr : &across_[i]};
+                  .across = across_.empty() ? nullptr : &across_[i],
+                  .changes = needs.keeps_changes ? &changes_[i] : nullptr};
   }
 }
 

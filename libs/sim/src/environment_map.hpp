@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "front_store.hpp"
+#include "holdfast/agent/deflation.hpp"
 #include "holdfast/agent/free_faces.hpp"
 #include "holdfast/agent/workspace.hpp"
 #include "holdfast/mechanics/lattice_beam.hpp"
@@ -109,6 +110,7 @@ class LentStore {
     bool has_fronts = false;
     bool has_stages = false;
     bool judges_faces = false;
+    bool keeps_changes = false;
     bool plans_many = false;                 ///< More than agent::kPlannedMax planned modules.
     const model::Robot* step_end = nullptr;  ///< As of SimulationOptions.
   };
@@ -124,6 +126,7 @@ class LentStore {
   std::unique_ptr<FrontStore> fronts_;
   std::vector<agent::Stages> stages_;
   std::vector<agent::FreeFaces> faces_;
+  std::vector<agent::KeptChanges> changes_;
   std::unique_ptr<EnvironmentMap> map_;
   std::unique_ptr<EnvironmentMap> map_connected_;  ///< As a step leaves the robot.
   std::vector<agent::Surroundings> surroundings_;  ///< By module, then by node.

@@ -75,7 +75,7 @@
 /// most. Not re-entrant: one step at a time.
 namespace holdfast::agent {
 
-inline constexpr std::size_t kAgentBytesMax = 8704;
+inline constexpr std::size_t kAgentBytesMax = 9344;
 
 enum class EventKind : std::uint8_t {
   kStart,
@@ -219,7 +219,7 @@ class Agent {
   void welcome(Direction face);
   bool is_of_newcomer(const Join& join) const;
   void decline(Direction face, const Join& join);
-  void take_motion(Direction face, const base::Vec6<float>& motion);
+  void take_motion(Direction face, std::uint8_t label, const base::Vec6<float>& motion);
   void take_newcomer(Direction face, const Echo& echo);
   void go_on_with(const Order& order);
 

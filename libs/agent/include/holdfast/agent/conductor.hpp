@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 
+#include "holdfast/agent/deflation.hpp"
 #include "holdfast/agent/energy_bound.hpp"
 #include "holdfast/agent/messages.hpp"
 #include "holdfast/agent/order.hpp"
@@ -62,6 +63,7 @@
 ///   word           another word: word | all are known: stage | they make no plan: verdict
 ///   stage          other connections are off: a new round | plan | all are judged: verdict
 ///   renew          another plan: renew | the same shape as before: verdict | resume | a new round
+///   iterate last   settled: verdict | as iterate
 ///   resume         topples, a planned module touches nothing: verdict | elimination: tree iterate
 ///                  | iterate
 ///
@@ -88,6 +90,7 @@ struct Effort {
 struct Lent {
   bool has_fronts = false;
   bool judges_faces = false;
+  Deflation* deflation = nullptr;  ///< Null: iterations are not deflated.
 };
 
 class Conductor {
@@ -179,6 +182,13 @@ class Conductor {
   Order leave_clusters(const Setup& setup);
   Order minimised_iteration(const Report& report);
   Order after_iteration(const Setup& setup, const Report& report);
+  // conductor_deflation.cpp
+  bool deflates() const;
+  void end_deflation();
+  bool is_last() const;
+  wire::Operation iterate() const;
+  void set_along(Order& iteration);
+  Report completed(const Report& report);
   Minimum minimum(const Report& report) const;
   double iteration_error(const Setup& setup, const Report& report, double bound);
   Order leave_fronts(const Setup& setup, bool has_no_room);
@@ -197,7 +207,7 @@ class Conductor {
   Order judge(const Setup& setup, const Report& report);
   Order judge_regularised(const Setup& setup, const Report& report);
   Order give_up(const Setup& setup);
-  Order settled(const Setup& setup);
+  Order settled(const Setup& setup, const Report* last = nullptr);
   Order after_corners(const Setup& setup, const Report& report);
   Order after_hold(const Report& report);
   Order after_loads(const Setup& setup, const Report& report);
@@ -341,6 +351,8 @@ class Conductor {
   double predicted_ = 0;            ///< Error expected after the last iteration.
   double older_square_ = 0;         ///< (p, q) of the older direction, or |q|^2.
   EnergyBound energy_bound_;
+  Deflation* deflation_ = nullptr;  ///< Lent; null: iterations are not deflated.
+  bool is_spoiled_ = false;         ///< The stiffness has changed while this solve went on.
   // Newton's method by the polynomial.
   bool is_newton_ = false;        ///< Contact states are kept until their forces are in balance.
   bool has_left_newton_ = false;  ///< It came to no end: never again.

@@ -95,7 +95,7 @@ class FreeFaces {
   /// Hops that are more than any.
   static constexpr std::uint16_t kFar = 0xff;
 
-  static constexpr int kRoomBytes = 4 * wire::kVectorBytes + wire::kMessageBytesMax;
+  static constexpr int kRoomBytes = 4 * wire::kVectorBytes + wire::kPlainBytesMax;
 
   static std::size_t at(base::Direction direction) { return static_cast<std::size_t>(direction); }
 

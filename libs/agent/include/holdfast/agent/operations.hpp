@@ -100,7 +100,7 @@ inline constexpr OperationInfo kOperations[] = {
      "forget a plan that has ended"},
     {wire::Operation::kRenew, "renew", 12, 40, Phase::kMass, {}, false, false,
      "a change after the verdict"},
-    {wire::Operation::kResume, "resume", 30, 20, Phase::kEquilibrium,
+    {wire::Operation::kResume, "resume", 31, 20, Phase::kEquilibrium,
      {.fixed = 2, .is_counted = true, .is_behind = true}, true, false,
      "hosts, safe angles, an equilibrium from what is kept"},
     {wire::Operation::kClose, "close", 2, 35, Phase::kModel, {}, false, false,
@@ -115,6 +115,18 @@ inline constexpr OperationInfo kOperations[] = {
      "where the next module may go"},
     {wire::Operation::kSeek, "seek", 7, 10, Phase::kEquilibrium, {}, false, false,
      "put a facet into another state"},
+    {wire::Operation::kResumeDeflated, "resume deflated", 31,
+     20 + 4 * (wire::kKeptMax + wire::kKeptPairs),
+     Phase::kEquilibrium, {.fixed = 2 + wire::kKeptMax, .is_counted = true, .is_behind = true},
+     true, false, "the same, and energies of what is kept"},
+    {wire::Operation::kIterateDeflated, "iterate deflated", 17 + 4 * wire::kKeptMax,
+     41 + 4 * wire::kKeptMax, Phase::kEquilibrium,
+     {.fixed = 2, .is_counted = true, .is_behind = true}, true, true,
+     "an iteration, and along what is kept"},
+    {wire::Operation::kIterateLast, "iterate last", 17 + 4 * wire::kKeptMax,
+     70 + 4 * wire::kKeptMax, Phase::kEquilibrium,
+     {.fixed = 2, .is_counted = true, .is_behind = true}, true, true,
+     "an iteration, corners, the worst connection"},
 };
 // clang-format on
 

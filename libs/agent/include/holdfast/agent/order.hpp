@@ -106,6 +106,10 @@ struct Order {
   std::array<std::int32_t, 2> moment{};  ///< The same: first moments in x and y, units times cells.
   std::array<float, 3> reals{};
   Answer answer = {};  ///< kVerdict; kStage: of the stage that was judged.
+#ifndef HOLDFAST_AGENT_STARTS_AFRESH
+  std::array<float, wire::kKeptMax>
+      along{};  ///< kIterateDeflated, kIterateLast: by kept change, how far.
+#endif
 
   // kBegin, kClusters, kResume
   constexpr float gamma() const { return reals[0]; }  ///< Share of weak springs in open facets.
@@ -222,6 +226,11 @@ struct Report {
 #endif
   SafeCorners feet = {};
   mechanics::SupportCorners corners = {};
+#ifndef HOLDFAST_AGENT_STARTS_AFRESH
+  /// The same, and kResumeDeflated: products of the residual with the changes that are kept.
+  std::array<float, wire::kKeptMax> along{};
+  std::array<float, wire::kKeptPairs> energies{};  ///< kResumeDeflated: w_i' K w_j
+#endif
 
   // kLow, kIterate, kTreeIterate; kJacobi has the first one only.
   constexpr float error() const { return reals[0]; }  ///< Bound on the error of load ratios.
@@ -337,6 +346,9 @@ inline Report decode_report(std::span<const std::uint8_t> message) {
   decode(message, report);
   return report;
 }
+
+/// Of the report of a kIterateLast what that of a kClose would say: corners, the worst connection.
+Report worst_of(const Report& last);
 
 /// The larger number; not a number wins, as it must not get lost.
 constexpr float larger(float a, float b) { return b <= a || a != a ? a : b; }

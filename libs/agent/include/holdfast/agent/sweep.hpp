@@ -126,6 +126,8 @@ class Sweep {
   bool is_good_hosts(const Workspace& ws, const Order& order) const;
   bool is_good_answer(const Workspace& ws, const Answer& answer) const;
   bool is_good_resume(const Workspace& ws, const Order& order) const;
+  bool is_good_from_kept(const Workspace& ws, const Order& order) const;
+  bool is_good_seek(const Workspace& ws, const Order& order) const;
   bool is_good_begin(const Workspace& ws, const Order& order) const;
   void begin_faces(Workspace& ws, const Order& order);
   void begin_method(Workspace& ws, const Order& order);

@@ -29,7 +29,16 @@ inline constexpr int kHeaderBytes = 2;
 inline constexpr int kChecksumBytes = 2;
 inline constexpr int kPacketBytesMin = 17;   ///< Blinky Blocks version 1
 inline constexpr int kPacketBytesMax = 228;  ///< Blinky Blocks version 2
-inline constexpr int kMessageBytesMax = 41;
+/// Changes of displacement that a module keeps (deflation.hpp), and pairs of them.
+inline constexpr int kKeptMax = 4;
+inline constexpr int kKeptPairs = kKeptMax * (kKeptMax + 1) / 2;
+/// The largest message but those about changes that are kept.
+inline constexpr int kPlainBytesMax = 41;
+#ifdef HOLDFAST_AGENT_STARTS_AFRESH
+inline constexpr int kMessageBytesMax = kPlainBytesMax;
+#else
+inline constexpr int kMessageBytesMax = 70 + 4 * kKeptMax;
+#endif
 inline constexpr int kVectorBytes = 26;  ///< Size of the messages with six reals.
 inline constexpr int kCellBytes = 9;
 
@@ -81,36 +90,39 @@ enum class MessageType : std::uint8_t {
 /// What an order asks for. Each has a body for the way down and one for the way up; operations.hpp
 /// has all that is known of them.
 enum class Operation : std::uint8_t {
-  kPlan = 1,     ///< Learn one planned cell, find the next.
-  kHosts,        ///< Which faces of planned modules touch; who emulates them.
-  kMass,         ///< Count, centre of mass, supports, extent.
-  kAngles,       ///< Safe angles of the simplified stability check.
-  kBegin,        ///< Start an equilibrium: law, weak spring.
-  kHigh,         ///< Move along the correction, exchange the leading part of the displacements.
-  kLow,          ///< Exchange the rest; residual, contact states, loads.
-  kStart,        ///< Start a linear solve for a correction.
-  kGradient,     ///< One iteration of conjugate gradients.
-  kJacobi,       ///< Some iterations of a Jacobi method, in lockstep.
-  kSlope,        ///< Slope of the energy along the correction.
-  kHold,         ///< Release open facets, hold pressed ones.
-  kCorners,      ///< Support corners of the model-based stability check.
-  kLoads,        ///< The worst connection.
-  kVerdict,      ///< The answer, for every module.
-  kFactor,       ///< Condense every branch: stiffness and load.
-  kIterate,      ///< One iteration of the polynomial: move, residual, sums.
-  kTreeIterate,  ///< One iteration of the elimination: move, residual.
-  kClusters,     ///< kBegin, and find rigid clusters.
-  kForget,       ///< A plan has ended; learn from the first one on.
-  kRenew,        ///< After a verdict: one plan more or less; count, centre of mass, extent.
-  kResume,       ///< kHosts, kAngles and kBegin (with kFactor) in one, from what is kept.
-  kClose,        ///< kCorners and kLoads in one.
-  kWord,         ///< Learn one word of a step, find the next.
-  kStage,        ///< Know the verdict on a stage of a step; the next stage, or scene of one.
-  kShape,        ///< Box, supports and largest load ratio of every subtree.
-  kNext,         ///< Where the next module may go: every free face judges itself.
-  kSeek,         ///< Contact states as they were found, one facet in another state.
+  kPlan = 1,         ///< Learn one planned cell, find the next.
+  kHosts,            ///< Which faces of planned modules touch; who emulates them.
+  kMass,             ///< Count, centre of mass, supports, extent.
+  kAngles,           ///< Safe angles of the simplified stability check.
+  kBegin,            ///< Start an equilibrium: law, weak spring.
+  kHigh,             ///< Move along the correction, exchange the leading part of the displacements.
+  kLow,              ///< Exchange the rest; residual, contact states, loads.
+  kStart,            ///< Start a linear solve for a correction.
+  kGradient,         ///< One iteration of conjugate gradients.
+  kJacobi,           ///< Some iterations of a Jacobi method, in lockstep.
+  kSlope,            ///< Slope of the energy along the correction.
+  kHold,             ///< Release open facets, hold pressed ones.
+  kCorners,          ///< Support corners of the model-based stability check.
+  kLoads,            ///< The worst connection.
+  kVerdict,          ///< The answer, for every module.
+  kFactor,           ///< Condense every branch: stiffness and load.
+  kIterate,          ///< One iteration of the polynomial: move, residual, sums.
+  kTreeIterate,      ///< One iteration of the elimination: move, residual.
+  kClusters,         ///< kBegin, and find rigid clusters.
+  kForget,           ///< A plan has ended; learn from the first one on.
+  kRenew,            ///< After a verdict: one plan more or less; count, centre of mass, extent.
+  kResume,           ///< kHosts, kAngles and kBegin (with kFactor) in one, from what is kept.
+  kClose,            ///< kCorners and kLoads in one.
+  kWord,             ///< Learn one word of a step, find the next.
+  kStage,            ///< Know the verdict on a stage of a step; the next stage, or scene of one.
+  kShape,            ///< Box, supports and largest load ratio of every subtree.
+  kNext,             ///< Where the next module may go: every free face judges itself.
+  kSeek,             ///< Contact states as they were found, one facet in another state.
+  kResumeDeflated,   ///< kResume, and the energies of the changes that modules keep.
+  kIterateDeflated,  ///< kIterate, and along those changes.
+  kIterateLast,      ///< kIterateDeflated and kClose in one: probably the last one.
 };
-inline constexpr int kOperationCount = static_cast<int>(Operation::kSeek);  ///< The last one.
+inline constexpr int kOperationCount = static_cast<int>(Operation::kIterateLast);
 
 /// Sizes of whole messages, type byte included; 0 for what is not a message. `second` is the byte
 /// after the type and matters for orders and reports only.

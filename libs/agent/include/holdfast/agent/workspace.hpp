@@ -28,6 +28,7 @@ struct Identity {
 };
 
 class FreeFaces;
+struct KeptChanges;
 
 /// What a module needs besides its own memory where its robot asks for it, lent by whoever runs it;
 /// not owned.
@@ -41,6 +42,7 @@ struct LentMemory {
   MoreFaces* faces = nullptr;                ///< Null: the module is a cube.
   MorePlanned* planned = nullptr;            ///< Null: kPlannedMax planned modules at most.
   AcrossLoads* across = nullptr;             ///< Null: Eq. (17) is the law of every connection.
+  KeptChanges* changes = nullptr;            ///< Null: iterations are not deflated (deflation.hpp).
 };
 
 /// What the parts of a module's program work on: the module's lines, its place in the tree, the
@@ -98,6 +100,9 @@ struct Workspace {
 
   /// Null where free faces are not judged.
   FreeFaces* free_faces() const { return lent == nullptr ? nullptr : lent->free_faces; }
+
+  /// Null where iterations are not deflated.
+  KeptChanges* kept_changes() const { return lent == nullptr ? nullptr : lent->changes; }
 
   /// What the beam at a face carries in its middle.
   MiddleLoad& middle(Direction face) {
