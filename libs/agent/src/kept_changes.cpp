@@ -43,6 +43,25 @@ void hear_change(Workspace& ws, Direction face, int change, const base::Vec6<flo
                   end_force(ws.setup.beams_float(), face, {}, theirs));
 }
 
+namespace {
+
+/// A module that has come has heard of its neighbours' changes: where it is in balance with them.
+void balance_changes(const Workspace& ws, KeptChanges& kept) {
+  Node node = ws.node(0);
+  for (int half = 0; half < 2; ++half) {
+    form_diagonal(node, ws.setup, ws.contact, kept.heard, half);
+  }
+  for (int half = 0; half < 2; ++half) {
+    factor_diagonal(node, half);
+  }
+  for (base::Vec6<float>& change : kept.changes) {
+    change = node.is_fixed ? base::Vec6<float>{} : solve_diagonal(node, change);
+  }
+  kept.heard = {};
+}
+
+}  // namespace
+
 void begin_change(Workspace& ws, const Order& order) {
   KeptChanges* kept = ws.kept_changes();
   if (kept == nullptr) {
@@ -50,17 +69,7 @@ void begin_change(Workspace& ws, const Order& order) {
   }
   kept->has_begun = true;
   if (!kept->heard.is_empty()) {
-    Node node = ws.node(0);
-    for (int half = 0; half < 2; ++half) {
-      form_diagonal(node, ws.setup, ws.contact, kept->heard, half);
-    }
-    for (int half = 0; half < 2; ++half) {
-      factor_diagonal(node, half);
-    }
-    for (base::Vec6<float>& change : kept->changes) {
-      change = node.is_fixed ? base::Vec6<float>{} : solve_diagonal(node, change);
-    }
-    kept->heard = {};
+    balance_changes(ws, *kept);
   }
   if (is_resume(order.operation) && order.index < wire::kKeptMax) {
     kept->changes[order.index] = kept->changes.back();

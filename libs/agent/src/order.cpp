@@ -691,6 +691,8 @@ void merge(Operation operation, Report& into, const Report& from) {
       return merge_plan(into, from);
     case Operation::kHosts:
     case Operation::kResume:
+      into.mask = static_cast<FaceMask>(into.mask | from.mask);
+      return;
     case Operation::kResumeDeflated:
       into.mask = static_cast<FaceMask>(into.mask | from.mask);
       return merge_along(into, from);

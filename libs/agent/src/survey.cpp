@@ -360,7 +360,9 @@ void report_last(Workspace& ws, Report& report) {
 Report resume_report(const Workspace& ws, const Order& order) {
   Report report = (order.flags & kRests) != 0 ? angles_report(ws, order) : Report{};
   report.mask = hosts_report(ws).mask;
-  report_along(ws, report);
+  if (kKeepsAnswers && order.operation == Operation::kResumeDeflated) {
+    report_along(ws, report);
+  }
   return report;
 }
 
