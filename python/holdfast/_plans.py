@@ -299,9 +299,9 @@ class Order(_Texts):
 
 
 def order(target: Union[Robot, Path], *, start: Optional[Cells] = None, reach: str = 'free',
-          source: Optional[Cell] = None, group: int = 1, reverse: bool = False, seed: int = 0,
-          seconds: float = 300, help_seconds: float = 0, threads: int = 0,
-          progress: Progress = None) -> Order:
+          source: Optional[Cell] = None, group: int = 1, reverse: bool = False,
+          exact: bool = False, seed: int = 0, seconds: float = 300, help_seconds: float = 0,
+          threads: int = 0, progress: Progress = None) -> Order:
     """In which order can a robot be built so that it is safe all the way?
 
     Parameters
@@ -318,6 +318,9 @@ def order(target: Union[Robot, Path], *, start: Optional[Cells] = None, reach: s
         Attach up to so many modules at once, 1 to 16.
     reverse
         Take the robot apart, from the target to the start.
+    exact
+        Solve every state on the way in the end, as is done anyway up to 256 modules: then
+        `Order.load_ratio_max` is the largest of all. Else most are certified by a bound.
     seconds, help_seconds
         Give up after this time; where there is no order, seek the least help for so long.
     progress
@@ -328,7 +331,8 @@ def order(target: Union[Robot, Path], *, start: Optional[Cells] = None, reach: s
     """
     with told(progress, 'order') as tell:
         found: Order = Order._of(_core.order(_robot(target)._held, start, reach, source, group,
-                                             reverse, seed, seconds, help_seconds, threads, tell))
+                                             reverse, exact, seed, seconds, help_seconds, threads,
+                                             tell))
     return found
 
 

@@ -118,7 +118,7 @@ double seconds_of(const py::handle& given, const char* what) {
 
 std::shared_ptr<io::OrderReport> order(const Structure& target, const py::handle& start,
                                        const py::handle& reach_name, const py::handle& source,
-                                       const py::handle& group, bool is_reversed,
+                                       const py::handle& group, bool is_reversed, bool is_exact,
                                        const py::handle& seed, const py::handle& seconds,
                                        const py::handle& help_seconds, const py::handle& threads,
                                        py::object progress) {
@@ -128,6 +128,7 @@ std::shared_ptr<io::OrderReport> order(const Structure& target, const py::handle
                        .seed = seed_of(seed),
                        .seconds_max = seconds_of(seconds, "seconds"),
                        .help_seconds_max = seconds_of(help_seconds, "help_seconds"),
+                       .is_exact = is_exact,
                        .thread_count = thread_count_of(threads)};
   if (!start.is_none()) {
     request.start = cells_of(start, "start");

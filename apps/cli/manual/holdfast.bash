@@ -66,7 +66,7 @@ _holdfast() {
         --certificate) files=1 ;;
         --robot) : ;;
         --lattice) : ;;
-        *) if [[ $current == -* ]]; then words="-h --help --from --reach --source --group --reverse --seed --seconds --help-seconds --threads -q --quiet -o --output --json --certificate --robot --lattice"; else files=1; fi ;;
+        *) if [[ $current == -* ]]; then words="-h --help --from --reach --source --group --reverse --seed --exact --seconds --help-seconds --threads -q --quiet -o --output --json --certificate --robot --lattice"; else files=1; fi ;;
       esac
       ;;
     move)

@@ -51,6 +51,7 @@ complete -c holdfast -n '__fish_seen_subcommand_from order' -l source -x -d 'Whe
 complete -c holdfast -n '__fish_seen_subcommand_from order' -l group -x -d ''
 complete -c holdfast -n '__fish_seen_subcommand_from order' -l reverse -d 'Take the robot apart, from the target to the start'
 complete -c holdfast -n '__fish_seen_subcommand_from order' -l seed -x -d 'Another seed tries candidates in another order; the same one finds the same'
+complete -c holdfast -n '__fish_seen_subcommand_from order' -l exact -d 'Solve every state on the way in the end, as is done anyway up to 256 modules; beyond, most are certified by a bound of their load ratio only'
 complete -c holdfast -n '__fish_seen_subcommand_from order' -l seconds -x -d 'Give up after this time'
 complete -c holdfast -n '__fish_seen_subcommand_from order' -l help-seconds -x -d 'Where there is no order, seek the least help that would do for this time'
 complete -c holdfast -n '__fish_seen_subcommand_from order' -l threads -x -d ''

@@ -25,6 +25,7 @@ struct OrderArguments {
   std::string source;
   std::size_t group_size = 1;
   bool is_reversed = false;
+  bool is_exact = false;
   std::uint64_t seed = 0;
   double seconds = 300;
   double help_seconds = 10;
@@ -107,6 +108,7 @@ OrderRequest request_of(const OrderArguments& options, Progress& progress) {
                        .seed = options.seed,
                        .seconds_max = options.seconds,
                        .help_seconds_max = options.help_seconds,
+                       .is_exact = options.is_exact,
                        .thread_count = options.thread_count,
                        .is_interrupted = &Interruption::is_here};
   request.rule.reach = options.reach == "line"      ? plan::Reach::kLine
@@ -238,6 +240,9 @@ void add_ways(CLI::App& command, OrderArguments& options) {
 void add_limits(CLI::App& command, OrderArguments& options) {
   add_seed(command, options.seed,
            "Another seed tries candidates in another order; the same one finds the same");
+  command.add_flag("--exact", options.is_exact,
+                   "Solve every state on the way in the end, as is done anyway up to 256 modules; "
+                   "beyond, most are certified by a bound of their load ratio only");
   command.add_option("--seconds", options.seconds, "Give up after this time")
       ->type_name("S")
       ->check(number_between(0.0, 1e6))

@@ -112,6 +112,20 @@ std::string none_words(const OrderReport& report) {
                      closure.blocked.size() == 1 ? "is" : "are");
 }
 
+/// A line, or nothing if no load is known.
+std::string load_ratio_words(const plan::RobotOrder& result) {
+  if (!result.load_ratio_max) {
+    return "";
+  }
+  const std::string largest = beside_one(*result.load_ratio_max, 4);
+  if (std::ranges::none_of(result.order.judgements, &plan::Judgement::is_bound)) {
+    return fmt::format("  load ratio  {} at most on the way\n", largest);
+  }
+  return fmt::format(
+      "  load ratio  {} is the largest of the states that were solved, no state exceeds {}\n",
+      largest, beside_one(*result.load_ratio_bound, 4));
+}
+
 }  // namespace
 
 const char* name(OrderOutcome outcome) {
@@ -167,12 +181,7 @@ std::string order_text(const OrderReport& report) {
   std::string text = fmt::format("FOUND       {}, every state {} is safe\n",
                                  host::counted(order.steps.size(), "step"),
                                  report.is_reversed ? "left behind" : "on the way");
-  if (report.result.load_ratio_max) {
-    text += fmt::format(
-        "  load ratio  {} is the largest of the states that were solved, no state exceeds {}\n",
-        beside_one(*report.result.load_ratio_max, 4),
-        beside_one(*report.result.load_ratio_bound, 4));
-  }
+  text += load_ratio_words(report.result);
   if (report.result.margin_min_mm) {
     text += fmt::format("  margin      {} mm at least on the way\n",
                         host::significant(*report.result.margin_min_mm, 4));

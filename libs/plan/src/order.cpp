@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <unordered_set>
 
+#include "patience.hpp"
 #include "robot_growth.hpp"
 
 namespace holdfast::plan {
@@ -170,6 +171,53 @@ base::Result<Setting> make_setting(const OrderTask& task, int thread_count) {
                  .core = std::move(core)};
 }
 
+/// Solves the states on the way that a bound has certified, as long as there is time.
+class CertifiedStates {
+ public:
+  /// Keeps references.
+  CertifiedStates(RobotGrowth& growth, Order& order, const Patience& patience)
+      : growth_(growth), order_(order), patience_(patience) {}
+
+  /// `tell` is called now and then with a state's number of modules.
+  void solve(const std::function<void(std::size_t)>& tell) {
+    ElementSet state = order_.start;
+    for (std::size_t i = 0; i < order_.judgements.size() && !patience_.is_over(); ++i) {
+      if (i > 0) {
+        state = changed(std::move(state), Sense::kGrowing, order_.steps[i - 1]);
+      }
+      if (order_.judgements[i].is_bound) {
+        places_.push_back(i);
+        states_.push_back(state);
+      }
+      if (states_.size() == kTogether || i + 1 == order_.judgements.size()) {
+        tell(state.size());
+        solve_together();
+      }
+    }
+  }
+
+ private:
+  /// Sets of all modules take memory.
+  static constexpr std::size_t kTogether = 64;
+
+  void solve_together() {
+    const auto solved = growth_.judge_each(states_, [&] { return patience_.is_over(); });
+    for (std::size_t k = 0; k < solved.size(); ++k) {
+      if (solved[k] && solved[k]->is_safe()) {
+        order_.judgements[places_[k]] = *solved[k];
+      }
+    }
+    places_.clear();
+    states_.clear();
+  }
+
+  RobotGrowth& growth_;
+  Order& order_;
+  const Patience& patience_;
+  std::vector<std::size_t> places_;  ///< In the judgements,
+  std::vector<ElementSet> states_;   ///< and what they are of.
+};
+
 void raise(std::optional<double>& largest, double value) {
   largest = std::max(largest.value_or(value), value);
 }
@@ -205,6 +253,7 @@ base::Result<RobotOrder> find_robot_order(const OrderTask& task, const RobotOrde
           fmt::format("the start is not safe: {}", verdict::name(start.verdict)));
     }
   }
+  const Patience patience(options.seconds_max, options.is_interrupted);
   RobotOrder result;
   result.order = find_order(growth, made.starts,
                             {.group_size = task.group_size,
@@ -214,6 +263,13 @@ base::Result<RobotOrder> find_robot_order(const OrderTask& task, const RobotOrde
                              .is_interrupted = options.is_interrupted,
                              .told_end = options.told_end,
                              .progress = options.progress});
+  if (options.is_exact) {
+    CertifiedStates(growth, result.order, patience).solve([&](std::size_t module_count) {
+      if (options.progress) {
+        options.progress(result.order.state_count, module_count, module_count);
+      }
+    });
+  }
   take_extremes(result);
   if (result.order.closure) {
     result.certificate = {.task = task, .closure = *std::move(result.order.closure)};

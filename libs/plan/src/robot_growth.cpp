@@ -357,6 +357,24 @@ Judgement RobotGrowth::judge(const ElementSet& state) {
               : Judgement{.verdict = verdict::Verdict::kUnstable};
 }
 
+std::vector<std::optional<Judgement>> RobotGrowth::judge_each(
+    std::span<const ElementSet> states, const std::function<bool()>& is_late) {
+  std::vector<std::optional<Judgement>> judgements(states.size());
+  if (growing_.is_thin()) {  // One state's factors become the next one's.
+    for (std::size_t i = 0; i < states.size() && !is_late(); ++i) {
+      judgements[i] = judge(states[i]);
+    }
+    return judgements;
+  }
+  host::Team team(thread_count_);
+  team.each(states.size(), [&](std::size_t i) {
+    if (!is_late()) {
+      judgements[i] = judgement_of(assess_alone(states[i]));
+    }
+  });
+  return judgements;
+}
+
 Judgement judgement_of(const verdict::Assessment& assessment) {
   return {.verdict = assessment.verdict,
           .load_ratio_max = assessment.load_ratio_max,

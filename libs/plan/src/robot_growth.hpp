@@ -53,6 +53,11 @@ class RobotGrowth final : public GrowingStructure {
 
   std::size_t run_length_max() const override { return kRunLength; }
 
+  /// The same as judge() of each of these states, each connected, solved; threads share them. None
+  /// of those that are left once `is_late`, which several threads may ask.
+  std::vector<std::optional<Judgement>> judge_each(std::span<const ElementSet> states,
+                                                   const std::function<bool()>& is_late);
+
   /// The robot of a state.
   base::Result<model::Robot> robot(const ElementSet& state) const;
 

@@ -351,6 +351,62 @@ TEST(RobotOrder, is_safe_all_the_way_where_states_are_certified_without_being_so
   EXPECT_GT(certified_count, holdfast::test::campaign(500, 10));
 }
 
+/// The load ratios of the states on the way, the largest of them, and whether all were solved.
+struct Loads {
+  std::vector<double> ratios;
+  double largest = 0;
+  bool are_all_solved = true;
+};
+
+Loads loads_of(const Order& order) {
+  Loads loads;
+  for (const Judgement& judged : order.judgements) {
+    loads.ratios.push_back(judged.load_ratio_max.value_or(0));
+    loads.largest = std::max(loads.largest, loads.ratios.back());
+    loads.are_all_solved = loads.are_all_solved && !judged.is_bound;
+  }
+  return loads;
+}
+
+TEST(RobotOrder, has_every_state_on_its_way_solved_if_it_is_to_be_exact) {
+  // Solid, crooked, thin (factors that grow with the robot), and another lattice.
+  for (const auto& [family, size] : std::vector<std::pair<const char*, std::size_t>>{
+           {"cube", 4}, {"growth", 90}, {"tower", 15}, {"scaffold", 6}, {"prism-wall", 4}}) {
+    const OrderTask task{.target = test::family_spec(family, size)};
+    const auto certified = find_robot_order(task);
+    const auto exact = find_robot_order(task, {.is_exact = true});
+    ASSERT_TRUE(certified && exact) << family;
+    const Order& order = exact.value().order;
+    EXPECT_EQ(order.steps, certified.value().order.steps) << family;
+    EXPECT_EQ(expect_safe_all_the_way(task, order), 0) << family;
+    const Loads bounds = loads_of(certified.value().order);
+    const Loads loads = loads_of(order);
+    EXPECT_FALSE(bounds.are_all_solved) << family;
+    ASSERT_TRUE(loads.are_all_solved) << family;
+    for (std::size_t i = 0; i < loads.ratios.size(); ++i) {
+      EXPECT_LE(loads.ratios[i], bounds.ratios[i] + 1e-4) << family << ' ' << i;
+    }
+    EXPECT_EQ(exact.value().load_ratio_max, loads.largest) << family;
+    EXPECT_EQ(exact.value().load_ratio_bound, loads.largest) << family;
+    EXPECT_GE(loads.largest, certified.value().load_ratio_max) << family;
+    const auto alone = find_robot_order(task, {.is_exact = true, .thread_count = 1});
+    EXPECT_EQ(alone.value().order.judgements, order.judgements) << family;
+  }
+}
+
+TEST(RobotOrder, keeps_its_bounds_where_there_is_no_time_to_be_exact) {
+  const OrderTask task{.target = test::family_spec("cube", 4)};
+  bool is_told = false;  // Of a first state that is solved after all, the 64th.
+  const auto found =
+      find_robot_order(task, {.is_interrupted = [&] { return is_told; },
+                              .progress = [&](std::size_t, std::size_t here,
+                                              std::size_t) { is_told = is_told || here == 64; },
+                              .is_exact = true,
+                              .thread_count = 1});
+  EXPECT_EQ(found.value().order.outcome, OrderOutcome::kFound);
+  EXPECT_FALSE(loads_of(found.value().order).are_all_solved);
+}
+
 TEST(RobotOrder, of_a_module_below_the_support_level_is_found_along_every_way) {
   const model::RobotSpec target{.existing = {{0, 0, 0}, {0, 0, -1}}, .fixed = {{0, 0, 0}}};
   for (const ReachRule& rule : {ReachRule{.reach = Reach::kLine},

@@ -23,6 +23,10 @@
 ///         { ... }
 namespace holdfast {
 
+/// All states on the way of robots of so many modules at most are solved in the end, which takes a
+/// tenth of a second.
+inline constexpr std::size_t kExactModuleCount = 256;
+
 struct OrderRequest {
   std::vector<base::Cell> start = {};  ///< As of plan::OrderTask.
   plan::ReachRule rule = {};
@@ -31,7 +35,10 @@ struct OrderRequest {
   std::uint64_t seed = 0;
   double seconds_max = std::numeric_limits<double>::infinity();
   double help_seconds_max = 0;  ///< Where there is no order: time to seek help; 0: none is sought.
-  int thread_count = 0;         ///< 0: as many as the machine has cores; decides nothing.
+  /// Whether all states on the way are solved in the end, also of robots of more than
+  /// kExactModuleCount modules, most of whose states are certified by a bound.
+  bool is_exact = false;
+  int thread_count = 0;  ///< 0: as many as the machine has cores; decides nothing.
   /// Asked all the time, by several threads; once it says so the search ends, and what has been
   /// found by then is the answer.
   std::function<bool()> is_interrupted = {};
