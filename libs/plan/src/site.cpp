@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cstdlib>
 
+#include "holdfast/verdict/rigid_body.hpp"
+
 namespace holdfast::plan {
 namespace {
 
@@ -36,7 +38,11 @@ bool is_well_inside(const Cell& cell) {
 }  // namespace
 
 SiteFinder::SiteFinder(const model::Robot& robot, const model::RobotSpec& spec)
-    : robot_(robot), spec_(spec), index_(index_of(robot)), obstacles_(spec.obstacles) {}
+    : robot_(robot),
+      spec_(spec),
+      index_(index_of(robot)),
+      obstacles_(spec.obstacles),
+      has_polygon_(verdict::is_on_flat_floor(robot)) {}
 
 Site SiteFinder::find(const Cell& cell) const {
   Site site{.cell = cell};
@@ -57,8 +63,16 @@ Site SiteFinder::find(const Cell& cell) const {
     return site;
   }
   site.is_on_floor = robot_.has_floor() && cell.z == robot_.support_z();
-  site.kind = touches_obstacle(cell) ? Site::Kind::kUnknown : Site::Kind::kOpen;
+  site.kind = touches_obstacle(cell) || !is_polygon_kept_by(site) ? Site::Kind::kUnknown
+                                                                  : Site::Kind::kOpen;
   return site;
+}
+
+/// Not by a module that rests on the floor where the others stand on obstacles at another level:
+/// then there is no level plane any more.
+bool SiteFinder::is_polygon_kept_by(const Site& site) const {
+  return !has_polygon_ || !site.is_on_floor ||
+         robot_.modules()[base::at(robot_.facets().front().module)].cell.z == site.cell.z;
 }
 
 bool SiteFinder::touches_obstacle(const Cell& cell) const {

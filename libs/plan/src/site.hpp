@@ -43,11 +43,13 @@ class SiteFinder {
  private:
   bool touches_obstacle(const base::Cell& cell) const;
   bool is_below_floor(const base::Cell& cell) const;
+  bool is_polygon_kept_by(const Site& site) const;
 
   const model::Robot& robot_;
   const model::RobotSpec& spec_;
   model::CellIndex index_;
   model::ObstacleIndex obstacles_;
+  bool has_polygon_ = false;  ///< The robot stands on a level plane, and that decides.
 };
 
 }  // namespace holdfast::plan

@@ -95,6 +95,30 @@ TEST(Candidates, of_random_cubes_on_a_floor_are_judged_as_checks_judge_them) {
   EXPECT_LT(sum.check_count, sum.count / (test::kIsShort ? 3 : 10));
 }
 
+TEST(Candidates, on_a_floor_below_the_level_that_the_robot_stands_on_have_no_polygon) {
+  // Obstacles under the ground modules of one side: a candidate under one of the others stands a
+  // level lower, and whether that robot holds is not for a polygon to say.
+  Compared sum;
+  std::size_t lower_count = 0;
+  for (std::uint64_t seed = 0; seed < test::campaign(60U, 6U); ++seed) {
+    RobotSpec spec = test::random_robot(seed);
+    spec.support_z = -1;
+    for (const Cell& cell : spec.existing) {
+      if (cell.z == 0 && cell.x <= spec.existing.front().x) {
+        const Cell below = {cell.x, cell.y, -1};
+        spec.obstacles.push_back({.from = below, .to = below});
+      }
+    }
+    lower_count += static_cast<std::size_t>(
+        std::ranges::count(free_cells(spec), -1, [](const Cell& cell) { return cell.z; }));
+    add(sum, compare(spec, "raised random_robot " + std::to_string(seed)));
+    add(sum,
+        compare(spec, "bonded " + std::to_string(seed), 3, {.equilibrium = {.is_bonded = true}}));
+  }
+  EXPECT_GT(lower_count, test::campaign(200U, 5U));
+  EXPECT_LT(sum.check_count, sum.count / 2);
+}
+
 TEST(Candidates, are_judged_so_in_every_lattice_with_supports_and_loads_of_every_kind) {
   constexpr std::size_t kStride = test::kIsShort ? 40 : 5;
   for (const base::Lattice& lattice : test::kLattices) {
