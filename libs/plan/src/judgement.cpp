@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "holdfast/plan/judgement.hpp"
 
+#include <algorithm>
 #include <utility>
 
 namespace holdfast::plan {
@@ -26,10 +27,19 @@ verdict::Assessment assess(const model::Robot& robot, const solver::EquilibriumO
 Judgement judge(const model::Robot& robot, const solver::EquilibriumOptions& options) {
   solver::EquilibriumOptions mine = options;
   mine.has_rigid_figures = false;
-  const verdict::Assessment assessment = assess(robot, mine);
-  return {.verdict = assessment.verdict,
-          .load_ratio_max = assessment.load_ratio_max,
-          .margin_mm = assessment.simplified.margin_mm};
+  return judgement_of(assess(robot, mine));
+}
+
+Judgement judgement_of(const verdict::Assessment& assessment) {
+  Judgement judgement{.verdict = assessment.verdict,
+                      .load_ratio_max = assessment.load_ratio_max,
+                      .load_ratio_high = assessment.load_ratio_max,
+                      .margin_mm = assessment.simplified.margin_mm};
+  if (judgement.load_ratio_high) {
+    *judgement.load_ratio_high =
+        std::max(*judgement.load_ratio_high, assessment.load_ratio_range.high);
+  }
+  return judgement;
 }
 
 }  // namespace holdfast::plan

@@ -224,8 +224,8 @@ void raise(std::optional<double>& largest, double value) {
 
 void take_extremes(RobotOrder& result) {
   for (const Judgement& judged : result.order.judgements) {
-    if (judged.load_ratio_max) {
-      raise(result.load_ratio_bound, *judged.load_ratio_max);
+    if (judged.load_ratio_high) {
+      raise(result.load_ratio_bound, *judged.load_ratio_high);
     }
     if (judged.load_ratio_max && !judged.is_bound) {
       raise(result.load_ratio_max, *judged.load_ratio_max);

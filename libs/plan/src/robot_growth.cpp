@@ -375,12 +375,6 @@ std::vector<std::optional<Judgement>> RobotGrowth::judge_each(
   return judgements;
 }
 
-Judgement judgement_of(const verdict::Assessment& assessment) {
-  return {.verdict = assessment.verdict,
-          .load_ratio_max = assessment.load_ratio_max,
-          .margin_mm = assessment.simplified.margin_mm};
-}
-
 verdict::Assessment RobotGrowth::assess_alone(const ElementSet& state) const {
   const auto part = robot(state);
   return part ? assess(part.value(), {.thread_count = 1, .has_rigid_figures = false})
@@ -445,7 +439,8 @@ std::vector<Judgement> RobotGrowth::judge_piece(ElementSet state, Sense sense,
       if (is_followed) {
         tools.followed->worth().certify(by_following);
       }
-      judgements.push_back({.verdict = verdict::Verdict::kSafe, .load_ratio_max = ratio});
+      judgements.push_back(
+          {.verdict = verdict::Verdict::kSafe, .load_ratio_max = ratio, .load_ratio_high = ratio});
       judgements.back().is_bound = true;
       if (balance) {
         judgements.back().margin_mm = balance->margin() * pitch_mm;

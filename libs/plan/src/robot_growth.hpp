@@ -134,9 +134,6 @@ class RobotGrowth final : public GrowingStructure {
   std::optional<Balance> balance_;  ///< On a flat floor.
 };
 
-/// A solved robot, judged.
-Judgement judgement_of(const verdict::Assessment& assessment);
-
 /// What remains of a spec if only these of its modules are there.
 model::RobotSpec part_of(const model::RobotSpec& spec, const ElementSet& modules);
 

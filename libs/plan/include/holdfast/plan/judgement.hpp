@@ -15,6 +15,8 @@ struct Judgement {
   verdict::Verdict verdict = verdict::Verdict::kUndecided;
   /// None for a robot that topples, which needs no loads, and where no load is known.
   std::optional<double> load_ratio_max = {};
+  /// What that does not exceed, errors included. Candidates have none.
+  std::optional<double> load_ratio_high = {};
   /// As of verdict::RigidBody: in mm, negative for a robot that topples, none for one that is
   /// held.
   std::optional<double> margin_mm = {};
@@ -34,6 +36,9 @@ verdict::Assessment first_look(const model::Robot& robot);
 /// by the options.
 verdict::Assessment assess(const model::Robot& robot,
                            const solver::EquilibriumOptions& options = {});
+
+/// What a planner asks of it.
+Judgement judgement_of(const verdict::Assessment& assessment);
 
 /// The verdict of verdict::assess(). A robot that topples is not solved, unless its supports are
 /// bonded by the options.

@@ -55,7 +55,8 @@ struct RobotOrder {
   std::optional<OrderCertificate> certificate = {};  ///< Of OrderOutcome::kNone.
   /// The largest load ratio of all states on the way that were solved; none if no load is known.
   std::optional<double> load_ratio_max = {};
-  /// What no state on the way exceeds: most are certified by a bound instead of being solved.
+  /// What no state on the way exceeds, errors included: most are certified by a bound instead of
+  /// being solved.
   std::optional<double> load_ratio_bound = {};
   /// The smallest margin on the way; none where none is known.
   std::optional<double> margin_min_mm = {};
