@@ -47,6 +47,8 @@ expect_exit 1 next long.json --quiet
 expect_exit 64 next "$safe" --json same --svg same
 expect_exit 64 chekc "$safe"
 expect_line err "no command 'chekc', but check steps next"
+expect_exit 64 check "$safe" --json ''
+expect_line err '^--json: the value is empty$'
 expect_exit 65 next missing.json
 
 # Proofs: arm_breaks_b carries 1.200397996 (tests/reference), arm_breaks_a 0.6402122645.

@@ -202,6 +202,38 @@ TEST(Kept, a_battery_comes_and_goes) {
   EXPECT_FALSE(simulate_steps(file, {}).has_value());
 }
 
+/// A module inside a tower is taken off, and one that knows nothing is put there again: it takes
+/// how the robot has moved from its neighbours, so plans behind that are as cheap as any. If it
+/// took its own old changes for them, a plan would take 420 rounds.
+TEST(Kept, who_is_put_on_again_knows_nothing_of_before) {
+  Cells cells;
+  for (int i = 0; i < 90; ++i) {
+    cells.push_back({i % 3, i / 3 % 3, i / 9});
+  }
+  StepsFile file = growing(cells, {});
+  const base::Cell again = {2, 2, 4};
+  file.document.extension.plan = {{.detach = {again}}};
+  for (const base::Cell& cell : Cells{{0, 0, 10},
+                                      {1, 0, 10},
+                                      {2, 0, 10},
+                                      {0, 1, 10},
+                                      {1, 1, 10},
+                                      {2, 1, 10},
+                                      {0, 2, 10},
+                                      again,
+                                      {1, 2, 10},
+                                      {2, 2, 10}}) {
+    file.document.extension.plan.push_back({.attach = {cell}});
+  }
+  const SimulatedSteps steps = simulated(file);
+  expect_the_same(steps);
+  const auto& changes = steps.changes;
+  ASSERT_EQ(changes.size(), 22);
+  for (const std::size_t plan : {changes.size() - 4, changes.size() - 2}) {
+    EXPECT_LT(changes[plan].kept.rounds, 300) << plan;
+  }
+}
+
 /// Another comes to the cell of a module that was fixed, and is not: the modules cannot know.
 TEST(Kept, no_module_takes_the_cell_of_a_fixed_one) {
   StepsFile file = growing({{0, 0, 0}, {1, 0, 0}}, {}, true);

@@ -323,8 +323,8 @@ Command add_check(CLI::App& app) {
       ->capture_default_str();
   command->footer(
       "Verdicts: safe, overload (a connection breaks), unstable (topples), undecided.\n"
-      "Exit: 64 wrong usage, 65 any bad input or not writable, 70 out of memory; else 1 any unsafe,\n"
-      "2 any undecided, 0 all safe. Notes of the reader always go to standard error.");
+      "Exit: 64 wrong usage, 65 any bad input or not writable, 70 out of memory; else 1 any\n"
+      "unsafe, 2 any undecided, 0 all safe. Notes of the reader always go to standard error.");
   return {command, [options] { return run(*options); }};
 }
 

@@ -35,6 +35,20 @@ std::string unknown_command(const CLI::App& app, int argc, char** argv) {
   return text + "\n";
 }
 
+/// An empty value, such as that of a shell's variable that is not set, names no file and nothing
+/// else.
+void refuse_empty_values(CLI::App& app) {
+  for (CLI::App* command : app.get_subcommands({})) {
+    for (CLI::Option* option : command->get_options()) {
+      if (option->get_items_expected_max() > 0) {
+        option->check([](const std::string& value) {
+          return std::string(value.empty() ? "the value is empty" : "");
+        });
+      }
+    }
+  }
+}
+
 int run(int argc, char** argv) {
   CLI::App app(
       "Will it hold? Predicts whether a modular robot breaks or topples when modules are attached.",
@@ -46,6 +60,7 @@ int run(int argc, char** argv) {
       cli::add_check(app),    cli::add_steps(app),    cli::add_next(app),    cli::add_order(app),
       cli::add_move(app),     cli::add_simulate(app), cli::add_emulate(app), cli::add_convert(app),
       cli::add_generate(app), cli::add_robots(app),   cli::add_view(app)};
+  refuse_empty_values(app);
   if (const std::string fault = unknown_command(app, argc, argv); !fault.empty()) {
     std::fputs(fault.c_str(), stderr);
     return holdfast::kExitUsage;

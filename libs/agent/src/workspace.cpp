@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "holdfast/agent/workspace.hpp"
 
+#include "holdfast/agent/deflation.hpp"
 #include "holdfast/agent/free_faces.hpp"
 #include "methods.hpp"
 
@@ -32,6 +33,9 @@ Workspace::Workspace(const Setup& shared, const Identity& identity, const LentMe
 #endif
   if (kJudgesFaces && free_faces() != nullptr) {
     free_faces()->forget();
+  }
+  if (kKeepsAnswers && kept_changes() != nullptr) {
+    *kept_changes() = {};
   }
 }
 
