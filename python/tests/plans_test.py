@@ -74,9 +74,9 @@ def test_an_order_is_safe_all_the_way():
 def test_an_exact_order_has_every_load_ratio():
     """More than 256 modules, of which all are solved only if that is asked for."""
     target = holdfast.generate('tower', 30)
-    certified = holdfast.order(target).judgements['load_ratio_max']
+    certified = holdfast.order(target).judgements['load_ratio_max'][1:]
     found = holdfast.order(target, exact=True)
-    exact = found.judgements['load_ratio_max']
+    exact = found.judgements['load_ratio_max'][1:]  # One module alone has no connection.
     assert np.isnan(certified).any() and not np.isnan(exact).any()
     is_solved = ~np.isnan(certified)
     np.testing.assert_allclose(exact[is_solved], certified[is_solved], rtol=0, atol=1e-4)

@@ -323,8 +323,9 @@ Command add_check(CLI::App& app) {
       ->capture_default_str();
   command->footer(
       "Verdicts: safe, overload (a connection breaks), unstable (topples), undecided.\n"
-      "Exit: 64 wrong usage, 65 any bad input or not writable, 70 out of memory; else 1 any\n"
-      "unsafe, 2 any undecided, 0 all safe. Notes of the reader always go to standard error.");
+      "Exit: 0 all safe, 1 any unsafe, else 2 any undecided; before these 64 wrong usage, 65 any\n"
+      "bad input or not writable, 70 out of memory. Notes of the reader always go to standard "
+      "error.");
   return {command, [options] { return run(*options); }};
 }
 

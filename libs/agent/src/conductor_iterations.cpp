@@ -252,7 +252,7 @@ Order Conductor::after_iteration(const Setup& setup, const Report& report) {
   stagnation_count_ =
       is_better ? std::uint8_t{0} : static_cast<std::uint8_t>(stagnation_count_ + 1);
   if (stagnation_count_ > stagnation_max()) {
-    return leave_one_sweep(setup, false);
+    return after_stagnation(setup);
   }
   if (is_elimination) {
     predicted_ = error;
@@ -300,6 +300,14 @@ double Conductor::iteration_error(const Setup& setup, const Report& report, doub
   const double now = scale * square_root(energy + above);
   predicted_ = after < bound ? after : bound;
   return now < bound ? now : bound;
+}
+
+/// Only displacements that are kept may have led nowhere: then the same from rest.
+Order Conductor::after_stagnation(const Setup& setup) {
+  if (kKeepsAnswers && has_motion_ && !is_seeking()) {
+    return begin_law(setup, false);
+  }
+  return leave_one_sweep(setup, false);
 }
 
 Order Conductor::minimised_iteration(const Report& report) {

@@ -180,6 +180,7 @@ class Conductor {
   Order restarted_iteration();
   Order jumped_iteration(const Setup& setup, const Report& report);
   Order leave_clusters(const Setup& setup);
+  Order after_stagnation(const Setup& setup);
   Order minimised_iteration(const Report& report);
   Order after_iteration(const Setup& setup, const Report& report);
   // conductor_deflation.cpp
