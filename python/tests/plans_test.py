@@ -80,7 +80,7 @@ def test_an_exact_order_has_every_load_ratio():
     assert np.isnan(certified).any() and not np.isnan(exact).any()
     is_solved = ~np.isnan(certified)
     np.testing.assert_allclose(exact[is_solved], certified[is_solved], rtol=0, atol=1e-4)
-    assert found.load_ratio_max == exact.max() == found.load_ratio_bound
+    assert found.load_ratio_max == exact.max() <= found.load_ratio_bound
 
 
 def test_no_order_is_certified(root):

@@ -249,7 +249,7 @@ TEST(Kept, what_leads_nowhere_is_forgotten_before_another_method_is_tried) {
   const SimulatedSteps steps = simulated(file);
   expect_the_same(steps);
   const StepChange& plan = steps.changes[1];
-  EXPECT_LT(plan.kept.rounds, 2 * plan.fresh.rounds * 3 / 4);
+  EXPECT_LT(2 * plan.kept.rounds, 3 * plan.fresh.rounds);
 }
 
 /// Another comes to the cell of a module that was fixed, and is not: the modules cannot know.

@@ -115,7 +115,7 @@ TEST(Candidates, on_a_floor_below_the_level_that_the_robot_stands_on_have_no_pol
     add(sum,
         compare(spec, "bonded " + std::to_string(seed), 3, {.equilibrium = {.is_bonded = true}}));
   }
-  EXPECT_GT(lower_count, test::campaign(200U, 5U));
+  EXPECT_GT(lower_count, test::campaign(200U, 10U));
   EXPECT_LT(sum.check_count, sum.count / 2);
 }
 
