@@ -240,9 +240,12 @@ void add_ways(CLI::App& command, OrderArguments& options) {
 void add_limits(CLI::App& command, OrderArguments& options) {
   add_seed(command, options.seed,
            "Another seed tries candidates in another order; the same one finds the same");
-  command.add_flag("--exact", options.is_exact,
-                   "Solve every state on the way in the end, as is done anyway up to 256 modules; "
-                   "beyond, most are certified by a bound of their load ratio only");
+  command.add_flag(
+      "--exact", options.is_exact,
+      fmt::format("Solve every state on the way in the end, as is done anyway up to {} "
+                  "modules; beyond, most are certified by a bound of their load ratio "
+                  "only",
+                  kExactModuleCount));
   command.add_option("--seconds", options.seconds, "Give up after this time")
       ->type_name("S")
       ->check(number_between(0.0, 1e6))

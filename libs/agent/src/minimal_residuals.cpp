@@ -27,8 +27,6 @@ void subtract(base::Vec6<double>& from, const base::Vec6<double>& force, double 
   }
 }
 
-}  // namespace
-
 /// How many of the changes that are kept are left to be exchanged before displacements are.
 int changes_left(const Workspace& ws, const Order& order) {
   constexpr int kDisplacements = 2;
@@ -45,6 +43,8 @@ PlannedPart part_of_displacements(const Workspace& ws, const Order& order) {
       moves_between_others(order.operation) && ws.exchange.left_before_report() == 1;
   return is_second ? PlannedPart::kCondensed : PlannedPart::kApart;
 }
+
+}  // namespace
 
 PlannedPart part_in_iteration(const Workspace& ws, const Order& order) {
   return changes_left(ws, order) > 0 ? PlannedPart::kApart : part_of_displacements(ws, order);

@@ -163,8 +163,7 @@ CandidateJudge::CandidateJudge(const model::RobotSpec& spec, const CandidateOpti
 
 /// False if nothing can be judged without checks.
 bool CandidateJudge::prepare(const RobotSymmetry& symmetry) {
-  const bool is_polygon = verdict::is_on_flat_floor(robot_);
-  if (!is_held_ && !is_polygon && !options_.equilibrium.is_bonded) {
+  if (!is_held_ && !finder_.has_polygon() && !options_.equilibrium.is_bonded) {
     return false;
   }
   for (const base::Cell& cell : free_cells(spec_)) {

@@ -40,6 +40,9 @@ class SiteFinder {
 
   Site find(const base::Cell& cell) const;
 
+  /// Whether the robot stands on a level plane, so that the support polygon decides.
+  bool has_polygon() const { return has_polygon_; }
+
  private:
   bool touches_obstacle(const base::Cell& cell) const;
   bool is_below_floor(const base::Cell& cell) const;
@@ -49,7 +52,7 @@ class SiteFinder {
   const model::RobotSpec& spec_;
   model::CellIndex index_;
   model::ObstacleIndex obstacles_;
-  bool has_polygon_ = false;  ///< The robot stands on a level plane, and that decides.
+  bool has_polygon_ = false;
 };
 
 }  // namespace holdfast::plan
